@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+# Compile options of every target, and the summary of back ends.
+
+# Warnings, C++20, no contraction of a*b+c (it breaks error bounds that assume separate roundings), sanitizers.
+function(cadt_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off -fno-fast-math)
+  if(CADT_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${CADT_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${CADT_SANITIZE})
+  endif()
+endfunction()
+
+# cadt_backend(NAME in|out REASON): one line of the summary.
+set_property(GLOBAL PROPERTY CADT_BACKENDS "")
+function(cadt_backend name state reason)
+  set_property(GLOBAL APPEND PROPERTY CADT_BACKENDS "  ${name}: ${state} (${reason})")
+endfunction()
+
+function(cadt_print_summary)
+  get_property(lines GLOBAL PROPERTY CADT_BACKENDS)
+  message(STATUS "cadt ${PROJECT_VERSION} back ends:")
+  foreach(line IN LISTS lines)
+    message(STATUS "${line}")
+  endforeach()
+endfunction()

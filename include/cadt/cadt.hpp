@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything that the library offers.
+#pragma once
+
+#include <cadt/devices.hpp>
+#include <cadt/errors.hpp>
+#include <cadt/points.hpp>
+#include <cadt/statistics.hpp>
+#include <cadt/triangulation.hpp>
+#include <cadt/verify.hpp>
+#include <cadt/version.hpp>

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Error types of the library. Each one carries the data that a program needs to react; `what()` says what to do.
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace cadt {
+
+/// Base of everything that the library throws on purpose.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A coordinate that is NaN or infinite, or arrays whose sizes do not fit together.
+class InputError : public Error {
+ public:
+  InputError(const std::string& message, std::size_t index) : Error(message), index_(index) {}
+  /// Index of the first offending point (0-based).
+  [[nodiscard]] std::size_t index() const noexcept { return index_; }
+
+ private:
+  std::size_t index_;
+};
+
+/// More points than 32-bit records can address. See `max_points()`.
+class LimitError : public Error {
+ public:
+  LimitError(const std::string& message, std::size_t count, std::size_t limit)
+      : Error(message), count_(count), limit_(limit) {}
+  [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  [[nodiscard]] std::size_t limit() const noexcept { return limit_; }
+
+ private:
+  std::size_t count_, limit_;
+};
+
+/// The back end or device that was asked for is not there; `reason()` says why. Never answered by a fallback.
+class BackendUnavailable : public Error {
+ public:
+  BackendUnavailable(std::string backend, std::string reason)
+      : Error("back end '" + backend + "' is not available: " + reason),
+        backend_(std::move(backend)),
+        reason_(std::move(reason)) {}
+  [[nodiscard]] const std::string& backend() const noexcept { return backend_; }
+  [[nodiscard]] const std::string& reason() const noexcept { return reason_; }
+
+ private:
+  std::string backend_, reason_;
+};
+
+/// Not enough memory on the device or below `Options::max_memory`. The process can go on with fewer points.
+class OutOfMemory : public Error {
+ public:
+  OutOfMemory(const std::string& message, std::size_t needed, std::size_t available)
+      : Error(message), needed_(needed), available_(available) {}
+  [[nodiscard]] std::size_t needed() const noexcept { return needed_; }        ///< bytes
+  [[nodiscard]] std::size_t available() const noexcept { return available_; }  ///< bytes; 0 if unknown
+
+ private:
+  std::size_t needed_, available_;
+};
+
+/// A call of the device's runtime failed.
+class DeviceError : public Error {
+ public:
+  DeviceError(std::string call, int code, std::string device, const std::string& text)
+      : Error(call + " failed on '" + device + "': " + text + " (" + std::to_string(code) + ")"),
+        call_(std::move(call)),
+        device_(std::move(device)),
+        code_(code) {}
+  [[nodiscard]] const std::string& call() const noexcept { return call_; }
+  [[nodiscard]] const std::string& device() const noexcept { return device_; }
+  [[nodiscard]] int code() const noexcept { return code_; }
+
+ private:
+  std::string call_, device_;
+  int code_;
+};
+
+/// The device's compiler refused the kernels. `log()` is the compiler's own text.
+class KernelBuildError : public Error {
+ public:
+  KernelBuildError(std::string device, std::string options, std::string log)
+      : Error("the kernels could not be built for '" + device + "' with options '" + options + "':\n" + log),
+        device_(std::move(device)),
+        options_(std::move(options)),
+        log_(std::move(log)) {}
+  [[nodiscard]] const std::string& device() const noexcept { return device_; }
+  [[nodiscard]] const std::string& options() const noexcept { return options_; }
+  [[nodiscard]] const std::string& log() const noexcept { return log_; }
+
+ private:
+  std::string device_, options_, log_;
+};
+
+/// The caller's stop token was triggered. Nothing was returned, nothing leaked.
+class Cancelled : public Error {
+ public:
+  Cancelled() : Error("cancelled by the caller") {}
+};
+
+/// A promise of the library itself was broken: please report it.
+class InternalError : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace cadt

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading and writing meshes.
+#pragma once
+
+#include <cadt/io/errors.hpp>
+#include <cadt/io/points_file.hpp>
+#include <cadt/triangulation.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cadt::io {
+
+struct WriteOptions {
+  std::string format;        ///< overrides the suffix: node ele neigh obj off ply vtu npz svg png
+  int base = 0;              ///< first index in Triangle's .node .ele .neigh: 0 or 1
+  bool ascii = false;        ///< text instead of binary where the format has both (ply)
+  int width = 1600;          ///< pictures: pixels (png) or user units (svg)
+};
+
+/// Writes a mesh or a picture of it. Formats with three coordinates take `PointSet::height`, else 0. All input points
+/// are written, in input order, so indices stay those of the input. The file appears only when complete (temporary file
+/// and rename); "-" is standard output. Throws FileError.
+void write_mesh(const std::string& path, const PointSet& points, const Triangulation& mesh, const WriteOptions& options = {});
+
+/// Triangles as read from a mesh file of any program: ele (with or without its .node beside it), obj, off, ply, vtu (as
+/// written by cadt), npz (keys as written by cadt).
+struct MeshFile {
+  std::vector<std::int32_t> triangles;  ///< n x 3, 0-based
+  std::vector<std::int32_t> neighbors;  ///< n x 3 or empty
+};
+
+/// Reads triangles; `number_of_points` is that of the point file they index. `base` as in WriteOptions, -1: recognised
+/// (the .node beside an .ele, else the smallest index). Throws FileError, also for an index out of range.
+[[nodiscard]] MeshFile read_mesh(const std::string& path, std::size_t number_of_points, const std::string& format = {}, int base = -1);
+
+[[nodiscard]] std::vector<std::string> mesh_write_formats();
+[[nodiscard]] std::vector<std::string> mesh_read_formats();
+
+}  // namespace cadt::io

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// A view of the caller's coordinates; nothing is copied.
+#pragma once
+
+#include <cadt/errors.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+namespace cadt {
+
+/// Points of the plane as the caller holds them: double or float, interleaved x0 y0 x1 y1 ... or x and y apart.
+/// The coordinates must outlive the view. Float converts to double exactly.
+class PointsView {
+ public:
+  PointsView() = default;
+
+  /// Interleaved x0 y0 x1 y1 ...; an odd size throws InputError.
+  PointsView(std::span<const double> xy) : PointsView(xy.data(), xy.size()) {}  // NOLINT: implicit on purpose
+  PointsView(std::span<const float> xy) : PointsView(xy.data(), xy.size()) {}   // NOLINT
+
+  /// Separate arrays of equal size; otherwise InputError with the smaller size as index.
+  PointsView(std::span<const double> x, std::span<const double> y) : PointsView(x.data(), y.data(), x.size(), y.size()) {}
+  PointsView(std::span<const float> x, std::span<const float> y) : PointsView(x.data(), y.data(), x.size(), y.size()) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] double x(std::size_t i) const noexcept { return x64_ ? x64_[i * stride_] : static_cast<double>(x32_[i * stride_]); }
+  [[nodiscard]] double y(std::size_t i) const noexcept { return y64_ ? y64_[i * stride_] : static_cast<double>(y32_[i * stride_]); }
+
+  /// The coordinates themselves if they are interleaved doubles, else nullptr.
+  [[nodiscard]] const double* interleaved_doubles() const noexcept { return stride_ == 2 ? x64_ : nullptr; }
+
+ private:
+  template <class Real>
+  PointsView(const Real* xy, std::size_t values) : size_(values / 2), stride_(2) {
+    if (values % 2 != 0) throw InputError("interleaved coordinates need an even number of values", values / 2);
+    set(xy, xy == nullptr ? nullptr : xy + 1);
+  }
+  template <class Real>
+  PointsView(const Real* x, const Real* y, std::size_t nx, std::size_t ny) : size_(nx), stride_(1) {
+    if (nx != ny) throw InputError("the x and y arrays differ in size", std::min(nx, ny));
+    set(x, y);
+  }
+  void set(const double* x, const double* y) noexcept { x64_ = x, y64_ = y; }
+  void set(const float* x, const float* y) noexcept { x32_ = x, y32_ = y; }
+
+  const double* x64_ = nullptr;
+  const double* y64_ = nullptr;
+  const float* x32_ = nullptr;
+  const float* y32_ = nullptr;
+  std::size_t size_ = 0;
+  std::size_t stride_ = 2;
+};
+
+}  // namespace cadt

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// An independent check of a mesh against its points. Shares no predicate with the builder.
+#pragma once
+
+#include <cadt/points.hpp>
+#include <cadt/triangulation.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace cadt {
+
+/// Outcome of one check of `verify`.
+struct Check {
+  std::string name;         ///< "counts", "range", "neighbors", "orientation", "vertices", "boundary", "euler", "hull", "delaunay", "ties"
+  bool passed = false;
+  std::uint64_t failures = 0;
+  std::int64_t first = -1;  ///< first offending triangle, point or edge (3 * triangle + k), as `what` says
+  std::string what;         ///< what failed, empty when passed
+};
+
+struct VerifyReport {
+  bool ok = false;
+  std::vector<Check> checks;
+  std::uint64_t points = 0, triangles_examined = 0, edges_examined = 0, hull_vertices = 0;
+  std::uint64_t ties = 0;             ///< interior edges whose four points are cocircular
+  std::uint64_t unusual_ties = 0;     ///< those that are not decided as cadt and CGAL decide them
+  /// One line: "ok: 945 triangles, ..." or the first failure.
+  [[nodiscard]] std::string summary() const;
+};
+
+/// A mesh from any program. Only `triangles` is needed; empty spans are derived (neighbours) or not compared.
+struct MeshView {
+  std::span<const std::int32_t> triangles;   ///< n x 3, counterclockwise, 0-based
+  std::span<const std::int32_t> neighbors;   ///< n x 3, neighbour k opposite vertex k, -1 outside
+  std::span<const std::int32_t> hull;        ///< ccw loop
+  std::span<const Duplicate> duplicates;
+  bool has_duplicates = false;               ///< compare `duplicates` with the points, otherwise derive them
+};
+
+struct VerifyOptions {
+  unsigned threads = 0;            ///< 0: all cores
+  bool canonical_ties = true;      ///< cocircular points must be decided as cadt and CGAL decide them
+};
+
+/// Checks structure, orientation, symmetry of neighbours, Euler's formula, the hull, that every input point is used or
+/// equals a used one, and the exact empty-circle property of every interior edge, which implies that of the whole
+/// triangulation (Delaunay lemma). O(triangles) expected; exact arithmetic only where a filter cannot decide.
+[[nodiscard]] VerifyReport verify(PointsView points, const MeshView& mesh, const VerifyOptions& options = {});
+[[nodiscard]] VerifyReport verify(PointsView points, const Triangulation& mesh, const VerifyOptions& options = {});
+
+}  // namespace cadt

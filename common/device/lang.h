@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The dialect of common/device: C99 that is OpenCL C, CUDA C++ and host C++ at once.
+ * This file finds the language once, then defines the words in which the rest is written. Nothing else in this folder
+ * asks which language it is, but atomics.h.
+ *
+ * A compile may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double),
+ * CADT_CONTIGUOUS (1: a work-item takes neighbouring elements, right for CPUs; 0: strided, right for GPUs),
+ * CADT_RADIX_BITS (digit of the radix sort), CADT_TEST_NO_LOCKS (control of the tests: locks are not taken).
+ */
+#ifndef CADT_DEVICE_LANG_H
+#define CADT_DEVICE_LANG_H
+
+#ifndef CADT_WIDE
+#define CADT_WIDE 0
+#endif
+#ifndef CADT_CONTIGUOUS
+#define CADT_CONTIGUOUS 1
+#endif
+#ifndef CADT_RADIX_BITS
+#define CADT_RADIX_BITS 8
+#endif
+
+#if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
+#define CADT_LANG_OPENCL 1
+#elif defined(__CUDACC__) || defined(__CUDA__)
+#define CADT_LANG_CUDA 1
+#else
+#define CADT_LANG_HOST 1
+#endif
+
+/* ---- OpenCL C ------------------------------------------------------------------------------------------------- */
+#if defined(CADT_LANG_OPENCL)
+
+#if defined(__OPENCL_C_VERSION__) && __OPENCL_C_VERSION__ < 120
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#endif
+/* Without this PoCL fuses a*b+c, which voids the error bounds of the filters. */
+#pragma OPENCL FP_CONTRACT OFF
+
+typedef uint cadt_u32;
+typedef int cadt_i32;
+typedef ulong cadt_u64;
+typedef long cadt_i64;
+
+#define CADT_GLOBAL __global
+#define CADT_FN static
+#define CADT_FN_SLOW static __attribute__((noinline))
+#define CADT_KERNEL(name, ...) __kernel void name(__VA_ARGS__)
+#define cadt_item ((cadt_u32)get_global_id(0))
+#define cadt_items ((cadt_u32)get_global_size(0))
+#define CADT_CAST(type, value) ((type)(value))
+
+#define cadt_bits_of_double(x) as_ulong(x)
+#define cadt_clz64(x) ((cadt_u32)clz((ulong)(x)))
+#define cadt_mulhi_u64(a, b) mul_hi((ulong)(a), (ulong)(b))
+#define cadt_fabs(x) fabs(x)
+
+/* ---- CUDA C++ ------------------------------------------------------------------------------------------------- */
+#elif defined(CADT_LANG_CUDA)
+
+typedef unsigned int cadt_u32;
+typedef int cadt_i32;
+typedef unsigned long long cadt_u64;
+typedef long long cadt_i64;
+
+#define CADT_GLOBAL
+#define CADT_FN static __device__ inline
+#define CADT_FN_SLOW static __device__ __noinline__
+#define CADT_KERNEL(name, ...) extern "C" __global__ void name(__VA_ARGS__)
+#define cadt_item ((cadt_u32)(blockIdx.x * blockDim.x + threadIdx.x))
+#define cadt_items ((cadt_u32)(gridDim.x * blockDim.x))
+#define CADT_CAST(type, value) ((type)(value))
+
+#define cadt_bits_of_double(x) ((cadt_u64)__double_as_longlong(x))
+#define cadt_clz64(x) ((cadt_u32)__clzll((long long)(x)))
+#define cadt_mulhi_u64(a, b) __umul64hi((a), (b))
+#define cadt_fabs(x) fabs(x)
+
+/* ---- host C++; the file that includes the kernels has included <cmath>, <cstdint>, <cstring>, <atomic> before ---- */
+#else
+
+typedef std::uint32_t cadt_u32;
+typedef std::int32_t cadt_i32;
+typedef std::uint64_t cadt_u64;
+typedef std::int64_t cadt_i64;
+
+#define CADT_GLOBAL
+#define CADT_FN static inline
+#define CADT_FN_SLOW __attribute__((noinline)) static
+/* A kernel is a function of its work-item; the host back end supplies the two numbers (backends/host). */
+#define CADT_KERNEL(name, ...) \
+  static void name([[maybe_unused]] cadt_u32 cadt_item, [[maybe_unused]] cadt_u32 cadt_items, __VA_ARGS__)
+#define CADT_CAST(type, value) static_cast<type>(value)
+
+CADT_FN cadt_u64 cadt_bits_of_double(double x) {
+  cadt_u64 bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+CADT_FN cadt_u32 cadt_clz64(cadt_u64 x) { return x ? CADT_CAST(cadt_u32, __builtin_clzll(x)) : 64u; }
+CADT_FN cadt_u64 cadt_mulhi_u64(cadt_u64 a, cadt_u64 b) {
+  __extension__ typedef unsigned __int128 u128;
+  return CADT_CAST(cadt_u64, (CADT_CAST(u128, a) * b) >> 64);
+}
+CADT_FN double cadt_fabs(double x) { return std::fabs(x); }
+
+#endif
+
+typedef struct {
+  double x, y;
+} cadt_point;
+
+#define CADT_NONE 0xFFFFFFFFu
+
+/* One of three values; keeps them in registers where an array would go to memory. */
+#define CADT_PICK(k, a, b, c) ((k) == 0u ? (a) : ((k) == 1u ? (b) : (c)))
+#define CADT_NEXT(k) ((k) == 2u ? 0u : (k) + 1u)
+#define CADT_PREV(k) ((k) == 0u ? 2u : (k)-1u)
+
+CADT_FN cadt_u32 cadt_min_u32(cadt_u32 a, cadt_u32 b) { return a < b ? a : b; }
+
+/* The elements i < count that this work-item owns. `grain` is the number of neighbouring elements on CPUs. */
+#if CADT_CONTIGUOUS
+#define CADT_FOR(i, count, grain)                                                                            \
+  for (cadt_u32 i = cadt_min_u32(cadt_item * (grain), (count)), i##_end = cadt_min_u32(i + (grain), (count)); \
+       i < i##_end; ++i)
+#else
+#define CADT_FOR(i, count, grain) for (cadt_u32 i = cadt_item; i < (count); i += cadt_items)
+#endif
+
+#endif

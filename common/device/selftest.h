@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Known answers of the arithmetic that the filters rely on, computed on the actual device from values in memory
+ * (literals would be folded by the compiler). The host compares the bits and refuses the device by the name of the probe
+ * that failed (common/host/selftest.cpp).
+ */
+#ifndef CADT_DEVICE_SELFTEST_H
+#define CADT_DEVICE_SELFTEST_H
+
+#include "common/device/atomics.h"
+#include "common/device/fixed.h"
+
+enum { CADT_PROBES = 8 };
+
+/* in: 2 * CADT_PROBES doubles; out: CADT_PROBES doubles; words: 4 words, zero at the start */
+CADT_KERNEL(cadt_selftest, CADT_GLOBAL const double* in, CADT_GLOBAL double* out, CADT_GLOBAL cadt_u32* words) {
+  if (cadt_item == 0u) {
+    /* contraction: a*a+b with an exact product that needs 54 bits; fused it is not zero */
+    out[0] = in[0] * in[0] + in[1];
+    /* Two-Sum: the rounding error of a sum; fast-math folds it to zero */
+    double s = in[2] + in[3], t = s - in[2];
+    out[1] = (in[2] - (s - t)) + (in[3] - t);
+    /* gradual underflow of a product and of a difference */
+    out[2] = in[4] * in[5];
+    out[3] = in[6] - in[7];
+    /* rounding to nearest, ties to even */
+    out[4] = in[8] + in[9];
+    out[5] = in[10] * in[11];
+    out[6] = in[12] / in[13];
+    /* 64 x 64 -> 128 bits, and the bits of a double */
+    cadt_i128 p = cadt_mul_i64(CADT_CAST(cadt_i64, cadt_bits_of_double(in[14])), -CADT_CAST(cadt_i64, cadt_bits_of_double(in[15])));
+    out[7] = CADT_CAST(double, p.high);
+    words[0] = CADT_CAST(cadt_u32, p.low);
+    words[1] = CADT_CAST(cadt_u32, p.low >> 32);
+  }
+  /* every work-item of the launch adds one */
+  cadt_add_relaxed(words + 2, 1u);
+  if (cadt_cas_acq_rel(words + 3, 0u, 7u)) cadt_add_relaxed(words + 3, cadt_load_acquire(words + 3));
+}
+
+#endif

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a back end supplies: memory, launches, and a word about the machine. The driver knows nothing else of it.
+#pragma once
+
+#include <cadt/devices.hpp>
+#include <cadt/triangulation.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+
+#include "common/host/kernel_id.hpp"
+
+namespace cadt {
+
+/// Memory of a device. Freed by its destructor, which never throws. Must not outlive its device.
+class Buffer {
+ public:
+  explicit Buffer(std::size_t bytes) noexcept : bytes_(bytes) {}
+  virtual ~Buffer() = default;
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+
+ private:
+  std::size_t bytes_;
+};
+
+/// One argument of a kernel: a buffer or a scalar of 4 or 8 bytes, in the order of the kernel's parameters.
+class Arg {
+ public:
+  Arg(Buffer& buffer) noexcept : buffer_(&buffer) {}                        // NOLINT: implicit on purpose
+  Arg(const std::unique_ptr<Buffer>& buffer) noexcept : buffer_(buffer.get()) {}  // NOLINT; nullptr passes a null pointer
+  template <class Scalar>
+    requires(std::is_arithmetic_v<Scalar> && (sizeof(Scalar) == 4 || sizeof(Scalar) == 8))
+  Arg(Scalar value) noexcept : size_(sizeof(Scalar)) {  // NOLINT
+    std::memcpy(value_, &value, sizeof value);
+  }
+
+  [[nodiscard]] bool is_buffer() const noexcept { return size_ == 0; }
+  [[nodiscard]] Buffer* buffer() const noexcept { return buffer_; }
+  [[nodiscard]] const void* value() const noexcept { return value_; }
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+
+ private:
+  Buffer* buffer_ = nullptr;
+  std::size_t size_ = 0;
+  alignas(8) std::byte value_[8] = {};
+};
+
+/// How a device wants its work cut.
+struct LaunchShape {
+  bool contiguous = true;       ///< a work-item takes neighbouring elements (CPUs) or strided ones (GPUs)
+  std::uint32_t parallelism = 1;  ///< work-items that keep the device busy
+  std::uint32_t grain = 256;    ///< elements a work-item takes at least when there are plenty
+};
+
+/// One device, in order: every operation starts after the ones before it have finished.
+class Device {
+ public:
+  virtual ~Device() = default;
+  Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  [[nodiscard]] virtual const DeviceInfo& info() const noexcept = 0;
+  [[nodiscard]] virtual LaunchShape shape() const noexcept = 0;
+  /// Worker threads (host) or compute units.
+  [[nodiscard]] virtual unsigned threads() const noexcept = 0;
+
+  /// Uninitialised memory. \throws OutOfMemory, DeviceError
+  [[nodiscard]] virtual std::unique_ptr<Buffer> allocate(std::size_t bytes) = 0;
+  /// A read-only buffer that aliases the caller's memory where the device can, else nullptr (then copy).
+  [[nodiscard]] virtual std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) = 0;
+
+  /// Blocking copies; offsets and sizes in bytes. \throws DeviceError
+  virtual void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) = 0;
+  virtual void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) = 0;
+  /// Fills with copies of a word; offset and size in bytes, multiples of 4.
+  virtual void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) = 0;
+
+  /// Runs a kernel with `items` work-items (possibly rounded up: kernels ignore items beyond their data). `wide` chooses
+  /// the build for coordinates of any exponent (common/device/fixed.h). Returns before the work is done where the device
+  /// can. \throws DeviceError, KernelBuildError (a variant may be built at its first launch)
+  virtual void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) = 0;
+  /// Waits for everything launched. \throws DeviceError
+  virtual void finish() = 0;
+};
+
+}  // namespace cadt

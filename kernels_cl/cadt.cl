@@ -1,0 +1,6 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Entry file of the OpenCL back end: the kernels of common/device are already OpenCL C. The build embeds this file with
+ * all its includes in the library (cmake/EmbedKernels.cmake).
+ */
+#include "common/device/kernels.h"

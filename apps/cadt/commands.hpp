@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands. Each one declares its options and, when the command line names it, sets what is to be done.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace cadt::cli {
+
+/// The work of the chosen subcommand; returns the exit code. Errors are thrown.
+using Action = std::function<int()>;
+
+void add_triangulate(CLI::App& app, Action& chosen);
+void add_verify(CLI::App& app, Action& chosen);
+void add_generate(CLI::App& app, Action& chosen);
+void add_devices(CLI::App& app, Action& chosen);
+void add_info(CLI::App& app, Action& chosen);
+
+}  // namespace cadt::cli

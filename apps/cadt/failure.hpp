@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Exit codes, and the one place that turns exceptions into messages and exit codes.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace cadt::cli {
+
+enum ExitCode : int {
+  exit_done = 0,
+  exit_internal = 1,
+  exit_usage = 2,
+  exit_file = 3,
+  exit_degenerate = 4,
+  exit_device = 5,
+  exit_memory = 6,
+  exit_verify = 7,
+  exit_interrupted = 130  // 128 + SIGINT, as shells have it
+};
+
+/// The exit codes as text, for the help.
+inline constexpr std::string_view exit_codes_help =
+    "Exit codes:\n"
+    "    0  done\n"
+    "    1  internal error: please report it\n"
+    "    2  the command line is wrong\n"
+    "    3  a file cannot be read, is malformed, or cannot be written\n"
+    "    4  --strict: no triangles, the points are fewer than three or on one line\n"
+    "    5  the back end or device is not available\n"
+    "    6  out of memory\n"
+    "    7  the mesh failed the verification\n"
+    "  130  interrupted (SIGINT, SIGTERM or SIGHUP)\n";
+
+/// An error that the program itself finds, with its exit code.
+class Failure : public std::runtime_error {
+ public:
+  Failure(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  [[nodiscard]] ExitCode code() const noexcept { return code_; }
+
+ private:
+  ExitCode code_;
+};
+
+/// Writes to standard error; never throws, so that a closed terminal does not hide the exit code.
+void say(std::string_view text) noexcept;
+
+/// To be called in a catch block: explains the exception on standard error and returns the exit code.
+[[nodiscard]] int report_exception() noexcept;
+
+/// Writes to standard output; a failure throws io::FileError.
+void print(std::string_view text);
+/// Flushes standard output. Without this a full disk would go unnoticed.
+void finish_stdout();
+
+}  // namespace cadt::cli

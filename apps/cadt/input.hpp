@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options that say how points are read, shared by all subcommands that read points.
+#pragma once
+
+#include <cadt/io/points_file.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace cadt::cli {
+
+struct InputOptions {
+  std::string path;
+  std::string format;
+  std::string columns;
+  std::string projection = "xy";
+};
+
+/// Adds the positional `name` and -f, --columns, --project.
+void add_input_options(CLI::App& command, InputOptions& options, const std::string& name, const std::string& text);
+
+/// Checks the options, then reads. Wrong options throw Failure (usage), a wrong file io::FileError.
+[[nodiscard]] io::PointSet read_input(const InputOptions& options);
+
+/// "in.xy", or "standard input" for "-".
+[[nodiscard]] std::string display_name(const std::string& path, bool input);
+
+}  // namespace cadt::cli

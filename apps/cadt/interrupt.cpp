@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// request_stop() may not be called from a signal handler (it takes a lock that the interrupted thread may hold), so the
+// handler only writes a byte to a pipe, and a thread that waits at the other end does the rest.
+#include "interrupt.hpp"
+
+#include "failure.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <mutex>
+#include <thread>
+
+namespace cadt::cli {
+namespace {
+
+constexpr std::array signals = {SIGINT, SIGTERM, SIGHUP};
+int pipe_ends[2] = {-1, -1};
+volatile std::sig_atomic_t listening[signals.size()] = {};
+
+struct State {
+  std::mutex mutex;
+  Phase phase = Phase::free;
+  std::stop_source stop;
+};
+
+// Never destroyed: the waiting thread may outlive main().
+State& state() {
+  static State* const instance = new State;
+  return *instance;
+}
+
+extern "C" void on_signal(int) {
+  const int saved = errno;
+  // From now on any of the signals has its default effect, whatever this process hangs in.
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    if (listening[i]) std::signal(signals[i], SIG_DFL);
+  }
+  const char byte = 1;
+  [[maybe_unused]] const auto written = write(pipe_ends[1], &byte, 1);
+  errno = saved;
+}
+
+void wait_for_signal() {
+  char byte = 0;
+  while (read(pipe_ends[0], &byte, 1) < 0 && errno == EINTR) {
+  }
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  s.stop.request_stop();
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  if (s.phase == Phase::free) {
+    say(terminal ? "\ncadt: interrupted\n" : "cadt: interrupted\n");
+    _exit(exit_interrupted);
+  }
+  if (terminal) say("\ncadt: stopping; interrupt again to end at once\n");
+}
+
+}  // namespace
+
+void install_interrupt_handlers() {
+  state();
+  if (pipe2(pipe_ends, O_CLOEXEC) != 0) return;  // then the signals keep their default effect
+  // The thread that waits must not be the one that a signal interrupts in a read of standard input.
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  std::thread(wait_for_signal).detach();
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    struct sigaction old {};
+    if (sigaction(signals[i], nullptr, &old) != 0 || old.sa_handler == SIG_IGN) continue;
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    for (const int other : signals) sigaddset(&action.sa_mask, other);
+    listening[i] = 1;
+    sigaction(signals[i], &action, nullptr);
+  }
+}
+
+std::stop_token interrupt_token() { return state().stop.get_token(); }
+
+void check_interrupt() {
+  if (state().stop.stop_requested()) throw Cancelled();
+}
+
+InPhase::InPhase(Phase phase) {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  before_ = s.phase;
+  s.phase = phase;
+}
+
+InPhase::~InPhase() {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  s.phase = before_;
+}
+
+}  // namespace cadt::cli

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program `cadt`: chooses the subcommand and turns whatever happens into an exit code.
+#include "commands.hpp"
+#include "failure.hpp"
+#include "help.hpp"
+#include "interrupt.hpp"
+
+#include <cadt/version.hpp>
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+namespace {
+
+using namespace cadt::cli;
+
+const std::string examples =
+    "Examples:\n"
+    "  cadt generate uniform -n 100000 -o points.xy\n"
+    "  cadt triangulate points.xy -o mesh.ply -o mesh.png\n"
+    "      100,000 random points, their mesh, and a picture of it\n\n"
+    "  cadt triangulate survey.csv --columns lon,lat,depth -o sea.vtu --verify\n"
+    "      columns of a table by name; the third one is the height in the mesh, which is checked before it is "
+    "written\n\n"
+    "  cadt triangulate points.xy --backend host --threads 4 -o mesh.ele --stats=run.json\n"
+    "  cadt verify points.xy mesh.ele\n"
+    "      a chosen back end, statistics as JSON, and an exact check of the file (of any program)\n\n"
+    "Each command has its own help: cadt triangulate --help\n\n";
+
+// The help of a command that is meant: a file name in its place is the usual slip.
+void explain_first_word(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2) throw Failure(exit_usage, "a command is missing; see: cadt --help");
+  const std::string word = argv[1];
+  if (!word.empty() && word[0] == '-') return;
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == word) return;
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  throw Failure(exit_usage,
+                fmt::format("there is no command '{}'; there are: {}. To triangulate a file: cadt triangulate {}", word,
+                            names, word));
+}
+
+int parse_and_run(int argc, char** argv) {
+  CLI::App app(
+      "cadt computes the Delaunay triangulation of points of the plane: exact, the same on every device, in parallel.",
+      "cadt");
+  Action action;
+  app.set_version_flag("--version", "cadt " CADT_VERSION, "print the version and exit");
+  app.set_help_flag("-h,--help", "print this help and exit");
+  app.formatter(std::make_shared<HelpFormatter>());
+  add_triangulate(app, action);
+  add_verify(app, action);
+  add_generate(app, action);
+  add_devices(app, action);
+  add_info(app, action);
+  app.footer(examples + std::string(exit_codes_help));
+
+  explain_first_word(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {  // help and version
+    app.exit(e);
+    return exit_done;
+  } catch (const CLI::ParseError& e) {
+    const auto chosen = app.get_subcommands();
+    const std::string help = chosen.empty() ? "cadt --help" : fmt::format("cadt {} --help", chosen.front()->get_name());
+    throw Failure(exit_usage, fmt::format("{}; see: {}", e.what(), help));
+  }
+  if (!action) throw Failure(exit_usage, "a command is missing; see: cadt --help");
+  install_interrupt_handlers();
+  return action();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int code = exit_done;
+  try {
+    code = parse_and_run(argc, argv);
+    finish_stdout();
+  } catch (...) {
+    code = report_exception();
+  }
+  return code;
+}

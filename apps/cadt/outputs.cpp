@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "outputs.hpp"
+
+#include "failure.hpp"
+#include "text.hpp"
+
+#include <cadt/io/errors.hpp>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+namespace cadt::cli {
+namespace fs = std::filesystem;
+namespace {
+
+std::string format_of(const std::string& path, const std::string& asked, const std::vector<std::string>& known) {
+  const auto is_known = [&](const std::string& word) {
+    return std::find(known.begin(), known.end(), word) != known.end();
+  };
+  if (!asked.empty() && asked != "auto") {
+    if (is_known(asked)) return asked;
+    throw Failure(exit_usage, fmt::format("-t: unknown format '{}'; there are: {}", asked, join(known)));
+  }
+  if (path == "-") {
+    throw Failure(exit_usage,
+                  fmt::format("standard output has no suffix; name its format with -t, one of: {}", join(known)));
+  }
+  std::string suffix = lower(fs::path(path).extension().string());
+  if (!suffix.empty()) suffix.erase(0, 1);
+  if (is_known(suffix)) return suffix;
+  throw Failure(exit_usage,
+                fmt::format("{}: {}; name the format with -t, or end the file's name in one of: {}", path,
+                            suffix.empty() ? "no suffix" : "unknown suffix '." + suffix + "'", join(known)));
+}
+
+// One file under two names (./a and a, a link) is still one file.
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code code;
+  if (fs::exists(a, code) && fs::exists(b, code)) return fs::equivalent(a, b, code);
+  return fs::absolute(a, code).lexically_normal() == fs::absolute(b, code).lexically_normal();
+}
+
+bool is_device(const std::string& path) {
+  std::error_code code;
+  const fs::file_status status = fs::status(path, code);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+[[noreturn]] void refuse(const std::string& path, int why) {
+  throw io::FileError(path, 0, std::string("cannot be written: ") + std::strerror(why));
+}
+
+}  // namespace
+
+std::vector<Output> plan_outputs(const std::vector<std::string>& paths, const std::vector<std::string>& formats,
+                                 const std::vector<std::string>& known, const std::string& input) {
+  if (formats.size() > 1 && formats.size() != paths.size()) {
+    throw Failure(exit_usage,
+                  fmt::format("-t is given {} times for {} outputs; give it once for all of them, or once for "
+                              "each (auto: from the suffix)",
+                              formats.size(), paths.size()));
+  }
+  if (paths.empty() && !formats.empty()) {
+    throw Failure(exit_usage, "-t without -o: name the output, for example -o - for standard output");
+  }
+  std::vector<Output> outputs;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const std::string asked = formats.empty() ? std::string() : lower(formats[formats.size() == 1 ? 0 : i]);
+    outputs.push_back({paths[i], format_of(paths[i], asked, known)});
+  }
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const bool twice =
+        std::any_of(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), [&](const auto& other) {
+          return paths[i] == other ||
+                 (paths[i] != "-" && other != "-" && !is_device(other) && same_file(paths[i], other));
+        });
+    if (twice)
+      throw Failure(exit_usage, fmt::format("{} is named twice as output; give each -o its own name", paths[i]));
+    if (paths[i] == "-") continue;
+    if (!input.empty() && input != "-" && !is_device(input) && same_file(paths[i], input)) {
+      throw Failure(exit_usage,
+                    fmt::format("{}: this is the input, which would be lost; give the output another name", paths[i]));
+    }
+    require_writable(paths[i]);
+  }
+  return outputs;
+}
+
+void require_writable(const std::string& path) {
+  if (path.empty()) throw Failure(exit_usage, "an output has an empty name");
+  std::error_code code;
+  if (fs::is_directory(path, code)) throw io::FileError(path, 0, "is a folder; name a file in it");
+  if (is_device(path)) {  // /dev/null, a named pipe: written in place
+    if (access(path.c_str(), W_OK) != 0) refuse(path, errno);
+    return;
+  }
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, code)) {
+    throw io::FileError(path, 0,
+                        fmt::format("cannot be written: there is no folder '{}'; create it first", folder.string()));
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(path, errno);
+}
+
+Phase writing_phase(const std::string& path) { return path == "-" || is_device(path) ? Phase::free : Phase::writing; }
+
+void write_text(const std::string& path, const std::string& text) {
+  if (path == "-") {
+    print(text);
+    return;
+  }
+  // A link is followed, so that the file it points to gets the text and the link stays.
+  std::error_code code;
+  const fs::path resolved = fs::weakly_canonical(path, code);
+  const std::string target = code ? path : resolved.string();
+  const bool in_place = is_device(target);
+  const std::string name = in_place ? target : fmt::format("{}.{}.tmp", target, getpid());
+  const auto fail = [&](int why) {
+    if (!in_place) std::remove(name.c_str());
+    refuse(path, why == 0 ? EIO : why);
+  };
+  errno = 0;
+  std::FILE* file = std::fopen(name.c_str(), "wb");
+  if (file == nullptr) refuse(path, errno);
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+  const int why = errno;
+  const bool closed = std::fclose(file) == 0;
+  if (!written || !closed) fail(written ? errno : why);
+  if (!in_place && std::rename(name.c_str(), target.c_str()) != 0) fail(errno);
+}
+
+}  // namespace cadt::cli

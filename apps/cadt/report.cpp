@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "report.hpp"
+
+#include "text.hpp"
+
+#include <cadt/version.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+namespace cadt::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Counter {
+  const char* name;
+  std::uint64_t Statistics::*value;
+};
+
+// The order of the table and of the JSON object.
+constexpr std::array counters = {
+    Counter{"launches", &Statistics::launches},
+    Counter{"walk_steps", &Statistics::walk_steps},
+    Counter{"claims", &Statistics::claims},
+    Counter{"lost_claims", &Statistics::lost_claims},
+    Counter{"insert_retries", &Statistics::insert_retries},
+    Counter{"stale_edges", &Statistics::stale_edges},
+    Counter{"deferred_points", &Statistics::deferred_points},
+    Counter{"deferred_edges", &Statistics::deferred_edges},
+    Counter{"splits", &Statistics::splits},
+    Counter{"edge_splits", &Statistics::edge_splits},
+    Counter{"flips", &Statistics::flips},
+    Counter{"incircle_tests", &Statistics::incircle_tests},
+    Counter{"exact_orientations", &Statistics::exact_orientations},
+    Counter{"exact_incircles", &Statistics::exact_incircles},
+    Counter{"ties", &Statistics::ties},
+    Counter{"closing_sweeps", &Statistics::closing_sweeps},
+    Counter{"closing_repairs", &Statistics::closing_repairs},
+    Counter{"certified_edges", &Statistics::certified_edges},
+    Counter{"refined_points", &Statistics::refined_points},
+};
+
+double total_seconds(const RunReport& r) {
+  return r.read_seconds + r.triangulate_seconds + r.verify_seconds + r.write_seconds;
+}
+
+std::string back_end(const Statistics& s) {
+  std::string text = s.backend;
+  if (!s.device.empty()) text += fmt::format(", {}", s.device);
+  if (s.threads > 0) text += fmt::format(", {} {}", s.threads, s.backend == "host" ? "threads" : "compute units");
+  return text;
+}
+
+std::string line(std::string_view key, std::string_view value) { return fmt::format("{:<12}{}\n", key, value); }
+
+Json verification_json(const VerifyReport& report) {
+  Json checks = Json::array();
+  for (const Check& check : report.checks) {
+    checks.push_back(Json{{"name", check.name},
+                          {"passed", check.passed},
+                          {"failures", check.failures},
+                          {"first", check.first},
+                          {"what", check.what}});
+  }
+  return Json{{"ok", report.ok},
+              {"edges_examined", report.edges_examined},
+              {"ties", report.ties},
+              {"unusual_ties", report.unusual_ties},
+              {"checks", std::move(checks)}};
+}
+
+}  // namespace
+
+std::string summary_text(const RunReport& r) {
+  const Triangulation& mesh = *r.mesh;
+  const double seconds = r.triangulate_seconds;
+  std::string text;
+  text += line("points", std::to_string(mesh.number_of_points()));
+  text += line("duplicates", std::to_string(mesh.duplicates().size()));
+  text += line("triangles", std::to_string(mesh.number_of_triangles()));
+  text += line("hull", std::to_string(mesh.hull().size()));
+  std::string parts = fmt::format("read {:.3f}, triangulate {:.3f}", r.read_seconds, seconds);
+  if (r.verification) parts += fmt::format(", verify {:.3f}", r.verify_seconds);
+  if (!r.outputs.empty()) parts += fmt::format(", write {:.3f}", r.write_seconds);
+  text += line("time", fmt::format("{:.3f} s ({})", total_seconds(r), parts));
+  text += line("back end", back_end(mesh.statistics()));
+  text += line("hash", r.hash);
+  if (r.verification) text += line("verified", r.verification->summary());
+  return text;
+}
+
+std::string statistics_text(const RunReport& r) {
+  const Statistics& s = r.mesh->statistics();
+  std::vector<std::vector<std::string>> rows = {{"counter", "value", "per point"}};
+  const double points = static_cast<double>(s.distinct == 0 ? 1 : s.distinct);
+  for (const Counter& counter : counters) {
+    const std::uint64_t value = s.*counter.value;
+    rows.push_back({counter.name, std::to_string(value), fmt::format("{:.3f}", static_cast<double>(value) / points)});
+  }
+  rows.push_back({"bytes_device_peak", std::to_string(s.bytes_device_peak), human_bytes(s.bytes_device_peak)});
+  rows.push_back({"wide_arithmetic", s.wide_arithmetic ? "yes" : "no", ""});
+  std::vector<std::vector<std::string>> phases = {{"phase", "milliseconds"}};
+  for (const auto& [name, ms] : s.milliseconds) phases.push_back({name, fmt::format("{:.3f}", ms)});
+  return table(rows) + '\n' + table(phases);
+}
+
+std::string statistics_json(const RunReport& r) {
+  const Triangulation& mesh = *r.mesh;
+  const Statistics& s = mesh.statistics();
+  Json json;
+  json["schema"] = 1;
+  json["cadt"] = CADT_VERSION;
+  json["input"] = {{"file", r.input}, {"format", r.input_format}, {"heights", r.heights}};
+  json["mesh"] = {{"points", mesh.number_of_points()},
+                  {"distinct", mesh.number_of_points() - mesh.duplicates().size()},
+                  {"duplicates", mesh.duplicates().size()},
+                  {"triangles", mesh.number_of_triangles()},
+                  {"hull", mesh.hull().size()},
+                  {"dimension", mesh.dimension()},
+                  {"hash", r.hash}};
+  json["backend"] = s.backend;
+  json["device"] = s.device;
+  json["threads"] = s.threads;
+  json["seconds"] = {{"read", r.read_seconds},
+                     {"triangulate", r.triangulate_seconds},
+                     {"verify", r.verify_seconds},
+                     {"write", r.write_seconds},
+                     {"total", total_seconds(r)}};
+  json["phases"] = Json::array();
+  for (const auto& [name, ms] : s.milliseconds) json["phases"].push_back({{"name", name}, {"milliseconds", ms}});
+  json["counters"] = Json::object();
+  for (const Counter& counter : counters) json["counters"][counter.name] = s.*counter.value;
+  json["bytes_device_peak"] = s.bytes_device_peak;
+  json["wide_arithmetic"] = s.wide_arithmetic;
+  json["verification"] = r.verification ? verification_json(*r.verification) : Json(nullptr);
+  json["outputs"] = Json::array();
+  for (const Output& output : r.outputs) json["outputs"].push_back({{"file", output.path}, {"format", output.format}});
+  // Names of files and devices need not be UTF-8; JSON must be.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace cadt::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run did, as a summary, as a table and as JSON. docs/cli.md documents the keys: a change of one is a change of
+// the interface and needs a new `schema` number.
+#pragma once
+
+#include "outputs.hpp"
+
+#include <cadt/triangulation.hpp>
+#include <cadt/verify.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cadt::cli {
+
+struct RunReport {
+  std::string input;  ///< path, "-" for standard input
+  std::string input_format;
+  bool heights = false;
+  const Triangulation* mesh = nullptr;
+  std::string hash;
+  std::optional<VerifyReport> verification;
+  std::vector<Output> outputs;
+  double read_seconds = 0, triangulate_seconds = 0, verify_seconds = 0, write_seconds = 0;
+};
+
+/// Points, duplicates, triangles, hull, time, back end, hash: one "key value" a line.
+[[nodiscard]] std::string summary_text(const RunReport& report);
+/// All counters and phases, one a line.
+[[nodiscard]] std::string statistics_text(const RunReport& report);
+[[nodiscard]] std::string statistics_json(const RunReport& report);
+
+}  // namespace cadt::cli

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers with units, lists, tables.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cadt::cli {
+
+/// "4.0 GiB"; below 1024 "512 bytes".
+[[nodiscard]] std::string human_bytes(std::uint64_t bytes);
+
+/// Inverse, for --max-memory: "4G", "4GiB", "1.5 MB", "1048576". K M G T and KiB ... count 1024, KB ... count 1000, as
+/// in the GNU tools. Throws Failure (usage).
+[[nodiscard]] std::uint64_t parse_bytes(std::string_view text);
+
+/// A number of points: "250000", "2M", "1e6". K M G count 1000. Throws Failure (usage).
+[[nodiscard]] std::size_t parse_count(std::string_view text);
+
+/// "a, b, c".
+[[nodiscard]] std::string join(const std::vector<std::string>& words, std::string_view separator = ", ");
+
+/// Rows of equal size as lines with aligned columns; the first row is the header.
+[[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);
+
+[[nodiscard]] std::string lower(std::string_view text);
+
+}  // namespace cadt::cli

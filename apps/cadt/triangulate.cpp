@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "commands.hpp"
+#include "failure.hpp"
+#include "input.hpp"
+#include "interrupt.hpp"
+#include "outputs.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include "text.hpp"
+
+#include <cadt/cadt.hpp>
+#include <cadt/io/mesh_file.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+namespace cadt::cli {
+namespace {
+
+struct TriangulateOptions {
+  InputOptions input;
+  std::vector<std::string> outputs, formats;
+  std::string backend = "auto", device, max_memory, order = "canonical", stats;
+  unsigned threads = 0;
+  int base = 0, width = 1600;
+  bool ascii = false, strict = false, verify = false, quiet = false;
+
+  // A bare --stats is the table for people.
+  [[nodiscard]] bool stats_table() const { return stats == "table"; }
+  [[nodiscard]] bool stats_file() const { return !stats.empty() && !stats_table(); }
+};
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::vector<Output> check_outputs(const TriangulateOptions& options) {
+  auto outputs = plan_outputs(options.outputs, options.formats, io::mesh_write_formats(), options.input.path);
+  if (!options.stats_file()) return outputs;
+  for (const Output& output : outputs) {
+    if (output.path == options.stats) {
+      throw Failure(exit_usage, fmt::format("--stats and -o both go to {}; give one of them another name",
+                                            display_name(output.path, false)));
+    }
+  }
+  if (options.stats != "-") require_writable(options.stats);
+  return outputs;
+}
+
+Options library_options(const TriangulateOptions& options, ProgressLine& line) {
+  Options result;
+  result.backend = backend_from_string(options.backend);
+  result.device = options.device;
+  result.threads = options.threads;
+  result.order = options.order == "fast" ? Order::fast : Order::canonical;
+  if (!options.max_memory.empty()) result.max_memory = parse_bytes(options.max_memory);
+  result.stop = interrupt_token();
+  result.progress = [&line](const Progress& progress) { line.update(progress); };
+  return result;
+}
+
+// The library names a point by its index only; here the file is known.
+Triangulation triangulate_file(const io::PointSet& points, const std::string& name, const Options& options) {
+  try {
+    const InPhase phase(Phase::cooperative);
+    return triangulate(points.view(), options);
+  } catch (const InputError& e) {
+    throw Failure(exit_file, fmt::format("{}: point {} (counted from 0): {}", name, e.index(), e.what()));
+  }
+}
+
+void write_outputs(const TriangulateOptions& options, const std::vector<Output>& outputs, const io::PointSet& points,
+                   const Triangulation& mesh, ProgressLine& line) {
+  std::vector<std::string> written;
+  for (const Output& output : outputs) {
+    line.step(fmt::format("writing {}", display_name(output.path, false)));
+    io::WriteOptions write;
+    write.format = output.format;
+    write.base = options.base;
+    write.ascii = options.ascii;
+    write.width = options.width;
+    {
+      const InPhase phase(writing_phase(output.path));
+      io::write_mesh(output.path, points, mesh, write);
+      if (output.path == "-") finish_stdout();
+    }
+    written.push_back(display_name(output.path, false));
+    try {
+      check_interrupt();
+    } catch (const Cancelled&) {
+      line.clear();
+      say(fmt::format("cadt: complete before the interruption: {}\n", join(written)));
+      throw;
+    }
+  }
+}
+
+// Points that span no triangle are an answer, not an error, unless the caller says otherwise.
+void judge_dimension(const Triangulation& mesh, const std::string& name, const TriangulateOptions& options) {
+  if (mesh.dimension() >= 2) return;
+  const std::size_t distinct = mesh.number_of_points() - mesh.duplicates().size();
+  const std::string why = distinct < 3 ? fmt::format("{} distinct {}, at least three are needed", distinct,
+                                                     distinct == 1 ? "point" : "points")
+                                       : fmt::format("all {} distinct points lie on one line", distinct);
+  if (options.strict) {
+    throw Failure(exit_degenerate,
+                  fmt::format("{}: no triangles: {}; check --columns and --project, or leave out --strict "
+                              "to get an empty mesh",
+                              name, why));
+  }
+  if (!options.quiet) {
+    say(fmt::format(
+        "cadt: warning: {}: no triangles: {}; the mesh is empty. Check --columns and --project if you expected "
+        "some; --strict makes this an error.\n",
+        name, why));
+  }
+}
+
+void print_reports(const TriangulateOptions& options, const RunReport& report) {
+  if (options.stats_file()) {
+    const InPhase phase(writing_phase(options.stats));
+    write_text(options.stats, statistics_json(report));
+  }
+  const std::string summary = summary_text(report);
+  if (report.outputs.empty() && options.stats != "-") {
+    print(summary);
+  } else if (!options.quiet) {
+    say(summary);
+  }
+  if (options.stats_table()) say("\n" + statistics_text(report));
+}
+
+int run(const TriangulateOptions& options) {
+  RunReport report;
+  report.outputs = check_outputs(options);
+  ProgressLine line(options.quiet);
+  const Options chosen = library_options(options, line);
+  const std::string name = display_name(options.input.path, true);
+
+  Stopwatch watch;
+  line.step(fmt::format("reading {}", name));
+  const io::PointSet points = read_input(options.input);
+  report.input = options.input.path;
+  report.input_format = points.format;
+  report.heights = !points.height.empty();
+  report.read_seconds = watch.lap();
+
+  line.start(points.size());
+  const Triangulation mesh = triangulate_file(points, name, chosen);
+  check_interrupt();
+  report.mesh = &mesh;
+  report.triangulate_seconds = watch.lap();
+  line.clear();
+  judge_dimension(mesh, name, options);
+  report.hash = mesh.hash().to_string();
+
+  watch.lap();
+  if (options.verify) {
+    line.step("verifying");
+    VerifyOptions verify_options;
+    verify_options.threads = options.threads;
+    report.verification = verify(points.view(), mesh, verify_options);
+    report.verify_seconds = watch.lap();
+    line.clear();
+    if (!report.verification->ok) {
+      throw Failure(exit_verify,
+                    fmt::format("the mesh is wrong: {}; no output was written. This is a defect of cadt: please "
+                                "report it with the command line and the input",
+                                report.verification->summary()));
+    }
+  }
+
+  watch.lap();
+  write_outputs(options, report.outputs, points, mesh, line);
+  report.write_seconds = report.outputs.empty() ? 0 : watch.lap();
+  line.clear();
+  print_reports(options, report);
+  return exit_done;
+}
+
+void add_output_options(CLI::App& command, TriangulateOptions& o) {
+  command
+      .add_option("-o,--output", o.outputs,
+                  "write the mesh or a picture of it; may be given several times; '-' is "
+                  "standard output (with -t)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command
+      .add_option("-t,--to", o.formats,
+                  "format of the outputs: " + join(io::mesh_write_formats(), " ") +
+                      "; default: from each suffix. Once for all outputs, or once for each (auto: "
+                      "from the suffix)")
+      ->type_name("FORMAT")
+      ->allow_extra_args(false);
+  command.add_option("--base", o.base, "first index in .node .ele .neigh files: 0 or 1 (default: 0)")
+      ->type_name("0|1")
+      ->check(CLI::IsMember({0, 1}).description(""));
+  command.add_flag("--ascii", o.ascii, "text instead of binary where the format has both (ply)");
+  command.add_option("--width", o.width, "width of pictures (default: 1600)")
+      ->type_name("PIXELS")
+      ->check(CLI::Range(16, 32768).description(""));
+  command
+      .add_option("--order", o.order,
+                  "order of the triangles: canonical (equal files from every device and run) or fast")
+      ->type_name("ORDER")
+      ->check(CLI::IsMember({"canonical", "fast"}).description(""));
+}
+
+void add_work_options(CLI::App& command, TriangulateOptions& o) {
+  command
+      .add_option("--backend", o.backend,
+                  "where to compute: auto, host, opencl or cuda (default: auto, the fastest usable)")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"auto", "host", "opencl", "cuda"}).description(""));
+  command
+      .add_option("--device", o.device, "device of the back end, its number or a part of its name (see: cadt devices)")
+      ->type_name("DEVICE");
+  command.add_option("--threads", o.threads, "host threads; 0 takes all cores (default: 0)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096).description(""));
+  command
+      .add_option("--max-memory", o.max_memory,
+                  "refuse before any work if more device memory is needed: 4G, 512M, 1.5GiB "
+                  "(K M G T and KiB ... count 1024, KB ... 1000)")
+      ->type_name("SIZE");
+  command.add_flag("--strict", o.strict,
+                   "exit 4 if there are no triangles (fewer than three points, or all on one line)");
+  command.add_flag("--verify", o.verify, "check the mesh exactly before anything is written; exit 7 if it fails");
+  command
+      .add_flag("--stats{table}", o.stats,
+                "all counters and times: as a table on standard error, with =FILE.json as JSON "
+                "in a file, with =- as JSON on standard output")
+      ->type_name("FILE");
+  command.add_flag("-q,--quiet", o.quiet, "nothing on standard error but errors and what was asked for");
+}
+
+}  // namespace
+
+void add_triangulate(CLI::App& app, Action& chosen) {
+  CLI::App* command = app.add_subcommand("triangulate", "triangulate points; write meshes and pictures");
+  const auto options = std::make_shared<TriangulateOptions>();
+  add_input_options(*command, options->input, "IN", "file with points");
+  add_output_options(*command, *options);
+  add_work_options(*command, *options);
+  command->footer(
+      "Without -o the summary goes to standard output, with -o to standard error.\n\n"
+      "Examples:\n"
+      "  cadt triangulate points.xyz -o mesh.vtu -o mesh.png\n"
+      "      a mesh for ParaView with the heights of the points, and a picture of it\n"
+      "  cadt triangulate survey.csv --columns lon,lat,depth -o sea.ply --verify\n"
+      "      a table with a header; the mesh is checked before it is written\n"
+      "  zcat points.txt.gz | cadt triangulate - -f txt -o - -t off > mesh.off\n"
+      "      from a pipe to standard output\n\n" +
+      std::string(exit_codes_help));
+  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+}  // namespace cadt::cli

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "commands.hpp"
+#include "failure.hpp"
+#include "input.hpp"
+#include "text.hpp"
+
+#include <cadt/io/mesh_file.hpp>
+#include <cadt/verify.hpp>
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+namespace cadt::cli {
+namespace {
+
+struct VerifyCommand {
+  InputOptions input;
+  std::string mesh, format;
+  int base = -1;
+  unsigned threads = 0;
+  bool canonical = false, quiet = false;
+};
+
+std::string check_line(const Check& check) {
+  if (check.passed) return fmt::format("pass  {}\n", check.name);
+  std::string text =
+      fmt::format("FAIL  {:<12} {} {}", check.name, check.failures, check.failures == 1 ? "failure" : "failures");
+  if (check.first >= 0) text += fmt::format(", first at {}", check.first);
+  if (!check.what.empty()) text += fmt::format(": {}", check.what);
+  return text + '\n';
+}
+
+int run(const VerifyCommand& command) {
+  const io::PointSet points = read_input(command.input);
+  const io::MeshFile mesh = io::read_mesh(command.mesh, points.size(), lower(command.format), command.base);
+  MeshView view;
+  view.triangles = mesh.triangles;
+  view.neighbors = mesh.neighbors;
+  VerifyOptions options;
+  options.threads = command.threads;
+  options.canonical_ties = command.canonical;
+  const VerifyReport report = verify(points.view(), view, options);
+
+  if (!command.quiet) {
+    std::string text;
+    for (const Check& check : report.checks) text += check_line(check);
+    text += fmt::format("{} points, {} triangles, {} edges examined, {} on the hull, {} cocircular", report.points,
+                        report.triangles_examined, report.edges_examined, report.hull_vertices, report.ties);
+    if (report.ties > 0) text += fmt::format(" ({} not decided as cadt does)", report.unusual_ties);
+    print(text + '\n');
+  }
+  if (report.ok) return exit_done;
+  throw Failure(exit_verify,
+                fmt::format("{}: not the Delaunay triangulation of {}: {}; if many checks fail, see whether both "
+                            "files belong together, and --base, --columns and --project",
+                            command.mesh, display_name(command.input.path, true), report.summary()));
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, Action& chosen) {
+  CLI::App* command = app.add_subcommand("verify", "check a mesh from any program against its points, exactly");
+  const auto options = std::make_shared<VerifyCommand>();
+  add_input_options(*command, options->input, "POINTS", "file with the points");
+  command->add_option("MESH", options->mesh, "file with the triangles, counterclockwise, as indices of the points")
+      ->required();
+  command
+      ->add_option("-t,--to", options->format,
+                   "format of the mesh: " + join(io::mesh_read_formats(), " ") + "; default: from the suffix")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember(io::mesh_read_formats(), CLI::ignore_case).description(""));
+  command->add_option("--base", options->base, "first index of an .ele file: 0 or 1 (default: recognised)")
+      ->type_name("0|1")
+      ->check(CLI::IsMember({0, 1}).description(""));
+  command->add_flag("--canonical", options->canonical,
+                    "cocircular points must be decided as cadt and CGAL decide them");
+  command->add_option("--threads", options->threads, "threads; 0 takes all cores (default: 0)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096).description(""));
+  command->add_flag("-q,--quiet", options->quiet, "no lines on standard output, only the exit code");
+  command->footer(
+      "Prints one line for each check: counts, index range, neighbours, orientation, vertices, boundary, Euler's "
+      "formula,\n"
+      "hull, empty circles (exact), ties. Exit code 7 if one of them fails.\n\n"
+      "Example:\n"
+      "  triangle -en points.node && cadt verify points.1.node points.1.ele\n");
+  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+}  // namespace cadt::cli

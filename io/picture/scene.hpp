@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a picture shows, as plain arrays: pictures do not depend on how the mesh was made.
+#pragma once
+
+#include <cadt/io/picture.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace cadt::io::picture {
+
+/// Borrowed arrays. Points with a coordinate that is not finite, and triangles that use them, are left out.
+struct Scene {
+  std::span<const double> xy;               ///< interleaved
+  std::span<const double> height;           ///< one a point, or empty
+  std::span<const std::int32_t> triangles;  ///< n x 3, counterclockwise
+  std::span<const std::int32_t> hull;       ///< counterclockwise loop, or empty
+
+  [[nodiscard]] std::size_t points() const noexcept { return xy.size() / 2; }
+  [[nodiscard]] std::size_t faces() const noexcept { return triangles.size() / 3; }
+};
+
+/// Calls `edge(u, v)` for every edge once. Counterclockwise triangles pass an interior edge once in each direction, so
+/// u < v takes each of them once; edges of the hull are passed in one direction only.
+template <class Edge>
+void for_each_edge(const Scene& scene, Edge edge) {
+  for (std::size_t t = 0; t + 2 < scene.triangles.size(); t += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t u = scene.triangles[t + k];
+      const std::int32_t v = scene.triangles[t + (k + 1) % 3];
+      if (u < v) edge(static_cast<std::size_t>(u), static_cast<std::size_t>(v));
+    }
+  }
+  for (std::size_t i = 0; i < scene.hull.size(); ++i) {
+    const std::int32_t u = scene.hull[i];
+    const std::int32_t v = scene.hull[(i + 1) % scene.hull.size()];
+    if (u > v) edge(static_cast<std::size_t>(u), static_cast<std::size_t>(v));
+  }
+}
+
+/// The whole SVG text. \pre scene.faces() <= svg_max_faces
+[[nodiscard]] std::string svg_text(const Scene& scene, const PictureOptions& options);
+inline constexpr std::size_t svg_max_faces = 200'000;
+
+/// The whole PNG file.
+[[nodiscard]] std::string png_bytes(const Scene& scene, const PictureOptions& options);
+
+}  // namespace cadt::io::picture

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Orientation of every triangle and the empty circle of every interior edge. By Delaunay's lemma the latter, which is
+// local, implies that the circle of every triangle is empty of all points.
+#include "mesh.hpp"
+
+namespace cadt::verifier {
+
+void check_orientation(const Mesh& mesh, Check& check, std::uint64_t& examined) {
+  const Tally tally =
+      reduce_blocks<Tally>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Tally& mine) {
+        for (std::size_t t = begin; t < end; ++t) {
+          ++mine.examined;
+          if (orientation(mesh.point(mesh.vertex(t, 0)), mesh.point(mesh.vertex(t, 1)),
+                          mesh.point(mesh.vertex(t, 2))) <= 0)
+            mine.fail(t);
+        }
+      });
+  examined = tally.examined;
+  conclude(check, tally,
+           tally.first < 0 ? std::string() : mesh.describe_triangle(tally.first) + " is clockwise or flat");
+}
+
+namespace {
+
+struct Circles {
+  Tally illegal, unusual;
+  std::uint64_t ties = 0;
+  void merge(const Circles& other) {
+    illegal.merge(other.illegal);
+    unusual.merge(other.unusual);
+    ties += other.ties;
+  }
+};
+
+void examine_edge(const Mesh& mesh, std::size_t t, std::size_t k, Circles& mine) {
+  const auto other = static_cast<std::size_t>(mesh.neighbors[3 * t + k]);
+  // The vertex across is the one that is on neither end of the shared edge.
+  const std::int32_t from = mesh.vertex(t, next3(k)), to = mesh.vertex(t, previous3(k));
+  std::int32_t across = mesh.vertex(other, 0);
+  for (std::size_t j = 1; j < 3 && (across == from || across == to); ++j) across = mesh.vertex(other, j);
+  const Point a = mesh.point(mesh.vertex(t, 0)), b = mesh.point(mesh.vertex(t, 1)), c = mesh.point(mesh.vertex(t, 2));
+  const Point d = mesh.point(across);
+  ++mine.illegal.examined;
+  const int side = incircle(a, b, c, d);
+  if (side > 0) mine.illegal.fail(3 * t + k);
+  if (side != 0) return;
+  ++mine.ties;
+  if (incircle_perturbed(a, b, c, d) > 0) mine.unusual.fail(3 * t + k);
+}
+
+}  // namespace
+
+void check_delaunay(const Mesh& mesh, Check& delaunay, Check& ties, const VerifyOptions& options,
+                    VerifyReport& report) {
+  const Circles circles =
+      reduce_blocks<Circles>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Circles& mine) {
+        for (std::size_t t = begin; t < end; ++t)
+          for (std::size_t k = 0; k < 3; ++k)
+            // The predicates are the same from both sides: the lower triangle of the two examines the edge.
+            if (mesh.neighbors[3 * t + k] > static_cast<std::int32_t>(t)) examine_edge(mesh, t, k, mine);
+      });
+  report.edges_examined = circles.illegal.examined;
+  report.ties = circles.ties;
+  report.unusual_ties = circles.unusual.failures;
+  conclude(delaunay, circles.illegal,
+           circles.illegal.first < 0
+               ? std::string()
+               : mesh.describe_edge(circles.illegal.first) + ", has the vertex across inside the triangle's circle");
+  conclude(ties, circles.unusual,
+           circles.unusual.first < 0
+               ? std::string()
+               : mesh.describe_edge(circles.unusual.first) + ", is not the one that the symbolic perturbation chooses");
+  if (!options.canonical_ties && !ties.passed) {
+    ties.passed = true;
+    ties.what = std::to_string(report.unusual_ties) + " of " + std::to_string(report.ties) +
+                " cocircular edges are decided in another way, which was allowed";
+  }
+}
+
+}  // namespace cadt::verifier

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// The boundary is the convex hull, with the points on its edges in order, and is wound exactly once.
+#include "mesh.hpp"
+
+#include <algorithm>
+
+namespace cadt::verifier {
+namespace {
+
+/// Direction of an edge by comparisons alone: differences of doubles may round or overflow, comparisons do not.
+struct Direction {
+  int x, y;
+};
+
+Direction direction(const Point& a, const Point& b) { return {(b.x > a.x) - (b.x < a.x), (b.y > a.y) - (b.y < a.y)}; }
+
+bool upper_half(const Direction& d) { return d.y > 0 || (d.y == 0 && d.x > 0); }
+
+}  // namespace
+
+void check_hull(const Mesh& mesh, std::span<const std::int32_t> given, Check& check) {
+  const std::vector<std::int32_t>& loop = mesh.loop;
+  const std::size_t h = loop.size();
+  struct Turns : Tally {
+    std::uint64_t half_turns = 0;
+    void merge(const Turns& other) {
+      Tally::merge(other);
+      half_turns += other.half_turns;
+    }
+  };
+  const Turns turns = reduce_blocks<Turns>(h, mesh.threads, [&](std::size_t begin, std::size_t end, Turns& mine) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Point a = mesh.point(loop[i == 0 ? h - 1 : i - 1]), b = mesh.point(loop[i]);
+      const Point c = mesh.point(loop[i + 1 == h ? 0 : i + 1]);
+      const Direction in = direction(a, b), out = direction(b, c);
+      const int turn = orientation(a, b, c);
+      // Collinear points must go on in the same direction; for parallel edges the signs tell.
+      const bool good = turn > 0 || (turn == 0 && in.x == out.x && in.y == out.y && (in.x != 0 || in.y != 0));
+      if (!good) mine.fail(static_cast<std::size_t>(loop[i]));
+      if (upper_half(in) != upper_half(out)) ++mine.half_turns;
+    }
+  });
+  if (turns.failures != 0)
+    return conclude(check, turns, "the boundary turns right or back at point " + std::to_string(turns.first));
+  // A closed chain of left turns changes between the upper and the lower half plane twice per winding.
+  if (turns.half_turns != 2)
+    return fail(check, -1, "the boundary winds " + std::to_string(turns.half_turns / 2) + " times around");
+  if (!given.empty() && !std::ranges::equal(given, loop)) {
+    const auto where = std::ranges::mismatch(given, loop).in1 - given.begin();
+    return fail(check, where,
+                "entry " + std::to_string(where) + " of the hull differs from the boundary, which has " +
+                    std::to_string(h) + " points and starts at its smallest index");
+  }
+  check.passed = true;
+}
+
+}  // namespace cadt::verifier

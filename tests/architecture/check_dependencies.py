@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Checks that includes point only one way:
+
+    apps -> io -> include <- common/host -> backends -> kernels_* -> common/device
+
+usage: check_dependencies.py ROOT      checks the tree
+       check_dependencies.py --self-test   shows that it finds what it looks for
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+# Folder -> folders of this project that its files may include. The longest matching prefix counts.
+MAY_INCLUDE = {
+    "include/cadt": ["include/cadt"],
+    "include/cadt/io": ["include/cadt", "include/cadt/io"],
+    "io": ["io", "include/cadt", "include/cadt/io"],
+    "apps": ["apps", "include/cadt", "include/cadt/io"],
+    "common/host": ["common/host", "include/cadt", "backends", "common/device"],
+    "common/host/verify": ["common/host/verify", "include/cadt"],  # shares no predicate with the builder
+    "backends": ["backends", "common/host", "include/cadt", "kernels_cl", "kernels_cuda", "common/device"],
+    "kernels_cl": ["kernels_cl", "common/device"],
+    "kernels_cuda": ["kernels_cuda", "common/device"],
+    "common/device": ["common/device"],
+}
+# One back end knows nothing of another.
+BACKENDS = ["host", "opencl", "cuda"]
+# Headers from outside -> folders that may use them.
+OUTSIDE = {
+    r"CGAL/": ["tests", "bench"],
+    r"CL/": ["backends/opencl", "kernels_cl", "tests/device"],
+    r"cuda": ["backends/cuda", "kernels_cuda", "common/device", "tests/device"],
+    r"cub/|thrust/": ["backends/cuda", "kernels_cuda"],
+    r"cairo|png|zlib": ["io", "tests"],
+    r"fast_float/": ["io"],
+    r"CLI/": ["apps", "bench"],
+    r"nlohmann/": ["apps", "bench", "tests"],
+    r"gtest/|gmock/": ["tests"],
+}
+SUFFIXES = {".hpp", ".cpp", ".h", ".c", ".cl", ".cu", ".cuh", ".inc"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def folder_rule(path):
+    """Key of MAY_INCLUDE for a path relative to the root, or None."""
+    best = None
+    for key in MAY_INCLUDE:
+        if path.startswith(key + "/") and (best is None or len(key) > len(best)):
+            best = key
+    return best
+
+
+def resolve(root, file, name):
+    """Path of an included file of this project relative to the root, or None if it is from outside."""
+    for base in (file.parent, root, root / "include", root / "common" / "device"):
+        target = (base / name).resolve()
+        if target.is_file() and target.is_relative_to(root):
+            return target.relative_to(root).as_posix()
+    return None
+
+
+def may_include(source, target):
+    rule = folder_rule(source)
+    if rule is None:
+        return True  # tests, bench, examples: may use everything
+    allowed = MAY_INCLUDE[rule]
+    target_rule = folder_rule(target)
+    # "include/cadt" allows the core headers, not those of io below it.
+    if target_rule not in allowed and not any(
+            target_rule and target_rule.startswith(a + "/") and not a.startswith("include") for a in allowed):
+        return False
+    return backend_of(source) in (None, backend_of(target)) or backend_of(target) is None
+
+
+def backend_of(path):
+    for name in BACKENDS:
+        if path.startswith(f"backends/{name}/"):
+            return name
+    return {"kernels_cl": "opencl", "kernels_cuda": "cuda"}.get(path.split("/")[0])
+
+
+def check(root):
+    problems, files = [], 0
+    folders = {key.split("/")[0] for key in MAY_INCLUDE} | {"tests", "bench", "examples"}
+    for folder in sorted(folders):
+        for file in sorted((root / folder).rglob("*")):
+            if file.suffix not in SUFFIXES or not file.is_file():
+                continue
+            files += 1
+            source = file.relative_to(root).as_posix()
+            for number, line in enumerate(file.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+                found = INCLUDE.match(line)
+                if not found:
+                    continue
+                where, name = f"{source}:{number}", found.group(2)
+                target = resolve(root, file, name)
+                if target is not None:
+                    if not may_include(source, target):
+                        problems.append(f"{where}: {source.rsplit('/', 1)[0]} must not include {target}")
+                    continue
+                if found.group(1) == '"' and folder not in ("tests", "bench", "examples"):
+                    problems.append(f"{where}: \"{name}\" is not a file of this project")
+                for pattern, users in OUTSIDE.items():
+                    if re.match(pattern, name) and not any(source.startswith(user + "/") for user in users):
+                        problems.append(f"{where}: <{name}> belongs in {', '.join(users)} only")
+    return problems, files
+
+
+def self_test():
+    """Each line: file, include line, is it allowed?"""
+    cases = [
+        ("include/cadt/a.hpp", "#include <cadt/b.hpp>", True),
+        ("include/cadt/a.hpp", "#include <cadt/io/c.hpp>", False),
+        ("include/cadt/a.hpp", '#include "common/host/d.hpp"', False),
+        ("include/cadt/io/c2.hpp", "#include <cadt/b.hpp>", True),
+        ("io/x.cpp", "#include <cadt/io/c.hpp>", True),
+        ("io/x.cpp", '#include "common/host/d.hpp"', False),
+        ("io/x.cpp", "#include <CLI/CLI.hpp>", False),
+        ("apps/y.cpp", '#include "io/support/e.hpp"', False),
+        ("apps/y.cpp", "#include <CGAL/Kernel.h>", False),
+        ("common/host/d2.cpp", '#include "backends/host/f.hpp"', True),
+        ("common/host/d2.cpp", "#include <cadt/io/c.hpp>", False),
+        ("common/host/verify/v.cpp", '#include "common/device/g.h"', False),
+        ("backends/host/f2.cpp", '#include "common/device/g.h"', True),
+        ("backends/opencl/f3.cpp", '#include "backends/host/f.hpp"', False),
+        ("backends/host/f2.cpp", "#include <CL/opencl.hpp>", False),
+        ("kernels_cl/k.cl", '#include "common/host/d.hpp"', False),
+        ("common/device/g2.h", '#include "g.h"', True),
+        ("common/device/g2.h", '#include "backends/host/f.hpp"', False),
+        ("common/device/g2.h", '#include "missing.h"', False),
+        ("tests/t.cpp", '#include "common/host/d.hpp"', True),
+    ]
+    present = ["include/cadt/b.hpp", "include/cadt/io/c.hpp", "common/host/d.hpp", "io/support/e.hpp",
+               "backends/host/f.hpp", "common/device/g.h"]
+    failed = 0
+    for source, line, allowed in cases:
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder).resolve()
+            for name in present + [source]:
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                (root / name).write_text("")
+            (root / source).write_text(line + "\n")
+            if (not check(root)[0]) != allowed:
+                failed += 1
+                print(f"wrong about {source}: {line} (allowed: {allowed})")
+    print(f"self-test: {len(cases) - failed} of {len(cases)} right")
+    return failed
+
+
+def main():
+    if len(sys.argv) != 2:
+        print(__doc__)
+        return 2
+    if sys.argv[1] == "--self-test":
+        return 1 if self_test() else 0
+    problems, files = check(pathlib.Path(sys.argv[1]).resolve())
+    print("\n".join(problems))
+    print(f"{files} files, {len(problems)} includes that point the wrong way")
+    return 1 if problems or files == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Compiles the device code with the front end of a language, without a device.
+
+usage: check_dialect.py opencl|cuda ROOT
+
+Ends with 77 and the reason when the compiler or the entry file is not there.
+"""
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SKIP = 77
+
+
+def skip(reason):
+    print(f"skipped: {reason}")
+    return SKIP
+
+
+def run(command):
+    print(" ".join(command))
+    return subprocess.run(command, stdin=subprocess.DEVNULL).returncode
+
+
+def opencl(root):
+    entry = root / "kernels_cl" / "cadt.cl"
+    if not entry.exists():
+        return skip(f"{entry.relative_to(root)} does not exist")
+    clang = next((c for c in ("clang", "clang-19", "clang-18", "clang-15", "clang-14") if shutil.which(c)), None)
+    if clang is None:
+        return skip("no clang")
+    # 64-bit SPIR is what the standard library of the front end knows; only the syntax and types are looked at.
+    return run([clang, "-x", "cl", "-cl-std=CL3.0", "-target", "spir64", "-fsyntax-only", "-Wall", "-Werror",
+                "-Wno-unused-function", "-Wno-gcc-compat", "-Xclang", "-finclude-default-header",
+                "-I", str(root), "-I", str(root / "common" / "device"), str(entry)])
+
+
+def cuda(root):
+    entry = root / "kernels_cuda" / "cadt.cu"
+    if not entry.exists():
+        return skip(f"{entry.relative_to(root)} does not exist")
+    if shutil.which("nvcc") is None:
+        return skip("no nvcc")
+    with tempfile.TemporaryDirectory() as folder:
+        return run(["nvcc", "-std=c++17", "--fmad=false", "-arch=sm_80", "-I", str(root),
+                    "-I", str(root / "common" / "device"), "-c", str(entry), "-o", f"{folder}/cadt.o"])
+
+
+def main():
+    languages = {"opencl": opencl, "cuda": cuda}
+    if len(sys.argv) != 3 or sys.argv[1] not in languages:
+        print(__doc__)
+        return 2
+    return languages[sys.argv[1]](pathlib.Path(sys.argv[2]).resolve())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sets made so that threads get in one another's way, run again and again: conflicts must happen, and must not show.
+#include "tests/support/backends.hpp"
+#include "tests/support/families.hpp"
+#include "tests/support/mesh_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+namespace cadt::test {
+namespace {
+
+// Runs in total; CADT_CONFLICT_RUNS makes it shorter under a sanitizer.
+int runs() {
+  const char* variable = std::getenv("CADT_CONFLICT_RUNS");
+  const int value = variable ? std::atoi(variable) : 0;
+  return value > 0 ? value : 200;
+}
+
+// All points in a tiny cluster, a second one beside it, and a frame: in each level all threads work on few triangles.
+Points tiny_cluster(std::size_t n) {
+  Points xy = uniform_points(n, 101);
+  for (double& value : xy) value = 0.5 + std::ldexp(value, -30);
+  xy.insert(xy.end(), {0, 0, 1, 0, 1, 1, 0, 1});
+  return xy;
+}
+
+Points few_distinct(std::size_t n) {
+  Points xy = shuffled(grid_points(40, 40), 6);
+  Random random(4);
+  while (xy.size() < 2 * n) {
+    const double x = static_cast<double>(random.below(40)), y = static_cast<double>(random.below(40));
+    xy.insert(xy.end(), {x, y});
+  }
+  return xy;
+}
+
+class Conflicts : public BackendTest {
+ protected:
+  void repeat(const Points& xy, bool must_conflict) {
+    const ExpectedMesh expected = expected_mesh(xy);
+    std::uint64_t conflicts = 0;
+    for (int run = 0; run < runs(); ++run) {
+      const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
+      ASSERT_TRUE(same_mesh(mesh, expected)) << "run " << run;
+      const Statistics& s = mesh.statistics();
+      conflicts += s.lost_claims + s.insert_retries + s.deferred_points + s.deferred_edges;
+    }
+    if (must_conflict && GetParam().threads != 1) {
+      EXPECT_GT(conflicts, 0u) << "no two threads ever met: the test shows nothing";
+    }
+    RecordProperty("conflicts", std::to_string(conflicts));
+  }
+};
+
+TEST_P(Conflicts, TinyCluster) { repeat(tiny_cluster(3000), true); }
+TEST_P(Conflicts, Hub) { repeat(hub_points(1500), true); }
+TEST_P(Conflicts, ManyEqualPoints) { repeat(few_distinct(8000), true); }
+TEST_P(Conflicts, AxisCross) { repeat(axis_cross(60), false); }
+CADT_ON_EVERY_BACKEND(Conflicts);
+
+}  // namespace
+}  // namespace cadt::test

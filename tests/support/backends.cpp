@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/backends.hpp"
+
+#include <cstdlib>
+#include <ostream>
+#include <string_view>
+
+namespace cadt::test {
+
+Options BackendCase::options() const {
+  Options options;
+  options.backend = backend;
+  options.threads = threads;
+  options.work_group_size = work_group_size;
+  return options;
+}
+
+std::ostream& operator<<(std::ostream& out, const BackendCase& c) {
+  return out << to_string(c.backend) << '/' << c.name;
+}
+
+std::vector<BackendCase> host_cases() {
+  return {{"serial", Backend::host, 1, 0},
+          {"threads2", Backend::host, 2, 0},
+          {"threads3", Backend::host, 3, 0},
+          {"threads8", Backend::host, 8, 0}};
+}
+
+std::vector<BackendCase> opencl_cases() {
+  return {
+      {"chosen", Backend::opencl, 0, 0}, {"groups16", Backend::opencl, 0, 16}, {"groups128", Backend::opencl, 0, 128}};
+}
+
+std::vector<BackendCase> main_host_case() { return {{"threads2", Backend::host, 2, 0}}; }
+std::vector<BackendCase> main_opencl_case() { return {{"chosen", Backend::opencl, 0, 0}}; }
+
+std::string unavailable(Backend backend) {
+  std::string reason = "list_devices() has no entry for it";
+  for (const DeviceInfo& device : list_devices()) {
+    if (device.backend != backend) continue;
+    if (device.usable) return {};
+    reason = device.reason;
+  }
+  return reason;
+}
+
+bool required(Backend backend) {
+  const char* variable = std::getenv("CADT_REQUIRE_BACKENDS");
+  std::string_view list = variable ? variable : "";
+  while (!list.empty()) {
+    const std::size_t comma = list.find(',');
+    if (list.substr(0, comma) == to_string(backend)) return true;
+    list = comma == std::string_view::npos ? std::string_view{} : list.substr(comma + 1);
+  }
+  return false;
+}
+
+void BackendTest::SetUp() {
+  const std::string reason = unavailable(GetParam().backend);
+  if (reason.empty()) return;
+  const std::string text = "back end '" + std::string(to_string(GetParam().backend)) + "' is not available: " + reason;
+  if (required(GetParam().backend)) FAIL() << text << " (required by CADT_REQUIRE_BACKENDS)";
+  GTEST_SKIP() << text;
+}
+
+std::string case_name(const testing::TestParamInfo<BackendCase>& info) { return info.param.name; }
+
+}  // namespace cadt::test

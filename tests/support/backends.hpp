@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The configurations that every test of a mesh runs on, and what happens when one of them is not there.
+#pragma once
+
+#include <cadt/cadt.hpp>
+
+#include <gtest/gtest.h>
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace cadt::test {
+
+struct BackendCase {
+  std::string name;  ///< part of the test's name
+  Backend backend = Backend::host;
+  unsigned threads = 0;
+  unsigned work_group_size = 0;
+  [[nodiscard]] Options options() const;
+};
+std::ostream& operator<<(std::ostream& out, const BackendCase& c);
+
+/// host: serial (the reference), 2, 3 and 8 threads. opencl: several work-group sizes.
+[[nodiscard]] std::vector<BackendCase> host_cases();
+[[nodiscard]] std::vector<BackendCase> opencl_cases();
+/// The one a user would run; for costly tests.
+[[nodiscard]] std::vector<BackendCase> main_host_case();
+[[nodiscard]] std::vector<BackendCase> main_opencl_case();
+
+/// Why the back end cannot be used here; empty if it can.
+[[nodiscard]] std::string unavailable(Backend backend);
+
+/// Is the back end named in CADT_REQUIRE_BACKENDS (a list such as "host,opencl")?
+[[nodiscard]] bool required(Backend backend);
+
+/// Base of the tests that run once per configuration. A back end that is not there skips the test with the reason, or
+/// fails it if the back end is required.
+class BackendTest : public testing::TestWithParam<BackendCase> {
+ protected:
+  void SetUp() override;
+};
+
+[[nodiscard]] std::string case_name(const testing::TestParamInfo<BackendCase>& info);
+
+}  // namespace cadt::test
+
+/// All configurations of all back ends; the prefix of the name becomes the label in ctest.
+#define CADT_ON_EVERY_BACKEND(Suite)                                                                         \
+  INSTANTIATE_TEST_SUITE_P(host, Suite, testing::ValuesIn(cadt::test::host_cases()), cadt::test::case_name); \
+  INSTANTIATE_TEST_SUITE_P(opencl, Suite, testing::ValuesIn(cadt::test::opencl_cases()), cadt::test::case_name)
+
+/// One configuration of each back end.
+#define CADT_ON_MAIN_BACKENDS(Suite)                                                                             \
+  INSTANTIATE_TEST_SUITE_P(host, Suite, testing::ValuesIn(cadt::test::main_host_case()), cadt::test::case_name); \
+  INSTANTIATE_TEST_SUITE_P(opencl, Suite, testing::ValuesIn(cadt::test::main_opencl_case()), cadt::test::case_name)

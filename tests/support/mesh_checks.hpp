@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every array of a mesh against what CGAL's set of triangles implies.
+#pragma once
+
+#include "tests/support/families.hpp"
+#include "tests/support/oracle.hpp"
+
+#include <cadt/cadt.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace cadt::test {
+
+/// All arrays that a Triangulation in canonical order must have.
+struct ExpectedMesh {
+  int dimension = -1;
+  std::vector<std::int32_t> representative;
+  std::vector<std::int32_t> triangles;
+  std::vector<std::int32_t> neighbors;
+  std::vector<std::int32_t> hull;
+  std::vector<std::int32_t> vertex_triangle;
+  std::vector<Duplicate> duplicates;
+};
+
+[[nodiscard]] ExpectedMesh expected_mesh(const Points& xy);
+
+/// Neighbour of each triangle opposite each of its vertices, -1 at the boundary.
+[[nodiscard]] std::vector<std::int32_t> neighbors_of(std::span<const std::int32_t> triangles);
+
+/// Byte for byte: dimension, triangles, neighbours, hull, duplicates, vertex_triangle.
+[[nodiscard]] testing::AssertionResult same_mesh(const Triangulation& mesh, const ExpectedMesh& expected);
+
+/// The triangles as a canonical set, after index i was replaced by `index[i]` (empty: kept).
+[[nodiscard]] std::vector<std::int32_t> canonical_set(std::span<const std::int32_t> triangles,
+                                                      std::span<const std::int32_t> index = {});
+
+/// verify() passes, with the counts that the mesh claims.
+[[nodiscard]] testing::AssertionResult verified(const Points& xy, const Triangulation& mesh);
+
+/// Triangulates and compares everything; sets up to 5,000 points also in a random order.
+[[nodiscard]] testing::AssertionResult triangulates_as_cgal(const Points& xy, const Options& options);
+
+}  // namespace cadt::test

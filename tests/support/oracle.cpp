@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/oracle.hpp"
+
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_data_structure_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+namespace cadt::test {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>;
+using Structure = CGAL::Triangulation_data_structure_2<VertexBase>;
+using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, Structure>;
+using PlainDelaunay = CGAL::Delaunay_triangulation_2<Kernel>;
+
+}  // namespace
+
+std::vector<std::int32_t> representatives(std::span<const double> xy) {
+  const auto n = static_cast<std::int32_t>(xy.size() / 2);
+  const auto at = [&](std::int32_t i) {
+    const auto k = 2 * static_cast<std::size_t>(i);
+    return std::pair{xy[k], xy[k + 1]};  // comparison by value, so the sign of a zero does not count
+  };
+  std::vector<std::int32_t> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    const auto p = at(a), q = at(b);
+    return p != q ? p < q : a < b;
+  });
+  std::vector<std::int32_t> result(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool repeats = i > 0 && at(order[i - 1]) == at(order[i]);
+    result[static_cast<std::size_t>(order[i])] = repeats ? result[static_cast<std::size_t>(order[i - 1])] : order[i];
+  }
+  return result;
+}
+
+OracleMesh cgal_delaunay(std::span<const double> xy) {
+  OracleMesh mesh;
+  mesh.representative = representatives(xy);
+  std::vector<std::pair<Kernel::Point_2, std::int32_t>> distinct;
+  distinct.reserve(mesh.representative.size());
+  for (std::size_t i = 0; i < mesh.representative.size(); ++i) {
+    if (mesh.representative[i] != static_cast<std::int32_t>(i)) continue;
+    distinct.emplace_back(Kernel::Point_2(xy[2 * i], xy[2 * i + 1]), static_cast<std::int32_t>(i));
+  }
+  const Delaunay delaunay(distinct.begin(), distinct.end());
+  mesh.dimension = delaunay.dimension();
+  if (mesh.dimension < 2) return mesh;
+  mesh.triangles.reserve(delaunay.number_of_faces());
+  for (auto face = delaunay.finite_faces_begin(); face != delaunay.finite_faces_end(); ++face) {
+    mesh.triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+  }
+  make_canonical(mesh.triangles);
+  return mesh;
+}
+
+std::size_t cgal_insert_only(std::span<const double> xy) {
+  std::vector<Kernel::Point_2> points;
+  points.reserve(xy.size() / 2);
+  for (std::size_t i = 0; i + 1 < xy.size(); i += 2) points.emplace_back(xy[i], xy[i + 1]);
+  PlainDelaunay delaunay;
+  delaunay.insert(points.begin(), points.end());
+  return delaunay.number_of_faces();
+}
+
+void make_canonical(std::vector<Triangle>& triangles) {
+  for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  std::sort(triangles.begin(), triangles.end());
+}
+
+}  // namespace cadt::test

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What CGAL makes of a point set. Plain types only: CGAL is seen by oracle.cpp and nothing else, and never by the
+// library.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace cadt::test {
+
+using Triangle = std::array<std::int32_t, 3>;
+
+/// Representative of each point: the lowest index among the points equal to it (-0.0 equals 0.0).
+[[nodiscard]] std::vector<std::int32_t> representatives(std::span<const double> xy);
+
+struct OracleMesh {
+  int dimension = -1;                        ///< as Triangulation::dimension()
+  std::vector<std::int32_t> representative;  ///< per input point
+  std::vector<Triangle> triangles;           ///< counterclockwise, smallest index first, ascending
+};
+
+/// Delaunay_triangulation_2 over Exact_predicates_inexact_constructions_kernel of the distinct points.
+[[nodiscard]] OracleMesh cgal_delaunay(std::span<const double> xy);
+
+/// Only the insertion, as a user of CGAL would write it; returns the number of finite faces. For benchmarks.
+[[nodiscard]] std::size_t cgal_insert_only(std::span<const double> xy);
+
+/// Rotates each triangle to start with its smallest index and sorts them.
+void make_canonical(std::vector<Triangle>& triangles);
+
+}  // namespace cadt::test

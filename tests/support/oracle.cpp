@@ -7,6 +7,7 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <numeric>
 #include <utility>
@@ -62,13 +63,15 @@ OracleMesh cgal_delaunay(std::span<const double> xy) {
   return mesh;
 }
 
-std::size_t cgal_insert_only(std::span<const double> xy) {
+InsertionTime cgal_insertion(std::span<const double> xy) {
   std::vector<Kernel::Point_2> points;
   points.reserve(xy.size() / 2);
   for (std::size_t i = 0; i + 1 < xy.size(); i += 2) points.emplace_back(xy[i], xy[i + 1]);
   PlainDelaunay delaunay;
+  const auto start = std::chrono::steady_clock::now();
   delaunay.insert(points.begin(), points.end());
-  return delaunay.number_of_faces();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  return {delaunay.number_of_faces(), taken.count()};
 }
 
 void make_canonical(std::vector<Triangle>& triangles) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,8 +25,13 @@ struct OracleMesh {
 /// Delaunay_triangulation_2 over Exact_predicates_inexact_constructions_kernel of the distinct points.
 [[nodiscard]] OracleMesh cgal_delaunay(std::span<const double> xy);
 
-/// Only the insertion, as a user of CGAL would write it; returns the number of finite faces. For benchmarks.
-[[nodiscard]] std::size_t cgal_insert_only(std::span<const double> xy);
+struct InsertionTime {
+  std::size_t triangles = 0;
+  double seconds = 0.0;
+};
+/// Inserts the range of points into an empty triangulation, as a user of CGAL would write it. The time is that of
+/// `insert`, without the conversion to CGAL's points. For benchmarks.
+[[nodiscard]] InsertionTime cgal_insertion(std::span<const double> xy);
 
 /// Rotates each triangle to start with its smallest index and sorts them.
 void make_canonical(std::vector<Triangle>& triangles);

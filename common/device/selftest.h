@@ -10,10 +10,12 @@
 #include "common/device/atomics.h"
 #include "common/device/fixed.h"
 
-enum { CADT_PROBES = 8 };
+enum { CADT_PROBES = 8, CADT_PROBE_WORDS = 5 };
 
-/* in: 2 * CADT_PROBES doubles; out: CADT_PROBES doubles; words: 4 words, zero at the start */
-CADT_KERNEL(cadt_selftest, CADT_GLOBAL const double* in, CADT_GLOBAL double* out, CADT_GLOBAL cadt_u32* words) {
+/* in: 2 * CADT_PROBES doubles; out: CADT_PROBES doubles; words: CADT_PROBE_WORDS words, zero at the start but the last, which is
+ * CADT_NONE; items: those of the launch that count, for it may be rounded up */
+CADT_KERNEL(cadt_selftest, CADT_GLOBAL const double* in, CADT_GLOBAL double* out, CADT_GLOBAL cadt_u32* words,
+            cadt_u32 items) {
   if (cadt_item == 0u) {
     /* contraction: a*a+b with an exact product that needs 54 bits; fused it is not zero */
     out[0] = in[0] * in[0] + in[1];
@@ -23,19 +25,24 @@ CADT_KERNEL(cadt_selftest, CADT_GLOBAL const double* in, CADT_GLOBAL double* out
     /* gradual underflow of a product and of a difference */
     out[2] = in[4] * in[5];
     out[3] = in[6] - in[7];
-    /* rounding to nearest, ties to even */
+    /* rounding to nearest, ties to even: the tie of the sum goes up, that of the product goes down */
     out[4] = in[8] + in[9];
     out[5] = in[10] * in[11];
+    /* a quotient that differs from the product with the reciprocal */
     out[6] = in[12] / in[13];
     /* 64 x 64 -> 128 bits, and the bits of a double */
-    cadt_i128 p = cadt_mul_i64(CADT_CAST(cadt_i64, cadt_bits_of_double(in[14])), -CADT_CAST(cadt_i64, cadt_bits_of_double(in[15])));
+    cadt_i128 p = cadt_mul_i64(CADT_CAST(cadt_i64, cadt_bits_of_double(in[14])),
+                               -CADT_CAST(cadt_i64, cadt_bits_of_double(in[15])));
     out[7] = CADT_CAST(double, p.high);
     words[0] = CADT_CAST(cadt_u32, p.low);
     words[1] = CADT_CAST(cadt_u32, p.low >> 32);
   }
-  /* every work-item of the launch adds one */
-  cadt_add_relaxed(words + 2, 1u);
-  if (cadt_cas_acq_rel(words + 3, 0u, 7u)) cadt_add_relaxed(words + 3, cadt_load_acquire(words + 3));
+  if (cadt_item < items) {
+    /* every work-item adds one; the one that finds zero makes it seven and doubles it; the last one has the minimum */
+    cadt_add_relaxed(words + 2, 1u);
+    if (cadt_cas_acq_rel(words + 3, 0u, 7u)) cadt_add_relaxed(words + 3, cadt_load_acquire(words + 3));
+    cadt_min_relaxed(words + 4, items - cadt_item + 4u);
+  }
 }
 
 #endif

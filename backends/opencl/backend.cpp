@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/host/backend.hpp"
+
+#include "backends/opencl/device.hpp"
+#include "backends/opencl/open.hpp"
+#include "common/host/selftest.hpp"
+
+namespace cadt {
+namespace opencl {
+
+std::unique_ptr<Device> open_device(const OpenRequest& request) {
+  std::shared_ptr<SharedContext> shared = shared_context(request);
+  auto device = std::make_unique<ClDevice>(shared, request.work_group_size);
+  // Once per context: what is tested is the compiled program and the device, which all its users share.
+  shared->once([&] {
+    static_cast<void>(shared->program(false, request.from_cache));
+    run_selftest(*device);
+  });
+  return device;
+}
+
+}  // namespace opencl
+
+namespace {
+
+class OpenClEntry final : public BackendEntry {
+ public:
+  [[nodiscard]] Backend id() const noexcept override { return Backend::opencl; }
+
+  [[nodiscard]] std::vector<DeviceInfo> devices() override {
+    opencl::Found found = opencl::find_devices();
+    std::vector<DeviceInfo> all;
+    for (opencl::FoundDevice& device : found.devices) all.push_back(std::move(device.info));
+    if (all.empty()) {
+      DeviceInfo none;
+      none.backend = Backend::opencl;
+      none.index = -1;
+      none.reason = std::move(found.none);
+      all.push_back(std::move(none));
+    }
+    return all;
+  }
+
+  [[nodiscard]] std::unique_ptr<Device> open(int index, const Options& options) override {
+    opencl::OpenRequest request;
+    request.index = index;
+    request.work_group_size = options.work_group_size;
+    return opencl::open_device(request);
+  }
+};
+
+}  // namespace
+
+BackendEntry& opencl_backend() {
+  static OpenClEntry entry;
+  return entry;
+}
+
+}  // namespace cadt

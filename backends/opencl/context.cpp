@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/opencl/context.hpp"
+
+#include <cadt/errors.hpp>
+#include <map>
+#include <tuple>
+
+#include "backends/opencl/kernel_source.hpp"
+
+namespace cadt::opencl {
+namespace {
+
+FoundDevice find(int index) {
+  Found found = find_devices();
+  if (found.devices.empty()) throw BackendUnavailable("opencl", found.none);
+  if (index < 0 || static_cast<std::size_t>(index) >= found.devices.size())
+    throw BackendUnavailable("opencl", "there is no device " + std::to_string(index) + "; devices are 0 to " +
+                                           std::to_string(found.devices.size() - 1));
+  FoundDevice device = std::move(found.devices[static_cast<std::size_t>(index)]);
+  if (!device.info.usable) throw BackendUnavailable("opencl", "'" + device.info.name + "': " + device.info.reason);
+  return device;
+}
+
+AtomicsChoice choice_of(const OpenRequest& request) {
+  if (request.best_effort_atomics) return AtomicsChoice::best_effort;
+  return request.probe_atomics ? AtomicsChoice::always_probe : AtomicsChoice::automatic;
+}
+
+using Key = std::tuple<int, std::string, std::string, AtomicsChoice>;
+
+// A map entry of its own lock: opening one device must not wait for the compiler of another.
+struct Slot {
+  std::mutex mutex;
+  std::shared_ptr<SharedContext> context;
+};
+
+std::shared_ptr<Slot> slot_of(const OpenRequest& request) {
+  // Never destroyed, on purpose: at exit a driver may have taken itself down before our static destructors run, and
+  // releasing a context then crashes in some of them. The system reclaims everything anyway.
+  static auto* const mutex = new std::mutex;
+  static auto* const slots = new std::map<Key, std::shared_ptr<Slot>>;
+  const std::lock_guard lock(*mutex);
+  auto& slot = (*slots)[Key(request.index, request.extra_options, request.source, choice_of(request))];
+  if (slot == nullptr) slot = std::make_shared<Slot>();
+  return slot;
+}
+
+}  // namespace
+
+SharedContext::SharedContext(const OpenRequest& request)
+    : device_(find(request.index)),
+      source_(request.source.empty() ? kernel_source() : request.source),
+      extra_options_(request.extra_options) {
+  try {
+    context_ = cl::Context(device_.device);
+  } catch (const cl::Error& error) {
+    throw_device_error(error, device_.info.name);
+  }
+  atomics_ = choose_atomics(context_, device_, choice_of(request));
+  device_.info.atomics = atomics_.text;
+}
+
+cl::Program SharedContext::program(bool wide, bool* from_cache) {
+  const std::lock_guard lock(build_mutex_);
+  auto& slot = programs_[wide ? 1 : 0];
+  if (!slot)
+    slot =
+        build_program(context_, device_, source_, build_options(device_, atomics_, wide, extra_options_), from_cache);
+  return *slot;
+}
+
+std::shared_ptr<SharedContext> shared_context(const OpenRequest& request) {
+  if (request.fresh) return std::make_shared<SharedContext>(request);
+  const std::shared_ptr<Slot> slot = slot_of(request);
+  const std::lock_guard lock(slot->mutex);
+  if (slot->context == nullptr || slot->context->lost) slot->context = std::make_shared<SharedContext>(request);
+  return slot->context;
+}
+
+}  // namespace cadt::opencl

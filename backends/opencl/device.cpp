@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/opencl/device.hpp"
+
+#include <algorithm>
+#include <cadt/errors.hpp>
+#include <limits>
+
+namespace cadt::opencl {
+namespace {
+
+// A work-item on a CPU does a whole range of elements, so a group of one is no loss, and it spreads best. On GPUs 128
+// leaves the scheduler several groups per unit even for kernels with many registers.
+constexpr std::size_t cpu_group = 1, gpu_group = 128;
+
+class ClBuffer final : public Buffer {
+ public:
+  ClBuffer(std::shared_ptr<SharedContext> shared, cl::Buffer memory, std::size_t bytes, std::size_t counted)
+      : Buffer(bytes), shared_(std::move(shared)), memory_(std::move(memory)), counted_(counted) {
+    shared_->held += counted_;
+  }
+  ~ClBuffer() override { shared_->held -= counted_; }
+
+  [[nodiscard]] const cl::Buffer& memory() const noexcept { return memory_; }
+
+ private:
+  std::shared_ptr<SharedContext> shared_;
+  cl::Buffer memory_;
+  std::size_t counted_;
+};
+
+// The caller may free its memory as soon as this is gone, so the device must have finished with it.
+class AliasBuffer final : public Buffer {
+ public:
+  AliasBuffer(cl::Buffer memory, cl::CommandQueue queue, std::size_t bytes)
+      : Buffer(bytes), memory_(std::move(memory)), queue_(std::move(queue)) {}
+  ~AliasBuffer() override { clFinish(queue_()); }
+
+  [[nodiscard]] const cl::Buffer& memory() const noexcept { return memory_; }
+
+ private:
+  cl::Buffer memory_;
+  cl::CommandQueue queue_;
+};
+
+const cl::Buffer& memory_of(const Buffer& buffer) {
+  if (const auto* own = dynamic_cast<const ClBuffer*>(&buffer)) return own->memory();
+  if (const auto* alias = dynamic_cast<const AliasBuffer*>(&buffer)) return alias->memory();
+  throw InternalError("a buffer of another back end was passed to an OpenCL device");
+}
+
+void check_range(const char* what, const Buffer& buffer, std::size_t offset, std::size_t bytes) {
+  if (offset > buffer.bytes() || bytes > buffer.bytes() - offset)
+    throw InternalError(std::string(what) + " of " + std::to_string(bytes) + " bytes at " + std::to_string(offset) +
+                        " exceeds a buffer of " + std::to_string(buffer.bytes()));
+}
+
+bool is_out_of_memory(int code) {
+  return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES || code == CL_OUT_OF_HOST_MEMORY ||
+         code == CL_INVALID_BUFFER_SIZE;
+}
+
+[[noreturn]] void throw_out_of_memory(const DeviceInfo& info, const std::string& why, std::size_t needed,
+                                      std::size_t available) {
+  throw OutOfMemory("'" + info.name + "' cannot hold a buffer of " + std::to_string(needed) + " bytes: " + why + " " +
+                        std::to_string(available) + " bytes",
+                    needed, available);
+}
+
+std::size_t free_bytes(const SharedContext& shared) {
+  const std::uint64_t memory = shared.device().info.memory_bytes, held = shared.held;
+  return static_cast<std::size_t>(memory > held ? memory - held : 0);
+}
+
+}  // namespace
+
+ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, unsigned work_group_size)
+    : shared_(std::move(shared)), work_group_size_(work_group_size) {
+  try {
+    queue_ = cl::CommandQueue(shared_->context(), shared_->device().device);
+  } catch (const cl::Error& error) {
+    throw_device_error(error, info().name);
+  }
+}
+
+ClDevice::~ClDevice() { clFinish(queue_()); }
+
+template <class Work>
+void ClDevice::run(std::size_t bytes, const Work& work) {
+  if (shared_->lost) throw DeviceError("OpenCL", CL_INVALID_CONTEXT, info().name, "the context was lost earlier");
+  try {
+    work();
+  } catch (const cl::Error& error) {
+    // Memory is often found only when a command needs it.
+    if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE)
+      throw_out_of_memory(info(), std::string(error.what()) + " found too little memory; as far as known there are",
+                          bytes, free_bytes(*shared_));
+    if (is_fatal(error.err())) shared_->lost = true;
+    throw_device_error(error, info().name);
+  }
+}
+
+LaunchShape ClDevice::shape() const noexcept {
+  const std::uint32_t units = std::max(1u, info().compute_units);
+  if (info().gpu) return {.contiguous = false, .parallelism = units * 2048u, .grain = 1};
+  return {.contiguous = true, .parallelism = units * 4u, .grain = 256};
+}
+
+std::unique_ptr<Buffer> ClDevice::allocate(std::size_t bytes) {
+  if (bytes > info().largest_buffer_bytes)
+    throw_out_of_memory(info(), "its largest buffer is", bytes, info().largest_buffer_bytes);
+  if (bytes > free_bytes(*shared_)) throw_out_of_memory(info(), "it has left", bytes, free_bytes(*shared_));
+  // OpenCL has no empty buffers.
+  const std::size_t size = std::max<std::size_t>(bytes, 8);
+  try {
+    return std::make_unique<ClBuffer>(shared_, cl::Buffer(shared_->context(), CL_MEM_READ_WRITE, size), bytes, size);
+  } catch (const cl::Error& error) {
+    if (is_out_of_memory(error.err()))
+      throw_out_of_memory(info(), std::string(code_name(error.err())) + "; as far as known it has left", bytes,
+                          free_bytes(*shared_));
+    throw_device_error(error, info().name);
+  }
+}
+
+std::unique_ptr<Buffer> ClDevice::alias(const void* data, std::size_t bytes) {
+  // A GPU would fetch it over the bus again and again. The alignment is that of the elements; more is not asked for.
+  const bool aligned = reinterpret_cast<std::uintptr_t>(data) % alignof(double) == 0;
+  if (info().gpu || data == nullptr || bytes == 0 || !aligned || bytes > info().largest_buffer_bytes) return nullptr;
+  try {
+    cl::Buffer memory(shared_->context(), CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes, const_cast<void*>(data));
+    return std::make_unique<AliasBuffer>(std::move(memory), queue_, bytes);
+  } catch (const cl::Error&) {
+    return nullptr;  // copying is always possible
+  }
+}
+
+void ClDevice::write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
+  check_range("a write", to, offset, bytes);
+  if (bytes != 0) run(bytes, [&] { queue_.enqueueWriteBuffer(memory_of(to), CL_TRUE, offset, bytes, from); });
+}
+
+void ClDevice::read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) {
+  check_range("a read", from, offset, bytes);
+  if (bytes != 0) run(bytes, [&] { queue_.enqueueReadBuffer(memory_of(from), CL_TRUE, offset, bytes, to); });
+}
+
+void ClDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) {
+  check_range("a fill", to, offset, bytes);
+  if (offset % 4 != 0 || bytes % 4 != 0) throw InternalError("a fill is not a multiple of four bytes");
+  if (bytes != 0) run(bytes, [&] { queue_.enqueueFillBuffer(memory_of(to), word, offset, bytes); });
+}
+
+ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, bool wide) {
+  const auto number = static_cast<std::size_t>(kernel);
+  auto& slot = kernels_[wide ? 1 : 0].at(number);
+  if (slot) return *slot;
+  const cl::Program program = shared_->program(wide);
+  ReadyKernel made;
+  run(0, [&] {
+    try {
+      made.kernel = cl::Kernel(program, kernel_names[number]);
+    } catch (const cl::Error& error) {
+      if (error.err() != CL_INVALID_KERNEL_NAME) throw;
+      throw InternalError(std::string("the program for '") + info().name + "' has no kernel " + kernel_names[number]);
+    }
+    made.parameters = made.kernel.getInfo<CL_KERNEL_NUM_ARGS>();
+    const auto limit = made.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(shared_->device().device);
+    const auto along = shared_->device().device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>();
+    const std::size_t wanted = work_group_size_ != 0 ? work_group_size_ : (info().gpu ? gpu_group : cpu_group);
+    made.group = std::max<std::size_t>(1, std::min({wanted, limit, along.empty() ? limit : along.front()}));
+  });
+  slot = std::move(made);
+  return *slot;
+}
+
+void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) {
+  if (items == 0) return;
+  ReadyKernel& target = ready(kernel, wide);
+  const char* const name = kernel_names[static_cast<std::size_t>(kernel)];
+  if (args.size() != target.parameters)
+    throw InternalError(std::string(name) + " takes " + std::to_string(target.parameters) + " arguments, not " +
+                        std::to_string(args.size()));
+  const std::size_t groups = (items + target.group - 1) / target.group;
+  // The kernels number their work-items in 32 bits: one beyond would be taken for the first.
+  if (groups > std::numeric_limits<std::uint32_t>::max() / target.group)
+    throw InternalError(std::string(name) + " was launched with " + std::to_string(items) + " work-items");
+  run(shared_->held, [&] {
+    cl_uint position = 0;
+    for (const Arg& arg : args) {
+      if (!arg.is_buffer())
+        target.kernel.setArg(position, arg.size(), arg.value());
+      else if (arg.buffer() == nullptr)
+        target.kernel.setArg(position, sizeof(cl_mem), nullptr);
+      else
+        target.kernel.setArg(position, memory_of(*arg.buffer()));
+      ++position;
+    }
+    queue_.enqueueNDRangeKernel(target.kernel, cl::NullRange, cl::NDRange(groups * target.group),
+                                cl::NDRange(target.group));
+  });
+}
+
+void ClDevice::finish() {
+  run(shared_->held, [&] { queue_.finish(); });
+}
+
+}  // namespace cadt::opencl

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "backends/opencl/context.hpp"
+#include "common/host/device.hpp"
+
+namespace cadt::opencl {
+
+/// A queue of its own, kernels of its own: cl_kernel keeps its arguments and is not for two threads at once.
+class ClDevice final : public Device {
+ public:
+  ClDevice(std::shared_ptr<SharedContext> shared, unsigned work_group_size);
+  ~ClDevice() override;
+
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return shared_->device().info; }
+  [[nodiscard]] LaunchShape shape() const noexcept override;
+  [[nodiscard]] unsigned threads() const noexcept override { return info().compute_units; }
+  [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override;
+  [[nodiscard]] std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) override;
+  void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
+  void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
+  void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) override;
+  void finish() override;
+
+ private:
+  struct ReadyKernel {
+    cl::Kernel kernel;
+    cl_uint parameters = 0;
+    std::size_t group = 1;  ///< work-items of a group
+  };
+  ReadyKernel& ready(KernelId kernel, bool wide);
+
+  /// Calls `work` and translates what the bindings throw. `bytes`: what the call may have to allocate at last.
+  template <class Work>
+  void run(std::size_t bytes, const Work& work);
+
+  std::shared_ptr<SharedContext> shared_;
+  cl::CommandQueue queue_;
+  unsigned work_group_size_;
+  std::array<std::array<std::optional<ReadyKernel>, kernel_count>, 2> kernels_;
+};
+
+}  // namespace cadt::opencl

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opening a device, with what only tests may ask for. Free of OpenCL headers.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/host/device.hpp"
+
+namespace cadt::opencl {
+
+struct OpenRequest {
+  int index = 0;
+  unsigned work_group_size = 0;  ///< 0: the default of the device
+
+  // The rest is for tests.
+  std::string extra_options;   ///< appended to the compiler's options
+  std::string source;          ///< instead of the embedded kernels, if not empty
+  bool probe_atomics = false;  ///< try the compiler even if the device advertises acquire/release
+  bool best_effort_atomics = false;
+  bool fresh = false;          ///< a context of its own instead of the process's
+  bool* from_cache = nullptr;  ///< set if a program is built: whether it came from disk
+};
+
+/// \throws BackendUnavailable, KernelBuildError, OutOfMemory, DeviceError
+[[nodiscard]] std::unique_ptr<Device> open_device(const OpenRequest& request);
+
+}  // namespace cadt::opencl

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cadt/devices.hpp>
+#include <string>
+#include <vector>
+
+#include "backends/opencl/cl.hpp"
+#include "backends/opencl/facts.hpp"
+
+namespace cadt::opencl {
+
+struct FoundDevice {
+  cl::Device device;
+  Facts facts;
+  DeviceInfo info;
+  std::string vendor, device_version, platform_version;
+};
+
+struct Found {
+  std::vector<FoundDevice> devices;  ///< of all platforms, in the loader's order; the position is the index
+  std::string none;                  ///< why there is no device, empty otherwise
+};
+
+/// Asks the loader. Failures of the runtime become reasons, never exceptions.
+[[nodiscard]] Found find_devices();
+
+}  // namespace cadt::opencl

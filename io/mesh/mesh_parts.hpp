@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the mesh writers need of a mesh, whoever computed it.
+#pragma once
+
+#include "io/support/atomic_file.hpp"
+#include "io/support/input_file.hpp"
+
+#include <cadt/io/mesh_file.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace cadt::io::detail {
+
+/// Borrowed arrays in the layout of Triangulation.
+struct MeshParts {
+  std::span<const double> xy;
+  std::span<const double> height;  ///< empty or one a point
+  std::span<const std::int32_t> triangles, neighbors, hull;
+  std::span<const Duplicate> duplicates;
+};
+
+/// write_mesh for all formats but pictures.
+void write_mesh_parts(const std::string& path, const MeshParts& mesh, const WriteOptions& options);
+
+/// The format of a mesh to be written: WriteOptions::format or the suffix. Throws FileError.
+[[nodiscard]] std::string mesh_write_format(const std::string& path, const WriteOptions& options);
+
+void write_ele(AtomicFile& out, std::span<const std::int32_t> triangles, int base);
+void write_neigh(AtomicFile& out, std::span<const std::int32_t> neighbors, int base);
+void write_obj(AtomicFile& out, const MeshParts& mesh);
+void write_off(AtomicFile& out, const MeshParts& mesh);
+void write_ply(AtomicFile& out, const MeshParts& mesh, bool ascii);
+void write_vtu(AtomicFile& out, const MeshParts& mesh);
+void write_npz(AtomicFile& out, const MeshParts& mesh);
+
+/// Checks indices as they are read and collects them.
+class TriangleCollector {
+ public:
+  /// Indices run from `base` to base + points - 1.
+  TriangleCollector(std::size_t points, std::int64_t base) : points_(static_cast<std::int64_t>(points)), base_(base) {}
+  void reserve(std::size_t triangles) { indices_.reserve(3 * triangles); }
+  /// False if the index is out of range.
+  [[nodiscard]] bool add(std::int64_t index) {
+    index -= base_;
+    if (index < 0 || index >= points_) return false;
+    indices_.push_back(static_cast<std::int32_t>(index));
+    return true;
+  }
+  /// Text for an index that `add` refused.
+  [[nodiscard]] std::string refusal(std::int64_t index) const;
+  [[nodiscard]] std::vector<std::int32_t> take() { return std::move(indices_); }
+
+ private:
+  std::int64_t points_, base_;
+  std::vector<std::int32_t> indices_;
+};
+
+/// Number of corners of a face that are wanted, and the message for any other.
+inline constexpr std::size_t corners_of_triangle = 3;
+[[nodiscard]] std::string not_a_triangle(std::size_t corners);
+
+[[nodiscard]] MeshFile read_ele(const InputFile& file, const std::string& path, std::size_t points, int base);
+[[nodiscard]] MeshFile read_obj_mesh(const InputFile& file, std::size_t points);
+[[nodiscard]] MeshFile read_off_mesh(const InputFile& file, std::size_t points);
+[[nodiscard]] MeshFile read_ply_mesh(const InputFile& file, std::size_t points);
+[[nodiscard]] MeshFile read_vtu(const InputFile& file, std::size_t points);
+[[nodiscard]] MeshFile read_npz(const InputFile& file, std::size_t points);
+
+}  // namespace cadt::io::detail

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one place where a Triangulation meets the writers.
+#include "io/mesh/mesh_parts.hpp"
+
+#include <cadt/io/mesh_file.hpp>
+#include <cadt/io/picture.hpp>
+
+namespace cadt::io {
+
+void write_mesh(const std::string& path, const PointSet& points, const Triangulation& mesh,
+                const WriteOptions& options) {
+  const std::string format = detail::mesh_write_format(path, options);
+  if (mesh.number_of_points() != points.size()) {
+    throw FileError(path, 0,
+                    "the triangulation is not that of the points: it has " + std::to_string(mesh.number_of_points()) +
+                        " points, not " + std::to_string(points.size()));
+  }
+  if (format == "svg" || format == "png") {
+    PictureOptions picture;
+    picture.width = options.width;
+    format == "svg" ? write_svg(path, points, mesh, picture) : write_png(path, points, mesh, picture);
+    return;
+  }
+  detail::MeshParts parts;
+  parts.xy = points.xy;
+  parts.height = points.height;
+  parts.triangles = mesh.triangles();
+  parts.neighbors = mesh.neighbors();
+  parts.hull = mesh.hull();
+  parts.duplicates = mesh.duplicates();
+  detail::write_mesh_parts(path, parts, options);
+}
+
+}  // namespace cadt::io

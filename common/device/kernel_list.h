@@ -17,9 +17,9 @@
   X(cadt_crowded_flags)  /* refine.h: runs of equal keys that are too long */ \
   X(cadt_crowded_pack)   /* refine.h */                           \
   X(cadt_crowded_keys)   /* refine.h */                           \
-  X(cadt_crowded_runs)   /* refine.h */                           \
+  X(cadt_copy_words)     /* refine.h */                            \
   X(cadt_gather_words)   /* refine.h */                           \
-  X(cadt_crowded_heads)  /* refine.h */                           \
+  X(cadt_run_tails)      /* refine.h */                            \
   X(cadt_crowded_store)  /* refine.h */                           \
   X(cadt_sort_runs)      /* order.h: short runs, in place */      \
   X(cadt_gather_points)  /* order.h */                            \

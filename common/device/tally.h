@@ -7,29 +7,7 @@
 #define CADT_DEVICE_TALLY_H
 
 #include "common/device/atomics.h"
-
-enum {
-  CADT_COUNT_WALK_STEPS,
-  CADT_COUNT_CLAIMS,
-  CADT_COUNT_LOST_CLAIMS,
-  CADT_COUNT_INSERT_RETRIES,
-  CADT_COUNT_STALE_EDGES,
-  CADT_COUNT_DEFERRED_POINTS,
-  CADT_COUNT_DEFERRED_EDGES,
-  CADT_COUNT_SPLITS,
-  CADT_COUNT_EDGE_SPLITS,
-  CADT_COUNT_FLIPS,
-  CADT_COUNT_INCIRCLE_TESTS,
-  CADT_COUNT_EXACT_ORIENTATIONS,
-  CADT_COUNT_EXACT_INCIRCLES,
-  CADT_COUNT_TIES,
-  CADT_COUNT_EDGES_EXAMINED, /* by the closing pass */
-  CADT_COUNT_EDGES_ILLEGAL,  /* found by the closing pass */
-  CADT_COUNT_UNOWNED_STORES, /* checked builds: stores to a record that the writer does not own */
-  CADT_COUNTERS,
-  CADT_COUNTER_STRIDE = 32, /* words a row, so rows do not share cache lines */
-  CADT_COUNTER_ROWS = 64
-};
+#include "common/device/layout.h"
 
 typedef struct {
   cadt_u32 count[CADT_COUNTERS];

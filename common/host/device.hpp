@@ -76,6 +76,8 @@ class Device {
   [[nodiscard]] virtual std::unique_ptr<Buffer> allocate(std::size_t bytes) = 0;
   /// A read-only buffer that aliases the caller's memory where the device can, else nullptr (then copy).
   [[nodiscard]] virtual std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) = 0;
+  /// A buffer that writes straight to the caller's memory where the device can, else nullptr (then read it back).
+  [[nodiscard]] virtual std::unique_ptr<Buffer> alias_output(void* /*data*/, std::size_t /*bytes*/) { return nullptr; }
 
   /// Blocking copies; offsets and sizes in bytes. \throws DeviceError
   virtual void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) = 0;

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The host as a device: the kernels of common/device on threads of this process.
+#include "common/host/backend.hpp"
+
+#include <cadt/version.hpp>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <new>
+#include <thread>
+
+#include "backends/host/kernel_table.hpp"
+#include "backends/host/thread_pool.hpp"
+#include "common/host/selftest.hpp"
+
+namespace cadt::host {
+namespace {
+
+constexpr std::size_t page_alignment = 4096;
+constexpr std::size_t huge_page = std::size_t{2} << 20;
+
+class HostBuffer final : public Buffer {
+ public:
+  explicit HostBuffer(std::size_t bytes) : Buffer(bytes) {
+    // Huge pages spare many page faults and address translations: the mesh is read in no regular order.
+    const std::size_t alignment = bytes >= huge_page ? huge_page : page_alignment;
+    const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
+    data_ = std::aligned_alloc(alignment, rounded);
+    if (data_ == nullptr) throw OutOfMemory("not enough host memory: use fewer points", bytes, 0);
+    if (bytes >= huge_page) ::madvise(data_, rounded, MADV_HUGEPAGE);  // advice only: failure changes nothing
+    owned_ = true;
+  }
+  HostBuffer(const void* data, std::size_t bytes) : Buffer(bytes), data_(const_cast<void*>(data)) {}
+  ~HostBuffer() override {
+    if (owned_) std::free(data_);
+  }
+  HostBuffer(const HostBuffer&) = delete;
+  HostBuffer& operator=(const HostBuffer&) = delete;
+  [[nodiscard]] void* data() const noexcept { return data_; }
+
+ private:
+  void* data_ = nullptr;
+  bool owned_ = false;
+};
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("model name", 0) == 0) {
+      const auto colon = line.find(':');
+      if (colon != std::string::npos && colon + 2 <= line.size()) return line.substr(colon + 2);
+    }
+  }
+  return "host processor";
+}
+
+unsigned all_cores() noexcept { return std::max(1U, std::thread::hardware_concurrency()); }
+
+DeviceInfo describe() {
+  DeviceInfo info;
+  info.backend = Backend::host;
+  info.index = 0;
+  info.platform = "host";
+  info.name = processor_name();
+  info.driver = "cadt " CADT_VERSION;
+  info.usable = true;
+  const long pages = ::sysconf(_SC_PHYS_PAGES), page = ::sysconf(_SC_PAGE_SIZE);
+  if (pages > 0 && page > 0) info.memory_bytes = static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page);
+  info.largest_buffer_bytes = info.memory_bytes;
+  info.compute_units = all_cores();
+  info.fp64 = true;
+  info.atomics = "C++20 acquire/release";
+  return info;
+}
+
+class HostDevice final : public Device {
+ public:
+  explicit HostDevice(unsigned threads) : pool_(threads != 0 ? threads : all_cores()), info_(describe()) {}
+
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] LaunchShape shape() const noexcept override {
+    return {.contiguous = true, .parallelism = pool_.threads() * 4, .grain = 512};
+  }
+  [[nodiscard]] unsigned threads() const noexcept override { return pool_.threads(); }
+
+  [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override { return std::make_unique<HostBuffer>(bytes); }
+  [[nodiscard]] std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) override {
+    return std::make_unique<HostBuffer>(data, bytes);
+  }
+  [[nodiscard]] std::unique_ptr<Buffer> alias_output(void* data, std::size_t bytes) override {
+    return std::make_unique<HostBuffer>(data, bytes);
+  }
+  void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
+    if (bytes != 0) std::memcpy(bytes_of(to) + offset, from, bytes);
+  }
+  void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override {
+    if (bytes != 0) std::memcpy(to, bytes_of(from) + offset, bytes);
+  }
+  void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override {
+    if (word == 0) {
+      std::memset(bytes_of(to) + offset, 0, bytes);
+    } else {
+      std::fill_n(reinterpret_cast<std::uint32_t*>(bytes_of(to) + offset), bytes / sizeof word, word);
+    }
+  }
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) override {
+    const KernelTable& table = wide ? wide_kernels : narrow_kernels;
+    pool_.run(table[static_cast<std::size_t>(kernel)], items, args.data());
+  }
+  void finish() override {}
+
+ private:
+  static std::byte* bytes_of(const Buffer& buffer) noexcept {
+    return static_cast<std::byte*>(static_cast<const HostBuffer&>(buffer).data());
+  }
+
+  ThreadPool pool_;
+  DeviceInfo info_;
+};
+
+class HostBackend final : public BackendEntry {
+ public:
+  [[nodiscard]] Backend id() const noexcept override { return Backend::host; }
+  [[nodiscard]] std::vector<DeviceInfo> devices() override { return {describe()}; }
+  [[nodiscard]] std::unique_ptr<Device> open(int /*index*/, const Options& options) override {
+    auto device = std::make_unique<HostDevice>(options.threads);
+    run_selftest(*device);
+    return device;
+  }
+};
+
+}  // namespace
+
+void* address(Buffer* buffer) noexcept { return buffer == nullptr ? nullptr : static_cast<HostBuffer*>(buffer)->data(); }
+
+}  // namespace cadt::host
+
+namespace cadt {
+BackendEntry& host_backend() {
+  static host::HostBackend backend;
+  return backend;
+}
+}  // namespace cadt

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kernels of common/device as functions of (work-item, arguments).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "common/host/device.hpp"
+
+namespace cadt::host {
+
+/// Runs one work-item of a kernel. `args` are unpacked by the kernel's parameter types.
+using KernelFunction = void (*)(std::uint32_t item, std::uint32_t items, const Arg* args);
+using KernelTable = std::array<KernelFunction, kernel_count>;
+
+extern const KernelTable narrow_kernels;  ///< exponents within 240 binades
+extern const KernelTable wide_kernels;    ///< any double
+
+/// Address of a buffer of this back end, as a kernel argument.
+[[nodiscard]] void* address(Buffer* buffer) noexcept;
+
+}  // namespace cadt::host

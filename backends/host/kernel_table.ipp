@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiles the kernels as host C++ for one variant (CADT_WIDE is set by the including file) and builds their table.
+
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "backends/host/kernel_table.hpp"
+
+namespace {
+
+#if defined(CADT_CHECKED)
+// A store to a record is right only by its owner (odd lock word) or before it is published (0).
+inline void cadt_assert_owned([[maybe_unused]] std::uint32_t& lock) {
+  [[maybe_unused]] const std::uint32_t word = std::atomic_ref<std::uint32_t>(lock).load(std::memory_order_relaxed);
+  assert(word == 0 || (word & 1U) != 0);
+}
+#endif
+
+#include "common/device/kernels.h"
+
+template <class Parameter>
+Parameter unpack(const cadt::Arg& arg) {
+  if constexpr (std::is_pointer_v<Parameter>) {
+    return static_cast<Parameter>(cadt::host::address(arg.buffer()));
+  } else {
+    Parameter value;
+    assert(arg.size() == sizeof value);
+    std::memcpy(&value, arg.value(), sizeof value);
+    return value;
+  }
+}
+
+template <auto Kernel>
+struct Trampoline;
+
+template <class... Parameters, void (*Kernel)(std::uint32_t, std::uint32_t, Parameters...)>
+struct Trampoline<Kernel> {
+  static void run(std::uint32_t item, std::uint32_t items, const cadt::Arg* args) {
+    run(item, items, args, std::index_sequence_for<Parameters...>{});
+  }
+  template <std::size_t... Index>
+  static void run(std::uint32_t item, std::uint32_t items, const cadt::Arg* args, std::index_sequence<Index...>) {
+    Kernel(item, items, unpack<Parameters>(args[Index])...);
+  }
+};
+
+#define CADT_TABLE_ENTRY(name) &Trampoline<&name>::run,
+constexpr cadt::host::KernelTable table = {CADT_KERNEL_LIST(CADT_TABLE_ENTRY)};
+#undef CADT_TABLE_ENTRY
+
+}  // namespace

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "backends/host/kernel_table.hpp"
+
+namespace cadt::host {
+
+/// A fixed number of threads, the caller among them, that share the work-items of one launch after another.
+class ThreadPool {
+ public:
+  explicit ThreadPool(unsigned threads);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  [[nodiscard]] unsigned threads() const noexcept { return static_cast<unsigned>(workers_.size()) + 1; }
+
+  /// Runs items 0 to items - 1, each by one thread, in no order (in order with one thread). Returns when all are done.
+  void run(KernelFunction kernel, std::uint32_t items, const Arg* args);
+
+ private:
+  void work() noexcept;
+  void serve(const std::stop_token& stop) noexcept;
+
+  // The launch at hand. Written by run() while no worker is active.
+  KernelFunction kernel_ = nullptr;
+  const Arg* args_ = nullptr;
+  std::uint32_t items_ = 0;
+  std::atomic<std::uint64_t> next_{0};  // wider than items_: each thread overshoots by one
+
+  std::mutex mutex_;
+  std::condition_variable_any start_;
+  std::condition_variable done_;
+  std::uint64_t launch_ = 0;
+  unsigned active_ = 0;
+  std::vector<std::jthread> workers_;  // last: joins before the rest goes
+};
+
+}  // namespace cadt::host

@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The three changes of the mesh: split of a face 1 -> 3, split of an edge 2 -> 4 (paper, section 4.3, Algorithm 2) and flip
+ * of an edge (section 4.4, Algorithm 3). Each claims what it writes, which validates what was read, then commits.
+ */
+#ifndef CADT_DEVICE_CHANGE_H
+#define CADT_DEVICE_CHANGE_H
+
+#include "common/device/locate.h"
+
+enum { CADT_EDGE_LEGAL, CADT_EDGE_FLIPPED, CADT_EDGE_CONFLICT };
+
+CADT_FN void cadt_link_back(const cadt_mesh* m, cadt_u32 outer, cadt_u32 link) {
+  cadt_store_link(m, CADT_LINK_RECORD(outer), CADT_LINK_EDGE(outer), link);
+}
+
+/* A record that is not visible yet. */
+CADT_FN void cadt_new_record(const cadt_mesh* m, cadt_u32 t, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2, cadt_u32 n0,
+                             cadt_u32 n1, cadt_u32 n2, cadt_u32 flips) {
+  cadt_store_vertices(m, t, v0, v1, v2);
+  cadt_store_link(m, t, 0u, n0);
+  cadt_store_link(m, t, 1u, n1);
+  cadt_store_link(m, t, 2u, n2);
+  cadt_store_flips(m, t, flips);
+}
+
+/* Splits the face at `place` by vertex i. \post 1: `edges` has the three links opposite i; 0: nothing changed. */
+CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges, cadt_tally* tally) {
+  const cadt_u32 t = place->record, t1 = 2u * i, t2 = 2u * i + 1u;
+  const cadt_snapshot s = place->at;
+  cadt_claim claim;
+  claim.record[0] = t;
+  claim.version[0] = s.lock;
+  claim.record[1] = CADT_LINK_RECORD(s.n1);
+  claim.record[2] = CADT_LINK_RECORD(s.n2);
+  claim.version[1] = claim.version[2] = CADT_ANY_VERSION;
+  claim.record[3] = CADT_NONE;
+  claim.version[3] = 0u;
+  if (!cadt_try_claim(m, &claim, tally)) return 0u;
+  /* i takes the place of v0 in t, of v1 in t1, of v2 in t2 */
+  cadt_new_record(m, t1, s.v0, i, s.v2, CADT_LINK(t, 1u), s.n1, CADT_LINK(t2, 1u),
+                  cadt_flips_set(0u, 1u, cadt_flips_get(s.flips, 1u)));
+  cadt_new_record(m, t2, s.v0, s.v1, i, CADT_LINK(t, 2u), CADT_LINK(t1, 2u), s.n2,
+                  cadt_flips_set(0u, 2u, cadt_flips_get(s.flips, 2u)));
+  cadt_link_back(m, s.n1, CADT_LINK(t1, 1u));
+  cadt_link_back(m, s.n2, CADT_LINK(t2, 2u));
+  cadt_store_vertex(m, t, 0u, i);
+  cadt_store_link(m, t, 1u, CADT_LINK(t1, 0u));
+  cadt_store_link(m, t, 2u, CADT_LINK(t2, 0u));
+  cadt_store_flips(m, t, cadt_flips_set(0u, 0u, cadt_flips_get(s.flips, 0u)));
+  cadt_publish_record(m, t1);
+  cadt_publish_record(m, t2);
+  cadt_release_claim(m, &claim);
+  edges[0] = CADT_LINK(t, 0u);
+  edges[1] = CADT_LINK(t1, 1u);
+  edges[2] = CADT_LINK(t2, 2u);
+  tally->count[CADT_COUNT_SPLITS]++;
+  return 3u;
+}
+
+/* Splits the edge at `place` and its two triangles by vertex i. \post 4: `edges` has the four links opposite i; 0: nothing
+ * changed. */
+CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges, cadt_tally* tally) {
+  const cadt_u32 t = place->record, k = place->edge, k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
+  const cadt_snapshot s = place->at;
+  const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
+  const cadt_u32 j1 = CADT_NEXT(j), j2 = CADT_PREV(j), ts = 2u * i, ns = 2u * i + 1u;
+  const cadt_snapshot u = cadt_look(m, n);
+  if (CADT_NEIGHBOR(u, j) != CADT_LINK(t, k)) {
+    tally->count[CADT_COUNT_LOST_CLAIMS]++;
+    return 0u;
+  }
+  /* t = (c, a, b), n = (d, b, a) from vertices k and j on; i is between a and b */
+  const cadt_u32 a = CADT_VERTEX(s, k1), b = CADT_VERTEX(s, k2), c = CADT_VERTEX(s, k), d = CADT_VERTEX(u, j);
+  const cadt_u32 outer_bc = CADT_NEIGHBOR(s, k1), outer_ad = CADT_NEIGHBOR(u, j1);
+  cadt_claim claim;
+  claim.record[0] = t;
+  claim.version[0] = s.lock;
+  claim.record[1] = n;
+  claim.version[1] = u.lock ? u.lock : 1u;
+  claim.record[2] = CADT_LINK_RECORD(outer_bc);
+  claim.record[3] = CADT_LINK_RECORD(outer_ad);
+  claim.version[2] = claim.version[3] = CADT_ANY_VERSION;
+  if (!cadt_try_claim(m, &claim, tally)) return 0u;
+  /* new records, each in the slots of its parent: ts = (c, i, b), ns = (d, i, a) */
+  cadt_store_vertex(m, ts, k, c);
+  cadt_store_vertex(m, ts, k1, i);
+  cadt_store_vertex(m, ts, k2, b);
+  cadt_store_link(m, ts, k, CADT_LINK(n, j));
+  cadt_store_link(m, ts, k1, outer_bc);
+  cadt_store_link(m, ts, k2, CADT_LINK(t, k1));
+  cadt_store_flips(m, ts, cadt_flips_set(0u, k1, cadt_flips_get(s.flips, k1)));
+  cadt_store_vertex(m, ns, j, d);
+  cadt_store_vertex(m, ns, j1, i);
+  cadt_store_vertex(m, ns, j2, a);
+  cadt_store_link(m, ns, j, CADT_LINK(t, k));
+  cadt_store_link(m, ns, j1, outer_ad);
+  cadt_store_link(m, ns, j2, CADT_LINK(n, j1));
+  cadt_store_flips(m, ns, cadt_flips_set(0u, j1, cadt_flips_get(u.flips, j1)));
+  cadt_link_back(m, outer_bc, CADT_LINK(ts, k1));
+  cadt_link_back(m, outer_ad, CADT_LINK(ns, j1));
+  /* t = (c, a, i), n = (d, b, i) */
+  cadt_store_vertex(m, t, k2, i);
+  cadt_store_link(m, t, k, CADT_LINK(ns, j));
+  cadt_store_link(m, t, k1, CADT_LINK(ts, k2));
+  cadt_store_flips(m, t, cadt_flips_set(0u, k2, cadt_flips_get(s.flips, k2)));
+  cadt_store_vertex(m, n, j2, i);
+  cadt_store_link(m, n, j, CADT_LINK(ts, k));
+  cadt_store_link(m, n, j1, CADT_LINK(ns, j2));
+  cadt_store_flips(m, n, cadt_flips_set(0u, j2, cadt_flips_get(u.flips, j2)));
+  cadt_publish_record(m, ts);
+  cadt_publish_record(m, ns);
+  cadt_release_claim(m, &claim);
+  edges[0] = CADT_LINK(t, k2);
+  edges[1] = CADT_LINK(ts, k1);
+  edges[2] = CADT_LINK(n, j2);
+  edges[3] = CADT_LINK(ns, j1);
+  tally->count[CADT_COUNT_EDGE_SPLITS]++;
+  return 4u;
+}
+
+/* Whether the edge a, b between the triangles p, a, b and q, b, a must be flipped. A circle through the ghost is the outer
+ * side of a hull edge. */
+CADT_FN cadt_u32 cadt_is_illegal(const cadt_mesh* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_u32 q, cadt_tally* tally) {
+  tally->count[CADT_COUNT_INCIRCLE_TESTS]++;
+  if (p == CADT_GHOST || q == CADT_GHOST) return 0u;
+  if (a == CADT_GHOST && b == CADT_GHOST) return 0u; /* torn read */
+  if (a == CADT_GHOST) return cadt_orientation(m->points[p], m->points[q], m->points[b], tally) > 0 ? 1u : 0u;
+  if (b == CADT_GHOST) return cadt_orientation(m->points[q], m->points[p], m->points[a], tally) > 0 ? 1u : 0u;
+  return cadt_incircle(m->points[p], m->points[a], m->points[b], m->points[q], tally) > 0 ? 1u : 0u;
+}
+
+/* Tests an edge and flips it if it is illegal. `apex` is the vertex expected opposite of it, or CADT_NONE for any.
+ * \post CADT_EDGE_FLIPPED: the edge's record keeps its link, `*partner` is the record and edge on the other side of the
+ * quadrilateral that is now opposite the same apex. */
+CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 apex, cadt_u32* partner, cadt_tally* tally) {
+  const cadt_u32 t = CADT_LINK_RECORD(link), k = CADT_LINK_EDGE(link), k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
+  const cadt_snapshot s = cadt_look(m, t);
+  const cadt_u32 p = CADT_VERTEX(s, k);
+  if (!cadt_is_free(s.lock)) {
+    tally->count[CADT_COUNT_LOST_CLAIMS]++;
+    return CADT_EDGE_CONFLICT;
+  }
+  if (apex != CADT_NONE && p != apex) { /* flipped away by another thread, who owes the check now */
+    tally->count[CADT_COUNT_STALE_EDGES]++;
+    return CADT_EDGE_LEGAL;
+  }
+  const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
+  const cadt_u32 j1 = CADT_NEXT(j), j2 = CADT_PREV(j);
+  const cadt_snapshot u = cadt_look(m, n);
+  if (!cadt_is_free(u.lock) || CADT_NEIGHBOR(u, j) != link) {
+    tally->count[CADT_COUNT_LOST_CLAIMS]++;
+    return CADT_EDGE_CONFLICT;
+  }
+  const cadt_u32 q = CADT_VERTEX(u, j);
+  if (!cadt_is_illegal(m, p, CADT_VERTEX(s, k1), CADT_VERTEX(s, k2), q, tally)) return CADT_EDGE_LEGAL;
+  const cadt_u32 outer_bp = CADT_NEIGHBOR(s, k1), outer_aq = CADT_NEIGHBOR(u, j1);
+  cadt_claim claim;
+  claim.record[0] = t;
+  claim.version[0] = s.lock;
+  claim.record[1] = n;
+  claim.version[1] = u.lock;
+  claim.record[2] = CADT_LINK_RECORD(outer_bp);
+  claim.record[3] = CADT_LINK_RECORD(outer_aq);
+  claim.version[2] = claim.version[3] = CADT_ANY_VERSION;
+  if (!cadt_try_claim(m, &claim, tally)) return CADT_EDGE_CONFLICT;
+  /* t = (p, a, b) becomes (p, a, q); n = (q, b, a) becomes (q, b, p); the counter of a-b goes on with p-q */
+  const cadt_u32 flips = cadt_flips_get(s.flips, k) + 1u;
+  cadt_store_vertex(m, t, k2, q);
+  cadt_store_link(m, t, k, outer_aq);
+  cadt_store_link(m, t, k1, CADT_LINK(n, j1));
+  cadt_store_flips(m, t, cadt_flips_set(cadt_flips_set(s.flips, k, cadt_flips_get(u.flips, j1)), k1, flips));
+  cadt_store_vertex(m, n, j2, p);
+  cadt_store_link(m, n, j, outer_bp);
+  cadt_store_link(m, n, j1, CADT_LINK(t, k1));
+  cadt_store_flips(m, n, cadt_flips_set(cadt_flips_set(u.flips, j, cadt_flips_get(s.flips, k1)), j1, flips));
+  cadt_link_back(m, outer_aq, CADT_LINK(t, k));
+  cadt_link_back(m, outer_bp, CADT_LINK(n, j));
+  cadt_release_claim(m, &claim);
+  *partner = CADT_LINK(n, j2);
+  tally->count[CADT_COUNT_FLIPS]++;
+  return CADT_EDGE_FLIPPED;
+}
+
+#endif

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The closing pass: looks at every edge of the mesh once and repairs what it finds illegal. With many threads it is needed
+ * for correctness: the thread that inserts a point checks the edges opposite of it, which is enough only if nobody else
+ * changes the star of the point meanwhile. The last pass finds nothing and so certifies the mesh.
+ */
+#ifndef CADT_DEVICE_CLOSING_H
+#define CADT_DEVICE_CLOSING_H
+
+#include "common/device/insert.h"
+
+/* found: edges examined, illegal ones, ones that could not be read because somebody was changing them. \pre records of
+ * vertices that are not in the mesh have lock word 0 */
+CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* found, CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts,
+            cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counters) {
+  CADT_MESH_VIEW(mesh);
+  cadt_deferred deferred;
+  deferred.points = left_edges; /* not used */
+  deferred.edges = left_edges;
+  deferred.counts = left_counts;
+  deferred.edge_capacity = edge_capacity;
+  cadt_tally tally;
+  cadt_tally_clear(&tally);
+  cadt_u32 work[CADT_WORKLIST];
+  cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u;
+  CADT_FOR(r, count, grain) {
+    const cadt_u32 t = begin + r;
+    const cadt_snapshot s = cadt_look(&mesh, t);
+    if (s.lock == 0u) continue;
+    for (cadt_u32 k = 0u; k < 3u; ++k) {
+      const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
+      if (n < t) continue; /* seen from the other side */
+      const cadt_snapshot u = cadt_look(&mesh, n);
+      ++examined;
+      if (!cadt_is_free(s.lock) || !cadt_is_free(u.lock) || CADT_NEIGHBOR(u, j) != CADT_LINK(t, k)) {
+        ++unsettled;
+      } else if (cadt_is_illegal(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
+                                 CADT_VERTEX(u, j), &tally)) {
+        ++illegal;
+        work[0] = CADT_LINK(t, k);
+        cadt_legalize(&mesh, CADT_NONE, work, 1u, &deferred, &tally);
+        break; /* the snapshot is out of date; the next pass sees the rest */
+      }
+    }
+  }
+  if (examined) cadt_add_relaxed(found, examined);
+  if (illegal) cadt_add_relaxed(found + 1, illegal);
+  if (unsettled) cadt_add_relaxed(found + 2, unsettled);
+  cadt_tally_flush(&tally, counters, cadt_item);
+}
+
+#endif

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The mesh as arrays of input indices. Canonical order without a sort of all triangles: a triangle belongs to the bucket of
+ * its smallest index; buckets are short and within one no two triangles have the same second vertex.
+ */
+#ifndef CADT_DEVICE_EMIT_H
+#define CADT_DEVICE_EMIT_H
+
+#include "common/device/mesh.h"
+
+/* A real triangle in input indices, rotated so that the smallest comes first; `slot` is the slot of that vertex. */
+typedef struct {
+  cadt_u32 a, b, c, slot;
+} cadt_triangle;
+
+CADT_FN cadt_triangle cadt_label(CADT_GLOBAL const cadt_u32* labels, const cadt_record r) {
+  const cadt_u32 x = labels[r.word[0]], y = labels[r.word[1]], z = labels[r.word[2]];
+  cadt_triangle t;
+  t.slot = x < y ? (x < z ? 0u : 2u) : (y < z ? 1u : 2u);
+  t.a = CADT_PICK(t.slot, x, y, z);
+  t.b = CADT_PICK(t.slot, y, z, x);
+  t.c = CADT_PICK(t.slot, z, x, y);
+  return t;
+}
+
+/* 0 not in use, 1 real, 2 ghost */
+CADT_FN cadt_u32 cadt_kind(const cadt_record r) {
+  if (r.word[CADT_WORD_LOCK] == 0u) return 0u;
+  return r.word[0] == CADT_GHOST || r.word[1] == CADT_GHOST || r.word[2] == CADT_GHOST ? 2u : 1u;
+}
+
+/* Size of each bucket. \pre buckets are zero. `totals`: real triangles, ghosts */
+CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
+            CADT_GLOBAL cadt_u32* buckets, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
+  cadt_u32 real = 0u, ghosts = 0u;
+  CADT_FOR(t, count, grain) {
+    const cadt_record r = records[t];
+    const cadt_u32 kind = cadt_kind(r);
+    if (kind == 1u) {
+      ++real;
+      cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u);
+    } else if (kind == 2u) {
+      ++ghosts;
+    }
+  }
+  if (real) cadt_add_relaxed(totals, real);
+  if (ghosts) cadt_add_relaxed(totals + 1, ghosts);
+}
+
+/* Puts each real triangle's record in its bucket. \pre buckets are scanned (their beginnings); \post their ends */
+CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
+            CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_u32* members, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(t, count, grain) {
+    const cadt_record r = records[t];
+    if (cadt_kind(r) == 1u) members[cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u)] = t;
+  }
+}
+
+/* Sorts each bucket by the second vertex: long ones by heap sort, since the hub of a wheel has one triangle a point. */
+CADT_FN void cadt_sift_down(CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
+                            CADT_GLOBAL cadt_u32* members, cadt_u32 begin, cadt_u32 at, cadt_u32 size) {
+  const cadt_u32 moving = members[begin + at];
+  const cadt_u32 key = cadt_label(labels, records[moving]).b;
+  for (;;) {
+    cadt_u32 child = 2u * at + 1u;
+    if (child >= size) break;
+    cadt_u32 child_key = cadt_label(labels, records[members[begin + child]]).b;
+    if (child + 1u < size) {
+      const cadt_u32 other_key = cadt_label(labels, records[members[begin + child + 1u]]).b;
+      if (other_key > child_key) {
+        ++child;
+        child_key = other_key;
+      }
+    }
+    if (child_key <= key) break;
+    members[begin + at] = members[begin + child];
+    at = child;
+  }
+  members[begin + at] = moving;
+}
+
+enum { CADT_SHORT_BUCKET = 24 };
+
+CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
+            CADT_GLOBAL const cadt_u32* ends, CADT_GLOBAL cadt_u32* members, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(v, count, grain) {
+    const cadt_u32 begin = v ? ends[v - 1u] : 0u, size = ends[v] - begin;
+    if (size < 2u) continue;
+    if (size <= CADT_CAST(cadt_u32, CADT_SHORT_BUCKET)) {
+      cadt_u32 keys[CADT_SHORT_BUCKET], sorted[CADT_SHORT_BUCKET];
+      for (cadt_u32 e = 0u; e < size; ++e) {
+        const cadt_u32 t = members[begin + e], key = cadt_label(labels, records[t]).b;
+        cadt_u32 at = e;
+        for (; at > 0u && keys[at - 1u] > key; --at) {
+          keys[at] = keys[at - 1u];
+          sorted[at] = sorted[at - 1u];
+        }
+        keys[at] = key;
+        sorted[at] = t;
+      }
+      for (cadt_u32 e = 0u; e < size; ++e) members[begin + e] = sorted[e];
+    } else {
+      for (cadt_u32 at = size / 2u; at-- > 0u;) cadt_sift_down(records, labels, members, begin, at, size);
+      for (cadt_u32 left = size - 1u; left > 0u; --left) {
+        const cadt_u32 last = members[begin + left];
+        members[begin + left] = members[begin];
+        members[begin] = last;
+        cadt_sift_down(records, labels, members, begin, 0u, left);
+      }
+    }
+  }
+}
+
+/* numbers[record] = index of the triangle. \pre numbers are CADT_NONE */
+CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_u32* members, CADT_GLOBAL cadt_u32* numbers, cadt_u32 count,
+            cadt_u32 grain) {
+  CADT_FOR(i, count, grain) { numbers[members[i]] = i; }
+}
+
+CADT_KERNEL(cadt_emit_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
+            CADT_GLOBAL const cadt_u32* members, CADT_GLOBAL const cadt_u32* numbers, CADT_GLOBAL cadt_u32* triangles,
+            CADT_GLOBAL cadt_u32* neighbors, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) {
+    const cadt_record r = records[members[i]];
+    const cadt_triangle t = cadt_label(labels, r);
+    /* ghosts have no number: CADT_NONE is -1 */
+    const cadt_u32 n0 = numbers[CADT_LINK_RECORD(r.word[4])], n1 = numbers[CADT_LINK_RECORD(r.word[5])];
+    const cadt_u32 n2 = numbers[CADT_LINK_RECORD(r.word[6])];
+    triangles[3u * i] = t.a;
+    triangles[3u * i + 1u] = t.b;
+    triangles[3u * i + 2u] = t.c;
+    neighbors[3u * i] = CADT_PICK(t.slot, n0, n1, n2);
+    neighbors[3u * i + 1u] = CADT_PICK(t.slot, n1, n2, n0);
+    neighbors[3u * i + 2u] = CADT_PICK(t.slot, n2, n0, n1);
+  }
+}
+
+/* Hull edges counterclockwise as pairs of input indices, in any order. */
+CADT_KERNEL(cadt_emit_hull, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels, cadt_u32 count,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* pairs, CADT_GLOBAL cadt_u32* size, cadt_u32 capacity) {
+  CADT_FOR(t, count, grain) {
+    const cadt_record r = records[t];
+    if (cadt_kind(r) != 2u) continue;
+    const cadt_u32 g = r.word[0] == CADT_GHOST ? 0u : (r.word[1] == CADT_GHOST ? 1u : 2u);
+    const cadt_u32 at = cadt_add_relaxed(size, 1u);
+    if (at >= capacity) continue;
+    pairs[2u * at] = labels[r.word[CADT_PREV(g)]];
+    pairs[2u * at + 1u] = labels[r.word[CADT_NEXT(g)]];
+  }
+}
+
+#endif

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Exact signs, for when a filter cannot tell (predicates.h). Functions of their own, not inlined: they are rare and eat
+ * registers.
+ */
+#ifndef CADT_DEVICE_EXACT_H
+#define CADT_DEVICE_EXACT_H
+
+#include "common/device/fixed.h"
+
+/* Sign of u.x * v.y - u.y * v.x for u = a - c, v = b - c, any length. */
+CADT_FN_SLOW cadt_i32 cadt_orientation_limbs(cadt_point a, cadt_point b, cadt_point c, cadt_i32 low, cadt_i32 bits) {
+  cadt_u32 d[4][CADT_LIMBS], origin[CADT_LIMBS], product[2 * CADT_LIMBS], det[2 * CADT_LIMBS + 1];
+  cadt_u32 negative[4];
+  cadt_i32 n = (bits + 2 + 31) >> 5;
+  cadt_limbs_load(d[0], n, a.x, low);
+  cadt_limbs_load(d[1], n, a.y, low);
+  cadt_limbs_load(d[2], n, b.x, low);
+  cadt_limbs_load(d[3], n, b.y, low);
+  for (cadt_i32 i = 0; i < 4; ++i) {
+    cadt_limbs_load(origin, n, (i & 1) ? c.y : c.x, low);
+    cadt_limbs_accumulate(d[i], n, origin, n, 1u);
+    negative[i] = cadt_limbs_abs(d[i], n);
+  }
+  for (cadt_i32 i = 0; i <= 2 * n; ++i) det[i] = 0u;
+  cadt_limbs_mul(product, d[0], n, d[3], n);
+  cadt_limbs_accumulate(det, 2 * n + 1, product, 2 * n, negative[0] ^ negative[3]);
+  cadt_limbs_mul(product, d[1], n, d[2], n);
+  cadt_limbs_accumulate(det, 2 * n + 1, product, 2 * n, negative[1] ^ negative[2] ^ 1u);
+  return cadt_limbs_sign(det, 2 * n + 1);
+}
+
+/* Orientation of a, b, c: 1 counterclockwise, 0 on a line, -1 clockwise. */
+CADT_FN_SLOW cadt_i32 cadt_orientation_exact(cadt_point a, cadt_point b, cadt_point c) {
+  cadt_span s;
+  cadt_span_clear(&s);
+  cadt_span_add_point(&s, a);
+  cadt_span_add_point(&s, b);
+  cadt_span_add_point(&s, c);
+  cadt_i32 bits = cadt_span_bits(&s);
+  if (bits > 61) return cadt_orientation_limbs(a, b, c, s.low, bits);
+  cadt_i64 cx = cadt_fixed64(c.x, s.low), cy = cadt_fixed64(c.y, s.low);
+  cadt_i64 ux = cadt_fixed64(a.x, s.low) - cx, uy = cadt_fixed64(a.y, s.low) - cy;
+  cadt_i64 vx = cadt_fixed64(b.x, s.low) - cx, vy = cadt_fixed64(b.y, s.low) - cy;
+  return cadt_compare_i128(cadt_mul_i64(ux, vy), cadt_mul_i64(uy, vx));
+}
+
+/* Orientation of m, a, b where m = (c0 + c1 + c2) / 3 is no double in general: with everything tripled, m is an integer. */
+CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point c1, cadt_point c2, cadt_point a, cadt_point b) {
+  cadt_u32 d[4][CADT_LIMBS], term[CADT_LIMBS], product[2 * CADT_LIMBS], det[2 * CADT_LIMBS + 1];
+  cadt_u32 negative[4];
+  cadt_span s;
+  cadt_span_clear(&s);
+  cadt_span_add_point(&s, c0);
+  cadt_span_add_point(&s, c1);
+  cadt_span_add_point(&s, c2);
+  cadt_span_add_point(&s, a);
+  cadt_span_add_point(&s, b);
+  cadt_i32 n = (cadt_span_bits(&s) + 4 + 31) >> 5; /* |3 a - c0 - c1 - c2| < 6 * 2^bits */
+  for (cadt_i32 i = 0; i < 4; ++i) {
+    double value = i == 0 ? a.x : (i == 1 ? a.y : (i == 2 ? b.x : b.y));
+    cadt_limbs_load(term, n, value, s.low);
+    for (cadt_i32 j = 0; j < n; ++j) d[i][j] = term[j];
+    cadt_limbs_accumulate(d[i], n, term, n, 0u);
+    cadt_limbs_accumulate(d[i], n, term, n, 0u);
+    cadt_limbs_load(term, n, (i & 1) ? c0.y : c0.x, s.low);
+    cadt_limbs_accumulate(d[i], n, term, n, 1u);
+    cadt_limbs_load(term, n, (i & 1) ? c1.y : c1.x, s.low);
+    cadt_limbs_accumulate(d[i], n, term, n, 1u);
+    cadt_limbs_load(term, n, (i & 1) ? c2.y : c2.x, s.low);
+    cadt_limbs_accumulate(d[i], n, term, n, 1u);
+    negative[i] = cadt_limbs_abs(d[i], n);
+  }
+  for (cadt_i32 i = 0; i <= 2 * n; ++i) det[i] = 0u;
+  cadt_limbs_mul(product, d[0], n, d[3], n);
+  cadt_limbs_accumulate(det, 2 * n + 1, product, 2 * n, negative[0] ^ negative[3]);
+  cadt_limbs_mul(product, d[1], n, d[2], n);
+  cadt_limbs_accumulate(det, 2 * n + 1, product, 2 * n, negative[1] ^ negative[2] ^ 1u);
+  return cadt_limbs_sign(det, 2 * n + 1);
+}
+
+/* Sign of the incircle determinant, any length. */
+CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_i32 low, cadt_i32 bits) {
+  cadt_u32 d[6][CADT_LIMBS], negative[6];
+  cadt_u32 product[2 * CADT_LIMBS], lift[2 * CADT_LIMBS + 1], minor[2 * CADT_LIMBS + 1];
+  cadt_u32 term[4 * CADT_LIMBS + 2], det[4 * CADT_LIMBS + 3];
+  cadt_i32 n = (bits + 2 + 31) >> 5;
+  for (cadt_i32 i = 0; i < 6; ++i) {
+    cadt_point q = i < 2 ? a : (i < 4 ? b : c);
+    cadt_limbs_load(d[i], n, (i & 1) ? q.y : q.x, low);
+    cadt_limbs_load(product, n, (i & 1) ? p.y : p.x, low);
+    cadt_limbs_accumulate(d[i], n, product, n, 1u);
+    negative[i] = cadt_limbs_abs(d[i], n);
+  }
+  for (cadt_i32 i = 0; i < 4 * n + 3; ++i) det[i] = 0u;
+  for (cadt_i32 i = 0; i < 3; ++i) {
+    cadt_i32 x = 2 * i, y = x + 1;                  /* this point */
+    cadt_i32 ux = (x + 2) % 6, uy = ux + 1;         /* the next one */
+    cadt_i32 vx = (x + 4) % 6, vy = vx + 1;         /* and the one after */
+    cadt_limbs_mul(lift, d[x], n, d[x], n);
+    lift[2 * n] = 0u;
+    cadt_limbs_mul(product, d[y], n, d[y], n);
+    cadt_limbs_accumulate(lift, 2 * n + 1, product, 2 * n, 0u);
+    for (cadt_i32 j = 0; j <= 2 * n; ++j) minor[j] = 0u;
+    cadt_limbs_mul(product, d[ux], n, d[vy], n);
+    cadt_limbs_accumulate(minor, 2 * n + 1, product, 2 * n, negative[ux] ^ negative[vy]);
+    cadt_limbs_mul(product, d[uy], n, d[vx], n);
+    cadt_limbs_accumulate(minor, 2 * n + 1, product, 2 * n, negative[uy] ^ negative[vx] ^ 1u);
+    cadt_u32 sign = cadt_limbs_abs(minor, 2 * n + 1);
+    cadt_limbs_mul(term, lift, 2 * n + 1, minor, 2 * n + 1);
+    cadt_limbs_accumulate(det, 4 * n + 3, term, 4 * n + 2, sign);
+  }
+  return cadt_limbs_sign(det, 4 * n + 3);
+}
+
+/* Incircle: 1 if p is inside the circle of the counterclockwise triangle a, b, c, 0 on it, -1 outside. */
+CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p) {
+  cadt_span s;
+  cadt_span_clear(&s);
+  cadt_span_add_point(&s, a);
+  cadt_span_add_point(&s, b);
+  cadt_span_add_point(&s, c);
+  cadt_span_add_point(&s, p);
+  cadt_i32 bits = cadt_span_bits(&s);
+  if (bits <= 61) {
+    cadt_i64 px = cadt_fixed64(p.x, s.low), py = cadt_fixed64(p.y, s.low);
+    cadt_i64 ax = cadt_fixed64(a.x, s.low) - px, ay = cadt_fixed64(a.y, s.low) - py;
+    cadt_i64 bx = cadt_fixed64(b.x, s.low) - px, by = cadt_fixed64(b.y, s.low) - py;
+    cadt_i64 cx = cadt_fixed64(c.x, s.low) - px, cy = cadt_fixed64(c.y, s.low) - py;
+    cadt_u64 all = CADT_CAST(cadt_u64, ax ^ (ax >> 63)) | CADT_CAST(cadt_u64, ay ^ (ay >> 63)) |
+                   CADT_CAST(cadt_u64, bx ^ (bx >> 63)) | CADT_CAST(cadt_u64, by ^ (by >> 63)) |
+                   CADT_CAST(cadt_u64, cx ^ (cx >> 63)) | CADT_CAST(cadt_u64, cy ^ (cy >> 63));
+    if ((all >> 30) == 0ul) { /* |differences| <= 2^30: lifts and minors <= 2^61, sums of products <= 3 * 2^122 */
+      cadt_i128 det = cadt_mul_i64(ax * ax + ay * ay, bx * cy - by * cx);
+      det = cadt_add_i128(det, cadt_mul_i64(bx * bx + by * by, cx * ay - cy * ax));
+      det = cadt_add_i128(det, cadt_mul_i64(cx * cx + cy * cy, ax * by - ay * bx));
+      return cadt_sign_i128(det);
+    }
+  }
+  return cadt_incircle_limbs(a, b, c, p, s.low, bits);
+}
+
+#endif

@@ -1,0 +1,134 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Insertion and legalisation in one flow, without a barrier between them (paper, section 4.4, "unified execution flow").
+ * What could not get its locks in a bounded number of tries goes on a list for the next launch.
+ */
+#ifndef CADT_DEVICE_INSERT_H
+#define CADT_DEVICE_INSERT_H
+
+#include "common/device/change.h"
+
+enum {
+  CADT_WORKLIST = 48,      /* edges a work-item can have pending */
+  CADT_INSERT_TRIES = 12,  /* walks for one point in one launch */
+  CADT_EDGE_TRIES = 24,    /* conflicts in the worklist of one point */
+  CADT_FLIP_LIMIT = 1 << 14 /* flips for one point in one launch, so a launch ends in bounded time */
+};
+
+/* Lists of what is left for the next launch. An edge that finds its list full is dropped: the closing pass will meet it. */
+typedef struct {
+  CADT_GLOBAL cadt_u32* points;
+  CADT_GLOBAL cadt_u32* edges;
+  CADT_GLOBAL cadt_u32* counts; /* points, edges */
+  cadt_u32 edge_capacity;
+} cadt_deferred;
+
+CADT_FN void cadt_defer_edge(const cadt_deferred* deferred, cadt_u32 link, cadt_tally* tally) {
+  cadt_u32 at = cadt_add_relaxed(deferred->counts + 1, 1u);
+  if (at < deferred->edge_capacity) deferred->edges[at] = link;
+  tally->count[CADT_COUNT_DEFERRED_EDGES]++;
+}
+
+/* Legalises the edges of a worklist and whatever becomes illegal by the flips. `apex` is the inserted vertex: then only edges
+ * opposite of it can become illegal by its flips (paper, Algorithm 3); CADT_NONE: any edge, all four sides are checked. */
+CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_u32 apex, cadt_u32* work, cadt_u32 size, const cadt_deferred* deferred,
+                           cadt_tally* tally) {
+  cadt_u32 conflicts = 0u, flips = 0u, partner = 0u;
+  while (size > 0u) {
+    const cadt_u32 link = work[--size];
+    const cadt_u32 outcome = cadt_legalize_edge(m, link, apex, &partner, tally);
+    if (outcome == CADT_EDGE_LEGAL) continue;
+    if (outcome == CADT_EDGE_CONFLICT) {
+      if (++conflicts > CADT_CAST(cadt_u32, CADT_EDGE_TRIES)) {
+        cadt_defer_edge(deferred, link, tally);
+      } else { /* to the bottom: the other edges first, meanwhile the owner gets on */
+        for (cadt_u32 at = size; at > 0u; --at) work[at] = work[at - 1u];
+        work[0] = link;
+        ++size;
+      }
+      continue;
+    }
+    cadt_u32 sides[4], count = 2u;
+    sides[0] = link;
+    sides[1] = partner;
+    if (apex == CADT_NONE) {
+      const cadt_u32 k = CADT_LINK_EDGE(link), j2 = CADT_LINK_EDGE(partner);
+      sides[2] = CADT_LINK(CADT_LINK_RECORD(link), CADT_PREV(k));
+      sides[3] = CADT_LINK(CADT_LINK_RECORD(partner), CADT_NEXT(j2));
+      count = 4u;
+    }
+    const cadt_u32 room = ++flips < CADT_CAST(cadt_u32, CADT_FLIP_LIMIT) ? CADT_CAST(cadt_u32, CADT_WORKLIST) - 1u : 0u;
+    for (cadt_u32 e = 0u; e < count; ++e) {
+      if (size < room) work[size++] = sides[e];
+      else cadt_defer_edge(deferred, sides[e], tally);
+    }
+  }
+}
+
+/* Locates and inserts vertex i. Returns the number of edges in `work`, 0 if the point must be tried by a later launch. */
+CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hint, cadt_u32* work, cadt_tally* tally) {
+  const cadt_point p = m->points[i];
+  cadt_place place;
+  place.record = hint;
+  for (cadt_u32 attempt = 0u; attempt < CADT_CAST(cadt_u32, CADT_INSERT_TRIES); ++attempt) {
+    if (attempt) tally->count[CADT_COUNT_INSERT_RETRIES]++;
+    cadt_locate(m, p, place.record, &place, tally);
+    if (place.kind == CADT_LOST) continue;
+    const cadt_u32 size = place.kind == CADT_IN_FACE ? cadt_split_face(m, i, &place, work, tally)
+                                                     : cadt_split_edge(m, i, &place, work, tally);
+    if (size) {
+      cadt_store_relaxed(m->hints + i, place.record);
+      return size;
+    }
+  }
+  cadt_store_relaxed(m->hints + i, place.record);
+  tally->count[CADT_COUNT_DEFERRED_POINTS]++;
+  return 0u;
+}
+
+/* One level: the points at odd multiples of 2^level, each with a walk from the point at the multiple of 2^(level+1) below
+ * it, which is in the mesh and near in sorted order; or a list of points left over, with their own hints. */
+CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 begin, cadt_u32 count, cadt_u32 level,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* left_points, CADT_GLOBAL cadt_u32* left_edges,
+            CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counters) {
+  CADT_MESH_VIEW(mesh);
+  cadt_deferred deferred;
+  deferred.points = left_points;
+  deferred.edges = left_edges;
+  deferred.counts = left_counts;
+  deferred.edge_capacity = edge_capacity;
+  cadt_tally tally;
+  cadt_tally_clear(&tally);
+  cadt_u32 work[CADT_WORKLIST];
+  CADT_FOR(u, count, grain) {
+    const cadt_u32 i = list ? list[u] : ((2u * (begin + u) + 1u) << level);
+    if (i == first || i == second || i == third) continue;
+    const cadt_u32 near = list ? i : (begin + u) << (level + 1u);
+    const cadt_u32 size = cadt_insert_vertex(&mesh, i, cadt_load_relaxed(mesh.hints + near), work, &tally);
+    if (size) cadt_legalize(&mesh, i, work, size, &deferred, &tally);
+    else left_points[cadt_add_relaxed(left_counts, 1u)] = i;
+  }
+  cadt_tally_flush(&tally, counters, cadt_item);
+}
+
+/* Edges that earlier launches left over. */
+CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
+            CADT_GLOBAL cadt_u32* counters) {
+  CADT_MESH_VIEW(mesh);
+  cadt_deferred deferred;
+  deferred.points = left_edges; /* not used */
+  deferred.edges = left_edges;
+  deferred.counts = left_counts;
+  deferred.edge_capacity = edge_capacity;
+  cadt_tally tally;
+  cadt_tally_clear(&tally);
+  cadt_u32 work[CADT_WORKLIST];
+  CADT_FOR(e, count, grain) {
+    work[0] = list[e];
+    cadt_legalize(&mesh, CADT_NONE, work, 1u, &deferred, &tally);
+  }
+  cadt_tally_flush(&tally, counters, cadt_item);
+}
+
+#endif

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * All kernels. A back end compiles this file; the names are listed in kernel_list.h.
+ */
+#ifndef CADT_DEVICE_KERNELS_H
+#define CADT_DEVICE_KERNELS_H
+
+#include "common/device/selftest.h"
+#include "common/device/scan.h"
+#include "common/device/radix.h"
+#include "common/device/order.h"
+#include "common/device/refine.h"
+#include "common/device/start.h"
+#include "common/device/insert.h"
+#include "common/device/closing.h"
+#include "common/device/emit.h"
+
+#endif

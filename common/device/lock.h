@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The lock protocol. Nobody ever waits: a lock is tried, and on failure everything taken is given back.
+ *
+ * Lock word: 0 the record does not exist yet, even: free, and the number is its version, odd: claimed. A claim is one
+ * compare-and-swap from the version that the claimer has read before the fields; it fails if the record is claimed or has
+ * changed since, so success proves that the fields read are the record's state: claim and validity check (paper,
+ * Algorithm 1, lines 9 and 15) in one operation. An unlock after a change raises the version.
+ *
+ * Why the proof holds: a change stores fields with release after its claim (acquire), and fields are loaded with acquire.
+ * If a reader saw one field of a later change, the change's claim happens before the reader's compare-and-swap, which then
+ * cannot find the old version.
+ *
+ * Order: records are claimed by ascending index, so among any set of conflicting claimers the one that gets furthest meets
+ * nobody who is further (a fixed but unsorted order livelocks in a warp: ../docs/algorithm.md).
+ */
+#ifndef CADT_DEVICE_LOCK_H
+#define CADT_DEVICE_LOCK_H
+
+#include "common/device/mesh.h"
+
+#define CADT_ANY_VERSION 0u
+
+typedef struct {
+  cadt_u32 record[4]; /* ascending; CADT_NONE for an unused place */
+  cadt_u32 version[4];
+} cadt_claim;
+
+CADT_FN cadt_u32 cadt_is_free(cadt_u32 lock) { return lock != 0u && !(lock & 1u) ? 1u : 0u; }
+CADT_FN cadt_u32 cadt_next_version(cadt_u32 version) { return version + 2u ? version + 2u : 2u; }
+
+CADT_FN void cadt_claim_order(cadt_claim* c, cadt_u32 i, cadt_u32 j) {
+  if (c->record[i] > c->record[j]) {
+    cadt_u32 r = c->record[i], v = c->version[i];
+    c->record[i] = c->record[j];
+    c->version[i] = c->version[j];
+    c->record[j] = r;
+    c->version[j] = v;
+  }
+}
+
+/* Claims up to four records. \pre versions were read by cadt_look before the fields, or are CADT_ANY_VERSION for records
+ * of which the caller needs no field. \post 1: the caller owns all of them, `version` has the versions to give back;
+ * 0: it owns none. */
+CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* tally) {
+  tally->count[CADT_COUNT_CLAIMS]++;
+  cadt_claim_order(c, 0, 1);
+  cadt_claim_order(c, 2, 3);
+  cadt_claim_order(c, 0, 2);
+  cadt_claim_order(c, 1, 3);
+  cadt_claim_order(c, 1, 2);
+  for (cadt_u32 i = 0u; i < 4u; ++i) {
+    if (c->record[i] == CADT_NONE) break;
+    CADT_GLOBAL cadt_u32* lock = m->records[c->record[i]].word + CADT_WORD_LOCK;
+    /* acquire: not to find the version newer than the fields read before is what the compare-and-swap checks */
+    if (c->version[i] == CADT_ANY_VERSION) c->version[i] = cadt_load_acquire(lock);
+#if defined(CADT_TEST_NO_LOCKS)
+    cadt_store_relaxed(lock, c->version[i] | 1u);
+#else
+    if (!cadt_is_free(c->version[i]) || !cadt_cas_acq_rel(lock, c->version[i], c->version[i] | 1u)) {
+      while (i-- > 0u) cadt_store_release(m->records[c->record[i]].word + CADT_WORD_LOCK, c->version[i]);
+      tally->count[CADT_COUNT_LOST_CLAIMS]++;
+      return 0u;
+    }
+#endif
+  }
+  return 1u;
+}
+
+/* Gives the records back, changed. \pre the caller owns them; all stores to them are done */
+CADT_FN void cadt_release_claim(const cadt_mesh* m, const cadt_claim* c) {
+  for (cadt_u32 i = 0u; i < 4u; ++i)
+    if (c->record[i] != CADT_NONE)
+      cadt_store_release(m->records[c->record[i]].word + CADT_WORD_LOCK, cadt_next_version(c->version[i]));
+}
+
+/* Makes a new record free. \pre its fields and all links to it are stored, and the caller still owns the records it was
+ * split from; until then whoever finds it reads lock word 0 and retries */
+CADT_FN void cadt_publish_record(const cadt_mesh* m, cadt_u32 t) {
+  cadt_store_release(m->records[t].word + CADT_WORD_LOCK, 2u);
+}
+
+#endif

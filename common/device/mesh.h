@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The shared mesh. One record of 32 bytes a triangle: three vertices, the lock word, three links, the flip counters.
+ *
+ * Vertices are positions in sorted order; one ghost vertex at infinity closes the mesh to a sphere, so every hull edge has
+ * a ghost triangle and n vertices give exactly 2n - 2 records. Records are never removed: a split of point i rewrites one
+ * or two records and creates records 2i and 2i + 1, a flip rewrites two. So no allocation counter is needed.
+ *
+ * A link names the neighbour and the number of its edge: record * 4 + edge. Edge k of a record is opposite its vertex k.
+ * Vertices keep their slot in splits and flips, so a link to an edge that a change does not touch stays right and its
+ * record need not be claimed: a split 1->3 claims three records, a split 2->4 and a flip four (docs/algorithm.md).
+ */
+#ifndef CADT_DEVICE_MESH_H
+#define CADT_DEVICE_MESH_H
+
+#include "common/device/layout.h"
+#include "common/device/predicates.h"
+
+/* The mesh as the kernels see it. `center` is the centroid of the first three vertices (start.h), rounded. */
+typedef struct {
+  CADT_GLOBAL cadt_record* records;
+  CADT_GLOBAL const cadt_point* points;
+  CADT_GLOBAL cadt_u32* hints; /* position -> a record near it, CADT_NONE before it is inserted */
+  cadt_point center;
+  cadt_u32 first, second, third; /* positions of the first three vertices */
+} cadt_mesh;
+
+#define CADT_MESH_PARAMETERS                                                                                \
+  CADT_GLOBAL cadt_record *records, CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *hints,      \
+      double center_x, double center_y, cadt_u32 first, cadt_u32 second, cadt_u32 third
+#define CADT_MESH_VIEW(mesh)  \
+  cadt_mesh mesh;             \
+  mesh.records = records;     \
+  mesh.points = points;       \
+  mesh.hints = hints;         \
+  mesh.center.x = center_x;   \
+  mesh.center.y = center_y;   \
+  mesh.first = first;         \
+  mesh.second = second;       \
+  mesh.third = third
+
+#define CADT_LINK(record, edge) (((record) << 2) | (edge))
+#define CADT_LINK_RECORD(link) ((link) >> 2)
+#define CADT_LINK_EDGE(link) ((link)&3u)
+
+/* What a record held at one moment, if a claim with its lock word succeeds afterwards (lock.h); a hint otherwise. */
+typedef struct {
+  cadt_u32 v0, v1, v2, lock, n0, n1, n2, flips;
+} cadt_snapshot;
+
+#define CADT_VERTEX(s, k) CADT_PICK((k), (s).v0, (s).v1, (s).v2)
+#define CADT_NEIGHBOR(s, k) CADT_PICK((k), (s).n0, (s).n1, (s).n2)
+
+CADT_FN cadt_snapshot cadt_look(const cadt_mesh* m, cadt_u32 t) {
+  CADT_GLOBAL cadt_u32* w = m->records[t].word;
+  cadt_snapshot s;
+  s.lock = cadt_load_acquire(w + CADT_WORD_LOCK);
+  s.v0 = cadt_load_acquire(w);
+  s.v1 = cadt_load_acquire(w + 1);
+  s.v2 = cadt_load_acquire(w + 2);
+  s.n0 = cadt_load_acquire(w + 4);
+  s.n1 = cadt_load_acquire(w + 5);
+  s.n2 = cadt_load_acquire(w + 6);
+  s.flips = cadt_load_acquire(w + 7);
+  return s;
+}
+
+#if defined(CADT_CHECKED)
+#define CADT_ASSERT_OWNED(m, t) cadt_assert_owned((m)->records[t].word[CADT_WORD_LOCK])
+#else
+#define CADT_ASSERT_OWNED(m, t) ((void)0)
+#endif
+
+/* \pre the caller owns record t or has not linked it yet */
+CADT_FN void cadt_store_vertices(const cadt_mesh* m, cadt_u32 t, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2) {
+  CADT_GLOBAL cadt_u32* w = m->records[t].word;
+  CADT_ASSERT_OWNED(m, t);
+  cadt_store_release(w, v0);
+  cadt_store_release(w + 1, v1);
+  cadt_store_release(w + 2, v2);
+}
+CADT_FN void cadt_store_vertex(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 v) {
+  CADT_ASSERT_OWNED(m, t);
+  cadt_store_release(m->records[t].word + k, v);
+}
+CADT_FN void cadt_store_link(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 link) {
+  CADT_ASSERT_OWNED(m, t);
+  cadt_store_release(m->records[t].word + CADT_WORD_LINK + k, link);
+}
+CADT_FN void cadt_store_flips(const cadt_mesh* m, cadt_u32 t, cadt_u32 flips) {
+  CADT_ASSERT_OWNED(m, t);
+  cadt_store_release(m->records[t].word + CADT_WORD_FLIPS, flips);
+}
+
+/* Flip counters: ten bits for each edge slot, saturating. */
+CADT_FN cadt_u32 cadt_flips_get(cadt_u32 flips, cadt_u32 k) { return (flips >> (10u * k)) & 1023u; }
+CADT_FN cadt_u32 cadt_flips_set(cadt_u32 flips, cadt_u32 k, cadt_u32 count) {
+  return (flips & ~(1023u << (10u * k))) | (cadt_min_u32(count, 1023u) << (10u * k));
+}
+
+#endif

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Spatial order of the points: box, Morton keys, gathering, short runs of equal keys, duplicates.
+ */
+#ifndef CADT_DEVICE_ORDER_H
+#define CADT_DEVICE_ORDER_H
+
+#include "common/device/atomics.h"
+#include "common/device/fixed.h"
+#include "common/device/layout.h"
+
+enum {
+  CADT_RUN = 16 /* runs of equal keys up to this length are sorted in place, longer ones are refined (refine.h) */
+};
+
+/* Partial results, one row a chunk. */
+CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 chunk, CADT_GLOBAL double* box,
+            CADT_GLOBAL cadt_u32* words) {
+  const cadt_u32 begin = cadt_min_u32(cadt_item * chunk, count), end = cadt_min_u32(begin + chunk, count);
+  if (begin == end) return;
+  double min_x = 0.0, max_x = 0.0, min_y = 0.0, max_y = 0.0;
+  cadt_u32 bad = CADT_NONE, any = 0u;
+  cadt_span span;
+  cadt_span_clear(&span);
+  for (cadt_u32 i = begin; i < end; ++i) {
+    const cadt_point p = points[i];
+    /* an exponent of all ones is infinity or NaN */
+    if (((cadt_bits_of_double(p.x) >> 52) & 0x7FFul) == 0x7FFul || ((cadt_bits_of_double(p.y) >> 52) & 0x7FFul) == 0x7FFul) {
+      bad = i;
+      break;
+    }
+    cadt_span_add_point(&span, p);
+    min_x = !any || p.x < min_x ? p.x : min_x;
+    max_x = !any || p.x > max_x ? p.x : max_x;
+    min_y = !any || p.y < min_y ? p.y : min_y;
+    max_y = !any || p.y > max_y ? p.y : max_y;
+    any = 1u;
+  }
+  CADT_GLOBAL double* b = box + cadt_item * CADT_BOUNDS_DOUBLES;
+  CADT_GLOBAL cadt_u32* w = words + cadt_item * CADT_BOUNDS_WORDS;
+  b[0] = min_x;
+  b[1] = max_x;
+  b[2] = min_y;
+  b[3] = max_y;
+  w[0] = CADT_CAST(cadt_u32, span.low + 4096);
+  w[1] = CADT_CAST(cadt_u32, span.high + 4096);
+  w[2] = bad;
+}
+
+/* Every second bit. */
+CADT_FN cadt_u32 cadt_spread_bits(cadt_u32 x) {
+  x &= 0xFFFFu;
+  x = (x | (x << 8)) & 0x00FF00FFu;
+  x = (x | (x << 4)) & 0x0F0F0F0Fu;
+  x = (x | (x << 2)) & 0x33333333u;
+  return (x | (x << 1)) & 0x55555555u;
+}
+
+/* Morton keys of square cells. The longer axis has more bits; its surplus goes on top of the interleaved ones, so a long box
+ * is a row of square Morton blocks. Coordinates are halved first: the width of the box may exceed the largest double. */
+CADT_KERNEL(cadt_sort_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL cadt_u32* keys, cadt_u32 count, cadt_u32 grain,
+            double half_min_x, double half_min_y, double scale, cadt_u32 bits_x, cadt_u32 bits_y) {
+  const cadt_u32 common = bits_x < bits_y ? bits_x : bits_y;
+  const double limit_x = CADT_CAST(double, (1u << bits_x) - 1u), limit_y = CADT_CAST(double, (1u << bits_y) - 1u);
+  const cadt_u32 mask = (1u << common) - 1u;
+  CADT_FOR(i, count, grain) {
+    const cadt_point p = points[i];
+    double fx = (0.5 * p.x - half_min_x) * scale, fy = (0.5 * p.y - half_min_y) * scale;
+    fx = fx < limit_x ? fx : limit_x;
+    fy = fy < limit_y ? fy : limit_y;
+    const cadt_u32 x = CADT_CAST(cadt_u32, fx), y = CADT_CAST(cadt_u32, fy);
+    const cadt_u32 above = bits_x > bits_y ? x >> common : y >> common;
+    const cadt_u32 low = cadt_spread_bits(x & mask) | (cadt_spread_bits(y & mask) << 1);
+    keys[i] = common == 16u ? low : ((above << (2u * common)) | low);
+  }
+}
+
+/* Points in sorted order, scaled by two powers of two (one may not be enough to reach all of a double's exponents).
+ * Adding 0.0 turns -0.0 into 0.0. */
+CADT_KERNEL(cadt_gather_points, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* order,
+            CADT_GLOBAL cadt_point* sorted, cadt_u32 count, cadt_u32 grain, double scale, double scale_again) {
+  CADT_FOR(i, count, grain) {
+    cadt_point p = points[order[i]];
+    p.x = p.x * scale * scale_again + 0.0;
+    p.y = p.y * scale * scale_again + 0.0;
+    sorted[i] = p;
+  }
+}
+
+CADT_FN cadt_u32 cadt_lexicographic(cadt_point a, cadt_u32 i, cadt_point b, cadt_u32 j) {
+  if (a.x != b.x) return a.x < b.x ? 1u : 0u;
+  if (a.y != b.y) return a.y < b.y ? 1u : 0u;
+  return i < j ? 1u : 0u;
+}
+
+/* Sorts each run of at most CADT_RUN equal keys lexicographically, equal points by index. Longer runs are equal points in
+ * order of their indices already (refine.h). */
+CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_point* sorted, CADT_GLOBAL cadt_u32* order,
+            cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 key = keys[i];
+    if ((i > 0u && keys[i - 1u] == key) || i + 1u >= count || keys[i + 1u] != key) continue;
+    cadt_u32 end = i + 2u;
+    while (end < count && end <= i + CADT_RUN && keys[end] == key) ++end;
+    if (end > i + CADT_RUN) continue;
+    for (cadt_u32 a = i + 1u; a < end; ++a) {
+      const cadt_point p = sorted[a];
+      const cadt_u32 id = order[a];
+      cadt_u32 b = a;
+      for (; b > i && cadt_lexicographic(p, id, sorted[b - 1u], order[b - 1u]); --b) {
+        sorted[b] = sorted[b - 1u];
+        order[b] = order[b - 1u];
+      }
+      sorted[b] = p;
+      order[b] = id;
+    }
+  }
+}
+
+/* 1 where a point differs from the one before. `distinct` counts. */
+CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* distinct) {
+  cadt_u32 sum = 0u;
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 flag = i == 0u || sorted[i].x != sorted[i - 1u].x || sorted[i].y != sorted[i - 1u].y ? 1u : 0u;
+    flags[i] = flag;
+    sum += flag;
+  }
+  if (sum) cadt_add_relaxed(distinct, sum);
+}
+
+/* Distinct points closed up. `ranks` is the exclusive scan of the flags. */
+CADT_KERNEL(cadt_unique_pack, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* order,
+            CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_point* points, CADT_GLOBAL cadt_u32* labels, cadt_u32 count,
+            cadt_u32 distinct, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 rank = ranks[i], next = i + 1u < count ? ranks[i + 1u] : distinct;
+    if (next == rank) continue;
+    points[rank] = sorted[i];
+    labels[rank] = order[i];
+  }
+}
+
+/* (point, representative) of every point that is not the first of its kind */
+CADT_KERNEL(cadt_duplicate_pairs, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* ranks,
+            CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL cadt_u32* pairs, cadt_u32 count, cadt_u32 distinct, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 rank = ranks[i], next = i + 1u < count ? ranks[i + 1u] : distinct;
+    if (next != rank) continue;
+    const cadt_u32 at = i - rank; /* so many duplicates come before */
+    pairs[2u * at] = order[i];
+    pairs[2u * at + 1u] = labels[rank - 1u];
+  }
+}
+
+#endif

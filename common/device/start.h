@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The first triangle and its three ghosts: the mesh that everything is inserted into (in place of the paper's super
+ * triangle, section 4.1, which spoils the hull).
+ */
+#ifndef CADT_DEVICE_START_H
+#define CADT_DEVICE_START_H
+
+#include "common/device/change.h"
+
+/* Lowers *third to the first position that is not on the line of points 0 and `second`. */
+CADT_KERNEL(cadt_find_triangle, CADT_GLOBAL const cadt_point* points, cadt_u32 second, cadt_u32 begin, cadt_u32 count,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* third) {
+  cadt_tally tally;
+  cadt_tally_clear(&tally);
+  const cadt_point a = points[0], b = points[second];
+  CADT_FOR(i, count, grain) {
+    if (cadt_orientation(a, b, points[begin + i], &tally) != 0) {
+      cadt_min_relaxed(third, begin + i);
+      break;
+    }
+  }
+}
+
+/* \pre records are zero, hints are CADT_NONE */
+CADT_KERNEL(cadt_start_mesh, CADT_MESH_PARAMETERS) {
+  if (cadt_item != 0u) return;
+  CADT_MESH_VIEW(mesh);
+  cadt_tally tally;
+  cadt_tally_clear(&tally);
+  cadt_u32 a = first, b = second, c = third;
+  if (cadt_orientation(points[a], points[b], points[c], &tally) < 0) {
+    b = third;
+    c = second;
+  }
+  const cadt_u32 face = 2u * first, g0 = face + 1u, g1 = 2u * second, g2 = g1 + 1u; /* ghosts opposite a, b, c */
+  cadt_new_record(&mesh, face, a, b, c, CADT_LINK(g0, 0u), CADT_LINK(g1, 0u), CADT_LINK(g2, 0u), 0u);
+  cadt_new_record(&mesh, g0, CADT_GHOST, c, b, CADT_LINK(face, 0u), CADT_LINK(g2, 2u), CADT_LINK(g1, 1u), 0u);
+  cadt_new_record(&mesh, g1, CADT_GHOST, a, c, CADT_LINK(face, 1u), CADT_LINK(g0, 2u), CADT_LINK(g2, 1u), 0u);
+  cadt_new_record(&mesh, g2, CADT_GHOST, b, a, CADT_LINK(face, 2u), CADT_LINK(g1, 2u), CADT_LINK(g0, 1u), 0u);
+  cadt_publish_record(&mesh, face);
+  cadt_publish_record(&mesh, g0);
+  cadt_publish_record(&mesh, g1);
+  cadt_publish_record(&mesh, g2);
+  cadt_store_relaxed(hints + first, face);
+  cadt_store_relaxed(hints + second, face);
+  cadt_store_relaxed(hints + third, face);
+}
+
+#endif

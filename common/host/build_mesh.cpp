@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/host/build_mesh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <string>
+#include <utility>
+
+#include "common/host/counters.hpp"
+#include "common/host/device_constants.hpp"
+
+namespace cadt {
+namespace {
+
+using namespace device_constants;
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time to a cancel
+constexpr std::size_t points_per_launch_strided = std::size_t{1} << 23;
+constexpr int stalled_launches = 4;   // launches without progress before the rest is done by one work-item
+constexpr int hopeless_launches = 64;
+constexpr int most_sweeps = 2000;
+
+class Builder {
+ public:
+  Builder(Run& run, const SpatialOrder& order)
+      : run_(run),
+        launch_(run.launcher),
+        order_(order),
+        n_(order.distinct),
+        edge_capacity_(static_cast<std::uint32_t>(n_ / 8 + 4096)),
+        counters_(run.device, run.memory) {}
+
+  [[nodiscard]] DeviceMesh build() {
+    DeviceMesh mesh;
+    if (n_ < 3 || !find_first_triangle()) {
+      mesh.flat = true;
+      return mesh;
+    }
+    records_ = run_.memory.allocate(2 * n_ * sizeof(cadt_record));
+    hints_ = run_.memory.allocate(n_ * word);
+    run_.device.fill(*records_, 0, 2 * n_ * sizeof(cadt_record), 0);
+    for (Allocation& list : left_points_) list = run_.memory.allocate((n_ / 2 + 1) * word);
+    for (Allocation& list : left_edges_) list = run_.memory.allocate(edge_capacity_ * word);
+    left_counts_ = launch_.zeros(2);
+    run_kernel(KernelId::cadt_start_mesh, 1);
+    run_.end_phase("start");
+
+    const auto top = static_cast<unsigned>(std::bit_width(n_ - 1)) - 1;
+    for (unsigned level = top + 1; level-- > 0;) insert_level(level);
+    run_.end_phase("insert");
+    certify();
+    run_.end_phase("certify");
+    counters_.collect(run_.statistics);
+    mesh.records = std::move(records_);
+    mesh.slots = 2 * n_;
+    return mesh;
+  }
+
+ private:
+  /// Three points not on a line: the first, the middle one, and the first that is not on their line.
+  bool find_first_triangle() {
+    second_ = static_cast<std::uint32_t>(n_ / 2);
+    Allocation found = run_.memory.allocate(word);
+    run_.device.fill(*found, 0, word, CADT_NONE);
+    constexpr std::size_t few = 1024;  // enough unless the points are nearly all on a line
+    for (std::size_t begin = 1, end = std::min(n_, few); begin < n_; begin = end, end = n_) {
+      const Cut c = launch_.cut(end - begin);
+      launch_.run(KernelId::cadt_find_triangle, c.items, order_.points, second_, static_cast<std::uint32_t>(begin),
+                  static_cast<std::uint32_t>(end - begin), c.grain, found);
+      third_ = launch_.read_word(found, 0);
+      if (third_ != CADT_NONE) break;
+    }
+    if (third_ == CADT_NONE) return false;
+    center_ = {0, 0};
+    for (const std::uint32_t at : {0U, second_, third_}) {
+      cadt_point p;
+      run_.device.read(*order_.points, at * sizeof p, &p, sizeof p);
+      center_.x += p.x / 3;
+      center_.y += p.y / 3;
+    }
+    return true;
+  }
+
+  /// A kernel over the mesh: its view comes first among the parameters.
+  template <class... Args>
+  void run_kernel(KernelId kernel, std::uint32_t items, const Args&... args) {
+    launch_.run(kernel, items, records_, order_.points, hints_, center_.x, center_.y, 0U, second_, third_, args...);
+  }
+
+  void insert_level(unsigned level) {
+    // odd multiples of 2^level below n
+    const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
+    const std::size_t most =
+        run_.device.shape().contiguous ? points_per_launch_contiguous : points_per_launch_strided;
+    const Allocation no_list;
+    for (std::size_t begin = 0; begin < count; begin += most) {
+      const std::size_t size = std::min(most, count - begin);
+      const Cut c = launch_.cut(size);
+      run_kernel(KernelId::cadt_insert, c.items, no_list, static_cast<std::uint32_t>(begin),
+                 static_cast<std::uint32_t>(size), level, c.grain, left_points_[0], left_edges_[0], left_counts_,
+                 edge_capacity_, counters_);
+      finish_leftovers();
+      inserted_ += size;
+      run_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
+    }
+  }
+
+  /// Launches for what could not get its locks, until nothing is left.
+  void finish_leftovers() {
+    int launches = 0, stalled = 0;
+    std::size_t last = 0;
+    for (;;) {
+      std::array<std::uint32_t, 2> left{};
+      run_.device.read(*left_counts_, 0, left.data(), sizeof left);
+      if (left[0] == 0 && left[1] == 0) return;
+      run_.device.fill(*left_counts_, 0, sizeof left, 0);
+      left[1] = std::min(left[1], edge_capacity_);
+      const std::size_t now = std::size_t{left[0]} + left[1];
+      stalled = launches != 0 && now >= last ? stalled + 1 : 0;
+      last = now;
+      if (++launches > hopeless_launches && stalled > hopeless_launches) {
+        throw InternalError("no progress: " + std::to_string(left[0]) + " points and " + std::to_string(left[1]) +
+                            " edges cannot get their locks; please report this with the input");
+      }
+      std::swap(left_points_[0], left_points_[1]);
+      std::swap(left_edges_[0], left_edges_[1]);
+      // One work-item alone meets no conflict, so it always gets on.
+      const bool alone = stalled >= stalled_launches;
+      if (left[0] != 0) {
+        const Cut c = alone ? Cut{1, left[0]} : launch_.cut(left[0]);
+        run_kernel(KernelId::cadt_insert, c.items, left_points_[1], 0U, left[0], 0U, c.grain, left_points_[0],
+                   left_edges_[0], left_counts_, edge_capacity_, counters_);
+      }
+      if (left[1] != 0) {
+        const Cut c = alone ? Cut{1, left[1]} : launch_.cut(left[1]);
+        run_kernel(KernelId::cadt_legalize_edges, c.items, left_edges_[1], left[1], c.grain, left_edges_[0], left_counts_,
+                   edge_capacity_, counters_);
+      }
+    }
+  }
+
+  /// Closing passes until one finds nothing.
+  void certify() {
+    const std::uint64_t edges = 3 * std::uint64_t{n_} - 3;  // of the sphere: ghost edges included
+    const std::size_t slots = 2 * n_, most = 4 * points_per_launch_contiguous;
+    Allocation found = launch_.zeros(3);
+    for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
+      std::uint64_t examined = 0, illegal = 0, unsettled = 0;
+      for (std::size_t begin = 0; begin < slots; begin += most) {
+        const std::size_t size = std::min(most, slots - begin);
+        const Cut c = launch_.cut(size);
+        run_kernel(KernelId::cadt_closing_pass, c.items, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(size),
+                   c.grain, found, left_edges_[0], left_counts_, edge_capacity_, counters_);
+        std::array<std::uint32_t, 3> sums{};
+        run_.device.read(*found, 0, sums.data(), sizeof sums);
+        run_.device.fill(*found, 0, sizeof sums, 0);
+        examined += sums[0];
+        illegal += sums[1];
+        unsettled += sums[2];
+        finish_leftovers();
+        run_.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(slots));
+      }
+      run_.statistics.closing_sweeps = static_cast<std::uint64_t>(sweep);
+      run_.statistics.closing_repairs += illegal;
+      if (illegal == 0 && unsettled == 0) {
+        run_.statistics.certified_edges = examined;
+        if (examined != edges) {
+          throw InternalError("the mesh has " + std::to_string(examined) + " edges instead of " + std::to_string(edges) +
+                              "; please report this with the input");
+        }
+        return;
+      }
+    }
+    throw InternalError("the closing pass still finds illegal edges after " + std::to_string(most_sweeps) +
+                        " sweeps; please report this with the input");
+  }
+
+  Run& run_;
+  Launcher& launch_;
+  const SpatialOrder& order_;
+  std::size_t n_;
+  std::uint32_t edge_capacity_;
+  Counters counters_;
+  Allocation records_, hints_, left_counts_;
+  std::array<Allocation, 2> left_points_, left_edges_;  // [0] is written by the next launch, [1] read by it
+  std::uint32_t second_ = 0, third_ = 0;
+  cadt_point center_{};
+  std::size_t inserted_ = 0;
+};
+
+}  // namespace
+
+DeviceMesh build_mesh(Run& run, const SpatialOrder& order) { return Builder(run, order).build(); }
+
+}  // namespace cadt

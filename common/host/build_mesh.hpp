@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "common/host/run.hpp"
+#include "common/host/spatial_order.hpp"
+
+namespace cadt {
+
+/// The mesh on the device, certified.
+struct DeviceMesh {
+  Allocation records;        ///< two a distinct point; some of the first points' stay unused
+  std::size_t slots = 0;     ///< records allocated
+  bool flat = false;         ///< all points on one line or fewer than three: no records
+};
+
+/// Inserts all points level by level, legalises, and certifies by closing passes. Releases nothing of `order`.
+[[nodiscard]] DeviceMesh build_mesh(Run& run, const SpatialOrder& order);
+
+}  // namespace cadt

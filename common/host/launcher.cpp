@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/host/launcher.hpp"
+
+namespace cadt {
+namespace {
+
+constexpr std::size_t smallest_grain = 8;       // fewer elements are not worth waking a thread
+constexpr std::size_t device_chunk = 512;       // elements a work-item of a GPU scans or sorts in one go
+constexpr std::size_t longest_serial_scan = 4096;  // sums that one work-item adds up
+
+constexpr std::size_t divide_up(std::size_t a, std::size_t b) noexcept { return (a + b - 1) / b; }
+
+}  // namespace
+
+Cut Launcher::cut(std::size_t count) const noexcept {
+  const LaunchShape shape = device_.shape();
+  if (!shape.contiguous) return {static_cast<std::uint32_t>(count), 1};
+  // Small pieces near the end keep the threads busy; large ones keep each thread in its own part of the mesh.
+  const std::size_t grain =
+      std::clamp<std::size_t>(divide_up(count, std::size_t{shape.parallelism} * 4), smallest_grain, shape.grain);
+  return {static_cast<std::uint32_t>(divide_up(count, grain)), static_cast<std::uint32_t>(grain)};
+}
+
+Cut Launcher::chunks(std::size_t count) const noexcept {
+  const LaunchShape shape = device_.shape();
+  const std::size_t grain =
+      shape.contiguous ? std::max<std::size_t>(divide_up(count, shape.parallelism), 1024) : device_chunk;
+  return {static_cast<std::uint32_t>(divide_up(count, grain)), static_cast<std::uint32_t>(grain)};
+}
+
+Allocation Launcher::zeros(std::size_t words) {
+  Allocation buffer = memory_.allocate(words * sizeof(std::uint32_t));
+  device_.fill(*buffer, 0, words * sizeof(std::uint32_t), 0);
+  return buffer;
+}
+
+std::uint32_t Launcher::read_word(const Allocation& from, std::size_t index) {
+  std::uint32_t word = 0;
+  device_.read(*from, index * sizeof word, &word, sizeof word);
+  return word;
+}
+
+void Launcher::scan(const Allocation& data, std::size_t count) {
+  if (count == 0) return;
+  const Cut c = chunks(count);
+  const auto n = static_cast<std::uint32_t>(count);
+  Allocation sums = memory_.allocate((c.items + std::size_t{1}) * sizeof(std::uint32_t));
+  run(KernelId::cadt_scan_sums, c.items, data, sums, n, c.grain);
+  if (c.items <= longest_serial_scan) {
+    run(KernelId::cadt_scan_total, 1, sums, c.items);
+  } else {
+    scan(sums, c.items);
+  }
+  run(KernelId::cadt_scan_apply, c.items, data, sums, n, c.grain);
+}
+
+void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys, Allocation& spare_values,
+                    std::size_t count, unsigned bits, bool identity) {
+  const unsigned digit = device_.shape().contiguous ? 8 : 4;  // the build's CADT_RADIX_BITS
+  const Cut c = chunks(count);
+  const auto n = static_cast<std::uint32_t>(count);
+  const std::size_t entries = (std::size_t{1} << digit) * c.items;
+  Allocation counts = memory_.allocate(entries * sizeof(std::uint32_t));
+  const Allocation none;
+  for (unsigned shift = 0; shift < std::max(bits, 1U); shift += digit) {
+    run(KernelId::cadt_radix_count, c.items, keys, counts, n, c.grain, c.items, shift);
+    scan(counts, entries);
+    const Allocation& from = identity && shift == 0 ? none : values;
+    run(KernelId::cadt_radix_scatter, c.items, keys, from, spare_keys, spare_values, counts, n, c.grain, c.items, shift);
+    std::swap(keys, spare_keys);
+    std::swap(values, spare_values);
+  }
+}
+
+}  // namespace cadt

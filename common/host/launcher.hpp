@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Launches cut to the device's shape, and the two primitives built from kernels: scan and sort.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "common/host/device.hpp"
+#include "common/host/memory.hpp"
+
+namespace cadt {
+
+/// How `count` elements are cut into work-items.
+struct Cut {
+  std::uint32_t items;  ///< work-items
+  std::uint32_t grain;  ///< neighbouring elements of one work-item (contiguous devices)
+};
+
+class Launcher {
+ public:
+  Launcher(Device& device, Memory& memory, bool wide) noexcept : device_(device), memory_(memory), wide_(wide) {}
+
+  [[nodiscard]] Device& device() const noexcept { return device_; }
+  [[nodiscard]] Memory& memory() const noexcept { return memory_; }
+  [[nodiscard]] std::uint64_t launches() const noexcept { return launches_; }
+  void set_wide(bool wide) noexcept { wide_ = wide; }
+
+  /// For kernels over `count` independent elements.
+  [[nodiscard]] Cut cut(std::size_t count) const noexcept;
+  /// For kernels whose work-items need a contiguous chunk on every device.
+  [[nodiscard]] Cut chunks(std::size_t count) const noexcept;
+
+  template <class... Args>
+  void run(KernelId kernel, std::uint32_t items, const Args&... args) {
+    if (items == 0) return;
+    const Arg list[] = {Arg(args)...};
+    ++launches_;
+    device_.launch(kernel, items, list, wide_);
+  }
+
+  /// Zeroed words for small results.
+  [[nodiscard]] Allocation zeros(std::size_t words);
+  [[nodiscard]] std::uint32_t read_word(const Allocation& from, std::size_t index);
+
+  /// Exclusive prefix sum in place.
+  void scan(const Allocation& data, std::size_t count);
+
+  /// Stable sort of 32-bit keys with values by the lowest `bits` bits. Begins with values 0, 1, 2, ... if
+  /// `identity`. `spare_*` are of the same size; on return `keys` and `values` hold the result (the buffers may be swapped).
+  void sort(Allocation& keys, Allocation& values, Allocation& spare_keys, Allocation& spare_values, std::size_t count,
+            unsigned bits, bool identity);
+
+ private:
+  Device& device_;
+  Memory& memory_;
+  bool wide_;
+  std::uint64_t launches_ = 0;
+};
+
+}  // namespace cadt

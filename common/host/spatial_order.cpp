@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/host/spatial_order.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "common/host/device_constants.hpp"
+
+namespace cadt {
+namespace {
+
+using namespace device_constants;
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+constexpr int narrow_span = 240;  // binades that the narrow kernels take (common/device/fixed.h)
+
+struct Bounds {
+  double min_x = 0, max_x = 0, min_y = 0, max_y = 0;
+  int low = 4096, high = -4096;  // exponents of the lowest set bit and above the highest; low > high: all zero
+};
+
+Allocation upload(Run& run, const PointsView& points) {
+  const std::size_t bytes = points.size() * sizeof(cadt_point);
+  if (const double* xy = points.interleaved_doubles()) return run.memory.import(xy, bytes);
+  Allocation buffer = run.memory.allocate(bytes);
+  constexpr std::size_t piece = std::size_t{1} << 16;
+  std::vector<cadt_point> staged(std::min(piece, points.size()));
+  for (std::size_t begin = 0; begin < points.size(); begin += piece) {
+    const std::size_t count = std::min(piece, points.size() - begin);
+    for (std::size_t i = 0; i < count; ++i) staged[i] = {points.x(begin + i), points.y(begin + i)};
+    run.device.write(*buffer, begin * sizeof(cadt_point), staged.data(), count * sizeof(cadt_point));
+  }
+  return buffer;
+}
+
+Bounds find_bounds(Run& run, const Allocation& input, std::size_t n) {
+  const Cut c = run.launcher.chunks(n);
+  Allocation box = run.memory.allocate(c.items * CADT_BOUNDS_DOUBLES * sizeof(double));
+  Allocation words = run.memory.allocate(c.items * CADT_BOUNDS_WORDS * word);
+  run.launcher.run(KernelId::cadt_bounds, c.items, input, static_cast<std::uint32_t>(n), c.grain, box, words);
+  std::vector<double> b(std::size_t{c.items} * CADT_BOUNDS_DOUBLES);
+  std::vector<std::uint32_t> w(std::size_t{c.items} * CADT_BOUNDS_WORDS);
+  run.device.read(*box, 0, b.data(), b.size() * sizeof b[0]);
+  run.device.read(*words, 0, w.data(), w.size() * sizeof w[0]);
+
+  Bounds all{b[0], b[1], b[2], b[3]};
+  for (std::size_t i = 0; i < c.items; ++i) {
+    const std::uint32_t* row = &w[i * CADT_BOUNDS_WORDS];
+    if (row[2] != CADT_NONE) {  // chunks ascend, so this is the first one
+      throw InputError("point " + std::to_string(row[2]) + " (counted from 0) has a coordinate that is NaN or infinite: "
+                       "remove or repair it", row[2]);
+    }
+    all.low = std::min(all.low, static_cast<int>(row[0]) - 4096);
+    all.high = std::max(all.high, static_cast<int>(row[1]) - 4096);
+    const double* box_row = &b[i * CADT_BOUNDS_DOUBLES];
+    all.min_x = std::min(all.min_x, box_row[0]);
+    all.max_x = std::max(all.max_x, box_row[1]);
+    all.min_y = std::min(all.min_y, box_row[2]);
+    all.max_y = std::max(all.max_y, box_row[3]);
+  }
+  return all;
+}
+
+/// Bits of the sort key for each axis, and cells a unit (halved coordinates).
+struct KeyGrid {
+  unsigned bits_x = 1, bits_y = 1;
+  double scale = 0;
+  [[nodiscard]] unsigned bits() const noexcept { return bits_x + bits_y; }
+};
+
+KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
+  // Halved: the width of the box may exceed the largest double.
+  const double width = 0.5 * bounds.max_x - 0.5 * bounds.min_x, height = 0.5 * bounds.max_y - 0.5 * bounds.min_y;
+  const double longer = std::max(width, height), shorter = std::min(width, height);
+  // About sixteen square cells a point keep runs of equal keys short on well-spread data.
+  const int bits = std::clamp(static_cast<int>(std::bit_width(n)) + 4, 4, 32);
+  int surplus = bits;
+  if (shorter > 0) surplus = std::min(bits, std::max(0, std::ilogb(longer) - std::ilogb(shorter)));
+  const int longer_bits = std::min((bits + surplus + 1) / 2, std::min(bits, 31));
+  const int shorter_bits = std::min(bits - longer_bits, 16);
+  KeyGrid grid;
+  grid.bits_x = static_cast<unsigned>(width >= height ? longer_bits : shorter_bits);
+  grid.bits_y = static_cast<unsigned>(width >= height ? shorter_bits : longer_bits);
+  if (longer > 0) grid.scale = std::min(std::ldexp(1.0, longer_bits) / longer, std::numeric_limits<double>::max());
+  return grid;
+}
+
+/// Sorts the members of crowded cells by more bits, a round at a time (common/device/refine.h).
+void refine(Run& run, const Allocation& input, Allocation& keys, const Allocation& order, Allocation& spare, std::size_t n) {
+  Launcher& launch = run.launcher;
+  const auto count = static_cast<std::uint32_t>(n);
+  const Cut c = launch.cut(n);
+  constexpr std::uint32_t rounds = 4;
+  for (std::uint32_t round = 0; round < rounds; ++round) {
+    Allocation totals = launch.zeros(1);
+    launch.run(KernelId::cadt_crowded_flags, c.items, keys, spare, count, c.grain, totals);
+    const std::uint32_t crowd = launch.read_word(totals, 0);
+    if (crowd == 0) return;
+    run.statistics.refined_points = std::max<std::uint64_t>(run.statistics.refined_points, crowd);
+    launch.scan(spare, n);
+    const std::size_t bytes = crowd * word;
+    Allocation places = run.memory.allocate(bytes), round_keys = run.memory.allocate(bytes);
+    Allocation members = run.memory.allocate(bytes), runs = run.memory.allocate(bytes);
+    const Cut few = launch.cut(crowd);
+    launch.run(KernelId::cadt_crowded_pack, c.items, spare, places, count, crowd, c.grain);
+    for (;; ++round) {  // rounds in which all members of each run agree change nothing
+      Allocation fresh = launch.zeros(1);
+      launch.run(KernelId::cadt_crowded_keys, few.items, input, order, keys, places, round_keys, members, runs, crowd,
+                 round, few.grain, fresh);
+      if (launch.read_word(fresh, 0) != 0) break;
+      if (round + 1 == rounds) return;
+    }
+    launch.scan(runs, crowd);
+    const std::uint32_t last_run = launch.read_word(runs, crowd - 1);
+    Allocation from = run.memory.allocate(bytes), sorted = run.memory.allocate(bytes);
+    Allocation spare_from = run.memory.allocate(bytes), spare_sorted = run.memory.allocate(bytes);
+    // Stable: first by the round's key, then by run. The sort permutes its keys, so it gets copies.
+    launch.run(KernelId::cadt_copy_words, few.items, round_keys, sorted, crowd, few.grain);
+    launch.sort(sorted, from, spare_sorted, spare_from, crowd, 32, true);
+    if (last_run != 0) {
+      launch.run(KernelId::cadt_gather_words, few.items, runs, from, sorted, crowd, few.grain);
+      launch.sort(sorted, from, spare_sorted, spare_from, crowd, static_cast<unsigned>(std::bit_width(last_run)), false);
+    }
+    launch.run(KernelId::cadt_run_tails, c.items, keys, spare, count, c.grain);
+    launch.run(KernelId::cadt_crowded_store, few.items, places, members, from, runs, round_keys, order, spare, crowd,
+               few.grain);
+    launch.scan(spare, n);
+    std::swap(keys, spare);
+    run.check("sort", 0.05 + 0.01 * round);
+  }
+}
+
+std::vector<Duplicate> find_duplicates(Run& run, const Allocation& order, const Allocation& ranks, const Allocation& labels,
+                                       std::size_t n, std::size_t distinct) {
+  std::vector<Duplicate> pairs(n - distinct);
+  Allocation buffer = run.memory.allocate(pairs.size() * sizeof(Duplicate));
+  const Cut c = run.launcher.cut(n);
+  run.launcher.run(KernelId::cadt_duplicate_pairs, c.items, order, ranks, labels, buffer, static_cast<std::uint32_t>(n),
+                   static_cast<std::uint32_t>(distinct), c.grain);
+  run.device.read(*buffer, 0, pairs.data(), pairs.size() * sizeof(Duplicate));
+  std::sort(pairs.begin(), pairs.end(), [](const Duplicate& a, const Duplicate& b) { return a.point < b.point; });
+  return pairs;
+}
+
+}  // namespace
+
+SpatialOrder sort_points(Run& run, PointsView view) {
+  Launcher& launch = run.launcher;
+  const std::size_t n = view.size();
+  const auto count = static_cast<std::uint32_t>(n);
+  const Cut c = launch.cut(n);
+  SpatialOrder result;
+
+  Allocation input = upload(run, view);
+  const Bounds bounds = find_bounds(run, input, n);
+  result.wide = bounds.high - bounds.low > narrow_span;
+  launch.set_wide(result.wide);
+  run.end_phase("bounds");
+  run.check("sort", 0.01);
+
+  Allocation keys = run.memory.allocate(n * word), spare = run.memory.allocate(n * word);
+  Allocation order = run.memory.allocate(n * word);
+  {
+    Allocation spare_order = run.memory.allocate(n * word);
+    const KeyGrid grid = choose_grid(bounds, n);
+    launch.run(KernelId::cadt_sort_keys, c.items, input, keys, count, c.grain, 0.5 * bounds.min_x, 0.5 * bounds.min_y,
+               grid.scale, grid.bits_x, grid.bits_y);
+    launch.sort(keys, order, spare, spare_order, n, grid.bits(), true);
+  }
+  run.end_phase("sort");
+  run.check("sort", 0.05);
+
+  refine(run, input, keys, order, spare, n);
+  run.end_phase("refine");
+
+  // All coordinates become multiples of 2^-240 below 1, in two steps since one factor may be out of range.
+  const int exponent = result.wide || bounds.high < bounds.low ? 0 : -bounds.high;
+  const double scale = std::ldexp(1.0, exponent / 2), scale_again = std::ldexp(1.0, exponent - exponent / 2);
+  Allocation sorted = run.memory.allocate(n * sizeof(cadt_point));
+  launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
+  launch.run(KernelId::cadt_sort_runs, c.items, keys, sorted, order, count, c.grain);
+  Allocation total = launch.zeros(1);
+  launch.run(KernelId::cadt_unique_flags, c.items, sorted, spare, count, c.grain, total);
+  const std::uint32_t distinct = launch.read_word(total, 0);
+  result.distinct = distinct;
+  input.release();
+  keys.release();
+  if (distinct == count) {
+    result.points = std::move(sorted);
+    result.labels = std::move(order);
+  } else {
+    launch.scan(spare, n);
+    result.points = run.memory.allocate(distinct * sizeof(cadt_point));
+    result.labels = run.memory.allocate(distinct * word);
+    launch.run(KernelId::cadt_unique_pack, c.items, sorted, order, spare, result.points, result.labels, count, distinct,
+               c.grain);
+    result.duplicates = find_duplicates(run, order, spare, result.labels, n, distinct);
+  }
+  run.end_phase("gather");
+  return result;
+}
+
+}  // namespace cadt

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cadt/triangulation.hpp>
+
+#include <algorithm>
+
+#include "common/host/triangulation_data.hpp"
+
+namespace cadt {
+namespace {
+
+/// Mixes 64 bits so that every input bit moves every output bit: two multiplications by odd constants between shifts.
+constexpr std::uint64_t mix(std::uint64_t x) noexcept {
+  x ^= x >> 32;
+  x *= 0xd6e8feb86659fd93U;
+  x ^= x >> 29;
+  x *= 0x9e3779b97f4a7c15U;
+  return x ^ (x >> 32);
+}
+
+/// One lane of the hash of up to three numbers; the sum over all items does not depend on their order.
+constexpr std::uint64_t lane(std::uint64_t seed, std::uint64_t a, std::uint64_t b, std::uint64_t c) noexcept {
+  return mix(mix(mix(seed + a) + b) + c);
+}
+
+void add(Hash128& hash, std::uint64_t kind, std::uint64_t a, std::uint64_t b, std::uint64_t c) noexcept {
+  hash.high += lane(0x243f6a8885a308d3U + kind, a, b, c);
+  hash.low += lane(0x13198a2e03707344U ^ (kind << 32), c, a, b);
+}
+
+}  // namespace
+
+std::string Hash128::to_string() const {
+  std::string text;
+  for (const std::uint64_t part : {high, low})
+    for (int shift = 60; shift >= 0; shift -= 4) text += "0123456789abcdef"[(part >> shift) & 15U];
+  return text;
+}
+
+Triangulation::Triangulation() : data_(std::make_unique<Data>()) {}
+Triangulation::Triangulation(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+Triangulation::~Triangulation() = default;
+Triangulation::Triangulation(Triangulation&&) noexcept = default;
+Triangulation& Triangulation::operator=(Triangulation&&) noexcept = default;
+
+std::size_t Triangulation::number_of_points() const noexcept { return data_->points; }
+std::size_t Triangulation::number_of_triangles() const noexcept { return data_->triangle_count; }
+std::span<const std::int32_t> Triangulation::triangles() const noexcept {
+  return {data_->triangles.get(), 3 * data_->triangle_count};
+}
+std::span<const std::int32_t> Triangulation::neighbors() const noexcept {
+  return {data_->neighbors.get(), 3 * data_->triangle_count};
+}
+std::span<const std::int32_t> Triangulation::hull() const noexcept { return data_->hull; }
+std::span<const Duplicate> Triangulation::duplicates() const noexcept { return data_->duplicates; }
+int Triangulation::dimension() const noexcept { return data_->dimension; }
+const Statistics& Triangulation::statistics() const noexcept { return data_->statistics; }
+
+std::vector<std::int32_t> Triangulation::vertex_triangle() const {
+  std::vector<std::int32_t> result(data_->points, -1);
+  const auto vertices = triangles();
+  for (std::size_t i = vertices.size(); i-- > 0;)  // from the end: the lowest triangle is written last
+    result[static_cast<std::size_t>(vertices[i])] = static_cast<std::int32_t>(i / 3);
+  for (const Duplicate& d : data_->duplicates)
+    result[static_cast<std::size_t>(d.point)] = result[static_cast<std::size_t>(d.representative)];
+  return result;
+}
+
+Hash128 Triangulation::hash() const {
+  Hash128 hash;
+  const auto v = triangles();
+  for (std::size_t i = 0; i < v.size(); i += 3) {
+    const std::int32_t* t = &v[i];
+    const auto first = static_cast<std::size_t>(std::min_element(t, t + 3) - t);
+    add(hash, 1, static_cast<std::uint64_t>(t[first]), static_cast<std::uint64_t>(t[(first + 1) % 3]),
+        static_cast<std::uint64_t>(t[(first + 2) % 3]));
+  }
+  for (const Duplicate& d : data_->duplicates)
+    add(hash, 2, static_cast<std::uint64_t>(d.point), static_cast<std::uint64_t>(d.representative), 0);
+  add(hash, 3, data_->points, data_->triangle_count, data_->hull.size());
+  add(hash, 4, static_cast<std::uint64_t>(data_->dimension + 1), 0, 0);
+  return hash;
+}
+
+}  // namespace cadt

@@ -32,7 +32,16 @@ std::string check_line(const Check& check) {
   return text + '\n';
 }
 
+void check_standard_input(const VerifyCommand& command) {
+  if (command.mesh != "-") return;
+  if (command.input.path == "-") throw Failure(exit_usage, "only one of POINTS and MESH can be standard input");
+  if (command.format.empty()) {
+    throw Failure(exit_usage, "standard input has no suffix; name the format of the mesh, for example: -t off");
+  }
+}
+
 int run(const VerifyCommand& command) {
+  check_standard_input(command);
   const io::PointSet points = read_input(command.input);
   const io::MeshFile mesh = io::read_mesh(command.mesh, points.size(), lower(command.format), command.base);
   MeshView view;
@@ -64,7 +73,10 @@ void add_verify(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("verify", "check a mesh from any program against its points, exactly");
   const auto options = std::make_shared<VerifyCommand>();
   add_input_options(*command, options->input, "POINTS", "file with the points");
-  command->add_option("MESH", options->mesh, "file with the triangles, counterclockwise, as indices of the points")
+  command
+      ->add_option("MESH", options->mesh,
+                   "file with the triangles, counterclockwise, as indices of the points; '-' is "
+                   "standard input (with -t)")
       ->required();
   command
       ->add_option("-t,--to", options->format,

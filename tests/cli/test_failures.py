@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every exit code but 0, and that nothing is left behind."""
+import json
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import stat
+import struct
+import subprocess
+import tempfile
+import time
+import unittest
+
+from harness import PROGRAM, CliTest, default_signals, integer_points, read_off, xy_text
+
+
+class Usage(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("in.xy", xy_text(integer_points(20)))
+
+    def test_wrong_command_lines(self):
+        for arguments, says in [
+                ([], "cadt --help"),
+                (["frobnicate"], "triangulate"),
+                (["in.xy"], "cadt triangulate in.xy"),
+                (["triangulate"], "IN"),
+                (["triangulate", "in.xy", "more.xy"], "more.xy"),
+                (["triangulate", "in.xy", "--frobnicate"], "--frobnicate"),
+                (["triangulate", "in.xy", "--backend", "gpu"], "--backend"),
+                (["triangulate", "in.xy", "--threads", "-1"], "--threads"),
+                (["triangulate", "in.xy", "--threads", "many"], "--threads"),
+                (["triangulate", "in.xy", "--base", "2"], "--base"),
+                (["triangulate", "in.xy", "--project", "xz"], "--project"),
+                (["triangulate", "in.xy", "--order", "none"], "--order"),
+                (["triangulate", "in.xy", "--width", "0"], "--width"),
+                (["triangulate", "in.xy", "-f", "xls"], "--from"),
+                (["triangulate", "in.xy", "--max-memory", "4X"], "4G"),
+                (["triangulate", "in.xy", "--max-memory", "-4G"], ""),
+                (["triangulate", "in.xy", "--max-memory", "0"], "4G"),
+                (["triangulate", "-"], "-f"),
+                (["triangulate", "in.xy", "-t", "off"], "-o"),
+                (["verify", "in.xy"], "MESH"),
+                (["verify", "-", "-", "-f", "xy", "-t", "off"], "standard input"),
+                (["verify", "in.xy", "-"], "-t"),
+                (["generate"], "--list"),
+                (["generate", "nothing", "-o", "x.xy"], "nothing"),
+                (["generate", "uniform"], "-o"),
+                (["generate", "uniform", "-n", "many", "-o", "x.xy"], "many"),
+                (["generate", "uniform", "-n", "1.5", "-o", "x.xy"], "1.5"),
+                (["generate", "uniform", "-n", "1e18", "-o", "x.xy"], "1e18"),
+                (["generate", "uniform", "-o", "-"], "-t"),
+                (["info"], "FILE"),
+                (["devices", "all"], "all")]:
+            with self.subTest(arguments=arguments):
+                self.fails(2, *arguments, says=says)
+
+    def test_outputs_that_cannot_be_are_found_before_the_work(self):
+        # The input does not exist: whoever looks at it first says 3.
+        for arguments, says in [(["-o", "m.xls"], "obj"), (["-o", "mesh"], "obj"), (["-o", "-"], "-t"),
+                                (["-o", "m.obj", "-t", "xls"], "xls"),
+                                (["-o", "m.obj", "-o", "./m.obj"], "twice"), (["-o", "-", "-o", "-", "-t", "off"], "twice"),
+                                (["-o", "m.obj", "-t", "obj", "-t", "off"], "-t")]:
+            with self.subTest(arguments=arguments):
+                self.fails(2, "triangulate", "absent.xy", *arguments, says=says)
+
+    def test_the_input_is_not_overwritten(self):
+        self.path("in.ply").write_bytes(b"ply")
+        self.fails(2, "triangulate", "in.ply", "-o", "./in.ply", says="input")
+        self.assertEqual(self.path("in.ply").read_bytes(), b"ply")
+
+
+class Files(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("in.xy", xy_text(integer_points(20)))
+
+    def test_malformed_input_is_located(self):
+        for text, line in [("0 0\n1 x\n", 2), ("0 0\n1 1\n2\n", 3), ("0 0\nnan 1\n", 2), ("0 0\n1 1\n1 inf\n", 3)]:
+            self.write("bad.xy", text)
+            for command in (["triangulate"], ["info"]):
+                self.fails(3, *command, "bad.xy", says=f"bad.xy:{line}: ")
+
+    def test_stdin_is_located_too(self):
+        self.fails(3, "triangulate", "-", "-f", "xy", stdin="0 0\n1 x\n", says=":2: ")
+
+    def test_inputs_that_cannot_be_read(self):
+        self.path("folder.xy").mkdir()
+        self.write("empty.xy", "")
+        self.path("odd.f64").write_bytes(struct.pack("<2d", 1, 2) + b"abc")
+        for name in ("absent.xy", "folder.xy", "empty.xy", "odd.f64", "absent/in.xy"):
+            for command in ("triangulate", "info"):
+                self.fails(3, command, name, says=name)
+
+    def test_outputs_that_cannot_be_written_are_found_before_the_work(self):
+        self.path("folder.obj").mkdir()
+        self.write("file", "")
+        for name in ("absent/m.obj", "folder.obj", "file/m.obj"):
+            self.fails(3, "triangulate", "absent.xy", "-o", name, says=name)
+            self.fails(3, "generate", "uniform", "-o", name, "-t", "xy", says=name)
+
+    def test_permissions(self):
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="cadt-cli-"))
+        self.addCleanup(shutil.rmtree, folder, ignore_errors=True)
+        program = shutil.copy(PROGRAM, folder / "program")  # the build folder may be closed to others
+        shutil.copy(self.path("in.xy"), folder / "in.xy")
+        self.write("closed.xy", "0 0\n")
+        shutil.copy(self.path("closed.xy"), folder / "closed.xy")
+        os.chmod(folder / "closed.xy", 0)
+        os.chmod(folder, 0o555)
+        os.chmod(self.folder, 0o755)
+
+        def as_ordinary_user():
+            default_signals()
+            if os.geteuid() == 0:  # root may do everything
+                os.setgroups([])
+                os.setgid(65534)
+                os.setuid(65534)
+        run = dict(before=as_ordinary_user, program=program)
+        self.fails(3, "triangulate", folder / "closed.xy", says="closed.xy", **run)
+        self.fails(3, "triangulate", "absent.xy", "-o", folder / "m.obj", says="m.obj", **run)
+        self.cadt("triangulate", folder / "in.xy", **run)
+
+    def test_full_disk(self):
+        before = os.stat("/dev/full")
+        with open("/dev/full", "wb") as full:
+            for arguments in (["triangulate", "in.xy"], ["triangulate", "in.xy", "-o", "-", "-t", "off"],
+                              ["triangulate", "in.xy", "--stats=-"], ["info", "in.xy"], ["devices"], ["generate", "--list"],
+                              ["generate", "uniform", "-n", "100", "-o", "-", "-t", "xy"]):
+                with self.subTest(arguments=arguments):
+                    result = self.cadt(*arguments, stdout=full, expect=3)
+                    self.assertIn("cadt: error:", result.err)
+        self.fails(3, "triangulate", "in.xy", "-o", "/dev/full", "-t", "off", says="/dev/full")
+        self.fails(3, "triangulate", "in.xy", "-o", "m.off", "--stats=/dev/full", says="/dev/full")
+        self.assertTrue(stat.S_ISCHR(os.stat("/dev/full").st_mode))
+        self.assertEqual(os.stat("/dev/full").st_ino, before.st_ino)
+
+    def test_a_failing_write_leaves_nothing(self):
+        def small_files():
+            default_signals()
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+        self.scattered("big.f64", 5000)
+        self.write("m.off", "old")
+        self.fails(3, "triangulate", "big.f64", "-o", "m.off", says="m.off", before=small_files)
+        self.assertEqual(self.names(), ["big.f64", "in.xy", "m.off"])
+        self.assertEqual(self.path("m.off").read_text(), "old")
+
+
+class Resources(CliTest):
+    def test_back_end_that_is_not_there(self):
+        devices = json.loads(self.cadt("devices", "--json").out)["devices"]
+        usable = {device["backend"] for device in devices if device["usable"]}
+        self.assertIn("host", usable)
+        self.write("in.xy", "0 0\n1 0\n0 1\n")
+        for backend in ("host", "opencl", "cuda"):
+            if backend in usable:
+                self.cadt("triangulate", "in.xy", "--backend", backend)
+                self.fails(5, "triangulate", "in.xy", "--backend", backend, "--device", "no such device", says=backend)
+            else:
+                self.fails(5, "triangulate", "in.xy", "--backend", backend, "-o", "m.off", says=[backend, "cadt devices"])
+        self.assertEqual(self.names(), ["in.xy"])
+
+    def test_memory_bound(self):
+        self.scattered("in.f64", 20000)
+        self.fails(6, "triangulate", "in.f64", "-o", "m.off", "--max-memory", "64K", says=["needed: ", "free: "])
+        self.cadt("triangulate", "in.f64", "--max-memory", "4GiB")
+        self.assertEqual(self.names(), ["in.f64"])
+
+    def test_allocation_that_fails(self):
+        def little_memory():
+            default_signals()
+            resource.setrlimit(resource.RLIMIT_AS, (1 << 29, 1 << 29))
+        self.fails(6, "generate", "uniform", "-n", "200M", "-o", "x.f64", before=little_memory, says="out of memory")
+        self.assertEqual(self.names(), [])
+
+
+class Interrupt(CliTest):
+    def large(self):
+        self.scattered("in.f64", 2000000)
+
+    def wait_until_signals_are_caught(self, process):
+        end = time.monotonic() + 20
+        while time.monotonic() < end:
+            status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+            caught = int(next(line for line in status.splitlines() if line.startswith("SigCgt")).split()[1], 16)
+            if caught & (1 << (signal.SIGINT - 1)):
+                return
+            time.sleep(0.01)
+        self.fail("SIGINT is never caught")
+
+    def test_during_the_triangulation(self):
+        self.large()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.on_terminal("triangulate", "in.f64", "-o", "m.off", "--stats=s.json", "--backend", "host") as (
+                    process, terminal):
+                terminal.wait_for("%")
+                process.send_signal(number)
+                terminal.wait_for()
+                self.assertEqual(process.wait(timeout=60), 130, terminal.text)
+                self.assertIn("interrupted", terminal.text)
+            self.assertEqual(self.names(), ["in.f64"], "no output, no temporary file")
+
+    def test_in_a_pipe(self):
+        self.large()
+        with self.started("triangulate", "in.f64", "-o", "m.off", "--backend", "host") as process:
+            self.wait_until_signals_are_caught(process)
+            time.sleep(0.3)
+            process.send_signal(signal.SIGINT)
+            _, err = process.communicate(timeout=60)
+            self.assertEqual((process.returncode, err), (130, b"cadt: interrupted\n"))
+        self.assertEqual(self.names(), ["in.f64"])
+
+    def test_second_signal_ends_at_once(self):
+        self.large()
+        with self.on_terminal("triangulate", "in.f64", "-o", "m.off", "--backend", "host") as (process, terminal):
+            terminal.wait_for("%")
+            # Two different signals: of two equal ones that come close together the kernel keeps one. The lower one is
+            # delivered first.
+            process.send_signal(signal.SIGINT)
+            process.send_signal(signal.SIGTERM)
+            self.assertEqual(process.wait(timeout=60), -signal.SIGTERM)
+
+    def test_during_the_writing_the_file_is_completed_and_the_next_not_begun(self):
+        self.large()
+        with self.on_terminal("triangulate", "in.f64", "-o", "a.off", "-o", "b.off") as (process, terminal):
+            terminal.wait_for("writing a.off")
+            process.send_signal(signal.SIGINT)
+            terminal.wait_for()
+            self.assertEqual(process.wait(timeout=60), 130, terminal.text)
+        self.assertEqual(self.names(), ["a.off", "in.f64"])
+        self.assertIn("complete before the interruption: a.off", terminal.text)
+        self.assertEqual(len(read_off(self.path("a.off").read_text())[0]), 2000000)
+
+    def test_while_waiting_for_input(self):
+        with self.started("triangulate", "-", "-f", "xy", "-o", "m.off", stdin=subprocess.PIPE) as process:
+            self.wait_until_signals_are_caught(process)
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(timeout=20), 130)
+        self.assertEqual(self.names(), [])
+
+    def test_an_ignored_signal_stays_ignored(self):
+        def ignore():
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+        process = subprocess.Popen([PROGRAM, "triangulate", "-", "-f", "xy"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, preexec_fn=ignore)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(b"0 0\n1 0\n0 1\n", timeout=60)
+        self.assertEqual((process.returncode, err), (0, b""))
+        self.assertRegex(out.decode(), r"(?m)^triangles +1$")
+
+
+class ProgressLine(CliTest):
+    def test_is_drawn_on_a_terminal_and_removed(self):
+        self.scattered("in.f64", 300000)
+        with self.on_terminal("triangulate", "in.f64", "-o", "m.ply", "--backend", "host") as (process, terminal):
+            text = terminal.wait_for()
+            self.assertEqual(process.wait(timeout=60), 0)
+        self.assertRegex(text, r"\r[a-z]+ +\d+ %  [\d.]+[Mk]? points/s")
+        # What is on the last line before the summary is blank.
+        self.assertRegex(text, r"\r +\rpoints +300000\r\n")
+
+    def test_is_not_drawn_when_quiet(self):
+        self.scattered("in.f64", 100000)
+        with self.on_terminal("triangulate", "in.f64", "-o", "m.ply", "-q") as (process, terminal):
+            text = terminal.wait_for()
+            self.assertEqual((process.wait(timeout=60), text), (0, ""))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -3,7 +3,8 @@
 #pragma once
 
 #define CL_HPP_TARGET_OPENCL_VERSION 300
-// We need 1.2, but with that minimum the bindings of 2022 and 2023 (v2023.02.06 among them) lack a function of their own.
+// We need 1.2, but with that minimum the bindings of 2022 and 2023 (v2023.02.06 among them) lack a function of their
+// own.
 #define CL_HPP_MINIMUM_OPENCL_VERSION 110
 #define CL_HPP_ENABLE_EXCEPTIONS
 #include <CL/opencl.hpp>

@@ -77,4 +77,6 @@ std::shared_ptr<SharedContext> shared_context(const OpenRequest& request) {
   return slot->context;
 }
 
+void lose_context(const OpenRequest& request) { shared_context(request)->lost = true; }
+
 }  // namespace cadt::opencl

@@ -84,16 +84,24 @@ ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, unsigned work_group_si
 
 ClDevice::~ClDevice() { clFinish(queue_()); }
 
+void ClDevice::check_not_lost() const {
+  if (shared_->lost)
+    throw DeviceError("OpenCL", CL_INVALID_CONTEXT, info().name, "an earlier error took the context; open it again");
+}
+
 template <class Work>
-void ClDevice::run(std::size_t bytes, const Work& work) {
-  if (shared_->lost) throw DeviceError("OpenCL", CL_INVALID_CONTEXT, info().name, "the context was lost earlier");
+void ClDevice::run(const Work& work) {
+  check_not_lost();
   try {
     work();
   } catch (const cl::Error& error) {
-    // Memory is often found only when a command needs it.
-    if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE)
-      throw_out_of_memory(info(), std::string(error.what()) + " found too little memory; as far as known there are",
-                          bytes, free_bytes(*shared_));
+    // Some drivers look for the memory of a buffer only when a command needs it.
+    if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE) {
+      const std::size_t held = shared_->held;
+      throw OutOfMemory("'" + info().name + "' found too little memory in " + error.what() + "; the buffers are " +
+                            std::to_string(held) + " bytes together",
+                        held, free_bytes(*shared_));
+    }
     if (is_fatal(error.err())) shared_->lost = true;
     throw_device_error(error, info().name);
   }
@@ -106,6 +114,7 @@ LaunchShape ClDevice::shape() const noexcept {
 }
 
 std::unique_ptr<Buffer> ClDevice::allocate(std::size_t bytes) {
+  check_not_lost();
   if (bytes > info().largest_buffer_bytes)
     throw_out_of_memory(info(), "its largest buffer is", bytes, info().largest_buffer_bytes);
   if (bytes > free_bytes(*shared_)) throw_out_of_memory(info(), "it has left", bytes, free_bytes(*shared_));
@@ -135,18 +144,18 @@ std::unique_ptr<Buffer> ClDevice::alias(const void* data, std::size_t bytes) {
 
 void ClDevice::write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
   check_range("a write", to, offset, bytes);
-  if (bytes != 0) run(bytes, [&] { queue_.enqueueWriteBuffer(memory_of(to), CL_TRUE, offset, bytes, from); });
+  if (bytes != 0) run([&] { queue_.enqueueWriteBuffer(memory_of(to), CL_TRUE, offset, bytes, from); });
 }
 
 void ClDevice::read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) {
   check_range("a read", from, offset, bytes);
-  if (bytes != 0) run(bytes, [&] { queue_.enqueueReadBuffer(memory_of(from), CL_TRUE, offset, bytes, to); });
+  if (bytes != 0) run([&] { queue_.enqueueReadBuffer(memory_of(from), CL_TRUE, offset, bytes, to); });
 }
 
 void ClDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) {
   check_range("a fill", to, offset, bytes);
   if (offset % 4 != 0 || bytes % 4 != 0) throw InternalError("a fill is not a multiple of four bytes");
-  if (bytes != 0) run(bytes, [&] { queue_.enqueueFillBuffer(memory_of(to), word, offset, bytes); });
+  if (bytes != 0) run([&] { queue_.enqueueFillBuffer(memory_of(to), word, offset, bytes); });
 }
 
 ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, bool wide) {
@@ -155,7 +164,7 @@ ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, bool wide) {
   if (slot) return *slot;
   const cl::Program program = shared_->program(wide);
   ReadyKernel made;
-  run(0, [&] {
+  run([&] {
     try {
       made.kernel = cl::Kernel(program, kernel_names[number]);
     } catch (const cl::Error& error) {
@@ -183,7 +192,7 @@ void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg>
   // The kernels number their work-items in 32 bits: one beyond would be taken for the first.
   if (groups > std::numeric_limits<std::uint32_t>::max() / target.group)
     throw InternalError(std::string(name) + " was launched with " + std::to_string(items) + " work-items");
-  run(shared_->held, [&] {
+  run([&] {
     cl_uint position = 0;
     for (const Arg& arg : args) {
       if (!arg.is_buffer())
@@ -200,7 +209,7 @@ void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg>
 }
 
 void ClDevice::finish() {
-  run(shared_->held, [&] { queue_.finish(); });
+  run([&] { queue_.finish(); });
 }
 
 }  // namespace cadt::opencl

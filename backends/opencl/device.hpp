@@ -35,9 +35,10 @@ class ClDevice final : public Device {
   };
   ReadyKernel& ready(KernelId kernel, bool wide);
 
-  /// Calls `work` and translates what the bindings throw. `bytes`: what the call may have to allocate at last.
+  /// Calls `work` and translates what the bindings throw.
   template <class Work>
-  void run(std::size_t bytes, const Work& work);
+  void run(const Work& work);
+  void check_not_lost() const;
 
   std::shared_ptr<SharedContext> shared_;
   cl::CommandQueue queue_;

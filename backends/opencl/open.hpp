@@ -25,4 +25,7 @@ struct OpenRequest {
 /// \throws BackendUnavailable, KernelBuildError, OutOfMemory, DeviceError
 [[nodiscard]] std::unique_ptr<Device> open_device(const OpenRequest& request);
 
+/// Makes the process's context for this request look as if the runtime had given it up. For tests.
+void lose_context(const OpenRequest& request);
+
 }  // namespace cadt::opencl

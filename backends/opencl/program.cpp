@@ -29,7 +29,7 @@ constexpr const char* c11_options = " -DCADT_CL_C11=1";
 bool compiles(const cl::Context& context, const cl::Device& device, const std::string& options) {
   try {
     cl::Program program(context, std::string(probe_source));
-    program.build(device, options.c_str());
+    program.build(std::vector<cl::Device>{device}, options.c_str());
     // Some drivers compile at once and link late: the kernel must exist as well.
     const cl::Kernel kernel(program, "probe");
     return kernel() != nullptr;
@@ -72,7 +72,7 @@ std::optional<cl::Program> from_binary(const cl::Context& context, const FoundDe
     cl::Program program(context, {device.device}, {std::move(binary)}, &status);
     for (const cl_int code : status)
       if (code != CL_SUCCESS) return std::nullopt;
-    program.build(device.device, options.c_str());
+    program.build(std::vector<cl::Device>{device.device}, options.c_str());
     return program;
   } catch (const cl::Error&) {
     return std::nullopt;
@@ -133,7 +133,7 @@ cl::Program build_program(const cl::Context& context, const FoundDevice& device,
     throw_device_error(error, device.info.name);
   }
   try {
-    program.build(device.device, options.c_str());
+    program.build(std::vector<cl::Device>{device.device}, options.c_str());
   } catch (const cl::Error& error) {
     throw KernelBuildError(device.info.name, options, log_of(program, device.device, error));
   }

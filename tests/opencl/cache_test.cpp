@@ -50,7 +50,7 @@ TEST(OpenClCacheFile, EveryDamagedByteIsNoticed) {
   const Bytes good = read_all(path);
   ASSERT_GT(good.size(), 60u);
   for (std::size_t i = 0; i < good.size(); ++i)
-    for (const unsigned char bit : {0x01, 0x80}) {
+    for (const auto bit : std::array<unsigned char, 2>{0x01, 0x80}) {
       Bytes bad = good;
       bad[i] ^= bit;
       write_all(path, bad);

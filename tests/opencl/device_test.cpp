@@ -80,9 +80,9 @@ TEST_F(OpenClDevice, WrongArgumentsAreRefused) {
   const std::vector<Arg> too_few = {Arg(1u)};
   const auto count = caught<InternalError>([&] { device->launch(KernelId::cadt_selftest, 1, too_few, false); });
   EXPECT_NE(std::string(count.what()).find("takes 4 arguments, not 1"), std::string::npos) << count.what();
-  // A scalar of the wrong size is the runtime's to notice: the error has the call and the name of the code.
+  // What the runtime notices arrives with its call and the name of its code.
   const auto buffer = device->allocate(256);
-  const std::vector<Arg> wrong = {Arg(buffer), Arg(buffer), Arg(buffer), Arg(std::uint64_t{1})};
+  const std::vector<Arg> wrong = {Arg(1u), Arg(buffer), Arg(buffer), Arg(1u)};
   const auto size = caught<DeviceError>([&] { device->launch(KernelId::cadt_selftest, 1, wrong, false); });
   EXPECT_EQ(size.call(), "clSetKernelArg");
   EXPECT_EQ(size.device(), info.name);
@@ -129,6 +129,19 @@ TEST_F(OpenClDevice, MoreThanAllMemory) {
   EXPECT_LT(error.available(), piece);
   held.clear();
   EXPECT_NO_THROW(held.push_back(device->allocate(piece)));
+}
+
+TEST_F(OpenClDevice, LostContextFailsFastAndIsReplaced) {
+  opencl::OpenRequest request = small();
+  request.fresh = false;
+  const auto device = opencl::open_device(request);
+  const auto buffer = device->allocate(16);
+  opencl::lose_context(request);
+  const auto error = caught<DeviceError>([&] { device->fill(*buffer, 0, 16, 0); });
+  EXPECT_EQ(error.code(), -34);
+  EXPECT_THROW(static_cast<void>(device->allocate(16)), DeviceError);
+  EXPECT_THROW(device->finish(), DeviceError);
+  EXPECT_EQ(counted_items(*opencl::open_device(request), 100), 100u);
 }
 
 TEST_F(OpenClDevice, AliasReadsTheCallersMemory) {

@@ -15,17 +15,18 @@ float decode(std::uint32_t byte) {
 }
 
 /// sRGB byte of a linear value by table: a pow for every channel of every pixel would cost more than the mesh.
+/// Its steps are below half a byte at the dark end, where sRGB is steepest.
 std::uint32_t encode(float linear) {
   static const auto table = [] {
-    std::array<std::uint8_t, 4097> t{};
+    std::array<std::uint8_t, 8193> t{};
     for (std::size_t i = 0; i < t.size(); ++i) {
-      const float v = static_cast<float>(i) / 4096.0f;
+      const float v = static_cast<float>(i) / 8192.0f;
       const float s = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
       t[i] = static_cast<std::uint8_t>(std::lround(255.0f * s));
     }
     return t;
   }();
-  return table[static_cast<std::size_t>(std::clamp(linear, 0.0f, 1.0f) * 4096.0f)];
+  return table[static_cast<std::size_t>(std::clamp(linear, 0.0f, 1.0f) * 8192.0f + 0.5f)];
 }
 
 struct Lab {

@@ -140,11 +140,13 @@ void Ink::line(Point2f a, Point2f b, int stride, std::uint32_t key) {
     const float upper = across - base;
     const int j = static_cast<int>(base);
     if (steep) {
-      put(j, static_cast<int>(y), share * (1.0f - upper));
-      put(j + 1, static_cast<int>(y), share * upper);
+      const int row = static_cast<int>(std::floor(y));
+      put(j, row, share * (1.0f - upper));
+      put(j + 1, row, share * upper);
     } else {
-      put(static_cast<int>(x), j, share * (1.0f - upper));
-      put(static_cast<int>(x), j + 1, share * upper);
+      const int column = static_cast<int>(std::floor(x));
+      put(column, j, share * (1.0f - upper));
+      put(column, j + 1, share * upper);
     }
   }
 }

@@ -67,15 +67,23 @@ std::vector<float> relative_heights(const Scene& scene) {
   return out;
 }
 
-float median_edge(const Scene& scene, std::span<const Point2f> position) {
+EdgeLengths edge_lengths(const Scene& scene, std::span<const Point2f> position) {
   std::vector<float> lengths;
+  double sum = 0.0;
+  std::size_t taken = 0;
   for (std::size_t t = 0; t < scene.faces(); t += step_for(scene.faces())) {
+    ++taken;
     const auto [a, b, c] = corners(scene, position, t);
-    for (const float d : {std::hypot(b.x - a.x, b.y - a.y), std::hypot(c.x - b.x, c.y - b.y)}) {
-      if (std::isfinite(d)) lengths.push_back(d);
+    for (const float d :
+         {std::hypot(b.x - a.x, b.y - a.y), std::hypot(c.x - b.x, c.y - b.y), std::hypot(a.x - c.x, a.y - c.y)}) {
+      if (!std::isfinite(d)) continue;
+      lengths.push_back(d);
+      sum += static_cast<double>(d);
     }
   }
-  return quantile(lengths, 0.5);
+  if (taken == 0) return {};
+  // Nearly every edge has two triangles.
+  return {quantile(lengths, 0.5), 0.5 * sum * static_cast<double>(scene.faces()) / static_cast<double>(taken)};
 }
 
 AreaScale::AreaScale(const Scene& scene, std::span<const Point2f> position) {
@@ -96,12 +104,42 @@ float AreaScale::operator()(Point2f a, Point2f b, Point2f c) const {
   return std::clamp((log_area(a, b, c) - low_) / (high_ - low_), 0.0f, 1.0f);
 }
 
-GroundOpacity::GroundOpacity(float median_edge_pixels)
-    : begin_(std::max(6.0f * median_edge_pixels, 48.0f)), end_(3.0f * begin_) {}
+GroundOpacity::GroundOpacity(const Scene& scene, std::span<const Point2f> position, float median_edge_pixels)
+    : scene_(scene),
+      position_(position),
+      begin_(std::max(6.0f * median_edge_pixels, 48.0f)),
+      end_(3.0f * begin_),
+      outer_(scene.points(), 0) {
+  std::vector<std::size_t> large;
+  for (std::size_t t = 0; t < scene.faces(); ++t) {
+    if (longest_edge(t) > begin_) large.push_back(t);
+  }
+  for (const std::int32_t v : scene.hull) outer_[static_cast<std::size_t>(v)] = 1;
+  // Bays are a few triangles deep; a bound keeps a hostile mesh from making this quadratic.
+  constexpr int most_rounds = 32;
+  bool grown = true;
+  for (int round = 0; grown && round < most_rounds; ++round) {
+    grown = false;
+    for (const std::size_t t : large) {
+      const std::int32_t* v = scene.triangles.data() + 3 * t;
+      const auto at = [&](int k) -> char& { return outer_[static_cast<std::size_t>(v[k])]; };
+      const int known = at(0) + at(1) + at(2);
+      if (known == 0 || known == 3) continue;
+      at(0) = at(1) = at(2) = 1;
+      grown = true;
+    }
+  }
+}
 
-float GroundOpacity::operator()(Point2f a, Point2f b, Point2f c) const {
-  const float t = std::clamp((longest(a, b, c) - begin_) / (end_ - begin_), 0.0f, 1.0f);
-  return 1.0f - 0.8f * t;
+float GroundOpacity::longest_edge(std::size_t t) const {
+  const auto [a, b, c] = corners(scene_, position_, t);
+  return longest(a, b, c);
+}
+
+float GroundOpacity::operator()(std::size_t t) const {
+  if (outer_[static_cast<std::size_t>(scene_.triangles[3 * t])] == 0) return 1.0f;
+  const float s = std::clamp((longest_edge(t) - begin_) / (end_ - begin_), 0.0f, 1.0f);
+  return 1.0f - 0.8f * s;
 }
 
 }  // namespace cadt::io::picture

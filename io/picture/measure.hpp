@@ -17,8 +17,12 @@ namespace cadt::io::picture {
 /// Heights mapped so that the 0.5 % and 99.5 % quantiles become 0 and 1. Empty if there is no height or all are equal.
 [[nodiscard]] std::vector<float> relative_heights(const Scene& scene);
 
-/// Median length of the edges in pixels; 0 without triangles.
-[[nodiscard]] float median_edge(const Scene& scene, std::span<const Point2f> position);
+/// Edges in pixels, estimated from samples; zeros without triangles.
+struct EdgeLengths {
+  float median = 0.0f;
+  double total = 0.0;
+};
+[[nodiscard]] EdgeLengths edge_lengths(const Scene& scene, std::span<const Point2f> position);
 
 /// Colour position of a triangle by its area in pixels: log scale, 0 small and 1 large.
 class AreaScale {
@@ -30,15 +34,21 @@ class AreaScale {
   float low_ = 0.0f, high_ = 1.0f;
 };
 
-/// How far a triangle counts as ground: 1, falling to a low value for triangles far larger than the usual ones, which
-/// bridge a gap in the data or fill a bay of the hull.
+/// How far a triangle counts as ground: 1, but falling to a low value for triangles far larger than the usual ones that
+/// hang together with the hull: they fill bays of the outline, where nothing was measured. Large triangles in the
+/// middle (a lake, a flat field between contour lines) are ground.
 class GroundOpacity {
  public:
-  explicit GroundOpacity(float median_edge_pixels);
-  [[nodiscard]] float operator()(Point2f a, Point2f b, Point2f c) const;
+  GroundOpacity(const Scene& scene, std::span<const Point2f> position, float median_edge_pixels);
+  /// \pre t < scene.faces()
+  [[nodiscard]] float operator()(std::size_t t) const;
 
  private:
+  [[nodiscard]] float longest_edge(std::size_t t) const;
+  const Scene& scene_;
+  std::span<const Point2f> position_;
   float begin_, end_;
+  std::vector<char> outer_;  ///< point that large triangles connect with the hull
 };
 
 }  // namespace cadt::io::picture

@@ -19,6 +19,7 @@ namespace {
 /// Edges are strokes where they can be told apart, and Cairo's time per stroke is bearable.
 constexpr float least_stroked_edge = 3.0f;
 constexpr std::size_t most_stroked_faces = 400'000;
+constexpr double most_stroked_ink = 1.5;  // pixels of edge for each pixel of the picture
 
 struct Drawing {
   const Scene& scene;
@@ -29,7 +30,7 @@ struct Drawing {
 
 Field make_ground(const Drawing& d, int width, int height) {
   const AreaScale area(d.scene, d.position);
-  const GroundOpacity opacity(d.edge);
+  const GroundOpacity opacity(d.scene, d.position, d.edge);
   Field field(width, height);
   for (std::size_t t = 0; t < d.scene.faces(); ++t) {
     Point2f p[3];
@@ -43,7 +44,7 @@ Field make_ground(const Drawing& d, int width, int height) {
     if (d.relief.empty()) {
       value[0] = value[1] = value[2] = area(p[0], p[1], p[2]);
     } else {
-      solid = opacity(p[0], p[1], p[2]);
+      solid = opacity(t);
     }
     field.add(p, value, solid);
   }
@@ -142,11 +143,13 @@ std::string png_bytes(const Scene& scene, const PictureOptions& options) {
     draw_points(d, canvas);
     return canvas.png();
   }
-  d.edge = median_edge(scene, d.position);
+  const EdgeLengths edges = edge_lengths(scene, d.position);
+  d.edge = edges.median;
   if (options.shade) d.relief = relative_heights(scene);
   show_upper_sheet(scene, d.relief);
   const bool relief = !d.relief.empty();
-  const bool stroked = d.edge >= least_stroked_edge && scene.faces() <= most_stroked_faces;
+  const double room = most_stroked_ink * static_cast<double>(view.width()) * static_cast<double>(view.height());
+  const bool stroked = d.edge >= least_stroked_edge && scene.faces() <= most_stroked_faces && edges.total <= room;
 
   if (stroked) {
     if (options.shade) paint_ground(make_ground(d, view.width(), view.height()), relief, canvas);

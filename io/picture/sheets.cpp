@@ -50,11 +50,11 @@ float roughness(const Graph& g, const std::vector<float>& h) {
 }  // namespace
 
 void show_upper_sheet(const Scene& scene, std::vector<float>& h) {
-  constexpr float rough = 0.06f;  // of the range of heights; fractal terrain of 500 points has half of that
-  constexpr float gap = 0.10f;    // between two sheets
-  constexpr std::size_t most_around =
-      64;  // neighbours of neighbours looked at: bounds the work at points of high degree
+  constexpr float rough = 0.06f;           // of the range of heights; fractal terrain of 500 points has half of that
+  constexpr std::size_t most_around = 64;  // neighbours and theirs: bounds the work at points of high degree
   if (h.size() < 50 || scene.hull.empty()) return;
+  // Between two sheets; within one, heights of neighbours differ the more the coarser the mesh is.
+  const float gap = std::clamp(3.2f / std::sqrt(static_cast<float>(h.size())), 0.02f, 0.1f);
   const Graph g = graph_of(scene);
   if (roughness(g, h) < rough) return;
 
@@ -99,6 +99,13 @@ void show_upper_sheet(const Scene& scene, std::vector<float>& h) {
       hidden[v] = 0;
     }
   }
+
+  // The side that is seen gets the whole range of colours.
+  std::vector<float> seen = h;
+  const float low = quantile(seen, 0.005);
+  const float high = quantile(seen, 0.995);
+  if (!(low < high)) return;
+  for (float& v : h) v = (v - low) / (high - low);
 }
 
 }  // namespace cadt::io::picture

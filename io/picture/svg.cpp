@@ -50,6 +50,7 @@ struct Facet {
   Point2f p[3];
   float gx = 0, gy = 0;  ///< gradient of the relative height, per pixel
   float mean = 0;
+  std::size_t face = 0;
 };
 
 /// The drawable triangles with their gradients.
@@ -58,6 +59,7 @@ std::vector<Facet> facets(const Scene& scene, const std::vector<Point2f>& positi
   out.reserve(scene.faces());
   for (std::size_t t = 0; t < scene.faces(); ++t) {
     Facet f;
+    f.face = t;
     float h[3] = {0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto v = static_cast<std::size_t>(scene.triangles[3 * t + k]);
@@ -83,26 +85,27 @@ void fill(std::string& out, const Scene& scene, const std::vector<Point2f>& posi
   show_upper_sheet(scene, relief);
   const std::vector<Facet> all = facets(scene, position, relief);
   const AreaScale area(scene, position);
-  const GroundOpacity opacity(edge);
+  const GroundOpacity opacity(scene, position, edge);
 
   std::vector<float> slopes;
   for (const Facet& f : all) slopes.push_back(std::hypot(f.gx, f.gy));
   const float steep = quantile(slopes, 0.85);
   const float scale = steep > 0.0f ? 1.0f / steep : 0.0f;
 
-  // One path for each colour; five bits a channel are not seen as steps and make few paths.
+  // One path for each colour. The arguments are rounded, not the bytes of the colour: those steps would change the hue.
+  const auto rounded = [](float v, float steps) { return std::round(v * steps) / steps; };
   std::map<std::uint32_t, std::string> paths;
   for (const Facet& f : all) {
     Rgb colour;
     if (relief.empty()) {
-      colour = size_ramp()(area(f.p[0], f.p[1], f.p[2]));
+      colour = size_ramp()(rounded(area(f.p[0], f.p[1], f.p[2]), 48.0f));
     } else {
-      colour = terrain_ramp()(f.mean);
-      const float light = hill_shade(scale * f.gx, scale * f.gy);
+      colour = terrain_ramp()(rounded(f.mean, 48.0f));
+      const float light = rounded(hill_shade(scale * f.gx, scale * f.gy), 24.0f);
       colour = {colour.r * light, colour.g * light, colour.b * light};
-      colour = mix(from_srgb(paper), colour, opacity(f.p[0], f.p[1], f.p[2]));
+      colour = mix(from_srgb(paper), colour, rounded(opacity(f.face), 8.0f));
     }
-    std::string& path = paths[to_srgb(colour) & 0xf8f8f8u];
+    std::string& path = paths[to_srgb(colour)];
     point(path, 'M', f.p[0]);
     point(path, 'L', f.p[1]);
     point(path, 'L', f.p[2]);
@@ -121,7 +124,7 @@ void fill(std::string& out, const Scene& scene, const std::vector<Point2f>& posi
 std::string svg_text(const Scene& scene, const PictureOptions& options) {
   const Viewport view(scene.xy, options.width, options.max_height);
   const std::vector<Point2f> position = view.map_all(scene.xy);
-  const float edge = median_edge(scene, position);
+  const float edge = edge_lengths(scene, position).median;
 
   std::string out;
   fmt::format_to(std::back_inserter(out),

@@ -58,11 +58,17 @@ Viewport::Viewport(std::span<const double> xy, int width, int max_height) {
   }
   if (x.low > x.high) x = y = Range{0.0, 0.0};  // no points
 
-  const double largest = std::max({std::fabs(x.low), std::fabs(x.high), std::fabs(y.low), std::fabs(y.high)});
-  const double pre = largest > 0.25 * std::numeric_limits<double>::max() ? 0.25 : 1.0;
-  const double span_x = x.high * pre - x.low * pre;
-  const double span_y = y.high * pre - y.low * pre;
-  const double aspect = std::clamp(ratio(span_y, span_x), 1.0 / max_aspect, max_aspect);  // height to width
+  // Quarters of the largest doubles have a finite difference; small coordinates would lose bits by that.
+  const auto factor = [](Range r) {
+    const double largest = std::max(std::fabs(r.low), std::fabs(r.high));
+    return largest > 0.25 * std::numeric_limits<double>::max() ? 0.25 : 1.0;
+  };
+  const double pre_x = factor(x);
+  const double pre_y = factor(y);
+  const double span_x = x.high * pre_x - x.low * pre_x;
+  const double span_y = y.high * pre_y - y.low * pre_y;
+  const double height_to_width = ratio(span_y, span_x) * (pre_x / pre_y);
+  const double aspect = std::clamp(height_to_width, 1.0 / max_aspect, max_aspect);
 
   width_ = std::clamp(width, 16, 32'000);
   max_height = std::clamp(max_height, 16, 32'000);
@@ -79,8 +85,8 @@ Viewport::Viewport(std::span<const double> xy, int width, int max_height) {
   inner_x = width_ - 2.0 * margin_;
   inner_y = height_ - 2.0 * margin_;
 
-  x_ = make_axis(x.low, pre, span_x, inner_x, margin_, false);
-  y_ = make_axis(y.low, pre, span_y, inner_y, height_ - margin_, true);
+  x_ = make_axis(x.low, pre_x, span_x, inner_x, margin_, false);
+  y_ = make_axis(y.low, pre_y, span_y, inner_y, height_ - margin_, true);
 }
 
 std::vector<Point2f> Viewport::map_all(std::span<const double> xy) const {

@@ -6,11 +6,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <cfloat>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <sstream>
+#ifdef __SSE2__
+#include <xmmintrin.h>
+#endif
 
 namespace {
 
@@ -177,6 +182,33 @@ TEST(InvalidInput, NamesTheFirstPointThatIsNotFinite) {
         EXPECT_EQ(e.index(), value / 2);
       }
     }
+}
+
+TEST(InvalidInput, NoVerdictWithoutIeeeArithmetic) {
+  const TestMesh m = lattice(3, 3);
+  const auto refused = [&] {
+    try {
+      (void)verify(m.points(), m.view());
+      return false;
+    } catch (const cadt::Error&) {
+      return true;
+    }
+  };
+  const int before = std::fegetround();
+  ASSERT_EQ(std::fesetround(FE_UPWARD), 0);
+  const bool upward = refused();
+  std::fesetround(before);
+  EXPECT_TRUE(upward);
+#ifdef __SSE2__
+  const unsigned mode = _mm_getcsr();
+  for (const unsigned flag : {0x8000U, 0x0040U}) {  // flush to zero, denormals are zero
+    _mm_setcsr(mode | flag);
+    const bool flushed = refused();
+    _mm_setcsr(mode);
+    EXPECT_TRUE(flushed) << flag;
+  }
+#endif
+  EXPECT_FALSE(refused());
 }
 
 /// The small regression inputs, triangulated by brute force, against the counts that came with them.

@@ -21,6 +21,23 @@ TEST(KillTopology, TrianglesThatOnlyTouch) {
   m.xy = {0, 0, 1, 0, 1, 1, -1, 0, -1, -1};
   m.triangles = {0, 1, 2, 0, 3, 4};
   expect_killed_by(verify_bare(m), "boundary");
+  EXPECT_NE(check_of(verify_bare(m), "boundary").what.find("not the only boundary edge"), std::string::npos);
+}
+
+TEST(KillTopology, EdgeUsedTwiceInTheSameDirection) {
+  TestMesh m;
+  m.xy = {0, 0, 1, 0, 0.5, 1, 0.5, 2};
+  m.triangles = {0, 1, 2, 0, 1, 3};
+  EXPECT_EQ(failed(verify_bare(m)), Names{"neighbors"});
+  EXPECT_EQ(check_of(verify_bare(m), "neighbors").first, 2);
+}
+
+TEST(KillTopology, EdgeUsedByThreeTriangles) {
+  TestMesh m;
+  m.xy = {0, 0, 1, 0, 0.5, 1, 0.5, 2, 0.5, -1};
+  m.triangles = {0, 1, 2, 1, 0, 4, 0, 1, 3};
+  EXPECT_EQ(failed(verify_bare(m)), Names{"neighbors"});
+  EXPECT_EQ(check_of(verify_bare(m), "neighbors").failures, 1U);
 }
 
 TEST(KillTopology, TwoComponents) {

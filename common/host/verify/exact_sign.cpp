@@ -6,11 +6,19 @@
 
 #include <array>
 #include <bit>
+#include <cfloat>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 
 namespace cadt::verifier {
 namespace {
+
+// The bounds of the filters and the expansions hold for IEEE doubles without excess precision.
+static_assert(std::numeric_limits<double>::is_iec559 && FLT_EVAL_METHOD == 0);
+#ifdef __FAST_MATH__
+#error "the verifier must not be built with -ffast-math"
+#endif
 
 /// A finite double as (-1)^negative * mantissa * 2^exponent, mantissa odd, or zero.
 struct Parts {

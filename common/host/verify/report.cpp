@@ -3,6 +3,7 @@
 #include "mesh.hpp"
 
 #include <array>
+#include <cfenv>
 #include <cmath>
 #include <limits>
 
@@ -26,6 +27,16 @@ enum Name : std::size_t {
 };
 constexpr std::array<const char*, number_of_checks> names{"counts",   "range", "neighbors", "orientation", "vertices",
                                                           "boundary", "euler", "hull",      "delaunay",    "ties"};
+
+/// The predicates rest on IEEE 754 arithmetic. A process may have changed it, e.g. by loading code made for fast
+/// arithmetic; then no verdict is better than a wrong one. Threads inherit the mode of the one that starts them.
+void require_ieee_arithmetic() {
+  volatile double smallest_normal = std::numeric_limits<double>::min(), half = 0.5;
+  volatile const double subnormal = smallest_normal * half;
+  if (std::fegetround() != FE_TONEAREST || subnormal == 0 || subnormal + subnormal != smallest_normal)
+    throw Error(
+        "verify needs IEEE arithmetic: rounding to nearest, and subnormal numbers that are not flushed to zero");
+}
 
 void require_finite(PointsView points, unsigned threads) {
   const Tally tally =
@@ -67,6 +78,7 @@ class Run {
   }
 
   VerifyReport run() {
+    require_ieee_arithmetic();
     require_finite(mesh_.points, mesh_.threads);
     examine();
     report_.ok = true;

@@ -20,30 +20,43 @@
 namespace cadt::host {
 namespace {
 
-constexpr std::size_t page_alignment = 4096;
+// From this size on memory comes straight from the system: in huge pages, which spare page faults and address translations
+// (the mesh is read in no regular order), and zeroed by the system at first touch, by the thread that touches it.
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 
 class HostBuffer final : public Buffer {
  public:
   explicit HostBuffer(std::size_t bytes) : Buffer(bytes) {
-    // Huge pages spare many page faults and address translations: the mesh is read in no regular order.
-    const std::size_t alignment = bytes >= huge_page ? huge_page : page_alignment;
-    const std::size_t rounded = (std::max<std::size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
-    data_ = std::aligned_alloc(alignment, rounded);
-    if (data_ == nullptr) throw OutOfMemory("not enough host memory: use fewer points", bytes, 0);
-    if (bytes >= huge_page) ::madvise(data_, rounded, MADV_HUGEPAGE);  // advice only: failure changes nothing
-    owned_ = true;
+    if (bytes >= huge_page) {
+      // One page more than needed, so that a huge page can begin at the data.
+      mapped_bytes_ = (bytes + 2 * huge_page - 1) / huge_page * huge_page;
+      void* mapped = ::mmap(nullptr, mapped_bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+      if (mapped == MAP_FAILED) throw OutOfMemory("not enough host memory: use fewer points", bytes, 0);
+      mapped_ = mapped;
+      const auto at = reinterpret_cast<std::uintptr_t>(mapped);
+      data_ = static_cast<std::byte*>(mapped) + ((huge_page - at % huge_page) % huge_page);
+      ::madvise(data_, bytes, MADV_HUGEPAGE);  // advice only: failure changes nothing
+    } else {
+      const std::size_t line = 64;
+      data_ = std::aligned_alloc(line, (std::max<std::size_t>(bytes, 1) + line - 1) / line * line);
+      if (data_ == nullptr) throw OutOfMemory("not enough host memory: use fewer points", bytes, 0);
+      owned_ = true;
+    }
   }
   HostBuffer(const void* data, std::size_t bytes) : Buffer(bytes), data_(const_cast<void*>(data)) {}
   ~HostBuffer() override {
+    if (mapped_ != nullptr) ::munmap(mapped_, mapped_bytes_);
     if (owned_) std::free(data_);
   }
   HostBuffer(const HostBuffer&) = delete;
   HostBuffer& operator=(const HostBuffer&) = delete;
   [[nodiscard]] void* data() const noexcept { return data_; }
+  [[nodiscard]] bool zeroed() const noexcept { return mapped_ != nullptr; }
 
  private:
   void* data_ = nullptr;
+  void* mapped_ = nullptr;
+  std::size_t mapped_bytes_ = 0;
   bool owned_ = false;
 };
 
@@ -88,6 +101,11 @@ class HostDevice final : public Device {
   [[nodiscard]] unsigned threads() const noexcept override { return pool_.threads(); }
 
   [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override { return std::make_unique<HostBuffer>(bytes); }
+  [[nodiscard]] std::unique_ptr<Buffer> allocate_zeros(std::size_t bytes) override {
+    auto buffer = std::make_unique<HostBuffer>(bytes);
+    if (!buffer->zeroed()) std::memset(buffer->data(), 0, bytes);
+    return buffer;
+  }
   [[nodiscard]] std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) override {
     return std::make_unique<HostBuffer>(data, bytes);
   }

@@ -13,6 +13,11 @@ typedef struct {
   cadt_u32 a, b, c, slot;
 } cadt_triangle;
 
+/* A real triangle in the bucket of its smallest vertex. */
+typedef struct {
+  cadt_u32 second, record;
+} cadt_member;
+
 CADT_FN cadt_triangle cadt_label(CADT_GLOBAL const cadt_u32* labels, const cadt_record r) {
   const cadt_u32 x = labels[r.word[0]], y = labels[r.word[1]], z = labels[r.word[2]];
   cadt_triangle t;
@@ -47,81 +52,75 @@ CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_record* records, CADT_G
   if (ghosts) cadt_add_relaxed(totals + 1, ghosts);
 }
 
-/* Puts each real triangle's record in its bucket. \pre buckets are scanned (their beginnings); \post their ends */
+/* Puts each real triangle in its bucket: (second vertex, record). \pre buckets are scanned (their beginnings); \post their
+ * ends */
 CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
-            CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_u32* members, cadt_u32 count, cadt_u32 grain) {
+            CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(t, count, grain) {
     const cadt_record r = records[t];
-    if (cadt_kind(r) == 1u) members[cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u)] = t;
+    if (cadt_kind(r) != 1u) continue;
+    const cadt_triangle label = cadt_label(labels, r);
+    cadt_member member;
+    member.second = label.b;
+    member.record = t;
+    members[cadt_add_relaxed(buckets + label.a, 1u)] = member;
   }
 }
 
 /* Sorts each bucket by the second vertex: long ones by heap sort, since the hub of a wheel has one triangle a point. */
-CADT_FN void cadt_sift_down(CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
-                            CADT_GLOBAL cadt_u32* members, cadt_u32 begin, cadt_u32 at, cadt_u32 size) {
-  const cadt_u32 moving = members[begin + at];
-  const cadt_u32 key = cadt_label(labels, records[moving]).b;
+CADT_FN void cadt_sift_down(CADT_GLOBAL cadt_member* bucket, cadt_u32 at, cadt_u32 size) {
+  const cadt_member moving = bucket[at];
   for (;;) {
     cadt_u32 child = 2u * at + 1u;
     if (child >= size) break;
-    cadt_u32 child_key = cadt_label(labels, records[members[begin + child]]).b;
-    if (child + 1u < size) {
-      const cadt_u32 other_key = cadt_label(labels, records[members[begin + child + 1u]]).b;
-      if (other_key > child_key) {
-        ++child;
-        child_key = other_key;
-      }
-    }
-    if (child_key <= key) break;
-    members[begin + at] = members[begin + child];
+    if (child + 1u < size && bucket[child + 1u].second > bucket[child].second) ++child;
+    if (bucket[child].second <= moving.second) break;
+    bucket[at] = bucket[child];
     at = child;
   }
-  members[begin + at] = moving;
+  bucket[at] = moving;
 }
 
 enum { CADT_SHORT_BUCKET = 24 };
 
-CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
-            CADT_GLOBAL const cadt_u32* ends, CADT_GLOBAL cadt_u32* members, cadt_u32 count, cadt_u32 grain) {
+CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* ends, CADT_GLOBAL cadt_member* members, cadt_u32 count,
+            cadt_u32 grain) {
   CADT_FOR(v, count, grain) {
     const cadt_u32 begin = v ? ends[v - 1u] : 0u, size = ends[v] - begin;
-    if (size < 2u) continue;
+    CADT_GLOBAL cadt_member* bucket = members + begin;
     if (size <= CADT_CAST(cadt_u32, CADT_SHORT_BUCKET)) {
-      cadt_u32 keys[CADT_SHORT_BUCKET], sorted[CADT_SHORT_BUCKET];
-      for (cadt_u32 e = 0u; e < size; ++e) {
-        const cadt_u32 t = members[begin + e], key = cadt_label(labels, records[t]).b;
+      for (cadt_u32 e = 1u; e < size; ++e) {
+        const cadt_member moving = bucket[e];
         cadt_u32 at = e;
-        for (; at > 0u && keys[at - 1u] > key; --at) {
-          keys[at] = keys[at - 1u];
-          sorted[at] = sorted[at - 1u];
-        }
-        keys[at] = key;
-        sorted[at] = t;
+        for (; at > 0u && bucket[at - 1u].second > moving.second; --at) bucket[at] = bucket[at - 1u];
+        bucket[at] = moving;
       }
-      for (cadt_u32 e = 0u; e < size; ++e) members[begin + e] = sorted[e];
     } else {
-      for (cadt_u32 at = size / 2u; at-- > 0u;) cadt_sift_down(records, labels, members, begin, at, size);
+      for (cadt_u32 at = size / 2u; at-- > 0u;) cadt_sift_down(bucket, at, size);
       for (cadt_u32 left = size - 1u; left > 0u; --left) {
-        const cadt_u32 last = members[begin + left];
-        members[begin + left] = members[begin];
-        members[begin] = last;
-        cadt_sift_down(records, labels, members, begin, 0u, left);
+        const cadt_member last = bucket[left];
+        bucket[left] = bucket[0];
+        bucket[0] = last;
+        cadt_sift_down(bucket, 0u, left);
       }
     }
   }
 }
 
 /* numbers[record] = index of the triangle. \pre numbers are CADT_NONE */
-CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_u32* members, CADT_GLOBAL cadt_u32* numbers, cadt_u32 count,
+CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_GLOBAL cadt_u32* numbers, cadt_u32 count,
             cadt_u32 grain) {
-  CADT_FOR(i, count, grain) { numbers[members[i]] = i; }
+  CADT_FOR(i, count, grain) { numbers[members[i].record] = i; }
 }
 
+/* Writes the triangles to their places. By record, so that what is read (neighbours' numbers, labels) is near. */
 CADT_KERNEL(cadt_emit_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
-            CADT_GLOBAL const cadt_u32* members, CADT_GLOBAL const cadt_u32* numbers, CADT_GLOBAL cadt_u32* triangles,
-            CADT_GLOBAL cadt_u32* neighbors, cadt_u32 count, cadt_u32 grain) {
-  CADT_FOR(i, count, grain) {
-    const cadt_record r = records[members[i]];
+            CADT_GLOBAL const cadt_u32* numbers, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors,
+            cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(record, count, grain) {
+    const cadt_u32 i = numbers[record];
+    if (i == CADT_NONE) continue;
+    const cadt_record r = records[record];
     const cadt_triangle t = cadt_label(labels, r);
     /* ghosts have no number: CADT_NONE is -1 */
     const cadt_u32 n0 = numbers[CADT_LINK_RECORD(r.word[4])], n1 = numbers[CADT_LINK_RECORD(r.word[5])];

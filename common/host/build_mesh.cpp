@@ -38,9 +38,8 @@ class Builder {
       mesh.flat = true;
       return mesh;
     }
-    records_ = run_.memory.allocate(2 * n_ * sizeof(cadt_record));
+    records_ = run_.memory.allocate_zeros(2 * n_ * sizeof(cadt_record));  // lock word 0: not in use yet
     hints_ = run_.memory.allocate(n_ * word);
-    run_.device.fill(*records_, 0, 2 * n_ * sizeof(cadt_record), 0);
     for (Allocation& list : left_points_) list = run_.memory.allocate((n_ / 2 + 1) * word);
     for (Allocation& list : left_edges_) list = run_.memory.allocate(edge_capacity_ * word);
     left_counts_ = launch_.zeros(2);

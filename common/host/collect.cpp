@@ -73,11 +73,11 @@ void collect_mesh(Run& run, const DeviceMesh& mesh, const Allocation& labels, Tr
   data.hull = link_loop(edges, data.points);
 
   launch.scan(buckets, data.points + 1);
-  Allocation members = run.memory.allocate(triangles * word);
+  Allocation members = run.memory.allocate(triangles * 2 * word);
   launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, labels, buckets, members, slots, all.grain);
   if (run.options.order == Order::canonical) {
     const Cut vertices = launch.cut(data.points);
-    launch.run(KernelId::cadt_sort_buckets, vertices.items, mesh.records, labels, buckets, members,
+    launch.run(KernelId::cadt_sort_buckets, vertices.items, buckets, members,
                static_cast<std::uint32_t>(data.points), vertices.grain);
   }
   buckets.release();
@@ -87,12 +87,13 @@ void collect_mesh(Run& run, const DeviceMesh& mesh, const Allocation& labels, Tr
   run.device.fill(*numbers, 0, mesh.slots * word, none);
   const Cut real = launch.cut(triangles);
   launch.run(KernelId::cadt_number_triangles, real.items, members, numbers, triangles, real.grain);
+  members.release();
   data.triangles = std::make_unique_for_overwrite<std::int32_t[]>(std::size_t{3} * triangles);
   data.neighbors = std::make_unique_for_overwrite<std::int32_t[]>(std::size_t{3} * triangles);
   Output vertices_out(run, data.triangles.get(), std::size_t{3} * triangles);
   Output neighbors_out(run, data.neighbors.get(), std::size_t{3} * triangles);
-  launch.run(KernelId::cadt_emit_triangles, real.items, mesh.records, labels, members, numbers, vertices_out.buffer,
-             neighbors_out.buffer, triangles, real.grain);
+  launch.run(KernelId::cadt_emit_triangles, all.items, mesh.records, labels, numbers, vertices_out.buffer,
+             neighbors_out.buffer, slots, all.grain);
   run.device.finish();
   vertices_out.deliver();
   neighbors_out.deliver();

@@ -12,9 +12,7 @@ namespace cadt {
 using namespace device_constants;
 
 Counters::Counters(Device& device, Memory& memory)
-    : device_(device), buffer_(memory.allocate(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE)) {
-  device_.fill(*buffer_, 0, (*buffer_).bytes(), 0);
-}
+    : device_(device), buffer_(memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE)) {}
 
 void Counters::collect(Statistics& statistics) const {
   std::vector<std::uint32_t> words(static_cast<std::size_t>(CADT_COUNTER_ROWS) * CADT_COUNTER_STRIDE);

@@ -74,6 +74,12 @@ class Device {
 
   /// Uninitialised memory. \throws OutOfMemory, DeviceError
   [[nodiscard]] virtual std::unique_ptr<Buffer> allocate(std::size_t bytes) = 0;
+  /// Memory of zeros. \throws OutOfMemory, DeviceError
+  [[nodiscard]] virtual std::unique_ptr<Buffer> allocate_zeros(std::size_t bytes) {
+    auto buffer = allocate(bytes);
+    fill(*buffer, 0, bytes / 4 * 4, 0);
+    return buffer;
+  }
   /// A read-only buffer that aliases the caller's memory where the device can, else nullptr (then copy).
   [[nodiscard]] virtual std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) = 0;
   /// A buffer that writes straight to the caller's memory where the device can, else nullptr (then read it back).

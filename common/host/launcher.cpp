@@ -28,11 +28,7 @@ Cut Launcher::chunks(std::size_t count) const noexcept {
   return {static_cast<std::uint32_t>(divide_up(count, grain)), static_cast<std::uint32_t>(grain)};
 }
 
-Allocation Launcher::zeros(std::size_t words) {
-  Allocation buffer = memory_.allocate(words * sizeof(std::uint32_t));
-  device_.fill(*buffer, 0, words * sizeof(std::uint32_t), 0);
-  return buffer;
-}
+Allocation Launcher::zeros(std::size_t words) { return memory_.allocate_zeros(words * sizeof(std::uint32_t)); }
 
 std::uint32_t Launcher::read_word(const Allocation& from, std::size_t index) {
   std::uint32_t word = 0;

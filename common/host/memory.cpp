@@ -27,13 +27,23 @@ void Memory::require(std::size_t bytes) const {
   }
 }
 
-Allocation Memory::allocate(std::size_t bytes) {
-  bytes = std::max<std::size_t>(bytes, 4);  // OpenCL has no empty buffers
-  require(bytes);
-  auto buffer = device_.allocate(bytes);
+Allocation Memory::account(std::unique_ptr<Buffer> buffer) {
+  const std::size_t bytes = buffer->bytes();
   held_ += bytes;
   peak_ = std::max(peak_, held_);
   return {*this, std::move(buffer), bytes};
+}
+
+Allocation Memory::allocate(std::size_t bytes) {
+  bytes = std::max<std::size_t>(bytes, 4);  // OpenCL has no empty buffers
+  require(bytes);
+  return account(device_.allocate(bytes));
+}
+
+Allocation Memory::allocate_zeros(std::size_t bytes) {
+  bytes = std::max<std::size_t>(bytes, 4);
+  require(bytes);
+  return account(device_.allocate_zeros(bytes));
 }
 
 Allocation Memory::import(const void* data, std::size_t bytes) {

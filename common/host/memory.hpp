@@ -53,6 +53,8 @@ class Memory {
 
   /// \throws OutOfMemory if the limit or the device does not allow it
   [[nodiscard]] Allocation allocate(std::size_t bytes);
+  /// The same, filled with zeros.
+  [[nodiscard]] Allocation allocate_zeros(std::size_t bytes);
   /// The caller's data: aliased if the device can, else copied.
   [[nodiscard]] Allocation import(const void* data, std::size_t bytes);
   /// Memory of the caller to be written by kernels, if the device can; else null.
@@ -64,6 +66,7 @@ class Memory {
 
  private:
   friend class Allocation;
+  [[nodiscard]] Allocation account(std::unique_ptr<Buffer> buffer);
   Device& device_;
   std::size_t limit_, held_ = 0, peak_ = 0;
 };

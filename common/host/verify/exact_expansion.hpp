@@ -46,7 +46,7 @@ class Expansion {
   }
 
  private:
-  std::array<double, Capacity> component_;  // NOLINT: only the first size_ are read
+  std::array<double, Capacity> component_{};
   std::size_t size_ = 0;
 };
 

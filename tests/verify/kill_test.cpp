@@ -206,6 +206,9 @@ TEST_F(Kill, DuplicateUsedInPlaceOfItsRepresentative) {
   std::ranges::replace(doubled.hull, d.representative, d.point);
   expect_killed_by(verify_full(doubled), "vertices");
   EXPECT_TRUE(verify_bare(doubled).ok) << "another program may choose another of equal points";
+  doubled.duplicates[1] = {d.representative, d.point};  // true, but the lowest must stand for the others
+  std::ranges::sort(doubled.duplicates, {}, &cadt::Duplicate::point);
+  expect_killed_by(verify_full(doubled), "vertices");
 }
 
 TEST_F(Kill, BothOfTwoEqualPointsUsed) {

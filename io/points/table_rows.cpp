@@ -40,29 +40,35 @@ bool TableRows::is_comment(std::string_view line) noexcept {
   return start.empty() || start[0] == '#' || start[0] == '>' || start.starts_with("//");
 }
 
-char TableRows::recognise_separator(std::string_view line) {
+void TableRows::recognise_separator(std::string_view line) {
   for (const char separator : {';', ','}) {
-    if (find_unquoted(line, separator) != std::string_view::npos) return separator;
+    if (find_unquoted(line, separator) != std::string_view::npos) {
+      separator_ = separator;
+      return;
+    }
   }
-  if (find_unquoted(line, '\t') == std::string_view::npos) return blanks;
-  // Tabs between fields of several words are separators; between numbers they are blanks like others.
-  bool words_within = false, all_numeric = true;
-  for (std::string_view rest = line; !rest.empty();) {
-    const std::size_t end = std::min(rest.find('\t'), rest.size());
-    const std::string_view field = trimmed(rest.substr(0, end));
-    words_within = words_within || field.find(' ') != std::string_view::npos;
-    all_numeric = all_numeric && (field.empty() || looks_numeric(field));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return words_within && all_numeric ? blanks : '\t';
+  separator_ = blanks;
+  if (find_unquoted(line, '\t') == std::string_view::npos) return;
+  // Between words tabs separate fields that may hold spaces. Between numbers they are blanks like others, but two in a
+  // row mean an empty cell, unless the first row has them as well: then they align the columns.
+  split_at_blanks(line);
+  const bool numbers = std::all_of(fields_.begin(), fields_.end(), [](std::string_view field) {
+    return parse_number(field).problem != NumberProblem::malformed;
+  });
+  if (!numbers) separator_ = '\t';
+  single_tabs_ = numbers && !found_empty_cell_;
+  fields_.clear();
 }
 
 void TableRows::split_at_blanks(std::string_view line) {
   const char* at = line.data();
   const char* const end = at + line.size();
+  found_empty_cell_ = false;
   for (;;) {
-    while (at != end && is_blank(*at)) ++at;
+    int tabs = fields_.empty() ? 1 : 0;
+    while (at != end && is_blank(*at)) tabs += *at++ == '\t' ? 1 : 0;
     if (at == end) return;
+    found_empty_cell_ = found_empty_cell_ || tabs > 1;
     const char* const start = at;
     while (at != end && !is_blank(*at)) ++at;
     fields_.emplace_back(start, static_cast<std::size_t>(at - start));
@@ -117,12 +123,13 @@ bool TableRows::next() {
     std::string_view line = scanner_.line();
     if (separator_ == 0) {
       if (line.find('\0') != std::string_view::npos) fail("is not text");
-      separator_ = recognise_separator(line);
+      recognise_separator(line);
     }
     if (separator_ == blanks) {
       if (const std::size_t cut = line.find('#'); cut != std::string_view::npos) line = line.substr(0, cut);
       if (const std::size_t cut = line.find("//"); cut != std::string_view::npos) line = line.substr(0, cut);
       split_at_blanks(line);
+      if (single_tabs_ && found_empty_cell_) fail("there is an empty cell between tabs");
     } else if (line.find('"') != std::string_view::npos) {
       split_quoted();
     } else {

@@ -12,9 +12,9 @@
 namespace cadt::io::detail {
 
 /// Splits a table into rows of fields. The separator is recognised from the first row: semicolon, else comma, else tab
-/// where fields may hold spaces, else runs of blanks. With a separator character, fields may be quoted ("a, ""b""") and
-/// a quoted field may span lines. Skipped: blank lines, lines that start with '#', '//' or '>' (segments of GMT), and
-/// in tables separated by blanks everything from '#' or '//' on.
+/// if there are fields that are no numbers, else runs of blanks. With a separator character, fields may be quoted ("a,
+/// ""b""") and a quoted field may span lines. Skipped: blank lines, lines that start with '#', '//' or '>' (segments of
+/// GMT), and in tables separated by blanks everything from '#' or '//' on.
 class TableRows {
  public:
   TableRows(const std::string& name, std::string_view text);
@@ -31,14 +31,16 @@ class TableRows {
  private:
   static constexpr char blanks = ' ';
 
-  [[nodiscard]] static char recognise_separator(std::string_view line);
+  void recognise_separator(std::string_view line);
   [[nodiscard]] static bool is_comment(std::string_view line) noexcept;
   void split_at_blanks(std::string_view line);
   void split_at_separator(std::string_view line);
   void split_quoted();
 
   TextScanner scanner_;
-  char separator_ = 0;  ///< 0: not recognised yet
+  char separator_ = 0;             ///< 0: not recognised yet
+  bool single_tabs_ = false;       ///< two tabs in a row mean an empty cell, although blanks separate
+  bool found_empty_cell_ = false;  ///< by split_at_blanks in its row
   std::vector<std::string_view> fields_;
   std::size_t row_line_ = 0;
 };

@@ -32,7 +32,8 @@ struct MeshFile {
 };
 
 /// Reads triangles; `number_of_points` is that of the point file they index. `base` as in WriteOptions, -1: recognised
-/// (the .node beside an .ele, else the smallest index). Throws FileError, also for an index out of range.
+/// (the .node beside an .ele, else the indices, else the number of the first triangle). Neighbours come from .npz and from
+/// the .neigh beside an .ele. Throws FileError, also for an index out of range.
 [[nodiscard]] MeshFile read_mesh(const std::string& path, std::size_t number_of_points, const std::string& format = {}, int base = -1);
 
 [[nodiscard]] std::vector<std::string> mesh_write_formats();

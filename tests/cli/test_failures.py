@@ -169,6 +169,7 @@ class Resources(CliTest):
         self.cadt("triangulate", "in.f64", "--max-memory", "4GiB")
         self.assertEqual(self.names(), ["in.f64"])
 
+    @unittest.skipIf(os.environ.get("CADT_SANITIZE"), "sanitizers need the address space that this test takes away")
     def test_allocation_that_fails(self):
         def little_memory():
             default_signals()

@@ -87,7 +87,6 @@ void write_outputs(const TriangulateOptions& options, const std::vector<Output>&
                    const Triangulation& mesh, ProgressLine& line) {
   std::vector<std::string> written;
   for (const Output& output : outputs) {
-    line.step(fmt::format("writing {}", display_name(output.path, false)));
     io::WriteOptions write;
     write.format = output.format;
     write.base = options.base;
@@ -95,6 +94,7 @@ void write_outputs(const TriangulateOptions& options, const std::vector<Output>&
     write.width = options.width;
     {
       const InPhase phase(writing_phase(output.path));
+      line.step(fmt::format("writing {}", display_name(output.path, false)));
       io::write_mesh(output.path, points, mesh, write);
       if (output.path == "-") finish_stdout();
     }

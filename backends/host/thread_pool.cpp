@@ -3,23 +3,27 @@
 
 namespace cadt::host {
 
-ThreadPool::ThreadPool(unsigned threads) {
-  for (unsigned i = 1; i < threads; ++i) workers_.emplace_back([this](const std::stop_token& stop) { serve(stop); });
+ThreadPool::ThreadPool(unsigned threads) : shares_(threads) {
+  for (std::size_t i = 1; i < threads; ++i)
+    workers_.emplace_back([this, i](const std::stop_token& stop) { serve(i, stop); });
 }
 
 ThreadPool::~ThreadPool() {
   for (auto& worker : workers_) worker.request_stop();
 }
 
-void ThreadPool::work() noexcept {
-  for (;;) {
-    const std::uint64_t item = next_.fetch_add(1, std::memory_order_relaxed);
-    if (item >= items_) return;
-    kernel_(static_cast<std::uint32_t>(item), items_, args_);
+void ThreadPool::work(std::size_t self) noexcept {
+  for (std::size_t turn = 0; turn < shares_.size(); ++turn) {
+    Share& share = shares_[(self + turn) % shares_.size()];
+    for (;;) {
+      const std::uint64_t item = share.next.fetch_add(1, std::memory_order_relaxed);
+      if (item >= share.end) break;
+      kernel_(static_cast<std::uint32_t>(item), items_, args_);
+    }
   }
 }
 
-void ThreadPool::serve(const std::stop_token& stop) noexcept {
+void ThreadPool::serve(std::size_t self, const std::stop_token& stop) noexcept {
   std::uint64_t seen = 0;
   for (;;) {
     {
@@ -27,7 +31,7 @@ void ThreadPool::serve(const std::stop_token& stop) noexcept {
       if (!start_.wait(lock, stop, [&] { return launch_ != seen; })) return;
       seen = launch_;
     }
-    work();
+    work(self);
     std::lock_guard lock(mutex_);
     if (--active_ == 0) done_.notify_one();
   }
@@ -37,9 +41,12 @@ void ThreadPool::run(KernelFunction kernel, std::uint32_t items, const Arg* args
   kernel_ = kernel;
   args_ = args;
   items_ = items;
-  next_.store(0, std::memory_order_relaxed);
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    shares_[i].next.store(std::uint64_t{items} * i / shares_.size(), std::memory_order_relaxed);
+    shares_[i].end = std::uint64_t{items} * (i + 1) / shares_.size();
+  }
   if (workers_.empty() || items < 2) {  // waking the others would take longer
-    work();
+    work(0);
     return;
   }
   {
@@ -48,7 +55,7 @@ void ThreadPool::run(KernelFunction kernel, std::uint32_t items, const Arg* args
     active_ = static_cast<unsigned>(workers_.size());
   }
   start_.notify_all();
-  work();
+  work(0);
   std::unique_lock lock(mutex_);
   done_.wait(lock, [&] { return active_ == 0; });
 }

@@ -12,7 +12,8 @@
 
 namespace cadt::host {
 
-/// A fixed number of threads, the caller among them, that share the work-items of one launch after another.
+/// A fixed number of threads, the caller among them, that share the work-items of one launch after another. Each thread
+/// has a contiguous share, so threads work far apart in the mesh and seldom meet; who is done helps the others.
 class ThreadPool {
  public:
   explicit ThreadPool(unsigned threads);
@@ -26,14 +27,18 @@ class ThreadPool {
   void run(KernelFunction kernel, std::uint32_t items, const Arg* args);
 
  private:
-  void work() noexcept;
-  void serve(const std::stop_token& stop) noexcept;
+  void work(std::size_t self) noexcept;
+  void serve(std::size_t self, const std::stop_token& stop) noexcept;
 
   // The launch at hand. Written by run() while no worker is active.
   KernelFunction kernel_ = nullptr;
   const Arg* args_ = nullptr;
   std::uint32_t items_ = 0;
-  std::atomic<std::uint64_t> next_{0};  // wider than items_: each thread overshoots by one
+  struct alignas(64) Share {
+    std::atomic<std::uint64_t> next{0};  // wider than an item: each thread overshoots by one
+    std::uint64_t end = 0;
+  };
+  std::vector<Share> shares_;
 
   std::mutex mutex_;
   std::condition_variable_any start_;

@@ -141,8 +141,8 @@ CADT_FN cadt_u32 cadt_is_illegal(const cadt_mesh* m, cadt_u32 p, cadt_u32 a, cad
  * quadrilateral that is now opposite the same apex. */
 CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 apex, cadt_u32* partner, cadt_tally* tally) {
   const cadt_u32 t = CADT_LINK_RECORD(link), k = CADT_LINK_EDGE(link), k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
-  const cadt_snapshot s = cadt_look(m, t);
-  const cadt_u32 p = CADT_VERTEX(s, k);
+  const cadt_snapshot s = cadt_look_from(m, t, k);
+  const cadt_u32 p = s.v0;
   if (!cadt_is_free(s.lock)) {
     tally->count[CADT_COUNT_LOST_CLAIMS]++;
     return CADT_EDGE_CONFLICT;
@@ -151,16 +151,16 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
     tally->count[CADT_COUNT_STALE_EDGES]++;
     return CADT_EDGE_LEGAL;
   }
-  const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
+  const cadt_u32 across = s.n0, n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
   const cadt_u32 j1 = CADT_NEXT(j), j2 = CADT_PREV(j);
-  const cadt_snapshot u = cadt_look(m, n);
-  if (!cadt_is_free(u.lock) || CADT_NEIGHBOR(u, j) != link) {
+  const cadt_snapshot u = cadt_look_from(m, n, j);
+  if (!cadt_is_free(u.lock) || u.n0 != link) {
     tally->count[CADT_COUNT_LOST_CLAIMS]++;
     return CADT_EDGE_CONFLICT;
   }
-  const cadt_u32 q = CADT_VERTEX(u, j);
-  if (!cadt_is_illegal(m, p, CADT_VERTEX(s, k1), CADT_VERTEX(s, k2), q, tally)) return CADT_EDGE_LEGAL;
-  const cadt_u32 outer_bp = CADT_NEIGHBOR(s, k1), outer_aq = CADT_NEIGHBOR(u, j1);
+  const cadt_u32 q = u.v0;
+  if (!cadt_is_illegal(m, p, s.v1, s.v2, q, tally)) return CADT_EDGE_LEGAL;
+  const cadt_u32 outer_bp = s.n1, outer_aq = u.n1;
   cadt_claim claim;
   claim.record[0] = t;
   claim.version[0] = s.lock;
@@ -183,8 +183,8 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   cadt_link_back(m, outer_aq, CADT_LINK(t, k));
   cadt_link_back(m, outer_bp, CADT_LINK(n, j));
   cadt_release_claim(m, &claim);
-  cadt_set_hint(m, CADT_VERTEX(s, k1), t);
-  cadt_set_hint(m, CADT_VERTEX(s, k2), n);
+  cadt_set_hint(m, s.v1, t);
+  cadt_set_hint(m, s.v2, n);
   *partner = CADT_LINK(n, j2);
   tally->count[CADT_COUNT_FLIPS]++;
   return CADT_EDGE_FLIPPED;

@@ -31,12 +31,12 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
       if (n < t) continue; /* seen from the other side */
-      const cadt_snapshot u = cadt_look(&mesh, n);
+      const cadt_snapshot u = cadt_look_from(&mesh, n, j);
       ++examined;
-      if (!cadt_is_free(s.lock) || !cadt_is_free(u.lock) || CADT_NEIGHBOR(u, j) != CADT_LINK(t, k)) {
+      if (!cadt_is_free(s.lock) || !cadt_is_free(u.lock) || u.n0 != CADT_LINK(t, k)) {
         ++unsettled;
       } else if (cadt_is_illegal(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
-                                 CADT_VERTEX(u, j), &tally)) {
+                                 u.v0, &tally)) {
         ++illegal;
         work[0] = CADT_LINK(t, k);
         cadt_legalize(&mesh, CADT_NONE, work, 1u, &deferred, &tally);

@@ -66,8 +66,7 @@ CADT_FN cadt_u32 cadt_leave_face(const cadt_mesh* m, const cadt_snapshot* s, cad
 /* Walks from record `start` to the place of p. place->kind is CADT_LOST when the walk was too long or read nonsense;
  * place->record is where to go on in any case. */
 CADT_FN void cadt_locate(const cadt_mesh* m, cadt_point p, cadt_u32 start, cadt_place* place, cadt_tally* tally) {
-  cadt_u32 t = start, entry = 3u, entry_a = CADT_NONE, entry_b = CADT_NONE, steps = 0u;
-  cadt_u32 noise = start * 2654435761u + 12345u;
+  cadt_u32 t = start, entry = 3u, steps = 0u, noise = start * 2654435761u + 12345u;
   place->kind = CADT_LOST;
   place->edge = 0u;
   for (; steps < CADT_CAST(cadt_u32, CADT_WALK_LIMIT); ++steps) {
@@ -80,13 +79,18 @@ CADT_FN void cadt_locate(const cadt_mesh* m, cadt_point p, cadt_u32 start, cadt_
       leave = cadt_leave_ghost(m, &s, g, p, tally);
     } else {
       cadt_u32 reverse = 0u;
-      if (entry != 3u && (CADT_VERTEX(s, CADT_NEXT(entry)) != entry_b || CADT_VERTEX(s, CADT_PREV(entry)) != entry_a))
-        entry = 3u; /* the neighbour has changed since its edge was tested from the other side */
       if (steps > CADT_CAST(cadt_u32, CADT_WALK_STRAIGHT)) {
         noise = noise * 1664525u + 1013904223u;
         reverse = noise >> 31;
       }
       leave = cadt_leave_face(m, &s, entry, reverse, p, &on, tally);
+      /* The entry edge was tested from the other side, but either side may have changed since: test it before it counts. */
+      if (leave == 3u && entry != 3u) {
+        const cadt_i32 o = cadt_orientation(m->points[CADT_VERTEX(s, CADT_NEXT(entry))],
+                                            m->points[CADT_VERTEX(s, CADT_PREV(entry))], p, tally);
+        if (o < 0) leave = entry;
+        if (o == 0) on |= 1u << entry;
+      }
     }
     if (leave == 3u) {
       if (on & (on - 1u)) break; /* on two lines: a torn read, since p is no vertex */
@@ -95,13 +99,10 @@ CADT_FN void cadt_locate(const cadt_mesh* m, cadt_point p, cadt_u32 start, cadt_
       place->at = s;
       break;
     }
-    entry_a = CADT_VERTEX(s, CADT_NEXT(leave));
-    entry_b = CADT_VERTEX(s, CADT_PREV(leave));
-    t = CADT_NEIGHBOR(s, leave);
-    entry = CADT_LINK_EDGE(t);
-    t = CADT_LINK_RECORD(t);
-    /* a ghost is entered and left by wedges: nothing is known of its edges */
-    if (entry_a == CADT_GHOST || entry_b == CADT_GHOST) entry = 3u;
+    const cadt_u32 link = CADT_NEIGHBOR(s, leave);
+    t = CADT_LINK_RECORD(link);
+    /* a ghost is entered and left by wedges: nothing is known of the edges between them */
+    entry = s.v0 == CADT_GHOST || s.v1 == CADT_GHOST || s.v2 == CADT_GHOST ? 3u : CADT_LINK_EDGE(link);
   }
   place->record = t;
   tally->count[CADT_COUNT_WALK_STEPS] += steps;

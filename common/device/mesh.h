@@ -65,6 +65,37 @@ CADT_FN cadt_snapshot cadt_look(const cadt_mesh* m, cadt_u32 t) {
   return s;
 }
 
+/* The same seen from edge k: v0 is opposite of it, n0 is the link across it. CPUs load by index, since a choice by k would be a
+ * branch that nobody can predict; GPUs load the record whole and rotate it in registers. */
+CADT_FN cadt_snapshot cadt_look_from(const cadt_mesh* m, cadt_u32 t, cadt_u32 k) {
+#if CADT_CONTIGUOUS
+  CADT_GLOBAL cadt_u32* w = m->records[t].word;
+  const cadt_u32 k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
+  cadt_snapshot s;
+  s.lock = cadt_load_acquire(w + CADT_WORD_LOCK);
+  s.v0 = cadt_load_acquire(w + k);
+  s.v1 = cadt_load_acquire(w + k1);
+  s.v2 = cadt_load_acquire(w + k2);
+  s.n0 = cadt_load_acquire(w + CADT_WORD_LINK + k);
+  s.n1 = cadt_load_acquire(w + CADT_WORD_LINK + k1);
+  s.n2 = cadt_load_acquire(w + CADT_WORD_LINK + k2);
+  s.flips = cadt_load_acquire(w + CADT_WORD_FLIPS);
+  return s;
+#else
+  const cadt_snapshot s = cadt_look(m, t);
+  cadt_snapshot r;
+  r.lock = s.lock;
+  r.v0 = CADT_PICK(k, s.v0, s.v1, s.v2);
+  r.v1 = CADT_PICK(k, s.v1, s.v2, s.v0);
+  r.v2 = CADT_PICK(k, s.v2, s.v0, s.v1);
+  r.n0 = CADT_PICK(k, s.n0, s.n1, s.n2);
+  r.n1 = CADT_PICK(k, s.n1, s.n2, s.n0);
+  r.n2 = CADT_PICK(k, s.n2, s.n0, s.n1);
+  r.flips = s.flips;
+  return r;
+#endif
+}
+
 #if defined(CADT_CHECKED)
 #define CADT_ASSERT_OWNED(m, t) cadt_assert_owned((m)->records[t].word[CADT_WORD_LOCK])
 #else

@@ -79,12 +79,16 @@ KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
   const int bits = std::clamp(static_cast<int>(std::bit_width(n)) + 4, 4, 32);
   int surplus = bits;
   if (shorter > 0) surplus = std::min(bits, std::max(0, std::ilogb(longer) - std::ilogb(shorter)));
-  const int longer_bits = std::min((bits + surplus + 1) / 2, std::min(bits, 31));
-  const int shorter_bits = std::min(bits - longer_bits, 16);
+  int longer_bits = std::min((bits + surplus + 1) / 2, 31);
+  int shorter_bits = std::clamp(longer_bits - surplus, 0, 16);
+  if (longer_bits + shorter_bits > 32) --longer_bits, --shorter_bits;
   KeyGrid grid;
   grid.bits_x = static_cast<unsigned>(width >= height ? longer_bits : shorter_bits);
   grid.bits_y = static_cast<unsigned>(width >= height ? shorter_bits : longer_bits);
-  if (longer > 0) grid.scale = std::min(std::ldexp(1.0, longer_bits) / longer, std::numeric_limits<double>::max());
+  grid.scale = std::numeric_limits<double>::max();  // if all points are equal, or nearly so: any finite scale does
+  if (longer > 0) grid.scale = std::min(grid.scale, std::ldexp(1.0, longer_bits) / longer);
+  // the shorter axis must not leave its bits either, unless it has none
+  if (shorter > 0 && shorter_bits > 0) grid.scale = std::min(grid.scale, std::ldexp(1.0, shorter_bits) / shorter);
   return grid;
 }
 

@@ -30,10 +30,11 @@ Points tiny_cluster(std::size_t n) {
 }
 
 Points few_distinct(std::size_t n) {
-  Points xy = shuffled(grid_points(40, 40), 6);
+  constexpr int side = 100;
+  Points xy = shuffled(grid_points(side, side), 6);
   Random random(4);
   while (xy.size() < 2 * n) {
-    const double x = static_cast<double>(random.below(40)), y = static_cast<double>(random.below(40));
+    const double x = static_cast<double>(random.below(side)), y = static_cast<double>(random.below(side));
     xy.insert(xy.end(), {x, y});
   }
   return xy;
@@ -57,9 +58,9 @@ class Conflicts : public BackendTest {
   }
 };
 
-TEST_P(Conflicts, TinyCluster) { repeat(tiny_cluster(3000), true); }
-TEST_P(Conflicts, Hub) { repeat(hub_points(1500), true); }
-TEST_P(Conflicts, ManyEqualPoints) { repeat(few_distinct(8000), true); }
+TEST_P(Conflicts, TinyCluster) { repeat(tiny_cluster(20000), true); }
+TEST_P(Conflicts, Hub) { repeat(hub_points(10000), true); }
+TEST_P(Conflicts, ManyEqualPoints) { repeat(few_distinct(20000), true); }
 TEST_P(Conflicts, AxisCross) { repeat(axis_cross(60), false); }
 CADT_ON_EVERY_BACKEND(Conflicts);
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <thread>
 #include <vector>
 
 namespace cadt::test {
@@ -42,6 +43,11 @@ Points few_distinct(std::size_t n) {
 
 class Conflicts : public BackendTest {
  protected:
+  // Large work-groups may leave a processor with a single one, whose work-items run one after the other.
+  static bool runs_in_parallel() {
+    return std::thread::hardware_concurrency() > 1 && GetParam().threads != 1 && GetParam().work_group_size == 0;
+  }
+
   void repeat(const Points& xy, bool must_conflict) {
     const ExpectedMesh expected = expected_mesh(xy);
     std::uint64_t conflicts = 0;
@@ -51,7 +57,7 @@ class Conflicts : public BackendTest {
       const Statistics& s = mesh.statistics();
       conflicts += s.lost_claims + s.insert_retries + s.deferred_points + s.deferred_edges;
     }
-    if (must_conflict && GetParam().threads != 1) {
+    if (must_conflict && runs_in_parallel()) {
       EXPECT_GT(conflicts, 0u) << "no two threads ever met: the test shows nothing";
     }
     RecordProperty("conflicts", std::to_string(conflicts));

@@ -92,7 +92,8 @@ DeviceInfo describe() {
 
 class HostDevice final : public Device {
  public:
-  explicit HostDevice(unsigned threads) : pool_(threads != 0 ? threads : all_cores()), info_(describe()) {}
+  explicit HostDevice(const Options& options)
+      : pool_(options.threads != 0 ? options.threads : all_cores(), options.grain != 0), info_(describe()) {}
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] LaunchShape shape() const noexcept override {
@@ -145,7 +146,7 @@ class HostBackend final : public BackendEntry {
   [[nodiscard]] Backend id() const noexcept override { return Backend::host; }
   [[nodiscard]] std::vector<DeviceInfo> devices() override { return {describe()}; }
   [[nodiscard]] std::unique_ptr<Device> open(int /*index*/, const Options& options) override {
-    auto device = std::make_unique<HostDevice>(options.threads);
+    auto device = std::make_unique<HostDevice>(options);
     run_selftest(*device);
     return device;
   }

@@ -3,7 +3,7 @@
 
 namespace cadt::host {
 
-ThreadPool::ThreadPool(unsigned threads) : shares_(threads) {
+ThreadPool::ThreadPool(unsigned threads, bool together) : shares_(threads), together_(together) {
   for (std::size_t i = 1; i < threads; ++i)
     workers_.emplace_back([this, i](const std::stop_token& stop) { serve(i, stop); });
 }
@@ -41,9 +41,10 @@ void ThreadPool::run(KernelFunction kernel, std::uint32_t items, const Arg* args
   kernel_ = kernel;
   args_ = args;
   items_ = items;
-  for (std::size_t i = 0; i < shares_.size(); ++i) {
-    shares_[i].next.store(std::uint64_t{items} * i / shares_.size(), std::memory_order_relaxed);
-    shares_[i].end = std::uint64_t{items} * (i + 1) / shares_.size();
+  const std::size_t shares = together_ ? 1 : shares_.size();
+  for (std::size_t i = 0; i < shares; ++i) {
+    shares_[i].next.store(std::uint64_t{items} * i / shares, std::memory_order_relaxed);
+    shares_[i].end = std::uint64_t{items} * (i + 1) / shares;
   }
   if (workers_.empty() || items < 2) {  // waking the others would take longer
     work(0);

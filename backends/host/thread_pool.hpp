@@ -16,7 +16,8 @@ namespace cadt::host {
 /// has a contiguous share, so threads work far apart in the mesh and seldom meet; who is done helps the others.
 class ThreadPool {
  public:
-  explicit ThreadPool(unsigned threads);
+  /// `together`: no shares, all threads take the next item: they work side by side and meet often.
+  ThreadPool(unsigned threads, bool together);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
@@ -39,6 +40,7 @@ class ThreadPool {
     std::uint64_t end = 0;
   };
   std::vector<Share> shares_;
+  bool together_;
 
   std::mutex mutex_;
   std::condition_variable_any start_;

@@ -19,7 +19,8 @@ struct Cut {
 
 class Launcher {
  public:
-  Launcher(Device& device, Memory& memory, bool wide) noexcept : device_(device), memory_(memory), wide_(wide) {}
+  /// `grain` as in Options, 0 to choose.
+  Launcher(Device& device, Memory& memory, unsigned grain) noexcept : device_(device), memory_(memory), grain_(grain) {}
 
   [[nodiscard]] Device& device() const noexcept { return device_; }
   [[nodiscard]] Memory& memory() const noexcept { return memory_; }
@@ -54,7 +55,8 @@ class Launcher {
  private:
   Device& device_;
   Memory& memory_;
-  bool wide_;
+  unsigned grain_;
+  bool wide_ = false;
   std::uint64_t launches_ = 0;
 };
 

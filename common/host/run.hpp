@@ -15,7 +15,7 @@ namespace cadt {
 
 struct Run {
   Run(Device& d, const Options& o, Statistics& s)
-      : device(d), options(o), statistics(s), memory(d, o.max_memory), launcher(d, memory, false) {}
+      : device(d), options(o), statistics(s), memory(d, o.max_memory), launcher(d, memory, o.grain) {}
 
   Device& device;
   const Options& options;

@@ -49,6 +49,9 @@ struct Options {
   std::size_t max_memory = 0;
   /// Work-group (block) size on a device; 0 lets the library choose.
   unsigned work_group_size = 0;
+  /// Neighbouring elements that one work-item of a CPU takes in a row; 0 lets the library choose. Small numbers put several
+  /// threads to work in one place: slower, and full of conflicts.
+  unsigned grain = 0;
   /// Checked between launches; when triggered the call throws Cancelled.
   std::stop_token stop;
   /// Called from the calling thread between launches. Must not throw.

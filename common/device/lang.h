@@ -67,7 +67,7 @@ typedef long long cadt_i64;
 #define CADT_GLOBAL
 #define CADT_FN static __device__ inline
 #define CADT_FN_SLOW static __device__ __noinline__
-#define CADT_KERNEL(name, ...) extern "C" __global__ void name(__VA_ARGS__)
+#define CADT_KERNEL(name, ...) static __global__ void name(__VA_ARGS__)
 #define cadt_item ((cadt_u32)(blockIdx.x * blockDim.x + threadIdx.x))
 #define cadt_items ((cadt_u32)(gridDim.x * blockDim.x))
 #define CADT_CAST(type, value) ((type)(value))

@@ -25,28 +25,40 @@ def run(command):
     return subprocess.run(command, stdin=subprocess.DEVNULL).returncode
 
 
+def clang_of_this_machine():
+    return next((c for c in ("clang", "clang-19", "clang-18", "clang-15", "clang-14") if shutil.which(c)), None)
+
+
 def opencl(root):
     entry = root / "kernels_cl" / "cadt.cl"
     if not entry.exists():
         return skip(f"{entry.relative_to(root)} does not exist")
-    clang = next((c for c in ("clang", "clang-19", "clang-18", "clang-15", "clang-14") if shutil.which(c)), None)
+    clang = clang_of_this_machine()
     if clang is None:
         return skip("no clang")
     # 64-bit SPIR is what the standard library of the front end knows; only the syntax and types are looked at.
-    return run([clang, "-x", "cl", "-cl-std=CL3.0", "-target", "spir64", "-fsyntax-only", "-Wall", "-Werror",
-                "-Wno-unused-function", "-Wno-gcc-compat", "-Xclang", "-finclude-default-header",
-                "-I", str(root), "-I", str(root / "common" / "device"), str(entry)])
+    variants = [["-cl-std=CL3.0", "-DCADT_CL_C11=1"], ["-cl-std=CL1.2", "-DCADT_WIDE=1", "-DCADT_CONTIGUOUS=0", "-DCADT_RADIX_BITS=4"]]
+    return max(run([clang, "-x", "cl", "-target", "spir64", "-fsyntax-only", "-Wall", "-Werror", "-Wno-unused-function",
+                    "-Wno-gcc-compat", "-Xclang", "-finclude-default-header", "-I", str(root), *options, str(entry)])
+               for options in variants)
 
 
 def cuda(root):
     entry = root / "kernels_cuda" / "cadt.cu"
     if not entry.exists():
         return skip(f"{entry.relative_to(root)} does not exist")
-    if shutil.which("nvcc") is None:
-        return skip("no nvcc")
-    with tempfile.TemporaryDirectory() as folder:
-        return run(["nvcc", "-std=c++17", "--fmad=false", "-arch=sm_80", "-I", str(root),
-                    "-I", str(root / "common" / "device"), "-c", str(entry), "-o", f"{folder}/cadt.o"])
+    variants = [[], ["-DCADT_WIDE=1", "-DCADT_CONTIGUOUS=0", "-DCADT_RADIX_BITS=4"]]
+    if shutil.which("nvcc") is not None:
+        with tempfile.TemporaryDirectory() as folder:
+            return max(run(["nvcc", "-std=c++17", "--fmad=false", "-arch=sm_80", "-I", str(root), *options, "-c", str(entry),
+                            "-o", f"{folder}/cadt.o"]) for options in variants)
+    clang = clang_of_this_machine()
+    if clang is None:
+        return skip("neither nvcc nor clang")
+    return max(run([clang, "-x", "cuda", "--cuda-device-only", "--cuda-gpu-arch=sm_70", "-nocudainc", "-nocudalib",
+                    "-fsyntax-only", "-std=c++17", "-Wall", "-Werror", "-Wno-unused-function", "-Wno-unknown-cuda-version",
+                    "-include", str(root / "tests" / "architecture" / "cuda_declarations.h"), "-I", str(root), *options,
+                    str(entry)]) for options in variants)
 
 
 def main():

@@ -44,21 +44,18 @@ def opencl(root):
 
 
 def cuda(root):
-    entry = root / "kernels_cuda" / "cadt.cu"
-    if not entry.exists():
-        return skip(f"{entry.relative_to(root)} does not exist")
-    variants = [[], ["-DCADT_WIDE=1", "-DCADT_CONTIGUOUS=0", "-DCADT_RADIX_BITS=4"]]
+    entries = [root / "kernels_cuda" / name for name in ("narrow.cu", "wide.cu")]
     if shutil.which("nvcc") is not None:
         with tempfile.TemporaryDirectory() as folder:
-            return max(run(["nvcc", "-std=c++17", "--fmad=false", "-arch=sm_80", "-I", str(root), *options, "-c", str(entry),
-                            "-o", f"{folder}/cadt.o"]) for options in variants)
+            return max(run(["nvcc", "-std=c++17", "--fmad=false", "-arch=sm_80", "-I", str(root), "-c", str(entry),
+                            "-o", f"{folder}/cadt.o"]) for entry in entries)
     clang = clang_of_this_machine()
     if clang is None:
         return skip("neither nvcc nor clang")
     return max(run([clang, "-x", "cuda", "--cuda-device-only", "--cuda-gpu-arch=sm_70", "-nocudainc", "-nocudalib",
                     "-fsyntax-only", "-std=c++17", "-Wall", "-Werror", "-Wno-unused-function", "-Wno-unknown-cuda-version",
-                    "-include", str(root / "tests" / "architecture" / "cuda_declarations.h"), "-I", str(root), *options,
-                    str(entry)]) for options in variants)
+                    "-include", str(root / "tests" / "architecture" / "cuda_declarations.h"), "-I", str(root),
+                    str(entry)]) for entry in entries)
 
 
 def main():

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+// Addresses of the CUDA kernels in the order of common/device/kernel_list.h.
+#pragma once
+
+namespace cadt::cuda {
+
+const void* const* narrow_kernels();  ///< exponents within 240 binades
+const void* const* wide_kernels();    ///< any double
+
+}  // namespace cadt::cuda

@@ -38,7 +38,11 @@ bool matches(const DeviceInfo& info, const std::string& wanted) {
 std::unique_ptr<Device> open_in(BackendEntry& backend, const Options& options) {
   const std::string name(to_string(backend.id()));
   std::string reason;
-  for (const DeviceInfo& info : backend.devices()) {
+  const std::vector<DeviceInfo> devices = backend.devices();
+  if (options.device.empty())  // a GPU before a CPU
+    for (const DeviceInfo& info : devices)
+      if (info.index >= 0 && info.usable && info.gpu) return backend.open(info.index, options);
+  for (const DeviceInfo& info : devices) {
     if (info.index < 0) throw BackendUnavailable(name, info.reason);
     if (!matches(info, options.device)) continue;
     if (info.usable) return backend.open(info.index, options);

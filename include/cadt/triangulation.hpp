@@ -40,7 +40,8 @@ struct Progress {
 
 struct Options {
   Backend backend = Backend::automatic;
-  /// Device of the back end: its number as `list_devices()` gives it, or a part of its name. Empty: the first usable one.
+  /// Device of the back end: its number as `list_devices()` gives it, or a part of its name. Empty: the
+  /// first usable GPU, else the first usable one.
   std::string device;
   /// Host threads; 0 takes all cores, 1 runs serially (the reference).
   unsigned threads = 0;

@@ -3,11 +3,12 @@
  * All atomic operations, with their memory order in the name, at device scope. Nothing else in this folder calls an
  * atomic or a fence.
  *
- * Order. Whoever takes a lock must see what the last owner wrote, hence acquire on the claim and release on the unlock.
- * The fields of a record are read without a lock as hints and are validated by the claim, which compares the record's
- * version (lock.h). For that proof a load of a field synchronises with the store of it: if a reader sees a field that a
- * later owner wrote, it also sees that owner's lock word, so its claim fails. Hence fields are stored with release and
- * loaded with acquire where that is free (x86) or required by the model.
+ * Order. Whoever takes a lock must see what the last owner wrote, hence acquire on the claim and release on the unlock. The
+ * fields of a record are also read without a lock, as hints, and validated by the claim. There are two ways to make the
+ * claim prove them (lock.h), because orderings cost nothing on x86 and much on GPUs:
+ * - CPUs: every field is stored with release and loaded with acquire. Then the version in the lock word proves the fields.
+ * - GPUs: fields are stored and loaded relaxed; one fence at device scope stands before the claims, one behind them, one
+ *   before the unlocks, and the owner reads the fields again.
  */
 #ifndef CADT_DEVICE_ATOMICS_H
 #define CADT_DEVICE_ATOMICS_H
@@ -45,6 +46,15 @@ CADT_FN cadt_u32 cadt_add_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) {
 CADT_FN void cadt_min_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) {
   atomic_fetch_min_explicit(CADT_ATOMIC(p), value, memory_order_relaxed, memory_scope_device);
 }
+CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
+  return atomic_compare_exchange_strong_explicit(CADT_ATOMIC(p), &expected, desired, memory_order_relaxed,
+                                                 memory_order_relaxed, memory_scope_device)
+             ? 1u
+             : 0u;
+}
+CADT_FN void cadt_fence_acq_rel(void) {
+  atomic_work_item_fence(CLK_GLOBAL_MEM_FENCE, memory_order_acq_rel, memory_scope_device);
+}
 
 /* ---- OpenCL 1.2: best effort; the standard promises no order between work-groups ---------------------------------- */
 #elif defined(CADT_LANG_OPENCL)
@@ -72,6 +82,10 @@ CADT_FN cadt_u32 cadt_add_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) {
 CADT_FN void cadt_min_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) {
   atomic_min((volatile CADT_GLOBAL cadt_u32*)p, value);
 }
+CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
+  return atomic_cmpxchg((volatile CADT_GLOBAL cadt_u32*)p, expected, desired) == expected ? 1u : 0u;
+}
+CADT_FN void cadt_fence_acq_rel(void) { mem_fence(CLK_GLOBAL_MEM_FENCE); }
 
 /* ---- CUDA: volatile accesses bypass a stale L1 line; __threadfence is device scope -------------------------------- */
 #elif defined(CADT_LANG_CUDA)
@@ -95,6 +109,10 @@ CADT_FN cadt_u32 cadt_cas_acq_rel(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
 }
 CADT_FN cadt_u32 cadt_add_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { return atomicAdd(p, value); }
 CADT_FN void cadt_min_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { atomicMin(p, value); }
+CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
+  return atomicCAS(p, expected, desired) == expected ? 1u : 0u;
+}
+CADT_FN void cadt_fence_acq_rel() { __threadfence(); }
 
 /* ---- host: ordered operations, no fences (ThreadSanitizer does not follow fences) ---------------------------------- */
 #else
@@ -124,4 +142,52 @@ CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
 }
 
 #endif
+
+/* ---- the two disciplines of the records' fields and locks ---------------------------------------------------------- */
+#if CADT_CONTIGUOUS
+CADT_FN cadt_u32 cadt_load_field(CADT_GLOBAL cadt_u32* p) { return cadt_load_acquire(p); }
+CADT_FN void cadt_store_field(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_release(p, value); }
+CADT_FN cadt_u32 cadt_cas_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
+  return cadt_cas_acq_rel(p, expected, desired);
+}
+CADT_FN void cadt_store_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_release(p, value); }
+/* around claims and before unlocks: the operations themselves are ordered */
+CADT_FN void cadt_fence_locks(void) {}
+#else
+CADT_FN cadt_u32 cadt_load_field(CADT_GLOBAL cadt_u32* p) { return cadt_load_relaxed(p); }
+CADT_FN void cadt_store_field(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_relaxed(p, value); }
+CADT_FN cadt_u32 cadt_cas_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
+  return cadt_cas_relaxed(p, expected, desired);
+}
+CADT_FN void cadt_store_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_relaxed(p, value); }
+CADT_FN void cadt_fence_locks(void) { cadt_fence_acq_rel(); }
+#endif
+
+/* The eight words of a record, in two accesses where the language can. */
+#if defined(CADT_LANG_CUDA)
+CADT_FN void cadt_load_record(const cadt_u32* p, cadt_u32* w0, cadt_u32* w1, cadt_u32* w2, cadt_u32* w3, cadt_u32* w4,
+                              cadt_u32* w5, cadt_u32* w6, cadt_u32* w7) {
+  asm volatile("ld.relaxed.gpu.global.v4.u32 {%0, %1, %2, %3}, [%4];"
+               : "=r"(*w0), "=r"(*w1), "=r"(*w2), "=r"(*w3)
+               : "l"(p)
+               : "memory");
+  asm volatile("ld.relaxed.gpu.global.v4.u32 {%0, %1, %2, %3}, [%4];"
+               : "=r"(*w4), "=r"(*w5), "=r"(*w6), "=r"(*w7)
+               : "l"(p + 4)
+               : "memory");
+}
+#else
+CADT_FN void cadt_load_record(CADT_GLOBAL cadt_u32* p, cadt_u32* w0, cadt_u32* w1, cadt_u32* w2, cadt_u32* w3,
+                              cadt_u32* w4, cadt_u32* w5, cadt_u32* w6, cadt_u32* w7) {
+  *w3 = cadt_load_field(p + 3); /* the lock word first: what is read after it is validated by it */
+  *w0 = cadt_load_field(p);
+  *w1 = cadt_load_field(p + 1);
+  *w2 = cadt_load_field(p + 2);
+  *w4 = cadt_load_field(p + 4);
+  *w5 = cadt_load_field(p + 5);
+  *w6 = cadt_load_field(p + 6);
+  *w7 = cadt_load_field(p + 7);
+}
+#endif
+
 #endif

@@ -20,6 +20,13 @@ CADT_FN void cadt_set_hint(const cadt_mesh* m, cadt_u32 vertex, cadt_u32 t) {
   if (vertex != CADT_GHOST) cadt_store_relaxed(m->hints + vertex, t);
 }
 
+/* Gives back a claim whose records turned out to have changed. Returns 0. */
+CADT_FN cadt_u32 cadt_give_up(const cadt_mesh* m, const cadt_claim* claim, cadt_tally* tally) {
+  cadt_abandon_claim(m, claim, 4u);
+  tally->count[CADT_COUNT_LOST_CLAIMS]++;
+  return 0u;
+}
+
 /* A record that is not visible yet. */
 CADT_FN void cadt_new_record(const cadt_mesh* m, cadt_u32 t, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2, cadt_u32 n0,
                              cadt_u32 n1, cadt_u32 n2, cadt_u32 flips) {
@@ -43,6 +50,7 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   claim.record[3] = CADT_NONE;
   claim.version[3] = 0u;
   if (!cadt_try_claim(m, &claim, tally)) return 0u;
+  if (!cadt_confirm(m, t, 0u, &s)) return cadt_give_up(m, &claim, tally);
   /* i takes the place of v0 in t, of v1 in t1, of v2 in t2 */
   cadt_new_record(m, t1, s.v0, i, s.v2, CADT_LINK(t, 1u), s.n1, CADT_LINK(t2, 1u),
                   cadt_flips_set(0u, 1u, cadt_flips_get(s.flips, 1u)));
@@ -54,6 +62,7 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   cadt_store_link(m, t, 1u, CADT_LINK(t1, 0u));
   cadt_store_link(m, t, 2u, CADT_LINK(t2, 0u));
   cadt_store_flips(m, t, cadt_flips_set(0u, 0u, cadt_flips_get(s.flips, 0u)));
+  cadt_fence_locks();
   cadt_publish_record(m, t1);
   cadt_publish_record(m, t2);
   cadt_release_claim(m, &claim);
@@ -88,6 +97,7 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   claim.record[3] = CADT_LINK_RECORD(outer_ad);
   claim.version[2] = claim.version[3] = CADT_ANY_VERSION;
   if (!cadt_try_claim(m, &claim, tally)) return 0u;
+  if (!cadt_confirm(m, t, 0u, &s) || !cadt_confirm(m, n, 0u, &u)) return cadt_give_up(m, &claim, tally);
   /* new records, each in the slots of its parent: ts = (c, i, b), ns = (d, i, a) */
   cadt_store_vertex(m, ts, k, c);
   cadt_store_vertex(m, ts, k1, i);
@@ -114,6 +124,7 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   cadt_store_link(m, n, j, CADT_LINK(ts, k));
   cadt_store_link(m, n, j1, CADT_LINK(ns, j2));
   cadt_store_flips(m, n, cadt_flips_set(0u, j2, cadt_flips_get(u.flips, j2)));
+  cadt_fence_locks();
   cadt_publish_record(m, ts);
   cadt_publish_record(m, ns);
   cadt_release_claim(m, &claim);
@@ -170,6 +181,10 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   claim.record[3] = CADT_LINK_RECORD(outer_aq);
   claim.version[2] = claim.version[3] = CADT_ANY_VERSION;
   if (!cadt_try_claim(m, &claim, tally)) return CADT_EDGE_CONFLICT;
+  if (!cadt_confirm(m, t, k, &s) || !cadt_confirm(m, n, j, &u)) {
+    cadt_give_up(m, &claim, tally);
+    return CADT_EDGE_CONFLICT;
+  }
   /* t = (p, a, b) becomes (p, a, q); n = (q, b, a) becomes (q, b, p); the counter of a-b goes on with p-q */
   const cadt_u32 flips = cadt_flips_get(s.flips, k) + 1u;
   cadt_store_vertex(m, t, k2, q);
@@ -182,6 +197,7 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   cadt_store_flips(m, n, cadt_flips_set(cadt_flips_set(u.flips, j, cadt_flips_get(s.flips, k1)), j1, flips));
   cadt_link_back(m, outer_aq, CADT_LINK(t, k));
   cadt_link_back(m, outer_bp, CADT_LINK(n, j));
+  cadt_fence_locks();
   cadt_release_claim(m, &claim);
   cadt_set_hint(m, s.v1, t);
   cadt_set_hint(m, s.v2, n);

@@ -7,9 +7,11 @@
  * changed since, so success proves that the fields read are the record's state: claim and validity check (paper,
  * Algorithm 1, lines 9 and 15) in one operation. An unlock after a change raises the version.
  *
- * Why the proof holds: a change stores fields with release after its claim (acquire), and fields are loaded with acquire.
- * If a reader saw one field of a later change, the change's claim happens before the reader's compare-and-swap, which then
- * cannot find the old version.
+ * Why the proof holds on CPUs: a change stores fields with release after its claim (acquire), and fields are loaded with
+ * acquire, the lock word first. If a reader saw one field of a later change, the change's claim happens before the reader's
+ * compare-and-swap, which then cannot find the old version.
+ * On GPUs, where loads are relaxed, a field may be older than the version beside it. So the owner reads the record again
+ * under its lock (cadt_confirm); the fence behind the claims makes it see all that earlier owners wrote.
  *
  * Order: records are claimed by ascending index, so among any set of conflicting claimers the one that gets furthest meets
  * nobody who is further (a fixed but unsorted order livelocks in a warp: ../docs/algorithm.md).
@@ -39,6 +41,12 @@ CADT_FN void cadt_claim_order(cadt_claim* c, cadt_u32 i, cadt_u32 j) {
   }
 }
 
+/* Gives back the records of the first `count` places, unchanged. */
+CADT_FN void cadt_abandon_claim(const cadt_mesh* m, const cadt_claim* c, cadt_u32 count) {
+  for (cadt_u32 i = 0u; i < count; ++i)
+    if (c->record[i] != CADT_NONE) cadt_store_lock(m->records[c->record[i]].word + CADT_WORD_LOCK, c->version[i]);
+}
+
 /* Claims up to four records. \pre versions were read by cadt_look before the fields, or are CADT_ANY_VERSION for records
  * of which the caller needs no field. \post 1: the caller owns all of them, `version` has the versions to give back;
  * 0: it owns none. */
@@ -49,35 +57,49 @@ CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* t
   cadt_claim_order(c, 0, 2);
   cadt_claim_order(c, 1, 3);
   cadt_claim_order(c, 1, 2);
+  cadt_fence_locks(); /* the fields were read before */
   for (cadt_u32 i = 0u; i < 4u; ++i) {
     if (c->record[i] == CADT_NONE) break;
     CADT_GLOBAL cadt_u32* lock = m->records[c->record[i]].word + CADT_WORD_LOCK;
-    /* acquire: not to find the version newer than the fields read before is what the compare-and-swap checks */
-    if (c->version[i] == CADT_ANY_VERSION) c->version[i] = cadt_load_acquire(lock);
+    if (c->version[i] == CADT_ANY_VERSION) c->version[i] = cadt_load_field(lock);
 #if defined(CADT_TEST_NO_LOCKS)
     cadt_store_relaxed(lock, c->version[i] | 1u);
 #else
-    if (!cadt_is_free(c->version[i]) || !cadt_cas_acq_rel(lock, c->version[i], c->version[i] | 1u)) {
-      while (i-- > 0u) cadt_store_release(m->records[c->record[i]].word + CADT_WORD_LOCK, c->version[i]);
+    if (!cadt_is_free(c->version[i]) || !cadt_cas_lock(lock, c->version[i], c->version[i] | 1u)) {
+      cadt_abandon_claim(m, c, i);
       tally->count[CADT_COUNT_LOST_CLAIMS]++;
       return 0u;
     }
 #endif
   }
+  cadt_fence_locks(); /* what the last owners wrote is seen from here on */
   return 1u;
+}
+
+/* Whether record t is still what it was, seen from edge k. On CPUs the claim has proved it. \pre the caller owns t */
+CADT_FN cadt_u32 cadt_confirm(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, const cadt_snapshot* s) {
+#if CADT_CONTIGUOUS
+  (void)m, (void)t, (void)k, (void)s;
+  return 1u;
+#else
+  const cadt_snapshot now = cadt_look_from(m, t, k);
+  return now.v0 == s->v0 && now.v1 == s->v1 && now.v2 == s->v2 && now.n0 == s->n0 && now.n1 == s->n1 && now.n2 == s->n2
+             ? 1u
+             : 0u;
+#endif
 }
 
 /* Gives the records back, changed. \pre the caller owns them; all stores to them are done */
 CADT_FN void cadt_release_claim(const cadt_mesh* m, const cadt_claim* c) {
   for (cadt_u32 i = 0u; i < 4u; ++i)
     if (c->record[i] != CADT_NONE)
-      cadt_store_release(m->records[c->record[i]].word + CADT_WORD_LOCK, cadt_next_version(c->version[i]));
+      cadt_store_lock(m->records[c->record[i]].word + CADT_WORD_LOCK, cadt_next_version(c->version[i]));
 }
 
 /* Makes a new record free. \pre its fields and all links to it are stored, and the caller still owns the records it was
  * split from; until then whoever finds it reads lock word 0 and retries */
 CADT_FN void cadt_publish_record(const cadt_mesh* m, cadt_u32 t) {
-  cadt_store_release(m->records[t].word + CADT_WORD_LOCK, 2u);
+  cadt_store_lock(m->records[t].word + CADT_WORD_LOCK, 2u);
 }
 
 #endif

@@ -52,16 +52,8 @@ typedef struct {
 #define CADT_NEIGHBOR(s, k) CADT_PICK((k), (s).n0, (s).n1, (s).n2)
 
 CADT_FN cadt_snapshot cadt_look(const cadt_mesh* m, cadt_u32 t) {
-  CADT_GLOBAL cadt_u32* w = m->records[t].word;
   cadt_snapshot s;
-  s.lock = cadt_load_acquire(w + CADT_WORD_LOCK);
-  s.v0 = cadt_load_acquire(w);
-  s.v1 = cadt_load_acquire(w + 1);
-  s.v2 = cadt_load_acquire(w + 2);
-  s.n0 = cadt_load_acquire(w + 4);
-  s.n1 = cadt_load_acquire(w + 5);
-  s.n2 = cadt_load_acquire(w + 6);
-  s.flips = cadt_load_acquire(w + 7);
+  cadt_load_record(m->records[t].word, &s.v0, &s.v1, &s.v2, &s.lock, &s.n0, &s.n1, &s.n2, &s.flips);
   return s;
 }
 
@@ -72,14 +64,14 @@ CADT_FN cadt_snapshot cadt_look_from(const cadt_mesh* m, cadt_u32 t, cadt_u32 k)
   CADT_GLOBAL cadt_u32* w = m->records[t].word;
   const cadt_u32 k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
   cadt_snapshot s;
-  s.lock = cadt_load_acquire(w + CADT_WORD_LOCK);
-  s.v0 = cadt_load_acquire(w + k);
-  s.v1 = cadt_load_acquire(w + k1);
-  s.v2 = cadt_load_acquire(w + k2);
-  s.n0 = cadt_load_acquire(w + CADT_WORD_LINK + k);
-  s.n1 = cadt_load_acquire(w + CADT_WORD_LINK + k1);
-  s.n2 = cadt_load_acquire(w + CADT_WORD_LINK + k2);
-  s.flips = cadt_load_acquire(w + CADT_WORD_FLIPS);
+  s.lock = cadt_load_field(w + CADT_WORD_LOCK);
+  s.v0 = cadt_load_field(w + k);
+  s.v1 = cadt_load_field(w + k1);
+  s.v2 = cadt_load_field(w + k2);
+  s.n0 = cadt_load_field(w + CADT_WORD_LINK + k);
+  s.n1 = cadt_load_field(w + CADT_WORD_LINK + k1);
+  s.n2 = cadt_load_field(w + CADT_WORD_LINK + k2);
+  s.flips = cadt_load_field(w + CADT_WORD_FLIPS);
   return s;
 #else
   const cadt_snapshot s = cadt_look(m, t);
@@ -106,21 +98,21 @@ CADT_FN cadt_snapshot cadt_look_from(const cadt_mesh* m, cadt_u32 t, cadt_u32 k)
 CADT_FN void cadt_store_vertices(const cadt_mesh* m, cadt_u32 t, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2) {
   CADT_GLOBAL cadt_u32* w = m->records[t].word;
   CADT_ASSERT_OWNED(m, t);
-  cadt_store_release(w, v0);
-  cadt_store_release(w + 1, v1);
-  cadt_store_release(w + 2, v2);
+  cadt_store_field(w, v0);
+  cadt_store_field(w + 1, v1);
+  cadt_store_field(w + 2, v2);
 }
 CADT_FN void cadt_store_vertex(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 v) {
   CADT_ASSERT_OWNED(m, t);
-  cadt_store_release(m->records[t].word + k, v);
+  cadt_store_field(m->records[t].word + k, v);
 }
 CADT_FN void cadt_store_link(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 link) {
   CADT_ASSERT_OWNED(m, t);
-  cadt_store_release(m->records[t].word + CADT_WORD_LINK + k, link);
+  cadt_store_field(m->records[t].word + CADT_WORD_LINK + k, link);
 }
 CADT_FN void cadt_store_flips(const cadt_mesh* m, cadt_u32 t, cadt_u32 flips) {
   CADT_ASSERT_OWNED(m, t);
-  cadt_store_release(m->records[t].word + CADT_WORD_FLIPS, flips);
+  cadt_store_field(m->records[t].word + CADT_WORD_FLIPS, flips);
 }
 
 /* Flip counters: ten bits for each edge slot, saturating. */

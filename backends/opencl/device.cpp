@@ -188,9 +188,12 @@ void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg>
   if (args.size() != target.parameters)
     throw InternalError(std::string(name) + " takes " + std::to_string(target.parameters) + " arguments, not " +
                         std::to_string(args.size()));
-  const std::size_t groups = (items + target.group - 1) / target.group;
+  // On a GPU one work-item must be one and not a group: the driver lets one alone do what others keep each other from. On a
+  // CPU the others find nothing to do, and PoCL compiles anew for each size of a group.
+  const std::size_t group = info().gpu ? std::min<std::size_t>(target.group, items) : target.group;
+  const std::size_t groups = (items + group - 1) / group;
   // The kernels number their work-items in 32 bits: one beyond would be taken for the first.
-  if (groups > std::numeric_limits<std::uint32_t>::max() / target.group)
+  if (groups > std::numeric_limits<std::uint32_t>::max() / group)
     throw InternalError(std::string(name) + " was launched with " + std::to_string(items) + " work-items");
   run([&] {
     cl_uint position = 0;
@@ -203,8 +206,7 @@ void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg>
         target.kernel.setArg(position, memory_of(*arg.buffer()));
       ++position;
     }
-    queue_.enqueueNDRangeKernel(target.kernel, cl::NullRange, cl::NDRange(groups * target.group),
-                                cl::NDRange(target.group));
+    queue_.enqueueNDRangeKernel(target.kernel, cl::NullRange, cl::NDRange(groups * group), cl::NDRange(group));
   });
 }
 

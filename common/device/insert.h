@@ -10,6 +10,7 @@
 
 enum {
   CADT_WORKLIST = 48,      /* edges a work-item can have pending */
+  CADT_WORKLIST_STACK = 40, /* above, the oldest one is next: a long row of flips leaves a legal edge behind at each one */
   CADT_INSERT_TRIES = 12,  /* walks for one point in one launch */
   CADT_EDGE_TRIES = 24,    /* conflicts in the worklist of one point */
   CADT_FLIP_LIMIT = 1 << 14 /* flips for one point in one launch, so a launch ends in bounded time */
@@ -19,7 +20,7 @@ enum {
 typedef struct {
   CADT_GLOBAL cadt_u32* points;
   CADT_GLOBAL cadt_u32* edges;
-  CADT_GLOBAL cadt_u32* counts; /* points, edges */
+  CADT_GLOBAL cadt_u32* counts; /* points, edges, work-items that changed the mesh */
   cadt_u32 edge_capacity;
 } cadt_deferred;
 
@@ -29,19 +30,31 @@ CADT_FN void cadt_defer_edge(const cadt_deferred* deferred, cadt_u32 link, cadt_
   tally->count[CADT_COUNT_DEFERRED_EDGES]++;
 }
 
+/* Tells the driver that this work-item got on. */
+CADT_FN void cadt_report_changes(const cadt_tally* tally, CADT_GLOBAL cadt_u32* counts) {
+  if (tally->count[CADT_COUNT_SPLITS] | tally->count[CADT_COUNT_EDGE_SPLITS] | tally->count[CADT_COUNT_FLIPS])
+    cadt_add_relaxed(counts + 2, 1u);
+}
+
 /* Legalises the edges of a worklist and whatever becomes illegal by the flips. `apex` is the inserted vertex: then only edges
  * opposite of it can become illegal by its flips (paper, Algorithm 3); CADT_NONE: any edge, all four sides are checked. */
 CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_u32 apex, cadt_u32* work, cadt_u32 size, const cadt_deferred* deferred,
                            cadt_tally* tally) {
   cadt_u32 conflicts = 0u, flips = 0u, partner = 0u;
   while (size > 0u) {
-    const cadt_u32 link = work[--size];
+    const cadt_u32 oldest = size > CADT_CAST(cadt_u32, CADT_WORKLIST_STACK) ? 1u : 0u;
+    const cadt_u32 link = work[oldest ? 0u : size - 1u];
+    --size;
+    if (oldest)
+      for (cadt_u32 at = 0u; at < size; ++at) work[at] = work[at + 1u];
     const cadt_u32 outcome = cadt_legalize_edge(m, link, apex, &partner, tally);
     if (outcome == CADT_EDGE_LEGAL) continue;
     if (outcome == CADT_EDGE_CONFLICT) {
       if (++conflicts > CADT_CAST(cadt_u32, CADT_EDGE_TRIES)) {
         cadt_defer_edge(deferred, link, tally);
-      } else { /* to the bottom: the other edges first, meanwhile the owner gets on */
+      } else if (oldest) { /* to the other end: the other edges first, meanwhile the owner gets on */
+        work[size++] = link;
+      } else {
         for (cadt_u32 at = size; at > 0u; --at) work[at] = work[at - 1u];
         work[0] = link;
         ++size;
@@ -108,6 +121,7 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
     if (size) cadt_legalize(&mesh, i, work, size, &deferred, &tally);
     else left_points[cadt_add_relaxed(left_counts, 1u)] = i;
   }
+  cadt_report_changes(&tally, left_counts);
   cadt_tally_flush(&tally, counters, cadt_item);
 }
 
@@ -128,6 +142,7 @@ CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u3
     work[0] = list[e];
     cadt_legalize(&mesh, CADT_NONE, work, 1u, &deferred, &tally);
   }
+  cadt_report_changes(&tally, left_counts);
   cadt_tally_flush(&tally, counters, cadt_item);
 }
 

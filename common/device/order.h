@@ -16,7 +16,7 @@ enum {
 /* Partial results, one row a chunk. */
 CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 chunk, CADT_GLOBAL double* box,
             CADT_GLOBAL cadt_u32* words) {
-  const cadt_u32 begin = cadt_min_u32(cadt_item * chunk, count), end = cadt_min_u32(begin + chunk, count);
+  const cadt_u32 begin = cadt_begin_of(cadt_item, chunk, count), end = cadt_min_u32(begin + chunk, count);
   if (begin == end) return;
   double min_x = 0.0, max_x = 0.0, min_y = 0.0, max_y = 0.0;
   cadt_u32 bad = CADT_NONE, any = 0u;

@@ -15,7 +15,7 @@ CADT_KERNEL(cadt_radix_count, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt
   if (cadt_item >= chunks) return;
   cadt_u32 digits[CADT_DIGITS];
   for (cadt_u32 d = 0u; d < CADT_CAST(cadt_u32, CADT_DIGITS); ++d) digits[d] = 0u;
-  const cadt_u32 begin = cadt_min_u32(cadt_item * chunk, count), end = cadt_min_u32(begin + chunk, count);
+  const cadt_u32 begin = cadt_begin_of(cadt_item, chunk, count), end = cadt_min_u32(begin + chunk, count);
   for (cadt_u32 i = begin; i < end; ++i) digits[(keys[i] >> shift) & (CADT_DIGITS - 1)]++;
   for (cadt_u32 d = 0u; d < CADT_CAST(cadt_u32, CADT_DIGITS); ++d) counts[d * chunks + cadt_item] = digits[d];
 }
@@ -27,7 +27,7 @@ CADT_KERNEL(cadt_radix_scatter, CADT_GLOBAL const cadt_u32* keys_in, CADT_GLOBAL
   if (cadt_item >= chunks) return;
   cadt_u32 digits[CADT_DIGITS];
   for (cadt_u32 d = 0u; d < CADT_CAST(cadt_u32, CADT_DIGITS); ++d) digits[d] = counts[d * chunks + cadt_item];
-  const cadt_u32 begin = cadt_min_u32(cadt_item * chunk, count), end = cadt_min_u32(begin + chunk, count);
+  const cadt_u32 begin = cadt_begin_of(cadt_item, chunk, count), end = cadt_min_u32(begin + chunk, count);
   for (cadt_u32 i = begin; i < end; ++i) {
     const cadt_u32 key = keys_in[i], to = digits[(key >> shift) & (CADT_DIGITS - 1)]++;
     keys_out[to] = key;

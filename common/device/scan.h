@@ -9,7 +9,7 @@
 #include "common/device/lang.h"
 
 CADT_KERNEL(cadt_scan_sums, CADT_GLOBAL const cadt_u32* data, CADT_GLOBAL cadt_u32* sums, cadt_u32 count, cadt_u32 chunk) {
-  const cadt_u32 begin = cadt_min_u32(cadt_item * chunk, count), end = cadt_min_u32(begin + chunk, count);
+  const cadt_u32 begin = cadt_begin_of(cadt_item, chunk, count), end = cadt_min_u32(begin + chunk, count);
   if (begin == end) return;
   cadt_u32 sum = 0u;
   for (cadt_u32 i = begin; i < end; ++i) sum += data[i];
@@ -29,7 +29,7 @@ CADT_KERNEL(cadt_scan_total, CADT_GLOBAL cadt_u32* sums, cadt_u32 chunks) {
 }
 
 CADT_KERNEL(cadt_scan_apply, CADT_GLOBAL cadt_u32* data, CADT_GLOBAL const cadt_u32* sums, cadt_u32 count, cadt_u32 chunk) {
-  const cadt_u32 begin = cadt_min_u32(cadt_item * chunk, count), end = cadt_min_u32(begin + chunk, count);
+  const cadt_u32 begin = cadt_begin_of(cadt_item, chunk, count), end = cadt_min_u32(begin + chunk, count);
   if (begin == end) return;
   cadt_u32 sum = sums[cadt_item];
   for (cadt_u32 i = begin; i < end; ++i) {

@@ -42,7 +42,7 @@ class Builder {
     hints_ = run_.memory.allocate(n_ * word);
     for (Allocation& list : left_points_) list = run_.memory.allocate((n_ / 2 + 1) * word);
     for (Allocation& list : left_edges_) list = run_.memory.allocate(edge_capacity_ * word);
-    left_counts_ = launch_.zeros(2);
+    left_counts_ = launch_.zeros(3);
     run_kernel(KernelId::cadt_start_mesh, 1);
     run_.end_phase("start");
 
@@ -111,13 +111,13 @@ class Builder {
     int launches = 0, stalled = 0;
     std::size_t last = 0;
     for (;;) {
-      std::array<std::uint32_t, 2> left{};
+      std::array<std::uint32_t, 3> left{};  // points, edges, work-items that changed the mesh
       run_.device.read(*left_counts_, 0, left.data(), sizeof left);
       if (left[0] == 0 && left[1] == 0) return;
       run_.device.fill(*left_counts_, 0, sizeof left, 0);
       left[1] = std::min(left[1], edge_capacity_);
       const std::size_t now = std::size_t{left[0]} + left[1];
-      stalled = launches != 0 && now >= last ? stalled + 1 : 0;
+      stalled = launches != 0 && now >= last && left[2] == 0 ? stalled + 1 : 0;
       last = now;
       if (++launches > hopeless_launches && stalled > hopeless_launches) {
         throw InternalError("no progress: " + std::to_string(left[0]) + " points and " + std::to_string(left[1]) +

@@ -17,7 +17,7 @@ Cut Launcher::cut(std::size_t count) const noexcept {
   if (!shape.contiguous) return {static_cast<std::uint32_t>(count), 1};
   // Small pieces near the end keep the threads busy; large ones keep each thread in its own part of the mesh.
   const std::size_t grain =
-      grain_ != 0 ? grain_
+      grain_ != 0 ? std::min<std::size_t>(grain_, std::max<std::size_t>(count, 1))
                   : std::clamp<std::size_t>(divide_up(count, std::size_t{shape.parallelism} * 4), smallest_grain, shape.grain);
   return {static_cast<std::uint32_t>(divide_up(count, grain)), static_cast<std::uint32_t>(grain)};
 }

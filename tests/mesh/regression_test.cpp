@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sets and options that once failed.
+#include "tests/support/backends.hpp"
+#include "tests/support/families.hpp"
+#include "tests/support/mesh_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <span>
+
+namespace cadt::test {
+namespace {
+
+class Regression : public BackendTest {};
+
+// A row of points, one far below and one far above: that one, inserted last, takes a fan of n flips in a row. The row was
+// cut into one launch for every few flips, and 64 such launches were taken for a lack of progress: InternalError.
+Points row_and_two_hubs(int n) {
+  Points xy;
+  for (int i = 0; i < n - 2; ++i) xy.insert(xy.end(), {static_cast<double>(i), 0.0});
+  xy.insert(xy.end(), {0.0, -static_cast<double>(n), n - 1.0, static_cast<double>(n)});
+  return xy;
+}
+
+// Three lines one unit in the last place apart: long rows of flips in a mesh of slivers.
+Points nearly_collinear(int n) {
+  Points xy;
+  Random random(5);
+  for (int i = 0; i < n; ++i) {
+    const double x = random.uniform();
+    xy.insert(xy.end(), {x, x / 3 + static_cast<double>(random.below(3)) * 0x1p-54});
+  }
+  return xy;
+}
+
+TEST_P(Regression, LongRowsOfFlipsAreProgress) {
+  for (const int n : {1000, 5000, 40000}) {
+    const Points xy = row_and_two_hubs(n);
+    const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
+    EXPECT_TRUE(verified(xy, mesh)) << n;
+    EXPECT_LT(mesh.statistics().launches, 1000u) << n;
+  }
+}
+
+TEST_P(Regression, NearlyCollinearPointsAreProgress) {
+  const Points xy = nearly_collinear(20000);
+  const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
+  EXPECT_TRUE(verified(xy, mesh));
+}
+
+// The number of a work-item times its grain left 32 bits where work-items are rounded up to whole groups, so elements had
+// two owners.
+TEST_P(Regression, AnyGrainCutsTheWorkOnce) {
+  const Points xy = uniform_points(3000);
+  for (const unsigned group : {0u, 4u, 64u}) {
+    for (const unsigned grain : {1u << 26, 1u << 30, 1u << 31, ~0u}) {
+      Options options = GetParam().options();
+      options.work_group_size = group;
+      options.grain = grain;
+      EXPECT_TRUE(verified(xy, triangulate(std::span<const double>(xy), options))) << group << " and " << grain;
+    }
+  }
+}
+
+CADT_ON_EVERY_BACKEND(Regression);
+
+}  // namespace
+}  // namespace cadt::test

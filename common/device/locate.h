@@ -50,15 +50,21 @@ CADT_FN cadt_u32 cadt_leave_ghost(const cadt_mesh* m, const cadt_snapshot* s, ca
 }
 
 /* The edge by which to leave a real triangle towards p, or 3 if p is not outside of any edge; the bits of `on` name the
- * edges p is on the line of. `entry` is an edge known to have p on its inner side, or 3. */
+ * edges p is on the line of. `entry` is an edge known to have p on its inner side, or 3. The edges are tried from 0 to 2, or
+ * from 2 to 0 if `reverse`: of two edges to leave by, either may be taken. */
 CADT_FN cadt_u32 cadt_leave_face(const cadt_mesh* m, const cadt_snapshot* s, cadt_u32 entry, cadt_u32 reverse, cadt_point p,
                                  cadt_u32* on, cadt_tally* tally) {
   cadt_point a = m->points[s->v0], b = m->points[s->v1], c = m->points[s->v2];
   cadt_i32 o0 = 1, o1 = 1, o2 = 1;
-  if (reverse && entry != 2u && (o2 = cadt_orientation(a, b, p, tally)) < 0) return 2u;
-  if (entry != 0u && (o0 = cadt_orientation(b, c, p, tally)) < 0) return 0u;
-  if (entry != 1u && (o1 = cadt_orientation(c, a, p, tally)) < 0) return 1u;
-  if (!reverse && entry != 2u && (o2 = cadt_orientation(a, b, p, tally)) < 0) return 2u;
+  if (reverse) {
+    if (entry != 2u && (o2 = cadt_orientation(a, b, p, tally)) < 0) return 2u;
+    if (entry != 1u && (o1 = cadt_orientation(c, a, p, tally)) < 0) return 1u;
+    if (entry != 0u && (o0 = cadt_orientation(b, c, p, tally)) < 0) return 0u;
+  } else {
+    if (entry != 0u && (o0 = cadt_orientation(b, c, p, tally)) < 0) return 0u;
+    if (entry != 1u && (o1 = cadt_orientation(c, a, p, tally)) < 0) return 1u;
+    if (entry != 2u && (o2 = cadt_orientation(a, b, p, tally)) < 0) return 2u;
+  }
   *on = (o0 == 0 ? 1u : 0u) | (o1 == 0 ? 2u : 0u) | (o2 == 0 ? 4u : 0u);
   return 3u;
 }

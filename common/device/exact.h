@@ -8,10 +8,21 @@
 
 #include "common/device/fixed.h"
 
-/* Sign of u.x * v.y - u.y * v.x for u = a - c, v = b - c, any length. */
+/* Sign of the determinant of the rows (d0, d1), (d2, d3), n limbs each; destroys d. */
+CADT_FN cadt_i32 cadt_sign_of_minor(cadt_u32 (*d)[CADT_LIMBS], cadt_i32 n) {
+  cadt_u32 negative[4], product[2 * CADT_LIMBS], det[2 * CADT_LIMBS + 1];
+  for (cadt_i32 i = 0; i < 4; ++i) negative[i] = cadt_limbs_abs(d[i], n);
+  for (cadt_i32 i = 0; i < 2 * CADT_LIMBS + 1; ++i) det[i] = 0u;
+  cadt_limbs_mul(product, d[0], n, d[3], n);
+  cadt_limbs_accumulate(det, 2 * n + 1, product, 2 * n, negative[0] ^ negative[3]);
+  cadt_limbs_mul(product, d[1], n, d[2], n);
+  cadt_limbs_accumulate(det, 2 * n + 1, product, 2 * n, negative[1] ^ negative[2] ^ 1u);
+  return cadt_limbs_sign(det, 2 * n + 1);
+}
+
+/* Orientation, any length. */
 CADT_FN_SLOW cadt_i32 cadt_orientation_limbs(cadt_point a, cadt_point b, cadt_point c, cadt_i32 low, cadt_i32 bits) {
-  cadt_u32 d[4][CADT_LIMBS], origin[CADT_LIMBS], product[2 * CADT_LIMBS], det[2 * CADT_LIMBS + 1];
-  cadt_u32 negative[4];
+  cadt_u32 d[4][CADT_LIMBS], origin[CADT_LIMBS];
   cadt_i32 n = (bits + 2 + 31) >> 5;
   cadt_limbs_load(d[0], n, a.x, low);
   cadt_limbs_load(d[1], n, a.y, low);
@@ -20,14 +31,8 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_limbs(cadt_point a, cadt_point b, cadt_po
   for (cadt_i32 i = 0; i < 4; ++i) {
     cadt_limbs_load(origin, n, (i & 1) ? c.y : c.x, low);
     cadt_limbs_accumulate(d[i], n, origin, n, 1u);
-    negative[i] = cadt_limbs_abs(d[i], n);
   }
-  for (cadt_i32 i = 0; i <= 2 * n; ++i) det[i] = 0u;
-  cadt_limbs_mul(product, d[0], n, d[3], n);
-  cadt_limbs_accumulate(det, 2 * n + 1, product, 2 * n, negative[0] ^ negative[3]);
-  cadt_limbs_mul(product, d[1], n, d[2], n);
-  cadt_limbs_accumulate(det, 2 * n + 1, product, 2 * n, negative[1] ^ negative[2] ^ 1u);
-  return cadt_limbs_sign(det, 2 * n + 1);
+  return cadt_sign_of_minor(d, n);
 }
 
 /* Orientation of a, b, c: 1 counterclockwise, 0 on a line, -1 clockwise. */
@@ -47,8 +52,7 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_exact(cadt_point a, cadt_point b, cadt_po
 
 /* Orientation of m, a, b where m = (c0 + c1 + c2) / 3 is no double in general: with everything tripled, m is an integer. */
 CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point c1, cadt_point c2, cadt_point a, cadt_point b) {
-  cadt_u32 d[4][CADT_LIMBS], term[CADT_LIMBS], product[2 * CADT_LIMBS], det[2 * CADT_LIMBS + 1];
-  cadt_u32 negative[4];
+  cadt_u32 d[4][CADT_LIMBS], term[CADT_LIMBS];
   cadt_span s;
   cadt_span_clear(&s);
   cadt_span_add_point(&s, c0);
@@ -69,14 +73,8 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point 
     cadt_limbs_accumulate(d[i], n, term, n, 1u);
     cadt_limbs_load(term, n, (i & 1) ? c2.y : c2.x, s.low);
     cadt_limbs_accumulate(d[i], n, term, n, 1u);
-    negative[i] = cadt_limbs_abs(d[i], n);
   }
-  for (cadt_i32 i = 0; i <= 2 * n; ++i) det[i] = 0u;
-  cadt_limbs_mul(product, d[0], n, d[3], n);
-  cadt_limbs_accumulate(det, 2 * n + 1, product, 2 * n, negative[0] ^ negative[3]);
-  cadt_limbs_mul(product, d[1], n, d[2], n);
-  cadt_limbs_accumulate(det, 2 * n + 1, product, 2 * n, negative[1] ^ negative[2] ^ 1u);
-  return cadt_limbs_sign(det, 2 * n + 1);
+  return cadt_sign_of_minor(d, n);
 }
 
 /* Sign of the incircle determinant, any length. */

@@ -24,6 +24,16 @@ typedef struct {
   cadt_u32 edge_capacity;
 } cadt_deferred;
 
+CADT_FN cadt_deferred cadt_lists(CADT_GLOBAL cadt_u32* points, CADT_GLOBAL cadt_u32* edges, CADT_GLOBAL cadt_u32* counts,
+                                 cadt_u32 edge_capacity) {
+  cadt_deferred lists;
+  lists.points = points;
+  lists.edges = edges;
+  lists.counts = counts;
+  lists.edge_capacity = edge_capacity;
+  return lists;
+}
+
 CADT_FN void cadt_defer_edge(const cadt_deferred* deferred, cadt_u32 link, cadt_tally* tally) {
   cadt_u32 at = cadt_add_relaxed(deferred->counts + 1, 1u);
   if (at < deferred->edge_capacity) deferred->edges[at] = link;
@@ -105,11 +115,7 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* left_points, CADT_GLOBAL cadt_u32* left_edges,
             CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counters) {
   CADT_MESH_VIEW(mesh);
-  cadt_deferred deferred;
-  deferred.points = left_points;
-  deferred.edges = left_edges;
-  deferred.counts = left_counts;
-  deferred.edge_capacity = edge_capacity;
+  const cadt_deferred deferred = cadt_lists(left_points, left_edges, left_counts, edge_capacity);
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 work[CADT_WORKLIST];
@@ -130,11 +136,7 @@ CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u3
             CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counters) {
   CADT_MESH_VIEW(mesh);
-  cadt_deferred deferred;
-  deferred.points = left_edges; /* not used */
-  deferred.edges = left_edges;
-  deferred.counts = left_counts;
-  deferred.edge_capacity = edge_capacity;
+  const cadt_deferred deferred = cadt_lists(0, left_edges, left_counts, edge_capacity);
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 work[CADT_WORKLIST];

@@ -37,9 +37,6 @@ enum {
   CADT_COUNT_EXACT_ORIENTATIONS,
   CADT_COUNT_EXACT_INCIRCLES,
   CADT_COUNT_TIES,
-  CADT_COUNT_EDGES_EXAMINED, /* by the closing pass */
-  CADT_COUNT_EDGES_ILLEGAL,  /* found by the closing pass */
-  CADT_COUNT_UNOWNED_STORES, /* checked builds: stores to a record that the writer does not own */
   CADT_COUNTERS,
   CADT_COUNTER_STRIDE = 32, /* words a row, so rows do not share cache lines */
   CADT_COUNTER_ROWS = 64

@@ -13,8 +13,7 @@ class Counters {
  public:
   Counters(Device& device, Memory& memory);
   operator Arg() const noexcept { return buffer_; }  // NOLINT
-  /// Adds the counts of all rows to the statistics. \throws InternalError if a store was made by someone who did not own
-  /// the record (counted in checked builds only)
+  /// Adds the counts of all rows to the statistics.
   void collect(Statistics& statistics) const;
 
  private:

@@ -35,12 +35,14 @@ std::byte* data_of(const Buffer& buffer) { return static_cast<const CudaBuffer&>
 void check(cudaError_t code, const char* call, const std::string& device) {
   if (code == cudaSuccess) return;
   cudaGetLastError();  // the error has been taken note of: the next call starts clean
-  throw DeviceError(call, static_cast<int>(code), device, std::string(cudaGetErrorName(code)) + ", " + cudaGetErrorString(code));
+  throw DeviceError(call, static_cast<int>(code), device,
+                    std::string(cudaGetErrorName(code)) + ", " + cudaGetErrorString(code));
 }
 
 DeviceScope::DeviceScope(int device) noexcept {
   int before = -1;
-  if (cudaGetDevice(&before) == cudaSuccess && before != device && cudaSetDevice(device) == cudaSuccess) before_ = before;
+  if (cudaGetDevice(&before) == cudaSuccess && before != device && cudaSetDevice(device) == cudaSuccess)
+    before_ = before;
 }
 DeviceScope::~DeviceScope() {
   if (before_ >= 0) cudaSetDevice(before_);
@@ -87,7 +89,8 @@ LaunchShape CudaDevice::shape() const noexcept {
 std::unique_ptr<Buffer> CudaDevice::allocate(std::size_t bytes) {
   const DeviceScope scope(info_.index);
   void* data = nullptr;
-  const cudaError_t code = cudaMallocFromPoolAsync(&data, std::max<std::size_t>(bytes, 8), stream_->pool(), stream_->get());
+  const cudaError_t code =
+      cudaMallocFromPoolAsync(&data, std::max<std::size_t>(bytes, 8), stream_->pool(), stream_->get());
   if (code == cudaErrorMemoryAllocation) {
     cudaGetLastError();
     std::size_t available = 0, total = 0;
@@ -107,14 +110,16 @@ std::unique_ptr<Buffer> CudaDevice::alias(const void* /*data*/, std::size_t /*by
 void CudaDevice::write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
   if (bytes == 0) return;
   const DeviceScope scope(info_.index);
-  check_call(cudaMemcpyAsync(data_of(to) + offset, from, bytes, cudaMemcpyHostToDevice, stream_->get()), "cudaMemcpyAsync");
+  check_call(cudaMemcpyAsync(data_of(to) + offset, from, bytes, cudaMemcpyHostToDevice, stream_->get()),
+             "cudaMemcpyAsync");
   finish();
 }
 
 void CudaDevice::read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) {
   if (bytes == 0) return;
   const DeviceScope scope(info_.index);
-  check_call(cudaMemcpyAsync(to, data_of(from) + offset, bytes, cudaMemcpyDeviceToHost, stream_->get()), "cudaMemcpyAsync");
+  check_call(cudaMemcpyAsync(to, data_of(from) + offset, bytes, cudaMemcpyDeviceToHost, stream_->get()),
+             "cudaMemcpyAsync");
   finish();
 }
 

@@ -20,8 +20,9 @@
 namespace cadt::host {
 namespace {
 
-// From this size on memory comes straight from the system: in huge pages, which spare page faults and address translations
-// (the mesh is read in no regular order), and zeroed by the system at first touch, by the thread that touches it.
+// From this size on memory comes straight from the system: in huge pages, which spare page faults and address
+// translations (the mesh is read in no regular order), and zeroed by the system at first touch, by the thread that
+// touches it.
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 
 class HostBuffer final : public Buffer {
@@ -101,7 +102,9 @@ class HostDevice final : public Device {
   }
   [[nodiscard]] unsigned threads() const noexcept override { return pool_.threads(); }
 
-  [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override { return std::make_unique<HostBuffer>(bytes); }
+  [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override {
+    return std::make_unique<HostBuffer>(bytes);
+  }
   [[nodiscard]] std::unique_ptr<Buffer> allocate_zeros(std::size_t bytes) override {
     auto buffer = std::make_unique<HostBuffer>(bytes);
     if (!buffer->zeroed()) std::memset(buffer->data(), 0, bytes);
@@ -154,7 +157,9 @@ class HostBackend final : public BackendEntry {
 
 }  // namespace
 
-void* address(Buffer* buffer) noexcept { return buffer == nullptr ? nullptr : static_cast<HostBuffer*>(buffer)->data(); }
+void* address(Buffer* buffer) noexcept {
+  return buffer == nullptr ? nullptr : static_cast<HostBuffer*>(buffer)->data();
+}
 
 }  // namespace cadt::host
 

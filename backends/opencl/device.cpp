@@ -188,8 +188,8 @@ void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg>
   if (args.size() != target.parameters)
     throw InternalError(std::string(name) + " takes " + std::to_string(target.parameters) + " arguments, not " +
                         std::to_string(args.size()));
-  // On a GPU one work-item must be one and not a group: the driver lets one alone do what others keep each other from. On a
-  // CPU the others find nothing to do, and PoCL compiles anew for each size of a group.
+  // On a GPU one work-item must be one and not a group: the driver lets one alone do what others keep each other from.
+  // On a CPU the others find nothing to do, and PoCL compiles anew for each size of a group.
   const std::size_t group = info().gpu ? std::min<std::size_t>(target.group, items) : target.group;
   const std::size_t groups = (items + group - 1) / group;
   // The kernels number their work-items in 32 bits: one beyond would be taken for the first.

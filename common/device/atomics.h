@@ -3,12 +3,13 @@
  * All atomic operations, with their memory order in the name, at device scope. Nothing else in this folder calls an
  * atomic or a fence.
  *
- * Order. Whoever takes a lock must see what the last owner wrote, hence acquire on the claim and release on the unlock. The
- * fields of a record are also read without a lock, as hints, and validated by the claim. There are two ways to make the
- * claim prove them (lock.h), because orderings cost nothing on x86 and much on GPUs:
- * - CPUs: every field is stored with release and loaded with acquire. Then the version in the lock word proves the fields.
- * - GPUs: fields are stored and loaded relaxed; one fence at device scope stands before the claims, one behind them, one
- *   before the unlocks, and the owner reads the fields again.
+ * Order. Whoever takes a lock must see what the last owner wrote, hence acquire on the claim and release on the unlock.
+ * The fields of a record are also read without a lock, as hints, and validated by the claim. There are two ways to make
+ * the claim prove them (lock.h), because orderings cost nothing on x86 and much on GPUs:
+ * - CPUs: every field is stored with release and loaded with acquire. Then the version in the lock word proves the
+ * fields.
+ * - GPUs: fields are stored and loaded relaxed; one fence at device scope stands before the claims, one behind them,
+ * one before the unlocks, and the owner reads the fields again.
  */
 #ifndef CADT_DEVICE_ATOMICS_H
 #define CADT_DEVICE_ATOMICS_H
@@ -56,7 +57,8 @@ CADT_FN void cadt_fence_acq_rel(void) {
   atomic_work_item_fence(CLK_GLOBAL_MEM_FENCE, memory_order_acq_rel, memory_scope_device);
 }
 
-/* ---- OpenCL 1.2: best effort; the standard promises no order between work-groups ---------------------------------- */
+/* ---- OpenCL 1.2: best effort; the standard promises no order between work-groups ----------------------------------
+ */
 #elif defined(CADT_LANG_OPENCL)
 
 CADT_FN cadt_u32 cadt_load_acquire(CADT_GLOBAL cadt_u32* p) {
@@ -87,7 +89,8 @@ CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
 }
 CADT_FN void cadt_fence_acq_rel(void) { mem_fence(CLK_GLOBAL_MEM_FENCE); }
 
-/* ---- CUDA: volatile accesses bypass a stale L1 line; __threadfence is device scope -------------------------------- */
+/* ---- CUDA: volatile accesses bypass a stale L1 line; __threadfence is device scope --------------------------------
+ */
 #elif defined(CADT_LANG_CUDA)
 
 CADT_FN cadt_u32 cadt_load_relaxed(CADT_GLOBAL cadt_u32* p) { return *(volatile cadt_u32*)p; }
@@ -114,11 +117,16 @@ CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
 }
 CADT_FN void cadt_fence_acq_rel() { __threadfence(); }
 
-/* ---- host: ordered operations, no fences (ThreadSanitizer does not follow fences) ---------------------------------- */
+/* ---- host: ordered operations, no fences (ThreadSanitizer does not follow fences) ----------------------------------
+ */
 #else
 
-CADT_FN cadt_u32 cadt_load_acquire(cadt_u32* p) { return std::atomic_ref<cadt_u32>(*p).load(std::memory_order_acquire); }
-CADT_FN cadt_u32 cadt_load_relaxed(cadt_u32* p) { return std::atomic_ref<cadt_u32>(*p).load(std::memory_order_relaxed); }
+CADT_FN cadt_u32 cadt_load_acquire(cadt_u32* p) {
+  return std::atomic_ref<cadt_u32>(*p).load(std::memory_order_acquire);
+}
+CADT_FN cadt_u32 cadt_load_relaxed(cadt_u32* p) {
+  return std::atomic_ref<cadt_u32>(*p).load(std::memory_order_relaxed);
+}
 CADT_FN void cadt_store_release(cadt_u32* p, cadt_u32 value) {
   std::atomic_ref<cadt_u32>(*p).store(value, std::memory_order_release);
 }
@@ -143,7 +151,8 @@ CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
 
 #endif
 
-/* ---- the two disciplines of the records' fields and locks ---------------------------------------------------------- */
+/* ---- the two disciplines of the records' fields and locks ----------------------------------------------------------
+ */
 #if CADT_CONTIGUOUS
 CADT_FN cadt_u32 cadt_load_field(CADT_GLOBAL cadt_u32* p) { return cadt_load_acquire(p); }
 CADT_FN void cadt_store_field(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_release(p, value); }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The three changes of the mesh: split of a face 1 -> 3, split of an edge 2 -> 4 (paper, section 4.3, Algorithm 2) and flip
- * of an edge (section 4.4, Algorithm 3). Each claims what it writes, which validates what was read, then commits.
+ * The three changes of the mesh: split of a face 1 -> 3, split of an edge 2 -> 4 (paper, section 4.3, Algorithm 2) and
+ * flip of an edge (section 4.4, Algorithm 3). Each claims what it writes, which validates what was read, then commits.
  */
 #ifndef CADT_DEVICE_CHANGE_H
 #define CADT_DEVICE_CHANGE_H
@@ -14,8 +14,8 @@ CADT_FN void cadt_link_back(const cadt_mesh* m, cadt_u32 outer, cadt_u32 link) {
   cadt_store_link(m, CADT_LINK_RECORD(outer), CADT_LINK_EDGE(outer), link);
 }
 
-/* A flip takes a vertex away from each of its records; with its hint kept on a record of its own, walks take 3.3 steps instead
- * of 5.8 (1M uniform points). Splits do the same, but there it makes no difference. */
+/* A flip takes a vertex away from each of its records; with its hint kept on a record of its own, walks take 3.3 steps
+ * instead of 5.8 (1M uniform points). Splits do the same, but there it makes no difference. */
 CADT_FN void cadt_set_hint(const cadt_mesh* m, cadt_u32 vertex, cadt_u32 t) {
   if (vertex != CADT_GHOST) cadt_store_relaxed(m->hints + vertex, t);
 }
@@ -38,7 +38,8 @@ CADT_FN void cadt_new_record(const cadt_mesh* m, cadt_u32 t, cadt_u32 v0, cadt_u
 }
 
 /* Splits the face at `place` by vertex i. \post 1: `edges` has the three links opposite i; 0: nothing changed. */
-CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges, cadt_tally* tally) {
+CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges,
+                                 cadt_tally* tally) {
   const cadt_u32 t = place->record, t1 = 2u * i, t2 = 2u * i + 1u;
   const cadt_snapshot s = place->at;
   cadt_claim claim;
@@ -73,9 +74,10 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   return 3u;
 }
 
-/* Splits the edge at `place` and its two triangles by vertex i. \post 4: `edges` has the four links opposite i; 0: nothing
- * changed. */
-CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges, cadt_tally* tally) {
+/* Splits the edge at `place` and its two triangles by vertex i. \post 4: `edges` has the four links opposite i; 0:
+ * nothing changed. */
+CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges,
+                                 cadt_tally* tally) {
   const cadt_u32 t = place->record, k = place->edge, k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
   const cadt_snapshot s = place->at;
   const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
@@ -136,9 +138,10 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   return 4u;
 }
 
-/* Whether the edge a, b between the triangles p, a, b and q, b, a must be flipped. A circle through the ghost is the outer
- * side of a hull edge. */
-CADT_FN cadt_u32 cadt_is_illegal(const cadt_mesh* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_u32 q, cadt_tally* tally) {
+/* Whether the edge a, b between the triangles p, a, b and q, b, a must be flipped. A circle through the ghost is the
+ * outer side of a hull edge. */
+CADT_FN cadt_u32 cadt_is_illegal(const cadt_mesh* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_u32 q,
+                                 cadt_tally* tally) {
   tally->count[CADT_COUNT_INCIRCLE_TESTS]++;
   if (p == CADT_GHOST || q == CADT_GHOST) return 0u;
   if (a == CADT_GHOST && b == CADT_GHOST) return 0u; /* torn read */
@@ -150,7 +153,8 @@ CADT_FN cadt_u32 cadt_is_illegal(const cadt_mesh* m, cadt_u32 p, cadt_u32 a, cad
 /* Tests an edge and flips it if it is illegal. `apex` is the vertex expected opposite of it, or CADT_NONE for any.
  * \post CADT_EDGE_FLIPPED: the edge's record keeps its link, `*partner` is the record and edge on the other side of the
  * quadrilateral that is now opposite the same apex. */
-CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 apex, cadt_u32* partner, cadt_tally* tally) {
+CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 apex, cadt_u32* partner,
+                                    cadt_tally* tally) {
   const cadt_u32 t = CADT_LINK_RECORD(link), k = CADT_LINK_EDGE(link), k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
   const cadt_snapshot s = cadt_look_from(m, t, k);
   const cadt_u32 p = s.v0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The closing pass: looks at every edge of the mesh once and repairs what it finds illegal. With many threads it is needed
- * for correctness: the thread that inserts a point checks the edges opposite of it, which is enough only if nobody else
- * changes the star of the point meanwhile. The last pass finds nothing and so certifies the mesh.
+ * The closing pass: looks at every edge of the mesh once and repairs what it finds illegal. With many threads it is
+ * needed for correctness: the thread that inserts a point checks the edges opposite of it, which is enough only if
+ * nobody else changes the star of the point meanwhile. The last pass finds nothing and so certifies the mesh.
  */
 #ifndef CADT_DEVICE_CLOSING_H
 #define CADT_DEVICE_CLOSING_H

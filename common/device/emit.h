@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The mesh as arrays of input indices. Canonical order without a sort of all triangles: a triangle belongs to the bucket of
- * its smallest index; buckets are short and within one no two triangles have the same second vertex.
+ * The mesh as arrays of input indices. Canonical order without a sort of all triangles: a triangle belongs to the
+ * bucket of its smallest index; buckets are short and within one no two triangles have the same second vertex.
  */
 #ifndef CADT_DEVICE_EMIT_H
 #define CADT_DEVICE_EMIT_H
@@ -52,8 +52,8 @@ CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_record* records, CADT_G
   if (ghosts) cadt_add_relaxed(totals + 1, ghosts);
 }
 
-/* Puts each real triangle in its bucket: (second vertex, record). \pre buckets are scanned (their beginnings); \post their
- * ends */
+/* Puts each real triangle in its bucket: (second vertex, record). \pre buckets are scanned (their beginnings); \post
+ * their ends */
 CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
             CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(t, count, grain) {
@@ -108,8 +108,8 @@ CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* ends, CADT_GLOBAL cad
 }
 
 /* numbers[record] = index of the triangle. \pre numbers are CADT_NONE */
-CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_GLOBAL cadt_u32* numbers, cadt_u32 count,
-            cadt_u32 grain) {
+CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_GLOBAL cadt_u32* numbers,
+            cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(i, count, grain) { numbers[members[i].record] = i; }
 }
 

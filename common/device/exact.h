@@ -50,8 +50,10 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_exact(cadt_point a, cadt_point b, cadt_po
   return cadt_compare_i128(cadt_mul_i64(ux, vy), cadt_mul_i64(uy, vx));
 }
 
-/* Orientation of m, a, b where m = (c0 + c1 + c2) / 3 is no double in general: with everything tripled, m is an integer. */
-CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point c1, cadt_point c2, cadt_point a, cadt_point b) {
+/* Orientation of m, a, b where m = (c0 + c1 + c2) / 3 is no double in general: with everything tripled, m is an
+ * integer. */
+CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point c1, cadt_point c2, cadt_point a,
+                                                      cadt_point b) {
   cadt_u32 d[4][CADT_LIMBS], term[CADT_LIMBS];
   cadt_span s;
   cadt_span_clear(&s);
@@ -78,7 +80,8 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point 
 }
 
 /* Sign of the incircle determinant, any length. */
-CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_i32 low, cadt_i32 bits) {
+CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_i32 low,
+                                          cadt_i32 bits) {
   cadt_u32 d[6][CADT_LIMBS], negative[6];
   cadt_u32 product[2 * CADT_LIMBS], lift[2 * CADT_LIMBS + 1], minor[2 * CADT_LIMBS + 1];
   cadt_u32 term[4 * CADT_LIMBS + 2], det[4 * CADT_LIMBS + 3];
@@ -92,9 +95,9 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point
   }
   for (cadt_i32 i = 0; i < 4 * n + 3; ++i) det[i] = 0u;
   for (cadt_i32 i = 0; i < 3; ++i) {
-    cadt_i32 x = 2 * i, y = x + 1;                  /* this point */
-    cadt_i32 ux = (x + 2) % 6, uy = ux + 1;         /* the next one */
-    cadt_i32 vx = (x + 4) % 6, vy = vx + 1;         /* and the one after */
+    cadt_i32 x = 2 * i, y = x + 1;          /* this point */
+    cadt_i32 ux = (x + 2) % 6, uy = ux + 1; /* the next one */
+    cadt_i32 vx = (x + 4) % 6, vy = vx + 1; /* and the one after */
     cadt_limbs_mul(lift, d[x], n, d[x], n);
     lift[2 * n] = 0u;
     cadt_limbs_mul(product, d[y], n, d[y], n);

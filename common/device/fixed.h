@@ -86,7 +86,9 @@ CADT_FN cadt_i128 cadt_add_i128(cadt_i128 a, cadt_i128 b) {
   r.high = CADT_CAST(cadt_i64, CADT_CAST(cadt_u64, a.high) + CADT_CAST(cadt_u64, b.high) + (r.low < a.low ? 1ul : 0ul));
   return r;
 }
-CADT_FN cadt_i32 cadt_sign_i128(cadt_i128 a) { return a.high < 0 ? -1 : ((a.high | CADT_CAST(cadt_i64, a.low)) != 0 ? 1 : 0); }
+CADT_FN cadt_i32 cadt_sign_i128(cadt_i128 a) {
+  return a.high < 0 ? -1 : ((a.high | CADT_CAST(cadt_i64, a.low)) != 0 ? 1 : 0);
+}
 CADT_FN cadt_i32 cadt_compare_i128(cadt_i128 a, cadt_i128 b) {
   if (a.high != b.high) return a.high < b.high ? -1 : 1;
   return a.low == b.low ? 0 : (a.low < b.low ? -1 : 1);

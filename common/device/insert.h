@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Insertion and legalisation in one flow, without a barrier between them (paper, section 4.4, "unified execution flow").
- * What could not get its locks in a bounded number of tries goes on a list for the next launch.
+ * Insertion and legalisation in one flow, without a barrier between them (paper, section 4.4, "unified execution
+ * flow"). What could not get its locks in a bounded number of tries goes on a list for the next launch.
  */
 #ifndef CADT_DEVICE_INSERT_H
 #define CADT_DEVICE_INSERT_H
@@ -9,14 +9,16 @@
 #include "common/device/change.h"
 
 enum {
-  CADT_WORKLIST = 48,      /* edges a work-item can have pending */
-  CADT_WORKLIST_STACK = 40, /* above, the oldest one is next: a long row of flips leaves a legal edge behind at each one */
-  CADT_INSERT_TRIES = 12,  /* walks for one point in one launch */
-  CADT_EDGE_TRIES = 24,    /* conflicts in the worklist of one point */
+  CADT_WORKLIST = 48, /* edges a work-item can have pending */
+  CADT_WORKLIST_STACK =
+      40, /* above, the oldest one is next: a long row of flips leaves a legal edge behind at each one */
+  CADT_INSERT_TRIES = 12,   /* walks for one point in one launch */
+  CADT_EDGE_TRIES = 24,     /* conflicts in the worklist of one point */
   CADT_FLIP_LIMIT = 1 << 14 /* flips for one point in one launch, so a launch ends in bounded time */
 };
 
-/* Lists of what is left for the next launch. An edge that finds its list full is dropped: the closing pass will meet it. */
+/* Lists of what is left for the next launch. An edge that finds its list full is dropped: the closing pass will meet
+ * it. */
 typedef struct {
   CADT_GLOBAL cadt_u32* points;
   CADT_GLOBAL cadt_u32* edges;
@@ -24,8 +26,8 @@ typedef struct {
   cadt_u32 edge_capacity;
 } cadt_deferred;
 
-CADT_FN cadt_deferred cadt_lists(CADT_GLOBAL cadt_u32* points, CADT_GLOBAL cadt_u32* edges, CADT_GLOBAL cadt_u32* counts,
-                                 cadt_u32 edge_capacity) {
+CADT_FN cadt_deferred cadt_lists(CADT_GLOBAL cadt_u32* points, CADT_GLOBAL cadt_u32* edges,
+                                 CADT_GLOBAL cadt_u32* counts, cadt_u32 edge_capacity) {
   cadt_deferred lists;
   lists.points = points;
   lists.edges = edges;
@@ -46,10 +48,11 @@ CADT_FN void cadt_report_changes(const cadt_tally* tally, CADT_GLOBAL cadt_u32* 
     cadt_add_relaxed(counts + 2, 1u);
 }
 
-/* Legalises the edges of a worklist and whatever becomes illegal by the flips. `apex` is the inserted vertex: then only edges
- * opposite of it can become illegal by its flips (paper, Algorithm 3); CADT_NONE: any edge, all four sides are checked. */
-CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_u32 apex, cadt_u32* work, cadt_u32 size, const cadt_deferred* deferred,
-                           cadt_tally* tally) {
+/* Legalises the edges of a worklist and whatever becomes illegal by the flips. `apex` is the inserted vertex: then only
+ * edges opposite of it can become illegal by its flips (paper, Algorithm 3); CADT_NONE: any edge, all four sides are
+ * checked. */
+CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_u32 apex, cadt_u32* work, cadt_u32 size,
+                           const cadt_deferred* deferred, cadt_tally* tally) {
   cadt_u32 conflicts = 0u, flips = 0u, partner = 0u;
   while (size > 0u) {
     const cadt_u32 oldest = size > CADT_CAST(cadt_u32, CADT_WORKLIST_STACK) ? 1u : 0u;
@@ -82,13 +85,16 @@ CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_u32 apex, cadt_u32* work, ca
     }
     const cadt_u32 room = ++flips < CADT_CAST(cadt_u32, CADT_FLIP_LIMIT) ? CADT_CAST(cadt_u32, CADT_WORKLIST) - 1u : 0u;
     for (cadt_u32 e = 0u; e < count; ++e) {
-      if (size < room) work[size++] = sides[e];
-      else cadt_defer_edge(deferred, sides[e], tally);
+      if (size < room)
+        work[size++] = sides[e];
+      else
+        cadt_defer_edge(deferred, sides[e], tally);
     }
   }
 }
 
-/* Locates and inserts vertex i. Returns the number of edges in `work`, 0 if the point must be tried by a later launch. */
+/* Locates and inserts vertex i. Returns the number of edges in `work`, 0 if the point must be tried by a later launch.
+ */
 CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hint, cadt_u32* work, cadt_tally* tally) {
   const cadt_point p = m->points[i];
   cadt_place place;
@@ -109,10 +115,10 @@ CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hin
   return 0u;
 }
 
-/* One level: the points at odd multiples of 2^level, each with a walk from the point at the multiple of 2^(level+1) below
- * it, which is in the mesh and near in sorted order; or a list of points left over, with their own hints. */
-CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 begin, cadt_u32 count, cadt_u32 level,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* left_points, CADT_GLOBAL cadt_u32* left_edges,
+/* One level: the points at odd multiples of 2^level, each with a walk from the point at the multiple of 2^(level+1)
+ * below it, which is in the mesh and near in sorted order; or a list of points left over, with their own hints. */
+CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 begin, cadt_u32 count,
+            cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* left_points, CADT_GLOBAL cadt_u32* left_edges,
             CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counters) {
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_points, left_edges, left_counts, edge_capacity);
@@ -124,8 +130,10 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
     if (i == first || i == second || i == third) continue;
     const cadt_u32 near = list ? i : (begin + u) << (level + 1u);
     const cadt_u32 size = cadt_insert_vertex(&mesh, i, cadt_load_relaxed(mesh.hints + near), work, &tally);
-    if (size) cadt_legalize(&mesh, i, work, size, &deferred, &tally);
-    else left_points[cadt_add_relaxed(left_counts, 1u)] = i;
+    if (size)
+      cadt_legalize(&mesh, i, work, size, &deferred, &tally);
+    else
+      left_points[cadt_add_relaxed(left_counts, 1u)] = i;
   }
   cadt_report_changes(&tally, left_counts);
   cadt_tally_flush(&tally, counters, cadt_item);

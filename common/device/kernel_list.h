@@ -5,37 +5,37 @@
 #ifndef CADT_DEVICE_KERNEL_LIST_H
 #define CADT_DEVICE_KERNEL_LIST_H
 
-#define CADT_KERNEL_LIST(X)                                       \
-  X(cadt_selftest)       /* selftest.h: arithmetic and atomics */ \
-  X(cadt_bounds)         /* order.h: box, exponents, first bad coordinate */ \
-  X(cadt_sort_keys)      /* order.h: Morton keys */               \
-  X(cadt_radix_count)    /* radix.h */                            \
-  X(cadt_radix_scatter)  /* radix.h */                            \
-  X(cadt_scan_sums)      /* scan.h */                             \
-  X(cadt_scan_total)     /* scan.h */                             \
-  X(cadt_scan_apply)     /* scan.h */                             \
-  X(cadt_crowded_flags)  /* refine.h: runs of equal keys that are too long */ \
-  X(cadt_crowded_pack)   /* refine.h */                           \
-  X(cadt_crowded_keys)   /* refine.h */                           \
-  X(cadt_copy_words)     /* refine.h */                            \
-  X(cadt_gather_words)   /* refine.h */                           \
-  X(cadt_run_tails)      /* refine.h */                            \
-  X(cadt_crowded_store)  /* refine.h */                           \
-  X(cadt_sort_runs)      /* order.h: short runs, in place */      \
-  X(cadt_gather_points)  /* order.h */                            \
-  X(cadt_unique_flags)   /* order.h */                            \
-  X(cadt_unique_pack)    /* order.h: distinct points */           \
-  X(cadt_duplicate_pairs) /* order.h */                           \
-  X(cadt_find_triangle)  /* start.h: three points not on a line */ \
-  X(cadt_start_mesh)     /* start.h */                            \
-  X(cadt_insert)         /* insert.h: locate, claim, split, legalise */ \
-  X(cadt_legalize_edges) /* insert.h: deferred edges */           \
-  X(cadt_closing_pass)   /* closing.h */                          \
-  X(cadt_count_triangles) /* emit.h */                            \
-  X(cadt_bucket_triangles) /* emit.h: canonical order */          \
-  X(cadt_sort_buckets)   /* emit.h */                             \
-  X(cadt_number_triangles) /* emit.h */                           \
-  X(cadt_emit_triangles) /* emit.h */                             \
-  X(cadt_emit_hull)      /* emit.h */
+#define CADT_KERNEL_LIST(X)                                                     \
+  X(cadt_selftest)         /* selftest.h: arithmetic and atomics */             \
+  X(cadt_bounds)           /* order.h: box, exponents, first bad coordinate */  \
+  X(cadt_sort_keys)        /* order.h: Morton keys */                           \
+  X(cadt_radix_count)      /* radix.h */                                        \
+  X(cadt_radix_scatter)    /* radix.h */                                        \
+  X(cadt_scan_sums)        /* scan.h */                                         \
+  X(cadt_scan_total)       /* scan.h */                                         \
+  X(cadt_scan_apply)       /* scan.h */                                         \
+  X(cadt_crowded_flags)    /* refine.h: runs of equal keys that are too long */ \
+  X(cadt_crowded_pack)     /* refine.h */                                       \
+  X(cadt_crowded_keys)     /* refine.h */                                       \
+  X(cadt_copy_words)       /* refine.h */                                       \
+  X(cadt_gather_words)     /* refine.h */                                       \
+  X(cadt_run_tails)        /* refine.h */                                       \
+  X(cadt_crowded_store)    /* refine.h */                                       \
+  X(cadt_sort_runs)        /* order.h: short runs, in place */                  \
+  X(cadt_gather_points)    /* order.h */                                        \
+  X(cadt_unique_flags)     /* order.h */                                        \
+  X(cadt_unique_pack)      /* order.h: distinct points */                       \
+  X(cadt_duplicate_pairs)  /* order.h */                                        \
+  X(cadt_find_triangle)    /* start.h: three points not on a line */            \
+  X(cadt_start_mesh)       /* start.h */                                        \
+  X(cadt_insert)           /* insert.h: locate, claim, split, legalise */       \
+  X(cadt_legalize_edges)   /* insert.h: deferred edges */                       \
+  X(cadt_closing_pass)     /* closing.h */                                      \
+  X(cadt_count_triangles)  /* emit.h */                                         \
+  X(cadt_bucket_triangles) /* emit.h: canonical order */                        \
+  X(cadt_sort_buckets)     /* emit.h */                                         \
+  X(cadt_number_triangles) /* emit.h */                                         \
+  X(cadt_emit_triangles)   /* emit.h */                                         \
+  X(cadt_emit_hull)        /* emit.h */
 
 #endif

@@ -5,14 +5,14 @@
 #ifndef CADT_DEVICE_KERNELS_H
 #define CADT_DEVICE_KERNELS_H
 
-#include "common/device/selftest.h"
-#include "common/device/scan.h"
-#include "common/device/radix.h"
-#include "common/device/order.h"
-#include "common/device/refine.h"
-#include "common/device/start.h"
-#include "common/device/insert.h"
 #include "common/device/closing.h"
 #include "common/device/emit.h"
+#include "common/device/insert.h"
+#include "common/device/order.h"
+#include "common/device/radix.h"
+#include "common/device/refine.h"
+#include "common/device/scan.h"
+#include "common/device/selftest.h"
+#include "common/device/start.h"
 
 #endif

@@ -121,8 +121,8 @@ typedef struct {
 
 CADT_FN cadt_u32 cadt_min_u32(cadt_u32 a, cadt_u32 b) { return a < b ? a : b; }
 
-/* The first element of a work-item that takes `size` neighbouring ones. The product may leave 32 bits: devices round the
- * number of work-items up to whole groups. */
+/* The first element of a work-item that takes `size` neighbouring ones. The product may leave 32 bits: devices round
+ * the number of work-items up to whole groups. */
 CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
   const cadt_u64 begin = CADT_CAST(cadt_u64, item) * size;
   return begin < count ? CADT_CAST(cadt_u32, begin) : count;
@@ -130,7 +130,7 @@ CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
 
 /* The elements i < count that this work-item owns. `grain` is the number of neighbouring elements on CPUs. */
 #if CADT_CONTIGUOUS
-#define CADT_FOR(i, count, grain)                                                                           \
+#define CADT_FOR(i, count, grain)                                                                             \
   for (cadt_u32 i = cadt_begin_of(cadt_item, (grain), (count)), i##_end = cadt_min_u32(i + (grain), (count)); \
        i < i##_end; ++i)
 #else

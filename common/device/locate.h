@@ -16,7 +16,7 @@
 enum { CADT_IN_FACE, CADT_ON_EDGE, CADT_LOST };
 enum {
   CADT_WALK_LIMIT = 1 << 14, /* steps before the walk is continued by a later launch */
-  CADT_WALK_STRAIGHT = 64    /* steps before edges are tried in random order: the mesh is not Delaunay while others flip */
+  CADT_WALK_STRAIGHT = 64 /* steps before edges are tried in random order: the mesh is not Delaunay while others flip */
 };
 
 typedef struct {
@@ -40,7 +40,8 @@ CADT_FN cadt_i32 cadt_around_center(const cadt_mesh* m, cadt_point a, cadt_point
 }
 
 /* Where to leave a ghost triangle whose ghost is vertex g: an edge, or 3 if p is in its wedge and strictly outside. */
-CADT_FN cadt_u32 cadt_leave_ghost(const cadt_mesh* m, const cadt_snapshot* s, cadt_u32 g, cadt_point p, cadt_tally* tally) {
+CADT_FN cadt_u32 cadt_leave_ghost(const cadt_mesh* m, const cadt_snapshot* s, cadt_u32 g, cadt_point p,
+                                  cadt_tally* tally) {
   cadt_u32 gx = CADT_NEXT(g), gy = CADT_PREV(g);
   /* the hull edge runs y -> x counterclockwise */
   cadt_point x = m->points[CADT_VERTEX(*s, gx)], y = m->points[CADT_VERTEX(*s, gy)];
@@ -50,10 +51,10 @@ CADT_FN cadt_u32 cadt_leave_ghost(const cadt_mesh* m, const cadt_snapshot* s, ca
 }
 
 /* The edge by which to leave a real triangle towards p, or 3 if p is not outside of any edge; the bits of `on` name the
- * edges p is on the line of. `entry` is an edge known to have p on its inner side, or 3. The edges are tried from 0 to 2, or
- * from 2 to 0 if `reverse`: of two edges to leave by, either may be taken. */
-CADT_FN cadt_u32 cadt_leave_face(const cadt_mesh* m, const cadt_snapshot* s, cadt_u32 entry, cadt_u32 reverse, cadt_point p,
-                                 cadt_u32* on, cadt_tally* tally) {
+ * edges p is on the line of. `entry` is an edge known to have p on its inner side, or 3. The edges are tried from 0 to
+ * 2, or from 2 to 0 if `reverse`: of two edges to leave by, either may be taken. */
+CADT_FN cadt_u32 cadt_leave_face(const cadt_mesh* m, const cadt_snapshot* s, cadt_u32 entry, cadt_u32 reverse,
+                                 cadt_point p, cadt_u32* on, cadt_tally* tally) {
   cadt_point a = m->points[s->v0], b = m->points[s->v1], c = m->points[s->v2];
   cadt_i32 o0 = 1, o1 = 1, o2 = 1;
   if (reverse) {
@@ -81,7 +82,8 @@ CADT_FN void cadt_locate(const cadt_mesh* m, cadt_point p, cadt_u32 start, cadt_
     if (s.lock == 0u) break;
     if (s.v0 == CADT_GHOST || s.v1 == CADT_GHOST || s.v2 == CADT_GHOST) {
       cadt_u32 g = s.v0 == CADT_GHOST ? 0u : (s.v1 == CADT_GHOST ? 1u : 2u);
-      if (CADT_VERTEX(s, CADT_NEXT(g)) == CADT_GHOST || CADT_VERTEX(s, CADT_PREV(g)) == CADT_GHOST) break; /* torn read */
+      if (CADT_VERTEX(s, CADT_NEXT(g)) == CADT_GHOST || CADT_VERTEX(s, CADT_PREV(g)) == CADT_GHOST)
+        break; /* torn read */
       leave = cadt_leave_ghost(m, &s, g, p, tally);
     } else {
       cadt_u32 reverse = 0u;
@@ -90,7 +92,8 @@ CADT_FN void cadt_locate(const cadt_mesh* m, cadt_point p, cadt_u32 start, cadt_
         reverse = noise >> 31;
       }
       leave = cadt_leave_face(m, &s, entry, reverse, p, &on, tally);
-      /* The entry edge was tested from the other side, but either side may have changed since: test it before it counts. */
+      /* The entry edge was tested from the other side, but either side may have changed since: test it before it
+       * counts. */
       if (leave == 3u && entry != 3u) {
         const cadt_i32 o = cadt_orientation(m->points[CADT_VERTEX(s, CADT_NEXT(entry))],
                                             m->points[CADT_VERTEX(s, CADT_PREV(entry))], p, tally);

@@ -3,18 +3,18 @@
  * The lock protocol. Nobody ever waits: a lock is tried, and on failure everything taken is given back.
  *
  * Lock word: 0 the record does not exist yet, even: free, and the number is its version, odd: claimed. A claim is one
- * compare-and-swap from the version that the claimer has read before the fields; it fails if the record is claimed or has
- * changed since, so success proves that the fields read are the record's state: claim and validity check (paper,
+ * compare-and-swap from the version that the claimer has read before the fields; it fails if the record is claimed or
+ * has changed since, so success proves that the fields read are the record's state: claim and validity check (paper,
  * Algorithm 1, lines 9 and 15) in one operation. An unlock after a change raises the version.
  *
- * Why the proof holds on CPUs: a change stores fields with release after its claim (acquire), and fields are loaded with
- * acquire, the lock word first. If a reader saw one field of a later change, the change's claim happens before the reader's
- * compare-and-swap, which then cannot find the old version.
- * On GPUs, where loads are relaxed, a field may be older than the version beside it. So the owner reads the record again
- * under its lock (cadt_confirm); the fence behind the claims makes it see all that earlier owners wrote.
+ * Why the proof holds on CPUs: a change stores fields with release after its claim (acquire), and fields are loaded
+ * with acquire, the lock word first. If a reader saw one field of a later change, the change's claim happens before the
+ * reader's compare-and-swap, which then cannot find the old version. On GPUs, where loads are relaxed, a field may be
+ * older than the version beside it. So the owner reads the record again under its lock (cadt_confirm); the fence behind
+ * the claims makes it see all that earlier owners wrote.
  *
- * Order: records are claimed by ascending index, so among any set of conflicting claimers the one that gets furthest meets
- * nobody who is further (a fixed but unsorted order livelocks in a warp: ../docs/algorithm.md).
+ * Order: records are claimed by ascending index, so among any set of conflicting claimers the one that gets furthest
+ * meets nobody who is further (a fixed but unsorted order livelocks in a warp: ../docs/algorithm.md).
  */
 #ifndef CADT_DEVICE_LOCK_H
 #define CADT_DEVICE_LOCK_H
@@ -47,9 +47,9 @@ CADT_FN void cadt_abandon_claim(const cadt_mesh* m, const cadt_claim* c, cadt_u3
     if (c->record[i] != CADT_NONE) cadt_store_lock(m->records[c->record[i]].word + CADT_WORD_LOCK, c->version[i]);
 }
 
-/* Claims up to four records. \pre versions were read by cadt_look before the fields, or are CADT_ANY_VERSION for records
- * of which the caller needs no field. \post 1: the caller owns all of them, `version` has the versions to give back;
- * 0: it owns none. */
+/* Claims up to four records. \pre versions were read by cadt_look before the fields, or are CADT_ANY_VERSION for
+ * records of which the caller needs no field. \post 1: the caller owns all of them, `version` has the versions to give
+ * back; 0: it owns none. */
 CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* tally) {
   tally->count[CADT_COUNT_CLAIMS]++;
   cadt_claim_order(c, 0, 1);

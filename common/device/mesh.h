@@ -2,13 +2,14 @@
  *
  * The shared mesh. One record of 32 bytes a triangle: three vertices, the lock word, three links, the flip counters.
  *
- * Vertices are positions in sorted order; one ghost vertex at infinity closes the mesh to a sphere, so every hull edge has
- * a ghost triangle and n vertices give exactly 2n - 2 records. Records are never removed: a split of point i rewrites one
- * or two records and creates records 2i and 2i + 1, a flip rewrites two. So no allocation counter is needed.
+ * Vertices are positions in sorted order; one ghost vertex at infinity closes the mesh to a sphere, so every hull edge
+ * has a ghost triangle and n vertices give exactly 2n - 2 records. Records are never removed: a split of point i
+ * rewrites one or two records and creates records 2i and 2i + 1, a flip rewrites two. So no allocation counter is
+ * needed.
  *
- * A link names the neighbour and the number of its edge: record * 4 + edge. Edge k of a record is opposite its vertex k.
- * Vertices keep their slot in splits and flips, so a link to an edge that a change does not touch stays right and its
- * record need not be claimed: a split 1->3 claims three records, a split 2->4 and a flip four (docs/algorithm.md).
+ * A link names the neighbour and the number of its edge: record * 4 + edge. Edge k of a record is opposite its vertex
+ * k. Vertices keep their slot in splits and flips, so a link to an edge that a change does not touch stays right and
+ * its record need not be claimed: a split 1->3 claims three records, a split 2->4 and a flip four (docs/algorithm.md).
  */
 #ifndef CADT_DEVICE_MESH_H
 #define CADT_DEVICE_MESH_H
@@ -25,18 +26,18 @@ typedef struct {
   cadt_u32 first, second, third; /* positions of the first three vertices */
 } cadt_mesh;
 
-#define CADT_MESH_PARAMETERS                                                                                \
-  CADT_GLOBAL cadt_record *records, CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *hints,      \
+#define CADT_MESH_PARAMETERS                                                                           \
+  CADT_GLOBAL cadt_record *records, CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *hints, \
       double center_x, double center_y, cadt_u32 first, cadt_u32 second, cadt_u32 third
-#define CADT_MESH_VIEW(mesh)  \
-  cadt_mesh mesh;             \
-  mesh.records = records;     \
-  mesh.points = points;       \
-  mesh.hints = hints;         \
-  mesh.center.x = center_x;   \
-  mesh.center.y = center_y;   \
-  mesh.first = first;         \
-  mesh.second = second;       \
+#define CADT_MESH_VIEW(mesh) \
+  cadt_mesh mesh;            \
+  mesh.records = records;    \
+  mesh.points = points;      \
+  mesh.hints = hints;        \
+  mesh.center.x = center_x;  \
+  mesh.center.y = center_y;  \
+  mesh.first = first;        \
+  mesh.second = second;      \
   mesh.third = third
 
 #define CADT_LINK(record, edge) (((record) << 2) | (edge))
@@ -57,8 +58,8 @@ CADT_FN cadt_snapshot cadt_look(const cadt_mesh* m, cadt_u32 t) {
   return s;
 }
 
-/* The same seen from edge k: v0 is opposite of it, n0 is the link across it. CPUs load by index, since a choice by k would be a
- * branch that nobody can predict; GPUs load the record whole and rotate it in registers. */
+/* The same seen from edge k: v0 is opposite of it, n0 is the link across it. CPUs load by index, since a choice by k
+ * would be a branch that nobody can predict; GPUs load the record whole and rotate it in registers. */
 CADT_FN cadt_snapshot cadt_look_from(const cadt_mesh* m, cadt_u32 t, cadt_u32 k) {
 #if CADT_CONTIGUOUS
   CADT_GLOBAL cadt_u32* w = m->records[t].word;

@@ -25,7 +25,8 @@ CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, c
   for (cadt_u32 i = begin; i < end; ++i) {
     const cadt_point p = points[i];
     /* an exponent of all ones is infinity or NaN */
-    if (((cadt_bits_of_double(p.x) >> 52) & 0x7FFul) == 0x7FFul || ((cadt_bits_of_double(p.y) >> 52) & 0x7FFul) == 0x7FFul) {
+    if (((cadt_bits_of_double(p.x) >> 52) & 0x7FFul) == 0x7FFul ||
+        ((cadt_bits_of_double(p.y) >> 52) & 0x7FFul) == 0x7FFul) {
       bad = i;
       break;
     }
@@ -56,10 +57,11 @@ CADT_FN cadt_u32 cadt_spread_bits(cadt_u32 x) {
   return (x | (x << 1)) & 0x55555555u;
 }
 
-/* Morton keys of square cells. The longer axis has more bits; its surplus goes on top of the interleaved ones, so a long box
- * is a row of square Morton blocks. Coordinates are halved first: the width of the box may exceed the largest double. */
-CADT_KERNEL(cadt_sort_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL cadt_u32* keys, cadt_u32 count, cadt_u32 grain,
-            double half_min_x, double half_min_y, double scale, cadt_u32 bits_x, cadt_u32 bits_y) {
+/* Morton keys of square cells. The longer axis has more bits; its surplus goes on top of the interleaved ones, so a
+ * long box is a row of square Morton blocks. Coordinates are halved first: the width of the box may exceed the largest
+ * double. */
+CADT_KERNEL(cadt_sort_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL cadt_u32* keys, cadt_u32 count,
+            cadt_u32 grain, double half_min_x, double half_min_y, double scale, cadt_u32 bits_x, cadt_u32 bits_y) {
   const cadt_u32 common = bits_x < bits_y ? bits_x : bits_y;
   const double limit_x = CADT_CAST(double, (1u << bits_x) - 1u), limit_y = CADT_CAST(double, (1u << bits_y) - 1u);
   const cadt_u32 mask = (1u << common) - 1u;
@@ -93,10 +95,10 @@ CADT_FN cadt_u32 cadt_lexicographic(cadt_point a, cadt_u32 i, cadt_point b, cadt
   return i < j ? 1u : 0u;
 }
 
-/* Sorts each run of at most CADT_RUN equal keys lexicographically, equal points by index. Longer runs are equal points in
- * order of their indices already (refine.h). */
-CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_point* sorted, CADT_GLOBAL cadt_u32* order,
-            cadt_u32 count, cadt_u32 grain) {
+/* Sorts each run of at most CADT_RUN equal keys lexicographically, equal points by index. Longer runs are equal points
+ * in order of their indices already (refine.h). */
+CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_point* sorted,
+            CADT_GLOBAL cadt_u32* order, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 key = keys[i];
     if ((i > 0u && keys[i - 1u] == key) || i + 1u >= count || keys[i + 1u] != key) continue;
@@ -118,8 +120,8 @@ CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_p
 }
 
 /* 1 where a point differs from the one before. `distinct` counts. */
-CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* distinct) {
+CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL cadt_u32* flags, cadt_u32 count,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* distinct) {
   cadt_u32 sum = 0u;
   CADT_FOR(i, count, grain) {
     const cadt_u32 flag = i == 0u || sorted[i].x != sorted[i - 1u].x || sorted[i].y != sorted[i - 1u].y ? 1u : 0u;
@@ -131,8 +133,8 @@ CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL
 
 /* Distinct points closed up. `ranks` is the exclusive scan of the flags. */
 CADT_KERNEL(cadt_unique_pack, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* order,
-            CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_point* points, CADT_GLOBAL cadt_u32* labels, cadt_u32 count,
-            cadt_u32 distinct, cadt_u32 grain) {
+            CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_point* points, CADT_GLOBAL cadt_u32* labels,
+            cadt_u32 count, cadt_u32 distinct, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 rank = ranks[i], next = i + 1u < count ? ranks[i + 1u] : distinct;
     if (next == rank) continue;
@@ -143,7 +145,8 @@ CADT_KERNEL(cadt_unique_pack, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL 
 
 /* (point, representative) of every point that is not the first of its kind */
 CADT_KERNEL(cadt_duplicate_pairs, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* ranks,
-            CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL cadt_u32* pairs, cadt_u32 count, cadt_u32 distinct, cadt_u32 grain) {
+            CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL cadt_u32* pairs, cadt_u32 count, cadt_u32 distinct,
+            cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 rank = ranks[i], next = i + 1u < count ? ranks[i + 1u] : distinct;
     if (next != rank) continue;

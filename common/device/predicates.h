@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Orientation and incircle: a filter with a proven bound first, exact integers where it cannot tell, and for incircle the
- * symbolic perturbation of ties. The signs are always right.
+ * Orientation and incircle: a filter with a proven bound first, exact integers where it cannot tell, and for incircle
+ * the symbolic perturbation of ties. The signs are always right.
  *
  * Filters: forward error bounds as in J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
- * geometric predicates" (1997), stage A. The bounds hold when nothing under- or overflows. In the narrow build the driver
- * has scaled all coordinates to multiples of 2^-240 below 1, so the smallest product of four differences is 2^-960; in the
- * wide build each call checks its differences.
+ * geometric predicates" (1997), stage A. The bounds hold when nothing under- or overflows. In the narrow build the
+ * driver has scaled all coordinates to multiples of 2^-240 below 1, so the smallest product of four differences is
+ * 2^-960; in the wide build each call checks its differences.
  */
 #ifndef CADT_DEVICE_PREDICATES_H
 #define CADT_DEVICE_PREDICATES_H
@@ -45,10 +45,10 @@ CADT_FN cadt_i32 cadt_orientation(cadt_point a, cadt_point b, cadt_point c, cadt
 CADT_FN cadt_u32 cadt_before(cadt_point a, cadt_point b) { return a.x < b.x || (a.x == b.x && a.y < b.y) ? 1u : 0u; }
 
 /* The side of a point p that lies on the circle of the counterclockwise triangle a, b, c: O. Devillers, M. Teillaud,
- * "Perturbations and vertex removal in a 3D Delaunay triangulation" (SODA 2003). The lifted height of each point is raised
- * by a power of an infinitesimal that falls with its lexicographic rank, so the largest point decides: if it is p, p is
- * outside; if it is a vertex, p is inside when the triangle with p in that vertex' place is counterclockwise; if these
- * three are on a line, the next largest decides. 1 inside, -1 outside. */
+ * "Perturbations and vertex removal in a 3D Delaunay triangulation" (SODA 2003). The lifted height of each point is
+ * raised by a power of an infinitesimal that falls with its lexicographic rank, so the largest point decides: if it is
+ * p, p is outside; if it is a vertex, p is inside when the triangle with p in that vertex' place is counterclockwise;
+ * if these three are on a line, the next largest decides. 1 inside, -1 outside. */
 CADT_FN_SLOW cadt_i32 cadt_tie(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_tally* tally) {
   cadt_u32 spent = 0u; /* bit i: point i (a, b, c) has been the largest already */
   for (cadt_i32 round = 0; round < 3; ++round) {
@@ -59,8 +59,9 @@ CADT_FN_SLOW cadt_i32 cadt_tie(cadt_point a, cadt_point b, cadt_point c, cadt_po
     if (!(spent & 4u) && cadt_before(top, c)) top = c, largest = 2u;
     if (largest == 3u) return -1;
     spent |= 1u << largest;
-    cadt_i32 side = largest == 0u ? cadt_orientation(p, b, c, tally)
-                                  : (largest == 1u ? cadt_orientation(a, p, c, tally) : cadt_orientation(a, b, p, tally));
+    cadt_i32 side = largest == 0u
+                        ? cadt_orientation(p, b, c, tally)
+                        : (largest == 1u ? cadt_orientation(a, p, c, tally) : cadt_orientation(a, b, p, tally));
     if (side != 0) return side;
   }
   return -1;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * One pass of a stable least-significant-digit radix sort of 32-bit keys with 32-bit values: each work-item owns a chunk,
- * counts its digits, and after a scan of all counts (digit-major) scatters its chunk in order.
+ * One pass of a stable least-significant-digit radix sort of 32-bit keys with 32-bit values: each work-item owns a
+ * chunk, counts its digits, and after a scan of all counts (digit-major) scatters its chunk in order.
  */
 #ifndef CADT_DEVICE_RADIX_H
 #define CADT_DEVICE_RADIX_H
@@ -10,8 +10,8 @@
 
 enum { CADT_DIGITS = 1 << CADT_RADIX_BITS };
 
-CADT_KERNEL(cadt_radix_count, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_u32* counts, cadt_u32 count, cadt_u32 chunk,
-            cadt_u32 chunks, cadt_u32 shift) {
+CADT_KERNEL(cadt_radix_count, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_u32* counts, cadt_u32 count,
+            cadt_u32 chunk, cadt_u32 chunks, cadt_u32 shift) {
   if (cadt_item >= chunks) return;
   cadt_u32 digits[CADT_DIGITS];
   for (cadt_u32 d = 0u; d < CADT_CAST(cadt_u32, CADT_DIGITS); ++d) digits[d] = 0u;

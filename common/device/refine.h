@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Refinement of crowded cells. Sort keys of 32 bits run out on skewed data: 99.9 % of the points may share one key, and a
- * walk through a crowd in no order is long. Points in runs of equal keys longer than CADT_RUN are sorted again by more
- * bits: those of the coordinates as ordered integers, sixteen an axis and round. After four rounds all 64 bits have been
- * used, so what still shares a key are equal points.
+ * Refinement of crowded cells. Sort keys of 32 bits run out on skewed data: 99.9 % of the points may share one key, and
+ * a walk through a crowd in no order is long. Points in runs of equal keys longer than CADT_RUN are sorted again by
+ * more bits: those of the coordinates as ordered integers, sixteen an axis and round. After four rounds all 64 bits
+ * have been used, so what still shares a key are equal points.
  */
 #ifndef CADT_DEVICE_REFINE_H
 #define CADT_DEVICE_REFINE_H
@@ -11,8 +11,8 @@
 #include "common/device/order.h"
 
 /* Flags the members of long runs; `crowded` counts them. */
-CADT_KERNEL(cadt_crowded_flags, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* crowded) {
+CADT_KERNEL(cadt_crowded_flags, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_u32* flags, cadt_u32 count,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* crowded) {
   cadt_u32 sum = 0u;
   CADT_FOR(i, count, grain) {
     const cadt_u32 key = keys[i];
@@ -28,8 +28,8 @@ CADT_KERNEL(cadt_crowded_flags, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL ca
 }
 
 /* Places of the flagged. `ranks` is the exclusive scan of the flags, `total` its end. */
-CADT_KERNEL(cadt_crowded_pack, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_u32* places, cadt_u32 count, cadt_u32 total,
-            cadt_u32 grain) {
+CADT_KERNEL(cadt_crowded_pack, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_u32* places, cadt_u32 count,
+            cadt_u32 total, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 next = i + 1u < count ? ranks[i + 1u] : total;
     if (next != ranks[i]) places[ranks[i]] = i;
@@ -42,9 +42,9 @@ CADT_FN cadt_u64 cadt_ordered_bits(double x) {
   return bits >> 63 ? ~bits : bits | 0x8000000000000000ul;
 }
 
-/* Keys of a round (0 to 3) for the members at `places`, their points, and 1 in `tails` where a run ends: the exclusive scan
- * of the tails numbers the runs. `fresh` counts the members that differ from the next one in the same run: if there are
- * none, the round changes nothing. */
+/* Keys of a round (0 to 3) for the members at `places`, their points, and 1 in `tails` where a run ends: the exclusive
+ * scan of the tails numbers the runs. `fresh` counts the members that differ from the next one in the same run: if
+ * there are none, the round changes nothing. */
 CADT_KERNEL(cadt_crowded_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* order,
             CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_u32* round_keys,
             CADT_GLOBAL cadt_u32* members, CADT_GLOBAL cadt_u32* tails, cadt_u32 total, cadt_u32 round, cadt_u32 grain,
@@ -68,23 +68,25 @@ CADT_KERNEL(cadt_crowded_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL
   if (sum) cadt_add_relaxed(fresh, sum);
 }
 
-CADT_KERNEL(cadt_copy_words, CADT_GLOBAL const cadt_u32* in, CADT_GLOBAL cadt_u32* out, cadt_u32 count, cadt_u32 grain) {
+CADT_KERNEL(cadt_copy_words, CADT_GLOBAL const cadt_u32* in, CADT_GLOBAL cadt_u32* out, cadt_u32 count,
+            cadt_u32 grain) {
   CADT_FOR(j, count, grain) { out[j] = in[j]; }
 }
 
 /* out[j] = in[index[j]] */
-CADT_KERNEL(cadt_gather_words, CADT_GLOBAL const cadt_u32* in, CADT_GLOBAL const cadt_u32* index, CADT_GLOBAL cadt_u32* out,
-            cadt_u32 count, cadt_u32 grain) {
+CADT_KERNEL(cadt_gather_words, CADT_GLOBAL const cadt_u32* in, CADT_GLOBAL const cadt_u32* index,
+            CADT_GLOBAL cadt_u32* out, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(j, count, grain) { out[j] = in[index[j]]; }
 }
 
 /* 1 where a run of equal keys ends. */
-CADT_KERNEL(cadt_run_tails, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_u32* tails, cadt_u32 count, cadt_u32 grain) {
+CADT_KERNEL(cadt_run_tails, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_u32* tails, cadt_u32 count,
+            cadt_u32 grain) {
   CADT_FOR(i, count, grain) { tails[i] = i + 1u == count || keys[i] != keys[i + 1u] ? 1u : 0u; }
 }
 
-/* Stores the members in their new order at the old places, and the ends of their new runs. \pre `from` lists the members
- * sorted by run, then by key of the round */
+/* Stores the members in their new order at the old places, and the ends of their new runs. \pre `from` lists the
+ * members sorted by run, then by key of the round */
 CADT_KERNEL(cadt_crowded_store, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL const cadt_u32* members,
             CADT_GLOBAL const cadt_u32* from, CADT_GLOBAL const cadt_u32* runs, CADT_GLOBAL const cadt_u32* round_keys,
             CADT_GLOBAL cadt_u32* order, CADT_GLOBAL cadt_u32* tails, cadt_u32 total, cadt_u32 grain) {

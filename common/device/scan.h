@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Exclusive prefix sums in three launches: sums of chunks, a scan of the sums by one work-item, then each chunk. No barrier
- * and no local memory, so it is the same on every device.
+ * Exclusive prefix sums in three launches: sums of chunks, a scan of the sums by one work-item, then each chunk. No
+ * barrier and no local memory, so it is the same on every device.
  */
 #ifndef CADT_DEVICE_SCAN_H
 #define CADT_DEVICE_SCAN_H
 
 #include "common/device/lang.h"
 
-CADT_KERNEL(cadt_scan_sums, CADT_GLOBAL const cadt_u32* data, CADT_GLOBAL cadt_u32* sums, cadt_u32 count, cadt_u32 chunk) {
+CADT_KERNEL(cadt_scan_sums, CADT_GLOBAL const cadt_u32* data, CADT_GLOBAL cadt_u32* sums, cadt_u32 count,
+            cadt_u32 chunk) {
   const cadt_u32 begin = cadt_begin_of(cadt_item, chunk, count), end = cadt_min_u32(begin + chunk, count);
   if (begin == end) return;
   cadt_u32 sum = 0u;
@@ -28,7 +29,8 @@ CADT_KERNEL(cadt_scan_total, CADT_GLOBAL cadt_u32* sums, cadt_u32 chunks) {
   sums[chunks] = sum;
 }
 
-CADT_KERNEL(cadt_scan_apply, CADT_GLOBAL cadt_u32* data, CADT_GLOBAL const cadt_u32* sums, cadt_u32 count, cadt_u32 chunk) {
+CADT_KERNEL(cadt_scan_apply, CADT_GLOBAL cadt_u32* data, CADT_GLOBAL const cadt_u32* sums, cadt_u32 count,
+            cadt_u32 chunk) {
   const cadt_u32 begin = cadt_begin_of(cadt_item, chunk, count), end = cadt_min_u32(begin + chunk, count);
   if (begin == end) return;
   cadt_u32 sum = sums[cadt_item];

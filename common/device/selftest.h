@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
  * Known answers of the arithmetic that the filters rely on, computed on the actual device from values in memory
- * (literals would be folded by the compiler). The host compares the bits and refuses the device by the name of the probe
- * that failed (common/host/selftest.cpp).
+ * (literals would be folded by the compiler). The host compares the bits and refuses the device by the name of the
+ * probe that failed (common/host/selftest.cpp).
  */
 #ifndef CADT_DEVICE_SELFTEST_H
 #define CADT_DEVICE_SELFTEST_H
@@ -12,8 +12,8 @@
 
 enum { CADT_PROBES = 8, CADT_PROBE_WORDS = 5 };
 
-/* in: 2 * CADT_PROBES doubles; out: CADT_PROBES doubles; words: CADT_PROBE_WORDS words, zero at the start but the last, which is
- * CADT_NONE; items: those of the launch that count, for it may be rounded up */
+/* in: 2 * CADT_PROBES doubles; out: CADT_PROBES doubles; words: CADT_PROBE_WORDS words, zero at the start but the last,
+ * which is CADT_NONE; items: those of the launch that count, for it may be rounded up */
 CADT_KERNEL(cadt_selftest, CADT_GLOBAL const double* in, CADT_GLOBAL double* out, CADT_GLOBAL cadt_u32* words,
             cadt_u32 items) {
   if (cadt_item == 0u) {

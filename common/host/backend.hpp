@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The registry's view of a back end. Each folder of backends/ defines one function that returns it; a back end that is not
-// compiled in is answered by backends/absent.cpp.
+// The registry's view of a back end. Each folder of backends/ defines one function that returns it; a back end that is
+// not compiled in is answered by backends/absent.cpp.
 #pragma once
 
 #include <memory>
@@ -17,8 +17,8 @@ class BackendEntry {
   [[nodiscard]] virtual Backend id() const noexcept = 0;
   /// All devices, usable or not; one entry with index -1 and the reason if there is none. Never throws.
   [[nodiscard]] virtual std::vector<DeviceInfo> devices() = 0;
-  /// Opens the device with this index (as in `devices()`), checked by its self-test. \throws BackendUnavailable (with the
-  /// failed probe), KernelBuildError, DeviceError
+  /// Opens the device with this index (as in `devices()`), checked by its self-test. \throws BackendUnavailable (with
+  /// the failed probe), KernelBuildError, DeviceError
   [[nodiscard]] virtual std::unique_ptr<Device> open(int index, const Options& options) = 0;
 };
 

@@ -18,7 +18,7 @@ using namespace device_constants;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time to a cancel
 constexpr std::size_t points_per_launch_strided = std::size_t{1} << 23;
-constexpr int stalled_launches = 4;   // launches without progress before the rest is done by one work-item
+constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
 constexpr int hopeless_launches = 64;
 constexpr int most_sweeps = 2000;
 
@@ -91,8 +91,7 @@ class Builder {
   void insert_level(unsigned level) {
     // odd multiples of 2^level below n
     const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
-    const std::size_t most =
-        run_.device.shape().contiguous ? points_per_launch_contiguous : points_per_launch_strided;
+    const std::size_t most = run_.device.shape().contiguous ? points_per_launch_contiguous : points_per_launch_strided;
     const Allocation no_list;
     for (std::size_t begin = 0; begin < count; begin += most) {
       const std::size_t size = std::min(most, count - begin);
@@ -134,8 +133,8 @@ class Builder {
       }
       if (left[1] != 0) {
         const Cut c = alone ? Cut{1, left[1]} : launch_.cut(left[1]);
-        run_kernel(KernelId::cadt_legalize_edges, c.items, left_edges_[1], left[1], c.grain, left_edges_[0], left_counts_,
-                   edge_capacity_, counters_);
+        run_kernel(KernelId::cadt_legalize_edges, c.items, left_edges_[1], left[1], c.grain, left_edges_[0],
+                   left_counts_, edge_capacity_, counters_);
       }
     }
   }
@@ -150,8 +149,9 @@ class Builder {
       for (std::size_t begin = 0; begin < slots; begin += most) {
         const std::size_t size = std::min(most, slots - begin);
         const Cut c = launch_.cut(size);
-        run_kernel(KernelId::cadt_closing_pass, c.items, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(size),
-                   c.grain, found, left_edges_[0], left_counts_, edge_capacity_, counters_);
+        run_kernel(KernelId::cadt_closing_pass, c.items, static_cast<std::uint32_t>(begin),
+                   static_cast<std::uint32_t>(size), c.grain, found, left_edges_[0], left_counts_, edge_capacity_,
+                   counters_);
         std::array<std::uint32_t, 3> sums{};
         run_.device.read(*found, 0, sums.data(), sizeof sums);
         run_.device.fill(*found, 0, sizeof sums, 0);
@@ -166,8 +166,8 @@ class Builder {
       if (illegal == 0 && unsettled == 0) {
         run_.statistics.certified_edges = examined;
         if (examined != edges) {
-          throw InternalError("the mesh has " + std::to_string(examined) + " edges instead of " + std::to_string(edges) +
-                              "; please report this with the input");
+          throw InternalError("the mesh has " + std::to_string(examined) + " edges instead of " +
+                              std::to_string(edges) + "; please report this with the input");
         }
         return;
       }

@@ -10,9 +10,9 @@ namespace cadt {
 
 /// The mesh on the device, certified.
 struct DeviceMesh {
-  Allocation records;        ///< two a distinct point; some of the first points' stay unused
-  std::size_t slots = 0;     ///< records allocated
-  bool flat = false;         ///< all points on one line or fewer than three: no records
+  Allocation records;     ///< two a distinct point; some of the first points' stay unused
+  std::size_t slots = 0;  ///< records allocated
+  bool flat = false;      ///< all points on one line or fewer than three: no records
 };
 
 /// Inserts all points level by level, legalises, and certifies by closing passes. Releases nothing of `order`.

@@ -77,8 +77,8 @@ void collect_mesh(Run& run, const DeviceMesh& mesh, const Allocation& labels, Tr
   launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, labels, buckets, members, slots, all.grain);
   if (run.options.order == Order::canonical) {
     const Cut vertices = launch.cut(data.points);
-    launch.run(KernelId::cadt_sort_buckets, vertices.items, buckets, members,
-               static_cast<std::uint32_t>(data.points), vertices.grain);
+    launch.run(KernelId::cadt_sort_buckets, vertices.items, buckets, members, static_cast<std::uint32_t>(data.points),
+               vertices.grain);
   }
   buckets.release();
   run.check("collect", 0.95);

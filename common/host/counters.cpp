@@ -12,7 +12,8 @@ namespace cadt {
 using namespace device_constants;
 
 Counters::Counters(Device& device, Memory& memory)
-    : device_(device), buffer_(memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE)) {}
+    : device_(device),
+      buffer_(memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE)) {}
 
 void Counters::collect(Statistics& statistics) const {
   std::vector<std::uint32_t> words(static_cast<std::size_t>(CADT_COUNTER_ROWS) * CADT_COUNTER_STRIDE);

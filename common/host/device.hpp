@@ -33,11 +33,12 @@ class Buffer {
 /// One argument of a kernel: a buffer or a scalar of 4 or 8 bytes, in the order of the kernel's parameters.
 class Arg {
  public:
-  Arg(Buffer& buffer) noexcept : buffer_(&buffer) {}                        // NOLINT: implicit on purpose
-  Arg(const std::unique_ptr<Buffer>& buffer) noexcept : buffer_(buffer.get()) {}  // NOLINT; nullptr passes a null pointer
+  Arg(Buffer& buffer) noexcept : buffer_(&buffer) {}  // NOLINT: implicit on purpose
+  Arg(const std::unique_ptr<Buffer>& buffer) noexcept
+      : buffer_(buffer.get()) {}  // NOLINT; nullptr passes a null pointer
   template <class Scalar>
-    requires(std::is_arithmetic_v<Scalar> && (sizeof(Scalar) == 4 || sizeof(Scalar) == 8))
-  Arg(Scalar value) noexcept : size_(sizeof(Scalar)) {  // NOLINT
+  requires(std::is_arithmetic_v<Scalar> && (sizeof(Scalar) == 4 || sizeof(Scalar) == 8)) Arg(Scalar value)
+  noexcept : size_(sizeof(Scalar)) {  // NOLINT
     std::memcpy(value_, &value, sizeof value);
   }
 
@@ -54,9 +55,9 @@ class Arg {
 
 /// How a device wants its work cut.
 struct LaunchShape {
-  bool contiguous = true;       ///< a work-item takes neighbouring elements (CPUs) or strided ones (GPUs)
+  bool contiguous = true;         ///< a work-item takes neighbouring elements (CPUs) or strided ones (GPUs)
   std::uint32_t parallelism = 1;  ///< work-items that keep the device busy
-  std::uint32_t grain = 256;    ///< elements a work-item takes at least when there are plenty
+  std::uint32_t grain = 256;      ///< elements a work-item takes at least when there are plenty
 };
 
 /// One device, in order: every operation starts after the ones before it have finished.
@@ -91,9 +92,9 @@ class Device {
   /// Fills with copies of a word; offset and size in bytes, multiples of 4.
   virtual void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) = 0;
 
-  /// Runs a kernel with `items` work-items (possibly rounded up: kernels ignore items beyond their data). `wide` chooses
-  /// the build for coordinates of any exponent (common/device/fixed.h). Returns before the work is done where the device
-  /// can. \throws DeviceError, KernelBuildError (a variant may be built at its first launch)
+  /// Runs a kernel with `items` work-items (possibly rounded up: kernels ignore items beyond their data). `wide`
+  /// chooses the build for coordinates of any exponent (common/device/fixed.h). Returns before the work is done where
+  /// the device can. \throws DeviceError, KernelBuildError (a variant may be built at its first launch)
   virtual void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) = 0;
   /// Waits for everything launched. \throws DeviceError
   virtual void finish() = 0;

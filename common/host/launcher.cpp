@@ -4,8 +4,8 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t smallest_grain = 8;       // fewer elements are not worth waking a thread
-constexpr std::size_t device_chunk = 512;       // elements a work-item of a GPU scans or sorts in one go
+constexpr std::size_t smallest_grain = 8;          // fewer elements are not worth waking a thread
+constexpr std::size_t device_chunk = 512;          // elements a work-item of a GPU scans or sorts in one go
 constexpr std::size_t longest_serial_scan = 4096;  // sums that one work-item adds up
 
 constexpr std::size_t divide_up(std::size_t a, std::size_t b) noexcept { return (a + b - 1) / b; }
@@ -16,9 +16,9 @@ Cut Launcher::cut(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (!shape.contiguous) return {static_cast<std::uint32_t>(count), 1};
   // Small pieces near the end keep the threads busy; large ones keep each thread in its own part of the mesh.
-  const std::size_t grain =
-      grain_ != 0 ? std::min<std::size_t>(grain_, std::max<std::size_t>(count, 1))
-                  : std::clamp<std::size_t>(divide_up(count, std::size_t{shape.parallelism} * 4), smallest_grain, shape.grain);
+  const std::size_t grain = grain_ != 0 ? std::min<std::size_t>(grain_, std::max<std::size_t>(count, 1))
+                                        : std::clamp<std::size_t>(divide_up(count, std::size_t{shape.parallelism} * 4),
+                                                                  smallest_grain, shape.grain);
   return {static_cast<std::uint32_t>(divide_up(count, grain)), static_cast<std::uint32_t>(grain)};
 }
 
@@ -63,7 +63,8 @@ void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys
     run(KernelId::cadt_radix_count, c.items, keys, counts, n, c.grain, c.items, shift);
     scan(counts, entries);
     const Allocation& from = identity && shift == 0 ? none : values;
-    run(KernelId::cadt_radix_scatter, c.items, keys, from, spare_keys, spare_values, counts, n, c.grain, c.items, shift);
+    run(KernelId::cadt_radix_scatter, c.items, keys, from, spare_keys, spare_values, counts, n, c.grain, c.items,
+        shift);
     std::swap(keys, spare_keys);
     std::swap(values, spare_values);
   }

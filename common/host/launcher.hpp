@@ -48,7 +48,8 @@ class Launcher {
   void scan(const Allocation& data, std::size_t count);
 
   /// Stable sort of 32-bit keys with values by the lowest `bits` bits. Begins with values 0, 1, 2, ... if
-  /// `identity`. `spare_*` are of the same size; on return `keys` and `values` hold the result (the buffers may be swapped).
+  /// `identity`. `spare_*` are of the same size; on return `keys` and `values` hold the result (the buffers may be
+  /// swapped).
   void sort(Allocation& keys, Allocation& values, Allocation& spare_keys, Allocation& spare_values, std::size_t count,
             unsigned bits, bool identity);
 

@@ -56,10 +56,14 @@ std::unique_ptr<Device> open_in(BackendEntry& backend, const Options& options) {
 
 std::string_view to_string(Backend backend) noexcept {
   switch (backend) {
-    case Backend::automatic: return "auto";
-    case Backend::host: return "host";
-    case Backend::opencl: return "opencl";
-    case Backend::cuda: return "cuda";
+    case Backend::automatic:
+      return "auto";
+    case Backend::host:
+      return "host";
+    case Backend::opencl:
+      return "opencl";
+    case Backend::cuda:
+      return "cuda";
   }
   return "unknown";
 }
@@ -85,7 +89,8 @@ std::unique_ptr<Device> open_device(const Options& options) {
     for (BackendEntry* backend : all_backends())
       for (const DeviceInfo& info : backend->devices())
         if (info.index >= 0 && info.usable && matches(info, options.device)) return backend->open(info.index, options);
-    throw BackendUnavailable("auto", "no usable device matches '" + options.device + "'; 'cadt devices' lists what is there");
+    throw BackendUnavailable("auto",
+                             "no usable device matches '" + options.device + "'; 'cadt devices' lists what is there");
   }
   // A GPU is the fastest. Without one the host's threads are faster than OpenCL on the same cores.
   for (BackendEntry* backend : all_backends())

@@ -50,8 +50,10 @@ Bounds find_bounds(Run& run, const Allocation& input, std::size_t n) {
   for (std::size_t i = 0; i < c.items; ++i) {
     const std::uint32_t* row = &w[i * CADT_BOUNDS_WORDS];
     if (row[2] != CADT_NONE) {  // chunks ascend, so this is the first one
-      throw InputError("point " + std::to_string(row[2]) + " (counted from 0) has a coordinate that is NaN or infinite: "
-                       "remove or repair it", row[2]);
+      throw InputError("point " + std::to_string(row[2]) +
+                           " (counted from 0) has a coordinate that is NaN or infinite: "
+                           "remove or repair it",
+                       row[2]);
     }
     all.low = std::min(all.low, static_cast<int>(row[0]) - 4096);
     all.high = std::max(all.high, static_cast<int>(row[1]) - 4096);
@@ -93,7 +95,8 @@ KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
 }
 
 /// Sorts the members of crowded cells by more bits, a round at a time (common/device/refine.h).
-void refine(Run& run, const Allocation& input, Allocation& keys, const Allocation& order, Allocation& spare, std::size_t n) {
+void refine(Run& run, const Allocation& input, Allocation& keys, const Allocation& order, Allocation& spare,
+            std::size_t n) {
   Launcher& launch = run.launcher;
   const auto count = static_cast<std::uint32_t>(n);
   const Cut c = launch.cut(n);
@@ -126,7 +129,8 @@ void refine(Run& run, const Allocation& input, Allocation& keys, const Allocatio
     launch.sort(sorted, from, spare_sorted, spare_from, crowd, 32, true);
     if (last_run != 0) {
       launch.run(KernelId::cadt_gather_words, few.items, runs, from, sorted, crowd, few.grain);
-      launch.sort(sorted, from, spare_sorted, spare_from, crowd, static_cast<unsigned>(std::bit_width(last_run)), false);
+      launch.sort(sorted, from, spare_sorted, spare_from, crowd, static_cast<unsigned>(std::bit_width(last_run)),
+                  false);
     }
     launch.run(KernelId::cadt_run_tails, c.items, keys, spare, count, c.grain);
     launch.run(KernelId::cadt_crowded_store, few.items, places, members, from, runs, round_keys, order, spare, crowd,
@@ -137,8 +141,8 @@ void refine(Run& run, const Allocation& input, Allocation& keys, const Allocatio
   }
 }
 
-std::vector<Duplicate> find_duplicates(Run& run, const Allocation& order, const Allocation& ranks, const Allocation& labels,
-                                       std::size_t n, std::size_t distinct) {
+std::vector<Duplicate> find_duplicates(Run& run, const Allocation& order, const Allocation& ranks,
+                                       const Allocation& labels, std::size_t n, std::size_t distinct) {
   std::vector<Duplicate> pairs(n - distinct);
   Allocation buffer = run.memory.allocate(pairs.size() * sizeof(Duplicate));
   const Cut c = run.launcher.cut(n);

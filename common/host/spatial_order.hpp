@@ -12,8 +12,8 @@
 namespace cadt {
 
 struct SpatialOrder {
-  Allocation points;                  ///< distinct points in order, scaled by a power of two unless `wide`
-  Allocation labels;                  ///< their lowest input indices
+  Allocation points;  ///< distinct points in order, scaled by a power of two unless `wide`
+  Allocation labels;  ///< their lowest input indices
   std::size_t distinct = 0;
   std::vector<Duplicate> duplicates;  ///< ascending by point
   bool wide = false;                  ///< exponents span too much for the narrow kernels

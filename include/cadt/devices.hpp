@@ -12,22 +12,22 @@ namespace cadt {
 
 struct DeviceInfo {
   Backend backend = Backend::host;
-  int index = 0;                   ///< number within its back end, as `Options::device` takes it; -1: the back end itself
-  std::string platform;            ///< e.g. "Portable Computing Language"
+  int index = 0;         ///< number within its back end, as `Options::device` takes it; -1: the back end itself
+  std::string platform;  ///< e.g. "Portable Computing Language"
   std::string name;
-  std::string driver;              ///< driver version
+  std::string driver;  ///< driver version
   bool usable = false;
-  std::string reason;              ///< why it is not usable, empty otherwise
+  std::string reason;  ///< why it is not usable, empty otherwise
   std::uint64_t memory_bytes = 0;
   std::uint64_t largest_buffer_bytes = 0;
   unsigned compute_units = 0;
   bool fp64 = false;
   bool gpu = false;
-  std::string atomics;             ///< e.g. "C++20 acquire/release", "CL3.0 acquire/release, device scope"
+  std::string atomics;  ///< e.g. "C++20 acquire/release", "CL3.0 acquire/release, device scope"
 };
 
-/// All devices of all back ends, usable or not. A back end that is not compiled in or finds no device has one entry with
-/// index -1 that says why. Never throws for a missing driver.
+/// All devices of all back ends, usable or not. A back end that is not compiled in or finds no device has one entry
+/// with index -1 that says why. Never throws for a missing driver.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
 }  // namespace cadt

@@ -21,12 +21,17 @@ class PointsView {
   PointsView(std::span<const float> xy) : PointsView(xy.data(), xy.size()) {}   // NOLINT
 
   /// Separate arrays of equal size; otherwise InputError with the smaller size as index.
-  PointsView(std::span<const double> x, std::span<const double> y) : PointsView(x.data(), y.data(), x.size(), y.size()) {}
+  PointsView(std::span<const double> x, std::span<const double> y)
+      : PointsView(x.data(), y.data(), x.size(), y.size()) {}
   PointsView(std::span<const float> x, std::span<const float> y) : PointsView(x.data(), y.data(), x.size(), y.size()) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] double x(std::size_t i) const noexcept { return x64_ ? x64_[i * stride_] : static_cast<double>(x32_[i * stride_]); }
-  [[nodiscard]] double y(std::size_t i) const noexcept { return y64_ ? y64_[i * stride_] : static_cast<double>(y32_[i * stride_]); }
+  [[nodiscard]] double x(std::size_t i) const noexcept {
+    return x64_ ? x64_[i * stride_] : static_cast<double>(x32_[i * stride_]);
+  }
+  [[nodiscard]] double y(std::size_t i) const noexcept {
+    return y64_ ? y64_[i * stride_] : static_cast<double>(y32_[i * stride_]);
+  }
 
   /// The coordinates themselves if they are interleaved doubles, else nullptr.
   [[nodiscard]] const double* interleaved_doubles() const noexcept { return stride_ == 2 ? x64_ : nullptr; }

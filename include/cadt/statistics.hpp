@@ -12,33 +12,33 @@ namespace cadt {
 /// Counters of one run. Everything about conflicts (lost claims, retries, deferred work) depends on the schedule and
 /// differs from run to run; the mesh does not.
 struct Statistics {
-  std::string backend;        ///< "host", "opencl", "cuda"
-  std::string device;         ///< device name as its driver gives it
-  unsigned threads = 0;       ///< host threads, or compute units of the device
+  std::string backend;   ///< "host", "opencl", "cuda"
+  std::string device;    ///< device name as its driver gives it
+  unsigned threads = 0;  ///< host threads, or compute units of the device
 
-  std::uint64_t points = 0;               ///< input points
-  std::uint64_t distinct = 0;             ///< distinct points, all of them vertices unless dimension < 2
-  std::uint64_t launches = 0;             ///< kernel launches
-  std::uint64_t walk_steps = 0;           ///< triangles visited by the point location
-  std::uint64_t claims = 0;               ///< lock attempts for a whole set of records
-  std::uint64_t lost_claims = 0;          ///< attempts that met a lock held, or a record that had changed
-  std::uint64_t insert_retries = 0;       ///< point insertions that were tried again in the same launch
-  std::uint64_t stale_edges = 0;          ///< worklist edges that another thread had already replaced
-  std::uint64_t deferred_points = 0;      ///< points handed to a later launch
-  std::uint64_t deferred_edges = 0;       ///< edges handed to a later launch
-  std::uint64_t splits = 0;               ///< points inserted in a face (1 -> 3)
-  std::uint64_t edge_splits = 0;          ///< points inserted on an edge (2 -> 4)
-  std::uint64_t flips = 0;                ///< edges flipped
-  std::uint64_t incircle_tests = 0;       ///< edges examined
-  std::uint64_t exact_orientations = 0;   ///< orientation signs that the filter left to exact arithmetic
-  std::uint64_t exact_incircles = 0;      ///< incircle signs that the filter left to exact arithmetic
-  std::uint64_t ties = 0;                 ///< incircle signs that were zero and were decided symbolically
-  std::uint64_t closing_sweeps = 0;       ///< passes over all edges at the end; the last one found nothing
-  std::uint64_t closing_repairs = 0;      ///< illegal edges that the closing passes found and repaired
-  std::uint64_t certified_edges = 0;      ///< edges that the last closing pass examined and found legal
-  std::uint64_t refined_points = 0;       ///< points whose sort key had to be refined
-  std::uint64_t bytes_device_peak = 0;    ///< most bytes held on the device at a time
-  bool wide_arithmetic = false;           ///< the exponents span so much that long integers were needed throughout
+  std::uint64_t points = 0;              ///< input points
+  std::uint64_t distinct = 0;            ///< distinct points, all of them vertices unless dimension < 2
+  std::uint64_t launches = 0;            ///< kernel launches
+  std::uint64_t walk_steps = 0;          ///< triangles visited by the point location
+  std::uint64_t claims = 0;              ///< lock attempts for a whole set of records
+  std::uint64_t lost_claims = 0;         ///< attempts that met a lock held, or a record that had changed
+  std::uint64_t insert_retries = 0;      ///< point insertions that were tried again in the same launch
+  std::uint64_t stale_edges = 0;         ///< worklist edges that another thread had already replaced
+  std::uint64_t deferred_points = 0;     ///< points handed to a later launch
+  std::uint64_t deferred_edges = 0;      ///< edges handed to a later launch
+  std::uint64_t splits = 0;              ///< points inserted in a face (1 -> 3)
+  std::uint64_t edge_splits = 0;         ///< points inserted on an edge (2 -> 4)
+  std::uint64_t flips = 0;               ///< edges flipped
+  std::uint64_t incircle_tests = 0;      ///< edges examined
+  std::uint64_t exact_orientations = 0;  ///< orientation signs that the filter left to exact arithmetic
+  std::uint64_t exact_incircles = 0;     ///< incircle signs that the filter left to exact arithmetic
+  std::uint64_t ties = 0;                ///< incircle signs that were zero and were decided symbolically
+  std::uint64_t closing_sweeps = 0;      ///< passes over all edges at the end; the last one found nothing
+  std::uint64_t closing_repairs = 0;     ///< illegal edges that the closing passes found and repaired
+  std::uint64_t certified_edges = 0;     ///< edges that the last closing pass examined and found legal
+  std::uint64_t refined_points = 0;      ///< points whose sort key had to be refined
+  std::uint64_t bytes_device_peak = 0;   ///< most bytes held on the device at a time
+  bool wide_arithmetic = false;          ///< the exponents span so much that long integers were needed throughout
 
   /// Milliseconds per phase, in order of execution, e.g. {"sort", 12.3}.
   std::vector<std::pair<std::string, double>> milliseconds;

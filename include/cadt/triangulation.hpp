@@ -28,7 +28,8 @@ enum class Backend { automatic, host, opencl, cuda };
 
 /// Order of the triangles in the result.
 enum class Order {
-  canonical,  ///< each triangle starts with its smallest index, triangles ascend: equal arrays from every device and run
+  canonical,  ///< each triangle starts with its smallest index, triangles ascend: equal arrays from every device and
+              ///< run
   fast        ///< as the device left them: the same set, in an order that depends on the schedule
 };
 
@@ -46,12 +47,13 @@ struct Options {
   /// Host threads; 0 takes all cores, 1 runs serially (the reference).
   unsigned threads = 0;
   Order order = Order::canonical;
-  /// Upper bound for the device memory of this call, in bytes; 0 means no bound. Above it: OutOfMemory, before any work.
+  /// Upper bound for the device memory of this call, in bytes; 0 means no bound. Above it: OutOfMemory, before any
+  /// work.
   std::size_t max_memory = 0;
   /// Work-group (block) size on a device; 0 lets the library choose.
   unsigned work_group_size = 0;
-  /// Neighbouring elements that one work-item of a CPU takes in a row; 0 lets the library choose. Small numbers put several
-  /// threads to work in one place: slower, and full of conflicts.
+  /// Neighbouring elements that one work-item of a CPU takes in a row; 0 lets the library choose. Small numbers put
+  /// several threads to work in one place: slower, and full of conflicts.
   unsigned grain = 0;
   /// Checked between launches; when triggered the call throws Cancelled.
   std::stop_token stop;
@@ -115,7 +117,8 @@ class Triangulation {
   std::unique_ptr<Data> data_;
 };
 
-/// Most points that one call accepts: a record index and an edge number share 32 bits, and there are two records a point.
+/// Most points that one call accepts: a record index and an edge number share 32 bits, and there are two records a
+/// point.
 [[nodiscard]] constexpr std::size_t max_points() noexcept { return (std::size_t{1} << 29) - 2; }
 
 /// Triangulates the points. Expected O(n log n) work for the sort and O(n) for the rest on well-spread points.

@@ -15,7 +15,8 @@ namespace cadt {
 
 /// Outcome of one check of `verify`.
 struct Check {
-  std::string name;         ///< "counts", "range", "neighbors", "orientation", "vertices", "boundary", "euler", "hull", "delaunay", "ties"
+  std::string name;  ///< "counts", "range", "neighbors", "orientation", "vertices", "boundary", "euler", "hull",
+                     ///< "delaunay", "ties"
   bool passed = false;
   std::uint64_t failures = 0;
   std::int64_t first = -1;  ///< first offending triangle, point or edge (3 * triangle + k), as `what` says
@@ -26,24 +27,24 @@ struct VerifyReport {
   bool ok = false;
   std::vector<Check> checks;
   std::uint64_t points = 0, triangles_examined = 0, edges_examined = 0, hull_vertices = 0;
-  std::uint64_t ties = 0;             ///< interior edges whose four points are cocircular
-  std::uint64_t unusual_ties = 0;     ///< those that are not decided as cadt and CGAL decide them
+  std::uint64_t ties = 0;          ///< interior edges whose four points are cocircular
+  std::uint64_t unusual_ties = 0;  ///< those that are not decided as cadt and CGAL decide them
   /// One line: "ok: 945 triangles, ..." or the first failure.
   [[nodiscard]] std::string summary() const;
 };
 
 /// A mesh from any program. Only `triangles` is needed; empty spans are derived (neighbours) or not compared.
 struct MeshView {
-  std::span<const std::int32_t> triangles;   ///< n x 3, counterclockwise, 0-based
-  std::span<const std::int32_t> neighbors;   ///< n x 3, neighbour k opposite vertex k, -1 outside
-  std::span<const std::int32_t> hull;        ///< ccw loop
+  std::span<const std::int32_t> triangles;  ///< n x 3, counterclockwise, 0-based
+  std::span<const std::int32_t> neighbors;  ///< n x 3, neighbour k opposite vertex k, -1 outside
+  std::span<const std::int32_t> hull;       ///< ccw loop
   std::span<const Duplicate> duplicates;
-  bool has_duplicates = false;               ///< compare `duplicates` with the points, otherwise derive them
+  bool has_duplicates = false;  ///< compare `duplicates` with the points, otherwise derive them
 };
 
 struct VerifyOptions {
-  unsigned threads = 0;            ///< 0: all cores
-  bool canonical_ties = true;      ///< cocircular points must be decided as cadt and CGAL decide them
+  unsigned threads = 0;        ///< 0: all cores
+  bool canonical_ties = true;  ///< cocircular points must be decided as cadt and CGAL decide them
 };
 
 /// Checks structure, orientation, symmetry of neighbours, Euler's formula, the hull, that every input point is used or

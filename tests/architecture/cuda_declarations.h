@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The few names of CUDA that common/device uses, declared for clang's front end where no CUDA toolkit is installed. Only
- * for checking syntax and types.
+ * The few names of CUDA that common/device uses, declared for clang's front end where no CUDA toolkit is installed.
+ * Only for checking syntax and types.
  */
 #define __global__ __attribute__((global))
 #define __device__ __attribute__((device))

@@ -19,8 +19,8 @@ cadt::test::Signs signs(cadt::test::PlanePoint a, cadt::test::PlanePoint b, cadt
   return s;
 }
 
-int around_centroid(cadt::test::PlanePoint a, cadt::test::PlanePoint b, cadt::test::PlanePoint c, cadt::test::PlanePoint p,
-                    cadt::test::PlanePoint q) {
+int around_centroid(cadt::test::PlanePoint a, cadt::test::PlanePoint b, cadt::test::PlanePoint c,
+                    cadt::test::PlanePoint p, cadt::test::PlanePoint q) {
   const cadt_point points[3] = {point(a), point(b), point(c)};
   cadt_mesh mesh{};
   mesh.points = points;

@@ -30,8 +30,7 @@ void check(Four p, bool narrow, Seen& seen) {
   const int orientation = truth::orientation(exact(p[0]), exact(p[1]), exact(p[2]));
   if (orientation < 0) std::swap(p[0], p[1]);
   const bool triangle = truth::orientation(exact(p[0]), exact(p[1]), exact(p[2])) != 0;
-  const int incircle =
-      triangle ? truth::incircle_perturbed(exact(p[0]), exact(p[1]), exact(p[2]), exact(p[3])) : 0;
+  const int incircle = triangle ? truth::incircle_perturbed(exact(p[0]), exact(p[1]), exact(p[2]), exact(p[3])) : 0;
   for (const bool wide : {false, true}) {
     if (!wide && !narrow) continue;
     const Signs s = wide ? wide_signs(p[0], p[1], p[2], p[3]) : narrow_signs(p[0], p[1], p[2], p[3]);
@@ -39,9 +38,12 @@ void check(Four p, bool narrow, Seen& seen) {
     if (triangle) {
       ASSERT_EQ(s.incircle, incircle) << (wide ? "wide" : "narrow");
     }
-    if (s.tie) ++seen.ties;
-    else if (s.exact_incircle) ++seen.exact;
-    else ++seen.filtered;
+    if (s.tie)
+      ++seen.ties;
+    else if (s.exact_incircle)
+      ++seen.exact;
+    else
+      ++seen.filtered;
   }
 }
 
@@ -123,8 +125,9 @@ TEST(DevicePredicates, WideBuildTakesEveryDouble) {
   std::mt19937_64 random(5);
   Seen seen;
   const double largest = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
-  const std::vector<double> extremes = {0, least, -least, 3 * least, 2.2250738585072014e-308, 1e-300, 1, -1, 1 + 0x1p-52,
-                                        1e300, largest, -largest, largest / 2, 0x1p1023, -0x1p-1000};
+  const std::vector<double> extremes = {0,       least,    -least,      3 * least,   2.2250738585072014e-308,
+                                        1e-300,  1,        -1,          1 + 0x1p-52, 1e300,
+                                        largest, -largest, largest / 2, 0x1p1023,    -0x1p-1000};
   for (int i = 0; i < 4000; ++i) {
     Four p;
     for (auto& q : p) {

@@ -13,8 +13,8 @@ namespace {
 
 class Regression : public BackendTest {};
 
-// A row of points, one far below and one far above: that one, inserted last, takes a fan of n flips in a row. The row was
-// cut into one launch for every few flips, and 64 such launches were taken for a lack of progress: InternalError.
+// A row of points, one far below and one far above: that one, inserted last, takes a fan of n flips in a row. The row
+// was cut into one launch for every few flips, and 64 such launches were taken for a lack of progress: InternalError.
 Points row_and_two_hubs(int n) {
   Points xy;
   for (int i = 0; i < n - 2; ++i) xy.insert(xy.end(), {static_cast<double>(i), 0.0});
@@ -48,8 +48,8 @@ TEST_P(Regression, NearlyCollinearPointsAreProgress) {
   EXPECT_TRUE(verified(xy, mesh));
 }
 
-// The number of a work-item times its grain left 32 bits where work-items are rounded up to whole groups, so elements had
-// two owners.
+// The number of a work-item times its grain left 32 bits where work-items are rounded up to whole groups, so elements
+// had two owners.
 TEST_P(Regression, AnyGrainCutsTheWorkOnce) {
   const Points xy = uniform_points(3000);
   for (const unsigned group : {0u, 4u, 64u}) {

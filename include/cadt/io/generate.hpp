@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Point sets for tests, benchmarks and first steps. Equal on every machine for equal arguments as far as the C library's
-// sin, cos, exp and log are.
+// Point sets for tests, benchmarks and first steps. Equal on every machine for equal arguments as far as the C
+// library's sin, cos, exp and log are.
 #pragma once
 
 #include <cadt/io/points_file.hpp>
@@ -13,11 +13,11 @@
 namespace cadt::io {
 
 struct GenerateOptions {
-  std::size_t n = 10000;       ///< number of points; sets made of groups may round it, see the description
+  std::size_t n = 10000;  ///< number of points; sets made of groups may round it, see the description
   std::uint64_t seed = 1;
-  int k = 8;                   ///< circles: points on each circle (paper, Eq. 7, 8)
-  double radius = 0.35;        ///< circles: in cells of the grid of centres
-  double epsilon = 1e-4;       ///< circles: largest offset of a coordinate, in cells
+  int k = 8;              ///< circles: points on each circle (paper, Eq. 7, 8)
+  double radius = 0.35;   ///< circles: in cells of the grid of centres
+  double epsilon = 1e-4;  ///< circles: largest offset of a coordinate, in cells
 };
 
 struct Distribution {
@@ -28,7 +28,8 @@ struct Distribution {
 /// All names that `generate` takes, each with one line of description.
 [[nodiscard]] const std::vector<Distribution>& distributions();
 
-/// Points of the named distribution, e.g. "uniform"; an unknown name throws std::invalid_argument. `terrain` has heights.
+/// Points of the named distribution, e.g. "uniform"; an unknown name throws std::invalid_argument. `terrain` has
+/// heights.
 [[nodiscard]] PointSet generate(std::string_view distribution, const GenerateOptions& options = {});
 
 }  // namespace cadt::io

@@ -13,16 +13,17 @@
 namespace cadt::io {
 
 struct WriteOptions {
-  std::string format;        ///< overrides the suffix: node ele neigh obj off ply vtu npz svg png
-  int base = 0;              ///< first index in Triangle's .node .ele .neigh: 0 or 1
-  bool ascii = false;        ///< text instead of binary where the format has both (ply)
-  int width = 1600;          ///< pictures: pixels (png) or user units (svg)
+  std::string format;  ///< overrides the suffix: node ele neigh obj off ply vtu npz svg png
+  int base = 0;        ///< first index in Triangle's .node .ele .neigh: 0 or 1
+  bool ascii = false;  ///< text instead of binary where the format has both (ply)
+  int width = 1600;    ///< pictures: pixels (png) or user units (svg)
 };
 
 /// Writes a mesh or a picture of it. Formats with three coordinates take `PointSet::height`, else 0. All input points
 /// are written, in input order, so indices stay those of the input. The file appears only when complete (temporary file
 /// and rename); "-" is standard output. Throws FileError.
-void write_mesh(const std::string& path, const PointSet& points, const Triangulation& mesh, const WriteOptions& options = {});
+void write_mesh(const std::string& path, const PointSet& points, const Triangulation& mesh,
+                const WriteOptions& options = {});
 
 /// Triangles as read from a mesh file of any program: ele (with or without its .node beside it), obj, off, ply, vtu (as
 /// written by cadt), npz (keys as written by cadt).
@@ -32,9 +33,10 @@ struct MeshFile {
 };
 
 /// Reads triangles; `number_of_points` is that of the point file they index. `base` as in WriteOptions, -1: recognised
-/// (the .node beside an .ele, else the indices, else the number of the first triangle). Neighbours come from .npz and from
-/// the .neigh beside an .ele. Throws FileError, also for an index out of range.
-[[nodiscard]] MeshFile read_mesh(const std::string& path, std::size_t number_of_points, const std::string& format = {}, int base = -1);
+/// (the .node beside an .ele, else the indices, else the number of the first triangle). Neighbours come from .npz and
+/// from the .neigh beside an .ele. Throws FileError, also for an index out of range.
+[[nodiscard]] MeshFile read_mesh(const std::string& path, std::size_t number_of_points, const std::string& format = {},
+                                 int base = -1);
 
 [[nodiscard]] std::vector<std::string> mesh_write_formats();
 [[nodiscard]] std::vector<std::string> mesh_read_formats();

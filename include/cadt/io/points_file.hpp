@@ -16,23 +16,23 @@ namespace cadt::io {
 enum class Projection { xy, yz, zx };
 
 struct ReadOptions {
-  std::string format;                 ///< overrides the suffix: xy txt csv xyz node ply obj off npy f64 f32
-  std::string columns;                ///< for tables: "1,2", "x,y", "lon,lat,depth" (1-based or by header name); empty: recognised
+  std::string format;   ///< overrides the suffix: xy txt csv xyz node ply obj off npy f64 f32
+  std::string columns;  ///< for tables: "1,2", "x,y", "lon,lat,depth" (1-based or by header name); empty: recognised
   Projection projection = Projection::xy;
 };
 
 /// Points as read. `height` is empty for plane data, else it has one value a point.
 struct PointSet {
-  std::vector<double> xy;             ///< interleaved
+  std::vector<double> xy;  ///< interleaved
   std::vector<double> height;
-  std::string format;                 ///< that was used
+  std::string format;  ///< that was used
   [[nodiscard]] std::size_t size() const noexcept { return xy.size() / 2; }
   [[nodiscard]] PointsView view() const { return PointsView(std::span<const double>(xy)); }
 };
 
-/// Reads a point file; "-" is standard input (then `format` must be given). Throws FileError with the line (text) or the
-/// byte (binary), also for NaN and infinity, empty files, truncated files and wrong counts. Numbers never go through the
-/// C locale. Never allocates from an unchecked count.
+/// Reads a point file; "-" is standard input (then `format` must be given). Throws FileError with the line (text) or
+/// the byte (binary), also for NaN and infinity, empty files, truncated files and wrong counts. Numbers never go
+/// through the C locale. Never allocates from an unchecked count.
 [[nodiscard]] PointSet read_points(const std::string& path, const ReadOptions& options = {});
 
 /// Writes points; the format comes from the suffix unless given: xy txt csv xyz node ply npy f64 f32. Shortest decimals

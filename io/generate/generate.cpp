@@ -70,7 +70,10 @@ PointSet generate(std::string_view distribution, const GenerateOptions& options)
     return out;
   }
   std::string known;
-  for (const Entry& entry : entries) known += (known.empty() ? "" : " ") + std::string(entry.about.name);
+  for (const Entry& entry : entries) {
+    if (!known.empty()) known += ' ';
+    known += entry.about.name;
+  }
   throw std::invalid_argument(fmt::format("unknown distribution '{}'; known: {}", distribution, known));
 }
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
 #include <memory>
 #include <string>
 
@@ -79,6 +80,7 @@ int parse_and_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   int code = exit_done;
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows over its limit is an error of the write, with the file's name
   try {
     code = parse_and_run(argc, argv);
     finish_stdout();

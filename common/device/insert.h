@@ -115,20 +115,54 @@ CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hin
   return 0u;
 }
 
-/* One level: the points at odd multiples of 2^level, each with a walk from the point at the multiple of 2^(level+1)
- * below it, which is in the mesh and near in sorted order; or a list of points left over, with their own hints. */
+/* Block b of level l holds the positions from b * 2^l on, 2^l of them. One of them stands for the block: that of one of
+ * its two halves, chosen by a hash. (Always the left one would do for most sets; but where every other point in sorted
+ * order is of another kind, two lines for instance, the last level would insert all of one kind into a mesh of the
+ * other, with n / 8 flips a point.) */
+CADT_FN cadt_u32 cadt_right_half(cadt_u32 level, cadt_u32 block) {
+  cadt_u32 x = block * 2654435761u + level * 0x9E3779B9u;
+  x ^= x >> 15;
+  x *= 0x85EBCA6Bu;
+  return (x >> 16) & 1u;
+}
+CADT_FN cadt_u32 cadt_representative(cadt_u32 level, cadt_u32 block, cadt_u32 n) {
+  while (level > 0u) {
+    const cadt_u32 right = cadt_right_half(level, block);
+    --level;
+    block = 2u * block + right;
+    /* the last block may have no right half */
+    if (right && (CADT_CAST(cadt_u64, block) << level) >= n) --block;
+  }
+  return block;
+}
+
+/* Position of the point that stands for all: the first of the mesh. */
+CADT_KERNEL(cadt_root, cadt_u32 n, cadt_u32 levels, CADT_GLOBAL cadt_u32* position) {
+  if (cadt_item == 0u) *position = cadt_representative(levels, 0u, n);
+}
+
+/* One level: of each block of 2^(level+1) positions the half that does not stand for it, with a walk from the point
+ * that does, which is in the mesh and near in sorted order; or a list of points left over, with their own hints. */
 CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 begin, cadt_u32 count,
-            cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* left_points, CADT_GLOBAL cadt_u32* left_edges,
-            CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counters) {
+            cadt_u32 n, cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* left_points,
+            CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
+            CADT_GLOBAL cadt_u32* counters) {
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_points, left_edges, left_counts, edge_capacity);
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 work[CADT_WORKLIST];
   CADT_FOR(u, count, grain) {
-    const cadt_u32 i = list ? list[u] : ((2u * (begin + u) + 1u) << level);
+    cadt_u32 i, near;
+    if (list) {
+      i = near = list[u];
+    } else {
+      const cadt_u32 block = begin + u;
+      const cadt_u32 standing = 2u * block + cadt_right_half(level + 1u, block);
+      i = cadt_representative(level, standing ^ 1u, n);
+      near = cadt_representative(level, standing, n);
+    }
     if (i == first || i == second || i == third) continue;
-    const cadt_u32 near = list ? i : (begin + u) << (level + 1u);
     const cadt_u32 size = cadt_insert_vertex(&mesh, i, cadt_load_relaxed(mesh.hints + near), work, &tally);
     if (size)
       cadt_legalize(&mesh, i, work, size, &deferred, &tally);

@@ -55,6 +55,7 @@ typedef long cadt_i64;
 #define cadt_clz64(x) ((cadt_u32)clz((ulong)(x)))
 #define cadt_mulhi_u64(a, b) mul_hi((ulong)(a), (ulong)(b))
 #define cadt_fabs(x) fabs(x)
+#define cadt_ldexp(x, e) ldexp((x), (e))
 
 /* ---- CUDA C++ ------------------------------------------------------------------------------------------------- */
 #elif defined(CADT_LANG_CUDA)
@@ -76,6 +77,7 @@ typedef long long cadt_i64;
 #define cadt_clz64(x) ((cadt_u32)__clzll((long long)(x)))
 #define cadt_mulhi_u64(a, b) __umul64hi((a), (b))
 #define cadt_fabs(x) fabs(x)
+#define cadt_ldexp(x, e) ldexp((x), (e))
 
 /* ---- host C++; the file that includes the kernels has included <cmath>, <cstdint>, <cstring>, <atomic> before ---- */
 #else
@@ -104,6 +106,7 @@ CADT_FN cadt_u64 cadt_mulhi_u64(cadt_u64 a, cadt_u64 b) {
   return CADT_CAST(cadt_u64, (CADT_CAST(u128, a) * b) >> 64);
 }
 CADT_FN double cadt_fabs(double x) { return std::fabs(x); }
+CADT_FN double cadt_ldexp(double x, cadt_i32 e) { return std::ldexp(x, e); }
 
 #endif
 

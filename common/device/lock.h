@@ -43,6 +43,9 @@ CADT_FN void cadt_claim_order(cadt_claim* c, cadt_u32 i, cadt_u32 j) {
 
 /* Gives back the records of the first `count` places, unchanged. */
 CADT_FN void cadt_abandon_claim(const cadt_mesh* m, const cadt_claim* c, cadt_u32 count) {
+  /* The store below takes the place of the last owner's in what the next claimer synchronises with: hand on what it
+   * covered. */
+  if (count) cadt_fence_locks();
   for (cadt_u32 i = 0u; i < count; ++i)
     if (c->record[i] != CADT_NONE) cadt_store_lock(m->records[c->record[i]].word + CADT_WORD_LOCK, c->version[i]);
 }

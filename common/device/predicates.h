@@ -6,7 +6,7 @@
  * Filters: forward error bounds as in J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
  * geometric predicates" (1997), stage A. The bounds hold when nothing under- or overflows. In the narrow build the
  * driver has scaled all coordinates to multiples of 2^-240 below 1, so the smallest product of four differences is
- * 2^-960; in the wide build each call checks its differences.
+ * 2^-960; in the wide build each call scales its differences.
  */
 #ifndef CADT_DEVICE_PREDICATES_H
 #define CADT_DEVICE_PREDICATES_H
@@ -19,21 +19,39 @@
 #define CADT_INCIRCLE_BOUND 1.1102230246251577e-15
 
 #if CADT_WIDE
-/* A difference whose products of four neither underflow nor overflow. */
-CADT_FN cadt_u32 cadt_tame(double difference) {
-  double d = cadt_fabs(difference);
-  return d == 0.0 || (d > 1e-70 && d < 1e70) ? 1u : 0u;
+/* The wide build scales the differences of a call by a power of two to at most 1, which does not change the sign. Then
+ * nothing overflows, and what is lost by underflow, here and in the products, is below CADT_UNDERFLOW altogether. */
+#define CADT_UNDERFLOW 1e-300
+
+/* Exponent of the largest magnitude, 5000 if a difference has overflowed. */
+CADT_FN cadt_i32 cadt_exponent_of_largest(double a, double b, double c, double d) {
+  const cadt_u64 mask = 0x7FF0000000000000ul;
+  cadt_u64 top = cadt_bits_of_double(a) & mask;
+  if ((cadt_bits_of_double(b) & mask) > top) top = cadt_bits_of_double(b) & mask;
+  if ((cadt_bits_of_double(c) & mask) > top) top = cadt_bits_of_double(c) & mask;
+  if ((cadt_bits_of_double(d) & mask) > top) top = cadt_bits_of_double(d) & mask;
+  return top == mask ? 5000 : CADT_CAST(cadt_i32, top >> 52) - 1022;
 }
+#else
+#define CADT_UNDERFLOW 0.0
 #endif
 
 CADT_FN cadt_i32 cadt_orientation(cadt_point a, cadt_point b, cadt_point c, cadt_tally* tally) {
   double ux = a.x - c.x, uy = a.y - c.y, vx = b.x - c.x, vy = b.y - c.y;
-  double left = ux * vy, right = uy * vx, det = left - right;
-  double bound = CADT_ORIENTATION_BOUND * (cadt_fabs(left) + cadt_fabs(right));
 #if CADT_WIDE
-  if (cadt_tame(ux) && cadt_tame(uy) && cadt_tame(vx) && cadt_tame(vy))
+  /* x and y apart: the determinant is linear in either */
+  const cadt_i32 ex = cadt_exponent_of_largest(ux, vx, 0.0, 0.0), ey = cadt_exponent_of_largest(uy, vy, 0.0, 0.0);
+  if (ex < 5000 && ey < 5000)
 #endif
   {
+#if CADT_WIDE
+    ux = cadt_ldexp(ux, -ex);
+    vx = cadt_ldexp(vx, -ex);
+    uy = cadt_ldexp(uy, -ey);
+    vy = cadt_ldexp(vy, -ey);
+#endif
+    const double left = ux * vy, right = uy * vx, det = left - right;
+    const double bound = CADT_ORIENTATION_BOUND * (cadt_fabs(left) + cadt_fabs(right)) + CADT_UNDERFLOW;
     if (det > bound) return 1;
     if (-det > bound) return -1;
   }
@@ -70,16 +88,26 @@ CADT_FN_SLOW cadt_i32 cadt_tie(cadt_point a, cadt_point b, cadt_point c, cadt_po
 /* Incircle of the counterclockwise triangle a, b, c and p, never 0. */
 CADT_FN cadt_i32 cadt_incircle(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_tally* tally) {
   double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y, cx = c.x - p.x, cy = c.y - p.y;
-  double bxcy = bx * cy, bycx = by * cx, cxay = cx * ay, cyax = cy * ax, axby = ax * by, aybx = ay * bx;
-  double alift = ax * ax + ay * ay, blift = bx * bx + by * by, clift = cx * cx + cy * cy;
-  double det = alift * (bxcy - bycx) + blift * (cxay - cyax) + clift * (axby - aybx);
-  double permanent = alift * (cadt_fabs(bxcy) + cadt_fabs(bycx)) + blift * (cadt_fabs(cxay) + cadt_fabs(cyax)) +
-                     clift * (cadt_fabs(axby) + cadt_fabs(aybx));
-  double bound = CADT_INCIRCLE_BOUND * permanent;
 #if CADT_WIDE
-  if (cadt_tame(ax) && cadt_tame(ay) && cadt_tame(bx) && cadt_tame(by) && cadt_tame(cx) && cadt_tame(cy))
+  const cadt_i32 e0 = cadt_exponent_of_largest(ax, ay, bx, by), e1 = cadt_exponent_of_largest(cx, cy, 0.0, 0.0);
+  const cadt_i32 e = e0 > e1 ? e0 : e1;
+  if (e < 5000)
 #endif
   {
+#if CADT_WIDE
+    ax = cadt_ldexp(ax, -e);
+    ay = cadt_ldexp(ay, -e);
+    bx = cadt_ldexp(bx, -e);
+    by = cadt_ldexp(by, -e);
+    cx = cadt_ldexp(cx, -e);
+    cy = cadt_ldexp(cy, -e);
+#endif
+    const double bxcy = bx * cy, bycx = by * cx, cxay = cx * ay, cyax = cy * ax, axby = ax * by, aybx = ay * bx;
+    const double alift = ax * ax + ay * ay, blift = bx * bx + by * by, clift = cx * cx + cy * cy;
+    const double det = alift * (bxcy - bycx) + blift * (cxay - cyax) + clift * (axby - aybx);
+    const double permanent = alift * (cadt_fabs(bxcy) + cadt_fabs(bycx)) + blift * (cadt_fabs(cxay) + cadt_fabs(cyax)) +
+                             clift * (cadt_fabs(axby) + cadt_fabs(aybx));
+    const double bound = CADT_INCIRCLE_BOUND * permanent + CADT_UNDERFLOW;
     if (det > bound) return 1;
     if (-det > bound) return -1;
   }

@@ -8,12 +8,12 @@
 
 #include "common/device/change.h"
 
-/* Lowers *third to the first position that is not on the line of points 0 and `second`. */
-CADT_KERNEL(cadt_find_triangle, CADT_GLOBAL const cadt_point* points, cadt_u32 second, cadt_u32 begin, cadt_u32 count,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* third) {
+/* Lowers *third to the first position that is not on the line of points `first` and `second`. */
+CADT_KERNEL(cadt_find_triangle, CADT_GLOBAL const cadt_point* points, cadt_u32 first, cadt_u32 second, cadt_u32 begin,
+            cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* third) {
   cadt_tally tally;
   cadt_tally_clear(&tally);
-  const cadt_point a = points[0], b = points[second];
+  const cadt_point a = points[first], b = points[second];
   CADT_FOR(i, count, grain) {
     if (cadt_orientation(a, b, points[begin + i], &tally) != 0) {
       cadt_min_relaxed(third, begin + i);

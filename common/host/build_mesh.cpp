@@ -46,8 +46,7 @@ class Builder {
     run_kernel(KernelId::cadt_start_mesh, 1);
     run_.end_phase("start");
 
-    const auto top = static_cast<unsigned>(std::bit_width(n_ - 1)) - 1;
-    for (unsigned level = top + 1; level-- > 0;) insert_level(level);
+    for (unsigned level = levels(); level-- > 0;) insert_level(level);
     run_.end_phase("insert");
     certify();
     run_.end_phase("certify");
@@ -58,22 +57,28 @@ class Builder {
   }
 
  private:
-  /// Three points not on a line: the first, the middle one, and the first that is not on their line.
+  /// Levels of halving until a block is one point.
+  [[nodiscard]] unsigned levels() const noexcept { return static_cast<unsigned>(std::bit_width(n_ - 1)); }
+
+  /// Three points not on a line: the one that stands for all, the middle one, and the first that is not on their line.
   bool find_first_triangle() {
-    second_ = static_cast<std::uint32_t>(n_ / 2);
     Allocation found = run_.memory.allocate(word);
+    launch_.run(KernelId::cadt_root, 1, static_cast<std::uint32_t>(n_), levels(), found);
+    first_ = launch_.read_word(found, 0);
+    second_ = static_cast<std::uint32_t>(n_ / 2);
+    if (second_ == first_) second_ = 0;
     run_.device.fill(*found, 0, word, CADT_NONE);
     constexpr std::size_t few = 1024;  // enough unless the points are nearly all on a line
-    for (std::size_t begin = 1, end = std::min(n_, few); begin < n_; begin = end, end = n_) {
+    for (std::size_t begin = 0, end = std::min(n_, few); begin < n_; begin = end, end = n_) {
       const Cut c = launch_.cut(end - begin);
-      launch_.run(KernelId::cadt_find_triangle, c.items, order_.points, second_, static_cast<std::uint32_t>(begin),
-                  static_cast<std::uint32_t>(end - begin), c.grain, found);
+      launch_.run(KernelId::cadt_find_triangle, c.items, order_.points, first_, second_,
+                  static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin), c.grain, found);
       third_ = launch_.read_word(found, 0);
       if (third_ != CADT_NONE) break;
     }
     if (third_ == CADT_NONE) return false;
     center_ = {0, 0};
-    for (const std::uint32_t at : {0U, second_, third_}) {
+    for (const std::uint32_t at : {first_, second_, third_}) {
       cadt_point p;
       run_.device.read(*order_.points, at * sizeof p, &p, sizeof p);
       center_.x += p.x / 3;
@@ -85,11 +90,11 @@ class Builder {
   /// A kernel over the mesh: its view comes first among the parameters.
   template <class... Args>
   void run_kernel(KernelId kernel, std::uint32_t items, const Args&... args) {
-    launch_.run(kernel, items, records_, order_.points, hints_, center_.x, center_.y, 0U, second_, third_, args...);
+    launch_.run(kernel, items, records_, order_.points, hints_, center_.x, center_.y, first_, second_, third_, args...);
   }
 
   void insert_level(unsigned level) {
-    // odd multiples of 2^level below n
+    // blocks of 2^(level+1) positions that have two halves
     const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
     const std::size_t most = run_.device.shape().contiguous ? points_per_launch_contiguous : points_per_launch_strided;
     const Allocation no_list;
@@ -97,8 +102,8 @@ class Builder {
       const std::size_t size = std::min(most, count - begin);
       const Cut c = launch_.cut(size);
       run_kernel(KernelId::cadt_insert, c.items, no_list, static_cast<std::uint32_t>(begin),
-                 static_cast<std::uint32_t>(size), level, c.grain, left_points_[0], left_edges_[0], left_counts_,
-                 edge_capacity_, counters_);
+                 static_cast<std::uint32_t>(size), static_cast<std::uint32_t>(n_), level, c.grain, left_points_[0],
+                 left_edges_[0], left_counts_, edge_capacity_, counters_);
       finish_leftovers();
       inserted_ += size;
       run_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
@@ -128,7 +133,7 @@ class Builder {
       const bool alone = stalled >= stalled_launches;
       if (left[0] != 0) {
         const Cut c = alone ? Cut{1, left[0]} : launch_.cut(left[0]);
-        run_kernel(KernelId::cadt_insert, c.items, left_points_[1], 0U, left[0], 0U, c.grain, left_points_[0],
+        run_kernel(KernelId::cadt_insert, c.items, left_points_[1], 0U, left[0], 0U, 0U, c.grain, left_points_[0],
                    left_edges_[0], left_counts_, edge_capacity_, counters_);
       }
       if (left[1] != 0) {
@@ -184,7 +189,7 @@ class Builder {
   Counters counters_;
   Allocation records_, hints_, left_counts_;
   std::array<Allocation, 2> left_points_, left_edges_;  // [0] is written by the next launch, [1] read by it
-  std::uint32_t second_ = 0, third_ = 0;
+  std::uint32_t first_ = 0, second_ = 0, third_ = 0;
   cadt_point center_{};
   std::size_t inserted_ = 0;
 };

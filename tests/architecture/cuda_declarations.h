@@ -19,3 +19,4 @@ __device__ int __clzll(long long);
 __device__ unsigned long long __umul64hi(unsigned long long, unsigned long long);
 __device__ long long __double_as_longlong(double);
 __device__ double fabs(double);
+__device__ double ldexp(double, int);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <span>
 
 namespace cadt::test {
@@ -46,6 +47,29 @@ TEST_P(Regression, NearlyCollinearPointsAreProgress) {
   const Points xy = nearly_collinear(20000);
   const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
   EXPECT_TRUE(verified(xy, mesh));
+}
+
+// Two lines that part, whose points alternate in sorted order: the last level inserted all of one line into a mesh of
+// the other, with n / 8 flips a point.
+TEST_P(Regression, AlternatingLinesAreNotQuadratic) {
+  Points xy;
+  const int n = 20000;
+  for (int i = 0; i < n; ++i) xy.insert(xy.end(), {static_cast<double>(i), i % 2 == 0 ? 0.0 : 1e-5 * i});
+  const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
+  EXPECT_TRUE(verified(xy, mesh));
+  EXPECT_LT(mesh.statistics().flips, 10u * n);
+}
+
+// Exponents that span everything went to exact arithmetic for nearly every sign: 90 exact orientations a point.
+TEST_P(Regression, WideRangesAreFilteredToo) {
+  Points xy;
+  Random random(9);
+  const int n = 4000;
+  for (int i = 0; i < n; ++i) xy.insert(xy.end(), {std::exp(random.uniform(-500, 500)), random.uniform()});
+  const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
+  EXPECT_TRUE(verified(xy, mesh));
+  EXPECT_TRUE(mesh.statistics().wide_arithmetic);
+  EXPECT_LT(mesh.statistics().exact_orientations + mesh.statistics().exact_incircles, 4u * n);
 }
 
 // The number of a work-item times its grain left 32 bits where work-items are rounded up to whole groups, so elements

@@ -5,7 +5,9 @@
 #include <cadt/errors.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
+#include <ranges>
 #include <span>
 
 namespace cadt {
@@ -19,6 +21,13 @@ class PointsView {
   /// Interleaved x0 y0 x1 y1 ...; an odd size throws InputError.
   PointsView(std::span<const double> xy) : PointsView(xy.data(), xy.size()) {}  // NOLINT: implicit on purpose
   PointsView(std::span<const float> xy) : PointsView(xy.data(), xy.size()) {}   // NOLINT
+
+  /// The same from any array of doubles or floats in one piece, such as a std::vector.
+  template <class Range>
+    requires(std::ranges::contiguous_range<const Range&> && std::ranges::sized_range<const Range&> &&
+             (std::same_as<std::ranges::range_value_t<Range>, double> ||
+              std::same_as<std::ranges::range_value_t<Range>, float>))
+  PointsView(const Range& xy) : PointsView(std::ranges::data(xy), std::ranges::size(xy)) {}  // NOLINT
 
   /// Separate arrays of equal size; otherwise InputError with the smaller size as index.
   PointsView(std::span<const double> x, std::span<const double> y)

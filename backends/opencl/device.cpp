@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cadt/errors.hpp>
 #include <limits>
+#include <mutex>
 
 namespace cadt::opencl {
 namespace {
@@ -64,6 +65,13 @@ bool is_out_of_memory(int code) {
   throw OutOfMemory("'" + info.name + "' cannot hold a buffer of " + std::to_string(needed) + " bytes: " + why + " " +
                         std::to_string(available) + " bytes",
                     needed, available);
+}
+
+// PoCL counts the users of a compiled kernel without a lock (pocl_release_dlhandle_cache, seen in 3.1): two launches in
+// flight at once, from different queues, end the process by a failed assertion. So one is in flight in the process.
+std::mutex launching;
+bool launches_alone(const DeviceInfo& info) {
+  return !info.gpu && info.platform.find("Portable Computing Language") != std::string::npos;
 }
 
 std::size_t free_bytes(const SharedContext& shared) {
@@ -206,7 +214,9 @@ void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg>
         target.kernel.setArg(position, memory_of(*arg.buffer()));
       ++position;
     }
+    const auto one_at_a_time = launches_alone(info()) ? std::unique_lock(launching) : std::unique_lock<std::mutex>();
     queue_.enqueueNDRangeKernel(target.kernel, cl::NullRange, cl::NDRange(groups * group), cl::NDRange(group));
+    if (one_at_a_time) queue_.finish();
   });
 }
 

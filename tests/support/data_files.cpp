@@ -29,7 +29,11 @@ std::string contents(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
+std::string quoted(const fs::path& path) {
+  std::string text(1, '\'');
+  text += path.string();
+  return text += '\'';
+}
 
 // Output of a command, kept as a file of the build folder until `source` changes. Tests of several processes may want
 // it at a time: each writes under a name of its own and renames.

@@ -117,8 +117,9 @@ CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hin
 
 /* Block b of level l holds the positions from b * 2^l on, 2^l of them. One of them stands for the block: that of one of
  * its two halves, chosen by a hash. (Always the left one would do for most sets; but where every other point in sorted
- * order is of another kind, two lines for instance, the last level would insert all of one kind into a mesh of the other,
- * with n / 8 flips a point.) Eight neighbouring blocks share their choice: evenly spaced points need fewer flips. */
+ * order is of another kind, two lines for instance, the last level would insert all of one kind into a mesh of the
+ * other, with n / 8 flips a point.) Eight neighbouring blocks share their choice: evenly spaced points need fewer
+ * flips. */
 CADT_FN cadt_u32 cadt_right_half(cadt_u32 level, cadt_u32 block) {
   cadt_u32 x = (block >> 3) * 2654435761u + level * 0x9E3779B9u;
   x ^= x >> 15;

@@ -24,10 +24,10 @@ class PointsView {
 
   /// The same from any array of doubles or floats in one piece, such as a std::vector.
   template <class Range>
-    requires(std::ranges::contiguous_range<const Range&> && std::ranges::sized_range<const Range&> &&
-             (std::same_as<std::ranges::range_value_t<Range>, double> ||
-              std::same_as<std::ranges::range_value_t<Range>, float>))
-  PointsView(const Range& xy) : PointsView(std::ranges::data(xy), std::ranges::size(xy)) {}  // NOLINT
+  requires(std::ranges::contiguous_range<const Range&>&& std::ranges::sized_range<const Range&> &&
+           (std::same_as<std::ranges::range_value_t<Range>, double> ||
+            std::same_as<std::ranges::range_value_t<Range>, float>)) PointsView(const Range& xy)
+      : PointsView(std::ranges::data(xy), std::ranges::size(xy)) {}  // NOLINT
 
   /// Separate arrays of equal size; otherwise InputError with the smaller size as index.
   PointsView(std::span<const double> x, std::span<const double> y)

@@ -15,7 +15,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
             CADT_GLOBAL cadt_u32* found, CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts,
             cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counters) {
   CADT_MESH_VIEW(mesh);
-  const cadt_deferred deferred = cadt_lists(0, left_edges, left_counts, edge_capacity);
+  const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 work[CADT_WORKLIST];

@@ -17,19 +17,16 @@ enum {
   CADT_FLIP_LIMIT = 1 << 14 /* flips for one point in one launch, so a launch ends in bounded time */
 };
 
-/* Lists of what is left for the next launch. An edge that finds its list full is dropped: the closing pass will meet
- * it. */
+/* Where edges go that are left for the next launch. An edge that finds its list full is dropped: the closing pass will
+ * meet it. */
 typedef struct {
-  CADT_GLOBAL cadt_u32* points;
   CADT_GLOBAL cadt_u32* edges;
   CADT_GLOBAL cadt_u32* counts; /* points, edges, work-items that changed the mesh */
   cadt_u32 edge_capacity;
 } cadt_deferred;
 
-CADT_FN cadt_deferred cadt_lists(CADT_GLOBAL cadt_u32* points, CADT_GLOBAL cadt_u32* edges,
-                                 CADT_GLOBAL cadt_u32* counts, cadt_u32 edge_capacity) {
+CADT_FN cadt_deferred cadt_lists(CADT_GLOBAL cadt_u32* edges, CADT_GLOBAL cadt_u32* counts, cadt_u32 edge_capacity) {
   cadt_deferred lists;
-  lists.points = points;
   lists.edges = edges;
   lists.counts = counts;
   lists.edge_capacity = edge_capacity;
@@ -149,7 +146,7 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
             CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counters) {
   CADT_MESH_VIEW(mesh);
-  const cadt_deferred deferred = cadt_lists(left_points, left_edges, left_counts, edge_capacity);
+  const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 work[CADT_WORKLIST];
@@ -179,7 +176,7 @@ CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u3
             CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counters) {
   CADT_MESH_VIEW(mesh);
-  const cadt_deferred deferred = cadt_lists(0, left_edges, left_counts, edge_capacity);
+  const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 work[CADT_WORKLIST];

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/host/backend.hpp"
 
+#include <mutex>
+#include <set>
+
 #include "backends/cuda/device.hpp"
 #include "common/host/selftest.hpp"
 
@@ -75,10 +78,28 @@ class CudaEntry final : public BackendEntry {
   [[nodiscard]] std::unique_ptr<Device> open(int index, const Options& options) override {
     int driver = 0;
     cudaDriverGetVersion(&driver);
-    auto device = std::make_unique<cuda::CudaDevice>(describe(index, driver), options.work_group_size);
-    run_selftest(*device);
+    const DeviceInfo info = describe(index, driver);
+    if (!info.usable) throw BackendUnavailable("cuda", "'" + info.name + "': " + info.reason);
+    auto device = std::make_unique<cuda::CudaDevice>(info, options);
+    device->load_kernels();
+    const std::lock_guard lock(mutex_);
+    if (tested_.count(index) == 0) run_selftest(*device);  // the compiled kernels and the device are the same each time
+    tested_.insert(index);
     return device;
   }
+
+  [[nodiscard]] int device_of(void* queue) override { return cuda::device_of(static_cast<cudaStream_t>(queue)); }
+
+  [[nodiscard]] int preferred_device() override {
+    int device = -1;
+    if (cudaGetDevice(&device) == cudaSuccess) return device;
+    cudaGetLastError();
+    return -1;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<int> tested_;
 };
 
 }  // namespace

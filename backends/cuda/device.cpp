@@ -6,20 +6,25 @@
 #include <limits>
 
 #include "kernels_cuda/kernels.hpp"
+#include "kernels_cuda/primitives.hpp"
 
 namespace cadt::cuda {
 namespace {
 
 constexpr unsigned default_block = 128;  // several blocks an SM even for kernels with many registers
+constexpr unsigned largest_block = 256;  // what the kernels are compiled for (kernels_cuda/table.inc)
 constexpr std::size_t most_parameters = 32;
+constexpr std::size_t staging_bytes = std::size_t{1} << 16;
 
 class CudaBuffer final : public Buffer {
  public:
+  /// `stream`: null for memory of the caller's.
   CudaBuffer(std::shared_ptr<Stream> stream, void* data, std::size_t bytes) noexcept
       : Buffer(bytes), stream_(std::move(stream)), data_(data) {}
   ~CudaBuffer() override {
-    const DeviceScope scope(stream_->device());
-    cudaFreeAsync(data_, stream_->get());  // in order behind the launches that use it; a destructor cannot report
+    if (stream_ == nullptr) return;
+    const ContextScope scope(stream_->context());
+    stream_->deallocate(data_, bytes());
   }
   [[nodiscard]] std::byte* data() const noexcept { return static_cast<std::byte*>(data_); }
 
@@ -29,112 +34,104 @@ class CudaBuffer final : public Buffer {
 };
 
 std::byte* data_of(const Buffer& buffer) { return static_cast<const CudaBuffer&>(buffer).data(); }
+std::uint32_t* words_of(const Buffer& buffer) { return reinterpret_cast<std::uint32_t*>(data_of(buffer)); }
+
+void check_range(const char* what, const Buffer& buffer, std::size_t offset, std::size_t bytes) {
+  if (offset > buffer.bytes() || bytes > buffer.bytes() - offset)
+    throw InternalError(std::string(what) + " of " + std::to_string(bytes) + " bytes at " + std::to_string(offset) +
+                        " exceeds a buffer of " + std::to_string(buffer.bytes()));
+}
 
 }  // namespace
 
-void check(cudaError_t code, const char* call, const std::string& device) {
-  if (code == cudaSuccess) return;
-  cudaGetLastError();  // the error has been taken note of: the next call starts clean
-  throw DeviceError(call, static_cast<int>(code), device,
-                    std::string(cudaGetErrorName(code)) + ", " + cudaGetErrorString(code));
-}
-
-DeviceScope::DeviceScope(int device) noexcept {
-  int before = -1;
-  if (cudaGetDevice(&before) == cudaSuccess && before != device && cudaSetDevice(device) == cudaSuccess)
-    before_ = before;
-}
-DeviceScope::~DeviceScope() {
-  if (before_ >= 0) cudaSetDevice(before_);
-}
-
-Stream::Stream(int device, const std::string& name) : device_(device) {
-  const DeviceScope scope(device);
-  // Does not wait for the default stream, and the default stream does not wait for it.
-  check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags", name);
-  cudaMemPoolProps properties{};
-  properties.allocType = cudaMemAllocationTypePinned;
-  properties.location.type = cudaMemLocationTypeDevice;
-  properties.location.id = device;
-  if (const cudaError_t code = cudaMemPoolCreate(&pool_, &properties); code != cudaSuccess) {
-    cudaStreamDestroy(stream_);
-    check(code, "cudaMemPoolCreate", name);
-  }
-  // Freed memory stays with the pool until the device is closed: phases reuse each other's.
-  std::uint64_t keep = std::numeric_limits<std::uint64_t>::max();
-  cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep);
-}
-
-Stream::~Stream() {
-  const DeviceScope scope(device_);
-  cudaStreamSynchronize(stream_);
-  cudaMemPoolDestroy(pool_);
-  cudaStreamDestroy(stream_);
-}
-
-CudaDevice::CudaDevice(DeviceInfo info, unsigned block_size)
+CudaDevice::CudaDevice(DeviceInfo info, const Options& options)
     : info_(std::move(info)),
-      block_size_(block_size != 0 ? std::clamp(block_size, 1U, 256U) : default_block),
-      stream_(std::make_shared<Stream>(info_.index, info_.name)) {}
+      block_size_(options.work_group_size != 0 ? std::clamp(options.work_group_size, 1U, largest_block) : default_block),
+      stream_(std::make_shared<Stream>(info_.index, info_.name, options.queue, options.allocator)) {
+  const ContextScope scope(stream_->context());
+  check_call(cudaHostAlloc(&staging_, staging_bytes, cudaHostAllocDefault), "cudaHostAlloc");
+}
 
 CudaDevice::~CudaDevice() {
-  const DeviceScope scope(info_.index);
+  const ContextScope scope(stream_->context());
   cudaStreamSynchronize(stream_->get());
+  cudaFreeHost(staging_);
+  cudaGetLastError();
 }
 
 LaunchShape CudaDevice::shape() const noexcept {
-  return {.contiguous = false, .parallelism = std::max(1U, info_.compute_units) * 2048U, .grain = 1};
+  const unsigned units = std::max(1U, info_.compute_units);
+  return {.contiguous = false, .parallelism = units * 2048U, .grain = 1, .resident = units * 512U};
 }
 
 std::unique_ptr<Buffer> CudaDevice::allocate(std::size_t bytes) {
-  const DeviceScope scope(info_.index);
-  void* data = nullptr;
-  const cudaError_t code =
-      cudaMallocFromPoolAsync(&data, std::max<std::size_t>(bytes, 8), stream_->pool(), stream_->get());
-  if (code == cudaErrorMemoryAllocation) {
-    cudaGetLastError();
-    std::size_t available = 0, total = 0;
-    cudaMemGetInfo(&available, &total);
-    throw OutOfMemory("'" + info_.name + "' cannot hold a buffer of " + std::to_string(bytes) + " bytes; it has " +
-                          std::to_string(available) + " bytes free: use fewer points",
-                      bytes, available);
-  }
-  check_call(code, "cudaMallocFromPoolAsync");
-  return std::make_unique<CudaBuffer>(stream_, data, bytes);
+  const ContextScope scope(stream_->context());
+  const std::size_t size = std::max<std::size_t>(bytes, 8);
+  return std::make_unique<CudaBuffer>(stream_, stream_->allocate(size), size);
 }
 
 std::unique_ptr<Buffer> CudaDevice::alias(const void* /*data*/, std::size_t /*bytes*/) {
   return nullptr;  // host memory would be fetched over the bus again and again
 }
 
+std::unique_ptr<Buffer> CudaDevice::wrap(void* pointer, std::size_t bytes) {
+  return std::make_unique<CudaBuffer>(nullptr, pointer, bytes);
+}
+
+void* CudaDevice::handle(const Buffer& buffer) const noexcept { return data_of(buffer); }
+
+void CudaDevice::reserve(std::size_t bytes) {
+  if (stream_->has_allocator()) return;  // whose memory is the caller's business
+  const ContextScope scope(stream_->context());
+  stream_->deallocate(stream_->allocate(bytes), bytes);
+  stream_->wait();
+}
+
+void CudaDevice::trim() {
+  const ContextScope scope(stream_->context());
+  stream_->trim();
+}
+
+std::size_t CudaDevice::free_bytes() {
+  if (stream_->has_allocator()) return std::numeric_limits<std::size_t>::max();
+  const ContextScope scope(stream_->context());
+  return stream_->free_bytes();
+}
+
 void CudaDevice::write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
+  check_range("a write", to, offset, bytes);
   if (bytes == 0) return;
-  const DeviceScope scope(info_.index);
+  const ContextScope scope(stream_->context());
   check_call(cudaMemcpyAsync(data_of(to) + offset, from, bytes, cudaMemcpyHostToDevice, stream_->get()),
              "cudaMemcpyAsync");
-  finish();
+  stream_->wait();
 }
 
 void CudaDevice::read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) {
+  check_range("a read", from, offset, bytes);
   if (bytes == 0) return;
-  const DeviceScope scope(info_.index);
-  check_call(cudaMemcpyAsync(to, data_of(from) + offset, bytes, cudaMemcpyDeviceToHost, stream_->get()),
+  const ContextScope scope(stream_->context());
+  // Small results come through page-locked memory, which takes half of the time.
+  const bool small = bytes <= staging_bytes;
+  check_call(cudaMemcpyAsync(small ? staging_ : to, data_of(from) + offset, bytes, cudaMemcpyDeviceToHost,
+                             stream_->get()),
              "cudaMemcpyAsync");
-  finish();
+  stream_->wait();
+  if (small) std::memcpy(to, staging_, bytes);
 }
 
 void CudaDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) {
+  check_range("a fill", to, offset, bytes);
+  if (offset % 4 != 0 || bytes % 4 != 0) throw InternalError("a fill is not a multiple of four bytes");
   if (bytes == 0) return;
-  const DeviceScope scope(info_.index);
-  const auto byte = static_cast<int>(word & 0xFFU);
-  if (word != 0x01010101U * (word & 0xFFU)) throw InternalError("a fill with a word of unequal bytes");
-  check_call(cudaMemsetAsync(data_of(to) + offset, byte, bytes, stream_->get()), "cudaMemsetAsync");
+  const ContextScope scope(stream_->context());
+  stream_->fill(data_of(to) + offset, word, bytes / sizeof word);
 }
 
 void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) {
   if (items == 0) return;
   if (args.size() > most_parameters) throw InternalError("a kernel with too many parameters");
-  const DeviceScope scope(info_.index);
+  const ContextScope scope(stream_->context());
   std::array<void*, most_parameters> pointers{};
   std::array<void*, most_parameters> addresses{};
   for (std::size_t i = 0; i < args.size(); ++i) {
@@ -153,8 +150,53 @@ void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Ar
 }
 
 void CudaDevice::finish() {
-  const DeviceScope scope(info_.index);
-  check_call(cudaStreamSynchronize(stream_->get()), "cudaStreamSynchronize");
+  const ContextScope scope(stream_->context());
+  stream_->wait();
+}
+
+void CudaDevice::load_kernels() {
+  const ContextScope scope(stream_->context());
+  for (const void* const* table : {narrow_kernels(), wide_kernels()}) {
+    for (std::size_t i = 0; i < kernel_count; ++i) {
+      cudaFuncAttributes attributes{};
+      check_call(cudaFuncGetAttributes(&attributes, table[i]), kernel_names[i]);
+    }
+  }
+}
+
+std::size_t CudaDevice::sort_scratch(std::size_t count, unsigned bits) {
+  const ContextScope scope(stream_->context());
+  std::size_t bytes = 0;
+  check_call(sort_pairs(nullptr, bytes, nullptr, nullptr, nullptr, nullptr, static_cast<std::uint32_t>(count), bits,
+                        stream_->get(), nullptr),
+             "cub::DeviceRadixSort");
+  return bytes;
+}
+
+bool CudaDevice::sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& other_keys, Buffer& other_values,
+                      std::size_t count, unsigned bits) {
+  const ContextScope scope(stream_->context());
+  std::size_t bytes = scratch.bytes();
+  bool in_other = false;
+  check_call(sort_pairs(data_of(scratch), bytes, words_of(keys), words_of(values), words_of(other_keys),
+                        words_of(other_values), static_cast<std::uint32_t>(count), bits, stream_->get(), &in_other),
+             "cub::DeviceRadixSort");
+  return in_other;
+}
+
+std::size_t CudaDevice::scan_scratch(std::size_t count) {
+  const ContextScope scope(stream_->context());
+  std::size_t bytes = 0;
+  check_call(exclusive_sum(nullptr, bytes, nullptr, static_cast<std::uint32_t>(count), stream_->get()),
+             "cub::DeviceScan");
+  return bytes;
+}
+
+void CudaDevice::scan(Buffer& scratch, Buffer& data, std::size_t count) {
+  const ContextScope scope(stream_->context());
+  std::size_t bytes = scratch.bytes();
+  check_call(exclusive_sum(data_of(scratch), bytes, words_of(data), static_cast<std::uint32_t>(count), stream_->get()),
+             "cub::DeviceScan");
 }
 
 }  // namespace cadt::cuda

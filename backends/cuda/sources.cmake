@@ -39,13 +39,14 @@ enable_language(CUDA)
 find_package(CUDAToolkit REQUIRED)
 cadt_backend(cuda in "nvcc ${CMAKE_CUDA_COMPILER_VERSION}, ${CMAKE_CUDA_ARCHITECTURES}")
 
-add_library(cadt_cuda_kernels OBJECT ${PROJECT_SOURCE_DIR}/kernels_cuda/narrow.cu ${PROJECT_SOURCE_DIR}/kernels_cuda/wide.cu)
+add_library(cadt_cuda_kernels OBJECT ${PROJECT_SOURCE_DIR}/kernels_cuda/narrow.cu ${PROJECT_SOURCE_DIR}/kernels_cuda/wide.cu
+            ${PROJECT_SOURCE_DIR}/kernels_cuda/primitives.cu)
 target_include_directories(cadt_cuda_kernels PRIVATE ${PROJECT_SOURCE_DIR})
 target_compile_features(cadt_cuda_kernels PRIVATE cuda_std_17)
 # No contraction: the filters' bounds count separate roundings, and all devices shall take the same path.
 target_compile_options(cadt_cuda_kernels PRIVATE --fmad=false -Xcudafe --diag_suppress=177)
 set_target_properties(cadt_cuda_kernels PROPERTIES POSITION_INDEPENDENT_CODE ON CUDA_SEPARABLE_COMPILATION OFF)
-target_sources(cadt PRIVATE ${CMAKE_CURRENT_LIST_DIR}/backend.cpp ${CMAKE_CURRENT_LIST_DIR}/device.cpp
+target_sources(cadt PRIVATE ${CMAKE_CURRENT_LIST_DIR}/backend.cpp ${CMAKE_CURRENT_LIST_DIR}/context.cpp ${CMAKE_CURRENT_LIST_DIR}/device.cpp
                $<TARGET_OBJECTS:cadt_cuda_kernels>)
 # The static runtime looks for the driver when it is first called: a machine without one starts the program all the same.
 target_include_directories(cadt SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})

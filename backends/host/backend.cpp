@@ -98,7 +98,7 @@ class HostDevice final : public Device {
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] LaunchShape shape() const noexcept override {
-    return {.contiguous = true, .parallelism = pool_.threads() * 4, .grain = 512};
+    return {.contiguous = true, .parallelism = pool_.threads() * 4, .grain = 512, .resident = 0};
   }
   [[nodiscard]] unsigned threads() const noexcept override { return pool_.threads(); }
 
@@ -116,6 +116,10 @@ class HostDevice final : public Device {
   [[nodiscard]] std::unique_ptr<Buffer> alias_output(void* data, std::size_t bytes) override {
     return std::make_unique<HostBuffer>(data, bytes);
   }
+  [[nodiscard]] std::unique_ptr<Buffer> wrap(void* pointer, std::size_t bytes) override {
+    return std::make_unique<HostBuffer>(pointer, bytes);
+  }
+  [[nodiscard]] void* handle(const Buffer& buffer) const noexcept override { return bytes_of(buffer); }
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
     if (bytes != 0) std::memcpy(bytes_of(to) + offset, from, bytes);
   }

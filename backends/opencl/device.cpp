@@ -74,7 +74,7 @@ bool launches_alone(const DeviceInfo& info) {
   return !info.gpu && info.platform.find("Portable Computing Language") != std::string::npos;
 }
 
-std::size_t free_bytes(const SharedContext& shared) {
+std::size_t left_bytes(const SharedContext& shared) {
   const std::uint64_t memory = shared.device().info.memory_bytes, held = shared.held;
   return static_cast<std::size_t>(memory > held ? memory - held : 0);
 }
@@ -108,7 +108,7 @@ void ClDevice::run(const Work& work) {
       const std::size_t held = shared_->held;
       throw OutOfMemory("'" + info().name + "' found too little memory in " + error.what() + "; the buffers are " +
                             std::to_string(held) + " bytes together",
-                        held, free_bytes(*shared_));
+                        held, left_bytes(*shared_));
     }
     if (is_fatal(error.err())) shared_->lost = true;
     throw_device_error(error, info().name);
@@ -117,15 +117,15 @@ void ClDevice::run(const Work& work) {
 
 LaunchShape ClDevice::shape() const noexcept {
   const std::uint32_t units = std::max(1u, info().compute_units);
-  if (info().gpu) return {.contiguous = false, .parallelism = units * 2048u, .grain = 1};
-  return {.contiguous = true, .parallelism = units * 4u, .grain = 256};
+  if (info().gpu) return {.contiguous = false, .parallelism = units * 2048u, .grain = 1, .resident = units * 512u};
+  return {.contiguous = true, .parallelism = units * 4u, .grain = 256, .resident = 0};
 }
 
 std::unique_ptr<Buffer> ClDevice::allocate(std::size_t bytes) {
   check_not_lost();
   if (bytes > info().largest_buffer_bytes)
     throw_out_of_memory(info(), "its largest buffer is", bytes, info().largest_buffer_bytes);
-  if (bytes > free_bytes(*shared_)) throw_out_of_memory(info(), "it has left", bytes, free_bytes(*shared_));
+  if (bytes > left_bytes(*shared_)) throw_out_of_memory(info(), "it has left", bytes, left_bytes(*shared_));
   // OpenCL has no empty buffers.
   const std::size_t size = std::max<std::size_t>(bytes, 8);
   try {
@@ -133,7 +133,7 @@ std::unique_ptr<Buffer> ClDevice::allocate(std::size_t bytes) {
   } catch (const cl::Error& error) {
     if (is_out_of_memory(error.err()))
       throw_out_of_memory(info(), std::string(code_name(error.err())) + "; as far as known it has left", bytes,
-                          free_bytes(*shared_));
+                          left_bytes(*shared_));
     throw_device_error(error, info().name);
   }
 }
@@ -149,6 +149,24 @@ std::unique_ptr<Buffer> ClDevice::alias(const void* data, std::size_t bytes) {
     return nullptr;  // copying is always possible
   }
 }
+
+std::unique_ptr<Buffer> ClDevice::wrap(void* memory, std::size_t bytes) {
+  check_not_lost();
+  cl::Buffer buffer(static_cast<cl_mem>(memory), true);  // retained: the caller may release its own reference
+  std::size_t size = 0;
+  run([&] {
+    if (buffer.getInfo<CL_MEM_CONTEXT>()() != shared_->context()())
+      throw BackendUnavailable("opencl", "the buffer belongs to another context than the triangulator's queue");
+    size = buffer.getInfo<CL_MEM_SIZE>();
+  });
+  if (size < bytes)
+    throw InputError("a buffer of " + std::to_string(size) + " bytes where " + std::to_string(bytes) + " are needed", 0);
+  return std::make_unique<ClBuffer>(shared_, std::move(buffer), bytes, 0);
+}
+
+void* ClDevice::handle(const Buffer& buffer) const noexcept { return memory_of(buffer)(); }
+
+std::size_t ClDevice::free_bytes() { return left_bytes(*shared_); }
 
 void ClDevice::write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
   check_range("a write", to, offset, bytes);

@@ -21,6 +21,9 @@ class ClDevice final : public Device {
   [[nodiscard]] unsigned threads() const noexcept override { return info().compute_units; }
   [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override;
   [[nodiscard]] std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) override;
+  [[nodiscard]] std::unique_ptr<Buffer> wrap(void* memory, std::size_t bytes) override;
+  [[nodiscard]] void* handle(const Buffer& buffer) const noexcept override;
+  [[nodiscard]] std::size_t free_bytes() override;
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;

@@ -8,8 +8,8 @@
  * the claim prove them (lock.h), because orderings cost nothing on x86 and much on GPUs:
  * - CPUs: every field is stored with release and loaded with acquire. Then the version in the lock word proves the
  * fields.
- * - GPUs: fields are stored and loaded relaxed; one fence at device scope stands before the claims, one behind them,
- * one before the unlocks, and the owner reads the fields again.
+ * - GPUs: fields are stored and loaded relaxed; one fence at device scope stands behind the claims, one before the
+ * unlocks, and the owner reads the fields again.
  */
 #ifndef CADT_DEVICE_ATOMICS_H
 #define CADT_DEVICE_ATOMICS_H
@@ -54,7 +54,12 @@ CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
              : 0u;
 }
 CADT_FN void cadt_fence_acq_rel(void) {
+#if defined(__NV_CL_C_VERSION)
+  /* the driver makes the function below sequentially consistent, which is more than is needed */
+  asm volatile("fence.acq_rel.gpu;" ::: "memory");
+#else
   atomic_work_item_fence(CLK_GLOBAL_MEM_FENCE, memory_order_acq_rel, memory_scope_device);
+#endif
 }
 
 /* ---- OpenCL 1.2: best effort; the standard promises no order between work-groups ----------------------------------
@@ -115,7 +120,8 @@ CADT_FN void cadt_min_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { atomicM
 CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
   return atomicCAS(p, expected, desired) == expected ? 1u : 0u;
 }
-CADT_FN void cadt_fence_acq_rel() { __threadfence(); }
+/* __threadfence is sequentially consistent, which is more than is needed. */
+CADT_FN void cadt_fence_acq_rel() { asm volatile("fence.acq_rel.gpu;" ::: "memory"); }
 
 /* ---- host: ordered operations, no fences (ThreadSanitizer does not follow fences) ----------------------------------
  */
@@ -160,7 +166,7 @@ CADT_FN cadt_u32 cadt_cas_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_
   return cadt_cas_acq_rel(p, expected, desired);
 }
 CADT_FN void cadt_store_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_release(p, value); }
-/* around claims and before unlocks: the operations themselves are ordered */
+/* behind claims and before unlocks: the operations themselves are ordered */
 CADT_FN void cadt_fence_locks(void) {}
 #else
 CADT_FN cadt_u32 cadt_load_field(CADT_GLOBAL cadt_u32* p) { return cadt_load_relaxed(p); }

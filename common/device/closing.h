@@ -18,7 +18,9 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
   cadt_tally tally;
   cadt_tally_clear(&tally);
+#if CADT_CONTIGUOUS
   cadt_u32 work[CADT_WORKLIST];
+#endif
   cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u;
   CADT_FOR(r, count, grain) {
     const cadt_u32 t = begin + r;
@@ -34,9 +36,14 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
       } else if (cadt_is_illegal(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
                                  u.v0, &tally)) {
         ++illegal;
+#if CADT_CONTIGUOUS
         work[0] = CADT_LINK(t, k);
         cadt_legalize(&mesh, CADT_NONE, work, 1u, &deferred, &tally);
         break; /* the snapshot is out of date; the next pass sees the rest */
+#else
+        /* to cadt_legalize_edges: without the repairs this kernel is small and runs at full occupancy */
+        cadt_defer_edge(&deferred, CADT_LINK(t, k), &tally);
+#endif
       }
     }
   }

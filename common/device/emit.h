@@ -28,28 +28,20 @@ CADT_FN cadt_triangle cadt_label(CADT_GLOBAL const cadt_u32* labels, const cadt_
   return t;
 }
 
-/* 0 not in use, 1 real, 2 ghost */
-CADT_FN cadt_u32 cadt_kind(const cadt_record r) {
-  if (r.word[CADT_WORD_LOCK] == 0u) return 0u;
-  return r.word[0] == CADT_GHOST || r.word[1] == CADT_GHOST || r.word[2] == CADT_GHOST ? 2u : 1u;
+/* Whether the record is in use and not a ghost's. */
+CADT_FN cadt_u32 cadt_is_real(const cadt_record r) {
+  return r.word[CADT_WORD_LOCK] != 0u && r.word[0] != CADT_GHOST && r.word[1] != CADT_GHOST && r.word[2] != CADT_GHOST
+             ? 1u
+             : 0u;
 }
 
-/* Size of each bucket. \pre buckets are zero. `totals`: real triangles, ghosts */
+/* Size of each bucket. \pre buckets are zero */
 CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
-            CADT_GLOBAL cadt_u32* buckets, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
-  cadt_u32 real = 0u, ghosts = 0u;
+            CADT_GLOBAL cadt_u32* buckets, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(t, count, grain) {
     const cadt_record r = records[t];
-    const cadt_u32 kind = cadt_kind(r);
-    if (kind == 1u) {
-      ++real;
-      cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u);
-    } else if (kind == 2u) {
-      ++ghosts;
-    }
+    if (cadt_is_real(r)) cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u);
   }
-  if (real) cadt_add_relaxed(totals, real);
-  if (ghosts) cadt_add_relaxed(totals + 1, ghosts);
 }
 
 /* Puts each real triangle in its bucket: (second vertex, record). \pre buckets are scanned (their beginnings); \post
@@ -58,7 +50,7 @@ CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_record* records, CADT_
             CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(t, count, grain) {
     const cadt_record r = records[t];
-    if (cadt_kind(r) != 1u) continue;
+    if (!cadt_is_real(r)) continue;
     const cadt_triangle label = cadt_label(labels, r);
     cadt_member member;
     member.second = label.b;
@@ -113,6 +105,18 @@ CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_
   CADT_FOR(i, count, grain) { numbers[members[i].record] = i; }
 }
 
+/* Writes triangle i. n0, n1, n2: the triangles across the edges of its record. */
+CADT_FN void cadt_emit(CADT_GLOBAL const cadt_u32* labels, const cadt_record r, cadt_u32 i, cadt_u32 n0, cadt_u32 n1,
+                       cadt_u32 n2, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors) {
+  const cadt_triangle t = cadt_label(labels, r);
+  triangles[3u * i] = t.a;
+  triangles[3u * i + 1u] = t.b;
+  triangles[3u * i + 2u] = t.c;
+  neighbors[3u * i] = CADT_PICK(t.slot, n0, n1, n2);
+  neighbors[3u * i + 1u] = CADT_PICK(t.slot, n1, n2, n0);
+  neighbors[3u * i + 2u] = CADT_PICK(t.slot, n2, n0, n1);
+}
+
 /* Writes the triangles to their places. By record, so that what is read (neighbours' numbers, labels) is near. */
 CADT_KERNEL(cadt_emit_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
             CADT_GLOBAL const cadt_u32* numbers, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors,
@@ -121,30 +125,53 @@ CADT_KERNEL(cadt_emit_triangles, CADT_GLOBAL const cadt_record* records, CADT_GL
     const cadt_u32 i = numbers[record];
     if (i == CADT_NONE) continue;
     const cadt_record r = records[record];
-    const cadt_triangle t = cadt_label(labels, r);
     /* ghosts have no number: CADT_NONE is -1 */
-    const cadt_u32 n0 = numbers[CADT_LINK_RECORD(r.word[4])], n1 = numbers[CADT_LINK_RECORD(r.word[5])];
-    const cadt_u32 n2 = numbers[CADT_LINK_RECORD(r.word[6])];
-    triangles[3u * i] = t.a;
-    triangles[3u * i + 1u] = t.b;
-    triangles[3u * i + 2u] = t.c;
-    neighbors[3u * i] = CADT_PICK(t.slot, n0, n1, n2);
-    neighbors[3u * i + 1u] = CADT_PICK(t.slot, n1, n2, n0);
-    neighbors[3u * i + 2u] = CADT_PICK(t.slot, n2, n0, n1);
+    cadt_emit(labels, r, i, numbers[CADT_LINK_RECORD(r.word[4])], numbers[CADT_LINK_RECORD(r.word[5])],
+              numbers[CADT_LINK_RECORD(r.word[6])], triangles, neighbors);
   }
 }
 
-/* Hull edges counterclockwise as pairs of input indices, in any order. */
-CADT_KERNEL(cadt_emit_hull, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels, cadt_u32 count,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* pairs, CADT_GLOBAL cadt_u32* size, cadt_u32 capacity) {
+/* For the order of the records: 1 for each real triangle. flags[count] becomes 0, so its scan is the total. */
+CADT_KERNEL(cadt_flag_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL cadt_u32* flags, cadt_u32 count,
+            cadt_u32 grain) {
+  if (cadt_item == 0u) flags[count] = 0u;
   CADT_FOR(t, count, grain) {
     const cadt_record r = records[t];
-    if (cadt_kind(r) != 2u) continue;
-    const cadt_u32 g = r.word[0] == CADT_GHOST ? 0u : (r.word[1] == CADT_GHOST ? 1u : 2u);
-    const cadt_u32 at = cadt_add_relaxed(size, 1u);
-    if (at >= capacity) continue;
-    pairs[2u * at] = labels[r.word[CADT_PREV(g)]];
-    pairs[2u * at + 1u] = labels[r.word[CADT_NEXT(g)]];
+    flags[t] = cadt_is_real(r);
+  }
+}
+
+/* Number of a triangle from the exclusive scan of the flags. */
+CADT_FN cadt_u32 cadt_rank(CADT_GLOBAL const cadt_u32* ranks, cadt_u32 link) {
+  const cadt_u32 t = CADT_LINK_RECORD(link), rank = ranks[t];
+  return ranks[t + 1u] != rank ? rank : CADT_NONE;
+}
+
+/* As cadt_emit_triangles, in the order of the records. `ranks` is the exclusive scan of the flags. */
+CADT_KERNEL(cadt_emit_ranked, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
+            CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors,
+            cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(record, count, grain) {
+    const cadt_u32 i = ranks[record];
+    if (ranks[record + 1u] == i) continue;
+    const cadt_record r = records[record];
+    cadt_emit(labels, r, i, cadt_rank(ranks, r.word[4]), cadt_rank(ranks, r.word[5]), cadt_rank(ranks, r.word[6]),
+              triangles, neighbors);
+  }
+}
+
+/* Edges of the boundary counterclockwise as pairs of input indices, in any order. `size` counts them. */
+CADT_KERNEL(cadt_boundary_edges, CADT_GLOBAL const cadt_u32* triangles, CADT_GLOBAL const cadt_u32* neighbors,
+            cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* pairs, CADT_GLOBAL cadt_u32* size,
+            cadt_u32 capacity) {
+  CADT_FOR(t, count, grain) {
+    for (cadt_u32 k = 0u; k < 3u; ++k) {
+      if (neighbors[3u * t + k] != CADT_NONE) continue;
+      const cadt_u32 at = cadt_add_relaxed(size, 1u);
+      if (at >= capacity) continue;
+      pairs[2u * at] = triangles[3u * t + CADT_NEXT(k)];
+      pairs[2u * at + 1u] = triangles[3u * t + CADT_PREV(k)];
+    }
   }
 }
 

@@ -9,9 +9,8 @@
 #include "common/device/change.h"
 
 enum {
-  CADT_WORKLIST = 48, /* edges a work-item can have pending */
-  CADT_WORKLIST_STACK =
-      40, /* above, the oldest one is next: a long row of flips leaves a legal edge behind at each one */
+  CADT_WORKLIST = 64,       /* edges a work-item can have pending, a power of two */
+  CADT_WORKLIST_STACK = 48, /* above, the oldest is next: a long row of flips leaves a legal edge behind at each one */
   CADT_INSERT_TRIES = 12,   /* walks for one point in one launch */
   CADT_EDGE_TRIES = 24,     /* conflicts in the worklist of one point */
   CADT_FLIP_LIMIT = 1 << 14 /* flips for one point in one launch, so a launch ends in bounded time */
@@ -50,23 +49,21 @@ CADT_FN void cadt_report_changes(const cadt_tally* tally, CADT_GLOBAL cadt_u32* 
  * checked. */
 CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_u32 apex, cadt_u32* work, cadt_u32 size,
                            const cadt_deferred* deferred, cadt_tally* tally) {
-  cadt_u32 conflicts = 0u, flips = 0u, partner = 0u;
+  const cadt_u32 mask = CADT_WORKLIST - 1u;
+  cadt_u32 conflicts = 0u, flips = 0u, partner = 0u, first = 0u; /* the oldest is at `first`, in a ring */
   while (size > 0u) {
     const cadt_u32 oldest = size > CADT_CAST(cadt_u32, CADT_WORKLIST_STACK) ? 1u : 0u;
-    const cadt_u32 link = work[oldest ? 0u : size - 1u];
+    const cadt_u32 link = work[(oldest ? first : first + size - 1u) & mask];
     --size;
-    if (oldest)
-      for (cadt_u32 at = 0u; at < size; ++at) work[at] = work[at + 1u];
+    first += oldest;
     const cadt_u32 outcome = cadt_legalize_edge(m, link, apex, &partner, tally);
     if (outcome == CADT_EDGE_LEGAL) continue;
     if (outcome == CADT_EDGE_CONFLICT) {
       if (++conflicts > CADT_CAST(cadt_u32, CADT_EDGE_TRIES)) {
         cadt_defer_edge(deferred, link, tally);
-      } else if (oldest) { /* to the other end: the other edges first, meanwhile the owner gets on */
-        work[size++] = link;
-      } else {
-        for (cadt_u32 at = size; at > 0u; --at) work[at] = work[at - 1u];
-        work[0] = link;
+      } else { /* to the other end: the other edges first, meanwhile the owner gets on */
+        if (!oldest) --first;
+        work[(oldest ? first + size : first) & mask] = link;
         ++size;
       }
       continue;
@@ -83,7 +80,7 @@ CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_u32 apex, cadt_u32* work, ca
     const cadt_u32 room = ++flips < CADT_CAST(cadt_u32, CADT_FLIP_LIMIT) ? CADT_CAST(cadt_u32, CADT_WORKLIST) - 1u : 0u;
     for (cadt_u32 e = 0u; e < count; ++e) {
       if (size < room)
-        work[size++] = sides[e];
+        work[(first + size++) & mask] = sides[e];
       else
         cadt_defer_edge(deferred, sides[e], tally);
     }
@@ -150,7 +147,7 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 work[CADT_WORKLIST];
-  CADT_FOR(u, count, grain) {
+  CADT_FOR_SPREAD(u, count, grain) {
     cadt_u32 i, near;
     if (list) {
       i = near = list[u];
@@ -180,7 +177,7 @@ CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u3
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 work[CADT_WORKLIST];
-  CADT_FOR(e, count, grain) {
+  CADT_FOR_SPREAD(e, count, grain) {
     work[0] = list[e];
     cadt_legalize(&mesh, CADT_NONE, work, 1u, &deferred, &tally);
   }

@@ -7,7 +7,10 @@
 
 #define CADT_KERNEL_LIST(X)                                                     \
   X(cadt_selftest)         /* selftest.h: arithmetic and atomics */             \
+  X(cadt_import_doubles)   /* order.h: points from the caller's memory */       \
+  X(cadt_import_floats)    /* order.h */                                        \
   X(cadt_bounds)           /* order.h: box, exponents, first bad coordinate */  \
+  X(cadt_merge_bounds)     /* order.h */                                        \
   X(cadt_sort_keys)        /* order.h: Morton keys */                           \
   X(cadt_radix_count)      /* radix.h */                                        \
   X(cadt_radix_scatter)    /* radix.h */                                        \
@@ -18,6 +21,7 @@
   X(cadt_crowded_pack)     /* refine.h */                                       \
   X(cadt_crowded_keys)     /* refine.h */                                       \
   X(cadt_copy_words)       /* refine.h */                                       \
+  X(cadt_identity)         /* refine.h */                                       \
   X(cadt_gather_words)     /* refine.h */                                       \
   X(cadt_run_tails)        /* refine.h */                                       \
   X(cadt_crowded_store)    /* refine.h */                                       \
@@ -37,6 +41,8 @@
   X(cadt_sort_buckets)     /* emit.h */                                         \
   X(cadt_number_triangles) /* emit.h */                                         \
   X(cadt_emit_triangles)   /* emit.h */                                         \
-  X(cadt_emit_hull)        /* emit.h */
+  X(cadt_flag_triangles)   /* emit.h: order of the records */                   \
+  X(cadt_emit_ranked)      /* emit.h */                                         \
+  X(cadt_boundary_edges)   /* emit.h */
 
 #endif

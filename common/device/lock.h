@@ -60,7 +60,6 @@ CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* t
   cadt_claim_order(c, 0, 2);
   cadt_claim_order(c, 1, 3);
   cadt_claim_order(c, 1, 2);
-  cadt_fence_locks(); /* the fields were read before */
   for (cadt_u32 i = 0u; i < 4u; ++i) {
     if (c->record[i] == CADT_NONE) break;
     CADT_GLOBAL cadt_u32* lock = m->records[c->record[i]].word + CADT_WORD_LOCK;

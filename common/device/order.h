@@ -13,16 +13,36 @@ enum {
   CADT_RUN = 16 /* runs of equal keys up to this length are sorted in place, longer ones are refined (refine.h) */
 };
 
-/* Partial results, one row a chunk. */
-CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 chunk, CADT_GLOBAL double* box,
-            CADT_GLOBAL cadt_u32* words) {
-  const cadt_u32 begin = cadt_begin_of(cadt_item, chunk, count), end = cadt_min_u32(begin + chunk, count);
-  if (begin == end) return;
+/* Points from the caller's memory: coordinate i of an axis is at first + i * stride. */
+CADT_KERNEL(cadt_import_doubles, CADT_GLOBAL const double* x, CADT_GLOBAL const double* y, cadt_u32 first_x,
+            cadt_u32 first_y, cadt_u32 stride, CADT_GLOBAL cadt_point* points, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) {
+    cadt_point p;
+    p.x = x[first_x + i * stride];
+    p.y = y[first_y + i * stride];
+    points[i] = p;
+  }
+}
+
+CADT_KERNEL(cadt_import_floats, CADT_GLOBAL const float* x, CADT_GLOBAL const float* y, cadt_u32 first_x,
+            cadt_u32 first_y, cadt_u32 stride, CADT_GLOBAL cadt_point* points, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) {
+    cadt_point p;
+    p.x = CADT_CAST(double, x[first_x + i * stride]);
+    p.y = CADT_CAST(double, y[first_y + i * stride]);
+    points[i] = p;
+  }
+}
+
+/* Partial results, one row a part. \pre no part is empty */
+CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 chunk, cadt_u32 parts,
+            CADT_GLOBAL double* box, CADT_GLOBAL cadt_u32* words) {
+  if (cadt_item >= parts) return;
   double min_x = 0.0, max_x = 0.0, min_y = 0.0, max_y = 0.0;
   cadt_u32 bad = CADT_NONE, any = 0u;
   cadt_span span;
   cadt_span_clear(&span);
-  for (cadt_u32 i = begin; i < end; ++i) {
+  CADT_FOR_PART(i, cadt_item, parts, count, chunk) {
     const cadt_point p = points[i];
     /* an exponent of all ones is infinity or NaN */
     if (((cadt_bits_of_double(p.x) >> 52) & 0x7FFul) == 0x7FFul ||
@@ -46,6 +66,27 @@ CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, c
   w[0] = CADT_CAST(cadt_u32, span.low + 4096);
   w[1] = CADT_CAST(cadt_u32, span.high + 4096);
   w[2] = bad;
+}
+
+/* The same from rows of partial results. */
+CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL const double* rows, CADT_GLOBAL const cadt_u32* row_words, cadt_u32 count,
+            cadt_u32 chunk, cadt_u32 parts, CADT_GLOBAL double* box, CADT_GLOBAL cadt_u32* words) {
+  if (cadt_item >= parts) return;
+  CADT_GLOBAL double* b = box + cadt_item * CADT_BOUNDS_DOUBLES;
+  CADT_GLOBAL cadt_u32* w = words + cadt_item * CADT_BOUNDS_WORDS;
+  cadt_u32 any = 0u;
+  CADT_FOR_PART(i, cadt_item, parts, count, chunk) {
+    CADT_GLOBAL const double* r = rows + i * CADT_BOUNDS_DOUBLES;
+    CADT_GLOBAL const cadt_u32* v = row_words + i * CADT_BOUNDS_WORDS;
+    b[0] = !any || r[0] < b[0] ? r[0] : b[0];
+    b[1] = !any || r[1] > b[1] ? r[1] : b[1];
+    b[2] = !any || r[2] < b[2] ? r[2] : b[2];
+    b[3] = !any || r[3] > b[3] ? r[3] : b[3];
+    w[0] = !any || v[0] < w[0] ? v[0] : w[0];
+    w[1] = !any || v[1] > w[1] ? v[1] : w[1];
+    w[2] = !any || v[2] < w[2] ? v[2] : w[2];
+    any = 1u;
+  }
 }
 
 /* Every second bit. */
@@ -143,16 +184,16 @@ CADT_KERNEL(cadt_unique_pack, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL 
   }
 }
 
-/* (point, representative) of every point that is not the first of its kind */
+/* Every point that is not the first of its kind, and the one that is. */
 CADT_KERNEL(cadt_duplicate_pairs, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* ranks,
-            CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL cadt_u32* pairs, cadt_u32 count, cadt_u32 distinct,
-            cadt_u32 grain) {
+            CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL cadt_u32* duplicates,
+            CADT_GLOBAL cadt_u32* representatives, cadt_u32 count, cadt_u32 distinct, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 rank = ranks[i], next = i + 1u < count ? ranks[i + 1u] : distinct;
     if (next != rank) continue;
     const cadt_u32 at = i - rank; /* so many duplicates come before */
-    pairs[2u * at] = order[i];
-    pairs[2u * at + 1u] = labels[rank - 1u];
+    duplicates[at] = order[i];
+    representatives[at] = labels[rank - 1u];
   }
 }
 

@@ -67,7 +67,7 @@ CADT_FN cadt_u32 cadt_before(cadt_point a, cadt_point b) { return a.x < b.x || (
  * raised by a power of an infinitesimal that falls with its lexicographic rank, so the largest point decides: if it is
  * p, p is outside; if it is a vertex, p is inside when the triangle with p in that vertex' place is counterclockwise;
  * if these three are on a line, the next largest decides. 1 inside, -1 outside. */
-CADT_FN_SLOW cadt_i32 cadt_tie(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_tally* tally) {
+CADT_FN_SLOW cadt_i32 cadt_tie(cadt_point a, cadt_point b, cadt_point c, cadt_point p) {
   cadt_u32 spent = 0u; /* bit i: point i (a, b, c) has been the largest already */
   for (cadt_i32 round = 0; round < 3; ++round) {
     cadt_u32 largest = 3u;
@@ -77,9 +77,8 @@ CADT_FN_SLOW cadt_i32 cadt_tie(cadt_point a, cadt_point b, cadt_point c, cadt_po
     if (!(spent & 4u) && cadt_before(top, c)) top = c, largest = 2u;
     if (largest == 3u) return -1;
     spent |= 1u << largest;
-    cadt_i32 side = largest == 0u
-                        ? cadt_orientation(p, b, c, tally)
-                        : (largest == 1u ? cadt_orientation(a, p, c, tally) : cadt_orientation(a, b, p, tally));
+    const cadt_i32 side =
+        cadt_orientation_exact(largest == 0u ? p : a, largest == 1u ? p : b, largest == 2u ? p : c);
     if (side != 0) return side;
   }
   return -1;
@@ -115,7 +114,7 @@ CADT_FN cadt_i32 cadt_incircle(cadt_point a, cadt_point b, cadt_point c, cadt_po
   cadt_i32 sign = cadt_incircle_exact(a, b, c, p);
   if (sign != 0) return sign;
   tally->count[CADT_COUNT_TIES]++;
-  return cadt_tie(a, b, c, p, tally);
+  return cadt_tie(a, b, c, p);
 }
 
 #endif

@@ -73,6 +73,11 @@ CADT_KERNEL(cadt_copy_words, CADT_GLOBAL const cadt_u32* in, CADT_GLOBAL cadt_u3
   CADT_FOR(j, count, grain) { out[j] = in[j]; }
 }
 
+/* 0, 1, 2, ... */
+CADT_KERNEL(cadt_identity, CADT_GLOBAL cadt_u32* out, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(j, count, grain) { out[j] = j; }
+}
+
 /* out[j] = in[index[j]] */
 CADT_KERNEL(cadt_gather_words, CADT_GLOBAL const cadt_u32* in, CADT_GLOBAL const cadt_u32* index,
             CADT_GLOBAL cadt_u32* out, cadt_u32 count, cadt_u32 grain) {

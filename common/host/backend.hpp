@@ -20,6 +20,10 @@ class BackendEntry {
   /// Opens the device with this index (as in `devices()`), checked by its self-test. \throws BackendUnavailable (with
   /// the failed probe), KernelBuildError, DeviceError
   [[nodiscard]] virtual std::unique_ptr<Device> open(int index, const Options& options) = 0;
+  /// Index of the device that a stream or queue of the caller's belongs to, -1 if there is none.
+  [[nodiscard]] virtual int device_of(void* /*queue*/) { return -1; }
+  /// The caller's current device where the language has such a thing, else -1.
+  [[nodiscard]] virtual int preferred_device() { return -1; }
 };
 
 BackendEntry& host_backend();

@@ -17,7 +17,7 @@ using namespace device_constants;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time to a cancel
-constexpr std::size_t points_per_launch_strided = std::size_t{1} << 23;
+constexpr std::size_t points_per_launch_strided = std::size_t{1} << 25;
 constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
 constexpr int hopeless_launches = 64;
 constexpr int most_sweeps = 2000;
@@ -60,6 +60,10 @@ class Builder {
   /// Levels of halving until a block is one point.
   [[nodiscard]] unsigned levels() const noexcept { return static_cast<unsigned>(std::bit_width(n_ - 1)); }
 
+  [[nodiscard]] std::size_t points_per_launch() const noexcept {
+    return run_.device.shape().contiguous ? points_per_launch_contiguous : points_per_launch_strided;
+  }
+
   /// Three points not on a line: the one that stands for all, the middle one, and the first that is not on their line.
   bool find_first_triangle() {
     Allocation found = run_.memory.allocate(word);
@@ -96,11 +100,11 @@ class Builder {
   void insert_level(unsigned level) {
     // blocks of 2^(level+1) positions that have two halves
     const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
-    const std::size_t most = run_.device.shape().contiguous ? points_per_launch_contiguous : points_per_launch_strided;
+    const std::size_t most = points_per_launch();
     const Allocation no_list;
     for (std::size_t begin = 0; begin < count; begin += most) {
       const std::size_t size = std::min(most, count - begin);
-      const Cut c = launch_.cut(size);
+      const Cut c = launch_.cut_spread(size);
       run_kernel(KernelId::cadt_insert, c.items, no_list, static_cast<std::uint32_t>(begin),
                  static_cast<std::uint32_t>(size), static_cast<std::uint32_t>(n_), level, c.grain, left_points_[0],
                  left_edges_[0], left_counts_, edge_capacity_, counters_);
@@ -132,12 +136,12 @@ class Builder {
       // One work-item alone meets no conflict, so it always gets on.
       const bool alone = stalled >= stalled_launches;
       if (left[0] != 0) {
-        const Cut c = alone ? Cut{1, left[0]} : launch_.cut(left[0]);
+        const Cut c = alone ? Cut{1, left[0]} : launch_.cut_spread(left[0]);
         run_kernel(KernelId::cadt_insert, c.items, left_points_[1], 0U, left[0], 0U, 0U, c.grain, left_points_[0],
                    left_edges_[0], left_counts_, edge_capacity_, counters_);
       }
       if (left[1] != 0) {
-        const Cut c = alone ? Cut{1, left[1]} : launch_.cut(left[1]);
+        const Cut c = alone ? Cut{1, left[1]} : launch_.cut_spread(left[1]);
         run_kernel(KernelId::cadt_legalize_edges, c.items, left_edges_[1], left[1], c.grain, left_edges_[0],
                    left_counts_, edge_capacity_, counters_);
       }
@@ -147,7 +151,7 @@ class Builder {
   /// Closing passes until one finds nothing.
   void certify() {
     const std::uint64_t edges = 3 * std::uint64_t{n_} - 3;  // of the sphere: ghost edges included
-    const std::size_t slots = 2 * n_, most = 4 * points_per_launch_contiguous;
+    const std::size_t slots = 2 * n_, most = 4 * points_per_launch();
     Allocation found = launch_.zeros(3);
     for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
       std::uint64_t examined = 0, illegal = 0, unsettled = 0;

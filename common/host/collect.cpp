@@ -30,73 +30,59 @@ std::vector<std::int32_t> link_loop(const std::vector<std::array<std::uint32_t, 
   return loop;
 }
 
-/// Output of the emitting kernel: the caller's arrays themselves if the device can write them, else a copy.
-struct Output {
-  Output(Run& run, std::int32_t* to, std::size_t values) : run_(run), to_(to), bytes_(values * sizeof *to) {
-    buffer = run.memory.export_to(to, bytes_);
-    direct_ = static_cast<bool>(buffer);
-    if (!direct_) buffer = run.memory.allocate(bytes_);
-  }
-  void deliver() {
-    if (!direct_) run_.device.read(*buffer, 0, to_, bytes_);
-    buffer.release();
-  }
-  Allocation buffer;
-
- private:
-  Run& run_;
-  std::int32_t* to_;
-  std::size_t bytes_;
-  bool direct_;
-};
-
 }  // namespace
 
-void collect_mesh(Run& run, const DeviceMesh& mesh, const Allocation& labels, Triangulation::Data& data) {
+Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, std::size_t points) {
   Launcher& launch = run.launcher;
   const auto slots = static_cast<std::uint32_t>(mesh.slots);
   const Cut all = launch.cut(mesh.slots);
-
-  Allocation buckets = launch.zeros(data.points + 1);
-  Allocation totals = launch.zeros(3);  // real triangles, ghosts, hull edges written
-  launch.run(KernelId::cadt_count_triangles, all.items, mesh.records, labels, buckets, slots, all.grain, totals);
-  const std::uint32_t triangles = launch.read_word(totals, 0), ghosts = launch.read_word(totals, 1);
-  data.triangle_count = triangles;
-
-  std::vector<std::array<std::uint32_t, 2>> edges(ghosts);
-  {
-    Allocation pairs = run.memory.allocate(ghosts * sizeof edges[0]);
-    Allocation written = launch.zeros(1);
-    launch.run(KernelId::cadt_emit_hull, all.items, mesh.records, labels, slots, all.grain, pairs, written, ghosts);
-    run.device.read(*pairs, 0, edges.data(), ghosts * sizeof edges[0]);
+  Numbering result;
+  if (run.options.order == Order::fast) {
+    result.ranked = true;
+    result.numbers = run.memory.allocate((mesh.slots + 1) * word);
+    launch.run(KernelId::cadt_flag_triangles, all.items, mesh.records, result.numbers, slots, all.grain);
+    launch.scan(result.numbers, mesh.slots + 1);
+    result.triangles = launch.read_word(result.numbers, mesh.slots);
+    return result;
   }
-  data.hull = link_loop(edges, data.points);
-
-  launch.scan(buckets, data.points + 1);
-  Allocation members = run.memory.allocate(triangles * 2 * word);
+  Allocation buckets = launch.zeros(points + 1);
+  launch.run(KernelId::cadt_count_triangles, all.items, mesh.records, labels, buckets, slots, all.grain);
+  launch.scan(buckets, points + 1);
+  const std::uint32_t triangles = launch.read_word(buckets, points);
+  result.triangles = triangles;
+  Allocation members = run.memory.allocate(std::size_t{triangles} * 2 * word);
   launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, labels, buckets, members, slots, all.grain);
-  if (run.options.order == Order::canonical) {
-    const Cut vertices = launch.cut(data.points);
-    launch.run(KernelId::cadt_sort_buckets, vertices.items, buckets, members, static_cast<std::uint32_t>(data.points),
-               vertices.grain);
-  }
+  const Cut vertices = launch.cut(points);
+  launch.run(KernelId::cadt_sort_buckets, vertices.items, buckets, members, static_cast<std::uint32_t>(points),
+             vertices.grain);
   buckets.release();
-  run.check("collect", 0.95);
-
-  Allocation numbers = run.memory.allocate(mesh.slots * word);
-  run.device.fill(*numbers, 0, mesh.slots * word, none);
+  result.numbers = run.memory.allocate(mesh.slots * word);
+  run.device.fill(*result.numbers, 0, mesh.slots * word, none);
   const Cut real = launch.cut(triangles);
-  launch.run(KernelId::cadt_number_triangles, real.items, members, numbers, triangles, real.grain);
-  members.release();
-  data.triangles = std::make_unique_for_overwrite<std::int32_t[]>(std::size_t{3} * triangles);
-  data.neighbors = std::make_unique_for_overwrite<std::int32_t[]>(std::size_t{3} * triangles);
-  Output vertices_out(run, data.triangles.get(), std::size_t{3} * triangles);
-  Output neighbors_out(run, data.neighbors.get(), std::size_t{3} * triangles);
-  launch.run(KernelId::cadt_emit_triangles, all.items, mesh.records, labels, numbers, vertices_out.buffer,
-             neighbors_out.buffer, slots, all.grain);
-  run.device.finish();
-  vertices_out.deliver();
-  neighbors_out.deliver();
+  launch.run(KernelId::cadt_number_triangles, real.items, members, result.numbers, triangles, real.grain);
+  return result;
+}
+
+void emit_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
+                    const Allocation& triangles, const Allocation& neighbors) {
+  const Cut all = run.launcher.cut(mesh.slots);
+  run.launcher.run(numbering.ranked ? KernelId::cadt_emit_ranked : KernelId::cadt_emit_triangles, all.items,
+                   mesh.records, labels, numbering.numbers, triangles, neighbors,
+                   static_cast<std::uint32_t>(mesh.slots), all.grain);
+}
+
+std::vector<std::int32_t> find_hull(Run& run, const Allocation& triangles, const Allocation& neighbors,
+                                    std::size_t count, std::size_t size, std::size_t points) {
+  std::vector<std::array<std::uint32_t, 2>> edges(size);
+  const Cut c = run.launcher.cut(count);
+  Allocation pairs = run.memory.allocate(size * sizeof edges[0]);
+  Allocation written = run.launcher.zeros(1);
+  run.launcher.run(KernelId::cadt_boundary_edges, c.items, triangles, neighbors, static_cast<std::uint32_t>(count),
+                   c.grain, pairs, written, static_cast<std::uint32_t>(size));
+  if (run.launcher.read_word(written, 0) != size)
+    throw InternalError("the boundary does not have the size of Euler's formula; please report this with the input");
+  run.device.read(*pairs, 0, edges.data(), size * sizeof edges[0]);
+  return link_loop(edges, points);
 }
 
 }  // namespace cadt

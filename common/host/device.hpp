@@ -58,6 +58,21 @@ struct LaunchShape {
   bool contiguous = true;         ///< a work-item takes neighbouring elements (CPUs) or strided ones (GPUs)
   std::uint32_t parallelism = 1;  ///< work-items that keep the device busy
   std::uint32_t grain = 256;      ///< elements a work-item takes at least when there are plenty
+  std::uint32_t resident = 0;     ///< GPUs: work-items of a large kernel that run at the same time
+};
+
+/// Sort and scan of the device's own library. Scratch memory comes from the caller, so that it is counted.
+class Primitives {
+ public:
+  virtual ~Primitives() = default;
+  [[nodiscard]] virtual std::size_t sort_scratch(std::size_t count, unsigned bits) = 0;
+  /// Stable sort of pairs of words by the lowest `bits` bits of the key. True: the result is in the second pair of
+  /// buffers, false: in the first. \throws DeviceError
+  [[nodiscard]] virtual bool sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& other_keys,
+                                  Buffer& other_values, std::size_t count, unsigned bits) = 0;
+  [[nodiscard]] virtual std::size_t scan_scratch(std::size_t count) = 0;
+  /// Exclusive prefix sum of words in place. \throws DeviceError
+  virtual void scan(Buffer& scratch, Buffer& data, std::size_t count) = 0;
 };
 
 /// One device, in order: every operation starts after the ones before it have finished.
@@ -85,6 +100,22 @@ class Device {
   [[nodiscard]] virtual std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) = 0;
   /// A buffer that writes straight to the caller's memory where the device can, else nullptr (then read it back).
   [[nodiscard]] virtual std::unique_ptr<Buffer> alias_output(void* /*data*/, std::size_t /*bytes*/) { return nullptr; }
+
+  /// The caller's device memory by its handle in the device's language (triangulator.hpp); not freed with the buffer.
+  [[nodiscard]] virtual std::unique_ptr<Buffer> wrap(void* handle, std::size_t bytes) = 0;
+  /// The handle of a buffer.
+  [[nodiscard]] virtual void* handle(const Buffer& buffer) const noexcept = 0;
+  /// True if freed memory stays with the device for the next allocation; else the driver keeps buffers itself.
+  [[nodiscard]] virtual bool keeps_memory() const noexcept { return false; }
+  /// Makes sure that `bytes` more can be had without asking the system. Only for devices that keep memory.
+  virtual void reserve(std::size_t /*bytes*/) {}
+  /// Gives kept memory back to the system.
+  virtual void trim() {}
+  /// Bytes that can still be allocated as far as the device knows.
+  [[nodiscard]] virtual std::size_t free_bytes() { return static_cast<std::size_t>(info().memory_bytes); }
+
+  /// nullptr: the kernels of common/device do it.
+  [[nodiscard]] virtual Primitives* primitives() noexcept { return nullptr; }
 
   /// Blocking copies; offsets and sizes in bytes. \throws DeviceError
   virtual void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) = 0;

@@ -22,6 +22,20 @@ Cut Launcher::cut(std::size_t count) const noexcept {
   return {static_cast<std::uint32_t>(divide_up(count, grain)), static_cast<std::uint32_t>(grain)};
 }
 
+Cut Launcher::cut_spread(std::size_t count) const noexcept {
+  const LaunchShape shape = device_.shape();
+  if (shape.contiguous) return cut(count);
+  std::uint32_t lanes = 1;  // an element; a warp has 32
+  while (lanes < 32 && count * lanes * 2 <= shape.resident) lanes *= 2;
+  return {static_cast<std::uint32_t>(count * lanes), lanes};
+}
+
+Cut Launcher::parts(std::size_t count) const noexcept {
+  const LaunchShape shape = device_.shape();
+  if (shape.contiguous) return chunks(count);
+  return {static_cast<std::uint32_t>(std::min<std::size_t>(count, shape.parallelism)), 1};
+}
+
 Cut Launcher::chunks(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   const std::size_t grain =
@@ -39,6 +53,11 @@ std::uint32_t Launcher::read_word(const Allocation& from, std::size_t index) {
 
 void Launcher::scan(const Allocation& data, std::size_t count) {
   if (count == 0) return;
+  if (Primitives* own = device_.primitives()) {
+    const Allocation scratch = memory_.allocate(own->scan_scratch(count));
+    own->scan(*scratch, *data, count);
+    return;
+  }
   const Cut c = chunks(count);
   const auto n = static_cast<std::uint32_t>(count);
   Allocation sums = memory_.allocate((c.items + std::size_t{1}) * sizeof(std::uint32_t));
@@ -53,6 +72,18 @@ void Launcher::scan(const Allocation& data, std::size_t count) {
 
 void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys, Allocation& spare_values,
                     std::size_t count, unsigned bits, bool identity) {
+  if (Primitives* own = device_.primitives()) {
+    const Allocation scratch = memory_.allocate(own->sort_scratch(count, bits));
+    if (identity) {
+      const Cut c = cut(count);
+      run(KernelId::cadt_identity, c.items, values, static_cast<std::uint32_t>(count), c.grain);
+    }
+    if (own->sort(*scratch, *keys, *values, *spare_keys, *spare_values, count, std::max(bits, 1U))) {
+      std::swap(keys, spare_keys);
+      std::swap(values, spare_values);
+    }
+    return;
+  }
   const unsigned digit = device_.shape().contiguous ? 8 : 4;  // the build's CADT_RADIX_BITS
   const Cut c = chunks(count);
   const auto n = static_cast<std::uint32_t>(count);

@@ -29,6 +29,10 @@ class Launcher {
 
   /// For kernels over `count` independent elements.
   [[nodiscard]] Cut cut(std::size_t count) const noexcept;
+  /// For kernels with CADT_FOR_SPREAD: few elements get several work-items each on GPUs.
+  [[nodiscard]] Cut cut_spread(std::size_t count) const noexcept;
+  /// For kernels with one row of partial results a work-item (CADT_FOR_PART).
+  [[nodiscard]] Cut parts(std::size_t count) const noexcept;
   /// For kernels whose work-items need a contiguous chunk on every device.
   [[nodiscard]] Cut chunks(std::size_t count) const noexcept;
 

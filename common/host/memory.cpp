@@ -2,48 +2,101 @@
 #include "common/host/memory.hpp"
 
 #include <algorithm>
+#include <new>
 #include <string>
 
 namespace cadt {
+namespace {
+
+constexpr std::size_t smallest_kept = 4096;  // smaller buffers cost next to nothing
+
+}  // namespace
 
 void Allocation::release() noexcept {
-  if (buffer_ != nullptr) memory_->held_ -= counted_;
+  if (buffer_ != nullptr) memory_->give_back(std::move(buffer_), counted_);
   buffer_.reset();
   counted_ = 0;
 }
 
-void Memory::require(std::size_t bytes) const {
+void Memory::check_limit(std::size_t bytes) {
+  if (limit_ == 0) return;
   const std::size_t needed = held_ + bytes;
-  if (limit_ != 0 && needed > limit_) {
+  if (needed + kept_bytes_ > limit_) drop_kept();
+  if (needed > limit_) {
     throw OutOfMemory("this needs " + std::to_string(needed) + " bytes on the device and the limit is " +
                           std::to_string(limit_) + ": raise the limit or use fewer points",
                       needed, limit_);
   }
-  const std::size_t memory = device_.info().memory_bytes;
-  if (memory != 0 && needed > memory) {
-    throw OutOfMemory("this needs " + std::to_string(needed) + " bytes and '" + device_.info().name + "' has " +
-                          std::to_string(memory) + ": use fewer points or a device with more memory",
-                      needed, memory);
+}
+
+void Memory::require(std::size_t bytes) {
+  check_limit(bytes);
+  const std::size_t available = device_.free_bytes() + kept_bytes_;
+  if (bytes > available) {
+    throw OutOfMemory("this needs " + std::to_string(bytes) + " bytes and '" + device_.info().name + "' has " +
+                          std::to_string(available) + " bytes free: use fewer points or a device with more memory",
+                      bytes, available);
   }
+}
+
+std::unique_ptr<Buffer> Memory::take_kept(std::size_t bytes) noexcept {
+  // the smallest that is large enough, but not so large that it would be missed
+  auto best = kept_.end();
+  for (auto it = kept_.begin(); it != kept_.end(); ++it)
+    if ((*it)->bytes() >= bytes && (*it)->bytes() / 2 <= bytes && (best == kept_.end() || (*it)->bytes() < (*best)->bytes()))
+      best = it;
+  if (best == kept_.end()) return nullptr;
+  auto buffer = std::move(*best);
+  kept_.erase(best);
+  kept_bytes_ -= buffer->bytes();
+  return buffer;
+}
+
+void Memory::give_back(std::unique_ptr<Buffer> buffer, std::size_t counted) noexcept {
+  held_ -= counted;
+  if (!keep_ || counted < smallest_kept) return;
+  try {
+    kept_.push_back(std::move(buffer));
+    kept_bytes_ += counted;
+  } catch (const std::bad_alloc&) {  // then it is freed
+  }
+}
+
+/// Asks the device, and once more without the kept buffers if it has too little.
+template <class Allocate>
+std::unique_ptr<Buffer> Memory::ask(const Allocate& allocate) {
+  ++allocations_;
+  if (kept_.empty()) return allocate();
+  try {
+    return allocate();
+  } catch (const OutOfMemory&) {
+    drop_kept();
+  }
+  return allocate();
 }
 
 Allocation Memory::account(std::unique_ptr<Buffer> buffer) {
   const std::size_t bytes = buffer->bytes();
   held_ += bytes;
-  peak_ = std::max(peak_, held_);
+  peak_ = std::max(peak_, held_ + kept_bytes_);
   return {*this, std::move(buffer), bytes};
 }
 
 Allocation Memory::allocate(std::size_t bytes) {
   bytes = std::max<std::size_t>(bytes, 4);  // OpenCL has no empty buffers
-  require(bytes);
-  return account(device_.allocate(bytes));
+  if (auto buffer = take_kept(bytes)) return account(std::move(buffer));
+  check_limit(bytes);
+  return account(ask([&] { return device_.allocate(bytes); }));
 }
 
 Allocation Memory::allocate_zeros(std::size_t bytes) {
   bytes = std::max<std::size_t>(bytes, 4);
-  require(bytes);
-  return account(device_.allocate_zeros(bytes));
+  if (auto buffer = take_kept(bytes)) {
+    device_.fill(*buffer, 0, (bytes + 3) / 4 * 4, 0);
+    return account(std::move(buffer));
+  }
+  check_limit(bytes);
+  return account(ask([&] { return device_.allocate_zeros(bytes); }));
 }
 
 Allocation Memory::import(const void* data, std::size_t bytes) {
@@ -52,6 +105,8 @@ Allocation Memory::import(const void* data, std::size_t bytes) {
   device_.write(*copy, 0, data, bytes);
   return copy;
 }
+
+Allocation Memory::wrap(void* handle, std::size_t bytes) { return {*this, device_.wrap(handle, bytes), 0}; }
 
 Allocation Memory::export_to(void* data, std::size_t bytes) {
   if (auto aliased = device_.alias_output(data, bytes)) return {*this, std::move(aliased), 0};

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Device memory of one run, counted, bounded and freed in time.
+// Device memory of one triangulator, counted, bounded, and kept for the next call.
 #pragma once
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "common/host/device.hpp"
 
@@ -46,8 +47,8 @@ class Allocation {
 /// The account. Outlives its allocations.
 class Memory {
  public:
-  /// `limit` in bytes, 0 for none.
-  Memory(Device& device, std::size_t limit) noexcept : device_(device), limit_(limit) {}
+  /// `keep`: freed buffers are kept for the next call, unless the device does that itself.
+  Memory(Device& device, bool keep) noexcept : device_(device), keep_(keep && !device.keeps_memory()) {}
   Memory(const Memory&) = delete;
   Memory& operator=(const Memory&) = delete;
 
@@ -57,18 +58,42 @@ class Memory {
   [[nodiscard]] Allocation allocate_zeros(std::size_t bytes);
   /// The caller's data: aliased if the device can, else copied.
   [[nodiscard]] Allocation import(const void* data, std::size_t bytes);
+  /// The caller's device memory.
+  [[nodiscard]] Allocation wrap(void* handle, std::size_t bytes);
   /// Memory of the caller to be written by kernels, if the device can; else null.
   [[nodiscard]] Allocation export_to(void* data, std::size_t bytes);
-  /// \throws OutOfMemory if `bytes` more would pass the limit or the device's memory
-  void require(std::size_t bytes) const;
+  /// \throws OutOfMemory if `bytes` more would pass the limit or what the device has free
+  void require(std::size_t bytes);
+  /// Gives kept buffers back to the device.
+  void drop_kept() noexcept {
+    kept_.clear();
+    kept_bytes_ = 0;
+  }
 
+  /// A new account. `limit` in bytes bounds what is held and kept together from here on; 0 for none.
+  void begin(std::size_t limit) noexcept {
+    limit_ = limit;
+    peak_ = held_ + kept_bytes_;
+  }
+  /// Most bytes held and kept together.
   [[nodiscard]] std::size_t peak() const noexcept { return peak_; }
+  /// Buffers that had to be asked of the device since the beginning.
+  [[nodiscard]] std::uint64_t allocations() const noexcept { return allocations_; }
 
  private:
   friend class Allocation;
   [[nodiscard]] Allocation account(std::unique_ptr<Buffer> buffer);
+  [[nodiscard]] std::unique_ptr<Buffer> take_kept(std::size_t bytes) noexcept;
+  void give_back(std::unique_ptr<Buffer> buffer, std::size_t counted) noexcept;
+  void check_limit(std::size_t bytes);
+  template <class Allocate>
+  [[nodiscard]] std::unique_ptr<Buffer> ask(const Allocate& allocate);
+
   Device& device_;
-  std::size_t limit_, held_ = 0, peak_ = 0;
+  bool keep_;
+  std::size_t limit_ = 0, held_ = 0, kept_bytes_ = 0, peak_ = 0;
+  std::uint64_t allocations_ = 0;
+  std::vector<std::unique_ptr<Buffer>> kept_;
 };
 
 }  // namespace cadt

@@ -35,10 +35,28 @@ bool matches(const DeviceInfo& info, const std::string& wanted) {
          lower(info.platform).find(lower(wanted)) != std::string::npos;
 }
 
+/// The device of the caller's queue.
+std::unique_ptr<Device> open_queue(BackendEntry& backend, const Options& options) {
+  const std::string name(to_string(backend.id()));
+  const int index = backend.device_of(*options.queue);
+  for (const DeviceInfo& info : backend.devices()) {
+    if (info.index < 0) throw BackendUnavailable(name, info.reason);
+    if (info.index != index) continue;
+    if (!matches(info, options.device))
+      throw BackendUnavailable(name, "the queue belongs to '" + info.name + "' and not to '" + options.device + "'");
+    return backend.open(index, options);
+  }
+  throw BackendUnavailable(name, "Options::queue is not a stream or queue of one of its devices");
+}
+
 std::unique_ptr<Device> open_in(BackendEntry& backend, const Options& options) {
+  if (options.queue) return open_queue(backend, options);
   const std::string name(to_string(backend.id()));
   std::string reason;
   const std::vector<DeviceInfo> devices = backend.devices();
+  const int preferred = options.device.empty() ? backend.preferred_device() : -1;
+  for (const DeviceInfo& info : devices)
+    if (info.index >= 0 && info.index == preferred && info.usable) return backend.open(info.index, options);
   if (options.device.empty())  // a GPU before a CPU
     for (const DeviceInfo& info : devices)
       if (info.index >= 0 && info.usable && info.gpu) return backend.open(info.index, options);
@@ -85,6 +103,7 @@ std::vector<DeviceInfo> list_devices() {
 
 std::unique_ptr<Device> open_device(const Options& options) {
   if (options.backend != Backend::automatic) return open_in(entry(options.backend), options);
+  if (options.queue) throw BackendUnavailable("auto", "a queue needs its back end to be named in Options::backend");
   if (!options.device.empty()) {  // a device was named: the first back end that has it
     for (BackendEntry* backend : all_backends())
       for (const DeviceInfo& info : backend->devices())
@@ -95,7 +114,7 @@ std::unique_ptr<Device> open_device(const Options& options) {
   // A GPU is the fastest. Without one the host's threads are faster than OpenCL on the same cores.
   for (BackendEntry* backend : all_backends())
     for (const DeviceInfo& info : backend->devices())
-      if (info.index >= 0 && info.usable && info.gpu) return backend->open(info.index, options);
+      if (info.index >= 0 && info.usable && info.gpu) return open_in(*backend, options);
   return open_in(host_backend(), options);
 }
 

@@ -14,13 +14,13 @@
 namespace cadt {
 
 struct Run {
-  Run(Device& d, const Options& o, Statistics& s)
-      : device(d), options(o), statistics(s), memory(d, o.max_memory), launcher(d, memory, o.grain) {}
+  Run(Device& d, Memory& m, const Options& o, Statistics& s)
+      : device(d), options(o), statistics(s), memory(m), launcher(d, m, o.grain) {}
 
   Device& device;
   const Options& options;
   Statistics& statistics;
-  Memory memory;
+  Memory& memory;
   Launcher launcher;
 
   /// Tells the progress and looks for a request to stop. \throws Cancelled

@@ -22,39 +22,32 @@ struct Bounds {
   int low = 4096, high = -4096;  // exponents of the lowest set bit and above the highest; low > high: all zero
 };
 
-Allocation upload(Run& run, const PointsView& points) {
-  const std::size_t bytes = points.size() * sizeof(cadt_point);
-  if (const double* xy = points.interleaved_doubles()) return run.memory.import(xy, bytes);
-  Allocation buffer = run.memory.allocate(bytes);
-  constexpr std::size_t piece = std::size_t{1} << 16;
-  std::vector<cadt_point> staged(std::min(piece, points.size()));
-  for (std::size_t begin = 0; begin < points.size(); begin += piece) {
-    const std::size_t count = std::min(piece, points.size() - begin);
-    for (std::size_t i = 0; i < count; ++i) staged[i] = {points.x(begin + i), points.y(begin + i)};
-    run.device.write(*buffer, begin * sizeof(cadt_point), staged.data(), count * sizeof(cadt_point));
-  }
-  return buffer;
-}
+constexpr std::uint32_t few_rows = 512;  // partial results that the host merges itself
 
 Bounds find_bounds(Run& run, const Allocation& input, std::size_t n) {
-  const Cut c = run.launcher.chunks(n);
+  Cut c = run.launcher.parts(n);
   Allocation box = run.memory.allocate(c.items * CADT_BOUNDS_DOUBLES * sizeof(double));
   Allocation words = run.memory.allocate(c.items * CADT_BOUNDS_WORDS * word);
-  run.launcher.run(KernelId::cadt_bounds, c.items, input, static_cast<std::uint32_t>(n), c.grain, box, words);
+  run.launcher.run(KernelId::cadt_bounds, c.items, input, static_cast<std::uint32_t>(n), c.grain, c.items, box, words);
+  if (c.items > few_rows) {
+    const std::uint32_t chunk = (c.items - 1) / few_rows + 1, rows = (c.items - 1) / chunk + 1;
+    Allocation fewer_box = run.memory.allocate(rows * CADT_BOUNDS_DOUBLES * sizeof(double));
+    Allocation fewer_words = run.memory.allocate(rows * CADT_BOUNDS_WORDS * word);
+    run.launcher.run(KernelId::cadt_merge_bounds, rows, box, words, c.items, chunk, rows, fewer_box, fewer_words);
+    box = std::move(fewer_box);
+    words = std::move(fewer_words);
+    c.items = rows;
+  }
   std::vector<double> b(std::size_t{c.items} * CADT_BOUNDS_DOUBLES);
   std::vector<std::uint32_t> w(std::size_t{c.items} * CADT_BOUNDS_WORDS);
   run.device.read(*box, 0, b.data(), b.size() * sizeof b[0]);
   run.device.read(*words, 0, w.data(), w.size() * sizeof w[0]);
 
   Bounds all{b[0], b[1], b[2], b[3]};
+  std::uint32_t bad = CADT_NONE;
   for (std::size_t i = 0; i < c.items; ++i) {
     const std::uint32_t* row = &w[i * CADT_BOUNDS_WORDS];
-    if (row[2] != CADT_NONE) {  // chunks ascend, so this is the first one
-      throw InputError("point " + std::to_string(row[2]) +
-                           " (counted from 0) has a coordinate that is NaN or infinite: "
-                           "remove or repair it",
-                       row[2]);
-    }
+    bad = std::min(bad, row[2]);
     all.low = std::min(all.low, static_cast<int>(row[0]) - 4096);
     all.high = std::max(all.high, static_cast<int>(row[1]) - 4096);
     const double* box_row = &b[i * CADT_BOUNDS_DOUBLES];
@@ -62,6 +55,12 @@ Bounds find_bounds(Run& run, const Allocation& input, std::size_t n) {
     all.max_x = std::max(all.max_x, box_row[1]);
     all.min_y = std::min(all.min_y, box_row[2]);
     all.max_y = std::max(all.max_y, box_row[3]);
+  }
+  if (bad != CADT_NONE) {
+    throw InputError("point " + std::to_string(bad) +
+                         " (counted from 0) has a coordinate that is NaN or infinite: "
+                         "remove or repair it",
+                     bad);
   }
   return all;
 }
@@ -141,28 +140,28 @@ void refine(Run& run, const Allocation& input, Allocation& keys, const Allocatio
   }
 }
 
-std::vector<Duplicate> find_duplicates(Run& run, const Allocation& order, const Allocation& ranks,
-                                       const Allocation& labels, std::size_t n, std::size_t distinct) {
-  std::vector<Duplicate> pairs(n - distinct);
-  Allocation buffer = run.memory.allocate(pairs.size() * sizeof(Duplicate));
+/// The points that equal an earlier one, ascending, and those that they equal.
+void find_duplicates(Run& run, SpatialOrder& result, const Allocation& order, const Allocation& ranks, std::size_t n) {
+  const std::size_t count = n - result.distinct;
+  result.duplicates = run.memory.allocate(count * word);
+  result.representatives = run.memory.allocate(count * word);
+  Allocation spare = run.memory.allocate(count * word), spare_values = run.memory.allocate(count * word);
   const Cut c = run.launcher.cut(n);
-  run.launcher.run(KernelId::cadt_duplicate_pairs, c.items, order, ranks, labels, buffer, static_cast<std::uint32_t>(n),
-                   static_cast<std::uint32_t>(distinct), c.grain);
-  run.device.read(*buffer, 0, pairs.data(), pairs.size() * sizeof(Duplicate));
-  std::sort(pairs.begin(), pairs.end(), [](const Duplicate& a, const Duplicate& b) { return a.point < b.point; });
-  return pairs;
+  run.launcher.run(KernelId::cadt_duplicate_pairs, c.items, order, ranks, result.labels, result.duplicates,
+                   result.representatives, static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(result.distinct),
+                   c.grain);
+  run.launcher.sort(result.duplicates, result.representatives, spare, spare_values, count,
+                    static_cast<unsigned>(std::bit_width(n - 1)), false);
 }
 
 }  // namespace
 
-SpatialOrder sort_points(Run& run, PointsView view) {
+SpatialOrder sort_points(Run& run, Allocation input, std::size_t n) {
   Launcher& launch = run.launcher;
-  const std::size_t n = view.size();
   const auto count = static_cast<std::uint32_t>(n);
   const Cut c = launch.cut(n);
   SpatialOrder result;
 
-  Allocation input = upload(run, view);
   const Bounds bounds = find_bounds(run, input, n);
   result.wide = bounds.high - bounds.low > narrow_span;
   launch.set_wide(result.wide);
@@ -205,7 +204,7 @@ SpatialOrder sort_points(Run& run, PointsView view) {
     result.labels = run.memory.allocate(distinct * word);
     launch.run(KernelId::cadt_unique_pack, c.items, sorted, order, spare, result.points, result.labels, count, distinct,
                c.grain);
-    result.duplicates = find_duplicates(run, order, spare, result.labels, n, distinct);
+    find_duplicates(run, result, order, spare, n);
   }
   run.end_phase("gather");
   return result;

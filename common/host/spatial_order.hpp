@@ -5,7 +5,6 @@
 #include <cadt/triangulation.hpp>
 
 #include <cstddef>
-#include <vector>
 
 #include "common/host/run.hpp"
 
@@ -15,11 +14,12 @@ struct SpatialOrder {
   Allocation points;  ///< distinct points in order, scaled by a power of two unless `wide`
   Allocation labels;  ///< their lowest input indices
   std::size_t distinct = 0;
-  std::vector<Duplicate> duplicates;  ///< ascending by point
+  Allocation duplicates, representatives;  ///< points that equal an earlier one, ascending, and that one; null if none
   bool wide = false;                  ///< exponents span too much for the narrow kernels
 };
 
-/// Sorts the points, refines crowded cells, finds duplicates. \throws InputError for the first NaN or infinity
-[[nodiscard]] SpatialOrder sort_points(Run& run, PointsView points);
+/// Sorts n points (`input`: interleaved doubles), refines crowded cells, finds duplicates.
+/// \throws InputError for the first NaN or infinity
+[[nodiscard]] SpatialOrder sort_points(Run& run, Allocation input, std::size_t n);
 
 }  // namespace cadt

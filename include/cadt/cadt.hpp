@@ -7,5 +7,6 @@
 #include <cadt/points.hpp>
 #include <cadt/statistics.hpp>
 #include <cadt/triangulation.hpp>
+#include <cadt/triangulator.hpp>
 #include <cadt/verify.hpp>
 #include <cadt/version.hpp>

@@ -45,6 +45,14 @@ class PointsView {
   /// The coordinates themselves if they are interleaved doubles, else nullptr.
   [[nodiscard]] const double* interleaved_doubles() const noexcept { return stride_ == 2 ? x64_ : nullptr; }
 
+  /// Whether x and y alternate in one array.
+  [[nodiscard]] bool interleaved() const noexcept { return stride_ == 2; }
+  /// Bytes of a coordinate.
+  [[nodiscard]] std::size_t scalar_size() const noexcept { return x64_ != nullptr ? sizeof(double) : sizeof(float); }
+  /// The first x and the first y in the caller's memory.
+  [[nodiscard]] const void* x_data() const noexcept { return x64_ != nullptr ? static_cast<const void*>(x64_) : x32_; }
+  [[nodiscard]] const void* y_data() const noexcept { return y64_ != nullptr ? static_cast<const void*>(y64_) : y32_; }
+
  private:
   template <class Real>
   PointsView(const Real* xy, std::size_t values) : size_(values / 2), stride_(2) {

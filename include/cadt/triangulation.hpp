@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -25,6 +26,8 @@ enum class Backend { automatic, host, opencl, cuda };
 [[nodiscard]] std::string_view to_string(Backend backend) noexcept;
 /// Inverse of `to_string`; throws BackendUnavailable for any other word.
 [[nodiscard]] Backend backend_from_string(std::string_view name);
+
+class DeviceAllocator;  // triangulator.hpp
 
 /// Order of the triangles in the result.
 enum class Order {
@@ -55,6 +58,11 @@ struct Options {
   /// Neighbouring elements that one work-item of a CPU takes in a row; 0 lets the library choose. Small numbers put
   /// several threads to work in one place: slower, and full of conflicts.
   unsigned grain = 0;
+  /// The caller's stream (a cudaStream_t, the default stream too) or in-order queue (a cl_command_queue): all work is
+  /// put there, on its device. Needs the back end to be named. Not given: one of the library's own.
+  std::optional<void*> queue;
+  /// Where device memory comes from. Null: the library allocates it.
+  std::shared_ptr<DeviceAllocator> allocator;
   /// Checked between launches; when triggered the call throws Cancelled.
   std::stop_token stop;
   /// Called from the calling thread between launches. Must not throw.

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "backends/cuda/context.hpp"
+
+#include <cadt/errors.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace cadt::cuda {
+namespace {
+
+/// The driver's functions that the runtime has no equal of. They are asked of the runtime, so that the program starts
+/// without a driver.
+struct Driver {
+  CUresult (*get_current)(CUcontext*) = nullptr;
+  CUresult (*push)(CUcontext) = nullptr;
+  CUresult (*pop)(CUcontext*) = nullptr;
+  CUresult (*set_current)(CUcontext) = nullptr;
+  CUresult (*device)(CUdevice*) = nullptr;
+  CUresult (*stream_context)(CUstream, CUcontext*) = nullptr;
+  CUresult (*fill)(CUdeviceptr, unsigned, std::size_t, CUstream) = nullptr;
+  bool complete = false;
+
+  Driver() {
+    complete = find("cuCtxGetCurrent", get_current) && find("cuCtxPushCurrent", push) && find("cuCtxPopCurrent", pop) &&
+               find("cuCtxSetCurrent", set_current) && find("cuCtxGetDevice", device) &&
+               find("cuStreamGetCtx", stream_context) && find("cuMemsetD32Async", fill);
+  }
+
+ private:
+  template <class Function>
+  static bool find(const char* name, Function& function) {
+    void* address = nullptr;
+    cudaDriverEntryPointQueryResult found{};
+#if CUDART_VERSION >= 12050
+    constexpr unsigned version = 12000;  // the functions above are the same since 4.0 or 9.2
+    const cudaError_t code = cudaGetDriverEntryPointByVersion(name, &address, version, cudaEnableDefault, &found);
+#else
+    const cudaError_t code = cudaGetDriverEntryPoint(name, &address, cudaEnableDefault, &found);
+#endif
+    if (code != cudaSuccess || found != cudaDriverEntryPointSuccess || address == nullptr) {
+      cudaGetLastError();
+      return false;
+    }
+    function = reinterpret_cast<Function>(address);
+    return true;
+  }
+};
+
+const Driver& driver() {
+  static const Driver found;
+  return found;
+}
+
+void check_driver(CUresult code, const char* call, const std::string& device) {
+  if (code != CUDA_SUCCESS) throw DeviceError(call, static_cast<int>(code), device, "error of the CUDA driver");
+}
+
+/// Makes the device's primary context current until the end.
+class PrimaryScope {
+ public:
+  PrimaryScope(int device, const std::string& name) {
+    driver().get_current(&before_);
+    check(cudaSetDevice(device), "cudaSetDevice", name);
+  }
+  ~PrimaryScope() { driver().set_current(before_); }
+  PrimaryScope(const PrimaryScope&) = delete;
+  PrimaryScope& operator=(const PrimaryScope&) = delete;
+
+ private:
+  CUcontext before_ = nullptr;
+};
+
+}  // namespace
+
+void check(cudaError_t code, const char* call, const std::string& device) {
+  if (code == cudaSuccess) return;
+  cudaGetLastError();  // the error has been taken note of: the next call starts clean
+  throw DeviceError(call, static_cast<int>(code), device,
+                    std::string(cudaGetErrorName(code)) + ", " + cudaGetErrorString(code));
+}
+
+ContextScope::ContextScope(CUcontext context) noexcept : pushed_(driver().push(context) == CUDA_SUCCESS) {}
+ContextScope::~ContextScope() {
+  CUcontext popped = nullptr;
+  if (pushed_) driver().pop(&popped);
+}
+
+int device_of(cudaStream_t stream) noexcept {
+  CUcontext context = nullptr;
+  if (!driver().complete) return -1;
+  if (driver().get_current(&context) == CUDA_SUCCESS && context == nullptr) {
+    int device = 0;  // a runtime that has not been used yet: its first use makes the primary context current
+    if (cudaGetDevice(&device) != cudaSuccess || cudaSetDevice(device) != cudaSuccess) return -1;
+  }
+  if (driver().stream_context(stream, &context) != CUDA_SUCCESS) return -1;
+  const ContextScope scope(context);
+  CUdevice device = -1;
+  return driver().device(&device) == CUDA_SUCCESS ? static_cast<int>(device) : -1;
+}
+
+Stream::Stream(int device, std::string name, std::optional<void*> queue, std::shared_ptr<DeviceAllocator> allocator)
+    : name_(std::move(name)), allocator_(std::move(allocator)) {
+  if (!driver().complete) throw BackendUnavailable("cuda", "the driver lacks functions of CUDA 12");
+  if (queue) {
+    stream_ = static_cast<cudaStream_t>(*queue);
+    check_driver(driver().stream_context(stream_, &context_), "cuStreamGetCtx", name_);
+  } else {
+    const PrimaryScope primary(device, name_);
+    check_driver(driver().get_current(&context_), "cuCtxGetCurrent", name_);
+    // Does not wait for the default stream, and the default stream does not wait for it.
+    check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags", name_);
+    own_ = true;
+  }
+  if (allocator_ != nullptr) return;
+  const ContextScope scope(context_);
+  cudaMemPoolProps properties{};
+  properties.allocType = cudaMemAllocationTypePinned;
+  properties.location.type = cudaMemLocationTypeDevice;
+  properties.location.id = device;
+  if (const cudaError_t code = cudaMemPoolCreate(&pool_, &properties); code != cudaSuccess) {
+    if (own_) cudaStreamDestroy(stream_);
+    check(code, "cudaMemPoolCreate", name_);
+  }
+  // Freed memory stays with the pool: phases and calls reuse each other's.
+  std::uint64_t keep = std::numeric_limits<std::uint64_t>::max();
+  cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep);
+}
+
+Stream::~Stream() {
+  const ContextScope scope(context_);
+  cudaStreamSynchronize(stream_);
+  if (pool_ != nullptr) cudaMemPoolDestroy(pool_);
+  if (own_) cudaStreamDestroy(stream_);
+  cudaGetLastError();  // a destructor cannot report, and the caller's next call shall not find our errors
+}
+
+void* Stream::allocate(std::size_t bytes) {
+  void* memory = nullptr;
+  if (allocator_ != nullptr) {
+    memory = allocator_->allocate(bytes, stream_);
+    if (memory != nullptr) return memory;
+  } else {
+    const cudaError_t code = cudaMallocFromPoolAsync(&memory, bytes, pool_, stream_);
+    if (code == cudaSuccess) return memory;
+    if (code != cudaErrorMemoryAllocation) check(code, "cudaMallocFromPoolAsync", name_);
+    cudaGetLastError();
+  }
+  const std::size_t available = free_bytes();
+  throw OutOfMemory("'" + name_ + "' cannot hold another " + std::to_string(bytes) + " bytes; " +
+                        std::to_string(available) + " bytes are free" +
+                        (allocator_ != nullptr ? ", but the caller's allocator gave none" : "") + ": use fewer points",
+                    bytes, available);
+}
+
+void Stream::deallocate(void* memory, std::size_t bytes) noexcept {
+  if (allocator_ != nullptr) {
+    allocator_->deallocate(memory, bytes, stream_);
+  } else if (cudaFreeAsync(memory, stream_) != cudaSuccess) {  // in order behind the launches that use it
+    cudaGetLastError();
+  }
+}
+
+void Stream::fill(void* memory, std::uint32_t word, std::size_t words) {
+  check_driver(driver().fill(reinterpret_cast<CUdeviceptr>(memory), word, words, stream_), "cuMemsetD32Async", name_);
+}
+
+std::size_t Stream::free_bytes() const noexcept {
+  std::size_t available = 0, total = 0;
+  cudaMemGetInfo(&available, &total);
+  std::uint64_t reserved = 0, used = 0;
+  if (pool_ != nullptr && cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrReservedMemCurrent, &reserved) == cudaSuccess &&
+      cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrUsedMemCurrent, &used) == cudaSuccess)
+    available += static_cast<std::size_t>(reserved - std::min(used, reserved));
+  return available;
+}
+
+void Stream::trim() noexcept {
+  cudaStreamSynchronize(stream_);
+  if (pool_ != nullptr) cudaMemPoolTrimTo(pool_, 0);
+  cudaGetLastError();
+}
+
+}  // namespace cadt::cuda

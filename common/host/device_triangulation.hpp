@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a DeviceTriangulation holds, and the state of a triangulator that it shares.
+#pragma once
+
+#include <cadt/triangulator.hpp>
+
+#include <memory>
+#include <vector>
+
+#include "common/host/device.hpp"
+#include "common/host/memory.hpp"
+#include "common/host/run.hpp"
+#include "common/host/triangulation_data.hpp"
+
+namespace cadt {
+
+struct Triangulator::State {
+  State(const Options& o, std::unique_ptr<Device> d, bool keep)
+      : options(o), device(std::move(d)), memory(*device, keep) {}
+  Options options;
+  std::unique_ptr<Device> device;
+  Memory memory;
+  std::size_t reserved_points = 0;  ///< calls with so many points have had their memory before
+};
+
+struct DeviceTriangulation::Data {
+  std::shared_ptr<Triangulator::State> state;  // first: goes last, after the memory
+  std::size_t points = 0, distinct = 0, triangle_count = 0, duplicate_count = 0;
+  Allocation triangles, neighbors;              ///< 3 words a triangle each
+  Allocation duplicate_points, representatives;  ///< null if there are none
+  int dimension = -1;
+  Statistics statistics;
+
+  [[nodiscard]] std::size_t hull_size() const noexcept {
+    return dimension == 2 ? 2 * distinct - 2 - triangle_count : 0;
+  }
+};
+
+/// The hull and, unless they are filled already, the arrays of the host's copy.
+void read_mesh(Run& run, const DeviceTriangulation::Data& from, bool filled, Triangulation::Data& to);
+void read_duplicates(Device& device, const DeviceTriangulation::Data& from, Triangulation::Data& to);
+
+}  // namespace cadt

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/host/input_points.hpp"
+
+#include "common/host/device_constants.hpp"
+
+namespace cadt {
+namespace {
+
+using device_constants::cadt_point;
+
+/// Where the coordinates of one axis are: the i-th at first + i * stride.
+struct Axis {
+  const Allocation& memory;
+  std::size_t first;
+};
+
+Allocation convert(Run& run, Axis x, Axis y, std::uint32_t stride, Scalar scalar, std::size_t count) {
+  Allocation points = run.memory.allocate(count * sizeof(cadt_point));
+  const Cut c = run.launcher.cut(count);
+  run.launcher.run(scalar == Scalar::float32 ? KernelId::cadt_import_floats : KernelId::cadt_import_doubles, c.items,
+                   x.memory, y.memory, static_cast<std::uint32_t>(x.first), static_cast<std::uint32_t>(y.first), stride,
+                   points, static_cast<std::uint32_t>(count), c.grain);
+  return points;
+}
+
+}  // namespace
+
+Allocation import_points(Run& run, const PointsView& points) {
+  const std::size_t n = points.size();
+  if (const double* xy = points.interleaved_doubles()) return run.memory.import(xy, n * sizeof(cadt_point));
+  const std::size_t size = points.scalar_size();
+  const Scalar scalar = size == sizeof(float) ? Scalar::float32 : Scalar::float64;
+  if (points.interleaved()) {
+    const Allocation xy = run.memory.import(points.x_data(), 2 * n * size);
+    return convert(run, {xy, 0}, {xy, 1}, 2, scalar, n);
+  }
+  const Allocation x = run.memory.import(points.x_data(), n * size), y = run.memory.import(points.y_data(), n * size);
+  return convert(run, {x, 0}, {y, 0}, 1, scalar, n);
+}
+
+Allocation import_points(Run& run, const DevicePoints& points) {
+  const std::size_t n = points.size, size = points.scalar == Scalar::float32 ? sizeof(float) : sizeof(double);
+  if (points.x == nullptr) throw InputError("the points have no memory: DevicePoints::x is null", 0);
+  // Kernels of the library only read it.
+  const Allocation x = run.memory.wrap(const_cast<void*>(points.x), (points.skip + n) * size * (points.y ? 1 : 2));
+  if (points.y != nullptr) {
+    const Allocation y = run.memory.wrap(const_cast<void*>(points.y), (points.skip + n) * size);
+    return convert(run, {x, points.skip}, {y, points.skip}, 1, points.scalar, n);
+  }
+  if (points.scalar == Scalar::float64 && points.skip == 0)
+    return run.memory.wrap(const_cast<void*>(points.x), n * sizeof(cadt_point));
+  return convert(run, {x, 2 * points.skip}, {x, 2 * points.skip + 1}, 2, points.scalar, n);
+}
+
+}  // namespace cadt

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The caller's coordinates as interleaved doubles on the device.
+#pragma once
+
+#include <cadt/triangulator.hpp>
+
+#include "common/host/run.hpp"
+
+namespace cadt {
+
+/// From the host: without a copy where the device can read the caller's memory.
+[[nodiscard]] Allocation import_points(Run& run, const PointsView& points);
+
+/// From the device: without a copy if they are interleaved doubles. \throws InputError for a handle that is missing
+[[nodiscard]] Allocation import_points(Run& run, const DevicePoints& points);
+
+}  // namespace cadt

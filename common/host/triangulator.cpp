@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole run: order the points, build the mesh, number and write the triangles.
+#include <cadt/triangulator.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/host/build_mesh.hpp"
+#include "common/host/collect.hpp"
+#include "common/host/device_triangulation.hpp"
+#include "common/host/input_points.hpp"
+#include "common/host/registry.hpp"
+#include "common/host/run.hpp"
+#include "common/host/spatial_order.hpp"
+#include "common/host/triangulation_data.hpp"
+
+namespace cadt {
+namespace {
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+
+/// Device bytes of the phase that needs most, but for crowded cells: the insertion on the host (93 a point), else
+/// writing the result (124). docs/performance.md has the plan.
+std::size_t bytes_needed(std::size_t n, bool host) {
+  constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial results
+  return fixed + n * (host ? 97 : 124);
+}
+
+void require_size(std::size_t points) {
+  if (points <= max_points()) return;
+  throw LimitError("at most " + std::to_string(max_points()) + " points can be triangulated in one call, not " +
+                       std::to_string(points) + ": split the input",
+                   points, max_points());
+}
+
+bool is_host(const Device& device) { return device.info().backend == Backend::host; }
+
+/// Where the arrays of the result are to be written. Called when their size is known.
+class Outputs {
+ public:
+  virtual ~Outputs() = default;
+  virtual void make(Run& run, DeviceTriangulation::Data& data) = 0;
+};
+
+class OnDevice final : public Outputs {
+ public:
+  void make(Run& run, DeviceTriangulation::Data& data) override {
+    const std::size_t bytes = 3 * data.triangle_count * word;
+    data.triangles = run.memory.allocate(bytes);
+    data.neighbors = run.memory.allocate(bytes);
+  }
+};
+
+/// The arrays of a Triangulation if the device can write them, else copies on the device.
+class OnHost final : public Outputs {
+ public:
+  explicit OnHost(Triangulation::Data& to) : to_(to) {}
+  void make(Run& run, DeviceTriangulation::Data& data) override {
+    const std::size_t values = 3 * data.triangle_count;
+    to_.triangles = std::make_unique_for_overwrite<std::int32_t[]>(values);
+    to_.neighbors = std::make_unique_for_overwrite<std::int32_t[]>(values);
+    data.triangles = run.memory.export_to(to_.triangles.get(), values * word);
+    data.neighbors = run.memory.export_to(to_.neighbors.get(), values * word);
+    direct_ = data.triangles && data.neighbors;
+    if (!direct_) OnDevice().make(run, data);
+  }
+  /// True if the arrays are filled when the device has finished.
+  [[nodiscard]] bool direct() const noexcept { return direct_; }
+
+ private:
+  Triangulation::Data& to_;
+  bool direct_ = false;
+};
+
+template <class Points>
+void build(Run& run, const Points& points, std::size_t n, Outputs& outputs, DeviceTriangulation::Data& data) {
+  Statistics& statistics = data.statistics;
+  run.check("sort", 0);
+  SpatialOrder order = sort_points(run, import_points(run, points), n);
+  statistics.distinct = data.distinct = order.distinct;
+  statistics.wide_arithmetic = order.wide;
+  data.duplicate_count = n - order.distinct;
+  data.duplicate_points = std::move(order.duplicates);
+  data.representatives = std::move(order.representatives);
+  const DeviceMesh mesh = build_mesh(run, order);
+  order.points.release();
+  if (mesh.flat) {
+    data.dimension = order.distinct >= 2 ? 1 : 0;
+    return;
+  }
+  data.dimension = 2;
+  run.check("collect", 0.9);
+  const Numbering numbering = number_triangles(run, mesh, order.labels, n);
+  data.triangle_count = numbering.triangles;
+  run.check("collect", 0.95);
+  outputs.make(run, data);
+  emit_triangles(run, mesh, order.labels, numbering, data.triangles, data.neighbors);
+}
+
+/// What the statistics say before and after each call.
+void open_account(Triangulator::State& state, std::size_t n, DeviceTriangulation::Data& data) {
+  const DeviceInfo& info = state.device->info();
+  data.points = n;
+  data.statistics.points = n;
+  data.statistics.backend = to_string(info.backend);
+  data.statistics.device = info.name;
+  data.statistics.threads = state.device->threads();
+  state.memory.begin(state.options.max_memory);
+}
+
+/// \throws LimitError, OutOfMemory before any work
+void require_memory(Triangulator::State& state, std::size_t n, std::size_t input_bytes) {
+  if (n <= state.reserved_points && state.options.max_memory == 0) return;
+  state.memory.require(bytes_needed(n, is_host(*state.device)) + input_bytes);
+}
+
+void close_account(Triangulator::State& state, Run& run, DeviceTriangulation::Data& data) {
+  data.statistics.launches = run.launcher.launches();
+  data.statistics.bytes_device_peak = state.memory.peak();
+  state.reserved_points = std::max(state.reserved_points, data.points);
+  run.check("collect", 1);
+}
+
+Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
+  require_size(points.size());
+  auto result = std::make_unique<Triangulation::Data>();
+  DeviceTriangulation::Data data;
+  data.state = state;
+  open_account(*state, points.size(), data);
+  if (points.size() != 0) {
+    require_memory(*state, points.size(), 0);
+    Run run(*state->device, state->memory, state->options, data.statistics);
+    OnHost outputs(*result);
+    build(run, points, points.size(), outputs, data);
+    if (data.dimension == 2) read_mesh(run, data, outputs.direct(), *result);
+    read_duplicates(*state->device, data, *result);
+    run.end_phase("collect");
+    close_account(*state, run, data);
+  }
+  result->points = data.points;
+  result->triangle_count = data.triangle_count;
+  result->dimension = data.dimension;
+  result->statistics = std::move(data.statistics);
+  return Triangulation(std::move(result));
+}
+
+}  // namespace
+
+Triangulator::Triangulator(const Options& options)
+    : state_(std::make_shared<State>(options, open_device(options), true)) {}
+Triangulator::~Triangulator() = default;
+Triangulator::Triangulator(Triangulator&&) noexcept = default;
+Triangulator& Triangulator::operator=(Triangulator&&) noexcept = default;
+
+const DeviceInfo& Triangulator::device() const noexcept { return state_->device->info(); }
+Options& Triangulator::options() noexcept { return state_->options; }
+
+Triangulation Triangulator::triangulate(PointsView points) { return to_host(state_, points); }
+
+DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) {
+  require_size(points.size);
+  auto data = std::make_unique<DeviceTriangulation::Data>();
+  data->state = state_;
+  open_account(*state_, points.size, *data);
+  if (points.size != 0) {
+    require_memory(*state_, points.size, 0);
+    Run run(*state_->device, state_->memory, state_->options, data->statistics);
+    OnDevice outputs;
+    build(run, points, points.size, outputs, *data);
+    run.end_phase("collect");
+    close_account(*state_, run, *data);
+  }
+  return DeviceTriangulation(std::move(data));
+}
+
+std::size_t Triangulator::memory_needed(std::size_t points) const noexcept {
+  return bytes_needed(points, is_host(*state_->device));
+}
+
+void Triangulator::reserve(std::size_t points) {
+  require_size(points);
+  const std::size_t n = points;
+  Memory& memory = state_->memory;
+  memory.begin(state_->options.max_memory);
+  if (n <= state_->reserved_points) return;
+  memory.require(bytes_needed(n, is_host(*state_->device)));
+  if (state_->device->keeps_memory()) {
+    state_->device->reserve(bytes_needed(n, is_host(*state_->device)));
+  } else {
+    // The buffers of a call that are alive together; given back at once, so they are kept for it.
+    std::vector<Allocation> together;
+    for (const std::size_t words : {16, 4, 4, 1, 6, 6, 2, 1, 1})  // a point
+      together.push_back(memory.allocate(n * words * word));
+  }
+  state_->reserved_points = n;
+}
+
+void Triangulator::release_memory() {
+  state_->memory.drop_kept();
+  state_->device->trim();
+  state_->reserved_points = 0;
+}
+
+Triangulation triangulate(PointsView points, const Options& options) {
+  require_size(points.size());
+  return to_host(std::make_shared<Triangulator::State>(options, open_device(options), false), points);
+}
+
+}  // namespace cadt

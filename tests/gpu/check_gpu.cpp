@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// Large sets on a GPU: the time from points on the device to triangles and neighbours on the device, and the check of
+// the mesh. One line a run. Needs nothing but the library.
+#include <cadt/cadt.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+//x
+#include "tests/gpu/device_memory.hpp"
+
+namespace {
+
+using namespace cadt;
+
+struct Arguments {
+  std::size_t points = 1'000'000;
+  std::string backend = "cuda", device, kind = "uniform", verify = "none";
+  int runs = 10, warm_up = 3;
+  unsigned block = 0;
+  Order order = Order::fast;
+  bool phases = false, hash = false;
+};
+
+[[noreturn]] void usage() {
+  std::fputs(
+      "usage: cadt-check-gpu [--points N] [--backend cuda|opencl|host] [--device D]\n"
+      "                      [--kind uniform|circles|gaussian|lattice] [--runs R] [--warm-up W] [--block B]\n"
+      "                      [--order fast|canonical] [--verify none|host|device] [--phases] [--hash]\n"
+      "prints the median time (and the least and the most) from points on the device to a mesh on the device\n",
+      stderr);
+  std::exit(2);
+}
+
+Arguments parse(int count, char** values) {
+  Arguments a;
+  const std::vector<std::string> words(values + 1, values + count);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const auto value = [&] {
+      if (++i == words.size()) usage();
+      return words[i];
+    };
+    if (words[i] == "--points")
+      a.points = std::stoul(value());
+    else if (words[i] == "--backend")
+      a.backend = value();
+    else if (words[i] == "--device")
+      a.device = value();
+    else if (words[i] == "--kind")
+      a.kind = value();
+    else if (words[i] == "--runs")
+      a.runs = std::stoi(value());
+    else if (words[i] == "--warm-up")
+      a.warm_up = std::stoi(value());
+    else if (words[i] == "--block")
+      a.block = static_cast<unsigned>(std::stoul(value()));
+    else if (words[i] == "--order")
+      a.order = value() == "canonical" ? Order::canonical : Order::fast;
+    else if (words[i] == "--verify")
+      a.verify = value();
+    else if (words[i] == "--phases")
+      a.phases = true;
+    else if (words[i] == "--hash")
+      a.hash = true;
+    else
+      usage();
+  }
+  return a;
+}
+
+/// A number in [0, 1) from a counter: the same on every machine (S. Vigna's mixing function of SplitMix64).
+double uniform(std::uint64_t i) {
+  std::uint64_t z = (i + 1) * 0x9e3779b97f4a7c15U;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
+  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+}
+
+std::vector<double> make_points(const std::string& kind, std::size_t n) {
+  std::vector<double> xy(2 * n);
+  if (kind == "uniform") {
+    for (std::size_t i = 0; i < 2 * n; ++i) xy[i] = uniform(i);
+  } else if (kind == "circles") {  // the paper's perturbed circles: k = 8, r = 0.35 cells, eps = 1e-4 cells
+    const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(n) / 8)));
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t cell = i / 8;
+      const double angle = 0.78539816339744831 * static_cast<double>(i % 8);
+      xy[2 * i] = static_cast<double>(cell % columns) + 0.35 * std::cos(angle) + 1e-4 * (2 * uniform(2 * i) - 1);
+      xy[2 * i + 1] = static_cast<double>(cell / columns) + 0.35 * std::sin(angle) + 1e-4 * (2 * uniform(2 * i + 1) - 1);
+    }
+  } else if (kind == "gaussian") {
+    for (std::size_t i = 0; i < n; ++i) {
+      const double radius = std::sqrt(-2 * std::log(1 - uniform(2 * i))), angle = 6.2831853071795865 * uniform(2 * i + 1);
+      xy[2 * i] = radius * std::cos(angle);
+      xy[2 * i + 1] = radius * std::sin(angle);
+    }
+  } else if (kind == "lattice") {
+    const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(n))));
+    for (std::size_t i = 0; i < n; ++i) {
+      xy[2 * i] = static_cast<double>(i % columns);
+      xy[2 * i + 1] = static_cast<double>(i / columns);
+    }
+  } else {
+    usage();
+  }
+  return xy;
+}
+
+int chosen_device(Backend backend, const std::string& name) {
+  int any = -1;
+  for (const DeviceInfo& info : list_devices()) {
+    if (info.backend != backend || info.index < 0 || !info.usable) continue;
+    if (name.empty() ? info.gpu : std::to_string(info.index) == name || info.name.find(name) != std::string::npos)
+      return info.index;
+    if (any < 0 && name.empty()) any = info.index;
+  }
+  return any;
+}
+
+double now() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+int run(const Arguments& a) {
+  const std::vector<double> xy = make_points(a.kind, a.points);
+  Options options;
+  options.backend = backend_from_string(a.backend);
+  options.order = a.order;
+  options.work_group_size = a.block;
+  std::unique_ptr<test::DeviceMemory> memory;
+  const void* points = xy.data();
+  if (options.backend != Backend::host) {
+    const int device = chosen_device(options.backend, a.device);
+    if (device < 0) {
+      std::fprintf(stderr, "cadt-check-gpu: no usable %s device\n", a.backend.c_str());
+      return 2;
+    }
+    memory = options.backend == Backend::cuda ? test::cuda_memory(device) : test::opencl_memory(device);
+    points = memory->upload(std::span<const double>(xy));
+    options.queue = memory->queue();
+  }
+  Triangulator triangulator(options);
+  DeviceTriangulation mesh;
+  std::vector<double> times;
+  std::map<std::string, std::vector<double>> phases;
+  std::vector<std::string> names;
+  for (int r = 0; r < a.warm_up + a.runs; ++r) {
+    mesh = DeviceTriangulation();
+    const double begin = now();
+    mesh = triangulator.triangulate(DevicePoints{.x = points, .size = a.points});
+    if (memory) memory->wait();
+    if (r < a.warm_up) continue;
+    times.push_back(now() - begin);
+    names.clear();
+    for (const auto& [name, ms] : mesh.statistics().milliseconds) {
+      phases[name].push_back(ms);
+      names.push_back(name);
+    }
+  }
+  std::sort(times.begin(), times.end());
+  const Statistics& s = mesh.statistics();
+  std::printf("%s %zu %s '%s': %.3f ms (%.3f to %.3f), %zu triangles, %.1f bytes a point", a.kind.c_str(), a.points,
+              a.backend.c_str(), s.device.c_str(), times[times.size() / 2], times.front(), times.back(),
+              mesh.number_of_triangles(), static_cast<double>(s.bytes_device_peak) / static_cast<double>(a.points));
+  if (a.phases) {
+    std::printf("\n   ");
+    for (const std::string& name : names) {
+      auto& list = phases[name];
+      std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
+      std::printf(" %s %.2f", name.c_str(), list[list.size() / 2]);
+    }
+    const auto n = static_cast<double>(a.points);
+    std::printf(" | a point: steps %.2f flips %.2f lost claims %.3f | deferred %llu + %llu, launches %llu, sweeps %llu, "
+                "repairs %llu",
+                static_cast<double>(s.walk_steps) / n, static_cast<double>(s.flips) / n,
+                static_cast<double>(s.lost_claims) / n, static_cast<unsigned long long>(s.deferred_points),
+                static_cast<unsigned long long>(s.deferred_edges), static_cast<unsigned long long>(s.launches),
+                static_cast<unsigned long long>(s.closing_sweeps), static_cast<unsigned long long>(s.closing_repairs));
+  }
+  bool ok = true;
+  if (a.hash || a.verify == "host") {
+    const Triangulation copy = mesh.download();
+    if (a.hash) std::printf(", %s", copy.hash().to_string().c_str());
+    if (a.verify == "host") {
+      const VerifyReport report = verify(xy, copy);
+      ok = report.ok;
+      std::printf(", %s", report.summary().c_str());
+    }
+  }
+  std::printf("\n");
+  return ok ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  try {
+    return run(parse(count, values));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "cadt-check-gpu: %s\n", error.what());
+    return 1;
+  }
+}

@@ -10,7 +10,7 @@ namespace opencl {
 
 std::unique_ptr<Device> open_device(const OpenRequest& request) {
   std::shared_ptr<SharedContext> shared = shared_context(request);
-  auto device = std::make_unique<ClDevice>(shared, request.work_group_size);
+  auto device = std::make_unique<ClDevice>(shared, request);
   // Once per context: what is tested is the compiled program and the device, which all its users share.
   shared->once([&] {
     static_cast<void>(shared->program(false, request.from_cache));
@@ -45,8 +45,12 @@ class OpenClEntry final : public BackendEntry {
     opencl::OpenRequest request;
     request.index = index;
     request.work_group_size = options.work_group_size;
+    request.queue = options.queue;
+    request.allocator = options.allocator;
     return opencl::open_device(request);
   }
+
+  [[nodiscard]] int device_of(void* queue) override { return opencl::device_of(queue); }
 };
 
 }  // namespace

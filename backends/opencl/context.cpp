@@ -3,6 +3,7 @@
 
 #include <cadt/errors.hpp>
 #include <map>
+#include <memory>
 #include <tuple>
 
 #include "backends/opencl/kernel_source.hpp"
@@ -45,6 +46,24 @@ std::shared_ptr<Slot> slot_of(const OpenRequest& request) {
   return slot;
 }
 
+/// Triangulators on queues of the same context share its programs.
+std::shared_ptr<SharedContext> context_of_queue(const OpenRequest& request) {
+  static auto* const mutex = new std::mutex;
+  static auto* const contexts = new std::map<std::pair<cl_context, int>, std::weak_ptr<SharedContext>>;
+  cl_context context = nullptr;
+  try {
+    context = cl::CommandQueue(static_cast<cl_command_queue>(*request.queue), true).getInfo<CL_QUEUE_CONTEXT>()();
+  } catch (const cl::Error& error) {
+    throw BackendUnavailable("opencl", std::string("Options::queue is no cl_command_queue: ") + code_name(error.err()));
+  }
+  const std::lock_guard lock(*mutex);
+  // The pointer names this context as long as the entry lives, for the entry holds the context.
+  auto& entry = (*contexts)[{context, request.index}];
+  std::shared_ptr<SharedContext> shared = entry.lock();
+  if (shared == nullptr || shared->lost) entry = shared = std::make_shared<SharedContext>(request);
+  return shared;
+}
+
 }  // namespace
 
 SharedContext::SharedContext(const OpenRequest& request)
@@ -52,7 +71,12 @@ SharedContext::SharedContext(const OpenRequest& request)
       source_(request.source.empty() ? kernel_source() : request.source),
       extra_options_(request.extra_options) {
   try {
-    context_ = cl::Context(device_.device);
+    if (request.queue) {
+      context_ =
+          cl::CommandQueue(static_cast<cl_command_queue>(*request.queue), true).getInfo<CL_QUEUE_CONTEXT>();
+    } else {
+      context_ = cl::Context(device_.device);
+    }
   } catch (const cl::Error& error) {
     throw_device_error(error, device_.info.name);
   }
@@ -70,11 +94,26 @@ cl::Program SharedContext::program(bool wide, bool* from_cache) {
 }
 
 std::shared_ptr<SharedContext> shared_context(const OpenRequest& request) {
+  if (request.queue) return context_of_queue(request);
   if (request.fresh) return std::make_shared<SharedContext>(request);
   const std::shared_ptr<Slot> slot = slot_of(request);
   const std::lock_guard lock(slot->mutex);
   if (slot->context == nullptr || slot->context->lost) slot->context = std::make_shared<SharedContext>(request);
   return slot->context;
+}
+
+int device_of(void* queue) {
+  if (queue == nullptr) return -1;
+  try {
+    const cl::Device wanted =
+        cl::CommandQueue(static_cast<cl_command_queue>(queue), true).getInfo<CL_QUEUE_DEVICE>();
+    const Found found = find_devices();
+    for (std::size_t i = 0; i < found.devices.size(); ++i)
+      if (found.devices[i].device() == wanted()) return static_cast<int>(i);
+  } catch (const cl::Error&) {
+    // no queue at all
+  }
+  return -1;
 }
 
 void lose_context(const OpenRequest& request) { shared_context(request)->lost = true; }

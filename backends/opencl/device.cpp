@@ -29,6 +29,23 @@ class ClBuffer final : public Buffer {
   std::size_t counted_;
 };
 
+class AllocatorBuffer final : public Buffer {
+ public:
+  AllocatorBuffer(std::shared_ptr<DeviceAllocator> allocator, cl::CommandQueue queue, void* memory, std::size_t bytes)
+      : Buffer(bytes),
+        allocator_(std::move(allocator)),
+        queue_(std::move(queue)),
+        memory_(static_cast<cl_mem>(memory), true) {}
+  ~AllocatorBuffer() override { allocator_->deallocate(memory_(), bytes(), queue_()); }
+
+  [[nodiscard]] const cl::Buffer& memory() const noexcept { return memory_; }
+
+ private:
+  std::shared_ptr<DeviceAllocator> allocator_;
+  cl::CommandQueue queue_;
+  cl::Buffer memory_;
+};
+
 // The caller may free its memory as soon as this is gone, so the device must have finished with it.
 class AliasBuffer final : public Buffer {
  public:
@@ -46,6 +63,7 @@ class AliasBuffer final : public Buffer {
 const cl::Buffer& memory_of(const Buffer& buffer) {
   if (const auto* own = dynamic_cast<const ClBuffer*>(&buffer)) return own->memory();
   if (const auto* alias = dynamic_cast<const AliasBuffer*>(&buffer)) return alias->memory();
+  if (const auto* from = dynamic_cast<const AllocatorBuffer*>(&buffer)) return from->memory();
   throw InternalError("a buffer of another back end was passed to an OpenCL device");
 }
 
@@ -81,10 +99,16 @@ std::size_t left_bytes(const SharedContext& shared) {
 
 }  // namespace
 
-ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, unsigned work_group_size)
-    : shared_(std::move(shared)), work_group_size_(work_group_size) {
+ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& request)
+    : shared_(std::move(shared)), work_group_size_(request.work_group_size), allocator_(request.allocator) {
   try {
-    queue_ = cl::CommandQueue(shared_->context(), shared_->device().device);
+    if (request.queue) {
+      queue_ = cl::CommandQueue(static_cast<cl_command_queue>(*request.queue), true);
+      if ((queue_.getInfo<CL_QUEUE_PROPERTIES>() & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
+        throw BackendUnavailable("opencl", "the queue executes out of order; cadt needs one that keeps the order");
+    } else {
+      queue_ = cl::CommandQueue(shared_->context(), shared_->device().device);
+    }
   } catch (const cl::Error& error) {
     throw_device_error(error, info().name);
   }
@@ -123,6 +147,12 @@ LaunchShape ClDevice::shape() const noexcept {
 
 std::unique_ptr<Buffer> ClDevice::allocate(std::size_t bytes) {
   check_not_lost();
+  if (allocator_ != nullptr) {
+    const std::size_t size = std::max<std::size_t>(bytes, 8);
+    void* memory = allocator_->allocate(size, queue_());
+    if (memory == nullptr) throw_out_of_memory(info(), "the caller's allocator gave none; it has", bytes, 0);
+    return std::make_unique<AllocatorBuffer>(allocator_, queue_, memory, size);
+  }
   if (bytes > info().largest_buffer_bytes)
     throw_out_of_memory(info(), "its largest buffer is", bytes, info().largest_buffer_bytes);
   if (bytes > left_bytes(*shared_)) throw_out_of_memory(info(), "it has left", bytes, left_bytes(*shared_));
@@ -166,7 +196,10 @@ std::unique_ptr<Buffer> ClDevice::wrap(void* memory, std::size_t bytes) {
 
 void* ClDevice::handle(const Buffer& buffer) const noexcept { return memory_of(buffer)(); }
 
-std::size_t ClDevice::free_bytes() { return left_bytes(*shared_); }
+std::size_t ClDevice::free_bytes() {
+  if (allocator_ != nullptr) return std::numeric_limits<std::size_t>::max();
+  return left_bytes(*shared_);
+}
 
 void ClDevice::write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
   check_range("a write", to, offset, bytes);

@@ -13,7 +13,7 @@ namespace cadt::opencl {
 /// A queue of its own, kernels of its own: cl_kernel keeps its arguments and is not for two threads at once.
 class ClDevice final : public Device {
  public:
-  ClDevice(std::shared_ptr<SharedContext> shared, unsigned work_group_size);
+  ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& request);
   ~ClDevice() override;
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return shared_->device().info; }
@@ -23,6 +23,7 @@ class ClDevice final : public Device {
   [[nodiscard]] std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) override;
   [[nodiscard]] std::unique_ptr<Buffer> wrap(void* memory, std::size_t bytes) override;
   [[nodiscard]] void* handle(const Buffer& buffer) const noexcept override;
+  [[nodiscard]] bool keeps_memory() const noexcept override { return allocator_ != nullptr; }
   [[nodiscard]] std::size_t free_bytes() override;
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
@@ -46,6 +47,7 @@ class ClDevice final : public Device {
   std::shared_ptr<SharedContext> shared_;
   cl::CommandQueue queue_;
   unsigned work_group_size_;
+  std::shared_ptr<DeviceAllocator> allocator_;
   std::array<std::array<std::optional<ReadyKernel>, kernel_count>, 2> kernels_;
 };
 

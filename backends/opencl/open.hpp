@@ -2,7 +2,10 @@
 // Opening a device, with what only tests may ask for. Free of OpenCL headers.
 #pragma once
 
+#include <cadt/triangulator.hpp>
+
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/host/device.hpp"
@@ -12,6 +15,8 @@ namespace cadt::opencl {
 struct OpenRequest {
   int index = 0;
   unsigned work_group_size = 0;  ///< 0: the default of the device
+  std::optional<void*> queue;    ///< the caller's cl_command_queue: its device and context instead of `index`
+  std::shared_ptr<DeviceAllocator> allocator;
 
   // The rest is for tests.
   std::string extra_options;   ///< appended to the compiler's options
@@ -21,6 +26,9 @@ struct OpenRequest {
   bool fresh = false;          ///< a context of its own instead of the process's
   bool* from_cache = nullptr;  ///< set if a program is built: whether it came from disk
 };
+
+/// Index of the device of a cl_command_queue among all devices, -1 if it is none of them.
+[[nodiscard]] int device_of(void* queue);
 
 /// \throws BackendUnavailable, KernelBuildError, OutOfMemory, DeviceError
 [[nodiscard]] std::unique_ptr<Device> open_device(const OpenRequest& request);

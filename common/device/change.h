@@ -152,9 +152,10 @@ CADT_FN cadt_u32 cadt_is_illegal(const cadt_mesh* m, cadt_u32 p, cadt_u32 a, cad
 
 /* Tests an edge and flips it if it is illegal. `apex` is the vertex expected opposite of it, or CADT_NONE for any.
  * \post CADT_EDGE_FLIPPED: the edge's record keeps its link, `*partner` is the record and edge on the other side of the
- * quadrilateral that is now opposite the same apex. */
+ * quadrilateral that is now opposite the same apex; `*all_sides`: the apex is another one than expected, so all four
+ * sides of the quadrilateral may be illegal. */
 CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 apex, cadt_u32* partner,
-                                    cadt_tally* tally) {
+                                    cadt_u32* all_sides, cadt_tally* tally) {
   const cadt_u32 t = CADT_LINK_RECORD(link), k = CADT_LINK_EDGE(link), k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
   const cadt_snapshot s = cadt_look_from(m, t, k);
   const cadt_u32 p = s.v0;
@@ -162,10 +163,10 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
     tally->count[CADT_COUNT_LOST_CLAIMS]++;
     return CADT_EDGE_CONFLICT;
   }
-  if (apex != CADT_NONE && p != apex) { /* flipped away by another thread, who owes the check now */
-    tally->count[CADT_COUNT_STALE_EDGES]++;
-    return CADT_EDGE_LEGAL;
-  }
+  /* A vertex of the triangle was flipped away by another thread, which did not know that this edge had yet to be
+   * checked: the check is owed all the same. */
+  *all_sides = p != apex ? 1u : 0u;
+  if (p != apex && apex != CADT_NONE) tally->count[CADT_COUNT_STALE_EDGES]++;
   const cadt_u32 across = s.n0, n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
   const cadt_u32 j1 = CADT_NEXT(j), j2 = CADT_PREV(j);
   const cadt_snapshot u = cadt_look_from(m, n, j);

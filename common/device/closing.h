@@ -19,7 +19,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
   cadt_tally tally;
   cadt_tally_clear(&tally);
 #if CADT_CONTIGUOUS
-  cadt_u32 work[CADT_WORKLIST];
+  cadt_worklist work;
 #endif
   cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u;
   CADT_FOR(r, count, grain) {
@@ -37,8 +37,9 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
                                  u.v0, &tally)) {
         ++illegal;
 #if CADT_CONTIGUOUS
-        work[0] = CADT_LINK(t, k);
-        cadt_legalize(&mesh, CADT_NONE, work, 1u, &deferred, &tally);
+        cadt_worklist_begin(&work, CADT_NONE);
+        cadt_worklist_add(&work, CADT_LINK(t, k));
+        cadt_legalize(&mesh, &work, &deferred, &tally);
         break; /* the snapshot is out of date; the next pass sees the rest */
 #else
         /* to cadt_legalize_edges: without the repairs this kernel is small and runs at full occupancy */

@@ -159,4 +159,16 @@ CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
        i += (cadt_items - 1u) / (grain) + 1u)
 #endif
 
+/* As CADT_FOR_SPREAD, but it goes on to the next element only when the work with this one is `done`. So lanes of a warp
+ * that need fewer rounds than others do not wait for them. */
+#if CADT_CONTIGUOUS
+#define CADT_FOR_REFILL(i, count, grain, done)                                                                \
+  for (cadt_u32 i = cadt_begin_of(cadt_item, (grain), (count)), i##_end = cadt_min_u32(i + (grain), (count)); \
+       i < i##_end; i += (done) ? 1u : 0u)
+#else
+#define CADT_FOR_REFILL(i, count, grain, done)                                        \
+  for (cadt_u32 i = cadt_item % (grain) ? (count) : cadt_item / (grain); i < (count); \
+       i += (done) ? (cadt_items - 1u) / (grain) + 1u : 0u)
+#endif
+
 #endif

@@ -72,8 +72,8 @@ CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, c
 CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL const double* rows, CADT_GLOBAL const cadt_u32* row_words, cadt_u32 count,
             cadt_u32 chunk, cadt_u32 parts, CADT_GLOBAL double* box, CADT_GLOBAL cadt_u32* words) {
   if (cadt_item >= parts) return;
-  CADT_GLOBAL double* b = box + cadt_item * CADT_BOUNDS_DOUBLES;
-  CADT_GLOBAL cadt_u32* w = words + cadt_item * CADT_BOUNDS_WORDS;
+  double b[CADT_BOUNDS_DOUBLES];
+  cadt_u32 w[CADT_BOUNDS_WORDS];
   cadt_u32 any = 0u;
   CADT_FOR_PART(i, cadt_item, parts, count, chunk) {
     CADT_GLOBAL const double* r = rows + i * CADT_BOUNDS_DOUBLES;
@@ -87,6 +87,9 @@ CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL const double* rows, CADT_GLOBAL const
     w[2] = !any || v[2] < w[2] ? v[2] : w[2];
     any = 1u;
   }
+  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_BOUNDS_DOUBLES); ++i)
+    box[cadt_item * CADT_BOUNDS_DOUBLES + i] = b[i];
+  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_BOUNDS_WORDS); ++i) words[cadt_item * CADT_BOUNDS_WORDS + i] = w[i];
 }
 
 /* Every second bit. */

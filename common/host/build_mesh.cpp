@@ -18,6 +18,7 @@ using namespace device_constants;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time to a cancel
 constexpr std::size_t points_per_launch_strided = std::size_t{1} << 25;
+constexpr std::uint32_t least_retried = 2048;  // fewer points go with the next launch
 constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
 constexpr int hopeless_launches = 64;
 constexpr int most_sweeps = 2000;
@@ -40,13 +41,19 @@ class Builder {
     }
     records_ = run_.memory.allocate_zeros(2 * n_ * sizeof(cadt_record));  // lock word 0: not in use yet
     hints_ = run_.memory.allocate(n_ * word);
-    for (Allocation& list : left_points_) list = run_.memory.allocate((n_ / 2 + 1) * word);
+    const std::size_t most = n_ / 2 + n_ / 32 + 64;  // points of a launch: a level and what others left over
+    for (Allocation& list : left_points_) list = run_.memory.allocate(most * word);
+    if (!run_.device.shape().contiguous) {
+      stars_ = run_.memory.allocate(3 * most * word);
+      star_count_ = launch_.zeros(1);
+    }
     for (Allocation& list : left_edges_) list = run_.memory.allocate(edge_capacity_ * word);
     left_counts_ = launch_.zeros(3);
     run_kernel(KernelId::cadt_start_mesh, 1);
     run_.end_phase("start");
 
     for (unsigned level = levels(); level-- > 0;) insert_level(level);
+    finish_leftovers();
     run_.end_phase("insert");
     certify();
     run_.end_phase("certify");
@@ -101,50 +108,86 @@ class Builder {
     // blocks of 2^(level+1) positions that have two halves
     const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
     const std::size_t most = points_per_launch();
-    const Allocation no_list;
     for (std::size_t begin = 0; begin < count; begin += most) {
       const std::size_t size = std::min(most, count - begin);
-      const Cut c = launch_.cut_spread(size);
-      run_kernel(KernelId::cadt_insert, c.items, no_list, static_cast<std::uint32_t>(begin),
-                 static_cast<std::uint32_t>(size), static_cast<std::uint32_t>(n_), level, c.grain, left_points_[0],
-                 left_edges_[0], left_counts_, edge_capacity_, counters_);
-      finish_leftovers();
+      launch_insert(begin, size, level, false);
       inserted_ += size;
+      // Few points left over go with the next launch; many would make its walks long.
+      take_leftovers();
+      if (left_.points > size / 16 || left_.edges > size / 16) finish_leftovers();
       run_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
     }
+  }
+
+  /// What the last launches left over is on the second lists from here on; the first ones are empty.
+  void take_leftovers() {
+    std::array<std::uint32_t, 3> left{};  // points, edges, work-items that changed the mesh
+    run_.device.read(*left_counts_, 0, left.data(), sizeof left);
+    left_ = {left[0], std::min(left[1], edge_capacity_), left[2]};
+    if (left[0] == 0 && left[1] == 0 && left[2] == 0) return;
+    run_.device.fill(*left_counts_, 0, sizeof left, 0);
+    std::swap(left_points_[0], left_points_[1]);
+    std::swap(left_edges_[0], left_edges_[1]);
+  }
+
+  /// The points left over and `size` blocks; the edges left over. `alone`: one work-item for each of both.
+  void launch_insert(std::size_t begin, std::size_t size, unsigned level, bool alone) {
+    const auto count = static_cast<std::uint32_t>(left_.points + size);
+    if (left_.edges != 0) {
+      const Cut c = alone ? Cut{1, left_.edges} : launch_.cut_refill(left_.edges);
+      run_kernel(KernelId::cadt_legalize_edges, c.items, left_edges_[1], left_.edges, c.grain, left_edges_[0],
+                 left_counts_, edge_capacity_, counters_);
+    }
+    if (count == 0) return;
+    const auto blocks_from = static_cast<std::uint32_t>(begin);
+    if (run_.device.shape().contiguous) {
+      const Cut c = alone ? Cut{1, count} : launch_.cut(count);
+      run_kernel(KernelId::cadt_insert, c.items, left_points_[1], left_.points, blocks_from, count,
+                 static_cast<std::uint32_t>(n_), level, c.grain, left_points_[0], left_edges_[0], left_counts_, edge_capacity_, counters_);
+    } else {
+      split_and_legalize(blocks_from, count, level, alone);
+    }
+  }
+
+  /// On GPUs: walk, split, and legalise the stars. While many points meet a conflict, they are tried again at once.
+  void split_and_legalize(std::uint32_t begin, std::uint32_t count, unsigned level, bool alone) {
+    run_.device.fill(*star_count_, 0, word, 0);
+    const auto n = static_cast<std::uint32_t>(n_);
+    for (std::uint32_t listed = left_.points, few = count / 16;; begin = 0) {
+      const Cut walks = alone ? Cut{1, count} : launch_.cut_refill(count);
+      const Cut splits = alone ? walks : launch_.cut_spread(count);
+      run_kernel(KernelId::cadt_walk_points, walks.items, left_points_[1], listed, begin, count, n, level, walks.grain,
+                 counters_);
+      run_kernel(KernelId::cadt_split_points, splits.items, left_points_[1], listed, begin, count, n, level,
+                 splits.grain, stars_, star_count_, left_points_[0], left_counts_, counters_);
+      listed = count = launch_.read_word(left_counts_, 0);
+      if (alone || count <= std::max(few, least_retried)) break;
+      run_.device.fill(*left_counts_, 0, word, 0);
+      std::swap(left_points_[0], left_points_[1]);
+    }
+    const std::uint32_t stars = launch_.read_word(star_count_, 0);
+    if (stars == 0) return;
+    const Cut c = alone ? Cut{1, stars} : launch_.cut_refill(stars);
+    run_kernel(KernelId::cadt_legalize_stars, c.items, stars_, stars, c.grain, left_edges_[0], left_counts_,
+               edge_capacity_, counters_);
   }
 
   /// Launches for what could not get its locks, until nothing is left.
   void finish_leftovers() {
     int launches = 0, stalled = 0;
     std::size_t last = 0;
-    for (;;) {
-      std::array<std::uint32_t, 3> left{};  // points, edges, work-items that changed the mesh
-      run_.device.read(*left_counts_, 0, left.data(), sizeof left);
-      if (left[0] == 0 && left[1] == 0) return;
-      run_.device.fill(*left_counts_, 0, sizeof left, 0);
-      left[1] = std::min(left[1], edge_capacity_);
-      const std::size_t now = std::size_t{left[0]} + left[1];
-      stalled = launches != 0 && now >= last && left[2] == 0 ? stalled + 1 : 0;
+    while (left_.points != 0 || left_.edges != 0) {
+      const std::size_t now = std::size_t{left_.points} + left_.edges;
+      stalled = launches != 0 && now >= last && left_.changes == 0 ? stalled + 1 : 0;
       last = now;
       if (++launches > hopeless_launches && stalled > hopeless_launches) {
-        throw InternalError("no progress: " + std::to_string(left[0]) + " points and " + std::to_string(left[1]) +
+        throw InternalError("no progress: " + std::to_string(left_.points) + " points and " +
+                            std::to_string(left_.edges) +
                             " edges cannot get their locks; please report this with the input");
       }
-      std::swap(left_points_[0], left_points_[1]);
-      std::swap(left_edges_[0], left_edges_[1]);
       // One work-item alone meets no conflict, so it always gets on.
-      const bool alone = stalled >= stalled_launches;
-      if (left[0] != 0) {
-        const Cut c = alone ? Cut{1, left[0]} : launch_.cut_spread(left[0]);
-        run_kernel(KernelId::cadt_insert, c.items, left_points_[1], 0U, left[0], 0U, 0U, c.grain, left_points_[0],
-                   left_edges_[0], left_counts_, edge_capacity_, counters_);
-      }
-      if (left[1] != 0) {
-        const Cut c = alone ? Cut{1, left[1]} : launch_.cut_spread(left[1]);
-        run_kernel(KernelId::cadt_legalize_edges, c.items, left_edges_[1], left[1], c.grain, left_edges_[0],
-                   left_counts_, edge_capacity_, counters_);
-      }
+      launch_insert(0, 0, 0, stalled >= stalled_launches);
+      take_leftovers();
     }
   }
 
@@ -167,6 +210,7 @@ class Builder {
         examined += sums[0];
         illegal += sums[1];
         unsettled += sums[2];
+        take_leftovers();
         finish_leftovers();
         run_.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(slots));
       }
@@ -185,14 +229,20 @@ class Builder {
                         " sweeps; please report this with the input");
   }
 
+  struct Leftovers {
+    std::uint32_t points = 0, edges = 0;
+    std::uint32_t changes = 0;  ///< work-items that changed the mesh in the launches that left them
+  };
+
   Run& run_;
   Launcher& launch_;
   const SpatialOrder& order_;
   std::size_t n_;
   std::uint32_t edge_capacity_;
   Counters counters_;
-  Allocation records_, hints_, left_counts_;
+  Allocation records_, hints_, left_counts_, stars_, star_count_;
   std::array<Allocation, 2> left_points_, left_edges_;  // [0] is written by the next launch, [1] read by it
+  Leftovers left_;                                      // on the lists [1]
   std::uint32_t first_ = 0, second_ = 0, third_ = 0;
   cadt_point center_{};
   std::size_t inserted_ = 0;

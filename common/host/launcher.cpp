@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/host/launcher.hpp"
+#include <cstdlib>
 
 namespace cadt {
 namespace {
@@ -30,10 +31,18 @@ Cut Launcher::cut_spread(std::size_t count) const noexcept {
   return {static_cast<std::uint32_t>(count * lanes), lanes};
 }
 
+Cut Launcher::cut_refill(std::size_t count) const noexcept {
+  const LaunchShape shape = device_.shape();
+  Cut result = cut_spread(count);
+  static const unsigned f = std::getenv("RF") ? (unsigned)std::atoi(std::getenv("RF")) : 2;
+  if (!shape.contiguous) result.items = std::min(result.items, f * shape.resident);
+  return result;
+}
+
 Cut Launcher::parts(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (shape.contiguous) return chunks(count);
-  return {static_cast<std::uint32_t>(std::min<std::size_t>(count, shape.parallelism)), 1};
+  return {static_cast<std::uint32_t>(std::min<std::size_t>(count, shape.parallelism / 8)), 1};
 }
 
 Cut Launcher::chunks(std::size_t count) const noexcept {

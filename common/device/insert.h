@@ -185,7 +185,7 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_worklist work;
-  CADT_FOR(u, count, grain) {
+  CADT_FOR_SPREAD(u, count, grain) {
     const cadt_candidate c = cadt_candidate_of(u, list, listed, begin, n, level);
     if (c.vertex == first || c.vertex == second || c.vertex == third) continue;
     cadt_worklist_begin(&work, c.vertex);

@@ -11,7 +11,7 @@
   X(cadt_import_floats)    /* order.h */                                        \
   X(cadt_bounds)           /* order.h: box, exponents, first bad coordinate */  \
   X(cadt_merge_bounds)     /* order.h */                                        \
-  X(cadt_sort_keys)        /* order.h: Morton keys */                           \
+  X(cadt_sort_keys)        /* order.h: Hilbert keys */                          \
   X(cadt_radix_count)      /* radix.h */                                        \
   X(cadt_radix_scatter)    /* radix.h */                                        \
   X(cadt_scan_sums)        /* scan.h */                                         \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Spatial order of the points: box, Morton keys, gathering, short runs of equal keys, duplicates.
+ * Spatial order of the points: box, Hilbert keys, gathering, short runs of equal keys, duplicates.
  */
 #ifndef CADT_DEVICE_ORDER_H
 #define CADT_DEVICE_ORDER_H
@@ -101,8 +101,25 @@ CADT_FN cadt_u32 cadt_spread_bits(cadt_u32 x) {
   return (x | (x << 1)) & 0x55555555u;
 }
 
-/* Morton keys of square cells. The longer axis has more bits; its surplus goes on top of the interleaved ones, so a
- * long box is a row of square Morton blocks. Coordinates are halved first: the width of the box may exceed the largest
+/* Place of a cell along Hilbert's curve through 2^bits x 2^bits cells, from x = y = 0 to the other end of the x axis.
+ * Unlike Morton's order it never jumps: neighbours on the curve are neighbours in the plane, so no walk from one to the
+ * other is long. (One long walk in a launch on a GPU is waited for by everything.) */
+CADT_FN cadt_u32 cadt_hilbert(cadt_u32 x, cadt_u32 y, cadt_u32 bits) {
+  cadt_u32 place = 0u;
+  for (cadt_u32 b = bits; b-- > 0u;) {
+    const cadt_u32 qx = (x >> b) & 1u, qy = (y >> b) & 1u;
+    place = (place << 2) | ((3u * qx) ^ qy);
+    if (!qy) { /* the two lower quadrants are transposed, the last one is also turned round */
+      const cadt_u32 turn = 0u - qx, t = x ^ turn;
+      x = y ^ turn;
+      y = t;
+    }
+  }
+  return place;
+}
+
+/* Hilbert keys of square cells. The longer axis has more bits; its surplus goes on top, so a long box is a row of
+ * squares, each entered where the one before is left. Coordinates are halved first: the width of the box may exceed the largest
  * double. */
 CADT_KERNEL(cadt_sort_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL cadt_u32* keys, cadt_u32 count,
             cadt_u32 grain, double half_min_x, double half_min_y, double scale, cadt_u32 bits_x, cadt_u32 bits_y) {
@@ -115,9 +132,9 @@ CADT_KERNEL(cadt_sort_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL ca
     fx = fx < limit_x ? fx : limit_x;
     fy = fy < limit_y ? fy : limit_y;
     const cadt_u32 x = CADT_CAST(cadt_u32, fx), y = CADT_CAST(cadt_u32, fy);
-    const cadt_u32 above = bits_x > bits_y ? x >> common : y >> common;
-    const cadt_u32 low = cadt_spread_bits(x & mask) | (cadt_spread_bits(y & mask) << 1);
-    keys[i] = common == 16u ? low : ((above << (2u * common)) | low);
+    const cadt_u32 along = bits_x >= bits_y ? x : y, across = bits_x >= bits_y ? y : x;
+    const cadt_u32 low = cadt_hilbert(along & mask, across & mask, common);
+    keys[i] = common == 16u ? low : (((along >> common) << (2u * common)) | low);
   }
 }
 

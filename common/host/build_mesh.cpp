@@ -2,6 +2,7 @@
 #include "common/host/build_mesh.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <array>
 #include <bit>
 #include <string>
@@ -114,7 +115,7 @@ class Builder {
       inserted_ += size;
       // Few points left over go with the next launch; many would make its walks long.
       take_leftovers();
-      if (left_.points > size / 16 || left_.edges > size / 16) finish_leftovers();
+      if (left_.points > size / 8 + 32 || left_.edges > size / 8 + 32) finish_leftovers();
       run_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
     }
   }
@@ -140,34 +141,34 @@ class Builder {
     }
     if (count == 0) return;
     const auto blocks_from = static_cast<std::uint32_t>(begin);
-    if (run_.device.shape().contiguous) {
-      const Cut c = alone ? Cut{1, count} : launch_.cut(count);
+    static const unsigned f = std::getenv("FU") ? (unsigned)std::atoi(std::getenv("FU")) : 1;
+    if (run_.device.shape().contiguous || alone || count < f * run_.device.shape().resident) {
+      const Cut c = alone ? Cut{1, count} : launch_.cut_spread(count);
       run_kernel(KernelId::cadt_insert, c.items, left_points_[1], left_.points, blocks_from, count,
                  static_cast<std::uint32_t>(n_), level, c.grain, left_points_[0], left_edges_[0], left_counts_, edge_capacity_, counters_);
     } else {
-      split_and_legalize(blocks_from, count, level, alone);
+      split_and_legalize(blocks_from, count, level);
     }
   }
 
   /// On GPUs: walk, split, and legalise the stars. While many points meet a conflict, they are tried again at once.
-  void split_and_legalize(std::uint32_t begin, std::uint32_t count, unsigned level, bool alone) {
+  void split_and_legalize(std::uint32_t begin, std::uint32_t count, unsigned level) {
     run_.device.fill(*star_count_, 0, word, 0);
     const auto n = static_cast<std::uint32_t>(n_);
     for (std::uint32_t listed = left_.points, few = count / 16;; begin = 0) {
-      const Cut walks = alone ? Cut{1, count} : launch_.cut_refill(count);
-      const Cut splits = alone ? walks : launch_.cut_spread(count);
+      const Cut walks = launch_.cut_refill(count), splits = launch_.cut_spread(count);
       run_kernel(KernelId::cadt_walk_points, walks.items, left_points_[1], listed, begin, count, n, level, walks.grain,
                  counters_);
       run_kernel(KernelId::cadt_split_points, splits.items, left_points_[1], listed, begin, count, n, level,
                  splits.grain, stars_, star_count_, left_points_[0], left_counts_, counters_);
       listed = count = launch_.read_word(left_counts_, 0);
-      if (alone || count <= std::max(few, least_retried)) break;
+      if (count <= std::max(few, least_retried)) break;
       run_.device.fill(*left_counts_, 0, word, 0);
       std::swap(left_points_[0], left_points_[1]);
     }
     const std::uint32_t stars = launch_.read_word(star_count_, 0);
     if (stars == 0) return;
-    const Cut c = alone ? Cut{1, stars} : launch_.cut_refill(stars);
+    const Cut c = launch_.cut_refill(stars);
     run_kernel(KernelId::cadt_legalize_stars, c.items, stars_, stars, c.grain, left_edges_[0], left_counts_,
                edge_capacity_, counters_);
   }

@@ -33,10 +33,10 @@ Cut Launcher::cut_spread(std::size_t count) const noexcept {
 
 Cut Launcher::cut_refill(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
-  Cut result = cut_spread(count);
-  static const unsigned f = std::getenv("RF") ? (unsigned)std::atoi(std::getenv("RF")) : 2;
-  if (!shape.contiguous) result.items = std::min(result.items, f * shape.resident);
-  return result;
+  if (shape.contiguous) return cut(count);
+  static const unsigned f = std::getenv("RF") ? (unsigned)std::atoi(std::getenv("RF")) : 16;
+  const std::size_t grain = std::clamp<std::size_t>(count / shape.resident, 1, f);
+  return {static_cast<std::uint32_t>(divide_up(count, 32 * grain) * 32), static_cast<std::uint32_t>(grain)};
 }
 
 Cut Launcher::parts(std::size_t count) const noexcept {

@@ -37,7 +37,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
                                  u.v0, &tally)) {
         ++illegal;
 #if CADT_CONTIGUOUS
-        cadt_worklist_begin(&work, CADT_NONE);
+        cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
         cadt_worklist_add(&work, CADT_LINK(t, k));
         cadt_legalize(&mesh, &work, &deferred, &tally);
         break; /* the snapshot is out of date; the next pass sees the rest */

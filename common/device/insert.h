@@ -12,12 +12,18 @@ enum {
   CADT_WORKLIST = 64,       /* edges a work-item can have pending, a power of two */
   CADT_WORKLIST_STACK = 48, /* above, the oldest is next: a long row of flips leaves a legal edge behind at each one */
   CADT_INSERT_TRIES = 12,   /* walks for one point in one launch */
-  CADT_SPLIT_STEPS = 4,     /* steps of a walk whose beginning is the end of an earlier one */
   CADT_EDGE_TRIES = 24,     /* conflicts in the worklist of one point */
+  /* Flips for one point or edge in one launch: a launch ends in bounded time, and a long row of flips, which a lane of a
+   * GPU alone does slowly, is shared with others as soon as it forks. */
 #if CADT_CONTIGUOUS
-  CADT_FLIP_LIMIT = 1 << 14 /* flips for one point in one launch, so a launch ends in bounded time */
+  CADT_FLIP_LIMIT = 1 << 14,
+  CADT_EDGE_FLIP_LIMIT = CADT_FLIP_LIMIT
 #else
-  CADT_FLIP_LIMIT = 64 /* a long row of flips goes on with many work-items, and one of a GPU alone is slow */
+  CADT_FLIP_LIMIT = 64,
+#ifndef FL
+#define FL 16
+#endif
+  CADT_EDGE_FLIP_LIMIT = FL
 #endif
 };
 
@@ -54,66 +60,67 @@ CADT_FN void cadt_report_changes(const cadt_tally* tally, CADT_GLOBAL cadt_u32* 
  * Algorithm 3); CADT_NONE: any edge, all four sides are checked. */
 typedef struct {
   cadt_u32 link[CADT_WORKLIST];
-  cadt_u32 first, size, apex, conflicts, flips;
+  cadt_u32 first, size, apex;
+  cadt_u32 flips; /* flips left, and one; after them what becomes illegal is left for the next launch */
 } cadt_worklist;
 
-CADT_FN void cadt_worklist_begin(cadt_worklist* work, cadt_u32 apex) {
-  work->first = work->size = work->conflicts = work->flips = 0u;
+CADT_FN void cadt_worklist_begin(cadt_worklist* work, cadt_u32 apex, cadt_u32 flips) {
+  work->first = work->size = 0u;
   work->apex = apex;
+  work->flips = flips;
 }
 
 CADT_FN void cadt_worklist_add(cadt_worklist* work, cadt_u32 link) {
   work->link[(work->first + work->size++) & (CADT_WORKLIST - 1u)] = link;
 }
 
-/* Legalises one edge of the worklist; what becomes illegal by a flip joins it. \pre it is not empty */
-CADT_FN void cadt_legalize_next(const cadt_mesh* m, cadt_worklist* work, const cadt_deferred* deferred,
-                                cadt_tally* tally) {
+/* Legalises the edges of the worklist and whatever becomes illegal by the flips. */
+CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_worklist* work, const cadt_deferred* deferred, cadt_tally* tally) {
   const cadt_u32 mask = CADT_WORKLIST - 1u;
-  const cadt_u32 oldest = work->size > CADT_CAST(cadt_u32, CADT_WORKLIST_STACK) ? 1u : 0u;
-  const cadt_u32 link = work->link[(oldest ? work->first : work->first + work->size - 1u) & mask];
-  work->size--;
-  work->first += oldest;
-  cadt_u32 partner = 0u, all_sides = 0u;
-  const cadt_u32 outcome = cadt_legalize_edge(m, link, work->apex, &partner, &all_sides, tally);
-  if (outcome == CADT_EDGE_FLIPPED) {
-    const cadt_u32 room =
-        ++work->flips < CADT_CAST(cadt_u32, CADT_FLIP_LIMIT) ? CADT_CAST(cadt_u32, CADT_WORKLIST) - 1u : 0u;
-    const cadt_u32 count = all_sides ? 4u : 2u;
-    for (cadt_u32 e = 0u; e < count; ++e) {
-      cadt_u32 side = e == 0u ? link : partner;
-      if (e == 2u) side = CADT_LINK(CADT_LINK_RECORD(link), CADT_PREV(CADT_LINK_EDGE(link)));
-      if (e == 3u) side = CADT_LINK(CADT_LINK_RECORD(partner), CADT_NEXT(CADT_LINK_EDGE(partner)));
-      if (work->size < room)
-        cadt_worklist_add(work, side);
-      else
-        cadt_defer_edge(deferred, side, tally);
+  cadt_u32 conflicts = 0u, partner = 0u, all_sides = 0u;
+  while (work->size > 0u) {
+    const cadt_u32 oldest = work->size > CADT_CAST(cadt_u32, CADT_WORKLIST_STACK) ? 1u : 0u;
+    const cadt_u32 link = work->link[(oldest ? work->first : work->first + work->size - 1u) & mask];
+    work->size--;
+    work->first += oldest;
+    const cadt_u32 outcome = cadt_legalize_edge(m, link, work->apex, &partner, &all_sides, tally);
+    if (outcome == CADT_EDGE_LEGAL) continue;
+    if (outcome == CADT_EDGE_CONFLICT) {
+      if (++conflicts > CADT_CAST(cadt_u32, CADT_EDGE_TRIES)) {
+        cadt_defer_edge(deferred, link, tally);
+      } else { /* to the other end: the other edges first, meanwhile the owner gets on */
+        if (!oldest) work->first--;
+        work->link[(oldest ? work->first + work->size : work->first) & mask] = link;
+        work->size++;
+      }
+      continue;
     }
-  } else if (outcome == CADT_EDGE_CONFLICT) {
-    if (++work->conflicts > CADT_CAST(cadt_u32, CADT_EDGE_TRIES)) {
-      cadt_defer_edge(deferred, link, tally);
-    } else { /* to the other end: the other edges first, meanwhile the owner gets on */
-      if (!oldest) work->first--;
-      work->link[(oldest ? work->first + work->size : work->first) & mask] = link;
-      work->size++;
+    cadt_u32 sides[4];
+    sides[0] = link;
+    sides[1] = partner;
+    sides[2] = CADT_LINK(CADT_LINK_RECORD(link), CADT_PREV(CADT_LINK_EDGE(link)));
+    sides[3] = CADT_LINK(CADT_LINK_RECORD(partner), CADT_NEXT(CADT_LINK_EDGE(partner)));
+    if (work->flips) work->flips--;
+    const cadt_u32 room = work->flips ? CADT_CAST(cadt_u32, CADT_WORKLIST) - 1u : 0u;
+    for (cadt_u32 e = 0u; e < (all_sides ? 4u : 2u); ++e) {
+      if (work->size < room)
+        cadt_worklist_add(work, sides[e]);
+      else
+        cadt_defer_edge(deferred, sides[e], tally);
     }
   }
 }
 
-CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_worklist* work, const cadt_deferred* deferred, cadt_tally* tally) {
-  while (work->size > 0u) cadt_legalize_next(m, work, deferred, tally);
-}
-
 /* Locates and inserts vertex i. Returns the number of `edges` opposite of it, 0 if the point must be tried by a later
- * launch: after `tries` conflicts, or walks of more than `steps`. */
-CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hint, cadt_u32 tries, cadt_u32 steps,
-                                    cadt_u32* edges, cadt_tally* tally) {
+ * launch. */
+CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hint, cadt_u32* edges,
+                                    cadt_tally* tally) {
   const cadt_point p = m->points[i];
   cadt_place place;
   place.record = hint;
-  for (cadt_u32 attempt = 0u; attempt < tries; ++attempt) {
+  for (cadt_u32 attempt = 0u; attempt < CADT_CAST(cadt_u32, CADT_INSERT_TRIES); ++attempt) {
     if (attempt) tally->count[CADT_COUNT_INSERT_RETRIES]++;
-    cadt_locate(m, p, place.record, steps, &place, tally);
+    cadt_locate(m, p, place.record, &place, tally);
     if (place.kind == CADT_LOST) continue;
     const cadt_u32 size = place.kind == CADT_IN_FACE ? cadt_split_face(m, i, &place, edges, tally)
                                                      : cadt_split_edge(m, i, &place, edges, tally);
@@ -154,28 +161,9 @@ CADT_KERNEL(cadt_root, cadt_u32 n, cadt_u32 levels, CADT_GLOBAL cadt_u32* positi
   if (cadt_item == 0u) *position = cadt_representative(levels, 0u, n);
 }
 
-/* The u-th point of a launch and where its walk begins: first `listed` points that earlier launches left over, then
- * one level: of each block of 2^(level+1) positions, from block `begin` on, the half that does not stand for it, with a
- * walk from the point that does, which is in the mesh and near in sorted order. */
-typedef struct {
-  cadt_u32 vertex, near;
-} cadt_candidate;
-
-CADT_FN cadt_candidate cadt_candidate_of(cadt_u32 u, CADT_GLOBAL const cadt_u32* list, cadt_u32 listed, cadt_u32 begin,
-                                         cadt_u32 n, cadt_u32 level) {
-  cadt_candidate c;
-  if (u < listed) {
-    c.vertex = c.near = list[u];
-  } else {
-    const cadt_u32 block = begin + (u - listed);
-    const cadt_u32 standing = 2u * block + cadt_right_half(level + 1u, block);
-    c.vertex = cadt_representative(level, standing ^ 1u, n);
-    c.near = cadt_representative(level, standing, n);
-  }
-  return c;
-}
-
-/* Inserts and legalises `count` points, one after another. */
+/* Inserts `count` points: first `listed` ones that earlier launches left over, with their own hints; then one level: of
+ * each block of 2^(level+1) positions, from block `begin` on, the half that does not stand for it, with a walk from the
+ * point that does, which is in the mesh and near in sorted order. */
 CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 listed, cadt_u32 begin,
             cadt_u32 count, cadt_u32 n, cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* left_points,
             CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
@@ -186,101 +174,22 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
   cadt_tally_clear(&tally);
   cadt_worklist work;
   CADT_FOR_SPREAD(u, count, grain) {
-    const cadt_candidate c = cadt_candidate_of(u, list, listed, begin, n, level);
-    if (c.vertex == first || c.vertex == second || c.vertex == third) continue;
-    cadt_worklist_begin(&work, c.vertex);
-    work.size = cadt_insert_vertex(&mesh, c.vertex, cadt_load_relaxed(mesh.hints + c.near), CADT_INSERT_TRIES,
-                                   CADT_WALK_LIMIT, work.link, &tally);
+    cadt_u32 i, near;
+    if (u < listed) {
+      i = near = list[u];
+    } else {
+      const cadt_u32 block = begin + (u - listed);
+      const cadt_u32 standing = 2u * block + cadt_right_half(level + 1u, block);
+      i = cadt_representative(level, standing ^ 1u, n);
+      near = cadt_representative(level, standing, n);
+    }
+    if (i == first || i == second || i == third) continue;
+    cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
+    work.size = cadt_insert_vertex(&mesh, i, cadt_load_relaxed(mesh.hints + near), work.link, &tally);
     if (work.size)
       cadt_legalize(&mesh, &work, &deferred, &tally);
     else
-      left_points[cadt_add_relaxed(left_counts, 1u)] = c.vertex;
-  }
-  cadt_report_changes(&tally, left_counts);
-  cadt_tally_flush(&tally, counters, cadt_item);
-}
-
-/* For GPUs the same in three steps. Lanes of a warp that go separate ways wait for each other; so first all walk, then
- * all split, then all flip, and a lane that has finished a walk or a star goes on with the next one.
- *
- * Walks to the places of the points and leaves them as their hints. */
-CADT_KERNEL(cadt_walk_points, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 listed, cadt_u32 begin,
-            cadt_u32 count, cadt_u32 n, cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* counters) {
-  CADT_MESH_VIEW(mesh);
-  cadt_tally tally;
-  cadt_tally_clear(&tally);
-  cadt_walk walk;
-  cadt_place place;
-  cadt_u32 vertex = CADT_NONE; /* of the walk that is on its way */
-  CADT_FOR_REFILL(u, count, grain, vertex == CADT_NONE) {
-    if (vertex == CADT_NONE) {
-      const cadt_candidate c = cadt_candidate_of(u, list, listed, begin, n, level);
-      vertex = c.vertex;
-      cadt_walk_begin(&walk, mesh.points[vertex], cadt_load_relaxed(mesh.hints + c.near));
-    }
-    if (cadt_walk_step(&mesh, &walk, &place, &tally) && walk.steps < CADT_CAST(cadt_u32, CADT_WALK_LIMIT)) continue;
-    if (vertex != first && vertex != second && vertex != third) cadt_store_relaxed(mesh.hints + vertex, walk.record);
-    tally.count[CADT_COUNT_WALK_STEPS] += walk.steps;
-    vertex = CADT_NONE;
-  }
-  cadt_tally_flush(&tally, counters, cadt_item);
-}
-
-/* Splits at the points' hints, one try each. stars: three words for each point inserted: the vertex, the first edge
- * opposite of it and, of a split of an edge, the third, else CADT_NONE; the others are in records 2 vertex and
- * 2 vertex + 1. `star_count` counts them. */
-CADT_KERNEL(cadt_split_points, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 listed, cadt_u32 begin,
-            cadt_u32 count, cadt_u32 n, cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* stars,
-            CADT_GLOBAL cadt_u32* star_count, CADT_GLOBAL cadt_u32* left_points, CADT_GLOBAL cadt_u32* left_counts,
-            CADT_GLOBAL cadt_u32* counters) {
-  CADT_MESH_VIEW(mesh);
-  cadt_tally tally;
-  cadt_tally_clear(&tally);
-  CADT_FOR_SPREAD(u, count, grain) {
-    const cadt_u32 vertex = cadt_candidate_of(u, list, listed, begin, n, level).vertex;
-    if (vertex == first || vertex == second || vertex == third) continue;
-    cadt_u32 edges[4] = {0u, 0u, 0u, 0u};
-    const cadt_u32 size =
-        cadt_insert_vertex(&mesh, vertex, cadt_load_relaxed(mesh.hints + vertex), 1u, CADT_SPLIT_STEPS, edges, &tally);
-    if (size) {
-      const cadt_u32 at = 3u * cadt_add_relaxed(star_count, 1u);
-      stars[at] = vertex;
-      stars[at + 1u] = edges[0];
-      stars[at + 2u] = size == 4u ? edges[2] : CADT_NONE;
-    } else {
-      left_points[cadt_add_relaxed(left_counts, 1u)] = vertex;
-    }
-  }
-  cadt_report_changes(&tally, left_counts);
-  cadt_tally_flush(&tally, counters, cadt_item);
-}
-
-/* Legalises stars of cadt_split_points. */
-CADT_KERNEL(cadt_legalize_stars, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* stars, cadt_u32 count,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts,
-            cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counters) {
-  CADT_MESH_VIEW(mesh);
-  const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
-  cadt_tally tally;
-  cadt_tally_clear(&tally);
-  cadt_worklist work;
-  cadt_worklist_begin(&work, CADT_NONE);
-  CADT_FOR_REFILL(u, count, grain, work.size == 0u) {
-    if (work.size == 0u) {
-      const cadt_u32 vertex = stars[3u * u], link = stars[3u * u + 1u], third_link = stars[3u * u + 2u];
-      cadt_worklist_begin(&work, vertex);
-      const cadt_u32 k = CADT_LINK_EDGE(link);
-      cadt_worklist_add(&work, link);
-      if (third_link == CADT_NONE) {
-        cadt_worklist_add(&work, CADT_LINK(2u * vertex, CADT_NEXT(k)));
-        cadt_worklist_add(&work, CADT_LINK(2u * vertex + 1u, CADT_PREV(k)));
-      } else {
-        cadt_worklist_add(&work, CADT_LINK(2u * vertex, CADT_PREV(k)));
-        cadt_worklist_add(&work, third_link);
-        cadt_worklist_add(&work, CADT_LINK(2u * vertex + 1u, CADT_PREV(CADT_LINK_EDGE(third_link))));
-      }
-    }
-    cadt_legalize_next(&mesh, &work, &deferred, &tally);
+      left_points[cadt_add_relaxed(left_counts, 1u)] = i;
   }
   cadt_report_changes(&tally, left_counts);
   cadt_tally_flush(&tally, counters, cadt_item);
@@ -295,13 +204,10 @@ CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u3
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_worklist work;
-  cadt_worklist_begin(&work, CADT_NONE);
-  CADT_FOR_REFILL(e, count, grain, work.size == 0u) {
-    if (work.size == 0u) {
-      cadt_worklist_begin(&work, CADT_NONE);
-      cadt_worklist_add(&work, list[e]);
-    }
-    cadt_legalize_next(&mesh, &work, &deferred, &tally);
+  CADT_FOR_SPREAD(e, count, grain) {
+    cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
+    cadt_worklist_add(&work, list[e]);
+    cadt_legalize(&mesh, &work, &deferred, &tally);
   }
   cadt_report_changes(&tally, left_counts);
   cadt_tally_flush(&tally, counters, cadt_item);

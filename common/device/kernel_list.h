@@ -34,9 +34,6 @@
   X(cadt_start_mesh)       /* start.h */                                        \
   X(cadt_root)             /* insert.h */                                       \
   X(cadt_insert)           /* insert.h: locate, claim, split, legalise */       \
-  X(cadt_walk_points)      /* insert.h: locate */                               \
-  X(cadt_split_points)     /* insert.h: claim, split */                         \
-  X(cadt_legalize_stars)   /* insert.h: claim, flip */                          \
   X(cadt_legalize_edges)   /* insert.h: deferred edges */                       \
   X(cadt_closing_pass)     /* closing.h */                                      \
   X(cadt_count_triangles)  /* emit.h */                                         \

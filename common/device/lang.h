@@ -159,19 +159,4 @@ CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
        i += (cadt_items - 1u) / (grain) + 1u)
 #endif
 
-/* For work in rounds of which some elements need more than others: a lane goes on to its next element as soon as it is
- * `done` with one and does not wait for the others of its warp. A warp takes 32 * `grain` neighbouring elements, so that
- * its lanes stay near each other. */
-#if CADT_CONTIGUOUS
-#define CADT_FOR_REFILL(i, count, grain, done)                                                                \
-  for (cadt_u32 i = cadt_begin_of(cadt_item, (grain), (count)), i##_end = cadt_min_u32(i + (grain), (count)); \
-       i < i##_end; i += (done) ? 1u : 0u)
-#else
-#define CADT_WARP cadt_min_u32(cadt_items, 32u)
-#define CADT_FOR_REFILL(i, count, grain, done)                                                                       \
-  for (cadt_u32 i##_begin = cadt_begin_of(cadt_item / CADT_WARP, CADT_WARP * (grain), (count)),                      \
-                i##_end = cadt_min_u32(i##_begin + CADT_WARP * (grain), (count)), i = i##_begin + cadt_item % CADT_WARP; \
-       i < i##_end; i += (done) ? CADT_WARP : 0u)
-#endif
-
 #endif

@@ -70,82 +70,51 @@ CADT_FN cadt_u32 cadt_leave_face(const cadt_mesh* m, const cadt_snapshot* s, cad
   return 3u;
 }
 
-/* A walk on its way. */
-typedef struct {
-  cadt_point goal;
-  cadt_u32 record, steps;
-  cadt_u32 entry; /* edge of the record known to have the goal on its inner side, or 3 */
-  cadt_u32 noise;
-} cadt_walk;
-
-CADT_FN void cadt_walk_begin(cadt_walk* walk, cadt_point goal, cadt_u32 start) {
-  walk->goal = goal;
-  walk->record = start;
-  walk->steps = 0u;
-  walk->entry = 3u;
-  walk->noise = start * 2654435761u + 12345u;
-}
-
-/* One step. Returns 1 if the walk is to go on; otherwise place->kind tells where the goal is, CADT_LOST if what was
- * read is nonsense. place->record is where to go on in any case. */
-CADT_FN cadt_u32 cadt_walk_step(const cadt_mesh* m, cadt_walk* walk, cadt_place* place, cadt_tally* tally) {
-  const cadt_u32 t = walk->record;
-  const cadt_snapshot s = cadt_look(m, t);
-  const cadt_u32 ghost = s.v0 == CADT_GHOST || s.v1 == CADT_GHOST || s.v2 == CADT_GHOST ? 1u : 0u;
-  cadt_u32 leave, on = 0u;
+/* Walks from record `start` to the place of p. place->kind is CADT_LOST when the walk was too long or read nonsense;
+ * place->record is where to go on in any case. */
+CADT_FN void cadt_locate(const cadt_mesh* m, cadt_point p, cadt_u32 start, cadt_place* place, cadt_tally* tally) {
+  cadt_u32 t = start, entry = 3u, steps = 0u, noise = start * 2654435761u + 12345u;
   place->kind = CADT_LOST;
   place->edge = 0u;
+  for (; steps < CADT_CAST(cadt_u32, CADT_WALK_LIMIT); ++steps) {
+    cadt_snapshot s = cadt_look(m, t);
+    cadt_u32 leave, on = 0u;
+    if (s.lock == 0u) break;
+    if (s.v0 == CADT_GHOST || s.v1 == CADT_GHOST || s.v2 == CADT_GHOST) {
+      cadt_u32 g = s.v0 == CADT_GHOST ? 0u : (s.v1 == CADT_GHOST ? 1u : 2u);
+      if (CADT_VERTEX(s, CADT_NEXT(g)) == CADT_GHOST || CADT_VERTEX(s, CADT_PREV(g)) == CADT_GHOST)
+        break; /* torn read */
+      leave = cadt_leave_ghost(m, &s, g, p, tally);
+    } else {
+      cadt_u32 reverse = 0u;
+      if (steps > CADT_CAST(cadt_u32, CADT_WALK_STRAIGHT)) {
+        noise = noise * 1664525u + 1013904223u;
+        reverse = noise >> 31;
+      }
+      leave = cadt_leave_face(m, &s, entry, reverse, p, &on, tally);
+      /* The entry edge was tested from the other side, but either side may have changed since: test it before it
+       * counts. */
+      if (leave == 3u && entry != 3u) {
+        const cadt_i32 o = cadt_orientation(m->points[CADT_VERTEX(s, CADT_NEXT(entry))],
+                                            m->points[CADT_VERTEX(s, CADT_PREV(entry))], p, tally);
+        if (o < 0) leave = entry;
+        if (o == 0) on |= 1u << entry;
+      }
+    }
+    if (leave == 3u) {
+      if (on & (on - 1u)) break; /* on two lines: a torn read, since p is no vertex */
+      place->kind = on ? CADT_ON_EDGE : CADT_IN_FACE;
+      place->edge = on >> 1; /* bits 1, 2, 4 to edges 0, 1, 2 */
+      place->at = s;
+      break;
+    }
+    const cadt_u32 link = CADT_NEIGHBOR(s, leave);
+    t = CADT_LINK_RECORD(link);
+    /* a ghost is entered and left by wedges: nothing is known of the edges between them */
+    entry = s.v0 == CADT_GHOST || s.v1 == CADT_GHOST || s.v2 == CADT_GHOST ? 3u : CADT_LINK_EDGE(link);
+  }
   place->record = t;
-  if (s.lock == 0u) return 0u;
-  if (ghost) {
-    const cadt_u32 g = s.v0 == CADT_GHOST ? 0u : (s.v1 == CADT_GHOST ? 1u : 2u);
-    if (CADT_VERTEX(s, CADT_NEXT(g)) == CADT_GHOST || CADT_VERTEX(s, CADT_PREV(g)) == CADT_GHOST)
-      return 0u; /* torn read */
-    leave = cadt_leave_ghost(m, &s, g, walk->goal, tally);
-  } else {
-    cadt_u32 reverse = 0u;
-    const cadt_u32 entry = walk->entry;
-    if (walk->steps > CADT_CAST(cadt_u32, CADT_WALK_STRAIGHT)) {
-      walk->noise = walk->noise * 1664525u + 1013904223u;
-      reverse = walk->noise >> 31;
-    }
-    leave = cadt_leave_face(m, &s, entry, reverse, walk->goal, &on, tally);
-    /* The entry edge was tested from the other side, but either side may have changed since: test it before it
-     * counts. */
-    if (leave == 3u && entry != 3u) {
-      const cadt_i32 o = cadt_orientation(m->points[CADT_VERTEX(s, CADT_NEXT(entry))],
-                                          m->points[CADT_VERTEX(s, CADT_PREV(entry))], walk->goal, tally);
-      if (o < 0) leave = entry;
-      if (o == 0) on |= 1u << entry;
-    }
-  }
-  if (leave == 3u) {
-    if (on & (on - 1u)) return 0u; /* on two lines: a torn read, since the goal is no vertex */
-    place->kind = on ? CADT_ON_EDGE : CADT_IN_FACE;
-    place->edge = on >> 1; /* bits 1, 2, 4 to edges 0, 1, 2 */
-    place->at = s;
-    return 0u;
-  }
-  const cadt_u32 link = CADT_NEIGHBOR(s, leave);
-  walk->record = CADT_LINK_RECORD(link);
-  /* a ghost is entered and left by wedges: nothing is known of the edges between them */
-  walk->entry = ghost ? 3u : CADT_LINK_EDGE(link);
-  walk->steps++;
-  return 1u;
-}
-
-/* Walks from record `start` to the place of p, at most `limit` steps. place->kind is CADT_LOST when the walk was too
- * long or read nonsense; place->record is where to go on in any case. */
-CADT_FN void cadt_locate(const cadt_mesh* m, cadt_point p, cadt_u32 start, cadt_u32 limit, cadt_place* place,
-                         cadt_tally* tally) {
-  cadt_walk walk;
-  cadt_walk_begin(&walk, p, start);
-  while (cadt_walk_step(m, &walk, place, tally)) {
-    if (walk.steps < limit) continue;
-    place->record = walk.record;
-    break; /* the kind is CADT_LOST */
-  }
-  tally->count[CADT_COUNT_WALK_STEPS] += walk.steps;
+  tally->count[CADT_COUNT_WALK_STEPS] += steps;
 }
 
 #endif

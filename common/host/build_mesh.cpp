@@ -2,7 +2,6 @@
 #include "common/host/build_mesh.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <array>
 #include <bit>
 #include <string>
@@ -19,7 +18,6 @@ using namespace device_constants;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time to a cancel
 constexpr std::size_t points_per_launch_strided = std::size_t{1} << 25;
-constexpr std::uint32_t least_retried = 2048;  // fewer points go with the next launch
 constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
 constexpr int hopeless_launches = 64;
 constexpr int most_sweeps = 2000;
@@ -44,10 +42,6 @@ class Builder {
     hints_ = run_.memory.allocate(n_ * word);
     const std::size_t most = n_ / 2 + n_ / 32 + 64;  // points of a launch: a level and what others left over
     for (Allocation& list : left_points_) list = run_.memory.allocate(most * word);
-    if (!run_.device.shape().contiguous) {
-      stars_ = run_.memory.allocate(3 * most * word);
-      star_count_ = launch_.zeros(1);
-    }
     for (Allocation& list : left_edges_) list = run_.memory.allocate(edge_capacity_ * word);
     left_counts_ = launch_.zeros(3);
     run_kernel(KernelId::cadt_start_mesh, 1);
@@ -135,41 +129,14 @@ class Builder {
   void launch_insert(std::size_t begin, std::size_t size, unsigned level, bool alone) {
     const auto count = static_cast<std::uint32_t>(left_.points + size);
     if (left_.edges != 0) {
-      const Cut c = alone ? Cut{1, left_.edges} : launch_.cut_refill(left_.edges);
+      const Cut c = alone ? Cut{1, left_.edges} : launch_.cut_spread(left_.edges);
       run_kernel(KernelId::cadt_legalize_edges, c.items, left_edges_[1], left_.edges, c.grain, left_edges_[0],
                  left_counts_, edge_capacity_, counters_);
     }
     if (count == 0) return;
-    const auto blocks_from = static_cast<std::uint32_t>(begin);
-    static const unsigned f = std::getenv("FU") ? (unsigned)std::atoi(std::getenv("FU")) : 1;
-    if (run_.device.shape().contiguous || alone || count < f * run_.device.shape().resident) {
-      const Cut c = alone ? Cut{1, count} : launch_.cut_spread(count);
-      run_kernel(KernelId::cadt_insert, c.items, left_points_[1], left_.points, blocks_from, count,
-                 static_cast<std::uint32_t>(n_), level, c.grain, left_points_[0], left_edges_[0], left_counts_, edge_capacity_, counters_);
-    } else {
-      split_and_legalize(blocks_from, count, level);
-    }
-  }
-
-  /// On GPUs: walk, split, and legalise the stars. While many points meet a conflict, they are tried again at once.
-  void split_and_legalize(std::uint32_t begin, std::uint32_t count, unsigned level) {
-    run_.device.fill(*star_count_, 0, word, 0);
-    const auto n = static_cast<std::uint32_t>(n_);
-    for (std::uint32_t listed = left_.points, few = count / 16;; begin = 0) {
-      const Cut walks = launch_.cut_refill(count), splits = launch_.cut_spread(count);
-      run_kernel(KernelId::cadt_walk_points, walks.items, left_points_[1], listed, begin, count, n, level, walks.grain,
-                 counters_);
-      run_kernel(KernelId::cadt_split_points, splits.items, left_points_[1], listed, begin, count, n, level,
-                 splits.grain, stars_, star_count_, left_points_[0], left_counts_, counters_);
-      listed = count = launch_.read_word(left_counts_, 0);
-      if (count <= std::max(few, least_retried)) break;
-      run_.device.fill(*left_counts_, 0, word, 0);
-      std::swap(left_points_[0], left_points_[1]);
-    }
-    const std::uint32_t stars = launch_.read_word(star_count_, 0);
-    if (stars == 0) return;
-    const Cut c = launch_.cut_refill(stars);
-    run_kernel(KernelId::cadt_legalize_stars, c.items, stars_, stars, c.grain, left_edges_[0], left_counts_,
+    const Cut c = alone ? Cut{1, count} : launch_.cut_spread(count);
+    run_kernel(KernelId::cadt_insert, c.items, left_points_[1], left_.points, static_cast<std::uint32_t>(begin), count,
+               static_cast<std::uint32_t>(n_), level, c.grain, left_points_[0], left_edges_[0], left_counts_,
                edge_capacity_, counters_);
   }
 
@@ -241,7 +208,7 @@ class Builder {
   std::size_t n_;
   std::uint32_t edge_capacity_;
   Counters counters_;
-  Allocation records_, hints_, left_counts_, stars_, star_count_;
+  Allocation records_, hints_, left_counts_;
   std::array<Allocation, 2> left_points_, left_edges_;  // [0] is written by the next launch, [1] read by it
   Leftovers left_;                                      // on the lists [1]
   std::uint32_t first_ = 0, second_ = 0, third_ = 0;

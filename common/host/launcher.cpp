@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/host/launcher.hpp"
-#include <cstdlib>
 
 namespace cadt {
 namespace {
@@ -29,14 +28,6 @@ Cut Launcher::cut_spread(std::size_t count) const noexcept {
   std::uint32_t lanes = 1;  // an element; a warp has 32
   while (lanes < 32 && count * lanes * 2 <= shape.resident) lanes *= 2;
   return {static_cast<std::uint32_t>(count * lanes), lanes};
-}
-
-Cut Launcher::cut_refill(std::size_t count) const noexcept {
-  const LaunchShape shape = device_.shape();
-  if (shape.contiguous) return cut(count);
-  static const unsigned f = std::getenv("RF") ? (unsigned)std::atoi(std::getenv("RF")) : 16;
-  const std::size_t grain = std::clamp<std::size_t>(count / shape.resident, 1, f);
-  return {static_cast<std::uint32_t>(divide_up(count, 32 * grain) * 32), static_cast<std::uint32_t>(grain)};
 }
 
 Cut Launcher::parts(std::size_t count) const noexcept {

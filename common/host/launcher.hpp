@@ -31,8 +31,6 @@ class Launcher {
   [[nodiscard]] Cut cut(std::size_t count) const noexcept;
   /// For kernels with CADT_FOR_SPREAD: few elements get several work-items each on GPUs.
   [[nodiscard]] Cut cut_spread(std::size_t count) const noexcept;
-  /// For kernels with CADT_FOR_REFILL: on GPUs not more work-items than run at the same time.
-  [[nodiscard]] Cut cut_refill(std::size_t count) const noexcept;
   /// For kernels with one row of partial results a work-item (CADT_FOR_PART).
   [[nodiscard]] Cut parts(std::size_t count) const noexcept;
   /// For kernels whose work-items need a contiguous chunk on every device.

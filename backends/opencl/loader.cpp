@@ -48,9 +48,9 @@ const std::string& loader_failure() { return library().failure; }
 
 namespace loader {
 
-void* find(const char* name) noexcept { return library().handle == nullptr ? nullptr : dlsym(library().handle, name); }
+void* find(const char* name) { return library().handle == nullptr ? nullptr : dlsym(library().handle, name); }
 
-cl_int missing_code() noexcept { return library().handle == nullptr ? no_platform : CL_INVALID_OPERATION; }
+cl_int missing_code() { return library().handle == nullptr ? no_platform : CL_INVALID_OPERATION; }
 
 }  // namespace loader
 }  // namespace cadt::opencl

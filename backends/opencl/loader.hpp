@@ -3,7 +3,7 @@
 // starts on a machine without the loader, and no name clashes with a libOpenCL that its user links.
 //
 // To be included before CL/opencl.hpp, whose calls of the functions named below then arrive here. If the bindings begin
-// to call another one, it is an undefined symbol: add its line. tests/opencl/check_symbols.py finds that out.
+// to call another one, it is an undefined symbol: add its line. tests/architecture/check_linking.py finds that out.
 #pragma once
 
 #define CL_TARGET_OPENCL_VERSION 300
@@ -23,10 +23,10 @@ namespace cadt::opencl {
 namespace loader {
 
 /// The function of the loader; null without a loader, and if it is older than the function.
-[[nodiscard]] void* find(const char* name) noexcept;
+[[nodiscard]] void* find(const char* name);
 
 /// What a function returns that could not be called.
-[[nodiscard]] cl_int missing_code() noexcept;
+[[nodiscard]] cl_int missing_code();
 
 /// A text as an argument of a template.
 template <std::size_t Size>
@@ -38,10 +38,11 @@ struct Name {
 };
 
 // `declared` is named for its type only, never used: a use would ask the linker for it.
-template <auto* declared, Name name, class = decltype(declared)>
-struct Entry;
-template <auto* declared, Name name, class Result, class... Parameters>
-struct Entry<declared, name, Result(CL_API_CALL*)(Parameters...)> {
+template <auto* declared, class = decltype(declared)>
+struct Function;
+template <auto* declared, class Result, class... Parameters>
+struct Function<declared, Result(CL_API_CALL*)(Parameters...)> {
+  template <Name name>
   static Result CL_API_CALL call(Parameters... values) {
     static const auto found = reinterpret_cast<Result(CL_API_CALL*)(Parameters...)>(find(name.text));
     if (found != nullptr) return found(values...);
@@ -55,14 +56,12 @@ struct Entry<declared, name, Result(CL_API_CALL*)(Parameters...)> {
   }
 };
 
-template <auto* declared, Name name>
-inline constexpr auto& function = Entry<declared, name>::call;
-
 }  // namespace loader
 }  // namespace cadt::opencl
 
-// Within its own expansion a macro's name is left alone, so it still means OpenCL's declaration.
-#define CADT_CL(name) cadt::opencl::loader::function<::name, #name>
+// Within its own expansion a macro's name is left alone, so it still means OpenCL's declaration. There is no comma in
+// it, which would divide an argument of another macro.
+#define CADT_CL(name) cadt::opencl::loader::Function<::name>::call<#name>
 
 // What the bindings call for us, without optimisation, where nothing is left out.
 #define clBuildProgram CADT_CL(clBuildProgram)

@@ -2,6 +2,8 @@
 // The Khronos C++ bindings, configured once, and what their exceptions become.
 #pragma once
 
+#include "backends/opencl/loader.hpp"
+
 #define CL_HPP_TARGET_OPENCL_VERSION 300
 // We need 1.2, but with that minimum the bindings of 2022 and 2023 (v2023.02.06 among them) lack a function of their
 // own.

@@ -78,6 +78,8 @@ std::vector<cl::Device> devices_of(const cl::Platform& platform, std::string& wh
 
 Found find_devices() {
   Found result;
+  result.none = loader_failure();
+  if (!result.none.empty()) return result;
   std::vector<cl::Platform> platforms;
   try {
     cl::Platform::get(&platforms);

@@ -49,7 +49,8 @@ std::vector<GoldenSet> family_sets() {
   std::vector<GoldenSet> sets;
   for (const FamilyGroup& group : family_groups()) {
     for (Family& family : group.families())
-      sets.push_back({"family/" + std::string(group.name) + "/" + family.name, std::move(family.make), false, false, 0, {}});
+      sets.push_back(
+          {"family/" + std::string(group.name) + "/" + family.name, std::move(family.make), false, false, 0, {}});
   }
   return sets;
 }
@@ -83,8 +84,7 @@ std::vector<GoldenSet> catalogue_sets() {
   std::vector<GoldenSet> sets;
   for (const ExactCounts& counts : expected_of_catalogue()) {
     const std::string id = counts.name;
-    sets.push_back(
-        {"catalogue/" + id, [id] { return catalogue_set(id); }, counts.not_finite, true, counts.points, {}});
+    sets.push_back({"catalogue/" + id, [id] { return catalogue_set(id); }, counts.not_finite, true, counts.points, {}});
   }
   return sets;
 }

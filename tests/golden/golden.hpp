@@ -16,10 +16,10 @@ namespace cadt::test {
 struct GoldenSet {
   std::string name;  ///< "family/tiny/none", "generated/...", "hard/FILE", "catalogue/ID", "real/NAME"
   std::function<Points()> make;
-  bool refused = false;         ///< has NaN or infinity
-  bool from_script = false;     ///< written by a script that calls the sin and cos of the C library
-  std::size_t points = 0;       ///< as an index says; 0 if none does
-  std::filesystem::path file;   ///< empty if it is computed
+  bool refused = false;        ///< has NaN or infinity
+  bool from_script = false;    ///< written by a script that calls the sin and cos of the C library
+  std::size_t points = 0;      ///< as an index says; 0 if none does
+  std::filesystem::path file;  ///< empty if it is computed
 };
 
 /// The families, and larger sets of the tests that are not in a family.

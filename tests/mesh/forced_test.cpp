@@ -28,7 +28,7 @@ TEST_P(Forced, BackendIsTheOneThatRan) {
   const auto ran = std::ranges::find_if(devices, [&](const DeviceInfo& device) {
     return device.backend == GetParam().backend && device.usable && device.name == s.device && is_chosen(device);
   });
-  ASSERT_NE(ran, devices.end()) << "'" << s.device << "' is no usable device of " << s.backend;
+  ASSERT_TRUE(ran != devices.end()) << "'" << s.device << "' is no usable device of " << s.backend;
   if (GetParam().backend == Backend::cuda) {
     EXPECT_TRUE(ran->gpu);
   }

@@ -42,6 +42,9 @@ struct GoldenRow {
   [[nodiscard]] std::string line() const;
 };
 
+/// Is its set one of the data folder?
+[[nodiscard]] bool is_row_of_file(const GoldenRow& row);
+
 /// Throws std::runtime_error for a line that is not one.
 [[nodiscard]] std::vector<GoldenRow> read_table(const std::filesystem::path& file);
 

@@ -7,12 +7,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace cadt::test {
 namespace {
@@ -127,10 +128,6 @@ INSTANTIATE_TEST_SUITE_P(host, Golden, testing::ValuesIn(every_host()), case_nam
 INSTANTIATE_TEST_SUITE_P(opencl, Golden, testing::ValuesIn(every_opencl()), case_name);
 INSTANTIATE_TEST_SUITE_P(cuda, Golden, testing::ValuesIn(every_cuda()), case_name);
 
-bool is_file_row(const std::string& name) {
-  return name.starts_with("hard/") || name.starts_with("catalogue/") || name.starts_with("real/");
-}
-
 void expect_same_names(const std::vector<GoldenSet>& sets, bool of_files) {
   std::set<std::string> names;
   for (const GoldenSet& set : sets) {
@@ -138,7 +135,7 @@ void expect_same_names(const std::vector<GoldenSet>& sets, bool of_files) {
     EXPECT_TRUE(table().contains(set.name)) << set.name << " has no row: write the table anew with cadt-make-golden";
   }
   for (const auto& [name, row] : table()) {
-    if (is_file_row(name) == of_files) {
+    if (is_row_of_file(row) == of_files) {
       EXPECT_TRUE(names.contains(name)) << "nothing uses the row " << name;
     }
   }

@@ -206,8 +206,7 @@ TEST(Backends, WhatIsNotThereIsNeverReplaced) {
   for (const Backend backend : {Backend::opencl, Backend::cuda}) {
     const std::string reason = unavailable(backend);
     if (reason.empty()) continue;
-    Options options;
-    options.backend = backend;
+    const Options options = BackendCase{"", backend, 0, 0}.options();
     try {
       (void)triangulate(Reals(xy), options);
       ADD_FAILURE() << to_string(backend) << " is not there, and something ran";

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/opencl/support.hpp"
 
+#include "tests/support/device_choice.hpp"
+
 #include <array>
 #include <cstdlib>
 #include <random>
@@ -45,7 +47,7 @@ std::vector<fs::path> ScratchDirectory::files() const {
 void OpenClTest::SetUp() {
   std::string reason;
   for (const DeviceInfo& device : opencl_backend().devices()) {
-    if (device.usable && index < 0) {
+    if (device.usable && index < 0 && is_chosen(device)) {
       index = device.index;
       info = device;
     }
@@ -55,7 +57,11 @@ void OpenClTest::SetUp() {
   const char* needed = std::getenv("CADT_REQUIRE_BACKENDS");
   if (needed != nullptr && std::string_view(needed).find("opencl") != std::string_view::npos)
     FAIL() << "CADT_REQUIRE_BACKENDS names opencl, but: " << reason;
-  GTEST_SKIP() << "no usable OpenCL device: " << reason;
+  GTEST_SKIP() << "no usable OpenCL device"
+               << (chosen_device(Backend::opencl).empty()
+                       ? ""
+                       : " matches CADT_TEST_OPENCL_DEVICE=" + chosen_device(Backend::opencl))
+               << ": " << reason;
 }
 
 opencl::OpenRequest OpenClTest::small() const {

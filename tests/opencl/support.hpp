@@ -46,8 +46,8 @@ class ScratchDirectory {
   std::filesystem::path path_;
 };
 
-/// Needs a usable device: skips without one, fails if CADT_REQUIRE_BACKENDS names opencl. Each test has a program cache
-/// of its own.
+/// Needs a usable device, the one that CADT_TEST_OPENCL_DEVICE names if it is set: skips without one, fails if
+/// CADT_REQUIRE_BACKENDS names opencl. Each test has a program cache of its own.
 class OpenClTest : public testing::Test {
  protected:
   void SetUp() override;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/backends.hpp"
 
+#include "tests/support/device_choice.hpp"
+
 #include <cstdlib>
 #include <ostream>
 #include <string_view>
@@ -10,6 +12,7 @@ namespace cadt::test {
 Options BackendCase::options() const {
   Options options;
   options.backend = backend;
+  options.device = chosen_device(backend);
   options.threads = threads;
   options.work_group_size = work_group_size;
   return options;
@@ -31,15 +34,42 @@ std::vector<BackendCase> opencl_cases() {
       {"chosen", Backend::opencl, 0, 0}, {"groups16", Backend::opencl, 0, 16}, {"groups128", Backend::opencl, 0, 128}};
 }
 
+std::vector<BackendCase> cuda_cases() {
+  if (!CADT_TEST_CUDA) return {};
+  std::vector<BackendCase> cases = {{"chosen", Backend::cuda, 0, 0}};
+  for (const unsigned block : {32u, 64u, 128u, 256u})
+    cases.push_back({"blocks" + std::to_string(block), Backend::cuda, 0, block});
+  return cases;
+}
+
+std::vector<BackendCase> cases_of(Backend backend) {
+  switch (backend) {
+    case Backend::host:
+      return host_cases();
+    case Backend::opencl:
+      return opencl_cases();
+    case Backend::cuda:
+      return cuda_cases();
+    case Backend::automatic:
+      break;
+  }
+  return {};
+}
+
 std::vector<BackendCase> main_host_case() { return {{"threads2", Backend::host, 2, 0}}; }
 std::vector<BackendCase> main_opencl_case() { return {{"chosen", Backend::opencl, 0, 0}}; }
+std::vector<BackendCase> main_cuda_case() {
+  return CADT_TEST_CUDA ? std::vector<BackendCase>{{"chosen", Backend::cuda, 0, 0}} : std::vector<BackendCase>{};
+}
 
 std::string unavailable(Backend backend) {
-  std::string reason = "list_devices() has no entry for it";
+  std::string reason = "no device matches '" + chosen_device(backend) + "'; 'cadt devices' lists what is there";
   for (const DeviceInfo& device : list_devices()) {
     if (device.backend != backend) continue;
+    if (device.index < 0) return device.reason;
+    if (!is_chosen(device)) continue;
     if (device.usable) return {};
-    reason = device.reason;
+    reason = device.name + ": " + device.reason;
   }
   return reason;
 }

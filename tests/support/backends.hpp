@@ -21,14 +21,18 @@ struct BackendCase {
 };
 std::ostream& operator<<(std::ostream& out, const BackendCase& c);
 
-/// host: serial (the reference), 2, 3 and 8 threads. opencl: several work-group sizes.
+/// host: serial (the reference), 2, 3 and 8 threads. opencl and cuda: several work-group (block) sizes. cuda has none
+/// if the back end is not compiled in.
 [[nodiscard]] std::vector<BackendCase> host_cases();
 [[nodiscard]] std::vector<BackendCase> opencl_cases();
+[[nodiscard]] std::vector<BackendCase> cuda_cases();
+[[nodiscard]] std::vector<BackendCase> cases_of(Backend backend);
 /// The one a user would run; for costly tests.
 [[nodiscard]] std::vector<BackendCase> main_host_case();
 [[nodiscard]] std::vector<BackendCase> main_opencl_case();
+[[nodiscard]] std::vector<BackendCase> main_cuda_case();
 
-/// Why the back end cannot be used here; empty if it can.
+/// Why the back end, or the device that CADT_TEST_OPENCL_DEVICE names, cannot be used here; empty if it can.
 [[nodiscard]] std::string unavailable(Backend backend);
 
 /// Is the back end named in CADT_REQUIRE_BACKENDS (a list such as "host,opencl")?
@@ -45,12 +49,17 @@ class BackendTest : public testing::TestWithParam<BackendCase> {
 
 }  // namespace cadt::test
 
+#define CADT_ON(backend, Suite, cases) \
+  INSTANTIATE_TEST_SUITE_P(backend, Suite, testing::ValuesIn(cadt::test::cases()), cadt::test::case_name)
+
 /// All configurations of all back ends; the prefix of the name becomes the label in ctest.
-#define CADT_ON_EVERY_BACKEND(Suite)                                                                         \
-  INSTANTIATE_TEST_SUITE_P(host, Suite, testing::ValuesIn(cadt::test::host_cases()), cadt::test::case_name); \
-  INSTANTIATE_TEST_SUITE_P(opencl, Suite, testing::ValuesIn(cadt::test::opencl_cases()), cadt::test::case_name)
+#define CADT_ON_EVERY_BACKEND(Suite)    \
+  CADT_ON(host, Suite, host_cases);     \
+  CADT_ON(opencl, Suite, opencl_cases); \
+  CADT_ON(cuda, Suite, cuda_cases)
 
 /// One configuration of each back end.
-#define CADT_ON_MAIN_BACKENDS(Suite)                                                                             \
-  INSTANTIATE_TEST_SUITE_P(host, Suite, testing::ValuesIn(cadt::test::main_host_case()), cadt::test::case_name); \
-  INSTANTIATE_TEST_SUITE_P(opencl, Suite, testing::ValuesIn(cadt::test::main_opencl_case()), cadt::test::case_name)
+#define CADT_ON_MAIN_BACKENDS(Suite)        \
+  CADT_ON(host, Suite, main_host_case);     \
+  CADT_ON(opencl, Suite, main_opencl_case); \
+  CADT_ON(cuda, Suite, main_cuda_case)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lattices: cocircular squares everywhere, long lines on the hull, and the ends of the number range.
 #include "tests/support/families.hpp"
+#include "tests/support/same_math.hpp"
 
 #include <cmath>
 #include <cstdlib>
@@ -66,7 +67,7 @@ Points cantor_dust() {
   Points line;
   for (int k = 0; k < 32; ++k) {
     double x = 0.0;
-    for (int b = 0; b < 5; ++b) x += ((k >> b) & 1) * 2.0 * std::pow(3.0, -(b + 1));
+    for (int b = 0; b < 5; ++b) x += ((k >> b) & 1) * 2.0 / same_power(3.0, b + 1);
     line.push_back(x);
   }
   Points xy;
@@ -77,7 +78,7 @@ Points cantor_dust() {
 }
 
 Points tilted(int n, double degrees) {
-  const double angle = degrees * std::numbers::pi / 180.0, c = std::cos(angle), s = std::sin(angle);
+  const double angle = degrees * std::numbers::pi / 180.0, c = same_cos(angle), s = same_sin(angle);
   Points xy = grid_points(n, n);
   for (std::size_t i = 0; i < xy.size(); i += 2) {
     const double x = xy[i], y = xy[i + 1];
@@ -103,7 +104,7 @@ Points random_exponents(std::size_t n, int low, int high, std::uint64_t seed) {
   Points xy;
   const auto span = static_cast<std::size_t>(high - low + 1);
   for (std::size_t i = 0; i < 2 * n; ++i) {
-    const double mantissa = random.uniform(0.5, 1.0) * (random.below(2) ? 1.0 : -1.0);
+    const double size = random.uniform(0.5, 1.0), mantissa = random.below(2) ? size : -size;
     xy.push_back(std::ldexp(mantissa, low + static_cast<int>(random.below(span))));
   }
   return xy;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tiny sets, sizes, duplicates, orders and clusters.
 #include "tests/support/families.hpp"
+#include "tests/support/same_math.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -98,7 +99,7 @@ Points kuzmin(std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
     const double s = 1.0 - random.uniform(), angle = 2.0 * std::numbers::pi * random.uniform();
     const double r = std::sqrt(1.0 / (s * s) - 1.0);
-    xy.insert(xy.end(), {r * std::cos(angle), r * std::sin(angle)});
+    xy.insert(xy.end(), {r * same_cos(angle), r * same_sin(angle)});
   }
   return xy;
 }
@@ -130,8 +131,8 @@ Points axis_spikes(std::size_t n) {
   Random random(58);
   Points xy;
   for (std::size_t i = 0; i < 2 * n; ++i) {
-    const double a = -std::log(1.0 - random.uniform());
-    xy.push_back(a * std::pow(random.uniform(), 10));
+    const double a = -same_log(1.0 - random.uniform());
+    xy.push_back(a * same_power(random.uniform(), 10));
   }
   return xy;
 }

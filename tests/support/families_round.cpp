@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Circles, lines and curves: cocircular and collinear points, and the cases that flip most.
 #include "tests/support/families.hpp"
+#include "tests/support/same_math.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -48,7 +49,7 @@ Points ring(double radius, double width, std::size_t n) {
   Points xy;
   for (std::size_t i = 0; i < n; ++i) {
     const double r = radius + width * random.uniform(), angle = 2.0 * std::numbers::pi * random.uniform();
-    xy.insert(xy.end(), {0.5 + r * std::cos(angle), 0.5 + r * std::sin(angle)});
+    xy.insert(xy.end(), {0.5 + r * same_cos(angle), 0.5 + r * same_sin(angle)});
   }
   return xy;
 }
@@ -125,8 +126,8 @@ Points reversed(const Points& xy) {
 Points spiral(int n, double growth, double turn, double start) {
   Points xy;
   for (int i = 0; i < n; ++i) {
-    const double r = std::exp(growth * i + start);
-    xy.insert(xy.end(), {r * std::cos(turn * i), r * std::sin(turn * i)});
+    const double r = same_exp(growth * i + start);
+    xy.insert(xy.end(), {r * same_cos(turn * i), r * same_sin(turn * i)});
   }
   return xy;
 }
@@ -136,7 +137,7 @@ Points golden_spiral(int n) {
   Points xy;
   for (int i = 0; i < n; ++i) {
     const double angle = 2.399963229728653 * i;
-    xy.insert(xy.end(), {(1.0 + i) * std::cos(angle), (1.0 + i) * std::sin(angle)});
+    xy.insert(xy.end(), {(1.0 + i) * same_cos(angle), (1.0 + i) * same_sin(angle)});
   }
   return xy;
 }

@@ -26,6 +26,7 @@ struct ExpectedMesh {
   std::vector<Duplicate> duplicates;
 };
 
+/// From CGAL's triangles; where CGAL is not installed, from those of the serial host after verify() accepted them.
 [[nodiscard]] ExpectedMesh expected_mesh(const Points& xy);
 
 /// Neighbour of each triangle opposite each of its vertices, -1 at the boundary.

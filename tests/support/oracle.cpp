@@ -6,10 +6,8 @@
 #include <CGAL/Triangulation_data_structure_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 
 namespace cadt::test {
@@ -22,26 +20,6 @@ using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, Structure>;
 using PlainDelaunay = CGAL::Delaunay_triangulation_2<Kernel>;
 
 }  // namespace
-
-std::vector<std::int32_t> representatives(std::span<const double> xy) {
-  const auto n = static_cast<std::int32_t>(xy.size() / 2);
-  const auto at = [&](std::int32_t i) {
-    const auto k = 2 * static_cast<std::size_t>(i);
-    return std::pair{xy[k], xy[k + 1]};  // comparison by value, so the sign of a zero does not count
-  };
-  std::vector<std::int32_t> order(static_cast<std::size_t>(n));
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    const auto p = at(a), q = at(b);
-    return p != q ? p < q : a < b;
-  });
-  std::vector<std::int32_t> result(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool repeats = i > 0 && at(order[i - 1]) == at(order[i]);
-    result[static_cast<std::size_t>(order[i])] = repeats ? result[static_cast<std::size_t>(order[i - 1])] : order[i];
-  }
-  return result;
-}
 
 OracleMesh cgal_delaunay(std::span<const double> xy) {
   OracleMesh mesh;
@@ -72,11 +50,6 @@ InsertionTime cgal_insertion(std::span<const double> xy) {
   delaunay.insert(points.begin(), points.end());
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   return {delaunay.number_of_faces(), taken.count()};
-}
-
-void make_canonical(std::vector<Triangle>& triangles) {
-  for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-  std::sort(triangles.begin(), triangles.end());
 }
 
 }  // namespace cadt::test

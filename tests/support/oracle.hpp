@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What CGAL makes of a point set. Plain types only: CGAL is seen by oracle.cpp and nothing else, and never by the
-// library.
+// library. Where CGAL is not installed, the functions whose names start with cgal_ do not exist (CADT_TEST_CGAL is 0).
 #pragma once
 
 #include <array>

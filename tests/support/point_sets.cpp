@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Building blocks of the families.
 #include "tests/support/families.hpp"
+#include "tests/support/same_math.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -21,7 +22,7 @@ double Random::uniform() { return std::ldexp(static_cast<double>(bits() >> 11), 
 
 double Random::normal() {
   const double a = 1.0 - uniform(), b = uniform();
-  return std::sqrt(-2.0 * std::log(a)) * std::cos(2.0 * std::numbers::pi * b);
+  return std::sqrt(-2.0 * same_log(a)) * same_cos(2.0 * std::numbers::pi * b);
 }
 
 Points uniform_points(std::size_t n, std::uint64_t seed) {
@@ -53,7 +54,7 @@ Points regular_polygon(int n, double cx, double cy, double r) {
   Points xy;
   for (int k = 0; k < n; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / n;
-    xy.insert(xy.end(), {cx + r * std::cos(angle), cy + r * std::sin(angle)});
+    xy.insert(xy.end(), {cx + r * same_cos(angle), cy + r * same_sin(angle)});
   }
   return xy;
 }

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The signs of the predicates in GMP integers, straight from their determinants.
+// The signs of the predicates in whole numbers, straight from their determinants: those of GMP, or where it is not
+// installed (CADT_TEST_GMP is 0) those of whole.hpp.
 #pragma once
 
 #include "common/host/verify/exact_sign.hpp"
 
+#if CADT_TEST_GMP
 #include <gmpxx.h>
+#else
+#include "tests/verify/whole.hpp"
+#endif
 
 #include <array>
 #include <cmath>
@@ -15,25 +20,30 @@
 namespace truth {
 
 using cadt::verifier::Point;
+#if CADT_TEST_GMP
+using Integer = mpz_class;
+#else
+using Integer = Whole;
+#endif
 
 /// Every finite double is an integer times 2^-1074.
-inline mpz_class integer(double v) {
+inline Integer integer(double v) {
   int exponent = 0;
   const double fraction = std::frexp(v, &exponent);
-  mpz_class m(std::ldexp(fraction, 53));
+  Integer m(std::ldexp(fraction, 53));
   const int shift = exponent - 53 + 1074;
-  if (shift >= 0) return m << static_cast<mp_bitcnt_t>(shift);
-  return m >> static_cast<mp_bitcnt_t>(-shift);  // a subnormal: the bits that go are zero
+  if (shift >= 0) return m << static_cast<unsigned long>(shift);
+  return m >> static_cast<unsigned long>(-shift);  // a subnormal: the bits that go are zero
 }
 
 struct Vector {
-  mpz_class x, y;
+  Integer x, y;
   explicit Vector(const Point& p) : x(integer(p.x)), y(integer(p.y)) {}
 };
 
 inline int orientation(const Point& pa, const Point& pb, const Point& pc) {
   const Vector a(pa), b(pb), c(pc);
-  return sgn(mpz_class(a.x * b.y - a.y * b.x + b.x * c.y - b.y * c.x + c.x * a.y - c.y * a.x));
+  return sgn(Integer(a.x * b.y - a.y * b.x + b.x * c.y - b.y * c.x + c.x * a.y - c.y * a.x));
 }
 
 /// Cofactor of the lifted coordinate of row i in the 4 x 4 determinant with rows (x, y, x^2 + y^2, 1).
@@ -46,14 +56,14 @@ inline int cofactor(const std::array<Point, 4>& p, std::size_t i) {
 
 inline int incircle(const Point& pa, const Point& pb, const Point& pc, const Point& pd) {
   const std::array<Vector, 4> v{Vector(pa), Vector(pb), Vector(pc), Vector(pd)};
-  mpz_class det = 0;
+  Integer det = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     std::array<const Vector*, 3> r{};
     for (std::size_t j = 0, k = 0; j < 4; ++j)
       if (j != i) r[k++] = &v[j];
-    const mpz_class area = r[0]->x * r[1]->y - r[0]->y * r[1]->x + r[1]->x * r[2]->y - r[1]->y * r[2]->x +
-                           r[2]->x * r[0]->y - r[2]->y * r[0]->x;
-    const mpz_class lift = v[i].x * v[i].x + v[i].y * v[i].y;
+    const Integer area = r[0]->x * r[1]->y - r[0]->y * r[1]->x + r[1]->x * r[2]->y - r[1]->y * r[2]->x +
+                         r[2]->x * r[0]->y - r[2]->y * r[0]->x;
+    const Integer lift = v[i].x * v[i].x + v[i].y * v[i].y;
     if (i % 2 == 0) {
       det += lift * area;
     } else {

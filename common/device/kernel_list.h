@@ -37,6 +37,13 @@
   X(cadt_sort_buckets)     /* emit.h */                                         \
   X(cadt_number_triangles) /* emit.h */                                         \
   X(cadt_emit_triangles)   /* emit.h */                                         \
-  X(cadt_emit_hull)        /* emit.h */
+  X(cadt_emit_hull)        /* emit.h */                                         \
+  X(cadt_verify_structure) /* verify.h: ranges, neighbours, used points */      \
+  X(cadt_verify_points)                                                         \
+  X(cadt_verify_duplicates)                                                     \
+  X(cadt_verify_boundary)                                                       \
+  X(cadt_verify_filter) /* verify.h: orientation and edges, three stages */     \
+  X(cadt_verify_exact)                                                          \
+  X(cadt_verify_gather)
 
 #endif

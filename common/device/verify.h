@@ -128,8 +128,9 @@ CADT_KERNEL(cadt_verify_duplicates, CADT_GLOBAL const cadt_point* points, cadt_u
   cadt_finding_clear(&finding);
   CADT_FOR(i, count, grain) {
     const cadt_u32 p = pairs[2u * i], r = pairs[2u * i + 1u];
+    const cadt_i32 before = i == 0u ? -1 : CADT_CAST(cadt_i32, pairs[2u * i - 2u]); /* may be negative itself */
     ++finding.examined;
-    cadt_u32 good = p < number_of_points && r < p && (i == 0u || pairs[2u * i - 2u] < p) ? 1u : 0u;
+    cadt_u32 good = p < number_of_points && r < p && before < CADT_CAST(cadt_i32, p) ? 1u : 0u;
     if (good) {
       const cadt_point a = points[p], b = points[r];
       good = a.x == b.x && a.y == b.y && used[p] == 0u && used[r] != 0u ? 1u : 0u;

@@ -44,9 +44,11 @@ struct Found {
 
 /// What the last stage, on the host, found.
 struct Settled {
-  Tally orientation;
+  std::uint64_t signs = 0;
+  Tally orientation;  // nothing is counted as examined here: the filter has done so
   Circles circles;
   void merge(const Settled& other) {
+    signs += other.signs;
     orientation.merge(other.orientation);
     circles.merge(other.circles);
   }
@@ -68,7 +70,10 @@ class OnDevice : private Outcome {
   }
 
   VerifyReport run() {
-    examine_structure();
+    if (!examine_structure()) {
+      skip({range, neighbors, orientations, vertices, boundary, euler, hull, delaunay, ties}, counts);
+      return finish();
+    }
     if (!passed(range)) {
       skip({neighbors, orientations, vertices, boundary, euler, hull, delaunay, ties}, range);
       return finish();
@@ -142,7 +147,8 @@ class OnDevice : private Outcome {
     to(mesh, tally, begin(name));
   }
 
-  void examine_structure() {
+  /// False if not everything was looked at: then indices must not be followed.
+  [[nodiscard]] bool examine_structure() {
     clear_results();
     used_ = launch_.zeros(n_);
     const Cut all = cut(count_), points = cut(n_);
@@ -153,15 +159,18 @@ class OnDevice : private Outcome {
     if (const Tally finite = found.tally(CADT_FOUND_POINTS); finite.failures != 0) refuse_point(finite.first);
     mesh_.vertices = static_cast<std::size_t>(found.count(CADT_FOUND_USED));
     const Tally triangles = found.tally(CADT_FOUND_RANGE);
+    const std::uint64_t points_examined = found.tally(CADT_FOUND_POINTS).examined;
     begin(counts).passed = true;
-    if (triangles.examined != count_ || found.tally(CADT_FOUND_POINTS).examined != n_)
+    if (triangles.examined != count_ || points_examined != n_) {
       fail(begin(counts), -1,
-           std::to_string(triangles.examined) + " triangles and " +
-               std::to_string(found.tally(CADT_FOUND_POINTS).examined) + " points were examined, there are " +
-               std::to_string(count_) + " triangles");
+           std::to_string(triangles.examined) + " triangles and " + std::to_string(points_examined) +
+               " points were examined, there are " + std::to_string(count_) + " and " + std::to_string(n_));
+      return false;
+    }
     conclude_on_host(mesh_, triangles, range, conclude_range);
     symmetric_ = found.tally(CADT_FOUND_NEIGHBORS).failures == 0;
     run_.check("verify", 0.2);
+    return true;
   }
 
   /// Orientations and, if neighbours are symmetric, edges: filter, exact sums, and the host for the rest.
@@ -177,7 +186,7 @@ class OnDevice : private Outcome {
       sizes_size = std::max<std::size_t>(sizes_size, c.items);
     }
     lists_ = run_.memory.allocate(lists_size * word);
-    sizes_ = run_.memory.allocate((sizes_size + 1) * word);
+    sizes_ = launch_.zeros(sizes_size + 1);
     left_ = launch_.zeros(1);
     for (std::size_t at = 0; at < count_; at += most) {
       const std::size_t size = std::min(most, count_ - at);
@@ -206,20 +215,22 @@ class OnDevice : private Outcome {
     std::vector<std::array<Point, 4>> quad(most);
     for (std::size_t from = 0; from < left; from += most) {
       const std::size_t size = std::min(most, left - from);
+      run_.device.fill(*entries, 0, size * word, CADT_NONE);  // to see which are written
       launch_.run(KernelId::cadt_verify_gather, items, input_.points, input_.triangles, input_.neighbors, number(at),
                   items, lists_, sizes_, room, number(from), number(from + size), entries, corners);
       run_.device.read(*entries, 0, entry.data(), size * word);
       run_.device.read(*corners, 0, quad.data(), size * sizeof quad[0]);
       settled_.merge(
           reduce_blocks<Settled>(size, mesh_.threads, [&](std::size_t begin, std::size_t end, Settled& mine) {
-            for (std::size_t i = begin; i < end; ++i) settle(at + entry[i] / 4, entry[i] % 4, quad[i], mine);
+            for (std::size_t i = begin; i < end; ++i) settle(at, entry[i], quad[i], mine);
           }));
-      on_host_ += size;
     }
   }
 
-  /// The filter has counted these as examined.
-  static void settle(std::size_t t, std::size_t k, const std::array<Point, 4>& q, Settled& mine) {
+  static void settle(std::size_t at, std::uint32_t entry, const std::array<Point, 4>& q, Settled& mine) {
+    if (entry == CADT_NONE) return;
+    ++mine.signs;
+    const std::size_t t = at + entry / CADT_OPEN_A_TRIANGLE, k = entry % CADT_OPEN_A_TRIANGLE;
     if (k == CADT_OPEN_ORIENTATION) {
       if (orientation(q[0], q[1], q[2]) <= 0) mine.orientation.fail(t);
       return;
@@ -320,7 +331,7 @@ class OnDevice : private Outcome {
   void examine_counts(const Found& found) {
     const std::uint64_t edges = found.tally(CADT_FOUND_EDGES).examined, open = found.count(CADT_FOUND_OPEN);
     report.signs_exact = found.count(CADT_FOUND_EXACT);
-    report.signs_on_host = on_host_;
+    report.signs_on_host = settled_.signs;
     report.signs_filtered = report.triangles_examined + edges - std::min(report.triangles_examined + edges, open);
     const auto require = [&](std::uint64_t examined, std::uint64_t there, const std::string& of) {
       if (examined != there)
@@ -328,7 +339,7 @@ class OnDevice : private Outcome {
     };
     require(found.tally(CADT_FOUND_NEIGHBORS).examined, 3 * count_, " sides of triangles");
     require(report.triangles_examined, count_, " triangles");
-    require(report.signs_exact + on_host_, open, " signs that the filter left open");
+    require(report.signs_exact + settled_.signs, open, " signs that the filter left open");
     require(duplicates_examined_, input_.has_duplicates ? input_.duplicates.size() : 0, " duplicates");
     if (!passed(neighbors)) return;
     require(boundary_written_, found.count(CADT_FOUND_BOUNDARY), " boundary edges");
@@ -346,7 +357,7 @@ class OnDevice : private Outcome {
   Allocation results_, used_, lists_, sizes_, left_;
   bool symmetric_ = false;
   Settled settled_;
-  std::uint64_t on_host_ = 0, duplicates_examined_ = 0, boundary_written_ = 0;
+  std::uint64_t duplicates_examined_ = 0, boundary_written_ = 0;
 };
 
 }  // namespace

@@ -247,10 +247,12 @@ class OnDevice : private Outcome {
     Check& check = begin(vertices);
     if (input_.has_duplicates) {
       const std::span<const Duplicate> list = input_.duplicates;
-      const Allocation pairs = run_.memory.import(list.data(), list.size_bytes());
-      const Cut c = cut(list.size());
-      launch_.run(KernelId::cadt_verify_duplicates, c.items, input_.points, number(n_), used_, pairs,
-                  number(list.size()), c.grain, results_);
+      if (!list.empty()) {
+        const Allocation pairs = run_.memory.import(list.data(), list.size_bytes());
+        const Cut c = cut(list.size());
+        launch_.run(KernelId::cadt_verify_duplicates, c.items, input_.points, number(n_), used_, pairs,
+                    number(list.size()), c.grain, results_);
+      }
       const Tally tally = results().tally(CADT_FOUND_DUPLICATES);
       duplicates_examined_ = tally.examined;
       return conclude_duplicates(list, unused, tally, check);
@@ -275,7 +277,7 @@ class OnDevice : private Outcome {
     const auto h = static_cast<std::size_t>(found.count(CADT_FOUND_BOUNDARY));
     std::vector<std::array<std::uint32_t, 3>> edges(h);
     std::vector<Point> starts(h);
-    {
+    if (h != 0) {
       const Allocation list = run_.memory.allocate(h * sizeof edges[0]);
       const Allocation corners = run_.memory.allocate(h * sizeof starts[0]);
       const Allocation written = launch_.zeros(1);

@@ -73,6 +73,27 @@ TEST(OnDevices, EveryFile) {
   EXPECT_GT(examined, 50);
 }
 
+/// What only the predicates of the host can reject.
+TEST(OnDevices, WrongDiagonalOfExtremeExponent) {
+  for (const int exponent : {0, -600, 400}) {
+    const auto names = [&](const Points& xy, std::vector<std::int32_t> triangles) {
+      return failed(
+          on_host_and_devices(std::span<const double>(scaled(xy, exponent)), MeshView{triangles, {}, {}, {}, false}));
+    };
+    const Points kite = {0, 0, 4, -1, 8, 0, 4, 1}, square = {0, 0, 1, 0, 1, 1, 0, 1};
+    EXPECT_EQ(names(kite, {0, 1, 2, 0, 2, 3}), Names{"delaunay"});
+    EXPECT_EQ(names(kite, {0, 1, 3, 1, 2, 3}), Names{});
+    EXPECT_EQ(names(square, {0, 1, 2, 0, 2, 3}), Names{"ties"});
+    EXPECT_EQ(names(square, {0, 1, 3, 1, 2, 3}), Names{});
+  }
+}
+
+/// Several launches, several elements to each work-item, and undecided signs in the last of them.
+TEST(OnDevices, LatticeOfMoreThanOneLaunch) {
+  compare(grid_points(900, 700));
+  compare(scaled(grid_points(400, 300), -600));
+}
+
 /// One test per configuration of a back end, through the public function.
 class VerifyOnDevice : public BackendTest {
  protected:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "devices.hpp"
+#include "strided_device.hpp"
 
 #include "common/host/registry.hpp"
 #include "common/host/verify_on_device.hpp"
@@ -31,6 +32,7 @@ const std::vector<OpenDevice>& open_devices() {
     tiny.threads = 3;
     tiny.grain = 1;
     open("host in tiny pieces", tiny);
+    list->push_back({"strided as on a GPU", tiny, strided_device(*list->front().device)});
     return list;
   }();
   return *devices;

@@ -17,8 +17,8 @@ struct OpenDevice {
   std::unique_ptr<cadt::Device> device;
 };
 
-/// One device of each back end that is there, opened once; of the host also one that works in tiny pieces. A back end
-/// in CADT_REQUIRE_BACKENDS that is not there fails the test.
+/// One device of each back end that is there, opened once; of the host also one that works in tiny pieces and
+/// one that works as a GPU does. A back end in CADT_REQUIRE_BACKENDS that is not there fails the test.
 const std::vector<OpenDevice>& open_devices();
 
 /// The report of the host, after all devices have been held against it: every check, every count.

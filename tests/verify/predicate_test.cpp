@@ -263,6 +263,17 @@ TEST(Predicates, Anisotropic) {
   });
 }
 
+/// A tiny cluster and a point far away: products of the tiny differences underflow, those of the others do not.
+TEST(Predicates, OneFarFromThree) {
+  check_family(40000, [](auto& e) {
+    const int tiny = whole(e, -545, -200), far = whole(e, 0, 200);
+    Quad q;
+    for (Point& p : q) p = {std::ldexp(uniform(e), tiny + whole(e, -2, 2)), std::ldexp(uniform(e), tiny)};
+    q[e() % 4] = {std::ldexp(uniform(e) - 0.5, far), std::ldexp(uniform(e) - 0.5, far)};
+    return q;
+  });
+}
+
 TEST(Predicates, FiltersGiveWayWhereTheyMust) {
   const double huge = DBL_MAX, tiny = DBL_TRUE_MIN;
   EXPECT_FALSE(stage::orientation_filter({-huge, -huge}, {huge, -huge}, {0, huge}));

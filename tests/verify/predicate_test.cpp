@@ -274,6 +274,20 @@ TEST(Predicates, OneFarFromThree) {
   });
 }
 
+/// All but ties, with terms of degree 4 near the smallest double: there the two sides of a tie round apart, and by far
+/// more than a bound that has underflowed.
+TEST(Predicates, TiesWhoseTermsUnderflow) {
+  check_family(60000, [](auto& e) {
+    const int exponent = whole(e, -284, -262);
+    Quad q;
+    for (Point& p : q) p = on_circle(e);
+    Point& moved = q[e() % 4];
+    moved.x = nudge(e, moved.x, 1), moved.y = nudge(e, moved.y, 1);
+    for (Point& p : q) p = {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent)};
+    return q;
+  });
+}
+
 TEST(Predicates, FiltersGiveWayWhereTheyMust) {
   const double huge = DBL_MAX, tiny = DBL_TRUE_MIN;
   EXPECT_FALSE(stage::orientation_filter({-huge, -huge}, {huge, -huge}, {0, huge}));

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/host/device_constants.hpp"
-#include "common/host/registry.hpp"
 #include "common/host/verify/mesh.hpp"
 #include "common/host/verify/outcome.hpp"
 
@@ -365,58 +364,12 @@ class OnDevice : private Outcome {
 }  // namespace
 
 VerifyReport verify_on_device(Run& run, const VerifyInput& input, const VerifyOptions& options) {
-  require_ieee_arithmetic();
-  return OnDevice({}, run, input, options).run();
+  return verify_on_device(run, input, options, verifier::Mesh{});
 }
 
-VerifyReport verify_on_device(Device& device, PointsView points, const MeshView& mesh, const Options& run_options,
-                              const VerifyOptions& options) {
-  // Nothing to examine, or no triangles: no work for a device.
-  if (!size_error(points, mesh).empty() || mesh.triangles.empty() || points.size() == 0)
-    return verify(points, mesh, options);
+VerifyReport verify_on_device(Run& run, const VerifyInput& input, const VerifyOptions& options, verifier::Mesh known) {
   require_ieee_arithmetic();
-  verifier::Mesh known;
-  known.points = points;
-  known.count = mesh.triangles.size() / 3;
-  known.triangles = mesh.triangles;
-  known.neighbors = mesh.neighbors;
-  known.threads = options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
-  if (mesh.neighbors.empty()) {
-    Check check;
-    std::uint64_t examined = 0;
-    check_range(known, check);
-    if (check.passed) derive_neighbors(known, check, examined);
-    if (!check.passed) return verify(points, mesh, options);
-    known.neighbors = known.derived;
-  }
-  Statistics statistics;
-  Run run(device, run_options, statistics);
-  run.check("verify", 0);
-  std::vector<double> copy;
-  const double* xy = points.interleaved_doubles();
-  if (xy == nullptr) {
-    copy.reserve(2 * points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) copy.insert(copy.end(), {points.x(i), points.y(i)});
-    xy = copy.data();
-  }
-  const Allocation device_points = run.memory.import(xy, points.size() * sizeof(cadt_point));
-  const Allocation triangles = run.memory.import(known.triangles.data(), known.triangles.size_bytes());
-  const Allocation neighbors = run.memory.import(known.neighbors.data(), known.neighbors.size_bytes());
-  const VerifyInput input{device_points, triangles, neighbors,       points.size(),
-                          known.count,   mesh.hull, mesh.duplicates, mesh.has_duplicates};
   return OnDevice(std::move(known), run, input, options).run();
-}
-
-VerifyReport verify_on_device(PointsView points, const MeshView& mesh, const Options& device,
-                              const VerifyOptions& options) {
-  return verify_on_device(*open_device(device), points, mesh, device, options);
-}
-
-VerifyReport verify_on_device(PointsView points, const Triangulation& mesh, const Options& device,
-                              const VerifyOptions& options) {
-  VerifyReport report = verify_on_device(points, view_of(mesh), device, options);
-  check_own_result(points, mesh, report);
-  return report;
 }
 
 }  // namespace cadt

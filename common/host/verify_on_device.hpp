@@ -11,6 +11,9 @@
 #include "common/host/run.hpp"
 
 namespace cadt {
+namespace verifier {
+struct Mesh;
+}
 
 /// A mesh in device memory, and what goes with it on the host.
 struct VerifyInput {
@@ -27,6 +30,11 @@ struct VerifyInput {
 /// The checks of `verify`, with the same names and outcomes. A kernel that did not run, or not over everything, fails
 /// "counts". \throws InputError for a coordinate that is not finite, and what launches throw
 [[nodiscard]] VerifyReport verify_on_device(Run& run, const VerifyInput& input, const VerifyOptions& options);
+
+/// The same with what the host knows of the mesh (points, triangles, neighbours, or nothing), which need not be
+/// fetched.
+[[nodiscard]] VerifyReport verify_on_device(Run& run, const VerifyInput& input, const VerifyOptions& options,
+                                            verifier::Mesh known);
 
 /// The same for a mesh of the host on a device that is open: uploads, then verifies.
 [[nodiscard]] VerifyReport verify_on_device(Device& device, PointsView points, const MeshView& mesh,

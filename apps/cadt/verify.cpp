@@ -2,6 +2,7 @@
 #include "commands.hpp"
 #include "failure.hpp"
 #include "input.hpp"
+#include "interrupt.hpp"
 #include "text.hpp"
 
 #include <cadt/io/mesh_file.hpp>
@@ -17,10 +18,11 @@ namespace {
 
 struct VerifyCommand {
   InputOptions input;
-  std::string mesh, format;
+  std::string mesh, format, backend, device;
   int base = -1;
   unsigned threads = 0;
   bool canonical = false, quiet = false;
+  [[nodiscard]] bool on_device() const { return !backend.empty() || !device.empty(); }
 };
 
 std::string check_line(const Check& check) {
@@ -30,6 +32,18 @@ std::string check_line(const Check& check) {
   if (check.first >= 0) text += fmt::format(", first at {}", check.first);
   if (!check.what.empty()) text += fmt::format(": {}", check.what);
   return text + '\n';
+}
+
+VerifyReport verify_chosen(const VerifyCommand& command, const io::PointSet& points, const MeshView& mesh,
+                           const VerifyOptions& options) {
+  if (!command.on_device()) return verify(points.view(), mesh, options);
+  Options device;
+  device.backend = command.backend.empty() ? Backend::automatic : backend_from_string(command.backend);
+  device.device = command.device;
+  device.threads = command.threads;
+  device.stop = interrupt_token();
+  const InPhase phase(Phase::cooperative);
+  return verify_on_device(points.view(), mesh, device, options);
 }
 
 void check_standard_input(const VerifyCommand& command) {
@@ -50,7 +64,7 @@ int run(const VerifyCommand& command) {
   VerifyOptions options;
   options.threads = command.threads;
   options.canonical_ties = command.canonical;
-  const VerifyReport report = verify(points.view(), view, options);
+  const VerifyReport report = verify_chosen(command, points, view, options);
 
   if (!command.quiet) {
     std::string text;
@@ -58,6 +72,11 @@ int run(const VerifyCommand& command) {
     text += fmt::format("{} points, {} triangles, {} edges examined, {} on the hull, {} cocircular", report.points,
                         report.triangles_examined, report.edges_examined, report.hull_vertices, report.ties);
     if (report.ties > 0) text += fmt::format(" ({} not decided as cadt does)", report.unusual_ties);
+    if (command.on_device()) {
+      text +=
+          fmt::format("\nsigns: {} by the filter, {} by exact sums on the device, {} by exact predicates of the host",
+                      report.signs_filtered, report.signs_exact, report.signs_on_host);
+    }
     print(text + '\n');
   }
   if (report.ok) return exit_done;
@@ -91,11 +110,27 @@ void add_verify(CLI::App& app, Action& chosen) {
   command->add_option("--threads", options->threads, "threads; 0 takes all cores (default: 0)")
       ->type_name("N")
       ->check(CLI::Range(0, 4096).description(""));
+  command
+      ->add_option(
+          "--backend", options->backend,
+          "check on a device: auto, host, opencl or cuda (default: the verifier of the host, which runs none of "
+          "the kernels)")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"auto", "host", "opencl", "cuda"}).description(""));
+  command
+      ->add_option("--device", options->device,
+                   "check on this device of the back end, its number or a part of its name (see: cadt devices)")
+      ->type_name("DEVICE");
   command->add_flag("-q,--quiet", options->quiet, "no lines on standard output, only the exit code");
   command->footer(
       "Prints one line for each check: counts, index range, neighbours, orientation, vertices, boundary, Euler's "
       "formula,\n"
       "hull, empty circles (exact), ties. Exit code 7 if one of them fails.\n\n"
+      "The verifier of the host and that of a device share no predicate with what triangulates, nor with one another, "
+      "but for\n"
+      "the few signs that a device cannot find, which it leaves to the host. Only the first is free of the device's "
+      "compiler\n"
+      "and driver: to check what a device has made by other means, use the host or another device.\n\n"
       "Example:\n"
       "  triangle -en points.node && cadt verify points.1.node points.1.ele\n");
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });

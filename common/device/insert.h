@@ -20,10 +20,7 @@ enum {
   CADT_EDGE_FLIP_LIMIT = CADT_FLIP_LIMIT
 #else
   CADT_FLIP_LIMIT = 64,
-#ifndef FL
-#define FL 16
-#endif
-  CADT_EDGE_FLIP_LIMIT = FL
+  CADT_EDGE_FLIP_LIMIT = 16
 #endif
 };
 

@@ -43,6 +43,13 @@
   X(cadt_emit_triangles)   /* emit.h */                                         \
   X(cadt_flag_triangles)   /* emit.h: order of the records */                   \
   X(cadt_emit_ranked)      /* emit.h */                                         \
-  X(cadt_boundary_edges)   /* emit.h */
+  X(cadt_boundary_edges)   /* emit.h */                                         \
+  X(cadt_verify_structure) /* verify.h: ranges, neighbours, used points */      \
+  X(cadt_verify_points)    /* verify.h */                                       \
+  X(cadt_verify_duplicates) /* verify.h */                                      \
+  X(cadt_verify_boundary)  /* verify.h */                                       \
+  X(cadt_verify_filter)    /* verify.h: orientation and edges, three stages */  \
+  X(cadt_verify_exact)     /* verify.h */                                       \
+  X(cadt_verify_gather)    /* verify.h */
 
 #endif

@@ -14,5 +14,6 @@
 #include "common/device/scan.h"
 #include "common/device/selftest.h"
 #include "common/device/start.h"
+#include "common/device/verify.h"
 
 #endif

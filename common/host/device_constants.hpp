@@ -8,4 +8,5 @@
 
 namespace cadt::device_constants {
 #include "common/device/layout.h"
+#include "common/device/verify_layout.h"
 }  // namespace cadt::device_constants

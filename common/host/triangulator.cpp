@@ -15,6 +15,7 @@
 #include "common/host/run.hpp"
 #include "common/host/spatial_order.hpp"
 #include "common/host/triangulation_data.hpp"
+#include "common/host/verify_on_device.hpp"
 
 namespace cadt {
 namespace {
@@ -173,6 +174,31 @@ DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) {
     close_account(*state_, run, *data);
   }
   return DeviceTriangulation(std::move(data));
+}
+
+VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriangulation& mesh,
+                                  const VerifyOptions& options) {
+  const DeviceTriangulation::Data& data = mesh.data();
+  if (points.size != data.points)
+    throw InputError("the mesh is one of " + std::to_string(data.points) + " points", std::min(points.size, data.points));
+  Device& device = *state_->device;
+  state_->memory.begin(state_->options.max_memory);
+  Statistics statistics;
+  Run run(device, state_->memory, state_->options, statistics);
+  Triangulation::Data host;
+  read_duplicates(device, data, host);
+  const Allocation input = points.size == 0 ? Allocation() : import_points(run, points);
+  if (data.triangle_count == 0) {
+    std::vector<double> xy(2 * points.size);
+    if (!xy.empty()) device.read(*input, 0, xy.data(), xy.size() * sizeof xy[0]);
+    MeshView view;
+    view.duplicates = host.duplicates;
+    view.has_duplicates = true;
+    return cadt::verify(xy, view, options);
+  }
+  const VerifyInput what{input, data.triangles,  data.neighbors, data.points, data.triangle_count,
+                         {},    host.duplicates, true};
+  return verify_on_device(run, what, options);
 }
 
 std::size_t Triangulator::memory_needed(std::size_t points) const noexcept {

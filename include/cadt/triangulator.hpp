@@ -6,6 +6,7 @@
 #include <cadt/devices.hpp>
 #include <cadt/points.hpp>
 #include <cadt/triangulation.hpp>
+#include <cadt/verify.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -100,6 +101,12 @@ class Triangulator {
   /// Points on the device to a mesh on the device. The host waits for some counts, not for the end of the last kernels.
   /// \throws as cadt::triangulate. After an error the triangulator can be used again.
   [[nodiscard]] DeviceTriangulation triangulate(const DevicePoints& points);
+
+  /// The independent check of a mesh on the device (verify.hpp: verify_on_device) without a copy to the host, but for
+  /// the boundary and what the device cannot decide. A mesh without triangles is checked on the host.
+  /// \throws as cadt::verify_on_device
+  [[nodiscard]] VerifyReport verify(const DevicePoints& points, const DeviceTriangulation& mesh,
+                                    const VerifyOptions& options = {});
 
   /// Device memory that a call with so many points takes at most, in bytes: its result included, points of the caller's
   /// that are on the device not. Crowded cells (more than 16 points in 2^-16 of the box's width) need up to 32 bytes

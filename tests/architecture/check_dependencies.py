@@ -25,6 +25,10 @@ MAY_INCLUDE = {
     "kernels_cuda": ["kernels_cuda", "common/device"],
     "common/device": ["common/device"],
 }
+# Files that may include only these: the verifier's kernels share nothing with the builder's.
+ONLY = {
+    "common/device/verify": ["common/device/verify", "common/device/lang.h", "common/device/atomics.h"],
+}
 # One back end knows nothing of another.
 BACKENDS = ["host", "opencl", "cuda"]
 # Headers from outside -> folders that may use them.
@@ -65,6 +69,9 @@ def may_include(source, target):
     rule = folder_rule(source)
     if rule is None:
         return True  # tests, bench, examples: may use everything
+    for start, targets in ONLY.items():
+        if source.startswith(start) and not any(target.startswith(t) for t in targets):
+            return False
     allowed = MAY_INCLUDE[rule]
     target_rule = folder_rule(target)
     # "include/cadt" allows the core headers, not those of io below it.
@@ -128,12 +135,14 @@ def self_test():
         ("backends/host/f2.cpp", "#include <CL/opencl.hpp>", False),
         ("kernels_cl/k.cl", '#include "common/host/d.hpp"', False),
         ("common/device/g2.h", '#include "g.h"', True),
+        ("common/device/verify_g.h", '#include "common/device/g.h"', False),
+        ("common/device/verify_g.h", '#include "common/device/lang.h"', True),
         ("common/device/g2.h", '#include "backends/host/f.hpp"', False),
         ("common/device/g2.h", '#include "missing.h"', False),
         ("tests/t.cpp", '#include "common/host/d.hpp"', True),
     ]
     present = ["include/cadt/b.hpp", "include/cadt/io/c.hpp", "common/host/d.hpp", "io/support/e.hpp",
-               "backends/host/f.hpp", "common/device/g.h"]
+               "backends/host/f.hpp", "common/device/g.h", "common/device/lang.h"]
     failed = 0
     for source, line, allowed in cases:
         with tempfile.TemporaryDirectory() as folder:

@@ -79,6 +79,20 @@ class Verify(CliTest):
                    "".join(f"{i} {a} {b} {c}\n" for i, (a, b, c) in enumerate(self.triangles)))
         self.cadt("verify", "more.xy", "m.ele", expect=7)
 
+    def test_on_a_device(self):
+        on_host = self.cadt("verify", "in.xy", "m.off").out
+        result = self.cadt("verify", "in.xy", "m.off", "--backend", "host")
+        self.assertEqual(result.out.splitlines()[:-1], on_host.splitlines())
+        counts = [int(n) for n in re.findall(r"\d+", result.out.splitlines()[-1])]
+        self.assertEqual(len(counts), 3)
+        edges = int(re.search(r"(\d+) edges examined", on_host)[1])
+        self.assertEqual(sum(counts), len(self.triangles) + edges)
+        self.write("bad.off", off_text(self.points, self.flip(lambda sign: sign < 0)))
+        result = self.cadt("verify", "in.xy", "bad.off", "--backend", "host", "--threads", "2", expect=7)
+        self.assertRegex(result.out, r"(?m)^FAIL  delaunay +1 failure")
+        self.fails(5, "verify", "in.xy", "m.off", "--device", "no such device", says="no such device")
+        self.fails(2, "verify", "in.xy", "m.off", "--backend", "abacus", says="abacus")
+
     def test_quiet(self):
         self.assertEqual(self.cadt("verify", "-q", "in.xy", "m.off").out, "")
 

@@ -40,6 +40,7 @@ struct Arguments {
 
 Arguments parse(int count, char** values) {
   Arguments a;
+  if (const char* chosen = std::getenv("CADT_TEST_OPENCL_DEVICE"); chosen != nullptr) a.device = chosen;
   const std::vector<std::string> words(values + 1, values + count);
   for (std::size_t i = 0; i < words.size(); ++i) {
     const auto value = [&] {
@@ -136,7 +137,7 @@ int run(const Arguments& a) {
   std::unique_ptr<test::DeviceMemory> memory;
   const void* points = xy.data();
   if (options.backend != Backend::host) {
-    const int device = chosen_device(options.backend, a.device);
+    const int device = chosen_device(options.backend, options.backend == Backend::opencl ? a.device : std::string());
     if (device < 0) {
       std::fprintf(stderr, "cadt-check-gpu: no usable %s device\n", a.backend.c_str());
       return 2;
@@ -184,6 +185,15 @@ int run(const Arguments& a) {
                 static_cast<unsigned long long>(s.closing_sweeps), static_cast<unsigned long long>(s.closing_repairs));
   }
   bool ok = true;
+  if (a.verify == "device") {
+    const double begin = now();
+    const VerifyReport report = triangulator.verify(DevicePoints{.x = points, .size = a.points}, mesh);
+    ok = report.ok;
+    std::printf(", verified on the device in %.1f ms: %s (signs: %llu by the filter, %llu exact, %llu on the host)",
+                now() - begin, report.summary().c_str(), static_cast<unsigned long long>(report.signs_filtered),
+                static_cast<unsigned long long>(report.signs_exact),
+                static_cast<unsigned long long>(report.signs_on_host));
+  }
   if (a.hash || a.verify == "host") {
     const Triangulation copy = mesh.download();
     if (a.hash) std::printf(", %s", copy.hash().to_string().c_str());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Valid meshes are accepted, with the right counts, whatever the number of threads and the form of the input.
+#include "devices.hpp"
 #include "small_delaunay.hpp"
 #include "truth.hpp"
 
@@ -40,6 +41,8 @@ void expect_accepted(const TestMesh& m, std::uint64_t ties) {
         EXPECT_EQ(c.first, -1) << c.name;
       }
     }
+  (void)on_host_and_devices(m.points(), m.view());
+  (void)on_host_and_devices(m.points(), m.bare());
 }
 
 TEST(Accepted, RandomPoints) {
@@ -140,8 +143,8 @@ TEST(Accepted, NoTrianglesOfCollinearPoints) {
     TestMesh m;
     m.xy = xy;
     m.complete();
-    EXPECT_TRUE(verify(m.points(), m.view()).ok);
-    EXPECT_TRUE(verify(m.points(), m.bare()).ok);
+    EXPECT_TRUE(on_host_and_devices(m.points(), m.view()).ok);
+    EXPECT_TRUE(on_host_and_devices(m.points(), m.bare()).ok);
   }
 }
 
@@ -150,7 +153,8 @@ TEST(Accepted, OtherDecisionOfTies) {
   for (std::size_t i = 0; i < m.xy.size(); i += 2) m.xy[i] = -m.xy[i];  // the diagonals now fall to the left
   for (std::size_t t = 0; t < m.size(); ++t) std::swap(m.triangles[3 * t], m.triangles[3 * t + 1]);
   m.complete();
-  const VerifyReport strict = verify(m.points(), m.view()), lenient = verify(m.points(), m.view(), {0, false});
+  const VerifyReport strict = on_host_and_devices(m.points(), m.view());
+  const VerifyReport lenient = on_host_and_devices(m.points(), m.view(), {0, false});
   EXPECT_FALSE(strict.ok);
   EXPECT_EQ(strict.summary().rfind("ties failed", 0), 0U) << strict.summary();
   EXPECT_TRUE(lenient.ok);
@@ -232,7 +236,7 @@ TEST(HardInputs, CountsAreThoseOfTheFile) {
     const TestMesh m = brute_force_delaunay(xy);
     EXPECT_EQ(m.size(), triangles);
     EXPECT_EQ(m.duplicates.size(), duplicates);
-    const VerifyReport r = verify(m.points(), m.view());
+    const VerifyReport r = on_host_and_devices(m.points(), m.view());
     EXPECT_TRUE(r.ok) << r.summary();
     EXPECT_EQ(r.ties, ties);
     if (triangles > 0) {

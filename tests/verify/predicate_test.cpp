@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each stage of the verifier's predicates against GMP: whatever sign it gives must be right.
+#include "device_stages.hpp"
 #include "truth.hpp"
 
 #include <gtest/gtest.h>
@@ -23,6 +24,7 @@ using Quad = std::array<Point, 4>;
 /// How often each stage gave a sign, and how often zero.
 struct Taken {
   int filter = 0, integer = 0, expansion = 0, zero = 0, all = 0;
+  int device_filter = 0, device_exact = 0;
 };
 
 std::string text(std::span<const Point> points) {
@@ -45,6 +47,8 @@ void check_orientation(std::span<const Point> q, int expected, Taken& taken) {
   compare(stage::orientation_expansion(q[0], q[1], q[2]), expected, taken.expansion, "expansion", q);
   compare(stage::orientation_long(q[0], q[1], q[2]), expected, taken.all, "long", q);
   compare(cadt::verifier::orientation(q[0], q[1], q[2]), expected, taken.all, "all stages", q);
+  compare(device_stage::turn_filter(q[0], q[1], q[2]), expected, taken.device_filter, "device filter", q);
+  compare(device_stage::turn_exact(q[0], q[1], q[2]), expected, taken.device_exact, "device exact", q);
 }
 
 void check_incircle(std::span<const Point> q, int expected, Taken& taken) {
@@ -54,6 +58,8 @@ void check_incircle(std::span<const Point> q, int expected, Taken& taken) {
   compare(stage::incircle_expansion(q[0], q[1], q[2], q[3]), expected, taken.expansion, "expansion", q);
   compare(stage::incircle_long(q[0], q[1], q[2], q[3]), expected, taken.all, "long", q);
   compare(cadt::verifier::incircle(q[0], q[1], q[2], q[3]), expected, taken.all, "all stages", q);
+  compare(device_stage::incircle_filter(q[0], q[1], q[2], q[3]), expected, taken.device_filter, "device filter", q);
+  compare(device_stage::incircle_exact(q[0], q[1], q[2], q[3]), expected, taken.device_exact, "device exact", q);
 }
 
 struct Counts {
@@ -101,6 +107,8 @@ TEST(Predicates, Uniform) {
   });
   EXPECT_GT(c.incircle.filter, 4900);
   EXPECT_GT(c.orientation.filter, 4900);
+  EXPECT_GT(c.incircle.device_filter, 4900);
+  EXPECT_GT(c.orientation.device_filter, 4900);
 }
 
 TEST(Predicates, SmallIntegers) {
@@ -111,6 +119,8 @@ TEST(Predicates, SmallIntegers) {
   });
   EXPECT_EQ(c.incircle.integer, 20000);
   EXPECT_EQ(c.incircle.expansion, 20000);
+  EXPECT_EQ(c.incircle.device_exact, 20000);
+  EXPECT_EQ(c.orientation.device_exact, 20000);
   EXPECT_GT(c.incircle.zero, 1000);
   EXPECT_GT(c.orientation.zero, 1000);
 }
@@ -149,6 +159,8 @@ TEST(Predicates, Cocircular) {
   });
   EXPECT_EQ(c.incircle.zero, 20000);
   EXPECT_EQ(c.incircle.integer, 20000);
+  EXPECT_EQ(c.incircle.device_filter, 0);
+  EXPECT_EQ(c.incircle.device_exact, 20000);
 }
 
 TEST(Predicates, NearlyCocircular) {
@@ -251,6 +263,31 @@ TEST(Predicates, Anisotropic) {
   });
 }
 
+/// A tiny cluster and a point far away: products of the tiny differences underflow, those of the others do not.
+TEST(Predicates, OneFarFromThree) {
+  check_family(40000, [](auto& e) {
+    const int tiny = whole(e, -545, -200), far = whole(e, 0, 200);
+    Quad q;
+    for (Point& p : q) p = {std::ldexp(uniform(e), tiny + whole(e, -2, 2)), std::ldexp(uniform(e), tiny)};
+    q[e() % 4] = {std::ldexp(uniform(e) - 0.5, far), std::ldexp(uniform(e) - 0.5, far)};
+    return q;
+  });
+}
+
+/// All but ties, with terms of degree 4 near the smallest double: there the two sides of a tie round apart, and by far
+/// more than a bound that has underflowed.
+TEST(Predicates, TiesWhoseTermsUnderflow) {
+  check_family(60000, [](auto& e) {
+    const int exponent = whole(e, -284, -262);
+    Quad q;
+    for (Point& p : q) p = on_circle(e);
+    Point& moved = q[e() % 4];
+    moved.x = nudge(e, moved.x, 1), moved.y = nudge(e, moved.y, 1);
+    for (Point& p : q) p = {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent)};
+    return q;
+  });
+}
+
 TEST(Predicates, FiltersGiveWayWhereTheyMust) {
   const double huge = DBL_MAX, tiny = DBL_TRUE_MIN;
   EXPECT_FALSE(stage::orientation_filter({-huge, -huge}, {huge, -huge}, {0, huge}));
@@ -261,6 +298,14 @@ TEST(Predicates, FiltersGiveWayWhereTheyMust) {
   EXPECT_FALSE(stage::incircle_expansion({0, 0}, {0x1p-217, 0}, {0, 1}, {1, 1}));
   EXPECT_FALSE(stage::incircle_expansion({0, 0}, {1, 0}, {0, 1}, {1, 0x1.8p-53})) << "a difference that is rounded";
   EXPECT_EQ(*stage::orientation_filter({1, 0}, {1, 1}, {1, huge}), 0);
+  EXPECT_FALSE(device_stage::turn_filter({-huge, -huge}, {huge, -huge}, {0, huge}));
+  EXPECT_FALSE(device_stage::incircle_filter({-huge, 0}, {huge, 0}, {0, huge}, {0, 0}));
+  EXPECT_FALSE(device_stage::turn_filter({0, 0}, {tiny, 0}, {0, tiny}));
+  EXPECT_FALSE(device_stage::incircle_filter({0, 0}, {tiny, 0}, {0, tiny}, {tiny, tiny}));
+  EXPECT_FALSE(device_stage::incircle_exact({0, 0}, {0x1p241, 0}, {0, 1}, {1, 1}));
+  EXPECT_FALSE(device_stage::incircle_exact({0, 0}, {0x1p-217, 0}, {0, 1}, {1, 1}));
+  EXPECT_FALSE(device_stage::incircle_exact({0, 1}, {0, 0x1.8p-53}, {1, 0}, {1, 1})) << "a difference that is rounded";
+  EXPECT_FALSE(device_stage::turn_exact({1, 0}, {0x1.8p-53, 0}, {0, 1})) << "a difference that is rounded";
 }
 
 TEST(Predicates, MinusZeroIsZero) {
@@ -272,7 +317,7 @@ TEST(Predicates, MinusZeroIsZero) {
 
 TEST(Predicates, PerturbationChoosesByTheGreatestPoint) {
   std::mt19937_64 engine(7);
-  int inside = 0, outside = 0;
+  int inside = 0, outside = 0, edges = 0;
   for (int i = 0; i < 20000; ++i) {
     Quad q;
     for (Point& p : q)
@@ -284,10 +329,16 @@ TEST(Predicates, PerturbationChoosesByTheGreatestPoint) {
       continue;
     const int side = cadt::verifier::incircle_perturbed(q[0], q[1], q[2], q[3]);
     ASSERT_EQ(side, truth::incircle_perturbed(q[0], q[1], q[2], q[3]));
+    // The device looks at the edge between q[0] and q[3], which is there if q[3] is across it.
+    if (cadt::verifier::orientation(q[3], q[2], q[1]) > 0) {
+      ASSERT_EQ(device_stage::tie_is_usual(q[0], q[1], q[2], q[3]), side < 0);
+      ++edges;
+    }
     (side > 0 ? inside : outside) += 1;
   }
   EXPECT_GT(inside, 500);
   EXPECT_GT(outside, 500);
+  EXPECT_GT(edges, 500);
 }
 
 class Fixtures : public testing::TestWithParam<const char*> {};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which checks reject a mesh.
+// Which checks reject a mesh; on all devices the same.
 #pragma once
 
+#include "devices.hpp"
 #include "small_delaunay.hpp"
 
 #include <gtest/gtest.h>
@@ -35,6 +36,6 @@ inline void expect_killed_by(const VerifyReport& report, const std::string& name
 }
 
 inline VerifyReport verify_full(const TestMesh& m, bool canonical = true) {
-  return verify(m.points(), m.view(), {2, canonical});
+  return on_host_and_devices(m.points(), m.view(), {2, canonical});
 }
-inline VerifyReport verify_bare(const TestMesh& m) { return verify(m.points(), m.bare(), {2, true}); }
+inline VerifyReport verify_bare(const TestMesh& m) { return on_host_and_devices(m.points(), m.bare(), {2, true}); }

@@ -117,7 +117,7 @@ TEST(KillTopology, HullThatTurnsBack) {
 
 TEST(KillEmpty, NoTrianglesThoughNotCollinear) {
   const std::vector<double> xy{0, 0, 1, 1, 2, 2, 3, 3 + 0x1p-50};
-  const VerifyReport report = verify(std::span<const double>(xy), cadt::MeshView{});
+  const VerifyReport report = on_host_and_devices(std::span<const double>(xy), cadt::MeshView{});
   EXPECT_EQ(failed(report), Names{"vertices"});
   EXPECT_NE(check_of(report, "vertices").what.find("not collinear"), std::string::npos);
 }
@@ -132,13 +132,14 @@ TEST(KillEmpty, TriangleThoughCollinear) {
 TEST(KillEmpty, HullOfNothing) {
   const std::vector<double> xy{0, 0, 1, 1};
   const std::vector<std::int32_t> hull{0, 1};
-  EXPECT_EQ(failed(verify(std::span<const double>(xy), cadt::MeshView{{}, {}, hull, {}, false})), Names{"hull"});
+  EXPECT_EQ(failed(on_host_and_devices(std::span<const double>(xy), cadt::MeshView{{}, {}, hull, {}, false})),
+            Names{"hull"});
 }
 
 TEST(KillEmpty, DuplicatesOnALine) {
   const std::vector<double> xy{1, 1, 0.0, 5, 1, 1, -0.0, 5, 1, 1};
   const auto names = [&](const std::vector<cadt::Duplicate>& list) {
-    return failed(verify(std::span<const double>(xy), cadt::MeshView{{}, {}, {}, list, true}));
+    return failed(on_host_and_devices(std::span<const double>(xy), cadt::MeshView{{}, {}, {}, list, true}));
   };
   EXPECT_EQ(names({{2, 0}, {3, 1}, {4, 0}}), Names{});
   EXPECT_EQ(names({{2, 0}, {3, 1}, {4, 2}}), Names{"vertices"});

@@ -16,21 +16,15 @@ void check_orientation(const Mesh& mesh, Check& check, std::uint64_t& examined) 
         }
       });
   examined = tally.examined;
+  conclude_orientation(mesh, tally, check);
+}
+
+void conclude_orientation(const Mesh& mesh, const Tally& tally, Check& check) {
   conclude(check, tally,
            tally.first < 0 ? std::string() : mesh.describe_triangle(tally.first) + " is clockwise or flat");
 }
 
 namespace {
-
-struct Circles {
-  Tally illegal, unusual;
-  std::uint64_t ties = 0;
-  void merge(const Circles& other) {
-    illegal.merge(other.illegal);
-    unusual.merge(other.unusual);
-    ties += other.ties;
-  }
-};
 
 void examine_edge(const Mesh& mesh, std::size_t t, std::size_t k, Circles& mine) {
   const auto other = static_cast<std::size_t>(mesh.neighbors[3 * t + k]);
@@ -59,6 +53,11 @@ void check_delaunay(const Mesh& mesh, Check& delaunay, Check& ties, const Verify
             // The predicates are the same from both sides: the lower triangle of the two examines the edge.
             if (mesh.neighbors[3 * t + k] > static_cast<std::int32_t>(t)) examine_edge(mesh, t, k, mine);
       });
+  conclude_delaunay(mesh, circles, delaunay, ties, options, report);
+}
+
+void conclude_delaunay(const Mesh& mesh, const Circles& circles, Check& delaunay, Check& ties,
+                       const VerifyOptions& options, VerifyReport& report) {
   report.edges_examined = circles.illegal.examined;
   report.ties = circles.ties;
   report.unusual_ties = circles.unusual.failures;

@@ -19,7 +19,14 @@ bool upper_half(const Direction& d) { return d.y > 0 || (d.y == 0 && d.x > 0); }
 }  // namespace
 
 void check_hull(const Mesh& mesh, std::span<const std::int32_t> given, Check& check) {
-  const std::vector<std::int32_t>& loop = mesh.loop;
+  std::vector<Point> corners;
+  corners.reserve(mesh.loop.size());
+  for (const std::int32_t v : mesh.loop) corners.push_back(mesh.point(v));
+  check_hull(mesh.loop, corners, given, mesh.threads, check);
+}
+
+void check_hull(std::span<const std::int32_t> loop, std::span<const Point> corners, std::span<const std::int32_t> given,
+                unsigned threads, Check& check) {
   const std::size_t h = loop.size();
   struct Turns : Tally {
     std::uint64_t half_turns = 0;
@@ -28,10 +35,9 @@ void check_hull(const Mesh& mesh, std::span<const std::int32_t> given, Check& ch
       half_turns += other.half_turns;
     }
   };
-  const Turns turns = reduce_blocks<Turns>(h, mesh.threads, [&](std::size_t begin, std::size_t end, Turns& mine) {
+  const Turns turns = reduce_blocks<Turns>(h, threads, [&](std::size_t begin, std::size_t end, Turns& mine) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Point a = mesh.point(loop[i == 0 ? h - 1 : i - 1]), b = mesh.point(loop[i]);
-      const Point c = mesh.point(loop[i + 1 == h ? 0 : i + 1]);
+      const Point &a = corners[i == 0 ? h - 1 : i - 1], &b = corners[i], &c = corners[i + 1 == h ? 0 : i + 1];
       const Direction in = direction(a, b), out = direction(b, c);
       const int turn = orientation(a, b, c);
       // Collinear points must go on in the same direction; for parallel edges the signs tell.

@@ -58,8 +58,47 @@ void check_hull(const Mesh& mesh, std::span<const std::int32_t> given, Check& ch
 void check_delaunay(const Mesh& mesh, Check& delaunay, Check& ties, const VerifyOptions& options,
                     VerifyReport& report);  // after neighbors and orientation
 
+// Parts of these that serve the verifier on the device as well (common/host/verify_on_device.cpp).
+
+/// Interior edges: those that are not legal, and those whose tie is not decided as cadt does.
+struct Circles {
+  Tally illegal, unusual;
+  std::uint64_t ties = 0;
+  void merge(const Circles& other) {
+    illegal.merge(other.illegal);
+    unusual.merge(other.unusual);
+    ties += other.ties;
+  }
+};
+
+/// check_boundary once mesh.boundary is filled, in any order.
+void link_boundary(Mesh& mesh, Check& check);
+/// Euler's formula alone, and connectedness alone.
+void check_euler_formula(const Mesh& mesh, Check& check);
+void check_connected(const Mesh& mesh, Check& check);
+/// check_hull with the points of the loop.
+void check_hull(std::span<const std::int32_t> loop, std::span<const Point> corners, std::span<const std::int32_t> given,
+                unsigned threads, Check& check);
+
 /// Sets the outcome from a tally; `what` is only used if something failed.
 void conclude(Check& check, const Tally& tally, const std::string& what);
 void fail(Check& check, std::int64_t first, const std::string& what);
+void conclude_range(const Mesh& mesh, const Tally& tally, Check& check);
+void conclude_neighbors(const Mesh& mesh, const Tally& tally, Check& check);
+void conclude_orientation(const Mesh& mesh, const Tally& tally, Check& check);
+void conclude_duplicates(std::span<const Duplicate> list, std::size_t expected, const Tally& tally, Check& check);
+void conclude_delaunay(const Mesh& mesh, const Circles& circles, Check& delaunay, Check& ties,
+                       const VerifyOptions& options, VerifyReport& report);
+
+/// \throws InputError for the point of this index
+[[noreturn]] void refuse_point(std::int64_t index);
+/// Empty if the arrays fit together.
+[[nodiscard]] std::string size_error(PointsView points, const MeshView& view);
+/// The predicates rest on IEEE 754 arithmetic. A process may have changed it, e.g. by loading code made for fast
+/// arithmetic; then no verdict is better than a wrong one. Threads inherit the mode of the one that starts them.
+void require_ieee_arithmetic();
+/// What the library's own result promises beyond a bare mesh.
+void check_own_result(PointsView points, const Triangulation& mesh, VerifyReport& report);
+[[nodiscard]] MeshView view_of(const Triangulation& mesh);
 
 }  // namespace cadt::verifier

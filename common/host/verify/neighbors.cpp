@@ -26,6 +26,10 @@ void check_neighbors(const Mesh& mesh, Check& check, std::uint64_t& examined) {
           }
       });
   examined = tally.examined;
+  conclude_neighbors(mesh, tally, check);
+}
+
+void conclude_neighbors(const Mesh& mesh, const Tally& tally, Check& check) {
   conclude(check, tally,
            tally.first < 0 ? std::string()
                            : mesh.describe_edge(tally.first) + ", is not shared with triangle " +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The check of the library's own result, which promises more than a bare mesh does.
-#include <cadt/verify.hpp>
+#include "mesh.hpp"
 
 #include <string>
 
@@ -16,14 +16,18 @@ int implied_dimension(PointsView points, const VerifyReport& report, std::size_t
 
 }  // namespace
 
-VerifyReport verify(PointsView points, const Triangulation& mesh, const VerifyOptions& options) {
+MeshView verifier::view_of(const Triangulation& mesh) {
   MeshView view;
   view.triangles = mesh.triangles();
   view.neighbors = mesh.neighbors();
   view.hull = mesh.hull();
   view.duplicates = mesh.duplicates();
   view.has_duplicates = true;
-  VerifyReport report = verify(points, view, options);
+  return view;
+}
+
+void verifier::check_own_result(PointsView points, const Triangulation& mesh, VerifyReport& report) {
+  const MeshView view = view_of(mesh);
   const auto refuse = [&](std::size_t index, const std::string& what) {
     Check& check = report.checks[index];
     check.passed = false;
@@ -39,6 +43,11 @@ VerifyReport verify(PointsView points, const Triangulation& mesh, const VerifyOp
   if (report.ok && mesh.dimension() != implied_dimension(points, report, view.duplicates.size()))
     refuse(0, "the dimension is " + std::to_string(mesh.dimension()) + ", it should be " +
                   std::to_string(implied_dimension(points, report, view.duplicates.size())));
+}
+
+VerifyReport verify(PointsView points, const Triangulation& mesh, const VerifyOptions& options) {
+  VerifyReport report = verify(points, verifier::view_of(mesh), options);
+  verifier::check_own_result(points, mesh, report);
   return report;
 }
 

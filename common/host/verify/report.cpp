@@ -1,35 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Order of the checks, and what they amount to.
 #include "mesh.hpp"
+#include "outcome.hpp"
 
-#include <array>
 #include <cfenv>
 #include <cmath>
 #include <limits>
 
-namespace cadt {
-namespace {
+namespace cadt::verifier {
 
-using namespace verifier;
-
-enum Name : std::size_t {
-  counts,
-  range,
-  neighbors,
-  orientations,
-  vertices,
-  boundary,
-  euler,
-  hull,
-  delaunay,
-  ties,
-  number_of_checks
-};
-constexpr std::array<const char*, number_of_checks> names{"counts",   "range", "neighbors", "orientation", "vertices",
-                                                          "boundary", "euler", "hull",      "delaunay",    "ties"};
-
-/// The predicates rest on IEEE 754 arithmetic. A process may have changed it, e.g. by loading code made for fast
-/// arithmetic; then no verdict is better than a wrong one. Threads inherit the mode of the one that starts them.
 void require_ieee_arithmetic() {
   volatile double smallest_normal = std::numeric_limits<double>::min(), half = 0.5;
   volatile const double subnormal = smallest_normal * half;
@@ -38,18 +17,11 @@ void require_ieee_arithmetic() {
         "verify needs IEEE arithmetic: rounding to nearest, and subnormal numbers that are not flushed to zero");
 }
 
-void require_finite(PointsView points, unsigned threads) {
-  const Tally tally =
-      reduce_blocks<Tally>(points.size(), threads, [&](std::size_t begin, std::size_t end, Tally& mine) {
-        for (std::size_t i = begin; i < end; ++i)
-          if (!std::isfinite(points.x(i)) || !std::isfinite(points.y(i))) mine.fail(i);
-      });
-  if (tally.failures != 0)
-    throw InputError("point " + std::to_string(tally.first) + " has a coordinate that is NaN or infinite",
-                     static_cast<std::size_t>(tally.first));
+void refuse_point(std::int64_t index) {
+  throw InputError("point " + std::to_string(index) + " has a coordinate that is NaN or infinite",
+                   static_cast<std::size_t>(index));
 }
 
-/// Empty if the arrays fit together.
 std::string size_error(PointsView points, const MeshView& view) {
   constexpr auto limit = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
   if (view.triangles.size() % 3 != 0)
@@ -63,41 +35,38 @@ std::string size_error(PointsView points, const MeshView& view) {
   return {};
 }
 
-/// The order of dependence: a check whose ground has failed is not run and says so.
-class Run {
+}  // namespace cadt::verifier
+
+namespace cadt {
+namespace {
+
+using namespace verifier;
+
+void require_finite(PointsView points, unsigned threads) {
+  const Tally tally =
+      reduce_blocks<Tally>(points.size(), threads, [&](std::size_t begin, std::size_t end, Tally& mine) {
+        for (std::size_t i = begin; i < end; ++i)
+          if (!std::isfinite(points.x(i)) || !std::isfinite(points.y(i))) mine.fail(i);
+      });
+  if (tally.failures != 0) refuse_point(tally.first);
+}
+
+class Run : private Outcome {
  public:
-  Run(PointsView points, const MeshView& view, const VerifyOptions& options) : view_(view), options_(options) {
+  Run(PointsView points, const MeshView& view, const VerifyOptions& options)
+      : Outcome(points.size()), view_(view), options_(options) {
     mesh_.points = points;
     mesh_.threads = options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
-    report_.points = points.size();
-    report_.checks.resize(number_of_checks);
-    for (std::size_t i = 0; i < number_of_checks; ++i) {
-      report_.checks[i].name = names[i];
-      report_.checks[i].what = "not examined";
-    }
   }
 
   VerifyReport run() {
     require_ieee_arithmetic();
     require_finite(mesh_.points, mesh_.threads);
     examine();
-    report_.ok = true;
-    for (const Check& check : report_.checks) report_.ok = report_.ok && check.passed;
-    return std::move(report_);
+    return finish();
   }
 
  private:
-  Check& begin(Name name) {
-    Check& check = report_.checks[name];
-    check.what.clear();
-    return check;
-  }
-  [[nodiscard]] bool passed(Name name) const { return report_.checks[name].passed; }
-  void skip(std::initializer_list<Name> skipped, Name because) {
-    for (const Name name : skipped)
-      report_.checks[name].what = std::string("not examined: the check '") + names[because] + "' failed";
-  }
-
   void examine() {
     if (const std::string error = size_error(mesh_.points, view_); !error.empty()) {
       fail(begin(counts), -1, error);
@@ -117,15 +86,15 @@ class Run {
     } else {
       check_neighbors(mesh_, begin(neighbors), half_edges);
     }
-    check_orientation(mesh_, begin(orientations), report_.triangles_examined);
+    check_orientation(mesh_, begin(orientations), report.triangles_examined);
     check_vertices(mesh_, view_, begin(vertices));
-    if (half_edges != 3 * mesh_.count || report_.triangles_examined != mesh_.count)
+    if (half_edges != 3 * mesh_.count || report.triangles_examined != mesh_.count)
       fail(begin(counts), -1,
-           std::to_string(report_.triangles_examined) + " triangles and " + std::to_string(half_edges) +
+           std::to_string(report.triangles_examined) + " triangles and " + std::to_string(half_edges) +
                " of their edges were examined, there are " + std::to_string(mesh_.count) + " triangles");
     if (!passed(neighbors)) return skip({boundary, euler, hull, delaunay, ties}, neighbors);
     check_boundary(mesh_, begin(boundary));
-    report_.hull_vertices = mesh_.boundary.size();
+    report.hull_vertices = mesh_.boundary.size();
     check_euler(mesh_, begin(euler));
     if (passed(boundary)) {
       check_hull(mesh_, view_.hull, begin(hull));
@@ -134,10 +103,10 @@ class Run {
     }
     if (!passed(orientations)) return skip({delaunay, ties}, orientations);
     Check& circles = begin(delaunay);
-    check_delaunay(mesh_, circles, begin(ties), options_, report_);
-    if (2 * report_.edges_examined + mesh_.boundary.size() != 3 * mesh_.count)
+    check_delaunay(mesh_, circles, begin(ties), options_, report);
+    if (2 * report.edges_examined + mesh_.boundary.size() != 3 * mesh_.count)
       fail(begin(counts), -1,
-           std::to_string(report_.edges_examined) + " interior edges were examined, there are " +
+           std::to_string(report.edges_examined) + " interior edges were examined, there are " +
                std::to_string((3 * mesh_.count - mesh_.boundary.size()) / 2));
   }
 
@@ -151,7 +120,6 @@ class Run {
   const MeshView& view_;
   const VerifyOptions& options_;
   Mesh mesh_;
-  VerifyReport report_;
 };
 
 }  // namespace

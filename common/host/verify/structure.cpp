@@ -61,6 +61,10 @@ void check_range(Mesh& mesh, Check& check) {
         }
       });
   mesh.vertices = static_cast<std::size_t>(std::accumulate(mesh.used.begin(), mesh.used.end(), std::uint64_t{0}));
+  conclude_range(mesh, tally, check);
+}
+
+void conclude_range(const Mesh& mesh, const Tally& tally, Check& check) {
   conclude(check, tally,
            tally.first < 0 ? std::string()
                            : mesh.describe_triangle(tally.first) +
@@ -84,6 +88,10 @@ void check_boundary(Mesh& mesh, Check& check) {
                           mine.list.push_back({mesh.vertex(t, next3(k)), mesh.vertex(t, previous3(k)),
                                                static_cast<std::int64_t>(3 * t + k)});
                   }).list;
+  link_boundary(mesh, check);
+}
+
+void link_boundary(Mesh& mesh, Check& check) {
   std::vector<BoundaryEdge>& edges = mesh.boundary;
   std::sort(edges.begin(), edges.end(), [](const BoundaryEdge& a, const BoundaryEdge& b) {
     return a.from != b.from ? a.from < b.from : a.edge < b.edge;
@@ -114,6 +122,11 @@ void check_boundary(Mesh& mesh, Check& check) {
 }
 
 void check_euler(const Mesh& mesh, Check& check) {
+  check_euler_formula(mesh, check);
+  if (check.passed) check_connected(mesh, check);
+}
+
+void check_euler_formula(const Mesh& mesh, Check& check) {
   const auto triangles = static_cast<std::int64_t>(mesh.count);
   const auto expected =
       2 * static_cast<std::int64_t>(mesh.vertices) - 2 - static_cast<std::int64_t>(mesh.boundary.size());
@@ -122,6 +135,10 @@ void check_euler(const Mesh& mesh, Check& check) {
                 "there are " + std::to_string(triangles) + " triangles, Euler's formula asks for " +
                     std::to_string(expected) + " with " + std::to_string(mesh.vertices) + " vertices, " +
                     std::to_string(mesh.boundary.size()) + " of them on the boundary");
+  check.passed = true;
+}
+
+void check_connected(const Mesh& mesh, Check& check) {
   std::vector<std::uint8_t> reached(mesh.count, 0);
   std::vector<std::int32_t> open{0};
   reached[0] = 1;

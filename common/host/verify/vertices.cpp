@@ -26,6 +26,14 @@ void check_list(const Mesh& mesh, std::span<const Duplicate> list, std::size_t e
           if (!good) mine.fail(i);
         }
       });
+  conclude_duplicates(list, expected, tally, check);
+}
+
+bool less(const Mesh& mesh, std::int32_t a, std::int32_t b) { return lexicographic_less(mesh.point(a), mesh.point(b)); }
+
+}  // namespace
+
+void conclude_duplicates(std::span<const Duplicate> list, std::size_t expected, const Tally& tally, Check& check) {
   if (tally.failures != 0) {
     const Duplicate& d = list[static_cast<std::size_t>(tally.first)];
     return conclude(check, tally,
@@ -37,10 +45,6 @@ void check_list(const Mesh& mesh, std::span<const Duplicate> list, std::size_t e
                 std::to_string(list.size()) + " duplicates are listed, there are " + std::to_string(expected));
   check.passed = true;
 }
-
-bool less(const Mesh& mesh, std::int32_t a, std::int32_t b) { return lexicographic_less(mesh.point(a), mesh.point(b)); }
-
-}  // namespace
 
 void check_vertices(const Mesh& mesh, const MeshView& view, Check& check) {
   const std::size_t unused_count = mesh.points.size() - mesh.vertices;

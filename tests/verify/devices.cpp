@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "devices.hpp"
+#include "strided_device.hpp"
+
+#include "common/host/registry.hpp"
+#include "common/host/verify_on_device.hpp"
+#include "tests/support/backends.hpp"
+
+#include <gtest/gtest.h>
+
+using cadt::Backend;
+
+const std::vector<OpenDevice>& open_devices() {
+  // Never closed: the runtimes of some devices are gone before static objects are.
+  static const auto* const devices = [] {
+    auto* list = new std::vector<OpenDevice>;
+    const auto open = [&](std::string name, const cadt::Options& options) {
+      list->push_back({std::move(name), options, cadt::open_device(options)});
+    };
+    for (const Backend backend : {Backend::host, Backend::opencl, Backend::cuda}) {
+      cadt::Options options;
+      options.backend = backend;
+      options.threads = 2;
+      if (const std::string reason = cadt::test::unavailable(backend); reason.empty()) {
+        open(std::string(to_string(backend)), options);
+      } else if (cadt::test::required(backend)) {
+        ADD_FAILURE() << "back end '" << to_string(backend) << "' is required and not there: " << reason;
+      }
+    }
+    cadt::Options tiny;
+    tiny.backend = Backend::host;
+    tiny.threads = 3;
+    tiny.grain = 1;
+    open("host in tiny pieces", tiny);
+    list->push_back({"strided as on a GPU", tiny, strided_device(*list->front().device)});
+    return list;
+  }();
+  return *devices;
+}
+
+void expect_same(const cadt::VerifyReport& device, const cadt::VerifyReport& host) {
+  EXPECT_EQ(device.ok, host.ok) << device.summary() << "; host: " << host.summary();
+  EXPECT_EQ(device.points, host.points);
+  EXPECT_EQ(device.triangles_examined, host.triangles_examined);
+  EXPECT_EQ(device.edges_examined, host.edges_examined);
+  EXPECT_EQ(device.hull_vertices, host.hull_vertices);
+  EXPECT_EQ(device.ties, host.ties);
+  EXPECT_EQ(device.unusual_ties, host.unusual_ties);
+  ASSERT_EQ(device.checks.size(), host.checks.size());
+  for (std::size_t i = 0; i < host.checks.size(); ++i) {
+    const cadt::Check &d = device.checks[i], &h = host.checks[i];
+    EXPECT_EQ(d.name, h.name);
+    EXPECT_EQ(d.passed, h.passed) << h.name;
+    EXPECT_EQ(d.failures, h.failures) << h.name;
+    EXPECT_EQ(d.first, h.first) << h.name;
+    EXPECT_EQ(d.what, h.what) << h.name;
+  }
+}
+
+cadt::VerifyReport on_host_and_devices(cadt::PointsView points, const cadt::MeshView& mesh,
+                                       const cadt::VerifyOptions& options) {
+  cadt::VerifyReport host = verify(points, mesh, options);
+  for (const OpenDevice& d : open_devices()) {
+    SCOPED_TRACE(d.name);
+    expect_same(verify_on_device(*d.device, points, mesh, d.options, options), host);
+  }
+  return host;
+}

@@ -39,7 +39,8 @@ TEST_P(Regression, LongRowsOfFlipsAreProgress) {
     const Points xy = row_and_two_hubs(n);
     const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
     EXPECT_TRUE(verified(xy, mesh)) << n;
-    EXPECT_LT(mesh.statistics().launches, 1000u) << n;
+    // a launch does many flips of a row: 16 on GPUs, where a lane alone is slow
+    EXPECT_LT(mesh.statistics().launches, 200u + static_cast<unsigned>(n) / 8) << n;
   }
 }
 
@@ -57,7 +58,7 @@ TEST_P(Regression, AlternatingLinesAreNotQuadratic) {
   for (int i = 0; i < n; ++i) xy.insert(xy.end(), {static_cast<double>(i), i % 2 == 0 ? 0.0 : 1e-5 * i});
   const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
   EXPECT_TRUE(verified(xy, mesh));
-  EXPECT_LT(mesh.statistics().flips, 10u * n);
+  EXPECT_LT(mesh.statistics().flips, 40u * n);  // it was 2500 n
 }
 
 // Exponents that span everything went to exact arithmetic for nearly every sign: 90 exact orientations a point.

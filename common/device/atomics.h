@@ -193,10 +193,10 @@ CADT_FN void cadt_fence_claims(void) { cadt_fence_acq_rel(); }
 #endif
 #endif
 
-/* The eight words of a record, in two accesses where the language can. */
-#if defined(CADT_LANG_CUDA)
-CADT_FN void cadt_load_record(const cadt_u32* p, cadt_u32* w0, cadt_u32* w1, cadt_u32* w2, cadt_u32* w3, cadt_u32* w4,
-                              cadt_u32* w5, cadt_u32* w6, cadt_u32* w7) {
+/* The eight words of a record, in two accesses where the language can. NVIDIA's OpenCL C has the assembler of CUDA. */
+#if defined(CADT_LANG_CUDA) || (defined(__NV_CL_C_VERSION) && defined(CADT_CL_C11) && !CADT_CONTIGUOUS)
+CADT_FN void cadt_load_record(CADT_GLOBAL const cadt_u32* p, cadt_u32* w0, cadt_u32* w1, cadt_u32* w2, cadt_u32* w3,
+                              cadt_u32* w4, cadt_u32* w5, cadt_u32* w6, cadt_u32* w7) {
   asm volatile("ld.relaxed.gpu.global.v4.u32 {%0, %1, %2, %3}, [%4];"
                : "=r"(*w0), "=r"(*w1), "=r"(*w2), "=r"(*w3)
                : "l"(p)

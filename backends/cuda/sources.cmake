@@ -37,7 +37,8 @@ if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
 endif()
 enable_language(CUDA)
 find_package(CUDAToolkit REQUIRED)
-cadt_backend(cuda in "nvcc ${CMAKE_CUDA_COMPILER_VERSION}, ${CMAKE_CUDA_ARCHITECTURES}")
+string(REPLACE ";" " " cuda_architectures "${CMAKE_CUDA_ARCHITECTURES}")
+cadt_backend(cuda in "nvcc ${CMAKE_CUDA_COMPILER_VERSION}: ${cuda_architectures}")
 
 add_library(cadt_cuda_kernels OBJECT ${PROJECT_SOURCE_DIR}/kernels_cuda/narrow.cu ${PROJECT_SOURCE_DIR}/kernels_cuda/wide.cu
             ${PROJECT_SOURCE_DIR}/kernels_cuda/primitives.cu)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/opencl/device.hpp"
 
+#include "backends/opencl/primitives.hpp"
+
 #include <algorithm>
 #include <cadt/errors.hpp>
 #include <limits>
@@ -88,8 +90,8 @@ bool is_out_of_memory(int code) {
 // PoCL counts the users of a compiled kernel without a lock (pocl_release_dlhandle_cache, seen in 3.1): two launches in
 // flight at once, from different queues, end the process by a failed assertion. So one is in flight in the process.
 std::mutex launching;
-bool launches_alone(const DeviceInfo& info) {
-  return !info.gpu && info.platform.find("Portable Computing Language") != std::string::npos;
+bool launches_alone(const FoundDevice& device) {
+  return !device.gpu_hardware && device.info.platform.find("Portable Computing Language") != std::string::npos;
 }
 
 std::size_t left_bytes(const SharedContext& shared) {
@@ -190,7 +192,8 @@ std::unique_ptr<Buffer> ClDevice::wrap(void* memory, std::size_t bytes) {
     size = buffer.getInfo<CL_MEM_SIZE>();
   });
   if (size < bytes)
-    throw InputError("a buffer of " + std::to_string(size) + " bytes where " + std::to_string(bytes) + " are needed", 0);
+    throw InputError("a buffer of " + std::to_string(size) + " bytes where " + std::to_string(bytes) + " are needed",
+                     0);
   return std::make_unique<ClBuffer>(shared_, std::move(buffer), bytes, 0);
 }
 
@@ -217,43 +220,53 @@ void ClDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint
   if (bytes != 0) run([&] { queue_.enqueueFillBuffer(memory_of(to), word, offset, bytes); });
 }
 
-ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, bool wide) {
-  const auto number = static_cast<std::size_t>(kernel);
-  auto& slot = kernels_[wide ? 1 : 0].at(number);
-  if (slot) return *slot;
+ClDevice::ReadyKernel ClDevice::make_ready(const char* name, bool wide, std::size_t group) {
   const cl::Program program = shared_->program(wide);
   ReadyKernel made;
+  made.name = name;
   run([&] {
     try {
-      made.kernel = cl::Kernel(program, kernel_names[number]);
+      made.kernel = cl::Kernel(program, name);
     } catch (const cl::Error& error) {
       if (error.err() != CL_INVALID_KERNEL_NAME) throw;
-      throw InternalError(std::string("the program for '") + info().name + "' has no kernel " + kernel_names[number]);
+      throw InternalError(std::string("the program for '") + info().name + "' has no kernel " + name);
     }
     made.parameters = made.kernel.getInfo<CL_KERNEL_NUM_ARGS>();
     const auto limit = made.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(shared_->device().device);
     const auto along = shared_->device().device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>();
-    const std::size_t wanted = work_group_size_ != 0 ? work_group_size_ : (info().gpu ? gpu_group : cpu_group);
-    made.group = std::max<std::size_t>(1, std::min({wanted, limit, along.empty() ? limit : along.front()}));
+    made.group = std::max<std::size_t>(1, std::min({group, limit, along.empty() ? limit : along.front()}));
   });
-  slot = std::move(made);
+  return made;
+}
+
+ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, bool wide) {
+  const auto number = static_cast<std::size_t>(kernel);
+  auto& slot = kernels_[wide ? 1 : 0].at(number);
+  if (!slot) {
+    const std::size_t group = work_group_size_ != 0 ? work_group_size_ : (info().gpu ? gpu_group : cpu_group);
+    slot = make_ready(kernel_names[number], wide, group);
+  }
   return *slot;
 }
 
 void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) {
   if (items == 0) return;
   ReadyKernel& target = ready(kernel, wide);
-  const char* const name = kernel_names[static_cast<std::size_t>(kernel)];
-  if (args.size() != target.parameters)
-    throw InternalError(std::string(name) + " takes " + std::to_string(target.parameters) + " arguments, not " +
-                        std::to_string(args.size()));
   // On a GPU one work-item must be one and not a group: the driver lets one alone do what others keep each other from.
   // On a CPU the others find nothing to do, and PoCL compiles anew for each size of a group.
-  const std::size_t group = info().gpu ? std::min<std::size_t>(target.group, items) : target.group;
-  const std::size_t groups = (items + group - 1) / group;
+  std::size_t group = target.group;
+  if (info().gpu && (items == 1 || !launches_alone(shared_->device()))) group = std::min<std::size_t>(group, items);
+  enqueue(target, (items + group - 1) / group, group, args);
+}
+
+void ClDevice::enqueue(ReadyKernel& target, std::size_t groups, std::size_t group, std::span<const Arg> args) {
+  if (args.size() != target.parameters)
+    throw InternalError(std::string(target.name) + " takes " + std::to_string(target.parameters) + " arguments, not " +
+                        std::to_string(args.size()));
   // The kernels number their work-items in 32 bits: one beyond would be taken for the first.
   if (groups > std::numeric_limits<std::uint32_t>::max() / group)
-    throw InternalError(std::string(name) + " was launched with " + std::to_string(items) + " work-items");
+    throw InternalError(std::string(target.name) + " was launched with " + std::to_string(groups) + " groups of " +
+                        std::to_string(group) + " work-items");
   run([&] {
     cl_uint position = 0;
     for (const Arg& arg : args) {
@@ -265,10 +278,16 @@ void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg>
         target.kernel.setArg(position, memory_of(*arg.buffer()));
       ++position;
     }
-    const auto one_at_a_time = launches_alone(info()) ? std::unique_lock(launching) : std::unique_lock<std::mutex>();
+    const bool alone = launches_alone(shared_->device());
+    const auto one_at_a_time = alone ? std::unique_lock(launching) : std::unique_lock<std::mutex>();
     queue_.enqueueNDRangeKernel(target.kernel, cl::NullRange, cl::NDRange(groups * group), cl::NDRange(group));
-    if (one_at_a_time) queue_.finish();
+    if (alone) queue_.finish();
   });
+}
+
+Primitives* ClDevice::primitives() noexcept {
+  if (!primitives_) primitives_ = info().gpu ? ClPrimitives::make(*this) : nullptr;
+  return primitives_->get();
 }
 
 void ClDevice::finish() {

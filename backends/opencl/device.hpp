@@ -30,13 +30,23 @@ class ClDevice final : public Device {
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
   void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) override;
   void finish() override;
+  [[nodiscard]] Primitives* primitives() noexcept override;
 
- private:
   struct ReadyKernel {
+    const char* name = nullptr;
     cl::Kernel kernel;
     cl_uint parameters = 0;
     std::size_t group = 1;  ///< work-items of a group
   };
+  /// A kernel for groups of `group` work-items, or of as many as the device allows.
+  [[nodiscard]] ReadyKernel make_ready(const char* name, bool wide, std::size_t group);
+  /// Puts groups of the kernel's size in the queue.
+  void enqueue(ReadyKernel& kernel, std::size_t groups, std::span<const Arg> args) {
+    enqueue(kernel, groups, kernel.group, args);
+  }
+
+ private:
+  void enqueue(ReadyKernel& kernel, std::size_t groups, std::size_t group, std::span<const Arg> args);
   ReadyKernel& ready(KernelId kernel, bool wide);
 
   /// Calls `work` and translates what the bindings throw.
@@ -49,6 +59,7 @@ class ClDevice final : public Device {
   unsigned work_group_size_;
   std::shared_ptr<DeviceAllocator> allocator_;
   std::array<std::array<std::optional<ReadyKernel>, kernel_count>, 2> kernels_;
+  std::optional<std::unique_ptr<Primitives>> primitives_;  ///< made when first asked for
 };
 
 }  // namespace cadt::opencl

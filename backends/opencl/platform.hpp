@@ -14,6 +14,7 @@ struct FoundDevice {
   cl::Device device;
   Facts facts;
   DeviceInfo info;
+  bool gpu_hardware = false;  ///< info.gpu may be a wish of the tests
   std::string vendor, device_version, platform_version;
 };
 

@@ -111,6 +111,8 @@ std::string build_options(const FoundDevice& device, const AtomicsPath& atomics,
   std::string options = atomics.options;
   options += wide ? " -DCADT_WIDE=1" : " -DCADT_WIDE=0";
   options += device.info.gpu ? " -DCADT_CONTIGUOUS=0 -DCADT_RADIX_BITS=4" : " -DCADT_CONTIGUOUS=1 -DCADT_RADIX_BITS=8";
+  // cadt_insert takes 118 registers if it may; with 96 more work-items fit in, which is faster (measured with CUDA).
+  if (device.info.platform == "NVIDIA CUDA") options += " -cl-nv-maxrregcount=96";
   if (!extra.empty()) options += " " + extra;
   return options;
 }

@@ -43,6 +43,7 @@ target_sources(cadt PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/facts.cpp
   ${CMAKE_CURRENT_LIST_DIR}/loader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/platform.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/primitives.cpp
   ${CMAKE_CURRENT_LIST_DIR}/program.cpp)
 # A generated file is known only to its own directory, where the target is not: a library carries it over.
 add_library(cadt_opencl_kernels OBJECT ${CADT_EMBEDDED_KERNELS})

@@ -74,7 +74,7 @@ CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* t
     }
 #endif
   }
-  cadt_fence_locks(); /* what the last owners wrote is seen from here on */
+  cadt_fence_claims(); /* what the last owners wrote is seen from here on */
   return 1u;
 }
 

@@ -34,7 +34,7 @@ BACKENDS = ["host", "opencl", "cuda"]
 # Headers from outside -> folders that may use them.
 OUTSIDE = {
     r"CGAL/": ["tests", "bench"],
-    r"CL/": ["backends/opencl", "kernels_cl", "tests/device"],
+    r"CL/": ["backends/opencl", "kernels_cl", "tests/device", "tests/gpu"],
     r"cuda": ["backends/cuda", "kernels_cuda", "common/device", "tests/device", "tests/gpu", "examples"],
     r"cub/|thrust/": ["backends/cuda", "kernels_cuda"],
     r"cairo|png|zlib": ["io", "tests"],

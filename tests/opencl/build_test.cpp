@@ -29,6 +29,7 @@ TEST_F(OpenClBuild, EmbeddedKernelsPassTheSelfTest) {
   EXPECT_EQ(device->info().name, info.name);
   EXPECT_EQ(device->threads(), info.compute_units);
   EXPECT_EQ(device->shape().contiguous, !info.gpu);
+  EXPECT_EQ(device->primitives() != nullptr, info.gpu);
   EXPECT_EQ(counted_items(*device, 1000), 1000u);
 }
 
@@ -93,6 +94,7 @@ TEST_F(OpenClBuild, FailureCarriesDeviceOptionsAndLog) {
   EXPECT_EQ(error.device(), info.name);
   EXPECT_NE(error.options().find("-DCADT_TEST_MARK=1"), std::string::npos) << error.options();
   EXPECT_NE(error.options().find("-DCADT_WIDE=0"), std::string::npos) << error.options();
+  EXPECT_EQ(error.options().find("-cl-nv-") != std::string::npos, info.platform == "NVIDIA CUDA") << error.options();
   EXPECT_NE(error.log().find("no_such_word"), std::string::npos) << error.log();
   EXPECT_NE(error.log().find("broken.h"), std::string::npos) << error.log();
   EXPECT_NE(error.log().find("CL_BUILD_PROGRAM_FAILURE"), std::string::npos) << error.log();

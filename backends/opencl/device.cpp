@@ -14,6 +14,7 @@ namespace {
 // A work-item on a CPU does a whole range of elements, so a group of one is no loss, and it spreads best. On GPUs 128
 // leaves the scheduler several groups per unit even for kernels with many registers.
 constexpr std::size_t cpu_group = 1, gpu_group = 128;
+constexpr std::size_t largest_fill = std::size_t{1} << 30;
 
 class ClBuffer final : public Buffer {
  public:
@@ -217,7 +218,12 @@ void ClDevice::read(const Buffer& from, std::size_t offset, void* to, std::size_
 void ClDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) {
   check_range("a fill", to, offset, bytes);
   if (offset % 4 != 0 || bytes % 4 != 0) throw InternalError("a fill is not a multiple of four bytes");
-  if (bytes != 0) run([&] { queue_.enqueueFillBuffer(memory_of(to), word, offset, bytes); });
+  // In pieces: what a driver does with more than 4 GiB in one command is its own business.
+  for (std::size_t done = 0; done < bytes; done += largest_fill) {
+    run([&] {
+      queue_.enqueueFillBuffer(memory_of(to), word, offset + done, std::min(bytes - done, largest_fill));
+    });
+  }
 }
 
 ClDevice::ReadyKernel ClDevice::make_ready(const char* name, bool wide, std::size_t group) {

@@ -58,7 +58,8 @@ TEST_P(Regression, AlternatingLinesAreNotQuadratic) {
   for (int i = 0; i < n; ++i) xy.insert(xy.end(), {static_cast<double>(i), i % 2 == 0 ? 0.0 : 1e-5 * i});
   const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
   EXPECT_TRUE(verified(xy, mesh));
-  EXPECT_LT(mesh.statistics().flips, 40u * n);  // it was 2500 n
+  // It was 2500 n. On GPUs thousands of points come at once: 13 n to 85 n were seen.
+  EXPECT_LT(mesh.statistics().flips, (GetParam().backend == Backend::host ? 10u : 400u) * n);
 }
 
 // Exponents that span everything went to exact arithmetic for nearly every sign: 90 exact orientations a point.

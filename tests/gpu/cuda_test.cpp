@@ -439,10 +439,16 @@ TEST_P(CudaCalls, TakesAllMemory) {
   std::size_t available = 0, total = 0;
   ASSERT_EQ(cudaMemGetInfo(&available, &total), cudaSuccess);
   if (available < left || triangulator.memory_needed(n) <= left) GTEST_SKIP() << available << " bytes are free";
-  void* ballast = nullptr;
-  if (available > left && cudaMalloc(&ballast, available - left) != cudaSuccess) {
-    cudaGetLastError();
-    GTEST_SKIP() << "the memory that is free cannot be taken in one piece";
+  std::vector<void*> ballast;
+  for (std::size_t piece = available - left; piece > left / 8;) {
+    if (void* memory_piece = nullptr; cudaMalloc(&memory_piece, piece) == cudaSuccess) {
+      ballast.push_back(memory_piece);
+      ASSERT_EQ(cudaMemGetInfo(&available, &total), cudaSuccess);
+      piece = available > left ? available - left : 0;
+    } else {
+      cudaGetLastError();
+      piece /= 2;
+    }
   }
   ASSERT_EQ(cudaMemGetInfo(&available, &total), cudaSuccess);
   const std::size_t needed = triangulator.memory_needed(n);
@@ -462,8 +468,8 @@ TEST_P(CudaCalls, TakesAllMemory) {
       expect_same(*memory, triangulator.triangulate(fewer), few.mesh);
     }
   }
-  EXPECT_EQ(cudaFree(ballast), cudaSuccess);
-  if (needed <= available) GTEST_SKIP() << "others gave memory back meanwhile";
+  for (void* piece : ballast) EXPECT_EQ(cudaFree(piece), cudaSuccess);
+  if (needed <= available) GTEST_SKIP() << "so much memory cannot be taken: " << available << " bytes are still free";
   triangulator.options().order = Order::fast;
   EXPECT_GT(triangulator.triangulate(points).number_of_triangles(), n);
 }

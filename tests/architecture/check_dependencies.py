@@ -35,7 +35,7 @@ BACKENDS = ["host", "opencl", "cuda"]
 OUTSIDE = {
     r"CGAL/": ["tests", "bench"],
     r"CL/": ["backends/opencl", "kernels_cl", "tests/device"],
-    r"cuda": ["backends/cuda", "kernels_cuda", "common/device", "tests/device"],
+    r"cuda": ["backends/cuda", "kernels_cuda", "common/device", "tests/device", "tests/gpu"],
     r"cub/|thrust/": ["backends/cuda", "kernels_cuda"],
     r"cairo|png|zlib": ["io", "tests"],
     r"fast_float/": ["io"],

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <thread>
 #include <utility>
 
 namespace cadt::cuda {
@@ -57,20 +58,16 @@ void check_driver(CUresult code, const char* call, const std::string& device) {
   if (code != CUDA_SUCCESS) throw DeviceError(call, static_cast<int>(code), device, "error of the CUDA driver");
 }
 
-/// Makes the device's primary context current until the end.
-class PrimaryScope {
- public:
-  PrimaryScope(int device, const std::string& name) {
-    driver().get_current(&before_);
-    check(cudaSetDevice(device), "cudaSetDevice", name);
-  }
-  ~PrimaryScope() { driver().set_current(before_); }
-  PrimaryScope(const PrimaryScope&) = delete;
-  PrimaryScope& operator=(const PrimaryScope&) = delete;
-
- private:
-  CUcontext before_ = nullptr;
-};
+/// The device's primary context, made by the runtime if there is none yet. In a thread of its own, since cudaSetDevice
+/// changes the current device of the caller's, which cannot be undone where no context was current.
+cudaError_t primary_context(int device, CUcontext& context) {
+  cudaError_t code = cudaSuccess;
+  std::thread([&] {
+    code = cudaSetDevice(device);
+    if (code == cudaSuccess && driver().get_current(&context) != CUDA_SUCCESS) code = cudaErrorDeviceUninitialized;
+  }).join();
+  return code;
+}
 
 }  // namespace
 
@@ -81,20 +78,36 @@ void check(cudaError_t code, const char* call, const std::string& device) {
                     std::string(cudaGetErrorName(code)) + ", " + cudaGetErrorString(code));
 }
 
+void ignore(cudaError_t code) noexcept {
+  if (code != cudaSuccess) cudaGetLastError();
+}
+
 ContextScope::ContextScope(CUcontext context) noexcept : pushed_(driver().push(context) == CUDA_SUCCESS) {}
 ContextScope::~ContextScope() {
   CUcontext popped = nullptr;
   if (pushed_) driver().pop(&popped);
 }
 
-int device_of(cudaStream_t stream) noexcept {
+CUcontext context_of(cudaStream_t stream) {
   CUcontext context = nullptr;
-  if (!driver().complete) return -1;
-  if (driver().get_current(&context) == CUDA_SUCCESS && context == nullptr) {
-    int device = 0;  // a runtime that has not been used yet: its first use makes the primary context current
-    if (cudaGetDevice(&device) != cudaSuccess || cudaSetDevice(device) != cudaSuccess) return -1;
+  std::optional<ContextScope> scope;
+  if (driver().get_current(&context) != CUDA_SUCCESS || context == nullptr) {
+    // A runtime that has not been used in this thread yet: its first use would make the primary context current.
+    int device = 0;
+    if (const cudaError_t code = cudaGetDevice(&device); code != cudaSuccess) {
+      ignore(code);
+      return nullptr;
+    }
+    if (primary_context(device, context) != cudaSuccess) return nullptr;
+    scope.emplace(context);
   }
-  if (driver().stream_context(stream, &context) != CUDA_SUCCESS) return -1;
+  return driver().stream_context(stream, &context) == CUDA_SUCCESS ? context : nullptr;
+}
+
+int device_of(cudaStream_t stream) {
+  if (!driver().complete) return -1;
+  CUcontext const context = context_of(stream);
+  if (context == nullptr) return -1;
   const ContextScope scope(context);
   CUdevice device = -1;
   return driver().device(&device) == CUDA_SUCCESS ? static_cast<int>(device) : -1;
@@ -105,10 +118,11 @@ Stream::Stream(int device, std::string name, std::optional<void*> queue, std::sh
   if (!driver().complete) throw BackendUnavailable("cuda", "the driver lacks functions of CUDA 12");
   if (queue) {
     stream_ = static_cast<cudaStream_t>(*queue);
-    check_driver(driver().stream_context(stream_, &context_), "cuStreamGetCtx", name_);
+    context_ = context_of(stream_);
+    if (context_ == nullptr) throw BackendUnavailable("cuda", "Options::queue is not a stream");
   } else {
-    const PrimaryScope primary(device, name_);
-    check_driver(driver().get_current(&context_), "cuCtxGetCurrent", name_);
+    check(primary_context(device, context_), "cudaSetDevice", name_);
+    const ContextScope scope(context_);
     // Does not wait for the default stream, and the default stream does not wait for it.
     check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags", name_);
     own_ = true;
@@ -120,20 +134,19 @@ Stream::Stream(int device, std::string name, std::optional<void*> queue, std::sh
   properties.location.type = cudaMemLocationTypeDevice;
   properties.location.id = device;
   if (const cudaError_t code = cudaMemPoolCreate(&pool_, &properties); code != cudaSuccess) {
-    if (own_) cudaStreamDestroy(stream_);
+    if (own_) ignore(cudaStreamDestroy(stream_));
     check(code, "cudaMemPoolCreate", name_);
   }
   // Freed memory stays with the pool: phases and calls reuse each other's.
   std::uint64_t keep = std::numeric_limits<std::uint64_t>::max();
-  cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep);
+  ignore(cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep));
 }
 
 Stream::~Stream() {
   const ContextScope scope(context_);
-  cudaStreamSynchronize(stream_);
-  if (pool_ != nullptr) cudaMemPoolDestroy(pool_);
-  if (own_) cudaStreamDestroy(stream_);
-  cudaGetLastError();  // a destructor cannot report, and the caller's next call shall not find our errors
+  ignore(cudaStreamSynchronize(stream_));
+  if (pool_ != nullptr) ignore(cudaMemPoolDestroy(pool_));
+  if (own_) ignore(cudaStreamDestroy(stream_));
 }
 
 void* Stream::allocate(std::size_t bytes) {
@@ -157,8 +170,8 @@ void* Stream::allocate(std::size_t bytes) {
 void Stream::deallocate(void* memory, std::size_t bytes) noexcept {
   if (allocator_ != nullptr) {
     allocator_->deallocate(memory, bytes, stream_);
-  } else if (cudaFreeAsync(memory, stream_) != cudaSuccess) {  // in order behind the launches that use it
-    cudaGetLastError();
+  } else {
+    ignore(cudaFreeAsync(memory, stream_));  // in order behind the launches that use it
   }
 }
 
@@ -168,7 +181,7 @@ void Stream::fill(void* memory, std::uint32_t word, std::size_t words) {
 
 std::size_t Stream::free_bytes() const noexcept {
   std::size_t available = 0, total = 0;
-  cudaMemGetInfo(&available, &total);
+  ignore(cudaMemGetInfo(&available, &total));
   std::uint64_t reserved = 0, used = 0;
   if (pool_ != nullptr && cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrReservedMemCurrent, &reserved) == cudaSuccess &&
       cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrUsedMemCurrent, &used) == cudaSuccess)
@@ -177,9 +190,8 @@ std::size_t Stream::free_bytes() const noexcept {
 }
 
 void Stream::trim() noexcept {
-  cudaStreamSynchronize(stream_);
-  if (pool_ != nullptr) cudaMemPoolTrimTo(pool_, 0);
-  cudaGetLastError();
+  ignore(cudaStreamSynchronize(stream_));
+  if (pool_ != nullptr) ignore(cudaMemPoolTrimTo(pool_, 0));
 }
 
 }  // namespace cadt::cuda

@@ -16,6 +16,10 @@ namespace cadt::cuda {
 /// \throws DeviceError unless `code` is cudaSuccess
 void check(cudaError_t code, const char* call, const std::string& device);
 
+/// For calls whose failure changes nothing: the caller's next call shall not find it. An earlier error of the caller's
+/// own stays.
+void ignore(cudaError_t code) noexcept;
+
 /// Makes a context current and the caller's one again at the end.
 class ContextScope {
  public:
@@ -29,8 +33,10 @@ class ContextScope {
 };
 
 /// Ordinal of the device that a stream belongs to; -1 if it has none. The default streams are those of the current
-/// context.
-[[nodiscard]] int device_of(cudaStream_t stream) noexcept;
+/// context, or of the current device's primary one. Leaves no context current that was not.
+[[nodiscard]] int device_of(cudaStream_t stream);
+/// Null if it has none.
+[[nodiscard]] CUcontext context_of(cudaStream_t stream);
 
 /// A stream, its context, and where its memory comes from. Lives as long as the last buffer.
 class Stream {

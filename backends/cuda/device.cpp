@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <thread>
 
 #include "kernels_cuda/kernels.hpp"
 #include "kernels_cuda/primitives.hpp"
@@ -42,11 +43,29 @@ void check_range(const char* what, const Buffer& buffer, std::size_t offset, std
                         " exceeds a buffer of " + std::to_string(buffer.bytes()));
 }
 
+/// CUB takes an error that the caller has not fetched yet for its own. Errors belong to a thread, so then another one
+/// does the work; but not in the stream that belongs to the thread itself, where the error is dropped.
+template <class Work>
+cudaError_t without_earlier_error(const Stream& stream, const Work& work) {
+  if (cudaPeekAtLastError() == cudaSuccess) return work();
+  if (stream.get() == cudaStreamPerThread) {
+    cudaGetLastError();
+    return work();
+  }
+  cudaError_t code = cudaSuccess;
+  std::thread([&] {
+    const ContextScope scope(stream.context());
+    code = work();
+  }).join();
+  return code;
+}
+
 }  // namespace
 
 CudaDevice::CudaDevice(DeviceInfo info, const Options& options)
     : info_(std::move(info)),
-      block_size_(options.work_group_size != 0 ? std::clamp(options.work_group_size, 1U, largest_block) : default_block),
+      block_size_(options.work_group_size != 0 ? std::clamp(options.work_group_size, 1U, largest_block)
+                                               : default_block),
       stream_(std::make_shared<Stream>(info_.index, info_.name, options.queue, options.allocator)) {
   const ContextScope scope(stream_->context());
   check_call(cudaHostAlloc(&staging_, staging_bytes, cudaHostAllocDefault), "cudaHostAlloc");
@@ -54,9 +73,8 @@ CudaDevice::CudaDevice(DeviceInfo info, const Options& options)
 
 CudaDevice::~CudaDevice() {
   const ContextScope scope(stream_->context());
-  cudaStreamSynchronize(stream_->get());
-  cudaFreeHost(staging_);
-  cudaGetLastError();
+  ignore(cudaStreamSynchronize(stream_->get()));
+  ignore(cudaFreeHost(staging_));
 }
 
 LaunchShape CudaDevice::shape() const noexcept {
@@ -113,9 +131,9 @@ void CudaDevice::read(const Buffer& from, std::size_t offset, void* to, std::siz
   const ContextScope scope(stream_->context());
   // Small results come through page-locked memory, which takes half of the time.
   const bool small = bytes <= staging_bytes;
-  check_call(cudaMemcpyAsync(small ? staging_ : to, data_of(from) + offset, bytes, cudaMemcpyDeviceToHost,
-                             stream_->get()),
-             "cudaMemcpyAsync");
+  check_call(
+      cudaMemcpyAsync(small ? staging_ : to, data_of(from) + offset, bytes, cudaMemcpyDeviceToHost, stream_->get()),
+      "cudaMemcpyAsync");
   stream_->wait();
   if (small) std::memcpy(to, staging_, bytes);
 }
@@ -167,8 +185,12 @@ void CudaDevice::load_kernels() {
 std::size_t CudaDevice::sort_scratch(std::size_t count, unsigned bits) {
   const ContextScope scope(stream_->context());
   std::size_t bytes = 0;
-  check_call(sort_pairs(nullptr, bytes, nullptr, nullptr, nullptr, nullptr, static_cast<std::uint32_t>(count), bits,
-                        stream_->get(), nullptr),
+  check_call(without_earlier_error(*stream_,
+                                   [&] {
+                                     return sort_pairs(nullptr, bytes, nullptr, nullptr, nullptr, nullptr,
+                                                       static_cast<std::uint32_t>(count), bits, stream_->get(),
+                                                       nullptr);
+                                   }),
              "cub::DeviceRadixSort");
   return bytes;
 }
@@ -178,8 +200,13 @@ bool CudaDevice::sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& oth
   const ContextScope scope(stream_->context());
   std::size_t bytes = scratch.bytes();
   bool in_other = false;
-  check_call(sort_pairs(data_of(scratch), bytes, words_of(keys), words_of(values), words_of(other_keys),
-                        words_of(other_values), static_cast<std::uint32_t>(count), bits, stream_->get(), &in_other),
+  check_call(without_earlier_error(*stream_,
+                                   [&] {
+                                     return sort_pairs(data_of(scratch), bytes, words_of(keys), words_of(values),
+                                                       words_of(other_keys), words_of(other_values),
+                                                       static_cast<std::uint32_t>(count), bits, stream_->get(),
+                                                       &in_other);
+                                   }),
              "cub::DeviceRadixSort");
   return in_other;
 }
@@ -187,15 +214,22 @@ bool CudaDevice::sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& oth
 std::size_t CudaDevice::scan_scratch(std::size_t count) {
   const ContextScope scope(stream_->context());
   std::size_t bytes = 0;
-  check_call(exclusive_sum(nullptr, bytes, nullptr, static_cast<std::uint32_t>(count), stream_->get()),
-             "cub::DeviceScan");
+  check_call(
+      without_earlier_error(
+          *stream_,
+          [&] { return exclusive_sum(nullptr, bytes, nullptr, static_cast<std::uint32_t>(count), stream_->get()); }),
+      "cub::DeviceScan");
   return bytes;
 }
 
 void CudaDevice::scan(Buffer& scratch, Buffer& data, std::size_t count) {
   const ContextScope scope(stream_->context());
   std::size_t bytes = scratch.bytes();
-  check_call(exclusive_sum(data_of(scratch), bytes, words_of(data), static_cast<std::uint32_t>(count), stream_->get()),
+  check_call(without_earlier_error(*stream_,
+                                   [&] {
+                                     return exclusive_sum(data_of(scratch), bytes, words_of(data),
+                                                          static_cast<std::uint32_t>(count), stream_->get());
+                                   }),
              "cub::DeviceScan");
 }
 

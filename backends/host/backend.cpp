@@ -2,6 +2,7 @@
 // The host as a device: the kernels of common/device on threads of this process.
 #include "common/host/backend.hpp"
 
+#include <cadt/triangulator.hpp>
 #include <cadt/version.hpp>
 
 #include <sys/mman.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <new>
 #include <thread>
 
@@ -45,7 +47,16 @@ class HostBuffer final : public Buffer {
     }
   }
   HostBuffer(const void* data, std::size_t bytes) : Buffer(bytes), data_(const_cast<void*>(data)) {}
+  /// From the caller's allocator.
+  HostBuffer(std::shared_ptr<DeviceAllocator> allocator, std::size_t bytes)
+      : Buffer(bytes), data_(allocator->allocate(bytes, nullptr)) {
+    if (data_ == nullptr)
+      throw OutOfMemory("the caller's allocator gave no " + std::to_string(bytes) + " bytes: use fewer points", bytes,
+                        0);
+    allocator_ = std::move(allocator);
+  }
   ~HostBuffer() override {
+    if (allocator_ != nullptr) allocator_->deallocate(data_, bytes(), nullptr);
     if (mapped_ != nullptr) ::munmap(mapped_, mapped_bytes_);
     if (owned_) std::free(data_);
   }
@@ -58,6 +69,7 @@ class HostBuffer final : public Buffer {
   void* data_ = nullptr;
   void* mapped_ = nullptr;
   std::size_t mapped_bytes_ = 0;
+  std::shared_ptr<DeviceAllocator> allocator_;
   bool owned_ = false;
 };
 
@@ -94,7 +106,9 @@ DeviceInfo describe() {
 class HostDevice final : public Device {
  public:
   explicit HostDevice(const Options& options)
-      : pool_(options.threads != 0 ? options.threads : all_cores(), options.grain != 0), info_(describe()) {}
+      : pool_(options.threads != 0 ? options.threads : all_cores(), options.grain != 0),
+        info_(describe()),
+        allocator_(options.allocator) {}
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] LaunchShape shape() const noexcept override {
@@ -102,11 +116,9 @@ class HostDevice final : public Device {
   }
   [[nodiscard]] unsigned threads() const noexcept override { return pool_.threads(); }
 
-  [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override {
-    return std::make_unique<HostBuffer>(bytes);
-  }
+  [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override { return make(bytes); }
   [[nodiscard]] std::unique_ptr<Buffer> allocate_zeros(std::size_t bytes) override {
-    auto buffer = std::make_unique<HostBuffer>(bytes);
+    auto buffer = make(bytes);
     if (!buffer->zeroed()) std::memset(buffer->data(), 0, bytes);
     return buffer;
   }
@@ -120,6 +132,10 @@ class HostDevice final : public Device {
     return std::make_unique<HostBuffer>(pointer, bytes);
   }
   [[nodiscard]] void* handle(const Buffer& buffer) const noexcept override { return bytes_of(buffer); }
+  [[nodiscard]] bool keeps_memory() const noexcept override { return allocator_ != nullptr; }
+  [[nodiscard]] std::size_t free_bytes() override {
+    return allocator_ != nullptr ? std::numeric_limits<std::size_t>::max() : Device::free_bytes();
+  }
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
     if (bytes != 0) std::memcpy(bytes_of(to) + offset, from, bytes);
   }
@@ -144,8 +160,14 @@ class HostDevice final : public Device {
     return static_cast<std::byte*>(static_cast<const HostBuffer&>(buffer).data());
   }
 
+  [[nodiscard]] std::unique_ptr<HostBuffer> make(std::size_t bytes) const {
+    return allocator_ != nullptr ? std::make_unique<HostBuffer>(allocator_, bytes)
+                                 : std::make_unique<HostBuffer>(bytes);
+  }
+
   ThreadPool pool_;
   DeviceInfo info_;
+  std::shared_ptr<DeviceAllocator> allocator_;
 };
 
 class HostBackend final : public BackendEntry {

@@ -20,13 +20,14 @@ struct Triangulator::State {
   Options options;
   std::unique_ptr<Device> device;
   Memory memory;
-  std::size_t reserved_points = 0;  ///< calls with so many points have had their memory before
+  std::size_t known_points = 0;     ///< a call with so many points has had its memory before
+  std::size_t reserved_points = 0;  ///< buffers for calls with so many points are kept on the caller's wish
 };
 
 struct DeviceTriangulation::Data {
   std::shared_ptr<Triangulator::State> state;  // first: goes last, after the memory
   std::size_t points = 0, distinct = 0, triangle_count = 0, duplicate_count = 0;
-  Allocation triangles, neighbors;              ///< 3 words a triangle each
+  Allocation triangles, neighbors;               ///< 3 words a triangle each
   Allocation duplicate_points, representatives;  ///< null if there are none
   int dimension = -1;
   Statistics statistics;

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/host/input_points.hpp"
 
+#include <string>
+
 #include "common/host/device_constants.hpp"
 
 namespace cadt {
 namespace {
 
 using device_constants::cadt_point;
+
+/// Kernels count coordinates in 32 bits: 2 * (skip + n) of them.
+constexpr std::size_t most_skipped = (std::size_t{1} << 31) - 1 - max_points();
 
 /// Where the coordinates of one axis are: the i-th at first + i * stride.
 struct Axis {
@@ -41,6 +46,10 @@ Allocation import_points(Run& run, const PointsView& points) {
 Allocation import_points(Run& run, const DevicePoints& points) {
   const std::size_t n = points.size, size = points.scalar == Scalar::float32 ? sizeof(float) : sizeof(double);
   if (points.x == nullptr) throw InputError("the points have no memory: DevicePoints::x is null", 0);
+  if (points.skip > most_skipped)
+    throw LimitError("at most " + std::to_string(most_skipped) + " points can be skipped, not " +
+                         std::to_string(points.skip) + ": pass a handle of a later place",
+                     points.skip, most_skipped);
   // Kernels of the library only read it.
   const Allocation x = run.memory.wrap(const_cast<void*>(points.x), (points.skip + n) * size * (points.y ? 1 : 2));
   if (points.y != nullptr) {

@@ -39,12 +39,17 @@ void Memory::require(std::size_t bytes) {
   }
 }
 
+bool Memory::suits(std::size_t kept, std::size_t bytes) const noexcept {
+  if (kept < bytes) return false;
+  if (limit_ != 0) return kept == bytes;  // what is too large would count, and might be what is missing later
+  return reserved_ || kept / 2 <= bytes;  // not so large that it would be missed
+}
+
 std::unique_ptr<Buffer> Memory::take_kept(std::size_t bytes) noexcept {
-  // the smallest that is large enough, but not so large that it would be missed
+  // the smallest that is large enough
   auto best = kept_.end();
   for (auto it = kept_.begin(); it != kept_.end(); ++it)
-    if ((*it)->bytes() >= bytes && (*it)->bytes() / 2 <= bytes && (best == kept_.end() || (*it)->bytes() < (*best)->bytes()))
-      best = it;
+    if (suits((*it)->bytes(), bytes) && (best == kept_.end() || (*it)->bytes() < (*best)->bytes())) best = it;
   if (best == kept_.end()) return nullptr;
   auto buffer = std::move(*best);
   kept_.erase(best);

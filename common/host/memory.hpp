@@ -68,21 +68,31 @@ class Memory {
   void drop_kept() noexcept {
     kept_.clear();
     kept_bytes_ = 0;
+    dropped_ = true;
   }
+  /// Whether kept buffers were given back since this was asked last.
+  [[nodiscard]] bool dropped() noexcept { return std::exchange(dropped_, false); }
 
-  /// A new account. `limit` in bytes bounds what is held and kept together from here on; 0 for none.
-  void begin(std::size_t limit) noexcept {
+  /// A new account. `limit` in bytes bounds what is held and kept together from here on; 0 for none. `reserved`: the
+  /// kept buffers are for a call like this one, so any that is large enough may be taken.
+  void begin(std::size_t limit, bool reserved) noexcept {
     limit_ = limit;
+    reserved_ = reserved;
+    if (limit_ != 0 && held_ + kept_bytes_ > limit_) drop_kept();
     peak_ = held_ + kept_bytes_;
   }
   /// Most bytes held and kept together.
   [[nodiscard]] std::size_t peak() const noexcept { return peak_; }
   /// Buffers that had to be asked of the device since the beginning.
   [[nodiscard]] std::uint64_t allocations() const noexcept { return allocations_; }
+  /// Whether buffers are kept here, not by the device.
+  [[nodiscard]] bool keeps() const noexcept { return keep_; }
 
  private:
   friend class Allocation;
   [[nodiscard]] Allocation account(std::unique_ptr<Buffer> buffer);
+  /// Whether a kept buffer may serve a request for less.
+  [[nodiscard]] bool suits(std::size_t kept, std::size_t bytes) const noexcept;
   [[nodiscard]] std::unique_ptr<Buffer> take_kept(std::size_t bytes) noexcept;
   void give_back(std::unique_ptr<Buffer> buffer, std::size_t counted) noexcept;
   void check_limit(std::size_t bytes);
@@ -90,7 +100,7 @@ class Memory {
   [[nodiscard]] std::unique_ptr<Buffer> ask(const Allocate& allocate);
 
   Device& device_;
-  bool keep_;
+  bool keep_, reserved_ = false, dropped_ = false;
   std::size_t limit_ = 0, held_ = 0, kept_bytes_ = 0, peak_ = 0;
   std::uint64_t allocations_ = 0;
   std::vector<std::unique_ptr<Buffer>> kept_;

@@ -22,11 +22,21 @@ namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 
-/// Device bytes of the phase that needs most, but for crowded cells: the insertion on the host (93 a point), else
-/// writing the result (124). docs/performance.md has the plan.
-std::size_t bytes_needed(std::size_t n, bool host) {
-  constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial results
-  return fixed + n * (host ? 97 : 124);
+constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial results
+
+/// Device bytes of the phase that needs most, but for crowded cells: writing the result (124 a point), or the insertion
+/// (93) where the result goes straight to memory of the host's. docs/performance.md has the plan.
+std::size_t least_bytes(std::size_t n, bool result_elsewhere) { return fixed + n * (result_elsewhere ? 97 : 124); }
+
+/// Words a point of the buffers that a call without new ones needs: records, points sorted and not, results, their
+/// numbers, and lists of a word or less.
+constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
+
+/// The same, with buffers that wait for a later phase or call.
+std::size_t most_bytes(const Memory& memory, std::size_t n) {
+  std::size_t words = 0;
+  for (const std::size_t one : kept_words) words += one;
+  return memory.keeps() ? fixed + n * words * word : least_bytes(n, false);
 }
 
 void require_size(std::size_t points) {
@@ -100,6 +110,11 @@ void build(Run& run, const Points& points, std::size_t n, Outputs& outputs, Devi
   emit_triangles(run, mesh, order.labels, numbering, data.triangles, data.neighbors);
 }
 
+void begin_account(Triangulator::State& state, std::size_t n) {
+  if (state.memory.dropped()) state.known_points = state.reserved_points = 0;
+  state.memory.begin(state.options.max_memory, n <= state.reserved_points);
+}
+
 /// What the statistics say before and after each call.
 void open_account(Triangulator::State& state, std::size_t n, DeviceTriangulation::Data& data) {
   const DeviceInfo& info = state.device->info();
@@ -108,19 +123,19 @@ void open_account(Triangulator::State& state, std::size_t n, DeviceTriangulation
   data.statistics.backend = to_string(info.backend);
   data.statistics.device = info.name;
   data.statistics.threads = state.device->threads();
-  state.memory.begin(state.options.max_memory);
+  begin_account(state, n);
 }
 
-/// \throws LimitError, OutOfMemory before any work
-void require_memory(Triangulator::State& state, std::size_t n, std::size_t input_bytes) {
-  if (n <= state.reserved_points && state.options.max_memory == 0) return;
-  state.memory.require(bytes_needed(n, is_host(*state.device)) + input_bytes);
+/// \throws OutOfMemory before any work
+void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere) {
+  if (n <= state.known_points && state.options.max_memory == 0) return;
+  state.memory.require(least_bytes(n, result_elsewhere));
 }
 
 void close_account(Triangulator::State& state, Run& run, DeviceTriangulation::Data& data) {
   data.statistics.launches = run.launcher.launches();
   data.statistics.bytes_device_peak = state.memory.peak();
-  state.reserved_points = std::max(state.reserved_points, data.points);
+  state.known_points = std::max(state.known_points, data.points);
   run.check("collect", 1);
 }
 
@@ -131,7 +146,7 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
   data.state = state;
   open_account(*state, points.size(), data);
   if (points.size() != 0) {
-    require_memory(*state, points.size(), 0);
+    require_memory(*state, points.size(), is_host(*state->device));
     Run run(*state->device, state->memory, state->options, data.statistics);
     OnHost outputs(*result);
     build(run, points, points.size(), outputs, data);
@@ -166,7 +181,7 @@ DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) {
   data->state = state_;
   open_account(*state_, points.size, *data);
   if (points.size != 0) {
-    require_memory(*state_, points.size, 0);
+    require_memory(*state_, points.size, false);
     Run run(*state_->device, state_->memory, state_->options, data->statistics);
     OnDevice outputs;
     build(run, points, points.size, outputs, *data);
@@ -180,9 +195,10 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
                                   const VerifyOptions& options) {
   const DeviceTriangulation::Data& data = mesh.data();
   if (points.size != data.points)
-    throw InputError("the mesh is one of " + std::to_string(data.points) + " points", std::min(points.size, data.points));
+    throw InputError("the mesh is one of " + std::to_string(data.points) + " points",
+                     std::min(points.size, data.points));
   Device& device = *state_->device;
-  state_->memory.begin(state_->options.max_memory);
+  begin_account(*state_, data.points);
   Statistics statistics;
   Run run(device, state_->memory, state_->options, statistics);
   Triangulation::Data host;
@@ -196,37 +212,41 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
     view.has_duplicates = true;
     return cadt::verify(xy, view, options);
   }
-  const VerifyInput what{input, data.triangles,  data.neighbors, data.points, data.triangle_count,
-                         {},    host.duplicates, true};
+  const VerifyInput what{input, data.triangles, data.neighbors, data.points, data.triangle_count, {}, host.duplicates,
+                         true};
   return verify_on_device(run, what, options);
 }
 
 std::size_t Triangulator::memory_needed(std::size_t points) const noexcept {
-  return bytes_needed(points, is_host(*state_->device));
+  return most_bytes(state_->memory, points);
 }
 
 void Triangulator::reserve(std::size_t points) {
   require_size(points);
-  const std::size_t n = points;
+  const std::size_t n = points, limit = state_->options.max_memory;
   Memory& memory = state_->memory;
-  memory.begin(state_->options.max_memory);
+  begin_account(*state_, n);
+  require_memory(*state_, n, false);
   if (n <= state_->reserved_points) return;
-  memory.require(bytes_needed(n, is_host(*state_->device)));
-  if (state_->device->keeps_memory()) {
-    state_->device->reserve(bytes_needed(n, is_host(*state_->device)));
-  } else {
+  if (!memory.keeps()) {
+    state_->device->reserve(least_bytes(n, false));
+  } else if (limit == 0 || most_bytes(memory, n) <= limit) {
+    memory.drop_kept();  // too small
+    begin_account(*state_, n);
     // The buffers of a call that are alive together; given back at once, so they are kept for it.
     std::vector<Allocation> together;
-    for (const std::size_t words : {16, 4, 4, 1, 6, 6, 2, 1, 1})  // a point
-      together.push_back(memory.allocate(n * words * word));
+    for (const std::size_t words : kept_words) together.push_back(memory.allocate(n * words * word));
+  } else {
+    return;  // enough for a call, but not for keeping all of its buffers
   }
   state_->reserved_points = n;
+  state_->known_points = std::max(state_->known_points, n);
 }
 
 void Triangulator::release_memory() {
   state_->memory.drop_kept();
   state_->device->trim();
-  state_->reserved_points = 0;
+  state_->known_points = state_->reserved_points = 0;
 }
 
 Triangulation triangulate(PointsView points, const Options& options) {

@@ -34,7 +34,7 @@ VerifyReport verify_on_device(Device& device, PointsView points, const MeshView&
   }
   Statistics statistics;
   Memory memory(device, false);
-  memory.begin(run_options.max_memory);
+  memory.begin(run_options.max_memory, false);
   Run run(device, memory, run_options, statistics);
   run.check("verify", 0);
   const Allocation device_points = import_points(run, points);

@@ -30,7 +30,8 @@ struct DevicePoints {
   const void* y = nullptr;  ///< y0 y1 ..., or null for interleaved coordinates
   std::size_t size = 0;     ///< points
   Scalar scalar = Scalar::float64;
-  std::size_t skip = 0;  ///< points before the first one (OpenCL buffers have no pointer arithmetic)
+  /// Points before the first one (OpenCL buffers have no pointer arithmetic), at most 1.6e9; else LimitError.
+  std::size_t skip = 0;
 };
 
 /// A finished triangulation in device memory: int32 arrays, indices of the input points, 0-based, as in Triangulation.
@@ -108,11 +109,14 @@ class Triangulator {
   [[nodiscard]] VerifyReport verify(const DevicePoints& points, const DeviceTriangulation& mesh,
                                     const VerifyOptions& options = {});
 
-  /// Device memory that a call with so many points takes at most, in bytes: its result included, points of the caller's
-  /// that are on the device not. Crowded cells (more than 16 points in 2^-16 of the box's width) need up to 32 bytes
-  /// more for each of their points while they are sorted.
+  /// Device memory that the first call with so many points takes at most, in bytes: its result and the memory kept for
+  /// the next call included, points of the caller's that are on the device not. 124 a point where the device or
+  /// `Options::allocator` keeps the memory, else 176; with `Options::max_memory` 124 are enough, on the host 97 for a
+  /// mesh on the host. Crowded cells (more than 16 points in 2^-16 of the box's width) need up to 32 bytes more for
+  /// each of their points while they are sorted.
   [[nodiscard]] std::size_t memory_needed(std::size_t points) const noexcept;
-  /// Takes the memory for calls with up to so many points now. \throws LimitError, OutOfMemory
+  /// Takes the memory for calls with up to so many points now; with an allocator of the caller's there is nothing to
+  /// take. Keeps no more than `Options::max_memory`. \throws LimitError, OutOfMemory
   void reserve(std::size_t points);
   /// Gives back all memory that no result holds.
   void release_memory();
@@ -129,8 +133,8 @@ class DeviceAllocator {
  public:
   virtual ~DeviceAllocator() = default;
   /// Memory of at least so many bytes, aligned to 256: a device pointer that may be used on `queue` (a cudaStream_t)
-  /// from now on, a new cl_mem of the context of `queue` (a cl_command_queue), or a host pointer (`queue` is null). Null
-  /// if there is none left.
+  /// from now on, a new cl_mem of the context of `queue` (a cl_command_queue), or a host pointer (`queue` is null).
+  /// Null if there is none left.
   [[nodiscard]] virtual void* allocate(std::size_t bytes, void* queue) noexcept = 0;
   /// Gives it back; work that uses it may still be waiting in `queue`.
   virtual void deallocate(void* memory, std::size_t bytes, void* queue) noexcept = 0;

@@ -5,7 +5,6 @@
 #include <cuda_runtime_api.h>
 
 #include <stdexcept>
-#include <vector>
 
 namespace cadt::test {
 namespace {
@@ -16,27 +15,39 @@ void check(cudaError_t code) {
 
 class CudaMemory final : public DeviceMemory {
  public:
-  explicit CudaMemory(int device) {
-    check(cudaSetDevice(device));
+  explicit CudaMemory(int device) : device_(device) {
+    check(cudaSetDevice(device_));
     check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
   }
   ~CudaMemory() override {
-    for (void* memory : memory_) cudaFree(memory);
+    cudaSetDevice(device_);
+    cudaStreamSynchronize(stream_);
+    free_uploads();
     cudaStreamDestroy(stream_);
   }
   [[nodiscard]] void* queue() const override { return stream_; }
-  [[nodiscard]] void* upload(std::span<const std::byte> data) override {
+  [[nodiscard]] void* allocate(std::size_t bytes) noexcept override {
     void* memory = nullptr;
-    check(cudaMalloc(&memory, data.size()));
-    memory_.push_back(memory);
-    check(cudaMemcpy(memory, data.data(), data.size(), cudaMemcpyHostToDevice));
-    return memory;
+    if (cudaMalloc(&memory, bytes) == cudaSuccess) return memory;
+    cudaGetLastError();
+    return nullptr;
+  }
+  void free(void* memory) noexcept override { cudaFree(memory); }
+  void read(const void* memory, std::size_t offset, std::span<std::byte> to) override {
+    copy(to.data(), static_cast<const std::byte*>(memory) + offset, to.size(), cudaMemcpyDeviceToHost);
+  }
+  void write(void* memory, std::size_t offset, std::span<const std::byte> from) override {
+    copy(static_cast<std::byte*>(memory) + offset, from.data(), from.size(), cudaMemcpyHostToDevice);
   }
   void wait() override { check(cudaStreamSynchronize(stream_)); }
 
  private:
+  void copy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind) {
+    check(cudaMemcpyAsync(to, from, bytes, kind, stream_));
+    wait();
+  }
+  int device_;
   cudaStream_t stream_ = nullptr;
-  std::vector<void*> memory_;
 };
 
 }  // namespace

@@ -2,8 +2,6 @@
 #include "tests/gpu/device_memory.hpp"
 
 #ifdef CADT_HAVE_OPENCL
-#include <vector>
-
 #include "backends/opencl/platform.hpp"
 
 namespace cadt::test {
@@ -17,18 +15,29 @@ class OpenClMemory final : public DeviceMemory {
     context_ = cl::Context(chosen);
     queue_ = cl::CommandQueue(context_, chosen);
   }
+  ~OpenClMemory() override {
+    clFinish(queue_());
+    free_uploads();
+  }
   [[nodiscard]] void* queue() const override { return queue_(); }
-  [[nodiscard]] void* upload(std::span<const std::byte> data) override {
-    buffers_.emplace_back(context_, CL_MEM_READ_ONLY, data.size());
-    queue_.enqueueWriteBuffer(buffers_.back(), CL_TRUE, 0, data.size(), data.data());
-    return buffers_.back()();
+  [[nodiscard]] void* allocate(std::size_t bytes) noexcept override {
+    cl_int code = CL_SUCCESS;
+    cl_mem memory = clCreateBuffer(context_(), CL_MEM_READ_WRITE, bytes, nullptr, &code);
+    return code == CL_SUCCESS ? memory : nullptr;
+  }
+  void free(void* memory) noexcept override { clReleaseMemObject(static_cast<cl_mem>(memory)); }
+  void read(const void* memory, std::size_t offset, std::span<std::byte> to) override {
+    queue_.enqueueReadBuffer(buffer(const_cast<void*>(memory)), CL_TRUE, offset, to.size(), to.data());
+  }
+  void write(void* memory, std::size_t offset, std::span<const std::byte> from) override {
+    queue_.enqueueWriteBuffer(buffer(memory), CL_TRUE, offset, from.size(), from.data());
   }
   void wait() override { queue_.finish(); }
 
  private:
+  static cl::Buffer buffer(void* memory) { return cl::Buffer(static_cast<cl_mem>(memory), true); }
   cl::Context context_;
   cl::CommandQueue queue_;
-  std::vector<cl::Buffer> buffers_;
 };
 
 }  // namespace

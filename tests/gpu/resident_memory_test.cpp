@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much device memory is taken, when, from whom, and what happens when there is none.
+#include "common/host/device_triangulation.hpp"
+#include "tests/gpu/resident.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace cadt::test {
+namespace {
+
+class ResidentMemory : public ResidentTest {
+ protected:
+  /// Requests for memory of the device since the triangulator was opened, found through one of its results.
+  static std::uint64_t requests(const DeviceTriangulation& mesh) { return mesh.data().state->memory.allocations(); }
+
+  static constexpr std::uint64_t kept_buffers = 12;  ///< that reserve() asks for
+};
+
+Points set_of_all_kinds() {
+  Points xy = cluster_points(1500);
+  const Points lattice = grid_points(20, 20), spread = uniform_points(500, 3);
+  xy.insert(xy.end(), lattice.begin(), lattice.end());
+  xy.insert(xy.end(), spread.begin(), spread.end());
+  xy.insert(xy.end(), spread.begin(), spread.end());
+  return xy;
+}
+
+TEST_P(ResidentMemory, BoundOfTheCaller) {
+  const Known many(uniform_points(100000)), few(uniform_points(1000, 2));
+  Triangulator triangulator(options());
+  const DevicePoints points = upload(many.xy), fewer = upload(few.xy);
+  constexpr std::size_t bound = 1'000'000;
+  for (int round = 0; round < 2; ++round) {
+    triangulator.options().max_memory = bound;
+    if (const auto error = thrown<OutOfMemory>([&] { (void)triangulator.triangulate(points); }); error != nullptr) {
+      EXPECT_GE(error->needed(), 124 * many.size());
+      EXPECT_EQ(error->available(), bound);
+    }
+    (void)thrown<OutOfMemory>([&] { (void)triangulator.triangulate(std::span<const double>(many.xy)); });
+    (void)thrown<OutOfMemory>([&] { triangulator.reserve(many.size()); });
+    const DeviceTriangulation small = triangulator.triangulate(fewer);
+    expect_same(*memory, small, few.mesh);
+    EXPECT_LE(small.statistics().bytes_device_peak, bound);
+    triangulator.options().max_memory = 0;
+    expect_same(*memory, triangulator.triangulate(points), many.mesh);
+  }
+}
+
+/// 124 bytes a point are enough, whatever is kept, and a call under that bound keeps to it.
+TEST_P(ResidentMemory, BoundOfWhatIsNeeded) {
+  const Known known(uniform_points(50000)), few(uniform_points(7000, 2));
+  const DevicePoints points = upload(known.xy), fewer = upload(few.xy);
+  const std::size_t bound = 124 * known.size() + 65536;
+  for (const Order order : {Order::canonical, Order::fast}) {
+    Triangulator triangulator(options());
+    EXPECT_GE(triangulator.memory_needed(known.size()), bound);
+    triangulator.options().order = order;
+    triangulator.options().max_memory = bound - 1;
+    (void)thrown<OutOfMemory>([&] { (void)triangulator.triangulate(points); });
+    triangulator.options().max_memory = bound;
+    for (int call = 0; call < 4; ++call) {
+      {
+        const DeviceTriangulation mesh = triangulator.triangulate(points);
+        EXPECT_LE(mesh.statistics().bytes_device_peak, bound) << call;
+        EXPECT_EQ(mesh.number_of_triangles(), known.mesh.number_of_triangles());
+      }
+      if (call % 2 == 0) {
+        EXPECT_EQ(triangulator.triangulate(fewer).download().hash(), few.mesh.hash());
+      }
+    }
+    triangulator.reserve(known.size());
+    EXPECT_EQ(triangulator.triangulate(points).number_of_triangles(), known.mesh.number_of_triangles());
+    EXPECT_EQ(triangulator.triangulate(std::span<const double>(known.xy)).hash(), known.mesh.hash());
+    triangulator.options().max_memory = triangulator.memory_needed(known.size());
+    triangulator.reserve(known.size());
+    EXPECT_EQ(triangulator.triangulate(points).number_of_triangles(), known.mesh.number_of_triangles());
+  }
+}
+
+TEST_P(ResidentMemory, PeakIsWithinWhatIsNeeded) {
+  for (const std::size_t n : {1000, 3000, 10000, 30000, 100000, 300000}) {
+    const Points xy = uniform_points(n, n);
+    const DevicePoints points = upload(xy);
+    for (const Order order : {Order::canonical, Order::fast}) {
+      Options with = options();
+      with.order = order;
+      Triangulator on_device(with), from_host(with);
+      const std::size_t needed = on_device.memory_needed(n);
+      const auto a_point = [&](std::size_t bytes) { return static_cast<double>(bytes) / static_cast<double>(n); };
+      for (int call = 0; call < 2; ++call) {
+        const DeviceTriangulation mesh = on_device.triangulate(points);
+        EXPECT_LE(mesh.statistics().bytes_device_peak, needed)
+            << n << " points, call " << call << ": " << a_point(mesh.statistics().bytes_device_peak) << " a point";
+        EXPECT_GT(mesh.statistics().bytes_device_peak, n * 48);
+        const Triangulation copy = from_host.triangulate(std::span<const double>(xy));
+        EXPECT_LE(copy.statistics().bytes_device_peak, needed)
+            << n << " points, call " << call << ": " << a_point(copy.statistics().bytes_device_peak) << " a point";
+      }
+    }
+  }
+}
+
+/// After reserve() the first call of each size asks for nothing that the third one does not. Small buffers are never
+/// kept: all calls ask for some.
+TEST_P(ResidentMemory, ReservedMemoryIsEnough) {
+  if (GetParam().backend == Backend::cuda) GTEST_SKIP() << "a pool of the device keeps the memory (CudaCalls)";
+  std::vector<Known> sets;
+  for (const std::size_t n : {60000, 59999, 40000, 30000, 14000, 5000}) sets.emplace_back(uniform_points(n, n));
+  for (const Order order : {Order::canonical, Order::fast}) {
+    for (const bool floats : {false, true}) {
+      SCOPED_TRACE(floats ? "float" : "double");
+      Options with = options();
+      with.order = order;
+      Triangulator triangulator(with);
+      triangulator.reserve(60000);
+      std::map<std::size_t, std::uint64_t> first;
+      std::uint64_t last = 0;
+      for (int round = 0; round < 3; ++round) {
+        for (const Known& known : sets) {
+          const std::vector<float> single(known.xy.begin(), known.xy.end());
+          const DevicePoints points = floats ? DevicePoints{.x = memory->upload(std::span<const float>(single)),
+                                                            .size = known.size(),
+                                                            .scalar = Scalar::float32}
+                                             : upload(known.xy);
+          const DeviceTriangulation mesh = triangulator.triangulate(points);
+          const std::uint64_t now = requests(mesh), of_this = now - last;
+          last = now;
+          EXPECT_LE(mesh.statistics().bytes_device_peak, triangulator.memory_needed(60000));
+          if (round == 0 && known.size() == 60000) {
+            first[known.size()] = of_this - kept_buffers;  // reserve() asked for those
+          } else if (round == 0) {
+            first[known.size()] = of_this;
+          } else {
+            EXPECT_EQ(of_this, first[known.size()]) << known.size() << " points, round " << round;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_P(ResidentMemory, SecondCallTakesNothingLarge) {
+  if (GetParam().backend == Backend::cuda) GTEST_SKIP() << "a pool of the device keeps the memory (CudaCalls)";
+  for (const Points& xy : {set_of_all_kinds(), uniform_points(40000)}) {
+    const DevicePoints points = upload(xy);
+    Triangulator triangulator(options());
+    std::uint64_t last = 0, first_call = 0, peak = 0;
+    for (int call = 0; call < 4; ++call) {
+      const DeviceTriangulation mesh = triangulator.triangulate(points);
+      const std::uint64_t now = requests(mesh), of_this = now - last;
+      last = now;
+      if (call == 0) first_call = of_this;
+      if (call == 0) continue;
+      EXPECT_LT(of_this + 8, first_call) << call;
+      if (call == 1) peak = mesh.statistics().bytes_device_peak;
+      EXPECT_NEAR(static_cast<double>(mesh.statistics().bytes_device_peak), static_cast<double>(peak), 40000) << call;
+    }
+  }
+}
+
+/// With an allocator the memory is the caller's: nothing is kept.
+TEST_P(ResidentMemory, NothingOfTheAllocatorIsKept) {
+  const Known known(uniform_points(20000));
+  const auto allocator = counting();
+  Options with = options();
+  with.allocator = allocator;
+  Triangulator triangulator(with);
+  triangulator.reserve(known.size());
+  EXPECT_EQ(allocator->live(), 0U);
+  for (int call = 0; call < 2; ++call) {
+    const DeviceTriangulation mesh = triangulator.triangulate(upload(known.xy));
+    EXPECT_EQ(allocator->live(), 2U);
+    EXPECT_EQ(allocator->bytes_live, 2 * 3 * sizeof(std::int32_t) * known.mesh.number_of_triangles());
+    EXPECT_LE(mesh.statistics().bytes_device_peak, 124 * known.size() + 65536);
+  }
+  EXPECT_EQ(allocator->live(), 0U);
+}
+
+TEST_P(ResidentMemory, ReleasedMemory) {
+  const Known known(uniform_points(30000));
+  const DevicePoints points = upload(known.xy);
+  const auto allocator = counting();
+  {
+    Options with = options();
+    with.allocator = allocator;
+    Triangulator triangulator(with);
+    triangulator.release_memory();
+    DeviceTriangulation mesh = triangulator.triangulate(points);
+    triangulator.release_memory();
+    const std::size_t of_the_result = 2 * 3 * sizeof(std::int32_t) * mesh.number_of_triangles();
+    EXPECT_EQ(allocator->bytes_live, of_the_result);
+    expect_same(*memory, mesh, known.mesh);
+    mesh = DeviceTriangulation();
+    triangulator.release_memory();
+    EXPECT_EQ(allocator->live(), 0U);
+    triangulator.reserve(known.size());
+    triangulator.release_memory();
+    EXPECT_EQ(allocator->live(), 0U);
+    expect_same(*memory, triangulator.triangulate(points), known.mesh);
+  }
+  EXPECT_EQ(allocator->live(), 0U);
+  EXPECT_EQ(allocator->fault, "");
+  Triangulator own(options());
+  expect_same(*memory, own.triangulate(points), known.mesh);
+  own.release_memory();
+  expect_same(*memory, own.triangulate(points), known.mesh);
+}
+
+TEST_P(ResidentMemory, AllocatorGetsEverythingBack) {
+  const Known known(set_of_all_kinds());
+  const auto allocator = counting();
+  DeviceTriangulation result, second;
+  {
+    Options with = options();
+    with.allocator = allocator;
+    Triangulator triangulator(with);
+    result = triangulator.triangulate(upload(known.xy));
+    second = triangulator.triangulate(upload(known.xy));
+    expect_same(triangulator.triangulate(std::span<const double>(known.xy)), known.mesh);
+    EXPECT_TRUE(triangulator.verify(upload(known.xy), second).ok);
+  }
+  EXPECT_GT(allocator->calls, 20U);
+  EXPECT_GT(allocator->live(), 0U);
+  expect_same(*memory, result, known.mesh);
+  result = DeviceTriangulation();
+  expect_same(*memory, second, known.mesh);
+  second = DeviceTriangulation();
+  EXPECT_EQ(allocator->live(), 0U);
+  EXPECT_EQ(allocator->fault, "");
+}
+
+/// The k-th request is refused, with and without the ones after it, for every k.
+TEST_P(ResidentMemory, EveryRequestMayBeRefused) {
+  const Known known(set_of_all_kinds());
+  const DevicePoints points = upload(known.xy);
+  for (const bool and_later : {true, false}) {
+    std::size_t k = 0, failed = 0;
+    for (bool done = false; !done && k < 1000; ++k) {
+      SCOPED_TRACE("request " + std::to_string(k) + (and_later ? " and all later ones" : ""));
+      const auto allocator = counting();
+      {
+        Options with = options();
+        with.allocator = allocator;
+        Triangulator triangulator(with);
+        const std::size_t at_first = allocator->live();
+        allocator->fail_at(k, and_later);
+        try {
+          expect_same(*memory, triangulator.triangulate(points), known.mesh);
+          done = allocator->refused == 0;
+          EXPECT_EQ(allocator->refused, 0U);
+        } catch (const OutOfMemory& error) {
+          ++failed;
+          EXPECT_GT(error.needed(), 0U);
+        }
+        allocator->fail_at(CountingAllocator::never);
+        triangulator.release_memory();
+        EXPECT_EQ(allocator->live(), at_first);
+        expect_same(*memory, triangulator.triangulate(points), known.mesh);
+      }
+      EXPECT_EQ(allocator->live(), 0U);
+      EXPECT_EQ(allocator->fault, "");
+      if (HasFailure()) return;
+    }
+    EXPECT_GT(failed, 20U);
+  }
+}
+
+/// The same for the other calls that take memory.
+TEST_P(ResidentMemory, EveryRequestOfOtherCallsMayBeRefused) {
+  const Known known(set_of_all_kinds());
+  const DevicePoints points = upload(known.xy);
+  const auto allocator = counting();
+  {
+    Options with = options();
+    with.allocator = allocator;
+    Triangulator triangulator(with);
+    const DeviceTriangulation mesh = triangulator.triangulate(points);
+    const auto refuse = [&](const char* what, const auto& call) {
+      for (std::size_t k = 0; k < 1000; ++k) {
+        SCOPED_TRACE(std::string(what) + ", request " + std::to_string(k));
+        triangulator.release_memory();
+        const std::size_t before = allocator->live();
+        allocator->fail_at(k);
+        bool failed = false;
+        try {
+          call();
+        } catch (const OutOfMemory&) {
+          failed = true;
+        }
+        EXPECT_EQ(failed, allocator->refused != 0);
+        allocator->fail_at(CountingAllocator::never);
+        triangulator.release_memory();
+        EXPECT_EQ(allocator->live(), before);
+        if (!failed || HasFailure()) return;
+      }
+    };
+    refuse("reserve", [&] { triangulator.reserve(10 * known.size()); });
+    refuse("download", [&] { expect_same(mesh.download(), known.mesh); });
+    refuse("verify", [&] { EXPECT_TRUE(triangulator.verify(points, mesh).ok); });
+    refuse("host", [&] { expect_same(triangulator.triangulate(std::span<const double>(known.xy)), known.mesh); });
+    expect_same(*memory, mesh, known.mesh);
+    expect_same(*memory, triangulator.triangulate(points), known.mesh);
+  }
+  EXPECT_EQ(allocator->live(), 0U);
+  EXPECT_EQ(allocator->fault, "");
+}
+
+/// Memory that the self-test of a new triangulator does not get.
+TEST_P(ResidentMemory, RefusedWhenOpened) {
+  const Known known(uniform_points(500));
+  for (std::size_t k = 0; k < 10; ++k) {
+    const auto allocator = counting();
+    Options with = options();
+    with.allocator = allocator;
+    allocator->fail_at(k);
+    try {
+      const Triangulator triangulator(with);
+    } catch (const OutOfMemory&) {
+    }
+    EXPECT_EQ(allocator->live(), 0U);
+    allocator->fail_at(CountingAllocator::never);
+    Triangulator triangulator(with);
+    expect_same(*memory, triangulator.triangulate(upload(known.xy)), known.mesh);
+    EXPECT_EQ(allocator->fault, "");
+  }
+}
+
+CADT_ON_MAIN_BACKENDS(ResidentMemory);
+
+}  // namespace
+}  // namespace cadt::test

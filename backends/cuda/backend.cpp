@@ -81,10 +81,13 @@ class CudaEntry final : public BackendEntry {
     const DeviceInfo info = describe(index, driver);
     if (!info.usable) throw BackendUnavailable("cuda", "'" + info.name + "': " + info.reason);
     auto device = std::make_unique<cuda::CudaDevice>(info, options);
-    device->load_kernels();
+    // Once a context: its kernels and the device are the same each time.
     const std::lock_guard lock(mutex_);
-    if (tested_.count(index) == 0) run_selftest(*device);  // the compiled kernels and the device are the same each time
-    tested_.insert(index);
+    if (tested_.count(device->context()) == 0) {
+      device->load_kernels();
+      run_selftest(*device);
+      tested_.insert(device->context());
+    }
     return device;
   }
 
@@ -99,7 +102,7 @@ class CudaEntry final : public BackendEntry {
 
  private:
   std::mutex mutex_;
-  std::set<int> tested_;
+  std::set<CUcontext> tested_;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace cadt::cuda {
 namespace {
 
 constexpr unsigned default_block = 128;  // several blocks an SM even for kernels with many registers
-constexpr unsigned largest_block = 256;  // what the kernels are compiled for (kernels_cuda/table.inc)
+constexpr unsigned largest_block = 256;  // larger ones gain nothing: lanes wait for each other in a warp only
 constexpr std::size_t most_parameters = 32;
 constexpr std::size_t staging_bytes = std::size_t{1} << 16;
 
@@ -180,6 +180,16 @@ void CudaDevice::load_kernels() {
       check_call(cudaFuncGetAttributes(&attributes, table[i]), kernel_names[i]);
     }
   }
+  // CUB's cannot be named, so they run: it has kernels of their own for few keys and for many.
+  for (const std::size_t count : {std::size_t{1} << 8, std::size_t{1} << 17}) {
+    const auto keys = allocate(4 * count), values = allocate(4 * count);
+    const auto other_keys = allocate(4 * count), other_values = allocate(4 * count);
+    for (const auto* buffer : {&keys, &values}) fill(**buffer, 0, 4 * count, 0);
+    const auto sort_memory = allocate(sort_scratch(count, 32)), scan_memory = allocate(scan_scratch(count));
+    static_cast<void>(sort(*sort_memory, *keys, *values, *other_keys, *other_values, count, 32));
+    scan(*scan_memory, *keys, count);
+  }
+  finish();
 }
 
 std::size_t CudaDevice::sort_scratch(std::size_t count, unsigned bits) {

@@ -33,6 +33,7 @@ class CudaDevice final : public Device, private Primitives {
   void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) override;
   void finish() override;
 
+  [[nodiscard]] CUcontext context() const noexcept { return stream_->context(); }
   /// Loads all kernels, so that no later launch has to: loading may wait for everything that runs in the context.
   void load_kernels();
 

@@ -72,8 +72,7 @@ SharedContext::SharedContext(const OpenRequest& request)
       extra_options_(request.extra_options) {
   try {
     if (request.queue) {
-      context_ =
-          cl::CommandQueue(static_cast<cl_command_queue>(*request.queue), true).getInfo<CL_QUEUE_CONTEXT>();
+      context_ = cl::CommandQueue(static_cast<cl_command_queue>(*request.queue), true).getInfo<CL_QUEUE_CONTEXT>();
     } else {
       context_ = cl::Context(device_.device);
     }
@@ -105,8 +104,7 @@ std::shared_ptr<SharedContext> shared_context(const OpenRequest& request) {
 int device_of(void* queue) {
   if (queue == nullptr) return -1;
   try {
-    const cl::Device wanted =
-        cl::CommandQueue(static_cast<cl_command_queue>(queue), true).getInfo<CL_QUEUE_DEVICE>();
+    const cl::Device wanted = cl::CommandQueue(static_cast<cl_command_queue>(queue), true).getInfo<CL_QUEUE_DEVICE>();
     const Found found = find_devices();
     for (std::size_t i = 0; i < found.devices.size(); ++i)
       if (found.devices[i].device() == wanted()) return static_cast<int>(i);

@@ -220,9 +220,7 @@ void ClDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint
   if (offset % 4 != 0 || bytes % 4 != 0) throw InternalError("a fill is not a multiple of four bytes");
   // In pieces: what a driver does with more than 4 GiB in one command is its own business.
   for (std::size_t done = 0; done < bytes; done += largest_fill) {
-    run([&] {
-      queue_.enqueueFillBuffer(memory_of(to), word, offset + done, std::min(bytes - done, largest_fill));
-    });
+    run([&] { queue_.enqueueFillBuffer(memory_of(to), word, offset + done, std::min(bytes - done, largest_fill)); });
   }
 }
 

@@ -8,8 +8,8 @@
  * the claim prove them (lock.h), because orderings cost nothing on x86 and much on GPUs:
  * - CPUs: every field is stored with release and loaded with acquire. Then the version in the lock word proves the
  * fields.
- * - GPUs: fields are stored and loaded relaxed; the claims acquire at device scope, by themselves or by one fence behind
- * them, one fence stands before the unlocks, and the owner reads the fields again.
+ * - GPUs: fields are stored and loaded relaxed; the claims acquire at device scope, by themselves or by one fence
+ * behind them, one fence stands before the unlocks, and the owner reads the fields again.
  */
 #ifndef CADT_DEVICE_ATOMICS_H
 #define CADT_DEVICE_ATOMICS_H
@@ -94,7 +94,8 @@ CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
 }
 CADT_FN void cadt_fence_acq_rel(void) { mem_fence(CLK_GLOBAL_MEM_FENCE); }
 
-/* ---- CUDA: volatile accesses are relaxed and bypass the L1 cache; PTX where there is an order, at device scope -------
+/* ---- CUDA: volatile accesses are relaxed and bypass the L1 cache; PTX where there is an order, at device scope
+ * -------
  */
 #elif defined(CADT_LANG_CUDA)
 
@@ -110,7 +111,10 @@ CADT_FN void cadt_store_release(CADT_GLOBAL cadt_u32* p, cadt_u32 value) {
 }
 CADT_FN cadt_u32 cadt_cas_acquire(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
   cadt_u32 old;
-  asm volatile("atom.acquire.gpu.global.cas.b32 %0, [%1], %2, %3;" : "=r"(old) : "l"(p), "r"(expected), "r"(desired) : "memory");
+  asm volatile("atom.acquire.gpu.global.cas.b32 %0, [%1], %2, %3;"
+               : "=r"(old)
+               : "l"(p), "r"(expected), "r"(desired)
+               : "memory");
   return old == expected ? 1u : 0u;
 }
 CADT_FN cadt_u32 cadt_cas_acq_rel(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {

@@ -13,8 +13,8 @@ enum {
   CADT_WORKLIST_STACK = 48, /* above, the oldest is next: a long row of flips leaves a legal edge behind at each one */
   CADT_INSERT_TRIES = 12,   /* walks for one point in one launch */
   CADT_EDGE_TRIES = 24,     /* conflicts in the worklist of one point */
-  /* Flips for one point or edge in one launch: a launch ends in bounded time, and a long row of flips, which a lane of a
-   * GPU alone does slowly, is shared with others as soon as it forks. */
+/* Flips for one point or edge in one launch: a launch ends in bounded time, and a long row of flips, which a lane of a
+ * GPU alone does slowly, is shared with others as soon as it forks. */
 #if CADT_CONTIGUOUS
   CADT_FLIP_LIMIT = 1 << 14,
   CADT_EDGE_FLIP_LIMIT = CADT_FLIP_LIMIT
@@ -110,8 +110,7 @@ CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_worklist* work, const cadt_d
 
 /* Locates and inserts vertex i. Returns the number of `edges` opposite of it, 0 if the point must be tried by a later
  * launch. */
-CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hint, cadt_u32* edges,
-                                    cadt_tally* tally) {
+CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hint, cadt_u32* edges, cadt_tally* tally) {
   const cadt_point p = m->points[i];
   cadt_place place;
   place.record = hint;

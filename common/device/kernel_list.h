@@ -5,51 +5,51 @@
 #ifndef CADT_DEVICE_KERNEL_LIST_H
 #define CADT_DEVICE_KERNEL_LIST_H
 
-#define CADT_KERNEL_LIST(X)                                                     \
-  X(cadt_selftest)         /* selftest.h: arithmetic and atomics */             \
-  X(cadt_import_doubles)   /* order.h: points from the caller's memory */       \
-  X(cadt_import_floats)    /* order.h */                                        \
-  X(cadt_bounds)           /* order.h: box, exponents, first bad coordinate */  \
-  X(cadt_merge_bounds)     /* order.h */                                        \
-  X(cadt_sort_keys)        /* order.h: Hilbert keys */                          \
-  X(cadt_radix_count)      /* radix.h */                                        \
-  X(cadt_radix_scatter)    /* radix.h */                                        \
-  X(cadt_scan_sums)        /* scan.h */                                         \
-  X(cadt_scan_total)       /* scan.h */                                         \
-  X(cadt_scan_apply)       /* scan.h */                                         \
-  X(cadt_crowded_flags)    /* refine.h: runs of equal keys that are too long */ \
-  X(cadt_crowded_pack)     /* refine.h */                                       \
-  X(cadt_crowded_keys)     /* refine.h */                                       \
-  X(cadt_copy_words)       /* refine.h */                                       \
-  X(cadt_identity)         /* refine.h */                                       \
-  X(cadt_gather_words)     /* refine.h */                                       \
-  X(cadt_run_tails)        /* refine.h */                                       \
-  X(cadt_crowded_store)    /* refine.h */                                       \
-  X(cadt_sort_runs)        /* order.h: short runs, in place */                  \
-  X(cadt_gather_points)    /* order.h */                                        \
-  X(cadt_unique_flags)     /* order.h */                                        \
-  X(cadt_unique_pack)      /* order.h: distinct points */                       \
-  X(cadt_duplicate_pairs)  /* order.h */                                        \
-  X(cadt_find_triangle)    /* start.h: three points not on a line */            \
-  X(cadt_start_mesh)       /* start.h */                                        \
-  X(cadt_root)             /* insert.h */                                       \
-  X(cadt_insert)           /* insert.h: locate, claim, split, legalise */       \
-  X(cadt_legalize_edges)   /* insert.h: deferred edges */                       \
-  X(cadt_closing_pass)     /* closing.h */                                      \
-  X(cadt_count_triangles)  /* emit.h */                                         \
-  X(cadt_bucket_triangles) /* emit.h: canonical order */                        \
-  X(cadt_sort_buckets)     /* emit.h */                                         \
-  X(cadt_number_triangles) /* emit.h */                                         \
-  X(cadt_emit_triangles)   /* emit.h */                                         \
-  X(cadt_flag_triangles)   /* emit.h: order of the records */                   \
-  X(cadt_emit_ranked)      /* emit.h */                                         \
-  X(cadt_boundary_edges)   /* emit.h */                                         \
-  X(cadt_verify_structure) /* verify.h: ranges, neighbours, used points */      \
-  X(cadt_verify_points)    /* verify.h */                                       \
-  X(cadt_verify_duplicates) /* verify.h */                                      \
-  X(cadt_verify_boundary)  /* verify.h */                                       \
-  X(cadt_verify_filter)    /* verify.h: orientation and edges, three stages */  \
-  X(cadt_verify_exact)     /* verify.h */                                       \
-  X(cadt_verify_gather)    /* verify.h */
+#define CADT_KERNEL_LIST(X)                                                      \
+  X(cadt_selftest)          /* selftest.h: arithmetic and atomics */             \
+  X(cadt_import_doubles)    /* order.h: points from the caller's memory */       \
+  X(cadt_import_floats)     /* order.h */                                        \
+  X(cadt_bounds)            /* order.h: box, exponents, first bad coordinate */  \
+  X(cadt_merge_bounds)      /* order.h */                                        \
+  X(cadt_sort_keys)         /* order.h: Hilbert keys */                          \
+  X(cadt_radix_count)       /* radix.h */                                        \
+  X(cadt_radix_scatter)     /* radix.h */                                        \
+  X(cadt_scan_sums)         /* scan.h */                                         \
+  X(cadt_scan_total)        /* scan.h */                                         \
+  X(cadt_scan_apply)        /* scan.h */                                         \
+  X(cadt_crowded_flags)     /* refine.h: runs of equal keys that are too long */ \
+  X(cadt_crowded_pack)      /* refine.h */                                       \
+  X(cadt_crowded_keys)      /* refine.h */                                       \
+  X(cadt_copy_words)        /* refine.h */                                       \
+  X(cadt_identity)          /* refine.h */                                       \
+  X(cadt_gather_words)      /* refine.h */                                       \
+  X(cadt_run_tails)         /* refine.h */                                       \
+  X(cadt_crowded_store)     /* refine.h */                                       \
+  X(cadt_sort_runs)         /* order.h: short runs, in place */                  \
+  X(cadt_gather_points)     /* order.h */                                        \
+  X(cadt_unique_flags)      /* order.h */                                        \
+  X(cadt_unique_pack)       /* order.h: distinct points */                       \
+  X(cadt_duplicate_pairs)   /* order.h */                                        \
+  X(cadt_find_triangle)     /* start.h: three points not on a line */            \
+  X(cadt_start_mesh)        /* start.h */                                        \
+  X(cadt_root)              /* insert.h */                                       \
+  X(cadt_insert)            /* insert.h: locate, claim, split, legalise */       \
+  X(cadt_legalize_edges)    /* insert.h: deferred edges */                       \
+  X(cadt_closing_pass)      /* closing.h */                                      \
+  X(cadt_count_triangles)   /* emit.h */                                         \
+  X(cadt_bucket_triangles)  /* emit.h: canonical order */                        \
+  X(cadt_sort_buckets)      /* emit.h */                                         \
+  X(cadt_number_triangles)  /* emit.h */                                         \
+  X(cadt_emit_triangles)    /* emit.h */                                         \
+  X(cadt_flag_triangles)    /* emit.h: order of the records */                   \
+  X(cadt_emit_ranked)       /* emit.h */                                         \
+  X(cadt_boundary_edges)    /* emit.h */                                         \
+  X(cadt_verify_structure)  /* verify.h: ranges, neighbours, used points */      \
+  X(cadt_verify_points)     /* verify.h */                                       \
+  X(cadt_verify_duplicates) /* verify.h */                                       \
+  X(cadt_verify_boundary)   /* verify.h */                                       \
+  X(cadt_verify_filter)     /* verify.h: orientation and edges, three stages */  \
+  X(cadt_verify_exact)      /* verify.h */                                       \
+  X(cadt_verify_gather)     /* verify.h */
 
 #endif

@@ -142,19 +142,19 @@ CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
 
 /* The elements of part `part` of `parts`, for partial results: one after another in chunks, or strided. */
 #if CADT_CONTIGUOUS
-#define CADT_FOR_PART(i, part, parts, count, chunk)                                                           \
+#define CADT_FOR_PART(i, part, parts, count, chunk)                                                        \
   for (cadt_u32 i = cadt_begin_of((part), (chunk), (count)), i##_end = cadt_min_u32(i + (chunk), (count)); \
        i < i##_end; ++i)
 #else
 #define CADT_FOR_PART(i, part, parts, count, chunk) for (cadt_u32 i = (part); i < (count); i += (parts))
 #endif
 
-/* As CADT_FOR, for work that takes many steps and branches. Lanes of a GPU's warp go separate ways one after another, so
- * where there are fewer elements than the device has lanes, `grain` lanes share an element and one of them works. */
+/* As CADT_FOR, for work that takes many steps and branches. Lanes of a GPU's warp go separate ways one after another,
+ * so where there are fewer elements than the device has lanes, `grain` lanes share an element and one of them works. */
 #if CADT_CONTIGUOUS
 #define CADT_FOR_SPREAD(i, count, grain) CADT_FOR(i, count, grain)
 #else
-#define CADT_FOR_SPREAD(i, count, grain)                                                    \
+#define CADT_FOR_SPREAD(i, count, grain)                                              \
   for (cadt_u32 i = cadt_item % (grain) ? (count) : cadt_item / (grain); i < (count); \
        i += (cadt_items - 1u) / (grain) + 1u)
 #endif

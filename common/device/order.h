@@ -89,7 +89,8 @@ CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL const double* rows, CADT_GLOBAL const
   }
   for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_BOUNDS_DOUBLES); ++i)
     box[cadt_item * CADT_BOUNDS_DOUBLES + i] = b[i];
-  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_BOUNDS_WORDS); ++i) words[cadt_item * CADT_BOUNDS_WORDS + i] = w[i];
+  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_BOUNDS_WORDS); ++i)
+    words[cadt_item * CADT_BOUNDS_WORDS + i] = w[i];
 }
 
 /* Every second bit. */
@@ -119,8 +120,8 @@ CADT_FN cadt_u32 cadt_hilbert(cadt_u32 x, cadt_u32 y, cadt_u32 bits) {
 }
 
 /* Hilbert keys of square cells. The longer axis has more bits; its surplus goes on top, so a long box is a row of
- * squares, each entered where the one before is left. Coordinates are halved first: the width of the box may exceed the largest
- * double. */
+ * squares, each entered where the one before is left. Coordinates are halved first: the width of the box may exceed the
+ * largest double. */
 CADT_KERNEL(cadt_sort_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL cadt_u32* keys, cadt_u32 count,
             cadt_u32 grain, double half_min_x, double half_min_y, double scale, cadt_u32 bits_x, cadt_u32 bits_y) {
   const cadt_u32 common = bits_x < bits_y ? bits_x : bits_y;
@@ -206,8 +207,8 @@ CADT_KERNEL(cadt_unique_pack, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL 
 
 /* Every point that is not the first of its kind, and the one that is. */
 CADT_KERNEL(cadt_duplicate_pairs, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* ranks,
-            CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL cadt_u32* duplicates,
-            CADT_GLOBAL cadt_u32* representatives, cadt_u32 count, cadt_u32 distinct, cadt_u32 grain) {
+            CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL cadt_u32* duplicates, CADT_GLOBAL cadt_u32* representatives,
+            cadt_u32 count, cadt_u32 distinct, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 rank = ranks[i], next = i + 1u < count ? ranks[i + 1u] : distinct;
     if (next != rank) continue;

@@ -77,8 +77,7 @@ CADT_FN_SLOW cadt_i32 cadt_tie(cadt_point a, cadt_point b, cadt_point c, cadt_po
     if (!(spent & 4u) && cadt_before(top, c)) top = c, largest = 2u;
     if (largest == 3u) return -1;
     spent |= 1u << largest;
-    const cadt_i32 side =
-        cadt_orientation_exact(largest == 0u ? p : a, largest == 1u ? p : b, largest == 2u ? p : c);
+    const cadt_i32 side = cadt_orientation_exact(largest == 0u ? p : a, largest == 1u ? p : b, largest == 2u ? p : c);
     if (side != 0) return side;
   }
   return -1;

@@ -57,7 +57,7 @@ class Arg {
 struct LaunchShape {
   bool contiguous = true;         ///< a work-item takes neighbouring elements (CPUs) or strided ones (GPUs)
   std::uint32_t parallelism = 1;  ///< work-items that keep the device busy
-  std::uint32_t grain = 256;      ///< elements a work-item takes at least when there are plenty
+  std::uint32_t grain = 256;      ///< most elements that a work-item takes in a row where the driver chooses
   std::uint32_t resident = 0;     ///< GPUs: work-items of a large kernel that run at the same time
 };
 

@@ -15,7 +15,7 @@ struct SpatialOrder {
   Allocation labels;  ///< their lowest input indices
   std::size_t distinct = 0;
   Allocation duplicates, representatives;  ///< points that equal an earlier one, ascending, and that one; null if none
-  bool wide = false;                  ///< exponents span too much for the narrow kernels
+  bool wide = false;                       ///< exponents span too much for the narrow kernels
 };
 
 /// Sorts n points (`input`: interleaved doubles), refines crowded cells, finds duplicates.

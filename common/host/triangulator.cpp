@@ -194,6 +194,7 @@ DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) {
 VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriangulation& mesh,
                                   const VerifyOptions& options) {
   const DeviceTriangulation::Data& data = mesh.data();
+  if (data.state != state_) throw InputError("the mesh is one of another triangulator", 0);
   if (points.size != data.points)
     throw InputError("the mesh is one of " + std::to_string(data.points) + " points",
                      std::min(points.size, data.points));

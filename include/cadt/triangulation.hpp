@@ -50,8 +50,8 @@ struct Options {
   /// Host threads; 0 takes all cores, 1 runs serially (the reference).
   unsigned threads = 0;
   Order order = Order::canonical;
-  /// Upper bound for the device memory of this call, in bytes; 0 means no bound. Above it: OutOfMemory, before any
-  /// work.
+  /// Upper bound for the device memory that the library holds, in bytes; 0 means no bound. Above it: OutOfMemory,
+  /// before any work. (A triangulator counts its earlier results that are still there as well.)
   std::size_t max_memory = 0;
   /// Work-group (block) size on a device; 0 lets the library choose.
   unsigned work_group_size = 0;

@@ -99,13 +99,13 @@ class Triangulator {
 
   /// Points on the host to a mesh on the host. \throws as cadt::triangulate
   [[nodiscard]] Triangulation triangulate(PointsView points);
-  /// Points on the device to a mesh on the device. The host waits for some counts, not for the end of the last kernels.
+  /// Points on the device to a mesh on the device, which is complete when the call returns.
   /// \throws as cadt::triangulate. After an error the triangulator can be used again.
   [[nodiscard]] DeviceTriangulation triangulate(const DevicePoints& points);
 
   /// The independent check of a mesh on the device (verify.hpp: verify_on_device) without a copy to the host, but for
   /// the boundary and what the device cannot decide. A mesh without triangles is checked on the host.
-  /// \throws as cadt::verify_on_device
+  /// \throws as cadt::verify_on_device, and InputError for a mesh of another triangulator
   [[nodiscard]] VerifyReport verify(const DevicePoints& points, const DeviceTriangulation& mesh,
                                     const VerifyOptions& options = {});
 

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-//x
 #include "tests/gpu/device_memory.hpp"
 
 namespace {
@@ -93,11 +92,13 @@ std::vector<double> make_points(const std::string& kind, std::size_t n) {
       const std::size_t cell = i / 8;
       const double angle = 0.78539816339744831 * static_cast<double>(i % 8);
       xy[2 * i] = static_cast<double>(cell % columns) + 0.35 * std::cos(angle) + 1e-4 * (2 * uniform(2 * i) - 1);
-      xy[2 * i + 1] = static_cast<double>(cell / columns) + 0.35 * std::sin(angle) + 1e-4 * (2 * uniform(2 * i + 1) - 1);
+      xy[2 * i + 1] =
+          static_cast<double>(cell / columns) + 0.35 * std::sin(angle) + 1e-4 * (2 * uniform(2 * i + 1) - 1);
     }
   } else if (kind == "gaussian") {
     for (std::size_t i = 0; i < n; ++i) {
-      const double radius = std::sqrt(-2 * std::log(1 - uniform(2 * i))), angle = 6.2831853071795865 * uniform(2 * i + 1);
+      const double radius = std::sqrt(-2 * std::log(1 - uniform(2 * i))),
+                   angle = 6.2831853071795865 * uniform(2 * i + 1);
       xy[2 * i] = radius * std::cos(angle);
       xy[2 * i + 1] = radius * std::sin(angle);
     }
@@ -177,12 +178,13 @@ int run(const Arguments& a) {
       std::printf(" %s %.2f", name.c_str(), list[list.size() / 2]);
     }
     const auto n = static_cast<double>(a.points);
-    std::printf(" | a point: steps %.2f flips %.2f lost claims %.3f | deferred %llu + %llu, launches %llu, sweeps %llu, "
-                "repairs %llu",
-                static_cast<double>(s.walk_steps) / n, static_cast<double>(s.flips) / n,
-                static_cast<double>(s.lost_claims) / n, static_cast<unsigned long long>(s.deferred_points),
-                static_cast<unsigned long long>(s.deferred_edges), static_cast<unsigned long long>(s.launches),
-                static_cast<unsigned long long>(s.closing_sweeps), static_cast<unsigned long long>(s.closing_repairs));
+    std::printf(
+        " | a point: steps %.2f flips %.2f lost claims %.3f | deferred %llu + %llu, launches %llu, sweeps %llu, "
+        "repairs %llu",
+        static_cast<double>(s.walk_steps) / n, static_cast<double>(s.flips) / n, static_cast<double>(s.lost_claims) / n,
+        static_cast<unsigned long long>(s.deferred_points), static_cast<unsigned long long>(s.deferred_edges),
+        static_cast<unsigned long long>(s.launches), static_cast<unsigned long long>(s.closing_sweeps),
+        static_cast<unsigned long long>(s.closing_repairs));
   }
   bool ok = true;
   if (a.verify == "device") {

@@ -101,7 +101,9 @@ void* CudaDevice::handle(const Buffer& buffer) const noexcept { return data_of(b
 void CudaDevice::reserve(std::size_t bytes) {
   if (stream_->has_allocator()) return;  // whose memory is the caller's business
   const ContextScope scope(stream_->context());
-  stream_->deallocate(stream_->allocate(bytes), bytes);
+  // Some more, since the pool rounds sizes up and cannot use every gap.
+  const std::size_t taken = bytes + bytes / 8 + (std::size_t{64} << 20);
+  stream_->deallocate(stream_->allocate(taken), taken);
   stream_->wait();
 }
 
@@ -180,6 +182,16 @@ void CudaDevice::load_kernels() {
       check_call(cudaFuncGetAttributes(&attributes, table[i]), kernel_names[i]);
     }
   }
+  // The first launch of a kernel with a larger stack makes the driver enlarge the memory of all stacks, which waits for
+  // the context as well. With parameters of zeros these find no work.
+  std::uint64_t zero = 0;
+  std::array<void*, most_parameters> parameters{};
+  parameters.fill(&zero);
+  for (const void* const* table : {narrow_kernels(), wide_kernels()})
+    for (const KernelId kernel : {KernelId::cadt_insert, KernelId::cadt_legalize_edges, KernelId::cadt_closing_pass})
+      check_call(cudaLaunchKernel(table[static_cast<std::size_t>(kernel)], dim3(1), dim3(1), parameters.data(), 0,
+                                  stream_->get()),
+                 kernel_names[static_cast<std::size_t>(kernel)]);
   // CUB's cannot be named, so they run: it has kernels of their own for few keys and for many.
   for (const std::size_t count : {std::size_t{1} << 8, std::size_t{1} << 17}) {
     const auto keys = allocate(4 * count), values = allocate(4 * count);

@@ -36,7 +36,7 @@ constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
 std::size_t most_bytes(const Memory& memory, std::size_t n) {
   std::size_t words = 0;
   for (const std::size_t one : kept_words) words += one;
-  return memory.keeps() ? fixed + n * words * word : least_bytes(n, false);
+  return memory.keeps() ? 4 * fixed + n * words * word : least_bytes(n, false);
 }
 
 void require_size(std::size_t points) {

@@ -76,7 +76,7 @@ class DeviceTriangulation {
 ///
 /// CUDA: the device and the context are those of `Options::queue`, else the device that `Options::device` names, else
 /// the caller's current one. Each call makes its context current and restores the caller's; no call synchronises the
-/// device or the default stream.
+/// device or the default stream, but opening may (it loads the kernels), and so may taking more memory (see reserve).
 ///
 ///     cadt::Options options;
 ///     options.backend = cadt::Backend::cuda;

@@ -235,13 +235,14 @@ TEST_P(CudaCalls, WorkInAnyStream) {
   EXPECT_EQ(cudaStreamDestroy(blocking), cudaSuccess);
 }
 
-/// Neither the device nor the default stream is waited for. A triangulator may be opened before the others are busy,
-/// and all kernels be loaded then; here it has not been called before.
+/// Neither the device nor the default stream is waited for. A triangulator may be opened, and take its memory, before
+/// the others are busy, and all kernels be loaded then; here it has not been called before.
 TEST_P(CudaCalls, DoNotWaitForOtherStreamsAtTheFirstCall) {
   const DevicePoints points = upload(known.xy);
   cudaStream_t other = nullptr;
   ASSERT_EQ(cudaStreamCreate(&other), cudaSuccess);
   Triangulator triangulator(options());
+  triangulator.reserve(known.size());
   DeviceTriangulation mesh;
   {
     Gate gate;

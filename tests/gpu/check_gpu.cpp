@@ -115,11 +115,12 @@ std::vector<double> make_points(const std::string& kind, std::size_t n) {
 }
 
 int chosen_device(Backend backend, const std::string& name) {
+  const bool number = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
   int any = -1;
   for (const DeviceInfo& info : list_devices()) {
     if (info.backend != backend || info.index < 0 || !info.usable) continue;
-    if (name.empty() ? info.gpu : std::to_string(info.index) == name || info.name.find(name) != std::string::npos)
-      return info.index;
+    const bool fits = number ? std::to_string(info.index) == name : info.name.find(name) != std::string::npos;
+    if (name.empty() ? info.gpu : fits) return info.index;
     if (any < 0 && name.empty()) any = info.index;
   }
   return any;

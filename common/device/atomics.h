@@ -94,8 +94,7 @@ CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
 }
 CADT_FN void cadt_fence_acq_rel(void) { mem_fence(CLK_GLOBAL_MEM_FENCE); }
 
-/* ---- CUDA: volatile accesses are relaxed and bypass the L1 cache; PTX where there is an order, at device scope
- * -------
+/* ---- CUDA: volatile accesses are relaxed and bypass the L1 cache; orders are PTX at device scope -------------------
  */
 #elif defined(CADT_LANG_CUDA)
 
@@ -125,9 +124,6 @@ CADT_FN cadt_u32 cadt_cas_acq_rel(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
 }
 CADT_FN cadt_u32 cadt_add_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { return atomicAdd(p, value); }
 CADT_FN void cadt_min_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { atomicMin(p, value); }
-CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
-  return atomicCAS(p, expected, desired) == expected ? 1u : 0u;
-}
 /* __threadfence is sequentially consistent, which is more than is needed. */
 CADT_FN void cadt_fence_acq_rel() { asm volatile("fence.acq_rel.gpu;" ::: "memory"); }
 

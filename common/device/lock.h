@@ -10,8 +10,8 @@
  * Why the proof holds on CPUs: a change stores fields with release after its claim (acquire), and fields are loaded
  * with acquire, the lock word first. If a reader saw one field of a later change, the change's claim happens before the
  * reader's compare-and-swap, which then cannot find the old version. On GPUs, where loads are relaxed, a field may be
- * older than the version beside it. So the owner reads the record again under its lock (cadt_confirm); the fence behind
- * the claims makes it see all that earlier owners wrote.
+ * older than the version beside it. So the owner reads the record again under its lock (cadt_confirm); claims acquire,
+ * so it sees all that earlier owners wrote.
  *
  * Order: records are claimed by ascending index, so among any set of conflicting claimers the one that gets furthest
  * meets nobody who is further (a fixed but unsorted order livelocks in a warp: ../docs/algorithm.md).

@@ -18,12 +18,12 @@ struct Statistics {
 
   std::uint64_t points = 0;              ///< input points
   std::uint64_t distinct = 0;            ///< distinct points, all of them vertices unless dimension < 2
-  std::uint64_t launches = 0;            ///< kernel launches
+  std::uint64_t launches = 0;            ///< kernel launches, but those within a device's own sort and scan
   std::uint64_t walk_steps = 0;          ///< triangles visited by the point location
   std::uint64_t claims = 0;              ///< lock attempts for a whole set of records
   std::uint64_t lost_claims = 0;         ///< attempts that met a lock held, or a record that had changed
   std::uint64_t insert_retries = 0;      ///< point insertions that were tried again in the same launch
-  std::uint64_t stale_edges = 0;         ///< worklist edges that another thread had already replaced
+  std::uint64_t stale_edges = 0;         ///< worklist edges whose triangle another thread had changed meanwhile
   std::uint64_t deferred_points = 0;     ///< points handed to a later launch
   std::uint64_t deferred_edges = 0;      ///< edges handed to a later launch
   std::uint64_t splits = 0;              ///< points inserted in a face (1 -> 3)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangulator::verify: meshes that never leave the device, good ones and ones with one wrong word.
 #include "tests/gpu/resident.hpp"
+#include "tests/support/report_checks.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,22 +22,6 @@ class ResidentVerify : public ResidentTest {
     std::vector<Duplicate> duplicates;
     for (std::size_t i = 0; i < count; ++i) duplicates.push_back({points[i], representatives[i]});
     return cadt::verify(std::span<const double>(xy), MeshView{triangles, neighbors, {}, duplicates, true}, options);
-  }
-
-  static void expect_same_report(const VerifyReport& found, const VerifyReport& expected) {
-    EXPECT_EQ(found.ok, expected.ok) << found.summary() << "; on the host: " << expected.summary();
-    EXPECT_EQ(found.points, expected.points);
-    EXPECT_EQ(found.triangles_examined, expected.triangles_examined);
-    EXPECT_EQ(found.edges_examined, expected.edges_examined);
-    EXPECT_EQ(found.hull_vertices, expected.hull_vertices);
-    EXPECT_EQ(found.ties, expected.ties);
-    ASSERT_EQ(found.checks.size(), expected.checks.size());
-    for (std::size_t i = 0; i < expected.checks.size(); ++i) {
-      EXPECT_EQ(found.checks[i].name, expected.checks[i].name);
-      EXPECT_EQ(found.checks[i].passed, expected.checks[i].passed) << expected.checks[i].name;
-      EXPECT_EQ(found.checks[i].failures, expected.checks[i].failures) << expected.checks[i].name;
-      EXPECT_EQ(found.checks[i].first, expected.checks[i].first) << expected.checks[i].name;
-    }
   }
 
   [[nodiscard]] std::int32_t word(const void* array, std::size_t at) const {

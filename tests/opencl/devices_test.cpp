@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the back end says about the machine, with and without drivers.
+#include <sys/wait.h>
+
 #include <cstdio>
 #include <cstdlib>
 
@@ -46,12 +48,13 @@ class OpenClWithoutDriver : public testing::Test {
  protected:
   void SetUp() override { testing::GTEST_FLAG(death_test_style) = "threadsafe"; }
 
+  static constexpr int loader_ignores_variable = 77;
+
   [[noreturn]] static void report() {
     setenv("OCL_ICD_VENDORS", "/nonexistent", 1);
     const std::vector<DeviceInfo> devices = opencl_backend().devices();
     if (devices.size() != 1 || devices[0].index != -1 || devices[0].usable) {
-      std::fputs("the loader does not follow the variable", stderr);  // that of Debian and Ubuntu does
-      std::exit(devices[0].index >= 0 ? 0 : 1);
+      std::exit(devices[0].index >= 0 ? loader_ignores_variable : 1);
     }
     std::fprintf(stderr, "listed: %s\n", devices[0].reason.c_str());
     try {
@@ -65,10 +68,15 @@ class OpenClWithoutDriver : public testing::Test {
 };
 
 TEST_F(OpenClWithoutDriver, IsAReasonAndATypedError) {
-  EXPECT_EXIT(report(), testing::ExitedWithCode(0),
-              "listed: no OpenCL platform .*OCL_ICD_VENDORS=/nonexistent.*install.*\n"
-              "thrown: back end 'opencl' is not available: no OpenCL platform|"
-              "the loader does not follow the variable");
+  int code = -1;
+  const auto ended = [&](int status) {
+    code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return code == 0 || code == loader_ignores_variable;
+  };
+  EXPECT_EXIT(report(), ended,
+              "^$|listed: no OpenCL platform .*OCL_ICD_VENDORS=/nonexistent.*install.*\n"
+              "thrown: back end 'opencl' is not available: no OpenCL platform");
+  if (code == loader_ignores_variable) GTEST_SKIP() << "the loader does not follow OCL_ICD_VENDORS";
 }
 
 }  // namespace

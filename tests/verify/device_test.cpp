@@ -8,6 +8,7 @@
 #include "tests/support/backends.hpp"
 #include "tests/support/data_files.hpp"
 #include "tests/support/families.hpp"
+#include "tests/support/report_checks.hpp"
 
 #include <cfloat>
 #include <cmath>
@@ -31,7 +32,7 @@ void compare(const Points& xy) {
   for (const OpenDevice& d : open_devices()) {
     SCOPED_TRACE(d.name);
     MeshView view{mesh.triangles(), mesh.neighbors(), mesh.hull(), mesh.duplicates(), true};
-    expect_same(verify_on_device(*d.device, points, view, d.options, {}), host);
+    expect_same_report(verify_on_device(*d.device, points, view, d.options, {}), host);
   }
 }
 
@@ -277,7 +278,7 @@ TEST(OnDevices, MeshThatIsOnlyInDeviceMemory) {
         const Allocation triangles = run.memory.import(m.triangles.data(), m.triangles.size() * 4);
         const Allocation neighbors = run.memory.import(m.neighbors.data(), m.neighbors.size() * 4);
         const VerifyInput input{points, triangles, neighbors, m.xy.size() / 2, m.size(), m.hull, m.duplicates, listed};
-        expect_same(verify_on_device(run, input, {}), expected);
+        expect_same_report(verify_on_device(run, input, {}), expected);
       }
     }
 }

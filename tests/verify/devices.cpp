@@ -5,6 +5,7 @@
 #include "common/host/registry.hpp"
 #include "common/host/verify_on_device.hpp"
 #include "tests/support/backends.hpp"
+#include "tests/support/report_checks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,31 +39,12 @@ const std::vector<OpenDevice>& open_devices() {
   return *devices;
 }
 
-void expect_same(const cadt::VerifyReport& device, const cadt::VerifyReport& host) {
-  EXPECT_EQ(device.ok, host.ok) << device.summary() << "; host: " << host.summary();
-  EXPECT_EQ(device.points, host.points);
-  EXPECT_EQ(device.triangles_examined, host.triangles_examined);
-  EXPECT_EQ(device.edges_examined, host.edges_examined);
-  EXPECT_EQ(device.hull_vertices, host.hull_vertices);
-  EXPECT_EQ(device.ties, host.ties);
-  EXPECT_EQ(device.unusual_ties, host.unusual_ties);
-  ASSERT_EQ(device.checks.size(), host.checks.size());
-  for (std::size_t i = 0; i < host.checks.size(); ++i) {
-    const cadt::Check &d = device.checks[i], &h = host.checks[i];
-    EXPECT_EQ(d.name, h.name);
-    EXPECT_EQ(d.passed, h.passed) << h.name;
-    EXPECT_EQ(d.failures, h.failures) << h.name;
-    EXPECT_EQ(d.first, h.first) << h.name;
-    EXPECT_EQ(d.what, h.what) << h.name;
-  }
-}
-
 cadt::VerifyReport on_host_and_devices(cadt::PointsView points, const cadt::MeshView& mesh,
                                        const cadt::VerifyOptions& options) {
   cadt::VerifyReport host = verify(points, mesh, options);
   for (const OpenDevice& d : open_devices()) {
     SCOPED_TRACE(d.name);
-    expect_same(verify_on_device(*d.device, points, mesh, d.options, options), host);
+    cadt::test::expect_same_report(verify_on_device(*d.device, points, mesh, d.options, options), host);
   }
   return host;
 }

@@ -24,4 +24,3 @@ const std::vector<OpenDevice>& open_devices();
 /// The report of the host, after all devices have been held against it: every check, every count.
 cadt::VerifyReport on_host_and_devices(cadt::PointsView points, const cadt::MeshView& mesh,
                                        const cadt::VerifyOptions& options = {});
-void expect_same(const cadt::VerifyReport& device, const cadt::VerifyReport& host);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -113,6 +114,9 @@ class Device {
   virtual void trim() {}
   /// Bytes that can still be allocated as far as the device knows.
   [[nodiscard]] virtual std::size_t free_bytes() { return static_cast<std::size_t>(info().memory_bytes); }
+
+  /// As Triangulator::occupancy().
+  [[nodiscard]] virtual std::optional<double> occupancy(unsigned /*work_group_size*/) { return std::nullopt; }
 
   /// nullptr: the kernels of common/device do it.
   [[nodiscard]] virtual Primitives* primitives() noexcept { return nullptr; }

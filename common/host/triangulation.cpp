@@ -2,6 +2,7 @@
 #include <cadt/triangulation.hpp>
 
 #include <algorithm>
+#include <array>
 
 #include "common/host/triangulation_data.hpp"
 
@@ -27,7 +28,44 @@ void add(Hash128& hash, std::uint64_t kind, std::uint64_t a, std::uint64_t b, st
   hash.low += lane(0x13198a2e03707344U ^ (kind << 32), c, a, b);
 }
 
+/// A triangle from its smallest index on.
+using Corners = std::array<std::int32_t, 3>;
+
+std::vector<Corners> sorted_triangles(const Triangulation& mesh) {
+  const auto v = mesh.triangles();
+  std::vector<Corners> result(mesh.number_of_triangles());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    std::copy_n(v.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, result[i].begin());
+    std::rotate(result[i].begin(), std::min_element(result[i].begin(), result[i].end()), result[i].end());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 }  // namespace
+
+std::size_t count_differing(const Triangulation& mesh, const Triangulation& other) {
+  const std::vector<Corners> mine = sorted_triangles(mesh), theirs = sorted_triangles(other);
+  std::size_t common = 0;
+  for (auto a = mine.begin(), b = theirs.begin(); a != mine.end() && b != theirs.end();) {
+    if (*a == *b) {
+      ++common, ++a, ++b;
+    } else {
+      ++(*a < *b ? a : b);
+    }
+  }
+  return mine.size() - common;
+}
+
+std::string_view to_string(Stabilize mode) noexcept {
+  constexpr std::array<std::string_view, 3> names = {"off", "defer", "paper"};
+  return names[static_cast<std::size_t>(mode)];
+}
+
+std::string_view to_string(StatisticsDetail detail) noexcept {
+  constexpr std::array<std::string_view, 3> names = {"none", "counters", "timing"};
+  return names[static_cast<std::size_t>(detail)];
+}
 
 std::string Hash128::to_string() const {
   std::string text;

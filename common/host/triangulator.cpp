@@ -173,6 +173,10 @@ Triangulator& Triangulator::operator=(Triangulator&&) noexcept = default;
 const DeviceInfo& Triangulator::device() const noexcept { return state_->device->info(); }
 Options& Triangulator::options() noexcept { return state_->options; }
 
+std::optional<double> Triangulator::occupancy(unsigned work_group_size) const {
+  return state_->device->occupancy(work_group_size);
+}
+
 Triangulation Triangulator::triangulate(PointsView points) { return to_host(state_, points); }
 
 DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) {

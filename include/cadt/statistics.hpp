@@ -2,12 +2,23 @@
 // What one triangulation did: work, conflicts, memory and time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace cadt {
+
+/// What is counted and timed.
+enum class StatisticsDetail {
+  none,  ///< sizes, launches and the closing passes only: what is known anyway. No wait for the device between phases
+  counters,  ///< and the work and conflicts, flips per edge, time per phase; costs less than 2 % (docs/evaluation.md)
+  timing     ///< and the shares of the device's threads' time (`thread_time`), by kernels with clocks in them: slower
+};
+/// "none", "counters", "timing".
+[[nodiscard]] std::string_view to_string(StatisticsDetail detail) noexcept;
 
 /// Counters of one run. Everything about conflicts (lost claims, retries, deferred work) depends on the schedule and
 /// differs from run to run; the mesh does not.
@@ -22,6 +33,7 @@ struct Statistics {
   std::uint64_t walk_steps = 0;          ///< triangles visited by the point location
   std::uint64_t claims = 0;              ///< lock attempts for a whole set of records
   std::uint64_t lost_claims = 0;         ///< attempts that met a lock held, or a record that had changed
+  std::uint64_t invalid_restarts = 0;    ///< of these, attempts that met a record that had changed since it was read
   std::uint64_t insert_retries = 0;      ///< point insertions that were tried again in the same launch
   std::uint64_t stale_edges = 0;         ///< worklist edges whose triangle another thread had changed meanwhile
   std::uint64_t deferred_points = 0;     ///< points handed to a later launch
@@ -30,15 +42,32 @@ struct Statistics {
   std::uint64_t edge_splits = 0;         ///< points inserted on an edge (2 -> 4)
   std::uint64_t flips = 0;               ///< edges flipped
   std::uint64_t incircle_tests = 0;      ///< edges examined
+  std::uint64_t orientation_tests = 0;   ///< orientation signs asked for
   std::uint64_t exact_orientations = 0;  ///< orientation signs that the filter left to exact arithmetic
   std::uint64_t exact_incircles = 0;     ///< incircle signs that the filter left to exact arithmetic
   std::uint64_t ties = 0;                ///< incircle signs that were zero and were decided symbolically
   std::uint64_t closing_sweeps = 0;      ///< passes over all edges at the end; the last one found nothing
   std::uint64_t closing_repairs = 0;     ///< illegal edges that the closing passes found and repaired
   std::uint64_t certified_edges = 0;     ///< edges that the last closing pass examined and found legal
+  std::uint64_t stabilized_edges = 0;    ///< times that an illegal edge was left because of `Options::stabilize`
+  std::uint64_t illegal_edges = 0;       ///< edges that are illegal in the result: none, but with Stabilize::paper
   std::uint64_t refined_points = 0;      ///< points whose sort key had to be refined
   std::uint64_t bytes_device_peak = 0;   ///< most bytes held on the device at a time
   bool wide_arithmetic = false;          ///< the exponents span so much that long integers were needed throughout
+
+  /// The closing pass found every edge legal, so the mesh is the Delaunay triangulation. Always, but with
+  /// Stabilize::paper.
+  bool certified = false;
+
+  /// Edges of the result by the number of flips of their slot: flips_per_edge[k] edges with k flips, the last with 15
+  /// or more. An edge keeps its counter when it is flipped and when it becomes part of another triangle; the edges of a
+  /// split start at 0 (paper, Fig. 9, 10). Their sum is the number of edges.
+  std::array<std::uint64_t, 16> flips_per_edge{};
+
+  /// How the threads of the insertion spend their time (paper, Fig. 6): shares of their sum, e.g. {"locate", 0.31}; the
+  /// names are locate, claim, split, test, flip, neighbors, other. Empty unless StatisticsDetail::timing, and where the
+  /// device has no clock.
+  std::vector<std::pair<std::string, double>> thread_time;
 
   /// Milliseconds per phase, in order of execution, e.g. {"sort", 12.3}.
   std::vector<std::pair<std::string, double>> milliseconds;

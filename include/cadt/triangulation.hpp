@@ -36,10 +36,27 @@ enum class Order {
   fast        ///< as the device left them: the same set, in an order that depends on the schedule
 };
 
+/// What is done with an edge that is flipped again and again (paper, section 4.4.4, Algorithm 4). Hull edges are always
+/// flipped.
+enum class Stabilize {
+  off,    ///< nothing: with exact predicates flips cannot go round in circles
+  defer,  ///< flipped more than `Options::flip_threshold` times, it is left to the closing pass. The same mesh
+  paper   ///< from then on it is flipped only if that gains enough quality: the mesh may keep illegal edges
+          ///< (`Statistics::illegal_edges`), depends on the schedule, and is not certified
+};
+/// "off", "defer", "paper".
+[[nodiscard]] std::string_view to_string(Stabilize mode) noexcept;
+
 /// State of a running triangulation, as told to `Options::progress`.
 struct Progress {
   std::string_view phase;  ///< "sort", "insert", "certify", "collect"
   double fraction;         ///< of the whole work, 0 to 1, never decreasing
+};
+
+/// The mesh between two launches of a running triangulation.
+struct Snapshot {
+  std::size_t points;                       ///< in the mesh by now
+  std::span<const std::int32_t> triangles;  ///< of input indices, n x 3, counterclockwise; not all Delaunay yet
 };
 
 struct Options {
@@ -63,6 +80,17 @@ struct Options {
   std::optional<void*> queue;
   /// Where device memory comes from. Null: the library allocates it.
   std::shared_ptr<DeviceAllocator> allocator;
+  Stabilize stabilize = Stabilize::off;
+  /// R of Algorithm 4: flips of an edge slot before `stabilize` applies to it. At most 1000, else LimitError.
+  unsigned flip_threshold = 3;
+  /// Epsilon of Algorithm 4 (Stabilize::paper): the smallest angle of the two triangles, in radians, must grow by more
+  /// than this; and an edge whose incircle determinant, divided by the fourth power of the largest coordinate
+  /// difference, is at most this is left as it is. Not negative and not NaN, else std::invalid_argument.
+  double quality_epsilon = 1e-4;
+  StatisticsDetail statistics = StatisticsDetail::counters;
+  /// Called from the calling thread after each launch of the insertion with a copy of the mesh, for pictures. Costs a
+  /// copy of all records each time. Must not throw.
+  std::function<void(const Snapshot&)> watch;
   /// Checked between launches; when triggered the call throws Cancelled.
   std::stop_token stop;
   /// Called from the calling thread between launches. Must not throw.
@@ -124,6 +152,9 @@ class Triangulation {
  private:
   std::unique_ptr<Data> data_;
 };
+
+/// Triangles of `mesh` that are none of `other`, both over the same points. O(n log n).
+[[nodiscard]] std::size_t count_differing(const Triangulation& mesh, const Triangulation& other);
 
 /// Most points that one call accepts: a record index and an edge number share 32 bits, and there are two records a
 /// point.

@@ -62,6 +62,8 @@ int report_known_exception() {
     return error(exit_file, e.what());
   } catch (const InputError& e) {
     return error(exit_file, fmt::format("point {} (counted from 0): {}", e.index(), e.what()));
+  } catch (const OptionError& e) {
+    return error(exit_usage, e.what());
   } catch (const LimitError& e) {
     return error(exit_file, fmt::format("{} ({} points, at most {})", e.what(), e.count(), e.limit()),
                  "Split the input into tiles.");

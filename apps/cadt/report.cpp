@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 
 namespace cadt::cli {
@@ -28,6 +30,7 @@ constexpr std::array counters = {
     Counter{"walk_steps", &Statistics::walk_steps},
     Counter{"claims", &Statistics::claims},
     Counter{"lost_claims", &Statistics::lost_claims},
+    Counter{"invalid_restarts", &Statistics::invalid_restarts},
     Counter{"insert_retries", &Statistics::insert_retries},
     Counter{"stale_edges", &Statistics::stale_edges},
     Counter{"deferred_points", &Statistics::deferred_points},
@@ -36,12 +39,15 @@ constexpr std::array counters = {
     Counter{"edge_splits", &Statistics::edge_splits},
     Counter{"flips", &Statistics::flips},
     Counter{"incircle_tests", &Statistics::incircle_tests},
+    Counter{"orientation_tests", &Statistics::orientation_tests},
     Counter{"exact_orientations", &Statistics::exact_orientations},
     Counter{"exact_incircles", &Statistics::exact_incircles},
     Counter{"ties", &Statistics::ties},
     Counter{"closing_sweeps", &Statistics::closing_sweeps},
     Counter{"closing_repairs", &Statistics::closing_repairs},
     Counter{"certified_edges", &Statistics::certified_edges},
+    Counter{"stabilized_edges", &Statistics::stabilized_edges},
+    Counter{"illegal_edges", &Statistics::illegal_edges},
     Counter{"refined_points", &Statistics::refined_points},
 };
 
@@ -90,6 +96,12 @@ std::string summary_text(const RunReport& r) {
   text += line("time", fmt::format("{:.3f} s ({})", total_seconds(r), parts));
   text += line("back end", back_end(mesh.statistics()));
   text += line("hash", r.hash);
+  if (r.differing) {
+    const double percent = 100.0 * static_cast<double>(*r.differing) /
+                           static_cast<double>(std::max<std::size_t>(mesh.number_of_triangles(), 1));
+    text += line("not exact", fmt::format("{} edges left illegal, {} triangles ({:.4f} %) differ from the exact mesh",
+                                          mesh.statistics().illegal_edges, *r.differing, percent));
+  }
   if (r.verification) text += line("verified", r.verification->summary());
   return text;
 }
@@ -106,7 +118,24 @@ std::string statistics_text(const RunReport& r) {
   rows.push_back({"wide_arithmetic", s.wide_arithmetic ? "yes" : "no", ""});
   std::vector<std::vector<std::string>> phases = {{"phase", "milliseconds"}};
   for (const auto& [name, ms] : s.milliseconds) phases.push_back({name, fmt::format("{:.3f}", ms)});
-  return table(rows) + '\n' + table(phases);
+  std::string text = table(rows) + '\n' + table(phases);
+  std::vector<std::vector<std::string>> flips = {{"flips", "edges", "share"}};
+  const double edges =
+      static_cast<double>(std::accumulate(s.flips_per_edge.begin(), s.flips_per_edge.end(), std::uint64_t{0}));
+  for (std::size_t k = 0; k < s.flips_per_edge.size(); ++k) {
+    const std::uint64_t count = s.flips_per_edge[k];
+    if (count != 0) {
+      flips.push_back({std::to_string(k) + (k + 1 == s.flips_per_edge.size() ? "+" : ""), std::to_string(count),
+                       fmt::format("{:.3f} %", 100 * static_cast<double>(count) / edges)});
+    }
+  }
+  text += '\n' + table(flips);
+  if (!s.thread_time.empty()) {
+    std::vector<std::vector<std::string>> shares = {{"threads' time", "share"}};
+    for (const auto& [name, share] : s.thread_time) shares.push_back({name, fmt::format("{:.1f} %", 100 * share)});
+    text += '\n' + table(shares);
+  }
+  return text;
 }
 
 std::string statistics_json(const RunReport& r) {
@@ -135,6 +164,12 @@ std::string statistics_json(const RunReport& r) {
   for (const auto& [name, ms] : s.milliseconds) json["phases"].push_back({{"name", name}, {"milliseconds", ms}});
   json["counters"] = Json::object();
   for (const Counter& counter : counters) json["counters"][counter.name] = s.*counter.value;
+  json["flips_per_edge"] = s.flips_per_edge;
+  json["thread_time"] = Json::object();
+  for (const auto& [name, share] : s.thread_time) json["thread_time"][name] = share;
+  json["stabilize"] = {{"mode", r.stabilize}, {"flip_threshold", r.flip_threshold}, {"epsilon", r.epsilon}};
+  json["certified"] = s.certified;
+  json["differing_triangles"] = r.differing ? Json(*r.differing) : s.certified ? Json(0) : Json(nullptr);
   json["bytes_device_peak"] = s.bytes_device_peak;
   json["wide_arithmetic"] = s.wide_arithmetic;
   json["verification"] = r.verification ? verification_json(*r.verification) : Json(nullptr);

@@ -8,6 +8,7 @@
 #include <cadt/triangulation.hpp>
 #include <cadt/verify.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,10 @@ struct RunReport {
   const Triangulation* mesh = nullptr;
   std::string hash;
   std::optional<VerifyReport> verification;
+  std::string stabilize;  ///< off, defer, paper
+  unsigned flip_threshold = 0;
+  double epsilon = 0;
+  std::optional<std::size_t> differing;  ///< triangles that are none of the exact mesh; --stabilize paper only
   std::vector<Output> outputs;
   double read_seconds = 0, triangulate_seconds = 0, verify_seconds = 0, write_seconds = 0;
 };

@@ -26,9 +26,11 @@ struct TriangulateOptions {
   InputOptions input;
   std::vector<std::string> outputs, formats;
   std::string backend = "auto", device, max_memory, order = "canonical", stats;
-  unsigned threads = 0;
+  std::string stabilize = "off";
+  unsigned threads = 0, flip_threshold = 3;
+  double epsilon = 1e-4;
   int base = 0, width = 1600;
-  bool ascii = false, strict = false, verify = false, quiet = false;
+  bool ascii = false, strict = false, verify = false, timing = false, quiet = false;
 
   // A bare --stats is the table for people.
   [[nodiscard]] bool stats_table() const { return stats == "table"; }
@@ -50,6 +52,14 @@ class Stopwatch {
 
 std::vector<Output> check_outputs(const TriangulateOptions& options) {
   auto outputs = plan_outputs(options.outputs, options.formats, io::mesh_write_formats(), options.input.path);
+  if (options.timing && options.stats.empty())
+    throw Failure(exit_usage, "--timing belongs to --stats: add it, or leave --timing out");
+  if (options.stabilize == "paper" && options.verify) {
+    throw Failure(
+        exit_usage,
+        "--stabilize paper may leave illegal edges, so --verify would refuse its mesh: leave one of them out; "
+        "the summary tells how many triangles differ from the exact mesh");
+  }
   if (!options.stats_file()) return outputs;
   for (const Output& output : outputs) {
     if (output.path == options.stats) {
@@ -68,6 +78,13 @@ Options library_options(const TriangulateOptions& options, ProgressLine& line) {
   result.threads = options.threads;
   result.order = options.order == "fast" ? Order::fast : Order::canonical;
   if (!options.max_memory.empty()) result.max_memory = parse_bytes(options.max_memory);
+  result.stabilize = options.stabilize == "paper"   ? Stabilize::paper
+                     : options.stabilize == "defer" ? Stabilize::defer
+                                                    : Stabilize::off;
+  result.flip_threshold = options.flip_threshold;
+  result.quality_epsilon = options.epsilon;
+  if (options.stats.empty()) result.statistics = StatisticsDetail::none;  // nobody will see them
+  if (options.timing) result.statistics = StatisticsDetail::timing;
   result.stop = interrupt_token();
   result.progress = [&line](const Progress& progress) { line.update(progress); };
   return result;
@@ -81,6 +98,15 @@ Triangulation triangulate_file(const io::PointSet& points, const std::string& na
   } catch (const InputError& e) {
     throw Failure(exit_file, fmt::format("{}: point {} (counted from 0): {}", name, e.index(), e.what()));
   }
+}
+
+// How far a mesh of --stabilize paper is from the exact one.
+std::size_t differing_triangles(const io::PointSet& points, const std::string& name, Options options,
+                                const Triangulation& mesh) {
+  options.stabilize = Stabilize::off;
+  options.statistics = StatisticsDetail::none;
+  options.progress = nullptr;
+  return count_differing(mesh, triangulate_file(points, name, options));
 }
 
 void write_outputs(const TriangulateOptions& options, const std::vector<Output>& outputs, const io::PointSet& points,
@@ -168,6 +194,15 @@ int run(const TriangulateOptions& options) {
   judge_dimension(mesh, name, options);
   report.hash = mesh.hash().to_string();
 
+  report.stabilize = options.stabilize;
+  report.flip_threshold = options.flip_threshold;
+  report.epsilon = options.epsilon;
+  if (chosen.stabilize == Stabilize::paper) {
+    line.step("comparing with the exact mesh");
+    report.differing = differing_triangles(points, name, chosen, mesh);
+    line.clear();
+  }
+
   watch.lap();
   if (options.verify) {
     line.step("verifying");
@@ -237,6 +272,21 @@ void add_work_options(CLI::App& command, TriangulateOptions& o) {
                   "refuse before any work if more device memory is needed: 4G, 512M, 1.5GiB "
                   "(K M G T and KiB ... count 1024, KB ... 1000)")
       ->type_name("SIZE");
+  command
+      .add_option("--stabilize", o.stabilize,
+                  "what is done with edges that are flipped again and again: off (default), defer (left to the closing "
+                  "pass, the same mesh) or paper (flipped only for a gain: some edges stay illegal)")
+      ->type_name("MODE")
+      ->check(CLI::IsMember({"off", "defer", "paper"}).description(""));
+  command.add_option("--flip-threshold", o.flip_threshold, "flips of an edge before --stabilize applies (default: 3)")
+      ->type_name("R")
+      ->check(CLI::Range(0, 1000).description(""));
+  command
+      .add_option("--epsilon", o.epsilon,
+                  "gain that --stabilize paper asks for: degrees of the smallest angle, or relative incircle "
+                  "determinant (default: 1e-4)")
+      ->type_name("E")
+      ->check(CLI::NonNegativeNumber.description(""));
   command.add_flag("--strict", o.strict,
                    "exit 4 if there are no triangles (fewer than three points, or all on one line)");
   command.add_flag("--verify", o.verify, "check the mesh exactly before anything is written; exit 7 if it fails");
@@ -245,6 +295,7 @@ void add_work_options(CLI::App& command, TriangulateOptions& o) {
                 "all counters and times: as a table on standard error, with =FILE.json as JSON "
                 "in a file, with =- as JSON on standard output")
       ->type_name("FILE");
+  command.add_flag("--timing", o.timing, "with --stats: also how the threads spend their time; makes them slower");
   command.add_flag("-q,--quiet", o.quiet, "nothing on standard error but errors and what was asked for");
 }
 

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// The counters agree with each other and with the mesh; they can be left out; snapshots show the growing mesh.
+#include "tests/support/backends.hpp"
+#include "tests/support/families.hpp"
+#include "tests/support/mesh_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace cadt::test {
+namespace {
+
+using Reals = std::span<const double>;
+
+std::set<std::string> names(const std::vector<std::pair<std::string, double>>& values) {
+  std::set<std::string> result;
+  for (const auto& [name, value] : values) result.insert(name);
+  return result;
+}
+
+class CountedWork : public BackendTest {};
+
+TEST_P(CountedWork, AddsUp) {
+  for (const Points& xy : {uniform_points(20000, 3), grid_points(100, 90)}) {
+    const Triangulation mesh = triangulate(Reals(xy), GetParam().options());
+    const Statistics& s = mesh.statistics();
+    const std::uint64_t n = s.distinct, hull = mesh.hull().size();
+    EXPECT_EQ(n, xy.size() / 2);
+    EXPECT_EQ(s.splits + s.edge_splits, n - 3);
+    EXPECT_EQ(s.certified_edges, 3 * n - 3);
+    EXPECT_EQ(std::accumulate(s.flips_per_edge.begin(), s.flips_per_edge.end(), std::uint64_t{0}), 3 * n - 3 - hull);
+    EXPECT_GE(s.incircle_tests, s.certified_edges + s.flips);
+    EXPECT_GE(s.orientation_tests, s.exact_orientations + s.walk_steps);
+    EXPECT_GE(s.exact_incircles, s.ties);
+    EXPECT_EQ(s.claims - s.lost_claims <= s.splits + s.edge_splits + s.flips, true) << "claims that changed nothing";
+    EXPECT_LE(s.invalid_restarts, s.lost_claims);
+    EXPECT_TRUE(s.thread_time.empty());
+    for (const char* phase : {"sort", "gather", "insert", "certify", "collect", "copy"})
+      EXPECT_TRUE(names(s.milliseconds).count(phase)) << phase;
+  }
+}
+
+// Every flip raises one counter, and no counter is lost by another change, so a lattice without flips of its own shows
+// none, and a set whose every insertion flips shows all of them.
+TEST_P(CountedWork, FlipsAreThoseOfTheEdges) {
+  Options options = GetParam().options();
+  options.threads = 1;
+  for (const Points& xy : {uniform_points(5000, 4), hub_points(800)}) {
+    const Triangulation mesh = triangulate(Reals(xy), options);
+    const Statistics& s = mesh.statistics();
+    std::uint64_t lower = 0;  // edges that were split away take their flips with them
+    for (std::size_t k = 0; k < s.flips_per_edge.size(); ++k) lower += k * s.flips_per_edge[k];
+    EXPECT_LE(lower, s.flips);
+    EXPECT_GT(lower, s.flips / 3);
+  }
+  const Triangulation triangle = triangulate(Reals(Points{0, 0, 1, 0, 0, 1}), options);
+  EXPECT_EQ(triangle.statistics().flips_per_edge[0], 3u);
+}
+
+TEST_P(CountedWork, NoneCountsNothingAndChangesNothing) {
+  const Points xy = uniform_points(20000, 8);
+  Options options = GetParam().options();
+  const Hash128 hash = triangulate(Reals(xy), options).hash();
+  options.statistics = StatisticsDetail::none;
+  const Triangulation mesh = triangulate(Reals(xy), options);
+  const Statistics& s = mesh.statistics();
+  EXPECT_EQ(mesh.hash(), hash);
+  EXPECT_EQ(s.walk_steps + s.claims + s.flips + s.incircle_tests + s.orientation_tests, 0u);
+  EXPECT_EQ(std::accumulate(s.flips_per_edge.begin(), s.flips_per_edge.end(), std::uint64_t{0}), 0u);
+  EXPECT_TRUE(s.milliseconds.empty());
+  EXPECT_TRUE(s.certified);
+  EXPECT_EQ(s.certified_edges, 3 * s.distinct - 3);
+  EXPECT_GT(s.launches, 0u);
+  EXPECT_GT(s.bytes_device_peak, 0u);
+}
+
+TEST_P(CountedWork, TimingTellsShares) {
+  const Points xy = uniform_points(30000, 9);
+  Options options = GetParam().options();
+  const Hash128 hash = triangulate(Reals(xy), options).hash();
+  options.statistics = StatisticsDetail::timing;
+  const Triangulation mesh = triangulate(Reals(xy), options);
+  const Statistics& s = mesh.statistics();
+  EXPECT_EQ(mesh.hash(), hash);
+  EXPECT_GT(s.flips, 0u);
+  EXPECT_EQ(names(s.thread_time),
+            (std::set<std::string>{"locate", "claim", "split", "test", "flip", "neighbors", "other", "wait"}));
+  double sum = 0;
+  for (const auto& [name, share] : s.thread_time) {
+    if (name == "locate" || name == "test" || name == "claim") {
+      EXPECT_GT(share, 0.0) << name;
+    }
+    sum += share;
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-9);
+}
+
+class Snapshots : public BackendTest {};
+
+TEST_P(Snapshots, ShowTheGrowingMesh) {
+  const Points xy = uniform_points(2048, 10);
+  Options options = GetParam().options();
+  std::vector<std::size_t> points, triangles;
+  options.watch = [&](const Snapshot& snapshot) {
+    points.push_back(snapshot.points);
+    triangles.push_back(snapshot.triangles.size() / 3);
+    ASSERT_EQ(snapshot.triangles.size() % 3, 0u);
+    std::map<std::pair<std::int32_t, std::int32_t>, int> edges;
+    for (std::size_t t = 0; t < snapshot.triangles.size(); t += 3) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t a = snapshot.triangles[t + k], b = snapshot.triangles[t + (k + 1) % 3];
+        ASSERT_GE(a, 0);
+        ASSERT_LT(a, 2048);
+        ASSERT_EQ(++edges[std::make_pair(a, b)], 1) << "an edge has two triangles on one side";
+      }
+    }
+  };
+  const Triangulation mesh = triangulate(Reals(xy), options);
+  ASSERT_GT(points.size(), 4u);
+  EXPECT_TRUE(std::ranges::is_sorted(points));
+  EXPECT_GE(points.front(), 3u);
+  EXPECT_EQ(points.back(), 2048u);
+  EXPECT_TRUE(std::ranges::is_sorted(triangles));
+  EXPECT_LE(triangles.back(), mesh.number_of_triangles());  // the hull may not be convex yet
+  EXPECT_TRUE(verified(xy, mesh));
+}
+
+CADT_ON_MAIN_BACKENDS(CountedWork);
+CADT_ON_MAIN_BACKENDS(Snapshots);
+
+TEST(CountDiffering, CountsTrianglesOfOneMeshOnly) {
+  Options options;
+  options.backend = Backend::host;
+  const Points xy = uniform_points(1000, 11);
+  const Triangulation mesh = triangulate(Reals(xy), options);
+  options.order = Order::fast;
+  EXPECT_EQ(count_differing(mesh, triangulate(Reals(xy), options)), 0u);
+  const Points less(xy.begin(), xy.end() - 2);
+  const Triangulation other = triangulate(Reals(less), options);
+  const std::size_t differing = count_differing(mesh, other);
+  EXPECT_GT(differing, 2u);  // the star of the last point
+  EXPECT_LT(differing, 20u);
+  EXPECT_EQ(count_differing(mesh, Triangulation()), mesh.number_of_triangles());
+}
+
+}  // namespace
+}  // namespace cadt::test

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -DSOURCE=... -DOUTPUT=... [-DCOMMIT=...] -P commit.cmake : writes the header with the commit that is built,
 # if it changed. Without git, or outside a repository of this project, the commit is empty.
+cmake_minimum_required(VERSION 3.25)
 if(NOT COMMIT)
   set(COMMIT "")
   find_program(GIT git)

@@ -6,5 +6,6 @@ namespace cadt::cuda {
 
 const void* const* narrow_kernels();  ///< exponents within 240 binades
 const void* const* wide_kernels();    ///< any double
+const void* const* timed_kernels();   ///< narrow, with clocks
 
 }  // namespace cadt::cuda

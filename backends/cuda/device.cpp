@@ -13,7 +13,7 @@ namespace cadt::cuda {
 namespace {
 
 constexpr unsigned default_block = 128;  // several blocks an SM even for kernels with many registers
-constexpr unsigned largest_block = 256;  // larger ones gain nothing: lanes wait for each other in a warp only
+constexpr unsigned largest_block = 1024;
 constexpr std::size_t most_parameters = 32;
 constexpr std::size_t staging_bytes = std::size_t{1} << 16;
 
@@ -33,6 +33,9 @@ class CudaBuffer final : public Buffer {
   std::shared_ptr<Stream> stream_;
   void* data_;
 };
+
+/// In the order of KernelBuild.
+std::array<const void* const*, kernel_builds> tables() { return {narrow_kernels(), wide_kernels(), timed_kernels()}; }
 
 std::byte* data_of(const Buffer& buffer) { return static_cast<const CudaBuffer&>(buffer).data(); }
 std::uint32_t* words_of(const Buffer& buffer) { return reinterpret_cast<std::uint32_t*>(data_of(buffer)); }
@@ -68,6 +71,13 @@ CudaDevice::CudaDevice(DeviceInfo info, const Options& options)
                                                : default_block),
       stream_(std::make_shared<Stream>(info_.index, info_.name, options.queue, options.allocator)) {
   const ContextScope scope(stream_->context());
+  for (std::size_t build = 0; build < kernel_builds; ++build) {
+    for (std::size_t i = 0; i < kernel_count; ++i) {
+      cudaFuncAttributes attributes{};  // asking for them loads the kernel
+      check_call(cudaFuncGetAttributes(&attributes, tables()[build][i]), kernel_names[i]);
+      largest_blocks_[build][i] = static_cast<unsigned>(attributes.maxThreadsPerBlock);
+    }
+  }
   check_call(cudaHostAlloc(&staging_, staging_bytes, cudaHostAllocDefault), "cudaHostAlloc");
 }
 
@@ -148,7 +158,7 @@ void CudaDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::ui
   stream_->fill(data_of(to) + offset, word, bytes / sizeof word);
 }
 
-void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) {
+void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) {
   if (items == 0) return;
   if (args.size() > most_parameters) throw InternalError("a kernel with too many parameters");
   const ContextScope scope(stream_->context());
@@ -162,8 +172,9 @@ void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Ar
       addresses[i] = const_cast<void*>(args[i].value());
     }
   }
-  const void* function = (wide ? wide_kernels() : narrow_kernels())[static_cast<std::size_t>(kernel)];
-  const unsigned block = std::min<unsigned>(block_size_, items);
+  const auto variant = static_cast<std::size_t>(build), number = static_cast<std::size_t>(kernel);
+  const void* function = tables()[variant][number];
+  const unsigned block = std::min({block_size_, items, largest_blocks_[variant][number]});
   const unsigned blocks = (items - 1) / block + 1;
   check_call(cudaLaunchKernel(function, dim3(blocks), dim3(block), addresses.data(), 0, stream_->get()),
              kernel_names[static_cast<std::size_t>(kernel)]);
@@ -176,18 +187,13 @@ void CudaDevice::finish() {
 
 void CudaDevice::load_kernels() {
   const ContextScope scope(stream_->context());
-  for (const void* const* table : {narrow_kernels(), wide_kernels()}) {
-    for (std::size_t i = 0; i < kernel_count; ++i) {
-      cudaFuncAttributes attributes{};
-      check_call(cudaFuncGetAttributes(&attributes, table[i]), kernel_names[i]);
-    }
-  }
-  // The first launch of a kernel with a larger stack makes the driver enlarge the memory of all stacks, which waits for
-  // the context as well. With parameters of zeros these find no work.
+  // (The constructor has loaded the kernels themselves.) The first launch of a kernel with a larger stack makes the
+  // driver enlarge the memory of all stacks, which waits for the context as well. With parameters of zeros these find
+  // no work.
   std::uint64_t zero = 0;
   std::array<void*, most_parameters> parameters{};
   parameters.fill(&zero);
-  for (const void* const* table : {narrow_kernels(), wide_kernels()})
+  for (const void* const* table : tables())
     for (const KernelId kernel : {KernelId::cadt_insert, KernelId::cadt_legalize_edges, KernelId::cadt_closing_pass})
       check_call(cudaLaunchKernel(table[static_cast<std::size_t>(kernel)], dim3(1), dim3(1), parameters.data(), 0,
                                   stream_->get()),
@@ -202,6 +208,21 @@ void CudaDevice::load_kernels() {
     scan(*scan_memory, *keys, count);
   }
   finish();
+}
+
+std::optional<double> CudaDevice::occupancy(unsigned work_group_size) {
+  const ContextScope scope(stream_->context());
+  const auto insert = static_cast<std::size_t>(KernelId::cadt_insert);
+  if (work_group_size == 0 || work_group_size > largest_blocks_[0][insert]) return 0.0;
+  int blocks = 0, most = 0, device = 0, warp = 0;
+  check_call(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, narrow_kernels()[insert],
+                                                           static_cast<int>(work_group_size), 0),
+             "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
+  check_call(cudaGetDevice(&device), "cudaGetDevice");
+  check_call(cudaDeviceGetAttribute(&most, cudaDevAttrMaxThreadsPerMultiProcessor, device), "cudaDeviceGetAttribute");
+  check_call(cudaDeviceGetAttribute(&warp, cudaDevAttrWarpSize, device), "cudaDeviceGetAttribute");
+  const int warps = (static_cast<int>(work_group_size) - 1) / warp + 1;  // of a block: the last may not be full
+  return static_cast<double>(blocks * warps) / (static_cast<double>(most) / warp);
 }
 
 std::size_t CudaDevice::sort_scratch(std::size_t count, unsigned bits) {

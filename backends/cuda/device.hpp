@@ -30,11 +30,13 @@ class CudaDevice final : public Device, private Primitives {
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) override;
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) override;
   void finish() override;
+  [[nodiscard]] std::optional<double> occupancy(unsigned work_group_size) override;
 
   [[nodiscard]] CUcontext context() const noexcept { return stream_->context(); }
-  /// Loads all kernels, so that no later launch has to: loading may wait for everything that runs in the context.
+  /// Does what is done at first use, so that no later launch has to: it may wait for everything that runs in the
+  /// context.
   void load_kernels();
 
  private:
@@ -48,6 +50,7 @@ class CudaDevice final : public Device, private Primitives {
   DeviceInfo info_;
   unsigned block_size_;
   std::shared_ptr<Stream> stream_;
+  std::array<std::array<unsigned, kernel_count>, kernel_builds> largest_blocks_{};  ///< that each kernel starts with
   void* staging_ = nullptr;  ///< page-locked host memory for small reads
 };
 

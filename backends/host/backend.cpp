@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -149,9 +150,9 @@ class HostDevice final : public Device {
       std::fill_n(reinterpret_cast<std::uint32_t*>(bytes_of(to) + offset), bytes / sizeof word, word);
     }
   }
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) override {
-    const KernelTable& table = wide ? wide_kernels : narrow_kernels;
-    pool_.run(table[static_cast<std::size_t>(kernel)], items, args.data());
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) override {
+    const std::array tables = {&narrow_kernels, &wide_kernels, &timed_kernels};  // in the order of KernelBuild
+    pool_.run((*tables[static_cast<std::size_t>(build)])[static_cast<std::size_t>(kernel)], items, args.data());
   }
   void finish() override {}
 

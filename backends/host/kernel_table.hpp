@@ -15,6 +15,7 @@ using KernelTable = std::array<KernelFunction, kernel_count>;
 
 extern const KernelTable narrow_kernels;  ///< exponents within 240 binades
 extern const KernelTable wide_kernels;    ///< any double
+extern const KernelTable timed_kernels;   ///< narrow, with clocks
 
 /// Address of a buffer of this back end, as a kernel argument.
 [[nodiscard]] void* address(Buffer* buffer) noexcept;

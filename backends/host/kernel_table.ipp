@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiles the kernels as host C++ for one variant (CADT_WIDE is set by the including file) and builds their table.
+// Compiles the kernels as host C++ for one variant (CADT_WIDE and CADT_TIMED are set by the including file) and builds
+// their table.
 
 #include <atomic>
 #include <cassert>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>

@@ -83,12 +83,12 @@ SharedContext::SharedContext(const OpenRequest& request)
   device_.info.atomics = atomics_.text;
 }
 
-cl::Program SharedContext::program(bool wide, bool* from_cache) {
+cl::Program SharedContext::program(KernelBuild build, bool* from_cache) {
   const std::lock_guard lock(build_mutex_);
-  auto& slot = programs_[wide ? 1 : 0];
+  auto& slot = programs_[static_cast<std::size_t>(build)];
   if (!slot)
     slot =
-        build_program(context_, device_, source_, build_options(device_, atomics_, wide, extra_options_), from_cache);
+        build_program(context_, device_, source_, build_options(device_, atomics_, build, extra_options_), from_cache);
   return *slot;
 }
 

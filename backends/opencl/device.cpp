@@ -224,8 +224,8 @@ void ClDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint
   }
 }
 
-ClDevice::ReadyKernel ClDevice::make_ready(const char* name, bool wide, std::size_t group) {
-  const cl::Program program = shared_->program(wide);
+ClDevice::ReadyKernel ClDevice::make_ready(const char* name, KernelBuild build, std::size_t group) {
+  const cl::Program program = shared_->program(build);
   ReadyKernel made;
   made.name = name;
   run([&] {
@@ -243,19 +243,19 @@ ClDevice::ReadyKernel ClDevice::make_ready(const char* name, bool wide, std::siz
   return made;
 }
 
-ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, bool wide) {
+ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, KernelBuild build) {
   const auto number = static_cast<std::size_t>(kernel);
-  auto& slot = kernels_[wide ? 1 : 0].at(number);
+  auto& slot = kernels_[static_cast<std::size_t>(build)].at(number);
   if (!slot) {
     const std::size_t group = work_group_size_ != 0 ? work_group_size_ : (info().gpu ? gpu_group : cpu_group);
-    slot = make_ready(kernel_names[number], wide, group);
+    slot = make_ready(kernel_names[number], build, group);
   }
   return *slot;
 }
 
-void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) {
+void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) {
   if (items == 0) return;
-  ReadyKernel& target = ready(kernel, wide);
+  ReadyKernel& target = ready(kernel, build);
   // On a GPU one work-item must be one and not a group: the driver lets one alone do what others keep each other from.
   // On a CPU the others find nothing to do, and PoCL compiles anew for each size of a group.
   std::size_t group = target.group;

@@ -28,7 +28,7 @@ class ClDevice final : public Device {
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) override;
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) override;
   void finish() override;
   [[nodiscard]] Primitives* primitives() noexcept override;
 
@@ -39,7 +39,7 @@ class ClDevice final : public Device {
     std::size_t group = 1;  ///< work-items of a group
   };
   /// A kernel for groups of `group` work-items, or of as many as the device allows.
-  [[nodiscard]] ReadyKernel make_ready(const char* name, bool wide, std::size_t group);
+  [[nodiscard]] ReadyKernel make_ready(const char* name, KernelBuild build, std::size_t group);
   /// Puts groups of the kernel's size in the queue.
   void enqueue(ReadyKernel& kernel, std::size_t groups, std::span<const Arg> args) {
     enqueue(kernel, groups, kernel.group, args);
@@ -47,7 +47,7 @@ class ClDevice final : public Device {
 
  private:
   void enqueue(ReadyKernel& kernel, std::size_t groups, std::size_t group, std::span<const Arg> args);
-  ReadyKernel& ready(KernelId kernel, bool wide);
+  ReadyKernel& ready(KernelId kernel, KernelBuild build);
 
   /// Calls `work` and translates what the bindings throw.
   template <class Work>
@@ -58,7 +58,7 @@ class ClDevice final : public Device {
   cl::CommandQueue queue_;
   unsigned work_group_size_;
   std::shared_ptr<DeviceAllocator> allocator_;
-  std::array<std::array<std::optional<ReadyKernel>, kernel_count>, 2> kernels_;
+  std::array<std::array<std::optional<ReadyKernel>, kernel_count>, kernel_builds> kernels_;
   std::optional<std::unique_ptr<Primitives>> primitives_;  ///< made when first asked for
 };
 

@@ -105,11 +105,13 @@ AtomicsPath choose_atomics(const cl::Context& context, const FoundDevice& device
   return best_effort;
 }
 
-std::string build_options(const FoundDevice& device, const AtomicsPath& atomics, bool wide, const std::string& extra) {
+std::string build_options(const FoundDevice& device, const AtomicsPath& atomics, KernelBuild build,
+                          const std::string& extra) {
   // No option that relaxes arithmetic may ever stand here: the filters rely on each rounding (and the self-test would
   // refuse the device).
   std::string options = atomics.options;
-  options += wide ? " -DCADT_WIDE=1" : " -DCADT_WIDE=0";
+  options += build == KernelBuild::wide ? " -DCADT_WIDE=1" : " -DCADT_WIDE=0";
+  if (build == KernelBuild::timed) options += " -DCADT_TIMED=1";
   options += device.info.gpu ? " -DCADT_CONTIGUOUS=0 -DCADT_RADIX_BITS=4" : " -DCADT_CONTIGUOUS=1 -DCADT_RADIX_BITS=8";
   // cadt_insert takes 118 registers if it may; with 96 more work-items fit in, which is faster (measured with CUDA).
   if (device.info.platform == "NVIDIA CUDA") options += " -cl-nv-maxrregcount=96";

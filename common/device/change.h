@@ -8,7 +8,7 @@
 
 #include "common/device/locate.h"
 
-enum { CADT_EDGE_LEGAL, CADT_EDGE_FLIPPED, CADT_EDGE_CONFLICT };
+enum { CADT_EDGE_LEGAL, CADT_EDGE_FLIPPED, CADT_EDGE_CONFLICT, CADT_EDGE_LEFT };
 
 CADT_FN void cadt_link_back(const cadt_mesh* m, cadt_u32 outer, cadt_u32 link) {
   cadt_store_link(m, CADT_LINK_RECORD(outer), CADT_LINK_EDGE(outer), link);
@@ -24,6 +24,8 @@ CADT_FN void cadt_set_hint(const cadt_mesh* m, cadt_u32 vertex, cadt_u32 t) {
 CADT_FN cadt_u32 cadt_give_up(const cadt_mesh* m, const cadt_claim* claim, cadt_tally* tally) {
   cadt_abandon_claim(m, claim, 4u);
   tally->count[CADT_COUNT_LOST_CLAIMS]++;
+  tally->count[CADT_COUNT_INVALID]++;
+  CADT_LAP(tally, CADT_TIME_CLAIM);
   return 0u;
 }
 
@@ -57,16 +59,19 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_plac
                   cadt_flips_set(0u, 1u, cadt_flips_get(s.flips, 1u)));
   cadt_new_record(m, t2, s.v0, s.v1, i, CADT_LINK(t, 2u), CADT_LINK(t1, 2u), s.n2,
                   cadt_flips_set(0u, 2u, cadt_flips_get(s.flips, 2u)));
-  cadt_link_back(m, s.n1, CADT_LINK(t1, 1u));
-  cadt_link_back(m, s.n2, CADT_LINK(t2, 2u));
   cadt_store_vertex(m, t, 0u, i);
   cadt_store_link(m, t, 1u, CADT_LINK(t1, 0u));
   cadt_store_link(m, t, 2u, CADT_LINK(t2, 0u));
   cadt_store_flips(m, t, cadt_flips_set(0u, 0u, cadt_flips_get(s.flips, 0u)));
+  CADT_LAP(tally, CADT_TIME_SPLIT);
+  cadt_link_back(m, s.n1, CADT_LINK(t1, 1u));
+  cadt_link_back(m, s.n2, CADT_LINK(t2, 2u));
+  CADT_LAP(tally, CADT_TIME_NEIGHBORS);
   cadt_fence_locks();
   cadt_publish_record(m, t1);
   cadt_publish_record(m, t2);
   cadt_release_claim(m, &claim);
+  CADT_LAP(tally, CADT_TIME_CLAIM);
   edges[0] = CADT_LINK(t, 0u);
   edges[1] = CADT_LINK(t1, 1u);
   edges[2] = CADT_LINK(t2, 2u);
@@ -85,6 +90,7 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   const cadt_snapshot u = cadt_look(m, n);
   if (CADT_NEIGHBOR(u, j) != CADT_LINK(t, k)) {
     tally->count[CADT_COUNT_LOST_CLAIMS]++;
+    tally->count[CADT_COUNT_INVALID]++;
     return 0u;
   }
   /* t = (c, a, b), n = (d, b, a) from vertices k and j on; i is between a and b */
@@ -115,8 +121,6 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   cadt_store_link(m, ns, j1, outer_ad);
   cadt_store_link(m, ns, j2, CADT_LINK(n, j1));
   cadt_store_flips(m, ns, cadt_flips_set(0u, j1, cadt_flips_get(u.flips, j1)));
-  cadt_link_back(m, outer_bc, CADT_LINK(ts, k1));
-  cadt_link_back(m, outer_ad, CADT_LINK(ns, j1));
   /* t = (c, a, i), n = (d, b, i) */
   cadt_store_vertex(m, t, k2, i);
   cadt_store_link(m, t, k, CADT_LINK(ns, j));
@@ -126,10 +130,15 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   cadt_store_link(m, n, j, CADT_LINK(ts, k));
   cadt_store_link(m, n, j1, CADT_LINK(ns, j2));
   cadt_store_flips(m, n, cadt_flips_set(0u, j2, cadt_flips_get(u.flips, j2)));
+  CADT_LAP(tally, CADT_TIME_SPLIT);
+  cadt_link_back(m, outer_bc, CADT_LINK(ts, k1));
+  cadt_link_back(m, outer_ad, CADT_LINK(ns, j1));
+  CADT_LAP(tally, CADT_TIME_NEIGHBORS);
   cadt_fence_locks();
   cadt_publish_record(m, ts);
   cadt_publish_record(m, ns);
   cadt_release_claim(m, &claim);
+  CADT_LAP(tally, CADT_TIME_CLAIM);
   edges[0] = CADT_LINK(t, k2);
   edges[1] = CADT_LINK(ts, k1);
   edges[2] = CADT_LINK(n, j2);
@@ -150,10 +159,52 @@ CADT_FN cadt_u32 cadt_is_illegal(const cadt_mesh* m, cadt_u32 p, cadt_u32 a, cad
   return cadt_incircle(m->points[p], m->points[a], m->points[b], m->points[q], tally) > 0 ? 1u : 0u;
 }
 
+/* Smallest angle of the triangle of points 0, u and v. The one between the longer sides: it has the largest scalar
+ * product, and the three have the vector product in common. */
+CADT_FN double cadt_smallest_angle(double ux, double uy, double vx, double vy) {
+  const double at_0 = ux * vx + uy * vy, at_u = ux * (ux - vx) + uy * (uy - vy), at_v = vx * (vx - ux) + vy * (vy - uy);
+  double largest = at_0 > at_u ? at_0 : at_u;
+  if (at_v > largest) largest = at_v;
+  return cadt_atan2(cadt_fabs(ux * vy - uy * vx), largest);
+}
+
+/* The quality check of Algorithm 4 of the paper: whether a flip of the illegal edge a, b to p, q is worth while. It is
+ * if the determinant, with lengths in units of the largest coordinate difference, is not near zero, or if the smallest
+ * angle grows, in degrees. (The paper names no units. With radians, or with the determinant alone, the mesh of
+ * perturbed circles would differ by 2.8 to 4.3 %, and not by less than the paper's 0.3 %: docs/evaluation.md.) */
+CADT_FN_SLOW cadt_u32 cadt_flip_gains(cadt_point p, cadt_point a, cadt_point b, cadt_point q, double epsilon) {
+  double d[6], unit = 0.0;
+  d[0] = p.x - q.x, d[1] = p.y - q.y, d[2] = a.x - q.x, d[3] = a.y - q.y, d[4] = b.x - q.x, d[5] = b.y - q.y;
+  for (cadt_u32 i = 0u; i < 6u; ++i)
+    if (cadt_fabs(d[i]) > unit) unit = cadt_fabs(d[i]);
+  for (cadt_u32 i = 0u; i < 6u; ++i) d[i] /= unit;
+  const double px = d[0], py = d[1], ax = d[2], ay = d[3], bx = d[4], by = d[5];
+  const double p2 = px * px + py * py, a2 = ax * ax + ay * ay, b2 = bx * bx + by * by;
+  const double det = p2 * (ax * by - bx * ay) + a2 * (bx * py - px * by) + b2 * (px * ay - ax * py);
+  if (det >= epsilon) return 1u;
+  /* from q: the triangles q, b, a and p, a, b before; p, a, q and q, b, p after */
+  const double before_1 = cadt_smallest_angle(bx, by, ax, ay);
+  const double before_2 = cadt_smallest_angle(ax - px, ay - py, bx - px, by - py);
+  const double after_1 = cadt_smallest_angle(px, py, ax, ay), after_2 = cadt_smallest_angle(bx, by, px, py);
+  const double before = before_1 < before_2 ? before_1 : before_2, after = after_1 < after_2 ? after_1 : after_2;
+  return (after - before) * 57.295779513082323 > epsilon ? 1u
+                                                         : 0u; /* no number (a difference has overflowed): no gain */
+}
+
+/* Whether the illegal edge a, b, whose slot has been flipped `flips` times, is left as it is (paper, section 4.4.4).
+ * Hull edges are not: the hull shall be convex. */
+CADT_FN cadt_u32 cadt_is_left(const cadt_mesh* m, cadt_u32 flips, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_u32 q) {
+  if (m->stabilize == CADT_CAST(cadt_u32, CADT_STABILIZE_OFF) || flips <= m->threshold) return 0u;
+  if (a == CADT_GHOST || b == CADT_GHOST) return 0u;
+  if (m->stabilize == CADT_CAST(cadt_u32, CADT_STABILIZE_DEFER)) return 1u;
+  return cadt_flip_gains(m->points[p], m->points[a], m->points[b], m->points[q], m->epsilon) ? 0u : 1u;
+}
+
 /* Tests an edge and flips it if it is illegal. `apex` is the vertex expected opposite of it, or CADT_NONE for any.
- * \post CADT_EDGE_FLIPPED: the edge's record keeps its link, `*partner` is the record and edge on the other side of the
- * quadrilateral that is now opposite the same apex; `*all_sides`: the apex is another one than expected, so all four
- * sides of the quadrilateral may be illegal. */
+ * \post CADT_EDGE_LEFT: it is illegal and stays so, for now or for good (cadt_is_left). CADT_EDGE_FLIPPED: the edge's
+ * record keeps its link, `*partner` is the record and edge on the other side of the quadrilateral that is now opposite
+ * the same apex; `*all_sides`: the apex is another one than expected, so all four sides of the quadrilateral may be
+ * illegal. */
 CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 apex, cadt_u32* partner,
                                     cadt_u32* all_sides, cadt_tally* tally) {
   const cadt_u32 t = CADT_LINK_RECORD(link), k = CADT_LINK_EDGE(link), k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
@@ -161,6 +212,7 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   const cadt_u32 p = s.v0;
   if (!cadt_is_free(s.lock)) {
     tally->count[CADT_COUNT_LOST_CLAIMS]++;
+    CADT_LAP(tally, CADT_TIME_TEST);
     return CADT_EDGE_CONFLICT;
   }
   /* A vertex of the triangle was flipped away by another thread, which did not know that this edge had yet to be
@@ -172,10 +224,19 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   const cadt_snapshot u = cadt_look_from(m, n, j);
   if (!cadt_is_free(u.lock) || u.n0 != link) {
     tally->count[CADT_COUNT_LOST_CLAIMS]++;
+    if (cadt_is_free(u.lock)) tally->count[CADT_COUNT_INVALID]++;
+    CADT_LAP(tally, CADT_TIME_TEST);
     return CADT_EDGE_CONFLICT;
   }
   const cadt_u32 q = u.v0;
-  if (!cadt_is_illegal(m, p, s.v1, s.v2, q, tally)) return CADT_EDGE_LEGAL;
+  const cadt_u32 illegal = cadt_is_illegal(m, p, s.v1, s.v2, q, tally);
+  CADT_LAP(tally, CADT_TIME_TEST);
+  if (!illegal) return CADT_EDGE_LEGAL;
+  if (cadt_is_left(m, cadt_flips_get(s.flips, k), p, s.v1, s.v2, q)) {
+    tally->count[CADT_COUNT_STABILIZED]++;
+    CADT_LAP(tally, CADT_TIME_TEST);
+    return CADT_EDGE_LEFT;
+  }
   const cadt_u32 outer_bp = s.n1, outer_aq = u.n1;
   cadt_claim claim;
   claim.record[0] = t;
@@ -200,12 +261,16 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   cadt_store_link(m, n, j, outer_bp);
   cadt_store_link(m, n, j1, CADT_LINK(t, k1));
   cadt_store_flips(m, n, cadt_flips_set(cadt_flips_set(u.flips, j, cadt_flips_get(s.flips, k1)), j1, flips));
+  CADT_LAP(tally, CADT_TIME_FLIP);
   cadt_link_back(m, outer_aq, CADT_LINK(t, k));
   cadt_link_back(m, outer_bp, CADT_LINK(n, j));
+  CADT_LAP(tally, CADT_TIME_NEIGHBORS);
   cadt_fence_locks();
   cadt_release_claim(m, &claim);
+  CADT_LAP(tally, CADT_TIME_CLAIM);
   cadt_set_hint(m, s.v1, t);
   cadt_set_hint(m, s.v2, n);
+  CADT_LAP(tally, CADT_TIME_FLIP);
   *partner = CADT_LINK(n, j2);
   tally->count[CADT_COUNT_FLIPS]++;
   return CADT_EDGE_FLIPPED;

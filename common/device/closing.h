@@ -9,7 +9,8 @@
 
 #include "common/device/insert.h"
 
-/* found: edges examined, illegal ones, ones that could not be read because somebody was changing them. \pre records of
+/* found: edges examined, illegal ones that are to be flipped, ones that could not be read because somebody was changing
+ * them, illegal ones that are left as they are (CADT_STABILIZE_PAPER). \pre records of
  * vertices that are not in the mesh have lock word 0 */
 CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* found, CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts,
@@ -21,7 +22,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
 #if CADT_CONTIGUOUS
   cadt_worklist work;
 #endif
-  cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u;
+  cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u, left = 0u;
   CADT_FOR(r, count, grain) {
     const cadt_u32 t = begin + r;
     const cadt_snapshot s = cadt_look(&mesh, t);
@@ -35,6 +36,11 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
         ++unsettled;
       } else if (cadt_is_illegal(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
                                  u.v0, &tally)) {
+        if (cadt_is_left(&mesh, cadt_flips_get(s.flips, k), CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)),
+                         CADT_VERTEX(s, CADT_PREV(k)), u.v0)) {
+          ++left;
+          continue;
+        }
         ++illegal;
 #if CADT_CONTIGUOUS
         cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
@@ -51,6 +57,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
   if (examined) cadt_add_relaxed(found, examined);
   if (illegal) cadt_add_relaxed(found + 1, illegal);
   if (unsettled) cadt_add_relaxed(found + 2, unsettled);
+  if (left) cadt_add_relaxed(found + 3, left);
   cadt_tally_flush(&tally, counters, cadt_item);
 }
 

@@ -80,8 +80,9 @@ CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_worklist* work, const cadt_d
     const cadt_u32 link = work->link[(oldest ? work->first : work->first + work->size - 1u) & mask];
     work->size--;
     work->first += oldest;
+    CADT_LAP(tally, CADT_TIME_OTHER);
     const cadt_u32 outcome = cadt_legalize_edge(m, link, work->apex, &partner, &all_sides, tally);
-    if (outcome == CADT_EDGE_LEGAL) continue;
+    if (outcome == CADT_EDGE_LEGAL || outcome == CADT_EDGE_LEFT) continue;
     if (outcome == CADT_EDGE_CONFLICT) {
       if (++conflicts > CADT_CAST(cadt_u32, CADT_EDGE_TRIES)) {
         cadt_defer_edge(deferred, link, tally);
@@ -112,11 +113,12 @@ CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_worklist* work, const cadt_d
  * launch. */
 CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hint, cadt_u32* edges, cadt_tally* tally) {
   const cadt_point p = m->points[i];
-  cadt_place place;
-  place.record = hint;
+  cadt_place place = {CADT_LOST, hint, 0u, {0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u}};
   for (cadt_u32 attempt = 0u; attempt < CADT_CAST(cadt_u32, CADT_INSERT_TRIES); ++attempt) {
     if (attempt) tally->count[CADT_COUNT_INSERT_RETRIES]++;
+    CADT_LAP(tally, CADT_TIME_OTHER);
     cadt_locate(m, p, place.record, &place, tally);
+    CADT_LAP(tally, CADT_TIME_LOCATE);
     if (place.kind == CADT_LOST) continue;
     const cadt_u32 size = place.kind == CADT_IN_FACE ? cadt_split_face(m, i, &place, edges, tally)
                                                      : cadt_split_edge(m, i, &place, edges, tally);

@@ -36,6 +36,7 @@
   X(cadt_insert)            /* insert.h: locate, claim, split, legalise */       \
   X(cadt_legalize_edges)    /* insert.h: deferred edges */                       \
   X(cadt_closing_pass)      /* closing.h */                                      \
+  X(cadt_count_flips)       /* flips.h: edges by their flips */                  \
   X(cadt_count_triangles)   /* emit.h */                                         \
   X(cadt_bucket_triangles)  /* emit.h: canonical order */                        \
   X(cadt_sort_buckets)      /* emit.h */                                         \

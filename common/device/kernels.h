@@ -7,6 +7,7 @@
 
 #include "common/device/closing.h"
 #include "common/device/emit.h"
+#include "common/device/flips.h"
 #include "common/device/insert.h"
 #include "common/device/order.h"
 #include "common/device/radix.h"

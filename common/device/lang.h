@@ -6,7 +6,8 @@
  *
  * A compile may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double),
  * CADT_CONTIGUOUS (1: a work-item takes neighbouring elements, right for CPUs; 0: strided, right for GPUs),
- * CADT_RADIX_BITS (digit of the radix sort), CADT_TEST_NO_LOCKS (control of the tests: locks are not taken).
+ * CADT_RADIX_BITS (digit of the radix sort), CADT_TIMED (1: threads take the time of what they do, tally.h),
+ * CADT_TEST_NO_LOCKS (control of the tests: locks are not taken).
  */
 #ifndef CADT_DEVICE_LANG_H
 #define CADT_DEVICE_LANG_H
@@ -16,6 +17,9 @@
 #endif
 #ifndef CADT_CONTIGUOUS
 #define CADT_CONTIGUOUS 1
+#endif
+#ifndef CADT_TIMED
+#define CADT_TIMED 0
 #endif
 #ifndef CADT_RADIX_BITS
 #define CADT_RADIX_BITS 8
@@ -56,6 +60,20 @@ typedef long cadt_i64;
 #define cadt_mulhi_u64(a, b) mul_hi((ulong)(a), (ulong)(b))
 #define cadt_fabs(x) fabs(x)
 #define cadt_ldexp(x, e) ldexp((x), (e))
+#define cadt_atan2(y, x) atan2((y), (x))
+
+/* A clock of the thread's processor, for differences; 0 where there is none. */
+#if defined(__NV_CL_C_VERSION)
+CADT_FN cadt_u64 cadt_clock(void) {
+  cadt_u64 ticks;
+  asm volatile("mov.u64 %0, %%clock64;" : "=l"(ticks)::"memory");
+  return ticks;
+}
+#elif CADT_TIMED && CADT_CONTIGUOUS && defined(__clang__)
+CADT_FN cadt_u64 cadt_clock(void) { return __builtin_readcyclecounter(); }
+#else
+CADT_FN cadt_u64 cadt_clock(void) { return 0; }
+#endif
 
 /* ---- CUDA C++ ------------------------------------------------------------------------------------------------- */
 #elif defined(CADT_LANG_CUDA)
@@ -78,8 +96,15 @@ typedef long long cadt_i64;
 #define cadt_mulhi_u64(a, b) __umul64hi((a), (b))
 #define cadt_fabs(x) fabs(x)
 #define cadt_ldexp(x, e) ldexp((x), (e))
+#define cadt_atan2(y, x) atan2((y), (x))
+CADT_FN cadt_u64 cadt_clock() {
+  cadt_u64 ticks;
+  asm volatile("mov.u64 %0, %%clock64;" : "=l"(ticks)::"memory");
+  return ticks;
+}
 
-/* ---- host C++; the file that includes the kernels has included <cmath>, <cstdint>, <cstring>, <atomic> before ---- */
+/* ---- host C++; the file that includes the kernels has included <atomic>, <chrono>, <cmath>, <cstdint>, <cstring>
+ * before ---- */
 #else
 
 typedef std::uint32_t cadt_u32;
@@ -107,6 +132,14 @@ CADT_FN cadt_u64 cadt_mulhi_u64(cadt_u64 a, cadt_u64 b) {
 }
 CADT_FN double cadt_fabs(double x) { return std::fabs(x); }
 CADT_FN double cadt_ldexp(double x, cadt_i32 e) { return std::ldexp(x, e); }
+CADT_FN double cadt_atan2(double y, double x) { return std::atan2(y, x); }
+CADT_FN cadt_u64 cadt_clock() {
+#if defined(__x86_64__)
+  return __builtin_ia32_rdtsc();
+#else
+  return CADT_CAST(cadt_u64, std::chrono::steady_clock::now().time_since_epoch().count());
+#endif
+}
 
 #endif
 

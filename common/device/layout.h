@@ -26,6 +26,7 @@ enum {
   CADT_COUNT_WALK_STEPS,
   CADT_COUNT_CLAIMS,
   CADT_COUNT_LOST_CLAIMS,
+  CADT_COUNT_INVALID,
   CADT_COUNT_INSERT_RETRIES,
   CADT_COUNT_STALE_EDGES,
   CADT_COUNT_DEFERRED_POINTS,
@@ -34,12 +35,37 @@ enum {
   CADT_COUNT_EDGE_SPLITS,
   CADT_COUNT_FLIPS,
   CADT_COUNT_INCIRCLE_TESTS,
+  CADT_COUNT_STABILIZED,
+  CADT_COUNT_ORIENTATION_TESTS,
   CADT_COUNT_EXACT_ORIENTATIONS,
   CADT_COUNT_EXACT_INCIRCLES,
   CADT_COUNT_TIES,
-  CADT_COUNTERS,
-  CADT_COUNTER_STRIDE = 32, /* words a row, so rows do not share cache lines */
+  CADT_COUNTERS
+};
+
+/* What a thread spends its time with (tally.h). */
+enum {
+  CADT_TIME_LOCATE,
+  CADT_TIME_CLAIM, /* claims and releases */
+  CADT_TIME_SPLIT,
+  CADT_TIME_TEST, /* reading both triangles of an edge, incircle */
+  CADT_TIME_FLIP,
+  CADT_TIME_NEIGHBORS, /* links from outside to what was changed */
+  CADT_TIME_OTHER,
+  CADT_TIMES,
+  CADT_TIME_SHIFT = 6 /* a row holds 32 bits of each: ticks / 64 */
+};
+
+/* A row of counters: counts, times, edges by flips. */
+enum {
+  CADT_ROW_TIMES = 20,
+  CADT_ROW_FLIPS = 32,
+  CADT_FLIP_BINS = 16,
+  CADT_COUNTER_STRIDE = 64, /* words a row, so rows do not share cache lines */
   CADT_COUNTER_ROWS = 64
 };
+
+/* cadt_mesh.stabilize (change.h) */
+enum { CADT_STABILIZE_OFF, CADT_STABILIZE_DEFER, CADT_STABILIZE_PAPER };
 
 #endif

@@ -26,6 +26,7 @@ typedef struct {
 
 /* Orientation of the centre, a and b. */
 CADT_FN cadt_i32 cadt_around_center(const cadt_mesh* m, cadt_point a, cadt_point b, cadt_tally* tally) {
+  tally->count[CADT_COUNT_ORIENTATION_TESTS]++;
 #if !CADT_WIDE
   double ux = a.x - m->center.x, uy = a.y - m->center.y, vx = b.x - m->center.x, vy = b.y - m->center.y;
   double left = ux * vy, right = uy * vx, det = left - right;

@@ -68,13 +68,16 @@ CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* t
     cadt_store_relaxed(lock, c->version[i] | 1u);
 #else
     if (!cadt_is_free(c->version[i]) || !cadt_cas_lock(lock, c->version[i], c->version[i] | 1u)) {
+      if (!(cadt_load_field(lock) & 1u)) tally->count[CADT_COUNT_INVALID]++;
       cadt_abandon_claim(m, c, i);
       tally->count[CADT_COUNT_LOST_CLAIMS]++;
+      CADT_LAP(tally, CADT_TIME_CLAIM);
       return 0u;
     }
 #endif
   }
   cadt_fence_claims(); /* what the last owners wrote is seen from here on */
+  CADT_LAP(tally, CADT_TIME_CLAIM);
   return 1u;
 }
 

@@ -24,21 +24,27 @@ typedef struct {
   CADT_GLOBAL cadt_u32* hints; /* position -> a record near it, CADT_NONE before it is inserted */
   cadt_point center;
   cadt_u32 first, second, third; /* positions of the first three vertices */
+  cadt_u32 stabilize, threshold; /* what is done with edges that were flipped more than `threshold` times (change.h) */
+  double epsilon;
 } cadt_mesh;
 
-#define CADT_MESH_PARAMETERS                                                                           \
-  CADT_GLOBAL cadt_record *records, CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *hints, \
-      double center_x, double center_y, cadt_u32 first, cadt_u32 second, cadt_u32 third
-#define CADT_MESH_VIEW(mesh) \
-  cadt_mesh mesh;            \
-  mesh.records = records;    \
-  mesh.points = points;      \
-  mesh.hints = hints;        \
-  mesh.center.x = center_x;  \
-  mesh.center.y = center_y;  \
-  mesh.first = first;        \
-  mesh.second = second;      \
-  mesh.third = third
+#define CADT_MESH_PARAMETERS                                                                                 \
+  CADT_GLOBAL cadt_record *records, CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *hints,       \
+      double center_x, double center_y, cadt_u32 first, cadt_u32 second, cadt_u32 third, cadt_u32 stabilize, \
+      cadt_u32 threshold, double epsilon
+#define CADT_MESH_VIEW(mesh)  \
+  cadt_mesh mesh;             \
+  mesh.records = records;     \
+  mesh.points = points;       \
+  mesh.hints = hints;         \
+  mesh.center.x = center_x;   \
+  mesh.center.y = center_y;   \
+  mesh.first = first;         \
+  mesh.second = second;       \
+  mesh.third = third;         \
+  mesh.stabilize = stabilize; \
+  mesh.threshold = threshold; \
+  mesh.epsilon = epsilon
 
 #define CADT_LINK(record, edge) (((record) << 2) | (edge))
 #define CADT_LINK_RECORD(link) ((link) >> 2)

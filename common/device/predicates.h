@@ -38,6 +38,7 @@ CADT_FN cadt_i32 cadt_exponent_of_largest(double a, double b, double c, double d
 
 CADT_FN cadt_i32 cadt_orientation(cadt_point a, cadt_point b, cadt_point c, cadt_tally* tally) {
   double ux = a.x - c.x, uy = a.y - c.y, vx = b.x - c.x, vy = b.y - c.y;
+  tally->count[CADT_COUNT_ORIENTATION_TESTS]++;
 #if CADT_WIDE
   /* x and y apart: the determinant is linear in either */
   const cadt_i32 ex = cadt_exponent_of_largest(ux, vx, 0.0, 0.0), ey = cadt_exponent_of_largest(uy, vy, 0.0, 0.0);

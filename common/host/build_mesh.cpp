@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "common/host/counters.hpp"
 #include "common/host/device_constants.hpp"
+#include "common/host/watcher.hpp"
 
 namespace cadt {
 namespace {
@@ -22,6 +24,10 @@ constexpr int stalled_launches = 4;  // launches without progress before the res
 constexpr int hopeless_launches = 64;
 constexpr int most_sweeps = 2000;
 
+static_assert(static_cast<int>(Stabilize::off) == CADT_STABILIZE_OFF &&
+              static_cast<int>(Stabilize::defer) == CADT_STABILIZE_DEFER &&
+              static_cast<int>(Stabilize::paper) == CADT_STABILIZE_PAPER);
+
 class Builder {
  public:
   Builder(Run& run, const SpatialOrder& order)
@@ -30,7 +36,8 @@ class Builder {
         order_(order),
         n_(order.distinct),
         edge_capacity_(static_cast<std::uint32_t>(n_ / 8 + 4096)),
-        counters_(run.device, run.memory) {}
+        counters_(run),
+        stabilize_(static_cast<std::uint32_t>(run.options.stabilize)) {}
 
   [[nodiscard]] DeviceMesh build() {
     DeviceMesh mesh;
@@ -52,6 +59,7 @@ class Builder {
     run_.end_phase("insert");
     certify();
     run_.end_phase("certify");
+    if (counters_.count_flips(launch_, records_, 2 * n_)) run_.end_phase("statistics");
     counters_.collect(run_.statistics);
     mesh.records = std::move(records_);
     mesh.slots = 2 * n_;
@@ -96,7 +104,8 @@ class Builder {
   /// A kernel over the mesh: its view comes first among the parameters.
   template <class... Args>
   void run_kernel(KernelId kernel, std::uint32_t items, const Args&... args) {
-    launch_.run(kernel, items, records_, order_.points, hints_, center_.x, center_.y, first_, second_, third_, args...);
+    launch_.run(kernel, items, records_, order_.points, hints_, center_.x, center_.y, first_, second_, third_,
+                stabilize_, run_.options.flip_threshold, run_.options.quality_epsilon, args...);
   }
 
   void insert_level(unsigned level) {
@@ -109,9 +118,15 @@ class Builder {
       inserted_ += size;
       // Few points left over go with the next launch; many would make its walks long.
       take_leftovers();
+      if (run_.options.watch) show();
       if (left_.points > size / 8 + 32 || left_.edges > size / 8 + 32) finish_leftovers();
       run_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
     }
+  }
+
+  void show() {
+    if (watcher_ == nullptr) watcher_ = std::make_unique<Watcher>(run_.device, order_);
+    watcher_->show(*records_, run_.options.watch);
   }
 
   /// What the last launches left over is on the second lists from here on; the first ones are empty.
@@ -159,25 +174,27 @@ class Builder {
     }
   }
 
-  /// Closing passes until one finds nothing.
+  /// Closing passes until one finds nothing to do.
   void certify() {
+    if (run_.options.stabilize == Stabilize::defer) stabilize_ = CADT_STABILIZE_OFF;  // what was put off is due now
     const std::uint64_t edges = 3 * std::uint64_t{n_} - 3;  // of the sphere: ghost edges included
     const std::size_t slots = 2 * n_, most = 4 * points_per_launch();
-    Allocation found = launch_.zeros(3);
+    Allocation found = launch_.zeros(4);
     for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
-      std::uint64_t examined = 0, illegal = 0, unsettled = 0;
+      std::uint64_t examined = 0, illegal = 0, unsettled = 0, left = 0;
       for (std::size_t begin = 0; begin < slots; begin += most) {
         const std::size_t size = std::min(most, slots - begin);
         const Cut c = launch_.cut(size);
         run_kernel(KernelId::cadt_closing_pass, c.items, static_cast<std::uint32_t>(begin),
                    static_cast<std::uint32_t>(size), c.grain, found, left_edges_[0], left_counts_, edge_capacity_,
                    counters_);
-        std::array<std::uint32_t, 3> sums{};
+        std::array<std::uint32_t, 4> sums{};
         run_.device.read(*found, 0, sums.data(), sizeof sums);
         run_.device.fill(*found, 0, sizeof sums, 0);
         examined += sums[0];
         illegal += sums[1];
         unsettled += sums[2];
+        left += sums[3];
         take_leftovers();
         finish_leftovers();
         run_.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(slots));
@@ -185,7 +202,9 @@ class Builder {
       run_.statistics.closing_sweeps = static_cast<std::uint64_t>(sweep);
       run_.statistics.closing_repairs += illegal;
       if (illegal == 0 && unsettled == 0) {
-        run_.statistics.certified_edges = examined;
+        run_.statistics.certified_edges = examined - left;
+        run_.statistics.illegal_edges = left;
+        run_.statistics.certified = left == 0;
         if (examined != edges) {
           throw InternalError("the mesh has " + std::to_string(examined) + " edges instead of " +
                               std::to_string(edges) + "; please report this with the input");
@@ -211,6 +230,8 @@ class Builder {
   Allocation records_, hints_, left_counts_;
   std::array<Allocation, 2> left_points_, left_edges_;  // [0] is written by the next launch, [1] read by it
   Leftovers left_;                                      // on the lists [1]
+  std::uint32_t stabilize_;                             // CADT_STABILIZE_...
+  std::unique_ptr<Watcher> watcher_;
   std::uint32_t first_ = 0, second_ = 0, third_ = 0;
   cadt_point center_{};
   std::size_t inserted_ = 0;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/host/counters.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
+#include <span>
+#include <tuple>
 #include <vector>
 
 #include "common/host/device_constants.hpp"
@@ -11,19 +15,47 @@ namespace cadt {
 
 using namespace device_constants;
 
-Counters::Counters(Device& device, Memory& memory)
-    : device_(device),
-      buffer_(memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE)) {}
+namespace {
+
+/// In the order of CADT_TIME_...
+constexpr std::array<const char*, CADT_TIMES> accounts = {"locate", "claim",     "split", "test",
+                                                          "flip",   "neighbors", "other"};
+
+static_assert(int{CADT_COUNTERS} <= int{CADT_ROW_TIMES} && CADT_ROW_TIMES + int{CADT_TIMES} <= int{CADT_ROW_FLIPS} &&
+              CADT_ROW_FLIPS + int{CADT_FLIP_BINS} <= int{CADT_COUNTER_STRIDE});
+static_assert(std::tuple_size_v<decltype(Statistics::flips_per_edge)> == CADT_FLIP_BINS);
+
+}  // namespace
+
+Counters::Counters(Run& run) : device_(run.device) {
+  if (run.options.statistics == StatisticsDetail::none) return;
+  buffer_ = run.memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
+}
+
+bool Counters::count_flips(Launcher& launch, const Allocation& records, std::size_t slots) const {
+  if (!buffer_) return false;
+  const Cut parts = launch.parts(slots);
+  launch.run(KernelId::cadt_count_flips, parts.items, records, static_cast<std::uint32_t>(slots), parts.grain,
+             parts.items, *this);
+  return true;
+}
 
 void Counters::collect(Statistics& statistics) const {
+  if (!buffer_) return;
   std::vector<std::uint32_t> words(static_cast<std::size_t>(CADT_COUNTER_ROWS) * CADT_COUNTER_STRIDE);
   device_.read(*buffer_, 0, words.data(), words.size() * sizeof words[0]);
-  std::array<std::uint64_t, CADT_COUNTERS> sums{};
-  for (std::size_t row = 0; row < CADT_COUNTER_ROWS; ++row)
-    for (std::size_t c = 0; c < CADT_COUNTERS; ++c) sums[c] += words[row * CADT_COUNTER_STRIDE + c];
+  std::array<std::uint64_t, CADT_COUNTER_STRIDE> sums{};
+  for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_COUNTER_STRIDE] += words[i];
+  for (std::size_t bin = 0; bin < CADT_FLIP_BINS; ++bin)
+    statistics.flips_per_edge[bin] = sums[CADT_ROW_FLIPS + bin] / 2;  // each edge was met from both sides
+  const auto times = std::span(sums).subspan(CADT_ROW_TIMES, CADT_TIMES);
+  const auto all = static_cast<double>(std::accumulate(times.begin(), times.end(), std::uint64_t{0}));
+  for (std::size_t i = 0; all > 0 && i < times.size(); ++i)
+    statistics.thread_time.emplace_back(accounts[i], static_cast<double>(times[i]) / all);
   statistics.walk_steps += sums[CADT_COUNT_WALK_STEPS];
   statistics.claims += sums[CADT_COUNT_CLAIMS];
   statistics.lost_claims += sums[CADT_COUNT_LOST_CLAIMS];
+  statistics.invalid_restarts += sums[CADT_COUNT_INVALID];
   statistics.insert_retries += sums[CADT_COUNT_INSERT_RETRIES];
   statistics.stale_edges += sums[CADT_COUNT_STALE_EDGES];
   statistics.deferred_points += sums[CADT_COUNT_DEFERRED_POINTS];
@@ -32,6 +64,8 @@ void Counters::collect(Statistics& statistics) const {
   statistics.edge_splits += sums[CADT_COUNT_EDGE_SPLITS];
   statistics.flips += sums[CADT_COUNT_FLIPS];
   statistics.incircle_tests += sums[CADT_COUNT_INCIRCLE_TESTS];
+  statistics.stabilized_edges += sums[CADT_COUNT_STABILIZED];
+  statistics.orientation_tests += sums[CADT_COUNT_ORIENTATION_TESTS];
   statistics.exact_orientations += sums[CADT_COUNT_EXACT_ORIENTATIONS];
   statistics.exact_incircles += sums[CADT_COUNT_EXACT_INCIRCLES];
   statistics.ties += sums[CADT_COUNT_TIES];

@@ -3,16 +3,20 @@
 
 #include <cadt/statistics.hpp>
 
-#include "common/host/device.hpp"
-#include "common/host/memory.hpp"
+#include <cstddef>
+
+#include "common/host/run.hpp"
 
 namespace cadt {
 
-/// The device's counters of work and conflicts (common/device/tally.h).
+/// The device's counters of work and conflicts (common/device/tally.h). Passed to a kernel: their memory, null for
+/// StatisticsDetail::none.
 class Counters {
  public:
-  Counters(Device& device, Memory& memory);
+  explicit Counters(Run& run);
   operator Arg() const noexcept { return buffer_; }  // NOLINT
+  /// Counts the edges of the mesh by their flips. False, and nothing is done, for StatisticsDetail::none.
+  [[nodiscard]] bool count_flips(Launcher& launch, const Allocation& records, std::size_t slots) const;
   /// Adds the counts of all rows to the statistics.
   void collect(Statistics& statistics) const;
 

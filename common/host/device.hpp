@@ -127,10 +127,10 @@ class Device {
   /// Fills with copies of a word; offset and size in bytes, multiples of 4.
   virtual void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) = 0;
 
-  /// Runs a kernel with `items` work-items (possibly rounded up: kernels ignore items beyond their data). `wide`
-  /// chooses the build for coordinates of any exponent (common/device/fixed.h). Returns before the work is done where
-  /// the device can. \throws DeviceError, KernelBuildError (a variant may be built at its first launch)
-  virtual void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, bool wide) = 0;
+  /// Runs a kernel with `items` work-items (possibly rounded up: kernels ignore items beyond their data). Returns
+  /// before the work is done where the device can. \throws DeviceError, KernelBuildError (a variant may be built at its
+  /// first launch)
+  virtual void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) = 0;
   /// Waits for everything launched. \throws DeviceError
   virtual void finish() = 0;
 };

@@ -12,6 +12,14 @@ namespace cadt {
 enum class KernelId { CADT_KERNEL_LIST(CADT_ENUMERATOR) count };
 #undef CADT_ENUMERATOR
 
+/// Variants of the kernels (common/device/lang.h).
+enum class KernelBuild {
+  narrow,  ///< exponents of all coordinates within 240 binades
+  wide,    ///< any double
+  timed    ///< narrow, with clocks (tally.h)
+};
+inline constexpr std::size_t kernel_builds = 3;
+
 inline constexpr std::size_t kernel_count = static_cast<std::size_t>(KernelId::count);
 
 #define CADT_NAME(name) #name,

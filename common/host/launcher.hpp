@@ -25,7 +25,7 @@ class Launcher {
   [[nodiscard]] Device& device() const noexcept { return device_; }
   [[nodiscard]] Memory& memory() const noexcept { return memory_; }
   [[nodiscard]] std::uint64_t launches() const noexcept { return launches_; }
-  void set_wide(bool wide) noexcept { wide_ = wide; }
+  void set_build(KernelBuild build) noexcept { build_ = build; }
 
   /// For kernels over `count` independent elements.
   [[nodiscard]] Cut cut(std::size_t count) const noexcept;
@@ -41,7 +41,7 @@ class Launcher {
     if (items == 0) return;
     const Arg list[] = {Arg(args)...};
     ++launches_;
-    device_.launch(kernel, items, list, wide_);
+    device_.launch(kernel, items, list, build_);
   }
 
   /// Zeroed words for small results.
@@ -61,7 +61,7 @@ class Launcher {
   Device& device_;
   Memory& memory_;
   unsigned grain_;
-  bool wide_ = false;
+  KernelBuild build_ = KernelBuild::narrow;
   std::uint64_t launches_ = 0;
 };
 

@@ -33,8 +33,9 @@ struct Run {
     }
   }
 
-  /// Ends a phase: waits for the device and notes the time since the last end.
+  /// Ends a phase: waits for the device and notes the time since the last end. StatisticsDetail::none: does neither.
   void end_phase(std::string_view name) {
+    if (options.statistics == StatisticsDetail::none) return;
     device.finish();
     const auto now = std::chrono::steady_clock::now();
     statistics.milliseconds.emplace_back(name, std::chrono::duration<double, std::milli>(now - last_).count());

@@ -81,7 +81,7 @@ void run_selftest(Device& device) {
   device.fill(*out, 0, sizeof outputs, 0xA5A5A5A5u);  // no answer has these bits: an output not written is seen
   device.write(*counters, 0, words.data(), sizeof words);
   const std::array<Arg, 4> arguments = {Arg(in), Arg(out), Arg(counters), Arg(items)};
-  device.launch(KernelId::cadt_selftest, items, arguments, false);
+  device.launch(KernelId::cadt_selftest, items, arguments, KernelBuild::narrow);
   device.finish();
   device.read(*out, 0, outputs.data(), sizeof outputs);
   device.read(*counters, 0, words.data(), sizeof words);

@@ -164,7 +164,8 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n) {
 
   const Bounds bounds = find_bounds(run, input, n);
   result.wide = bounds.high - bounds.low > narrow_span;
-  launch.set_wide(result.wide);
+  const bool timed = run.options.statistics == StatisticsDetail::timing;
+  launch.set_build(result.wide ? KernelBuild::wide : timed ? KernelBuild::timed : KernelBuild::narrow);
   run.end_phase("bounds");
   run.check("sort", 0.01);
 

@@ -46,6 +46,14 @@ void require_size(std::size_t points) {
                    points, max_points());
 }
 
+void require_rules(const Options& options) {
+  constexpr unsigned most_flips = 1000;  // counters have ten bits
+  if (options.flip_threshold > most_flips)
+    throw OptionError("flip_threshold", std::to_string(options.flip_threshold) + " is more than " +
+                                            std::to_string(most_flips) + ", the most flips that are told apart");
+  if (!(options.quality_epsilon >= 0)) throw OptionError("quality_epsilon", "must be a number and not negative");
+}
+
 bool is_host(const Device& device) { return device.info().backend == Backend::host; }
 
 /// Where the arrays of the result are to be written. Called when their size is known.
@@ -89,7 +97,9 @@ template <class Points>
 void build(Run& run, const Points& points, std::size_t n, Outputs& outputs, DeviceTriangulation::Data& data) {
   Statistics& statistics = data.statistics;
   run.check("sort", 0);
-  SpatialOrder order = sort_points(run, import_points(run, points), n);
+  Allocation input = import_points(run, points);
+  run.end_phase("upload");
+  SpatialOrder order = sort_points(run, std::move(input), n);
   statistics.distinct = data.distinct = order.distinct;
   statistics.wide_arithmetic = order.wide;
   data.duplicate_count = n - order.distinct;
@@ -117,9 +127,11 @@ void begin_account(Triangulator::State& state, std::size_t n) {
 
 /// What the statistics say before and after each call.
 void open_account(Triangulator::State& state, std::size_t n, DeviceTriangulation::Data& data) {
+  require_rules(state.options);
   const DeviceInfo& info = state.device->info();
   data.points = n;
   data.statistics.points = n;
+  data.statistics.certified = true;  // no edge is illegal until one is found
   data.statistics.backend = to_string(info.backend);
   data.statistics.device = info.name;
   data.statistics.threads = state.device->threads();
@@ -133,6 +145,7 @@ void require_memory(Triangulator::State& state, std::size_t n, bool result_elsew
 }
 
 void close_account(Triangulator::State& state, Run& run, DeviceTriangulation::Data& data) {
+  state.device->finish();
   data.statistics.launches = run.launcher.launches();
   data.statistics.bytes_device_peak = state.memory.peak();
   state.known_points = std::max(state.known_points, data.points);
@@ -150,9 +163,10 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
     Run run(*state->device, state->memory, state->options, data.statistics);
     OnHost outputs(*result);
     build(run, points, points.size(), outputs, data);
+    run.end_phase("collect");
     if (data.dimension == 2) read_mesh(run, data, outputs.direct(), *result);
     read_duplicates(*state->device, data, *result);
-    run.end_phase("collect");
+    run.end_phase("copy");
     close_account(*state, run, data);
   }
   result->points = data.points;

@@ -38,6 +38,18 @@ class LimitError : public Error {
   std::size_t count_, limit_;
 };
 
+/// A member of Options that is out of its range.
+class OptionError : public Error {
+ public:
+  OptionError(std::string option, const std::string& message)
+      : Error("Options::" + option + ": " + message), option_(std::move(option)) {}
+  /// Name of the member, e.g. "flip_threshold".
+  [[nodiscard]] const std::string& option() const noexcept { return option_; }
+
+ private:
+  std::string option_;
+};
+
 /// The back end or device that was asked for is not there; `reason()` says why. Never answered by a fallback.
 class BackendUnavailable : public Error {
  public:

@@ -81,11 +81,11 @@ struct Options {
   /// Where device memory comes from. Null: the library allocates it.
   std::shared_ptr<DeviceAllocator> allocator;
   Stabilize stabilize = Stabilize::off;
-  /// R of Algorithm 4: flips of an edge slot before `stabilize` applies to it. At most 1000, else LimitError.
+  /// R of Algorithm 4: flips of an edge slot before `stabilize` applies to it. At most 1000.
   unsigned flip_threshold = 3;
-  /// Epsilon of Algorithm 4 (Stabilize::paper): the smallest angle of the two triangles, in radians, must grow by more
-  /// than this; and an edge whose incircle determinant, divided by the fourth power of the largest coordinate
-  /// difference, is at most this is left as it is. Not negative and not NaN, else std::invalid_argument.
+  /// Epsilon of Algorithm 4 (Stabilize::paper): an edge is left as it is if its incircle determinant, divided by the
+  /// fourth power of the largest coordinate difference, is below this, and a flip raises the smallest angle of the two
+  /// triangles by at most so many degrees. Not negative and not NaN.
   double quality_epsilon = 1e-4;
   StatisticsDetail statistics = StatisticsDetail::counters;
   /// Called from the calling thread after each launch of the insertion with a copy of the mesh, for pictures. Costs a
@@ -162,7 +162,7 @@ class Triangulation {
 
 /// Triangulates the points. Expected O(n log n) work for the sort and O(n) for the rest on well-spread points.
 ///
-/// Throws InputError (NaN or infinity, with the index of the first), LimitError (more than max_points()),
+/// Throws OptionError, InputError (NaN or infinity, with the index of the first), LimitError (more than max_points()),
 /// BackendUnavailable, OutOfMemory, DeviceError, KernelBuildError, Cancelled.
 [[nodiscard]] Triangulation triangulate(PointsView points, const Options& options = {});
 

@@ -90,10 +90,7 @@ Row row_of(const Task& task) {
 }  // namespace
 
 Bench::Bench(Settings settings, std::vector<Contestant> contestants)
-    : settings_(std::move(settings)),
-      contestants_(std::move(contestants)),
-      points_(settings_.data),
-      progress_(false) {}
+    : settings_(std::move(settings)), contestants_(std::move(contestants)), points_(settings_.data), progress_(false) {}
 
 std::vector<const Contestant*> Bench::everybody() const {
   std::vector<const Contestant*> result;
@@ -112,6 +109,13 @@ std::vector<const Contestant*> Bench::cadt_devices() const {
   std::vector<const Contestant*> result = cadt();
   std::erase_if(result, [](const Contestant* who) { return who->backend == Backend::host; });
   return result;
+}
+
+std::vector<const Contestant*> Bench::cadt_on_cards() const {
+  const std::vector<const Contestant*> all = cadt();
+  std::vector<const Contestant*> cards = all;
+  std::erase_if(cards, [](const Contestant* who) { return !who->gpu; });
+  return cards.empty() ? all : cards;
 }
 
 const Contestant* Bench::fastest() const {
@@ -151,7 +155,7 @@ Row Bench::measure(const Task& task, Triangulation* mesh) {
     check_memory(who, *row.points);
     time(task, predicted, row, mesh);
     if (const auto best = row.median_ms ? row.median_ms : row.device_ms)
-      predictor_.learn(key_of(who), kind_of(task), *row.points, *best);
+      predictor_.learn(key_of(who), kind_of(task), *row.points, *best, task.block == 0);
   } catch (const OutOfMemory& error) {
     row.skipped = fmt::format("out of memory: {}", error.what());
   } catch (const std::bad_alloc&) {
@@ -162,6 +166,7 @@ Row Bench::measure(const Task& task, Triangulation* mesh) {
     row.skipped = fmt::format("failed: {}", error.what());
     // A device that has failed once may fail from now on; opened anew it has a chance.
     std::erase_if(opened_, [&](const auto& entry) { return std::get<0>(entry.first) == who.who; });
+    used_.clear();
   }
   return row;
 }
@@ -179,10 +184,8 @@ void Bench::time(const Task& task, std::optional<double> predicted, Row& row, Tr
 Repeats Bench::repeats(const Task& task, std::optional<double> predicted, const std::function<double()>& call) const {
   const Plan& plan = settings_.plan;
   const int runs = task.runs > 0 ? task.runs : plan.runs;
-  // Half of the limit: one call that takes all of it is worth it, for a table has to say something; its repetitions are
-  // not.
-  return repeat(static_cast<std::size_t>(plan.warm_up), static_cast<std::size_t>(runs),
-                0.5 * plan.limit_seconds * second, predicted, call);
+  const int warm_up = runs == 1 ? 0 : plan.warm_up;
+  return repeat(static_cast<std::size_t>(warm_up), static_cast<std::size_t>(runs), plan.budget(), predicted, call);
 }
 
 Triangulator& Bench::opened(const Task& task) {
@@ -200,6 +203,13 @@ Triangulator& Bench::opened(const Task& task) {
   return *found;
 }
 
+void Bench::use_once(const Task& task, Triangulator& triangulator, std::span<const double> xy) {
+  if (!used_.insert({&triangulator, task.stabilize, task.detail}).second) return;
+  constexpr std::size_t few = 2000;
+  triangulator.options().watch = nullptr;
+  static_cast<void>(triangulator.triangulate(PointsView(xy.first(std::min(xy.size(), 2 * few)))));
+}
+
 void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& row, Triangulation* mesh) {
   Triangulator& triangulator = opened(task);
   if (task.block > 0) {
@@ -211,8 +221,9 @@ void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& ro
   options.flip_threshold = task.threshold;
   options.quality_epsilon = task.epsilon;
   options.statistics = task.detail;
-  options.watch = task.watch;
-  const PointsView view(points_.get(task.set));
+  const std::span<const double> xy = points_.get(task.set);
+  const PointsView view(xy);
+  use_once(task, triangulator, xy);
 
   std::optional<Triangulation> result;
   std::vector<Statistics> statistics;
@@ -221,6 +232,7 @@ void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& ro
     Triangulator& of;
     ~Release() { of.release_memory(); }
   } const release{triangulator};
+  options.watch = task.watch;
   const Repeats all = repeats(task, predicted, [&] {
     result.reset();
     const Stopwatch watch;
@@ -255,12 +267,12 @@ void Bench::time_sequential(const Task& task, std::optional<double> predicted, R
 
 void Bench::time_peer(const Task& task, std::optional<double> predicted, Row& row) {
   const Plan& plan = settings_.plan;
-  const double budget = 0.5 * plan.limit_seconds;
   // The program cannot tell beforehand what a call takes; the prediction can.
-  const double calls = predicted ? budget * second / *predicted : 1e9;
-  const int runs = std::clamp(static_cast<int>(std::min(calls, 1e6)), 1, plan.runs);
+  const double calls = predicted ? plan.budget() / *predicted : 1e9;
+  const int runs = static_cast<int>(std::clamp(calls, 1.0, static_cast<double>(plan.runs)));
   const int warm_up = calls >= 2.0 ? plan.warm_up : 0;
-  const PeerResult result = run_peer(*task.who->peer, points_.file(task.set).string(), warm_up, runs, budget);
+  const PeerResult result =
+      run_peer(*task.who->peer, points_.file(task.set).string(), warm_up, runs, plan.budget() / second);
   if (!result.error.empty()) throw Skip(result.error);
   row.triangles = result.triangles;
   Repeats all;

@@ -12,10 +12,14 @@
 #include <cadt/cadt.hpp>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace cadt::bench {
@@ -33,10 +37,10 @@ struct Task {
   const Contestant* who = nullptr;
   unsigned block = 0;  ///< 0: the library chooses
   Stabilize stabilize = Stabilize::off;
-  unsigned threshold = 3;   // R and epsilon of the paper's figures 9 and 10
+  unsigned threshold = 3;  // R and epsilon of the paper's figures 9 and 10
   double epsilon = 1e-4;
   StatisticsDetail detail = StatisticsDetail::counters;
-  int runs = 0;             ///< 0: as the plan has it
+  int runs = 0;  ///< 0: as the plan has it
   std::function<void(const Snapshot&)> watch;
 };
 
@@ -53,6 +57,8 @@ class Bench {
   [[nodiscard]] std::vector<const Contestant*> cadt() const;
   /// Those of them that are devices: the host has no blocks.
   [[nodiscard]] std::vector<const Contestant*> cadt_devices() const;
+  /// Graphics cards if there are any, else all of them.
+  [[nodiscard]] std::vector<const Contestant*> cadt_on_cards() const;
   /// The fastest of them: cuda, else a graphics card with opencl, else the host, else opencl; none: null.
   [[nodiscard]] const Contestant* fastest() const;
   /// Those who cannot take part, but for the programs that are not cadt: a row for each with the reason.
@@ -75,12 +81,16 @@ class Bench {
   [[nodiscard]] Repeats repeats(const Task& task, std::optional<double> predicted,
                                 const std::function<double()>& call) const;
   Triangulator& opened(const Task& task);
+  /// OpenCL compiles a kernel when it is first enqueued, and each mode has its own: a call on few of the points, so
+  /// that this is in no time and in no prediction.
+  void use_once(const Task& task, Triangulator& triangulator, std::span<const double> xy);
 
   Settings settings_;
   std::vector<Contestant> contestants_;
   PointStore points_;
   Predictor predictor_;
   std::map<Key, std::unique_ptr<Triangulator>> opened_;
+  std::set<std::tuple<const Triangulator*, Stabilize, StatisticsDetail>> used_;
   cli::ProgressLine progress_;
   std::string experiment_;
 };

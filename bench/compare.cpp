@@ -25,8 +25,7 @@ std::string why_not(Backend backend) {
 
 bool has_cgal() noexcept { return CADT_TEST_CGAL != 0; }
 
-std::vector<Fighter> find_fighters(const std::vector<std::string>& names, unsigned threads,
-                                   const std::string& device) {
+std::vector<Fighter> find_fighters(const std::vector<std::string>& names, unsigned threads, const std::string& device) {
   std::vector<Fighter> result;
   for (const std::string& name : names) {
     Fighter fighter{name, name == "cgal", {}};

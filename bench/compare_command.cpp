@@ -68,8 +68,7 @@ int run(Arguments arguments) {
 }  // namespace
 
 void add_compare(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("compare", "time cadt beside CGAL on the same points, and compare the meshes");
+  CLI::App* command = app.add_subcommand("compare", "time cadt beside CGAL on the same points, and compare the meshes");
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("-n", arguments->points, "points of each set, 250000, 2M or 1e6 (default: 1M)")->type_name("N");
   command
@@ -89,7 +88,8 @@ void add_compare(CLI::App& app, Action& action) {
   command->add_option("--device", arguments->device, "of OpenCL and CUDA this device: its number or a part of its name")
       ->type_name("DEVICE");
   command->add_option("--json", arguments->json, "also write the numbers to this file")->type_name("FILE");
-  command->add_flag("--check", arguments->check, "compare each mesh with CGAL's, triangle by triangle, after the timing");
+  command->add_flag("--check", arguments->check,
+                    "compare each mesh with CGAL's, triangle by triangle, after the timing");
   command->footer(
       "Example:\n"
       "  cadt-bench compare -d uniform,grid -n 1M -w host,opencl,cgal --check\n\n"

@@ -12,7 +12,7 @@ namespace cadt::bench {
 namespace {
 
 const Comparison* find(const std::vector<Comparison>& all, const std::string& distribution,
-                        const std::string& contestant) {
+                       const std::string& contestant) {
   const auto found = std::ranges::find_if(
       all, [&](const Comparison& m) { return m.distribution == distribution && m.contestant == contestant; });
   return found == all.end() ? nullptr : &*found;
@@ -54,10 +54,13 @@ std::string comparison_table(const std::vector<Comparison>& all) {
 std::string comparison_json(const std::vector<Comparison>& all) {
   nlohmann::ordered_json result = nlohmann::ordered_json::array();
   for (const Comparison& m : all) {
-    nlohmann::ordered_json entry = {
-        {"distribution", m.distribution}, {"contestant", m.contestant},     {"points", m.points},
-        {"triangles", m.triangles},       {"best_seconds", m.best()}, {"median_seconds", median(m.seconds)},
-        {"seconds", m.seconds}};
+    nlohmann::ordered_json entry = {{"distribution", m.distribution},
+                                    {"contestant", m.contestant},
+                                    {"points", m.points},
+                                    {"triangles", m.triangles},
+                                    {"best_seconds", m.best()},
+                                    {"median_seconds", median(m.seconds)},
+                                    {"seconds", m.seconds}};
     if (const double value = times_as_fast_as_cgal(all, m); value >= 0.0) entry["times_as_fast_as_cgal"] = value;
     if (const double value = against_uniform(all, m); value >= 0.0) entry["time_per_point_against_uniform"] = value;
     if (!m.statistics.backend.empty()) {

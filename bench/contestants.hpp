@@ -18,9 +18,9 @@ struct Contestant {
   std::string index;               ///< as Options::device takes it
   std::string device;              ///< as its driver names it
   bool gpu = false;
-  unsigned threads = 0;       ///< of the processor; 0: none of its own
-  std::optional<Peer> peer;   ///< a program of its own
-  std::string missing;        ///< why it cannot take part
+  unsigned threads = 0;      ///< of the processor; 0: none of its own
+  std::optional<Peer> peer;  ///< a program of its own
+  std::string missing;       ///< why it cannot take part
   [[nodiscard]] bool present() const { return missing.empty(); }
 };
 

@@ -7,8 +7,8 @@ namespace cadt::bench {
 std::vector<Row> run_flips(Bench& bench) {
   std::vector<Row> rows;
   bench.report_missing(rows, false);
-  for (const SetId& set : {SetId{"uniform", bench.plan().flips_uniform, false},
-                           SetId{"circles", bench.plan().flips_circles, false}}) {
+  for (const SetId& set :
+       {SetId{"uniform", bench.plan().flips_uniform, false}, SetId{"circles", bench.plan().flips_circles, false}}) {
     for (const Contestant* who : bench.cadt()) {
       Task task;
       task.set = set;
@@ -19,8 +19,7 @@ std::vector<Row> run_flips(Bench& bench) {
       for (const Stabilize mode : {Stabilize::defer, Stabilize::paper}) {
         task.stabilize = mode;
         Row row = bench.measure(task, &mesh);
-        if (known && row.skipped.empty())
-          row.differing_triangles = count_differing(mesh, exact);
+        if (known && row.skipped.empty()) row.differing_triangles = count_differing(mesh, exact);
         rows.push_back(std::move(row));
       }
     }
@@ -32,7 +31,7 @@ std::vector<Row> run_thresholds(Bench& bench) {
   std::vector<Row> rows;
   bench.report_missing(rows, false);
   for (const char* distribution : {"uniform", "circles"}) {
-    for (const Contestant* who : bench.cadt()) {
+    for (const Contestant* who : bench.cadt_on_cards()) {
       Task task;
       task.set = {distribution, bench.plan().threshold_points, false};
       task.who = who;

@@ -81,9 +81,10 @@ std::vector<Row> run_distributions(Bench& bench) {
   bench.report_missing(rows, false);
   Contestants who = bench.everybody();
   std::erase_if(who, [](const Contestant* one) { return !one->backend && one->who != "cgal"; });
+  Contestants ours = bench.cadt();
   for (const std::size_t n : bench.plan().distribution_sizes) {
     for (const char* distribution : {"uniform", "circles", "gaussian", "kuzmin", "line", "grid"})
-      measure_all(bench, rows, {distribution, n, false}, who);
+      measure_all(bench, rows, {distribution, n, false}, n <= bench.plan().others_up_to ? who : ours);
   }
   if (const std::string reason = bench.points().no_data(); !reason.empty()) {
     Row& row = rows.emplace_back();
@@ -115,11 +116,12 @@ std::vector<Row> run_statistics(Bench& bench) {
       task.set = uniform(largest);
       task.who = who;
       task.detail = detail;
+      task.runs = 3 * bench.plan().runs;  // the differences are small
       rows.push_back(bench.measure(task));
     }
   }
   for (const std::size_t n : bench.plan().sizes) {
-    if (n == largest) continue;
+    if (n >= largest) continue;
     for (const Contestant* who : bench.cadt()) {
       Task task;
       task.set = uniform(n);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C. A measurement is of no use once it is interrupted, so the process ends at once, but leaves nothing half: files
-// that are being written get their names first, temporary ones are removed.
+// Ctrl-C. A measurement is of no use once it is interrupted, so the process ends at once, but leaves nothing half:
+// files that are being written get their names first, temporary ones are removed.
 #pragma once
 
 #include <string>

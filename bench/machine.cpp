@@ -7,9 +7,9 @@
 #include <cadt/version.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <sched.h>
 #include <sys/sysinfo.h>
+#include <nlohmann/json.hpp>
 
 #include <ctime>
 #include <fstream>

@@ -40,9 +40,14 @@ Repeats repeat(std::size_t warm_up, std::size_t runs, double budget, std::option
   return result;
 }
 
-void Predictor::learn(const std::string& who, const std::string& what, std::size_t points, double milliseconds) {
-  for (Known* known : {&of_who_[who], &known_[{who, what}]})
-    if (points >= known->points) *known = {points, milliseconds};
+void Predictor::learn(const std::string& who, const std::string& what, std::size_t points, double milliseconds,
+                      bool usual) {
+  if (points == 0) return;
+  const auto keep = [&](Known& known) {
+    if (points >= known.points) known = {points, milliseconds};
+  };
+  keep(known_[{who, what}]);
+  if (usual) keep(of_who_[who]);
 }
 
 std::optional<double> Predictor::predict(const std::string& who, const std::string& what, std::size_t points) const {

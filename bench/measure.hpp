@@ -35,7 +35,8 @@ struct Repeats {
 /// Times of larger sets from those of smaller ones.
 class Predictor {
  public:
-  void learn(const std::string& who, const std::string& what, std::size_t points, double milliseconds);
+  /// \param usual whether it tells something about other work of `who`
+  void learn(const std::string& who, const std::string& what, std::size_t points, double milliseconds, bool usual);
   /// Linear from the largest set that `who` did with `what`, or else with anything, and a tenth more; nothing if there
   /// is none that is large enough to tell: what a call costs that does nothing is not to be multiplied by a thousand.
   [[nodiscard]] std::optional<double> predict(const std::string& who, const std::string& what,

@@ -24,7 +24,8 @@ void write_file(const std::filesystem::path& path, std::string_view text) {
 
 std::string points_text(std::span<const double> xy) {
   std::string text = "x,y\n";
-  for (std::size_t i = 0; i + 1 < xy.size(); i += 2) fmt::format_to(std::back_inserter(text), "{},{}\n", xy[i], xy[i + 1]);
+  for (std::size_t i = 0; i + 1 < xy.size(); i += 2)
+    fmt::format_to(std::back_inserter(text), "{},{}\n", xy[i], xy[i + 1]);
   return text;
 }
 

@@ -146,8 +146,8 @@ fs::path PointStore::file(const SetId& id) {
   const fs::space_info space = fs::space(file.path(), unknown);
   // The peer's result may go there too: 12 bytes a triangle, hence the factor.
   if (!unknown && space.available / 2 < xy.size_bytes()) {
-    throw Skip(fmt::format("{} has no room for a file of {} MiB", file.path().parent_path().string(),
-                           xy.size_bytes() >> 20));
+    throw Skip(
+        fmt::format("{} has no room for a file of {} MiB", file.path().parent_path().string(), xy.size_bytes() >> 20));
   }
   std::ofstream out(file.path(), std::ios::binary);
   out.write(reinterpret_cast<const char*>(xy.data()), static_cast<std::streamsize>(xy.size_bytes()));

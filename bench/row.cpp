@@ -100,9 +100,8 @@ std::vector<Column> make_columns() {
                        }});
   }
   columns.push_back({"phases", [](const Row& r) { return cell(list(r.phases, 4)); }});
-  columns.push_back({"thread_time", [](const Row& r) {
-                       return r.statistics ? cell(list(r.statistics->thread_time, 5)) : Cell();
-                     }});
+  columns.push_back(
+      {"thread_time", [](const Row& r) { return r.statistics ? cell(list(r.statistics->thread_time, 5)) : Cell(); }});
   columns.push_back({"skipped", [](const Row& r) { return cell(r.skipped); }});
   return columns;
 }
@@ -112,10 +111,13 @@ const std::vector<Column>& columns() {
   return all;
 }
 
+/// Nanoseconds are more than a clock tells.
+std::string number(double value) { return fmt::format("{:.8g}", value); }
+
 struct CsvField {
   std::string operator()(std::monostate) const { return {}; }
   std::string operator()(std::uint64_t value) const { return std::to_string(value); }
-  std::string operator()(double value) const { return fmt::format("{}", value); }
+  std::string operator()(double value) const { return number(value); }
   std::string operator()(bool value) const { return value ? "true" : "false"; }
   std::string operator()(const std::string& text) const {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -129,6 +131,7 @@ using Json = nlohmann::ordered_json;
 
 struct JsonValue {
   Json operator()(std::monostate) const { return nullptr; }
+  Json operator()(double value) const { return std::stod(number(value)); }
   template <class T>
   Json operator()(const T& value) const {
     return value;

@@ -29,9 +29,9 @@ struct Row {
   std::string hash;
   std::optional<double> occupancy;
   std::optional<std::uint64_t> differing_triangles;
-  std::optional<Statistics> statistics;                 ///< of the last run
-  std::vector<std::pair<std::string, double>> phases;   ///< median of each, in order of execution
-  std::string skipped;                                  ///< why there are no numbers
+  std::optional<Statistics> statistics;                ///< of the last run
+  std::vector<std::pair<std::string, double>> phases;  ///< median of each, in order of execution
+  std::string skipped;                                 ///< why there are no numbers
 };
 
 /// The names of the columns, comma-separated.

@@ -57,7 +57,8 @@ std::vector<const Experiment*> chosen(const std::vector<std::string>& names) {
 void check_words(const std::vector<std::string>& words, const std::vector<std::string>& known, const char* option) {
   for (const std::string& word : words) {
     if (std::ranges::find(known, word) == known.end())
-      throw Failure(exit_usage, fmt::format("{}: there is no '{}'; there are: {}", option, word, cli::join(known, ", ")));
+      throw Failure(exit_usage,
+                    fmt::format("{}: there is no '{}'; there are: {}", option, word, cli::join(known, ", ")));
   }
 }
 
@@ -65,7 +66,7 @@ Scale scale_of(const std::string& word) {
   if (word.empty()) {
     const auto devices = list_devices();
     return std::ranges::any_of(devices, [](const DeviceInfo& d) { return d.usable && d.gpu; }) ? Scale::full
-                                                                                              : Scale::small;
+                                                                                               : Scale::small;
   }
   for (const Scale scale : {Scale::tiny, Scale::small, Scale::full})
     if (word == to_string(scale)) return scale;
@@ -157,14 +158,16 @@ const char* const footer =
     "  cadt-bench all --out build/evaluation/here\n"
     "      all of them, on what this machine has; 'full' needs a graphics card and 128 GiB of memory\n\n"
     "  cadt-bench sizes flips --out out --who cgal,host,cuda --time-limit 60 --runs 9\n"
-    "      Table 3 and Fig. 9, 10, of three contestants, each measurement up to a minute\n\n"
+    "      Table 3 and Fig. 9, 10, of three contestants, each call up to a minute\n\n"
     "  cadt-bench all --out out --keep\n"
     "      goes on where an interrupted run stopped\n\n"
     "  cadt-bench compare -d uniform,grid -n 1M -w host,opencl,cgal --check\n"
     "      a table on the terminal, and each mesh compared with CGAL's\n\n"
-    "A time is that of the whole call, from points in memory to triangles in memory. Before each measurement its time is\n"
-    "predicted from the same contestant's last size; above the limit it is left out, and its row says so. Warm-ups and\n"
-    "runs are cut when half of the limit is used up; the columns warmups and runs say how many there were.\n\n"
+    "A time is that of the whole call, from points in memory to triangles in memory. Before each measurement its time "
+    "is\n"
+    "predicted from the same contestant's last size; above the limit it is left out, and its row says so. Warm-ups "
+    "and\n"
+    "runs end when 3 s or a quarter of the limit are used up; the columns warmups and runs say how many there were.\n\n"
     "Exit codes: 0 done, 1 internal error, 2 wrong command line, 3 a file cannot be written, 130 interrupted.\n";
 
 }  // namespace
@@ -180,16 +183,17 @@ void add_experiments(CLI::App& app, Action& action) {
                  "graphics card, else small")
       ->type_name("small|full");
   app.add_option("--time-limit", arguments->limit,
-                 "seconds of one measurement; what is predicted to take longer is left out (default: small 5, full 15)")
+                 "seconds of one call; what is predicted to take longer is left out (default: small 8, full 12)")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber.description(""));
-  app.add_option("--warm-up", arguments->warm_up, "runs before the timed ones (default: small 1, full 2)")
+  app.add_option("--warm-up", arguments->warm_up, "runs before the timed ones (default: 1)")
       ->type_name("W")
       ->check(CLI::NonNegativeNumber.description(""));
   app.add_option("--runs", arguments->runs, "timed runs (default: small 3, full 5)")
       ->type_name("R")
       ->check(CLI::PositiveNumber.description(""));
-  app.add_option("--who", arguments->who, "only these: sequential cgal scipy cupy host opencl cuda, with commas between")
+  app.add_option("--who", arguments->who,
+                 "only these: sequential cgal scipy cupy host opencl cuda, with commas between")
       ->type_name("NAMES")
       ->delimiter(',');
   app.add_option("--backend", arguments->backends, "of cadt only these back ends: host, opencl, cuda")

@@ -38,8 +38,11 @@ TEST(Child, KilledInTime) {
   const auto start = std::chrono::steady_clock::now();
   // The second closes both pipes, the third leaves them to a grandchild, the fourth ignores polite signals.
   for (const char* script :
-       {"exec sleep 60", "exec sleep 60 >&- 2>&-", "sleep 60 & wait", "trap '' TERM; exec sleep 60"})
-    EXPECT_EQ(shell(script, 0.3).failure, "killed after 0.3 s") << script;
+       {"exec sleep 60", "exec sleep 60 >&- 2>&-", "sleep 60 & wait", "trap '' TERM; exec sleep 60"}) {
+    const ChildResult child = shell(script, 0.3);
+    EXPECT_EQ(child.failure, "killed after 0.3 s") << script;
+    EXPECT_EQ(child.status, 128 + 9) << script;
+  }
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 

@@ -18,8 +18,7 @@ CADT_KERNEL(cadt_count_flips, CADT_GLOBAL const cadt_record* records, cadt_u32 s
     CADT_GLOBAL const cadt_u32* word = records[t].word;
     const cadt_u32 flips = word[CADT_WORD_FLIPS];
     if (word[CADT_WORD_LOCK] == 0u) continue;
-    const cadt_u32 ghost =
-        word[0] == CADT_GHOST ? 0u : (word[1] == CADT_GHOST ? 1u : (word[2] == CADT_GHOST ? 2u : 3u));
+    const cadt_u32 ghost = word[0] == CADT_GHOST ? 0u : (word[1] == CADT_GHOST ? 1u : (word[2] == CADT_GHOST ? 2u : 3u));
     if (flips == 0u && ghost == 3u) {
       bins[0] += 3u;
       continue;

@@ -34,7 +34,7 @@ std::vector<Row> run_sizes(Bench& bench) {
   if (with_alone) {
     alone = **host;
     alone.threads = 1;
-    everybody.insert(host, &alone);
+    everybody.insert(host + 1, &alone);
   }
   for (const std::size_t n : bench.plan().sizes) {
     Contestants who = everybody;

@@ -35,6 +35,7 @@ class Temporary {
   explicit Temporary(std::string_view suffix) {
     const char* folder = std::getenv("TMPDIR");
     std::string name = fmt::format("{}/cadt-bench-XXXXXX{}", folder && *folder ? folder : "/tmp", suffix);
+    const Writing from_name_to_removal;  // an interrupt in between would leave the file
     const int descriptor = ::mkstemps(name.data(), static_cast<int>(suffix.size()));
     if (descriptor < 0) throw Skip("cannot make a temporary file in " + fs::path(name).parent_path().string());
     ::close(descriptor);

@@ -161,6 +161,18 @@ CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
 
 #endif
 
+/* Adds to one of the counters, which lanes of a warp share. One addition for all of them where the language can: memory
+ * takes those of one address one after another, and the counters of an insertion of 10M points would cost 3 % (H200).
+ */
+CADT_FN void cadt_add_together(CADT_GLOBAL cadt_u32* p, cadt_u32 value) {
+#if defined(CADT_LANG_CUDA) && defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800 && !defined(CADT_NO_REDUX)
+  const cadt_u32 lanes = __activemask(), sum = __reduce_add_sync(lanes, value);
+  if (sum && threadIdx.x % 32u == CADT_CAST(cadt_u32, __ffs(CADT_CAST(int, lanes)) - 1)) cadt_add_relaxed(p, sum);
+#else
+  if (value) cadt_add_relaxed(p, value);
+#endif
+}
+
 /* ---- the two disciplines of the records' fields and locks ----------------------------------------------------------
  */
 #if CADT_CONTIGUOUS

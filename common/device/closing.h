@@ -54,7 +54,8 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
       }
     }
   }
-  if (examined) cadt_add_relaxed(found, examined);
+  cadt_converge();
+  cadt_add_together(found, examined);
   if (illegal) cadt_add_relaxed(found + 1, illegal);
   if (unsettled) cadt_add_relaxed(found + 2, unsettled);
   if (left) cadt_add_relaxed(found + 3, left);

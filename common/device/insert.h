@@ -46,7 +46,8 @@ CADT_FN void cadt_defer_edge(const cadt_deferred* deferred, cadt_u32 link, cadt_
   tally->count[CADT_COUNT_DEFERRED_EDGES]++;
 }
 
-/* Tells the driver that this work-item got on. */
+/* Tells the driver that this work-item got on. For launches of what others left over only: in those of a level it would
+ * be one more addition to one address for each point. */
 CADT_FN void cadt_report_changes(const cadt_tally* tally, CADT_GLOBAL cadt_u32* counts) {
   if (tally->count[CADT_COUNT_SPLITS] | tally->count[CADT_COUNT_EDGE_SPLITS] | tally->count[CADT_COUNT_FLIPS])
     cadt_add_relaxed(counts + 2, 1u);
@@ -76,6 +77,7 @@ CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_worklist* work, const cadt_d
   const cadt_u32 mask = CADT_WORKLIST - 1u;
   cadt_u32 conflicts = 0u, partner = 0u, all_sides = 0u;
   while (work->size > 0u) {
+    CADT_LAP_WAIT(tally);
     const cadt_u32 oldest = work->size > CADT_CAST(cadt_u32, CADT_WORKLIST_STACK) ? 1u : 0u;
     const cadt_u32 link = work->link[(oldest ? work->first : work->first + work->size - 1u) & mask];
     work->size--;
@@ -91,6 +93,7 @@ CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_worklist* work, const cadt_d
         work->link[(oldest ? work->first + work->size : work->first) & mask] = link;
         work->size++;
       }
+      CADT_LAP(tally, CADT_TIME_OTHER);
       continue;
     }
     cadt_u32 sides[4];
@@ -106,6 +109,7 @@ CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_worklist* work, const cadt_d
       else
         cadt_defer_edge(deferred, sides[e], tally);
     }
+    CADT_LAP(tally, CADT_TIME_OTHER);
   }
 }
 
@@ -189,7 +193,7 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
     else
       left_points[cadt_add_relaxed(left_counts, 1u)] = i;
   }
-  cadt_report_changes(&tally, left_counts);
+  if (listed == count) cadt_report_changes(&tally, left_counts);
   cadt_tally_flush(&tally, counters, cadt_item);
 }
 

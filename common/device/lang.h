@@ -62,6 +62,13 @@ typedef long cadt_i64;
 #define cadt_ldexp(x, e) ldexp((x), (e))
 #define cadt_atan2(y, x) atan2((y), (x))
 
+/* Lanes of a warp that went separate ways go on together. Nothing waits here for anything but its own warp. */
+#if defined(__NV_CL_C_VERSION)
+CADT_FN void cadt_converge(void) { asm volatile("bar.warp.sync 0xffffffff;" ::: "memory"); }
+#else
+CADT_FN void cadt_converge(void) {}
+#endif
+
 /* A clock of the thread's processor, for differences; 0 where there is none. */
 #if defined(__NV_CL_C_VERSION)
 CADT_FN cadt_u64 cadt_clock(void) {
@@ -97,6 +104,7 @@ typedef long long cadt_i64;
 #define cadt_fabs(x) fabs(x)
 #define cadt_ldexp(x, e) ldexp((x), (e))
 #define cadt_atan2(y, x) atan2((y), (x))
+CADT_FN void cadt_converge() { __syncwarp(); }
 CADT_FN cadt_u64 cadt_clock() {
   cadt_u64 ticks;
   asm volatile("mov.u64 %0, %%clock64;" : "=l"(ticks)::"memory");
@@ -133,6 +141,7 @@ CADT_FN cadt_u64 cadt_mulhi_u64(cadt_u64 a, cadt_u64 b) {
 CADT_FN double cadt_fabs(double x) { return std::fabs(x); }
 CADT_FN double cadt_ldexp(double x, cadt_i32 e) { return std::ldexp(x, e); }
 CADT_FN double cadt_atan2(double y, double x) { return std::atan2(y, x); }
+CADT_FN void cadt_converge() {}
 CADT_FN cadt_u64 cadt_clock() {
 #if defined(__x86_64__)
   return __builtin_ia32_rdtsc();

@@ -11,7 +11,7 @@
 
 typedef struct {
   cadt_u32 word[8]; /* v0 v1 v2 lock n0 n1 n2 flips */
-} cadt_record;
+} __attribute__((aligned(32))) cadt_record;
 
 enum { CADT_WORD_LOCK = 3, CADT_WORD_LINK = 4, CADT_WORD_FLIPS = 7 };
 
@@ -51,7 +51,8 @@ enum {
   CADT_TIME_TEST, /* reading both triangles of an edge, incircle */
   CADT_TIME_FLIP,
   CADT_TIME_NEIGHBORS, /* links from outside to what was changed */
-  CADT_TIME_OTHER,
+  CADT_TIME_OTHER,     /* worklist, choice of the point */
+  CADT_TIME_WAIT,      /* for other lanes of the warp */
   CADT_TIMES,
   CADT_TIME_SHIFT = 6 /* a row holds 32 bits of each: ticks / 64 */
 };
@@ -62,7 +63,8 @@ enum {
   CADT_ROW_FLIPS = 32,
   CADT_FLIP_BINS = 16,
   CADT_COUNTER_STRIDE = 64, /* words a row, so rows do not share cache lines */
-  CADT_COUNTER_ROWS = 64
+  CADT_COUNTER_ROWS = 64,
+  CADT_ROW_SHIFT = 5 /* lanes of a warp use one row, so that they can add together */
 };
 
 /* cadt_mesh.stabilize (change.h) */

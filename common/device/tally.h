@@ -30,6 +30,12 @@ CADT_FN void cadt_lap(cadt_tally* tally, cadt_u32 account) {
 #else
 #define CADT_LAP(tally, account) ((void)0)
 #endif
+/* Where lanes of a GPU's warp wait for each other; a CPU's thread waits for nobody. */
+#if CADT_CONTIGUOUS
+#define CADT_LAP_WAIT(tally) ((void)0)
+#else
+#define CADT_LAP_WAIT(tally) CADT_LAP((tally), CADT_TIME_WAIT)
+#endif
 
 CADT_FN void cadt_tally_clear(cadt_tally* tally) {
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c) tally->count[c] = 0u;
@@ -39,17 +45,20 @@ CADT_FN void cadt_tally_clear(cadt_tally* tally) {
 #endif
 }
 
-/* `counters` is null if nobody wants to know. */
+CADT_FN CADT_GLOBAL cadt_u32* cadt_counter_row(CADT_GLOBAL cadt_u32* counters, cadt_u32 item) {
+  return counters + (item >> CADT_ROW_SHIFT) % CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE;
+}
+
+/* `counters` is null if nobody wants to know. \pre all lanes of a warp come here */
 CADT_FN void cadt_tally_flush(cadt_tally* tally, CADT_GLOBAL cadt_u32* counters, cadt_u32 item) {
   if (!counters) return;
-  CADT_GLOBAL cadt_u32* row = counters + (item % CADT_COUNTER_ROWS) * CADT_COUNTER_STRIDE;
-  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c)
-    if (tally->count[c]) cadt_add_relaxed(row + c, tally->count[c]);
+  cadt_converge();
+  CADT_GLOBAL cadt_u32* row = cadt_counter_row(counters, item);
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c) cadt_add_together(row + c, tally->count[c]);
 #if CADT_TIMED
-  CADT_LAP(tally, CADT_TIME_OTHER);
+  CADT_LAP_WAIT(tally);
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c) {
-    const cadt_u32 time = CADT_CAST(cadt_u32, tally->ticks[c] >> CADT_TIME_SHIFT);
-    if (time) cadt_add_relaxed(row + CADT_ROW_TIMES + c, time);
+    cadt_add_together(row + CADT_ROW_TIMES + c, CADT_CAST(cadt_u32, tally->ticks[c] >> CADT_TIME_SHIFT));
   }
 #endif
 }

@@ -218,7 +218,7 @@ class Builder {
 
   struct Leftovers {
     std::uint32_t points = 0, edges = 0;
-    std::uint32_t changes = 0;  ///< work-items that changed the mesh in the launches that left them
+    std::uint32_t changes = 0;  ///< work-items that changed the mesh, if the launch had no other points
   };
 
   Run& run_;

@@ -19,7 +19,7 @@ namespace {
 
 /// In the order of CADT_TIME_...
 constexpr std::array<const char*, CADT_TIMES> accounts = {"locate", "claim",     "split", "test",
-                                                          "flip",   "neighbors", "other"};
+                                                          "flip",   "neighbors", "other", "wait"};
 
 static_assert(int{CADT_COUNTERS} <= int{CADT_ROW_TIMES} && CADT_ROW_TIMES + int{CADT_TIMES} <= int{CADT_ROW_FLIPS} &&
               CADT_ROW_FLIPS + int{CADT_FLIP_BINS} <= int{CADT_COUNTER_STRIDE});
@@ -34,7 +34,9 @@ Counters::Counters(Run& run) : device_(run.device) {
 
 bool Counters::count_flips(Launcher& launch, const Allocation& records, std::size_t slots) const {
   if (!buffer_) return false;
-  const Cut parts = launch.parts(slots);
+  Cut parts = launch.parts(slots);
+  const LaunchShape shape = launch.device().shape();
+  if (!shape.contiguous) parts.items = static_cast<std::uint32_t>(std::min<std::size_t>(slots, shape.parallelism));
   launch.run(KernelId::cadt_count_flips, parts.items, records, static_cast<std::uint32_t>(slots), parts.grain,
              parts.items, *this);
   return true;

@@ -65,8 +65,8 @@ struct Statistics {
   std::array<std::uint64_t, 16> flips_per_edge{};
 
   /// How the threads of the insertion spend their time (paper, Fig. 6): shares of their sum, e.g. {"locate", 0.31}; the
-  /// names are locate, claim, split, test, flip, neighbors, other. Empty unless StatisticsDetail::timing, and where the
-  /// device has no clock.
+  /// names are locate, claim, split, test, flip, neighbors, other, wait (for threads that run in step with it). Empty
+  /// unless StatisticsDetail::timing, and where the device has no clock.
   std::vector<std::pair<std::string, double>> thread_time;
 
   /// Milliseconds per phase, in order of execution, e.g. {"sort", 12.3}.

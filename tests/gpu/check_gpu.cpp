@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct Arguments {
   int runs = 10, warm_up = 3;
   unsigned block = 0;
   Order order = Order::fast;
+  Stabilize stabilize = Stabilize::off;
+  StatisticsDetail statistics = StatisticsDetail::counters;
   bool phases = false, hash = false;
 };
 
@@ -32,9 +35,17 @@ struct Arguments {
       "usage: cadt-check-gpu [--points N] [--backend cuda|opencl|host] [--device D]\n"
       "                      [--kind uniform|circles|gaussian|lattice] [--runs R] [--warm-up W] [--block B]\n"
       "                      [--order fast|canonical] [--verify none|host|device] [--phases] [--hash]\n"
+      "                      [--stabilize off|defer|paper] [--statistics none|counters|timing]\n"
       "prints the median time (and the least and the most) from points on the device to a mesh on the device\n",
       stderr);
   std::exit(2);
+}
+
+template <class Value>
+Value named(const std::string& name, std::initializer_list<Value> values) {
+  for (const Value one : values)
+    if (to_string(one) == name) return one;
+  usage();
 }
 
 Arguments parse(int count, char** values) {
@@ -62,6 +73,10 @@ Arguments parse(int count, char** values) {
       a.block = static_cast<unsigned>(std::stoul(value()));
     else if (words[i] == "--order")
       a.order = value() == "canonical" ? Order::canonical : Order::fast;
+    else if (words[i] == "--stabilize")
+      a.stabilize = named(value(), {Stabilize::off, Stabilize::defer, Stabilize::paper});
+    else if (words[i] == "--statistics")
+      a.statistics = named(value(), {StatisticsDetail::none, StatisticsDetail::counters, StatisticsDetail::timing});
     else if (words[i] == "--verify")
       a.verify = value();
     else if (words[i] == "--phases")
@@ -136,6 +151,8 @@ int run(const Arguments& a) {
   options.backend = backend_from_string(a.backend);
   options.order = a.order;
   options.work_group_size = a.block;
+  options.stabilize = a.stabilize;
+  options.statistics = a.statistics;
   std::unique_ptr<test::DeviceMemory> memory;
   const void* points = xy.data();
   if (options.backend != Backend::host) {
@@ -186,6 +203,14 @@ int run(const Arguments& a) {
         static_cast<unsigned long long>(s.deferred_points), static_cast<unsigned long long>(s.deferred_edges),
         static_cast<unsigned long long>(s.launches), static_cast<unsigned long long>(s.closing_sweeps),
         static_cast<unsigned long long>(s.closing_repairs));
+    for (const auto& [name, share] : s.thread_time) std::printf(" %s %.3f", name.c_str(), share);
+    std::printf(", flips:");
+    for (const std::uint64_t edges : s.flips_per_edge) std::printf(" %llu", static_cast<unsigned long long>(edges));
+    std::printf(", stabilised %llu illegal %llu invalid %llu, occupancy",
+                static_cast<unsigned long long>(s.stabilized_edges), static_cast<unsigned long long>(s.illegal_edges),
+                static_cast<unsigned long long>(s.invalid_restarts));
+    for (const unsigned block : {32U, 64U, 128U, 256U, 512U, 1024U})
+      std::printf(" %u: %.3f", block, triangulator.occupancy(block).value_or(-1));
   }
   bool ok = true;
   if (a.verify == "device") {

@@ -1,87 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/measure.hpp"
 
-#include "tests/support/oracle.hpp"
-
-#include <algorithm>
 #include <chrono>
-#include <iostream>
-#include <stdexcept>
 
 namespace cadt::bench {
 namespace {
 
-std::string why_not(Backend backend) {
-  std::string reason = "not listed";
-  for (const DeviceInfo& device : list_devices()) {
-    if (device.backend != backend) continue;
-    if (device.usable) return {};
-    reason = device.reason;
-  }
-  return reason;
+double now() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace
 
-std::vector<Contestant> contestants(const std::vector<std::string>& names, unsigned threads,
-                                    const std::string& device) {
-  std::vector<Contestant> result;
-  for (const std::string& name : names) {
-    Contestant contestant{name, name == "cgal", {}};
-    if (!contestant.cgal) {
-      const Backend backend = backend_from_string(name);
-      const std::string reason = why_not(backend);
-      if (!reason.empty()) {
-        std::cerr << name << " is left out: " << reason << '\n';
-        continue;
+Stopwatch::Stopwatch() : start_(now()) {}
+double Stopwatch::milliseconds() const { return now() - start_; }
+
+Repeats repeat(std::size_t warm_up, std::size_t runs, double budget, std::optional<double> predicted,
+               const std::function<double()>& call) {
+  Repeats result;
+  const Stopwatch all;
+  double one = predicted.value_or(0.0), last = 0.0;
+  // A warm-up is of use only if a timed run can follow.
+  while (result.warmups < warm_up && all.milliseconds() + 2.0 * one <= budget) {
+    last = one = call();
+    ++result.warmups;
+  }
+  while (result.milliseconds.size() < runs) {
+    if (all.milliseconds() + one > budget) {
+      if (!result.milliseconds.empty()) break;
+      if (result.warmups > 0) {
+        --result.warmups;
+        result.milliseconds.push_back(last);
+        break;
       }
-      contestant.options.backend = backend;
-      if (backend == Backend::host) contestant.options.threads = threads;
-      if (backend != Backend::host) contestant.options.device = device;
     }
-    result.push_back(contestant);
+    one = call();
+    result.milliseconds.push_back(one);
   }
   return result;
 }
 
-Measurement measure(const Contestant& contestant, const std::vector<double>& xy, int repeat) {
-  using Clock = std::chrono::steady_clock;
-  Measurement result;
-  result.contestant = contestant.name;
-  result.points = xy.size() / 2;
-  for (int run = 0; run <= repeat; ++run) {
-    const std::vector<double> fresh = xy;
-    double seconds = 0.0;
-    if (contestant.cgal) {
-      const test::InsertionTime insertion = test::cgal_insertion(fresh);
-      result.triangles = insertion.triangles;
-      seconds = insertion.seconds;
-    } else {
-      const auto start = Clock::now();
-      const Triangulation mesh = triangulate(std::span<const double>(fresh), contestant.options);
-      seconds = std::chrono::duration<double>(Clock::now() - start).count();
-      result.triangles = mesh.number_of_triangles();
-      result.statistics = mesh.statistics();
-    }
-    if (run > 0) result.times.seconds.push_back(seconds);
-  }
-  std::ranges::sort(result.times.seconds);
-  return result;
+void Predictor::learn(const std::string& who, const std::string& what, std::size_t points, double milliseconds,
+                      bool usual) {
+  if (points == 0) return;
+  const auto keep = [&](Known& known) {
+    if (points >= known.points) known = {points, milliseconds};
+  };
+  keep(known_[{who, what}]);
+  if (usual) keep(of_who_[who]);
 }
 
-std::string difference_from_cgal(const Contestant& contestant, const std::vector<double>& xy) {
-  if (contestant.cgal) return {};
-  const test::OracleMesh oracle = test::cgal_delaunay(xy);
-  const Triangulation mesh = triangulate(std::span<const double>(xy), contestant.options);
-  const auto have = mesh.triangles();
-  if (have.size() != 3 * oracle.triangles.size()) {
-    return std::to_string(have.size() / 3) + " triangles, CGAL has " + std::to_string(oracle.triangles.size());
+std::optional<double> Predictor::predict(const std::string& who, const std::string& what, std::size_t points) const {
+  constexpr std::size_t most_times_larger = 100;
+  constexpr double margin = 1.1;
+  const auto from = [&](const Known& known) -> std::optional<double> {
+    if (points / most_times_larger > known.points) return std::nullopt;
+    return margin * known.milliseconds * static_cast<double>(points) / static_cast<double>(known.points);
+  };
+  if (const auto found = known_.find({who, what}); found != known_.end()) {
+    if (const auto predicted = from(found->second)) return predicted;
   }
-  for (std::size_t t = 0; t < oracle.triangles.size(); ++t) {
-    if (!std::ranges::equal(have.subspan(3 * t, 3), oracle.triangles[t]))
-      return "triangle " + std::to_string(t) + " differs";
-  }
-  return {};
+  if (const auto found = of_who_.find(who); found != of_who_.end()) return from(found->second);
+  return std::nullopt;
 }
 
 }  // namespace cadt::bench

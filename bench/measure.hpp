@@ -1,46 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times of whole calls.
+// Times of whole calls, within limits.
 #pragma once
-
-#include <cadt/cadt.hpp>
 
 #include <cstddef>
 #include <functional>
-#include <span>
+#include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cadt::bench {
 
-/// Who computes: a configuration of cadt, or CGAL.
-struct Contestant {
-  std::string name;
-  bool cgal = false;
-  Options options;
+/// Milliseconds since it was made.
+class Stopwatch {
+ public:
+  Stopwatch();
+  [[nodiscard]] double milliseconds() const;
+
+ private:
+  double start_;
 };
 
-/// Seconds of each repetition, ascending. The warm-up is not among them.
-struct Times {
-  std::vector<double> seconds;
-  [[nodiscard]] double best() const { return seconds.front(); }
-  [[nodiscard]] double median() const { return seconds[seconds.size() / 2]; }
+struct Repeats {
+  std::size_t warmups = 0;
+  std::vector<double> milliseconds;  ///< of the timed runs
 };
 
-struct Measurement {
-  std::string distribution, contestant;
-  std::size_t points = 0, triangles = 0;
-  Times times;
-  Statistics statistics;  ///< of the last run; empty for CGAL
+/// Calls `call`, which returns its own time, first `warm_up` times and then `runs` times, as long as `budget` (in
+/// milliseconds) lasts. There is always one timed run; if the first warm-up has used the budget up, it is that one.
+[[nodiscard]] Repeats repeat(std::size_t warm_up, std::size_t runs, double budget, std::optional<double> predicted,
+                             const std::function<double()>& call);
+
+/// Times of larger sets from those of smaller ones.
+class Predictor {
+ public:
+  /// \param usual whether it tells something about other work of `who`
+  void learn(const std::string& who, const std::string& what, std::size_t points, double milliseconds, bool usual);
+  /// Linear from the largest set that `who` did with `what`, or else with anything, and a tenth more; nothing if there
+  /// is none that is large enough to tell: what a call costs that does nothing is not to be multiplied by a thousand.
+  [[nodiscard]] std::optional<double> predict(const std::string& who, const std::string& what,
+                                              std::size_t points) const;
+
+ private:
+  struct Known {
+    std::size_t points = 0;
+    double milliseconds = 0;
+  };
+  std::map<std::string, Known> of_who_;
+  std::map<std::pair<std::string, std::string>, Known> known_;
 };
-
-/// Host (all threads, or as many as asked for), OpenCL if it is there, CGAL. Names what is not there on standard error.
-[[nodiscard]] std::vector<Contestant> contestants(const std::vector<std::string>& names, unsigned threads,
-                                                  const std::string& device);
-
-/// One warm-up, then `repeat` runs, each on a fresh copy of the points that is made before the clock starts.
-[[nodiscard]] Measurement measure(const Contestant& contestant, const std::vector<double>& xy, int repeat);
-
-/// Empty if the canonical set of triangles equals CGAL's, else what differs.
-[[nodiscard]] std::string difference_from_cgal(const Contestant& contestant, const std::vector<double>& xy);
 
 }  // namespace cadt::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Points that are not spread evenly must not make the work explode. The bound is loose, as tests share the machine;
-// cadt-bench-cgal measures the same with large sets.
+// cadt-bench compare measures the same with large sets.
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"

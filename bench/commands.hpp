@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// What cadt-bench can be asked to do. Each one declares its options and, when the command line names it, sets the work.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace cadt::bench {
+
+using Action = std::function<int()>;
+
+void add_experiments(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
+void add_machine(CLI::App& app, Action& action);
+
+}  // namespace cadt::bench

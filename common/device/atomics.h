@@ -165,9 +165,15 @@ CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
  * takes those of one address one after another, and the counters of an insertion of 10M points would cost 3 % (H200).
  */
 CADT_FN void cadt_add_together(CADT_GLOBAL cadt_u32* p, cadt_u32 value) {
-#if defined(CADT_LANG_CUDA) && defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800 && !defined(CADT_NO_REDUX)
+#if defined(CADT_LANG_CUDA) && defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
   const cadt_u32 lanes = __activemask(), sum = __reduce_add_sync(lanes, value);
   if (sum && threadIdx.x % 32u == CADT_CAST(cadt_u32, __ffs(CADT_CAST(int, lanes)) - 1)) cadt_add_relaxed(p, sum);
+#elif defined(CADT_LANG_OPENCL) && CADT_NV_REDUX
+  cadt_u32 lanes, lane, sum;
+  asm volatile("activemask.b32 %0;" : "=r"(lanes));
+  asm volatile("mov.u32 %0, %%laneid;" : "=r"(lane));
+  asm volatile("redux.sync.add.u32 %0, %1, %2;" : "=r"(sum) : "r"(value), "r"(lanes));
+  if (sum && lane == (cadt_u32)(31 - clz(lanes & (0u - lanes)))) cadt_add_relaxed(p, sum);
 #else
   if (value) cadt_add_relaxed(p, value);
 #endif

@@ -7,7 +7,8 @@
  * A compile may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double),
  * CADT_CONTIGUOUS (1: a work-item takes neighbouring elements, right for CPUs; 0: strided, right for GPUs),
  * CADT_RADIX_BITS (digit of the radix sort), CADT_TIMED (1: threads take the time of what they do, tally.h),
- * CADT_TEST_NO_LOCKS (control of the tests: locks are not taken).
+ * CADT_NV_REDUX (NVIDIA's OpenCL on compute capability 8 and later: sums over a warp), CADT_TEST_NO_LOCKS (control of
+ * the tests: locks are not taken).
  */
 #ifndef CADT_DEVICE_LANG_H
 #define CADT_DEVICE_LANG_H
@@ -17,6 +18,9 @@
 #endif
 #ifndef CADT_CONTIGUOUS
 #define CADT_CONTIGUOUS 1
+#endif
+#ifndef CADT_NV_REDUX
+#define CADT_NV_REDUX 0
 #endif
 #ifndef CADT_TIMED
 #define CADT_TIMED 0

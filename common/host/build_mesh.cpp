@@ -55,7 +55,10 @@ class Builder {
     run_.end_phase("start");
 
     for (unsigned level = levels(); level-- > 0;) insert_level(level);
-    finish_leftovers();
+    if (left_.points != 0 || left_.edges != 0) {
+      finish_leftovers();
+      if (run_.options.watch) show();
+    }
     run_.end_phase("insert");
     certify();
     run_.end_phase("certify");

@@ -52,7 +52,8 @@ std::uint64_t flipped_more_than(const Statistics& s, std::size_t threshold) {
 testing::AssertionResult valid_structure(const Points& xy, const Triangulation& mesh) {
   const VerifyReport report = verify(Reals(xy), mesh);
   for (const Check& check : report.checks)
-    if (!check.passed && check.name != "delaunay" && check.name != "ties") return testing::AssertionFailure() << check.name << ": " << check.what;
+    if (!check.passed && check.name != "delaunay" && check.name != "ties")
+      return testing::AssertionFailure() << check.name << ": " << check.what;
   return testing::AssertionSuccess();
 }
 

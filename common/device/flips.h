@@ -9,12 +9,11 @@
 
 /* Adds the edges of the finished mesh, ghost edges left out, to the bins of the counters' rows: each edge twice, once
  * from each side. */
-CADT_KERNEL(cadt_count_flips, CADT_GLOBAL const cadt_record* records, cadt_u32 slots, cadt_u32 chunk, cadt_u32 parts,
+CADT_KERNEL(cadt_count_flips, CADT_GLOBAL const cadt_record* records, cadt_u32 slots, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* counters) {
-  if (cadt_item >= parts) return;
   cadt_u32 bins[CADT_FLIP_BINS];
   for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin) bins[bin] = 0u;
-  CADT_FOR_PART(t, cadt_item, parts, slots, chunk) {
+  CADT_FOR(t, slots, grain) {
     const cadt_record r = records[t];
     const cadt_u32 flips = r.word[CADT_WORD_FLIPS];
     if (r.word[CADT_WORD_LOCK] == 0u) continue;

@@ -187,7 +187,7 @@ class Builder {
       std::uint64_t examined = 0, illegal = 0, unsettled = 0, left = 0;
       for (std::size_t begin = 0; begin < slots; begin += most) {
         const std::size_t size = std::min(most, slots - begin);
-        const Cut c = launch_.cut(size);
+        const Cut c = launch_.cut_strided(size);
         run_kernel(KernelId::cadt_closing_pass, c.items, static_cast<std::uint32_t>(begin),
                    static_cast<std::uint32_t>(size), c.grain, found, left_edges_[0], left_counts_, edge_capacity_,
                    counters_);

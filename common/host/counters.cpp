@@ -34,11 +34,8 @@ Counters::Counters(Run& run) : device_(run.device) {
 
 bool Counters::count_flips(Launcher& launch, const Allocation& records, std::size_t slots) const {
   if (!buffer_) return false;
-  Cut parts = launch.parts(slots);
-  const LaunchShape shape = launch.device().shape();
-  if (!shape.contiguous) parts.items = static_cast<std::uint32_t>(std::min<std::size_t>(slots, shape.parallelism));
-  launch.run(KernelId::cadt_count_flips, parts.items, records, static_cast<std::uint32_t>(slots), parts.grain,
-             parts.items, *this);
+  const Cut c = launch.cut_strided(slots);
+  launch.run(KernelId::cadt_count_flips, c.items, records, static_cast<std::uint32_t>(slots), c.grain, *this);
   return true;
 }
 

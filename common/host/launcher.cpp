@@ -30,6 +30,13 @@ Cut Launcher::cut_spread(std::size_t count) const noexcept {
   return {static_cast<std::uint32_t>(count * lanes), lanes};
 }
 
+Cut Launcher::cut_strided(std::size_t count) const noexcept {
+  const LaunchShape shape = device_.shape();
+  if (shape.contiguous) return cut(count);
+  constexpr std::size_t waves = 4;  // of work-items: who comes late finds less to do
+  return {static_cast<std::uint32_t>(std::min(count, waves * std::max(1U, shape.parallelism))), 1};
+}
+
 Cut Launcher::parts(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (shape.contiguous) return chunks(count);

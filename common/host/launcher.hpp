@@ -31,6 +31,8 @@ class Launcher {
   [[nodiscard]] Cut cut(std::size_t count) const noexcept;
   /// For kernels with CADT_FOR_SPREAD: few elements get several work-items each on GPUs.
   [[nodiscard]] Cut cut_spread(std::size_t count) const noexcept;
+  /// For kernels whose work-items add what they found to sums: on GPUs few of them, with many elements each.
+  [[nodiscard]] Cut cut_strided(std::size_t count) const noexcept;
   /// For kernels with one row of partial results a work-item (CADT_FOR_PART).
   [[nodiscard]] Cut parts(std::size_t count) const noexcept;
   /// For kernels whose work-items need a contiguous chunk on every device.

@@ -67,8 +67,8 @@ def read_triangles(path: Path, points: int, problems: list[str]) -> list[Triangl
     all_of_them = [tuple(int(v) for v in line) for line in read_numbers(path, 3, problems)]
     inside = [t for t in all_of_them if all(0 <= v < points for v in t)]
     if len(inside) < len(all_of_them):
-        problems.append(f"{path.parent.name}/{path.name}: {len(all_of_them) - len(inside)} triangles of points that are "
-                        "not there are left out")
+        problems.append(f"{path.parent.name}/{path.name}: {len(all_of_them) - len(inside)} triangles of points that "
+                        "are not there are left out")
     return inside
 
 

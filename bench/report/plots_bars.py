@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 
 import style
 from plots_time import heading, styles
-from rows import (Machine, Row, by_points, contestants, each, group, per_device, pick, ratio, reference_rows, sizes_of,
-                  synthetic)
+from rows import (DETAILS, Machine, Row, by_points, contestants, each, group, per_device, pick, rank, ratio,
+                  reference_rows, sizes_of, synthetic, to_number)
 from style import Page
 from words import short, significant
 
@@ -19,7 +19,7 @@ COUNTERS = ("claims", "lost_claims", "invalid_restarts", "insert_retries", "stal
 
 def breakdown(machines: Sequence[Machine], paper: dict) -> Figure | None:
     """Shares of the threads' time above, with the paper's one number, and shares of the phases below."""
-    bars = [(f"{heading(m, who, machines)}\n{row.text('distribution')}, {short(row.number('points') or 0)} points", row)
+    bars = [(f"{heading(m, who, machines)}\n{row.text('distribution')}, {short(row.number('points'))} points", row)
             for m, who, rows in per_device(machines, "breakdown") for row in rows]
     threads = [(name, row.pairs("thread_time"), "") for name, row in bars if row.pairs("thread_time")]
     phases = [(name, row.pairs("phases"), f"{significant(sum(row.pairs('phases').values()))} ms")
@@ -61,7 +61,7 @@ def stacked(axes: Axes, rows: list[tuple[str, dict[str, float], str]]) -> None:
             axes.barh(at, 1 - start, left=start, color="#ececec", height=0.62)
         axes.text(1.005, at, note, va="center", fontsize=9)
     style.ticks(axes, range(len(rows)), [name for name, _, _ in rows], "y", fontsize=9)
-    axes.invert_yaxis()
+    axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.grid(False)
     axes.set_xlim(0, 1)
     axes.set_xlabel("share, %")
@@ -76,7 +76,8 @@ def distributions(machines: Sequence[Machine], paper: dict) -> Figure | None:
     shown = [s for s in per_device(machines, "distributions") if len(synthetic(s[2], reference)) > 1]
     if not shown:
         return None
-    all_sizes = sizes_of(row for _, _, rows in shown for row in rows if row.whole("points") in reference_rows(rows, reference))
+    all_sizes = sizes_of(row for _, _, rows in shown for row in rows
+                         if row.whole("points") in reference_rows(rows, reference))
     columns = 2 if len(shown) > 1 else 1
     page = Page(f"Time a point relative to {reference} points", [m for m in machines if m.rows("distributions")],
                 -(-len(shown) // columns), columns, 3.7)
@@ -86,7 +87,7 @@ def distributions(machines: Sequence[Machine], paper: dict) -> Figure | None:
         axes.set_ylabel(f"time a point, {reference} = 1")
     for index, size in enumerate(all_sizes):
         page.legend(style.patch(f"{size:,} points", color=style.ramp(index, len(all_sizes))))
-    page.legend(style.line("bar: whole call, fastest to slowest run", color="#333333", marker="|", markersize=10, ls=""),
+    page.legend(style.line("bar: whole call, fastest to slowest run", color="#333333", marker="|", markersize=9, ls=""),
                 style.line("on the device only", color="black", marker="D", ls="", markerfacecolor="white"))
     return page.finish()
 
@@ -125,7 +126,7 @@ def statistics(machines: Sequence[Machine], paper: dict) -> Figure | None:
     if not shown:
         return None
     page = Page("What the statistics cost, and what they count", [m for m in machines if m.rows("statistics")],
-                len(shown), 2, 3.7, gridspec_kw={"width_ratios": [1, 2]})
+                len(shown), 2, 3.3, gridspec_kw={"width_ratios": [1, 2]})
     for (left, right), (machine, who, rows) in zip(page.axes, shown):
         cost_bars(left, rows)
         left.set_title(heading(machine, who, machines), loc="left")
@@ -137,7 +138,8 @@ def statistics(machines: Sequence[Machine], paper: dict) -> Figure | None:
                 style.plain_line(right, [row.number("points") for row in rows], values, **look)
                 page.legend(style.line(name.replace("_", " "), **look))
         style.points_axis(right)
-        style.log_y(right, "events a point (none are not drawn)")
+        style.log_y(right, "events a point")
+    page.legend(style.line("fastest to slowest run", color="#333333", marker="|", markersize=10, ls=""))
     return page.finish()
 
 
@@ -149,19 +151,20 @@ def cost_size(rows: Sequence[Row]) -> int | None:
 def cost_bars(axes: Axes, rows: Sequence[Row]) -> None:
     size = cost_size(rows)
     base = pick(rows, detail="none", points=size) if size else None
-    drawn = [r for r in rows if base and r.whole("points") == size]
+    drawn = sorted((r for r in rows if base and r.whole("points") == size),
+                   key=lambda r: rank(r.text("detail"), DETAILS))
     for at, row in enumerate(drawn):
         values = [ratio(row.number(c), base.number("median_ms")) for c in ("median_ms", "min_ms", "max_ms")]
         if None in values:
             continue
         middle, low, high = (100 * (value - 1) for value in values)
-        axes.bar(at, middle, 0.6, color=style.COLOURS[at % 10], yerr=[[max(0, middle - low)], [max(0, high - middle)]],
+        axes.bar(at, middle, 0.6, color=style.COLOURS[0], yerr=[[max(0, middle - low)], [max(0, high - middle)]],
                  ecolor="#333333", capsize=4)
     style.ticks(axes, range(len(drawn)), [row.text("detail") for row in drawn])
     axes.axhline(0, color="black", lw=0.8)
     axes.grid(False, axis="x")
     axes.set_ylabel("more time than none, %")
-    axes.set_xlabel(f"statistics, {short(size)} points (bar: fastest to slowest)" if size else "not measured")
+    axes.set_xlabel(f"statistics, {short(size)} points" if size else "not measured")
 
 
 def devices(machines: Sequence[Machine], paper: dict) -> Figure | None:
@@ -171,18 +174,20 @@ def devices(machines: Sequence[Machine], paper: dict) -> Figure | None:
     if not cases:
         return None
     everybody = list(contestants(rows))
-    look = styles(rows)
+    look = {who: one for m in machines for who, one in styles(m.rows("devices")).items()}
     columns = min(3, len(sizes_of(rows)))
     page = Page("Every device, whole call and on the device", [m for m in machines if m.rows("devices")],
                 -(-len(cases) // columns), columns, 0.42 * len(everybody) + 1.3, sharey=True)
     for axes, (distribution, points) in zip(page.panels(len(cases)), cases):
         for at, who in enumerate(everybody):
-            chosen = [r for r in contestants(rows)[who] if (r.text("distribution"), r.text("points")) == (distribution, points)]
+            chosen = [r for r in contestants(rows)[who]
+                      if (r.text("distribution"), r.text("points")) == (distribution, points)]
             for row in chosen[:1]:
-                device_bar(axes, at, row, look[who.who, who.device, who.variant])
-        axes.set_title(f"{distribution}, {short(float(points))} points")
+                device_bar(axes, at, row, look[who])
+        axes.set_title(f"{distribution}, {short(to_number(points))} points")
         several = len({who.machine for who in everybody}) > 1
-        style.ticks(axes, range(len(everybody)), [f"{w.machine}: {w.name(22)}" if several else w.name(30) for w in everybody],
+        style.ticks(axes, range(len(everybody)),
+                    [f"{w.machine}: {w.name(22)}" if several else w.name(30) for w in everybody],
                     "y", fontsize=8.5)
         axes.set_xlabel("time, ms")
         axes.grid(False, axis="y")

@@ -8,13 +8,20 @@ from matplotlib.figure import Figure
 
 import style
 from meshes import Bunny, Snapshots, chosen_steps
-from rows import CADT, FLIP_BINS, MODES, Contestant, Machine, Row, each, group, pick, rank
+from rows import CADT, FLIP_BINS, MODES, Contestant, Machine, Row, each, group, pick, rank, to_number
 from style import Page
 from words import percent, short
 
 
 def polygons(axes: Axes, points: Sequence, triangles: Sequence, **look) -> None:
     axes.add_collection(PolyCollection([[points[v] for v in t] for t in triangles], **look))
+
+
+def edges(axes: Axes, points: Sequence, triangles: Sequence, **look) -> None:
+    """Each edge once and all in one line with gaps: as polygons a large mesh makes an SVG of many megabytes."""
+    pairs = sorted({(min(pair), max(pair)) for a, b, c in triangles for pair in ((a, b), (b, c), (c, a))})
+    gap = (float("nan"), float("nan"))
+    axes.plot(*zip(*(at for a, b in pairs for at in (points[a], points[b], gap))), **look)
 
 
 def bare(axes: Axes, points: Sequence) -> None:
@@ -59,13 +66,13 @@ def bunny(machine: Machine, sets: Sequence[Bunny]) -> Figure | None:
         points = one.exact.points
         # Denser meshes need thinner lines, or they are a grey area.
         width = max(0.15, min(0.7, 16 / len(points) ** 0.5))
-        polygons(axes, points, one.exact.triangles, facecolor="none", edgecolor="#8f8f8f", linewidth=width)
-        polygons(axes, points, differing, facecolor="#D55E00", edgecolor="#D55E00", linewidth=1.2)
+        edges(axes, points, one.exact.triangles, color="#9a9a9a", linewidth=width)
+        polygons(axes, points, differing, facecolor="#D55E00", edgecolor="#D55E00", linewidth=1.2, zorder=3)
         bare(axes, points)
         share = percent(len(differing) / len(one.paper.triangles), 2)
-        axes.set_title(f"{one.name}: {len(points):,} points\n{len(differing):,} of {len(one.paper.triangles):,} triangles "
-                       f"differ ({share})")
-    page.legend(style.patch("exact mesh", facecolor="none", edgecolor="#8f8f8f"),
+        axes.set_title(f"{one.name}: {len(points):,} points\n{len(differing):,} of {len(one.paper.triangles):,} "
+                       f"triangles differ ({share})")
+    page.legend(style.line("exact mesh", color="#9a9a9a", linewidth=0.7),
                 style.patch("triangles of the paper's mode that the exact mesh does not have", color="#D55E00"))
     return page.finish()
 
@@ -82,14 +89,17 @@ def flips(machines: Sequence[Machine], paper: dict) -> Figure | None:
     page = Page("Flips an edge", [m for m in machines if m.rows("flips")], len(shown), len(cases), 3.7, sharey="row")
     for line, (machine, who, device) in zip(page.axes, shown):
         for axes, (distribution, points) in zip(line, cases):
-            chosen = [r for r in rows if r.machine == machine.name and (r.text("who"), r.text("device")) == (who, device)
+            chosen = [r for r in rows if r.machine == machine.name
+                      and (r.text("who"), r.text("device")) == (who, device)
                       and (r.text("distribution"), r.text("points")) == (distribution, points)]
             histogram(axes, page, chosen)
             name = Contestant(machine.name, who, device).name(44)
             heading = f"{machine.name}: {name}" if len(machines) > 1 else name
-            axes.set_title(f"{heading if axes is line[0] else ''}\n{distribution}, {short(float(points or 0))} points",
+            axes.set_title(f"{heading if axes is line[0] else ''}\n{distribution}, {short(to_number(points))} points",
                            loc="left")
         line[0].set_ylabel("edges")
+        line[0].set_ylim(bottom=0.6)  # at last: earlier it would end the row's own choice of the upper end
+    page.handles.sort(key=lambda handle: "R:" in handle.get_label())
     return page.finish()
 
 
@@ -104,8 +114,8 @@ def histogram(axes: Axes, page: Page, rows: Sequence[Row]) -> None:
             axes.axvline(row.whole("threshold") + 0.5, color=style.GREY, ls="--", lw=1.1)
             page.legend(style.line("R: flips above it are counted by Eq. 9", color=style.GREY, ls="--", lw=1.1))
     axes.set_yscale("log")
-    axes.set_ylim(bottom=0.6)
     axes.tick_params(labelleft=True)
-    style.ticks(axes, range(FLIP_BINS), [*map(str, range(FLIP_BINS - 1)), f"{FLIP_BINS - 1}+"])
+    style.ticks(axes, range(FLIP_BINS), [*map(str, range(FLIP_BINS - 1)), f"{FLIP_BINS - 1}+"],
+                fontsize=9.5)
     axes.grid(False, axis="x")
     axes.set_xlabel("flips of the edge")

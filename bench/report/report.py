@@ -5,6 +5,7 @@ PNG and SVG. All numbers come from the CSV files; the paper's own are in paper.j
 import argparse
 import json
 import sys
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,6 +40,7 @@ class Report:
     paper: dict
     out: Path
     files: list[str]
+    failed: list[str]
 
     def show(self, name: str, text: str, figure) -> list[str]:
         """The lines that embed a figure, which is written; none if there is nothing to draw."""
@@ -66,7 +68,8 @@ def drawn(name: str, text: str, figure: Callable, lines: Callable) -> Callable[[
 
 def sizes(report: Report) -> list[str]:
     lines = report.show("sizes", "Time against points", plots_time.sizes(report.machines, report.paper))
-    lines += report.show("throughput", "Points a second against points", plots_time.throughput(report.machines, report.paper))
+    lines += report.show("throughput", "Points a second against points",
+                         plots_time.throughput(report.machines, report.paper))
     return lines + tables_time.sizes(report.machines, report.paper)
 
 
@@ -102,15 +105,18 @@ def works(report: Report) -> list[str]:
     return tables_time.works(report.machines, report.paper)
 
 
-STABILIZED = ("stabilize", "threshold", "flips", "stabilized_edges", "illegal_edges", "triangles", "differing_triangles")
+STABILIZED = ("stabilize", "threshold", "flips", "stabilized_edges", "illegal_edges", "triangles",
+              "differing_triangles")
 SECTIONS = (
     Section("sizes", "Time against points (Table 3)", (*TIMES, "device_ms", "hash"), sizes),
     Section("blocks", "Block size and occupancy (Fig. 4 and 5)", (*TIMES, "device_ms", "block", "occupancy"),
             drawn("blocks", "Time and occupancy against block size", plots_time.blocks, tables_time.blocks)),
-    Section("breakdown", "Where the time goes (Fig. 6)", ("who", "device", "points", "distribution", "phases", "thread_time"),
+    Section("breakdown", "Where the time goes (Fig. 6)",
+            ("who", "device", "points", "distribution", "phases", "thread_time"),
             drawn("breakdown", "Shares of the time", plots_bars.breakdown, tables_work.breakdown)),
     Section("distributions", "Distributions and real sets (Fig. 7)", (*TIMES, "device_ms", "distribution"),
-            drawn("distributions", "Time a point by distribution", plots_bars.distributions, tables_time.distributions)),
+            drawn("distributions", "Time a point by distribution", plots_bars.distributions,
+                  tables_time.distributions)),
     Section("snapshots", "The mesh while it grows (Fig. 8)", ("block", "points", "triangles"), snapshots),
     Section("flips", "Flips an edge (Fig. 9 and 10)",
             ("who", "device", "distribution", "points", *STABILIZED, "flips_0", "flips_15"),
@@ -122,7 +128,8 @@ SECTIONS = (
             ("distribution", "points", "stabilize", "triangles", "differing_triangles"), bunny),
     Section("statistics", "What the statistics cost and count", (*TIMES, "detail", *tables_work.COUNTED),
             drawn("statistics", "Cost of the statistics", plots_bars.statistics, tables_work.statistics)),
-    Section("devices", "Every device", (*TIMES, "device_ms", "distribution", "hash", "claims", "lost_claims", "certified"),
+    Section("devices", "Every device",
+            (*TIMES, "device_ms", "distribution", "hash", "claims", "lost_claims", "certified"),
             drawn("devices", "Every device", plots_bars.devices, tables_work.devices)),
 )
 assert tuple(section.experiment for section in SECTIONS) == EXPERIMENTS
@@ -130,7 +137,12 @@ assert tuple(section.experiment for section in SECTIONS) == EXPERIMENTS
 
 def section_lines(report: Report, section: Section) -> list[str]:
     missing = [line for m in report.machines for line in m.missing(section.experiment, section.columns)]
-    body = section.body(report)
+    try:
+        body = section.body(report)
+    except Exception as error:  # a fault in one section must not cost the others; the exit code tells
+        traceback.print_exc()
+        report.failed.append(section.experiment)
+        body = [f"**This section could not be made: {type(error).__name__}: {error}**", ""]
     if not any(m.rows(section.experiment) for m in report.machines):
         body += ["Nothing was measured.", ""]
     return [f"## {section.title}", "", *bullets(f"**{line}**" for line in missing), *body,
@@ -150,7 +162,8 @@ def write(report: Report, title: str) -> None:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folders", metavar="DIR", nargs="+", type=Path, help="what cadt-bench wrote, a folder a machine")
+    parser.add_argument("folders", metavar="DIR", nargs="+", type=Path,
+                        help="what cadt-bench wrote, a folder a machine")
     parser.add_argument("--out", required=True, type=Path, help="folder of the report; made if it is not there")
     parser.add_argument("--title", default="cadt: evaluation")
     arguments = parser.parse_args()
@@ -160,13 +173,15 @@ def main() -> int:
     try:
         arguments.out.mkdir(parents=True, exist_ok=True)
         paper = json.loads((HERE / "paper.json").read_text(encoding="utf-8"))
-        report = Report(read_machines(arguments.folders), paper, arguments.out, [])
+        report = Report(read_machines(arguments.folders), paper, arguments.out, [], [])
         write(report, arguments.title)
     except OSError as error:
         print(f"report: error: {error}", file=sys.stderr)
         return 1
     print(f"{arguments.out}: {', '.join(report.files)}")
-    return 0
+    if report.failed:
+        print(f"report: error: could not be made: {', '.join(report.failed)}", file=sys.stderr)
+    return 1 if report.failed else 0
 
 
 if __name__ == "__main__":

@@ -14,7 +14,16 @@ EXPERIMENTS = ("sizes", "blocks", "breakdown", "distributions", "snapshots", "fl
 CONTESTANTS = ("sequential", "cgal", "scipy", "cupy", "host", "opencl", "cuda")
 CADT = ("host", "opencl", "cuda")
 MODES = ("off", "defer", "paper")
+DETAILS = ("none", "counters", "timing")
 FLIP_BINS = 16  # Statistics::flips_per_edge: the last one counts all from 15 on
+
+
+def to_number(text: str) -> float | None:
+    try:
+        value = float(text)
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
 
 
 class Row:
@@ -27,11 +36,7 @@ class Row:
         return self.cells.get(column, "").strip()
 
     def number(self, column: str) -> float | None:
-        try:
-            value = float(self.cells.get(column, ""))
-        except ValueError:
-            return None
-        return value if math.isfinite(value) else None
+        return to_number(self.cells.get(column, ""))
 
     def whole(self, column: str) -> int | None:
         value = self.number(column)
@@ -42,16 +47,14 @@ class Row:
         found = {}
         for part in self.text(column).split(";"):
             name, _, value = part.partition("=")
-            try:
-                found[name.strip()] = float(value)
-            except ValueError:
-                continue
+            if (share := to_number(value)) is not None and share >= 0:
+                found[name.strip()] = share
         return found
 
     def flips(self) -> list[int] | None:
         """Edges by their number of flips, or None if the row does not say."""
         counts = [self.whole(f"flips_{k}") for k in range(FLIP_BINS)]
-        return None if None in counts or not sum(counts) else counts
+        return None if None in counts or min(counts) < 0 or not sum(counts) else counts
 
 
 @dataclass
@@ -86,8 +89,11 @@ class Machine:
         return lines
 
     def devices(self, usable: bool = True) -> list[dict]:
-        found = self.info.get("devices", [])
-        return [d for d in found if isinstance(d, dict) and bool(d.get("usable")) == usable]
+        return [d for d in self.listed("devices") if bool(d.get("usable")) == usable]
+
+    def listed(self, what: str) -> list[dict]:
+        found = self.info.get(what)
+        return [entry for entry in found if isinstance(entry, dict)] if isinstance(found, list) else []
 
 
 def read_table(machine: str, path: Path) -> Table:
@@ -183,11 +189,11 @@ def group(rows: Iterable[Row], *columns: str) -> dict[tuple[str, ...], list[Row]
 
 
 def by_points(rows: Iterable[Row]) -> list[Row]:
-    return sorted((row for row in rows if row.number("points") is not None), key=lambda row: row.number("points"))
+    return sorted((row for row in rows if (row.number("points") or 0) > 0), key=lambda row: row.number("points"))
 
 
 def sizes_of(rows: Iterable[Row], column: str = "points") -> list[int]:
-    return sorted({row.whole(column) for row in rows} - {None})
+    return sorted(size for size in {row.whole(column) for row in rows} if size and size > 0)
 
 
 def pick(rows: Iterable[Row], **wanted: object) -> Row | None:
@@ -247,7 +253,8 @@ def per_device(machines: Sequence[Machine], experiment: str, modes: bool = True)
 
 
 def reference_rows(rows: Sequence[Row], reference: str) -> dict[int, Row]:
-    return {row.whole("points"): row for row in rows if row.text("distribution") == reference}
+    return {row.whole("points"): row for row in rows if row.text("distribution") == reference
+            and (row.whole("points") or 0) > 0}
 
 
 def synthetic(rows: Sequence[Row], reference: str) -> list[str]:

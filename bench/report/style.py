@@ -21,10 +21,11 @@ matplotlib.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 11, "axes.titlesize": 11, "axes.labelsize": 11, "figure.titlesize": 13,
     "axes.grid": True, "grid.color": "#d9d9d9", "grid.linewidth": 0.7, "axes.axisbelow": True,
     "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False, "legend.fontsize": 10,
-    "lines.linewidth": 1.8, "lines.markersize": 5, "svg.hashsalt": "cadt", "figure.facecolor": "white"})
+    "lines.linewidth": 1.8, "lines.markersize": 5, "figure.facecolor": "white", "svg.hashsalt": "cadt",
+    "text.parse_math": False})
 
 # Okabe and Ito's palette, told apart by all; their yellow is too light for lines on white.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8c8c8c", "#7f4f24", "#5e3c99")
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8c8c8c", "#7f4f24", "#5e3c99", "#000000")
 GREY = "#777777"
 OF_WHO = {"sequential": "#000000", "cgal": "#E69F00", "scipy": "#CC79A7", "cupy": "#56B4E9", "host": "#009E73",
           "opencl": "#0072B2", "cuda": "#D55E00"}
@@ -46,7 +47,7 @@ def footer(machine: Machine) -> str:
     for device in machine.devices():
         of_name = drivers.setdefault(str(device.get("name", "?")), [])
         of_name.append(f"{device.get('backend', '?')} {device.get('driver', '?')}")
-    devices = "; ".join(f"{name} ({', '.join(of_name)})" for name, of_name in drivers.items()) or "no usable device known"
+    devices = "; ".join(f"{name} ({', '.join(of_name)})" for name, of_name in drivers.items()) or "no usable device"
     commit = str(info.get("commit", ""))[:12] or "unknown"
     return (f"{machine.name}: {info.get('cpu', 'unknown processor')}, {info.get('cores', '?')} cores; {devices}; "
             f"{info.get('date', 'no date')}; cadt {info.get('cadt', '?')}, commit {commit}")
@@ -84,14 +85,14 @@ class Page:
         columns = max(1, min(len(self.handles) or 1, int((WIDTH - 0.4) / (0.082 * widest + 0.62))))
         legend_rows = -(-len(self.handles) // columns)
         below = 0.16 * len(self.footer) + 0.12
-        bottom = below + (0.235 * legend_rows + 0.14 if self.handles else 0)
+        bottom = below + (0.205 * legend_rows + 0.1 if self.handles else 0)
         total = self.rows * self.height + bottom + 0.4
         self.figure.set_size_inches(WIDTH, total)
         self.figure.get_layout_engine().set(rect=(0, bottom / total, 1, 1 - bottom / total), w_pad=0.08, h_pad=0.06)
         self.figure.suptitle(self.title, x=0.01, ha="left", weight="bold")
         if self.handles:
-            self.figure.legend(handles=self.handles, loc="lower center", bbox_to_anchor=(0.5, below / total), ncol=columns,
-                               borderaxespad=0, columnspacing=1.6)
+            self.figure.legend(handles=self.handles, loc="lower center", bbox_to_anchor=(0.5, below / total),
+                               ncol=columns, borderaxespad=0, columnspacing=1.6)
         self.figure.text(0.01, 0.06 / total, "\n".join(self.footer), fontsize=7.5, color="#444444", va="bottom",
                          linespacing=1.35)
         return self.figure
@@ -99,7 +100,9 @@ class Page:
 
 def save(figure: Figure, out: Path, name: str) -> list[str]:
     """NAME.png and NAME.svg, the same bytes for the same numbers."""
-    figure.savefig(out / f"{name}.png", dpi=DOTS, metadata={"Software": None})
+    dots = min(DOTS, 60000 / figure.get_figheight())  # Agg draws no picture of 2^16 rows or more
+    figure.savefig(out / f"{name}.png", dpi=dots, metadata={"Software": None})
+    figure.set_layout_engine("none")  # both alike, and laid out once
     figure.savefig(out / f"{name}.svg", metadata={"Date": None})
     return [f"{name}.png", f"{name}.svg"]
 
@@ -117,7 +120,7 @@ def spread_line(axes: Axes, x: Sequence[float], rows: Sequence[Row], scale=lambd
     drawn."""
     points = [(at, [scale(row, row.number(c)) if row.number(c) is not None else None
                     for c in ("median_ms", "min_ms", "max_ms")]) for at, row in zip(x, rows)]
-    points = [(at, v) for at, v in points if v[0] is not None]
+    points = [(at, v) for at, v in points if v[0] is not None and v[0] > 0]
     if not points:
         return
     middle = [v[0] for _, v in points]
@@ -129,7 +132,7 @@ def spread_line(axes: Axes, x: Sequence[float], rows: Sequence[Row], scale=lambd
 
 
 def plain_line(axes: Axes, x: Sequence[float], values: Sequence[float | None], **style) -> None:
-    known = [(at, value) for at, value in zip(x, values) if value is not None]
+    known = [(at, value) for at, value in zip(x, values) if value is not None and value > 0]
     if known:
         axes.plot([at for at, _ in known], [value for _, value in known], **style)
 
@@ -153,7 +156,9 @@ def log_y(axes: Axes, label: str) -> None:
 
 
 def plain(value: float) -> str:
-    return f"{value:,.0f}" if value >= 1 and value == round(value) else f"{value:.6g}" if value >= 1e-4 else significant(value, 1)
+    if value >= 1 and value == round(value):
+        return f"{value:,.0f}"
+    return f"{value:.6g}" if value >= 1e-4 else significant(value, 1)
 
 
 def ticks(axes: Axes, values: Sequence[float], labels: Sequence[str], which: str = "x", **more) -> None:

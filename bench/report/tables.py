@@ -2,7 +2,7 @@
 """What the head and all sections have in common: machines, devices, peers, what was left out, equal meshes."""
 from collections.abc import Sequence
 
-from rows import CADT, Contestant, Machine, Row, group, hash_groups
+from rows import CADT, Contestant, Machine, Row, group, hash_groups, to_number
 from words import NONE, bullets, count, listed, table
 
 
@@ -20,7 +20,7 @@ def head(machines: Sequence[Machine]) -> list[str]:
     lines += table(["machine", "processor", "cores", "memory, GiB", "system", "compiler", "date", "cadt", "commit"],
                    [[m.name, m.info.get("cpu", NONE), m.info.get("cores", NONE), gib(m.info.get("memory_bytes")),
                      m.info.get("os", NONE), m.info.get("compiler", NONE), m.info.get("date", NONE),
-                     m.info.get("cadt", NONE), m.info.get("commit") or NONE] for m in machines], left=2)
+                     m.info.get("cadt", NONE), m.info.get("commit") or NONE] for m in machines], left=9)
     lines += bullets(f"**{m.name}: {problem}**" for m in machines for problem in m.problems)
     commits = {str(m.info.get("commit", "")) for m in machines}
     if len(commits) > 1:
@@ -45,7 +45,7 @@ def devices(machines: Sequence[Machine]) -> list[str]:
 def peers(machines: Sequence[Machine]) -> list[str]:
     rows = [[m.name, p.get("name", NONE), p.get("version") or NONE,
              "measured" if p.get("usable") else f"missing: {p.get('reason') or 'no reason given'}"]
-            for m in machines for p in m.info.get("peers", []) if isinstance(p, dict)]
+            for m in machines for p in m.listed("peers")]
     return table(["machine", "program", "version", "state"], rows, left=4) or ["None is listed.", ""]
 
 
@@ -59,10 +59,10 @@ def method(machines: Sequence[Machine], experiments: Sequence[str]) -> list[str]
                     runs.setdefault((warmups or "0", number), []).append(experiment)
     plural = lambda number, word: f"{number} {word}{'s' * (number != '1')}"  # noqa: E731
     lines = ["## How it was measured", "",
-             "Times are medians; where a second pair of numbers or a bar is given, it is the fastest and the slowest run. "
-             "*Whole call* is from points in host memory to triangles in host memory. *On the device* is from points on "
-             "the device to the mesh on the device: the sum of the phases but upload and copy. The two are never mixed: "
-             "solid lines and bars are whole calls, dashed lines and diamonds are on the device.", ""]
+             "Times are medians; a second pair of numbers, or a bar, is the fastest and the slowest run. "
+             "*Whole call* is from points in host memory to triangles in host memory. *On the device* is from points "
+             "on the device to the mesh on the device: the sum of the phases but upload and copy. The two are never "
+             "mixed: solid lines and bars are whole calls, dashed lines and diamonds are on the device.", ""]
     lines += bullets(f"{plural(warmups, 'warm-up')}, then {plural(number, 'run')}: {listed(list(dict.fromkeys(found)))}"
                      for (warmups, number), found in sorted(runs.items(), key=lambda item: -len(item[1])))
     return lines
@@ -75,7 +75,8 @@ def left_out(machines: Sequence[Machine], experiment: str) -> list[str]:
         columns = ("who", "device", "distribution", "block", "detail", "skipped")
         for (who, device, distribution, block, detail, reason), rows in group(m.skipped(experiment), *columns).items():
             points = [count(row.number("points")) for row in rows if row.number("points") is not None]
-            what = [f"{m.name}: {Contestant(m.name, who, device).name()}", distribution, f"block {block}" if block else "",
+            what = [f"{m.name}: {Contestant(m.name, who, device).name()}", distribution,
+                    f"block {block}" if block else "",
                     f"{detail}" if detail and len({r.text('detail') for r in m.skipped(experiment)}) > 1 else "",
                     f"{listed(points)} points" if points else ""]
             lines.append(f"{', '.join(filter(None, what))}: {reason}")
@@ -96,7 +97,7 @@ def hash_check(rows: Sequence[Row], several: bool) -> tuple[dict[tuple[str, str]
                   for row in of]
         verdicts[case] = "**DIFFERENT**"
         rest = f", the {len(found[usual])} others {usual}" if clear else ""
-        bad.append(f"**DIFFERENT MESHES: {case[0]}, {count(float(case[1]))} points: {listed(others)}{rest}.**")
+        bad.append(f"**DIFFERENT MESHES: {case[0]}, {count(to_number(case[1]))} points: {listed(others)}{rest}.**")
     if not verdicts:
         return {}, ["No row has a hash, so meshes cannot be compared.", ""]
     if bad:

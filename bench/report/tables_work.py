@@ -4,8 +4,8 @@ devices."""
 from collections.abc import Sequence
 
 from meshes import Bunny, Snapshots, chosen_steps
-from rows import (FLIP_BINS, MODES, Machine, Row, by_points, each, group, per_device, per_point, pick, rank,
-                  ratio, sizes_of)
+from rows import (DETAILS, FLIP_BINS, MODES, Machine, Row, by_points, each, group, per_device, per_point, pick, rank,
+                  ratio, sizes_of, to_number)
 from tables import hash_check, named
 from words import NONE, bullets, count, number, percent, spread, table
 
@@ -26,9 +26,10 @@ def breakdown(machines: Sequence[Machine], paper: dict) -> list[str]:
             lines += [f"### {title}", "", *table(["device", "distribution", "points", *names], body, left=2)]
         for row in rows if column == "thread_time" else []:
             shares = row.pairs(column)
-            sentences += [f"{named(row, several)}, {row.text('distribution')}: {percent(shares[name])} of the threads' time "
-                          f"goes into {name}; the paper: {percent(share, 0)} for {theirs['distribution']} points "
-                          f"({theirs['where']})." for name, share in theirs["shares"].items() if name in shares]
+            sentences += [f"{named(row, several)}, {row.text('distribution')}: {percent(shares[name])} of the threads' "
+                          f"time goes into {name}; the paper: {percent(share, 0)} ({theirs['where']})."
+                          for name, share in theirs["shares"].items()
+                          if name in shares and row.text("distribution") == theirs["distribution"]]
     return bullets(sentences) + lines
 
 
@@ -43,10 +44,10 @@ def snapshots(machine: Machine, found: Snapshots, paper: dict) -> list[str]:
         points = len(found.points)
         most = max(map(len, found.steps.values()))
         shown = dict(zip("abcd", (len(found.steps[step]) for step in steps)))
-        same = f"({theirs['panel']}) has {count(shown[theirs['panel']])} live triangles, " if theirs["panel"] in shown else ""
-        lines += bullets([f"{machine.name}: {same}no step more than {count(most)}; a triangulation of {count(points)} points "
-                          f"has at most 2·{points} − 5 = {count(2 * points - 5)}. The paper shows "
-                          f"{count(theirs['live_triangles'])} of {count(theirs['points'])} points in its "
+        same = theirs["panel"] in shown and f"({theirs['panel']}) has {count(shown[theirs['panel']])} live triangles, "
+        lines += bullets([f"{machine.name}: {same or ''}no step more than {count(most)}; a triangulation of "
+                          f"{count(points)} points has at most 2·{points} − 5 = {count(2 * points - 5)}. The paper "
+                          f"shows {count(theirs['live_triangles'])} of {count(theirs['points'])} points in its "
                           f"({theirs['panel']}), as it counts those that are gone by then ({theirs['where']})."])
     return lines
 
@@ -84,14 +85,16 @@ def flips(machines: Sequence[Machine], paper: dict) -> list[str]:
             sentences += flip_sentences(named(row, several), row, off, threshold, theirs)
     head = ["device", "distribution", "mode", "points", "R", "edges", "0 flips", "above R", "share", "most flips",
             "reduction (Eq. 9)", "stabilised", "illegal edges", "share", "differing triangles", "share"]
-    lines = table(head, body + [paper_flip_line(p, mode) for p in paper["flips"] for mode in ("off", "paper")] if body else [],
+    lines = table(head, body + [paper_flip_line(p, mode) for p in paper["flips"] for mode in ("off", "paper")] if body
+                  else [],
                   left=3)
     return lines + bullets(sentences)
 
 
 def grouped_flips(rows: Sequence[Row]) -> dict[tuple[str, ...], list[Row]]:
     return {(machine, *key): of for machine in dict.fromkeys(row.machine for row in rows)
-            for key, of in group([r for r in rows if r.machine == machine], "who", "device", "distribution", "points").items()}
+            for key, of in group([r for r in rows if r.machine == machine], "who", "device", "distribution",
+                                 "points").items()}
 
 
 def flip_line(name: str, row: Row, off: Row | None, threshold: int | None) -> list[str]:
@@ -107,7 +110,8 @@ def flip_line(name: str, row: Row, off: Row | None, threshold: int | None) -> li
 
 def paper_flip_line(theirs: dict, mode: str) -> list[str]:
     off = mode == "off"
-    return [f"paper, {theirs['figure']}", theirs["distribution"], mode, count(theirs["points"]), count(theirs["threshold"]),
+    return [f"paper, {theirs['figure']}", theirs["distribution"], mode, count(theirs["points"]),
+            count(theirs["threshold"]),
             NONE, percent(theirs["unflipped_share"], 0) if off else NONE,
             count(theirs["over_off" if off else "over_stabilized"]), percent(theirs["over_share"]) if off else NONE,
             count(theirs["longest_off" if off else "longest_stabilized"]),
@@ -126,9 +130,10 @@ def flip_sentences(name: str, row: Row, off: Row | None, threshold: int | None, 
             says += f", {percent(above, 2)} more than {threshold} times (paper: {percent(theirs['over_share'])})"
         return [f"{where}: {says}."]
     less = reduction(over_threshold(off.flips(), threshold) if off else None, over_threshold(counts, threshold))
-    return [] if less is None else [f"{where}: {row.text('stabilize')} has {percent(less)} fewer edges flipped more than "
-                                    f"{threshold} times (Eq. 9); the paper: {percent(theirs['reduction'], 0)} "
-                                    f"({theirs['where']})."]
+    if less is None:
+        return []
+    return [f"{where}: mode {row.text('stabilize')} has {percent(less)} fewer edges flipped more than {threshold} "
+            f"times (Eq. 9); the paper: {percent(theirs['reduction'], 0)} ({theirs['where']})."]
 
 
 def bunny(machines: Sequence[Machine], sets: dict[str, list[Bunny]], paper: dict) -> list[str]:
@@ -143,11 +148,12 @@ def bunny(machines: Sequence[Machine], sets: dict[str, list[Bunny]], paper: dict
         for one in drawn.values():
             differing, total = len(one.differing()), len(one.paper.triangles)
             sentences.append(f"{machine.name}, {one.name}: {differing:,} of {total:,} triangles differ in the picture "
-                             f"({percent(differing / total, 2)}); the paper: {theirs['differing']} of {theirs['triangles']} "
-                             f"({percent(theirs['differing'] / theirs['triangles'], 2)}) for {theirs['points'][0]} points, "
-                             f"and less than {percent(theirs['differing_share_bound'])} in all experiments "
-                             f"({theirs['where']}).")
-    head = ["device", "set", "mode", "points", "whole call, ms", "triangles", "illegal edges", "differing triangles", "share"]
+                             f"({percent(differing / total, 2)}); the paper: {theirs['differing']} of "
+                             f"{theirs['triangles']} ({percent(theirs['differing'] / theirs['triangles'], 2)}) for "
+                             f"{theirs['points'][0]} points, and less than "
+                             f"{percent(theirs['differing_share_bound'])} in all experiments ({theirs['where']}).")
+    head = ["device", "set", "mode", "points", "whole call, ms", "triangles", "illegal edges", "differing triangles",
+            "share"]
     return table(head, body, left=3) + bullets(sentences)
 
 
@@ -157,7 +163,8 @@ def statistics(machines: Sequence[Machine], paper: dict) -> list[str]:
         name = f"{machine.name}: {who.name()}" if several else who.name()
         size = max(sizes_of(row for row in rows if row.text("detail") == "none"), default=None)
         base = pick(rows, detail="none", points=size) if size else None
-        costs += [cost_line(name, row, base) for row in rows if base and row.whole("points") == size]
+        of_size = sorted((r for r in rows if r.whole("points") == size), key=lambda r: rank(r.text("detail"), DETAILS))
+        costs += [cost_line(name, row, base) for row in of_size if base]
         for row in by_points(r for r in rows if r.text("detail") in ("counters", "")):
             counted.append([name, count(row.number("points")), *(number(per_point(row, c)) for c in COUNTED),
                             percent(ratio(row.number("lost_claims"), row.number("claims")), 2)])
@@ -189,8 +196,9 @@ def devices(machines: Sequence[Machine], paper: dict) -> list[str]:
                  percent(ratio(row.number("lost_claims"), row.number("claims")), 2),
                  *(number(per_point(row, c)) for c in ("insert_retries", "deferred_points", "deferred_edges", "flips")),
                  row.text("certified") or NONE] for row in of]
-        lines += [f"### {distribution}, {count(float(points or 0))} points: meshes "
+        lines += [f"### {distribution}, {count(to_number(points))} points: meshes "
                   f"{verdicts.get((distribution, points), 'without hash')}", "",
-                  *table(["device", "whole call, ms", "on the device, ms", "hash", "lost of all claims", "retries a point",
+                  *table(["device", "whole call, ms", "on the device, ms", "hash", "lost of all claims",
+                          "retries a point",
                           "deferred points a point", "deferred edges a point", "flips a point", "certified"], body)]
     return lines

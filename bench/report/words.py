@@ -26,13 +26,17 @@ def percent(share: float | None, digits: int = 1, sign: bool = False) -> str:
     if share is None:
         return NONE
     value = 100 * share
+    if value == 0:
+        return "0 %"
     if 0 < abs(value) < 10 ** -digits:
         return f"{value:{'+' if sign else ''}.2g} %"
     return f"{value:{'+' if sign else ''}.{digits}f} %"
 
 
 def times(value: float | None) -> str:
-    return NONE if value is None else f"×{significant(value)}"
+    if value is None:
+        return NONE
+    return f"×{value}" if isinstance(value, int) else f"×{significant(value)}"
 
 
 def spread(low: float | None, middle: float | None, high: float | None) -> str:
@@ -42,8 +46,10 @@ def spread(low: float | None, middle: float | None, high: float | None) -> str:
     return number(middle) if low is None or high is None else f"{number(middle)} ({number(low)} to {number(high)})"
 
 
-def short(value: float) -> str:
+def short(value: float | None) -> str:
     """A number of points where there is little room: 8192, 131k, 1M, 33.6M. Round numbers stay as they are."""
+    if value is None:
+        return NONE
     for size, letter in ((1e6, "M"), (1e3, "k")):
         if value >= size and value >= 1e4:
             return f"{value / size:.3g}{letter}"

@@ -5,6 +5,7 @@ its figures without measuring.
 usage: synthetic.py DIR      writes DIR/one and DIR/two
 """
 import csv
+import hashlib
 import json
 import math
 import random
@@ -12,9 +13,9 @@ import sys
 from pathlib import Path
 
 COUNTERS = ("launches walk_steps claims lost_claims invalid_restarts insert_retries stale_edges deferred_points "
-            "deferred_edges splits edge_splits flips incircle_tests orientation_tests exact_orientations exact_incircles "
-            "ties closing_sweeps closing_repairs certified_edges stabilized_edges illegal_edges refined_points "
-            "bytes_device_peak").split()
+            "deferred_edges splits edge_splits flips incircle_tests orientation_tests exact_orientations "
+            "exact_incircles ties closing_sweeps closing_repairs certified_edges stabilized_edges illegal_edges "
+            "refined_points bytes_device_peak").split()
 COLUMNS = ("experiment distribution points who backend device threads block stabilize threshold epsilon detail warmups "
            "runs median_ms min_ms max_ms device_ms triangles hash occupancy differing_triangles".split() + COUNTERS +
            ["certified"] + [f"flips_{k}" for k in range(16)] + ["phases", "thread_time", "skipped"])
@@ -53,9 +54,10 @@ class Writer:
         else:
             on_device = time * (1 - copied)
             row.update(median_ms=time, min_ms=time * self.random.uniform(0.93, 0.99), triangles=2 * points - 60,
-                       max_ms=time * self.random.uniform(1.01, 1.12), hash=f"{hash_of(distribution, points):032x}")
+                       max_ms=time * self.random.uniform(1.01, 1.12), hash=hash_of(distribution, points))
             if who in self.devices:
-                row.update(device_ms=on_device, certified=1, phases=phases(on_device, time), **counters(points, distribution))
+                row.update(device_ms=on_device, certified=1, phases=phases(on_device, time),
+                           **counters(points, distribution))
         row.update(cells)
         self.rows.setdefault(experiment, []).append(row)
         return row
@@ -70,7 +72,8 @@ class Writer:
                 writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
                 writer.writeheader()
                 writer.writerows(rows)
-        peers = [{"name": who, "version": "1.0", "usable": True, "reason": ""} for who in ("sequential", "cgal", "scipy")]
+        peers = [{"name": who, "version": "1.0", "usable": True, "reason": ""}
+                 for who in ("sequential", "cgal", "scipy")]
         peers.append({"name": "cupy", "version": "", "usable": self.slower == 1,
                       "reason": "" if self.slower == 1 else "not installed: no module named cupy"})
         devices = [{"backend": who, "index": index, "usable": True, "reason": "", "platform": who, "name": device,
@@ -79,19 +82,21 @@ class Writer:
         if "cuda" not in self.devices:
             devices.append({"backend": "cuda", "index": -1, "usable": False, "reason": "no CUDA driver is installed",
                             "platform": "", "name": "", "driver": "", "gpu": False})
-        machine = {"schema": 1, "name": self.name, "cpu": "Example Processor 9000", "cores": 16, "memory_bytes": 64 << 30,
+        machine = {"schema": 1, "name": self.name, "cpu": "Example Processor 9000", "cores": 16,
+                   "memory_bytes": 64 << 30,
                    "os": "Example Linux 12", "compiler": "GCC 12.2.0", "cadt": "0.1.0",
                    "commit": "0123456789abcdef0123456789abcdef01234567", "date": "2030-01-02T03:04:05Z",
                    "devices": devices, "peers": peers}
         (self.folder / "machine.json").write_text(json.dumps(machine, indent=1), encoding="utf-8")
 
 
-def hash_of(distribution: str, points: int) -> int:
-    return sum(ord(c) * 257 ** k for k, c in enumerate(f"{distribution}{points}")) % (1 << 128)
+def hash_of(distribution: str, points: int) -> str:
+    return hashlib.sha256(f"{distribution} {points}".encode()).hexdigest()[:32]
 
 
 def phases(on_device: float, whole: float) -> str:
-    shares = {"bounds": 0.01, "sort": 0.12, "refine": 0.02, "gather": 0.05, "start": 0.01, "insert": 0.64, "certify": 0.08,
+    shares = {"bounds": 0.01, "sort": 0.12, "refine": 0.02, "gather": 0.05, "start": 0.01, "insert": 0.64,
+              "certify": 0.08,
               "collect": 0.07}
     parts = {"upload": (whole - on_device) * 0.4, **{k: v * on_device for k, v in shares.items()},
              "copy": (whole - on_device) * 0.6}
@@ -100,10 +105,13 @@ def phases(on_device: float, whole: float) -> str:
 
 def counters(points: int, distribution: str) -> dict:
     crowded = 0.3 * points ** 0.75 * HARDER.get(distribution, 1)
-    return {"launches": 20 + int(math.log2(points)), "walk_steps": int(4.2 * points), "claims": int(4 * points + 3 * crowded),
+    return {"launches": 20 + int(math.log2(points)), "walk_steps": int(4.2 * points),
+            "claims": int(4 * points + 3 * crowded),
             "lost_claims": int(3 * crowded), "invalid_restarts": int(crowded), "insert_retries": int(1.5 * crowded),
-            "stale_edges": int(2 * crowded), "deferred_points": int(0.4 * crowded), "deferred_edges": int(0.2 * crowded),
-            "splits": points - 3, "flips": int(2.96 * points), "incircle_tests": 9 * points, "certified_edges": 3 * points,
+            "stale_edges": int(2 * crowded), "deferred_points": int(0.4 * crowded),
+            "deferred_edges": int(0.2 * crowded),
+            "splits": points - 3, "flips": int(2.96 * points), "incircle_tests": 9 * points,
+            "certified_edges": 3 * points,
             "stabilized_edges": 0, "illegal_edges": 0, "bytes_device_peak": 120 * points}
 
 
@@ -111,13 +119,15 @@ def stabilized(points: int, mode: str, threshold: int) -> dict:
     """Flips an edge, and what a mode leaves illegal."""
     never, decay = FLIPS[mode]
     edges, harder = 3 * points - 60, 1 if mode == "off" else 0.7 + 0.03 * threshold
-    counts = [int(edges * never)] + [int(edges * (1 - never) * (1 - decay * harder) * (decay * harder) ** k) for k in range(15)]
+    counts = [int(edges * never)] + [int(edges * (1 - never) * (1 - decay * harder) * (decay * harder) ** k)
+                                     for k in range(15)]
     if mode != "off":
         counts[threshold + 1:] = [value // 3 for value in counts[threshold + 1:]]
     counts[1] += edges - sum(counts)
     bad = edges * 8e-4 / threshold if mode == "paper" else 0
     return {"stabilize": mode, "threshold": "" if mode == "off" else threshold, "illegal_edges": int(bad),
-            "stabilized_edges": 0 if mode == "off" else int(edges * 0.01 / threshold), "certified": int(mode != "paper"),
+            "stabilized_edges": 0 if mode == "off" else int(edges * 0.01 / threshold),
+            "certified": int(mode != "paper"),
             "differing_triangles": int(1.7 * bad), **{f"flips_{k}": value for k, value in enumerate(counts)}}
 
 
@@ -199,11 +209,13 @@ def kernels(writer: Writer) -> None:
         for points in (8192, 131072, 1 << 20, 1 << 23):
             for block in (32, 64, 128, 256, 512, 1024):
                 if block == 1024 and who == "opencl":
-                    writer.row("blocks", who, device, points, block=block, median_ms="", skipped="does not start with 1024 "
+                    writer.row("blocks", who, device, points, block=block, median_ms="",
+                               skipped="does not start with 1024 "
                                "threads")
                     continue
                 used = {32: 0.5, 64: 0.75, 128: 0.75, 256: 0.75, 512: 0.75, 1024: 0.5}[block] if who == "cuda" else ""
-                writer.row("blocks", who, device, points, 1 + 0.05 * abs(math.log2(block / 128)), block=block, occupancy=used)
+                writer.row("blocks", who, device, points, 1 + 0.05 * abs(math.log2(block / 128)), block=block,
+                           occupancy=used)
         for name, points in (("uniform", 100_000), ("circles", 1_000_000)):
             for mode in ("off", "defer", "paper"):
                 writer.row("flips", who, device, points, distribution=name, **stabilized(points, mode, 3))
@@ -214,7 +226,8 @@ def kernels(writer: Writer) -> None:
                                **stabilized(points, mode, threshold))
 
 
-def write_machine(folder: Path, name: str = "one", devices: dict[str, list[str]] | None = None, slower: float = 1) -> Writer:
+def write_machine(folder: Path, name: str = "one", devices: dict[str, list[str]] | None = None,
+                  slower: float = 1) -> Writer:
     """A whole folder. The rows may be changed afterwards, and written again."""
     writer = Writer(Path(folder), name, devices or {"host": ["Example Processor 9000"], "opencl": ["Example Card 1"],
                                                     "cuda": ["Example Card 1"]}, slower)

@@ -173,14 +173,15 @@ def devices(machines: Sequence[Machine], paper: dict) -> Figure | None:
     cases = [case for case in group(rows, "distribution", "points") if case[1]]
     if not cases:
         return None
-    everybody = list(contestants(rows))
+    everybody = [who for m in machines for who in contestants(m.rows("devices"))]
+    machine_rows = {m.name: m.rows("devices") for m in machines}
     look = {who: one for m in machines for who, one in styles(m.rows("devices")).items()}
     columns = min(3, len(sizes_of(rows)))
     page = Page("Every device, whole call and on the device", [m for m in machines if m.rows("devices")],
                 -(-len(cases) // columns), columns, 0.42 * len(everybody) + 1.3, sharey=True)
     for axes, (distribution, points) in zip(page.panels(len(cases)), cases):
         for at, who in enumerate(everybody):
-            chosen = [r for r in contestants(rows)[who]
+            chosen = [r for r in contestants(machine_rows[who.machine])[who]
                       if (r.text("distribution"), r.text("points")) == (distribution, points)]
             for row in chosen[:1]:
                 device_bar(axes, at, row, look[who])

@@ -153,8 +153,10 @@ def thresholds(machines: Sequence[Machine], paper: dict) -> Figure | None:
                            f"{'whole call' if whole else 'on the device'}", fontsize=10)
         for unused in panels[len(cases):]:
             unused.remove()
-        panels[0].annotate(heading(machine, who, machines), (0, 1), xycoords="axes fraction", xytext=(-30, 36),
-                           textcoords="offset points", weight="bold", fontsize=10)
+        # The layout makes room for a letter that is not seen: the name itself is wider than a panel and would widen it.
+        for text, more in ((heading(machine, who, machines), {"in_layout": False}), ("X", {"alpha": 0})):
+            panels[0].annotate(text, (0, 1), xycoords="axes fraction", xytext=(-30, 36), textcoords="offset points",
+                               weight="bold", fontsize=10, **more)
     page.legend(style.line(f"R of the paper ({paper['thresholds']['threshold']})", color="#E69F00", lw=6, alpha=0.25))
     return page.finish()
 

@@ -113,7 +113,7 @@ def histogram(axes: Axes, page: Page, rows: Sequence[Row]) -> None:
         if row.whole("threshold") is not None and mode != "off":
             axes.axvline(row.whole("threshold") + 0.5, color=style.GREY, ls="--", lw=1.1)
             page.legend(style.line("R: flips above it are counted by Eq. 9", color=style.GREY, ls="--", lw=1.1))
-    axes.set_yscale("log")
+    style.log_y(axes, "")
     axes.tick_params(labelleft=True)
     style.ticks(axes, range(FLIP_BINS), [*map(str, range(FLIP_BINS - 1)), f"{FLIP_BINS - 1}+"],
                 fontsize=9.5)

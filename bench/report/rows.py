@@ -171,9 +171,13 @@ def rank(name: str, order: tuple[str, ...]) -> tuple[int, str]:
 def contestants(rows: list[Row]) -> dict[Contestant, list[Row]]:
     """Rows by contestant. What tells two runs of one device apart (mode, detail) is part of its name if it varies."""
     varying = [c for c in ("stabilize", "detail") if len({row.text(c) for row in rows if row.text("who") in CADT}) > 1]
+    threads = {row.text("threads") for row in rows if row.text("who") == "host"}
     groups: dict[Contestant, list[Row]] = {}
     for row in rows:
         variant = ", ".join(row.text(c) for c in varying if row.text(c) and row.text("who") in CADT)
+        if row.text("who") == "host" and len(threads) > 1:
+            one = row.text("threads") == "1"
+            variant = ", ".join(filter(None, [variant, f"{row.text('threads')} thread{'s' * (not one)}"]))
         key = Contestant(row.machine, row.text("who"), row.text("device"), variant)
         groups.setdefault(key, []).append(row)
     return dict(sorted(groups.items(), key=lambda item: (rank(item[0].who, CONTESTANTS), item[0].device,
@@ -202,6 +206,11 @@ def pick(rows: Iterable[Row], **wanted: object) -> Row | None:
         if all((row.whole(c) if isinstance(v, int) else row.text(c)) == v for c, v in wanted.items()):
             return row
     return None
+
+
+def like(points: float | None, wanted: float) -> bool:
+    """About as many: some distributions are made in whole circles, and come out a little larger than asked for."""
+    return points is not None and abs(points - wanted) <= 0.05 * wanted
 
 
 def ratio(above: float | None, below: float | None) -> float | None:

@@ -24,8 +24,9 @@ matplotlib.rcParams.update({
     "lines.linewidth": 1.8, "lines.markersize": 5, "figure.facecolor": "white", "svg.hashsalt": "cadt",
     "text.parse_math": False})
 
-# Okabe and Ito's palette, told apart by all; their yellow is too light for lines on white.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8c8c8c", "#7f4f24", "#5e3c99", "#000000")
+# Okabe and Ito's palette, told apart by all; lines have the first ten, as their yellow is too light on white.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8c8c8c", "#7f4f24", "#5e3c99",
+           "#000000", "#F0E442", "#004d40", "#c3b1e1")
 GREY = "#777777"
 OF_WHO = {"sequential": "#000000", "cgal": "#E69F00", "scipy": "#CC79A7", "cupy": "#56B4E9", "host": "#009E73",
           "opencl": "#0072B2", "cuda": "#D55E00"}
@@ -148,7 +149,7 @@ def log_y(axes: Axes, label: str) -> None:
     """A logarithmic axis with plain numbers; between the powers of ten where there are few of them."""
     axes.set_yscale("log")
     low, high = axes.get_ylim()
-    if high / low < 30:
+    if high < 30 * low:
         axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: plain(value)))
     axes.yaxis.set_minor_formatter(NullFormatter())

@@ -77,7 +77,7 @@ def left_out(machines: Sequence[Machine], experiment: str) -> list[str]:
             points = [count(row.number("points")) for row in rows if row.number("points") is not None]
             what = [f"{m.name}: {Contestant(m.name, who, device).name()}", distribution,
                     f"block {block}" if block else "",
-                    f"{detail}" if detail and len({r.text('detail') for r in m.skipped(experiment)}) > 1 else "",
+                    f"{detail}" if detail and len({r.text('detail') for r in m.skipped(experiment)} - {''}) > 1 else "",
                     f"{listed(points)} points" if points else ""]
             lines.append(f"{', '.join(filter(None, what))}: {reason}")
     return ["Not measured:", "", *bullets(lines)] if lines else []

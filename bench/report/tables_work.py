@@ -4,8 +4,8 @@ devices."""
 from collections.abc import Sequence
 
 from meshes import Bunny, Snapshots, chosen_steps
-from rows import (DETAILS, FLIP_BINS, MODES, Machine, Row, by_points, each, group, per_device, per_point, pick, rank,
-                  ratio, sizes_of, to_number)
+from rows import (DETAILS, FLIP_BINS, MODES, Machine, Row, by_points, each, group, like, per_device, per_point, pick,
+                  rank, ratio, sizes_of, to_number)
 from tables import hash_check, named
 from words import NONE, bullets, count, number, percent, spread, table
 
@@ -74,7 +74,7 @@ def flips(machines: Sequence[Machine], paper: dict) -> list[str]:
     rows = [row for row in each(machines, lambda m: m.rows("flips")) if row.flips()]
     for (machine, who, device, distribution, points), of in grouped_flips(rows).items():
         theirs = next((p for p in paper["flips"] if p["distribution"] == distribution
-                       and p["points"] == of[0].whole("points")), None)
+                       and like(of[0].number("points"), p["points"])), None)
         off = pick(of, stabilize="off")
         common = next((r.whole("threshold") for r in of if r.text("stabilize") != "off"
                        and r.whole("threshold") is not None), theirs["threshold"] if theirs else None)

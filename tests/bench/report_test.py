@@ -120,6 +120,13 @@ class TwoMachines(unittest.TestCase):
         self.assertIn(words.times(cgal["median_ms"] / row["median_ms"]), line)
         self.assertTrue(line.endswith("| ×7.40 | ×27.4 |"), line)
 
+    def test_one_thread_and_all_are_two(self):
+        rows = [r for r in self.one.rows["sizes"] if r["who"] == "host" and r["points"] == 65536]
+        times = [words.number(row["median_ms"]) for row in rows]
+        text = section(self.text, TITLES[0])
+        self.assertIn("| host (Example Processor 9000, 1 thread) | host (Example Processor 9000, 16 threads) |", text)
+        self.assertRegex(text, rf"\n\| 65,536 \|.* {times[1]} \([\d.]+\) \| {times[0]} \([\d.]+\) \|")
+
     def test_machines_stand_side_by_side(self):
         for title in (TITLES[1], TITLES[3], TITLES[5], TITLES[10]):
             self.assertIn("| one: cuda (Example Card 1) |", section(self.text, title))
@@ -137,6 +144,7 @@ class TwoMachines(unittest.TestCase):
 
     def test_the_paper_stands_beside(self):
         for text, title in (("the paper: 35 %", 2), ("4,263", 4), ("78 %", 5), ("38,961", 5), ("66 %", 5), ("74 %", 5),
+                            ("the paper: 74 % (Fig. 10 and section 5.4)", 5),
                             ("the paper: -17 %", 6), ("| 269 | 0.870 |", 7), ("3 of 945 (0.32 %)", 8), ("79 %", 1)):
             self.assertIn(text, section(self.text, TITLES[title]))
 

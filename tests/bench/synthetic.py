@@ -182,6 +182,8 @@ def times(writer: Writer) -> None:
             writer.row("sizes", who, "", points)
         for who, device in writer.everyone():
             writer.row("sizes", who, device, points)
+            if who == "host" and points <= 1 << 20:
+                writer.row("sizes", who, device, points, 11, threads=1)
     for who, device in writer.everyone():
         for name, factor in HARDER.items():
             for points in (1 << 16, 1 << 20, 1 << 23):
@@ -216,7 +218,7 @@ def kernels(writer: Writer) -> None:
                 used = {32: 0.5, 64: 0.75, 128: 0.75, 256: 0.75, 512: 0.75, 1024: 0.5}[block] if who == "cuda" else ""
                 writer.row("blocks", who, device, points, 1 + 0.05 * abs(math.log2(block / 128)), block=block,
                            occupancy=used)
-        for name, points in (("uniform", 100_000), ("circles", 1_000_000)):
+        for name, points in (("uniform", 100_000), ("circles", 1_002_528)):  # whole circles
             for mode in ("off", "defer", "paper"):
                 writer.row("flips", who, device, points, distribution=name, **stabilized(points, mode, 3))
             writer.row("thresholds", who, device, points, distribution=name, **stabilized(points, "off", 3))

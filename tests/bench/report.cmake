@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
+# The report of the benchmarks, from made-up measurements. Debian's matplotlib is that of /usr/bin/python3, which need
+# not be the interpreter that CMake found; without any the test is skipped and says so.
+set(report_python ${Python3_EXECUTABLE})
+foreach(candidate IN ITEMS ${Python3_EXECUTABLE} /usr/bin/python3)
+  execute_process(COMMAND ${candidate} -c "import matplotlib" RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+  if(failed EQUAL 0)
+    set(report_python ${candidate})
+    break()
+  endif()
+endforeach()
+add_test(NAME bench.report COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1
+  ${report_python} ${CMAKE_CURRENT_LIST_DIR}/report_test.py -v)
+set_tests_properties(bench.report PROPERTIES LABELS bench TIMEOUT 900 SKIP_RETURN_CODE 77)

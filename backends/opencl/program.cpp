@@ -114,12 +114,7 @@ std::string build_options(const FoundDevice& device, const AtomicsPath& atomics,
   if (build == KernelBuild::timed) options += " -DCADT_TIMED=1";
   options += device.info.gpu ? " -DCADT_CONTIGUOUS=0 -DCADT_RADIX_BITS=4" : " -DCADT_CONTIGUOUS=1 -DCADT_RADIX_BITS=8";
   // cadt_insert takes 118 registers if it may; with 96 more work-items fit in, which is faster (measured with CUDA).
-  if (device.info.platform == "NVIDIA CUDA") {
-    options += " -cl-nv-maxrregcount=96";
-    cl_uint major = 0;
-    if (device.device.getInfo(CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV, &major) == CL_SUCCESS && major >= 8)
-      options += " -DCADT_NV_REDUX=1";
-  }
+  if (device.info.platform == "NVIDIA CUDA") options += " -cl-nv-maxrregcount=96";
   if (!extra.empty()) options += " " + extra;
   return options;
 }

@@ -161,23 +161,18 @@ CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
 
 #endif
 
-/* Adds to one of the counters, which lanes of a warp share. One addition for all of them where the language can: memory
- * takes those of one address one after another, and the counters of an insertion of 10M points would cost 3 % (H200).
+/* ---- memory of a group: additions that any lane makes when it comes to it, and in what order they are seen
+ * -----------
  */
-CADT_FN void cadt_add_together(CADT_GLOBAL cadt_u32* p, cadt_u32 value) {
-#if defined(CADT_LANG_CUDA) && defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
-  const cadt_u32 lanes = __activemask(), sum = __reduce_add_sync(lanes, value);
-  if (sum && threadIdx.x % 32u == CADT_CAST(cadt_u32, __ffs(CADT_CAST(int, lanes)) - 1)) cadt_add_relaxed(p, sum);
-#elif defined(CADT_LANG_OPENCL) && CADT_NV_REDUX
-  cadt_u32 lanes, lane, sum;
-  asm volatile("activemask.b32 %0;" : "=r"(lanes));
-  asm volatile("mov.u32 %0, %%laneid;" : "=r"(lane));
-  asm volatile("redux.sync.add.u32 %0, %1, %2;" : "=r"(sum) : "r"(value), "r"(lanes));
-  if (sum && lane == (cadt_u32)(31 - clz(lanes & (0u - lanes)))) cadt_add_relaxed(p, sum);
-#else
-  if (value) cadt_add_relaxed(p, value);
-#endif
+#if CADT_GROUP_SUMS && defined(CADT_LANG_OPENCL)
+CADT_FN cadt_u32 cadt_add_local(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
+  return atomic_add((volatile CADT_LOCAL_PTR cadt_u32*)p, value);
 }
+CADT_FN void cadt_fence_local(void) { mem_fence(CLK_LOCAL_MEM_FENCE); }
+#elif CADT_GROUP_SUMS
+CADT_FN cadt_u32 cadt_add_local(cadt_u32* p, cadt_u32 value) { return atomicAdd(p, value); }
+CADT_FN void cadt_fence_local() { __threadfence_block(); }
+#endif
 
 /* ---- the two disciplines of the records' fields and locks ----------------------------------------------------------
  */

@@ -15,10 +15,9 @@
 CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* found, CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts,
             cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counters) {
+  CADT_GROUP_TALLY(tally, counters);
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
-  cadt_tally tally;
-  cadt_tally_clear(&tally);
 #if CADT_CONTIGUOUS
   cadt_worklist work;
 #endif
@@ -54,12 +53,11 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
       }
     }
   }
-  cadt_converge();
-  cadt_add_together(found, examined);
+  if (examined) cadt_add_relaxed(found, examined);
   if (illegal) cadt_add_relaxed(found + 1, illegal);
   if (unsettled) cadt_add_relaxed(found + 2, unsettled);
   if (left) cadt_add_relaxed(found + 3, left);
-  cadt_tally_flush(&tally, counters, cadt_item);
+  CADT_FLUSH_TALLY(&tally, counters);
 }
 
 #endif

@@ -26,9 +26,9 @@ CADT_KERNEL(cadt_count_flips, CADT_GLOBAL const cadt_record* records, cadt_u32 s
     for (cadt_u32 k = 0u; k < 3u; ++k)
       if (ghost == 3u || ghost == k) bins[cadt_min_u32(cadt_flips_get(flips, k), CADT_FLIP_BINS - 1u)]++;
   }
-  cadt_converge();
   CADT_GLOBAL cadt_u32* row = cadt_counter_row(counters, cadt_item) + CADT_ROW_FLIPS;
-  for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin) cadt_add_together(row + bin, bins[bin]);
+  for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin)
+    if (bins[bin]) cadt_add_relaxed(row + bin, bins[bin]);
 }
 
 #endif

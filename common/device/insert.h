@@ -170,10 +170,9 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
             cadt_u32 count, cadt_u32 n, cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* left_points,
             CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counters) {
+  CADT_GROUP_TALLY(tally, counters);
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
-  cadt_tally tally;
-  cadt_tally_clear(&tally);
   cadt_worklist work;
   CADT_FOR_SPREAD(u, count, grain) {
     cadt_u32 i, near;
@@ -194,17 +193,16 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
       left_points[cadt_add_relaxed(left_counts, 1u)] = i;
   }
   if (listed == count) cadt_report_changes(&tally, left_counts);
-  cadt_tally_flush(&tally, counters, cadt_item);
+  CADT_FLUSH_TALLY(&tally, counters);
 }
 
 /* Edges that earlier launches left over. */
 CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counters) {
+  CADT_GROUP_TALLY(tally, counters);
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
-  cadt_tally tally;
-  cadt_tally_clear(&tally);
   cadt_worklist work;
   CADT_FOR_SPREAD(e, count, grain) {
     cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
@@ -212,7 +210,7 @@ CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u3
     cadt_legalize(&mesh, &work, &deferred, &tally);
   }
   cadt_report_changes(&tally, left_counts);
-  cadt_tally_flush(&tally, counters, cadt_item);
+  CADT_FLUSH_TALLY(&tally, counters);
 }
 
 #endif

@@ -7,7 +7,7 @@
  * A compile may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double),
  * CADT_CONTIGUOUS (1: a work-item takes neighbouring elements, right for CPUs; 0: strided, right for GPUs),
  * CADT_RADIX_BITS (digit of the radix sort), CADT_TIMED (1: threads take the time of what they do, tally.h),
- * CADT_NV_REDUX (NVIDIA's OpenCL on compute capability 8 and later: sums over a warp), CADT_TEST_NO_LOCKS (control of
+ * CADT_TEST_NO_LOCKS (control of
  * the tests: locks are not taken).
  */
 #ifndef CADT_DEVICE_LANG_H
@@ -18,9 +18,6 @@
 #endif
 #ifndef CADT_CONTIGUOUS
 #define CADT_CONTIGUOUS 1
-#endif
-#ifndef CADT_NV_REDUX
-#define CADT_NV_REDUX 0
 #endif
 #ifndef CADT_TIMED
 #define CADT_TIMED 0
@@ -57,6 +54,11 @@ typedef long cadt_i64;
 #define CADT_KERNEL(name, ...) __kernel void name(__VA_ARGS__)
 #define cadt_item ((cadt_u32)get_global_id(0))
 #define cadt_items ((cadt_u32)get_global_size(0))
+#define CADT_LOCAL __local
+#define CADT_LOCAL_PTR __local
+#define cadt_item_of_group ((cadt_u32)get_local_id(0))
+#define cadt_group_items ((cadt_u32)get_local_size(0))
+#define cadt_group_barrier() barrier(CLK_LOCAL_MEM_FENCE)
 #define CADT_CAST(type, value) ((type)(value))
 
 #define cadt_bits_of_double(x) as_ulong(x)
@@ -65,13 +67,6 @@ typedef long cadt_i64;
 #define cadt_fabs(x) fabs(x)
 #define cadt_ldexp(x, e) ldexp((x), (e))
 #define cadt_atan2(y, x) atan2((y), (x))
-
-/* Lanes of a warp that went separate ways go on together. Nothing waits here for anything but its own warp. */
-#if defined(__NV_CL_C_VERSION)
-CADT_FN void cadt_converge(void) { asm volatile("bar.warp.sync 0xffffffff;" ::: "memory"); }
-#else
-CADT_FN void cadt_converge(void) {}
-#endif
 
 /* A clock of the thread's processor, for differences; 0 where there is none. */
 #if defined(__NV_CL_C_VERSION)
@@ -100,6 +95,11 @@ typedef long long cadt_i64;
 #define CADT_KERNEL(name, ...) static __global__ void name(__VA_ARGS__)
 #define cadt_item ((cadt_u32)(blockIdx.x * blockDim.x + threadIdx.x))
 #define cadt_items ((cadt_u32)(gridDim.x * blockDim.x))
+#define CADT_LOCAL __shared__
+#define CADT_LOCAL_PTR
+#define cadt_item_of_group ((cadt_u32)threadIdx.x)
+#define cadt_group_items ((cadt_u32)blockDim.x)
+#define cadt_group_barrier() __syncthreads()
 #define CADT_CAST(type, value) ((type)(value))
 
 #define cadt_bits_of_double(x) ((cadt_u64)__double_as_longlong(x))
@@ -108,7 +108,6 @@ typedef long long cadt_i64;
 #define cadt_fabs(x) fabs(x)
 #define cadt_ldexp(x, e) ldexp((x), (e))
 #define cadt_atan2(y, x) atan2((y), (x))
-CADT_FN void cadt_converge() { __syncwarp(); }
 CADT_FN cadt_u64 cadt_clock() {
   cadt_u64 ticks;
   asm volatile("mov.u64 %0, %%clock64;" : "=l"(ticks)::"memory");
@@ -145,7 +144,6 @@ CADT_FN cadt_u64 cadt_mulhi_u64(cadt_u64 a, cadt_u64 b) {
 CADT_FN double cadt_fabs(double x) { return std::fabs(x); }
 CADT_FN double cadt_ldexp(double x, cadt_i32 e) { return std::ldexp(x, e); }
 CADT_FN double cadt_atan2(double y, double x) { return std::atan2(y, x); }
-CADT_FN void cadt_converge() {}
 CADT_FN cadt_u64 cadt_clock() {
 #if defined(__x86_64__)
   return __builtin_ia32_rdtsc();
@@ -154,6 +152,13 @@ CADT_FN cadt_u64 cadt_clock() {
 #endif
 }
 
+#endif
+
+/* Whether work-items of a group share memory to add up their counters (tally.h). */
+#if CADT_CONTIGUOUS || defined(CADT_LANG_HOST)
+#define CADT_GROUP_SUMS 0
+#else
+#define CADT_GROUP_SUMS 1
 #endif
 
 typedef struct {

@@ -63,8 +63,7 @@ enum {
   CADT_ROW_FLIPS = 32,
   CADT_FLIP_BINS = 16,
   CADT_COUNTER_STRIDE = 64, /* words a row, so rows do not share cache lines */
-  CADT_COUNTER_ROWS = 64,
-  CADT_ROW_SHIFT = 5 /* lanes of a warp use one row, so that they can add together */
+  CADT_COUNTER_ROWS = 64
 };
 
 /* cadt_mesh.stabilize (change.h) */

@@ -37,14 +37,14 @@ def opencl(root):
     if clang is None:
         return skip("no clang")
     # 64-bit SPIR is what the standard library of the front end knows; only the syntax and types are looked at.
-    variants = [["-cl-std=CL3.0", "-DCADT_CL_C11=1"], ["-cl-std=CL1.2", "-DCADT_WIDE=1", "-DCADT_CONTIGUOUS=0", "-DCADT_RADIX_BITS=4"]]
+    variants = [["-cl-std=CL3.0", "-DCADT_CL_C11=1"], ["-cl-std=CL3.0", "-DCADT_CL_C11=1", "-DCADT_TIMED=1"], ["-cl-std=CL1.2", "-DCADT_WIDE=1", "-DCADT_CONTIGUOUS=0", "-DCADT_RADIX_BITS=4"]]
     return max(run([clang, "-x", "cl", "-target", "spir64", "-fsyntax-only", "-Wall", "-Werror", "-Wno-unused-function",
                     "-Wno-gcc-compat", "-Xclang", "-finclude-default-header", "-I", str(root), *options, str(entry)])
                for options in variants)
 
 
 def cuda(root):
-    entries = [root / "kernels_cuda" / name for name in ("narrow.cu", "wide.cu")]
+    entries = [root / "kernels_cuda" / name for name in ("narrow.cu", "wide.cu", "timed.cu")]
     if shutil.which("nvcc") is not None:
         with tempfile.TemporaryDirectory() as folder:
             return max(run(["nvcc", "-std=c++17", "--fmad=false", "-arch=sm_80", "-I", str(root), "-c", str(entry),

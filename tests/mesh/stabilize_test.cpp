@@ -9,7 +9,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 namespace cadt::test {
@@ -41,11 +40,6 @@ std::vector<NamedSet> every_family() {
   for (const FamilyGroup& group : family_groups())
     for (const Family& family : group.families()) sets.push_back({family.name, family.make()});
   return sets;
-}
-
-std::uint64_t flipped_more_than(const Statistics& s, std::size_t threshold) {
-  return std::accumulate(s.flips_per_edge.begin() + static_cast<std::ptrdiff_t>(threshold) + 1, s.flips_per_edge.end(),
-                         std::uint64_t{0});
 }
 
 /// All that verify() checks but whether the edges are Delaunay's.
@@ -87,7 +81,6 @@ TEST_P(Stabilize, DeferDefers) {
   EXPECT_GT(deferred.statistics().closing_repairs, 1000u);
   EXPECT_GT(deferred.statistics().closing_sweeps, 1u);
   EXPECT_EQ(deferred.hash(), off.hash());
-  EXPECT_LT(flipped_more_than(deferred.statistics(), 3), flipped_more_than(off.statistics(), 3));
   // Nothing is left to do for a threshold that no edge reaches.
   options.flip_threshold = 1000;
   EXPECT_EQ(triangulate(Reals(xy), options).statistics().stabilized_edges, 0u);

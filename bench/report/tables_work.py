@@ -132,8 +132,9 @@ def flip_sentences(name: str, row: Row, off: Row | None, threshold: int | None, 
     less = reduction(over_threshold(off.flips(), threshold) if off else None, over_threshold(counts, threshold))
     if less is None:
         return []
-    return [f"{where}: mode {row.text('stabilize')} has {percent(less)} fewer edges flipped more than {threshold} "
-            f"times (Eq. 9); the paper: {percent(theirs['reduction'], 0)} ({theirs['where']})."]
+    word = "fewer" if less >= 0 else "more"
+    return [f"{where}: mode {row.text('stabilize')} has {percent(abs(less))} {word} edges flipped more than "
+            f"{threshold} times (Eq. 9); the paper: {percent(theirs['reduction'], 0)} ({theirs['where']})."]
 
 
 def bunny(machines: Sequence[Machine], sets: dict[str, list[Bunny]], paper: dict) -> list[str]:

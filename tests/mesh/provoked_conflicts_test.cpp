@@ -41,11 +41,11 @@ TEST_P(ProvokedConflicts, AreCountedAndDoNotShow) {
   const ExpectedMesh expected[] = {expected_mesh(sets[0]), expected_mesh(sets[1])};
   const char* variable = std::getenv("CADT_CONFLICT_RUNS");
   const int runs = variable != nullptr && std::atoi(variable) > 0 ? std::atoi(variable) : 200;
-  std::uint64_t lost = 0, retries = 0, deferred = 0;
+  std::uint64_t lost = 0, invalid = 0, retries = 0, deferred = 0;
   // On a busy machine threads hardly ever meet: then more runs are made, but not for ever.
   const auto start = std::chrono::steady_clock::now();
   const auto missing = [&] {
-    return runs >= 200 && (lost == 0 || retries == 0 || deferred == 0) &&
+    return runs >= 200 && (lost == 0 || invalid == 0 || retries == 0 || deferred == 0) &&
            std::chrono::steady_clock::now() - start < std::chrono::seconds(90);
   };
   for (int run = 0; run < runs || missing(); ++run) {
@@ -55,14 +55,18 @@ TEST_P(ProvokedConflicts, AreCountedAndDoNotShow) {
     const Triangulation mesh = triangulate(std::span<const double>(sets[set]), options);
     ASSERT_TRUE(same_mesh(mesh, expected[set])) << "run " << run;
     lost += mesh.statistics().lost_claims;
+    invalid += mesh.statistics().invalid_restarts;
     retries += mesh.statistics().insert_retries;
     deferred += mesh.statistics().deferred_points + mesh.statistics().deferred_edges;
   }
   RecordProperty("lost_claims", std::to_string(lost));
+  RecordProperty("invalid_restarts", std::to_string(invalid));
   RecordProperty("insert_retries", std::to_string(retries));
   RecordProperty("deferred", std::to_string(deferred));
   if (runs < 200) return;  // shortened: the counts may be zero
   EXPECT_GT(lost, 0u);
+  EXPECT_GT(invalid, 0u);
+  EXPECT_LE(invalid, lost);
   EXPECT_GT(retries, 0u);
   EXPECT_GT(deferred, 0u);
 }

@@ -114,7 +114,7 @@ TEST_P(Stabilize, PaperLeavesFewEdgesAndSaysSo) {
   }
 }
 
-// With R = 0 and an epsilon that nothing exceeds no edge is flipped but those of the hull.
+// With R = 0 and an epsilon that nothing exceeds each edge is flipped once, but those of the hull.
 TEST_P(Stabilize, PaperObeysItsParameters) {
   const Points xy = uniform_points(3000, 7);
   Options options = GetParam().options();
@@ -124,6 +124,8 @@ TEST_P(Stabilize, PaperObeysItsParameters) {
   const Triangulation none = triangulate(Reals(xy), options);
   EXPECT_TRUE(valid_structure(xy, none));
   EXPECT_GT(none.statistics().illegal_edges, 1000u);
+  EXPECT_GT(none.statistics().flips_per_edge[1], 1000u);
+  EXPECT_LT(none.statistics().flips_per_edge[2], 100u);
   options.quality_epsilon = 0;  // every gain is taken: the mesh is Delaunay's
   const Triangulation all = triangulate(Reals(xy), options);
   EXPECT_TRUE(all.statistics().certified);

@@ -24,6 +24,14 @@ std::set<std::string> names(const std::vector<std::pair<std::string, double>>& v
   return result;
 }
 
+/// Twice the area of a triangle, positive if it is counterclockwise; good enough for points that are not nearly on a
+/// line.
+double area(const Points& xy, std::span<const std::int32_t> t) {
+  const auto x = [&](int k) { return xy[2 * static_cast<std::size_t>(t[static_cast<std::size_t>(k)])]; };
+  const auto y = [&](int k) { return xy[2 * static_cast<std::size_t>(t[static_cast<std::size_t>(k)]) + 1]; };
+  return (x(1) - x(0)) * (y(2) - y(0)) - (x(2) - x(0)) * (y(1) - y(0));
+}
+
 class CountedWork : public BackendTest {};
 
 TEST_P(CountedWork, AddsUp) {
@@ -113,6 +121,7 @@ TEST_P(Snapshots, ShowTheGrowingMesh) {
     ASSERT_EQ(snapshot.triangles.size() % 3, 0u);
     std::map<std::pair<std::int32_t, std::int32_t>, int> edges;
     for (std::size_t t = 0; t < snapshot.triangles.size(); t += 3) {
+      EXPECT_GT(area(xy, snapshot.triangles.subspan(t, 3)), 0.0) << "not the indices of the input";
       for (std::size_t k = 0; k < 3; ++k) {
         const std::int32_t a = snapshot.triangles[t + k], b = snapshot.triangles[t + (k + 1) % 3];
         ASSERT_GE(a, 0);

@@ -108,7 +108,8 @@ TEST_F(OpenClBuild, WideVariantIsBuiltAtItsFirstLaunch) {
   request.source += "\n#if CADT_WIDE\n#error only the wide build fails\n#endif\n";
   const auto device = opencl::open_device(request);  // the narrow one is all that is needed
   const std::vector<Arg> none;
-  const auto error = caught<KernelBuildError>([&] { device->launch(KernelId::cadt_selftest, 1, none, KernelBuild::wide); });
+  const auto error =
+      caught<KernelBuildError>([&] { device->launch(KernelId::cadt_selftest, 1, none, KernelBuild::wide); });
   EXPECT_NE(error.options().find("-DCADT_WIDE=1"), std::string::npos) << error.options();
   EXPECT_NE(error.log().find("only the wide build fails"), std::string::npos) << error.log();
   EXPECT_EQ(counted_items(*device, 10), 10u);
@@ -117,7 +118,8 @@ TEST_F(OpenClBuild, WideVariantIsBuiltAtItsFirstLaunch) {
 TEST_F(OpenClBuild, MissingKernelIsNamed) {
   const auto device = open_small();
   const std::vector<Arg> none;
-  const auto error = caught<InternalError>([&] { device->launch(KernelId::cadt_insert, 1, none, KernelBuild::narrow); });
+  const auto error =
+      caught<InternalError>([&] { device->launch(KernelId::cadt_insert, 1, none, KernelBuild::narrow); });
   EXPECT_NE(std::string(error.what()).find("cadt_insert"), std::string::npos) << error.what();
 }
 

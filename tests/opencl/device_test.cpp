@@ -78,12 +78,14 @@ TEST_F(OpenClDevice, LaunchCountsItsItemsWithAnyGroupSize) {
 TEST_F(OpenClDevice, WrongArgumentsAreRefused) {
   const auto device = open_small();
   const std::vector<Arg> too_few = {Arg(1u)};
-  const auto count = caught<InternalError>([&] { device->launch(KernelId::cadt_selftest, 1, too_few, KernelBuild::narrow); });
+  const auto count =
+      caught<InternalError>([&] { device->launch(KernelId::cadt_selftest, 1, too_few, KernelBuild::narrow); });
   EXPECT_NE(std::string(count.what()).find("takes 4 arguments, not 1"), std::string::npos) << count.what();
   // What the runtime notices arrives with its call and the name of its code.
   const auto buffer = device->allocate(256);
   const std::vector<Arg> wrong = {Arg(1u), Arg(buffer), Arg(buffer), Arg(1u)};
-  const auto size = caught<DeviceError>([&] { device->launch(KernelId::cadt_selftest, 1, wrong, KernelBuild::narrow); });
+  const auto size =
+      caught<DeviceError>([&] { device->launch(KernelId::cadt_selftest, 1, wrong, KernelBuild::narrow); });
   EXPECT_EQ(size.call(), "clSetKernelArg");
   EXPECT_EQ(size.device(), info.name);
   EXPECT_EQ(size.code(), -51);

@@ -211,6 +211,56 @@ class Statistics(CliTest):
         self.fails(2, "triangulate", "in.xy", "--stats=m.off", "-o", "m.off", says="m.off")
 
 
+class Stabilized(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.cadt("generate", "circles", "-n", 20000, "-o", "in.f64")
+
+    def run_with(self, *options):
+        result = self.cadt("triangulate", "in.f64", "--backend", "host", "--stats=s.json", "-o", "m.off", *options)
+        return result, json.loads(self.path("s.json").read_text()), self.path("m.off").read_bytes()
+
+    def test_defer_is_the_same_mesh(self):
+        _, off, exact = self.run_with()
+        result, data, mesh = self.run_with("--stabilize", "defer", "--verify")
+        self.assertEqual(mesh, exact)
+        self.assertEqual(data["stabilize"], {"mode": "defer", "flip_threshold": 3, "epsilon": 1e-4})
+        self.assertGreater(data["counters"]["stabilized_edges"], 0)
+        self.assertEqual(off["counters"]["stabilized_edges"], 0)
+        self.assertTrue(data["certified"])
+        self.assertEqual(data["differing_triangles"], 0)
+        self.assertNotIn("not exact", result.err)
+
+    def test_paper_tells_how_far_it_is_off(self):
+        _, _, exact = self.run_with()
+        result, data, mesh = self.run_with("--stabilize", "paper", "--flip-threshold", "0", "--epsilon", "0.5")
+        self.assertNotEqual(mesh, exact)
+        self.assertFalse(data["certified"])
+        self.assertGreater(data["counters"]["illegal_edges"], 0)
+        theirs = set(exact.split(b"\n"))
+        differing = sum(line not in theirs for line in mesh.split(b"\n"))
+        self.assertEqual(data["differing_triangles"], differing)
+        self.assertRegex(result.err, fr"(?m)^not exact +\d+ edges left illegal, {differing} triangles")
+
+    def test_paper_and_verify_exclude_each_other(self):
+        self.fails(2, "triangulate", "in.f64", "--stabilize", "paper", "--verify", says="--verify")
+
+    def test_numbers_out_of_range(self):
+        self.fails(2, "triangulate", "in.f64", "--stabilize", "sometimes", says="sometimes")
+        self.fails(2, "triangulate", "in.f64", "--flip-threshold", "1001", says="--flip-threshold")
+        self.fails(2, "triangulate", "in.f64", "--epsilon", "-1", says="--epsilon")
+
+    def test_timing(self):
+        result, data, _ = self.run_with("--timing")
+        self.assertAlmostEqual(sum(data["thread_time"].values()), 1)
+        self.assertEqual(len(data["flips_per_edge"]), 16)
+        self.assertEqual(self.run_with()[1]["thread_time"], {})
+        table = self.cadt("triangulate", "in.f64", "--backend", "host", "--stats", "--timing").err
+        self.assertRegex(table, r"(?m)^locate +\d+\.\d %")
+        self.assertRegex(table, r"(?m)^15\+ +\d+")
+        self.fails(2, "triangulate", "in.f64", "--timing", says="--stats")
+
+
 class Degenerate(CliTest):
     CASES = {"one": "1 2\n", "two": "0 0\n1 1\n", "same": "5 5\n5 5\n5 5\n5 5\n", "line": "0 0\n1 1\n2 2\n7 7\n"}
 

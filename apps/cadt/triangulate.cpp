@@ -16,6 +16,7 @@
 #include <chrono>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,9 @@ struct TriangulateOptions {
   std::vector<std::string> outputs, formats;
   std::string backend = "auto", device, max_memory, order = "canonical", stats;
   std::string stabilize = "off";
-  unsigned threads = 0, flip_threshold = 3;
-  double epsilon = 1e-4;
+  unsigned threads = 0;
+  std::optional<unsigned> flip_threshold;
+  std::optional<double> epsilon;
   int base = 0, width = 1600;
   bool ascii = false, strict = false, verify = false, timing = false, quiet = false;
 
@@ -54,6 +56,10 @@ std::vector<Output> check_outputs(const TriangulateOptions& options) {
   auto outputs = plan_outputs(options.outputs, options.formats, io::mesh_write_formats(), options.input.path);
   if (options.timing && options.stats.empty())
     throw Failure(exit_usage, "--timing belongs to --stats: add it, or leave --timing out");
+  if (options.flip_threshold && options.stabilize == "off")
+    throw Failure(exit_usage, "--flip-threshold belongs to --stabilize defer or paper: add one, or leave it out");
+  if (options.epsilon && options.stabilize != "paper")
+    throw Failure(exit_usage, "--epsilon belongs to --stabilize paper: add it, or leave --epsilon out");
   if (options.stabilize == "paper" && options.verify) {
     throw Failure(
         exit_usage,
@@ -81,8 +87,8 @@ Options library_options(const TriangulateOptions& options, ProgressLine& line) {
   result.stabilize = options.stabilize == "paper"   ? Stabilize::paper
                      : options.stabilize == "defer" ? Stabilize::defer
                                                     : Stabilize::off;
-  result.flip_threshold = options.flip_threshold;
-  result.quality_epsilon = options.epsilon;
+  result.flip_threshold = options.flip_threshold.value_or(result.flip_threshold);
+  result.quality_epsilon = options.epsilon.value_or(result.quality_epsilon);
   if (options.stats.empty()) result.statistics = StatisticsDetail::none;  // nobody will see them
   if (options.timing) result.statistics = StatisticsDetail::timing;
   result.stop = interrupt_token();
@@ -195,8 +201,8 @@ int run(const TriangulateOptions& options) {
   report.hash = mesh.hash().to_string();
 
   report.stabilize = options.stabilize;
-  report.flip_threshold = options.flip_threshold;
-  report.epsilon = options.epsilon;
+  report.flip_threshold = chosen.flip_threshold;
+  report.epsilon = chosen.quality_epsilon;
   if (chosen.stabilize == Stabilize::paper) {
     line.step("comparing with the exact mesh");
     report.differing = differing_triangles(points, name, chosen, mesh);

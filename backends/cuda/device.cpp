@@ -71,13 +71,6 @@ CudaDevice::CudaDevice(DeviceInfo info, const Options& options)
                                                : default_block),
       stream_(std::make_shared<Stream>(info_.index, info_.name, options.queue, options.allocator)) {
   const ContextScope scope(stream_->context());
-  for (std::size_t build = 0; build < kernel_builds; ++build) {
-    for (std::size_t i = 0; i < kernel_count; ++i) {
-      cudaFuncAttributes attributes{};  // asking for them loads the kernel
-      check_call(cudaFuncGetAttributes(&attributes, tables()[build][i]), kernel_names[i]);
-      largest_blocks_[build][i] = static_cast<unsigned>(attributes.maxThreadsPerBlock);
-    }
-  }
   check_call(cudaHostAlloc(&staging_, staging_bytes, cudaHostAllocDefault), "cudaHostAlloc");
 }
 
@@ -174,10 +167,20 @@ void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Ar
   }
   const auto variant = static_cast<std::size_t>(build), number = static_cast<std::size_t>(kernel);
   const void* function = tables()[variant][number];
-  const unsigned block = std::min({block_size_, items, largest_blocks_[variant][number]});
+  const unsigned block = std::min({block_size_, items, largest_block_of(variant, number)});
   const unsigned blocks = (items - 1) / block + 1;
   check_call(cudaLaunchKernel(function, dim3(blocks), dim3(block), addresses.data(), 0, stream_->get()),
              kernel_names[static_cast<std::size_t>(kernel)]);
+}
+
+unsigned CudaDevice::largest_block_of(std::size_t build, std::size_t kernel) {
+  unsigned& known = largest_blocks_[build][kernel];
+  if (known == 0) {
+    cudaFuncAttributes attributes{};  // asking for them loads the kernel
+    check_call(cudaFuncGetAttributes(&attributes, tables()[build][kernel]), kernel_names[kernel]);
+    known = static_cast<unsigned>(attributes.maxThreadsPerBlock);
+  }
+  return known;
 }
 
 void CudaDevice::finish() {
@@ -187,7 +190,9 @@ void CudaDevice::finish() {
 
 void CudaDevice::load_kernels() {
   const ContextScope scope(stream_->context());
-  // (The constructor has loaded the kernels themselves.) The first launch of a kernel with a larger stack makes the
+  for (std::size_t build = 0; build < kernel_builds; ++build)
+    for (std::size_t i = 0; i < kernel_count; ++i) static_cast<void>(largest_block_of(build, i));
+  // The first launch of a kernel with a larger stack makes the
   // driver enlarge the memory of all stacks, which waits for the context as well. With parameters of zeros these find
   // no work.
   std::uint64_t zero = 0;
@@ -213,7 +218,7 @@ void CudaDevice::load_kernels() {
 std::optional<double> CudaDevice::occupancy(unsigned work_group_size) {
   const ContextScope scope(stream_->context());
   const auto insert = static_cast<std::size_t>(KernelId::cadt_insert);
-  if (work_group_size == 0 || work_group_size > largest_blocks_[0][insert]) return 0.0;
+  if (work_group_size == 0 || work_group_size > largest_block_of(0, insert)) return 0.0;
   int blocks = 0, most = 0, device = 0, warp = 0;
   check_call(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, narrow_kernels()[insert],
                                                            static_cast<int>(work_group_size), 0),

@@ -45,12 +45,14 @@ class CudaDevice final : public Device, private Primitives {
                           std::size_t count, unsigned bits) override;
   [[nodiscard]] std::size_t scan_scratch(std::size_t count) override;
   void scan(Buffer& scratch, Buffer& data, std::size_t count) override;
+  /// Largest block that a kernel starts with. \pre the context is current
+  [[nodiscard]] unsigned largest_block_of(std::size_t build, std::size_t kernel);
   void check_call(cudaError_t code, const char* call) const { check(code, call, info_.name); }
 
   DeviceInfo info_;
   unsigned block_size_;
   std::shared_ptr<Stream> stream_;
-  std::array<std::array<unsigned, kernel_count>, kernel_builds> largest_blocks_{};  ///< that each kernel starts with
+  std::array<std::array<unsigned, kernel_count>, kernel_builds> largest_blocks_{};  ///< 0: not asked for yet
   void* staging_ = nullptr;  ///< page-locked host memory for small reads
 };
 

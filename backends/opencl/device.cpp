@@ -289,6 +289,14 @@ void ClDevice::enqueue(ReadyKernel& target, std::size_t groups, std::size_t grou
   });
 }
 
+std::optional<double> ClDevice::occupancy(unsigned work_group_size) {
+  const auto insert = static_cast<std::size_t>(KernelId::cadt_insert);
+  if (work_group_size == 0 ||
+      make_ready(kernel_names[insert], KernelBuild::narrow, work_group_size).group < work_group_size)
+    return 0.0;
+  return std::nullopt;
+}
+
 Primitives* ClDevice::primitives() noexcept {
   if (!primitives_) primitives_ = info().gpu ? ClPrimitives::make(*this) : nullptr;
   return primitives_->get();

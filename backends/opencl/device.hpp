@@ -30,6 +30,7 @@ class ClDevice final : public Device {
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
   void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) override;
   void finish() override;
+  [[nodiscard]] std::optional<double> occupancy(unsigned work_group_size) override;
   [[nodiscard]] Primitives* primitives() noexcept override;
 
   struct ReadyKernel {

@@ -89,6 +89,7 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   const cadt_u32 j1 = CADT_NEXT(j), j2 = CADT_PREV(j), ts = 2u * i, ns = 2u * i + 1u;
   const cadt_snapshot u = cadt_look(m, n);
   if (CADT_NEIGHBOR(u, j) != CADT_LINK(t, k)) {
+    tally->count[CADT_COUNT_CLAIMS]++;
     tally->count[CADT_COUNT_LOST_CLAIMS]++;
     tally->count[CADT_COUNT_INVALID]++;
     return 0u;
@@ -211,6 +212,7 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   const cadt_snapshot s = cadt_look_from(m, t, k);
   const cadt_u32 p = s.v0;
   if (!cadt_is_free(s.lock)) {
+    tally->count[CADT_COUNT_CLAIMS]++; /* an attempt that ends before its first compare-and-swap */
     tally->count[CADT_COUNT_LOST_CLAIMS]++;
     CADT_LAP(tally, CADT_TIME_TEST);
     return CADT_EDGE_CONFLICT;
@@ -223,6 +225,7 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   const cadt_u32 j1 = CADT_NEXT(j), j2 = CADT_PREV(j);
   const cadt_snapshot u = cadt_look_from(m, n, j);
   if (!cadt_is_free(u.lock) || u.n0 != link) {
+    tally->count[CADT_COUNT_CLAIMS]++;
     tally->count[CADT_COUNT_LOST_CLAIMS]++;
     if (cadt_is_free(u.lock)) tally->count[CADT_COUNT_INVALID]++;
     CADT_LAP(tally, CADT_TIME_TEST);

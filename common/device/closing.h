@@ -42,6 +42,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
         }
         ++illegal;
 #if CADT_CONTIGUOUS
+        CADT_LAP_SKIP(&tally); /* looking at all edges is no part of the insertion, repairs are */
         cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
         cadt_worklist_add(&work, CADT_LINK(t, k));
         cadt_legalize(&mesh, &work, &deferred, &tally);
@@ -57,6 +58,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
   if (illegal) cadt_add_relaxed(found + 1, illegal);
   if (unsettled) cadt_add_relaxed(found + 2, unsettled);
   if (left) cadt_add_relaxed(found + 3, left);
+  CADT_LAP_SKIP(&tally);
   CADT_FLUSH_TALLY(&tally, counters);
 }
 

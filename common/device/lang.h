@@ -75,7 +75,7 @@ CADT_FN cadt_u64 cadt_clock(void) {
   asm volatile("mov.u64 %0, %%clock64;" : "=l"(ticks)::"memory");
   return ticks;
 }
-#elif CADT_TIMED && CADT_CONTIGUOUS && defined(__clang__)
+#elif CADT_TIMED && CADT_CONTIGUOUS && defined(__clang__) && defined(__x86_64__)
 CADT_FN cadt_u64 cadt_clock(void) { return __builtin_readcyclecounter(); }
 #else
 CADT_FN cadt_u64 cadt_clock(void) { return 0; }

@@ -54,7 +54,11 @@ enum {
   CADT_TIME_OTHER,     /* worklist, choice of the point */
   CADT_TIME_WAIT,      /* for other lanes of the warp */
   CADT_TIMES,
-  CADT_TIME_SHIFT = 6 /* a row holds 32 bits of each: ticks / 64 */
+  /* A row has 32 bits for each. On a GPU an account is full after 1e15 ticks, seconds of all its lanes; a lane and a
+   * group drop up to 2^4 and 2^12 of them. */
+  CADT_TIME_LANE_SHIFT = 4,
+  CADT_TIME_GROUP_SHIFT = 8,
+  CADT_TIME_ITEM_SHIFT = 8 /* CPUs: hours of a core */
 };
 
 /* A row of counters: counts, times, edges by flips. */

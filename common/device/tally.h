@@ -30,6 +30,12 @@ CADT_FN void cadt_lap(cadt_tally* tally, cadt_u32 account) {
 #else
 #define CADT_LAP(tally, account) ((void)0)
 #endif
+/* What was done since the last lap is nobody's account. */
+#if CADT_TIMED
+#define CADT_LAP_SKIP(tally) ((tally)->lap = cadt_clock())
+#else
+#define CADT_LAP_SKIP(tally) ((void)0)
+#endif
 /* Where lanes of a GPU's warp wait for each other; a CPU's thread waits for nobody. */
 #if CADT_CONTIGUOUS
 #define CADT_LAP_WAIT(tally) ((void)0)
@@ -74,16 +80,17 @@ CADT_FN void cadt_flush_group(cadt_tally* tally, CADT_LOCAL_PTR cadt_u32* sums, 
 #if CADT_TIMED
   CADT_LAP_WAIT(tally);
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c)
-    cadt_add_local(sums + CADT_COUNTERS + c, CADT_CAST(cadt_u32, tally->ticks[c] >> CADT_TIME_SHIFT));
+    cadt_add_local(sums + CADT_COUNTERS + c, CADT_CAST(cadt_u32, tally->ticks[c] >> CADT_TIME_LANE_SHIFT));
 #endif
   cadt_fence_local();
   if (cadt_add_local(sums + CADT_GROUP_DONE, 1u) + 1u != cadt_group_items) return;
   cadt_fence_local();
   CADT_GLOBAL cadt_u32* row = cadt_counter_row(counters, cadt_item / cadt_group_items);
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_GROUP_DONE); ++c) {
-    const cadt_u32 sum = cadt_add_local(sums + c, 0u);
-    const cadt_u32 at = c < CADT_CAST(cadt_u32, CADT_COUNTERS) ? c : c - CADT_COUNTERS + CADT_ROW_TIMES;
-    if (sum) cadt_add_relaxed(row + at, sum);
+    const cadt_u32 sum = cadt_add_local(sums + c, 0u), counter = c < CADT_CAST(cadt_u32, CADT_COUNTERS) ? 1u : 0u;
+    const cadt_u32 at = counter ? c : c - CADT_COUNTERS + CADT_ROW_TIMES;
+    const cadt_u32 value = counter ? sum : sum >> CADT_TIME_GROUP_SHIFT;
+    if (value) cadt_add_relaxed(row + at, value);
   }
 }
 #else
@@ -99,7 +106,7 @@ CADT_FN void cadt_flush_item(const cadt_tally* tally, CADT_GLOBAL cadt_u32* coun
     if (tally->count[c]) cadt_add_relaxed(row + c, tally->count[c]);
 #if CADT_TIMED
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c) {
-    const cadt_u32 time = CADT_CAST(cadt_u32, tally->ticks[c] >> CADT_TIME_SHIFT);
+    const cadt_u32 time = CADT_CAST(cadt_u32, tally->ticks[c] >> CADT_TIME_ITEM_SHIFT);
     if (time) cadt_add_relaxed(row + CADT_ROW_TIMES + c, time);
   }
 #endif

@@ -14,7 +14,8 @@ namespace cadt {
 /// What is counted and timed.
 enum class StatisticsDetail {
   none,  ///< sizes, launches and the closing passes only: what is known anyway. No wait for the device between phases
-  counters,  ///< and the work and conflicts, flips per edge, time per phase; costs less than 2 % (docs/evaluation.md)
+  counters,  ///< and the work and conflicts, flips per edge, time per phase; costs 4 to 5 % on a graphics card
+             ///< (docs/evaluation.md)
   timing     ///< and the shares of the device's threads' time (`thread_time`), by kernels with clocks in them: slower
 };
 /// "none", "counters", "timing".
@@ -32,7 +33,8 @@ struct Statistics {
   std::uint64_t launches = 0;            ///< kernel launches, but those within a device's own sort and scan
   std::uint64_t walk_steps = 0;          ///< triangles visited by the point location
   std::uint64_t claims = 0;              ///< lock attempts for a whole set of records
-  std::uint64_t lost_claims = 0;         ///< attempts that met a lock held, or a record that had changed
+  std::uint64_t lost_claims = 0;         ///< attempts that met a lock held, or a record that had changed:
+                                         ///< all claims but splits, edge_splits and flips
   std::uint64_t invalid_restarts = 0;    ///< of these, attempts that met a record that had changed since it was read
   std::uint64_t insert_retries = 0;      ///< point insertions that were tried again in the same launch
   std::uint64_t stale_edges = 0;         ///< worklist edges whose triangle another thread had changed meanwhile
@@ -66,7 +68,7 @@ struct Statistics {
 
   /// How the threads of the insertion spend their time (paper, Fig. 6): shares of their sum, e.g. {"locate", 0.31}; the
   /// names are locate, claim, split, test, flip, neighbors, other, wait (for threads that run in step with it). Empty
-  /// unless StatisticsDetail::timing, and where the device has no clock.
+  /// unless StatisticsDetail::timing, where the device has no clock, and with `wide_arithmetic`.
   std::vector<std::pair<std::string, double>> thread_time;
 
   /// Milliseconds per phase, in order of execution, e.g. {"sort", 12.3}.

@@ -88,8 +88,8 @@ struct Options {
   /// triangles by at most so many degrees. Not negative and not NaN.
   double quality_epsilon = 1e-4;
   StatisticsDetail statistics = StatisticsDetail::counters;
-  /// Called from the calling thread after each launch of the insertion with a copy of the mesh, for pictures. Costs a
-  /// copy of all records each time. Must not throw.
+  /// Called from the calling thread with a copy of the mesh, for pictures: after each launch of a level of points, and
+  /// once more if some were left over. Costs a copy of all records each time. Must not throw.
   std::function<void(const Snapshot&)> watch;
   /// Checked between launches; when triggered the call throws Cancelled.
   std::stop_token stop;

@@ -94,12 +94,12 @@ class Triangulator {
   Triangulator& operator=(Triangulator&&) noexcept;
 
   [[nodiscard]] const DeviceInfo& device() const noexcept;
-  /// What says where and how the device works (`backend`, `device`, `threads`, `work_group_size`, `grain`, `queue`,
+  /// What says where and how the device works (`backend`, `device`, `threads`, `work_group_size`, `queue`,
   /// `allocator`) is read once, when it is opened; the rest may be changed between calls.
   [[nodiscard]] Options& options() noexcept;
   /// Theoretical occupancy of the insertion with work groups of this size: resident warps over the most that there can
   /// be, 0 to 1; 0 if it does not start with so many (a run then takes the largest size that does). Empty where the
-  /// device does not tell: only CUDA does.
+  /// device tells no more than that: only CUDA does.
   [[nodiscard]] std::optional<double> occupancy(unsigned work_group_size) const;
 
   /// Points on the host to a mesh on the host. \throws as cadt::triangulate

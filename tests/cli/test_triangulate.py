@@ -249,6 +249,8 @@ class Stabilized(CliTest):
         self.fails(2, "triangulate", "in.f64", "--stabilize", "sometimes", says="sometimes")
         self.fails(2, "triangulate", "in.f64", "--flip-threshold", "1001", says="--flip-threshold")
         self.fails(2, "triangulate", "in.f64", "--epsilon", "-1", says="--epsilon")
+        self.fails(2, "triangulate", "in.f64", "--flip-threshold", "5", says="--stabilize")
+        self.fails(2, "triangulate", "in.f64", "--stabilize", "defer", "--epsilon", "1", says="--stabilize paper")
 
     def test_timing(self):
         result, data, _ = self.run_with("--timing")

@@ -96,11 +96,12 @@ class Golden : public BackendTest {
 
   /// The mesh with Stabilize::defer, which must not show.
   static Triangulation deferring(const BackendCase& c, const Points& xy) {
-    Options& options = opened(c).options();
-    options.stabilize = Stabilize::defer;
-    Triangulation mesh = opened(c).triangulate(std::span<const double>(xy));
-    options.stabilize = Stabilize::off;
-    return mesh;
+    struct Scope {
+      Options& options;
+      ~Scope() { options.stabilize = Stabilize::off; }
+    } const scope{opened(c).options()};
+    scope.options.stabilize = Stabilize::defer;
+    return opened(c).triangulate(std::span<const double>(xy));
   }
 
   static void expect_same_arrays(const Triangulation& mesh, const Triangulation& first, const std::string& what) {

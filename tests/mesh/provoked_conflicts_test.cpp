@@ -54,10 +54,12 @@ TEST_P(ProvokedConflicts, AreCountedAndDoNotShow) {
     options.grain = 1;
     const Triangulation mesh = triangulate(std::span<const double>(sets[set]), options);
     ASSERT_TRUE(same_mesh(mesh, expected[set])) << "run " << run;
-    lost += mesh.statistics().lost_claims;
-    invalid += mesh.statistics().invalid_restarts;
-    retries += mesh.statistics().insert_retries;
-    deferred += mesh.statistics().deferred_points + mesh.statistics().deferred_edges;
+    const Statistics& s = mesh.statistics();
+    ASSERT_EQ(s.claims, s.lost_claims + s.splits + s.edge_splits + s.flips) << "run " << run;
+    lost += s.lost_claims;
+    invalid += s.invalid_restarts;
+    retries += s.insert_retries;
+    deferred += s.deferred_points + s.deferred_edges;
   }
   RecordProperty("lost_claims", std::to_string(lost));
   RecordProperty("invalid_restarts", std::to_string(invalid));

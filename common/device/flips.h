@@ -6,13 +6,46 @@
 #define CADT_DEVICE_FLIPS_H
 
 #include "common/device/mesh.h"
+#include "common/device/tally.h"
+
+/* Counts of edges with 0, 1, ..., 15 or more flips: 8 bits each, in two words. */
+typedef struct {
+  cadt_u64 low, high;
+} cadt_flip_bins;
+
+enum { CADT_BINS_FULL = 255 / 3 }; /* triangles until the sums must be passed on */
+
+CADT_FN void cadt_bins_add(cadt_flip_bins* bins, cadt_u32 flips) {
+  const cadt_u32 bin = cadt_min_u32(flips, CADT_FLIP_BINS - 1u);
+  const cadt_u64 one = CADT_CAST(cadt_u64, 1u) << (8u * (bin & 7u));
+  if (bin < 8u)
+    bins->low += one;
+  else
+    bins->high += one;
+}
+
+CADT_FN cadt_u32 cadt_bins_get(const cadt_flip_bins* bins, cadt_u32 bin) {
+  return CADT_CAST(cadt_u32, (bin < 8u ? bins->low : bins->high) >> (8u * (bin & 7u))) & 255u;
+}
+
+CADT_FN void cadt_bins_pass_on(cadt_flip_bins* bins, CADT_SUMS cadt_u32* sums) {
+  for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin)
+    if (cadt_bins_get(bins, bin)) cadt_add_sum(sums + bin, cadt_bins_get(bins, bin));
+  bins->low = bins->high = 0u;
+}
 
 /* Adds the edges of the finished mesh, ghost edges left out, to the bins of the counters' rows: each edge twice, once
  * from each side. */
 CADT_KERNEL(cadt_count_flips, CADT_GLOBAL const cadt_record* records, cadt_u32 slots, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* counters) {
-  cadt_u32 bins[CADT_FLIP_BINS];
-  for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin) bins[bin] = 0u;
+#if CADT_GROUP_SUMS
+  CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS];
+  cadt_clear_group_sums(sums);
+#else
+  CADT_GLOBAL cadt_u32* sums = cadt_counter_row(counters, cadt_item) + CADT_ROW_FLIPS;
+#endif
+  cadt_flip_bins bins = {0u, 0u};
+  cadt_u32 triangles = 0u;
   CADT_FOR(t, slots, grain) {
     const cadt_record r = records[t];
     const cadt_u32 flips = r.word[CADT_WORD_FLIPS];
@@ -20,15 +53,22 @@ CADT_KERNEL(cadt_count_flips, CADT_GLOBAL const cadt_record* records, cadt_u32 s
     const cadt_u32 ghost =
         r.word[0] == CADT_GHOST ? 0u : (r.word[1] == CADT_GHOST ? 1u : (r.word[2] == CADT_GHOST ? 2u : 3u));
     if (flips == 0u && ghost == 3u) {
-      bins[0] += 3u;
-      continue;
+      bins.low += 3u;
+    } else {
+      for (cadt_u32 k = 0u; k < 3u; ++k)
+        if (ghost == 3u || ghost == k) cadt_bins_add(&bins, cadt_flips_get(flips, k));
     }
-    for (cadt_u32 k = 0u; k < 3u; ++k)
-      if (ghost == 3u || ghost == k) bins[cadt_min_u32(cadt_flips_get(flips, k), CADT_FLIP_BINS - 1u)]++;
+    if (++triangles % CADT_BINS_FULL == 0u) cadt_bins_pass_on(&bins, sums);
   }
-  CADT_GLOBAL cadt_u32* row = cadt_counter_row(counters, cadt_item) + CADT_ROW_FLIPS;
-  for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin)
-    if (bins[bin]) cadt_add_relaxed(row + bin, bins[bin]);
+  cadt_bins_pass_on(&bins, sums);
+#if CADT_GROUP_SUMS
+  if (!cadt_is_last_of_group(sums + CADT_GROUP_DONE)) return;
+  CADT_GLOBAL cadt_u32* row = cadt_counter_row(counters, cadt_item / cadt_group_items) + CADT_ROW_FLIPS;
+  for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin) {
+    const cadt_u32 sum = cadt_add_local(sums + bin, 0u);
+    if (sum) cadt_add_relaxed(row + bin, sum);
+  }
+#endif
 }
 
 #endif

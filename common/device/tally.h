@@ -60,6 +60,8 @@ CADT_FN CADT_GLOBAL cadt_u32* cadt_counter_row(CADT_GLOBAL cadt_u32* counters, c
  * points on an H200), and letting the lanes of a warp wait for each other, to add together, costs 3 %. CADT_GROUP_TALLY
  * stands once in a kernel, before anything else; `counters` is null if nobody wants to know. */
 #if CADT_GROUP_SUMS
+#define CADT_SUMS CADT_LOCAL_PTR
+#define cadt_add_sum cadt_add_local
 enum { CADT_GROUP_DONE = CADT_COUNTERS + CADT_TIMES, CADT_GROUP_WORDS };
 #define CADT_GROUP_TALLY(tally, counters)     \
   CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS]; \
@@ -74,17 +76,30 @@ CADT_FN void cadt_clear_group_sums(CADT_LOCAL_PTR cadt_u32* sums) {
   cadt_group_barrier();
 }
 
+/* True for the work-item of the group that asks last: it sees the sums of all. */
+CADT_FN cadt_u32 cadt_is_last_of_group(CADT_LOCAL_PTR cadt_u32* done) {
+  cadt_fence_local();
+  if (cadt_add_local(done, 1u) + 1u != cadt_group_items) return 0u;
+  cadt_fence_local();
+  return 1u;
+}
+
+/* Instructions count here, since each lane executes this by itself: no branches for the common counters, one for all
+ * others. */
 CADT_FN void cadt_flush_group(cadt_tally* tally, CADT_LOCAL_PTR cadt_u32* sums, CADT_GLOBAL cadt_u32* counters) {
-  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c)
-    if (tally->count[c]) cadt_add_local(sums + c, tally->count[c]);
+  cadt_u32 others = 0u;
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS_COMMON); ++c) cadt_add_local(sums + c, tally->count[c]);
+  for (cadt_u32 c = CADT_COUNTERS_COMMON; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c) others |= tally->count[c];
+  if (others) {
+    for (cadt_u32 c = CADT_COUNTERS_COMMON; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c)
+      if (tally->count[c]) cadt_add_local(sums + c, tally->count[c]);
+  }
 #if CADT_TIMED
   CADT_LAP_WAIT(tally);
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c)
     cadt_add_local(sums + CADT_COUNTERS + c, CADT_CAST(cadt_u32, tally->ticks[c] >> CADT_TIME_LANE_SHIFT));
 #endif
-  cadt_fence_local();
-  if (cadt_add_local(sums + CADT_GROUP_DONE, 1u) + 1u != cadt_group_items) return;
-  cadt_fence_local();
+  if (!cadt_is_last_of_group(sums + CADT_GROUP_DONE)) return;
   CADT_GLOBAL cadt_u32* row = cadt_counter_row(counters, cadt_item / cadt_group_items);
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_GROUP_DONE); ++c) {
     const cadt_u32 sum = cadt_add_local(sums + c, 0u), counter = c < CADT_CAST(cadt_u32, CADT_COUNTERS) ? 1u : 0u;
@@ -94,6 +109,8 @@ CADT_FN void cadt_flush_group(cadt_tally* tally, CADT_LOCAL_PTR cadt_u32* sums, 
   }
 }
 #else
+#define CADT_SUMS CADT_GLOBAL
+#define cadt_add_sum cadt_add_relaxed
 #define CADT_GROUP_TALLY(tally, counters) \
   cadt_tally tally;                       \
   cadt_tally_clear(&tally)

@@ -48,6 +48,8 @@ constexpr std::array counters = {
     Counter{"certified_edges", &Statistics::certified_edges},
     Counter{"stabilized_edges", &Statistics::stabilized_edges},
     Counter{"illegal_edges", &Statistics::illegal_edges},
+    Counter{"tiles", &Statistics::tiles},
+    Counter{"proven_stars", &Statistics::proven_stars},
     Counter{"refined_points", &Statistics::refined_points},
 };
 

@@ -27,6 +27,7 @@ struct TriangulateOptions {
   InputOptions input;
   std::vector<std::string> outputs, formats;
   std::string backend = "auto", device, max_memory, order = "canonical", stats;
+  std::string strategy = "auto";
   std::string stabilize = "off";
   unsigned threads = 0;
   std::optional<unsigned> flip_threshold;
@@ -56,6 +57,8 @@ std::vector<Output> check_outputs(const TriangulateOptions& options) {
   auto outputs = plan_outputs(options.outputs, options.formats, io::mesh_write_formats(), options.input.path);
   if (options.timing && options.stats.empty())
     throw Failure(exit_usage, "--timing belongs to --stats: add it, or leave --timing out");
+  if (options.strategy == "stars" && options.stabilize != "off")
+    throw Failure(exit_usage, "--stabilize is about flips, and --strategy stars has hardly any: leave one of them out");
   if (options.flip_threshold && options.stabilize == "off")
     throw Failure(exit_usage, "--flip-threshold belongs to --stabilize defer or paper: add one, or leave it out");
   if (options.epsilon && options.stabilize != "paper")
@@ -84,6 +87,9 @@ Options library_options(const TriangulateOptions& options, ProgressLine& line) {
   result.threads = options.threads;
   result.order = options.order == "fast" ? Order::fast : Order::canonical;
   if (!options.max_memory.empty()) result.max_memory = parse_bytes(options.max_memory);
+  result.strategy = options.strategy == "locks"   ? Strategy::locks
+                    : options.strategy == "stars" ? Strategy::stars
+                                                  : Strategy::automatic;
   result.stabilize = options.stabilize == "paper"   ? Stabilize::paper
                      : options.stabilize == "defer" ? Stabilize::defer
                                                     : Stabilize::off;
@@ -278,6 +284,12 @@ void add_work_options(CLI::App& command, TriangulateOptions& o) {
                   "refuse before any work if more device memory is needed: 4G, 512M, 1.5GiB "
                   "(K M G T and KiB ... count 1024, KB ... 1000)")
       ->type_name("SIZE");
+  command
+      .add_option("--strategy", o.strategy,
+                  "how the same mesh is made: locks (points are inserted in one shared mesh), stars (as many vertices as "
+                  "can be proven without locks, the others with) or auto (default: what is faster on the device)")
+      ->type_name("HOW")
+      ->check(CLI::IsMember({"auto", "locks", "stars"}).description(""));
   command
       .add_option("--stabilize", o.stabilize,
                   "what is done with edges that are flipped again and again: off (default), defer (left to the closing "

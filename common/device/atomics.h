@@ -124,6 +124,9 @@ CADT_FN cadt_u32 cadt_cas_acq_rel(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
 }
 CADT_FN cadt_u32 cadt_add_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { return atomicAdd(p, value); }
 CADT_FN void cadt_min_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { atomicMin(p, value); }
+CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
+  return atomicCAS(p, expected, desired) == expected ? 1u : 0u;
+}
 /* __threadfence is sequentially consistent, which is more than is needed. */
 CADT_FN void cadt_fence_acq_rel() { asm volatile("fence.acq_rel.gpu;" ::: "memory"); }
 
@@ -149,6 +152,9 @@ CADT_FN cadt_u32 cadt_cas_acq_rel(cadt_u32* p, cadt_u32 expected, cadt_u32 desir
              ? 1u
              : 0u;
 }
+CADT_FN cadt_u32 cadt_cas_relaxed(cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
+  return std::atomic_ref<cadt_u32>(*p).compare_exchange_strong(expected, desired, std::memory_order_relaxed) ? 1u : 0u;
+}
 CADT_FN cadt_u32 cadt_add_relaxed(cadt_u32* p, cadt_u32 value) {
   return std::atomic_ref<cadt_u32>(*p).fetch_add(value, std::memory_order_relaxed);
 }
@@ -172,6 +178,16 @@ CADT_FN void cadt_fence_local(void) { mem_fence(CLK_LOCAL_MEM_FENCE); }
 #elif CADT_GROUP_SUMS
 CADT_FN cadt_u32 cadt_add_local(cadt_u32* p, cadt_u32 value) { return atomicAdd(p, value); }
 CADT_FN void cadt_fence_local() { __threadfence_block(); }
+#endif
+/* An addition in the memory of a team; the value before it. */
+#if CADT_GROUP_SUMS
+#define cadt_team_add(p, value) cadt_add_local((p), (value))
+#else
+CADT_FN cadt_u32 cadt_team_add(cadt_u32* p, cadt_u32 value) {
+  const cadt_u32 old = *p;
+  *p += value;
+  return old;
+}
 #endif
 
 /* ---- the two disciplines of the records' fields and locks ----------------------------------------------------------

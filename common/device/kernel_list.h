@@ -37,6 +37,18 @@
   X(cadt_legalize_edges)    /* insert.h: deferred edges */                       \
   X(cadt_closing_pass)      /* closing.h */                                      \
   X(cadt_count_flips)       /* flips.h: edges by their flips */                  \
+  X(cadt_tile_flags)        /* tiles.h */                                        \
+  X(cadt_tile_pack)         /* tiles.h */                                        \
+  X(cadt_stars)             /* star.h: proven stars of vertices */               \
+  X(cadt_star_counts)       /* star_mesh.h: who owns which triangle */           \
+  X(cadt_star_records)      /* star_mesh.h */                                    \
+  X(cadt_unproven_pack)     /* join.h: the other vertices */                     \
+  X(cadt_join_enter)        /* join.h: hash table of the edges between */        \
+  X(cadt_join_cover)        /* join.h */                                         \
+  X(cadt_join_components)   /* join.h */                                         \
+  X(cadt_join_hide)         /* join.h */                                         \
+  X(cadt_join_flags)        /* join.h */                                         \
+  X(cadt_join_records)      /* join.h: the rest of the mesh */                   \
   X(cadt_count_triangles)   /* emit.h */                                         \
   X(cadt_bucket_triangles)  /* emit.h: canonical order */                        \
   X(cadt_sort_buckets)      /* emit.h */                                         \

@@ -9,12 +9,16 @@
 #include "common/device/emit.h"
 #include "common/device/flips.h"
 #include "common/device/insert.h"
+#include "common/device/join.h"
 #include "common/device/order.h"
 #include "common/device/radix.h"
 #include "common/device/refine.h"
 #include "common/device/scan.h"
 #include "common/device/selftest.h"
+#include "common/device/star.h"
+#include "common/device/star_mesh.h"
 #include "common/device/start.h"
+#include "common/device/tiles.h"
 #include "common/device/verify.h"
 
 #endif

@@ -43,6 +43,7 @@
 /* Without this PoCL fuses a*b+c, which voids the error bounds of the filters. */
 #pragma OPENCL FP_CONTRACT OFF
 
+typedef ushort cadt_u16;
 typedef uint cadt_u32;
 typedef int cadt_i32;
 typedef ulong cadt_u64;
@@ -62,6 +63,15 @@ typedef long cadt_i64;
 #define CADT_CAST(type, value) ((type)(value))
 
 #define cadt_bits_of_double(x) as_ulong(x)
+#define cadt_bits_of_float(x) as_uint(x)
+#define cadt_float_of_bits(x) as_float(x)
+#define cadt_popcount(x) ((cadt_u32)popcount((uint)(x)))
+#define cadt_sqrtf(x) sqrt((float)(x))
+#define cadt_fabsf(x) fabs((float)(x))
+#define cadt_maxf(a, b) fmax((float)(a), (float)(b))
+/* approximations, for what has a bound of its error: a * b + c, 1 / x */
+#define cadt_about_fma(a, b, c) fma((float)(a), (float)(b), (float)(c))
+#define cadt_about_inverse(x) (1.0f / (x))
 #define cadt_clz64(x) ((cadt_u32)clz((ulong)(x)))
 #define cadt_mulhi_u64(a, b) mul_hi((ulong)(a), (ulong)(b))
 #define cadt_fabs(x) fabs(x)
@@ -84,6 +94,7 @@ CADT_FN cadt_u64 cadt_clock(void) { return 0; }
 /* ---- CUDA C++ ------------------------------------------------------------------------------------------------- */
 #elif defined(CADT_LANG_CUDA)
 
+typedef unsigned short cadt_u16;
 typedef unsigned int cadt_u32;
 typedef int cadt_i32;
 typedef unsigned long long cadt_u64;
@@ -103,6 +114,14 @@ typedef long long cadt_i64;
 #define CADT_CAST(type, value) ((type)(value))
 
 #define cadt_bits_of_double(x) ((cadt_u64)__double_as_longlong(x))
+#define cadt_bits_of_float(x) ((cadt_u32)__float_as_uint(x))
+#define cadt_float_of_bits(x) __uint_as_float(x)
+#define cadt_popcount(x) ((cadt_u32)__popc(x))
+#define cadt_sqrtf(x) __fsqrt_rn(x)
+#define cadt_fabsf(x) fabsf(x)
+#define cadt_maxf(a, b) fmaxf((a), (b))
+#define cadt_about_fma(a, b, c) __fmaf_rn((a), (b), (c))
+#define cadt_about_inverse(x) __fdividef(1.0f, (x))
 #define cadt_clz64(x) ((cadt_u32)__clzll((long long)(x)))
 #define cadt_mulhi_u64(a, b) __umul64hi((a), (b))
 #define cadt_fabs(x) fabs(x)
@@ -118,6 +137,7 @@ CADT_FN cadt_u64 cadt_clock() {
  * before ---- */
 #else
 
+typedef std::uint16_t cadt_u16;
 typedef std::uint32_t cadt_u32;
 typedef std::int32_t cadt_i32;
 typedef std::uint64_t cadt_u64;
@@ -136,6 +156,22 @@ CADT_FN cadt_u64 cadt_bits_of_double(double x) {
   std::memcpy(&bits, &x, sizeof bits);
   return bits;
 }
+CADT_FN cadt_u32 cadt_bits_of_float(float x) {
+  cadt_u32 bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+CADT_FN float cadt_float_of_bits(cadt_u32 bits) {
+  float x;
+  std::memcpy(&x, &bits, sizeof x);
+  return x;
+}
+CADT_FN cadt_u32 cadt_popcount(cadt_u32 x) { return CADT_CAST(cadt_u32, __builtin_popcount(x)); }
+CADT_FN float cadt_sqrtf(float x) { return std::sqrt(x); }
+CADT_FN float cadt_fabsf(float x) { return std::fabs(x); }
+CADT_FN float cadt_maxf(float a, float b) { return a > b ? a : b; }
+CADT_FN float cadt_about_fma(float a, float b, float c) { return a * b + c; }
+CADT_FN float cadt_about_inverse(float x) { return 1.0f / x; }
 CADT_FN cadt_u32 cadt_clz64(cadt_u64 x) { return x ? CADT_CAST(cadt_u32, __builtin_clzll(x)) : 64u; }
 CADT_FN cadt_u64 cadt_mulhi_u64(cadt_u64 a, cadt_u64 b) {
   __extension__ typedef unsigned __int128 u128;
@@ -154,12 +190,32 @@ CADT_FN cadt_u64 cadt_clock() {
 
 #endif
 
-/* Whether work-items of a group share memory to add up their counters (tally.h). */
+/* Whether work-items of a group share memory (tally.h). */
 #if CADT_CONTIGUOUS || defined(CADT_LANG_HOST)
 #define CADT_GROUP_SUMS 0
 #else
 #define CADT_GROUP_SUMS 1
 #endif
+
+/* A team works on one thing with memory of its own: on GPUs a group, elsewhere a single work-item. Lanes share the
+ * elements of CADT_TEAM_FOR; what one wrote is seen by the others after CADT_TEAM_SYNC, which all lanes must reach. */
+#if CADT_GROUP_SUMS
+#define CADT_TEAM_MEMORY CADT_LOCAL
+#define CADT_TEAM_PTR CADT_LOCAL_PTR
+#define cadt_team_lane cadt_item_of_group
+#define cadt_team_lanes cadt_group_items
+#define CADT_TEAM_SYNC() cadt_group_barrier()
+#define CADT_FOR_TEAMS(t, count, grain) \
+  for (cadt_u32 t = cadt_item / cadt_group_items; t < (count); t += cadt_items / cadt_group_items)
+#else
+#define CADT_TEAM_MEMORY
+#define CADT_TEAM_PTR
+#define cadt_team_lane 0u
+#define cadt_team_lanes 1u
+#define CADT_TEAM_SYNC() ((void)0)
+#define CADT_FOR_TEAMS(t, count, grain) CADT_FOR(t, count, grain)
+#endif
+#define CADT_TEAM_FOR(i, count) for (cadt_u32 i = cadt_team_lane; i < (count); i += cadt_team_lanes)
 
 typedef struct {
   double x, y;

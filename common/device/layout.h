@@ -15,6 +15,18 @@ typedef struct {
 
 enum { CADT_WORD_LOCK = 3, CADT_WORD_LINK = 4, CADT_WORD_FLIPS = 7 };
 
+/* The star stage: tiles (tiles.h) and stars (star.h). */
+typedef struct {
+  cadt_u32 begin; /* first position; the next tile's is the end */
+  cadt_i32 level;
+} cadt_tile;
+
+enum {
+  CADT_TILE_POINTS = 640, /* at most, but for squares that cannot be divided */
+  CADT_STAR_DEGREE = 12,  /* neighbours of a proven star at most */
+  CADT_STAR_LANES = 128   /* lanes of a team that make stars */
+};
+
 /* Rows of partial results of cadt_bounds. */
 enum {
   CADT_BOUNDS_DOUBLES = 4, /* min x, max x, min y, max y */

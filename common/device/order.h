@@ -119,23 +119,60 @@ CADT_FN cadt_u32 cadt_hilbert(cadt_u32 x, cadt_u32 y, cadt_u32 bits) {
   return place;
 }
 
-/* Hilbert keys of square cells. The longer axis has more bits; its surplus goes on top, so a long box is a row of
- * squares, each entered where the one before is left. Coordinates are halved first: the width of the box may exceed the
- * largest double. */
+/* The grid of the sort keys: 2^bits_x x 2^bits_y square cells. Coordinates are halved first: the width of the box may
+ * exceed the largest double. */
+typedef struct {
+  double half_min_x, half_min_y, scale;
+  cadt_u32 bits_x, bits_y;
+} cadt_key_grid;
+
+#define CADT_GRID_PARAMETERS \
+  double half_min_x, double half_min_y, double grid_scale, cadt_u32 bits_x, cadt_u32 bits_y
+#define CADT_GRID_VIEW(grid)     \
+  cadt_key_grid grid;            \
+  grid.half_min_x = half_min_x;  \
+  grid.half_min_y = half_min_y;  \
+  grid.scale = grid_scale;       \
+  grid.bits_x = bits_x;          \
+  grid.bits_y = bits_y
+
+/* A point in units of cells, and with the last cell of each axis closed to the right. */
+CADT_FN cadt_point cadt_to_grid(const cadt_key_grid* grid, cadt_point p) {
+  cadt_point f;
+  f.x = (0.5 * p.x - grid->half_min_x) * grid->scale;
+  f.y = (0.5 * p.y - grid->half_min_y) * grid->scale;
+  return f;
+}
+CADT_FN cadt_point cadt_clamp_to_grid(const cadt_key_grid* grid, cadt_point f) {
+  const double limit_x = CADT_CAST(double, (1u << grid->bits_x) - 1u);
+  const double limit_y = CADT_CAST(double, (1u << grid->bits_y) - 1u);
+  f.x = f.x < limit_x ? f.x : limit_x;
+  f.y = f.y < limit_y ? f.y : limit_y;
+  return f;
+}
+
+/* Bits of the axis that has fewer: levels of squares below the top ones. */
+CADT_FN cadt_u32 cadt_grid_levels(const cadt_key_grid* grid) {
+  return grid->bits_x < grid->bits_y ? grid->bits_x : grid->bits_y;
+}
+
+/* Hilbert key of a square cell of a level: 0 the largest squares, cadt_grid_levels the cells of the grid. The longer
+ * axis has more bits; its surplus goes on top, so a long box is a row of squares, each entered where the one before is
+ * left. The key of a cell begins with that of each larger cell around it. */
+CADT_FN cadt_u32 cadt_cell_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y, cadt_u32 level) {
+  const cadt_u32 mask = (1u << level) - 1u;
+  const cadt_u32 along = grid->bits_x >= grid->bits_y ? x : y, across = grid->bits_x >= grid->bits_y ? y : x;
+  const cadt_u32 low = cadt_hilbert(along & mask, across & mask, level);
+  return level == 16u ? low : (((along >> level) << (2u * level)) | low);
+}
+
 CADT_KERNEL(cadt_sort_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL cadt_u32* keys, cadt_u32 count,
-            cadt_u32 grain, double half_min_x, double half_min_y, double scale, cadt_u32 bits_x, cadt_u32 bits_y) {
-  const cadt_u32 common = bits_x < bits_y ? bits_x : bits_y;
-  const double limit_x = CADT_CAST(double, (1u << bits_x) - 1u), limit_y = CADT_CAST(double, (1u << bits_y) - 1u);
-  const cadt_u32 mask = (1u << common) - 1u;
+            cadt_u32 grain, CADT_GRID_PARAMETERS) {
+  CADT_GRID_VIEW(grid);
+  const cadt_u32 levels = cadt_grid_levels(&grid);
   CADT_FOR(i, count, grain) {
-    const cadt_point p = points[i];
-    double fx = (0.5 * p.x - half_min_x) * scale, fy = (0.5 * p.y - half_min_y) * scale;
-    fx = fx < limit_x ? fx : limit_x;
-    fy = fy < limit_y ? fy : limit_y;
-    const cadt_u32 x = CADT_CAST(cadt_u32, fx), y = CADT_CAST(cadt_u32, fy);
-    const cadt_u32 along = bits_x >= bits_y ? x : y, across = bits_x >= bits_y ? y : x;
-    const cadt_u32 low = cadt_hilbert(along & mask, across & mask, common);
-    keys[i] = common == 16u ? low : (((along >> common) << (2u * common)) | low);
+    const cadt_point f = cadt_clamp_to_grid(&grid, cadt_to_grid(&grid, points[i]));
+    keys[i] = cadt_cell_key(&grid, CADT_CAST(cadt_u32, f.x), CADT_CAST(cadt_u32, f.y), levels);
   }
 }
 

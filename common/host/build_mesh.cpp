@@ -49,8 +49,7 @@ class Builder {
     hints_ = run_.memory.allocate(n_ * word);
     const std::size_t most = n_ / 2 + n_ / 32 + 64;  // points of a launch: a level and what others left over
     for (Allocation& list : left_points_) list = run_.memory.allocate(most * word);
-    for (Allocation& list : left_edges_) list = run_.memory.allocate(edge_capacity_ * word);
-    left_counts_ = launch_.zeros(3);
+    make_edge_lists();
     run_kernel(KernelId::cadt_start_mesh, 1);
     run_.end_phase("start");
 
@@ -60,6 +59,24 @@ class Builder {
       if (run_.options.watch) show();
     }
     run_.end_phase("insert");
+    return close();
+  }
+
+  [[nodiscard]] DeviceMesh adopt(Allocation records, Allocation hints) {
+    records_ = std::move(records);
+    hints_ = std::move(hints);
+    make_edge_lists();
+    return close();
+  }
+
+ private:
+  void make_edge_lists() {
+    for (Allocation& list : left_edges_) list = run_.memory.allocate(edge_capacity_ * word);
+    left_counts_ = launch_.zeros(3);
+  }
+
+  DeviceMesh close() {
+    DeviceMesh mesh;
     certify();
     run_.end_phase("certify");
     if (counters_.count_flips(launch_, records_, 2 * n_)) run_.end_phase("statistics");
@@ -69,7 +86,6 @@ class Builder {
     return mesh;
   }
 
- private:
   /// Levels of halving until a block is one point.
   [[nodiscard]] unsigned levels() const noexcept { return static_cast<unsigned>(std::bit_width(n_ - 1)); }
 
@@ -243,5 +259,9 @@ class Builder {
 }  // namespace
 
 DeviceMesh build_mesh(Run& run, const SpatialOrder& order) { return Builder(run, order).build(); }
+
+DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records, Allocation hints) {
+  return Builder(run, order).adopt(std::move(records), std::move(hints));
+}
 
 }  // namespace cadt

@@ -37,6 +37,11 @@ Cut Launcher::cut_strided(std::size_t count) const noexcept {
   return {static_cast<std::uint32_t>(std::min(count, waves * std::max(1U, shape.parallelism))), 1};
 }
 
+Cut Launcher::cut_teams(std::size_t count, std::size_t lanes) const noexcept {
+  if (device_.shape().contiguous) return cut(count);
+  return {static_cast<std::uint32_t>(count * lanes), 1};
+}
+
 Cut Launcher::parts(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (shape.contiguous) return chunks(count);

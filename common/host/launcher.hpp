@@ -33,6 +33,8 @@ class Launcher {
   [[nodiscard]] Cut cut_spread(std::size_t count) const noexcept;
   /// For kernels whose work-items add what they found to sums: on GPUs few of them, with many elements each.
   [[nodiscard]] Cut cut_strided(std::size_t count) const noexcept;
+  /// For kernels with CADT_FOR_TEAMS: a group of `lanes` work-items for each of `count` elements on GPUs.
+  [[nodiscard]] Cut cut_teams(std::size_t count, std::size_t lanes) const noexcept;
   /// For kernels with one row of partial results a work-item (CADT_FOR_PART).
   [[nodiscard]] Cut parts(std::size_t count) const noexcept;
   /// For kernels whose work-items need a contiguous chunk on every device.

@@ -65,13 +65,6 @@ Bounds find_bounds(Run& run, const Allocation& input, std::size_t n) {
   return all;
 }
 
-/// Bits of the sort key for each axis, and cells a unit (halved coordinates).
-struct KeyGrid {
-  unsigned bits_x = 1, bits_y = 1;
-  double scale = 0;
-  [[nodiscard]] unsigned bits() const noexcept { return bits_x + bits_y; }
-};
-
 KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
   // Halved: the width of the box may exceed the largest double.
   const double width = 0.5 * bounds.max_x - 0.5 * bounds.min_x, height = 0.5 * bounds.max_y - 0.5 * bounds.min_y;
@@ -84,6 +77,8 @@ KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
   int shorter_bits = std::clamp(longer_bits - surplus, 0, 16);
   if (longer_bits + shorter_bits > 32) --longer_bits, --shorter_bits;
   KeyGrid grid;
+  grid.half_min_x = 0.5 * bounds.min_x;
+  grid.half_min_y = 0.5 * bounds.min_y;
   grid.bits_x = static_cast<unsigned>(width >= height ? longer_bits : shorter_bits);
   grid.bits_y = static_cast<unsigned>(width >= height ? shorter_bits : longer_bits);
   grid.scale = std::numeric_limits<double>::max();  // if all points are equal, or nearly so: any finite scale does
@@ -156,6 +151,12 @@ void find_duplicates(Run& run, SpatialOrder& result, const Allocation& order, co
 
 }  // namespace
 
+void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid) {
+  const Cut c = run.launcher.cut(n);
+  run.launcher.run(KernelId::cadt_sort_keys, c.items, points, keys, static_cast<std::uint32_t>(n), c.grain,
+                   grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y);
+}
+
 SpatialOrder sort_points(Run& run, Allocation input, std::size_t n) {
   Launcher& launch = run.launcher;
   const auto count = static_cast<std::uint32_t>(n);
@@ -173,10 +174,9 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n) {
   Allocation order = run.memory.allocate(n * word);
   {
     Allocation spare_order = run.memory.allocate(n * word);
-    const KeyGrid grid = choose_grid(bounds, n);
-    launch.run(KernelId::cadt_sort_keys, c.items, input, keys, count, c.grain, 0.5 * bounds.min_x, 0.5 * bounds.min_y,
-               grid.scale, grid.bits_x, grid.bits_y);
-    launch.sort(keys, order, spare, spare_order, n, grid.bits(), true);
+    result.grid = choose_grid(bounds, n);
+    make_keys(run, input, keys, n, result.grid);
+    launch.sort(keys, order, spare, spare_order, n, result.grid.bits(), true);
   }
   run.end_phase("sort");
   run.check("sort", 0.05);
@@ -187,6 +187,11 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n) {
   // All coordinates become multiples of 2^-240 below 1, in two steps since one factor may be out of range.
   const int exponent = result.wide || bounds.high < bounds.low ? 0 : -bounds.high;
   const double scale = std::ldexp(1.0, exponent / 2), scale_again = std::ldexp(1.0, exponent - exponent / 2);
+  for (const double factor : {scale, scale_again}) {
+    result.grid.half_min_x *= factor;
+    result.grid.half_min_y *= factor;
+    result.grid.scale /= factor;
+  }
   Allocation sorted = run.memory.allocate(n * sizeof(cadt_point));
   launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
   launch.run(KernelId::cadt_sort_runs, c.items, keys, sorted, order, count, c.grain);

@@ -14,6 +14,7 @@
 #include "common/host/registry.hpp"
 #include "common/host/run.hpp"
 #include "common/host/spatial_order.hpp"
+#include "common/host/star_stage.hpp"
 #include "common/host/triangulation_data.hpp"
 #include "common/host/verify_on_device.hpp"
 
@@ -51,7 +52,16 @@ void require_rules(const Options& options) {
   if (options.flip_threshold > most_flips)
     throw OptionError("flip_threshold", std::to_string(options.flip_threshold) + " is more than " +
                                             std::to_string(most_flips) + ", the most flips that are told apart");
+  if (options.strategy == Strategy::stars && (options.stabilize != Stabilize::off || options.watch))
+    throw OptionError("strategy", "stars goes with neither stabilize nor watch: they are about insertion");
   if (!(options.quality_epsilon >= 0)) throw OptionError("quality_epsilon", "must be a number and not negative");
+}
+
+/// Whether the star stage runs. It needs many cheap lanes: CPUs are faster without it.
+bool with_stars(const Run& run, std::size_t /*distinct*/) {
+  const Options& options = run.options;
+  if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
+  return false;
 }
 
 bool is_host(const Device& device) { return device.info().backend == Backend::host; }
@@ -105,7 +115,7 @@ void build(Run& run, const Points& points, std::size_t n, Outputs& outputs, Devi
   data.duplicate_count = n - order.distinct;
   data.duplicate_points = std::move(order.duplicates);
   data.representatives = std::move(order.representatives);
-  const DeviceMesh mesh = build_mesh(run, order);
+  const DeviceMesh mesh = with_stars(run, order.distinct) ? build_mesh_with_stars(run, order) : build_mesh(run, order);
   order.points.release();
   if (mesh.flat) {
     data.dimension = order.distinct >= 2 ? 1 : 0;

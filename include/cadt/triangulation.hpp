@@ -36,6 +36,13 @@ enum class Order {
   fast        ///< as the device left them: the same set, in an order that depends on the schedule
 };
 
+/// How the mesh is made. The result is the same.
+enum class Strategy {
+  automatic,  ///< what is faster, as far as the device is known
+  locks,      ///< insertion and flips in one shared mesh
+  stars       ///< as many stars as can be proven without locks; the other points by insertion
+};
+
 /// What is done with an edge that is flipped again and again (paper, section 4.4.4, Algorithm 4). Hull edges are always
 /// flipped.
 enum class Stabilize {
@@ -80,6 +87,8 @@ struct Options {
   std::optional<void*> queue;
   /// Where device memory comes from. Null: the library allocates it.
   std::shared_ptr<DeviceAllocator> allocator;
+  /// Strategy::stars with `stabilize` or `watch` is refused: they show insertion.
+  Strategy strategy = Strategy::automatic;
   Stabilize stabilize = Stabilize::off;
   /// R of Algorithm 4: flips of an edge slot before `stabilize` applies to it. At most 1000.
   unsigned flip_threshold = 3;

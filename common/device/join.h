@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The join of the proven part of the mesh with the rest. A triangle without a proven vertex belongs to the Delaunay
+ * triangulation of the unproven vertices alone, since an empty circle stays empty in a subset (docs/algorithm.md, "The
+ * join"). That smaller mesh is built by insertion; here those of its triangles are found that do not lie under proven
+ * ones, and both parts are linked.
+ *
+ * The two parts meet in edges whose ends are unproven: edge 0 of an open record on one side, an edge of the smaller mesh
+ * on the other.
+ */
+#ifndef CADT_DEVICE_JOIN_H
+#define CADT_DEVICE_JOIN_H
+
+#include "common/device/mesh.h"
+
+/* The unproven vertices, closed up. `ranks` is the scan of 1 for each. */
+CADT_KERNEL(cadt_unproven_pack, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_point* points,
+            CADT_GLOBAL cadt_point* subset, CADT_GLOBAL cadt_u32* positions, cadt_u32 n, cadt_u32 grain) {
+  CADT_FOR(v, n, grain) {
+    const cadt_u32 rank = ranks[v];
+    if (ranks[v + 1u] == rank) continue;
+    subset[rank] = points[v];
+    positions[rank] = v;
+  }
+}
+
+CADT_FN cadt_u32 cadt_edge_hash(cadt_u32 a, cadt_u32 b) {
+  cadt_u32 x = a * 2654435761u ^ (b * 0x85EBCA6Bu + 0x9E3779B9u);
+  x ^= x >> 15;
+  x *= 0x2C1B3C6Du;
+  return x ^ (x >> 13);
+}
+
+/* A hash table of the open records by the ends of their edge 0, from the first to the second; `mask` + 1 places, a
+ * power of two. \pre the table is CADT_NONE */
+CADT_KERNEL(cadt_join_enter, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* open, cadt_u32 count,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* table, cadt_u32 mask) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 t = open[i];
+    cadt_u32 at = cadt_edge_hash(records[t].word[1], records[t].word[2]) & mask;
+    while (!cadt_cas_relaxed(table + at, CADT_NONE, t)) at = (at + 1u) & mask;
+  }
+}
+
+/* covers[3 r + k]: the open record that lies on this side of edge k of record r of the smaller mesh, or CADT_NONE */
+CADT_KERNEL(cadt_join_cover, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_record* smaller,
+            CADT_GLOBAL const cadt_u32* positions, cadt_u32 slots, cadt_u32 grain, CADT_GLOBAL const cadt_u32* table,
+            cadt_u32 mask, CADT_GLOBAL cadt_u32* covers, CADT_GLOBAL cadt_u32* roots) {
+  CADT_FOR(r, slots, grain) {
+    const cadt_record s = smaller[r];
+    roots[r] = r;
+    for (cadt_u32 k = 0u; k < 3u; ++k) {
+      cadt_u32 cover = CADT_NONE;
+      const cadt_u32 from = CADT_PICK(k, s.word[1], s.word[2], s.word[0]);
+      const cadt_u32 to = CADT_PICK(k, s.word[2], s.word[0], s.word[1]);
+      if (s.word[CADT_WORD_LOCK] != 0u && from != CADT_GHOST && to != CADT_GHOST) {
+        const cadt_u32 a = positions[from], b = positions[to];
+        cadt_u32 at = cadt_edge_hash(a, b) & mask;
+        for (cover = table[at]; cover != CADT_NONE; cover = table[at]) {
+          if (records[cover].word[1] == a && records[cover].word[2] == b) break;
+          at = (at + 1u) & mask;
+        }
+      }
+      covers[3u * r + k] = cover;
+    }
+  }
+}
+
+/* Components of the smaller mesh without the edges that have an open record on a side; each is named by its lowest
+ * record. Two trees are joined by one compare-and-swap of the higher root. */
+CADT_FN cadt_u32 cadt_root_of(CADT_GLOBAL cadt_u32* roots, cadt_u32 r) {
+  for (;;) {
+    const cadt_u32 up = cadt_load_relaxed(roots + r);
+    if (up == r) return r;
+    const cadt_u32 further = cadt_load_relaxed(roots + up);
+    if (further != up) cadt_store_relaxed(roots + r, further); /* shorter for those who come later */
+    r = up;
+  }
+}
+
+CADT_KERNEL(cadt_join_components, CADT_GLOBAL const cadt_record* smaller, cadt_u32 slots, cadt_u32 grain,
+            CADT_GLOBAL const cadt_u32* covers, CADT_GLOBAL cadt_u32* roots) {
+  CADT_FOR(r, slots, grain) {
+    const cadt_record s = smaller[r];
+    if (s.word[CADT_WORD_LOCK] == 0u) continue;
+    for (cadt_u32 k = 0u; k < 3u; ++k) {
+      const cadt_u32 link = CADT_PICK(k, s.word[4], s.word[5], s.word[6]), other = CADT_LINK_RECORD(link);
+      if (other < r || covers[3u * r + k] != CADT_NONE || covers[3u * other + CADT_LINK_EDGE(link)] != CADT_NONE)
+        continue;
+      cadt_u32 a = cadt_root_of(roots, r), b = cadt_root_of(roots, other);
+      while (a != b) {
+        const cadt_u32 high = a > b ? a : b, low = a > b ? b : a;
+        if (cadt_cas_relaxed(roots + high, high, low)) break;
+        a = cadt_root_of(roots, high);
+        b = cadt_root_of(roots, low);
+      }
+    }
+  }
+}
+
+/* hidden[root] = 1 for components under the proven part. \pre hidden is 0 */
+CADT_KERNEL(cadt_join_hide, CADT_GLOBAL const cadt_u32* covers, CADT_GLOBAL cadt_u32* roots, cadt_u32 slots,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* hidden) {
+  CADT_FOR(r, slots, grain) {
+    if (covers[3u * r] != CADT_NONE || covers[3u * r + 1u] != CADT_NONE || covers[3u * r + 2u] != CADT_NONE)
+      cadt_store_relaxed(hidden + cadt_root_of(roots, r), 1u);
+  }
+}
+
+/* 1 for records that belong to the whole mesh; their scan, with a 0 at the end, numbers them. */
+CADT_KERNEL(cadt_join_flags, CADT_GLOBAL const cadt_record* smaller, CADT_GLOBAL cadt_u32* roots,
+            CADT_GLOBAL const cadt_u32* hidden, cadt_u32 slots, cadt_u32 grain, CADT_GLOBAL cadt_u32* flags) {
+  if (cadt_item == 0u) flags[slots] = 0u;
+  CADT_FOR(r, slots, grain) {
+    flags[r] = smaller[r].word[CADT_WORD_LOCK] != 0u && !hidden[cadt_root_of(roots, r)] ? 1u : 0u;
+  }
+}
+
+/* Copies them behind the `before` records of the proven part, and links both. */
+CADT_KERNEL(cadt_join_records, CADT_GLOBAL const cadt_record* smaller, CADT_GLOBAL const cadt_u32* covers,
+            CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_u32* positions, cadt_u32 slots, cadt_u32 grain,
+            cadt_u32 before, CADT_GLOBAL cadt_record* records, CADT_GLOBAL cadt_u32* hints) {
+  CADT_FOR(r, slots, grain) {
+    const cadt_record s = smaller[r];
+    if (s.word[CADT_WORD_LOCK] == 0u) continue;
+    const cadt_u32 taken = ranks[r + 1u] != ranks[r] ? 1u : 0u, t = before + ranks[r];
+    for (cadt_u32 k = 0u; k < 3u; ++k) {
+      const cadt_u32 link = CADT_PICK(k, s.word[4], s.word[5], s.word[6]), other = CADT_LINK_RECORD(link);
+      const cadt_u32 cover = covers[3u * r + k], beyond = covers[3u * other + CADT_LINK_EDGE(link)];
+      if (taken) {
+        records[t].word[CADT_WORD_LINK + k] =
+            beyond != CADT_NONE ? CADT_LINK(beyond, 0u) : CADT_LINK(before + ranks[other], CADT_LINK_EDGE(link));
+        if (beyond != CADT_NONE) records[beyond].word[CADT_WORD_LINK] = CADT_LINK(t, k);
+        const cadt_u32 v = CADT_PICK(k, s.word[0], s.word[1], s.word[2]);
+        const cadt_u32 vertex = v == CADT_GHOST ? v : positions[v];
+        records[t].word[k] = vertex;
+        if (v != CADT_GHOST) cadt_store_relaxed(hints + vertex, t);
+      } else if (cover != CADT_NONE && beyond != CADT_NONE) { /* proven on both sides */
+        records[cover].word[CADT_WORD_LINK] = CADT_LINK(beyond, 0u);
+      }
+    }
+    if (taken) {
+      records[t].word[CADT_WORD_LOCK] = 2u;
+      records[t].word[CADT_WORD_FLIPS] = s.word[CADT_WORD_FLIPS];
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,305 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The star stage: stars of vertices, each by one lane from the points around it, without a lock. A star is proven, or
+ * left to the lock-based insertion (docs/algorithm.md, "The star stage").
+ *
+ * In inverted space, u = (q - p) / |q - p|^2, the link of p is the convex hull of all u, and incircle is orientation.
+ * 1. An octagon: the extreme points of eight directions among the nearest cells. What lies inside of it is no neighbour
+ *    of p, and that is most of the window; what may lie outside is a candidate.
+ * 2. The hull of the candidates, by a scan in the order of their angles.
+ * 3. All circles through p and two consecutive neighbours must lie within the cells that were searched.
+ * All this is in single precision with bounds of its errors; what a bound does not decide, an exact predicate does, so
+ * ties are decided as everywhere else.
+ */
+#ifndef CADT_DEVICE_STAR_H
+#define CADT_DEVICE_STAR_H
+
+#include "common/device/predicates.h"
+#include "common/device/window.h"
+
+/* Error of a difference of two points of a window, in cells: coordinates are at most 12 cells from the centre, so they
+ * are rounded by at most 2^-21; their units are exact to 2^-32. */
+#define CADT_WINDOW_ERROR 2e-6f
+#define CADT_PLACE_BITS 11u
+#define CADT_PLACE_MASK 2047u
+
+typedef struct {
+  float x, y;
+} cadt_vector;
+
+CADT_FN cadt_vector cadt_vector_to(CADT_TEAM_PTR const cadt_window* w, cadt_u32 from, cadt_u32 to) {
+  cadt_vector d;
+  d.x = w->x[to] - w->x[from];
+  d.y = w->y[to] - w->y[from];
+  return d;
+}
+CADT_FN float cadt_square(cadt_vector d) { return d.x * d.x + d.y * d.y; }
+CADT_FN float cadt_cross(cadt_vector a, cadt_vector b) { return a.x * b.y - a.y * b.x; }
+CADT_FN float cadt_size(cadt_vector a) { return cadt_fabsf(a.x) + cadt_fabsf(a.y); }
+CADT_FN cadt_vector cadt_invert(cadt_vector d) {
+  const float inverse = cadt_about_inverse(cadt_square(d));
+  d.x *= inverse;
+  d.y *= inverse;
+  return d;
+}
+
+/* A value with the place of a point in its lowest bits: the largest of several tells whose it is. */
+CADT_FN float cadt_mark(float value, cadt_u32 place) {
+  return cadt_float_of_bits((cadt_bits_of_float(value) & ~CADT_PLACE_MASK) | place);
+}
+CADT_FN cadt_u32 cadt_marked(float value) { return cadt_bits_of_float(value) & CADT_PLACE_MASK; }
+
+/* What a lane needs to make stars. */
+typedef struct {
+  CADT_TEAM_PTR cadt_window* w;
+  const cadt_window_shape* shape;
+  CADT_GLOBAL const cadt_point* points;
+  cadt_tally* tally;
+} cadt_star_maker;
+
+CADT_FN cadt_point cadt_exact_point(const cadt_star_maker* m, cadt_u32 place) { return m->points[m->w->at[place]]; }
+
+CADT_FN cadt_u32 cadt_link_place(const cadt_star_maker* m, cadt_u32 k) {
+  return m->w->link[k * CADT_STAR_LANES + cadt_team_lane] & CADT_PLACE_MASK;
+}
+
+/* Orientation of p, a, b; the vectors are from p, inverted or not. */
+CADT_FN cadt_i32 cadt_star_orientation(const cadt_star_maker* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_vector ua,
+                                       cadt_vector ub, float sigma) {
+  const float cross = cadt_cross(ua, ub), bound = 4.0f * sigma * cadt_size(ua) * cadt_size(ub);
+  if (cross > bound) return 1;
+  if (-cross > bound) return -1;
+  return cadt_orientation(cadt_exact_point(m, p), cadt_exact_point(m, a), cadt_exact_point(m, b), m->tally);
+}
+
+/* Whether b is a corner between a and c on the hull in inverted space. 2: the question makes no sense. */
+CADT_FN cadt_u32 cadt_star_keeps(const cadt_star_maker* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_u32 c,
+                                 cadt_vector ua, cadt_vector ub, cadt_vector uc, float sigma) {
+  cadt_vector e, f;
+  e.x = ub.x - ua.x;
+  e.y = ub.y - ua.y;
+  f.x = uc.x - ub.x;
+  f.y = uc.y - ub.y;
+  const float largest = cadt_maxf(cadt_maxf(cadt_size(ua), cadt_size(ub)), cadt_size(uc));
+  const float cross = cadt_cross(e, f), bound = 4.0f * sigma * largest * (cadt_size(e) + cadt_size(f));
+  if (cross > bound) return 1u;
+  if (-cross > bound) return 0u;
+  const cadt_point P = cadt_exact_point(m, p), A = cadt_exact_point(m, a), B = cadt_exact_point(m, b);
+  if (cadt_orientation(P, A, B, m->tally) <= 0) return 2u;
+  return cadt_incircle(P, A, B, cadt_exact_point(m, c), m->tally) < 0 ? 1u : 0u;
+}
+
+/* Points of a row of cells around cell (x, y). */
+CADT_FN cadt_u32 cadt_row_begin(const cadt_star_maker* m, cadt_u32 row, cadt_u32 column) {
+  return m->w->cells[row * m->shape->side + column];
+}
+
+/* The star of the point at place p in cell (x, y), searched for in the cells up to `reach` away, which must be in the
+ * window; `near` cells are enough for the octagon. Returns the number of neighbours, counterclockwise in w->link, or 0
+ * if there is no proof. */
+CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x, cadt_u32 y, cadt_u32 near,
+                                cadt_u32 reach) {
+  CADT_TEAM_PTR cadt_window* w = m->w;
+  const float px = w->x[p], py = w->y[p], least = -3e38f;
+  float best[8];
+  float nearest = 0.0f; /* 1 / distance^2 */
+  for (cadt_u32 k = 0u; k < 8u; ++k) best[k] = least;
+  for (cadt_u32 row = y - near; row <= y + near; ++row) {
+    const cadt_u32 end = cadt_row_begin(m, row, x + near + 1u);
+    for (cadt_u32 j = cadt_row_begin(m, row, x - near); j < end; ++j) {
+      if (j == p) continue;
+      const float dx = w->x[j] - px, dy = w->y[j] - py, inverse = cadt_about_inverse(cadt_about_fma(dx, dx, dy * dy));
+      const float ux = dx * inverse, uy = dy * inverse;
+      nearest = cadt_maxf(nearest, inverse);
+      best[0] = cadt_maxf(best[0], cadt_mark(ux, j));
+      best[1] = cadt_maxf(best[1], cadt_mark(ux + uy, j));
+      best[2] = cadt_maxf(best[2], cadt_mark(uy, j));
+      best[3] = cadt_maxf(best[3], cadt_mark(uy - ux, j));
+      best[4] = cadt_maxf(best[4], cadt_mark(-ux, j));
+      best[5] = cadt_maxf(best[5], cadt_mark(-ux - uy, j));
+      best[6] = cadt_maxf(best[6], cadt_mark(-uy, j));
+      best[7] = cadt_maxf(best[7], cadt_mark(ux - uy, j));
+    }
+  }
+  if (!(nearest > 0.0f && nearest < 1e7f)) return 0u; /* nobody, or too near for single precision */
+  /* Relative error of a difference, and of its inverse. Points further off than a cell have smaller ones. */
+  const float rho = CADT_WINDOW_ERROR * cadt_sqrtf(cadt_maxf(nearest, 1.0f)), sigma = 3.0f * rho + 1e-6f;
+
+  /* Half-planes n . u < 1, that is n . d < d . d */
+  float nx[8], ny[8], error = 0.0f;
+  cadt_u32 first = p;
+  {
+    float largest = 0.0f;
+    cadt_u32 place = cadt_marked(best[0]);
+    cadt_vector u = cadt_invert(cadt_vector_to(w, p, place));
+    float longest = cadt_square(u);
+    first = place;
+    for (cadt_u32 k = 0u; k < 8u; ++k) {
+      const cadt_u32 next = cadt_marked(best[(k + 1u) & 7u]);
+      const cadt_vector v = cadt_invert(cadt_vector_to(w, p, next));
+      nx[k] = ny[k] = 0.0f;
+      if (next != place) {
+        const float cross = cadt_cross(u, v), lengths = cadt_square(u) * cadt_square(v);
+        /* the hull must go round p, at angles that are not small */
+        if (!(cross > 0.0f && cross * cross > 0.0025f * lengths)) return 0u;
+        const float inverse = cadt_about_inverse(cross);
+        nx[k] = (v.y - u.y) * inverse;
+        ny[k] = (u.x - v.x) * inverse;
+        largest = cadt_maxf(largest, (nx[k] * nx[k] + ny[k] * ny[k]) * (lengths * inverse * inverse));
+        if (cadt_square(v) > longest) longest = cadt_square(v), first = next;
+      }
+      place = next;
+      u = v;
+    }
+    error = 8.0f * sigma * cadt_sqrtf(largest);
+  }
+
+  const float shrink = 1.0f - 4.0f * rho - 1e-6f;
+  cadt_u32 count = 0u;
+  for (cadt_u32 row = y - reach; row <= y + reach; ++row) {
+    const cadt_u32 end = cadt_row_begin(m, row, x + reach + 1u);
+    for (cadt_u32 j = cadt_row_begin(m, row, x - reach); j < end; ++j) {
+      const float dx = w->x[j] - px, dy = w->y[j] - py;
+      float t = cadt_about_fma(nx[0], dx, ny[0] * dy);
+      for (cadt_u32 k = 1u; k < 8u; ++k) t = cadt_maxf(t, cadt_about_fma(nx[k], dx, ny[k] * dy));
+      if (cadt_about_fma(error, cadt_fabsf(dx) + cadt_fabsf(dy), t) < cadt_about_fma(dx, dx, dy * dy) * shrink ||
+          j == p)
+        continue;
+      if (count < CADT_CAST(cadt_u32, CADT_CANDIDATES)) w->link[count * CADT_STAR_LANES + cadt_team_lane] = j;
+      ++count;
+    }
+  }
+  if (count < 3u || count > CADT_CAST(cadt_u32, CADT_CANDIDATES)) return 0u;
+
+  /* Sorted by the angle from `first` on. */
+  const cadt_vector start = cadt_vector_to(w, p, first);
+  for (cadt_u32 k = 0u; k < count; ++k) {
+    const cadt_u32 place = w->link[k * CADT_STAR_LANES + cadt_team_lane];
+    const cadt_vector d = cadt_vector_to(w, p, place);
+    const float cross = cadt_cross(start, d), dot = start.x * d.x + start.y * d.y;
+    const float t = cross / (cadt_fabsf(cross) + cadt_fabsf(dot));
+    const float angle = place == first ? 0.0f : (dot >= 0.0f ? (cross >= 0.0f ? t : 4.0f + t) : 2.0f - t);
+    const cadt_u32 key = (CADT_CAST(cadt_u32, angle * 524287.0f) << CADT_PLACE_BITS) | place;
+    cadt_u32 at = k;
+    for (; at > 0u; --at) {
+      const cadt_u32 other = w->link[(at - 1u) * CADT_STAR_LANES + cadt_team_lane];
+      if (other < key) break;
+      w->link[at * CADT_STAR_LANES + cadt_team_lane] = other;
+    }
+    w->link[at * CADT_STAR_LANES + cadt_team_lane] = key;
+  }
+  if (cadt_link_place(m, 0u) != first) return 0u;
+
+  /* The hull; what was on it and is no corner is dropped. It begins and ends with `first`. */
+  cadt_u32 size = 1u, last = first;
+  const cadt_vector us = cadt_invert(start);
+  cadt_vector ul = us, ua = us, ub = us; /* of the last candidate; of the last two corners */
+  for (cadt_u32 k = 1u; k <= count; ++k) {
+    const cadt_u32 c = k < count ? cadt_link_place(m, k) : first;
+    const cadt_vector uc = k < count ? cadt_invert(cadt_vector_to(w, p, c)) : us;
+    if (cadt_star_orientation(m, p, last, c, ul, uc, sigma) <= 0) return 0u; /* their order is not certain */
+    last = c;
+    ul = uc;
+    while (size >= 2u) {
+      const cadt_u32 a = cadt_link_place(m, size - 2u), b = cadt_link_place(m, size - 1u);
+      const cadt_u32 keeps = cadt_star_keeps(m, p, a, b, c, ua, ub, uc, sigma);
+      if (keeps == 2u) return 0u;
+      if (keeps) break;
+      --size;
+      ub = ua;
+      if (size >= 2u) ua = cadt_invert(cadt_vector_to(w, p, cadt_link_place(m, size - 2u)));
+    }
+    if (k < count) {
+      w->link[size * CADT_STAR_LANES + cadt_team_lane] = c;
+      ++size;
+      ua = ub;
+      ub = uc;
+    }
+  }
+  if (size < 3u || size > CADT_CAST(cadt_u32, CADT_STAR_DEGREE)) return 0u;
+  const cadt_vector u1 = cadt_invert(cadt_vector_to(w, p, cadt_link_place(m, 1u)));
+  if (cadt_star_keeps(m, p, cadt_link_place(m, size - 1u), first, cadt_link_place(m, 1u), ub, us, u1, sigma) != 1u)
+    return 0u;
+
+  /* The circles. Beyond the edge of the grid there are no points. */
+  const float middle = 0.5f * CADT_CAST(float, m->shape->side), far = 1e30f;
+  const cadt_i32 low_x = CADT_CAST(cadt_i32, x - reach), low_y = CADT_CAST(cadt_i32, y - reach);
+  const cadt_i32 high_x = CADT_CAST(cadt_i32, x + reach) + 1, high_y = CADT_CAST(cadt_i32, y + reach) + 1;
+  const float right = high_x >= m->shape->right ? far : CADT_CAST(float, high_x) - middle - px;
+  const float left = low_x <= m->shape->left ? far : px + middle - CADT_CAST(float, low_x);
+  const float top = high_y >= m->shape->top ? far : CADT_CAST(float, high_y) - middle - py;
+  const float bottom = low_y <= m->shape->bottom ? far : py + middle - CADT_CAST(float, low_y);
+  cadt_vector u = us;
+  cadt_u32 a = first;
+  for (cadt_u32 k = 1u; k <= size; ++k) {
+    const cadt_u32 b = k < size ? cadt_link_place(m, k) : first;
+    const cadt_vector v = cadt_invert(cadt_vector_to(w, p, b));
+    const float cross = cadt_cross(u, v), lengths = cadt_sqrtf(cadt_square(u) * cadt_square(v));
+    if (!(cross > 100.0f * sigma * lengths)) return 0u;
+    if (cadt_star_orientation(m, p, a, b, u, v, sigma) <= 0) return 0u;
+    const float inverse = cadt_about_inverse(cross);
+    const float cx = 0.5f * (v.y - u.y) * inverse, cy = 0.5f * (u.x - v.x) * inverse;
+    const float radius = cadt_sqrtf(cx * cx + cy * cy);
+    const float reached = radius * (1.0f + 16.0f * sigma * lengths * inverse) + 1e-4f;
+    if (cx + reached > right || reached - cx > left || cy + reached > top || reached - cy > bottom) return 0u;
+    u = v;
+    a = b;
+  }
+  return size;
+}
+
+/* Number of the neighbours of each vertex in counterclockwise order, CADT_STAR_DEGREE words each; `sizes`: how many
+ * there are, 0 for vertices without a proven star. */
+CADT_FN void cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, CADT_GLOBAL cadt_u32* links,
+                             CADT_GLOBAL cadt_u32* sizes) {
+  const cadt_u32 vertex = m->w->at[p];
+  sizes[vertex] = size;
+  for (cadt_u32 k = 0u; k < size; ++k)
+    links[CADT_STAR_DEGREE * CADT_CAST(cadt_u64, vertex) + k] = m->w->at[cadt_link_place(m, k)];
+}
+
+/* \pre sizes are 0 */
+CADT_KERNEL(cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys, cadt_u32 n,
+            CADT_GRID_PARAMETERS, CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes) {
+  CADT_TEAM_MEMORY cadt_window window;
+  CADT_GRID_VIEW(grid);
+  cadt_tally tally;
+  cadt_tally_clear(&tally);
+  CADT_FOR_TEAMS(t, tile_count, grain) {
+    const cadt_window_shape shape = cadt_shape_of_window(&grid, points, tiles[t], tiles[t + 1u].begin);
+    cadt_star_maker maker;
+    maker.w = &window;
+    maker.shape = &shape;
+    maker.points = points;
+    maker.tally = &tally;
+    if (cadt_load_window(&window, &shape, &grid, points, keys, n)) {
+      const cadt_u32 own = window.rows[shape.tile_side];
+      const cadt_u32 wanted = own < 2u * shape.tile_side * shape.tile_side ? 3u : 2u;
+      const cadt_u32 reach = cadt_min_u32(wanted, shape.halo);
+      const float middle = 0.5f * CADT_CAST(float, shape.side);
+      const cadt_u32 lanes = cadt_min_u32(cadt_team_lanes, CADT_STAR_LANES);
+      for (cadt_u32 round = 0u; round < 2u; ++round) {
+        const cadt_u32 count = round ? window.again_count : own;
+        for (cadt_u32 i = cadt_team_lane; cadt_team_lane < lanes && i < count; i += lanes) {
+          const cadt_u32 number = round ? window.again[i] : i;
+          cadt_u32 row = 0u;
+          while (number >= window.rows[row + 1u]) ++row;
+          const cadt_u32 y = shape.halo + row;
+          const cadt_u32 p = window.cells[y * shape.side + shape.halo] + (number - window.rows[row]);
+          cadt_u32 x = CADT_CAST(cadt_u32, window.x[p] + middle);
+          x = x < shape.halo ? shape.halo : cadt_min_u32(x, shape.halo + shape.tile_side - 1u);
+          const cadt_u32 size = cadt_make_star(&maker, p, x, y, round ? 2u : 1u, round ? shape.halo : reach);
+          if (size)
+            cadt_store_star(&maker, p, size, links, sizes);
+          else if (!round)
+            window.again[cadt_team_add(&window.again_count, 1u)] = CADT_CAST(cadt_u16, number);
+        }
+        CADT_TEAM_SYNC();
+      }
+    }
+    CADT_TEAM_SYNC();
+  }
+}
+
+#endif

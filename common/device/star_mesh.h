@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Records of the mesh from proven stars. A triangle with a proven vertex is in the star of each of its proven vertices;
+ * the one of them with the lowest position owns it and numbers it: its owned triangles come one after another, in the
+ * order of its star. So each vertex finds the numbers of all its triangles in the stars of its neighbours.
+ */
+#ifndef CADT_DEVICE_STAR_MESH_H
+#define CADT_DEVICE_STAR_MESH_H
+
+#include "common/device/mesh.h"
+#include "common/device/star.h"
+
+typedef struct {
+  CADT_GLOBAL const cadt_u32* links; /* CADT_STAR_DEGREE words a vertex */
+  CADT_GLOBAL const cadt_u32* sizes; /* neighbours; owned triangles in bits above CADT_STAR_OWNED */
+  CADT_GLOBAL const cadt_u32* bases; /* number of the first owned triangle */
+} cadt_star_set;
+
+#define CADT_STAR_OWNED 8u
+#define CADT_STAR_SIZE(word) ((word)&255u)
+
+CADT_FN CADT_GLOBAL const cadt_u32* cadt_star_of(const cadt_star_set* s, cadt_u32 v) {
+  return s->links + CADT_CAST(cadt_u64, v) * CADT_STAR_DEGREE;
+}
+
+/* Number of triangle k of the star of its owner. */
+CADT_FN cadt_u32 cadt_owned_number(const cadt_star_set* s, cadt_u32 owner, cadt_u32 k) {
+  return s->bases[owner] + cadt_popcount((s->sizes[owner] >> CADT_STAR_OWNED) & ((1u << k) - 1u));
+}
+
+/* Counts: owned triangles of each vertex, vertices without a star (1 each), both with a 0 at the end; totals[0]: owned
+ * triangles with no other proven vertex. */
+CADT_KERNEL(cadt_star_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, cadt_u32 n, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* owned, CADT_GLOBAL cadt_u32* unproven, CADT_GLOBAL cadt_u32* totals) {
+  cadt_u32 open = 0u;
+  if (cadt_item == 0u) owned[n] = unproven[n] = 0u;
+  CADT_FOR(v, n, grain) {
+    const cadt_u32 size = CADT_STAR_SIZE(sizes[v]); /* others may have the bits of owned triangles already */
+    CADT_GLOBAL const cadt_u32* link = links + CADT_CAST(cadt_u64, v) * CADT_STAR_DEGREE;
+    cadt_u32 mask = 0u, before = 0u, first = 0u, proven_before = 0u, proven_first = 0u;
+    for (cadt_u32 k = 0u; k <= size && size; ++k) {
+      const cadt_u32 a = k < size ? link[k] : link[0];
+      const cadt_u32 proven = k < size ? (CADT_STAR_SIZE(cadt_load_relaxed(sizes + a)) != 0u ? 1u : 0u) : proven_first;
+      const cadt_u32 lower = k < size ? (proven && a < v ? 1u : 0u) : first;
+      if (k == 0u) {
+        first = lower;
+        proven_first = proven;
+      } else if (!lower && !before) {
+        mask |= 1u << (k - 1u);
+        if (!proven && !proven_before) ++open;
+      }
+      before = lower;
+      proven_before = proven;
+    }
+    cadt_store_relaxed(sizes + v, size | (mask << CADT_STAR_OWNED));
+    owned[v] = cadt_popcount(mask);
+    unproven[v] = size ? 0u : 1u;
+  }
+  if (open) cadt_add_relaxed(totals, open);
+}
+
+/* Where triangle k of v's star is: its record and the slot of v in it. The slots are owner, next, next. */
+CADT_FN void cadt_find_triangle_of_star(const cadt_star_set* s, cadt_u32 v, cadt_u32 a, cadt_u32 b, cadt_u32 a_proven,
+                                        cadt_u32 b_proven, cadt_u32* record, cadt_u32* slot) {
+  /* owner and the vertex after it */
+  cadt_u32 owner = a, next = b;
+  *slot = 2u;
+  if (!(a_proven && a < v && !(b_proven && b < a))) owner = b, next = v, *slot = 1u;
+  CADT_GLOBAL const cadt_u32* link = cadt_star_of(s, owner);
+  const cadt_u32 size = CADT_STAR_SIZE(s->sizes[owner]);
+  cadt_u32 k = 0u;
+  while (k < size && link[k] != next) ++k;
+  *record = cadt_owned_number(s, owner, k);
+}
+
+/* Records of all triangles that have a proven vertex. `open` lists those whose edge 0 has no proven vertex: what is
+ * across it is found by the join (join.h). */
+CADT_KERNEL(cadt_star_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* sizes,
+            CADT_GLOBAL const cadt_u32* bases, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_record* records,
+            CADT_GLOBAL cadt_u32* hints, CADT_GLOBAL cadt_u32* open, CADT_GLOBAL cadt_u32* totals) {
+  cadt_star_set stars;
+  stars.links = links;
+  stars.sizes = sizes;
+  stars.bases = bases;
+  CADT_FOR(v, n, grain) {
+    const cadt_u32 word = sizes[v], size = CADT_STAR_SIZE(word), mask = word >> CADT_STAR_OWNED;
+    if (!size) continue;
+    CADT_GLOBAL const cadt_u32* link = cadt_star_of(&stars, v);
+    cadt_u32 proven = 0u;
+    cadt_u32 record[CADT_STAR_DEGREE], slot[CADT_STAR_DEGREE];
+    for (cadt_u32 k = 0u; k < size; ++k) proven |= (CADT_STAR_SIZE(sizes[link[k]]) ? 1u : 0u) << k;
+    for (cadt_u32 k = 0u; k < size; ++k) {
+      const cadt_u32 k1 = k + 1u < size ? k + 1u : 0u;
+      if ((mask >> k) & 1u) {
+        record[k] = cadt_owned_number(&stars, v, k);
+        slot[k] = 0u;
+      } else {
+        cadt_find_triangle_of_star(&stars, v, link[k], link[k1], (proven >> k) & 1u, (proven >> k1) & 1u, &record[k],
+                                   &slot[k]);
+      }
+    }
+    for (cadt_u32 k = 0u; k < size; ++k) {
+      const cadt_u32 after = k + 1u < size ? k + 1u : 0u, before = k ? k - 1u : size - 1u;
+      /* across the edges at v: behind the next neighbour, behind this one */
+      const cadt_u32 link_after = CADT_LINK(record[after], CADT_PREV(slot[after]));
+      const cadt_u32 link_before = CADT_LINK(record[before], CADT_NEXT(slot[before]));
+      CADT_GLOBAL cadt_u32* w = records[record[k]].word;
+      if (slot[k] == 0u) {
+        w[0] = v;
+        w[1] = link[k];
+        w[2] = link[after];
+        w[CADT_WORD_LOCK] = 2u;
+        w[CADT_WORD_LINK + 1] = link_after;
+        w[CADT_WORD_LINK + 2] = link_before;
+        w[CADT_WORD_FLIPS] = 0u;
+        if (!((proven >> k) & 1u) && !((proven >> after) & 1u)) {
+          w[CADT_WORD_LINK] = CADT_NONE;
+          open[cadt_add_relaxed(totals + 1, 1u)] = record[k];
+        }
+      } else {
+        /* edge 0 is at v; if both of its ends are proven, both store the same */
+        cadt_store_relaxed(w + CADT_WORD_LINK, slot[k] == 2u ? link_after : link_before);
+      }
+    }
+    hints[v] = record[0];
+  }
+}
+
+#endif

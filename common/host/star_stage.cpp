@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/host/star_stage.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <string>
+#include <utility>
+
+#include "common/host/device_constants.hpp"
+
+namespace cadt {
+namespace {
+
+using namespace device_constants;
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+constexpr unsigned most_bits = 24;  // of an axis: cells of a window are counted in 32 bits
+
+class StarStage {
+ public:
+  StarStage(Run& run, const SpatialOrder& order)
+      : run_(run), launch_(run.launcher), order_(order), n_(order.distinct), count_(static_cast<std::uint32_t>(n_)) {}
+
+  [[nodiscard]] DeviceMesh build() {
+    if (!make_stars()) return build_mesh(run_, order_);
+    count_triangles();
+    run_.statistics.proven_stars = n_ - unproven_;
+    if (unproven_ == n_) {
+      release_stars();
+      return build_mesh(run_, order_);
+    }
+    write_records();
+    release_stars();
+    join();
+    return certify_mesh(run_, order_, std::move(records_), std::move(hints_));
+  }
+
+ private:
+  /// False if there are no tiles.
+  bool make_stars() {
+    const KeyGrid& grid = order_.grid;
+    const Cut c = launch_.cut(n_);
+    Allocation keys = run_.memory.allocate(n_ * word), ranks = run_.memory.allocate((n_ + 1) * word);
+    make_keys(run_, order_.points, keys, n_, grid);
+    const std::uint32_t levels = grid.levels();
+    Allocation descents = launch_.zeros(1);
+    launch_.run(KernelId::cadt_tile_flags, c.items, keys, ranks, count_, levels, c.grain, descents);
+    if (launch_.read_word(descents, 0) != 0) return false;
+    launch_.scan(ranks, n_ + 1);
+    const std::uint32_t count = launch_.read_word(ranks, n_);
+    Allocation tiles = run_.memory.allocate((count + std::size_t{1}) * sizeof(cadt_tile));
+    launch_.run(KernelId::cadt_tile_pack, c.items, keys, ranks, tiles, count_, levels, c.grain);
+    ranks.release();
+    run_.statistics.tiles = count;
+    run_.end_phase("tiles");
+    sizes_ = run_.memory.allocate_zeros(n_ * word);
+    links_ = run_.memory.allocate(n_ * CADT_STAR_DEGREE * word);
+    const Cut teams = launch_.cut_teams(count, CADT_STAR_LANES);
+    launch_.run(KernelId::cadt_stars, teams.items, order_.points, keys, count_, grid.half_min_x, grid.half_min_y,
+                grid.scale, grid.bits_x, grid.bits_y, tiles, count, teams.grain, links_, sizes_);
+    run_.end_phase("stars");
+    return true;
+  }
+
+  void count_triangles() {
+    bases_ = run_.memory.allocate((n_ + 1) * word);
+    ranks_ = run_.memory.allocate((n_ + 1) * word);
+    totals_ = launch_.zeros(2);
+    const Cut c = launch_.cut(n_);
+    launch_.run(KernelId::cadt_star_counts, c.items, links_, sizes_, count_, c.grain, bases_, ranks_, totals_);
+    launch_.scan(bases_, n_ + 1);
+    launch_.scan(ranks_, n_ + 1);
+    proven_triangles_ = launch_.read_word(bases_, n_);
+    unproven_ = launch_.read_word(ranks_, n_);
+    open_count_ = launch_.read_word(totals_, 0);
+  }
+
+  void write_records() {
+    records_ = run_.memory.allocate(2 * n_ * sizeof(cadt_record));
+    // two records stay unused
+    run_.device.fill(*records_, (2 * n_ - 2) * sizeof(cadt_record), 2 * sizeof(cadt_record), 0);
+    hints_ = run_.memory.allocate(n_ * word);
+    open_ = run_.memory.allocate(std::size_t{open_count_} * word);
+    const Cut c = launch_.cut(n_);
+    launch_.run(KernelId::cadt_star_records, c.items, links_, sizes_, bases_, count_, c.grain, records_, hints_, open_,
+                totals_);
+    run_.end_phase("records");
+  }
+
+  void release_stars() {
+    links_.release();
+    sizes_.release();
+    bases_.release();
+  }
+
+  void join() {
+    SpatialOrder rest;
+    rest.distinct = unproven_;
+    rest.points = run_.memory.allocate(unproven_ * sizeof(cadt_point));
+    Allocation positions = run_.memory.allocate(unproven_ * word);
+    const Cut all = launch_.cut(n_);
+    launch_.run(KernelId::cadt_unproven_pack, all.items, ranks_, order_.points, rest.points, positions, count_,
+                all.grain);
+    ranks_.release();
+    const DeviceMesh smaller = build_mesh(run_, rest);
+    if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
+
+    const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
+    const auto mask = static_cast<std::uint32_t>(places - 1), slots = static_cast<std::uint32_t>(smaller.slots);
+    Allocation table = run_.memory.allocate(places * word);
+    run_.device.fill(*table, 0, places * word, CADT_NONE);
+    const Cut open = launch_.cut(open_count_);
+    launch_.run(KernelId::cadt_join_enter, open.items, records_, open_, open_count_, open.grain, table, mask);
+    Allocation covers = run_.memory.allocate(3 * smaller.slots * word), roots = run_.memory.allocate(smaller.slots * word);
+    const Cut c = launch_.cut(smaller.slots);
+    launch_.run(KernelId::cadt_join_cover, c.items, records_, smaller.records, positions, slots, c.grain, table, mask,
+                covers, roots);
+    launch_.run(KernelId::cadt_join_components, c.items, smaller.records, slots, c.grain, covers, roots);
+    Allocation hidden = launch_.zeros(smaller.slots), ranks = run_.memory.allocate((smaller.slots + 1) * word);
+    launch_.run(KernelId::cadt_join_hide, c.items, covers, roots, slots, c.grain, hidden);
+    launch_.run(KernelId::cadt_join_flags, c.items, smaller.records, roots, hidden, slots, c.grain, ranks);
+    launch_.scan(ranks, smaller.slots + 1);
+    const std::size_t triangles = std::size_t{proven_triangles_} + launch_.read_word(ranks, smaller.slots);
+    if (triangles != 2 * n_ - 2)
+      throw InternalError("the two parts of the mesh have " + std::to_string(triangles) + " triangles instead of " +
+                          std::to_string(2 * n_ - 2) + "; please report this with the input");
+    launch_.run(KernelId::cadt_join_records, c.items, smaller.records, covers, ranks, positions, slots, c.grain,
+                proven_triangles_, records_, hints_);
+    run_.end_phase("join");
+  }
+
+  Run& run_;
+  Launcher& launch_;
+  const SpatialOrder& order_;
+  std::size_t n_;
+  std::uint32_t count_;
+  Allocation links_, sizes_, bases_, ranks_, totals_, records_, hints_, open_;
+  std::uint32_t proven_triangles_ = 0, unproven_ = 0, open_count_ = 0;
+};
+
+}  // namespace
+
+DeviceMesh build_mesh_with_stars(Run& run, const SpatialOrder& order) {
+  const KeyGrid& grid = order.grid;
+  if (order.distinct < 3 || order.wide || std::max(grid.bits_x, grid.bits_y) > most_bits) return build_mesh(run, order);
+  return StarStage(run, order).build();
+}
+
+}  // namespace cadt

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/host/build_mesh.hpp"
+
+namespace cadt {
+
+/// The mesh by the star stage (common/device/star.h): stars of vertices without locks, insertion of the vertices whose
+/// star could not be proven, the join of both, closing passes.
+[[nodiscard]] DeviceMesh build_mesh_with_stars(Run& run, const SpatialOrder& order);
+
+}  // namespace cadt

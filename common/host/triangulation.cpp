@@ -57,6 +57,15 @@ std::size_t count_differing(const Triangulation& mesh, const Triangulation& othe
   return mine.size() - common;
 }
 
+std::string_view to_string(Strategy strategy) noexcept {
+  switch (strategy) {
+    case Strategy::automatic: return "auto";
+    case Strategy::locks: return "locks";
+    case Strategy::stars: return "stars";
+  }
+  return "?";
+}
+
 std::string_view to_string(Stabilize mode) noexcept {
   constexpr std::array<std::string_view, 3> names = {"off", "defer", "paper"};
   return names[static_cast<std::size_t>(mode)];

@@ -52,6 +52,7 @@ enum class Stabilize {
           ///< (`Statistics::illegal_edges`), depends on the schedule, and is not certified
 };
 /// "off", "defer", "paper".
+[[nodiscard]] std::string_view to_string(Strategy strategy) noexcept;
 [[nodiscard]] std::string_view to_string(Stabilize mode) noexcept;
 
 /// State of a running triangulation, as told to `Options::progress`.

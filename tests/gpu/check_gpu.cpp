@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <initializer_list>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -25,6 +24,7 @@ struct Arguments {
   int runs = 10, warm_up = 3;
   unsigned block = 0;
   Order order = Order::fast;
+  Strategy strategy = Strategy::automatic;
   Stabilize stabilize = Stabilize::off;
   StatisticsDetail statistics = StatisticsDetail::counters;
   bool phases = false, hash = false;
@@ -35,7 +35,8 @@ struct Arguments {
       "usage: cadt-check-gpu [--points N] [--backend cuda|opencl|host] [--device D]\n"
       "                      [--kind uniform|circles|gaussian|lattice] [--runs R] [--warm-up W] [--block B]\n"
       "                      [--order fast|canonical] [--verify none|host|device] [--phases] [--hash]\n"
-      "                      [--stabilize off|defer|paper] [--statistics none|counters|timing]\n"
+      "                      [--strategy auto|locks|stars] [--stabilize off|defer|paper]\n"
+      "                      [--statistics none|counters|timing]\n"
       "prints the median time (and the least and the most) from points on the device to a mesh on the device\n",
       stderr);
   std::exit(2);
@@ -73,6 +74,8 @@ Arguments parse(int count, char** values) {
       a.block = static_cast<unsigned>(std::stoul(value()));
     else if (words[i] == "--order")
       a.order = value() == "canonical" ? Order::canonical : Order::fast;
+    else if (words[i] == "--strategy")
+      a.strategy = named(value(), {Strategy::automatic, Strategy::locks, Strategy::stars});
     else if (words[i] == "--stabilize")
       a.stabilize = named(value(), {Stabilize::off, Stabilize::defer, Stabilize::paper});
     else if (words[i] == "--statistics")
@@ -151,6 +154,7 @@ int run(const Arguments& a) {
   options.backend = backend_from_string(a.backend);
   options.order = a.order;
   options.work_group_size = a.block;
+  options.strategy = a.strategy;
   options.stabilize = a.stabilize;
   options.statistics = a.statistics;
   std::unique_ptr<test::DeviceMemory> memory;
@@ -168,7 +172,7 @@ int run(const Arguments& a) {
   Triangulator triangulator(options);
   DeviceTriangulation mesh;
   std::vector<double> times;
-  std::map<std::string, std::vector<double>> phases;
+  std::vector<std::vector<double>> phases;  // some names come twice
   std::vector<std::string> names;
   for (int r = 0; r < a.warm_up + a.runs; ++r) {
     mesh = DeviceTriangulation();
@@ -179,8 +183,9 @@ int run(const Arguments& a) {
     times.push_back(now() - begin);
     names.clear();
     for (const auto& [name, ms] : mesh.statistics().milliseconds) {
-      phases[name].push_back(ms);
       names.push_back(name);
+      phases.resize(std::max(phases.size(), names.size()));
+      phases[names.size() - 1].push_back(ms);
     }
   }
   std::sort(times.begin(), times.end());
@@ -190,10 +195,10 @@ int run(const Arguments& a) {
               mesh.number_of_triangles(), static_cast<double>(s.bytes_device_peak) / static_cast<double>(a.points));
   if (a.phases) {
     std::printf("\n   ");
-    for (const std::string& name : names) {
-      auto& list = phases[name];
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      auto& list = phases[i];
       std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
-      std::printf(" %s %.2f", name.c_str(), list[list.size() / 2]);
+      std::printf(" %s %.2f", names[i].c_str(), list[list.size() / 2]);
     }
     const auto n = static_cast<double>(a.points);
     std::printf(
@@ -203,6 +208,10 @@ int run(const Arguments& a) {
         static_cast<unsigned long long>(s.deferred_points), static_cast<unsigned long long>(s.deferred_edges),
         static_cast<unsigned long long>(s.launches), static_cast<unsigned long long>(s.closing_sweeps),
         static_cast<unsigned long long>(s.closing_repairs));
+    std::printf(", tiles %llu, unproven %llu, exact %llu + %llu", static_cast<unsigned long long>(s.tiles),
+                static_cast<unsigned long long>(s.distinct - s.proven_stars),
+                static_cast<unsigned long long>(s.exact_orientations),
+                static_cast<unsigned long long>(s.exact_incircles));
     for (const auto& [name, share] : s.thread_time) std::printf(" %s %.3f", name.c_str(), share);
     std::printf(", flips:");
     for (const std::uint64_t edges : s.flips_per_edge) std::printf(" %llu", static_cast<unsigned long long>(edges));

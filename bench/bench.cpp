@@ -147,15 +147,20 @@ Row Bench::measure(const Task& task, Triangulation* mesh) {
                              task.block > 0 ? fmt::format(" {}", task.block) : ""));
   try {
     if (!who.present()) throw Skip(who.missing);
-    const auto predicted = predictor_.predict(key_of(who), kind_of(task), task.set.points);
+    const std::string key = key_of(who), kind = kind_of(task);
+    const auto predicted = predictor_.predict(key, kind, task.set.points);
     const double limit = settings_.plan.limit_seconds;
-    if (predicted && *predicted > limit * second)
-      throw Skip(fmt::format("predicted {:.0f} s, limit {:.3g} s", *predicted / second, limit));
+    if (predicted && *predicted > limit * second) {
+      predictor_.give_up(key, kind, task.set.points);
+      throw Skip(fmt::format("predicted {:.3g} s, limit {:.3g} s", *predicted / second, limit));
+    }
+    if (const auto fewer = predictor_.given_up(key, kind, task.set.points))
+      throw Skip(fmt::format("{} points take too long already", *fewer));
     row.points = points_.get(task.set).size() / 2;
     check_memory(who, *row.points);
     time(task, predicted, row, mesh);
     if (const auto best = row.median_ms ? row.median_ms : row.device_ms)
-      predictor_.learn(key_of(who), kind_of(task), *row.points, *best, task.block == 0);
+      predictor_.learn(key, kind, *row.points, *best, task.block == 0);
   } catch (const OutOfMemory& error) {
     row.skipped = fmt::format("out of memory: {}", error.what());
   } catch (const std::bad_alloc&) {
@@ -273,10 +278,11 @@ void Bench::time_peer(const Task& task, std::optional<double> predicted, Row& ro
   const int warm_up = calls >= 2.0 ? plan.warm_up : 0;
   const PeerResult result =
       run_peer(*task.who->peer, points_.file(task.set).string(), warm_up, runs, plan.budget() / second);
+  if (result.too_slow) predictor_.give_up(key_of(*task.who), kind_of(task), task.set.points);
   if (!result.error.empty()) throw Skip(result.error);
   row.triangles = result.triangles;
   Repeats all;
-  all.warmups = static_cast<std::size_t>(warm_up);
+  all.warmups = result.warmups;
   all.milliseconds = result.milliseconds;
   set_times(row, all);
   if (result.timing != "device") return;

@@ -126,6 +126,7 @@ ChildResult run_child(const std::vector<std::string>& command, double timeout_se
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   if (result.failure == "timeout") {
+    result.too_slow = true;
     std::array<char, 32> seconds;
     std::snprintf(seconds.data(), seconds.size(), "%.3g", timeout.count());
     result.failure = std::string("killed after ") + seconds.data() + " s";

@@ -7,10 +7,11 @@
 namespace cadt::bench {
 
 struct ChildResult {
-  std::string output;   ///< what it wrote to standard output
-  std::string errors;   ///< the end of what it wrote to standard error
-  int status = -1;      ///< exit status, 128 + signal if a signal ended it
-  std::string failure;  ///< why there is no status of its own: not started, too slow, too much output
+  std::string output;     ///< what it wrote to standard output
+  std::string errors;     ///< the end of what it wrote to standard error
+  int status = -1;        ///< exit status, 128 + signal if a signal ended it
+  std::string failure;    ///< why there is no status of its own: not started, too slow, too much output
+  bool too_slow = false;  ///< killed at the timeout
 };
 
 /// Runs a program (looked for on the path if its name has no slash), without a shell and with an empty input, and waits

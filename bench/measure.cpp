@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/measure.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace cadt::bench {
@@ -62,6 +63,18 @@ std::optional<double> Predictor::predict(const std::string& who, const std::stri
   }
   if (const auto found = of_who_.find(who); found != of_who_.end()) return from(found->second);
   return std::nullopt;
+}
+
+void Predictor::give_up(const std::string& who, const std::string& what, std::size_t points) {
+  std::size_t& least = given_up_.try_emplace({who, what}, points).first->second;
+  least = std::min(least, points);
+}
+
+std::optional<std::size_t> Predictor::given_up(const std::string& who, const std::string& what,
+                                               std::size_t points) const {
+  const auto found = given_up_.find({who, what});
+  if (found == given_up_.end() || found->second > points) return std::nullopt;
+  return found->second;
 }
 
 }  // namespace cadt::bench

@@ -42,6 +42,12 @@ class Predictor {
   [[nodiscard]] std::optional<double> predict(const std::string& who, const std::string& what,
                                               std::size_t points) const;
 
+  /// That many points are too many for `who` with `what`: predicted to take too long, or tried in vain.
+  void give_up(const std::string& who, const std::string& what, std::size_t points);
+  /// The least number of points that was given up, if it is not above `points`.
+  [[nodiscard]] std::optional<std::size_t> given_up(const std::string& who, const std::string& what,
+                                                    std::size_t points) const;
+
  private:
   struct Known {
     std::size_t points = 0;
@@ -49,6 +55,7 @@ class Predictor {
   };
   std::map<std::string, Known> of_who_;
   std::map<std::pair<std::string, std::string>, Known> known_;
+  std::map<std::pair<std::string, std::string>, std::size_t> given_up_;
 };
 
 }  // namespace cadt::bench

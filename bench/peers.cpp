@@ -57,6 +57,7 @@ PeerResult answer_of(const Peer& peer, const std::vector<std::string>& arguments
   const json answer = json::parse(child.output, nullptr, false);
   if (!child.failure.empty() || (child.status != 0 && child.status != not_usable) || !answer.is_object()) {
     result.error = what_happened(child);
+    result.too_slow = child.too_slow;
     return result;
   }
   result.error = text_of(answer, "error");
@@ -70,6 +71,7 @@ PeerResult answer_of(const Peer& peer, const std::vector<std::string>& arguments
   if (!timed) return result;
   try {
     result.triangles = answer.at("triangles").get<std::size_t>();
+    result.warmups = answer.at("warmups").get<std::size_t>();
     result.milliseconds = answer.at("milliseconds").get<std::vector<double>>();
     if (result.milliseconds.empty()) result.error = "it has no times";
     for (const double time : result.milliseconds)
@@ -77,7 +79,7 @@ PeerResult answer_of(const Peer& peer, const std::vector<std::string>& arguments
   } catch (const json::exception& error) {
     result.error = std::string("its answer cannot be read: ") + error.what();
   }
-  if (!result.error.empty()) result.milliseconds.clear(), result.triangles = 0;
+  if (!result.error.empty()) result.milliseconds.clear(), result.triangles = result.warmups = 0;
   return result;
 }
 

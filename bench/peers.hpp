@@ -8,10 +8,11 @@
 //     PEER POINTS.f64 --warm-up W --runs R --limit SECONDS
 //
 // POINTS.f64 holds interleaved little-endian doubles. The peer prints one JSON object, and nothing else, on standard
-// output: {"name", "version"}, in the second case with "triangles" and "milliseconds" (an array, one for each timed
-// run) or with "error". It ends with 0, or with 3 if it cannot be used here, e.g. for want of a module. A time is that
-// from points in memory, as the peer likes them best, to the finished triangulation in memory; "timing": "device" says
-// that both are in the memory of a graphics card. Once the limit is used up no run starts, but for one timed one.
+// output: {"name", "version"}, in the second case with "triangles", "warmups" (how many it made) and "milliseconds" (an
+// array, one for each timed run) or with "error". It ends with 0, or with 3 if it cannot be used here, e.g. for want of
+// a module. A time is that from points in memory, as the peer likes them best, to the finished triangulation in memory;
+// "timing": "device" says that both are in the memory of a graphics card. Once the limit is used up no run starts, but
+// for one timed one.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +32,8 @@ struct Peer {
 
 struct PeerResult {
   std::string name, version, error;  ///< error: empty if it has times
-  std::size_t triangles = 0;
+  bool too_slow = false;             ///< it was killed
+  std::size_t triangles = 0, warmups = 0;
   std::vector<double> milliseconds;
   std::string timing;  ///< "device" if points and triangles are in device memory, else empty or "host"
 };

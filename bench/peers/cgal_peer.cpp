@@ -65,6 +65,7 @@ int main(int argc, char** argv) {
     if (!version) {
       const std::vector<Kernel::Point_2> points = read_points(file);
       std::size_t triangles = 0;
+      int warmups = 0;
       std::vector<double> milliseconds;
       const auto once = [&] {
         CGAL::Delaunay_triangulation_2<Kernel> delaunay;
@@ -75,10 +76,11 @@ int main(int argc, char** argv) {
         return 1e3 * seconds;
       };
       const auto begin = Clock::now();
-      for (int run = 0; run < warm_up && seconds_since(begin) < limit; ++run) once();
+      for (; warmups < warm_up && seconds_since(begin) < limit; ++warmups) once();
       do milliseconds.push_back(once());
       while (milliseconds.size() < static_cast<std::size_t>(runs) && seconds_since(begin) < limit);
       answer["triangles"] = triangles;
+      answer["warmups"] = warmups;
       answer["milliseconds"] = milliseconds;
     }
   } catch (const std::bad_alloc&) {

@@ -47,15 +47,14 @@ def measure(arguments, to_place, triangulate, synchronise):
         return 1e3 * (time.perf_counter() - start), len(mesh.simplices)
 
     begin = time.perf_counter()
-    for _ in range(arguments.warm_up):
-        if time.perf_counter() - begin >= arguments.limit:
-            break
+    warmups, milliseconds = 0, []
+    while warmups < arguments.warm_up and time.perf_counter() - begin < arguments.limit:
         once()
-    milliseconds = []
+        warmups += 1
     while not milliseconds or (len(milliseconds) < arguments.runs and time.perf_counter() - begin < arguments.limit):
         taken, triangles = once()
         milliseconds.append(taken)
-    return {"triangles": triangles, "milliseconds": milliseconds}
+    return {"triangles": triangles, "warmups": warmups, "milliseconds": milliseconds}
 
 
 def one_line(error):

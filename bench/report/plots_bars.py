@@ -28,7 +28,7 @@ def breakdown(machines: Sequence[Machine], paper: dict) -> Figure | None:
         return None
     reference = [("paper, uniform", dict(paper["breakdown"]["shares"]), "the text gives one number")]
     drawn = [("How the threads of the insertion spend their time", (threads + reference) if threads else []),
-             ("Phases of a run, with the sum of their times", phases)]
+             ("Phases of a run with clocks in its kernels, and the sum of their times", phases)]
     drawn = [(title, rows) for title, rows in drawn if rows]
     page = Page("Where the time goes", [m for m in machines if m.rows("breakdown")], len(drawn), 1,
                 0.55 * max(len(rows) for _, rows in drawn) + 1.7,
@@ -94,19 +94,21 @@ def distributions(machines: Sequence[Machine], paper: dict) -> Figure | None:
 
 def distribution_bars(axes: Axes, rows: list[Row], reference: str, all_sizes: list[int]) -> None:
     names = synthetic(rows, reference)
-    width = 0.82 / max(len(all_sizes), 1)
     base = reference_rows(rows, reference)
+    own = [size for size in all_sizes if size in base]
+    width = 0.82 / max(len(own), 3)  # with one size or two the bars are no wider than with three
     highest = 0.0
-    for index, size in enumerate(all_sizes):
+    for index, size in enumerate(own):
+        colour = style.ramp(all_sizes.index(size), len(all_sizes))
         for at, name in enumerate(names):
             row = pick(rows, distribution=name, points=size)
-            if row is None or size not in base:
+            if row is None:
                 continue
             values = [ratio(row.number(c), base[size].number("median_ms")) for c in ("median_ms", "min_ms", "max_ms")]
-            x = at + (index - (len(all_sizes) - 1) / 2) * width
+            x = at + (index - (len(own) - 1) / 2) * width
             highest = max([highest, *filter(None, values)])
             if None not in values:
-                axes.bar(x, values[0], width * 0.92, color=style.ramp(index, len(all_sizes)),
+                axes.bar(x, values[0], width * 0.92, color=colour,
                          yerr=[[max(0, values[0] - values[1])], [max(0, values[2] - values[0])]], ecolor="#333333",
                          error_kw={"elinewidth": 1, "capsize": 2})
             on_device = ratio(row.number("device_ms"), base[size].number("device_ms"))
@@ -170,13 +172,14 @@ def cost_bars(axes: Axes, rows: Sequence[Row]) -> None:
 def devices(machines: Sequence[Machine], paper: dict) -> Figure | None:
     """A panel for each distribution and size, a bar a device of all machines."""
     rows = each(machines, lambda m: m.rows("devices"))
-    cases = [case for case in group(rows, "distribution", "points") if case[1]]
+    cases = sorted((case for case in group(rows, "distribution", "points") if to_number(case[1]) is not None),
+                   key=lambda case: to_number(case[1]))  # a row a size; the distributions stay in their order
     if not cases:
         return None
     everybody = [who for m in machines for who in contestants(m.rows("devices"))]
     machine_rows = {m.name: m.rows("devices") for m in machines}
     look = {who: one for m in machines for who, one in styles(m.rows("devices")).items()}
-    columns = min(3, len(sizes_of(rows)))
+    columns = min(3, len({distribution for distribution, _ in cases}))
     page = Page("Every device, whole call and on the device", [m for m in machines if m.rows("devices")],
                 -(-len(cases) // columns), columns, 0.42 * len(everybody) + 1.3, sharey=True)
     for axes, (distribution, points) in zip(page.panels(len(cases)), cases):
@@ -185,6 +188,9 @@ def devices(machines: Sequence[Machine], paper: dict) -> Figure | None:
                       if (r.text("distribution"), r.text("points")) == (distribution, points)]
             for row in chosen[:1]:
                 device_bar(axes, at, row, look[who])
+            if not chosen:  # the machines do not have the same sizes
+                axes.annotate("not measured", (0, at), xytext=(5, 0), textcoords="offset points", va="center",
+                              fontsize=8.5, color=style.GREY)
         axes.set_title(f"{distribution}, {short(to_number(points))} points")
         several = len({who.machine for who in everybody}) > 1
         style.ticks(axes, range(len(everybody)),

@@ -134,17 +134,18 @@ def block_axis(axes: Axes, sizes: list[int], marks: dict[str, str]) -> None:
 def thresholds(machines: Sequence[Machine], paper: dict) -> Figure | None:
     """A row a device; for each distribution a panel on the device and one of whole calls, as one scale for both would
     show neither."""
-    shown = per_device(machines, "thresholds", modes=False)
-    cases = [(*case, whole) for case in group(each(machines, lambda m: m.rows("thresholds")), "distribution", "points")
-             for whole in (False, True)]
+    # Each device has panels for what it was measured with only: the machines do not have the same sizes.
+    shown = [(machine, who, rows, [(*case, whole) for case in group(rows, "distribution", "points")
+                                   for whole in (False, True)])
+             for machine, who, rows in per_device(machines, "thresholds", modes=False)]
     if not shown:
         return None
-    columns = min(4, len(cases))
-    deep = -(-len(cases) // columns)
-    page = Page("Stabilised flipping: time against R", [m for m in machines if m.rows("thresholds")], deep * len(shown),
+    columns = min(4, max(len(cases) for *_, cases in shown))
+    deep = [-(-len(cases) // columns) for *_, cases in shown]
+    page = Page("Stabilised flipping: time against R", [m for m in machines if m.rows("thresholds")], sum(deep),
                 columns, 3.0)
-    for index, (machine, who, rows) in enumerate(shown):
-        panels = list(page.axes[deep * index:deep * (index + 1)].flat)
+    for index, (machine, who, rows, cases) in enumerate(shown):
+        panels = list(page.axes[sum(deep[:index]):sum(deep[:index + 1])].flat)
         for axes, (distribution, points, whole) in zip(panels, cases):
             chosen = [r for r in rows if (r.text("distribution"), r.text("points")) == (distribution, points)]
             threshold_panel(axes, page, chosen, whole)

@@ -107,5 +107,25 @@ def hash_check(rows: Sequence[Row], several: bool) -> tuple[dict[tuple[str, str]
                       f"{len({named(r, several) for r in rows if r.text('hash')})} devices and programs.", ""]
 
 
+def other_counts(rows: Sequence[Row]) -> list[str]:
+    """Who has another number of triangles than cadt's exact mesh. cadt's own meshes are compared by their hashes."""
+    exact = {(r.text("distribution"), r.text("points")): r.whole("triangles") for r in rows
+             if r.text("who") in CADT and r.text("stabilize") != "paper" and r.whole("triangles") is not None}
+    lines, compared = [], 0
+    for (who, device, distribution), of in group([r for r in rows if r.text("who") not in CADT], "who", "device",
+                                                 "distribution").items():
+        known = [(r, exact[distribution, r.text("points")]) for r in of
+                 if (distribution, r.text("points")) in exact and r.whole("triangles") is not None]
+        compared += len(known)
+        wrong = [f"{count(r.whole('triangles'))} of {count(right)} with {count(r.number('points'))} points"
+                 for r, right in known if r.whole("triangles") != right]
+        if wrong:
+            lines.append(f"**Another number of triangles: {Contestant('', who, device).name()}, {distribution}: "
+                         f"{listed(wrong)}.**")
+    if compared and not lines:
+        return [f"The other programs have as many triangles in each of {compared} cases.", ""]
+    return bullets(lines)
+
+
 def is_cadt(who: Contestant) -> bool:
     return who.who in CADT

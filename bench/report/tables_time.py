@@ -5,18 +5,19 @@ from collections.abc import Sequence
 
 from rows import (MODES, Machine, Row, by_points, contestants, device_or_whole, group, measured, per_device, per_point,
                   pick, rank, ratio, reference_rows, sizes_of, synthetic, to_number)
-from tables import hash_check, is_cadt, named
+from tables import hash_check, is_cadt, named, other_counts
 from words import NONE, bullets, count, listed, number, percent, spread, table, times
 
 MEASURES = (("median_ms", "whole call"), ("device_ms", "on the device"))
 
 
 def both(row: Row | None) -> str:
-    """"12.3 (4.56)": whole call, on the device."""
-    if row is None or row.number("median_ms") is None:
+    """"12.3 (4.56)": whole call, on the device. "(4.56)" of a program that is measured on the device only."""
+    if row is None:
         return NONE
-    on_device = row.number("device_ms")
-    return number(row.number("median_ms")) + (f" ({number(on_device)})" if on_device is not None else "")
+    whole, on_device = row.number("median_ms"), row.number("device_ms")
+    parts = [number(whole)] if whole is not None else []
+    return " ".join(parts + ([f"({number(on_device)})"] if on_device is not None else [])) or NONE
 
 
 def sizes(machines: Sequence[Machine], paper: dict) -> list[str]:
@@ -32,7 +33,7 @@ def sizes(machines: Sequence[Machine], paper: dict) -> list[str]:
                       "call, which is nearer to the paper's times (events on the card).", "",
                       *speedup_table(rows, paper),
                       *bullets(size_sentences(rows, paper))]
-            lines += hash_check(rows, several=False)[1]
+            lines += hash_check(rows, several=False)[1] + other_counts(rows)
     return lines
 
 
@@ -231,10 +232,10 @@ def works(machines: Sequence[Machine], paper: dict) -> list[str]:
             sentences.append(f"The paper has two times for about {count(work['points'])} points: "
                              f"{number(work['cudt_ms'])} ms here, and {number(other[0][3])} ms for "
                              f"{count(other[0][0])} points in its Table 3.")
-    lines = table(["work", "what", "points", "previous work, ms", "cuDT, ms", "cadt, whole call, ms",
-                   "cadt, on the device, ms", "whole call over previous", "on the device over previous",
+    lines = table(["work", "what", "points", "previous work, ms", "cuDT, ms", "here, whole call, ms",
+                   "here, on the device, ms", "whole call over previous", "on the device over previous",
                    "on the device over cuDT"], body, left=2)
-    return lines + bullets(sentences)
+    return lines + bullets(sentences) + other_counts([row for machine in machines for row in machine.rows("works")])
 
 
 def nearest(cited: list[dict], row: Row) -> dict:

@@ -14,7 +14,7 @@ namespace cadt {
 /// What is counted and timed.
 enum class StatisticsDetail {
   none,  ///< sizes, launches and the closing passes only: what is known anyway. No wait for the device between phases
-  counters,  ///< and the work and conflicts, flips per edge, time per phase; costs 4 to 5 % on a graphics card
+  counters,  ///< and the work and conflicts, flips per edge, time per phase; costs 2 to 3 % on a graphics card
              ///< (docs/evaluation.md)
   timing     ///< and the shares of the device's threads' time (`thread_time`), by kernels with clocks in them: slower
 };

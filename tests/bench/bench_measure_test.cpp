@@ -65,5 +65,18 @@ TEST(Predictor, TheUnusualTellsNothingOfOthers) {
   EXPECT_FALSE(predictor.predict("host", "uniform", 1000).has_value());
 }
 
+TEST(Predictor, WhatWasGivenUpIsNotTriedWithMore) {
+  Predictor predictor;
+  EXPECT_FALSE(predictor.given_up("cupy", "uniform", 1000).has_value());
+  predictor.give_up("cupy", "uniform", 4000);
+  EXPECT_FALSE(predictor.given_up("cupy", "uniform", 3999).has_value());
+  EXPECT_EQ(predictor.given_up("cupy", "uniform", 4000), 4000U);
+  EXPECT_EQ(predictor.given_up("cupy", "uniform", 900000), 4000U);
+  EXPECT_FALSE(predictor.given_up("cupy", "grid", 900000).has_value());
+  EXPECT_FALSE(predictor.given_up("cgal", "uniform", 900000).has_value());
+  predictor.give_up("cupy", "uniform", 9000);
+  EXPECT_EQ(predictor.given_up("cupy", "uniform", 9000), 4000U);
+}
+
 }  // namespace
 }  // namespace cadt::bench

@@ -186,6 +186,15 @@ class Limits(BenchTest):
         self.assertEqual((first["points"], first["skipped"]), ("500", ""))
         self.assertRegex(second["skipped"], r"^predicted .* s, limit 0.0001 s$")
 
+    def test_the_warm_ups_of_a_peer_are_those_it_made(self):
+        self.tiny("sizes", "--who", "cgal", "--warm-up", "100000000", "--runs", "1")
+        done = [row for row in self.rows("sizes") if not row["skipped"]]
+        for row in done:  # the time ends before
+            self.assertEqual(row["runs"], "1")
+            self.assertLess(int(row["warmups"]), 100000000)
+        if done:
+            self.assertGreater(int(done[0]["warmups"]), 0)
+
     def test_runs_and_warm_up(self):
         self.tiny("works", "--who", "host", "--warm-up", "2", "--runs", "3")
         self.assertEqual({(row["warmups"], row["runs"]) for row in self.rows("works") if not row["skipped"]},

@@ -83,6 +83,7 @@ TEST_F(Peers, CgalAnswers) {
     EXPECT_EQ(result.name, "cgal");
     EXPECT_EQ(result.version, cgal.version);
     EXPECT_EQ(result.triangles, triangles_of(xy));
+    EXPECT_EQ(result.warmups, 1u);
     EXPECT_EQ(result.milliseconds.size(), 3u);
   }
 }
@@ -92,8 +93,11 @@ TEST_F(Peers, CgalStopsAtTheLimitButForOneRun) {
   ASSERT_TRUE(cgal.usable()) << cgal.reason;
   const PeerResult result = run_peer(cgal, points_file(test::uniform_points(5000)), 1000000, 1000000, 0.2);
   EXPECT_EQ(result.error, "");
-  EXPECT_EQ(result.milliseconds.size(), 1u);  // the warm-up took all of it
-  EXPECT_EQ(run_peer(cgal, points_file(test::uniform_points(50)), 0, 4, 0.0).milliseconds.size(), 1u);
+  EXPECT_EQ(result.milliseconds.size(), 1u);                                       // the warm-up took all of it
+  EXPECT_TRUE(result.warmups >= 1 && result.warmups < 1000000) << result.warmups;  // those made, not those asked for
+  const PeerResult at_once = run_peer(cgal, points_file(test::uniform_points(50)), 2, 4, 0.0);
+  EXPECT_EQ(at_once.warmups, 0u);
+  EXPECT_EQ(at_once.milliseconds.size(), 1u);
 }
 
 TEST_F(Peers, CgalSaysWhatItCannotRead) {
@@ -119,7 +123,11 @@ TEST_F(Peers, PythonAnswersOrSaysWhyNot) {
     }
     EXPECT_EQ(result.error, "");
     EXPECT_EQ(result.version, peer.version);
+    EXPECT_EQ(result.warmups, 1u);
     EXPECT_EQ(result.milliseconds.size(), 2u);
+    const PeerResult at_once = run_peer(peer, points_file(xy), 3, 2, 0.0);
+    EXPECT_EQ(at_once.warmups, 0u);
+    EXPECT_EQ(at_once.milliseconds.size(), 1u);
     EXPECT_EQ(result.timing, peer.name == "cupy" ? "device" : "host");
     if (peer.name == "cupy") continue;  // its mesh may have another number of triangles
     EXPECT_EQ(result.triangles, triangles_of(xy));
@@ -156,12 +164,13 @@ TEST_F(Peers, WithoutPythonOnThePath) {
 
 TEST_F(Peers, AProperAnswerIsRead) {
   const PeerResult result = answer(
-      "print(json.dumps({'name': 'x', 'version': '1.2', 'triangles': 12, 'milliseconds': [1.5, 2], 'timing': 'device', "
-      "'more': sys.argv[1:]}))");
+      "print(json.dumps({'name': 'x', 'version': '1.2', 'triangles': 12, 'warmups': 2, 'milliseconds': [1.5, 2], "
+      "'timing': 'device', 'more': sys.argv[1:]}))");
   EXPECT_EQ(result.error, "");
   EXPECT_EQ(result.name, "stand-in");
   EXPECT_EQ(result.version, "1.2");
   EXPECT_EQ(result.triangles, 12u);
+  EXPECT_EQ(result.warmups, 2u);
   EXPECT_EQ(result.milliseconds, (std::vector<double>{1.5, 2.0}));
   EXPECT_EQ(result.timing, "device");
 }
@@ -181,11 +190,14 @@ TEST_F(Peers, RubbishIsAnError) {
   EXPECT_EQ(answer("pass").error, "it said nothing");
   EXPECT_EQ(answer("print('hello')").error, "it said: hello");
   EXPECT_EQ(answer("print('[1, 2]')").error, "it said: [1, 2]");
-  EXPECT_EQ(answer("print(json.dumps({'triangles': 1, 'milliseconds': []}))").error, "it has no times");
-  EXPECT_EQ(answer("print(json.dumps({'triangles': 1, 'milliseconds': [1, -1]}))").error, "a time is not a time");
+  EXPECT_EQ(answer("print(json.dumps({'triangles': 1, 'warmups': 0, 'milliseconds': []}))").error, "it has no times");
+  EXPECT_EQ(answer("print(json.dumps({'triangles': 1, 'warmups': 0, 'milliseconds': [1, -1]}))").error,
+            "a time is not a time");
   for (const char* wrong :
-       {"{}", "{'triangles': 1}", "{'milliseconds': [1]}", "{'triangles': 'a', 'milliseconds': [1]}",
-        "{'triangles': 1, 'milliseconds': 'b'}", "{'triangles': 1, 'milliseconds': [None]}"}) {
+       {"{}", "{'triangles': 1}", "{'warmups': 0, 'milliseconds': [1]}", "{'triangles': 1, 'milliseconds': [1]}",
+        "{'triangles': 'a', 'warmups': 0, 'milliseconds': [1]}",
+        "{'triangles': 1, 'warmups': 'a', 'milliseconds': [1]}", "{'triangles': 1, 'warmups': 0, 'milliseconds': 'b'}",
+        "{'triangles': 1, 'warmups': 0, 'milliseconds': [None]}"}) {
     const PeerResult result = answer(std::string("print(json.dumps(") + wrong + "))");
     EXPECT_NE(result.error.find("cannot be read"), std::string::npos) << wrong;
     EXPECT_TRUE(result.milliseconds.empty() && result.triangles == 0) << wrong;
@@ -193,7 +205,7 @@ TEST_F(Peers, RubbishIsAnError) {
 }
 
 TEST_F(Peers, ACrashIsAnErrorEvenAfterAnAnswer) {
-  const std::string proper = "print(json.dumps({'triangles': 1, 'milliseconds': [1]}), flush=True)\n";
+  const std::string proper = "print(json.dumps({'triangles': 1, 'warmups': 0, 'milliseconds': [1]}), flush=True)\n";
   EXPECT_EQ(answer(proper + "raise RuntimeError('afterwards')").error, "ended with 1: RuntimeError: afterwards");
   EXPECT_EQ(answer(proper + "import os; os.abort()").error.substr(0, 17), "ended by signal 6");
 }
@@ -201,7 +213,10 @@ TEST_F(Peers, ACrashIsAnErrorEvenAfterAnAnswer) {
 TEST_F(Peers, AHangingOneIsKilled) {
   const auto start = std::chrono::steady_clock::now();
   // The time that run_peer allows is half a minute and three times the limit; a negative limit takes some of it back.
-  EXPECT_EQ(answer("time.sleep(300)", -9.8).error, "killed after 0.6 s");
+  const PeerResult result = answer("time.sleep(300)", -9.8);
+  EXPECT_EQ(result.error, "killed after 0.6 s");
+  EXPECT_TRUE(result.too_slow);
+  EXPECT_FALSE(answer("pass").too_slow);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 

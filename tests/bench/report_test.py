@@ -154,6 +154,52 @@ class TwoMachines(unittest.TestCase):
                       f"{words.number(row['device_ms'])} | {words.times(268.55 / row['median_ms'])}", self.text)
 
 
+    def test_cupy_is_on_the_device_only(self):
+        row = next(r for r in self.one.rows["sizes"] if r["who"] == "cupy" and r["points"] == 1 << 20)
+        times = section(self.text, TITLES[0]).partition("### one: times")[2]
+        line = next(line for line in times.splitlines() if line.startswith("| 1,048,576 |"))
+        self.assertIn(f"| ({words.number(row['device_ms'])}) |", line)
+
+    def test_all_have_as_many_triangles(self):
+        text = section(self.text, TITLES[0])
+        self.assertRegex(text, r"\nThe other programs have as many triangles in each of \d+ cases\.\n")
+        self.assertNotIn("Another number of triangles", self.text)
+
+
+class OtherSizes(FolderTest):
+    """Machines that were measured with different sizes."""
+
+    def test_panels_are_those_of_each_machine(self):
+        folders = []
+        for name, points in (("one", 5000), ("two", 6000)):
+            writer = self.writer(name)
+            for experiment in ("thresholds", "devices"):
+                writer.row(experiment, "cuda", "A Card", points)
+            writer.write()
+            folders.append(writer.folder)
+        self.report(*folders)
+        # As text in an SVG: two panels a device, and no empty one for the other's size.
+        drawn = (self.out / "thresholds.svg").read_text(encoding="utf-8")
+        self.assertEqual([len(re.findall(f"<!-- uniform, {size} points", drawn)) for size in (5000, 6000)], [2, 2])
+        drawn = (self.out / "devices.svg").read_text(encoding="utf-8")
+        self.assertEqual(len(re.findall("<!-- not measured -->", drawn)), 2)
+
+
+class Counts(FolderTest):
+    def test_another_number_of_triangles_is_named(self):
+        writer = self.writer()
+        for points in (5000, 6000):
+            for who, device in (("cgal", ""), ("cupy", ""), ("cuda", "A Card")):
+                writer.row("sizes", who, device, points)
+        next(r for r in writer.rows["sizes"] if r["who"] == "cupy" and r["points"] == 6000)["triangles"] = 11938
+        writer.row("sizes", "cgal", "", 7000, triangles=1)  # nothing to compare it with
+        writer.write()
+        text = section(self.report(writer.folder), TITLES[0])
+        self.assertIn("**Another number of triangles: cupy, uniform: 11,938 of 11,940 with 6,000 points.**", text)
+        self.assertNotIn("triangles: cgal", text)
+        self.assertNotIn("as many triangles", text)
+
+
 class Flips(FolderTest):
     def test_equation_9_by_hand(self):
         writer = self.writer()

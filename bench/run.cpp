@@ -183,7 +183,7 @@ void add_experiments(CLI::App& app, Action& action) {
                  "graphics card, else small")
       ->type_name("small|full");
   app.add_option("--time-limit", arguments->limit,
-                 "seconds of one call; what is predicted to take longer is left out (default: small 8, full 5)")
+                 "seconds of one call; what is predicted to take longer is left out (default: small 8, full 7)")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber.description(""));
   app.add_option("--warm-up", arguments->warm_up, "runs before the timed ones (default: 1)")

@@ -5,8 +5,8 @@
  * join"). That smaller mesh is built by insertion; here those of its triangles are found that do not lie under proven
  * ones, and both parts are linked.
  *
- * The two parts meet in edges whose ends are unproven: edge 0 of an open record on one side, an edge of the smaller mesh
- * on the other.
+ * The two parts meet in edges whose ends are unproven: edge 0 of an open record on one side, an edge of the smaller
+ * mesh on the other.
  */
 #ifndef CADT_DEVICE_JOIN_H
 #define CADT_DEVICE_JOIN_H

@@ -223,6 +223,19 @@ typedef struct {
 
 #define CADT_NONE 0xFFFFFFFFu
 
+/* Four words of memory that nobody changes meanwhile, at an address that is a multiple of 16. */
+#if defined(CADT_LANG_OPENCL) || defined(CADT_LANG_CUDA)
+CADT_FN void cadt_load_four(CADT_GLOBAL const cadt_u32* p, cadt_u32* w) {
+  const uint4 four = *(CADT_GLOBAL const uint4*)p;
+  w[0] = four.x;
+  w[1] = four.y;
+  w[2] = four.z;
+  w[3] = four.w;
+}
+#else
+CADT_FN void cadt_load_four(const cadt_u32* p, cadt_u32* w) { std::memcpy(w, p, 4 * sizeof *w); }
+#endif
+
 /* One of three values; keeps them in registers where an array would go to memory. */
 #define CADT_PICK(k, a, b, c) ((k) == 0u ? (a) : ((k) == 1u ? (b) : (c)))
 /* The next and the previous of 0, 1, 2, by a table in a word: no branch. */

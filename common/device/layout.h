@@ -22,7 +22,7 @@ typedef struct {
 } cadt_tile;
 
 enum {
-  CADT_TILE_POINTS = 640, /* at most, but for squares that cannot be divided */
+  CADT_TILE_POINTS = 704, /* at most, but for squares that cannot be divided */
   CADT_STAR_DEGREE = 12,  /* neighbours of a proven star at most */
   CADT_STAR_LANES = 128   /* lanes of a team that make stars */
 };

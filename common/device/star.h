@@ -55,12 +55,13 @@ typedef struct {
   const cadt_window_shape* shape;
   CADT_GLOBAL const cadt_point* points;
   cadt_tally* tally;
+  cadt_u32 lanes, candidates; /* how w->link is shared */
 } cadt_star_maker;
 
 CADT_FN cadt_point cadt_exact_point(const cadt_star_maker* m, cadt_u32 place) { return m->points[m->w->at[place]]; }
 
 CADT_FN cadt_u32 cadt_link_place(const cadt_star_maker* m, cadt_u32 k) {
-  return m->w->link[k * CADT_STAR_LANES + cadt_team_lane] & CADT_PLACE_MASK;
+  return m->w->link[k * m->lanes + cadt_team_lane] & CADT_PLACE_MASK;
 }
 
 /* Orientation of p, a, b; the vectors are from p, inverted or not. */
@@ -89,9 +90,31 @@ CADT_FN cadt_u32 cadt_star_keeps(const cadt_star_maker* m, cadt_u32 p, cadt_u32 
   return cadt_incircle(P, A, B, cadt_exact_point(m, c), m->tally) < 0 ? 1u : 0u;
 }
 
-/* Points of a row of cells around cell (x, y). */
-CADT_FN cadt_u32 cadt_row_begin(const cadt_star_maker* m, cadt_u32 row, cadt_u32 column) {
-  return m->w->cells[row * m->shape->side + column];
+/* The points of the cells up to `reach` away, row by row, in one loop: lanes whose rows are short do not wait. */
+typedef struct {
+  cadt_u32 place, end; /* in the row */
+  cadt_u32 cell, last, width;
+} cadt_sweep;
+
+CADT_FN cadt_sweep cadt_sweep_of(const cadt_star_maker* m, cadt_u32 x, cadt_u32 y, cadt_u32 reach) {
+  cadt_sweep s;
+  s.cell = (y - reach) * m->shape->side + x - reach;
+  s.last = s.cell + 2u * reach * m->shape->side;
+  s.width = 2u * reach + 1u;
+  s.place = m->w->cells[s.cell];
+  s.end = m->w->cells[s.cell + s.width];
+  return s;
+}
+
+/* To the next point; 0: there is none. */
+CADT_FN cadt_u32 cadt_sweep_on(const cadt_star_maker* m, cadt_sweep* s) {
+  while (s->place >= s->end) {
+    if (s->cell == s->last) return 0u;
+    s->cell += m->shape->side;
+    s->place = m->w->cells[s->cell];
+    s->end = m->w->cells[s->cell + s->width];
+  }
+  return 1u;
 }
 
 /* The star of the point at place p in cell (x, y), searched for in the cells up to `reach` away, which must be in the
@@ -104,10 +127,10 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   float best[8];
   float nearest = 0.0f; /* 1 / distance^2 */
   for (cadt_u32 k = 0u; k < 8u; ++k) best[k] = least;
-  for (cadt_u32 row = y - near; row <= y + near; ++row) {
-    const cadt_u32 end = cadt_row_begin(m, row, x + near + 1u);
-    for (cadt_u32 j = cadt_row_begin(m, row, x - near); j < end; ++j) {
-      if (j == p) continue;
+  cadt_sweep near_cells = cadt_sweep_of(m, x, y, near);
+  while (cadt_sweep_on(m, &near_cells)) {
+    const cadt_u32 j = near_cells.place++;
+    if (j != p) {
       const float dx = w->x[j] - px, dy = w->y[j] - py, inverse = cadt_about_inverse(cadt_about_fma(dx, dx, dy * dy));
       const float ux = dx * inverse, uy = dy * inverse;
       nearest = cadt_maxf(nearest, inverse);
@@ -125,12 +148,13 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   /* Relative error of a difference, and of its inverse. Points further off than a cell have smaller ones. */
   const float rho = CADT_WINDOW_ERROR * cadt_sqrtf(cadt_maxf(nearest, 1.0f)), sigma = 3.0f * rho + 1e-6f;
 
-  /* Half-planes n . u < 1, that is n . d < d . d */
+  /* Half-planes n . u < 1, that is n . d < d . d, of a polygon of some of the eight */
   float nx[8], ny[8], error = 0.0f;
   cadt_u32 first = p;
   {
     float largest = 0.0f;
-    cadt_u32 place = cadt_marked(best[0]);
+    const cadt_u32 start = cadt_marked(best[0]);
+    cadt_u32 place = start;
     cadt_vector u = cadt_invert(cadt_vector_to(w, p, place));
     float longest = cadt_square(u);
     first = place;
@@ -138,43 +162,45 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       const cadt_u32 next = cadt_marked(best[(k + 1u) & 7u]);
       const cadt_vector v = cadt_invert(cadt_vector_to(w, p, next));
       nx[k] = ny[k] = 0.0f;
-      if (next != place) {
-        const float cross = cadt_cross(u, v), lengths = cadt_square(u) * cadt_square(v);
-        /* the hull must go round p, at angles that are not small */
-        if (!(cross > 0.0f && cross * cross > 0.0025f * lengths)) return 0u;
-        const float inverse = cadt_about_inverse(cross);
-        nx[k] = (v.y - u.y) * inverse;
-        ny[k] = (u.x - v.x) * inverse;
-        largest = cadt_maxf(largest, (nx[k] * nx[k] + ny[k] * ny[k]) * (lengths * inverse * inverse));
-        if (cadt_square(v) > longest) longest = cadt_square(v), first = next;
+      if (next == place) continue;
+      const float cross = cadt_cross(u, v), lengths = cadt_square(u) * cadt_square(v);
+      if (cadt_square(v) > longest) longest = cadt_square(v), first = next;
+      if (!(cross > 0.0f && cross * cross > 0.0025f * lengths)) { /* not by a fair angle to the left */
+        /* Without a corner the polygon is smaller, which is right as well, but it must go round p. */
+        if (u.x * v.x + u.y * v.y <= 0.0f || next == start) return 0u;
+        continue;
       }
+      const float inverse = cadt_about_inverse(cross);
+      nx[k] = (v.y - u.y) * inverse;
+      ny[k] = (u.x - v.x) * inverse;
+      largest = cadt_maxf(largest, (nx[k] * nx[k] + ny[k] * ny[k]) * (lengths * inverse * inverse));
       place = next;
       u = v;
     }
+    if (place != start) return 0u;
     error = 8.0f * sigma * cadt_sqrtf(largest);
   }
 
   const float shrink = 1.0f - 4.0f * rho - 1e-6f;
   cadt_u32 count = 0u;
-  for (cadt_u32 row = y - reach; row <= y + reach; ++row) {
-    const cadt_u32 end = cadt_row_begin(m, row, x + reach + 1u);
-    for (cadt_u32 j = cadt_row_begin(m, row, x - reach); j < end; ++j) {
-      const float dx = w->x[j] - px, dy = w->y[j] - py;
-      float t = cadt_about_fma(nx[0], dx, ny[0] * dy);
-      for (cadt_u32 k = 1u; k < 8u; ++k) t = cadt_maxf(t, cadt_about_fma(nx[k], dx, ny[k] * dy));
-      if (cadt_about_fma(error, cadt_fabsf(dx) + cadt_fabsf(dy), t) < cadt_about_fma(dx, dx, dy * dy) * shrink ||
-          j == p)
-        continue;
-      if (count < CADT_CAST(cadt_u32, CADT_CANDIDATES)) w->link[count * CADT_STAR_LANES + cadt_team_lane] = j;
+  cadt_sweep cells = cadt_sweep_of(m, x, y, reach);
+  while (cadt_sweep_on(m, &cells)) {
+    const cadt_u32 j = cells.place++;
+    const float dx = w->x[j] - px, dy = w->y[j] - py;
+    float t = cadt_about_fma(nx[0], dx, ny[0] * dy);
+    for (cadt_u32 k = 1u; k < 8u; ++k) t = cadt_maxf(t, cadt_about_fma(nx[k], dx, ny[k] * dy));
+    if (cadt_about_fma(error, cadt_fabsf(dx) + cadt_fabsf(dy), t) >= cadt_about_fma(dx, dx, dy * dy) * shrink &&
+        j != p) {
+      if (count < m->candidates) w->link[count * m->lanes + cadt_team_lane] = j;
       ++count;
     }
   }
-  if (count < 3u || count > CADT_CAST(cadt_u32, CADT_CANDIDATES)) return 0u;
+  if (count < 3u || count > m->candidates) return 0u;
 
   /* Sorted by the angle from `first` on. */
   const cadt_vector start = cadt_vector_to(w, p, first);
   for (cadt_u32 k = 0u; k < count; ++k) {
-    const cadt_u32 place = w->link[k * CADT_STAR_LANES + cadt_team_lane];
+    const cadt_u32 place = w->link[k * m->lanes + cadt_team_lane];
     const cadt_vector d = cadt_vector_to(w, p, place);
     const float cross = cadt_cross(start, d), dot = start.x * d.x + start.y * d.y;
     const float t = cross / (cadt_fabsf(cross) + cadt_fabsf(dot));
@@ -182,11 +208,11 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     const cadt_u32 key = (CADT_CAST(cadt_u32, angle * 524287.0f) << CADT_PLACE_BITS) | place;
     cadt_u32 at = k;
     for (; at > 0u; --at) {
-      const cadt_u32 other = w->link[(at - 1u) * CADT_STAR_LANES + cadt_team_lane];
+      const cadt_u32 other = w->link[(at - 1u) * m->lanes + cadt_team_lane];
       if (other < key) break;
-      w->link[at * CADT_STAR_LANES + cadt_team_lane] = other;
+      w->link[at * m->lanes + cadt_team_lane] = other;
     }
-    w->link[at * CADT_STAR_LANES + cadt_team_lane] = key;
+    w->link[at * m->lanes + cadt_team_lane] = key;
   }
   if (cadt_link_place(m, 0u) != first) return 0u;
 
@@ -210,7 +236,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       if (size >= 2u) ua = cadt_invert(cadt_vector_to(w, p, cadt_link_place(m, size - 2u)));
     }
     if (k < count) {
-      w->link[size * CADT_STAR_LANES + cadt_team_lane] = c;
+      w->link[size * m->lanes + cadt_team_lane] = c;
       ++size;
       ua = ub;
       ub = uc;
@@ -248,14 +274,14 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   return size;
 }
 
-/* Number of the neighbours of each vertex in counterclockwise order, CADT_STAR_DEGREE words each; `sizes`: how many
- * there are, 0 for vertices without a proven star. */
+/* `links`: neighbours of each vertex in counterclockwise order, CADT_STAR_DEGREE words a vertex, filled up with
+ * CADT_NONE to a multiple of four; `sizes`: how many there are, 0 for vertices without a proven star. */
 CADT_FN void cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, CADT_GLOBAL cadt_u32* links,
                              CADT_GLOBAL cadt_u32* sizes) {
   const cadt_u32 vertex = m->w->at[p];
   sizes[vertex] = size;
-  for (cadt_u32 k = 0u; k < size; ++k)
-    links[CADT_STAR_DEGREE * CADT_CAST(cadt_u64, vertex) + k] = m->w->at[cadt_link_place(m, k)];
+  for (cadt_u32 k = 0u; k < ((size + 3u) & ~3u); ++k)
+    links[CADT_STAR_DEGREE * CADT_CAST(cadt_u64, vertex) + k] = k < size ? m->w->at[cadt_link_place(m, k)] : CADT_NONE;
 }
 
 /* \pre sizes are 0 */
@@ -278,8 +304,12 @@ CADT_KERNEL(cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const 
       const cadt_u32 wanted = own < 2u * shape.tile_side * shape.tile_side ? 3u : 2u;
       const cadt_u32 reach = cadt_min_u32(wanted, shape.halo);
       const float middle = 0.5f * CADT_CAST(float, shape.side);
-      const cadt_u32 lanes = cadt_min_u32(cadt_team_lanes, CADT_STAR_LANES);
       for (cadt_u32 round = 0u; round < 2u; ++round) {
+        /* few are tried again, with room for more candidates */
+        const cadt_u32 lanes = cadt_min_u32(
+            cadt_team_lanes, round ? CADT_CAST(cadt_u32, CADT_STAR_LANES) / 2u : CADT_CAST(cadt_u32, CADT_STAR_LANES));
+        maker.lanes = lanes;
+        maker.candidates = (round ? 2u : 1u) * CADT_CANDIDATES;
         const cadt_u32 count = round ? window.again_count : own;
         for (cadt_u32 i = cadt_team_lane; cadt_team_lane < lanes && i < count; i += lanes) {
           const cadt_u32 number = round ? window.again[i] : i;

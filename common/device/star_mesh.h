@@ -30,8 +30,8 @@ CADT_FN cadt_u32 cadt_owned_number(const cadt_star_set* s, cadt_u32 owner, cadt_
 
 /* Counts: owned triangles of each vertex, vertices without a star (1 each), both with a 0 at the end; totals[0]: owned
  * triangles with no other proven vertex. */
-CADT_KERNEL(cadt_star_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, cadt_u32 n, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* owned, CADT_GLOBAL cadt_u32* unproven, CADT_GLOBAL cadt_u32* totals) {
+CADT_KERNEL(cadt_star_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, cadt_u32 n,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* owned, CADT_GLOBAL cadt_u32* unproven, CADT_GLOBAL cadt_u32* totals) {
   cadt_u32 open = 0u;
   if (cadt_item == 0u) owned[n] = unproven[n] = 0u;
   CADT_FOR(v, n, grain) {
@@ -59,18 +59,25 @@ CADT_KERNEL(cadt_star_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL cad
   if (open) cadt_add_relaxed(totals, open);
 }
 
-/* Where triangle k of v's star is: its record and the slot of v in it. The slots are owner, next, next. */
-CADT_FN void cadt_find_triangle_of_star(const cadt_star_set* s, cadt_u32 v, cadt_u32 a, cadt_u32 b, cadt_u32 a_proven,
-                                        cadt_u32 b_proven, cadt_u32* record, cadt_u32* slot) {
-  /* owner and the vertex after it */
-  cadt_u32 owner = a, next = b;
-  *slot = 2u;
-  if (!(a_proven && a < v && !(b_proven && b < a))) owner = b, next = v, *slot = 1u;
-  CADT_GLOBAL const cadt_u32* link = cadt_star_of(s, owner);
-  const cadt_u32 size = CADT_STAR_SIZE(s->sizes[owner]);
-  cadt_u32 k = 0u;
-  while (k < size && link[k] != next) ++k;
-  *record = cadt_owned_number(s, owner, k);
+/* Place of a vertex in the star of another. \pre it is there */
+CADT_FN cadt_u32 cadt_place_in_star(CADT_GLOBAL const cadt_u32* star, cadt_u32 vertex) {
+  for (cadt_u32 k = 0u;; k += 4u) {
+    cadt_u32 four[4];
+    cadt_load_four(star + k, four);
+    if (four[0] == vertex) return k;
+    if (four[1] == vertex) return k + 1u;
+    if (four[2] == vertex) return k + 2u;
+    if (four[3] == vertex || k + 4u >= CADT_CAST(cadt_u32, CADT_STAR_DEGREE)) return k + 3u;
+  }
+}
+
+/* Triangle v, a, b in the star of v: its record, and the slot of v in it as the edge of a link. Slots are owner, next,
+ * next. */
+CADT_FN cadt_u32 cadt_find_triangle_of_star(const cadt_star_set* s, cadt_u32 v, cadt_u32 a, cadt_u32 b,
+                                            cadt_u32 a_proven, cadt_u32 b_proven) {
+  if (a_proven && a < v && !(b_proven && b < a))
+    return CADT_LINK(cadt_owned_number(s, a, cadt_place_in_star(cadt_star_of(s, a), b)), 2u);
+  return CADT_LINK(cadt_owned_number(s, b, cadt_place_in_star(cadt_star_of(s, b), v)), 1u);
 }
 
 /* Records of all triangles that have a proven vertex. `open` lists those whose edge 0 has no proven vertex: what is
@@ -83,46 +90,46 @@ CADT_KERNEL(cadt_star_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL co
   stars.sizes = sizes;
   stars.bases = bases;
   CADT_FOR(v, n, grain) {
-    const cadt_u32 word = sizes[v], size = CADT_STAR_SIZE(word), mask = word >> CADT_STAR_OWNED;
+    const cadt_u32 word = sizes[v], size = CADT_STAR_SIZE(word), owned = word >> CADT_STAR_OWNED,
+                   all = (1u << size) - 1u;
     if (!size) continue;
     CADT_GLOBAL const cadt_u32* link = cadt_star_of(&stars, v);
-    cadt_u32 proven = 0u;
-    cadt_u32 record[CADT_STAR_DEGREE], slot[CADT_STAR_DEGREE];
-    for (cadt_u32 k = 0u; k < size; ++k) proven |= (CADT_STAR_SIZE(sizes[link[k]]) ? 1u : 0u) << k;
+    const cadt_u32 base = bases[v];
+    cadt_u32 proven = 0u, number = base;
+    cadt_u32 at[CADT_STAR_DEGREE]; /* its triangles: record and slot of v */
     for (cadt_u32 k = 0u; k < size; ++k) {
-      const cadt_u32 k1 = k + 1u < size ? k + 1u : 0u;
-      if ((mask >> k) & 1u) {
-        record[k] = cadt_owned_number(&stars, v, k);
-        slot[k] = 0u;
-      } else {
-        cadt_find_triangle_of_star(&stars, v, link[k], link[k1], (proven >> k) & 1u, (proven >> k1) & 1u, &record[k],
-                                   &slot[k]);
-      }
+      if (CADT_STAR_SIZE(sizes[link[k]])) proven |= 1u << k;
+      at[k] = CADT_LINK(number, 0u);
+      number += (owned >> k) & 1u;
+    }
+    for (cadt_u32 left = all & ~owned; left; left &= left - 1u) {
+      const cadt_u32 k = cadt_popcount((left & (0u - left)) - 1u), k1 = k + 1u < size ? k + 1u : 0u;
+      at[k] = cadt_find_triangle_of_star(&stars, v, link[k], link[k1], (proven >> k) & 1u, (proven >> k1) & 1u);
     }
     for (cadt_u32 k = 0u; k < size; ++k) {
-      const cadt_u32 after = k + 1u < size ? k + 1u : 0u, before = k ? k - 1u : size - 1u;
+      const cadt_u32 k1 = k + 1u < size ? k + 1u : 0u, after = at[k1], before = at[k ? k - 1u : size - 1u];
       /* across the edges at v: behind the next neighbour, behind this one */
-      const cadt_u32 link_after = CADT_LINK(record[after], CADT_PREV(slot[after]));
-      const cadt_u32 link_before = CADT_LINK(record[before], CADT_NEXT(slot[before]));
-      CADT_GLOBAL cadt_u32* w = records[record[k]].word;
-      if (slot[k] == 0u) {
+      const cadt_u32 link_after = CADT_LINK(CADT_LINK_RECORD(after), CADT_PREV(CADT_LINK_EDGE(after)));
+      const cadt_u32 link_before = CADT_LINK(CADT_LINK_RECORD(before), CADT_NEXT(CADT_LINK_EDGE(before)));
+      CADT_GLOBAL cadt_u32* w = records[CADT_LINK_RECORD(at[k])].word;
+      if ((owned >> k) & 1u) {
         w[0] = v;
         w[1] = link[k];
-        w[2] = link[after];
+        w[2] = link[k1];
         w[CADT_WORD_LOCK] = 2u;
         w[CADT_WORD_LINK + 1] = link_after;
         w[CADT_WORD_LINK + 2] = link_before;
         w[CADT_WORD_FLIPS] = 0u;
-        if (!((proven >> k) & 1u) && !((proven >> after) & 1u)) {
+        if (!((proven >> k) & 1u) && !((proven >> k1) & 1u)) {
           w[CADT_WORD_LINK] = CADT_NONE;
-          open[cadt_add_relaxed(totals + 1, 1u)] = record[k];
+          open[cadt_add_relaxed(totals + 1, 1u)] = CADT_LINK_RECORD(at[k]);
         }
       } else {
         /* edge 0 is at v; if both of its ends are proven, both store the same */
-        cadt_store_relaxed(w + CADT_WORD_LINK, slot[k] == 2u ? link_after : link_before);
+        cadt_store_relaxed(w + CADT_WORD_LINK, CADT_LINK_EDGE(at[k]) == 2u ? link_after : link_before);
       }
     }
-    hints[v] = record[0];
+    hints[v] = CADT_LINK_RECORD(at[0]);
   }
 }
 

@@ -4,8 +4,9 @@
  * left to the lock-based insertion (docs/algorithm.md, "The star stage").
  *
  * In inverted space, u = (q - p) / |q - p|^2, the link of p is the convex hull of all u, and incircle is orientation.
- * 1. An octagon: the extreme points of eight directions among the nearest cells. What lies inside of it is no neighbour
- *    of p, and that is most of the window; what may lie outside is a candidate.
+ * 1. An octagon: the extreme points in four directions among the nearest cells, and the furthest out between two of
+ *    them. What lies inside of it is no neighbour of p, and that is most of the window; what may lie outside is a
+ *    candidate.
  * 2. The hull of the candidates, by a scan in the order of their angles.
  * 3. All circles through p and two consecutive neighbours must lie within the cells that were searched.
  * All this is in single precision with bounds of its errors; what a bound does not decide, an exact predicate does, so
@@ -124,29 +125,48 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
                                 cadt_u32 reach) {
   CADT_TEAM_PTR cadt_window* w = m->w;
   const float px = w->x[p], py = w->y[p], least = -3e38f;
-  float best[8];
+  float best[8];        /* in the order of their angles: east, between, north, ... */
   float nearest = 0.0f; /* 1 / distance^2 */
   for (cadt_u32 k = 0u; k < 8u; ++k) best[k] = least;
-  cadt_sweep near_cells = cadt_sweep_of(m, x, y, near);
-  while (cadt_sweep_on(m, &near_cells)) {
-    const cadt_u32 j = near_cells.place++;
+  cadt_sweep cells = cadt_sweep_of(m, x, y, near);
+  while (cadt_sweep_on(m, &cells)) {
+    const cadt_u32 j = cells.place++;
     if (j != p) {
-      const float dx = w->x[j] - px, dy = w->y[j] - py, inverse = cadt_about_inverse(cadt_about_fma(dx, dx, dy * dy));
+      const float dx = w->x[j] - px, dy = w->y[j] - py;
+      const float inverse = cadt_about_inverse(cadt_about_fma(dx, dx, dy * dy));
       const float ux = dx * inverse, uy = dy * inverse;
       nearest = cadt_maxf(nearest, inverse);
       best[0] = cadt_maxf(best[0], cadt_mark(ux, j));
-      best[1] = cadt_maxf(best[1], cadt_mark(ux + uy, j));
       best[2] = cadt_maxf(best[2], cadt_mark(uy, j));
-      best[3] = cadt_maxf(best[3], cadt_mark(uy - ux, j));
       best[4] = cadt_maxf(best[4], cadt_mark(-ux, j));
-      best[5] = cadt_maxf(best[5], cadt_mark(-ux - uy, j));
       best[6] = cadt_maxf(best[6], cadt_mark(-uy, j));
-      best[7] = cadt_maxf(best[7], cadt_mark(ux - uy, j));
     }
   }
   if (!(nearest > 0.0f && nearest < 1e7f)) return 0u; /* nobody, or too near for single precision */
   /* Relative error of a difference, and of its inverse. Points further off than a cell have smaller ones. */
   const float rho = CADT_WINDOW_ERROR * cadt_sqrtf(cadt_maxf(nearest, 1.0f)), sigma = 3.0f * rho + 1e-6f;
+
+  /* Between two of the four: who is furthest out from the line through them. */
+  {
+    float ex[4], ey[4];
+    for (cadt_u32 k = 0u; k < 4u; ++k) {
+      const cadt_u32 a = cadt_marked(best[2u * k]), b = cadt_marked(best[(2u * k + 2u) & 7u]);
+      const cadt_vector ua = cadt_invert(cadt_vector_to(w, p, a)), ub = cadt_invert(cadt_vector_to(w, p, b));
+      ex[k] = a == b ? ua.x : ub.y - ua.y;
+      ey[k] = a == b ? ua.y : ua.x - ub.x;
+    }
+    cells = cadt_sweep_of(m, x, y, near);
+    while (cadt_sweep_on(m, &cells)) {
+      const cadt_u32 j = cells.place++;
+      if (j != p) {
+        const float dx = w->x[j] - px, dy = w->y[j] - py;
+        const float inverse = cadt_about_inverse(cadt_about_fma(dx, dx, dy * dy));
+        const float ux = dx * inverse, uy = dy * inverse;
+        for (cadt_u32 k = 0u; k < 4u; ++k)
+          best[2u * k + 1u] = cadt_maxf(best[2u * k + 1u], cadt_mark(cadt_about_fma(ex[k], ux, ey[k] * uy), j));
+      }
+    }
+  }
 
   /* Half-planes n . u < 1, that is n . d < d . d, of a polygon of some of the eight */
   float nx[8], ny[8], error = 0.0f;
@@ -183,7 +203,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
 
   const float shrink = 1.0f - 4.0f * rho - 1e-6f;
   cadt_u32 count = 0u;
-  cadt_sweep cells = cadt_sweep_of(m, x, y, reach);
+  cells = cadt_sweep_of(m, x, y, reach);
   while (cadt_sweep_on(m, &cells)) {
     const cadt_u32 j = cells.place++;
     const float dx = w->x[j] - px, dy = w->y[j] - py;

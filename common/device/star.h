@@ -74,9 +74,10 @@ CADT_FN cadt_i32 cadt_star_orientation(const cadt_star_maker* m, cadt_u32 p, cad
   return cadt_orientation(cadt_exact_point(m, p), cadt_exact_point(m, a), cadt_exact_point(m, b), m->tally);
 }
 
-/* Whether b is a corner between a and c on the hull in inverted space. 2: the question makes no sense. */
-CADT_FN cadt_u32 cadt_star_keeps(const cadt_star_maker* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_u32 c,
-                                 cadt_vector ua, cadt_vector ub, cadt_vector uc, float sigma) {
+/* Whether the last corner of the first `size`, b, is one when c comes after it; a is the one before. 2: the question
+ * makes no sense. */
+CADT_FN cadt_u32 cadt_star_keeps(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, cadt_u32 c, cadt_vector ua,
+                                 cadt_vector ub, cadt_vector uc, float sigma) {
   cadt_vector e, f;
   e.x = ub.x - ua.x;
   e.y = ub.y - ua.y;
@@ -86,9 +87,92 @@ CADT_FN cadt_u32 cadt_star_keeps(const cadt_star_maker* m, cadt_u32 p, cadt_u32 
   const float cross = cadt_cross(e, f), bound = 4.0f * sigma * largest * (cadt_size(e) + cadt_size(f));
   if (cross > bound) return 1u;
   if (-cross > bound) return 0u;
-  const cadt_point P = cadt_exact_point(m, p), A = cadt_exact_point(m, a), B = cadt_exact_point(m, b);
+  const cadt_point P = cadt_exact_point(m, p), A = cadt_exact_point(m, cadt_link_place(m, size - 2u));
+  const cadt_point B = cadt_exact_point(m, cadt_link_place(m, size - 1u));
   if (cadt_orientation(P, A, B, m->tally) <= 0) return 2u;
   return cadt_incircle(P, A, B, cadt_exact_point(m, c), m->tally) < 0 ? 1u : 0u;
+}
+
+/* K. E. Batcher's odd-even merge sort ("Sorting networks and their applications", 1968) of 16 keys in registers. */
+#define CADT_ORDER_KEYS(i, j)                   \
+  do {                                          \
+    const cadt_u32 low = key[i], high = key[j]; \
+    key[i] = low < high ? low : high;           \
+    key[j] = low < high ? high : low;           \
+  } while (0)
+#define CADT_SORT_KEYS     \
+  CADT_ORDER_KEYS(0, 1);   \
+  CADT_ORDER_KEYS(2, 3);   \
+  CADT_ORDER_KEYS(4, 5);   \
+  CADT_ORDER_KEYS(6, 7);   \
+  CADT_ORDER_KEYS(8, 9);   \
+  CADT_ORDER_KEYS(10, 11); \
+  CADT_ORDER_KEYS(12, 13); \
+  CADT_ORDER_KEYS(14, 15); \
+  CADT_ORDER_KEYS(0, 2);   \
+  CADT_ORDER_KEYS(1, 3);   \
+  CADT_ORDER_KEYS(4, 6);   \
+  CADT_ORDER_KEYS(5, 7);   \
+  CADT_ORDER_KEYS(8, 10);  \
+  CADT_ORDER_KEYS(9, 11);  \
+  CADT_ORDER_KEYS(12, 14); \
+  CADT_ORDER_KEYS(13, 15); \
+  CADT_ORDER_KEYS(1, 2);   \
+  CADT_ORDER_KEYS(5, 6);   \
+  CADT_ORDER_KEYS(9, 10);  \
+  CADT_ORDER_KEYS(13, 14); \
+  CADT_ORDER_KEYS(0, 4);   \
+  CADT_ORDER_KEYS(1, 5);   \
+  CADT_ORDER_KEYS(2, 6);   \
+  CADT_ORDER_KEYS(3, 7);   \
+  CADT_ORDER_KEYS(8, 12);  \
+  CADT_ORDER_KEYS(9, 13);  \
+  CADT_ORDER_KEYS(10, 14); \
+  CADT_ORDER_KEYS(11, 15); \
+  CADT_ORDER_KEYS(2, 4);   \
+  CADT_ORDER_KEYS(3, 5);   \
+  CADT_ORDER_KEYS(10, 12); \
+  CADT_ORDER_KEYS(11, 13); \
+  CADT_ORDER_KEYS(1, 2);   \
+  CADT_ORDER_KEYS(3, 4);   \
+  CADT_ORDER_KEYS(5, 6);   \
+  CADT_ORDER_KEYS(9, 10);  \
+  CADT_ORDER_KEYS(11, 12); \
+  CADT_ORDER_KEYS(13, 14); \
+  CADT_ORDER_KEYS(0, 8);   \
+  CADT_ORDER_KEYS(1, 9);   \
+  CADT_ORDER_KEYS(2, 10);  \
+  CADT_ORDER_KEYS(3, 11);  \
+  CADT_ORDER_KEYS(4, 12);  \
+  CADT_ORDER_KEYS(5, 13);  \
+  CADT_ORDER_KEYS(6, 14);  \
+  CADT_ORDER_KEYS(7, 15);  \
+  CADT_ORDER_KEYS(4, 8);   \
+  CADT_ORDER_KEYS(5, 9);   \
+  CADT_ORDER_KEYS(6, 10);  \
+  CADT_ORDER_KEYS(7, 11);  \
+  CADT_ORDER_KEYS(2, 4);   \
+  CADT_ORDER_KEYS(3, 5);   \
+  CADT_ORDER_KEYS(6, 8);   \
+  CADT_ORDER_KEYS(7, 9);   \
+  CADT_ORDER_KEYS(10, 12); \
+  CADT_ORDER_KEYS(11, 13); \
+  CADT_ORDER_KEYS(1, 2);   \
+  CADT_ORDER_KEYS(3, 4);   \
+  CADT_ORDER_KEYS(5, 6);   \
+  CADT_ORDER_KEYS(7, 8);   \
+  CADT_ORDER_KEYS(9, 10);  \
+  CADT_ORDER_KEYS(11, 12); \
+  CADT_ORDER_KEYS(13, 14);
+
+/* The angle of a candidate from that of `first` on, and its place. */
+CADT_FN cadt_u32 cadt_angle_key(const cadt_star_maker* m, cadt_u32 p, cadt_u32 first, cadt_vector start,
+                                cadt_u32 place) {
+  const cadt_vector d = cadt_vector_to(m->w, p, place);
+  const float cross = cadt_cross(start, d), dot = start.x * d.x + start.y * d.y;
+  const float t = cross * cadt_about_inverse(cadt_fabsf(cross) + cadt_fabsf(dot));
+  const float angle = dot >= 0.0f ? (cross >= 0.0f ? t : 4.0f + t) : 2.0f - t;
+  return place == first ? place : (CADT_CAST(cadt_u32, angle * 524280.0f) << CADT_PLACE_BITS) | place;
 }
 
 /* The points of the cells up to `reach` away, row by row, in one loop: lanes whose rows are short do not wait. */
@@ -217,15 +301,18 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   }
   if (count < 3u || count > m->candidates) return 0u;
 
-  /* Sorted by the angle from `first` on. */
+  /* Sorted by the angle from `first` on: 21 bits of it, and the place. */
   const cadt_vector start = cadt_vector_to(w, p, first);
-  for (cadt_u32 k = 0u; k < count; ++k) {
-    const cadt_u32 place = w->link[k * m->lanes + cadt_team_lane];
-    const cadt_vector d = cadt_vector_to(w, p, place);
-    const float cross = cadt_cross(start, d), dot = start.x * d.x + start.y * d.y;
-    const float t = cross / (cadt_fabsf(cross) + cadt_fabsf(dot));
-    const float angle = place == first ? 0.0f : (dot >= 0.0f ? (cross >= 0.0f ? t : 4.0f + t) : 2.0f - t);
-    const cadt_u32 key = (CADT_CAST(cadt_u32, angle * 524287.0f) << CADT_PLACE_BITS) | place;
+  {
+    cadt_u32 key[CADT_CANDIDATES];
+    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_CANDIDATES); ++k)
+      key[k] = k < count ? cadt_angle_key(m, p, first, start, w->link[k * m->lanes + cadt_team_lane]) : CADT_NONE;
+    CADT_SORT_KEYS;
+    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_CANDIDATES); ++k)
+      if (k < count) w->link[k * m->lanes + cadt_team_lane] = key[k];
+  }
+  for (cadt_u32 k = CADT_CANDIDATES; k < count; ++k) { /* seldom */
+    const cadt_u32 key = cadt_angle_key(m, p, first, start, w->link[k * m->lanes + cadt_team_lane]);
     cadt_u32 at = k;
     for (; at > 0u; --at) {
       const cadt_u32 other = w->link[(at - 1u) * m->lanes + cadt_team_lane];
@@ -236,35 +323,46 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   }
   if (cadt_link_place(m, 0u) != first) return 0u;
 
-  /* The hull; what was on it and is no corner is dropped. It begins and ends with `first`. */
-  cadt_u32 size = 1u, last = first;
+  /* The hull; what was on it and is no corner is dropped. It begins and ends with `first`. One test and one load a
+   * step, so that the lanes of a warp stay together. */
+  cadt_u32 size = 1u, at = 0u, c = first;
   const cadt_vector us = cadt_invert(start);
-  cadt_vector ul = us, ua = us, ub = us; /* of the last candidate; of the last two corners */
-  for (cadt_u32 k = 1u; k <= count; ++k) {
-    const cadt_u32 c = k < count ? cadt_link_place(m, k) : first;
-    const cadt_vector uc = k < count ? cadt_invert(cadt_vector_to(w, p, c)) : us;
-    if (cadt_star_orientation(m, p, last, c, ul, uc, sigma) <= 0) return 0u; /* their order is not certain */
-    last = c;
-    ul = uc;
-    while (size >= 2u) {
-      const cadt_u32 a = cadt_link_place(m, size - 2u), b = cadt_link_place(m, size - 1u);
-      const cadt_u32 keeps = cadt_star_keeps(m, p, a, b, c, ua, ub, uc, sigma);
-      if (keeps == 2u) return 0u;
-      if (keeps) break;
+  cadt_vector ua = us, ub = us, uc = us; /* of the last two corners and of candidate `at` */
+  for (;;) {
+    cadt_u32 keeps = 1u;
+    if (size >= 2u && at > 0u) keeps = cadt_star_keeps(m, p, size, c, ua, ub, uc, sigma);
+    if (keeps == 2u) return 0u;
+    if (keeps && at == count) break;
+    cadt_u32 next;
+    if (keeps) {
+      if (at > 0u) {
+        w->link[size * m->lanes + cadt_team_lane] = c;
+        ++size;
+        ua = ub;
+        ub = uc;
+      }
+      ++at;
+      next = at < count ? at : 0u;
+    } else {
       --size;
-      ub = ua;
-      if (size >= 2u) ua = cadt_invert(cadt_vector_to(w, p, cadt_link_place(m, size - 2u)));
+      next = size >= 2u ? size - 2u : 0u;
     }
-    if (k < count) {
-      w->link[size * m->lanes + cadt_team_lane] = c;
-      ++size;
-      ua = ub;
-      ub = uc;
+    const cadt_u32 place = cadt_link_place(m, next);
+    const cadt_vector u = cadt_invert(cadt_vector_to(w, p, place));
+    if (keeps) {
+      if (cadt_star_orientation(m, p, c, place, ub, u, sigma) <= 0) return 0u; /* their order is not certain */
+      c = place;
+      uc = u;
+    } else {
+      ub = ua;
+      ua = u;
     }
   }
   if (size < 3u || size > CADT_CAST(cadt_u32, CADT_STAR_DEGREE)) return 0u;
-  const cadt_vector u1 = cadt_invert(cadt_vector_to(w, p, cadt_link_place(m, 1u)));
-  if (cadt_star_keeps(m, p, cadt_link_place(m, size - 1u), first, cadt_link_place(m, 1u), ub, us, u1, sigma) != 1u)
+  /* `first` is a corner too */
+  const cadt_u32 second = cadt_link_place(m, 1u);
+  w->link[size * m->lanes + cadt_team_lane] = first;
+  if (cadt_star_keeps(m, p, size + 1u, second, ub, us, cadt_invert(cadt_vector_to(w, p, second)), sigma) != 1u)
     return 0u;
 
   /* The circles. Beyond the edge of the grid there are no points. */

@@ -66,12 +66,13 @@ typedef long cadt_i64;
 #define cadt_bits_of_float(x) as_uint(x)
 #define cadt_float_of_bits(x) as_float(x)
 #define cadt_popcount(x) ((cadt_u32)popcount((uint)(x)))
-#define cadt_sqrtf(x) sqrt((float)(x))
 #define cadt_fabsf(x) fabs((float)(x))
 #define cadt_maxf(a, b) fmax((float)(a), (float)(b))
-/* approximations, for what has a bound of its error: a * b + c, 1 / x */
+/* approximations, for what has a bound of its error: a * b + c, 1 / x, square root of
+ * what is not 0 */
 #define cadt_about_fma(a, b, c) fma((float)(a), (float)(b), (float)(c))
 #define cadt_about_inverse(x) (1.0f / (x))
+#define cadt_about_sqrt(x) sqrt((float)(x))
 #define cadt_clz64(x) ((cadt_u32)clz((ulong)(x)))
 #define cadt_mulhi_u64(a, b) mul_hi((ulong)(a), (ulong)(b))
 #define cadt_fabs(x) fabs(x)
@@ -117,11 +118,11 @@ typedef long long cadt_i64;
 #define cadt_bits_of_float(x) ((cadt_u32)__float_as_uint(x))
 #define cadt_float_of_bits(x) __uint_as_float(x)
 #define cadt_popcount(x) ((cadt_u32)__popc(x))
-#define cadt_sqrtf(x) __fsqrt_rn(x)
 #define cadt_fabsf(x) fabsf(x)
 #define cadt_maxf(a, b) fmaxf((a), (b))
 #define cadt_about_fma(a, b, c) __fmaf_rn((a), (b), (c))
 #define cadt_about_inverse(x) __fdividef(1.0f, (x))
+#define cadt_about_sqrt(x) ((x)*rsqrtf(x))
 #define cadt_clz64(x) ((cadt_u32)__clzll((long long)(x)))
 #define cadt_mulhi_u64(a, b) __umul64hi((a), (b))
 #define cadt_fabs(x) fabs(x)
@@ -167,11 +168,11 @@ CADT_FN float cadt_float_of_bits(cadt_u32 bits) {
   return x;
 }
 CADT_FN cadt_u32 cadt_popcount(cadt_u32 x) { return CADT_CAST(cadt_u32, __builtin_popcount(x)); }
-CADT_FN float cadt_sqrtf(float x) { return std::sqrt(x); }
 CADT_FN float cadt_fabsf(float x) { return std::fabs(x); }
 CADT_FN float cadt_maxf(float a, float b) { return a > b ? a : b; }
 CADT_FN float cadt_about_fma(float a, float b, float c) { return a * b + c; }
 CADT_FN float cadt_about_inverse(float x) { return 1.0f / x; }
+CADT_FN float cadt_about_sqrt(float x) { return std::sqrt(x); }
 CADT_FN cadt_u32 cadt_clz64(cadt_u64 x) { return x ? CADT_CAST(cadt_u32, __builtin_clzll(x)) : 64u; }
 CADT_FN cadt_u64 cadt_mulhi_u64(cadt_u64 a, cadt_u64 b) {
   __extension__ typedef unsigned __int128 u128;

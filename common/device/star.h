@@ -228,7 +228,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   }
   if (!(nearest > 0.0f && nearest < 1e7f)) return 0u; /* nobody, or too near for single precision */
   /* Relative error of a difference, and of its inverse. Points further off than a cell have smaller ones. */
-  const float rho = CADT_WINDOW_ERROR * cadt_sqrtf(cadt_maxf(nearest, 1.0f)), sigma = 3.0f * rho + 1e-6f;
+  const float rho = CADT_WINDOW_ERROR * cadt_about_sqrt(cadt_maxf(nearest, 1.0f)), sigma = 3.0f * rho + 1e-6f;
 
   /* Between two of the four: who is furthest out from the line through them. */
   {
@@ -282,7 +282,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       u = v;
     }
     if (place != start) return 0u;
-    error = 8.0f * sigma * cadt_sqrtf(largest);
+    error = 8.0f * sigma * cadt_about_sqrt(largest);
   }
 
   const float shrink = 1.0f - 4.0f * rho - 1e-6f;
@@ -324,46 +324,50 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   if (cadt_link_place(m, 0u) != first) return 0u;
 
   /* The hull; what was on it and is no corner is dropped. It begins and ends with `first`. One test and one load a
-   * step, so that the lanes of a warp stay together. */
-  cadt_u32 size = 1u, at = 0u, c = first;
+   * step, and no way out of the middle, so that the lanes of a warp stay together. */
+  cadt_u32 size = 1u, at = 0u, c = first, going = 1u, proven = 1u;
   const cadt_vector us = cadt_invert(start);
   cadt_vector ua = us, ub = us, uc = us; /* of the last two corners and of candidate `at` */
-  for (;;) {
+  while (going) {
     cadt_u32 keeps = 1u;
-    if (size >= 2u && at > 0u) keeps = cadt_star_keeps(m, p, size, c, ua, ub, uc, sigma);
-    if (keeps == 2u) return 0u;
-    if (keeps && at == count) break;
-    cadt_u32 next;
-    if (keeps) {
-      if (at > 0u) {
-        w->link[size * m->lanes + cadt_team_lane] = c;
-        ++size;
-        ua = ub;
-        ub = uc;
+    if (size >= 2u) keeps = cadt_star_keeps(m, p, size, c, ua, ub, uc, sigma);
+    going = keeps != 2u && !(keeps && at == count) ? 1u : 0u;
+    if (keeps == 2u) proven = 0u;
+    if (going) {
+      cadt_u32 next;
+      if (keeps) {
+        if (at > 0u) {
+          w->link[size * m->lanes + cadt_team_lane] = c;
+          ++size;
+          ua = ub;
+          ub = uc;
+        }
+        ++at;
+        next = at < count ? at : 0u;
+      } else {
+        --size;
+        next = size >= 2u ? size - 2u : 0u;
       }
-      ++at;
-      next = at < count ? at : 0u;
-    } else {
-      --size;
-      next = size >= 2u ? size - 2u : 0u;
-    }
-    const cadt_u32 place = cadt_link_place(m, next);
-    const cadt_vector u = cadt_invert(cadt_vector_to(w, p, place));
-    if (keeps) {
-      if (cadt_star_orientation(m, p, c, place, ub, u, sigma) <= 0) return 0u; /* their order is not certain */
-      c = place;
-      uc = u;
-    } else {
-      ub = ua;
-      ua = u;
+      const cadt_u32 place = cadt_link_place(m, next);
+      const cadt_vector u = cadt_invert(cadt_vector_to(w, p, place));
+      if (keeps) {
+        /* candidates must come in the order of their angles for certain */
+        if (cadt_star_orientation(m, p, c, place, ub, u, sigma) <= 0) going = proven = 0u;
+        c = place;
+        uc = u;
+      } else {
+        ub = ua;
+        ua = u;
+      }
     }
   }
-  if (size < 3u || size > CADT_CAST(cadt_u32, CADT_STAR_DEGREE)) return 0u;
-  /* `first` is a corner too */
-  const cadt_u32 second = cadt_link_place(m, 1u);
-  w->link[size * m->lanes + cadt_team_lane] = first;
-  if (cadt_star_keeps(m, p, size + 1u, second, ub, us, cadt_invert(cadt_vector_to(w, p, second)), sigma) != 1u)
-    return 0u;
+  if (size < 3u || size > CADT_CAST(cadt_u32, CADT_STAR_DEGREE)) proven = 0u;
+  if (proven) { /* `first` is a corner too */
+    const cadt_u32 second = cadt_link_place(m, 1u);
+    w->link[size * m->lanes + cadt_team_lane] = first;
+    if (cadt_star_keeps(m, p, size + 1u, second, ub, us, cadt_invert(cadt_vector_to(w, p, second)), sigma) != 1u)
+      proven = 0u;
+  }
 
   /* The circles. Beyond the edge of the grid there are no points. */
   const float middle = 0.5f * CADT_CAST(float, m->shape->side), far = 1e30f;
@@ -374,22 +378,20 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   const float top = high_y >= m->shape->top ? far : CADT_CAST(float, high_y) - middle - py;
   const float bottom = low_y <= m->shape->bottom ? far : py + middle - CADT_CAST(float, low_y);
   cadt_vector u = us;
-  cadt_u32 a = first;
-  for (cadt_u32 k = 1u; k <= size; ++k) {
+  for (cadt_u32 k = 1u; k <= size && proven; ++k) {
     const cadt_u32 b = k < size ? cadt_link_place(m, k) : first;
     const cadt_vector v = cadt_invert(cadt_vector_to(w, p, b));
-    const float cross = cadt_cross(u, v), lengths = cadt_sqrtf(cadt_square(u) * cadt_square(v));
-    if (!(cross > 100.0f * sigma * lengths)) return 0u;
-    if (cadt_star_orientation(m, p, a, b, u, v, sigma) <= 0) return 0u;
+    const float cross = cadt_cross(u, v), lengths = cadt_size(u) * cadt_size(v);
     const float inverse = cadt_about_inverse(cross);
     const float cx = 0.5f * (v.y - u.y) * inverse, cy = 0.5f * (u.x - v.x) * inverse;
-    const float radius = cadt_sqrtf(cx * cx + cy * cy);
-    const float reached = radius * (1.0f + 16.0f * sigma * lengths * inverse) + 1e-4f;
-    if (cx + reached > right || reached - cx > left || cy + reached > top || reached - cy > bottom) return 0u;
+    const float reached = cadt_about_sqrt(cx * cx + cy * cy) * (1.0f + 16.0f * sigma * lengths * inverse) + 1e-4f;
+    /* the angle at p is positive for certain, and what was said of rounding holds */
+    if (!(cross > 100.0f * sigma * lengths && cx + reached <= right && reached - cx <= left && cy + reached <= top &&
+          reached - cy <= bottom))
+      proven = 0u;
     u = v;
-    a = b;
   }
-  return size;
+  return proven ? size : 0u;
 }
 
 /* `links`: neighbours of each vertex in counterclockwise order, CADT_STAR_DEGREE words a vertex, filled up with

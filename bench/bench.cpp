@@ -222,6 +222,7 @@ void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& ro
     if (row.occupancy && *row.occupancy <= 0.0) throw Skip(fmt::format("does not start with {} threads", task.block));
   }
   Options& options = triangulator.options();
+  options.strategy = Strategy::locks;  // what is repeated here is the paper's method
   options.stabilize = task.stabilize;
   options.flip_threshold = task.threshold;
   options.quality_epsilon = task.epsilon;

@@ -404,23 +404,26 @@ CADT_FN void cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size
     links[CADT_STAR_DEGREE * CADT_CAST(cadt_u64, vertex) + k] = k < size ? m->w->at[cadt_link_place(m, k)] : CADT_NONE;
 }
 
-/* \pre sizes are 0 */
+/* Stars of every `step`-th tile. found: points of these tiles, those without a proof; exact orientations, exact
+ * incircles, ties. \pre sizes are 0 */
 CADT_KERNEL(cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys, cadt_u32 n,
-            CADT_GRID_PARAMETERS, CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes) {
+            CADT_GRID_PARAMETERS, CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 step,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_window window;
   CADT_GRID_VIEW(grid);
   cadt_tally tally;
   cadt_tally_clear(&tally);
   CADT_FOR_TEAMS(t, tile_count, grain) {
-    const cadt_window_shape shape = cadt_shape_of_window(&grid, points, tiles[t], tiles[t + 1u].begin);
+    const cadt_tile tile = tiles[t * step];
+    const cadt_window_shape shape = cadt_shape_of_window(&grid, points, tile, tiles[t * step + 1u].begin);
     cadt_star_maker maker;
     maker.w = &window;
     maker.shape = &shape;
     maker.points = points;
     maker.tally = &tally;
-    if (cadt_load_window(&window, &shape, &grid, points, keys, n)) {
-      const cadt_u32 own = window.rows[shape.tile_side];
+    const cadt_u32 loaded = cadt_load_window(&window, &shape, &grid, points, keys, n);
+    const cadt_u32 own = loaded ? window.rows[shape.tile_side] : shape.end - shape.begin;
+    if (loaded) {
       const cadt_u32 wanted = own < 2u * shape.tile_side * shape.tile_side ? 3u : 2u;
       const cadt_u32 reach = cadt_min_u32(wanted, shape.halo);
       const float middle = 0.5f * CADT_CAST(float, shape.side);
@@ -444,12 +447,23 @@ CADT_KERNEL(cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const 
             cadt_store_star(&maker, p, size, links, sizes);
           else if (!round)
             window.again[cadt_team_add(&window.again_count, 1u)] = CADT_CAST(cadt_u16, number);
+          else
+            cadt_team_add(&window.unproven, 1u);
         }
         CADT_TEAM_SYNC();
       }
     }
+    if (cadt_team_lane == 0u) {
+      cadt_add_relaxed(found, own);
+      const cadt_u32 unproven = loaded ? window.unproven : own;
+      if (unproven) cadt_add_relaxed(found + 1, unproven);
+    }
     CADT_TEAM_SYNC();
   }
+  if (tally.count[CADT_COUNT_EXACT_ORIENTATIONS])
+    cadt_add_relaxed(found + 2, tally.count[CADT_COUNT_EXACT_ORIENTATIONS]);
+  if (tally.count[CADT_COUNT_EXACT_INCIRCLES]) cadt_add_relaxed(found + 3, tally.count[CADT_COUNT_EXACT_INCIRCLES]);
+  if (tally.count[CADT_COUNT_TIES]) cadt_add_relaxed(found + 4, tally.count[CADT_COUNT_TIES]);
 }
 
 #endif

@@ -26,7 +26,7 @@ typedef struct {
   cadt_u32 first[CADT_WINDOW_RANGES], offset[CADT_WINDOW_RANGES + 1], parts[CADT_WINDOW_PARTS];
   cadt_u32 rows[CADT_TILE_SIDE + 1]; /* points of the tile before each row of its cells */
   cadt_u32 link[CADT_LINK_WORDS];    /* a star in the making for each lane (star.h) */
-  cadt_u32 again_count;
+  cadt_u32 again_count, unproven;
   cadt_u16 again[CADT_TILE_POINTS]; /* points that are tried again, numbers in the tile */
 } cadt_window;
 
@@ -136,7 +136,7 @@ CADT_FN cadt_u32 cadt_load_window(CADT_TEAM_PTR cadt_window* w, const cadt_windo
       if (sum > CADT_WINDOW_POINTS) sum = CADT_WINDOW_POINTS + 1u;
     }
     w->offset[ranges] = CADT_CAST(cadt_u32, sum);
-    w->again_count = 0u;
+    w->again_count = w->unproven = 0u;
   }
   CADT_TEAM_SYNC();
   const cadt_u32 total = w->offset[ranges];

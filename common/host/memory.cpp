@@ -29,6 +29,11 @@ void Memory::check_limit(std::size_t bytes) {
   }
 }
 
+bool Memory::allows(std::size_t bytes) {
+  if (limit_ != 0) return held_ + bytes <= limit_;
+  return bytes <= device_.free_bytes() + kept_bytes_;
+}
+
 void Memory::require(std::size_t bytes) {
   check_limit(bytes);
   const std::size_t available = device_.free_bytes() + kept_bytes_;

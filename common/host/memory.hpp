@@ -62,6 +62,8 @@ class Memory {
   [[nodiscard]] Allocation wrap(void* handle, std::size_t bytes);
   /// Memory of the caller to be written by kernels, if the device can; else null.
   [[nodiscard]] Allocation export_to(void* data, std::size_t bytes);
+  /// Whether `bytes` more are within the limit, or within what the device has free if there is none.
+  [[nodiscard]] bool allows(std::size_t bytes);
   /// \throws OutOfMemory if `bytes` more would pass the limit or what the device has free
   void require(std::size_t bytes);
   /// Gives kept buffers back to the device.

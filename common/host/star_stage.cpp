@@ -16,6 +16,10 @@ using namespace device_constants;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr unsigned most_bits = 24;  // of an axis: cells of a window are counted in 32 bits
+constexpr std::uint32_t sampled_tiles = 512, least_step = 12;
+
+/// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
+constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
 
 class StarStage {
  public:
@@ -26,8 +30,9 @@ class StarStage {
     if (!make_stars()) return build_mesh(run_, order_);
     count_triangles();
     run_.statistics.proven_stars = n_ - unproven_;
-    if (unproven_ == n_) {
+    if (too_many(unproven_, n_)) {
       release_stars();
+      ranks_.release();
       return build_mesh(run_, order_);
     }
     write_records();
@@ -56,9 +61,23 @@ class StarStage {
     run_.end_phase("tiles");
     sizes_ = run_.memory.allocate_zeros(n_ * word);
     links_ = run_.memory.allocate(n_ * CADT_STAR_DEGREE * word);
-    const Cut teams = launch_.cut_teams(count, CADT_STAR_LANES);
-    launch_.run(KernelId::cadt_stars, teams.items, order_.points, keys, count_, grid.half_min_x, grid.half_min_y,
-                grid.scale, grid.bits_x, grid.bits_y, tiles, count, teams.grain, links_, sizes_);
+    const auto run_tiles = [&](std::uint32_t tile_count, std::uint32_t step) {
+      Allocation found = launch_.zeros(5);
+      const Cut teams = launch_.cut_teams(tile_count, CADT_STAR_LANES);
+      launch_.run(KernelId::cadt_stars, teams.items, order_.points, keys, count_, grid.half_min_x, grid.half_min_y,
+                  grid.scale, grid.bits_x, grid.bits_y, tiles, tile_count, step, teams.grain, links_, sizes_, found);
+      std::array<std::uint32_t, 5> words{};
+      run_.device.read(*found, 0, words.data(), sizeof words);
+      return words;
+    };
+    if (run_.options.strategy == Strategy::automatic && count >= sampled_tiles * least_step) {
+      const std::array<std::uint32_t, 5> found = run_tiles(sampled_tiles, count / sampled_tiles);
+      if (too_many(found[1], found[0])) return false;
+    }
+    const std::array<std::uint32_t, 5> found = run_tiles(count, 1);
+    run_.statistics.exact_orientations += found[2];
+    run_.statistics.exact_incircles += found[3];
+    run_.statistics.ties += found[4];
     run_.end_phase("stars");
     return true;
   }

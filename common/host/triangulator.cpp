@@ -29,15 +29,30 @@ constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial result
 /// (93) where the result goes straight to memory of the host's. docs/performance.md has the plan.
 std::size_t least_bytes(std::size_t n, bool result_elsewhere) { return fixed + n * (result_elsewhere ? 97 : 124); }
 
+/// The same with the star stage.
+std::size_t star_bytes(std::size_t n) { return fixed + n * 150; }
+
+constexpr std::size_t least_points_of_stars = 100'000;  // below, insertion is as fast
+
+/// Whether the star stage is what Strategy::automatic chooses, if there is the memory. It needs many cheap lanes: CPUs
+/// are faster without it.
+bool prefers_stars(const Options& options, const Device& device, std::size_t n) {
+  if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
+  return n >= least_points_of_stars && device.info().gpu && options.stabilize == Stabilize::off && !options.watch &&
+         options.statistics != StatisticsDetail::timing;
+}
+
 /// Words a point of the buffers that a call without new ones needs: records, points sorted and not, results, their
 /// numbers, and lists of a word or less.
 constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
 
+constexpr std::size_t star_words = 12;
+
 /// The same, with buffers that wait for a later phase or call.
-std::size_t most_bytes(const Memory& memory, std::size_t n) {
-  std::size_t words = 0;
+std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
+  std::size_t words = stars ? star_words : 0;
   for (const std::size_t one : kept_words) words += one;
-  return memory.keeps() ? 4 * fixed + n * words * word : least_bytes(n, false);
+  return memory.keeps() ? 4 * fixed + n * words * word : stars ? star_bytes(n) : least_bytes(n, false);
 }
 
 void require_size(std::size_t points) {
@@ -55,13 +70,6 @@ void require_rules(const Options& options) {
   if (options.strategy == Strategy::stars && (options.stabilize != Stabilize::off || options.watch))
     throw OptionError("strategy", "stars goes with neither stabilize nor watch: they are about insertion");
   if (!(options.quality_epsilon >= 0)) throw OptionError("quality_epsilon", "must be a number and not negative");
-}
-
-/// Whether the star stage runs. It needs many cheap lanes: CPUs are faster without it.
-bool with_stars(const Run& run, std::size_t /*distinct*/) {
-  const Options& options = run.options;
-  if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
-  return false;
 }
 
 bool is_host(const Device& device) { return device.info().backend == Backend::host; }
@@ -104,7 +112,8 @@ class OnHost final : public Outputs {
 };
 
 template <class Points>
-void build(Run& run, const Points& points, std::size_t n, Outputs& outputs, DeviceTriangulation::Data& data) {
+void build(Run& run, const Points& points, std::size_t n, bool stars, Outputs& outputs,
+           DeviceTriangulation::Data& data) {
   Statistics& statistics = data.statistics;
   run.check("sort", 0);
   Allocation input = import_points(run, points);
@@ -115,7 +124,7 @@ void build(Run& run, const Points& points, std::size_t n, Outputs& outputs, Devi
   data.duplicate_count = n - order.distinct;
   data.duplicate_points = std::move(order.duplicates);
   data.representatives = std::move(order.representatives);
-  const DeviceMesh mesh = with_stars(run, order.distinct) ? build_mesh_with_stars(run, order) : build_mesh(run, order);
+  const DeviceMesh mesh = stars ? build_mesh_with_stars(run, order) : build_mesh(run, order);
   order.points.release();
   if (mesh.flat) {
     data.dimension = order.distinct >= 2 ? 1 : 0;
@@ -131,7 +140,7 @@ void build(Run& run, const Points& points, std::size_t n, Outputs& outputs, Devi
 }
 
 void begin_account(Triangulator::State& state, std::size_t n) {
-  if (state.memory.dropped()) state.known_points = state.reserved_points = 0;
+  if (state.memory.dropped()) state.known_points = state.known_star_points = state.reserved_points = 0;
   state.memory.begin(state.options.max_memory, n <= state.reserved_points);
 }
 
@@ -154,6 +163,16 @@ void require_memory(Triangulator::State& state, std::size_t n, bool result_elsew
   state.memory.require(least_bytes(n, result_elsewhere));
 }
 
+/// Whether the star stage is to run.
+bool choose_stars(Triangulator::State& state, std::size_t n) {
+  if (!prefers_stars(state.options, *state.device, n)) return false;
+  if (state.options.strategy == Strategy::stars || (n <= state.known_star_points && state.options.max_memory == 0))
+    return true;
+  if (!state.memory.allows(most_bytes(state.memory, n, true))) return false;
+  state.known_star_points = std::max(state.known_star_points, n);
+  return true;
+}
+
 void close_account(Triangulator::State& state, Run& run, DeviceTriangulation::Data& data) {
   state.device->finish();
   data.statistics.launches = run.launcher.launches();
@@ -172,7 +191,7 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
     require_memory(*state, points.size(), is_host(*state->device));
     Run run(*state->device, state->memory, state->options, data.statistics);
     OnHost outputs(*result);
-    build(run, points, points.size(), outputs, data);
+    build(run, points, points.size(), choose_stars(*state, points.size()), outputs, data);
     run.end_phase("collect");
     if (data.dimension == 2) read_mesh(run, data, outputs.direct(), *result);
     read_duplicates(*state->device, data, *result);
@@ -212,7 +231,7 @@ DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) {
     require_memory(*state_, points.size, false);
     Run run(*state_->device, state_->memory, state_->options, data->statistics);
     OnDevice outputs;
-    build(run, points, points.size, outputs, *data);
+    build(run, points, points.size, choose_stars(*state_, points.size), outputs, *data);
     run.end_phase("collect");
     close_account(*state_, run, *data);
   }
@@ -247,7 +266,7 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
 }
 
 std::size_t Triangulator::memory_needed(std::size_t points) const noexcept {
-  return most_bytes(state_->memory, points);
+  return most_bytes(state_->memory, points, prefers_stars(state_->options, *state_->device, points));
 }
 
 void Triangulator::reserve(std::size_t points) {
@@ -258,13 +277,14 @@ void Triangulator::reserve(std::size_t points) {
   require_memory(*state_, n, false);
   if (n <= state_->reserved_points) return;
   if (!memory.keeps()) {
-    state_->device->reserve(least_bytes(n, false));
-  } else if (limit == 0 || most_bytes(memory, n) <= limit) {
+    state_->device->reserve(choose_stars(*state_, n) ? star_bytes(n) : least_bytes(n, false));
+  } else if (const bool stars = choose_stars(*state_, n); limit == 0 || most_bytes(memory, n, stars) <= limit) {
     memory.drop_kept();  // too small
     begin_account(*state_, n);
     // The buffers of a call that are alive together; given back at once, so they are kept for it.
     std::vector<Allocation> together;
     for (const std::size_t words : kept_words) together.push_back(memory.allocate(n * words * word));
+    if (stars) together.push_back(memory.allocate(n * star_words * word));
   } else {
     return;  // enough for a call, but not for keeping all of its buffers
   }
@@ -275,7 +295,7 @@ void Triangulator::reserve(std::size_t points) {
 void Triangulator::release_memory() {
   state_->memory.drop_kept();
   state_->device->trim();
-  state_->known_points = state_->reserved_points = 0;
+  state_->known_points = state_->known_star_points = state_->reserved_points = 0;
 }
 
 Triangulation triangulate(PointsView points, const Options& options) {

@@ -111,7 +111,8 @@ class Stars : public BackendTest {
 
 TEST_P(Stars, EveryFamily) {
   for (const FamilyGroup& group : family_groups()) {
-    for (const Family& family : group.families()) expect_same(std::string(group.name) + "/" + family.name, family.make());
+    for (const Family& family : group.families())
+      expect_same(std::string(group.name) + "/" + family.name, family.make());
     ASSERT_FALSE(HasFailure());
   }
 }
@@ -123,13 +124,14 @@ TEST_P(Stars, UniformOfEverySize) {
 
 /// These fail if the stage does not run.
 TEST_P(Stars, NearlyAllAreProven) {
-  for (const auto& [what, xy] : {std::pair("uniform", uniform_points(20000, 41)), std::pair("lattice", grid_points(160, 125)),
-                                 std::pair("shuffled lattice", shuffled(grid_points(160, 125), 2)),
-                                 std::pair("uniform with doubles of each", [] {
-                                   Points twice = uniform_points(20000, 42);
-                                   twice.insert(twice.end(), twice.begin(), twice.begin() + 40000);
-                                   return twice;
-                                 }())}) {
+  for (const auto& [what, xy] :
+       {std::pair("uniform", uniform_points(20000, 41)), std::pair("lattice", grid_points(160, 125)),
+        std::pair("shuffled lattice", shuffled(grid_points(160, 125), 2)),
+        std::pair("uniform with doubles of each", [] {
+          Points twice = uniform_points(20000, 42);
+          twice.insert(twice.end(), twice.begin(), twice.begin() + 40000);
+          return twice;
+        }())}) {
     const Triangulation mesh = expect_same(what, xy);
     EXPECT_GT(mesh.statistics().tiles, 20u) << what;
     EXPECT_GT(proven_share(mesh), 0.85) << what;
@@ -154,8 +156,9 @@ TEST_P(Stars, ProofsDoNotDependOnTheUnit) {
   }();
   EXPECT_GT(expect_same("mirrored", mirrored).statistics().proven_stars, 4000u);
   for (const double offset : {5e5, 1e9, 1e13})
-    EXPECT_GT(expect_same("moved by " + std::to_string(offset), moved(xy, offset, -3 * offset)).statistics().proven_stars,
-              offset < 1e12 ? 4000u : 500u);
+    EXPECT_GT(
+        expect_same("moved by " + std::to_string(offset), moved(xy, offset, -3 * offset)).statistics().proven_stars,
+        offset < 1e12 ? 4000u : 500u);
 }
 
 TEST_P(Stars, NearTheSmallestNumbers) {
@@ -201,7 +204,8 @@ TEST_P(Stars, Lines) {
   Points line;
   for (int i = 0; i < 3000; ++i) line.insert(line.end(), {7.0 * ((i * 11) % 3000), -2.0 * ((i * 11) % 3000)});
   EXPECT_EQ(expect_same("all on a line", line).dimension(), 1);
-  for (const std::size_t few : {1u, 2u, 5u, 50u}) expect_same(std::to_string(few) + " beside a line", line_and_few(2000, few));
+  for (const std::size_t few : {1u, 2u, 5u, 50u})
+    expect_same(std::to_string(few) + " beside a line", line_and_few(2000, few));
   expect_same("axes", axis_cross(150));
 }
 
@@ -232,7 +236,8 @@ TEST_P(Stars, RandomSmallSets) {
 }
 
 TEST_P(Stars, FastOrder) {
-  for (const auto& [what, xy] : {std::pair("uniform", uniform_points(8000, 48)), std::pair("lattice", grid_points(80, 70))}) {
+  for (const auto& [what, xy] :
+       {std::pair("uniform", uniform_points(8000, 48)), std::pair("lattice", grid_points(80, 70))}) {
     SCOPED_TRACE(what);
     stars().options().order = Order::fast;
     const Triangulation fast = stars().triangulate(Reals(xy));
@@ -415,7 +420,9 @@ TEST_P(Stars, RefusesWhatShowsInsertion) {
   }
 }
 
-std::vector<BackendCase> two_host_cases() { return {{"serial", Backend::host, 1, 0}, {"threads2", Backend::host, 2, 0}}; }
+std::vector<BackendCase> two_host_cases() {
+  return {{"serial", Backend::host, 1, 0}, {"threads2", Backend::host, 2, 0}};
+}
 CADT_ON(host, Stars, two_host_cases);
 CADT_ON(opencl, Stars, main_opencl_case);
 CADT_ON(cuda, Stars, main_cuda_case);

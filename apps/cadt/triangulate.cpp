@@ -285,9 +285,10 @@ void add_work_options(CLI::App& command, TriangulateOptions& o) {
                   "(K M G T and KiB ... count 1024, KB ... 1000)")
       ->type_name("SIZE");
   command
-      .add_option("--strategy", o.strategy,
-                  "how the same mesh is made: locks (points are inserted in one shared mesh), stars (as many vertices as "
-                  "can be proven without locks, the others with) or auto (default: what is faster on the device)")
+      .add_option(
+          "--strategy", o.strategy,
+          "how the same mesh is made: locks (points are inserted in one shared mesh), stars (as many vertices as "
+          "can be proven without locks, the others with) or auto (default: what is faster on the device)")
       ->type_name("HOW")
       ->check(CLI::IsMember({"auto", "locks", "stars"}).description(""));
   command

@@ -126,14 +126,13 @@ typedef struct {
   cadt_u32 bits_x, bits_y;
 } cadt_key_grid;
 
-#define CADT_GRID_PARAMETERS \
-  double half_min_x, double half_min_y, double grid_scale, cadt_u32 bits_x, cadt_u32 bits_y
-#define CADT_GRID_VIEW(grid)     \
-  cadt_key_grid grid;            \
-  grid.half_min_x = half_min_x;  \
-  grid.half_min_y = half_min_y;  \
-  grid.scale = grid_scale;       \
-  grid.bits_x = bits_x;          \
+#define CADT_GRID_PARAMETERS double half_min_x, double half_min_y, double grid_scale, cadt_u32 bits_x, cadt_u32 bits_y
+#define CADT_GRID_VIEW(grid)    \
+  cadt_key_grid grid;           \
+  grid.half_min_x = half_min_x; \
+  grid.half_min_y = half_min_y; \
+  grid.scale = grid_scale;      \
+  grid.bits_x = bits_x;         \
   grid.bits_y = bits_y
 
 /* A point in units of cells, and with the last cell of each axis closed to the right. */

@@ -30,8 +30,8 @@ CADT_FN cadt_u32 cadt_owned_number(const cadt_star_set* s, cadt_u32 owner, cadt_
 
 /* Counts: owned triangles of each vertex, vertices without a star (1 each), both with a 0 at the end; totals[0]: owned
  * triangles with no other proven vertex. */
-CADT_KERNEL(cadt_star_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, cadt_u32 n, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* owned, CADT_GLOBAL cadt_u32* unproven, CADT_GLOBAL cadt_u32* totals) {
+CADT_KERNEL(cadt_star_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, cadt_u32 n,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* owned, CADT_GLOBAL cadt_u32* unproven, CADT_GLOBAL cadt_u32* totals) {
   cadt_u32 open = 0u;
   if (cadt_item == 0u) owned[n] = unproven[n] = 0u;
   CADT_FOR(v, n, grain) {

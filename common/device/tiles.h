@@ -40,8 +40,8 @@ CADT_FN cadt_i32 cadt_tile_level(CADT_GLOBAL const cadt_u32* keys, cadt_u32 n, c
   return n - low > most && CADT_CAST(cadt_u64, keys[low + most]) >> shift == square ? before + 1 : -1;
 }
 
-/* 1 where a tile begins; flags[n] = 0, so the scan ends with their number. `descents`: keys that are not in order, which
- * happens if coordinates have lost bits when they were scaled; then there are no tiles. */
+/* 1 where a tile begins; flags[n] = 0, so the scan ends with their number. `descents`: keys that are not in order,
+ * which happens if coordinates have lost bits when they were scaled; then there are no tiles. */
 CADT_KERNEL(cadt_tile_flags, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_u32* flags, cadt_u32 n, cadt_u32 levels,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* descents) {
   cadt_u32 wrong = 0u;

@@ -24,8 +24,8 @@ typedef struct {
   cadt_u32 at[CADT_WINDOW_POINTS];                    /* positions */
   cadt_u32 cells[CADT_WINDOW_CELLS + 1];              /* where the points of a cell begin, once sorted */
   cadt_u32 first[CADT_WINDOW_RANGES], offset[CADT_WINDOW_RANGES + 1], parts[CADT_WINDOW_PARTS];
-  cadt_u32 rows[CADT_TILE_SIDE + 1];                      /* points of the tile before each row of its cells */
-  cadt_u32 link[CADT_LINK_WORDS];       /* a star in the making for each lane (star.h) */
+  cadt_u32 rows[CADT_TILE_SIDE + 1]; /* points of the tile before each row of its cells */
+  cadt_u32 link[CADT_LINK_WORDS];    /* a star in the making for each lane (star.h) */
   cadt_u32 again_count;
   cadt_u16 again[CADT_TILE_POINTS]; /* points that are tried again, numbers in the tile */
 } cadt_window;
@@ -36,9 +36,9 @@ typedef struct {
   cadt_u32 squares, rim;       /* squares along the window, of these on each side of the tile */
   cadt_i32 square_x, square_y; /* the lowest square, in squares of its level */
   cadt_u32 square_level;
-  cadt_u32 side, halo, tile_side;                    /* cells along the window, on each side of the tile, of the tile */
-  cadt_i32 left, right, bottom, top;                 /* first cell of the grid's, and behind the last */
-  double origin_x, origin_y, cells;                  /* in units of the grid: lowest corner; cells a unit */
+  cadt_u32 side, halo, tile_side;    /* cells along the window, on each side of the tile, of the tile */
+  cadt_i32 left, right, bottom, top; /* first cell of the grid's, and behind the last */
+  double origin_x, origin_y, cells;  /* in units of the grid: lowest corner; cells a unit */
 } cadt_window_shape;
 
 CADT_FN cadt_window_shape cadt_shape_of_window(const cadt_key_grid* grid, CADT_GLOBAL const cadt_point* points,
@@ -54,10 +54,10 @@ CADT_FN cadt_window_shape cadt_shape_of_window(const cadt_key_grid* grid, CADT_G
   s.rim = finer == 2u && s.tile_side < 16u ? 2u : 1u;
   s.squares = (1u << finer) + 2u * s.rim;
   s.square_level = level + finer;
-  s.square_x = CADT_CAST(cadt_i32, (CADT_CAST(cadt_u32, f.x) >> (levels - level)) << finer) -
-               CADT_CAST(cadt_i32, s.rim);
-  s.square_y = CADT_CAST(cadt_i32, (CADT_CAST(cadt_u32, f.y) >> (levels - level)) << finer) -
-               CADT_CAST(cadt_i32, s.rim);
+  s.square_x =
+      CADT_CAST(cadt_i32, (CADT_CAST(cadt_u32, f.x) >> (levels - level)) << finer) - CADT_CAST(cadt_i32, s.rim);
+  s.square_y =
+      CADT_CAST(cadt_i32, (CADT_CAST(cadt_u32, f.y) >> (levels - level)) << finer) - CADT_CAST(cadt_i32, s.rim);
   const cadt_i32 of_square = CADT_CAST(cadt_i32, s.tile_side >> finer);
   s.halo = s.rim * (s.tile_side >> finer);
   s.side = s.tile_side + 2u * s.halo;

@@ -26,7 +26,7 @@ struct SpatialOrder {
   std::size_t distinct = 0;
   Allocation duplicates, representatives;  ///< points that equal an earlier one, ascending, and that one; null if none
   KeyGrid grid;
-  bool wide = false;                       ///< exponents span too much for the narrow kernels
+  bool wide = false;  ///< exponents span too much for the narrow kernels
 };
 
 /// Sort keys of n points of the device.

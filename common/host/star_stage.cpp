@@ -112,7 +112,8 @@ class StarStage {
     run_.device.fill(*table, 0, places * word, CADT_NONE);
     const Cut open = launch_.cut(open_count_);
     launch_.run(KernelId::cadt_join_enter, open.items, records_, open_, open_count_, open.grain, table, mask);
-    Allocation covers = run_.memory.allocate(3 * smaller.slots * word), roots = run_.memory.allocate(smaller.slots * word);
+    Allocation covers = run_.memory.allocate(3 * smaller.slots * word),
+               roots = run_.memory.allocate(smaller.slots * word);
     const Cut c = launch_.cut(smaller.slots);
     launch_.run(KernelId::cadt_join_cover, c.items, records_, smaller.records, positions, slots, c.grain, table, mask,
                 covers, roots);

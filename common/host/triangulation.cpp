@@ -59,9 +59,12 @@ std::size_t count_differing(const Triangulation& mesh, const Triangulation& othe
 
 std::string_view to_string(Strategy strategy) noexcept {
   switch (strategy) {
-    case Strategy::automatic: return "auto";
-    case Strategy::locks: return "locks";
-    case Strategy::stars: return "stars";
+    case Strategy::automatic:
+      return "auto";
+    case Strategy::locks:
+      return "locks";
+    case Strategy::stars:
+      return "stars";
   }
   return "?";
 }

@@ -99,6 +99,18 @@ TEST(Tiles, ExactlyAsManyAsFit) {
   }
 }
 
+TEST(Tiles, CountsKeysOutOfOrder) {
+  Keys keys = {0, 0, 5, 3, 3, 9, 8, 7};
+  std::vector<std::uint32_t> flags(keys.size() + 1);
+  const auto n = static_cast<std::uint32_t>(keys.size());
+  for (const std::uint32_t expected : {3u, 0u}) {
+    std::uint32_t descents = 0;
+    cadt_tile_flags(0, 1, keys.data(), flags.data(), n, 2, n, &descents);
+    EXPECT_EQ(descents, expected);
+    std::ranges::sort(keys);
+  }
+}
+
 /// Sorted points with what the kernels need of them.
 struct Sorted {
   std::vector<cadt_point> points;

@@ -196,7 +196,8 @@ std::vector<NamedPoints> sets() {
       {"crowd in the last column", together(scattered(800, 0, 0, 1, 1), scattered(3000, 0.97, 0.4, 0.03, 0.03)), 6, 6},
       {"crowd in the first cell", together(scattered(800, 0, 0, 1, 1), scattered(3000, 0, 0, 0.05, 0.05)), 6, 6},
       {"half empty", together(scattered(3000, 0, 0, 0.4, 0.4), scattered(60, 0, 0, 1, 1)), 8, 8},
-      {"rings", [&] {
+      {"rings",
+       [&] {
          std::vector<cadt_point> points;
          for (int ring = 0; ring < 40; ++ring)
            for (int k = 0; k < 12; ++k) {
@@ -208,7 +209,8 @@ std::vector<NamedPoints> sets() {
          const auto same = [](const cadt_point& a, const cadt_point& b) { return a.x == b.x && a.y == b.y; };
          points.erase(std::unique(points.begin(), points.end(), same), points.end());
          return points;
-       }(), 8, 8},
+       }(),
+       8, 8},
   };
 }
 
@@ -219,8 +221,7 @@ TEST(Windows, HaveEveryPointOfTheirSquares) {
     const auto window = std::make_unique<cadt_window>();
     std::size_t loaded = 0, owned = 0;
     for (std::size_t t = 0; t + 1 < s.tiles.size(); ++t) {
-      const cadt_window_shape shape =
-          cadt_shape_of_window(&s.grid, s.points.data(), s.tiles[t], s.tiles[t + 1].begin);
+      const cadt_window_shape shape = cadt_shape_of_window(&s.grid, s.points.data(), s.tiles[t], s.tiles[t + 1].begin);
       ASSERT_LE(shape.side * shape.side, static_cast<unsigned>(CADT_WINDOW_CELLS));
       ASSERT_LE(shape.squares * shape.squares, static_cast<unsigned>(CADT_WINDOW_RANGES));
       // by definition: the points whose cells of the grid are within the window
@@ -312,7 +313,8 @@ TEST(ProvenStars, AreThoseOfTheMesh) {
     }
     shares[set.name] = static_cast<double>(proven) / n;
   }
-  for (const char* name : {"uniform", "uniform, fine", "lattice", "lattice, thirds"}) EXPECT_GT(shares[name], 0.85) << name;
+  for (const char* name : {"uniform", "uniform, fine", "lattice", "lattice, thirds"})
+    EXPECT_GT(shares[name], 0.85) << name;
   for (const char* name : {"few", "long", "tall", "lattice on the cells' borders", "half empty", "rings"})
     EXPECT_GT(shares[name], 0.2) << name;
   for (const auto& [name, share] : shares) RecordProperty(name, std::to_string(share));

@@ -130,7 +130,11 @@ CADT_KERNEL(cadt_join_records, CADT_GLOBAL const cadt_record* smaller, CADT_GLOB
       if (taken) {
         records[t].word[CADT_WORD_LINK + k] =
             beyond != CADT_NONE ? CADT_LINK(beyond, 0u) : CADT_LINK(before + ranks[other], CADT_LINK_EDGE(link));
-        if (beyond != CADT_NONE) records[beyond].word[CADT_WORD_LINK] = CADT_LINK(t, k);
+        if (beyond != CADT_NONE) {
+          records[beyond].word[CADT_WORD_LINK] = CADT_LINK(t, k);
+          /* an edge has one number of flips, on both sides */
+          records[beyond].word[CADT_WORD_FLIPS] = cadt_flips_set(0u, 0u, cadt_flips_get(s.word[CADT_WORD_FLIPS], k));
+        }
         const cadt_u32 v = CADT_PICK(k, s.word[0], s.word[1], s.word[2]);
         const cadt_u32 vertex = v == CADT_GHOST ? v : positions[v];
         records[t].word[k] = vertex;

@@ -211,6 +211,51 @@ class Statistics(CliTest):
         self.fails(2, "triangulate", "in.xy", "--stats=m.off", "-o", "m.off", says="m.off")
 
 
+class Strategies(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.cadt("generate", "uniform", "-n", 20000, "-o", "in.f64")
+
+    def run_with(self, *options):
+        result = self.cadt("triangulate", "in.f64", "--backend", "host", "--stats=s.json", "-o", "m.off", *options)
+        return result, json.loads(self.path("s.json").read_text())["counters"], self.path("m.off").read_bytes()
+
+    def test_the_mesh_is_the_same(self):
+        _, _, expected = self.run_with()
+        for strategy in ("auto", "locks", "stars"):
+            _, counters, mesh = self.run_with("--strategy", strategy, "--verify")
+            self.assertEqual(mesh, expected, strategy)
+            if strategy == "locks":
+                self.assertEqual((counters["tiles"], counters["proven_stars"]), (0, 0))
+            if strategy == "stars":
+                self.assertGreater(counters["tiles"], 20)
+                self.assertGreater(counters["proven_stars"], 17000)
+                self.assertLess(counters["proven_stars"], 20000)
+                self.assertLess(counters["splits"], 20000 - counters["proven_stars"])
+
+    def test_the_table_has_both_numbers(self):
+        table = self.cadt("triangulate", "in.f64", "--backend", "host", "--strategy", "stars", "--stats").err
+        self.assertRegex(table, r"(?m)^tiles +[1-9]\d+")
+        self.assertRegex(table, r"(?m)^proven_stars +1\d{4} +0\.\d+")
+
+    def test_other_words(self):
+        for word in ("star", "Stars", "", "automatic", "1"):
+            self.fails(2, "triangulate", "in.f64", "--strategy", word, says="--strategy")
+
+    def test_stars_and_stabilize_exclude_each_other(self):
+        for mode in ("defer", "paper"):
+            self.fails(2, "triangulate", "in.f64", "--strategy", "stars", "--stabilize", mode,
+                       says=["--stabilize", "--strategy stars"])
+            self.cadt("triangulate", "in.f64", "--strategy", "locks", "--stabilize", mode)
+        self.cadt("triangulate", "in.f64", "--strategy", "stars", "--stabilize", "off")
+
+    def test_few_points(self):
+        self.write("line.xy", "0 0\n1 1\n2 2\n")
+        self.assertEqual(self.cadt("triangulate", "line.xy", "--strategy", "stars").fields()["triangles"], "0")
+        self.write("four.xy", "0 0\n1 0\n1 1\n0 1\n")
+        self.assertEqual(self.cadt("triangulate", "four.xy", "--strategy", "stars").fields()["triangles"], "2")
+
+
 class Stabilized(CliTest):
     def setUp(self):
         super().setUp()

@@ -77,6 +77,7 @@ class Golden : public BackendTest {
           first = opened(c).triangulate(std::span<const double>(xy));
           compare(xy, first, row->second, same_points, what);
           expect_same_arrays(deferring(c, xy), first, what + ", deferring edges that are flipped often");
+          expect_same_arrays(with_stars(c, xy), first, what + ", with stars");
         } else {
           expect_same_arrays(opened(c).triangulate(std::span<const double>(xy)), first, what);
         }
@@ -101,6 +102,16 @@ class Golden : public BackendTest {
       ~Scope() { options.stabilize = Stabilize::off; }
     } const scope{opened(c).options()};
     scope.options.stabilize = Stabilize::defer;
+    return opened(c).triangulate(std::span<const double>(xy));
+  }
+
+  /// The mesh with Strategy::stars, which must not show.
+  static Triangulation with_stars(const BackendCase& c, const Points& xy) {
+    struct Scope {
+      Options& options;
+      ~Scope() { options.strategy = Strategy::automatic; }
+    } const scope{opened(c).options()};
+    scope.options.strategy = Strategy::stars;
     return opened(c).triangulate(std::span<const double>(xy));
   }
 

@@ -136,6 +136,23 @@ TEST_P(Resident, OrderMayChangeBetweenCalls) {
   }
 }
 
+TEST_P(Resident, StarsGiveTheSame) {
+  Options with = options();
+  with.strategy = Strategy::stars;
+  Triangulator triangulator(with);
+  for (const Points& xy : {uniform_points(20000, 3), grid_points(70, 60), with_duplicates(), Points{0, 0, 1, 0, 0, 1},
+                           Points{0, 0, 1, 1, 2, 2}, regular_polygon(50, 0, 0, 1)}) {
+    SCOPED_TRACE(std::to_string(xy.size() / 2) + " points");
+    const Known known(xy);
+    const DeviceTriangulation mesh = triangulator.triangulate(upload(known.xy));
+    expect_same(*memory, mesh, known.mesh);
+    if (known.size() > 1000) {
+      EXPECT_GT(mesh.statistics().proven_stars, known.size() / 2);
+    }
+    EXPECT_TRUE(triangulator.verify(upload(known.xy), mesh).ok);
+  }
+}
+
 TEST_P(Resident, NullHandle) {
   const Known known(uniform_points(100));
   Triangulator triangulator(options());

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tiles, windows and stars of the star stage, as the host compiles them: each against its definition.
+#include <cadt/cadt.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#define CADT_WIDE 0
+namespace {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include "common/device/star.h"
+#pragma GCC diagnostic pop
+
+using Keys = std::vector<std::uint32_t>;
+
+/// The leaves of the quadtree by its definition: begin and level of each.
+std::map<std::uint32_t, int> tiles_by_definition(const Keys& keys, unsigned levels) {
+  std::map<std::uint32_t, int> tiles;
+  const auto n = static_cast<std::uint32_t>(keys.size());
+  const std::function<void(std::uint32_t, std::uint32_t, unsigned)> divide = [&](std::uint32_t begin, std::uint32_t end,
+                                                                                 unsigned level) {
+    if (end - begin <= static_cast<std::uint32_t>(CADT_TILE_POINTS) || level == levels) {
+      tiles[begin] = static_cast<int>(level);
+      return;
+    }
+    const unsigned shift = 2 * (levels - level - 1);
+    for (std::uint32_t from = begin, to = begin; from < end; from = to) {
+      while (to < end && keys[to] >> shift == keys[from] >> shift) ++to;
+      divide(from, to, level + 1);
+    }
+  };
+  for (std::uint32_t from = 0, to = 0; from < n; from = to) {
+    const auto top = [&](std::uint32_t i) { return std::uint64_t{keys[i]} >> (2 * levels); };
+    while (to < n && top(to) == top(from)) ++to;
+    divide(from, to, 0);
+  }
+  return tiles;
+}
+
+std::map<std::uint32_t, int> tiles_found(const Keys& keys, unsigned levels) {
+  std::map<std::uint32_t, int> tiles;
+  for (std::uint32_t i = 0; i < keys.size(); ++i) {
+    const cadt_i32 level = cadt_tile_level(keys.data(), static_cast<std::uint32_t>(keys.size()), i, levels);
+    if (level >= 0) tiles[i] = level;
+  }
+  return tiles;
+}
+
+TEST(Tiles, AreTheLargestSquaresWithFewPoints) {
+  std::mt19937_64 random(1);
+  const auto below = [&](std::uint64_t n) { return random() % n; };
+  std::set<int> levels_seen;
+  for (int run = 0; run < 400; ++run) {
+    const unsigned bits = 1 + static_cast<unsigned>(below(32));
+    const unsigned levels = static_cast<unsigned>(below(bits / 2 + 1));
+    const std::uint64_t all = std::uint64_t{1} << bits;
+    Keys keys;
+    // clumps of many sizes: equal keys, keys in a small square, and keys anywhere
+    for (std::uint64_t clump = 0, clumps = 1 + below(12); clump < clumps; ++clump) {
+      const std::uint64_t span = std::uint64_t{1} << below(bits + 1), start = below(all);
+      const std::uint64_t sizes[] = {1, 5, 600, 639, 640, 641, 1280, 2000};
+      for (std::uint64_t k = 0, size = sizes[below(8)]; k < size; ++k)
+        keys.push_back(static_cast<std::uint32_t>(std::min(all - 1, start / span * span + below(span))));
+    }
+    std::ranges::sort(keys);
+    const auto expected = tiles_by_definition(keys, levels);
+    ASSERT_EQ(tiles_found(keys, levels), expected) << "run " << run << ", " << bits << " bits, " << levels << " levels";
+    for (const auto& [begin, level] : expected) levels_seen.insert(level);
+  }
+  EXPECT_GT(levels_seen.size(), 12u);
+}
+
+TEST(Tiles, ExactlyAsManyAsFit) {
+  constexpr std::uint32_t most = CADT_TILE_POINTS;
+  for (const std::uint32_t extra : {0u, 1u}) {
+    // the square 1 of level 1 with `most` + extra points in its two first quarters
+    Keys keys(3, 0u);
+    keys.insert(keys.end(), most / 2, 0x40u);
+    keys.insert(keys.end(), most / 2 + extra, 0x50u);
+    keys.insert(keys.end(), 5000, 0x80u);
+    EXPECT_EQ(tiles_found(keys, 4), tiles_by_definition(keys, 4));
+    EXPECT_EQ(tiles_found(keys, 4).contains(3 + most / 2), extra == 1);
+  }
+}
+
+TEST(Tiles, CountsKeysOutOfOrder) {
+  Keys keys = {0, 0, 5, 3, 3, 9, 8, 7};
+  std::vector<std::uint32_t> flags(keys.size() + 1);
+  const auto n = static_cast<std::uint32_t>(keys.size());
+  for (const std::uint32_t expected : {3u, 0u}) {
+    std::uint32_t descents = 0;
+    cadt_tile_flags(0, 1, keys.data(), flags.data(), n, 2, n, &descents);
+    EXPECT_EQ(descents, expected);
+    std::ranges::sort(keys);
+  }
+}
+
+/// Sorted points with what the kernels need of them.
+struct Sorted {
+  std::vector<cadt_point> points;
+  Keys keys;
+  cadt_key_grid grid{};
+  std::vector<cadt_tile> tiles;  ///< one more at the end
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points.size()); }
+};
+
+/// \pre distinct points, in [0, 1)
+Sorted sorted(std::vector<cadt_point> points, unsigned bits_x, unsigned bits_y) {
+  Sorted s;
+  double low_x = 1, low_y = 1, high_x = 0, high_y = 0;
+  for (const cadt_point& p : points) {
+    low_x = std::min(low_x, p.x);
+    low_y = std::min(low_y, p.y);
+    high_x = std::max(high_x, p.x);
+    high_y = std::max(high_y, p.y);
+  }
+  s.grid = {0.5 * low_x, 0.5 * low_y,
+            std::min(std::ldexp(2, static_cast<int>(bits_x)) / (high_x - low_x),
+                     std::ldexp(2, static_cast<int>(bits_y)) / (high_y - low_y)),
+            bits_x, bits_y};
+  const auto n = static_cast<std::uint32_t>(points.size());
+  Keys keys(n);
+  cadt_sort_keys(0, 1, points.data(), keys.data(), n, n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale, bits_x,
+                 bits_y);
+  std::vector<std::uint32_t> order(n);
+  std::iota(order.begin(), order.end(), 0u);
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return keys[i]; });
+  for (const std::uint32_t i : order) {
+    s.points.push_back(points[i]);
+    s.keys.push_back(keys[i]);
+  }
+  const cadt_u32 levels = cadt_grid_levels(&s.grid);
+  std::vector<std::uint32_t> flags(n + 1), ranks(n + 1);
+  std::uint32_t descents = 0;
+  cadt_tile_flags(0, 1, s.keys.data(), flags.data(), n, levels, n, &descents);
+  EXPECT_EQ(descents, 0u);
+  std::exclusive_scan(flags.begin(), flags.end(), ranks.begin(), 0u);
+  s.tiles.resize(ranks[n] + 1);
+  cadt_tile_pack(0, 1, s.keys.data(), ranks.data(), s.tiles.data(), n, levels, n);
+  return s;
+}
+
+struct NamedPoints {
+  const char* name;
+  std::vector<cadt_point> points;
+  unsigned bits_x, bits_y;
+};
+
+std::vector<NamedPoints> sets() {
+  std::mt19937_64 random(2);
+  const auto unit = [&] { return static_cast<double>(random() >> 12) * 0x1p-52; };
+  const auto scattered = [&](std::size_t n, double x, double y, double width, double height) {
+    std::vector<cadt_point> points;
+    for (std::size_t i = 0; i < n; ++i) points.push_back({x + width * unit(), y + height * unit()});
+    return points;
+  };
+  const auto lattice = [](int columns, int rows, double step) {
+    std::vector<cadt_point> points;
+    for (int i = 0; i < columns; ++i)
+      for (int j = 0; j < rows; ++j) points.push_back({i * step, j * step});
+    return points;
+  };
+  const auto together = [](std::vector<cadt_point> a, const std::vector<cadt_point>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  };
+  return {
+      {"uniform", scattered(8000, 0, 0, 1, 1), 9, 9},
+      {"uniform, fine", scattered(8000, 0, 0, 1, 1), 16, 16},
+      {"uniform, coarse", scattered(8000, 0, 0, 1, 1), 2, 2},
+      {"uniform, one cell", scattered(600, 0, 0, 1, 1), 0, 0},
+      {"few", scattered(40, 0, 0, 1, 1), 5, 5},
+      {"long", scattered(4000, 0, 0, 1, 1.0 / 64), 11, 5},
+      {"tall", scattered(4000, 0, 0, 1.0 / 64, 1), 5, 11},
+      {"row of cells", scattered(2000, 0, 0, 1, 1.0 / 1024), 10, 0},
+      {"lattice", lattice(90, 80, 0x1p-7), 9, 9},
+      {"lattice on the cells' borders", lattice(65, 65, 0x1p-7), 8, 8},
+      {"lattice, thirds", lattice(61, 61, 1.0 / 61), 8, 8},
+      {"crowd in the last cell", together(scattered(800, 0, 0, 1, 1), scattered(3000, 0.95, 0.95, 0.05, 0.05)), 6, 6},
+      {"crowd in the last column", together(scattered(800, 0, 0, 1, 1), scattered(3000, 0.97, 0.4, 0.03, 0.03)), 6, 6},
+      {"crowd in the first cell", together(scattered(800, 0, 0, 1, 1), scattered(3000, 0, 0, 0.05, 0.05)), 6, 6},
+      {"half empty", together(scattered(3000, 0, 0, 0.4, 0.4), scattered(60, 0, 0, 1, 1)), 8, 8},
+      {"rings",
+       [&] {
+         std::vector<cadt_point> points;
+         for (int ring = 0; ring < 40; ++ring)
+           for (int k = 0; k < 12; ++k) {
+             const double x = 0.1 + 0.8 * unit(), y = 0.1 + 0.8 * unit();
+             for (const auto& [dx, dy] : {std::pair(3, 4), {4, 3}, {-3, 4}, {-4, 3}, {3, -4}, {4, -3}, {0, 5}, {5, 0}})
+               points.push_back({std::floor(x * 256) / 256 + dx * 0x1p-12, std::floor(y * 256) / 256 + dy * 0x1p-12});
+           }
+         std::ranges::sort(points, {}, [](const cadt_point& p) { return std::pair(p.x, p.y); });
+         const auto same = [](const cadt_point& a, const cadt_point& b) { return a.x == b.x && a.y == b.y; };
+         points.erase(std::unique(points.begin(), points.end(), same), points.end());
+         return points;
+       }(),
+       8, 8},
+  };
+}
+
+TEST(Windows, HaveEveryPointOfTheirSquares) {
+  for (const NamedPoints& set : sets()) {
+    SCOPED_TRACE(set.name);
+    const Sorted s = sorted(set.points, set.bits_x, set.bits_y);
+    const auto window = std::make_unique<cadt_window>();
+    std::size_t loaded = 0, owned = 0;
+    for (std::size_t t = 0; t + 1 < s.tiles.size(); ++t) {
+      const cadt_window_shape shape = cadt_shape_of_window(&s.grid, s.points.data(), s.tiles[t], s.tiles[t + 1].begin);
+      ASSERT_LE(shape.side * shape.side, static_cast<unsigned>(CADT_WINDOW_CELLS));
+      ASSERT_LE(shape.squares * shape.squares, static_cast<unsigned>(CADT_WINDOW_RANGES));
+      // by definition: the points whose cells of the grid are within the window
+      const double width = shape.side / shape.cells;
+      std::set<std::uint32_t> expected;
+      for (std::uint32_t i = 0; i < s.size(); ++i) {
+        const cadt_point f = cadt_clamp_to_grid(&s.grid, cadt_to_grid(&s.grid, s.points[i]));
+        const double x = std::floor(f.x) - shape.origin_x, y = std::floor(f.y) - shape.origin_y;
+        if (x >= 0 && x < width && y >= 0 && y < width) expected.insert(i);
+      }
+      const bool fits = expected.size() <= static_cast<std::size_t>(CADT_WINDOW_POINTS) &&
+                        shape.end - shape.begin <= static_cast<std::uint32_t>(CADT_TILE_POINTS);
+      ASSERT_EQ(cadt_load_window(window.get(), &shape, &s.grid, s.points.data(), s.keys.data(), s.size()) != 0, fits);
+      if (!fits) continue;
+      ++loaded;
+      const std::uint32_t total = window->cells[shape.side * shape.side];
+      ASSERT_EQ(std::set<std::uint32_t>(window->at, window->at + total), expected);
+      ASSERT_EQ(total, expected.size()) << "a point twice";
+      ASSERT_EQ(window->rows[shape.tile_side], shape.end - shape.begin);
+      owned += window->rows[shape.tile_side];
+      for (std::uint32_t cell = 0; cell < shape.side * shape.side; ++cell) {
+        for (std::uint32_t place = window->cells[cell]; place < window->cells[cell + 1]; ++place) {
+          const cadt_point f = cadt_to_grid(&s.grid, s.points[window->at[place]]);
+          ASSERT_EQ(cadt_cell_in_window(&s.grid, &shape, f), cell);
+          const double x = (f.x - shape.origin_x) * shape.cells - 0.5 * shape.side;
+          const double y = (f.y - shape.origin_y) * shape.cells - 0.5 * shape.side;
+          ASSERT_NEAR(static_cast<double>(window->x[place]), x, 5e-7);
+          ASSERT_NEAR(static_cast<double>(window->y[place]), y, 5e-7);
+        }
+      }
+    }
+    EXPECT_EQ(loaded == 0, set.name == std::string_view("uniform, coarse")) << "cells of 500 points fill no window";
+    EXPECT_LE(owned, s.size());
+  }
+}
+
+/// Neighbours of each vertex counterclockwise, from the mesh of the library; empty for those of the hull.
+std::vector<std::vector<std::uint32_t>> links_of(const Sorted& s) {
+  cadt::Options options;
+  options.backend = cadt::Backend::host;
+  options.threads = 1;
+  options.strategy = cadt::Strategy::locks;
+  std::vector<double> xy;
+  for (const cadt_point& p : s.points) xy.insert(xy.end(), {p.x, p.y});
+  const cadt::Triangulation mesh = cadt::triangulate(std::span<const double>(xy), options);
+  std::vector<std::map<std::uint32_t, std::uint32_t>> next(s.size());
+  const auto triangles = mesh.triangles();
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = [&](std::size_t i) { return static_cast<std::uint32_t>(triangles[t + (k + i) % 3]); };
+      next[v(0)][v(1)] = v(2);
+    }
+  }
+  std::vector<std::vector<std::uint32_t>> links(s.size());
+  for (std::uint32_t v = 0; v < s.size(); ++v) {
+    std::uint32_t at = next[v].begin()->first;
+    for (std::size_t k = 0; k < next[v].size(); ++k) {
+      const auto found = next[v].find(at);
+      if (found == next[v].end()) break;
+      links[v].push_back(at);
+      at = found->second;
+    }
+    if (links[v].size() != next[v].size() || at != links[v].front()) links[v].clear();
+  }
+  return links;
+}
+
+TEST(ProvenStars, AreThoseOfTheMesh) {
+  std::map<std::string, double> shares;
+  for (const NamedPoints& set : sets()) {
+    SCOPED_TRACE(set.name);
+    const Sorted s = sorted(set.points, set.bits_x, set.bits_y);
+    const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
+    std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n);
+    cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
+               s.grid.bits_x, s.grid.bits_y, s.tiles.data(), count, count, stars.data(), sizes.data());
+    const auto links = links_of(s);
+    std::size_t proven = 0;
+    for (std::uint32_t v = 0; v < n; ++v) {
+      if (sizes[v] == 0) continue;
+      ++proven;
+      std::vector<std::uint32_t> star(&stars[std::size_t{v} * CADT_STAR_DEGREE],
+                                      &stars[std::size_t{v} * CADT_STAR_DEGREE] + sizes[v]);
+      std::ranges::rotate(star, std::ranges::min_element(star));
+      auto link = links[v];
+      ASSERT_FALSE(link.empty()) << "vertex " << v << " of the hull has a star";
+      std::ranges::rotate(link, std::ranges::min_element(link));
+      ASSERT_EQ(star, link) << "vertex " << v;
+    }
+    shares[set.name] = static_cast<double>(proven) / n;
+  }
+  for (const char* name : {"uniform", "uniform, fine", "lattice", "lattice, thirds"})
+    EXPECT_GT(shares[name], 0.85) << name;
+  for (const char* name : {"few", "long", "tall", "lattice on the cells' borders", "half empty", "rings"})
+    EXPECT_GT(shares[name], 0.2) << name;
+  for (const auto& [name, share] : shares) RecordProperty(name, std::to_string(share));
+}
+
+}  // namespace

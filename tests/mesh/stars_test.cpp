@@ -1,0 +1,442 @@
+// SPDX-License-Identifier: Apache-2.0
+// The star stage makes the mesh that insertion makes, on every kind of set, and it does run: where stars can be proven,
+// they are.
+#include "tests/support/backends.hpp"
+#include "tests/support/families.hpp"
+#include "tests/support/mesh_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cadt::test {
+namespace {
+
+using Reals = std::span<const double>;
+
+/// The reference: insertion by one thread of the host.
+Triangulation with_locks(PointsView points) {
+  Options options;
+  options.backend = Backend::host;
+  options.threads = 1;
+  options.strategy = Strategy::locks;
+  return triangulate(points, options);
+}
+
+testing::AssertionResult same_arrays(const Triangulation& mesh, const Triangulation& expected) {
+  const auto differ = [](const char* what) { return testing::AssertionFailure() << what << " differ"; };
+  if (!std::ranges::equal(mesh.triangles(), expected.triangles())) return differ("triangles");
+  if (!std::ranges::equal(mesh.neighbors(), expected.neighbors())) return differ("neighbors");
+  if (!std::ranges::equal(mesh.hull(), expected.hull())) return differ("hulls");
+  if (!std::ranges::equal(mesh.duplicates(), expected.duplicates())) return differ("duplicates");
+  if (mesh.dimension() != expected.dimension()) return differ("dimensions");
+  return testing::AssertionSuccess();
+}
+
+double proven_share(const Triangulation& mesh) {
+  const Statistics& s = mesh.statistics();
+  return static_cast<double>(s.proven_stars) / static_cast<double>(std::max<std::uint64_t>(s.distinct, 1));
+}
+
+/// As two_clusters(), near enough to each other for narrow arithmetic.
+Points clusters_apart(std::size_t n, double distance) {
+  Points xy = uniform_points(n, 31);
+  for (std::size_t i = n / 2; i < n; ++i) xy[2 * i] += distance;
+  return xy;
+}
+
+/// Crowded cells at the end of both axes of the sort keys' grid, where cells are closed on all sides.
+Points crowd_in_a_corner(std::size_t n, double size) {
+  Points xy = uniform_points(n, 32);
+  const Points crowd = uniform_points(4 * n, 33);
+  xy.insert(xy.end(), {0, 0, 1, 1});
+  for (const double value : crowd) xy.push_back(1 - size * value);
+  return xy;
+}
+
+Points box(std::size_t n, double width, double height) {
+  Points xy = uniform_points(n, 34);
+  for (std::size_t i = 0; i < xy.size(); i += 2) xy[i] *= width, xy[i + 1] *= height;
+  return xy;
+}
+
+Points line_and_few(std::size_t n, std::size_t few) {
+  Points xy;
+  for (std::size_t i = 0; i < n; ++i) xy.insert(xy.end(), {3.0 * static_cast<double>(i), static_cast<double>(i)});
+  for (const double value : uniform_points(few, 35)) xy.push_back(static_cast<double>(n) * value);
+  return xy;
+}
+
+class Stars : public BackendTest {
+ protected:
+  void SetUp() override {
+    BackendTest::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
+    Options options = GetParam().options();
+    options.strategy = Strategy::stars;
+    stars_.emplace(options);
+  }
+  void TearDown() override { stars_.reset(); }
+
+  Triangulator& stars() { return *stars_; }
+
+  /// The mesh with stars, compared with the reference.
+  Triangulation expect_same(const std::string& what, const Points& xy) {
+    SCOPED_TRACE(what);
+    const Triangulation expected = with_locks(Reals(xy));
+    Triangulation mesh = stars().triangulate(Reals(xy));
+    EXPECT_TRUE(same_arrays(mesh, expected));
+    EXPECT_EQ(mesh.hash(), expected.hash());
+    if (mesh.dimension() == 2) {
+      EXPECT_TRUE(mesh.statistics().certified);
+      EXPECT_EQ(mesh.statistics().certified_edges, 3 * mesh.statistics().distinct - 3);
+    }
+    EXPECT_LE(mesh.statistics().proven_stars, mesh.statistics().distinct);
+    // One thread leaves no edge to the closing pass, so what that repairs was a star without a right to its proof.
+    if (GetParam().backend == Backend::host && GetParam().threads == 1) {
+      EXPECT_EQ(mesh.statistics().closing_repairs, 0u);
+    }
+    return mesh;
+  }
+
+ private:
+  std::optional<Triangulator> stars_;
+};
+
+TEST_P(Stars, EveryFamily) {
+  for (const FamilyGroup& group : family_groups()) {
+    for (const Family& family : group.families())
+      expect_same(std::string(group.name) + "/" + family.name, family.make());
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+TEST_P(Stars, UniformOfEverySize) {
+  for (const std::size_t n : {3u, 4u, 5u, 6u, 7u, 8u, 12u, 20u, 50u, 100u, 639u, 640u, 641u, 1000u, 2561u, 20000u})
+    expect_same(std::to_string(n), uniform_points(n, n));
+}
+
+/// These fail if the stage does not run.
+TEST_P(Stars, NearlyAllAreProven) {
+  for (const auto& [what, xy] :
+       {std::pair("uniform", uniform_points(20000, 41)), std::pair("lattice", grid_points(160, 125)),
+        std::pair("shuffled lattice", shuffled(grid_points(160, 125), 2)),
+        std::pair("uniform with doubles of each", [] {
+          Points twice = uniform_points(20000, 42);
+          twice.insert(twice.end(), twice.begin(), twice.begin() + 40000);
+          return twice;
+        }())}) {
+    const Triangulation mesh = expect_same(what, xy);
+    EXPECT_GT(mesh.statistics().tiles, 20u) << what;
+    EXPECT_GT(proven_share(mesh), 0.85) << what;
+    // The hull does not go round its vertices.
+    EXPECT_LE(mesh.statistics().proven_stars, mesh.statistics().distinct - mesh.hull().size()) << what;
+  }
+}
+
+/// Neither the size of the coordinates nor where they are counted from makes a difference to the proofs.
+TEST_P(Stars, ProofsDoNotDependOnTheUnit) {
+  const Points xy = uniform_points(5000, 43);
+  const std::uint64_t proven = expect_same("as it is", xy).statistics().proven_stars;
+  EXPECT_GT(proven, 4000u);
+  for (const int exponent : {-900, -500, -3, 5, 400, 900}) {
+    const Triangulation mesh = expect_same("times 2^" + std::to_string(exponent), scaled(xy, exponent));
+    EXPECT_EQ(mesh.statistics().proven_stars, proven) << exponent;
+  }
+  const Points mirrored = [&] {
+    Points result = xy;
+    for (double& value : result) value = -value;
+    return result;
+  }();
+  EXPECT_GT(expect_same("mirrored", mirrored).statistics().proven_stars, 4000u);
+  for (const double offset : {5e5, 1e9, 1e13})
+    EXPECT_GT(
+        expect_same("moved by " + std::to_string(offset), moved(xy, offset, -3 * offset)).statistics().proven_stars,
+        offset < 1e12 ? 4000u : 500u);
+}
+
+TEST_P(Stars, NearTheSmallestNumbers) {
+  for (const int exponent : {-1074, -1073, -1070, -1060, -1040, -1030, -1022, -1015, -1010}) {
+    expect_same("lattice times 2^" + std::to_string(exponent), scaled(grid_points(40, 30), exponent));
+    expect_same("uniform times 2^" + std::to_string(exponent), scaled(uniform_points(1500, 44), exponent));
+    Points odd;  // halves of these are none
+    for (const double value : uniform_points(300, 45)) odd.push_back((2 * std::floor(1e6 * value) + 1) * 5e-324);
+    expect_same("odd, times 2^" + std::to_string(exponent + 1074), scaled(odd, exponent + 1074));
+  }
+}
+
+TEST_P(Stars, WideExponentsAreLeftToLocks) {
+  Points xy = uniform_points(3000, 46);
+  xy.insert(xy.end(), {1e-300, 0.5, 0.25, 1e-290});
+  const Triangulation mesh = expect_same("wide", xy);
+  EXPECT_TRUE(mesh.statistics().wide_arithmetic);
+  EXPECT_EQ(mesh.statistics().tiles, 0u);
+  EXPECT_EQ(mesh.statistics().proven_stars, 0u);
+}
+
+TEST_P(Stars, NoneIsProvenOnAConvexCurve) {
+  for (const int n : {3, 4, 5, 17, 100, 1000}) {
+    const Triangulation mesh = expect_same("polygon of " + std::to_string(n), regular_polygon(n, 3, 4, 5));
+    if (n != 1000) {  // rounding leaves some of a thousand within the hull
+      EXPECT_EQ(mesh.statistics().proven_stars, 0u) << n;
+    }
+  }
+  expect_same("a hub has too many neighbours", hub_points(500));
+}
+
+TEST_P(Stars, LongBoxes) {
+  for (const double aspect : {2.0, 10.0, 1e3, 1e6, 1e12}) {
+    expect_same("1 : " + std::to_string(aspect), box(5000, aspect, 1));
+    expect_same(std::to_string(aspect) + " : 1", box(5000, 1, aspect));
+  }
+  expect_same("lattice of two rows", grid_points(2500, 2));
+  expect_same("lattice of two columns", grid_points(2, 2500));
+  expect_same("lattice of nine rows", grid_points(500, 9));
+}
+
+TEST_P(Stars, Lines) {
+  Points line;
+  for (int i = 0; i < 3000; ++i) line.insert(line.end(), {7.0 * ((i * 11) % 3000), -2.0 * ((i * 11) % 3000)});
+  EXPECT_EQ(expect_same("all on a line", line).dimension(), 1);
+  for (const std::size_t few : {1u, 2u, 5u, 50u})
+    expect_same(std::to_string(few) + " beside a line", line_and_few(2000, few));
+  expect_same("axes", axis_cross(150));
+}
+
+TEST_P(Stars, CrowdedCells) {
+  expect_same("two clusters", clusters_apart(6000, 1e6));
+  expect_same("two clusters, far", clusters_apart(6000, 1e12));
+  expect_same("two clusters, 1e12 apart", two_clusters(6000));
+  expect_same("hundred clusters", cluster_points(20000));
+  expect_same("nearly all in one cell", skewed_points(20000));
+  for (const double size : {0.25, 0.05, 0.01, 1e-3, 1e-5}) {
+    const Points xy = crowd_in_a_corner(600, size);
+    expect_same("crowd at the end of both axes, " + std::to_string(size), xy);
+    Points other = xy;
+    for (std::size_t i = 0; i < other.size(); i += 2) other[i] = 1 - other[i];
+    expect_same("crowd at the end of one axis, " + std::to_string(size), other);
+  }
+}
+
+TEST_P(Stars, RandomSmallSets) {
+  Random random(47);
+  for (int run = 0; run < 400; ++run) {
+    const std::size_t n = 3 + random.below(120), span = 2 + random.below(24);
+    Points xy;
+    for (std::size_t i = 0; i < 2 * n; ++i) xy.push_back(static_cast<double>(random.below(span)));
+    expect_same("whole numbers, run " + std::to_string(run), xy);
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+TEST_P(Stars, FastOrder) {
+  for (const auto& [what, xy] :
+       {std::pair("uniform", uniform_points(8000, 48)), std::pair("lattice", grid_points(80, 70))}) {
+    SCOPED_TRACE(what);
+    stars().options().order = Order::fast;
+    const Triangulation fast = stars().triangulate(Reals(xy));
+    stars().options().order = Order::canonical;
+    const Triangulation expected = with_locks(Reals(xy));
+    EXPECT_GT(fast.statistics().proven_stars, 4000u);
+    EXPECT_TRUE(verified(xy, fast));
+    EXPECT_EQ(fast.hash(), expected.hash());
+    EXPECT_EQ(canonical_set(fast.triangles()), canonical_set(expected.triangles()));
+    EXPECT_TRUE(std::ranges::equal(fast.neighbors(), neighbors_of(fast.triangles())));
+    EXPECT_TRUE(std::ranges::equal(fast.hull(), expected.hull()));
+  }
+}
+
+/// Nothing of one call is left for the next one.
+TEST_P(Stars, AlternatesWithLocks) {
+  const Points large = uniform_points(9000, 49), small = grid_points(30, 20), line = {0, 0, 1, 1, 2, 2};
+  for (int round = 0; round < 3; ++round) {
+    for (const Points* xy : {&large, &small, &line, &large}) {
+      const Triangulation expected = with_locks(Reals(*xy));
+      for (const Strategy strategy : {Strategy::locks, Strategy::stars, Strategy::stars, Strategy::automatic}) {
+        stars().options().strategy = strategy;
+        const Triangulation mesh = stars().triangulate(Reals(*xy));
+        EXPECT_TRUE(same_arrays(mesh, expected)) << round << ", " << xy->size() / 2 << ", " << to_string(strategy);
+        if (strategy == Strategy::locks) {
+          EXPECT_EQ(mesh.statistics().tiles + mesh.statistics().proven_stars, 0u);
+        }
+        if (strategy == Strategy::stars && xy == &large) {
+          EXPECT_GT(proven_share(mesh), 0.85);
+        }
+      }
+    }
+    stars().release_memory();
+  }
+}
+
+TEST_P(Stars, Floats) {
+  std::vector<float> values;
+  for (const double value : uniform_points(6000, 50)) values.push_back(static_cast<float>(value));
+  const std::span<const float> view(values);
+  const Triangulation mesh = stars().triangulate(view);
+  EXPECT_TRUE(same_arrays(mesh, with_locks(view)));
+  EXPECT_GT(proven_share(mesh), 0.85);
+}
+
+TEST_P(Stars, GroupsOfEverySize) {
+  if (GetParam().backend == Backend::host) GTEST_SKIP() << "the host has no groups";
+  const Points xy = uniform_points(12000, 51), lattice = grid_points(60, 50);
+  const Triangulation expected = with_locks(Reals(xy)), expected_lattice = with_locks(Reals(lattice));
+  std::set<std::uint64_t> proven;
+  // Where a lane works alone the size hardly matters, and kernels are compiled for each.
+  const std::string name = stars().triangulate(Reals(lattice)).statistics().device;
+  const bool gpu = std::ranges::any_of(list_devices(), [&](const DeviceInfo& device) {
+    return device.backend == GetParam().backend && device.gpu && device.name == name;
+  });
+  for (const unsigned size : gpu ? std::vector{32u, 64u, 128u, 256u} : std::vector{64u}) {
+    SCOPED_TRACE(size);
+    Options options = GetParam().options();
+    options.strategy = Strategy::stars;
+    options.work_group_size = size;
+    const Triangulation mesh = triangulate(Reals(xy), options);
+    EXPECT_TRUE(same_arrays(mesh, expected));
+    EXPECT_TRUE(same_arrays(triangulate(Reals(lattice), options), expected_lattice));
+    proven.insert(mesh.statistics().proven_stars);
+  }
+  EXPECT_EQ(proven.size(), 1u) << "what is proven depends on the group";
+  EXPECT_GT(*proven.begin(), 10000u);
+}
+
+TEST_P(Stars, Stop) {
+  const Points xy = uniform_points(9000, 52);
+  const Triangulation expected = with_locks(Reals(xy));
+  int reports = 0;
+  double last = 0;
+  stars().options().progress = [&](const Progress& progress) {
+    ++reports;
+    EXPECT_GE(progress.fraction, last);
+    last = progress.fraction;
+  };
+  EXPECT_TRUE(same_arrays(stars().triangulate(Reals(xy)), expected));
+  EXPECT_EQ(last, 1);
+  const int all = reports;
+  EXPECT_GT(all, 5);
+  for (int stop_at = 0; stop_at <= all; ++stop_at) {
+    std::stop_source source;
+    stars().options().stop = source.get_token();
+    reports = 0;
+    stars().options().progress = [&](const Progress&) {
+      if (++reports == stop_at) source.request_stop();
+    };
+    if (stop_at == 0) source.request_stop();
+    EXPECT_THROW((void)stars().triangulate(Reals(xy)), Cancelled) << "at report " << stop_at << " of " << all;
+  }
+  stars().options().stop = {};
+  stars().options().progress = nullptr;
+  EXPECT_TRUE(same_arrays(stars().triangulate(Reals(xy)), expected)) << "after calls that were stopped";
+}
+
+/// Any bound is kept: the call runs below it, or it is OutOfMemory.
+TEST_P(Stars, MaxMemoryIsABound) {
+  const Points xy = uniform_points(20000, 53);
+  Options options = GetParam().options();
+  options.strategy = Strategy::stars;
+  const Triangulation unbounded = triangulate(Reals(xy), options);
+  const auto peak = static_cast<double>(unbounded.statistics().bytes_device_peak);
+  int refused = 0, ran = 0;
+  for (const double share : {0.02, 0.25, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0, 1.5}) {
+    options.max_memory = static_cast<std::size_t>(share * peak);
+    try {
+      const Triangulation mesh = triangulate(Reals(xy), options);
+      EXPECT_EQ(mesh.hash(), unbounded.hash());
+      EXPECT_LE(mesh.statistics().bytes_device_peak, options.max_memory);
+      ++ran;
+    } catch (const OutOfMemory& error) {
+      EXPECT_GT(error.needed(), 0u);
+      EXPECT_LE(error.available(), options.max_memory);
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 1);
+  EXPECT_GT(ran, 0);
+}
+
+TEST_P(Stars, EveryDetailOfStatistics) {
+  const Points xy = uniform_points(9000, 54);
+  const Triangulation expected = with_locks(Reals(xy));
+  const std::uint64_t n = xy.size() / 2;
+  for (const StatisticsDetail detail : {StatisticsDetail::none, StatisticsDetail::counters, StatisticsDetail::timing}) {
+    SCOPED_TRACE(to_string(detail));
+    stars().options().statistics = detail;
+    const Triangulation mesh = stars().triangulate(Reals(xy));
+    const Statistics& s = mesh.statistics();
+    EXPECT_TRUE(same_arrays(mesh, expected));
+    EXPECT_GT(s.proven_stars, n / 2);
+    EXPECT_GT(s.tiles, 10u);
+    std::set<std::string> accounts;
+    double shares = 0;
+    for (const auto& [name, share] : s.thread_time) {
+      EXPECT_TRUE(accounts.insert(name).second) << name << " twice";
+      shares += share;
+    }
+    if (!accounts.empty()) {
+      EXPECT_NEAR(shares, 1, 1e-9);
+    }
+    std::uint64_t edges = 0;
+    for (const std::uint64_t count : s.flips_per_edge) edges += count;
+    if (detail == StatisticsDetail::none) {
+      EXPECT_TRUE(s.milliseconds.empty());
+      EXPECT_EQ(s.claims + s.flips + s.incircle_tests + edges, 0u);
+      continue;
+    }
+    EXPECT_EQ(edges, 3 * n - 3 - mesh.hull().size());
+    EXPECT_LT(s.splits + s.edge_splits, n - s.proven_stars);
+    EXPECT_EQ(s.claims, s.lost_claims + s.splits + s.edge_splits + s.flips);
+    std::set<std::string> phases;
+    for (const auto& [name, ms] : s.milliseconds) phases.insert(name);
+    for (const char* phase : {"sort", "tiles", "stars", "records", "join", "certify"})
+      EXPECT_TRUE(phases.contains(phase)) << phase;
+  }
+}
+
+std::string refused_option(const Points& xy, const Options& options) {
+  try {
+    (void)triangulate(Reals(xy), options);
+  } catch (const OptionError& error) {
+    return error.option();
+  }
+  return "none";
+}
+
+TEST_P(Stars, RefusesWhatShowsInsertion) {
+  const Points xy = uniform_points(50);
+  for (const Strategy strategy : {Strategy::automatic, Strategy::locks, Strategy::stars}) {
+    const std::string expected = strategy == Strategy::stars ? "strategy" : "none";
+    Options options = GetParam().options();
+    options.strategy = strategy;
+    EXPECT_EQ(refused_option(xy, options), "none");
+    for (const Stabilize mode : {Stabilize::defer, Stabilize::paper}) {
+      options.stabilize = mode;
+      EXPECT_EQ(refused_option(xy, options), expected) << to_string(strategy) << ", " << to_string(mode);
+    }
+    options.stabilize = Stabilize::off;
+    options.watch = [](const Snapshot&) {};
+    EXPECT_EQ(refused_option(xy, options), expected) << to_string(strategy) << ", watch";
+  }
+}
+
+std::vector<BackendCase> two_host_cases() {
+  return {{"serial", Backend::host, 1, 0}, {"threads2", Backend::host, 2, 0}};
+}
+CADT_ON(host, Stars, two_host_cases);
+CADT_ON(opencl, Stars, main_opencl_case);
+CADT_ON(cuda, Stars, main_cuda_case);
+
+TEST(Strategies, HaveNames) {
+  EXPECT_EQ(to_string(Strategy::automatic), "auto");
+  EXPECT_EQ(to_string(Strategy::locks), "locks");
+  EXPECT_EQ(to_string(Strategy::stars), "stars");
+}
+
+}  // namespace
+}  // namespace cadt::test

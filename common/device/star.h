@@ -442,6 +442,8 @@ CADT_KERNEL(cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const 
           const cadt_u32 p = window.cells[y * shape.side + shape.halo] + (number - window.rows[row]);
           cadt_u32 x = CADT_CAST(cadt_u32, window.x[p] + middle);
           x = x < shape.halo ? shape.halo : cadt_min_u32(x, shape.halo + shape.tile_side - 1u);
+          /* a neighbour tile's, rounded into this one's cells */
+          if (window.at[p] < shape.begin || window.at[p] >= shape.end) continue;
           const cadt_u32 size = cadt_make_star(&maker, p, x, y, round ? 2u : 1u, round ? shape.halo : reach);
           if (size)
             cadt_store_star(&maker, p, size, links, sizes);

@@ -159,18 +159,16 @@ void open_account(Triangulator::State& state, std::size_t n, DeviceTriangulation
 
 /// \throws OutOfMemory before any work
 void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere) {
-  if (n <= state.known_points && state.options.max_memory == 0) return;
-  state.memory.require(least_bytes(n, result_elsewhere));
+  const bool stars = state.options.strategy == Strategy::stars;  // Strategy::automatic does without, if it must
+  if (n <= (stars ? state.known_star_points : state.known_points) && state.options.max_memory == 0) return;
+  state.memory.require(stars ? star_bytes(n) : least_bytes(n, result_elsewhere));
 }
 
 /// Whether the star stage is to run.
 bool choose_stars(Triangulator::State& state, std::size_t n) {
   if (!prefers_stars(state.options, *state.device, n)) return false;
-  if (state.options.strategy == Strategy::stars || (n <= state.known_star_points && state.options.max_memory == 0))
-    return true;
-  if (!state.memory.allows(most_bytes(state.memory, n, true))) return false;
-  state.known_star_points = std::max(state.known_star_points, n);
-  return true;
+  if (n <= state.known_star_points && state.options.max_memory == 0) return true;
+  return state.options.strategy == Strategy::stars || state.memory.allows(star_bytes(n));
 }
 
 void close_account(Triangulator::State& state, Run& run, DeviceTriangulation::Data& data) {
@@ -178,6 +176,7 @@ void close_account(Triangulator::State& state, Run& run, DeviceTriangulation::Da
   data.statistics.launches = run.launcher.launches();
   data.statistics.bytes_device_peak = state.memory.peak();
   state.known_points = std::max(state.known_points, data.points);
+  if (data.statistics.proven_stars != 0) state.known_star_points = std::max(state.known_star_points, data.points);
   run.check("collect", 1);
 }
 

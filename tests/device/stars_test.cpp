@@ -295,9 +295,9 @@ TEST(ProvenStars, AreThoseOfTheMesh) {
     SCOPED_TRACE(set.name);
     const Sorted s = sorted(set.points, set.bits_x, set.bits_y);
     const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
-    std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n);
+    std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n), found(5);
     cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
-               s.grid.bits_x, s.grid.bits_y, s.tiles.data(), count, count, stars.data(), sizes.data());
+               s.grid.bits_x, s.grid.bits_y, s.tiles.data(), count, 1, count, stars.data(), sizes.data(), found.data());
     const auto links = links_of(s);
     std::size_t proven = 0;
     for (std::uint32_t v = 0; v < n; ++v) {
@@ -311,6 +311,8 @@ TEST(ProvenStars, AreThoseOfTheMesh) {
       std::ranges::rotate(link, std::ranges::min_element(link));
       ASSERT_EQ(star, link) << "vertex " << v;
     }
+    EXPECT_EQ(found[0], n);
+    EXPECT_EQ(found[0] - found[1], proven);
     shares[set.name] = static_cast<double>(proven) / n;
   }
   for (const char* name : {"uniform", "uniform, fine", "lattice", "lattice, thirds"})

@@ -49,7 +49,8 @@ void Counters::collect(Statistics& statistics) const {
     statistics.flips_per_edge[bin] = sums[CADT_ROW_FLIPS + bin] / 2;  // each edge was met from both sides
   const auto times = std::span(sums).subspan(CADT_ROW_TIMES, CADT_TIMES);
   const auto all = static_cast<double>(std::accumulate(times.begin(), times.end(), std::uint64_t{0}));
-  for (std::size_t i = 0; all > 0 && i < times.size(); ++i)
+  // with the star stage there are two: what counts are the threads of the insertion, which is the first
+  for (std::size_t i = statistics.thread_time.size(); all > 0 && i < times.size(); ++i)
     statistics.thread_time.emplace_back(accounts[i], static_cast<double>(times[i]) / all);
   statistics.walk_steps += sums[CADT_COUNT_WALK_STEPS];
   statistics.claims += sums[CADT_COUNT_CLAIMS];

@@ -46,7 +46,7 @@ bool prefers_stars(const Options& options, const Device& device, std::size_t n) 
 /// numbers, and lists of a word or less.
 constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
 
-constexpr std::size_t star_words = 12;
+constexpr std::size_t star_words = 15;  // neighbours of the stars, and lists
 
 /// The same, with buffers that wait for a later phase or call.
 std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {

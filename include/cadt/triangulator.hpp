@@ -116,7 +116,7 @@ class Triangulator {
 
   /// Device memory that the first call with so many points takes at most, in bytes: its result and the memory kept for
   /// the next call included, points of the caller's that are on the device not. 124 a point where the device or
-  /// `Options::allocator` keeps the memory, else 176, and 150 or 224 with the star stage (Options::strategy), which
+  /// `Options::allocator` keeps the memory, else 176, and 150 or 236 with the star stage (Options::strategy), which
   /// is left out where there is less; with `Options::max_memory` 124 are enough, on the host 97 for a
   /// mesh on the host. Crowded cells (more than 16 points in 2^-16 of the box's width) need up to 32 bytes more for
   /// each of their points while they are sorted.

@@ -39,7 +39,8 @@ Cut Launcher::cut_strided(std::size_t count) const noexcept {
 
 Cut Launcher::cut_teams(std::size_t count, std::size_t lanes) const noexcept {
   if (device_.shape().contiguous) return cut(count);
-  return {static_cast<std::uint32_t>(count * lanes), 1};
+  constexpr std::size_t most = std::size_t{1} << 30;  // each group takes several
+  return {static_cast<std::uint32_t>(std::min(count * lanes, most)), 1};
 }
 
 Cut Launcher::parts(std::size_t count) const noexcept {

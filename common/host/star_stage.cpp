@@ -17,6 +17,7 @@ using namespace device_constants;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr unsigned most_bits = 24;  // of an axis: cells of a window are counted in 32 bits
 constexpr std::uint32_t sampled_tiles = 512, least_step = 12;
+constexpr std::size_t least_points_of_tile = 48;  // on average: a tile keeps 128 lanes of a card
 
 /// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
@@ -27,7 +28,10 @@ class StarStage {
       : run_(run), launch_(run.launcher), order_(order), n_(order.distinct), count_(static_cast<std::uint32_t>(n_)) {}
 
   [[nodiscard]] DeviceMesh build() {
-    if (!make_stars()) return build_mesh(run_, order_);
+    if (!make_stars()) {
+      release_stars();
+      return build_mesh(run_, order_);
+    }
     count_triangles();
     run_.statistics.proven_stars = n_ - unproven_;
     if (too_many(unproven_, n_)) {
@@ -59,6 +63,8 @@ class StarStage {
     ranks.release();
     run_.statistics.tiles = count;
     run_.end_phase("tiles");
+    run_.check("stars", 0.1);
+    if (run_.options.strategy == Strategy::automatic && n_ / count < least_points_of_tile) return false;
     sizes_ = run_.memory.allocate_zeros(n_ * word);
     links_ = run_.memory.allocate(n_ * CADT_STAR_DEGREE * word);
     const auto run_tiles = [&](std::uint32_t tile_count, std::uint32_t step) {
@@ -79,6 +85,7 @@ class StarStage {
     run_.statistics.exact_incircles += found[3];
     run_.statistics.ties += found[4];
     run_.end_phase("stars");
+    run_.check("stars", 0.5);
     return true;
   }
 
@@ -148,6 +155,7 @@ class StarStage {
     launch_.run(KernelId::cadt_join_records, c.items, smaller.records, covers, ranks, positions, slots, c.grain,
                 proven_triangles_, records_, hints_);
     run_.end_phase("join");
+    run_.check("join", 0.8);
   }
 
   Run& run_;

@@ -89,8 +89,6 @@ std::vector<Column> make_columns() {
       counter("certified_edges", &S::certified_edges, always),
       counter("stabilized_edges", &S::stabilized_edges),
       counter("illegal_edges", &S::illegal_edges, always),
-      counter("tiles", &S::tiles),
-      counter("proven_stars", &S::proven_stars),
       counter("refined_points", &S::refined_points),
       counter("bytes_device_peak", &S::bytes_device_peak, always),
       {"certified", [](const Row& r) { return r.statistics ? Cell(r.statistics->certified) : Cell(); }},

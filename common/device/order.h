@@ -145,8 +145,9 @@ CADT_FN cadt_point cadt_to_grid(const cadt_key_grid* grid, cadt_point p) {
 CADT_FN cadt_point cadt_clamp_to_grid(const cadt_key_grid* grid, cadt_point f) {
   const double limit_x = CADT_CAST(double, (1u << grid->bits_x) - 1u);
   const double limit_y = CADT_CAST(double, (1u << grid->bits_y) - 1u);
-  f.x = f.x < limit_x ? f.x : limit_x;
-  f.y = f.y < limit_y ? f.y : limit_y;
+  /* half of the least coordinate may have been rounded up */
+  f.x = f.x < 0.0 ? 0.0 : (f.x < limit_x ? f.x : limit_x);
+  f.y = f.y < 0.0 ? 0.0 : (f.y < limit_y ? f.y : limit_y);
   return f;
 }
 

@@ -19,7 +19,7 @@
 #include "common/device/window.h"
 
 /* Error of a difference of two points of a window, in cells: coordinates are at most 12 cells from the centre, so they
- * are rounded by at most 2^-21; their units are exact to 2^-32. */
+ * are rounded by at most 2^-21; their units are exact to 2^-25. */
 #define CADT_WINDOW_ERROR 2e-6f
 #define CADT_PLACE_BITS 11u
 #define CADT_PLACE_MASK 2047u
@@ -405,7 +405,7 @@ CADT_FN void cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size
 }
 
 /* Stars of every `step`-th tile. found: points of these tiles, those without a proof; exact orientations, exact
- * incircles, ties. \pre sizes are 0 */
+ * incircles, ties. \pre sizes are 0, or of stars that are there already */
 CADT_KERNEL(cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys, cadt_u32 n,
             CADT_GRID_PARAMETERS, CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 step,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {

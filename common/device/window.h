@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * A tile and the points around it in the memory of a team, sorted into a small grid of their own: cells of one to four
+ * A tile and the points around it in the memory of a team, sorted into a small grid of their own: cells of a few
  * points. The window is made of squares of the sort keys, so its points are a few ranges of positions, and it is known
  * that there are no others in it.
  */
@@ -97,11 +97,16 @@ CADT_FN cadt_u32 cadt_position_in_window(CADT_TEAM_PTR const cadt_window* w, cad
   return w->first[low] + (j - w->offset[low]);
 }
 
-/* The cell of a point in grid units. */
-CADT_FN cadt_u32 cadt_cell_in_window(const cadt_key_grid* grid, const cadt_window_shape* s, cadt_point f) {
-  const cadt_point c = cadt_clamp_to_grid(grid, f);
-  return CADT_CAST(cadt_u32, (c.y - s->origin_y) * s->cells) * s->side +
-         CADT_CAST(cadt_u32, (c.x - s->origin_x) * s->cells);
+/* The cell of a coordinate in grid units along one axis. Rounding must not carry it out of the window, nor beyond the
+ * edge of the grid: stars take for granted that there is nothing. */
+CADT_FN cadt_u32 cadt_cell_along(double f, double origin, double cells, cadt_u32 side, cadt_i32 edge) {
+  const cadt_u32 last = edge < CADT_CAST(cadt_i32, side) ? CADT_CAST(cadt_u32, edge) - 1u : side - 1u;
+  return cadt_min_u32(CADT_CAST(cadt_u32, ((f < 0.0 ? 0.0 : f) - origin) * cells), last);
+}
+
+CADT_FN cadt_u32 cadt_cell_in_window(const cadt_window_shape* s, cadt_point f) {
+  return cadt_cell_along(f.y, s->origin_y, s->cells, s->side, s->top) * s->side +
+         cadt_cell_along(f.x, s->origin_x, s->cells, s->side, s->right);
 }
 
 /* Loads a window. Returns 0 if there are too many points, the same for all lanes. */
@@ -144,7 +149,7 @@ CADT_FN cadt_u32 cadt_load_window(CADT_TEAM_PTR cadt_window* w, const cadt_windo
     return 0u;
   CADT_TEAM_FOR(j, total) {
     const cadt_point f = cadt_to_grid(grid, points[cadt_position_in_window(w, ranges, j)]);
-    cadt_team_add(&w->cells[1u + cadt_cell_in_window(grid, s, f)], 1u);
+    cadt_team_add(&w->cells[1u + cadt_cell_in_window(s, f)], 1u);
   }
   CADT_TEAM_SYNC();
   /* cells[1 + c] from size to begin of cell c; when the points are put there it becomes the end, which is where cell
@@ -178,7 +183,7 @@ CADT_FN cadt_u32 cadt_load_window(CADT_TEAM_PTR cadt_window* w, const cadt_windo
   CADT_TEAM_FOR(j, total) {
     const cadt_u32 i = cadt_position_in_window(w, ranges, j);
     const cadt_point f = cadt_to_grid(grid, points[i]);
-    const cadt_u32 place = cadt_team_add(&w->cells[1u + cadt_cell_in_window(grid, s, f)], 1u);
+    const cadt_u32 place = cadt_team_add(&w->cells[1u + cadt_cell_in_window(s, f)], 1u);
     w->x[place] = CADT_CAST(float, (f.x - s->origin_x) * s->cells - middle);
     w->y[place] = CADT_CAST(float, (f.y - s->origin_y) * s->cells - middle);
     w->at[place] = i;

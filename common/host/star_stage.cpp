@@ -22,6 +22,9 @@ constexpr std::size_t least_points_of_tile = 48;  // on average: a tile keeps 12
 /// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
 
+/// Edges between the two parts have a list and a hash table.
+constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * open > points; }
+
 class StarStage {
  public:
   StarStage(Run& run, const SpatialOrder& order)
@@ -33,12 +36,16 @@ class StarStage {
       return build_mesh(run_, order_);
     }
     count_triangles();
-    run_.statistics.proven_stars = n_ - unproven_;
-    if (too_many(unproven_, n_)) {
+    if (too_many(unproven_, n_) || too_many_open(open_count_, n_)) {
       release_stars();
       ranks_.release();
       return build_mesh(run_, order_);
     }
+    // stars that contradict each other would number more
+    if (proven_triangles_ > 2 * n_ - 2)
+      throw InternalError("the proven stars have " + std::to_string(proven_triangles_) + " triangles, more than " +
+                          std::to_string(2 * n_ - 2) + "; please report this with the input");
+    run_.statistics.proven_stars = n_ - unproven_;
     write_records();
     release_stars();
     join();

@@ -245,7 +245,7 @@ TEST(Windows, HaveEveryPointOfTheirSquares) {
       for (std::uint32_t cell = 0; cell < shape.side * shape.side; ++cell) {
         for (std::uint32_t place = window->cells[cell]; place < window->cells[cell + 1]; ++place) {
           const cadt_point f = cadt_to_grid(&s.grid, s.points[window->at[place]]);
-          ASSERT_EQ(cadt_cell_in_window(&s.grid, &shape, f), cell);
+          ASSERT_EQ(cadt_cell_in_window(&shape, f), cell);
           const double x = (f.x - shape.origin_x) * shape.cells - 0.5 * shape.side;
           const double y = (f.y - shape.origin_y) * shape.cells - 0.5 * shape.side;
           ASSERT_NEAR(static_cast<double>(window->x[place]), x, 5e-7);

@@ -224,6 +224,43 @@ TEST_P(Stars, CrowdedCells) {
   }
 }
 
+/// A crowd in the lower left corner, so that windows reach beyond the box there, and a point just below a border of the
+/// keys' cells: its cell, counted from outside the box, rounds up to one beyond the window.
+TEST_P(Stars, RoundingAtTheLowerEdges) {
+  const double h = 1.0 / 256;
+  for (const bool sideways : {false, true})
+    for (const double at : {0.05, 0.3, 0.5, 0.9}) {
+      Points xy = {0, 0, 1, 1, 1, 0, 0, 1};
+      const Points a = uniform_points(500, 61), b = uniform_points(300, 62), c = uniform_points(600, 63);
+      for (std::size_t i = 0; i < a.size(); i += 2) xy.insert(xy.end(), {a[i] * h, a[i + 1] * h});
+      for (std::size_t i = 0; i < b.size(); i += 2) xy.insert(xy.end(), {h + b[i] * h, b[i + 1] * h});
+      for (std::size_t i = 0; i < c.size(); i += 2) xy.insert(xy.end(), {c[i] * 0.9 + 0.1, c[i + 1] * 0.9 + 0.1});
+      xy.insert(xy.end(), {at * h, std::nextafter(2 * h, 0)});
+      for (std::size_t i = 0; sideways && i < xy.size(); i += 2) std::swap(xy[i], xy[i + 1]);
+      expect_same(std::to_string(at) + (sideways ? " sideways" : ""), xy);
+    }
+}
+
+/// Half of an odd multiple of the smallest number is rounded: the least coordinate lies outside the grid of the keys.
+TEST_P(Stars, LeastCoordinateIsRounded) {
+  const double u = std::numeric_limits<double>::denorm_min();
+  const auto tiny = [](double value) { return std::ldexp(value, -1022); };
+  for (const double least : {-1.0, 3.0, 4.0, 5.0})
+    for (unsigned seed = 0; seed < 3; ++seed) {
+      Points xy = {tiny(256), tiny(255.5), tiny(256), 0, least * u, tiny(2.125)};
+      for (const auto& [x, y] : std::vector<std::pair<double, double>>{
+               {.51, 1.975}, {.51, 2.275}, {.535, 2.125}, {.62, 2.02}, {.62, 2.23}, {.6, 2.125}})
+        xy.insert(xy.end(), {tiny(x) + 4 * u, tiny(y)});
+      const Points a = uniform_points(600, 70 + seed), b = uniform_points(300, 80 + seed),
+                   c = uniform_points(500, 90 + seed);
+      for (std::size_t i = 0; i < a.size(); i += 2)
+        xy.insert(xy.end(), {tiny(.9 + 3.1 * a[i]) + 4 * u, tiny(4 * a[i + 1])});
+      for (std::size_t i = 0; i < b.size(); i += 2) xy.insert(xy.end(), {tiny(4 + 4 * b[i]), tiny(4 * b[i + 1])});
+      for (std::size_t i = 0; i < c.size(); i += 2) xy.insert(xy.end(), {tiny(10 + 240 * c[i]), tiny(250 * c[i + 1])});
+      expect_same(std::to_string(least) + ", " + std::to_string(seed), xy);
+    }
+}
+
 TEST_P(Stars, RandomSmallSets) {
   Random random(47);
   for (int run = 0; run < 400; ++run) {

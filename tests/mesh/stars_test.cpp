@@ -246,13 +246,13 @@ TEST_P(Stars, LeastCoordinateIsRounded) {
   const double u = std::numeric_limits<double>::denorm_min();
   const auto tiny = [](double value) { return std::ldexp(value, -1022); };
   for (const double least : {-1.0, 3.0, 4.0, 5.0})
-    for (unsigned seed = 0; seed < 3; ++seed) {
+    for (const unsigned seed : {0U, 31U}) {
       Points xy = {tiny(256), tiny(255.5), tiny(256), 0, least * u, tiny(2.125)};
       for (const auto& [x, y] : std::vector<std::pair<double, double>>{
                {.51, 1.975}, {.51, 2.275}, {.535, 2.125}, {.62, 2.02}, {.62, 2.23}, {.6, 2.125}})
         xy.insert(xy.end(), {tiny(x) + 4 * u, tiny(y)});
-      const Points a = uniform_points(600, 70 + seed), b = uniform_points(300, 80 + seed),
-                   c = uniform_points(500, 90 + seed);
+      const Points a = uniform_points(600, 70 + seed), b = uniform_points(300, 1080 + seed),
+                   c = uniform_points(500, 2090 + seed);
       for (std::size_t i = 0; i < a.size(); i += 2)
         xy.insert(xy.end(), {tiny(.9 + 3.1 * a[i]) + 4 * u, tiny(4 * a[i + 1])});
       for (std::size_t i = 0; i < b.size(); i += 2) xy.insert(xy.end(), {tiny(4 + 4 * b[i]), tiny(4 * b[i + 1])});

@@ -119,7 +119,7 @@ CADT_KERNEL(cadt_join_flags, CADT_GLOBAL const cadt_record* smaller, CADT_GLOBAL
 /* Copies them behind the `before` records of the proven part, and links both. */
 CADT_KERNEL(cadt_join_records, CADT_GLOBAL const cadt_record* smaller, CADT_GLOBAL const cadt_u32* covers,
             CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_u32* positions, cadt_u32 slots, cadt_u32 grain,
-            cadt_u32 before, CADT_GLOBAL cadt_record* records, CADT_GLOBAL cadt_u32* hints) {
+            cadt_u32 before, CADT_GLOBAL cadt_record* records) {
   CADT_FOR(r, slots, grain) {
     const cadt_record s = smaller[r];
     if (s.word[CADT_WORD_LOCK] == 0u) continue;
@@ -136,9 +136,7 @@ CADT_KERNEL(cadt_join_records, CADT_GLOBAL const cadt_record* smaller, CADT_GLOB
           records[beyond].word[CADT_WORD_FLIPS] = cadt_flips_set(0u, 0u, cadt_flips_get(s.word[CADT_WORD_FLIPS], k));
         }
         const cadt_u32 v = CADT_PICK(k, s.word[0], s.word[1], s.word[2]);
-        const cadt_u32 vertex = v == CADT_GHOST ? v : positions[v];
-        records[t].word[k] = vertex;
-        if (v != CADT_GHOST) cadt_store_relaxed(hints + vertex, t);
+        records[t].word[k] = v == CADT_GHOST ? v : positions[v];
       } else if (cover != CADT_NONE && beyond != CADT_NONE) { /* proven on both sides */
         records[cover].word[CADT_WORD_LINK] = CADT_LINK(beyond, 0u);
       }

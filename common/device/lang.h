@@ -191,7 +191,7 @@ CADT_FN cadt_u64 cadt_clock() {
 
 #endif
 
-/* Whether work-items of a group share memory (tally.h). */
+/* Whether work-items of a group share memory. */
 #if CADT_CONTIGUOUS || defined(CADT_LANG_HOST)
 #define CADT_GROUP_SUMS 0
 #else

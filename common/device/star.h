@@ -37,8 +37,9 @@ CADT_FN cadt_vector cadt_vector_to(CADT_TEAM_PTR const cadt_window* w, cadt_u32 
 CADT_FN float cadt_square(cadt_vector d) { return d.x * d.x + d.y * d.y; }
 CADT_FN float cadt_cross(cadt_vector a, cadt_vector b) { return a.x * b.y - a.y * b.x; }
 CADT_FN float cadt_size(cadt_vector a) { return cadt_fabsf(a.x) + cadt_fabsf(a.y); }
+CADT_FN float cadt_inverse_square(cadt_vector d) { return cadt_about_inverse(cadt_about_fma(d.x, d.x, d.y * d.y)); }
 CADT_FN cadt_vector cadt_invert(cadt_vector d) {
-  const float inverse = cadt_about_inverse(cadt_square(d));
+  const float inverse = cadt_inverse_square(d);
   d.x *= inverse;
   d.y *= inverse;
   return d;
@@ -216,14 +217,12 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   while (cadt_sweep_on(m, &cells)) {
     const cadt_u32 j = cells.place++;
     if (j != p) {
-      const float dx = w->x[j] - px, dy = w->y[j] - py;
-      const float inverse = cadt_about_inverse(cadt_about_fma(dx, dx, dy * dy));
-      const float ux = dx * inverse, uy = dy * inverse;
-      nearest = cadt_maxf(nearest, inverse);
-      best[0] = cadt_maxf(best[0], cadt_mark(ux, j));
-      best[2] = cadt_maxf(best[2], cadt_mark(uy, j));
-      best[4] = cadt_maxf(best[4], cadt_mark(-ux, j));
-      best[6] = cadt_maxf(best[6], cadt_mark(-uy, j));
+      const cadt_vector d = cadt_vector_to(w, p, j), u = cadt_invert(d);
+      nearest = cadt_maxf(nearest, cadt_inverse_square(d));
+      best[0] = cadt_maxf(best[0], cadt_mark(u.x, j));
+      best[2] = cadt_maxf(best[2], cadt_mark(u.y, j));
+      best[4] = cadt_maxf(best[4], cadt_mark(-u.x, j));
+      best[6] = cadt_maxf(best[6], cadt_mark(-u.y, j));
     }
   }
   if (!(nearest > 0.0f && nearest < 1e7f)) return 0u; /* nobody, or too near for single precision */
@@ -243,11 +242,9 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     while (cadt_sweep_on(m, &cells)) {
       const cadt_u32 j = cells.place++;
       if (j != p) {
-        const float dx = w->x[j] - px, dy = w->y[j] - py;
-        const float inverse = cadt_about_inverse(cadt_about_fma(dx, dx, dy * dy));
-        const float ux = dx * inverse, uy = dy * inverse;
+        const cadt_vector u = cadt_invert(cadt_vector_to(w, p, j));
         for (cadt_u32 k = 0u; k < 4u; ++k)
-          best[2u * k + 1u] = cadt_maxf(best[2u * k + 1u], cadt_mark(cadt_about_fma(ex[k], ux, ey[k] * uy), j));
+          best[2u * k + 1u] = cadt_maxf(best[2u * k + 1u], cadt_mark(cadt_about_fma(ex[k], u.x, ey[k] * u.y), j));
       }
     }
   }

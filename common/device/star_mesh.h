@@ -84,7 +84,7 @@ CADT_FN cadt_u32 cadt_find_triangle_of_star(const cadt_star_set* s, cadt_u32 v, 
  * across it is found by the join (join.h). */
 CADT_KERNEL(cadt_star_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* sizes,
             CADT_GLOBAL const cadt_u32* bases, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_record* records,
-            CADT_GLOBAL cadt_u32* hints, CADT_GLOBAL cadt_u32* open, CADT_GLOBAL cadt_u32* totals) {
+            CADT_GLOBAL cadt_u32* open, CADT_GLOBAL cadt_u32* totals) {
   cadt_star_set stars;
   stars.links = links;
   stars.sizes = sizes;
@@ -129,7 +129,6 @@ CADT_KERNEL(cadt_star_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL co
         cadt_store_relaxed(w + CADT_WORD_LINK, CADT_LINK_EDGE(at[k]) == 2u ? link_after : link_before);
       }
     }
-    hints[v] = CADT_LINK_RECORD(at[0]);
   }
 }
 

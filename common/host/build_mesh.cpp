@@ -62,9 +62,11 @@ class Builder {
     return close();
   }
 
-  [[nodiscard]] DeviceMesh adopt(Allocation records, Allocation hints) {
+  /// Nothing walks in a mesh that is complete: its hints are written by repairs only, and its first triangle is not
+  /// asked for.
+  [[nodiscard]] DeviceMesh adopt(Allocation records) {
     records_ = std::move(records);
-    hints_ = std::move(hints);
+    hints_ = run_.memory.allocate(n_ * word);
     make_edge_lists();
     return close();
   }
@@ -260,8 +262,8 @@ class Builder {
 
 DeviceMesh build_mesh(Run& run, const SpatialOrder& order) { return Builder(run, order).build(); }
 
-DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records, Allocation hints) {
-  return Builder(run, order).adopt(std::move(records), std::move(hints));
+DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records) {
+  return Builder(run, order).adopt(std::move(records));
 }
 
 }  // namespace cadt

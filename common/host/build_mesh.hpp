@@ -18,7 +18,7 @@ struct DeviceMesh {
 /// Inserts all points level by level, legalises, and certifies by closing passes. Releases nothing of `order`.
 [[nodiscard]] DeviceMesh build_mesh(Run& run, const SpatialOrder& order);
 
-/// Closing passes over a mesh that was made otherwise. `hints`: a record near each position.
-[[nodiscard]] DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records, Allocation hints);
+/// Closing passes over a mesh of two records a point that was made otherwise.
+[[nodiscard]] DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records);
 
 }  // namespace cadt

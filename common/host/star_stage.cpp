@@ -49,7 +49,7 @@ class StarStage {
     write_records();
     release_stars();
     join();
-    return certify_mesh(run_, order_, std::move(records_), std::move(hints_));
+    return certify_mesh(run_, order_, std::move(records_));
   }
 
  private:
@@ -113,10 +113,9 @@ class StarStage {
     records_ = run_.memory.allocate(2 * n_ * sizeof(cadt_record));
     // two records stay unused
     run_.device.fill(*records_, (2 * n_ - 2) * sizeof(cadt_record), 2 * sizeof(cadt_record), 0);
-    hints_ = run_.memory.allocate(n_ * word);
     open_ = run_.memory.allocate(std::size_t{open_count_} * word);
     const Cut c = launch_.cut(n_);
-    launch_.run(KernelId::cadt_star_records, c.items, links_, sizes_, bases_, count_, c.grain, records_, hints_, open_,
+    launch_.run(KernelId::cadt_star_records, c.items, links_, sizes_, bases_, count_, c.grain, records_, open_,
                 totals_);
     run_.end_phase("records");
   }
@@ -160,7 +159,7 @@ class StarStage {
       throw InternalError("the two parts of the mesh have " + std::to_string(triangles) + " triangles instead of " +
                           std::to_string(2 * n_ - 2) + "; please report this with the input");
     launch_.run(KernelId::cadt_join_records, c.items, smaller.records, covers, ranks, positions, slots, c.grain,
-                proven_triangles_, records_, hints_);
+                proven_triangles_, records_);
     run_.end_phase("join");
     run_.check("join", 0.8);
   }
@@ -170,7 +169,7 @@ class StarStage {
   const SpatialOrder& order_;
   std::size_t n_;
   std::uint32_t count_;
-  Allocation links_, sizes_, bases_, ranks_, totals_, records_, hints_, open_;
+  Allocation links_, sizes_, bases_, ranks_, totals_, records_, open_;
   std::uint32_t proven_triangles_ = 0, unproven_ = 0, open_count_ = 0;
 };
 

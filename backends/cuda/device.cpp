@@ -78,6 +78,7 @@ CudaDevice::~CudaDevice() {
   const ContextScope scope(stream_->context());
   ignore(cudaStreamSynchronize(stream_->get()));
   ignore(cudaFreeHost(staging_));
+  for (cudaEvent_t event : events_) ignore(cudaEventDestroy(event));
 }
 
 LaunchShape CudaDevice::shape() const noexcept {
@@ -186,6 +187,34 @@ unsigned CudaDevice::largest_block_of(std::size_t build, std::size_t kernel) {
 void CudaDevice::finish() {
   const ContextScope scope(stream_->context());
   stream_->wait();
+}
+
+void CudaDevice::start_times() {
+  marks_ = 0;
+  mark_time();
+}
+
+void CudaDevice::mark_time() {
+  const ContextScope scope(stream_->context());
+  if (marks_ == events_.size()) {
+    cudaEvent_t event = nullptr;
+    check_call(cudaEventCreate(&event), "cudaEventCreate");
+    events_.push_back(event);
+  }
+  check_call(cudaEventRecord(events_[marks_], stream_->get()), "cudaEventRecord");
+  ++marks_;
+}
+
+std::vector<double> CudaDevice::times() {
+  const ContextScope scope(stream_->context());
+  std::vector<double> between;
+  for (std::size_t i = 1; i < marks_; ++i) {
+    float milliseconds = 0;
+    check_call(cudaEventSynchronize(events_[i]), "cudaEventSynchronize");
+    check_call(cudaEventElapsedTime(&milliseconds, events_[i - 1], events_[i]), "cudaEventElapsedTime");
+    between.push_back(milliseconds);
+  }
+  return between;
 }
 
 void CudaDevice::load_kernels() {

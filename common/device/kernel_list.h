@@ -36,7 +36,6 @@
   X(cadt_insert)            /* insert.h: locate, claim, split, legalise */       \
   X(cadt_legalize_edges)    /* insert.h: deferred edges */                       \
   X(cadt_closing_pass)      /* closing.h */                                      \
-  X(cadt_count_flips)       /* flips.h: edges by their flips */                  \
   X(cadt_tile_flags)        /* tiles.h */                                        \
   X(cadt_tile_pack)         /* tiles.h */                                        \
   X(cadt_stars)             /* star.h: proven stars of vertices */               \

@@ -75,12 +75,11 @@ enum {
   CADT_TIME_ITEM_SHIFT = 8 /* CPUs: hours of a core */
 };
 
-/* A row of counters: counts, times, edges by flips. */
+/* A row of counters: counts, times. Edges by flips have rows of their own (flips.h). */
 enum {
   CADT_ROW_TIMES = 20,
-  CADT_ROW_FLIPS = 32,
   CADT_FLIP_BINS = 16,
-  CADT_COUNTER_STRIDE = 64, /* words a row, so rows do not share cache lines */
+  CADT_COUNTER_STRIDE = 32, /* words a row, so rows do not share cache lines */
   CADT_COUNTER_ROWS = 64
 };
 

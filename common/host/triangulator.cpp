@@ -172,7 +172,7 @@ bool choose_stars(Triangulator::State& state, std::size_t n) {
 }
 
 void close_account(Triangulator::State& state, Run& run, DeviceTriangulation::Data& data) {
-  state.device->finish();
+  run.finish();
   data.statistics.launches = run.launcher.launches();
   data.statistics.bytes_device_peak = state.memory.peak();
   state.known_points = std::max(state.known_points, data.points);

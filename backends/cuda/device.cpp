@@ -69,6 +69,7 @@ CudaDevice::CudaDevice(DeviceInfo info, const Options& options)
     : info_(std::move(info)),
       block_size_(options.work_group_size != 0 ? std::clamp(options.work_group_size, 1U, largest_block)
                                                : default_block),
+      block_size_asked_(options.work_group_size != 0),
       stream_(std::make_shared<Stream>(info_.index, info_.name, options.queue, options.allocator)) {
   const ContextScope scope(stream_->context());
   check_call(cudaHostAlloc(&staging_, staging_bytes, cudaHostAllocDefault), "cudaHostAlloc");
@@ -152,7 +153,8 @@ void CudaDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::ui
   stream_->fill(data_of(to) + offset, word, bytes / sizeof word);
 }
 
-void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) {
+void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+                        std::uint32_t group) {
   if (items == 0) return;
   if (args.size() > most_parameters) throw InternalError("a kernel with too many parameters");
   const ContextScope scope(stream_->context());
@@ -168,7 +170,8 @@ void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Ar
   }
   const auto variant = static_cast<std::size_t>(build), number = static_cast<std::size_t>(kernel);
   const void* function = tables()[variant][number];
-  const unsigned block = std::min({block_size_, items, largest_block_of(variant, number)});
+  const unsigned wanted = group == 0 || block_size_asked_ ? block_size_ : group;
+  const unsigned block = std::min({wanted, items, largest_block_of(variant, number)});
   const unsigned blocks = (items - 1) / block + 1;
   check_call(cudaLaunchKernel(function, dim3(blocks), dim3(block), addresses.data(), 0, stream_->get()),
              kernel_names[static_cast<std::size_t>(kernel)]);

@@ -48,6 +48,10 @@
   X(cadt_join_hide)         /* join.h */                                         \
   X(cadt_join_flags)        /* join.h */                                         \
   X(cadt_join_records)      /* join.h: the rest of the mesh */                   \
+  X(cadt_wrap_boxes)        /* wrap.h: stars of few points by gift wrapping */   \
+  X(cadt_wrap_stars)        /* wrap.h */                                         \
+  X(cadt_wrap_counts)       /* wrap.h */                                         \
+  X(cadt_wrap_records)      /* wrap.h */                                         \
   X(cadt_count_triangles)   /* emit.h */                                         \
   X(cadt_bucket_triangles)  /* emit.h: canonical order */                        \
   X(cadt_sort_buckets)      /* emit.h */                                         \

@@ -131,8 +131,12 @@ class Device {
 
   /// Runs a kernel with `items` work-items (possibly rounded up: kernels ignore items beyond their data). Returns
   /// before the work is done where the device can. \throws DeviceError, KernelBuildError (a variant may be built at its
-  /// first launch)
-  virtual void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) = 0;
+  /// first launch). `group`: work-items of a group where nobody has asked for a size; 0: the device's choice.
+  virtual void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+                      std::uint32_t group) = 0;
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) {
+    launch(kernel, items, args, build, 0);
+  }
   /// Waits for everything launched. \throws DeviceError
   virtual void finish() = 0;
 

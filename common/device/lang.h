@@ -230,8 +230,22 @@ typedef struct {
 
 #define CADT_NONE 0xFFFFFFFFu
 
-/* Four words of memory that nobody changes meanwhile, at an address that is a multiple of 16. */
+/* Four words of memory that nobody changes meanwhile, at an address that is a multiple of 16; two, of 8. */
 #if defined(CADT_LANG_OPENCL) || defined(CADT_LANG_CUDA)
+CADT_FN void cadt_store_four(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 d) {
+  uint4 four;
+  four.x = a;
+  four.y = b;
+  four.z = c;
+  four.w = d;
+  *(CADT_GLOBAL uint4*)p = four;
+}
+CADT_FN void cadt_store_two(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b) {
+  uint2 two;
+  two.x = a;
+  two.y = b;
+  *(CADT_GLOBAL uint2*)p = two;
+}
 CADT_FN void cadt_load_four(CADT_GLOBAL const cadt_u32* p, cadt_u32* w) {
   const uint4 four = *(CADT_GLOBAL const uint4*)p;
   w[0] = four.x;
@@ -241,6 +255,16 @@ CADT_FN void cadt_load_four(CADT_GLOBAL const cadt_u32* p, cadt_u32* w) {
 }
 #else
 CADT_FN void cadt_load_four(const cadt_u32* p, cadt_u32* w) { std::memcpy(w, p, 4 * sizeof *w); }
+CADT_FN void cadt_store_four(cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 d) {
+  p[0] = a;
+  p[1] = b;
+  p[2] = c;
+  p[3] = d;
+}
+CADT_FN void cadt_store_two(cadt_u32* p, cadt_u32 a, cadt_u32 b) {
+  p[0] = a;
+  p[1] = b;
+}
 #endif
 
 /* One of three values; keeps them in registers where an array would go to memory. */

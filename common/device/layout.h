@@ -39,13 +39,20 @@ enum {
   CADT_WRAP_CRATES = 32,  /* crates that are compared with a disc at a time, */
   CADT_WRAP_OPENED = 4,   /* of these opened */
   CADT_WRAP_DEGREE = 256, /* neighbours of a vertex at most, the ghost among them */
-  CADT_WRAP_LANES = 128   /* lanes of a team that search */
+  CADT_WRAP_LANES = 128,  /* lanes of a team that search */
+  CADT_WRAP_SHARES = 8    /* work-items that write the triangles of a vertex */
 };
 
-/* Rows of partial results of cadt_bounds. */
+/* What cadt_bounds finds. */
+typedef struct {
+  double min_x, max_x, min_y, max_y;
+  cadt_u32 low, high; /* lowest exponent, highest exponent, + 4096 */
+  cadt_u32 bad;       /* first point with a coordinate that is no number */
+  cadt_u32 rows;      /* how many rows of partial results there are */
+} cadt_bounds_row;
+
 enum {
-  CADT_BOUNDS_DOUBLES = 4, /* min x, max x, min y, max y */
-  CADT_BOUNDS_WORDS = 3    /* lowest exponent + 4096, highest exponent + 4096, first bad point */
+  CADT_BOUNDS_LANES = 128 /* of a team that merge */
 };
 
 /* Counters of work and conflicts (tally.h). Those before CADT_COUNTERS_COMMON are hardly ever 0 where points are

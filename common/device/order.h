@@ -34,63 +34,87 @@ CADT_KERNEL(cadt_import_floats, CADT_GLOBAL const float* x, CADT_GLOBAL const fl
   }
 }
 
-/* Partial results, one row a part. \pre no part is empty */
+CADT_FN cadt_bounds_row cadt_bounds_of_nothing(void) {
+  cadt_bounds_row row;
+  row.min_x = row.min_y = CADT_CAST(double, CADT_INFINITY);
+  row.max_x = row.max_y = -CADT_CAST(double, CADT_INFINITY);
+  row.low = row.bad = CADT_NONE;
+  row.high = row.rows = 0u;
+  return row;
+}
+
+CADT_FN void cadt_bounds_add(cadt_bounds_row* row, const cadt_bounds_row other) {
+  row->min_x = other.min_x < row->min_x ? other.min_x : row->min_x;
+  row->max_x = other.max_x > row->max_x ? other.max_x : row->max_x;
+  row->min_y = other.min_y < row->min_y ? other.min_y : row->min_y;
+  row->max_y = other.max_y > row->max_y ? other.max_y : row->max_y;
+  row->low = cadt_min_u32(row->low, other.low);
+  row->high = other.high > row->high ? other.high : row->high;
+  row->bad = cadt_min_u32(row->bad, other.bad);
+}
+
+/* The rows of all lanes of a team as one, in lanes[0]. All lanes call it. */
+CADT_FN void cadt_bounds_of_team(CADT_TEAM_PTR cadt_bounds_row* lanes, cadt_bounds_row own) {
+  const cadt_u32 most = CADT_BOUNDS_LANES;
+  for (cadt_u32 begin = 0u; begin < cadt_team_lanes; begin += most) {
+    if (cadt_team_lane >= begin && cadt_team_lane - begin < most) {
+      if (begin) cadt_bounds_add(&own, lanes[cadt_team_lane - begin]);
+      lanes[cadt_team_lane - begin] = own;
+    }
+    CADT_TEAM_SYNC();
+  }
+  for (cadt_u32 width = cadt_min_u32(cadt_team_lanes, most); width > 1u;) {
+    const cadt_u32 middle = (width + 1u) / 2u;
+    if (cadt_team_lane + middle < width) {
+      own = lanes[cadt_team_lane];
+      cadt_bounds_add(&own, lanes[cadt_team_lane + middle]);
+      lanes[cadt_team_lane] = own;
+    }
+    width = middle;
+    CADT_TEAM_SYNC();
+  }
+}
+
+/* Partial results: a row of each team of work-items. */
 CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 chunk, cadt_u32 parts,
-            CADT_GLOBAL double* box, CADT_GLOBAL cadt_u32* words) {
-  if (cadt_item >= parts) return;
-  double min_x = 0.0, max_x = 0.0, min_y = 0.0, max_y = 0.0;
-  cadt_u32 bad = CADT_NONE, any = 0u;
+            CADT_GLOBAL cadt_bounds_row* rows) {
+  CADT_TEAM_MEMORY cadt_bounds_row lanes[CADT_BOUNDS_LANES];
+  cadt_bounds_row row = cadt_bounds_of_nothing();
   cadt_span span;
   cadt_span_clear(&span);
-  CADT_FOR_PART(i, cadt_item, parts, count, chunk) {
+  CADT_FOR_PART(i, cadt_item, parts, cadt_item < parts ? count : 0u, chunk) {
     const cadt_point p = points[i];
     /* an exponent of all ones is infinity or NaN */
     if (((cadt_bits_of_double(p.x) >> 52) & 0x7FFul) == 0x7FFul ||
         ((cadt_bits_of_double(p.y) >> 52) & 0x7FFul) == 0x7FFul) {
-      bad = i;
+      row.bad = i;
       break;
     }
     cadt_span_add_point(&span, p);
-    min_x = !any || p.x < min_x ? p.x : min_x;
-    max_x = !any || p.x > max_x ? p.x : max_x;
-    min_y = !any || p.y < min_y ? p.y : min_y;
-    max_y = !any || p.y > max_y ? p.y : max_y;
-    any = 1u;
+    row.min_x = p.x < row.min_x ? p.x : row.min_x;
+    row.max_x = p.x > row.max_x ? p.x : row.max_x;
+    row.min_y = p.y < row.min_y ? p.y : row.min_y;
+    row.max_y = p.y > row.max_y ? p.y : row.max_y;
   }
-  CADT_GLOBAL double* b = box + cadt_item * CADT_BOUNDS_DOUBLES;
-  CADT_GLOBAL cadt_u32* w = words + cadt_item * CADT_BOUNDS_WORDS;
-  b[0] = min_x;
-  b[1] = max_x;
-  b[2] = min_y;
-  b[3] = max_y;
-  w[0] = CADT_CAST(cadt_u32, span.low + 4096);
-  w[1] = CADT_CAST(cadt_u32, span.high + 4096);
-  w[2] = bad;
+  row.low = CADT_CAST(cadt_u32, span.low + 4096);
+  row.high = CADT_CAST(cadt_u32, span.high + 4096);
+  cadt_bounds_of_team(lanes, row);
+  if (cadt_team_lane == 0u) {
+    row = lanes[0];
+    row.rows = (cadt_items - 1u) / cadt_team_lanes + 1u;
+    rows[cadt_item / cadt_team_lanes] = row;
+  }
 }
 
-/* The same from rows of partial results. */
-CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL const double* rows, CADT_GLOBAL const cadt_u32* row_words, cadt_u32 count,
-            cadt_u32 chunk, cadt_u32 parts, CADT_GLOBAL double* box, CADT_GLOBAL cadt_u32* words) {
-  if (cadt_item >= parts) return;
-  double b[CADT_BOUNDS_DOUBLES];
-  cadt_u32 w[CADT_BOUNDS_WORDS];
-  cadt_u32 any = 0u;
-  CADT_FOR_PART(i, cadt_item, parts, count, chunk) {
-    CADT_GLOBAL const double* r = rows + i * CADT_BOUNDS_DOUBLES;
-    CADT_GLOBAL const cadt_u32* v = row_words + i * CADT_BOUNDS_WORDS;
-    b[0] = !any || r[0] < b[0] ? r[0] : b[0];
-    b[1] = !any || r[1] > b[1] ? r[1] : b[1];
-    b[2] = !any || r[2] < b[2] ? r[2] : b[2];
-    b[3] = !any || r[3] > b[3] ? r[3] : b[3];
-    w[0] = !any || v[0] < w[0] ? v[0] : w[0];
-    w[1] = !any || v[1] > w[1] ? v[1] : w[1];
-    w[2] = !any || v[2] < w[2] ? v[2] : w[2];
-    any = 1u;
-  }
-  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_BOUNDS_DOUBLES); ++i)
-    box[cadt_item * CADT_BOUNDS_DOUBLES + i] = b[i];
-  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_BOUNDS_WORDS); ++i)
-    words[cadt_item * CADT_BOUNDS_WORDS + i] = w[i];
+/* The first row becomes that of all. By one team. */
+CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL cadt_bounds_row* rows) {
+  CADT_TEAM_MEMORY cadt_bounds_row lanes[CADT_BOUNDS_LANES];
+  const cadt_u32 count = rows[0].rows;
+  cadt_bounds_row row = cadt_bounds_of_nothing();
+  CADT_TEAM_FOR(i, count) { cadt_bounds_add(&row, rows[i]); }
+  CADT_TEAM_SYNC();
+  cadt_bounds_of_team(lanes, row);
+  if (cadt_item == 0u) rows[0] = lanes[0];
 }
 
 /* Every second bit. */
@@ -218,16 +242,16 @@ CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_p
   }
 }
 
-/* 1 where a point differs from the one before. `distinct` counts. */
+/* 1 where a point differs from the one before. `equal` counts the others. */
 CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL cadt_u32* flags, cadt_u32 count,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* distinct) {
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* equal) {
   cadt_u32 sum = 0u;
   CADT_FOR(i, count, grain) {
     const cadt_u32 flag = i == 0u || sorted[i].x != sorted[i - 1u].x || sorted[i].y != sorted[i - 1u].y ? 1u : 0u;
     flags[i] = flag;
-    sum += flag;
+    sum += 1u - flag;
   }
-  if (sum) cadt_add_relaxed(distinct, sum);
+  if (sum) cadt_add_relaxed(equal, sum);
 }
 
 /* Distinct points closed up. `ranks` is the exclusive scan of the flags. */

@@ -113,13 +113,10 @@ CADT_KERNEL(cadt_star_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL co
       const cadt_u32 link_before = CADT_LINK(CADT_LINK_RECORD(before), CADT_NEXT(CADT_LINK_EDGE(before)));
       CADT_GLOBAL cadt_u32* w = records[CADT_LINK_RECORD(at[k])].word;
       if ((owned >> k) & 1u) {
-        w[0] = v;
-        w[1] = link[k];
-        w[2] = link[k1];
-        w[CADT_WORD_LOCK] = 2u;
+        /* few and long stores: they are what this kernel waits for */
+        cadt_store_four(w, v, link[k], link[k1], 2u);
         w[CADT_WORD_LINK + 1] = link_after;
-        w[CADT_WORD_LINK + 2] = link_before;
-        w[CADT_WORD_FLIPS] = 0u;
+        cadt_store_two(w + CADT_WORD_LINK + 2, link_before, 0u);
         if (!((proven >> k) & 1u) && !((proven >> k1) & 1u)) {
           w[CADT_WORD_LINK] = CADT_NONE;
           open[cadt_add_relaxed(totals + 1, 1u)] = CADT_LINK_RECORD(at[k]);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Stars of few points by gift wrapping: a team for each vertex, without locks and without levels. It finds one neighbour
- * after another: of the points on one side of p and the last neighbour, the one whose circle with both is empty
- * (docs/algorithm.md, "Gift wrapping"). A guess is made among the points next in sorted order; then all points stand in
- * boxes, and boxes in crates, so that those which the circle does not reach are passed over. What decides are the exact
- * predicates, so ties are decided as everywhere else.
+ * Stars of few points by gift wrapping: a team for each vertex, without locks and without levels. It finds one
+ * neighbour after another: of the points on one side of p and the last neighbour, the one whose circle with both is
+ * empty (docs/algorithm.md, "Gift wrapping"). A guess is made among the points next in sorted order; then all points
+ * stand in boxes, and boxes in crates, so that those which the circle does not reach are passed over. What decides are
+ * the exact predicates, so ties are decided as everywhere else.
  */
 #ifndef CADT_DEVICE_WRAP_H
 #define CADT_DEVICE_WRAP_H
@@ -72,17 +72,18 @@ typedef struct {
   double x, y, square; /* centre, radius^2; not a finite number: the disc may be the plane */
 } cadt_disc;
 
-/* With u = 2^-53 and K = |a| |b| / |a x b|, which is at least 1, the centre is off by less than 8 u K (1 + K) (|a| +
- * |b|) where K is known well. */
+/* With u = 2^-53 and K = |a| |b| / |a x b|, which is at least 1, centre and radius are off by less than E = 24 u K (1 +
+ * K)
+ * (|a| + |b|) where K is known well. (r + E)^2 is at most (1 + 1e-6) r^2 + (1 + 1e6) E^2: no square roots. */
 CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
   const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
-  const double aa = ax * ax + ay * ay, bb = bx * bx + by * by, cross = ax * by - ay * bx;
-  const double scale = 0.5 / cross, k = cadt_sqrt(aa * bb) * 2.0 * cadt_fabs(scale);
+  const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;
+  const double scale = 0.5 / (ax * by - ay * bx), kk = 4.0 * (aa * scale) * (bb * scale); /* K^2 */
   cadt_disc d;
   d.x = (by * aa - ay * bb) * scale;
   d.y = (ax * bb - bx * aa) * scale;
-  const double radius = cadt_sqrt(d.x * d.x + d.y * d.y) + 1e-14 * k * (1.0 + k) * (cadt_sqrt(aa) + cadt_sqrt(bb));
-  d.square = k < 1e12 ? radius * radius * (1.0 + 1e-12) : CADT_CAST(double, CADT_INFINITY);
+  d.square = (d.x * d.x + d.y * d.y) * (1.0 + 2e-6) + 1e-22 * kk * (1.0 + kk) * (aa + bb);
+  if (!(kk < 1e24)) d.square = CADT_CAST(double, CADT_INFINITY);
   return d;
 }
 
@@ -124,14 +125,15 @@ CADT_FN cadt_u32 cadt_wrap_best(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side
  * CADT_NONE if there is none on that side. */
 CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   const cadt_point p = w->points[w->p], q = w->points[a];
-  const double ax = q.x - p.x, ay = q.y - p.y;
+  const double ax = q.x - p.x, ay = q.y - p.y, unit = 1.0 / (ax * ax + ay * ay);
   const cadt_u32 own = w->p / CADT_WRAP_BOX, first = (own ? own - 1u : 0u) * CADT_WRAP_BOX;
   const cadt_u32 last = cadt_min_u32(first + CADT_WRAP_NEAR * CADT_WRAP_BOX, w->n);
   cadt_u32 key = CADT_NONE, guess = CADT_NONE;
   CADT_TEAM_FOR(j, last - first) {
     const cadt_point c = w->points[first + j];
     const double cx = c.x - p.x, cy = c.y - p.y, cross = side > 0 ? ax * cy - ay * cx : ay * cx - ax * cy;
-    const float cotangent = CADT_CAST(float, (cx * (cx - ax) + cy * (cy - ay)) / cross);
+    const float cotangent =
+        CADT_CAST(float, (cx * (cx - ax) + cy * (cy - ay)) * unit) * cadt_about_inverse(CADT_CAST(float, cross* unit));
     if (!(cross > 0.0 && cadt_fabsf(cotangent) < 3e38f)) continue; /* p and a as well */
     const cadt_u32 bits = cadt_bits_of_float(cotangent), order = bits >> 31 ? ~bits : bits | 0x80000000u;
     if (order < key) key = order, guess = first + j;
@@ -237,12 +239,13 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
 }
 
 /* found: words of links used, vertices without a star, effort: boxes looked at and exact tests; exact orientations,
- * exact incircles, ties. A star has sizes[v] words from links[begins[v]] on, CADT_GHOST behind the last neighbour on the
- * hull. Nothing is done any more when a star has failed, or the effort is above its bound. \pre sizes are 0, n >= 2 */
+ * exact incircles, ties. A star has sizes[v] words from links[begins[v]] on, CADT_GHOST behind the last neighbour on
+ * the hull. Nothing is done any more when a star has failed, or the effort is above its bound. \pre sizes are 0, n >= 2
+ */
 CADT_KERNEL(cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
-            CADT_GLOBAL const cadt_box* crates, cadt_u32 n, cadt_u32 box_count, cadt_u32 crate_count, cadt_u32 effort, cadt_u32 grain, CADT_GLOBAL cadt_u32* links,
-            cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
-            CADT_GLOBAL cadt_u32* found) {
+            CADT_GLOBAL const cadt_box* crates, cadt_u32 n, cadt_u32 box_count, cadt_u32 crate_count, cadt_u32 effort,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* links, cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins,
+            CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_wrap_memory memory;
   cadt_tally tally;
   cadt_tally_clear(&tally);
@@ -349,6 +352,7 @@ CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, 
   return CADT_LINK(s->bases[owner] + before, opposite >= lowest ? opposite - lowest : opposite + 3u - lowest);
 }
 
+/* CADT_WRAP_SHARES work-items for each vertex. */
 CADT_KERNEL(cadt_wrap_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases, cadt_u32 n, cadt_u32 grain,
             CADT_GLOBAL cadt_record* records) {
@@ -357,25 +361,21 @@ CADT_KERNEL(cadt_wrap_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL co
   stars.begins = begins;
   stars.sizes = sizes;
   stars.bases = bases;
-  CADT_FOR(v, n, grain) {
+  CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
+    const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
     CADT_GLOBAL const cadt_u32* link = links + begins[v];
-    const cadt_u32 size = sizes[v];
-    cadt_u32 t = bases[v];
-    for (cadt_u32 k = 0u; k < size; ++k) {
+    for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {
       const cadt_u32 k1 = k + 1u < size ? k + 1u : 0u, a = link[k], b = link[k1];
       if (a < v || b < v) continue;
-      CADT_GLOBAL cadt_u32* w = records[t++].word;
-      w[0] = v;
-      w[1] = a;
-      w[2] = b;
-      w[CADT_WORD_LOCK] = 2u;
-      if (a != CADT_GHOST)
-        w[CADT_WORD_LINK] = cadt_wrap_link(&stars, a, cadt_wrap_beside(&stars, a, b, 0u), b, 1u);
-      else
-        w[CADT_WORD_LINK] = cadt_wrap_link(&stars, b, a, cadt_wrap_beside(&stars, b, a, 1u), 2u);
-      w[CADT_WORD_LINK + 1] = cadt_wrap_link(&stars, v, b, link[k1 + 1u < size ? k1 + 1u : 0u], 2u);
-      w[CADT_WORD_LINK + 2] = cadt_wrap_link(&stars, v, link[k ? k - 1u : size - 1u], a, 1u);
-      w[CADT_WORD_FLIPS] = 0u;
+      cadt_u32 before;
+      cadt_wrap_place(&stars, v, a, &before);
+      CADT_GLOBAL cadt_u32* w = records[bases[v] + before].word;
+      const cadt_u32 across = a != CADT_GHOST ? cadt_wrap_link(&stars, a, cadt_wrap_beside(&stars, a, b, 0u), b, 1u)
+                                              : cadt_wrap_link(&stars, b, a, cadt_wrap_beside(&stars, b, a, 1u), 2u);
+      const cadt_u32 after = cadt_wrap_link(&stars, v, b, link[k1 + 1u < size ? k1 + 1u : 0u], 2u);
+      cadt_store_four(w, v, a, b, 2u);
+      cadt_store_four(w + CADT_WORD_LINK, across, after, cadt_wrap_link(&stars, v, link[k ? k - 1u : size - 1u], a, 1u),
+                      0u);
     }
   }
 }

@@ -46,7 +46,7 @@ Cut Launcher::cut_teams(std::size_t count, std::size_t lanes) const noexcept {
 Cut Launcher::parts(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (shape.contiguous) return chunks(count);
-  return {static_cast<std::uint32_t>(std::min<std::size_t>(count, std::max(1U, shape.parallelism / 8))), 1};
+  return {static_cast<std::uint32_t>(std::min<std::size_t>(count, std::max(1U, shape.parallelism))), 1};
 }
 
 Cut Launcher::chunks(std::size_t count) const noexcept {

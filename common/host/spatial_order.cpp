@@ -22,47 +22,22 @@ struct Bounds {
   int low = 4096, high = -4096;  // exponents of the lowest set bit and above the highest; low > high: all zero
 };
 
-constexpr std::uint32_t few_rows = 512;  // partial results that the host merges itself
-
 Bounds find_bounds(Run& run, const Allocation& input, std::size_t n) {
-  Cut c = run.launcher.parts(n);
-  Allocation box = run.memory.allocate(c.items * CADT_BOUNDS_DOUBLES * sizeof(double));
-  Allocation words = run.memory.allocate(c.items * CADT_BOUNDS_WORDS * word);
-  run.launcher.run(KernelId::cadt_bounds, c.items, input, static_cast<std::uint32_t>(n), c.grain, c.items, box, words);
-  if (c.items > few_rows) {
-    const std::uint32_t chunk = (c.items - 1) / few_rows + 1, rows = (c.items - 1) / chunk + 1;
-    Allocation fewer_box = run.memory.allocate(rows * CADT_BOUNDS_DOUBLES * sizeof(double));
-    Allocation fewer_words = run.memory.allocate(rows * CADT_BOUNDS_WORDS * word);
-    run.launcher.run(KernelId::cadt_merge_bounds, rows, box, words, c.items, chunk, rows, fewer_box, fewer_words);
-    box = std::move(fewer_box);
-    words = std::move(fewer_words);
-    c.items = rows;
-  }
-  std::vector<double> b(std::size_t{c.items} * CADT_BOUNDS_DOUBLES);
-  std::vector<std::uint32_t> w(std::size_t{c.items} * CADT_BOUNDS_WORDS);
-  run.device.read(*box, 0, b.data(), b.size() * sizeof b[0]);
-  run.device.read(*words, 0, w.data(), w.size() * sizeof w[0]);
-
-  Bounds all{b[0], b[1], b[2], b[3]};
-  std::uint32_t bad = CADT_NONE;
-  for (std::size_t i = 0; i < c.items; ++i) {
-    const std::uint32_t* row = &w[i * CADT_BOUNDS_WORDS];
-    bad = std::min(bad, row[2]);
-    all.low = std::min(all.low, static_cast<int>(row[0]) - 4096);
-    all.high = std::max(all.high, static_cast<int>(row[1]) - 4096);
-    const double* box_row = &b[i * CADT_BOUNDS_DOUBLES];
-    all.min_x = std::min(all.min_x, box_row[0]);
-    all.max_x = std::max(all.max_x, box_row[1]);
-    all.min_y = std::min(all.min_y, box_row[2]);
-    all.max_y = std::max(all.max_y, box_row[3]);
-  }
-  if (bad != CADT_NONE) {
-    throw InputError("point " + std::to_string(bad) +
+  const Cut c = run.launcher.parts(n);
+  const Allocation rows = run.memory.allocate(c.items * sizeof(cadt_bounds_row));
+  run.launcher.run(KernelId::cadt_bounds, c.items, input, static_cast<std::uint32_t>(n), c.grain, c.items, rows);
+  const std::uint32_t team = run.device.shape().contiguous ? 1 : CADT_BOUNDS_LANES;
+  run.launcher.run_in_groups(KernelId::cadt_merge_bounds, team, team, rows);
+  cadt_bounds_row all;
+  run.device.read(*rows, 0, &all, sizeof all);
+  if (all.bad != CADT_NONE) {
+    throw InputError("point " + std::to_string(all.bad) +
                          " (counted from 0) has a coordinate that is NaN or infinite: "
                          "remove or repair it",
-                     bad);
+                     all.bad);
   }
-  return all;
+  return {
+      all.min_x, all.max_x, all.min_y, all.max_y, static_cast<int>(all.low) - 4096, static_cast<int>(all.high) - 4096};
 }
 
 KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
@@ -88,8 +63,9 @@ KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
   return grid;
 }
 
-/// Sorts the members of crowded cells by more bits, a round at a time (common/device/refine.h).
-void refine(Run& run, const Allocation& input, Allocation& keys, const Allocation& order, Allocation& spare,
+/// Sorts the members of crowded cells by more bits, a round at a time (common/device/refine.h). False if there are
+/// none; else `keys` are no longer those of the grid.
+bool refine(Run& run, const Allocation& input, Allocation& keys, const Allocation& order, Allocation& spare,
             std::size_t n) {
   Launcher& launch = run.launcher;
   const auto count = static_cast<std::uint32_t>(n);
@@ -99,7 +75,7 @@ void refine(Run& run, const Allocation& input, Allocation& keys, const Allocatio
     Allocation totals = launch.zeros(1);
     launch.run(KernelId::cadt_crowded_flags, c.items, keys, spare, count, c.grain, totals);
     const std::uint32_t crowd = launch.read_word(totals, 0);
-    if (crowd == 0) return;
+    if (crowd == 0) return round != 0;
     run.statistics.refined_points = std::max<std::uint64_t>(run.statistics.refined_points, crowd);
     launch.scan(spare, n);
     const std::size_t bytes = crowd * word;
@@ -112,7 +88,7 @@ void refine(Run& run, const Allocation& input, Allocation& keys, const Allocatio
       launch.run(KernelId::cadt_crowded_keys, few.items, input, order, keys, places, round_keys, members, runs, crowd,
                  round, few.grain, fresh);
       if (launch.read_word(fresh, 0) != 0) break;
-      if (round + 1 == rounds) return;
+      if (round + 1 == rounds) return true;
     }
     launch.scan(runs, crowd);
     const std::uint32_t last_run = launch.read_word(runs, crowd - 1);
@@ -133,6 +109,7 @@ void refine(Run& run, const Allocation& input, Allocation& keys, const Allocatio
     std::swap(keys, spare);
     run.check("sort", 0.05 + 0.01 * round);
   }
+  return true;
 }
 
 /// The points that equal an earlier one, ascending, and those that they equal.
@@ -157,7 +134,7 @@ void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::
                    grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y);
 }
 
-SpatialOrder sort_points(Run& run, Allocation input, std::size_t n) {
+SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_keys) {
   Launcher& launch = run.launcher;
   const auto count = static_cast<std::uint32_t>(n);
   const Cut c = launch.cut(n);
@@ -181,7 +158,7 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n) {
   run.end_phase("sort");
   run.check("sort", 0.05);
 
-  refine(run, input, keys, order, spare, n);
+  const bool sorted_by_keys = !refine(run, input, keys, order, spare, n);
   run.end_phase("refine");
 
   // All coordinates become multiples of 2^-240 below 1, in two steps since one factor may be out of range.
@@ -197,9 +174,10 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n) {
   launch.run(KernelId::cadt_sort_runs, c.items, keys, sorted, order, count, c.grain);
   Allocation total = launch.zeros(1);
   launch.run(KernelId::cadt_unique_flags, c.items, sorted, spare, count, c.grain, total);
-  const std::uint32_t distinct = launch.read_word(total, 0);
+  const std::uint32_t distinct = count - launch.read_word(total, 0);
   result.distinct = distinct;
   input.release();
+  if (keep_keys && sorted_by_keys && distinct == count) result.keys = std::move(keys);
   keys.release();
   if (distinct == count) {
     result.points = std::move(sorted);

@@ -26,14 +26,16 @@ struct SpatialOrder {
   std::size_t distinct = 0;
   Allocation duplicates, representatives;  ///< points that equal an earlier one, ascending, and that one; null if none
   KeyGrid grid;
+  Allocation keys;    ///< their sort keys in this grid, or null
   bool wide = false;  ///< exponents span too much for the narrow kernels
 };
 
 /// Sort keys of n points of the device.
 void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid);
 
-/// Sorts n points (`input`: interleaved doubles), refines crowded cells, finds duplicates.
+/// Sorts n points (`input`: interleaved doubles), refines crowded cells, finds duplicates. `keep_keys`: the result has
+/// the sort keys, unless cells were crowded or points equal.
 /// \throws InputError for the first NaN or infinity
-[[nodiscard]] SpatialOrder sort_points(Run& run, Allocation input, std::size_t n);
+[[nodiscard]] SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_keys);
 
 }  // namespace cadt

@@ -44,11 +44,18 @@ DeviceMesh build_without_stars(Run& run, const SpatialOrder& order) {
 
 class StarStage {
  public:
-  StarStage(Run& run, const SpatialOrder& order)
-      : run_(run), launch_(run.launcher), order_(order), n_(order.distinct), count_(static_cast<std::uint32_t>(n_)) {}
+  StarStage(Run& run, SpatialOrder& order)
+      : run_(run),
+        launch_(run.launcher),
+        order_(order),
+        n_(order.distinct),
+        count_(static_cast<std::uint32_t>(n_)),
+        keys_(std::move(order.keys)) {}
 
   [[nodiscard]] DeviceMesh build() {
-    if (!make_stars()) {
+    const bool made = make_stars();
+    keys_.release();
+    if (!made) {
       release_stars();
       return build_without_stars(run_, order_);
     }
@@ -74,16 +81,19 @@ class StarStage {
   bool make_stars() {
     const KeyGrid& grid = order_.grid;
     const Cut c = launch_.cut(n_);
-    Allocation keys = run_.memory.allocate(n_ * word), ranks = run_.memory.allocate((n_ + 1) * word);
-    make_keys(run_, order_.points, keys, n_, grid);
+    Allocation ranks = run_.memory.allocate((n_ + 1) * word);
+    if (!keys_) {
+      keys_ = run_.memory.allocate(n_ * word);
+      make_keys(run_, order_.points, keys_, n_, grid);
+    }
     const std::uint32_t levels = grid.levels();
     Allocation descents = launch_.zeros(1);
-    launch_.run(KernelId::cadt_tile_flags, c.items, keys, ranks, count_, levels, c.grain, descents);
+    launch_.run(KernelId::cadt_tile_flags, c.items, keys_, ranks, count_, levels, c.grain, descents);
     if (launch_.read_word(descents, 0) != 0) return false;
     launch_.scan(ranks, n_ + 1);
     const std::uint32_t count = launch_.read_word(ranks, n_);
     Allocation tiles = run_.memory.allocate((count + std::size_t{1}) * sizeof(cadt_tile));
-    launch_.run(KernelId::cadt_tile_pack, c.items, keys, ranks, tiles, count_, levels, c.grain);
+    launch_.run(KernelId::cadt_tile_pack, c.items, keys_, ranks, tiles, count_, levels, c.grain);
     ranks.release();
     run_.statistics.tiles = count;
     run_.end_phase("tiles");
@@ -94,7 +104,7 @@ class StarStage {
     const auto run_tiles = [&](std::uint32_t tile_count, std::uint32_t step) {
       Allocation found = launch_.zeros(5);
       const Cut teams = launch_.cut_teams(tile_count, CADT_STAR_LANES);
-      launch_.run(KernelId::cadt_stars, teams.items, order_.points, keys, count_, grid.half_min_x, grid.half_min_y,
+      launch_.run(KernelId::cadt_stars, teams.items, order_.points, keys_, count_, grid.half_min_x, grid.half_min_y,
                   grid.scale, grid.bits_x, grid.bits_y, tiles, tile_count, step, teams.grain, links_, sizes_, found);
       std::array<std::uint32_t, 5> words{};
       run_.device.read(*found, 0, words.data(), sizeof words);
@@ -186,18 +196,23 @@ class StarStage {
   const SpatialOrder& order_;
   std::size_t n_;
   std::uint32_t count_;
-  Allocation links_, sizes_, bases_, ranks_, totals_, records_, open_;
+  Allocation keys_, links_, sizes_, bases_, ranks_, totals_, records_, open_;
   std::uint32_t proven_triangles_ = 0, unproven_ = 0, open_count_ = 0;
 };
 
 }  // namespace
 
-DeviceMesh build_mesh_with_stars(Run& run, const SpatialOrder& order) {
+DeviceMesh build_mesh_with_stars(Run& run, SpatialOrder& order) {
   const KeyGrid& grid = order.grid;
-  if (order.wide) return build_mesh(run, order);
+  if (order.wide) {
+    order.keys.release();
+    return build_mesh(run, order);
+  }
   const bool few = run.options.strategy == Strategy::automatic && order.distinct <= most_wrapped_alone;
-  if (few || order.distinct < 3 || std::max(grid.bits_x, grid.bits_y) > most_bits)
+  if (few || order.distinct < 3 || std::max(grid.bits_x, grid.bits_y) > most_bits) {
+    order.keys.release();
     return build_without_stars(run, order);
+  }
   return StarStage(run, order).build();
 }
 

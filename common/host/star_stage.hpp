@@ -6,7 +6,7 @@
 namespace cadt {
 
 /// The mesh by the star stage (common/device/star.h): stars of vertices without locks, insertion of the vertices whose
-/// star could not be proven, the join of both, closing passes.
-[[nodiscard]] DeviceMesh build_mesh_with_stars(Run& run, const SpatialOrder& order);
+/// star could not be proven, the join of both, closing passes. Releases the keys of `order`.
+[[nodiscard]] DeviceMesh build_mesh_with_stars(Run& run, SpatialOrder& order);
 
 }  // namespace cadt

@@ -116,7 +116,7 @@ void build(Run& run, const Points& points, std::size_t n, bool stars, Outputs& o
   run.check("sort", 0);
   Allocation input = import_points(run, points);
   run.end_phase("upload");
-  SpatialOrder order = sort_points(run, std::move(input), n);
+  SpatialOrder order = sort_points(run, std::move(input), n, stars);
   statistics.distinct = data.distinct = order.distinct;
   statistics.wide_arithmetic = order.wide;
   data.duplicate_count = n - order.distinct;

@@ -53,6 +53,7 @@ typedef long cadt_i64;
 #define CADT_FN static
 #define CADT_FN_SLOW static __attribute__((noinline))
 #define CADT_KERNEL(name, ...) __kernel void name(__VA_ARGS__)
+#define CADT_TEAM_KERNEL(lanes, teams, name, ...) CADT_KERNEL(name, __VA_ARGS__)
 #define cadt_item ((cadt_u32)get_global_id(0))
 #define cadt_items ((cadt_u32)get_global_size(0))
 #define CADT_LOCAL __local
@@ -107,6 +108,9 @@ typedef long long cadt_i64;
 #define CADT_FN static __device__ inline
 #define CADT_FN_SLOW static __device__ __noinline__
 #define CADT_KERNEL(name, ...) static __global__ void name(__VA_ARGS__)
+/* Registers are given out so that so many teams run on a multiprocessor at the same time. */
+#define CADT_TEAM_KERNEL(lanes, teams, name, ...) \
+  static __global__ void __launch_bounds__((lanes), (teams)) name(__VA_ARGS__)
 #define cadt_item ((cadt_u32)(blockIdx.x * blockDim.x + threadIdx.x))
 #define cadt_items ((cadt_u32)(gridDim.x * blockDim.x))
 #define CADT_LOCAL __shared__
@@ -154,6 +158,7 @@ typedef std::int64_t cadt_i64;
 /* A kernel is a function of its work-item; the host back end supplies the two numbers (backends/host). */
 #define CADT_KERNEL(name, ...) \
   static void name([[maybe_unused]] cadt_u32 cadt_item, [[maybe_unused]] cadt_u32 cadt_items, __VA_ARGS__)
+#define CADT_TEAM_KERNEL(lanes, teams, name, ...) CADT_KERNEL(name, __VA_ARGS__)
 #define CADT_CAST(type, value) static_cast<type>(value)
 
 CADT_FN cadt_u64 cadt_bits_of_double(double x) {

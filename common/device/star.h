@@ -403,9 +403,10 @@ CADT_FN void cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size
 
 /* Stars of every `step`-th tile. found: points of these tiles, those without a proof; exact orientations, exact
  * incircles, ties. \pre sizes are 0, or of stars that are there already */
-CADT_KERNEL(cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys, cadt_u32 n,
-            CADT_GRID_PARAMETERS, CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 step,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
+CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys,
+                 cadt_u32 n, CADT_GRID_PARAMETERS, CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count,
+                 cadt_u32 step, cadt_u32 grain, CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes,
+                 CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_window window;
   CADT_GRID_VIEW(grid);
   cadt_tally tally;

@@ -121,22 +121,24 @@ CADT_FN cadt_u32 cadt_wrap_best(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side
   return w->m->best[0];
 }
 
-/* A likely neighbour among the next boxes: that with the least cotangent of the angle at which it sees p and a.
- * CADT_NONE if there is none on that side. */
-CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
+/* A likely neighbour among `count` points from `first` on, each `stride` further: that with the least cotangent of the
+ * angle at which it sees p and a. CADT_NONE if there is none on that side. */
+CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 first, cadt_u32 count,
+                                 cadt_u32 stride) {
   const cadt_point p = w->points[w->p], q = w->points[a];
   const double ax = q.x - p.x, ay = q.y - p.y, unit = 1.0 / (ax * ax + ay * ay);
-  const cadt_u32 own = w->p / CADT_WRAP_BOX, first = (own ? own - 1u : 0u) * CADT_WRAP_BOX;
-  const cadt_u32 last = cadt_min_u32(first + CADT_WRAP_NEAR * CADT_WRAP_BOX, w->n);
   cadt_u32 key = CADT_NONE, guess = CADT_NONE;
-  CADT_TEAM_FOR(j, last - first) {
-    const cadt_point c = w->points[first + j];
+  if (cadt_team_lane == 0u) w->m->key = w->m->guess = CADT_NONE;
+  CADT_TEAM_SYNC();
+  CADT_TEAM_FOR(j, count) {
+    const cadt_u32 i = first + j * stride;
+    const cadt_point c = w->points[i];
     const double cx = c.x - p.x, cy = c.y - p.y, cross = side > 0 ? ax * cy - ay * cx : ay * cx - ax * cy;
     const float cotangent =
         CADT_CAST(float, (cx * (cx - ax) + cy * (cy - ay)) * unit) * cadt_about_inverse(CADT_CAST(float, cross* unit));
     if (!(cross > 0.0 && cadt_fabsf(cotangent) < 3e38f)) continue; /* p and a as well */
     const cadt_u32 bits = cadt_bits_of_float(cotangent), order = bits >> 31 ? ~bits : bits | 0x80000000u;
-    if (order < key) key = order, guess = first + j;
+    if (order < key) key = order, guess = i;
   }
   if (key != CADT_NONE) cadt_team_min(&w->m->key, key);
   CADT_TEAM_SYNC();
@@ -146,28 +148,40 @@ CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 sid
   return w->m->guess;
 }
 
+/* Lists crates from `first` on that matter; returns how many. */
+CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_point p, double ax, double ay, double side,
+                                const cadt_disc* disc) {
+  if (cadt_team_lane == 0u) w->m->crate_count = 0u;
+  CADT_TEAM_SYNC();
+  CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_CRATES, w->crate_count - first)) {
+    if (cadt_box_matters(w->crates[first + j], p, ax, ay, side, disc))
+      w->m->crates[cadt_team_add(&w->m->crate_count, 1u)] = first + j;
+  }
+  CADT_TEAM_SYNC();
+  return w->m->crate_count;
+}
+
 /* The neighbour of p behind its neighbour a, counterclockwise (side 1) or clockwise (-1); CADT_NONE if no point is on
  * that side. a may be any other point: then the neighbour behind it among the points on that side and a. */
 CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   const cadt_point p = w->points[w->p], q = w->points[a];
   const double ax = q.x - p.x, ay = q.y - p.y, sign = side > 0 ? 1.0 : -1.0;
-  if (cadt_team_lane == 0u) {
-    w->m->key = w->m->guess = CADT_NONE;
-    w->m->crate_count = 0u;
-  }
-  CADT_TEAM_SYNC();
-  cadt_u32 best = cadt_wrap_guess(w, a, side);
+  const cadt_u32 own = w->p / CADT_WRAP_BOX, near = (own ? own - 1u : 0u) * CADT_WRAP_BOX;
+  cadt_u32 best = cadt_wrap_guess(w, a, side, near, cadt_min_u32(CADT_WRAP_NEAR * CADT_WRAP_BOX, w->n - near), 1u);
   cadt_disc disc;
   disc.x = disc.y = 0.0;
   disc.square = CADT_CAST(double, CADT_INFINITY);
   if (best != CADT_NONE) disc = cadt_disc_around(p, q, w->points[best]);
   for (cadt_u32 crate = 0u; crate < w->crate_count; crate += CADT_WRAP_CRATES) {
-    CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_CRATES, w->crate_count - crate)) {
-      if (cadt_box_matters(w->crates[crate + j], p, ax, ay, sign, &disc))
-        w->m->crates[cadt_team_add(&w->m->crate_count, 1u)] = crate + j;
+    cadt_u32 crates = cadt_wrap_list(w, crate, p, ax, ay, sign, &disc);
+    if (crate == 0u && crates > CADT_CAST(cadt_u32, CADT_WRAP_OPENED)) { /* a large disc: a guess among all */
+      const cadt_u32 guess = cadt_wrap_guess(w, a, side, 0u, w->box_count, CADT_WRAP_BOX);
+      best = cadt_wrap_better(w, a, side, best, guess);
+      if (best != CADT_NONE && best == guess) {
+        disc = cadt_disc_around(p, q, w->points[best]);
+        crates = cadt_wrap_list(w, crate, p, ax, ay, sign, &disc);
+      }
     }
-    CADT_TEAM_SYNC();
-    const cadt_u32 crates = w->m->crate_count;
     for (cadt_u32 opened = 0u; opened < crates; opened += CADT_WRAP_OPENED) {
       if (cadt_team_lane == 0u) w->m->box_count = w->m->better = 0u;
       CADT_TEAM_SYNC();
@@ -197,9 +211,8 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
       w->looked += boxes;
       CADT_TEAM_SYNC();
     }
-    if (cadt_team_lane == 0u) w->m->crate_count = 0u;
-    CADT_TEAM_SYNC();
   }
+  CADT_TEAM_SYNC();
   return best;
 }
 
@@ -242,10 +255,10 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
  * exact incircles, ties. A star has sizes[v] words from links[begins[v]] on, CADT_GHOST behind the last neighbour on
  * the hull. Nothing is done any more when a star has failed, or the effort is above its bound. \pre sizes are 0, n >= 2
  */
-CADT_KERNEL(cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
-            CADT_GLOBAL const cadt_box* crates, cadt_u32 n, cadt_u32 box_count, cadt_u32 crate_count, cadt_u32 effort,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* links, cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins,
-            CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
+CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
+                 CADT_GLOBAL const cadt_box* crates, cadt_u32 n, cadt_u32 box_count, cadt_u32 crate_count,
+                 cadt_u32 effort, cadt_u32 grain, CADT_GLOBAL cadt_u32* links, cadt_u32 link_words,
+                 CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_wrap_memory memory;
   cadt_tally tally;
   cadt_tally_clear(&tally);

@@ -55,6 +55,10 @@ CADT_FN cadt_i32 cadt_orientation(cadt_point a, cadt_point b, cadt_point c, cadt
     const double bound = CADT_ORIENTATION_BOUND * (cadt_fabs(left) + cadt_fabs(right)) + CADT_UNDERFLOW;
     if (det > bound) return 1;
     if (-det > bound) return -1;
+#if !CADT_WIDE
+    if (bound == 0.0)
+      return 0; /* both products are 0, and nothing underflows: points along an axis, as lattices have */
+#endif
   }
   tally->count[CADT_COUNT_EXACT_ORIENTATIONS]++;
   return cadt_orientation_exact(a, b, c);

@@ -93,7 +93,8 @@ CADT_FN cadt_u32 cadt_box_matters(const cadt_box box, cadt_point p, double ax, d
                                   const cadt_disc* disc) {
   const double low_x = box.low.x - p.x, low_y = box.low.y - p.y, high_x = box.high.x - p.x, high_y = box.high.y - p.y;
   const double left = ax * (ax * side > 0.0 ? high_y : low_y), right = ay * (ay * side > 0.0 ? low_x : high_x);
-  if ((left - right) * side < -1e-15 * (cadt_fabs(left) + cadt_fabs(right))) return 0u;
+  /* or none beyond a line along an axis: both are 0 */
+  if ((left - right) * side <= -1e-15 * (cadt_fabs(left) + cadt_fabs(right))) return 0u;
   double x = low_x - disc->x, y = low_y - disc->y;
   if (x < 0.0) x = disc->x > high_x ? disc->x - high_x : 0.0;
   if (y < 0.0) y = disc->y > high_y ? disc->y - high_y : 0.0;
@@ -174,7 +175,8 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   if (best != CADT_NONE) disc = cadt_disc_around(p, q, w->points[best]);
   for (cadt_u32 crate = 0u; crate < w->crate_count; crate += CADT_WRAP_CRATES) {
     cadt_u32 crates = cadt_wrap_list(w, crate, p, ax, ay, sign, &disc);
-    if (crate == 0u && crates > CADT_CAST(cadt_u32, CADT_WRAP_OPENED)) { /* a large disc: a guess among all */
+    if (crate == 0u && crates > (best == CADT_NONE ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_OPENED))) {
+      /* a large disc: a guess among all */
       const cadt_u32 guess = cadt_wrap_guess(w, a, side, 0u, w->box_count, CADT_WRAP_BOX);
       best = cadt_wrap_better(w, a, side, best, guess);
       if (best != CADT_NONE && best == guess) {

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "backends/cuda/clock.hpp"
 #include "backends/cuda/context.hpp"
 #include "common/host/device.hpp"
 
@@ -32,6 +33,7 @@ class CudaDevice final : public Device, private Primitives {
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
   void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) override;
   void finish() override;
+  [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }
   [[nodiscard]] std::optional<double> occupancy(unsigned work_group_size) override;
 
   [[nodiscard]] CUcontext context() const noexcept { return stream_->context(); }
@@ -54,6 +56,7 @@ class CudaDevice final : public Device, private Primitives {
   std::shared_ptr<Stream> stream_;
   std::array<std::array<unsigned, kernel_count>, kernel_builds> largest_blocks_{};  ///< 0: not asked for yet
   void* staging_ = nullptr;  ///< page-locked host memory for small reads
+  std::optional<CudaClock> clock_;
 };
 
 }  // namespace cadt::cuda

@@ -19,7 +19,8 @@ constexpr double second = 1000.0;
 std::string key_of(const Contestant& who) { return fmt::format("{} {} {}", who.who, who.index, who.threads); }
 
 std::string kind_of(const Task& task) {
-  return fmt::format("{} {} {} {}", task.set.name, task.block, to_string(task.stabilize), to_string(task.detail));
+  return fmt::format("{} {} {} {} {} {}", task.set.name, task.block, to_string(task.stabilize), to_string(task.detail),
+                     to_string(task.strategy), task.kernel_times);
 }
 
 /// Host memory for a run with its result, in bytes a point. Roughly, and rather too much: a process that the system
@@ -61,6 +62,19 @@ std::vector<std::pair<std::string, double>> median_phases(const std::vector<Stat
   return result;
 }
 
+std::vector<KernelTime> median_kernels(const std::vector<Statistics>& runs) {
+  std::vector<KernelTime> result = runs.back().kernels;
+  for (KernelTime& kernel : result) {
+    std::vector<double> times;
+    for (const Statistics& run : runs)
+      for (const KernelTime& one : run.kernels)
+        if (one.name == kernel.name) times.push_back(one.milliseconds);
+    kernel.milliseconds = median(times);
+  }
+  std::ranges::stable_sort(result, std::ranges::greater{}, &KernelTime::milliseconds);
+  return result;
+}
+
 void set_times(Row& row, const Repeats& repeats) {
   row.warmups = repeats.warmups;
   row.runs = repeats.milliseconds.size();
@@ -84,6 +98,7 @@ Row row_of(const Task& task) {
   if (task.stabilize != Stabilize::off) row.threshold = task.threshold;
   if (task.stabilize == Stabilize::paper) row.epsilon = task.epsilon;
   row.detail = to_string(task.detail);
+  row.strategy = to_string(task.strategy);
   return row;
 }
 
@@ -195,7 +210,7 @@ Repeats Bench::repeats(const Task& task, std::optional<double> predicted, const 
 
 Triangulator& Bench::opened(const Task& task) {
   const Contestant& who = *task.who;
-  auto& found = opened_[{who.who, who.index, who.threads, task.block}];
+  auto& found = opened_[{who.who, who.index, who.threads, task.block, task.kernel_times}];
   if (!found) {
     Options options;
     options.backend = *who.backend;
@@ -203,13 +218,14 @@ Triangulator& Bench::opened(const Task& task) {
     if (who.backend == Backend::host) options.threads = who.threads;
     options.order = Order::fast;
     options.work_group_size = task.block;
+    options.kernel_times = task.kernel_times;
     found = std::make_unique<Triangulator>(options);
   }
   return *found;
 }
 
 void Bench::use_once(const Task& task, Triangulator& triangulator, std::span<const double> xy) {
-  if (!used_.insert({&triangulator, task.stabilize, task.detail}).second) return;
+  if (!used_.insert({&triangulator, task.stabilize, task.detail, task.strategy}).second) return;
   constexpr std::size_t few = 2000;
   triangulator.options().watch = nullptr;
   static_cast<void>(triangulator.triangulate(PointsView(xy.first(std::min(xy.size(), 2 * few)))));
@@ -222,7 +238,7 @@ void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& ro
     if (row.occupancy && *row.occupancy <= 0.0) throw Skip(fmt::format("does not start with {} threads", task.block));
   }
   Options& options = triangulator.options();
-  options.strategy = Strategy::locks;  // what is repeated here is the paper's method
+  options.strategy = task.strategy;
   options.stabilize = task.stabilize;
   options.flip_threshold = task.threshold;
   options.quality_epsilon = task.epsilon;
@@ -254,6 +270,7 @@ void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& ro
     if (const auto taken = on_device(run)) device.push_back(*taken);
   if (!device.empty()) row.device_ms = median(device);
   row.phases = median_phases(statistics);
+  row.kernels = median_kernels(statistics);
   row.statistics = statistics.back();
   row.triangles = result->number_of_triangles();
   row.hash = result->hash().to_string();

@@ -41,15 +41,6 @@ void check_memory(const Contestant& who, std::size_t points) {
                          static_cast<double>(needed) / gib, static_cast<double>(available) / gib));
 }
 
-/// From points on the device to the mesh on the device; nothing if the phases were not timed.
-std::optional<double> on_device(const Statistics& statistics) {
-  if (statistics.milliseconds.empty()) return std::nullopt;
-  double sum = 0;
-  for (const auto& [phase, time] : statistics.milliseconds)
-    if (phase != "upload" && phase != "copy") sum += time;
-  return sum;
-}
-
 std::vector<std::pair<std::string, double>> median_phases(const std::vector<Statistics>& runs) {
   std::vector<std::pair<std::string, double>> result;
   for (const auto& [phase, ignored] : runs.back().milliseconds) {

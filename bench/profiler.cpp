@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
+#include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -72,7 +74,11 @@ std::optional<double> number(std::string text) {
 std::string known_as(const std::string& kernel) {
   if (kernel.find("RadixSort") != std::string::npos) return "sort";
   if (kernel.find("DeviceScan") != std::string::npos) return "scan";
-  return kernel.substr(0, kernel.find_first_of("(<"));
+  const std::size_t begin = kernel.find("cadt_");  // a namespace may come before it, parameters after it
+  if (begin == std::string::npos) return kernel;
+  const auto is_of_name = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  const auto first = kernel.begin() + static_cast<std::ptrdiff_t>(begin);
+  return {first, std::find_if_not(first, kernel.end(), is_of_name)};
 }
 
 /// The profiler's own word for what went wrong.
@@ -129,19 +135,8 @@ Profile profile(const std::vector<std::string>& command, double timeout_seconds)
   fs::path folder = fs::temp_directory_path(error);
   if (error) folder = "/tmp";
   const fs::path log = folder / ("cadt-ncu-" + std::to_string(::getpid()) + ".csv");
-  std::vector<std::string> whole = {"ncu",
-                                    "--csv",
-                                    "--page",
-                                    "raw",
-                                    "--print-units",
-                                    "base",
-                                    "--force-overwrite",
-                                    "--log-file",
-                                    log.string(),
-                                    "--kernel-name-base",
-                                    "function",
-                                    "--metrics",
-                                    metrics()};
+  std::vector<std::string> whole = {"ncu",  "--csv",      "--page",     "raw",       "--print-units",
+                                    "base", "--log-file", log.string(), "--metrics", metrics()};
   whole.insert(whole.end(), command.begin(), command.end());
   const ChildResult child = run_child(whole, timeout_seconds);
   std::string text;

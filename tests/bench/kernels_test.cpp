@@ -69,7 +69,8 @@ constexpr const char* profiled =
     "\"0\",\"cadt-bench\",\"cadt_insert\",\"1,000\",\"500\",\"20\",\"10\",\"70\",\"5\"\n"
     "\"1\",\"cadt-bench\",\"DeviceRadixSortOnesweepKernel\",\"10\",\"100\",\"1\",\"2\",\"0\",\"0\"\n"
     "\"2\",\"cadt-bench\",\"cadt_insert\",\"3000\",\"1,500.5\",\"60\",\"50\",\"30\",\"10\"\n"
-    "\"3\",\"cadt-bench\",\"cadt_bounds(const cadt_point *, unsigned int)\",\"5\",\"7\",\"1\",\"2\",\"3\",\"4\"\n";
+    "\"3\",\"cadt-bench\",\"(anonymous namespace)::cadt_bounds(const cadt_point *, unsigned "
+    "int)\",\"5\",\"7\",\"1\",\"2\",\"3\",\"4\"\n";
 
 TEST(Profile, AddsUpTheLaunchesOfAKernel) {
   const Profile found = read_profile(profiled);

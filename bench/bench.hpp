@@ -29,6 +29,7 @@ struct Settings {
   Plan plan;
   Choice choice;
   bool all_devices = false;
+  bool profile = false;  ///< with ncu too
 };
 
 /// One measurement. The options of cadt mean nothing to the other contestants.

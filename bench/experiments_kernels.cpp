@@ -20,12 +20,13 @@ Options options_of(const Contestant& who) {
   return options;
 }
 
-Profile profile_of(const Task& task, std::size_t points) {
+Profile profile_of(const Bench& bench, const Task& task) {
+  if (!bench.settings().profile) return {{}, "not asked for (--profile)"};
   if (task.who->backend != Backend::cuda) return {{}, "ncu knows CUDA's kernels only"};
   constexpr double most_seconds = 300;
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
-  return profile({self, "once", "-n", std::to_string(points), "-d", task.set.name, "--backend", "cuda", "--device",
-                  task.who->index, "--strategy", std::string(to_string(task.strategy))},
+  return profile({self, "once", "-n", std::to_string(task.set.points), "-d", task.set.name, "--backend", "cuda",
+                  "--device", task.who->index, "--strategy", std::string(to_string(task.strategy))},
                  most_seconds);
 }
 
@@ -78,7 +79,7 @@ std::vector<Row> run_kernels(Bench& bench) {
         rows.push_back(std::move(run));
         continue;
       }
-      add_kernels(rows, run, bandwidth, profile_of(task, task.set.points));
+      add_kernels(rows, run, bandwidth, profile_of(bench, task));
     }
   }
   return rows;

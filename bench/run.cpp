@@ -25,7 +25,7 @@ struct Arguments {
   std::string out, scale, device, data, machine, points;
   double limit = 0;
   int warm_up = -1, runs = 0;
-  bool list = false, all_devices = false, keep = false;
+  bool list = false, all_devices = false, keep = false, profile = false;
 };
 
 std::string list_text() {
@@ -107,6 +107,7 @@ Settings settings_of(const Arguments& arguments) {
   if (!arguments.points.empty()) settings.plan.kernel_points = cli::parse_count(arguments.points);
   settings.choice = {arguments.who, arguments.backends, arguments.device};
   settings.all_devices = arguments.all_devices;
+  settings.profile = arguments.profile;
   return settings;
 }
 
@@ -162,8 +163,8 @@ const char* const footer =
     "      Table 3 and Fig. 9, 10, of three contestants, each call up to a minute\n\n"
     "  cadt-bench all --out out --keep\n"
     "      goes on where an interrupted run stopped\n\n"
-    "  cadt-bench kernels --points 10M --backend cuda --out out\n"
-    "      launches, time and bandwidth of each kernel; with ncu on the path, what it counts\n\n"
+    "  cadt-bench kernels --points 10M --backend cuda --profile --out out\n"
+    "      launches, time and bandwidth of each kernel, and what ncu counts, if it is on the path\n\n"
     "  cadt-bench compare -d uniform,grid -n 1M -w host,opencl,cgal --check\n"
     "      a table on the terminal, and each mesh compared with CGAL's\n\n"
     "A time is that of the whole call, from points in memory to triangles in memory. Before each measurement its time "
@@ -208,6 +209,8 @@ void add_experiments(CLI::App& app, Action& action) {
   app.add_option("--points", arguments->points,
                  "experiment 'kernels': its number of points, 250000, 2M or 1e6 (default: small 1048576, full 8388608)")
       ->type_name("N");
+  app.add_flag("--profile", arguments->profile,
+               "experiment 'kernels': what NVIDIA's ncu counts in CUDA's kernels as well; takes minutes");
   app.add_option("--data", arguments->data,
                  "folder that has real/, the real point sets (default: CADT_DATA_DIR, else ../shared/data)")
       ->type_name("DIR");

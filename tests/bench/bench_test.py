@@ -153,7 +153,9 @@ class Results(BenchTest):
         self.assertIn("no data folder", " ".join(row["skipped"] for row in self.rows("bunny")))
 
     def test_kernels(self):
-        self.tiny("kernels", "--who", "host,opencl", "--points", "3000")
+        self.tiny("kernels", "--who", "host", "--points", "3000")
+        self.assertEqual({row["profiler"] for row in self.rows("kernels")}, {"not asked for (--profile)"})
+        self.tiny("kernels", "--who", "host,opencl", "--points", "3000", "--profile")
         done = [row for row in self.rows("kernels") if not row["skipped"]]
         runs = {}
         for row in done:
@@ -164,9 +166,8 @@ class Results(BenchTest):
                 gigabytes = 1e-9 * int(row["kernel_bytes"])
                 self.assertAlmostEqual(float(row["bandwidth_gbs"]) * 1e-3 * float(row["kernel_ms"]) / gigabytes, 1,
                                        places=3)
-            # ncu knows none of these kernels, and the row says so.
             self.assertEqual((row["issue_active"], row["operations"]), ("", ""))
-            self.assertIn("ncu", row["profiler"])
+            self.assertEqual(row["profiler"], "ncu knows CUDA's kernels only")
         self.assertEqual(set(runs), {(who, strategy) for who in self.usable() - {"cuda"}
                                      for strategy in ("locks", "stars")})
         for (_, strategy), rows in runs.items():

@@ -32,7 +32,6 @@ constexpr KernelBytes table[] = {
     {"cadt_unique_pack", Unit::distinct, 20, 20, "points and labels"},
     {"cadt_insert", Unit::inserted, 48, 100, "the point and its triangle; the three in its place, a hint"},
     {"cadt_closing_pass", Unit::swept_record, 40, 0, "records, and their points: one for two of them"},
-    {"cadt_count_flips", Unit::record, 32, 0, "records"},
     {"cadt_tile_flags", Unit::starred, 4, 4, "keys; flags"},
     {"cadt_tile_pack", Unit::starred, 4, 0, "ranks"},
     {"cadt_stars", Unit::starred, 16, 4, "points; sizes"},

@@ -50,6 +50,7 @@ constexpr std::array counters = {
     Counter{"illegal_edges", &Statistics::illegal_edges},
     Counter{"tiles", &Statistics::tiles},
     Counter{"proven_stars", &Statistics::proven_stars},
+    Counter{"wrapped_stars", &Statistics::wrapped_stars},
     Counter{"refined_points", &Statistics::refined_points},
 };
 

@@ -69,6 +69,7 @@ CudaDevice::CudaDevice(DeviceInfo info, const Options& options)
     : info_(std::move(info)),
       block_size_(options.work_group_size != 0 ? std::clamp(options.work_group_size, 1U, largest_block)
                                                : default_block),
+      block_size_asked_(options.work_group_size != 0),
       stream_(std::make_shared<Stream>(info_.index, info_.name, options.queue, options.allocator)) {
   const ContextScope scope(stream_->context());
   check_call(cudaHostAlloc(&staging_, staging_bytes, cudaHostAllocDefault), "cudaHostAlloc");
@@ -79,6 +80,7 @@ CudaDevice::~CudaDevice() {
   const ContextScope scope(stream_->context());
   ignore(cudaStreamSynchronize(stream_->get()));
   ignore(cudaFreeHost(staging_));
+  for (cudaEvent_t event : events_) ignore(cudaEventDestroy(event));
 }
 
 LaunchShape CudaDevice::shape() const noexcept {
@@ -152,7 +154,8 @@ void CudaDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::ui
   stream_->fill(data_of(to) + offset, word, bytes / sizeof word);
 }
 
-void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) {
+void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+                        std::uint32_t group) {
   if (items == 0) return;
   if (args.size() > most_parameters) throw InternalError("a kernel with too many parameters");
   const ContextScope scope(stream_->context());
@@ -168,7 +171,8 @@ void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Ar
   }
   const auto variant = static_cast<std::size_t>(build), number = static_cast<std::size_t>(kernel);
   const void* function = tables()[variant][number];
-  const unsigned block = std::min({block_size_, items, largest_block_of(variant, number)});
+  const unsigned wanted = group == 0 || block_size_asked_ ? block_size_ : group;
+  const unsigned block = std::min({wanted, items, largest_block_of(variant, number)});
   const unsigned blocks = (items - 1) / block + 1;
   check_call(cudaLaunchKernel(function, dim3(blocks), dim3(block), addresses.data(), 0, stream_->get()),
              kernel_names[static_cast<std::size_t>(kernel)]);
@@ -187,6 +191,34 @@ unsigned CudaDevice::largest_block_of(std::size_t build, std::size_t kernel) {
 void CudaDevice::finish() {
   const ContextScope scope(stream_->context());
   stream_->wait();
+}
+
+void CudaDevice::start_times() {
+  marks_ = 0;
+  mark_time();
+}
+
+void CudaDevice::mark_time() {
+  const ContextScope scope(stream_->context());
+  if (marks_ == events_.size()) {
+    cudaEvent_t event = nullptr;
+    check_call(cudaEventCreate(&event), "cudaEventCreate");
+    events_.push_back(event);
+  }
+  check_call(cudaEventRecord(events_[marks_], stream_->get()), "cudaEventRecord");
+  ++marks_;
+}
+
+std::vector<double> CudaDevice::times() {
+  const ContextScope scope(stream_->context());
+  std::vector<double> between;
+  for (std::size_t i = 1; i < marks_; ++i) {
+    float milliseconds = 0;
+    check_call(cudaEventSynchronize(events_[i]), "cudaEventSynchronize");
+    check_call(cudaEventElapsedTime(&milliseconds, events_[i - 1], events_[i]), "cudaEventElapsedTime");
+    between.push_back(milliseconds);
+  }
+  return between;
 }
 
 void CudaDevice::load_kernels() {

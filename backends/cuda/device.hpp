@@ -31,9 +31,14 @@ class CudaDevice final : public Device, private Primitives {
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) override;
+  using Device::launch;
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+              std::uint32_t group) override;
   void finish() override;
   [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }
+  void start_times() override;
+  void mark_time() override;
+  [[nodiscard]] std::vector<double> times() override;
   [[nodiscard]] std::optional<double> occupancy(unsigned work_group_size) override;
 
   [[nodiscard]] CUcontext context() const noexcept { return stream_->context(); }
@@ -53,8 +58,11 @@ class CudaDevice final : public Device, private Primitives {
 
   DeviceInfo info_;
   unsigned block_size_;
+  bool block_size_asked_;
   std::shared_ptr<Stream> stream_;
   std::array<std::array<unsigned, kernel_count>, kernel_builds> largest_blocks_{};  ///< 0: not asked for yet
+  std::vector<cudaEvent_t> events_;  ///< of this call and earlier ones; the first `marks_` are in use
+  std::size_t marks_ = 0;
   void* staging_ = nullptr;  ///< page-locked host memory for small reads
   std::optional<CudaClock> clock_;
 };

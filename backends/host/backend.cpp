@@ -171,7 +171,9 @@ class HostDevice final : public Device {
       std::fill_n(reinterpret_cast<std::uint32_t*>(bytes_of(to) + offset), bytes / sizeof word, word);
     }
   }
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) override {
+  using Device::launch;
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+              std::uint32_t /*group*/) override {
     const std::array tables = {&narrow_kernels, &wide_kernels, &timed_kernels};  // in the order of KernelBuild
     pool_.run((*tables[static_cast<std::size_t>(build)])[static_cast<std::size_t>(kernel)], items, args.data());
   }

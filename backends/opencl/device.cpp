@@ -258,12 +258,14 @@ ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, KernelBuild build) {
   return *slot;
 }
 
-void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) {
+void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+                      std::uint32_t wanted) {
   if (items == 0) return;
   ReadyKernel& target = ready(kernel, build);
   // On a GPU one work-item must be one and not a group: the driver lets one alone do what others keep each other from.
   // On a CPU the others find nothing to do, and PoCL compiles anew for each size of a group.
   std::size_t group = target.group;
+  if (info().gpu && wanted != 0 && work_group_size_ == 0) group = std::min<std::size_t>(group, wanted);
   if (info().gpu && (items == 1 || !launches_alone(shared_->device()))) group = std::min<std::size_t>(group, items);
   enqueue(target, (items + group - 1) / group, group, args);
 }

@@ -29,7 +29,9 @@ class ClDevice final : public Device {
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) override;
+  using Device::launch;
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+              std::uint32_t group) override;
   void finish() override;
   [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }
   [[nodiscard]] std::optional<double> occupancy(unsigned work_group_size) override;

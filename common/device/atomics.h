@@ -174,15 +174,23 @@ CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
 CADT_FN cadt_u32 cadt_add_local(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
   return atomic_add((volatile CADT_LOCAL_PTR cadt_u32*)p, value);
 }
+CADT_FN void cadt_min_local(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
+  atomic_min((volatile CADT_LOCAL_PTR cadt_u32*)p, value);
+}
 CADT_FN void cadt_fence_local(void) { mem_fence(CLK_LOCAL_MEM_FENCE); }
 #elif CADT_GROUP_SUMS
 CADT_FN cadt_u32 cadt_add_local(cadt_u32* p, cadt_u32 value) { return atomicAdd(p, value); }
+CADT_FN void cadt_min_local(cadt_u32* p, cadt_u32 value) { atomicMin(p, value); }
 CADT_FN void cadt_fence_local() { __threadfence_block(); }
 #endif
-/* An addition in the memory of a team; the value before it. */
+/* In the memory of a team: an addition, and the value before it; the lesser of two. */
 #if CADT_GROUP_SUMS
 #define cadt_team_add(p, value) cadt_add_local((p), (value))
+#define cadt_team_min(p, value) cadt_min_local((p), (value))
 #else
+CADT_FN void cadt_team_min(cadt_u32* p, cadt_u32 value) {
+  if (value < *p) *p = value;
+}
 CADT_FN cadt_u32 cadt_team_add(cadt_u32* p, cadt_u32 value) {
   const cadt_u32 old = *p;
   *p += value;

@@ -6,7 +6,7 @@
 #ifndef CADT_DEVICE_EMIT_H
 #define CADT_DEVICE_EMIT_H
 
-#include "common/device/mesh.h"
+#include "common/device/flips.h"
 
 /* A real triangle in input indices, rotated so that the smallest comes first; `slot` is the slot of that vertex. */
 typedef struct {
@@ -35,13 +35,17 @@ CADT_FN cadt_u32 cadt_is_real(const cadt_record r) {
              : 0u;
 }
 
-/* Size of each bucket. \pre buckets are zero */
+/* Size of each bucket, and edges by flips. \pre buckets are zero */
 CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
-            CADT_GLOBAL cadt_u32* buckets, cadt_u32 count, cadt_u32 grain) {
+            CADT_GLOBAL cadt_u32* buckets, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* flips) {
+  CADT_FLIPS_BEGIN(bins, flips);
   CADT_FOR(t, count, grain) {
     const cadt_record r = records[t];
+    if (r.word[CADT_WORD_LOCK] == 0u) continue;
+    CADT_FLIPS_COUNT(bins, flips, r);
     if (cadt_is_real(r)) cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u);
   }
+  CADT_FLIPS_END(bins, flips);
 }
 
 /* Puts each real triangle in its bucket: (second vertex, record). \pre buckets are scanned (their beginnings); \post
@@ -131,14 +135,20 @@ CADT_KERNEL(cadt_emit_triangles, CADT_GLOBAL const cadt_record* records, CADT_GL
   }
 }
 
-/* For the order of the records: 1 for each real triangle. flags[count] becomes 0, so its scan is the total. */
+/* For the order of the records: 1 for each real triangle. flags[count] becomes 0, so its scan is the total. Edges by
+ * flips besides. */
 CADT_KERNEL(cadt_flag_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL cadt_u32* flags, cadt_u32 count,
-            cadt_u32 grain) {
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* flips) {
+  CADT_FLIPS_BEGIN(bins, flips);
   if (cadt_item == 0u) flags[count] = 0u;
   CADT_FOR(t, count, grain) {
     const cadt_record r = records[t];
     flags[t] = cadt_is_real(r);
+    if (r.word[CADT_WORD_LOCK] != 0u) {
+      CADT_FLIPS_COUNT(bins, flips, r);
+    }
   }
+  CADT_FLIPS_END(bins, flips);
 }
 
 /* Number of a triangle from the exclusive scan of the flags. */

@@ -11,6 +11,7 @@
 /* Counts of edges with 0, 1, ..., 15 or more flips: 8 bits each, in two words. */
 typedef struct {
   cadt_u64 low, high;
+  cadt_u32 triangles; /* since the sums were passed on */
 } cadt_flip_bins;
 
 enum { CADT_BINS_FULL = 255 / 3 }; /* triangles until the sums must be passed on */
@@ -32,43 +33,48 @@ CADT_FN void cadt_bins_pass_on(cadt_flip_bins* bins, CADT_SUMS cadt_u32* sums) {
   for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin)
     if (cadt_bins_get(bins, bin)) cadt_add_sum(sums + bin, cadt_bins_get(bins, bin));
   bins->low = bins->high = 0u;
+  bins->triangles = 0u;
 }
 
-/* Adds the edges of the finished mesh, ghost edges left out, to the bins of the counters' rows: each edge twice, once
- * from each side. */
-CADT_KERNEL(cadt_count_flips, CADT_GLOBAL const cadt_record* records, cadt_u32 slots, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* counters) {
-#if CADT_GROUP_SUMS
-  CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS];
-  cadt_clear_group_sums(sums);
-#else
-  CADT_GLOBAL cadt_u32* sums = cadt_counter_row(counters, cadt_item) + CADT_ROW_FLIPS;
-#endif
-  cadt_flip_bins bins = {0u, 0u};
-  cadt_u32 triangles = 0u;
-  CADT_FOR(t, slots, grain) {
-    const cadt_record r = records[t];
-    const cadt_u32 flips = r.word[CADT_WORD_FLIPS];
-    if (r.word[CADT_WORD_LOCK] == 0u) continue;
-    const cadt_u32 ghost =
-        r.word[0] == CADT_GHOST ? 0u : (r.word[1] == CADT_GHOST ? 1u : (r.word[2] == CADT_GHOST ? 2u : 3u));
-    if (flips == 0u && ghost == 3u) {
-      bins.low += 3u;
-    } else {
-      for (cadt_u32 k = 0u; k < 3u; ++k)
-        if (ghost == 3u || ghost == k) cadt_bins_add(&bins, cadt_flips_get(flips, k));
-    }
-    if (++triangles % CADT_BINS_FULL == 0u) cadt_bins_pass_on(&bins, sums);
+/* Adds the edges of a record of the finished mesh, ghost edges left out: each edge is met twice, once from each side.
+ */
+CADT_FN void cadt_bins_add_record(cadt_flip_bins* bins, CADT_SUMS cadt_u32* sums, const cadt_record r) {
+  const cadt_u32 flips = r.word[CADT_WORD_FLIPS];
+  const cadt_u32 ghost =
+      r.word[0] == CADT_GHOST ? 0u : (r.word[1] == CADT_GHOST ? 1u : (r.word[2] == CADT_GHOST ? 2u : 3u));
+  if (flips == 0u && ghost == 3u) {
+    bins->low += 3u;
+  } else {
+    for (cadt_u32 k = 0u; k < 3u; ++k)
+      if (ghost == 3u || ghost == k) cadt_bins_add(bins, cadt_flips_get(flips, k));
   }
-  cadt_bins_pass_on(&bins, sums);
-#if CADT_GROUP_SUMS
-  if (!cadt_is_last_of_group(sums + CADT_GROUP_DONE)) return;
-  CADT_GLOBAL cadt_u32* row = cadt_counter_row(counters, cadt_item / cadt_group_items) + CADT_ROW_FLIPS;
-  for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin) {
-    const cadt_u32 sum = cadt_add_local(sums + bin, 0u);
-    if (sum) cadt_add_relaxed(row + bin, sum);
-  }
-#endif
+  if (++bins->triangles == CADT_CAST(cadt_u32, CADT_BINS_FULL)) cadt_bins_pass_on(bins, sums);
 }
+
+/* Around the loop of a kernel that reads all records anyway; `rows` has CADT_FLIP_BINS words for each of
+ * CADT_COUNTER_ROWS, or is null if nobody wants to know. CADT_FLIPS_BEGIN stands before anything else. */
+#if CADT_GROUP_SUMS
+#define CADT_FLIPS_BEGIN(bins, rows)                    \
+  CADT_LOCAL cadt_u32 flip_sums[CADT_FLIP_BINS];        \
+  if (rows) cadt_clear_sums(flip_sums, CADT_FLIP_BINS); \
+  cadt_flip_bins bins = {0u, 0u, 0u}
+#define CADT_FLIPS_END(bins, rows) \
+  if (rows) cadt_bins_end(&bins, flip_sums, rows)
+CADT_FN void cadt_bins_end(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums, CADT_GLOBAL cadt_u32* rows) {
+  cadt_bins_pass_on(bins, sums);
+  cadt_group_barrier();
+  CADT_GLOBAL cadt_u32* row = rows + cadt_item / cadt_group_items % CADT_COUNTER_ROWS * CADT_FLIP_BINS;
+  for (cadt_u32 bin = cadt_item_of_group; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); bin += cadt_group_items)
+    if (sums[bin]) cadt_add_relaxed(row + bin, sums[bin]);
+}
+#else
+#define CADT_FLIPS_BEGIN(bins, rows)                                                                           \
+  CADT_GLOBAL cadt_u32* flip_sums = (rows) ? (rows) + cadt_item % CADT_COUNTER_ROWS * CADT_FLIP_BINS : (rows); \
+  cadt_flip_bins bins = {0u, 0u, 0u}
+#define CADT_FLIPS_END(bins, rows) \
+  if (rows) cadt_bins_pass_on(&bins, flip_sums)
+#endif
+#define CADT_FLIPS_COUNT(bins, rows, record) \
+  if (rows) cadt_bins_add_record(&bins, flip_sums, (record))
 
 #endif

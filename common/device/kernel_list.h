@@ -36,7 +36,6 @@
   X(cadt_insert)            /* insert.h: locate, claim, split, legalise */       \
   X(cadt_legalize_edges)    /* insert.h: deferred edges */                       \
   X(cadt_closing_pass)      /* closing.h */                                      \
-  X(cadt_count_flips)       /* flips.h: edges by their flips */                  \
   X(cadt_tile_flags)        /* tiles.h */                                        \
   X(cadt_tile_pack)         /* tiles.h */                                        \
   X(cadt_stars)             /* star.h: proven stars of vertices */               \
@@ -49,6 +48,10 @@
   X(cadt_join_hide)         /* join.h */                                         \
   X(cadt_join_flags)        /* join.h */                                         \
   X(cadt_join_records)      /* join.h: the rest of the mesh */                   \
+  X(cadt_wrap_boxes)        /* wrap.h: stars of few points by gift wrapping */   \
+  X(cadt_wrap_stars)        /* wrap.h */                                         \
+  X(cadt_wrap_counts)       /* wrap.h */                                         \
+  X(cadt_wrap_records)      /* wrap.h */                                         \
   X(cadt_count_triangles)   /* emit.h */                                         \
   X(cadt_bucket_triangles)  /* emit.h: canonical order */                        \
   X(cadt_sort_buckets)      /* emit.h */                                         \

@@ -20,5 +20,6 @@
 #include "common/device/start.h"
 #include "common/device/tiles.h"
 #include "common/device/verify.h"
+#include "common/device/wrap.h"
 
 #endif

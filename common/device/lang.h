@@ -76,6 +76,8 @@ typedef long cadt_i64;
 #define cadt_clz64(x) ((cadt_u32)clz((ulong)(x)))
 #define cadt_mulhi_u64(a, b) mul_hi((ulong)(a), (ulong)(b))
 #define cadt_fabs(x) fabs(x)
+#define cadt_sqrt(x) sqrt(x)
+#define CADT_INFINITY INFINITY
 #define cadt_ldexp(x, e) ldexp((x), (e))
 #define cadt_atan2(y, x) atan2((y), (x))
 
@@ -126,6 +128,8 @@ typedef long long cadt_i64;
 #define cadt_clz64(x) ((cadt_u32)__clzll((long long)(x)))
 #define cadt_mulhi_u64(a, b) __umul64hi((a), (b))
 #define cadt_fabs(x) fabs(x)
+#define cadt_sqrt(x) sqrt(x)
+#define CADT_INFINITY INFINITY
 #define cadt_ldexp(x, e) ldexp((x), (e))
 #define cadt_atan2(y, x) atan2((y), (x))
 CADT_FN cadt_u64 cadt_clock() {
@@ -179,6 +183,8 @@ CADT_FN cadt_u64 cadt_mulhi_u64(cadt_u64 a, cadt_u64 b) {
   return CADT_CAST(cadt_u64, (CADT_CAST(u128, a) * b) >> 64);
 }
 CADT_FN double cadt_fabs(double x) { return std::fabs(x); }
+CADT_FN double cadt_sqrt(double x) { return std::sqrt(x); }
+#define CADT_INFINITY std::numeric_limits<double>::infinity()
 CADT_FN double cadt_ldexp(double x, cadt_i32 e) { return std::ldexp(x, e); }
 CADT_FN double cadt_atan2(double y, double x) { return std::atan2(y, x); }
 CADT_FN cadt_u64 cadt_clock() {

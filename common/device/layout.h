@@ -27,6 +27,21 @@ enum {
   CADT_STAR_LANES = 128   /* lanes of a team that make stars */
 };
 
+/* Gift wrapping (wrap.h). */
+typedef struct {
+  cadt_point low, high;
+} cadt_box;
+
+enum {
+  CADT_WRAP_BOX = 32,     /* points of a box */
+  CADT_WRAP_CRATE = 32,   /* boxes of a crate */
+  CADT_WRAP_NEAR = 3,     /* boxes in which a first neighbour is looked for */
+  CADT_WRAP_CRATES = 32,  /* crates that are compared with a disc at a time, */
+  CADT_WRAP_OPENED = 4,   /* of these opened */
+  CADT_WRAP_DEGREE = 256, /* neighbours of a vertex at most, the ghost among them */
+  CADT_WRAP_LANES = 128   /* lanes of a team that search */
+};
+
 /* Rows of partial results of cadt_bounds. */
 enum {
   CADT_BOUNDS_DOUBLES = 4, /* min x, max x, min y, max y */
@@ -75,12 +90,11 @@ enum {
   CADT_TIME_ITEM_SHIFT = 8 /* CPUs: hours of a core */
 };
 
-/* A row of counters: counts, times, edges by flips. */
+/* A row of counters: counts, times. Edges by flips have rows of their own (flips.h). */
 enum {
   CADT_ROW_TIMES = 20,
-  CADT_ROW_FLIPS = 32,
   CADT_FLIP_BINS = 16,
-  CADT_COUNTER_STRIDE = 64, /* words a row, so rows do not share cache lines */
+  CADT_COUNTER_STRIDE = 32, /* words a row, so rows do not share cache lines */
   CADT_COUNTER_ROWS = 64
 };
 

@@ -63,16 +63,16 @@ CADT_FN CADT_GLOBAL cadt_u32* cadt_counter_row(CADT_GLOBAL cadt_u32* counters, c
 #define CADT_SUMS CADT_LOCAL_PTR
 #define cadt_add_sum cadt_add_local
 enum { CADT_GROUP_DONE = CADT_COUNTERS + CADT_TIMES, CADT_GROUP_WORDS };
-#define CADT_GROUP_TALLY(tally, counters)     \
-  CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS]; \
-  if (counters) cadt_clear_group_sums(sums);  \
-  cadt_tally tally;                           \
+#define CADT_GROUP_TALLY(tally, counters)                \
+  CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS];            \
+  if (counters) cadt_clear_sums(sums, CADT_GROUP_WORDS); \
+  cadt_tally tally;                                      \
   cadt_tally_clear(&tally)
 #define CADT_FLUSH_TALLY(tally, counters) \
   if (counters) cadt_flush_group((tally), sums, (counters))
 
-CADT_FN void cadt_clear_group_sums(CADT_LOCAL_PTR cadt_u32* sums) {
-  for (cadt_u32 c = cadt_item_of_group; c < CADT_CAST(cadt_u32, CADT_GROUP_WORDS); c += cadt_group_items) sums[c] = 0u;
+CADT_FN void cadt_clear_sums(CADT_LOCAL_PTR cadt_u32* sums, cadt_u32 count) {
+  for (cadt_u32 c = cadt_item_of_group; c < count; c += cadt_group_items) sums[c] = 0u;
   cadt_group_barrier();
 }
 

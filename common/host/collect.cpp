@@ -5,6 +5,8 @@
 #include <array>
 #include <string>
 
+#include "common/host/counters.hpp"
+
 namespace cadt {
 namespace {
 
@@ -36,20 +38,24 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
   Launcher& launch = run.launcher;
   const auto slots = static_cast<std::uint32_t>(mesh.slots);
   const Cut all = launch.cut(mesh.slots);
+  const FlipCounts flips(run);
+  const Cut records = launch.cut_strided(mesh.slots);
   Numbering result;
   if (run.options.order == Order::fast) {
     result.ranked = true;
     result.numbers = run.memory.allocate((mesh.slots + 1) * word);
-    launch.run(KernelId::cadt_flag_triangles, all.items, mesh.records, result.numbers, slots, all.grain);
+    launch.run(KernelId::cadt_flag_triangles, records.items, mesh.records, result.numbers, slots, records.grain, flips);
     launch.scan(result.numbers, mesh.slots + 1);
     result.triangles = launch.read_word(result.numbers, mesh.slots);
+    flips.collect(run.statistics);
     return result;
   }
   Allocation buckets = launch.zeros(points + 1);
-  launch.run(KernelId::cadt_count_triangles, all.items, mesh.records, labels, buckets, slots, all.grain);
+  launch.run(KernelId::cadt_count_triangles, records.items, mesh.records, labels, buckets, slots, records.grain, flips);
   launch.scan(buckets, points + 1);
   const std::uint32_t triangles = launch.read_word(buckets, points);
   result.triangles = triangles;
+  flips.collect(run.statistics);
   Allocation members = run.memory.allocate(std::size_t{triangles} * 2 * word);
   launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, labels, buckets, members, slots, all.grain);
   const Cut vertices = launch.cut(points);

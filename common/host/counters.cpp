@@ -21,8 +21,8 @@ namespace {
 constexpr std::array<const char*, CADT_TIMES> accounts = {"locate", "claim",     "split", "test",
                                                           "flip",   "neighbors", "other", "wait"};
 
-static_assert(int{CADT_COUNTERS} <= int{CADT_ROW_TIMES} && CADT_ROW_TIMES + int{CADT_TIMES} <= int{CADT_ROW_FLIPS} &&
-              CADT_ROW_FLIPS + int{CADT_FLIP_BINS} <= int{CADT_COUNTER_STRIDE});
+static_assert(int{CADT_COUNTERS} <= int{CADT_ROW_TIMES} &&
+              CADT_ROW_TIMES + int{CADT_TIMES} <= int{CADT_COUNTER_STRIDE});
 static_assert(std::tuple_size_v<decltype(Statistics::flips_per_edge)> == CADT_FLIP_BINS);
 
 }  // namespace
@@ -32,21 +32,12 @@ Counters::Counters(Run& run) : device_(run.device) {
   buffer_ = run.memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
 }
 
-bool Counters::count_flips(Launcher& launch, const Allocation& records, std::size_t slots) const {
-  if (!buffer_) return false;
-  const Cut c = launch.cut_strided(slots);
-  launch.run(KernelId::cadt_count_flips, c.items, records, static_cast<std::uint32_t>(slots), c.grain, *this);
-  return true;
-}
-
 void Counters::collect(Statistics& statistics) const {
   if (!buffer_) return;
   std::vector<std::uint32_t> words(static_cast<std::size_t>(CADT_COUNTER_ROWS) * CADT_COUNTER_STRIDE);
   device_.read(*buffer_, 0, words.data(), words.size() * sizeof words[0]);
   std::array<std::uint64_t, CADT_COUNTER_STRIDE> sums{};
   for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_COUNTER_STRIDE] += words[i];
-  for (std::size_t bin = 0; bin < CADT_FLIP_BINS; ++bin)
-    statistics.flips_per_edge[bin] = sums[CADT_ROW_FLIPS + bin] / 2;  // each edge was met from both sides
   const auto times = std::span(sums).subspan(CADT_ROW_TIMES, CADT_TIMES);
   const auto all = static_cast<double>(std::accumulate(times.begin(), times.end(), std::uint64_t{0}));
   // with the star stage there are two: what counts are the threads of the insertion, which is the first
@@ -69,6 +60,19 @@ void Counters::collect(Statistics& statistics) const {
   statistics.exact_orientations += sums[CADT_COUNT_EXACT_ORIENTATIONS];
   statistics.exact_incircles += sums[CADT_COUNT_EXACT_INCIRCLES];
   statistics.ties += sums[CADT_COUNT_TIES];
+}
+
+FlipCounts::FlipCounts(Run& run) : device_(run.device) {
+  if (run.options.statistics == StatisticsDetail::none) return;
+  buffer_ = run.memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_FLIP_BINS);
+}
+
+void FlipCounts::collect(Statistics& statistics) const {
+  if (!buffer_) return;
+  std::array<std::uint32_t, std::size_t{CADT_COUNTER_ROWS} * CADT_FLIP_BINS> words{};
+  device_.read(*buffer_, 0, words.data(), sizeof words);
+  for (std::size_t i = 0; i < words.size(); ++i) statistics.flips_per_edge[i % CADT_FLIP_BINS] += words[i];
+  for (std::uint64_t& edges : statistics.flips_per_edge) edges /= 2;  // each was met from both sides
 }
 
 }  // namespace cadt

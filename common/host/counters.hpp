@@ -15,9 +15,20 @@ class Counters {
  public:
   explicit Counters(Run& run);
   operator Arg() const noexcept { return buffer_; }  // NOLINT
-  /// Counts the edges of the mesh by their flips. False, and nothing is done, for StatisticsDetail::none.
-  [[nodiscard]] bool count_flips(Launcher& launch, const Allocation& records, std::size_t slots) const;
   /// Adds the counts of all rows to the statistics.
+  void collect(Statistics& statistics) const;
+
+ private:
+  Device& device_;
+  Allocation buffer_;
+};
+
+/// The device's counts of edges by their flips (common/device/flips.h). Passed to a kernel: their memory, null for
+/// StatisticsDetail::none.
+class FlipCounts {
+ public:
+  explicit FlipCounts(Run& run);
+  operator Arg() const noexcept { return buffer_; }  // NOLINT
   void collect(Statistics& statistics) const;
 
  private:

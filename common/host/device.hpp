@@ -5,6 +5,7 @@
 #include <cadt/devices.hpp>
 #include <cadt/triangulation.hpp>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -146,10 +147,35 @@ class Device {
 
   /// Runs a kernel with `items` work-items (possibly rounded up: kernels ignore items beyond their data). Returns
   /// before the work is done where the device can. \throws DeviceError, KernelBuildError (a variant may be built at its
-  /// first launch)
-  virtual void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) = 0;
+  /// first launch). `group`: work-items of a group where nobody has asked for a size; 0: the device's choice.
+  virtual void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+                      std::uint32_t group) = 0;
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) {
+    launch(kernel, items, args, build, 0);
+  }
   /// Waits for everything launched. \throws DeviceError
   virtual void finish() = 0;
+
+  /// Times of phases: forgets all marks and makes the first one. \throws DeviceError
+  virtual void start_times() {
+    marks_.clear();
+    mark_time();
+  }
+  /// Marks the moment when everything launched so far is done. Devices with clocks of their own do not wait for it.
+  virtual void mark_time() {
+    finish();
+    marks_.push_back(std::chrono::steady_clock::now());
+  }
+  /// Milliseconds between one mark and the next. Waits for the last. \throws DeviceError
+  [[nodiscard]] virtual std::vector<double> times() {
+    std::vector<double> between;
+    for (std::size_t i = 1; i < marks_.size(); ++i)
+      between.push_back(std::chrono::duration<double, std::milli>(marks_[i] - marks_[i - 1]).count());
+    return between;
+  }
+
+ private:
+  std::vector<std::chrono::steady_clock::time_point> marks_;
 };
 
 }  // namespace cadt

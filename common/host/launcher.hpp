@@ -46,10 +46,15 @@ class Launcher {
 
   template <class... Args>
   void run(KernelId kernel, std::uint32_t items, const Args&... args) {
+    run_in_groups(kernel, items, 0, args...);
+  }
+  /// With groups of `group` work-items on GPUs, unless the options ask for a size; 0: the device's choice.
+  template <class... Args>
+  void run_in_groups(KernelId kernel, std::uint32_t items, std::uint32_t group, const Args&... args) {
     if (items == 0) return;
     const Arg list[] = {Arg(args)...};
     ++launches_;
-    times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, build_); });
+    times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, build_, group); });
   }
 
   /// Zeroed words for small results.

@@ -4,8 +4,9 @@
 
 #include <cadt/triangulation.hpp>
 
-#include <chrono>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/host/device.hpp"
 #include "common/host/launcher.hpp"
@@ -15,7 +16,9 @@ namespace cadt {
 
 struct Run {
   Run(Device& d, Memory& m, const Options& o, Statistics& s)
-      : device(d), options(o), statistics(s), memory(m), launcher(d, m, o.grain) {}
+      : device(d), options(o), statistics(s), memory(m), launcher(d, m, o.grain) {
+    if (options.statistics != StatisticsDetail::none) device.start_times();
+  }
 
   Device& device;
   const Options& options;
@@ -33,18 +36,25 @@ struct Run {
     }
   }
 
-  /// Ends a phase: waits for the device and notes the time since the last end. StatisticsDetail::none: does neither.
+  /// Ends a phase: what is launched from here on belongs to the next one. Nothing for StatisticsDetail::none.
   void end_phase(std::string_view name) {
     if (options.statistics == StatisticsDetail::none) return;
+    device.mark_time();
+    phases_.emplace_back(name);
+  }
+
+  /// Waits for the device and notes how long the phases took.
+  void finish() {
     device.finish();
-    const auto now = std::chrono::steady_clock::now();
-    statistics.milliseconds.emplace_back(name, std::chrono::duration<double, std::milli>(now - last_).count());
-    last_ = now;
+    if (phases_.empty()) return;
+    const std::vector<double> times = device.times();
+    for (std::size_t i = 0; i < phases_.size(); ++i) statistics.milliseconds.emplace_back(phases_[i], times[i]);
+    phases_.clear();
   }
 
  private:
   double told_ = 0;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::vector<std::string> phases_;
 };
 
 }  // namespace cadt

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/host/device_constants.hpp"
+#include "common/host/wrap_mesh.hpp"
 
 namespace cadt {
 namespace {
@@ -17,13 +18,29 @@ using namespace device_constants;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr unsigned most_bits = 24;  // of an axis: cells of a window are counted in 32 bits
 constexpr std::uint32_t sampled_tiles = 512, least_step = 12;
-constexpr std::size_t least_points_of_tile = 48;  // on average: a tile keeps 128 lanes of a card
+constexpr std::size_t most_wrapped_alone = 20000;  // more points have the star stage
+constexpr std::size_t least_points_of_tile = 48;   // on average: a tile keeps 128 lanes of a card
 
 /// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
 
 /// Edges between the two parts have a list and a hash table.
 constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * open > points; }
+
+/// The mesh without the star stage, not certified where it was wrapped: by gift wrapping if the points are few.
+DeviceMesh build_rest(Run& run, const SpatialOrder& order) {
+  if (order.distinct <= most_wrapped(run.device))
+    if (std::optional<DeviceMesh> mesh = wrap_mesh(run, order.points, order.distinct)) return std::move(*mesh);
+  return build_mesh(run, order);
+}
+
+/// The same, certified.
+DeviceMesh build_without_stars(Run& run, const SpatialOrder& order) {
+  if (order.distinct <= most_wrapped(run.device))
+    if (std::optional<DeviceMesh> mesh = wrap_mesh(run, order.points, order.distinct))
+      return certify_mesh(run, order, std::move(mesh->records));
+  return build_mesh(run, order);
+}
 
 class StarStage {
  public:
@@ -33,13 +50,13 @@ class StarStage {
   [[nodiscard]] DeviceMesh build() {
     if (!make_stars()) {
       release_stars();
-      return build_mesh(run_, order_);
+      return build_without_stars(run_, order_);
     }
     count_triangles();
     if (too_many(unproven_, n_) || too_many_open(open_count_, n_)) {
       release_stars();
       ranks_.release();
-      return build_mesh(run_, order_);
+      return build_without_stars(run_, order_);
     }
     // stars that contradict each other would number more
     if (proven_triangles_ > 2 * n_ - 2)
@@ -135,7 +152,7 @@ class StarStage {
     launch_.run(KernelId::cadt_unproven_pack, all.items, ranks_, order_.points, rest.points, positions, count_,
                 all.grain);
     ranks_.release();
-    const DeviceMesh smaller = build_mesh(run_, rest);
+    const DeviceMesh smaller = build_rest(run_, rest);
     if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
 
     const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
@@ -177,7 +194,10 @@ class StarStage {
 
 DeviceMesh build_mesh_with_stars(Run& run, const SpatialOrder& order) {
   const KeyGrid& grid = order.grid;
-  if (order.distinct < 3 || order.wide || std::max(grid.bits_x, grid.bits_y) > most_bits) return build_mesh(run, order);
+  if (order.wide) return build_mesh(run, order);
+  const bool few = run.options.strategy == Strategy::automatic && order.distinct <= most_wrapped_alone;
+  if (few || order.distinct < 3 || std::max(grid.bits_x, grid.bits_y) > most_bits)
+    return build_without_stars(run, order);
   return StarStage(run, order).build();
 }
 

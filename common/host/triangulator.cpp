@@ -32,13 +32,11 @@ std::size_t least_bytes(std::size_t n, bool result_elsewhere) { return fixed + n
 /// The same with the star stage.
 std::size_t star_bytes(std::size_t n) { return fixed + n * 150; }
 
-constexpr std::size_t least_points_of_stars = 100'000;  // below, insertion is as fast
-
 /// Whether the star stage is what Strategy::automatic chooses, if there is the memory. It needs many cheap lanes: CPUs
 /// are faster without it.
-bool prefers_stars(const Options& options, const Device& device, std::size_t n) {
+bool prefers_stars(const Options& options, const Device& device) {
   if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
-  return n >= least_points_of_stars && device.info().gpu && options.stabilize == Stabilize::off && !options.watch &&
+  return device.info().gpu && options.stabilize == Stabilize::off && !options.watch &&
          options.statistics != StatisticsDetail::timing;
 }
 
@@ -166,13 +164,13 @@ void require_memory(Triangulator::State& state, std::size_t n, bool result_elsew
 
 /// Whether the star stage is to run.
 bool choose_stars(Triangulator::State& state, std::size_t n) {
-  if (!prefers_stars(state.options, *state.device, n)) return false;
+  if (!prefers_stars(state.options, *state.device)) return false;
   if (n <= state.known_star_points && state.options.max_memory == 0) return true;
   return state.options.strategy == Strategy::stars || state.memory.allows(star_bytes(n));
 }
 
 void close_account(Triangulator::State& state, Run& run, DeviceTriangulation::Data& data) {
-  state.device->finish();
+  run.finish();
   data.statistics.launches = run.launcher.launches();
   data.statistics.kernels = run.launcher.kernel_times();
   data.statistics.bytes_device_peak = state.memory.peak();
@@ -266,7 +264,7 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
 }
 
 std::size_t Triangulator::memory_needed(std::size_t points) const noexcept {
-  return most_bytes(state_->memory, points, prefers_stars(state_->options, *state_->device, points));
+  return most_bytes(state_->memory, points, prefers_stars(state_->options, *state_->device));
 }
 
 void Triangulator::reserve(std::size_t points) {

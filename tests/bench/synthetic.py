@@ -236,7 +236,7 @@ def kernels(writer: Writer) -> None:
 # model.
 KERNELS = {"locks": [("cadt_insert", 0.61, 148, 24), ("cadt_closing_pass", 0.1, 80, 1), ("sort", 0.08, 64, 1),
                      ("cadt_emit_ranked", 0.07, 124, 1), ("cadt_flag_triangles", 0.05, 72, 1),
-                     ("cadt_gather_points", 0.04, 36, 1), ("cadt_count_flips", 0.02, 64, 1),
+                     ("cadt_gather_points", 0.04, 36, 1), ("cadt_unique_pack", 0.02, 64, 1),
                      ("scan", 0.01, 16, 1), ("cadt_sort_keys", 0.006, 20, 1), ("cadt_bounds", 0.005, 16, 1),
                      ("cadt_unique_flags", 0.004, 20, 1), ("cadt_sort_runs", 0.002, 4, 1),
                      ("cadt_crowded_flags", 0.002, 8, 1), ("cadt_legalize_edges", 0.001, None, 7)],

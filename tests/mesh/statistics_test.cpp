@@ -142,7 +142,9 @@ TEST_P(KernelTimes, AreThoseOfTheLaunches) {
         sum += kernel.milliseconds;
       }
       EXPECT_EQ(launches, s.launches);
-      EXPECT_GT(kernels["cadt_insert"].milliseconds, 0);
+      if (strategy == Strategy::locks) {
+        EXPECT_GT(kernels["cadt_insert"].milliseconds, 0);
+      }
       EXPECT_EQ(kernels["cadt_stars"].launches, strategy == Strategy::stars ? 1U : 0U);
       EXPECT_EQ(kernels["cadt_emit_ranked"].launches, 1U);
       // The keys are sorted by the device's own sort or by that of common/device.
@@ -158,6 +160,7 @@ TEST_P(KernelTimes, BeginAnewAfterACancelledRun) {
   const Points xy = uniform_points(20000, 12);
   Options options = GetParam().options();
   options.kernel_times = true;
+  options.strategy = Strategy::locks;  // the others may have no phase of insertion
   Triangulator triangulator(options);
   std::stop_source source;
   triangulator.options().stop = source.get_token();

@@ -219,9 +219,11 @@ class Lazy final : public Device {
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override {
     device_.fill(to, offset, bytes, word);
   }
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build) override {
+  using Device::launch;
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+              std::uint32_t group) override {
     if (kernel == kernel_) ++skipped, items = half_ ? items / 2 : 0;
-    if (items != 0) device_.launch(kernel, items, args, build);
+    if (items != 0) device_.launch(kernel, items, args, build, group);
   }
   void finish() override { device_.finish(); }
 

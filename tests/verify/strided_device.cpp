@@ -67,7 +67,9 @@ class Strided final : public cadt::Device {
   void fill(cadt::Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override {
     host_.fill(to, offset, bytes, word);
   }
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, cadt::KernelBuild build) override {
+  using Device::launch;
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, cadt::KernelBuild build,
+              std::uint32_t /*group*/) override {
     switch (kernel) {
       case KernelId::cadt_verify_structure:
         return run(cadt_verify_structure, items, args.data());

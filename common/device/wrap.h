@@ -1,0 +1,383 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Stars of few points by gift wrapping: a team for each vertex, without locks and without levels. It finds one neighbour
+ * after another: of the points on one side of p and the last neighbour, the one whose circle with both is empty
+ * (docs/algorithm.md, "Gift wrapping"). A guess is made among the points next in sorted order; then all points stand in
+ * boxes, and boxes in crates, so that those which the circle does not reach are passed over. What decides are the exact
+ * predicates, so ties are decided as everywhere else.
+ */
+#ifndef CADT_DEVICE_WRAP_H
+#define CADT_DEVICE_WRAP_H
+
+#include "common/device/mesh.h"
+#include "common/device/predicates.h"
+
+typedef struct {
+  cadt_u32 link[CADT_WRAP_DEGREE]; /* the neighbours found, in the order of the search */
+  cadt_u32 best[CADT_WRAP_LANES];
+  cadt_u32 crates[CADT_WRAP_CRATES], boxes[CADT_WRAP_OPENED * CADT_WRAP_CRATE];
+  cadt_u32 crate_count, box_count, better; /* how many of each; lanes that have found a better neighbour */
+  cadt_u32 key, guess, place;
+} cadt_wrap_memory;
+
+typedef struct {
+  CADT_TEAM_PTR cadt_wrap_memory* m;
+  CADT_GLOBAL const cadt_point* points;
+  CADT_GLOBAL const cadt_box* boxes;  /* of CADT_WRAP_BOX points, */
+  CADT_GLOBAL const cadt_box* crates; /* of CADT_WRAP_CRATE boxes */
+  cadt_tally* tally;
+  cadt_u32 n, box_count, crate_count;
+  cadt_u32 lanes;  /* of the team that search: the first ones */
+  cadt_u32 p;      /* the vertex */
+  cadt_u32 looked; /* boxes whose points were looked at */
+} cadt_wrapper;
+
+CADT_FN void cadt_box_add(cadt_box* box, const cadt_box other) {
+  if (other.low.x < box->low.x) box->low.x = other.low.x;
+  if (other.low.y < box->low.y) box->low.y = other.low.y;
+  if (other.high.x > box->high.x) box->high.x = other.high.x;
+  if (other.high.y > box->high.y) box->high.y = other.high.y;
+}
+
+/* Boxes of CADT_WRAP_BOX points, and crates of CADT_WRAP_CRATE boxes: a team for each. */
+CADT_KERNEL(cadt_wrap_boxes, CADT_GLOBAL const cadt_point* points, cadt_u32 n, cadt_u32 box_count, cadt_u32 crate_count,
+            cadt_u32 grain, CADT_GLOBAL cadt_box* boxes, CADT_GLOBAL cadt_box* crates) {
+  CADT_TEAM_MEMORY cadt_box inside[CADT_WRAP_CRATE];
+  CADT_FOR_TEAMS(crate, crate_count, grain) {
+    const cadt_u32 first = crate * CADT_WRAP_CRATE;
+    const cadt_u32 count = cadt_min_u32(CADT_WRAP_CRATE, box_count - first);
+    CADT_TEAM_FOR(j, count) {
+      const cadt_u32 begin = (first + j) * CADT_WRAP_BOX, end = cadt_min_u32(begin + CADT_WRAP_BOX, n);
+      cadt_box box;
+      box.low = box.high = points[begin];
+      for (cadt_u32 i = begin + 1u; i < end; ++i) {
+        cadt_box point;
+        point.low = point.high = points[i];
+        cadt_box_add(&box, point);
+      }
+      boxes[first + j] = inside[j] = box;
+    }
+    CADT_TEAM_SYNC();
+    if (cadt_team_lane == 0u) {
+      cadt_box box = inside[0];
+      for (cadt_u32 j = 1u; j < count; ++j) cadt_box_add(&box, inside[j]);
+      crates[crate] = box;
+    }
+    CADT_TEAM_SYNC();
+  }
+}
+
+/* A disc that contains the circle through p, a and b for certain; coordinates are from p. */
+typedef struct {
+  double x, y, square; /* centre, radius^2; not a finite number: the disc may be the plane */
+} cadt_disc;
+
+/* With u = 2^-53 and K = |a| |b| / |a x b|, which is at least 1, the centre is off by less than 8 u K (1 + K) (|a| +
+ * |b|) where K is known well. */
+CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
+  const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
+  const double aa = ax * ax + ay * ay, bb = bx * bx + by * by, cross = ax * by - ay * bx;
+  const double scale = 0.5 / cross, k = cadt_sqrt(aa * bb) * 2.0 * cadt_fabs(scale);
+  cadt_disc d;
+  d.x = (by * aa - ay * bb) * scale;
+  d.y = (ax * bb - bx * aa) * scale;
+  const double radius = cadt_sqrt(d.x * d.x + d.y * d.y) + 1e-14 * k * (1.0 + k) * (cadt_sqrt(aa) + cadt_sqrt(bb));
+  d.square = k < 1e12 ? radius * radius * (1.0 + 1e-12) : CADT_CAST(double, CADT_INFINITY);
+  return d;
+}
+
+/* Whether points of the box can lie in the disc and to the side (1 left, -1 right) of the line from p to p + (ax, ay).
+ * A comparison with what is not a number does not exclude them. */
+CADT_FN cadt_u32 cadt_box_matters(const cadt_box box, cadt_point p, double ax, double ay, double side,
+                                  const cadt_disc* disc) {
+  const double low_x = box.low.x - p.x, low_y = box.low.y - p.y, high_x = box.high.x - p.x, high_y = box.high.y - p.y;
+  const double left = ax * (ax * side > 0.0 ? high_y : low_y), right = ay * (ay * side > 0.0 ? low_x : high_x);
+  if ((left - right) * side < -1e-15 * (cadt_fabs(left) + cadt_fabs(right))) return 0u;
+  double x = low_x - disc->x, y = low_y - disc->y;
+  if (x < 0.0) x = disc->x > high_x ? disc->x - high_x : 0.0;
+  if (y < 0.0) y = disc->y > high_y ? disc->y - high_y : 0.0;
+  return x * x + y * y > disc->square ? 0u : 1u;
+}
+
+/* Which of two points on one side of the line p, a has the circle without the other. */
+CADT_FN cadt_u32 cadt_wrap_better(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 b, cadt_u32 c) {
+  if (c == CADT_NONE || b == c) return b;
+  if (b == CADT_NONE) return c;
+  const cadt_point p = w->points[w->p], q = w->points[a];
+  return cadt_incircle(side > 0 ? p : q, side > 0 ? q : p, w->points[b], w->points[c], w->tally) > 0 ? c : b;
+}
+
+/* The best of what the lanes have found, w->m->best. \pre synchronised; all lanes call it */
+CADT_FN cadt_u32 cadt_wrap_best(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
+  for (cadt_u32 width = w->lanes; width > 1u;) {
+    const cadt_u32 middle = (width + 1u) / 2u;
+    if (cadt_team_lane + middle < width)
+      w->m->best[cadt_team_lane] =
+          cadt_wrap_better(w, a, side, w->m->best[cadt_team_lane], w->m->best[cadt_team_lane + middle]);
+    width = middle;
+    CADT_TEAM_SYNC();
+  }
+  return w->m->best[0];
+}
+
+/* A likely neighbour among the next boxes: that with the least cotangent of the angle at which it sees p and a.
+ * CADT_NONE if there is none on that side. */
+CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
+  const cadt_point p = w->points[w->p], q = w->points[a];
+  const double ax = q.x - p.x, ay = q.y - p.y;
+  const cadt_u32 own = w->p / CADT_WRAP_BOX, first = (own ? own - 1u : 0u) * CADT_WRAP_BOX;
+  const cadt_u32 last = cadt_min_u32(first + CADT_WRAP_NEAR * CADT_WRAP_BOX, w->n);
+  cadt_u32 key = CADT_NONE, guess = CADT_NONE;
+  CADT_TEAM_FOR(j, last - first) {
+    const cadt_point c = w->points[first + j];
+    const double cx = c.x - p.x, cy = c.y - p.y, cross = side > 0 ? ax * cy - ay * cx : ay * cx - ax * cy;
+    const float cotangent = CADT_CAST(float, (cx * (cx - ax) + cy * (cy - ay)) / cross);
+    if (!(cross > 0.0 && cadt_fabsf(cotangent) < 3e38f)) continue; /* p and a as well */
+    const cadt_u32 bits = cadt_bits_of_float(cotangent), order = bits >> 31 ? ~bits : bits | 0x80000000u;
+    if (order < key) key = order, guess = first + j;
+  }
+  if (key != CADT_NONE) cadt_team_min(&w->m->key, key);
+  CADT_TEAM_SYNC();
+  if (key != CADT_NONE && key == w->m->key && cadt_orientation(p, q, w->points[guess], w->tally) == side)
+    cadt_team_min(&w->m->guess, guess);
+  CADT_TEAM_SYNC();
+  return w->m->guess;
+}
+
+/* The neighbour of p behind its neighbour a, counterclockwise (side 1) or clockwise (-1); CADT_NONE if no point is on
+ * that side. a may be any other point: then the neighbour behind it among the points on that side and a. */
+CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
+  const cadt_point p = w->points[w->p], q = w->points[a];
+  const double ax = q.x - p.x, ay = q.y - p.y, sign = side > 0 ? 1.0 : -1.0;
+  if (cadt_team_lane == 0u) {
+    w->m->key = w->m->guess = CADT_NONE;
+    w->m->crate_count = 0u;
+  }
+  CADT_TEAM_SYNC();
+  cadt_u32 best = cadt_wrap_guess(w, a, side);
+  cadt_disc disc;
+  disc.x = disc.y = 0.0;
+  disc.square = CADT_CAST(double, CADT_INFINITY);
+  if (best != CADT_NONE) disc = cadt_disc_around(p, q, w->points[best]);
+  for (cadt_u32 crate = 0u; crate < w->crate_count; crate += CADT_WRAP_CRATES) {
+    CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_CRATES, w->crate_count - crate)) {
+      if (cadt_box_matters(w->crates[crate + j], p, ax, ay, sign, &disc))
+        w->m->crates[cadt_team_add(&w->m->crate_count, 1u)] = crate + j;
+    }
+    CADT_TEAM_SYNC();
+    const cadt_u32 crates = w->m->crate_count;
+    for (cadt_u32 opened = 0u; opened < crates; opened += CADT_WRAP_OPENED) {
+      if (cadt_team_lane == 0u) w->m->box_count = w->m->better = 0u;
+      CADT_TEAM_SYNC();
+      CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_OPENED, crates - opened) * CADT_WRAP_CRATE) {
+        const cadt_u32 c = w->m->crates[opened + j / CADT_WRAP_CRATE] * CADT_WRAP_CRATE + j % CADT_WRAP_CRATE;
+        if (c < w->box_count && cadt_box_matters(w->boxes[c], p, ax, ay, sign, &disc))
+          w->m->boxes[cadt_team_add(&w->m->box_count, 1u)] = c;
+      }
+      CADT_TEAM_SYNC();
+      const cadt_u32 boxes = w->m->box_count;
+      cadt_u32 mine = best;
+      for (cadt_u32 j = cadt_team_lane; cadt_team_lane < w->lanes && j < boxes * CADT_WRAP_BOX; j += w->lanes) {
+        const cadt_u32 i = w->m->boxes[j / CADT_WRAP_BOX] * CADT_WRAP_BOX + j % CADT_WRAP_BOX;
+        if (i >= w->n || i == w->p || i == a || i == best) continue;
+        const cadt_point c = w->points[i];
+        const double x = c.x - p.x - disc.x, y = c.y - p.y - disc.y;
+        if (x * x + y * y > disc.square) continue;
+        if (cadt_orientation(p, q, c, w->tally) == side) mine = cadt_wrap_better(w, a, side, mine, i);
+      }
+      if (cadt_team_lane < w->lanes) w->m->best[cadt_team_lane] = mine;
+      if (mine != best) cadt_team_add(&w->m->better, 1u);
+      CADT_TEAM_SYNC();
+      if (w->m->better) {
+        best = cadt_wrap_best(w, a, side);
+        disc = cadt_disc_around(p, q, w->points[best]);
+      }
+      w->looked += boxes;
+      CADT_TEAM_SYNC();
+    }
+    if (cadt_team_lane == 0u) w->m->crate_count = 0u;
+    CADT_TEAM_SYNC();
+  }
+  return best;
+}
+
+/* Searches the star of w->p. Its neighbours stand in w->m->link from *begin on, *size of them, counterclockwise if
+ * *side is 1, else clockwise. Returns 0 if there is none: all points are on a line, or there are too many neighbours; 1
+ * inside of the hull; 2 for a vertex of the hull, from one of its hull edges to the other. */
+CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size, cadt_i32* side) {
+  cadt_u32 at = w->p ? w->p - 1u : 1u, from_hull = 0u, pass = 0u, outcome = 0u, going = 1u;
+  *begin = *size = 0u;
+  *side = 1;
+  while (going) {
+    if (cadt_team_lane == 0u) w->m->link[*size] = at;
+    ++*size;
+    const cadt_u32 next = cadt_wrap_next(w, at, *side);
+    if (next == CADT_NONE) {
+      /* Beyond the line p, at there is nothing. If `at` was found from another neighbour, it is one itself, and the
+       * edge one of the hull: the star is what lies between it and the other one. */
+      if (from_hull) {
+        outcome = 2u;
+        going = 0u;
+      } else {
+        from_hull = *size > 1u ? 1u : 0u;
+        if (++pass > 2u) going = 0u;
+        *side = -*side;
+        *size = 0u;
+      }
+    } else {
+      /* The first one need not have been a neighbour; from a neighbour on all are, and come again. */
+      for (cadt_u32 k = 0u; k < *size; ++k)
+        if (w->m->link[k] == next) *begin = k, outcome = 1u;
+      if (outcome || *size + 1u >= CADT_CAST(cadt_u32, CADT_WRAP_DEGREE)) going = 0u;
+      at = next;
+    }
+  }
+  *size -= *begin;
+  return *size < 2u ? 0u : outcome;
+}
+
+/* found: words of links used, vertices without a star, effort: boxes looked at and exact tests; exact orientations,
+ * exact incircles, ties. A star has sizes[v] words from links[begins[v]] on, CADT_GHOST behind the last neighbour on the
+ * hull. Nothing is done any more when a star has failed, or the effort is above its bound. \pre sizes are 0, n >= 2 */
+CADT_KERNEL(cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
+            CADT_GLOBAL const cadt_box* crates, cadt_u32 n, cadt_u32 box_count, cadt_u32 crate_count, cadt_u32 effort, cadt_u32 grain, CADT_GLOBAL cadt_u32* links,
+            cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
+            CADT_GLOBAL cadt_u32* found) {
+  CADT_TEAM_MEMORY cadt_wrap_memory memory;
+  cadt_tally tally;
+  cadt_tally_clear(&tally);
+  cadt_u32 exact_before = 0u;
+  CADT_FOR_TEAMS(v, n, grain) {
+    cadt_wrapper w;
+    w.m = &memory;
+    w.points = points;
+    w.boxes = boxes;
+    w.crates = crates;
+    w.tally = &tally;
+    w.n = n;
+    w.box_count = box_count;
+    w.crate_count = crate_count;
+    w.lanes = cadt_min_u32(cadt_team_lanes, CADT_WRAP_LANES);
+    w.p = v;
+    w.looked = 0u;
+    if (cadt_team_lane == 0u)
+      memory.place = cadt_load_relaxed(found + 1) == 0u && cadt_load_relaxed(found + 2) <= effort ? 1u : 0u;
+    CADT_TEAM_SYNC();
+    const cadt_u32 wanted = memory.place;
+    CADT_TEAM_SYNC();
+    cadt_u32 begin = 0u, size = 0u, kind = 0u;
+    cadt_i32 side = 1;
+    if (wanted) kind = cadt_wrap_star(&w, &begin, &size, &side);
+    const cadt_u32 words = kind == 2u ? size + 1u : size;
+    const cadt_u32 exact = tally.count[CADT_COUNT_EXACT_INCIRCLES] + tally.count[CADT_COUNT_EXACT_ORIENTATIONS];
+    if (exact != exact_before) cadt_add_relaxed(found + 2, exact - exact_before);
+    exact_before = exact;
+    if (cadt_team_lane == 0u) {
+      cadt_add_relaxed(found + 2, w.looked);
+      if (kind) {
+        memory.place = cadt_add_relaxed(found, words);
+        begins[v] = memory.place;
+        sizes[v] = words;
+      } else {
+        cadt_add_relaxed(found + 1, 1u);
+      }
+    }
+    CADT_TEAM_SYNC();
+    if (kind && memory.place + words <= link_words) { /* else the driver sees from found[0] that stars are wrong */
+      CADT_GLOBAL cadt_u32* link = links + memory.place;
+      CADT_TEAM_FOR(k, size) { link[k] = memory.link[begin + (side > 0 ? k : size - 1u - k)]; }
+      if (cadt_team_lane == 0u && kind == 2u) link[size] = CADT_GHOST;
+    }
+    CADT_TEAM_SYNC();
+  }
+  if (tally.count[CADT_COUNT_EXACT_ORIENTATIONS])
+    cadt_add_relaxed(found + 3, tally.count[CADT_COUNT_EXACT_ORIENTATIONS]);
+  if (tally.count[CADT_COUNT_EXACT_INCIRCLES]) cadt_add_relaxed(found + 4, tally.count[CADT_COUNT_EXACT_INCIRCLES]);
+  if (tally.count[CADT_COUNT_TIES]) cadt_add_relaxed(found + 5, tally.count[CADT_COUNT_TIES]);
+}
+
+/* ---- records: a triangle belongs to the lowest of its vertices, the ghost being the highest ---- */
+
+typedef struct {
+  CADT_GLOBAL const cadt_u32* links;
+  CADT_GLOBAL const cadt_u32* begins;
+  CADT_GLOBAL const cadt_u32* sizes;
+  CADT_GLOBAL const cadt_u32* bases; /* number of the first triangle that belongs to a vertex */
+} cadt_wrap_set;
+
+/* owned[v]: triangles that belong to v; a 0 behind the last. */
+CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* owned) {
+  if (cadt_item == 0u) owned[n] = 0u;
+  CADT_FOR(v, n, grain) {
+    CADT_GLOBAL const cadt_u32* link = links + begins[v];
+    const cadt_u32 size = sizes[v];
+    cadt_u32 count = 0u;
+    for (cadt_u32 k = 0u; k < size; ++k)
+      if (link[k] > v && link[k + 1u < size ? k + 1u : 0u] > v) ++count;
+    owned[v] = count;
+  }
+}
+
+/* Place of vertex a in the star of v, and how many triangles before it belong to v. \pre it is there */
+CADT_FN cadt_u32 cadt_wrap_place(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32* owned) {
+  CADT_GLOBAL const cadt_u32* link = s->links + s->begins[v];
+  cadt_u32 k = 0u, count = 0u, now = link[0];
+  while (now != a) {
+    const cadt_u32 next = link[++k];
+    if (now > v && next > v) ++count;
+    now = next;
+  }
+  *owned = count;
+  return k;
+}
+
+/* The neighbour of v before or behind its neighbour a. */
+CADT_FN cadt_u32 cadt_wrap_beside(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32 behind) {
+  cadt_u32 owned;
+  const cadt_u32 k = cadt_wrap_place(s, v, a, &owned), size = s->sizes[v];
+  const cadt_u32 other = behind ? (k + 1u < size ? k + 1u : 0u) : (k ? k - 1u : size - 1u);
+  return s->links[s->begins[v] + other];
+}
+
+/* Link to the triangle x, y, z across the edge opposite of x (0), y (1) or z (2). */
+CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, cadt_u32 z, cadt_u32 opposite) {
+  const cadt_u32 lowest = x < y ? (x < z ? 0u : 2u) : (y < z ? 1u : 2u);
+  const cadt_u32 owner = CADT_PICK(lowest, x, y, z), next = CADT_PICK(lowest, y, z, x);
+  cadt_u32 before;
+  cadt_wrap_place(s, owner, next, &before);
+  return CADT_LINK(s->bases[owner] + before, opposite >= lowest ? opposite - lowest : opposite + 3u - lowest);
+}
+
+CADT_KERNEL(cadt_wrap_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases, cadt_u32 n, cadt_u32 grain,
+            CADT_GLOBAL cadt_record* records) {
+  cadt_wrap_set stars;
+  stars.links = links;
+  stars.begins = begins;
+  stars.sizes = sizes;
+  stars.bases = bases;
+  CADT_FOR(v, n, grain) {
+    CADT_GLOBAL const cadt_u32* link = links + begins[v];
+    const cadt_u32 size = sizes[v];
+    cadt_u32 t = bases[v];
+    for (cadt_u32 k = 0u; k < size; ++k) {
+      const cadt_u32 k1 = k + 1u < size ? k + 1u : 0u, a = link[k], b = link[k1];
+      if (a < v || b < v) continue;
+      CADT_GLOBAL cadt_u32* w = records[t++].word;
+      w[0] = v;
+      w[1] = a;
+      w[2] = b;
+      w[CADT_WORD_LOCK] = 2u;
+      if (a != CADT_GHOST)
+        w[CADT_WORD_LINK] = cadt_wrap_link(&stars, a, cadt_wrap_beside(&stars, a, b, 0u), b, 1u);
+      else
+        w[CADT_WORD_LINK] = cadt_wrap_link(&stars, b, a, cadt_wrap_beside(&stars, b, a, 1u), 2u);
+      w[CADT_WORD_LINK + 1] = cadt_wrap_link(&stars, v, b, link[k1 + 1u < size ? k1 + 1u : 0u], 2u);
+      w[CADT_WORD_LINK + 2] = cadt_wrap_link(&stars, v, link[k ? k - 1u : size - 1u], a, 1u);
+      w[CADT_WORD_FLIPS] = 0u;
+    }
+  }
+}
+
+#endif

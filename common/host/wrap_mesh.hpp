@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "common/host/build_mesh.hpp"
+
+namespace cadt {
+
+/// Points for which gift wrapping is faster than insertion; it looks at a share of all points for each.
+[[nodiscard]] std::size_t most_wrapped(const Device& device) noexcept;
+
+/// The mesh of n distinct points in sorted order by gift wrapping (common/device/wrap.h), without locks; its edges have
+/// still to be certified. Nothing if the points are on a line or it would take too long: then insertion is to do it.
+[[nodiscard]] std::optional<DeviceMesh> wrap_mesh(Run& run, const Allocation& points, std::size_t n);
+
+}  // namespace cadt

@@ -11,8 +11,7 @@ namespace {
 constexpr KernelBytes table[] = {
     {"cadt_import_doubles", Unit::point, 16, 16, "points"},
     {"cadt_bounds", Unit::point, 16, 0, "points"},
-    {"cadt_sort_keys", Unit::point, 16, 4, "points; keys"},
-    {"cadt_sort_keys", Unit::starred, 16, 4, "again, for the tiles"},
+    {"cadt_sort_keys", Unit::point, 16, 4, "points; keys; once: the tiles may keep them"},
     {"cadt_identity", Unit::point, 0, 4, "places"},
     {"sort", Unit::pass, 8, 8, "keys and places"},
     {"cadt_radix_count", Unit::pass, 4, 0, "keys"},

@@ -19,7 +19,8 @@ constexpr double second = 1000.0;
 std::string key_of(const Contestant& who) { return fmt::format("{} {} {}", who.who, who.index, who.threads); }
 
 std::string kind_of(const Task& task) {
-  return fmt::format("{} {} {} {}", task.set.name, task.block, to_string(task.stabilize), to_string(task.detail));
+  return fmt::format("{} {} {} {} {} {}", task.set.name, task.block, to_string(task.stabilize), to_string(task.detail),
+                     to_string(task.strategy), task.kernel_times);
 }
 
 /// Host memory for a run with its result, in bytes a point. Roughly, and rather too much: a process that the system
@@ -40,15 +41,6 @@ void check_memory(const Contestant& who, std::size_t points) {
                          static_cast<double>(needed) / gib, static_cast<double>(available) / gib));
 }
 
-/// From points on the device to the mesh on the device; nothing if the phases were not timed.
-std::optional<double> on_device(const Statistics& statistics) {
-  if (statistics.milliseconds.empty()) return std::nullopt;
-  double sum = 0;
-  for (const auto& [phase, time] : statistics.milliseconds)
-    if (phase != "upload" && phase != "copy") sum += time;
-  return sum;
-}
-
 std::vector<std::pair<std::string, double>> median_phases(const std::vector<Statistics>& runs) {
   std::vector<std::pair<std::string, double>> result;
   for (const auto& [phase, ignored] : runs.back().milliseconds) {
@@ -58,6 +50,19 @@ std::vector<std::pair<std::string, double>> median_phases(const std::vector<Stat
         if (name == phase) times.push_back(time);
     result.emplace_back(phase, median(times));
   }
+  return result;
+}
+
+std::vector<KernelTime> median_kernels(const std::vector<Statistics>& runs) {
+  std::vector<KernelTime> result = runs.back().kernels;
+  for (KernelTime& kernel : result) {
+    std::vector<double> times;
+    for (const Statistics& run : runs)
+      for (const KernelTime& one : run.kernels)
+        if (one.name == kernel.name) times.push_back(one.milliseconds);
+    kernel.milliseconds = median(times);
+  }
+  std::ranges::stable_sort(result, std::ranges::greater{}, &KernelTime::milliseconds);
   return result;
 }
 
@@ -84,6 +89,7 @@ Row row_of(const Task& task) {
   if (task.stabilize != Stabilize::off) row.threshold = task.threshold;
   if (task.stabilize == Stabilize::paper) row.epsilon = task.epsilon;
   row.detail = to_string(task.detail);
+  row.strategy = to_string(task.strategy);
   return row;
 }
 
@@ -195,7 +201,7 @@ Repeats Bench::repeats(const Task& task, std::optional<double> predicted, const 
 
 Triangulator& Bench::opened(const Task& task) {
   const Contestant& who = *task.who;
-  auto& found = opened_[{who.who, who.index, who.threads, task.block}];
+  auto& found = opened_[{who.who, who.index, who.threads, task.block, task.kernel_times}];
   if (!found) {
     Options options;
     options.backend = *who.backend;
@@ -203,13 +209,14 @@ Triangulator& Bench::opened(const Task& task) {
     if (who.backend == Backend::host) options.threads = who.threads;
     options.order = Order::fast;
     options.work_group_size = task.block;
+    options.kernel_times = task.kernel_times;
     found = std::make_unique<Triangulator>(options);
   }
   return *found;
 }
 
 void Bench::use_once(const Task& task, Triangulator& triangulator, std::span<const double> xy) {
-  if (!used_.insert({&triangulator, task.stabilize, task.detail}).second) return;
+  if (!used_.insert({&triangulator, task.stabilize, task.detail, task.strategy}).second) return;
   constexpr std::size_t few = 2000;
   triangulator.options().watch = nullptr;
   static_cast<void>(triangulator.triangulate(PointsView(xy.first(std::min(xy.size(), 2 * few)))));
@@ -222,7 +229,7 @@ void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& ro
     if (row.occupancy && *row.occupancy <= 0.0) throw Skip(fmt::format("does not start with {} threads", task.block));
   }
   Options& options = triangulator.options();
-  options.strategy = Strategy::locks;  // what is repeated here is the paper's method
+  options.strategy = task.strategy;
   options.stabilize = task.stabilize;
   options.flip_threshold = task.threshold;
   options.quality_epsilon = task.epsilon;
@@ -254,6 +261,7 @@ void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& ro
     if (const auto taken = on_device(run)) device.push_back(*taken);
   if (!device.empty()) row.device_ms = median(device);
   row.phases = median_phases(statistics);
+  row.kernels = median_kernels(statistics);
   row.statistics = statistics.back();
   row.triangles = result->number_of_triangles();
   row.hash = result->hash().to_string();

@@ -29,6 +29,7 @@ struct Settings {
   Plan plan;
   Choice choice;
   bool all_devices = false;
+  bool profile = false;  ///< with ncu too
 };
 
 /// One measurement. The options of cadt mean nothing to the other contestants.
@@ -40,6 +41,8 @@ struct Task {
   unsigned threshold = 3;  // R and epsilon of the paper's figures 9 and 10
   double epsilon = 1e-4;
   StatisticsDetail detail = StatisticsDetail::counters;
+  Strategy strategy = Strategy::locks;  ///< what is repeated here is the paper's method
+  bool kernel_times = false;
   int runs = 0;  ///< 0: as the plan has it
   std::function<void(const Snapshot&)> watch;
 };
@@ -72,7 +75,7 @@ class Bench {
   void end() noexcept { progress_.clear(); }
 
  private:
-  using Key = std::tuple<std::string, std::string, unsigned, unsigned>;
+  using Key = std::tuple<std::string, std::string, unsigned, unsigned, bool>;
 
   void time(const Task& task, std::optional<double> predicted, Row& row, Triangulation* mesh);
   void time_cadt(const Task& task, std::optional<double> predicted, Row& row, Triangulation* mesh);
@@ -90,7 +93,7 @@ class Bench {
   PointStore points_;
   Predictor predictor_;
   std::map<Key, std::unique_ptr<Triangulator>> opened_;
-  std::set<std::tuple<const Triangulator*, Stabilize, StatisticsDetail>> used_;
+  std::set<std::tuple<const Triangulator*, Stabilize, StatisticsDetail, Strategy>> used_;
   cli::ProgressLine progress_;
   std::string experiment_;
 };

@@ -12,6 +12,7 @@ using Action = std::function<int()>;
 
 void add_experiments(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
+void add_once(CLI::App& app, Action& action);
 void add_machine(CLI::App& app, Action& action);
 
 }  // namespace cadt::bench

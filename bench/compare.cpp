@@ -70,9 +70,12 @@ Comparison compare(const Fighter& fighter, const std::vector<double>& xy, int re
       result.triangles = mesh.number_of_triangles();
       result.statistics = mesh.statistics();
     }
-    if (run > 0) result.seconds.push_back(seconds);
+    if (run == 0) continue;
+    result.seconds.push_back(seconds);
+    if (const auto milliseconds = on_device(result.statistics)) result.device_seconds.push_back(*milliseconds / 1e3);
   }
   std::ranges::sort(result.seconds);
+  std::ranges::sort(result.device_seconds);
   return result;
 }
 

@@ -19,8 +19,9 @@ struct Fighter {
 struct Comparison {
   std::string distribution, contestant;
   std::size_t points = 0, triangles = 0;
-  std::vector<double> seconds;  ///< of each run, ascending
-  Statistics statistics;        ///< of the last run; empty for CGAL
+  std::vector<double> seconds;         ///< of each run, ascending
+  std::vector<double> device_seconds;  ///< the same without the copies; empty for CGAL
+  Statistics statistics;               ///< of the last run; empty for CGAL
   [[nodiscard]] double best() const { return seconds.front(); }
 };
 

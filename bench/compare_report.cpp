@@ -74,6 +74,7 @@ std::string comparison_json(const std::vector<Comparison>& all) {
       entry["exact_incircles"] = s.exact_incircles;
       entry["closing_repairs"] = s.closing_repairs;
       for (const auto& [phase, time] : s.milliseconds) entry["milliseconds"][phase] = time;
+      entry["device_seconds"] = m.device_seconds;
     }
     result.push_back(std::move(entry));
   }

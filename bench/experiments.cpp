@@ -17,6 +17,7 @@ const std::vector<Experiment>& experiments() {
       {"bunny", "Fig. 12", "Stanford's bunny in three resolutions, exact and as in the paper", run_bunny},
       {"statistics", "", "what the statistics cost, and conflicts against the number of points", run_statistics},
       {"devices", "", "three distributions on each device (--all-devices: on all of every platform)", run_devices},
+      {"kernels", "", "time and bandwidth of each kernel, beside a copy on the same device (--points)", run_kernels},
   };
   return all;
 }

@@ -27,6 +27,8 @@ struct Experiment {
 [[nodiscard]] std::vector<Row> run_works(Bench& bench);
 [[nodiscard]] std::vector<Row> run_statistics(Bench& bench);
 [[nodiscard]] std::vector<Row> run_devices(Bench& bench);
+// experiments_kernels.cpp
+[[nodiscard]] std::vector<Row> run_kernels(Bench& bench);
 // experiments_flips.cpp
 [[nodiscard]] std::vector<Row> run_flips(Bench& bench);
 [[nodiscard]] std::vector<Row> run_thresholds(Bench& bench);

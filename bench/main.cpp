@@ -24,7 +24,7 @@ class Formatter : public cli::HelpFormatter {
  public:
   std::string make_usage(const CLI::App* app, std::string name) const override {
     if (app->get_parent() != nullptr) return cli::HelpFormatter::make_usage(app, std::move(name));
-    return "\nUsage: cadt-bench EXPERIMENT... --out DIR [OPTIONS]\n       cadt-bench compare|machine [OPTIONS]\n";
+    return "\nUsage: cadt-bench EXPERIMENT... --out DIR [OPTIONS]\n       cadt-bench compare|once|machine [OPTIONS]\n";
   }
 };
 
@@ -37,6 +37,7 @@ int parse_and_run(int argc, char** argv) {
   bench::Action action;
   bench::add_experiments(app, action);
   bench::add_compare(app, action);
+  bench::add_once(app, action);
   bench::add_machine(app, action);
   try {
     app.parse(argc, argv);

@@ -16,6 +16,14 @@ double now() {
 Stopwatch::Stopwatch() : start_(now()) {}
 double Stopwatch::milliseconds() const { return now() - start_; }
 
+std::optional<double> on_device(const Statistics& statistics) {
+  if (statistics.milliseconds.empty()) return std::nullopt;
+  double sum = 0;
+  for (const auto& [phase, time] : statistics.milliseconds)
+    if (phase != "upload" && phase != "copy") sum += time;
+  return sum;
+}
+
 Repeats repeat(std::size_t warm_up, std::size_t runs, double budget, std::optional<double> predicted,
                const std::function<double()>& call) {
   Repeats result;

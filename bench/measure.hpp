@@ -2,6 +2,8 @@
 // Times of whole calls, within limits.
 #pragma once
 
+#include <cadt/statistics.hpp>
+
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -26,6 +28,9 @@ struct Repeats {
   std::size_t warmups = 0;
   std::vector<double> milliseconds;  ///< of the timed runs
 };
+
+/// Milliseconds from points on the device to the mesh on the device; nothing if the phases were not timed.
+[[nodiscard]] std::optional<double> on_device(const Statistics& statistics);
 
 /// Calls `call`, which returns its own time, first `warm_up` times and then `runs` times, as long as `budget` (in
 /// milliseconds) lasts. There is always one timed run; if the first warm-up has used the budget up, it is that one.

@@ -31,6 +31,8 @@ Plan full() {
   plan.works = {477, M, 21214412};
   plan.statistics_points = 16777216;
   plan.device_sizes = {524288, 8388608};
+  plan.kernel_points = 8388608;
+  plan.copied_bytes = std::size_t{1} << 30;
   return plan;
 }
 
@@ -47,6 +49,8 @@ Plan small() {
   plan.threshold_points = 131072;
   plan.statistics_points = 524288;
   plan.device_sizes = {32768, 524288};
+  plan.kernel_points = 1048576;
+  plan.copied_bytes = std::size_t{1} << 28;
   return plan;
 }
 
@@ -69,6 +73,8 @@ Plan tiny() {
   plan.works = {477, 1000};
   plan.statistics_points = 2000;
   plan.device_sizes = {512};
+  plan.kernel_points = 4000;
+  plan.copied_bytes = std::size_t{1} << 22;
   return plan;
 }
 

@@ -36,6 +36,8 @@ struct Plan {
   std::vector<std::size_t> works;         ///< Table 4
   std::size_t statistics_points;          ///< cost of the statistics
   std::vector<std::size_t> device_sizes;  ///< all devices
+  std::size_t kernel_points;              ///< time and bandwidth of the kernels
+  std::size_t copied_bytes;               ///< of the copy that they are compared with: more than the caches hold
 };
 
 [[nodiscard]] Plan plan_of(Scale scale);

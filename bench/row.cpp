@@ -34,6 +34,11 @@ struct Column {
 // Without counters only the sizes, the launches and the closing passes are known; zeros would pass for counts.
 enum class Counted { always, in_detail };
 
+template <class Get>
+Column of_kernel(const char* name, const Get& get) {
+  return {name, [get](const Row& row) -> Cell { return row.kernel ? cell(get(*row.kernel)) : Cell(); }};
+}
+
 Column counter(const char* name, std::uint64_t Statistics::*member, Counted counted = Counted::in_detail) {
   return {name, [member, counted](const Row& row) -> Cell {
             if (!row.statistics || (counted == Counted::in_detail && row.detail == "none")) return {};
@@ -57,6 +62,7 @@ std::vector<Column> make_columns() {
       {"threshold", [](const Row& r) { return cell(r.threshold); }},
       {"epsilon", [](const Row& r) { return cell(r.epsilon); }},
       {"detail", [](const Row& r) { return cell(r.detail); }},
+      {"strategy", [](const Row& r) { return cell(r.strategy); }},
       {"warmups", [](const Row& r) { return cell(r.warmups); }},
       {"runs", [](const Row& r) { return cell(r.runs); }},
       {"median_ms", [](const Row& r) { return cell(r.median_ms); }},
@@ -102,6 +108,19 @@ std::vector<Column> make_columns() {
   columns.push_back({"phases", [](const Row& r) { return cell(list(r.phases, 4)); }});
   columns.push_back(
       {"thread_time", [](const Row& r) { return r.statistics ? cell(list(r.statistics->thread_time, 5)) : Cell(); }});
+  using K = KernelCells;
+  columns.insert(columns.end(), {of_kernel("kernel", [](const K& k) { return k.name; }),
+                                 of_kernel("kernel_launches", [](const K& k) { return std::optional(k.launches); }),
+                                 of_kernel("kernel_ms", [](const K& k) { return std::optional(k.milliseconds); }),
+                                 of_kernel("kernel_share", [](const K& k) { return std::optional(k.share); }),
+                                 of_kernel("kernel_bytes", [](const K& k) { return k.bytes; }),
+                                 of_kernel("bandwidth_gbs", [](const K& k) { return k.bandwidth(); }),
+                                 of_kernel("copy_gbs", [](const K& k) { return std::optional(k.peak); }),
+                                 of_kernel("issue_active", [](const K& k) { return k.issue_active; }),
+                                 of_kernel("dram_throughput", [](const K& k) { return k.dram_throughput; }),
+                                 of_kernel("dram_bytes", [](const K& k) { return k.dram_bytes; }),
+                                 of_kernel("operations", [](const K& k) { return k.operations; }),
+                                 of_kernel("profiler", [](const K& k) { return k.profiler; })});
   columns.push_back({"skipped", [](const Row& r) { return cell(r.skipped); }});
   return columns;
 }

@@ -22,10 +22,10 @@ using cli::Failure;
 
 struct Arguments {
   std::vector<std::string> experiments, who, backends;
-  std::string out, scale, device, data, machine;
+  std::string out, scale, device, data, machine, points;
   double limit = 0;
   int warm_up = -1, runs = 0;
-  bool list = false, all_devices = false, keep = false;
+  bool list = false, all_devices = false, keep = false, profile = false;
 };
 
 std::string list_text() {
@@ -104,8 +104,10 @@ Settings settings_of(const Arguments& arguments) {
   if (arguments.limit > 0) settings.plan.limit_seconds = arguments.limit;
   if (arguments.warm_up >= 0) settings.plan.warm_up = arguments.warm_up;
   if (arguments.runs > 0) settings.plan.runs = arguments.runs;
+  if (!arguments.points.empty()) settings.plan.kernel_points = cli::parse_count(arguments.points);
   settings.choice = {arguments.who, arguments.backends, arguments.device};
   settings.all_devices = arguments.all_devices;
+  settings.profile = arguments.profile;
   return settings;
 }
 
@@ -161,6 +163,8 @@ const char* const footer =
     "      Table 3 and Fig. 9, 10, of three contestants, each call up to a minute\n\n"
     "  cadt-bench all --out out --keep\n"
     "      goes on where an interrupted run stopped\n\n"
+    "  cadt-bench kernels --points 10M --backend cuda --profile --out out\n"
+    "      launches, time and bandwidth of each kernel, and what ncu counts, if it is on the path\n\n"
     "  cadt-bench compare -d uniform,grid -n 1M -w host,opencl,cgal --check\n"
     "      a table on the terminal, and each mesh compared with CGAL's\n\n"
     "A time is that of the whole call, from points in memory to triangles in memory. Before each measurement its time "
@@ -202,6 +206,11 @@ void add_experiments(CLI::App& app, Action& action) {
   app.add_option("--device", arguments->device, "of OpenCL and CUDA this device: its number or a part of its name")
       ->type_name("DEVICE");
   app.add_flag("--all-devices", arguments->all_devices, "experiment 'devices': each usable device of each platform");
+  app.add_option("--points", arguments->points,
+                 "experiment 'kernels': its number of points, 250000, 2M or 1e6 (default: small 1048576, full 8388608)")
+      ->type_name("N");
+  app.add_flag("--profile", arguments->profile,
+               "experiment 'kernels': what NVIDIA's ncu counts in CUDA's kernels as well; takes minutes");
   app.add_option("--data", arguments->data,
                  "folder that has real/, the real point sets (default: CADT_DATA_DIR, else ../shared/data)")
       ->type_name("DIR");

@@ -67,6 +67,32 @@ std::string back_end(const Statistics& s) {
 
 std::string line(std::string_view key, std::string_view value) { return fmt::format("{:<12}{}\n", key, value); }
 
+double total_milliseconds(const std::vector<KernelTime>& kernels) {
+  double sum = 0;
+  for (const KernelTime& kernel : kernels) sum += kernel.milliseconds;
+  return sum;
+}
+
+std::string kernels_text(const std::vector<KernelTime>& kernels) {
+  std::vector<std::vector<std::string>> rows = {{"kernel", "launches", "milliseconds", "share"}};
+  const double sum = total_milliseconds(kernels);
+  for (const KernelTime& kernel : kernels)
+    rows.push_back({kernel.name, std::to_string(kernel.launches), fmt::format("{:.3f}", kernel.milliseconds),
+                    fmt::format("{:.1f} %", sum > 0 ? 100 * kernel.milliseconds / sum : 0)});
+  return table(rows);
+}
+
+Json kernels_json(const std::vector<KernelTime>& kernels) {
+  Json json = Json::array();
+  const double sum = total_milliseconds(kernels);
+  for (const KernelTime& kernel : kernels)
+    json.push_back({{"name", kernel.name},
+                    {"launches", kernel.launches},
+                    {"milliseconds", kernel.milliseconds},
+                    {"share", sum > 0 ? kernel.milliseconds / sum : 0}});
+  return json;
+}
+
 Json verification_json(const VerifyReport& report) {
   Json checks = Json::array();
   for (const Check& check : report.checks) {
@@ -138,6 +164,7 @@ std::string statistics_text(const RunReport& r) {
     for (const auto& [name, share] : s.thread_time) shares.push_back({name, fmt::format("{:.1f} %", 100 * share)});
     text += '\n' + table(shares);
   }
+  if (!s.kernels.empty()) text += '\n' + kernels_text(s.kernels);
   return text;
 }
 
@@ -170,6 +197,7 @@ std::string statistics_json(const RunReport& r) {
   json["flips_per_edge"] = s.flips_per_edge;
   json["thread_time"] = Json::object();
   for (const auto& [name, share] : s.thread_time) json["thread_time"][name] = share;
+  json["kernels"] = kernels_json(s.kernels);
   json["stabilize"] = {{"mode", r.stabilize}, {"flip_threshold", r.flip_threshold}, {"epsilon", r.epsilon}};
   json["certified"] = s.certified;
   json["differing_triangles"] = r.differing ? Json(*r.differing) : s.certified ? Json(0) : Json(nullptr);

@@ -33,7 +33,7 @@ struct TriangulateOptions {
   std::optional<unsigned> flip_threshold;
   std::optional<double> epsilon;
   int base = 0, width = 1600;
-  bool ascii = false, strict = false, verify = false, timing = false, quiet = false;
+  bool ascii = false, strict = false, verify = false, timing = false, kernel_times = false, quiet = false;
 
   // A bare --stats is the table for people.
   [[nodiscard]] bool stats_table() const { return stats == "table"; }
@@ -57,6 +57,8 @@ std::vector<Output> check_outputs(const TriangulateOptions& options) {
   auto outputs = plan_outputs(options.outputs, options.formats, io::mesh_write_formats(), options.input.path);
   if (options.timing && options.stats.empty())
     throw Failure(exit_usage, "--timing belongs to --stats: add it, or leave --timing out");
+  if (options.kernel_times && options.stats.empty())
+    throw Failure(exit_usage, "--kernel-times belongs to --stats: add it, or leave --kernel-times out");
   if (options.strategy == "stars" && options.stabilize != "off")
     throw Failure(exit_usage, "--stabilize is about flips, and --strategy stars has hardly any: leave one of them out");
   if (options.flip_threshold && options.stabilize == "off")
@@ -97,6 +99,7 @@ Options library_options(const TriangulateOptions& options, ProgressLine& line) {
   result.quality_epsilon = options.epsilon.value_or(result.quality_epsilon);
   if (options.stats.empty()) result.statistics = StatisticsDetail::none;  // nobody will see them
   if (options.timing) result.statistics = StatisticsDetail::timing;
+  result.kernel_times = options.kernel_times;
   result.stop = interrupt_token();
   result.progress = [&line](const Progress& progress) { line.update(progress); };
   return result;
@@ -117,6 +120,7 @@ std::size_t differing_triangles(const io::PointSet& points, const std::string& n
                                 const Triangulation& mesh) {
   options.stabilize = Stabilize::off;
   options.statistics = StatisticsDetail::none;
+  options.kernel_times = false;
   options.progress = nullptr;
   return count_differing(mesh, triangulate_file(points, name, options));
 }
@@ -315,6 +319,7 @@ void add_work_options(CLI::App& command, TriangulateOptions& o) {
                 "in a file, with =- as JSON on standard output")
       ->type_name("FILE");
   command.add_flag("--timing", o.timing, "with --stats: also how the threads spend their time; makes them slower");
+  command.add_flag("--kernel-times", o.kernel_times, "with --stats: also the time of each kernel");
   command.add_flag("-q,--quiet", o.quiet, "nothing on standard error but errors and what was asked for");
 }
 

@@ -73,6 +73,7 @@ CudaDevice::CudaDevice(DeviceInfo info, const Options& options)
       stream_(std::make_shared<Stream>(info_.index, info_.name, options.queue, options.allocator)) {
   const ContextScope scope(stream_->context());
   check_call(cudaHostAlloc(&staging_, staging_bytes, cudaHostAllocDefault), "cudaHostAlloc");
+  if (options.kernel_times) clock_.emplace(stream_);
 }
 
 CudaDevice::~CudaDevice() {

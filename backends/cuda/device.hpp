@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "backends/cuda/clock.hpp"
 #include "backends/cuda/context.hpp"
 #include "common/host/device.hpp"
 
@@ -34,6 +35,7 @@ class CudaDevice final : public Device, private Primitives {
   void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
               std::uint32_t group) override;
   void finish() override;
+  [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }
   void start_times() override;
   void mark_time() override;
   [[nodiscard]] std::vector<double> times() override;
@@ -62,6 +64,7 @@ class CudaDevice final : public Device, private Primitives {
   std::vector<cudaEvent_t> events_;  ///< of this call and earlier ones; the first `marks_` are in use
   std::size_t marks_ = 0;
   void* staging_ = nullptr;  ///< page-locked host memory for small reads
+  std::optional<CudaClock> clock_;
 };
 
 }  // namespace cadt::cuda

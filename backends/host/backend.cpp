@@ -10,11 +10,14 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <new>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "backends/host/kernel_table.hpp"
 #include "backends/host/thread_pool.hpp"
@@ -104,12 +107,30 @@ DeviceInfo describe() {
   return info;
 }
 
+/// A launch returns when its work is done.
+class HostClock final : public KernelClock {
+ public:
+  void begin() override { begin_ = std::chrono::steady_clock::now(); }
+  void end() override {
+    milliseconds_.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin_).count());
+  }
+  [[nodiscard]] std::vector<double> read() override { return std::exchange(milliseconds_, {}); }
+  void clear() noexcept override { milliseconds_.clear(); }
+
+ private:
+  std::chrono::steady_clock::time_point begin_;
+  std::vector<double> milliseconds_;
+};
+
 class HostDevice final : public Device {
  public:
   explicit HostDevice(const Options& options)
       : pool_(options.threads != 0 ? options.threads : all_cores(), options.grain != 0),
         info_(describe()),
-        allocator_(options.allocator) {}
+        allocator_(options.allocator) {
+    if (options.kernel_times) clock_.emplace();
+  }
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] LaunchShape shape() const noexcept override {
@@ -157,6 +178,7 @@ class HostDevice final : public Device {
     pool_.run((*tables[static_cast<std::size_t>(build)])[static_cast<std::size_t>(kernel)], items, args.data());
   }
   void finish() override {}
+  [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }
 
  private:
   static std::byte* bytes_of(const Buffer& buffer) noexcept {
@@ -171,6 +193,7 @@ class HostDevice final : public Device {
   ThreadPool pool_;
   DeviceInfo info_;
   std::shared_ptr<DeviceAllocator> allocator_;
+  std::optional<HostClock> clock_;
 };
 
 class HostBackend final : public BackendEntry {

@@ -47,6 +47,7 @@ class OpenClEntry final : public BackendEntry {
     request.work_group_size = options.work_group_size;
     request.queue = options.queue;
     request.allocator = options.allocator;
+    request.kernel_times = options.kernel_times;
     return opencl::open_device(request);
   }
 

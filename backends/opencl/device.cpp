@@ -107,11 +107,16 @@ ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& req
   try {
     if (request.queue) {
       queue_ = cl::CommandQueue(static_cast<cl_command_queue>(*request.queue), true);
-      if ((queue_.getInfo<CL_QUEUE_PROPERTIES>() & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
+      const auto properties = queue_.getInfo<CL_QUEUE_PROPERTIES>();
+      if ((properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
         throw BackendUnavailable("opencl", "the queue executes out of order; cadt needs one that keeps the order");
+      if (request.kernel_times && (properties & CL_QUEUE_PROFILING_ENABLE) == 0)
+        throw OptionError("kernel_times", "Options::queue was made without CL_QUEUE_PROFILING_ENABLE");
     } else {
-      queue_ = cl::CommandQueue(shared_->context(), shared_->device().device);
+      queue_ = cl::CommandQueue(shared_->context(), shared_->device().device,
+                                request.kernel_times ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0});
     }
+    if (request.kernel_times) clock_.emplace(info().name);
   } catch (const cl::Error& error) {
     throw_device_error(error, info().name);
   }
@@ -286,7 +291,8 @@ void ClDevice::enqueue(ReadyKernel& target, std::size_t groups, std::size_t grou
     }
     const bool alone = launches_alone(shared_->device());
     const auto one_at_a_time = alone ? std::unique_lock(launching) : std::unique_lock<std::mutex>();
-    queue_.enqueueNDRangeKernel(target.kernel, cl::NullRange, cl::NDRange(groups * group), cl::NDRange(group));
+    queue_.enqueueNDRangeKernel(target.kernel, cl::NullRange, cl::NDRange(groups * group), cl::NDRange(group), nullptr,
+                                clock_ ? clock_->next() : nullptr);
     if (alone) queue_.finish();
   });
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "backends/opencl/clock.hpp"
 #include "backends/opencl/context.hpp"
 #include "common/host/device.hpp"
 
@@ -32,6 +33,7 @@ class ClDevice final : public Device {
   void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
               std::uint32_t group) override;
   void finish() override;
+  [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }
   [[nodiscard]] std::optional<double> occupancy(unsigned work_group_size) override;
   [[nodiscard]] Primitives* primitives() noexcept override;
 
@@ -63,6 +65,7 @@ class ClDevice final : public Device {
   std::shared_ptr<DeviceAllocator> allocator_;
   std::array<std::array<std::optional<ReadyKernel>, kernel_count>, kernel_builds> kernels_;
   std::optional<std::unique_ptr<Primitives>> primitives_;  ///< made when first asked for
+  std::optional<ClClock> clock_;
 };
 
 }  // namespace cadt::opencl

@@ -81,6 +81,7 @@ struct Function<declared, Result(CL_API_CALL*)(Parameters...)> {
 #define clGetContextInfo CADT_CL(clGetContextInfo)
 #define clGetDeviceIDs CADT_CL(clGetDeviceIDs)
 #define clGetDeviceInfo CADT_CL(clGetDeviceInfo)
+#define clGetEventProfilingInfo CADT_CL(clGetEventProfilingInfo)
 #define clGetKernelInfo CADT_CL(clGetKernelInfo)
 #define clGetKernelWorkGroupInfo CADT_CL(clGetKernelWorkGroupInfo)
 #define clGetMemObjectInfo CADT_CL(clGetMemObjectInfo)
@@ -101,3 +102,4 @@ struct Function<declared, Result(CL_API_CALL*)(Parameters...)> {
 #define clRetainMemObject CADT_CL(clRetainMemObject)
 #define clRetainProgram CADT_CL(clRetainProgram)
 #define clSetKernelArg CADT_CL(clSetKernelArg)
+#define clWaitForEvents CADT_CL(clWaitForEvents)

@@ -17,6 +17,7 @@ struct OpenRequest {
   unsigned work_group_size = 0;  ///< 0: the default of the device
   std::optional<void*> queue;    ///< the caller's cl_command_queue: its device and context instead of `index`
   std::shared_ptr<DeviceAllocator> allocator;
+  bool kernel_times = false;  ///< as in Options
 
   // The rest is for tests.
   std::string extra_options;   ///< appended to the compiler's options

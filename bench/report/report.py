@@ -22,10 +22,12 @@ except ImportError as error:
 
 import meshes  # noqa: E402
 import plots_bars  # noqa: E402
+import plots_kernels  # noqa: E402
 import plots_mesh  # noqa: E402
 import plots_time  # noqa: E402
 import style  # noqa: E402
 import tables  # noqa: E402
+import tables_kernels  # noqa: E402
 import tables_time  # noqa: E402
 import tables_work  # noqa: E402
 from rows import EXPERIMENTS, Machine, read_machines  # noqa: E402
@@ -101,6 +103,13 @@ def bunny(report: Report) -> list[str]:
     return lines + tables_work.bunny(report.machines, sets, report.paper)
 
 
+def kernels(report: Report) -> list[str]:
+    lines = report.show("kernels", "Time and bandwidth of the kernels",
+                        plots_kernels.kernels(report.machines, report.paper))
+    lines += report.show("roofline", "Roofline of the kernels", plots_kernels.roofline(report.machines, report.paper))
+    return lines + tables_kernels.kernels(report.machines, report.paper)
+
+
 def works(report: Report) -> list[str]:
     return tables_time.works(report.machines, report.paper)
 
@@ -131,6 +140,10 @@ SECTIONS = (
     Section("devices", "Every device",
             (*TIMES, "device_ms", "distribution", "hash", "claims", "lost_claims", "certified"),
             drawn("devices", "Every device", plots_bars.devices, tables_work.devices)),
+    Section("kernels", "The kernels of a run",
+            ("who", "device", "points", "device_ms", "strategy", "kernel", "kernel_launches", "kernel_ms",
+             "kernel_share", "kernel_bytes", "bandwidth_gbs", "copy_gbs", "issue_active", "dram_throughput",
+             "dram_bytes", "operations", "profiler"), kernels),
 )
 assert tuple(section.experiment for section in SECTIONS) == EXPERIMENTS
 

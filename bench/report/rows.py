@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 EXPERIMENTS = ("sizes", "blocks", "breakdown", "distributions", "snapshots", "flips", "thresholds", "works", "bunny",
-               "statistics", "devices")
+               "statistics", "devices", "kernels")
 CONTESTANTS = ("sequential", "cgal", "scipy", "cupy", "host", "opencl", "cuda")
 CADT = ("host", "opencl", "cuda")
 MODES = ("off", "defer", "paper")
@@ -169,8 +169,8 @@ def rank(name: str, order: tuple[str, ...]) -> tuple[int, str]:
 
 
 def contestants(rows: list[Row]) -> dict[Contestant, list[Row]]:
-    """Rows by contestant. What tells two runs of one device apart (mode, detail) is part of its name if it varies."""
-    varying = [c for c in ("stabilize", "detail") if len({row.text(c) for row in rows if row.text("who") in CADT}) > 1]
+    """Rows by contestant. What tells two runs of one device apart (mode, detail, strategy) is part of its name if it varies."""
+    varying = [c for c in ("stabilize", "detail", "strategy") if len({row.text(c) for row in rows if row.text("who") in CADT}) > 1]
     threads = {row.text("threads") for row in rows if row.text("who") == "host"}
     groups: dict[Contestant, list[Row]] = {}
     for row in rows:

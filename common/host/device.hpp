@@ -64,6 +64,19 @@ struct LaunchShape {
   std::uint32_t resident = 0;     ///< GPUs: work-items of a large kernel that run at the same time
 };
 
+/// Times of what a device is given to do (Options::kernel_times).
+class KernelClock {
+ public:
+  virtual ~KernelClock() = default;
+  /// What is launched between these two is timed. A begin without its end, after an error, is forgotten. \throws
+  /// DeviceError
+  virtual void begin() = 0;
+  virtual void end() = 0;
+  /// Milliseconds of each pair since the last read or clear. Waits for the device. \throws DeviceError
+  [[nodiscard]] virtual std::vector<double> read() = 0;
+  virtual void clear() noexcept = 0;
+};
+
 /// Sort and scan of the device's own library. Scratch memory comes from the caller, so that it is counted.
 class Primitives {
  public:
@@ -119,6 +132,9 @@ class Device {
 
   /// As Triangulator::occupancy().
   [[nodiscard]] virtual std::optional<double> occupancy(unsigned /*work_group_size*/) { return std::nullopt; }
+
+  /// nullptr: it was opened without Options::kernel_times.
+  [[nodiscard]] virtual KernelClock* kernel_clock() noexcept { return nullptr; }
 
   /// nullptr: the kernels of common/device do it.
   [[nodiscard]] virtual Primitives* primitives() noexcept { return nullptr; }

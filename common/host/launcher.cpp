@@ -68,7 +68,7 @@ void Launcher::scan(const Allocation& data, std::size_t count) {
   if (count == 0) return;
   if (Primitives* own = device_.primitives()) {
     const Allocation scratch = memory_.allocate(own->scan_scratch(count));
-    own->scan(*scratch, *data, count);
+    times_.time(KernelTimes::scan, [&] { own->scan(*scratch, *data, count); });
     return;
   }
   const Cut c = chunks(count);
@@ -91,7 +91,11 @@ void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys
       const Cut c = cut(count);
       run(KernelId::cadt_identity, c.items, values, static_cast<std::uint32_t>(count), c.grain);
     }
-    if (own->sort(*scratch, *keys, *values, *spare_keys, *spare_values, count, std::max(bits, 1U))) {
+    bool in_spare = false;
+    times_.time(KernelTimes::sort, [&] {
+      in_spare = own->sort(*scratch, *keys, *values, *spare_keys, *spare_values, count, std::max(bits, 1U));
+    });
+    if (in_spare) {
       std::swap(keys, spare_keys);
       std::swap(values, spare_values);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/host/device.hpp"
+#include "common/host/kernel_times.hpp"
 #include "common/host/memory.hpp"
 
 namespace cadt {
@@ -20,11 +21,14 @@ struct Cut {
 class Launcher {
  public:
   /// `grain` as in Options, 0 to choose.
-  Launcher(Device& device, Memory& memory, unsigned grain) noexcept : device_(device), memory_(memory), grain_(grain) {}
+  Launcher(Device& device, Memory& memory, unsigned grain) noexcept
+      : device_(device), memory_(memory), times_(device), grain_(grain) {}
 
   [[nodiscard]] Device& device() const noexcept { return device_; }
   [[nodiscard]] Memory& memory() const noexcept { return memory_; }
   [[nodiscard]] std::uint64_t launches() const noexcept { return launches_; }
+  /// As Statistics::kernels. \throws DeviceError
+  [[nodiscard]] std::vector<KernelTime> kernel_times() { return times_.sums(); }
   void set_build(KernelBuild build) noexcept { build_ = build; }
 
   /// For kernels over `count` independent elements.
@@ -50,7 +54,7 @@ class Launcher {
     if (items == 0) return;
     const Arg list[] = {Arg(args)...};
     ++launches_;
-    device_.launch(kernel, items, list, build_, group);
+    times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, build_, group); });
   }
 
   /// Zeroed words for small results.
@@ -69,6 +73,7 @@ class Launcher {
  private:
   Device& device_;
   Memory& memory_;
+  KernelTimes times_;
   unsigned grain_;
   KernelBuild build_ = KernelBuild::narrow;
   std::uint64_t launches_ = 0;

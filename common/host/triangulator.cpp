@@ -172,6 +172,7 @@ bool choose_stars(Triangulator::State& state, std::size_t n) {
 void close_account(Triangulator::State& state, Run& run, DeviceTriangulation::Data& data) {
   run.finish();
   data.statistics.launches = run.launcher.launches();
+  data.statistics.kernels = run.launcher.kernel_times();
   data.statistics.bytes_device_peak = state.memory.peak();
   state.known_points = std::max(state.known_points, data.points);
   if (data.statistics.proven_stars != 0) state.known_star_points = std::max(state.known_star_points, data.points);

@@ -21,6 +21,14 @@ enum class StatisticsDetail {
 /// "none", "counters", "timing".
 [[nodiscard]] std::string_view to_string(StatisticsDetail detail) noexcept;
 
+/// What one kernel took in a run.
+struct KernelTime {
+  /// As in common/device/kernel_list.h; "sort" and "scan" are a device's own, each call of which counts as a launch.
+  std::string name;
+  std::uint64_t launches = 0;
+  double milliseconds = 0;  ///< of all of them
+};
+
 /// Counters of one run. Everything about conflicts (lost claims, retries, deferred work) depends on the schedule and
 /// differs from run to run; the mesh does not.
 struct Statistics {
@@ -76,6 +84,10 @@ struct Statistics {
 
   /// Milliseconds per phase, in order of execution, e.g. {"sort", 12.3}.
   std::vector<std::pair<std::string, double>> milliseconds;
+
+  /// With Options::kernel_times: the time of each kernel, the longest first; else empty. Copies and fills of memory are
+  /// no kernels.
+  std::vector<KernelTime> kernels;
 };
 
 }  // namespace cadt

@@ -98,6 +98,10 @@ struct Options {
   /// triangles by at most so many degrees. Not negative and not NaN.
   double quality_epsilon = 1e-4;
   StatisticsDetail statistics = StatisticsDetail::counters;
+  /// Times each kernel (Statistics::kernels), by the device's own clock. The marks in its queue cost some microseconds
+  /// a launch; without this there are none. A queue of the caller's must have been made with CL_QUEUE_PROFILING_ENABLE,
+  /// else OptionError.
+  bool kernel_times = false;
   /// Called from the calling thread with a copy of the mesh, for pictures: after each launch of a level of points, and
   /// once more if some were left over. Costs a copy of all records each time. Must not throw.
   std::function<void(const Snapshot&)> watch;

@@ -87,7 +87,7 @@ class DeviceTriangulation {
 ///     kernel<<<blocks, threads, 0, stream>>>(static_cast<const int*>(mesh.triangles()), mesh.number_of_triangles());
 class Triangulator {
  public:
-  /// Opens the device and tests it. \throws BackendUnavailable, KernelBuildError, DeviceError
+  /// Opens the device and tests it. \throws BackendUnavailable, KernelBuildError, DeviceError, OptionError
   explicit Triangulator(const Options& options = {});
   ~Triangulator();
   Triangulator(Triangulator&&) noexcept;
@@ -95,7 +95,7 @@ class Triangulator {
 
   [[nodiscard]] const DeviceInfo& device() const noexcept;
   /// What says where and how the device works (`backend`, `device`, `threads`, `work_group_size`, `queue`,
-  /// `allocator`) is read once, when it is opened; the rest may be changed between calls.
+  /// `allocator`), and `kernel_times`, is read once, when it is opened; the rest may be changed between calls.
   [[nodiscard]] Options& options() noexcept;
   /// Theoretical occupancy of the insertion with work groups of this size: resident warps over the most that there can
   /// be, 0 to 1; 0 if it does not start with so many (a run then takes the largest size that does). Empty where the

@@ -16,16 +16,18 @@ PROGRAM = os.environ.get("CADT_BENCH_PROGRAM", "cadt-bench")
 SECONDS = 240
 
 EXPERIMENTS = ["sizes", "blocks", "breakdown", "distributions", "snapshots", "flips", "thresholds", "works", "bunny",
-               "statistics", "devices"]
+               "statistics", "devices", "kernels"]
 COUNTERS = ["launches", "walk_steps", "claims", "lost_claims", "invalid_restarts", "insert_retries", "stale_edges",
             "deferred_points", "deferred_edges", "splits", "edge_splits", "flips", "incircle_tests",
             "orientation_tests", "exact_orientations", "exact_incircles", "ties", "closing_sweeps", "closing_repairs",
             "certified_edges", "stabilized_edges", "illegal_edges", "refined_points", "bytes_device_peak"]
 # What the report reads: a change here is one there.
 COLUMNS = (["experiment", "distribution", "points", "who", "backend", "device", "threads", "block", "stabilize",
-            "threshold", "epsilon", "detail", "warmups", "runs", "median_ms", "min_ms", "max_ms", "device_ms",
-            "triangles", "hash", "occupancy", "differing_triangles"] + COUNTERS + ["certified"] +
-           [f"flips_{k}" for k in range(16)] + ["phases", "thread_time", "skipped"])
+            "threshold", "epsilon", "detail", "strategy", "warmups", "runs", "median_ms", "min_ms", "max_ms",
+            "device_ms", "triangles", "hash", "occupancy", "differing_triangles"] + COUNTERS + ["certified"] +
+           [f"flips_{k}" for k in range(16)] + ["phases", "thread_time"] +
+           ["kernel", "kernel_launches", "kernel_ms", "kernel_share", "kernel_bytes", "bandwidth_gbs", "copy_gbs",
+            "issue_active", "dram_throughput", "dram_bytes", "operations", "profiler"] + ["skipped"])
 
 
 def default_signals():
@@ -149,6 +151,40 @@ class Results(BenchTest):
             self.assertEqual(len(lines) - 1, int(row["triangles"]))
         self.assertEqual(len((self.out / "snapshots" / "points.csv").read_text().splitlines()), 2049)
         self.assertIn("no data folder", " ".join(row["skipped"] for row in self.rows("bunny")))
+
+    def test_kernels(self):
+        self.tiny("kernels", "--who", "host", "--points", "3000")
+        self.assertEqual({row["profiler"] for row in self.rows("kernels")}, {"not asked for (--profile)"})
+        self.tiny("kernels", "--who", "host,opencl", "--points", "3000", "--profile")
+        done = [row for row in self.rows("kernels") if not row["skipped"]]
+        runs = {}
+        for row in done:
+            runs.setdefault((row["who"], row["strategy"]), []).append(row)
+            self.assertEqual(row["points"], "3000")
+            self.assertGreater(float(row["copy_gbs"]), 0)
+            if row["kernel_bytes"]:
+                gigabytes = 1e-9 * int(row["kernel_bytes"])
+                self.assertAlmostEqual(float(row["bandwidth_gbs"]) * 1e-3 * float(row["kernel_ms"]) / gigabytes, 1,
+                                       places=3)
+            self.assertEqual((row["issue_active"], row["operations"]), ("", ""))
+            self.assertEqual(row["profiler"], "ncu knows CUDA's kernels only")
+        self.assertEqual(set(runs), {(who, strategy) for who in self.usable() - {"cuda"}
+                                     for strategy in ("locks", "stars")})
+        for (_, strategy), rows in runs.items():
+            self.assertAlmostEqual(sum(float(row["kernel_share"]) for row in rows), 1, places=4)
+            kernels = {row["kernel"]: row for row in rows}
+            self.assertEqual(len(kernels), len(rows))
+            self.assertEqual("cadt_stars" in kernels, strategy == "stars")
+            self.assertEqual(int(kernels["cadt_gather_points"]["kernel_bytes"]), 36 * 3000)
+            times = [float(row["kernel_ms"]) for row in rows]
+            self.assertEqual(times, sorted(times, reverse=True))
+            self.assertLessEqual(sum(times), 1.5 * float(rows[0]["max_ms"]))  # medians of each, so about
+
+    def test_once(self):
+        done = [self.bench("once", "-n", "2000", "--backend", "host", "--strategy", how).stdout
+                for how in ("locks", "stars")]
+        self.assertRegex(done[0], r"^[0-9a-f]{32}\n$")
+        self.assertEqual(done[0], done[1])
 
     def test_bunnies(self):
         real = self.folder / "data" / "real"

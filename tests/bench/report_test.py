@@ -31,9 +31,9 @@ from synthetic import COLUMNS, Writer, turned, lattice, write_machine  # noqa: E
 TITLES = ("Time against points (Table 3)", "Block size and occupancy (Fig. 4 and 5)", "Where the time goes (Fig. 6)",
           "Distributions and real sets (Fig. 7)", "The mesh while it grows (Fig. 8)", "Flips an edge (Fig. 9 and 10)",
           "Time against R (Fig. 11)", "Other works (Table 4)", "The Stanford bunny (Fig. 12)",
-          "What the statistics cost and count", "Every device")
+          "What the statistics cost and count", "Every device", "The kernels of a run")
 FIGURES = ("sizes", "throughput", "blocks", "breakdown", "distributions", "flips", "thresholds", "statistics",
-           "devices")
+           "devices", "kernels", "roofline")
 TWO = {"host": ["Another Processor"], "opencl": ["pthread-Another Processor", "Example Card 2"]}
 
 
@@ -164,6 +164,19 @@ class TwoMachines(unittest.TestCase):
         text = section(self.text, TITLES[0])
         self.assertRegex(text, r"\nThe other programs have as many triangles in each of \d+ cases\.\n")
         self.assertNotIn("Another number of triangles", self.text)
+
+
+    def test_kernels(self):
+        text = section(self.text, TITLES[11])
+        self.assertIn("### one: cuda (Example Card 1, stars), 8,388,608 points", text)
+        row = next(r for r in self.one.rows["kernels"] if (r["who"], r["kernel"]) == ("cuda", "cadt_closing_pass"))
+        self.assertIn(f"| cadt_closing_pass | 1 | {words.number(row['kernel_ms'])} | 10.0 % | 671 | "
+                      f"{words.number(row['bandwidth_gbs'])} | {words.percent(row['bandwidth_gbs'] / 4100)} | 90.0 % | "
+                      "65.0 % | 0.608 |", text)
+        self.assertRegex(text, r"\| cadt_legalize_edges \| 7 \| [\d.]+ \| 0.1 % \| – \| – \| – \|")
+        self.assertRegex(text, r"- one: cuda \(Example Card 1, locks\): kernels take [\d.]+ ms of [\d.]+ ms on the "
+                               r"device \(\d+\.\d %\); a copy moves 4,100 GB/s\.\n")
+        self.assertRegex(text, r"- two: host .*, stars\): .* GB/s\. Not profiled: ncu knows CUDA's kernels only\.\n")
 
 
 class OtherSizes(FolderTest):

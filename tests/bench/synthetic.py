@@ -16,9 +16,11 @@ COUNTERS = ("launches walk_steps claims lost_claims invalid_restarts insert_retr
             "deferred_edges splits edge_splits flips incircle_tests orientation_tests exact_orientations "
             "exact_incircles ties closing_sweeps closing_repairs certified_edges stabilized_edges illegal_edges "
             "refined_points bytes_device_peak").split()
-COLUMNS = ("experiment distribution points who backend device threads block stabilize threshold epsilon detail warmups "
-           "runs median_ms min_ms max_ms device_ms triangles hash occupancy differing_triangles".split() + COUNTERS +
-           ["certified"] + [f"flips_{k}" for k in range(16)] + ["phases", "thread_time", "skipped"])
+COLUMNS = ("experiment distribution points who backend device threads block stabilize threshold epsilon detail strategy "
+           "warmups runs median_ms min_ms max_ms device_ms triangles hash occupancy differing_triangles".split() + COUNTERS +
+           ["certified"] + [f"flips_{k}" for k in range(16)] + ["phases", "thread_time"] +
+           "kernel kernel_launches kernel_ms kernel_share kernel_bytes bandwidth_gbs copy_gbs issue_active "
+           "dram_throughput dram_bytes operations profiler skipped".split())
 SIZES = [8192, 65536, 524288, 1 << 20, 1 << 21, 1 << 22, 1 << 23, 1 << 24, 1 << 25, 1 << 26, 1 << 27]
 # A point's nanoseconds, milliseconds of a call, and of these the share that upload and copy take.
 COSTS = {"sequential": (900, 0, 0), "cgal": (450, 0, 0), "scipy": (1900, 1, 0), "cupy": (60, 6, 0.2),
@@ -230,6 +232,34 @@ def kernels(writer: Writer) -> None:
                                **stabilized(points, mode, threshold))
 
 
+# Name, share of the time, bytes a point, launches; "insert" and the join have walks and hash tables in the place of a
+# model.
+KERNELS = {"locks": [("cadt_insert", 0.61, 148, 24), ("cadt_closing_pass", 0.1, 80, 1), ("sort", 0.08, 64, 1),
+                     ("cadt_emit_ranked", 0.07, 124, 1), ("cadt_flag_triangles", 0.05, 72, 1),
+                     ("cadt_gather_points", 0.04, 36, 1), ("cadt_unique_pack", 0.02, 64, 1),
+                     ("scan", 0.01, 16, 1), ("cadt_sort_keys", 0.006, 20, 1), ("cadt_bounds", 0.005, 16, 1),
+                     ("cadt_unique_flags", 0.004, 20, 1), ("cadt_sort_runs", 0.002, 4, 1),
+                     ("cadt_crowded_flags", 0.002, 8, 1), ("cadt_legalize_edges", 0.001, None, 7)],
+           "stars": [("cadt_stars", 0.7, 68, 1), ("cadt_star_records", 0.2, 120, 1), ("cadt_join_cover", 0.1, None, 1)]}
+
+
+def roofs(writer: Writer) -> None:
+    points = 1 << 23
+    for who, device in writer.everyone():
+        copy = {"host": 21.5, "opencl": 3900.0, "cuda": 4100.0}[who] / writer.slower
+        for strategy, kernels in KERNELS.items():
+            for name, share, size, launches in kernels:
+                row = writer.row("kernels", who, device, points, 1 if strategy == "locks" else 0.5, strategy=strategy,
+                                 kernel=name, kernel_launches=launches, kernel_share=share, copy_gbs=copy,
+                                 profiler="ncu knows CUDA's kernels only")
+                row["kernel_ms"] = time = 0.9 * share * row["device_ms"]
+                if size is not None:
+                    row.update(kernel_bytes=size * points, bandwidth_gbs=size * points / time / 1e6)
+                if who == "cuda":
+                    row.update(profiler="ncu", issue_active=100 * (1 - share), dram_throughput=20 + 50 * (1 - share),
+                               dram_bytes=1.5 * (size or 30) * points, operations=(3 + 700 * share) * points)
+
+
 def write_machine(folder: Path, name: str = "one", devices: dict[str, list[str]] | None = None,
                   slower: float = 1) -> Writer:
     """A whole folder. The rows may be changed afterwards, and written again."""
@@ -237,6 +267,7 @@ def write_machine(folder: Path, name: str = "one", devices: dict[str, list[str]]
                                                     "cuda": ["Example Card 1"]}, slower)
     times(writer)
     kernels(writer)
+    roofs(writer)
     pictures(writer)
     writer.write()
     return writer

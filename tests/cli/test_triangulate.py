@@ -183,7 +183,7 @@ class Statistics(CliTest):
         self.assertEqual(self.names(), ["in.xy", "m.off", "s.json"])
 
     def test_every_key_is_documented(self):
-        self.cadt("triangulate", "in.xy", "--stats=s.json", "-o", "m.off", "--verify")
+        self.cadt("triangulate", "in.xy", "--stats=s.json", "--kernel-times", "-o", "m.off", "--verify")
         text = (SOURCE / "docs" / "cli.md").read_text()
         for key in self.keys(json.loads(self.path("s.json").read_text())):
             self.assertIn(f"`{key}`", text)
@@ -306,6 +306,22 @@ class Stabilized(CliTest):
         self.assertRegex(table, r"(?m)^locate +\d+\.\d %")
         self.assertRegex(table, r"(?m)^15\+ +\d+")
         self.fails(2, "triangulate", "in.f64", "--timing", says="--stats")
+
+    def test_kernel_times(self):
+        _, data, mesh = self.run_with("--kernel-times")
+        kernels = {kernel["name"]: kernel for kernel in data["kernels"]}
+        self.assertEqual(len(kernels), len(data["kernels"]))
+        self.assertGreater(kernels["cadt_insert"]["milliseconds"], 0)
+        self.assertEqual(sum(kernel["launches"] for kernel in kernels.values()), data["counters"]["launches"])
+        self.assertAlmostEqual(sum(kernel["share"] for kernel in kernels.values()), 1)
+        self.assertLessEqual(sum(kernel["milliseconds"] for kernel in kernels.values()),
+                             1000 * data["seconds"]["triangulate"])
+        _, without, expected = self.run_with()
+        self.assertEqual(without["kernels"], [])
+        self.assertEqual(mesh, expected)
+        table = self.cadt("triangulate", "in.f64", "--backend", "host", "--stats", "--kernel-times").err
+        self.assertRegex(table, r"(?m)^cadt_insert +\d+ +\d+\.\d+ +\d+\.\d %")
+        self.fails(2, "triangulate", "in.f64", "--kernel-times", says="--stats")
 
 
 class Degenerate(CliTest):

@@ -76,6 +76,21 @@ TEST_P(ClQueue, OutOfOrder) {
   }
 }
 
+TEST_P(ClQueue, WithoutProfiling) {
+  Options with = options();
+  with.kernel_times = true;
+  if (const auto error = thrown<OptionError>([&] { const Triangulator t(with); }); error != nullptr) {
+    EXPECT_EQ(error->option(), "kernel_times");
+  }
+  const cl::CommandQueue queue(own().getInfo<CL_QUEUE_CONTEXT>(), own().getInfo<CL_QUEUE_DEVICE>(),
+                               CL_QUEUE_PROFILING_ENABLE);
+  with.queue = queue();
+  const Known known(uniform_points(200));
+  Triangulator triangulator(with);
+  const DeviceTriangulation mesh = triangulator.triangulate(upload(known.xy));
+  EXPECT_FALSE(mesh.statistics().kernels.empty());
+}
+
 TEST_P(ClQueue, BufferOfAnotherContext) {
   const Known known(uniform_points(200));
   const auto other = device_memory(Backend::opencl, device_index(Backend::opencl));

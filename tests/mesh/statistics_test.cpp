@@ -7,9 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -111,6 +113,70 @@ TEST_P(CountedWork, TimingTellsShares) {
   EXPECT_NEAR(sum, 1.0, 1e-9);
 }
 
+class KernelTimes : public BackendTest {};
+
+TEST_P(KernelTimes, AreThoseOfTheLaunches) {
+  const Points xy = uniform_points(20000, 11);
+  Options options = GetParam().options();
+  options.order = Order::fast;
+  for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
+    options.strategy = strategy;
+    options.kernel_times = false;
+    const Triangulation without = triangulate(Reals(xy), options);
+    EXPECT_TRUE(without.statistics().kernels.empty());
+    options.kernel_times = true;
+    Triangulator triangulator(options);
+    for (int run = 0; run < 2; ++run) {
+      const Triangulation mesh = triangulator.triangulate(Reals(xy));
+      EXPECT_EQ(mesh.hash(), without.hash());
+      const Statistics& s = mesh.statistics();
+      std::map<std::string, KernelTime> kernels;
+      std::uint64_t launches = 0;
+      double sum = 0, phases = 0, last = std::numeric_limits<double>::infinity();
+      for (const KernelTime& kernel : s.kernels) {
+        EXPECT_TRUE(kernels.emplace(kernel.name, kernel).second) << kernel.name;
+        EXPECT_GE(kernel.milliseconds, 0) << kernel.name;
+        EXPECT_LE(kernel.milliseconds, last) << kernel.name;
+        last = kernel.milliseconds;
+        if (kernel.name != "sort" && kernel.name != "scan") launches += kernel.launches;
+        sum += kernel.milliseconds;
+      }
+      EXPECT_EQ(launches, s.launches);
+      if (strategy == Strategy::locks) {
+        EXPECT_GT(kernels["cadt_insert"].milliseconds, 0);
+      }
+      EXPECT_EQ(kernels["cadt_stars"].launches, strategy == Strategy::stars ? 1U : 0U);
+      EXPECT_EQ(kernels["cadt_emit_ranked"].launches, 1U);
+      // The keys are sorted by the device's own sort or by that of common/device.
+      EXPECT_NE(kernels.count("sort"), kernels.count("cadt_radix_scatter"));
+      for (const auto& [name, milliseconds] : s.milliseconds) phases += milliseconds;
+      EXPECT_LE(sum, phases);
+    }
+  }
+}
+
+// What a cancelled run has launched is no part of the next one.
+TEST_P(KernelTimes, BeginAnewAfterACancelledRun) {
+  const Points xy = uniform_points(20000, 12);
+  Options options = GetParam().options();
+  options.kernel_times = true;
+  options.strategy = Strategy::locks;  // the others may have no phase of insertion
+  Triangulator triangulator(options);
+  std::stop_source source;
+  triangulator.options().stop = source.get_token();
+  triangulator.options().progress = [&](const Progress& progress) {
+    if (progress.phase == "insert") source.request_stop();
+  };
+  EXPECT_THROW(static_cast<void>(triangulator.triangulate(Reals(xy))), Cancelled);
+  triangulator.options().stop = {};
+  triangulator.options().progress = nullptr;
+  const Statistics s = triangulator.triangulate(Reals(xy)).statistics();
+  std::uint64_t launches = 0;
+  for (const KernelTime& kernel : s.kernels)
+    if (kernel.name != "sort" && kernel.name != "scan") launches += kernel.launches;
+  EXPECT_EQ(launches, s.launches);
+}
+
 class Snapshots : public BackendTest {};
 
 TEST_P(Snapshots, ShowTheGrowingMesh) {
@@ -143,6 +209,7 @@ TEST_P(Snapshots, ShowTheGrowingMesh) {
 }
 
 CADT_ON_MAIN_BACKENDS(CountedWork);
+CADT_ON_MAIN_BACKENDS(KernelTimes);
 CADT_ON_MAIN_BACKENDS(Snapshots);
 
 TEST(CountDiffering, CountsTrianglesOfOneMeshOnly) {

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "backends/cuda/context.hpp"
+#include "common/host/device.hpp"
+
+namespace cadt::cuda {
+
+/// Times of kernels by events before and behind them in the stream. A kernel that the host launches into an empty
+/// stream begins some microseconds after the event, which count.
+class CudaClock final : public KernelClock {
+ public:
+  explicit CudaClock(std::shared_ptr<Stream> stream) noexcept : stream_(std::move(stream)) {}
+  ~CudaClock() override;
+  CudaClock(const CudaClock&) = delete;
+  CudaClock& operator=(const CudaClock&) = delete;
+
+  void begin() override { record(2 * pairs_); }
+  void end() override {
+    record(2 * pairs_ + 1);
+    ++pairs_;
+  }
+  [[nodiscard]] std::vector<double> read() override;
+  void clear() noexcept override { pairs_ = 0; }
+
+ private:
+  void record(std::size_t number);
+  void check_call(cudaError_t code, const char* call) const { check(code, call, stream_->name()); }
+
+  std::shared_ptr<Stream> stream_;
+  std::vector<cudaEvent_t> events_;  ///< kept for later runs
+  std::size_t pairs_ = 0;            ///< that are in use
+};
+
+}  // namespace cadt::cuda

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/bandwidth.hpp"
+
+#include "common/host/launcher.hpp"
+#include "common/host/registry.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace cadt::bench {
+
+double copy_bandwidth(const Options& options, std::size_t bytes) {
+  constexpr int runs = 10;  // the first ones find cold pages and a slow clock
+  constexpr std::size_t point = 16, word = 4;
+  Options timed = options;
+  timed.kernel_times = true;
+  const std::unique_ptr<Device> device = open_device(timed);
+  const std::size_t most = std::min<std::size_t>(device->free_bytes() / 4, device->info().largest_buffer_bytes);
+  bytes = std::max(std::min(bytes, most) / point, std::size_t{1}) * point;
+  Memory memory(*device, false);
+  Launcher launch(*device, memory, 0);
+  const Allocation from = memory.allocate(bytes), to = memory.allocate(bytes);
+  for (const Allocation* buffer : {&from, &to}) device->fill(**buffer, 0, bytes, 1);  // so that there are pages
+  double best = 0;
+  for (int run = 0; run < runs; ++run) {
+    const auto words = static_cast<std::uint32_t>(bytes / word), points = static_cast<std::uint32_t>(bytes / point);
+    const Cut by_word = launch.cut(words), by_point = launch.cut(points);
+    launch.run(KernelId::cadt_copy_words, by_word.items, from, to, words, by_word.grain);
+    launch.run(KernelId::cadt_import_doubles, by_point.items, from, from, std::uint32_t{0}, std::uint32_t{1},
+               std::uint32_t{2}, to, points, by_point.grain);
+    for (const KernelTime& kernel : launch.kernel_times())
+      best = std::max(best, 2e3 * static_cast<double>(bytes) / std::max(kernel.milliseconds, 1e-6));
+  }
+  return best;
+}
+
+}  // namespace cadt::bench

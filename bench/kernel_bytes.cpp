@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/kernel_bytes.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace cadt::bench {
+namespace {
+
+// A point has 16 bytes, a record 32, a star 48; keys, places, labels, ranks, hints and flags have 4.
+constexpr KernelBytes table[] = {
+    {"cadt_import_doubles", Unit::point, 16, 16, "points"},
+    {"cadt_bounds", Unit::point, 16, 0, "points"},
+    {"cadt_sort_keys", Unit::point, 16, 4, "points; keys; once: the tiles may keep them"},
+    {"cadt_identity", Unit::point, 0, 4, "places"},
+    {"sort", Unit::pass, 8, 8, "keys and places"},
+    {"cadt_radix_count", Unit::pass, 4, 0, "keys"},
+    {"cadt_radix_scatter", Unit::pass, 4, 8, "keys; keys and places"},
+    {"cadt_radix_scatter", Unit::later_pass, 4, 0, "places"},
+    {"scan", Unit::record, 4, 4, "flags of triangles; ranks"},
+    {"scan", Unit::starred, 12, 12, "tiles, owned triangles, unproven vertices"},
+    {"cadt_scan_sums", Unit::record, 4, 0, "flags of triangles"},
+    {"cadt_scan_sums", Unit::starred, 12, 0, "tiles, owned triangles, unproven vertices"},
+    {"cadt_scan_apply", Unit::record, 4, 4, "flags of triangles; ranks"},
+    {"cadt_scan_apply", Unit::starred, 12, 12, "tiles, owned triangles, unproven vertices"},
+    {"cadt_crowded_flags", Unit::point, 4, 4, "keys; flags"},
+    {"cadt_gather_points", Unit::point, 20, 16, "places and points; points in order"},
+    {"cadt_sort_runs", Unit::point, 4, 0, "keys"},
+    {"cadt_unique_flags", Unit::point, 16, 4, "points; flags"},
+    {"cadt_unique_pack", Unit::point, 4, 0, "ranks"},
+    {"cadt_unique_pack", Unit::distinct, 20, 20, "points and labels"},
+    {"cadt_insert", Unit::inserted, 48, 100, "the point and its triangle; the three in its place, a hint"},
+    {"cadt_closing_pass", Unit::swept_record, 40, 0, "records, and their points: one for two of them"},
+    {"cadt_tile_flags", Unit::starred, 4, 4, "keys; flags"},
+    {"cadt_tile_pack", Unit::starred, 4, 0, "ranks"},
+    {"cadt_stars", Unit::starred, 16, 4, "points; sizes"},
+    {"cadt_stars", Unit::proven, 0, 48, "stars"},
+    {"cadt_star_counts", Unit::starred, 4, 12, "sizes; sizes, owned triangles, unproven vertices"},
+    {"cadt_star_counts", Unit::proven, 48, 0, "stars"},
+    {"cadt_star_records", Unit::starred, 8, 0, "sizes, first numbers"},
+    {"cadt_star_records", Unit::proven, 48, 64, "stars; two records for each"},
+    {"cadt_unproven_pack", Unit::starred, 4, 0, "ranks"},
+    {"cadt_unproven_pack", Unit::unproven, 16, 20, "points; points and places"},
+    {"cadt_flag_triangles", Unit::record, 32, 4, "records; flags"},
+    {"cadt_emit_ranked", Unit::record, 36, 0, "records and ranks"},
+    {"cadt_emit_ranked", Unit::distinct, 4, 0, "labels"},
+    {"cadt_emit_ranked", Unit::triangle, 0, 24, "vertices and neighbours"},
+    {"cadt_count_triangles", Unit::record, 32, 0, "records"},
+    {"cadt_count_triangles", Unit::distinct, 8, 4, "labels and buckets; buckets"},
+    {"cadt_bucket_triangles", Unit::record, 32, 0, "records"},
+    {"cadt_bucket_triangles", Unit::distinct, 8, 4, "labels and buckets; buckets"},
+    {"cadt_bucket_triangles", Unit::triangle, 0, 8, "members"},
+    {"cadt_sort_buckets", Unit::distinct, 4, 0, "buckets"},
+    {"cadt_sort_buckets", Unit::triangle, 8, 0, "members"},
+    {"cadt_number_triangles", Unit::triangle, 8, 4, "members; numbers"},
+    {"cadt_emit_triangles", Unit::record, 4, 0, "numbers"},
+    {"cadt_emit_triangles", Unit::distinct, 4, 0, "labels"},
+    {"cadt_emit_triangles", Unit::triangle, 32, 24, "records; vertices and neighbours"},
+    {"cadt_boundary_edges", Unit::triangle, 12, 0, "neighbours"},
+};
+
+/// As choose_grid of common/host/spatial_order.cpp has it where the box is about as wide as high.
+std::uint64_t sort_passes(std::uint64_t points) noexcept {
+  const int bits = std::clamp(static_cast<int>(std::bit_width(points)) + 4, 4, 32);
+  return static_cast<std::uint64_t>((bits + 7) / 8);
+}
+
+std::uint64_t units(Unit unit, const Statistics& run, std::uint64_t triangles) noexcept {
+  const bool stars = run.proven_stars != 0;
+  switch (unit) {
+    case Unit::point:
+      return run.points;
+    case Unit::distinct:
+      return run.distinct;
+    case Unit::inserted:
+      return run.splits + run.edge_splits;
+    case Unit::proven:
+      return run.proven_stars;
+    case Unit::unproven:
+      return stars ? run.distinct - run.proven_stars : 0;
+    case Unit::starred:
+      return stars ? run.distinct : 0;
+    case Unit::record:
+      return 2 * run.distinct;
+    case Unit::swept_record:
+      return 2 * run.distinct * run.closing_sweeps;
+    case Unit::triangle:
+      return triangles;
+    case Unit::pass:
+      return run.points * sort_passes(run.points);
+    case Unit::later_pass:
+      return run.points * (sort_passes(run.points) - 1);
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::span<const KernelBytes> kernel_bytes() noexcept { return table; }
+
+std::optional<std::uint64_t> least_bytes(std::string_view kernel, const Statistics& run, std::uint64_t triangles) {
+  std::optional<std::uint64_t> sum;
+  for (const KernelBytes& line : table) {
+    if (line.kernel != kernel) continue;
+    sum = sum.value_or(0) + std::uint64_t{line.read + line.written} * units(line.unit, run, triangles);
+  }
+  return sum;
+}
+
+}  // namespace cadt::bench

@@ -38,7 +38,7 @@ std::optional<DeviceMesh> wrap_mesh(Run& run, const Allocation& points, std::siz
   launch.run_in_groups(KernelId::cadt_wrap_stars, teams.items, lanes_of_vertex, points, boxes, crates, count, box_count,
                        crate_count, effort, teams.grain, links, static_cast<std::uint32_t>(link_words), begins, sizes,
                        found);
-  // What stars that have failed say is not used: sizes of 0.
+  // Vertices without a star have size 0, so this may run before it is known whether there are any.
   const Allocation bases = run.memory.allocate((n + 1) * word);
   launch.run(KernelId::cadt_wrap_counts, all.items, links, begins, sizes, count, all.grain, bases);
   launch.scan(bases, n + 1);
@@ -47,22 +47,19 @@ std::optional<DeviceMesh> wrap_mesh(Run& run, const Allocation& points, std::siz
   run.statistics.exact_orientations += words[3];
   run.statistics.exact_incircles += words[4];
   run.statistics.ties += words[5];
-          words[4], words[5]);
-          if (words[1] != 0) return std::nullopt;
-          if (const std::uint32_t triangles = launch.read_word(bases, n); triangles != records || words[0] > link_words)
-            throw InternalError("the wrapped stars have " + std::to_string(triangles) + " triangles instead of " +
-                                std::to_string(records) + "; please report this with the input");
-          run.statistics.wrapped_stars = n;
-          DeviceMesh mesh;
-          mesh.slots = 2 * n;
-          mesh.records = run.memory.allocate(mesh.slots * sizeof(cadt_record));
-          run.device.fill(*mesh.records, records * sizeof(cadt_record), (mesh.slots - records) * sizeof(cadt_record),
-                          0);
-          const Cut shares = launch.cut(n * CADT_WRAP_SHARES);
-          launch.run(KernelId::cadt_wrap_records, shares.items, links, begins, sizes, bases, count, shares.grain,
-                     mesh.records);
-          run.end_phase("wrap");
-          return mesh;
+  if (words[1] != 0) return std::nullopt;
+  if (const std::uint32_t triangles = launch.read_word(bases, n); triangles != records || words[0] > link_words)
+    throw InternalError("the wrapped stars have " + std::to_string(triangles) + " triangles instead of " +
+                        std::to_string(records) + "; please report this with the input");
+  run.statistics.wrapped_stars = n;
+  DeviceMesh mesh;
+  mesh.slots = 2 * n;
+  mesh.records = run.memory.allocate(mesh.slots * sizeof(cadt_record));
+  run.device.fill(*mesh.records, records * sizeof(cadt_record), (mesh.slots - records) * sizeof(cadt_record), 0);
+  const Cut shares = launch.cut(n * CADT_WRAP_SHARES);
+  launch.run(KernelId::cadt_wrap_records, shares.items, links, begins, sizes, bases, count, shares.grain, mesh.records);
+  run.end_phase("wrap");
+  return mesh;
 }
 
 }  // namespace cadt

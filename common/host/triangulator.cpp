@@ -96,8 +96,8 @@ class OnHost final : public Outputs {
   explicit OnHost(Triangulation::Data& to) : to_(to) {}
   void make(Run& run, DeviceTriangulation::Data& data) override {
     const std::size_t values = 3 * data.triangle_count;
-    to_.triangles = std::make_unique_for_overwrite<std::int32_t[]>(values);
-    to_.neighbors = std::make_unique_for_overwrite<std::int32_t[]>(values);
+    to_.triangles = make_words(values);
+    to_.neighbors = make_words(values);
     data.triangles = run.memory.export_to(to_.triangles.get(), values * word);
     data.neighbors = run.memory.export_to(to_.neighbors.get(), values * word);
     direct_ = data.triangles && data.neighbors;

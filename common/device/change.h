@@ -39,6 +39,30 @@ CADT_FN void cadt_new_record(const cadt_mesh* m, cadt_u32 t, cadt_u32 v0, cadt_u
   cadt_store_flips(m, t, flips);
 }
 
+/* The stores of a split of face t, seen as `s`, by vertex i. `edges` gets the three links opposite i. \pre nobody else
+ * changes t, or the links of its neighbours 1 and 2 back to it */
+CADT_FN void cadt_write_face(const cadt_mesh* m, cadt_u32 i, cadt_u32 t, const cadt_snapshot* s, cadt_u32* edges,
+                             cadt_tally* tally) {
+  const cadt_u32 t1 = 2u * i, t2 = 2u * i + 1u;
+  /* i takes the place of v0 in t, of v1 in t1, of v2 in t2 */
+  cadt_new_record(m, t1, s->v0, i, s->v2, CADT_LINK(t, 1u), s->n1, CADT_LINK(t2, 1u),
+                  cadt_flips_set(0u, 1u, cadt_flips_get(s->flips, 1u)));
+  cadt_new_record(m, t2, s->v0, s->v1, i, CADT_LINK(t, 2u), CADT_LINK(t1, 2u), s->n2,
+                  cadt_flips_set(0u, 2u, cadt_flips_get(s->flips, 2u)));
+  cadt_store_vertex(m, t, 0u, i);
+  cadt_store_link(m, t, 1u, CADT_LINK(t1, 0u));
+  cadt_store_link(m, t, 2u, CADT_LINK(t2, 0u));
+  cadt_store_flips(m, t, cadt_flips_set(0u, 0u, cadt_flips_get(s->flips, 0u)));
+  CADT_LAP(tally, CADT_TIME_SPLIT);
+  cadt_link_back(m, s->n1, CADT_LINK(t1, 1u));
+  cadt_link_back(m, s->n2, CADT_LINK(t2, 2u));
+  CADT_LAP(tally, CADT_TIME_NEIGHBORS);
+  edges[0] = CADT_LINK(t, 0u);
+  edges[1] = CADT_LINK(t1, 1u);
+  edges[2] = CADT_LINK(t2, 2u);
+  tally->count[CADT_COUNT_SPLITS]++;
+}
+
 /* Splits the face at `place` by vertex i. \post 1: `edges` has the three links opposite i; 0: nothing changed. */
 CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges,
                                  cadt_tally* tally) {
@@ -54,39 +78,70 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   claim.version[3] = 0u;
   if (!cadt_try_claim(m, &claim, tally)) return 0u;
   if (!cadt_confirm(m, t, 0u, &s)) return cadt_give_up(m, &claim, tally);
-  /* i takes the place of v0 in t, of v1 in t1, of v2 in t2 */
-  cadt_new_record(m, t1, s.v0, i, s.v2, CADT_LINK(t, 1u), s.n1, CADT_LINK(t2, 1u),
-                  cadt_flips_set(0u, 1u, cadt_flips_get(s.flips, 1u)));
-  cadt_new_record(m, t2, s.v0, s.v1, i, CADT_LINK(t, 2u), CADT_LINK(t1, 2u), s.n2,
-                  cadt_flips_set(0u, 2u, cadt_flips_get(s.flips, 2u)));
-  cadt_store_vertex(m, t, 0u, i);
-  cadt_store_link(m, t, 1u, CADT_LINK(t1, 0u));
-  cadt_store_link(m, t, 2u, CADT_LINK(t2, 0u));
-  cadt_store_flips(m, t, cadt_flips_set(0u, 0u, cadt_flips_get(s.flips, 0u)));
-  CADT_LAP(tally, CADT_TIME_SPLIT);
-  cadt_link_back(m, s.n1, CADT_LINK(t1, 1u));
-  cadt_link_back(m, s.n2, CADT_LINK(t2, 2u));
-  CADT_LAP(tally, CADT_TIME_NEIGHBORS);
+  cadt_write_face(m, i, t, &s, edges, tally);
   cadt_fence_locks();
   cadt_publish_record(m, t1);
   cadt_publish_record(m, t2);
   cadt_release_claim(m, &claim);
   CADT_LAP(tally, CADT_TIME_CLAIM);
-  edges[0] = CADT_LINK(t, 0u);
-  edges[1] = CADT_LINK(t1, 1u);
-  edges[2] = CADT_LINK(t2, 2u);
-  tally->count[CADT_COUNT_SPLITS]++;
   return 3u;
+}
+
+/* The stores of a split by vertex i of the edge at `place` and its two triangles, the second one seen as `u`. `edges`
+ * gets the four links opposite i. \pre nobody else changes the two, or the links back to them across the edges that go
+ * to new records */
+CADT_FN void cadt_write_edge(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, const cadt_snapshot* u,
+                             cadt_u32* edges, cadt_tally* tally) {
+  const cadt_snapshot* s = &place->at;
+  const cadt_u32 t = place->record, k = place->edge, k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
+  const cadt_u32 across = CADT_NEIGHBOR(*s, k), n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
+  const cadt_u32 j1 = CADT_NEXT(j), j2 = CADT_PREV(j), ts = 2u * i, ns = 2u * i + 1u;
+  /* t = (c, a, b), n = (d, b, a) from vertices k and j on; i is between a and b */
+  const cadt_u32 a = CADT_VERTEX(*s, k1), b = CADT_VERTEX(*s, k2), c = CADT_VERTEX(*s, k), d = CADT_VERTEX(*u, j);
+  const cadt_u32 outer_bc = CADT_NEIGHBOR(*s, k1), outer_ad = CADT_NEIGHBOR(*u, j1);
+  /* new records, each in the slots of its parent: ts = (c, i, b), ns = (d, i, a) */
+  cadt_store_vertex(m, ts, k, c);
+  cadt_store_vertex(m, ts, k1, i);
+  cadt_store_vertex(m, ts, k2, b);
+  cadt_store_link(m, ts, k, CADT_LINK(n, j));
+  cadt_store_link(m, ts, k1, outer_bc);
+  cadt_store_link(m, ts, k2, CADT_LINK(t, k1));
+  cadt_store_flips(m, ts, cadt_flips_set(0u, k1, cadt_flips_get(s->flips, k1)));
+  cadt_store_vertex(m, ns, j, d);
+  cadt_store_vertex(m, ns, j1, i);
+  cadt_store_vertex(m, ns, j2, a);
+  cadt_store_link(m, ns, j, CADT_LINK(t, k));
+  cadt_store_link(m, ns, j1, outer_ad);
+  cadt_store_link(m, ns, j2, CADT_LINK(n, j1));
+  cadt_store_flips(m, ns, cadt_flips_set(0u, j1, cadt_flips_get(u->flips, j1)));
+  /* t = (c, a, i), n = (d, b, i) */
+  cadt_store_vertex(m, t, k2, i);
+  cadt_store_link(m, t, k, CADT_LINK(ns, j));
+  cadt_store_link(m, t, k1, CADT_LINK(ts, k2));
+  cadt_store_flips(m, t, cadt_flips_set(0u, k2, cadt_flips_get(s->flips, k2)));
+  cadt_store_vertex(m, n, j2, i);
+  cadt_store_link(m, n, j, CADT_LINK(ts, k));
+  cadt_store_link(m, n, j1, CADT_LINK(ns, j2));
+  cadt_store_flips(m, n, cadt_flips_set(0u, j2, cadt_flips_get(u->flips, j2)));
+  CADT_LAP(tally, CADT_TIME_SPLIT);
+  cadt_link_back(m, outer_bc, CADT_LINK(ts, k1));
+  cadt_link_back(m, outer_ad, CADT_LINK(ns, j1));
+  CADT_LAP(tally, CADT_TIME_NEIGHBORS);
+  edges[0] = CADT_LINK(t, k2);
+  edges[1] = CADT_LINK(ts, k1);
+  edges[2] = CADT_LINK(n, j2);
+  edges[3] = CADT_LINK(ns, j1);
+  tally->count[CADT_COUNT_EDGE_SPLITS]++;
 }
 
 /* Splits the edge at `place` and its two triangles by vertex i. \post 4: `edges` has the four links opposite i; 0:
  * nothing changed. */
 CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges,
                                  cadt_tally* tally) {
-  const cadt_u32 t = place->record, k = place->edge, k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
+  const cadt_u32 t = place->record, k = place->edge, k1 = CADT_NEXT(k);
   const cadt_snapshot s = place->at;
   const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
-  const cadt_u32 j1 = CADT_NEXT(j), j2 = CADT_PREV(j), ts = 2u * i, ns = 2u * i + 1u;
+  const cadt_u32 j1 = CADT_NEXT(j), ts = 2u * i, ns = 2u * i + 1u;
   const cadt_snapshot u = cadt_look(m, n);
   if (CADT_NEIGHBOR(u, j) != CADT_LINK(t, k)) {
     tally->count[CADT_COUNT_CLAIMS]++;
@@ -94,8 +149,6 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
     tally->count[CADT_COUNT_INVALID]++;
     return 0u;
   }
-  /* t = (c, a, b), n = (d, b, a) from vertices k and j on; i is between a and b */
-  const cadt_u32 a = CADT_VERTEX(s, k1), b = CADT_VERTEX(s, k2), c = CADT_VERTEX(s, k), d = CADT_VERTEX(u, j);
   const cadt_u32 outer_bc = CADT_NEIGHBOR(s, k1), outer_ad = CADT_NEIGHBOR(u, j1);
   cadt_claim claim;
   claim.record[0] = t;
@@ -107,44 +160,12 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   claim.version[2] = claim.version[3] = CADT_ANY_VERSION;
   if (!cadt_try_claim(m, &claim, tally)) return 0u;
   if (!cadt_confirm(m, t, 0u, &s) || !cadt_confirm(m, n, 0u, &u)) return cadt_give_up(m, &claim, tally);
-  /* new records, each in the slots of its parent: ts = (c, i, b), ns = (d, i, a) */
-  cadt_store_vertex(m, ts, k, c);
-  cadt_store_vertex(m, ts, k1, i);
-  cadt_store_vertex(m, ts, k2, b);
-  cadt_store_link(m, ts, k, CADT_LINK(n, j));
-  cadt_store_link(m, ts, k1, outer_bc);
-  cadt_store_link(m, ts, k2, CADT_LINK(t, k1));
-  cadt_store_flips(m, ts, cadt_flips_set(0u, k1, cadt_flips_get(s.flips, k1)));
-  cadt_store_vertex(m, ns, j, d);
-  cadt_store_vertex(m, ns, j1, i);
-  cadt_store_vertex(m, ns, j2, a);
-  cadt_store_link(m, ns, j, CADT_LINK(t, k));
-  cadt_store_link(m, ns, j1, outer_ad);
-  cadt_store_link(m, ns, j2, CADT_LINK(n, j1));
-  cadt_store_flips(m, ns, cadt_flips_set(0u, j1, cadt_flips_get(u.flips, j1)));
-  /* t = (c, a, i), n = (d, b, i) */
-  cadt_store_vertex(m, t, k2, i);
-  cadt_store_link(m, t, k, CADT_LINK(ns, j));
-  cadt_store_link(m, t, k1, CADT_LINK(ts, k2));
-  cadt_store_flips(m, t, cadt_flips_set(0u, k2, cadt_flips_get(s.flips, k2)));
-  cadt_store_vertex(m, n, j2, i);
-  cadt_store_link(m, n, j, CADT_LINK(ts, k));
-  cadt_store_link(m, n, j1, CADT_LINK(ns, j2));
-  cadt_store_flips(m, n, cadt_flips_set(0u, j2, cadt_flips_get(u.flips, j2)));
-  CADT_LAP(tally, CADT_TIME_SPLIT);
-  cadt_link_back(m, outer_bc, CADT_LINK(ts, k1));
-  cadt_link_back(m, outer_ad, CADT_LINK(ns, j1));
-  CADT_LAP(tally, CADT_TIME_NEIGHBORS);
+  cadt_write_edge(m, i, place, &u, edges, tally);
   cadt_fence_locks();
   cadt_publish_record(m, ts);
   cadt_publish_record(m, ns);
   cadt_release_claim(m, &claim);
   CADT_LAP(tally, CADT_TIME_CLAIM);
-  edges[0] = CADT_LINK(t, k2);
-  edges[1] = CADT_LINK(ts, k1);
-  edges[2] = CADT_LINK(n, j2);
-  edges[3] = CADT_LINK(ns, j1);
-  tally->count[CADT_COUNT_EDGE_SPLITS]++;
   return 4u;
 }
 
@@ -201,6 +222,30 @@ CADT_FN cadt_u32 cadt_is_left(const cadt_mesh* m, cadt_u32 flips, cadt_u32 p, ca
   return cadt_flip_gains(m->points[p], m->points[a], m->points[b], m->points[q], m->epsilon) ? 0u : 1u;
 }
 
+/* The stores of a flip of the edge `link`, with its two triangles seen from it as `s` and `u`. \pre nobody else changes
+ * the two, or the links back to them across the edges that change sides */
+CADT_FN void cadt_write_flip(const cadt_mesh* m, cadt_u32 link, const cadt_snapshot* s, const cadt_snapshot* u,
+                             cadt_tally* tally) {
+  const cadt_u32 t = CADT_LINK_RECORD(link), k = CADT_LINK_EDGE(link), k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
+  const cadt_u32 n = CADT_LINK_RECORD(s->n0), j = CADT_LINK_EDGE(s->n0), j1 = CADT_NEXT(j), j2 = CADT_PREV(j);
+  const cadt_u32 outer_bp = s->n1, outer_aq = u->n1;
+  /* t = (p, a, b) becomes (p, a, u->v0); n = (q, b, a) becomes (q, b, p); the counter of a-b goes on with p-q */
+  const cadt_u32 flips = cadt_flips_get(s->flips, k) + 1u;
+  cadt_store_vertex(m, t, k2, u->v0);
+  cadt_store_link(m, t, k, outer_aq);
+  cadt_store_link(m, t, k1, CADT_LINK(n, j1));
+  cadt_store_flips(m, t, cadt_flips_set(cadt_flips_set(s->flips, k, cadt_flips_get(u->flips, j1)), k1, flips));
+  cadt_store_vertex(m, n, j2, s->v0);
+  cadt_store_link(m, n, j, outer_bp);
+  cadt_store_link(m, n, j1, CADT_LINK(t, k1));
+  cadt_store_flips(m, n, cadt_flips_set(cadt_flips_set(u->flips, j, cadt_flips_get(s->flips, k1)), j1, flips));
+  CADT_LAP(tally, CADT_TIME_FLIP);
+  cadt_link_back(m, outer_aq, CADT_LINK(t, k));
+  cadt_link_back(m, outer_bp, CADT_LINK(n, j));
+  CADT_LAP(tally, CADT_TIME_NEIGHBORS);
+  tally->count[CADT_COUNT_FLIPS]++;
+}
+
 /* Tests an edge and flips it if it is illegal. `apex` is the vertex expected opposite of it, or CADT_NONE for any.
  * \post CADT_EDGE_LEFT: it is illegal and stays so, for now or for good (cadt_is_left). CADT_EDGE_FLIPPED: the edge's
  * record keeps its link, `*partner` is the record and edge on the other side of the quadrilateral that is now opposite
@@ -208,7 +253,7 @@ CADT_FN cadt_u32 cadt_is_left(const cadt_mesh* m, cadt_u32 flips, cadt_u32 p, ca
  * illegal. */
 CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 apex, cadt_u32* partner,
                                     cadt_u32* all_sides, cadt_tally* tally) {
-  const cadt_u32 t = CADT_LINK_RECORD(link), k = CADT_LINK_EDGE(link), k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
+  const cadt_u32 t = CADT_LINK_RECORD(link), k = CADT_LINK_EDGE(link);
   const cadt_snapshot s = cadt_look_from(m, t, k);
   const cadt_u32 p = s.v0;
   if (!cadt_is_free(s.lock)) {
@@ -222,7 +267,6 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   *all_sides = p != apex ? 1u : 0u;
   if (p != apex && apex != CADT_NONE) tally->count[CADT_COUNT_STALE_EDGES]++;
   const cadt_u32 across = s.n0, n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
-  const cadt_u32 j1 = CADT_NEXT(j), j2 = CADT_PREV(j);
   const cadt_snapshot u = cadt_look_from(m, n, j);
   if (!cadt_is_free(u.lock) || u.n0 != link) {
     tally->count[CADT_COUNT_CLAIMS]++;
@@ -254,28 +298,14 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
     cadt_give_up(m, &claim, tally);
     return CADT_EDGE_CONFLICT;
   }
-  /* t = (p, a, b) becomes (p, a, q); n = (q, b, a) becomes (q, b, p); the counter of a-b goes on with p-q */
-  const cadt_u32 flips = cadt_flips_get(s.flips, k) + 1u;
-  cadt_store_vertex(m, t, k2, q);
-  cadt_store_link(m, t, k, outer_aq);
-  cadt_store_link(m, t, k1, CADT_LINK(n, j1));
-  cadt_store_flips(m, t, cadt_flips_set(cadt_flips_set(s.flips, k, cadt_flips_get(u.flips, j1)), k1, flips));
-  cadt_store_vertex(m, n, j2, p);
-  cadt_store_link(m, n, j, outer_bp);
-  cadt_store_link(m, n, j1, CADT_LINK(t, k1));
-  cadt_store_flips(m, n, cadt_flips_set(cadt_flips_set(u.flips, j, cadt_flips_get(s.flips, k1)), j1, flips));
-  CADT_LAP(tally, CADT_TIME_FLIP);
-  cadt_link_back(m, outer_aq, CADT_LINK(t, k));
-  cadt_link_back(m, outer_bp, CADT_LINK(n, j));
-  CADT_LAP(tally, CADT_TIME_NEIGHBORS);
+  cadt_write_flip(m, link, &s, &u, tally);
   cadt_fence_locks();
   cadt_release_claim(m, &claim);
   CADT_LAP(tally, CADT_TIME_CLAIM);
   cadt_set_hint(m, s.v1, t);
   cadt_set_hint(m, s.v2, n);
   CADT_LAP(tally, CADT_TIME_FLIP);
-  *partner = CADT_LINK(n, j2);
-  tally->count[CADT_COUNT_FLIPS]++;
+  *partner = CADT_LINK(n, CADT_PREV(j));
   return CADT_EDGE_FLIPPED;
 }
 

@@ -9,6 +9,44 @@
 
 #include "common/device/insert.h"
 
+#if CADT_CONTIGUOUS
+enum { CADT_CLOSING_BATCH = 192 /* edges that are listed before they are looked at */ };
+
+typedef struct {
+  cadt_u32 examined, illegal, unsettled, left;
+} cadt_findings;
+
+/* Looks at listed edges and repairs what is illegal. Nothing is known of an edge but its link: repairs change the mesh.
+ */
+CADT_FN void cadt_close_edges(const cadt_mesh* m, const cadt_u32* links, cadt_u32 count, const cadt_deferred* deferred,
+                              cadt_findings* found, cadt_tally* tally) {
+  cadt_worklist work;
+  for (cadt_u32 e = 0u; e < count; ++e) {
+    const cadt_u32 k = CADT_LINK_EDGE(links[e]);
+    CADT_GLOBAL cadt_u32* t = m->records[CADT_LINK_RECORD(links[e])].word;
+    const cadt_u32 lock = cadt_load_field(t + CADT_WORD_LOCK), across = cadt_load_field(t + CADT_WORD_LINK + k);
+    const cadt_u32 p = cadt_load_field(t + k), a = cadt_load_field(t + CADT_NEXT(k));
+    const cadt_u32 b = cadt_load_field(t + CADT_PREV(k)), j = CADT_LINK_EDGE(across);
+    CADT_GLOBAL cadt_u32* n = m->records[CADT_LINK_RECORD(across)].word;
+    const cadt_u32 lock_across = cadt_load_field(n + CADT_WORD_LOCK), q = cadt_load_field(n + j);
+    if (!cadt_is_free(lock) || !cadt_is_free(lock_across) || cadt_load_field(n + CADT_WORD_LINK + j) != links[e]) {
+      found->unsettled++;
+    } else if (cadt_is_illegal(m, p, a, b, q, tally)) {
+      if (cadt_is_left(m, cadt_flips_get(cadt_load_field(t + CADT_WORD_FLIPS), k), p, a, b, q)) {
+        found->left++;
+        continue;
+      }
+      found->illegal++;
+      CADT_LAP_SKIP(tally); /* looking at all edges is no part of the insertion, repairs are */
+      cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
+      cadt_worklist_add(&work, links[e]);
+      cadt_legalize(m, &work, deferred, tally);
+    }
+  }
+  found->examined += count;
+}
+#endif
+
 /* found: edges examined, illegal ones that are to be flipped, ones that could not be read because somebody was changing
  * them, illegal ones that are left as they are (CADT_STABILIZE_PAPER). \pre records of
  * vertices that are not in the mesh have lock word 0 */
@@ -19,8 +57,26 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
 #if CADT_CONTIGUOUS
-  cadt_worklist work;
-#endif
+  /* An edge is seen from two triangles. Which of them takes it is settled without a branch, which would be wrong half
+   * of the time, before a batch of edges is looked at. */
+  cadt_u32 batch[CADT_CLOSING_BATCH + 3], listed = 0u;
+  cadt_findings all = {0u, 0u, 0u, 0u};
+  CADT_FOR(r, count, grain) {
+    const cadt_u32 t = begin + r;
+    CADT_GLOBAL cadt_u32* word = mesh.records[t].word;
+    if (cadt_load_field(word + CADT_WORD_LOCK) != 0u) {
+      for (cadt_u32 k = 0u; k < 3u; ++k) {
+        batch[listed] = CADT_LINK(t, k);
+        listed += CADT_LINK_RECORD(cadt_load_field(word + CADT_WORD_LINK + k)) > t ? 1u : 0u;
+      }
+    }
+    if (listed < CADT_CAST(cadt_u32, CADT_CLOSING_BATCH)) continue;
+    cadt_close_edges(&mesh, batch, listed, &deferred, &all, &tally);
+    listed = 0u;
+  }
+  cadt_close_edges(&mesh, batch, listed, &deferred, &all, &tally);
+  const cadt_u32 examined = all.examined, illegal = all.illegal, unsettled = all.unsettled, left = all.left;
+#else
   cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u, left = 0u;
   CADT_FOR(r, count, grain) {
     const cadt_u32 t = begin + r;
@@ -41,19 +97,12 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
           continue;
         }
         ++illegal;
-#if CADT_CONTIGUOUS
-        CADT_LAP_SKIP(&tally); /* looking at all edges is no part of the insertion, repairs are */
-        cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
-        cadt_worklist_add(&work, CADT_LINK(t, k));
-        cadt_legalize(&mesh, &work, &deferred, &tally);
-        break; /* the snapshot is out of date; the next pass sees the rest */
-#else
         /* to cadt_legalize_edges: without the repairs this kernel is small and runs at full occupancy */
         cadt_defer_edge(&deferred, CADT_LINK(t, k), &tally);
-#endif
       }
     }
   }
+#endif
   if (examined) cadt_add_relaxed(found, examined);
   if (illegal) cadt_add_relaxed(found + 1, illegal);
   if (unsettled) cadt_add_relaxed(found + 2, unsettled);

@@ -35,23 +35,34 @@ CADT_FN cadt_u32 cadt_is_real(const cadt_record r) {
              : 0u;
 }
 
+/* On CPUs an addition in memory that is far away holds up everything behind it, so triangles get their places in their
+ * buckets (`places`, by record) when they are counted; GPUs have no use for the memory traffic, and add again. */
+#define CADT_PLACES_KNOWN CADT_CONTIGUOUS
+
 /* Size of each bucket, and edges by flips. \pre buckets are zero */
 CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
-            CADT_GLOBAL cadt_u32* buckets, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* flips) {
+            CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_u32* places, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* flips) {
   CADT_FLIPS_BEGIN(bins, flips);
   CADT_FOR(t, count, grain) {
     const cadt_record r = records[t];
     if (r.word[CADT_WORD_LOCK] == 0u) continue;
     CADT_FLIPS_COUNT(bins, flips, r);
-    if (cadt_is_real(r)) cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u);
+    if (!cadt_is_real(r)) continue;
+#if CADT_PLACES_KNOWN
+    places[t] = cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u);
+#else
+    cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u);
+#endif
   }
   CADT_FLIPS_END(bins, flips);
 }
 
 /* Puts each real triangle in its bucket: (second vertex, record). \pre buckets are scanned (their beginnings); \post
- * their ends */
+ * their ends, or still their beginnings where places are known */
 CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
-            CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 count, cadt_u32 grain) {
+            CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_member* members,
+            cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(t, count, grain) {
     const cadt_record r = records[t];
     if (!cadt_is_real(r)) continue;
@@ -59,7 +70,11 @@ CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_record* records, CADT_
     cadt_member member;
     member.second = label.b;
     member.record = t;
+#if CADT_PLACES_KNOWN
+    members[buckets[label.a] + places[t]] = member;
+#else
     members[cadt_add_relaxed(buckets + label.a, 1u)] = member;
+#endif
   }
 }
 
@@ -79,10 +94,19 @@ CADT_FN void cadt_sift_down(CADT_GLOBAL cadt_member* bucket, cadt_u32 at, cadt_u
 
 enum { CADT_SHORT_BUCKET = 24 };
 
-CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* ends, CADT_GLOBAL cadt_member* members, cadt_u32 count,
+/* Where bucket v begins, after cadt_bucket_triangles. */
+CADT_FN cadt_u32 cadt_bucket_begin(CADT_GLOBAL const cadt_u32* buckets, cadt_u32 v) {
+#if CADT_PLACES_KNOWN
+  return buckets[v];
+#else
+  return v ? buckets[v - 1u] : 0u;
+#endif
+}
+
+CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 count,
             cadt_u32 grain) {
   CADT_FOR(v, count, grain) {
-    const cadt_u32 begin = v ? ends[v - 1u] : 0u, size = ends[v] - begin;
+    const cadt_u32 begin = cadt_bucket_begin(buckets, v), size = cadt_bucket_begin(buckets, v + 1u) - begin;
     CADT_GLOBAL cadt_member* bucket = members + begin;
     if (size <= CADT_CAST(cadt_u32, CADT_SHORT_BUCKET)) {
       for (cadt_u32 e = 1u; e < size; ++e) {

@@ -163,6 +163,17 @@ CADT_KERNEL(cadt_root, cadt_u32 n, cadt_u32 levels, CADT_GLOBAL cadt_u32* positi
   if (cadt_item == 0u) *position = cadt_representative(levels, 0u, n);
 }
 
+#if CADT_CONTIGUOUS
+/* The hint of a point that an earlier launch left over: its own, or if it has none yet that of the point from which it
+ * would have been inserted in its turn. */
+CADT_FN cadt_u32 cadt_hint_of_left(const cadt_mesh* m, cadt_u32 i, cadt_u32 n) {
+  cadt_u32 hint = cadt_load_relaxed(m->hints + i);
+  for (cadt_u32 level = 0u; hint == CADT_NONE; ++level)
+    hint = cadt_load_relaxed(m->hints + cadt_representative(level + 1u, i >> (level + 1u), n));
+  return hint;
+}
+#endif
+
 /* Inserts `count` points: first `listed` ones that earlier launches left over, with their own hints; then one level: of
  * each block of 2^(level+1) positions, from block `begin` on, the half that does not stand for it, with a walk from the
  * point that does, which is in the mesh and near in sorted order. */
@@ -175,18 +186,23 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
   cadt_worklist work;
   CADT_FOR_SPREAD(u, count, grain) {
-    cadt_u32 i, near;
+    cadt_u32 i, hint;
     if (u < listed) {
-      i = near = list[u];
+      i = list[u];
+#if CADT_CONTIGUOUS
+      hint = cadt_hint_of_left(&mesh, i, n);
+#else
+      hint = cadt_load_relaxed(mesh.hints + i);
+#endif
     } else {
       const cadt_u32 block = begin + (u - listed);
       const cadt_u32 standing = 2u * block + cadt_right_half(level + 1u, block);
       i = cadt_representative(level, standing ^ 1u, n);
-      near = cadt_representative(level, standing, n);
+      hint = cadt_load_relaxed(mesh.hints + cadt_representative(level, standing, n));
     }
     if (i == first || i == second || i == third) continue;
     cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
-    work.size = cadt_insert_vertex(&mesh, i, cadt_load_relaxed(mesh.hints + near), work.link, &tally);
+    work.size = cadt_insert_vertex(&mesh, i, hint, work.link, &tally);
     if (work.size)
       cadt_legalize(&mesh, &work, &deferred, &tally);
     else

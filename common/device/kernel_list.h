@@ -35,6 +35,8 @@
   X(cadt_root)              /* insert.h */                                       \
   X(cadt_insert)            /* insert.h: locate, claim, split, legalise */       \
   X(cadt_legalize_edges)    /* insert.h: deferred edges */                       \
+  X(cadt_insert_ranges)     /* range.h: without locks */                         \
+  X(cadt_border_pass)       /* range.h */                                        \
   X(cadt_closing_pass)      /* closing.h */                                      \
   X(cadt_tile_flags)        /* tiles.h */                                        \
   X(cadt_tile_pack)         /* tiles.h */                                        \

@@ -12,6 +12,7 @@
 #include "common/device/join.h"
 #include "common/device/order.h"
 #include "common/device/radix.h"
+#include "common/device/range.h"
 #include "common/device/refine.h"
 #include "common/device/scan.h"
 #include "common/device/selftest.h"

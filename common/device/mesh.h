@@ -26,12 +26,20 @@ typedef struct {
   cadt_u32 first, second, third; /* positions of the first three vertices */
   cadt_u32 stabilize, threshold; /* what is done with edges that were flipped more than `threshold` times (change.h) */
   double epsilon;
+#if defined(CADT_CHECKED)
+  cadt_u32 own_begin, own_size; /* the range of who works without claims (range.h), empty elsewhere */
+#endif
 } cadt_mesh;
 
 #define CADT_MESH_PARAMETERS                                                                                 \
   CADT_GLOBAL cadt_record *records, CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *hints,       \
       double center_x, double center_y, cadt_u32 first, cadt_u32 second, cadt_u32 third, cadt_u32 stabilize, \
       cadt_u32 threshold, double epsilon
+#if defined(CADT_CHECKED)
+#define CADT_OWN_RANGE(mesh, begin, size) mesh.own_begin = (begin), mesh.own_size = (size)
+#else
+#define CADT_OWN_RANGE(mesh, begin, size) ((void)0)
+#endif
 #define CADT_MESH_VIEW(mesh)  \
   cadt_mesh mesh;             \
   mesh.records = records;     \
@@ -44,7 +52,8 @@ typedef struct {
   mesh.third = third;         \
   mesh.stabilize = stabilize; \
   mesh.threshold = threshold; \
-  mesh.epsilon = epsilon
+  mesh.epsilon = epsilon;     \
+  CADT_OWN_RANGE(mesh, 0u, 0u)
 
 #define CADT_LINK(record, edge) (((record) << 2) | (edge))
 #define CADT_LINK_RECORD(link) ((link) >> 2)
@@ -96,29 +105,38 @@ CADT_FN cadt_snapshot cadt_look_from(const cadt_mesh* m, cadt_u32 t, cadt_u32 k)
 }
 
 #if defined(CADT_CHECKED)
-#define CADT_ASSERT_OWNED(m, t) cadt_assert_owned((m)->records[t].word[CADT_WORD_LOCK])
+/* Whether record t may be changed: it is claimed or not there yet, or its vertices are in the own range, of which `any`
+ * (3: none) need not be. */
+CADT_FN cadt_u32 cadt_may_store(const cadt_mesh* m, cadt_u32 t, cadt_u32 any) {
+  const cadt_u32 lock = cadt_load_relaxed(m->records[t].word + CADT_WORD_LOCK);
+  if (m->own_size == 0u) return lock == 0u || (lock & 1u) ? 1u : 0u;
+  for (cadt_u32 k = 0u; lock != 0u && k < 3u; ++k)
+    if (k != any && cadt_load_relaxed(m->records[t].word + k) - m->own_begin >= m->own_size) return 0u;
+  return 1u;
+}
+#define CADT_ASSERT_OWNED(m, t, any) cadt_assert_owned(cadt_may_store((m), (t), (any)))
 #else
-#define CADT_ASSERT_OWNED(m, t) ((void)0)
+#define CADT_ASSERT_OWNED(m, t, any) ((void)0)
 #endif
 
 /* \pre the caller owns record t or has not linked it yet */
 CADT_FN void cadt_store_vertices(const cadt_mesh* m, cadt_u32 t, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2) {
   CADT_GLOBAL cadt_u32* w = m->records[t].word;
-  CADT_ASSERT_OWNED(m, t);
+  CADT_ASSERT_OWNED(m, t, 3u);
   cadt_store_field(w, v0);
   cadt_store_field(w + 1, v1);
   cadt_store_field(w + 2, v2);
 }
 CADT_FN void cadt_store_vertex(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 v) {
-  CADT_ASSERT_OWNED(m, t);
+  CADT_ASSERT_OWNED(m, t, 3u);
   cadt_store_field(m->records[t].word + k, v);
 }
 CADT_FN void cadt_store_link(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 link) {
-  CADT_ASSERT_OWNED(m, t);
+  CADT_ASSERT_OWNED(m, t, k); /* who has both ends of an edge in its range may change the link across it */
   cadt_store_field(m->records[t].word + CADT_WORD_LINK + k, link);
 }
 CADT_FN void cadt_store_flips(const cadt_mesh* m, cadt_u32 t, cadt_u32 flips) {
-  CADT_ASSERT_OWNED(m, t);
+  CADT_ASSERT_OWNED(m, t, 3u);
   cadt_store_field(m->records[t].word + CADT_WORD_FLIPS, flips);
 }
 

@@ -60,8 +60,6 @@ CADT_FN CADT_GLOBAL cadt_u32* cadt_counter_row(CADT_GLOBAL cadt_u32* counters, c
  * points on an H200), and letting the lanes of a warp wait for each other, to add together, costs 3 %. CADT_GROUP_TALLY
  * stands once in a kernel, before anything else; `counters` is null if nobody wants to know. */
 #if CADT_GROUP_SUMS
-#define CADT_SUMS CADT_LOCAL_PTR
-#define cadt_add_sum cadt_add_local
 enum { CADT_GROUP_DONE = CADT_COUNTERS + CADT_TIMES, CADT_GROUP_WORDS };
 #define CADT_GROUP_TALLY(tally, counters)                \
   CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS];            \
@@ -109,8 +107,6 @@ CADT_FN void cadt_flush_group(cadt_tally* tally, CADT_LOCAL_PTR cadt_u32* sums, 
   }
 }
 #else
-#define CADT_SUMS CADT_GLOBAL
-#define cadt_add_sum cadt_add_relaxed
 #define CADT_GROUP_TALLY(tally, counters) \
   cadt_tally tally;                       \
   cadt_tally_clear(&tally)

@@ -20,6 +20,10 @@ using namespace device_constants;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time to a cancel
 constexpr std::size_t points_per_launch_strided = std::size_t{1} << 25;
+// Ranges without locks: what every 2^range_level positions have in common is inserted before, with locks. The fewer
+// positions a range has, the more of them are at its border.
+constexpr unsigned range_level = 5;
+constexpr std::size_t least_range = std::size_t{1} << 14, fewest_for_ranges = 4 * least_range;
 constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
 constexpr int hopeless_launches = 64;
 constexpr int most_sweeps = 2000;
@@ -53,7 +57,9 @@ class Builder {
     run_kernel(KernelId::cadt_start_mesh, 1);
     run_.end_phase("start");
 
-    for (unsigned level = levels(); level-- > 0;) insert_level(level);
+    const unsigned last = use_ranges() ? range_level : 0;
+    for (unsigned level = levels(); level-- > last;) insert_level(level);
+    if (last != 0) insert_ranges();
     if (left_.points != 0 || left_.edges != 0) {
       finish_leftovers();
       if (run_.options.watch) show();
@@ -141,6 +147,39 @@ class Builder {
       if (run_.options.watch) show();
       if (left_.points > size / 8 + 32 || left_.edges > size / 8 + 32) finish_leftovers();
       run_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
+    }
+  }
+
+  [[nodiscard]] bool use_ranges() const noexcept {
+    return run_.device.shape().contiguous && n_ >= fewest_for_ranges && run_.options.grain == 0 &&
+           run_.options.stabilize == Stabilize::off && !run_.options.watch;
+  }
+
+  /// All levels below range_level: ranges of positions side by side without locks, then what lies between them.
+  void insert_ranges() {
+    finish_leftovers();  // who stands for a block must be in the mesh
+    const std::size_t all = ((n_ - 1) >> range_level) + 1;
+    const std::size_t shares = std::clamp<std::size_t>(run_.device.shape().parallelism / 2, 1, n_ / least_range);
+    const std::size_t blocks = (all - 1) / shares + 1, ranges = (all - 1) / blocks + 1;
+    const std::size_t points = std::min(points_per_launch(), n_ / 2);
+    const std::size_t step = std::max<std::size_t>((points >> range_level) / ranges, 1);
+    for (std::size_t from = 0; from < blocks; from += step) {
+      const std::size_t to = std::min(blocks, from + step);
+      run_kernel(KernelId::cadt_insert_ranges, static_cast<std::uint32_t>(ranges), static_cast<std::uint32_t>(n_),
+                 range_level, static_cast<std::uint32_t>(ranges), static_cast<std::uint32_t>(blocks),
+                 static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to), left_points_[0], left_counts_,
+                 counters_);
+      inserted_ += std::min(n_, ((to - from) * ranges) << range_level);
+      // The list has room for those that the next launch may leave.
+      if (to == blocks || launch_.read_word(left_counts_, 0) > n_ / 32) {
+        const Cut c = launch_.cut(2 * n_);
+        run_kernel(KernelId::cadt_border_pass, c.items, static_cast<std::uint32_t>(2 * n_), c.grain,
+                   static_cast<std::uint32_t>(blocks << range_level), left_edges_[0], left_counts_, edge_capacity_,
+                   counters_);
+        take_leftovers();
+        finish_leftovers();
+      }
+      run_.check("insert", 0.1 + 0.7 * static_cast<double>(std::min(inserted_, n_)) / static_cast<double>(n_));
     }
   }
 

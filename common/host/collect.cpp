@@ -51,18 +51,20 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
     return result;
   }
   Allocation buckets = launch.zeros(points + 1);
-  launch.run(KernelId::cadt_count_triangles, records.items, mesh.records, labels, buckets, slots, records.grain, flips);
+  result.numbers = run.memory.allocate(mesh.slots * word);  // until they are known: places in the buckets
+  launch.run(KernelId::cadt_count_triangles, records.items, mesh.records, labels, buckets, result.numbers, slots,
+             records.grain, flips);
   launch.scan(buckets, points + 1);
   const std::uint32_t triangles = launch.read_word(buckets, points);
   result.triangles = triangles;
   flips.collect(run.statistics);
   Allocation members = run.memory.allocate(std::size_t{triangles} * 2 * word);
-  launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, labels, buckets, members, slots, all.grain);
+  launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, labels, buckets, result.numbers, members, slots,
+             all.grain);
   const Cut vertices = launch.cut(points);
   launch.run(KernelId::cadt_sort_buckets, vertices.items, buckets, members, static_cast<std::uint32_t>(points),
              vertices.grain);
   buckets.release();
-  result.numbers = run.memory.allocate(mesh.slots * word);
   run.device.fill(*result.numbers, 0, mesh.slots * word, none);
   const Cut real = launch.cut(triangles);
   launch.run(KernelId::cadt_number_triangles, real.items, members, result.numbers, triangles, real.grain);

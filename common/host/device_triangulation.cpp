@@ -30,8 +30,8 @@ void read_mesh(Run& run, const DeviceTriangulation::Data& from, bool filled, Tri
   to.hull = find_hull(run, from.triangles, from.neighbors, from.triangle_count, from.hull_size(), from.points);
   if (filled) return run.device.finish();
   const std::size_t values = 3 * from.triangle_count;
-  if (to.triangles == nullptr) to.triangles = std::make_unique_for_overwrite<std::int32_t[]>(values);
-  if (to.neighbors == nullptr) to.neighbors = std::make_unique_for_overwrite<std::int32_t[]>(values);
+  if (to.triangles == nullptr) to.triangles = make_words(values);
+  if (to.neighbors == nullptr) to.neighbors = make_words(values);
   run.device.read(*from.triangles, 0, to.triangles.get(), values * word);
   run.device.read(*from.neighbors, 0, to.neighbors.get(), values * word);
 }

@@ -3,6 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 #include "common/host/triangulation_data.hpp"
 
@@ -43,6 +48,19 @@ std::vector<Corners> sorted_triangles(const Triangulation& mesh) {
 }
 
 }  // namespace
+
+Words make_words(std::size_t count) {
+  constexpr std::size_t huge_page = std::size_t{2} << 20;
+  const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(std::int32_t);
+  const bool large = bytes >= 2 * huge_page;
+  Words words(static_cast<std::int32_t*>(
+      large ? std::aligned_alloc(huge_page, (bytes + huge_page - 1) / huge_page * huge_page) : std::malloc(bytes)));
+  if (words == nullptr) throw std::bad_alloc();
+#if defined(MADV_HUGEPAGE)
+  if (large) ::madvise(words.get(), bytes, MADV_HUGEPAGE);  // advice only: failure changes nothing
+#endif
+  return words;
+}
 
 std::size_t count_differing(const Triangulation& mesh, const Triangulation& other) {
   const std::vector<Corners> mine = sorted_triangles(mesh), theirs = sorted_triangles(other);

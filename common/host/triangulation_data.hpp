@@ -5,16 +5,26 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
 namespace cadt {
 
+struct FreeWords {
+  void operator()(std::int32_t* words) const noexcept { std::free(words); }
+};
+using Words = std::unique_ptr<std::int32_t[], FreeWords>;
+
+/// Uninitialised. Large ones in huge pages where the system has them: triangles are written in no regular order, and
+/// what is new to the process costs a page fault each.
+[[nodiscard]] Words make_words(std::size_t count);
+
 /// What a Triangulation holds.
 struct Triangulation::Data {
   std::size_t points = 0;
   std::size_t triangle_count = 0;
-  std::unique_ptr<std::int32_t[]> triangles, neighbors;  ///< 3 * triangle_count each, left uninitialised until filled
+  Words triangles, neighbors;  ///< 3 * triangle_count each, left uninitialised until filled
   std::vector<std::int32_t> hull;
   std::vector<Duplicate> duplicates;
   int dimension = -1;

@@ -25,8 +25,8 @@ constexpr std::size_t word = sizeof(std::uint32_t);
 
 constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial results
 
-/// Device bytes of the phase that needs most, but for crowded cells: writing the result (124 a point), or the insertion
-/// (93) where the result goes straight to memory of the host's. docs/performance.md has the plan.
+/// Device bytes of the phase that needs most, but for crowded cells: writing the result (124 a point), or sorting the
+/// triangles (96) where the result goes straight to memory of the host's. docs/performance.md has the plan.
 std::size_t least_bytes(std::size_t n, bool result_elsewhere) { return fixed + n * (result_elsewhere ? 97 : 124); }
 
 /// The same with the star stage.
@@ -94,8 +94,8 @@ class OnHost final : public Outputs {
   explicit OnHost(Triangulation::Data& to) : to_(to) {}
   void make(Run& run, DeviceTriangulation::Data& data) override {
     const std::size_t values = 3 * data.triangle_count;
-    to_.triangles = std::make_unique_for_overwrite<std::int32_t[]>(values);
-    to_.neighbors = std::make_unique_for_overwrite<std::int32_t[]>(values);
+    to_.triangles = make_words(values);
+    to_.neighbors = make_words(values);
     data.triangles = run.memory.export_to(to_.triangles.get(), values * word);
     data.neighbors = run.memory.export_to(to_.neighbors.get(), values * word);
     direct_ = data.triangles && data.neighbors;

@@ -24,7 +24,8 @@ std::vector<double> lattice(int m) {
 }
 
 TEST(Ownership, EveryStoreIsMadeByTheOwner) {
-  for (const auto& xy : {uniform(20000), lattice(120)}) {
+  // the larger ones are inserted in ranges first, which have owners without locks
+  for (const auto& xy : {uniform(20000), lattice(120), uniform(150000), lattice(300)}) {
     cadt::Options options;
     options.backend = cadt::Backend::host;
     for (const unsigned threads : {1U, 2U, 8U}) {

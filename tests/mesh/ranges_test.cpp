@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sets so large that processors insert most points in ranges without locks (common/device/range.h): ordinary ones, ties
+// everywhere, and such that hardly a triangle lies within one range.
+#include "tests/support/backends.hpp"
+#include "tests/support/families.hpp"
+#include "tests/support/mesh_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace cadt::test {
+namespace {
+
+constexpr std::size_t enough = 80000;  // fewest_for_ranges is 65,536
+
+Points parabola(std::size_t n) {
+  Points xy;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = static_cast<double>(i) / static_cast<double>(n) - 0.5;
+    xy.insert(xy.end(), {x, x * x});
+  }
+  return shuffled(xy, 2);
+}
+
+class Ranges : public BackendTest {
+ protected:
+  static Statistics check(const Points& xy) {
+    const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
+    EXPECT_TRUE(same_mesh(mesh, expected_mesh(xy)));
+    EXPECT_TRUE(mesh.statistics().certified);
+    return mesh.statistics();
+  }
+};
+
+TEST_P(Ranges, Uniform) {
+  const Statistics s = check(uniform_points(enough, 21));
+  EXPECT_EQ(s.splits + s.edge_splits, s.distinct - 3);
+  EXPECT_EQ(s.claims, s.lost_claims + s.splits + s.edge_splits + s.flips);
+}
+// With one, two and more points in the last block, and with the least set.
+TEST_P(Ranges, Sizes) {
+  for (const std::size_t n : {std::size_t{65536}, std::size_t{65537}, std::size_t{65569}, enough - 1})
+    check(uniform_points(n, n));
+}
+TEST_P(Ranges, Lattice) { check(shuffled(grid_points(300, 290), 5)); }
+TEST_P(Ranges, Clusters) { check(cluster_points(enough)); }
+TEST_P(Ranges, Skewed) { check(skewed_points(enough)); }
+TEST_P(Ranges, TwoClusters) { check(two_clusters(enough)); }
+TEST_P(Ranges, AllOnTheHull) {
+  const Statistics s = check(parabola(enough));
+  if (GetParam().backend == Backend::host && GetParam().threads > 1) {
+    EXPECT_GT(s.deferred_points, enough / 2);
+  }
+}
+TEST_P(Ranges, Hub) { check(hub_points(static_cast<int>(enough))); }
+TEST_P(Ranges, WideExponents) {
+  Points xy = uniform_points(enough, 3);
+  xy[0] = std::ldexp(1.0, -400);
+  check(xy);
+}
+CADT_ON_EVERY_BACKEND(Ranges);
+
+}  // namespace
+}  // namespace cadt::test

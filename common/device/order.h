@@ -75,9 +75,9 @@ CADT_FN void cadt_bounds_of_team(CADT_TEAM_PTR cadt_bounds_row* lanes, cadt_boun
   }
 }
 
-/* Partial results: a row of each team of work-items. */
+/* Partial results: a row of each team of work-items, as far as there is room. */
 CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 chunk, cadt_u32 parts,
-            CADT_GLOBAL cadt_bounds_row* rows) {
+            cadt_u32 room, CADT_GLOBAL cadt_bounds_row* rows) {
   CADT_TEAM_MEMORY cadt_bounds_row lanes[CADT_BOUNDS_LANES];
   cadt_bounds_row row = cadt_bounds_of_nothing();
   cadt_span span;
@@ -99,22 +99,27 @@ CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, c
   row.low = CADT_CAST(cadt_u32, span.low + 4096);
   row.high = CADT_CAST(cadt_u32, span.high + 4096);
   cadt_bounds_of_team(lanes, row);
-  if (cadt_team_lane == 0u) {
+  const cadt_u32 team = cadt_item / cadt_team_lanes, teams = (parts - 1u) / cadt_team_lanes + 1u;
+  if (cadt_team_lane == 0u && team < cadt_min_u32(teams, room)) {
     row = lanes[0];
-    row.rows = (cadt_items - 1u) / cadt_team_lanes + 1u;
-    rows[cadt_item / cadt_team_lanes] = row;
+    row.rows = teams;
+    rows[team] = row;
   }
 }
 
 /* The first row becomes that of all. By one team. */
-CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL cadt_bounds_row* rows) {
+CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL cadt_bounds_row* rows, cadt_u32 room) {
   CADT_TEAM_MEMORY cadt_bounds_row lanes[CADT_BOUNDS_LANES];
   const cadt_u32 count = rows[0].rows;
   cadt_bounds_row row = cadt_bounds_of_nothing();
-  CADT_TEAM_FOR(i, count) { cadt_bounds_add(&row, rows[i]); }
+  CADT_TEAM_FOR(i, cadt_min_u32(count, room)) { cadt_bounds_add(&row, rows[i]); }
   CADT_TEAM_SYNC();
   cadt_bounds_of_team(lanes, row);
-  if (cadt_item == 0u) rows[0] = lanes[0];
+  if (cadt_item == 0u) {
+    row = lanes[0];
+    row.rows = count;
+    rows[0] = row;
+  }
 }
 
 /* Every second bit. */

@@ -152,6 +152,7 @@ CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 sid
 /* Lists crates from `first` on that matter; returns how many. */
 CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_point p, double ax, double ay, double side,
                                 const cadt_disc* disc) {
+  CADT_TEAM_SYNC(); /* all have read what the last call returned */
   if (cadt_team_lane == 0u) w->m->crate_count = 0u;
   CADT_TEAM_SYNC();
   CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_CRATES, w->crate_count - first)) {
@@ -245,6 +246,7 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
       /* The first one need not have been a neighbour; from a neighbour on all are, and come again. */
       for (cadt_u32 k = 0u; k < *size; ++k)
         if (w->m->link[k] == next) *begin = k, outcome = 1u;
+      CADT_TEAM_SYNC(); /* compilers load one more than is looked at, which is written next */
       if (outcome || *size + 1u >= CADT_CAST(cadt_u32, CADT_WRAP_DEGREE)) going = 0u;
       at = next;
     }

@@ -22,14 +22,27 @@ struct Bounds {
   int low = 4096, high = -4096;  // exponents of the lowest set bit and above the highest; low > high: all zero
 };
 
-Bounds find_bounds(Run& run, const Allocation& input, std::size_t n) {
+/// The row of all points. `group`: work-items that share a row on this device.
+cadt_bounds_row merge_bounds(Run& run, const Allocation& input, std::size_t n, std::uint32_t group) {
   const Cut c = run.launcher.parts(n);
-  const Allocation rows = run.memory.allocate(c.items * sizeof(cadt_bounds_row));
-  run.launcher.run(KernelId::cadt_bounds, c.items, input, static_cast<std::uint32_t>(n), c.grain, c.items, rows);
+  const std::uint32_t room = (c.items - 1) / group + 1;
+  const Allocation rows = run.memory.allocate(room * sizeof(cadt_bounds_row));
+  run.launcher.run(KernelId::cadt_bounds, c.items, input, static_cast<std::uint32_t>(n), c.grain, c.items, room, rows);
   const std::uint32_t team = run.device.shape().contiguous ? 1 : CADT_BOUNDS_LANES;
-  run.launcher.run_in_groups(KernelId::cadt_merge_bounds, team, team, rows);
+  run.launcher.run_in_groups(KernelId::cadt_merge_bounds, team, team, rows, room);
   cadt_bounds_row all;
   run.device.read(*rows, 0, &all, sizeof all);
+  // Devices may make smaller groups than they were asked for.
+  return all.rows > room ? merge_bounds(run, input, n, 1) : all;
+}
+
+Bounds find_bounds(Run& run, const Allocation& input, std::size_t n) {
+  constexpr std::uint32_t usual_group = 128;  // the least that a GPU has unless the options say so
+  const unsigned asked = run.options.work_group_size;
+  const std::uint32_t group = run.device.shape().contiguous ? 1
+                              : asked == 0                  ? usual_group
+                                                            : std::min(asked, usual_group);
+  const cadt_bounds_row all = merge_bounds(run, input, n, group);
   if (all.bad != CADT_NONE) {
     throw InputError("point " + std::to_string(all.bad) +
                          " (counted from 0) has a coordinate that is NaN or infinite: "

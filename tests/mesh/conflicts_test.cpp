@@ -51,8 +51,10 @@ class Conflicts : public BackendTest {
   void repeat(const Points& xy, bool must_conflict) {
     const ExpectedMesh expected = expected_mesh(xy);
     std::uint64_t conflicts = 0;
+    Options options = GetParam().options();
+    options.strategy = Strategy::locks;
     for (int run = 0; run < runs(); ++run) {
-      const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
+      const Triangulation mesh = triangulate(std::span<const double>(xy), options);
       ASSERT_TRUE(same_mesh(mesh, expected)) << "run " << run;
       const Statistics& s = mesh.statistics();
       conflicts += s.lost_claims + s.insert_retries + s.deferred_points + s.deferred_edges;

@@ -34,11 +34,19 @@ double area(const Points& xy, std::span<const std::int32_t> t) {
   return (x(1) - x(0)) * (y(2) - y(0)) - (x(2) - x(0)) * (y(1) - y(0));
 }
 
-class CountedWork : public BackendTest {};
+/// That of insertion.
+class CountedWork : public BackendTest {
+ protected:
+  static Options options() {
+    Options options = GetParam().options();
+    options.strategy = Strategy::locks;
+    return options;
+  }
+};
 
 TEST_P(CountedWork, AddsUp) {
   for (const Points& xy : {uniform_points(20000, 3), grid_points(100, 90)}) {
-    const Triangulation mesh = triangulate(Reals(xy), GetParam().options());
+    const Triangulation mesh = triangulate(Reals(xy), options());
     const Statistics& s = mesh.statistics();
     const std::uint64_t n = s.distinct, hull = mesh.hull().size();
     EXPECT_EQ(n, xy.size() / 2);
@@ -65,19 +73,19 @@ TEST_P(CountedWork, FlipsAreThoseOfTheEdges) {
   };
   std::uint64_t flips = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const Triangulation mesh = triangulate(Reals(uniform_points(4, seed)), GetParam().options());
+    const Triangulation mesh = triangulate(Reals(uniform_points(4, seed)), options());
     ASSERT_EQ(counted(mesh.statistics()), mesh.statistics().flips) << "seed " << seed;
     flips += mesh.statistics().flips;
   }
   EXPECT_GT(flips, 100u);
-  const Triangulation mesh = triangulate(Reals(uniform_points(5000, 4)), GetParam().options());
+  const Triangulation mesh = triangulate(Reals(uniform_points(5000, 4)), options());
   EXPECT_LE(counted(mesh.statistics()), mesh.statistics().flips);
   EXPECT_GT(counted(mesh.statistics()), mesh.statistics().flips / 3);
 }
 
 TEST_P(CountedWork, NoneCountsNothingAndChangesNothing) {
   const Points xy = uniform_points(20000, 8);
-  Options options = GetParam().options();
+  Options options = CountedWork::options();
   const Hash128 hash = triangulate(Reals(xy), options).hash();
   options.statistics = StatisticsDetail::none;
   const Triangulation mesh = triangulate(Reals(xy), options);
@@ -94,7 +102,7 @@ TEST_P(CountedWork, NoneCountsNothingAndChangesNothing) {
 
 TEST_P(CountedWork, TimingTellsShares) {
   const Points xy = uniform_points(30000, 9);
-  Options options = GetParam().options();
+  Options options = CountedWork::options();
   const Hash128 hash = triangulate(Reals(xy), options).hash();
   options.statistics = StatisticsDetail::timing;
   const Triangulation mesh = triangulate(Reals(xy), options);

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gift wrapping (common/device/wrap.h): small sets that the star stage leaves, and what it gives up.
+#include "tests/support/backends.hpp"
+#include "tests/support/families.hpp"
+#include "tests/support/mesh_checks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace cadt::test {
+namespace {
+
+using Reals = std::span<const double>;
+
+class Wrap : public BackendTest {
+ protected:
+  static Statistics check(const Points& xy, Strategy strategy = Strategy::stars) {
+    Options options = GetParam().options();
+    options.strategy = strategy;
+    const Triangulation mesh = triangulate(Reals(xy), options);
+    EXPECT_TRUE(same_mesh(mesh, expected_mesh(xy)));
+    const Statistics& s = mesh.statistics();
+    EXPECT_TRUE(s.certified);
+    if (s.splits + s.edge_splits == 0) {
+      EXPECT_EQ(s.closing_repairs, 0u) << "a star was wrong";
+    }
+    return s;
+  }
+};
+
+/// Their stars are too large to be proven.
+Points parabola(std::size_t n) {
+  Points xy;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = static_cast<double>(i) / static_cast<double>(n) - 0.5;
+    xy.insert(xy.end(), {x, x * x});
+  }
+  return shuffled(xy, 2);
+}
+
+/// A centre with n neighbours, no four points on a circle.
+Points noisy_hub(std::size_t n) {
+  Points xy = {0, 0};
+  const Points noise = uniform_points(n, 11);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle = 6.283185307179586 * static_cast<double>(i) / static_cast<double>(n), r = 1 + 1e-6 * noise[i];
+    xy.insert(xy.end(), {r * std::cos(angle), r * std::sin(angle)});
+  }
+  return shuffled(xy, 3);
+}
+
+/// A corner of the hull with n neighbours.
+Points fan(std::size_t n) {
+  Points xy = parabola(n);
+  for (std::size_t i = 1; i < xy.size(); i += 2) xy[i] *= 0.01;
+  xy.insert(xy.end(), {0, 10});
+  return xy;
+}
+
+// Corners of the hull, sides with points between, triangles alone: all that a star can be.
+TEST_P(Wrap, SmallestSets) {
+  for (std::size_t n = 3; n < 40; ++n)
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+      SCOPED_TRACE(n);
+      const Statistics s = check(uniform_points(n, 100 * n + seed));
+      EXPECT_EQ(s.wrapped_stars + s.proven_stars, n);
+    }
+}
+
+TEST_P(Wrap, Lattices) {
+  for (const auto& [columns, rows] : {std::pair{2, 2}, {2, 9}, {3, 3}, {5, 4}, {9, 9}, {1, 7}, {40, 2}}) {
+    SCOPED_TRACE(columns);
+    const Statistics s = check(shuffled(grid_points(columns, rows), 3));
+    EXPECT_EQ(s.wrapped_stars, columns == 1 ? 0u : s.distinct - s.proven_stars);
+  }
+}
+
+TEST_P(Wrap, AllThatIsLeftOfStars) {
+  const Statistics s = check(uniform_points(20000, 5));
+  EXPECT_GT(s.proven_stars, 10000u);
+  EXPECT_EQ(s.wrapped_stars, s.distinct - s.proven_stars);
+  EXPECT_EQ(s.splits + s.flips, 0u);
+}
+
+TEST_P(Wrap, LongThinSets) {
+  for (const double height : {1e-3, 1e-6, 1e-9}) {
+    Points xy = uniform_points(1500, 7);
+    for (std::size_t i = 1; i < xy.size(); i += 2) xy[i] *= height;
+    check(xy);
+  }
+}
+
+TEST_P(Wrap, FarApart) { check(two_clusters(1500)); }
+TEST_P(Wrap, OneCell) { check(skewed_points(1500)); }
+TEST_P(Wrap, Duplicates) {
+  Points xy = uniform_points(300, 8);
+  const Points again = xy;
+  for (int copy = 0; copy < 3; ++copy) xy.insert(xy.end(), again.begin(), again.end());
+  check(shuffled(xy, 9));
+}
+
+// What it gives up goes to insertion, all of it.
+TEST_P(Wrap, GivesUpHubs) {
+  EXPECT_EQ(check(noisy_hub(400)).wrapped_stars, 401u);
+  const Statistics s = check(noisy_hub(1200));
+  EXPECT_EQ(s.wrapped_stars, 0u);
+  EXPECT_EQ(s.splits + s.edge_splits, s.distinct - 3);
+}
+TEST_P(Wrap, GivesUpHubsOnTheHull) {
+  EXPECT_EQ(check(fan(400)).wrapped_stars, 401u);
+  EXPECT_EQ(check(fan(1500)).wrapped_stars, 0u);
+}
+TEST_P(Wrap, GivesUpEndlessTies) {
+  check(hub_points(400));
+  EXPECT_EQ(check(regular_polygon(2000, 0, 0, 1)).wrapped_stars, 0u);
+}
+TEST_P(Wrap, ConvexCurves) { check(parabola(1500)); }
+
+// A card wraps small sets of its own accord; processors never do.
+TEST_P(Wrap, ChosenOnCards) {
+  const Points xy = uniform_points(3000, 4);
+  Options options = GetParam().options();
+  options.strategy = Strategy::automatic;
+  const Triangulation mesh = triangulate(Reals(xy), options);
+  EXPECT_TRUE(same_mesh(mesh, expected_mesh(xy)));
+  bool gpu = false;
+  for (const DeviceInfo& device : list_devices())
+    gpu = gpu || (device.backend == GetParam().backend && device.name == mesh.statistics().device && device.gpu);
+  EXPECT_EQ(mesh.statistics().wrapped_stars, gpu ? 3000u : 0u);
+}
+CADT_ON_EVERY_BACKEND(Wrap);
+
+}  // namespace
+}  // namespace cadt::test

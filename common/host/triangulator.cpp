@@ -44,12 +44,14 @@ bool prefers_stars(const Options& options, const Device& device) {
 /// numbers, and lists of a word or less.
 constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
 
-constexpr std::size_t star_words = 15;  // neighbours of the stars, and lists
+/// With the star stage besides: neighbours of the stars, lists, and what the rest of the points needs.
+constexpr std::size_t kept_star_words[] = {12, 1, 1, 1, 1, 1, 1};
 
 /// The same, with buffers that wait for a later phase or call.
 std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
-  std::size_t words = stars ? star_words : 0;
+  std::size_t words = 0;
   for (const std::size_t one : kept_words) words += one;
+  for (const std::size_t one : kept_star_words) words += stars ? one : 0;
   return memory.keeps() ? 4 * fixed + n * words * word : stars ? star_bytes(n) : least_bytes(n, false);
 }
 
@@ -282,7 +284,8 @@ void Triangulator::reserve(std::size_t points) {
     // The buffers of a call that are alive together; given back at once, so they are kept for it.
     std::vector<Allocation> together;
     for (const std::size_t words : kept_words) together.push_back(memory.allocate(n * words * word));
-    if (stars) together.push_back(memory.allocate(n * star_words * word));
+    if (stars)
+      for (const std::size_t words : kept_star_words) together.push_back(memory.allocate(n * words * word));
   } else {
     return;  // enough for a call, but not for keeping all of its buffers
   }

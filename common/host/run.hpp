@@ -29,7 +29,7 @@ struct Run {
   /// Tells the progress and looks for a request to stop. \throws Cancelled
   void check(std::string_view phase, double fraction) {
     if (options.stop.stop_requested()) throw Cancelled();
-    if (options.progress && fraction >= told_) {
+    if (options.progress && fraction > told_) {
       told_ = fraction;
       options.progress({phase, fraction});
       if (options.stop.stop_requested()) throw Cancelled();
@@ -53,7 +53,7 @@ struct Run {
   }
 
  private:
-  double told_ = 0;
+  double told_ = -1;  ///< passes that are repeated tell nothing new
   std::vector<std::string> phases_;
 };
 

@@ -4,8 +4,11 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t smallest_grain = 8;          // fewer elements are not worth waking a thread
-constexpr std::size_t device_chunk = 512;          // elements a work-item of a GPU scans or sorts in one go
+constexpr std::size_t smallest_grain = 8;  // fewer elements are not worth waking a thread
+constexpr std::size_t device_chunk = 512;  // elements a work-item of a GPU scans or sorts in one go
+// Work-items with several elements each have less to begin and to end; of more elements than this the mesh does not
+// stay in the cache between two of them.
+constexpr std::size_t most_strided = std::size_t{1} << 23;
 constexpr std::size_t longest_serial_scan = 4096;  // sums that one work-item adds up
 
 constexpr std::size_t divide_up(std::size_t a, std::size_t b) noexcept { return (a + b - 1) / b; }
@@ -27,6 +30,7 @@ Cut Launcher::cut_spread(std::size_t count) const noexcept {
   if (shape.contiguous) return cut(count);
   std::uint32_t lanes = 1;  // an element; a warp has 32
   while (lanes < 32 && count * lanes * 2 <= shape.resident) lanes *= 2;
+  if (lanes == 1 && count <= most_strided) return cut_strided(count);
   return {static_cast<std::uint32_t>(count * lanes), lanes};
 }
 

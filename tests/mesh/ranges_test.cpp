@@ -15,15 +15,6 @@ namespace {
 
 constexpr std::size_t enough = 80000;  // fewest_for_ranges is 65,536
 
-Points parabola(std::size_t n) {
-  Points xy;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = static_cast<double>(i) / static_cast<double>(n) - 0.5;
-    xy.insert(xy.end(), {x, x * x});
-  }
-  return shuffled(xy, 2);
-}
-
 class Ranges : public BackendTest {
  protected:
   static Statistics check(const Points& xy) {
@@ -51,7 +42,7 @@ TEST_P(Ranges, Clusters) { check(cluster_points(enough)); }
 TEST_P(Ranges, Skewed) { check(skewed_points(enough)); }
 TEST_P(Ranges, TwoClusters) { check(two_clusters(enough)); }
 TEST_P(Ranges, AllOnTheHull) {
-  const Statistics s = check(parabola(enough));
+  const Statistics s = check(parabola_points(enough));
   if (GetParam().backend == Backend::host && GetParam().threads > 1) {
     EXPECT_GT(s.deferred_points, enough / 2);
   }

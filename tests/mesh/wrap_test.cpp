@@ -30,16 +30,6 @@ class Wrap : public BackendTest {
   }
 };
 
-/// Their stars are too large to be proven.
-Points parabola(std::size_t n) {
-  Points xy;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double x = static_cast<double>(i) / static_cast<double>(n) - 0.5;
-    xy.insert(xy.end(), {x, x * x});
-  }
-  return shuffled(xy, 2);
-}
-
 /// A centre with n neighbours, no four points on a circle.
 Points noisy_hub(std::size_t n) {
   Points xy = {0, 0};
@@ -53,7 +43,7 @@ Points noisy_hub(std::size_t n) {
 
 /// A corner of the hull with n neighbours.
 Points fan(std::size_t n) {
-  Points xy = parabola(n);
+  Points xy = parabola_points(n);
   for (std::size_t i = 1; i < xy.size(); i += 2) xy[i] *= 0.01;
   xy.insert(xy.end(), {0, 10});
   return xy;
@@ -117,7 +107,7 @@ TEST_P(Wrap, EndlessTies) {
   check(hub_points(400));
   check(regular_polygon(2000, 0, 0, 1));
 }
-TEST_P(Wrap, ConvexCurves) { check(parabola(1500)); }
+TEST_P(Wrap, ConvexCurves) { check(parabola_points(1500)); }
 
 // A card wraps small sets of its own accord; processors never do.
 TEST_P(Wrap, ChosenOnCards) {

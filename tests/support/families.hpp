@@ -58,11 +58,12 @@ class Random {
 [[nodiscard]] Points scaled(Points xy, int exponent);  ///< times 2^exponent
 [[nodiscard]] Points moved(Points xy, double dx, double dy);
 [[nodiscard]] Points regular_polygon(int n, double cx, double cy, double r);
-[[nodiscard]] Points hub_points(int n);              ///< a centre and n points around it
-[[nodiscard]] Points skewed_points(std::size_t n);   ///< 99.9 % of the points in a cell of 1e-12
-[[nodiscard]] Points cluster_points(std::size_t n);  ///< 100 Gaussian clusters of 1e-6
-[[nodiscard]] Points two_clusters(std::size_t n);    ///< 1e12 apart, each of size 1
-[[nodiscard]] Points axis_cross(int arm);            ///< about n^2 / 8 flips
+[[nodiscard]] Points parabola_points(std::size_t n);  ///< all on the hull, in no order
+[[nodiscard]] Points hub_points(int n);               ///< a centre and n points around it
+[[nodiscard]] Points skewed_points(std::size_t n);    ///< 99.9 % of the points in a cell of 1e-12
+[[nodiscard]] Points cluster_points(std::size_t n);   ///< 100 Gaussian clusters of 1e-6
+[[nodiscard]] Points two_clusters(std::size_t n);     ///< 1e12 apart, each of size 1
+[[nodiscard]] Points axis_cross(int arm);             ///< about n^2 / 8 flips
 [[nodiscard]] Points shuffled(const Points& xy, std::uint64_t seed);
 /// order[i] is the index in `xy` of point i of the result.
 [[nodiscard]] Points reordered(const Points& xy, const std::vector<std::size_t>& order);

@@ -59,6 +59,15 @@ Points regular_polygon(int n, double cx, double cy, double r) {
   return xy;
 }
 
+Points parabola_points(std::size_t n) {
+  Points xy;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = static_cast<double>(i) / static_cast<double>(n) - 0.5;
+    xy.insert(xy.end(), {x, x * x});
+  }
+  return shuffled(xy, 2);
+}
+
 Points hub_points(int n) {
   Points xy = regular_polygon(n, 0.0, 0.0, 1.0);
   xy.insert(xy.begin(), {0.0, 0.0});

@@ -110,7 +110,7 @@ CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, c
 /* The first row becomes that of all. By one team. */
 CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL cadt_bounds_row* rows, cadt_u32 room) {
   CADT_TEAM_MEMORY cadt_bounds_row lanes[CADT_BOUNDS_LANES];
-  const cadt_u32 count = rows[0].rows;
+  const cadt_u32 count = cadt_item < cadt_team_lanes ? rows[0].rows : 0u; /* launches are rounded up */
   cadt_bounds_row row = cadt_bounds_of_nothing();
   CADT_TEAM_FOR(i, cadt_min_u32(count, room)) { cadt_bounds_add(&row, rows[i]); }
   CADT_TEAM_SYNC();

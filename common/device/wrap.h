@@ -72,9 +72,9 @@ typedef struct {
   double x, y, square; /* centre, radius^2; not a finite number: the disc may be the plane */
 } cadt_disc;
 
-/* With u = 2^-53 and K = |a| |b| / |a x b|, which is at least 1, centre and radius are off by less than E = 24 u K (1 +
- * K)
- * (|a| + |b|) where K is known well. (r + E)^2 is at most (1 + 1e-6) r^2 + (1 + 1e6) E^2: no square roots. */
+/* With u = 2^-53 and K = |a| |b| / |a x b|, which is at least 1, centre and radius are off by less than
+ * E = 24 u K (1 + K) (|a| + |b|) where K is known well. (r + E)^2 is at most (1 + 1e-6) r^2 + (1 + 1e6) E^2: no square
+ * roots. */
 CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
   const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
   const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;

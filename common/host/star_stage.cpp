@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -27,19 +28,13 @@ constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * u
 /// Edges between the two parts have a list and a hash table.
 constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * open > points; }
 
-/// The mesh without the star stage, not certified where it was wrapped: by gift wrapping if the points are few.
-DeviceMesh build_rest(Run& run, const SpatialOrder& order) {
-  if (order.distinct <= most_wrapped(run.device))
-    if (std::optional<DeviceMesh> mesh = wrap_mesh(run, order.points, order.distinct)) return std::move(*mesh);
-  return build_mesh(run, order);
-}
-
-/// The same, certified.
-DeviceMesh build_without_stars(Run& run, const SpatialOrder& order) {
-  if (order.distinct <= most_wrapped(run.device))
-    if (std::optional<DeviceMesh> mesh = wrap_mesh(run, order.points, order.distinct))
-      return certify_mesh(run, order, std::move(mesh->records));
-  return build_mesh(run, order);
+/// The mesh without the star stage: by gift wrapping if the points are few, else by insertion. `certify`: wrapped ones
+/// as well; no use for a part of a mesh that is certified as a whole.
+DeviceMesh build_without_stars(Run& run, const SpatialOrder& order, bool certify) {
+  std::optional<DeviceMesh> wrapped;
+  if (order.distinct <= most_wrapped(run.device)) wrapped = wrap_mesh(run, order.points, order.distinct);
+  if (!wrapped) return build_mesh(run, order);
+  return certify ? certify_mesh(run, order, std::move(wrapped->records)) : std::move(*wrapped);
 }
 
 class StarStage {
@@ -57,13 +52,13 @@ class StarStage {
     keys_.release();
     if (!made) {
       release_stars();
-      return build_without_stars(run_, order_);
+      return build_without_stars(run_, order_, true);
     }
     count_triangles();
     if (too_many(unproven_, n_) || too_many_open(open_count_, n_)) {
       release_stars();
       ranks_.release();
-      return build_without_stars(run_, order_);
+      return build_without_stars(run_, order_, true);
     }
     // stars that contradict each other would number more
     if (proven_triangles_ > 2 * n_ - 2)
@@ -162,7 +157,7 @@ class StarStage {
     launch_.run(KernelId::cadt_unproven_pack, all.items, ranks_, order_.points, rest.points, positions, count_,
                 all.grain);
     ranks_.release();
-    const DeviceMesh smaller = build_rest(run_, rest);
+    const DeviceMesh smaller = build_without_stars(run_, rest, false);
     if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
 
     const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
@@ -211,7 +206,7 @@ DeviceMesh build_mesh_with_stars(Run& run, SpatialOrder& order) {
   const bool few = run.options.strategy == Strategy::automatic && order.distinct <= most_wrapped_alone;
   if (few || order.distinct < 3 || std::max(grid.bits_x, grid.bits_y) > most_bits) {
     order.keys.release();
-    return build_without_stars(run, order);
+    return build_without_stars(run, order, true);
   }
   return StarStage(run, order).build();
 }

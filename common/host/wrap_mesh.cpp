@@ -14,7 +14,8 @@ using namespace device_constants;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::uint32_t lanes_of_vertex = 32;
-constexpr std::size_t boxes_of_vertex = 96;  // looked at on average at most; uniform points need 35
+constexpr std::size_t boxes_of_vertex =
+    96;  // looked at on average at most; what stars leave of 1M uniform points needs 14
 
 }  // namespace
 

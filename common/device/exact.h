@@ -21,9 +21,14 @@ CADT_FN cadt_i32 cadt_sign_of_minor(cadt_u32 (*d)[CADT_LIMBS], cadt_i32 n) {
 }
 
 /* Orientation, any length. */
-CADT_FN_SLOW cadt_i32 cadt_orientation_limbs(cadt_point a, cadt_point b, cadt_point c, cadt_i32 low, cadt_i32 bits) {
+CADT_FN_SLOW cadt_i32 cadt_orientation_limbs(cadt_point a, cadt_point b, cadt_point c) {
   cadt_u32 d[4][CADT_LIMBS], origin[CADT_LIMBS];
-  cadt_i32 n = (bits + 2 + 31) >> 5;
+  cadt_span s;
+  cadt_span_clear(&s);
+  cadt_span_add_point(&s, a);
+  cadt_span_add_point(&s, b);
+  cadt_span_add_point(&s, c);
+  const cadt_i32 low = s.low, n = (cadt_span_bits(&s) + 2 + 31) >> 5;
   cadt_limbs_load(d[0], n, a.x, low);
   cadt_limbs_load(d[1], n, a.y, low);
   cadt_limbs_load(d[2], n, b.x, low);
@@ -37,17 +42,14 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_limbs(cadt_point a, cadt_point b, cadt_po
 
 /* Orientation of a, b, c: 1 counterclockwise, 0 on a line, -1 clockwise. */
 CADT_FN_SLOW cadt_i32 cadt_orientation_exact(cadt_point a, cadt_point b, cadt_point c) {
-  cadt_span s;
-  cadt_span_clear(&s);
-  cadt_span_add_point(&s, a);
-  cadt_span_add_point(&s, b);
-  cadt_span_add_point(&s, c);
-  cadt_i32 bits = cadt_span_bits(&s);
-  if (bits > 61) return cadt_orientation_limbs(a, b, c, s.low, bits);
-  cadt_i64 cx = cadt_fixed64(c.x, s.low), cy = cadt_fixed64(c.y, s.low);
-  cadt_i64 ux = cadt_fixed64(a.x, s.low) - cx, uy = cadt_fixed64(a.y, s.low) - cy;
-  cadt_i64 vx = cadt_fixed64(b.x, s.low) - cx, vy = cadt_fixed64(b.y, s.low) - cy;
-  return cadt_compare_i128(cadt_mul_i64(ux, vy), cadt_mul_i64(uy, vx));
+  cadt_scale s = cadt_scale_of(cadt_larger_exponent(cadt_larger_exponent(cadt_larger_exponent(0ul, a), b), c));
+  if (s.fits) { /* differences < 2^62 */
+    const cadt_i64 cx = cadt_scaled(&s, c.x), cy = cadt_scaled(&s, c.y);
+    const cadt_i64 ux = cadt_scaled(&s, a.x) - cx, uy = cadt_scaled(&s, a.y) - cy;
+    const cadt_i64 vx = cadt_scaled(&s, b.x) - cx, vy = cadt_scaled(&s, b.y) - cy;
+    if (s.fits) return cadt_compare_i128(cadt_mul_i64(ux, vy), cadt_mul_i64(uy, vx));
+  }
+  return cadt_orientation_limbs(a, b, c);
 }
 
 /* Orientation of m, a, b where m = (c0 + c1 + c2) / 3 is no double in general: with everything tripled, m is an
@@ -80,12 +82,17 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point 
 }
 
 /* Sign of the incircle determinant, any length. */
-CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_i32 low,
-                                          cadt_i32 bits) {
+CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point c, cadt_point p) {
   cadt_u32 d[6][CADT_LIMBS], negative[6];
   cadt_u32 product[2 * CADT_LIMBS], lift[2 * CADT_LIMBS + 1], minor[2 * CADT_LIMBS + 1];
   cadt_u32 term[4 * CADT_LIMBS + 2], det[4 * CADT_LIMBS + 3];
-  cadt_i32 n = (bits + 2 + 31) >> 5;
+  cadt_span s;
+  cadt_span_clear(&s);
+  cadt_span_add_point(&s, a);
+  cadt_span_add_point(&s, b);
+  cadt_span_add_point(&s, c);
+  cadt_span_add_point(&s, p);
+  const cadt_i32 low = s.low, n = (cadt_span_bits(&s) + 2 + 31) >> 5;
   for (cadt_i32 i = 0; i < 6; ++i) {
     cadt_point q = i < 2 ? a : (i < 4 ? b : c);
     cadt_limbs_load(d[i], n, (i & 1) ? q.y : q.x, low);
@@ -116,29 +123,30 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point
 
 /* Incircle: 1 if p is inside the circle of the counterclockwise triangle a, b, c, 0 on it, -1 outside. */
 CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p) {
-  cadt_span s;
-  cadt_span_clear(&s);
-  cadt_span_add_point(&s, a);
-  cadt_span_add_point(&s, b);
-  cadt_span_add_point(&s, c);
-  cadt_span_add_point(&s, p);
-  cadt_i32 bits = cadt_span_bits(&s);
-  if (bits <= 61) {
-    cadt_i64 px = cadt_fixed64(p.x, s.low), py = cadt_fixed64(p.y, s.low);
-    cadt_i64 ax = cadt_fixed64(a.x, s.low) - px, ay = cadt_fixed64(a.y, s.low) - py;
-    cadt_i64 bx = cadt_fixed64(b.x, s.low) - px, by = cadt_fixed64(b.y, s.low) - py;
-    cadt_i64 cx = cadt_fixed64(c.x, s.low) - px, cy = cadt_fixed64(c.y, s.low) - py;
-    cadt_u64 all = CADT_CAST(cadt_u64, ax ^ (ax >> 63)) | CADT_CAST(cadt_u64, ay ^ (ay >> 63)) |
-                   CADT_CAST(cadt_u64, bx ^ (bx >> 63)) | CADT_CAST(cadt_u64, by ^ (by >> 63)) |
-                   CADT_CAST(cadt_u64, cx ^ (cx >> 63)) | CADT_CAST(cadt_u64, cy ^ (cy >> 63));
-    if ((all >> 30) == 0ul) { /* |differences| <= 2^30: lifts and minors <= 2^61, sums of products <= 3 * 2^122 */
-      cadt_i128 det = cadt_mul_i64(ax * ax + ay * ay, bx * cy - by * cx);
-      det = cadt_add_i128(det, cadt_mul_i64(bx * bx + by * by, cx * ay - cy * ax));
-      det = cadt_add_i128(det, cadt_mul_i64(cx * cx + cy * cy, ax * by - ay * bx));
-      return cadt_sign_i128(det);
+  cadt_scale s = cadt_scale_of(
+      cadt_larger_exponent(cadt_larger_exponent(cadt_larger_exponent(cadt_larger_exponent(0ul, a), b), c), p));
+  if (s.fits) {
+    const cadt_i64 px = cadt_scaled(&s, p.x), py = cadt_scaled(&s, p.y);
+    cadt_i64 ax = cadt_scaled(&s, a.x) - px, ay = cadt_scaled(&s, a.y) - py;
+    cadt_i64 bx = cadt_scaled(&s, b.x) - px, by = cadt_scaled(&s, b.y) - py;
+    cadt_i64 cx = cadt_scaled(&s, c.x) - px, cy = cadt_scaled(&s, c.y) - py;
+    if (s.fits) {
+      /* |differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. A loop, since on cards it is
+       * waiting for instructions that takes the time. */
+      cadt_i256 det;
+      for (cadt_i32 i = 0; i < 4; ++i) det.word[i] = 0ul;
+      CADT_ROLLED
+      for (cadt_i32 corner = 0; corner < 3; ++corner) {
+        cadt_add_product_i256(&det, cadt_minor_i64(ax, ax, -ay, ay), cadt_minor_i64(bx, cy, by, cx));
+        const cadt_i64 x = ax, y = ay;
+        ax = bx, ay = by;
+        bx = cx, by = cy;
+        cx = x, cy = y;
+      }
+      return cadt_sign_i256(&det);
     }
   }
-  return cadt_incircle_limbs(a, b, c, p, s.low, bits);
+  return cadt_incircle_limbs(a, b, c, p);
 }
 
 #endif

@@ -54,13 +54,35 @@ CADT_FN void cadt_span_add_point(cadt_span* s, cadt_point p) {
 /* Bits of the largest magnitude; 0 if all values are zero. */
 CADT_FN cadt_i32 cadt_span_bits(const cadt_span* s) { return s->high > s->low ? s->high - s->low : 0; }
 
-/* value / 2^low as an integer; \pre the span that gave `low` is at most 62 bits */
-CADT_FN cadt_i64 cadt_fixed64(double value, cadt_i32 low) {
-  cadt_u64 bits = cadt_bits_of_double(value), m = cadt_mantissa(bits);
-  if (m == 0ul) return 0;
-  cadt_i32 shift = cadt_exponent(bits) - low;
-  m = shift >= 0 ? m << shift : m >> (-shift);
-  return bits >> 63 ? -CADT_CAST(cadt_i64, m) : CADT_CAST(cadt_i64, m);
+/* ---- 64-bit integers over one exponent, that of the largest coordinate ---------------------------------------------
+ */
+typedef struct {
+  double scale; /* a power of two: the largest coordinate becomes less than 2^61 */
+  cadt_u32 fits;
+} cadt_scale;
+
+CADT_FN cadt_u64 cadt_larger_exponent(cadt_u64 exponent, cadt_point p) {
+  const cadt_u64 mask = 0x7FF0000000000000ul;
+  const cadt_u64 x = cadt_bits_of_double(p.x) & mask, y = cadt_bits_of_double(p.y) & mask;
+  const cadt_u64 larger = x > y ? x : y;
+  return larger > exponent ? larger : exponent;
+}
+
+/* \pre `exponent` is that of the largest coordinate, as in its bits */
+CADT_FN cadt_scale cadt_scale_of(cadt_u64 exponent) {
+  cadt_scale s;
+  const cadt_i32 power = 60 + 1023 - CADT_CAST(cadt_i32, exponent >> 52);
+  s.fits = power <= 1023 && power >= -1022 ? 1u : 0u;
+  s.scale = cadt_double_of_bits(CADT_CAST(cadt_u64, (s.fits ? power : 0) + 1023) << 52);
+  return s;
+}
+
+/* The coordinate as an integer; s->fits becomes 0 if it has lower bits. */
+CADT_FN cadt_i64 cadt_scaled(cadt_scale* s, double value) {
+  const double scaled = value * s->scale;
+  const cadt_i64 integer = CADT_CAST(cadt_i64, scaled);
+  if (CADT_CAST(double, integer) != scaled || (integer == 0 && value != 0.0)) s->fits = 0u; /* or underflow */
+  return integer;
 }
 
 /* ---- 128-bit integers -------------------------------------------------------------------------------------------- */
@@ -92,6 +114,58 @@ CADT_FN cadt_i32 cadt_sign_i128(cadt_i128 a) {
 CADT_FN cadt_i32 cadt_compare_i128(cadt_i128 a, cadt_i128 b) {
   if (a.high != b.high) return a.high < b.high ? -1 : 1;
   return a.low == b.low ? 0 : (a.low < b.low ? -1 : 1);
+}
+
+/* ---- 256-bit integers: two's complement, little-endian -------------------------------------------------------------
+ */
+typedef struct {
+  cadt_u64 word[4];
+} cadt_i256;
+
+/* a b - c d; \pre magnitudes are below 2^63 and the result is below 2^127 */
+CADT_FN cadt_i128 cadt_minor_i64(cadt_i64 a, cadt_i64 b, cadt_i64 c, cadt_i64 d) {
+  return cadt_add_i128(cadt_mul_i64(a, b), cadt_mul_i64(-c, d));
+}
+
+/* Magnitude of a; `negative` becomes all ones or 0. */
+CADT_FN cadt_i128 cadt_abs_i128(cadt_i128 a, cadt_u64* negative) {
+  const cadt_u64 mask = CADT_CAST(cadt_u64, a.high >> 63), low = (a.low ^ mask) - mask;
+  cadt_i128 r;
+  r.high = CADT_CAST(cadt_i64, (CADT_CAST(cadt_u64, a.high) ^ mask) + (mask && low == 0ul ? 1ul : 0ul));
+  r.low = low;
+  *negative = mask;
+  return r;
+}
+
+/* sum += a b */
+CADT_FN void cadt_add_product_i256(cadt_i256* sum, cadt_i128 a, cadt_i128 b) {
+  cadt_u64 sign_a, sign_b, product[4];
+  const cadt_i128 x = cadt_abs_i128(a, &sign_a), y = cadt_abs_i128(b, &sign_b);
+  const cadt_u64 x1 = CADT_CAST(cadt_u64, x.high), y1 = CADT_CAST(cadt_u64, y.high), sign = sign_a ^ sign_b;
+  const cadt_u64 left = x.low * y1, right = x1 * y.low, both = x1 * y1;
+  product[0] = x.low * y.low;
+  product[1] = cadt_mulhi_u64(x.low, y.low) + left;
+  cadt_u64 over = product[1] < left ? 1ul : 0ul;
+  product[1] += right;
+  over += product[1] < right ? 1ul : 0ul;
+  product[2] = cadt_mulhi_u64(x.low, y1) + both;
+  product[3] = cadt_mulhi_u64(x1, y1) + (product[2] < both ? 1ul : 0ul);
+  const cadt_u64 upper = cadt_mulhi_u64(x1, y.low);
+  product[2] += upper;
+  product[3] += product[2] < upper ? 1ul : 0ul;
+  product[2] += over;
+  product[3] += product[2] < over ? 1ul : 0ul;
+  cadt_u64 carry = sign & 1ul; /* -v is ~v + 1 */
+  for (cadt_i32 i = 0; i < 4; ++i) {
+    const cadt_u64 term = product[i] ^ sign, partial = sum->word[i] + term, total = partial + carry;
+    carry = (partial < term ? 1ul : 0ul) | (total < partial ? 1ul : 0ul);
+    sum->word[i] = total;
+  }
+}
+
+CADT_FN cadt_i32 cadt_sign_i256(const cadt_i256* a) {
+  if (a->word[3] >> 63) return -1;
+  return (a->word[0] | a->word[1] | a->word[2] | a->word[3]) != 0ul ? 1 : 0;
 }
 
 /* ---- integers of any length: little-endian 32-bit limbs ---------------------------------------------------------- */

@@ -6,9 +6,8 @@
  *
  * A compile may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double),
  * CADT_CONTIGUOUS (1: a work-item takes neighbouring elements, right for CPUs; 0: strided, right for GPUs),
- * CADT_RADIX_BITS (digit of the radix sort), CADT_TIMED (1: threads take the time of what they do, tally.h),
- * CADT_TEST_NO_LOCKS (control of
- * the tests: locks are not taken).
+ * CADT_RADIX_BITS (digit of the radix sort), CADT_TIMED (1: threads take
+ * the time of what they do, tally.h), CADT_TEST_NO_LOCKS (control of the tests: locks are not taken).
  */
 #ifndef CADT_DEVICE_LANG_H
 #define CADT_DEVICE_LANG_H
@@ -64,6 +63,7 @@ typedef long cadt_i64;
 #define CADT_CAST(type, value) ((type)(value))
 
 #define cadt_bits_of_double(x) as_ulong(x)
+#define cadt_double_of_bits(x) as_double(x)
 #define cadt_bits_of_float(x) as_uint(x)
 #define cadt_float_of_bits(x) as_float(x)
 #define cadt_popcount(x) ((cadt_u32)popcount((uint)(x)))
@@ -121,6 +121,7 @@ typedef long long cadt_i64;
 #define CADT_CAST(type, value) ((type)(value))
 
 #define cadt_bits_of_double(x) ((cadt_u64)__double_as_longlong(x))
+#define cadt_double_of_bits(x) __longlong_as_double((long long)(x))
 #define cadt_bits_of_float(x) ((cadt_u32)__float_as_uint(x))
 #define cadt_float_of_bits(x) __uint_as_float(x)
 #define cadt_popcount(x) ((cadt_u32)__popc(x))
@@ -165,6 +166,11 @@ CADT_FN cadt_u64 cadt_bits_of_double(double x) {
   cadt_u64 bits;
   std::memcpy(&bits, &x, sizeof bits);
   return bits;
+}
+CADT_FN double cadt_double_of_bits(cadt_u64 bits) {
+  double x;
+  std::memcpy(&x, &bits, sizeof x);
+  return x;
 }
 CADT_FN cadt_u32 cadt_bits_of_float(float x) {
   cadt_u32 bits;
@@ -270,6 +276,13 @@ CADT_FN void cadt_store_two(cadt_u32* p, cadt_u32 a, cadt_u32 b) {
   p[0] = a;
   p[1] = b;
 }
+#endif
+
+/* Before a loop: it is not to be unrolled. */
+#if defined(CADT_LANG_HOST) && defined(__GNUC__) && !defined(__clang__)
+#define CADT_ROLLED _Pragma("GCC unroll 1")
+#else
+#define CADT_ROLLED _Pragma("unroll 1")
 #endif
 
 /* One of three values; keeps them in registers where an array would go to memory. */

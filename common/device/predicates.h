@@ -36,30 +36,31 @@ CADT_FN cadt_i32 cadt_exponent_of_largest(double a, double b, double c, double d
 #define CADT_UNDERFLOW 0.0
 #endif
 
-CADT_FN cadt_i32 cadt_orientation(cadt_point a, cadt_point b, cadt_point c, cadt_tally* tally) {
+#define CADT_UNSURE 2
+/* Orientation of a, b, c, or CADT_UNSURE if the filter cannot tell. */
+CADT_FN cadt_i32 cadt_orientation_filter(cadt_point a, cadt_point b, cadt_point c) {
   double ux = a.x - c.x, uy = a.y - c.y, vx = b.x - c.x, vy = b.y - c.y;
-  tally->count[CADT_COUNT_ORIENTATION_TESTS]++;
 #if CADT_WIDE
   /* x and y apart: the determinant is linear in either */
   const cadt_i32 ex = cadt_exponent_of_largest(ux, vx, 0.0, 0.0), ey = cadt_exponent_of_largest(uy, vy, 0.0, 0.0);
-  if (ex < 5000 && ey < 5000)
+  if (ex == 5000 || ey == 5000) return CADT_UNSURE;
+  ux = cadt_ldexp(ux, -ex);
+  vx = cadt_ldexp(vx, -ex);
+  uy = cadt_ldexp(uy, -ey);
+  vy = cadt_ldexp(vy, -ey);
 #endif
-  {
-#if CADT_WIDE
-    ux = cadt_ldexp(ux, -ex);
-    vx = cadt_ldexp(vx, -ex);
-    uy = cadt_ldexp(uy, -ey);
-    vy = cadt_ldexp(vy, -ey);
-#endif
-    const double left = ux * vy, right = uy * vx, det = left - right;
-    const double bound = CADT_ORIENTATION_BOUND * (cadt_fabs(left) + cadt_fabs(right)) + CADT_UNDERFLOW;
-    if (det > bound) return 1;
-    if (-det > bound) return -1;
-#if !CADT_WIDE
-    if (bound == 0.0)
-      return 0; /* both products are 0, and nothing underflows: points along an axis, as lattices have */
-#endif
-  }
+  const double left = ux * vy, right = uy * vx, det = left - right;
+  const double bound = CADT_ORIENTATION_BOUND * (cadt_fabs(left) + cadt_fabs(right)) + CADT_UNDERFLOW;
+  if (det > bound) return 1;
+  if (-det > bound) return -1;
+  /* 0: both products are 0, and nothing underflows: points along an axis, as lattices have */
+  return bound == 0.0 ? 0 : CADT_UNSURE;
+}
+
+CADT_FN cadt_i32 cadt_orientation(cadt_point a, cadt_point b, cadt_point c, cadt_tally* tally) {
+  tally->count[CADT_COUNT_ORIENTATION_TESTS]++;
+  const cadt_i32 sign = cadt_orientation_filter(a, b, c);
+  if (sign != CADT_UNSURE) return sign;
   tally->count[CADT_COUNT_EXACT_ORIENTATIONS]++;
   return cadt_orientation_exact(a, b, c);
 }
@@ -82,10 +83,35 @@ CADT_FN_SLOW cadt_i32 cadt_tie(cadt_point a, cadt_point b, cadt_point c, cadt_po
     if (!(spent & 4u) && cadt_before(top, c)) top = c, largest = 2u;
     if (largest == 3u) return -1;
     spent |= 1u << largest;
-    const cadt_i32 side = cadt_orientation_exact(largest == 0u ? p : a, largest == 1u ? p : b, largest == 2u ? p : c);
+    const cadt_point x = largest == 0u ? p : a, y = largest == 1u ? p : b, z = largest == 2u ? p : c;
+    cadt_i32 side = cadt_orientation_filter(x, y, z);
+    if (side == CADT_UNSURE) side = cadt_orientation_exact(x, y, z);
     if (side != 0) return side;
   }
   return -1;
+}
+
+/* Whether two sums are equal: both as they are rounded, and what was lost (D. E. Knuth, "The Art of Computer
+ * Programming", vol. 2, 4.2.2). */
+CADT_FN double cadt_lost_by_sum(double a, double b, double sum) {
+  const double part = sum - a;
+  return (a - (sum - part)) + (b - part);
+}
+CADT_FN cadt_u32 cadt_equal_sums(double a, double b, double c, double d) {
+  const double left = a + b, right = c + d;
+  return left == right && cadt_lost_by_sum(a, b, left) == cadt_lost_by_sum(c, d, right) ? 1u : 0u;
+}
+
+/* Whether a line along an axis mirrors a to b and c to d. Then they are on a circle. */
+CADT_FN cadt_u32 cadt_mirrored_pairs(cadt_point a, cadt_point b, cadt_point c, cadt_point d) {
+  if (a.y == b.y && c.y == d.y) return cadt_equal_sums(a.x, b.x, c.x, d.x);
+  return a.x == b.x && c.x == d.x ? cadt_equal_sums(a.y, b.y, c.y, d.y) : 0u;
+}
+
+/* Most ties of lattices and of symmetric figures: known without long integers. */
+CADT_FN cadt_u32 cadt_mirrored(cadt_point a, cadt_point b, cadt_point c, cadt_point d) {
+  return cadt_mirrored_pairs(a, b, c, d) || cadt_mirrored_pairs(a, c, b, d) || cadt_mirrored_pairs(a, d, b, c) ? 1u
+                                                                                                               : 0u;
 }
 
 /* A point seen from another one. */
@@ -146,8 +172,10 @@ CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_poin
     if (-det > bound) return -1;
   }
   tally->count[CADT_COUNT_EXACT_INCIRCLES]++;
-  cadt_i32 sign = cadt_incircle_exact(a, b, c, p);
-  if (sign != 0) return sign;
+  if (!cadt_mirrored(a, b, c, p)) {
+    const cadt_i32 sign = cadt_incircle_exact(a, b, c, p);
+    if (sign != 0) return sign;
+  }
   tally->count[CADT_COUNT_TIES]++;
   return cadt_tie(a, b, c, p);
 }

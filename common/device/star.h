@@ -63,7 +63,10 @@ typedef struct {
 CADT_FN cadt_point cadt_exact_point(const cadt_star_maker* m, cadt_u32 place) { return m->points[m->w->at[place]]; }
 
 CADT_FN cadt_u32 cadt_link_place(const cadt_star_maker* m, cadt_u32 k) {
-  return m->w->link[k * m->lanes + cadt_team_lane] & CADT_PLACE_MASK;
+  return m->w->link[k * m->lanes + cadt_team_lane];
+}
+CADT_FN void cadt_set_link_place(const cadt_star_maker* m, cadt_u32 k, cadt_u32 place) {
+  m->w->link[k * m->lanes + cadt_team_lane] = CADT_CAST(cadt_u16, place);
 }
 
 /* Orientation of p, a, b; the vectors are from p, inverted or not. */
@@ -75,10 +78,11 @@ CADT_FN cadt_i32 cadt_star_orientation(const cadt_star_maker* m, cadt_u32 p, cad
   return cadt_orientation(cadt_exact_point(m, p), cadt_exact_point(m, a), cadt_exact_point(m, b), m->tally);
 }
 
-/* Whether the last corner of the first `size`, b, is one when c comes after it; a is the one before. 2: the question
- * makes no sense. */
-CADT_FN cadt_u32 cadt_star_keeps(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, cadt_u32 c, cadt_vector ua,
-                                 cadt_vector ub, cadt_vector uc, float sigma) {
+/* Whether the last corner of the first `size`, b, is one when c comes after it; a is the one before. By rounded
+ * numbers: CADT_STAR_UNSURE if they cannot tell. */
+#define CADT_STAR_SENSELESS 2u
+#define CADT_STAR_UNSURE 3u
+CADT_FN cadt_u32 cadt_star_keeps(cadt_vector ua, cadt_vector ub, cadt_vector uc, float sigma) {
   cadt_vector e, f;
   e.x = ub.x - ua.x;
   e.y = ub.y - ua.y;
@@ -87,10 +91,14 @@ CADT_FN cadt_u32 cadt_star_keeps(const cadt_star_maker* m, cadt_u32 p, cadt_u32 
   const float largest = cadt_maxf(cadt_maxf(cadt_size(ua), cadt_size(ub)), cadt_size(uc));
   const float cross = cadt_cross(e, f), bound = 4.0f * sigma * largest * (cadt_size(e) + cadt_size(f));
   if (cross > bound) return 1u;
-  if (-cross > bound) return 0u;
+  return -cross > bound ? 0u : CADT_STAR_UNSURE;
+}
+
+/* The same for certain. CADT_STAR_SENSELESS: a and b are not in order around p. */
+CADT_FN cadt_u32 cadt_star_keeps_exactly(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, cadt_u32 c) {
   const cadt_point P = cadt_exact_point(m, p), A = cadt_exact_point(m, cadt_link_place(m, size - 2u));
   const cadt_point B = cadt_exact_point(m, cadt_link_place(m, size - 1u));
-  if (cadt_orientation(P, A, B, m->tally) <= 0) return 2u;
+  if (cadt_orientation(P, A, B, m->tally) <= 0) return CADT_STAR_SENSELESS;
   return cadt_incircle(P, A, B, cadt_exact_point(m, c), m->tally) < 0 ? 1u : 0u;
 }
 
@@ -292,7 +300,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     for (cadt_u32 k = 1u; k < 8u; ++k) t = cadt_maxf(t, cadt_about_fma(nx[k], dx, ny[k] * dy));
     if (cadt_about_fma(error, cadt_fabsf(dx) + cadt_fabsf(dy), t) >= cadt_about_fma(dx, dx, dy * dy) * shrink &&
         j != p) {
-      if (count < m->candidates) w->link[count * m->lanes + cadt_team_lane] = j;
+      if (count < m->candidates) cadt_set_link_place(m, count, j);
       ++count;
     }
   }
@@ -303,67 +311,78 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   {
     cadt_u32 key[CADT_CANDIDATES];
     for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_CANDIDATES); ++k)
-      key[k] = k < count ? cadt_angle_key(m, p, first, start, w->link[k * m->lanes + cadt_team_lane]) : CADT_NONE;
+      key[k] = k < count ? cadt_angle_key(m, p, first, start, cadt_link_place(m, k)) : CADT_NONE;
     CADT_SORT_KEYS;
     for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_CANDIDATES); ++k)
-      if (k < count) w->link[k * m->lanes + cadt_team_lane] = key[k];
+      if (k < count) cadt_set_link_place(m, k, key[k] & CADT_PLACE_MASK);
   }
-  for (cadt_u32 k = CADT_CANDIDATES; k < count; ++k) { /* seldom */
-    const cadt_u32 key = cadt_angle_key(m, p, first, start, w->link[k * m->lanes + cadt_team_lane]);
-    cadt_u32 at = k;
-    for (; at > 0u; --at) {
-      const cadt_u32 other = w->link[(at - 1u) * m->lanes + cadt_team_lane];
-      if (other < key) break;
-      w->link[at * m->lanes + cadt_team_lane] = other;
+  for (cadt_u32 k = CADT_CANDIDATES; k < count; ++k) { /* in the second round only */
+    const cadt_u32 place = cadt_link_place(m, k), key = cadt_angle_key(m, p, first, start, place);
+    cadt_u32 low = 0u, high = k;
+    while (low < high) {
+      const cadt_u32 middle = (low + high) / 2u;
+      if (cadt_angle_key(m, p, first, start, cadt_link_place(m, middle)) < key)
+        low = middle + 1u;
+      else
+        high = middle;
     }
-    w->link[at * m->lanes + cadt_team_lane] = key;
+    for (cadt_u32 at = k; at > low; --at) cadt_set_link_place(m, at, cadt_link_place(m, at - 1u));
+    cadt_set_link_place(m, low, place);
   }
   if (cadt_link_place(m, 0u) != first) return 0u;
 
   /* The hull; what was on it and is no corner is dropped. It begins and ends with `first`. One test and one load a
-   * step, and no way out of the middle, so that the lanes of a warp stay together. */
-  cadt_u32 size = 1u, at = 0u, c = first, going = 1u, proven = 1u;
+   * step, and no way out of the middle, so that the lanes of a warp stay together. Who is unsure waits until all are,
+   * or have finished: then exact tests are made by many lanes at a time. */
+  cadt_u32 size = 1u, at = 0u, c = first, going = 1u, proven = 1u, answer = CADT_STAR_UNSURE;
   const cadt_vector us = cadt_invert(start);
   cadt_vector ua = us, ub = us, uc = us; /* of the last two corners and of candidate `at` */
   while (going) {
-    cadt_u32 keeps = 1u;
-    if (size >= 2u) keeps = cadt_star_keeps(m, p, size, c, ua, ub, uc, sigma);
-    going = keeps != 2u && !(keeps && at == count) ? 1u : 0u;
-    if (keeps == 2u) proven = 0u;
-    if (going) {
-      cadt_u32 next;
-      if (keeps) {
-        if (at > 0u) {
-          w->link[size * m->lanes + cadt_team_lane] = c;
-          ++size;
-          ua = ub;
-          ub = uc;
+    cadt_u32 stuck = 0u;
+    while (going && !stuck) {
+      cadt_u32 keeps = answer;
+      if (keeps == CADT_STAR_UNSURE) keeps = size >= 2u ? cadt_star_keeps(ua, ub, uc, sigma) : 1u;
+      answer = CADT_STAR_UNSURE;
+      stuck = keeps == CADT_STAR_UNSURE ? 1u : 0u;
+      if (!stuck) going = keeps != CADT_STAR_SENSELESS && !(keeps && at == count) ? 1u : 0u;
+      if (keeps == CADT_STAR_SENSELESS) proven = 0u;
+      if (going && !stuck) {
+        cadt_u32 next;
+        if (keeps) {
+          if (at > 0u) {
+            cadt_set_link_place(m, size, c);
+            ++size;
+            ua = ub;
+            ub = uc;
+          }
+          ++at;
+          next = at < count ? at : 0u;
+        } else {
+          --size;
+          next = size >= 2u ? size - 2u : 0u;
         }
-        ++at;
-        next = at < count ? at : 0u;
-      } else {
-        --size;
-        next = size >= 2u ? size - 2u : 0u;
-      }
-      const cadt_u32 place = cadt_link_place(m, next);
-      const cadt_vector u = cadt_invert(cadt_vector_to(w, p, place));
-      if (keeps) {
-        /* candidates must come in the order of their angles for certain */
-        if (cadt_star_orientation(m, p, c, place, ub, u, sigma) <= 0) going = proven = 0u;
-        c = place;
-        uc = u;
-      } else {
-        ub = ua;
-        ua = u;
+        const cadt_u32 place = cadt_link_place(m, next);
+        const cadt_vector u = cadt_invert(cadt_vector_to(w, p, place));
+        if (keeps) {
+          /* candidates must come in the order of their angles for certain */
+          if (cadt_star_orientation(m, p, c, place, ub, u, sigma) <= 0) going = proven = 0u;
+          c = place;
+          uc = u;
+        } else {
+          ub = ua;
+          ua = u;
+        }
       }
     }
+    if (going) answer = cadt_star_keeps_exactly(m, p, size, c);
   }
   if (size < 3u || size > CADT_CAST(cadt_u32, CADT_STAR_DEGREE)) proven = 0u;
   if (proven) { /* `first` is a corner too */
     const cadt_u32 second = cadt_link_place(m, 1u);
-    w->link[size * m->lanes + cadt_team_lane] = first;
-    if (cadt_star_keeps(m, p, size + 1u, second, ub, us, cadt_invert(cadt_vector_to(w, p, second)), sigma) != 1u)
-      proven = 0u;
+    cadt_set_link_place(m, size, first);
+    cadt_u32 keeps = cadt_star_keeps(ub, us, cadt_invert(cadt_vector_to(w, p, second)), sigma);
+    if (keeps == CADT_STAR_UNSURE) keeps = cadt_star_keeps_exactly(m, p, size + 1u, second);
+    if (keeps != 1u) proven = 0u;
   }
 
   /* The circles. Beyond the edge of the grid there are no points. */
@@ -404,16 +423,19 @@ CADT_FN void cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size
 /* Stars of every `step`-th tile. found: points of these tiles, those without a proof; exact orientations, exact
  * incircles, ties. \pre sizes are 0, or of stars that are there already */
 CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys,
-                 cadt_u32 n, CADT_GRID_PARAMETERS, CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count,
-                 cadt_u32 step, cadt_u32 grain, CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes,
-                 CADT_GLOBAL cadt_u32* found) {
+                 cadt_u32 n, CADT_GRID_PARAMETERS, double most_x, double most_y, CADT_GLOBAL const cadt_tile* tiles,
+                 cadt_u32 tile_count, cadt_u32 step, cadt_u32 grain, CADT_GLOBAL cadt_u32* links,
+                 CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_window window;
   CADT_GRID_VIEW(grid);
+  cadt_point most;
+  most.x = most_x;
+  most.y = most_y;
   cadt_tally tally;
   cadt_tally_clear(&tally);
   CADT_FOR_TEAMS(t, tile_count, grain) {
     const cadt_tile tile = tiles[t * step];
-    const cadt_window_shape shape = cadt_shape_of_window(&grid, points, tile, tiles[t * step + 1u].begin);
+    const cadt_window_shape shape = cadt_shape_of_window(&grid, most, points, tile, tiles[t * step + 1u].begin);
     cadt_star_maker maker;
     maker.w = &window;
     maker.shape = &shape;
@@ -425,12 +447,9 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
       const cadt_u32 wanted = own < 2u * shape.tile_side * shape.tile_side ? 3u : 2u;
       const cadt_u32 reach = cadt_min_u32(wanted, shape.halo);
       const float middle = 0.5f * CADT_CAST(float, shape.side);
+      const cadt_u32 lanes = maker.lanes = cadt_min_u32(cadt_team_lanes, CADT_STAR_LANES);
       for (cadt_u32 round = 0u; round < 2u; ++round) {
-        /* few are tried again, with room for more candidates */
-        const cadt_u32 lanes = cadt_min_u32(
-            cadt_team_lanes, round ? CADT_CAST(cadt_u32, CADT_STAR_LANES) / 2u : CADT_CAST(cadt_u32, CADT_STAR_LANES));
-        maker.lanes = lanes;
-        maker.candidates = (round ? 2u : 1u) * CADT_CANDIDATES;
+        maker.candidates = (round ? 2u : 1u) * CADT_CANDIDATES; /* few are tried again */
         const cadt_u32 count = round ? window.again_count : own;
         for (cadt_u32 i = cadt_team_lane; cadt_team_lane < lanes && i < count; i += lanes) {
           const cadt_u32 number = round ? window.again[i] : i;

@@ -16,7 +16,7 @@ enum {
   CADT_WINDOW_PARTS = 32, /* of the cells, for their scan */
   CADT_TILE_SIDE = 16,
   CADT_CANDIDATES = 16,
-  CADT_LINK_WORDS = 16 * 128 /* CADT_CANDIDATES for each of CADT_STAR_LANES */
+  CADT_LINK_PLACES = 2 * 16 * 128 /* twice CADT_CANDIDATES for each of CADT_STAR_LANES */
 };
 
 typedef struct {
@@ -25,7 +25,7 @@ typedef struct {
   cadt_u32 cells[CADT_WINDOW_CELLS + 1];              /* where the points of a cell begin, once sorted */
   cadt_u32 first[CADT_WINDOW_RANGES], offset[CADT_WINDOW_RANGES + 1], parts[CADT_WINDOW_PARTS];
   cadt_u32 rows[CADT_TILE_SIDE + 1]; /* points of the tile before each row of its cells */
-  cadt_u32 link[CADT_LINK_WORDS];    /* a star in the making for each lane (star.h) */
+  cadt_u16 link[CADT_LINK_PLACES];   /* a star in the making for each lane (star.h) */
   cadt_u32 again_count, unproven;
   cadt_u16 again[CADT_TILE_POINTS]; /* points that are tried again, numbers in the tile */
 } cadt_window;
@@ -37,12 +37,20 @@ typedef struct {
   cadt_i32 square_x, square_y; /* the lowest square, in squares of its level */
   cadt_u32 square_level;
   cadt_u32 side, halo, tile_side;    /* cells along the window, on each side of the tile, of the tile */
-  cadt_i32 left, right, bottom, top; /* first cell of the grid's, and behind the last */
+  cadt_i32 left, right, bottom, top; /* first cell with points of the grid's, and behind the last */
   double origin_x, origin_y, cells;  /* in units of the grid: lowest corner; cells a unit */
 } cadt_window_shape;
 
-CADT_FN cadt_window_shape cadt_shape_of_window(const cadt_key_grid* grid, CADT_GLOBAL const cadt_point* points,
-                                               const cadt_tile tile, cadt_u32 end) {
+/* Behind the last cell with points along an axis of the grid, `cells` a unit. `most`: the largest coordinate. */
+CADT_FN cadt_i32 cadt_edge_of_points(double most, double cells, cadt_u32 bits) {
+  const double last = CADT_CAST(double, 1u << bits) * cells - 1.0, edge = most * cells;
+  return CADT_CAST(cadt_i32, edge < last ? edge : last) + 1;
+}
+
+/* `most`: the largest coordinates of all points, in units of the grid. */
+CADT_FN cadt_window_shape cadt_shape_of_window(const cadt_key_grid* grid, const cadt_point most,
+                                               CADT_GLOBAL const cadt_point* points, const cadt_tile tile,
+                                               cadt_u32 end) {
   cadt_window_shape s;
   const cadt_u32 levels = cadt_grid_levels(grid), level = CADT_CAST(cadt_u32, tile.level);
   const cadt_u32 count = end - tile.begin, finer = cadt_min_u32(levels - level, 2u);
@@ -63,11 +71,11 @@ CADT_FN cadt_window_shape cadt_shape_of_window(const cadt_key_grid* grid, CADT_G
   s.side = s.tile_side + 2u * s.halo;
   s.left = -s.square_x * of_square;
   s.bottom = -s.square_y * of_square;
-  s.right = s.left + (of_square << (grid->bits_x - down));
-  s.top = s.bottom + (of_square << (grid->bits_y - down));
   s.origin_x = CADT_CAST(double, s.square_x) * CADT_CAST(double, 1u << down);
   s.origin_y = CADT_CAST(double, s.square_y) * CADT_CAST(double, 1u << down);
   s.cells = CADT_CAST(double, of_square) / CADT_CAST(double, 1u << down);
+  s.right = s.left + cadt_edge_of_points(most.x, s.cells, grid->bits_x);
+  s.top = s.bottom + cadt_edge_of_points(most.y, s.cells, grid->bits_y);
   return s;
 }
 

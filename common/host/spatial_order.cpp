@@ -53,6 +53,30 @@ Bounds find_bounds(Run& run, const Allocation& input, std::size_t n) {
       all.min_x, all.max_x, all.min_y, all.max_y, static_cast<int>(all.low) - 4096, static_cast<int>(all.high) - 4096};
 }
 
+constexpr std::size_t least_points_of_tiles = 400'000;  // fewer do not fill a card with tiles of that size
+constexpr double points_of_tile = 600, fewest_of_tile = 450;
+
+/// The largest squares of the grid with at most CADT_TILE_POINTS points are tiles (common/device/tiles.h), so evenly
+/// spread points have between a quarter of that in each and all of it. With cells up to twice as long they have about
+/// what is best for the star stage, and the last tiles along each axis are not slivers, whose windows have too many
+/// points. Returns the factor for the scale of the grid.
+double scale_for_tiles(const KeyGrid& grid, double width, double height, std::size_t n) {
+  const double cells_x = std::max(1.0, grid.scale * width), cells_y = std::max(1.0, grid.scale * height);
+  const double longer = std::max(cells_x, cells_y), shorter = std::min(cells_x, cells_y);
+  const double density = static_cast<double>(n) / (cells_x * cells_y);
+  double side = 1;  // of a tile, in cells
+  while (4 * density * side * side <= points_of_tile && 2 * side <= longer) side *= 2;
+  const double most = std::sqrt(points_of_tile / density), least = std::sqrt(fewest_of_tile / density);
+  double best = side, cost = 2;
+  for (double tiles = std::ceil(longer / most); tiles <= longer / least && tiles <= 4096; ++tiles) {
+    const double rows = shorter * tiles / longer, sliver = std::ceil(rows - 1e-9) - rows;
+    // between two that leave the same, the larger tiles
+    const double price = (rows > 1 ? sliver : 0) + 0.5 * (1 - longer / tiles / most);
+    if (price < cost) cost = price, best = longer / tiles;
+  }
+  return cost < 2 && best > side && best < 2 * side ? side / best * (1 - 0x1p-30) : 1;
+}
+
 KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
   // Halved: the width of the box may exceed the largest double.
   const double width = 0.5 * bounds.max_x - 0.5 * bounds.min_x, height = 0.5 * bounds.max_y - 0.5 * bounds.min_y;
@@ -73,6 +97,9 @@ KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
   if (longer > 0) grid.scale = std::min(grid.scale, std::ldexp(1.0, longer_bits) / longer);
   // the shorter axis must not leave its bits either, unless it has none
   if (shorter > 0 && shorter_bits > 0) grid.scale = std::min(grid.scale, std::ldexp(1.0, shorter_bits) / shorter);
+  if (n >= least_points_of_tiles) grid.scale *= scale_for_tiles(grid, width, height, n);
+  grid.most_x = (0.5 * bounds.max_x - grid.half_min_x) * grid.scale;
+  grid.most_y = (0.5 * bounds.max_y - grid.half_min_y) * grid.scale;
   return grid;
 }
 

@@ -15,7 +15,8 @@ namespace cadt {
 struct KeyGrid {
   unsigned bits_x = 1, bits_y = 1;
   double half_min_x = 0, half_min_y = 0;
-  double scale = 0;  ///< cells a unit of halved coordinates
+  double scale = 0;               ///< cells a unit of halved coordinates
+  double most_x = 0, most_y = 0;  ///< largest coordinates of the points, in cells
   [[nodiscard]] unsigned bits() const noexcept { return bits_x + bits_y; }
   [[nodiscard]] unsigned levels() const noexcept { return std::min(bits_x, bits_y); }
 };

@@ -101,6 +101,29 @@ TEST(DevicePredicates, AlmostCocircularPointsNeedLongIntegers) {
   EXPECT_GT(seen.exact, 1000);
 }
 
+// Corners of rectangles and others on one circle, as integers of up to 61 bits with differences of up to 62, a unit in
+// the last place off or not: the 256-bit path with the largest numbers it can meet, of either sign.
+TEST(DevicePredicates, LongestIntegersOfTheMiddlePath) {
+  std::mt19937_64 random(6);
+  const double top = (0x1p53 - 1) * 0x1p8;
+  const std::vector<double> ends = {top, 0x1p60, 0x1p60 + 0x1p8, 0x1.921fb54442d18p59, 0x1p31, 3.0, 1.0, 0.0};
+  Seen seen;
+  for (int i = 0; i < 40000; ++i) {
+    const auto end = [&] { return ends[random() % ends.size()] * (random() & 1 ? 1 : -1); };
+    const double x0 = end(), y0 = end(), x1 = end(), y1 = end();
+    Four p;
+    p[0] = {x0, y0}, p[1] = {x1, y0}, p[2] = {x1, y1}, p[3] = {x0, y1};
+    if (random() % 4 == 0) p[1] = {-x0, -y0}, p[2] = {-y0, x0}, p[3] = {y0, -x0};  // a circle around the origin
+    const auto nudge = [&](double& v) { v = std::nextafter(v, random() & 1 ? 0x1p61 : -0x1p61); };
+    if (random() & 1) nudge(random() & 1 ? p[random() % 4].x : p[random() % 4].y);
+    for (auto& q : p) q = {scaled(q.x, -62), scaled(q.y, -62)};
+    if (!distinct(p)) continue;
+    ASSERT_NO_FATAL_FAILURE(check(p, true, seen));
+  }
+  EXPECT_GT(seen.ties, 1000);
+  EXPECT_GT(seen.exact, 1000);
+}
+
 TEST(DevicePredicates, NarrowBuildTakesItsWholeWindow) {
   std::mt19937_64 random(4);
   std::uniform_int_distribution<int> bits(1, 240);

@@ -116,12 +116,13 @@ struct Sorted {
   std::vector<cadt_point> points;
   Keys keys;
   cadt_key_grid grid{};
+  cadt_point most{};             ///< largest coordinates, in units of the grid
   std::vector<cadt_tile> tiles;  ///< one more at the end
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points.size()); }
 };
 
-/// \pre distinct points, in [0, 1)
-Sorted sorted(std::vector<cadt_point> points, unsigned bits_x, unsigned bits_y) {
+/// \pre distinct points, in [0, 1). `part` of the grid along each axis is used.
+Sorted sorted(std::vector<cadt_point> points, unsigned bits_x, unsigned bits_y, double part = 1) {
   Sorted s;
   double low_x = 1, low_y = 1, high_x = 0, high_y = 0;
   for (const cadt_point& p : points) {
@@ -131,9 +132,10 @@ Sorted sorted(std::vector<cadt_point> points, unsigned bits_x, unsigned bits_y) 
     high_y = std::max(high_y, p.y);
   }
   s.grid = {0.5 * low_x, 0.5 * low_y,
-            std::min(std::ldexp(2, static_cast<int>(bits_x)) / (high_x - low_x),
-                     std::ldexp(2, static_cast<int>(bits_y)) / (high_y - low_y)),
+            part * std::min(std::ldexp(2, static_cast<int>(bits_x)) / (high_x - low_x),
+                            std::ldexp(2, static_cast<int>(bits_y)) / (high_y - low_y)),
             bits_x, bits_y};
+  s.most = cadt_to_grid(&s.grid, {high_x, high_y});
   const auto n = static_cast<std::uint32_t>(points.size());
   Keys keys(n);
   cadt_sort_keys(0, 1, points.data(), keys.data(), n, n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale, bits_x,
@@ -221,7 +223,8 @@ TEST(Windows, HaveEveryPointOfTheirSquares) {
     const auto window = std::make_unique<cadt_window>();
     std::size_t loaded = 0, owned = 0;
     for (std::size_t t = 0; t + 1 < s.tiles.size(); ++t) {
-      const cadt_window_shape shape = cadt_shape_of_window(&s.grid, s.points.data(), s.tiles[t], s.tiles[t + 1].begin);
+      const cadt_window_shape shape =
+          cadt_shape_of_window(&s.grid, s.most, s.points.data(), s.tiles[t], s.tiles[t + 1].begin);
       ASSERT_LE(shape.side * shape.side, static_cast<unsigned>(CADT_WINDOW_CELLS));
       ASSERT_LE(shape.squares * shape.squares, static_cast<unsigned>(CADT_WINDOW_RANGES));
       // by definition: the points whose cells of the grid are within the window
@@ -297,7 +300,8 @@ TEST(ProvenStars, AreThoseOfTheMesh) {
     const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
     std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n), found(5);
     cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
-               s.grid.bits_x, s.grid.bits_y, s.tiles.data(), count, 1, count, stars.data(), sizes.data(), found.data());
+               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, s.tiles.data(), count, 1, count, stars.data(),
+               sizes.data(), found.data());
     const auto links = links_of(s);
     std::size_t proven = 0;
     for (std::uint32_t v = 0; v < n; ++v) {

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <initializer_list>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,7 @@ using namespace cadt;
 
 struct Arguments {
   std::size_t points = 1'000'000;
-  std::string backend = "cuda", device, kind = "uniform", verify = "none";
+  std::string backend = "cuda", device, kind = "uniform", file, verify = "none";
   int runs = 10, warm_up = 3;
   unsigned block = 0;
   Order order = Order::fast;
@@ -33,10 +35,12 @@ struct Arguments {
 [[noreturn]] void usage() {
   std::fputs(
       "usage: cadt-check-gpu [--points N] [--backend cuda|opencl|host] [--device D]\n"
-      "                      [--kind uniform|circles|gaussian|lattice] [--runs R] [--warm-up W] [--block B]\n"
+      "                      [--kind uniform|circles|gaussian|lattice] [--file FILE] [--runs R] [--warm-up W] [--block "
+      "B]\n"
       "                      [--order fast|canonical] [--verify none|host|device] [--phases] [--hash]\n"
       "                      [--strategy auto|locks|stars] [--stabilize off|defer|paper]\n"
       "                      [--statistics none|counters|timing]\n"
+      "--file: points as raw 64-bit numbers x0 y0 x1 y1 ... (cadt generate NAME -t f64)\n"
       "prints the median time (and the least and the most) from points on the device to a mesh on the device\n",
       stderr);
   std::exit(2);
@@ -66,6 +70,8 @@ Arguments parse(int count, char** values) {
       a.device = value();
     else if (words[i] == "--kind")
       a.kind = value();
+    else if (words[i] == "--file")
+      a.file = value();
     else if (words[i] == "--runs")
       a.runs = std::stoi(value());
     else if (words[i] == "--warm-up")
@@ -132,6 +138,16 @@ std::vector<double> make_points(const std::string& kind, std::size_t n) {
   return xy;
 }
 
+std::vector<double> read_points(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const auto bytes = static_cast<std::size_t>(std::max<std::streamoff>(file.tellg(), 0));
+  std::vector<double> xy(bytes / (2 * sizeof(double)) * 2);
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(xy.data()), static_cast<std::streamsize>(xy.size() * sizeof(double)));
+  if (!file || xy.empty()) throw std::runtime_error("no points can be read from " + path);
+  return xy;
+}
+
 int chosen_device(Backend backend, const std::string& name) {
   const bool number = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
   int any = -1;
@@ -149,7 +165,8 @@ double now() {
 }
 
 int run(const Arguments& a) {
-  const std::vector<double> xy = make_points(a.kind, a.points);
+  const std::vector<double> xy = a.file.empty() ? make_points(a.kind, a.points) : read_points(a.file);
+  const std::size_t n = xy.size() / 2;
   Options options;
   options.backend = backend_from_string(a.backend);
   options.order = a.order;
@@ -177,7 +194,7 @@ int run(const Arguments& a) {
   for (int r = 0; r < a.warm_up + a.runs; ++r) {
     mesh = DeviceTriangulation();
     const double begin = now();
-    mesh = triangulator.triangulate(DevicePoints{.x = points, .size = a.points});
+    mesh = triangulator.triangulate(DevicePoints{.x = points, .size = n});
     if (memory) memory->wait();
     if (r < a.warm_up) continue;
     times.push_back(now() - begin);
@@ -190,9 +207,10 @@ int run(const Arguments& a) {
   }
   std::sort(times.begin(), times.end());
   const Statistics& s = mesh.statistics();
-  std::printf("%s %zu %s '%s': %.3f ms (%.3f to %.3f), %zu triangles, %.1f bytes a point", a.kind.c_str(), a.points,
-              a.backend.c_str(), s.device.c_str(), times[times.size() / 2], times.front(), times.back(),
-              mesh.number_of_triangles(), static_cast<double>(s.bytes_device_peak) / static_cast<double>(a.points));
+  std::printf("%s %zu %s '%s': %.3f ms (%.3f to %.3f), %zu triangles, %.1f bytes a point",
+              (a.file.empty() ? a.kind : a.file).c_str(), n, a.backend.c_str(), s.device.c_str(),
+              times[times.size() / 2], times.front(), times.back(), mesh.number_of_triangles(),
+              static_cast<double>(s.bytes_device_peak) / static_cast<double>(n));
   if (a.phases) {
     std::printf("\n   ");
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -200,16 +218,17 @@ int run(const Arguments& a) {
       std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
       std::printf(" %s %.2f", names[i].c_str(), list[list.size() / 2]);
     }
-    const auto n = static_cast<double>(a.points);
+    const auto all = static_cast<double>(n);
     std::printf(
         " | a point: steps %.2f flips %.2f lost claims %.3f | deferred %llu + %llu, launches %llu, sweeps %llu, "
         "repairs %llu",
-        static_cast<double>(s.walk_steps) / n, static_cast<double>(s.flips) / n, static_cast<double>(s.lost_claims) / n,
-        static_cast<unsigned long long>(s.deferred_points), static_cast<unsigned long long>(s.deferred_edges),
-        static_cast<unsigned long long>(s.launches), static_cast<unsigned long long>(s.closing_sweeps),
-        static_cast<unsigned long long>(s.closing_repairs));
-    std::printf(", tiles %llu, unproven %llu, exact %llu + %llu", static_cast<unsigned long long>(s.tiles),
-                static_cast<unsigned long long>(s.distinct - s.proven_stars),
+        static_cast<double>(s.walk_steps) / all, static_cast<double>(s.flips) / all,
+        static_cast<double>(s.lost_claims) / all, static_cast<unsigned long long>(s.deferred_points),
+        static_cast<unsigned long long>(s.deferred_edges), static_cast<unsigned long long>(s.launches),
+        static_cast<unsigned long long>(s.closing_sweeps), static_cast<unsigned long long>(s.closing_repairs));
+    std::printf(", tiles %llu, unproven %llu, wrapped %llu, refined %llu, exact %llu + %llu",
+                static_cast<unsigned long long>(s.tiles), static_cast<unsigned long long>(s.distinct - s.proven_stars),
+                static_cast<unsigned long long>(s.wrapped_stars), static_cast<unsigned long long>(s.refined_points),
                 static_cast<unsigned long long>(s.exact_orientations),
                 static_cast<unsigned long long>(s.exact_incircles));
     for (const auto& [name, share] : s.thread_time) std::printf(" %s %.3f", name.c_str(), share);
@@ -224,7 +243,7 @@ int run(const Arguments& a) {
   bool ok = true;
   if (a.verify == "device") {
     const double begin = now();
-    const VerifyReport report = triangulator.verify(DevicePoints{.x = points, .size = a.points}, mesh);
+    const VerifyReport report = triangulator.verify(DevicePoints{.x = points, .size = n}, mesh);
     ok = report.ok;
     std::printf(", verified on the device in %.1f ms: %s (signs: %llu by the filter, %llu exact, %llu on the host)",
                 now() - begin, report.summary().c_str(), static_cast<unsigned long long>(report.signs_filtered),

@@ -32,13 +32,19 @@ typedef struct {
   cadt_point low, high;
 } cadt_box;
 
+typedef struct {
+  cadt_u32 from, to, left; /* counterclockwise */
+} cadt_wrap_edge;
+
 enum {
   CADT_WRAP_BOX = 32,    /* points of a box */
   CADT_WRAP_CRATE = 32,  /* boxes of a crate */
   CADT_WRAP_NEAR = 3,    /* boxes in which a first neighbour is looked for */
   CADT_WRAP_CRATES = 32, /* crates that are compared with a disc at a time, */
   CADT_WRAP_OPENED = 4,  /* of these opened */
-  CADT_WRAP_DEGREE = 64, /* neighbours of a vertex at most, the ghost among them: hubs are waited for by all */
+  CADT_WRAP_DEGREE = 40, /* neighbours of a star at most, the ghost among them: others would wait for a hub */
+  CADT_WRAP_HUBS = 64,   /* vertices without a star at most, */
+  CADT_WRAP_EDGES = 256, /* half-edges between two of them */
   CADT_WRAP_LANES = 128, /* lanes of a team that search */
   CADT_WRAP_SHARES = 8   /* work-items that write the triangles of a vertex */
 };

@@ -91,16 +91,53 @@ TEST_P(Wrap, Duplicates) {
   check(shuffled(xy, 9));
 }
 
-// What it gives up goes to insertion, all of it.
-TEST_P(Wrap, GivesUpHubs) {
-  EXPECT_EQ(check(noisy_hub(60)).wrapped_stars, 61u);
-  const Statistics s = check(noisy_hub(1200));
-  EXPECT_EQ(s.wrapped_stars, 0u);
-  EXPECT_EQ(s.splits + s.edge_splits, s.distinct - 3);
+// A hub has no star of its own: its triangles are those of its neighbours.
+TEST_P(Wrap, Hubs) {
+  EXPECT_EQ(check(noisy_hub(30)).wrapped_stars, 31u);
+  for (const std::size_t neighbours : {60u, 1200u}) {
+    const Statistics s = check(noisy_hub(neighbours));
+    EXPECT_EQ(s.wrapped_stars, neighbours);
+    EXPECT_EQ(s.splits + s.edge_splits, 0u);
+  }
 }
-TEST_P(Wrap, GivesUpHubsOnTheHull) {
-  EXPECT_EQ(check(fan(60)).wrapped_stars, 61u);
-  EXPECT_EQ(check(fan(1500)).wrapped_stars, 0u);
+TEST_P(Wrap, HubsOnTheHull) {
+  EXPECT_EQ(check(fan(30)).wrapped_stars, 31u);
+  EXPECT_EQ(check(fan(500)).wrapped_stars, 500u);
+}
+
+/// Points on an arc around a hub, none of four on a circle.
+void add_arc(Points& xy, double x, double y, double from, double to) {
+  const std::size_t n = 60;
+  const Points noise = uniform_points(n, xy.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle = (from + (to - from) * static_cast<double>(i) / (n - 1)) * 0.017453292519943295;
+    xy.insert(xy.end(), {x + (1 + 1e-6 * noise[i]) * std::cos(angle), y + (1 + 1e-6 * noise[i]) * std::sin(angle)});
+  }
+}
+
+// Triangles of hubs alone: of three, and of two and what is outside of the hull.
+TEST_P(Wrap, HubsBesideEachOther) {
+  Points three = {0, 0, 10, 0, 5, 8.66};
+  add_arc(three, 0, 0, 130, 290);
+  add_arc(three, 10, 0, -110, 50);
+  add_arc(three, 5, 8.66, 10, 170);
+  EXPECT_EQ(check(shuffled(three, 5)).wrapped_stars, 180u);
+  Points two = {0, 0, 10, 0};
+  add_arc(two, 0, 0, 5, 175);
+  add_arc(two, 10, 0, 5, 175);
+  EXPECT_EQ(check(shuffled(two, 5)).wrapped_stars, 120u);
+}
+
+// Four hubs around an edge between two of them: nobody's star tells of its two triangles. All goes to insertion.
+TEST_P(Wrap, GivesUpManyHubsBesideEachOther) {
+  Points four = {0, 0, 10, 1, 0, 11, 9, 10};
+  add_arc(four, 0, 0, 150, 290);
+  add_arc(four, 10, 1, -110, 30);
+  add_arc(four, 0, 11, 60, 200);
+  add_arc(four, 9, 10, -20, 120);
+  const Statistics s = check(shuffled(four, 5));
+  EXPECT_EQ(s.wrapped_stars, 0u);
+  EXPECT_GT(s.splits + s.edge_splits, 0u);
 }
 // How much it does before it gives up depends on how many vertices are searched at a time.
 TEST_P(Wrap, EndlessTies) {

@@ -423,9 +423,9 @@ CADT_FN void cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size
 /* Stars of every `step`-th tile. found: points of these tiles, those without a proof; exact orientations, exact
  * incircles, ties. \pre sizes are 0, or of stars that are there already */
 CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys,
-                 cadt_u32 n, CADT_GRID_PARAMETERS, double most_x, double most_y, CADT_GLOBAL const cadt_tile* tiles,
-                 cadt_u32 tile_count, cadt_u32 step, cadt_u32 grain, CADT_GLOBAL cadt_u32* links,
-                 CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
+                 cadt_u32 n, CADT_GRID_PARAMETERS, double most_x, double most_y, cadt_u32 clipped,
+                 CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 step, cadt_u32 grain,
+                 CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_window window;
   CADT_GRID_VIEW(grid);
   cadt_point most;
@@ -441,7 +441,7 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
     maker.shape = &shape;
     maker.points = points;
     maker.tally = &tally;
-    const cadt_u32 loaded = cadt_load_window(&window, &shape, &grid, points, keys, n);
+    const cadt_u32 loaded = cadt_load_window(&window, &shape, &grid, points, keys, n, clipped);
     const cadt_u32 own = loaded ? window.rows[shape.tile_side] : shape.end - shape.begin;
     if (loaded) {
       const cadt_u32 wanted = own < 2u * shape.tile_side * shape.tile_side ? 3u : 2u;

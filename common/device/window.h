@@ -117,13 +117,24 @@ CADT_FN cadt_u32 cadt_cell_in_window(const cadt_window_shape* s, cadt_point f) {
          cadt_cell_along(f.x, s->origin_x, s->cells, s->side, s->right);
 }
 
-/* Loads a window. Returns 0 if there are too many points, the same for all lanes. */
+/* Whether points from outside of a clipped grid may be among those of the window: they are in the cells at its edge. */
+CADT_FN cadt_u32 cadt_at_edge(const cadt_window_shape* s, cadt_i32 squares_x, cadt_i32 squares_y) {
+  const cadt_i32 squares = CADT_CAST(cadt_i32, s->squares);
+  return s->square_x < 1 || s->square_y < 1 || s->square_x + squares >= squares_x || s->square_y + squares >= squares_y
+             ? 1u
+             : 0u;
+}
+
+/* Loads a window. Returns 0 if there are too many points, or the grid is clipped and the window at its edge; the same
+ * for all lanes. */
 CADT_FN cadt_u32 cadt_load_window(CADT_TEAM_PTR cadt_window* w, const cadt_window_shape* s, const cadt_key_grid* grid,
-                                  CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys, cadt_u32 n) {
+                                  CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys, cadt_u32 n,
+                                  cadt_u32 clipped) {
   const cadt_u32 ranges = s->squares * s->squares, levels = cadt_grid_levels(grid);
   const cadt_u32 shift = 2u * (levels - s->square_level), cells = s->side * s->side;
   const cadt_i32 squares_x = CADT_CAST(cadt_i32, 1u << (grid->bits_x - (levels - s->square_level)));
   const cadt_i32 squares_y = CADT_CAST(cadt_i32, 1u << (grid->bits_y - (levels - s->square_level)));
+  if (clipped && cadt_at_edge(s, squares_x, squares_y)) return 0u;
   CADT_TEAM_FOR(r, ranges) {
     const cadt_u32 column = r % s->squares, row = r / s->squares;
     const cadt_i32 x = s->square_x + CADT_CAST(cadt_i32, column), y = s->square_y + CADT_CAST(cadt_i32, row);

@@ -5,7 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "common/host/device_constants.hpp"
 
@@ -15,6 +17,7 @@ namespace {
 using namespace device_constants;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
+constexpr int most_key_bits = 32;
 constexpr int narrow_span = 240;  // binades that the narrow kernels take (common/device/fixed.h)
 
 struct Bounds {
@@ -77,12 +80,11 @@ double scale_for_tiles(const KeyGrid& grid, double width, double height, std::si
   return cost < 2 && best > side && best < 2 * side ? side / best * (1 - 0x1p-30) : 1;
 }
 
-KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
+/// A grid with 2^bits cells, and squares; as many as there can be with less where the box is long.
+KeyGrid choose_grid(const Bounds& bounds, int bits) {
   // Halved: the width of the box may exceed the largest double.
   const double width = 0.5 * bounds.max_x - 0.5 * bounds.min_x, height = 0.5 * bounds.max_y - 0.5 * bounds.min_y;
   const double longer = std::max(width, height), shorter = std::min(width, height);
-  // About sixteen square cells a point keep runs of equal keys short on well-spread data.
-  const int bits = std::clamp(static_cast<int>(std::bit_width(n)) + 4, 4, 32);
   int surplus = bits;
   if (shorter > 0) surplus = std::min(bits, std::max(0, std::ilogb(longer) - std::ilogb(shorter)));
   int longer_bits = std::min((bits + surplus + 1) / 2, 31);
@@ -97,24 +99,72 @@ KeyGrid choose_grid(const Bounds& bounds, std::size_t n) {
   if (longer > 0) grid.scale = std::min(grid.scale, std::ldexp(1.0, longer_bits) / longer);
   // the shorter axis must not leave its bits either, unless it has none
   if (shorter > 0 && shorter_bits > 0) grid.scale = std::min(grid.scale, std::ldexp(1.0, shorter_bits) / shorter);
-  if (n >= least_points_of_tiles) grid.scale *= scale_for_tiles(grid, width, height, n);
-  grid.most_x = (0.5 * bounds.max_x - grid.half_min_x) * grid.scale;
-  grid.most_y = (0.5 * bounds.max_y - grid.half_min_y) * grid.scale;
   return grid;
 }
 
+/// The grid for all points.
+KeyGrid grid_of_all(const Bounds& bounds, std::size_t n) {
+  // About sixteen square cells a point keep runs of equal keys short on well-spread data.
+  KeyGrid grid = choose_grid(bounds, std::clamp(static_cast<int>(std::bit_width(n)) + 4, 4, most_key_bits));
+  const double width = 0.5 * bounds.max_x - 0.5 * bounds.min_x, height = 0.5 * bounds.max_y - 0.5 * bounds.min_y;
+  if (n >= least_points_of_tiles) grid.scale *= scale_for_tiles(grid, width, height, n);
+  grid.most_x = width * grid.scale;
+  grid.most_y = height * grid.scale;
+  return grid;
+}
+
+/// A grid without the outermost points, where that is a much smaller box: heavy tails, or a few points far away from
+/// all others, leave most points in one cell else. Judged by a sample.
+std::optional<KeyGrid> grid_of_most(Run& run, const Allocation& input, Bounds bounds, std::size_t n) {
+  constexpr std::size_t samples = 4096, tail = 12;  // on either side along each axis
+  constexpr double much_smaller = 16;
+  if (n < 4 * samples) return std::nullopt;
+  std::vector<std::uint32_t> places(samples);
+  // The same in every run, in step with nothing that is in the data (D. E. Knuth's multiplicative hash).
+  for (std::size_t i = 0; i < samples; ++i) places[i] = static_cast<std::uint32_t>(i * 0x9E3779B97F4A7C15U % n);
+  const Allocation list = run.memory.allocate(samples * word),
+                   chosen = run.memory.allocate(samples * sizeof(cadt_point));
+  run.device.write(*list, 0, places.data(), samples * word);
+  const Cut c = run.launcher.cut(samples);
+  run.launcher.run(KernelId::cadt_gather_points, c.items, input, list, chosen, static_cast<std::uint32_t>(samples),
+                   c.grain, 1.0, 1.0);
+  std::vector<cadt_point> points(samples);
+  run.device.read(*chosen, 0, points.data(), samples * sizeof points[0]);
+  const auto cut = [&](double cadt_point::*axis, double& low, double& high) {
+    const double width = 0.5 * high - 0.5 * low;
+    std::ranges::sort(points, {}, axis);
+    low = points[tail].*axis;
+    high = points[samples - 1 - tail].*axis;
+    return (0.5 * high - 0.5 * low) * much_smaller < width;
+  };
+  const bool narrower = cut(&cadt_point::x, bounds.min_x, bounds.max_x);
+  const bool lower = cut(&cadt_point::y, bounds.min_y, bounds.max_y);
+  if (!narrower && !lower) return std::nullopt;
+  KeyGrid grid = choose_grid(bounds, most_key_bits);
+  grid.most_x = std::ldexp(1.0, static_cast<int>(grid.bits_x));
+  grid.most_y = std::ldexp(1.0, static_cast<int>(grid.bits_y));
+  grid.clipped = true;
+  return grid;
+}
+
+/// Flags the members of crowded cells; how many there are.
+std::uint32_t flag_crowded(Run& run, const Allocation& keys, const Allocation& flags, std::size_t n) {
+  const Cut c = run.launcher.cut(n);
+  const Allocation totals = run.launcher.zeros(1);
+  run.launcher.run(KernelId::cadt_crowded_flags, c.items, keys, flags, static_cast<std::uint32_t>(n), c.grain, totals);
+  return run.launcher.read_word(totals, 0);
+}
+
 /// Sorts the members of crowded cells by more bits, a round at a time (common/device/refine.h). False if there are
-/// none; else `keys` are no longer those of the grid.
+/// none; else `keys` are no longer those of the grid. \pre `crowd` of them are flagged in `spare`
 bool refine(Run& run, const Allocation& input, Allocation& keys, const Allocation& order, Allocation& spare,
-            std::size_t n) {
+            std::size_t n, std::uint32_t crowd) {
   Launcher& launch = run.launcher;
   const auto count = static_cast<std::uint32_t>(n);
   const Cut c = launch.cut(n);
   constexpr std::uint32_t rounds = 4;
   for (std::uint32_t round = 0; round < rounds; ++round) {
-    Allocation totals = launch.zeros(1);
-    launch.run(KernelId::cadt_crowded_flags, c.items, keys, spare, count, c.grain, totals);
-    const std::uint32_t crowd = launch.read_word(totals, 0);
+    if (round != 0) crowd = flag_crowded(run, keys, spare, n);
     if (crowd == 0) return round != 0;
     run.statistics.refined_points = std::max<std::uint64_t>(run.statistics.refined_points, crowd);
     launch.scan(spare, n);
@@ -189,16 +239,23 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
 
   Allocation keys = run.memory.allocate(n * word), spare = run.memory.allocate(n * word);
   Allocation order = run.memory.allocate(n * word);
+  std::uint32_t crowd = 0;
   {
     Allocation spare_order = run.memory.allocate(n * word);
-    result.grid = choose_grid(bounds, n);
-    make_keys(run, input, keys, n, result.grid);
-    launch.sort(keys, order, spare, spare_order, n, result.grid.bits(), true);
+    const auto sort = [&](const KeyGrid& grid) {
+      result.grid = grid;
+      make_keys(run, input, keys, n, grid);
+      launch.sort(keys, order, spare, spare_order, n, grid.bits(), true);
+      crowd = flag_crowded(run, keys, spare, n);
+    };
+    sort(grid_of_all(bounds, n));
+    if (keep_keys && crowd > n / 4)
+      if (const std::optional<KeyGrid> grid = grid_of_most(run, input, bounds, n)) sort(*grid);
   }
   run.end_phase("sort");
   run.check("sort", 0.05);
 
-  const bool sorted_by_keys = !refine(run, input, keys, order, spare, n);
+  const bool sorted_by_keys = !refine(run, input, keys, order, spare, n, crowd);
   run.end_phase("refine");
 
   // All coordinates become multiples of 2^-240 below 1, in two steps since one factor may be out of range.

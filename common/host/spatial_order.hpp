@@ -17,6 +17,7 @@ struct KeyGrid {
   double half_min_x = 0, half_min_y = 0;
   double scale = 0;               ///< cells a unit of halved coordinates
   double most_x = 0, most_y = 0;  ///< largest coordinates of the points, in cells
+  bool clipped = false;           ///< some points are outside, and have the nearest cell at the edge
   [[nodiscard]] unsigned bits() const noexcept { return bits_x + bits_y; }
   [[nodiscard]] unsigned levels() const noexcept { return std::min(bits_x, bits_y); }
 };

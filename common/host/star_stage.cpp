@@ -100,8 +100,8 @@ class StarStage {
       Allocation found = launch_.zeros(5);
       const Cut teams = launch_.cut_teams(tile_count, CADT_STAR_LANES);
       launch_.run(KernelId::cadt_stars, teams.items, order_.points, keys_, count_, grid.half_min_x, grid.half_min_y,
-                  grid.scale, grid.bits_x, grid.bits_y, grid.most_x, grid.most_y, tiles, tile_count, step, teams.grain,
-                  links_, sizes_, found);
+                  grid.scale, grid.bits_x, grid.bits_y, grid.most_x, grid.most_y, grid.clipped ? 1u : 0u, tiles,
+                  tile_count, step, teams.grain, links_, sizes_, found);
       std::array<std::uint32_t, 5> words{};
       run_.device.read(*found, 0, words.data(), sizeof words);
       return words;

@@ -140,6 +140,31 @@ TEST_P(Stars, NearlyAllAreProven) {
   }
 }
 
+/// Radii as of a Kuzmin disk: a box a million times as wide as where half of the points are.
+Points heavy_tails(std::size_t n) {
+  Points xy = uniform_points(n, 44);
+  for (std::size_t i = 0; i < xy.size(); i += 2) {
+    const double radius = std::sqrt(1 / ((1 - xy[i]) * (1 - xy[i])) - 1), angle = 6.283185307179586 * xy[i + 1];
+    xy[i] = radius * std::cos(angle);
+    xy[i + 1] = radius * std::sin(angle);
+  }
+  return xy;
+}
+
+/// The grid leaves out what is far away from most: else these have nearly all points in one cell.
+TEST_P(Stars, OutermostPointsAreLeftOut) {
+  EXPECT_GT(proven_share(expect_same("heavy tails", heavy_tails(60000))), 0.8);
+  EXPECT_GT(proven_share(expect_same("moved", moved(heavy_tails(20000), 1e6, -3e6))), 0.6);
+  Points few = uniform_points(80000, 45);
+  for (std::size_t i = 0; i < 20; ++i)
+    few.insert(few.end(), {1e7 * std::cos(1.7 * static_cast<double>(i)), 1e7 * std::sin(1.7 * static_cast<double>(i))});
+  EXPECT_GT(proven_share(expect_same("few far away", few)), 0.7);
+  Points sideways = uniform_points(80000, 46);
+  for (std::size_t i = 0; i < 60; ++i)
+    sideways.insert(sideways.end(), {(i % 2 == 0 ? 1e7 : -1e7) * (1.0 + static_cast<double>(i)), 0.5});
+  EXPECT_GT(proven_share(expect_same("few far away to both sides", shuffled(sideways, 3))), 0.7);
+}
+
 /// Neither the size of the coordinates nor where they are counted from makes a difference to the proofs.
 TEST_P(Stars, ProofsDoNotDependOnTheUnit) {
   const Points xy = uniform_points(5000, 43);

@@ -80,7 +80,7 @@ double scale_for_tiles(const KeyGrid& grid, double width, double height, std::si
   return cost < 2 && best > side && best < 2 * side ? side / best * (1 - 0x1p-30) : 1;
 }
 
-/// A grid with 2^bits cells, and squares; as many as there can be with less where the box is long.
+/// A grid of at most 2^bits square cells over the box.
 KeyGrid choose_grid(const Bounds& bounds, int bits) {
   // Halved: the width of the box may exceed the largest double.
   const double width = 0.5 * bounds.max_x - 0.5 * bounds.min_x, height = 0.5 * bounds.max_y - 0.5 * bounds.min_y;

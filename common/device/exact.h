@@ -23,11 +23,7 @@ CADT_FN cadt_i32 cadt_sign_of_minor(cadt_u32 (*d)[CADT_LIMBS], cadt_i32 n) {
 /* Orientation, any length. */
 CADT_FN_SLOW cadt_i32 cadt_orientation_limbs(cadt_point a, cadt_point b, cadt_point c) {
   cadt_u32 d[4][CADT_LIMBS], origin[CADT_LIMBS];
-  cadt_span s;
-  cadt_span_clear(&s);
-  cadt_span_add_point(&s, a);
-  cadt_span_add_point(&s, b);
-  cadt_span_add_point(&s, c);
+  const cadt_span s = cadt_span_of(a, b, c);
   const cadt_i32 low = s.low, n = (cadt_span_bits(&s) + 2 + 31) >> 5;
   cadt_limbs_load(d[0], n, a.x, low);
   cadt_limbs_load(d[1], n, a.y, low);
@@ -57,11 +53,7 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_exact(cadt_point a, cadt_point b, cadt_po
 CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point c1, cadt_point c2, cadt_point a,
                                                       cadt_point b) {
   cadt_u32 d[4][CADT_LIMBS], term[CADT_LIMBS];
-  cadt_span s;
-  cadt_span_clear(&s);
-  cadt_span_add_point(&s, c0);
-  cadt_span_add_point(&s, c1);
-  cadt_span_add_point(&s, c2);
+  cadt_span s = cadt_span_of(c0, c1, c2);
   cadt_span_add_point(&s, a);
   cadt_span_add_point(&s, b);
   cadt_i32 n = (cadt_span_bits(&s) + 4 + 31) >> 5; /* |3 a - c0 - c1 - c2| < 6 * 2^bits */
@@ -86,11 +78,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point
   cadt_u32 d[6][CADT_LIMBS], negative[6];
   cadt_u32 product[2 * CADT_LIMBS], lift[2 * CADT_LIMBS + 1], minor[2 * CADT_LIMBS + 1];
   cadt_u32 term[4 * CADT_LIMBS + 2], det[4 * CADT_LIMBS + 3];
-  cadt_span s;
-  cadt_span_clear(&s);
-  cadt_span_add_point(&s, a);
-  cadt_span_add_point(&s, b);
-  cadt_span_add_point(&s, c);
+  cadt_span s = cadt_span_of(a, b, c);
   cadt_span_add_point(&s, p);
   const cadt_i32 low = s.low, n = (cadt_span_bits(&s) + 2 + 31) >> 5;
   for (cadt_i32 i = 0; i < 6; ++i) {
@@ -131,8 +119,8 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
     cadt_i64 bx = cadt_scaled(&s, b.x) - px, by = cadt_scaled(&s, b.y) - py;
     cadt_i64 cx = cadt_scaled(&s, c.x) - px, cy = cadt_scaled(&s, c.y) - py;
     if (s.fits) {
-      /* |differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. A loop, since on cards it is
-       * waiting for instructions that takes the time. */
+      /* |differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. A loop keeps the code
+       * short. */
       cadt_i256 det;
       for (cadt_i32 i = 0; i < 4; ++i) det.word[i] = 0ul;
       CADT_ROLLED

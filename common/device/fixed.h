@@ -51,6 +51,14 @@ CADT_FN void cadt_span_add_point(cadt_span* s, cadt_point p) {
   cadt_span_add(s, p.x);
   cadt_span_add(s, p.y);
 }
+CADT_FN cadt_span cadt_span_of(cadt_point a, cadt_point b, cadt_point c) {
+  cadt_span s;
+  cadt_span_clear(&s);
+  cadt_span_add_point(&s, a);
+  cadt_span_add_point(&s, b);
+  cadt_span_add_point(&s, c);
+  return s;
+}
 /* Bits of the largest magnitude; 0 if all values are zero. */
 CADT_FN cadt_i32 cadt_span_bits(const cadt_span* s) { return s->high > s->low ? s->high - s->low : 0; }
 
@@ -107,9 +115,6 @@ CADT_FN cadt_i128 cadt_add_i128(cadt_i128 a, cadt_i128 b) {
   r.low = a.low + b.low;
   r.high = CADT_CAST(cadt_i64, CADT_CAST(cadt_u64, a.high) + CADT_CAST(cadt_u64, b.high) + (r.low < a.low ? 1ul : 0ul));
   return r;
-}
-CADT_FN cadt_i32 cadt_sign_i128(cadt_i128 a) {
-  return a.high < 0 ? -1 : ((a.high | CADT_CAST(cadt_i64, a.low)) != 0 ? 1 : 0);
 }
 CADT_FN cadt_i32 cadt_compare_i128(cadt_i128 a, cadt_i128 b) {
   if (a.high != b.high) return a.high < b.high ? -1 : 1;

@@ -140,7 +140,7 @@ TEST_P(Stars, NearlyAllAreProven) {
   }
 }
 
-/// Radii as of a Kuzmin disk: a box a million times as wide as where half of the points are.
+/// Radii as of a Kuzmin disk: a box tens of thousands of times as wide as where half of the points are.
 Points heavy_tails(std::size_t n) {
   Points xy = uniform_points(n, 44);
   for (std::size_t i = 0; i < xy.size(); i += 2) {

@@ -62,6 +62,7 @@
   X(cadt_set_unproven)      /* sets.h: vertices to be wrapped */                 \
   X(cadt_set_list)          /* sets.h */                                         \
   X(cadt_set_counts)        /* wrap_mesh.h */                                    \
+  X(cadt_set_insert)        /* set_insert.h: sets without locks, on CPUs */      \
   X(cadt_set_check)         /* sets.h */                                         \
   X(cadt_set_points)        /* sets.h: a set by itself */                        \
   X(cadt_set_records)       /* sets.h */                                         \

@@ -16,6 +16,7 @@
 #include "common/device/refine.h"
 #include "common/device/scan.h"
 #include "common/device/selftest.h"
+#include "common/device/set_insert.h"
 #include "common/device/sets.h"
 #include "common/device/star.h"
 #include "common/device/star_mesh.h"

@@ -182,16 +182,20 @@ CADT_KERNEL(cadt_set_points, CADT_GLOBAL const cadt_point* points, cadt_u32 begi
   CADT_FOR(i, count, grain) { to[i] = points[begin + i]; }
 }
 
+/* From positions and records of a set to those of all. */
+CADT_FN void cadt_move_record(CADT_GLOBAL cadt_u32* word, cadt_u32 begin) {
+  for (cadt_u32 k = 0u; k < 3u; ++k) {
+    if (word[k] != CADT_GHOST) word[k] += begin;
+    word[CADT_WORD_LINK + k] += CADT_LINK(2u * begin, 0u);
+  }
+}
+
 /* Puts the mesh of one set at its place. */
 CADT_KERNEL(cadt_set_records, CADT_GLOBAL const cadt_record* from, cadt_u32 slots, cadt_u32 begin, cadt_u32 grain,
             CADT_GLOBAL cadt_record* to) {
   CADT_FOR(t, slots, grain) {
-    cadt_record r = from[t];
-    for (cadt_u32 k = 0u; k < 3u; ++k) {
-      if (r.word[k] != CADT_GHOST) r.word[k] += begin;
-      r.word[CADT_WORD_LINK + k] += CADT_LINK(2u * begin, 0u);
-    }
-    to[2u * begin + t] = r;
+    to[2u * begin + t] = from[t];
+    cadt_move_record(to[2u * begin + t].word, begin);
   }
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Records from wrapped stars. A triangle belongs to the lowest of its vertices that has a star. A hub has none, so its triangles are
- * those of its neighbours. An edge between two without stars (hubs, or the ghost) is listed with the vertex on either
- * side of it; the driver adds the triangles of three such vertices, each as its three half-edges.
+ * Records from wrapped stars. A triangle belongs to the lowest of its vertices that has a star. A hub has none, so its
+ * triangles are those of its neighbours. An edge between two without stars (hubs, or the ghost) is listed with the
+ * vertex on either side of it; the driver adds the triangles of three such vertices, each as its three half-edges.
  */
 #ifndef CADT_DEVICE_WRAP_MESH_H
 #define CADT_DEVICE_WRAP_MESH_H

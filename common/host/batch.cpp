@@ -27,6 +27,19 @@ constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t most_points_together = std::size_t{1} << 24, fewest_points_together = std::size_t{1} << 16;
 constexpr std::size_t most_sets_together = std::size_t{1} << 20;
 
+/// Points of a set that goes together with others at most. A core inserts each by itself: longer ones are better
+/// shared, and bounds the time to a cancel.
+std::size_t most_points_of_set(const Device& device) noexcept {
+  constexpr std::size_t most_of_core = 8192;
+  return device.shape().contiguous ? most_of_core : most_wrapped(device);
+}
+
+/// Whether small sets go together at all.
+bool prefers_together(const Options& options, const Device& device) noexcept {
+  const bool insertion = device.shape().contiguous || options.strategy != Strategy::locks;
+  return insertion && options.stabilize == Stabilize::off;
+}
+
 /// Device bytes of sets that go together, the result left out (docs/performance.md).
 constexpr std::size_t bytes_together(std::size_t points, std::size_t sets) {
   return (std::size_t{1} << 16) + 176 * points + 1300 * sets;
@@ -85,7 +98,7 @@ class BatchRun {
         points_(points),
         offsets_(offsets),
         most_points_(most_points),
-        most_together_(most_wrapped(run.device)),
+        most_together_(most_points_of_set(run.device)),
         shape_(shape),
         triangles_(triangles),
         neighbors_(neighbors) {}
@@ -188,17 +201,14 @@ class BatchRun {
   void add_together(std::size_t first_set, std::size_t end_set) {
     const std::size_t begin = offsets_[first_set], size = offsets_[end_set] - begin, sets = end_set - first_set;
     std::vector<std::uint32_t> starts(sets + 1);
-    for (std::size_t s = 0; s <= sets; ++s)
-      starts[s] = static_cast<std::uint32_t>(offsets_[first_set + s] - begin);
-    const Options& options = run_.options;
-    const bool together = options.strategy != Strategy::locks && options.stabilize == Stabilize::off;
+    for (std::size_t s = 0; s <= sets; ++s) starts[s] = static_cast<std::uint32_t>(offsets_[first_set + s] - begin);
+    const bool together = prefers_together(run_.options, run_.device);
     SetOrder order = sort_sets(run_, import(begin, size), starts, together ? most_together_ : 0, begin, first_set);
     const Pairs pairs = read_pairs(order.order, size);
     SetMesh mesh = build_sets(run_, order);
     order.order.points.release();
     const std::size_t before = shape_.triangles.back();
-    const std::size_t room =
-        most_triangles(std::span(offsets_).subspan(first_set, sets + 1));
+    const std::size_t room = most_triangles(std::span(offsets_).subspan(first_set, sets + 1));
     const Numbering numbering = emit(mesh.mesh, order.order, size, &order.starts, room);
     std::vector<std::uint32_t> ends(sets + 1);
     run_.device.read(*numbering.set_starts, 0, ends.data(), ends.size() * word);
@@ -222,7 +232,7 @@ class BatchRun {
 /// Points that go together at most, so that there is memory for them besides `results` bytes. \throws OutOfMemory
 /// before any work
 std::size_t choose_size(Triangulator::State& state, std::span<const std::size_t> offsets, std::size_t results) {
-  const std::size_t n = offsets.back(), sets = offsets.size() - 1, together = most_wrapped(*state.device);
+  const std::size_t n = offsets.back(), sets = offsets.size() - 1, together = most_points_of_set(*state.device);
   if (n <= state.known_batch_points && state.options.max_memory == 0) return most_points_together;
   std::size_t largest = 0;
   for (std::size_t s = 0; s < sets; ++s) largest = std::max(largest, offsets[s + 1] - offsets[s]);

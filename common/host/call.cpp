@@ -62,7 +62,8 @@ void require_size(std::size_t points) {
 }
 
 void begin_account(Triangulator::State& state, std::size_t n) {
-  if (state.memory.dropped()) state.known_points = state.known_star_points = state.known_batch_points = state.reserved_points = 0;
+  if (state.memory.dropped())
+    state.known_points = state.known_star_points = state.known_batch_points = state.reserved_points = 0;
   state.memory.begin(state.options.max_memory, n <= state.reserved_points);
 }
 

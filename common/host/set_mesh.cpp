@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/host/set_mesh.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "common/host/counters.hpp"
 #include "common/host/device_constants.hpp"
 #include "common/host/tiles.hpp"
 #include "common/host/wrap_mesh.hpp"
@@ -35,14 +37,16 @@ class SetStage {
   [[nodiscard]] SetMesh build() {
     read_sets();
     result_.mesh.slots = 2 * n_;
-    if (together_ != 0) {
+    // One core is better at insertion, where it has a set for itself.
+    const bool insertion = run_.device.shape().contiguous && run_.options.strategy != Strategy::stars;
+    if (together_ != 0 && !insertion) {
       make_stars();
       wrap();
       count_triangles();
     }
     result_.mesh.records = run_.memory.allocate_zeros(2 * n_ * sizeof(cadt_record));  // lock word 0: not in use
     if (together_ != 0) {
-      write_records();
+      insertion ? insert() : write_records();
       certify();
     }
     build_others();
@@ -93,8 +97,8 @@ class SetStage {
     const Cut c = launch_.cut(n_);
     begins_ = run_.memory.allocate(n_ * word);
     Allocation ranks = run_.memory.allocate((n_ + 1) * word);
-    launch_.run(KernelId::cadt_set_unproven, c.items, stars_.sizes, sets_.positions(), set_count_, sets_.states,
-                count_, c.grain, static_cast<std::uint32_t>(CADT_STAR_DEGREE), ranks, begins_);
+    launch_.run(KernelId::cadt_set_unproven, c.items, stars_.sizes, sets_.positions(), set_count_, sets_.states, count_,
+                c.grain, static_cast<std::uint32_t>(CADT_STAR_DEGREE), ranks, begins_);
     launch_.scan(ranks, n_ + 1);
     unproven_ = launch_.read_word(ranks, n_);
     run_.statistics.proven_stars += vertices_ - unproven_;
@@ -154,6 +158,20 @@ class SetStage {
     bases_.release();
     run_.end_phase("records");
     run_.check("join", 0.7);
+  }
+
+  void insert() {
+    order_.keys.release();
+    const Counters counters(run_);
+    const Allocation hints = run_.memory.allocate(n_ * word), left_counts = launch_.zeros(3);
+    // Small pieces, since sets are not alike.
+    const std::uint32_t pieces = 16 * run_.device.shape().parallelism, grain = std::min(set_count_ / pieces, 256U) + 1;
+    launch_.run(KernelId::cadt_set_insert, (set_count_ - 1) / grain + 1, result_.mesh.records, order_.points, hints,
+                sets_.positions(), set_count_, sets_.states, grain, left_counts, counters);
+    counters.collect(run_.statistics);
+    read_states();
+    run_.end_phase("insert");
+    run_.check("insert", 0.7);
   }
 
   void certify() {

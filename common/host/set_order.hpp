@@ -22,9 +22,9 @@ struct SetOrder {
   }
 };
 
-/// Sorts the points of sets: set s has those from starts[s] on, below starts[s + 1]. `together`: sets with up to so many
-/// points are triangulated together. \throws InputError for the first NaN or infinity; `first` points and `first_set`
-/// sets come before these
+/// Sorts the points of sets: set s has those from starts[s] on, below starts[s + 1]. `together`: sets with up to so
+/// many points are triangulated together. \throws InputError for the first NaN or infinity; `first` points and
+/// `first_set` sets come before these
 [[nodiscard]] SetOrder sort_sets(Run& run, Allocation input, std::span<const std::uint32_t> starts,
                                  std::size_t together, std::size_t first, std::size_t first_set);
 

@@ -274,9 +274,12 @@ TriangulationBatch batch_to_host(Triangulator::State& state, PointsView points, 
   Run run(*state.device, state.memory, state.options, shape.statistics);
   result->triangles = make_words(values);
   result->neighbors = make_words(values);
-  Allocation triangles = run.memory.export_to(result->triangles.get(), bytes);
-  Allocation neighbors = run.memory.export_to(result->neighbors.get(), bytes);
-  const bool direct = triangles && neighbors;
+  Allocation triangles, neighbors;
+  if (bytes != 0) {
+    triangles = run.memory.export_to(result->triangles.get(), bytes);
+    neighbors = run.memory.export_to(result->neighbors.get(), bytes);
+  }
+  const bool direct = bytes == 0 || (triangles && neighbors);
   if (!direct) {
     triangles = run.memory.allocate(bytes);
     neighbors = run.memory.allocate(bytes);
@@ -288,8 +291,32 @@ TriangulationBatch batch_to_host(Triangulator::State& state, PointsView points, 
   }
   run.end_phase("copy");
   run.begin_share(0, 1);
-  close_account(state, run);
+  close_account(state, run, false);
   return TriangulationBatch(std::move(result));
+}
+
+DeviceTriangulationBatch batch_to_device(const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points,
+                                         std::span<const std::size_t> offsets) {
+  require_batch(state->options, offsets, points.size);
+  auto data = std::make_unique<DeviceTriangulationBatch::Data>();
+  data->state = state;
+  BatchShape& shape = data->shape;
+  open_account(*state, points.size, shape.statistics);
+  const std::size_t bytes = 3 * most_triangles(offsets) * word;
+  const std::size_t most = choose_size(*state, offsets, 2 * bytes + offsets.size() * word);
+  Run run(*state->device, state->memory, state->options, shape.statistics);
+  if (bytes != 0) {
+    data->triangles = run.memory.allocate(bytes);
+    data->neighbors = run.memory.allocate(bytes);
+  }
+  data->offsets = run.memory.allocate(offsets.size() * word);
+  run_batch(*state, run, points, offsets, most, shape, data->triangles, data->neighbors);
+  const std::vector<std::uint32_t> words(shape.triangles.begin(), shape.triangles.end());
+  run.device.write(*data->offsets, 0, words.data(), words.size() * word);
+  run.end_phase("collect");
+  run.begin_share(0, 1);
+  close_account(*state, run, true);
+  return DeviceTriangulationBatch(std::move(data));
 }
 
 }  // namespace
@@ -300,24 +327,19 @@ TriangulationBatch Triangulator::triangulate_batch(PointsView points, std::span<
 
 DeviceTriangulationBatch Triangulator::triangulate_batch(const DevicePoints& points,
                                                          std::span<const std::size_t> offsets) {
-  require_batch(state_->options, offsets, points.size);
-  auto data = std::make_unique<DeviceTriangulationBatch::Data>();
-  data->state = state_;
-  BatchShape& shape = data->shape;
-  open_account(*state_, points.size, shape.statistics);
-  const std::size_t bytes = 3 * most_triangles(offsets) * word;
-  const std::size_t most = choose_size(*state_, offsets, 2 * bytes + offsets.size() * word);
-  Run run(*state_->device, state_->memory, state_->options, shape.statistics);
-  data->triangles = run.memory.allocate(bytes);
-  data->neighbors = run.memory.allocate(bytes);
-  data->offsets = run.memory.allocate(offsets.size() * word);
-  run_batch(*state_, run, points, offsets, most, shape, data->triangles, data->neighbors);
-  const std::vector<std::uint32_t> words(shape.triangles.begin(), shape.triangles.end());
-  run.device.write(*data->offsets, 0, words.data(), words.size() * word);
-  run.end_phase("collect");
-  run.begin_share(0, 1);
-  close_account(*state_, run);
-  return DeviceTriangulationBatch(std::move(data));
+  return batch_to_device(state_, points, offsets);
+}
+
+std::future<TriangulationBatch> Triangulator::triangulate_batch_async(PointsView points,
+                                                                      std::span<const std::size_t> offsets) {
+  return std::async(std::launch::async,
+                    [state = state_, points, offsets] { return batch_to_host(*state, points, offsets); });
+}
+
+std::future<DeviceTriangulationBatch> Triangulator::triangulate_batch_async(const DevicePoints& points,
+                                                                            std::span<const std::size_t> offsets) {
+  return std::async(std::launch::async,
+                    [state = state_, points, offsets] { return batch_to_device(state, points, offsets); });
 }
 
 TriangulationBatch triangulate_batch(PointsView points, std::span<const std::size_t> offsets, const Options& options) {

@@ -90,9 +90,10 @@ bool choose_stars(Triangulator::State& state, std::size_t n) {
   return state.options.strategy == Strategy::stars || state.memory.allows(star_bytes(n));
 }
 
-void close_account(Triangulator::State& state, Run& run) {
+void close_account(Triangulator::State& state, Run& run, bool ordered) {
   Statistics& statistics = run.statistics;
-  run.finish();
+  const bool measured = run.options.statistics != StatisticsDetail::none || run.options.kernel_times;
+  if (measured || !ordered || !run.options.queue) run.finish();
   statistics.launches = run.launcher.launches();
   statistics.kernels = run.launcher.kernel_times();
   statistics.bytes_device_peak = state.memory.peak();

@@ -32,8 +32,9 @@ void begin_account(Triangulator::State& state, std::size_t n);
 void open_account(Triangulator::State& state, std::size_t n, Statistics& statistics);
 /// \throws OutOfMemory before any work
 void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere);
-/// Waits for the device; what the statistics say in the end.
-void close_account(Triangulator::State& state, Run& run);
+/// What the statistics say in the end. Waits for the device, unless nobody asks for that: nothing was measured, and the
+/// result is used in the order of the caller's queue (`ordered`).
+void close_account(Triangulator::State& state, Run& run, bool ordered);
 /// Calls with so many points have had their memory.
 void remember_size(Triangulator::State& state, const Statistics& statistics);
 

@@ -109,10 +109,10 @@ void* DeviceTriangulationBatch::device_triangle_offsets() const noexcept {
   return data_->offsets ? data_->state->device->handle(*data_->offsets) : nullptr;
 }
 void* DeviceTriangulationBatch::triangles() const noexcept {
-  return data_->triangles ? data_->state->device->handle(*data_->triangles) : nullptr;
+  return data_->shape.triangles.back() != 0 ? data_->state->device->handle(*data_->triangles) : nullptr;
 }
 void* DeviceTriangulationBatch::neighbors() const noexcept {
-  return data_->neighbors ? data_->state->device->handle(*data_->neighbors) : nullptr;
+  return data_->shape.triangles.back() != 0 ? data_->state->device->handle(*data_->neighbors) : nullptr;
 }
 int DeviceTriangulationBatch::dimension(std::size_t set) const { return dimension_of(data_->shape, set); }
 std::span<const Duplicate> DeviceTriangulationBatch::duplicates(std::size_t set) const {

@@ -106,13 +106,31 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
     read_duplicates(*state->device, data, *result);
     run.end_phase("copy");
     remember_size(*state, data.statistics);
-    close_account(*state, run);
+    close_account(*state, run, false);
   }
   result->points = data.points;
   result->triangle_count = data.triangle_count;
   result->dimension = data.dimension;
   result->statistics = std::move(data.statistics);
   return Triangulation(std::move(result));
+}
+
+DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points) {
+  require_size(points.size);
+  auto data = std::make_unique<DeviceTriangulation::Data>();
+  data->state = state;
+  data->points = points.size;
+  open_account(*state, points.size, data->statistics);
+  if (points.size != 0) {
+    require_memory(*state, points.size, false);
+    Run run(*state->device, state->memory, state->options, data->statistics);
+    OnDevice outputs;
+    build(run, points, points.size, choose_stars(*state, points.size), outputs, *data);
+    run.end_phase("collect");
+    remember_size(*state, data->statistics);
+    close_account(*state, run, true);
+  }
+  return DeviceTriangulation(std::move(data));
 }
 
 }  // namespace
@@ -132,22 +150,14 @@ std::optional<double> Triangulator::occupancy(unsigned work_group_size) const {
 
 Triangulation Triangulator::triangulate(PointsView points) { return to_host(state_, points); }
 
-DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) {
-  require_size(points.size);
-  auto data = std::make_unique<DeviceTriangulation::Data>();
-  data->state = state_;
-  data->points = points.size;
-  open_account(*state_, points.size, data->statistics);
-  if (points.size != 0) {
-    require_memory(*state_, points.size, false);
-    Run run(*state_->device, state_->memory, state_->options, data->statistics);
-    OnDevice outputs;
-    build(run, points, points.size, choose_stars(*state_, points.size), outputs, *data);
-    run.end_phase("collect");
-    remember_size(*state_, data->statistics);
-    close_account(*state_, run);
-  }
-  return DeviceTriangulation(std::move(data));
+DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) { return to_device(state_, points); }
+
+std::future<Triangulation> Triangulator::triangulate_async(PointsView points) {
+  return std::async(std::launch::async, [state = state_, points] { return to_host(state, points); });
+}
+
+std::future<DeviceTriangulation> Triangulator::triangulate_async(const DevicePoints& points) {
+  return std::async(std::launch::async, [state = state_, points] { return to_device(state, points); });
 }
 
 VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriangulation& mesh,

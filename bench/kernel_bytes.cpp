@@ -26,7 +26,7 @@ constexpr KernelBytes table[] = {
     {"cadt_crowded_flags", Unit::point, 4, 4, "keys; flags"},
     {"cadt_gather_points", Unit::point, 20, 16, "places and points; points in order"},
     {"cadt_sort_runs", Unit::point, 4, 0, "keys"},
-    {"cadt_unique_flags", Unit::point, 16, 4, "points; flags"},
+    {"cadt_unique_flags", Unit::point, 4, 4, "keys; flags"},
     {"cadt_unique_pack", Unit::point, 4, 0, "ranks"},
     {"cadt_unique_pack", Unit::distinct, 20, 20, "points and labels"},
     {"cadt_insert", Unit::inserted, 48, 100, "the point and its triangle; the three in its place, a hint"},

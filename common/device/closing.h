@@ -47,12 +47,12 @@ CADT_FN void cadt_close_edges(const cadt_mesh* m, const cadt_u32* links, cadt_u3
 }
 #endif
 
-/* found: edges examined, illegal ones that are to be flipped, ones that could not be read because somebody was changing
- * them, illegal ones that are left as they are (CADT_STABILIZE_PAPER). \pre records of
- * vertices that are not in the mesh have lock word 0 */
+/* left_counts, behind those of the lists: edges examined, illegal ones that are to be flipped, ones that could not be
+ * read because somebody was changing them, illegal ones that are left as they are (CADT_STABILIZE_PAPER). \pre records
+ * of vertices that are not in the mesh have lock word 0 */
 CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* found, CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts,
-            cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counters) {
+            CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
+            CADT_GLOBAL cadt_u32* counters) {
   CADT_GROUP_TALLY(tally, counters);
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
@@ -103,6 +103,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
     }
   }
 #endif
+  CADT_GLOBAL cadt_u32* found = left_counts + CADT_LEFT_COUNTS;
   if (examined) cadt_add_relaxed(found, examined);
   if (illegal) cadt_add_relaxed(found + 1, illegal);
   if (unsettled) cadt_add_relaxed(found + 2, unsettled);

@@ -46,6 +46,7 @@ enum {
   CADT_WRAP_HUBS = 64,   /* vertices without a star at most, */
   CADT_WRAP_EDGES = 256, /* half-edges between two of them */
   CADT_WRAP_LANES = 128, /* lanes of a team that search */
+  CADT_WRAP_FOUND = 6,   /* words that cadt_wrap_stars counts */
   CADT_WRAP_SHARES = 8   /* work-items that write the triangles of a vertex */
 };
 
@@ -128,6 +129,10 @@ enum {
   CADT_FLIP_BINS = 16,
   CADT_COUNTER_STRIDE = 32, /* words a row, so rows do not share cache lines */
   CADT_COUNTER_ROWS = 64
+};
+
+enum {
+  CADT_LEFT_COUNTS = 3 /* points, edges, work-items that changed the mesh (insert.h) */
 };
 
 /* cadt_mesh.stabilize (change.h) */

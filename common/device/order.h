@@ -299,10 +299,10 @@ CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_p
   }
 }
 
-/* 1 where a point differs from the one before; equal points of different sets have different keys. `equal` counts the
- * others. */
+/* 1 where a point differs from the one before; equal points of different sets have different keys. totals[1] counts
+ * the others. */
 CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* keys,
-            CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* equal) {
+            CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
   cadt_u32 sum = 0u;
   CADT_FOR(i, count, grain) {
     const cadt_u32 flag =
@@ -311,7 +311,7 @@ CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL
     flags[i] = flag;
     sum += 1u - flag;
   }
-  if (sum) cadt_add_relaxed(equal, sum);
+  if (sum) cadt_add_relaxed(totals + 1, sum);
 }
 
 /* Distinct points closed up. `ranks` is the exclusive scan of the flags. */

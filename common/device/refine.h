@@ -10,9 +10,9 @@
 
 #include "common/device/order.h"
 
-/* Flags the members of long runs; `crowded` counts them. */
+/* Flags the members of long runs; totals[0] counts them. */
 CADT_KERNEL(cadt_crowded_flags, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_u32* flags, cadt_u32 count,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* crowded) {
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
   cadt_u32 sum = 0u;
   CADT_FOR(i, count, grain) {
     const cadt_u32 key = keys[i];
@@ -24,7 +24,7 @@ CADT_KERNEL(cadt_crowded_flags, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL ca
     flags[i] = flag;
     sum += flag;
   }
-  if (sum) cadt_add_relaxed(crowded, sum);
+  if (sum) cadt_add_relaxed(totals, sum);
 }
 
 /* Places of the flagged. `ranks` is the exclusive scan of the flags, `total` its end. */

@@ -70,11 +70,14 @@ CADT_FN void cadt_box_add(cadt_box* box, const cadt_box other) {
   if (other.high.y > box->high.y) box->high.y = other.high.y;
 }
 
-/* Boxes of CADT_WRAP_BOX points, and crates of CADT_WRAP_CRATE boxes: a team for each. */
+/* Boxes of CADT_WRAP_BOX points, and crates of CADT_WRAP_CRATE boxes: a team for each. Of all points also what
+ * cadt_wrap_stars expects to be 0, if it is given. */
 CADT_KERNEL(cadt_wrap_boxes, CADT_GLOBAL const cadt_point* points, cadt_u32 n, CADT_GLOBAL const cadt_u32* starts,
             cadt_u32 set_count, cadt_u32 crate_count, cadt_u32 grain, CADT_GLOBAL cadt_box* boxes,
-            CADT_GLOBAL cadt_box* crates) {
+            CADT_GLOBAL cadt_box* crates, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_box inside[CADT_WRAP_CRATE];
+  if (found && cadt_item == 0u)
+    for (cadt_u32 k = 0u; k <= CADT_CAST(cadt_u32, CADT_WRAP_FOUND); ++k) found[k] = 0u;
   CADT_FOR_TEAMS(crate, crate_count, grain) {
     const cadt_wrap_range r =
         cadt_wrap_range_of(starts, starts ? cadt_wrap_set_of_crate(starts, set_count, crate) : 0u, n);
@@ -90,6 +93,7 @@ CADT_KERNEL(cadt_wrap_boxes, CADT_GLOBAL const cadt_point* points, cadt_u32 n, C
         point.low = point.high = points[r.begin + i];
         cadt_box_add(&box, point);
       }
+      for (cadt_u32 i = begin; sizes && i < end; ++i) sizes[r.begin + i] = 0u;
       boxes[r.box + first + j] = inside[j] = box;
     }
     CADT_TEAM_SYNC();

@@ -43,12 +43,15 @@ CADT_FN cadt_u32 cadt_wrap_owned(CADT_GLOBAL const cadt_u32* link, cadt_u32 size
   return count;
 }
 
-/* owned[v]: triangles that belong to v; a 0 behind the last. Half-edges between two vertices without stars are counted
- * in found[6], and listed. */
+/* owned[v]: triangles that belong to v; a 0 behind the last, and then the first words of `found`, so that they can be
+ * read with the scan's total. Half-edges between two vertices without stars are counted in found[6], and listed. */
 CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* found,
             CADT_GLOBAL cadt_u32* owned, CADT_GLOBAL cadt_wrap_edge* edges) {
-  if (cadt_item == 0u) owned[n] = 0u;
+  if (cadt_item == 0u) {
+    owned[n] = 0u;
+    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_WRAP_FOUND); ++k) owned[n + 1u + k] = found[k];
+  }
   const cadt_u32 hubs = found[1];
   CADT_FOR(v, n, grain) {
     CADT_GLOBAL const cadt_u32* link = links + begins[v];
@@ -134,7 +137,7 @@ CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, 
   return CADT_LINK(s->bases[owner] + before, opposite >= lowest ? opposite - lowest : opposite + 3u - lowest);
 }
 
-/* CADT_WRAP_SHARES work-items for each vertex. \pre no triangle is missing */
+/* CADT_WRAP_SHARES work-items for each vertex. The last two records are not used. \pre no triangle is missing */
 CADT_KERNEL(cadt_wrap_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases,
             CADT_GLOBAL const cadt_wrap_edge* edges, cadt_u32 edge_count, cadt_u32 first_extra, cadt_u32 extra_base,
@@ -149,7 +152,9 @@ CADT_KERNEL(cadt_wrap_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL co
   stars.first_extra = first_extra;
   stars.extra_base = extra_base;
   stars.hubs = hubs;
-  if (cadt_item == 0u)
+  if (cadt_item == 0u) {
+    records[2u * n - 2u].word[CADT_WORD_LOCK] = 0u;
+    records[2u * n - 1u].word[CADT_WORD_LOCK] = 0u;
     for (cadt_u32 e = first_extra; e < edge_count; e += 3u) {
       CADT_GLOBAL cadt_u32* w = records[extra_base + (e - first_extra) / 3u].word;
       const cadt_u32 a = edges[e].from, b = edges[e].to, c = edges[e].left;
@@ -158,6 +163,7 @@ CADT_KERNEL(cadt_wrap_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL co
                       cadt_wrap_link(&stars, c, cadt_wrap_right(&stars, c, a), a, 1u),
                       cadt_wrap_link(&stars, a, cadt_wrap_right(&stars, a, b), b, 1u), 0u);
     }
+  }
   CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
     const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
     CADT_GLOBAL const cadt_u32* link = links + begins[v];

@@ -27,6 +27,7 @@ constexpr std::size_t least_range = std::size_t{1} << 14, fewest_for_ranges = 4 
 constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
 constexpr int hopeless_launches = 64;
 constexpr int most_sweeps = 2000;
+constexpr std::size_t all_counts = CADT_LEFT_COUNTS + 4;  // with those of the closing pass
 
 static_assert(static_cast<int>(Stabilize::off) == CADT_STABILIZE_OFF &&
               static_cast<int>(Stabilize::defer) == CADT_STABILIZE_DEFER &&
@@ -80,7 +81,7 @@ class Builder {
  private:
   void make_edge_lists() {
     for (Allocation& list : left_edges_) list = run_.memory.allocate(edge_capacity_ * word);
-    left_counts_ = launch_.zeros(3);
+    left_counts_ = launch_.zeros(all_counts);
   }
 
   /// `edges`: of all spheres, ghost edges included.
@@ -238,22 +239,21 @@ class Builder {
   void certify(std::uint64_t edges) {
     if (run_.options.stabilize == Stabilize::defer) stabilize_ = CADT_STABILIZE_OFF;  // what was put off is due now
     const std::size_t slots = 2 * n_, most = 4 * points_per_launch();
-    Allocation found = launch_.zeros(4);
     for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
       std::uint64_t examined = 0, illegal = 0, unsettled = 0, left = 0;
       for (std::size_t begin = 0; begin < slots; begin += most) {
         const std::size_t size = std::min(most, slots - begin);
         const Cut c = launch_.cut_strided(size);
         run_kernel(KernelId::cadt_closing_pass, c.items, static_cast<std::uint32_t>(begin),
-                   static_cast<std::uint32_t>(size), c.grain, found, left_edges_[0], left_counts_, edge_capacity_,
-                   counters_);
-        std::array<std::uint32_t, 4> sums{};
-        run_.device.read(*found, 0, sums.data(), sizeof sums);
-        run_.device.fill(*found, 0, sizeof sums, 0);
-        examined += sums[0];
-        illegal += sums[1];
-        unsettled += sums[2];
-        left += sums[3];
+                   static_cast<std::uint32_t>(size), c.grain, left_edges_[0], left_counts_, edge_capacity_, counters_);
+        std::array<std::uint32_t, all_counts> words{};
+        run_.device.read(*left_counts_, 0, words.data(), sizeof words);
+        examined += words[CADT_LEFT_COUNTS];
+        illegal += words[CADT_LEFT_COUNTS + 1];
+        unsettled += words[CADT_LEFT_COUNTS + 2];
+        left += words[CADT_LEFT_COUNTS + 3];
+        if (begin + size == slots && examined == edges && illegal + unsettled == 0) break;
+        run_.device.fill(*left_counts_, CADT_LEFT_COUNTS * word, 4 * word, 0);
         take_leftovers();
         finish_leftovers();
         run_.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(slots));

@@ -110,17 +110,17 @@ class SetStage {
                       crate_count = n_ / (std::size_t{CADT_WRAP_BOX} * CADT_WRAP_CRATE) + set_count_;
     const Allocation boxes = run_.memory.allocate(box_count * sizeof(cadt_box));
     const Allocation crates = run_.memory.allocate(crate_count * sizeof(cadt_box));
-    const Allocation efforts = launch_.zeros(set_count_), found = launch_.zeros(7);
+    const Allocation efforts = launch_.zeros(set_count_), found = launch_.zeros(CADT_WRAP_FOUND);
     const Cut of_crates = launch_.cut_teams(crate_count, wrap_lanes), teams = launch_.cut_teams(unproven_, wrap_lanes);
     launch_.run_in_groups(KernelId::cadt_wrap_boxes, of_crates.items, wrap_lanes, order_.points, count_,
                           sets_.positions(), set_count_, static_cast<std::uint32_t>(crate_count), of_crates.grain,
-                          boxes, crates);
+                          boxes, crates, Allocation(), Allocation());
     const std::size_t link_words = n_ * (CADT_STAR_DEGREE + long_star_words);
     launch_.run_in_groups(KernelId::cadt_wrap_stars, teams.items, wrap_lanes, order_.points, boxes, crates, count_,
                           list, unproven_, sets_.positions(), set_count_, sets_.states, efforts, wrap_effort,
                           teams.grain, static_cast<std::uint32_t>(CADT_STAR_DEGREE), stars_.links,
                           static_cast<std::uint32_t>(link_words), begins_, stars_.sizes, found);
-    std::array<std::uint32_t, 7> words{};
+    std::array<std::uint32_t, CADT_WRAP_FOUND> words{};
     run_.device.read(*found, 0, words.data(), sizeof words);
     run_.statistics.exact_orientations += words[3];
     run_.statistics.exact_incircles += words[4];

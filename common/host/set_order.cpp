@@ -78,8 +78,12 @@ SetOrder sort_sets(Run& run, Allocation input, std::span<const std::uint32_t> st
   launch.run(KernelId::cadt_set_gather, c.items, input, order, result.starts.points, set_count, result.sets, sorted,
              count, c.grain);
   input.release();
-  close_order(run, result.order, std::move(sorted), std::move(keys), std::move(order), std::move(spare), n, !refined,
-              &result.starts);
+  const Allocation totals = launch.zeros(2);
+  flag_distinct(run, keys, sorted, order, spare, n, totals);
+  const std::uint32_t equal = launch.read_word(totals, 1);
+  if (!refined && equal == 0) result.order.keys = std::move(keys);
+  keys.release();
+  close_order(run, result.order, std::move(sorted), std::move(order), spare, n, equal, &result.starts);
   launch.run_in_groups(KernelId::cadt_set_kinds, teams.items, CADT_SET_LANES, result.order.points, result.positions(),
                        set_count, static_cast<std::uint32_t>(together), teams.grain, result.states);
   run.end_phase("gather");

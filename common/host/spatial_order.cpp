@@ -2,6 +2,7 @@
 #include "common/host/spatial_order.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -18,6 +19,8 @@ using namespace device_constants;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr int most_key_bits = 32;
+/// With so few points a wait for the device costs more than work that is done in vain where cells are crowded.
+constexpr std::size_t most_ahead = std::size_t{1} << 17;
 
 struct Bounds {
   double min_x = 0, max_x = 0, min_y = 0, max_y = 0;
@@ -220,33 +223,35 @@ void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::
                    grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y);
 }
 
-void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation keys, Allocation order, Allocation spare,
-                 std::size_t n, bool keep_keys, SetStarts* sets) {
-  Launcher& launch = run.launcher;
+void flag_distinct(Run& run, const Allocation& keys, const Allocation& sorted, const Allocation& order,
+                   const Allocation& flags, std::size_t n, const Allocation& totals) {
+  const Cut c = run.launcher.cut(n);
   const auto count = static_cast<std::uint32_t>(n);
-  const Cut c = launch.cut(n);
-  launch.run(KernelId::cadt_sort_runs, c.items, keys, sorted, order, count, c.grain);
-  const Allocation total = launch.zeros(1);
-  launch.run(KernelId::cadt_unique_flags, c.items, sorted, keys, spare, count, c.grain, total);
-  const std::uint32_t distinct = count - launch.read_word(total, 0);
+  run.launcher.run(KernelId::cadt_sort_runs, c.items, keys, sorted, order, count, c.grain);
+  run.launcher.run(KernelId::cadt_unique_flags, c.items, sorted, keys, flags, count, c.grain, totals);
+}
+
+void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation order, const Allocation& flags,
+                 std::size_t n, std::uint32_t equal, SetStarts* sets) {
+  Launcher& launch = run.launcher;
+  const auto count = static_cast<std::uint32_t>(n), distinct = count - equal;
   result.distinct = distinct;
-  if (keep_keys && distinct == count) result.keys = std::move(keys);
-  keys.release();
-  if (distinct == count) {
+  if (equal == 0) {
     result.points = std::move(sorted);
     result.labels = std::move(order);
     return;
   }
-  launch.scan(spare, n);
+  const Cut c = launch.cut(n);
+  launch.scan(flags, n);
   result.points = run.memory.allocate(distinct * sizeof(cadt_point));
   result.labels = run.memory.allocate(distinct * word);
-  launch.run(KernelId::cadt_unique_pack, c.items, sorted, order, spare, result.points, result.labels, count, distinct,
+  launch.run(KernelId::cadt_unique_pack, c.items, sorted, order, flags, result.points, result.labels, count, distinct,
              c.grain);
-  find_duplicates(run, result, order, spare, n);
+  find_duplicates(run, result, order, flags, n);
   if (sets != nullptr) {
     const Cut s = launch.cut(sets->count + 1);
     sets->positions = run.memory.allocate((sets->count + 1) * word);
-    launch.run(KernelId::cadt_set_starts, s.items, spare, sets->points, static_cast<std::uint32_t>(sets->count), count,
+    launch.run(KernelId::cadt_set_starts, s.items, flags, sets->points, static_cast<std::uint32_t>(sets->count), count,
                distinct, s.grain, sets->positions);
   }
 }
@@ -263,40 +268,59 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   run.end_phase("bounds");
   run.check("sort", 0.01);
 
-  Allocation keys = run.memory.allocate(n * word), spare = run.memory.allocate(n * word);
-  Allocation order = run.memory.allocate(n * word);
-  std::uint32_t crowd = 0;
-  {
-    Allocation spare_order = run.memory.allocate(n * word);
-    const auto sort = [&](const KeyGrid& grid) {
-      result.grid = grid;
-      make_keys(run, input, keys, n, grid);
-      launch.sort(keys, order, spare, spare_order, n, grid.bits(), true);
-      crowd = flag_crowded(run, keys, spare, n);
-    };
-    sort(grid_of_all(bounds, n));
-    if (keep_keys && crowd > n / 4)
-      if (const std::optional<KeyGrid> grid = grid_of_most(run, input, bounds, n)) sort(*grid);
-  }
-  run.end_phase("sort");
-  run.check("sort", 0.05);
-
-  const bool sorted_by_keys = !refine_crowd(run, input, keys, order, spare, n, crowd);
-  run.end_phase("refine");
-
   // All coordinates become multiples of 2^-240 below 1, in two steps since one factor may be out of range.
   const int exponent = result.wide || bounds.high < bounds.low ? 0 : -bounds.high;
   const double scale = std::ldexp(1.0, exponent / 2), scale_again = std::ldexp(1.0, exponent - exponent / 2);
+
+  Allocation keys = run.memory.allocate(n * word), spare = run.memory.allocate(n * word);
+  Allocation order = run.memory.allocate(n * word), sorted;
+  const Allocation totals = launch.zeros(2);  // members of crowded cells, equal points
+  const auto gather = [&] {
+    sorted = run.memory.allocate(n * sizeof(cadt_point));
+    launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
+    flag_distinct(run, keys, sorted, order, spare, n, totals);
+  };
+  const auto sort = [&](const KeyGrid& grid) {
+    Allocation spare_order = run.memory.allocate(n * word);
+    result.grid = grid;
+    make_keys(run, input, keys, n, grid);
+    launch.sort(keys, order, spare, spare_order, n, grid.bits(), true);
+  };
+  sort(grid_of_all(bounds, n));
+  bool sorted_by_keys = true;
+  std::array<std::uint32_t, 2> sums{};
+  if (n <= most_ahead) {
+    launch.run(KernelId::cadt_crowded_flags, c.items, keys, spare, count, c.grain, totals);
+    run.end_phase("sort");
+    gather();
+    run.device.read(*totals, 0, sums.data(), sizeof sums);
+    if (sums[0] != 0) sorted.release();
+  }
+  if (!sorted) {
+    std::uint32_t crowd = flag_crowded(run, keys, spare, n);
+    if (keep_keys && crowd > n / 4) {
+      if (const std::optional<KeyGrid> grid = grid_of_most(run, input, bounds, n)) {
+        sort(*grid);
+        crowd = flag_crowded(run, keys, spare, n);
+      }
+    }
+    run.end_phase("sort");
+    run.check("sort", 0.05);
+    sorted_by_keys = !refine_crowd(run, input, keys, order, spare, n, crowd);
+    run.end_phase("refine");
+    run.device.fill(*totals, 0, 2 * word, 0);
+    gather();
+    run.device.read(*totals, 0, sums.data(), sizeof sums);
+  }
   for (const double factor : {scale, scale_again}) {
     result.grid.half_min_x *= factor;
     result.grid.half_min_y *= factor;
     result.grid.scale /= factor;
   }
-  Allocation sorted = run.memory.allocate(n * sizeof(cadt_point));
-  launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
   input.release();
-  close_order(run, result, std::move(sorted), std::move(keys), std::move(order), std::move(spare), n,
-              keep_keys && sorted_by_keys);
+  if (keep_keys && sorted_by_keys && sums[1] == 0) result.keys = std::move(keys);
+  keys.release();
+  close_order(run, result, std::move(sorted), std::move(order), spare, n, sums[1]);
   run.end_phase("gather");
   return result;
 }

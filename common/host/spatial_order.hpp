@@ -62,8 +62,11 @@ constexpr int narrow_span = 240;
 /// none; else `keys` are no longer those of the grid. \pre `crowd` of them are flagged in `spare`
 [[nodiscard]] bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const Allocation& order,
                                 Allocation& spare, std::size_t n, std::uint32_t crowd);
-/// Sorts runs of equal keys, and closes up distinct points; where sets begin among them, if there are sets.
-void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation keys, Allocation order, Allocation spare,
-                 std::size_t n, bool keep_keys, SetStarts* sets = nullptr);
+/// Sorts runs of equal keys; 1 in `flags` where a point differs from the one before. totals[1] counts the others.
+void flag_distinct(Run& run, const Allocation& keys, const Allocation& sorted, const Allocation& order,
+                   const Allocation& flags, std::size_t n, const Allocation& totals);
+/// Closes up distinct points, as flagged in `flags`; `equal` others. Where sets begin among them, if there are sets.
+void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation order, const Allocation& flags,
+                 std::size_t n, std::uint32_t equal, SetStarts* sets = nullptr);
 
 }  // namespace cadt

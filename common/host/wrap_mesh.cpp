@@ -58,36 +58,36 @@ std::optional<DeviceMesh> wrap_mesh(Run& run, const Allocation& points, std::siz
   const Allocation boxes = run.memory.allocate(box_count * sizeof(cadt_box));
   const Allocation crates = run.memory.allocate(crate_count * sizeof(cadt_box));
   const Allocation links = run.memory.allocate(link_words * word), begins = run.memory.allocate(n * word);
-  const Allocation sizes = run.memory.allocate_zeros(n * word), found = launch.zeros(7);
+  const Allocation sizes = run.memory.allocate(n * word), found = run.memory.allocate((CADT_WRAP_FOUND + 1) * word);
   const Cut of_crates = launch.cut_teams(crate_count, wrap_lanes), teams = launch.cut_teams(n, wrap_lanes),
             all = launch.cut(n);
   const Allocation all_points;  // no sets, no list
   launch.run_in_groups(KernelId::cadt_wrap_boxes, of_crates.items, wrap_lanes, points, count, all_points, 0U,
-                       crate_count, of_crates.grain, boxes, crates);
+                       crate_count, of_crates.grain, boxes, crates, sizes, found);
   launch.run_in_groups(KernelId::cadt_wrap_stars, teams.items, wrap_lanes, points, boxes, crates, count, all_points,
                        count, all_points, 0U, all_points, all_points, wrap_effort, teams.grain, 0U, links,
                        static_cast<std::uint32_t>(link_words), begins, sizes, found);
   // Vertices without a star have size 0, so this may run before it is known whether there are too many.
-  const Allocation bases = run.memory.allocate((n + 1) * word);
+  const Allocation bases = run.memory.allocate((n + 1 + CADT_WRAP_FOUND) * word);
   const Allocation edges = run.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));
   launch.run(KernelId::cadt_wrap_counts, all.items, links, begins, sizes, count, all.grain, found, bases, edges);
   launch.scan(bases, n + 1);
-  std::array<std::uint32_t, 7> words{};
-  run.device.read(*found, 0, words.data(), sizeof words);
-  run.statistics.exact_orientations += words[3];
-  run.statistics.exact_incircles += words[4];
-  run.statistics.ties += words[5];
-  const std::uint32_t hubs = words[1], triangles = launch.read_word(bases, n);
-  if (hubs > CADT_WRAP_HUBS || words[6] > CADT_WRAP_EDGES) return std::nullopt;
-  const std::uint32_t first_extra = words[6];
-  std::uint32_t edge_count = first_extra;
+  std::array<std::uint32_t, 1 + CADT_WRAP_FOUND> words{};  // the number of triangles, and what was found
+  run.device.read(*bases, n * word, words.data(), sizeof words);
+  run.statistics.exact_orientations += words[4];
+  run.statistics.exact_incircles += words[5];
+  run.statistics.ties += words[6];
+  const std::uint32_t triangles = words[0], hubs = words[2];
+  std::uint32_t edge_count = hubs != 0 ? launch.read_word(found, CADT_WRAP_FOUND) : 0;
+  if (hubs > CADT_WRAP_HUBS || edge_count > CADT_WRAP_EDGES) return std::nullopt;
+  const std::uint32_t first_extra = edge_count;
   if (hubs != 0 && triangles < records) {
     const std::vector<cadt_wrap_edge> extra =
         triangles_between_hubs(run, edges, edge_count, records - std::size_t{triangles});
     if (extra.empty()) return std::nullopt;
     run.device.write(*edges, edge_count * sizeof extra[0], extra.data(), extra.size() * sizeof extra[0]);
     edge_count += static_cast<std::uint32_t>(extra.size());
-  } else if (triangles != records || words[0] > link_words) {
+  } else if (triangles != records || words[1] > link_words) {
     throw InternalError("the wrapped stars have " + std::to_string(triangles) + " triangles instead of " +
                         std::to_string(records) + "; please report this with the input");
   }
@@ -95,7 +95,6 @@ std::optional<DeviceMesh> wrap_mesh(Run& run, const Allocation& points, std::siz
   DeviceMesh mesh;
   mesh.slots = 2 * n;
   mesh.records = run.memory.allocate(mesh.slots * sizeof(cadt_record));
-  run.device.fill(*mesh.records, records * sizeof(cadt_record), (mesh.slots - records) * sizeof(cadt_record), 0);
   const Cut shares = launch.cut(n * CADT_WRAP_SHARES);
   launch.run(KernelId::cadt_wrap_records, shares.items, links, begins, sizes, bases, edges, edge_count, first_extra,
              triangles, hubs, count, shares.grain, mesh.records);

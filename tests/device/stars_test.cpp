@@ -131,10 +131,13 @@ Sorted sorted(std::vector<cadt_point> points, unsigned bits_x, unsigned bits_y, 
     high_x = std::max(high_x, p.x);
     high_y = std::max(high_y, p.y);
   }
-  s.grid = {0.5 * low_x, 0.5 * low_y,
+  s.grid = {0.5 * low_x,
+            0.5 * low_y,
             part * std::min(std::ldexp(2, static_cast<int>(bits_x)) / (high_x - low_x),
                             std::ldexp(2, static_cast<int>(bits_y)) / (high_y - low_y)),
-            bits_x, bits_y};
+            bits_x,
+            bits_y,
+            0};
   s.most = cadt_to_grid(&s.grid, {high_x, high_y});
   const auto n = static_cast<std::uint32_t>(points.size());
   Keys keys(n);
@@ -313,8 +316,8 @@ void check_stars(double part, std::map<std::string, double>& shares) {
     const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
     std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n), found(5);
     cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
-               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, s.tiles.data(), count, 1, count, stars.data(),
-               sizes.data(), found.data());
+               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1, count,
+               stars.data(), sizes.data(), found.data());
     const auto links = links_of(s);
     std::size_t proven = 0;
     for (std::uint32_t v = 0; v < n; ++v) {

@@ -70,7 +70,8 @@ TEST_P(ResidentAsync, OutlivesTheTriangulator) {
   expect_same(*memory, future.get(), known.mesh);
 }
 
-// Without statistics nobody waits for the last kernels: the arrays are right in the order of the queue, call after call.
+// Without statistics nobody waits for the last kernels: the arrays are right in the order of the queue, call after
+// call.
 TEST_P(ResidentAsync, CompleteInOrder) {
   const Known known(uniform_points(30000)), other(grid_points(90, 110));
   Options with = options();

@@ -137,8 +137,9 @@ class StarStage {
     // two records stay unused
     run_.device.fill(*records_, (2 * n_ - 2) * sizeof(cadt_record), 2 * sizeof(cadt_record), 0);
     open_ = run_.memory.allocate(std::size_t{open_count_} * word);
-    const Cut c = launch_.cut(n_);
-    launch_.run(KernelId::cadt_star_records, c.items, links_, sizes_, bases_, count_, c.grain, records_, open_,
+    const std::uint32_t groups = (count_ - 1) / CADT_RECORD_LANES + 1;
+    const Cut c = launch_.cut_teams(groups, CADT_RECORD_LANES);
+    launch_.run(KernelId::cadt_star_records, c.items, links_, sizes_, bases_, count_, groups, c.grain, records_, open_,
                 totals_);
     run_.end_phase("records");
   }

@@ -17,7 +17,7 @@
 
 #include "common/device/predicates.h"
 #include "common/device/sort_keys.h"
-#include "common/device/window.h"
+#include "common/device/sweep.h"
 
 /* Error of a difference of two points of a window, in cells: coordinates are at most 12 cells from the centre, so they
  * are rounded by at most 2^-21; their units are exact to 2^-25. */
@@ -145,41 +145,6 @@ CADT_FN cadt_u32 cadt_angle_key(const cadt_star_maker* m, cadt_u32 p, cadt_u32 f
   return place == first ? place : (CADT_CAST(cadt_u32, angle * 524280.0f) << CADT_PLACE_BITS) | place;
 }
 
-/* The points of a rectangle of cells, row by row, in one loop: lanes whose rows are short do not wait. No loop within
- * it: in a row without points there is one step without a point. */
-typedef struct {
-  cadt_u32 place, end; /* in the row */
-  cadt_u32 cell, last, width, side;
-} cadt_sweep;
-
-CADT_FN cadt_sweep cadt_sweep_of(const cadt_star_maker* m, cadt_u32 left, cadt_u32 bottom, cadt_u32 right,
-                                 cadt_u32 top) {
-  cadt_sweep s;
-  s.side = *CADT_CAST(volatile CADT_TEAM_PTR const cadt_u32*, &m->w->shape.side);
-  s.cell = bottom * s.side + left;
-  s.last = top * s.side + left;
-  s.width = right - left + 1u;
-  s.place = m->w->cells[s.cell];
-  s.end = m->w->cells[s.cell + s.width];
-  return s;
-}
-
-CADT_FN cadt_sweep cadt_sweep_around(const cadt_star_maker* m, cadt_u32 x, cadt_u32 y, cadt_u32 reach) {
-  return cadt_sweep_of(m, x - reach, y - reach, x + reach, y + reach);
-}
-
-/* To the next step; 0: there is none. */
-CADT_FN cadt_u32 cadt_sweep_on(const cadt_star_maker* m, cadt_sweep* s) {
-  ++s->place;
-  const cadt_u32 over = s->place >= s->end ? 1u : 0u, more = !over || s->cell != s->last ? 1u : 0u;
-  if (over && more) {
-    s->cell += s->side;
-    s->place = m->w->cells[s->cell];
-    s->end = m->w->cells[s->cell + s->width];
-  }
-  return more;
-}
-
 /* Inverse square of the distance of the point of this step from p, no number if there is none, or it is p itself: the
  * largest of that and something else is the other. */
 CADT_FN float cadt_swept_inverse(const cadt_sweep* s, cadt_u32 p, cadt_vector d) {
@@ -198,7 +163,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   float nearest = 0.0f; /* 1 / distance^2 */
   for (cadt_u32 k = 0u; k < 8u; ++k) best[k] = least;
   cadt_vector at_p = cadt_place_of(w, p);
-  cadt_sweep cells = cadt_sweep_around(m, x, y, near);
+  cadt_sweep cells = cadt_sweep_around(w, x, y, near);
   cadt_u32 more = 1u;
   while (more) {
     const cadt_vector d = cadt_vector_from(w, at_p, cells.place);
@@ -209,7 +174,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     best[2] = cadt_maxf(best[2], uy);
     best[4] = cadt_maxf(best[4], -ux);
     best[6] = cadt_maxf(best[6], -uy);
-    more = cadt_sweep_on(m, &cells);
+    more = cadt_sweep_on(w, &cells);
   }
   if (!(nearest > 0.0f && nearest < 1e7f)) return 0u; /* nobody, or too near for single precision */
   /* Relative error of a difference, and of its inverse. Points further off than a cell have smaller ones. */
@@ -225,14 +190,14 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       ey[k] = a == b ? ua.y : ua.x - ub.x;
     }
     at_p = cadt_place_of(w, p);
-    cells = cadt_sweep_around(m, x, y, near);
+    cells = cadt_sweep_around(w, x, y, near);
     more = 1u;
     while (more) {
       const cadt_vector d = cadt_vector_from(w, at_p, cells.place);
       const float inverse = cadt_swept_inverse(&cells, p, d), ux = d.x * inverse, uy = d.y * inverse;
       for (cadt_u32 k = 0u; k < 4u; ++k)
         best[2u * k + 1u] = cadt_maxf(best[2u * k + 1u], cadt_mark(cadt_about_fma(ex[k], ux, ey[k] * uy), cells.place));
-      more = cadt_sweep_on(m, &cells);
+      more = cadt_sweep_on(w, &cells);
     }
   }
 
@@ -289,7 +254,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   const cadt_u32 to_x = CADT_CAST(cadt_u32, cadt_minf(high_x, at_x + stretch * east + margin));
   const cadt_u32 to_y = CADT_CAST(cadt_u32, cadt_minf(high_y, at_y + stretch * north + margin));
   if ((to_x - from_x + 1u) * (to_y - from_y + 1u) > most_cells) return 0u;
-  cells = cadt_sweep_of(m, from_x, from_y, to_x, to_y);
+  cells = cadt_sweep_of(w, from_x, from_y, to_x, to_y);
   cadt_u32 count = 0u;
   more = 1u;
   while (more) {
@@ -302,7 +267,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       cadt_set_link_place(m, count & (2u * CADT_CANDIDATES - 1u), j); /* too many are of no use */
       ++count;
     }
-    more = cadt_sweep_on(m, &cells);
+    more = cadt_sweep_on(w, &cells);
   }
   if (count < 3u || count > m->candidates) return 0u;
 

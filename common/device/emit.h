@@ -145,16 +145,17 @@ CADT_FN void cadt_emit(CADT_GLOBAL const cadt_u32* labels, const cadt_record r, 
   neighbors[3u * i + 2u] = CADT_PICK(t.slot, n2, n0, n1);
 }
 
-/* Writes the triangles to their places. By record, so that what is read (neighbours' numbers, labels) is near. */
+/* Writes the triangles to their places, behind `first` others that have nothing to do with them. By record, so that
+ * what is read (neighbours' numbers, labels) is near. */
 CADT_KERNEL(cadt_emit_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
             CADT_GLOBAL const cadt_u32* numbers, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors,
-            cadt_u32 count, cadt_u32 grain) {
+            cadt_u32 first, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(record, count, grain) {
     const cadt_u32 i = numbers[record];
     if (i == CADT_NONE) continue;
     const cadt_record r = records[record];
     /* ghosts have no number: CADT_NONE is -1 */
-    cadt_emit(labels, r, i, numbers[CADT_LINK_RECORD(r.word[4])], numbers[CADT_LINK_RECORD(r.word[5])],
+    cadt_emit(labels, r, first + i, numbers[CADT_LINK_RECORD(r.word[4])], numbers[CADT_LINK_RECORD(r.word[5])],
               numbers[CADT_LINK_RECORD(r.word[6])], triangles, neighbors);
   }
 }
@@ -184,13 +185,13 @@ CADT_FN cadt_u32 cadt_rank(CADT_GLOBAL const cadt_u32* ranks, cadt_u32 link) {
 /* As cadt_emit_triangles, in the order of the records. `ranks` is the exclusive scan of the flags. */
 CADT_KERNEL(cadt_emit_ranked, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
             CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors,
-            cadt_u32 count, cadt_u32 grain) {
+            cadt_u32 first, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(record, count, grain) {
     const cadt_u32 i = ranks[record];
     if (ranks[record + 1u] == i) continue;
     const cadt_record r = records[record];
-    cadt_emit(labels, r, i, cadt_rank(ranks, r.word[4]), cadt_rank(ranks, r.word[5]), cadt_rank(ranks, r.word[6]),
-              triangles, neighbors);
+    cadt_emit(labels, r, first + i, cadt_rank(ranks, r.word[4]), cadt_rank(ranks, r.word[5]),
+              cadt_rank(ranks, r.word[6]), triangles, neighbors);
   }
 }
 

@@ -52,8 +52,21 @@
   X(cadt_join_records)      /* join.h: the rest of the mesh */                   \
   X(cadt_wrap_boxes)        /* wrap.h: stars of few points by gift wrapping */   \
   X(cadt_wrap_stars)        /* wrap.h */                                         \
-  X(cadt_wrap_counts)       /* wrap.h */                                         \
-  X(cadt_wrap_records)      /* wrap.h */                                         \
+  X(cadt_wrap_counts)       /* wrap_mesh.h: who owns which triangle */           \
+  X(cadt_wrap_records)      /* wrap_mesh.h */                                    \
+  X(cadt_set_bounds)        /* sets.h: many sets in one call */                  \
+  X(cadt_set_keys)          /* sets.h */                                         \
+  X(cadt_set_gather)        /* sets.h */                                         \
+  X(cadt_set_starts)        /* sets.h: where sets begin */                       \
+  X(cadt_set_kinds)         /* sets.h: flat sets, large sets */                  \
+  X(cadt_set_unproven)      /* sets.h: vertices to be wrapped */                 \
+  X(cadt_set_list)          /* sets.h */                                         \
+  X(cadt_set_counts)        /* wrap_mesh.h */                                    \
+  X(cadt_set_insert)        /* set_insert.h: sets without locks, on CPUs */      \
+  X(cadt_set_check)         /* sets.h */                                         \
+  X(cadt_set_points)        /* sets.h: a set by itself */                        \
+  X(cadt_set_records)       /* sets.h */                                         \
+  X(cadt_set_shift)         /* sets.h: numbers in the set */                     \
   X(cadt_count_triangles)   /* emit.h */                                         \
   X(cadt_bucket_triangles)  /* emit.h: canonical order */                        \
   X(cadt_sort_buckets)      /* emit.h */                                         \

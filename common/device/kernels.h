@@ -16,11 +16,14 @@
 #include "common/device/refine.h"
 #include "common/device/scan.h"
 #include "common/device/selftest.h"
+#include "common/device/set_insert.h"
+#include "common/device/sets.h"
 #include "common/device/star.h"
 #include "common/device/star_mesh.h"
 #include "common/device/start.h"
 #include "common/device/tiles.h"
 #include "common/device/verify.h"
 #include "common/device/wrap.h"
+#include "common/device/wrap_mesh.h"
 
 #endif

@@ -53,6 +53,25 @@ enum {
   CADT_WRAP_SHARES = 8   /* work-items that write the triangles of a vertex */
 };
 
+/* One of several sets of points in a call (sets.h). Its points are halved and counted in cells after they have been
+ * multiplied by both factors, powers of two. */
+typedef struct {
+  double factor, factor_again;
+  double half_min_x, half_min_y, scale; /* its square of the key grid, as cadt_key_grid */
+  double most_x, most_y;                /* the largest coordinates of its points, in cells */
+} cadt_set;
+
+/* The state of a set, in the lowest bits of a word; above them the number of its vertices that have failed. */
+enum {
+  CADT_SET_TOGETHER, /* it is triangulated together with others */
+  CADT_SET_FLAT,     /* there are no triangles */
+  CADT_SET_ALONE,    /* not together with others */
+  CADT_SET_WIDE,     /* nor in narrow arithmetic */
+  CADT_SET_STATES = 3,
+  CADT_SET_FAILURE = 4,
+  CADT_SET_LANES = 32 /* of a team for a set */
+};
+
 /* What cadt_bounds finds. */
 typedef struct {
   double min_x, max_x, min_y, max_y;

@@ -53,6 +53,26 @@ CADT_FN void cadt_bounds_add(cadt_bounds_row* row, const cadt_bounds_row other) 
   row->bad = cadt_min_u32(row->bad, other.bad);
 }
 
+/* Adds point i; 0 if a coordinate is no number. The exponents are in `span` until the end. */
+CADT_FN cadt_u32 cadt_bounds_add_point(cadt_bounds_row* row, cadt_span* span, cadt_point p, cadt_u32 i) {
+  /* an exponent of all ones is infinity or NaN */
+  if (((cadt_bits_of_double(p.x) >> 52) & 0x7FFul) == 0x7FFul ||
+      ((cadt_bits_of_double(p.y) >> 52) & 0x7FFul) == 0x7FFul) {
+    row->bad = cadt_min_u32(row->bad, i);
+    return 0u;
+  }
+  cadt_span_add_point(span, p);
+  row->min_x = p.x < row->min_x ? p.x : row->min_x;
+  row->max_x = p.x > row->max_x ? p.x : row->max_x;
+  row->min_y = p.y < row->min_y ? p.y : row->min_y;
+  row->max_y = p.y > row->max_y ? p.y : row->max_y;
+  return 1u;
+}
+CADT_FN void cadt_bounds_close(cadt_bounds_row* row, const cadt_span* span) {
+  row->low = CADT_CAST(cadt_u32, span->low + 4096);
+  row->high = CADT_CAST(cadt_u32, span->high + 4096);
+}
+
 /* The rows of all lanes of a team as one, in lanes[0]. All lanes call it. */
 CADT_FN void cadt_bounds_of_team(CADT_TEAM_PTR cadt_bounds_row* lanes, cadt_bounds_row own) {
   const cadt_u32 most = CADT_BOUNDS_LANES;
@@ -83,21 +103,9 @@ CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, c
   cadt_span span;
   cadt_span_clear(&span);
   CADT_FOR_PART(i, cadt_item, parts, cadt_item < parts ? count : 0u, chunk) {
-    const cadt_point p = points[i];
-    /* an exponent of all ones is infinity or NaN */
-    if (((cadt_bits_of_double(p.x) >> 52) & 0x7FFul) == 0x7FFul ||
-        ((cadt_bits_of_double(p.y) >> 52) & 0x7FFul) == 0x7FFul) {
-      row.bad = i;
-      break;
-    }
-    cadt_span_add_point(&span, p);
-    row.min_x = p.x < row.min_x ? p.x : row.min_x;
-    row.max_x = p.x > row.max_x ? p.x : row.max_x;
-    row.min_y = p.y < row.min_y ? p.y : row.min_y;
-    row.max_y = p.y > row.max_y ? p.y : row.max_y;
+    if (!cadt_bounds_add_point(&row, &span, points[i], i)) break;
   }
-  row.low = CADT_CAST(cadt_u32, span.low + 4096);
-  row.high = CADT_CAST(cadt_u32, span.high + 4096);
+  cadt_bounds_close(&row, &span);
   cadt_bounds_of_team(lanes, row);
   const cadt_u32 team = cadt_item / cadt_team_lanes, teams = (parts - 1u) / cadt_team_lanes + 1u;
   if (cadt_team_lane == 0u && team < cadt_min_u32(teams, room)) {
@@ -153,6 +161,7 @@ CADT_FN cadt_u32 cadt_hilbert(cadt_u32 x, cadt_u32 y, cadt_u32 bits) {
 typedef struct {
   double half_min_x, half_min_y, scale;
   cadt_u32 bits_x, bits_y;
+  cadt_u32 set; /* squares of sets one after another (sets.h); else 0 */
 } cadt_key_grid;
 
 #define CADT_GRID_PARAMETERS double half_min_x, double half_min_y, double grid_scale, cadt_u32 bits_x, cadt_u32 bits_y
@@ -162,7 +171,8 @@ typedef struct {
   grid.half_min_y = half_min_y; \
   grid.scale = grid_scale;      \
   grid.bits_x = bits_x;         \
-  grid.bits_y = bits_y
+  grid.bits_y = bits_y;         \
+  grid.set = 0u
 
 /* A point in units of cells, and with the last cell of each axis closed to the right. */
 CADT_FN cadt_point cadt_to_grid(const cadt_key_grid* grid, cadt_point p) {
@@ -187,12 +197,13 @@ CADT_FN cadt_u32 cadt_grid_levels(const cadt_key_grid* grid) {
 
 /* Hilbert key of a square cell of a level: 0 the largest squares, cadt_grid_levels the cells of the grid. The longer
  * axis has more bits; its surplus goes on top, so a long box is a row of squares, each entered where the one before is
- * left. The key of a cell begins with that of each larger cell around it. */
+ * left. So are the boxes of sets, which are squares. The key of a cell begins with that of each larger cell around
+ * it. */
 CADT_FN cadt_u32 cadt_cell_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y, cadt_u32 level) {
   const cadt_u32 mask = (1u << level) - 1u;
   const cadt_u32 along = grid->bits_x >= grid->bits_y ? x : y, across = grid->bits_x >= grid->bits_y ? y : x;
   const cadt_u32 low = cadt_hilbert(along & mask, across & mask, level);
-  return level == 16u ? low : (((along >> level) << (2u * level)) | low);
+  return level == 16u ? low : ((((along >> level) + grid->set) << (2u * level)) | low);
 }
 
 #if CADT_CONTIGUOUS
@@ -288,12 +299,15 @@ CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_p
   }
 }
 
-/* 1 where a point differs from the one before. `equal` counts the others. */
-CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL cadt_u32* flags, cadt_u32 count,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* equal) {
+/* 1 where a point differs from the one before; equal points of different sets have different keys. `equal` counts the
+ * others. */
+CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* keys,
+            CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* equal) {
   cadt_u32 sum = 0u;
   CADT_FOR(i, count, grain) {
-    const cadt_u32 flag = i == 0u || sorted[i].x != sorted[i - 1u].x || sorted[i].y != sorted[i - 1u].y ? 1u : 0u;
+    const cadt_u32 flag =
+        i == 0u || keys[i] != keys[i - 1u] || sorted[i].x != sorted[i - 1u].x || sorted[i].y != sorted[i - 1u].y ? 1u
+                                                                                                                 : 0u;
     flags[i] = flag;
     sum += 1u - flag;
   }

@@ -16,6 +16,7 @@
 #define CADT_DEVICE_STAR_H
 
 #include "common/device/predicates.h"
+#include "common/device/sets.h"
 #include "common/device/sort_keys.h"
 #include "common/device/sweep.h"
 
@@ -387,11 +388,13 @@ CADT_FN void cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size
     links[CADT_STAR_DEGREE * CADT_CAST(cadt_u64, vertex) + k] = k < size ? m->w->at[cadt_link_place(m, k)] : CADT_NONE;
 }
 
-/* Stars of every `step`-th tile. found: points of these tiles, those without a proof; exact orientations, exact
- * incircles, ties; tries for a second time. `many`: stars may have many candidates at once. \pre sizes are 0, or of
- * stars that are there already */
+/* Stars of every `step`-th tile. With `sets` the grid is that of the tile's set (sets.h), if that is one of those that
+ * are together. found: points of these tiles, those without a proof; exact orientations, exact incircles, ties; tries
+ * for a second time. `many`: stars may have many candidates at once. \pre sizes are 0, or of stars that are there
+ * already */
 CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys,
                  cadt_u32 n, CADT_GRID_PARAMETERS, double most_x, double most_y, cadt_u32 clipped,
+                 CADT_GLOBAL const cadt_set* sets, CADT_GLOBAL const cadt_u32* states,
                  CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 step, cadt_u32 many, cadt_u32 grain,
                  CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_window window;
@@ -403,13 +406,21 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
   cadt_tally_clear(&tally);
   CADT_FOR_TEAMS(t, tile_count, grain) {
     const cadt_tile tile = tiles[t * step];
+    cadt_u32 wanted = 1u;
+    if (sets) {
+      const cadt_u32 levels = cadt_grid_levels(&grid), set = keys[tile.begin] >> (2u * levels);
+      grid = cadt_grid_of_set(sets, set, levels);
+      most.x = sets[set].most_x;
+      most.y = sets[set].most_y;
+      wanted = states[set] == CADT_SET_TOGETHER ? 1u : 0u;
+    }
     const cadt_window_shape shape = cadt_shape_of_window(&grid, most, points, tile, tiles[t * step + 1u].begin);
     cadt_star_maker maker;
     maker.w = &window;
     maker.points = points;
     maker.tally = &tally;
     if (cadt_team_lane == 0u) window.shape = shape; /* registers are few */
-    const cadt_u32 loaded = cadt_load_window(&window, &shape, &grid, points, keys, n, clipped);
+    const cadt_u32 loaded = wanted ? cadt_load_window(&window, &shape, &grid, points, keys, n, clipped) : 0u;
     const cadt_u32 own = loaded ? window.rows[shape.tile_side] : shape.end - shape.begin;
     if (loaded) {
       const cadt_u32 lanes = cadt_min_u32(cadt_team_lanes, CADT_STAR_LANES);

@@ -22,29 +22,34 @@ CADT_KERNEL(cadt_find_triangle, CADT_GLOBAL const cadt_point* points, cadt_u32 f
   }
 }
 
-/* \pre records are zero, hints are CADT_NONE */
+/* \pre records are zero */
+CADT_FN void cadt_start(const cadt_mesh* m, cadt_tally* tally) {
+  cadt_u32 a = m->first, b = m->second, c = m->third;
+  if (cadt_orientation(m->points[a], m->points[b], m->points[c], tally) < 0) {
+    b = m->third;
+    c = m->second;
+  }
+  const cadt_u32 face = 2u * a, g0 = face + 1u; /* ghosts opposite a, b, c */
+  const cadt_u32 g1 = 2u * m->second, g2 = g1 + 1u;
+  cadt_new_record(m, face, a, b, c, CADT_LINK(g0, 0u), CADT_LINK(g1, 0u), CADT_LINK(g2, 0u), 0u);
+  cadt_new_record(m, g0, CADT_GHOST, c, b, CADT_LINK(face, 0u), CADT_LINK(g2, 2u), CADT_LINK(g1, 1u), 0u);
+  cadt_new_record(m, g1, CADT_GHOST, a, c, CADT_LINK(face, 1u), CADT_LINK(g0, 2u), CADT_LINK(g2, 1u), 0u);
+  cadt_new_record(m, g2, CADT_GHOST, b, a, CADT_LINK(face, 2u), CADT_LINK(g1, 2u), CADT_LINK(g0, 1u), 0u);
+  cadt_publish_record(m, face);
+  cadt_publish_record(m, g0);
+  cadt_publish_record(m, g1);
+  cadt_publish_record(m, g2);
+  cadt_store_relaxed(m->hints + m->first, face);
+  cadt_store_relaxed(m->hints + m->second, face);
+  cadt_store_relaxed(m->hints + m->third, face);
+}
+
 CADT_KERNEL(cadt_start_mesh, CADT_MESH_PARAMETERS) {
   if (cadt_item != 0u) return;
   CADT_MESH_VIEW(mesh);
   cadt_tally tally;
   cadt_tally_clear(&tally);
-  cadt_u32 a = first, b = second, c = third;
-  if (cadt_orientation(points[a], points[b], points[c], &tally) < 0) {
-    b = third;
-    c = second;
-  }
-  const cadt_u32 face = 2u * first, g0 = face + 1u, g1 = 2u * second, g2 = g1 + 1u; /* ghosts opposite a, b, c */
-  cadt_new_record(&mesh, face, a, b, c, CADT_LINK(g0, 0u), CADT_LINK(g1, 0u), CADT_LINK(g2, 0u), 0u);
-  cadt_new_record(&mesh, g0, CADT_GHOST, c, b, CADT_LINK(face, 0u), CADT_LINK(g2, 2u), CADT_LINK(g1, 1u), 0u);
-  cadt_new_record(&mesh, g1, CADT_GHOST, a, c, CADT_LINK(face, 1u), CADT_LINK(g0, 2u), CADT_LINK(g2, 1u), 0u);
-  cadt_new_record(&mesh, g2, CADT_GHOST, b, a, CADT_LINK(face, 2u), CADT_LINK(g1, 2u), CADT_LINK(g0, 1u), 0u);
-  cadt_publish_record(&mesh, face);
-  cadt_publish_record(&mesh, g0);
-  cadt_publish_record(&mesh, g1);
-  cadt_publish_record(&mesh, g2);
-  cadt_store_relaxed(hints + first, face);
-  cadt_store_relaxed(hints + second, face);
-  cadt_store_relaxed(hints + third, face);
+  cadt_start(&mesh, &tally);
 }
 
 #endif

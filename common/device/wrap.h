@@ -11,6 +11,7 @@
 
 #include "common/device/mesh.h"
 #include "common/device/predicates.h"
+#include "common/device/sets.h"
 
 typedef struct {
   cadt_u32 link[CADT_WRAP_DEGREE]; /* the neighbours found, in the order of the search */
@@ -20,11 +21,41 @@ typedef struct {
   cadt_u32 key, guess, place;
 } cadt_wrap_memory;
 
+/* The points among which stars are searched: all, or those of a set (sets.h). Every set begins a new box and a new
+ * crate, which leaves some numbers out. */
+typedef struct {
+  cadt_u32 begin, count; /* positions */
+  cadt_u32 box, crate;   /* the first ones */
+} cadt_wrap_range;
+
+/* `starts`: null for all n points. */
+CADT_FN cadt_wrap_range cadt_wrap_range_of(CADT_GLOBAL const cadt_u32* starts, cadt_u32 set, cadt_u32 n) {
+  cadt_wrap_range r;
+  r.begin = starts ? starts[set] : 0u;
+  r.count = starts ? starts[set + 1u] - r.begin : n;
+  r.box = starts ? r.begin / CADT_WRAP_BOX + set : 0u;
+  r.crate = starts ? r.begin / (CADT_WRAP_BOX * CADT_WRAP_CRATE) + set : 0u;
+  return r;
+}
+
+/* The last set whose first crate is not behind this one. */
+CADT_FN cadt_u32 cadt_wrap_set_of_crate(CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, cadt_u32 crate) {
+  cadt_u32 low = 0u, high = set_count;
+  while (high - low > 1u) {
+    const cadt_u32 middle = low + (high - low) / 2u;
+    if (cadt_wrap_range_of(starts, middle, 0u).crate <= crate)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 typedef struct {
   CADT_TEAM_PTR cadt_wrap_memory* m;
-  CADT_GLOBAL const cadt_point* points;
-  CADT_GLOBAL const cadt_box* boxes;  /* of CADT_WRAP_BOX points, */
-  CADT_GLOBAL const cadt_box* crates; /* of CADT_WRAP_CRATE boxes */
+  CADT_GLOBAL const cadt_point* points; /* of its range, as the numbers of vertices, boxes and crates */
+  CADT_GLOBAL const cadt_box* boxes;    /* of CADT_WRAP_BOX points, */
+  CADT_GLOBAL const cadt_box* crates;   /* of CADT_WRAP_CRATE boxes */
   cadt_tally* tally;
   cadt_u32 n, box_count, crate_count;
   cadt_u32 lanes;  /* of the team that search: the first ones */
@@ -40,25 +71,29 @@ CADT_FN void cadt_box_add(cadt_box* box, const cadt_box other) {
 }
 
 /* Boxes of CADT_WRAP_BOX points, and crates of CADT_WRAP_CRATE boxes: a team for each. */
-CADT_KERNEL(cadt_wrap_boxes, CADT_GLOBAL const cadt_point* points, cadt_u32 n, cadt_u32 box_count, cadt_u32 crate_count,
-            cadt_u32 grain, CADT_GLOBAL cadt_box* boxes, CADT_GLOBAL cadt_box* crates) {
+CADT_KERNEL(cadt_wrap_boxes, CADT_GLOBAL const cadt_point* points, cadt_u32 n, CADT_GLOBAL const cadt_u32* starts,
+            cadt_u32 set_count, cadt_u32 crate_count, cadt_u32 grain, CADT_GLOBAL cadt_box* boxes,
+            CADT_GLOBAL cadt_box* crates) {
   CADT_TEAM_MEMORY cadt_box inside[CADT_WRAP_CRATE];
   CADT_FOR_TEAMS(crate, crate_count, grain) {
-    const cadt_u32 first = crate * CADT_WRAP_CRATE;
-    const cadt_u32 count = cadt_min_u32(CADT_WRAP_CRATE, box_count - first);
+    const cadt_wrap_range r =
+        cadt_wrap_range_of(starts, starts ? cadt_wrap_set_of_crate(starts, set_count, crate) : 0u, n);
+    const cadt_u32 first = (crate - r.crate) * CADT_WRAP_CRATE,
+                   box_count = (r.count + CADT_WRAP_BOX - 1u) / CADT_WRAP_BOX;
+    const cadt_u32 count = first < box_count ? cadt_min_u32(CADT_WRAP_CRATE, box_count - first) : 0u;
     CADT_TEAM_FOR(j, count) {
-      const cadt_u32 begin = (first + j) * CADT_WRAP_BOX, end = cadt_min_u32(begin + CADT_WRAP_BOX, n);
+      const cadt_u32 begin = (first + j) * CADT_WRAP_BOX, end = cadt_min_u32(begin + CADT_WRAP_BOX, r.count);
       cadt_box box;
-      box.low = box.high = points[begin];
+      box.low = box.high = points[r.begin + begin];
       for (cadt_u32 i = begin + 1u; i < end; ++i) {
         cadt_box point;
-        point.low = point.high = points[i];
+        point.low = point.high = points[r.begin + i];
         cadt_box_add(&box, point);
       }
-      boxes[first + j] = inside[j] = box;
+      boxes[r.box + first + j] = inside[j] = box;
     }
     CADT_TEAM_SYNC();
-    if (cadt_team_lane == 0u) {
+    if (cadt_team_lane == 0u && count) {
       cadt_box box = inside[0];
       for (cadt_u32 j = 1u; j < count; ++j) cadt_box_add(&box, inside[j]);
       crates[crate] = box;
@@ -255,36 +290,44 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
   return *size < 2u ? 0u : outcome;
 }
 
-/* found: words of links used, vertices without a star, effort: boxes looked at and exact tests; exact orientations,
- * exact incircles, ties; edges between two without stars. A star has sizes[v] words from links[begins[v]] on,
- * CADT_GHOST behind the last neighbour on the hull. Nothing is done any more when more than CADT_WRAP_HUBS have failed,
- * or the effort is above its bound. \pre sizes are 0, n >= 2 */
+/* Stars of `count` vertices: of all, or of those in `list`, which are of sets. found: words of links used, vertices
+ * without a star, effort: boxes looked at and exact tests; exact orientations, exact incircles, ties; edges between two
+ * without stars. A star has sizes[v] words from links[begins[v]] on, CADT_GHOST behind the last neighbour on the hull.
+ * Those of at most `row` words have begins[v] already, longer ones stand behind the rows. Nothing is done any more when
+ * more than CADT_WRAP_HUBS have failed, or the effort is above its bound, `effort` a point; of sets when one has
+ * failed, which states[set] counts, as efforts[set] the effort. \pre sizes are 0, n >= 2 */
 CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
-                 CADT_GLOBAL const cadt_box* crates, cadt_u32 n, cadt_u32 box_count, cadt_u32 crate_count,
-                 cadt_u32 effort, cadt_u32 grain, CADT_GLOBAL cadt_u32* links, cadt_u32 link_words,
-                 CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
+                 CADT_GLOBAL const cadt_box* crates, cadt_u32 n, CADT_GLOBAL const cadt_u32* list, cadt_u32 count,
+                 CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, CADT_GLOBAL cadt_u32* states,
+                 CADT_GLOBAL cadt_u32* efforts, cadt_u32 effort, cadt_u32 grain, cadt_u32 row,
+                 CADT_GLOBAL cadt_u32* links, cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins,
+                 CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_wrap_memory memory;
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 exact_before = 0u;
-  CADT_FOR_TEAMS(v, n, grain) {
+  CADT_FOR_TEAMS(item, count, grain) {
+    const cadt_u32 v = list ? list[item] : item, set = list ? cadt_set_of(starts, set_count, v) : 0u;
+    const cadt_wrap_range range = cadt_wrap_range_of(starts, set, n);
+    CADT_GLOBAL cadt_u32* failed = list ? states + set : found + 1;
+    CADT_GLOBAL cadt_u32* done = list ? efforts + set : found + 2;
     cadt_wrapper w;
     w.m = &memory;
-    w.points = points;
-    w.boxes = boxes;
-    w.crates = crates;
+    w.points = points + range.begin;
+    w.boxes = boxes + range.box;
+    w.crates = crates + range.crate;
     w.tally = &tally;
-    w.n = n;
-    w.box_count = box_count;
-    w.crate_count = crate_count;
+    w.n = range.count;
+    w.box_count = (range.count - 1u) / CADT_WRAP_BOX + 1u;
+    w.crate_count = (w.box_count - 1u) / CADT_WRAP_CRATE + 1u;
     w.lanes = cadt_min_u32(cadt_team_lanes, CADT_WRAP_LANES);
-    w.p = v;
+    w.p = v - range.begin;
     w.looked = 0u;
     if (cadt_team_lane == 0u)
-      memory.place =
-          cadt_load_relaxed(found + 1) <= CADT_CAST(cadt_u32, CADT_WRAP_HUBS) && cadt_load_relaxed(found + 2) <= effort
-              ? 1u
-              : 0u;
+      memory.place = cadt_load_relaxed(failed) <= (list ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_HUBS)) &&
+                             cadt_load_relaxed(done) <= effort * range.count + 4096u
+                         ? 1u
+                         : 0u;
     CADT_TEAM_SYNC();
     const cadt_u32 wanted = memory.place;
     CADT_TEAM_SYNC();
@@ -293,22 +336,22 @@ CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
     if (wanted) kind = cadt_wrap_star(&w, &begin, &size, &side);
     const cadt_u32 words = kind == 2u ? size + 1u : size;
     const cadt_u32 exact = tally.count[CADT_COUNT_EXACT_INCIRCLES] + tally.count[CADT_COUNT_EXACT_ORIENTATIONS];
-    if (exact != exact_before) cadt_add_relaxed(found + 2, exact - exact_before);
+    if (exact != exact_before) cadt_add_relaxed(done, exact - exact_before);
     exact_before = exact;
     if (cadt_team_lane == 0u) {
-      cadt_add_relaxed(found + 2, w.looked);
+      cadt_add_relaxed(done, w.looked);
       if (kind) {
-        memory.place = cadt_add_relaxed(found, words);
+        memory.place = words <= row ? begins[v] : n * row + cadt_add_relaxed(found, words);
         begins[v] = memory.place;
         sizes[v] = words;
       } else {
-        cadt_add_relaxed(found + 1, 1u);
+        cadt_add_relaxed(failed, list ? CADT_CAST(cadt_u32, CADT_SET_FAILURE) : 1u);
       }
     }
     CADT_TEAM_SYNC();
     if (kind && memory.place + words <= link_words) { /* else the driver sees from found[0] that stars are wrong */
       CADT_GLOBAL cadt_u32* link = links + memory.place;
-      CADT_TEAM_FOR(k, size) { link[k] = memory.link[begin + (side > 0 ? k : size - 1u - k)]; }
+      CADT_TEAM_FOR(k, size) { link[k] = range.begin + memory.link[begin + (side > 0 ? k : size - 1u - k)]; }
       if (cadt_team_lane == 0u && kind == 2u) link[size] = CADT_GHOST;
     }
     CADT_TEAM_SYNC();
@@ -317,149 +360,6 @@ CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
     cadt_add_relaxed(found + 3, tally.count[CADT_COUNT_EXACT_ORIENTATIONS]);
   if (tally.count[CADT_COUNT_EXACT_INCIRCLES]) cadt_add_relaxed(found + 4, tally.count[CADT_COUNT_EXACT_INCIRCLES]);
   if (tally.count[CADT_COUNT_TIES]) cadt_add_relaxed(found + 5, tally.count[CADT_COUNT_TIES]);
-}
-
-/* ---- records: a triangle belongs to the lowest of its vertices that has a star. A hub has none, so its triangles are
- * those of its neighbours. An edge between two without stars (hubs, or the ghost) is listed with the vertex on either
- * side of it; the driver adds the triangles of three such vertices, each as its three half-edges. ---- */
-
-typedef struct {
-  CADT_GLOBAL const cadt_u32* links;
-  CADT_GLOBAL const cadt_u32* begins;
-  CADT_GLOBAL const cadt_u32* sizes;
-  CADT_GLOBAL const cadt_u32* bases; /* number of the first triangle that belongs to a vertex */
-  CADT_GLOBAL const cadt_wrap_edge* edges;
-  cadt_u32 edge_count;
-  cadt_u32 first_extra; /* of the edges: from here on they are those of triangles without stars, whose numbers */
-  cadt_u32 extra_base;  /* begin here */
-  cadt_u32 hubs;        /* whether there are any */
-} cadt_wrap_set;
-
-/* Whether v comes before another vertex of its star: there it owns what they share. */
-CADT_FN cadt_u32 cadt_wrap_before(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 hubs, cadt_u32 v, cadt_u32 other) {
-  return other > v || (hubs && sizes[other] == 0u) ? 1u : 0u;
-}
-
-/* Whether the vertex has no star: a hub, or the ghost. */
-CADT_FN cadt_u32 cadt_wrap_starless(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 v) {
-  return v == CADT_GHOST || sizes[v] == 0u ? 1u : 0u;
-}
-
-/* owned[v]: triangles that belong to v; a 0 behind the last. */
-CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
-            CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* found,
-            CADT_GLOBAL cadt_u32* owned, CADT_GLOBAL cadt_wrap_edge* edges) {
-  if (cadt_item == 0u) owned[n] = 0u;
-  const cadt_u32 hubs = found[1];
-  CADT_FOR(v, n, grain) {
-    CADT_GLOBAL const cadt_u32* link = links + begins[v];
-    const cadt_u32 size = sizes[v];
-    cadt_u32 count = 0u;
-    for (cadt_u32 k = 0u; k < size; ++k) {
-      const cadt_u32 a = link[k], b = link[k + 1u < size ? k + 1u : 0u];
-      if (cadt_wrap_before(sizes, hubs, v, a) && cadt_wrap_before(sizes, hubs, v, b)) ++count;
-      if (hubs && cadt_wrap_starless(sizes, a) && cadt_wrap_starless(sizes, b)) {
-        const cadt_u32 at = cadt_add_relaxed(found + 6, 1u);
-        if (at < CADT_CAST(cadt_u32, CADT_WRAP_EDGES)) {
-          edges[at].from = a;
-          edges[at].to = b;
-          edges[at].left = v;
-        }
-      }
-    }
-    owned[v] = count;
-  }
-}
-
-/* Place of vertex a in the star of v, and how many triangles before it belong to v. \pre it is there */
-CADT_FN cadt_u32 cadt_wrap_place(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32* owned) {
-  CADT_GLOBAL const cadt_u32* link = s->links + s->begins[v];
-  cadt_u32 k = 0u, count = 0u, now = link[0];
-  while (now != a) {
-    const cadt_u32 next = link[++k];
-    if (cadt_wrap_before(s->sizes, s->hubs, v, now) && cadt_wrap_before(s->sizes, s->hubs, v, next)) ++count;
-    now = next;
-  }
-  *owned = count;
-  return k;
-}
-
-/* The neighbour of v before or behind its neighbour a. */
-CADT_FN cadt_u32 cadt_wrap_beside(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32 behind) {
-  cadt_u32 owned;
-  const cadt_u32 k = cadt_wrap_place(s, v, a, &owned), size = s->sizes[v];
-  const cadt_u32 other = behind ? (k + 1u < size ? k + 1u : 0u) : (k ? k - 1u : size - 1u);
-  return s->links[s->begins[v] + other];
-}
-
-/* The vertex to the right of the edge from a to b. */
-CADT_FN cadt_u32 cadt_wrap_right(const cadt_wrap_set* s, cadt_u32 a, cadt_u32 b) {
-  if (!cadt_wrap_starless(s->sizes, a)) return cadt_wrap_beside(s, a, b, 0u);
-  if (!cadt_wrap_starless(s->sizes, b)) return cadt_wrap_beside(s, b, a, 1u);
-  for (cadt_u32 e = 0u; e < s->edge_count; ++e)
-    if (s->edges[e].from == b && s->edges[e].to == a) return s->edges[e].left;
-  return CADT_NONE; /* never: the driver has matched all of them */
-}
-
-/* Link to the triangle x, y, z across the edge opposite of x (0), y (1) or z (2). */
-CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, cadt_u32 z, cadt_u32 opposite) {
-  const cadt_u32 none = CADT_GHOST; /* hubs own nothing */
-  const cadt_u32 i = s->hubs && cadt_wrap_starless(s->sizes, x) ? none : x;
-  const cadt_u32 j = s->hubs && cadt_wrap_starless(s->sizes, y) ? none : y;
-  const cadt_u32 k = s->hubs && cadt_wrap_starless(s->sizes, z) ? none : z;
-  const cadt_u32 lowest = i < j ? (i < k ? 0u : 2u) : (j < k ? 1u : 2u);
-  const cadt_u32 owner = CADT_PICK(lowest, x, y, z), next = CADT_PICK(lowest, y, z, x);
-  if (CADT_PICK(lowest, i, j, k) == none) {
-    cadt_u32 e = s->first_extra;
-    while (e + 1u < s->edge_count && (s->edges[e].from != x || s->edges[e].to != y || s->edges[e].left != z)) ++e;
-    e -= s->first_extra;
-    return CADT_LINK(s->extra_base + e / 3u, (opposite + e % 3u) % 3u);
-  }
-  cadt_u32 before;
-  cadt_wrap_place(s, owner, next, &before);
-  return CADT_LINK(s->bases[owner] + before, opposite >= lowest ? opposite - lowest : opposite + 3u - lowest);
-}
-
-/* CADT_WRAP_SHARES work-items for each vertex. \pre no triangle is missing */
-CADT_KERNEL(cadt_wrap_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
-            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases,
-            CADT_GLOBAL const cadt_wrap_edge* edges, cadt_u32 edge_count, cadt_u32 first_extra, cadt_u32 extra_base,
-            cadt_u32 hubs, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_record* records) {
-  cadt_wrap_set stars;
-  stars.links = links;
-  stars.begins = begins;
-  stars.sizes = sizes;
-  stars.bases = bases;
-  stars.edges = edges;
-  stars.edge_count = edge_count;
-  stars.first_extra = first_extra;
-  stars.extra_base = extra_base;
-  stars.hubs = hubs;
-  if (cadt_item == 0u)
-    for (cadt_u32 e = first_extra; e < edge_count; e += 3u) {
-      CADT_GLOBAL cadt_u32* w = records[extra_base + (e - first_extra) / 3u].word;
-      const cadt_u32 a = edges[e].from, b = edges[e].to, c = edges[e].left;
-      cadt_store_four(w, a, b, c, 2u);
-      cadt_store_four(w + CADT_WORD_LINK, cadt_wrap_link(&stars, b, cadt_wrap_right(&stars, b, c), c, 1u),
-                      cadt_wrap_link(&stars, c, cadt_wrap_right(&stars, c, a), a, 1u),
-                      cadt_wrap_link(&stars, a, cadt_wrap_right(&stars, a, b), b, 1u), 0u);
-    }
-  CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
-    const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
-    CADT_GLOBAL const cadt_u32* link = links + begins[v];
-    for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {
-      const cadt_u32 k1 = k + 1u < size ? k + 1u : 0u, a = link[k], b = link[k1];
-      if (!cadt_wrap_before(sizes, hubs, v, a) || !cadt_wrap_before(sizes, hubs, v, b)) continue;
-      cadt_u32 before;
-      cadt_wrap_place(&stars, v, a, &before);
-      CADT_GLOBAL cadt_u32* w = records[bases[v] + before].word;
-      const cadt_u32 across = cadt_wrap_link(&stars, a, cadt_wrap_right(&stars, a, b), b, 1u);
-      const cadt_u32 after = cadt_wrap_link(&stars, v, b, link[k1 + 1u < size ? k1 + 1u : 0u], 2u);
-      cadt_store_four(w, v, a, b, 2u);
-      cadt_store_four(w + CADT_WORD_LINK, across, after, cadt_wrap_link(&stars, v, link[k ? k - 1u : size - 1u], a, 1u),
-                      0u);
-    }
-  }
 }
 
 #endif

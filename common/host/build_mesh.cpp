@@ -65,16 +65,16 @@ class Builder {
       if (run_.options.watch) show();
     }
     run_.end_phase("insert");
-    return close();
+    return close(3 * std::uint64_t{n_} - 3);
   }
 
   /// Nothing walks in a mesh that is complete: its hints are written by repairs only, and its first triangle is not
   /// asked for.
-  [[nodiscard]] DeviceMesh adopt(Allocation records) {
+  [[nodiscard]] DeviceMesh adopt(Allocation records, std::uint64_t edges) {
     records_ = std::move(records);
     hints_ = run_.memory.allocate(n_ * word);
     make_edge_lists();
-    return close();
+    return close(edges);
   }
 
  private:
@@ -83,9 +83,10 @@ class Builder {
     left_counts_ = launch_.zeros(3);
   }
 
-  DeviceMesh close() {
+  /// `edges`: of all spheres, ghost edges included.
+  DeviceMesh close(std::uint64_t edges) {
     DeviceMesh mesh;
-    certify();
+    certify(edges);
     run_.end_phase("certify");
     counters_.collect(run_.statistics);
     mesh.records = std::move(records_);
@@ -234,9 +235,8 @@ class Builder {
   }
 
   /// Closing passes until one finds nothing to do.
-  void certify() {
+  void certify(std::uint64_t edges) {
     if (run_.options.stabilize == Stabilize::defer) stabilize_ = CADT_STABILIZE_OFF;  // what was put off is due now
-    const std::uint64_t edges = 3 * std::uint64_t{n_} - 3;  // of the sphere: ghost edges included
     const std::size_t slots = 2 * n_, most = 4 * points_per_launch();
     Allocation found = launch_.zeros(4);
     for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
@@ -258,12 +258,13 @@ class Builder {
         finish_leftovers();
         run_.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(slots));
       }
-      run_.statistics.closing_sweeps = static_cast<std::uint64_t>(sweep);
-      run_.statistics.closing_repairs += illegal;
+      Statistics& statistics = run_.statistics;  // of all meshes of the call, if there are several
+      statistics.closing_sweeps = std::max(statistics.closing_sweeps, static_cast<std::uint64_t>(sweep));
+      statistics.closing_repairs += illegal;
       if (illegal == 0 && unsettled == 0) {
-        run_.statistics.certified_edges = examined - left;
-        run_.statistics.illegal_edges = left;
-        run_.statistics.certified = left == 0;
+        statistics.certified_edges += examined - left;
+        statistics.illegal_edges += left;
+        statistics.certified = statistics.certified && left == 0;
         if (examined != edges) {
           throw InternalError("the mesh has " + std::to_string(examined) + " edges instead of " +
                               std::to_string(edges) + "; please report this with the input");
@@ -300,8 +301,8 @@ class Builder {
 
 DeviceMesh build_mesh(Run& run, const SpatialOrder& order) { return Builder(run, order).build(); }
 
-DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records) {
-  return Builder(run, order).adopt(std::move(records));
+DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records, std::uint64_t edges) {
+  return Builder(run, order).adopt(std::move(records), edges);
 }
 
 }  // namespace cadt

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "common/host/run.hpp"
 #include "common/host/spatial_order.hpp"
@@ -18,7 +19,8 @@ struct DeviceMesh {
 /// Inserts all points level by level, legalises, and certifies by closing passes. Releases nothing of `order`.
 [[nodiscard]] DeviceMesh build_mesh(Run& run, const SpatialOrder& order);
 
-/// Closing passes over a mesh of two records a point that was made otherwise.
-[[nodiscard]] DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records);
+/// Closing passes over a mesh of two records a point that was made otherwise; it has so many edges, those to the ghost
+/// included.
+[[nodiscard]] DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records, std::uint64_t edges);
 
 }  // namespace cadt

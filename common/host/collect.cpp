@@ -13,7 +13,27 @@ namespace {
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::uint32_t none = 0xFFFFFFFFU;
 
-/// Links hull edges (from, to) to one loop that starts at the smallest index.
+/// The values of `from` where the sets begin.
+Allocation values_of_sets(Run& run, const Allocation& from, const Allocation& places, const SetStarts& sets) {
+  Allocation values = run.memory.allocate((sets.count + 1) * word);
+  const Cut c = run.launcher.cut(sets.count + 1);
+  run.launcher.run(KernelId::cadt_gather_words, c.items, from, places, values,
+                   static_cast<std::uint32_t>(sets.count + 1), c.grain);
+  return values;
+}
+
+/// Where the records of the sets begin: two a vertex.
+Allocation first_records(Run& run, const SetStarts& sets) {
+  std::vector<std::uint32_t> places(sets.count + 1);
+  run.device.read(*(sets.positions ? sets.positions : sets.points), 0, places.data(), places.size() * word);
+  for (std::uint32_t& place : places) place *= 2;
+  Allocation result = run.memory.allocate(places.size() * word);
+  run.device.write(*result, 0, places.data(), places.size() * word);
+  return result;
+}
+
+}  // namespace
+
 std::vector<std::int32_t> link_loop(const std::vector<std::array<std::uint32_t, 2>>& edges, std::size_t points) {
   std::vector<std::int32_t> next(points, -1);
   std::int32_t smallest = static_cast<std::int32_t>(edges.front()[0]);
@@ -32,9 +52,8 @@ std::vector<std::int32_t> link_loop(const std::vector<std::array<std::uint32_t, 
   return loop;
 }
 
-}  // namespace
-
-Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, std::size_t points) {
+Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, std::size_t points,
+                           const SetStarts* sets) {
   Launcher& launch = run.launcher;
   const auto slots = static_cast<std::uint32_t>(mesh.slots);
   const Cut all = launch.cut(mesh.slots);
@@ -47,6 +66,7 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
     launch.run(KernelId::cadt_flag_triangles, records.items, mesh.records, result.numbers, slots, records.grain, flips);
     launch.scan(result.numbers, mesh.slots + 1);
     result.triangles = launch.read_word(result.numbers, mesh.slots);
+    if (sets != nullptr) result.set_starts = values_of_sets(run, result.numbers, first_records(run, *sets), *sets);
     flips.collect(run.statistics);
     return result;
   }
@@ -57,6 +77,7 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
   launch.scan(buckets, points + 1);
   const std::uint32_t triangles = launch.read_word(buckets, points);
   result.triangles = triangles;
+  if (sets != nullptr) result.set_starts = values_of_sets(run, buckets, sets->points, *sets);
   flips.collect(run.statistics);
   Allocation members = run.memory.allocate(std::size_t{triangles} * 2 * word);
   launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, labels, buckets, result.numbers, members, slots,
@@ -72,11 +93,23 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
 }
 
 void emit_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
-                    const Allocation& triangles, const Allocation& neighbors) {
+                    const Allocation& triangles, const Allocation& neighbors, std::size_t first) {
   const Cut all = run.launcher.cut(mesh.slots);
   run.launcher.run(numbering.ranked ? KernelId::cadt_emit_ranked : KernelId::cadt_emit_triangles, all.items,
-                   mesh.records, labels, numbering.numbers, triangles, neighbors,
+                   mesh.records, labels, numbering.numbers, triangles, neighbors, static_cast<std::uint32_t>(first),
                    static_cast<std::uint32_t>(mesh.slots), all.grain);
+}
+
+void number_within_sets(Run& run, const Numbering& numbering, const SetStarts& sets, const Allocation& triangles,
+                        const Allocation& neighbors, std::size_t first) {
+  const Cut c = run.launcher.cut(numbering.triangles);
+  const auto shift = [&](const Allocation& values, const Allocation& by) {
+    run.launcher.run(KernelId::cadt_set_shift, c.items, values, static_cast<std::uint32_t>(first),
+                     static_cast<std::uint32_t>(numbering.triangles), 3U, numbering.set_starts,
+                     static_cast<std::uint32_t>(sets.count), by, c.grain);
+  };
+  shift(triangles, sets.points);
+  shift(neighbors, numbering.set_starts);
 }
 
 std::vector<std::int32_t> find_hull(Run& run, const Allocation& triangles, const Allocation& neighbors,

@@ -2,10 +2,14 @@
 // From the records of the mesh to arrays of input indices.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "common/host/build_mesh.hpp"
 #include "common/host/run.hpp"
+#include "common/host/spatial_order.hpp"
 
 namespace cadt {
 
@@ -14,16 +18,26 @@ struct Numbering {
   Allocation numbers;  ///< of each record, or (`ranked`) the number of real triangles before it
   bool ranked = false;
   std::size_t triangles = 0;
+  Allocation set_starts;  ///< of a call with several sets: the first triangle of each, and the number of all
 };
 
 /// Numbers the triangles in the order that the options ask for. `labels` maps vertices to input indices, `points` is
-/// the number of input points.
-[[nodiscard]] Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels,
-                                         std::size_t points);
+/// the number of input points, `sets` where each set begins, if there are several.
+[[nodiscard]] Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, std::size_t points,
+                                         const SetStarts* sets = nullptr);
 
-/// Writes the arrays of the result: 3 words a triangle each.
+/// Writes the arrays of the result: 3 words a triangle each, behind `first` triangles. The numbers are those of the
+/// labels and of the numbering.
 void emit_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
-                    const Allocation& triangles, const Allocation& neighbors);
+                    const Allocation& triangles, const Allocation& neighbors, std::size_t first = 0);
+
+/// Turns the numbers of points and triangles that emit_triangles has written into those of their own sets.
+void number_within_sets(Run& run, const Numbering& numbering, const SetStarts& sets, const Allocation& triangles,
+                        const Allocation& neighbors, std::size_t first);
+
+/// Edges (from, to) as one loop that starts at the smallest index. \throws InternalError if they are not one
+[[nodiscard]] std::vector<std::int32_t> link_loop(const std::vector<std::array<std::uint32_t, 2>>& edges,
+                                                  std::size_t points);
 
 /// The boundary as one counterclockwise loop from its smallest index. `size`: its vertices, as Euler's formula has it.
 [[nodiscard]] std::vector<std::int32_t> find_hull(Run& run, const Allocation& triangles, const Allocation& neighbors,

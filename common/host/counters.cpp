@@ -71,8 +71,9 @@ void FlipCounts::collect(Statistics& statistics) const {
   if (!buffer_) return;
   std::array<std::uint32_t, std::size_t{CADT_COUNTER_ROWS} * CADT_FLIP_BINS> words{};
   device_.read(*buffer_, 0, words.data(), sizeof words);
-  for (std::size_t i = 0; i < words.size(); ++i) statistics.flips_per_edge[i % CADT_FLIP_BINS] += words[i];
-  for (std::uint64_t& edges : statistics.flips_per_edge) edges /= 2;  // each was met from both sides
+  std::array<std::uint64_t, CADT_FLIP_BINS> sums{};
+  for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_FLIP_BINS] += words[i];
+  for (std::size_t i = 0; i < sums.size(); ++i) statistics.flips_per_edge[i] += sums[i] / 2;  // met from both sides
 }
 
 }  // namespace cadt

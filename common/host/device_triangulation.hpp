@@ -20,9 +20,10 @@ struct Triangulator::State {
   Options options;
   std::unique_ptr<Device> device;
   Memory memory;
-  std::size_t known_points = 0;       ///< a call with so many points has had its memory before
-  std::size_t known_star_points = 0;  ///< and with the star stage
-  std::size_t reserved_points = 0;    ///< buffers for calls with so many points are kept on the caller's wish
+  std::size_t known_points = 0;        ///< a call with so many points has had its memory before
+  std::size_t known_star_points = 0;   ///< and with the star stage
+  std::size_t known_batch_points = 0;  ///< and with several sets
+  std::size_t reserved_points = 0;     ///< buffers for calls with so many points are kept on the caller's wish
 };
 
 struct DeviceTriangulation::Data {

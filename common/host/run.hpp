@@ -4,8 +4,10 @@
 
 #include <cadt/triangulation.hpp>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/host/device.hpp"
@@ -26,9 +28,16 @@ struct Run {
   Memory& memory;
   Launcher launcher;
 
+  /// What is checked from here on is this part of the whole.
+  void begin_share(double begin, double share) noexcept {
+    share_begin_ = begin;
+    share_ = share;
+  }
+
   /// Tells the progress and looks for a request to stop. \throws Cancelled
   void check(std::string_view phase, double fraction) {
     if (options.stop.stop_requested()) throw Cancelled();
+    fraction = share_begin_ + share_ * fraction;
     if (options.progress && fraction > told_) {
       told_ = fraction;
       options.progress({phase, fraction});
@@ -48,11 +57,18 @@ struct Run {
     device.finish();
     if (phases_.empty()) return;
     const std::vector<double> times = device.times();
-    for (std::size_t i = 0; i < phases_.size(); ++i) statistics.milliseconds.emplace_back(phases_[i], times[i]);
+    for (std::size_t i = 0; i < phases_.size(); ++i) {
+      const auto same = std::ranges::find(statistics.milliseconds, phases_[i], &std::pair<std::string, double>::first);
+      if (same == statistics.milliseconds.end())
+        statistics.milliseconds.emplace_back(phases_[i], times[i]);
+      else
+        same->second += times[i];
+    }
     phases_.clear();
   }
 
  private:
+  double share_begin_ = 0, share_ = 1;
   double told_ = -1;  ///< passes that are repeated tell nothing new
   std::vector<std::string> phases_;
 };

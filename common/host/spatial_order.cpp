@@ -18,7 +18,6 @@ using namespace device_constants;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr int most_key_bits = 32;
-constexpr int narrow_span = 240;  // binades that the narrow kernels take (common/device/fixed.h)
 
 struct Bounds {
   double min_x = 0, max_x = 0, min_y = 0, max_y = 0;
@@ -147,7 +146,22 @@ std::optional<KeyGrid> grid_of_most(Run& run, const Allocation& input, Bounds bo
   return grid;
 }
 
-/// Flags the members of crowded cells; how many there are.
+/// The points that equal an earlier one, ascending, and those that they equal.
+void find_duplicates(Run& run, SpatialOrder& result, const Allocation& order, const Allocation& ranks, std::size_t n) {
+  const std::size_t count = n - result.distinct;
+  result.duplicates = run.memory.allocate(count * word);
+  result.representatives = run.memory.allocate(count * word);
+  Allocation spare = run.memory.allocate(count * word), spare_values = run.memory.allocate(count * word);
+  const Cut c = run.launcher.cut(n);
+  run.launcher.run(KernelId::cadt_duplicate_pairs, c.items, order, ranks, result.labels, result.duplicates,
+                   result.representatives, static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(result.distinct),
+                   c.grain);
+  run.launcher.sort(result.duplicates, result.representatives, spare, spare_values, count,
+                    static_cast<unsigned>(std::bit_width(n - 1)), false);
+}
+
+}  // namespace
+
 std::uint32_t flag_crowded(Run& run, const Allocation& keys, const Allocation& flags, std::size_t n) {
   const Cut c = run.launcher.cut(n);
   const Allocation totals = run.launcher.zeros(1);
@@ -155,10 +169,8 @@ std::uint32_t flag_crowded(Run& run, const Allocation& keys, const Allocation& f
   return run.launcher.read_word(totals, 0);
 }
 
-/// Sorts the members of crowded cells by more bits, a round at a time (common/device/refine.h). False if there are
-/// none; else `keys` are no longer those of the grid. \pre `crowd` of them are flagged in `spare`
-bool refine(Run& run, const Allocation& input, Allocation& keys, const Allocation& order, Allocation& spare,
-            std::size_t n, std::uint32_t crowd) {
+bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const Allocation& order, Allocation& spare,
+                  std::size_t n, std::uint32_t crowd) {
   Launcher& launch = run.launcher;
   const auto count = static_cast<std::uint32_t>(n);
   const Cut c = launch.cut(n);
@@ -202,26 +214,41 @@ bool refine(Run& run, const Allocation& input, Allocation& keys, const Allocatio
   return true;
 }
 
-/// The points that equal an earlier one, ascending, and those that they equal.
-void find_duplicates(Run& run, SpatialOrder& result, const Allocation& order, const Allocation& ranks, std::size_t n) {
-  const std::size_t count = n - result.distinct;
-  result.duplicates = run.memory.allocate(count * word);
-  result.representatives = run.memory.allocate(count * word);
-  Allocation spare = run.memory.allocate(count * word), spare_values = run.memory.allocate(count * word);
-  const Cut c = run.launcher.cut(n);
-  run.launcher.run(KernelId::cadt_duplicate_pairs, c.items, order, ranks, result.labels, result.duplicates,
-                   result.representatives, static_cast<std::uint32_t>(n), static_cast<std::uint32_t>(result.distinct),
-                   c.grain);
-  run.launcher.sort(result.duplicates, result.representatives, spare, spare_values, count,
-                    static_cast<unsigned>(std::bit_width(n - 1)), false);
-}
-
-}  // namespace
-
 void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid) {
   const Cut c = run.launcher.cut(n);
   run.launcher.run(KernelId::cadt_sort_keys, c.items, points, keys, static_cast<std::uint32_t>(n), c.grain,
                    grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y);
+}
+
+void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation keys, Allocation order, Allocation spare,
+                 std::size_t n, bool keep_keys, SetStarts* sets) {
+  Launcher& launch = run.launcher;
+  const auto count = static_cast<std::uint32_t>(n);
+  const Cut c = launch.cut(n);
+  launch.run(KernelId::cadt_sort_runs, c.items, keys, sorted, order, count, c.grain);
+  const Allocation total = launch.zeros(1);
+  launch.run(KernelId::cadt_unique_flags, c.items, sorted, keys, spare, count, c.grain, total);
+  const std::uint32_t distinct = count - launch.read_word(total, 0);
+  result.distinct = distinct;
+  if (keep_keys && distinct == count) result.keys = std::move(keys);
+  keys.release();
+  if (distinct == count) {
+    result.points = std::move(sorted);
+    result.labels = std::move(order);
+    return;
+  }
+  launch.scan(spare, n);
+  result.points = run.memory.allocate(distinct * sizeof(cadt_point));
+  result.labels = run.memory.allocate(distinct * word);
+  launch.run(KernelId::cadt_unique_pack, c.items, sorted, order, spare, result.points, result.labels, count, distinct,
+             c.grain);
+  find_duplicates(run, result, order, spare, n);
+  if (sets != nullptr) {
+    const Cut s = launch.cut(sets->count + 1);
+    sets->positions = run.memory.allocate((sets->count + 1) * word);
+    launch.run(KernelId::cadt_set_starts, s.items, spare, sets->points, static_cast<std::uint32_t>(sets->count), count,
+               distinct, s.grain, sets->positions);
+  }
 }
 
 SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_keys) {
@@ -232,8 +259,7 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
 
   const Bounds bounds = find_bounds(run, input, n);
   result.wide = bounds.high - bounds.low > narrow_span;
-  const bool timed = run.options.statistics == StatisticsDetail::timing;
-  launch.set_build(result.wide ? KernelBuild::wide : timed ? KernelBuild::timed : KernelBuild::narrow);
+  launch.set_build(result.wide ? KernelBuild::wide : narrow_build(run.options.statistics));
   run.end_phase("bounds");
   run.check("sort", 0.01);
 
@@ -255,7 +281,7 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   run.end_phase("sort");
   run.check("sort", 0.05);
 
-  const bool sorted_by_keys = !refine(run, input, keys, order, spare, n, crowd);
+  const bool sorted_by_keys = !refine_crowd(run, input, keys, order, spare, n, crowd);
   run.end_phase("refine");
 
   // All coordinates become multiples of 2^-240 below 1, in two steps since one factor may be out of range.
@@ -268,25 +294,9 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   }
   Allocation sorted = run.memory.allocate(n * sizeof(cadt_point));
   launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
-  launch.run(KernelId::cadt_sort_runs, c.items, keys, sorted, order, count, c.grain);
-  Allocation total = launch.zeros(1);
-  launch.run(KernelId::cadt_unique_flags, c.items, sorted, spare, count, c.grain, total);
-  const std::uint32_t distinct = count - launch.read_word(total, 0);
-  result.distinct = distinct;
   input.release();
-  if (keep_keys && sorted_by_keys && distinct == count) result.keys = std::move(keys);
-  keys.release();
-  if (distinct == count) {
-    result.points = std::move(sorted);
-    result.labels = std::move(order);
-  } else {
-    launch.scan(spare, n);
-    result.points = run.memory.allocate(distinct * sizeof(cadt_point));
-    result.labels = run.memory.allocate(distinct * word);
-    launch.run(KernelId::cadt_unique_pack, c.items, sorted, order, spare, result.points, result.labels, count, distinct,
-               c.grain);
-    find_duplicates(run, result, order, spare, n);
-  }
+  close_order(run, result, std::move(sorted), std::move(keys), std::move(order), std::move(spare), n,
+              keep_keys && sorted_by_keys);
   run.end_phase("gather");
   return result;
 }

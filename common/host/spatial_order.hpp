@@ -32,6 +32,13 @@ struct SpatialOrder {
   bool wide = false;  ///< exponents span too much for the narrow kernels
 };
 
+/// Where the sets of a call with several begin (common/device/sets.h), and the end of the last one.
+struct SetStarts {
+  std::size_t count = 0;
+  Allocation points;     ///< among the input points
+  Allocation positions;  ///< among distinct ones; null: the same
+};
+
 /// Sort keys of n points of the device.
 void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid);
 
@@ -39,5 +46,24 @@ void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::
 /// the sort keys, unless cells were crowded or points equal.
 /// \throws InputError for the first NaN or infinity
 [[nodiscard]] SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_keys);
+
+// ---- the steps after the keys, for other keys as well (set_order.hpp)
+
+/// Binades that the narrow kernels take (common/device/fixed.h).
+constexpr int narrow_span = 240;
+/// The build of the narrow kernels that these options ask for.
+[[nodiscard]] constexpr KernelBuild narrow_build(StatisticsDetail detail) noexcept {
+  return detail == StatisticsDetail::timing ? KernelBuild::timed : KernelBuild::narrow;
+}
+
+/// Flags the members of crowded cells; how many there are.
+[[nodiscard]] std::uint32_t flag_crowded(Run& run, const Allocation& keys, const Allocation& flags, std::size_t n);
+/// Sorts the members of crowded cells by more bits, a round at a time (common/device/refine.h). False if there are
+/// none; else `keys` are no longer those of the grid. \pre `crowd` of them are flagged in `spare`
+[[nodiscard]] bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const Allocation& order,
+                                Allocation& spare, std::size_t n, std::uint32_t crowd);
+/// Sorts runs of equal keys, and closes up distinct points; where sets begin among them, if there are sets.
+void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation keys, Allocation order, Allocation spare,
+                 std::size_t n, bool keep_keys, SetStarts* sets = nullptr);
 
 }  // namespace cadt

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/host/device_constants.hpp"
+#include "common/host/tiles.hpp"
 #include "common/host/wrap_mesh.hpp"
 
 namespace cadt {
@@ -20,7 +21,6 @@ constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr unsigned most_bits = 24;  // of an axis: cells of a window are counted in 32 bits
 constexpr std::uint32_t sampled_tiles = 512, least_step = 12;
 constexpr std::size_t most_wrapped_alone = 20000;  // more points have the star stage
-constexpr std::size_t least_points_of_tile = 48;   // on average: a tile keeps 128 lanes of a card
 
 /// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
@@ -34,7 +34,8 @@ DeviceMesh build_without_stars(Run& run, const SpatialOrder& order, bool certify
   std::optional<DeviceMesh> wrapped;
   if (order.distinct <= most_wrapped(run.device)) wrapped = wrap_mesh(run, order.points, order.distinct);
   if (!wrapped) return build_mesh(run, order);
-  return certify ? certify_mesh(run, order, std::move(wrapped->records)) : std::move(*wrapped);
+  return certify ? certify_mesh(run, order, std::move(wrapped->records), 3 * std::uint64_t{order.distinct} - 3)
+                 : std::move(*wrapped);
 }
 
 class StarStage {
@@ -68,54 +69,34 @@ class StarStage {
     write_records();
     release_stars();
     join();
-    return certify_mesh(run_, order_, std::move(records_));
+    return certify_mesh(run_, order_, std::move(records_), 3 * std::uint64_t{n_} - 3);
   }
 
  private:
   /// False if there are no tiles.
   bool make_stars() {
     const KeyGrid& grid = order_.grid;
-    const Cut c = launch_.cut(n_);
-    Allocation ranks = run_.memory.allocate((n_ + 1) * word);
     if (!keys_) {
       keys_ = run_.memory.allocate(n_ * word);
       make_keys(run_, order_.points, keys_, n_, grid);
     }
-    const std::uint32_t levels = grid.levels();
-    Allocation descents = launch_.zeros(1);
-    launch_.run(KernelId::cadt_tile_flags, c.items, keys_, ranks, count_, levels, c.grain, descents);
-    if (launch_.read_word(descents, 0) != 0) return false;
-    launch_.scan(ranks, n_ + 1);
-    const std::uint32_t count = launch_.read_word(ranks, n_);
-    Allocation tiles = run_.memory.allocate((count + std::size_t{1}) * sizeof(cadt_tile));
-    launch_.run(KernelId::cadt_tile_pack, c.items, keys_, ranks, tiles, count_, levels, c.grain);
-    ranks.release();
-    run_.statistics.tiles = count;
+    const std::optional<TileList> tiles = make_tiles(run_, keys_, n_, grid.levels());
+    if (!tiles) return false;
     run_.end_phase("tiles");
     run_.check("stars", 0.1);
-    if (run_.options.strategy == Strategy::automatic && n_ / count < least_points_of_tile) return false;
-    sizes_ = run_.memory.allocate_zeros(n_ * word);
-    links_ = run_.memory.allocate(n_ * CADT_STAR_DEGREE * word);
-    const auto run_tiles = [&](std::uint32_t tile_count, std::uint32_t step, bool many) {
-      Allocation found = launch_.zeros(6);
-      const Cut teams = launch_.cut_teams(tile_count, CADT_STAR_LANES);
-      launch_.run(KernelId::cadt_stars, teams.items, order_.points, keys_, count_, grid.half_min_x, grid.half_min_y,
-                  grid.scale, grid.bits_x, grid.bits_y, grid.most_x, grid.most_y, grid.clipped ? 1u : 0u, tiles,
-                  tile_count, step, many ? 1u : 0u, teams.grain, links_, sizes_, found);
-      std::array<std::uint32_t, 6> words{};
-      run_.device.read(*found, 0, words.data(), sizeof words);
-      return words;
+    const bool automatic = run_.options.strategy == Strategy::automatic;
+    if (automatic && n_ / tiles->count < least_points_of_tile) return false;
+    stars_ = make_star_list(run_, n_);
+    const auto run_tiles = [&](std::uint32_t count, std::uint32_t step, bool many) {
+      return run_stars(run_, order_, keys_, {}, {}, *tiles, count, step, many, stars_);
     };
     bool many = false;  // points with many candidates: of 12-gons two thirds, of uniform points 3 %
-    if (run_.options.strategy == Strategy::automatic && count >= sampled_tiles * least_step) {
-      const std::array<std::uint32_t, 6> found = run_tiles(sampled_tiles, count / sampled_tiles, false);
-      if (too_many(found[1], found[0])) return false;
-      many = 10 * std::size_t{found[5]} > found[0];
+    if (automatic && tiles->count >= sampled_tiles * least_step) {
+      const StarCounts found = run_tiles(sampled_tiles, tiles->count / sampled_tiles, false);
+      if (too_many(found.unproven, found.points)) return false;
+      many = 10 * std::size_t{found.again} > found.points;
     }
-    const std::array<std::uint32_t, 6> found = run_tiles(count, 1, many);
-    run_.statistics.exact_orientations += found[2];
-    run_.statistics.exact_incircles += found[3];
-    run_.statistics.ties += found[4];
+    run_tiles(tiles->count, 1, many).add_to(run_.statistics);
     run_.end_phase("stars");
     run_.check("stars", 0.5);
     return true;
@@ -126,7 +107,8 @@ class StarStage {
     ranks_ = run_.memory.allocate((n_ + 1) * word);
     totals_ = launch_.zeros(2);
     const Cut c = launch_.cut(n_);
-    launch_.run(KernelId::cadt_star_counts, c.items, links_, sizes_, count_, c.grain, bases_, ranks_, totals_);
+    launch_.run(KernelId::cadt_star_counts, c.items, stars_.links, stars_.sizes, count_, c.grain, bases_, ranks_,
+                totals_);
     launch_.scan(bases_, n_ + 1);
     launch_.scan(ranks_, n_ + 1);
     proven_triangles_ = launch_.read_word(bases_, n_);
@@ -141,14 +123,13 @@ class StarStage {
     open_ = run_.memory.allocate(std::size_t{open_count_} * word);
     const std::uint32_t groups = (count_ - 1) / CADT_RECORD_LANES + 1;
     const Cut c = launch_.cut_teams(groups, CADT_RECORD_LANES);
-    launch_.run(KernelId::cadt_star_records, c.items, links_, sizes_, bases_, count_, groups, c.grain, records_, open_,
-                totals_);
+    launch_.run(KernelId::cadt_star_records, c.items, stars_.links, stars_.sizes, bases_, count_, groups, c.grain,
+                records_, open_, totals_);
     run_.end_phase("records");
   }
 
   void release_stars() {
-    links_.release();
-    sizes_.release();
+    stars_ = {};
     bases_.release();
   }
 
@@ -161,7 +142,9 @@ class StarStage {
     launch_.run(KernelId::cadt_unproven_pack, all.items, ranks_, order_.points, rest.points, positions, count_,
                 all.grain);
     ranks_.release();
+    const std::uint64_t certified = run_.statistics.certified_edges;
     const DeviceMesh smaller = build_without_stars(run_, rest, false);
+    run_.statistics.certified_edges = certified;  // those of the whole mesh count
     if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
 
     const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
@@ -195,7 +178,8 @@ class StarStage {
   const SpatialOrder& order_;
   std::size_t n_;
   std::uint32_t count_;
-  Allocation keys_, links_, sizes_, bases_, ranks_, totals_, records_, open_;
+  StarList stars_;
+  Allocation keys_, bases_, ranks_, totals_, records_, open_;
   std::uint32_t proven_triangles_ = 0, unproven_ = 0, open_count_ = 0;
 };
 

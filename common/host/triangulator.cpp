@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/host/build_mesh.hpp"
+#include "common/host/call.hpp"
 #include "common/host/collect.hpp"
 #include "common/host/device_triangulation.hpp"
 #include "common/host/input_points.hpp"
@@ -22,57 +23,6 @@ namespace cadt {
 namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-
-constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial results
-
-/// Device bytes of the phase that needs most, but for crowded cells: writing the result (124 a point), or sorting the
-/// triangles (96) where the result goes straight to memory of the host's. docs/performance.md has the plan.
-std::size_t least_bytes(std::size_t n, bool result_elsewhere) { return fixed + n * (result_elsewhere ? 97 : 124); }
-
-/// The same with the star stage.
-std::size_t star_bytes(std::size_t n) { return fixed + n * 150; }
-
-/// Whether the star stage is what Strategy::automatic chooses, if there is the memory. It needs many cheap lanes: CPUs
-/// are faster without it.
-bool prefers_stars(const Options& options, const Device& device) {
-  if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
-  return device.info().gpu && options.stabilize == Stabilize::off && !options.watch &&
-         options.statistics != StatisticsDetail::timing;
-}
-
-/// Words a point of the buffers that a call without new ones needs: records, points sorted and not, results, their
-/// numbers, and lists of a word or less.
-constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
-
-/// With the star stage besides: neighbours of the stars, lists, and what the rest of the points needs.
-constexpr std::size_t kept_star_words[] = {12, 1, 1, 1, 1, 1, 1};
-
-/// The same, with buffers that wait for a later phase or call.
-std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
-  std::size_t words = 0;
-  for (const std::size_t one : kept_words) words += one;
-  for (const std::size_t one : kept_star_words) words += stars ? one : 0;
-  return memory.keeps() ? 4 * fixed + n * words * word : stars ? star_bytes(n) : least_bytes(n, false);
-}
-
-void require_size(std::size_t points) {
-  if (points <= max_points()) return;
-  throw LimitError("at most " + std::to_string(max_points()) + " points can be triangulated in one call, not " +
-                       std::to_string(points) + ": split the input",
-                   points, max_points());
-}
-
-void require_rules(const Options& options) {
-  constexpr unsigned most_flips = 1000;  // counters have ten bits
-  if (options.flip_threshold > most_flips)
-    throw OptionError("flip_threshold", std::to_string(options.flip_threshold) + " is more than " +
-                                            std::to_string(most_flips) + ", the most flips that are told apart");
-  if (options.strategy == Strategy::stars && (options.stabilize != Stabilize::off || options.watch))
-    throw OptionError("strategy", "stars goes with neither stabilize nor watch: they are about insertion");
-  if (!(options.quality_epsilon >= 0)) throw OptionError("quality_epsilon", "must be a number and not negative");
-}
-
-bool is_host(const Device& device) { return device.info().backend == Backend::host; }
 
 /// Where the arrays of the result are to be written. Called when their size is known.
 class Outputs {
@@ -139,54 +89,13 @@ void build(Run& run, const Points& points, std::size_t n, bool stars, Outputs& o
   emit_triangles(run, mesh, order.labels, numbering, data.triangles, data.neighbors);
 }
 
-void begin_account(Triangulator::State& state, std::size_t n) {
-  if (state.memory.dropped()) state.known_points = state.known_star_points = state.reserved_points = 0;
-  state.memory.begin(state.options.max_memory, n <= state.reserved_points);
-}
-
-/// What the statistics say before and after each call.
-void open_account(Triangulator::State& state, std::size_t n, DeviceTriangulation::Data& data) {
-  require_rules(state.options);
-  const DeviceInfo& info = state.device->info();
-  data.points = n;
-  data.statistics.points = n;
-  data.statistics.certified = true;  // no edge is illegal until one is found
-  data.statistics.backend = to_string(info.backend);
-  data.statistics.device = info.name;
-  data.statistics.threads = state.device->threads();
-  begin_account(state, n);
-}
-
-/// \throws OutOfMemory before any work
-void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere) {
-  const bool stars = state.options.strategy == Strategy::stars;  // Strategy::automatic does without, if it must
-  if (n <= (stars ? state.known_star_points : state.known_points) && state.options.max_memory == 0) return;
-  state.memory.require(stars ? star_bytes(n) : least_bytes(n, result_elsewhere));
-}
-
-/// Whether the star stage is to run.
-bool choose_stars(Triangulator::State& state, std::size_t n) {
-  if (!prefers_stars(state.options, *state.device)) return false;
-  if (n <= state.known_star_points && state.options.max_memory == 0) return true;
-  return state.options.strategy == Strategy::stars || state.memory.allows(star_bytes(n));
-}
-
-void close_account(Triangulator::State& state, Run& run, DeviceTriangulation::Data& data) {
-  run.finish();
-  data.statistics.launches = run.launcher.launches();
-  data.statistics.kernels = run.launcher.kernel_times();
-  data.statistics.bytes_device_peak = state.memory.peak();
-  state.known_points = std::max(state.known_points, data.points);
-  if (data.statistics.proven_stars != 0) state.known_star_points = std::max(state.known_star_points, data.points);
-  run.check("collect", 1);
-}
-
 Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
   require_size(points.size());
   auto result = std::make_unique<Triangulation::Data>();
   DeviceTriangulation::Data data;
   data.state = state;
-  open_account(*state, points.size(), data);
+  data.points = points.size();
+  open_account(*state, points.size(), data.statistics);
   if (points.size() != 0) {
     require_memory(*state, points.size(), is_host(*state->device));
     Run run(*state->device, state->memory, state->options, data.statistics);
@@ -196,13 +105,32 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
     if (data.dimension == 2) read_mesh(run, data, outputs.direct(), *result);
     read_duplicates(*state->device, data, *result);
     run.end_phase("copy");
-    close_account(*state, run, data);
+    remember_size(*state, data.statistics);
+    close_account(*state, run, false);
   }
   result->points = data.points;
   result->triangle_count = data.triangle_count;
   result->dimension = data.dimension;
   result->statistics = std::move(data.statistics);
   return Triangulation(std::move(result));
+}
+
+DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points) {
+  require_size(points.size);
+  auto data = std::make_unique<DeviceTriangulation::Data>();
+  data->state = state;
+  data->points = points.size;
+  open_account(*state, points.size, data->statistics);
+  if (points.size != 0) {
+    require_memory(*state, points.size, false);
+    Run run(*state->device, state->memory, state->options, data->statistics);
+    OnDevice outputs;
+    build(run, points, points.size, choose_stars(*state, points.size), outputs, *data);
+    run.end_phase("collect");
+    remember_size(*state, data->statistics);
+    close_account(*state, run, true);
+  }
+  return DeviceTriangulation(std::move(data));
 }
 
 }  // namespace
@@ -222,20 +150,14 @@ std::optional<double> Triangulator::occupancy(unsigned work_group_size) const {
 
 Triangulation Triangulator::triangulate(PointsView points) { return to_host(state_, points); }
 
-DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) {
-  require_size(points.size);
-  auto data = std::make_unique<DeviceTriangulation::Data>();
-  data->state = state_;
-  open_account(*state_, points.size, *data);
-  if (points.size != 0) {
-    require_memory(*state_, points.size, false);
-    Run run(*state_->device, state_->memory, state_->options, data->statistics);
-    OnDevice outputs;
-    build(run, points, points.size, choose_stars(*state_, points.size), outputs, *data);
-    run.end_phase("collect");
-    close_account(*state_, run, *data);
-  }
-  return DeviceTriangulation(std::move(data));
+DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) { return to_device(state_, points); }
+
+std::future<Triangulation> Triangulator::triangulate_async(PointsView points) {
+  return std::async(std::launch::async, [state = state_, points] { return to_host(state, points); });
+}
+
+std::future<DeviceTriangulation> Triangulator::triangulate_async(const DevicePoints& points) {
+  return std::async(std::launch::async, [state = state_, points] { return to_device(state, points); });
 }
 
 VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriangulation& mesh,
@@ -281,11 +203,7 @@ void Triangulator::reserve(std::size_t points) {
   } else if (const bool stars = choose_stars(*state_, n); limit == 0 || most_bytes(memory, n, stars) <= limit) {
     memory.drop_kept();  // too small
     begin_account(*state_, n);
-    // The buffers of a call that are alive together; given back at once, so they are kept for it.
-    std::vector<Allocation> together;
-    for (const std::size_t words : kept_words) together.push_back(memory.allocate(n * words * word));
-    if (stars)
-      for (const std::size_t words : kept_star_words) together.push_back(memory.allocate(n * words * word));
+    keep_buffers(memory, n, stars);
   } else {
     return;  // enough for a call, but not for keeping all of its buffers
   }
@@ -296,7 +214,7 @@ void Triangulator::reserve(std::size_t points) {
 void Triangulator::release_memory() {
   state_->memory.drop_kept();
   state_->device->trim();
-  state_->known_points = state_->known_star_points = state_->reserved_points = 0;
+  state_->known_points = state_->known_star_points = state_->known_batch_points = state_->reserved_points = 0;
 }
 
 Triangulation triangulate(PointsView points, const Options& options) {

@@ -16,9 +16,6 @@ namespace {
 using namespace device_constants;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr std::uint32_t lanes_of_vertex = 32;
-constexpr std::size_t boxes_of_vertex =
-    96;  // looked at on average at most; what stars leave of 1M uniform points needs 14
 
 /// The triangles of three vertices without stars, each as its three half-edges. `edge_count` half-edges between two of
 /// them are known from the other side. Empty if they are not `wanted` triangles with nothing but known edges.
@@ -62,14 +59,14 @@ std::optional<DeviceMesh> wrap_mesh(Run& run, const Allocation& points, std::siz
   const Allocation crates = run.memory.allocate(crate_count * sizeof(cadt_box));
   const Allocation links = run.memory.allocate(link_words * word), begins = run.memory.allocate(n * word);
   const Allocation sizes = run.memory.allocate_zeros(n * word), found = launch.zeros(7);
-  const Cut of_crates = launch.cut_teams(crate_count, lanes_of_vertex), teams = launch.cut_teams(n, lanes_of_vertex),
+  const Cut of_crates = launch.cut_teams(crate_count, wrap_lanes), teams = launch.cut_teams(n, wrap_lanes),
             all = launch.cut(n);
-  launch.run_in_groups(KernelId::cadt_wrap_boxes, of_crates.items, lanes_of_vertex, points, count, box_count,
+  const Allocation all_points;  // no sets, no list
+  launch.run_in_groups(KernelId::cadt_wrap_boxes, of_crates.items, wrap_lanes, points, count, all_points, 0U,
                        crate_count, of_crates.grain, boxes, crates);
-  const auto effort = static_cast<std::uint32_t>(boxes_of_vertex * n + 4096);
-  launch.run_in_groups(KernelId::cadt_wrap_stars, teams.items, lanes_of_vertex, points, boxes, crates, count, box_count,
-                       crate_count, effort, teams.grain, links, static_cast<std::uint32_t>(link_words), begins, sizes,
-                       found);
+  launch.run_in_groups(KernelId::cadt_wrap_stars, teams.items, wrap_lanes, points, boxes, crates, count, all_points,
+                       count, all_points, 0U, all_points, all_points, wrap_effort, teams.grain, 0U, links,
+                       static_cast<std::uint32_t>(link_words), begins, sizes, found);
   // Vertices without a star have size 0, so this may run before it is known whether there are too many.
   const Allocation bases = run.memory.allocate((n + 1) * word);
   const Allocation edges = run.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));

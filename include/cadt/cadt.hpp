@@ -2,6 +2,7 @@
 // Everything that the library offers.
 #pragma once
 
+#include <cadt/batch.hpp>
 #include <cadt/devices.hpp>
 #include <cadt/errors.hpp>
 #include <cadt/points.hpp>

@@ -65,6 +65,8 @@ struct Statistics {
   std::uint64_t tiles = 0;               ///< squares that the star stage cut the plane into; 0: it was not tried
   std::uint64_t proven_stars = 0;        ///< vertices whose neighbours it found and proved, without locks
   std::uint64_t wrapped_stars = 0;       ///< vertices whose neighbours were found by gift wrapping, without locks
+  std::uint64_t sets = 0;                ///< sets of points, in a call with several (Triangulator::triangulate_batch)
+  std::uint64_t sets_together = 0;       ///< of these, sets that were triangulated together, not one by one
   std::uint64_t refined_points = 0;      ///< points whose sort key had to be refined
   std::uint64_t bytes_device_peak = 0;   ///< most bytes held on the device at a time
   bool wide_arithmetic = false;          ///< the exponents span so much that long integers were needed throughout

@@ -3,6 +3,7 @@
 // nothing is copied to the host unless it is asked for.
 #pragma once
 
+#include <cadt/batch.hpp>
 #include <cadt/devices.hpp>
 #include <cadt/points.hpp>
 #include <cadt/triangulation.hpp>
@@ -10,8 +11,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <optional>
+#include <span>
 
 namespace cadt {
 
@@ -25,7 +28,7 @@ enum class Scalar { float64, float32 };
 ///     host     a pointer
 ///
 /// The points are read in the order of the triangulator's stream or queue and never written. They must stay as they are
-/// until the call has returned.
+/// until the call has returned, or its future is ready.
 struct DevicePoints {
   const void* x = nullptr;  ///< x0 y0 x1 y1 ..., or only x if `y` is given
   const void* y = nullptr;  ///< y0 y1 ..., or null for interleaved coordinates
@@ -104,9 +107,30 @@ class Triangulator {
 
   /// Points on the host to a mesh on the host. \throws as cadt::triangulate
   [[nodiscard]] Triangulation triangulate(PointsView points);
-  /// Points on the device to a mesh on the device, which is complete when the call returns.
-  /// \throws as cadt::triangulate. After an error the triangulator can be used again.
+  /// Points on the device to a mesh on the device, which is complete when the call returns; with a queue of the
+  /// caller's (Options::queue), StatisticsDetail::none and no Options::kernel_times it is complete in the order of that
+  /// queue: the last kernels may still be waiting there. \throws as cadt::triangulate. After an error the triangulator
+  /// can be used again.
   [[nodiscard]] DeviceTriangulation triangulate(const DevicePoints& points);
+
+  /// The same on a thread of its own, so that the caller's goes on: the driver has to wait for the device some ten
+  /// times. Until the future is ready nothing else may be asked of this triangulator, and points, offsets and options
+  /// must stay as they are. `Options::progress` is called on that thread. What the call throws the future throws; one
+  /// that is dropped waits.
+  [[nodiscard]] std::future<Triangulation> triangulate_async(PointsView points);
+  [[nodiscard]] std::future<DeviceTriangulation> triangulate_async(const DevicePoints& points);
+
+  /// Many sets of points, as cadt::triangulate_batch. Sets with up to 32,768 points (CPUs: 2,048) are triangulated
+  /// together, some 16 million points at a time: without a launch for each of them, and without locks. The others,
+  /// those with a vertex of more than 39 neighbours, and all where `Options::strategy` or `stabilize` ask for
+  /// insertion, come one after another within the same call. \throws OptionError for `Options::watch`
+  [[nodiscard]] TriangulationBatch triangulate_batch(PointsView points, std::span<const std::size_t> offsets);
+  [[nodiscard]] DeviceTriangulationBatch triangulate_batch(const DevicePoints& points,
+                                                           std::span<const std::size_t> offsets);
+  [[nodiscard]] std::future<TriangulationBatch> triangulate_batch_async(PointsView points,
+                                                                        std::span<const std::size_t> offsets);
+  [[nodiscard]] std::future<DeviceTriangulationBatch> triangulate_batch_async(const DevicePoints& points,
+                                                                              std::span<const std::size_t> offsets);
 
   /// The independent check of a mesh on the device (verify.hpp: verify_on_device) without a copy to the host, but for
   /// the boundary and what the device cannot decide. A mesh without triangles is checked on the host.

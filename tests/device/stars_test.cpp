@@ -313,8 +313,8 @@ void check_stars(double part, bool many, std::map<std::string, double>& shares) 
     const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
     std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n), found(6);
     cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
-               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, s.tiles.data(), count, 1, many ? 1 : 0, count,
-               stars.data(), sizes.data(), found.data());
+               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1,
+               many ? 1 : 0, count, stars.data(), sizes.data(), found.data());
     const auto links = links_of(s);
     std::size_t proven = 0;
     for (std::uint32_t v = 0; v < n; ++v) {

@@ -21,7 +21,7 @@ namespace {
 using namespace cadt;
 
 struct Arguments {
-  std::size_t points = 1'000'000;
+  std::size_t points = 1'000'000, sets = 0;
   std::string backend = "cuda", device, kind = "uniform", file, verify = "none";
   int runs = 10, warm_up = 3;
   unsigned block = 0;
@@ -39,7 +39,8 @@ struct Arguments {
       "B]\n"
       "                      [--order fast|canonical] [--verify none|host|device] [--phases] [--hash]\n"
       "                      [--strategy auto|locks|stars] [--stabilize off|defer|paper]\n"
-      "                      [--statistics none|counters|timing]\n"
+      "                      [--statistics none|counters|timing] [--sets S]\n"
+      "--sets: the points are those of S sets of the same size, in one call\n"
       "--file: points as raw 64-bit numbers x0 y0 x1 y1 ... (cadt generate NAME -t f64)\n"
       "prints the median time (and the least and the most) from points on the device to a mesh on the device\n",
       stderr);
@@ -64,6 +65,8 @@ Arguments parse(int count, char** values) {
     };
     if (words[i] == "--points")
       a.points = std::stoul(value());
+    else if (words[i] == "--sets")
+      a.sets = std::stoul(value());
     else if (words[i] == "--backend")
       a.backend = value();
     else if (words[i] == "--device")
@@ -164,6 +167,47 @@ double now() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Sets of the same size in one call. The meshes are checked on the host.
+int run_sets(const Arguments& a, Triangulator& triangulator, test::DeviceMemory* memory, const void* points,
+             const std::vector<double>& xy) {
+  std::vector<std::size_t> offsets(a.sets + 1);
+  const std::size_t n = xy.size() / 2;
+  for (std::size_t s = 0; s <= a.sets; ++s) offsets[s] = n / a.sets * s + n % a.sets * s / a.sets;
+  DeviceTriangulationBatch batch;
+  std::vector<double> times;
+  for (int r = 0; r < a.warm_up + a.runs; ++r) {
+    batch = DeviceTriangulationBatch();
+    const double begin = now();
+    batch = triangulator.triangulate_batch(DevicePoints{.x = points, .size = n}, offsets);
+    if (memory != nullptr) memory->wait();
+    if (r >= a.warm_up) times.push_back(now() - begin);
+  }
+  std::sort(times.begin(), times.end());
+  const Statistics& s = batch.statistics();
+  std::printf(
+      "%s %zu in %zu sets %s '%s': %.3f ms (%.3f to %.3f), %zu triangles, %.1f bytes a point, %llu together, "
+      "%llu proven, %llu wrapped",
+      a.kind.c_str(), n, a.sets, a.backend.c_str(), s.device.c_str(), times[times.size() / 2], times.front(),
+      times.back(), batch.triangle_offsets().back(), static_cast<double>(s.bytes_device_peak) / static_cast<double>(n),
+      static_cast<unsigned long long>(s.sets_together), static_cast<unsigned long long>(s.proven_stars),
+      static_cast<unsigned long long>(s.wrapped_stars));
+  if (a.phases) {
+    std::printf("\n   ");
+    for (const auto& [name, ms] : s.milliseconds) std::printf(" %s %.2f", name.c_str(), ms);
+  }
+  std::size_t wrong = 0, checked = 0;
+  if (a.verify == "host" || a.hash) {
+    const TriangulationBatch copy = batch.download();
+    for (std::size_t set = 0; set < a.sets; ++set, ++checked) {
+      const auto part = std::span(xy).subspan(2 * offsets[set], 2 * (offsets[set + 1] - offsets[set]));
+      if (!verify(part, copy.triangulation(set)).ok) ++wrong;
+    }
+    std::printf(", %zu checked, %zu wrong", checked, wrong);
+  }
+  std::printf("\n");
+  return wrong == 0 ? 0 : 1;
+}
+
 int run(const Arguments& a) {
   const std::vector<double> xy = a.file.empty() ? make_points(a.kind, a.points) : read_points(a.file);
   const std::size_t n = xy.size() / 2;
@@ -187,6 +231,7 @@ int run(const Arguments& a) {
     options.queue = memory->queue();
   }
   Triangulator triangulator(options);
+  if (a.sets != 0) return run_sets(a, triangulator, memory.get(), points, xy);
   DeviceTriangulation mesh;
   std::vector<double> times;
   std::vector<std::vector<double>> phases;  // some names come twice

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Sets of a call with several (sets.h) on CPUs: each by one work-item, which inserts its points level by level as
+ * cadt_insert does. Nobody else touches the mesh of the set, so inner triangles need no claims (range.h), and claims of
+ * those at the ghost succeed.
+ */
+#ifndef CADT_DEVICE_SET_INSERT_H
+#define CADT_DEVICE_SET_INSERT_H
+
+#include "common/device/range.h"
+#include "common/device/sets.h"
+#include "common/device/start.h"
+
+#if CADT_CONTIGUOUS
+/* Three points of `n` that are not on a line, as find_first_triangle of the driver chooses them; 0: there are none. */
+CADT_FN cadt_u32 cadt_choose_first(cadt_mesh* m, cadt_u32 n, cadt_u32 levels, cadt_tally* tally) {
+  m->first = cadt_representative(levels, 0u, n);
+  m->second = n / 2u == m->first ? 0u : n / 2u;
+  const cadt_point a = m->points[m->first], b = m->points[m->second];
+  for (m->third = 0u; m->third < n; ++m->third) {
+    const cadt_point c = m->points[m->third];
+    if (cadt_orientation(a, b, c, tally) == 0) continue;
+    m->center.x = a.x / 3.0 + b.x / 3.0 + c.x / 3.0;
+    m->center.y = a.y / 3.0 + b.y / 3.0 + c.y / 3.0;
+    return 1u;
+  }
+  return 0u;
+}
+
+/* The mesh of n points. 0 if a point could not be placed. \pre records are zero */
+CADT_FN cadt_u32 cadt_insert_set(cadt_mesh* m, cadt_u32 n, const cadt_deferred* deferred, cadt_tally* tally) {
+  const cadt_u32 levels = 64u - cadt_clz64(n - 1u);
+  if (!cadt_choose_first(m, n, levels, tally)) return 0u;
+  cadt_start(m, tally);
+  cadt_mesh own = *m;
+  CADT_OWN_RANGE(own, 0u, n);
+  cadt_range range;
+  range.begin = 0u;
+  range.size = n;
+  cadt_worklist work;
+  for (cadt_u32 level = levels; level-- > 0u;) {
+    const cadt_u32 blocks = (((n - 1u) >> level) + 1u) / 2u;
+    for (cadt_u32 block = 0u; block < blocks; ++block) {
+      const cadt_u32 standing = 2u * block + cadt_right_half(level + 1u, block);
+      const cadt_u32 i = cadt_representative(level, standing ^ 1u, n);
+      const cadt_u32 hint = cadt_load_relaxed(m->hints + cadt_representative(level, standing, n));
+      if (i == m->first || i == m->second || i == m->third) continue;
+      if (cadt_insert_own(&own, &range, i, hint, tally)) continue;
+      cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
+      work.size = cadt_insert_vertex(m, i, cadt_load_relaxed(m->hints + i), work.link, tally);
+      if (!work.size) return 0u;
+      cadt_legalize(m, &work, deferred, tally);
+    }
+  }
+  return 1u;
+}
+#endif
+
+/* The meshes of all sets that are together, each at its place. What a set cannot do, states[set] counts: then its
+ * records are of no use. Edges that are left over are met by the closing pass. */
+CADT_KERNEL(cadt_set_insert, CADT_GLOBAL cadt_record* records, CADT_GLOBAL const cadt_point* points,
+            CADT_GLOBAL cadt_u32* hints, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
+            CADT_GLOBAL cadt_u32* states, cadt_u32 grain, CADT_GLOBAL cadt_u32* left_counts,
+            CADT_GLOBAL cadt_u32* counters) {
+#if CADT_CONTIGUOUS
+  CADT_GROUP_TALLY(tally, counters);
+  const cadt_deferred none = cadt_lists(left_counts, left_counts, 0u);
+  CADT_FOR(s, set_count, grain) {
+    if (states[s] != CADT_SET_TOGETHER) continue;
+    const cadt_u32 begin = starts[s], n = starts[s + 1u] - begin;
+    cadt_mesh mesh;
+    mesh.records = records + 2u * begin;
+    mesh.points = points + begin;
+    mesh.hints = hints + begin;
+    mesh.stabilize = CADT_STABILIZE_OFF;
+    mesh.threshold = 0u;
+    mesh.epsilon = 0.0;
+    CADT_OWN_RANGE(mesh, 0u, 0u);
+    if (!cadt_insert_set(&mesh, n, &none, &tally)) {
+      states[s] += CADT_SET_FAILURE;
+      for (cadt_u32 t = 0u; t < 2u * n; ++t) mesh.records[t].word[CADT_WORD_LOCK] = 0u;
+      continue;
+    }
+    for (cadt_u32 t = 0u; t < 2u * n; ++t)
+      if (mesh.records[t].word[CADT_WORD_LOCK] != 0u) cadt_move_record(mesh.records[t].word, begin);
+  }
+  CADT_FLUSH_TALLY(&tally, counters);
+#endif
+}
+
+#endif

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Records from wrapped stars. A triangle belongs to the lowest of its vertices that has a star. A hub has none, so its
+ * triangles are those of its neighbours. An edge between two without stars (hubs, or the ghost) is listed with the
+ * vertex on either side of it; the driver adds the triangles of three such vertices, each as its three half-edges.
+ */
+#ifndef CADT_DEVICE_WRAP_MESH_H
+#define CADT_DEVICE_WRAP_MESH_H
+
+#include "common/device/mesh.h"
+#include "common/device/sets.h"
+
+typedef struct {
+  CADT_GLOBAL const cadt_u32* links;
+  CADT_GLOBAL const cadt_u32* begins;
+  CADT_GLOBAL const cadt_u32* sizes;
+  CADT_GLOBAL const cadt_u32* bases; /* number of the first triangle that belongs to a vertex */
+  CADT_GLOBAL const cadt_wrap_edge* edges;
+  cadt_u32 edge_count;
+  cadt_u32 first_extra; /* of the edges: from here on they are those of triangles without stars, whose numbers */
+  cadt_u32 extra_base;  /* begin here */
+  cadt_u32 hubs;        /* whether there are any */
+} cadt_wrap_set;
+
+/* Whether v comes before another vertex of its star: there it owns what they share. */
+CADT_FN cadt_u32 cadt_wrap_before(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 hubs, cadt_u32 v, cadt_u32 other) {
+  return other > v || (hubs && sizes[other] == 0u) ? 1u : 0u;
+}
+
+/* Whether the vertex has no star: a hub, or the ghost. */
+CADT_FN cadt_u32 cadt_wrap_starless(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 v) {
+  return v == CADT_GHOST || sizes[v] == 0u ? 1u : 0u;
+}
+
+/* Triangles that belong to v. */
+CADT_FN cadt_u32 cadt_wrap_owned(CADT_GLOBAL const cadt_u32* link, cadt_u32 size, CADT_GLOBAL const cadt_u32* sizes,
+                                 cadt_u32 hubs, cadt_u32 v) {
+  cadt_u32 count = 0u;
+  for (cadt_u32 k = 0u; k < size; ++k)
+    if (cadt_wrap_before(sizes, hubs, v, link[k]) &&
+        cadt_wrap_before(sizes, hubs, v, link[k + 1u < size ? k + 1u : 0u]))
+      ++count;
+  return count;
+}
+
+/* owned[v]: triangles that belong to v; a 0 behind the last. Half-edges between two vertices without stars are counted
+ * in found[6], and listed. */
+CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* found,
+            CADT_GLOBAL cadt_u32* owned, CADT_GLOBAL cadt_wrap_edge* edges) {
+  if (cadt_item == 0u) owned[n] = 0u;
+  const cadt_u32 hubs = found[1];
+  CADT_FOR(v, n, grain) {
+    CADT_GLOBAL const cadt_u32* link = links + begins[v];
+    const cadt_u32 size = sizes[v];
+    for (cadt_u32 k = 0u; hubs && k < size; ++k) {
+      const cadt_u32 a = link[k], b = link[k + 1u < size ? k + 1u : 0u];
+      if (cadt_wrap_starless(sizes, a) && cadt_wrap_starless(sizes, b)) {
+        const cadt_u32 at = cadt_add_relaxed(found + 6, 1u);
+        if (at < CADT_CAST(cadt_u32, CADT_WRAP_EDGES)) {
+          edges[at].from = a;
+          edges[at].to = b;
+          edges[at].left = v;
+        }
+      }
+    }
+    owned[v] = cadt_wrap_owned(link, size, sizes, hubs, v);
+  }
+}
+
+/* The same for sets together, which have no hubs; those that have failed lose their stars. Every set has two records a
+ * vertex: two of them belong to its last vertex and are not used, nor are any of a set without stars. */
+CADT_KERNEL(cadt_set_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
+            CADT_GLOBAL const cadt_u32* states, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* owned) {
+  if (cadt_item == 0u) owned[n] = 0u;
+  CADT_FOR(v, n, grain) {
+    const cadt_u32 set = cadt_set_of(starts, set_count, v);
+    if (states[set] == CADT_SET_TOGETHER) {
+      owned[v] = cadt_wrap_owned(links + begins[v], sizes[v], sizes, 0u, v) + (v + 1u == starts[set + 1u] ? 2u : 0u);
+    } else {
+      owned[v] = v == starts[set] ? 2u * (starts[set + 1u] - v) : 0u;
+      sizes[v] = 0u;
+    }
+  }
+}
+
+/* Place of vertex a in the star of v, and how many triangles before it belong to v. \pre it is there */
+CADT_FN cadt_u32 cadt_wrap_place(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32* owned) {
+  CADT_GLOBAL const cadt_u32* link = s->links + s->begins[v];
+  cadt_u32 k = 0u, count = 0u, now = link[0];
+  while (now != a) {
+    const cadt_u32 next = link[++k];
+    if (cadt_wrap_before(s->sizes, s->hubs, v, now) && cadt_wrap_before(s->sizes, s->hubs, v, next)) ++count;
+    now = next;
+  }
+  *owned = count;
+  return k;
+}
+
+/* The neighbour of v before or behind its neighbour a. */
+CADT_FN cadt_u32 cadt_wrap_beside(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32 behind) {
+  cadt_u32 owned;
+  const cadt_u32 k = cadt_wrap_place(s, v, a, &owned), size = s->sizes[v];
+  const cadt_u32 other = behind ? (k + 1u < size ? k + 1u : 0u) : (k ? k - 1u : size - 1u);
+  return s->links[s->begins[v] + other];
+}
+
+/* The vertex to the right of the edge from a to b. */
+CADT_FN cadt_u32 cadt_wrap_right(const cadt_wrap_set* s, cadt_u32 a, cadt_u32 b) {
+  if (!cadt_wrap_starless(s->sizes, a)) return cadt_wrap_beside(s, a, b, 0u);
+  if (!cadt_wrap_starless(s->sizes, b)) return cadt_wrap_beside(s, b, a, 1u);
+  for (cadt_u32 e = 0u; e < s->edge_count; ++e)
+    if (s->edges[e].from == b && s->edges[e].to == a) return s->edges[e].left;
+  return CADT_NONE; /* never: the driver has matched all of them */
+}
+
+/* Link to the triangle x, y, z across the edge opposite of x (0), y (1) or z (2). */
+CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, cadt_u32 z, cadt_u32 opposite) {
+  const cadt_u32 none = CADT_GHOST; /* hubs own nothing */
+  const cadt_u32 i = s->hubs && cadt_wrap_starless(s->sizes, x) ? none : x;
+  const cadt_u32 j = s->hubs && cadt_wrap_starless(s->sizes, y) ? none : y;
+  const cadt_u32 k = s->hubs && cadt_wrap_starless(s->sizes, z) ? none : z;
+  const cadt_u32 lowest = i < j ? (i < k ? 0u : 2u) : (j < k ? 1u : 2u);
+  const cadt_u32 owner = CADT_PICK(lowest, x, y, z), next = CADT_PICK(lowest, y, z, x);
+  if (CADT_PICK(lowest, i, j, k) == none) {
+    cadt_u32 e = s->first_extra;
+    while (e + 1u < s->edge_count && (s->edges[e].from != x || s->edges[e].to != y || s->edges[e].left != z)) ++e;
+    e -= s->first_extra;
+    return CADT_LINK(s->extra_base + e / 3u, (opposite + e % 3u) % 3u);
+  }
+  cadt_u32 before;
+  cadt_wrap_place(s, owner, next, &before);
+  return CADT_LINK(s->bases[owner] + before, opposite >= lowest ? opposite - lowest : opposite + 3u - lowest);
+}
+
+/* CADT_WRAP_SHARES work-items for each vertex. \pre no triangle is missing */
+CADT_KERNEL(cadt_wrap_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases,
+            CADT_GLOBAL const cadt_wrap_edge* edges, cadt_u32 edge_count, cadt_u32 first_extra, cadt_u32 extra_base,
+            cadt_u32 hubs, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_record* records) {
+  cadt_wrap_set stars;
+  stars.links = links;
+  stars.begins = begins;
+  stars.sizes = sizes;
+  stars.bases = bases;
+  stars.edges = edges;
+  stars.edge_count = edge_count;
+  stars.first_extra = first_extra;
+  stars.extra_base = extra_base;
+  stars.hubs = hubs;
+  if (cadt_item == 0u)
+    for (cadt_u32 e = first_extra; e < edge_count; e += 3u) {
+      CADT_GLOBAL cadt_u32* w = records[extra_base + (e - first_extra) / 3u].word;
+      const cadt_u32 a = edges[e].from, b = edges[e].to, c = edges[e].left;
+      cadt_store_four(w, a, b, c, 2u);
+      cadt_store_four(w + CADT_WORD_LINK, cadt_wrap_link(&stars, b, cadt_wrap_right(&stars, b, c), c, 1u),
+                      cadt_wrap_link(&stars, c, cadt_wrap_right(&stars, c, a), a, 1u),
+                      cadt_wrap_link(&stars, a, cadt_wrap_right(&stars, a, b), b, 1u), 0u);
+    }
+  CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
+    const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
+    CADT_GLOBAL const cadt_u32* link = links + begins[v];
+    for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {
+      const cadt_u32 k1 = k + 1u < size ? k + 1u : 0u, a = link[k], b = link[k1];
+      if (!cadt_wrap_before(sizes, hubs, v, a) || !cadt_wrap_before(sizes, hubs, v, b)) continue;
+      cadt_u32 before;
+      cadt_wrap_place(&stars, v, a, &before);
+      CADT_GLOBAL cadt_u32* w = records[bases[v] + before].word;
+      const cadt_u32 across = cadt_wrap_link(&stars, a, cadt_wrap_right(&stars, a, b), b, 1u);
+      const cadt_u32 after = cadt_wrap_link(&stars, v, b, link[k1 + 1u < size ? k1 + 1u : 0u], 2u);
+      cadt_store_four(w, v, a, b, 2u);
+      cadt_store_four(w + CADT_WORD_LINK, across, after, cadt_wrap_link(&stars, v, link[k ? k - 1u : size - 1u], a, 1u),
+                      0u);
+    }
+  }
+}
+
+#endif

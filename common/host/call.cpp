@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/host/call.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace cadt {
+namespace {
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial results
+
+/// Words a point of the buffers that a call without new ones needs: records, points sorted and not, results, their
+/// numbers, and lists of a word or less.
+constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
+
+/// With the star stage besides: neighbours of the stars, lists, and what the rest of the points needs.
+constexpr std::size_t kept_star_words[] = {12, 1, 1, 1, 1, 1, 1};
+
+void require_rules(const Options& options) {
+  constexpr unsigned most_flips = 1000;  // counters have ten bits
+  if (options.flip_threshold > most_flips)
+    throw OptionError("flip_threshold", std::to_string(options.flip_threshold) + " is more than " +
+                                            std::to_string(most_flips) + ", the most flips that are told apart");
+  if (options.strategy == Strategy::stars && (options.stabilize != Stabilize::off || options.watch))
+    throw OptionError("strategy", "stars goes with neither stabilize nor watch: they are about insertion");
+  if (!(options.quality_epsilon >= 0)) throw OptionError("quality_epsilon", "must be a number and not negative");
+}
+
+}  // namespace
+
+std::size_t least_bytes(std::size_t n, bool result_elsewhere) { return fixed + n * (result_elsewhere ? 97 : 124); }
+
+std::size_t star_bytes(std::size_t n) { return fixed + n * 150; }
+
+bool prefers_stars(const Options& options, const Device& device) {
+  if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
+  return device.info().gpu && options.stabilize == Stabilize::off && !options.watch &&
+         options.statistics != StatisticsDetail::timing;
+}
+
+std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
+  std::size_t words = 0;
+  for (const std::size_t one : kept_words) words += one;
+  for (const std::size_t one : kept_star_words) words += stars ? one : 0;
+  return memory.keeps() ? 4 * fixed + n * words * word : stars ? star_bytes(n) : least_bytes(n, false);
+}
+
+void keep_buffers(Memory& memory, std::size_t n, bool stars) {
+  std::vector<Allocation> together;
+  for (const std::size_t words : kept_words) together.push_back(memory.allocate(n * words * word));
+  if (stars)
+    for (const std::size_t words : kept_star_words) together.push_back(memory.allocate(n * words * word));
+}
+
+void require_size(std::size_t points) {
+  if (points <= max_points()) return;
+  throw LimitError("at most " + std::to_string(max_points()) + " points can be triangulated in one call, not " +
+                       std::to_string(points) + ": split the input",
+                   points, max_points());
+}
+
+void begin_account(Triangulator::State& state, std::size_t n) {
+  if (state.memory.dropped())
+    state.known_points = state.known_star_points = state.known_batch_points = state.reserved_points = 0;
+  state.memory.begin(state.options.max_memory, n <= state.reserved_points);
+}
+
+void open_account(Triangulator::State& state, std::size_t n, Statistics& statistics) {
+  require_rules(state.options);
+  const DeviceInfo& info = state.device->info();
+  statistics.points = n;
+  statistics.certified = true;  // no edge is illegal until one is found
+  statistics.backend = to_string(info.backend);
+  statistics.device = info.name;
+  statistics.threads = state.device->threads();
+  begin_account(state, n);
+}
+
+void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere) {
+  const bool stars = state.options.strategy == Strategy::stars;  // Strategy::automatic does without, if it must
+  if (n <= (stars ? state.known_star_points : state.known_points) && state.options.max_memory == 0) return;
+  state.memory.require(stars ? star_bytes(n) : least_bytes(n, result_elsewhere));
+}
+
+bool choose_stars(Triangulator::State& state, std::size_t n) {
+  if (!prefers_stars(state.options, *state.device)) return false;
+  if (n <= state.known_star_points && state.options.max_memory == 0) return true;
+  return state.options.strategy == Strategy::stars || state.memory.allows(star_bytes(n));
+}
+
+void close_account(Triangulator::State& state, Run& run, bool ordered) {
+  Statistics& statistics = run.statistics;
+  const bool measured = run.options.statistics != StatisticsDetail::none || run.options.kernel_times;
+  if (measured || !ordered || !run.options.queue) run.finish();
+  statistics.launches = run.launcher.launches();
+  statistics.kernels = run.launcher.kernel_times();
+  statistics.bytes_device_peak = state.memory.peak();
+  run.check("collect", 1);
+}
+
+void remember_size(Triangulator::State& state, const Statistics& statistics) {
+  state.known_points = std::max<std::size_t>(state.known_points, statistics.points);
+  if (statistics.proven_stars != 0)
+    state.known_star_points = std::max<std::size_t>(state.known_star_points, statistics.points);
+}
+
+}  // namespace cadt

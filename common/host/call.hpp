@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every call of a triangulator does before and after its work: limits, memory, statistics.
+#pragma once
+
+#include <cstddef>
+
+#include "common/host/device_triangulation.hpp"
+#include "common/host/run.hpp"
+
+namespace cadt {
+
+/// \throws LimitError
+void require_size(std::size_t points);
+
+/// Device bytes of the phase that needs most, but for crowded cells: writing the result (124 a point), or sorting the
+/// triangles (96) where the result goes straight to memory of the host's. docs/performance.md has the plan.
+[[nodiscard]] std::size_t least_bytes(std::size_t n, bool result_elsewhere);
+/// The same with the star stage.
+[[nodiscard]] std::size_t star_bytes(std::size_t n);
+/// The same, with buffers that wait for a later phase or call.
+[[nodiscard]] std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars);
+
+/// Whether the star stage is what Strategy::automatic chooses, if there is the memory. It needs many cheap lanes: CPUs
+/// are faster without it.
+[[nodiscard]] bool prefers_stars(const Options& options, const Device& device);
+/// Whether the star stage is to run.
+[[nodiscard]] bool choose_stars(Triangulator::State& state, std::size_t n);
+
+/// A new account of memory, for n points.
+void begin_account(Triangulator::State& state, std::size_t n);
+/// The same, and what the statistics say before any work. \throws OptionError
+void open_account(Triangulator::State& state, std::size_t n, Statistics& statistics);
+/// \throws OutOfMemory before any work
+void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere);
+/// What the statistics say in the end. Waits for the device, unless nobody asks for that: nothing was measured, and the
+/// result is used in the order of the caller's queue (`ordered`).
+void close_account(Triangulator::State& state, Run& run, bool ordered);
+/// Calls with so many points have had their memory.
+void remember_size(Triangulator::State& state, const Statistics& statistics);
+
+/// The buffers of a call that are alive together: takes them and gives them back, so they are kept.
+void keep_buffers(Memory& memory, std::size_t n, bool stars);
+
+[[nodiscard]] inline bool is_host(const Device& device) { return device.info().backend == Backend::host; }
+
+}  // namespace cadt

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/host/tiles.hpp"
+
+#include "common/host/device_constants.hpp"
+
+namespace cadt {
+
+using namespace device_constants;
+
+namespace {
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+
+}  // namespace
+
+std::optional<TileList> make_tiles(Run& run, const Allocation& keys, std::size_t n, unsigned levels) {
+  Launcher& launch = run.launcher;
+  const auto count = static_cast<std::uint32_t>(n), level_count = static_cast<std::uint32_t>(levels);
+  const Cut c = launch.cut(n);
+  const Allocation ranks = run.memory.allocate((n + 1) * word), descents = launch.zeros(1);
+  launch.run(KernelId::cadt_tile_flags, c.items, keys, ranks, count, level_count, c.grain, descents);
+  if (launch.read_word(descents, 0) != 0) return std::nullopt;
+  launch.scan(ranks, n + 1);
+  TileList list;
+  list.count = launch.read_word(ranks, n);
+  list.tiles = run.memory.allocate((list.count + std::size_t{1}) * sizeof(cadt_tile));
+  launch.run(KernelId::cadt_tile_pack, c.items, keys, ranks, list.tiles, count, level_count, c.grain);
+  run.statistics.tiles += list.count;
+  return list;
+}
+
+StarList make_star_list(Run& run, std::size_t n) {
+  return {run.memory.allocate(n * CADT_STAR_DEGREE * word), run.memory.allocate_zeros(n * word)};
+}
+
+void StarCounts::add_to(Statistics& statistics) const noexcept {
+  statistics.exact_orientations += exact_orientations;
+  statistics.exact_incircles += exact_incircles;
+  statistics.ties += ties;
+}
+
+StarCounts run_stars(Run& run, const SpatialOrder& order, const Allocation& keys, const Allocation& sets,
+                     const Allocation& states, const TileList& tiles, std::uint32_t count, std::uint32_t step,
+                     bool many, const StarList& stars) {
+  const KeyGrid& grid = order.grid;
+  const Allocation found = run.launcher.zeros(6);
+  const Cut teams = run.launcher.cut_teams(count, CADT_STAR_LANES);
+  run.launcher.run(KernelId::cadt_stars, teams.items, order.points, keys, static_cast<std::uint32_t>(order.distinct),
+                   grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y, grid.most_x, grid.most_y,
+                   grid.clipped ? 1U : 0U, sets, states, tiles.tiles, count, step, many ? 1U : 0U, teams.grain,
+                   stars.links, stars.sizes, found);
+  StarCounts counts;
+  static_assert(sizeof counts == 6 * word);
+  run.device.read(*found, 0, &counts, sizeof counts);
+  return counts;
+}
+
+}  // namespace cadt

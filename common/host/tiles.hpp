@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tiles of the plane (common/device/tiles.h) and the stars of their vertices (common/device/star.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "common/host/run.hpp"
+#include "common/host/spatial_order.hpp"
+
+namespace cadt {
+
+/// Points of a tile on average at least: it keeps 128 lanes of a card.
+constexpr std::size_t least_points_of_tile = 48;
+
+struct TileList {
+  Allocation tiles;
+  std::uint32_t count = 0;
+};
+
+/// Nothing if the keys are not in order. \pre `keys` are those of n points in a grid of so many levels
+[[nodiscard]] std::optional<TileList> make_tiles(Run& run, const Allocation& keys, std::size_t n, unsigned levels);
+
+/// Proven stars: CADT_STAR_DEGREE words a vertex in `links`, the number of neighbours in `sizes`, 0 where there is no
+/// proof.
+struct StarList {
+  Allocation links, sizes;
+};
+[[nodiscard]] StarList make_star_list(Run& run, std::size_t n);
+
+/// What cadt_stars counts.
+struct StarCounts {
+  std::uint32_t points = 0, unproven = 0, exact_orientations = 0, exact_incircles = 0, ties = 0, again = 0;
+  void add_to(Statistics& statistics) const noexcept;
+};
+
+/// Stars of the vertices of `count` tiles, every `step`-th. `sets` and `states` of a call with several sets (sets.h),
+/// null else. `many`: with room for many candidates at once.
+StarCounts run_stars(Run& run, const SpatialOrder& order, const Allocation& keys, const Allocation& sets,
+                     const Allocation& states, const TileList& tiles, std::uint32_t count, std::uint32_t step,
+                     bool many, const StarList& stars);
+
+}  // namespace cadt

@@ -109,18 +109,62 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point
   return cadt_limbs_sign(det, 4 * n + 3);
 }
 
-/* Incircle: 1 if p is inside the circle of the counterclockwise triangle a, b, c, 0 on it, -1 outside. */
-CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p) {
-  cadt_scale s = cadt_scale_of(
-      cadt_larger_exponent(cadt_larger_exponent(cadt_larger_exponent(cadt_larger_exponent(0ul, a), b), c), p));
+/* A difference of coordinates, and whether it is exact: what was lost (D. E. Knuth, "The Art of Computer Programming",
+ * vol. 2, 4.2.2). */
+CADT_FN double cadt_difference(double a, double b, cadt_u32* exact) {
+  const double difference = a - b, part = difference - a;
+  if ((a - (difference - part)) - (b + part) != 0.0) *exact = 0u;
+  return difference;
+}
+
+/* Incircle: 1 if p is inside the circle of the counterclockwise triangle a, b, c, 0 on it, -1 outside. The magnitude of
+ * the determinant is known to be at most `most`. */
+CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p, double most) {
+  cadt_u32 exact = 1u;
+  cadt_point d[3];
+  d[0].x = cadt_difference(a.x, p.x, &exact);
+  d[0].y = cadt_difference(a.y, p.y, &exact);
+  d[1].x = cadt_difference(b.x, p.x, &exact);
+  d[1].y = cadt_difference(b.y, p.y, &exact);
+  d[2].x = cadt_difference(c.x, p.x, &exact);
+  d[2].y = cadt_difference(c.y, p.y, &exact);
+  /* Of near points the differences are most often exact and fit where the coordinates do not. */
+  const cadt_u64 none = 0ul;
+  cadt_scale s =
+      exact ? cadt_scale_of(cadt_larger_exponent(cadt_larger_exponent(cadt_larger_exponent(none, d[0]), d[1]), d[2]))
+            : cadt_scale_of(cadt_larger_exponent(
+                  cadt_larger_exponent(cadt_larger_exponent(cadt_larger_exponent(none, a), b), c), p));
   if (s.fits) {
-    const cadt_i64 px = cadt_scaled(&s, p.x), py = cadt_scaled(&s, p.y);
-    cadt_i64 ax = cadt_scaled(&s, a.x) - px, ay = cadt_scaled(&s, a.y) - py;
-    cadt_i64 bx = cadt_scaled(&s, b.x) - px, by = cadt_scaled(&s, b.y) - py;
-    cadt_i64 cx = cadt_scaled(&s, c.x) - px, cy = cadt_scaled(&s, c.y) - py;
+    cadt_i64 ax = cadt_scaled(&s, exact ? d[0].x : a.x), ay = cadt_scaled(&s, exact ? d[0].y : a.y);
+    cadt_i64 bx = cadt_scaled(&s, exact ? d[1].x : b.x), by = cadt_scaled(&s, exact ? d[1].y : b.y);
+    cadt_i64 cx = cadt_scaled(&s, exact ? d[2].x : c.x), cy = cadt_scaled(&s, exact ? d[2].y : c.y);
+    if (!exact) {
+      const cadt_i64 px = cadt_scaled(&s, p.x), py = cadt_scaled(&s, p.y);
+      ax -= px, ay -= py;
+      bx -= px, by -= py;
+      cx -= px, cy -= py;
+    }
     if (s.fits) {
-      /* |differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. A loop keeps the code
-       * short. */
+      /* As integers without common factors 2. If then the determinant is below 2^191, 192 bits tell it, whatever is
+       * lost of its terms. */
+      const cadt_u64 bits = CADT_CAST(cadt_u64, ax | ay | bx | by | cx | cy);
+      const cadt_i32 zeros = bits ? cadt_trailing_zeros(bits) : 0;
+      const double unit = s.scale * cadt_double_of_bits(CADT_CAST(cadt_u64, 1023 - zeros) << 52), square = unit * unit;
+      /* |differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. Loops keep the code short. */
+      if (most * square * square < 1.5e57) { /* 2^190 */
+        cadt_i192 det;
+        for (cadt_i32 i = 0; i < 3; ++i) det.word[i] = 0ul;
+        ax >>= zeros, ay >>= zeros, bx >>= zeros, by >>= zeros, cx >>= zeros, cy >>= zeros;
+        CADT_ROLLED
+        for (cadt_i32 corner = 0; corner < 3; ++corner) {
+          cadt_add_product_i192(&det, cadt_minor_i64(ax, ax, -ay, ay), cadt_minor_i64(bx, cy, by, cx));
+          const cadt_i64 x = ax, y = ay;
+          ax = bx, ay = by;
+          bx = cx, by = cy;
+          cx = x, cy = y;
+        }
+        return cadt_sign_i192(&det);
+      }
       cadt_i256 det;
       for (cadt_i32 i = 0; i < 4; ++i) det.word[i] = 0ul;
       CADT_ROLLED

@@ -168,6 +168,33 @@ CADT_FN void cadt_add_product_i256(cadt_i256* sum, cadt_i128 a, cadt_i128 b) {
   }
 }
 
+/* ---- 192-bit integers: two's complement, little-endian -------------------------------------------------------------
+ */
+typedef struct {
+  cadt_u64 word[3];
+} cadt_i192;
+
+/* sum += a b, modulo 2^192 */
+CADT_FN void cadt_add_product_i192(cadt_i192* sum, cadt_i128 a, cadt_i128 b) {
+  const cadt_u64 a1 = CADT_CAST(cadt_u64, a.high), b1 = CADT_CAST(cadt_u64, b.high);
+  const cadt_u64 left = a.low * b1, right = a1 * b.low, low = a.low * b.low;
+  cadt_u64 middle = cadt_mulhi_u64(a.low, b.low) + left;
+  cadt_u64 high = cadt_mulhi_u64(a.low, b1) + cadt_mulhi_u64(a1, b.low) + a1 * b1 + (middle < left ? 1ul : 0ul);
+  middle += right;
+  high += middle < right ? 1ul : 0ul;
+  if (a.high < 0) high -= b.low; /* the upper words were taken for unsigned ones */
+  if (b.high < 0) high -= a.low;
+  sum->word[0] += low;
+  const cadt_u64 carry = sum->word[0] < low ? 1ul : 0ul, partial = sum->word[1] + middle;
+  sum->word[1] = partial + carry;
+  sum->word[2] += high + (partial < middle ? 1ul : 0ul) + (sum->word[1] < carry ? 1ul : 0ul);
+}
+
+CADT_FN cadt_i32 cadt_sign_i192(const cadt_i192* a) {
+  if (a->word[2] >> 63) return -1;
+  return (a->word[0] | a->word[1] | a->word[2]) != 0ul ? 1 : 0;
+}
+
 CADT_FN cadt_i32 cadt_sign_i256(const cadt_i256* a) {
   if (a->word[3] >> 63) return -1;
   return (a->word[0] | a->word[1] | a->word[2] | a->word[3]) != 0ul ? 1 : 0;

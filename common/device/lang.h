@@ -69,11 +69,25 @@ typedef long cadt_i64;
 #define cadt_popcount(x) ((cadt_u32)popcount((uint)(x)))
 #define cadt_fabsf(x) fabs((float)(x))
 #define cadt_maxf(a, b) fmax((float)(a), (float)(b))
+#define cadt_minf(a, b) fmin((float)(a), (float)(b))
 /* approximations, for what has a bound of its error: a * b + c, 1 / x, square root of
  * what is not 0 */
 #define cadt_about_fma(a, b, c) fma((float)(a), (float)(b), (float)(c))
+#if defined(__NV_CL_C_VERSION)
+CADT_FN float cadt_about_inverse(float x) {
+  float y;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+  return y;
+}
+CADT_FN float cadt_about_sqrt(float x) {
+  float y;
+  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+  return y;
+}
+#else
 #define cadt_about_inverse(x) (1.0f / (x))
 #define cadt_about_sqrt(x) sqrt((float)(x))
+#endif
 #define cadt_clz64(x) ((cadt_u32)clz((ulong)(x)))
 #define cadt_mulhi_u64(a, b) mul_hi((ulong)(a), (ulong)(b))
 #define cadt_fabs(x) fabs(x)
@@ -127,9 +141,19 @@ typedef long long cadt_i64;
 #define cadt_popcount(x) ((cadt_u32)__popc(x))
 #define cadt_fabsf(x) fabsf(x)
 #define cadt_maxf(a, b) fmaxf((a), (b))
+#define cadt_minf(a, b) fminf((a), (b))
 #define cadt_about_fma(a, b, c) __fmaf_rn((a), (b), (c))
-#define cadt_about_inverse(x) __fdividef(1.0f, (x))
-#define cadt_about_sqrt(x) ((x)*rsqrtf(x))
+/* Numbers that are not normal count as 0. */
+CADT_FN float cadt_about_inverse(float x) {
+  float y;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+  return y;
+}
+CADT_FN float cadt_about_sqrt(float x) {
+  float y;
+  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+  return y;
+}
 #define cadt_clz64(x) ((cadt_u32)__clzll((long long)(x)))
 #define cadt_mulhi_u64(a, b) __umul64hi((a), (b))
 #define cadt_fabs(x) fabs(x)
@@ -184,7 +208,9 @@ CADT_FN float cadt_float_of_bits(cadt_u32 bits) {
 }
 CADT_FN cadt_u32 cadt_popcount(cadt_u32 x) { return CADT_CAST(cadt_u32, __builtin_popcount(x)); }
 CADT_FN float cadt_fabsf(float x) { return std::fabs(x); }
-CADT_FN float cadt_maxf(float a, float b) { return a > b ? a : b; }
+/* a if b is no number */
+CADT_FN float cadt_maxf(float a, float b) { return b > a ? b : a; }
+CADT_FN float cadt_minf(float a, float b) { return b < a ? b : a; }
 CADT_FN float cadt_about_fma(float a, float b, float c) { return a * b + c; }
 CADT_FN float cadt_about_inverse(float x) { return 1.0f / x; }
 CADT_FN float cadt_about_sqrt(float x) { return std::sqrt(x); }

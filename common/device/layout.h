@@ -24,7 +24,11 @@ typedef struct {
 enum {
   CADT_TILE_POINTS = 704, /* at most, but for squares that cannot be divided */
   CADT_STAR_DEGREE = 12,  /* neighbours of a proven star at most */
-  CADT_STAR_LANES = 128   /* lanes of a team that make stars */
+  CADT_STAR_LANES = 128,  /* lanes of a team that make stars */
+  /* Vertices whose records a team writes, and how many of them it collects (more are written at once): a word of a
+   * record and the same of the next fall into different banks of memory, and so do the words of a record. */
+  CADT_RECORD_LANES = 128,
+  CADT_RECORD_PLANE = 324
 };
 
 /* Gift wrapping (wrap.h). */

@@ -147,6 +147,7 @@ CADT_FN cadt_i32 cadt_incircle_filter(cadt_arm a, cadt_arm b, cadt_arm c) {
 
 /* Incircle of the counterclockwise triangle a, b, c and p, never 0. */
 CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_tally* tally) {
+  double most = CADT_INFINITY; /* the determinant, if the filter cannot tell its sign */
   double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y, cx = c.x - p.x, cy = c.y - p.y;
 #if CADT_WIDE
   const cadt_i32 e0 = cadt_exponent_of_largest(ax, ay, bx, by), e1 = cadt_exponent_of_largest(cx, cy, 0.0, 0.0);
@@ -170,10 +171,13 @@ CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_poin
     const double bound = CADT_INCIRCLE_BOUND * permanent + CADT_UNDERFLOW;
     if (det > bound) return 1;
     if (-det > bound) return -1;
+#if !CADT_WIDE
+    most = 2.0 * bound;
+#endif
   }
   tally->count[CADT_COUNT_EXACT_INCIRCLES]++;
   if (!cadt_mirrored(a, b, c, p)) {
-    const cadt_i32 sign = cadt_incircle_exact(a, b, c, p);
+    const cadt_i32 sign = cadt_incircle_exact(a, b, c, p, most);
     if (sign != 0) return sign;
   }
   tally->count[CADT_COUNT_TIES]++;

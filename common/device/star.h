@@ -17,7 +17,8 @@
 
 #include "common/device/predicates.h"
 #include "common/device/sets.h"
-#include "common/device/window.h"
+#include "common/device/sort_keys.h"
+#include "common/device/sweep.h"
 
 /* Error of a difference of two points of a window, in cells: coordinates are at most 12 cells from the centre, so they
  * are rounded by at most 2^-21; their units are exact to 2^-25. */
@@ -29,6 +30,20 @@ typedef struct {
   float x, y;
 } cadt_vector;
 
+/* Where a point is in its window. From memory each time: a value that is kept through all of a star is kept in slow
+ * memory, and fetched from there in each step of a loop. */
+CADT_FN cadt_vector cadt_place_of(CADT_TEAM_PTR const cadt_window* w, cadt_u32 place) {
+  cadt_vector v;
+  v.x = *CADT_CAST(volatile CADT_TEAM_PTR const float*, w->x + place);
+  v.y = *CADT_CAST(volatile CADT_TEAM_PTR const float*, w->y + place);
+  return v;
+}
+CADT_FN cadt_vector cadt_vector_from(CADT_TEAM_PTR const cadt_window* w, cadt_vector from, cadt_u32 to) {
+  cadt_vector d;
+  d.x = w->x[to] - from.x;
+  d.y = w->y[to] - from.y;
+  return d;
+}
 CADT_FN cadt_vector cadt_vector_to(CADT_TEAM_PTR const cadt_window* w, cadt_u32 from, cadt_u32 to) {
   cadt_vector d;
   d.x = w->x[to] - w->x[from];
@@ -55,28 +70,37 @@ CADT_FN cadt_u32 cadt_marked(float value) { return cadt_bits_of_float(value) & C
 /* What a lane needs to make stars. */
 typedef struct {
   CADT_TEAM_PTR cadt_window* w;
-  const cadt_window_shape* shape;
   CADT_GLOBAL const cadt_point* points;
   cadt_tally* tally;
-  cadt_u32 lanes, candidates; /* how w->link is shared */
+  cadt_u32 candidates; /* at most */
 } cadt_star_maker;
 
-CADT_FN cadt_point cadt_exact_point(const cadt_star_maker* m, cadt_u32 place) { return m->points[m->w->at[place]]; }
-
 CADT_FN cadt_u32 cadt_link_place(const cadt_star_maker* m, cadt_u32 k) {
-  return m->w->link[k * m->lanes + cadt_team_lane];
+  return m->w->link[k * CADT_LINK_STRIDE + cadt_team_lane];
 }
 CADT_FN void cadt_set_link_place(const cadt_star_maker* m, cadt_u32 k, cadt_u32 place) {
-  m->w->link[k * m->lanes + cadt_team_lane] = CADT_CAST(cadt_u16, place);
+  m->w->link[k * CADT_LINK_STRIDE + cadt_team_lane] = CADT_CAST(cadt_u16, place);
 }
 
-/* Orientation of p, a, b; the vectors are from p, inverted or not. */
+/* Exact tests of points at these positions. Functions of their own: their code is long and must not be in the way of
+ * that which all lanes execute. */
+CADT_FN_SLOW cadt_i32 cadt_exact_orientation_in(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a,
+                                                cadt_u32 b, cadt_tally* tally) {
+  return cadt_orientation(points[p], points[a], points[b], tally);
+}
+
+/* Whether the angle from a to b is less than two right ones for certain; the vectors are from p, inverted or not. */
+CADT_FN cadt_u32 cadt_star_ordered(cadt_vector ua, cadt_vector ub, float sigma) {
+  return cadt_cross(ua, ub) > 4.0f * sigma * cadt_size(ua) * cadt_size(ub) ? 1u : 0u;
+}
+
+/* Orientation of p, a, b. */
 CADT_FN cadt_i32 cadt_star_orientation(const cadt_star_maker* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_vector ua,
                                        cadt_vector ub, float sigma) {
   const float cross = cadt_cross(ua, ub), bound = 4.0f * sigma * cadt_size(ua) * cadt_size(ub);
   if (cross > bound) return 1;
   if (-cross > bound) return -1;
-  return cadt_orientation(cadt_exact_point(m, p), cadt_exact_point(m, a), cadt_exact_point(m, b), m->tally);
+  return cadt_exact_orientation_in(m->points, m->w->at[p], m->w->at[a], m->w->at[b], m->tally);
 }
 
 /* Whether the last corner of the first `size`, b, is one when c comes after it; a is the one before. By rounded
@@ -95,85 +119,22 @@ CADT_FN cadt_u32 cadt_star_keeps(cadt_vector ua, cadt_vector ub, cadt_vector uc,
   return -cross > bound ? 0u : CADT_STAR_UNSURE;
 }
 
-/* The same for certain. CADT_STAR_SENSELESS: a and b are not in order around p. */
-CADT_FN cadt_u32 cadt_star_keeps_exactly(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, cadt_u32 c) {
-  const cadt_point P = cadt_exact_point(m, p), A = cadt_exact_point(m, cadt_link_place(m, size - 2u));
-  const cadt_point B = cadt_exact_point(m, cadt_link_place(m, size - 1u));
-  if (cadt_orientation(P, A, B, m->tally) <= 0) return CADT_STAR_SENSELESS;
-  return cadt_incircle(P, A, B, cadt_exact_point(m, c), m->tally) < 0 ? 1u : 0u;
+/* The same for certain. CADT_STAR_SENSELESS: a and b are not in order around p; `ordered`: it is known that they are.
+ */
+CADT_FN_SLOW cadt_u32 cadt_keeps_exactly(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a, cadt_u32 b,
+                                         cadt_u32 c, cadt_u32 ordered, cadt_tally* tally) {
+  const cadt_point P = points[p], A = points[a], B = points[b];
+  if (!ordered && cadt_orientation(P, A, B, tally) <= 0) return CADT_STAR_SENSELESS;
+  return cadt_incircle(P, A, B, points[c], tally) < 0 ? 1u : 0u;
 }
 
-/* K. E. Batcher's odd-even merge sort ("Sorting networks and their applications", 1968) of 16 keys in registers. */
-#define CADT_ORDER_KEYS(i, j)                   \
-  do {                                          \
-    const cadt_u32 low = key[i], high = key[j]; \
-    key[i] = low < high ? low : high;           \
-    key[j] = low < high ? high : low;           \
-  } while (0)
-#define CADT_SORT_KEYS     \
-  CADT_ORDER_KEYS(0, 1);   \
-  CADT_ORDER_KEYS(2, 3);   \
-  CADT_ORDER_KEYS(4, 5);   \
-  CADT_ORDER_KEYS(6, 7);   \
-  CADT_ORDER_KEYS(8, 9);   \
-  CADT_ORDER_KEYS(10, 11); \
-  CADT_ORDER_KEYS(12, 13); \
-  CADT_ORDER_KEYS(14, 15); \
-  CADT_ORDER_KEYS(0, 2);   \
-  CADT_ORDER_KEYS(1, 3);   \
-  CADT_ORDER_KEYS(4, 6);   \
-  CADT_ORDER_KEYS(5, 7);   \
-  CADT_ORDER_KEYS(8, 10);  \
-  CADT_ORDER_KEYS(9, 11);  \
-  CADT_ORDER_KEYS(12, 14); \
-  CADT_ORDER_KEYS(13, 15); \
-  CADT_ORDER_KEYS(1, 2);   \
-  CADT_ORDER_KEYS(5, 6);   \
-  CADT_ORDER_KEYS(9, 10);  \
-  CADT_ORDER_KEYS(13, 14); \
-  CADT_ORDER_KEYS(0, 4);   \
-  CADT_ORDER_KEYS(1, 5);   \
-  CADT_ORDER_KEYS(2, 6);   \
-  CADT_ORDER_KEYS(3, 7);   \
-  CADT_ORDER_KEYS(8, 12);  \
-  CADT_ORDER_KEYS(9, 13);  \
-  CADT_ORDER_KEYS(10, 14); \
-  CADT_ORDER_KEYS(11, 15); \
-  CADT_ORDER_KEYS(2, 4);   \
-  CADT_ORDER_KEYS(3, 5);   \
-  CADT_ORDER_KEYS(10, 12); \
-  CADT_ORDER_KEYS(11, 13); \
-  CADT_ORDER_KEYS(1, 2);   \
-  CADT_ORDER_KEYS(3, 4);   \
-  CADT_ORDER_KEYS(5, 6);   \
-  CADT_ORDER_KEYS(9, 10);  \
-  CADT_ORDER_KEYS(11, 12); \
-  CADT_ORDER_KEYS(13, 14); \
-  CADT_ORDER_KEYS(0, 8);   \
-  CADT_ORDER_KEYS(1, 9);   \
-  CADT_ORDER_KEYS(2, 10);  \
-  CADT_ORDER_KEYS(3, 11);  \
-  CADT_ORDER_KEYS(4, 12);  \
-  CADT_ORDER_KEYS(5, 13);  \
-  CADT_ORDER_KEYS(6, 14);  \
-  CADT_ORDER_KEYS(7, 15);  \
-  CADT_ORDER_KEYS(4, 8);   \
-  CADT_ORDER_KEYS(5, 9);   \
-  CADT_ORDER_KEYS(6, 10);  \
-  CADT_ORDER_KEYS(7, 11);  \
-  CADT_ORDER_KEYS(2, 4);   \
-  CADT_ORDER_KEYS(3, 5);   \
-  CADT_ORDER_KEYS(6, 8);   \
-  CADT_ORDER_KEYS(7, 9);   \
-  CADT_ORDER_KEYS(10, 12); \
-  CADT_ORDER_KEYS(11, 13); \
-  CADT_ORDER_KEYS(1, 2);   \
-  CADT_ORDER_KEYS(3, 4);   \
-  CADT_ORDER_KEYS(5, 6);   \
-  CADT_ORDER_KEYS(7, 8);   \
-  CADT_ORDER_KEYS(9, 10);  \
-  CADT_ORDER_KEYS(11, 12); \
-  CADT_ORDER_KEYS(13, 14);
+/* For the last two of `size` corners. */
+CADT_FN cadt_u32 cadt_star_keeps_exactly(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, cadt_u32 c,
+                                         cadt_vector ua, cadt_vector ub, float sigma) {
+  CADT_TEAM_PTR const cadt_u32* at = m->w->at;
+  return cadt_keeps_exactly(m->points, at[p], at[cadt_link_place(m, size - 2u)], at[cadt_link_place(m, size - 1u)],
+                            at[c], cadt_star_ordered(ua, ub, sigma), m->tally);
+}
 
 /* The angle of a candidate from that of `first` on, and its place. */
 CADT_FN cadt_u32 cadt_angle_key(const cadt_star_maker* m, cadt_u32 p, cadt_u32 first, cadt_vector start,
@@ -185,54 +146,36 @@ CADT_FN cadt_u32 cadt_angle_key(const cadt_star_maker* m, cadt_u32 p, cadt_u32 f
   return place == first ? place : (CADT_CAST(cadt_u32, angle * 524280.0f) << CADT_PLACE_BITS) | place;
 }
 
-/* The points of the cells up to `reach` away, row by row, in one loop: lanes whose rows are short do not wait. */
-typedef struct {
-  cadt_u32 place, end; /* in the row */
-  cadt_u32 cell, last, width;
-} cadt_sweep;
-
-CADT_FN cadt_sweep cadt_sweep_of(const cadt_star_maker* m, cadt_u32 x, cadt_u32 y, cadt_u32 reach) {
-  cadt_sweep s;
-  s.cell = (y - reach) * m->shape->side + x - reach;
-  s.last = s.cell + 2u * reach * m->shape->side;
-  s.width = 2u * reach + 1u;
-  s.place = m->w->cells[s.cell];
-  s.end = m->w->cells[s.cell + s.width];
-  return s;
-}
-
-/* To the next point; 0: there is none. */
-CADT_FN cadt_u32 cadt_sweep_on(const cadt_star_maker* m, cadt_sweep* s) {
-  while (s->place >= s->end) {
-    if (s->cell == s->last) return 0u;
-    s->cell += m->shape->side;
-    s->place = m->w->cells[s->cell];
-    s->end = m->w->cells[s->cell + s->width];
-  }
-  return 1u;
+/* Inverse square of the distance of the point of this step from p, no number if there is none, or it is p itself: the
+ * largest of that and something else is the other. */
+CADT_FN float cadt_swept_inverse(const cadt_sweep* s, cadt_u32 p, cadt_vector d) {
+  const float inverse = cadt_inverse_square(d);
+  return s->place < s->end && s->place != p ? inverse : cadt_float_of_bits(0x7FFFFFFFu);
 }
 
 /* The star of the point at place p in cell (x, y), searched for in the cells up to `reach` away, which must be in the
- * window; `near` cells are enough for the octagon. Returns the number of neighbours, counterclockwise in w->link, or 0
- * if there is no proof. */
+ * window; `near` cells are enough for the octagon, and `most_cells` for what lies outside of it. Returns the number of
+ * neighbours, counterclockwise in w->link, or 0 if there is no proof. */
 CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x, cadt_u32 y, cadt_u32 near,
-                                cadt_u32 reach) {
+                                cadt_u32 reach, cadt_u32 most_cells) {
   CADT_TEAM_PTR cadt_window* w = m->w;
-  const float px = w->x[p], py = w->y[p], least = -3e38f;
+  const float least = -3e38f;
   float best[8];        /* in the order of their angles: east, between, north, ... */
   float nearest = 0.0f; /* 1 / distance^2 */
   for (cadt_u32 k = 0u; k < 8u; ++k) best[k] = least;
-  cadt_sweep cells = cadt_sweep_of(m, x, y, near);
-  while (cadt_sweep_on(m, &cells)) {
-    const cadt_u32 j = cells.place++;
-    if (j != p) {
-      const cadt_vector d = cadt_vector_to(w, p, j), u = cadt_invert(d);
-      nearest = cadt_maxf(nearest, cadt_inverse_square(d));
-      best[0] = cadt_maxf(best[0], cadt_mark(u.x, j));
-      best[2] = cadt_maxf(best[2], cadt_mark(u.y, j));
-      best[4] = cadt_maxf(best[4], cadt_mark(-u.x, j));
-      best[6] = cadt_maxf(best[6], cadt_mark(-u.y, j));
-    }
+  cadt_vector at_p = cadt_place_of(w, p);
+  cadt_sweep cells = cadt_sweep_around(w, x, y, near);
+  cadt_u32 more = 1u;
+  while (more) {
+    const cadt_vector d = cadt_vector_from(w, at_p, cells.place);
+    const float inverse = cadt_swept_inverse(&cells, p, d);
+    const float ux = cadt_mark(d.x * inverse, cells.place), uy = cadt_mark(d.y * inverse, cells.place);
+    nearest = cadt_maxf(nearest, inverse);
+    best[0] = cadt_maxf(best[0], ux);
+    best[2] = cadt_maxf(best[2], uy);
+    best[4] = cadt_maxf(best[4], -ux);
+    best[6] = cadt_maxf(best[6], -uy);
+    more = cadt_sweep_on(w, &cells);
   }
   if (!(nearest > 0.0f && nearest < 1e7f)) return 0u; /* nobody, or too near for single precision */
   /* Relative error of a difference, and of its inverse. Points further off than a cell have smaller ones. */
@@ -247,19 +190,21 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       ex[k] = a == b ? ua.x : ub.y - ua.y;
       ey[k] = a == b ? ua.y : ua.x - ub.x;
     }
-    cells = cadt_sweep_of(m, x, y, near);
-    while (cadt_sweep_on(m, &cells)) {
-      const cadt_u32 j = cells.place++;
-      if (j != p) {
-        const cadt_vector u = cadt_invert(cadt_vector_to(w, p, j));
-        for (cadt_u32 k = 0u; k < 4u; ++k)
-          best[2u * k + 1u] = cadt_maxf(best[2u * k + 1u], cadt_mark(cadt_about_fma(ex[k], u.x, ey[k] * u.y), j));
-      }
+    at_p = cadt_place_of(w, p);
+    cells = cadt_sweep_around(w, x, y, near);
+    more = 1u;
+    while (more) {
+      const cadt_vector d = cadt_vector_from(w, at_p, cells.place);
+      const float inverse = cadt_swept_inverse(&cells, p, d), ux = d.x * inverse, uy = d.y * inverse;
+      for (cadt_u32 k = 0u; k < 4u; ++k)
+        best[2u * k + 1u] = cadt_maxf(best[2u * k + 1u], cadt_mark(cadt_about_fma(ex[k], ux, ey[k] * uy), cells.place));
+      more = cadt_sweep_on(w, &cells);
     }
   }
 
   /* Half-planes n . u < 1, that is n . d < d . d, of a polygon of some of the eight */
   float nx[8], ny[8], error = 0.0f;
+  float west = 0.0f, east = 0.0f, south = 0.0f, north = 0.0f; /* twice how far what is not inside may be */
   cadt_u32 first = p;
   {
     float largest = 0.0f;
@@ -283,7 +228,12 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       const float inverse = cadt_about_inverse(cross);
       nx[k] = (v.y - u.y) * inverse;
       ny[k] = (u.x - v.x) * inverse;
-      largest = cadt_maxf(largest, (nx[k] * nx[k] + ny[k] * ny[k]) * (lengths * inverse * inverse));
+      const float square = nx[k] * nx[k] + ny[k] * ny[k], length = cadt_about_sqrt(square) * 1.00001f;
+      largest = cadt_maxf(largest, square * (lengths * inverse * inverse));
+      west = cadt_maxf(west, length - nx[k]);
+      east = cadt_maxf(east, length + nx[k]);
+      south = cadt_maxf(south, length - ny[k]);
+      north = cadt_maxf(north, length + ny[k]);
       place = next;
       u = v;
     }
@@ -292,18 +242,33 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   }
 
   const float shrink = 1.0f - 4.0f * rho - 1e-6f;
+  /* What is not inside a half-plane is in the disc of diameter n, so all candidates are in these cells. A point that is
+   * out of all discs by 1e-5 of their radius and 1e-4 fails the test below, whose rounding errors are smaller, so it
+   * need not be made for the others. */
+  const float middle = 0.5f * CADT_CAST(float, w->shape.side), stretch = 0.5f * cadt_about_inverse(shrink);
+  at_p = cadt_place_of(w, p);
+  const float at_x = at_p.x + middle, at_y = at_p.y + middle, margin = 1.25f * error + 2e-4f;
+  const float low_x = CADT_CAST(float, x - reach), high_x = CADT_CAST(float, x + reach);
+  const float low_y = CADT_CAST(float, y - reach), high_y = CADT_CAST(float, y + reach);
+  const cadt_u32 from_x = CADT_CAST(cadt_u32, cadt_maxf(low_x, at_x - stretch * west - margin));
+  const cadt_u32 from_y = CADT_CAST(cadt_u32, cadt_maxf(low_y, at_y - stretch * south - margin));
+  const cadt_u32 to_x = CADT_CAST(cadt_u32, cadt_minf(high_x, at_x + stretch * east + margin));
+  const cadt_u32 to_y = CADT_CAST(cadt_u32, cadt_minf(high_y, at_y + stretch * north + margin));
+  if ((to_x - from_x + 1u) * (to_y - from_y + 1u) > most_cells) return 0u;
+  cells = cadt_sweep_of(w, from_x, from_y, to_x, to_y);
   cadt_u32 count = 0u;
-  cells = cadt_sweep_of(m, x, y, reach);
-  while (cadt_sweep_on(m, &cells)) {
-    const cadt_u32 j = cells.place++;
-    const float dx = w->x[j] - px, dy = w->y[j] - py;
+  more = 1u;
+  while (more) {
+    const cadt_u32 j = cells.place, here = j < cells.end ? 1u : 0u;
+    const float dx = w->x[j] - at_p.x, dy = w->y[j] - at_p.y;
     float t = cadt_about_fma(nx[0], dx, ny[0] * dy);
     for (cadt_u32 k = 1u; k < 8u; ++k) t = cadt_maxf(t, cadt_about_fma(nx[k], dx, ny[k] * dy));
-    if (cadt_about_fma(error, cadt_fabsf(dx) + cadt_fabsf(dy), t) >= cadt_about_fma(dx, dx, dy * dy) * shrink &&
-        j != p) {
-      if (count < m->candidates) cadt_set_link_place(m, count, j);
+    /* not p itself */
+    if (cadt_about_fma(error, cadt_fabsf(dx) + cadt_fabsf(dy), t) > cadt_about_fma(dx, dx, dy * dy) * shrink && here) {
+      cadt_set_link_place(m, count & (2u * CADT_CANDIDATES - 1u), j); /* too many are of no use */
       ++count;
     }
+    more = cadt_sweep_on(w, &cells);
   }
   if (count < 3u || count > m->candidates) return 0u;
 
@@ -311,8 +276,10 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   const cadt_vector start = cadt_vector_to(w, p, first);
   {
     cadt_u32 key[CADT_CANDIDATES];
-    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_CANDIDATES); ++k)
-      key[k] = k < count ? cadt_angle_key(m, p, first, start, cadt_link_place(m, k)) : CADT_NONE;
+    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_CANDIDATES); ++k) { /* no branch: lanes stay together */
+      const cadt_u32 made = cadt_angle_key(m, p, first, start, cadt_link_place(m, cadt_min_u32(k, count - 1u)));
+      key[k] = k < count ? made : CADT_NONE;
+    }
     CADT_SORT_KEYS;
     for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_CANDIDATES); ++k)
       if (k < count) cadt_set_link_place(m, k, key[k] & CADT_PLACE_MASK);
@@ -375,25 +342,25 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
         }
       }
     }
-    if (going) answer = cadt_star_keeps_exactly(m, p, size, c);
+    if (going) answer = cadt_star_keeps_exactly(m, p, size, c, ua, ub, sigma);
   }
   if (size < 3u || size > CADT_CAST(cadt_u32, CADT_STAR_DEGREE)) proven = 0u;
   if (proven) { /* `first` is a corner too */
     const cadt_u32 second = cadt_link_place(m, 1u);
     cadt_set_link_place(m, size, first);
     cadt_u32 keeps = cadt_star_keeps(ub, us, cadt_invert(cadt_vector_to(w, p, second)), sigma);
-    if (keeps == CADT_STAR_UNSURE) keeps = cadt_star_keeps_exactly(m, p, size + 1u, second);
+    if (keeps == CADT_STAR_UNSURE) keeps = cadt_star_keeps_exactly(m, p, size + 1u, second, ub, us, sigma);
     if (keeps != 1u) proven = 0u;
   }
 
   /* The circles. Beyond the edge of the grid there are no points. */
-  const float middle = 0.5f * CADT_CAST(float, m->shape->side), far = 1e30f;
-  const cadt_i32 low_x = CADT_CAST(cadt_i32, x - reach), low_y = CADT_CAST(cadt_i32, y - reach);
-  const cadt_i32 high_x = CADT_CAST(cadt_i32, x + reach) + 1, high_y = CADT_CAST(cadt_i32, y + reach) + 1;
-  const float right = high_x >= m->shape->right ? far : CADT_CAST(float, high_x) - middle - px;
-  const float left = low_x <= m->shape->left ? far : px + middle - CADT_CAST(float, low_x);
-  const float top = high_y >= m->shape->top ? far : CADT_CAST(float, high_y) - middle - py;
-  const float bottom = low_y <= m->shape->bottom ? far : py + middle - CADT_CAST(float, low_y);
+  const float far = 1e30f, px = w->x[p], py = w->y[p];
+  const cadt_i32 first_x = CADT_CAST(cadt_i32, x - reach), first_y = CADT_CAST(cadt_i32, y - reach);
+  const cadt_i32 end_x = CADT_CAST(cadt_i32, x + reach) + 1, end_y = CADT_CAST(cadt_i32, y + reach) + 1;
+  const float right = end_x >= w->shape.right ? far : CADT_CAST(float, end_x) - middle - px;
+  const float left = first_x <= w->shape.left ? far : px + middle - CADT_CAST(float, first_x);
+  const float top = end_y >= w->shape.top ? far : CADT_CAST(float, end_y) - middle - py;
+  const float bottom = first_y <= w->shape.bottom ? far : py + middle - CADT_CAST(float, first_y);
   cadt_vector u = us;
   for (cadt_u32 k = 1u; k <= size && proven; ++k) {
     const cadt_u32 b = k < size ? cadt_link_place(m, k) : first;
@@ -422,12 +389,13 @@ CADT_FN void cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size
 }
 
 /* Stars of every `step`-th tile. With `sets` the grid is that of the tile's set (sets.h), if that is one of those that
- * are together. found: points of these tiles, those without a proof; exact orientations, exact
- * incircles, ties. \pre sizes are 0, or of stars that are there already */
+ * are together. found: points of these tiles, those without a proof; exact orientations, exact incircles, ties; tries
+ * for a second time. `many`: stars may have many candidates at once. \pre sizes are 0, or of stars that are there
+ * already */
 CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys,
                  cadt_u32 n, CADT_GRID_PARAMETERS, double most_x, double most_y, cadt_u32 clipped,
                  CADT_GLOBAL const cadt_set* sets, CADT_GLOBAL const cadt_u32* states,
-                 CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 step, cadt_u32 grain,
+                 CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 step, cadt_u32 many, cadt_u32 grain,
                  CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_window window;
   CADT_GRID_VIEW(grid);
@@ -449,30 +417,30 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
     const cadt_window_shape shape = cadt_shape_of_window(&grid, most, points, tile, tiles[t * step + 1u].begin);
     cadt_star_maker maker;
     maker.w = &window;
-    maker.shape = &shape;
     maker.points = points;
     maker.tally = &tally;
+    if (cadt_team_lane == 0u) window.shape = shape; /* registers are few */
     const cadt_u32 loaded = wanted ? cadt_load_window(&window, &shape, &grid, points, keys, n, clipped) : 0u;
     const cadt_u32 own = loaded ? window.rows[shape.tile_side] : shape.end - shape.begin;
     if (loaded) {
-      const cadt_u32 cells = own < 2u * shape.tile_side * shape.tile_side ? 3u : 2u;
-      const cadt_u32 reach = cadt_min_u32(cells, shape.halo);
-      const float middle = 0.5f * CADT_CAST(float, shape.side);
-      const cadt_u32 lanes = maker.lanes = cadt_min_u32(cadt_team_lanes, CADT_STAR_LANES);
+      const cadt_u32 lanes = cadt_min_u32(cadt_team_lanes, CADT_STAR_LANES);
       for (cadt_u32 round = 0u; round < 2u; ++round) {
-        maker.candidates = (round ? 2u : 1u) * CADT_CANDIDATES; /* few are tried again */
         const cadt_u32 count = round ? window.again_count : own;
         for (cadt_u32 i = cadt_team_lane; cadt_team_lane < lanes && i < count; i += lanes) {
           const cadt_u32 number = round ? window.again[i] : i;
           cadt_u32 row = 0u;
           while (number >= window.rows[row + 1u]) ++row;
-          const cadt_u32 y = shape.halo + row;
-          const cadt_u32 p = window.cells[y * shape.side + shape.halo] + (number - window.rows[row]);
-          cadt_u32 x = CADT_CAST(cadt_u32, window.x[p] + middle);
-          x = x < shape.halo ? shape.halo : cadt_min_u32(x, shape.halo + shape.tile_side - 1u);
+          const cadt_u32 halo = window.shape.halo, tile_side = window.shape.tile_side, side = window.shape.side;
+          const cadt_u32 y = halo + row, p = window.cells[y * side + halo] + (number - window.rows[row]);
+          cadt_u32 x = CADT_CAST(cadt_u32, window.x[p] + 0.5f * CADT_CAST(float, side));
+          x = x < halo ? halo : cadt_min_u32(x, halo + tile_side - 1u);
           /* a neighbour tile's, rounded into this one's cells */
-          if (window.at[p] < shape.begin || window.at[p] >= shape.end) continue;
-          const cadt_u32 size = cadt_make_star(&maker, p, x, y, round ? 2u : 1u, round ? shape.halo : reach);
+          if (window.at[p] < window.shape.begin || window.at[p] >= window.shape.end) continue;
+          /* or if a quarter fails, as it does where many points are cocircular */
+          const cadt_u32 large = round || many || 4u * cadt_team_add(&window.again_count, 0u) > number + 64u ? 1u : 0u;
+          maker.candidates = (large ? 2u : 1u) * CADT_CANDIDATES;
+          const cadt_u32 size =
+              cadt_make_star(&maker, p, x, y, round ? 2u : 1u, halo, large ? CADT_NONE : CADT_FEW_CELLS);
           if (size)
             cadt_store_star(&maker, p, size, links, sizes);
           else if (!round)
@@ -487,6 +455,7 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
       cadt_add_relaxed(found, own);
       const cadt_u32 unproven = loaded ? window.unproven : own;
       if (unproven) cadt_add_relaxed(found + 1, unproven);
+      if (loaded && window.again_count) cadt_add_relaxed(found + 5, window.again_count);
     }
     CADT_TEAM_SYNC();
   }

@@ -16,19 +16,9 @@ enum {
   CADT_WINDOW_PARTS = 32, /* of the cells, for their scan */
   CADT_TILE_SIDE = 16,
   CADT_CANDIDATES = 16,
+  CADT_FEW_CELLS = 20, /* in which candidates are looked for: few stars need more, and all lanes would wait for them */
   CADT_LINK_PLACES = 2 * 16 * 128 /* twice CADT_CANDIDATES for each of CADT_STAR_LANES */
 };
-
-typedef struct {
-  float x[CADT_WINDOW_POINTS], y[CADT_WINDOW_POINTS]; /* in cells, from the centre of the window */
-  cadt_u32 at[CADT_WINDOW_POINTS];                    /* positions */
-  cadt_u32 cells[CADT_WINDOW_CELLS + 1];              /* where the points of a cell begin, once sorted */
-  cadt_u32 first[CADT_WINDOW_RANGES], offset[CADT_WINDOW_RANGES + 1], parts[CADT_WINDOW_PARTS];
-  cadt_u32 rows[CADT_TILE_SIDE + 1]; /* points of the tile before each row of its cells */
-  cadt_u16 link[CADT_LINK_PLACES];   /* a star in the making for each lane (star.h) */
-  cadt_u32 again_count, unproven;
-  cadt_u16 again[CADT_TILE_POINTS]; /* points that are tried again, numbers in the tile */
-} cadt_window;
 
 /* The shape of a window: the same for all lanes. */
 typedef struct {
@@ -40,6 +30,21 @@ typedef struct {
   cadt_i32 left, right, bottom, top; /* first cell with points of the grid's, and behind the last */
   double origin_x, origin_y, cells;  /* in units of the grid: lowest corner; cells a unit */
 } cadt_window_shape;
+
+typedef struct {
+  float x[CADT_WINDOW_POINTS + 1], y[CADT_WINDOW_POINTS + 1]; /* in cells, from the centre of the window */
+  cadt_u32 at[CADT_WINDOW_POINTS];                            /* positions */
+  cadt_u32 cells[CADT_WINDOW_CELLS + 1];                      /* where the points of a cell begin, once sorted */
+  cadt_u32 first[CADT_WINDOW_RANGES], offset[CADT_WINDOW_RANGES + 1], parts[CADT_WINDOW_PARTS];
+  cadt_u32 rows[CADT_TILE_SIDE + 1]; /* points of the tile before each row of its cells */
+  cadt_u16 link[CADT_LINK_PLACES];   /* a star in the making for each lane (star.h) */
+  cadt_window_shape shape;
+  cadt_u32 again_count, unproven;
+  cadt_u16 again[CADT_TILE_POINTS]; /* points that are tried again, numbers in the tile */
+} cadt_window;
+
+/* Between the places of a star in the making. */
+#define CADT_LINK_STRIDE (CADT_GROUP_SUMS ? CADT_CAST(cadt_u32, CADT_STAR_LANES) : 1u)
 
 /* Behind the last cell with points along an axis of the grid, `cells` a unit. `most`: the largest coordinate. */
 CADT_FN cadt_i32 cadt_edge_of_points(double most, double cells, cadt_u32 bits) {

@@ -87,14 +87,16 @@ class StarStage {
     const bool automatic = run_.options.strategy == Strategy::automatic;
     if (automatic && n_ / tiles->count < least_points_of_tile) return false;
     stars_ = make_star_list(run_, n_);
-    const auto run_tiles = [&](std::uint32_t count, std::uint32_t step) {
-      return run_stars(run_, order_, keys_, {}, {}, *tiles, count, step, stars_);
+    const auto run_tiles = [&](std::uint32_t count, std::uint32_t step, bool many) {
+      return run_stars(run_, order_, keys_, {}, {}, *tiles, count, step, many, stars_);
     };
+    bool many = false;  // points with many candidates: of 12-gons two thirds, of uniform points 3 %
     if (automatic && tiles->count >= sampled_tiles * least_step) {
-      const StarCounts found = run_tiles(sampled_tiles, tiles->count / sampled_tiles);
+      const StarCounts found = run_tiles(sampled_tiles, tiles->count / sampled_tiles, false);
       if (too_many(found.unproven, found.points)) return false;
+      many = 10 * std::size_t{found.again} > found.points;
     }
-    run_tiles(tiles->count, 1).add_to(run_.statistics);
+    run_tiles(tiles->count, 1, many).add_to(run_.statistics);
     run_.end_phase("stars");
     run_.check("stars", 0.5);
     return true;
@@ -119,9 +121,10 @@ class StarStage {
     // two records stay unused
     run_.device.fill(*records_, (2 * n_ - 2) * sizeof(cadt_record), 2 * sizeof(cadt_record), 0);
     open_ = run_.memory.allocate(std::size_t{open_count_} * word);
-    const Cut c = launch_.cut(n_);
-    launch_.run(KernelId::cadt_star_records, c.items, stars_.links, stars_.sizes, bases_, count_, c.grain, records_,
-                open_, totals_);
+    const std::uint32_t groups = (count_ - 1) / CADT_RECORD_LANES + 1;
+    const Cut c = launch_.cut_teams(groups, CADT_RECORD_LANES);
+    launch_.run(KernelId::cadt_star_records, c.items, stars_.links, stars_.sizes, bases_, count_, groups, c.grain,
+                records_, open_, totals_);
     run_.end_phase("records");
   }
 

@@ -41,16 +41,16 @@ void StarCounts::add_to(Statistics& statistics) const noexcept {
 
 StarCounts run_stars(Run& run, const SpatialOrder& order, const Allocation& keys, const Allocation& sets,
                      const Allocation& states, const TileList& tiles, std::uint32_t count, std::uint32_t step,
-                     const StarList& stars) {
+                     bool many, const StarList& stars) {
   const KeyGrid& grid = order.grid;
-  const Allocation found = run.launcher.zeros(5);
+  const Allocation found = run.launcher.zeros(6);
   const Cut teams = run.launcher.cut_teams(count, CADT_STAR_LANES);
   run.launcher.run(KernelId::cadt_stars, teams.items, order.points, keys, static_cast<std::uint32_t>(order.distinct),
                    grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y, grid.most_x, grid.most_y,
-                   grid.clipped ? 1U : 0U, sets, states, tiles.tiles, count, step, teams.grain, stars.links,
-                   stars.sizes, found);
+                   grid.clipped ? 1U : 0U, sets, states, tiles.tiles, count, step, many ? 1U : 0U, teams.grain,
+                   stars.links, stars.sizes, found);
   StarCounts counts;
-  static_assert(sizeof counts == 5 * word);
+  static_assert(sizeof counts == 6 * word);
   run.device.read(*found, 0, &counts, sizeof counts);
   return counts;
 }

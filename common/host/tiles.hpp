@@ -31,14 +31,14 @@ struct StarList {
 
 /// What cadt_stars counts.
 struct StarCounts {
-  std::uint32_t points = 0, unproven = 0, exact_orientations = 0, exact_incircles = 0, ties = 0;
+  std::uint32_t points = 0, unproven = 0, exact_orientations = 0, exact_incircles = 0, ties = 0, again = 0;
   void add_to(Statistics& statistics) const noexcept;
 };
 
 /// Stars of the vertices of `count` tiles, every `step`-th. `sets` and `states` of a call with several sets (sets.h),
-/// null else.
+/// null else. `many`: with room for many candidates at once.
 StarCounts run_stars(Run& run, const SpatialOrder& order, const Allocation& keys, const Allocation& sets,
                      const Allocation& states, const TileList& tiles, std::uint32_t count, std::uint32_t step,
-                     const StarList& stars);
+                     bool many, const StarList& stars);
 
 }  // namespace cadt

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <sstream>
 #include <string>
@@ -122,6 +123,27 @@ TEST(DevicePredicates, LongestIntegersOfTheMiddlePath) {
   }
   EXPECT_GT(seen.ties, 1000);
   EXPECT_GT(seen.exact, 1000);
+}
+
+// Rounded corners of small regular polygons: differences are exact where the coordinates have too many bits, and the
+// determinant is far below the sizes of its terms. Near the axes, where coordinates are finer, it is not.
+TEST(DevicePredicates, CornersOfSmallPolygons) {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> place(0, 1);
+  Seen seen;
+  for (int i = 0; i < 20000; ++i) {
+    const double radius = scaled(1 + place(random), -12), angle = std::numbers::pi / 6;
+    const double x = i % 3 == 0 ? scaled(place(random), -8 - i % 20) : place(random), y = place(random);
+    Four p;
+    for (PlanePoint& q : p) {
+      const double turn = angle * static_cast<double>(random() % 12);
+      q = {x + radius * std::cos(turn), y + radius * std::sin(turn)};
+    }
+    if (!distinct(p)) continue;
+    ASSERT_NO_FATAL_FAILURE(check(p, true, seen)) << i;
+  }
+  EXPECT_GT(seen.exact, 1000);
+  EXPECT_GT(seen.ties, 1000);
 }
 
 TEST(DevicePredicates, NarrowBuildTakesItsWholeWindow) {

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The points of some cells of a window.
+ */
+#ifndef CADT_DEVICE_SWEEP_H
+#define CADT_DEVICE_SWEEP_H
+
+#include "common/device/window.h"
+
+/* The points of a rectangle of cells, row by row, in one loop: lanes whose rows are short do not wait. No loop within
+ * it: in a row without points there is one step without a point. */
+typedef struct {
+  cadt_u32 place, end; /* in the row */
+  cadt_u32 cell, last, width, side;
+} cadt_sweep;
+
+CADT_FN cadt_sweep cadt_sweep_of(CADT_TEAM_PTR const cadt_window* w, cadt_u32 left, cadt_u32 bottom, cadt_u32 right,
+                                 cadt_u32 top) {
+  cadt_sweep s;
+  s.side = *CADT_CAST(volatile CADT_TEAM_PTR const cadt_u32*, &w->shape.side);
+  s.cell = bottom * s.side + left;
+  s.last = top * s.side + left;
+  s.width = right - left + 1u;
+  s.place = w->cells[s.cell];
+  s.end = w->cells[s.cell + s.width];
+  return s;
+}
+
+CADT_FN cadt_sweep cadt_sweep_around(CADT_TEAM_PTR const cadt_window* w, cadt_u32 x, cadt_u32 y, cadt_u32 reach) {
+  return cadt_sweep_of(w, x - reach, y - reach, x + reach, y + reach);
+}
+
+/* To the next step; 0: there is none. */
+CADT_FN cadt_u32 cadt_sweep_on(CADT_TEAM_PTR const cadt_window* w, cadt_sweep* s) {
+  ++s->place;
+  const cadt_u32 over = s->place >= s->end ? 1u : 0u, more = !over || s->cell != s->last ? 1u : 0u;
+  if (over && more) {
+    s->cell += s->side;
+    s->place = w->cells[s->cell];
+    s->end = w->cells[s->cell + s->width];
+  }
+  return more;
+}
+
+#endif

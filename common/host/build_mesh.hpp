@@ -15,10 +15,11 @@ struct DeviceMesh {
   bool flat = false;      ///< all points on one line or fewer than three: no records
 };
 
-/// Inserts all points level by level, legalises, and certifies by closing passes. Releases nothing of `order`.
-[[nodiscard]] DeviceMesh build_mesh(Run& run, const SpatialOrder& order);
+/// Inserts all points level by level, legalises, and certifies by closing passes. Releases nothing of `order`, but on
+/// GPUs brings points and labels into another order.
+[[nodiscard]] DeviceMesh build_mesh(Run& run, SpatialOrder& order);
 
 /// Closing passes over a mesh of two records a point that was made otherwise.
-[[nodiscard]] DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records);
+[[nodiscard]] DeviceMesh certify_mesh(Run& run, SpatialOrder& order, Allocation records);
 
 }  // namespace cadt

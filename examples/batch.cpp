@@ -28,11 +28,12 @@ int main(int count, char** values) {
 
     double least = 1, most = 0;
     for (std::size_t s = 0; s < batch.size(); ++s) {
-      const auto triangles = batch.triangles(s);        // vertices are numbers of the set's own points
+      const auto triangles = batch.triangles(s);  // vertices are numbers of the set's own points
       const double* points = xy.data() + 2 * offsets[s];
       double area = 0;
       for (std::size_t t = 0; t < triangles.size(); t += 3) {
-        const double *a = points + 2 * triangles[t], *b = points + 2 * triangles[t + 1], *c = points + 2 * triangles[t + 2];
+        const double *a = points + 2 * triangles[t], *b = points + 2 * triangles[t + 1],
+                     *c = points + 2 * triangles[t + 2];
         area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
       }
       least = std::min(least, area);
@@ -45,7 +46,8 @@ int main(int count, char** values) {
 
     const cadt::Triangulation one = batch.triangulation(sets / 2);  // a copy with hull and hash
     const auto part = std::span<const double>(xy).subspan(2 * offsets[sets / 2], 2 * size);
-    std::cout << "one set     " << one.hull().size() << " points on its hull, " << cadt::verify(part, one).summary() << '\n';
+    std::cout << "one set     " << one.hull().size() << " points on its hull, " << cadt::verify(part, one).summary()
+              << '\n';
     return 0;
   } catch (const std::exception& error) {
     std::cerr << "example-batch: " << error.what() << '\n';

@@ -8,8 +8,8 @@
  * the claim prove them (lock.h), because orderings cost nothing on x86 and much on GPUs:
  * - CPUs: every field is stored with release and loaded with acquire. Then the version in the lock word proves the
  * fields.
- * - GPUs: fields are stored and loaded relaxed; the claims acquire at device scope, by themselves or by one fence
- * behind them, one fence stands before the unlocks, and the owner reads the fields again.
+ * - GPUs: fields are stored and loaded relaxed; one fence of device scope behind the claims acquires, one before the
+ * unlocks releases, and the owner reads the fields again.
  */
 #ifndef CADT_DEVICE_ATOMICS_H
 #define CADT_DEVICE_ATOMICS_H
@@ -53,6 +53,9 @@ CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
              ? 1u
              : 0u;
 }
+CADT_FN cadt_u32 cadt_or_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 bits) {
+  return atomic_fetch_or_explicit(CADT_ATOMIC(p), bits, memory_order_relaxed, memory_scope_device);
+}
 CADT_FN void cadt_fence_acq_rel(void) {
 #if defined(__NV_CL_C_VERSION)
   /* the driver makes the function below sequentially consistent, which is more than is needed */
@@ -92,6 +95,9 @@ CADT_FN void cadt_min_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) {
 CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
   return atomic_cmpxchg((volatile CADT_GLOBAL cadt_u32*)p, expected, desired) == expected ? 1u : 0u;
 }
+CADT_FN cadt_u32 cadt_or_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 bits) {
+  return atomic_or((volatile CADT_GLOBAL cadt_u32*)p, bits);
+}
 CADT_FN void cadt_fence_acq_rel(void) { mem_fence(CLK_GLOBAL_MEM_FENCE); }
 
 /* ---- CUDA: volatile accesses are relaxed and bypass the L1 cache; orders are PTX at device scope -------------------
@@ -108,14 +114,6 @@ CADT_FN cadt_u32 cadt_load_acquire(CADT_GLOBAL cadt_u32* p) {
 CADT_FN void cadt_store_release(CADT_GLOBAL cadt_u32* p, cadt_u32 value) {
   asm volatile("st.release.gpu.global.u32 [%0], %1;" ::"l"(p), "r"(value) : "memory");
 }
-CADT_FN cadt_u32 cadt_cas_acquire(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
-  cadt_u32 old;
-  asm volatile("atom.acquire.gpu.global.cas.b32 %0, [%1], %2, %3;"
-               : "=r"(old)
-               : "l"(p), "r"(expected), "r"(desired)
-               : "memory");
-  return old == expected ? 1u : 0u;
-}
 CADT_FN cadt_u32 cadt_cas_acq_rel(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
   __threadfence();
   cadt_u32 old = atomicCAS(p, expected, desired);
@@ -129,6 +127,9 @@ CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
 }
 /* __threadfence is sequentially consistent, which is more than is needed. */
 CADT_FN void cadt_fence_acq_rel() { asm volatile("fence.acq_rel.gpu;" ::: "memory"); }
+CADT_FN void cadt_fence_acquire() { asm volatile("fence.acquire.gpu;" ::: "memory"); }
+CADT_FN void cadt_fence_release() { asm volatile("fence.release.gpu;" ::: "memory"); }
+CADT_FN cadt_u32 cadt_or_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 bits) { return atomicOr(p, bits); }
 
 /* ---- host: ordered operations, no fences (ThreadSanitizer does not follow fences) ----------------------------------
  */
@@ -214,18 +215,11 @@ CADT_FN void cadt_fence_claims(void) {}
 CADT_FN cadt_u32 cadt_load_field(CADT_GLOBAL cadt_u32* p) { return cadt_load_relaxed(p); }
 CADT_FN void cadt_store_field(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_relaxed(p, value); }
 CADT_FN void cadt_store_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_relaxed(p, value); }
-CADT_FN void cadt_fence_locks(void) { cadt_fence_acq_rel(); }
 #if defined(CADT_LANG_CUDA)
-/* An ordered claim is 3 % faster than a fence behind the claims (10M points, H200); ordered unlocks are slower than a
- * fence before them. */
-CADT_FN cadt_u32 cadt_cas_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
-  return cadt_cas_acquire(p, expected, desired);
-}
-CADT_FN void cadt_fence_claims(void) {}
+CADT_FN void cadt_fence_locks(void) { cadt_fence_release(); }
+CADT_FN void cadt_fence_claims(void) { cadt_fence_acquire(); }
 #else
-CADT_FN cadt_u32 cadt_cas_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
-  return cadt_cas_relaxed(p, expected, desired);
-}
+CADT_FN void cadt_fence_locks(void) { cadt_fence_acq_rel(); }
 CADT_FN void cadt_fence_claims(void) { cadt_fence_acq_rel(); }
 #endif
 #endif
@@ -243,6 +237,13 @@ CADT_FN void cadt_load_record(CADT_GLOBAL const cadt_u32* p, cadt_u32* w0, cadt_
                : "l"(p + 4)
                : "memory");
 }
+CADT_FN void cadt_store_record(CADT_GLOBAL cadt_u32* p, cadt_u32 w0, cadt_u32 w1, cadt_u32 w2, cadt_u32 w3, cadt_u32 w4,
+                               cadt_u32 w5, cadt_u32 w6, cadt_u32 w7) {
+  asm volatile("st.relaxed.gpu.global.v4.u32 [%0], {%1, %2, %3, %4};" ::"l"(p), "r"(w0), "r"(w1), "r"(w2), "r"(w3)
+               : "memory");
+  asm volatile("st.relaxed.gpu.global.v4.u32 [%0], {%1, %2, %3, %4};" ::"l"(p + 4), "r"(w4), "r"(w5), "r"(w6), "r"(w7)
+               : "memory");
+}
 #else
 CADT_FN void cadt_load_record(CADT_GLOBAL cadt_u32* p, cadt_u32* w0, cadt_u32* w1, cadt_u32* w2, cadt_u32* w3,
                               cadt_u32* w4, cadt_u32* w5, cadt_u32* w6, cadt_u32* w7) {
@@ -254,6 +255,17 @@ CADT_FN void cadt_load_record(CADT_GLOBAL cadt_u32* p, cadt_u32* w0, cadt_u32* w
   *w5 = cadt_load_field(p + 5);
   *w6 = cadt_load_field(p + 6);
   *w7 = cadt_load_field(p + 7);
+}
+CADT_FN void cadt_store_record(CADT_GLOBAL cadt_u32* p, cadt_u32 w0, cadt_u32 w1, cadt_u32 w2, cadt_u32 w3, cadt_u32 w4,
+                               cadt_u32 w5, cadt_u32 w6, cadt_u32 w7) {
+  cadt_store_field(p, w0);
+  cadt_store_field(p + 1, w1);
+  cadt_store_field(p + 2, w2);
+  cadt_store_field(p + 3, w3);
+  cadt_store_field(p + 4, w4);
+  cadt_store_field(p + 5, w5);
+  cadt_store_field(p + 6, w6);
+  cadt_store_field(p + 7, w7);
 }
 #endif
 

@@ -45,6 +45,24 @@ CADT_FN void cadt_write_face(const cadt_mesh* m, cadt_u32 i, cadt_u32 t, const c
                              cadt_tally* tally) {
   const cadt_u32 t1 = 2u * i, t2 = 2u * i + 1u;
   /* i takes the place of v0 in t, of v1 in t1, of v2 in t2 */
+#if !CADT_CONTIGUOUS
+  const cadt_u32 f0 = cadt_flips_get(s->flips, 0u), f1 = cadt_flips_get(s->flips, 1u);
+  const cadt_snapshot r1 = {
+      s->v0, i, s->v2, 0u, CADT_LINK(t, 1u), s->n1, CADT_LINK(t2, 1u), cadt_flips_set(0u, 1u, f1)};
+  const cadt_snapshot r2 = {s->v0,
+                            s->v1,
+                            i,
+                            0u,
+                            CADT_LINK(t, 2u),
+                            CADT_LINK(t1, 2u),
+                            s->n2,
+                            cadt_flips_set(0u, 2u, cadt_flips_get(s->flips, 2u))};
+  const cadt_snapshot r0 = {
+      i, s->v1, s->v2, s->lock | 1u, s->n0, CADT_LINK(t1, 0u), CADT_LINK(t2, 0u), cadt_flips_set(0u, 0u, f0)};
+  cadt_store_from(m, t1, 0u, &r1);
+  cadt_store_from(m, t2, 0u, &r2);
+  cadt_store_from(m, t, 0u, &r0);
+#else
   cadt_new_record(m, t1, s->v0, i, s->v2, CADT_LINK(t, 1u), s->n1, CADT_LINK(t2, 1u),
                   cadt_flips_set(0u, 1u, cadt_flips_get(s->flips, 1u)));
   cadt_new_record(m, t2, s->v0, s->v1, i, CADT_LINK(t, 2u), CADT_LINK(t1, 2u), s->n2,
@@ -53,6 +71,7 @@ CADT_FN void cadt_write_face(const cadt_mesh* m, cadt_u32 i, cadt_u32 t, const c
   cadt_store_link(m, t, 1u, CADT_LINK(t1, 0u));
   cadt_store_link(m, t, 2u, CADT_LINK(t2, 0u));
   cadt_store_flips(m, t, cadt_flips_set(0u, 0u, cadt_flips_get(s->flips, 0u)));
+#endif
   CADT_LAP(tally, CADT_TIME_SPLIT);
   cadt_link_back(m, s->n1, CADT_LINK(t1, 1u));
   cadt_link_back(m, s->n2, CADT_LINK(t2, 2u));
@@ -68,6 +87,11 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_plac
                                  cadt_tally* tally) {
   const cadt_u32 t = place->record, t1 = 2u * i, t2 = 2u * i + 1u;
   const cadt_snapshot s = place->at;
+  if (!cadt_is_free(s.lock)) {
+    tally->count[CADT_COUNT_CLAIMS]++;
+    tally->count[CADT_COUNT_LOST_CLAIMS]++;
+    return 0u;
+  }
   cadt_claim claim;
   claim.record[0] = t;
   claim.version[0] = s.lock;
@@ -176,9 +200,13 @@ CADT_FN cadt_u32 cadt_is_illegal(const cadt_mesh* m, cadt_u32 p, cadt_u32 a, cad
   tally->count[CADT_COUNT_INCIRCLE_TESTS]++;
   if (p == CADT_GHOST || q == CADT_GHOST) return 0u;
   if (a == CADT_GHOST && b == CADT_GHOST) return 0u; /* torn read */
-  if (a == CADT_GHOST) return cadt_orientation(m->points[p], m->points[q], m->points[b], tally) > 0 ? 1u : 0u;
-  if (b == CADT_GHOST) return cadt_orientation(m->points[q], m->points[p], m->points[a], tally) > 0 ? 1u : 0u;
-  return cadt_incircle(m->points[p], m->points[a], m->points[b], m->points[q], tally) > 0 ? 1u : 0u;
+  if (a == CADT_GHOST)
+    return cadt_orientation(cadt_point_of(m, p), cadt_point_of(m, q), cadt_point_of(m, b), tally) > 0 ? 1u : 0u;
+  if (b == CADT_GHOST)
+    return cadt_orientation(cadt_point_of(m, q), cadt_point_of(m, p), cadt_point_of(m, a), tally) > 0 ? 1u : 0u;
+  return cadt_incircle(cadt_point_of(m, p), cadt_point_of(m, a), cadt_point_of(m, b), cadt_point_of(m, q), tally) > 0
+             ? 1u
+             : 0u;
 }
 
 /* Smallest angle of the triangle of points 0, u and v. The one between the longer sides: it has the largest scalar
@@ -219,7 +247,9 @@ CADT_FN cadt_u32 cadt_is_left(const cadt_mesh* m, cadt_u32 flips, cadt_u32 p, ca
   if (m->stabilize == CADT_CAST(cadt_u32, CADT_STABILIZE_OFF) || flips <= m->threshold) return 0u;
   if (a == CADT_GHOST || b == CADT_GHOST) return 0u;
   if (m->stabilize == CADT_CAST(cadt_u32, CADT_STABILIZE_DEFER)) return 1u;
-  return cadt_flip_gains(m->points[p], m->points[a], m->points[b], m->points[q], m->epsilon) ? 0u : 1u;
+  return cadt_flip_gains(cadt_point_of(m, p), cadt_point_of(m, a), cadt_point_of(m, b), cadt_point_of(m, q), m->epsilon)
+             ? 0u
+             : 1u;
 }
 
 /* The stores of a flip of the edge `link`, with its two triangles seen from it as `s` and `u`. \pre nobody else changes
@@ -231,6 +261,21 @@ CADT_FN void cadt_write_flip(const cadt_mesh* m, cadt_u32 link, const cadt_snaps
   const cadt_u32 outer_bp = s->n1, outer_aq = u->n1;
   /* t = (p, a, b) becomes (p, a, u->v0); n = (q, b, a) becomes (q, b, p); the counter of a-b goes on with p-q */
   const cadt_u32 flips = cadt_flips_get(s->flips, k) + 1u;
+#if !CADT_CONTIGUOUS
+  const cadt_snapshot rt = {
+      s->v0,    s->v1,
+      u->v0,    s->lock | 1u,
+      outer_aq, CADT_LINK(n, j1),
+      s->n2,    cadt_flips_set(cadt_flips_set(s->flips, k, cadt_flips_get(u->flips, j1)), k1, flips)};
+  const cadt_snapshot rn = {
+      u->v0,    u->v1,
+      s->v0,    u->lock | 1u,
+      outer_bp, CADT_LINK(t, k1),
+      u->n2,    cadt_flips_set(cadt_flips_set(u->flips, j, cadt_flips_get(s->flips, k1)), j1, flips)};
+  cadt_store_from(m, t, k, &rt);
+  cadt_store_from(m, n, j, &rn);
+  (void)k2, (void)j2;
+#else
   cadt_store_vertex(m, t, k2, u->v0);
   cadt_store_link(m, t, k, outer_aq);
   cadt_store_link(m, t, k1, CADT_LINK(n, j1));
@@ -239,6 +284,7 @@ CADT_FN void cadt_write_flip(const cadt_mesh* m, cadt_u32 link, const cadt_snaps
   cadt_store_link(m, n, j, outer_bp);
   cadt_store_link(m, n, j1, CADT_LINK(t, k1));
   cadt_store_flips(m, n, cadt_flips_set(cadt_flips_set(u->flips, j, cadt_flips_get(s->flips, k1)), j1, flips));
+#endif
   CADT_LAP(tally, CADT_TIME_FLIP);
   cadt_link_back(m, outer_aq, CADT_LINK(t, k));
   cadt_link_back(m, outer_bp, CADT_LINK(n, j));
@@ -246,13 +292,14 @@ CADT_FN void cadt_write_flip(const cadt_mesh* m, cadt_u32 link, const cadt_snaps
   tally->count[CADT_COUNT_FLIPS]++;
 }
 
-/* Tests an edge and flips it if it is illegal. `apex` is the vertex expected opposite of it, or CADT_NONE for any.
+/* Tests an edge and flips it if it is illegal. `apex` is the vertex expected opposite of it, `apex_point` where it is,
+ * or CADT_NONE for any.
  * \post CADT_EDGE_LEFT: it is illegal and stays so, for now or for good (cadt_is_left). CADT_EDGE_FLIPPED: the edge's
  * record keeps its link, `*partner` is the record and edge on the other side of the quadrilateral that is now opposite
  * the same apex; `*all_sides`: the apex is another one than expected, so all four sides of the quadrilateral may be
  * illegal. */
-CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 apex, cadt_u32* partner,
-                                    cadt_u32* all_sides, cadt_tally* tally) {
+CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 apex, cadt_point apex_point,
+                                    cadt_u32* partner, cadt_u32* all_sides, cadt_tally* tally) {
   const cadt_u32 t = CADT_LINK_RECORD(link), k = CADT_LINK_EDGE(link);
   const cadt_snapshot s = cadt_look_from(m, t, k);
   const cadt_u32 p = s.v0;
@@ -276,7 +323,14 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
     return CADT_EDGE_CONFLICT;
   }
   const cadt_u32 q = u.v0;
-  const cadt_u32 illegal = cadt_is_illegal(m, p, s.v1, s.v2, q, tally);
+  cadt_u32 illegal;
+  /* the ghost is CADT_NONE, too */
+  if (p == apex && p != CADT_GHOST && s.v1 != CADT_GHOST && s.v2 != CADT_GHOST && q != CADT_GHOST) {
+    tally->count[CADT_COUNT_INCIRCLE_TESTS]++;
+    illegal = cadt_incircle(apex_point, cadt_point_of(m, s.v1), cadt_point_of(m, s.v2), cadt_point_of(m, q), tally) > 0;
+  } else {
+    illegal = cadt_is_illegal(m, p, s.v1, s.v2, q, tally);
+  }
   CADT_LAP(tally, CADT_TIME_TEST);
   if (!illegal) return CADT_EDGE_LEGAL;
   if (cadt_is_left(m, cadt_flips_get(s.flips, k), p, s.v1, s.v2, q)) {

@@ -48,15 +48,17 @@ CADT_FN void cadt_close_edges(const cadt_mesh* m, const cadt_u32* links, cadt_u3
 #endif
 
 /* left_counts, behind those of the lists: edges examined, illegal ones that are to be flipped, ones that could not be
- * read because somebody was changing them, illegal ones that are left as they are (CADT_STABILIZE_PAPER). \pre records
- * of vertices that are not in the mesh have lock word 0 */
-CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain,
+ * read because somebody was changing them, illegal ones that are left as they are (CADT_STABILIZE_PAPER). `n`: points
+ * in the order of levels (cadt_by_level), whose records are looked at along the curve; 0: records as they are. \pre
+ * records of vertices that are not in the mesh have lock word 0 */
+CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain, cadt_u32 n,
             CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counters) {
   CADT_GROUP_TALLY(tally, counters);
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
 #if CADT_CONTIGUOUS
+  (void)n;
   /* An edge is seen from two triangles. Which of them takes it is settled without a branch, which would be wrong half
    * of the time, before a batch of edges is looked at. */
   cadt_u32 batch[CADT_CLOSING_BATCH + 3], listed = 0u;
@@ -79,7 +81,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
 #else
   cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u, left = 0u;
   CADT_FOR(r, count, grain) {
-    const cadt_u32 t = begin + r;
+    const cadt_u32 slot = begin + r, t = n ? 2u * cadt_rank_of(0u, slot >> 1, n) + (slot & 1u) : slot;
     const cadt_snapshot s = cadt_look(&mesh, t);
     if (s.lock == 0u) continue;
     for (cadt_u32 k = 0u; k < 3u; ++k) {

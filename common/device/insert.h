@@ -53,87 +53,108 @@ CADT_FN void cadt_report_changes(const cadt_tally* tally, CADT_GLOBAL cadt_u32* 
     cadt_add_relaxed(counts + 2, 1u);
 }
 
-/* Edges that a work-item has yet to look at, in a ring from `first` on: the newest is next, so that a fan of flips
- * stays small. `apex` is the inserted vertex: then only edges opposite of it can become illegal by its flips (paper,
- * Algorithm 3); CADT_NONE: any edge, all four sides are checked. */
+/* Edges that a work-item has yet to look at: `next`, if there is one, then those in a ring from `first` on, the newest
+ * before others, so that a fan of flips stays small. `apex` is the inserted vertex: then only edges opposite of it can
+ * become illegal by its flips (paper, Algorithm 3); CADT_NONE: any edge, all four sides are checked. */
 typedef struct {
   cadt_u32 link[CADT_WORKLIST];
-  cadt_u32 first, size, apex;
+  cadt_u32 next, first, size, apex;
+  cadt_point apex_point;
   cadt_u32 flips; /* flips left, and one; after them what becomes illegal is left for the next launch */
+  cadt_u32 conflicts;
 } cadt_worklist;
 
 CADT_FN void cadt_worklist_begin(cadt_worklist* work, cadt_u32 apex, cadt_u32 flips) {
-  work->first = work->size = 0u;
+  work->next = CADT_NONE;
+  work->first = work->size = work->conflicts = 0u;
   work->apex = apex;
+  work->apex_point.x = work->apex_point.y = 0.0;
   work->flips = flips;
+}
+
+CADT_FN cadt_u32 cadt_worklist_left(const cadt_worklist* work) {
+  return work->next != CADT_NONE || work->size > 0u ? 1u : 0u;
 }
 
 CADT_FN void cadt_worklist_add(cadt_worklist* work, cadt_u32 link) {
   work->link[(work->first + work->size++) & (CADT_WORKLIST - 1u)] = link;
 }
 
-/* Legalises the edges of the worklist and whatever becomes illegal by the flips. */
-CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_worklist* work, const cadt_deferred* deferred, cadt_tally* tally) {
+CADT_FN cadt_u32 cadt_worklist_take(cadt_worklist* work) {
+  const cadt_u32 oldest = work->size > CADT_CAST(cadt_u32, CADT_WORKLIST_STACK) ? 1u : 0u;
+  cadt_u32 link = work->next;
+  if (link != CADT_NONE && !oldest) {
+    work->next = CADT_NONE;
+    return link;
+  }
+  link = work->link[(oldest ? work->first : work->first + work->size - 1u) & (CADT_WORKLIST - 1u)];
+  work->size--;
+  work->first += oldest;
+  return link;
+}
+
+/* Looks at one edge of the worklist and flips it if it is illegal; then what may be illegal by that goes on the list.
+ * \pre there is one */
+CADT_FN void cadt_legalize_next(const cadt_mesh* m, cadt_worklist* work, const cadt_deferred* deferred,
+                                cadt_tally* tally) {
   const cadt_u32 mask = CADT_WORKLIST - 1u;
-  cadt_u32 conflicts = 0u, partner = 0u, all_sides = 0u;
-  while (work->size > 0u) {
-    CADT_LAP_WAIT(tally);
-    const cadt_u32 oldest = work->size > CADT_CAST(cadt_u32, CADT_WORKLIST_STACK) ? 1u : 0u;
-    const cadt_u32 link = work->link[(oldest ? work->first : work->first + work->size - 1u) & mask];
-    work->size--;
-    work->first += oldest;
-    CADT_LAP(tally, CADT_TIME_OTHER);
-    const cadt_u32 outcome = cadt_legalize_edge(m, link, work->apex, &partner, &all_sides, tally);
-    if (outcome == CADT_EDGE_LEGAL || outcome == CADT_EDGE_LEFT) continue;
-    if (outcome == CADT_EDGE_CONFLICT) {
-      if (++conflicts > CADT_CAST(cadt_u32, CADT_EDGE_TRIES)) {
-        cadt_defer_edge(deferred, link, tally);
-      } else { /* to the other end: the other edges first, meanwhile the owner gets on */
-        if (!oldest) work->first--;
-        work->link[(oldest ? work->first + work->size : work->first) & mask] = link;
-        work->size++;
-      }
-      CADT_LAP(tally, CADT_TIME_OTHER);
-      continue;
+  cadt_u32 partner = 0u, all_sides = 0u;
+  CADT_LAP_WAIT(tally);
+  const cadt_u32 link = cadt_worklist_take(work);
+  CADT_LAP(tally, CADT_TIME_OTHER);
+  const cadt_u32 outcome = cadt_legalize_edge(m, link, work->apex, work->apex_point, &partner, &all_sides, tally);
+  if (outcome == CADT_EDGE_CONFLICT) {
+    if (++work->conflicts > CADT_CAST(cadt_u32, CADT_EDGE_TRIES)) {
+      cadt_defer_edge(deferred, link, tally);
+    } else { /* to the far end: the other edges first, meanwhile the owner gets on */
+      work->first--;
+      work->link[work->first & mask] = link;
+      work->size++;
     }
+  } else if (outcome == CADT_EDGE_FLIPPED) {
     cadt_u32 sides[4];
-    sides[0] = link;
-    sides[1] = partner;
-    sides[2] = CADT_LINK(CADT_LINK_RECORD(link), CADT_PREV(CADT_LINK_EDGE(link)));
-    sides[3] = CADT_LINK(CADT_LINK_RECORD(partner), CADT_NEXT(CADT_LINK_EDGE(partner)));
+    sides[0] = partner;
+    sides[1] = CADT_LINK(CADT_LINK_RECORD(link), CADT_PREV(CADT_LINK_EDGE(link)));
+    sides[2] = CADT_LINK(CADT_LINK_RECORD(partner), CADT_NEXT(CADT_LINK_EDGE(partner)));
     if (work->flips) work->flips--;
-    const cadt_u32 room = work->flips ? CADT_CAST(cadt_u32, CADT_WORKLIST) - 1u : 0u;
-    for (cadt_u32 e = 0u; e < (all_sides ? 4u : 2u); ++e) {
+    const cadt_u32 room = work->flips ? CADT_CAST(cadt_u32, CADT_WORKLIST) - 2u : 0u;
+    for (cadt_u32 e = 0u; e < (all_sides ? 3u : 1u); ++e) {
       if (work->size < room)
         cadt_worklist_add(work, sides[e]);
       else
         cadt_defer_edge(deferred, sides[e], tally);
     }
-    CADT_LAP(tally, CADT_TIME_OTHER);
+    if (!work->flips)
+      cadt_defer_edge(deferred, link, tally);
+    else if (work->next == CADT_NONE)
+      work->next = link;
+    else if (work->size < room)
+      cadt_worklist_add(work, link);
+    else
+      cadt_defer_edge(deferred, link, tally);
   }
+  CADT_LAP(tally, CADT_TIME_OTHER);
 }
 
-/* Locates and inserts vertex i. Returns the number of `edges` opposite of it, 0 if the point must be tried by a later
- * launch. */
-CADT_FN cadt_u32 cadt_insert_vertex(const cadt_mesh* m, cadt_u32 i, cadt_u32 hint, cadt_u32* edges, cadt_tally* tally) {
-  const cadt_point p = m->points[i];
-  cadt_place place = {CADT_LOST, hint, 0u, {0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u}};
-  for (cadt_u32 attempt = 0u; attempt < CADT_CAST(cadt_u32, CADT_INSERT_TRIES); ++attempt) {
-    if (attempt) tally->count[CADT_COUNT_INSERT_RETRIES]++;
-    CADT_LAP(tally, CADT_TIME_OTHER);
-    cadt_locate(m, p, place.record, &place, tally);
-    CADT_LAP(tally, CADT_TIME_LOCATE);
-    if (place.kind == CADT_LOST) continue;
-    const cadt_u32 size = place.kind == CADT_IN_FACE ? cadt_split_face(m, i, &place, edges, tally)
-                                                     : cadt_split_edge(m, i, &place, edges, tally);
-    if (size) {
-      cadt_store_relaxed(m->hints + i, place.record);
-      return size;
-    }
-  }
-  cadt_store_relaxed(m->hints + i, place.record);
-  tally->count[CADT_COUNT_DEFERRED_POINTS]++;
-  return 0u;
+/* Legalises the edges of the worklist and whatever becomes illegal by the flips. */
+CADT_FN void cadt_legalize(const cadt_mesh* m, cadt_worklist* work, const cadt_deferred* deferred, cadt_tally* tally) {
+  while (cadt_worklist_left(work)) cadt_legalize_next(m, work, deferred, tally);
+}
+
+/* Walks from `*hint` and inserts vertex i where the walk ends. Returns the number of `edges` opposite of it; 0 if that
+ * is to be tried again, from the new `*hint`. */
+CADT_FN cadt_u32 cadt_try_vertex(const cadt_mesh* m, cadt_u32 i, cadt_point p, cadt_u32* hint, cadt_u32* edges,
+                                 cadt_tally* tally) {
+  cadt_place place = {CADT_LOST, *hint, 0u, {0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u}};
+  cadt_u32 size = 0u;
+  CADT_LAP(tally, CADT_TIME_OTHER);
+  cadt_locate(m, p, *hint, &place, tally);
+  CADT_LAP(tally, CADT_TIME_LOCATE);
+  if (place.kind != CADT_LOST)
+    size = place.kind == CADT_IN_FACE ? cadt_split_face(m, i, &place, edges, tally)
+                                      : cadt_split_edge(m, i, &place, edges, tally);
+  *hint = place.record;
+  return size;
 }
 
 /* Block b of level l holds the positions from b * 2^l on, 2^l of them. One of them stands for the block: that of one of
@@ -156,6 +177,30 @@ CADT_FN cadt_u32 cadt_representative(cadt_u32 level, cadt_u32 block, cadt_u32 n)
     if (right && (CADT_CAST(cadt_u64, block) << level) >= n) --block;
   }
   return block;
+}
+
+/* On GPUs the points are in the order in which they are inserted, level after level, each along the curve: what is in
+ * the mesh when few are is close together, and lines of the cache are full of it. In this order, the place of the point
+ * that stands for `block` of `level`: it is inserted at the first level from there on at which its block does not stand
+ * for the two. */
+CADT_FN cadt_u32 cadt_blocks_of(cadt_u32 level, cadt_u32 n) { return ((n - 1u) >> level) + 1u; }
+CADT_FN cadt_u32 cadt_rank_of(cadt_u32 level, cadt_u32 block, cadt_u32 n) {
+  for (;; ++level, block >>= 1) {
+    const cadt_u32 blocks = cadt_blocks_of(level, n);
+    if (blocks == 1u) return 0u;
+    const cadt_u32 right = (block | 1u) < blocks ? cadt_right_half(level + 1u, block >> 1) : 0u;
+    if ((block & 1u) != right) return cadt_blocks_of(level + 1u, n) + (block >> 1);
+  }
+}
+
+/* Points and labels in that order. */
+CADT_KERNEL(cadt_by_level, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* labels, cadt_u32 n,
+            cadt_u32 grain, CADT_GLOBAL cadt_point* sorted_points, CADT_GLOBAL cadt_u32* sorted_labels) {
+  CADT_FOR(i, n, grain) {
+    const cadt_u32 rank = cadt_rank_of(0u, i, n);
+    sorted_points[rank] = points[i];
+    sorted_labels[rank] = labels[i];
+  }
 }
 
 /* Position of the point that stands for all: the first of the mesh. */
@@ -185,28 +230,59 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
   cadt_worklist work;
-  CADT_FOR_SPREAD(u, count, grain) {
-    cadt_u32 i, hint;
-    if (u < listed) {
-      i = list[u];
+  const cadt_u32 warp = cadt_lanes_of_warp();
+  cadt_u32 u = CADT_SPREAD_BEGIN(count, grain), i = CADT_NONE, hint = 0u, tries = 0u;
+  cadt_worklist_begin(&work, CADT_NONE, 0u);
+  /* Lanes of a warp stay together, so that memory is waited for once for all of them; when the last one has no edge
+   * left, all have their next points. */
+  for (;;) {
+    if (!cadt_any_lane(warp, cadt_worklist_left(&work))) {
+      const cadt_u32 idle = i != CADT_NONE || u < CADT_SPREAD_END(count, grain) ? 1u : 0u;
+      if (!cadt_any_lane(warp, idle)) break;
+      if (idle) {
+        if (i == CADT_NONE) {
+          if (u < listed) {
+            i = list[u];
 #if CADT_CONTIGUOUS
-      hint = cadt_hint_of_left(&mesh, i, n);
+            hint = cadt_hint_of_left(&mesh, i, n);
 #else
-      hint = cadt_load_relaxed(mesh.hints + i);
+            hint = cadt_load_relaxed(mesh.hints + i);
 #endif
-    } else {
-      const cadt_u32 block = begin + (u - listed);
-      const cadt_u32 standing = 2u * block + cadt_right_half(level + 1u, block);
-      i = cadt_representative(level, standing ^ 1u, n);
-      hint = cadt_load_relaxed(mesh.hints + cadt_representative(level, standing, n));
+          } else {
+            const cadt_u32 block = begin + (u - listed);
+#if CADT_CONTIGUOUS
+            const cadt_u32 standing = 2u * block + cadt_right_half(level + 1u, block);
+            i = cadt_representative(level, standing ^ 1u, n);
+            hint = cadt_load_relaxed(mesh.hints + cadt_representative(level, standing, n));
+#else
+            i = cadt_blocks_of(level + 1u, n) + block;
+            hint = cadt_load_relaxed(mesh.hints + cadt_rank_of(level + 1u, block, n));
+#endif
+          }
+          u += CADT_SPREAD_STEP(grain);
+          tries = 0u;
+          if (i == first || i == second || i == third) i = CADT_NONE;
+        }
+        if (i != CADT_NONE) {
+          cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
+          work.apex_point = cadt_point_of(&mesh, i);
+          work.size = cadt_try_vertex(&mesh, i, work.apex_point, &hint, work.link, &tally);
+          if (work.size || ++tries == CADT_CAST(cadt_u32, CADT_INSERT_TRIES)) {
+            cadt_store_relaxed(mesh.hints + i, hint);
+            if (!work.size) {
+              tally.count[CADT_COUNT_DEFERRED_POINTS]++;
+              left_points[cadt_add_relaxed(left_counts, 1u)] = i;
+            }
+            i = CADT_NONE;
+          } else {
+            tally.count[CADT_COUNT_INSERT_RETRIES]++;
+          }
+        }
+      }
+      cadt_join_lanes(warp);
     }
-    if (i == first || i == second || i == third) continue;
-    cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
-    work.size = cadt_insert_vertex(&mesh, i, hint, work.link, &tally);
-    if (work.size)
-      cadt_legalize(&mesh, &work, &deferred, &tally);
-    else
-      left_points[cadt_add_relaxed(left_counts, 1u)] = i;
+    if (cadt_worklist_left(&work)) cadt_legalize_next(&mesh, &work, &deferred, &tally);
+    cadt_join_lanes(warp);
   }
   if (listed == count) cadt_report_changes(&tally, left_counts);
   CADT_FLUSH_TALLY(&tally, counters);
@@ -220,10 +296,18 @@ CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u3
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
   cadt_worklist work;
-  CADT_FOR_SPREAD(e, count, grain) {
-    cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
-    cadt_worklist_add(&work, list[e]);
-    cadt_legalize(&mesh, &work, &deferred, &tally);
+  const cadt_u32 warp = cadt_lanes_of_warp();
+  cadt_u32 e = CADT_SPREAD_BEGIN(count, grain);
+  cadt_worklist_begin(&work, CADT_NONE, 0u);
+  for (;;) {
+    if (!cadt_worklist_left(&work) && e < CADT_SPREAD_END(count, grain)) {
+      cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
+      work.next = list[e];
+      e += CADT_SPREAD_STEP(grain);
+    }
+    if (!cadt_any_lane(warp, cadt_worklist_left(&work))) break;
+    if (cadt_worklist_left(&work)) cadt_legalize_next(&mesh, &work, &deferred, &tally);
+    cadt_join_lanes(warp);
   }
   cadt_report_changes(&tally, left_counts);
   CADT_FLUSH_TALLY(&tally, counters);

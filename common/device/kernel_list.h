@@ -33,6 +33,7 @@
   X(cadt_find_triangle)     /* start.h: three points not on a line */            \
   X(cadt_start_mesh)        /* start.h */                                        \
   X(cadt_root)              /* insert.h */                                       \
+  X(cadt_by_level)          /* insert.h */                                       \
   X(cadt_insert)            /* insert.h: locate, claim, split, legalise */       \
   X(cadt_legalize_edges)    /* insert.h: deferred edges */                       \
   X(cadt_insert_ranges)     /* range.h: without locks */                         \

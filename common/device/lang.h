@@ -122,9 +122,14 @@ typedef long long cadt_i64;
 #define CADT_FN static __device__ inline
 #define CADT_FN_SLOW static __device__ __noinline__
 #define CADT_KERNEL(name, ...) static __global__ void name(__VA_ARGS__)
-/* Registers are given out so that so many teams run on a multiprocessor at the same time. */
+/* Registers are given out so that so many teams run on a multiprocessor at the same time, if it has so many threads. */
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
+#define CADT_TEAMS(lanes, teams) ((lanes) * (teams) > 1024 ? 1024 / (lanes) : (teams))
+#else
+#define CADT_TEAMS(lanes, teams) (teams)
+#endif
 #define CADT_TEAM_KERNEL(lanes, teams, name, ...) \
-  static __global__ void __launch_bounds__((lanes), (teams)) name(__VA_ARGS__)
+  static __global__ void __launch_bounds__((lanes), CADT_TEAMS(lanes, teams)) name(__VA_ARGS__)
 #define cadt_item ((cadt_u32)(blockIdx.x * blockDim.x + threadIdx.x))
 #define cadt_items ((cadt_u32)(gridDim.x * blockDim.x))
 #define CADT_LOCAL __shared__
@@ -267,6 +272,19 @@ typedef struct {
 
 #define CADT_NONE 0xFFFFFFFFu
 
+/* A point at an address that is a multiple of 16, in one access: two would ask the L2 cache twice for one sector. */
+#if defined(CADT_LANG_OPENCL) || defined(CADT_LANG_CUDA)
+CADT_FN cadt_point cadt_load_point(CADT_GLOBAL const cadt_point* p) {
+  const double2 both = *(CADT_GLOBAL const double2*)p;
+  cadt_point point;
+  point.x = both.x;
+  point.y = both.y;
+  return point;
+}
+#else
+CADT_FN cadt_point cadt_load_point(const cadt_point* p) { return *p; }
+#endif
+
 /* Four words of memory that nobody changes meanwhile, at an address that is a multiple of 16; two, of 8. */
 #if defined(CADT_LANG_OPENCL) || defined(CADT_LANG_CUDA)
 CADT_FN void cadt_store_four(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 d) {
@@ -344,14 +362,32 @@ CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
 #define CADT_FOR_PART(i, part, parts, count, chunk) for (cadt_u32 i = (part); i < (count); i += (parts))
 #endif
 
-/* As CADT_FOR, for work that takes many steps and branches. Lanes of a GPU's warp go separate ways one after another,
- * so where there are fewer elements than the device has lanes, `grain` lanes share an element and one of them works. */
-#if CADT_CONTIGUOUS
-#define CADT_FOR_SPREAD(i, count, grain) CADT_FOR(i, count, grain)
+/* Lanes of a warp that went separate ways meet at cadt_any_lane and cadt_join_lanes, which all lanes of `warp` must
+ * reach. Elsewhere each work-item is a warp of its own. */
+#if defined(CADT_LANG_CUDA)
+CADT_FN cadt_u32 cadt_lanes_of_warp() {
+  const cadt_u32 left = blockDim.x - (threadIdx.x & ~31u);
+  return left >= 32u ? 0xFFFFFFFFu : (1u << left) - 1u;
+}
+CADT_FN cadt_u32 cadt_any_lane(cadt_u32 warp, cadt_u32 yes) { return __any_sync(warp, yes != 0u) ? 1u : 0u; }
+CADT_FN void cadt_join_lanes(cadt_u32 warp) { __syncwarp(warp); }
 #else
-#define CADT_FOR_SPREAD(i, count, grain)                                              \
-  for (cadt_u32 i = cadt_item % (grain) ? (count) : cadt_item / (grain); i < (count); \
-       i += (cadt_items - 1u) / (grain) + 1u)
+CADT_FN cadt_u32 cadt_lanes_of_warp(void) { return 1u; }
+CADT_FN cadt_u32 cadt_any_lane(cadt_u32 warp, cadt_u32 yes) { return warp & yes; }
+CADT_FN void cadt_join_lanes(cadt_u32 warp) { (void)warp; }
+#endif
+
+/* As CADT_FOR, for work that takes many steps and branches, in loops that are not over the elements alone: the first
+ * element, one behind the last, and from one to the next. Lanes of a GPU's warp go separate ways one after another, so
+ * where there are fewer elements than the device has lanes, `grain` lanes share an element and one of them works. */
+#if CADT_CONTIGUOUS
+#define CADT_SPREAD_BEGIN(count, grain) cadt_begin_of(cadt_item, (grain), (count))
+#define CADT_SPREAD_END(count, grain) cadt_min_u32(CADT_SPREAD_BEGIN(count, grain) + (grain), (count))
+#define CADT_SPREAD_STEP(grain) 1u
+#else
+#define CADT_SPREAD_BEGIN(count, grain) (cadt_item % (grain) ? (count) : cadt_item / (grain))
+#define CADT_SPREAD_END(count, grain) (count)
+#define CADT_SPREAD_STEP(grain) ((cadt_items - 1u) / (grain) + 1u)
 #endif
 
 #endif

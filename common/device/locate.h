@@ -37,7 +37,8 @@ CADT_FN cadt_i32 cadt_around_center(const cadt_mesh* m, cadt_point a, cadt_point
   if (-det > bound) return -1;
 #endif
   tally->count[CADT_COUNT_EXACT_ORIENTATIONS]++;
-  return cadt_orientation_centroid_exact(m->points[m->first], m->points[m->second], m->points[m->third], a, b);
+  return cadt_orientation_centroid_exact(cadt_point_of(m, m->first), cadt_point_of(m, m->second),
+                                         cadt_point_of(m, m->third), a, b);
 }
 
 /* Where to leave a ghost triangle whose ghost is vertex g: an edge, or 3 if p is in its wedge and strictly outside. */
@@ -45,7 +46,7 @@ CADT_FN cadt_u32 cadt_leave_ghost(const cadt_mesh* m, const cadt_snapshot* s, ca
                                   cadt_tally* tally) {
   cadt_u32 gx = CADT_NEXT(g), gy = CADT_PREV(g);
   /* the hull edge runs y -> x counterclockwise */
-  cadt_point x = m->points[CADT_VERTEX(*s, gx)], y = m->points[CADT_VERTEX(*s, gy)];
+  cadt_point x = cadt_point_of(m, CADT_VERTEX(*s, gx)), y = cadt_point_of(m, CADT_VERTEX(*s, gy));
   if (cadt_around_center(m, y, p, tally) < 0) return gx;
   if (cadt_around_center(m, x, p, tally) >= 0) return gy;
   return cadt_orientation(x, y, p, tally) > 0 ? 3u : g;
@@ -56,7 +57,7 @@ CADT_FN cadt_u32 cadt_leave_ghost(const cadt_mesh* m, const cadt_snapshot* s, ca
  * 2, or from 2 to 0 if `reverse`: of two edges to leave by, either may be taken. */
 CADT_FN cadt_u32 cadt_leave_face(const cadt_mesh* m, const cadt_snapshot* s, cadt_u32 entry, cadt_u32 reverse,
                                  cadt_point p, cadt_u32* on, cadt_tally* tally) {
-  cadt_point a = m->points[s->v0], b = m->points[s->v1], c = m->points[s->v2];
+  cadt_point a = cadt_point_of(m, s->v0), b = cadt_point_of(m, s->v1), c = cadt_point_of(m, s->v2);
   cadt_i32 o0 = 1, o1 = 1, o2 = 1;
   if (reverse) {
     if (entry != 2u && (o2 = cadt_orientation(a, b, p, tally)) < 0) return 2u;
@@ -96,8 +97,8 @@ CADT_FN void cadt_locate(const cadt_mesh* m, cadt_point p, cadt_u32 start, cadt_
       /* The entry edge was tested from the other side, but either side may have changed since: test it before it
        * counts. */
       if (leave == 3u && entry != 3u) {
-        const cadt_i32 o = cadt_orientation(m->points[CADT_VERTEX(s, CADT_NEXT(entry))],
-                                            m->points[CADT_VERTEX(s, CADT_PREV(entry))], p, tally);
+        const cadt_i32 o = cadt_orientation(cadt_point_of(m, CADT_VERTEX(s, CADT_NEXT(entry))),
+                                            cadt_point_of(m, CADT_VERTEX(s, CADT_PREV(entry))), p, tally);
         if (o < 0) leave = entry;
         if (o == 0) on |= 1u << entry;
       }

@@ -3,9 +3,10 @@
  * The lock protocol. Nobody ever waits: a lock is tried, and on failure everything taken is given back.
  *
  * Lock word: 0 the record does not exist yet, even: free, and the number is its version, odd: claimed. A claim is one
- * compare-and-swap from the version that the claimer has read before the fields; it fails if the record is claimed or
- * has changed since, so success proves that the fields read are the record's state: claim and validity check (paper,
- * Algorithm 1, lines 9 and 15) in one operation. An unlock after a change raises the version.
+ * compare-and-swap from the version that the claimer has read before the fields (GPUs: one OR, and a look at what was
+ * there); it fails if the record is claimed or has changed since, so success proves that the fields read are the
+ * record's state: claim and validity check (paper, Algorithm 1, lines 9 and 15) in one operation. An unlock after a
+ * change raises the version.
  *
  * Why the proof holds on CPUs: a change stores fields with release after its claim (acquire), and fields are loaded
  * with acquire, the lock word first. If a reader saw one field of a later change, the change's claim happens before the
@@ -41,13 +42,44 @@ CADT_FN void cadt_claim_order(cadt_claim* c, cadt_u32 i, cadt_u32 j) {
   }
 }
 
-/* Gives back the records of the first `count` places, unchanged. */
+/* Gives back the records of the first `count` places, unchanged. \pre the caller owns them and has written nothing */
 CADT_FN void cadt_abandon_claim(const cadt_mesh* m, const cadt_claim* c, cadt_u32 count) {
-  /* The store below takes the place of the last owner's in what the next claimer synchronises with: hand on what it
-   * covered. */
-  if (count) cadt_fence_locks();
+#if CADT_CONTIGUOUS
   for (cadt_u32 i = 0u; i < count; ++i)
     if (c->record[i] != CADT_NONE) cadt_store_lock(m->records[c->record[i]].word + CADT_WORD_LOCK, c->version[i]);
+#else
+  /* By an addition: a store would take the place of the last owner's in what the next claimer synchronises with, and so
+   * need a fence before it. */
+  for (cadt_u32 i = 0u; i < count; ++i)
+    if (c->record[i] != CADT_NONE) cadt_add_relaxed(m->records[c->record[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);
+#endif
+}
+
+/* Claims one record if its lock word is `*version`, or even where that is CADT_ANY_VERSION. */
+CADT_FN cadt_u32 cadt_claim_record(CADT_GLOBAL cadt_u32* lock, cadt_u32* version, cadt_tally* tally) {
+#if defined(CADT_TEST_NO_LOCKS)
+  (void)tally;
+  if (*version == CADT_ANY_VERSION) *version = cadt_load_field(lock);
+  cadt_store_relaxed(lock, *version | 1u);
+  return 1u;
+#elif CADT_CONTIGUOUS
+  if (*version == CADT_ANY_VERSION) *version = cadt_load_field(lock);
+  if (cadt_is_free(*version) && cadt_cas_lock(lock, *version, *version | 1u)) return 1u;
+  if (!(cadt_load_field(lock) & 1u)) tally->count[CADT_COUNT_INVALID]++;
+  return 0u;
+#else
+  /* One operation, where a comparison would first need the version. It changes nothing in a word that is odd. A word of
+   * 0 becomes odd: somebody is about to store 2 there. */
+  const cadt_u32 found = cadt_or_relaxed(lock, 1u);
+  if (!cadt_is_free(found)) return 0u;
+  if (*version != CADT_ANY_VERSION && *version != found) {
+    cadt_add_relaxed(lock, 0xFFFFFFFFu);
+    tally->count[CADT_COUNT_INVALID]++;
+    return 0u;
+  }
+  *version = found;
+  return 1u;
+#endif
 }
 
 /* Claims up to four records. \pre versions were read by cadt_look before the fields, or are CADT_ANY_VERSION for
@@ -62,19 +94,12 @@ CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* t
   cadt_claim_order(c, 1, 2);
   for (cadt_u32 i = 0u; i < 4u; ++i) {
     if (c->record[i] == CADT_NONE) break;
-    CADT_GLOBAL cadt_u32* lock = m->records[c->record[i]].word + CADT_WORD_LOCK;
-    if (c->version[i] == CADT_ANY_VERSION) c->version[i] = cadt_load_field(lock);
-#if defined(CADT_TEST_NO_LOCKS)
-    cadt_store_relaxed(lock, c->version[i] | 1u);
-#else
-    if (!cadt_is_free(c->version[i]) || !cadt_cas_lock(lock, c->version[i], c->version[i] | 1u)) {
-      if (!(cadt_load_field(lock) & 1u)) tally->count[CADT_COUNT_INVALID]++;
+    if (!cadt_claim_record(m->records[c->record[i]].word + CADT_WORD_LOCK, &c->version[i], tally)) {
       cadt_abandon_claim(m, c, i);
       tally->count[CADT_COUNT_LOST_CLAIMS]++;
       CADT_LAP(tally, CADT_TIME_CLAIM);
       return 0u;
     }
-#endif
   }
   cadt_fence_claims(); /* what the last owners wrote is seen from here on */
   CADT_LAP(tally, CADT_TIME_CLAIM);

@@ -67,6 +67,8 @@ typedef struct {
 #define CADT_VERTEX(s, k) CADT_PICK((k), (s).v0, (s).v1, (s).v2)
 #define CADT_NEIGHBOR(s, k) CADT_PICK((k), (s).n0, (s).n1, (s).n2)
 
+CADT_FN cadt_point cadt_point_of(const cadt_mesh* m, cadt_u32 vertex) { return cadt_load_point(m->points + vertex); }
+
 CADT_FN cadt_snapshot cadt_look(const cadt_mesh* m, cadt_u32 t) {
   cadt_snapshot s;
   cadt_load_record(m->records[t].word, &s.v0, &s.v1, &s.v2, &s.lock, &s.n0, &s.n1, &s.n2, &s.flips);
@@ -139,6 +141,16 @@ CADT_FN void cadt_store_flips(const cadt_mesh* m, cadt_u32 t, cadt_u32 flips) {
   CADT_ASSERT_OWNED(m, t, 3u);
   cadt_store_field(m->records[t].word + CADT_WORD_FLIPS, flips);
 }
+
+#if !CADT_CONTIGUOUS
+/* All of record t as it is seen from edge k, with the lock word as the owner has it: two accesses on GPUs. */
+CADT_FN void cadt_store_from(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, const cadt_snapshot* s) {
+  CADT_ASSERT_OWNED(m, t, 3u);
+  cadt_store_record(m->records[t].word, CADT_PICK(k, s->v0, s->v2, s->v1), CADT_PICK(k, s->v1, s->v0, s->v2),
+                    CADT_PICK(k, s->v2, s->v1, s->v0), s->lock, CADT_PICK(k, s->n0, s->n2, s->n1),
+                    CADT_PICK(k, s->n1, s->n0, s->n2), CADT_PICK(k, s->n2, s->n1, s->n0), s->flips);
+}
+#endif
 
 /* Flip counters: ten bits for each edge slot, saturating. */
 CADT_FN cadt_u32 cadt_flips_get(cadt_u32 flips, cadt_u32 k) { return (flips >> (10u * k)) & 1023u; }

@@ -47,7 +47,11 @@ CADT_FN cadt_u32 cadt_insert_set(cadt_mesh* m, cadt_u32 n, const cadt_deferred* 
       if (i == m->first || i == m->second || i == m->third) continue;
       if (cadt_insert_own(&own, &range, i, hint, tally)) continue;
       cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
-      work.size = cadt_insert_vertex(m, i, cadt_load_relaxed(m->hints + i), work.link, tally);
+      work.apex_point = cadt_point_of(m, i);
+      cadt_u32 from = cadt_load_relaxed(m->hints + i);
+      for (cadt_u32 tries = 0u; !work.size && tries < CADT_CAST(cadt_u32, CADT_INSERT_TRIES); ++tries)
+        work.size = cadt_try_vertex(m, i, work.apex_point, &from, work.link, tally);
+      cadt_store_relaxed(m->hints + i, from);
       if (!work.size) return 0u;
       cadt_legalize(m, &work, deferred, tally);
     }

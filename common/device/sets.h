@@ -190,11 +190,14 @@ CADT_FN void cadt_move_record(CADT_GLOBAL cadt_u32* word, cadt_u32 begin) {
   }
 }
 
-/* Puts the mesh of one set at its place. */
-CADT_KERNEL(cadt_set_records, CADT_GLOBAL const cadt_record* from, cadt_u32 slots, cadt_u32 begin, cadt_u32 grain,
-            CADT_GLOBAL cadt_record* to) {
+/* Puts the mesh of one set at its place. Its vertices are those of `positions` in the set. */
+CADT_KERNEL(cadt_set_records, CADT_GLOBAL const cadt_record* from, CADT_GLOBAL const cadt_u32* positions,
+            cadt_u32 slots, cadt_u32 begin, cadt_u32 grain, CADT_GLOBAL cadt_record* to) {
   CADT_FOR(t, slots, grain) {
-    to[2u * begin + t] = from[t];
+    cadt_record r = from[t];
+    for (cadt_u32 k = 0u; r.word[CADT_WORD_LOCK] != 0u && k < 3u; ++k)
+      if (r.word[k] != CADT_GHOST) r.word[k] = positions[r.word[k]];
+    to[2u * begin + t] = r;
     cadt_move_record(to[2u * begin + t].word, begin);
   }
 }

@@ -288,11 +288,11 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     const cadt_u32 place = cadt_link_place(m, k), key = cadt_angle_key(m, p, first, start, place);
     cadt_u32 low = 0u, high = k;
     while (low < high) {
-      const cadt_u32 middle = (low + high) / 2u;
-      if (cadt_angle_key(m, p, first, start, cadt_link_place(m, middle)) < key)
-        low = middle + 1u;
+      const cadt_u32 half = (low + high) / 2u;
+      if (cadt_angle_key(m, p, first, start, cadt_link_place(m, half)) < key)
+        low = half + 1u;
       else
-        high = middle;
+        high = half;
     }
     for (cadt_u32 at = k; at > low; --at) cadt_set_link_place(m, at, cadt_link_place(m, at - 1u));
     cadt_set_link_place(m, low, place);
@@ -439,8 +439,8 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
           /* or if a quarter fails, as it does where many points are cocircular */
           const cadt_u32 large = round || many || 4u * cadt_team_add(&window.again_count, 0u) > number + 64u ? 1u : 0u;
           maker.candidates = (large ? 2u : 1u) * CADT_CANDIDATES;
-          const cadt_u32 size =
-              cadt_make_star(&maker, p, x, y, round ? 2u : 1u, halo, large ? CADT_NONE : CADT_FEW_CELLS);
+          const cadt_u32 size = cadt_make_star(&maker, p, x, y, round ? 2u : 1u, halo,
+                                               large ? CADT_NONE : CADT_CAST(cadt_u32, CADT_FEW_CELLS));
           if (size)
             cadt_store_star(&maker, p, size, links, sizes);
           else if (!round)

@@ -86,6 +86,7 @@ typedef struct {
   cadt_u32 word[8 * CADT_RECORD_PLANE];
 } cadt_record_pages;
 #define CADT_UNWRITTEN 0xFFFFFFFEu /* no link */
+#define CADT_PLANE(word) (CADT_CAST(cadt_u32, word) * CADT_CAST(cadt_u32, CADT_RECORD_PLANE))
 
 /* Where a word goes. */
 typedef struct {
@@ -101,13 +102,13 @@ CADT_FN void cadt_put_record(const cadt_record_sink* s, cadt_u32 record, cadt_u3
   if (place < s->count) {
     CADT_TEAM_PTR cadt_u32* word = s->pages->word + place;
     word[0] = owner;
-    word[CADT_RECORD_PLANE] = a;
-    word[2 * CADT_RECORD_PLANE] = b;
-    word[CADT_WORD_LOCK * CADT_RECORD_PLANE] = 2u;
-    if (across != CADT_UNWRITTEN) word[CADT_WORD_LINK * CADT_RECORD_PLANE] = across;
-    word[(CADT_WORD_LINK + 1) * CADT_RECORD_PLANE] = link_1;
-    word[(CADT_WORD_LINK + 2) * CADT_RECORD_PLANE] = link_2;
-    word[CADT_WORD_FLIPS * CADT_RECORD_PLANE] = 0u;
+    word[CADT_PLANE(1)] = a;
+    word[CADT_PLANE(2)] = b;
+    word[CADT_PLANE(CADT_WORD_LOCK)] = 2u;
+    if (across != CADT_UNWRITTEN) word[CADT_PLANE(CADT_WORD_LINK)] = across;
+    word[CADT_PLANE(CADT_WORD_LINK + 1)] = link_1;
+    word[CADT_PLANE(CADT_WORD_LINK + 2)] = link_2;
+    word[CADT_PLANE(CADT_WORD_FLIPS)] = 0u;
   } else {
     CADT_GLOBAL cadt_u32* word = s->records[record].word;
     cadt_store_four(word, owner, a, b, 2u);
@@ -120,7 +121,7 @@ CADT_FN void cadt_put_record(const cadt_record_sink* s, cadt_u32 record, cadt_u3
 CADT_FN void cadt_put_across(const cadt_record_sink* s, cadt_u32 record, cadt_u32 link) {
   const cadt_u32 place = record - s->first;
   if (place < s->count)
-    s->pages->word[CADT_WORD_LINK * CADT_RECORD_PLANE + place] = link;
+    s->pages->word[CADT_PLANE(CADT_WORD_LINK) + place] = link;
   else
     cadt_store_relaxed(&s->records[record].word[CADT_WORD_LINK], link);
 }
@@ -182,12 +183,12 @@ CADT_TEAM_KERNEL(CADT_RECORD_LANES, 12, cadt_star_records, CADT_GLOBAL const cad
     sink.first = bases[begin];
     sink.count = cadt_min_u32(bases[begin + vertices] - sink.first, CADT_RECORD_PLANE);
     /* the link across edge 0 may come from another group */
-    CADT_TEAM_FOR(i, sink.count) { pages.word[CADT_WORD_LINK * CADT_RECORD_PLANE + i] = CADT_UNWRITTEN; }
+    CADT_TEAM_FOR(i, sink.count) { pages.word[CADT_PLANE(CADT_WORD_LINK) + i] = CADT_UNWRITTEN; }
     CADT_TEAM_SYNC();
     CADT_TEAM_FOR(i, vertices) { cadt_put_star(&stars, &sink, begin + i, open, totals); }
     CADT_TEAM_SYNC();
     CADT_TEAM_FOR(i, 8u * sink.count) {
-      const cadt_u32 value = pages.word[(i & 7u) * CADT_RECORD_PLANE + (i >> 3)];
+      const cadt_u32 value = pages.word[CADT_PLANE(i & 7u) + (i >> 3)];
       if (value != CADT_UNWRITTEN) cadt_store_relaxed(&records[sink.first + (i >> 3)].word[i & 7u], value);
     }
     CADT_TEAM_SYNC();

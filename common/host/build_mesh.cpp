@@ -35,7 +35,7 @@ static_assert(static_cast<int>(Stabilize::off) == CADT_STABILIZE_OFF &&
 
 class Builder {
  public:
-  Builder(Run& run, const SpatialOrder& order)
+  Builder(Run& run, SpatialOrder& order)
       : run_(run),
         launch_(run.launcher),
         order_(order),
@@ -46,6 +46,7 @@ class Builder {
 
   [[nodiscard]] DeviceMesh build() {
     DeviceMesh mesh;
+    if (n_ >= 3 && !run_.device.shape().contiguous) order_by_level();
     if (n_ < 3 || !find_first_triangle()) {
       mesh.flat = true;
       return mesh;
@@ -102,11 +103,24 @@ class Builder {
     return run_.device.shape().contiguous ? points_per_launch_contiguous : points_per_launch_strided;
   }
 
+  /// Puts the points in the order of insertion (common/device/insert.h).
+  void order_by_level() {
+    Allocation points = run_.memory.allocate(n_ * sizeof(cadt_point)), labels = run_.memory.allocate(n_ * word);
+    const Cut c = launch_.cut(n_);
+    launch_.run(KernelId::cadt_by_level, c.items, order_.points, order_.labels, static_cast<std::uint32_t>(n_), c.grain,
+                points, labels);
+    order_.points = std::move(points);
+    order_.labels = std::move(labels);
+    by_level_ = true;
+  }
+
   /// Three points not on a line: the one that stands for all, the middle one, and the first that is not on their line.
   bool find_first_triangle() {
     Allocation found = run_.memory.allocate(word);
-    launch_.run(KernelId::cadt_root, 1, static_cast<std::uint32_t>(n_), levels(), found);
-    first_ = launch_.read_word(found, 0);
+    if (!by_level_) {
+      launch_.run(KernelId::cadt_root, 1, static_cast<std::uint32_t>(n_), levels(), found);
+      first_ = launch_.read_word(found, 0);
+    }
     second_ = static_cast<std::uint32_t>(n_ / 2);
     if (second_ == first_) second_ = 0;
     run_.device.fill(*found, 0, word, CADT_NONE);
@@ -245,7 +259,8 @@ class Builder {
         const std::size_t size = std::min(most, slots - begin);
         const Cut c = launch_.cut_strided(size);
         run_kernel(KernelId::cadt_closing_pass, c.items, static_cast<std::uint32_t>(begin),
-                   static_cast<std::uint32_t>(size), c.grain, left_edges_[0], left_counts_, edge_capacity_, counters_);
+                   static_cast<std::uint32_t>(size), c.grain, by_level_ ? static_cast<std::uint32_t>(n_) : 0U,
+                   left_edges_[0], left_counts_, edge_capacity_, counters_);
         std::array<std::uint32_t, all_counts> words{};
         run_.device.read(*left_counts_, 0, words.data(), sizeof words);
         examined += words[CADT_LEFT_COUNTS];
@@ -283,13 +298,14 @@ class Builder {
 
   Run& run_;
   Launcher& launch_;
-  const SpatialOrder& order_;
+  SpatialOrder& order_;
   std::size_t n_;
   std::uint32_t edge_capacity_;
   Counters counters_;
   Allocation records_, hints_, left_counts_;
   std::array<Allocation, 2> left_points_, left_edges_;  // [0] is written by the next launch, [1] read by it
   Leftovers left_;                                      // on the lists [1]
+  bool by_level_ = false;                               // the points are in the order of insertion
   std::uint32_t stabilize_;                             // CADT_STABILIZE_...
   std::unique_ptr<Watcher> watcher_;
   std::uint32_t first_ = 0, second_ = 0, third_ = 0;
@@ -299,9 +315,9 @@ class Builder {
 
 }  // namespace
 
-DeviceMesh build_mesh(Run& run, const SpatialOrder& order) { return Builder(run, order).build(); }
+DeviceMesh build_mesh(Run& run, SpatialOrder& order) { return Builder(run, order).build(); }
 
-DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records, std::uint64_t edges) {
+DeviceMesh certify_mesh(Run& run, SpatialOrder& order, Allocation records, std::uint64_t edges) {
   return Builder(run, order).adopt(std::move(records), edges);
 }
 

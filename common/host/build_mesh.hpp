@@ -16,11 +16,12 @@ struct DeviceMesh {
   bool flat = false;      ///< all points on one line or fewer than three: no records
 };
 
-/// Inserts all points level by level, legalises, and certifies by closing passes. Releases nothing of `order`.
-[[nodiscard]] DeviceMesh build_mesh(Run& run, const SpatialOrder& order);
+/// Inserts all points level by level, legalises, and certifies by closing passes. Releases nothing of `order`, but on
+/// GPUs brings points and labels into another order.
+[[nodiscard]] DeviceMesh build_mesh(Run& run, SpatialOrder& order);
 
 /// Closing passes over a mesh of two records a point that was made otherwise; it has so many edges, those to the ghost
 /// included.
-[[nodiscard]] DeviceMesh certify_mesh(Run& run, const SpatialOrder& order, Allocation records, std::uint64_t edges);
+[[nodiscard]] DeviceMesh certify_mesh(Run& run, SpatialOrder& order, Allocation records, std::uint64_t edges);
 
 }  // namespace cadt

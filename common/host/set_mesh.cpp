@@ -201,15 +201,17 @@ class SetStage {
       SpatialOrder one;
       one.distinct = size;
       one.points = run_.memory.allocate(size * sizeof(cadt_point));
+      one.labels = run_.memory.allocate(size * word);  // positions
       const Cut c = launch_.cut(size);
+      launch_.run(KernelId::cadt_identity, c.items, one.labels, size, c.grain);
       launch_.run(KernelId::cadt_set_points, c.items, order_.points, begin, size, c.grain, one.points);
       const DeviceMesh mesh = build_mesh(run_, one);
       launch_.set_build(narrow_build(run_.options.statistics));
       result_.flat[s] = mesh.flat;
       if (mesh.flat) continue;
       const Cut slots = launch_.cut(mesh.slots);
-      launch_.run(KernelId::cadt_set_records, slots.items, mesh.records, static_cast<std::uint32_t>(mesh.slots), begin,
-                  slots.grain, result_.mesh.records);
+      launch_.run(KernelId::cadt_set_records, slots.items, mesh.records, one.labels,
+                  static_cast<std::uint32_t>(mesh.slots), begin, slots.grain, result_.mesh.records);
     }
   }
 

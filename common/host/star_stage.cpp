@@ -30,7 +30,7 @@ constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * 
 
 /// The mesh without the star stage: by gift wrapping if the points are few, else by insertion. `certify`: wrapped ones
 /// as well; no use for a part of a mesh that is certified as a whole.
-DeviceMesh build_without_stars(Run& run, const SpatialOrder& order, bool certify) {
+DeviceMesh build_without_stars(Run& run, SpatialOrder& order, bool certify) {
   std::optional<DeviceMesh> wrapped;
   if (order.distinct <= most_wrapped(run.device)) wrapped = wrap_mesh(run, order.points, order.distinct);
   if (!wrapped) return build_mesh(run, order);
@@ -137,9 +137,9 @@ class StarStage {
     SpatialOrder rest;
     rest.distinct = unproven_;
     rest.points = run_.memory.allocate(unproven_ * sizeof(cadt_point));
-    Allocation positions = run_.memory.allocate(unproven_ * word);
+    rest.labels = run_.memory.allocate(unproven_ * word);  // positions
     const Cut all = launch_.cut(n_);
-    launch_.run(KernelId::cadt_unproven_pack, all.items, ranks_, order_.points, rest.points, positions, count_,
+    launch_.run(KernelId::cadt_unproven_pack, all.items, ranks_, order_.points, rest.points, rest.labels, count_,
                 all.grain);
     ranks_.release();
     const std::uint64_t certified = run_.statistics.certified_edges;
@@ -156,7 +156,7 @@ class StarStage {
     Allocation covers = run_.memory.allocate(3 * smaller.slots * word),
                roots = run_.memory.allocate(smaller.slots * word);
     const Cut c = launch_.cut(smaller.slots);
-    launch_.run(KernelId::cadt_join_cover, c.items, records_, smaller.records, positions, slots, c.grain, table, mask,
+    launch_.run(KernelId::cadt_join_cover, c.items, records_, smaller.records, rest.labels, slots, c.grain, table, mask,
                 covers, roots);
     launch_.run(KernelId::cadt_join_components, c.items, smaller.records, slots, c.grain, covers, roots);
     Allocation hidden = launch_.zeros(smaller.slots), ranks = run_.memory.allocate((smaller.slots + 1) * word);
@@ -167,7 +167,7 @@ class StarStage {
     if (triangles != 2 * n_ - 2)
       throw InternalError("the two parts of the mesh have " + std::to_string(triangles) + " triangles instead of " +
                           std::to_string(2 * n_ - 2) + "; please report this with the input");
-    launch_.run(KernelId::cadt_join_records, c.items, smaller.records, covers, ranks, positions, slots, c.grain,
+    launch_.run(KernelId::cadt_join_records, c.items, smaller.records, covers, ranks, rest.labels, slots, c.grain,
                 proven_triangles_, records_);
     run_.end_phase("join");
     run_.check("join", 0.8);
@@ -175,7 +175,7 @@ class StarStage {
 
   Run& run_;
   Launcher& launch_;
-  const SpatialOrder& order_;
+  SpatialOrder& order_;
   std::size_t n_;
   std::uint32_t count_;
   StarList stars_;

@@ -127,8 +127,13 @@ CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
 }
 /* __threadfence is sequentially consistent, which is more than is needed. */
 CADT_FN void cadt_fence_acq_rel() { asm volatile("fence.acq_rel.gpu;" ::: "memory"); }
+#if defined(__CUDACC_VER_MAJOR__) && __CUDACC_VER_MAJOR__ >= 13
 CADT_FN void cadt_fence_acquire() { asm volatile("fence.acquire.gpu;" ::: "memory"); }
 CADT_FN void cadt_fence_release() { asm volatile("fence.release.gpu;" ::: "memory"); }
+#else /* older assemblers know no one-sided ones */
+CADT_FN void cadt_fence_acquire() { cadt_fence_acq_rel(); }
+CADT_FN void cadt_fence_release() { cadt_fence_acq_rel(); }
+#endif
 CADT_FN cadt_u32 cadt_or_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 bits) { return atomicOr(p, bits); }
 
 /* ---- host: ordered operations, no fences (ThreadSanitizer does not follow fences) ----------------------------------

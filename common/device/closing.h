@@ -8,12 +8,26 @@
 #define CADT_DEVICE_CLOSING_H
 
 #include "common/device/insert.h"
+#include "common/device/order.h"
+
+/* Whether the boundary turns back on itself at the edge a, b to the ghost, with p and q on its sides: three points on a
+ * line, and the one in the middle is not between the others. To the signs of the orientations that is no error, and no
+ * flip can mend it: it says that a mesh is none. */
+CADT_FN cadt_u32 cadt_turns_back(const cadt_mesh* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_u32 q,
+                                 cadt_tally* tally) {
+  if ((a != CADT_GHOST && b != CADT_GHOST) || p == CADT_GHOST || q == CADT_GHOST || p == q) return 0u;
+  const cadt_u32 v = a == CADT_GHOST ? b : a;
+  if (v == CADT_GHOST) return 0u; /* torn read */
+  const cadt_point x = cadt_point_of(m, p), y = cadt_point_of(m, v), z = cadt_point_of(m, q);
+  if (cadt_orientation(x, y, z, tally) != 0) return 0u;
+  return cadt_lexicographic(x, p, y, v) == cadt_lexicographic(z, q, y, v) ? 1u : 0u;
+}
 
 #if CADT_CONTIGUOUS
 enum { CADT_CLOSING_BATCH = 192 /* edges that are listed before they are looked at */ };
 
 typedef struct {
-  cadt_u32 examined, illegal, unsettled, left;
+  cadt_u32 examined, illegal, unsettled, left, broken;
 } cadt_findings;
 
 /* Looks at listed edges and repairs what is illegal. Nothing is known of an edge but its link: repairs change the mesh.
@@ -41,6 +55,8 @@ CADT_FN void cadt_close_edges(const cadt_mesh* m, const cadt_u32* links, cadt_u3
       cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
       cadt_worklist_add(&work, links[e]);
       cadt_legalize(m, &work, deferred, tally);
+    } else if (cadt_turns_back(m, p, a, b, q, tally)) {
+      found->broken++;
     }
   }
   found->examined += count;
@@ -48,9 +64,9 @@ CADT_FN void cadt_close_edges(const cadt_mesh* m, const cadt_u32* links, cadt_u3
 #endif
 
 /* left_counts, behind those of the lists: edges examined, illegal ones that are to be flipped, ones that could not be
- * read because somebody was changing them, illegal ones that are left as they are (CADT_STABILIZE_PAPER). `n`: points
- * in the order of levels (cadt_by_level), whose records are looked at along the curve; 0: records as they are. \pre
- * records of vertices that are not in the mesh have lock word 0 */
+ * read because somebody was changing them, illegal ones that are left as they are (CADT_STABILIZE_PAPER), edges to the
+ * ghost at which the boundary turns back. `n`: points in the order of levels (cadt_by_level), whose records are looked
+ * at along the curve; 0: records as they are. \pre records of vertices that are not in the mesh have lock word 0 */
 CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain, cadt_u32 n,
             CADT_GLOBAL cadt_u32* left_edges, CADT_GLOBAL cadt_u32* left_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counters) {
@@ -62,7 +78,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
   /* An edge is seen from two triangles. Which of them takes it is settled without a branch, which would be wrong half
    * of the time, before a batch of edges is looked at. */
   cadt_u32 batch[CADT_CLOSING_BATCH + 3], listed = 0u;
-  cadt_findings all = {0u, 0u, 0u, 0u};
+  cadt_findings all = {0u, 0u, 0u, 0u, 0u};
   CADT_FOR(r, count, grain) {
     const cadt_u32 t = begin + r;
     CADT_GLOBAL cadt_u32* word = mesh.records[t].word;
@@ -77,9 +93,10 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
     listed = 0u;
   }
   cadt_close_edges(&mesh, batch, listed, &deferred, &all, &tally);
-  const cadt_u32 examined = all.examined, illegal = all.illegal, unsettled = all.unsettled, left = all.left;
+  const cadt_u32 examined = all.examined, illegal = all.illegal, unsettled = all.unsettled, left = all.left,
+                 broken = all.broken;
 #else
-  cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u, left = 0u;
+  cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u, left = 0u, broken = 0u;
   CADT_FOR(r, count, grain) {
     const cadt_u32 slot = begin + r, t = n ? 2u * cadt_rank_of(0u, slot >> 1, n) + (slot & 1u) : slot;
     const cadt_snapshot s = cadt_look(&mesh, t);
@@ -101,6 +118,9 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
         ++illegal;
         /* to cadt_legalize_edges: without the repairs this kernel is small and runs at full occupancy */
         cadt_defer_edge(&deferred, CADT_LINK(t, k), &tally);
+      } else if (cadt_turns_back(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
+                                 u.v0, &tally)) {
+        ++broken;
       }
     }
   }
@@ -110,6 +130,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
   if (illegal) cadt_add_relaxed(found + 1, illegal);
   if (unsettled) cadt_add_relaxed(found + 2, unsettled);
   if (left) cadt_add_relaxed(found + 3, left);
+  if (broken) cadt_add_relaxed(found + 4, broken);
   CADT_LAP_SKIP(&tally);
   CADT_FLUSH_TALLY(&tally, counters);
 }

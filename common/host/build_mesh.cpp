@@ -27,7 +27,7 @@ constexpr std::size_t least_range = std::size_t{1} << 14, fewest_for_ranges = 4 
 constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
 constexpr int hopeless_launches = 64;
 constexpr int most_sweeps = 2000;
-constexpr std::size_t all_counts = CADT_LEFT_COUNTS + 4;  // with those of the closing pass
+constexpr std::size_t closing_counts = 5, all_counts = CADT_LEFT_COUNTS + closing_counts;
 
 static_assert(static_cast<int>(Stabilize::off) == CADT_STABILIZE_OFF &&
               static_cast<int>(Stabilize::defer) == CADT_STABILIZE_DEFER &&
@@ -254,7 +254,7 @@ class Builder {
     if (run_.options.stabilize == Stabilize::defer) stabilize_ = CADT_STABILIZE_OFF;  // what was put off is due now
     const std::size_t slots = 2 * n_, most = 4 * points_per_launch();
     for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
-      std::uint64_t examined = 0, illegal = 0, unsettled = 0, left = 0;
+      std::uint64_t examined = 0, illegal = 0, unsettled = 0, left = 0, broken = 0;
       for (std::size_t begin = 0; begin < slots; begin += most) {
         const std::size_t size = std::min(most, slots - begin);
         const Cut c = launch_.cut_strided(size);
@@ -267,8 +267,9 @@ class Builder {
         illegal += words[CADT_LEFT_COUNTS + 1];
         unsettled += words[CADT_LEFT_COUNTS + 2];
         left += words[CADT_LEFT_COUNTS + 3];
+        broken += words[CADT_LEFT_COUNTS + 4];
         if (begin + size == slots && examined == edges && illegal + unsettled == 0) break;
-        run_.device.fill(*left_counts_, CADT_LEFT_COUNTS * word, 4 * word, 0);
+        run_.device.fill(*left_counts_, CADT_LEFT_COUNTS * word, closing_counts * word, 0);
         take_leftovers();
         finish_leftovers();
         run_.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(slots));
@@ -277,6 +278,9 @@ class Builder {
       statistics.closing_sweeps = std::max(statistics.closing_sweeps, static_cast<std::uint64_t>(sweep));
       statistics.closing_repairs += illegal;
       if (illegal == 0 && unsettled == 0) {
+        if (broken != 0)
+          throw InternalError("the boundary of the mesh turns back at " + std::to_string(broken) +
+                              " points; please report this with the input");
         statistics.certified_edges += examined - left;
         statistics.illegal_edges += left;
         statistics.certified = statistics.certified && left == 0;

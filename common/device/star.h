@@ -288,11 +288,11 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     const cadt_u32 place = cadt_link_place(m, k), key = cadt_angle_key(m, p, first, start, place);
     cadt_u32 low = 0u, high = k;
     while (low < high) {
-      const cadt_u32 half = (low + high) / 2u;
-      if (cadt_angle_key(m, p, first, start, cadt_link_place(m, half)) < key)
-        low = half + 1u;
+      const cadt_u32 centre = (low + high) / 2u;
+      if (cadt_angle_key(m, p, first, start, cadt_link_place(m, centre)) < key)
+        low = centre + 1u;
       else
-        high = half;
+        high = centre;
     }
     for (cadt_u32 at = k; at > low; --at) cadt_set_link_place(m, at, cadt_link_place(m, at - 1u));
     cadt_set_link_place(m, low, place);

@@ -4,7 +4,6 @@
 #include <cadt/triangulator.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>

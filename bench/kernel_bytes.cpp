@@ -7,7 +7,8 @@
 namespace cadt::bench {
 namespace {
 
-// A point has 16 bytes, a record 32, a star 48; keys, places, labels, ranks, hints and flags have 4.
+// A point has 16 bytes, a record 32, a star 24, a triangle of the mesh in arrays 24; keys, places, labels, ranks, hints
+// and flags have 4, marks 2.
 constexpr KernelBytes table[] = {
     {"cadt_import_doubles", Unit::point, 16, 16, "points"},
     {"cadt_bounds", Unit::point, 16, 0, "points"},
@@ -34,20 +35,28 @@ constexpr KernelBytes table[] = {
     {"cadt_tile_flags", Unit::starred, 4, 4, "keys; flags"},
     {"cadt_tile_pack", Unit::starred, 4, 0, "ranks"},
     {"cadt_stars", Unit::starred, 16, 4, "points; sizes"},
-    {"cadt_stars", Unit::proven, 0, 48, "stars"},
-    {"cadt_star_counts", Unit::starred, 4, 12, "sizes; sizes, owned triangles, unproven vertices"},
-    {"cadt_star_counts", Unit::proven, 48, 0, "stars"},
-    {"cadt_star_records", Unit::starred, 8, 0, "sizes, first numbers"},
-    {"cadt_star_records", Unit::proven, 48, 64, "stars; two records for each"},
+    {"cadt_stars", Unit::proven, 0, 28, "stars, where they begin"},
+    {"cadt_star_proven", Unit::starred, 4, 0, "sizes"},
+    {"cadt_star_counts", Unit::starred, 4, 10, "sizes; marks, owned triangles, unproven vertices"},
+    {"cadt_star_counts", Unit::proven, 28, 0, "stars, where they begin"},
+    {"cadt_star_links", Unit::starred, 6, 0, "marks, first numbers"},
+    {"cadt_star_links", Unit::proven, 28, 24, "stars, where they begin; two triangles for each"},
+    {"cadt_star_vertices", Unit::starred, 2, 0, "marks"},
+    {"cadt_star_vertices", Unit::proven, 28, 24, "stars, where they begin; two triangles for each"},
     {"cadt_unproven_pack", Unit::starred, 4, 0, "ranks"},
     {"cadt_unproven_pack", Unit::unproven, 16, 20, "points; points and places"},
+    {"cadt_certify", Unit::starred, 64, 0, "two triangles and a point for each"},
+    {"cadt_emit_arrays", Unit::starred, 4, 0, "labels"},
+    {"cadt_emit_arrays", Unit::starred, 48, 48, "two triangles for each"},
     {"cadt_flag_triangles", Unit::record, 32, 4, "records; flags"},
     {"cadt_emit_ranked", Unit::record, 36, 0, "records and ranks"},
     {"cadt_emit_ranked", Unit::distinct, 4, 0, "labels"},
     {"cadt_emit_ranked", Unit::triangle, 0, 24, "vertices and neighbours"},
     {"cadt_count_triangles", Unit::record, 32, 0, "records"},
+    {"cadt_count_triangles", Unit::starred, 24, 0, "vertices of two triangles for each"},
     {"cadt_count_triangles", Unit::distinct, 8, 4, "labels and buckets; buckets"},
     {"cadt_bucket_triangles", Unit::record, 32, 0, "records"},
+    {"cadt_bucket_triangles", Unit::starred, 24, 0, "vertices of two triangles for each"},
     {"cadt_bucket_triangles", Unit::distinct, 8, 4, "labels and buckets; buckets"},
     {"cadt_bucket_triangles", Unit::triangle, 0, 8, "members"},
     {"cadt_sort_buckets", Unit::distinct, 4, 0, "buckets"},
@@ -81,9 +90,9 @@ std::uint64_t units(Unit unit, const Statistics& run, std::uint64_t triangles) n
     case Unit::starred:
       return stars ? run.distinct : 0;
     case Unit::record:
-      return 2 * run.distinct;
+      return stars ? 0 : 2 * run.distinct;  // the star stage has a mesh in arrays
     case Unit::swept_record:
-      return 2 * run.distinct * run.closing_sweeps;
+      return 2 * (stars ? run.distinct - run.proven_stars : run.distinct) * run.closing_sweeps;
     case Unit::triangle:
       return triangles;
     case Unit::pass:

@@ -28,8 +28,9 @@ void ThreadPool::serve(std::size_t self, const std::stop_token& stop) noexcept {
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      if (!start_.wait(lock, stop, [&] { return launch_ != seen; })) return;
+      if (!start_.wait(lock, stop, [&] { return open_ && launch_ != seen; })) return;
       seen = launch_;
+      ++active_;
     }
     work(self);
     std::lock_guard lock(mutex_);
@@ -53,11 +54,13 @@ void ThreadPool::run(KernelFunction kernel, std::uint32_t items, const Arg* args
   {
     std::lock_guard lock(mutex_);
     ++launch_;
-    active_ = static_cast<unsigned>(workers_.size());
+    open_ = true;
   }
   start_.notify_all();
   work(0);
+  // No item is left. Who has not come by now is not waited for: on a busy machine that can be a time slice a launch.
   std::unique_lock lock(mutex_);
+  open_ = false;
   done_.wait(lock, [&] { return active_ == 0; });
 }
 

@@ -46,7 +46,8 @@ class ThreadPool {
   std::condition_variable_any start_;
   std::condition_variable done_;
   std::uint64_t launch_ = 0;
-  unsigned active_ = 0;
+  bool open_ = false;                  ///< whether workers may still join the launch
+  unsigned active_ = 0;                ///< workers that have joined it and are not done
   std::vector<std::jthread> workers_;  // last: joins before the rest goes
 };
 

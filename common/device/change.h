@@ -45,6 +45,7 @@ CADT_FN void cadt_write_face(const cadt_mesh* m, cadt_u32 i, cadt_u32 t, const c
                              cadt_tally* tally) {
   const cadt_u32 t1 = 2u * i, t2 = 2u * i + 1u;
   /* i takes the place of v0 in t, of v1 in t1, of v2 in t2 */
+  CADT_PERTURB(m, CADT_AT_WRITE);
 #if !CADT_CONTIGUOUS
   const cadt_u32 f0 = cadt_flips_get(s->flips, 0u), f1 = cadt_flips_get(s->flips, 1u);
   const cadt_snapshot r1 = {
@@ -61,19 +62,23 @@ CADT_FN void cadt_write_face(const cadt_mesh* m, cadt_u32 i, cadt_u32 t, const c
       i, s->v1, s->v2, s->lock | 1u, s->n0, CADT_LINK(t1, 0u), CADT_LINK(t2, 0u), cadt_flips_set(0u, 0u, f0)};
   cadt_store_from(m, t1, 0u, &r1);
   cadt_store_from(m, t2, 0u, &r2);
+  CADT_PERTURB(m, CADT_AT_NEXT_RECORD);
   cadt_store_from(m, t, 0u, &r0);
 #else
   cadt_new_record(m, t1, s->v0, i, s->v2, CADT_LINK(t, 1u), s->n1, CADT_LINK(t2, 1u),
                   cadt_flips_set(0u, 1u, cadt_flips_get(s->flips, 1u)));
   cadt_new_record(m, t2, s->v0, s->v1, i, CADT_LINK(t, 2u), CADT_LINK(t1, 2u), s->n2,
                   cadt_flips_set(0u, 2u, cadt_flips_get(s->flips, 2u)));
+  CADT_PERTURB(m, CADT_AT_NEXT_RECORD);
   cadt_store_vertex(m, t, 0u, i);
   cadt_store_link(m, t, 1u, CADT_LINK(t1, 0u));
   cadt_store_link(m, t, 2u, CADT_LINK(t2, 0u));
   cadt_store_flips(m, t, cadt_flips_set(0u, 0u, cadt_flips_get(s->flips, 0u)));
 #endif
   CADT_LAP(tally, CADT_TIME_SPLIT);
+  CADT_PERTURB(m, CADT_AT_LINKS);
   cadt_link_back(m, s->n1, CADT_LINK(t1, 1u));
+  CADT_PERTURB(m, CADT_AT_NEXT_LINK);
   cadt_link_back(m, s->n2, CADT_LINK(t2, 2u));
   CADT_LAP(tally, CADT_TIME_NEIGHBORS);
   edges[0] = CADT_LINK(t, 0u);
@@ -104,7 +109,9 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   if (!cadt_confirm(m, t, 0u, &s)) return cadt_give_up(m, &claim, tally);
   cadt_write_face(m, i, t, &s, edges, tally);
   cadt_fence_locks();
+  CADT_PERTURB(m, CADT_AT_PUBLISH);
   cadt_publish_record(m, t1);
+  CADT_PERTURB(m, CADT_AT_NEXT_PUBLISH);
   cadt_publish_record(m, t2);
   cadt_release_claim(m, &claim);
   CADT_LAP(tally, CADT_TIME_CLAIM);
@@ -139,16 +146,20 @@ CADT_FN void cadt_write_edge(const cadt_mesh* m, cadt_u32 i, const cadt_place* p
   cadt_store_link(m, ns, j2, CADT_LINK(n, j1));
   cadt_store_flips(m, ns, cadt_flips_set(0u, j1, cadt_flips_get(u->flips, j1)));
   /* t = (c, a, i), n = (d, b, i) */
+  CADT_PERTURB(m, CADT_AT_WRITE);
   cadt_store_vertex(m, t, k2, i);
   cadt_store_link(m, t, k, CADT_LINK(ns, j));
   cadt_store_link(m, t, k1, CADT_LINK(ts, k2));
   cadt_store_flips(m, t, cadt_flips_set(0u, k2, cadt_flips_get(s->flips, k2)));
+  CADT_PERTURB(m, CADT_AT_NEXT_RECORD);
   cadt_store_vertex(m, n, j2, i);
   cadt_store_link(m, n, j, CADT_LINK(ts, k));
   cadt_store_link(m, n, j1, CADT_LINK(ns, j2));
   cadt_store_flips(m, n, cadt_flips_set(0u, j2, cadt_flips_get(u->flips, j2)));
   CADT_LAP(tally, CADT_TIME_SPLIT);
+  CADT_PERTURB(m, CADT_AT_LINKS);
   cadt_link_back(m, outer_bc, CADT_LINK(ts, k1));
+  CADT_PERTURB(m, CADT_AT_NEXT_LINK);
   cadt_link_back(m, outer_ad, CADT_LINK(ns, j1));
   CADT_LAP(tally, CADT_TIME_NEIGHBORS);
   edges[0] = CADT_LINK(t, k2);
@@ -166,6 +177,7 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   const cadt_snapshot s = place->at;
   const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
   const cadt_u32 j1 = CADT_NEXT(j), ts = 2u * i, ns = 2u * i + 1u;
+  CADT_PERTURB(m, CADT_AT_SECOND);
   const cadt_snapshot u = cadt_look(m, n);
   if (CADT_NEIGHBOR(u, j) != CADT_LINK(t, k)) {
     tally->count[CADT_COUNT_CLAIMS]++;
@@ -186,7 +198,9 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   if (!cadt_confirm(m, t, 0u, &s) || !cadt_confirm(m, n, 0u, &u)) return cadt_give_up(m, &claim, tally);
   cadt_write_edge(m, i, place, &u, edges, tally);
   cadt_fence_locks();
+  CADT_PERTURB(m, CADT_AT_PUBLISH);
   cadt_publish_record(m, ts);
+  CADT_PERTURB(m, CADT_AT_NEXT_PUBLISH);
   cadt_publish_record(m, ns);
   cadt_release_claim(m, &claim);
   CADT_LAP(tally, CADT_TIME_CLAIM);
@@ -261,6 +275,7 @@ CADT_FN void cadt_write_flip(const cadt_mesh* m, cadt_u32 link, const cadt_snaps
   const cadt_u32 outer_bp = s->n1, outer_aq = u->n1;
   /* t = (p, a, b) becomes (p, a, u->v0); n = (q, b, a) becomes (q, b, p); the counter of a-b goes on with p-q */
   const cadt_u32 flips = cadt_flips_get(s->flips, k) + 1u;
+  CADT_PERTURB(m, CADT_AT_WRITE);
 #if !CADT_CONTIGUOUS
   const cadt_snapshot rt = {
       s->v0,    s->v1,
@@ -273,6 +288,7 @@ CADT_FN void cadt_write_flip(const cadt_mesh* m, cadt_u32 link, const cadt_snaps
       outer_bp, CADT_LINK(t, k1),
       u->n2,    cadt_flips_set(cadt_flips_set(u->flips, j, cadt_flips_get(s->flips, k1)), j1, flips)};
   cadt_store_from(m, t, k, &rt);
+  CADT_PERTURB(m, CADT_AT_NEXT_RECORD);
   cadt_store_from(m, n, j, &rn);
   (void)k2, (void)j2;
 #else
@@ -280,13 +296,16 @@ CADT_FN void cadt_write_flip(const cadt_mesh* m, cadt_u32 link, const cadt_snaps
   cadt_store_link(m, t, k, outer_aq);
   cadt_store_link(m, t, k1, CADT_LINK(n, j1));
   cadt_store_flips(m, t, cadt_flips_set(cadt_flips_set(s->flips, k, cadt_flips_get(u->flips, j1)), k1, flips));
+  CADT_PERTURB(m, CADT_AT_NEXT_RECORD);
   cadt_store_vertex(m, n, j2, s->v0);
   cadt_store_link(m, n, j, outer_bp);
   cadt_store_link(m, n, j1, CADT_LINK(t, k1));
   cadt_store_flips(m, n, cadt_flips_set(cadt_flips_set(u->flips, j, cadt_flips_get(s->flips, k1)), j1, flips));
 #endif
   CADT_LAP(tally, CADT_TIME_FLIP);
+  CADT_PERTURB(m, CADT_AT_LINKS);
   cadt_link_back(m, outer_aq, CADT_LINK(t, k));
+  CADT_PERTURB(m, CADT_AT_NEXT_LINK);
   cadt_link_back(m, outer_bp, CADT_LINK(n, j));
   CADT_LAP(tally, CADT_TIME_NEIGHBORS);
   tally->count[CADT_COUNT_FLIPS]++;
@@ -314,6 +333,7 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   *all_sides = p != apex ? 1u : 0u;
   if (p != apex && apex != CADT_NONE) tally->count[CADT_COUNT_STALE_EDGES]++;
   const cadt_u32 across = s.n0, n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
+  CADT_PERTURB(m, CADT_AT_SECOND);
   const cadt_snapshot u = cadt_look_from(m, n, j);
   if (!cadt_is_free(u.lock) || u.n0 != link) {
     tally->count[CADT_COUNT_CLAIMS]++;
@@ -356,6 +376,7 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   cadt_fence_locks();
   cadt_release_claim(m, &claim);
   CADT_LAP(tally, CADT_TIME_CLAIM);
+  CADT_PERTURB(m, CADT_AT_NEW_HINT);
   cadt_set_hint(m, s.v1, t);
   cadt_set_hint(m, s.v2, n);
   CADT_LAP(tally, CADT_TIME_FLIP);

@@ -6,9 +6,10 @@
 #ifndef CADT_DEVICE_EMIT_H
 #define CADT_DEVICE_EMIT_H
 
+#include "common/device/array_mesh.h"
 #include "common/device/flips.h"
 
-/* A real triangle in input indices, rotated so that the smallest comes first; `slot` is the slot of that vertex. */
+/* A triangle in input indices, rotated so that the smallest comes first; `slot` is the slot of that vertex. */
 typedef struct {
   cadt_u32 a, b, c, slot;
 } cadt_triangle;
@@ -18,8 +19,8 @@ typedef struct {
   cadt_u32 second, record;
 } cadt_member;
 
-CADT_FN cadt_triangle cadt_label(CADT_GLOBAL const cadt_u32* labels, const cadt_record r) {
-  const cadt_u32 x = labels[r.word[0]], y = labels[r.word[1]], z = labels[r.word[2]];
+CADT_FN cadt_triangle cadt_label(CADT_GLOBAL const cadt_u32* labels, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2) {
+  const cadt_u32 x = labels[v0], y = labels[v1], z = labels[v2];
   cadt_triangle t;
   t.slot = x < y ? (x < z ? 0u : 2u) : (y < z ? 1u : 2u);
   t.a = CADT_PICK(t.slot, x, y, z);
@@ -29,10 +30,23 @@ CADT_FN cadt_triangle cadt_label(CADT_GLOBAL const cadt_u32* labels, const cadt_
 }
 
 /* Whether the record is in use and not a ghost's. */
-CADT_FN cadt_u32 cadt_is_real(const cadt_record r) {
-  return r.word[CADT_WORD_LOCK] != 0u && r.word[0] != CADT_GHOST && r.word[1] != CADT_GHOST && r.word[2] != CADT_GHOST
+CADT_FN cadt_u32 cadt_is_real(const cadt_record* r) {
+  return r->word[CADT_WORD_LOCK] != 0u && r->word[0] != CADT_GHOST && r->word[1] != CADT_GHOST &&
+                 r->word[2] != CADT_GHOST
              ? 1u
              : 0u;
+}
+
+/* Triangle t of the mesh, in records or, if these are null, in arrays that have real ones only: links are left out. */
+CADT_FN void cadt_read_vertices(CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* vertices,
+                                cadt_u32 t, cadt_record* r) {
+  if (records) {
+    *r = records[t];
+    return;
+  }
+  for (cadt_u32 k = 0u; k < 3u; ++k) r->word[k] = cadt_word_of_three(vertices, t, k);
+  r->word[CADT_WORD_LOCK] = 2u;
+  r->word[CADT_WORD_FLIPS] = 0u;
 }
 
 /* On CPUs an addition in memory that is far away holds up everything behind it, so triangles get their places in their
@@ -40,19 +54,20 @@ CADT_FN cadt_u32 cadt_is_real(const cadt_record r) {
 #define CADT_PLACES_KNOWN CADT_CONTIGUOUS
 
 /* Size of each bucket, and edges by flips. \pre buckets are zero */
-CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
-            CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_u32* places, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* flips) {
+CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* vertices,
+            CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_u32* places,
+            cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* flips) {
   CADT_FLIPS_BEGIN(bins, flips);
   CADT_FOR(t, count, grain) {
-    const cadt_record r = records[t];
+    cadt_record r;
+    cadt_read_vertices(records, vertices, t, &r);
     if (r.word[CADT_WORD_LOCK] == 0u) continue;
     CADT_FLIPS_COUNT(bins, flips, r);
-    if (!cadt_is_real(r)) continue;
+    if (!cadt_is_real(&r)) continue;
 #if CADT_PLACES_KNOWN
-    places[t] = cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u);
+    places[t] = cadt_add_relaxed(buckets + cadt_label(labels, r.word[0], r.word[1], r.word[2]).a, 1u);
 #else
-    cadt_add_relaxed(buckets + cadt_label(labels, r).a, 1u);
+    cadt_add_relaxed(buckets + cadt_label(labels, r.word[0], r.word[1], r.word[2]).a, 1u);
 #endif
   }
   CADT_FLIPS_END(bins, flips);
@@ -60,13 +75,14 @@ CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_record* records, CADT_G
 
 /* Puts each real triangle in its bucket: (second vertex, record). \pre buckets are scanned (their beginnings); \post
  * their ends, or still their beginnings where places are known */
-CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* labels,
-            CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_member* members,
-            cadt_u32 count, cadt_u32 grain) {
+CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* vertices,
+            CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL const cadt_u32* places,
+            CADT_GLOBAL cadt_member* members, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(t, count, grain) {
-    const cadt_record r = records[t];
-    if (!cadt_is_real(r)) continue;
-    const cadt_triangle label = cadt_label(labels, r);
+    cadt_record r;
+    cadt_read_vertices(records, vertices, t, &r);
+    if (!cadt_is_real(&r)) continue;
+    const cadt_triangle label = cadt_label(labels, r.word[0], r.word[1], r.word[2]);
     cadt_member member;
     member.second = label.b;
     member.record = t;
@@ -133,16 +149,19 @@ CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_
   CADT_FOR(i, count, grain) { numbers[members[i].record] = i; }
 }
 
-/* Writes triangle i. n0, n1, n2: the triangles across the edges of its record. */
-CADT_FN void cadt_emit(CADT_GLOBAL const cadt_u32* labels, const cadt_record r, cadt_u32 i, cadt_u32 n0, cadt_u32 n1,
-                       cadt_u32 n2, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors) {
-  const cadt_triangle t = cadt_label(labels, r);
-  triangles[3u * i] = t.a;
-  triangles[3u * i + 1u] = t.b;
-  triangles[3u * i + 2u] = t.c;
-  neighbors[3u * i] = CADT_PICK(t.slot, n0, n1, n2);
-  neighbors[3u * i + 1u] = CADT_PICK(t.slot, n1, n2, n0);
-  neighbors[3u * i + 2u] = CADT_PICK(t.slot, n2, n0, n1);
+/* Writes a triangle to its place. n0, n1, n2: the triangles across the edges as the mesh has them. */
+CADT_FN void cadt_emit(const cadt_triangle t, cadt_u32 at, cadt_u32 n0, cadt_u32 n1, cadt_u32 n2,
+                       CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors) {
+  if (triangles) {
+    triangles[3u * at] = t.a;
+    triangles[3u * at + 1u] = t.b;
+    triangles[3u * at + 2u] = t.c;
+  }
+  if (neighbors) {
+    neighbors[3u * at] = CADT_PICK(t.slot, n0, n1, n2);
+    neighbors[3u * at + 1u] = CADT_PICK(t.slot, n1, n2, n0);
+    neighbors[3u * at + 2u] = CADT_PICK(t.slot, n2, n0, n1);
+  }
 }
 
 /* Writes the triangles to their places, behind `first` others that have nothing to do with them. By record, so that
@@ -155,8 +174,8 @@ CADT_KERNEL(cadt_emit_triangles, CADT_GLOBAL const cadt_record* records, CADT_GL
     if (i == CADT_NONE) continue;
     const cadt_record r = records[record];
     /* ghosts have no number: CADT_NONE is -1 */
-    cadt_emit(labels, r, first + i, numbers[CADT_LINK_RECORD(r.word[4])], numbers[CADT_LINK_RECORD(r.word[5])],
-              numbers[CADT_LINK_RECORD(r.word[6])], triangles, neighbors);
+    cadt_emit(cadt_label(labels, r.word[0], r.word[1], r.word[2]), first + i, numbers[CADT_LINK_RECORD(r.word[4])],
+              numbers[CADT_LINK_RECORD(r.word[5])], numbers[CADT_LINK_RECORD(r.word[6])], triangles, neighbors);
   }
 }
 
@@ -168,7 +187,7 @@ CADT_KERNEL(cadt_flag_triangles, CADT_GLOBAL const cadt_record* records, CADT_GL
   if (cadt_item == 0u) flags[count] = 0u;
   CADT_FOR(t, count, grain) {
     const cadt_record r = records[t];
-    flags[t] = cadt_is_real(r);
+    flags[t] = cadt_is_real(&r);
     if (r.word[CADT_WORD_LOCK] != 0u) {
       CADT_FLIPS_COUNT(bins, flips, r);
     }
@@ -190,8 +209,32 @@ CADT_KERNEL(cadt_emit_ranked, CADT_GLOBAL const cadt_record* records, CADT_GLOBA
     const cadt_u32 i = ranks[record];
     if (ranks[record + 1u] == i) continue;
     const cadt_record r = records[record];
-    cadt_emit(labels, r, first + i, cadt_rank(ranks, r.word[4]), cadt_rank(ranks, r.word[5]),
-              cadt_rank(ranks, r.word[6]), triangles, neighbors);
+    cadt_emit(cadt_label(labels, r.word[0], r.word[1], r.word[2]), first + i, cadt_rank(ranks, r.word[4]),
+              cadt_rank(ranks, r.word[5]), cadt_rank(ranks, r.word[6]), triangles, neighbors);
+  }
+}
+
+/* Number of the triangle behind a link in arrays; `numbers` null: as it is. */
+CADT_FN cadt_u32 cadt_number_behind(CADT_GLOBAL const cadt_u32* numbers, cadt_u32 link, cadt_u32 count) {
+  const cadt_u32 t = CADT_LINK_RECORD(link);
+  return t >= count ? CADT_NONE : (numbers ? numbers[t] : t);
+}
+
+/* As cadt_emit_triangles, from arrays of which the first `count` triangles are real, each array by itself if the other
+ * result is null. Without numbers the results may be the arrays themselves. */
+CADT_KERNEL(cadt_emit_arrays, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_u32* links,
+            CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL const cadt_u32* numbers, CADT_GLOBAL cadt_u32* triangles,
+            CADT_GLOBAL cadt_u32* neighbors, cadt_u32 first, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(t, count, grain) {
+    const cadt_triangle label = cadt_label(labels, cadt_word_of_three(vertices, t, 0u),
+                                           cadt_word_of_three(vertices, t, 1u), cadt_word_of_three(vertices, t, 2u));
+    cadt_u32 n0 = CADT_NONE, n1 = CADT_NONE, n2 = CADT_NONE;
+    if (neighbors) { /* else there may be no links any more */
+      n0 = cadt_number_behind(numbers, cadt_word_of_three(links, t, 0u), count);
+      n1 = cadt_number_behind(numbers, cadt_word_of_three(links, t, 1u), count);
+      n2 = cadt_number_behind(numbers, cadt_word_of_three(links, t, 2u), count);
+    }
+    cadt_emit(label, first + (numbers ? numbers[t] : t), n0, n1, n2, triangles, neighbors);
   }
 }
 

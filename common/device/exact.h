@@ -8,6 +8,11 @@
 
 #include "common/device/fixed.h"
 
+/* Where a length of integers is taken. Tests may count (tests/device/device_predicates.ipp). */
+#ifndef CADT_STAGE
+#define CADT_STAGE(name) ((void)0)
+#endif
+
 /* Sign of the determinant of the rows (d0, d1), (d2, d3), n limbs each; destroys d. */
 CADT_FN cadt_i32 cadt_sign_of_minor(cadt_u32 (*d)[CADT_LIMBS], cadt_i32 n) {
   cadt_u32 negative[4], product[2 * CADT_LIMBS], det[2 * CADT_LIMBS + 1];
@@ -23,6 +28,7 @@ CADT_FN cadt_i32 cadt_sign_of_minor(cadt_u32 (*d)[CADT_LIMBS], cadt_i32 n) {
 /* Orientation, any length. */
 CADT_FN_SLOW cadt_i32 cadt_orientation_limbs(cadt_point a, cadt_point b, cadt_point c) {
   cadt_u32 d[4][CADT_LIMBS], origin[CADT_LIMBS];
+  CADT_STAGE(orientation_long);
   const cadt_span s = cadt_span_of(a, b, c);
   const cadt_i32 low = s.low, n = (cadt_span_bits(&s) + 2 + 31) >> 5;
   cadt_limbs_load(d[0], n, a.x, low);
@@ -43,7 +49,10 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_exact(cadt_point a, cadt_point b, cadt_po
     const cadt_i64 cx = cadt_scaled(&s, c.x), cy = cadt_scaled(&s, c.y);
     const cadt_i64 ux = cadt_scaled(&s, a.x) - cx, uy = cadt_scaled(&s, a.y) - cy;
     const cadt_i64 vx = cadt_scaled(&s, b.x) - cx, vy = cadt_scaled(&s, b.y) - cy;
-    if (s.fits) return cadt_compare_i128(cadt_mul_i64(ux, vy), cadt_mul_i64(uy, vx));
+    if (s.fits) {
+      CADT_STAGE(orientation_128);
+      return cadt_compare_i128(cadt_mul_i64(ux, vy), cadt_mul_i64(uy, vx));
+    }
   }
   return cadt_orientation_limbs(a, b, c);
 }
@@ -78,6 +87,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point
   cadt_u32 d[6][CADT_LIMBS], negative[6];
   cadt_u32 product[2 * CADT_LIMBS], lift[2 * CADT_LIMBS + 1], minor[2 * CADT_LIMBS + 1];
   cadt_u32 term[4 * CADT_LIMBS + 2], det[4 * CADT_LIMBS + 3];
+  CADT_STAGE(incircle_long);
   cadt_span s = cadt_span_of(a, b, c);
   cadt_span_add_point(&s, p);
   const cadt_i32 low = s.low, n = (cadt_span_bits(&s) + 2 + 31) >> 5;
@@ -152,6 +162,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
       const double unit = s.scale * cadt_double_of_bits(CADT_CAST(cadt_u64, 1023 - zeros) << 52), square = unit * unit;
       /* |differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. Loops keep the code short. */
       if (most * square * square < 1.5e57) { /* 2^190 */
+        CADT_STAGE(incircle_192);
         cadt_i192 det;
         for (cadt_i32 i = 0; i < 3; ++i) det.word[i] = 0ul;
         ax >>= zeros, ay >>= zeros, bx >>= zeros, by >>= zeros, cx >>= zeros, cy >>= zeros;
@@ -165,6 +176,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
         }
         return cadt_sign_i192(&det);
       }
+      CADT_STAGE(incircle_256);
       cadt_i256 det;
       for (cadt_i32 i = 0; i < 4; ++i) det.word[i] = 0ul;
       CADT_ROLLED

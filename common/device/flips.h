@@ -16,8 +16,8 @@
 #include "common/device/tally.h"
 
 /* The slot of the ghost, 3 if there is none. */
-CADT_FN cadt_u32 cadt_ghost_slot(const cadt_record r) {
-  return r.word[0] == CADT_GHOST ? 0u : (r.word[1] == CADT_GHOST ? 1u : (r.word[2] == CADT_GHOST ? 2u : 3u));
+CADT_FN cadt_u32 cadt_ghost_slot(const cadt_record* r) {
+  return r->word[0] == CADT_GHOST ? 0u : (r->word[1] == CADT_GHOST ? 1u : (r->word[2] == CADT_GHOST ? 2u : 3u));
 }
 
 #if CADT_GROUP_SUMS
@@ -49,8 +49,8 @@ CADT_FN void cadt_bins_pass_on(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* su
   bins->triangles = 0u;
 }
 
-CADT_FN void cadt_bins_add_record(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums, const cadt_record r) {
-  const cadt_u32 flips = r.word[CADT_WORD_FLIPS], ghost = cadt_ghost_slot(r);
+CADT_FN void cadt_bins_add_record(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums, const cadt_record* r) {
+  const cadt_u32 flips = r->word[CADT_WORD_FLIPS], ghost = cadt_ghost_slot(r);
   if (flips == 0u && ghost == 3u) {
     bins->low += 3u;
   } else {
@@ -73,7 +73,7 @@ CADT_FN void cadt_bins_end(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums, 
   if (rows) cadt_clear_sums(flip_sums, CADT_FLIP_BINS); \
   cadt_flip_bins bins = {0u, 0u, 0u}
 #define CADT_FLIPS_COUNT(bins, rows, record) \
-  if (rows) cadt_bins_add_record(&bins, flip_sums, (record))
+  if (rows) cadt_bins_add_record(&bins, flip_sums, &(record))
 #define CADT_FLIPS_END(bins, rows) \
   if (rows) cadt_bins_end(&bins, flip_sums, (rows))
 #else
@@ -88,11 +88,11 @@ CADT_FN void cadt_bins_clear(cadt_flip_bins* bins) {
     for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin) bins->bin[k][bin] = 0u;
 }
 
-CADT_FN void cadt_bins_add_record(cadt_flip_bins* bins, const cadt_record r) {
+CADT_FN void cadt_bins_add_record(cadt_flip_bins* bins, const cadt_record* r) {
   const cadt_u32 ghost = cadt_ghost_slot(r);
   for (cadt_u32 k = 0u; k < 3u; ++k)
     if (ghost == 3u || ghost == k)
-      bins->bin[k][cadt_min_u32(cadt_flips_get(r.word[CADT_WORD_FLIPS], k), CADT_FLIP_BINS - 1u)]++;
+      bins->bin[k][cadt_min_u32(cadt_flips_get(r->word[CADT_WORD_FLIPS], k), CADT_FLIP_BINS - 1u)]++;
 }
 
 CADT_FN void cadt_bins_end(const cadt_flip_bins* bins, CADT_GLOBAL cadt_u32* rows, cadt_u32 item) {
@@ -107,7 +107,7 @@ CADT_FN void cadt_bins_end(const cadt_flip_bins* bins, CADT_GLOBAL cadt_u32* row
   cadt_flip_bins bins;               \
   cadt_bins_clear(&bins)
 #define CADT_FLIPS_COUNT(bins, rows, record) \
-  if (rows) cadt_bins_add_record(&bins, (record))
+  if (rows) cadt_bins_add_record(&bins, &(record))
 #define CADT_FLIPS_END(bins, rows) \
   if (rows) cadt_bins_end(&bins, (rows), cadt_item)
 #endif

@@ -100,11 +100,13 @@ CADT_FN void cadt_legalize_next(const cadt_mesh* m, cadt_worklist* work, const c
   const cadt_u32 mask = CADT_WORKLIST - 1u;
   cadt_u32 partner = 0u, all_sides = 0u;
   CADT_LAP_WAIT(tally);
+  CADT_PERTURB(m, CADT_AT_TAKE);
   const cadt_u32 link = cadt_worklist_take(work);
   CADT_LAP(tally, CADT_TIME_OTHER);
   const cadt_u32 outcome = cadt_legalize_edge(m, link, work->apex, work->apex_point, &partner, &all_sides, tally);
   if (outcome == CADT_EDGE_CONFLICT) {
     if (++work->conflicts > CADT_CAST(cadt_u32, CADT_EDGE_TRIES)) {
+      CADT_PERTURB(m, CADT_AT_PUSH_EDGE);
       cadt_defer_edge(deferred, link, tally);
     } else { /* to the far end: the other edges first, meanwhile the owner gets on */
       work->first--;
@@ -123,6 +125,7 @@ CADT_FN void cadt_legalize_next(const cadt_mesh* m, cadt_worklist* work, const c
         cadt_worklist_add(work, sides[e]);
       else
         cadt_defer_edge(deferred, sides[e], tally);
+      CADT_PERTURB(m, CADT_AT_PUSH_EDGE);
     }
     if (!work->flips)
       cadt_defer_edge(deferred, link, tally);
@@ -148,6 +151,7 @@ CADT_FN cadt_u32 cadt_try_vertex(const cadt_mesh* m, cadt_u32 i, cadt_point p, c
   cadt_place place = {CADT_LOST, *hint, 0u, {0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u}};
   cadt_u32 size = 0u;
   CADT_LAP(tally, CADT_TIME_OTHER);
+  CADT_PERTURB(m, CADT_AT_HINT);
   cadt_locate(m, p, *hint, &place, tally);
   CADT_LAP(tally, CADT_TIME_LOCATE);
   if (place.kind != CADT_LOST)
@@ -271,7 +275,9 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
             cadt_store_relaxed(mesh.hints + i, hint);
             if (!work.size) {
               tally.count[CADT_COUNT_DEFERRED_POINTS]++;
-              left_points[cadt_add_relaxed(left_counts, 1u)] = i;
+              const cadt_u32 at = cadt_add_relaxed(left_counts, 1u);
+              CADT_PERTURB(&mesh, CADT_AT_PUSH_POINT);
+              left_points[at] = i;
             }
             i = CADT_NONE;
           } else {

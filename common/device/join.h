@@ -5,13 +5,13 @@
  * join"). That smaller mesh is built by insertion; here those of its triangles are found that do not lie under proven
  * ones, and both parts are linked.
  *
- * The two parts meet in edges whose ends are unproven: edge 0 of an open record on one side, an edge of the smaller
- * mesh on the other.
+ * The two parts meet in edges whose ends are unproven: edge 0 of an open triangle on one side, an edge of the smaller
+ * mesh on the other. The whole mesh is one in two arrays (array_mesh.h), the smaller one has records.
  */
 #ifndef CADT_DEVICE_JOIN_H
 #define CADT_DEVICE_JOIN_H
 
-#include "common/device/mesh.h"
+#include "common/device/flips.h"
 
 /* The unproven vertices, closed up. `ranks` is the scan of 1 for each. */
 CADT_KERNEL(cadt_unproven_pack, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_point* points,
@@ -31,19 +31,20 @@ CADT_FN cadt_u32 cadt_edge_hash(cadt_u32 a, cadt_u32 b) {
   return x ^ (x >> 13);
 }
 
-/* A hash table of the open records by the ends of their edge 0, from the first to the second; `mask` + 1 places, a
+/* A hash table of the open triangles by the ends of their edge 0, from the first to the second; `mask` + 1 places, a
  * power of two. \pre the table is CADT_NONE */
-CADT_KERNEL(cadt_join_enter, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* open, cadt_u32 count,
+CADT_KERNEL(cadt_join_enter, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_u32* open, cadt_u32 count,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* table, cadt_u32 mask) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 t = open[i];
-    cadt_u32 at = cadt_edge_hash(records[t].word[1], records[t].word[2]) & mask;
+    CADT_GLOBAL const cadt_u32* v = vertices + 3u * t;
+    cadt_u32 at = cadt_edge_hash(v[1], v[2]) & mask;
     while (!cadt_cas_relaxed(table + at, CADT_NONE, t)) at = (at + 1u) & mask;
   }
 }
 
-/* covers[3 r + k]: the open record that lies on this side of edge k of record r of the smaller mesh, or CADT_NONE */
-CADT_KERNEL(cadt_join_cover, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_record* smaller,
+/* covers[3 r + k]: the open triangle that lies on this side of edge k of record r of the smaller mesh, or CADT_NONE */
+CADT_KERNEL(cadt_join_cover, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_record* smaller,
             CADT_GLOBAL const cadt_u32* positions, cadt_u32 slots, cadt_u32 grain, CADT_GLOBAL const cadt_u32* table,
             cadt_u32 mask, CADT_GLOBAL cadt_u32* covers, CADT_GLOBAL cadt_u32* roots) {
   CADT_FOR(r, slots, grain) {
@@ -57,7 +58,8 @@ CADT_KERNEL(cadt_join_cover, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL
         const cadt_u32 a = positions[from], b = positions[to];
         cadt_u32 at = cadt_edge_hash(a, b) & mask;
         for (cover = table[at]; cover != CADT_NONE; cover = table[at]) {
-          if (records[cover].word[1] == a && records[cover].word[2] == b) break;
+          CADT_GLOBAL const cadt_u32* v = vertices + 3u * cover;
+          if (v[1] == a && v[2] == b) break;
           at = (at + 1u) & mask;
         }
       }
@@ -66,7 +68,7 @@ CADT_KERNEL(cadt_join_cover, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL
   }
 }
 
-/* Components of the smaller mesh without the edges that have an open record on a side; each is named by its lowest
+/* Components of the smaller mesh without the edges that have an open triangle on a side; each is named by its lowest
  * record. Two trees are joined by one compare-and-swap of the higher root. */
 CADT_FN cadt_u32 cadt_root_of(CADT_GLOBAL cadt_u32* roots, cadt_u32 r) {
   for (;;) {
@@ -107,45 +109,64 @@ CADT_KERNEL(cadt_join_hide, CADT_GLOBAL const cadt_u32* covers, CADT_GLOBAL cadt
   }
 }
 
-/* 1 for records that belong to the whole mesh; their scan, with a 0 at the end, numbers them. */
+/* 1 for records that belong to the whole mesh, those of the ghost behind the others; their scan, with a 0 at the end,
+ * numbers them. */
 CADT_KERNEL(cadt_join_flags, CADT_GLOBAL const cadt_record* smaller, CADT_GLOBAL cadt_u32* roots,
             CADT_GLOBAL const cadt_u32* hidden, cadt_u32 slots, cadt_u32 grain, CADT_GLOBAL cadt_u32* flags) {
-  if (cadt_item == 0u) flags[slots] = 0u;
+  if (cadt_item == 0u) flags[2u * slots] = 0u;
   CADT_FOR(r, slots, grain) {
-    flags[r] = smaller[r].word[CADT_WORD_LOCK] != 0u && !hidden[cadt_root_of(roots, r)] ? 1u : 0u;
+    const cadt_record s = smaller[r];
+    const cadt_u32 taken = s.word[CADT_WORD_LOCK] != 0u && !hidden[cadt_root_of(roots, r)] ? 1u : 0u;
+    const cadt_u32 ghost = cadt_ghost_slot(&s) != 3u ? 1u : 0u;
+    flags[r] = taken && !ghost ? 1u : 0u;
+    flags[slots + r] = taken && ghost ? 1u : 0u;
   }
 }
 
-/* Copies them behind the `before` records of the proven part, and links both. */
-CADT_KERNEL(cadt_join_records, CADT_GLOBAL const cadt_record* smaller, CADT_GLOBAL const cadt_u32* covers,
+/* Number of record r among those that belong to the whole mesh, or CADT_NONE. */
+CADT_FN cadt_u32 cadt_join_number(CADT_GLOBAL const cadt_u32* ranks, cadt_u32 slots, cadt_u32 r) {
+  const cadt_u32 real = ranks[r], ghost = ranks[slots + r];
+  if (ranks[r + 1u] != real) return real;
+  return ranks[slots + r + 1u] != ghost ? ghost : CADT_NONE;
+}
+
+/* Copies them behind the `before` triangles of the proven part, and links both. Edges by flips besides, those of the
+ * ghost left out; an edge between the parts counts for both of its sides. */
+CADT_KERNEL(cadt_join_rest, CADT_GLOBAL const cadt_record* smaller, CADT_GLOBAL const cadt_u32* covers,
             CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_u32* positions, cadt_u32 slots, cadt_u32 grain,
-            cadt_u32 before, CADT_GLOBAL cadt_record* records) {
+            cadt_u32 before, CADT_GLOBAL cadt_u32* vertices, CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* flips) {
+  CADT_FLIPS_BEGIN(bins, flips);
   CADT_FOR(r, slots, grain) {
     const cadt_record s = smaller[r];
     if (s.word[CADT_WORD_LOCK] == 0u) continue;
-    const cadt_u32 taken = ranks[r + 1u] != ranks[r] ? 1u : 0u, t = before + ranks[r];
+    const cadt_u32 number = cadt_join_number(ranks, slots, r), t = before + number;
+    if (number != CADT_NONE) {
+      CADT_FLIPS_COUNT(bins, flips, s);
+    }
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 link = CADT_PICK(k, s.word[4], s.word[5], s.word[6]), other = CADT_LINK_RECORD(link);
       const cadt_u32 cover = covers[3u * r + k], beyond = covers[3u * other + CADT_LINK_EDGE(link)];
-      if (taken) {
-        records[t].word[CADT_WORD_LINK + k] =
-            beyond != CADT_NONE ? CADT_LINK(beyond, 0u) : CADT_LINK(before + ranks[other], CADT_LINK_EDGE(link));
-        if (beyond != CADT_NONE) {
-          records[beyond].word[CADT_WORD_LINK] = CADT_LINK(t, k);
-          /* an edge has one number of flips, on both sides */
-          records[beyond].word[CADT_WORD_FLIPS] = cadt_flips_set(0u, 0u, cadt_flips_get(s.word[CADT_WORD_FLIPS], k));
-        }
+      if (number != CADT_NONE) {
         const cadt_u32 v = CADT_PICK(k, s.word[0], s.word[1], s.word[2]);
-        records[t].word[k] = v == CADT_GHOST ? v : positions[v];
+        cadt_u32 across = CADT_LINK(beyond, 0u);
+        if (beyond != CADT_NONE) {
+          cadt_record side; /* of the ghost, so its edge 0 alone counts */
+          side.word[0] = CADT_GHOST;
+          side.word[1] = side.word[2] = 0u;
+          side.word[CADT_WORD_FLIPS] = cadt_flips_set(0u, 0u, cadt_flips_get(s.word[CADT_WORD_FLIPS], k));
+          CADT_FLIPS_COUNT(bins, flips, side);
+          links[3u * beyond] = CADT_LINK(t, k);
+        } else {
+          across = CADT_LINK(before + cadt_join_number(ranks, slots, other), CADT_LINK_EDGE(link));
+        }
+        links[3u * t + k] = across;
+        vertices[3u * t + k] = v == CADT_GHOST ? v : positions[v];
       } else if (cover != CADT_NONE && beyond != CADT_NONE) { /* proven on both sides */
-        records[cover].word[CADT_WORD_LINK] = CADT_LINK(beyond, 0u);
+        links[3u * cover] = CADT_LINK(beyond, 0u);
       }
     }
-    if (taken) {
-      records[t].word[CADT_WORD_LOCK] = 2u;
-      records[t].word[CADT_WORD_FLIPS] = s.word[CADT_WORD_FLIPS];
-    }
   }
+  CADT_FLIPS_END(bins, flips);
 }
 
 #endif

@@ -7,6 +7,7 @@
 
 #define CADT_KERNEL_LIST(X)                                                      \
   X(cadt_selftest)          /* selftest.h: arithmetic and atomics */             \
+  X(cadt_signs)             /* signs.h: the predicates by themselves */          \
   X(cadt_import_doubles)    /* order.h: points from the caller's memory */       \
   X(cadt_import_floats)     /* order.h */                                        \
   X(cadt_bounds)            /* order.h: box, exponents, first bad coordinate */  \
@@ -42,15 +43,18 @@
   X(cadt_tile_flags)        /* tiles.h */                                        \
   X(cadt_tile_pack)         /* tiles.h */                                        \
   X(cadt_stars)             /* star.h: proven stars of vertices */               \
+  X(cadt_star_proven)       /* star_mesh.h */                                    \
   X(cadt_star_counts)       /* star_mesh.h: who owns which triangle */           \
-  X(cadt_star_records)      /* star_mesh.h */                                    \
+  X(cadt_star_links)        /* star_mesh.h */                                    \
+  X(cadt_star_vertices)     /* star_mesh.h */                                    \
   X(cadt_unproven_pack)     /* join.h: the other vertices */                     \
   X(cadt_join_enter)        /* join.h: hash table of the edges between */        \
   X(cadt_join_cover)        /* join.h */                                         \
   X(cadt_join_components)   /* join.h */                                         \
   X(cadt_join_hide)         /* join.h */                                         \
   X(cadt_join_flags)        /* join.h */                                         \
-  X(cadt_join_records)      /* join.h: the rest of the mesh */                   \
+  X(cadt_join_rest)         /* join.h: the rest of the mesh */                   \
+  X(cadt_certify)           /* array_mesh.h */                                   \
   X(cadt_wrap_boxes)        /* wrap.h: stars of few points by gift wrapping */   \
   X(cadt_wrap_stars)        /* wrap.h */                                         \
   X(cadt_wrap_counts)       /* wrap_mesh.h: who owns which triangle */           \
@@ -75,6 +79,7 @@
   X(cadt_emit_triangles)    /* emit.h */                                         \
   X(cadt_flag_triangles)    /* emit.h: order of the records */                   \
   X(cadt_emit_ranked)       /* emit.h */                                         \
+  X(cadt_emit_arrays)       /* emit.h */                                         \
   X(cadt_boundary_edges)    /* emit.h */                                         \
   X(cadt_verify_structure)  /* verify.h: ranges, neighbours, used points */      \
   X(cadt_verify_points)     /* verify.h */                                       \

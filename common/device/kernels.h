@@ -5,6 +5,7 @@
 #ifndef CADT_DEVICE_KERNELS_H
 #define CADT_DEVICE_KERNELS_H
 
+#include "common/device/array_mesh.h"
 #include "common/device/closing.h"
 #include "common/device/emit.h"
 #include "common/device/flips.h"
@@ -18,6 +19,7 @@
 #include "common/device/selftest.h"
 #include "common/device/set_insert.h"
 #include "common/device/sets.h"
+#include "common/device/signs.h"
 #include "common/device/star.h"
 #include "common/device/star_mesh.h"
 #include "common/device/start.h"

@@ -7,7 +7,8 @@
  * A compile may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double),
  * CADT_CONTIGUOUS (1: a work-item takes neighbouring elements, right for CPUs; 0: strided, right for GPUs),
  * CADT_RADIX_BITS (digit of the radix sort), CADT_TIMED (1: threads take
- * the time of what they do, tally.h), CADT_TEST_NO_LOCKS (control of the tests: locks are not taken).
+ * the time of what they do, tally.h). For tests only: CADT_CHECKED (who stores to a record must own it, mesh.h),
+ * CADT_PERTURBED (delays and failures, perturb.h), CADT_TEST_NO_LOCKS (a control: locks are not taken).
  */
 #ifndef CADT_DEVICE_LANG_H
 #define CADT_DEVICE_LANG_H
@@ -123,11 +124,14 @@ typedef long long cadt_i64;
 #define CADT_FN_SLOW static __device__ __noinline__
 #define CADT_KERNEL(name, ...) static __global__ void name(__VA_ARGS__)
 /* Registers are given out so that so many teams run on a multiprocessor at the same time, if it has so many threads. */
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
-#define CADT_TEAMS(lanes, teams) ((lanes) * (teams) > 1024 ? 1024 / (lanes) : (teams))
+#if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ == 800 || (__CUDA_ARCH__ >= 900 && __CUDA_ARCH__ < 1200)
+#define CADT_THREADS_MOST 2048
+#elif __CUDA_ARCH__ < 800
+#define CADT_THREADS_MOST 1024
 #else
-#define CADT_TEAMS(lanes, teams) (teams)
+#define CADT_THREADS_MOST 1536
 #endif
+#define CADT_TEAMS(lanes, teams) ((lanes) * (teams) > CADT_THREADS_MOST ? CADT_THREADS_MOST / (lanes) : (teams))
 #define CADT_TEAM_KERNEL(lanes, teams, name, ...) \
   static __global__ void __launch_bounds__((lanes), CADT_TEAMS(lanes, teams)) name(__VA_ARGS__)
 #define cadt_item ((cadt_u32)(blockIdx.x * blockDim.x + threadIdx.x))

@@ -25,10 +25,11 @@ enum {
   CADT_TILE_POINTS = 704, /* at most, but for squares that cannot be divided */
   CADT_STAR_DEGREE = 12,  /* neighbours of a proven star at most */
   CADT_STAR_LANES = 128,  /* lanes of a team that make stars */
-  /* Vertices whose records a team writes, and how many of them it collects (more are written at once): a word of a
-   * record and the same of the next fall into different banks of memory, and so do the words of a record. */
+  /* Vertices whose triangles a team writes, and how many of them it collects (more are written at once). */
   CADT_RECORD_LANES = 128,
-  CADT_RECORD_PLANE = 324
+  CADT_TRIANGLES_OF_TEAM = 320,
+  /* Words for the stars of a tile: 6 a vertex on average, and these for what some tiles have more. */
+  CADT_STAR_SPARE = 8
 };
 
 /* Gift wrapping (wrap.h). */

@@ -79,6 +79,7 @@ CADT_FN void cadt_locate(const cadt_mesh* m, cadt_point p, cadt_u32 start, cadt_
   place->kind = CADT_LOST;
   place->edge = 0u;
   for (; steps < CADT_CAST(cadt_u32, CADT_WALK_LIMIT); ++steps) {
+    CADT_PERTURB(m, CADT_AT_WALK);
     cadt_snapshot s = cadt_look(m, t);
     cadt_u32 leave, on = 0u;
     if (s.lock == 0u) break;

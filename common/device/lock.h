@@ -46,12 +46,18 @@ CADT_FN void cadt_claim_order(cadt_claim* c, cadt_u32 i, cadt_u32 j) {
 CADT_FN void cadt_abandon_claim(const cadt_mesh* m, const cadt_claim* c, cadt_u32 count) {
 #if CADT_CONTIGUOUS
   for (cadt_u32 i = 0u; i < count; ++i)
-    if (c->record[i] != CADT_NONE) cadt_store_lock(m->records[c->record[i]].word + CADT_WORD_LOCK, c->version[i]);
+    if (c->record[i] != CADT_NONE) {
+      cadt_store_lock(m->records[c->record[i]].word + CADT_WORD_LOCK, c->version[i]);
+      CADT_PERTURB(m, CADT_AT_ABANDONED);
+    }
 #else
   /* By an addition: a store would take the place of the last owner's in what the next claimer synchronises with, and so
    * need a fence before it. */
   for (cadt_u32 i = 0u; i < count; ++i)
-    if (c->record[i] != CADT_NONE) cadt_add_relaxed(m->records[c->record[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);
+    if (c->record[i] != CADT_NONE) {
+      cadt_add_relaxed(m->records[c->record[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);
+      CADT_PERTURB(m, CADT_AT_ABANDONED);
+    }
 #endif
 }
 
@@ -92,14 +98,17 @@ CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* t
   cadt_claim_order(c, 0, 2);
   cadt_claim_order(c, 1, 3);
   cadt_claim_order(c, 1, 2);
+  CADT_PERTURB(m, CADT_AT_CLAIM);
   for (cadt_u32 i = 0u; i < 4u; ++i) {
     if (c->record[i] == CADT_NONE) break;
-    if (!cadt_claim_record(m->records[c->record[i]].word + CADT_WORD_LOCK, &c->version[i], tally)) {
+    if (CADT_FAILS(m, CADT_AT_CLAIM) ||
+        !cadt_claim_record(m->records[c->record[i]].word + CADT_WORD_LOCK, &c->version[i], tally)) {
       cadt_abandon_claim(m, c, i);
       tally->count[CADT_COUNT_LOST_CLAIMS]++;
       CADT_LAP(tally, CADT_TIME_CLAIM);
       return 0u;
     }
+    CADT_PERTURB(m, CADT_AT_CLAIMED);
   }
   cadt_fence_claims(); /* what the last owners wrote is seen from here on */
   CADT_LAP(tally, CADT_TIME_CLAIM);
@@ -108,6 +117,8 @@ CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* t
 
 /* Whether record t is still what it was, seen from edge k. On CPUs the claim has proved it. \pre the caller owns t */
 CADT_FN cadt_u32 cadt_confirm(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, const cadt_snapshot* s) {
+  CADT_PERTURB(m, CADT_AT_CONFIRM);
+  if (CADT_FAILS(m, CADT_AT_CONFIRM)) return 0u;
 #if CADT_CONTIGUOUS
   (void)m, (void)t, (void)k, (void)s;
   return 1u;
@@ -121,9 +132,12 @@ CADT_FN cadt_u32 cadt_confirm(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, const 
 
 /* Gives the records back, changed. \pre the caller owns them; all stores to them are done */
 CADT_FN void cadt_release_claim(const cadt_mesh* m, const cadt_claim* c) {
+  CADT_PERTURB(m, CADT_AT_RELEASE);
   for (cadt_u32 i = 0u; i < 4u; ++i)
-    if (c->record[i] != CADT_NONE)
+    if (c->record[i] != CADT_NONE) {
       cadt_store_lock(m->records[c->record[i]].word + CADT_WORD_LOCK, cadt_next_version(c->version[i]));
+      CADT_PERTURB(m, CADT_AT_RELEASED);
+    }
 }
 
 /* Makes a new record free. \pre its fields and all links to it are stored, and the caller still owns the records it was

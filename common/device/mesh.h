@@ -15,6 +15,7 @@
 #define CADT_DEVICE_MESH_H
 
 #include "common/device/layout.h"
+#include "common/device/perturb.h"
 #include "common/device/predicates.h"
 
 /* The mesh as the kernels see it. `center` is the centroid of the first three vertices (start.h), rounded. */
@@ -29,6 +30,9 @@ typedef struct {
 #if defined(CADT_CHECKED)
   cadt_u32 own_begin, own_size; /* the range of who works without claims (range.h), empty elsewhere */
 #endif
+#if defined(CADT_PERTURBED)
+  cadt_noise* noise;
+#endif
 } cadt_mesh;
 
 #define CADT_MESH_PARAMETERS                                                                                 \
@@ -40,20 +44,21 @@ typedef struct {
 #else
 #define CADT_OWN_RANGE(mesh, begin, size) ((void)0)
 #endif
-#define CADT_MESH_VIEW(mesh)  \
-  cadt_mesh mesh;             \
-  mesh.records = records;     \
-  mesh.points = points;       \
-  mesh.hints = hints;         \
-  mesh.center.x = center_x;   \
-  mesh.center.y = center_y;   \
-  mesh.first = first;         \
-  mesh.second = second;       \
-  mesh.third = third;         \
-  mesh.stabilize = stabilize; \
-  mesh.threshold = threshold; \
-  mesh.epsilon = epsilon;     \
-  CADT_OWN_RANGE(mesh, 0u, 0u)
+#define CADT_MESH_VIEW(mesh)    \
+  cadt_mesh mesh;               \
+  mesh.records = records;       \
+  mesh.points = points;         \
+  mesh.hints = hints;           \
+  mesh.center.x = center_x;     \
+  mesh.center.y = center_y;     \
+  mesh.first = first;           \
+  mesh.second = second;         \
+  mesh.third = third;           \
+  mesh.stabilize = stabilize;   \
+  mesh.threshold = threshold;   \
+  mesh.epsilon = epsilon;       \
+  CADT_OWN_RANGE(mesh, 0u, 0u); \
+  CADT_NOISE_BEGIN(mesh, cadt_item, epsilon)
 
 #define CADT_LINK(record, edge) (((record) << 2) | (edge))
 #define CADT_LINK_RECORD(link) ((link) >> 2)
@@ -83,6 +88,7 @@ CADT_FN cadt_snapshot cadt_look_from(const cadt_mesh* m, cadt_u32 t, cadt_u32 k)
   const cadt_u32 k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
   cadt_snapshot s;
   s.lock = cadt_load_field(w + CADT_WORD_LOCK);
+  CADT_PERTURB(m, CADT_AT_FIELDS);
   s.v0 = cadt_load_field(w + k);
   s.v1 = cadt_load_field(w + k1);
   s.v2 = cadt_load_field(w + k2);

@@ -176,7 +176,9 @@ CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_poin
 #endif
   }
   tally->count[CADT_COUNT_EXACT_INCIRCLES]++;
-  if (!cadt_mirrored(a, b, c, p)) {
+  if (cadt_mirrored(a, b, c, p)) {
+    CADT_STAGE(mirrored);
+  } else {
     const cadt_i32 sign = cadt_incircle_exact(a, b, c, p, most);
     if (sign != 0) return sign;
   }

@@ -148,7 +148,9 @@ CADT_FN cadt_u32 cadt_insert_own(const cadt_mesh* m, const cadt_range* range, ca
   }
   cadt_store_relaxed(m->hints + i, place.record);
   if (!done) return 0u;
+  CADT_PERTURB(m, CADT_AT_OWN);
   cadt_publish_record(m, 2u * i);
+  CADT_PERTURB(m, CADT_AT_OWN);
   cadt_publish_record(m, 2u * i + 1u);
   tally->count[CADT_COUNT_CLAIMS]++;
   cadt_legalize_around(m, range, edges[0], p, tally);

@@ -80,6 +80,7 @@ CADT_KERNEL(cadt_set_insert, CADT_GLOBAL cadt_record* records, CADT_GLOBAL const
     mesh.threshold = 0u;
     mesh.epsilon = 0.0;
     CADT_OWN_RANGE(mesh, 0u, 0u);
+    CADT_NOISE_BEGIN(mesh, s, 0.0);
     if (!cadt_insert_set(&mesh, n, &none, &tally)) {
       states[s] += CADT_SET_FAILURE;
       for (cadt_u32 t = 0u; t < 2u * n; ++t) mesh.records[t].word[CADT_WORD_LOCK] = 0u;

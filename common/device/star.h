@@ -378,25 +378,49 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   return proven ? size : 0u;
 }
 
-/* `links`: neighbours of each vertex in counterclockwise order, CADT_STAR_DEGREE words a vertex, filled up with
- * CADT_NONE to a multiple of four; `sizes`: how many there are, 0 for vertices without a proven star. */
-CADT_FN void cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, CADT_GLOBAL cadt_u32* links,
-                             CADT_GLOBAL cadt_u32* sizes) {
+/* Where stars are stored: neighbours of each vertex in counterclockwise order, and how many there are, 0 for vertices
+ * without a proven star. With `begins`, the place of each star, they lie close together: those of a tile in a part of
+ * their own as far as they fit there, others from `overflow` on. Without, each vertex has CADT_STAR_DEGREE words. */
+typedef struct {
+  CADT_GLOBAL cadt_u32* links;
+  CADT_GLOBAL cadt_u32* begins;
+  CADT_GLOBAL cadt_u32* sizes;
+  CADT_GLOBAL cadt_u32* overflowed; /* words */
+  cadt_u32 overflow, room;
+} cadt_star_pool;
+
+/* Where the part of tile t begins, whose first position is `begin`. */
+CADT_FN cadt_u32 cadt_pool_of_tile(cadt_u32 t, cadt_u32 begin) { return 6u * begin + begin / 8u + CADT_STAR_SPARE * t; }
+
+/* 0 if there is no room. */
+CADT_FN cadt_u32 cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, const cadt_star_pool* pool) {
   const cadt_u32 vertex = m->w->at[p];
-  sizes[vertex] = size;
-  for (cadt_u32 k = 0u; k < ((size + 3u) & ~3u); ++k)
-    links[CADT_STAR_DEGREE * CADT_CAST(cadt_u64, vertex) + k] = k < size ? m->w->at[cadt_link_place(m, k)] : CADT_NONE;
+  cadt_u64 begin = CADT_STAR_DEGREE * CADT_CAST(cadt_u64, vertex);
+  if (pool->begins) {
+    const cadt_u32 place = cadt_team_add(&m->w->pool_used, size);
+    cadt_u32 at = m->w->pool_begin + place;
+    if (place + size > m->w->pool_size) {
+      at = pool->overflow + cadt_add_relaxed(pool->overflowed, size);
+      if (at + size > pool->room) return 0u;
+    }
+    pool->begins[vertex] = at;
+    begin = at;
+  }
+  pool->sizes[vertex] = size;
+  for (cadt_u32 k = 0u; k < size; ++k) pool->links[begin + k] = m->w->at[cadt_link_place(m, k)];
+  return size;
 }
 
 /* Stars of every `step`-th tile. With `sets` the grid is that of the tile's set (sets.h), if that is one of those that
  * are together. found: points of these tiles, those without a proof; exact orientations, exact incircles, ties; tries
- * for a second time. `many`: stars may have many candidates at once. \pre sizes are 0, or of stars that are there
- * already */
+ * for a second time; words from `overflow` on, of `room` in all. `many`: stars may have many candidates at once.
+ * \pre sizes are 0, or of stars that are there already */
 CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys,
                  cadt_u32 n, CADT_GRID_PARAMETERS, double most_x, double most_y, cadt_u32 clipped,
                  CADT_GLOBAL const cadt_set* sets, CADT_GLOBAL const cadt_u32* states,
                  CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 step, cadt_u32 many, cadt_u32 grain,
-                 CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
+                 CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
+                 cadt_u32 overflow, cadt_u32 room, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_window window;
   CADT_GRID_VIEW(grid);
   cadt_point most;
@@ -404,6 +428,13 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
   most.y = most_y;
   cadt_tally tally;
   cadt_tally_clear(&tally);
+  cadt_star_pool pool;
+  pool.links = links;
+  pool.begins = begins;
+  pool.sizes = sizes;
+  pool.overflowed = found + 6;
+  pool.overflow = overflow;
+  pool.room = room;
   CADT_FOR_TEAMS(t, tile_count, grain) {
     const cadt_tile tile = tiles[t * step];
     cadt_u32 wanted = 1u;
@@ -419,7 +450,12 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
     maker.w = &window;
     maker.points = points;
     maker.tally = &tally;
-    if (cadt_team_lane == 0u) window.shape = shape; /* registers are few */
+    if (cadt_team_lane == 0u) {
+      window.shape = shape; /* registers are few */
+      window.pool_begin = cadt_pool_of_tile(t * step, shape.begin);
+      window.pool_size = cadt_pool_of_tile(t * step + 1u, shape.end) - window.pool_begin;
+      window.pool_used = 0u;
+    }
     const cadt_u32 loaded = wanted ? cadt_load_window(&window, &shape, &grid, points, keys, n, clipped) : 0u;
     const cadt_u32 own = loaded ? window.rows[shape.tile_side] : shape.end - shape.begin;
     if (loaded) {
@@ -439,10 +475,11 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
           /* or if a quarter fails, as it does where many points are cocircular */
           const cadt_u32 large = round || many || 4u * cadt_team_add(&window.again_count, 0u) > number + 64u ? 1u : 0u;
           maker.candidates = (large ? 2u : 1u) * CADT_CANDIDATES;
-          const cadt_u32 size = cadt_make_star(&maker, p, x, y, round ? 2u : 1u, halo,
-                                               large ? CADT_NONE : CADT_CAST(cadt_u32, CADT_FEW_CELLS));
+          cadt_u32 size = cadt_make_star(&maker, p, x, y, round ? 2u : 1u, halo,
+                                         large ? CADT_NONE : CADT_CAST(cadt_u32, CADT_FEW_CELLS));
+          if (size) size = cadt_store_star(&maker, p, size, &pool);
           if (size)
-            cadt_store_star(&maker, p, size, links, sizes);
+            continue;
           else if (!round)
             window.again[cadt_team_add(&window.again_count, 1u)] = CADT_CAST(cadt_u16, number);
           else

@@ -178,7 +178,7 @@ class BatchRun {
   }
 
   void add_large(std::size_t set, std::size_t begin, std::size_t size) {
-    const bool stars = choose_stars(state_, size);
+    const bool stars = prefers_stars(run_.options, run_.device);
     SpatialOrder order = sort_large(set, begin, size, stars);
     add_pairs(read_pairs(order, size), 0, size - order.distinct, 0);
     run_.statistics.wide_arithmetic = run_.statistics.wide_arithmetic || order.wide;
@@ -235,13 +235,18 @@ std::size_t choose_size(Triangulator::State& state, std::span<const std::size_t>
   if (n <= state.known_batch_points && state.options.max_memory == 0) return most_points_together;
   std::size_t largest = 0;
   for (std::size_t s = 0; s < sets; ++s) largest = std::max(largest, offsets[s + 1] - offsets[s]);
-  if (largest > together) state.memory.require(results + least_bytes(largest, true));
+  if (largest > together) {
+    require_buffer(state, record_bytes(largest));
+    state.memory.require(results + least_bytes(largest, true));
+  }
   std::size_t most = most_points_together;
   const auto bytes = [&] {
     const std::size_t points = std::min(n, most);
     return results + bytes_together(points, std::min({sets, points, most_sets_together}));
   };
-  while (most > fewest_points_together && !state.memory.allows(bytes())) most /= 2;
+  while (most > fewest_points_together &&
+         !(state.memory.allows(bytes()) && fits_buffers(state, record_bytes(std::min(n, most)))))
+    most /= 2;
   state.memory.require(bytes());
   return most;
 }

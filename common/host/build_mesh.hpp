@@ -9,11 +9,15 @@
 
 namespace cadt {
 
-/// The mesh on the device, certified.
+/// The mesh on the device, certified: in records, or in two arrays without locks and flips (array_mesh.h).
 struct DeviceMesh {
-  Allocation records;     ///< two a distinct point; some of the first points' stay unused
-  std::size_t slots = 0;  ///< records allocated
-  bool flat = false;      ///< all points on one line or fewer than three: no records
+  Allocation records;          ///< two a distinct point; some of the first points' stay unused
+  std::size_t slots = 0;       ///< records allocated, or triangles of the arrays
+  bool flat = false;           ///< all points on one line or fewer than three: no records
+  Allocation vertices, links;  ///< the arrays, three words a triangle
+  std::size_t triangles = 0;   ///< of these the first so many are not of the ghost
+
+  [[nodiscard]] bool in_arrays() const noexcept { return static_cast<bool>(vertices) || static_cast<bool>(links); }
 };
 
 /// Inserts all points level by level, legalises, and certifies by closing passes. Releases nothing of `order`, but on
@@ -23,5 +27,8 @@ struct DeviceMesh {
 /// Closing passes over a mesh of two records a point that was made otherwise; it has so many edges, those to the ghost
 /// included.
 [[nodiscard]] DeviceMesh certify_mesh(Run& run, SpatialOrder& order, Allocation records, std::uint64_t edges);
+
+/// One pass over a mesh in arrays. \throws InternalError if an edge is not as it should be: nothing is repaired
+void certify_arrays(Run& run, const SpatialOrder& order, const DeviceMesh& mesh);
 
 }  // namespace cadt

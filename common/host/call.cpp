@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/host/star_stage.hpp"
+
 namespace cadt {
 namespace {
 
@@ -15,8 +17,11 @@ constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial result
 /// numbers, and lists of a word or less.
 constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
 
-/// With the star stage besides: neighbours of the stars, lists, and what the rest of the points needs.
-constexpr std::size_t kept_star_words[] = {12, 1, 1, 1, 1, 1, 1};
+/// Bytes a point of the largest buffer of the star stage, the stars.
+constexpr std::size_t star_pool_bytes = 26;
+
+/// With the star stage besides: stars, lists, and what the rest of the points needs.
+constexpr std::size_t kept_star_words[] = {7, 1, 1, 1, 1, 1, 1};
 
 void require_rules(const Options& options) {
   constexpr unsigned most_flips = 1000;  // counters have ten bits
@@ -32,7 +37,7 @@ void require_rules(const Options& options) {
 
 std::size_t least_bytes(std::size_t n, bool result_elsewhere) { return fixed + n * (result_elsewhere ? 97 : 124); }
 
-std::size_t star_bytes(std::size_t n) { return fixed + n * 150; }
+std::size_t star_bytes(std::size_t n, bool input_stays) { return 2 * fixed + n * (input_stays ? 85 : 101); }
 
 bool prefers_stars(const Options& options, const Device& device) {
   if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
@@ -44,7 +49,7 @@ std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
   std::size_t words = 0;
   for (const std::size_t one : kept_words) words += one;
   for (const std::size_t one : kept_star_words) words += stars ? one : 0;
-  return memory.keeps() ? 4 * fixed + n * words * word : stars ? star_bytes(n) : least_bytes(n, false);
+  return memory.keeps() ? 4 * fixed + n * words * word : least_bytes(n, false);
 }
 
 void keep_buffers(Memory& memory, std::size_t n, bool stars) {
@@ -78,16 +83,28 @@ void open_account(Triangulator::State& state, std::size_t n, Statistics& statist
   begin_account(state, n);
 }
 
-void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere) {
-  const bool stars = state.options.strategy == Strategy::stars;  // Strategy::automatic does without, if it must
-  if (n <= (stars ? state.known_star_points : state.known_points) && state.options.max_memory == 0) return;
-  state.memory.require(stars ? star_bytes(n) : least_bytes(n, result_elsewhere));
+std::size_t record_bytes(std::size_t n) { return n * 16 * word; }
+
+bool fits_buffers(const Triangulator::State& state, std::size_t bytes) {
+  const std::uint64_t largest = state.device->info().largest_buffer_bytes;
+  return state.options.allocator != nullptr || largest == 0 || bytes <= largest;  // an allocator knows its own limits
 }
 
-bool choose_stars(Triangulator::State& state, std::size_t n) {
-  if (!prefers_stars(state.options, *state.device)) return false;
-  if (n <= state.known_star_points && state.options.max_memory == 0) return true;
-  return state.options.strategy == Strategy::stars || state.memory.allows(star_bytes(n));
+void require_buffer(const Triangulator::State& state, std::size_t bytes) {
+  if (fits_buffers(state, bytes)) return;
+  const DeviceInfo& info = state.device->info();
+  throw OutOfMemory("this needs a buffer of " + std::to_string(bytes) + " bytes and the largest of '" + info.name +
+                        "' has " + std::to_string(info.largest_buffer_bytes) +
+                        ": use fewer points or a device with larger buffers",
+                    bytes, static_cast<std::size_t>(info.largest_buffer_bytes));
+}
+
+void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere, bool input_stays) {
+  const bool stars = prefers_stars(state.options, *state.device) &&
+                     (state.options.strategy == Strategy::stars || n > most_wrapped_alone);
+  require_buffer(state, stars ? n * star_pool_bytes : record_bytes(n));
+  if (n <= (stars ? state.known_star_points : state.known_points) && state.options.max_memory == 0) return;
+  state.memory.require(stars ? star_bytes(n, input_stays) : least_bytes(n, result_elsewhere));
 }
 
 void close_account(Triangulator::State& state, Run& run, bool ordered) {

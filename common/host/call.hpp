@@ -15,23 +15,28 @@ void require_size(std::size_t points);
 /// Device bytes of the phase that needs most, but for crowded cells: writing the result (124 a point), or sorting the
 /// triangles (96) where the result goes straight to memory of the host's. docs/performance.md has the plan.
 [[nodiscard]] std::size_t least_bytes(std::size_t n, bool result_elsewhere);
-/// The same with the star stage.
-[[nodiscard]] std::size_t star_bytes(std::size_t n);
+/// The same with the star stage, unless more points than usual are left to the insertion. `input_stays`: the points can
+/// be read once more where they are, so they need not be kept in order all the time.
+[[nodiscard]] std::size_t star_bytes(std::size_t n, bool input_stays);
 /// The same, with buffers that wait for a later phase or call.
 [[nodiscard]] std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars);
 
-/// Whether the star stage is what Strategy::automatic chooses, if there is the memory. It needs many cheap lanes: CPUs
-/// are faster without it.
+/// Whether the star stage is to run, if it suits the points. It needs many cheap lanes: CPUs are faster without it, and
+/// Strategy::automatic knows that.
 [[nodiscard]] bool prefers_stars(const Options& options, const Device& device);
-/// Whether the star stage is to run.
-[[nodiscard]] bool choose_stars(Triangulator::State& state, std::size_t n);
 
 /// A new account of memory, for n points.
 void begin_account(Triangulator::State& state, std::size_t n);
 /// The same, and what the statistics say before any work. \throws OptionError
 void open_account(Triangulator::State& state, std::size_t n, Statistics& statistics);
+/// Bytes of the records of n points: without the star stage no other buffer is larger.
+[[nodiscard]] std::size_t record_bytes(std::size_t n);
+/// Whether one buffer of the device can have so many bytes.
+[[nodiscard]] bool fits_buffers(const Triangulator::State& state, std::size_t bytes);
+/// \throws OutOfMemory where one buffer of the device cannot have so many bytes
+void require_buffer(const Triangulator::State& state, std::size_t bytes);
 /// \throws OutOfMemory before any work
-void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere);
+void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere, bool input_stays);
 /// What the statistics say in the end. Waits for the device, unless nobody asks for that: nothing was measured, and the
 /// result is used in the order of the caller's queue (`ordered`).
 void close_account(Triangulator::State& state, Run& run, bool ordered);

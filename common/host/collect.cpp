@@ -55,11 +55,16 @@ std::vector<std::int32_t> link_loop(const std::vector<std::array<std::uint32_t, 
 Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, std::size_t points,
                            const SetStarts* sets) {
   Launcher& launch = run.launcher;
-  const auto slots = static_cast<std::uint32_t>(mesh.slots);
-  const Cut all = launch.cut(mesh.slots);
-  const FlipCounts flips(run);
-  const Cut records = launch.cut_strided(mesh.slots);
   Numbering result;
+  if (mesh.in_arrays() && run.options.order == Order::fast) {
+    result.triangles = mesh.triangles;
+    return result;
+  }
+  const std::size_t places = mesh.in_arrays() ? mesh.triangles : mesh.slots;
+  const auto slots = static_cast<std::uint32_t>(places);
+  const Cut all = launch.cut(places);
+  const FlipCounts flips(run, !mesh.in_arrays());  // arrays have none any more
+  const Cut records = launch.cut_strided(places);
   if (run.options.order == Order::fast) {
     result.ranked = true;
     result.numbers = run.memory.allocate((mesh.slots + 1) * word);
@@ -71,22 +76,22 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
     return result;
   }
   Allocation buckets = launch.zeros(points + 1);
-  result.numbers = run.memory.allocate(mesh.slots * word);  // until they are known: places in the buckets
-  launch.run(KernelId::cadt_count_triangles, records.items, mesh.records, labels, buckets, result.numbers, slots,
-             records.grain, flips);
+  result.numbers = run.memory.allocate(places * word);  // until they are known: places in the buckets
+  launch.run(KernelId::cadt_count_triangles, records.items, mesh.records, mesh.vertices, labels, buckets,
+             result.numbers, slots, records.grain, flips);
   launch.scan(buckets, points + 1);
   const std::uint32_t triangles = launch.read_word(buckets, points);
   result.triangles = triangles;
   if (sets != nullptr) result.set_starts = values_of_sets(run, buckets, sets->points, *sets);
   flips.collect(run.statistics);
   Allocation members = run.memory.allocate(std::size_t{triangles} * 2 * word);
-  launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, labels, buckets, result.numbers, members, slots,
-             all.grain);
+  launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, mesh.vertices, labels, buckets, result.numbers,
+             members, slots, all.grain);
   const Cut vertices = launch.cut(points);
   launch.run(KernelId::cadt_sort_buckets, vertices.items, buckets, members, static_cast<std::uint32_t>(points),
              vertices.grain);
   buckets.release();
-  run.device.fill(*result.numbers, 0, mesh.slots * word, none);
+  run.device.fill(*result.numbers, 0, places * word, none);
   const Cut real = launch.cut(triangles);
   launch.run(KernelId::cadt_number_triangles, real.items, members, result.numbers, triangles, real.grain);
   return result;
@@ -94,6 +99,13 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
 
 void emit_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
                     const Allocation& triangles, const Allocation& neighbors, std::size_t first) {
+  if (mesh.in_arrays()) {
+    const Cut real = run.launcher.cut(mesh.triangles);
+    run.launcher.run(KernelId::cadt_emit_arrays, real.items, mesh.vertices, mesh.links, labels, numbering.numbers,
+                     triangles, neighbors, static_cast<std::uint32_t>(first),
+                     static_cast<std::uint32_t>(mesh.triangles), real.grain);
+    return;
+  }
   const Cut all = run.launcher.cut(mesh.slots);
   run.launcher.run(numbering.ranked ? KernelId::cadt_emit_ranked : KernelId::cadt_emit_triangles, all.items,
                    mesh.records, labels, numbering.numbers, triangles, neighbors, static_cast<std::uint32_t>(first),

@@ -15,7 +15,7 @@ namespace cadt {
 
 /// Which record is which triangle of the result.
 struct Numbering {
-  Allocation numbers;  ///< of each record, or (`ranked`) the number of real triangles before it
+  Allocation numbers;  ///< of each record, or (`ranked`) the number of real triangles before it; null: as they are
   bool ranked = false;
   std::size_t triangles = 0;
   Allocation set_starts;  ///< of a call with several sets: the first triangle of each, and the number of all
@@ -27,7 +27,8 @@ struct Numbering {
                                          const SetStarts* sets = nullptr);
 
 /// Writes the arrays of the result: 3 words a triangle each, behind `first` triangles. The numbers are those of the
-/// labels and of the numbering.
+/// labels and of the numbering. From a mesh in arrays either can be null and is left out; without numbers they can be
+/// the arrays of the mesh.
 void emit_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
                     const Allocation& triangles, const Allocation& neighbors, std::size_t first = 0);
 

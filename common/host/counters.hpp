@@ -27,9 +27,11 @@ class Counters {
 /// StatisticsDetail::none.
 class FlipCounts {
  public:
-  explicit FlipCounts(Run& run);
+  /// `wanted`: else nothing is counted.
+  explicit FlipCounts(Run& run, bool wanted = true);
   operator Arg() const noexcept { return buffer_; }  // NOLINT
-  void collect(Statistics& statistics) const;
+  /// `sides`: of edges in all, if only some of those that were flipped were counted; an edge has two.
+  void collect(Statistics& statistics, std::uint64_t sides = 0) const;
 
  private:
   Device& device_;

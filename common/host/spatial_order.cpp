@@ -256,6 +256,14 @@ void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation o
   }
 }
 
+void gather_again(Run& run, SpatialOrder& order) {
+  const Allocation input = order.input_again();
+  const Cut c = run.launcher.cut(order.distinct);
+  order.points = run.memory.allocate(order.distinct * sizeof(cadt_point));
+  run.launcher.run(KernelId::cadt_gather_points, c.items, input, order.labels, order.points,
+                   static_cast<std::uint32_t>(order.distinct), c.grain, order.scale, order.scale_again);
+}
+
 SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_keys) {
   Launcher& launch = run.launcher;
   const auto count = static_cast<std::uint32_t>(n);
@@ -317,6 +325,8 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
     result.grid.half_min_y *= factor;
     result.grid.scale /= factor;
   }
+  result.scale = scale;
+  result.scale_again = scale_again;
   input.release();
   if (keep_keys && sorted_by_keys && sums[1] == 0) result.keys = std::move(keys);
   keys.release();

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/host/counters.hpp"
 #include "common/host/device_constants.hpp"
 #include "common/host/tiles.hpp"
 #include "common/host/wrap_mesh.hpp"
@@ -20,7 +21,6 @@ using namespace device_constants;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr unsigned most_bits = 24;  // of an axis: cells of a window are counted in 32 bits
 constexpr std::uint32_t sampled_tiles = 512, least_step = 12;
-constexpr std::size_t most_wrapped_alone = 20000;  // more points have the star stage
 
 /// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
@@ -66,10 +66,14 @@ class StarStage {
       throw InternalError("the proven stars have " + std::to_string(proven_triangles_) + " triangles, more than " +
                           std::to_string(2 * n_ - 2) + "; please report this with the input");
     run_.statistics.proven_stars = n_ - unproven_;
-    write_records();
+    SpatialOrder rest = take_unproven();
+    if (order_.input_again) order_.points.release();
+    write_triangles();
     release_stars();
-    join();
-    return certify_mesh(run_, order_, std::move(records_), 3 * std::uint64_t{n_} - 3);
+    join(rest);
+    if (!order_.points) gather_again(run_, order_);
+    certify_arrays(run_, order_, mesh_);
+    return std::move(mesh_);
   }
 
  private:
@@ -86,7 +90,7 @@ class StarStage {
     run_.check("stars", 0.1);
     const bool automatic = run_.options.strategy == Strategy::automatic;
     if (automatic && n_ / tiles->count < least_points_of_tile) return false;
-    stars_ = make_star_list(run_, n_);
+    stars_ = make_star_list(run_, n_, *tiles);
     const auto run_tiles = [&](std::uint32_t count, std::uint32_t step, bool many) {
       return run_stars(run_, order_, keys_, {}, {}, *tiles, count, step, many, stars_);
     };
@@ -95,6 +99,8 @@ class StarStage {
       const StarCounts found = run_tiles(sampled_tiles, tiles->count / sampled_tiles, false);
       if (too_many(found.unproven, found.points)) return false;
       many = 10 * std::size_t{found.again} > found.points;
+      // The same tiles use the same places once more, and which of their stars are proven may differ.
+      run_.device.fill(*stars_.sizes, 0, n_ * word, 0);
     }
     run_tiles(tiles->count, 1, many).add_to(run_.statistics);
     run_.end_phase("stars");
@@ -107,8 +113,15 @@ class StarStage {
     ranks_ = run_.memory.allocate((n_ + 1) * word);
     totals_ = launch_.zeros(2);
     const Cut c = launch_.cut(n_);
-    launch_.run(KernelId::cadt_star_counts, c.items, stars_.links, stars_.sizes, count_, c.grain, bases_, ranks_,
-                totals_);
+    const std::size_t words = (n_ - 1) / 32 + 1;
+    proven_ = run_.memory.allocate(words * word);
+    marks_ = run_.memory.allocate(n_ * sizeof(std::uint16_t));
+    const Cut of_words = launch_.cut(words);
+    launch_.run(KernelId::cadt_star_proven, of_words.items, stars_.sizes, count_, static_cast<std::uint32_t>(words),
+                of_words.grain, proven_);
+    launch_.run(KernelId::cadt_star_counts, c.items, stars_.links, stars_.begins, stars_.sizes, proven_, count_,
+                c.grain, marks_, bases_, ranks_, totals_);
+    stars_.sizes.release();
     launch_.scan(bases_, n_ + 1);
     launch_.scan(ranks_, n_ + 1);
     proven_triangles_ = launch_.read_word(bases_, n_);
@@ -116,32 +129,44 @@ class StarStage {
     open_count_ = launch_.read_word(totals_, 0);
   }
 
-  void write_records() {
-    records_ = run_.memory.allocate(2 * n_ * sizeof(cadt_record));
-    // two records stay unused
-    run_.device.fill(*records_, (2 * n_ - 2) * sizeof(cadt_record), 2 * sizeof(cadt_record), 0);
-    open_ = run_.memory.allocate(std::size_t{open_count_} * word);
+  /// The vertices without a star, and in place of labels their positions.
+  [[nodiscard]] SpatialOrder take_unproven() {
+    SpatialOrder rest;
+    rest.distinct = unproven_;
+    rest.points = run_.memory.allocate(unproven_ * sizeof(cadt_point));
+    rest.labels = run_.memory.allocate(unproven_ * word);
+    const Cut all = launch_.cut(n_);
+    launch_.run(KernelId::cadt_unproven_pack, all.items, ranks_, order_.points, rest.points, rest.labels, count_,
+                all.grain);
+    ranks_.release();
+    return rest;
+  }
+
+  /// Links and vertices of the triangles with a proven vertex.
+  void write_triangles() {
+    const std::size_t bytes = 3 * (2 * n_ - 2) * word;
     const std::uint32_t groups = (count_ - 1) / CADT_RECORD_LANES + 1;
     const Cut c = launch_.cut_teams(groups, CADT_RECORD_LANES);
-    launch_.run(KernelId::cadt_star_records, c.items, stars_.links, stars_.sizes, bases_, count_, groups, c.grain,
-                records_, open_, totals_);
+    mesh_.links = run_.memory.allocate(bytes);
+    open_ = run_.memory.allocate(std::size_t{open_count_} * word);
+    const Allocation firsts = run_.memory.allocate((groups + std::size_t{1}) * word);
+    launch_.run(KernelId::cadt_star_links, c.items, stars_.links, stars_.begins, marks_, bases_, proven_, count_,
+                groups, c.grain, mesh_.links, firsts, open_, totals_);
+    bases_.release();
+    mesh_.vertices = run_.memory.allocate(bytes);
+    launch_.run(KernelId::cadt_star_vertices, c.items, stars_.links, stars_.begins, marks_, firsts, count_, groups,
+                c.grain, mesh_.vertices);
     run_.end_phase("records");
   }
 
   void release_stars() {
     stars_ = {};
+    marks_.release();
+    proven_.release();
     bases_.release();
   }
 
-  void join() {
-    SpatialOrder rest;
-    rest.distinct = unproven_;
-    rest.points = run_.memory.allocate(unproven_ * sizeof(cadt_point));
-    rest.labels = run_.memory.allocate(unproven_ * word);  // positions
-    const Cut all = launch_.cut(n_);
-    launch_.run(KernelId::cadt_unproven_pack, all.items, ranks_, order_.points, rest.points, rest.labels, count_,
-                all.grain);
-    ranks_.release();
+  void join(SpatialOrder& rest) {
     const std::uint64_t certified = run_.statistics.certified_edges;
     const DeviceMesh smaller = build_without_stars(run_, rest, false);
     run_.statistics.certified_edges = certified;  // those of the whole mesh count
@@ -152,23 +177,29 @@ class StarStage {
     Allocation table = run_.memory.allocate(places * word);
     run_.device.fill(*table, 0, places * word, CADT_NONE);
     const Cut open = launch_.cut(open_count_);
-    launch_.run(KernelId::cadt_join_enter, open.items, records_, open_, open_count_, open.grain, table, mask);
+    launch_.run(KernelId::cadt_join_enter, open.items, mesh_.vertices, open_, open_count_, open.grain, table, mask);
     Allocation covers = run_.memory.allocate(3 * smaller.slots * word),
                roots = run_.memory.allocate(smaller.slots * word);
     const Cut c = launch_.cut(smaller.slots);
-    launch_.run(KernelId::cadt_join_cover, c.items, records_, smaller.records, rest.labels, slots, c.grain, table, mask,
-                covers, roots);
+    launch_.run(KernelId::cadt_join_cover, c.items, mesh_.vertices, smaller.records, rest.labels, slots, c.grain, table,
+                mask, covers, roots);
     launch_.run(KernelId::cadt_join_components, c.items, smaller.records, slots, c.grain, covers, roots);
-    Allocation hidden = launch_.zeros(smaller.slots), ranks = run_.memory.allocate((smaller.slots + 1) * word);
+    Allocation hidden = launch_.zeros(smaller.slots), ranks = run_.memory.allocate((2 * smaller.slots + 1) * word);
     launch_.run(KernelId::cadt_join_hide, c.items, covers, roots, slots, c.grain, hidden);
     launch_.run(KernelId::cadt_join_flags, c.items, smaller.records, roots, hidden, slots, c.grain, ranks);
-    launch_.scan(ranks, smaller.slots + 1);
-    const std::size_t triangles = std::size_t{proven_triangles_} + launch_.read_word(ranks, smaller.slots);
+    launch_.scan(ranks, 2 * smaller.slots + 1);
+    const std::size_t triangles = std::size_t{proven_triangles_} + launch_.read_word(ranks, 2 * smaller.slots);
     if (triangles != 2 * n_ - 2)
       throw InternalError("the two parts of the mesh have " + std::to_string(triangles) + " triangles instead of " +
                           std::to_string(2 * n_ - 2) + "; please report this with the input");
-    launch_.run(KernelId::cadt_join_records, c.items, smaller.records, covers, ranks, rest.labels, slots, c.grain,
-                proven_triangles_, records_);
+    mesh_.slots = triangles;
+    mesh_.triangles = proven_triangles_ + launch_.read_word(ranks, smaller.slots);
+    const FlipCounts flips(run_);
+    const Cut strided = launch_.cut_strided(smaller.slots);
+    launch_.run(KernelId::cadt_join_rest, strided.items, smaller.records, covers, ranks, rest.labels, slots,
+                strided.grain, proven_triangles_, mesh_.vertices, mesh_.links, flips);
+    // triangles and ghosts have 3 and 1 sides that count
+    flips.collect(run_.statistics, 3 * std::uint64_t{mesh_.triangles} + (mesh_.slots - mesh_.triangles));
     run_.end_phase("join");
     run_.check("join", 0.8);
   }
@@ -179,7 +210,8 @@ class StarStage {
   std::size_t n_;
   std::uint32_t count_;
   StarList stars_;
-  Allocation keys_, bases_, ranks_, totals_, records_, open_;
+  Allocation keys_, proven_, marks_, bases_, ranks_, totals_, open_;
+  DeviceMesh mesh_;
   std::uint32_t proven_triangles_ = 0, unproven_ = 0, open_count_ = 0;
 };
 

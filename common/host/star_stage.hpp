@@ -5,6 +5,9 @@
 
 namespace cadt {
 
+/// So few points are wrapped instead (common/device/wrap.h), unless the options ask for the star stage.
+constexpr std::size_t most_wrapped_alone = 20000;
+
 /// The mesh by the star stage (common/device/star.h): stars of vertices without locks, insertion of the vertices whose
 /// star could not be proven, the join of both, closing passes. Releases the keys of `order`.
 [[nodiscard]] DeviceMesh build_mesh_with_stars(Run& run, SpatialOrder& order);

@@ -29,8 +29,19 @@ std::optional<TileList> make_tiles(Run& run, const Allocation& keys, std::size_t
   return list;
 }
 
-StarList make_star_list(Run& run, std::size_t n) {
-  return {run.memory.allocate(n * CADT_STAR_DEGREE * word), run.memory.allocate_zeros(n * word)};
+StarList make_star_list(Run& run, std::size_t n, const TileList& tiles) {
+  // As cadt_pool_of_tile of the end, which is within 32 bits for max_points(). Tiles have about 6 words a vertex, so an
+  // eighth of a word for all is plenty where some have more; a star without room is one without a proof.
+  constexpr std::size_t least = 4096, read_ahead = 16;
+  const std::size_t overflow = 6 * n + n / 8 + std::size_t{CADT_STAR_SPARE} * tiles.count,
+                    room = overflow + n / 8 + least;
+  StarList list;
+  list.links = run.memory.allocate((room + read_ahead) * word);
+  list.begins = run.memory.allocate(n * word);
+  list.sizes = run.memory.allocate_zeros(n * word);
+  list.overflow = static_cast<std::uint32_t>(overflow);
+  list.room = static_cast<std::uint32_t>(room);
+  return list;
 }
 
 void StarCounts::add_to(Statistics& statistics) const noexcept {
@@ -43,14 +54,14 @@ StarCounts run_stars(Run& run, const SpatialOrder& order, const Allocation& keys
                      const Allocation& states, const TileList& tiles, std::uint32_t count, std::uint32_t step,
                      bool many, const StarList& stars) {
   const KeyGrid& grid = order.grid;
-  const Allocation found = run.launcher.zeros(6);
+  const Allocation found = run.launcher.zeros(7);
   const Cut teams = run.launcher.cut_teams(count, CADT_STAR_LANES);
   run.launcher.run(KernelId::cadt_stars, teams.items, order.points, keys, static_cast<std::uint32_t>(order.distinct),
                    grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y, grid.most_x, grid.most_y,
                    grid.clipped ? 1U : 0U, sets, states, tiles.tiles, count, step, many ? 1U : 0U, teams.grain,
-                   stars.links, stars.sizes, found);
+                   stars.links, stars.begins, stars.sizes, stars.overflow, stars.room, found);
   StarCounts counts;
-  static_assert(sizeof counts == 6 * word);
+  static_assert(sizeof counts == 7 * word);
   run.device.read(*found, 0, &counts, sizeof counts);
   return counts;
 }

@@ -22,16 +22,19 @@ struct TileList {
 /// Nothing if the keys are not in order. \pre `keys` are those of n points in a grid of so many levels
 [[nodiscard]] std::optional<TileList> make_tiles(Run& run, const Allocation& keys, std::size_t n, unsigned levels);
 
-/// Proven stars: CADT_STAR_DEGREE words a vertex in `links`, the number of neighbours in `sizes`, 0 where there is no
-/// proof.
+/// Proven stars: neighbours in `links`, from `begins` on, how many in `sizes`, 0 where there is no proof. Without
+/// `begins` each vertex has CADT_STAR_DEGREE words.
 struct StarList {
-  Allocation links, sizes;
+  Allocation links, begins, sizes;
+  std::uint32_t overflow = 0, room = 0;  ///< words before those that no tile has for itself, and of all
 };
-[[nodiscard]] StarList make_star_list(Run& run, std::size_t n);
+/// Room for stars close together: about 25 bytes a vertex.
+[[nodiscard]] StarList make_star_list(Run& run, std::size_t n, const TileList& tiles);
 
 /// What cadt_stars counts.
 struct StarCounts {
-  std::uint32_t points = 0, unproven = 0, exact_orientations = 0, exact_incircles = 0, ties = 0, again = 0;
+  std::uint32_t points = 0, unproven = 0, exact_orientations = 0, exact_incircles = 0, ties = 0, again = 0,
+                overflowed = 0;
   void add_to(Statistics& statistics) const noexcept;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -24,19 +25,34 @@ namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 
-/// Where the arrays of the result are to be written. Called when their size is known.
+/// Writes the arrays of the result where they are to be.
 class Outputs {
  public:
   virtual ~Outputs() = default;
-  virtual void make(Run& run, DeviceTriangulation::Data& data) = 0;
+  virtual void write(Run& run, DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
+                     DeviceTriangulation::Data& data) = 0;
 };
 
 class OnDevice final : public Outputs {
  public:
-  void make(Run& run, DeviceTriangulation::Data& data) override {
+  void write(Run& run, DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
+             DeviceTriangulation::Data& data) override {
     const std::size_t bytes = 3 * data.triangle_count * word;
-    data.triangles = run.memory.allocate(bytes);
-    data.neighbors = run.memory.allocate(bytes);
+    if (!mesh.in_arrays()) {
+      data.triangles = run.memory.allocate(bytes);
+      data.neighbors = run.memory.allocate(bytes);
+      emit_triangles(run, mesh, labels, numbering, data.triangles, data.neighbors);
+    } else if (!numbering.numbers) {  // the arrays of the mesh become those of the result
+      emit_triangles(run, mesh, labels, numbering, mesh.vertices, mesh.links);
+      data.triangles = std::move(mesh.vertices);
+      data.neighbors = std::move(mesh.links);
+    } else {  // one after the other, so that each takes the place of the one before
+      data.neighbors = run.memory.allocate(bytes);
+      emit_triangles(run, mesh, labels, numbering, {}, data.neighbors);
+      mesh.links.release();
+      data.triangles = run.memory.allocate(bytes);
+      emit_triangles(run, mesh, labels, numbering, data.triangles, {});
+    }
   }
 };
 
@@ -44,14 +60,18 @@ class OnDevice final : public Outputs {
 class OnHost final : public Outputs {
  public:
   explicit OnHost(Triangulation::Data& to) : to_(to) {}
-  void make(Run& run, DeviceTriangulation::Data& data) override {
+  void write(Run& run, DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
+             DeviceTriangulation::Data& data) override {
     const std::size_t values = 3 * data.triangle_count;
     to_.triangles = make_words(values);
     to_.neighbors = make_words(values);
     data.triangles = run.memory.export_to(to_.triangles.get(), values * word);
     data.neighbors = run.memory.export_to(to_.neighbors.get(), values * word);
     direct_ = data.triangles && data.neighbors;
-    if (!direct_) OnDevice().make(run, data);
+    if (direct_)
+      emit_triangles(run, mesh, labels, numbering, data.triangles, data.neighbors);
+    else
+      OnDevice().write(run, mesh, labels, numbering, data);
   }
   /// True if the arrays are filled when the device has finished.
   [[nodiscard]] bool direct() const noexcept { return direct_; }
@@ -71,10 +91,11 @@ void build(Run& run, const Points& points, std::size_t n, bool stars, Outputs& o
   SpatialOrder order = sort_points(run, std::move(input), n, stars);
   statistics.distinct = data.distinct = order.distinct;
   statistics.wide_arithmetic = order.wide;
+  if constexpr (std::is_same_v<Points, DevicePoints>) order.input_again = [&] { return import_points(run, points); };
   data.duplicate_count = n - order.distinct;
   data.duplicate_points = std::move(order.duplicates);
   data.representatives = std::move(order.representatives);
-  const DeviceMesh mesh = stars ? build_mesh_with_stars(run, order) : build_mesh(run, order);
+  DeviceMesh mesh = stars ? build_mesh_with_stars(run, order) : build_mesh(run, order);
   order.points.release();
   if (mesh.flat) {
     data.dimension = order.distinct >= 2 ? 1 : 0;
@@ -85,8 +106,7 @@ void build(Run& run, const Points& points, std::size_t n, bool stars, Outputs& o
   const Numbering numbering = number_triangles(run, mesh, order.labels, n);
   data.triangle_count = numbering.triangles;
   run.check("collect", 0.95);
-  outputs.make(run, data);
-  emit_triangles(run, mesh, order.labels, numbering, data.triangles, data.neighbors);
+  outputs.write(run, mesh, order.labels, numbering, data);
 }
 
 Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
@@ -97,10 +117,10 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
   data.points = points.size();
   open_account(*state, points.size(), data.statistics);
   if (points.size() != 0) {
-    require_memory(*state, points.size(), is_host(*state->device));
+    require_memory(*state, points.size(), is_host(*state->device), false);
     Run run(*state->device, state->memory, state->options, data.statistics);
     OnHost outputs(*result);
-    build(run, points, points.size(), choose_stars(*state, points.size()), outputs, data);
+    build(run, points, points.size(), prefers_stars(state->options, *state->device), outputs, data);
     run.end_phase("collect");
     if (data.dimension == 2) read_mesh(run, data, outputs.direct(), *result);
     read_duplicates(*state->device, data, *result);
@@ -122,10 +142,10 @@ DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state,
   data->points = points.size;
   open_account(*state, points.size, data->statistics);
   if (points.size != 0) {
-    require_memory(*state, points.size, false);
+    require_memory(*state, points.size, false, true);
     Run run(*state->device, state->memory, state->options, data->statistics);
     OnDevice outputs;
-    build(run, points, points.size, choose_stars(*state, points.size), outputs, *data);
+    build(run, points, points.size, prefers_stars(state->options, *state->device), outputs, *data);
     run.end_phase("collect");
     remember_size(*state, data->statistics);
     close_account(*state, run, true);
@@ -196,11 +216,12 @@ void Triangulator::reserve(std::size_t points) {
   const std::size_t n = points, limit = state_->options.max_memory;
   Memory& memory = state_->memory;
   begin_account(*state_, n);
-  require_memory(*state_, n, false);
+  require_memory(*state_, n, false, true);
   if (n <= state_->reserved_points) return;
   if (!memory.keeps()) {
-    state_->device->reserve(choose_stars(*state_, n) ? star_bytes(n) : least_bytes(n, false));
-  } else if (const bool stars = choose_stars(*state_, n); limit == 0 || most_bytes(memory, n, stars) <= limit) {
+    state_->device->reserve(least_bytes(n, false));
+  } else if (const bool stars = prefers_stars(state_->options, *state_->device);
+             limit == 0 || most_bytes(memory, n, stars) <= limit) {
     memory.drop_kept();  // too small
     begin_account(*state_, n);
     keep_buffers(memory, n, stars);

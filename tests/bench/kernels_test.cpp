@@ -51,9 +51,9 @@ TEST(KernelBytes, OfARunWithStars) {
   run.points = run.distinct = 1000;
   run.proven_stars = 990;
   run.splits = 7;
-  EXPECT_EQ(least_bytes("cadt_stars", run, 1980), 1000U * (16 + 4) + 990 * 48);
+  EXPECT_EQ(least_bytes("cadt_stars", run, 1980), 1000U * (16 + 4) + 990 * 28);
   EXPECT_EQ(least_bytes("cadt_unproven_pack", run, 1980), 1000U * 4 + 10 * 36);
-  EXPECT_EQ(least_bytes("cadt_star_counts", run, 1980), 1000U * 16 + 990 * 48);
+  EXPECT_EQ(least_bytes("cadt_star_counts", run, 1980), 1000U * 14 + 990 * 28);
   EXPECT_EQ(least_bytes("cadt_insert", run, 1980), 7U * 148);
 }
 

@@ -240,7 +240,7 @@ KERNELS = {"locks": [("cadt_insert", 0.61, 148, 24), ("cadt_closing_pass", 0.1, 
                      ("scan", 0.01, 16, 1), ("cadt_sort_keys", 0.006, 20, 1), ("cadt_bounds", 0.005, 16, 1),
                      ("cadt_unique_flags", 0.004, 20, 1), ("cadt_sort_runs", 0.002, 4, 1),
                      ("cadt_crowded_flags", 0.002, 8, 1), ("cadt_legalize_edges", 0.001, None, 7)],
-           "stars": [("cadt_stars", 0.7, 68, 1), ("cadt_star_records", 0.2, 120, 1), ("cadt_join_cover", 0.1, None, 1)]}
+           "stars": [("cadt_stars", 0.7, 68, 1), ("cadt_star_links", 0.2, 120, 1), ("cadt_join_cover", 0.1, None, 1)]}
 
 
 def roofs(writer: Writer) -> None:

@@ -314,10 +314,10 @@ void check_stars(double part, bool many, std::map<std::string, double>& shares) 
     SCOPED_TRACE(set.name);
     const Sorted s = sorted(set.points, set.bits_x, set.bits_y, part);
     const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
-    std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n), found(6);
+    std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n), found(7);
     cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
                s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1,
-               many ? 1 : 0, count, stars.data(), sizes.data(), found.data());
+               many ? 1 : 0, count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
     const auto links = links_of(s);
     std::size_t proven = 0;
     for (std::uint32_t v = 0; v < n; ++v) {
@@ -346,6 +346,69 @@ TEST(ProvenStars, AreThoseOfTheMesh) {
   for (const char* name : {"few", "long", "tall", "lattice on the cells' borders", "half empty", "rings"})
     EXPECT_GT(shares[name], 0.2) << name;
   for (const auto& [name, share] : shares) RecordProperty(name, std::to_string(share));
+}
+
+/// Stars close together: of `words` behind those of the tiles.
+struct Packed {
+  std::vector<std::uint32_t> links, begins, sizes, found = std::vector<std::uint32_t>(7);
+  std::uint32_t overflow, room;
+
+  Packed(const Sorted& s, std::uint32_t words, std::uint32_t lost) {
+    const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
+    overflow = cadt_pool_of_tile(count, n);
+    room = overflow + words - lost;
+    links.assign(std::size_t{overflow} + words, CADT_NONE);
+    begins.resize(n);
+    sizes.resize(n);
+    cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
+               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1, 1,
+               count, links.data(), begins.data(), sizes.data(), overflow, room, found.data());
+  }
+};
+
+/// Squares with few points among squares with many: in the tiles of the first, vertices at the border have more
+/// neighbours than six.
+NamedPoints chessboard() {
+  std::mt19937_64 random(3);
+  const auto unit = [&] { return static_cast<double>(random() >> 12) * 0x1p-52; };
+  NamedPoints set{"chessboard", {{0, 0}, {1, 1}}, 8, 8};
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y)
+      for (int i = (x + y) % 2 == 0 ? 330 : 30; i > 0; --i) set.points.push_back({(x + unit()) / 8, (y + unit()) / 8});
+  return set;
+}
+
+// Where there is room they are those of the mesh, and no two share a word; where there is none they have no proof.
+TEST(ProvenStars, CloseTogether) {
+  std::size_t without_room = 0, overflowed = 0;
+  std::vector<NamedPoints> all = sets();
+  all.push_back(chessboard());
+  for (const NamedPoints& set : all) {
+    SCOPED_TRACE(set.name);
+    const Sorted s = sorted(set.points, set.bits_x, set.bits_y);
+    const Packed packed(s, 4096, 0), tight(s, 4096, 4096);
+    const auto links = links_of(s);
+    std::vector<char> taken(packed.links.size());
+    for (std::uint32_t v = 0; v < s.size(); ++v) {
+      for (const Packed* p : {&packed, &tight}) {
+        if (p->sizes[v] == 0) continue;
+        ASSERT_LE(p->begins[v] + p->sizes[v], p->room);
+        const auto begin = p->links.begin() + p->begins[v];
+        std::vector<std::uint32_t> star(begin, begin + p->sizes[v]);
+        std::ranges::rotate(star, std::ranges::min_element(star));
+        auto link = links[v];
+        ASSERT_FALSE(link.empty()) << "vertex " << v << " of the hull has a star";
+        std::ranges::rotate(link, std::ranges::min_element(link));
+        ASSERT_EQ(star, link) << "vertex " << v;
+      }
+      for (std::uint32_t k = 0; k < packed.sizes[v]; ++k) ASSERT_EQ(taken[packed.begins[v] + k]++, 0) << "vertex " << v;
+      if (packed.sizes[v] != 0 && tight.sizes[v] == 0) ++without_room;
+    }
+    overflowed += packed.found[6];
+    EXPECT_EQ(std::ranges::count(tight.sizes, 0U), tight.found[1]);
+  }
+  EXPECT_GT(overflowed, 6u) << "nothing that the tiles have no room for: a weak test";
+  EXPECT_GT(without_room, 0u);
 }
 
 // The points end within the grid: stars know that beyond the last of them there are none.

@@ -95,6 +95,7 @@ class OpenClPrimitives : public OpenClTest {
 
  private:
   ScopedVariable as_gpu_{"CADT_OPENCL_AS_GPU", "1"};
+  ScopedVariable no_cache_{"CADT_CACHE_DIR", ""};  // to store a program PoCL compiles all of its kernels
 };
 
 TEST_F(OpenClPrimitives, SortsRandomKeysByAnyBits) {

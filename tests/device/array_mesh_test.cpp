@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// The closing pass of a mesh in arrays: what it finds in meshes that are wrong in one place.
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include "common/device/array_mesh.h"
+#pragma GCC diagnostic pop
+
+constexpr std::uint32_t g = CADT_GHOST;
+
+using Face = std::array<std::uint32_t, 3>;
+using Found = std::array<std::uint32_t, 4>;  // examined, illegal, wrong, broken
+
+struct Arrays {
+  std::vector<std::uint32_t> vertices, links;
+  std::uint32_t real = 0;
+
+  explicit Arrays(const std::vector<Face>& faces) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> across;  // edge -> link
+    for (std::uint32_t t = 0; t < faces.size(); ++t)
+      for (std::uint32_t k = 0; k < 3; ++k) across[{faces[t][(k + 1) % 3], faces[t][(k + 2) % 3]}] = CADT_LINK(t, k);
+    for (const Face& face : faces) {
+      vertices.insert(vertices.end(), face.begin(), face.end());
+      for (std::uint32_t k = 0; k < 3; ++k) links.push_back(across.at({face[(k + 2) % 3], face[(k + 1) % 3]}));
+      if (face[0] != g && face[1] != g && face[2] != g) ++real;
+    }
+  }
+
+  /// By so many work-items, in launches of so many triangles.
+  [[nodiscard]] Found look(const std::vector<cadt_point>& points, std::uint32_t items = 1,
+                           std::uint32_t size = 1000) const {
+    const auto all = static_cast<std::uint32_t>(vertices.size() / 3);
+    Found found{};
+    std::vector<std::uint32_t> counters(CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
+    for (std::uint32_t begin = 0; begin < all; begin += size) {
+      const std::uint32_t count = std::min(size, all - begin), grain = (count - 1) / items + 1;
+      for (std::uint32_t item = 0; item < items; ++item)
+        cadt_certify(item, items, vertices.data(), links.data(), points.data(), all, real, begin, count, grain,
+                     found.data(), counters.data());
+    }
+    return found;
+  }
+};
+
+/// A square with its centre, and a point to the right of it.
+const std::vector<cadt_point> points = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {2, 2}, {7, 2}};
+const std::vector<Face> mesh = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 5, 2},
+                                {g, 1, 0}, {g, 5, 1}, {g, 2, 5}, {g, 3, 2}, {g, 0, 3}};
+
+TEST(ArrayMesh, IsLookedAtOnce) {
+  for (const std::uint32_t items : {1U, 3U, 16U})
+    for (const std::uint32_t size : {1U, 4U, 1000U})
+      EXPECT_EQ(Arrays(mesh).look(points, items, size), (Found{15, 0, 0, 0})) << items << " items, " << size;
+}
+
+TEST(ArrayMesh, IllegalEdge) {
+  std::vector<Face> flipped = mesh;  // edge 1, 2 between 4 and 5 becomes 4, 5
+  flipped[1] = {1, 5, 4};
+  flipped[4] = {4, 5, 2};
+  EXPECT_EQ(Arrays(flipped).look(points), (Found{15, 1, 0, 0}));
+}
+
+TEST(ArrayMesh, HullThatIsNotConvex) {
+  // without the triangle 1, 5, 2 the hull is that of the square, and 5 is not in the mesh; move it out instead
+  std::vector<cadt_point> moved = points;
+  moved[1] = {4, 0};
+  moved[5] = {7, -3};  // now 0, 1, 5 turns right
+  EXPECT_EQ(Arrays(mesh).look(moved), (Found{15, 1, 0, 0}));
+}
+
+TEST(ArrayMesh, LinkThatIsNotMutual) {
+  for (std::size_t i = 0; i < 3 * mesh.size(); ++i) {
+    Arrays arrays(mesh);
+    const std::uint32_t right = arrays.links[i];
+    for (const std::uint32_t link : {CADT_LINK(9U, 3U), CADT_LINK(10U, 0U), CADT_NONE, right ^ 1U}) {
+      arrays.links[i] = link;
+      EXPECT_GT(arrays.look(points)[2], 0U) << i << ", " << link;
+    }
+  }
+}
+
+TEST(ArrayMesh, SidesWithOtherEnds) {
+  // two triangles change places, their links do not: each edge still has two sides that name each other
+  Arrays arrays(mesh);
+  for (std::size_t k = 0; k < 3; ++k) std::swap(arrays.vertices[k], arrays.vertices[6 + k]);
+  EXPECT_GT(arrays.look(points)[2], 0U);
+}
+
+TEST(ArrayMesh, GhostAmongTheOthers) {
+  Arrays arrays(mesh);
+  arrays.real = 6;
+  EXPECT_EQ(arrays.look(points), (Found{15, 0, 1, 0}));
+  arrays.real = 3;
+  EXPECT_EQ(arrays.look(points), (Found{15, 0, 2, 0}));
+}
+
+TEST(ArrayMesh, BoundaryThatTurnsBack) {
+  const std::vector<cadt_point> row = {{0, 0}, {2, 0}, {1, 5}, {3, 0}, {4, 0}};
+  EXPECT_EQ(Arrays({{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {g, 1, 0}, {g, 3, 1}, {g, 4, 3}, {g, 2, 4}, {g, 0, 2}}).look(row),
+            (Found{12, 0, 0, 0}));
+  EXPECT_EQ(Arrays({{0, 1, 2}, {0, 3, 1}, {1, 4, 2}, {g, 3, 0}, {g, 1, 3}, {g, 4, 1}, {g, 2, 4}, {g, 0, 2}}).look(row),
+            (Found{12, 0, 0, 2}));
+}
+
+}  // namespace

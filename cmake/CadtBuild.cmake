@@ -10,6 +10,10 @@ function(cadt_compile_options target)
     target_compile_options(${target} PRIVATE -fsanitize=${CADT_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${CADT_SANITIZE})
   endif()
+  if(CADT_BUILD_FUZZ)
+    # Not the operands of comparisons (trace-cmp): in the kernels they take longer than the work. io has them.
+    target_compile_options(${target} PRIVATE -fsanitize-coverage=inline-8bit-counters,pc-table)
+  endif()
 endfunction()
 
 # cadt_backend(NAME in|out REASON): one line of the summary.

@@ -235,6 +235,27 @@ class Interrupt(CliTest):
         self.assertIn("complete before the interruption: a.off", terminal.text)
         self.assertEqual(len(read_off(self.path("a.off").read_text())[0]), 2000000)
 
+    def test_killed_during_the_writing_the_old_file_stays(self):
+        self.large()
+        self.write("a.off", "old")
+        with self.on_terminal("triangulate", "in.f64", "-o", "a.off", "--backend", "host") as (process, terminal):
+            terminal.wait_for("writing a.off")
+            end = time.monotonic() + 60
+            while not any(self.path(name).stat().st_size for name in self.names() if name.endswith(".tmp")):
+                self.assertLess(time.monotonic(), end, "nothing was written")
+                self.assertIsNone(process.poll(), "it was too quick")
+            process.kill()
+            self.assertEqual(process.wait(timeout=60), -signal.SIGKILL)
+        self.assertEqual(self.path("a.off").read_text(), "old")
+        left = [name for name in self.names() if name not in ("a.off", "in.f64")]
+        self.assertEqual(len(left), 1)
+        self.assertRegex(left[0], r"^\.cadt-\d+-\d+\.tmp$")
+        # What is left has a name that no format has, and as a mesh it is refused.
+        self.fails(3, "verify", "in.f64", left[0], says=left[0])
+        self.fails(3, "verify", "in.f64", left[0], "-t", "off", says=left[0])
+        self.cadt("triangulate", "in.f64", "-o", "a.off", "--backend", "host")
+        self.assertEqual(self.path("a.off").read_text().split(None, 2)[:2], ["OFF", "2000000"])
+
     def test_while_waiting_for_input(self):
         with self.started("triangulate", "-", "-f", "xy", "-o", "m.off", stdin=subprocess.PIPE) as process:
             self.wait_until_signals_are_caught(process)

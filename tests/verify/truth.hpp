@@ -73,10 +73,9 @@ inline int incircle(const Point& pa, const Point& pb, const Point& pc, const Poi
   return sgn(det);
 }
 
-/// The sign after the lifted coordinate of each point has been raised by e^(number of points above it in lexicographic
-/// order + 1), e infinitely small: the first cofactor that does not vanish, from the greatest point on.
-inline int incircle_perturbed(const Point& a, const Point& b, const Point& c, const Point& d) {
-  if (const int s = truth::incircle(a, b, c, d); s != 0) return s;
+/// As if all four were on a circle: the lifted coordinate of each point is raised by e^(number of points above it in
+/// lexicographic order + 1), e infinitely small; the first cofactor that does not vanish, from the greatest point on.
+inline int tie(const Point& a, const Point& b, const Point& c, const Point& d) {
   const std::array<Point, 4> p{a, b, c, d};
   std::array<bool, 4> done{};
   for (int round = 0; round < 4; ++round) {
@@ -88,6 +87,12 @@ inline int incircle_perturbed(const Point& a, const Point& b, const Point& c, co
     if (const int s = cofactor(p, greatest); s != 0) return s;
   }
   return 0;
+}
+
+/// The sign of the perturbed determinant.
+inline int incircle_perturbed(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const int s = truth::incircle(a, b, c, d);
+  return s != 0 ? s : truth::tie(a, b, c, d);
 }
 
 /// Folder with the regression inputs; empty if it is not there.

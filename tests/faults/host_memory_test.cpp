@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// The host's own memory gives out: every request of the calling thread is refused in turn. Only on the host's back end:
+// runtimes of devices, and the compilers in them, are not made for it.
+#include <cadt/cadt.hpp>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <functional>
+#include <new>
+#include <string>
+
+#include "tests/support/families.hpp"
+
+namespace {
+
+constexpr std::size_t never = ~std::size_t{0};
+thread_local std::size_t until_refusal = never;
+thread_local std::size_t asked = 0, refused = 0;
+std::atomic<long> live{0};
+
+void* give(std::size_t size, std::size_t alignment) {
+  ++asked;
+  if (until_refusal != never && until_refusal-- == 0) {
+    until_refusal = never;
+    ++refused;
+    throw std::bad_alloc();
+  }
+  void* memory = alignment <= alignof(std::max_align_t)
+                     ? std::malloc(size == 0 ? 1 : size)
+                     : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  if (memory == nullptr) throw std::bad_alloc();
+  live.fetch_add(1, std::memory_order_relaxed);
+  return memory;
+}
+
+void take_back(void* memory) noexcept {
+  if (memory == nullptr) return;
+  live.fetch_sub(1, std::memory_order_relaxed);
+  std::free(memory);
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return give(size, 1); }
+void* operator new[](std::size_t size) { return give(size, 1); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return give(size, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return give(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { take_back(memory); }
+void operator delete[](void* memory) noexcept { take_back(memory); }
+void operator delete(void* memory, std::size_t) noexcept { take_back(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { take_back(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { take_back(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { take_back(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { take_back(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { take_back(memory); }
+
+namespace cadt::test {
+namespace {
+
+using Reals = std::span<const double>;
+
+Options on_host() {
+  Options options;
+  options.backend = Backend::host;
+  options.threads = 1;
+  return options;
+}
+
+Points some_points() {
+  Points xy = uniform_points(400, 3);
+  const Points lattice = grid_points(9, 9);
+  xy.insert(xy.end(), lattice.begin(), lattice.end());
+  for (std::size_t i = 0; i < 40; ++i) xy.push_back(xy[i]);
+  return xy;
+}
+
+/// Refuses the k-th request of `call` for every k; `call` returns what must be the same each time.
+void refuse_each(const std::function<std::string()>& call) {
+  const std::string expected = call();
+  ASSERT_EQ(call(), expected);
+  asked = 0;
+  ASSERT_EQ(call(), expected);
+  const std::size_t all = asked;
+  EXPECT_GT(all, 5U);
+  long before = 0;  // within the loop: GoogleTest takes memory for its trace
+  std::size_t thrown = 0;
+  for (std::size_t k = 0; k < all && !testing::Test::HasFailure(); ++k) {
+    SCOPED_TRACE("request " + std::to_string(k) + " of " + std::to_string(all));
+    const long at_first = live;
+    if (k == 0) before = live;
+    refused = 0;
+    until_refusal = k;
+    try {
+      const bool same = call() == expected;  // the library may do without
+      until_refusal = never;
+      EXPECT_TRUE(same);
+    } catch (const std::bad_alloc&) {
+      ++thrown;
+    } catch (const OutOfMemory&) {
+      ++thrown;
+    }
+    until_refusal = never;
+    EXPECT_EQ(refused, 1U);
+    EXPECT_LE(live, at_first + 1);  // a list that is kept
+    EXPECT_EQ(call(), expected);
+    EXPECT_LE(live, before + 1);
+  }
+  EXPECT_GT(4 * thrown, 3 * all);
+}
+
+TEST(HostMemory, OneCall) {
+  const Points xy = some_points();
+  refuse_each([&] { return triangulate(Reals(xy), on_host()).hash().to_string(); });
+}
+
+/// Lists that a triangulator keeps grow in its first call.
+TEST(HostMemory, NewTriangulator) {
+  const Points xy = some_points();
+  refuse_each([&] {
+    cadt::Triangulator triangulator(on_host());
+    return triangulator.triangulate(Reals(xy)).hash().to_string();
+  });
+}
+
+TEST(HostMemory, Triangulator) {
+  const Points xy = some_points();
+  Triangulator triangulator(on_host());
+  refuse_each([&] { return triangulator.triangulate(Reals(xy)).hash().to_string(); });
+  const DevicePoints points{.x = xy.data(), .size = xy.size() / 2};
+  refuse_each([&] { return triangulator.triangulate(points).download().hash().to_string(); });
+  refuse_each([&] {
+    const DeviceTriangulation mesh = triangulator.triangulate(points);
+    return triangulator.verify(points, mesh).summary();
+  });
+  triangulator.options().strategy = Strategy::stars;
+  refuse_each([&] { return triangulator.triangulate(Reals(xy)).hash().to_string(); });
+}
+
+TEST(HostMemory, SeveralSets) {
+  Points xy = uniform_points(300, 1);
+  const std::vector<std::size_t> offsets = {0, 100, 100, 103, 300};
+  Triangulator triangulator(on_host());
+  refuse_each([&] {
+    const TriangulationBatch batch = triangulator.triangulate_batch(Reals(xy), offsets);
+    std::string all;
+    for (std::size_t s = 0; s < batch.size(); ++s) all += batch.triangulation(s).hash().to_string();
+    return all;
+  });
+}
+
+TEST(HostMemory, Verification) {
+  const Points xy = some_points();
+  const Triangulation mesh = triangulate(Reals(xy), on_host());
+  VerifyOptions alone;
+  alone.threads = 1;
+  refuse_each([&] { return verify(Reals(xy), mesh, alone).summary(); });
+}
+
+}  // namespace
+}  // namespace cadt::test

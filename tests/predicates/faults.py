@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The faults that tests/predicates/mutants.py plants, one at a time.
+
+(group, words of the table, file of common/device, what stands there, what is put in its place), or with flags of the
+compiler in place of the last three. A text must stand there exactly once, or as often as a sixth entry says.
+"""
+
+P, X, F, V = "predicates.h", "exact.h", "fixed.h", "verify_predicates.h"
+
+TEXTS = [
+    # ---- filters
+    ("filter", "orientation bound x 1/2", P, "3.3306690738754716e-16", "1.6653345369377358e-16"),
+    ("filter", "orientation bound x 1/8", P, "3.3306690738754716e-16", "4.1633363423443395e-17"),
+    ("filter", "incircle bound x 1/2", P, "#define CADT_INCIRCLE_BOUND 1.1102230246251577e-15",
+     "#define CADT_INCIRCLE_BOUND 5.5511151231257885e-16"),
+    ("filter", "incircle bound x 1/8", P, "#define CADT_INCIRCLE_BOUND 1.1102230246251577e-15",
+     "#define CADT_INCIRCLE_BOUND 1.3877787807814471e-16"),
+    ("filter", "cheap incircle bound x 1/2", P, "CADT_INCIRCLE_BOUND * 1.00000000000001 *", "CADT_INCIRCLE_BOUND * 0.5 *"),
+    ("filter", "cheap incircle bound x 1/8", P, "CADT_INCIRCLE_BOUND * 1.00000000000001 *", "CADT_INCIRCLE_BOUND * 0.125 *"),
+    ("filter", "cheap bound: a product left out", P, " + c.lift * a.lift)", ")"),
+    ("filter", "permanent: a term without its magnitude", P,
+     "clift * (cadt_fabs(axby) + cadt_fabs(aybx))", "clift * (axby + aybx)"),
+    ("filter", "no allowance for underflow (wide)", P, "#define CADT_UNDERFLOW 1e-300", "#define CADT_UNDERFLOW 0.0"),
+    ("filter", "scale of the first point left out (wide)", P, "const cadt_i32 e = e0 > e1 ? e0 : e1;", "const cadt_i32 e = e1;"),
+    ("filter", "0 where the rounded determinant is 0", P, "return bound == 0.0 ? 0 : CADT_UNSURE;",
+     "return det == 0.0 ? 0 : CADT_UNSURE;"),
+    # ---- coordinates as integers: what the splitter is for expansions
+    ("integers", "scale 2^62 in place of 2^60", F, "= 60 + 1023 -", "= 62 + 1023 -"),
+    ("integers", "lower bits cut off unseen", F, "CADT_CAST(double, integer) != scaled || ", ""),
+    ("integers", "underflow unseen", F, " || (integer == 0 && value != 0.0)", ""),
+    ("integers", "rounded differences taken for exact", X, "!= 0.0) *exact = 0u", "!= 0.0) *exact = 1u"),
+    ("integers", "scale of three points for four", X,
+     "cadt_larger_exponent(cadt_larger_exponent(cadt_larger_exponent(none, a), b), c), p));",
+     "cadt_larger_exponent(cadt_larger_exponent(cadt_larger_exponent(none, a), b), c), c));"),
+    ("integers", "common zeros not taken from y", X,
+     "ax >>= zeros, ay >>= zeros, bx >>= zeros, by >>= zeros,", "ax >>= zeros, bx >>= zeros, by >>= zeros,"),
+    ("integers", "192 bits for determinants up to 2^196", X, "< 1.5e57) {", "< 1.0e59) {"),
+    # ---- 128, 192 and 256 bits
+    ("128 bits", "sign of a factor not corrected", F, "if (a < 0) high -= ub;", ""),
+    ("128 bits", "sign of the other factor", F, "if (b < 0) high -= ua;", ""),
+    ("128 bits", "carry of a sum lost", F, " + (r.low < a.low ? 1ul : 0ul))", ")"),
+    ("128 bits", "comparison by the upper words alone", F,
+     "return a.low == b.low ? 0 : (a.low < b.low ? -1 : 1);", "return 0;"),
+    ("128 bits", "carry of a magnitude lost", F, "(mask && low == 0ul ? 1ul : 0ul)", "0ul"),
+    ("192 bits", "first carry of a product lost", F, " + (middle < left ? 1ul : 0ul)", ""),
+    ("192 bits", "second carry of a product lost", F, "high += middle < right ? 1ul : 0ul;", ""),
+    ("192 bits", "sign of a factor not corrected", F, "if (b.high < 0) high -= a.low;", ""),
+    ("192 bits", "a term of the upper word left out", F, " + a1 * b1 + (middle < left", " + (middle < left"),
+    ("192 bits", "carry of the lowest word lost", F, "carry = sum->word[0] < low ? 1ul : 0ul, partial", "carry = 0ul, partial"),
+    ("192 bits", "carry of the middle word lost", F, "(partial < middle ? 1ul : 0ul) + ", ""),
+    ("192 bits", "carry of the carry lost", F, " + (sum->word[1] < carry ? 1ul : 0ul)", ""),
+    ("192 bits", "lowest word truncated", F, "return (a->word[0] | a->word[1] | a->word[2]) != 0ul", "return (a->word[1] | a->word[2]) != 0ul"),
+    ("256 bits", "first carry of a product lost", F, "cadt_u64 over = product[1] < left ? 1ul : 0ul;", "cadt_u64 over = 0ul;"),
+    ("256 bits", "second carry of a product lost", F, "over += product[1] < right ? 1ul : 0ul;", ""),
+    ("256 bits", "carry of the upper words lost", F, "+ (product[2] < both ? 1ul : 0ul);", ";"),
+    ("256 bits", "carry of the third term lost", F, "product[3] += product[2] < upper ? 1ul : 0ul;", ""),
+    ("256 bits", "carry of the middle words lost", F, "product[3] += product[2] < over ? 1ul : 0ul;", ""),
+    ("256 bits", "negation without its one", F, "cadt_u64 carry = sign & 1ul;", "cadt_u64 carry = 0ul;"),
+    ("256 bits", "carry of the sum lost", F, "carry = (partial < term ? 1ul : 0ul) | (total < partial ? 1ul : 0ul);",
+     "carry = total < partial ? 1ul : 0ul;"),
+    ("256 bits", "carry of the carry lost", F, "carry = (partial < term ? 1ul : 0ul) | (total < partial ? 1ul : 0ul);",
+     "carry = partial < term ? 1ul : 0ul;"),
+    ("256 bits", "lowest word truncated", F, "return (a->word[0] | a->word[1] | a->word[2] | a->word[3]) != 0ul",
+     "return (a->word[1] | a->word[2] | a->word[3]) != 0ul"),
+    # ---- limbs
+    ("limbs", "third limb of a coordinate truncated", F, "if (at + 2 < n) x[at + 2] = CADT_CAST(cadt_u32, upper);", ""),
+    ("limbs", "wrong shift at a multiple of 32", F, "rest ? m >> (64 - rest) : 0ul", "m >> (63 - rest)"),
+    ("limbs", "no room for the sign", X, "n = (cadt_span_bits(&s) + 2 + 31) >> 5", "n = (cadt_span_bits(&s) + 31) >> 5", 2),
+    ("limbs", "lowest bit one too high", F, "int low = e + cadt_trailing_zeros(m)".replace("int", "cadt_i32"),
+     "cadt_i32 low = e + 1 + cadt_trailing_zeros(m)"),
+    ("limbs", "carry of a negation lost", F, "    cadt_u32 carry = 1u;\n    for (cadt_i32 i = 0; i < n; ++i) {\n      x[i] = ~x[i] + carry;\n      carry = carry && x[i] == 0u ? 1u : 0u;",
+     "    cadt_u32 carry = 1u;\n    for (cadt_i32 i = 0; i < n; ++i) {\n      x[i] = ~x[i] + carry;\n      carry = 0u;"),
+    ("limbs", "carry of a magnitude lost", F, "  cadt_u32 carry = 1u;\n  for (cadt_i32 i = 0; i < n; ++i) {\n    x[i] = ~x[i] + carry;\n    carry = carry && x[i] == 0u ? 1u : 0u;",
+     "  cadt_u32 carry = 1u;\n  for (cadt_i32 i = 0; i < n; ++i) {\n    x[i] = ~x[i] + carry;\n    carry = 0u;"),
+    ("limbs", "carry of a sum lost", F, "x[i] = CADT_CAST(cadt_u32, carry);\n    carry >>= 32;", "x[i] = CADT_CAST(cadt_u32, carry);\n    carry = 0ul;"),
+    ("limbs", "carry of a product lost", F, "out[i + m] = CADT_CAST(cadt_u32, carry);", "out[i + m] = 0u;"),
+    ("limbs", "sign of a product", X, "negative[1] ^ negative[2] ^ 1u", "negative[1] ^ 1u"),
+    ("limbs", "sign of a minor", X, "negative[uy] ^ negative[vx] ^ 1u", "negative[uy] ^ 1u"),
+    ("limbs", "y left out of the lift", X, "cadt_limbs_accumulate(lift, 2 * n + 1, product, 2 * n, 0u);", ""),
+    # ---- ties
+    ("ties", "order reversed", P, "return a.x < b.x || (a.x == b.x && a.y < b.y)", "return a.x > b.x || (a.x == b.x && a.y > b.y)"),
+    ("ties", "order by x alone", P, "a.x < b.x || (a.x == b.x && a.y < b.y)", "a.x < b.x"),
+    ("ties", "side reversed", P, "if (side != 0) return side;", "if (side != 0) return -side;"),
+    ("ties", "the largest point inside", P, "if (largest == 3u) return -1;", "if (largest == 3u) return 1;"),
+    ("ties", "points on a line not passed over", P, "if (side != 0) return side;", "return side;"),
+    ("ties", "mirrored pairs by rounded sums", P, "left == right && cadt_lost_by_sum(a, b, left) == cadt_lost_by_sum(c, d, right)",
+     "left == right"),
+    ("ties", "mirrored pairs: one pair's line not compared", P, "if (a.y == b.y && c.y == d.y) return", "if (a.y == b.y) return"),
+    ("ties", "a tie left as it is", P, "  return cadt_tie(a, b, c, p);", "  return -1;"),
+    # ---- the verifier's predicates on devices: sums of doubles
+    ("verifier", "splitter 28 in place of 2^27 + 1", V, "134217729.0", "28.0", 2),
+    ("verifier", "splitter 2^26 + 1", V, "134217729.0", "67108865.0", 2),
+    ("verifier", "orientation bound x 1/32", V, "0x1p-48 * (X * Y)", "0x1p-53 * (X * Y)"),
+    ("verifier", "incircle bound x 1/64", V, "0x1p-47 * (X", "0x1p-53 * (X"),
+    ("verifier", "rounded differences taken for exact", V, "(q_part - q) == 0.0 ? 1u : 0u", "(q_part - q) == 0.0 ? 1u : 1u"),
+    ("verifier", "second error of a sum lost", V, "(term - (s - part)) + (e - part)", "term - (s - part)"),
+]
+
+FLAGS = [
+    ("arithmetic", "contraction", ["-mfma", "-ffp-contract=fast"]),
+    ("arithmetic", "fast-math", ["-ffast-math"]),
+    ("arithmetic", "80-bit registers (x87)", ["-mfpmath=387"]),
+    ("arithmetic", "subnormal numbers flushed to 0", ["-DCADT_PLANT_FLUSH"]),
+    ("arithmetic", "rounding upwards", ["-frounding-math", "-DCADT_PLANT_ROUNDING=FE_UPWARD"]),
+    ("arithmetic", "rounding towards 0", ["-frounding-math", "-DCADT_PLANT_ROUNDING=FE_TOWARDZERO"]),
+]

@@ -109,9 +109,14 @@ std::vector<ExactCounts> expected_of_catalogue() { return read_counts(folder() /
 
 Points hard_file(const std::string& name) { return parse_text(contents(folder() / "hard" / name)); }
 
-Points catalogue_set(const std::string& id) {
+Points catalogue_set(const std::string& id, unsigned factor) {
   const fs::path script = folder() / "hard" / "gen_catalogue.py";
-  return parse_text(contents(made_by("python3 " + quoted(script) + " " + id, script, "catalogue/" + id + ".xy")));
+  if (factor == 1)
+    return parse_text(contents(made_by("python3 " + quoted(script) + " " + id, script, "catalogue/" + id + ".xy")));
+  const std::string times = std::to_string(factor);
+  return parse_text(
+      contents(made_by("python3 " + quoted(CADT_ENLARGE_CATALOGUE) + " " + quoted(script) + " " + id + " " + times,
+                       script, "catalogue/" + id + "x" + times + ".xy")));
 }
 
 std::vector<RealSet> real_sets() {

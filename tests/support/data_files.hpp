@@ -25,9 +25,10 @@ struct ExactCounts {
 [[nodiscard]] std::vector<ExactCounts> expected_of_files();
 [[nodiscard]] std::vector<ExactCounts> expected_of_catalogue();
 
-/// A file of `hard/`, and the output of a generator (made once, kept in the build folder).
+/// A file of `hard/`, and the output of a generator (made once, kept in the build folder); `factor`: with about so many
+/// times its points (tests/support/catalogue.py).
 [[nodiscard]] Points hard_file(const std::string& name);
-[[nodiscard]] Points catalogue_set(const std::string& id);
+[[nodiscard]] Points catalogue_set(const std::string& id, unsigned factor = 1);
 
 struct RealSet {
   std::string name;

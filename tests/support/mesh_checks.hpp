@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,6 +35,11 @@ struct ExpectedMesh {
 
 /// Byte for byte: dimension, triangles, neighbours, hull, duplicates, vertex_triangle.
 [[nodiscard]] testing::AssertionResult same_mesh(const Triangulation& mesh, const ExpectedMesh& expected);
+
+/// The same for the mesh of the points in another order, point i of which is point order[i] of `expected`: dimension,
+/// number of duplicates, set of triangles.
+[[nodiscard]] testing::AssertionResult same_but_for_order(const Triangulation& mesh, const ExpectedMesh& expected,
+                                                          std::span<const std::size_t> order);
 
 /// The triangles as a canonical set, after index i was replaced by `index[i]` (empty: kept).
 [[nodiscard]] std::vector<std::int32_t> canonical_set(std::span<const std::int32_t> triangles,

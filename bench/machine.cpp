@@ -72,6 +72,7 @@ Json device_json(const DeviceInfo& d) {
           {"largest_buffer_bytes", d.largest_buffer_bytes},
           {"compute_units", d.compute_units},
           {"fp64", d.fp64},
+          {"watchdog", d.watchdog},
           {"atomics", d.atomics}};
 }
 

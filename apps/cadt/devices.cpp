@@ -27,6 +27,7 @@ std::string devices_json(const std::vector<DeviceInfo>& devices) {
                                {"name", d.name},
                                {"driver", d.driver},
                                {"gpu", d.gpu},
+                               {"watchdog", d.watchdog},
                                {"memory_bytes", d.memory_bytes},
                                {"largest_buffer_bytes", d.largest_buffer_bytes},
                                {"compute_units", d.compute_units},

@@ -34,6 +34,9 @@ DeviceInfo describe(int index, int driver) {
   info.fp64 = true;
   info.gpu = true;
   info.atomics = "CUDA, device scope";
+  int watchdog = 0;
+  cudaDeviceGetAttribute(&watchdog, cudaDevAttrKernelExecTimeout, index);
+  info.watchdog = watchdog != 0;
   int pools = 0;
   cudaDeviceGetAttribute(&pools, cudaDevAttrMemoryPoolsSupported, index);
   if (properties.major * 10 + properties.minor < least_capability) {

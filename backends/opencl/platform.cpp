@@ -42,6 +42,15 @@ bool advertises_acquire_release(const cl::Device& device, int version) {
   return (has & CL_DEVICE_ATOMIC_ORDER_ACQ_REL) != 0 && (has & CL_DEVICE_ATOMIC_SCOPE_DEVICE) != 0;
 }
 
+// NVIDIA's cl_nv_device_attribute_query; nobody else tells.
+bool has_watchdog(const cl::Device& device) {
+  constexpr cl_device_info kernel_exec_timeout = 0x4005;
+  if (device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_nv_device_attribute_query") == std::string::npos) return false;
+  cl_bool timeout = CL_FALSE;
+  return clGetDeviceInfo(device(), kernel_exec_timeout, sizeof timeout, &timeout, nullptr) == CL_SUCCESS &&
+         timeout != CL_FALSE;
+}
+
 void describe(FoundDevice& found) {
   const cl::Device& device = found.device;
   DeviceInfo& info = found.info;
@@ -52,6 +61,7 @@ void describe(FoundDevice& found) {
   info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   found.gpu_hardware = (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
   info.gpu = found.gpu_hardware || used_as_gpu();
+  info.watchdog = has_watchdog(device);
   found.vendor = trimmed(device.getInfo<CL_DEVICE_VENDOR>());
   found.device_version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
 

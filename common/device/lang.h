@@ -52,6 +52,7 @@ typedef long cadt_i64;
 #define CADT_GLOBAL __global
 #define CADT_FN static
 #define CADT_FN_SLOW static __attribute__((noinline))
+#define CADT_FN_EACH static __attribute__((always_inline))
 #define CADT_KERNEL(name, ...) __kernel void name(__VA_ARGS__)
 #define CADT_TEAM_KERNEL(lanes, teams, name, ...) CADT_KERNEL(name, __VA_ARGS__)
 #define cadt_item ((cadt_u32)get_global_id(0))
@@ -122,6 +123,7 @@ typedef long long cadt_i64;
 #define CADT_GLOBAL
 #define CADT_FN static __device__ inline
 #define CADT_FN_SLOW static __device__ __noinline__
+#define CADT_FN_EACH static __device__ __forceinline__
 #define CADT_KERNEL(name, ...) static __global__ void name(__VA_ARGS__)
 /* Registers are given out so that so many teams run on a multiprocessor at the same time, if it has so many threads. */
 #if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ == 800 || (__CUDA_ARCH__ >= 900 && __CUDA_ARCH__ < 1200)
@@ -189,6 +191,8 @@ typedef std::int64_t cadt_i64;
 #define CADT_GLOBAL
 #define CADT_FN static inline
 #define CADT_FN_SLOW __attribute__((noinline)) static
+/* Each caller has the code to itself: what it keeps in registers need not go through memory for the other's sake. */
+#define CADT_FN_EACH __attribute__((always_inline)) static inline
 /* A kernel is a function of its work-item; the host back end supplies the two numbers (backends/host). */
 #define CADT_KERNEL(name, ...) \
   static void name([[maybe_unused]] cadt_u32 cadt_item, [[maybe_unused]] cadt_u32 cadt_items, __VA_ARGS__)

@@ -46,8 +46,8 @@ CADT_FN cadt_i32 cadt_incircle_around(const cadt_mesh* m, cadt_u32 a, cadt_u32 b
 
 /* Legalises the edges opposite of a new vertex, at p, of own triangles, in the order in which they lie around it: one
  * after the other from `link` on. A flip puts two edges in the place of one, and the first of them is next. */
-CADT_FN void cadt_legalize_around(const cadt_mesh* m, const cadt_range* range, cadt_u32 link, cadt_point p,
-                                  cadt_tally* tally) {
+CADT_FN_EACH void cadt_legalize_around(const cadt_mesh* m, const cadt_range* range, cadt_u32 link, cadt_point p,
+                                       cadt_tally* tally) {
   cadt_snapshot s = cadt_look_from(m, CADT_LINK_RECORD(link), CADT_LINK_EDGE(link));
   const cadt_u32 first = s.v1;
   cadt_arm a = cadt_reach(p, m->points[s.v1]), b = cadt_reach(p, m->points[s.v2]);
@@ -87,8 +87,8 @@ enum { CADT_OWN_STEPS = 64 /* of a walk that does not try edges in random order 
 
 /* Walks from record `start` through own triangles. Nobody changes them, so what was found at one side of an edge need
  * not be tested at the other. \post 1: `place` is p's, in own triangles; 0: `place->record` is where the walk ended */
-CADT_FN cadt_u32 cadt_locate_own(const cadt_mesh* m, const cadt_range* range, cadt_point p, cadt_u32 start,
-                                 cadt_place* place, cadt_tally* tally) {
+CADT_FN_EACH cadt_u32 cadt_locate_own(const cadt_mesh* m, const cadt_range* range, cadt_point p, cadt_u32 start,
+                                      cadt_place* place, cadt_tally* tally) {
   cadt_u32 steps = 0u, leave = 3u, t = start;
   cadt_snapshot s = cadt_look(m, t);
   place->record = t;
@@ -125,8 +125,8 @@ CADT_FN cadt_u32 cadt_locate_own(const cadt_mesh* m, const cadt_range* range, ca
 }
 
 /* As cadt_insert_vertex, in own triangles and with the flips. 0 if it cannot be done there. */
-CADT_FN cadt_u32 cadt_insert_own(const cadt_mesh* m, const cadt_range* range, cadt_u32 i, cadt_u32 hint,
-                                 cadt_tally* tally) {
+CADT_FN_EACH cadt_u32 cadt_insert_own(const cadt_mesh* m, const cadt_range* range, cadt_u32 i, cadt_u32 hint,
+                                      cadt_tally* tally) {
   const cadt_point p = m->points[i];
   cadt_place place = {CADT_LOST, hint, 0u, {0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u}};
   cadt_u32 edges[4], done = 0u;

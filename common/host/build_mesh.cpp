@@ -20,6 +20,7 @@ using namespace device_constants;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time to a cancel
 constexpr std::size_t points_per_launch_strided = std::size_t{1} << 25;
+constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a watchdog gives a launch two seconds
 // Ranges without locks: what every 2^range_level positions have in common is inserted before, with locks. The fewer
 // positions a range has, the more of them are at its border.
 constexpr unsigned range_level = 5;
@@ -28,6 +29,12 @@ constexpr int stalled_launches = 4;  // launches without progress before the res
 constexpr int hopeless_launches = 64;
 constexpr int most_sweeps = 2000;
 constexpr std::size_t closing_counts = 5, all_counts = CADT_LEFT_COUNTS + closing_counts;
+
+/// Points that one launch inserts at most.
+std::size_t points_per_launch(const Device& device) {
+  if (device.shape().contiguous) return points_per_launch_contiguous;
+  return device.info().watchdog ? points_per_launch_watched : points_per_launch_strided;
+}
 
 static_assert(static_cast<int>(Stabilize::off) == CADT_STABILIZE_OFF &&
               static_cast<int>(Stabilize::defer) == CADT_STABILIZE_DEFER &&
@@ -99,10 +106,6 @@ class Builder {
   /// Levels of halving until a block is one point.
   [[nodiscard]] unsigned levels() const noexcept { return static_cast<unsigned>(std::bit_width(n_ - 1)); }
 
-  [[nodiscard]] std::size_t points_per_launch() const noexcept {
-    return run_.device.shape().contiguous ? points_per_launch_contiguous : points_per_launch_strided;
-  }
-
   /// Puts the points in the order of insertion (common/device/insert.h).
   void order_by_level() {
     Allocation points = run_.memory.allocate(n_ * sizeof(cadt_point)), labels = run_.memory.allocate(n_ * word);
@@ -153,7 +156,7 @@ class Builder {
   void insert_level(unsigned level) {
     // blocks of 2^(level+1) positions that have two halves
     const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
-    const std::size_t most = points_per_launch();
+    const std::size_t most = points_per_launch(run_.device);
     for (std::size_t begin = 0; begin < count; begin += most) {
       const std::size_t size = std::min(most, count - begin);
       launch_insert(begin, size, level, false);
@@ -177,7 +180,7 @@ class Builder {
     const std::size_t all = ((n_ - 1) >> range_level) + 1;
     const std::size_t shares = std::clamp<std::size_t>(run_.device.shape().parallelism / 2, 1, n_ / least_range);
     const std::size_t blocks = (all - 1) / shares + 1, ranges = (all - 1) / blocks + 1;
-    const std::size_t points = std::min(points_per_launch(), n_ / 2);
+    const std::size_t points = std::min(points_per_launch(run_.device), n_ / 2);
     const std::size_t step = std::max<std::size_t>((points >> range_level) / ranges, 1);
     for (std::size_t from = 0; from < blocks; from += step) {
       const std::size_t to = std::min(blocks, from + step);
@@ -252,7 +255,7 @@ class Builder {
   /// Closing passes until one finds nothing to do.
   void certify(std::uint64_t edges) {
     if (run_.options.stabilize == Stabilize::defer) stabilize_ = CADT_STABILIZE_OFF;  // what was put off is due now
-    const std::size_t slots = 2 * n_, most = 4 * points_per_launch();
+    const std::size_t slots = 2 * n_, most = 4 * points_per_launch(run_.device);
     for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
       std::uint64_t examined = 0, illegal = 0, unsettled = 0, left = 0, broken = 0;
       for (std::size_t begin = 0; begin < slots; begin += most) {
@@ -318,9 +321,7 @@ class Builder {
 };
 
 /// Triangles or records that a closing pass looks at in one launch.
-std::size_t slots_per_launch(const Device& device) {
-  return 4 * (device.shape().contiguous ? points_per_launch_contiguous : points_per_launch_strided);
-}
+std::size_t slots_per_launch(const Device& device) { return 4 * points_per_launch(device); }
 
 }  // namespace
 

@@ -23,7 +23,8 @@ struct DeviceInfo {
   unsigned compute_units = 0;
   bool fp64 = false;
   bool gpu = false;
-  std::string atomics;  ///< e.g. "C++20 acquire/release", "CL3.0 acquire/release, device scope"
+  bool watchdog = false;  ///< its driver ends kernels that run for seconds: it draws a screen. Work is cut smaller then
+  std::string atomics;    ///< e.g. "C++20 acquire/release", "CL3.0 acquire/release, device scope"
 };
 
 /// All devices of all back ends, usable or not. A back end that is not compiled in or finds no device has one entry

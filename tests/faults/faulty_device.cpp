@@ -65,6 +65,7 @@ class FaultyDevice final : public Device {
     if (Primitives* own = device_->primitives()) primitives_.emplace(*own, *device_, faults_);
     info_ = device_->info();
     if (faults_->largest_buffer_bytes != 0) info_.largest_buffer_bytes = faults_->largest_buffer_bytes;
+    if (faults_->watchdog) info_.watchdog = true;
   }
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }

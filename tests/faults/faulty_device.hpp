@@ -56,6 +56,7 @@ class Faults {
   std::function<void(const Buffer&, std::size_t offset, void* to, std::size_t bytes)> change_read;
   /// Instead of the device's own, if not 0.
   std::uint64_t largest_buffer_bytes = 0;
+  bool watchdog = false;  ///< as if it drew a screen
 
   // For the device.
   /// Does the step unless it is to fail. \throws DeviceError, OutOfMemory for allocations

@@ -252,6 +252,30 @@ TEST_P(HostileDevice, WorkOfALaunchIsBounded) {
   faults->after_launch = nullptr;
 }
 
+/// A card that draws a screen gets launches of a thirtieth: 2^20 points take 3 ms on an H200 (docs/reliability.md,
+/// F05).
+TEST_P(HostileDevice, WatchdogMakesLaunchesSmall) {
+  faults->watchdog = true;
+  Triangulator triangulator(insertion());
+  if (!triangulator.device().gpu) GTEST_SKIP() << "a processor has no watchdog";
+  EXPECT_TRUE(triangulator.device().watchdog);
+  constexpr std::uint64_t most = std::uint64_t{1} << 20;
+  std::uint64_t points = 0, slots = 0;
+  faults->after_launch = [&](KernelId kernel, std::span<const Arg> args, Device&, double) {
+    if (kernel == KernelId::cadt_insert)
+      points = std::max<std::uint64_t>(points, value_of<std::uint32_t>(args[mesh_parameters + 3]));
+    if (kernel == KernelId::cadt_closing_pass)
+      slots = std::max<std::uint64_t>(slots, value_of<std::uint32_t>(args[mesh_parameters + 1]));
+  };
+  const Points xy = uniform_points(2500000);
+  EXPECT_TRUE(triangulator.triangulate(Reals(xy)).statistics().certified);
+  faults->after_launch = nullptr;
+  EXPECT_GT(points, most / 2);  // the last level has 1.25 million
+  EXPECT_LE(points, most + most / 4 + 64);
+  EXPECT_GT(slots, most);
+  EXPECT_LE(slots, 4 * most);
+}
+
 CADT_ON_MAIN_BACKENDS(HostileDevice);
 
 }  // namespace

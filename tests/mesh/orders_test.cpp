@@ -3,10 +3,10 @@
 // have items, one fewer and one more. Each mesh equals that of CGAL (without it: that of the serial host, verified).
 //
 // CADT_CATALOGUE=all: ten times the size, and all sizes of groups, on all configurations; some minutes for a back end.
+#include "tests/support/orders.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/support/data_files.hpp"
 #include "tests/support/mesh_checks.hpp"
-#include "tests/support/orders.hpp"
 
 #include <gtest/gtest.h>
 
@@ -129,8 +129,8 @@ TEST(OrdersOfPoints, HilbertNeverJumps) {
 }
 
 TEST(OrdersOfPoints, FirstTriangleHasAllPointsInside) {
-  for (const Points& xy : {uniform_points(50, 3), scaled(uniform_points(50, 3), -1070), moved(uniform_points(50), 1e15, -1e15),
-                           Points{0, 0}, Points{1e300, 1e300, 1e300, -1e300}}) {
+  for (const Points& xy : {uniform_points(50, 3), scaled(uniform_points(50, 3), -1070),
+                           moved(uniform_points(50), 1e15, -1e15), Points{0, 0}, Points{1e300, 1e300, 1e300, -1e300}}) {
     const Points all = inside_first_triangle(xy);
     ASSERT_EQ(all.size(), xy.size() + 6);
     const ExpectedMesh mesh = expected_mesh(all);

@@ -82,7 +82,8 @@ std::vector<std::size_t> outwards(const Points& xy) {
 
 const std::vector<PointOrder>& point_orders() {
   static const std::vector<PointOrder> orders = {
-      {"random", by_random}, {"sorted", sorted}, {"reversed", backwards}, {"hilbert", along_curve}, {"radial", outwards},
+      {"random", by_random},    {"sorted", sorted},   {"reversed", backwards},
+      {"hilbert", along_curve}, {"radial", outwards},
   };
   return orders;
 }
@@ -90,7 +91,8 @@ const std::vector<PointOrder>& point_orders() {
 Points inside_first_triangle(const Points& xy) {
   if (xy.empty()) return {};
   const Box box(xy);
-  const double largest = std::max({std::fabs(box.min_x), std::fabs(box.min_y), std::fabs(box.max_x), std::fabs(box.max_y)});
+  const double largest =
+      std::max({std::fabs(box.min_x), std::fabs(box.min_y), std::fabs(box.max_x), std::fabs(box.max_y)});
   if (!(largest < std::numeric_limits<double>::max() / 64)) return {};
   // Of the size of the set, and so far away that no rounding brings it back in.
   const double x = 2 * (box.min_x + box.max_x), y = 2 * (box.min_y + box.max_y);

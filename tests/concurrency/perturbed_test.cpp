@@ -37,6 +37,14 @@ std::vector<BackendCase> perturbed_opencl_cases() {
   return cases;
 }
 
+std::vector<BackendCase> perturbed_cuda_cases() {
+  std::vector<BackendCase> cases;
+  if (cuda_cases().empty()) return cases;
+  for (const unsigned size : {32U, 64U, 256U})
+    cases.push_back({"blocks" + std::to_string(size), Backend::cuda, 0, size});
+  return cases;
+}
+
 Points few_distinct(std::size_t n, int side) {
   Random random(4);
   Points xy;
@@ -118,6 +126,44 @@ TEST_P(Perturbed, AllAtOnce) {
 }
 CADT_ON(host, Perturbed, perturbed_host_cases);
 CADT_ON(opencl, Perturbed, perturbed_opencl_cases);
+CADT_ON(cuda, Perturbed, perturbed_cuda_cases);
+
+// One set again and again, in each mode in turn, each time with other delays. CADT_PERTURBED_REPEATS: how often.
+class PerturbedRepeats : public Perturbed {};
+
+TEST_P(PerturbedRepeats, TwentyThousandPoints) {
+  const char* variable = std::getenv("CADT_PERTURBED_REPEATS");
+  const int repeats = variable != nullptr ? std::atoi(variable) : 5;
+  ASSERT_GT(repeats, 0);
+  const Points xy = uniform_points(20000, 20);
+  Triangulator reference(Options{.backend = Backend::host, .threads = 1});
+  const Triangulation first = reference.triangulate(std::span<const double>(xy));
+  ASSERT_TRUE(verified(xy, first));
+  Options options = GetParam().options();
+  options.strategy = Strategy::locks;
+  options.grain = 1;
+  Triangulator triangulator(options);
+  for (unsigned repeat = 0; repeat < static_cast<unsigned>(repeats); ++repeat) {
+    const unsigned mode = 1 + repeat % static_cast<unsigned>(Noise::all);
+    triangulator.options().quality_epsilon = 8.0 * (repeat + 1) + mode;
+    const Triangulation mesh = triangulator.triangulate(std::span<const double>(xy));
+    ASSERT_EQ(mesh.hash(), first.hash()) << "repeat " << repeat << ", mode " << mode;
+    const Statistics& s = mesh.statistics();
+    ASSERT_TRUE(s.certified);
+    ASSERT_EQ(s.claims, s.lost_claims + s.splits + s.edge_splits + s.flips) << "repeat " << repeat;
+    lost_ += s.lost_claims;
+  }
+  EXPECT_GT(lost_, 0U);
+  RecordProperty("lost_claims", std::to_string(lost_));
+}
+std::vector<BackendCase> repeated_opencl_case() { return {{"groups64", Backend::opencl, 0, 64}}; }
+std::vector<BackendCase> repeated_cuda_case() {
+  return cuda_cases().empty() ? std::vector<BackendCase>{}
+                              : std::vector<BackendCase>{{"blocks64", Backend::cuda, 0, 64}};
+}
+CADT_ON(host, PerturbedRepeats, main_host_case);
+CADT_ON(opencl, PerturbedRepeats, repeated_opencl_case);
+CADT_ON(cuda, PerturbedRepeats, repeated_cuda_case);
 
 // Ranges have owners without locks, and a border with them.
 class PerturbedRanges : public Perturbed {};

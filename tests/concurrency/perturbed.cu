@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CUDA kernels with delays and failures (common/device/perturb.h), and an assertion at every store to a record, which
-// ends the kernel: CUDA refuses all later calls of the process. Linked before the library, this table takes the place of
-// the real one.
+// The CUDA kernels with delays and failures (common/device/perturb.h), and an assertion at every store to a record,
+// which ends the kernel: CUDA refuses all later calls of the process. Linked before the library, this table takes the
+// place of the real one.
 #define CADT_PERTURBED
 #define CADT_CHECKED
 #define cadt_assert_owned(owned) \

@@ -27,11 +27,11 @@ typedef struct {
 } cadt_span;
 
 CADT_FN cadt_u64 cadt_mantissa(cadt_u64 bits) {
-  const cadt_u64 one = 1ul << CADT_MANTISSA_BITS, m = bits & (one - 1ul);
-  return (bits >> CADT_MANTISSA_BITS) & (CADT_EXPONENT_MASK >> CADT_MANTISSA_BITS) ? m | one : m;
+  cadt_u64 m = bits & (CADT_HIDDEN_BIT - 1ul);
+  return (bits >> CADT_MANTISSA_BITS) & CADT_EXPONENTS ? m | CADT_HIDDEN_BIT : m;
 }
 CADT_FN cadt_i32 cadt_exponent(cadt_u64 bits) {
-  cadt_i32 e = CADT_CAST(cadt_i32, (bits >> CADT_MANTISSA_BITS) & (CADT_EXPONENT_MASK >> CADT_MANTISSA_BITS));
+  cadt_i32 e = CADT_CAST(cadt_i32, (bits >> CADT_MANTISSA_BITS) & CADT_EXPONENTS);
   return (e ? e : 1) - (CADT_EXPONENT_BIAS + CADT_MANTISSA_BITS);
 }
 /* m != 0 */

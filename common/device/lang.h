@@ -293,8 +293,9 @@ CADT_FN cadt_u64 cadt_clock() {
 #if CADT_FLOAT
 typedef float cadt_real;
 #define CADT_MANTISSA_BITS 23 /* that are stored */
-#define CADT_EXPONENT_MASK 0x7F800000ul
+#define CADT_EXPONENTS 0xFFul
 #define CADT_EXPONENT_BIAS 127
+#define CADT_SIGN_SHIFT 31
 #define cadt_bits_of_real(x) CADT_CAST(cadt_u64, cadt_bits_of_float(x))
 /* Devices may take subnormal floats for 0 and make them 0, in comparisons too. */
 #define CADT_GRADUAL 0
@@ -304,12 +305,14 @@ typedef float cadt_real;
 #else
 typedef double cadt_real;
 #define CADT_MANTISSA_BITS 52
-#define CADT_EXPONENT_MASK 0x7FF0000000000000ul
+#define CADT_EXPONENTS 0x7FFul
 #define CADT_EXPONENT_BIAS 1023
+#define CADT_SIGN_SHIFT 63
 #define cadt_bits_of_real(x) cadt_bits_of_double(x)
 #define CADT_GRADUAL 1 /* the self-test asks for it */
 #endif
-#define CADT_SIGN_SHIFT (CADT_EXPONENT_BIAS == 127 ? 31 : 63)
+#define CADT_EXPONENT_MASK (CADT_EXPONENTS << CADT_MANTISSA_BITS)
+#define CADT_HIDDEN_BIT (1ul << CADT_MANTISSA_BITS)
 
 /* Comparison of coordinates that decides something. */
 #if CADT_GRADUAL

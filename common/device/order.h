@@ -58,8 +58,8 @@ CADT_FN void cadt_bounds_add(cadt_bounds_row* row, const cadt_bounds_row other) 
 /* Adds point i; 0 if a coordinate is no number. The exponents are in `span` until the end. */
 CADT_FN cadt_u32 cadt_bounds_add_point(cadt_bounds_row* row, cadt_span* span, cadt_point p, cadt_u32 i) {
   /* an exponent of all ones is infinity or NaN */
-  const cadt_u64 mask = CADT_EXPONENT_MASK;
-  if ((cadt_bits_of_real(p.x) & mask) == mask || (cadt_bits_of_real(p.y) & mask) == mask) {
+  if (((cadt_bits_of_real(p.x) >> CADT_MANTISSA_BITS) & CADT_EXPONENTS) == CADT_EXPONENTS ||
+      ((cadt_bits_of_real(p.y) >> CADT_MANTISSA_BITS) & CADT_EXPONENTS) == CADT_EXPONENTS) {
     row->bad = cadt_min_u32(row->bad, i);
     return 0u;
   }

@@ -36,11 +36,11 @@
 #if CADT_FLOAT
 #define CADT_UNDERFLOW 8.67361738e-19f
 #define CADT_SCALED_EXPONENT 128
-#define CADT_LEAST_EXPONENT 87 /* of a largest difference that is scaled, as in its bits: 2^-40 */
+#define CADT_TOO_SMALL(top) ((top) < (87ul << CADT_MANTISSA_BITS)) /* the largest difference is below 2^-40 */
 #else
 #define CADT_UNDERFLOW 1e-300
 #define CADT_SCALED_EXPONENT 1022
-#define CADT_LEAST_EXPONENT 0
+#define CADT_TOO_SMALL(top) 0
 #endif
 
 /* Exponent of the largest magnitude; 5000 if it cannot be scaled: a difference has overflowed, or all are too small. */
@@ -50,8 +50,8 @@ CADT_FN cadt_i32 cadt_exponent_of_largest(cadt_real a, cadt_real b, cadt_real c,
   if ((cadt_bits_of_real(b) & mask) > top) top = cadt_bits_of_real(b) & mask;
   if ((cadt_bits_of_real(c) & mask) > top) top = cadt_bits_of_real(c) & mask;
   if ((cadt_bits_of_real(d) & mask) > top) top = cadt_bits_of_real(d) & mask;
-  const cadt_i32 exponent = CADT_CAST(cadt_i32, top >> CADT_MANTISSA_BITS);
-  return top == mask || exponent < CADT_LEAST_EXPONENT ? 5000 : exponent - CADT_SCALED_EXPONENT;
+  return top == mask || CADT_TOO_SMALL(top) ? 5000
+                                            : CADT_CAST(cadt_i32, top >> CADT_MANTISSA_BITS) - CADT_SCALED_EXPONENT;
 }
 #else
 #define CADT_UNDERFLOW 0.0

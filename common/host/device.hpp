@@ -54,7 +54,7 @@ class Arg {
 
  private:
   Buffer* buffer_ = nullptr;
-  std::size_t size_ = 0;
+  std::uint32_t size_ = 0;
   bool real_ = false;
   alignas(8) std::byte value_[8] = {};
 };

@@ -36,22 +36,21 @@
 #if CADT_FLOAT
 #define CADT_UNDERFLOW 8.67361738e-19f
 #define CADT_SCALED_EXPONENT 128
-#define CADT_TOO_SMALL(top) ((top) < (87ul << CADT_MANTISSA_BITS)) /* the largest difference is below 2^-40 */
+#define CADT_TOO_SMALL(e) ((e) < -41) /* the largest difference is below 2^-40 */
 #else
 #define CADT_UNDERFLOW 1e-300
 #define CADT_SCALED_EXPONENT 1022
-#define CADT_TOO_SMALL(top) 0
+#define CADT_TOO_SMALL(e) 0
 #endif
 
-/* Exponent of the largest magnitude; 5000 if it cannot be scaled: a difference has overflowed, or all are too small. */
+/* Exponent of the largest magnitude, 5000 if a difference has overflowed. */
 CADT_FN cadt_i32 cadt_exponent_of_largest(cadt_real a, cadt_real b, cadt_real c, cadt_real d) {
   const cadt_u64 mask = CADT_EXPONENT_MASK;
   cadt_u64 top = cadt_bits_of_real(a) & mask;
   if ((cadt_bits_of_real(b) & mask) > top) top = cadt_bits_of_real(b) & mask;
   if ((cadt_bits_of_real(c) & mask) > top) top = cadt_bits_of_real(c) & mask;
   if ((cadt_bits_of_real(d) & mask) > top) top = cadt_bits_of_real(d) & mask;
-  return top == mask || CADT_TOO_SMALL(top) ? 5000
-                                            : CADT_CAST(cadt_i32, top >> CADT_MANTISSA_BITS) - CADT_SCALED_EXPONENT;
+  return top == mask ? 5000 : CADT_CAST(cadt_i32, top >> CADT_MANTISSA_BITS) - CADT_SCALED_EXPONENT;
 }
 #else
 #define CADT_UNDERFLOW 0.0
@@ -64,7 +63,7 @@ CADT_FN cadt_i32 cadt_orientation_filter(cadt_point a, cadt_point b, cadt_point 
 #if CADT_WIDE
   /* x and y apart: the determinant is linear in either */
   const cadt_i32 ex = cadt_exponent_of_largest(ux, vx, 0.0, 0.0), ey = cadt_exponent_of_largest(uy, vy, 0.0, 0.0);
-  if (ex == 5000 || ey == 5000) return CADT_UNSURE;
+  if (ex == 5000 || ey == 5000 || CADT_TOO_SMALL(ex) || CADT_TOO_SMALL(ey)) return CADT_UNSURE;
   ux = cadt_ldexp(ux, -ex);
   vx = cadt_ldexp(vx, -ex);
   uy = cadt_ldexp(uy, -ey);
@@ -175,7 +174,7 @@ CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_poin
 #if CADT_WIDE
   const cadt_i32 e0 = cadt_exponent_of_largest(ax, ay, bx, by), e1 = cadt_exponent_of_largest(cx, cy, 0.0, 0.0);
   const cadt_i32 e = e0 > e1 ? e0 : e1;
-  if (e < 5000)
+  if (e < 5000 && !CADT_TOO_SMALL(e))
 #endif
   {
 #if CADT_WIDE

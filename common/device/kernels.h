@@ -8,33 +8,27 @@
 #define CADT_DEVICE_KERNELS_H
 
 #include "common/device/lang.h"
-#if !CADT_FLOAT
+/* The text for OpenCL compilers has each file once, where it is included first: not within a condition that is wider than
+ * its own. */
 #include "common/device/array_mesh.h"
-#endif
 #include "common/device/closing.h"
 #include "common/device/emit.h"
 #include "common/device/flips.h"
 #include "common/device/insert.h"
-#if !CADT_FLOAT
-#include "common/device/join.h"
-#endif
 #include "common/device/order.h"
 #include "common/device/radix.h"
 #include "common/device/range.h"
 #include "common/device/refine.h"
 #include "common/device/scan.h"
 #include "common/device/selftest.h"
-#if !CADT_FLOAT
-#include "common/device/set_insert.h"
-#include "common/device/sets.h"
-#endif
 #include "common/device/signs.h"
-#if !CADT_FLOAT
-#include "common/device/star.h"
-#include "common/device/star_mesh.h"
-#endif
 #include "common/device/start.h"
 #if !CADT_FLOAT
+#include "common/device/join.h"
+#include "common/device/set_insert.h"
+#include "common/device/sets.h"
+#include "common/device/star.h"
+#include "common/device/star_mesh.h"
 #include "common/device/tiles.h"
 #include "common/device/verify.h"
 #include "common/device/wrap.h"

@@ -37,7 +37,8 @@ bool wished(const char* variable) {
 // slower on CPUs.
 bool used_as_gpu() { return wished("CADT_OPENCL_AS_GPU"); }
 
-// CADT_OPENCL_NO_FP64=1: devices are taken for some without double precision, with all that follows from that.
+// CADT_OPENCL_NO_FP64=1: devices are taken for the least that is usable: without double precision and without subnormal
+// floats, with all that follows from that.
 bool used_without_doubles() { return wished("CADT_OPENCL_NO_FP64"); }
 
 bool advertises_acquire_release(const cl::Device& device, int version) {
@@ -71,7 +72,9 @@ void describe(FoundDevice& found) {
   facts.fp64 = config != 0;
   facts.denormals = (config & CL_FP_DENORM) != 0;
   facts.round_to_nearest = (config & CL_FP_ROUND_TO_NEAREST) != 0;
-  facts.float_round_to_nearest = (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_ROUND_TO_NEAREST) != 0;
+  const cl_device_fp_config float_config = device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>();
+  facts.float_round_to_nearest = (float_config & CL_FP_ROUND_TO_NEAREST) != 0;
+  facts.float_denormals = (float_config & CL_FP_DENORM) != 0 && !used_without_doubles();
   facts.acquire_release = advertises_acquire_release(device, facts.version);
 
   info.fp64 = facts.fp64;

@@ -110,10 +110,11 @@ std::string build_options(const FoundDevice& device, const AtomicsPath& atomics,
   // No option that relaxes arithmetic may ever stand here: the filters rely on each rounding (and the self-test would
   // refuse the device).
   std::string options = atomics.options;
-  // Where there are no doubles, literals must be none. Nothing there relies on subnormal numbers, so that all devices
-  // may do without, as tests do on those that need not.
+  // Where there are no doubles, literals must be none. A device that does not promise subnormal numbers shall always be
+  // without them, rather than now and then.
   if (!device.facts.fp64)
-    options += " -DCADT_FLOAT=1 -cl-single-precision-constant -cl-denorms-are-zero";
+    options += std::string(" -DCADT_FLOAT=1 -cl-single-precision-constant") +
+               (device.facts.float_denormals ? "" : " -cl-denorms-are-zero");
   else
     options += build == KernelBuild::wide ? " -DCADT_WIDE=1" : " -DCADT_WIDE=0";
   if (build == KernelBuild::timed) options += " -DCADT_TIMED=1";

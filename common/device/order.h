@@ -275,7 +275,8 @@ CADT_FN cadt_real cadt_multiplied(cadt_real x, cadt_real scale, cadt_real scale_
   return x * scale * scale_again + 0.0;
 #else
   (void)scale, (void)scale_again;
-  return cadt_float_order(x) == 0 ? 0 : x;
+  const cadt_u32 bits = cadt_bits_of_float(x);
+  return cadt_float_of_bits(bits == 0x80000000u ? 0u : bits);
 #endif
 }
 

@@ -36,11 +36,11 @@
 #if CADT_FLOAT
 #define CADT_UNDERFLOW 8.67361738e-19f
 #define CADT_SCALED_EXPONENT 128
-#define CADT_TOO_SMALL(e) ((e) < -41) /* the largest difference is below 2^-40 */
+#define CADT_SCALES(e) ((e) < 5000 && (e) >= -41) /* the largest difference is 2^-40 at least */
 #else
 #define CADT_UNDERFLOW 1e-300
 #define CADT_SCALED_EXPONENT 1022
-#define CADT_TOO_SMALL(e) 0
+#define CADT_SCALES(e) ((e) < 5000)
 #endif
 
 /* Exponent of the largest magnitude, 5000 if a difference has overflowed. */
@@ -63,7 +63,7 @@ CADT_FN cadt_i32 cadt_orientation_filter(cadt_point a, cadt_point b, cadt_point 
 #if CADT_WIDE
   /* x and y apart: the determinant is linear in either */
   const cadt_i32 ex = cadt_exponent_of_largest(ux, vx, 0.0, 0.0), ey = cadt_exponent_of_largest(uy, vy, 0.0, 0.0);
-  if (ex == 5000 || ey == 5000 || CADT_TOO_SMALL(ex) || CADT_TOO_SMALL(ey)) return CADT_UNSURE;
+  if (!CADT_SCALES(ex) || !CADT_SCALES(ey)) return CADT_UNSURE;
   ux = cadt_ldexp(ux, -ex);
   vx = cadt_ldexp(vx, -ex);
   uy = cadt_ldexp(uy, -ey);
@@ -174,7 +174,7 @@ CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_poin
 #if CADT_WIDE
   const cadt_i32 e0 = cadt_exponent_of_largest(ax, ay, bx, by), e1 = cadt_exponent_of_largest(cx, cy, 0.0, 0.0);
   const cadt_i32 e = e0 > e1 ? e0 : e1;
-  if (e < 5000 && !CADT_TOO_SMALL(e))
+  if (CADT_SCALES(e))
 #endif
   {
 #if CADT_WIDE

@@ -22,9 +22,15 @@ CADT_KERNEL(cadt_selftest, CADT_GLOBAL const cadt_real* in, CADT_GLOBAL cadt_rea
     /* Two-Sum: the rounding error of a sum; fast-math folds it to zero */
     cadt_real s = in[2] + in[3], t = s - in[2];
     out[1] = (in[2] - (s - t)) + (in[3] - t);
-    /* underflow of a product and of a difference: gradual, or any where nothing relies on it */
+#if CADT_GRADUAL
+    /* gradual underflow of a product and of a difference */
     out[2] = in[4] * in[5];
     out[3] = in[6] - in[7];
+#else
+    /* subnormal numbers that are moved and chosen, not computed with, keep their bits */
+    out[2] = in[4];
+    out[3] = cadt_less(in[6], in[7]) ? in[6] : in[7];
+#endif
     /* rounding to nearest, ties to even: the tie of the sum goes up, that of the product goes down */
     out[4] = in[8] + in[9];
     out[5] = in[10] * in[11];

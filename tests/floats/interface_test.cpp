@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a device without double precision says of itself, takes and refuses, through every way into the library.
+#include "backends/opencl/open.hpp"
 #include "tests/floats/floats.hpp"
 #include "tests/support/families.hpp"
 #include "tests/gpu/device_memory.hpp"
@@ -8,6 +9,11 @@
 
 #include <algorithm>
 #include <limits>
+
+namespace cadt::opencl {
+/// tests/predicates/signs_only.cl: the predicates and the self-test.
+[[nodiscard]] std::string signs_source();
+}  // namespace cadt::opencl
 
 namespace cadt::test {
 namespace {
@@ -142,6 +148,60 @@ TEST_F(FloatInterface, StatisticsAndWatch) {
   options.statistics = StatisticsDetail::timing;
   options.kernel_times = true;
   EXPECT_FALSE(triangulate(FloatSpan(xy), options).statistics().kernels.empty());
+}
+
+// Forbidden in the source itself, on devices that have doubles as well; literals without a suffix are floats.
+TEST_F(FloatInterface, ADoubleInTheKernelsIsAnErrorOfTheCompiler) {
+  opencl::OpenRequest request;
+  request.index = info.index;
+  request.fresh = true;
+  const std::string literals = "typedef char cadt_literals_are_floats[sizeof(0.5 * 1e10) == 4 ? 1 : -1];\n";
+  request.source = opencl::signs_source() + literals;
+  EXPECT_NE(opencl::open_device(request), nullptr);
+  for (const char* use : {"static float cadt_test(float x) { return (float)((double)x * x); }\n",
+                          "__kernel void cadt_test(__global double2* p) { p[0].x = 0.5f; }\n"}) {
+    request.source = opencl::signs_source() + use;
+    try {
+      static_cast<void>(opencl::open_device(request));
+      FAIL() << "compiled: " << use;
+    } catch (const KernelBuildError& error) {
+      EXPECT_NE(error.log().find("cadt_there_are_no_doubles_on_this_device"), std::string::npos) << error.log();
+    }
+  }
+}
+
+// Each probe of the self-test for floats notices what it is for.
+TEST_F(FloatInterface, EachWrongOperationIsNamed) {
+  struct Fault {
+    const char *from, *to, *probe;
+  };
+  const Fault faults[] = {
+      {"out[0] = in[0] * in[0] + in[1]", "out[0] = fma(in[0], in[0], in[1])", "contraction of a*a+b"},
+      {"(in[2] - (s - t)) + (in[3] - t)", "(in[2] + in[3]) - s", "rounding error of a sum"},
+      {"out[2] = in[4];", "out[2] = in[4] + in[5];", "a copy of a subnormal number"},
+      {"cadt_less(in[6], in[7])", "(in[6] < in[7])", "a choice of subnormal numbers"},
+      {"out[4] = in[8] + in[9]", "out[4] = in[8]", "rounding of a sum"},
+      {"out[5] = in[10] * in[11]", "out[5] = nextafter(in[10] * in[11], 2.0f)", "rounding of a product"},
+      {"out[6] = in[12] / in[13]", "out[6] = in[12]", "division without a remainder"},
+      {"p.high)", "(p.high ^ (1l << 40)))", "64 x 64 bit product"},
+      {"(cadt_u32, p.low);", "(cadt_u32, p.low + 1ul);", "64 x 64 bit product, low word"},
+  };
+  for (const Fault& fault : faults) {
+    opencl::OpenRequest request;
+    request.index = info.index;
+    request.fresh = true;
+    request.source = opencl::signs_source();
+    const std::size_t at = request.source.find(fault.from);
+    ASSERT_NE(at, std::string::npos) << "the source has changed: " << fault.from;
+    request.source.replace(at, std::string(fault.from).size(), fault.to);
+    try {
+      static_cast<void>(opencl::open_device(request));
+      ADD_FAILURE() << "accepted: " << fault.to;
+    } catch (const BackendUnavailable& error) {
+      EXPECT_NE(error.reason().find("fails the self-test '" + std::string(fault.probe) + "'"), std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 // Verification runs on the host: the device's verifier needs doubles.

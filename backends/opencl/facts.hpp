@@ -14,7 +14,7 @@ struct Facts {
   bool denormals = true;         ///< gradual underflow of double
   bool round_to_nearest = true;  ///< of double
   bool float_round_to_nearest = true;
-  bool float_denormals = true;  ///< gradual underflow of float; nothing relies on it
+  bool float_denormals = true;   ///< gradual underflow of float; nothing relies on it
   int version = 300;             ///< 100 * major + 10 * minor
   bool acquire_release = false;  ///< advertises acquire/release atomics at device scope
 };

@@ -226,7 +226,8 @@ CADT_FN cadt_u32 cadt_is_illegal(const cadt_mesh* m, cadt_u32 p, cadt_u32 a, cad
 /* Smallest angle of the triangle of points 0, u and v. The one between the longer sides: it has the largest scalar
  * product, and the three have the vector product in common. */
 CADT_FN cadt_real cadt_smallest_angle(cadt_real ux, cadt_real uy, cadt_real vx, cadt_real vy) {
-  const cadt_real at_0 = ux * vx + uy * vy, at_u = ux * (ux - vx) + uy * (uy - vy), at_v = vx * (vx - ux) + vy * (vy - uy);
+  const cadt_real at_0 = ux * vx + uy * vy, at_u = ux * (ux - vx) + uy * (uy - vy),
+                  at_v = vx * (vx - ux) + vy * (vy - uy);
   cadt_real largest = at_0 > at_u ? at_0 : at_u;
   if (at_v > largest) largest = at_v;
   return cadt_atan2(cadt_fabs(ux * vy - uy * vx), largest);

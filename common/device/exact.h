@@ -129,8 +129,7 @@ CADT_FN cadt_real cadt_difference(cadt_real a, cadt_real b, cadt_u32* exact) {
 
 /* Incircle: 1 if p is inside the circle of the counterclockwise triangle a, b, c, 0 on it, -1 outside. The magnitude of
  * the determinant is known to be at most `most`. */
-CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p,
-                                          cadt_real most) {
+CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_real most) {
   cadt_u32 exact = 1u;
   cadt_point d[3];
   d[0].x = cadt_difference(a.x, p.x, &exact);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Exact arithmetic on coordinates as integers. Every finite double (or float) is an integer times a power of two, so the few
- * coordinates of one predicate become integers over their smallest exponent: no rounding, no overflow, no underflow,
- * nothing that contraction, denormal flushing or a fast-math option could break. How long the integers are follows from
- * the coordinates at hand: 62 bits in most cases, any length up to the whole range of a double in a wide build
- * (docs/decisions/0005-exact-integers.md).
+ * Exact arithmetic on coordinates as integers. Every finite double (or float) is an integer times a power of two, so
+ * the few coordinates of one predicate become integers over their smallest exponent: no rounding, no overflow, no
+ * underflow, nothing that contraction, denormal flushing or a fast-math option could break. How long the integers are
+ * follows from the coordinates at hand: 62 bits in most cases, any length up to the whole range of a double in a wide
+ * build (docs/decisions/0005-exact-integers.md).
  */
 #ifndef CADT_DEVICE_FIXED_H
 #define CADT_DEVICE_FIXED_H

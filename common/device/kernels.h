@@ -8,8 +8,8 @@
 #define CADT_DEVICE_KERNELS_H
 
 #include "common/device/lang.h"
-/* The text for OpenCL compilers has each file once, where it is included first: not within a condition that is wider than
- * its own. */
+/* The text for OpenCL compilers has each file once, where it is included first: not within a condition that is wider
+ * than its own. */
 #include "common/device/array_mesh.h"
 #include "common/device/closing.h"
 #include "common/device/emit.h"

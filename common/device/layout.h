@@ -60,7 +60,7 @@ enum {
 typedef struct {
   cadt_real factor, factor_again;
   cadt_real half_min_x, half_min_y, scale; /* its square of the key grid, as cadt_key_grid */
-  cadt_real most_x, most_y;             /* the largest coordinates of its points, in cells */
+  cadt_real most_x, most_y;                /* the largest coordinates of its points, in cells */
 } cadt_set;
 
 /* The state of a set, in the lowest bits of a word; above them the number of its vertices that have failed. */

@@ -32,7 +32,7 @@ CADT_FN cadt_i32 cadt_around_center(const cadt_mesh* m, cadt_point a, cadt_point
   cadt_real left = ux * vy, right = uy * vx, det = left - right;
   /* coordinates are below 1, so the rounded centre is off by less than 2^-50 in each */
   cadt_real bound = CADT_ORIENTATION_BOUND * (cadt_fabs(left) + cadt_fabs(right)) +
-                 9e-16 * (cadt_fabs(b.x - a.x) + cadt_fabs(b.y - a.y));
+                    9e-16 * (cadt_fabs(b.x - a.x) + cadt_fabs(b.y - a.y));
   if (det > bound) return 1;
   if (-det > bound) return -1;
 #endif

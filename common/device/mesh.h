@@ -35,8 +35,8 @@ typedef struct {
 #endif
 } cadt_mesh;
 
-#define CADT_MESH_PARAMETERS                                                                                 \
-  CADT_GLOBAL cadt_record *records, CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *hints,       \
+#define CADT_MESH_PARAMETERS                                                                                       \
+  CADT_GLOBAL cadt_record *records, CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *hints,             \
       cadt_real center_x, cadt_real center_y, cadt_u32 first, cadt_u32 second, cadt_u32 third, cadt_u32 stabilize, \
       cadt_u32 threshold, cadt_real epsilon
 #if defined(CADT_CHECKED)

@@ -184,7 +184,8 @@ CADT_FN cadt_point cadt_to_grid(const cadt_key_grid* grid, cadt_point p) {
   f.y = (0.5 * p.y - grid->half_min_y) * grid->scale;
   return f;
 }
-/* The last cell of an axis with so many bits. A float may round it up, out of the grid: then the last below that is one.
+/* The last cell of an axis with so many bits. A float may round it up, out of the grid: then the last below that is
+ * one.
  */
 CADT_FN cadt_real cadt_last_cell(cadt_u32 bits) {
   cadt_u32 cell = (1u << bits) - 1u;
@@ -282,8 +283,7 @@ CADT_FN cadt_real cadt_multiplied(cadt_real x, cadt_real scale, cadt_real scale_
 
 /* Points in sorted order. */
 CADT_KERNEL(cadt_gather_points, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* order,
-            CADT_GLOBAL cadt_point* sorted, cadt_u32 count, cadt_u32 grain, cadt_real scale,
-            cadt_real scale_again) {
+            CADT_GLOBAL cadt_point* sorted, cadt_u32 count, cadt_u32 grain, cadt_real scale, cadt_real scale_again) {
   CADT_FOR(i, count, grain) {
     cadt_point p = points[order[i]];
     p.x = cadt_multiplied(p.x, scale, scale_again);

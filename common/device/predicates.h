@@ -158,7 +158,8 @@ CADT_FN cadt_arm cadt_reach(cadt_point from, cadt_point to) {
 CADT_FN cadt_i32 cadt_incircle_filter(cadt_arm a, cadt_arm b, cadt_arm c) {
   const cadt_real det =
       a.lift * (b.x * c.y - b.y * c.x) + b.lift * (c.x * a.y - c.y * a.x) + c.lift * (a.x * b.y - a.y * b.x);
-  const cadt_real bound = CADT_INCIRCLE_BOUND * 1.00000000000001 * (a.lift * b.lift + b.lift * c.lift + c.lift * a.lift);
+  const cadt_real bound =
+      CADT_INCIRCLE_BOUND * 1.00000000000001 * (a.lift * b.lift + b.lift * c.lift + c.lift * a.lift);
   if (det > bound) return 1;
   return -det > bound ? -1 : 0;
 }
@@ -188,8 +189,9 @@ CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_poin
     const cadt_real bxcy = bx * cy, bycx = by * cx, cxay = cx * ay, cyax = cy * ax, axby = ax * by, aybx = ay * bx;
     const cadt_real alift = ax * ax + ay * ay, blift = bx * bx + by * by, clift = cx * cx + cy * cy;
     const cadt_real det = alift * (bxcy - bycx) + blift * (cxay - cyax) + clift * (axby - aybx);
-    const cadt_real permanent = alift * (cadt_fabs(bxcy) + cadt_fabs(bycx)) + blift * (cadt_fabs(cxay) + cadt_fabs(cyax)) +
-                             clift * (cadt_fabs(axby) + cadt_fabs(aybx));
+    const cadt_real permanent = alift * (cadt_fabs(bxcy) + cadt_fabs(bycx)) +
+                                blift * (cadt_fabs(cxay) + cadt_fabs(cyax)) +
+                                clift * (cadt_fabs(axby) + cadt_fabs(aybx));
     const cadt_real bound = CADT_INCIRCLE_BOUND * permanent + CADT_UNDERFLOW;
     if (det > bound) return 1;
     if (-det > bound) return -1;

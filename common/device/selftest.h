@@ -12,8 +12,8 @@
 
 enum { CADT_PROBES = 8, CADT_PROBE_WORDS = 5 };
 
-/* in: 2 * CADT_PROBES coordinates; out: CADT_PROBES of them; words: CADT_PROBE_WORDS words, zero at the start but the last,
- * which is CADT_NONE; items: those of the launch that count, for it may be rounded up */
+/* in: 2 * CADT_PROBES coordinates; out: CADT_PROBES of them; words: CADT_PROBE_WORDS words, zero at the start but the
+ * last, which is CADT_NONE; items: those of the launch that count, for it may be rounded up */
 CADT_KERNEL(cadt_selftest, CADT_GLOBAL const cadt_real* in, CADT_GLOBAL cadt_real* out, CADT_GLOBAL cadt_u32* words,
             cadt_u32 items) {
   if (cadt_item == 0u) {

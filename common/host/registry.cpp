@@ -113,7 +113,8 @@ std::unique_ptr<Device> open_device(const Options& options) {
     throw BackendUnavailable("auto",
                              "no usable device matches '" + options.device + "'; 'cadt devices' lists what is there");
   }
-  // A GPU is the fastest, but one that takes floats alone must be named. Without one the host's threads are faster than OpenCL on the same cores.
+  // A GPU is the fastest, but one that takes floats alone must be named. Without one the host's threads are faster than
+  // OpenCL on the same cores.
   for (BackendEntry* backend : all_backends())
     for (const DeviceInfo& info : backend->devices())
       if (info.index >= 0 && info.usable && info.gpu && info.fp64) return open_in(*backend, options);

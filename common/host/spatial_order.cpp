@@ -46,8 +46,14 @@ cadt_bounds_row read_row(Device& device, const Buffer& from) {
   }
   FloatRow f;
   device.read(from, 0, &f, sizeof f);
-  return {static_cast<double>(f.min_x), static_cast<double>(f.max_x), static_cast<double>(f.min_y),
-          static_cast<double>(f.max_y), f.low, f.high, f.bad, f.rows};
+  return {static_cast<double>(f.min_x),
+          static_cast<double>(f.max_x),
+          static_cast<double>(f.min_y),
+          static_cast<double>(f.max_y),
+          f.low,
+          f.high,
+          f.bad,
+          f.rows};
 }
 
 /// The row of all points. `group`: work-items that share a row on this device.

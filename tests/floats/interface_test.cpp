@@ -2,9 +2,9 @@
 // What a device without double precision says of itself, takes and refuses, through every way into the library.
 #include "backends/opencl/open.hpp"
 #include "tests/floats/floats.hpp"
-#include "tests/support/families.hpp"
 #include "tests/gpu/device_memory.hpp"
 #include "tests/support/device_choice.hpp"
+#include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"
 
 #include <algorithm>

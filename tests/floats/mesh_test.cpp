@@ -2,8 +2,8 @@
 // The mesh of floats from a device without doubles: equal to the host's and to CGAL's, for everything that the other
 // back ends are tested with, rounded to floats, and for what only floats have.
 #include "tests/floats/floats.hpp"
-#include "tests/support/families.hpp"
 #include "tests/support/data_files.hpp"
+#include "tests/support/families.hpp"
 
 #include <cmath>
 #include <limits>
@@ -74,7 +74,8 @@ TEST_F(FloatMesh, SmallAndFlat) {
   check({0, 0, 1, 0, 0, 1}, "three");
   check({0, 0, 1, 0, 1, 1, 0, 1}, "square");
   Floats line, upright;
-  for (int i = 0; i < 500; ++i) line.insert(line.end(), {static_cast<float>(i % 100), static_cast<float>(3 * (i % 100))});
+  for (int i = 0; i < 500; ++i)
+    line.insert(line.end(), {static_cast<float>(i % 100), static_cast<float>(3 * (i % 100))});
   for (int i = 0; i < 50; ++i) upright.insert(upright.end(), {7, static_cast<float>(i) * least});
   check(line, "line");
   check(upright, "upright");

@@ -49,8 +49,7 @@ Sum<Real> orientation_sum(Real ux, Real uy, Real vx, Real vy) {
 
 template <class Real>
 Sum<Real> incircle_sum(const std::array<Real, 6>& d) {
-  const Real bc = d[2] * d[5], cb = d[3] * d[4], ca = d[4] * d[1], ac = d[5] * d[0], ab = d[0] * d[3],
-             ba = d[1] * d[2];
+  const Real bc = d[2] * d[5], cb = d[3] * d[4], ca = d[4] * d[1], ac = d[5] * d[0], ab = d[0] * d[3], ba = d[1] * d[2];
   const Real a = d[0] * d[0] + d[1] * d[1], b = d[2] * d[2] + d[3] * d[3], c = d[4] * d[4] + d[5] * d[5];
   return {
       a * (bc - cb) + b * (ca - ac) + c * (ab - ba),

@@ -67,9 +67,9 @@ Four float_scales(Random& r) {
 
 // Any floats, and those at which the format ends.
 Four float_bits(Random& r) {
-  static const std::vector<float> ends = {0.0F,     -0.0F,   least,    -least,      3 * least,    0x1p-126F,
-                                          -0x1p-126F, 1.0F,  -1.0F,    1 + 0x1p-23F, largest,     -largest,
-                                          largest / 2, 0x1p127F, 0x1p-125F, 0x1p-64F, 0x1p63F,    -0x1p-40F};
+  static const std::vector<float> ends = {0.0F,        -0.0F,    least,     -least,       3 * least, 0x1p-126F,
+                                          -0x1p-126F,  1.0F,     -1.0F,     1 + 0x1p-23F, largest,   -largest,
+                                          largest / 2, 0x1p127F, 0x1p-125F, 0x1p-64F,     0x1p63F,   -0x1p-40F};
   Four p;
   for (PlanePoint& q : p) {
     const auto coordinate = [&] {
@@ -97,7 +97,8 @@ Four float_far_and_tiny(Random& r) {
 Four float_small(Random& r) {
   Four p;
   const int size = -whole(r, 36, 44), other = r() & 1 ? size : -whole(r, 60, 149);
-  for (PlanePoint& q : p) q = {std::ldexp(uniform(r) - 0.5, size), std::ldexp(uniform(r) - 0.5, r() & 1 ? size : other)};
+  for (PlanePoint& q : p)
+    q = {std::ldexp(uniform(r) - 0.5, size), std::ldexp(uniform(r) - 0.5, r() & 1 ? size : other)};
   if (r() & 1) p[2] = {(p[0].x + p[1].x) / 2, (p[0].y + p[1].y) / 2};
   return rounded(p);
 }
@@ -120,7 +121,8 @@ const std::vector<Generator>& generators() {
   return all;
 }
 
-constexpr const char* shared[] = {"cocircular", "rectangles", "lattices", "near_line", "near_circle", "near_arms", "polygons"};
+constexpr const char* shared[] = {"cocircular",  "rectangles", "lattices", "near_line",
+                                  "near_circle", "near_arms",  "polygons"};
 constexpr std::size_t most_of_shared = 30000;
 
 }  // namespace

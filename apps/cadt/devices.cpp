@@ -42,7 +42,7 @@ std::string or_dash(const std::string& text) { return text.empty() ? "-" : text;
 std::string devices_text(const std::vector<DeviceInfo>& devices) {
   std::vector<std::vector<std::string>> rows = {
       {"BACK END", "DEVICE", "USABLE", "NAME", "MEMORY", "UNITS", "FP64", "ATOMICS", "DRIVER"}};
-  std::string reasons;
+  std::string reasons, floats;
   for (const DeviceInfo& d : devices) {
     const std::string backend(to_string(d.backend));
     const bool device = d.index >= 0;
@@ -53,8 +53,11 @@ std::string devices_text(const std::vector<DeviceInfo>& devices) {
     // Reasons are sentences: below the table, where they do not widen every line.
     if (!d.usable)
       reasons += fmt::format("{}{}: {}\n", backend, device ? fmt::format(" {}", d.index) : "", or_dash(d.reason));
+    else if (!d.fp64)
+      floats += fmt::format("{} {}: {}\n", backend, d.index, d.name);
   }
-  return table(rows) + (reasons.empty() ? "" : "\nNot usable:\n" + reasons);
+  return table(rows) + (floats.empty() ? "" : "\nFloat coordinates only (--floats), when they are named:\n" + floats) +
+         (reasons.empty() ? "" : "\nNot usable:\n" + reasons);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace cadt::cli {
 
@@ -26,6 +27,30 @@ void add_input_options(CLI::App& command, InputOptions& options, const std::stri
                   "plane of 3D points: xy, yz or zx (default: xy); the third coordinate goes to 3D outputs")
       ->type_name("PLANE")
       ->check(CLI::IsMember({"xy", "yz", "zx"}).description(""));
+}
+
+void add_floats_option(CLI::App& command, InputOptions& options) {
+  command.add_flag("--floats", options.floats,
+                   "round the coordinates to floats, which is what devices without double precision take");
+}
+
+void round_to_floats(io::PointSet& points, const InputOptions& options, bool quiet) {
+  if (!options.floats) return;
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < points.xy.size(); i += 2) {
+    bool same = true;
+    for (double* v : {&points.xy[i], &points.xy[i + 1]}) {
+      const double rounded = static_cast<double>(static_cast<float>(*v));
+      if (!std::isfinite(rounded))
+        throw Failure(exit_file, fmt::format("{}: point {} (counted from 0) is beyond the largest float, 3.4e38: scale "
+                                             "the points or leave out --floats",
+                                             display_name(options.path, true), i / 2));
+      same = same && rounded == *v;
+      *v = rounded;
+    }
+    moved += same ? 0 : 1;
+  }
+  if (moved != 0 && !quiet) say(fmt::format("cadt: --floats moved {} of {} points\n", moved, points.size()));
 }
 
 io::PointSet read_input(const InputOptions& options) {

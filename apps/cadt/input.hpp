@@ -15,10 +15,17 @@ struct InputOptions {
   std::string format;
   std::string columns;
   std::string projection = "xy";
+  bool floats = false;
 };
 
 /// Adds the positional `name` and -f, --columns, --project.
 void add_input_options(CLI::App& command, InputOptions& options, const std::string& name, const std::string& text);
+
+/// Adds --floats.
+void add_floats_option(CLI::App& command, InputOptions& options);
+
+/// With --floats: rounds the coordinates, and says how many points that has moved unless `quiet`.
+void round_to_floats(io::PointSet& points, const InputOptions& options, bool quiet);
 
 /// Checks the options, then reads. Wrong options throw Failure (usage), a wrong file io::FileError.
 [[nodiscard]] io::PointSet read_input(const InputOptions& options);

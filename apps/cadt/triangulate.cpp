@@ -106,9 +106,14 @@ Options library_options(const TriangulateOptions& options, ProgressLine& line) {
 }
 
 // The library names a point by its index only; here the file is known.
-Triangulation triangulate_file(const io::PointSet& points, const std::string& name, const Options& options) {
+Triangulation triangulate_file(const io::PointSet& points, const std::string& name, bool as_floats,
+                               const Options& options) {
   try {
     const InPhase phase(Phase::cooperative);
+    if (as_floats) {
+      const std::vector<float> xy(points.xy.begin(), points.xy.end());
+      return triangulate(std::span<const float>(xy), options);
+    }
     return triangulate(points.view(), options);
   } catch (const InputError& e) {
     throw Failure(exit_file, fmt::format("{}: point {} (counted from 0): {}", name, e.index(), e.what()));
@@ -116,13 +121,13 @@ Triangulation triangulate_file(const io::PointSet& points, const std::string& na
 }
 
 // How far a mesh of --stabilize paper is from the exact one.
-std::size_t differing_triangles(const io::PointSet& points, const std::string& name, Options options,
+std::size_t differing_triangles(const io::PointSet& points, const std::string& name, bool as_floats, Options options,
                                 const Triangulation& mesh) {
   options.stabilize = Stabilize::off;
   options.statistics = StatisticsDetail::none;
   options.kernel_times = false;
   options.progress = nullptr;
-  return count_differing(mesh, triangulate_file(points, name, options));
+  return count_differing(mesh, triangulate_file(points, name, as_floats, options));
 }
 
 void write_outputs(const TriangulateOptions& options, const std::vector<Output>& outputs, const io::PointSet& points,
@@ -195,14 +200,15 @@ int run(const TriangulateOptions& options) {
 
   Stopwatch watch;
   line.step(fmt::format("reading {}", name));
-  const io::PointSet points = read_input(options.input);
+  io::PointSet points = read_input(options.input);
+  round_to_floats(points, options.input, options.quiet);
   report.input = options.input.path;
   report.input_format = points.format;
   report.heights = !points.height.empty();
   report.read_seconds = watch.lap();
 
   line.start(points.size());
-  const Triangulation mesh = triangulate_file(points, name, chosen);
+  const Triangulation mesh = triangulate_file(points, name, options.input.floats, chosen);
   check_interrupt();
   report.mesh = &mesh;
   report.triangulate_seconds = watch.lap();
@@ -215,7 +221,7 @@ int run(const TriangulateOptions& options) {
   report.epsilon = chosen.quality_epsilon;
   if (chosen.stabilize == Stabilize::paper) {
     line.step("comparing with the exact mesh");
-    report.differing = differing_triangles(points, name, chosen, mesh);
+    report.differing = differing_triangles(points, name, options.input.floats, chosen, mesh);
     line.clear();
   }
 
@@ -329,6 +335,7 @@ void add_triangulate(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("triangulate", "triangulate points; write meshes and pictures");
   const auto options = std::make_shared<TriangulateOptions>();
   add_input_options(*command, options->input, "IN", "file with points");
+  add_floats_option(*command, options->input);
   add_output_options(*command, *options);
   add_work_options(*command, *options);
   command->footer(

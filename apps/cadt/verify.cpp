@@ -56,7 +56,8 @@ void check_standard_input(const VerifyCommand& command) {
 
 int run(const VerifyCommand& command) {
   check_standard_input(command);
-  const io::PointSet points = read_input(command.input);
+  io::PointSet points = read_input(command.input);
+  round_to_floats(points, command.input, command.quiet);
   const io::MeshFile mesh = io::read_mesh(command.mesh, points.size(), lower(command.format), command.base);
   MeshView view;
   view.triangles = mesh.triangles;
@@ -92,6 +93,7 @@ void add_verify(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("verify", "check a mesh from any program against its points, exactly");
   const auto options = std::make_shared<VerifyCommand>();
   add_input_options(*command, options->input, "POINTS", "file with the points");
+  add_floats_option(*command, options->input);
   command
       ->add_option("MESH", options->mesh,
                    "file with the triangles, counterclockwise, as indices of the points; '-' is "

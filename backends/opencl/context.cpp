@@ -84,6 +84,7 @@ SharedContext::SharedContext(const OpenRequest& request)
 }
 
 cl::Program SharedContext::program(KernelBuild build, bool* from_cache) {
+  if (!device_.facts.fp64 && build == KernelBuild::wide) build = KernelBuild::narrow;  // that one is wide already
   const std::lock_guard lock(build_mutex_);
   auto& slot = programs_[static_cast<std::size_t>(build)];
   if (!slot)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cadt/errors.hpp>
+#include <cstring>
 #include <limits>
 #include <mutex>
 
@@ -68,6 +69,15 @@ const cl::Buffer& memory_of(const Buffer& buffer) {
   if (const auto* alias = dynamic_cast<const AliasBuffer*>(&buffer)) return alias->memory();
   if (const auto* from = dynamic_cast<const AllocatorBuffer*>(&buffer)) return from->memory();
   throw InternalError("a buffer of another back end was passed to an OpenCL device");
+}
+
+/// A parameter of type cadt_real where there are no doubles. All of them may be rounded: cells of the grid of keys, a
+/// centre that is not read, a bound of the user's.
+cl_float as_float(const Arg& arg) {
+  double value = 0;
+  std::memcpy(&value, arg.value(), sizeof value);
+  constexpr double most = std::numeric_limits<float>::max();
+  return static_cast<cl_float>(std::clamp(value, -most, most));
 }
 
 void check_range(const char* what, const Buffer& buffer, std::size_t offset, std::size_t bytes) {
@@ -281,7 +291,9 @@ void ClDevice::enqueue(ReadyKernel& target, std::size_t groups, std::size_t grou
   run([&] {
     cl_uint position = 0;
     for (const Arg& arg : args) {
-      if (!arg.is_buffer())
+      if (arg.is_real() && !info().fp64)
+        target.kernel.setArg(position, as_float(arg));
+      else if (!arg.is_buffer())
         target.kernel.setArg(position, arg.size(), arg.value());
       else if (arg.buffer() == nullptr)
         target.kernel.setArg(position, sizeof(cl_mem), nullptr);

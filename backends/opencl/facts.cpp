@@ -12,7 +12,11 @@ std::string unusable_reason(const Facts& facts) {
            std::to_string(facts.version / 10 % 10);
   if (!facts.compiler) return "the driver has no compiler for OpenCL C";
   if (!facts.little_endian) return "the device is big-endian";
-  if (!facts.fp64) return "the device has no double precision (cl_khr_fp64)";
+  if (!facts.fp64)
+    return facts.float_round_to_nearest
+               ? ""
+               : "neither double precision (cl_khr_fp64) nor floats that are rounded to nearest "
+                 "(CL_FP_ROUND_TO_NEAREST)";
   if (!facts.denormals) return "double precision without gradual underflow (CL_FP_DENORM)";
   if (!facts.round_to_nearest) return "double precision without rounding to nearest (CL_FP_ROUND_TO_NEAREST)";
   return {};

@@ -10,9 +10,11 @@ struct Facts {
   bool available = true;
   bool compiler = true;
   bool little_endian = true;
-  bool fp64 = true;
+  bool fp64 = true;              ///< without it the device takes float coordinates alone
   bool denormals = true;         ///< gradual underflow of double
   bool round_to_nearest = true;  ///< of double
+  bool float_round_to_nearest = true;
+  bool float_denormals = true;   ///< gradual underflow of float; nothing relies on it
   int version = 300;             ///< 100 * major + 10 * minor
   bool acquire_release = false;  ///< advertises acquire/release atomics at device scope
 };

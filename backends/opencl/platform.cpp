@@ -27,13 +27,19 @@ std::string trimmed(std::string text) {
   return text.substr(first);
 }
 
+bool wished(const char* variable) {
+  const char* wish = std::getenv(variable);
+  return wish != nullptr && std::string_view(wish) == "1";
+}
+
 // For tests on machines without a GPU: CADT_OPENCL_AS_GPU=1 has every device do what is done on GPUs (strided
 // work-items, relaxed fields with fences, sort and scan of kernels_cl/primitives.cl). Correct on all devices, only
 // slower on CPUs.
-bool used_as_gpu() {
-  const char* wish = std::getenv("CADT_OPENCL_AS_GPU");
-  return wish != nullptr && std::string_view(wish) == "1";
-}
+bool used_as_gpu() { return wished("CADT_OPENCL_AS_GPU"); }
+
+// CADT_OPENCL_NO_FP64=1: devices are taken for the least that is usable: without double precision and without subnormal
+// floats, with all that follows from that.
+bool used_without_doubles() { return wished("CADT_OPENCL_NO_FP64"); }
 
 bool advertises_acquire_release(const cl::Device& device, int version) {
   if (version < 200) return false;
@@ -71,10 +77,14 @@ void describe(FoundDevice& found) {
   facts.compiler = device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() != 0;
   facts.little_endian = device.getInfo<CL_DEVICE_ENDIAN_LITTLE>() != 0;
   // Before 1.2 the query itself needs the extension; those devices are refused for their version anyway.
-  const cl_device_fp_config config = facts.version >= 120 ? device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() : 0;
+  const cl_device_fp_config config =
+      facts.version >= 120 && !used_without_doubles() ? device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() : 0;
   facts.fp64 = config != 0;
   facts.denormals = (config & CL_FP_DENORM) != 0;
   facts.round_to_nearest = (config & CL_FP_ROUND_TO_NEAREST) != 0;
+  const cl_device_fp_config float_config = device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>();
+  facts.float_round_to_nearest = (float_config & CL_FP_ROUND_TO_NEAREST) != 0;
+  facts.float_denormals = (float_config & CL_FP_DENORM) != 0 && !used_without_doubles();
   facts.acquire_release = advertises_acquire_release(device, facts.version);
 
   info.fp64 = facts.fp64;

@@ -110,7 +110,13 @@ std::string build_options(const FoundDevice& device, const AtomicsPath& atomics,
   // No option that relaxes arithmetic may ever stand here: the filters rely on each rounding (and the self-test would
   // refuse the device).
   std::string options = atomics.options;
-  options += build == KernelBuild::wide ? " -DCADT_WIDE=1" : " -DCADT_WIDE=0";
+  // Where there are no doubles, literals must be none. A device that does not promise subnormal numbers shall always be
+  // without them, rather than now and then.
+  if (!device.facts.fp64)
+    options += std::string(" -DCADT_FLOAT=1 -cl-single-precision-constant") +
+               (device.facts.float_denormals ? "" : " -cl-denorms-are-zero");
+  else
+    options += build == KernelBuild::wide ? " -DCADT_WIDE=1" : " -DCADT_WIDE=0";
   if (build == KernelBuild::timed) options += " -DCADT_TIMED=1";
   options += device.info.gpu ? " -DCADT_CONTIGUOUS=0 -DCADT_RADIX_BITS=4" : " -DCADT_CONTIGUOUS=1 -DCADT_RADIX_BITS=8";
   // cadt_insert takes 118 registers if it may; with 96 more work-items fit in, which is faster (measured with CUDA).

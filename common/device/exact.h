@@ -57,7 +57,7 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_exact(cadt_point a, cadt_point b, cadt_po
   return cadt_orientation_limbs(a, b, c);
 }
 
-/* Orientation of m, a, b where m = (c0 + c1 + c2) / 3 is no double in general: with everything tripled, m is an
+/* Orientation of m, a, b where m = (c0 + c1 + c2) / 3 is no coordinate in general: with everything tripled, m is an
  * integer. */
 CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point c1, cadt_point c2, cadt_point a,
                                                       cadt_point b) {
@@ -67,7 +67,7 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point 
   cadt_span_add_point(&s, b);
   cadt_i32 n = (cadt_span_bits(&s) + 4 + 31) >> 5; /* |3 a - c0 - c1 - c2| < 6 * 2^bits */
   for (cadt_i32 i = 0; i < 4; ++i) {
-    double value = i == 0 ? a.x : (i == 1 ? a.y : (i == 2 ? b.x : b.y));
+    cadt_real value = i == 0 ? a.x : (i == 1 ? a.y : (i == 2 ? b.x : b.y));
     cadt_limbs_load(term, n, value, s.low);
     for (cadt_i32 j = 0; j < n; ++j) d[i][j] = term[j];
     cadt_limbs_accumulate(d[i], n, term, n, 0u);
@@ -120,16 +120,16 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point
 }
 
 /* A difference of coordinates, and whether it is exact: what was lost (D. E. Knuth, "The Art of Computer Programming",
- * vol. 2, 4.2.2). */
-CADT_FN double cadt_difference(double a, double b, cadt_u32* exact) {
-  const double difference = a - b, part = difference - a;
-  if ((a - (difference - part)) - (b + part) != 0.0) *exact = 0u;
+ * vol. 2, 4.2.2). Where subnormal numbers may be 0 that proves nothing. */
+CADT_FN cadt_real cadt_difference(cadt_real a, cadt_real b, cadt_u32* exact) {
+  const cadt_real difference = a - b, part = difference - a;
+  if (!CADT_GRADUAL || (a - (difference - part)) - (b + part) != 0.0) *exact = 0u;
   return difference;
 }
 
 /* Incircle: 1 if p is inside the circle of the counterclockwise triangle a, b, c, 0 on it, -1 outside. The magnitude of
  * the determinant is known to be at most `most`. */
-CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p, double most) {
+CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_real most) {
   cadt_u32 exact = 1u;
   cadt_point d[3];
   d[0].x = cadt_difference(a.x, p.x, &exact);
@@ -155,6 +155,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
       cx -= px, cy -= py;
     }
     if (s.fits) {
+#if CADT_GRADUAL
       /* As integers without common factors 2. If then the determinant is below 2^191, 192 bits tell it, whatever is
        * lost of its terms. */
       const cadt_u64 bits = CADT_CAST(cadt_u64, ax | ay | bx | by | cx | cy);
@@ -176,6 +177,9 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
         }
         return cadt_sign_i192(&det);
       }
+#else
+      (void)most;
+#endif
       CADT_STAGE(incircle_256);
       cadt_i256 det;
       for (cadt_i32 i = 0; i < 4; ++i) det.word[i] = 0ul;

@@ -1,18 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Exact arithmetic on coordinates as integers. Every finite double is an integer times a power of two, so the few
- * coordinates of one predicate become integers over their smallest exponent: no rounding, no overflow, no underflow,
- * nothing that contraction, denormal flushing or a fast-math option could break. How long the integers are follows from
- * the coordinates at hand: 62 bits in most cases, any length up to the whole range of a double in a wide build
- * (docs/decisions/0005-exact-integers.md).
+ * Exact arithmetic on coordinates as integers. Every finite double (or float) is an integer times a power of two, so
+ * the few coordinates of one predicate become integers over their smallest exponent: no rounding, no overflow, no
+ * underflow, nothing that contraction, denormal flushing or a fast-math option could break. How long the integers are
+ * follows from the coordinates at hand: 62 bits in most cases, any length up to the whole range of a double in a wide
+ * build (docs/decisions/0005-exact-integers.md).
  */
 #ifndef CADT_DEVICE_FIXED_H
 #define CADT_DEVICE_FIXED_H
 
 #include "common/device/lang.h"
 
-/* Limbs of a sum of six coordinates: 240 + 4 bits, or 2098 + 4 bits (2^-1074 to 2^1024). */
-#if CADT_WIDE
+/* Limbs of a sum of six coordinates: 240 + 4 bits, or 2098 + 4 bits (2^-1074 to 2^1024); of floats 277 + 4 bits
+ * (2^-149 to 2^128). */
+#if CADT_FLOAT
+#define CADT_LIMBS 9
+#elif CADT_WIDE
 #define CADT_LIMBS 66
 #else
 #define CADT_LIMBS 8
@@ -24,12 +27,12 @@ typedef struct {
 } cadt_span;
 
 CADT_FN cadt_u64 cadt_mantissa(cadt_u64 bits) {
-  cadt_u64 m = bits & 0xFFFFFFFFFFFFFul;
-  return (bits >> 52) & 0x7FFul ? m | 0x10000000000000ul : m;
+  cadt_u64 m = bits & (CADT_HIDDEN_BIT - 1ul);
+  return (bits >> CADT_MANTISSA_BITS) & CADT_EXPONENTS ? m | CADT_HIDDEN_BIT : m;
 }
 CADT_FN cadt_i32 cadt_exponent(cadt_u64 bits) {
-  cadt_i32 e = CADT_CAST(cadt_i32, (bits >> 52) & 0x7FFul);
-  return (e ? e : 1) - 1075;
+  cadt_i32 e = CADT_CAST(cadt_i32, (bits >> CADT_MANTISSA_BITS) & CADT_EXPONENTS);
+  return (e ? e : 1) - (CADT_EXPONENT_BIAS + CADT_MANTISSA_BITS);
 }
 /* m != 0 */
 CADT_FN cadt_i32 cadt_trailing_zeros(cadt_u64 m) { return 63 - CADT_CAST(cadt_i32, cadt_clz64(m & (0ul - m))); }
@@ -38,8 +41,8 @@ CADT_FN void cadt_span_clear(cadt_span* s) {
   s->low = 4096;
   s->high = -4096;
 }
-CADT_FN void cadt_span_add(cadt_span* s, double value) {
-  cadt_u64 bits = cadt_bits_of_double(value), m = cadt_mantissa(bits);
+CADT_FN void cadt_span_add(cadt_span* s, cadt_real value) {
+  cadt_u64 bits = cadt_bits_of_real(value), m = cadt_mantissa(bits);
   if (m != 0ul) {
     cadt_i32 e = cadt_exponent(bits);
     cadt_i32 low = e + cadt_trailing_zeros(m), high = e + 64 - CADT_CAST(cadt_i32, cadt_clz64(m));
@@ -65,17 +68,22 @@ CADT_FN cadt_i32 cadt_span_bits(const cadt_span* s) { return s->high > s->low ? 
 /* ---- 64-bit integers over one exponent, that of the largest coordinate ---------------------------------------------
  */
 typedef struct {
+#if CADT_GRADUAL
   double scale; /* a power of two: the largest coordinate becomes less than 2^61 */
+#else
+  cadt_i32 power; /* of two */
+#endif
   cadt_u32 fits;
 } cadt_scale;
 
 CADT_FN cadt_u64 cadt_larger_exponent(cadt_u64 exponent, cadt_point p) {
-  const cadt_u64 mask = 0x7FF0000000000000ul;
-  const cadt_u64 x = cadt_bits_of_double(p.x) & mask, y = cadt_bits_of_double(p.y) & mask;
+  const cadt_u64 mask = CADT_EXPONENT_MASK;
+  const cadt_u64 x = cadt_bits_of_real(p.x) & mask, y = cadt_bits_of_real(p.y) & mask;
   const cadt_u64 larger = x > y ? x : y;
   return larger > exponent ? larger : exponent;
 }
 
+#if CADT_GRADUAL
 /* \pre `exponent` is that of the largest coordinate, as in its bits */
 CADT_FN cadt_scale cadt_scale_of(cadt_u64 exponent) {
   cadt_scale s;
@@ -92,6 +100,27 @@ CADT_FN cadt_i64 cadt_scaled(cadt_scale* s, double value) {
   if (CADT_CAST(double, integer) != scaled || (integer == 0 && value != 0.0)) s->fits = 0u; /* or underflow */
   return integer;
 }
+#else
+/* The same by the bits of the coordinates alone. */
+CADT_FN cadt_scale cadt_scale_of(cadt_u64 exponent) {
+  cadt_scale s;
+  s.power = 60 + CADT_EXPONENT_BIAS - CADT_CAST(cadt_i32, exponent >> CADT_MANTISSA_BITS);
+  s.fits = 1u;
+  return s;
+}
+
+CADT_FN cadt_i64 cadt_scaled(cadt_scale* s, cadt_real value) {
+  const cadt_u64 bits = cadt_bits_of_real(value);
+  cadt_u64 m = cadt_mantissa(bits);
+  const cadt_i32 shift = m ? cadt_exponent(bits) + s->power : 0;
+  if (shift < 0 && cadt_trailing_zeros(m) < -shift) {
+    s->fits = 0u;
+    return 0;
+  }
+  m = shift < 0 ? m >> -shift : m << shift;
+  return bits >> CADT_SIGN_SHIFT ? -CADT_CAST(cadt_i64, m) : CADT_CAST(cadt_i64, m);
+}
+#endif
 
 /* ---- 128-bit integers -------------------------------------------------------------------------------------------- */
 typedef struct {
@@ -203,8 +232,8 @@ CADT_FN cadt_i32 cadt_sign_i256(const cadt_i256* a) {
 /* ---- integers of any length: little-endian 32-bit limbs ---------------------------------------------------------- */
 
 /* x = value / 2^low, two's complement, n limbs */
-CADT_FN void cadt_limbs_load(cadt_u32* x, cadt_i32 n, double value, cadt_i32 low) {
-  cadt_u64 bits = cadt_bits_of_double(value), m = cadt_mantissa(bits);
+CADT_FN void cadt_limbs_load(cadt_u32* x, cadt_i32 n, cadt_real value, cadt_i32 low) {
+  cadt_u64 bits = cadt_bits_of_real(value), m = cadt_mantissa(bits);
   for (cadt_i32 i = 0; i < n; ++i) x[i] = 0u;
   if (m == 0ul) return;
   cadt_i32 shift = cadt_exponent(bits) - low;
@@ -217,7 +246,7 @@ CADT_FN void cadt_limbs_load(cadt_u32* x, cadt_i32 n, double value, cadt_i32 low
   x[at] = CADT_CAST(cadt_u32, lower);
   if (at + 1 < n) x[at + 1] = CADT_CAST(cadt_u32, lower >> 32);
   if (at + 2 < n) x[at + 2] = CADT_CAST(cadt_u32, upper);
-  if (bits >> 63) {
+  if (bits >> CADT_SIGN_SHIFT) {
     cadt_u32 carry = 1u;
     for (cadt_i32 i = 0; i < n; ++i) {
       x[i] = ~x[i] + carry;

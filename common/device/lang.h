@@ -4,7 +4,8 @@
  * This file finds the language once, then defines the words in which the rest is written. Nothing else in this folder
  * asks which language it is, but atomics.h.
  *
- * A compile may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double),
+ * A compile may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double), CADT_FLOAT (1:
+ * coordinates are floats, any of them, and there are no doubles; this build is wide),
  * CADT_CONTIGUOUS (1: a work-item takes neighbouring elements, right for CPUs; 0: strided, right for GPUs),
  * CADT_RADIX_BITS (digit of the radix sort), CADT_TIMED (1: threads take
  * the time of what they do, tally.h). For tests only: CADT_CHECKED (who stores to a record must own it, mesh.h),
@@ -13,6 +14,13 @@
 #ifndef CADT_DEVICE_LANG_H
 #define CADT_DEVICE_LANG_H
 
+#ifndef CADT_FLOAT
+#define CADT_FLOAT 0
+#endif
+#if CADT_FLOAT
+#undef CADT_WIDE
+#define CADT_WIDE 1
+#endif
 #ifndef CADT_WIDE
 #define CADT_WIDE 0
 #endif
@@ -37,7 +45,12 @@
 /* ---- OpenCL C ------------------------------------------------------------------------------------------------- */
 #if defined(CADT_LANG_OPENCL)
 
-#if defined(__OPENCL_C_VERSION__) && __OPENCL_C_VERSION__ < 120
+#if CADT_FLOAT
+/* Any use is an error of the compiler, on devices that have them as well. Literals are floats by an option
+ * (backends/opencl/program.cpp). */
+#define double cadt_there_are_no_doubles_on_this_device
+#define double2 cadt_there_are_no_doubles_on_this_device
+#elif defined(__OPENCL_C_VERSION__) && __OPENCL_C_VERSION__ < 120
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 /* Without this PoCL fuses a*b+c, which voids the error bounds of the filters. */
@@ -232,11 +245,17 @@ CADT_FN cadt_u64 cadt_mulhi_u64(cadt_u64 a, cadt_u64 b) {
   __extension__ typedef unsigned __int128 u128;
   return CADT_CAST(cadt_u64, (CADT_CAST(u128, a) * b) >> 64);
 }
+#if CADT_FLOAT
+CADT_FN float cadt_fabs(float x) { return std::fabs(x); }
+#define CADT_INFINITY std::numeric_limits<float>::infinity()
+CADT_FN float cadt_atan2(float y, float x) { return std::atan2(y, x); }
+#else
 CADT_FN double cadt_fabs(double x) { return std::fabs(x); }
 CADT_FN double cadt_sqrt(double x) { return std::sqrt(x); }
 #define CADT_INFINITY std::numeric_limits<double>::infinity()
 CADT_FN double cadt_ldexp(double x, cadt_i32 e) { return std::ldexp(x, e); }
 CADT_FN double cadt_atan2(double y, double x) { return std::atan2(y, x); }
+#endif
 CADT_FN cadt_u64 cadt_clock() {
 #if defined(__x86_64__)
   return __builtin_ia32_rdtsc();
@@ -274,16 +293,62 @@ CADT_FN cadt_u64 cadt_clock() {
 #endif
 #define CADT_TEAM_FOR(i, count) for (cadt_u32 i = cadt_team_lane; i < (count); i += cadt_team_lanes)
 
+/* Coordinates, and what is computed from them (docs/decisions/0015-float-path.md). */
+#if CADT_FLOAT
+typedef float cadt_real;
+#define CADT_MANTISSA_BITS 23 /* that are stored */
+#define CADT_EXPONENTS 0xFFul
+#define CADT_EXPONENT_BIAS 127
+#define CADT_SIGN_SHIFT 31
+#define cadt_bits_of_real(x) CADT_CAST(cadt_u64, cadt_bits_of_float(x))
+/* Devices may take subnormal floats for 0 and make them 0, in comparisons too. */
+#define CADT_GRADUAL 0
+/* \pre -126 <= e <= 127 */
+#undef cadt_ldexp
+#define cadt_ldexp(x, e) ((x)*cadt_float_of_bits(CADT_CAST(cadt_u32, (e) + CADT_EXPONENT_BIAS) << CADT_MANTISSA_BITS))
+#else
+typedef double cadt_real;
+#define CADT_MANTISSA_BITS 52
+#define CADT_EXPONENTS 0x7FFul
+#define CADT_EXPONENT_BIAS 1023
+#define CADT_SIGN_SHIFT 63
+#define cadt_bits_of_real(x) cadt_bits_of_double(x)
+#define CADT_GRADUAL 1 /* the self-test asks for it */
+#endif
+#define CADT_EXPONENT_MASK (CADT_EXPONENTS << CADT_MANTISSA_BITS)
+#define CADT_HIDDEN_BIT (1ul << CADT_MANTISSA_BITS)
+
+/* Comparison of coordinates that decides something. */
+#if CADT_GRADUAL
+#define cadt_less(a, b) ((a) < (b))
+#define cadt_same(a, b) ((a) == (b))
+#else
+/* Whole numbers in the order of the values; -0 is 0. */
+CADT_FN cadt_i32 cadt_float_order(cadt_real x) {
+  const cadt_u32 bits = cadt_bits_of_float(x);
+  const cadt_i32 magnitude = CADT_CAST(cadt_i32, bits & 0x7FFFFFFFu);
+  return bits >> 31 ? -magnitude : magnitude;
+}
+#define cadt_less(a, b) (cadt_float_order(a) < cadt_float_order(b))
+#define cadt_same(a, b) (cadt_float_order(a) == cadt_float_order(b))
+#endif
+
 typedef struct {
-  double x, y;
+  cadt_real x, y;
 } cadt_point;
 
 #define CADT_NONE 0xFFFFFFFFu
 
-/* A point at an address that is a multiple of 16, in one access: two would ask the L2 cache twice for one sector. */
+/* A point at an address that is a multiple of its size, in one access: two would ask the L2 cache twice for one sector.
+ */
 #if defined(CADT_LANG_OPENCL) || defined(CADT_LANG_CUDA)
+#if CADT_FLOAT
+typedef float2 cadt_real2;
+#else
+typedef double2 cadt_real2;
+#endif
 CADT_FN cadt_point cadt_load_point(CADT_GLOBAL const cadt_point* p) {
-  const double2 both = *(CADT_GLOBAL const double2*)p;
+  const cadt_real2 both = *(CADT_GLOBAL const cadt_real2*)p;
   cadt_point point;
   point.x = both.x;
   point.y = both.y;

@@ -58,9 +58,9 @@ enum {
 /* One of several sets of points in a call (sets.h). Its points are halved and counted in cells after they have been
  * multiplied by both factors, powers of two. */
 typedef struct {
-  double factor, factor_again;
-  double half_min_x, half_min_y, scale; /* its square of the key grid, as cadt_key_grid */
-  double most_x, most_y;                /* the largest coordinates of its points, in cells */
+  cadt_real factor, factor_again;
+  cadt_real half_min_x, half_min_y, scale; /* its square of the key grid, as cadt_key_grid */
+  cadt_real most_x, most_y;                /* the largest coordinates of its points, in cells */
 } cadt_set;
 
 /* The state of a set, in the lowest bits of a word; above them the number of its vertices that have failed. */
@@ -76,7 +76,7 @@ enum {
 
 /* What cadt_bounds finds. */
 typedef struct {
-  double min_x, max_x, min_y, max_y;
+  cadt_real min_x, max_x, min_y, max_y;
   cadt_u32 low, high; /* lowest exponent, highest exponent, + 4096 */
   cadt_u32 bad;       /* first point with a coordinate that is no number */
   cadt_u32 rows;      /* how many rows of partial results there are */

@@ -28,11 +28,11 @@ typedef struct {
 CADT_FN cadt_i32 cadt_around_center(const cadt_mesh* m, cadt_point a, cadt_point b, cadt_tally* tally) {
   tally->count[CADT_COUNT_ORIENTATION_TESTS]++;
 #if !CADT_WIDE
-  double ux = a.x - m->center.x, uy = a.y - m->center.y, vx = b.x - m->center.x, vy = b.y - m->center.y;
-  double left = ux * vy, right = uy * vx, det = left - right;
+  cadt_real ux = a.x - m->center.x, uy = a.y - m->center.y, vx = b.x - m->center.x, vy = b.y - m->center.y;
+  cadt_real left = ux * vy, right = uy * vx, det = left - right;
   /* coordinates are below 1, so the rounded centre is off by less than 2^-50 in each */
-  double bound = CADT_ORIENTATION_BOUND * (cadt_fabs(left) + cadt_fabs(right)) +
-                 9e-16 * (cadt_fabs(b.x - a.x) + cadt_fabs(b.y - a.y));
+  cadt_real bound = CADT_ORIENTATION_BOUND * (cadt_fabs(left) + cadt_fabs(right)) +
+                    9e-16 * (cadt_fabs(b.x - a.x) + cadt_fabs(b.y - a.y));
   if (det > bound) return 1;
   if (-det > bound) return -1;
 #endif

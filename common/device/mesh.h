@@ -26,7 +26,7 @@ typedef struct {
   cadt_point center;
   cadt_u32 first, second, third; /* positions of the first three vertices */
   cadt_u32 stabilize, threshold; /* what is done with edges that were flipped more than `threshold` times (change.h) */
-  double epsilon;
+  cadt_real epsilon;
 #if defined(CADT_CHECKED)
   cadt_u32 own_begin, own_size; /* the range of who works without claims (range.h), empty elsewhere */
 #endif
@@ -35,10 +35,10 @@ typedef struct {
 #endif
 } cadt_mesh;
 
-#define CADT_MESH_PARAMETERS                                                                                 \
-  CADT_GLOBAL cadt_record *records, CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *hints,       \
-      double center_x, double center_y, cadt_u32 first, cadt_u32 second, cadt_u32 third, cadt_u32 stabilize, \
-      cadt_u32 threshold, double epsilon
+#define CADT_MESH_PARAMETERS                                                                                       \
+  CADT_GLOBAL cadt_record *records, CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *hints,             \
+      cadt_real center_x, cadt_real center_y, cadt_u32 first, cadt_u32 second, cadt_u32 third, cadt_u32 stabilize, \
+      cadt_u32 threshold, cadt_real epsilon
 #if defined(CADT_CHECKED)
 #define CADT_OWN_RANGE(mesh, begin, size) mesh.own_begin = (begin), mesh.own_size = (size)
 #else

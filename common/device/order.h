@@ -14,6 +14,7 @@ enum {
 };
 
 /* Points from the caller's memory: coordinate i of an axis is at first + i * stride. */
+#if !CADT_FLOAT
 CADT_KERNEL(cadt_import_doubles, CADT_GLOBAL const double* x, CADT_GLOBAL const double* y, cadt_u32 first_x,
             cadt_u32 first_y, cadt_u32 stride, CADT_GLOBAL cadt_point* points, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
@@ -23,21 +24,22 @@ CADT_KERNEL(cadt_import_doubles, CADT_GLOBAL const double* x, CADT_GLOBAL const 
     points[i] = p;
   }
 }
+#endif
 
 CADT_KERNEL(cadt_import_floats, CADT_GLOBAL const float* x, CADT_GLOBAL const float* y, cadt_u32 first_x,
             cadt_u32 first_y, cadt_u32 stride, CADT_GLOBAL cadt_point* points, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
     cadt_point p;
-    p.x = CADT_CAST(double, x[first_x + i * stride]);
-    p.y = CADT_CAST(double, y[first_y + i * stride]);
+    p.x = CADT_CAST(cadt_real, x[first_x + i * stride]);
+    p.y = CADT_CAST(cadt_real, y[first_y + i * stride]);
     points[i] = p;
   }
 }
 
 CADT_FN cadt_bounds_row cadt_bounds_of_nothing(void) {
   cadt_bounds_row row;
-  row.min_x = row.min_y = CADT_CAST(double, CADT_INFINITY);
-  row.max_x = row.max_y = -CADT_CAST(double, CADT_INFINITY);
+  row.min_x = row.min_y = CADT_CAST(cadt_real, CADT_INFINITY);
+  row.max_x = row.max_y = -CADT_CAST(cadt_real, CADT_INFINITY);
   row.low = row.bad = CADT_NONE;
   row.high = row.rows = 0u;
   return row;
@@ -56,8 +58,8 @@ CADT_FN void cadt_bounds_add(cadt_bounds_row* row, const cadt_bounds_row other) 
 /* Adds point i; 0 if a coordinate is no number. The exponents are in `span` until the end. */
 CADT_FN cadt_u32 cadt_bounds_add_point(cadt_bounds_row* row, cadt_span* span, cadt_point p, cadt_u32 i) {
   /* an exponent of all ones is infinity or NaN */
-  if (((cadt_bits_of_double(p.x) >> 52) & 0x7FFul) == 0x7FFul ||
-      ((cadt_bits_of_double(p.y) >> 52) & 0x7FFul) == 0x7FFul) {
+  if (((cadt_bits_of_real(p.x) >> CADT_MANTISSA_BITS) & CADT_EXPONENTS) == CADT_EXPONENTS ||
+      ((cadt_bits_of_real(p.y) >> CADT_MANTISSA_BITS) & CADT_EXPONENTS) == CADT_EXPONENTS) {
     row->bad = cadt_min_u32(row->bad, i);
     return 0u;
   }
@@ -159,12 +161,13 @@ CADT_FN cadt_u32 cadt_hilbert(cadt_u32 x, cadt_u32 y, cadt_u32 bits) {
 /* The grid of the sort keys: 2^bits_x x 2^bits_y square cells. Coordinates are halved first: the width of the box may
  * exceed the largest double. */
 typedef struct {
-  double half_min_x, half_min_y, scale;
+  cadt_real half_min_x, half_min_y, scale;
   cadt_u32 bits_x, bits_y;
   cadt_u32 set; /* squares of sets one after another (sets.h); else 0 */
 } cadt_key_grid;
 
-#define CADT_GRID_PARAMETERS double half_min_x, double half_min_y, double grid_scale, cadt_u32 bits_x, cadt_u32 bits_y
+#define CADT_GRID_PARAMETERS \
+  cadt_real half_min_x, cadt_real half_min_y, cadt_real grid_scale, cadt_u32 bits_x, cadt_u32 bits_y
 #define CADT_GRID_VIEW(grid)    \
   cadt_key_grid grid;           \
   grid.half_min_x = half_min_x; \
@@ -181,9 +184,18 @@ CADT_FN cadt_point cadt_to_grid(const cadt_key_grid* grid, cadt_point p) {
   f.y = (0.5 * p.y - grid->half_min_y) * grid->scale;
   return f;
 }
+/* The last cell of an axis with so many bits. A float may round it up, out of the grid: then the last below that is
+ * one.
+ */
+CADT_FN cadt_real cadt_last_cell(cadt_u32 bits) {
+  cadt_u32 cell = (1u << bits) - 1u;
+#if CADT_FLOAT
+  cell &= ~(cell >> (CADT_MANTISSA_BITS + 1));
+#endif
+  return CADT_CAST(cadt_real, cell);
+}
 CADT_FN cadt_point cadt_clamp_to_grid(const cadt_key_grid* grid, cadt_point f) {
-  const double limit_x = CADT_CAST(double, (1u << grid->bits_x) - 1u);
-  const double limit_y = CADT_CAST(double, (1u << grid->bits_y) - 1u);
+  const cadt_real limit_x = cadt_last_cell(grid->bits_x), limit_y = cadt_last_cell(grid->bits_y);
   /* half of the least coordinate may have been rounded up */
   f.x = f.x < 0.0 ? 0.0 : (f.x < limit_x ? f.x : limit_x);
   f.y = f.y < 0.0 ? 0.0 : (f.y < limit_y ? f.y : limit_y);
@@ -257,21 +269,32 @@ CADT_KERNEL(cadt_sort_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL ca
 #endif
 }
 
-/* Points in sorted order, scaled by two powers of two (one may not be enough to reach all of a double's exponents).
- * Adding 0.0 turns -0.0 into 0.0. */
+/* A coordinate times two powers of two (one may not be enough to reach all of a double's exponents); -0.0 becomes 0.0.
+ * Floats are left as they are: a product could lose bits. */
+CADT_FN cadt_real cadt_multiplied(cadt_real x, cadt_real scale, cadt_real scale_again) {
+#if CADT_GRADUAL
+  return x * scale * scale_again + 0.0;
+#else
+  (void)scale, (void)scale_again;
+  const cadt_u32 bits = cadt_bits_of_float(x);
+  return cadt_float_of_bits(bits == 0x80000000u ? 0u : bits);
+#endif
+}
+
+/* Points in sorted order. */
 CADT_KERNEL(cadt_gather_points, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* order,
-            CADT_GLOBAL cadt_point* sorted, cadt_u32 count, cadt_u32 grain, double scale, double scale_again) {
+            CADT_GLOBAL cadt_point* sorted, cadt_u32 count, cadt_u32 grain, cadt_real scale, cadt_real scale_again) {
   CADT_FOR(i, count, grain) {
     cadt_point p = points[order[i]];
-    p.x = p.x * scale * scale_again + 0.0;
-    p.y = p.y * scale * scale_again + 0.0;
+    p.x = cadt_multiplied(p.x, scale, scale_again);
+    p.y = cadt_multiplied(p.y, scale, scale_again);
     sorted[i] = p;
   }
 }
 
 CADT_FN cadt_u32 cadt_lexicographic(cadt_point a, cadt_u32 i, cadt_point b, cadt_u32 j) {
-  if (a.x != b.x) return a.x < b.x ? 1u : 0u;
-  if (a.y != b.y) return a.y < b.y ? 1u : 0u;
+  if (!cadt_same(a.x, b.x)) return cadt_less(a.x, b.x) ? 1u : 0u;
+  if (!cadt_same(a.y, b.y)) return cadt_less(a.y, b.y) ? 1u : 0u;
   return i < j ? 1u : 0u;
 }
 
@@ -305,9 +328,10 @@ CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL
             CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
   cadt_u32 sum = 0u;
   CADT_FOR(i, count, grain) {
-    const cadt_u32 flag =
-        i == 0u || keys[i] != keys[i - 1u] || sorted[i].x != sorted[i - 1u].x || sorted[i].y != sorted[i - 1u].y ? 1u
-                                                                                                                 : 0u;
+    const cadt_u32 flag = i == 0u || keys[i] != keys[i - 1u] || !cadt_same(sorted[i].x, sorted[i - 1u].x) ||
+                                  !cadt_same(sorted[i].y, sorted[i - 1u].y)
+                              ? 1u
+                              : 0u;
     flags[i] = flag;
     sum += 1u - flag;
   }

@@ -69,7 +69,7 @@ CADT_FN cadt_u32 cadt_noise_clock(void) {
 #endif
 }
 
-CADT_FN cadt_noise cadt_noise_of(cadt_u32 item, double setting) {
+CADT_FN cadt_noise cadt_noise_of(cadt_u32 item, cadt_real setting) {
   const cadt_u32 s = setting < 4e9 ? CADT_CAST(cadt_u32, setting) : 0u;
   cadt_noise noise;
   noise.mode = s & 7u;

@@ -2,8 +2,8 @@
  *
  * Refinement of crowded cells. Sort keys of 32 bits run out on skewed data: 99.9 % of the points may share one key, and
  * a walk through a crowd in no order is long. Points in runs of equal keys longer than CADT_RUN are sorted again by
- * more bits: those of the coordinates as ordered integers, sixteen an axis and round. After four rounds all 64 bits
- * have been used, so what still shares a key are equal points.
+ * more bits: those of the coordinates as ordered integers, sixteen an axis and round. After four rounds (two for
+ * floats) all bits have been used, so what still shares a key are equal points.
  */
 #ifndef CADT_DEVICE_REFINE_H
 #define CADT_DEVICE_REFINE_H
@@ -36,10 +36,14 @@ CADT_KERNEL(cadt_crowded_pack, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL ca
   }
 }
 
-/* A double as an integer of the same order. */
-CADT_FN cadt_u64 cadt_ordered_bits(double x) {
-  const cadt_u64 bits = cadt_bits_of_double(x + 0.0); /* -0.0 like 0.0 */
+/* A coordinate as an integer of the same order, -0.0 like 0.0. */
+CADT_FN cadt_u64 cadt_ordered_bits(cadt_real x) {
+#if CADT_GRADUAL
+  const cadt_u64 bits = cadt_bits_of_double(x + 0.0);
   return bits >> 63 ? ~bits : bits | 0x8000000000000000ul;
+#else
+  return CADT_CAST(cadt_u64, CADT_CAST(cadt_u32, cadt_float_order(x)) + 0x80000000u) << 32;
+#endif
 }
 
 /* Keys of a round (0 to 3) for the members at `places`, their points, and 1 in `tails` where a run ends: the exclusive

@@ -12,28 +12,35 @@
 
 enum { CADT_PROBES = 8, CADT_PROBE_WORDS = 5 };
 
-/* in: 2 * CADT_PROBES doubles; out: CADT_PROBES doubles; words: CADT_PROBE_WORDS words, zero at the start but the last,
- * which is CADT_NONE; items: those of the launch that count, for it may be rounded up */
-CADT_KERNEL(cadt_selftest, CADT_GLOBAL const double* in, CADT_GLOBAL double* out, CADT_GLOBAL cadt_u32* words,
+/* in: 2 * CADT_PROBES coordinates; out: CADT_PROBES of them; words: CADT_PROBE_WORDS words, zero at the start but the
+ * last, which is CADT_NONE; items: those of the launch that count, for it may be rounded up */
+CADT_KERNEL(cadt_selftest, CADT_GLOBAL const cadt_real* in, CADT_GLOBAL cadt_real* out, CADT_GLOBAL cadt_u32* words,
             cadt_u32 items) {
   if (cadt_item == 0u) {
     /* contraction: a*a+b with an exact product that needs 54 bits; fused it is not zero */
     out[0] = in[0] * in[0] + in[1];
     /* Two-Sum: the rounding error of a sum; fast-math folds it to zero */
-    double s = in[2] + in[3], t = s - in[2];
+    cadt_real s = in[2] + in[3], t = s - in[2];
     out[1] = (in[2] - (s - t)) + (in[3] - t);
+#if CADT_GRADUAL
     /* gradual underflow of a product and of a difference */
     out[2] = in[4] * in[5];
     out[3] = in[6] - in[7];
+#else
+    /* subnormal numbers that are moved and chosen, not computed with, keep their bits */
+    out[2] = in[4];
+    out[3] = cadt_less(in[6], in[7]) ? in[6] : in[7];
+#endif
     /* rounding to nearest, ties to even: the tie of the sum goes up, that of the product goes down */
     out[4] = in[8] + in[9];
     out[5] = in[10] * in[11];
     /* a quotient that differs from the product with the reciprocal */
     out[6] = in[12] / in[13];
-    /* 64 x 64 -> 128 bits, and the bits of a double */
-    cadt_i128 p = cadt_mul_i64(CADT_CAST(cadt_i64, cadt_bits_of_double(in[14])),
-                               -CADT_CAST(cadt_i64, cadt_bits_of_double(in[15])));
-    out[7] = CADT_CAST(double, p.high);
+    /* 64 x 64 -> 128 bits, and the bits of a coordinate; floats are repeated in the upper word */
+    const cadt_u64 repeat = CADT_FLOAT ? 0x100000001ul : 1ul;
+    cadt_i128 p = cadt_mul_i64(CADT_CAST(cadt_i64, cadt_bits_of_real(in[14]) * repeat),
+                               -CADT_CAST(cadt_i64, cadt_bits_of_real(in[15]) * repeat));
+    out[7] = CADT_CAST(cadt_real, p.high);
     words[0] = CADT_CAST(cadt_u32, p.low);
     words[1] = CADT_CAST(cadt_u32, p.low >> 32);
   }

@@ -27,7 +27,7 @@ CADT_FN cadt_u32 cadt_sign_bits(cadt_i32 sign, cadt_u32 at) { return CADT_CAST(c
 
 /* points: a, b, c, p of each case; most: an upper bound of the magnitude of its incircle determinant. The narrow build
  * takes what the driver makes of coordinates: multiples of 2^-240 below 1. */
-CADT_KERNEL(cadt_signs, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const double* most,
+CADT_KERNEL(cadt_signs, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_real* most,
             CADT_GLOBAL cadt_u32* words, cadt_u32 cases, cadt_u32 grain) {
   CADT_FOR(i, cases, grain) {
     const cadt_point a = points[4u * i], b = points[4u * i + 1u], c = points[4u * i + 2u], p = points[4u * i + 3u];

@@ -10,6 +10,7 @@
 
 #include "common/host/call.hpp"
 #include "common/host/collect.hpp"
+#include "common/host/device_points.hpp"
 #include "common/host/input_points.hpp"
 #include "common/host/registry.hpp"
 #include "common/host/set_mesh.hpp"
@@ -27,8 +28,9 @@ constexpr std::size_t most_points_together = std::size_t{1} << 24, fewest_points
 constexpr std::size_t most_sets_together = std::size_t{1} << 20;
 
 /// Points of a set that goes together with others at most. A core inserts each by itself: longer ones are better
-/// shared, and bounds the time to a cancel.
+/// shared, and bounds the time to a cancel. None without double precision: there each set is a call of its own.
 std::size_t most_points_of_set(const Device& device) noexcept {
+  if (takes_floats_only(device)) return 0;
   constexpr std::size_t most_of_core = 8192;
   return device.shape().contiguous ? most_of_core : most_wrapped(device);
 }

@@ -10,6 +10,7 @@
 
 #include "common/host/counters.hpp"
 #include "common/host/device_constants.hpp"
+#include "common/host/device_points.hpp"
 #include "common/host/watcher.hpp"
 
 namespace cadt {
@@ -108,7 +109,7 @@ class Builder {
 
   /// Puts the points in the order of insertion (common/device/insert.h).
   void order_by_level() {
-    Allocation points = run_.memory.allocate(n_ * sizeof(cadt_point)), labels = run_.memory.allocate(n_ * word);
+    Allocation points = run_.memory.allocate(n_ * point_bytes(run_.device)), labels = run_.memory.allocate(n_ * word);
     const Cut c = launch_.cut(n_);
     launch_.run(KernelId::cadt_by_level, c.items, order_.points, order_.labels, static_cast<std::uint32_t>(n_), c.grain,
                 points, labels);
@@ -138,10 +139,9 @@ class Builder {
     if (third_ == CADT_NONE) return false;
     center_ = {0, 0};
     for (const std::uint32_t at : {first_, second_, third_}) {
-      cadt_point p;
-      run_.device.read(*order_.points, at * sizeof p, &p, sizeof p);
-      center_.x += p.x / 3;
-      center_.y += p.y / 3;
+      const auto p = read_coordinates<2>(run_.device, *order_.points, at * point_bytes(run_.device));
+      center_.x += p[0] / 3;
+      center_.y += p[1] / 3;
     }
     return true;
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/host/device_points.hpp"
 #include "common/host/star_stage.hpp"
 
 namespace cadt {
@@ -23,13 +24,16 @@ constexpr std::size_t star_pool_bytes = 26;
 /// With the star stage besides: stars, lists, and what the rest of the points needs.
 constexpr std::size_t kept_star_words[] = {7, 1, 1, 1, 1, 1, 1};
 
-void require_rules(const Options& options) {
+void require_rules(const Options& options, const Device& device) {
   constexpr unsigned most_flips = 1000;  // counters have ten bits
   if (options.flip_threshold > most_flips)
     throw OptionError("flip_threshold", std::to_string(options.flip_threshold) + " is more than " +
                                             std::to_string(most_flips) + ", the most flips that are told apart");
   if (options.strategy == Strategy::stars && (options.stabilize != Stabilize::off || options.watch))
     throw OptionError("strategy", "stars goes with neither stabilize nor watch: they are about insertion");
+  if (options.strategy == Strategy::stars && takes_floats_only(device))
+    throw OptionError("strategy", "stars needs double precision, which '" + device.info().name +
+                                      "' has not: take locks (or automatic, which does)");
   if (!(options.quality_epsilon >= 0)) throw OptionError("quality_epsilon", "must be a number and not negative");
 }
 
@@ -41,7 +45,7 @@ std::size_t star_bytes(std::size_t n, bool input_stays) { return 2 * fixed + n *
 
 bool prefers_stars(const Options& options, const Device& device) {
   if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
-  return device.info().gpu && options.stabilize == Stabilize::off && !options.watch &&
+  return device.info().gpu && !takes_floats_only(device) && options.stabilize == Stabilize::off && !options.watch &&
          options.statistics != StatisticsDetail::timing;
 }
 
@@ -73,7 +77,7 @@ void begin_account(Triangulator::State& state, std::size_t n) {
 }
 
 void open_account(Triangulator::State& state, std::size_t n, Statistics& statistics) {
-  require_rules(state.options);
+  require_rules(state.options, *state.device);
   const DeviceInfo& info = state.device->info();
   statistics.points = n;
   statistics.certified = true;  // no edge is illegal until one is found

@@ -41,7 +41,7 @@ class Arg {
       : buffer_(buffer.get()) {}  // NOLINT; nullptr passes a null pointer
   template <class Scalar>
   requires(std::is_arithmetic_v<Scalar> && (sizeof(Scalar) == 4 || sizeof(Scalar) == 8)) Arg(Scalar value)
-  noexcept : size_(sizeof(Scalar)) {  // NOLINT
+  noexcept : size_(sizeof(Scalar)), real_(std::is_same_v<Scalar, double>) {  // NOLINT
     std::memcpy(value_, &value, sizeof value);
   }
 
@@ -49,10 +49,13 @@ class Arg {
   [[nodiscard]] Buffer* buffer() const noexcept { return buffer_; }
   [[nodiscard]] const void* value() const noexcept { return value_; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  /// A double: a parameter of type cadt_real, which is a float on devices without doubles.
+  [[nodiscard]] bool is_real() const noexcept { return real_; }
 
  private:
   Buffer* buffer_ = nullptr;
-  std::size_t size_ = 0;
+  std::uint32_t size_ = 0;
+  bool real_ = false;
   alignas(8) std::byte value_[8] = {};
 };
 

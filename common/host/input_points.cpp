@@ -3,12 +3,10 @@
 
 #include <string>
 
-#include "common/host/device_constants.hpp"
+#include "common/host/device_points.hpp"
 
 namespace cadt {
 namespace {
-
-using device_constants::cadt_point;
 
 /// Kernels count coordinates in 32 bits: 2 * (skip + n) of them.
 constexpr std::size_t most_skipped = (std::size_t{1} << 31) - 1 - max_points();
@@ -20,7 +18,7 @@ struct Axis {
 };
 
 Allocation convert(Run& run, Axis x, Axis y, std::uint32_t stride, Scalar scalar, std::size_t count) {
-  Allocation points = run.memory.allocate(count * sizeof(cadt_point));
+  Allocation points = run.memory.allocate(count * point_bytes(run.device));
   const Cut c = run.launcher.cut(count);
   run.launcher.run(scalar == Scalar::float32 ? KernelId::cadt_import_floats : KernelId::cadt_import_doubles, c.items,
                    x.memory, y.memory, static_cast<std::uint32_t>(x.first), static_cast<std::uint32_t>(y.first), stride,
@@ -30,10 +28,20 @@ Allocation convert(Run& run, Axis x, Axis y, std::uint32_t stride, Scalar scalar
 
 }  // namespace
 
+void require_scalar(const Device& device, std::size_t scalar_bytes) {
+  if (scalar_bytes == sizeof(float) || !takes_floats_only(device)) return;
+  const DeviceInfo& info = device.info();
+  throw BackendUnavailable(std::string(to_string(info.backend)),
+                           "'" + info.name +
+                               "' has no double precision and takes float coordinates only: give floats (float spans, "
+                               "Scalar::float32; in the program the option --floats), or name another device");
+}
+
 Allocation import_points(Run& run, const PointsView& points) {
-  const std::size_t n = points.size();
-  if (const double* xy = points.interleaved_doubles()) return run.memory.import(xy, n * sizeof(cadt_point));
-  const std::size_t size = points.scalar_size();
+  const std::size_t n = points.size(), size = points.scalar_size();
+  require_scalar(run.device, size);
+  if (points.interleaved() && size == coordinate_bytes(run.device))
+    return run.memory.import(points.x_data(), n * point_bytes(run.device));
   const Scalar scalar = size == sizeof(float) ? Scalar::float32 : Scalar::float64;
   if (points.interleaved()) {
     const Allocation xy = run.memory.import(points.x_data(), 2 * n * size);
@@ -50,14 +58,15 @@ Allocation import_points(Run& run, const DevicePoints& points) {
     throw LimitError("at most " + std::to_string(most_skipped) + " points can be skipped, not " +
                          std::to_string(points.skip) + ": pass a handle of a later place",
                      points.skip, most_skipped);
+  require_scalar(run.device, size);
   // Kernels of the library only read it.
   const Allocation x = run.memory.wrap(const_cast<void*>(points.x), (points.skip + n) * size * (points.y ? 1 : 2));
   if (points.y != nullptr) {
     const Allocation y = run.memory.wrap(const_cast<void*>(points.y), (points.skip + n) * size);
     return convert(run, {x, points.skip}, {y, points.skip}, 1, points.scalar, n);
   }
-  if (points.scalar == Scalar::float64 && points.skip == 0)
-    return run.memory.wrap(const_cast<void*>(points.x), n * sizeof(cadt_point));
+  if (size == coordinate_bytes(run.device) && points.skip == 0)
+    return run.memory.wrap(const_cast<void*>(points.x), n * point_bytes(run.device));
   return convert(run, {x, 2 * points.skip}, {x, 2 * points.skip + 1}, 2, points.scalar, n);
 }
 

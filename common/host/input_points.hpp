@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The caller's coordinates as interleaved doubles on the device.
+// The caller's coordinates on the device, interleaved, as its kernels take them (device_points.hpp).
 #pragma once
 
 #include <cadt/triangulator.hpp>
@@ -11,7 +11,7 @@ namespace cadt {
 /// From the host: without a copy where the device can read the caller's memory.
 [[nodiscard]] Allocation import_points(Run& run, const PointsView& points);
 
-/// From the device: without a copy if they are interleaved doubles. \throws InputError for a handle that is missing
+/// From the device: without a copy if they are that already. \throws InputError for a handle that is missing
 [[nodiscard]] Allocation import_points(Run& run, const DevicePoints& points);
 
 }  // namespace cadt

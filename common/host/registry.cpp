@@ -57,9 +57,11 @@ std::unique_ptr<Device> open_in(BackendEntry& backend, const Options& options) {
   const int preferred = options.device.empty() ? backend.preferred_device() : -1;
   for (const DeviceInfo& info : devices)
     if (info.index >= 0 && info.index == preferred && info.usable) return backend.open(info.index, options);
-  if (options.device.empty())  // a GPU before a CPU
-    for (const DeviceInfo& info : devices)
-      if (info.index >= 0 && info.usable && info.gpu) return backend.open(info.index, options);
+  // A GPU before a CPU, and what takes all coordinates before what takes floats alone.
+  if (options.device.empty())
+    for (const bool gpu : {true, false})
+      for (const DeviceInfo& info : devices)
+        if (info.index >= 0 && info.usable && info.fp64 && info.gpu >= gpu) return backend.open(info.index, options);
   for (const DeviceInfo& info : devices) {
     if (info.index < 0) throw BackendUnavailable(name, info.reason);
     if (!matches(info, options.device)) continue;
@@ -111,10 +113,11 @@ std::unique_ptr<Device> open_device(const Options& options) {
     throw BackendUnavailable("auto",
                              "no usable device matches '" + options.device + "'; 'cadt devices' lists what is there");
   }
-  // A GPU is the fastest. Without one the host's threads are faster than OpenCL on the same cores.
+  // A GPU is the fastest, but one that takes floats alone must be named. Without one the host's threads are faster than
+  // OpenCL on the same cores.
   for (BackendEntry* backend : all_backends())
     for (const DeviceInfo& info : backend->devices())
-      if (info.index >= 0 && info.usable && info.gpu) return open_in(*backend, options);
+      if (info.index >= 0 && info.usable && info.gpu && info.fp64) return open_in(*backend, options);
   return open_in(host_backend(), options);
 }
 

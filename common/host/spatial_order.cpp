@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/host/device_constants.hpp"
+#include "common/host/device_points.hpp"
 
 namespace cadt {
 namespace {
@@ -27,16 +28,43 @@ struct Bounds {
   int low = 4096, high = -4096;  // exponents of the lowest set bit and above the highest; low > high: all zero
 };
 
+/// cadt_bounds_row of a device without doubles.
+struct FloatRow {
+  float min_x, max_x, min_y, max_y;
+  std::uint32_t low, high, bad, rows;
+};
+
+std::size_t row_bytes(const Device& device) noexcept {
+  return takes_floats_only(device) ? sizeof(FloatRow) : sizeof(cadt_bounds_row);
+}
+
+cadt_bounds_row read_row(Device& device, const Buffer& from) {
+  cadt_bounds_row row;
+  if (!takes_floats_only(device)) {
+    device.read(from, 0, &row, sizeof row);
+    return row;
+  }
+  FloatRow f;
+  device.read(from, 0, &f, sizeof f);
+  return {static_cast<double>(f.min_x),
+          static_cast<double>(f.max_x),
+          static_cast<double>(f.min_y),
+          static_cast<double>(f.max_y),
+          f.low,
+          f.high,
+          f.bad,
+          f.rows};
+}
+
 /// The row of all points. `group`: work-items that share a row on this device.
 cadt_bounds_row merge_bounds(Run& run, const Allocation& input, std::size_t n, std::uint32_t group) {
   const Cut c = run.launcher.parts(n);
   const std::uint32_t room = (c.items - 1) / group + 1;
-  const Allocation rows = run.memory.allocate(room * sizeof(cadt_bounds_row));
+  const Allocation rows = run.memory.allocate(room * row_bytes(run.device));
   run.launcher.run(KernelId::cadt_bounds, c.items, input, static_cast<std::uint32_t>(n), c.grain, c.items, room, rows);
   const std::uint32_t team = run.device.shape().contiguous ? 1 : CADT_BOUNDS_LANES;
   run.launcher.run_in_groups(KernelId::cadt_merge_bounds, team, team, rows, room);
-  cadt_bounds_row all;
-  run.device.read(*rows, 0, &all, sizeof all);
+  const cadt_bounds_row all = read_row(run.device, *rows);
   // Devices may make smaller groups than they were asked for.
   return all.rows > room ? merge_bounds(run, input, n, 1) : all;
 }
@@ -243,7 +271,7 @@ void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation o
   }
   const Cut c = launch.cut(n);
   launch.scan(flags, n);
-  result.points = run.memory.allocate(distinct * sizeof(cadt_point));
+  result.points = run.memory.allocate(distinct * point_bytes(run.device));
   result.labels = run.memory.allocate(distinct * word);
   launch.run(KernelId::cadt_unique_pack, c.items, sorted, order, flags, result.points, result.labels, count, distinct,
              c.grain);
@@ -259,7 +287,7 @@ void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation o
 void gather_again(Run& run, SpatialOrder& order) {
   const Allocation input = order.input_again();
   const Cut c = run.launcher.cut(order.distinct);
-  order.points = run.memory.allocate(order.distinct * sizeof(cadt_point));
+  order.points = run.memory.allocate(order.distinct * point_bytes(run.device));
   run.launcher.run(KernelId::cadt_gather_points, c.items, input, order.labels, order.points,
                    static_cast<std::uint32_t>(order.distinct), c.grain, order.scale, order.scale_again);
 }
@@ -271,20 +299,22 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   SpatialOrder result;
 
   const Bounds bounds = find_bounds(run, input, n);
-  result.wide = bounds.high - bounds.low > narrow_span;
+  // Kernels for floats take any float as it is.
+  const bool floats = takes_floats_only(run.device);
+  result.wide = !floats && bounds.high - bounds.low > narrow_span;
   launch.set_build(result.wide ? KernelBuild::wide : narrow_build(run.options.statistics));
   run.end_phase("bounds");
   run.check("sort", 0.01);
 
   // All coordinates become multiples of 2^-240 below 1, in two steps since one factor may be out of range.
-  const int exponent = result.wide || bounds.high < bounds.low ? 0 : -bounds.high;
+  const int exponent = floats || result.wide || bounds.high < bounds.low ? 0 : -bounds.high;
   const double scale = std::ldexp(1.0, exponent / 2), scale_again = std::ldexp(1.0, exponent - exponent / 2);
 
   Allocation keys = run.memory.allocate(n * word), spare = run.memory.allocate(n * word);
   Allocation order = run.memory.allocate(n * word), sorted;
   const Allocation totals = launch.zeros(2);  // members of crowded cells, equal points
   const auto gather = [&] {
-    sorted = run.memory.allocate(n * sizeof(cadt_point));
+    sorted = run.memory.allocate(n * point_bytes(run.device));
     launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
     flag_distinct(run, keys, sorted, order, spare, n, totals);
   };

@@ -46,9 +46,9 @@ struct SetStarts {
 /// Sort keys of n points of the device.
 void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid);
 
-/// Sorts n points (`input`: interleaved doubles), refines crowded cells, finds duplicates. `keep_keys`: the result has
-/// the sort keys, unless cells were crowded or points equal.
-/// \throws InputError for the first NaN or infinity
+/// Sorts n points (`input`: interleaved, as the device takes them), refines crowded cells, finds duplicates.
+/// `keep_keys`: the result has the sort keys, unless cells were crowded or points equal. \throws InputError for the
+/// first NaN or infinity
 [[nodiscard]] SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_keys);
 
 /// The points of a sorted order once more, from `input_again`.

@@ -11,6 +11,7 @@
 #include "common/host/build_mesh.hpp"
 #include "common/host/call.hpp"
 #include "common/host/collect.hpp"
+#include "common/host/device_points.hpp"
 #include "common/host/device_triangulation.hpp"
 #include "common/host/input_points.hpp"
 #include "common/host/registry.hpp"
@@ -153,6 +154,25 @@ DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state,
   return DeviceTriangulation(std::move(data));
 }
 
+/// Copies all to the host and verifies it there.
+template <class Real>
+VerifyReport verify_copy(Device& device, const Allocation& input, const DeviceTriangulation::Data& data,
+                         std::span<const Duplicate> duplicates, const VerifyOptions& options) {
+  std::vector<Real> xy(2 * data.points);
+  if (!xy.empty()) device.read(*input, 0, xy.data(), xy.size() * sizeof xy[0]);
+  std::vector<std::int32_t> triangles(3 * data.triangle_count), neighbors(triangles.size());
+  if (!triangles.empty()) {
+    device.read(*data.triangles, 0, triangles.data(), triangles.size() * word);
+    device.read(*data.neighbors, 0, neighbors.data(), neighbors.size() * word);
+  }
+  MeshView view;
+  view.triangles = triangles;
+  view.neighbors = neighbors;
+  view.duplicates = duplicates;
+  view.has_duplicates = true;
+  return cadt::verify(std::span<const Real>(xy), view, options);
+}
+
 }  // namespace
 
 Triangulator::Triangulator(const Options& options)
@@ -194,14 +214,9 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
   Triangulation::Data host;
   read_duplicates(device, data, host);
   const Allocation input = points.size == 0 ? Allocation() : import_points(run, points);
-  if (data.triangle_count == 0) {
-    std::vector<double> xy(2 * points.size);
-    if (!xy.empty()) device.read(*input, 0, xy.data(), xy.size() * sizeof xy[0]);
-    MeshView view;
-    view.duplicates = host.duplicates;
-    view.has_duplicates = true;
-    return cadt::verify(xy, view, options);
-  }
+  // The verifier's kernels need double precision.
+  if (takes_floats_only(device)) return verify_copy<float>(device, input, data, host.duplicates, options);
+  if (data.triangle_count == 0) return verify_copy<double>(device, input, data, host.duplicates, options);
   const VerifyInput what{input, data.triangles, data.neighbors, data.points, data.triangle_count, {}, host.duplicates,
                          true};
   return verify_on_device(run, what, options);

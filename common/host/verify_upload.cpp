@@ -4,6 +4,7 @@
 #include <thread>
 #include <utility>
 
+#include "common/host/device_points.hpp"
 #include "common/host/input_points.hpp"
 #include "common/host/registry.hpp"
 #include "common/host/verify/mesh.hpp"
@@ -15,8 +16,8 @@ using namespace verifier;
 
 VerifyReport verify_on_device(Device& device, PointsView points, const MeshView& mesh, const Options& run_options,
                               const VerifyOptions& options) {
-  // Nothing to examine, or no triangles: no work for a device.
-  if (!size_error(points, mesh).empty() || mesh.triangles.empty() || points.size() == 0)
+  // Nothing to examine, or no triangles: no work for a device. Without double precision none that it can do.
+  if (!size_error(points, mesh).empty() || mesh.triangles.empty() || points.size() == 0 || takes_floats_only(device))
     return verify(points, mesh, options);
   verifier::Mesh known;
   known.points = points;

@@ -21,7 +21,7 @@ struct DeviceInfo {
   std::uint64_t memory_bytes = 0;
   std::uint64_t largest_buffer_bytes = 0;
   unsigned compute_units = 0;
-  bool fp64 = false;
+  bool fp64 = false;  ///< false, if usable: it takes float coordinates alone, and only if it is named
   bool gpu = false;
   bool watchdog = false;  ///< its driver ends kernels that run for seconds: it draws a screen. Work is cut smaller then
   std::string atomics;    ///< e.g. "C++20 acquire/release", "CL3.0 acquire/release, device scope"

@@ -70,7 +70,8 @@ struct Snapshot {
 struct Options {
   Backend backend = Backend::automatic;
   /// Device of the back end: its number as `list_devices()` gives it, or a part of its name. Empty: the
-  /// first usable GPU, else the first usable one.
+  /// first usable GPU, else the first usable one, of those with double precision. Others (`DeviceInfo::fp64`) take
+  /// float coordinates alone: doubles are BackendUnavailable, Strategy::stars is an OptionError.
   std::string device;
   /// Host threads; 0 takes all cores, 1 runs serially (the reference).
   unsigned threads = 0;

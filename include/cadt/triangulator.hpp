@@ -123,7 +123,8 @@ class Triangulator {
   /// Many sets of points, as cadt::triangulate_batch. Sets with up to 32,768 points (CPUs: 2,048) are triangulated
   /// together, some 16 million points at a time: without a launch for each of them, and without locks. The others,
   /// those with a vertex of more than 39 neighbours, and all where `Options::strategy` or `stabilize` ask for
-  /// insertion, come one after another within the same call. \throws OptionError for `Options::watch`
+  /// insertion, come one after another within the same call; so do all on devices without double precision. \throws
+  /// OptionError for `Options::watch`
   [[nodiscard]] TriangulationBatch triangulate_batch(PointsView points, std::span<const std::size_t> offsets);
   [[nodiscard]] DeviceTriangulationBatch triangulate_batch(const DevicePoints& points,
                                                            std::span<const std::size_t> offsets);
@@ -133,8 +134,9 @@ class Triangulator {
                                                                               std::span<const std::size_t> offsets);
 
   /// The independent check of a mesh on the device (verify.hpp: verify_on_device) without a copy to the host, but for
-  /// the boundary and what the device cannot decide. A mesh without triangles is checked on the host.
-  /// \throws as cadt::verify_on_device, and InputError for a mesh of another triangulator
+  /// the boundary and what the device cannot decide. A mesh without triangles is checked on the host, and so is any
+  /// mesh of a device without double precision. \throws as cadt::verify_on_device, and InputError for a mesh of another
+  /// triangulator
   [[nodiscard]] VerifyReport verify(const DevicePoints& points, const DeviceTriangulation& mesh,
                                     const VerifyOptions& options = {});
 

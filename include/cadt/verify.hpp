@@ -59,8 +59,8 @@ struct VerifyOptions {
 /// The same checks, with the same names and outcomes, on a device: 20 bytes a point and 24 a triangle go there. Its
 /// predicates differ from those of the builder in code, formula and arithmetic; the few signs that they cannot find are
 /// left to those of `verify`, as are the boundary and a mesh without triangles. Neighbours that are missing are derived
-/// on the host first. `device` says where: backend, device, threads, work_group_size, grain, max_memory, stop, progress
-/// (phase "verify") are as for `triangulate`.
+/// on the host first. A device without double precision leaves all to `verify`. `device` says where: backend, device,
+/// threads, work_group_size, grain, max_memory, stop, progress (phase "verify") are as for `triangulate`.
 ///
 /// Throws InputError (NaN or infinity, with the index of the first), BackendUnavailable, OutOfMemory, DeviceError,
 /// KernelBuildError, Cancelled.

@@ -38,6 +38,8 @@ def opencl(root):
         return skip("no clang")
     # 64-bit SPIR is what the standard library of the front end knows; only the syntax and types are looked at.
     variants = [["-cl-std=CL3.0", "-DCADT_CL_C11=1"], ["-cl-std=CL3.0", "-DCADT_CL_C11=1", "-DCADT_TIMED=1"], ["-cl-std=CL1.2", "-DCADT_WIDE=1", "-DCADT_CONTIGUOUS=0", "-DCADT_RADIX_BITS=4"]]
+    floats = ["-DCADT_FLOAT=1", "-cl-single-precision-constant"]  # any double is an error
+    variants += [variant + floats for variant in variants]
     return max(run([clang, "-x", "cl", "-target", "spir64", "-fsyntax-only", "-Wall", "-Werror", "-Wno-unused-function",
                     "-Wno-gcc-compat", "-Xclang", "-finclude-default-header", "-I", str(root), *options, str(entry)])
                for options in variants)

@@ -84,5 +84,45 @@ class BrokenLoader(DriverTest, CliTest):
                               ["no OpenCL device", "clGetDeviceIDs: CL_INVALID_OPERATION"])
 
 
+class FloatDevices(CliTest):
+    """A device without double precision: what there is, taken for one."""
+
+    def setUp(self):
+        super().setUp()
+        patch = mock.patch.dict(os.environ, {"CADT_OPENCL_NO_FP64": "1", "CADT_CACHE_DIR": ""})
+        patch.start()
+        self.addCleanup(patch.stop)
+        devices = json.loads(self.cadt("devices", "--json").out)["devices"]
+        self.device = next((d for d in devices if d["backend"] == "opencl" and d["usable"]), None)
+        if self.device is None:
+            self.skipTest("no usable OpenCL device")
+
+    def test_it_is_listed_and_refuses_doubles_with_a_way_out(self):
+        self.assertFalse(self.device["fp64"])
+        self.assertRegex(self.cadt("devices").out,
+                         rf"\nFloat coordinates only \(--floats\), when they are named:\nopencl {self.device['index']}: ")
+        self.write("in.xy", "0 0\n1 0\n0.1 1\n")
+        self.fails(5, "triangulate", "in.xy", "--backend", "opencl", says=["no double precision", "--floats"])
+
+    def test_floats_have_the_mesh_of_the_host(self):
+        self.scattered("in.f64", 3000)
+        files = []
+        for backend in ("opencl", "host"):
+            files.append(f"{backend}.ply")
+            result = self.cadt("triangulate", "in.f64", "--backend", backend, "--floats", "--verify", "-o", files[-1])
+            self.assertIn("--floats moved 3000 of 3000 points", result.err)
+            files[-1] = self.path(files[-1]).read_bytes()
+        self.assertEqual(files[0], files[1])
+        self.cadt("triangulate", "in.f64", "--backend", "opencl", "--floats", "-o", "mesh.off", "-q")
+        self.cadt("verify", "in.f64", "mesh.off", "--floats", "-q")
+        self.write("exact.xy", "0 0\n1 0\n0.5 1\n")
+        quiet = self.cadt("triangulate", "exact.xy", "--floats")
+        self.assertNotIn("moved", quiet.err)
+
+    def test_beyond_the_largest_float(self):
+        self.write("in.xy", "0 0\n1 0\n0.5 1e39\n")
+        self.fails(3, "triangulate", "in.xy", "--floats", says=["point 2", "largest float"])
+
+
 if __name__ == "__main__":
     unittest.main()

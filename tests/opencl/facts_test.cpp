@@ -20,7 +20,7 @@ TEST(OpenClFacts, EachMissingPropertyIsNamed) {
       {[](Facts& f) { f.available = false; }, "not available"},
       {[](Facts& f) { f.compiler = false; }, "compiler"},
       {[](Facts& f) { f.little_endian = false; }, "endian"},
-      {[](Facts& f) { f.fp64 = false; }, "cl_khr_fp64"},
+      {[](Facts& f) { f.fp64 = f.float_round_to_nearest = false; }, "cl_khr_fp64"},
       {[](Facts& f) { f.denormals = false; }, "CL_FP_DENORM"},
       {[](Facts& f) { f.version = 110; }, "offers 1.1"},
       {[](Facts& f) { f.round_to_nearest = false; }, "CL_FP_ROUND_TO_NEAREST"},
@@ -30,6 +30,15 @@ TEST(OpenClFacts, EachMissingPropertyIsNamed) {
     c.spoil(facts);
     EXPECT_NE(unusable_reason(facts).find(c.named), std::string::npos) << c.named << ": " << unusable_reason(facts);
   }
+}
+
+// docs/decisions/0015-float-path.md
+TEST(OpenClFacts, WithoutDoublesFloatsMustBeRoundedToNearest) {
+  Facts facts;
+  facts.fp64 = facts.denormals = facts.round_to_nearest = facts.float_denormals = false;
+  EXPECT_EQ(unusable_reason(facts), "");
+  facts.float_round_to_nearest = false;
+  EXPECT_NE(unusable_reason(facts), "");
 }
 
 TEST(OpenClFacts, Version) {

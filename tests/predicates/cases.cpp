@@ -35,19 +35,22 @@ std::uint64_t sign_bits(int sign, int at) { return static_cast<std::uint64_t>(si
 // stage A, u = 2^-53. A filter that tells the sign below its bound is a fault even where the sign is right by luck.
 const double unit = 0x1p-53, orientation_bound = (3 + 16 * unit) * unit, incircle_bound = (10 + 96 * unit) * unit;
 
+// `Real` is what the build computes with.
+template <class Real>
 struct Sum {
-  double det, permanent;
+  Real det, permanent;
 };
 
-Sum orientation_sum(double ux, double uy, double vx, double vy) {
-  const double left = ux * vy, right = uy * vx;
+template <class Real>
+Sum<Real> orientation_sum(Real ux, Real uy, Real vx, Real vy) {
+  const Real left = ux * vy, right = uy * vx;
   return {left - right, std::fabs(left) + std::fabs(right)};
 }
 
-Sum incircle_sum(const std::array<double, 6>& d) {
-  const double bc = d[2] * d[5], cb = d[3] * d[4], ca = d[4] * d[1], ac = d[5] * d[0], ab = d[0] * d[3],
-               ba = d[1] * d[2];
-  const double a = d[0] * d[0] + d[1] * d[1], b = d[2] * d[2] + d[3] * d[3], c = d[4] * d[4] + d[5] * d[5];
+template <class Real>
+Sum<Real> incircle_sum(const std::array<Real, 6>& d) {
+  const Real bc = d[2] * d[5], cb = d[3] * d[4], ca = d[4] * d[1], ac = d[5] * d[0], ab = d[0] * d[3], ba = d[1] * d[2];
+  const Real a = d[0] * d[0] + d[1] * d[1], b = d[2] * d[2] + d[3] * d[3], c = d[4] * d[4] + d[5] * d[5];
   return {
       a * (bc - cb) + b * (ca - ac) + c * (ab - ba),
       a * (std::fabs(bc) + std::fabs(cb)) + b * (std::fabs(ca) + std::fabs(ac)) + c * (std::fabs(ab) + std::fabs(ba))};
@@ -70,7 +73,7 @@ constexpr double wide_underflow = 1e-300;
 bool orientation_is_exact(const Four& p, bool wide) {
   double ux = p[0].x - p[2].x, uy = p[0].y - p[2].y, vx = p[1].x - p[2].x, vy = p[1].y - p[2].y;
   if (wide && !(scale({&ux, &vx}) && scale({&uy, &vy}))) return true;
-  const Sum sum = orientation_sum(ux, uy, vx, vy);
+  const Sum<double> sum = orientation_sum(ux, uy, vx, vy);
   const double bound = orientation_bound * sum.permanent + (wide ? wide_underflow : 0.0);
   return std::fabs(sum.det) <= bound && bound != 0.0;
 }
@@ -82,12 +85,44 @@ std::array<double, 6> differences(const Four& p) {
 bool incircle_is_exact(const Four& p, bool wide) {
   std::array<double, 6> d = differences(p);
   if (wide && !scale({&d[0], &d[1], &d[2], &d[3], &d[4], &d[5]})) return true;
-  const Sum sum = incircle_sum(d);
+  const Sum<double> sum = incircle_sum(d);
   return std::fabs(sum.det) <= incircle_bound * sum.permanent + (wide ? wide_underflow : 0.0);
 }
 
+// Floats: u = 2^-24; differences are scaled to less than 4, and those below 2^-40 are left to integers. What a device
+// makes of subnormal numbers is far below the allowance.
+const float float_unit = 0x1p-24F, float_orientation_bound = (3 + 16 * float_unit) * float_unit,
+            float_incircle_bound = (10 + 96 * float_unit) * float_unit, float_underflow = 0x1p-60F;
+
+bool scale_floats(std::initializer_list<float*> values) {
+  float largest = 0;
+  for (const float* v : values) largest = std::max(largest, std::fabs(*v));
+  if (!std::isfinite(largest) || largest < 0x1p-40F) return false;
+  int exponent = 0;
+  static_cast<void>(std::frexp(largest, &exponent));
+  for (float* v : values) *v = std::ldexp(*v, 2 - exponent);
+  return true;
+}
+
+float minus(double a, double b) { return static_cast<float>(a) - static_cast<float>(b); }
+
+bool float_orientation_is_exact(const Four& p) {
+  float ux = minus(p[0].x, p[2].x), uy = minus(p[0].y, p[2].y), vx = minus(p[1].x, p[2].x), vy = minus(p[1].y, p[2].y);
+  if (!(scale_floats({&ux, &vx}) && scale_floats({&uy, &vy}))) return true;
+  const Sum<float> sum = orientation_sum(ux, uy, vx, vy);
+  return std::fabs(sum.det) <= float_orientation_bound * sum.permanent + float_underflow;
+}
+
+bool float_incircle_is_exact(const Four& p) {
+  std::array<float, 6> d = {minus(p[0].x, p[3].x), minus(p[0].y, p[3].y), minus(p[1].x, p[3].x),
+                            minus(p[1].y, p[3].y), minus(p[2].x, p[3].x), minus(p[2].y, p[3].y)};
+  if (!scale_floats({&d[0], &d[1], &d[2], &d[3], &d[4], &d[5]})) return true;
+  const Sum<float> sum = incircle_sum(d);
+  return std::fabs(sum.det) <= float_incircle_bound * sum.permanent + float_underflow;
+}
+
 double bound_of_incircle(const Four& p) {
-  const Sum sum = incircle_sum(differences(p));
+  const Sum<double> sum = incircle_sum(differences(p));
   return (std::fabs(sum.det) + incircle_bound * sum.permanent) * (1 + 0x1p-40);
 }
 
@@ -131,35 +166,60 @@ SignCase case_of(const Four& p, bool wide, std::uint64_t signs, bool triangle) {
   return result;
 }
 
+/// What all builds must agree on.
+struct Truth {
+  std::uint64_t signs = 0;
+  Span span;
+  int turn = 0;
+};
+
+/// Of distinct points, of which two change places if the first three are clockwise.
+Truth truth_of(Four& p) {
+  Truth t;
+  t.span = span_of(p);
+  // The lowest bit becomes that of the smallest double: short whole numbers.
+  std::array<truth::Point, 4> q{};
+  const auto update = [&] {
+    const Four small = t.span.high < t.span.low ? p : scaled(p, -1074 - t.span.low);
+    for (std::size_t i = 0; i < 4; ++i) q[i] = {small[i].x, small[i].y};
+  };
+  update();
+  t.turn = truth::orientation(q[0], q[1], q[2]);
+  if (t.turn < 0) {
+    std::swap(p[0], p[1]);
+    update();
+    t.turn = 1;
+  }
+  const int turn = t.turn, determinant = truth::incircle(q[0], q[1], q[2], q[3]);
+  const int usual = turn > 0 ? truth::tie(q[0], q[1], q[2], q[3]) : 0;
+  t.signs = sign_bits(turn, orientation) | sign_bits(turn, oriented) | sign_bits(turn, oriented_long) |
+            sign_bits(determinant, inside) | sign_bits(determinant, inside_small) |
+            sign_bits(determinant, inside_long) | sign_bits(usual, tie);
+  t.signs |= sign_bits(turn == 0 ? 0 : (determinant != 0 ? determinant : usual), incircle);
+  if (turn > 0 && determinant == 0) t.signs |= 1u << tied;
+  return t;
+}
+
 }  // namespace
 
 void add_case(SignSet& set, Four p) {
   if (!distinct(p)) return;
-  const Span span = span_of(p);
-  // The lowest bit becomes that of the smallest double: short whole numbers.
-  std::array<truth::Point, 4> q{};
-  const auto update = [&] {
-    const Four small = span.high < span.low ? p : scaled(p, -1074 - span.low);
-    for (std::size_t i = 0; i < 4; ++i) q[i] = {small[i].x, small[i].y};
-  };
-  update();
-  int turn = truth::orientation(q[0], q[1], q[2]);
-  if (turn < 0) {
-    std::swap(p[0], p[1]);
-    update();
-    turn = 1;
-  }
-  const int determinant = truth::incircle(q[0], q[1], q[2], q[3]);
-  const int usual = turn > 0 ? truth::tie(q[0], q[1], q[2], q[3]) : 0;
-  std::uint64_t signs = sign_bits(turn, orientation) | sign_bits(turn, oriented) | sign_bits(turn, oriented_long) |
-                        sign_bits(determinant, inside) | sign_bits(determinant, inside_small) |
-                        sign_bits(determinant, inside_long) | sign_bits(usual, tie);
-  signs |= sign_bits(turn == 0 ? 0 : (determinant != 0 ? determinant : usual), incircle);
-  if (turn > 0 && determinant == 0) signs |= 1u << tied;
+  const auto [signs, span, turn] = truth_of(p);
   set.wide.push_back(case_of(p, true, signs, turn > 0));
   // As the driver does: below 1, and no bit below 2^-240.
   if (span.high >= span.low && span.high - span.low <= 240)
     set.narrow.push_back(case_of(scaled(p, -span.high), false, signs, turn > 0));
+}
+
+void add_float_case(SignSet& set, Four p) {
+  for (const PlanePoint& q : p)
+    if (!std::isfinite(q.x) || !std::isfinite(q.y)) return;
+  if (!distinct(p)) return;
+  const Truth t = truth_of(p);
+  SignCase result{p, std::numeric_limits<double>::infinity(), t.signs};
+  if (float_orientation_is_exact(p)) result.word |= 1u << exact_orientation;
+  if (t.turn > 0 && float_incircle_is_exact(p)) result.word |= 1u << exact_incircle;
+  set.floats.push_back(result);
 }
 
 WrongSigns compare(const std::vector<SignCase>& cases, const std::vector<std::uint32_t>& words) {

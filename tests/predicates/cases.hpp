@@ -27,6 +27,7 @@ struct SignCase {
 struct SignSet {
   std::string name;
   std::vector<SignCase> narrow, wide;
+  std::vector<SignCase> floats;  ///< coordinates are floats, for the build that takes nothing else
 };
 
 /// What a build got wrong.
@@ -47,6 +48,9 @@ struct StageCounts {
 
 /// Adds the points to the set, for both builds if the narrow one takes them. Points that are equal make no case.
 void add_case(SignSet& set, Four points);
+/// Adds the points to the set for the build for floats alone. \pre coordinates are floats, or too large for any: then
+/// they make no case
+void add_float_case(SignSet& set, Four points);
 
 using Random = std::mt19937_64;
 
@@ -54,7 +58,13 @@ using Random = std::mt19937_64;
 [[nodiscard]] std::vector<std::string> generated_sets();
 [[nodiscard]] std::vector<std::string> file_sets();
 [[nodiscard]] SignSet generated_set(const std::string& name);
+[[nodiscard]] std::vector<Four> generated_points(const std::string& name);
 /// \pre the file is there
 [[nodiscard]] SignSet file_set(const std::filesystem::path& folder, const std::string& name);
+
+/// Sets for the build for floats: the generated ones rounded to floats, some of them off by units of a float, and those
+/// of what floats alone have (float_sets.cpp).
+[[nodiscard]] std::vector<std::string> float_sets();
+[[nodiscard]] SignSet float_set(const std::string& name);
 
 }  // namespace cadt::test

@@ -20,5 +20,6 @@ struct Lengths {
 /// Of orientation and incircle of each case.
 [[nodiscard]] Lengths count_narrow(const std::vector<SignCase>& cases);
 [[nodiscard]] Lengths count_wide(const std::vector<SignCase>& cases);
+[[nodiscard]] Lengths count_floats(const std::vector<SignCase>& cases);
 
 }  // namespace cadt::test

@@ -16,7 +16,9 @@ cadt::test::Lengths lengths;
 #include "common/device/predicates.h"
 
 cadt::test::Lengths count(const std::vector<cadt::test::SignCase>& cases) {
-  const auto point = [](cadt::test::PlanePoint p) { return cadt_point{p.x, p.y}; };
+  const auto point = [](cadt::test::PlanePoint p) {
+    return cadt_point{static_cast<cadt_real>(p.x), static_cast<cadt_real>(p.y)};
+  };
   lengths = {};
   for (const cadt::test::SignCase& c : cases) {
     cadt_tally tally;

@@ -2,6 +2,7 @@
 // One build of the predicates, perhaps with a planted fault, on the cases of a file. tests/predicates/mutants.py
 // compiles it, with the headers as they are or patched, once for each build:
 //   -DCADT_WIDE=1                     the wide build
+//   -DCADT_FLOAT=1                    the build for floats, with their cases
 //   -DCADT_AS_GPU                     the narrow build of GPUs, without the cheap filter of incircle
 //   -DCADT_VERIFIER                   the predicates of the verifier on devices; what they leave open counts as right
 //   -DCADT_PLANT_FLUSH                fault: subnormal numbers are 0
@@ -35,7 +36,7 @@ namespace {
 
 // As SignCase of cases.hpp, which is not included: a patched header could reach it.
 struct Case {
-  cadt_point points[4];
+  double points[8];
   double most;
   std::uint64_t word;
 };
@@ -46,7 +47,8 @@ struct Case {
 std::vector<cadt_u32> verifier_words(const std::vector<Case>& cases) {
   std::vector<cadt_u32> words;
   for (const Case& c : cases) {
-    const cadt_point* p = c.points;
+    const cadt_point p[4] = {
+        {c.points[0], c.points[1]}, {c.points[2], c.points[3]}, {c.points[4], c.points[5]}, {c.points[6], c.points[7]}};
     auto word = static_cast<cadt_u32>(c.word);
     const cadt_i32 turn = static_cast<cadt_i32>(word & 3u) - 1, legal = 1 - static_cast<cadt_i32>(word >> 8 & 3u);
     for (const cadt_i32 sign : {cadt_verify_turn_filter(p[0], p[1], p[2]), cadt_verify_turn_exact(p[0], p[1], p[2])})
@@ -76,12 +78,16 @@ int main(int argc, char** argv) {
   if (in == nullptr) return 2;
   bool any = false;
   for (std::vector<char> name; !(name = read_array<char>(in)).empty(); any = true) {
-    std::vector<Case> cases = read_array<Case>(in), wide = read_array<Case>(in);
-    if (CADT_WIDE) cases.swap(wide);
+    std::vector<Case> cases = read_array<Case>(in), wide = read_array<Case>(in), floats = read_array<Case>(in);
+    if (CADT_WIDE) cases.swap(CADT_FLOAT ? floats : wide);
     const auto count = static_cast<cadt_u32>(cases.size());
     std::vector<cadt_point> points;
-    std::vector<double> most;
-    for (const Case& c : cases) points.insert(points.end(), c.points, c.points + 4), most.push_back(c.most);
+    std::vector<cadt_real> most;
+    for (const Case& c : cases) {
+      for (int i = 0; i < 8; i += 2)
+        points.push_back({static_cast<cadt_real>(c.points[i]), static_cast<cadt_real>(c.points[i + 1])});
+      most.push_back(static_cast<cadt_real>(c.most));
+    }
     std::vector<cadt_u32> words(cases.size());
 #if defined(CADT_PLANT_FLUSH)
     _mm_setcsr(_mm_getcsr() | 0x8040u);

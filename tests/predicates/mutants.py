@@ -20,7 +20,9 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from faults import FLAGS, TEXTS  # noqa: E402
 
-BUILDS = {"narrow": [], "GPU": ["-DCADT_AS_GPU"], "wide": ["-DCADT_WIDE=1"]}
+BUILDS = {"narrow": [], "GPU": ["-DCADT_AS_GPU"], "wide": ["-DCADT_WIDE=1"],
+          # devices that have no doubles may flush as well
+          "float": ["-DCADT_FLOAT=1", "-DCADT_PLANT_FLUSH"]}
 VERIFIER = {"verifier": ["-DCADT_VERIFIER"]}
 HEADERS = ["predicates.h", "exact.h", "fixed.h", "signs.h", "verify_predicates.h"]
 # Columns of the table; all other sets share one.
@@ -62,7 +64,7 @@ def run(root, work, cases, cxx, sample, number, fault):
     shutil.rmtree(folder, ignore_errors=True)
     patched(root, folder, fault)
     results = {}
-    builds = {"": BUILDS | VERIFIER, "verifier": VERIFIER}.get(fault["group"], BUILDS)
+    builds = {"": BUILDS | VERIFIER, "verifier": VERIFIER, "floats": {"float": BUILDS["float"]}}.get(fault["group"], BUILDS)
     for build, flags in builds.items():
         program = folder / build
         command = [cxx, "-std=c++20", "-O2", "-ffp-contract=off", "-w", *flags, *fault["flags"], "-I", str(folder),

@@ -299,24 +299,30 @@ std::vector<std::string> file_sets() {
           "gen_threshold_incircle.txt"};
 }
 
-SignSet generated_set(const std::string& name) {
+std::vector<Four> generated_points(const std::string& name) {
   Random::result_type seed = 0;
   for (const Generator& g : generators()) {
     ++seed;
     if (name != g.name) continue;
-    SignSet set{name, {}, {}};
+    std::vector<Four> points;
     Random random(seed);
-    for (int i = 0; i < g.cases; ++i) add_case(set, g.make(random));
-    return set;
+    for (int i = 0; i < g.cases; ++i) points.push_back(g.make(random));
+    return points;
   }
   throw std::invalid_argument("no set " + name);
+}
+
+SignSet generated_set(const std::string& name) {
+  SignSet set{name, {}, {}, {}};
+  for (const Four& points : generated_points(name)) add_case(set, points);
+  return set;
 }
 
 SignSet file_set(const std::filesystem::path& folder, const std::string& name) {
   const bool circle = name.find("incircle") != std::string::npos;
   const std::size_t points = circle ? 4 : 3;
   std::ifstream file(folder / name);
-  SignSet set{name, {}, {}};
+  SignSet set{name, {}, {}, {}};
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);
     std::vector<double> v;

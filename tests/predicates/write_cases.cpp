@@ -23,6 +23,7 @@ void write(std::ofstream& out, const cadt::test::SignSet& set) {
   out << set.name;
   write(out, set.narrow);
   write(out, set.wide);
+  write(out, set.floats);
 }
 
 }  // namespace
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
     write(out, cadt::test::file_set(folder, name));
   }
   for (const std::string& name : cadt::test::generated_sets()) write(out, cadt::test::generated_set(name));
+  for (const std::string& name : cadt::test::float_sets()) write(out, cadt::test::float_set(name));
   out.close();
   if (out) return 0;
   std::perror(argv[1]);

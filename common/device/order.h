@@ -270,14 +270,13 @@ CADT_KERNEL(cadt_sort_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL ca
 }
 
 /* A coordinate times two powers of two (one may not be enough to reach all of a double's exponents); -0.0 becomes 0.0.
- * Floats are left as they are: a product could lose bits. */
+ * Floats are left as they are: a product could lose bits, and -0.0 is equal to 0.0 wherever they are compared. */
 CADT_FN cadt_real cadt_multiplied(cadt_real x, cadt_real scale, cadt_real scale_again) {
 #if CADT_GRADUAL
   return x * scale * scale_again + 0.0;
 #else
   (void)scale, (void)scale_again;
-  const cadt_u32 bits = cadt_bits_of_float(x);
-  return cadt_float_of_bits(bits == 0x80000000u ? 0u : bits);
+  return x;
 #endif
 }
 

@@ -36,6 +36,9 @@ Options host_options() {
 }
 
 void FloatTest::SetUp() {
+  for (const DeviceInfo& device : list_devices())
+    if (device.backend == Backend::opencl && device.reason.find("cl_khr_fp64") != std::string::npos)
+      FAIL() << device.name << ": " << device.reason;
   if (const std::string reason = unavailable(Backend::opencl); !reason.empty()) {
     if (required(Backend::opencl)) FAIL() << reason;
     GTEST_SKIP() << reason;

@@ -116,7 +116,17 @@ TEST_F(FloatMesh, APowerOfTwoChangesNothing) {
 }
 
 TEST_F(FloatMesh, CrowdsAndLongBoxes) {
-  check(floats_of(skewed_points(20000)), "skewed");
+  Points crowd = skewed_points(6000);
+  check(floats_of(crowd), "skewed");
+  const Points again = crowd;
+  crowd.insert(crowd.end(), again.begin(), again.end());
+  check(floats_of(crowd), "skewed, twice");
+  Floats subnormal;  // one crowd for the keys, which see zeros
+  for (int i = 0; i < 2000; ++i)
+    subnormal.insert(subnormal.end(), {static_cast<float>(i % 41) * least, static_cast<float>(i % 37 - 20) * least});
+  check(subnormal, "subnormal crowd");
+  subnormal.insert(subnormal.end(), {1, 1, -1, 1});
+  check(subnormal, "subnormal crowd beside 1");
   check(floats_of(two_clusters(6000)), "two clusters");
   Points flat = uniform_points(20000, 8);  // keys of more bits along an axis than a float has
   for (std::size_t i = 1; i < flat.size(); i += 2) flat[i] *= 1e-12;

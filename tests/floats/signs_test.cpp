@@ -71,7 +71,7 @@ TEST_F(FloatSigns, SetsAgainstWholeNumbersAndEveryStage) {
 }
 
 TEST_F(FloatSigns, NearTheBoundsOfFilters) {
-  for (const char* name : {"near_line", "near_circle", "float_small", "float_bits"}) check(float_set(name));
+  for (const char* name : {"float_near_line", "float_near_circle", "float_small", "float_bits"}) check(float_set(name));
 }
 
 }  // namespace

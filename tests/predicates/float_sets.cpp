@@ -128,7 +128,8 @@ constexpr std::size_t most_of_shared = 30000;
 }  // namespace
 
 std::vector<std::string> float_sets() {
-  std::vector<std::string> names(std::begin(shared), std::end(shared));
+  std::vector<std::string> names;
+  for (const char* name : shared) names.push_back(std::string("float_") + name);
   for (const Generator& g : generators()) names.emplace_back(g.name);
   return names;
 }
@@ -136,8 +137,9 @@ std::vector<std::string> float_sets() {
 SignSet float_set(const std::string& name) {
   SignSet set{name, {}, {}, {}};
   Random random(1);
-  if (std::find(std::begin(shared), std::end(shared), name) != std::end(shared)) {
-    std::vector<Four> all = generated_points(name);
+  for (const char* of_doubles : shared) {
+    if (name != std::string("float_") + of_doubles) continue;
+    std::vector<Four> all = generated_points(of_doubles);
     all.resize(std::min(all.size(), most_of_shared));
     for (const Four& points : all) {
       Four p = rounded(points);

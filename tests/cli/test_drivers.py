@@ -84,6 +84,33 @@ class BrokenLoader(DriverTest, CliTest):
                               ["no OpenCL device", "clGetDeviceIDs: CL_INVALID_OPERATION"])
 
 
+class OtherCudaDrivers(DriverTest, CliTest):
+    """A driver older than the program, and one that lacks functions."""
+
+    def expect_reason(self, version, says):
+        self.path("libcuda.so.1").symlink_to(os.environ["CADT_HOLLOW_CUDA_DRIVER"])
+        with mock.patch.dict(os.environ, {"LD_LIBRARY_PATH": str(self.folder), "CADT_CUDA_DRIVER": version,
+                                          "OCL_ICD_VENDORS": "/nonexistent"}):
+            cuda = [d for d in self.devices() if d["backend"] == "cuda"]
+            self.assertEqual([(d["usable"], d["index"]) for d in cuda], [(False, -1)])
+            self.assertIn(says, cuda[0]["reason"])
+            self.assertIn(f"\ncuda: {cuda[0]['reason']}\n", self.cadt("devices").out)
+            self.fails(5, "triangulate", "in.xy", "--backend", "cuda", "-o", "m.off", says=cuda[0]["reason"])
+            self.assertFalse(self.path("m.off").exists())
+            self.assertEqual(self.cadt("triangulate", "in.xy", "--backend", "host").fields()["hash"], self.hash)
+
+    def setUp(self):
+        super().setUp()
+        if "cuda" not in self.compiled_in:
+            self.skipTest("needs the CUDA back end")
+
+    def test_older_than_the_program(self):
+        self.expect_reason("10020", "the driver knows CUDA 10.2 and the program needs ")
+
+    def test_without_most_functions(self):
+        self.expect_reason("990000", "not supported in the installed CUDA driver")
+
+
 class FloatDevices(CliTest):
     """A device without double precision: what there is, taken for one."""
 

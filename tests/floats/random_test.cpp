@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random sets of floats, small and of every kind that is hard: the mesh of a device without doubles is that of the host.
+// Random sets of floats, small and of every kind that is hard: the mesh of a device without doubles is that of the
+// host.
 //
 // CADT_FLOAT_SETS: how many.
 #include "tests/floats/floats.hpp"

@@ -277,13 +277,15 @@ class Interrupt(CliTest):
 
 class ProgressLine(CliTest):
     def test_is_drawn_on_a_terminal_and_removed(self):
-        self.scattered("in.f64", 300000)
-        with self.on_terminal("triangulate", "in.f64", "-o", "m.ply", "--backend", "host") as (process, terminal):
+        # Ten times as long as the line stands before it is drawn anew, on a processor of today.
+        self.scattered("in.f64", 2000000)
+        with self.on_terminal("triangulate", "in.f64", "-o", "m.ply", "--backend", "host", "--threads", "1") as (
+                process, terminal):
             text = terminal.wait_for()
             self.assertEqual(process.wait(timeout=60), 0)
         self.assertRegex(text, r"\r[a-z]+ +\d+ %  [\d.]+[Mk]? points/s")
         # What is on the last line before the summary is blank.
-        self.assertRegex(text, r"\r +\rpoints +300000\r\n")
+        self.assertRegex(text, r"\r +\rpoints +2000000\r\n")
 
     def test_is_not_drawn_when_quiet(self):
         self.scattered("in.f64", 100000)

@@ -7,6 +7,7 @@
 #define __device__ __attribute__((device))
 #define __host__ __attribute__((host))
 #define __noinline__ __attribute__((noinline))
+#define __forceinline__ inline __attribute__((always_inline))
 #define __shared__ __attribute__((shared))
 #define __launch_bounds__(...) __attribute__((launch_bounds(__VA_ARGS__)))
 struct uint3 {

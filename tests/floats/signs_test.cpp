@@ -2,7 +2,6 @@
 // The predicates of the build for floats on the device, each stage by itself and all together, against whole numbers.
 #include <iostream>
 #include <memory>
-#include <sstream>
 
 #include "common/host/registry.hpp"
 #include "tests/floats/floats.hpp"
@@ -16,14 +15,6 @@ namespace {
 Device& device() {
   static auto* const opened = new std::unique_ptr<Device>(open_device(float_options()));  // never closed, on purpose
   return **opened;
-}
-
-std::string text(const SignCase& c) {
-  std::ostringstream out;
-  out << std::hexfloat;
-  for (const PlanePoint& p : c.points) out << p.x << ' ' << p.y << "  ";
-  out << "expected " << std::hex << c.word;
-  return out.str();
 }
 
 class FloatSigns : public FloatTest {

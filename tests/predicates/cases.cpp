@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "tests/verify/truth.hpp"
@@ -201,6 +202,14 @@ Truth truth_of(Four& p) {
 }
 
 }  // namespace
+
+std::string text(const SignCase& c) {
+  std::ostringstream out;
+  out << std::hexfloat;
+  for (const PlanePoint& p : c.points) out << p.x << ' ' << p.y << "  ";
+  out << "expected " << std::hex << c.word;
+  return out.str();
+}
 
 void add_case(SignSet& set, Four p) {
   if (!distinct(p)) return;

@@ -24,6 +24,9 @@ struct SignCase {
   std::uint64_t word;  ///< what the kernel must give
 };
 
+/// Points in full precision, and the word in hexadecimal.
+[[nodiscard]] std::string text(const SignCase& c);
+
 struct SignSet {
   std::string name;
   std::vector<SignCase> narrow, wide;

@@ -6,7 +6,6 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 #include "common/host/registry.hpp"
@@ -33,14 +32,6 @@ Device& device_of(const BackendCase& backend) {
   std::unique_ptr<Device>& device = (*devices)[backend.backend];
   if (!device) device = open_device(backend.options());
   return *device;
-}
-
-std::string text(const SignCase& c) {
-  std::ostringstream out;
-  out << std::hexfloat;
-  for (const PlanePoint& p : c.points) out << p.x << ' ' << p.y << "  ";
-  out << "expected " << std::hex << c.word;
-  return out.str();
 }
 
 struct Found {

@@ -183,20 +183,35 @@ CADT_FN cadt_u32 cadt_add_local(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
 CADT_FN void cadt_min_local(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
   atomic_min((volatile CADT_LOCAL_PTR cadt_u32*)p, value);
 }
+CADT_FN void cadt_least_local(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
+  if (value != 0xFFFFFFFFu) cadt_min_local(p, value);
+}
 CADT_FN void cadt_fence_local(void) { mem_fence(CLK_LOCAL_MEM_FENCE); }
 #elif CADT_GROUP_SUMS
 CADT_FN cadt_u32 cadt_add_local(cadt_u32* p, cadt_u32 value) { return atomicAdd(p, value); }
 CADT_FN void cadt_min_local(cadt_u32* p, cadt_u32 value) { atomicMin(p, value); }
+CADT_FN void cadt_least_local(cadt_u32* p, cadt_u32 value) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+  /* Once for the lanes that are here: at one address one of them would wait for the other. */
+  const cadt_u32 mask = __activemask(), lane = threadIdx.x & 31u;
+  value = __reduce_min_sync(mask, value);
+  if (mask & ((1u << lane) - 1u)) return;
+#endif
+  if (value != 0xFFFFFFFFu) cadt_min_local(p, value);
+}
 CADT_FN void cadt_fence_local() { __threadfence_block(); }
 #endif
-/* In the memory of a team: an addition, and the value before it; the lesser of two. */
+/* In the memory of a team: an addition, and the value before it; the lesser of two; the least of what lanes have for
+ * the same place, the largest number being nothing. */
 #if CADT_GROUP_SUMS
-#define cadt_team_add(p, value) cadt_add_local((p), (value))
 #define cadt_team_min(p, value) cadt_min_local((p), (value))
+#define cadt_team_least(p, value) cadt_least_local((p), (value))
+#define cadt_team_add(p, value) cadt_add_local((p), (value))
 #else
 CADT_FN void cadt_team_min(cadt_u32* p, cadt_u32 value) {
   if (value < *p) *p = value;
 }
+#define cadt_team_least(p, value) cadt_team_min((p), (value))
 CADT_FN cadt_u32 cadt_team_add(cadt_u32* p, cadt_u32 value) {
   const cadt_u32 old = *p;
   *p += value;

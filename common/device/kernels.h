@@ -33,6 +33,7 @@
 #include "common/device/verify.h"
 #include "common/device/wrap.h"
 #include "common/device/wrap_mesh.h"
+#include "common/device/wrap_near.h"
 #endif
 
 #endif

@@ -42,8 +42,10 @@ typedef struct {
 } cadt_wrap_edge;
 
 enum {
-  CADT_WRAP_BOX = 32,    /* points of a box */
-  CADT_WRAP_CRATE = 32,  /* boxes of a crate */
+  CADT_WRAP_BOX = 32,   /* points of a box */
+  CADT_WRAP_CRATE = 32, /* boxes of a crate */
+  CADT_WRAP_PART = 4,   /* points that a lane puts into a box at a time */
+  CADT_WRAP_PARTS = CADT_WRAP_BOX / CADT_WRAP_PART,
   CADT_WRAP_NEAR = 3,    /* boxes in which a first neighbour is looked for */
   CADT_WRAP_CRATES = 32, /* crates that are compared with a disc at a time, */
   CADT_WRAP_OPENED = 4,  /* of these opened */
@@ -51,8 +53,13 @@ enum {
   CADT_WRAP_HUBS = 64,   /* vertices without a star at most, */
   CADT_WRAP_EDGES = 256, /* half-edges between two of them */
   CADT_WRAP_LANES = 128, /* lanes of a team that search */
-  CADT_WRAP_FOUND = 6,   /* words that cadt_wrap_stars counts */
-  CADT_WRAP_SHARES = 8   /* work-items that write the triangles of a vertex */
+  CADT_WRAP_FOUND = 6,   /* words that are counted for the driver, */
+  CADT_WRAP_WORDS = 8,   /* and with those that kernels leave for the next */
+  CADT_WRAP_SHARES = 8,  /* work-items that write the triangles of a vertex */
+  CADT_WRAP_ROW = 24,    /* half-words of what is known of a star: how many neighbours, and which */
+  CADT_NEAR_POINTS = 96, /* points that are known of a vertex (wrap_near.h), 128 at most, */
+  CADT_NEAR_FEW = 8,     /* and how many there should be; */
+  CADT_NEAR_BOXES = 128  /* from how many boxes at most */
 };
 
 /* One of several sets of points in a call (sets.h). Its points are halved and counted in cells after they have been

@@ -9,47 +9,16 @@
 #ifndef CADT_DEVICE_WRAP_H
 #define CADT_DEVICE_WRAP_H
 
-#include "common/device/mesh.h"
-#include "common/device/predicates.h"
-#include "common/device/sets.h"
+#include "common/device/wrap_store.h"
 
 typedef struct {
   cadt_u32 link[CADT_WRAP_DEGREE]; /* the neighbours found, in the order of the search */
   cadt_u32 best[CADT_WRAP_LANES];
   cadt_u32 crates[CADT_WRAP_CRATES], boxes[CADT_WRAP_OPENED * CADT_WRAP_CRATE];
   cadt_u32 crate_count, box_count, better; /* how many of each; lanes that have found a better neighbour */
+  cadt_u32 arc[CADT_WRAP_ROW];             /* what cadt_wrap_near has found out */
   cadt_u32 key, guess, place;
 } cadt_wrap_memory;
-
-/* The points among which stars are searched: all, or those of a set (sets.h). Every set begins a new box and a new
- * crate, which leaves some numbers out. */
-typedef struct {
-  cadt_u32 begin, count; /* positions */
-  cadt_u32 box, crate;   /* the first ones */
-} cadt_wrap_range;
-
-/* `starts`: null for all n points. */
-CADT_FN cadt_wrap_range cadt_wrap_range_of(CADT_GLOBAL const cadt_u32* starts, cadt_u32 set, cadt_u32 n) {
-  cadt_wrap_range r;
-  r.begin = starts ? starts[set] : 0u;
-  r.count = starts ? starts[set + 1u] - r.begin : n;
-  r.box = starts ? r.begin / CADT_WRAP_BOX + set : 0u;
-  r.crate = starts ? r.begin / (CADT_WRAP_BOX * CADT_WRAP_CRATE) + set : 0u;
-  return r;
-}
-
-/* The last set whose first crate is not behind this one. */
-CADT_FN cadt_u32 cadt_wrap_set_of_crate(CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, cadt_u32 crate) {
-  cadt_u32 low = 0u, high = set_count;
-  while (high - low > 1u) {
-    const cadt_u32 middle = low + (high - low) / 2u;
-    if (cadt_wrap_range_of(starts, middle, 0u).crate <= crate)
-      low = middle;
-    else
-      high = middle;
-  }
-  return low;
-}
 
 typedef struct {
   CADT_TEAM_PTR cadt_wrap_memory* m;
@@ -62,83 +31,6 @@ typedef struct {
   cadt_u32 p;      /* the vertex */
   cadt_u32 looked; /* boxes whose points were looked at */
 } cadt_wrapper;
-
-CADT_FN void cadt_box_add(cadt_box* box, const cadt_box other) {
-  if (other.low.x < box->low.x) box->low.x = other.low.x;
-  if (other.low.y < box->low.y) box->low.y = other.low.y;
-  if (other.high.x > box->high.x) box->high.x = other.high.x;
-  if (other.high.y > box->high.y) box->high.y = other.high.y;
-}
-
-/* Boxes of CADT_WRAP_BOX points, and crates of CADT_WRAP_CRATE boxes: a team for each. Of all points also what
- * cadt_wrap_stars expects to be 0, if it is given. */
-CADT_KERNEL(cadt_wrap_boxes, CADT_GLOBAL const cadt_point* points, cadt_u32 n, CADT_GLOBAL const cadt_u32* starts,
-            cadt_u32 set_count, cadt_u32 crate_count, cadt_u32 grain, CADT_GLOBAL cadt_box* boxes,
-            CADT_GLOBAL cadt_box* crates, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
-  CADT_TEAM_MEMORY cadt_box inside[CADT_WRAP_CRATE];
-  if (found && cadt_item == 0u)
-    for (cadt_u32 k = 0u; k <= CADT_CAST(cadt_u32, CADT_WRAP_FOUND); ++k) found[k] = 0u;
-  CADT_FOR_TEAMS(crate, crate_count, grain) {
-    const cadt_wrap_range r =
-        cadt_wrap_range_of(starts, starts ? cadt_wrap_set_of_crate(starts, set_count, crate) : 0u, n);
-    const cadt_u32 first = (crate - r.crate) * CADT_WRAP_CRATE,
-                   box_count = (r.count + CADT_WRAP_BOX - 1u) / CADT_WRAP_BOX;
-    const cadt_u32 count = first < box_count ? cadt_min_u32(CADT_WRAP_CRATE, box_count - first) : 0u;
-    CADT_TEAM_FOR(j, count) {
-      const cadt_u32 begin = (first + j) * CADT_WRAP_BOX, end = cadt_min_u32(begin + CADT_WRAP_BOX, r.count);
-      cadt_box box;
-      box.low = box.high = points[r.begin + begin];
-      for (cadt_u32 i = begin + 1u; i < end; ++i) {
-        cadt_box point;
-        point.low = point.high = points[r.begin + i];
-        cadt_box_add(&box, point);
-      }
-      for (cadt_u32 i = begin; sizes && i < end; ++i) sizes[r.begin + i] = 0u;
-      boxes[r.box + first + j] = inside[j] = box;
-    }
-    CADT_TEAM_SYNC();
-    if (cadt_team_lane == 0u && count) {
-      cadt_box box = inside[0];
-      for (cadt_u32 j = 1u; j < count; ++j) cadt_box_add(&box, inside[j]);
-      crates[crate] = box;
-    }
-    CADT_TEAM_SYNC();
-  }
-}
-
-/* A disc that contains the circle through p, a and b for certain; coordinates are from p. */
-typedef struct {
-  double x, y, square; /* centre, radius^2; not a finite number: the disc may be the plane */
-} cadt_disc;
-
-/* With u = 2^-53 and K = |a| |b| / |a x b|, which is at least 1, centre and radius are off by less than
- * E = 24 u K (1 + K) (|a| + |b|) where K is known well. (r + E)^2 is at most (1 + 1e-6) r^2 + (1 + 1e6) E^2: no square
- * roots. */
-CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
-  const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
-  const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;
-  const double scale = 0.5 / (ax * by - ay * bx), kk = 4.0 * (aa * scale) * (bb * scale); /* K^2 */
-  cadt_disc d;
-  d.x = (by * aa - ay * bb) * scale;
-  d.y = (ax * bb - bx * aa) * scale;
-  d.square = (d.x * d.x + d.y * d.y) * (1.0 + 2e-6) + 1e-22 * kk * (1.0 + kk) * (aa + bb);
-  if (!(kk < 1e24)) d.square = CADT_CAST(double, CADT_INFINITY);
-  return d;
-}
-
-/* Whether points of the box can lie in the disc and to the side (1 left, -1 right) of the line from p to p + (ax, ay).
- * A comparison with what is not a number does not exclude them. */
-CADT_FN cadt_u32 cadt_box_matters(const cadt_box box, cadt_point p, double ax, double ay, double side,
-                                  const cadt_disc* disc) {
-  const double low_x = box.low.x - p.x, low_y = box.low.y - p.y, high_x = box.high.x - p.x, high_y = box.high.y - p.y;
-  const double left = ax * (ax * side > 0.0 ? high_y : low_y), right = ay * (ay * side > 0.0 ? low_x : high_x);
-  /* or none beyond a line along an axis: both are 0 */
-  if ((left - right) * side <= -1e-15 * (cadt_fabs(left) + cadt_fabs(right))) return 0u;
-  double x = low_x - disc->x, y = low_y - disc->y;
-  if (x < 0.0) x = disc->x > high_x ? disc->x - high_x : 0.0;
-  if (y < 0.0) y = disc->y > high_y ? disc->y - high_y : 0.0;
-  return x * x + y * y > disc->square ? 0u : 1u;
-}
 
 /* Which of two points on one side of the line p, a has the circle without the other. */
 CADT_FN cadt_u32 cadt_wrap_better(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 b, cadt_u32 c) {
@@ -258,27 +150,62 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   return best;
 }
 
+/* Of the triangles that are proven that behind the neighbour a on that side: its other neighbour of p, or CADT_NONE. */
+CADT_FN cadt_u32 cadt_wrap_known(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
+  const cadt_u32 size = w->m->arc[0] >> 1, closed = w->m->arc[0] & 1u;
+  cadt_u32 found = CADT_NONE;
+  for (cadt_u32 k = 0u; k < size; ++k) {
+    const cadt_u32 one = w->m->arc[1u + k], next = k + 1u < size ? k + 1u : 0u;
+    if (!(one & CADT_WRAP_PROVEN) || (!next && !closed)) continue;
+    const cadt_u32 from = one & ~CADT_WRAP_PROVEN, to = w->m->arc[1u + next] & ~CADT_WRAP_PROVEN;
+    if ((side > 0 ? from : to) == a) found = side > 0 ? to : from;
+  }
+  return found;
+}
+
+/* A neighbour of a proven triangle, from which all that are found are neighbours; CADT_NONE if there is none. */
+CADT_FN cadt_u32 cadt_wrap_known_one(const cadt_wrapper* w) {
+  const cadt_u32 size = w->m->arc[0] >> 1;
+  for (cadt_u32 k = 0u; k < size; ++k)
+    if (w->m->arc[1u + k] & CADT_WRAP_PROVEN) return w->m->arc[1u + k] & ~CADT_WRAP_PROVEN;
+  return CADT_NONE;
+}
+
 /* Searches the star of w->p. Its neighbours stand in w->m->link from *begin on, *size of them, counterclockwise if
  * *side is 1, else clockwise. Returns 0 if there is none: all points are on a line, or there are too many neighbours; 1
  * inside of the hull; 2 for a vertex of the hull, from one of its hull edges to the other. */
 CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size, cadt_i32* side) {
-  cadt_u32 at = w->p ? w->p - 1u : 1u, from_hull = 0u, pass = 0u, outcome = 0u, going = 1u;
+  const cadt_u32 known = cadt_wrap_known_one(w);
+  cadt_u32 at = known != CADT_NONE ? known : (w->p ? w->p - 1u : 1u), from_hull = 0u, pass = 0u, outcome = 0u,
+           going = 1u;
   *begin = *size = 0u;
   *side = 1;
   while (going) {
     if (cadt_team_lane == 0u) w->m->link[*size] = at;
     ++*size;
-    const cadt_u32 next = cadt_wrap_next(w, at, *side);
+    cadt_u32 next = cadt_wrap_known(w, at, *side);
+    if (next == CADT_NONE) next = cadt_wrap_next(w, at, *side);
+    CADT_TEAM_SYNC();
     if (next == CADT_NONE) {
       /* Beyond the line p, at there is nothing. If `at` was found from another neighbour, it is one itself, and the
        * edge one of the hull: the star is what lies between it and the other one. */
+      if (!from_hull) *side = -*side;
       if (from_hull) {
         outcome = 2u;
         going = 0u;
+      } else if (known != CADT_NONE) {
+        /* All from the first one on are neighbours: turned round, the search goes on from that one. */
+        from_hull = 1u;
+        CADT_TEAM_FOR(k, *size / 2u) {
+          const cadt_u32 other = w->m->link[*size - 1u - k];
+          w->m->link[*size - 1u - k] = w->m->link[k];
+          w->m->link[k] = other;
+        }
+        --*size; /* it is entered again */
+        at = known;
       } else {
         from_hull = *size > 1u ? 1u : 0u;
         if (++pass > 2u) going = 0u;
-        *side = -*side;
         *size = 0u;
       }
     } else {
@@ -294,27 +221,26 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
   return *size < 2u ? 0u : outcome;
 }
 
-/* Stars of `count` vertices: of all, or of those in `list`, which are of sets. found: words of links used, vertices
- * without a star, effort: boxes looked at and exact tests; exact orientations, exact incircles, ties; edges between two
- * without stars. A star has sizes[v] words from links[begins[v]] on, CADT_GHOST behind the last neighbour on the hull.
- * Those of at most `row` words have begins[v] already, longer ones stand behind the rows. Nothing is done any more when
- * more than CADT_WRAP_HUBS have failed, or the effort is above its bound, `effort` a point; of sets when one has
- * failed, which states[set] counts, as efforts[set] the effort. \pre sizes are 0, n >= 2 */
+/* The stars of the vertices in `todo`: of `count`, which are of sets, or, with `arcs`, those that cadt_wrap_near has
+ * left, found[7] of them. Nothing is done any more when more than CADT_WRAP_HUBS have failed, or the effort is above
+ * its bound, `effort` a point; of sets when one has failed, which states[set] counts, as efforts[set] the effort. */
 CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
-                 CADT_GLOBAL const cadt_box* crates, cadt_u32 n, CADT_GLOBAL const cadt_u32* list, cadt_u32 count,
-                 CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, CADT_GLOBAL cadt_u32* states,
-                 CADT_GLOBAL cadt_u32* efforts, cadt_u32 effort, cadt_u32 grain, cadt_u32 row,
-                 CADT_GLOBAL cadt_u32* links, cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins,
+                 CADT_GLOBAL const cadt_box* crates, cadt_u32 n, CADT_GLOBAL const cadt_u32* todo, cadt_u32 count,
+                 CADT_GLOBAL const cadt_u16* arcs, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
+                 CADT_GLOBAL cadt_u32* states, CADT_GLOBAL cadt_u32* efforts, cadt_u32 effort, cadt_u32 grain,
+                 cadt_u32 row, CADT_GLOBAL cadt_u32* links, cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins,
                  CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_wrap_memory memory;
+  const cadt_wrap_sink sink = cadt_wrap_sink_of(n, row, links, link_words, begins, sizes, found);
+  const cadt_u32 stars = arcs ? found[7] : count;
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 exact_before = 0u;
-  CADT_FOR_TEAMS(item, count, grain) {
-    const cadt_u32 v = list ? list[item] : item, set = list ? cadt_set_of(starts, set_count, v) : 0u;
+  CADT_FOR_TEAMS(item, stars, grain) {
+    const cadt_u32 v = todo[item], set = starts ? cadt_set_of(starts, set_count, v) : 0u;
     const cadt_wrap_range range = cadt_wrap_range_of(starts, set, n);
-    CADT_GLOBAL cadt_u32* failed = list ? states + set : found + 1;
-    CADT_GLOBAL cadt_u32* done = list ? efforts + set : found + 2;
+    CADT_GLOBAL cadt_u32* failed = starts ? states + set : found + 1;
+    CADT_GLOBAL cadt_u32* done = starts ? efforts + set : found + 2;
     cadt_wrapper w;
     w.m = &memory;
     w.points = points + range.begin;
@@ -327,8 +253,10 @@ CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
     w.lanes = cadt_min_u32(cadt_team_lanes, CADT_WRAP_LANES);
     w.p = v - range.begin;
     w.looked = 0u;
+    const cadt_u32 known = arcs ? arcs[item * CADT_WRAP_ROW] : 0u;
+    CADT_TEAM_FOR(k, 1u + (known >> 1)) { memory.arc[k] = k ? arcs[item * CADT_WRAP_ROW + k] : known; }
     if (cadt_team_lane == 0u)
-      memory.place = cadt_load_relaxed(failed) <= (list ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_HUBS)) &&
+      memory.place = cadt_load_relaxed(failed) <= (starts ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_HUBS)) &&
                              cadt_load_relaxed(done) <= effort * range.count + 4096u
                          ? 1u
                          : 0u;
@@ -338,32 +266,16 @@ CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
     cadt_u32 begin = 0u, size = 0u, kind = 0u;
     cadt_i32 side = 1;
     if (wanted) kind = cadt_wrap_star(&w, &begin, &size, &side);
-    const cadt_u32 words = kind == 2u ? size + 1u : size;
     const cadt_u32 exact = tally.count[CADT_COUNT_EXACT_INCIRCLES] + tally.count[CADT_COUNT_EXACT_ORIENTATIONS];
     if (exact != exact_before) cadt_add_relaxed(done, exact - exact_before);
     exact_before = exact;
     if (cadt_team_lane == 0u) {
       cadt_add_relaxed(done, w.looked);
-      if (kind) {
-        memory.place = words <= row ? begins[v] : n * row + cadt_add_relaxed(found, words);
-        begins[v] = memory.place;
-        sizes[v] = words;
-      } else {
-        cadt_add_relaxed(failed, list ? CADT_CAST(cadt_u32, CADT_SET_FAILURE) : 1u);
-      }
+      if (!kind) cadt_add_relaxed(failed, starts ? CADT_CAST(cadt_u32, CADT_SET_FAILURE) : 1u);
     }
-    CADT_TEAM_SYNC();
-    if (kind && memory.place + words <= link_words) { /* else the driver sees from found[0] that stars are wrong */
-      CADT_GLOBAL cadt_u32* link = links + memory.place;
-      CADT_TEAM_FOR(k, size) { link[k] = range.begin + memory.link[begin + (side > 0 ? k : size - 1u - k)]; }
-      if (cadt_team_lane == 0u && kind == 2u) link[size] = CADT_GHOST;
-    }
-    CADT_TEAM_SYNC();
+    cadt_wrap_store(&sink, &memory.place, v, range.begin, memory.link + begin, size, side > 0 ? 1u : 0u, kind);
   }
-  if (tally.count[CADT_COUNT_EXACT_ORIENTATIONS])
-    cadt_add_relaxed(found + 3, tally.count[CADT_COUNT_EXACT_ORIENTATIONS]);
-  if (tally.count[CADT_COUNT_EXACT_INCIRCLES]) cadt_add_relaxed(found + 4, tally.count[CADT_COUNT_EXACT_INCIRCLES]);
-  if (tally.count[CADT_COUNT_TIES]) cadt_add_relaxed(found + 5, tally.count[CADT_COUNT_TIES]);
+  cadt_wrap_pass_on(&tally, found);
 }
 
 #endif

@@ -107,20 +107,10 @@ class SetStage {
     const Allocation list = run_.memory.allocate(std::size_t{unproven_} * word);
     launch_.run(KernelId::cadt_set_list, c.items, ranks, list, count_, c.grain);
     ranks.release();
-    const std::size_t box_count = n_ / CADT_WRAP_BOX + set_count_ + 1,
-                      crate_count = n_ / (std::size_t{CADT_WRAP_BOX} * CADT_WRAP_CRATE) + set_count_;
-    const Allocation boxes = run_.memory.allocate(box_count * sizeof(cadt_box));
-    const Allocation crates = run_.memory.allocate(crate_count * sizeof(cadt_box));
-    const Allocation efforts = launch_.zeros(set_count_), found = launch_.zeros(CADT_WRAP_FOUND);
-    const Cut of_crates = launch_.cut_teams(crate_count, wrap_lanes), teams = launch_.cut_teams(unproven_, wrap_lanes);
-    launch_.run_in_groups(KernelId::cadt_wrap_boxes, of_crates.items, wrap_lanes, order_.points, count_,
-                          sets_.positions(), set_count_, static_cast<std::uint32_t>(crate_count), of_crates.grain,
-                          boxes, crates, Allocation(), Allocation());
-    const std::size_t link_words = n_ * (CADT_STAR_DEGREE + long_star_words);
-    launch_.run_in_groups(KernelId::cadt_wrap_stars, teams.items, wrap_lanes, order_.points, boxes, crates, count_,
-                          list, unproven_, sets_.positions(), set_count_, sets_.states, efforts, wrap_effort,
-                          teams.grain, static_cast<std::uint32_t>(CADT_STAR_DEGREE), stars_.links,
-                          static_cast<std::uint32_t>(link_words), begins_, stars_.sizes, found);
+    const Allocation found = launch_.zeros(CADT_WRAP_WORDS);
+    wrap_sets(
+        run_, order_.points, n_, {list, unproven_, sets_.positions(), sets_.states, set_count_},
+        {stars_.links, begins_, stars_.sizes, found, CADT_STAR_DEGREE, n_ * (CADT_STAR_DEGREE + long_star_words)});
     std::array<std::uint32_t, CADT_WRAP_FOUND> words{};
     run_.device.read(*found, 0, words.data(), sizeof words);
     run_.statistics.exact_orientations += words[3];

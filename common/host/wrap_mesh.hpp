@@ -17,6 +17,23 @@ constexpr std::uint32_t wrap_effort = 96;
 /// Points for which gift wrapping is faster than insertion; it looks at a share of all points for each.
 [[nodiscard]] std::size_t most_wrapped(const Device& device) noexcept;
 
+/// Where wrapped stars are put (common/device/wrap_store.h). `sizes` are 0; `found` has CADT_WRAP_WORDS words.
+struct WrappedStars {
+  const Allocation &links, &begins, &sizes, &found;
+  std::size_t row, link_words;
+};
+
+/// Of sets, those in `list`; the rest of the arrays as in common/device/sets.h.
+struct StarsOfSets {
+  const Allocation& list;
+  std::size_t list_size;
+  const Allocation &starts, &states;
+  std::size_t count;
+};
+
+/// Wraps the stars of these vertices; waits for nothing. `found` is 0.
+void wrap_sets(Run& run, const Allocation& points, std::size_t n, const StarsOfSets& sets, const WrappedStars& stars);
+
 /// The mesh of n distinct points in sorted order by gift wrapping (common/device/wrap.h), without locks; its edges have
 /// still to be certified. Nothing if the points are on a line or it would take too long: then insertion is to do it.
 [[nodiscard]] std::optional<DeviceMesh> wrap_mesh(Run& run, const Allocation& points, std::size_t n);

@@ -26,6 +26,8 @@ extern __device__ const uint3 threadIdx, blockIdx, blockDim, gridDim;
 __device__ unsigned atomicCAS(unsigned*, unsigned, unsigned);
 __device__ unsigned atomicAdd(unsigned*, unsigned);
 __device__ unsigned atomicMin(unsigned*, unsigned);
+__device__ unsigned __activemask();
+__device__ unsigned __reduce_min_sync(unsigned, unsigned);
 __device__ unsigned atomicOr(unsigned*, unsigned);
 __device__ void __threadfence();
 __device__ int __any_sync(unsigned, int);

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * For gift wrapping (wrap_near.h, wrap.h): points stand in boxes, and boxes in crates, so that those which a circle does
+ * not reach are passed over.
+ */
+#ifndef CADT_DEVICE_WRAP_BOXES_H
+#define CADT_DEVICE_WRAP_BOXES_H
+
+#include "common/device/mesh.h"
+#include "common/device/predicates.h"
+#include "common/device/sets.h"
+
+/* How far the points around a vertex are known: the square, in spacings of the points. */
+#define CADT_NEAR_SPACINGS 9.0
+
+/* The points among which stars are searched: all, or those of a set (sets.h). Every set begins a new box and a new
+ * crate, which leaves some numbers out. */
+typedef struct {
+  cadt_u32 begin, count; /* positions */
+  cadt_u32 box, crate;   /* the first ones */
+} cadt_wrap_range;
+
+/* `starts`: null for all n points. */
+CADT_FN cadt_wrap_range cadt_wrap_range_of(CADT_GLOBAL const cadt_u32* starts, cadt_u32 set, cadt_u32 n) {
+  cadt_wrap_range r;
+  r.begin = starts ? starts[set] : 0u;
+  r.count = starts ? starts[set + 1u] - r.begin : n;
+  r.box = starts ? r.begin / CADT_WRAP_BOX + set : 0u;
+  r.crate = starts ? r.begin / (CADT_WRAP_BOX * CADT_WRAP_CRATE) + set : 0u;
+  return r;
+}
+
+/* The last set whose first crate is not behind this one. */
+CADT_FN cadt_u32 cadt_wrap_set_of_crate(CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, cadt_u32 crate) {
+  cadt_u32 low = 0u, high = set_count;
+  while (high - low > 1u) {
+    const cadt_u32 middle = low + (high - low) / 2u;
+    if (cadt_wrap_range_of(starts, middle, 0u).crate <= crate)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+typedef struct {
+  CADT_GLOBAL const cadt_point* points; /* of a range, as the numbers of vertices, boxes and crates */
+  CADT_GLOBAL const cadt_box* boxes;    /* of CADT_WRAP_BOX points, */
+  CADT_GLOBAL const cadt_box* crates;   /* of CADT_WRAP_CRATE boxes */
+  cadt_u32 n, box_count, crate_count;
+} cadt_boxed;
+
+CADT_FN cadt_boxed cadt_boxed_of(const cadt_wrap_range range, CADT_GLOBAL const cadt_point* points,
+                                 CADT_GLOBAL const cadt_box* boxes, CADT_GLOBAL const cadt_box* crates) {
+  cadt_boxed in;
+  in.points = points + range.begin;
+  in.boxes = boxes + range.box;
+  in.crates = crates + range.crate;
+  in.n = range.count;
+  in.box_count = (range.count - 1u) / CADT_WRAP_BOX + 1u;
+  in.crate_count = (in.box_count - 1u) / CADT_WRAP_CRATE + 1u;
+  return in;
+}
+
+CADT_FN void cadt_box_add(cadt_box* box, const cadt_box other) {
+  if (other.low.x < box->low.x) box->low.x = other.low.x;
+  if (other.low.y < box->low.y) box->low.y = other.low.y;
+  if (other.high.x > box->high.x) box->high.x = other.high.x;
+  if (other.high.y > box->high.y) box->high.y = other.high.y;
+}
+
+/* The box of `count` of them, of which there is one. */
+CADT_FN cadt_box cadt_box_of_points(CADT_GLOBAL const cadt_point* points, cadt_u32 count) {
+  cadt_box box, point[CADT_WRAP_PART];
+  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_WRAP_PART); ++i) /* all at once: each wait is long */
+    point[i].low = point[i].high = points[i < count ? i : 0u];
+  box = point[0];
+  for (cadt_u32 i = 1u; i < CADT_CAST(cadt_u32, CADT_WRAP_PART); ++i) cadt_box_add(&box, point[i]);
+  return box;
+}
+
+CADT_FN cadt_box cadt_box_of_boxes(CADT_TEAM_PTR const cadt_box* boxes, cadt_u32 count) {
+  cadt_box box = boxes[0];
+  for (cadt_u32 i = 1u; i < count; ++i) cadt_box_add(&box, boxes[i]);
+  return box;
+}
+
+/* Boxes of CADT_WRAP_BOX points, and crates of CADT_WRAP_CRATE boxes: a team for each. Of all points also what
+ * the kernels of the stars expect to be 0, if it is given. */
+CADT_KERNEL(cadt_wrap_boxes, CADT_GLOBAL const cadt_point* points, cadt_u32 n, CADT_GLOBAL const cadt_u32* starts,
+            cadt_u32 set_count, cadt_u32 crate_count, cadt_u32 grain, CADT_GLOBAL cadt_box* boxes,
+            CADT_GLOBAL cadt_box* crates, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
+  CADT_TEAM_MEMORY cadt_box part[CADT_WRAP_CRATE * CADT_WRAP_PARTS];
+  CADT_TEAM_MEMORY cadt_box inside[CADT_WRAP_CRATE];
+  if (found && cadt_item == 0u)
+    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_WRAP_WORDS); ++k) found[k] = 0u;
+  CADT_FOR_TEAMS(crate, crate_count, grain) {
+    const cadt_wrap_range r =
+        cadt_wrap_range_of(starts, starts ? cadt_wrap_set_of_crate(starts, set_count, crate) : 0u, n);
+    const cadt_u32 begin = cadt_min_u32(r.count, (crate - r.crate) * CADT_WRAP_CRATE * CADT_WRAP_BOX);
+    const cadt_u32 count = cadt_min_u32(r.count - begin, CADT_WRAP_CRATE * CADT_WRAP_BOX);
+    const cadt_u32 parts = (count + CADT_WRAP_PART - 1u) / CADT_WRAP_PART,
+                   box_count = (count + CADT_WRAP_BOX - 1u) / CADT_WRAP_BOX;
+    CADT_TEAM_FOR(k, parts) {
+      part[k] = cadt_box_of_points(points + r.begin + begin + k * CADT_WRAP_PART, count - k * CADT_WRAP_PART);
+    }
+    CADT_TEAM_FOR(i, sizes ? count : 0u) { sizes[r.begin + begin + i] = 0u; }
+    CADT_TEAM_SYNC();
+    CADT_TEAM_FOR(j, box_count) {
+      inside[j] = cadt_box_of_boxes(part + j * CADT_WRAP_PARTS, cadt_min_u32(CADT_WRAP_PARTS, parts - j * CADT_WRAP_PARTS));
+      boxes[r.box + begin / CADT_WRAP_BOX + j] = inside[j];
+    }
+    CADT_TEAM_SYNC();
+    if (cadt_team_lane == 0u && count) crates[crate] = cadt_box_of_boxes(inside, box_count);
+    CADT_TEAM_SYNC();
+  }
+}
+
+/* A disc that contains the circle through p, a and b for certain; coordinates are from p. */
+typedef struct {
+  double x, y, square; /* centre, radius^2; not a finite number: the disc may be the plane */
+} cadt_disc;
+
+/* With u = 2^-53 and K = |a| |b| / |a x b|, which is at least 1, centre and radius are off by less than
+ * E = 24 u K (1 + K) (|a| + |b|) where K is known well. (r + E)^2 is at most (1 + 1e-6) r^2 + (1 + 1e6) E^2: no square
+ * roots. */
+CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
+  const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
+  const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;
+  const double scale = 0.5 / (ax * by - ay * bx), kk = 4.0 * (aa * scale) * (bb * scale); /* K^2 */
+  cadt_disc d;
+  d.x = (by * aa - ay * bb) * scale;
+  d.y = (ax * bb - bx * aa) * scale;
+  d.square = (d.x * d.x + d.y * d.y) * (1.0 + 2e-6) + 1e-22 * kk * (1.0 + kk) * (aa + bb);
+  if (!(kk < 1e24)) d.square = CADT_CAST(double, CADT_INFINITY);
+  return d;
+}
+
+/* Whether points of the box can lie in the disc and to the side (1 left, -1 right, 0 either) of the line from p to
+ * p + (ax, ay). A comparison with what is not a number does not exclude them. */
+CADT_FN cadt_u32 cadt_box_matters(const cadt_box box, cadt_point p, double ax, double ay, double side,
+                                  const cadt_disc* disc) {
+  const double low_x = box.low.x - p.x, low_y = box.low.y - p.y, high_x = box.high.x - p.x, high_y = box.high.y - p.y;
+  const double left = ax * (ax * side > 0.0 ? high_y : low_y), right = ay * (ay * side > 0.0 ? low_x : high_x);
+  /* or none beyond a line along an axis: both are 0 */
+  if (side != 0.0 && (left - right) * side <= -1e-15 * (cadt_fabs(left) + cadt_fabs(right))) return 0u;
+  double x = low_x - disc->x, y = low_y - disc->y;
+  if (x < 0.0) x = disc->x > high_x ? disc->x - high_x : 0.0;
+  if (y < 0.0) y = disc->y > high_y ? disc->y - high_y : 0.0;
+  return x * x + y * y > disc->square ? 0u : 1u;
+}
+
+typedef struct {
+  double square; /* of the distance up to which all points are known; negative: they are not */
+  double unit;   /* factor for single precision */
+} cadt_reach_around;
+
+/* How far the points around p are to be known: three times the distance at which points lie, by the box of p and those
+ * beside it in sorted order, which may stretch over a gap of the curve. */
+CADT_FN cadt_reach_around cadt_wrap_reach(const cadt_boxed* in, cadt_u32 p) {
+  const cadt_u32 own = p / CADT_WRAP_BOX, end = cadt_min_u32(own + 2u, in->box_count);
+  double spacing = CADT_CAST(double, CADT_INFINITY), longest = 0.0;
+  for (cadt_u32 b = own ? own - 1u : 0u; b < end; ++b) {
+    const cadt_box box = in->boxes[b];
+    const double wide = box.high.x - box.low.x, high = box.high.y - box.low.y, longer = wide > high ? wide : high;
+    const double inverse = 1.0 / CADT_CAST(double, cadt_min_u32(CADT_WRAP_BOX, in->n - b * CADT_WRAP_BOX));
+    const double area = wide * high * inverse, line = longer * longer * inverse * inverse;
+    const double square = area > line ? area : line;
+    spacing = square < spacing ? square : spacing;
+    longest = longer > longest ? longer : longest;
+  }
+  const cadt_u32 all = in->n <= CADT_CAST(cadt_u32, CADT_NEAR_POINTS) ? 1u : 0u;
+  cadt_reach_around reach;
+  reach.square = all ? CADT_CAST(double, CADT_INFINITY) : CADT_NEAR_SPACINGS * spacing;
+  reach.unit = 1.0 / (all ? longest : cadt_sqrt(reach.square));
+  return reach;
+}
+
+/* The point c as one behind a, both from p in the unit: the cotangent of the angle at which it sees p and a, as a number
+ * that can be compared. With `nearest` its distance. CADT_NONE if it is not on that side. */
+CADT_FN cadt_u32 cadt_wrap_key(float ax, float ay, float cx, float cy, cadt_i32 side, cadt_u32 nearest) {
+  const float cross = side > 0 ? ax * cy - ay * cx : ay * cx - ax * cy, dot = cx * (cx - ax) + cy * (cy - ay);
+  const float square = cx * cx + cy * cy, value = nearest ? square : dot * cadt_about_inverse(cross);
+  if (!((nearest ? square : cross) > 0.0f && cadt_fabsf(value) < 3e38f)) return CADT_NONE; /* p and a as well */
+  const cadt_u32 bits = cadt_bits_of_float(value);
+  return bits >> 31 ? ~bits : bits | 0x80000000u;
+}
+
+/* What lanes find out together from one barrier to the next: the least of their values, and how many they count. It can
+ * be read until the end of the next step, so that a step takes one barrier. */
+typedef struct {
+  cadt_u32 least[3], count[3]; /* of a step, of the next one, of the one after it */
+} cadt_steps;
+
+/* \pre a barrier follows, and nobody uses the last steps any more */
+CADT_FN void cadt_begin_steps(CADT_TEAM_PTR cadt_steps* steps) {
+  if (cadt_team_lane != 0u) return;
+  steps->least[0] = CADT_NONE;
+  steps->count[0] = 0u;
+}
+
+/* Ends step `*now`, with a value or CADT_NONE. */
+CADT_FN cadt_u32 cadt_end_step(CADT_TEAM_PTR cadt_steps* steps, cadt_u32* now, cadt_u32 value, cadt_u32* count) {
+  const cadt_u32 this_one = *now, next = this_one == 2u ? 0u : this_one + 1u;
+  if (cadt_team_lane == 0u) {
+    steps->least[next] = CADT_NONE;
+    steps->count[next] = 0u;
+  }
+  cadt_team_least(&steps->least[this_one], value);
+  CADT_TEAM_SYNC();
+  *now = next;
+  *count = steps->count[this_one];
+  return steps->least[this_one];
+}
+
+#endif

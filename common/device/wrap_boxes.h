@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * For gift wrapping (wrap_near.h, wrap.h): points stand in boxes, and boxes in crates, so that those which a circle does
- * not reach are passed over.
+ * For gift wrapping (wrap_near.h, wrap.h): points stand in boxes, and boxes in crates, so that those which a circle
+ * does not reach are passed over.
  */
 #ifndef CADT_DEVICE_WRAP_BOXES_H
 #define CADT_DEVICE_WRAP_BOXES_H
@@ -107,7 +107,8 @@ CADT_KERNEL(cadt_wrap_boxes, CADT_GLOBAL const cadt_point* points, cadt_u32 n, C
     CADT_TEAM_FOR(i, sizes ? count : 0u) { sizes[r.begin + begin + i] = 0u; }
     CADT_TEAM_SYNC();
     CADT_TEAM_FOR(j, box_count) {
-      inside[j] = cadt_box_of_boxes(part + j * CADT_WRAP_PARTS, cadt_min_u32(CADT_WRAP_PARTS, parts - j * CADT_WRAP_PARTS));
+      inside[j] =
+          cadt_box_of_boxes(part + j * CADT_WRAP_PARTS, cadt_min_u32(CADT_WRAP_PARTS, parts - j * CADT_WRAP_PARTS));
       boxes[r.box + begin / CADT_WRAP_BOX + j] = inside[j];
     }
     CADT_TEAM_SYNC();
@@ -176,8 +177,8 @@ CADT_FN cadt_reach_around cadt_wrap_reach(const cadt_boxed* in, cadt_u32 p) {
   return reach;
 }
 
-/* The point c as one behind a, both from p in the unit: the cotangent of the angle at which it sees p and a, as a number
- * that can be compared. With `nearest` its distance. CADT_NONE if it is not on that side. */
+/* The point c as one behind a, both from p in the unit: the cotangent of the angle at which it sees p and a, as a
+ * number that can be compared. With `nearest` its distance. CADT_NONE if it is not on that side. */
 CADT_FN cadt_u32 cadt_wrap_key(float ax, float ay, float cx, float cy, cadt_i32 side, cadt_u32 nearest) {
   const float cross = side > 0 ? ax * cy - ay * cx : ay * cx - ax * cy, dot = cx * (cx - ax) + cy * (cy - ay);
   const float square = cx * cx + cy * cy, value = nearest ? square : dot * cadt_about_inverse(cross);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Stars by gift wrapping in single precision, checked as a whole: a team for each vertex p. It wraps the points around p.
- * Then exact predicates say of each triangle that no other point is in its circle, which mostly is so small that all of
- * its points are known. Other stars, and those that rounded numbers do not find, are left to cadt_wrap_stars, which
+ * Stars by gift wrapping in single precision, checked as a whole: a team for each vertex p. It wraps the points around
+ * p. Then exact predicates say of each triangle that no other point is in its circle, which mostly is so small that all
+ * of its points are known. Other stars, and those that rounded numbers do not find, are left to cadt_wrap_stars, which
  * decides each step exactly but takes over the triangles that are proven (docs/algorithm.md, "Gift wrapping").
  */
 #ifndef CADT_DEVICE_WRAP_NEAR_H
@@ -14,8 +14,8 @@ typedef struct {
   float x[CADT_NEAR_POINTS], y[CADT_NEAR_POINTS]; /* from p, in the unit */
   cadt_u32 at[CADT_NEAR_POINTS];
   cadt_u32 link[2 * CADT_WRAP_DEGREE]; /* places of the neighbours, counterclockwise; the first one is in the middle */
-  cadt_disc disc[CADT_WRAP_DEGREE];   /* of the triangles, */
-  cadt_u32 proven[CADT_WRAP_DEGREE];  /* and whether they are Delaunay for certain */
+  cadt_disc disc[CADT_WRAP_DEGREE];    /* of the triangles, */
+  cadt_u32 proven[CADT_WRAP_DEGREE];   /* and whether they are Delaunay for certain */
   cadt_u32 crates[CADT_WRAP_CRATES], boxes[CADT_NEAR_BOXES];
   cadt_steps steps;
   cadt_u32 place;
@@ -127,8 +127,8 @@ CADT_FN cadt_u32 cadt_near_wrap(cadt_near* w) {
   return sense && w->size >= 2u + w->closed ? 1u : 0u;
 }
 
-/* Triangles of the star. Of one on the hull there is one fewer than neighbours, and what comes last are the two edges of
- * the hull, behind its last neighbour and before its first. */
+/* Triangles of the star. Of one on the hull there is one fewer than neighbours, and what comes last are the two edges
+ * of the hull, behind its last neighbour and before its first. */
 CADT_FN cadt_u32 cadt_near_triangles(const cadt_near* w) { return w->closed ? w->size : w->size - 1u; }
 /* The neighbour `k`, or the first one behind the last. */
 CADT_FN cadt_u32 cadt_near_neighbor(const cadt_near* w, cadt_u32 k) {
@@ -178,8 +178,8 @@ CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w) {
   return cadt_near_end_step(w, wrong, &count) == CADT_NONE ? 1u : 0u;
 }
 
-/* Searches the star of w->p; returns its kind (wrap_store.h), 0 if it is not found this way: then there are triangles of
- * which those are right that are proven. */
+/* Searches the star of w->p; returns its kind (wrap_store.h), 0 if it is not found this way: then there are triangles
+ * of which those are right that are proven. */
 CADT_FN cadt_u32 cadt_near_star(cadt_near* w) {
   const cadt_u32 all = w->reach.square == CADT_CAST(double, CADT_INFINITY) ? 1u : 0u;
   if (!cadt_near_gather(w)) w->known = 0u;
@@ -223,11 +223,10 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
       const cadt_u32 neighbor = cadt_near_neighbor(&w, k);
       memory.boxes[k] = neighbor;
       if (!kind && noted)
-        arcs[memory.place * CADT_WRAP_ROW + 1u + k] = CADT_CAST(
-            cadt_u16, neighbor | (k < cadt_near_triangles(&w) && memory.proven[k] ? CADT_WRAP_PROVEN : 0u));
+        arcs[memory.place * CADT_WRAP_ROW + 1u + k] =
+            CADT_CAST(cadt_u16, neighbor | (k < cadt_near_triangles(&w) && memory.proven[k] ? CADT_WRAP_PROVEN : 0u));
     }
-    if (cadt_team_lane == 0u && !kind)
-      arcs[memory.place * CADT_WRAP_ROW] = CADT_CAST(cadt_u16, noted << 1 | w.closed);
+    if (cadt_team_lane == 0u && !kind) arcs[memory.place * CADT_WRAP_ROW] = CADT_CAST(cadt_u16, noted << 1 | w.closed);
     cadt_wrap_store(&sink, &memory.place, v, 0u, memory.boxes, w.size, 1u, kind);
   }
   cadt_wrap_pass_on(&tally, found);

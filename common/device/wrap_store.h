@@ -2,8 +2,8 @@
  *
  * Where the kernels of gift wrapping (wrap_near.h, wrap.h) put a star: sizes[v] words from links[begins[v]] on,
  * CADT_GHOST behind the last neighbour on the hull. Stars of at most `row` words have begins[v] already, longer ones
- * stand behind the rows. found: words used behind them, vertices without a star, effort: boxes looked at and exact tests;
- * exact orientations, exact incircles, ties; edges between two without stars; stars left to do.
+ * stand behind the rows. found: words used behind them, vertices without a star, effort: boxes looked at and exact
+ * tests; exact orientations, exact incircles, ties; edges between two without stars; stars left to do.
  */
 #ifndef CADT_DEVICE_WRAP_STORE_H
 #define CADT_DEVICE_WRAP_STORE_H
@@ -36,8 +36,8 @@ CADT_FN cadt_wrap_sink cadt_wrap_sink_of(cadt_u32 n, cadt_u32 row, CADT_GLOBAL c
   return s;
 }
 
-/* The star of v: `size` neighbours, counterclockwise or not, by their numbers in a range that begins at `first`. Kind 0:
- * there is none; 2: v is on the hull. All lanes call it; there is a barrier before what it writes to *place. */
+/* The star of v: `size` neighbours, counterclockwise or not, by their numbers in a range that begins at `first`. Kind
+ * 0: there is none; 2: v is on the hull. All lanes call it; there is a barrier before what it writes to *place. */
 CADT_FN void cadt_wrap_store(const cadt_wrap_sink* s, CADT_TEAM_PTR cadt_u32* place, cadt_u32 v, cadt_u32 first,
                              CADT_TEAM_PTR const cadt_u32* star, cadt_u32 size, cadt_u32 counterclockwise,
                              cadt_u32 kind) {

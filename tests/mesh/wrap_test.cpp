@@ -82,6 +82,21 @@ TEST_P(Wrap, LongThinSets) {
   }
 }
 
+// What is beyond an edge of the hull by less than single precision, or on its line.
+TEST_P(Wrap, HullsAlmostStraight) {
+  for (const double bump : {1e-5, 1e-9, 1e-13, 0.0}) {
+    for (const std::size_t columns : {8u, 15u, 60u}) {  // 24 and 45 points are known to every team, 180 are not
+      const Points noise = uniform_points(3 * columns, columns);
+      Points xy;
+      for (std::size_t i = 0; i < columns; ++i) {
+        const double x = static_cast<double>(i), *r = noise.data() + 6 * i;
+        xy.insert(xy.end(), {x + 0.3 * r[0], bump * r[1], x + r[2], 1 + r[3], x + 0.3 * r[4], 3 - bump * r[5]});
+      }
+      check(shuffled(xy, 3));
+    }
+  }
+}
+
 TEST_P(Wrap, FarApart) { check(two_clusters(1500)); }
 TEST_P(Wrap, OneCell) { check(skewed_points(1500)); }
 TEST_P(Wrap, Duplicates) {

@@ -65,6 +65,23 @@ struct Boxes {
   }
 };
 
+/// All stars of one set of at most 2^15 points; `sizes` and `found` need not be 0 before.
+void wrap_all(Run& run, const Allocation& points, std::size_t n, const WrappedStars& stars) {
+  Launcher& launch = run.launcher;
+  const Allocation none, todo = run.memory.allocate(n * word),
+                         arcs = run.memory.allocate(n * CADT_WRAP_ROW * sizeof(std::uint16_t));
+  const Boxes boxes(run, points, n, none, 0, stars.sizes, stars.found);
+  const auto count = static_cast<std::uint32_t>(n), link_words = static_cast<std::uint32_t>(stars.link_words);
+  const Cut teams = launch.cut_teams(n, wrap_lanes);
+  launch.run_in_groups(KernelId::cadt_wrap_near, teams.items, wrap_lanes, points, boxes.boxes, boxes.crates, count,
+                       teams.grain, stars.links, link_words, stars.begins, stars.sizes, todo, arcs, stars.found);
+  // How many are left is known on the device only.
+  const Cut rest = run.device.shape().contiguous ? teams : launch.cut_teams(std::min(n, most_teams), rest_lanes);
+  launch.run_in_groups(KernelId::cadt_wrap_stars, rest.items, rest_lanes, points, boxes.boxes, boxes.crates, count,
+                       todo, 0U, arcs, none, 0U, none, none, wrap_effort, rest.grain, 0U, stars.links, link_words,
+                       stars.begins, stars.sizes, stars.found);
+}
+
 }  // namespace
 
 std::size_t most_wrapped(const Device& device) noexcept { return device.shape().contiguous ? 2048 : 32768; }
@@ -79,23 +96,6 @@ void wrap_sets(Run& run, const Allocation& points, std::size_t n, const StarsOfS
                              static_cast<std::uint32_t>(sets.count), sets.states, efforts, wrap_effort, teams.grain,
                              static_cast<std::uint32_t>(stars.row), stars.links,
                              static_cast<std::uint32_t>(stars.link_words), stars.begins, stars.sizes, stars.found);
-}
-
-/// All stars of one set of at most 2^15 points; `sizes` and `found` need not be 0 before.
-static void wrap_all(Run& run, const Allocation& points, std::size_t n, const WrappedStars& stars) {
-  Launcher& launch = run.launcher;
-  const Allocation none, todo = run.memory.allocate(n * word),
-                         arcs = run.memory.allocate(n * CADT_WRAP_ROW * sizeof(std::uint16_t));
-  const Boxes boxes(run, points, n, none, 0, stars.sizes, stars.found);
-  const auto count = static_cast<std::uint32_t>(n), link_words = static_cast<std::uint32_t>(stars.link_words);
-  const Cut teams = launch.cut_teams(n, wrap_lanes);
-  launch.run_in_groups(KernelId::cadt_wrap_near, teams.items, wrap_lanes, points, boxes.boxes, boxes.crates, count,
-                       teams.grain, stars.links, link_words, stars.begins, stars.sizes, todo, arcs, stars.found);
-  // How many are left is known on the device only.
-  const Cut rest = run.device.shape().contiguous ? teams : launch.cut_teams(std::min(n, most_teams), rest_lanes);
-  launch.run_in_groups(KernelId::cadt_wrap_stars, rest.items, rest_lanes, points, boxes.boxes, boxes.crates, count,
-                       todo, 0U, arcs, none, 0U, none, none, wrap_effort, rest.grain, 0U, stars.links, link_words,
-                       stars.begins, stars.sizes, stars.found);
 }
 
 std::optional<DeviceMesh> wrap_mesh(Run& run, const Allocation& points, std::size_t n) {

@@ -82,7 +82,7 @@ TEST_P(Wrap, LongThinSets) {
   }
 }
 
-// What is beyond an edge of the hull by less than single precision, or on its line.
+// What is beyond an edge of the hull by less than single precision can tell, where that is not along an axis.
 TEST_P(Wrap, HullsAlmostStraight) {
   for (const double bump : {1e-5, 1e-9, 1e-13, 0.0}) {
     for (const std::size_t columns : {8u, 15u, 60u}) {  // 24 and 45 points are known to every team, 180 are not
@@ -91,6 +91,11 @@ TEST_P(Wrap, HullsAlmostStraight) {
       for (std::size_t i = 0; i < columns; ++i) {
         const double x = static_cast<double>(i), *r = noise.data() + 6 * i;
         xy.insert(xy.end(), {x + 0.3 * r[0], bump * r[1], x + r[2], 1 + r[3], x + 0.3 * r[4], 3 - bump * r[5]});
+      }
+      for (std::size_t i = 0; i < xy.size(); i += 2) {
+        const double x = xy[i], y = xy[i + 1];
+        xy[i] = 0.8 * x - 0.6 * y;
+        xy[i + 1] = 0.6 * x + 0.8 * y;
       }
       check(shuffled(xy, 3));
     }
@@ -114,6 +119,20 @@ TEST_P(Wrap, Hubs) {
     EXPECT_EQ(s.wrapped_stars, neighbours);
     EXPECT_EQ(s.splits + s.edge_splits, 0u);
   }
+}
+// More neighbours than are noted for the exact steps, and circles that reach beyond the points around a vertex.
+TEST_P(Wrap, ManyNeighboursAndWideCircles) {
+  Points xy;
+  for (std::size_t hub = 0; hub < 30; ++hub) {
+    Points one = noisy_hub(22 + hub % 14);
+    for (std::size_t i = 0; i < one.size(); i += 2) {
+      const double stretch = i % 6 == 0 ? 40 : 1;  // few neighbours are near
+      one[i] = stretch * one[i] + 100 * static_cast<double>(hub % 6);
+      one[i + 1] = stretch * one[i + 1] + 100 * static_cast<double>(hub / 6);
+    }
+    xy.insert(xy.end(), one.begin(), one.end());
+  }
+  check(xy);
 }
 TEST_P(Wrap, HubsOnTheHull) {
   EXPECT_EQ(check(fan(30)).wrapped_stars, 31u);

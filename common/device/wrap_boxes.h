@@ -164,7 +164,9 @@ CADT_FN cadt_reach_around cadt_wrap_reach(const cadt_boxed* in, cadt_u32 p) {
   for (cadt_u32 b = own ? own - 1u : 0u; b < end; ++b) {
     const cadt_box box = in->boxes[b];
     const double wide = box.high.x - box.low.x, high = box.high.y - box.low.y, longer = wide > high ? wide : high;
-    const double inverse = 1.0 / CADT_CAST(double, cadt_min_u32(CADT_WRAP_BOX, in->n - b * CADT_WRAP_BOX));
+    const cadt_u32 count = cadt_min_u32(CADT_WRAP_BOX, in->n - b * CADT_WRAP_BOX);
+    if (b && 2u * count < CADT_CAST(cadt_u32, CADT_WRAP_BOX)) continue; /* too few to tell */
+    const double inverse = 1.0 / CADT_CAST(double, count);
     const double area = wide * high * inverse, line = longer * longer * inverse * inverse;
     const double square = area > line ? area : line;
     spacing = square < spacing ? square : spacing;

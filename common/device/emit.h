@@ -19,8 +19,9 @@ typedef struct {
   cadt_u32 second, record;
 } cadt_member;
 
+/* `labels` null: these are input indices. */
 CADT_FN cadt_triangle cadt_label(CADT_GLOBAL const cadt_u32* labels, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2) {
-  const cadt_u32 x = labels[v0], y = labels[v1], z = labels[v2];
+  const cadt_u32 x = labels ? labels[v0] : v0, y = labels ? labels[v1] : v1, z = labels ? labels[v2] : v2;
   cadt_triangle t;
   t.slot = x < y ? (x < z ? 0u : 2u) : (y < z ? 1u : 2u);
   t.a = CADT_PICK(t.slot, x, y, z);
@@ -73,23 +74,42 @@ CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_record* records, CADT_G
   CADT_FLIPS_END(bins, flips);
 }
 
-/* Puts each real triangle in its bucket: (second vertex, record). \pre buckets are scanned (their beginnings); \post
- * their ends, or still their beginnings where places are known */
+/* Cuts scanned buckets in `parts` with about as many triangles each. cuts[2 * k]: the first bucket of part k, and the
+ * first triangle; at the end those behind the last. \pre there are triangles */
+CADT_KERNEL(cadt_cut_buckets, CADT_GLOBAL const cadt_u32* buckets, cadt_u32 count, cadt_u32 triangles, cadt_u32 parts,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* cuts) {
+  if (cadt_item == 0u) cuts[0] = cuts[1] = 0u;
+  CADT_FOR(v, count, grain) {
+    const cadt_u32 end = buckets[v + 1u];
+    const cadt_u32 before = CADT_CAST(cadt_u32, CADT_CAST(cadt_u64, buckets[v]) * parts / triangles);
+    const cadt_u32 after = CADT_CAST(cadt_u32, CADT_CAST(cadt_u64, end) * parts / triangles);
+    for (cadt_u32 k = before + 1u; k <= after; ++k) {
+      cuts[2u * k] = v + 1u;
+      cuts[2u * k + 1u] = end;
+    }
+  }
+}
+
+/* Puts each real triangle of `size` buckets from `from` on, whose first is triangle `base`, in its bucket: (second
+ * vertex, record). \pre buckets are scanned (their beginnings); \post their ends, or still their beginnings where
+ * places are known */
 CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_record* records, CADT_GLOBAL const cadt_u32* vertices,
             CADT_GLOBAL const cadt_u32* labels, CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL const cadt_u32* places,
-            CADT_GLOBAL cadt_member* members, cadt_u32 count, cadt_u32 grain) {
+            CADT_GLOBAL cadt_member* members, cadt_u32 from, cadt_u32 size, cadt_u32 base, cadt_u32 count,
+            cadt_u32 grain) {
   CADT_FOR(t, count, grain) {
     cadt_record r;
     cadt_read_vertices(records, vertices, t, &r);
     if (!cadt_is_real(&r)) continue;
     const cadt_triangle label = cadt_label(labels, r.word[0], r.word[1], r.word[2]);
+    if (label.a - from >= size) continue;
     cadt_member member;
     member.second = label.b;
     member.record = t;
 #if CADT_PLACES_KNOWN
-    members[buckets[label.a] + places[t]] = member;
+    members[buckets[label.a] + places[t] - base] = member;
 #else
-    members[cadt_add_relaxed(buckets + label.a, 1u)] = member;
+    members[cadt_add_relaxed(buckets + label.a, 1u) - base] = member;
 #endif
   }
 }
@@ -119,11 +139,13 @@ CADT_FN cadt_u32 cadt_bucket_begin(CADT_GLOBAL const cadt_u32* buckets, cadt_u32
 #endif
 }
 
-CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 count,
-            cadt_u32 grain) {
-  CADT_FOR(v, count, grain) {
-    const cadt_u32 begin = cadt_bucket_begin(buckets, v), size = cadt_bucket_begin(buckets, v + 1u) - begin;
-    CADT_GLOBAL cadt_member* bucket = members + begin;
+/* `size` buckets from `from` on; the first is at members. */
+CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 from,
+            cadt_u32 count, cadt_u32 base, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 begin = cadt_bucket_begin(buckets, from + i);
+    const cadt_u32 size = cadt_bucket_begin(buckets, from + i + 1u) - begin;
+    CADT_GLOBAL cadt_member* bucket = members + (begin - base);
     if (size <= CADT_CAST(cadt_u32, CADT_SHORT_BUCKET)) {
       for (cadt_u32 e = 1u; e < size; ++e) {
         const cadt_member moving = bucket[e];
@@ -143,10 +165,10 @@ CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL 
   }
 }
 
-/* numbers[record] = index of the triangle. \pre numbers are CADT_NONE */
-CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_GLOBAL cadt_u32* numbers,
+/* numbers[record] = index of the triangle. \pre numbers of ghosts are CADT_NONE */
+CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_GLOBAL cadt_u32* numbers, cadt_u32 base,
             cadt_u32 count, cadt_u32 grain) {
-  CADT_FOR(i, count, grain) { numbers[members[i].record] = i; }
+  CADT_FOR(i, count, grain) { numbers[members[i].record] = base + i; }
 }
 
 /* Writes a triangle to its place. n0, n1, n2: the triangles across the edges as the mesh has them. */
@@ -236,6 +258,21 @@ CADT_KERNEL(cadt_emit_arrays, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL 
     }
     cadt_emit(label, first + (numbers ? numbers[t] : t), n0, n1, n2, triangles, neighbors);
   }
+}
+
+/* Moves the triangles of a finished array to their places in three steps, one for each word `k` of a triangle, by way
+ * of `moved`: it costs more time than a second array, and a third of its memory. `links`: the words are triangles. */
+CADT_KERNEL(cadt_move_words, CADT_GLOBAL const cadt_u32* words, CADT_GLOBAL const cadt_u32* numbers, cadt_u32 k,
+            cadt_u32 links, CADT_GLOBAL cadt_u32* moved, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(t, count, grain) {
+    const cadt_u32 value = cadt_word_of_three(words, t, k);
+    moved[numbers[t]] = links && value != CADT_NONE ? numbers[value] : value;
+  }
+}
+
+CADT_KERNEL(cadt_put_words, CADT_GLOBAL const cadt_u32* moved, CADT_GLOBAL cadt_u32* words, cadt_u32 k, cadt_u32 count,
+            cadt_u32 grain) {
+  CADT_FOR(t, count, grain) { words[3u * t + k] = moved[t]; }
 }
 
 /* Edges of the boundary counterclockwise as pairs of input indices, in any order. `size` counts them. */

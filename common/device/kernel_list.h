@@ -74,6 +74,7 @@
   X(cadt_set_records)       /* sets.h */                                             \
   X(cadt_set_shift)         /* sets.h: numbers in the set */                         \
   X(cadt_count_triangles)   /* emit.h */                                             \
+  X(cadt_cut_buckets)       /* emit.h */                                             \
   X(cadt_bucket_triangles)  /* emit.h: canonical order */                            \
   X(cadt_sort_buckets)      /* emit.h */                                             \
   X(cadt_number_triangles)  /* emit.h */                                             \
@@ -81,6 +82,8 @@
   X(cadt_flag_triangles)    /* emit.h: order of the records */                       \
   X(cadt_emit_ranked)       /* emit.h */                                             \
   X(cadt_emit_arrays)       /* emit.h */                                             \
+  X(cadt_move_words)        /* emit.h: in place, where memory is short */            \
+  X(cadt_put_words)         /* emit.h */                                             \
   X(cadt_boundary_edges)    /* emit.h */                                             \
   X(cadt_verify_structure)  /* verify.h: ranges, neighbours, used points */          \
   X(cadt_verify_points)     /* verify.h */                                           \

@@ -29,7 +29,9 @@ enum {
   CADT_RECORD_LANES = 128,
   CADT_TRIANGLES_OF_TEAM = 320,
   /* Words for the stars of a tile: 6 a vertex on average, and these for what some tiles have more. */
-  CADT_STAR_SPARE = 8
+  CADT_STAR_SPARE = 8,
+  /* Words before the stars of the first tile, so that vertices of triangles can take the place of stars in order. */
+  CADT_STAR_LEAD = 8192
 };
 
 /* Gift wrapping (wrap.h). */

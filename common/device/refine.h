@@ -72,9 +72,9 @@ CADT_KERNEL(cadt_crowded_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL
   if (sum) cadt_add_relaxed(fresh, sum);
 }
 
-CADT_KERNEL(cadt_copy_words, CADT_GLOBAL const cadt_u32* in, CADT_GLOBAL cadt_u32* out, cadt_u32 count,
+CADT_KERNEL(cadt_copy_words, CADT_GLOBAL const cadt_u32* in, CADT_GLOBAL cadt_u32* out, cadt_u32 first, cadt_u32 count,
             cadt_u32 grain) {
-  CADT_FOR(j, count, grain) { out[j] = in[j]; }
+  CADT_FOR(j, count, grain) { out[first + j] = in[j]; }
 }
 
 /* 0, 1, 2, ... */

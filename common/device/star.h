@@ -390,7 +390,9 @@ typedef struct {
 } cadt_star_pool;
 
 /* Where the part of tile t begins, whose first position is `begin`. */
-CADT_FN cadt_u32 cadt_pool_of_tile(cadt_u32 t, cadt_u32 begin) { return 6u * begin + begin / 8u + CADT_STAR_SPARE * t; }
+CADT_FN cadt_u32 cadt_pool_of_tile(cadt_u32 t, cadt_u32 begin) {
+  return CADT_STAR_LEAD + 6u * begin + begin / 8u + CADT_STAR_SPARE * t;
+}
 
 /* 0 if there is no room. */
 CADT_FN cadt_u32 cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, const cadt_star_pool* pool) {

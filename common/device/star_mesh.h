@@ -220,9 +220,10 @@ CADT_TEAM_KERNEL(CADT_RECORD_LANES, 12, cadt_star_links, CADT_GLOBAL const cadt_
   }
 }
 
-/* Vertices of the same triangles: the owner and two of its neighbours. A kernel of its own, for which bases can go:
- * they and these vertices would be more memory than there is at any other time. So a vertex counts the triangles of
- * those before it in its group, by blocks. */
+/* Vertices of the same triangles, of `groups` groups from `from` on: the owner and two of its neighbours. They begin at
+ * mesh_vertices with the first of these groups. A kernel of its own, for which bases can go: they and these vertices
+ * would be more memory than there is at any other time. So a vertex counts the triangles of those before it in its
+ * group, by blocks. */
 enum { CADT_OWNED_BLOCK = 16, CADT_OWNED_BLOCKS = CADT_RECORD_LANES / CADT_OWNED_BLOCK };
 
 typedef struct {
@@ -232,13 +233,15 @@ typedef struct {
 
 CADT_TEAM_KERNEL(CADT_RECORD_LANES, 16, cadt_star_vertices, CADT_GLOBAL const cadt_u32* links,
                  CADT_GLOBAL const cadt_u32* begins, CADT_GLOBAL const cadt_u16* marks,
-                 CADT_GLOBAL const cadt_u32* firsts, cadt_u32 n, cadt_u32 groups, cadt_u32 grain,
+                 CADT_GLOBAL const cadt_u32* firsts, cadt_u32 n, cadt_u32 from, cadt_u32 groups, cadt_u32 grain,
                  CADT_GLOBAL cadt_u32* mesh_vertices) {
   CADT_TEAM_MEMORY cadt_vertex_page memory;
-  CADT_FOR_TEAMS(t, groups, grain) {
-    const cadt_u32 begin = t * CADT_RECORD_LANES, vertices = cadt_min_u32(CADT_RECORD_LANES, n - begin);
-    const cadt_triangle_sink sink =
-        cadt_sink_of(&memory.page, mesh_vertices, firsts[t], firsts[t + 1u], firsts[groups]);
+  const cadt_u32 base = firsts[from];
+  CADT_FOR_TEAMS(g, groups, grain) {
+    const cadt_u32 t = from + g, begin = t * CADT_RECORD_LANES;
+    const cadt_u32 vertices = cadt_min_u32(CADT_RECORD_LANES, n - begin);
+    const cadt_triangle_sink sink = cadt_sink_of(&memory.page, mesh_vertices, firsts[t] - base, firsts[t + 1u] - base,
+                                                 firsts[from + groups] - base);
     CADT_TEAM_FOR(i, CADT_CAST(cadt_u32, CADT_RECORD_LANES)) {
       memory.owned[i] = i < vertices ? cadt_popcount(CADT_MARK_OWNED(marks[begin + i])) : 0u;
     }

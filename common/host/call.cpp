@@ -41,7 +41,10 @@ void require_rules(const Options& options, const Device& device) {
 
 std::size_t least_bytes(std::size_t n, bool result_elsewhere) { return fixed + n * (result_elsewhere ? 97 : 124); }
 
-std::size_t star_bytes(std::size_t n, bool input_stays) { return 2 * fixed + n * (input_stays ? 85 : 101); }
+std::size_t star_bytes(std::size_t n, bool input_stays, bool saves_memory) {
+  const std::size_t each = saves_memory ? (input_stays ? 71 : 83) : (input_stays ? 85 : 101);
+  return 2 * fixed + n * each;
+}
 
 bool prefers_stars(const Options& options, const Device& device) {
   if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
@@ -71,8 +74,7 @@ void require_size(std::size_t points) {
 }
 
 void begin_account(Triangulator::State& state, std::size_t n) {
-  if (state.memory.dropped())
-    state.known_points = state.known_star_points = state.known_batch_points = state.reserved_points = 0;
+  if (state.memory.dropped()) state.forget_sizes();
   state.memory.begin(state.options.max_memory, n <= state.reserved_points);
 }
 
@@ -103,12 +105,19 @@ void require_buffer(const Triangulator::State& state, std::size_t bytes) {
                     bytes, static_cast<std::size_t>(info.largest_buffer_bytes));
 }
 
-void require_memory(Triangulator::State& state, std::size_t n, bool result_elsewhere, bool input_stays) {
+bool require_memory(Triangulator::State& state, std::size_t n, const CallShape& call) {
   const bool stars = prefers_stars(state.options, *state.device) &&
                      (state.options.strategy == Strategy::stars || n > most_wrapped_alone);
   require_buffer(state, stars ? n * star_pool_bytes : record_bytes(n));
-  if (n <= (stars ? state.known_star_points : state.known_points) && state.options.max_memory == 0) return;
-  state.memory.require(stars ? star_bytes(n, input_stays) : least_bytes(n, result_elsewhere));
+  const bool bounded = state.options.max_memory != 0;
+  if (!stars) {
+    if (n > state.known_points || bounded) state.memory.require(least_bytes(n, call.result_elsewhere));
+    return false;
+  }
+  if (n <= state.known_star_points && !bounded) return call.saves_memory();
+  if (!call.saves_memory() && state.memory.allows(star_bytes(n, call.input_stays, false))) return false;
+  if (n > state.known_saving_points || bounded) state.memory.require(star_bytes(n, call.input_stays, true));
+  return true;
 }
 
 void close_account(Triangulator::State& state, Run& run, bool ordered) {
@@ -121,10 +130,12 @@ void close_account(Triangulator::State& state, Run& run, bool ordered) {
   run.check("collect", 1);
 }
 
-void remember_size(Triangulator::State& state, const Statistics& statistics) {
-  state.known_points = std::max<std::size_t>(state.known_points, statistics.points);
-  if (statistics.proven_stars != 0)
-    state.known_star_points = std::max<std::size_t>(state.known_star_points, statistics.points);
+void remember_size(Triangulator::State& state, const Statistics& statistics, bool saved_memory) {
+  const auto n = static_cast<std::size_t>(statistics.points);
+  state.known_points = std::max(state.known_points, n);
+  if (statistics.proven_stars == 0) return;
+  std::size_t& known = saved_memory ? state.known_saving_points : state.known_star_points;
+  known = std::max(known, n);
 }
 
 }  // namespace cadt

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include "common/host/counters.hpp"
 
@@ -30,6 +31,55 @@ Allocation first_records(Run& run, const SetStarts& sets) {
   Allocation result = run.memory.allocate(places.size() * word);
   run.device.write(*result, 0, places.data(), places.size() * word);
   return result;
+}
+
+/// Parts of the canonical order that are made one after the other where memory is to be saved: the lists of each have
+/// this share of the triangles.
+constexpr std::uint32_t parts_to_save = 2;
+
+struct BucketCut {
+  std::uint32_t bucket = 0, triangle = 0;  ///< the first ones of a part
+};
+
+/// Where the parts begin, and the end of the last.
+std::vector<BucketCut> cut_buckets(Run& run, const Allocation& buckets, std::size_t points, std::uint32_t triangles,
+                                   std::uint32_t parts) {
+  std::vector<BucketCut> cuts(parts + std::size_t{1});
+  if (parts == 1) {
+    cuts[1] = {static_cast<std::uint32_t>(points), triangles};
+    return cuts;
+  }
+  const Allocation found = run.memory.allocate(cuts.size() * sizeof cuts[0]);
+  const Cut c = run.launcher.cut(points);
+  run.launcher.run(KernelId::cadt_cut_buckets, c.items, buckets, static_cast<std::uint32_t>(points), triangles, parts,
+                   c.grain, found);
+  run.device.read(*found, 0, cuts.data(), cuts.size() * sizeof cuts[0]);
+  return cuts;
+}
+
+/// The numbers of all triangles, from scanned buckets. \pre the numbers are places in buckets where the device knows
+/// them (emit.h)
+void number_by_buckets(Run& run, const DeviceMesh& mesh, const Allocation& labels, Allocation buckets,
+                       const Numbering& result, std::size_t points) {
+  Launcher& launch = run.launcher;
+  const std::size_t places = mesh.in_arrays() ? mesh.triangles : mesh.slots;
+  const std::uint32_t parts = run.saves_memory && mesh.in_arrays() ? parts_to_save : 1;
+  const std::vector<BucketCut> cuts =
+      cut_buckets(run, buckets, points, static_cast<std::uint32_t>(result.triangles), parts);
+  const Cut all = launch.cut(places);
+  for (std::uint32_t part = 0; part < parts; ++part) {
+    const auto [from, base] = cuts[part];
+    const std::uint32_t size = cuts[part + 1].bucket - from, count = cuts[part + 1].triangle - base;
+    const Allocation members = run.memory.allocate(std::size_t{count} * 2 * word);
+    launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, mesh.vertices, labels, buckets, result.numbers,
+               members, from, size, base, static_cast<std::uint32_t>(places), all.grain);
+    const Cut some = launch.cut(size);
+    launch.run(KernelId::cadt_sort_buckets, some.items, buckets, members, from, size, base, some.grain);
+    if (part + 1 == parts) buckets.release();
+    if (!mesh.in_arrays()) run.device.fill(*result.numbers, 0, places * word, none);  // arrays: all get a number
+    const Cut real = launch.cut(count);
+    launch.run(KernelId::cadt_number_triangles, real.items, members, result.numbers, base, count, real.grain);
+  }
 }
 
 }  // namespace
@@ -62,7 +112,6 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
   }
   const std::size_t places = mesh.in_arrays() ? mesh.triangles : mesh.slots;
   const auto slots = static_cast<std::uint32_t>(places);
-  const Cut all = launch.cut(places);
   const FlipCounts flips(run, !mesh.in_arrays());  // arrays have none any more
   const Cut records = launch.cut_strided(places);
   if (run.options.order == Order::fast) {
@@ -84,16 +133,7 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
   result.triangles = triangles;
   if (sets != nullptr) result.set_starts = values_of_sets(run, buckets, sets->points, *sets);
   flips.collect(run.statistics);
-  Allocation members = run.memory.allocate(std::size_t{triangles} * 2 * word);
-  launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, mesh.vertices, labels, buckets, result.numbers,
-             members, slots, all.grain);
-  const Cut vertices = launch.cut(points);
-  launch.run(KernelId::cadt_sort_buckets, vertices.items, buckets, members, static_cast<std::uint32_t>(points),
-             vertices.grain);
-  buckets.release();
-  run.device.fill(*result.numbers, 0, places * word, none);
-  const Cut real = launch.cut(triangles);
-  launch.run(KernelId::cadt_number_triangles, real.items, members, result.numbers, triangles, real.grain);
+  number_by_buckets(run, mesh, labels, std::move(buckets), result, points);
   return result;
 }
 
@@ -110,6 +150,26 @@ void emit_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, 
   run.launcher.run(numbering.ranked ? KernelId::cadt_emit_ranked : KernelId::cadt_emit_triangles, all.items,
                    mesh.records, labels, numbering.numbers, triangles, neighbors, static_cast<std::uint32_t>(first),
                    static_cast<std::uint32_t>(mesh.slots), all.grain);
+}
+
+std::size_t emit_in_place(Run& run, DeviceMesh& mesh, Allocation& labels, std::size_t points) {
+  Numbering as_they_are;
+  as_they_are.triangles = mesh.triangles;
+  emit_triangles(run, mesh, labels, as_they_are, mesh.vertices, mesh.links);
+  labels.release();
+  if (run.options.order == Order::fast) return mesh.triangles;
+  const Numbering numbering = number_triangles(run, mesh, labels, points);
+  const auto count = static_cast<std::uint32_t>(numbering.triangles);
+  const Allocation moved = run.memory.allocate(count * word);
+  const Cut c = run.launcher.cut(count);
+  for (const Allocation* array : {&mesh.vertices, &mesh.links}) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t links = array == &mesh.links ? 1 : 0;
+      run.launcher.run(KernelId::cadt_move_words, c.items, *array, numbering.numbers, k, links, moved, count, c.grain);
+      run.launcher.run(KernelId::cadt_put_words, c.items, moved, *array, k, count, c.grain);
+    }
+  }
+  return count;
 }
 
 void number_within_sets(Run& run, const Numbering& numbering, const SetStarts& sets, const Allocation& triangles,

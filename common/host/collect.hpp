@@ -21,8 +21,8 @@ struct Numbering {
   Allocation set_starts;  ///< of a call with several sets: the first triangle of each, and the number of all
 };
 
-/// Numbers the triangles in the order that the options ask for. `labels` maps vertices to input indices, `points` is
-/// the number of input points, `sets` where each set begins, if there are several.
+/// Numbers the triangles in the order that the options ask for. `labels` maps vertices to input indices (null: they are
+/// these), `points` is the number of input points, `sets` where each set begins, if there are several.
 [[nodiscard]] Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, std::size_t points,
                                          const SetStarts* sets = nullptr);
 
@@ -31,6 +31,10 @@ struct Numbering {
 /// the arrays of the mesh.
 void emit_triangles(Run& run, const DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
                     const Allocation& triangles, const Allocation& neighbors, std::size_t first = 0);
+
+/// The same with the arrays of the mesh as those of the result, in more time than emit_triangles with arrays of its own
+/// if the order is the canonical one. Releases `labels`. Returns the number of triangles.
+[[nodiscard]] std::size_t emit_in_place(Run& run, DeviceMesh& mesh, Allocation& labels, std::size_t points);
 
 /// Turns the numbers of points and triangles that emit_triangles has written into those of their own sets.
 void number_within_sets(Run& run, const Numbering& numbering, const SetStarts& sets, const Allocation& triangles,

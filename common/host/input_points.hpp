@@ -5,13 +5,22 @@
 #include <cadt/triangulator.hpp>
 
 #include "common/host/run.hpp"
+#include "common/host/spatial_order.hpp"
 
 namespace cadt {
+
+/// Bytes of a coordinate.
+[[nodiscard]] constexpr std::size_t scalar_bytes(Scalar scalar) noexcept {
+  return scalar == Scalar::float32 ? sizeof(float) : sizeof(double);
+}
 
 /// From the host: without a copy where the device can read the caller's memory.
 [[nodiscard]] Allocation import_points(Run& run, const PointsView& points);
 
 /// From the device: without a copy if they are that already. \throws InputError for a handle that is missing
 [[nodiscard]] Allocation import_points(Run& run, const DevicePoints& points);
+
+/// Distinct points of `order` once more, without a copy of all points besides.
+[[nodiscard]] Allocation import_in_order(Run& run, const DevicePoints& points, const SpatialOrder& order);
 
 }  // namespace cadt

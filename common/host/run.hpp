@@ -27,6 +27,8 @@ struct Run {
   Statistics& statistics;
   Memory& memory;
   Launcher launcher;
+  /// Steps that take less memory and more time, where there are two ways (docs/performance.md).
+  bool saves_memory = false;
 
   /// What is checked from here on is this part of the whole.
   void begin_share(double begin, double share) noexcept {

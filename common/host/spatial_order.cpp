@@ -228,7 +228,7 @@ bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const All
     Allocation from = run.memory.allocate(bytes), sorted = run.memory.allocate(bytes);
     Allocation spare_from = run.memory.allocate(bytes), spare_sorted = run.memory.allocate(bytes);
     // Stable: first by the round's key, then by run. The sort permutes its keys, so it gets copies.
-    launch.run(KernelId::cadt_copy_words, few.items, round_keys, sorted, crowd, few.grain);
+    launch.run(KernelId::cadt_copy_words, few.items, round_keys, sorted, std::uint32_t{0}, crowd, few.grain);
     launch.sort(sorted, from, spare_sorted, spare_from, crowd, 32, true);
     if (last_run != 0) {
       launch.run(KernelId::cadt_gather_words, few.items, runs, from, sorted, crowd, few.grain);
@@ -282,14 +282,6 @@ void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation o
     launch.run(KernelId::cadt_set_starts, s.items, flags, sets->points, static_cast<std::uint32_t>(sets->count), count,
                distinct, s.grain, sets->positions);
   }
-}
-
-void gather_again(Run& run, SpatialOrder& order) {
-  const Allocation input = order.input_again();
-  const Cut c = run.launcher.cut(order.distinct);
-  order.points = run.memory.allocate(order.distinct * point_bytes(run.device));
-  run.launcher.run(KernelId::cadt_gather_points, c.items, input, order.labels, order.points,
-                   static_cast<std::uint32_t>(order.distinct), c.grain, order.scale, order.scale_again);
 }
 
 SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_keys) {

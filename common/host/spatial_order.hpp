@@ -32,8 +32,8 @@ struct SpatialOrder {
   Allocation keys;                    ///< their sort keys in this grid, or null
   bool wide = false;                  ///< exponents span too much for the narrow kernels
   double scale = 1, scale_again = 1;  ///< the points are the input's, times both
-  /// The input once more, if it lies on the device anyway; else null. Set by who has called sort_points.
-  std::function<Allocation()> input_again;
+  /// The points once more, if the input lies on the device anyway; else null. Set by who has called sort_points.
+  std::function<Allocation(const SpatialOrder&)> points_again;
 };
 
 /// Where the sets of a call with several begin (common/device/sets.h), and the end of the last one.
@@ -50,9 +50,6 @@ void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::
 /// `keep_keys`: the result has the sort keys, unless cells were crowded or points equal. \throws InputError for the
 /// first NaN or infinity
 [[nodiscard]] SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_keys);
-
-/// The points of a sorted order once more, from `input_again`.
-void gather_again(Run& run, SpatialOrder& order);
 
 // ---- the steps after the keys, for other keys as well (set_order.hpp)
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "common/host/counters.hpp"
 #include "common/host/device_constants.hpp"
@@ -27,6 +28,9 @@ constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * u
 
 /// Edges between the two parts have a list and a hash table.
 constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * open > points; }
+
+/// The vertices of the mesh take the place of the stars in so many steps where memory is to be saved.
+constexpr std::uint32_t waves = 4;
 
 /// The mesh without the star stage: by gift wrapping if the points are few, else by insertion. `certify`: wrapped ones
 /// as well; no use for a part of a mesh that is certified as a whole.
@@ -67,11 +71,11 @@ class StarStage {
                           std::to_string(2 * n_ - 2) + "; please report this with the input");
     run_.statistics.proven_stars = n_ - unproven_;
     SpatialOrder rest = take_unproven();
-    if (order_.input_again) order_.points.release();
+    if (order_.points_again) order_.points.release();
     write_triangles();
     release_stars();
     join(rest);
-    if (!order_.points) gather_again(run_, order_);
+    if (!order_.points) order_.points = order_.points_again(order_);
     certify_arrays(run_, order_, mesh_);
     return std::move(mesh_);
   }
@@ -153,10 +157,46 @@ class StarStage {
     launch_.run(KernelId::cadt_star_links, c.items, stars_.links, stars_.begins, marks_, bases_, proven_, count_,
                 groups, c.grain, mesh_.links, firsts, open_, totals_);
     bases_.release();
-    mesh_.vertices = run_.memory.allocate(bytes);
-    launch_.run(KernelId::cadt_star_vertices, c.items, stars_.links, stars_.begins, marks_, firsts, count_, groups,
-                c.grain, mesh_.vertices);
+    if (!run_.saves_memory || !write_vertices_in_place(firsts, groups)) {
+      mesh_.vertices = run_.memory.allocate(bytes);
+      write_vertices(firsts, 0, groups, mesh_.vertices);
+    }
     run_.end_phase("records");
+  }
+
+  void write_vertices(const Allocation& firsts, std::uint32_t from, std::uint32_t groups, const Allocation& to) {
+    const Cut c = launch_.cut_teams(groups, CADT_RECORD_LANES);
+    launch_.run(KernelId::cadt_star_vertices, c.items, stars_.links, stars_.begins, marks_, firsts, count_, from,
+                groups, c.grain, to);
+  }
+
+  /// To where the stars are. Both are in the order of the points, six words a point, and there are some more before and
+  /// between the stars of the tiles: a share of the vertices, put together elsewhere, has room where no star is that is
+  /// still to be read. False if that is not so: where most triangles belong to the first of the points.
+  bool write_vertices_in_place(const Allocation& firsts, std::uint32_t groups) {
+    const std::uint32_t share = (groups - 1) / waves + 1;
+    std::vector<std::uint32_t> cuts;  // first triangles
+    std::size_t most = 0;
+    for (std::uint32_t from = 0; from < groups; from += share) {
+      cuts.push_back(launch_.read_word(firsts, from));
+      if (from == 0) continue;
+      most = std::max<std::size_t>(most, cuts.back() - cuts[cuts.size() - 2]);
+      const std::size_t begin = std::size_t{from} * CADT_RECORD_LANES;
+      const std::size_t tile = begin - std::min<std::size_t>(begin, CADT_TILE_POINTS);  // or later
+      if (std::size_t{3} * cuts.back() > CADT_STAR_LEAD + 6 * tile + tile / 8) return false;
+    }
+    cuts.push_back(proven_triangles_);
+    most = std::max<std::size_t>(most, cuts.back() - cuts[cuts.size() - 2]);
+    const Allocation together = run_.memory.allocate(3 * most * word);
+    std::uint32_t from = 0;
+    for (std::size_t wave = 0; wave + 1 < cuts.size(); ++wave, from += share) {
+      write_vertices(firsts, from, std::min(share, groups - from), together);
+      const std::uint32_t words = 3 * (cuts[wave + 1] - cuts[wave]);
+      const Cut c = launch_.cut(words);
+      launch_.run(KernelId::cadt_copy_words, c.items, together, stars_.links, 3 * cuts[wave], words, c.grain);
+    }
+    mesh_.vertices = std::move(stars_.links);
+    return true;
   }
 
   void release_stars() {

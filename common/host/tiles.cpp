@@ -33,7 +33,7 @@ StarList make_star_list(Run& run, std::size_t n, const TileList& tiles) {
   // As cadt_pool_of_tile of the end, which is within 32 bits for max_points(). Tiles have about 6 words a vertex, so an
   // eighth of a word for all is plenty where some have more; a star without room is one without a proof.
   constexpr std::size_t least = 4096, read_ahead = 16;
-  const std::size_t overflow = 6 * n + n / 8 + std::size_t{CADT_STAR_SPARE} * tiles.count,
+  const std::size_t overflow = CADT_STAR_LEAD + 6 * n + n / 8 + std::size_t{CADT_STAR_SPARE} * tiles.count,
                     room = overflow + n / 8 + least;
   StarList list;
   list.links = run.memory.allocate((room + read_ahead) * word);

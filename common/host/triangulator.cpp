@@ -30,14 +30,35 @@ constexpr std::size_t word = sizeof(std::uint32_t);
 class Outputs {
  public:
   virtual ~Outputs() = default;
-  virtual void write(Run& run, DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
+  /// `labels` are not needed any more after it. `points`: of the input.
+  virtual void write(Run& run, DeviceMesh& mesh, Allocation& labels, std::size_t points,
                      DeviceTriangulation::Data& data) = 0;
+
+ protected:
+  static Numbering number(Run& run, const DeviceMesh& mesh, const Allocation& labels, std::size_t points,
+                          DeviceTriangulation::Data& data) {
+    Numbering numbering = number_triangles(run, mesh, labels, points);
+    data.triangle_count = numbering.triangles;
+    run.check("collect", 0.95);
+    return numbering;
+  }
 };
 
 class OnDevice final : public Outputs {
  public:
-  void write(Run& run, DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
+  void write(Run& run, DeviceMesh& mesh, Allocation& labels, std::size_t points,
              DeviceTriangulation::Data& data) override {
+    if (run.saves_memory && mesh.in_arrays()) {
+      data.triangle_count = emit_in_place(run, mesh, labels, points);
+      data.triangles = std::move(mesh.vertices);
+      data.neighbors = std::move(mesh.links);
+      return;
+    }
+    emit(run, mesh, labels, number(run, mesh, labels, points, data), data);
+  }
+
+  static void emit(Run& run, DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
+                   DeviceTriangulation::Data& data) {
     const std::size_t bytes = 3 * data.triangle_count * word;
     if (!mesh.in_arrays()) {
       data.triangles = run.memory.allocate(bytes);
@@ -61,8 +82,10 @@ class OnDevice final : public Outputs {
 class OnHost final : public Outputs {
  public:
   explicit OnHost(Triangulation::Data& to) : to_(to) {}
-  void write(Run& run, DeviceMesh& mesh, const Allocation& labels, const Numbering& numbering,
+  void write(Run& run, DeviceMesh& mesh, Allocation& labels, std::size_t points,
              DeviceTriangulation::Data& data) override {
+    if (run.saves_memory && mesh.in_arrays()) return on_device_.write(run, mesh, labels, points, data);
+    const Numbering numbering = number(run, mesh, labels, points, data);
     const std::size_t values = 3 * data.triangle_count;
     to_.triangles = make_words(values);
     to_.neighbors = make_words(values);
@@ -72,13 +95,14 @@ class OnHost final : public Outputs {
     if (direct_)
       emit_triangles(run, mesh, labels, numbering, data.triangles, data.neighbors);
     else
-      OnDevice().write(run, mesh, labels, numbering, data);
+      OnDevice::emit(run, mesh, labels, numbering, data);
   }
   /// True if the arrays are filled when the device has finished.
   [[nodiscard]] bool direct() const noexcept { return direct_; }
 
  private:
   Triangulation::Data& to_;
+  OnDevice on_device_;
   bool direct_ = false;
 };
 
@@ -92,7 +116,8 @@ void build(Run& run, const Points& points, std::size_t n, bool stars, Outputs& o
   SpatialOrder order = sort_points(run, std::move(input), n, stars);
   statistics.distinct = data.distinct = order.distinct;
   statistics.wide_arithmetic = order.wide;
-  if constexpr (std::is_same_v<Points, DevicePoints>) order.input_again = [&] { return import_points(run, points); };
+  if constexpr (std::is_same_v<Points, DevicePoints>)
+    order.points_again = [&](const SpatialOrder& sorted) { return import_in_order(run, points, sorted); };
   data.duplicate_count = n - order.distinct;
   data.duplicate_points = std::move(order.duplicates);
   data.representatives = std::move(order.representatives);
@@ -104,10 +129,7 @@ void build(Run& run, const Points& points, std::size_t n, bool stars, Outputs& o
   }
   data.dimension = 2;
   run.check("collect", 0.9);
-  const Numbering numbering = number_triangles(run, mesh, order.labels, n);
-  data.triangle_count = numbering.triangles;
-  run.check("collect", 0.95);
-  outputs.write(run, mesh, order.labels, numbering, data);
+  outputs.write(run, mesh, order.labels, n, data);
 }
 
 Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
@@ -118,15 +140,16 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
   data.points = points.size();
   open_account(*state, points.size(), data.statistics);
   if (points.size() != 0) {
-    require_memory(*state, points.size(), is_host(*state->device), false);
+    const bool saves = require_memory(*state, points.size(), {is_host(*state->device), false, points.scalar_size()});
     Run run(*state->device, state->memory, state->options, data.statistics);
+    run.saves_memory = saves;
     OnHost outputs(*result);
     build(run, points, points.size(), prefers_stars(state->options, *state->device), outputs, data);
     run.end_phase("collect");
     if (data.dimension == 2) read_mesh(run, data, outputs.direct(), *result);
     read_duplicates(*state->device, data, *result);
     run.end_phase("copy");
-    remember_size(*state, data.statistics);
+    remember_size(*state, data.statistics, saves);
     close_account(*state, run, false);
   }
   result->points = data.points;
@@ -143,12 +166,13 @@ DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state,
   data->points = points.size;
   open_account(*state, points.size, data->statistics);
   if (points.size != 0) {
-    require_memory(*state, points.size, false, true);
+    const bool saves = require_memory(*state, points.size, {false, true, scalar_bytes(points.scalar)});
     Run run(*state->device, state->memory, state->options, data->statistics);
+    run.saves_memory = saves;
     OnDevice outputs;
     build(run, points, points.size, prefers_stars(state->options, *state->device), outputs, *data);
     run.end_phase("collect");
-    remember_size(*state, data->statistics);
+    remember_size(*state, data->statistics, saves);
     close_account(*state, run, true);
   }
   return DeviceTriangulation(std::move(data));
@@ -231,7 +255,7 @@ void Triangulator::reserve(std::size_t points) {
   const std::size_t n = points, limit = state_->options.max_memory;
   Memory& memory = state_->memory;
   begin_account(*state_, n);
-  require_memory(*state_, n, false, true);
+  (void)require_memory(*state_, n, {false, true, sizeof(double)});
   if (n <= state_->reserved_points) return;
   if (!memory.keeps()) {
     state_->device->reserve(least_bytes(n, false));
@@ -250,7 +274,7 @@ void Triangulator::reserve(std::size_t points) {
 void Triangulator::release_memory() {
   state_->memory.drop_kept();
   state_->device->trim();
-  state_->known_points = state_->known_star_points = state_->known_batch_points = state_->reserved_points = 0;
+  state_->forget_sizes();
 }
 
 Triangulation triangulate(PointsView points, const Options& options) {

@@ -229,12 +229,13 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
   EXPECT_EQ(buckets[n], all_triangles);
   over(first_slot, slots, [&](std::uint32_t item) {
     cadt_bucket_triangles(item, slots, records.data(), nullptr, labels.data(), buckets.data(), numbers.data(),
-                          members.data(), slots, grain);
+                          members.data(), 0U, n, 0U, slots, grain);
   });
-  over(base, n, [&](std::uint32_t item) { cadt_sort_buckets(item, n, buckets.data(), members.data(), n, grain); });
+  over(base, n,
+       [&](std::uint32_t item) { cadt_sort_buckets(item, n, buckets.data(), members.data(), 0U, n, 0U, grain); });
   for (std::uint32_t r = first_slot; r < slots; ++r) numbers[r] = CADT_NONE;
   over(before, all_triangles, [&](std::uint32_t item) {
-    cadt_number_triangles(item, all_triangles, members.data(), numbers.data(), all_triangles, grain);
+    cadt_number_triangles(item, all_triangles, members.data(), numbers.data(), 0U, all_triangles, grain);
   });
   over(first_slot, slots, [&](std::uint32_t item) {
     cadt_emit_triangles(item, slots, records.data(), labels.data(), numbers.data(), triangles.data(), neighbors.data(),

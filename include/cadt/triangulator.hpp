@@ -143,8 +143,9 @@ class Triangulator {
   /// Device memory that the first call with so many points takes at most, in bytes: its result and the memory kept for
   /// the next call included, points of the caller's that are on the device not. 124 a point where the device or
   /// `Options::allocator` keeps the memory, else 176, and 228 with the star stage (Options::strategy). With
-  /// `Options::max_memory` 124 are enough, on the host 97 for a mesh on the host; with the star stage 85, or 101 for
-  /// points of the host's, unless more than about 4 % of the points are left to the insertion. Crowded cells (more than
+  /// `Options::max_memory` 124 are enough, on the host 97 for a mesh on the host; with the star stage 71, or 83 for
+  /// points of the host's (below 85 and 101 a call takes about 5 % more time, 15 % in the canonical order), unless more
+  /// than about 4 % of the points are left to the insertion. Crowded cells (more than
   /// 16 points in 2^-16 of the box's width) need up to 32 bytes more for each of their points while they are sorted.
   [[nodiscard]] std::size_t memory_needed(std::size_t points) const noexcept;
   /// Takes the memory for calls with up to so many points now; with an allocator of the caller's there is nothing to

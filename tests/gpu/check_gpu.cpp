@@ -21,7 +21,7 @@ namespace {
 using namespace cadt;
 
 struct Arguments {
-  std::size_t points = 1'000'000, sets = 0;
+  std::size_t points = 1'000'000, sets = 0, most_bytes = 0;
   std::string backend = "cuda", device, kind = "uniform", file, verify = "none";
   int runs = 10, warm_up = 3;
   unsigned block = 0;
@@ -29,7 +29,7 @@ struct Arguments {
   Strategy strategy = Strategy::automatic;
   Stabilize stabilize = Stabilize::off;
   StatisticsDetail statistics = StatisticsDetail::counters;
-  bool phases = false, hash = false;
+  bool phases = false, hash = false, floats = false;
 };
 
 [[noreturn]] void usage() {
@@ -39,8 +39,9 @@ struct Arguments {
       "B]\n"
       "                      [--order fast|canonical] [--verify none|host|device] [--phases] [--hash]\n"
       "                      [--strategy auto|locks|stars] [--stabilize off|defer|paper]\n"
-      "                      [--statistics none|counters|timing] [--sets S]\n"
+      "                      [--statistics none|counters|timing] [--sets S] [--floats] [--most-bytes B]\n"
       "--sets: the points are those of S sets of the same size, in one call\n"
+      "--floats: the points as floats; --most-bytes: Options::max_memory, a point\n"
       "--file: points as raw 64-bit numbers x0 y0 x1 y1 ... (cadt generate NAME -t f64)\n"
       "prints the median time (and the least and the most) from points on the device to a mesh on the device\n",
       stderr);
@@ -95,6 +96,10 @@ Arguments parse(int count, char** values) {
       a.phases = true;
     else if (words[i] == "--hash")
       a.hash = true;
+    else if (words[i] == "--floats")
+      a.floats = true;
+    else if (words[i] == "--most-bytes")
+      a.most_bytes = std::stoul(value());
     else
       usage();
   }
@@ -168,7 +173,7 @@ double now() {
 }
 
 /// Sets of the same size in one call. The meshes are checked on the host.
-int run_sets(const Arguments& a, Triangulator& triangulator, test::DeviceMemory* memory, const void* points,
+int run_sets(const Arguments& a, Triangulator& triangulator, test::DeviceMemory* memory, const DevicePoints& points,
              const std::vector<double>& xy) {
   std::vector<std::size_t> offsets(a.sets + 1);
   const std::size_t n = xy.size() / 2;
@@ -178,7 +183,7 @@ int run_sets(const Arguments& a, Triangulator& triangulator, test::DeviceMemory*
   for (int r = 0; r < a.warm_up + a.runs; ++r) {
     batch = DeviceTriangulationBatch();
     const double begin = now();
-    batch = triangulator.triangulate_batch(DevicePoints{.x = points, .size = n}, offsets);
+    batch = triangulator.triangulate_batch(points, offsets);
     if (memory != nullptr) memory->wait();
     if (r >= a.warm_up) times.push_back(now() - begin);
   }
@@ -209,7 +214,9 @@ int run_sets(const Arguments& a, Triangulator& triangulator, test::DeviceMemory*
 }
 
 int run(const Arguments& a) {
-  const std::vector<double> xy = a.file.empty() ? make_points(a.kind, a.points) : read_points(a.file);
+  std::vector<double> xy = a.file.empty() ? make_points(a.kind, a.points) : read_points(a.file);
+  const std::vector<float> single(xy.begin(), a.floats ? xy.end() : xy.begin());
+  if (a.floats) xy.assign(single.begin(), single.end());
   const std::size_t n = xy.size() / 2;
   Options options;
   options.backend = backend_from_string(a.backend);
@@ -219,7 +226,8 @@ int run(const Arguments& a) {
   options.stabilize = a.stabilize;
   options.statistics = a.statistics;
   std::unique_ptr<test::DeviceMemory> memory;
-  const void* points = xy.data();
+  options.max_memory = a.most_bytes * n;
+  const void* points = a.floats ? static_cast<const void*>(single.data()) : xy.data();
   if (options.backend != Backend::host) {
     const int device = chosen_device(options.backend, options.backend == Backend::opencl ? a.device : std::string());
     if (device < 0) {
@@ -227,11 +235,12 @@ int run(const Arguments& a) {
       return 2;
     }
     memory = options.backend == Backend::cuda ? test::cuda_memory(device) : test::opencl_memory(device);
-    points = memory->upload(std::span<const double>(xy));
+    points = a.floats ? memory->upload(std::span<const float>(single)) : memory->upload(std::span<const double>(xy));
     options.queue = memory->queue();
   }
+  const DevicePoints input{.x = points, .size = n, .scalar = a.floats ? Scalar::float32 : Scalar::float64};
   Triangulator triangulator(options);
-  if (a.sets != 0) return run_sets(a, triangulator, memory.get(), points, xy);
+  if (a.sets != 0) return run_sets(a, triangulator, memory.get(), input, xy);
   DeviceTriangulation mesh;
   std::vector<double> times;
   std::vector<std::vector<double>> phases;  // some names come twice
@@ -239,7 +248,7 @@ int run(const Arguments& a) {
   for (int r = 0; r < a.warm_up + a.runs; ++r) {
     mesh = DeviceTriangulation();
     const double begin = now();
-    mesh = triangulator.triangulate(DevicePoints{.x = points, .size = n});
+    mesh = triangulator.triangulate(input);
     if (memory) memory->wait();
     if (r < a.warm_up) continue;
     times.push_back(now() - begin);
@@ -288,7 +297,7 @@ int run(const Arguments& a) {
   bool ok = true;
   if (a.verify == "device") {
     const double begin = now();
-    const VerifyReport report = triangulator.verify(DevicePoints{.x = points, .size = n}, mesh);
+    const VerifyReport report = triangulator.verify(input, mesh);
     ok = report.ok;
     std::printf(", verified on the device in %.1f ms: %s (signs: %llu by the filter, %llu exact, %llu on the host)",
                 now() - begin, report.summary().c_str(), static_cast<unsigned long long>(report.signs_filtered),

@@ -35,7 +35,7 @@ TEST_P(ResidentMemory, BoundOfTheCaller) {
   for (int round = 0; round < 2; ++round) {
     triangulator.options().max_memory = bound;
     if (const auto error = thrown<OutOfMemory>([&] { (void)triangulator.triangulate(points); }); error != nullptr) {
-      EXPECT_GE(error->needed(), (triangulator.device().gpu ? 85 : 124) * many.size());
+      EXPECT_GE(error->needed(), (triangulator.device().gpu ? 71 : 124) * many.size());
       EXPECT_EQ(error->available(), bound);
     }
     (void)thrown<OutOfMemory>([&] { (void)triangulator.triangulate(std::span<const double>(many.xy)); });
@@ -153,7 +153,7 @@ TEST_P(ResidentMemory, BoundOfWhatIsNeeded) {
     Triangulator triangulator(options());
     const bool stars = triangulator.device().gpu;
     const std::size_t bound = stars ? 101 * known.size() + 131072 : 124 * known.size() + 65536;
-    const std::size_t least = stars ? 85 * known.size() + 131072 : bound;  // of points on the device
+    const std::size_t least = stars ? 71 * known.size() + 131072 : bound;  // of points on the device
     EXPECT_GE(triangulator.memory_needed(known.size()), bound);
     triangulator.options().order = order;
     triangulator.options().max_memory = least - 1;

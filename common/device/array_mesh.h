@@ -13,13 +13,18 @@ CADT_FN cadt_u32 cadt_word_of_three(CADT_GLOBAL const cadt_u32* words, cadt_u32 
   return words[3u * triangle + k];
 }
 
-/* Looks at each edge of the mesh once, from the triangle that comes first, and repairs nothing. `real` of the `all`
- * triangles are not of the ghost. found: edges examined; illegal ones; edges whose sides do not fit together, and
- * triangles of the ghost among the others; edges to the ghost at which the boundary turns back. */
+/* Looks at each edge of the mesh once, from the triangle that comes first, and repairs nothing. `known` of the `all`
+ * triangles are not of the ghost. words[row] and on: edges examined; illegal ones; edges whose sides do not fit
+ * together, and triangles of the ghost among the others; edges to the ghost at which the boundary turns back; the
+ * number of real triangles if `known` is CADT_NONE, 0: there is no mesh. If `counted`, the rows behind it are counters
+ * of work. */
 CADT_KERNEL(cadt_certify, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_u32* links,
-            CADT_GLOBAL const cadt_point* points, cadt_u32 all, cadt_u32 real, cadt_u32 begin, cadt_u32 count,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* found, CADT_GLOBAL cadt_u32* counters) {
-  CADT_GROUP_TALLY(tally, counters);
+            CADT_GLOBAL const cadt_point* points, cadt_u32 all, cadt_u32 known, cadt_u32 begin, cadt_u32 count,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* words, cadt_u32 row, cadt_u32 counted) {
+  CADT_GROUP_TALLY(tally, counted);
+  CADT_GLOBAL cadt_u32* found = words + row;
+  const cadt_u32 real = known != CADT_NONE ? known : found[CADT_CERTIFY_REAL];
+  if (!real) return;
   cadt_mesh mesh; /* the tests ask for nothing but points */
   mesh.points = points;
   cadt_u32 examined = 0u, illegal = 0u, wrong = 0u, broken = 0u;
@@ -53,6 +58,7 @@ CADT_KERNEL(cadt_certify, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL cons
   if (wrong) cadt_add_relaxed(found + 2, wrong);
   if (broken) cadt_add_relaxed(found + 3, broken);
   CADT_LAP_SKIP(&tally);
+  CADT_GLOBAL cadt_u32* counters = counted ? found + CADT_COUNTER_STRIDE : 0;
   CADT_FLUSH_TALLY(&tally, counters);
 }
 

@@ -64,6 +64,10 @@ enum {
   CADT_NEAR_BOXES = 128  /* from how many boxes at most */
 };
 
+/* Two counts in a word: real triangles, and those of the ghost. At most 2^15 points are wrapped in arrays. */
+#define CADT_WRAP_REAL(sum) ((sum) >> 16)
+#define CADT_WRAP_GHOSTS(sum) ((sum)&0xFFFFu)
+
 /* One of several sets of points in a call (sets.h). Its points are halved and counted in cells after they have been
  * multiplied by both factors, powers of two. */
 typedef struct {
@@ -142,7 +146,8 @@ enum {
   CADT_ROW_TIMES = 20,
   CADT_FLIP_BINS = 16,
   CADT_COUNTER_STRIDE = 32, /* words a row, so rows do not share cache lines */
-  CADT_COUNTER_ROWS = 64
+  CADT_COUNTER_ROWS = 64,
+  CADT_CERTIFY_REAL = 4 /* place of the number of real triangles among the words of cadt_certify */
 };
 
 enum {

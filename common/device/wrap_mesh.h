@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Records from wrapped stars. A triangle belongs to the lowest of its vertices that has a star. A hub has none, so its
- * triangles are those of its neighbours. An edge between two without stars (hubs, or the ghost) is listed with the
- * vertex on either side of it; the driver adds the triangles of three such vertices, each as its three half-edges.
+ * The mesh from wrapped stars, in records or in arrays. A triangle belongs to the lowest of its vertices that has a
+ * star. A hub has none, so its triangles are those of its neighbours. An edge between two without stars (hubs, or the
+ * ghost) is listed with the vertex on either side of it; the driver adds the triangles of three such vertices, each as
+ * its three half-edges.
  */
 #ifndef CADT_DEVICE_WRAP_MESH_H
 #define CADT_DEVICE_WRAP_MESH_H
 
-#include "common/device/mesh.h"
+#include "common/device/array_mesh.h"
 #include "common/device/sets.h"
 
 typedef struct {
@@ -18,9 +19,15 @@ typedef struct {
   CADT_GLOBAL const cadt_wrap_edge* edges;
   cadt_u32 edge_count;
   cadt_u32 first_extra; /* of the edges: from here on they are those of triangles without stars, whose numbers */
-  cadt_u32 extra_base;  /* begin here */
+  cadt_u32 extra_base;  /* begin here, in arrays those of the ghost's triangles */
   cadt_u32 hubs;        /* whether there are any */
+  cadt_u32 apart;       /* in arrays: real triangles come before those of the ghost */
 } cadt_wrap_set;
+
+/* What a triangle with the neighbours a and b of its owner adds to the count. */
+CADT_FN cadt_u32 cadt_wrap_one(cadt_u32 apart, cadt_u32 a, cadt_u32 b) {
+  return apart && a != CADT_GHOST && b != CADT_GHOST ? 0x10000u : 1u;
+}
 
 /* Whether v comes before another vertex of its star: there it owns what they share. */
 CADT_FN cadt_u32 cadt_wrap_before(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 hubs, cadt_u32 v, cadt_u32 other) {
@@ -34,19 +41,20 @@ CADT_FN cadt_u32 cadt_wrap_starless(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 
 
 /* Triangles that belong to v. */
 CADT_FN cadt_u32 cadt_wrap_owned(CADT_GLOBAL const cadt_u32* link, cadt_u32 size, CADT_GLOBAL const cadt_u32* sizes,
-                                 cadt_u32 hubs, cadt_u32 v) {
+                                 cadt_u32 hubs, cadt_u32 apart, cadt_u32 v) {
   cadt_u32 count = 0u;
-  for (cadt_u32 k = 0u; k < size; ++k)
-    if (cadt_wrap_before(sizes, hubs, v, link[k]) &&
-        cadt_wrap_before(sizes, hubs, v, link[k + 1u < size ? k + 1u : 0u]))
-      ++count;
+  for (cadt_u32 k = 0u; k < size; ++k) {
+    const cadt_u32 a = link[k], b = link[k + 1u < size ? k + 1u : 0u];
+    if (cadt_wrap_before(sizes, hubs, v, a) && cadt_wrap_before(sizes, hubs, v, b)) count += cadt_wrap_one(apart, a, b);
+  }
   return count;
 }
 
-/* owned[v]: triangles that belong to v; a 0 behind the last, and then the first words of `found`, so that they can be
- * read with the scan's total. Half-edges between two vertices without stars are counted in found[6], and listed. */
+/* owned[v]: triangles that belong to v, in two counts if `apart`; a 0 behind the last, and then the first words of
+ * `found`, so that they can be read with the scan's total. If not `apart`, half-edges between two vertices without
+ * stars are counted in found[6], and listed. */
 CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
-            CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* found,
+            CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 apart, cadt_u32 grain, CADT_GLOBAL cadt_u32* found,
             CADT_GLOBAL cadt_u32* owned, CADT_GLOBAL cadt_wrap_edge* edges) {
   if (cadt_item == 0u) {
     owned[n] = 0u;
@@ -56,7 +64,7 @@ CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL con
   CADT_FOR(v, n, grain) {
     CADT_GLOBAL const cadt_u32* link = links + begins[v];
     const cadt_u32 size = sizes[v];
-    for (cadt_u32 k = 0u; hubs && k < size; ++k) {
+    for (cadt_u32 k = 0u; hubs && !apart && k < size; ++k) {
       const cadt_u32 a = link[k], b = link[k + 1u < size ? k + 1u : 0u];
       if (cadt_wrap_starless(sizes, a) && cadt_wrap_starless(sizes, b)) {
         const cadt_u32 at = cadt_add_relaxed(found + 6, 1u);
@@ -67,7 +75,7 @@ CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL con
         }
       }
     }
-    owned[v] = cadt_wrap_owned(link, size, sizes, hubs, v);
+    owned[v] = cadt_wrap_owned(link, size, sizes, hubs, apart, v);
   }
 }
 
@@ -80,7 +88,8 @@ CADT_KERNEL(cadt_set_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL cons
   CADT_FOR(v, n, grain) {
     const cadt_u32 set = cadt_set_of(starts, set_count, v);
     if (states[set] == CADT_SET_TOGETHER) {
-      owned[v] = cadt_wrap_owned(links + begins[v], sizes[v], sizes, 0u, v) + (v + 1u == starts[set + 1u] ? 2u : 0u);
+      owned[v] =
+          cadt_wrap_owned(links + begins[v], sizes[v], sizes, 0u, 0u, v) + (v + 1u == starts[set + 1u] ? 2u : 0u);
     } else {
       owned[v] = v == starts[set] ? 2u * (starts[set + 1u] - v) : 0u;
       sizes[v] = 0u;
@@ -88,13 +97,14 @@ CADT_KERNEL(cadt_set_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL cons
   }
 }
 
-/* Place of vertex a in the star of v, and how many triangles before it belong to v. \pre it is there */
+/* Place of vertex a in the star of v, and the count of triangles before it that belong to v. \pre it is there */
 CADT_FN cadt_u32 cadt_wrap_place(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32* owned) {
   CADT_GLOBAL const cadt_u32* link = s->links + s->begins[v];
   cadt_u32 k = 0u, count = 0u, now = link[0];
   while (now != a) {
     const cadt_u32 next = link[++k];
-    if (cadt_wrap_before(s->sizes, s->hubs, v, now) && cadt_wrap_before(s->sizes, s->hubs, v, next)) ++count;
+    if (cadt_wrap_before(s->sizes, s->hubs, v, now) && cadt_wrap_before(s->sizes, s->hubs, v, next))
+      count += cadt_wrap_one(s->apart, now, next);
     now = next;
   }
   *owned = count;
@@ -118,6 +128,13 @@ CADT_FN cadt_u32 cadt_wrap_right(const cadt_wrap_set* s, cadt_u32 a, cadt_u32 b)
   return CADT_NONE; /* never: the driver has matched all of them */
 }
 
+/* Number of the triangle of v with its neighbours a and b; `before`: count of those of v before it. */
+CADT_FN cadt_u32 cadt_wrap_number(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 before, cadt_u32 a, cadt_u32 b) {
+  const cadt_u32 sum = s->bases[v] + before;
+  if (!s->apart) return sum;
+  return a == CADT_GHOST || b == CADT_GHOST ? s->extra_base + CADT_WRAP_GHOSTS(sum) : CADT_WRAP_REAL(sum);
+}
+
 /* Link to the triangle x, y, z across the edge opposite of x (0), y (1) or z (2). */
 CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, cadt_u32 z, cadt_u32 opposite) {
   const cadt_u32 none = CADT_GHOST; /* hubs own nothing */
@@ -134,7 +151,60 @@ CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, 
   }
   cadt_u32 before;
   cadt_wrap_place(s, owner, next, &before);
-  return CADT_LINK(s->bases[owner] + before, opposite >= lowest ? opposite - lowest : opposite + 3u - lowest);
+  return CADT_LINK(cadt_wrap_number(s, owner, before, next, CADT_PICK(lowest, z, x, y)),
+                   opposite >= lowest ? opposite - lowest : opposite + 3u - lowest);
+}
+
+/* A triangle that belongs to a vertex: its number, the neighbours a and b, the links. */
+typedef struct {
+  cadt_u32 number, a, b, links[3];
+} cadt_wrap_triangle;
+
+/* That of the neighbours k and the next; false if it belongs to another vertex. */
+CADT_FN cadt_u32 cadt_wrap_triangle_of(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 k, cadt_wrap_triangle* t) {
+  CADT_GLOBAL const cadt_u32* link = s->links + s->begins[v];
+  const cadt_u32 size = s->sizes[v], k1 = k + 1u < size ? k + 1u : 0u, a = link[k], b = link[k1];
+  if (!cadt_wrap_before(s->sizes, s->hubs, v, a) || !cadt_wrap_before(s->sizes, s->hubs, v, b)) return 0u;
+  cadt_u32 before;
+  cadt_wrap_place(s, v, a, &before);
+  t->number = cadt_wrap_number(s, v, before, a, b);
+  t->a = a;
+  t->b = b;
+  t->links[0] = cadt_wrap_link(s, a, cadt_wrap_right(s, a, b), b, 1u);
+  t->links[1] = cadt_wrap_link(s, v, b, link[k1 + 1u < size ? k1 + 1u : 0u], 2u);
+  t->links[2] = cadt_wrap_link(s, v, link[k ? k - 1u : size - 1u], a, 1u);
+  return 1u;
+}
+
+/* The mesh in arrays (array_mesh.h), real triangles first, of stars without hubs. bases[n] is the total, behind it is
+ * what was found: if that is not a mesh, nothing is written. The number of real triangles goes to the words of
+ * cadt_certify, in bases from `row` on. CADT_WRAP_SHARES work-items for each vertex. */
+CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL cadt_u32* bases, cadt_u32 link_words, cadt_u32 row,
+            cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* vertices, CADT_GLOBAL cadt_u32* mesh_links) {
+  const cadt_u32 total = bases[n], real = CADT_WRAP_REAL(total);
+  if (real + CADT_WRAP_GHOSTS(total) != 2u * n - 2u || bases[n + 1u] > link_words || bases[n + 2u]) return;
+  if (cadt_item == 0u) bases[row + CADT_CERTIFY_REAL] = real;
+  cadt_wrap_set stars;
+  stars.links = links;
+  stars.begins = begins;
+  stars.sizes = sizes;
+  stars.bases = bases;
+  stars.edges = 0;
+  stars.edge_count = stars.first_extra = stars.hubs = 0u;
+  stars.extra_base = real;
+  stars.apart = 1u;
+  CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
+    const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
+    for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {
+      cadt_wrap_triangle t;
+      if (!cadt_wrap_triangle_of(&stars, v, k, &t)) continue;
+      vertices[3u * t.number] = v;
+      vertices[3u * t.number + 1u] = t.a;
+      vertices[3u * t.number + 2u] = t.b;
+      for (cadt_u32 edge = 0u; edge < 3u; ++edge) mesh_links[3u * t.number + edge] = t.links[edge];
+    }
+  }
 }
 
 /* CADT_WRAP_SHARES work-items for each vertex. The last two records are not used. \pre no triangle is missing */
@@ -152,6 +222,7 @@ CADT_KERNEL(cadt_wrap_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL co
   stars.first_extra = first_extra;
   stars.extra_base = extra_base;
   stars.hubs = hubs;
+  stars.apart = 0u;
   if (cadt_item == 0u) {
     records[2u * n - 2u].word[CADT_WORD_LOCK] = 0u;
     records[2u * n - 1u].word[CADT_WORD_LOCK] = 0u;
@@ -166,18 +237,12 @@ CADT_KERNEL(cadt_wrap_records, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL co
   }
   CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
     const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
-    CADT_GLOBAL const cadt_u32* link = links + begins[v];
     for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {
-      const cadt_u32 k1 = k + 1u < size ? k + 1u : 0u, a = link[k], b = link[k1];
-      if (!cadt_wrap_before(sizes, hubs, v, a) || !cadt_wrap_before(sizes, hubs, v, b)) continue;
-      cadt_u32 before;
-      cadt_wrap_place(&stars, v, a, &before);
-      CADT_GLOBAL cadt_u32* w = records[bases[v] + before].word;
-      const cadt_u32 across = cadt_wrap_link(&stars, a, cadt_wrap_right(&stars, a, b), b, 1u);
-      const cadt_u32 after = cadt_wrap_link(&stars, v, b, link[k1 + 1u < size ? k1 + 1u : 0u], 2u);
-      cadt_store_four(w, v, a, b, 2u);
-      cadt_store_four(w + CADT_WORD_LINK, across, after, cadt_wrap_link(&stars, v, link[k ? k - 1u : size - 1u], a, 1u),
-                      0u);
+      cadt_wrap_triangle t;
+      if (!cadt_wrap_triangle_of(&stars, v, k, &t)) continue;
+      CADT_GLOBAL cadt_u32* w = records[t.number].word;
+      cadt_store_four(w, v, t.a, t.b, 2u);
+      cadt_store_four(w + CADT_WORD_LINK, t.links[0], t.links[1], t.links[2], 0u);
     }
   }
 }

@@ -320,44 +320,14 @@ class Builder {
   std::size_t inserted_ = 0;
 };
 
-/// Triangles or records that a closing pass looks at in one launch.
-std::size_t slots_per_launch(const Device& device) { return 4 * points_per_launch(device); }
-
 }  // namespace
+
+std::size_t slots_per_launch(const Device& device) { return 4 * points_per_launch(device); }
 
 DeviceMesh build_mesh(Run& run, SpatialOrder& order) { return Builder(run, order).build(); }
 
 DeviceMesh certify_mesh(Run& run, SpatialOrder& order, Allocation records, std::uint64_t edges) {
   return Builder(run, order).adopt(std::move(records), edges);
-}
-
-void certify_arrays(Run& run, const SpatialOrder& order, const DeviceMesh& mesh) {
-  const Counters counters(run);
-  const std::uint64_t edges = 3 * std::uint64_t{order.distinct} - 3;
-  const auto all = static_cast<std::uint32_t>(mesh.slots), real = static_cast<std::uint32_t>(mesh.triangles);
-  const std::size_t most = slots_per_launch(run.device);
-  std::array<std::uint64_t, 4> sums{};
-  for (std::size_t begin = 0; begin < mesh.slots; begin += most) {
-    const std::size_t size = std::min(most, mesh.slots - begin);
-    const Cut c = run.launcher.cut_strided(size);
-    const Allocation found = run.launcher.zeros(4);
-    run.launcher.run(KernelId::cadt_certify, c.items, mesh.vertices, mesh.links, order.points, all, real,
-                     static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(size), c.grain, found, counters);
-    std::array<std::uint32_t, 4> words{};
-    run.device.read(*found, 0, words.data(), sizeof words);
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += words[i];
-    run.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(mesh.slots));
-  }
-  const auto& [examined, illegal, wrong, broken] = sums;
-  if (examined != edges || illegal + wrong + broken != 0)
-    throw InternalError("the mesh has " + std::to_string(examined) + " edges, and there should be " +
-                        std::to_string(edges) + "; " + std::to_string(illegal) + " are illegal, " +
-                        std::to_string(wrong) + " have sides that do not fit, " + std::to_string(broken) +
-                        " turn back; please report this with the input");
-  run.statistics.closing_sweeps = std::max<std::uint64_t>(run.statistics.closing_sweeps, 1);
-  run.statistics.certified_edges += examined;
-  run.end_phase("certify");
-  counters.collect(run.statistics);
 }
 
 }  // namespace cadt

@@ -28,7 +28,7 @@ struct DeviceMesh {
 /// included.
 [[nodiscard]] DeviceMesh certify_mesh(Run& run, SpatialOrder& order, Allocation records, std::uint64_t edges);
 
-/// One pass over a mesh in arrays. \throws InternalError if an edge is not as it should be: nothing is repaired
-void certify_arrays(Run& run, const SpatialOrder& order, const DeviceMesh& mesh);
+/// Triangles or records that a closing pass looks at in one launch.
+[[nodiscard]] std::size_t slots_per_launch(const Device& device);
 
 }  // namespace cadt

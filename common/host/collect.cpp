@@ -129,8 +129,7 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
   launch.run(KernelId::cadt_count_triangles, records.items, mesh.records, mesh.vertices, labels, buckets,
              result.numbers, slots, records.grain, flips);
   launch.scan(buckets, points + 1);
-  const std::uint32_t triangles = launch.read_word(buckets, points);
-  result.triangles = triangles;
+  result.triangles = mesh.in_arrays() ? mesh.triangles : launch.read_word(buckets, points);
   if (sets != nullptr) result.set_starts = values_of_sets(run, buckets, sets->points, *sets);
   flips.collect(run.statistics);
   number_by_buckets(run, mesh, labels, std::move(buckets), result, points);

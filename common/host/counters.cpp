@@ -36,6 +36,10 @@ void Counters::collect(Statistics& statistics) const {
   if (!buffer_) return;
   std::vector<std::uint32_t> words(static_cast<std::size_t>(CADT_COUNTER_ROWS) * CADT_COUNTER_STRIDE);
   device_.read(*buffer_, 0, words.data(), words.size() * sizeof words[0]);
+  add_counters(statistics, words);
+}
+
+void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) {
   std::array<std::uint64_t, CADT_COUNTER_STRIDE> sums{};
   for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_COUNTER_STRIDE] += words[i];
   const auto times = std::span(sums).subspan(CADT_ROW_TIMES, CADT_TIMES);

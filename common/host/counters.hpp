@@ -4,6 +4,8 @@
 #include <cadt/statistics.hpp>
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 
 #include "common/host/run.hpp"
 
@@ -22,6 +24,9 @@ class Counters {
   Device& device_;
   Allocation buffer_;
 };
+
+/// Adds the counts of these rows to the statistics.
+void add_counters(Statistics& statistics, std::span<const std::uint32_t> rows);
 
 /// The device's counts of edges by their flips (common/device/flips.h). Passed to a kernel: their memory, null for
 /// StatisticsDetail::none.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/host/certify.hpp"
 #include "common/host/counters.hpp"
 #include "common/host/device_constants.hpp"
 #include "common/host/tiles.hpp"
@@ -32,14 +33,18 @@ constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * 
 /// The vertices of the mesh take the place of the stars in so many steps where memory is to be saved.
 constexpr std::uint32_t waves = 4;
 
-/// The mesh without the star stage: by gift wrapping if the points are few, else by insertion. `certify`: wrapped ones
-/// as well; no use for a part of a mesh that is certified as a whole.
-DeviceMesh build_without_stars(Run& run, SpatialOrder& order, bool certify) {
+/// The mesh without the star stage: by gift wrapping if the points are few, else by insertion.
+DeviceMesh build_without_stars(Run& run, SpatialOrder& order) {
   std::optional<DeviceMesh> wrapped;
-  if (order.distinct <= most_wrapped(run.device)) wrapped = wrap_mesh(run, order.points, order.distinct);
-  if (!wrapped) return build_mesh(run, order);
-  return certify ? certify_mesh(run, order, std::move(wrapped->records), 3 * std::uint64_t{order.distinct} - 3)
-                 : std::move(*wrapped);
+  if (order.distinct <= most_wrapped(run.device)) wrapped = wrap_mesh(run, order);
+  return wrapped ? std::move(*wrapped) : build_mesh(run, order);
+}
+
+/// The same for a part of a mesh that is certified as a whole: in records, without a closing pass where that is no use.
+DeviceMesh build_part(Run& run, SpatialOrder& order) {
+  std::optional<DeviceMesh> wrapped;
+  if (order.distinct <= most_wrapped(run.device)) wrapped = wrap_part(run, order.points, order.distinct);
+  return wrapped ? std::move(*wrapped) : build_mesh(run, order);
 }
 
 class StarStage {
@@ -57,13 +62,13 @@ class StarStage {
     keys_.release();
     if (!made) {
       release_stars();
-      return build_without_stars(run_, order_, true);
+      return build_without_stars(run_, order_);
     }
     count_triangles();
     if (too_many(unproven_, n_) || too_many_open(open_count_, n_)) {
       release_stars();
       ranks_.release();
-      return build_without_stars(run_, order_, true);
+      return build_without_stars(run_, order_);
     }
     // stars that contradict each other would number more
     if (proven_triangles_ > 2 * n_ - 2)
@@ -208,7 +213,7 @@ class StarStage {
 
   void join(SpatialOrder& rest) {
     const std::uint64_t certified = run_.statistics.certified_edges;
-    const DeviceMesh smaller = build_without_stars(run_, rest, false);
+    const DeviceMesh smaller = build_part(run_, rest);
     run_.statistics.certified_edges = certified;  // those of the whole mesh count
     if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
 
@@ -266,7 +271,7 @@ DeviceMesh build_mesh_with_stars(Run& run, SpatialOrder& order) {
   const bool few = run.options.strategy == Strategy::automatic && order.distinct <= most_wrapped_alone;
   if (few || order.distinct < 3 || std::max(grid.bits_x, grid.bits_y) > most_bits) {
     order.keys.release();
-    return build_without_stars(run, order, true);
+    return build_without_stars(run, order);
   }
   return StarStage(run, order).build();
 }

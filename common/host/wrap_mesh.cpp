@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/host/certify.hpp"
 #include "common/host/device_constants.hpp"
 
 namespace cadt {
@@ -82,6 +84,121 @@ void wrap_all(Run& run, const Allocation& points, std::size_t n, const WrappedSt
                        stars.begins, stars.sizes, stars.found);
 }
 
+/// One set, its stars and its mesh.
+class Wrapping {
+ public:
+  Wrapping(Run& run, const Allocation& points, std::size_t n)
+      : run_(run), launch_(run.launcher), points_(points), n_(n), count_(static_cast<std::uint32_t>(n)) {}
+
+  void make_stars() {
+    links_ = run_.memory.allocate(link_words() * word);
+    begins_ = run_.memory.allocate(n_ * word);
+    sizes_ = run_.memory.allocate(n_ * word);
+    found_ = run_.memory.allocate(CADT_WRAP_WORDS * word);
+    wrap_all(run_, points_, n_, {links_, begins_, sizes_, found_, 0, link_words()});
+    edges_ = run_.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));
+  }
+
+  /// The mesh in arrays and its closing pass, all without waiting for what came before. False if there are hubs.
+  [[nodiscard]] bool make_arrays(DeviceMesh& mesh) {
+    const std::size_t row = (n_ + CADT_WRAP_FOUND) / CADT_COUNTER_STRIDE * CADT_COUNTER_STRIDE + CADT_COUNTER_STRIDE;
+    bases_ = run_.memory.allocate((row + certify_words(run_)) * word);
+    run_.device.fill(*bases_, row * word, certify_words(run_) * word, 0);
+    count(true);
+    mesh.slots = triangles();
+    mesh.vertices = run_.memory.allocate(3 * triangles() * word);
+    mesh.links = run_.memory.allocate(3 * triangles() * word);
+    const Cut shares = launch_.cut(n_ * CADT_WRAP_SHARES);
+    launch_.run(KernelId::cadt_wrap_arrays, shares.items, links_, begins_, sizes_, bases_,
+                static_cast<std::uint32_t>(link_words()), static_cast<std::uint32_t>(row), count_, shares.grain,
+                mesh.vertices, mesh.links);
+    run_.end_phase("wrap");
+    launch_certify(run_, points_, mesh, 0, triangles(), true, bases_, row);
+    std::vector<std::uint32_t> words(row + certify_words(run_) - n_);
+    run_.device.read(*bases_, n_ * word, words.data(), words.size() * word);
+    note(words);
+    if (hubs_ != 0) return false;
+    mesh.triangles = CADT_WRAP_REAL(words[0]);
+    require_all(mesh.triangles + CADT_WRAP_GHOSTS(words[0]));
+    read_certificate(run_, std::span(words).subspan(row - n_), n_);
+    run_.end_phase("certify");
+    run_.statistics.wrapped_stars = n_;
+    if (run_.options.statistics != StatisticsDetail::none)  // edges met from both sides, nothing was flipped
+      run_.statistics.flips_per_edge[0] += (3 * mesh.triangles + (mesh.slots - mesh.triangles)) / 2;
+    return true;
+  }
+
+  /// The mesh in records. Nothing if there are too many hubs.
+  [[nodiscard]] std::optional<DeviceMesh> make_records() {
+    bases_ = run_.memory.allocate((n_ + 1 + CADT_WRAP_FOUND) * word);
+    count(false);
+    std::array<std::uint32_t, 1 + CADT_WRAP_FOUND> words{};
+    run_.device.read(*bases_, n_ * word, words.data(), sizeof words);
+    note(words);
+    const std::uint32_t known = words[0];
+    std::uint32_t edge_count = hubs_ != 0 ? launch_.read_word(found_, CADT_WRAP_FOUND) : 0;
+    if (hubs_ > CADT_WRAP_HUBS || edge_count > CADT_WRAP_EDGES) return std::nullopt;
+    const std::uint32_t first_extra = edge_count;
+    if (hubs_ != 0 && known < triangles()) {
+      const std::vector<cadt_wrap_edge> extra =
+          triangles_between_hubs(run_, edges_, edge_count, triangles() - std::size_t{known});
+      if (extra.empty()) return std::nullopt;
+      run_.device.write(*edges_, edge_count * sizeof extra[0], extra.data(), extra.size() * sizeof extra[0]);
+      edge_count += static_cast<std::uint32_t>(extra.size());
+    } else {
+      require_all(known);
+    }
+    run_.statistics.wrapped_stars = n_ - hubs_;
+    DeviceMesh mesh;
+    mesh.slots = 2 * n_;
+    mesh.records = run_.memory.allocate(mesh.slots * sizeof(cadt_record));
+    const Cut shares = launch_.cut(n_ * CADT_WRAP_SHARES);
+    launch_.run(KernelId::cadt_wrap_records, shares.items, links_, begins_, sizes_, bases_, edges_, edge_count,
+                first_extra, known, hubs_, count_, shares.grain, mesh.records);
+    run_.end_phase("wrap");
+    return mesh;
+  }
+
+ private:
+  [[nodiscard]] std::size_t triangles() const noexcept { return 2 * n_ - 2; }
+  [[nodiscard]] std::size_t link_words() const noexcept { return 3 * triangles(); }  // ghosts have no star
+
+  /// First triangles of the vertices; behind them the total, and what was found. Vertices without a star have size 0,
+  /// so this may run before it is known whether there are too many.
+  void count(bool apart) {
+    const Cut all = launch_.cut(n_);
+    launch_.run(KernelId::cadt_wrap_counts, all.items, links_, begins_, sizes_, count_, apart ? 1U : 0U, all.grain,
+                found_, bases_, edges_);
+    launch_.scan(bases_, n_ + 1);
+  }
+
+  /// The total, and what was found.
+  void note(std::span<const std::uint32_t> words) {
+    used_words_ = words[1];
+    hubs_ = words[2];
+    if (noted_) return;
+    noted_ = true;
+    run_.statistics.exact_orientations += words[4];
+    run_.statistics.exact_incircles += words[5];
+    run_.statistics.ties += words[6];
+  }
+
+  void require_all(std::size_t found) const {
+    if (found == triangles() && used_words_ <= link_words()) return;
+    throw InternalError("the wrapped stars have " + std::to_string(found) + " triangles instead of " +
+                        std::to_string(triangles()) + "; please report this with the input");
+  }
+
+  Run& run_;
+  Launcher& launch_;
+  const Allocation& points_;
+  std::size_t n_;
+  std::uint32_t count_;
+  Allocation links_, begins_, sizes_, found_, edges_, bases_;
+  std::uint32_t used_words_ = 0, hubs_ = 0;
+  bool noted_ = false;
+};
+
 }  // namespace
 
 std::size_t most_wrapped(const Device& device) noexcept { return device.shape().contiguous ? 2048 : 32768; }
@@ -98,48 +215,24 @@ void wrap_sets(Run& run, const Allocation& points, std::size_t n, const StarsOfS
                              static_cast<std::uint32_t>(stars.link_words), stars.begins, stars.sizes, stars.found);
 }
 
-std::optional<DeviceMesh> wrap_mesh(Run& run, const Allocation& points, std::size_t n) {
+std::optional<DeviceMesh> wrap_part(Run& run, const Allocation& points, std::size_t n) {
   if (n < 3) return std::nullopt;
-  Launcher& launch = run.launcher;
-  const auto count = static_cast<std::uint32_t>(n);
-  const std::size_t records = 2 * n - 2, link_words = 3 * records;  // ghosts have no star
-  const Allocation links = run.memory.allocate(link_words * word), begins = run.memory.allocate(n * word);
-  const Allocation sizes = run.memory.allocate(n * word), found = run.memory.allocate(CADT_WRAP_WORDS * word);
-  const Cut all = launch.cut(n);
-  wrap_all(run, points, n, {links, begins, sizes, found, 0, link_words});
-  // Vertices without a star have size 0, so this may run before it is known whether there are too many.
-  const Allocation bases = run.memory.allocate((n + 1 + CADT_WRAP_FOUND) * word);
-  const Allocation edges = run.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));
-  launch.run(KernelId::cadt_wrap_counts, all.items, links, begins, sizes, count, all.grain, found, bases, edges);
-  launch.scan(bases, n + 1);
-  std::array<std::uint32_t, 1 + CADT_WRAP_FOUND> words{};  // the number of triangles, and what was found
-  run.device.read(*bases, n * word, words.data(), sizeof words);
-  run.statistics.exact_orientations += words[4];
-  run.statistics.exact_incircles += words[5];
-  run.statistics.ties += words[6];
-  const std::uint32_t triangles = words[0], hubs = words[2];
-  std::uint32_t edge_count = hubs != 0 ? launch.read_word(found, CADT_WRAP_FOUND) : 0;
-  if (hubs > CADT_WRAP_HUBS || edge_count > CADT_WRAP_EDGES) return std::nullopt;
-  const std::uint32_t first_extra = edge_count;
-  if (hubs != 0 && triangles < records) {
-    const std::vector<cadt_wrap_edge> extra =
-        triangles_between_hubs(run, edges, edge_count, records - std::size_t{triangles});
-    if (extra.empty()) return std::nullopt;
-    run.device.write(*edges, edge_count * sizeof extra[0], extra.data(), extra.size() * sizeof extra[0]);
-    edge_count += static_cast<std::uint32_t>(extra.size());
-  } else if (triangles != records || words[1] > link_words) {
-    throw InternalError("the wrapped stars have " + std::to_string(triangles) + " triangles instead of " +
-                        std::to_string(records) + "; please report this with the input");
-  }
-  run.statistics.wrapped_stars = n - hubs;
-  DeviceMesh mesh;
-  mesh.slots = 2 * n;
-  mesh.records = run.memory.allocate(mesh.slots * sizeof(cadt_record));
-  const Cut shares = launch.cut(n * CADT_WRAP_SHARES);
-  launch.run(KernelId::cadt_wrap_records, shares.items, links, begins, sizes, bases, edges, edge_count, first_extra,
-             triangles, hubs, count, shares.grain, mesh.records);
-  run.end_phase("wrap");
-  return mesh;
+  Wrapping wrapping(run, points, n);
+  wrapping.make_stars();
+  return wrapping.make_records();
+}
+
+std::optional<DeviceMesh> wrap_mesh(Run& run, SpatialOrder& order) {
+  const std::size_t n = order.distinct;
+  if (n < 3) return std::nullopt;
+  Wrapping wrapping(run, order.points, n);
+  wrapping.make_stars();
+  DeviceMesh arrays;
+  if (wrapping.make_arrays(arrays)) return arrays;
+  arrays = {};
+  std::optional<DeviceMesh> mesh = wrapping.make_records();
+  if (!mesh) return std::nullopt;
+  return certify_mesh(run, order, std::move(mesh->records), 3 * std::uint64_t{n} - 3);
 }
 
 }  // namespace cadt

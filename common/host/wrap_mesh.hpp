@@ -34,8 +34,12 @@ struct StarsOfSets {
 /// Wraps the stars of these vertices; waits for nothing. `found` is 0.
 void wrap_sets(Run& run, const Allocation& points, std::size_t n, const StarsOfSets& sets, const WrappedStars& stars);
 
-/// The mesh of n distinct points in sorted order by gift wrapping (common/device/wrap.h), without locks; its edges have
-/// still to be certified. Nothing if the points are on a line or it would take too long: then insertion is to do it.
-[[nodiscard]] std::optional<DeviceMesh> wrap_mesh(Run& run, const Allocation& points, std::size_t n);
+/// The mesh of at most most_wrapped() points by gift wrapping (common/device/wrap.h), without locks, and certified: in
+/// arrays, or in records if some vertices have too many neighbours to be wrapped. Nothing if the points are on a line
+/// or it would take too long: then insertion is to do it.
+[[nodiscard]] std::optional<DeviceMesh> wrap_mesh(Run& run, SpatialOrder& order);
+
+/// The same of n points that are part of a mesh: in records, and its edges have still to be certified.
+[[nodiscard]] std::optional<DeviceMesh> wrap_part(Run& run, const Allocation& points, std::size_t n);
 
 }  // namespace cadt

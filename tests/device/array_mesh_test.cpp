@@ -41,17 +41,21 @@ struct Arrays {
   }
 
   /// By so many work-items, in launches of so many triangles.
-  [[nodiscard]] Found look(const std::vector<cadt_point>& points, std::uint32_t items = 1,
-                           std::uint32_t size = 1000) const {
+  [[nodiscard]] Found look(const std::vector<cadt_point>& points, std::uint32_t items = 1, std::uint32_t size = 1000,
+                           bool real_in_words = false) const {
+    const std::uint32_t known = real_in_words ? CADT_NONE : real;
     const auto all = static_cast<std::uint32_t>(vertices.size() / 3);
-    Found found{};
-    std::vector<std::uint32_t> counters(CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
+    std::vector<std::uint32_t> words((2 + CADT_COUNTER_ROWS) * CADT_COUNTER_STRIDE);
+    constexpr std::uint32_t row = CADT_COUNTER_STRIDE;
+    words[row + CADT_CERTIFY_REAL] = real;
     for (std::uint32_t begin = 0; begin < all; begin += size) {
       const std::uint32_t count = std::min(size, all - begin), grain = (count - 1) / items + 1;
       for (std::uint32_t item = 0; item < items; ++item)
-        cadt_certify(item, items, vertices.data(), links.data(), points.data(), all, real, begin, count, grain,
-                     found.data(), counters.data());
+        cadt_certify(item, items, vertices.data(), links.data(), points.data(), all, known, begin, count, grain,
+                     words.data(), row, 1);
     }
+    Found found{};
+    std::copy_n(words.begin() + row, found.size(), found.begin());
     return found;
   }
 };
@@ -65,6 +69,13 @@ TEST(ArrayMesh, IsLookedAtOnce) {
   for (const std::uint32_t items : {1U, 3U, 16U})
     for (const std::uint32_t size : {1U, 4U, 1000U})
       EXPECT_EQ(Arrays(mesh).look(points, items, size), (Found{15, 0, 0, 0})) << items << " items, " << size;
+}
+
+TEST(ArrayMesh, NumberOfRealTrianglesInWords) {
+  EXPECT_EQ(Arrays(mesh).look(points, 3, 4, true), (Found{15, 0, 0, 0}));
+  Arrays none(mesh);
+  none.real = 0;
+  EXPECT_EQ(none.look(points, 3, 4, true), (Found{0, 0, 0, 0}));
 }
 
 TEST(ArrayMesh, IllegalEdge) {

@@ -59,7 +59,8 @@ enum {
   CADT_WRAP_WORDS = 8,   /* and with those that kernels leave for the next */
   CADT_WRAP_SHARES = 8,  /* work-items that write the triangles of a vertex */
   CADT_WRAP_ROW = 24,    /* half-words of what is known of a star: how many neighbours, and which */
-  CADT_NEAR_POINTS = 96, /* points that are known of a vertex (wrap_near.h), 128 at most, */
+  CADT_NEAR_PLACE = 127, /* the bits of a place among */
+  CADT_NEAR_POINTS = 96, /* the points that are known of a vertex (wrap_near.h), */
   CADT_NEAR_FEW = 8,     /* and how many there should be; */
   CADT_NEAR_BOXES = 128  /* from how many boxes at most */
 };

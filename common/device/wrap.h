@@ -22,11 +22,8 @@ typedef struct {
 
 typedef struct {
   CADT_TEAM_PTR cadt_wrap_memory* m;
-  CADT_GLOBAL const cadt_point* points; /* of its range, as the numbers of vertices, boxes and crates */
-  CADT_GLOBAL const cadt_box* boxes;    /* of CADT_WRAP_BOX points, */
-  CADT_GLOBAL const cadt_box* crates;   /* of CADT_WRAP_CRATE boxes */
+  cadt_boxed in;
   cadt_tally* tally;
-  cadt_u32 n, box_count, crate_count;
   cadt_u32 lanes;  /* of the team that search: the first ones */
   cadt_u32 p;      /* the vertex */
   cadt_u32 looked; /* boxes whose points were looked at */
@@ -36,8 +33,8 @@ typedef struct {
 CADT_FN cadt_u32 cadt_wrap_better(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 b, cadt_u32 c) {
   if (c == CADT_NONE || b == c) return b;
   if (b == CADT_NONE) return c;
-  const cadt_point p = w->points[w->p], q = w->points[a];
-  return cadt_incircle(side > 0 ? p : q, side > 0 ? q : p, w->points[b], w->points[c], w->tally) > 0 ? c : b;
+  const cadt_point p = w->in.points[w->p], q = w->in.points[a];
+  return cadt_incircle(side > 0 ? p : q, side > 0 ? q : p, w->in.points[b], w->in.points[c], w->tally) > 0 ? c : b;
 }
 
 /* The best of what the lanes have found, w->m->best. \pre synchronised; all lanes call it */
@@ -57,14 +54,14 @@ CADT_FN cadt_u32 cadt_wrap_best(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side
  * angle at which it sees p and a. CADT_NONE if there is none on that side. */
 CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 first, cadt_u32 count,
                                  cadt_u32 stride) {
-  const cadt_point p = w->points[w->p], q = w->points[a];
+  const cadt_point p = w->in.points[w->p], q = w->in.points[a];
   const double ax = q.x - p.x, ay = q.y - p.y, unit = 1.0 / (ax * ax + ay * ay);
   cadt_u32 key = CADT_NONE, guess = CADT_NONE;
   if (cadt_team_lane == 0u) w->m->key = w->m->guess = CADT_NONE;
   CADT_TEAM_SYNC();
   CADT_TEAM_FOR(j, count) {
     const cadt_u32 i = first + j * stride;
-    const cadt_point c = w->points[i];
+    const cadt_point c = w->in.points[i];
     const double cx = c.x - p.x, cy = c.y - p.y, cross = side > 0 ? ax * cy - ay * cx : ay * cx - ax * cy;
     const float cotangent =
         CADT_CAST(float, (cx * (cx - ax) + cy * (cy - ay)) * unit) * cadt_about_inverse(CADT_CAST(float, cross* unit));
@@ -74,7 +71,7 @@ CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 sid
   }
   if (key != CADT_NONE) cadt_team_min(&w->m->key, key);
   CADT_TEAM_SYNC();
-  if (key != CADT_NONE && key == w->m->key && cadt_orientation(p, q, w->points[guess], w->tally) == side)
+  if (key != CADT_NONE && key == w->m->key && cadt_orientation(p, q, w->in.points[guess], w->tally) == side)
     cadt_team_min(&w->m->guess, guess);
   CADT_TEAM_SYNC();
   return w->m->guess;
@@ -86,8 +83,8 @@ CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_poin
   CADT_TEAM_SYNC(); /* all have read what the last call returned */
   if (cadt_team_lane == 0u) w->m->crate_count = 0u;
   CADT_TEAM_SYNC();
-  CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_CRATES, w->crate_count - first)) {
-    if (cadt_box_matters(w->crates[first + j], p, ax, ay, side, disc))
+  CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_CRATES, w->in.crate_count - first)) {
+    if (cadt_box_matters(w->in.crates[first + j], p, ax, ay, side, disc))
       w->m->crates[cadt_team_add(&w->m->crate_count, 1u)] = first + j;
   }
   CADT_TEAM_SYNC();
@@ -97,22 +94,22 @@ CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_poin
 /* The neighbour of p behind its neighbour a, counterclockwise (side 1) or clockwise (-1); CADT_NONE if no point is on
  * that side. a may be any other point: then the neighbour behind it among the points on that side and a. */
 CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
-  const cadt_point p = w->points[w->p], q = w->points[a];
+  const cadt_point p = w->in.points[w->p], q = w->in.points[a];
   const double ax = q.x - p.x, ay = q.y - p.y, sign = side > 0 ? 1.0 : -1.0;
   const cadt_u32 own = w->p / CADT_WRAP_BOX, near = (own ? own - 1u : 0u) * CADT_WRAP_BOX;
-  cadt_u32 best = cadt_wrap_guess(w, a, side, near, cadt_min_u32(CADT_WRAP_NEAR * CADT_WRAP_BOX, w->n - near), 1u);
+  cadt_u32 best = cadt_wrap_guess(w, a, side, near, cadt_min_u32(CADT_WRAP_NEAR * CADT_WRAP_BOX, w->in.n - near), 1u);
   cadt_disc disc;
   disc.x = disc.y = 0.0;
   disc.square = CADT_CAST(double, CADT_INFINITY);
-  if (best != CADT_NONE) disc = cadt_disc_around(p, q, w->points[best]);
-  for (cadt_u32 crate = 0u; crate < w->crate_count; crate += CADT_WRAP_CRATES) {
+  if (best != CADT_NONE) disc = cadt_disc_around(p, q, w->in.points[best]);
+  for (cadt_u32 crate = 0u; crate < w->in.crate_count; crate += CADT_WRAP_CRATES) {
     cadt_u32 crates = cadt_wrap_list(w, crate, p, ax, ay, sign, &disc);
     if (crate == 0u && crates > (best == CADT_NONE ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_OPENED))) {
       /* a large disc: a guess among all */
-      const cadt_u32 guess = cadt_wrap_guess(w, a, side, 0u, w->box_count, CADT_WRAP_BOX);
+      const cadt_u32 guess = cadt_wrap_guess(w, a, side, 0u, w->in.box_count, CADT_WRAP_BOX);
       best = cadt_wrap_better(w, a, side, best, guess);
       if (best != CADT_NONE && best == guess) {
-        disc = cadt_disc_around(p, q, w->points[best]);
+        disc = cadt_disc_around(p, q, w->in.points[best]);
         crates = cadt_wrap_list(w, crate, p, ax, ay, sign, &disc);
       }
     }
@@ -121,7 +118,7 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
       CADT_TEAM_SYNC();
       CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_OPENED, crates - opened) * CADT_WRAP_CRATE) {
         const cadt_u32 c = w->m->crates[opened + j / CADT_WRAP_CRATE] * CADT_WRAP_CRATE + j % CADT_WRAP_CRATE;
-        if (c < w->box_count && cadt_box_matters(w->boxes[c], p, ax, ay, sign, &disc))
+        if (c < w->in.box_count && cadt_box_matters(w->in.boxes[c], p, ax, ay, sign, &disc))
           w->m->boxes[cadt_team_add(&w->m->box_count, 1u)] = c;
       }
       CADT_TEAM_SYNC();
@@ -129,8 +126,8 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
       cadt_u32 mine = best;
       for (cadt_u32 j = cadt_team_lane; cadt_team_lane < w->lanes && j < boxes * CADT_WRAP_BOX; j += w->lanes) {
         const cadt_u32 i = w->m->boxes[j / CADT_WRAP_BOX] * CADT_WRAP_BOX + j % CADT_WRAP_BOX;
-        if (i >= w->n || i == w->p || i == a || i == best) continue;
-        const cadt_point c = w->points[i];
+        if (i >= w->in.n || i == w->p || i == a || i == best) continue;
+        const cadt_point c = w->in.points[i];
         const double x = c.x - p.x - disc.x, y = c.y - p.y - disc.y;
         if (x * x + y * y > disc.square) continue;
         if (cadt_orientation(p, q, c, w->tally) == side) mine = cadt_wrap_better(w, a, side, mine, i);
@@ -140,7 +137,7 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
       CADT_TEAM_SYNC();
       if (w->m->better) {
         best = cadt_wrap_best(w, a, side);
-        disc = cadt_disc_around(p, q, w->points[best]);
+        disc = cadt_disc_around(p, q, w->in.points[best]);
       }
       w->looked += boxes;
       CADT_TEAM_SYNC();
@@ -243,13 +240,8 @@ CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
     CADT_GLOBAL cadt_u32* done = starts ? efforts + set : found + 2;
     cadt_wrapper w;
     w.m = &memory;
-    w.points = points + range.begin;
-    w.boxes = boxes + range.box;
-    w.crates = crates + range.crate;
+    w.in = cadt_boxed_of(range, points, boxes, crates);
     w.tally = &tally;
-    w.n = range.count;
-    w.box_count = (range.count - 1u) / CADT_WRAP_BOX + 1u;
-    w.crate_count = (w.box_count - 1u) / CADT_WRAP_CRATE + 1u;
     w.lanes = cadt_min_u32(cadt_team_lanes, CADT_WRAP_LANES);
     w.p = v - range.begin;
     w.looked = 0u;

@@ -85,7 +85,7 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
 /* The known point behind that at place `a` on one side, or nearest to p; CADT_NONE if there is none. */
 CADT_FN cadt_u32 cadt_near_next(cadt_near* w, cadt_u32 a, cadt_i32 side) {
   const float ax = a == CADT_NONE ? 0.0f : w->m->x[a], ay = a == CADT_NONE ? 0.0f : w->m->y[a];
-  const cadt_u32 mask = 127u; /* of places */
+  const cadt_u32 mask = CADT_NEAR_PLACE;
   cadt_u32 key = CADT_NONE, count;
   CADT_TEAM_FOR(j, w->known) {
     const cadt_u32 order = cadt_wrap_key(ax, ay, w->m->x[j], w->m->y[j], side, a == CADT_NONE ? 1u : 0u);

@@ -28,11 +28,10 @@ std::size_t certify_words(const Run& run) {
 void launch_certify(Run& run, const Allocation& points, const DeviceMesh& mesh, std::size_t begin, std::size_t size,
                     bool real_in_words, const Allocation& words, std::size_t row) {
   const Cut c = run.launcher.cut_strided(size);
-  run.launcher.run(KernelId::cadt_certify, c.items, mesh.vertices, mesh.links, points,
-                   static_cast<std::uint32_t>(mesh.slots),
-                   real_in_words ? CADT_NONE : static_cast<std::uint32_t>(mesh.triangles),
-                   static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(size), c.grain, words,
-                   static_cast<std::uint32_t>(row), counts_work(run) ? 1U : 0U);
+  run.launcher.run(
+      KernelId::cadt_certify, c.items, mesh.vertices, mesh.links, points, static_cast<std::uint32_t>(mesh.slots),
+      real_in_words ? CADT_NONE : static_cast<std::uint32_t>(mesh.triangles), static_cast<std::uint32_t>(begin),
+      static_cast<std::uint32_t>(size), c.grain, words, static_cast<std::uint32_t>(row), counts_work(run) ? 1U : 0U);
 }
 
 void read_certificate(Run& run, std::span<const std::uint32_t> words, std::size_t n) {

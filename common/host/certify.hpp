@@ -16,8 +16,8 @@ namespace cadt {
 [[nodiscard]] std::size_t certify_words(const Run& run);
 
 /// Edges of the arrays of `mesh`, those of its triangles from `begin` on; waits for nothing. Counts in `words` from
-/// `row` on, a multiple of CADT_COUNTER_STRIDE; they are 0 before the first part. With `real_in_words` the number of real
-/// triangles is one of the words, 0 if there is no mesh; else it is the mesh's.
+/// `row` on, a multiple of CADT_COUNTER_STRIDE; they are 0 before the first part. With `real_in_words` the number of
+/// real triangles is one of the words, 0 if there is no mesh; else it is the mesh's.
 void launch_certify(Run& run, const Allocation& points, const DeviceMesh& mesh, std::size_t begin, std::size_t size,
                     bool real_in_words, const Allocation& words, std::size_t row);
 

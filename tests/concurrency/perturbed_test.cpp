@@ -136,7 +136,10 @@ TEST_P(PerturbedRepeats, TwentyThousandPoints) {
   const int repeats = variable != nullptr ? std::atoi(variable) : 5;
   ASSERT_GT(repeats, 0);
   const Points xy = uniform_points(20000, 20);
-  Triangulator reference(Options{.backend = Backend::host, .threads = 1});
+  Options serial;
+  serial.backend = Backend::host;
+  serial.threads = 1;
+  Triangulator reference(serial);
   const Triangulation first = reference.triangulate(std::span<const double>(xy));
   ASSERT_TRUE(verified(xy, first));
   Options options = GetParam().options();

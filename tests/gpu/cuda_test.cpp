@@ -414,8 +414,8 @@ TEST_P(CudaCalls, TakeNoMoreThanReserved) {
     EXPECT_EQ(cudaMemGetInfo(&available, &total), cudaSuccess);
     return available;
   };
-  std::size_t least = ~std::size_t{0};
-  for (int attempt = 0; attempt < 3 && least != 0; ++attempt) {
+  std::size_t least = ~std::size_t{0};  // other programs on the card take memory as well
+  for (int attempt = 0; attempt < 30 && least != 0; ++attempt) {
     Triangulator triangulator(options());
     triangulator.reserve(many.size());
     const std::size_t before = free_bytes();

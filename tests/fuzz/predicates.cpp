@@ -77,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   bend(p, way);
   cadt::test::Random random(seed);
-  cadt::test::SignSet set{"", {}, {}};
+  cadt::test::SignSet set;
   for (unsigned i = 0; i <= (many & 63u); ++i) {
     if (finite(p)) cadt::test::add_case(set, p);
     auto& q = p[random() % 4];

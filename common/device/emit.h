@@ -139,7 +139,7 @@ CADT_FN cadt_u32 cadt_bucket_begin(CADT_GLOBAL const cadt_u32* buckets, cadt_u32
 #endif
 }
 
-/* `size` buckets from `from` on; the first is at members. */
+/* `count` buckets from `from` on; the first triangle is `base`, at members. */
 CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 from,
             cadt_u32 count, cadt_u32 base, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {

@@ -31,7 +31,14 @@ enum {
   /* Words for the stars of a tile: 6 a vertex on average, and these for what some tiles have more. */
   CADT_STAR_SPARE = 8,
   /* Words before the stars of the first tile, so that vertices of triangles can take the place of stars in order. */
-  CADT_STAR_LEAD = 8192
+  CADT_STAR_LEAD = 8192,
+  /* Words of what cadt_stars finds: where those of the sample begin, that of the tiles that were left, all. */
+  CADT_STARS_SAMPLED = 7,
+  CADT_STARS_LEFT = 11,
+  CADT_STARS_FOUND = 12,
+  /* What a sample says: few have stars, many have many candidates. */
+  CADT_SAMPLE_HOPELESS = 1,
+  CADT_SAMPLE_MANY = 2
 };
 
 /* Gift wrapping (wrap.h). */
@@ -48,21 +55,23 @@ enum {
   CADT_WRAP_CRATE = 32, /* boxes of a crate */
   CADT_WRAP_PART = 4,   /* points that a lane puts into a box at a time */
   CADT_WRAP_PARTS = CADT_WRAP_BOX / CADT_WRAP_PART,
-  CADT_WRAP_NEAR = 3,    /* boxes in which a first neighbour is looked for */
-  CADT_WRAP_CRATES = 32, /* crates that are compared with a disc at a time, */
-  CADT_WRAP_OPENED = 4,  /* of these opened */
-  CADT_WRAP_DEGREE = 40, /* neighbours of a star at most, the ghost among them: others would wait for a hub */
-  CADT_WRAP_HUBS = 64,   /* vertices without a star at most, */
-  CADT_WRAP_EDGES = 256, /* half-edges between two of them */
-  CADT_WRAP_LANES = 128, /* lanes of a team that search */
-  CADT_WRAP_FOUND = 6,   /* words that are counted for the driver, */
-  CADT_WRAP_WORDS = 8,   /* and with those that kernels leave for the next */
-  CADT_WRAP_SHARES = 8,  /* work-items that write the triangles of a vertex */
-  CADT_WRAP_ROW = 24,    /* half-words of what is known of a star: how many neighbours, and which */
-  CADT_NEAR_PLACE = 127, /* the bits of a place among */
-  CADT_NEAR_POINTS = 96, /* the points that are known of a vertex (wrap_near.h), */
-  CADT_NEAR_FEW = 8,     /* and how many there should be; */
-  CADT_NEAR_BOXES = 128  /* from how many boxes at most */
+  CADT_WRAP_NEAR = 3,         /* boxes in which a first neighbour is looked for */
+  CADT_WRAP_CRATES = 32,      /* crates that are compared with a disc at a time, */
+  CADT_WRAP_OPENED = 4,       /* of these opened */
+  CADT_WRAP_DEGREE = 40,      /* neighbours of a star at most, the ghost among them: others would wait for a hub */
+  CADT_WRAP_HUBS = 64,        /* vertices without a star at most, */
+  CADT_WRAP_EDGES = 256,      /* half-edges between two of them */
+  CADT_WRAP_LANES = 128,      /* lanes of a team that search */
+  CADT_WRAP_FOUND = 6,        /* words that are counted for the driver, */
+  CADT_WRAP_WORDS = 10,       /* and with those that kernels leave for the next */
+  CADT_WRAP_HULL = 3000,      /* points that are wrapped even if nearly all are on the hull, */
+  CADT_WRAP_HULL_EXACT = 400, /* and where that takes exact tests */
+  CADT_WRAP_SHARES = 8,       /* work-items that write the triangles of a vertex */
+  CADT_WRAP_ROW = 24,         /* half-words of what is known of a star: how many neighbours, and which */
+  CADT_NEAR_PLACE = 127,      /* the bits of a place among */
+  CADT_NEAR_POINTS = 96,      /* the points that are known of a vertex (wrap_near.h), */
+  CADT_NEAR_FEW = 8,          /* and how many there should be; */
+  CADT_NEAR_BOXES = 128       /* from how many boxes at most */
 };
 
 /* Two counts in a word: real triangles, and those of the ghost. At most 2^15 points are wrapped in arrays. */

@@ -270,6 +270,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     }
     more = cadt_sweep_on(w, &cells);
   }
+  if (count > m->candidates) cadt_team_add(&w->crowded, 1u);
   if (count < 3u || count > m->candidates) return 0u;
 
   /* Sorted by the angle from `first` on: 21 bits of it, and the place. */
@@ -413,15 +414,41 @@ CADT_FN cadt_u32 cadt_store_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 
   return size;
 }
 
-/* Stars of every `step`-th tile. With `sets` the grid is that of the tile's set (sets.h), if that is one of those that
- * are together. found: points of these tiles, those without a proof; exact orientations, exact incircles, ties; tries
- * for a second time; words from `overflow` on, of `room` in all. `many`: stars may have many candidates at once.
- * \pre sizes are 0, or of stars that are there already */
+/* Tile `turn` in the order in which they come: first `sample` of them from everywhere, then the others. */
+CADT_FN cadt_u32 cadt_tile_of_turn(cadt_u32 turn, cadt_u32 count, cadt_u32 sample) {
+  if (!sample) return turn;
+  const cadt_u32 step = count / sample, other = turn - sample; /* step: at least 2 */
+  if (turn < sample) return turn * step;
+  return other < sample * (step - 1u) ? other + other / (step - 1u) + 1u : turn;
+}
+
+/* What the sample says of all tiles, as soon as nearly all of it is there. */
+CADT_FN cadt_u32 cadt_verdict_of_sample(CADT_GLOBAL cadt_u32* found, cadt_u32 sample) {
+  if (!sample || 8u * cadt_load_relaxed(found + CADT_STARS_SAMPLED) < 7u * sample) return 0u;
+  const cadt_u32 points = cadt_load_relaxed(found + CADT_STARS_SAMPLED + 1u);
+  const cadt_u32 unproven = cadt_load_relaxed(found + CADT_STARS_SAMPLED + 2u);
+  const cadt_u32 crowded = cadt_load_relaxed(found + CADT_STARS_SAMPLED + 3u);
+  /* what the host calls too many (common/host/star_stage.cpp) */
+  return (3u * unproven > points ? CADT_CAST(cadt_u32, CADT_SAMPLE_HOPELESS) : 0u) |
+         (8u * crowded > points ? CADT_CAST(cadt_u32, CADT_SAMPLE_MANY) : 0u);
+}
+
+/* Whether what has failed of a tile's first `tried` points, nearly all, is reason not to try more of them. */
+CADT_FN cadt_u32 cadt_tile_hopeless(cadt_u32 tried, CADT_TEAM_PTR cadt_u32* failed) {
+  return tried >= CADT_CAST(cadt_u32, CADT_STAR_LANES) && 16u * cadt_team_add(failed, 0u) > 15u * tried ? 1u : 0u;
+}
+
+/* Stars of all tiles. With `sets` the grid is that of the tile's set (sets.h), if that is one of those that are
+ * together. `sample`: so many of the tiles come first, 0 or at most half of all; what they need decides on room for
+ * candidates, and, if `cautious`, on whether there are stars at all. A cautious team leaves a tile that makes none.
+ * found: points, those without a proof, exact orientations, exact incircles, ties, tries for a second time, words from
+ * `overflow` on, of `room` in all; of the sample the tiles, points, those without a proof, those with too many
+ * candidates at first; tiles that were left for the sample's sake. \pre sizes are 0 */
 CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys,
                  cadt_u32 n, CADT_GRID_PARAMETERS, double most_x, double most_y, cadt_u32 clipped,
                  CADT_GLOBAL const cadt_set* sets, CADT_GLOBAL const cadt_u32* states,
-                 CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 step, cadt_u32 many, cadt_u32 grain,
-                 CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
+                 CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 sample, cadt_u32 cautious,
+                 cadt_u32 grain, CADT_GLOBAL cadt_u32* links, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
                  cadt_u32 overflow, cadt_u32 room, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_window window;
   CADT_GRID_VIEW(grid);
@@ -437,25 +464,30 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
   pool.overflowed = found + 6;
   pool.overflow = overflow;
   pool.room = room;
-  CADT_FOR_TEAMS(t, tile_count, grain) {
-    const cadt_tile tile = tiles[t * step];
-    cadt_u32 wanted = 1u;
+  CADT_FOR_TEAMS(turn, tile_count, grain) {
+    const cadt_u32 t = cadt_tile_of_turn(turn, tile_count, sample);
+    const cadt_tile tile = tiles[t];
+    if (cadt_team_lane == 0u) window.verdict = turn < sample ? 0u : cadt_verdict_of_sample(found, sample);
+    CADT_TEAM_SYNC();
+    const cadt_u32 many = window.verdict & CADT_SAMPLE_MANY;
+    const cadt_u32 left = cautious ? window.verdict & CADT_SAMPLE_HOPELESS : 0u;
+    cadt_u32 wanted = left ? 0u : 1u;
     if (sets) {
       const cadt_u32 levels = cadt_grid_levels(&grid), set = keys[tile.begin] >> (2u * levels);
       grid = cadt_grid_of_set(sets, set, levels);
       most.x = sets[set].most_x;
       most.y = sets[set].most_y;
-      wanted = states[set] == CADT_SET_TOGETHER ? 1u : 0u;
+      if (states[set] != CADT_SET_TOGETHER) wanted = 0u;
     }
-    const cadt_window_shape shape = cadt_shape_of_window(&grid, most, points, tile, tiles[t * step + 1u].begin);
+    const cadt_window_shape shape = cadt_shape_of_window(&grid, most, points, tile, tiles[t + 1u].begin);
     cadt_star_maker maker;
     maker.w = &window;
     maker.points = points;
     maker.tally = &tally;
     if (cadt_team_lane == 0u) {
       window.shape = shape; /* registers are few */
-      window.pool_begin = cadt_pool_of_tile(t * step, shape.begin);
-      window.pool_size = cadt_pool_of_tile(t * step + 1u, shape.end) - window.pool_begin;
+      window.pool_begin = cadt_pool_of_tile(t, shape.begin);
+      window.pool_size = cadt_pool_of_tile(t + 1u, shape.end) - window.pool_begin;
       window.pool_used = 0u;
     }
     const cadt_u32 loaded = wanted ? cadt_load_window(&window, &shape, &grid, points, keys, n, clipped) : 0u;
@@ -474,11 +506,13 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
           x = x < halo ? halo : cadt_min_u32(x, halo + tile_side - 1u);
           /* a neighbour tile's, rounded into this one's cells */
           if (window.at[p] < window.shape.begin || window.at[p] >= window.shape.end) continue;
-          /* or if a quarter fails, as it does where many points are cocircular */
-          const cadt_u32 large = round || many || 4u * cadt_team_add(&window.again_count, 0u) > number + 64u ? 1u : 0u;
+          const cadt_u32 hopeless = cautious && cadt_tile_hopeless(i, round ? &window.unproven : &window.again_count);
+          /* or if a quarter has too many for less, as where many points are cocircular */
+          const cadt_u32 large = round || many || 4u * cadt_team_add(&window.crowded, 0u) > number + 64u ? 1u : 0u;
           maker.candidates = (large ? 2u : 1u) * CADT_CANDIDATES;
-          cadt_u32 size = cadt_make_star(&maker, p, x, y, round ? 2u : 1u, halo,
-                                         large ? CADT_NONE : CADT_CAST(cadt_u32, CADT_FEW_CELLS));
+          cadt_u32 size = hopeless ? 0u
+                                   : cadt_make_star(&maker, p, x, y, round ? 2u : 1u, halo,
+                                                    large ? CADT_NONE : CADT_CAST(cadt_u32, CADT_FEW_CELLS));
           if (size) size = cadt_store_star(&maker, p, size, &pool);
           if (size)
             continue;
@@ -494,7 +528,15 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
       cadt_add_relaxed(found, own);
       const cadt_u32 unproven = loaded ? window.unproven : own;
       if (unproven) cadt_add_relaxed(found + 1, unproven);
-      if (loaded && window.again_count) cadt_add_relaxed(found + 5, window.again_count);
+      const cadt_u32 again = loaded ? window.again_count : 0u, crowded = loaded ? window.crowded : 0u;
+      if (again) cadt_add_relaxed(found + 5, again);
+      if (left) cadt_add_relaxed(found + CADT_STARS_LEFT, 1u);
+      if (turn < sample) {
+        cadt_add_relaxed(found + CADT_STARS_SAMPLED + 1u, own);
+        cadt_add_relaxed(found + CADT_STARS_SAMPLED + 2u, unproven);
+        cadt_add_relaxed(found + CADT_STARS_SAMPLED + 3u, crowded);
+        cadt_add_relaxed(found + CADT_STARS_SAMPLED, 1u);
+      }
     }
     CADT_TEAM_SYNC();
   }

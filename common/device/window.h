@@ -39,7 +39,8 @@ typedef struct {
   cadt_u32 rows[CADT_TILE_SIDE + 1]; /* points of the tile before each row of its cells */
   cadt_u16 link[CADT_LINK_PLACES];   /* a star in the making for each lane (star.h) */
   cadt_window_shape shape;
-  cadt_u32 again_count, unproven;
+  cadt_u32 again_count, unproven, crowded;   /* the last: had too many candidates */
+  cadt_u32 verdict;                          /* of the sample of tiles (star.h) */
   cadt_u32 pool_begin, pool_size, pool_used; /* of the words for the stars of the tile (star.h) */
   cadt_u16 again[CADT_TILE_POINTS];          /* points that are tried again, numbers in the tile */
 } cadt_window;
@@ -166,7 +167,7 @@ CADT_FN cadt_u32 cadt_load_window(CADT_TEAM_PTR cadt_window* w, const cadt_windo
       if (sum > CADT_WINDOW_POINTS) sum = CADT_WINDOW_POINTS + 1u;
     }
     w->offset[ranges] = CADT_CAST(cadt_u32, sum);
-    w->again_count = w->unproven = 0u;
+    w->again_count = w->unproven = w->crowded = 0u;
   }
   CADT_TEAM_SYNC();
   const cadt_u32 total = w->offset[ranges];

@@ -33,8 +33,7 @@ typedef struct {
 CADT_FN cadt_u32 cadt_wrap_better(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 b, cadt_u32 c) {
   if (c == CADT_NONE || b == c) return b;
   if (b == CADT_NONE) return c;
-  const cadt_point p = w->in.points[w->p], q = w->in.points[a];
-  return cadt_incircle(side > 0 ? p : q, side > 0 ? q : p, w->in.points[b], w->in.points[c], w->tally) > 0 ? c : b;
+  return cadt_wrap_better_of(w->in.points, w->p, a, side, b, c, w->tally);
 }
 
 /* The best of what the lanes have found, w->m->best. \pre synchronised; all lanes call it */
@@ -219,8 +218,9 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
 }
 
 /* The stars of the vertices in `todo`: of `count`, which are of sets, or, with `arcs`, those that cadt_wrap_near has
- * left, found[7] of them. Nothing is done any more when more than CADT_WRAP_HUBS have failed, or the effort is above
- * its bound, `effort` a point; of sets when one has failed, which states[set] counts, as efforts[set] the effort. */
+ * left, found[7] of them. Nothing is done where these are nearly all and on the hull, as far as is known: each would
+ * have to look at all points. Nor when more than CADT_WRAP_HUBS have failed, or the effort is above its bound, `effort`
+ * a point; of sets when one has failed, which states[set] counts, as efforts[set] the effort. */
 CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
                  CADT_GLOBAL const cadt_box* crates, cadt_u32 n, CADT_GLOBAL const cadt_u32* todo, cadt_u32 count,
                  CADT_GLOBAL const cadt_u16* arcs, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
@@ -229,7 +229,10 @@ CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
                  CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_wrap_memory memory;
   const cadt_wrap_sink sink = cadt_wrap_sink_of(n, row, links, link_words, begins, sizes, found);
-  const cadt_u32 stars = arcs ? found[7] : count;
+  const cadt_u32 hull = found[9] > n ? CADT_CAST(cadt_u32, CADT_WRAP_HULL_EXACT) : CADT_CAST(cadt_u32, CADT_WRAP_HULL);
+  const cadt_u32 crowd = arcs && n > hull && 10u * found[8] > 9u * n ? 1u : 0u;
+  const cadt_u32 stars = crowd ? 0u : (arcs ? found[7] : count);
+  if (crowd && cadt_item == 0u) cadt_add_relaxed(found + 1, CADT_CAST(cadt_u32, CADT_WRAP_HUBS) + 1u);
   cadt_tally tally;
   cadt_tally_clear(&tally);
   cadt_u32 exact_before = 0u;

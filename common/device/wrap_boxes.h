@@ -189,6 +189,15 @@ CADT_FN cadt_u32 cadt_wrap_key(float ax, float ay, float cx, float cy, cadt_i32 
   return bits >> 31 ? ~bits : bits | 0x80000000u;
 }
 
+/* The cotangent again. */
+CADT_FN float cadt_wrap_key_value(cadt_u32 key) { return cadt_float_of_bits(key >> 31 ? key & 0x7FFFFFFFu : ~key); }
+
+/* Which of two points on one side of the line p, a has the circle without the other. */
+CADT_FN cadt_u32 cadt_wrap_better_of(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a, cadt_i32 side,
+                                     cadt_u32 b, cadt_u32 c, cadt_tally* tally) {
+  return cadt_incircle(points[side > 0 ? p : a], points[side > 0 ? a : p], points[b], points[c], tally) > 0 ? c : b;
+}
+
 /* What lanes find out together from one barrier to the next: the least of their values, and how many they count. It can
  * be read until the end of the next step, so that a step takes one barrier. */
 typedef struct {

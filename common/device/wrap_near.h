@@ -95,13 +95,57 @@ CADT_FN cadt_u32 cadt_near_next(cadt_near* w, cadt_u32 a, cadt_i32 side) {
   return key == CADT_NONE ? CADT_NONE : key & mask;
 }
 
-/* The star of p among the known points, by rounded numbers. Returns 0 if they make no sense. */
-CADT_FN cadt_u32 cadt_near_wrap(cadt_near* w) {
+/* The exact test of two known points at places b and c, CADT_NONE: none. A function of its own: its code must not be in
+ * the way of that which all lanes execute. */
+CADT_FN_SLOW cadt_u32 cadt_near_better(CADT_GLOBAL const cadt_point* points, CADT_TEAM_PTR const cadt_u32* at,
+                                       cadt_u32 p, cadt_u32 a, cadt_i32 side, cadt_u32 b, cadt_u32 c,
+                                       cadt_tally* tally) {
+  return cadt_wrap_better_of(points, p, at[a], side, at[b], at[c], tally) == at[c] ? c : b;
+}
+
+/* The known point behind that at place `a` if it is `next` or one that rounded numbers do not tell from it, as the
+ * exact test says. */
+CADT_FN cadt_u32 cadt_near_tell(cadt_near* w, cadt_u32 a, cadt_i32 side, cadt_u32 next) {
+  const float ax = w->m->x[a], ay = w->m->y[a];
+  const float value = cadt_wrap_key_value(cadt_wrap_key(ax, ay, w->m->x[next], w->m->y[next], side, 0u));
+  const float most = value + 3e-5f * (1.0f + value * value);
+  cadt_u32 count;
+  CADT_TEAM_FOR(j, w->known) {
+    const cadt_u32 key = cadt_wrap_key(ax, ay, w->m->x[j], w->m->y[j], side, 0u);
+    if (key != CADT_NONE && cadt_wrap_key_value(key) <= most) w->m->boxes[cadt_near_count(w)] = j;
+  }
+  cadt_near_end_step(w, CADT_NONE, &count);
+  if (count < 2u) return next;
+  const cadt_u32 lanes = cadt_min_u32(cadt_team_lanes, CADT_WRAP_CRATES);
+  cadt_u32 width = cadt_min_u32(lanes, count);
+  if (cadt_team_lane < width) {
+    cadt_u32 best = w->m->boxes[cadt_team_lane];
+    for (cadt_u32 j = cadt_team_lane + lanes; j < count; j += lanes)
+      best = cadt_near_better(w->in.points, w->m->at, w->p, a, side, best, w->m->boxes[j], w->tally);
+    w->m->crates[cadt_team_lane] = best;
+  }
+  CADT_TEAM_SYNC();
+  while (width > 1u) {
+    const cadt_u32 middle = (width + 1u) / 2u;
+    if (cadt_team_lane + middle < width)
+      w->m->crates[cadt_team_lane] =
+          cadt_near_better(w->in.points, w->m->at, w->p, a, side, w->m->crates[cadt_team_lane],
+                           w->m->crates[cadt_team_lane + middle], w->tally);
+    width = middle;
+    CADT_TEAM_SYNC();
+  }
+  return w->m->crates[0];
+}
+
+/* The star of p among the known points, by rounded numbers; `careful`: exactly where these do not tell. Returns 0 if it
+ * makes no sense. */
+CADT_FN cadt_u32 cadt_near_wrap(cadt_near* w, cadt_u32 careful) {
   cadt_u32 low = CADT_WRAP_DEGREE, high = low, start = CADT_NONE, now = CADT_NONE, sense = 1u, going = 1u;
   cadt_i32 side = 1;
   w->closed = 0u;
   while (going) {
-    const cadt_u32 next = cadt_near_next(w, now, side);
+    cadt_u32 next = cadt_near_next(w, now, side);
+    if (careful && now != CADT_NONE && next != CADT_NONE) next = cadt_near_tell(w, now, side, next);
     if (start == CADT_NONE) { /* from the nearest point counterclockwise, */
       start = now = next;
       if (start == CADT_NONE) going = sense = 0u;
@@ -135,8 +179,9 @@ CADT_FN cadt_u32 cadt_near_neighbor(const cadt_near* w, cadt_u32 k) {
   return w->m->at[w->m->link[w->low + (k < w->size ? k : 0u)]];
 }
 
-/* The triangles' discs; proven is what is counterclockwise for certain and has no points but known ones in its disc. */
-CADT_FN void cadt_near_claim(cadt_near* w) {
+/* The triangles' discs; proven is what is counterclockwise for certain and has no points but known ones in its disc.
+ * Returns how many triangles are. */
+CADT_FN cadt_u32 cadt_near_claim(cadt_near* w) {
   const cadt_point p = w->in.points[w->p];
   cadt_u32 count;
   CADT_TEAM_FOR(i, cadt_near_triangles(w)) {
@@ -144,9 +189,12 @@ CADT_FN void cadt_near_claim(cadt_near* w) {
     const cadt_disc disc = cadt_disc_around(p, a, b);
     w->m->disc[i] = disc;
     /* The circle goes through p, so nothing in it is further off than its diameter. */
-    w->m->proven[i] = cadt_orientation_filter(p, a, b) == 1 && 4.0 * disc.square <= w->reach.square ? 1u : 0u;
+    const cadt_u32 claimed = cadt_orientation_filter(p, a, b) == 1 && 4.0 * disc.square <= w->reach.square ? 1u : 0u;
+    w->m->proven[i] = claimed;
+    if (claimed) cadt_near_count(w);
   }
   cadt_near_end_step(w, CADT_NONE, &count);
+  return count;
 }
 
 /* The exact test. A function of its own: its code must not be in the way of that which all lanes execute. */
@@ -155,12 +203,12 @@ CADT_FN_SLOW cadt_u32 cadt_near_in_circle(CADT_GLOBAL const cadt_point* points, 
   return cadt_incircle(points[p], points[a], points[b], points[c], tally) > 0 ? 1u : 0u;
 }
 
-/* Known points in circles: rounded numbers have erred. Returns whether no known point is beyond an edge of the hull, or
- * on its line, which is not decided here. */
-CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w) {
+/* Known points in circles: rounded numbers have erred, `erred` times. Returns whether no known point is beyond an edge
+ * of the hull, or on its line, which is not decided here. */
+CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w, cadt_u32* erred) {
   const cadt_point p = w->in.points[w->p];
   const cadt_u32 triangles = cadt_near_triangles(w);
-  cadt_u32 wrong = CADT_NONE, count;
+  cadt_u32 wrong = CADT_NONE;
   CADT_TEAM_FOR(j, triangles ? w->known : 0u) {
     const cadt_u32 i = w->m->at[j];
     const cadt_point c = w->in.points[i];
@@ -168,32 +216,40 @@ CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w) {
       const double x = c.x - p.x - w->m->disc[k].x, y = c.y - p.y - w->m->disc[k].y;
       if (x * x + y * y > w->m->disc[k].square) continue;
       const cadt_u32 a = cadt_near_neighbor(w, k), b = cadt_near_neighbor(w, k + 1u);
-      if (i != a && i != b && cadt_near_in_circle(w->in.points, w->p, a, b, i, w->tally)) w->m->proven[k] = 0u;
+      if (i == a || i == b || !cadt_near_in_circle(w->in.points, w->p, a, b, i, w->tally)) continue;
+      w->m->proven[k] = 0u;
+      cadt_near_count(w);
     }
     if (w->closed) continue;
     const cadt_u32 first = cadt_near_neighbor(w, 0u), last = cadt_near_neighbor(w, triangles);
     if (i != first && cadt_orientation_filter(p, w->in.points[first], c) != 1) wrong = 0u;
     if (i != last && cadt_orientation_filter(p, w->in.points[last], c) != -1) wrong = 0u;
   }
-  return cadt_near_end_step(w, wrong, &count) == CADT_NONE ? 1u : 0u;
+  return cadt_near_end_step(w, wrong, erred) == CADT_NONE ? 1u : 0u;
 }
 
 /* Searches the star of w->p; returns its kind (wrap_store.h), 0 if it is not found this way: then there are triangles
  * of which those are right that are proven. */
 CADT_FN cadt_u32 cadt_near_star(cadt_near* w) {
   const cadt_u32 all = w->reach.square == CADT_CAST(double, CADT_INFINITY) ? 1u : 0u;
+  cadt_u32 right = 0u, erred = 1u;
   if (!cadt_near_gather(w)) w->known = 0u;
-  if (!cadt_near_wrap(w)) w->size = 0u, w->closed = 1u; /* no triangles */
-  cadt_near_claim(w);
-  cadt_u32 right = cadt_near_contradict(w);
+  for (cadt_u32 careful = 0u; careful < 2u && erred; ++careful) {
+    if (!cadt_near_wrap(w, careful)) w->size = 0u, w->closed = 1u; /* no triangles */
+    const cadt_u32 claimed = cadt_near_claim(w);
+    right = cadt_near_contradict(w, &erred);
+    if (!w->size && w->known) erred = 1u;
+    if (w->size && !claimed) erred = 0u; /* none of its triangles would be proven */
+  }
   if (!w->size || !(w->closed || all)) right = 0u;
   for (cadt_u32 k = 0u; k < cadt_near_triangles(w); ++k) right &= w->m->proven[k];
   return right ? (w->closed ? 1u : 2u) : 0u;
 }
 
-/* Stars of all n points. Those that are not found are listed in `todo`, found[7] of them, and in the rows of `arcs` how
- * many neighbours they have here, whether those go round, and which, with CADT_WRAP_PROVEN where the triangle of it and
- * the next one is. \pre sizes are 0, n >= 2 */
+/* Stars of all n points. Those that are not found are listed in `todo`, found[7] of them (found[8]: of those that do
+ * not go round among the points that are known), and in the rows of `arcs` how many neighbours they have here, whether
+ * those go round, and which, with CADT_WRAP_PROVEN where the triangle of it and the next one is. \pre sizes are 0, n >=
+ * 2 */
 CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
                  CADT_GLOBAL const cadt_box* crates, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* links,
                  cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
@@ -215,6 +271,7 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
     const cadt_u32 kind = cadt_near_star(&w);
     if (cadt_team_lane == 0u && !kind) {
       memory.place = cadt_add_relaxed(found + 7, 1u);
+      if (!w.closed) cadt_add_relaxed(found + 8, 1u);
       todo[memory.place] = v;
     }
     CADT_TEAM_SYNC();
@@ -229,6 +286,7 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
     if (cadt_team_lane == 0u && !kind) arcs[memory.place * CADT_WRAP_ROW] = CADT_CAST(cadt_u16, noted << 1 | w.closed);
     cadt_wrap_store(&sink, &memory.place, v, 0u, memory.boxes, w.size, 1u, kind);
   }
+  if (tally.count[CADT_COUNT_EXACT_INCIRCLES]) cadt_add_relaxed(found + 9, tally.count[CADT_COUNT_EXACT_INCIRCLES]);
   cadt_wrap_pass_on(&tally, found);
 }
 

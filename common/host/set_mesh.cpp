@@ -87,8 +87,7 @@ class SetStage {
     stars_.links = run_.memory.allocate(n_ * (CADT_STAR_DEGREE + long_star_words) * word);
     stars_.sizes = run_.memory.allocate_zeros(n_ * word);
     if (tiles && n_ / tiles->count >= least_points_of_tile)
-      run_stars(run_, order_, keys, sets_.sets, sets_.states, *tiles, tiles->count, 1, false, stars_)
-          .add_to(run_.statistics);
+      run_stars(run_, order_, keys, sets_.sets, sets_.states, *tiles, false, stars_).add_to(run_.statistics);
     run_.end_phase("stars");
     run_.check("stars", 0.4);
   }

@@ -162,9 +162,13 @@ std::optional<KeyGrid> grid_of_most(Run& run, const Allocation& input, Bounds bo
   run.device.read(*chosen, 0, points.data(), samples * sizeof points[0]);
   const auto cut = [&](double cadt_point::*axis, double& low, double& high) {
     const double width = 0.5 * high - 0.5 * low;
-    std::ranges::sort(points, {}, axis);
-    low = points[tail].*axis;
-    high = points[samples - 1 - tail].*axis;
+    const auto value = [&](std::size_t rank) {
+      const auto at = points.begin() + static_cast<std::ptrdiff_t>(rank);
+      std::ranges::nth_element(points, at, {}, axis);
+      return (*at).*axis;
+    };
+    low = value(tail);
+    high = value(samples - 1 - tail);
     return (0.5 * high - 0.5 * low) * much_smaller < width;
   };
   const bool narrower = cut(&cadt_point::x, bounds.min_x, bounds.max_x);

@@ -22,7 +22,6 @@ using namespace device_constants;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr unsigned most_bits = 24;  // of an axis: cells of a window are counted in 32 bits
-constexpr std::uint32_t sampled_tiles = 512, least_step = 12;
 
 /// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
@@ -33,10 +32,13 @@ constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * 
 /// The vertices of the mesh take the place of the stars in so many steps where memory is to be saved.
 constexpr std::uint32_t waves = 4;
 
-/// The mesh without the star stage: by gift wrapping if the points are few, else by insertion.
+/// The mesh without the star stage: by gift wrapping if the points are few, else by insertion. More are wrapped as a
+/// part of a mesh than alone: among what has few stars, many need long searches.
 DeviceMesh build_without_stars(Run& run, SpatialOrder& order) {
+  const bool automatic = run.options.strategy == Strategy::automatic;
+  const std::size_t most = automatic ? most_wrapped_alone : most_wrapped(run.device);
   std::optional<DeviceMesh> wrapped;
-  if (order.distinct <= most_wrapped(run.device)) wrapped = wrap_mesh(run, order);
+  if (order.distinct <= std::min(most, most_wrapped(run.device))) wrapped = wrap_mesh(run, order);
   return wrapped ? std::move(*wrapped) : build_mesh(run, order);
 }
 
@@ -86,7 +88,7 @@ class StarStage {
   }
 
  private:
-  /// False if there are no tiles.
+  /// False if there are no tiles, or too few stars.
   bool make_stars() {
     const KeyGrid& grid = order_.grid;
     if (!keys_) {
@@ -100,21 +102,11 @@ class StarStage {
     const bool automatic = run_.options.strategy == Strategy::automatic;
     if (automatic && n_ / tiles->count < least_points_of_tile) return false;
     stars_ = make_star_list(run_, n_, *tiles);
-    const auto run_tiles = [&](std::uint32_t count, std::uint32_t step, bool many) {
-      return run_stars(run_, order_, keys_, {}, {}, *tiles, count, step, many, stars_);
-    };
-    bool many = false;  // points with many candidates: of 12-gons two thirds, of uniform points 3 %
-    if (automatic && tiles->count >= sampled_tiles * least_step) {
-      const StarCounts found = run_tiles(sampled_tiles, tiles->count / sampled_tiles, false);
-      if (too_many(found.unproven, found.points)) return false;
-      many = 10 * std::size_t{found.again} > found.points;
-      // The same tiles use the same places once more, and which of their stars are proven may differ.
-      run_.device.fill(*stars_.sizes, 0, n_ * word, 0);
-    }
-    run_tiles(tiles->count, 1, many).add_to(run_.statistics);
+    const StarCounts found = run_stars(run_, order_, keys_, {}, {}, *tiles, automatic, stars_);
+    found.add_to(run_.statistics);
     run_.end_phase("stars");
     run_.check("stars", 0.5);
-    return true;
+    return found.left_tiles == 0 && !too_many(found.unproven, n_);
   }
 
   void count_triangles() {

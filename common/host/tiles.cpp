@@ -10,6 +10,8 @@ using namespace device_constants;
 namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
+/// A large card works on 900 tiles at a time: while it has the sample, it has begun with others.
+constexpr std::uint32_t sampled_tiles = 512;
 
 }  // namespace
 
@@ -51,17 +53,17 @@ void StarCounts::add_to(Statistics& statistics) const noexcept {
 }
 
 StarCounts run_stars(Run& run, const SpatialOrder& order, const Allocation& keys, const Allocation& sets,
-                     const Allocation& states, const TileList& tiles, std::uint32_t count, std::uint32_t step,
-                     bool many, const StarList& stars) {
+                     const Allocation& states, const TileList& tiles, bool cautious, const StarList& stars) {
   const KeyGrid& grid = order.grid;
-  const Allocation found = run.launcher.zeros(7);
-  const Cut teams = run.launcher.cut_teams(count, CADT_STAR_LANES);
+  const Allocation found = run.launcher.zeros(CADT_STARS_FOUND);
+  const Cut teams = run.launcher.cut_teams(tiles.count, CADT_STAR_LANES);
+  const std::uint32_t sample = !sets && tiles.count >= 2 * sampled_tiles ? sampled_tiles : 0;
   run.launcher.run(KernelId::cadt_stars, teams.items, order.points, keys, static_cast<std::uint32_t>(order.distinct),
                    grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y, grid.most_x, grid.most_y,
-                   grid.clipped ? 1U : 0U, sets, states, tiles.tiles, count, step, many ? 1U : 0U, teams.grain,
-                   stars.links, stars.begins, stars.sizes, stars.overflow, stars.room, found);
+                   grid.clipped ? 1U : 0U, sets, states, tiles.tiles, tiles.count, sample, cautious ? 1U : 0U,
+                   teams.grain, stars.links, stars.begins, stars.sizes, stars.overflow, stars.room, found);
   StarCounts counts;
-  static_assert(sizeof counts == 7 * word);
+  static_assert(sizeof counts == CADT_STARS_FOUND * word);
   run.device.read(*found, 0, &counts, sizeof counts);
   return counts;
 }

@@ -35,13 +35,14 @@ struct StarList {
 struct StarCounts {
   std::uint32_t points = 0, unproven = 0, exact_orientations = 0, exact_incircles = 0, ties = 0, again = 0,
                 overflowed = 0;
+  std::uint32_t sampled_tiles = 0, sampled_points = 0, sampled_unproven = 0, sampled_crowded = 0;
+  std::uint32_t left_tiles = 0;  ///< for the sample's sake: all of their points are unproven
   void add_to(Statistics& statistics) const noexcept;
 };
 
-/// Stars of the vertices of `count` tiles, every `step`-th. `sets` and `states` of a call with several sets (sets.h),
-/// null else. `many`: with room for many candidates at once.
+/// Stars of all tiles. `sets` and `states` of a call with several sets (sets.h), null else. `cautious`: where the first
+/// points have no star, or hardly any tile of a sample has, no more are tried.
 StarCounts run_stars(Run& run, const SpatialOrder& order, const Allocation& keys, const Allocation& sets,
-                     const Allocation& states, const TileList& tiles, std::uint32_t count, std::uint32_t step,
-                     bool many, const StarList& stars);
+                     const Allocation& states, const TileList& tiles, bool cautious, const StarList& stars);
 
 }  // namespace cadt

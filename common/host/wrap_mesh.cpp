@@ -128,6 +128,9 @@ class Wrapping {
     return true;
   }
 
+  /// Too many vertices have no star. \pre make_arrays
+  [[nodiscard]] bool failed() const noexcept { return hubs_ > CADT_WRAP_HUBS; }
+
   /// The mesh in records. Nothing if there are too many hubs.
   [[nodiscard]] std::optional<DeviceMesh> make_records() {
     bases_ = run_.memory.allocate((n_ + 1 + CADT_WRAP_FOUND) * word);
@@ -229,6 +232,7 @@ std::optional<DeviceMesh> wrap_mesh(Run& run, SpatialOrder& order) {
   wrapping.make_stars();
   DeviceMesh arrays;
   if (wrapping.make_arrays(arrays)) return arrays;
+  if (wrapping.failed()) return std::nullopt;
   arrays = {};
   std::optional<DeviceMesh> mesh = wrapping.make_records();
   if (!mesh) return std::nullopt;

@@ -308,16 +308,25 @@ std::vector<std::vector<std::uint32_t>> links_of(const Sorted& s) {
   return links;
 }
 
+/// What cadt_stars finds, as if a sample of one tile had said this of its points.
+std::vector<std::uint32_t> after_a_sample(std::uint32_t unproven, std::uint32_t crowded) {
+  std::vector<std::uint32_t> found(CADT_STARS_FOUND);
+  const std::uint32_t sample[] = {1, 1U << 24, unproven, crowded};
+  std::ranges::copy(sample, found.begin() + CADT_STARS_SAMPLED);
+  return found;
+}
+
 /// Compares all stars with the mesh; the shares that are proven. `part` as in sorted(); `many`: with many candidates.
 void check_stars(double part, bool many, std::map<std::string, double>& shares) {
   for (const NamedPoints& set : sets()) {
     SCOPED_TRACE(set.name);
     const Sorted s = sorted(set.points, set.bits_x, set.bits_y, part);
     const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
-    std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n), found(7);
+    std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n);
+    std::vector<std::uint32_t> found = after_a_sample(0, many ? 1U << 24 : 0);
     cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
-               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1,
-               many ? 1 : 0, count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
+               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1, 0,
+               count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
     const auto links = links_of(s);
     std::size_t proven = 0;
     for (std::uint32_t v = 0; v < n; ++v) {
@@ -350,7 +359,7 @@ TEST(ProvenStars, AreThoseOfTheMesh) {
 
 /// Stars close together: of `words` behind those of the tiles.
 struct Packed {
-  std::vector<std::uint32_t> links, begins, sizes, found = std::vector<std::uint32_t>(7);
+  std::vector<std::uint32_t> links, begins, sizes, found = after_a_sample(0, 1U << 24);
   std::uint32_t overflow, room;
 
   Packed(const Sorted& s, std::uint32_t words, std::uint32_t lost) {
@@ -361,7 +370,7 @@ struct Packed {
     begins.resize(n);
     sizes.resize(n);
     cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
-               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1, 1,
+               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1, 0,
                count, links.data(), begins.data(), sizes.data(), overflow, room, found.data());
   }
 };
@@ -409,6 +418,82 @@ TEST(ProvenStars, CloseTogether) {
   }
   EXPECT_GT(overflowed, 6u) << "nothing that the tiles have no room for: a weak test";
   EXPECT_GT(without_room, 0u);
+}
+
+// First so many from everywhere, then the others, each once.
+TEST(TurnsOfTiles, AreAllOfThem) {
+  for (std::uint32_t count = 1; count < 70; ++count) {
+    for (std::uint32_t sample = 0; 2 * sample <= count; ++sample) {
+      std::vector<std::uint32_t> tiles;
+      for (std::uint32_t turn = 0; turn < count; ++turn) tiles.push_back(cadt_tile_of_turn(turn, count, sample));
+      for (std::uint32_t turn = 1; turn < sample; ++turn) ASSERT_EQ(tiles[turn] - tiles[turn - 1], count / sample);
+      ASSERT_TRUE(std::ranges::is_sorted(tiles.begin() + sample, tiles.end()));
+      std::ranges::sort(tiles);
+      for (std::uint32_t t = 0; t < count; ++t) ASSERT_EQ(tiles[t], t) << count << " tiles, " << sample << " first";
+    }
+  }
+}
+
+struct StarsOf {
+  std::vector<std::uint32_t> stars, sizes, found;
+
+  StarsOf(const Sorted& s, std::vector<std::uint32_t> before, bool cautious) : found(std::move(before)) {
+    const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
+    stars.resize(std::size_t{n} * CADT_STAR_DEGREE);
+    sizes.resize(n);
+    cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
+               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1,
+               cautious ? 1 : 0, count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
+  }
+  [[nodiscard]] auto proven() const {
+    return std::ranges::count_if(sizes, [](std::uint32_t size) { return size != 0; });
+  }
+};
+
+NamedPoints uniform_points(int count) {
+  std::mt19937_64 random(5);
+  const auto unit = [&] { return static_cast<double>(random() >> 12) * 0x1p-52; };
+  NamedPoints set{"uniform", {{0, 0}, {1, 1}}, 8, 8};
+  while (static_cast<int>(set.points.size()) < count) set.points.push_back({unit(), unit()});
+  return set;
+}
+
+// If hardly any point of the sample has a star, a cautious call has those of the sample alone.
+TEST(SampleOfTiles, EndsWhatIsInVain) {
+  constexpr std::uint32_t most = 1U << 24;
+  const NamedPoints set = uniform_points(6000);
+  const Sorted s = sorted(set.points, set.bits_x, set.bits_y);
+  const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
+  ASSERT_GT(count, 8U);
+  const StarsOf bold(s, after_a_sample(most, 0), false), hopeful(s, after_a_sample(most / 4, 0), true);
+  EXPECT_EQ(bold.sizes, hopeful.sizes);
+  EXPECT_GT(bold.proven(), n * 3 / 4);
+  EXPECT_EQ(bold.found[CADT_STARS_LEFT], 0U);
+  EXPECT_EQ(hopeful.found[CADT_STARS_LEFT], 0U);
+  const StarsOf cautious(s, after_a_sample(most, 0), true);
+  EXPECT_EQ(cautious.found[CADT_STARS_LEFT], count - 1);
+  EXPECT_EQ(cautious.found[0], n);
+  EXPECT_EQ(n - cautious.found[1], cautious.proven());
+  EXPECT_LE(cautious.proven(), s.tiles[1].begin);
+  for (std::uint32_t v = 0; v < s.tiles[1].begin; ++v) ASSERT_EQ(cautious.sizes[v], bold.sizes[v]) << v;
+}
+
+// Where none of a tile's first points has a star, a cautious team tries no more of them, and nothing is lost elsewhere.
+TEST(CautiousTiles, LeaveWhatMakesNoStars) {
+  const NamedPoints set = uniform_points(6000);
+  const Sorted s = sorted(set.points, set.bits_x, set.bits_y);
+  EXPECT_EQ(StarsOf(s, after_a_sample(0, 0), true).sizes, StarsOf(s, after_a_sample(0, 0), false).sizes);
+
+  // A tile with a line of points below, beyond which there is nothing, and others above it.
+  NamedPoints shore{"shore", {{0, 0}, {1, 1}}, 8, 8};
+  for (int i = 1; i < 300; ++i) shore.points.push_back({i / 300.0, 0});
+  for (const cadt_point& p : uniform_points(300).points) shore.points.push_back({p.x, 0.2 + 0.8 * p.y});
+  const Sorted one = sorted(shore.points, shore.bits_x, shore.bits_y);
+  ASSERT_EQ(one.tiles.size(), 2U);
+  EXPECT_GT(StarsOf(one, after_a_sample(0, 0), false).proven(), 50);
+  const StarsOf cautious(one, after_a_sample(0, 0), true);
+  EXPECT_EQ(cautious.proven(), 0);
+  EXPECT_EQ(cautious.found[1], one.size());
 }
 
 // The points end within the grid: stars know that beyond the last of them there are none.

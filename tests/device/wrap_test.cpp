@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Gift wrapping as the host compiles it: what the first kernel finds, and when the second one gives up.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#define CADT_WIDE 0
+namespace {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include "common/device/wrap.h"
+#include "common/device/wrap_near.h"
+#pragma GCC diagnostic pop
+
+using Points = std::vector<cadt_point>;
+
+/// side * side points, in Morton order. `turn`: by this angle, so that nothing is exactly cocircular any more.
+Points lattice(std::uint32_t side, double turn) {
+  Points points;
+  const double c = std::cos(turn), s = std::sin(turn);
+  const auto walk = [&](const auto& self, std::uint32_t x, std::uint32_t y, std::uint32_t size) -> void {
+    if (size == 1) {
+      points.push_back({(c * x - s * y) / 256, (s * x + c * y) / 256});
+      return;
+    }
+    for (std::uint32_t k = 0; k < 4; ++k) self(self, x + (k & 1U) * size / 2, y + (k >> 1U) * size / 2, size / 2);
+  };
+  walk(walk, 0, 0, side);
+  return points;
+}
+
+Points polygon(int corners) {
+  Points points;
+  for (int i = 0; i < corners; ++i)
+    points.push_back({std::cos(2 * std::numbers::pi * i / corners), std::sin(2 * std::numbers::pi * i / corners)});
+  return points;
+}
+
+Points parabola(int count) {
+  Points points;
+  for (int i = 0; i < count; ++i) points.push_back({i / 4096.0, i / 4096.0 * i / 4096.0});
+  return points;
+}
+
+/// Both kernels, one work-item each.
+struct Wrapped {
+  std::vector<std::uint32_t> links, begins, sizes, todo, found = std::vector<std::uint32_t>(CADT_WRAP_WORDS);
+  std::uint32_t left = 0;  ///< by the first kernel
+
+  explicit Wrapped(const Points& points) {
+    const auto n = static_cast<std::uint32_t>(points.size()), box_count = (n - 1) / CADT_WRAP_BOX + 1,
+               crate_count = (box_count - 1) / CADT_WRAP_CRATE + 1, words = 6 * n;
+    std::vector<cadt_box> boxes(box_count), crates(crate_count);
+    std::vector<std::uint16_t> arcs(std::size_t{n} * CADT_WRAP_ROW);
+    links.resize(words);
+    begins.resize(n);
+    sizes.resize(n);
+    todo.resize(n);
+    cadt_wrap_boxes(0, 1, points.data(), n, nullptr, 0, crate_count, crate_count, boxes.data(), crates.data(),
+                    sizes.data(), found.data());
+    cadt_wrap_near(0, 1, points.data(), boxes.data(), crates.data(), n, n, links.data(), words, begins.data(),
+                   sizes.data(), todo.data(), arcs.data(), found.data());
+    left = found[7];
+    constexpr std::uint32_t effort = 96;
+    cadt_wrap_stars(0, 1, points.data(), boxes.data(), crates.data(), n, todo.data(), 0, arcs.data(), nullptr, 0,
+                    nullptr, nullptr, effort, n, 0, links.data(), words, begins.data(), sizes.data(), found.data());
+  }
+  [[nodiscard]] std::uint32_t failed() const { return found[1]; }
+  [[nodiscard]] std::uint32_t effort() const { return found[2]; }
+};
+
+// Which of cocircular points is next rounded numbers do not tell, and those of the hull have to be searched in any case.
+TEST(WrappedNear, HasTheStarsOfLattices) {
+  constexpr std::uint32_t side = 32;
+  for (const double turn : {0.0, 0.3, 1.1}) {
+    const Wrapped wrapped(lattice(side, turn));
+    EXPECT_LT(wrapped.left, 8 * side) << "turned by " << turn;
+    EXPECT_GE(wrapped.left, 2 * side) << "turned by " << turn;
+    EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
+    EXPECT_LE(std::ranges::count(wrapped.sizes, 0U), wrapped.failed());
+  }
+}
+
+// Where all points are on the hull each would look at all others: nothing is searched, unless they are few.
+TEST(WrappedStars, GivesUpOnHulls) {
+  for (const Points& points : {polygon(CADT_WRAP_HULL_EXACT + 1), parabola(CADT_WRAP_HULL + 1)}) {
+    const Wrapped wrapped(points);
+    EXPECT_EQ(wrapped.left, points.size());
+    EXPECT_GT(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
+    EXPECT_EQ(wrapped.effort(), 0U);
+  }
+  for (const Points& points : {polygon(100), parabola(300)}) {
+    const Wrapped wrapped(points);
+    EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
+    EXPECT_GT(wrapped.effort(), 0U);
+  }
+}
+
+}  // namespace

@@ -165,20 +165,22 @@ CADT_FN cadt_u32 cadt_spread_bits(cadt_u32 x) {
 
 /* Place of a cell along Hilbert's curve through 2^bits x 2^bits cells, from x = y = 0 to the other end of the x axis.
  * Unlike Morton's order it never jumps: neighbours on the curve are neighbours in the plane, so no walk from one to the
- * other is long. (One long walk in a launch on a GPU is waited for by everything.) */
-CADT_FN cadt_u32 cadt_hilbert(cadt_u32 x, cadt_u32 y, cadt_u32 bits) {
+ * other is long. (One long walk in a launch on a GPU is waited for by everything.) A part: the bits of the place below
+ * `from` and not below `to` of each coordinate, which afterwards are as the rest of the place needs them. */
+CADT_FN cadt_u32 cadt_hilbert_part(cadt_u32* x, cadt_u32* y, cadt_u32 from, cadt_u32 to) {
   cadt_u32 place = 0u;
-  for (cadt_u32 b = bits; b-- > 0u;) {
-    const cadt_u32 qx = (x >> b) & 1u, qy = (y >> b) & 1u;
+  for (cadt_u32 b = from; b-- > to;) {
+    const cadt_u32 qx = (*x >> b) & 1u, qy = (*y >> b) & 1u;
     place = (place << 2) | ((3u * qx) ^ qy);
     if (!qy) { /* the two lower quadrants are transposed, the last one is also turned round */
-      const cadt_u32 turn = 0u - qx, t = x ^ turn;
-      x = y ^ turn;
-      y = t;
+      const cadt_u32 turn = 0u - qx, t = *x ^ turn;
+      *x = *y ^ turn;
+      *y = t;
     }
   }
   return place;
 }
+CADT_FN cadt_u32 cadt_hilbert(cadt_u32 x, cadt_u32 y, cadt_u32 bits) { return cadt_hilbert_part(&x, &y, bits, 0u); }
 
 /* The grid of the sort keys: 2^bits_x x 2^bits_y square cells. Coordinates are halved first: the width of the box may
  * exceed the largest double. */
@@ -240,6 +242,34 @@ CADT_FN cadt_u32 cadt_cell_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y
   return level == 16u ? low : ((((along >> level) + grid->set) << (2u * level)) | low);
 }
 
+/* The same with up to 31 bits an axis. The levels below the sixteenth from the top make the low word of a key. */
+CADT_FN cadt_u64 cadt_fine_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y, cadt_u32 level) {
+  const cadt_u32 mask = (1u << level) - 1u, fine = level > 16u ? level - 16u : 0u;
+  const cadt_u32 longer = grid->bits_x >= grid->bits_y ? 1u : 0u, along = longer ? x : y;
+  cadt_u32 a = along & mask, b = (longer ? y : x) & mask;
+  const cadt_u64 high = cadt_hilbert_part(&a, &b, level, fine), low = cadt_hilbert_part(&a, &b, fine, 0u);
+  return (CADT_CAST(cadt_u64, (along >> level) + grid->set) << (2u * level)) | (high << (2u * fine)) | low;
+}
+
+/* Sort keys of one word, or of two where cells would be crowded: `low_bits` of each are in the low one. */
+typedef struct {
+  CADT_GLOBAL const cadt_u32* high;
+  CADT_GLOBAL const cadt_u32* low; /* or null */
+  cadt_u32 low_bits;
+} cadt_keys;
+
+CADT_FN cadt_keys cadt_keys_of(CADT_GLOBAL const cadt_u32* high, CADT_GLOBAL const cadt_u32* low, cadt_u32 low_bits) {
+  cadt_keys keys;
+  keys.high = high;
+  keys.low = low;
+  keys.low_bits = low_bits;
+  return keys;
+}
+CADT_FN cadt_u64 cadt_key_at(const cadt_keys* keys, cadt_u32 i) {
+  const cadt_u64 high = keys->high[i];
+  return keys->low ? (high << keys->low_bits) | keys->low[i] : high;
+}
+
 #if CADT_CONTIGUOUS
 /* cadt_cell_key for some cells side by side, for compilers that make vector operations of the loops over them. The
  * steps are those of cadt_hilbert by masks: a branch would be wrong half of the time. */
@@ -289,6 +319,27 @@ CADT_KERNEL(cadt_sort_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL ca
     keys[i] = cadt_cell_key(&grid, CADT_CAST(cadt_u32, f.x), CADT_CAST(cadt_u32, f.y), levels);
   }
 #endif
+}
+
+/* Keys of two words. */
+CADT_KERNEL(cadt_fine_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL cadt_u32* high, CADT_GLOBAL cadt_u32* low,
+            cadt_u32 low_bits, cadt_u32 count, cadt_u32 grain, CADT_GRID_PARAMETERS) {
+  CADT_GRID_VIEW(grid);
+  const cadt_u32 levels = cadt_grid_levels(&grid);
+  CADT_FOR(i, count, grain) {
+    const cadt_point f = cadt_clamp_to_grid(&grid, cadt_to_grid(&grid, points[i]));
+    const cadt_u64 key = cadt_fine_key(&grid, CADT_CAST(cadt_u32, f.x), CADT_CAST(cadt_u32, f.y), levels);
+    high[i] = CADT_CAST(cadt_u32, key >> low_bits);
+    low[i] = CADT_CAST(cadt_u32, key) & ((1u << low_bits) - 1u);
+  }
+}
+
+/* 1 where a run of equal keys ends. */
+CADT_KERNEL(cadt_fine_tails, CADT_GLOBAL const cadt_u32* high, CADT_GLOBAL const cadt_u32* low,
+            CADT_GLOBAL cadt_u32* tails, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) {
+    tails[i] = i + 1u == count || high[i] != high[i + 1u] || low[i] != low[i + 1u] ? 1u : 0u;
+  }
 }
 
 /* Points in sorted order. */

@@ -21,7 +21,8 @@
 #include "common/device/sweep.h"
 
 /* Error of a difference of two points of a window, in cells: coordinates are at most 12 cells from the centre, so they
- * are rounded by at most 2^-21; their units are exact to 2^-25. */
+ * are rounded by at most 2^-21. Before, in units of a grid of at most 2^26 cells an axis, of which none is divided by
+ * more than 8, they are exact to 2^-23. */
 #define CADT_WINDOW_ERROR 2e-6f
 #define CADT_PLACE_BITS 11u
 #define CADT_PLACE_MASK 2047u
@@ -444,7 +445,8 @@ CADT_FN cadt_u32 cadt_tile_hopeless(cadt_u32 tried, CADT_TEAM_PTR cadt_u32* fail
  * found: points, those without a proof, exact orientations, exact incircles, ties, tries for a second time, words from
  * `overflow` on, of `room` in all; of the sample the tiles, points, those without a proof, those with too many
  * candidates at first; tiles that were left for the sample's sake. \pre sizes are 0 */
-CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys,
+CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* points,
+                 CADT_GLOBAL const cadt_u32* high_keys, CADT_GLOBAL const cadt_u32* low_keys, cadt_u32 low_bits,
                  cadt_u32 n, CADT_GRID_PARAMETERS, double most_x, double most_y, cadt_u32 clipped,
                  CADT_GLOBAL const cadt_set* sets, CADT_GLOBAL const cadt_u32* states,
                  CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 sample, cadt_u32 cautious,
@@ -452,6 +454,7 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
                  cadt_u32 overflow, cadt_u32 room, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_window window;
   CADT_GRID_VIEW(grid);
+  const cadt_keys keys = cadt_keys_of(high_keys, low_keys, low_bits);
   cadt_point most;
   most.x = most_x;
   most.y = most_y;
@@ -473,7 +476,7 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
     const cadt_u32 left = cautious ? window.verdict & CADT_SAMPLE_HOPELESS : 0u;
     cadt_u32 wanted = left ? 0u : 1u;
     if (sets) {
-      const cadt_u32 levels = cadt_grid_levels(&grid), set = keys[tile.begin] >> (2u * levels);
+      const cadt_u32 levels = cadt_grid_levels(&grid), set = high_keys[tile.begin] >> (2u * levels);
       grid = cadt_grid_of_set(sets, set, levels);
       most.x = sets[set].most_x;
       most.y = sets[set].most_y;
@@ -490,7 +493,7 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_stars, CADT_GLOBAL const cadt_point* p
       window.pool_size = cadt_pool_of_tile(t + 1u, shape.end) - window.pool_begin;
       window.pool_used = 0u;
     }
-    const cadt_u32 loaded = wanted ? cadt_load_window(&window, &shape, &grid, points, keys, n, clipped) : 0u;
+    const cadt_u32 loaded = wanted ? cadt_load_window(&window, &shape, &grid, points, &keys, n, clipped) : 0u;
     const cadt_u32 own = loaded ? window.rows[shape.tile_side] : shape.end - shape.begin;
     if (loaded) {
       const cadt_u32 lanes = cadt_min_u32(cadt_team_lanes, CADT_STAR_LANES);

@@ -87,11 +87,11 @@ CADT_FN cadt_window_shape cadt_shape_of_window(const cadt_key_grid* grid, const 
 }
 
 /* First position whose key, without its lowest bits, is not less than `square`. */
-CADT_FN cadt_u32 cadt_begin_of_square(CADT_GLOBAL const cadt_u32* keys, cadt_u32 n, cadt_u64 square, cadt_u32 shift) {
+CADT_FN cadt_u32 cadt_begin_of_square(const cadt_keys* keys, cadt_u32 n, cadt_u64 square, cadt_u32 shift) {
   cadt_u32 low = 0u, high = n;
   while (low < high) {
     const cadt_u32 middle = low + (high - low) / 2u;
-    if (CADT_CAST(cadt_u64, keys[middle]) >> shift < square)
+    if (cadt_key_at(keys, middle) >> shift < square)
       low = middle + 1u;
     else
       high = middle;
@@ -135,7 +135,7 @@ CADT_FN cadt_u32 cadt_at_edge(const cadt_window_shape* s, cadt_i32 squares_x, ca
 /* Loads a window. Returns 0 if there are too many points, or the grid is clipped and the window at its edge; the same
  * for all lanes. */
 CADT_FN cadt_u32 cadt_load_window(CADT_TEAM_PTR cadt_window* w, const cadt_window_shape* s, const cadt_key_grid* grid,
-                                  CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* keys, cadt_u32 n,
+                                  CADT_GLOBAL const cadt_point* points, const cadt_keys* keys, cadt_u32 n,
                                   cadt_u32 clipped) {
   const cadt_u32 ranges = s->squares * s->squares, levels = cadt_grid_levels(grid);
   const cadt_u32 shift = 2u * (levels - s->square_level), cells = s->side * s->side;
@@ -149,7 +149,7 @@ CADT_FN cadt_u32 cadt_load_window(CADT_TEAM_PTR cadt_window* w, const cadt_windo
     if (column >= s->rim && column + s->rim < s->squares && row >= s->rim && row + s->rim < s->squares) {
       if (column == s->rim && row == s->rim) first = s->begin, size = s->end - s->begin; /* all of the tile */
     } else if (x >= 0 && x < squares_x && y >= 0 && y < squares_y) {
-      const cadt_u64 square = cadt_cell_key(grid, CADT_CAST(cadt_u32, x), CADT_CAST(cadt_u32, y), s->square_level);
+      const cadt_u64 square = cadt_fine_key(grid, CADT_CAST(cadt_u32, x), CADT_CAST(cadt_u32, y), s->square_level);
       first = cadt_begin_of_square(keys, n, square, shift);
       size = cadt_begin_of_square(keys, n, square + 1u, shift) - first;
     }

@@ -75,19 +75,19 @@ class SetStage {
   void make_stars() {
     const unsigned levels = order_.grid.levels();
     const Cut c = launch_.cut(n_);
-    Allocation keys = std::move(order_.keys);
+    Allocation keys = std::move(order_.keys), none;
     if (!keys) {
       keys = run_.memory.allocate(n_ * word);
       launch_.run(KernelId::cadt_set_keys, c.items, order_.points, sets_.positions(), set_count_, sets_.sets,
                   static_cast<std::uint32_t>(levels), 1U, keys, count_, c.grain);
     }
-    const std::optional<TileList> tiles = make_tiles(run_, keys, n_, levels);
+    const std::optional<TileList> tiles = make_tiles(run_, {keys, none}, n_, levels);
     run_.end_phase("tiles");
     run_.check("stars", 0.1);
     stars_.links = run_.memory.allocate(n_ * (CADT_STAR_DEGREE + long_star_words) * word);
     stars_.sizes = run_.memory.allocate_zeros(n_ * word);
     if (tiles && n_ / tiles->count >= least_points_of_tile)
-      run_stars(run_, order_, keys, sets_.sets, sets_.states, *tiles, false, stars_).add_to(run_.statistics);
+      run_stars(run_, order_, {keys, none}, sets_.sets, sets_.states, *tiles, false, stars_).add_to(run_.statistics);
     run_.end_phase("stars");
     run_.check("stars", 0.4);
   }

@@ -181,6 +181,28 @@ std::optional<KeyGrid> grid_of_most(Run& run, const Allocation& input, Bounds bo
   return grid;
 }
 
+constexpr int most_fine_levels = 15, fewest_fine_levels = 4;
+
+/// Sorts by keys of two words, of a grid with so many more levels that few cells are crowded; `keys` become the numbers
+/// of the runs of equal ones.
+void sort_finely(Run& run, const Allocation& input, Allocation& keys, Allocation& order, Allocation& spare,
+                 std::size_t n, const KeyGrid& grid) {
+  Launcher& launch = run.launcher;
+  const auto count = static_cast<std::uint32_t>(n);
+  const Cut c = launch.cut(n);
+  const Allocation low = run.memory.allocate(n * word);
+  make_fine_keys(run, input, keys, low, n, grid);
+  Allocation sorted = run.memory.allocate(n * word), spare_order = run.memory.allocate(n * word);
+  launch.run(KernelId::cadt_copy_words, c.items, low, sorted, std::uint32_t{0}, count, c.grain);
+  launch.sort(sorted, order, spare, spare_order, n, 2 * grid.fine_levels, true);
+  // stable
+  launch.run(KernelId::cadt_gather_words, c.items, keys, order, sorted, count, c.grain);
+  launch.sort(sorted, order, spare, spare_order, n, grid.bits() - 2 * grid.fine_levels, false);
+  launch.run(KernelId::cadt_gather_words, c.items, low, order, spare, count, c.grain);
+  launch.run(KernelId::cadt_fine_tails, c.items, sorted, spare, keys, count, c.grain);
+  launch.scan(keys, n);
+}
+
 /// The points that equal an earlier one, ascending, and those that they equal.
 void find_duplicates(Run& run, SpatialOrder& result, const Allocation& order, const Allocation& ranks, std::size_t n) {
   const std::size_t count = n - result.distinct;
@@ -247,6 +269,25 @@ bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const All
     run.check("sort", 0.05 + 0.01 * round);
   }
   return true;
+}
+
+KeyGrid KeyGrid::finer(int levels) const noexcept {
+  KeyGrid grid = *this;
+  grid.bits_x += static_cast<unsigned>(levels);
+  grid.bits_y += static_cast<unsigned>(levels);
+  grid.fine_levels += static_cast<unsigned>(levels);
+  grid.scale = std::ldexp(scale, levels);
+  grid.most_x = std::ldexp(most_x, levels);
+  grid.most_y = std::ldexp(most_y, levels);
+  return grid;
+}
+
+void make_fine_keys(Run& run, const Allocation& points, const Allocation& high, const Allocation& low, std::size_t n,
+                    const KeyGrid& grid) {
+  const Cut c = run.launcher.cut(n);
+  run.launcher.run(KernelId::cadt_fine_keys, c.items, points, high, low, 2 * grid.fine_levels,
+                   static_cast<std::uint32_t>(n), c.grain, grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x,
+                   grid.bits_y);
 }
 
 void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid) {
@@ -338,9 +379,20 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
         crowd = flag_crowded(run, keys, spare, n);
       }
     }
+    const int finer =
+        std::min(most_fine_levels, 31 - static_cast<int>(std::max(result.grid.bits_x, result.grid.bits_y)));
+    // Of few points the sort would take longer than what stars save.
+    const bool wanted = keep_keys && (n > most_ahead || run.options.strategy == Strategy::stars);
+    const bool fine = wanted && crowd > n / 4 && finer >= fewest_fine_levels &&
+                      result.grid.scale < std::ldexp(1.0, 1000);  // else it is of points that are nearly all equal
+    if (fine) {
+      result.grid = result.grid.finer(finer);
+      sort_finely(run, input, keys, order, spare, n, result.grid);
+      crowd = flag_crowded(run, keys, spare, n);
+    }
     run.end_phase("sort");
     run.check("sort", 0.05);
-    sorted_by_keys = !refine_crowd(run, input, keys, order, spare, n, crowd);
+    sorted_by_keys = !refine_crowd(run, input, keys, order, spare, n, crowd) && !fine;
     run.end_phase("refine");
     run.device.fill(*totals, 0, 2 * word, 0);
     gather();

@@ -19,8 +19,11 @@ struct KeyGrid {
   double scale = 0;               ///< cells a unit of halved coordinates
   double most_x = 0, most_y = 0;  ///< largest coordinates of the points, in cells
   bool clipped = false;           ///< some points are outside, and have the nearest cell at the edge
+  unsigned fine_levels = 0;       ///< of `levels()`, those in the low word of keys that have two
   [[nodiscard]] unsigned bits() const noexcept { return bits_x + bits_y; }
   [[nodiscard]] unsigned levels() const noexcept { return std::min(bits_x, bits_y); }
+  /// So many levels more, or fewer: in the low word.
+  [[nodiscard]] KeyGrid finer(int levels) const noexcept;
 };
 
 struct SpatialOrder {
@@ -46,8 +49,13 @@ struct SetStarts {
 /// Sort keys of n points of the device.
 void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid);
 
+/// Keys of two words. \pre grid.fine_levels > 0
+void make_fine_keys(Run& run, const Allocation& points, const Allocation& high, const Allocation& low, std::size_t n,
+                    const KeyGrid& grid);
+
 /// Sorts n points (`input`: interleaved, as the device takes them), refines crowded cells, finds duplicates.
-/// `keep_keys`: the result has the sort keys, unless cells were crowded or points equal. \throws InputError for the
+/// `keep_keys`: the result has the sort keys, unless cells were crowded or points equal; where a quarter of the points
+/// is in crowded cells, they are in the order of a finer grid. \throws InputError for the
 /// first NaN or infinity
 [[nodiscard]] SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_keys);
 

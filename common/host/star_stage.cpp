@@ -21,7 +21,7 @@ namespace {
 using namespace device_constants;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr unsigned most_bits = 24;  // of an axis: cells of a window are counted in 32 bits
+constexpr unsigned most_bits = 26;  // of an axis: cells of a window are counted in 32 bits, see CADT_WINDOW_ERROR too
 
 /// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
@@ -91,18 +91,25 @@ class StarStage {
   /// False if there are no tiles, or too few stars.
   bool make_stars() {
     const KeyGrid& grid = order_.grid;
+    Allocation low;
     if (!keys_) {
       keys_ = run_.memory.allocate(n_ * word);
-      make_keys(run_, order_.points, keys_, n_, grid);
+      if (grid.fine_levels != 0) {
+        low = run_.memory.allocate(n_ * word);
+        make_fine_keys(run_, order_.points, keys_, low, n_, grid);
+      } else {
+        make_keys(run_, order_.points, keys_, n_, grid);
+      }
     }
-    const std::optional<TileList> tiles = make_tiles(run_, keys_, n_, grid.levels());
+    const SortKeys keys{keys_, low, 2 * grid.fine_levels};
+    const std::optional<TileList> tiles = make_tiles(run_, keys, n_, grid.levels());
     if (!tiles) return false;
     run_.end_phase("tiles");
     run_.check("stars", 0.1);
     const bool automatic = run_.options.strategy == Strategy::automatic;
     if (automatic && n_ / tiles->count < least_points_of_tile) return false;
     stars_ = make_star_list(run_, n_, *tiles);
-    const StarCounts found = run_stars(run_, order_, keys_, {}, {}, *tiles, automatic, stars_);
+    const StarCounts found = run_stars(run_, order_, keys, {}, {}, *tiles, automatic, stars_);
     found.add_to(run_.statistics);
     run_.end_phase("stars");
     run_.check("stars", 0.5);
@@ -255,7 +262,9 @@ class StarStage {
 }  // namespace
 
 DeviceMesh build_mesh_with_stars(Run& run, SpatialOrder& order) {
-  const KeyGrid& grid = order.grid;
+  KeyGrid& grid = order.grid;
+  const int too_fine = static_cast<int>(std::max(grid.bits_x, grid.bits_y)) - static_cast<int>(most_bits);
+  if (too_fine > 0 && grid.fine_levels != 0) grid = grid.finer(-std::min(too_fine, static_cast<int>(grid.fine_levels)));
   if (order.wide) {
     order.keys.release();
     return build_mesh(run, order);

@@ -19,8 +19,14 @@ struct TileList {
   std::uint32_t count = 0;
 };
 
-/// Nothing if the keys are not in order. \pre `keys` are those of n points in a grid of so many levels
-[[nodiscard]] std::optional<TileList> make_tiles(Run& run, const Allocation& keys, std::size_t n, unsigned levels);
+/// Keys of sorted points in a grid; the low words are null if there is one word.
+struct SortKeys {
+  const Allocation &high, &low;
+  unsigned low_bits = 0;
+};
+
+/// Nothing if the keys are not in order. \pre they are those of n points in a grid of so many levels
+[[nodiscard]] std::optional<TileList> make_tiles(Run& run, const SortKeys& keys, std::size_t n, unsigned levels);
 
 /// Proven stars: neighbours in `links`, from `begins` on, how many in `sizes`, 0 where there is no proof. Without
 /// `begins` each vertex has CADT_STAR_DEGREE words.
@@ -42,7 +48,7 @@ struct StarCounts {
 
 /// Stars of all tiles. `sets` and `states` of a call with several sets (sets.h), null else. `cautious`: where the first
 /// points have no star, or hardly any tile of a sample has, no more are tried.
-StarCounts run_stars(Run& run, const SpatialOrder& order, const Allocation& keys, const Allocation& sets,
+StarCounts run_stars(Run& run, const SpatialOrder& order, const SortKeys& keys, const Allocation& sets,
                      const Allocation& states, const TileList& tiles, bool cautious, const StarList& stars);
 
 }  // namespace cadt

@@ -55,8 +55,9 @@ std::map<std::uint32_t, int> tiles_by_definition(const Keys& keys, unsigned leve
 
 std::map<std::uint32_t, int> tiles_found(const Keys& keys, unsigned levels) {
   std::map<std::uint32_t, int> tiles;
+  const cadt_keys view = cadt_keys_of(keys.data(), nullptr, 0);
   for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    const cadt_i32 level = cadt_tile_level(keys.data(), static_cast<std::uint32_t>(keys.size()), i, levels);
+    const cadt_i32 level = cadt_tile_level(&view, static_cast<std::uint32_t>(keys.size()), i, levels);
     if (level >= 0) tiles[i] = level;
   }
   return tiles;
@@ -100,12 +101,14 @@ TEST(Tiles, ExactlyAsManyAsFit) {
 }
 
 TEST(Tiles, CountsKeysOutOfOrder) {
-  Keys keys = {0, 0, 5, 3, 3, 9, 8, 7};
+  Keys keys;
+  keys.reserve(2 * CADT_TILE_POINTS);  // or the compiler warns of places that are not read
+  keys = {0, 0, 5, 3, 3, 9, 8, 7};
   std::vector<std::uint32_t> flags(keys.size() + 1);
   const auto n = static_cast<std::uint32_t>(keys.size());
   for (const std::uint32_t expected : {3u, 0u}) {
     std::uint32_t descents = 0;
-    cadt_tile_flags(0, 1, keys.data(), flags.data(), n, 2, n, &descents);
+    cadt_tile_flags(0, 1, keys.data(), nullptr, 0, flags.data(), n, 2, n, &descents);
     EXPECT_EQ(descents, expected);
     std::ranges::sort(keys);
   }
@@ -114,16 +117,27 @@ TEST(Tiles, CountsKeysOutOfOrder) {
 /// Sorted points with what the kernels need of them.
 struct Sorted {
   std::vector<cadt_point> points;
-  Keys keys;
+  Keys keys, low;  ///< the low words, if there are two
+  std::uint32_t low_bits = 0;
   cadt_key_grid grid{};
   cadt_point most{};             ///< largest coordinates, in units of the grid
   std::vector<cadt_tile> tiles;  ///< one more at the end
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(points.size()); }
+  [[nodiscard]] const std::uint32_t* low_keys() const { return low_bits != 0 ? low.data() : nullptr; }
+  [[nodiscard]] cadt_keys view() const { return cadt_keys_of(keys.data(), low_keys(), low_bits); }
+};
+
+struct NamedPoints {
+  const char* name;
+  std::vector<cadt_point> points;
+  unsigned bits_x, bits_y, fine = 0;  ///< of the bits, those in the low word of a key of two
 };
 
 /// \pre distinct points, in [0, 1). `part` of the grid along each axis is used.
-Sorted sorted(std::vector<cadt_point> points, unsigned bits_x, unsigned bits_y, double part = 1) {
+Sorted sorted(const NamedPoints& set, double part = 1) {
+  const auto& [name, points, bits_x, bits_y, fine] = set;
   Sorted s;
+  s.low_bits = 2 * fine;
   double low_x = 1, low_y = 1, high_x = 0, high_y = 0;
   for (const cadt_point& p : points) {
     low_x = std::min(low_x, p.x);
@@ -140,32 +154,31 @@ Sorted sorted(std::vector<cadt_point> points, unsigned bits_x, unsigned bits_y, 
             0};
   s.most = cadt_to_grid(&s.grid, {high_x, high_y});
   const auto n = static_cast<std::uint32_t>(points.size());
-  Keys keys(n);
-  cadt_sort_keys(0, 1, points.data(), keys.data(), n, n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale, bits_x,
-                 bits_y);
+  Keys keys(n), low(n);
+  if (fine != 0)
+    cadt_fine_keys(0, 1, points.data(), keys.data(), low.data(), s.low_bits, n, n, s.grid.half_min_x, s.grid.half_min_y,
+                   s.grid.scale, bits_x, bits_y);
+  else
+    cadt_sort_keys(0, 1, points.data(), keys.data(), n, n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale, bits_x,
+                   bits_y);
   std::vector<std::uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
-  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return keys[i]; });
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return std::pair(keys[i], low[i]); });
   for (const std::uint32_t i : order) {
     s.points.push_back(points[i]);
     s.keys.push_back(keys[i]);
+    s.low.push_back(low[i]);
   }
   const cadt_u32 levels = cadt_grid_levels(&s.grid);
   std::vector<std::uint32_t> flags(n + 1), ranks(n + 1);
   std::uint32_t descents = 0;
-  cadt_tile_flags(0, 1, s.keys.data(), flags.data(), n, levels, n, &descents);
+  cadt_tile_flags(0, 1, s.keys.data(), s.low_keys(), s.low_bits, flags.data(), n, levels, n, &descents);
   EXPECT_EQ(descents, 0u);
   std::exclusive_scan(flags.begin(), flags.end(), ranks.begin(), 0u);
   s.tiles.resize(ranks[n] + 1);
-  cadt_tile_pack(0, 1, s.keys.data(), ranks.data(), s.tiles.data(), n, levels, n);
+  cadt_tile_pack(0, 1, s.keys.data(), s.low_keys(), s.low_bits, ranks.data(), s.tiles.data(), n, levels, n);
   return s;
 }
-
-struct NamedPoints {
-  const char* name;
-  std::vector<cadt_point> points;
-  unsigned bits_x, bits_y;
-};
 
 std::vector<NamedPoints> sets() {
   std::mt19937_64 random(2);
@@ -201,6 +214,13 @@ std::vector<NamedPoints> sets() {
       {"crowd in the last column", together(scattered(800, 0, 0, 1, 1), scattered(3000, 0.97, 0.4, 0.03, 0.03)), 6, 6},
       {"crowd in the first cell", together(scattered(800, 0, 0, 1, 1), scattered(3000, 0, 0, 0.05, 0.05)), 6, 6},
       {"half empty", together(scattered(3000, 0, 0, 0.4, 0.4), scattered(60, 0, 0, 1, 1)), 8, 8},
+      {"two words", scattered(8000, 0, 0, 1, 1), 12, 12, 5},
+      {"long, two words", scattered(4000, 0, 0, 1, 1.0 / 64), 14, 8, 3},
+      {"lattice, two words", lattice(61, 61, 1.0 / 61), 20, 20, 12},
+      {"clusters, two words",
+       together(scattered(2000, 0.2, 0.3, 1e-5, 1e-5),
+                together(scattered(3000, 0.7, 0.6, 1e-4, 1e-4), {{0, 0}, {1, 1}})),
+       26, 26, 15},
       {"rings",
        [&] {
          std::vector<cadt_point> points;
@@ -219,12 +239,43 @@ std::vector<NamedPoints> sets() {
   };
 }
 
+// As those of one word where there are 16 levels; the key of a cell begins with that of the cell around it, and what
+// comes next on the curve is beside it.
+TEST(FineKeys, FollowTheCurve) {
+  std::mt19937_64 random(7);
+  for (const auto& [bits_x, bits_y] :
+       {std::pair(16U, 16U), {16U, 12U}, {9U, 14U}, {24U, 24U}, {31U, 31U}, {27U, 20U}}) {
+    const cadt_key_grid grid{0, 0, 1, bits_x, bits_y, 0};
+    const std::uint32_t levels = cadt_grid_levels(&grid);
+    std::map<std::uint64_t, std::pair<std::int64_t, std::int64_t>> cells;
+    const std::uint32_t x0 = static_cast<std::uint32_t>(random()) & ((1U << bits_x) - 1) & ~15U,
+                        y0 = static_cast<std::uint32_t>(random()) & ((1U << bits_y) - 1) & ~15U;
+    for (std::uint32_t k = 0; k < 256; ++k) {
+      const std::uint32_t x = x0 + k % 16, y = y0 + k / 16;
+      const std::uint64_t key = cadt_fine_key(&grid, x, y, levels);
+      ASSERT_LT(key, std::uint64_t{1} << (bits_x + bits_y));
+      if (bits_x + bits_y <= 32) {
+        ASSERT_EQ(key, cadt_cell_key(&grid, x, y, levels));
+      }
+      for (std::uint32_t up = 1; up <= levels; ++up)
+        ASSERT_EQ(key >> (2 * up), cadt_fine_key(&grid, x >> up, y >> up, levels - up));
+      cells[key] = {x, y};
+    }
+    ASSERT_EQ(cells.size(), 256U);
+    for (auto a = cells.begin(), b = std::next(a); b != cells.end(); ++a, ++b) {
+      ASSERT_EQ(b->first, a->first + 1);
+      ASSERT_EQ(std::abs(a->second.first - b->second.first) + std::abs(a->second.second - b->second.second), 1);
+    }
+  }
+}
+
 TEST(Windows, HaveEveryPointOfTheirSquares) {
   std::size_t all_inside = 0;
   for (const NamedPoints& set : sets()) {
     SCOPED_TRACE(set.name);
-    const Sorted s = sorted(set.points, set.bits_x, set.bits_y);
+    const Sorted s = sorted(set);
     const auto window = std::make_unique<cadt_window>();
+    const cadt_keys keys = s.view();
     std::size_t loaded = 0, owned = 0, inside = 0;
     for (std::size_t t = 0; t + 1 < s.tiles.size(); ++t) {
       const cadt_window_shape shape =
@@ -248,10 +299,9 @@ TEST(Windows, HaveEveryPointOfTheirSquares) {
       };
       const bool inner = off(shape.origin_x, s.grid.bits_x) && off(shape.origin_y, s.grid.bits_y);
       inside += inner ? 1 : 0;
-      ASSERT_EQ(cadt_load_window(window.get(), &shape, &s.grid, s.points.data(), s.keys.data(), s.size(), 1) != 0,
+      ASSERT_EQ(cadt_load_window(window.get(), &shape, &s.grid, s.points.data(), &keys, s.size(), 1) != 0,
                 fits && inner);
-      ASSERT_EQ(cadt_load_window(window.get(), &shape, &s.grid, s.points.data(), s.keys.data(), s.size(), 0) != 0,
-                fits);
+      ASSERT_EQ(cadt_load_window(window.get(), &shape, &s.grid, s.points.data(), &keys, s.size(), 0) != 0, fits);
       if (!fits) continue;
       ++loaded;
       const std::uint32_t total = window->cells[shape.side * shape.side];
@@ -320,13 +370,13 @@ std::vector<std::uint32_t> after_a_sample(std::uint32_t unproven, std::uint32_t 
 void check_stars(double part, bool many, std::map<std::string, double>& shares) {
   for (const NamedPoints& set : sets()) {
     SCOPED_TRACE(set.name);
-    const Sorted s = sorted(set.points, set.bits_x, set.bits_y, part);
+    const Sorted s = sorted(set, part);
     const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
     std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n);
     std::vector<std::uint32_t> found = after_a_sample(0, many ? 1U << 24 : 0);
-    cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
-               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1, 0,
-               count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
+    cadt_stars(0, 1, s.points.data(), s.keys.data(), s.low_keys(), s.low_bits, n, s.grid.half_min_x, s.grid.half_min_y,
+               s.grid.scale, s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(),
+               count, 1, 0, count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
     const auto links = links_of(s);
     std::size_t proven = 0;
     for (std::uint32_t v = 0; v < n; ++v) {
@@ -350,7 +400,8 @@ TEST(ProvenStars, AreThoseOfTheMesh) {
   std::map<std::string, double> shares;
   ASSERT_NO_FATAL_FAILURE(check_stars(1, true, shares));
   ASSERT_NO_FATAL_FAILURE(check_stars(1, false, shares));
-  for (const char* name : {"uniform", "uniform, fine", "lattice", "lattice, thirds"})
+  for (const char* name : {"uniform", "uniform, fine", "lattice", "lattice, thirds", "two words", "lattice, two words",
+                           "clusters, two words"})
     EXPECT_GT(shares[name], 0.85) << name;
   for (const char* name : {"few", "long", "tall", "lattice on the cells' borders", "half empty", "rings"})
     EXPECT_GT(shares[name], 0.2) << name;
@@ -369,9 +420,9 @@ struct Packed {
     links.assign(std::size_t{overflow} + words, CADT_NONE);
     begins.resize(n);
     sizes.resize(n);
-    cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
-               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1, 0,
-               count, links.data(), begins.data(), sizes.data(), overflow, room, found.data());
+    cadt_stars(0, 1, s.points.data(), s.keys.data(), s.low_keys(), s.low_bits, n, s.grid.half_min_x, s.grid.half_min_y,
+               s.grid.scale, s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(),
+               count, 1, 0, count, links.data(), begins.data(), sizes.data(), overflow, room, found.data());
   }
 };
 
@@ -394,7 +445,7 @@ TEST(ProvenStars, CloseTogether) {
   all.push_back(chessboard());
   for (const NamedPoints& set : all) {
     SCOPED_TRACE(set.name);
-    const Sorted s = sorted(set.points, set.bits_x, set.bits_y);
+    const Sorted s = sorted(set);
     const Packed packed(s, 4096, 0), tight(s, 4096, 4096);
     const auto links = links_of(s);
     std::vector<char> taken(packed.links.size());
@@ -441,9 +492,9 @@ struct StarsOf {
     const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
     stars.resize(std::size_t{n} * CADT_STAR_DEGREE);
     sizes.resize(n);
-    cadt_stars(0, 1, s.points.data(), s.keys.data(), n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
-               s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(), count, 1,
-               cautious ? 1 : 0, count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
+    cadt_stars(0, 1, s.points.data(), s.keys.data(), s.low_keys(), s.low_bits, n, s.grid.half_min_x, s.grid.half_min_y,
+               s.grid.scale, s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(),
+               count, 1, cautious ? 1 : 0, count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
   }
   [[nodiscard]] auto proven() const {
     return std::ranges::count_if(sizes, [](std::uint32_t size) { return size != 0; });
@@ -462,7 +513,7 @@ NamedPoints uniform_points(int count) {
 TEST(SampleOfTiles, EndsWhatIsInVain) {
   constexpr std::uint32_t most = 1U << 24;
   const NamedPoints set = uniform_points(6000);
-  const Sorted s = sorted(set.points, set.bits_x, set.bits_y);
+  const Sorted s = sorted(set);
   const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
   ASSERT_GT(count, 8U);
   const StarsOf bold(s, after_a_sample(most, 0), false), hopeful(s, after_a_sample(most / 4, 0), true);
@@ -481,14 +532,14 @@ TEST(SampleOfTiles, EndsWhatIsInVain) {
 // Where none of a tile's first points has a star, a cautious team tries no more of them, and nothing is lost elsewhere.
 TEST(CautiousTiles, LeaveWhatMakesNoStars) {
   const NamedPoints set = uniform_points(6000);
-  const Sorted s = sorted(set.points, set.bits_x, set.bits_y);
+  const Sorted s = sorted(set);
   EXPECT_EQ(StarsOf(s, after_a_sample(0, 0), true).sizes, StarsOf(s, after_a_sample(0, 0), false).sizes);
 
   // A tile with a line of points below, beyond which there is nothing, and others above it.
   NamedPoints shore{"shore", {{0, 0}, {1, 1}}, 8, 8};
   for (int i = 1; i < 300; ++i) shore.points.push_back({i / 300.0, 0});
   for (const cadt_point& p : uniform_points(300).points) shore.points.push_back({p.x, 0.2 + 0.8 * p.y});
-  const Sorted one = sorted(shore.points, shore.bits_x, shore.bits_y);
+  const Sorted one = sorted(shore);
   ASSERT_EQ(one.tiles.size(), 2U);
   EXPECT_GT(StarsOf(one, after_a_sample(0, 0), false).proven(), 50);
   const StarsOf cautious(one, after_a_sample(0, 0), true);

@@ -76,7 +76,8 @@ struct Wrapped {
   [[nodiscard]] std::uint32_t effort() const { return found[2]; }
 };
 
-// Which of cocircular points is next rounded numbers do not tell, and those of the hull have to be searched in any case.
+// Which of cocircular points is next rounded numbers do not tell, and those of the hull have to be searched in any
+// case.
 TEST(WrappedNear, HasTheStarsOfLattices) {
   constexpr std::uint32_t side = 32;
   for (const double turn : {0.0, 0.3, 1.1}) {

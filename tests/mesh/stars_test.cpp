@@ -51,6 +51,17 @@ Points clusters_apart(std::size_t n, double distance) {
   return xy;
 }
 
+/// Squares far from each other.
+Points tight_squares(std::size_t squares, std::size_t points_of_each, double side) {
+  Points xy;
+  const Points corners = uniform_points(squares, 36);
+  for (std::size_t s = 0; s < squares; ++s) {
+    const Points some = uniform_points(points_of_each, 37 + s);
+    for (std::size_t i = 0; i < some.size(); ++i) xy.push_back(corners[2 * s + i % 2] + side * some[i]);
+  }
+  return xy;
+}
+
 /// Crowded cells at the end of both axes of the sort keys' grid, where cells are closed on all sides.
 Points crowd_in_a_corner(std::size_t n, double size) {
   Points xy = uniform_points(n, 32);
@@ -239,6 +250,17 @@ TEST_P(Stars, CrowdedCells) {
   expect_same("two clusters, far", clusters_apart(6000, 1e12));
   expect_same("two clusters, 1e12 apart", two_clusters(6000));
   expect_same("hundred clusters", cluster_points(20000));
+  // The sort keys have a second word, else none of these would be proven.
+  const Points clusters = tight_squares(12, 1200, 1e-6);
+  EXPECT_GT(proven_share(expect_same("squares", clusters)), 0.6);
+  Points twice = clusters, longer = tight_squares(12, 1200, 1e-5);
+  twice.insert(twice.end(), twice.begin(), twice.begin() + 6000);
+  EXPECT_GT(proven_share(expect_same("squares, some points twice", twice)), 0.6);
+  for (std::size_t i = 0; i < longer.size(); i += 2) longer[i] += std::floor(16 * longer[i + 1]);
+  EXPECT_GT(proven_share(expect_same("squares in a long box", longer)), 0.6);
+  for (std::size_t i = 0; i < longer.size(); i += 2) std::swap(longer[i], longer[i + 1]);
+  EXPECT_GT(proven_share(expect_same("squares in a tall box", longer)), 0.6);
+  expect_same("squares of fewer bits", moved(clusters, 1e4, -3e3));
   expect_same("nearly all in one cell", skewed_points(20000));
   for (const double size : {0.25, 0.05, 0.01, 1e-3, 1e-5}) {
     const Points xy = crowd_in_a_corner(600, size);

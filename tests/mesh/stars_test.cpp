@@ -261,6 +261,10 @@ TEST_P(Stars, CrowdedCells) {
   for (std::size_t i = 0; i < longer.size(); i += 2) std::swap(longer[i], longer[i + 1]);
   EXPECT_GT(proven_share(expect_same("squares in a tall box", longer)), 0.6);
   expect_same("squares of fewer bits", moved(clusters, 1e4, -3e3));
+  Points with_others = tight_squares(16, 1200, 1e-6);  // the grid leaves these out besides
+  for (int i = 0; i < 20; ++i)
+    with_others.insert(with_others.end(), {1e7 * std::cos(1.7 * i), 1e7 * std::sin(1.7 * i)});
+  EXPECT_GT(proven_share(expect_same("squares and few points far away", with_others)), 0.6);
   expect_same("nearly all in one cell", skewed_points(20000));
   for (const double size : {0.25, 0.05, 0.01, 1e-3, 1e-5}) {
     const Points xy = crowd_in_a_corner(600, size);

@@ -138,15 +138,20 @@ typedef long long cadt_i64;
 #define CADT_FN_SLOW static __device__ __noinline__
 #define CADT_FN_EACH static __device__ __forceinline__
 #define CADT_KERNEL(name, ...) static __global__ void name(__VA_ARGS__)
-/* Registers are given out so that so many teams run on a multiprocessor at the same time, if it has so many threads. */
+/* Registers are given out so that so many teams run on a multiprocessor at the same time, if it has so many threads and
+ * takes so many. */
 #if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ == 800 || (__CUDA_ARCH__ >= 900 && __CUDA_ARCH__ < 1200)
 #define CADT_THREADS_MOST 2048
+#define CADT_TEAMS_MOST 32
 #elif __CUDA_ARCH__ < 800
 #define CADT_THREADS_MOST 1024
+#define CADT_TEAMS_MOST 16
 #else
 #define CADT_THREADS_MOST 1536
+#define CADT_TEAMS_MOST (__CUDA_ARCH__ < 890 ? 16 : 24)
 #endif
-#define CADT_TEAMS(lanes, teams) ((lanes) * (teams) > CADT_THREADS_MOST ? CADT_THREADS_MOST / (lanes) : (teams))
+#define CADT_TEAMS_OF(most, teams) ((teams) > (most) ? (most) : (teams))
+#define CADT_TEAMS(lanes, teams) CADT_TEAMS_OF(CADT_TEAMS_MOST, CADT_TEAMS_OF(CADT_THREADS_MOST / (lanes), teams))
 #define CADT_TEAM_KERNEL(lanes, teams, name, ...) \
   static __global__ void __launch_bounds__((lanes), CADT_TEAMS(lanes, teams)) name(__VA_ARGS__)
 #define cadt_item ((cadt_u32)(blockIdx.x * blockDim.x + threadIdx.x))

@@ -40,8 +40,8 @@ typedef struct {
   cadt_u16 link[CADT_LINK_PLACES];   /* a star in the making for each lane (star.h) */
   cadt_window_shape shape;
   cadt_u32 again_count, unproven, crowded;   /* the last: had too many candidates */
-  cadt_u32 verdict;                          /* of the sample of tiles (star.h) */
-  cadt_u32 pool_begin, pool_size, pool_used; /* of the words for the stars of the tile (star.h) */
+  cadt_u32 verdict;                          /* of the sample (star_tiles.h) */
+  cadt_u32 pool_begin, pool_size, pool_used; /* of the words for its stars (star_tiles.h) */
   cadt_u16 again[CADT_TILE_POINTS];          /* points that are tried again, numbers in the tile */
 } cadt_window;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tiles of the plane (common/device/tiles.h) and the stars of their vertices (common/device/star.h).
+// Tiles of the plane (common/device/tiles.h) and the stars of their vertices (common/device/star_tiles.h).
 #pragma once
 
 #include <cstddef>

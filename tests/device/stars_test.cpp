@@ -24,7 +24,7 @@
 namespace {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/device/star.h"
+#include "common/device/star_tiles.h"
 #pragma GCC diagnostic pop
 
 using Keys = std::vector<std::uint32_t>;

@@ -242,7 +242,7 @@ CADT_FN cadt_u32 cadt_cell_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y
   return level == 16u ? low : ((((along >> level) + grid->set) << (2u * level)) | low);
 }
 
-/* The same with up to 31 bits an axis. The levels below the sixteenth from the top make the low word of a key. */
+/* The same with up to 31 bits an axis: in two parts, since a part has 32 bits. */
 CADT_FN cadt_u64 cadt_fine_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y, cadt_u32 level) {
   const cadt_u32 mask = (1u << level) - 1u, fine = level > 16u ? level - 16u : 0u;
   const cadt_u32 longer = grid->bits_x >= grid->bits_y ? 1u : 0u, along = longer ? x : y;

@@ -95,8 +95,7 @@ CADT_FN cadt_u32 cadt_near_next(cadt_near* w, cadt_u32 a, cadt_i32 side) {
   return key == CADT_NONE ? CADT_NONE : key & mask;
 }
 
-/* The exact test of two known points at places b and c, CADT_NONE: none. A function of its own: its code must not be in
- * the way of that which all lanes execute. */
+/* The exact test of two known points, at places b and c. A function of its own, as the one below. */
 CADT_FN_SLOW cadt_u32 cadt_near_better(CADT_GLOBAL const cadt_point* points, CADT_TEAM_PTR const cadt_u32* at,
                                        cadt_u32 p, cadt_u32 a, cadt_i32 side, cadt_u32 b, cadt_u32 c,
                                        cadt_tally* tally) {
@@ -248,8 +247,8 @@ CADT_FN cadt_u32 cadt_near_star(cadt_near* w) {
 
 /* Stars of all n points. Those that are not found are listed in `todo`, found[7] of them (found[8]: of those that do
  * not go round among the points that are known), and in the rows of `arcs` how many neighbours they have here, whether
- * those go round, and which, with CADT_WRAP_PROVEN where the triangle of it and the next one is. \pre sizes are 0, n >=
- * 2 */
+ * those go round, and which, with CADT_WRAP_PROVEN where the triangle of it and the next one is.
+ * \pre sizes are 0, n >= 2 */
 CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
                  CADT_GLOBAL const cadt_box* crates, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* links,
                  cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,

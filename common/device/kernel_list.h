@@ -14,7 +14,6 @@
   X(cadt_merge_bounds)      /* order.h */                                            \
   X(cadt_sort_keys)         /* order.h: Hilbert keys */                              \
   X(cadt_fine_keys)         /* order.h: with two words */                            \
-  X(cadt_fine_tails)        /* order.h */                                            \
   X(cadt_radix_count)       /* radix.h */                                            \
   X(cadt_radix_scatter)     /* radix.h */                                            \
   X(cadt_scan_sums)         /* scan.h */                                             \

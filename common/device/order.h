@@ -334,14 +334,6 @@ CADT_KERNEL(cadt_fine_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL ca
   }
 }
 
-/* 1 where a run of equal keys ends. */
-CADT_KERNEL(cadt_fine_tails, CADT_GLOBAL const cadt_u32* high, CADT_GLOBAL const cadt_u32* low,
-            CADT_GLOBAL cadt_u32* tails, cadt_u32 count, cadt_u32 grain) {
-  CADT_FOR(i, count, grain) {
-    tails[i] = i + 1u == count || high[i] != high[i + 1u] || low[i] != low[i + 1u] ? 1u : 0u;
-  }
-}
-
 /* Points in sorted order. */
 CADT_KERNEL(cadt_gather_points, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* order,
             CADT_GLOBAL cadt_point* sorted, cadt_u32 count, cadt_u32 grain, cadt_real scale, cadt_real scale_again) {

@@ -88,10 +88,12 @@ CADT_KERNEL(cadt_gather_words, CADT_GLOBAL const cadt_u32* in, CADT_GLOBAL const
   CADT_FOR(j, count, grain) { out[j] = in[index[j]]; }
 }
 
-/* 1 where a run of equal keys ends. */
-CADT_KERNEL(cadt_run_tails, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_u32* tails, cadt_u32 count,
-            cadt_u32 grain) {
-  CADT_FOR(i, count, grain) { tails[i] = i + 1u == count || keys[i] != keys[i + 1u] ? 1u : 0u; }
+/* 1 where a run of equal keys ends. `low`: their low words, or null. */
+CADT_KERNEL(cadt_run_tails, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL const cadt_u32* low,
+            CADT_GLOBAL cadt_u32* tails, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) {
+    tails[i] = i + 1u == count || keys[i] != keys[i + 1u] || (low && low[i] != low[i + 1u]) ? 1u : 0u;
+  }
 }
 
 /* Stores the members in their new order at the old places, and the ends of their new runs. \pre `from` lists the

@@ -199,7 +199,7 @@ void sort_finely(Run& run, const Allocation& input, Allocation& keys, Allocation
   launch.run(KernelId::cadt_gather_words, c.items, keys, order, sorted, count, c.grain);
   launch.sort(sorted, order, spare, spare_order, n, grid.bits() - 2 * grid.fine_levels, false);
   launch.run(KernelId::cadt_gather_words, c.items, low, order, spare, count, c.grain);
-  launch.run(KernelId::cadt_fine_tails, c.items, sorted, spare, keys, count, c.grain);
+  launch.run(KernelId::cadt_run_tails, c.items, sorted, spare, keys, count, c.grain);
   launch.scan(keys, n);
 }
 
@@ -261,7 +261,7 @@ bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const All
       launch.sort(sorted, from, spare_sorted, spare_from, crowd, static_cast<unsigned>(std::bit_width(last_run)),
                   false);
     }
-    launch.run(KernelId::cadt_run_tails, c.items, keys, spare, count, c.grain);
+    launch.run(KernelId::cadt_run_tails, c.items, keys, Allocation(), spare, count, c.grain);
     launch.run(KernelId::cadt_crowded_store, few.items, places, members, from, runs, round_keys, order, spare, crowd,
                few.grain);
     launch.scan(spare, n);

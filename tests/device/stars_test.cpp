@@ -366,33 +366,43 @@ std::vector<std::uint32_t> after_a_sample(std::uint32_t unproven, std::uint32_t 
   return found;
 }
 
+/// Stars of all tiles, a row of words for each vertex.
+struct StarsOf {
+  std::vector<std::uint32_t> stars, sizes, found;
+
+  StarsOf(const Sorted& s, std::vector<std::uint32_t> before, bool cautious) : found(std::move(before)) {
+    const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
+    stars.resize(std::size_t{n} * CADT_STAR_DEGREE);
+    sizes.resize(n);
+    cadt_stars(0, 1, s.points.data(), s.keys.data(), s.low_keys(), s.low_bits, n, s.grid.half_min_x, s.grid.half_min_y,
+               s.grid.scale, s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(),
+               count, 1, cautious ? 1 : 0, count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
+  }
+  [[nodiscard]] auto proven() const {
+    return std::ranges::count_if(sizes, [](std::uint32_t size) { return size != 0; });
+  }
+};
+
 /// Compares all stars with the mesh; the shares that are proven. `part` as in sorted(); `many`: with many candidates.
 void check_stars(double part, bool many, std::map<std::string, double>& shares) {
   for (const NamedPoints& set : sets()) {
     SCOPED_TRACE(set.name);
     const Sorted s = sorted(set, part);
-    const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
-    std::vector<std::uint32_t> stars(std::size_t{n} * CADT_STAR_DEGREE), sizes(n);
-    std::vector<std::uint32_t> found = after_a_sample(0, many ? 1U << 24 : 0);
-    cadt_stars(0, 1, s.points.data(), s.keys.data(), s.low_keys(), s.low_bits, n, s.grid.half_min_x, s.grid.half_min_y,
-               s.grid.scale, s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(),
-               count, 1, 0, count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
+    const StarsOf made(s, after_a_sample(0, many ? 1U << 24 : 0), false);
     const auto links = links_of(s);
-    std::size_t proven = 0;
-    for (std::uint32_t v = 0; v < n; ++v) {
-      if (sizes[v] == 0) continue;
-      ++proven;
-      std::vector<std::uint32_t> star(&stars[std::size_t{v} * CADT_STAR_DEGREE],
-                                      &stars[std::size_t{v} * CADT_STAR_DEGREE] + sizes[v]);
+    for (std::uint32_t v = 0; v < s.size(); ++v) {
+      if (made.sizes[v] == 0) continue;
+      const std::uint32_t* row = &made.stars[std::size_t{v} * CADT_STAR_DEGREE];
+      std::vector<std::uint32_t> star(row, row + made.sizes[v]);
       std::ranges::rotate(star, std::ranges::min_element(star));
       auto link = links[v];
       ASSERT_FALSE(link.empty()) << "vertex " << v << " of the hull has a star";
       std::ranges::rotate(link, std::ranges::min_element(link));
       ASSERT_EQ(star, link) << "vertex " << v;
     }
-    EXPECT_EQ(found[0], n);
-    EXPECT_EQ(found[0] - found[1], proven);
-    shares[set.name] = static_cast<double>(proven) / n;
+    EXPECT_EQ(made.found[0], s.size());
+    EXPECT_EQ(made.found[0] - made.found[1], made.proven());
+    shares[set.name] = static_cast<double>(made.proven()) / s.size();
   }
 }
 
@@ -484,22 +494,6 @@ TEST(TurnsOfTiles, AreAllOfThem) {
     }
   }
 }
-
-struct StarsOf {
-  std::vector<std::uint32_t> stars, sizes, found;
-
-  StarsOf(const Sorted& s, std::vector<std::uint32_t> before, bool cautious) : found(std::move(before)) {
-    const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
-    stars.resize(std::size_t{n} * CADT_STAR_DEGREE);
-    sizes.resize(n);
-    cadt_stars(0, 1, s.points.data(), s.keys.data(), s.low_keys(), s.low_bits, n, s.grid.half_min_x, s.grid.half_min_y,
-               s.grid.scale, s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(),
-               count, 1, cautious ? 1 : 0, count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
-  }
-  [[nodiscard]] auto proven() const {
-    return std::ranges::count_if(sizes, [](std::uint32_t size) { return size != 0; });
-  }
-};
 
 NamedPoints uniform_points(int count) {
   std::mt19937_64 random(5);

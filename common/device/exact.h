@@ -82,6 +82,76 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point 
   return cadt_sign_of_minor(d, n);
 }
 
+#if CADT_GRADUAL && !CADT_WIDE
+/* A sum of two doubles, the second at most half of a last place of the first (T. J. Dekker, "A floating-point technique
+ * for extending the available precision", 1971). What this takes the self-test asks of a device: sums and products are
+ * rounded to nearest, one by one. */
+typedef struct {
+  double high, low;
+} cadt_pair;
+
+CADT_FN cadt_pair cadt_pair_of(double high, double low) {
+  cadt_pair r;
+  r.high = high + low;
+  r.low = low - (r.high - high);
+  return r;
+}
+/* Exact. */
+CADT_FN cadt_pair cadt_pair_difference(double a, double b) {
+  const double difference = a - b, part = difference - a;
+  cadt_pair r;
+  r.high = difference;
+  r.low = (a - (difference - part)) - (b + part);
+  return r;
+}
+/* Off by less than 2^-103 of |a| + |b|. */
+CADT_FN cadt_pair cadt_pair_sum(cadt_pair a, cadt_pair b) {
+  const double sum = a.high + b.high, part = sum - a.high;
+  return cadt_pair_of(sum, ((a.high - (sum - part)) + (b.high - part)) + (a.low + b.low));
+}
+/* The first 26 bits of the mantissa. */
+CADT_FN double cadt_upper_half(double a) {
+  const double stretched = 134217729.0 * a; /* 2^27 + 1 */
+  return stretched - (stretched - a);
+}
+/* Off by less than 2^-102 of |a b|. */
+CADT_FN cadt_pair cadt_pair_product(cadt_pair a, cadt_pair b) {
+  const double product = a.high * b.high;
+  const double au = cadt_upper_half(a.high), al = a.high - au, bu = cadt_upper_half(b.high), bl = b.high - bu;
+  const double lost = ((au * bu - product) + au * bl + al * bu) + al * bl;
+  return cadt_pair_of(product, lost + (a.high * b.low + a.low * b.high));
+}
+/* The sign of the incircle determinant by sums of two doubles, 0 if they cannot tell. The filter's bound is `most` / 2,
+ * about 2^-50 of the sum of all products' magnitudes; here the errors are less than 2^-97 of that: five roundings of a
+ * product, each below 2^-102. */
+CADT_FN_SLOW cadt_i32 cadt_incircle_pairs(const cadt_point* q, double most) {
+  cadt_pair d[6], det; /* an array, and loops that stay loops: registers are wanted by who calls this */
+  CADT_ROLLED
+  for (cadt_i32 i = 0; i < 3; ++i) {
+    d[2 * i] = cadt_pair_difference(q[i].x, q[3].x);
+    d[2 * i + 1] = cadt_pair_difference(q[i].y, q[3].y);
+  }
+  det.high = det.low = 0.0;
+  CADT_ROLLED
+  for (cadt_i32 x = 0; x < 6; x += 2) {
+    const cadt_i32 u = (x + 2) % 6, v = (x + 4) % 6;
+    cadt_pair factor[4], part[2]; /* |d|^2 and the minor of the two others, each a sum of two products */
+    CADT_ROLLED
+    for (cadt_i32 k = 0; k < 4; ++k) {
+      const cadt_i32 i = k < 2 ? x + k : (k == 2 ? u : u + 1), j = k < 2 ? x + k : (k == 2 ? v + 1 : v);
+      factor[k] = cadt_pair_product(d[i], d[j]);
+    }
+    factor[3].high = -factor[3].high;
+    factor[3].low = -factor[3].low;
+    CADT_ROLLED
+    for (cadt_i32 k = 0; k < 2; ++k) part[k] = cadt_pair_sum(factor[2 * k], factor[2 * k + 1]);
+    det = cadt_pair_sum(det, cadt_pair_product(part[0], part[1]));
+  }
+  const double bound = most * 0x1p-45;
+  return det.high > bound ? 1 : (-det.high > bound ? -1 : 0);
+}
+#endif
+
 /* Sign of the incircle determinant, any length. */
 CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point c, cadt_point p) {
   cadt_u32 d[6][CADT_LIMBS], negative[6];
@@ -126,6 +196,17 @@ CADT_FN cadt_real cadt_difference(cadt_real a, cadt_real b, cadt_u32* exact) {
   if (!CADT_GRADUAL || (a - (difference - part)) - (b + part) != 0.0) *exact = 0u;
   return difference;
 }
+
+#if CADT_GRADUAL && !CADT_WIDE
+CADT_FN_SLOW cadt_i32 cadt_incircle_long(const cadt_point* q, cadt_real most) {
+  const cadt_i32 sign = cadt_incircle_pairs(q, most);
+  if (sign != 0) {
+    CADT_STAGE(incircle_pairs);
+    return sign;
+  }
+  return cadt_incircle_limbs(q[0], q[1], q[2], q[3]);
+}
+#endif
 
 /* Incircle: 1 if p is inside the circle of the counterclockwise triangle a, b, c, 0 on it, -1 outside. The magnitude of
  * the determinant is known to be at most `most`. */
@@ -194,7 +275,16 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
       return cadt_sign_i256(&det);
     }
   }
+#if CADT_GRADUAL && !CADT_WIDE
+  cadt_point q[4];
+  q[0] = a;
+  q[1] = b;
+  q[2] = c;
+  q[3] = p;
+  return cadt_incircle_long(q, most);
+#else
   return cadt_incircle_limbs(a, b, c, p);
+#endif
 }
 
 #endif

@@ -168,37 +168,41 @@ CADT_FN cadt_i32 cadt_incircle_filter(cadt_arm a, cadt_arm b, cadt_arm c) {
 #define CADT_FN_TIGHT CADT_FN
 #endif
 
-/* Incircle of the counterclockwise triangle a, b, c and p, never 0. */
-CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_tally* tally) {
-  cadt_real most = CADT_INFINITY; /* the determinant, if the filter cannot tell its sign */
+/* The sign of the incircle determinant by rounded numbers; 0 if they cannot tell: then its magnitude is at most `most`.
+ */
+CADT_FN cadt_i32 cadt_incircle_rounded(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_real* most) {
   cadt_real ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y, cx = c.x - p.x, cy = c.y - p.y;
+  *most = CADT_INFINITY;
 #if CADT_WIDE
   const cadt_i32 e0 = cadt_exponent_of_largest(ax, ay, bx, by), e1 = cadt_exponent_of_largest(cx, cy, 0.0, 0.0);
   const cadt_i32 e = e0 > e1 ? e0 : e1;
-  if (CADT_SCALES(e))
+  if (!CADT_SCALES(e)) return 0;
+  ax = cadt_ldexp(ax, -e);
+  ay = cadt_ldexp(ay, -e);
+  bx = cadt_ldexp(bx, -e);
+  by = cadt_ldexp(by, -e);
+  cx = cadt_ldexp(cx, -e);
+  cy = cadt_ldexp(cy, -e);
 #endif
-  {
-#if CADT_WIDE
-    ax = cadt_ldexp(ax, -e);
-    ay = cadt_ldexp(ay, -e);
-    bx = cadt_ldexp(bx, -e);
-    by = cadt_ldexp(by, -e);
-    cx = cadt_ldexp(cx, -e);
-    cy = cadt_ldexp(cy, -e);
-#endif
-    const cadt_real bxcy = bx * cy, bycx = by * cx, cxay = cx * ay, cyax = cy * ax, axby = ax * by, aybx = ay * bx;
-    const cadt_real alift = ax * ax + ay * ay, blift = bx * bx + by * by, clift = cx * cx + cy * cy;
-    const cadt_real det = alift * (bxcy - bycx) + blift * (cxay - cyax) + clift * (axby - aybx);
-    const cadt_real permanent = alift * (cadt_fabs(bxcy) + cadt_fabs(bycx)) +
-                                blift * (cadt_fabs(cxay) + cadt_fabs(cyax)) +
-                                clift * (cadt_fabs(axby) + cadt_fabs(aybx));
-    const cadt_real bound = CADT_INCIRCLE_BOUND * permanent + CADT_UNDERFLOW;
-    if (det > bound) return 1;
-    if (-det > bound) return -1;
+  const cadt_real bxcy = bx * cy, bycx = by * cx, cxay = cx * ay, cyax = cy * ax, axby = ax * by, aybx = ay * bx;
+  const cadt_real alift = ax * ax + ay * ay, blift = bx * bx + by * by, clift = cx * cx + cy * cy;
+  const cadt_real det = alift * (bxcy - bycx) + blift * (cxay - cyax) + clift * (axby - aybx);
+  const cadt_real permanent = alift * (cadt_fabs(bxcy) + cadt_fabs(bycx)) +
+                              blift * (cadt_fabs(cxay) + cadt_fabs(cyax)) + clift * (cadt_fabs(axby) + cadt_fabs(aybx));
+  const cadt_real bound = CADT_INCIRCLE_BOUND * permanent + CADT_UNDERFLOW;
+  if (det > bound) return 1;
+  if (-det > bound) return -1;
 #if !CADT_WIDE
-    most = 2.0 * bound;
+  *most = 2.0 * bound;
 #endif
-  }
+  return 0;
+}
+
+/* Incircle of the counterclockwise triangle a, b, c and p, never 0. */
+CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_tally* tally) {
+  cadt_real most;
+  const cadt_i32 rounded = cadt_incircle_rounded(a, b, c, p, &most);
+  if (rounded != 0) return rounded;
   tally->count[CADT_COUNT_EXACT_INCIRCLES]++;
   if (CADT_GRADUAL && cadt_mirrored(a, b, c, p)) {
     CADT_STAGE(mirrored);

@@ -10,10 +10,10 @@ namespace cadt::test {
 
 /// How often the exact stage of a predicate took integers of which length, and how often mirrored pairs told a tie.
 /// Orientation is compared as products of 128 bits; the incircle determinant has 192 bits, 256 bits or as many as it
-/// needs.
+/// needs, unless sums of two doubles tell its sign.
 struct Lengths {
   std::uint64_t orientation_128 = 0, orientation_long = 0;
-  std::uint64_t incircle_192 = 0, incircle_256 = 0, incircle_long = 0, mirrored = 0;
+  std::uint64_t incircle_192 = 0, incircle_256 = 0, incircle_pairs = 0, incircle_long = 0, mirrored = 0;
   Lengths& operator+=(const Lengths& other);
 };
 

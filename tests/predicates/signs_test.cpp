@@ -20,7 +20,7 @@ namespace cadt::test {
 Lengths& Lengths::operator+=(const Lengths& other) {
   orientation_128 += other.orientation_128, orientation_long += other.orientation_long;
   incircle_192 += other.incircle_192, incircle_256 += other.incircle_256, incircle_long += other.incircle_long;
-  mirrored += other.mirrored;
+  incircle_pairs += other.incircle_pairs, mirrored += other.mirrored;
   return *this;
 }
 
@@ -108,18 +108,20 @@ TEST_P(Signs, EveryStageDecidesAThousandCases) {
   }
   for (const auto& [s, l] : {std::pair(found.narrow, narrow), std::pair(found.wide, wide)}) {
     EXPECT_EQ(s.exact_orientations, l.orientation_128 + l.orientation_long) << "the device took another way";
-    EXPECT_EQ(s.exact_incircles + s.ties, l.incircle_192 + l.incircle_256 + l.incircle_long + l.mirrored);
+    EXPECT_EQ(s.exact_incircles + s.ties,
+              l.incircle_192 + l.incircle_256 + l.incircle_pairs + l.incircle_long + l.mirrored);
     EXPECT_GE(l.orientation_128, 1000u);
     EXPECT_GE(l.orientation_long, 1000u);
     EXPECT_GE(l.incircle_256, 1000u);
     EXPECT_GE(l.incircle_long, 1000u);
     EXPECT_GE(l.mirrored, 1000u);
     std::cout << "orientation in 128 bits " << l.orientation_128 << ", long " << l.orientation_long
-              << ", incircle in 192 bits " << l.incircle_192 << ", in 256 " << l.incircle_256 << ", long "
-              << l.incircle_long << ", mirrored " << l.mirrored << '\n';
+              << ", incircle in 192 bits " << l.incircle_192 << ", in 256 " << l.incircle_256 << ", in pairs "
+              << l.incircle_pairs << ", long " << l.incircle_long << ", mirrored " << l.mirrored << '\n';
   }
   EXPECT_GE(narrow.incircle_192, 1000u);
-  EXPECT_EQ(wide.incircle_192, 0u) << "the wide build knows no bound of the determinant";
+  EXPECT_GE(narrow.incircle_pairs, 1000u);
+  EXPECT_EQ(wide.incircle_192 + wide.incircle_pairs, 0u) << "the wide build knows no bound of the determinant";
 }
 CADT_ON_MAIN_BACKENDS(Signs);
 

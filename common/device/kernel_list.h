@@ -30,6 +30,7 @@
   X(cadt_sort_runs)         /* order.h: short runs, in place */                      \
   X(cadt_gather_points)     /* order.h */                                            \
   X(cadt_unique_flags)      /* order.h */                                            \
+  X(cadt_sample_shapes)     /* order.h */                                            \
   X(cadt_unique_pack)       /* order.h: distinct points */                           \
   X(cadt_duplicate_pairs)   /* order.h */                                            \
   X(cadt_find_triangle)     /* start.h: three points not on a line */                \
@@ -61,6 +62,7 @@
   X(cadt_wrap_stars)        /* wrap.h */                                             \
   X(cadt_wrap_counts)       /* wrap_mesh.h: who owns which triangle */               \
   X(cadt_wrap_arrays)       /* wrap_mesh.h */                                        \
+  X(cadt_wrap_hubs)         /* wrap_hubs.h */                                        \
   X(cadt_wrap_records)      /* wrap_mesh.h: of sets, and with hubs */                \
   X(cadt_set_bounds)        /* sets.h: many sets in one call */                      \
   X(cadt_set_keys)          /* sets.h */                                             \

@@ -32,6 +32,7 @@
 #include "common/device/tiles.h"
 #include "common/device/verify.h"
 #include "common/device/wrap.h"
+#include "common/device/wrap_hubs.h"
 #include "common/device/wrap_mesh.h"
 #include "common/device/wrap_near.h"
 #endif

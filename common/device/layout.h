@@ -13,6 +13,9 @@ typedef struct {
   cadt_u32 word[8]; /* v0 v1 v2 lock n0 n1 n2 flips */
 } __attribute__((aligned(32))) cadt_record;
 
+/* Points that are looked at to tell what a set is like (order.h). */
+enum { CADT_POINT_SAMPLES = 1024 };
+
 enum { CADT_WORD_LOCK = 3, CADT_WORD_LINK = 4, CADT_WORD_FLIPS = 7 };
 
 /* The star stage: tiles (tiles.h) and stars (star.h). */
@@ -65,7 +68,7 @@ enum {
   CADT_WRAP_FOUND = 6,        /* words that are counted for the driver, */
   CADT_WRAP_WORDS = 10,       /* and with those that kernels leave for the next */
   CADT_WRAP_HULL = 3000,      /* points that are wrapped even if nearly all are on the hull, */
-  CADT_WRAP_HULL_EXACT = 400, /* and where that takes exact tests */
+  CADT_WRAP_HULL_EXACT = 400, /* and where that takes exact tests: all are on a circle */
   CADT_WRAP_SHARES = 8,       /* work-items that write the triangles of a vertex */
   CADT_WRAP_ROW = 24,         /* half-words of what is known of a star: how many neighbours, and which */
   CADT_NEAR_PLACE = 127,      /* the bits of a place among */

@@ -8,6 +8,7 @@
 #include "common/device/atomics.h"
 #include "common/device/fixed.h"
 #include "common/device/layout.h"
+#include "common/device/predicates.h"
 
 enum {
   CADT_RUN = 16 /* runs of equal keys up to this length are sorted in place, longer ones are refined (refine.h) */
@@ -371,10 +372,21 @@ CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_p
 }
 
 /* 1 where a point differs from the one before; equal points of different sets have different keys. totals[1] counts
- * the others. */
+ * the others. Of a sample, totals[2] becomes positive where one is beside the line through two points for certain;
+ * totals[3] counts those that are on a circle with three others far away, as far as rounded numbers can tell. */
 CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* keys,
             CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
-  cadt_u32 sum = 0u;
+  const cadt_u32 samples = cadt_min_u32(count, CADT_POINT_SAMPLES);
+  cadt_u32 sum = 0u, beside = 0u, on_circle = 0u;
+  for (cadt_u32 s = cadt_item; s < samples; s += cadt_items) {
+    const cadt_u32 far = count / 4u, i = s * (count / samples);
+    const cadt_i32 side = cadt_orientation_filter(sorted[0], sorted[count / 2u], sorted[i]);
+    if (side == 1 || side == -1) beside = 1u;
+    cadt_real most;
+    if (cadt_incircle_rounded(sorted[(i + far) % count], sorted[(i + 2u * far) % count], sorted[(i + 3u * far) % count],
+                              sorted[i], &most) == 0)
+      ++on_circle;
+  }
   CADT_FOR(i, count, grain) {
     const cadt_u32 flag = i == 0u || keys[i] != keys[i - 1u] || !cadt_same(sorted[i].x, sorted[i - 1u].x) ||
                                   !cadt_same(sorted[i].y, sorted[i - 1u].y)
@@ -384,6 +396,28 @@ CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL
     sum += 1u - flag;
   }
   if (sum) cadt_add_relaxed(totals + 1, sum);
+  if (beside) cadt_add_relaxed(totals + 2, beside);
+  if (on_circle) cadt_add_relaxed(totals + 3, on_circle);
+}
+
+/* Of a sample of four points one after the other, those on a line (totals[6]) or on a circle as far as rounded numbers
+ * can tell: totals[5] counts those for which a cheap test does, as along an axis, totals[4] the others. \pre count >= 4
+ */
+CADT_KERNEL(cadt_sample_shapes, CADT_GLOBAL const cadt_point* sorted, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* totals) {
+  const cadt_u32 samples = cadt_min_u32(count - 3u, CADT_POINT_SAMPLES), step = (count - 3u) / samples;
+  CADT_FOR(s, samples, grain) {
+    CADT_GLOBAL const cadt_point* p = sorted + s * step;
+    cadt_real most;
+    cadt_u32 equal = 0u, on_line = 1u;
+    for (cadt_u32 k = 0u; k < 3u; ++k) equal |= cadt_same(p[k].x, p[k + 1u].x) && cadt_same(p[k].y, p[k + 1u].y);
+    if (equal || cadt_incircle_rounded(p[0], p[1], p[2], p[3], &most) != 0) continue;
+    for (cadt_u32 k = 0u; k < 2u; ++k) {
+      const cadt_i32 side = cadt_orientation_filter(p[k], p[k + 1u], p[k + 2u]);
+      if (side != CADT_UNSURE) on_line = 0u;
+    }
+    cadt_add_relaxed(totals + (on_line ? 6 : (cadt_mirrored(p[0], p[1], p[2], p[3]) ? 5 : 4)), 1u);
+  }
 }
 
 /* Distinct points closed up. `ranks` is the exclusive scan of the flags. */

@@ -124,7 +124,7 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
       const cadt_u32 boxes = w->m->box_count;
       cadt_u32 mine = best;
       for (cadt_u32 j = cadt_team_lane; cadt_team_lane < w->lanes && j < boxes * CADT_WRAP_BOX; j += w->lanes) {
-        const cadt_u32 i = w->m->boxes[j / CADT_WRAP_BOX] * CADT_WRAP_BOX + j % CADT_WRAP_BOX;
+        const cadt_u32 i = cadt_wrap_in_boxes(w->m->boxes, j);
         if (i >= w->in.n || i == w->p || i == a || i == best) continue;
         const cadt_point c = w->in.points[i];
         const double x = c.x - p.x - disc.x, y = c.y - p.y - disc.y;
@@ -220,16 +220,18 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
 /* The stars of the vertices in `todo`: of `count`, which are of sets, or, with `arcs`, those that cadt_wrap_near has
  * left, found[7] of them. Nothing is done where these are nearly all and on the hull, as far as is known: each would
  * have to look at all points. Nor when more than CADT_WRAP_HUBS have failed, or the effort is above its bound, `effort`
- * a point; of sets when one has failed, which states[set] counts, as efforts[set] the effort. */
-CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
+ * a point and `spare_effort`; of sets when one has failed, which states[set] counts, as efforts[set] the effort. */
+CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
                  CADT_GLOBAL const cadt_box* crates, cadt_u32 n, CADT_GLOBAL const cadt_u32* todo, cadt_u32 count,
                  CADT_GLOBAL const cadt_u16* arcs, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
-                 CADT_GLOBAL cadt_u32* states, CADT_GLOBAL cadt_u32* efforts, cadt_u32 effort, cadt_u32 grain,
-                 cadt_u32 row, CADT_GLOBAL cadt_u32* links, cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins,
-                 CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
+                 CADT_GLOBAL cadt_u32* states, CADT_GLOBAL cadt_u32* efforts, cadt_u32 effort, cadt_u32 spare_effort,
+                 cadt_u32 grain, cadt_u32 row, CADT_GLOBAL cadt_u32* links, cadt_u32 link_words,
+                 CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
   CADT_TEAM_MEMORY cadt_wrap_memory memory;
   const cadt_wrap_sink sink = cadt_wrap_sink_of(n, row, links, link_words, begins, sizes, found);
-  const cadt_u32 hull = found[9] > n ? CADT_CAST(cadt_u32, CADT_WRAP_HULL_EXACT) : CADT_CAST(cadt_u32, CADT_WRAP_HULL);
+  const cadt_u32 hull =
+      2u * found[9] > n ? CADT_CAST(cadt_u32, CADT_WRAP_HULL_EXACT) : CADT_CAST(cadt_u32, CADT_WRAP_HULL);
+  /* from words that this kernel does not change, so it is the same for all lanes of a team */
   const cadt_u32 crowd = arcs && n > hull && 10u * found[8] > 9u * n ? 1u : 0u;
   const cadt_u32 stars = crowd ? 0u : (arcs ? found[7] : count);
   if (crowd && cadt_item == 0u) cadt_add_relaxed(found + 1, CADT_CAST(cadt_u32, CADT_WRAP_HUBS) + 1u);
@@ -252,7 +254,7 @@ CADT_TEAM_KERNEL(64, 12, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
     CADT_TEAM_FOR(k, 1u + (known >> 1)) { memory.arc[k] = k ? arcs[item * CADT_WRAP_ROW + k] : known; }
     if (cadt_team_lane == 0u)
       memory.place = cadt_load_relaxed(failed) <= (starts ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_HUBS)) &&
-                             cadt_load_relaxed(done) <= effort * range.count + 4096u
+                             cadt_load_relaxed(done) <= effort * range.count + spare_effort
                          ? 1u
                          : 0u;
     CADT_TEAM_SYNC();

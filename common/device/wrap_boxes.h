@@ -62,6 +62,11 @@ CADT_FN cadt_boxed cadt_boxed_of(const cadt_wrap_range range, CADT_GLOBAL const 
   return in;
 }
 
+/* Point `place` of those in the boxes of a list. */
+CADT_FN cadt_u32 cadt_wrap_in_boxes(CADT_TEAM_PTR const cadt_u32* boxes, cadt_u32 place) {
+  return boxes[place / CADT_WRAP_BOX] * CADT_WRAP_BOX + place % CADT_WRAP_BOX;
+}
+
 CADT_FN void cadt_box_add(cadt_box* box, const cadt_box other) {
   if (other.low.x < box->low.x) box->low.x = other.low.x;
   if (other.low.y < box->low.y) box->low.y = other.low.y;
@@ -123,8 +128,9 @@ typedef struct {
 } cadt_disc;
 
 /* With u = 2^-53 and K = |a| |b| / |a x b|, which is at least 1, centre and radius are off by less than
- * E = 24 u K (1 + K) (|a| + |b|) where K is known well. (r + E)^2 is at most (1 + 1e-6) r^2 + (1 + 1e6) E^2: no square
- * roots. */
+ * E = 24 u K (1 + K) (|a| + |b|) where K is known well, and that is at most 48 u (kk (1 + kk) (aa + bb))^(1/2). Whether
+ * a point or a box is in the disc is found out from coordinates that are off by 8 u r. The radius may be many times as
+ * long as the distances of the points that are asked for, so it must not be larger than it need be. */
 CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
   const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
   const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;
@@ -132,7 +138,9 @@ CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
   cadt_disc d;
   d.x = (by * aa - ay * bb) * scale;
   d.y = (ax * bb - bx * aa) * scale;
-  d.square = (d.x * d.x + d.y * d.y) * (1.0 + 2e-6) + 1e-22 * kk * (1.0 + kk) * (aa + bb);
+  const double radius =
+      cadt_sqrt(d.x * d.x + d.y * d.y) * (1.0 + 4e-15) + 1e-14 * cadt_sqrt(kk * (1.0 + kk) * (aa + bb));
+  d.square = radius * radius;
   if (!(kk < 1e24)) d.square = CADT_CAST(double, CADT_INFINITY);
   return d;
 }

@@ -2,7 +2,7 @@
  *
  * The mesh from wrapped stars, in records or in arrays. A triangle belongs to the lowest of its vertices that has a
  * star. A hub has none, so its triangles are those of its neighbours. An edge between two without stars (hubs, or the
- * ghost) is listed with the vertex on either side of it; the driver adds the triangles of three such vertices, each as
+ * ghost) is listed with the vertex on either side of it; wrap_hubs.h adds the triangles of three such vertices, each as
  * its three half-edges.
  */
 #ifndef CADT_DEVICE_WRAP_MESH_H

@@ -35,11 +35,11 @@ CADT_FN cadt_u32 cadt_near_end_step(cadt_near* w, cadt_u32 value, cadt_u32* coun
   return cadt_end_step(&w->m->steps, &w->step, value, count);
 }
 
-CADT_FN void cadt_near_learn(const cadt_near* w, cadt_u32 slot, cadt_u32 i) {
-  const cadt_point c = w->in.points[i], p = w->in.points[w->p];
+/* Point i, which is at x, y from p. */
+CADT_FN void cadt_near_learn(const cadt_near* w, cadt_u32 slot, cadt_u32 i, double x, double y) {
   w->m->at[slot] = i;
-  w->m->x[slot] = CADT_CAST(float, (c.x - p.x) * w->reach.unit);
-  w->m->y[slot] = CADT_CAST(float, (c.y - p.y) * w->reach.unit);
+  w->m->x[slot] = CADT_CAST(float, x * w->reach.unit);
+  w->m->y[slot] = CADT_CAST(float, y * w->reach.unit);
 }
 
 /* The points within reach, which is chosen anew where they are too many or too few. Returns 0 if that does not help. */
@@ -64,13 +64,13 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
     cadt_near_end_step(w, CADT_NONE, &boxes);
     many = boxes > CADT_CAST(cadt_u32, CADT_NEAR_BOXES) ? 1u : 0u;
     CADT_TEAM_FOR(j, many ? 0u : boxes * CADT_WRAP_BOX) {
-      const cadt_u32 i = w->m->boxes[j / CADT_WRAP_BOX] * CADT_WRAP_BOX + j % CADT_WRAP_BOX;
+      const cadt_u32 i = cadt_wrap_in_boxes(w->m->boxes, j);
       if (i >= w->in.n || i == w->p) continue;
       const cadt_point c = w->in.points[i];
       const double x = c.x - p.x, y = c.y - p.y;
       if (x * x + y * y > w->reach.square) continue;
       const cadt_u32 slot = cadt_near_count(w);
-      if (slot < most) cadt_near_learn(w, slot, i);
+      if (slot < most) cadt_near_learn(w, slot, i, x, y);
     }
     cadt_near_end_step(w, CADT_NONE, &w->known);
     /* What is known must have been in reach of the last search. */
@@ -179,16 +179,17 @@ CADT_FN cadt_u32 cadt_near_neighbor(const cadt_near* w, cadt_u32 k) {
 }
 
 /* The triangles' discs; proven is what is counterclockwise for certain and has no points but known ones in its disc.
- * Returns how many triangles are. */
+ * Returns how many triangles are. The disc of the others is empty: what is in it does not matter. */
 CADT_FN cadt_u32 cadt_near_claim(cadt_near* w) {
   const cadt_point p = w->in.points[w->p];
   cadt_u32 count;
   CADT_TEAM_FOR(i, cadt_near_triangles(w)) {
     const cadt_point a = w->in.points[cadt_near_neighbor(w, i)], b = w->in.points[cadt_near_neighbor(w, i + 1u)];
-    const cadt_disc disc = cadt_disc_around(p, a, b);
-    w->m->disc[i] = disc;
+    cadt_disc disc = cadt_disc_around(p, a, b);
     /* The circle goes through p, so nothing in it is further off than its diameter. */
     const cadt_u32 claimed = cadt_orientation_filter(p, a, b) == 1 && 4.0 * disc.square <= w->reach.square ? 1u : 0u;
+    if (!claimed) disc.square = -1.0;
+    w->m->disc[i] = disc;
     w->m->proven[i] = claimed;
     if (claimed) cadt_near_count(w);
   }
@@ -202,8 +203,8 @@ CADT_FN_SLOW cadt_u32 cadt_near_in_circle(CADT_GLOBAL const cadt_point* points, 
   return cadt_incircle(points[p], points[a], points[b], points[c], tally) > 0 ? 1u : 0u;
 }
 
-/* Known points in circles: rounded numbers have erred, `erred` times. Returns whether no known point is beyond an edge
- * of the hull, or on its line, which is not decided here. */
+/* Known points in circles of what is to be proven: rounded numbers have erred, `erred` times. Returns whether no known
+ * point is beyond an edge of the hull, or on its line, which is not decided here. */
 CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w, cadt_u32* erred) {
   const cadt_point p = w->in.points[w->p];
   const cadt_u32 triangles = cadt_near_triangles(w);
@@ -212,8 +213,8 @@ CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w, cadt_u32* erred) {
     const cadt_u32 i = w->m->at[j];
     const cadt_point c = w->in.points[i];
     for (cadt_u32 k = 0u; k < triangles; ++k) {
-      const double x = c.x - p.x - w->m->disc[k].x, y = c.y - p.y - w->m->disc[k].y;
-      if (x * x + y * y > w->m->disc[k].square) continue;
+      const double x = c.x - p.x - w->m->disc[k].x, y = c.y - p.y - w->m->disc[k].y, square = w->m->disc[k].square;
+      if (square < 0.0 || x * x + y * y > square) continue;
       const cadt_u32 a = cadt_near_neighbor(w, k), b = cadt_near_neighbor(w, k + 1u);
       if (i == a || i == b || !cadt_near_in_circle(w->in.points, w->p, a, b, i, w->tally)) continue;
       w->m->proven[k] = 0u;
@@ -245,10 +246,17 @@ CADT_FN cadt_u32 cadt_near_star(cadt_near* w) {
   return right ? (w->closed ? 1u : 2u) : 0u;
 }
 
+/* Whether rounded numbers do not tell p from a point of the circle through others far away. */
+CADT_FN cadt_u32 cadt_near_on_circle(CADT_GLOBAL const cadt_point* points, cadt_u32 n, cadt_u32 p) {
+  const cadt_u32 step = n / 4u, a = (p + step) % n, b = (p + 2u * step) % n, c = (p + 3u * step) % n;
+  double most;
+  return cadt_incircle_rounded(points[a], points[b], points[c], points[p], &most) == 0 ? 1u : 0u;
+}
+
 /* Stars of all n points. Those that are not found are listed in `todo`, found[7] of them (found[8]: of those that do
- * not go round among the points that are known), and in the rows of `arcs` how many neighbours they have here, whether
- * those go round, and which, with CADT_WRAP_PROVEN where the triangle of it and the next one is.
- * \pre sizes are 0, n >= 2 */
+ * not go round among the points that are known; found[9]: of these on a circle with others), and in the rows of `arcs`
+ * how many neighbours they have here, whether those go round, and which, with CADT_WRAP_PROVEN where the triangle of it
+ * and the next one is. \pre sizes are 0, n >= 2 */
 CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_box* boxes,
                  CADT_GLOBAL const cadt_box* crates, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* links,
                  cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
@@ -270,7 +278,10 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
     const cadt_u32 kind = cadt_near_star(&w);
     if (cadt_team_lane == 0u && !kind) {
       memory.place = cadt_add_relaxed(found + 7, 1u);
-      if (!w.closed) cadt_add_relaxed(found + 8, 1u);
+      if (!w.closed) {
+        cadt_add_relaxed(found + 8, 1u);
+        if (cadt_near_on_circle(points, n, v)) cadt_add_relaxed(found + 9, 1u);
+      }
       todo[memory.place] = v;
     }
     CADT_TEAM_SYNC();
@@ -285,7 +296,6 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
     if (cadt_team_lane == 0u && !kind) arcs[memory.place * CADT_WRAP_ROW] = CADT_CAST(cadt_u16, noted << 1 | w.closed);
     cadt_wrap_store(&sink, &memory.place, v, 0u, memory.boxes, w.size, 1u, kind);
   }
-  if (tally.count[CADT_COUNT_EXACT_INCIRCLES]) cadt_add_relaxed(found + 9, tally.count[CADT_COUNT_EXACT_INCIRCLES]);
   cadt_wrap_pass_on(&tally, found);
 }
 

@@ -3,8 +3,8 @@
  * Where the kernels of gift wrapping (wrap_near.h, wrap.h) put a star: sizes[v] words from links[begins[v]] on,
  * CADT_GHOST behind the last neighbour on the hull. Stars of at most `row` words have begins[v] already, longer ones
  * stand behind the rows. found: words used behind them, vertices without a star, effort: boxes looked at and exact
- * tests; exact orientations, exact incircles, ties; edges between two without stars; stars left to do, and of
- * these those that do not go round, as far as cadt_wrap_near knows; its exact incircles.
+ * tests; exact orientations, exact incircles, ties; edges between two without stars; stars left to do, of these
+ * those that do not go round, as far as cadt_wrap_near knows, of those those that are on a circle with others.
  */
 #ifndef CADT_DEVICE_WRAP_STORE_H
 #define CADT_DEVICE_WRAP_STORE_H

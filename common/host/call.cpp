@@ -107,7 +107,7 @@ void require_buffer(const Triangulator::State& state, std::size_t bytes) {
 
 bool require_memory(Triangulator::State& state, std::size_t n, const CallShape& call) {
   const bool stars = prefers_stars(state.options, *state.device) &&
-                     (state.options.strategy == Strategy::stars || n > most_wrapped_alone);
+                     (state.options.strategy == Strategy::stars || n > most_wrapped_on_circles);
   require_buffer(state, stars ? n * star_pool_bytes : record_bytes(n));
   const bool bounded = state.options.max_memory != 0;
   if (!stars) {

@@ -78,7 +78,7 @@ SetOrder sort_sets(Run& run, Allocation input, std::span<const std::uint32_t> st
   launch.run(KernelId::cadt_set_gather, c.items, input, order, result.starts.points, set_count, result.sets, sorted,
              count, c.grain);
   input.release();
-  const Allocation totals = launch.zeros(2);
+  const Allocation totals = launch.zeros(4);
   flag_distinct(run, keys, sorted, order, spare, n, totals);
   const std::uint32_t equal = launch.read_word(totals, 1);
   if (!refined && equal == 0) result.order.keys = std::move(keys);

@@ -146,9 +146,9 @@ KeyGrid grid_of_all(const Bounds& bounds, std::size_t n) {
 /// A grid without the outermost points, where that is a much smaller box: heavy tails, or a few points far away from
 /// all others, leave most points in one cell else. Judged by a sample.
 std::optional<KeyGrid> grid_of_most(Run& run, const Allocation& input, Bounds bounds, std::size_t n) {
-  constexpr std::size_t samples = 4096, tail = 12;  // on either side along each axis
+  const std::size_t samples = n <= most_ahead ? 1024 : 4096, tail = samples / 340;  // on either side along each axis
   constexpr double much_smaller = 16;
-  if (n < 4 * samples) return std::nullopt;
+  if (n < 16384) return std::nullopt;
   std::vector<std::uint32_t> places(samples);
   // The same in every run, in step with nothing that is in the data (D. E. Knuth's multiplicative hash).
   for (std::size_t i = 0; i < samples; ++i) places[i] = static_cast<std::uint32_t>(i * 0x9E3779B97F4A7C15U % n);
@@ -349,11 +349,15 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
 
   Allocation keys = run.memory.allocate(n * word), spare = run.memory.allocate(n * word);
   Allocation order = run.memory.allocate(n * word), sorted;
-  const Allocation totals = launch.zeros(2);  // members of crowded cells, equal points
+  const Allocation totals =
+      launch.zeros(7);  // members of crowded cells, and what cadt_unique_flags and cadt_sample_shapes count
   const auto gather = [&] {
     sorted = run.memory.allocate(n * point_bytes(run.device));
     launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
     flag_distinct(run, keys, sorted, order, spare, n, totals);
+    if (!keep_keys || n < fewest_sampled) return;
+    const Cut few = launch.cut(CADT_POINT_SAMPLES);
+    launch.run(KernelId::cadt_sample_shapes, few.items, sorted, count, few.grain, totals);
   };
   const auto sort = [&](const KeyGrid& grid) {
     Allocation spare_order = run.memory.allocate(n * word);
@@ -363,7 +367,8 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   };
   sort(grid_of_all(bounds, n));
   bool sorted_by_keys = true;
-  std::array<std::uint32_t, 2> sums{};
+  std::array<std::uint32_t, 7> sums{};
+  std::uint32_t crowd = 0;
   if (n <= most_ahead) {
     launch.run(KernelId::cadt_crowded_flags, c.items, keys, spare, count, c.grain, totals);
     run.end_phase("sort");
@@ -371,9 +376,11 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
     run.device.read(*totals, 0, sums.data(), sizeof sums);
     if (sums[0] != 0) sorted.release();
   }
+  // Flat sets have no use for keys.
+  const bool for_stars = keep_keys && !(n <= most_ahead && sums[2] == 0);
   if (!sorted) {
-    std::uint32_t crowd = flag_crowded(run, keys, spare, n);
-    if (keep_keys && crowd > n / 4) {
+    crowd = flag_crowded(run, keys, spare, n);
+    if (for_stars && crowd > n / 4) {
       if (const std::optional<KeyGrid> grid = grid_of_most(run, input, bounds, n)) {
         sort(*grid);
         crowd = flag_crowded(run, keys, spare, n);
@@ -382,7 +389,7 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
     const int finer =
         std::min(most_fine_levels, 31 - static_cast<int>(std::max(result.grid.bits_x, result.grid.bits_y)));
     // Of few points the sort would take longer than what stars save.
-    const bool wanted = keep_keys && (n > most_ahead || run.options.strategy == Strategy::stars);
+    const bool wanted = for_stars && (n > most_ahead || run.options.strategy == Strategy::stars);
     const bool fine = wanted && crowd > n / 4 && finer >= fewest_fine_levels &&
                       result.grid.scale < std::ldexp(1.0, 1000);  // else it is of points that are nearly all equal
     if (fine) {
@@ -394,7 +401,7 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
     run.check("sort", 0.05);
     sorted_by_keys = !refine_crowd(run, input, keys, order, spare, n, crowd) && !fine;
     run.end_phase("refine");
-    run.device.fill(*totals, 0, 2 * word, 0);
+    run.device.fill(*totals, 0, sums.size() * word, 0);
     gather();
     run.device.read(*totals, 0, sums.data(), sizeof sums);
   }
@@ -405,6 +412,16 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   }
   result.scale = scale;
   result.scale_again = scale_again;
+  // On circles are a ninth of a turned lattice and an eighth to a quarter of 12-gons, but less than a sixteenth of a
+  // lattice of triangles, which is better wrapped. On rays is a fifth of a polar grid or more, on lines hardly a point
+  // of other sets; on one circle are all corners of a polygon, and none of other sets.
+  constexpr std::uint32_t samples = CADT_POINT_SAMPLES;
+  result.shapes.crowded = result.grid.fine_levels == 0 && crowd > n - n / 4 && sums[1] < n / 4;
+  result.shapes.on_line = sums[2] == 0;
+  result.shapes.on_circle = 2 * sums[3] > std::min<std::size_t>(n, samples);
+  result.shapes.on_rays = 8 * sums[6] > samples;
+  result.shapes.on_circles = 11 * sums[4] > samples;
+  result.shapes.on_lattice = 4 * sums[5] > samples;
   input.release();
   if (keep_keys && sorted_by_keys && sums[1] == 0) result.keys = std::move(keys);
   keys.release();

@@ -26,14 +26,28 @@ struct KeyGrid {
   [[nodiscard]] KeyGrid finer(int levels) const noexcept;
 };
 
+/// What the points are like, as far as a sample tells: it decides which way to their mesh is tried.
+struct PointShapes {
+  bool crowded = false;     ///< nearly all are in crowded cells of the grid, and not because they are equal
+  bool on_line = false;     ///< none is beside a line by more than rounding hides: perhaps all are on it
+  bool on_circle = false;   ///< most are on one circle, as far as rounded numbers tell
+  bool on_rays = false;     ///< many are on a line with their neighbours, not along an axis: a polar grid
+  bool on_circles = false;  ///< many are on a circle with their neighbours, and long integers have to tell
+  bool on_lattice = false;  ///< many are, and a cheap test tells
+};
+
+/// Of fewer points most shapes are not looked for.
+constexpr std::size_t fewest_sampled = 10000;
+
 struct SpatialOrder {
   Allocation points;  ///< distinct points in order, scaled by a power of two unless `wide`
   Allocation labels;  ///< their lowest input indices
   std::size_t distinct = 0;
   Allocation duplicates, representatives;  ///< points that equal an earlier one, ascending, and that one; null if none
   KeyGrid grid;
-  Allocation keys;                    ///< their sort keys in this grid, or null
-  bool wide = false;                  ///< exponents span too much for the narrow kernels
+  Allocation keys;    ///< their sort keys in this grid, or null
+  bool wide = false;  ///< exponents span too much for the narrow kernels
+  PointShapes shapes;
   double scale = 1, scale_again = 1;  ///< the points are the input's, times both
   /// The points once more, if the input lies on the device anyway; else null. Set by who has called sort_points.
   std::function<Allocation(const SpatialOrder&)> points_again;
@@ -75,6 +89,7 @@ constexpr int narrow_span = 240;
 [[nodiscard]] bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const Allocation& order,
                                 Allocation& spare, std::size_t n, std::uint32_t crowd);
 /// Sorts runs of equal keys; 1 in `flags` where a point differs from the one before. totals[1] counts the others.
+/// `totals` has four words (cadt_unique_flags).
 void flag_distinct(Run& run, const Allocation& keys, const Allocation& sorted, const Allocation& order,
                    const Allocation& flags, std::size_t n, const Allocation& totals);
 /// Closes up distinct points, as flagged in `flags`; `equal` others. Where sets begin among them, if there are sets.

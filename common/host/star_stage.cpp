@@ -32,13 +32,18 @@ constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * 
 /// The vertices of the mesh take the place of the stars in so many steps where memory is to be saved.
 constexpr std::uint32_t waves = 4;
 
-/// The mesh without the star stage: by gift wrapping if the points are few, else by insertion. More are wrapped as a
-/// part of a mesh than alone: among what has few stars, many need long searches.
+/// How many points are wrapped, rather than inserted or given to the star stage.
+std::size_t most_wrapped_of(const Run& run, const SpatialOrder& order) {
+  const std::size_t most = most_wrapped(run.device);
+  if (run.options.strategy != Strategy::automatic) return most;
+  if (order.shapes.on_circles) return std::min(most, most_wrapped_on_circles);
+  return order.shapes.on_lattice ? std::min(most, most_wrapped_on_lattice) : most;
+}
+
+/// The mesh without the star stage: by gift wrapping if the points are few, else by insertion.
 DeviceMesh build_without_stars(Run& run, SpatialOrder& order) {
-  const bool automatic = run.options.strategy == Strategy::automatic;
-  const std::size_t most = automatic ? most_wrapped_alone : most_wrapped(run.device);
   std::optional<DeviceMesh> wrapped;
-  if (order.distinct <= std::min(most, most_wrapped(run.device))) wrapped = wrap_mesh(run, order);
+  if (order.distinct <= most_wrapped_of(run, order)) wrapped = wrap_mesh(run, order);
   return wrapped ? std::move(*wrapped) : build_mesh(run, order);
 }
 
@@ -265,12 +270,17 @@ DeviceMesh build_mesh_with_stars(Run& run, SpatialOrder& order) {
   KeyGrid& grid = order.grid;
   const int too_fine = static_cast<int>(std::max(grid.bits_x, grid.bits_y)) - static_cast<int>(most_bits);
   if (too_fine > 0 && grid.fine_levels != 0) grid = grid.finer(-std::min(too_fine, static_cast<int>(grid.fine_levels)));
-  if (order.wide) {
+  const bool automatic = run.options.strategy == Strategy::automatic;
+  const PointShapes& shapes = order.shapes;
+  // There are no triangles, or rounded numbers find few.
+  const bool convex = shapes.on_circle && order.distinct > CADT_WRAP_HULL_EXACT;
+  const bool insert = automatic && (shapes.on_line || convex || shapes.on_rays);
+  if (order.wide || insert) {
     order.keys.release();
     return build_mesh(run, order);
   }
-  const bool few = run.options.strategy == Strategy::automatic && order.distinct <= most_wrapped_alone;
-  if (few || order.distinct < 3 || std::max(grid.bits_x, grid.bits_y) > most_bits) {
+  const bool without = automatic && (shapes.crowded || order.distinct <= most_wrapped_of(run, order));
+  if (without || order.distinct < 3 || std::max(grid.bits_x, grid.bits_y) > most_bits) {
     order.keys.release();
     return build_without_stars(run, order);
   }

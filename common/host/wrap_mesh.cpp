@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -20,35 +19,11 @@ using namespace device_constants;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t most_teams = 4096;  // as many as run at the same time on a large card
 constexpr std::uint32_t box_lanes = CADT_WRAP_CRATE * CADT_WRAP_PARTS;
-constexpr std::uint32_t rest_lanes = 64;  // of the longest stars, which all wait for
-
-/// The triangles of three vertices without stars, each as its three half-edges. `edge_count` half-edges between two of
-/// them are known from the other side. Empty if they are not `wanted` triangles with nothing but known edges.
-std::vector<cadt_wrap_edge> triangles_between_hubs(Run& run, const Allocation& edges, std::size_t edge_count,
-                                                   std::size_t wanted) {
-  std::vector<cadt_wrap_edge> known(edge_count);
-  if (edge_count + 3 * wanted > CADT_WRAP_EDGES || edge_count == 0) return {};
-  run.device.read(*edges, 0, known.data(), edge_count * sizeof known[0]);
-  std::set<std::pair<std::uint32_t, std::uint32_t>> open;  // half-edges that the triangles must have
-  for (const cadt_wrap_edge& e : known) open.emplace(e.to, e.from);
-  for (const cadt_wrap_edge& e : known) open.erase({e.from, e.to});
-  std::vector<cadt_wrap_edge> found;
-  while (!open.empty()) {
-    const auto [a, b] = *open.begin();
-    std::uint32_t c = CADT_NONE;
-    bool closed = false;
-    for (auto next = open.lower_bound({b, 0}); !closed && next != open.end() && next->first == b; ++next) {
-      c = next->second;
-      closed = open.contains({c, a});
-    }
-    if (!closed) return {};
-    for (const cadt_wrap_edge& e : {cadt_wrap_edge{a, b, c}, {b, c, a}, {c, a, b}}) {
-      found.push_back(e);
-      open.erase({e.from, e.to});
-    }
-  }
-  return found.size() == 3 * wanted ? found : std::vector<cadt_wrap_edge>{};
-}
+constexpr std::uint32_t rest_lanes = 128;  // of the longest stars, which all wait for
+/// Boxes that are looked at and exact tests for a vertex, on average at most. What stars leave of 1M uniform points
+/// needs 14. Besides, for all together: where many have to look at many, all on a side of the hull, cards do it at
+/// once.
+constexpr std::uint32_t wrap_effort = 96, spare_effort = 4096, spare_effort_of_cards = 1U << 21;
 
 /// Boxes and crates of points (common/device/wrap_boxes.h); each set begins a box and a crate of its own.
 struct Boxes {
@@ -80,8 +55,9 @@ void wrap_all(Run& run, const Allocation& points, std::size_t n, const WrappedSt
   // How many are left is known on the device only.
   const Cut rest = run.device.shape().contiguous ? teams : launch.cut_teams(std::min(n, most_teams), rest_lanes);
   launch.run_in_groups(KernelId::cadt_wrap_stars, rest.items, rest_lanes, points, boxes.boxes, boxes.crates, count,
-                       todo, 0U, arcs, none, 0U, none, none, wrap_effort, rest.grain, 0U, stars.links, link_words,
-                       stars.begins, stars.sizes, stars.found);
+                       todo, 0U, arcs, none, 0U, none, none, wrap_effort,
+                       run.device.shape().contiguous ? spare_effort : spare_effort_of_cards, rest.grain, 0U,
+                       stars.links, link_words, stars.begins, stars.sizes, stars.found);
 }
 
 /// One set, its stars and its mesh.
@@ -139,15 +115,12 @@ class Wrapping {
     run_.device.read(*bases_, n_ * word, words.data(), sizeof words);
     note(words);
     const std::uint32_t known = words[0];
-    std::uint32_t edge_count = hubs_ != 0 ? launch_.read_word(found_, CADT_WRAP_FOUND) : 0;
-    if (hubs_ > CADT_WRAP_HUBS || edge_count > CADT_WRAP_EDGES) return std::nullopt;
-    const std::uint32_t first_extra = edge_count;
+    const std::uint32_t first_extra = hubs_ != 0 ? launch_.read_word(found_, CADT_WRAP_FOUND) : 0;
+    if (hubs_ > CADT_WRAP_HUBS || first_extra > CADT_WRAP_EDGES) return std::nullopt;
+    std::uint32_t edge_count = first_extra;
     if (hubs_ != 0 && known < triangles()) {
-      const std::vector<cadt_wrap_edge> extra =
-          triangles_between_hubs(run_, edges_, edge_count, triangles() - std::size_t{known});
-      if (extra.empty()) return std::nullopt;
-      run_.device.write(*edges_, edge_count * sizeof extra[0], extra.data(), extra.size() * sizeof extra[0]);
-      edge_count += static_cast<std::uint32_t>(extra.size());
+      edge_count = add_triangles_of_hubs(triangles() - std::size_t{known});
+      if (edge_count == CADT_NONE) return std::nullopt;
     } else {
       require_all(known);
     }
@@ -179,11 +152,28 @@ class Wrapping {
   void note(std::span<const std::uint32_t> words) {
     used_words_ = words[1];
     hubs_ = words[2];
-    if (noted_) return;
-    noted_ = true;
-    run_.statistics.exact_orientations += words[4];
-    run_.statistics.exact_incircles += words[5];
-    run_.statistics.ties += words[6];
+    note_exact(words.subspan(4, 3));
+  }
+
+  /// Exact tests so far.
+  void note_exact(std::span<const std::uint32_t> words) {
+    run_.statistics.exact_orientations += words[0] - exact_[0];
+    run_.statistics.exact_incircles += words[1] - exact_[1];
+    run_.statistics.ties += words[2] - exact_[2];
+    std::ranges::copy(words, exact_.begin());
+  }
+
+  /// Those of three vertices without stars, each as its three half-edges. Returns how many half-edges there are then,
+  /// CADT_NONE if the stars leave other gaps.
+  [[nodiscard]] std::uint32_t add_triangles_of_hubs(std::size_t wanted) {
+    if (3 * wanted > CADT_WRAP_EDGES) return CADT_NONE;
+    const std::uint32_t lanes = run_.device.shape().contiguous ? 1 : CADT_WRAP_HUBS;
+    launch_.run_in_groups(KernelId::cadt_wrap_hubs, lanes, lanes, points_, sizes_, count_,
+                          static_cast<std::uint32_t>(wanted), edges_, found_);
+    std::array<std::uint32_t, CADT_WRAP_FOUND + 1> words{};
+    run_.device.read(*found_, 0, words.data(), sizeof words);
+    note_exact(std::span(words).subspan(3, 3));
+    return words[CADT_WRAP_FOUND];
   }
 
   void require_all(std::size_t found) const {
@@ -199,7 +189,7 @@ class Wrapping {
   std::uint32_t count_;
   Allocation links_, begins_, sizes_, found_, edges_, bases_;
   std::uint32_t used_words_ = 0, hubs_ = 0;
-  bool noted_ = false;
+  std::array<std::uint32_t, 3> exact_{};  // orientations, incircles, ties that the statistics have
 };
 
 }  // namespace
@@ -213,8 +203,8 @@ void wrap_sets(Run& run, const Allocation& points, std::size_t n, const StarsOfS
   const Cut teams = run.launcher.cut_teams(listed, wrap_lanes);
   run.launcher.run_in_groups(KernelId::cadt_wrap_stars, teams.items, wrap_lanes, points, boxes.boxes, boxes.crates,
                              static_cast<std::uint32_t>(n), sets.list, listed, none, sets.starts,
-                             static_cast<std::uint32_t>(sets.count), sets.states, efforts, wrap_effort, teams.grain,
-                             static_cast<std::uint32_t>(stars.row), stars.links,
+                             static_cast<std::uint32_t>(sets.count), sets.states, efforts, wrap_effort, spare_effort,
+                             teams.grain, static_cast<std::uint32_t>(stars.row), stars.links,
                              static_cast<std::uint32_t>(stars.link_words), stars.begins, stars.sizes, stars.found);
 }
 

@@ -11,8 +11,6 @@ namespace cadt {
 
 /// Lanes of the team that wraps a vertex.
 constexpr std::uint32_t wrap_lanes = 32;
-/// Boxes that are looked at for a vertex, on average at most. What stars leave of 1M uniform points needs 14.
-constexpr std::uint32_t wrap_effort = 96;
 
 /// Points for which gift wrapping is faster than insertion; it looks at a share of all points for each.
 [[nodiscard]] std::size_t most_wrapped(const Device& device) noexcept;

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <functional>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #define CADT_WIDE 0
@@ -68,9 +69,10 @@ struct Wrapped {
     cadt_wrap_near(0, 1, points.data(), boxes.data(), crates.data(), n, n, links.data(), words, begins.data(),
                    sizes.data(), todo.data(), arcs.data(), found.data());
     left = found[7];
-    constexpr std::uint32_t effort = 96;
+    constexpr std::uint32_t effort = 96, spare = 4096;
     cadt_wrap_stars(0, 1, points.data(), boxes.data(), crates.data(), n, todo.data(), 0, arcs.data(), nullptr, 0,
-                    nullptr, nullptr, effort, n, 0, links.data(), words, begins.data(), sizes.data(), found.data());
+                    nullptr, nullptr, effort, spare, n, 0, links.data(), words, begins.data(), sizes.data(),
+                    found.data());
   }
   [[nodiscard]] std::uint32_t failed() const { return found[1]; }
   [[nodiscard]] std::uint32_t effort() const { return found[2]; }
@@ -102,6 +104,37 @@ TEST(WrappedStars, GivesUpOnHulls) {
     EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
     EXPECT_GT(wrapped.effort(), 0U);
   }
+}
+
+// Points just inside of the circle through p, a and b are in its disc, near p and far away; and the disc is not much
+// larger than it need be, or long circles would hold whole clusters.
+TEST(WrappedDisc, HoldsItsCircleTightly) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::size_t inside = 0;
+  for (int trial = 0; trial < 300000; ++trial) {
+    const auto length = [&] { return std::ldexp(1.0, static_cast<int>(random() % 40) - 30); };
+    const double near = length(), far = length();
+    const cadt_point p{unit(random), unit(random)}, a{p.x + near * unit(random), p.y + near * unit(random)},
+        b{p.x + far * unit(random), p.y + far * unit(random)};
+    cadt_tally tally{};
+    if (cadt_orientation(p, a, b, &tally) <= 0) continue;
+    const cadt_disc disc = cadt_disc_around(p, a, b);
+    if (!std::isfinite(disc.square)) continue;
+    const double radius = std::hypot(disc.x, disc.y), along = 3.2 * unit(random);
+    const double spare = std::ldexp(radius, -45 - static_cast<int>(random() % 9)) * unit(random);
+    const cadt_point c{p.x + disc.x + (radius + spare) * std::cos(along),
+                       p.y + disc.y + (radius + spare) * std::sin(along)};
+    if (cadt_incircle(p, a, b, c, &tally) <= 0) continue;
+    ++inside;
+    const double x = c.x - p.x - disc.x, y = c.y - p.y - disc.y;
+    ASSERT_LE(x * x + y * y, disc.square) << "trial " << trial;
+    cadt_box box{c, c};
+    ASSERT_TRUE(cadt_box_matters(box, p, 0, 0, 0, &disc)) << "trial " << trial;
+  }
+  EXPECT_GT(inside, 50000U);
+  const cadt_disc fair = cadt_disc_around({0, 0}, {1e12, 0}, {0, 1e12});
+  EXPECT_LT(std::sqrt(fair.square), std::hypot(fair.x, fair.y) + 0.1);
 }
 
 }  // namespace

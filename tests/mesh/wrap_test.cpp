@@ -162,14 +162,48 @@ TEST_P(Wrap, HubsBesideEachOther) {
   EXPECT_EQ(check(shuffled(two, 5)).wrapped_stars, 120u);
 }
 
-// Four hubs around an edge between two of them: nobody's star tells of its two triangles. All goes to insertion.
-TEST_P(Wrap, GivesUpManyHubsBesideEachOther) {
+// Edges between two hubs with triangles of hubs on either side, which nobody's star tells of.
+TEST_P(Wrap, ManyHubsBesideEachOther) {
   Points four = {0, 0, 10, 1, 0, 11, 9, 10};
   add_arc(four, 0, 0, 150, 290);
   add_arc(four, 10, 1, -110, 30);
   add_arc(four, 0, 11, 60, 200);
   add_arc(four, 9, 10, -20, 120);
   const Statistics s = check(shuffled(four, 5));
+  EXPECT_EQ(s.wrapped_stars, 240u);
+  EXPECT_EQ(s.splits + s.edge_splits, 0u);
+  Points ring, exact;  // around a gap of ten triangles
+  for (std::size_t i = 0; i < 12; ++i) {
+    const double angle = 30.0 * static_cast<double>(i), r = 30 + 0.1 * static_cast<double>(i * i % 7);
+    const double x = r * std::cos(angle * 0.017453292519943295), y = r * std::sin(angle * 0.017453292519943295);
+    ring.insert(ring.end(), {x, y});
+    add_arc(ring, x, y, angle - 80, angle + 80);
+  }
+  EXPECT_EQ(check(shuffled(ring, 5)).wrapped_stars, 720u);
+  for (const int x : {-1, 1})
+    for (const int y : {-1, 1}) {  // corners of a square, decided by ties
+      exact.insert(exact.end(), {20.0 * x, 20.0 * y});
+      const double angle = (x > 0 ? 45 : 135) * y;
+      add_arc(exact, 20.0 * x, 20.0 * y, angle - 70, angle + 70);
+    }
+  EXPECT_EQ(check(shuffled(exact, 5)).wrapped_stars, 240u);
+  Points row;  // the hull runs along them
+  for (int i = 0; i < 8; ++i) {
+    row.insert(row.end(), {10.0 * i, 0.01 * (i - 3) * (i - 3)});
+    add_arc(row, 10.0 * i, 0.01 * (i - 3) * (i - 3), 20, 160);
+  }
+  EXPECT_EQ(check(shuffled(row, 5)).wrapped_stars, 480u);
+}
+// More than there is a list for: all goes to insertion.
+TEST_P(Wrap, GivesUpTooManyHubsBesideEachOther) {
+  Points ring;
+  for (std::size_t i = 0; i < 64; ++i) {
+    const double angle = 5.625 * static_cast<double>(i), r = 300 + 0.01 * static_cast<double>(i * i % 7);
+    const double x = r * std::cos(angle * 0.017453292519943295), y = r * std::sin(angle * 0.017453292519943295);
+    ring.insert(ring.end(), {x, y});
+    add_arc(ring, x, y, angle - 80, angle + 80);
+  }
+  const Statistics s = check(shuffled(ring, 5));
   EXPECT_EQ(s.wrapped_stars, 0u);
   EXPECT_GT(s.splits + s.edge_splits, 0u);
 }

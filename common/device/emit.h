@@ -114,7 +114,8 @@ CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_record* records, CADT_
   }
 }
 
-/* Sorts each bucket by the second vertex: long ones by heap sort, since the hub of a wheel has one triangle a point. */
+/* Sorts each bucket by the second vertex. The hub of a wheel has one triangle a point: long buckets are sorted by heap
+ * sort, the longest as one list by all work-items, if there is memory for that. */
 CADT_FN void cadt_sift_down(CADT_GLOBAL cadt_member* bucket, cadt_u32 at, cadt_u32 size) {
   const cadt_member moving = bucket[at];
   for (;;) {
@@ -139,12 +140,17 @@ CADT_FN cadt_u32 cadt_bucket_begin(CADT_GLOBAL const cadt_u32* buckets, cadt_u32
 #endif
 }
 
-/* `count` buckets from `from` on; the first triangle is `base`, at members. */
+/* `count` buckets from `from` on; the first triangle is `base`, at members. Buckets with more than `longest` are
+ * skipped; `skipped` counts their triangles. */
 CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 from,
-            cadt_u32 count, cadt_u32 base, cadt_u32 grain) {
+            cadt_u32 count, cadt_u32 base, cadt_u32 longest, cadt_u32 grain, CADT_GLOBAL cadt_u32* skipped) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 begin = cadt_bucket_begin(buckets, from + i);
     const cadt_u32 size = cadt_bucket_begin(buckets, from + i + 1u) - begin;
+    if (size > longest) {
+      cadt_add_relaxed(skipped, size);
+      continue;
+    }
     CADT_GLOBAL cadt_member* bucket = members + (begin - base);
     if (size <= CADT_CAST(cadt_u32, CADT_SHORT_BUCKET)) {
       for (cadt_u32 e = 1u; e < size; ++e) {
@@ -162,6 +168,54 @@ CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL 
         cadt_sift_down(bucket, 0u, left);
       }
     }
+  }
+}
+
+/* The bucket of triangle i, among `count` from `from` on. */
+CADT_FN cadt_u32 cadt_bucket_of(CADT_GLOBAL const cadt_u32* buckets, cadt_u32 from, cadt_u32 count, cadt_u32 i) {
+  cadt_u32 low = from, high = from + count;
+  while (high - low > 1u) {
+    const cadt_u32 middle = low + (high - low) / 2u;
+    if (cadt_bucket_begin(buckets, middle) <= i)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* 1 for each of `count` triangles from `base` on whose bucket has more than `longest`; flags[count] becomes 0. */
+CADT_KERNEL(cadt_long_flags, CADT_GLOBAL const cadt_u32* buckets, cadt_u32 from, cadt_u32 size, cadt_u32 base,
+            cadt_u32 longest, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* flags) {
+  if (cadt_item == 0u) flags[count] = 0u;
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 v = cadt_bucket_of(buckets, from, size, base + i);
+    flags[i] = cadt_bucket_begin(buckets, v + 1u) - cadt_bucket_begin(buckets, v) > longest ? 1u : 0u;
+  }
+}
+
+/* Those triangles in one list: second vertex, record, bucket and place of each. `ranks` is the scan of the flags. */
+CADT_KERNEL(cadt_long_pack, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL const cadt_member* members, cadt_u32 from,
+            cadt_u32 size, cadt_u32 base, CADT_GLOBAL const cadt_u32* ranks, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* seconds, CADT_GLOBAL cadt_u32* records, CADT_GLOBAL cadt_u32* owners,
+            CADT_GLOBAL cadt_u32* places) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 at = ranks[i];
+    if (ranks[i + 1u] == at) continue;
+    seconds[at] = members[i].second;
+    records[at] = members[i].record;
+    owners[at] = cadt_bucket_of(buckets, from, size, base + i) - from;
+    places[at] = i;
+  }
+}
+
+/* The list back to its places, sorted: entry `order[at]` goes to that of entry `at`. */
+CADT_KERNEL(cadt_long_store, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* seconds,
+            CADT_GLOBAL const cadt_u32* records, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_member* members,
+            cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(at, count, grain) {
+    members[places[at]].second = seconds[order[at]];
+    members[places[at]].record = records[order[at]];
   }
 }
 

@@ -81,6 +81,9 @@
   X(cadt_cut_buckets)       /* emit.h */                                             \
   X(cadt_bucket_triangles)  /* emit.h: canonical order */                            \
   X(cadt_sort_buckets)      /* emit.h */                                             \
+  X(cadt_long_flags)        /* emit.h */                                             \
+  X(cadt_long_pack)         /* emit.h */                                             \
+  X(cadt_long_store)        /* emit.h */                                             \
   X(cadt_number_triangles)  /* emit.h */                                             \
   X(cadt_emit_triangles)    /* emit.h */                                             \
   X(cadt_flag_triangles)    /* emit.h: order of the records */                       \

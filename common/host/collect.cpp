@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <string>
 #include <utility>
 
@@ -57,6 +58,59 @@ std::vector<BucketCut> cut_buckets(Run& run, const Allocation& buckets, std::siz
   return cuts;
 }
 
+/// A part of the triangles in their buckets.
+struct BucketPart {
+  const Allocation& buckets;
+  const Allocation& members;
+  std::uint32_t from, size;   ///< buckets
+  std::uint32_t base, count;  ///< triangles
+};
+
+/// Buckets with more triangles are sorted as one list by all work-items: one takes 2 microseconds a triangle.
+constexpr std::uint32_t longest_bucket = 256;
+
+/// Sorts what cadt_sort_buckets has skipped, `left` triangles.
+void sort_long_buckets(Run& run, const BucketPart& part, std::uint32_t left) {
+  Launcher& launch = run.launcher;
+  Allocation ranks = run.memory.allocate((part.count + std::size_t{1}) * word);
+  const Cut all = launch.cut(part.count), some = launch.cut(left);
+  launch.run(KernelId::cadt_long_flags, all.items, part.buckets, part.from, part.size, part.base, longest_bucket,
+             part.count, all.grain, ranks);
+  launch.scan(ranks, part.count + std::size_t{1});
+  const std::size_t bytes = left * word;
+  const Allocation seconds = run.memory.allocate(bytes), records = run.memory.allocate(bytes);
+  const Allocation owners = run.memory.allocate(bytes), places = run.memory.allocate(bytes);
+  launch.run(KernelId::cadt_long_pack, all.items, part.buckets, part.members, part.from, part.size, part.base, ranks,
+             part.count, all.grain, seconds, records, owners, places);
+  ranks.release();
+  Allocation sorted = run.memory.allocate(bytes), order = run.memory.allocate(bytes);
+  Allocation spare = run.memory.allocate(bytes), spare_order = run.memory.allocate(bytes);
+  // Stable: first by the second vertex, then by bucket. The sort permutes its keys, so it gets copies.
+  launch.run(KernelId::cadt_copy_words, some.items, seconds, sorted, std::uint32_t{0}, left, some.grain);
+  launch.sort(sorted, order, spare, spare_order, left, 32, true);
+  launch.run(KernelId::cadt_gather_words, some.items, owners, order, sorted, left, some.grain);
+  launch.sort(sorted, order, spare, spare_order, left, static_cast<unsigned>(std::bit_width(part.size)), false);
+  launch.run(KernelId::cadt_long_store, some.items, order, seconds, records, places, part.members, left, some.grain);
+}
+
+/// Sorts each bucket by the second vertex.
+void sort_buckets(Run& run, const BucketPart& part) {
+  Launcher& launch = run.launcher;
+  const Allocation found = launch.zeros(1);
+  const Cut c = launch.cut(part.size);
+  const auto sort = [&](std::uint32_t longest) {
+    launch.run(KernelId::cadt_sort_buckets, c.items, part.buckets, part.members, part.from, part.size, part.base,
+               longest, c.grain, found);
+  };
+  sort(longest_bucket);
+  const std::uint32_t left = part.count > longest_bucket ? launch.read_word(found, 0) : 0;
+  if (left == 0) return;
+  if (run.memory.allows((part.count + 8 * std::size_t{left} + 1) * word))
+    sort_long_buckets(run, part, left);
+  else
+    sort(none);
+}
+
 /// The numbers of all triangles, from scanned buckets. \pre the numbers are places in buckets where the device knows
 /// them (emit.h)
 void number_by_buckets(Run& run, const DeviceMesh& mesh, const Allocation& labels, Allocation buckets,
@@ -73,8 +127,7 @@ void number_by_buckets(Run& run, const DeviceMesh& mesh, const Allocation& label
     const Allocation members = run.memory.allocate(std::size_t{count} * 2 * word);
     launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, mesh.vertices, labels, buckets, result.numbers,
                members, from, size, base, static_cast<std::uint32_t>(places), all.grain);
-    const Cut some = launch.cut(size);
-    launch.run(KernelId::cadt_sort_buckets, some.items, buckets, members, from, size, base, some.grain);
+    sort_buckets(run, {buckets, members, from, size, base, count});
     if (part + 1 == parts) buckets.release();
     if (!mesh.in_arrays()) run.device.fill(*result.numbers, 0, places * word, none);  // arrays: all get a number
     const Cut real = launch.cut(count);

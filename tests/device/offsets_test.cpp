@@ -231,8 +231,11 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
     cadt_bucket_triangles(item, slots, records.data(), nullptr, labels.data(), buckets.data(), numbers.data(),
                           members.data(), 0U, n, 0U, slots, grain);
   });
-  over(base, n,
-       [&](std::uint32_t item) { cadt_sort_buckets(item, n, buckets.data(), members.data(), 0U, n, 0U, grain); });
+  std::uint32_t skipped = 0;
+  over(base, n, [&](std::uint32_t item) {
+    cadt_sort_buckets(item, n, buckets.data(), members.data(), 0U, n, 0U, CADT_NONE, grain, &skipped);
+  });
+  EXPECT_EQ(skipped, 0U);
   for (std::uint32_t r = first_slot; r < slots; ++r) numbers[r] = CADT_NONE;
   over(before, all_triangles, [&](std::uint32_t item) {
     cadt_number_triangles(item, all_triangles, members.data(), numbers.data(), 0U, all_triangles, grain);

@@ -59,6 +59,32 @@ TEST_P(Result, CountsFollowTheFormula) {
   EXPECT_EQ(mesh.number_of_triangles(), 2 * distinct - 2 - mesh.hull().size());
 }
 
+// Points with so many triangles that these are sorted by all work-items together, several at a time and with others
+// between.
+TEST_P(Result, CanonicalOrderAroundHubs) {
+  for (const std::size_t hubs : {1U, 7U}) {
+    Points xy, rings;
+    for (std::size_t hub = 0; hub < hubs; ++hub) {
+      const double x = 10.0 * static_cast<double>(hub % 3), y = 10.0 * static_cast<double>(hub / 3);
+      xy.insert(xy.end(), {x, y});
+      const Points ring = regular_polygon(300 + 50 * static_cast<int>(hub), x, y, 1);
+      rings.insert(rings.end(), ring.begin(), ring.end());
+    }
+    const Points noise = uniform_points(rings.size() / 2, 4);
+    for (std::size_t i = 0; i < rings.size(); ++i) rings[i] += 1e-7 * noise[i];
+    rings = shuffled(rings, 8);
+    xy.insert(xy.end(), rings.begin(), rings.end());
+    Options options = GetParam().options();
+    options.kernel_times = true;
+    const Triangulation mesh = triangulate(Reals(xy), options);
+    EXPECT_EQ(copy(mesh.triangles()), canonical_set(mesh.triangles())) << hubs << " hubs";
+    EXPECT_EQ(copy(mesh.neighbors()), neighbors_of(mesh.triangles())) << hubs << " hubs";
+    EXPECT_EQ(mesh.hash(), triangulate(Reals(xy), serial()).hash());
+    EXPECT_TRUE(std::ranges::any_of(mesh.statistics().kernels,
+                                    [](const KernelTime& kernel) { return kernel.name == "cadt_long_store"; }));
+  }
+}
+
 TEST_P(Result, FastOrderIsTheSameSet) {
   const Points xy = mixed_points();
   Options options = GetParam().options();

@@ -62,7 +62,8 @@
   X(cadt_wrap_stars)        /* wrap.h */                                             \
   X(cadt_wrap_counts)       /* wrap_mesh.h: who owns which triangle */               \
   X(cadt_wrap_arrays)       /* wrap_mesh.h */                                        \
-  X(cadt_wrap_hubs)         /* wrap_hubs.h */                                        \
+  X(cadt_hub_list)          /* wrap_hubs.h */                                        \
+  X(cadt_hub_behind)        /* wrap_hubs.h */                                        \
   X(cadt_wrap_records)      /* wrap_mesh.h: of sets, and with hubs */                \
   X(cadt_set_bounds)        /* sets.h: many sets in one call */                      \
   X(cadt_set_keys)          /* sets.h */                                             \

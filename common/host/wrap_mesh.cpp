@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -119,7 +120,7 @@ class Wrapping {
     if (hubs_ > CADT_WRAP_HUBS || first_extra > CADT_WRAP_EDGES) return std::nullopt;
     std::uint32_t edge_count = first_extra;
     if (hubs_ != 0 && known < triangles()) {
-      edge_count = add_triangles_of_hubs(triangles() - std::size_t{known});
+      edge_count = add_triangles_of_hubs(first_extra, triangles() - std::size_t{known});
       if (edge_count == CADT_NONE) return std::nullopt;
     } else {
       require_all(known);
@@ -163,17 +164,52 @@ class Wrapping {
     std::ranges::copy(words, exact_.begin());
   }
 
-  /// Those of three vertices without stars, each as its three half-edges. Returns how many half-edges there are then,
-  /// CADT_NONE if the stars leave other gaps.
-  [[nodiscard]] std::uint32_t add_triangles_of_hubs(std::size_t wanted) {
-    if (3 * wanted > CADT_WRAP_EDGES) return CADT_NONE;
-    const std::uint32_t lanes = run_.device.shape().contiguous ? 1 : CADT_WRAP_HUBS;
-    launch_.run_in_groups(KernelId::cadt_wrap_hubs, lanes, lanes, points_, sizes_, count_,
-                          static_cast<std::uint32_t>(wanted), edges_, found_);
-    std::array<std::uint32_t, CADT_WRAP_FOUND + 1> words{};
+  /// Those of three vertices without stars, each as its three half-edges behind the `known` ones. Returns how many
+  /// half-edges there are then, CADT_NONE if that does not fill all gaps.
+  [[nodiscard]] std::uint32_t add_triangles_of_hubs(std::uint32_t known, std::size_t wanted) {
+    if (known + 3 * wanted > CADT_WRAP_EDGES || known == 0) return CADT_NONE;
+    std::vector<cadt_wrap_edge> edges(known);
+    run_.device.read(*edges_, 0, edges.data(), known * sizeof edges[0]);
+    using HalfEdge = std::pair<std::uint32_t, std::uint32_t>;
+    std::set<HalfEdge> sides;  // half-edges whose triangle is known
+    for (const cadt_wrap_edge& e : edges) sides.emplace(e.from, e.to);
+    const Allocation hubs = run_.memory.allocate(hubs_ * word), listed = launch_.zeros(1);
+    const Cut all = launch_.cut(n_);
+    launch_.run(KernelId::cadt_hub_list, all.items, sizes_, count_, all.grain, hubs, listed);
+    for (std::size_t round = 0; round < wanted; ++round) {
+      // Edges to the ghost need no search: the edges of the hull lead to all of its triangles.
+      std::vector<cadt_wrap_edge> open;
+      for (const auto& [from, to] : sides)
+        if (from != CADT_GHOST && to != CADT_GHOST && !sides.contains({to, from})) open.push_back({to, from, 0});
+      if (open.empty()) break;
+      find_behind(open, hubs);
+      for (const auto& [a, b, c] : open) {
+        if (sides.contains({a, b})) continue;  // of a triangle that another edge has led to
+        if (edges.size() + 3 > CADT_WRAP_EDGES) return CADT_NONE;
+        for (const cadt_wrap_edge& e : {cadt_wrap_edge{a, b, c}, {b, c, a}, {c, a, b}}) {
+          edges.push_back(e);
+          sides.emplace(e.from, e.to);
+        }
+      }
+    }
+    const bool closed = std::ranges::all_of(sides, [&](HalfEdge e) { return sides.contains({e.second, e.first}); });
+    if (!closed || edges.size() != known + 3 * wanted || sides.size() != edges.size()) return CADT_NONE;
+    run_.device.write(*edges_, 0, edges.data(), edges.size() * sizeof edges[0]);
+    return static_cast<std::uint32_t>(edges.size());
+  }
+
+  /// What is to the left of edges between two hubs.
+  void find_behind(std::vector<cadt_wrap_edge>& edges, const Allocation& hubs) {
+    const auto count = static_cast<std::uint32_t>(edges.size());
+    const std::size_t bytes = edges.size() * sizeof edges[0];
+    const Allocation list = run_.memory.allocate(bytes);
+    run_.device.write(*list, 0, edges.data(), bytes);
+    const Cut c = launch_.cut_spread(count);
+    launch_.run(KernelId::cadt_hub_behind, c.items, points_, hubs, hubs_, count, c.grain, list, found_);
+    run_.device.read(*list, 0, edges.data(), bytes);
+    std::array<std::uint32_t, CADT_WRAP_FOUND> words{};
     run_.device.read(*found_, 0, words.data(), sizeof words);
     note_exact(std::span(words).subspan(3, 3));
-    return words[CADT_WRAP_FOUND];
   }
 
   void require_all(std::size_t found) const {

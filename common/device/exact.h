@@ -121,6 +121,7 @@ CADT_FN cadt_pair cadt_pair_product(cadt_pair a, cadt_pair b) {
   const double lost = ((au * bu - product) + au * bl + al * bu) + al * bl;
   return cadt_pair_of(product, lost + (a.high * b.low + a.low * b.high));
 }
+
 /* The sign of the incircle determinant by sums of two doubles, 0 if they cannot tell. The filter's bound is `most` / 2,
  * about 2^-50 of the sum of all products' magnitudes; here the errors are less than 2^-97 of that: five roundings of a
  * product, each below 2^-102. */

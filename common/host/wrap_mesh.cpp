@@ -192,6 +192,9 @@ class Wrapping {
         }
       }
     }
+    std::array<std::uint32_t, CADT_WRAP_FOUND> words{};
+    run_.device.read(*found_, 0, words.data(), sizeof words);
+    note_exact(std::span(words).subspan(3, 3));
     const bool closed = std::ranges::all_of(sides, [&](HalfEdge e) { return sides.contains({e.second, e.first}); });
     if (!closed || edges.size() != known + 3 * wanted || sides.size() != edges.size()) return CADT_NONE;
     run_.device.write(*edges_, 0, edges.data(), edges.size() * sizeof edges[0]);
@@ -207,9 +210,6 @@ class Wrapping {
     const Cut c = launch_.cut_spread(count);
     launch_.run(KernelId::cadt_hub_behind, c.items, points_, hubs, hubs_, count, c.grain, list, found_);
     run_.device.read(*list, 0, edges.data(), bytes);
-    std::array<std::uint32_t, CADT_WRAP_FOUND> words{};
-    run_.device.read(*found_, 0, words.data(), sizeof words);
-    note_exact(std::span(words).subspan(3, 3));
   }
 
   void require_all(std::size_t found) const {

@@ -92,6 +92,7 @@ std::vector<Column> make_columns() {
       counter("ties", &S::ties),
       counter("closing_sweeps", &S::closing_sweeps, always),
       counter("closing_repairs", &S::closing_repairs, always),
+      counter("cavities", &S::cavities, always),
       counter("certified_edges", &S::certified_edges, always),
       counter("stabilized_edges", &S::stabilized_edges),
       counter("illegal_edges", &S::illegal_edges, always),

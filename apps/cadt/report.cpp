@@ -45,6 +45,7 @@ constexpr std::array counters = {
     Counter{"ties", &Statistics::ties},
     Counter{"closing_sweeps", &Statistics::closing_sweeps},
     Counter{"closing_repairs", &Statistics::closing_repairs},
+    Counter{"cavities", &Statistics::cavities},
     Counter{"certified_edges", &Statistics::certified_edges},
     Counter{"stabilized_edges", &Statistics::stabilized_edges},
     Counter{"illegal_edges", &Statistics::illegal_edges},

@@ -11,6 +11,7 @@
 #ifndef CADT_DEVICE_JOIN_H
 #define CADT_DEVICE_JOIN_H
 
+#include "common/device/components.h"
 #include "common/device/flips.h"
 
 /* The unproven vertices, closed up. `ranks` is the scan of 1 for each. */
@@ -68,18 +69,7 @@ CADT_KERNEL(cadt_join_cover, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL c
   }
 }
 
-/* Components of the smaller mesh without the edges that have an open triangle on a side; each is named by its lowest
- * record. Two trees are joined by one compare-and-swap of the higher root. */
-CADT_FN cadt_u32 cadt_root_of(CADT_GLOBAL cadt_u32* roots, cadt_u32 r) {
-  for (;;) {
-    const cadt_u32 up = cadt_load_relaxed(roots + r);
-    if (up == r) return r;
-    const cadt_u32 further = cadt_load_relaxed(roots + up);
-    if (further != up) cadt_store_relaxed(roots + r, further); /* shorter for those who come later */
-    r = up;
-  }
-}
-
+/* Components of the smaller mesh without the edges that have an open triangle on a side. */
 CADT_KERNEL(cadt_join_components, CADT_GLOBAL const cadt_record* smaller, cadt_u32 slots, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* covers, CADT_GLOBAL cadt_u32* roots) {
   CADT_FOR(r, slots, grain) {
@@ -89,13 +79,7 @@ CADT_KERNEL(cadt_join_components, CADT_GLOBAL const cadt_record* smaller, cadt_u
       const cadt_u32 link = CADT_PICK(k, s.word[4], s.word[5], s.word[6]), other = CADT_LINK_RECORD(link);
       if (other < r || covers[3u * r + k] != CADT_NONE || covers[3u * other + CADT_LINK_EDGE(link)] != CADT_NONE)
         continue;
-      cadt_u32 a = cadt_root_of(roots, r), b = cadt_root_of(roots, other);
-      while (a != b) {
-        const cadt_u32 high = a > b ? a : b, low = a > b ? b : a;
-        if (cadt_cas_relaxed(roots + high, high, low)) break;
-        a = cadt_root_of(roots, high);
-        b = cadt_root_of(roots, low);
-      }
+      cadt_join_trees(roots, r, other);
     }
   }
 }

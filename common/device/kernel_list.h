@@ -41,6 +41,17 @@
   X(cadt_legalize_edges)    /* insert.h: deferred edges */                           \
   X(cadt_insert_ranges)     /* range.h: without locks */                             \
   X(cadt_border_pass)       /* range.h */                                            \
+  X(cadt_cavity_candidates) /* cavity.h: a vertex and all its triangles */           \
+  X(cadt_cavity_sizes)      /* cavity.h */                                           \
+  X(cadt_cavity_conflicts)  /* cavity.h */                                           \
+  X(cadt_cavity_star)       /* cavity.h */                                           \
+  X(cadt_cavity_roots)      /* cavity.h */                                           \
+  X(cadt_cavity_join)       /* cavity.h */                                           \
+  X(cadt_cavity_check)      /* cavity.h */                                           \
+  X(cadt_cavity_keep)       /* cavity.h */                                           \
+  X(cadt_cavity_boundary)   /* cavity.h */                                           \
+  X(cadt_cavity_fill)       /* cavity.h */                                           \
+  X(cadt_cavity_release)    /* cavity.h */                                           \
   X(cadt_closing_pass)      /* closing.h */                                          \
   X(cadt_tile_flags)        /* tiles.h */                                            \
   X(cadt_tile_pack)         /* tiles.h */                                            \

@@ -11,6 +11,7 @@
 /* The text for OpenCL compilers has each file once, where it is included first: not within a condition that is wider
  * than its own. */
 #include "common/device/array_mesh.h"
+#include "common/device/cavity.h"
 #include "common/device/closing.h"
 #include "common/device/emit.h"
 #include "common/device/flips.h"

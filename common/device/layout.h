@@ -14,7 +14,7 @@ typedef struct {
 } __attribute__((aligned(32))) cadt_record;
 
 /* Points that are looked at to tell what a set is like (order.h). */
-enum { CADT_POINT_SAMPLES = 1024 };
+enum { CADT_POINT_SAMPLES = 1024, CADT_HULL_PROBES = 16 /* others that one of them is compared with */ };
 
 enum { CADT_WORD_LOCK = 3, CADT_WORD_LINK = 4, CADT_WORD_FLIPS = 7 };
 
@@ -162,6 +162,16 @@ enum {
   CADT_COUNTER_ROWS = 64,
   CADT_CERTIFY_REAL = 4 /* place of the number of real triangles among the words of cadt_certify */
 };
+
+/* Words that are counted for the conflict region of a vertex (cavity.h). */
+enum { CADT_CAVITY_LISTED, CADT_CAVITY_KEPT, CADT_CAVITY_SIDES, CADT_CAVITY_SPOKES, CADT_CAVITY_WORDS };
+enum {
+  CADT_CAVITY_CANDIDATES = 8,  /* vertices whose regions are counted at a time */
+  CADT_CAVITY_SET_WORDS = 512, /* a power of two */
+  CADT_CAVITY_SCRATCH = 4      /* words a triangle */
+};
+/* The bit of a vertex in such a set. */
+#define CADT_CAVITY_BIT(vertex) ((vertex)*2654435761u >> 17 & (32u * CADT_CAVITY_SET_WORDS - 1u))
 
 enum {
   CADT_LEFT_COUNTS = 3 /* points, edges, work-items that changed the mesh (insert.h) */

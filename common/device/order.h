@@ -371,13 +371,31 @@ CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_p
   }
 }
 
+/* Whether points spread over all are on one side of the line from point i to the next, as far as rounded numbers tell:
+ * few points that are not on the hull have that. */
+CADT_FN cadt_u32 cadt_seems_on_hull(CADT_GLOBAL const cadt_point* sorted, cadt_u32 count, cadt_u32 i) {
+  if (i + 1u >= count) return 0u;
+  const cadt_point a = sorted[i], b = sorted[i + 1u];
+  const cadt_real x = b.x - a.x, y = b.y - a.y;
+  const cadt_u32 step = count / CADT_HULL_PROBES;
+  cadt_u32 left = 0u, right = 0u, at = i + step / 2u;
+  for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_HULL_PROBES); ++k, at += step) {
+    const cadt_point q = sorted[at % count];
+    const cadt_real side = x * (q.y - a.y) - y * (q.x - a.x);
+    left |= side > 0.0 ? 1u : 0u;
+    right |= side < 0.0 ? 1u : 0u;
+  }
+  return left ^ right;
+}
+
 /* 1 where a point differs from the one before; equal points of different sets have different keys. totals[1] counts
  * the others. Of a sample, totals[2] becomes positive where one is beside the line through two points for certain;
- * totals[3] counts those that are on a circle with three others far away, as far as rounded numbers can tell. */
+ * totals[3] counts those that are on a circle with three others far away, as far as rounded numbers can tell; totals[7]
+ * those that have the others of the sample on one side of their edge to the next point, as along the hull. */
 CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* keys,
             CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
   const cadt_u32 samples = cadt_min_u32(count, CADT_POINT_SAMPLES);
-  cadt_u32 sum = 0u, beside = 0u, on_circle = 0u;
+  cadt_u32 sum = 0u, beside = 0u, on_circle = 0u, on_hull = 0u;
   for (cadt_u32 s = cadt_item; s < samples; s += cadt_items) {
     const cadt_u32 far = count / 4u, i = s * (count / samples);
     const cadt_i32 side = cadt_orientation_filter(sorted[0], sorted[count / 2u], sorted[i]);
@@ -386,6 +404,7 @@ CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL
     if (cadt_incircle_rounded(sorted[(i + far) % count], sorted[(i + 2u * far) % count], sorted[(i + 3u * far) % count],
                               sorted[i], &most) == 0)
       ++on_circle;
+    on_hull += cadt_seems_on_hull(sorted, count, i);
   }
   CADT_FOR(i, count, grain) {
     const cadt_u32 flag = i == 0u || keys[i] != keys[i - 1u] || !cadt_same(sorted[i].x, sorted[i - 1u].x) ||
@@ -398,6 +417,7 @@ CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL
   if (sum) cadt_add_relaxed(totals + 1, sum);
   if (beside) cadt_add_relaxed(totals + 2, beside);
   if (on_circle) cadt_add_relaxed(totals + 3, on_circle);
+  if (on_hull) cadt_add_relaxed(totals + 7, on_hull);
 }
 
 /* Of a sample of four points one after the other, those on a line (totals[6]) or on a circle as far as rounded numbers

@@ -8,10 +8,12 @@
 #include <string>
 #include <utility>
 
+#include "common/host/cavities.hpp"
 #include "common/host/counters.hpp"
 #include "common/host/device_constants.hpp"
 #include "common/host/device_points.hpp"
 #include "common/host/watcher.hpp"
+#include "common/host/working_mesh.hpp"
 
 namespace cadt {
 namespace {
@@ -28,6 +30,7 @@ constexpr unsigned range_level = 5;
 constexpr std::size_t least_range = std::size_t{1} << 14, fewest_for_ranges = 4 * least_range;
 constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
 constexpr int hopeless_launches = 64;
+constexpr int rows_from = 4;  // the launch before which rows of flips are looked for, again after twice as many
 constexpr int most_sweeps = 2000;
 constexpr std::size_t closing_counts = 5, all_counts = CADT_LEFT_COUNTS + closing_counts;
 
@@ -50,7 +53,7 @@ class Builder {
         n_(order.distinct),
         edge_capacity_(static_cast<std::uint32_t>(n_ / 8 + 4096)),
         counters_(run),
-        stabilize_(static_cast<std::uint32_t>(run.options.stabilize)) {}
+        mesh_{run, order, static_cast<std::uint32_t>(run.options.stabilize)} {}
 
   [[nodiscard]] DeviceMesh build() {
     DeviceMesh mesh;
@@ -59,12 +62,12 @@ class Builder {
       mesh.flat = true;
       return mesh;
     }
-    records_ = run_.memory.allocate_zeros(2 * n_ * sizeof(cadt_record));  // lock word 0: not in use yet
-    hints_ = run_.memory.allocate(n_ * word);
+    mesh_.records = run_.memory.allocate_zeros(2 * n_ * sizeof(cadt_record));  // lock word 0: not in use yet
+    mesh_.hints = run_.memory.allocate(n_ * word);
     const std::size_t most = n_ / 2 + n_ / 32 + 64;  // points of a launch: a level and what others left over
     for (Allocation& list : left_points_) list = run_.memory.allocate(most * word);
     make_edge_lists();
-    run_kernel(KernelId::cadt_start_mesh, 1);
+    mesh_.run_kernel(KernelId::cadt_start_mesh, 1);
     run_.end_phase("start");
 
     const unsigned last = use_ranges() ? range_level : 0;
@@ -81,8 +84,8 @@ class Builder {
   /// Nothing walks in a mesh that is complete: its hints are written by repairs only, and its first triangle is not
   /// asked for.
   [[nodiscard]] DeviceMesh adopt(Allocation records, std::uint64_t edges) {
-    records_ = std::move(records);
-    hints_ = run_.memory.allocate(n_ * word);
+    mesh_.records = std::move(records);
+    mesh_.hints = run_.memory.allocate(n_ * word);
     make_edge_lists();
     return close(edges);
   }
@@ -99,7 +102,7 @@ class Builder {
     certify(edges);
     run_.end_phase("certify");
     counters_.collect(run_.statistics);
-    mesh.records = std::move(records_);
+    mesh.records = std::move(mesh_.records);
     mesh.slots = 2 * n_;
     return mesh;
   }
@@ -123,34 +126,27 @@ class Builder {
     Allocation found = run_.memory.allocate(word);
     if (!by_level_) {
       launch_.run(KernelId::cadt_root, 1, static_cast<std::uint32_t>(n_), levels(), found);
-      first_ = launch_.read_word(found, 0);
+      mesh_.first = launch_.read_word(found, 0);
     }
-    second_ = static_cast<std::uint32_t>(n_ / 2);
-    if (second_ == first_) second_ = 0;
+    mesh_.second = static_cast<std::uint32_t>(n_ / 2);
+    if (mesh_.second == mesh_.first) mesh_.second = 0;
     run_.device.fill(*found, 0, word, CADT_NONE);
     constexpr std::size_t few = 1024;  // enough unless the points are nearly all on a line
     for (std::size_t begin = 0, end = std::min(n_, few); begin < n_; begin = end, end = n_) {
       const Cut c = launch_.cut(end - begin);
-      launch_.run(KernelId::cadt_find_triangle, c.items, order_.points, first_, second_,
+      launch_.run(KernelId::cadt_find_triangle, c.items, order_.points, mesh_.first, mesh_.second,
                   static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end - begin), c.grain, found);
-      third_ = launch_.read_word(found, 0);
-      if (third_ != CADT_NONE) break;
+      mesh_.third = launch_.read_word(found, 0);
+      if (mesh_.third != CADT_NONE) break;
     }
-    if (third_ == CADT_NONE) return false;
-    center_ = {0, 0};
-    for (const std::uint32_t at : {first_, second_, third_}) {
+    if (mesh_.third == CADT_NONE) return false;
+    mesh_.center = {0, 0};
+    for (const std::uint32_t at : {mesh_.first, mesh_.second, mesh_.third}) {
       const auto p = read_coordinates<2>(run_.device, *order_.points, at * point_bytes(run_.device));
-      center_.x += p[0] / 3;
-      center_.y += p[1] / 3;
+      mesh_.center.x += p[0] / 3;
+      mesh_.center.y += p[1] / 3;
     }
     return true;
-  }
-
-  /// A kernel over the mesh: its view comes first among the parameters.
-  template <class... Args>
-  void run_kernel(KernelId kernel, std::uint32_t items, const Args&... args) {
-    launch_.run(kernel, items, records_, order_.points, hints_, center_.x, center_.y, first_, second_, third_,
-                stabilize_, run_.options.flip_threshold, run_.options.quality_epsilon, args...);
   }
 
   void insert_level(unsigned level) {
@@ -184,17 +180,17 @@ class Builder {
     const std::size_t step = std::max<std::size_t>((points >> range_level) / ranges, 1);
     for (std::size_t from = 0; from < blocks; from += step) {
       const std::size_t to = std::min(blocks, from + step);
-      run_kernel(KernelId::cadt_insert_ranges, static_cast<std::uint32_t>(ranges), static_cast<std::uint32_t>(n_),
-                 range_level, static_cast<std::uint32_t>(ranges), static_cast<std::uint32_t>(blocks),
-                 static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to), left_points_[0], left_counts_,
-                 counters_);
+      mesh_.run_kernel(KernelId::cadt_insert_ranges, static_cast<std::uint32_t>(ranges), static_cast<std::uint32_t>(n_),
+                       range_level, static_cast<std::uint32_t>(ranges), static_cast<std::uint32_t>(blocks),
+                       static_cast<std::uint32_t>(from), static_cast<std::uint32_t>(to), left_points_[0], left_counts_,
+                       counters_);
       inserted_ += std::min(n_, ((to - from) * ranges) << range_level);
       // The list has room for those that the next launch may leave.
       if (to == blocks || launch_.read_word(left_counts_, 0) > n_ / 32) {
         const Cut c = launch_.cut(2 * n_);
-        run_kernel(KernelId::cadt_border_pass, c.items, static_cast<std::uint32_t>(2 * n_), c.grain,
-                   static_cast<std::uint32_t>(blocks << range_level), left_edges_[0], left_counts_, edge_capacity_,
-                   counters_);
+        mesh_.run_kernel(KernelId::cadt_border_pass, c.items, static_cast<std::uint32_t>(2 * n_), c.grain,
+                         static_cast<std::uint32_t>(blocks << range_level), left_edges_[0], left_counts_,
+                         edge_capacity_, counters_);
         take_leftovers();
         finish_leftovers();
       }
@@ -204,7 +200,7 @@ class Builder {
 
   void show() {
     if (watcher_ == nullptr) watcher_ = std::make_unique<Watcher>(run_.device, order_);
-    watcher_->show(*records_, run_.options.watch);
+    watcher_->show(*mesh_.records, run_.options.watch);
   }
 
   /// What the last launches left over is on the second lists from here on; the first ones are empty.
@@ -223,19 +219,22 @@ class Builder {
     const auto count = static_cast<std::uint32_t>(left_.points + size);
     if (left_.edges != 0) {
       const Cut c = alone ? Cut{1, left_.edges} : launch_.cut_spread(left_.edges);
-      run_kernel(KernelId::cadt_legalize_edges, c.items, left_edges_[1], left_.edges, c.grain, left_edges_[0],
-                 left_counts_, edge_capacity_, counters_);
+      mesh_.run_kernel(KernelId::cadt_legalize_edges, c.items, left_edges_[1], left_.edges, c.grain, left_edges_[0],
+                       left_counts_, edge_capacity_, counters_);
     }
     if (count == 0) return;
     const Cut c = alone ? Cut{1, count} : launch_.cut_spread(count);
-    run_kernel(KernelId::cadt_insert, c.items, left_points_[1], left_.points, static_cast<std::uint32_t>(begin), count,
-               static_cast<std::uint32_t>(n_), level, c.grain, left_points_[0], left_edges_[0], left_counts_,
-               edge_capacity_, counters_);
+    mesh_.run_kernel(KernelId::cadt_insert, c.items, left_points_[1], left_.points, static_cast<std::uint32_t>(begin),
+                     count, static_cast<std::uint32_t>(n_), level, c.grain, left_points_[0], left_edges_[0],
+                     left_counts_, edge_capacity_, counters_);
   }
 
   /// Launches for what could not get its locks, until nothing is left.
   void finish_leftovers() {
-    int launches = 0, stalled = 0;
+    int launches = 0, stalled = 0, next_rows = rows_from;
+    // Edges that are left after several launches may be in long rows; but with --stabilize those flipped often stay.
+    const bool may_be_rows = mesh_.stabilize == CADT_STABILIZE_OFF;
+    Cavities cavities(mesh_);
     std::size_t last = 0;
     while (left_.points != 0 || left_.edges != 0) {
       const std::size_t now = std::size_t{left_.points} + left_.edges;
@@ -246,6 +245,14 @@ class Builder {
                             std::to_string(left_.edges) +
                             " edges cannot get their locks; please report this with the input");
       }
+      if (may_be_rows && left_.edges != 0) {
+        if (launches == next_rows - 1) cavities.note(left_edges_[1], left_.edges);
+        if (launches == next_rows) {
+          const std::size_t made = cavities.make(left_edges_[1], left_.edges);
+          run_.statistics.cavities += made;
+          next_rows *= made != 0 ? 2 : 4;
+        }
+      }
       // One work-item alone meets no conflict, so it always gets on.
       launch_insert(0, 0, 0, stalled >= stalled_launches);
       take_leftovers();
@@ -254,16 +261,17 @@ class Builder {
 
   /// Closing passes until one finds nothing to do.
   void certify(std::uint64_t edges) {
-    if (run_.options.stabilize == Stabilize::defer) stabilize_ = CADT_STABILIZE_OFF;  // what was put off is due now
+    if (run_.options.stabilize == Stabilize::defer)
+      mesh_.stabilize = CADT_STABILIZE_OFF;  // what was put off is due now
     const std::size_t slots = 2 * n_, most = 4 * points_per_launch(run_.device);
     for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
       std::uint64_t examined = 0, illegal = 0, unsettled = 0, left = 0, broken = 0;
       for (std::size_t begin = 0; begin < slots; begin += most) {
         const std::size_t size = std::min(most, slots - begin);
         const Cut c = launch_.cut_strided(size);
-        run_kernel(KernelId::cadt_closing_pass, c.items, static_cast<std::uint32_t>(begin),
-                   static_cast<std::uint32_t>(size), c.grain, by_level_ ? static_cast<std::uint32_t>(n_) : 0U,
-                   left_edges_[0], left_counts_, edge_capacity_, counters_);
+        mesh_.run_kernel(KernelId::cadt_closing_pass, c.items, static_cast<std::uint32_t>(begin),
+                         static_cast<std::uint32_t>(size), c.grain, by_level_ ? static_cast<std::uint32_t>(n_) : 0U,
+                         left_edges_[0], left_counts_, edge_capacity_, counters_);
         std::array<std::uint32_t, all_counts> words{};
         run_.device.read(*left_counts_, 0, words.data(), sizeof words);
         examined += words[CADT_LEFT_COUNTS];
@@ -309,14 +317,12 @@ class Builder {
   std::size_t n_;
   std::uint32_t edge_capacity_;
   Counters counters_;
-  Allocation records_, hints_, left_counts_;
+  WorkingMesh mesh_;
+  Allocation left_counts_;
   std::array<Allocation, 2> left_points_, left_edges_;  // [0] is written by the next launch, [1] read by it
   Leftovers left_;                                      // on the lists [1]
   bool by_level_ = false;                               // the points are in the order of insertion
-  std::uint32_t stabilize_;                             // CADT_STABILIZE_...
   std::unique_ptr<Watcher> watcher_;
-  std::uint32_t first_ = 0, second_ = 0, third_ = 0;
-  cadt_point center_{};
   std::size_t inserted_ = 0;
 };
 

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/host/device_constants.hpp"
@@ -143,14 +145,13 @@ KeyGrid grid_of_all(const Bounds& bounds, std::size_t n) {
   return grid;
 }
 
-/// A grid without the outermost points, where that is a much smaller box: heavy tails, or a few points far away from
-/// all others, leave most points in one cell else. Judged by a sample.
-std::optional<KeyGrid> grid_of_most(Run& run, const Allocation& input, Bounds bounds, std::size_t n) {
-  const std::size_t samples = n <= most_ahead ? 1024 : 4096, tail = samples / 340;  // on either side along each axis
-  constexpr double much_smaller = 16;
-  if (n < 16384) return std::nullopt;
+constexpr std::size_t fewest_for_sample = 16384;
+
+/// Some of the points, the same in every run.
+std::vector<cadt_point> sample_of(Run& run, const Allocation& input, std::size_t n) {
+  const std::size_t samples = n <= most_ahead ? 1024 : 4096;
   std::vector<std::uint32_t> places(samples);
-  // The same in every run, in step with nothing that is in the data (D. E. Knuth's multiplicative hash).
+  // In step with nothing that is in the data (D. E. Knuth's multiplicative hash).
   for (std::size_t i = 0; i < samples; ++i) places[i] = static_cast<std::uint32_t>(i * 0x9E3779B97F4A7C15U % n);
   const Allocation list = run.memory.allocate(samples * word),
                    chosen = run.memory.allocate(samples * sizeof(cadt_point));
@@ -160,6 +161,14 @@ std::optional<KeyGrid> grid_of_most(Run& run, const Allocation& input, Bounds bo
                    c.grain, 1.0, 1.0);
   std::vector<cadt_point> points(samples);
   run.device.read(*chosen, 0, points.data(), samples * sizeof points[0]);
+  return points;
+}
+
+/// A grid without the outermost points, where that is a much smaller box: heavy tails, or a few points far away from
+/// all others, leave most points in one cell else.
+std::optional<KeyGrid> grid_of_most(std::vector<cadt_point>& points, Bounds bounds) {
+  const std::size_t samples = points.size(), tail = samples / 340;  // on either side along each axis
+  constexpr double much_smaller = 16;
   const auto cut = [&](double cadt_point::*axis, double& low, double& high) {
     const double width = 0.5 * high - 0.5 * low;
     const auto value = [&](std::size_t rank) {
@@ -179,6 +188,20 @@ std::optional<KeyGrid> grid_of_most(Run& run, const Allocation& input, Bounds bo
   grid.most_y = std::ldexp(1.0, static_cast<int>(grid.bits_y));
   grid.clipped = true;
   return grid;
+}
+
+/// Whether most points would share cells of a grid with hundreds of others: hardly one of a few is alone in its cell.
+bool stays_crowded(std::span<const cadt_point> sample, const KeyGrid& grid) {
+  constexpr std::size_t few = 256;
+  std::vector<std::pair<double, double>> cells;
+  for (std::size_t i = 0; i < sample.size(); i += sample.size() / few) {  // grid_of_most has moved them about
+    const cadt_point& p = sample[i];
+    cells.emplace_back(std::floor((0.5 * p.x - grid.half_min_x) * grid.scale),
+                       std::floor((0.5 * p.y - grid.half_min_y) * grid.scale));
+  }
+  std::ranges::sort(cells);
+  const auto others = std::ranges::unique(cells);
+  return 8 * (cells.size() - others.size()) < cells.size();
 }
 
 constexpr int most_fine_levels = 15, fewest_fine_levels = 4;
@@ -350,7 +373,7 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   Allocation keys = run.memory.allocate(n * word), spare = run.memory.allocate(n * word);
   Allocation order = run.memory.allocate(n * word), sorted;
   const Allocation totals =
-      launch.zeros(7);  // members of crowded cells, and what cadt_unique_flags and cadt_sample_shapes count
+      launch.zeros(8);  // members of crowded cells, and what cadt_unique_flags and cadt_sample_shapes count
   const auto gather = [&] {
     sorted = run.memory.allocate(n * point_bytes(run.device));
     launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
@@ -367,7 +390,7 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   };
   sort(grid_of_all(bounds, n));
   bool sorted_by_keys = true;
-  std::array<std::uint32_t, 7> sums{};
+  std::array<std::uint32_t, 8> sums{};
   std::uint32_t crowd = 0;
   if (n <= most_ahead) {
     launch.run(KernelId::cadt_crowded_flags, c.items, keys, spare, count, c.grain, totals);
@@ -380,20 +403,26 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   const bool for_stars = keep_keys && !(n <= most_ahead && sums[2] == 0);
   if (!sorted) {
     crowd = flag_crowded(run, keys, spare, n);
-    if (for_stars && crowd > n / 4) {
-      if (const std::optional<KeyGrid> grid = grid_of_most(run, input, bounds, n)) {
+    bool hopeless = false;
+    const auto finer = [&] {
+      constexpr int most_levels = 31;  // of an axis
+      return std::min(most_fine_levels,
+                      most_levels - static_cast<int>(std::max(result.grid.bits_x, result.grid.bits_y)));
+    };
+    if (for_stars && crowd > n / 4 && n >= fewest_for_sample) {
+      std::vector<cadt_point> sample = sample_of(run, input, n);
+      if (const std::optional<KeyGrid> grid = grid_of_most(sample, bounds)) {
         sort(*grid);
         crowd = flag_crowded(run, keys, spare, n);
       }
+      hopeless = run.options.strategy == Strategy::automatic && stays_crowded(sample, result.grid.finer(finer()));
     }
-    const int finer =
-        std::min(most_fine_levels, 31 - static_cast<int>(std::max(result.grid.bits_x, result.grid.bits_y)));
     // Of few points the sort would take longer than what stars save.
-    const bool wanted = for_stars && (n > most_ahead || run.options.strategy == Strategy::stars);
-    const bool fine = wanted && crowd > n / 4 && finer >= fewest_fine_levels &&
+    const bool wanted = for_stars && !hopeless && (n > most_ahead || run.options.strategy == Strategy::stars);
+    const bool fine = wanted && crowd > n / 4 && finer() >= fewest_fine_levels &&
                       result.grid.scale < std::ldexp(1.0, 1000);  // else it is of points that are nearly all equal
     if (fine) {
-      result.grid = result.grid.finer(finer);
+      result.grid = result.grid.finer(finer());
       sort_finely(run, input, keys, order, spare, n, result.grid);
       crowd = flag_crowded(run, keys, spare, n);
     }
@@ -416,9 +445,10 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   // lattice of triangles, which is better wrapped. On rays is a fifth of a polar grid or more, on lines hardly a point
   // of other sets; on one circle are all corners of a polygon, and none of other sets.
   constexpr std::uint32_t samples = CADT_POINT_SAMPLES;
-  result.shapes.crowded = result.grid.fine_levels == 0 && crowd > n - n / 4 && sums[1] < n / 4;
+  result.shapes.crowded = crowd > n - n / 4 && sums[1] < n / 4;
   result.shapes.on_line = sums[2] == 0;
   result.shapes.on_circle = 2 * sums[3] > std::min<std::size_t>(n, samples);
+  result.shapes.on_hull = 10 * sums[7] > 9 * std::min<std::size_t>(n, samples);
   result.shapes.on_rays = 8 * sums[6] > samples;
   result.shapes.on_circles = 11 * sums[4] > samples;
   result.shapes.on_lattice = 4 * sums[5] > samples;

@@ -31,6 +31,7 @@ struct PointShapes {
   bool crowded = false;     ///< nearly all are in crowded cells of the grid, and not because they are equal
   bool on_line = false;     ///< none is beside a line by more than rounding hides: perhaps all are on it
   bool on_circle = false;   ///< most are on one circle, as far as rounded numbers tell
+  bool on_hull = false;     ///< nearly all are on the hull, as far as a comparison with some others tells
   bool on_rays = false;     ///< many are on a line with their neighbours, not along an axis: a polar grid
   bool on_circles = false;  ///< many are on a circle with their neighbours, and long integers have to tell
   bool on_lattice = false;  ///< many are, and a cheap test tells

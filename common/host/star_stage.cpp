@@ -273,7 +273,8 @@ DeviceMesh build_mesh_with_stars(Run& run, SpatialOrder& order) {
   const bool automatic = run.options.strategy == Strategy::automatic;
   const PointShapes& shapes = order.shapes;
   // There are no triangles, or rounded numbers find few.
-  const bool convex = shapes.on_circle && order.distinct > CADT_WRAP_HULL_EXACT;
+  const bool convex = (shapes.on_circle && order.distinct > CADT_WRAP_HULL_EXACT) ||
+                      (shapes.on_hull && order.distinct > CADT_WRAP_HULL);
   const bool insert = automatic && (shapes.on_line || convex || shapes.on_rays);
   if (order.wide || insert) {
     order.keys.release();

@@ -59,6 +59,7 @@ struct Statistics {
   std::uint64_t ties = 0;                ///< incircle signs that were zero and were decided symbolically
   std::uint64_t closing_sweeps = 0;      ///< passes over all edges at the end; the last one found nothing
   std::uint64_t closing_repairs = 0;     ///< illegal edges that the closing passes found and repaired
+  std::uint64_t cavities = 0;            ///< conflict regions that were triangulated anew at once (docs/algorithm.md)
   std::uint64_t certified_edges = 0;     ///< edges that the last closing pass examined and found legal
   std::uint64_t stabilized_edges = 0;    ///< times that an illegal edge was left because of `Options::stabilize`
   std::uint64_t illegal_edges = 0;       ///< edges that are illegal in the result: none, but with Stabilize::paper

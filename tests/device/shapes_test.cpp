@@ -20,19 +20,19 @@ namespace {
 #pragma GCC diagnostic pop
 
 using Points = std::vector<cadt_point>;
-constexpr std::uint32_t n = 12000;
+constexpr std::uint32_t n = 12000, samples = CADT_POINT_SAMPLES;
 /// Counts of cadt_unique_flags and cadt_sample_shapes.
 struct Shapes {
-  std::uint32_t unused, equal, beside, on_circle, circles, mirrored, lines;
+  std::uint32_t unused, equal, beside, on_circle, circles, mirrored, lines, on_hull;
 };
 
 Shapes shapes_of(const Points& points) {
   const auto count = static_cast<std::uint32_t>(points.size());
   std::vector<std::uint32_t> keys(count), flags(count);
-  std::array<std::uint32_t, 7> totals{};
+  std::array<std::uint32_t, 8> totals{};
   cadt_unique_flags(0, 1, points.data(), keys.data(), flags.data(), count, count, totals.data());
   cadt_sample_shapes(0, 1, points.data(), count, CADT_POINT_SAMPLES, totals.data());
-  return {totals[0], totals[1], totals[2], totals[3], totals[4], totals[5], totals[6]};
+  return {totals[0], totals[1], totals[2], totals[3], totals[4], totals[5], totals[6], totals[7]};
 }
 
 TEST(Shapes, OfRandomPoints) {
@@ -43,6 +43,7 @@ TEST(Shapes, OfRandomPoints) {
   const Shapes s = shapes_of(points);
   EXPECT_GT(s.beside, 0U);
   EXPECT_EQ(s.equal + s.on_circle + s.circles + s.mirrored + s.lines, 0U);
+  EXPECT_LT(s.on_hull, samples / 20);
 }
 
 TEST(Shapes, OfALine) {
@@ -57,7 +58,23 @@ TEST(Shapes, OfAPolygon) {
   Points points;
   for (std::uint32_t i = 0; i < n; ++i)
     points.push_back({std::cos(2 * std::numbers::pi * i / n), std::sin(2 * std::numbers::pi * i / n)});
-  EXPECT_GT(shapes_of(points).on_circle, static_cast<std::uint32_t>(CADT_POINT_SAMPLES) * 9 / 10);
+  EXPECT_GT(shapes_of(points).on_circle, samples * 9 / 10);
+  EXPECT_GT(shapes_of(points).on_hull, samples * 19 / 20);
+}
+
+TEST(Shapes, OfCurves) {
+  Points parabola, spiral, twice;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double x = i / 6000.0 - 1, turn = std::sqrt(1.0 * i), angle = 4 * std::numbers::pi * i / n;
+    parabola.push_back({x, x * x});
+    spiral.push_back({turn * std::cos(turn), turn * std::sin(turn)});
+    twice.push_back({(i < n / 2 ? 1 : 2) * std::cos(angle), (i < n / 2 ? 1 : 2) * std::sin(angle)});
+  }
+  EXPECT_EQ(shapes_of(parabola).on_circle, 0U);
+  EXPECT_GT(shapes_of(parabola).on_hull, samples * 19 / 20);
+  EXPECT_LT(shapes_of(spiral).on_hull, samples * 3 / 10);  // the last turn
+  EXPECT_LT(shapes_of(twice).on_hull, samples * 6 / 10);   // the outer circle
+  EXPECT_EQ(shapes_of(Points(n, {1, 2})).on_hull, 0U);
 }
 
 TEST(Shapes, OfSquaresAndRays) {

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Long rows of flips, each illegal by the one before, are done at once (common/host/cavities.hpp).
+#include "common/host/build_mesh.hpp"
+#include "common/host/device_constants.hpp"
+#include "common/host/registry.hpp"
+#include "tests/support/backends.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace cadt::test {
+namespace {
+
+using namespace device_constants;
+using Face = std::array<std::uint32_t, 3>;
+
+/// Faces of a convex polygon, and the ghosts around them, in `slots` records.
+std::vector<cadt_record> polygon(std::vector<Face> faces, std::uint32_t corners, std::size_t slots) {
+  for (std::uint32_t v = 0; v < corners; ++v) faces.push_back({CADT_GHOST, (v + 1) % corners, v});
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> across;  // edge -> record * 4 + edge
+  for (std::uint32_t t = 0; t < faces.size(); ++t)
+    for (std::uint32_t k = 0; k < 3; ++k) across[{faces[t][(k + 1) % 3], faces[t][(k + 2) % 3]}] = 4 * t + k;
+  std::vector<cadt_record> records(slots);
+  for (std::uint32_t t = 0; t < faces.size(); ++t) {
+    records[t].word[CADT_WORD_LOCK] = 2;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      records[t].word[k] = faces[t][k];
+      records[t].word[CADT_WORD_LINK + k] = across.at({faces[t][(k + 2) % 3], faces[t][(k + 1) % 3]});
+    }
+  }
+  return records;
+}
+
+class Cavities : public BackendTest {};
+
+// Points of half a parabola, whose mesh is a fan of the first one. Three others have parts of it, each of which takes a
+// row of flips from its end.
+TEST_P(Cavities, FansOfWrongHubs) {
+  constexpr std::uint32_t part = 100000, n = 3 * part + 10;
+  constexpr std::array<std::uint32_t, 3> hubs = {35, part + 7, 2 * part + 1};
+  std::vector<double> points;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const auto x = static_cast<double>(i);
+    points.insert(points.end(), {x * 0x1p-19, x * x * 0x1p-38});
+  }
+  std::vector<Face> faces;
+  std::uint32_t next = 1;
+  for (const std::uint32_t hub : hubs) {
+    const std::uint32_t end = hub / part * part + part;
+    for (; next < hub; ++next) faces.push_back({0, next, next + 1});
+    for (; next + 1 < end; ++next) faces.push_back({hub, next + 1, next + 2});
+    faces.push_back({0, hub, end});
+    ++next;
+  }
+  for (; next + 1 < n; ++next) faces.push_back({0, next, next + 1});
+  ASSERT_EQ(faces.size(), n - 2);
+
+  const Options options = GetParam().options();
+  const auto device = open_device(options);
+  Memory memory(*device, true);
+  Statistics statistics;
+  cadt::Run run(*device, memory, options, statistics);
+  SpatialOrder order;
+  order.distinct = n;
+  order.points = memory.allocate(points.size() * sizeof(double));
+  device->write(*order.points, 0, points.data(), points.size() * sizeof(double));
+  std::vector<cadt_record> records = polygon(faces, n, 2 * n);
+  Allocation on_device = memory.allocate(records.size() * sizeof(cadt_record));
+  device->write(*on_device, 0, records.data(), records.size() * sizeof(cadt_record));
+  const DeviceMesh mesh = certify_mesh(run, order, std::move(on_device), 3 * std::uint64_t{n} - 3);
+
+  EXPECT_EQ(statistics.certified_edges, 3 * std::uint64_t{n} - 3);
+  EXPECT_LE(statistics.closing_repairs, 20U);  // beside the rows what rounded numbers leave
+  EXPECT_GE(statistics.cavities, 1U);
+  EXPECT_LT(run.launcher.launches(), 60U);  // 16384 flips a launch on processors, 16 on cards
+  device->read(*mesh.records, 0, records.data(), records.size() * sizeof(cadt_record));
+  std::uint32_t around = 0;
+  for (const cadt_record& r : records)
+    for (std::uint32_t k = 0; k < 3 && r.word[CADT_WORD_LOCK] != 0; ++k) around += r.word[k] == 0 ? 1 : 0;
+  EXPECT_EQ(around, n);  // n - 2 triangles and two ghosts
+}
+CADT_ON_MAIN_BACKENDS(Cavities);
+
+}  // namespace
+}  // namespace cadt::test

@@ -3,12 +3,12 @@
  * The conflict region of a vertex, triangulated anew at once. A vertex whose edges were given to another one by threads
  * that changed the same triangles gets them back flip after flip, each of which makes the next edge illegal: a row that
  * no other thread can shorten. Here all triangles are asked at once whether the vertex is in their circles, and those
- * that say yes, with those of the vertex that border on them, become a fan around it (Bowyer-Watson for a vertex that is
- * in the mesh already; docs/algorithm.md, "Rows of flips"). Connected parts of this region that cannot be seen from the
- * vertex stay as they are.
+ * that say yes, with those of the vertex that border on them, become a fan around it (Bowyer-Watson for a vertex that
+ * is in the mesh already; docs/algorithm.md, "Rows of flips"). Connected parts of this region that cannot be seen from
+ * the vertex stay as they are.
  *
- * The kernels run one after the other, and no others besides: a record is claimed by a plain store, and that is the mark
- * that it is in the region.
+ * The kernels run one after the other, and no others besides: a record is claimed by a plain store, and that is the
+ * mark that it is in the region.
  */
 #ifndef CADT_DEVICE_CAVITY_H
 #define CADT_DEVICE_CAVITY_H
@@ -114,8 +114,9 @@ CADT_KERNEL(cadt_cavity_star, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 gra
   }
 }
 
-/* Parts of the scratch memory for a region of `capacity` triangles, behind the trees: triangles of a tree less its sides; whether
- * a side is hidden from w; the flip counters, while a record has its place in the list in their place. */
+/* Parts of the scratch memory for a region of `capacity` triangles, behind the trees: triangles of a tree less its
+ * sides; whether a side is hidden from w; the flip counters, while a record has its place in the list in their place.
+ */
 #define CADT_CAVITY_BALANCE(scratch, capacity) ((scratch) + (capacity))
 #define CADT_CAVITY_HIDDEN(scratch, capacity) ((scratch) + 2u * (capacity))
 #define CADT_CAVITY_FLIPS(scratch, capacity) ((scratch) + 3u * (capacity))

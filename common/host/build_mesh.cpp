@@ -30,6 +30,7 @@ constexpr unsigned range_level = 5;
 constexpr std::size_t least_range = std::size_t{1} << 14, fewest_for_ranges = 4 * least_range;
 constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
 constexpr int hopeless_launches = 64;
+constexpr std::size_t least_asked = 4096;  // points of launches after which what they left is asked
 constexpr int rows_from = 4;  // the launch before which rows of flips are looked for, again after twice as many
 constexpr int most_sweeps = 2000;
 constexpr std::size_t closing_counts = 5, all_counts = CADT_LEFT_COUNTS + closing_counts;
@@ -64,14 +65,15 @@ class Builder {
     }
     mesh_.records = run_.memory.allocate_zeros(2 * n_ * sizeof(cadt_record));  // lock word 0: not in use yet
     mesh_.hints = run_.memory.allocate(n_ * word);
-    const std::size_t most = n_ / 2 + n_ / 32 + 64;  // points of a launch: a level and what others left over
+    // points of a launch: a level and what others left over, one by one or together
+    const std::size_t most = n_ / 2 + n_ / 32 + std::min(n_ / 2, least_asked) + 64;
     for (Allocation& list : left_points_) list = run_.memory.allocate(most * word);
     make_edge_lists();
     mesh_.run_kernel(KernelId::cadt_start_mesh, 1);
     run_.end_phase("start");
 
     const unsigned last = use_ranges() ? range_level : 0;
-    for (unsigned level = levels(); level-- > last;) insert_level(level);
+    for (unsigned level = levels(); level-- > last;) insert_level(level, level == last);
     if (last != 0) insert_ranges();
     if (left_.points != 0 || left_.edges != 0) {
       finish_leftovers();
@@ -149,7 +151,7 @@ class Builder {
     return true;
   }
 
-  void insert_level(unsigned level) {
+  void insert_level(unsigned level, bool last) {
     // blocks of 2^(level+1) positions that have two halves
     const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
     const std::size_t most = points_per_launch(run_.device);
@@ -157,6 +159,13 @@ class Builder {
       const std::size_t size = std::min(most, count - begin);
       launch_insert(begin, size, level, false);
       inserted_ += size;
+      // To ask what is left takes as long as the launch of a level of few points.
+      unasked_ += size;
+      if (unasked_ < least_asked && !last && !run_.options.watch) {
+        left_ = {};  // on the lists [1] no more; what this launch left stays on the others
+        continue;
+      }
+      unasked_ = 0;
       // Few points left over go with the next launch; many would make its walks long.
       take_leftovers();
       if (run_.options.watch) show();
@@ -323,7 +332,7 @@ class Builder {
   Leftovers left_;                                      // on the lists [1]
   bool by_level_ = false;                               // the points are in the order of insertion
   std::unique_ptr<Watcher> watcher_;
-  std::size_t inserted_ = 0;
+  std::size_t inserted_ = 0, unasked_ = 0;  // of these, since what is left was asked
 };
 
 }  // namespace

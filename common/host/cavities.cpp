@@ -15,14 +15,17 @@ namespace {
 using namespace device_constants;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr std::uint32_t most_edges = 256;    // that are asked for the vertices opposite
+constexpr std::uint32_t most_edges = 256;   // that are asked for the vertices opposite
 constexpr std::uint32_t least_region = 64;  // triangles: fewer are flipped in the time of a region
-constexpr std::size_t least_share = 16;      // of the illegal edges one of so many leads to a vertex that counts
+constexpr std::size_t least_share = 16;     // of the illegal edges one of so many leads to a vertex that counts
 
 }  // namespace
 
 Cavities::Cavities(const WorkingMesh& mesh)
-    : mesh_(mesh), run_(mesh.run), launch_(run_.launcher), slots_(static_cast<std::uint32_t>(2 * mesh.order.distinct)) {}
+    : mesh_(mesh),
+      run_(mesh.run),
+      launch_(run_.launcher),
+      slots_(static_cast<std::uint32_t>(2 * mesh.order.distinct)) {}
 
 /// Four vertices for each edge, two opposite of it and its ends; CADT_NONE where it is not illegal.
 std::vector<std::uint32_t> Cavities::ask(const Allocation& edges, std::uint32_t count) {
@@ -90,43 +93,43 @@ std::vector<Cavities::Region> Cavities::large(const std::vector<std::uint32_t>& 
 
 /// Triangulates the region anew, as far as that is possible. False if it is not.
 bool Cavities::fill(const Region& region) {
-    const std::uint32_t w = region.vertex, capacity = 2 * region.triangles + 64;
-    const std::size_t bytes = capacity * word;
-    if (!run_.memory.allows((CADT_CAVITY_SCRATCH + 4) * bytes)) return false;
-    const Allocation list = run_.memory.allocate(bytes), kept = run_.memory.allocate(bytes),
-                     scratch = run_.memory.allocate(CADT_CAVITY_SCRATCH * bytes),
-                     spokes = run_.memory.allocate(2 * bytes), found = launch_.zeros(CADT_CAVITY_WORDS);
-    const Cut all = launch_.cut_strided(slots_);
-    mesh_.run_kernel(KernelId::cadt_cavity_conflicts, all.items, slots_, all.grain, ends_, w, list, capacity, found);
-    const std::uint32_t conflicts = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
-    Cut c = launch_.cut(conflicts);
-    mesh_.run_kernel(KernelId::cadt_cavity_star, c.items, conflicts, c.grain, w, list, capacity, found);
-    // A list that has no room for all has some of the conflicts: what they are connected with can be seen or not.
-    const std::uint32_t listed = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
-    c = launch_.cut(listed);
-    launch_.run(KernelId::cadt_cavity_roots, c.items, mesh_.records, listed, c.grain, list, scratch, capacity);
-    launch_.run(KernelId::cadt_cavity_join, c.items, mesh_.records, listed, c.grain, list, scratch);
-    mesh_.run_kernel(KernelId::cadt_cavity_check, c.items, listed, c.grain, w, list, scratch, capacity);
-    launch_.run(KernelId::cadt_cavity_keep, c.items, mesh_.records, listed, c.grain, list, scratch, capacity, kept,
-                found);
-    const std::uint32_t count = launch_.read_word(found, CADT_CAVITY_KEPT);
-    if (count == 0) return false;
-    const Allocation& sides = scratch;  // nobody asks for the trees any more
-    c = launch_.cut(count);
-    mesh_.run_kernel(KernelId::cadt_cavity_boundary, c.items, count, c.grain, w, kept, sides, spokes, capacity, found);
-    std::array<std::uint32_t, CADT_CAVITY_WORDS> words{};
-    run_.device.read(*found, 0, words.data(), sizeof words);
-    const std::uint32_t spoke_count = words[CADT_CAVITY_SPOKES];
-    if (words[CADT_CAVITY_SIDES] != count || spoke_count > capacity)
-      throw InternalError("the region of a vertex has " + std::to_string(count) + " triangles, " +
-                          std::to_string(words[CADT_CAVITY_SIDES]) + " sides and " + std::to_string(spoke_count) +
-                          " spokes; please report this with the input");
-    c = launch_.cut(std::size_t{count} + spoke_count);
-    mesh_.run_kernel(KernelId::cadt_cavity_fill, c.items, count, spoke_count, c.grain, w, kept, sides, spokes);
-    c = launch_.cut(2 * std::size_t{count} + spoke_count);
-    mesh_.run_kernel(KernelId::cadt_cavity_release, c.items, count, spoke_count, c.grain, kept, sides, spokes);
-    return true;
-  }
+  const std::uint32_t w = region.vertex, capacity = region.triangles + region.triangles / 4 + 64;
+  const std::size_t bytes = capacity * word;
+  if (!run_.memory.allows((CADT_CAVITY_SCRATCH + 4) * bytes)) return false;
+  const Allocation list = run_.memory.allocate(bytes), kept = run_.memory.allocate(bytes),
+                   scratch = run_.memory.allocate(CADT_CAVITY_SCRATCH * bytes),
+                   spokes = run_.memory.allocate(2 * bytes), found = launch_.zeros(CADT_CAVITY_WORDS);
+  const Cut all = launch_.cut_strided(slots_);
+  mesh_.run_kernel(KernelId::cadt_cavity_conflicts, all.items, slots_, all.grain, ends_, w, list, capacity, found);
+  const std::uint32_t conflicts = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
+  Cut c = launch_.cut(conflicts);
+  mesh_.run_kernel(KernelId::cadt_cavity_star, c.items, conflicts, c.grain, w, list, capacity, found);
+  // A list that has no room for all has some of the conflicts: what they are connected with can be seen or not.
+  const std::uint32_t listed = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
+  c = launch_.cut(listed);
+  launch_.run(KernelId::cadt_cavity_roots, c.items, mesh_.records, listed, c.grain, list, scratch, capacity);
+  launch_.run(KernelId::cadt_cavity_join, c.items, mesh_.records, listed, c.grain, list, scratch);
+  mesh_.run_kernel(KernelId::cadt_cavity_check, c.items, listed, c.grain, w, list, scratch, capacity);
+  launch_.run(KernelId::cadt_cavity_keep, c.items, mesh_.records, listed, c.grain, list, scratch, capacity, kept,
+              found);
+  const std::uint32_t count = launch_.read_word(found, CADT_CAVITY_KEPT);
+  if (count == 0) return false;
+  const Allocation& sides = scratch;  // nobody asks for the trees any more
+  c = launch_.cut(count);
+  mesh_.run_kernel(KernelId::cadt_cavity_boundary, c.items, count, c.grain, w, kept, sides, spokes, capacity, found);
+  std::array<std::uint32_t, CADT_CAVITY_WORDS> words{};
+  run_.device.read(*found, 0, words.data(), sizeof words);
+  const std::uint32_t spoke_count = words[CADT_CAVITY_SPOKES];
+  if (words[CADT_CAVITY_SIDES] != count || spoke_count > capacity)
+    throw InternalError("the region of a vertex has " + std::to_string(count) + " triangles, " +
+                        std::to_string(words[CADT_CAVITY_SIDES]) + " sides and " + std::to_string(spoke_count) +
+                        " spokes; please report this with the input");
+  c = launch_.cut(std::size_t{count} + spoke_count);
+  mesh_.run_kernel(KernelId::cadt_cavity_fill, c.items, count, spoke_count, c.grain, w, kept, sides, spokes);
+  c = launch_.cut(2 * std::size_t{count} + spoke_count);
+  mesh_.run_kernel(KernelId::cadt_cavity_release, c.items, count, spoke_count, c.grain, kept, sides, spokes);
+  return true;
+}
 
 std::size_t Cavities::make(const Allocation& edges, std::uint32_t count) {
   const std::vector<std::uint32_t> quads = ask(edges, count), vertices = candidates(quads);

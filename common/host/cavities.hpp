@@ -10,17 +10,17 @@
 
 namespace cadt {
 
-/// Long rows of flips, each of which makes the next edge illegal: what is in conflict with the vertex to which they lead
-/// is triangulated at once instead (common/device/cavity.h). Nothing else may run on the mesh meanwhile.
+/// Long rows of flips, each of which makes the next edge illegal: what is in conflict with the vertex to which they
+/// lead is triangulated at once instead (common/device/cavity.h). Nothing else may run on the mesh meanwhile.
 class Cavities {
  public:
   explicit Cavities(const WorkingMesh& mesh);
 
   /// Notes the vertices to which the edges lead that are left: the vertex of a row is there again after more flips.
   void note(const Allocation& edges, std::uint32_t count);
-  /// Triangulates the conflict regions anew of such vertices, as far as they are large, and returns of how many; 0 where
-  /// no row is long, or memory is short: then flips do it, one after another. Costs one look at all records for the
-  /// question and another for each of the vertices.
+  /// Triangulates the conflict regions anew of such vertices, as far as they are large, and returns of how many; 0
+  /// where no row is long, or memory is short: then flips do it, one after another. Costs one look at all records for
+  /// the question and another for each of the vertices.
   std::size_t make(const Allocation& edges, std::uint32_t count);
 
  private:

@@ -81,8 +81,7 @@ class RandomMesh {
     EXPECT_EQ(found[CADT_CAVITY_SIDES], count);
     EXPECT_LE(found[CADT_CAVITY_SPOKES], count);
     run(cadt_cavity_fill, count, found[CADT_CAVITY_SPOKES], 3 * slots(), w, kept.data(), scratch.data(), spokes.data());
-    run(cadt_cavity_release, count, found[CADT_CAVITY_SPOKES], 3 * slots(), kept.data(), scratch.data(),
-        spokes.data());
+    run(cadt_cavity_release, count, found[CADT_CAVITY_SPOKES], 3 * slots(), kept.data(), scratch.data(), spokes.data());
     return count;
   }
 

@@ -30,7 +30,6 @@
   X(cadt_sort_runs)         /* order.h: short runs, in place */                      \
   X(cadt_gather_points)     /* order.h */                                            \
   X(cadt_unique_flags)      /* order.h */                                            \
-  X(cadt_sample_shapes)     /* order.h */                                            \
   X(cadt_unique_pack)       /* order.h: distinct points */                           \
   X(cadt_duplicate_pairs)   /* order.h */                                            \
   X(cadt_find_triangle)     /* start.h: three points not on a line */                \

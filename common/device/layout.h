@@ -16,6 +16,21 @@ typedef struct {
 /* Points that are looked at to tell what a set is like (order.h). */
 enum { CADT_POINT_SAMPLES = 1024, CADT_HULL_PROBES = 16 /* others that one of them is compared with */ };
 
+/* Words that are counted when points are put in order: members of crowded cells, points that equal the one before, and
+ * of the sample points beside a line, on one circle, on a circle with the next three, the same by a cheap test, on a
+ * line with them, on the hull. */
+enum {
+  CADT_CROWDED,
+  CADT_EQUAL,
+  CADT_SHAPE_BESIDE,
+  CADT_SHAPE_ONE_CIRCLE,
+  CADT_SHAPE_CIRCLE,
+  CADT_SHAPE_MIRRORED,
+  CADT_SHAPE_LINE,
+  CADT_SHAPE_HULL,
+  CADT_ORDER_WORDS
+};
+
 enum { CADT_WORD_LOCK = 3, CADT_WORD_LINK = 4, CADT_WORD_FLIPS = 7 };
 
 /* The star stage: tiles (tiles.h) and stars (star.h). */

@@ -388,24 +388,48 @@ CADT_FN cadt_u32 cadt_seems_on_hull(CADT_GLOBAL const cadt_point* sorted, cadt_u
   return left ^ right;
 }
 
-/* 1 where a point differs from the one before; equal points of different sets have different keys. totals[1] counts
- * the others. Of a sample, totals[2] becomes positive where one is beside the line through two points for certain;
- * totals[3] counts those that are on a circle with three others far away, as far as rounded numbers can tell; totals[7]
- * those that have the others of the sample on one side of their edge to the next point, as along the hull. */
-CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* keys,
-            CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
-  const cadt_u32 samples = cadt_min_u32(count, CADT_POINT_SAMPLES);
-  cadt_u32 sum = 0u, beside = 0u, on_circle = 0u, on_hull = 0u;
-  for (cadt_u32 s = cadt_item; s < samples; s += cadt_items) {
-    const cadt_u32 far = count / 4u, i = s * (count / samples);
-    const cadt_i32 side = cadt_orientation_filter(sorted[0], sorted[count / 2u], sorted[i]);
-    if (side == 1 || side == -1) beside = 1u;
-    cadt_real most;
-    if (cadt_incircle_rounded(sorted[(i + far) % count], sorted[(i + 2u * far) % count], sorted[(i + 3u * far) % count],
-                              sorted[i], &most) == 0)
-      ++on_circle;
-    on_hull += cadt_seems_on_hull(sorted, count, i);
+/* What four points one after the other are as far as rounded numbers can tell: CADT_SHAPE_LINE, on a line; on a circle,
+ * CADT_SHAPE_MIRRORED if a cheap test does as along an axis, else CADT_SHAPE_CIRCLE; or CADT_NONE. */
+CADT_FN cadt_u32 cadt_shape_of(CADT_GLOBAL const cadt_point* p) {
+  cadt_real most;
+  for (cadt_u32 k = 0u; k < 3u; ++k)
+    if (cadt_same(p[k].x, p[k + 1u].x) && cadt_same(p[k].y, p[k + 1u].y)) return CADT_NONE;
+  if (cadt_incircle_rounded(p[0], p[1], p[2], p[3], &most) != 0) return CADT_NONE;
+  if (cadt_orientation_filter(p[0], p[1], p[2]) == CADT_UNSURE &&
+      cadt_orientation_filter(p[1], p[2], p[3]) == CADT_UNSURE)
+    return CADT_SHAPE_LINE;
+  return cadt_mirrored(p[0], p[1], p[2], p[3]) ? CADT_SHAPE_MIRRORED : CADT_SHAPE_CIRCLE;
+}
+
+/* Counts in `totals` what point i of a sample is (CADT_SHAPE_...): beside the line through two points for certain; on a
+ * circle with three others far away, as far as rounded numbers can tell; on the hull; and with `neighbours`, what it is
+ * with the next three. */
+CADT_FN void cadt_count_shapes(CADT_GLOBAL const cadt_point* sorted, cadt_u32 count, cadt_u32 i, cadt_u32 neighbours,
+                               CADT_GLOBAL cadt_u32* totals) {
+  const cadt_u32 far = count / 4u;
+  const cadt_i32 side = cadt_orientation_filter(sorted[0], sorted[count / 2u], sorted[i]);
+  cadt_real most;
+  if (side == 1 || side == -1) cadt_store_relaxed(totals + CADT_SHAPE_BESIDE, 1u);
+  if (cadt_incircle_rounded(sorted[(i + far) % count], sorted[(i + 2u * far) % count], sorted[(i + 3u * far) % count],
+                            sorted[i], &most) == 0)
+    cadt_add_relaxed(totals + CADT_SHAPE_ONE_CIRCLE, 1u);
+  if (cadt_seems_on_hull(sorted, count, i)) cadt_add_relaxed(totals + CADT_SHAPE_HULL, 1u);
+  if (neighbours && i + 3u < count) {
+    const cadt_u32 shape = cadt_shape_of(sorted + i);
+    if (shape != CADT_NONE) cadt_add_relaxed(totals + shape, 1u);
   }
+}
+
+/* 1 where a point differs from the one before; equal points of different sets have different keys. totals[CADT_EQUAL]
+ * counts the others, and behind it is what a sample is like: CADT_SHAPE_BESIDE is positive if one is, the others are
+ * counted. \pre totals are 0 */
+CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* keys,
+            CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, cadt_u32 neighbours,
+            CADT_GLOBAL cadt_u32* totals) {
+  const cadt_u32 samples = cadt_min_u32(count, CADT_POINT_SAMPLES);
+  cadt_u32 sum = 0u;
+  for (cadt_u32 s = cadt_item; s < samples; s += cadt_items)
+    cadt_count_shapes(sorted, count, s * (count / samples), neighbours, totals);
   CADT_FOR(i, count, grain) {
     const cadt_u32 flag = i == 0u || keys[i] != keys[i - 1u] || !cadt_same(sorted[i].x, sorted[i - 1u].x) ||
                                   !cadt_same(sorted[i].y, sorted[i - 1u].y)
@@ -414,30 +438,7 @@ CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL
     flags[i] = flag;
     sum += 1u - flag;
   }
-  if (sum) cadt_add_relaxed(totals + 1, sum);
-  if (beside) cadt_add_relaxed(totals + 2, beside);
-  if (on_circle) cadt_add_relaxed(totals + 3, on_circle);
-  if (on_hull) cadt_add_relaxed(totals + 7, on_hull);
-}
-
-/* Of a sample of four points one after the other, those on a line (totals[6]) or on a circle as far as rounded numbers
- * can tell: totals[5] counts those for which a cheap test does, as along an axis, totals[4] the others. \pre count >= 4
- */
-CADT_KERNEL(cadt_sample_shapes, CADT_GLOBAL const cadt_point* sorted, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* totals) {
-  const cadt_u32 samples = cadt_min_u32(count - 3u, CADT_POINT_SAMPLES), step = (count - 3u) / samples;
-  CADT_FOR(s, samples, grain) {
-    CADT_GLOBAL const cadt_point* p = sorted + s * step;
-    cadt_real most;
-    cadt_u32 equal = 0u, on_line = 1u;
-    for (cadt_u32 k = 0u; k < 3u; ++k) equal |= cadt_same(p[k].x, p[k + 1u].x) && cadt_same(p[k].y, p[k + 1u].y);
-    if (equal || cadt_incircle_rounded(p[0], p[1], p[2], p[3], &most) != 0) continue;
-    for (cadt_u32 k = 0u; k < 2u; ++k) {
-      const cadt_i32 side = cadt_orientation_filter(p[k], p[k + 1u], p[k + 2u]);
-      if (side != CADT_UNSURE) on_line = 0u;
-    }
-    cadt_add_relaxed(totals + (on_line ? 6 : (cadt_mirrored(p[0], p[1], p[2], p[3]) ? 5 : 4)), 1u);
-  }
+  if (sum) cadt_add_relaxed(totals + CADT_EQUAL, sum);
 }
 
 /* Distinct points closed up. `ranks` is the exclusive scan of the flags. */

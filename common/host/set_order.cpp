@@ -78,9 +78,9 @@ SetOrder sort_sets(Run& run, Allocation input, std::span<const std::uint32_t> st
   launch.run(KernelId::cadt_set_gather, c.items, input, order, result.starts.points, set_count, result.sets, sorted,
              count, c.grain);
   input.release();
-  const Allocation totals = launch.zeros(4);
-  flag_distinct(run, keys, sorted, order, spare, n, totals);
-  const std::uint32_t equal = launch.read_word(totals, 1);
+  const Allocation totals = launch.zeros(CADT_ORDER_WORDS);
+  flag_distinct(run, keys, sorted, order, spare, n, false, totals);
+  const std::uint32_t equal = launch.read_word(totals, CADT_EQUAL);
   if (!refined && equal == 0) result.order.keys = std::move(keys);
   keys.release();
   close_order(run, result.order, std::move(sorted), std::move(order), spare, n, equal, &result.starts);

@@ -320,11 +320,12 @@ void make_keys(Run& run, const Allocation& points, const Allocation& keys, std::
 }
 
 void flag_distinct(Run& run, const Allocation& keys, const Allocation& sorted, const Allocation& order,
-                   const Allocation& flags, std::size_t n, const Allocation& totals) {
+                   const Allocation& flags, std::size_t n, bool neighbours, const Allocation& totals) {
   const Cut c = run.launcher.cut(n);
   const auto count = static_cast<std::uint32_t>(n);
   run.launcher.run(KernelId::cadt_sort_runs, c.items, keys, sorted, order, count, c.grain);
-  run.launcher.run(KernelId::cadt_unique_flags, c.items, sorted, keys, flags, count, c.grain, totals);
+  run.launcher.run(KernelId::cadt_unique_flags, c.items, sorted, keys, flags, count, c.grain, std::uint32_t{neighbours},
+                   totals);
 }
 
 void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation order, const Allocation& flags,
@@ -372,15 +373,11 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
 
   Allocation keys = run.memory.allocate(n * word), spare = run.memory.allocate(n * word);
   Allocation order = run.memory.allocate(n * word), sorted;
-  const Allocation totals =
-      launch.zeros(8);  // members of crowded cells, and what cadt_unique_flags and cadt_sample_shapes count
+  const Allocation totals = launch.zeros(CADT_ORDER_WORDS);
   const auto gather = [&] {
     sorted = run.memory.allocate(n * point_bytes(run.device));
     launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
-    flag_distinct(run, keys, sorted, order, spare, n, totals);
-    if (!keep_keys || n < fewest_sampled) return;
-    const Cut few = launch.cut(CADT_POINT_SAMPLES);
-    launch.run(KernelId::cadt_sample_shapes, few.items, sorted, count, few.grain, totals);
+    flag_distinct(run, keys, sorted, order, spare, n, keep_keys && n >= fewest_sampled, totals);
   };
   const auto sort = [&](const KeyGrid& grid) {
     Allocation spare_order = run.memory.allocate(n * word);
@@ -390,17 +387,17 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   };
   sort(grid_of_all(bounds, n));
   bool sorted_by_keys = true;
-  std::array<std::uint32_t, 8> sums{};
+  std::array<std::uint32_t, CADT_ORDER_WORDS> sums{};
   std::uint32_t crowd = 0;
   if (n <= most_ahead) {
     launch.run(KernelId::cadt_crowded_flags, c.items, keys, spare, count, c.grain, totals);
     run.end_phase("sort");
     gather();
     run.device.read(*totals, 0, sums.data(), sizeof sums);
-    if (sums[0] != 0) sorted.release();
+    if (sums[CADT_CROWDED] != 0) sorted.release();
   }
   // Flat sets have no use for keys.
-  const bool for_stars = keep_keys && !(n <= most_ahead && sums[2] == 0);
+  const bool for_stars = keep_keys && !(n <= most_ahead && sums[CADT_SHAPE_BESIDE] == 0);
   if (!sorted) {
     crowd = flag_crowded(run, keys, spare, n);
     bool hopeless = false;
@@ -445,17 +442,17 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   // lattice of triangles, which is better wrapped. On rays is a fifth of a polar grid or more, on lines hardly a point
   // of other sets; on one circle are all corners of a polygon, and none of other sets.
   constexpr std::uint32_t samples = CADT_POINT_SAMPLES;
-  result.shapes.crowded = crowd > n - n / 4 && sums[1] < n / 4;
-  result.shapes.on_line = sums[2] == 0;
-  result.shapes.on_circle = 2 * sums[3] > std::min<std::size_t>(n, samples);
-  result.shapes.on_hull = 10 * sums[7] > 9 * std::min<std::size_t>(n, samples);
-  result.shapes.on_rays = 8 * sums[6] > samples;
-  result.shapes.on_circles = 11 * sums[4] > samples;
-  result.shapes.on_lattice = 4 * sums[5] > samples;
+  result.shapes.crowded = crowd > n - n / 4 && sums[CADT_EQUAL] < n / 4;
+  result.shapes.on_line = sums[CADT_SHAPE_BESIDE] == 0;
+  result.shapes.on_circle = 2 * sums[CADT_SHAPE_ONE_CIRCLE] > std::min<std::size_t>(n, samples);
+  result.shapes.on_hull = 10 * sums[CADT_SHAPE_HULL] > 9 * std::min<std::size_t>(n, samples);
+  result.shapes.on_rays = 8 * sums[CADT_SHAPE_LINE] > samples;
+  result.shapes.on_circles = 11 * sums[CADT_SHAPE_CIRCLE] > samples;
+  result.shapes.on_lattice = 4 * sums[CADT_SHAPE_MIRRORED] > samples;
   input.release();
-  if (keep_keys && sorted_by_keys && sums[1] == 0) result.keys = std::move(keys);
+  if (keep_keys && sorted_by_keys && sums[CADT_EQUAL] == 0) result.keys = std::move(keys);
   keys.release();
-  close_order(run, result, std::move(sorted), std::move(order), spare, n, sums[1]);
+  close_order(run, result, std::move(sorted), std::move(order), spare, n, sums[CADT_EQUAL]);
   run.end_phase("gather");
   return result;
 }

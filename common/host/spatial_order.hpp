@@ -89,10 +89,11 @@ constexpr int narrow_span = 240;
 /// none; else `keys` are no longer those of the grid. \pre `crowd` of them are flagged in `spare`
 [[nodiscard]] bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const Allocation& order,
                                 Allocation& spare, std::size_t n, std::uint32_t crowd);
-/// Sorts runs of equal keys; 1 in `flags` where a point differs from the one before. totals[1] counts the others.
-/// `totals` has four words (cadt_unique_flags).
+/// Sorts runs of equal keys; 1 in `flags` where a point differs from the one before. Of the CADT_ORDER_WORDS of
+/// `totals` totals[CADT_EQUAL] counts the others, and those behind it say what a sample is like, with `neighbours` in a
+/// row too.
 void flag_distinct(Run& run, const Allocation& keys, const Allocation& sorted, const Allocation& order,
-                   const Allocation& flags, std::size_t n, const Allocation& totals);
+                   const Allocation& flags, std::size_t n, bool neighbours, const Allocation& totals);
 /// Closes up distinct points, as flagged in `flags`; `equal` others. Where sets begin among them, if there are sets.
 void close_order(Run& run, SpatialOrder& result, Allocation sorted, Allocation order, const Allocation& flags,
                  std::size_t n, std::uint32_t equal, SetStarts* sets = nullptr);

@@ -21,7 +21,7 @@ namespace {
 
 using Points = std::vector<cadt_point>;
 constexpr std::uint32_t n = 12000, samples = CADT_POINT_SAMPLES;
-/// Counts of cadt_unique_flags and cadt_sample_shapes.
+/// Counts of cadt_unique_flags.
 struct Shapes {
   std::uint32_t unused, equal, beside, on_circle, circles, mirrored, lines, on_hull;
 };
@@ -29,9 +29,8 @@ struct Shapes {
 Shapes shapes_of(const Points& points) {
   const auto count = static_cast<std::uint32_t>(points.size());
   std::vector<std::uint32_t> keys(count), flags(count);
-  std::array<std::uint32_t, 8> totals{};
-  cadt_unique_flags(0, 1, points.data(), keys.data(), flags.data(), count, count, totals.data());
-  cadt_sample_shapes(0, 1, points.data(), count, CADT_POINT_SAMPLES, totals.data());
+  std::array<std::uint32_t, CADT_ORDER_WORDS> totals{};
+  cadt_unique_flags(0, 1, points.data(), keys.data(), flags.data(), count, count, 1, totals.data());
   return {totals[0], totals[1], totals[2], totals[3], totals[4], totals[5], totals[6], totals[7]};
 }
 

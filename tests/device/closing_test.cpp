@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <map>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/linked_faces.hpp"
 
 namespace {
 
@@ -43,29 +43,11 @@ TEST(Closing, BoundaryThatTurnsBack) {
   EXPECT_EQ(cadt_turns_back(&mesh, CADT_GHOST, 0, 1, 2, &tally), 0u);
 }
 
-using Face = std::array<std::uint32_t, 3>;
-
-/// Faces and ghosts as a closed mesh.
-std::vector<cadt_record> linked(const std::vector<Face>& faces) {
-  std::vector<cadt_record> records(faces.size());
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> across;  // edge -> link
-  for (std::uint32_t t = 0; t < faces.size(); ++t)
-    for (std::uint32_t k = 0; k < 3; ++k) across[{faces[t][(k + 1) % 3], faces[t][(k + 2) % 3]}] = CADT_LINK(t, k);
-  for (std::uint32_t t = 0; t < faces.size(); ++t) {
-    records[t].word[CADT_WORD_LOCK] = 2;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      records[t].word[k] = faces[t][k];
-      records[t].word[CADT_WORD_LINK + k] = across.at({faces[t][(k + 2) % 3], faces[t][(k + 1) % 3]});
-    }
-  }
-  return records;
-}
-
 TEST(Closing, CountsIt) {
   const std::vector<cadt_point> points = {{0, 0}, {2, 0}, {1, 5}, {3, 0}, {4, 0}};
   const std::uint32_t g = CADT_GHOST;
-  const auto pass = [&](const std::vector<Face>& faces) {
-    std::vector<cadt_record> records = linked(faces);
+  const auto pass = [&](const std::vector<cadt::test::Face>& faces) {
+    auto records = cadt::test::linked_faces<cadt_record>(faces, faces.size());
     std::vector<std::uint32_t> counts(CADT_LEFT_COUNTS + 5), edges(64), hints(5), tally(2048);
     const auto slots = static_cast<std::uint32_t>(records.size());
     cadt_closing_pass(0, 1, records.data(), points.data(), hints.data(), 0, 0, 0, 0, 0, CADT_STABILIZE_OFF, 0, 0.0, 0,

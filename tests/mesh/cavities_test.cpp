@@ -4,12 +4,12 @@
 #include "common/host/device_constants.hpp"
 #include "common/host/registry.hpp"
 #include "tests/support/backends.hpp"
+#include "tests/support/linked_faces.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -17,25 +17,6 @@ namespace cadt::test {
 namespace {
 
 using namespace device_constants;
-using Face = std::array<std::uint32_t, 3>;
-
-/// Faces of a convex polygon, and the ghosts around them, in `slots` records.
-std::vector<cadt_record> polygon(std::vector<Face> faces, std::uint32_t corners, std::size_t slots) {
-  for (std::uint32_t v = 0; v < corners; ++v) faces.push_back({CADT_GHOST, (v + 1) % corners, v});
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> across;  // edge -> record * 4 + edge
-  for (std::uint32_t t = 0; t < faces.size(); ++t)
-    for (std::uint32_t k = 0; k < 3; ++k) across[{faces[t][(k + 1) % 3], faces[t][(k + 2) % 3]}] = 4 * t + k;
-  std::vector<cadt_record> records(slots);
-  for (std::uint32_t t = 0; t < faces.size(); ++t) {
-    records[t].word[CADT_WORD_LOCK] = 2;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      records[t].word[k] = faces[t][k];
-      records[t].word[CADT_WORD_LINK + k] = across.at({faces[t][(k + 2) % 3], faces[t][(k + 1) % 3]});
-    }
-  }
-  return records;
-}
-
 class Cavities : public BackendTest {};
 
 // Points of half a parabola, whose mesh is a fan of the first one. Three others have parts of it, each of which takes a
@@ -69,7 +50,8 @@ TEST_P(Cavities, FansOfWrongHubs) {
   order.distinct = n;
   order.points = memory.allocate(points.size() * sizeof(double));
   device->write(*order.points, 0, points.data(), points.size() * sizeof(double));
-  std::vector<cadt_record> records = polygon(faces, n, 2 * n);
+  for (std::uint32_t v = 0; v < n; ++v) faces.push_back({CADT_GHOST, (v + 1) % n, v});
+  auto records = linked_faces<cadt_record>(faces, 2 * std::size_t{n});
   Allocation on_device = memory.allocate(records.size() * sizeof(cadt_record));
   device->write(*on_device, 0, records.data(), records.size() * sizeof(cadt_record));
   const DeviceMesh mesh = certify_mesh(run, order, std::move(on_device), 3 * std::uint64_t{n} - 3);

@@ -76,6 +76,7 @@ enum {
   CADT_WRAP_NEAR = 3,         /* boxes in which a first neighbour is looked for */
   CADT_WRAP_CRATES = 32,      /* crates that are compared with a disc at a time, */
   CADT_WRAP_OPENED = 4,       /* of these opened */
+  CADT_WRAP_WIDE = 8,         /* boxes above which rounded numbers choose before exact tests */
   CADT_WRAP_DEGREE = 40,      /* neighbours of a star at most, the ghost among them: others would wait for a hub */
   CADT_WRAP_HUBS = 64,        /* vertices without a star at most, */
   CADT_WRAP_EDGES = 256,      /* half-edges between two of them */

@@ -16,6 +16,7 @@ typedef struct {
   cadt_u32 best[CADT_WRAP_LANES];
   cadt_u32 crates[CADT_WRAP_CRATES], boxes[CADT_WRAP_OPENED * CADT_WRAP_CRATE];
   cadt_u32 crate_count, box_count, better; /* how many of each; lanes that have found a better neighbour */
+  cadt_u32 left;                           /* points in the disc, as far as rounded numbers tell */
   cadt_u32 arc[CADT_WRAP_ROW];             /* what cadt_wrap_near has found out */
   cadt_u32 key, guess, place;
 } cadt_wrap_memory;
@@ -28,6 +29,15 @@ typedef struct {
   cadt_u32 p;      /* the vertex */
   cadt_u32 looked; /* boxes whose points were looked at */
 } cadt_wrapper;
+
+/* The search for the neighbour behind `a`, on one side of the line from p to a. */
+typedef struct {
+  cadt_u32 a;
+  cadt_i32 side;
+  double ax, ay;  /* a from p */
+  cadt_u32 best;  /* the best so far, CADT_NONE if there is none */
+  cadt_disc disc; /* contains its circle with p and a: what is not in it is not better */
+} cadt_wrap_turn;
 
 /* Which of two points on one side of the line p, a has the circle without the other. */
 CADT_FN cadt_u32 cadt_wrap_better(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 b, cadt_u32 c) {
@@ -49,6 +59,21 @@ CADT_FN cadt_u32 cadt_wrap_best(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side
   return w->m->best[0];
 }
 
+/* Each lane proposes a point and a key, or CADT_NONE for both: the point with the least key, or CADT_NONE if that is
+ * not on that side for certain. All lanes call it. \pre key and guess in the memory of the team are CADT_NONE,
+ * synchronised */
+CADT_FN cadt_u32 cadt_wrap_agree(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 key, cadt_u32 guess) {
+  cadt_team_least(&w->m->key, key);
+  CADT_TEAM_SYNC();
+  /* What is asked before a barrier is asked in another way behind it: PoCL 3.1 takes the first lane's answer for that
+   * of all lanes. */
+  if (key == w->m->key && guess != CADT_NONE &&
+      cadt_orientation(w->in.points[w->p], w->in.points[a], w->in.points[guess], w->tally) == side)
+    cadt_team_min(&w->m->guess, guess);
+  CADT_TEAM_SYNC();
+  return w->m->guess;
+}
+
 /* A likely neighbour among `count` points from `first` on, each `stride` further: that with the least cotangent of the
  * angle at which it sees p and a. CADT_NONE if there is none on that side. */
 CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 first, cadt_u32 count,
@@ -65,15 +90,10 @@ CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 sid
     const float cotangent =
         CADT_CAST(float, (cx * (cx - ax) + cy * (cy - ay)) * unit) * cadt_about_inverse(CADT_CAST(float, cross* unit));
     if (!(cross > 0.0 && cadt_fabsf(cotangent) < 3e38f)) continue; /* p and a as well */
-    const cadt_u32 bits = cadt_bits_of_float(cotangent), order = bits >> 31 ? ~bits : bits | 0x80000000u;
+    const cadt_u32 order = cadt_wrap_order(cotangent);
     if (order < key) key = order, guess = i;
   }
-  if (key != CADT_NONE) cadt_team_min(&w->m->key, key);
-  CADT_TEAM_SYNC();
-  if (key != CADT_NONE && key == w->m->key && cadt_orientation(p, q, w->in.points[guess], w->tally) == side)
-    cadt_team_min(&w->m->guess, guess);
-  CADT_TEAM_SYNC();
-  return w->m->guess;
+  return cadt_wrap_agree(w, a, side, key, guess);
 }
 
 /* Lists crates from `first` on that matter; returns how many. */
@@ -90,26 +110,108 @@ CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_poin
   return w->m->crate_count;
 }
 
+CADT_FN cadt_wrap_turn cadt_wrap_turn_behind(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
+  const cadt_point p = w->in.points[w->p], q = w->in.points[a];
+  cadt_wrap_turn t;
+  t.a = a;
+  t.side = side;
+  t.ax = q.x - p.x;
+  t.ay = q.y - p.y;
+  t.best = CADT_NONE;
+  t.disc.x = t.disc.y = 0.0;
+  t.disc.square = CADT_CAST(double, CADT_INFINITY);
+  return t;
+}
+
+CADT_FN void cadt_wrap_take(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 best) {
+  t->best = best;
+  t->disc = cadt_disc_around(w->in.points[w->p], w->in.points[t->a], w->in.points[best]);
+}
+
+/* Whether point i may be better than the best. */
+CADT_FN cadt_u32 cadt_wrap_reaches(const cadt_wrapper* w, const cadt_wrap_turn* t, cadt_u32 i) {
+  if (i >= w->in.n || i == w->p || i == t->a || i == t->best) return 0u;
+  const cadt_point p = w->in.points[w->p], c = w->in.points[i];
+  const double x = c.x - p.x - t->disc.x, y = c.y - p.y - t->disc.y;
+  return x * x + y * y > t->disc.square ? 0u : 1u;
+}
+
+/* Cotangent of the angle at which point i sees p and a, on that side: the less, the better. */
+CADT_FN double cadt_wrap_cotangent(const cadt_wrapper* w, const cadt_wrap_turn* t, cadt_u32 i) {
+  const cadt_point p = w->in.points[w->p], c = w->in.points[i];
+  const double x = c.x - p.x, y = c.y - p.y, cross = t->ax * y - t->ay * x;
+  return (x * (x - t->ax) + y * (y - t->ay)) / (t->side > 0 ? cross : -cross);
+}
+
+/* Many points, in `boxes` boxes: rounded numbers choose one of them, and another one from its disc, while that is
+ * better. Returns how many points are still in the disc, of which exact tests have to tell. Without this each lane
+ * would test its own points exactly one after another, and all wait for that which has most. */
+CADT_FN cadt_u32 cadt_wrap_choose(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 boxes) {
+  const cadt_point p = w->in.points[w->p], q = w->in.points[t->a];
+  cadt_u32 left = 1u, better = 1u;
+  for (cadt_u32 tries = 0u; tries < 3u && left && better; ++tries) {
+    /* Less of it, single precision tells cotangents apart that are nearly equal. */
+    const double known = t->best == CADT_NONE ? 0.0 : cadt_wrap_cotangent(w, t, t->best);
+    cadt_u32 mine = 0u, key = CADT_NONE, guess = CADT_NONE;
+    CADT_TEAM_SYNC(); /* all have read what was found before */
+    if (cadt_team_lane == 0u) {
+      w->m->left = 0u;
+      w->m->key = w->m->guess = CADT_NONE;
+    }
+    CADT_TEAM_SYNC();
+    for (cadt_u32 j = cadt_team_lane; cadt_team_lane < w->lanes && j < boxes * CADT_WRAP_BOX; j += w->lanes) {
+      const cadt_u32 i = cadt_wrap_in_boxes(w->m->boxes, j);
+      if (!cadt_wrap_reaches(w, t, i)) continue;
+      const cadt_i32 sign = cadt_orientation_filter(p, q, w->in.points[i]);
+      if (sign != t->side && sign != CADT_UNSURE) continue;
+      ++mine;
+      const float gain = CADT_CAST(float, cadt_wrap_cotangent(w, t, i) - known);
+      if (sign == CADT_UNSURE || !(cadt_fabsf(gain) < 3e38f)) continue;
+      const cadt_u32 order = cadt_wrap_order(gain);
+      if (order < key) key = order, guess = i;
+    }
+    if (mine) cadt_team_add(&w->m->left, mine);
+    guess = cadt_wrap_agree(w, t->a, t->side, key, guess);
+    left = w->m->left;
+    better = guess != CADT_NONE && cadt_wrap_better(w, t->a, t->side, t->best, guess) == guess ? 1u : 0u;
+    if (better) cadt_wrap_take(w, t, guess);
+  }
+  return left;
+}
+
+/* The best of the points in `boxes` boxes, exactly. \pre w->m->better is 0 */
+CADT_FN void cadt_wrap_search(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 boxes) {
+  const cadt_point p = w->in.points[w->p], q = w->in.points[t->a];
+  cadt_u32 mine = t->best;
+  for (cadt_u32 j = cadt_team_lane; cadt_team_lane < w->lanes && j < boxes * CADT_WRAP_BOX; j += w->lanes) {
+    const cadt_u32 i = cadt_wrap_in_boxes(w->m->boxes, j);
+    if (cadt_wrap_reaches(w, t, i) && cadt_orientation(p, q, w->in.points[i], w->tally) == t->side)
+      mine = cadt_wrap_better(w, t->a, t->side, mine, i);
+  }
+  if (cadt_team_lane < w->lanes) w->m->best[cadt_team_lane] = mine;
+  if (mine != t->best) cadt_team_add(&w->m->better, 1u);
+  CADT_TEAM_SYNC();
+  if (w->m->better) cadt_wrap_take(w, t, cadt_wrap_best(w, t->a, t->side));
+}
+
 /* The neighbour of p behind its neighbour a, counterclockwise (side 1) or clockwise (-1); CADT_NONE if no point is on
  * that side. a may be any other point: then the neighbour behind it among the points on that side and a. */
 CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
-  const cadt_point p = w->in.points[w->p], q = w->in.points[a];
-  const double ax = q.x - p.x, ay = q.y - p.y, sign = side > 0 ? 1.0 : -1.0;
+  const cadt_point p = w->in.points[w->p];
+  const double sign = side > 0 ? 1.0 : -1.0;
   const cadt_u32 own = w->p / CADT_WRAP_BOX, near = (own ? own - 1u : 0u) * CADT_WRAP_BOX;
-  cadt_u32 best = cadt_wrap_guess(w, a, side, near, cadt_min_u32(CADT_WRAP_NEAR * CADT_WRAP_BOX, w->in.n - near), 1u);
-  cadt_disc disc;
-  disc.x = disc.y = 0.0;
-  disc.square = CADT_CAST(double, CADT_INFINITY);
-  if (best != CADT_NONE) disc = cadt_disc_around(p, q, w->in.points[best]);
+  const cadt_u32 first =
+      cadt_wrap_guess(w, a, side, near, cadt_min_u32(CADT_WRAP_NEAR * CADT_WRAP_BOX, w->in.n - near), 1u);
+  cadt_wrap_turn t = cadt_wrap_turn_behind(w, a, side);
+  if (first != CADT_NONE) cadt_wrap_take(w, &t, first);
   for (cadt_u32 crate = 0u; crate < w->in.crate_count; crate += CADT_WRAP_CRATES) {
-    cadt_u32 crates = cadt_wrap_list(w, crate, p, ax, ay, sign, &disc);
-    if (crate == 0u && crates > (best == CADT_NONE ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_OPENED))) {
+    cadt_u32 crates = cadt_wrap_list(w, crate, p, t.ax, t.ay, sign, &t.disc);
+    if (crate == 0u && crates > (t.best == CADT_NONE ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_OPENED))) {
       /* a large disc: a guess among all */
       const cadt_u32 guess = cadt_wrap_guess(w, a, side, 0u, w->in.box_count, CADT_WRAP_BOX);
-      best = cadt_wrap_better(w, a, side, best, guess);
-      if (best != CADT_NONE && best == guess) {
-        disc = cadt_disc_around(p, q, w->in.points[best]);
-        crates = cadt_wrap_list(w, crate, p, ax, ay, sign, &disc);
+      if (guess != CADT_NONE && cadt_wrap_better(w, a, side, t.best, guess) == guess) {
+        cadt_wrap_take(w, &t, guess);
+        crates = cadt_wrap_list(w, crate, p, t.ax, t.ay, sign, &t.disc);
       }
     }
     for (cadt_u32 opened = 0u; opened < crates; opened += CADT_WRAP_OPENED) {
@@ -117,33 +219,19 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
       CADT_TEAM_SYNC();
       CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_OPENED, crates - opened) * CADT_WRAP_CRATE) {
         const cadt_u32 c = w->m->crates[opened + j / CADT_WRAP_CRATE] * CADT_WRAP_CRATE + j % CADT_WRAP_CRATE;
-        if (c < w->in.box_count && cadt_box_matters(w->in.boxes[c], p, ax, ay, sign, &disc))
+        if (c < w->in.box_count && cadt_box_matters(w->in.boxes[c], p, t.ax, t.ay, sign, &t.disc))
           w->m->boxes[cadt_team_add(&w->m->box_count, 1u)] = c;
       }
       CADT_TEAM_SYNC();
       const cadt_u32 boxes = w->m->box_count;
-      cadt_u32 mine = best;
-      for (cadt_u32 j = cadt_team_lane; cadt_team_lane < w->lanes && j < boxes * CADT_WRAP_BOX; j += w->lanes) {
-        const cadt_u32 i = cadt_wrap_in_boxes(w->m->boxes, j);
-        if (i >= w->in.n || i == w->p || i == a || i == best) continue;
-        const cadt_point c = w->in.points[i];
-        const double x = c.x - p.x - disc.x, y = c.y - p.y - disc.y;
-        if (x * x + y * y > disc.square) continue;
-        if (cadt_orientation(p, q, c, w->tally) == side) mine = cadt_wrap_better(w, a, side, mine, i);
-      }
-      if (cadt_team_lane < w->lanes) w->m->best[cadt_team_lane] = mine;
-      if (mine != best) cadt_team_add(&w->m->better, 1u);
-      CADT_TEAM_SYNC();
-      if (w->m->better) {
-        best = cadt_wrap_best(w, a, side);
-        disc = cadt_disc_around(p, q, w->in.points[best]);
-      }
+      const cadt_u32 wide = boxes > CADT_CAST(cadt_u32, CADT_WRAP_WIDE) ? 1u : 0u;
+      if (!wide || cadt_wrap_choose(w, &t, boxes)) cadt_wrap_search(w, &t, boxes);
       w->looked += boxes;
       CADT_TEAM_SYNC();
     }
   }
   CADT_TEAM_SYNC();
-  return best;
+  return t.best;
 }
 
 /* Of the triangles that are proven that behind the neighbour a on that side: its other neighbour of p, or CADT_NONE. */

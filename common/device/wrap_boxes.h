@@ -187,14 +187,19 @@ CADT_FN cadt_reach_around cadt_wrap_reach(const cadt_boxed* in, cadt_u32 p) {
   return reach;
 }
 
+/* A number that is less than another one if x is. x is not NaN. */
+CADT_FN cadt_u32 cadt_wrap_order(float x) {
+  const cadt_u32 bits = cadt_bits_of_float(x);
+  return bits >> 31 ? ~bits : bits | 0x80000000u;
+}
+
 /* The point c as one behind a, both from p in the unit: the cotangent of the angle at which it sees p and a, as a
  * number that can be compared. With `nearest` its distance. CADT_NONE if it is not on that side. */
 CADT_FN cadt_u32 cadt_wrap_key(float ax, float ay, float cx, float cy, cadt_i32 side, cadt_u32 nearest) {
   const float cross = side > 0 ? ax * cy - ay * cx : ay * cx - ax * cy, dot = cx * (cx - ax) + cy * (cy - ay);
   const float square = cx * cx + cy * cy, value = nearest ? square : dot * cadt_about_inverse(cross);
   if (!((nearest ? square : cross) > 0.0f && cadt_fabsf(value) < 3e38f)) return CADT_NONE; /* p and a as well */
-  const cadt_u32 bits = cadt_bits_of_float(value);
-  return bits >> 31 ? ~bits : bits | 0x80000000u;
+  return cadt_wrap_order(value);
 }
 
 /* The cotangent again. */

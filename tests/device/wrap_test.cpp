@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -50,22 +51,48 @@ Points parabola(int count) {
   return points;
 }
 
+/// One point at random in each cell of a lattice of side * side, in the unit square and in Morton order.
+Points scattered(std::uint32_t side) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  Points points = lattice(side, 0.0);
+  for (cadt_point& p : points) p = {(256 * p.x + unit(random)) / side, (256 * p.y + unit(random)) / side};
+  return points;
+}
+
+/// Two such sets 1e12 apart: for one of them all points of the other are nearly in one direction.
+Points far_apart(std::uint32_t side) {
+  Points points = scattered(side);
+  const std::size_t count = points.size();
+  for (std::size_t i = 0; i < count; ++i) points.push_back({points[i].x + 1e12, points[i].y + 1e12});
+  return points;
+}
+
+/// Points in boxes and crates.
+struct Boxes {
+  std::vector<cadt_box> boxes, crates;
+
+  Boxes(const Points& points, std::uint32_t* sizes, std::uint32_t* found)
+      : boxes((points.size() - 1) / CADT_WRAP_BOX + 1), crates((boxes.size() - 1) / CADT_WRAP_CRATE + 1) {
+    const auto crate_count = static_cast<std::uint32_t>(crates.size());
+    cadt_wrap_boxes(0, 1, points.data(), static_cast<std::uint32_t>(points.size()), nullptr, 0, crate_count,
+                    crate_count, boxes.data(), crates.data(), sizes, found);
+  }
+};
+
 /// Both kernels, one work-item each.
 struct Wrapped {
   std::vector<std::uint32_t> links, begins, sizes, todo, found = std::vector<std::uint32_t>(CADT_WRAP_WORDS);
   std::uint32_t left = 0;  ///< by the first kernel
 
   explicit Wrapped(const Points& points) {
-    const auto n = static_cast<std::uint32_t>(points.size()), box_count = (n - 1) / CADT_WRAP_BOX + 1,
-               crate_count = (box_count - 1) / CADT_WRAP_CRATE + 1, words = 6 * n;
-    std::vector<cadt_box> boxes(box_count), crates(crate_count);
+    const auto n = static_cast<std::uint32_t>(points.size()), words = 6 * n;
     std::vector<std::uint16_t> arcs(std::size_t{n} * CADT_WRAP_ROW);
     links.resize(words);
     begins.resize(n);
     sizes.resize(n);
     todo.resize(n);
-    cadt_wrap_boxes(0, 1, points.data(), n, nullptr, 0, crate_count, crate_count, boxes.data(), crates.data(),
-                    sizes.data(), found.data());
+    const auto [boxes, crates] = Boxes(points, sizes.data(), found.data());
     cadt_wrap_near(0, 1, points.data(), boxes.data(), crates.data(), n, n, links.data(), words, begins.data(),
                    sizes.data(), todo.data(), arcs.data(), found.data());
     left = found[7];
@@ -76,6 +103,7 @@ struct Wrapped {
   }
   [[nodiscard]] std::uint32_t failed() const { return found[1]; }
   [[nodiscard]] std::uint32_t effort() const { return found[2]; }
+  [[nodiscard]] std::uint32_t exact_tests() const { return found[3] + found[4]; }
 };
 
 // Which of cocircular points is next rounded numbers do not tell, and those of the hull have to be searched in any
@@ -104,6 +132,44 @@ TEST(WrappedStars, GivesUpOnHulls) {
     EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
     EXPECT_GT(wrapped.effort(), 0U);
   }
+}
+
+// The neighbour behind another point is the best of all on that side, whichever way it is looked for.
+TEST(WrappedNext, IsTheBestOfAll) {
+  for (const Points& points : {scattered(64), lattice(64, 0.0), lattice(32, 0.3), far_apart(32), polygon(500)}) {
+    const auto n = static_cast<std::uint32_t>(points.size());
+    const Boxes in(points, nullptr, nullptr);
+    const auto memory = std::make_unique<cadt_wrap_memory>();
+    cadt_tally tally{};
+    cadt_wrapper w{};
+    w.m = memory.get();
+    w.in = cadt_boxed_of(cadt_wrap_range_of(nullptr, 0, n), points.data(), in.boxes.data(), in.crates.data());
+    w.tally = &tally;
+    w.lanes = 1;
+    std::mt19937_64 random(3);
+    for (int trial = 0; trial < 400; ++trial) {
+      w.p = static_cast<std::uint32_t>(random() % n);
+      const std::uint64_t beside = trial % 2 == 0 ? random() % 64 : random();  // near in Morton order, or any
+      const auto a = static_cast<std::uint32_t>((w.p + 1 + beside % (n - 1)) % n);
+      for (const int side : {1, -1}) {
+        std::uint32_t best = CADT_NONE;
+        for (std::uint32_t i = 0; i < n; ++i)
+          if (i != w.p && i != a && cadt_orientation(points[w.p], points[a], points[i], &tally) == side)
+            best = best == CADT_NONE ? i : cadt_wrap_better_of(points.data(), w.p, a, side, best, i, &tally);
+        ASSERT_EQ(cadt_wrap_next(&w, a, side), best) << "behind " << a << " of " << w.p << ", side " << side;
+      }
+    }
+  }
+}
+
+// Where discs hold hundreds of points that rounded numbers hardly tell apart, few of them are tested exactly: lanes
+// wait for each other's exact tests.
+TEST(WrappedStars, TakeFewExactTestsOfPointsFarAway) {
+  const Points points = far_apart(32);
+  const Wrapped wrapped(points);
+  EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
+
+  EXPECT_LT(wrapped.exact_tests(), 350U);
 }
 
 // Points just inside of the circle through p, a and b are in its disc, near p and far away; and the disc is not much

@@ -15,9 +15,10 @@ typedef struct {
   cadt_u32 link[CADT_WRAP_DEGREE]; /* the neighbours found, in the order of the search */
   cadt_u32 best[CADT_WRAP_LANES];
   cadt_u32 crates[CADT_WRAP_CRATES], boxes[CADT_WRAP_OPENED * CADT_WRAP_CRATE];
-  cadt_u32 crate_count, box_count, better; /* how many of each; lanes that have found a better neighbour */
-  cadt_u32 left;                           /* points in the disc, as far as rounded numbers tell */
-  cadt_u32 arc[CADT_WRAP_ROW];             /* what cadt_wrap_near has found out */
+  cadt_u32 crate_count, box_count; /* how many of each */
+  cadt_u32 better[2];              /* lanes that have found a better neighbour, at first and then */
+  cadt_u32 put_off, put_off_many;  /* lanes that have put off an exact test, that could not put off another */
+  cadt_u32 arc[CADT_WRAP_ROW];     /* what cadt_wrap_near has found out */
   cadt_u32 key, guess, place;
 } cadt_wrap_memory;
 
@@ -34,29 +35,25 @@ typedef struct {
 typedef struct {
   cadt_u32 a;
   cadt_i32 side;
-  double ax, ay;  /* a from p */
   cadt_u32 best;  /* the best so far, CADT_NONE if there is none */
   cadt_disc disc; /* contains its circle with p and a: what is not in it is not better */
 } cadt_wrap_turn;
 
-/* Which of two points on one side of the line p, a has the circle without the other. */
-CADT_FN cadt_u32 cadt_wrap_better(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 b, cadt_u32 c) {
-  if (c == CADT_NONE || b == c) return b;
-  if (b == CADT_NONE) return c;
-  return cadt_wrap_better_of(w->in.points, w->p, a, side, b, c, w->tally);
-}
+/* What becomes of c, which rounded numbers do not tell from b; or, instead of a point, that others were put off. */
+enum { CADT_WRAP_BETTER, CADT_WRAP_WORSE, CADT_WRAP_LATER, CADT_WRAP_LOST };
+#define CADT_WRAP_MANY 0xFFFFFFFEu
 
-/* The best of what the lanes have found, w->m->best. \pre synchronised; all lanes call it */
-CADT_FN cadt_u32 cadt_wrap_best(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
-  for (cadt_u32 width = w->lanes; width > 1u;) {
-    const cadt_u32 middle = (width + 1u) / 2u;
-    if (cadt_team_lane + middle < width)
-      w->m->best[cadt_team_lane] =
-          cadt_wrap_better(w, a, side, w->m->best[cadt_team_lane], w->m->best[cadt_team_lane + middle]);
-    width = middle;
-    CADT_TEAM_SYNC();
-  }
-  return w->m->best[0];
+/* Each lane can put off one exact test, of the point `later`, which another one replaces when that is known to be worse
+ * than b. A function of its own: its code must not be in the way of what all lanes do. */
+CADT_FN_SLOW cadt_u32 cadt_wrap_unsure(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a, cadt_i32 side,
+                                       cadt_u32 b, cadt_u32 c, cadt_u32 put_off, cadt_u32 later, cadt_tally* tally) {
+  const cadt_point first = points[side > 0 ? p : a], second = points[side > 0 ? a : p];
+  double most;
+  if (!put_off)
+    return cadt_incircle(first, second, points[b], points[c], tally) > 0 ? CADT_WRAP_BETTER : CADT_WRAP_WORSE;
+  if (later == CADT_NONE) return CADT_WRAP_LATER;
+  if (later == CADT_WRAP_MANY) return CADT_WRAP_LOST;
+  return cadt_incircle_rounded(first, second, points[b], points[later], &most) < 0 ? CADT_WRAP_LATER : CADT_WRAP_LOST;
 }
 
 /* Each lane proposes a point and a key, or CADT_NONE for both: the point with the least key, or CADT_NONE if that is
@@ -110,13 +107,10 @@ CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_poin
   return w->m->crate_count;
 }
 
-CADT_FN cadt_wrap_turn cadt_wrap_turn_behind(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
-  const cadt_point p = w->in.points[w->p], q = w->in.points[a];
+CADT_FN cadt_wrap_turn cadt_wrap_turn_behind(cadt_u32 a, cadt_i32 side) {
   cadt_wrap_turn t;
   t.a = a;
   t.side = side;
-  t.ax = q.x - p.x;
-  t.ay = q.y - p.y;
   t.best = CADT_NONE;
   t.disc.x = t.disc.y = 0.0;
   t.disc.square = CADT_CAST(double, CADT_INFINITY);
@@ -128,104 +122,114 @@ CADT_FN void cadt_wrap_take(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 b
   t->disc = cadt_disc_around(w->in.points[w->p], w->in.points[t->a], w->in.points[best]);
 }
 
-/* Whether point i may be better than the best. */
+/* Whether point i, on that side, may be better than the best. */
 CADT_FN cadt_u32 cadt_wrap_reaches(const cadt_wrapper* w, const cadt_wrap_turn* t, cadt_u32 i) {
   if (i >= w->in.n || i == w->p || i == t->a || i == t->best) return 0u;
   const cadt_point p = w->in.points[w->p], c = w->in.points[i];
   const double x = c.x - p.x - t->disc.x, y = c.y - p.y - t->disc.y;
-  return x * x + y * y > t->disc.square ? 0u : 1u;
+  if (x * x + y * y > t->disc.square) return 0u; /* what is not a number is not */
+  return cadt_orientation(p, w->in.points[t->a], c, w->tally) == t->side ? 1u : 0u;
 }
 
-/* Cotangent of the angle at which point i sees p and a, on that side: the less, the better. */
-CADT_FN double cadt_wrap_cotangent(const cadt_wrapper* w, const cadt_wrap_turn* t, cadt_u32 i) {
-  const cadt_point p = w->in.points[w->p], c = w->in.points[i];
-  const double x = c.x - p.x, y = c.y - p.y, cross = t->ax * y - t->ay * x;
-  return (x * (x - t->ax) + y * (y - t->ay)) / (t->side > 0 ? cross : -cross);
+/* Which of two points is better. If rounded numbers cannot tell and `put_off`, it may be b: then c is *later, or that
+ * is CADT_WRAP_MANY. */
+CADT_FN cadt_u32 cadt_wrap_compare(const cadt_wrapper* w, const cadt_wrap_turn* t, cadt_u32 b, cadt_u32 c,
+                                   cadt_u32 put_off, cadt_u32* later) {
+  if (c == CADT_NONE || b == c) return b;
+  if (b == CADT_NONE) return c;
+  CADT_GLOBAL const cadt_point* points = w->in.points;
+  double most;
+  const cadt_i32 sign = cadt_incircle_rounded(points[t->side > 0 ? w->p : t->a], points[t->side > 0 ? t->a : w->p],
+                                              points[b], points[c], &most);
+  if (sign != 0) return sign > 0 ? c : b;
+  const cadt_u32 so = cadt_wrap_unsure(points, w->p, t->a, t->side, b, c, put_off, *later, w->tally);
+  if (so == CADT_CAST(cadt_u32, CADT_WRAP_LATER)) *later = c;
+  if (so == CADT_CAST(cadt_u32, CADT_WRAP_LOST)) *later = CADT_WRAP_MANY;
+  return so == CADT_CAST(cadt_u32, CADT_WRAP_BETTER) ? c : b;
 }
 
-/* Many points, in `boxes` boxes: rounded numbers choose one of them, and another one from its disc, while that is
- * better. Returns how many points are still in the disc, of which exact tests have to tell. Without this each lane
- * would test its own points exactly one after another, and all wait for that which has most. */
-CADT_FN cadt_u32 cadt_wrap_choose(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 boxes) {
-  const cadt_point p = w->in.points[w->p], q = w->in.points[t->a];
-  cadt_u32 left = 1u, better = 1u;
-  for (cadt_u32 tries = 0u; tries < 3u && left && better; ++tries) {
-    /* Less of it, single precision tells cotangents apart that are nearly equal. */
-    const double known = t->best == CADT_NONE ? 0.0 : cadt_wrap_cotangent(w, t, t->best);
-    cadt_u32 mine = 0u, key = CADT_NONE, guess = CADT_NONE;
-    CADT_TEAM_SYNC(); /* all have read what was found before */
-    if (cadt_team_lane == 0u) {
-      w->m->left = 0u;
-      w->m->key = w->m->guess = CADT_NONE;
-    }
-    CADT_TEAM_SYNC();
-    for (cadt_u32 j = cadt_team_lane; cadt_team_lane < w->lanes && j < boxes * CADT_WRAP_BOX; j += w->lanes) {
-      const cadt_u32 i = cadt_wrap_in_boxes(w->m->boxes, j);
-      if (!cadt_wrap_reaches(w, t, i)) continue;
-      const cadt_i32 sign = cadt_orientation_filter(p, q, w->in.points[i]);
-      if (sign != t->side && sign != CADT_UNSURE) continue;
-      ++mine;
-      const float gain = CADT_CAST(float, cadt_wrap_cotangent(w, t, i) - known);
-      if (sign == CADT_UNSURE || !(cadt_fabsf(gain) < 3e38f)) continue;
-      const cadt_u32 order = cadt_wrap_order(gain);
-      if (order < key) key = order, guess = i;
-    }
-    if (mine) cadt_team_add(&w->m->left, mine);
-    guess = cadt_wrap_agree(w, t->a, t->side, key, guess);
-    left = w->m->left;
-    better = guess != CADT_NONE && cadt_wrap_better(w, t->a, t->side, t->best, guess) == guess ? 1u : 0u;
-    if (better) cadt_wrap_take(w, t, guess);
-  }
-  return left;
-}
-
-/* The best of the points in `boxes` boxes, exactly. \pre w->m->better is 0 */
-CADT_FN void cadt_wrap_search(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 boxes) {
-  const cadt_point p = w->in.points[w->p], q = w->in.points[t->a];
-  cadt_u32 mine = t->best;
-  for (cadt_u32 j = cadt_team_lane; cadt_team_lane < w->lanes && j < boxes * CADT_WRAP_BOX; j += w->lanes) {
-    const cadt_u32 i = cadt_wrap_in_boxes(w->m->boxes, j);
-    if (cadt_wrap_reaches(w, t, i) && cadt_orientation(p, q, w->in.points[i], w->tally) == t->side)
-      mine = cadt_wrap_better(w, t->a, t->side, mine, i);
-  }
-  if (cadt_team_lane < w->lanes) w->m->best[cadt_team_lane] = mine;
-  if (mine != t->best) cadt_team_add(&w->m->better, 1u);
+/* The best of what the lanes have found. All lanes call it. \pre *better is 0 */
+CADT_FN void cadt_wrap_settle(const cadt_wrapper* w, cadt_wrap_turn* t, CADT_TEAM_PTR cadt_u32* better, cadt_u32 mine,
+                              cadt_u32 put_off, cadt_u32* later) {
+  /* the best so far has been compared already */
+  if (cadt_team_lane < w->lanes) w->m->best[cadt_team_lane] = mine != t->best ? mine : CADT_NONE;
+  if (mine != t->best) cadt_team_add(better, 1u);
   CADT_TEAM_SYNC();
-  if (w->m->better) cadt_wrap_take(w, t, cadt_wrap_best(w, t->a, t->side));
+  if (!*better) return;
+  for (cadt_u32 width = w->lanes; width > 1u;) {
+    const cadt_u32 middle = (width + 1u) / 2u;
+    if (cadt_team_lane + middle < width)
+      w->m->best[cadt_team_lane] =
+          cadt_wrap_compare(w, t, w->m->best[cadt_team_lane], w->m->best[cadt_team_lane + middle], put_off, later);
+    width = middle;
+    CADT_TEAM_SYNC();
+  }
+  cadt_wrap_take(w, t, w->m->best[0]);
+}
+
+/* The best of the points in `boxes` boxes. For an exact test of one lane all others wait. So where boxes are many,
+ * exact tests are put off until there is a best one by rounded numbers: in its disc is next to nothing of what they
+ * could not tell. That is what the lanes have put off, or, where that was too much for one, what is there of all
+ * points. Other points are worse than some point. \pre the counts in the memory are 0 */
+CADT_FN void cadt_wrap_search(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 boxes) {
+  cadt_u32 put_off = boxes > CADT_CAST(cadt_u32, CADT_WRAP_WIDE) ? 1u : 0u;
+  cadt_u32 count = boxes * CADT_WRAP_BOX, all = 1u, later = CADT_NONE;
+  for (cadt_u32 round = 0u; round < 2u && count; ++round) {
+    const cadt_u32 own = later;
+    cadt_u32 mine = t->best;
+    later = CADT_NONE;
+    for (cadt_u32 j = cadt_team_lane; cadt_team_lane < w->lanes && j < count; j += w->lanes) {
+      const cadt_u32 i = all ? cadt_wrap_in_boxes(w->m->boxes, j) : own;
+      if (cadt_wrap_reaches(w, t, i)) mine = cadt_wrap_compare(w, t, mine, i, put_off, &later);
+    }
+    cadt_wrap_settle(w, t, &w->m->better[round], mine, put_off, &later);
+    count = 0u;
+    if (put_off) {
+      if (later == CADT_WRAP_MANY)
+        cadt_team_add(&w->m->put_off_many, 1u);
+      else if (cadt_wrap_reaches(w, t, later))
+        cadt_team_add(&w->m->put_off, 1u);
+      CADT_TEAM_SYNC();
+      all = w->m->put_off_many ? 1u : 0u;
+      if (w->m->put_off_many || w->m->put_off) count = all ? boxes * CADT_WRAP_BOX : w->lanes;
+      put_off = 0u;
+    }
+  }
 }
 
 /* The neighbour of p behind its neighbour a, counterclockwise (side 1) or clockwise (-1); CADT_NONE if no point is on
  * that side. a may be any other point: then the neighbour behind it among the points on that side and a. */
 CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
-  const cadt_point p = w->in.points[w->p];
-  const double sign = side > 0 ? 1.0 : -1.0;
   const cadt_u32 own = w->p / CADT_WRAP_BOX, near = (own ? own - 1u : 0u) * CADT_WRAP_BOX;
   const cadt_u32 first =
       cadt_wrap_guess(w, a, side, near, cadt_min_u32(CADT_WRAP_NEAR * CADT_WRAP_BOX, w->in.n - near), 1u);
-  cadt_wrap_turn t = cadt_wrap_turn_behind(w, a, side);
+  cadt_wrap_turn t = cadt_wrap_turn_behind(a, side);
+  const cadt_point p = w->in.points[w->p], q = w->in.points[a];
+  const double ax = q.x - p.x, ay = q.y - p.y, sign = side > 0 ? 1.0 : -1.0;
   if (first != CADT_NONE) cadt_wrap_take(w, &t, first);
   for (cadt_u32 crate = 0u; crate < w->in.crate_count; crate += CADT_WRAP_CRATES) {
-    cadt_u32 crates = cadt_wrap_list(w, crate, p, t.ax, t.ay, sign, &t.disc);
+    cadt_u32 crates = cadt_wrap_list(w, crate, p, ax, ay, sign, &t.disc);
     if (crate == 0u && crates > (t.best == CADT_NONE ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_OPENED))) {
       /* a large disc: a guess among all */
       const cadt_u32 guess = cadt_wrap_guess(w, a, side, 0u, w->in.box_count, CADT_WRAP_BOX);
-      if (guess != CADT_NONE && cadt_wrap_better(w, a, side, t.best, guess) == guess) {
+      cadt_u32 later = CADT_NONE;
+      if (guess != CADT_NONE && cadt_wrap_compare(w, &t, t.best, guess, 0u, &later) == guess) {
         cadt_wrap_take(w, &t, guess);
-        crates = cadt_wrap_list(w, crate, p, t.ax, t.ay, sign, &t.disc);
+        crates = cadt_wrap_list(w, crate, p, ax, ay, sign, &t.disc);
       }
     }
     for (cadt_u32 opened = 0u; opened < crates; opened += CADT_WRAP_OPENED) {
-      if (cadt_team_lane == 0u) w->m->box_count = w->m->better = 0u;
+      if (cadt_team_lane == 0u)
+        w->m->box_count = w->m->better[0] = w->m->better[1] = w->m->put_off = w->m->put_off_many = 0u;
       CADT_TEAM_SYNC();
       CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_OPENED, crates - opened) * CADT_WRAP_CRATE) {
         const cadt_u32 c = w->m->crates[opened + j / CADT_WRAP_CRATE] * CADT_WRAP_CRATE + j % CADT_WRAP_CRATE;
-        if (c < w->in.box_count && cadt_box_matters(w->in.boxes[c], p, t.ax, t.ay, sign, &t.disc))
+        if (c < w->in.box_count && cadt_box_matters(w->in.boxes[c], p, ax, ay, sign, &t.disc))
           w->m->boxes[cadt_team_add(&w->m->box_count, 1u)] = c;
       }
       CADT_TEAM_SYNC();
       const cadt_u32 boxes = w->m->box_count;
-      const cadt_u32 wide = boxes > CADT_CAST(cadt_u32, CADT_WRAP_WIDE) ? 1u : 0u;
-      if (!wide || cadt_wrap_choose(w, &t, boxes)) cadt_wrap_search(w, &t, boxes);
+      cadt_wrap_search(w, &t, boxes);
       w->looked += boxes;
       CADT_TEAM_SYNC();
     }

@@ -38,7 +38,7 @@ struct PointShapes {
 };
 
 /// Of fewer points most shapes are not looked for.
-constexpr std::size_t fewest_sampled = 10000;
+constexpr std::size_t fewest_sampled = 9000;
 
 struct SpatialOrder {
   Allocation points;  ///< distinct points in order, scaled by a power of two unless `wide`

@@ -68,6 +68,13 @@ Points far_apart(std::uint32_t side) {
   return points;
 }
 
+/// On a line but for what is rounded off.
+Points nearly_straight(int count) {
+  Points points;
+  for (int i = 0; i < count; ++i) points.push_back({i / 64.0, i / 64.0 / 3.0});
+  return points;
+}
+
 /// Points in boxes and crates.
 struct Boxes {
   std::vector<cadt_box> boxes, crates;
@@ -136,7 +143,8 @@ TEST(WrappedStars, GivesUpOnHulls) {
 
 // The neighbour behind another point is the best of all on that side, whichever way it is looked for.
 TEST(WrappedNext, IsTheBestOfAll) {
-  for (const Points& points : {scattered(64), lattice(64, 0.0), lattice(32, 0.3), far_apart(32), polygon(500)}) {
+  for (const Points& points :
+       {scattered(64), lattice(64, 0.0), lattice(32, 0.3), far_apart(32), polygon(500), nearly_straight(700)}) {
     const auto n = static_cast<std::uint32_t>(points.size());
     const Boxes in(points, nullptr, nullptr);
     const auto memory = std::make_unique<cadt_wrap_memory>();

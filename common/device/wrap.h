@@ -39,9 +39,9 @@ typedef struct {
   cadt_disc disc; /* contains its circle with p and a: what is not in it is not better */
 } cadt_wrap_turn;
 
-/* What becomes of c, which rounded numbers do not tell from b; or, instead of a point, that others were put off. */
+/* What becomes of c, which rounded numbers do not tell from b: it is better or worse, put off, or one too many. */
 enum { CADT_WRAP_BETTER, CADT_WRAP_WORSE, CADT_WRAP_LATER, CADT_WRAP_LOST };
-#define CADT_WRAP_MANY 0xFFFFFFFEu
+#define CADT_WRAP_MANY 0xFFFFFFFEu /* instead of the point that a lane has put off: more than one */
 
 /* Each lane can put off one exact test, of the point `later`, which another one replaces when that is known to be worse
  * than b. A function of its own: its code must not be in the way of what all lanes do. */
@@ -107,6 +107,7 @@ CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_poin
   return w->m->crate_count;
 }
 
+/* Nothing has been found yet, so every point is in the disc. */
 CADT_FN cadt_wrap_turn cadt_wrap_turn_behind(cadt_u32 a, cadt_i32 side) {
   cadt_wrap_turn t;
   t.a = a;

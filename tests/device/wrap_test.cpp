@@ -176,8 +176,22 @@ TEST(WrappedStars, TakeFewExactTestsOfPointsFarAway) {
   const Points points = far_apart(32);
   const Wrapped wrapped(points);
   EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
-
   EXPECT_LT(wrapped.exact_tests(), 500U);
+}
+
+// Of points on a line there is no circle, or by rounded numbers one without a centre: then nothing is excluded.
+TEST(WrappedDisc, ThatIsNoNumberHoldsAll) {
+  const Points points = {{0, 0}, {1, 0}, {2, 0}, {-3, 4}, {3, -4}};
+  const Boxes in(points, nullptr, nullptr);
+  cadt_tally tally{};
+  cadt_wrapper w{};
+  w.in = cadt_boxed_of(cadt_wrap_range_of(nullptr, 0, 5), points.data(), in.boxes.data(), in.crates.data());
+  w.tally = &tally;
+  cadt_wrap_turn turn = cadt_wrap_turn_behind(1, 1);
+  cadt_wrap_take(&w, &turn, 2);
+  EXPECT_TRUE(std::isnan(turn.disc.x));
+  EXPECT_EQ(cadt_wrap_reaches(&w, &turn, 3), 1U);
+  EXPECT_EQ(cadt_wrap_reaches(&w, &turn, 4), 0U) << "it is on the other side";
 }
 
 // Points just inside of the circle through p, a and b are in its disc, near p and far away; and the disc is not much

@@ -54,6 +54,7 @@
   X(cadt_closing_pass)      /* closing.h */                                          \
   X(cadt_tile_flags)        /* tiles.h */                                            \
   X(cadt_tile_pack)         /* tiles.h */                                            \
+  X(cadt_tile_crowds)       /* tiles.h */                                            \
   X(cadt_stars)             /* star_tiles.h: proven stars of vertices */             \
   X(cadt_star_proven)       /* star_mesh.h */                                        \
   X(cadt_star_counts)       /* star_mesh.h: who owns which triangle */               \

@@ -41,6 +41,9 @@ typedef struct {
 
 enum {
   CADT_TILE_POINTS = 704, /* at most, but for squares that cannot be divided */
+  CADT_TILE_CROWD = 64,   /* so many of them in a square that is smaller by CADT_CROWD_LEVELS: */
+  CADT_CROWD_LEVELS = 3,
+  CADT_TILE_FEW = 128,    /* then so many at most */
   CADT_STAR_DEGREE = 12,  /* neighbours of a proven star at most */
   CADT_STAR_LANES = 128,  /* lanes of a team that make stars */
   /* Vertices whose triangles a team writes, and how many of them it collects (more are written at once). */
@@ -78,6 +81,7 @@ enum {
   CADT_WRAP_OPENED = 4,       /* of these opened */
   CADT_WRAP_WIDE = 8,         /* boxes above which rounded numbers choose before exact tests */
   CADT_WRAP_DEGREE = 40,      /* neighbours of a star at most, the ghost among them: others would wait for a hub */
+  CADT_WRAP_DOUBTFUL = 3,     /* points found first that may be no neighbours, at least */
   CADT_WRAP_HUBS = 64,        /* vertices without a star at most, */
   CADT_WRAP_EDGES = 256,      /* half-edges between two of them */
   CADT_WRAP_LANES = 128,      /* lanes of a team that search */

@@ -36,7 +36,7 @@ typedef struct {
   cadt_u32 a;
   cadt_i32 side;
   cadt_u32 best;  /* the best so far, CADT_NONE if there is none */
-  cadt_disc disc; /* contains its circle with p and a: what is not in it is not better */
+  cadt_disc disc; /* what is not in it is not better: it contains its circle with p and a, on that side */
 } cadt_wrap_turn;
 
 /* What becomes of c, which rounded numbers do not tell from b: it is better or worse, put off, or one too many. */
@@ -120,7 +120,7 @@ CADT_FN cadt_wrap_turn cadt_wrap_turn_behind(cadt_u32 a, cadt_i32 side) {
 
 CADT_FN void cadt_wrap_take(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 best) {
   t->best = best;
-  t->disc = cadt_disc_around(w->in.points[w->p], w->in.points[t->a], w->in.points[best]);
+  t->disc = cadt_disc_beside(w->in.points[w->p], w->in.points[t->a], w->in.points[best], t->side);
 }
 
 /* Whether point i, on that side, may be better than the best. */
@@ -264,46 +264,68 @@ CADT_FN cadt_u32 cadt_wrap_known_one(const cadt_wrapper* w) {
  * *side is 1, else clockwise. Returns 0 if there is none: all points are on a line, or there are too many neighbours; 1
  * inside of the hull; 2 for a vertex of the hull, from one of its hull edges to the other. */
 CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size, cadt_i32* side) {
-  const cadt_u32 known = cadt_wrap_known_one(w);
-  cadt_u32 at = known != CADT_NONE ? known : (w->p ? w->p - 1u : 1u), from_hull = 0u, pass = 0u, outcome = 0u,
-           going = 1u;
+  const cadt_u32 known = cadt_wrap_known_one(w), none = CADT_NONE;
+  cadt_u32 at = known != none ? known : (w->p ? w->p - 1u : 1u), from_hull = 0u, pass = 0u, outcome = 0u, going = 1u;
+  cadt_u32 asked = none; /* whether from this place of the list on all are neighbours */
   *begin = *size = 0u;
   *side = 1;
   while (going) {
-    if (cadt_team_lane == 0u) w->m->link[*size] = at;
-    ++*size;
-    cadt_u32 next = cadt_wrap_known(w, at, *side);
-    if (next == CADT_NONE) next = cadt_wrap_next(w, at, *side);
-    CADT_TEAM_SYNC();
-    if (next == CADT_NONE) {
-      /* Beyond the line p, at there is nothing. If `at` was found from another neighbour, it is one itself, and the
-       * edge one of the hull: the star is what lies between it and the other one. */
-      if (!from_hull) *side = -*side;
-      if (from_hull) {
-        outcome = 2u;
-        going = 0u;
-      } else if (known != CADT_NONE) {
-        /* All from the first one on are neighbours: turned round, the search goes on from that one. */
-        from_hull = 1u;
-        CADT_TEAM_FOR(k, *size / 2u) {
-          const cadt_u32 other = w->m->link[*size - 1u - k];
-          w->m->link[*size - 1u - k] = w->m->link[k];
-          w->m->link[k] = other;
-        }
-        --*size; /* it is entered again */
-        at = known;
-      } else {
-        from_hull = *size > 1u ? 1u : 0u;
-        if (++pass > 2u) going = 0u;
-        *size = 0u;
-      }
+    if (asked == none) {
+      if (cadt_team_lane == 0u) w->m->link[*size] = at;
+      ++*size;
     } else {
+      at = w->m->link[asked + 1u];
+    }
+    const cadt_i32 towards = asked == none ? *side : -*side;
+    cadt_u32 next = cadt_wrap_known(w, at, towards), certain = none;
+    if (next == none) next = cadt_wrap_next(w, at, towards);
+    CADT_TEAM_SYNC();
+    if (asked != none) {
+      /* It is a neighbour if it is found from the one behind it as well: their circle is empty on either side. */
+      if (next == w->m->link[asked])
+        certain = asked;
+      else
+        ++asked;
+    } else if (next != none) {
       /* The first one need not have been a neighbour; from a neighbour on all are, and come again. */
-      for (cadt_u32 k = 0u; k < *size; ++k)
+      for (cadt_u32 k = *begin; k < *size && !outcome; ++k)
         if (w->m->link[k] == next) *begin = k, outcome = 1u;
       CADT_TEAM_SYNC(); /* compilers load one more than is looked at, which is written next */
       if (outcome || *size + 1u >= CADT_CAST(cadt_u32, CADT_WRAP_DEGREE)) going = 0u;
       at = next;
+    } else if (from_hull) {
+      /* Beyond the line p, at there is nothing: an edge of the hull. The star is what lies between it and the other
+       * one. */
+      outcome = 2u;
+      going = 0u;
+    } else {
+      asked = 0u;
+      if (known != none) certain = 0u;
+    }
+    if (certain != none) {
+      /* All from that one on are neighbours: turned round, the search goes on from it. */
+      from_hull = 1u;
+      asked = none;
+      *begin = certain;
+      at = w->m->link[certain];
+      CADT_TEAM_SYNC();
+      CADT_TEAM_FOR(k, (*size - certain) / 2u) {
+        const cadt_u32 other = w->m->link[*size - 1u - k];
+        w->m->link[*size - 1u - k] = w->m->link[certain + k];
+        w->m->link[certain + k] = other;
+      }
+      CADT_TEAM_SYNC();
+      --*size; /* it is entered again */
+      *side = -*side;
+    } else if (asked != none && (asked + 1u >= *size || asked == CADT_CAST(cadt_u32, CADT_WRAP_DOUBTFUL))) {
+      /* Once more from the last one. If it was found from a neighbour, it is one itself, and the edge one of the hull. */
+      from_hull = *size > 1u ? 1u : 0u;
+      if (++pass > 2u) going = 0u;
+      at = w->m->link[*size - 1u];
+      CADT_TEAM_SYNC();
+      asked = none;
+      *size = 0u;
+      *side = -*side;
     }
   }
   *size -= *begin;

@@ -12,6 +12,8 @@
 
 /* How far the points around a vertex are known: the square, in spacings of the points. */
 #define CADT_NEAR_SPACINGS 9.0
+/* A circle whose arc is flatter is no better known by rounded numbers (cadt_disc_beside). */
+#define CADT_WRAP_FLAT 65536.0
 
 /* The points among which stars are searched: all, or those of a set (sets.h). Every set begins a new box and a new
  * crate, which leaves some numbers out. */
@@ -142,6 +144,24 @@ CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
       cadt_sqrt(d.x * d.x + d.y * d.y) * (1.0 + 4e-15) + 1e-14 * cadt_sqrt(kk * (1.0 + kk) * (aa + bb));
   d.square = radius * radius;
   if (!(kk < 1e24)) d.square = CADT_CAST(double, CADT_INFINITY);
+  return d;
+}
+
+/* The same as far as points on one side (1 left, -1 right) of the line from p to a are asked for, on which b is. If p
+ * and a are seen from b in nearly opposite directions, the circle is all but a line, and its centre is not known; but on
+ * that side there is only a flat arc of it, and a flatter circle contains that: the one that sees p and a at an angle
+ * whose cotangent is -CADT_WRAP_FLAT, half of what is certain of b. */
+CADT_FN cadt_disc cadt_disc_beside(cadt_point p, cadt_point a, cadt_point b, cadt_i32 side) {
+  const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
+  const double left = ax * by, right = ay * bx, across = bx * (bx - ax), along = by * (by - ay);
+  const double cross = cadt_fabs(left - right) + 1e-15 * (cadt_fabs(left) + cadt_fabs(right));
+  const double dot = across + along + 1e-15 * (cadt_fabs(across) + cadt_fabs(along));
+  if (!(-dot > 2.0 * CADT_WRAP_FLAT * cross)) return cadt_disc_around(p, a, b);
+  const double away = 0.5 * CADT_WRAP_FLAT * CADT_CAST(double, side);
+  cadt_disc d;
+  d.x = 0.5 * ax + away * ay;
+  d.y = 0.5 * ay - away * ax;
+  d.square = 0.25 * (ax * ax + ay * ay) * (1.0 + CADT_WRAP_FLAT * CADT_WRAP_FLAT) * (1.0 + 1e-14);
   return d;
 }
 

@@ -81,12 +81,12 @@ class SetStage {
       launch_.run(KernelId::cadt_set_keys, c.items, order_.points, sets_.positions(), set_count_, sets_.sets,
                   static_cast<std::uint32_t>(levels), 1U, keys, count_, c.grain);
     }
-    const std::optional<TileList> tiles = make_tiles(run_, {keys, none}, n_, levels);
+    const std::optional<TileList> tiles = make_tiles(run_, {keys, none}, n_, levels, least_points_of_tile);
     run_.end_phase("tiles");
     run_.check("stars", 0.1);
     stars_.links = run_.memory.allocate(n_ * (CADT_STAR_DEGREE + long_star_words) * word);
     stars_.sizes = run_.memory.allocate_zeros(n_ * word);
-    if (tiles && n_ / tiles->count >= least_points_of_tile)
+    if (tiles)
       run_stars(run_, order_, {keys, none}, sets_.sets, sets_.states, *tiles, false, stars_).add_to(run_.statistics);
     run_.end_phase("stars");
     run_.check("stars", 0.4);

@@ -414,9 +414,7 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
       }
       hopeless = run.options.strategy == Strategy::automatic && stays_crowded(sample, result.grid.finer(finer()));
     }
-    // Of few points the sort would take longer than what stars save.
-    const bool wanted = for_stars && !hopeless && (n > most_ahead || run.options.strategy == Strategy::stars);
-    const bool fine = wanted && crowd > n / 4 && finer() >= fewest_fine_levels &&
+    const bool fine = for_stars && !hopeless && crowd > n / 4 && finer() >= fewest_fine_levels &&
                       result.grid.scale < std::ldexp(1.0, 1000);  // else it is of points that are nearly all equal
     if (fine) {
       result.grid = result.grid.finer(finer());

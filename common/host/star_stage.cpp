@@ -107,12 +107,12 @@ class StarStage {
       }
     }
     const SortKeys keys{keys_, low, 2 * grid.fine_levels};
-    const std::optional<TileList> tiles = make_tiles(run_, keys, n_, grid.levels());
-    if (!tiles) return false;
-    run_.end_phase("tiles");
-    run_.check("stars", 0.1);
     const bool automatic = run_.options.strategy == Strategy::automatic;
-    if (automatic && n_ / tiles->count < least_points_of_tile) return false;
+    const std::optional<TileList> tiles =
+        make_tiles(run_, keys, n_, grid.levels(), automatic ? least_points_of_tile : 0);
+    run_.end_phase("tiles");
+    if (!tiles) return false;
+    run_.check("stars", 0.1);
     stars_ = make_star_list(run_, n_, *tiles);
     const StarCounts found = run_stars(run_, order_, keys, {}, {}, *tiles, automatic, stars_);
     found.add_to(run_.statistics);

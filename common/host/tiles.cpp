@@ -13,24 +13,74 @@ constexpr std::size_t word = sizeof(std::uint32_t);
 /// A large card works on 900 tiles at a time: while it has the sample, it has begun with others.
 constexpr std::uint32_t sampled_tiles = 512;
 
+/// The quadtree over the keys.
+class TileMaker {
+ public:
+  TileMaker(Run& run, const SortKeys& keys, std::size_t n, unsigned levels)
+      : run_(run),
+        launch_(run.launcher),
+        keys_(keys),
+        n_(n),
+        count_(static_cast<std::uint32_t>(n)),
+        levels_(static_cast<std::uint32_t>(levels)),
+        cut_(launch_.cut(n)) {}
+
+  /// False if the keys are not in order.
+  [[nodiscard]] bool make() {
+    const Allocation descents = launch_.zeros(1);
+    flag(descents);
+    if (launch_.read_word(descents, 0) != 0) return false;
+    pack();
+    return true;
+  }
+
+  /// Divides tiles again whose points are nearly all in a small part.
+  void divide() {
+    crowded_ = launch_.zeros(list.count);
+    const Allocation any = launch_.zeros(1);
+    launch_.run(KernelId::cadt_tile_crowds, cut_.items, keys_.high, keys_.low, keys_.low_bits, ranks_, list.tiles,
+                count_, levels_, cut_.grain, crowded_, any);
+    if (launch_.read_word(any, 0) == 0) return;
+    before_ = std::move(ranks_);
+    flag(any);
+    pack();
+  }
+
+  TileList list;
+
+ private:
+  void flag(const Allocation& descents) {
+    ranks_ = run_.memory.allocate((n_ + 1) * word);
+    launch_.run(KernelId::cadt_tile_flags, cut_.items, keys_.high, keys_.low, keys_.low_bits, before_, crowded_, ranks_,
+                count_, levels_, cut_.grain, descents);
+  }
+
+  void pack() {
+    launch_.scan(ranks_, n_ + 1);
+    list.count = launch_.read_word(ranks_, n_);
+    list.tiles = run_.memory.allocate((list.count + std::size_t{1}) * sizeof(cadt_tile));
+    launch_.run(KernelId::cadt_tile_pack, cut_.items, keys_.high, keys_.low, keys_.low_bits, before_, crowded_, ranks_,
+                list.tiles, count_, levels_, cut_.grain);
+  }
+
+  Run& run_;
+  Launcher& launch_;
+  const SortKeys& keys_;
+  std::size_t n_;
+  std::uint32_t count_, levels_;
+  Cut cut_;
+  Allocation ranks_, before_, crowded_;
+};
+
 }  // namespace
 
-std::optional<TileList> make_tiles(Run& run, const SortKeys& keys, std::size_t n, unsigned levels) {
-  Launcher& launch = run.launcher;
-  const auto count = static_cast<std::uint32_t>(n), level_count = static_cast<std::uint32_t>(levels);
-  const Cut c = launch.cut(n);
-  const Allocation ranks = run.memory.allocate((n + 1) * word), descents = launch.zeros(1);
-  launch.run(KernelId::cadt_tile_flags, c.items, keys.high, keys.low, keys.low_bits, ranks, count, level_count, c.grain,
-             descents);
-  if (launch.read_word(descents, 0) != 0) return std::nullopt;
-  launch.scan(ranks, n + 1);
-  TileList list;
-  list.count = launch.read_word(ranks, n);
-  list.tiles = run.memory.allocate((list.count + std::size_t{1}) * sizeof(cadt_tile));
-  launch.run(KernelId::cadt_tile_pack, c.items, keys.high, keys.low, keys.low_bits, ranks, list.tiles, count,
-             level_count, c.grain);
-  run.statistics.tiles += list.count;
-  return list;
+std::optional<TileList> make_tiles(Run& run, const SortKeys& keys, std::size_t n, unsigned levels, std::size_t least) {
+  TileMaker maker(run, keys, n, levels);
+  if (!maker.make() || n / maker.list.count < least) return std::nullopt;
+  // With keys of one word cells are hardly smaller than what a crowd needs.
+  if (keys.low_bits != 0) maker.divide();
+  run.statistics.tiles += maker.list.count;
+  return std::move(maker.list);
 }
 
 StarList make_star_list(Run& run, std::size_t n, const TileList& tiles) {

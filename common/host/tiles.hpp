@@ -25,8 +25,10 @@ struct SortKeys {
   unsigned low_bits = 0;
 };
 
-/// Nothing if the keys are not in order. \pre they are those of n points in a grid of so many levels
-[[nodiscard]] std::optional<TileList> make_tiles(Run& run, const SortKeys& keys, std::size_t n, unsigned levels);
+/// Nothing if the keys are not in order, or there are fewer than `least` points for a tile on average. \pre they are
+/// those of n points in a grid of so many levels
+[[nodiscard]] std::optional<TileList> make_tiles(Run& run, const SortKeys& keys, std::size_t n, unsigned levels,
+                                                 std::size_t least);
 
 /// Proven stars: neighbours in `links`, from `begins` on, how many in `sizes`, 0 where there is no proof. Without
 /// `begins` each vertex has CADT_STAR_DEGREE words.

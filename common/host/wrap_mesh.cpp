@@ -24,7 +24,7 @@ constexpr std::uint32_t rest_lanes = 128;  // of the longest stars, which all wa
 /// Boxes that are looked at and exact tests for a vertex, on average at most. What stars leave of 1M uniform points
 /// needs 14. Besides, for all together: where many have to look at many, all on a side of the hull, cards do it at
 /// once.
-constexpr std::uint32_t wrap_effort = 96, spare_effort = 4096, spare_effort_of_cards = 1U << 21;
+constexpr std::uint32_t wrap_effort = 96, spare_effort = 4096, spare_effort_of_cards = 1U << 25;
 
 /// Boxes and crates of points (common/device/wrap_boxes.h); each set begins a box and a crate of its own.
 struct Boxes {

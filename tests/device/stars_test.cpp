@@ -57,7 +57,7 @@ std::map<std::uint32_t, int> tiles_found(const Keys& keys, unsigned levels) {
   std::map<std::uint32_t, int> tiles;
   const cadt_keys view = cadt_keys_of(keys.data(), nullptr, 0);
   for (std::uint32_t i = 0; i < keys.size(); ++i) {
-    const cadt_i32 level = cadt_tile_level(&view, static_cast<std::uint32_t>(keys.size()), i, levels);
+    const cadt_i32 level = cadt_tile_level(&view, static_cast<std::uint32_t>(keys.size()), i, levels, CADT_TILE_POINTS);
     if (level >= 0) tiles[i] = level;
   }
   return tiles;
@@ -108,7 +108,7 @@ TEST(Tiles, CountsKeysOutOfOrder) {
   const auto n = static_cast<std::uint32_t>(keys.size());
   for (const std::uint32_t expected : {3u, 0u}) {
     std::uint32_t descents = 0;
-    cadt_tile_flags(0, 1, keys.data(), nullptr, 0, flags.data(), n, 2, n, &descents);
+    cadt_tile_flags(0, 1, keys.data(), nullptr, 0, nullptr, nullptr, flags.data(), n, 2, n, &descents);
     EXPECT_EQ(descents, expected);
     std::ranges::sort(keys);
   }
@@ -172,11 +172,11 @@ Sorted sorted(const NamedPoints& set, double part = 1) {
   const cadt_u32 levels = cadt_grid_levels(&s.grid);
   std::vector<std::uint32_t> flags(n + 1), ranks(n + 1);
   std::uint32_t descents = 0;
-  cadt_tile_flags(0, 1, s.keys.data(), s.low_keys(), s.low_bits, flags.data(), n, levels, n, &descents);
+  cadt_tile_flags(0, 1, s.keys.data(), s.low_keys(), s.low_bits, nullptr, nullptr, flags.data(), n, levels, n, &descents);
   EXPECT_EQ(descents, 0u);
   std::exclusive_scan(flags.begin(), flags.end(), ranks.begin(), 0u);
   s.tiles.resize(ranks[n] + 1);
-  cadt_tile_pack(0, 1, s.keys.data(), s.low_keys(), s.low_bits, ranks.data(), s.tiles.data(), n, levels, n);
+  cadt_tile_pack(0, 1, s.keys.data(), s.low_keys(), s.low_bits, nullptr, nullptr, ranks.data(), s.tiles.data(), n, levels, n);
   return s;
 }
 

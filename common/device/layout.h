@@ -43,9 +43,9 @@ enum {
   CADT_TILE_POINTS = 704, /* at most, but for squares that cannot be divided */
   CADT_TILE_CROWD = 64,   /* so many of them in a square that is smaller by CADT_CROWD_LEVELS: */
   CADT_CROWD_LEVELS = 3,
-  CADT_TILE_FEW = 128,    /* then so many at most */
-  CADT_STAR_DEGREE = 12,  /* neighbours of a proven star at most */
-  CADT_STAR_LANES = 128,  /* lanes of a team that make stars */
+  CADT_TILE_FEW = 128,   /* then so many at most */
+  CADT_STAR_DEGREE = 12, /* neighbours of a proven star at most */
+  CADT_STAR_LANES = 128, /* lanes of a team that make stars */
   /* Vertices whose triangles a team writes, and how many of them it collects (more are written at once). */
   CADT_RECORD_LANES = 128,
   CADT_TRIANGLES_OF_TEAM = 320,

@@ -318,7 +318,8 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
       --*size; /* it is entered again */
       *side = -*side;
     } else if (asked != none && (asked + 1u >= *size || asked == CADT_CAST(cadt_u32, CADT_WRAP_DOUBTFUL))) {
-      /* Once more from the last one. If it was found from a neighbour, it is one itself, and the edge one of the hull. */
+      /* Once more from the last one. If it was found from a neighbour, it is one itself, and the edge one of the hull.
+       */
       from_hull = *size > 1u ? 1u : 0u;
       if (++pass > 2u) going = 0u;
       at = w->m->link[*size - 1u];

@@ -148,9 +148,9 @@ CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
 }
 
 /* The same as far as points on one side (1 left, -1 right) of the line from p to a are asked for, on which b is. If p
- * and a are seen from b in nearly opposite directions, the circle is all but a line, and its centre is not known; but on
- * that side there is only a flat arc of it, and a flatter circle contains that: the one that sees p and a at an angle
- * whose cotangent is -CADT_WRAP_FLAT, half of what is certain of b. */
+ * and a are seen from b in nearly opposite directions, the circle is all but a line, and its centre is not known; but
+ * on that side there is only a flat arc of it, and a flatter circle contains that: the one that sees p and a at an
+ * angle whose cotangent is -CADT_WRAP_FLAT, half of what is certain of b. */
 CADT_FN cadt_disc cadt_disc_beside(cadt_point p, cadt_point a, cadt_point b, cadt_i32 side) {
   const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
   const double left = ax * by, right = ay * bx, across = bx * (bx - ax), along = by * (by - ay);

@@ -212,11 +212,17 @@ CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w, cadt_u32* erred) {
   CADT_TEAM_FOR(j, triangles ? w->known : 0u) {
     const cadt_u32 i = w->m->at[j];
     const cadt_point c = w->in.points[i];
+    /* In two loops, so that lanes come to exact tests at the same time, not one after the other. */
     for (cadt_u32 k = 0u; k < triangles; ++k) {
-      const double x = c.x - p.x - w->m->disc[k].x, y = c.y - p.y - w->m->disc[k].y, square = w->m->disc[k].square;
-      if (square < 0.0 || x * x + y * y > square) continue;
-      const cadt_u32 a = cadt_near_neighbor(w, k), b = cadt_near_neighbor(w, k + 1u);
-      if (i == a || i == b || !cadt_near_in_circle(w->in.points, w->p, a, b, i, w->tally)) continue;
+      cadt_u32 a = CADT_NONE, b = CADT_NONE;
+      for (; k < triangles; ++k) {
+        const double x = c.x - p.x - w->m->disc[k].x, y = c.y - p.y - w->m->disc[k].y, square = w->m->disc[k].square;
+        if (square < 0.0 || x * x + y * y > square) continue;
+        a = cadt_near_neighbor(w, k);
+        b = cadt_near_neighbor(w, k + 1u);
+        if (i != a && i != b) break;
+      }
+      if (k == triangles || !cadt_near_in_circle(w->in.points, w->p, a, b, i, w->tally)) continue;
       w->m->proven[k] = 0u;
       cadt_near_count(w);
     }

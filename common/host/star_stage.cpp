@@ -47,10 +47,11 @@ DeviceMesh build_without_stars(Run& run, SpatialOrder& order) {
   return wrapped ? std::move(*wrapped) : build_mesh(run, order);
 }
 
-/// The same for a part of a mesh that is certified as a whole: in records, without a closing pass where that is no use.
-DeviceMesh build_part(Run& run, SpatialOrder& order) {
+/// The same for a part of a mesh of `all` points that is certified as a whole: in records, without a closing pass where
+/// that is no use.
+DeviceMesh build_part(Run& run, SpatialOrder& order, std::size_t all) {
   std::optional<DeviceMesh> wrapped;
-  if (order.distinct <= most_wrapped(run.device)) wrapped = wrap_part(run, order.points, order.distinct);
+  if (order.distinct <= most_wrapped(run.device)) wrapped = wrap_part(run, order.points, order.distinct, all);
   return wrapped ? std::move(*wrapped) : build_mesh(run, order);
 }
 
@@ -217,7 +218,7 @@ class StarStage {
 
   void join(SpatialOrder& rest) {
     const std::uint64_t certified = run_.statistics.certified_edges;
-    const DeviceMesh smaller = build_part(run_, rest);
+    const DeviceMesh smaller = build_part(run_, rest, n_);
     run_.statistics.certified_edges = certified;  // those of the whole mesh count
     if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
 

@@ -7,7 +7,7 @@ namespace cadt {
 
 /// So few points are wrapped instead (common/device/wrap.h), unless the options ask for the star stage, if many are on
 /// circles, or on a lattice: there the exact tests of wrapping take longer. Of other sets all that can be wrapped are.
-constexpr std::size_t most_wrapped_on_circles = 11000, most_wrapped_on_lattice = 24576;
+constexpr std::size_t most_wrapped_on_circles = 20000, most_wrapped_on_lattice = 20480;
 
 /// The mesh by the star stage (common/device/star.h): stars of vertices without locks, insertion of the vertices whose
 /// star could not be proven, the join of both, closing passes. Releases the keys of `order`.

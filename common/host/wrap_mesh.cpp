@@ -22,9 +22,19 @@ constexpr std::size_t most_teams = 4096;  // as many as run at the same time on 
 constexpr std::uint32_t box_lanes = CADT_WRAP_CRATE * CADT_WRAP_PARTS;
 constexpr std::uint32_t rest_lanes = 128;  // of the longest stars, which all wait for
 /// Boxes that are looked at and exact tests for a vertex, on average at most. What stars leave of 1M uniform points
-/// needs 14. Besides, for all together: where many have to look at many, all on a side of the hull, cards do it at
-/// once.
-constexpr std::uint32_t wrap_effort = 96, spare_effort = 4096, spare_effort_of_cards = 1U << 25;
+/// needs 14. Besides, for all together.
+constexpr std::uint32_t wrap_effort = 96, spare_effort = 4096;
+/// Of cards. Where many have to look at many, all on a side of the hull, they do it at once: about 13,000 in a
+/// microsecond. So for each point of the whole mesh this is a nanosecond or two, when insertion of the rest, and the
+/// rows of flips that it leaves on such sides, takes several.
+constexpr std::uint32_t spare_effort_of_cards = 1U << 21, spare_effort_of_point = 20, most_spare_effort = 1U << 31;
+
+/// `all`: the points of the mesh that the wrapped ones are part of.
+std::uint32_t spare_effort_of(const Device& device, std::size_t all) {
+  if (device.shape().contiguous) return spare_effort;
+  return static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(spare_effort_of_cards + std::uint64_t{spare_effort_of_point} * all, most_spare_effort));
+}
 
 /// Boxes and crates of points (common/device/wrap_boxes.h); each set begins a box and a crate of its own.
 struct Boxes {
@@ -44,7 +54,7 @@ struct Boxes {
 };
 
 /// All stars of one set of at most 2^15 points; `sizes` and `found` need not be 0 before.
-void wrap_all(Run& run, const Allocation& points, std::size_t n, const WrappedStars& stars) {
+void wrap_all(Run& run, const Allocation& points, std::size_t n, std::uint32_t spare, const WrappedStars& stars) {
   Launcher& launch = run.launcher;
   const Allocation none, todo = run.memory.allocate(n * word),
                          arcs = run.memory.allocate(n * CADT_WRAP_ROW * sizeof(std::uint16_t));
@@ -56,9 +66,8 @@ void wrap_all(Run& run, const Allocation& points, std::size_t n, const WrappedSt
   // How many are left is known on the device only.
   const Cut rest = run.device.shape().contiguous ? teams : launch.cut_teams(std::min(n, most_teams), rest_lanes);
   launch.run_in_groups(KernelId::cadt_wrap_stars, rest.items, rest_lanes, points, boxes.boxes, boxes.crates, count,
-                       todo, 0U, arcs, none, 0U, none, none, wrap_effort,
-                       run.device.shape().contiguous ? spare_effort : spare_effort_of_cards, rest.grain, 0U,
-                       stars.links, link_words, stars.begins, stars.sizes, stars.found);
+                       todo, 0U, arcs, none, 0U, none, none, wrap_effort, spare, rest.grain, 0U, stars.links,
+                       link_words, stars.begins, stars.sizes, stars.found);
 }
 
 /// One set, its stars and its mesh.
@@ -67,12 +76,13 @@ class Wrapping {
   Wrapping(Run& run, const Allocation& points, std::size_t n)
       : run_(run), launch_(run.launcher), points_(points), n_(n), count_(static_cast<std::uint32_t>(n)) {}
 
-  void make_stars() {
+  /// `all`: the points of the mesh that these are part of.
+  void make_stars(std::size_t all) {
     links_ = run_.memory.allocate(link_words() * word);
     begins_ = run_.memory.allocate(n_ * word);
     sizes_ = run_.memory.allocate(n_ * word);
     found_ = run_.memory.allocate(CADT_WRAP_WORDS * word);
-    wrap_all(run_, points_, n_, {links_, begins_, sizes_, found_, 0, link_words()});
+    wrap_all(run_, points_, n_, spare_effort_of(run_.device, all), {links_, begins_, sizes_, found_, 0, link_words()});
     edges_ = run_.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));
   }
 
@@ -244,10 +254,10 @@ void wrap_sets(Run& run, const Allocation& points, std::size_t n, const StarsOfS
                              static_cast<std::uint32_t>(stars.link_words), stars.begins, stars.sizes, stars.found);
 }
 
-std::optional<DeviceMesh> wrap_part(Run& run, const Allocation& points, std::size_t n) {
+std::optional<DeviceMesh> wrap_part(Run& run, const Allocation& points, std::size_t n, std::size_t all) {
   if (n < 3) return std::nullopt;
   Wrapping wrapping(run, points, n);
-  wrapping.make_stars();
+  wrapping.make_stars(all);
   return wrapping.make_records();
 }
 
@@ -255,7 +265,7 @@ std::optional<DeviceMesh> wrap_mesh(Run& run, SpatialOrder& order) {
   const std::size_t n = order.distinct;
   if (n < 3) return std::nullopt;
   Wrapping wrapping(run, order.points, n);
-  wrapping.make_stars();
+  wrapping.make_stars(n);
   DeviceMesh arrays;
   if (wrapping.make_arrays(arrays)) return arrays;
   if (wrapping.failed()) return std::nullopt;

@@ -37,7 +37,7 @@ void wrap_sets(Run& run, const Allocation& points, std::size_t n, const StarsOfS
 /// or it would take too long: then insertion is to do it.
 [[nodiscard]] std::optional<DeviceMesh> wrap_mesh(Run& run, SpatialOrder& order);
 
-/// The same of n points that are part of a mesh: in records, and its edges have still to be certified.
-[[nodiscard]] std::optional<DeviceMesh> wrap_part(Run& run, const Allocation& points, std::size_t n);
+/// The same of n points that are part of a mesh of `all`: in records, and its edges have still to be certified.
+[[nodiscard]] std::optional<DeviceMesh> wrap_part(Run& run, const Allocation& points, std::size_t n, std::size_t all);
 
 }  // namespace cadt

@@ -172,11 +172,13 @@ Sorted sorted(const NamedPoints& set, double part = 1) {
   const cadt_u32 levels = cadt_grid_levels(&s.grid);
   std::vector<std::uint32_t> flags(n + 1), ranks(n + 1);
   std::uint32_t descents = 0;
-  cadt_tile_flags(0, 1, s.keys.data(), s.low_keys(), s.low_bits, nullptr, nullptr, flags.data(), n, levels, n, &descents);
+  cadt_tile_flags(0, 1, s.keys.data(), s.low_keys(), s.low_bits, nullptr, nullptr, flags.data(), n, levels, n,
+                  &descents);
   EXPECT_EQ(descents, 0u);
   std::exclusive_scan(flags.begin(), flags.end(), ranks.begin(), 0u);
   s.tiles.resize(ranks[n] + 1);
-  cadt_tile_pack(0, 1, s.keys.data(), s.low_keys(), s.low_bits, nullptr, nullptr, ranks.data(), s.tiles.data(), n, levels, n);
+  cadt_tile_pack(0, 1, s.keys.data(), s.low_keys(), s.low_bits, nullptr, nullptr, ranks.data(), s.tiles.data(), n,
+                 levels, n);
   return s;
 }
 

@@ -85,16 +85,18 @@ CADT_GROUP_KERNEL void cadt_tile_sums(__global const cadt_u32* data, cadt_u32 da
   if (cadt_lane == 0u) sums[sums_at + cadt_tile] = total;
 }
 
-/* Exclusive sums in place; sums[tile], already scanned, is what comes before. sums may be null: there is one tile. */
+/* Exclusive sums in place; sums[tile] is what comes before if they are `scanned`, else the sum of a tile: then there
+ * are at most CADT_GROUP. sums may be null: there is one tile. */
 CADT_GROUP_KERNEL void cadt_tile_scan(__global cadt_u32* data, cadt_u32 data_at, __global const cadt_u32* sums,
-                                      cadt_u32 sums_at, cadt_u32 count) {
+                                      cadt_u32 sums_at, cadt_u32 scanned, cadt_u32 count) {
   __local cadt_u32 work[CADT_SUM_WORDS];
   __local cadt_u32 tile[CADT_TILE_WORDS];
   const cadt_u32 first = cadt_tile * CADT_TILE + cadt_lane, left = count - cadt_tile * CADT_TILE;
   __global cadt_u32* const at = data + data_at + first;
-  const cadt_u32 before = sums ? sums[sums_at + cadt_tile] : 0u;
+  cadt_u32 before = sums && scanned ? sums[sums_at + cadt_tile] : 0u;
   cadt_u32 mine[CADT_EACH], sum = 0u, total;
   cadt_group_scan_begin(work);
+  if (sums && !scanned) cadt_group_scan(work, cadt_lane < cadt_tile ? sums[sums_at + cadt_lane] : 0u, &before);
 #pragma unroll
   for (cadt_u32 i = 0u; i < CADT_EACH; ++i) mine[i] = i * CADT_GROUP + cadt_lane < left ? at[i * CADT_GROUP] : 0u;
 #pragma unroll
@@ -118,7 +120,8 @@ CADT_GROUP_KERNEL void cadt_tile_scan(__global cadt_u32* data, cadt_u32 data_at,
 }
 
 /* ---- sort: a pass for each digit of up to 8 bits, from the lowest: counts by tile, their scan, scatter ------------
- * counts[digit * tiles + tile]; after the scan, where the first key of the tile with this digit goes.
+ * counts[digit * tiles + tile]; after the scan, where the first key of the tile with this digit goes. Where tiles are
+ * few they are not scanned: each group adds them up.
  */
 
 /* Work-items that meet the same digit count in different words, of different banks. */
@@ -214,8 +217,8 @@ typedef union {
 
 CADT_GROUP_KERNEL void cadt_digit_scatter(__global const cadt_u32* keys_in, __global const cadt_u32* values_in,
                                           __global cadt_u32* keys_out, __global cadt_u32* values_out,
-                                          __global const cadt_u32* counts, cadt_u32 count, cadt_u32 tiles,
-                                          cadt_u32 shift, cadt_u32 mask) {
+                                          __global const cadt_u32* counts, cadt_u32 scanned, cadt_u32 count,
+                                          cadt_u32 tiles, cadt_u32 shift, cadt_u32 mask) {
   __local cadt_u32 work[CADT_SUM_WORDS];
   __local cadt_u32 goes_to[256]; /* of a digit: the first key's place in the output, then less its place in the tile */
   __local cadt_scatter_memory memory;
@@ -224,12 +227,23 @@ CADT_GROUP_KERNEL void cadt_digit_scatter(__global const cadt_u32* keys_in, __gl
   cadt_u32 keys[CADT_EACH], values[CADT_EACH], places[CADT_EACH / 2];
   cadt_u64 halves = 0u;
 
-  /* Beyond the end stand keys with the highest digit: the order is stable, so they stay behind all others. */
+  /* Beyond the end stand keys with the highest digit: the order is stable, so they stay behind all others. Without
+   * values_in the values are the places of the keys. */
 #pragma unroll
   for (cadt_u32 i = 0u; i < CADT_EACH; ++i)
     keys[i] = i * CADT_GROUP + cadt_lane < left ? keys_in[first + i * CADT_GROUP] : 0xFFFFFFFFu;
   cadt_group_scan_begin(work);
-  if (cadt_lane <= mask) goes_to[cadt_lane] = counts[cadt_lane * tiles + cadt_tile];
+  if (scanned) {
+    if (cadt_lane <= mask) goes_to[cadt_lane] = counts[cadt_lane * tiles + cadt_tile];
+  } else {
+    cadt_u32 before = 0u, sum = 0u, total;
+    for (cadt_u32 t = 0u; t < tiles && cadt_lane <= mask; ++t) {
+      const cadt_u32 here = counts[cadt_lane * tiles + t];
+      if (t < cadt_tile) before += here;
+      sum += here;
+    }
+    goes_to[cadt_lane] = before + cadt_group_scan(work, sum, &total);
+  }
 #pragma unroll
   for (cadt_u32 i = 0u; i < CADT_EACH; ++i)
     memory.rank.order.digits[i * CADT_GROUP + cadt_lane] = (uchar)((keys[i] >> shift) & mask);
@@ -276,7 +290,8 @@ CADT_GROUP_KERNEL void cadt_digit_scatter(__global const cadt_u32* keys_in, __gl
   /* Through local memory, so that the keys of a digit leave side by side. */
 #pragma unroll
   for (cadt_u32 i = 0u; i < CADT_EACH; ++i)
-    values[i] = i * CADT_GROUP + cadt_lane < left ? values_in[first + i * CADT_GROUP] : 0u;
+    values[i] =
+        values_in && i * CADT_GROUP + cadt_lane < left ? values_in[first + i * CADT_GROUP] : first + i * CADT_GROUP;
 #pragma unroll
   for (cadt_u32 i = 0u; i < CADT_EACH / 2u; ++i)
     places[i] = memory.rank.order.places[2u * i * CADT_GROUP + cadt_lane] |

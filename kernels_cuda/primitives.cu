@@ -10,10 +10,10 @@ namespace {
 
 // Few keys: one group sorts all in its own memory, in one launch instead of one for each digit and two before.
 constexpr int block_threads = 1024, thread_keys = 8;
-constexpr std::uint32_t most_in_block = block_threads * thread_keys;
+static_assert(most_in_group == block_threads * thread_keys);
 
 __global__ void __launch_bounds__(block_threads)
-    sort_in_block(std::uint32_t* keys, std::uint32_t* values, std::uint32_t count, int bits) {
+    sort_in_block(std::uint32_t* keys, std::uint32_t* values, std::uint32_t count, int bits, bool places) {
   using Sort = cub::BlockRadixSort<std::uint32_t, block_threads, thread_keys, std::uint32_t>;
   __shared__ typename Sort::TempStorage memory;
   std::uint32_t key[thread_keys], value[thread_keys];
@@ -21,7 +21,7 @@ __global__ void __launch_bounds__(block_threads)
   for (int k = 0; k < thread_keys; ++k) {
     const bool here = first + k < count;
     key[k] = here ? keys[first + k] : 0xFFFFFFFFU;  // behind all others, since they come last and the sort is stable
-    value[k] = here ? values[first + k] : 0U;
+    value[k] = here && !places ? values[first + k] : first + k;
   }
   Sort(memory).SortBlockedToStriped(key, value, 0, bits);
   for (int k = 0; k < thread_keys; ++k) {
@@ -36,13 +36,13 @@ __global__ void __launch_bounds__(block_threads)
 
 cudaError_t sort_pairs(void* scratch, std::size_t& scratch_bytes, std::uint32_t* keys, std::uint32_t* values,
                        std::uint32_t* other_keys, std::uint32_t* other_values, std::uint32_t count, unsigned bits,
-                       cudaStream_t stream, bool* in_other) {
-  if (count <= most_in_block) {
+                       bool places, cudaStream_t stream, bool* in_other) {
+  if (count <= most_in_group) {
     if (scratch == nullptr) {
       scratch_bytes = 1;
       return cudaSuccess;
     }
-    sort_in_block<<<1, block_threads, 0, stream>>>(keys, values, count, static_cast<int>(bits));
+    sort_in_block<<<1, block_threads, 0, stream>>>(keys, values, count, static_cast<int>(bits), places);
     if (in_other != nullptr) *in_other = false;
     return cudaGetLastError();
   }

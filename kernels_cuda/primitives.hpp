@@ -9,10 +9,15 @@
 
 namespace cadt::cuda {
 
-/// Stable radix sort by the lowest `bits` bits. `in_other`: whether the result is in the other pair of arrays.
+/// Up to so many keys are sorted by one group, in one launch.
+constexpr std::uint32_t most_in_group = 8192;
+
+/// Stable radix sort by the lowest `bits` bits. `places`: the values are 0, 1, 2, ..., and not read; at most
+/// most_in_group. `in_other`: whether the result is in the other pair of arrays.
 [[nodiscard]] cudaError_t sort_pairs(void* scratch, std::size_t& scratch_bytes, std::uint32_t* keys,
                                      std::uint32_t* values, std::uint32_t* other_keys, std::uint32_t* other_values,
-                                     std::uint32_t count, unsigned bits, cudaStream_t stream, bool* in_other);
+                                     std::uint32_t count, unsigned bits, bool places, cudaStream_t stream,
+                                     bool* in_other);
 
 /// Exclusive prefix sum in place.
 [[nodiscard]] cudaError_t exclusive_sum(void* scratch, std::size_t& scratch_bytes, std::uint32_t* data,

@@ -242,7 +242,7 @@ void CudaDevice::load_kernels() {
     const auto other_keys = allocate(4 * count), other_values = allocate(4 * count);
     for (const auto* buffer : {&keys, &values}) fill(**buffer, 0, 4 * count, 0);
     const auto sort_memory = allocate(sort_scratch(count, 32)), scan_memory = allocate(scan_scratch(count));
-    static_cast<void>(sort(*sort_memory, *keys, *values, *other_keys, *other_values, count, 32));
+    static_cast<void>(sort(*sort_memory, *keys, *values, *other_keys, *other_values, count, 32, false));
     scan(*scan_memory, *keys, count);
   }
   finish();
@@ -263,13 +263,15 @@ std::optional<double> CudaDevice::occupancy(unsigned work_group_size) {
   return static_cast<double>(blocks * warps) / (static_cast<double>(most) / warp);
 }
 
+bool CudaDevice::sorts_places(std::size_t count) const noexcept { return count <= most_in_group; }
+
 std::size_t CudaDevice::sort_scratch(std::size_t count, unsigned bits) {
   const ContextScope scope(stream_->context());
   std::size_t bytes = 0;
   check_call(without_earlier_error(*stream_,
                                    [&] {
                                      return sort_pairs(nullptr, bytes, nullptr, nullptr, nullptr, nullptr,
-                                                       static_cast<std::uint32_t>(count), bits, stream_->get(),
+                                                       static_cast<std::uint32_t>(count), bits, false, stream_->get(),
                                                        nullptr);
                                    }),
              "cub::DeviceRadixSort");
@@ -277,7 +279,7 @@ std::size_t CudaDevice::sort_scratch(std::size_t count, unsigned bits) {
 }
 
 bool CudaDevice::sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& other_keys, Buffer& other_values,
-                      std::size_t count, unsigned bits) {
+                      std::size_t count, unsigned bits, bool places) {
   const ContextScope scope(stream_->context());
   std::size_t bytes = scratch.bytes();
   bool in_other = false;
@@ -285,7 +287,7 @@ bool CudaDevice::sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& oth
                                    [&] {
                                      return sort_pairs(data_of(scratch), bytes, words_of(keys), words_of(values),
                                                        words_of(other_keys), words_of(other_values),
-                                                       static_cast<std::uint32_t>(count), bits, stream_->get(),
+                                                       static_cast<std::uint32_t>(count), bits, places, stream_->get(),
                                                        &in_other);
                                    }),
              "cub::DeviceRadixSort");

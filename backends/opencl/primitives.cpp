@@ -11,6 +11,8 @@ namespace {
 // As in kernels_cl/primitives.cl.
 constexpr std::size_t group = 256, tile = group * 16;
 constexpr unsigned digit_bits = 8;
+// With so few tiles each group adds up what a launch between would have told it, for itself.
+constexpr std::size_t few_counts = 16, few_sums = group;
 
 constexpr std::size_t tiles_of(std::size_t count) noexcept { return (count + tile - 1) / tile; }
 
@@ -59,11 +61,12 @@ void ClPrimitives::scan_words(Buffer& scratch, std::uint32_t scratch_at, Buffer&
   if (count == 0) return;
   const std::size_t tiles = tiles_of(count);
   const std::unique_ptr<Buffer> null;
+  const bool few = tiles <= few_sums;
   if (tiles > 1) {
     run(tile_sums_, tiles, {data, at, scratch, scratch_at, word(count)});
-    scan_words(scratch, scratch_at + word(tiles), scratch, scratch_at, tiles);
+    if (!few) scan_words(scratch, scratch_at + word(tiles), scratch, scratch_at, tiles);
   }
-  run(tile_scan_, tiles, {data, at, tiles > 1 ? Arg(scratch) : Arg(null), scratch_at, word(count)});
+  run(tile_scan_, tiles, {data, at, tiles > 1 ? Arg(scratch) : Arg(null), scratch_at, few ? 0U : 1U, word(count)});
 }
 
 std::size_t ClPrimitives::sort_scratch(std::size_t count, unsigned bits) {
@@ -72,17 +75,21 @@ std::size_t ClPrimitives::sort_scratch(std::size_t count, unsigned bits) {
 }
 
 bool ClPrimitives::sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& other_keys, Buffer& other_values,
-                        std::size_t count, unsigned bits) {
+                        std::size_t count, unsigned bits, bool places) {
   if (count == 0) return false;
   const std::uint32_t n = word(count), tiles = word(tiles_of(count));
+  const std::unique_ptr<Buffer> null;
   Buffer *from_keys = &keys, *from_values = &values, *to_keys = &other_keys, *to_values = &other_values;
   for (unsigned shift = 0; shift < bits; shift += digit_bits) {
     const unsigned digit = std::min(digit_bits, bits - shift);
     const std::uint32_t mask = (1U << digit) - 1;
     const std::size_t counts = std::size_t{tiles} << digit;
     run(digit_counts_, tiles, {*from_keys, scratch, n, tiles, shift, mask});
-    scan_words(scratch, word(counts), scratch, 0, counts);
-    run(digit_scatter_, tiles, {*from_keys, *from_values, *to_keys, *to_values, scratch, n, tiles, shift, mask});
+    const bool few = tiles <= few_counts;
+    if (!few) scan_words(scratch, word(counts), scratch, 0, counts);
+    run(digit_scatter_, tiles,
+        {*from_keys, places && shift == 0 ? Arg(null) : Arg(*from_values), *to_keys, *to_values, scratch, few ? 0U : 1U,
+         n, tiles, shift, mask});
     std::swap(from_keys, to_keys);
     std::swap(from_values, to_values);
   }

@@ -15,8 +15,9 @@ class ClPrimitives final : public Primitives {
   explicit ClPrimitives(ClDevice& device);
 
   [[nodiscard]] std::size_t sort_scratch(std::size_t count, unsigned bits) override;
+  [[nodiscard]] bool sorts_places(std::size_t) const noexcept override { return true; }
   [[nodiscard]] bool sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& other_keys, Buffer& other_values,
-                          std::size_t count, unsigned bits) override;
+                          std::size_t count, unsigned bits, bool places) override;
   [[nodiscard]] std::size_t scan_scratch(std::size_t count) override;
   void scan(Buffer& scratch, Buffer& data, std::size_t count) override;
 

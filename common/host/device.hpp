@@ -85,10 +85,12 @@ class Primitives {
  public:
   virtual ~Primitives() = default;
   [[nodiscard]] virtual std::size_t sort_scratch(std::size_t count, unsigned bits) = 0;
-  /// Stable sort of pairs of words by the lowest `bits` bits of the key. True: the result is in the second pair of
-  /// buffers, false: in the first. \throws DeviceError
+  /// Whether it can sort so many places, values 0, 1, 2, ..., that nobody has written before.
+  [[nodiscard]] virtual bool sorts_places(std::size_t count) const noexcept = 0;
+  /// Stable sort of pairs of words by the lowest `bits` bits of the key. `places`: the values are. True: the result is
+  /// in the second pair of buffers, false: in the first. \pre !places || sorts_places(count) \throws DeviceError
   [[nodiscard]] virtual bool sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& other_keys,
-                                  Buffer& other_values, std::size_t count, unsigned bits) = 0;
+                                  Buffer& other_values, std::size_t count, unsigned bits, bool places) = 0;
   [[nodiscard]] virtual std::size_t scan_scratch(std::size_t count) = 0;
   /// Exclusive prefix sum of words in place. \throws DeviceError
   virtual void scan(Buffer& scratch, Buffer& data, std::size_t count) = 0;

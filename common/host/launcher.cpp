@@ -91,13 +91,14 @@ void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys
                     std::size_t count, unsigned bits, bool identity) {
   if (Primitives* own = device_.primitives()) {
     const Allocation scratch = memory_.allocate(own->sort_scratch(count, bits));
-    if (identity) {
+    const bool places = identity && own->sorts_places(count);
+    if (identity && !places) {
       const Cut c = cut(count);
       run(KernelId::cadt_identity, c.items, values, static_cast<std::uint32_t>(count), c.grain);
     }
     bool in_spare = false;
     times_.time(KernelTimes::sort, [&] {
-      in_spare = own->sort(*scratch, *keys, *values, *spare_keys, *spare_values, count, std::max(bits, 1U));
+      in_spare = own->sort(*scratch, *keys, *values, *spare_keys, *spare_values, count, std::max(bits, 1U), places);
     });
     if (in_spare) {
       std::swap(keys, spare_keys);

@@ -39,11 +39,13 @@ class FaultyPrimitives final : public Primitives {
   [[nodiscard]] std::size_t sort_scratch(std::size_t count, unsigned bits) override {
     return own_.sort_scratch(count, bits);
   }
+  [[nodiscard]] bool sorts_places(std::size_t count) const noexcept override { return own_.sorts_places(count); }
   [[nodiscard]] bool sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& other_keys, Buffer& other_values,
-                          std::size_t count, unsigned bits) override {
+                          std::size_t count, unsigned bits, bool places) override {
     bool in_other = false;
     faults_->take(Step::launch, 0, device_.info().name, [&] {
-      in_other = own_.sort(real(scratch), real(keys), real(values), real(other_keys), real(other_values), count, bits);
+      in_other =
+          own_.sort(real(scratch), real(keys), real(values), real(other_keys), real(other_values), count, bits, places);
     });
     return in_other;
   }

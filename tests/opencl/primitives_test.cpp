@@ -12,7 +12,9 @@ namespace {
 
 using Words = std::vector<std::uint32_t>;
 
-constexpr std::size_t sizes[] = {0, 1, 2, 255, 256, 257, 4095, 4096, 4097, 100003, std::size_t{1} << 20};
+// With more than 16 tiles of 4096 a sort scans its counts, with more than 256 a scan the sums of its tiles.
+constexpr std::size_t sizes[] = {
+    0, 1, 2, 255, 256, 257, 4095, 4096, 4097, 65536, 65537, 100003, std::size_t{1} << 20, (std::size_t{1} << 20) + 1};
 
 Words random_words(std::size_t count, std::uint32_t seed) {
   std::mt19937 random(seed);
@@ -72,10 +74,20 @@ class OpenClPrimitives : public OpenClTest {
     const auto second_keys = device->allocate(count * 4), second_values = device->allocate(count * 4);
     const std::size_t bytes = own->sort_scratch(count, bits);
     const auto scratch = scratch_of(bytes);
-    const bool second = own->sort(*scratch, *first_keys, *first_values, *second_keys, *second_values, count, bits);
-    EXPECT_TRUE(words_of(second ? *second_keys : *first_keys, count) == expected_keys);
-    EXPECT_TRUE(words_of(second ? *second_values : *first_values, count) == expected_values);
-    expect_guarded(*scratch, bytes);
+    for (const bool places : {false, true}) {
+      SCOPED_TRACE(places ? "of places that nobody has written" : "");
+      if (places) {
+        if (!own->sorts_places(count)) continue;
+        device->write(*first_keys, 0, keys.data(), count * 4);
+        device->fill(*first_values, 0, count * 4, guard);
+        device->fill(*scratch, 0, bytes, guard);
+      }
+      const bool second =
+          own->sort(*scratch, *first_keys, *first_values, *second_keys, *second_values, count, bits, places);
+      EXPECT_TRUE(words_of(second ? *second_keys : *first_keys, count) == expected_keys);
+      EXPECT_TRUE(words_of(second ? *second_values : *first_values, count) == expected_values);
+      expect_guarded(*scratch, bytes);
+    }
   }
 
   void expect_scanned(const Words& words) const {

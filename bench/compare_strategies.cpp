@@ -61,7 +61,9 @@ double compare(const Arguments& a, test::DeviceMemory& memory, const std::string
   std::array<std::vector<double>, strategies.size()> times;
   std::array<Statistics, strategies.size()> last;
   for (int round = -a.warm_up; round < a.rounds; ++round) {
-    for (std::size_t s = 0; s < strategies.size(); ++s) {
+    for (std::size_t turn = 0; turn < strategies.size(); ++turn) {
+      // each of them first, and after each of the others
+      const std::size_t s = (turn + static_cast<std::size_t>(round + a.warm_up)) % strategies.size();
       const double begin = now();
       const DeviceTriangulation mesh = triangulators[s]->triangulate(input);
       memory.wait();

@@ -436,14 +436,16 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   }
   result.scale = scale;
   result.scale_again = scale_again;
-  // On circles are a ninth of a turned lattice and an eighth to a quarter of 12-gons, but less than a sixteenth of a
-  // lattice of triangles, which is better wrapped. On rays is a fifth of a polar grid or more, on lines hardly a point
-  // of other sets; on one circle are all corners of a polygon, and none of other sets.
+  // On circles are a twelfth to a seventh of a turned lattice and a twelfth to a third of 12-gons, but less than a
+  // fourteenth of most lattices of triangles, which are better wrapped. On rays is a fifth of a polar grid or more, on
+  // lines hardly a point of other sets; on one circle are all corners of a polygon, and none of other sets. On the hull
+  // seem to be a seventh of a thin ring, but a tenth of evenly spread points.
   constexpr std::uint32_t samples = CADT_POINT_SAMPLES;
   result.shapes.crowded = crowd > n - n / 4 && sums[CADT_EQUAL] < n / 4;
   result.shapes.on_line = sums[CADT_SHAPE_BESIDE] == 0;
   result.shapes.on_circle = 2 * sums[CADT_SHAPE_ONE_CIRCLE] > std::min<std::size_t>(n, samples);
   result.shapes.on_hull = 10 * sums[CADT_SHAPE_HULL] > 9 * std::min<std::size_t>(n, samples);
+  result.shapes.on_ring = 9 * sums[CADT_SHAPE_HULL] > std::min<std::size_t>(n, samples);
   result.shapes.on_rays = 8 * sums[CADT_SHAPE_LINE] > samples;
   result.shapes.on_circles = 14 * sums[CADT_SHAPE_CIRCLE] > samples;
   result.shapes.on_lattice = 4 * sums[CADT_SHAPE_MIRRORED] > samples;

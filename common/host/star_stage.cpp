@@ -37,7 +37,8 @@ std::size_t most_wrapped_of(const Run& run, const SpatialOrder& order) {
   const std::size_t most = most_wrapped(run.device);
   if (run.options.strategy != Strategy::automatic) return most;
   if (order.shapes.on_circles) return std::min(most, most_wrapped_on_circles);
-  return order.shapes.on_lattice ? std::min(most, most_wrapped_on_lattice) : most;
+  if (order.shapes.on_lattice) return std::min(most, most_wrapped_on_lattice);
+  return order.shapes.on_ring ? std::min(most, most_wrapped_on_ring) : most;
 }
 
 /// The mesh without the star stage: by gift wrapping if the points are few, else by insertion.

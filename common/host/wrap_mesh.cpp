@@ -90,7 +90,8 @@ class Wrapping {
   [[nodiscard]] bool make_arrays(DeviceMesh& mesh) {
     const std::size_t row = (n_ + CADT_WRAP_FOUND) / CADT_COUNTER_STRIDE * CADT_COUNTER_STRIDE + CADT_COUNTER_STRIDE;
     bases_ = run_.memory.allocate((row + certify_words(run_)) * word);
-    run_.device.fill(*bases_, row * word, certify_words(run_) * word, 0);
+    const std::size_t counted = n_ + 1 + CADT_WRAP_FOUND;  // what count() writes; all from n on is read at once
+    run_.device.fill(*bases_, counted * word, (row + certify_words(run_) - counted) * word, 0);
     count(true);
     mesh.slots = triangles();
     mesh.vertices = run_.memory.allocate(3 * triangles() * word);

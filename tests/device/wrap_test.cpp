@@ -111,6 +111,14 @@ struct Wrapped {
   [[nodiscard]] std::uint32_t failed() const { return found[1]; }
   [[nodiscard]] std::uint32_t effort() const { return found[2]; }
   [[nodiscard]] std::uint32_t exact_tests() const { return found[3] + found[4]; }
+  /// Neighbours, counterclockwise; the ghost is not one. From the hull edge on, or from the least one.
+  [[nodiscard]] std::vector<std::uint32_t> star(std::uint32_t v) const {
+    std::vector<std::uint32_t> star(links.begin() + begins[v], links.begin() + begins[v] + sizes[v]);
+    const auto ghost = std::ranges::find(star, CADT_GHOST);
+    std::ranges::rotate(star, ghost != star.end() ? ghost : std::ranges::min_element(star));
+    std::erase(star, CADT_GHOST);
+    return star;
+  }
 };
 
 // Which of cocircular points is next rounded numbers do not tell, and those of the hull have to be searched in any
@@ -177,6 +185,80 @@ TEST(WrappedStars, TakeFewExactTestsOfPointsFarAway) {
   const Wrapped wrapped(points);
   EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
   EXPECT_LT(wrapped.exact_tests(), 500U);
+}
+
+// From a point nobody knows to be a neighbour, inside and on the hull, comes the same star as from a neighbour.
+TEST(WrappedStars, BeginAnywhere) {
+  for (const Points& points : {scattered(32), lattice(16, 0.0), lattice(32, 0.3), far_apart(16), parabola(60)}) {
+    const auto n = static_cast<std::uint32_t>(points.size());
+    const Boxes in(points, nullptr, nullptr);
+    const Wrapped expected(points);
+    const auto memory = std::make_unique<cadt_wrap_memory>();
+    cadt_tally tally{};
+    cadt_wrapper w{};
+    w.m = memory.get();
+    w.in = cadt_boxed_of(cadt_wrap_range_of(nullptr, 0, n), points.data(), in.boxes.data(), in.crates.data());
+    w.tally = &tally;
+    w.lanes = 1;
+    std::size_t hull = 0;
+    for (w.p = 0; w.p < n; ++w.p) {
+      memory->arc[0] = 0;
+      std::uint32_t begin = 0, size = 0;
+      std::int32_t side = 1;
+      const std::uint32_t kind = cadt_wrap_star(&w, &begin, &size, &side);
+      ASSERT_EQ(kind, expected.sizes[w.p] == 0 ? 0U : kind) << w.p;
+      if (kind == 0) continue;
+      std::vector<std::uint32_t> star(memory->link + begin, memory->link + begin + size), known = expected.star(w.p);
+      if (side < 0) std::ranges::reverse(star);
+      if (kind == 1) std::ranges::rotate(star, std::ranges::min_element(star));
+      hull += kind == 2 ? 1U : 0U;
+      ASSERT_EQ(star, known) << "of " << w.p;
+    }
+    EXPECT_GE(hull, 3U);
+  }
+}
+
+// Sides of a turned lattice are lines but for what is rounded off. A point on one has circles of which next to nothing
+// is known; those that bulge inwards by less than a point's distance hold few points nevertheless.
+TEST(WrappedStars, LookAtFewPointsBesideStraightSides) {
+  const Wrapped wrapped(lattice(64, 0.3));
+  EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
+  EXPECT_LT(wrapped.effort(), 70000U);  // 89,000 without
+}
+
+// What is better than b on its side of the line p, a is in the disc, also where that is the one of a flat arc.
+TEST(WrappedDisc, HoldsFlatArcs) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> unit(-1, 1), part(0, 1);
+  std::size_t flat = 0, better = 0;
+  for (int trial = 0; trial < 400000; ++trial) {
+    const cadt_point p{unit(random), unit(random)}, a{p.x + unit(random), p.y + unit(random)};
+    // beside the line at a place between them, by any distance
+    const auto beside = [&](double along) {
+      const double off = std::ldexp(unit(random), -static_cast<int>(random() % 56));
+      return cadt_point{p.x + along * (a.x - p.x) - off * (a.y - p.y), p.y + along * (a.y - p.y) + off * (a.x - p.x)};
+    };
+    const cadt_point b = beside(part(random)), c = beside(2 * part(random) - 0.5);
+    cadt_tally tally{};
+    const cadt_i32 side = cadt_orientation(p, a, b, &tally);
+    if (side == 0 || cadt_orientation(p, a, c, &tally) != side) continue;
+    const cadt_disc disc = cadt_disc_beside(p, a, b, side);
+    const double length = std::hypot(a.x - p.x, a.y - p.y), radius = std::sqrt(disc.square);
+    if (radius > 0.49 * CADT_WRAP_FLAT * length && radius < 0.51 * CADT_WRAP_FLAT * length) ++flat;
+    if (cadt_incircle(side > 0 ? p : a, side > 0 ? a : p, b, c, &tally) <= 0) continue;
+    ++better;
+    const double x = c.x - p.x - disc.x, y = c.y - p.y - disc.y;
+    ASSERT_FALSE(x * x + y * y > disc.square) << "trial " << trial;
+  }
+  EXPECT_GT(flat, 50000U);
+  EXPECT_GT(better, 50000U);
+  // and not much more than the arc
+  const cadt_point p{0, 0}, a{1, 0}, b{0.25, 1e-14};
+  const cadt_disc disc = cadt_disc_beside(p, a, b, 1);
+  const auto holds = [&](double x, double y) { return std::hypot(x - disc.x, y - disc.y) <= std::sqrt(disc.square); };
+  EXPECT_TRUE(holds(0.5, 1e-14));
+  EXPECT_FALSE(holds(0.5, 1e-5));
+  EXPECT_FALSE(holds(1.001, 1e-5));
 }
 
 // Of points on a line there is no circle, or by rounded numbers one without a centre: then nothing is excluded.

@@ -445,7 +445,7 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   result.shapes.on_line = sums[CADT_SHAPE_BESIDE] == 0;
   result.shapes.on_circle = 2 * sums[CADT_SHAPE_ONE_CIRCLE] > std::min<std::size_t>(n, samples);
   result.shapes.on_hull = 10 * sums[CADT_SHAPE_HULL] > 9 * std::min<std::size_t>(n, samples);
-  result.shapes.on_ring = 9 * sums[CADT_SHAPE_HULL] > std::min<std::size_t>(n, samples);
+  result.shapes.on_ring = !result.shapes.crowded && 9 * sums[CADT_SHAPE_HULL] > std::min<std::size_t>(n, samples);
   result.shapes.on_rays = 8 * sums[CADT_SHAPE_LINE] > samples;
   result.shapes.on_circles = 14 * sums[CADT_SHAPE_CIRCLE] > samples;
   result.shapes.on_lattice = 4 * sums[CADT_SHAPE_MIRRORED] > samples;

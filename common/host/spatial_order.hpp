@@ -32,7 +32,7 @@ struct PointShapes {
   bool on_line = false;     ///< none is beside a line by more than rounding hides: perhaps all are on it
   bool on_circle = false;   ///< most are on one circle, as far as rounded numbers tell
   bool on_hull = false;     ///< nearly all are on the hull, as far as a comparison with some others tells
-  bool on_ring = false;     ///< more are than of points that are spread evenly
+  bool on_ring = false;     ///< more are than of points that are spread evenly, and not because they are crowded
   bool on_rays = false;     ///< many are on a line with their neighbours, not along an axis: a polar grid
   bool on_circles = false;  ///< many are on a circle with their neighbours, and long integers have to tell
   bool on_lattice = false;  ///< many are, and a cheap test tells

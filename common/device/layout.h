@@ -81,7 +81,7 @@ enum {
   CADT_WRAP_OPENED = 4,       /* of these opened */
   CADT_WRAP_WIDE = 8,         /* boxes above which rounded numbers choose before exact tests */
   CADT_WRAP_DEGREE = 40,      /* neighbours of a star at most, the ghost among them: others would wait for a hub */
-  CADT_WRAP_DOUBTFUL = 3,     /* points found first that may be no neighbours, at least */
+  CADT_WRAP_DOUBTFUL = 3,     /* points found first that are asked whether they are neighbours */
   CADT_WRAP_HUBS = 64,        /* vertices without a star at most, */
   CADT_WRAP_EDGES = 256,      /* half-edges between two of them */
   CADT_WRAP_LANES = 128,      /* lanes of a team that search */

@@ -36,17 +36,17 @@ class TileMaker {
 
   /// Divides tiles again whose points are nearly all in a small part.
   void divide() {
-    crowded_ = launch_.zeros(list.count);
+    crowded_ = launch_.zeros(list_.count);
     const Allocation any = launch_.zeros(1);
-    launch_.run(KernelId::cadt_tile_crowds, cut_.items, keys_.high, keys_.low, keys_.low_bits, ranks_, list.tiles,
+    launch_.run(KernelId::cadt_tile_crowds, cut_.items, keys_.high, keys_.low, keys_.low_bits, ranks_, list_.tiles,
                 count_, levels_, cut_.grain, crowded_, any);
     if (launch_.read_word(any, 0) == 0) return;
     before_ = std::move(ranks_);
-    flag(any);
+    flag(any);  // which says nothing new: the keys are in order
     pack();
   }
 
-  TileList list;
+  [[nodiscard]] TileList& list() noexcept { return list_; }
 
  private:
   void flag(const Allocation& descents) {
@@ -57,10 +57,10 @@ class TileMaker {
 
   void pack() {
     launch_.scan(ranks_, n_ + 1);
-    list.count = launch_.read_word(ranks_, n_);
-    list.tiles = run_.memory.allocate((list.count + std::size_t{1}) * sizeof(cadt_tile));
+    list_.count = launch_.read_word(ranks_, n_);
+    list_.tiles = run_.memory.allocate((list_.count + std::size_t{1}) * sizeof(cadt_tile));
     launch_.run(KernelId::cadt_tile_pack, cut_.items, keys_.high, keys_.low, keys_.low_bits, before_, crowded_, ranks_,
-                list.tiles, count_, levels_, cut_.grain);
+                list_.tiles, count_, levels_, cut_.grain);
   }
 
   Run& run_;
@@ -69,6 +69,7 @@ class TileMaker {
   std::size_t n_;
   std::uint32_t count_, levels_;
   Cut cut_;
+  TileList list_;
   Allocation ranks_, before_, crowded_;
 };
 
@@ -76,11 +77,11 @@ class TileMaker {
 
 std::optional<TileList> make_tiles(Run& run, const SortKeys& keys, std::size_t n, unsigned levels, std::size_t least) {
   TileMaker maker(run, keys, n, levels);
-  if (!maker.make() || n / maker.list.count < least) return std::nullopt;
-  // With keys of one word cells are hardly smaller than what a crowd needs.
+  if (!maker.make() || n / maker.list().count < least) return std::nullopt;
+  // Keys of one word are for points that hardly crowd.
   if (keys.low_bits != 0) maker.divide();
-  run.statistics.tiles += maker.list.count;
-  return std::move(maker.list);
+  run.statistics.tiles += maker.list().count;
+  return std::move(maker.list());
 }
 
 StarList make_star_list(Run& run, std::size_t n, const TileList& tiles) {

@@ -87,6 +87,24 @@ struct Boxes {
   }
 };
 
+/// What searches the star of w.p, by one work-item.
+struct Searcher {
+  Boxes in;
+  std::unique_ptr<cadt_wrap_memory> memory = std::make_unique<cadt_wrap_memory>();
+  cadt_tally tally{};
+  cadt_wrapper w{};
+
+  explicit Searcher(const Points& points) : in(points, nullptr, nullptr) {
+    const auto n = static_cast<std::uint32_t>(points.size());
+    w.m = memory.get();
+    w.in = cadt_boxed_of(cadt_wrap_range_of(nullptr, 0, n), points.data(), in.boxes.data(), in.crates.data());
+    w.tally = &tally;
+    w.lanes = 1;
+  }
+  Searcher(const Searcher&) = delete;
+  Searcher& operator=(const Searcher&) = delete;
+};
+
 /// Both kernels, one work-item each.
 struct Wrapped {
   std::vector<std::uint32_t> links, begins, sizes, todo, found = std::vector<std::uint32_t>(CADT_WRAP_WORDS);
@@ -154,14 +172,8 @@ TEST(WrappedNext, IsTheBestOfAll) {
   for (const Points& points :
        {scattered(64), lattice(64, 0.0), lattice(32, 0.3), far_apart(32), polygon(500), nearly_straight(700)}) {
     const auto n = static_cast<std::uint32_t>(points.size());
-    const Boxes in(points, nullptr, nullptr);
-    const auto memory = std::make_unique<cadt_wrap_memory>();
-    cadt_tally tally{};
-    cadt_wrapper w{};
-    w.m = memory.get();
-    w.in = cadt_boxed_of(cadt_wrap_range_of(nullptr, 0, n), points.data(), in.boxes.data(), in.crates.data());
-    w.tally = &tally;
-    w.lanes = 1;
+    Searcher search(points);
+    cadt_wrapper& w = search.w;
     std::mt19937_64 random(3);
     for (int trial = 0; trial < 400; ++trial) {
       w.p = static_cast<std::uint32_t>(random() % n);
@@ -170,8 +182,8 @@ TEST(WrappedNext, IsTheBestOfAll) {
       for (const int side : {1, -1}) {
         std::uint32_t best = CADT_NONE;
         for (std::uint32_t i = 0; i < n; ++i)
-          if (i != w.p && i != a && cadt_orientation(points[w.p], points[a], points[i], &tally) == side)
-            best = best == CADT_NONE ? i : cadt_wrap_better_of(points.data(), w.p, a, side, best, i, &tally);
+          if (i != w.p && i != a && cadt_orientation(points[w.p], points[a], points[i], &search.tally) == side)
+            best = best == CADT_NONE ? i : cadt_wrap_better_of(points.data(), w.p, a, side, best, i, &search.tally);
         ASSERT_EQ(cadt_wrap_next(&w, a, side), best) << "behind " << a << " of " << w.p << ", side " << side;
       }
     }
@@ -191,24 +203,18 @@ TEST(WrappedStars, TakeFewExactTestsOfPointsFarAway) {
 TEST(WrappedStars, BeginAnywhere) {
   for (const Points& points : {scattered(32), lattice(16, 0.0), lattice(32, 0.3), far_apart(16), parabola(60)}) {
     const auto n = static_cast<std::uint32_t>(points.size());
-    const Boxes in(points, nullptr, nullptr);
     const Wrapped expected(points);
-    const auto memory = std::make_unique<cadt_wrap_memory>();
-    cadt_tally tally{};
-    cadt_wrapper w{};
-    w.m = memory.get();
-    w.in = cadt_boxed_of(cadt_wrap_range_of(nullptr, 0, n), points.data(), in.boxes.data(), in.crates.data());
-    w.tally = &tally;
-    w.lanes = 1;
+    Searcher search(points);
+    cadt_wrapper& w = search.w;
     std::size_t hull = 0;
     for (w.p = 0; w.p < n; ++w.p) {
-      memory->arc[0] = 0;
+      w.m->arc[0] = 0;
       std::uint32_t begin = 0, size = 0;
       std::int32_t side = 1;
       const std::uint32_t kind = cadt_wrap_star(&w, &begin, &size, &side);
       ASSERT_EQ(kind, expected.sizes[w.p] == 0 ? 0U : kind) << w.p;
       if (kind == 0) continue;
-      std::vector<std::uint32_t> star(memory->link + begin, memory->link + begin + size), known = expected.star(w.p);
+      std::vector<std::uint32_t> star(w.m->link + begin, w.m->link + begin + size), known = expected.star(w.p);
       if (side < 0) std::ranges::reverse(star);
       if (kind == 1) std::ranges::rotate(star, std::ranges::min_element(star));
       hull += kind == 2 ? 1U : 0U;
@@ -264,11 +270,8 @@ TEST(WrappedDisc, HoldsFlatArcs) {
 // Of points on a line there is no circle, or by rounded numbers one without a centre: then nothing is excluded.
 TEST(WrappedDisc, ThatIsNoNumberHoldsAll) {
   const Points points = {{0, 0}, {1, 0}, {2, 0}, {-3, 4}, {3, -4}};
-  const Boxes in(points, nullptr, nullptr);
-  cadt_tally tally{};
-  cadt_wrapper w{};
-  w.in = cadt_boxed_of(cadt_wrap_range_of(nullptr, 0, 5), points.data(), in.boxes.data(), in.crates.data());
-  w.tally = &tally;
+  Searcher search(points);
+  cadt_wrapper& w = search.w;
   cadt_wrap_turn turn = cadt_wrap_turn_behind(1, 1);
   cadt_wrap_take(&w, &turn, 2);
   EXPECT_TRUE(std::isnan(turn.disc.x));

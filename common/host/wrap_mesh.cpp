@@ -27,13 +27,15 @@ constexpr std::uint32_t wrap_effort = 96, spare_effort = 4096;
 /// Of cards. Where many have to look at many, all on a side of the hull, they do it at once: about 13,000 in a
 /// microsecond. So for each point of the whole mesh this is a nanosecond or two, when insertion of the rest, and the
 /// rows of flips that it leaves on such sides, takes several.
-constexpr std::uint32_t spare_effort_of_cards = 1U << 21, spare_effort_of_point = 20, most_spare_effort = 1U << 31;
+constexpr std::uint32_t spare_effort_of_cards = 1U << 21, spare_effort_of_point = 20;
+constexpr std::uint32_t most_spare_effort = 1U << 31, most_watched_effort = 1U << 24;  // the latter: a few milliseconds
 
 /// `all`: the points of the mesh that the wrapped ones are part of.
 std::uint32_t spare_effort_of(const Device& device, std::size_t all) {
   if (device.shape().contiguous) return spare_effort;
-  return static_cast<std::uint32_t>(
-      std::min<std::uint64_t>(spare_effort_of_cards + std::uint64_t{spare_effort_of_point} * all, most_spare_effort));
+  const std::uint64_t effort = spare_effort_of_cards + std::uint64_t{spare_effort_of_point} * all;
+  const std::uint32_t most = device.info().watchdog ? most_watched_effort : most_spare_effort;
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(effort, most));
 }
 
 /// Boxes and crates of points (common/device/wrap_boxes.h); each set begins a box and a crate of its own.

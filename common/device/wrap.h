@@ -280,6 +280,7 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
     cadt_u32 next = cadt_wrap_known(w, at, towards), certain = none;
     if (next == none) next = cadt_wrap_next(w, at, towards);
     CADT_TEAM_SYNC();
+    cadt_u32 restart = 0u;
     if (asked != none) {
       /* It is a neighbour if it is found from the one behind it as well: their circle is empty on either side. */
       if (next == w->m->link[asked])
@@ -290,7 +291,6 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
       /* The first one need not have been a neighbour; from a neighbour on all are, and come again. */
       for (cadt_u32 k = *begin; k < *size && !outcome; ++k)
         if (w->m->link[k] == next) *begin = k, outcome = 1u;
-      CADT_TEAM_SYNC(); /* compilers load one more than is looked at, which is written next */
       if (outcome || *size + 1u >= CADT_CAST(cadt_u32, CADT_WRAP_DEGREE)) going = 0u;
       at = next;
     } else if (from_hull) {
@@ -302,30 +302,32 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
       asked = 0u;
       if (known != none) certain = 0u;
     }
+    if (certain == none && asked != none && (asked + 1u >= *size || asked == CADT_CAST(cadt_u32, CADT_WRAP_DOUBTFUL)))
+      restart = 1u;
+    if (certain != none || restart) at = w->m->link[restart ? *size - 1u : certain];
+    /* All have read what is written next. Once for all ways: PoCL 3.1 compiles what is behind a barrier of some ways
+     * anew for each of them. */
+    CADT_TEAM_SYNC();
     if (certain != none) {
-      /* All from that one on are neighbours: turned round, the search goes on from it. */
-      from_hull = 1u;
-      asked = none;
-      *begin = certain;
-      at = w->m->link[certain];
-      CADT_TEAM_SYNC();
+      /* All from that one on are neighbours: turned round, the search goes on from it, which is entered again. */
       CADT_TEAM_FOR(k, (*size - certain) / 2u) {
         const cadt_u32 other = w->m->link[*size - 1u - k];
         w->m->link[*size - 1u - k] = w->m->link[certain + k];
         w->m->link[certain + k] = other;
       }
-      CADT_TEAM_SYNC();
-      --*size; /* it is entered again */
-      *side = -*side;
-    } else if (asked != none && (asked + 1u >= *size || asked == CADT_CAST(cadt_u32, CADT_WRAP_DOUBTFUL))) {
+      from_hull = 1u;
+      *begin = certain;
+      --*size;
+    }
+    if (restart) {
       /* Once more from the last one. If it was found from a neighbour, it is one itself, and the edge one of the hull.
        */
       from_hull = *size > 1u ? 1u : 0u;
       if (++pass > 2u) going = 0u;
-      at = w->m->link[*size - 1u];
-      CADT_TEAM_SYNC();
-      asked = none;
       *size = 0u;
+    }
+    if (certain != none || restart) {
+      asked = none;
       *side = -*side;
     }
   }

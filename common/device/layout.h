@@ -16,9 +16,9 @@ typedef struct {
 /* Points that are looked at to tell what a set is like (order.h). */
 enum { CADT_POINT_SAMPLES = 1024, CADT_HULL_PROBES = 16 /* others that one of them is compared with */ };
 
-/* Words that are counted when points are put in order: members of crowded cells, points that equal the one before, and
- * of the sample points beside a line, on one circle, on a circle with the next three, the same by a cheap test, on a
- * line with them, on the hull. */
+/* Words that tell what was found when points were put in order: 1 if a cell is crowded; how many equal the one before;
+ * and of the sample how many are beside a line, on one circle, on a circle with the next three, the same by a cheap
+ * test, on a line with them, on the hull. */
 enum {
   CADT_CROWDED,
   CADT_EQUAL,

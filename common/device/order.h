@@ -140,12 +140,13 @@ CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, c
   }
 }
 
-/* The first row becomes that of all. By one team. */
-CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL cadt_bounds_row* rows, cadt_u32 room) {
+/* The first row becomes that of all, and the CADT_ORDER_WORDS of `totals` become 0. By one team. */
+CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL cadt_bounds_row* rows, cadt_u32 room, CADT_GLOBAL cadt_u32* totals) {
   CADT_TEAM_MEMORY cadt_bounds_row lanes[CADT_BOUNDS_LANES];
   const cadt_u32 count = cadt_item < cadt_team_lanes ? rows[0].rows : 0u; /* launches are rounded up */
   cadt_bounds_row row = cadt_bounds_of_nothing();
   CADT_TEAM_FOR(i, cadt_min_u32(count, room)) { cadt_bounds_add(&row, rows[i]); }
+  if (cadt_item < cadt_team_lanes) CADT_TEAM_FOR(i, CADT_CAST(cadt_u32, CADT_ORDER_WORDS)) totals[i] = 0u;
   CADT_TEAM_SYNC();
   cadt_bounds_of_team(lanes, row);
   if (cadt_item == 0u) {
@@ -347,16 +348,20 @@ CADT_FN cadt_u32 cadt_lexicographic(cadt_point a, cadt_u32 i, cadt_point b, cadt
   return i < j ? 1u : 0u;
 }
 
-/* Sorts each run of at most CADT_RUN equal keys lexicographically, equal points by index. Longer runs are equal points
- * in order of their indices already (refine.h). */
+/* Sorts each run of at most CADT_RUN equal keys lexicographically, equal points by index. Longer runs are left as they
+ * are, and totals[CADT_CROWDED] becomes 1; after refinement (refine.h) they are equal points in order of their
+ * indices. */
 CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_point* sorted,
-            CADT_GLOBAL cadt_u32* order, cadt_u32 count, cadt_u32 grain) {
+            CADT_GLOBAL cadt_u32* order, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 key = keys[i];
     if ((i > 0u && keys[i - 1u] == key) || i + 1u >= count || keys[i + 1u] != key) continue;
     cadt_u32 end = i + 2u;
     while (end < count && end <= i + CADT_RUN && keys[end] == key) ++end;
-    if (end > i + CADT_RUN) continue;
+    if (end > i + CADT_RUN) {
+      cadt_store_relaxed(totals + CADT_CROWDED, 1u);
+      continue;
+    }
     for (cadt_u32 a = i + 1u; a < end; ++a) {
       const cadt_point p = sorted[a];
       const cadt_u32 id = order[a];

@@ -51,11 +51,12 @@ CADT_FN cadt_u32 cadt_wrap_owned(CADT_GLOBAL const cadt_u32* link, cadt_u32 size
 }
 
 /* owned[v]: triangles that belong to v, in two counts if `apart`; a 0 behind the last, and then the first words of
- * `found`, so that they can be read with the scan's total. If not `apart`, half-edges between two vertices without
- * stars are counted in found[6], and listed. */
+ * `found`, so that they can be read with the scan's total, and `zeros` zeros for who writes next. If not `apart`,
+ * half-edges between two vertices without stars are counted in found[6], and listed. */
 CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* links, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 apart, cadt_u32 grain, CADT_GLOBAL cadt_u32* found,
-            CADT_GLOBAL cadt_u32* owned, CADT_GLOBAL cadt_wrap_edge* edges) {
+            CADT_GLOBAL cadt_u32* owned, cadt_u32 zeros, CADT_GLOBAL cadt_wrap_edge* edges) {
+  for (cadt_u32 k = cadt_item; k < zeros; k += cadt_items) owned[n + 1u + CADT_WRAP_FOUND + k] = 0u;
   if (cadt_item == 0u) {
     owned[n] = 0u;
     for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_WRAP_FOUND); ++k) owned[n + 1u + k] = found[k];

@@ -2,13 +2,20 @@
 #include "common/host/memory.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <new>
 #include <string>
 
 namespace cadt {
 namespace {
 
-constexpr std::size_t smallest_kept = 4096;  // smaller buffers cost next to nothing
+/// Buffers below this are kept in sizes of powers of two, so that those of one call serve the next, whatever it has to
+/// count. To make and to free one costs as much as two launches with OpenCL.
+constexpr std::size_t small = 4096, smallest = 64;
+
+std::size_t kept_size(std::size_t bytes) noexcept {
+  return bytes >= small ? bytes : std::bit_ceil(std::max(bytes, smallest));
+}
 
 }  // namespace
 
@@ -44,10 +51,15 @@ void Memory::require(std::size_t bytes) {
   }
 }
 
+std::size_t Memory::requested(std::size_t bytes) const noexcept {
+  return keep_ ? kept_size(bytes) : std::max<std::size_t>(bytes, 4);  // OpenCL has no empty buffers
+}
+
 bool Memory::suits(std::size_t kept, std::size_t bytes) const noexcept {
   if (kept < bytes) return false;
-  if (limit_ != 0) return kept == bytes;  // what is too large would count, and might be what is missing later
-  return reserved_ || kept / 2 <= bytes;  // not so large that it would be missed
+  if (bytes < small) return kept == bytes;  // larger ones are waited for
+  if (limit_ != 0) return kept == bytes;    // what is too large would count, and might be what is missing later
+  return reserved_ || kept / 2 <= bytes;    // not so large that it would be missed
 }
 
 std::unique_ptr<Buffer> Memory::take_kept(std::size_t bytes) noexcept {
@@ -64,7 +76,7 @@ std::unique_ptr<Buffer> Memory::take_kept(std::size_t bytes) noexcept {
 
 void Memory::give_back(std::unique_ptr<Buffer> buffer, std::size_t counted) noexcept {
   held_ -= counted;
-  if (!keep_ || counted < smallest_kept) return;
+  if (!keep_ || counted == 0) return;  // 0: the caller's
   try {
     kept_.push_back(std::move(buffer));
     kept_bytes_ += counted;
@@ -93,14 +105,14 @@ Allocation Memory::account(std::unique_ptr<Buffer> buffer) {
 }
 
 Allocation Memory::allocate(std::size_t bytes) {
-  bytes = std::max<std::size_t>(bytes, 4);  // OpenCL has no empty buffers
+  bytes = requested(bytes);
   if (auto buffer = take_kept(bytes)) return account(std::move(buffer));
   check_limit(bytes);
   return account(ask([&] { return device_.allocate(bytes); }));
 }
 
 Allocation Memory::allocate_zeros(std::size_t bytes) {
-  bytes = std::max<std::size_t>(bytes, 4);
+  bytes = requested(bytes);
   if (auto buffer = take_kept(bytes)) {
     device_.fill(*buffer, 0, (bytes + 3) / 4 * 4, 0);
     return account(std::move(buffer));

@@ -93,6 +93,8 @@ class Memory {
  private:
   friend class Allocation;
   [[nodiscard]] Allocation account(std::unique_ptr<Buffer> buffer);
+  /// Bytes of the buffer for a request.
+  [[nodiscard]] std::size_t requested(std::size_t bytes) const noexcept;
   /// Whether a kept buffer may serve a request for less.
   [[nodiscard]] bool suits(std::size_t kept, std::size_t bytes) const noexcept;
   [[nodiscard]] std::unique_ptr<Buffer> take_kept(std::size_t bytes) noexcept;

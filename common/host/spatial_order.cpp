@@ -58,26 +58,27 @@ cadt_bounds_row read_row(Device& device, const Buffer& from) {
           f.rows};
 }
 
-/// The row of all points. `group`: work-items that share a row on this device.
-cadt_bounds_row merge_bounds(Run& run, const Allocation& input, std::size_t n, std::uint32_t group) {
+/// The row of all points; `totals` become 0. `group`: work-items that share a row on this device.
+cadt_bounds_row merge_bounds(Run& run, const Allocation& input, std::size_t n, std::uint32_t group,
+                             const Allocation& totals) {
   const Cut c = run.launcher.parts(n);
   const std::uint32_t room = (c.items - 1) / group + 1;
   const Allocation rows = run.memory.allocate(room * row_bytes(run.device));
   run.launcher.run(KernelId::cadt_bounds, c.items, input, static_cast<std::uint32_t>(n), c.grain, c.items, room, rows);
   const std::uint32_t team = run.device.shape().contiguous ? 1 : CADT_BOUNDS_LANES;
-  run.launcher.run_in_groups(KernelId::cadt_merge_bounds, team, team, rows, room);
+  run.launcher.run_in_groups(KernelId::cadt_merge_bounds, team, team, rows, room, totals);
   const cadt_bounds_row all = read_row(run.device, *rows);
   // Devices may make smaller groups than they were asked for.
-  return all.rows > room ? merge_bounds(run, input, n, 1) : all;
+  return all.rows > room ? merge_bounds(run, input, n, 1, totals) : all;
 }
 
-Bounds find_bounds(Run& run, const Allocation& input, std::size_t n) {
+Bounds find_bounds(Run& run, const Allocation& input, std::size_t n, const Allocation& totals) {
   constexpr std::uint32_t usual_group = 128;  // the least that a GPU has unless the options say so
   const unsigned asked = run.options.work_group_size;
   const std::uint32_t group = run.device.shape().contiguous ? 1
                               : asked == 0                  ? usual_group
                                                             : std::min(asked, usual_group);
-  const cadt_bounds_row all = merge_bounds(run, input, n, group);
+  const cadt_bounds_row all = merge_bounds(run, input, n, group, totals);
   if (all.bad != CADT_NONE) {
     throw InputError("point " + std::to_string(all.bad) +
                          " (counted from 0) has a coordinate that is NaN or infinite: "
@@ -323,7 +324,7 @@ void flag_distinct(Run& run, const Allocation& keys, const Allocation& sorted, c
                    const Allocation& flags, std::size_t n, bool neighbours, const Allocation& totals) {
   const Cut c = run.launcher.cut(n);
   const auto count = static_cast<std::uint32_t>(n);
-  run.launcher.run(KernelId::cadt_sort_runs, c.items, keys, sorted, order, count, c.grain);
+  run.launcher.run(KernelId::cadt_sort_runs, c.items, keys, sorted, order, count, c.grain, totals);
   run.launcher.run(KernelId::cadt_unique_flags, c.items, sorted, keys, flags, count, c.grain, std::uint32_t{neighbours},
                    totals);
 }
@@ -359,7 +360,8 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   const Cut c = launch.cut(n);
   SpatialOrder result;
 
-  const Bounds bounds = find_bounds(run, input, n);
+  const Allocation totals = run.memory.allocate(CADT_ORDER_WORDS * word);
+  const Bounds bounds = find_bounds(run, input, n, totals);
   // Kernels for floats take any float as it is.
   const bool floats = takes_floats_only(run.device);
   result.wide = !floats && bounds.high - bounds.low > narrow_span;
@@ -373,7 +375,6 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
 
   Allocation keys = run.memory.allocate(n * word), spare = run.memory.allocate(n * word);
   Allocation order = run.memory.allocate(n * word), sorted;
-  const Allocation totals = launch.zeros(CADT_ORDER_WORDS);
   const auto gather = [&] {
     sorted = run.memory.allocate(n * point_bytes(run.device));
     launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
@@ -390,7 +391,6 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   std::array<std::uint32_t, CADT_ORDER_WORDS> sums{};
   std::uint32_t crowd = 0;
   if (n <= most_ahead) {
-    launch.run(KernelId::cadt_crowded_flags, c.items, keys, spare, count, c.grain, totals);
     run.end_phase("sort");
     gather();
     run.device.read(*totals, 0, sums.data(), sizeof sums);

@@ -91,8 +91,8 @@ constexpr int narrow_span = 240;
 [[nodiscard]] bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const Allocation& order,
                                 Allocation& spare, std::size_t n, std::uint32_t crowd);
 /// Sorts runs of equal keys; 1 in `flags` where a point differs from the one before. Of the CADT_ORDER_WORDS of
-/// `totals` totals[CADT_EQUAL] counts the others, and those behind it say what a sample is like, with `neighbours` in a
-/// row too.
+/// `totals`, 0 before, totals[CADT_CROWDED] says whether runs were too long for that, totals[CADT_EQUAL] counts the
+/// others, and those behind it say what a sample is like, with `neighbours` in a row too.
 void flag_distinct(Run& run, const Allocation& keys, const Allocation& sorted, const Allocation& order,
                    const Allocation& flags, std::size_t n, bool neighbours, const Allocation& totals);
 /// Closes up distinct points, as flagged in `flags`; `equal` others. Where sets begin among them, if there are sets.

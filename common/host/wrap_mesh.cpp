@@ -92,9 +92,7 @@ class Wrapping {
   [[nodiscard]] bool make_arrays(DeviceMesh& mesh) {
     const std::size_t row = (n_ + CADT_WRAP_FOUND) / CADT_COUNTER_STRIDE * CADT_COUNTER_STRIDE + CADT_COUNTER_STRIDE;
     bases_ = run_.memory.allocate((row + certify_words(run_)) * word);
-    const std::size_t counted = n_ + 1 + CADT_WRAP_FOUND;  // what count() writes; all from n on is read at once
-    run_.device.fill(*bases_, counted * word, (row + certify_words(run_) - counted) * word, 0);
-    count(true);
+    count(true, row + certify_words(run_));  // all from n on is read at once
     mesh.slots = triangles();
     mesh.vertices = run_.memory.allocate(3 * triangles() * word);
     mesh.links = run_.memory.allocate(3 * triangles() * word);
@@ -124,7 +122,7 @@ class Wrapping {
   /// The mesh in records. Nothing if there are too many hubs.
   [[nodiscard]] std::optional<DeviceMesh> make_records() {
     bases_ = run_.memory.allocate((n_ + 1 + CADT_WRAP_FOUND) * word);
-    count(false);
+    count(false, n_ + 1 + CADT_WRAP_FOUND);
     std::array<std::uint32_t, 1 + CADT_WRAP_FOUND> words{};
     run_.device.read(*bases_, n_ * word, words.data(), sizeof words);
     note(words);
@@ -153,12 +151,13 @@ class Wrapping {
   [[nodiscard]] std::size_t triangles() const noexcept { return 2 * n_ - 2; }
   [[nodiscard]] std::size_t link_words() const noexcept { return 3 * triangles(); }  // ghosts have no star
 
-  /// First triangles of the vertices; behind them the total, and what was found. Vertices without a star have size 0,
-  /// so this may run before it is known whether there are too many.
-  void count(bool apart) {
+  /// First triangles of the vertices; behind them the total, what was found, and zeros, `words` together. Vertices
+  /// without a star have size 0, so this may run before it is known whether there are too many.
+  void count(bool apart, std::size_t words) {
     const Cut all = launch_.cut(n_);
+    const auto zeros = static_cast<std::uint32_t>(words - (n_ + 1 + CADT_WRAP_FOUND));
     launch_.run(KernelId::cadt_wrap_counts, all.items, links_, begins_, sizes_, count_, apart ? 1U : 0U, all.grain,
-                found_, bases_, edges_);
+                found_, bases_, zeros, edges_);
     launch_.scan(bases_, n_ + 1);
   }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace cadt::test {
 namespace {
@@ -234,8 +233,8 @@ TEST_P(ResidentMemory, PeakIsWithinWhatIsNeeded) {
 /// Of back ends whose memory is kept by the library; CUDA has a pool (CudaCalls.TakeNoMoreThanReserved).
 using KeptMemory = ResidentMemory;
 
-/// After reserve() the first call of each size asks for nothing that the third one does not. Small buffers are never
-/// kept: all calls ask for some.
+/// After reserve() the first call asks for small buffers only, those after it for a few of other sizes, and from the
+/// second call of a size on for none.
 TEST_P(KeptMemory, ReservedMemoryIsEnough) {
   std::vector<Known> sets;
   for (const std::size_t n : {60000, 59999, 40000, 30000, 14000, 5000}) sets.emplace_back(uniform_points(n, n));
@@ -246,8 +245,8 @@ TEST_P(KeptMemory, ReservedMemoryIsEnough) {
       with.order = order;
       Triangulator triangulator(with);
       triangulator.reserve(60000);
-      std::map<std::size_t, std::uint64_t> first;
-      std::uint64_t last = 0;
+      constexpr std::uint64_t most_small = 8;
+      std::uint64_t last = kept_buffers(triangulator);  // reserve() asked for those
       for (int round = 0; round < 3; ++round) {
         for (const Known& known : sets) {
           const std::vector<float> single(known.xy.begin(), known.xy.end());
@@ -259,13 +258,7 @@ TEST_P(KeptMemory, ReservedMemoryIsEnough) {
           const std::uint64_t now = requests(mesh), of_this = now - last;
           last = now;
           EXPECT_LE(mesh.statistics().bytes_device_peak, triangulator.memory_needed(60000));
-          if (round == 0 && known.size() == 60000) {
-            first[known.size()] = of_this - kept_buffers(triangulator);  // reserve() asked for those
-          } else if (round == 0) {
-            first[known.size()] = of_this;
-          } else {
-            EXPECT_EQ(of_this, first[known.size()]) << known.size() << " points, round " << round;
-          }
+          EXPECT_LE(of_this, round == 0 ? most_small : 0) << known.size() << " points, round " << round;
         }
       }
     }

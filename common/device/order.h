@@ -427,10 +427,11 @@ CADT_FN void cadt_count_shapes(CADT_GLOBAL const cadt_point* sorted, cadt_u32 co
 
 /* 1 where a point differs from the one before; equal points of different sets have different keys. totals[CADT_EQUAL]
  * counts the others, and behind it is what a sample is like: CADT_SHAPE_BESIDE is positive if one is, the others are
- * counted. \pre totals are 0 */
-CADT_KERNEL(cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* keys,
-            CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, cadt_u32 neighbours,
-            CADT_GLOBAL cadt_u32* totals) {
+ * counted. The sample needs many registers, but most work-items only compare: as many as fit run at the same time.
+ * \pre totals are 0 */
+CADT_TEAM_KERNEL(128, 12, cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* keys,
+                 CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, cadt_u32 neighbours,
+                 CADT_GLOBAL cadt_u32* totals) {
   const cadt_u32 samples = cadt_min_u32(count, CADT_POINT_SAMPLES);
   cadt_u32 sum = 0u;
   for (cadt_u32 s = cadt_item; s < samples; s += cadt_items)

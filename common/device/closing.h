@@ -116,7 +116,7 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
           continue;
         }
         ++illegal;
-        /* to cadt_legalize_edges: without the repairs this kernel is small and runs at full occupancy */
+        /* to cadt_legalize_edges: without the repairs this kernel is smaller */
         cadt_defer_edge(&deferred, CADT_LINK(t, k), &tally);
       } else if (cadt_turns_back(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
                                  u.v0, &tally)) {

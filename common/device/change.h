@@ -23,8 +23,8 @@ CADT_FN void cadt_set_hint(const cadt_mesh* m, cadt_u32 vertex, cadt_u32 t) {
 /* Gives back a claim whose records turned out to have changed. Returns 0. */
 CADT_FN cadt_u32 cadt_give_up(const cadt_mesh* m, const cadt_claim* claim, cadt_tally* tally) {
   cadt_abandon_claim(m, claim, 4u);
-  tally->count[CADT_COUNT_LOST_CLAIMS]++;
-  tally->count[CADT_COUNT_INVALID]++;
+  CADT_TALLY_NOW(tally, CADT_COUNT_LOST_CLAIMS);
+  CADT_TALLY_NOW(tally, CADT_COUNT_INVALID);
   CADT_LAP(tally, CADT_TIME_CLAIM);
   return 0u;
 }
@@ -91,10 +91,10 @@ CADT_FN void cadt_write_face(const cadt_mesh* m, cadt_u32 i, cadt_u32 t, const c
 CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges,
                                  cadt_tally* tally) {
   const cadt_u32 t = place->record, t1 = 2u * i, t2 = 2u * i + 1u;
-  const cadt_snapshot s = place->at;
+  cadt_snapshot s = place->at;
   if (!cadt_is_free(s.lock)) {
     tally->count[CADT_COUNT_CLAIMS]++;
-    tally->count[CADT_COUNT_LOST_CLAIMS]++;
+    CADT_TALLY_NOW(tally, CADT_COUNT_LOST_CLAIMS);
     return 0u;
   }
   cadt_claim claim;
@@ -106,7 +106,7 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   claim.record[3] = CADT_NONE;
   claim.version[3] = 0u;
   if (!cadt_try_claim(m, &claim, tally)) return 0u;
-  if (!cadt_confirm(m, t, 0u, &s)) return cadt_give_up(m, &claim, tally);
+  if (!cadt_confirm(m, t, 0u, CADT_LINKS_12, &s)) return cadt_give_up(m, &claim, tally);
   cadt_write_face(m, i, t, &s, edges, tally);
   cadt_fence_locks();
   CADT_PERTURB(m, CADT_AT_PUBLISH);
@@ -174,15 +174,15 @@ CADT_FN void cadt_write_edge(const cadt_mesh* m, cadt_u32 i, const cadt_place* p
 CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges,
                                  cadt_tally* tally) {
   const cadt_u32 t = place->record, k = place->edge, k1 = CADT_NEXT(k);
-  const cadt_snapshot s = place->at;
+  cadt_snapshot s = place->at;
   const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
   const cadt_u32 j1 = CADT_NEXT(j), ts = 2u * i, ns = 2u * i + 1u;
   CADT_PERTURB(m, CADT_AT_SECOND);
-  const cadt_snapshot u = cadt_look(m, n);
+  cadt_snapshot u = cadt_look(m, n);
   if (CADT_NEIGHBOR(u, j) != CADT_LINK(t, k)) {
     tally->count[CADT_COUNT_CLAIMS]++;
-    tally->count[CADT_COUNT_LOST_CLAIMS]++;
-    tally->count[CADT_COUNT_INVALID]++;
+    CADT_TALLY_NOW(tally, CADT_COUNT_LOST_CLAIMS);
+    CADT_TALLY_NOW(tally, CADT_COUNT_INVALID);
     return 0u;
   }
   const cadt_u32 outer_bc = CADT_NEIGHBOR(s, k1), outer_ad = CADT_NEIGHBOR(u, j1);
@@ -195,7 +195,8 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_mesh* m, cadt_u32 i, const cadt_plac
   claim.record[3] = CADT_LINK_RECORD(outer_ad);
   claim.version[2] = claim.version[3] = CADT_ANY_VERSION;
   if (!cadt_try_claim(m, &claim, tally)) return 0u;
-  if (!cadt_confirm(m, t, 0u, &s) || !cadt_confirm(m, n, 0u, &u)) return cadt_give_up(m, &claim, tally);
+  if (!cadt_confirm(m, t, 0u, CADT_LINKS_ALL, &s) || !cadt_confirm(m, n, 0u, CADT_LINKS_ALL, &u))
+    return cadt_give_up(m, &claim, tally);
   cadt_write_edge(m, i, place, &u, edges, tally);
   cadt_fence_locks();
   CADT_PERTURB(m, CADT_AT_PUBLISH);
@@ -256,10 +257,12 @@ CADT_FN_SLOW cadt_u32 cadt_flip_gains(cadt_point p, cadt_point a, cadt_point b, 
                                                          : 0u; /* no number (a difference has overflowed): no gain */
 }
 
-/* Whether the illegal edge a, b, whose slot has been flipped `flips` times, is left as it is (paper, section 4.4.4).
- * Hull edges are not: the hull shall be convex. */
-CADT_FN cadt_u32 cadt_is_left(const cadt_mesh* m, cadt_u32 flips, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_u32 q) {
-  if (m->stabilize == CADT_CAST(cadt_u32, CADT_STABILIZE_OFF) || flips <= m->threshold) return 0u;
+/* Whether the illegal edge a, b, edge k of record t, is left as it is because of its flips (paper, section 4.4.4). Hull
+ * edges are not: the hull shall be convex. */
+CADT_FN cadt_u32 cadt_is_left(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 p, cadt_u32 a, cadt_u32 b,
+                              cadt_u32 q) {
+  if (m->stabilize == CADT_CAST(cadt_u32, CADT_STABILIZE_OFF)) return 0u;
+  if (cadt_flips_get(cadt_load_field(m->records[t].word + CADT_WORD_FLIPS), k) <= m->threshold) return 0u;
   if (a == CADT_GHOST || b == CADT_GHOST) return 0u;
   if (m->stabilize == CADT_CAST(cadt_u32, CADT_STABILIZE_DEFER)) return 1u;
   return cadt_flip_gains(cadt_point_of(m, p), cadt_point_of(m, a), cadt_point_of(m, b), cadt_point_of(m, q), m->epsilon)
@@ -321,25 +324,25 @@ CADT_FN void cadt_write_flip(const cadt_mesh* m, cadt_u32 link, const cadt_snaps
 CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 apex, cadt_point apex_point,
                                     cadt_u32* partner, cadt_u32* all_sides, cadt_tally* tally) {
   const cadt_u32 t = CADT_LINK_RECORD(link), k = CADT_LINK_EDGE(link);
-  const cadt_snapshot s = cadt_look_from(m, t, k);
+  cadt_snapshot s = cadt_look_from(m, t, k);
   const cadt_u32 p = s.v0;
   if (!cadt_is_free(s.lock)) {
     tally->count[CADT_COUNT_CLAIMS]++; /* an attempt that ends before its first compare-and-swap */
-    tally->count[CADT_COUNT_LOST_CLAIMS]++;
+    CADT_TALLY_NOW(tally, CADT_COUNT_LOST_CLAIMS);
     CADT_LAP(tally, CADT_TIME_TEST);
     return CADT_EDGE_CONFLICT;
   }
   /* A vertex of the triangle was flipped away by another thread, which did not know that this edge had yet to be
    * checked: the check is owed all the same. */
   *all_sides = p != apex ? 1u : 0u;
-  if (p != apex && apex != CADT_NONE) tally->count[CADT_COUNT_STALE_EDGES]++;
+  if (p != apex && apex != CADT_NONE) CADT_TALLY_NOW(tally, CADT_COUNT_STALE_EDGES);
   const cadt_u32 across = s.n0, n = CADT_LINK_RECORD(across), j = CADT_LINK_EDGE(across);
   CADT_PERTURB(m, CADT_AT_SECOND);
-  const cadt_snapshot u = cadt_look_from(m, n, j);
+  cadt_snapshot u = cadt_look_from(m, n, j);
   if (!cadt_is_free(u.lock) || u.n0 != link) {
     tally->count[CADT_COUNT_CLAIMS]++;
-    tally->count[CADT_COUNT_LOST_CLAIMS]++;
-    if (cadt_is_free(u.lock)) tally->count[CADT_COUNT_INVALID]++;
+    CADT_TALLY_NOW(tally, CADT_COUNT_LOST_CLAIMS);
+    if (cadt_is_free(u.lock)) CADT_TALLY_NOW(tally, CADT_COUNT_INVALID);
     CADT_LAP(tally, CADT_TIME_TEST);
     return CADT_EDGE_CONFLICT;
   }
@@ -354,8 +357,8 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   }
   CADT_LAP(tally, CADT_TIME_TEST);
   if (!illegal) return CADT_EDGE_LEGAL;
-  if (cadt_is_left(m, cadt_flips_get(s.flips, k), p, s.v1, s.v2, q)) {
-    tally->count[CADT_COUNT_STABILIZED]++;
+  if (cadt_is_left(m, t, k, p, s.v1, s.v2, q)) {
+    CADT_TALLY_NOW(tally, CADT_COUNT_STABILIZED);
     CADT_LAP(tally, CADT_TIME_TEST);
     return CADT_EDGE_LEFT;
   }
@@ -369,7 +372,11 @@ CADT_FN cadt_u32 cadt_legalize_edge(const cadt_mesh* m, cadt_u32 link, cadt_u32 
   claim.record[3] = CADT_LINK_RECORD(outer_aq);
   claim.version[2] = claim.version[3] = CADT_ANY_VERSION;
   if (!cadt_try_claim(m, &claim, tally)) return CADT_EDGE_CONFLICT;
-  if (!cadt_confirm(m, t, k, &s) || !cadt_confirm(m, n, j, &u)) {
+  u.v1 = s.v2; /* as neighbours have it: what was read need not be kept until here */
+  u.v2 = s.v1;
+  u.n0 = link;
+  const cadt_u32 same = cadt_confirm(m, t, k, CADT_LINKS_01, &s); /* both at once: reading takes long */
+  if (!(same & cadt_confirm(m, n, j, CADT_LINKS_01, &u))) {
     cadt_give_up(m, &claim, tally);
     return CADT_EDGE_CONFLICT;
   }

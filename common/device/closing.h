@@ -34,7 +34,7 @@ typedef struct {
  */
 CADT_FN void cadt_close_edges(const cadt_mesh* m, const cadt_u32* links, cadt_u32 count, const cadt_deferred* deferred,
                               cadt_findings* found, cadt_tally* tally) {
-  cadt_worklist work;
+  CADT_WORKLIST_HERE(work);
   for (cadt_u32 e = 0u; e < count; ++e) {
     const cadt_u32 k = CADT_LINK_EDGE(links[e]);
     CADT_GLOBAL cadt_u32* t = m->records[CADT_LINK_RECORD(links[e])].word;
@@ -46,7 +46,7 @@ CADT_FN void cadt_close_edges(const cadt_mesh* m, const cadt_u32* links, cadt_u3
     if (!cadt_is_free(lock) || !cadt_is_free(lock_across) || cadt_load_field(n + CADT_WORD_LINK + j) != links[e]) {
       found->unsettled++;
     } else if (cadt_is_illegal(m, p, a, b, q, tally)) {
-      if (cadt_is_left(m, cadt_flips_get(cadt_load_field(t + CADT_WORD_FLIPS), k), p, a, b, q)) {
+      if (cadt_is_left(m, CADT_LINK_RECORD(links[e]), k, p, a, b, q)) {
         found->left++;
         continue;
       }
@@ -110,8 +110,8 @@ CADT_KERNEL(cadt_closing_pass, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 co
         ++unsettled;
       } else if (cadt_is_illegal(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
                                  u.v0, &tally)) {
-        if (cadt_is_left(&mesh, cadt_flips_get(s.flips, k), CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)),
-                         CADT_VERTEX(s, CADT_PREV(k)), u.v0)) {
+        if (cadt_is_left(&mesh, t, k, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
+                         u.v0)) {
           ++left;
           continue;
         }

@@ -43,7 +43,7 @@ CADT_FN cadt_deferred cadt_lists(CADT_GLOBAL cadt_u32* edges, CADT_GLOBAL cadt_u
 CADT_FN void cadt_defer_edge(const cadt_deferred* deferred, cadt_u32 link, cadt_tally* tally) {
   cadt_u32 at = cadt_add_relaxed(deferred->counts + 1, 1u);
   if (at < deferred->edge_capacity) deferred->edges[at] = link;
-  tally->count[CADT_COUNT_DEFERRED_EDGES]++;
+  CADT_TALLY_NOW(tally, CADT_COUNT_DEFERRED_EDGES);
 }
 
 /* Tells the driver that this work-item got on. For launches of what others left over only: in those of a level it would
@@ -57,12 +57,19 @@ CADT_FN void cadt_report_changes(const cadt_tally* tally, CADT_GLOBAL cadt_u32* 
  * before others, so that a fan of flips stays small. `apex` is the inserted vertex: then only edges opposite of it can
  * become illegal by its flips (paper, Algorithm 3); CADT_NONE: any edge, all four sides are checked. */
 typedef struct {
-  cadt_u32 link[CADT_WORKLIST];
+  cadt_u32* link; /* the ring, CADT_WORKLIST of them */
   cadt_u32 next, first, size, apex;
   cadt_point apex_point;
   cadt_u32 flips; /* flips left, and one; after them what becomes illegal is left for the next launch */
   cadt_u32 conflicts;
 } cadt_worklist;
+
+/* The ring apart from the rest: a struct with an array that is indexed at run time is in memory as a whole, and on a
+ * GPU each store to it goes on to the L2 cache. */
+#define CADT_WORKLIST_HERE(work)          \
+  cadt_u32 ring_of_##work[CADT_WORKLIST]; \
+  cadt_worklist work;                     \
+  work.link = ring_of_##work
 
 CADT_FN void cadt_worklist_begin(cadt_worklist* work, cadt_u32 apex, cadt_u32 flips) {
   work->next = CADT_NONE;
@@ -233,7 +240,7 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
   CADT_GROUP_TALLY(tally, counters);
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
-  cadt_worklist work;
+  CADT_WORKLIST_HERE(work);
   const cadt_u32 warp = cadt_lanes_of_warp();
   cadt_u32 u = CADT_SPREAD_BEGIN(count, grain), i = CADT_NONE, hint = 0u, tries = 0u;
   cadt_worklist_begin(&work, CADT_NONE, 0u);
@@ -274,14 +281,14 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
           if (work.size || ++tries == CADT_CAST(cadt_u32, CADT_INSERT_TRIES)) {
             cadt_store_relaxed(mesh.hints + i, hint);
             if (!work.size) {
-              tally.count[CADT_COUNT_DEFERRED_POINTS]++;
+              CADT_TALLY_NOW(&tally, CADT_COUNT_DEFERRED_POINTS);
               const cadt_u32 at = cadt_add_relaxed(left_counts, 1u);
               CADT_PERTURB(&mesh, CADT_AT_PUSH_POINT);
               left_points[at] = i;
             }
             i = CADT_NONE;
           } else {
-            tally.count[CADT_COUNT_INSERT_RETRIES]++;
+            CADT_TALLY_NOW(&tally, CADT_COUNT_INSERT_RETRIES);
           }
         }
       }
@@ -301,7 +308,7 @@ CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u3
   CADT_GROUP_TALLY(tally, counters);
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
-  cadt_worklist work;
+  CADT_WORKLIST_HERE(work);
   const cadt_u32 warp = cadt_lanes_of_warp();
   cadt_u32 e = CADT_SPREAD_BEGIN(count, grain);
   cadt_worklist_begin(&work, CADT_NONE, 0u);

@@ -11,8 +11,8 @@
  * Why the proof holds on CPUs: a change stores fields with release after its claim (acquire), and fields are loaded
  * with acquire, the lock word first. If a reader saw one field of a later change, the change's claim happens before the
  * reader's compare-and-swap, which then cannot find the old version. On GPUs, where loads are relaxed, a field may be
- * older than the version beside it. So the owner reads the record again under its lock (cadt_confirm); claims acquire,
- * so it sees all that earlier owners wrote.
+ * older than the version beside it. So the owner reads the record again under its lock (cadt_confirm), compares what it
+ * has used and takes the rest from there; claims acquire, so it sees all that earlier owners wrote.
  *
  * Order: records are claimed by ascending index, so among any set of conflicting claimers the one that gets furthest
  * meets nobody who is further (a fixed but unsorted order livelocks in a warp: ../docs/algorithm.md).
@@ -71,7 +71,7 @@ CADT_FN cadt_u32 cadt_claim_record(CADT_GLOBAL cadt_u32* lock, cadt_u32* version
 #elif CADT_CONTIGUOUS
   if (*version == CADT_ANY_VERSION) *version = cadt_load_field(lock);
   if (cadt_is_free(*version) && cadt_cas_lock(lock, *version, *version | 1u)) return 1u;
-  if (!(cadt_load_field(lock) & 1u)) tally->count[CADT_COUNT_INVALID]++;
+  if (!(cadt_load_field(lock) & 1u)) CADT_TALLY_NOW(tally, CADT_COUNT_INVALID);
   return 0u;
 #else
   /* One operation, where a comparison would first need the version. It changes nothing in a word that is odd. A word of
@@ -80,7 +80,7 @@ CADT_FN cadt_u32 cadt_claim_record(CADT_GLOBAL cadt_u32* lock, cadt_u32* version
   if (!cadt_is_free(found)) return 0u;
   if (*version != CADT_ANY_VERSION && *version != found) {
     cadt_add_relaxed(lock, 0xFFFFFFFFu);
-    tally->count[CADT_COUNT_INVALID]++;
+    CADT_TALLY_NOW(tally, CADT_COUNT_INVALID);
     return 0u;
   }
   *version = found;
@@ -104,7 +104,7 @@ CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* t
     if (CADT_FAILS(m, CADT_AT_CLAIM) ||
         !cadt_claim_record(m->records[c->record[i]].word + CADT_WORD_LOCK, &c->version[i], tally)) {
       cadt_abandon_claim(m, c, i);
-      tally->count[CADT_COUNT_LOST_CLAIMS]++;
+      CADT_TALLY_NOW(tally, CADT_COUNT_LOST_CLAIMS);
       CADT_LAP(tally, CADT_TIME_CLAIM);
       return 0u;
     }
@@ -115,18 +115,29 @@ CADT_FN cadt_u32 cadt_try_claim(const cadt_mesh* m, cadt_claim* c, cadt_tally* t
   return 1u;
 }
 
-/* Whether record t is still what it was, seen from edge k. On CPUs the claim has proved it. \pre the caller owns t */
-CADT_FN cadt_u32 cadt_confirm(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, const cadt_snapshot* s) {
+/* Links of a record that the caller has used: a bit for each. */
+enum { CADT_LINKS_01 = 3, CADT_LINKS_12 = 6, CADT_LINKS_ALL = 7 };
+
+/* Whether the vertices of record t, seen from edge k, and those of its links that are in `links` are still what `s`
+ * says. On GPUs its links and counters are then those read again: what has not been used before need not be kept until
+ * here, where registers are short. On CPUs the claim has proved all of `s`. \pre the caller owns t */
+CADT_FN cadt_u32 cadt_confirm(const cadt_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 links, cadt_snapshot* s) {
   CADT_PERTURB(m, CADT_AT_CONFIRM);
   if (CADT_FAILS(m, CADT_AT_CONFIRM)) return 0u;
 #if CADT_CONTIGUOUS
-  (void)m, (void)t, (void)k, (void)s;
+  (void)m, (void)t, (void)k, (void)links, (void)s;
   return 1u;
 #else
   const cadt_snapshot now = cadt_look_from(m, t, k);
-  return now.v0 == s->v0 && now.v1 == s->v1 && now.v2 == s->v2 && now.n0 == s->n0 && now.n1 == s->n1 && now.n2 == s->n2
-             ? 1u
-             : 0u;
+  cadt_u32 other = (now.v0 ^ s->v0) | (now.v1 ^ s->v1) | (now.v2 ^ s->v2);
+  if (links & 1u) other |= now.n0 ^ s->n0;
+  if (links & 2u) other |= now.n1 ^ s->n1;
+  if (links & 4u) other |= now.n2 ^ s->n2;
+  s->n0 = now.n0;
+  s->n1 = now.n1;
+  s->n2 = now.n2;
+  s->flips = now.flips;
+  return other == 0u ? 1u : 0u;
 #endif
 }
 

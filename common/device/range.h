@@ -222,7 +222,7 @@ CADT_KERNEL(cadt_border_pass, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 gra
   CADT_GROUP_TALLY(tally, counters);
   CADT_MESH_VIEW(mesh);
   const cadt_deferred deferred = cadt_lists(left_edges, left_counts, edge_capacity);
-  cadt_worklist work;
+  CADT_WORKLIST_HERE(work);
   CADT_FOR(t, count, grain) {
     const cadt_snapshot s = cadt_look(&mesh, t);
     if (s.lock == 0u || cadt_share_range(s.v0, s.v1, s.v2, size)) continue;

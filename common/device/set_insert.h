@@ -37,7 +37,7 @@ CADT_FN cadt_u32 cadt_insert_set(cadt_mesh* m, cadt_u32 n, const cadt_deferred* 
   cadt_range range;
   range.begin = 0u;
   range.size = n;
-  cadt_worklist work;
+  CADT_WORKLIST_HERE(work);
   for (cadt_u32 level = levels; level-- > 0u;) {
     const cadt_u32 blocks = (((n - 1u) >> level) + 1u) / 2u;
     for (cadt_u32 block = 0u; block < blocks; ++block) {

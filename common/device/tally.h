@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
  * Counters of work and conflicts, and clocks. A work-item counts privately and adds its counts once; they end in one of
- * several rows, so the counters cost little. The driver adds the rows up (common/host/counters.cpp).
+ * several rows, so the counters cost little. What happens seldom in the insertion is counted by CADT_TALLY_NOW: on a
+ * GPU at once in the memory of the group, since no register is free for it. The driver adds the rows up
+ * (common/host/counters.cpp).
  *
  * Clocks are in the timed build only. A lap ends where CADT_LAP stands: the time since the last one goes to the named
  * account. On a GPU that is the time of the lane, in which lanes of its warp that went another way may have worked.
@@ -14,12 +16,24 @@
 
 typedef struct {
   cadt_u32 count[CADT_COUNTERS];
+#if CADT_GROUP_SUMS
+  CADT_LOCAL_PTR cadt_u32* sums; /* of the group */
+  cadt_u32 wanted;               /* whether anybody wants to know */
+#endif
 #if CADT_TIMED
   cadt_u64 ticks[CADT_TIMES];
   cadt_u64 lap;
 #endif
 } cadt_tally;
 
+#if CADT_GROUP_SUMS
+#define CADT_TALLY_NOW(tally, c) cadt_tally_now((tally), (c))
+CADT_FN void cadt_tally_now(const cadt_tally* tally, cadt_u32 c) {
+  if (tally->wanted) cadt_add_local(tally->sums + c, 1u);
+}
+#else
+#define CADT_TALLY_NOW(tally, c) ((tally)->count[c]++)
+#endif
 #if CADT_TIMED
 #define CADT_LAP(tally, account) cadt_lap((tally), (account))
 CADT_FN void cadt_lap(cadt_tally* tally, cadt_u32 account) {
@@ -45,6 +59,10 @@ CADT_FN void cadt_lap(cadt_tally* tally, cadt_u32 account) {
 
 CADT_FN void cadt_tally_clear(cadt_tally* tally) {
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c) tally->count[c] = 0u;
+#if CADT_GROUP_SUMS
+  tally->sums = 0;
+  tally->wanted = 0u;
+#endif
 #if CADT_TIMED
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c) tally->ticks[c] = 0u;
   tally->lap = cadt_clock();
@@ -65,7 +83,9 @@ enum { CADT_GROUP_DONE = CADT_COUNTERS + CADT_TIMES, CADT_GROUP_WORDS };
   CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS];            \
   if (counters) cadt_clear_sums(sums, CADT_GROUP_WORDS); \
   cadt_tally tally;                                      \
-  cadt_tally_clear(&tally)
+  cadt_tally_clear(&tally);                              \
+  tally.sums = sums;                                     \
+  tally.wanted = (counters) != 0 ? 1u : 0u
 #define CADT_FLUSH_TALLY(tally, counters) \
   if (counters) cadt_flush_group((tally), sums, (counters))
 

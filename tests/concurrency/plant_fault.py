@@ -30,10 +30,17 @@ FAULTS = {
         ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
         [(LOCK, "#elif CADT_CONTIGUOUS\n  if (*version == CADT_ANY_VERSION) *version", "#elif CADT_CONTIGUOUS\n  *version"),
          (LOCK, "if (*version != CADT_ANY_VERSION && *version != found) {", "if (*version == 1u) {"),
-         (LOCK, "  return now.v0 == s->v0 && now.v1", "  return now.v0 != CADT_NONE - 1u ? 1u : now.v1")]),
+         (LOCK, "const cadt_snapshot now = cadt_look_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
     "no_confirm": (
         "GPUs: the version is compared, the fields are not read again", ["relacy-gpu"],
-        [(LOCK, "  return now.v0 == s->v0 && now.v1", "  return now.v0 != CADT_NONE - 1u ? 1u : now.v1")]),
+        [(LOCK, "const cadt_snapshot now = cadt_look_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
+    "confirm_no_vertices": (
+        "GPUs: the vertices by which a flip was tested are not compared", ["relacy-gpu"],
+        [(LOCK, "cadt_u32 other = (now.v0 ^ s->v0) | (now.v1 ^ s->v1) | (now.v2 ^ s->v2);", "cadt_u32 other = 0u;")]),
+    "confirm_no_links": (
+        "GPUs: the links by which a flip has claimed are not compared", ["relacy-gpu"],
+        [(CHANGE, "cadt_confirm(m, t, k, CADT_LINKS_01, &s)", "cadt_confirm(m, t, k, 0u, &s)"),
+         (CHANGE, "cadt_confirm(m, n, j, CADT_LINKS_01, &u)", "cadt_confirm(m, n, j, 0u, &u)")]),
     "release_early": (
         "a flip gives its records back before it has written them", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
         [(CHANGE,

@@ -156,7 +156,7 @@ class RandomMesh {
     for (std::uint32_t i = 0; i < n; ++i) {
       if (i == m.first || i == m.second || i == m.third) continue;
       std::uint32_t hint = hints_[0];
-      cadt_worklist work;
+      CADT_WORKLIST_HERE(work);
       cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
       work.apex_point = points_[i];
       work.size = cadt_try_vertex(&m, i, points_[i], &hint, work.link, &tally);

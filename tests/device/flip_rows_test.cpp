@@ -50,7 +50,7 @@ Work insert_in_order(const std::vector<cadt_point>& points, std::uint32_t limit,
   const cadt_deferred deferred = cadt_lists(edges.data(), counts.data(), static_cast<std::uint32_t>(edges.size()));
   for (std::uint32_t i = 3; i < n; ++i) {
     std::uint32_t hint = hints[i - 1];
-    cadt_worklist work;
+    CADT_WORKLIST_HERE(work);
     cadt_worklist_begin(&work, i, limit);
     work.apex_point = points[i];
     for (int tries = 0; tries < CADT_INSERT_TRIES && work.size == 0; ++tries)

@@ -303,11 +303,11 @@ struct Claims : rl::test_suite<Claims, threads> {
         RL_ASSERT(!cadt_try_claim(&mesh, &claim, &tally) && "a record that is held was claimed");
         continue;
       }
-      const cadt_snapshot s = cadt_look(&mesh, 0);
+      cadt_snapshot s = cadt_look(&mesh, 0);
       if (!cadt_is_free(s.lock)) continue;
       cadt_claim claim = claim_of(s.lock, CADT_NONE);
       if (!cadt_try_claim(&mesh, &claim, &tally)) continue;
-      if (!cadt_confirm(&mesh, 0, 0, &s)) {
+      if (!cadt_confirm(&mesh, 0, 0, CADT_LINKS_ALL, &s)) {
         cadt_give_up(&mesh, &claim, &tally);
         continue;
       }

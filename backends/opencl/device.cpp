@@ -127,6 +127,9 @@ ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& req
                                 request.kernel_times ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0});
     }
     if (request.kernel_times) clock_.emplace(info().name);
+    // What a processor keeps is memory of the process, of which there is more.
+    constexpr std::size_t bits = 8;
+    if (info().gpu) part_alignment_ = shared_->device().device.getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>() / bits;
   } catch (const cl::Error& error) {
     throw_device_error(error, info().name);
   }
@@ -184,6 +187,18 @@ std::unique_ptr<Buffer> ClDevice::allocate(std::size_t bytes) {
                           left_bytes(*shared_));
     throw_device_error(error, info().name);
   }
+}
+
+std::unique_ptr<Buffer> ClDevice::part(Buffer& of, std::size_t offset, std::size_t bytes) {
+  check_range("a part", of, offset, bytes);
+  std::unique_ptr<Buffer> made;
+  run([&] {
+    const cl_buffer_region region{offset, bytes};
+    cl::Buffer whole = memory_of(of);
+    made = std::make_unique<ClBuffer>(
+        shared_, whole.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region), bytes, 0);
+  });
+  return made;
 }
 
 std::unique_ptr<Buffer> ClDevice::alias(const void* data, std::size_t bytes) {

@@ -21,6 +21,8 @@ class ClDevice final : public Device {
   [[nodiscard]] LaunchShape shape() const noexcept override;
   [[nodiscard]] unsigned threads() const noexcept override { return info().compute_units; }
   [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override;
+  [[nodiscard]] std::unique_ptr<Buffer> part(Buffer& of, std::size_t offset, std::size_t bytes) override;
+  [[nodiscard]] std::size_t part_alignment() const noexcept override { return part_alignment_; }
   [[nodiscard]] std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) override;
   [[nodiscard]] std::unique_ptr<Buffer> wrap(void* memory, std::size_t bytes) override;
   [[nodiscard]] void* handle(const Buffer& buffer) const noexcept override;
@@ -62,6 +64,7 @@ class ClDevice final : public Device {
   std::shared_ptr<SharedContext> shared_;
   cl::CommandQueue queue_;
   unsigned work_group_size_;
+  std::size_t part_alignment_ = 0;
   std::shared_ptr<DeviceAllocator> allocator_;
   std::array<std::array<std::optional<ReadyKernel>, kernel_count>, kernel_builds> kernels_;
   std::optional<std::unique_ptr<Primitives>> primitives_;  ///< made when first asked for

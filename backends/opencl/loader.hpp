@@ -72,6 +72,7 @@ struct Function<declared, Result(CL_API_CALL*)(Parameters...)> {
 #define clCreateKernel CADT_CL(clCreateKernel)
 #define clCreateProgramWithBinary CADT_CL(clCreateProgramWithBinary)
 #define clCreateProgramWithSource CADT_CL(clCreateProgramWithSource)
+#define clCreateSubBuffer CADT_CL(clCreateSubBuffer)
 #define clEnqueueFillBuffer CADT_CL(clEnqueueFillBuffer)
 #define clEnqueueNDRangeKernel CADT_CL(clEnqueueNDRangeKernel)
 #define clEnqueueReadBuffer CADT_CL(clEnqueueReadBuffer)

@@ -64,10 +64,10 @@ class Builder {
       return mesh;
     }
     mesh_.records = run_.memory.allocate_zeros(2 * n_ * sizeof(cadt_record));  // lock word 0: not in use yet
-    mesh_.hints = run_.memory.allocate(n_ * word);
+    mesh_.hints = run_.memory.borrow(n_ * word);
     // points of a launch: a level and what others left over, one by one or together
     const std::size_t most = n_ / 2 + n_ / 32 + std::min(n_ / 2, least_asked) + 64;
-    for (Allocation& list : left_points_) list = run_.memory.allocate(most * word);
+    for (Allocation& list : left_points_) list = run_.memory.borrow(most * word);
     make_edge_lists();
     mesh_.run_kernel(KernelId::cadt_start_mesh, 1);
     run_.end_phase("start");
@@ -87,14 +87,14 @@ class Builder {
   /// asked for.
   [[nodiscard]] DeviceMesh adopt(Allocation records, std::uint64_t edges) {
     mesh_.records = std::move(records);
-    mesh_.hints = run_.memory.allocate(n_ * word);
+    mesh_.hints = run_.memory.borrow(n_ * word);
     make_edge_lists();
     return close(edges);
   }
 
  private:
   void make_edge_lists() {
-    for (Allocation& list : left_edges_) list = run_.memory.allocate(edge_capacity_ * word);
+    for (Allocation& list : left_edges_) list = run_.memory.borrow(edge_capacity_ * word);
     left_counts_ = launch_.zeros(all_counts);
   }
 
@@ -114,7 +114,7 @@ class Builder {
 
   /// Puts the points in the order of insertion (common/device/insert.h).
   void order_by_level() {
-    Allocation points = run_.memory.allocate(n_ * point_bytes(run_.device)), labels = run_.memory.allocate(n_ * word);
+    Allocation points = run_.memory.borrow(n_ * point_bytes(run_.device)), labels = run_.memory.allocate(n_ * word);
     const Cut c = launch_.cut(n_);
     launch_.run(KernelId::cadt_by_level, c.items, order_.points, order_.labels, static_cast<std::uint32_t>(n_), c.grain,
                 points, labels);

@@ -2,6 +2,7 @@
 #include "common/host/call.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,22 @@ constexpr std::size_t star_pool_bytes = 26;
 
 /// With the star stage besides: stars, lists, and what the rest of the points needs.
 constexpr std::size_t kept_star_words[] = {7, 1, 1, 1, 1, 1, 1};
+
+/// The same where steps borrow of each other: records, results, numbers of triangles, labels and what is as large. With
+/// the star stage, stars.
+constexpr std::size_t lent_words[] = {16, 6, 6, 2, 1, 1, 1};
+
+/// Words a point of each buffer that reserve() asks for.
+std::vector<std::size_t> reserved_words(const Memory& memory, std::size_t n, bool stars) {
+  if (memory.lends(n * word)) {
+    std::vector<std::size_t> all(std::begin(lent_words), std::end(lent_words));
+    if (stars) all.push_back(kept_star_words[0]);
+    return all;
+  }
+  std::vector<std::size_t> all(std::begin(kept_words), std::end(kept_words));
+  if (stars) all.insert(all.end(), std::begin(kept_star_words), std::end(kept_star_words));
+  return all;
+}
 
 void require_rules(const Options& options, const Device& device) {
   constexpr unsigned most_flips = 1000;  // counters have ten bits
@@ -53,17 +70,16 @@ bool prefers_stars(const Options& options, const Device& device) {
 }
 
 std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
-  std::size_t words = 0;
-  for (const std::size_t one : kept_words) words += one;
-  for (const std::size_t one : kept_star_words) words += stars ? one : 0;
-  return memory.keeps() ? 4 * fixed + n * words * word : least_bytes(n, false);
+  if (!memory.keeps()) return least_bytes(n, false);
+  const std::vector<std::size_t> words = reserved_words(memory, n, stars);
+  const std::size_t small = memory.lends(n * word) ? 1 : 0;  // those that are not lent
+  return 4 * fixed + n * word * std::accumulate(words.begin(), words.end(), small);
 }
 
 void keep_buffers(Memory& memory, std::size_t n, bool stars) {
   std::vector<Allocation> together;
-  for (const std::size_t words : kept_words) together.push_back(memory.allocate(n * words * word));
-  if (stars)
-    for (const std::size_t words : kept_star_words) together.push_back(memory.allocate(n * words * word));
+  for (const std::size_t words : reserved_words(memory, n, stars))
+    together.push_back(memory.allocate((n * words + 1) * word));  // sums have one more
 }
 
 void require_size(std::size_t points) {
@@ -75,7 +91,9 @@ void require_size(std::size_t points) {
 
 void begin_account(Triangulator::State& state, std::size_t n) {
   if (state.memory.dropped()) state.forget_sizes();
-  state.memory.begin(state.options.max_memory, n <= state.reserved_points);
+  // Of what is lent there are few, and each is for what is as large.
+  const bool any_serves = n <= state.reserved_points && !state.memory.lends(state.reserved_points * word);
+  state.memory.begin(state.options.max_memory, any_serves);
 }
 
 void open_account(Triangulator::State& state, std::size_t n, Statistics& statistics) {

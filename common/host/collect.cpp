@@ -124,7 +124,7 @@ void number_by_buckets(Run& run, const DeviceMesh& mesh, const Allocation& label
   for (std::uint32_t part = 0; part < parts; ++part) {
     const auto [from, base] = cuts[part];
     const std::uint32_t size = cuts[part + 1].bucket - from, count = cuts[part + 1].triangle - base;
-    const Allocation members = run.memory.allocate(std::size_t{count} * 2 * word);
+    const Allocation members = run.memory.borrow(std::size_t{count} * 2 * word);
     launch.run(KernelId::cadt_bucket_triangles, all.items, mesh.records, mesh.vertices, labels, buckets, result.numbers,
                members, from, size, base, static_cast<std::uint32_t>(places), all.grain);
     sort_buckets(run, {buckets, members, from, size, base, count});
@@ -178,7 +178,8 @@ Numbering number_triangles(Run& run, const DeviceMesh& mesh, const Allocation& l
     return result;
   }
   Allocation buckets = launch.zeros(points + 1);
-  result.numbers = run.memory.allocate(places * word);  // until they are known: places in the buckets
+  // until they are known: places in the buckets
+  result.numbers = mesh.in_arrays() ? run.memory.borrow(places * word) : run.memory.allocate(places * word);
   launch.run(KernelId::cadt_count_triangles, records.items, mesh.records, mesh.vertices, labels, buckets,
              result.numbers, slots, records.grain, flips);
   launch.scan(buckets, points + 1);
@@ -212,7 +213,7 @@ std::size_t emit_in_place(Run& run, DeviceMesh& mesh, Allocation& labels, std::s
   if (run.options.order == Order::fast) return mesh.triangles;
   const Numbering numbering = number_triangles(run, mesh, labels, points);
   const auto count = static_cast<std::uint32_t>(numbering.triangles);
-  const Allocation moved = run.memory.allocate(count * word);
+  const Allocation moved = run.memory.borrow(count * word);
   const Cut c = run.launcher.cut(count);
   for (const Allocation* array : {&mesh.vertices, &mesh.links}) {
     for (std::uint32_t k = 0; k < 3; ++k) {

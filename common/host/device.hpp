@@ -117,6 +117,13 @@ class Device {
     fill(*buffer, 0, bytes / 4 * 4, 0);
     return buffer;
   }
+  /// Bytes from `offset` on of a buffer, which must outlive it. \pre offset is a multiple of part_alignment(), which is
+  /// not 0 \throws DeviceError
+  [[nodiscard]] virtual std::unique_ptr<Buffer> part(Buffer& /*of*/, std::size_t /*offset*/, std::size_t /*bytes*/) {
+    return nullptr;
+  }
+  /// Where parts of a buffer may begin; 0: there are none.
+  [[nodiscard]] virtual std::size_t part_alignment() const noexcept { return 0; }
   /// A read-only buffer that aliases the caller's memory where the device can, else nullptr (then copy).
   [[nodiscard]] virtual std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) = 0;
   /// A buffer that writes straight to the caller's memory where the device can, else nullptr (then read it back).

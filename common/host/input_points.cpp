@@ -19,7 +19,7 @@ struct Axis {
 
 Allocation convert(Run& run, Axis x, Axis y, std::uint32_t stride, Scalar scalar, std::size_t count,
                    const SpatialOrder* order) {
-  Allocation points = run.memory.allocate(count * point_bytes(run.device));
+  Allocation points = run.memory.borrow(count * point_bytes(run.device), order == nullptr);
   const Allocation all;
   const Allocation& labels = order != nullptr ? order->labels : all;
   const double scale = order != nullptr ? order->scale : 1, scale_again = order != nullptr ? order->scale_again : 1;
@@ -31,7 +31,7 @@ Allocation convert(Run& run, Axis x, Axis y, std::uint32_t stride, Scalar scalar
 }
 
 Allocation gather(Run& run, const Allocation& input, const SpatialOrder& order) {
-  Allocation points = run.memory.allocate(order.distinct * point_bytes(run.device));
+  Allocation points = run.memory.borrow(order.distinct * point_bytes(run.device));
   const Cut c = run.launcher.cut(order.distinct);
   run.launcher.run(KernelId::cadt_gather_points, c.items, input, order.labels, points,
                    static_cast<std::uint32_t>(order.distinct), c.grain, order.scale, order.scale_again);

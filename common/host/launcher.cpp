@@ -77,7 +77,7 @@ void Launcher::scan(const Allocation& data, std::size_t count) {
   }
   const Cut c = chunks(count);
   const auto n = static_cast<std::uint32_t>(count);
-  Allocation sums = memory_.allocate((c.items + std::size_t{1}) * sizeof(std::uint32_t));
+  Allocation sums = memory_.borrow((c.items + std::size_t{1}) * sizeof(std::uint32_t));
   run(KernelId::cadt_scan_sums, c.items, data, sums, n, c.grain);
   if (c.items <= longest_serial_scan) {
     run(KernelId::cadt_scan_total, 1, sums, c.items);
@@ -110,7 +110,7 @@ void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys
   const Cut c = chunks(count);
   const auto n = static_cast<std::uint32_t>(count);
   const std::size_t entries = (std::size_t{1} << digit) * c.items;
-  Allocation counts = memory_.allocate(entries * sizeof(std::uint32_t));
+  Allocation counts = memory_.borrow(entries * sizeof(std::uint32_t));
   const Allocation none;
   for (unsigned shift = 0; shift < std::max(bits, 1U); shift += digit) {
     run(KernelId::cadt_radix_count, c.items, keys, counts, n, c.grain, c.items, shift);

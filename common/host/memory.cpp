@@ -13,6 +13,13 @@ namespace {
 /// count. To make and to free one costs as much as two launches with OpenCL.
 constexpr std::size_t small = 4096, smallest = 64;
 
+/// Smaller buffers are not borrowed: what they take together is little, and to have kept them saves time.
+constexpr std::size_t least_borrowed = std::size_t{1} << 20;
+/// Parts begin at multiples of this, or of what the device asks for.
+constexpr std::size_t part_step = 4096;
+/// What is lent is larger by as much as a few parts lose by that.
+constexpr std::size_t more_to_lend = 4 * part_step;
+
 std::size_t kept_size(std::size_t bytes) noexcept {
   return bytes >= small ? bytes : std::bit_ceil(std::max(bytes, smallest));
 }
@@ -52,6 +59,7 @@ void Memory::require(std::size_t bytes) {
 }
 
 std::size_t Memory::requested(std::size_t bytes) const noexcept {
+  if (lends(bytes)) return bytes + more_to_lend;
   return keep_ ? kept_size(bytes) : std::max<std::size_t>(bytes, 4);  // OpenCL has no empty buffers
 }
 
@@ -74,14 +82,85 @@ std::unique_ptr<Buffer> Memory::take_kept(std::size_t bytes) noexcept {
   return buffer;
 }
 
-void Memory::give_back(std::unique_ptr<Buffer> buffer, std::size_t counted) noexcept {
-  held_ -= counted;
-  if (!keep_ || counted == 0) return;  // 0: the caller's
+void Memory::keep(std::unique_ptr<Buffer> buffer) noexcept {
+  const std::size_t bytes = buffer->bytes();
   try {
     kept_.push_back(std::move(buffer));
-    kept_bytes_ += counted;
+    kept_bytes_ += bytes;
   } catch (const std::bad_alloc&) {  // then it is freed
   }
+}
+
+void Memory::give_back(std::unique_ptr<Buffer> buffer, std::size_t counted) noexcept {
+  if (give_back_part(buffer)) return;
+  held_ -= counted;
+  if (!keep_ || counted == 0) return;  // 0: the caller's
+  if (std::erase(brief_, buffer.get()) != 0) return;
+  keep(std::move(buffer));
+}
+
+std::size_t Memory::Lender::room(std::size_t bytes) const noexcept {
+  std::size_t at = 0;
+  for (const Part& part : parts) {
+    if (part.begin - at >= bytes) return at;
+    at = part.end;
+  }
+  return whole->bytes() - at >= bytes ? at : whole->bytes();
+}
+
+std::unique_ptr<Buffer> Memory::take_part(std::size_t bytes, bool ends_first) {
+  const auto better = [&](const Buffer& one, const Buffer* best) {
+    return best == nullptr || (ends_first ? one.bytes() > best->bytes() : one.bytes() < best->bytes());
+  };
+  const Buffer* best = nullptr;
+  std::size_t lends = lenders_.size(), idle = kept_.size();
+  for (std::size_t i = 0; i < lenders_.size(); ++i) {
+    const Buffer& whole = *lenders_[i].whole;
+    if (lenders_[i].room(bytes) < whole.bytes() && better(whole, best)) best = &whole, lends = i;
+  }
+  for (std::size_t i = 0; i < kept_.size(); ++i)  // what just fits will be asked for as a whole
+    if (kept_[i]->bytes() / 5 * 4 >= bytes && better(*kept_[i], best)) best = kept_[i].get(), idle = i;
+  if (best == nullptr) return nullptr;
+  if (idle < kept_.size()) {
+    lends = lenders_.size();
+    lenders_.emplace_back().whole = std::move(kept_[idle]);
+    kept_.erase(kept_.begin() + static_cast<std::ptrdiff_t>(idle));
+    lent_bytes_ += best->bytes();
+  }
+  Lender* const lender = &lenders_[lends];
+  const std::size_t step = std::max(part_step, device_.part_alignment()), whole = lender->whole->bytes();
+  const std::size_t begin = lender->room(bytes), end = std::min((begin + bytes + step - 1) / step * step, whole);
+  std::unique_ptr<Buffer> part;
+  try {
+    lender->parts.reserve(lender->parts.size() + 1);
+    part = device_.part(*lender->whole, begin, bytes);
+  } catch (...) {
+    keep_if_idle(*lender);
+    throw;
+  }
+  const auto after = std::ranges::find_if(lender->parts, [&](const Lender::Part& p) { return p.begin >= end; });
+  lender->parts.insert(after, {part.get(), begin, end});
+  return part;
+}
+
+void Memory::keep_if_idle(Lender& lender) noexcept {
+  if (!lender.parts.empty()) return;
+  lent_bytes_ -= lender.whole->bytes();
+  kept_bytes_ -= lender.whole->bytes();
+  keep(std::move(lender.whole));
+  lenders_.erase(lenders_.begin() + (&lender - lenders_.data()));
+}
+
+bool Memory::give_back_part(std::unique_ptr<Buffer>& buffer) noexcept {
+  for (Lender& lender : lenders_) {
+    const auto part = std::ranges::find(lender.parts, buffer.get(), &Lender::Part::buffer);
+    if (part == lender.parts.end()) continue;
+    buffer.reset();
+    lender.parts.erase(part);
+    keep_if_idle(lender);
+    return true;
+  }
+  return false;
 }
 
 /// Asks the device, and once more without the kept buffers if it has too little.
@@ -121,9 +200,34 @@ Allocation Memory::allocate_zeros(std::size_t bytes) {
   return account(ask([&] { return device_.allocate_zeros(bytes); }));
 }
 
+bool Memory::lends(std::size_t bytes) const noexcept {
+  return keep_ && limit_ == 0 && bytes >= least_borrowed && device_.part_alignment() != 0;
+}
+
+Allocation Memory::borrow(std::size_t bytes, bool ends_first) {
+  if (!lends(bytes)) return allocate(bytes);
+  if (auto part = take_part(bytes, ends_first)) return {*this, std::move(part), 0};
+  return allocate_once(bytes);
+}
+
+Allocation Memory::allocate_once(std::size_t bytes) {
+  if (!lends(bytes)) return allocate(bytes);
+  brief_.reserve(brief_.size() + 1);
+  auto buffer = ask([&] { return device_.allocate(bytes); });
+  brief_.push_back(buffer.get());
+  return account(std::move(buffer));
+}
+
+Allocation Memory::borrow_zeros(std::size_t bytes) {
+  if (!lends(bytes)) return allocate_zeros(bytes);
+  Allocation borrowed = borrow(bytes);
+  device_.fill(*borrowed, 0, bytes / 4 * 4, 0);
+  return borrowed;
+}
+
 Allocation Memory::import(const void* data, std::size_t bytes) {
   if (auto aliased = device_.alias(data, bytes)) return {*this, std::move(aliased), 0};
-  Allocation copy = allocate(bytes);
+  Allocation copy = borrow(bytes, true);
   device_.write(*copy, 0, data, bytes);
   return copy;
 }

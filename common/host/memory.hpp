@@ -56,6 +56,19 @@ class Memory {
   [[nodiscard]] Allocation allocate(std::size_t bytes);
   /// The same, filled with zeros.
   [[nodiscard]] Allocation allocate_zeros(std::size_t bytes);
+  /// For some steps of a call: a part of a kept buffer that a later step will take as a whole, so that the two need no
+  /// more together than the larger. Where no kept one has room, a buffer of its own, which is not kept. What may be in
+  /// a result, or is still held when the large buffers of the next step are asked for, is not for this.
+  /// `ends_first`: it is given back before the others that are borrowed now, so it is a part of the largest kept
+  /// buffer, the others are of the smallest with room. \throws OutOfMemory as allocate
+  [[nodiscard]] Allocation borrow(std::size_t bytes, bool ends_first = false);
+  /// A buffer that is not kept where others are lent, for what would be in the way as a part of one.
+  /// \throws OutOfMemory as allocate
+  [[nodiscard]] Allocation allocate_once(std::size_t bytes);
+  /// As borrow, filled with zeros.
+  [[nodiscard]] Allocation borrow_zeros(std::size_t bytes);
+  /// Whether borrow() gives so many bytes otherwise than allocate().
+  [[nodiscard]] bool lends(std::size_t bytes) const noexcept;
   /// The caller's data: aliased if the device can, else copied.
   [[nodiscard]] Allocation import(const void* data, std::size_t bytes);
   /// The caller's device memory.
@@ -66,10 +79,10 @@ class Memory {
   [[nodiscard]] bool allows(std::size_t bytes);
   /// \throws OutOfMemory if `bytes` more would pass the limit or what the device has free
   void require(std::size_t bytes);
-  /// Gives kept buffers back to the device.
+  /// Gives kept buffers back to the device, but for those that are lent.
   void drop_kept() noexcept {
     kept_.clear();
-    kept_bytes_ = 0;
+    kept_bytes_ = lent_bytes_;
     dropped_ = true;
   }
   /// Whether kept buffers were given back since this was asked last.
@@ -92,12 +105,29 @@ class Memory {
 
  private:
   friend class Allocation;
+  /// A kept buffer of which parts are in use.
+  struct Lender {
+    struct Part {
+      const Buffer* buffer;
+      std::size_t begin, end;
+    };
+    std::unique_ptr<Buffer> whole;
+    std::vector<Part> parts;  ///< ascending
+    /// Where so many bytes are free, the first such place; none: its end.
+    [[nodiscard]] std::size_t room(std::size_t bytes) const noexcept;
+  };
   [[nodiscard]] Allocation account(std::unique_ptr<Buffer> buffer);
   /// Bytes of the buffer for a request.
   [[nodiscard]] std::size_t requested(std::size_t bytes) const noexcept;
   /// Whether a kept buffer may serve a request for less.
   [[nodiscard]] bool suits(std::size_t kept, std::size_t bytes) const noexcept;
   [[nodiscard]] std::unique_ptr<Buffer> take_kept(std::size_t bytes) noexcept;
+  /// Null if no kept buffer has room.
+  [[nodiscard]] std::unique_ptr<Buffer> take_part(std::size_t bytes, bool ends_first);
+  /// False if it is no part.
+  bool give_back_part(std::unique_ptr<Buffer>& buffer) noexcept;
+  void keep_if_idle(Lender& lender) noexcept;
+  void keep(std::unique_ptr<Buffer> buffer) noexcept;
   void give_back(std::unique_ptr<Buffer> buffer, std::size_t counted) noexcept;
   void check_limit(std::size_t bytes);
   template <class Allocate>
@@ -105,9 +135,12 @@ class Memory {
 
   Device& device_;
   bool keep_, reserved_ = false, dropped_ = false;
-  std::size_t limit_ = 0, held_ = 0, kept_bytes_ = 0, peak_ = 0;
+  std::size_t limit_ = 0, held_ = 0, peak_ = 0;
+  std::size_t kept_bytes_ = 0, lent_bytes_ = 0;  // of whole buffers; those that lend are among both
   std::uint64_t allocations_ = 0;
   std::vector<std::unique_ptr<Buffer>> kept_;
+  std::vector<Lender> lenders_;
+  std::vector<const Buffer*> brief_;  // borrowed, with memory of their own
 };
 
 }  // namespace cadt

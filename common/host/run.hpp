@@ -29,6 +29,8 @@ struct Run {
   Launcher launcher;
   /// Steps that take less memory and more time, where there are two ways (docs/performance.md).
   bool saves_memory = false;
+  /// The star stage gathers its points once more for the closing pass, rather than to keep them.
+  bool regathers = false;
 
   /// What is checked from here on is this part of the whole.
   void begin_share(double begin, double share) noexcept {

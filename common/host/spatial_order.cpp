@@ -214,9 +214,9 @@ void sort_finely(Run& run, const Allocation& input, Allocation& keys, Allocation
   Launcher& launch = run.launcher;
   const auto count = static_cast<std::uint32_t>(n);
   const Cut c = launch.cut(n);
-  const Allocation low = run.memory.allocate(n * word);
+  const Allocation low = run.memory.borrow(n * word);
   make_fine_keys(run, input, keys, low, n, grid);
-  Allocation sorted = run.memory.allocate(n * word), spare_order = run.memory.allocate(n * word);
+  Allocation sorted = run.memory.borrow(n * word), spare_order = run.memory.borrow(n * word);
   launch.run(KernelId::cadt_copy_words, c.items, low, sorted, std::uint32_t{0}, count, c.grain);
   launch.sort(sorted, order, spare, spare_order, n, 2 * grid.fine_levels, true);
   // stable
@@ -262,8 +262,8 @@ bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const All
     run.statistics.refined_points = std::max<std::uint64_t>(run.statistics.refined_points, crowd);
     launch.scan(spare, n);
     const std::size_t bytes = crowd * word;
-    Allocation places = run.memory.allocate(bytes), round_keys = run.memory.allocate(bytes);
-    Allocation members = run.memory.allocate(bytes), runs = run.memory.allocate(bytes);
+    Allocation places = run.memory.borrow(bytes), round_keys = run.memory.borrow(bytes);
+    Allocation members = run.memory.borrow(bytes), runs = run.memory.borrow(bytes);
     const Cut few = launch.cut(crowd);
     launch.run(KernelId::cadt_crowded_pack, c.items, spare, places, count, crowd, c.grain);
     for (;; ++round) {  // rounds in which all members of each run agree change nothing
@@ -275,8 +275,8 @@ bool refine_crowd(Run& run, const Allocation& input, Allocation& keys, const All
     }
     launch.scan(runs, crowd);
     const std::uint32_t last_run = launch.read_word(runs, crowd - 1);
-    Allocation from = run.memory.allocate(bytes), sorted = run.memory.allocate(bytes);
-    Allocation spare_from = run.memory.allocate(bytes), spare_sorted = run.memory.allocate(bytes);
+    Allocation from = run.memory.borrow(bytes), sorted = run.memory.borrow(bytes);
+    Allocation spare_from = run.memory.borrow(bytes), spare_sorted = run.memory.borrow(bytes);
     // Stable: first by the round's key, then by run. The sort permutes its keys, so it gets copies.
     launch.run(KernelId::cadt_copy_words, few.items, round_keys, sorted, std::uint32_t{0}, crowd, few.grain);
     launch.sort(sorted, from, spare_sorted, spare_from, crowd, 32, true);
@@ -373,15 +373,21 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   const int exponent = floats || result.wide || bounds.high < bounds.low ? 0 : -bounds.high;
   const double scale = std::ldexp(1.0, exponent / 2), scale_again = std::ldexp(1.0, exponent - exponent / 2);
 
-  Allocation keys = run.memory.allocate(n * word), spare = run.memory.allocate(n * word);
-  Allocation order = run.memory.allocate(n * word), sorted;
+  // To save memory there are two large buffers to borrow from: the sorted points and their keys shall be in the one
+  // that is not of the stars.
+  const bool tight = run.saves_memory && run.memory.lends(n * word);
+  Allocation keys = run.memory.borrow(n * word, tight), spare = run.memory.borrow(n * word, tight);
+  Allocation order = run.memory.borrow(n * word), sorted;
   const auto gather = [&] {
-    sorted = run.memory.allocate(n * point_bytes(run.device));
+    const std::size_t bytes = n * point_bytes(run.device);
+    // They are copied before the mesh takes their place, or made again after it.
+    const bool brief = !run.device.shape().contiguous && (run.regathers || !keep_keys);
+    sorted = brief ? run.memory.borrow(bytes) : run.memory.allocate(bytes);
     launch.run(KernelId::cadt_gather_points, c.items, input, order, sorted, count, c.grain, scale, scale_again);
     flag_distinct(run, keys, sorted, order, spare, n, keep_keys && n >= fewest_sampled, totals);
   };
   const auto sort = [&](const KeyGrid& grid) {
-    Allocation spare_order = run.memory.allocate(n * word);
+    Allocation spare_order = run.memory.borrow(n * word);
     result.grid = grid;
     make_keys(run, input, keys, n, grid);
     launch.sort(keys, order, spare, spare_order, n, grid.bits(), true);
@@ -450,8 +456,17 @@ SpatialOrder sort_points(Run& run, Allocation input, std::size_t n, bool keep_ke
   result.shapes.on_circles = 14 * sums[CADT_SHAPE_CIRCLE] > samples;
   result.shapes.on_lattice = 4 * sums[CADT_SHAPE_MIRRORED] > samples;
   input.release();
-  if (keep_keys && sorted_by_keys && sums[CADT_EQUAL] == 0) result.keys = std::move(keys);
+  const auto move_to = [&](Allocation& values, Allocation place) {
+    launch.run(KernelId::cadt_copy_words, c.items, values, place, std::uint32_t{0}, count, c.grain);
+    values = std::move(place);
+  };
+  if (keep_keys && sorted_by_keys && sums[CADT_EQUAL] == 0) {
+    if (tight) move_to(keys, run.memory.borrow(n * word));
+    result.keys = std::move(keys);
+  }
   keys.release();
+  // Labels are for long, and what was sorted is borrowed; buckets take their place (collect.cpp), one more.
+  if (sums[CADT_EQUAL] == 0 && run.memory.lends(n * word)) move_to(order, run.memory.allocate((n + 1) * word));
   close_order(run, result, std::move(sorted), std::move(order), spare, n, sums[CADT_EQUAL]);
   run.end_phase("gather");
   return result;

@@ -100,9 +100,9 @@ class StarStage {
     const KeyGrid& grid = order_.grid;
     Allocation low;
     if (!keys_) {
-      keys_ = run_.memory.allocate(n_ * word);
+      keys_ = run_.memory.borrow(n_ * word);
       if (grid.fine_levels != 0) {
-        low = run_.memory.allocate(n_ * word);
+        low = run_.memory.borrow(n_ * word);
         make_fine_keys(run_, order_.points, keys_, low, n_, grid);
       } else {
         make_keys(run_, order_.points, keys_, n_, grid);
@@ -124,13 +124,16 @@ class StarStage {
   }
 
   void count_triangles() {
-    bases_ = run_.memory.allocate((n_ + 1) * word);
-    ranks_ = run_.memory.allocate((n_ + 1) * word);
+    // All but one of the buffers that lend are taken as a whole while the bases are here; to save memory, there is one.
+    const std::size_t bases = (n_ + 1) * word;
+    bases_ = run_.saves_memory ? run_.memory.allocate_once(bases) : run_.memory.borrow(bases);
+    ranks_ = run_.memory.borrow((n_ + 1) * word);
     totals_ = launch_.zeros(2);
     const Cut c = launch_.cut(n_);
     const std::size_t words = (n_ - 1) / 32 + 1;
     proven_ = run_.memory.allocate(words * word);
-    marks_ = run_.memory.allocate(n_ * sizeof(std::uint16_t));
+    const std::size_t marks = n_ * sizeof(std::uint16_t);
+    marks_ = run_.saves_memory ? run_.memory.allocate_once(marks) : run_.memory.allocate(marks);
     const Cut of_words = launch_.cut(words);
     launch_.run(KernelId::cadt_star_proven, of_words.items, stars_.sizes, count_, static_cast<std::uint32_t>(words),
                 of_words.grain, proven_);
@@ -148,8 +151,8 @@ class StarStage {
   [[nodiscard]] SpatialOrder take_unproven() {
     SpatialOrder rest;
     rest.distinct = unproven_;
-    rest.points = run_.memory.allocate(unproven_ * sizeof(cadt_point));
-    rest.labels = run_.memory.allocate(unproven_ * word);
+    rest.points = run_.memory.allocate_once(unproven_ * sizeof(cadt_point));
+    rest.labels = run_.memory.allocate_once(unproven_ * word);
     const Cut all = launch_.cut(n_);
     launch_.run(KernelId::cadt_unproven_pack, all.items, ranks_, order_.points, rest.points, rest.labels, count_,
                 all.grain);
@@ -198,7 +201,7 @@ class StarStage {
     }
     cuts.push_back(proven_triangles_);
     most = std::max<std::size_t>(most, cuts.back() - cuts[cuts.size() - 2]);
-    const Allocation together = run_.memory.allocate(3 * most * word);
+    const Allocation together = run_.memory.borrow(3 * most * word);
     std::uint32_t from = 0;
     for (std::size_t wave = 0; wave + 1 < cuts.size(); ++wave, from += share) {
       write_vertices(firsts, from, std::min(share, groups - from), together);
@@ -225,17 +228,17 @@ class StarStage {
 
     const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
     const auto mask = static_cast<std::uint32_t>(places - 1), slots = static_cast<std::uint32_t>(smaller.slots);
-    Allocation table = run_.memory.allocate(places * word);
+    Allocation table = run_.memory.borrow(places * word);
     run_.device.fill(*table, 0, places * word, CADT_NONE);
     const Cut open = launch_.cut(open_count_);
     launch_.run(KernelId::cadt_join_enter, open.items, mesh_.vertices, open_, open_count_, open.grain, table, mask);
-    Allocation covers = run_.memory.allocate(3 * smaller.slots * word),
-               roots = run_.memory.allocate(smaller.slots * word);
+    Allocation covers = run_.memory.borrow(3 * smaller.slots * word), roots = run_.memory.borrow(smaller.slots * word);
     const Cut c = launch_.cut(smaller.slots);
     launch_.run(KernelId::cadt_join_cover, c.items, mesh_.vertices, smaller.records, rest.labels, slots, c.grain, table,
                 mask, covers, roots);
     launch_.run(KernelId::cadt_join_components, c.items, smaller.records, slots, c.grain, covers, roots);
-    Allocation hidden = launch_.zeros(smaller.slots), ranks = run_.memory.allocate((2 * smaller.slots + 1) * word);
+    Allocation hidden = run_.memory.borrow_zeros(smaller.slots * word),
+               ranks = run_.memory.borrow((2 * smaller.slots + 1) * word);
     launch_.run(KernelId::cadt_join_hide, c.items, covers, roots, slots, c.grain, hidden);
     launch_.run(KernelId::cadt_join_flags, c.items, smaller.records, roots, hidden, slots, c.grain, ranks);
     launch_.scan(ranks, 2 * smaller.slots + 1);

@@ -50,7 +50,7 @@ class TileMaker {
 
  private:
   void flag(const Allocation& descents) {
-    ranks_ = run_.memory.allocate((n_ + 1) * word);
+    ranks_ = run_.memory.borrow((n_ + 1) * word);
     launch_.run(KernelId::cadt_tile_flags, cut_.items, keys_.high, keys_.low, keys_.low_bits, before_, crowded_, ranks_,
                 count_, levels_, cut_.grain, descents);
   }
@@ -92,8 +92,9 @@ StarList make_star_list(Run& run, std::size_t n, const TileList& tiles) {
                     room = overflow + n / 8 + least;
   StarList list;
   list.links = run.memory.allocate((room + read_ahead) * word);
-  list.begins = run.memory.allocate(n * word);
-  list.sizes = run.memory.allocate_zeros(n * word);
+  const std::size_t begins = (n + 1) * word;  // as buckets are
+  list.begins = run.saves_memory ? run.memory.allocate_once(begins) : run.memory.allocate(begins);
+  list.sizes = run.memory.borrow_zeros(n * word);
   list.overflow = static_cast<std::uint32_t>(overflow);
   list.room = static_cast<std::uint32_t>(room);
   return list;

@@ -35,6 +35,11 @@ class Outputs {
                      DeviceTriangulation::Data& data) = 0;
 
  protected:
+  /// Whether the canonical order is made without a second array: to save memory, or since that second one would be in
+  /// nothing that is kept.
+  static bool in_place(const Run& run, const DeviceMesh& mesh) noexcept {
+    return mesh.in_arrays() && (run.saves_memory || run.memory.lends(mesh.slots * word));
+  }
   static Numbering number(Run& run, const DeviceMesh& mesh, const Allocation& labels, std::size_t points,
                           DeviceTriangulation::Data& data) {
     Numbering numbering = number_triangles(run, mesh, labels, points);
@@ -48,7 +53,7 @@ class OnDevice final : public Outputs {
  public:
   void write(Run& run, DeviceMesh& mesh, Allocation& labels, std::size_t points,
              DeviceTriangulation::Data& data) override {
-    if (run.saves_memory && mesh.in_arrays()) {
+    if (in_place(run, mesh)) {
       data.triangle_count = emit_in_place(run, mesh, labels, points);
       data.triangles = std::move(mesh.vertices);
       data.neighbors = std::move(mesh.links);
@@ -84,7 +89,7 @@ class OnHost final : public Outputs {
   explicit OnHost(Triangulation::Data& to) : to_(to) {}
   void write(Run& run, DeviceMesh& mesh, Allocation& labels, std::size_t points,
              DeviceTriangulation::Data& data) override {
-    if (run.saves_memory && mesh.in_arrays()) return on_device_.write(run, mesh, labels, points, data);
+    if (in_place(run, mesh)) return on_device_.write(run, mesh, labels, points, data);
     const Numbering numbering = number(run, mesh, labels, points, data);
     const std::size_t values = 3 * data.triangle_count;
     to_.triangles = make_words(values);
@@ -113,6 +118,7 @@ void build(Run& run, const Points& points, std::size_t n, bool stars, Outputs& o
   run.check("sort", 0);
   Allocation input = import_points(run, points);
   run.end_phase("upload");
+  run.regathers = std::is_same_v<Points, DevicePoints>;
   SpatialOrder order = sort_points(run, std::move(input), n, stars);
   statistics.distinct = data.distinct = order.distinct;
   statistics.wide_arithmetic = order.wide;

@@ -30,7 +30,27 @@ class Accounted final : public Buffer {
   bool allocated_;
 };
 
-Buffer& real(const Buffer& buffer) { return static_cast<const Accounted&>(buffer).real(); }
+/// Of an accounted buffer.
+class PartOf final : public Buffer {
+ public:
+  PartOf(std::unique_ptr<Buffer> real, std::shared_ptr<Faults> faults, const Buffer& whole, std::size_t begin)
+      : Buffer(real->bytes()), real_(std::move(real)), faults_(std::move(faults)), whole_(whole), begin_(begin) {
+    faults_->add_part(whole_, begin_, begin_ + bytes());
+  }
+  ~PartOf() override { faults_->remove_part(whole_, begin_); }
+  [[nodiscard]] Buffer& real() const noexcept { return *real_; }
+
+ private:
+  std::unique_ptr<Buffer> real_;
+  std::shared_ptr<Faults> faults_;
+  const Buffer& whole_;
+  std::size_t begin_;
+};
+
+Buffer& real(const Buffer& buffer) {
+  if (const auto* part = dynamic_cast<const PartOf*>(&buffer)) return part->real();
+  return static_cast<const Accounted&>(buffer).real();
+}
 
 class FaultyPrimitives final : public Primitives {
  public:
@@ -106,6 +126,20 @@ class FaultyDevice final : public Device {
     return account(device_->wrap(handle, bytes), false);
   }
 
+  [[nodiscard]] std::unique_ptr<Buffer> part(Buffer& of, std::size_t offset, std::size_t bytes) override {
+    std::unique_ptr<Buffer> made;
+    take(Step::allocation, bytes, [&] {
+      made = device_->part(real(of), offset, bytes);
+      if (made == nullptr)
+        made = device_->wrap(static_cast<std::byte*>(device_->handle(real(of))) + offset, bytes);  // it is an address
+    });
+    return std::make_unique<PartOf>(std::move(made), faults_, of, offset);
+  }
+  [[nodiscard]] std::size_t part_alignment() const noexcept override {
+    constexpr std::size_t any = 64;
+    return faults_->makes_parts ? std::max(any, device_->part_alignment()) : device_->part_alignment();
+  }
+
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
     take(Step::copy, 0, [&] { device_->write(real(to), offset, from, bytes); });
   }
@@ -122,8 +156,11 @@ class FaultyDevice final : public Device {
     std::vector<Arg> given(args.begin(), args.end());
     if (faults_->change_launch) faults_->change_launch(kernel, given);
     std::vector<Arg> own = given;
-    for (Arg& arg : own)
-      if (arg.is_buffer() && arg.buffer() != nullptr) arg = Arg(real(*arg.buffer()));
+    for (Arg& arg : own) {
+      if (!arg.is_buffer() || arg.buffer() == nullptr) continue;
+      faults_->require_whole(*arg.buffer());
+      arg = Arg(real(*arg.buffer()));
+    }
     take(Step::launch, 0, [&] {
       if (faults_->after_launch) device_->finish();
       const auto start = std::chrono::steady_clock::now();
@@ -179,7 +216,8 @@ const char* to_string(Step step) noexcept {
 
 void Faults::clear() noexcept {
   counts_.fill(0);
-  all_ = failed_ = 0;
+  all_ = failed_ = parts_made_ = 0;
+  most_bytes_ = live_bytes_;
   at_ = lose_at_ = never;
   moment_ = Moment::before;
   lost_ = false;
@@ -195,6 +233,23 @@ void Faults::fail(Step step, std::size_t k, Moment moment) noexcept {
 void Faults::lose(std::size_t k) noexcept {
   clear();
   lose_at_ = k;
+}
+
+void Faults::add_part(const Buffer& whole, std::size_t begin, std::size_t end) {
+  if (end > whole.bytes()) throw InternalError("a part is not within its buffer");
+  for (const Part& other : live_parts_)
+    if (other.whole == &whole && begin < other.end && other.begin < end) throw InternalError("two parts overlap");
+  live_parts_.push_back({&whole, begin, end});
+  ++parts_made_;
+}
+
+void Faults::remove_part(const Buffer& whole, std::size_t begin) noexcept {
+  std::erase_if(live_parts_, [&](const Part& part) { return part.whole == &whole && part.begin == begin; });
+}
+
+void Faults::require_whole(const Buffer& buffer) const {
+  for (const Part& part : live_parts_)
+    if (part.whole == &buffer) throw InternalError("a launch has a buffer of which there are parts");
 }
 
 bool Faults::next(Step step) noexcept {

@@ -3,6 +3,7 @@
 // back ends are. The test program's linker puts it there (inject.cpp); the library has no hook for it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -46,6 +47,10 @@ class Faults {
   [[nodiscard]] std::size_t failed() const noexcept { return failed_; }
   [[nodiscard]] std::size_t live_buffers() const noexcept { return live_buffers_; }
   [[nodiscard]] std::size_t live_bytes() const noexcept { return live_bytes_; }
+  /// Most since the last clear().
+  [[nodiscard]] std::size_t most_bytes() const noexcept { return most_bytes_; }
+  /// Parts made since the last clear().
+  [[nodiscard]] std::size_t parts() const noexcept { return parts_made_; }
 
   // What a test may change or look at, if set. Buffers are those that the driver holds.
   /// The arguments of each launch, before it.
@@ -57,6 +62,9 @@ class Faults {
   /// Instead of the device's own, if not 0.
   std::uint64_t largest_buffer_bytes = 0;
   bool watchdog = false;  ///< as if it drew a screen
+  /// It makes parts of buffers even if the real one does not. What overlaps another part, and a launch with a buffer of
+  /// which there are parts, is an InternalError.
+  bool makes_parts = false;
 
   // For the device.
   /// Does the step unless it is to fail. \throws DeviceError, OutOfMemory for allocations
@@ -67,7 +75,13 @@ class Faults {
     work();
     if (fails) raise(step, bytes, device);
   }
-  void add(std::size_t bytes) noexcept { ++live_buffers_, live_bytes_ += bytes; }
+  void add(std::size_t bytes) noexcept {
+    ++live_buffers_, live_bytes_ += bytes;
+    most_bytes_ = std::max(most_bytes_, live_bytes_);
+  }
+  void add_part(const Buffer& whole, std::size_t begin, std::size_t end);
+  void remove_part(const Buffer& whole, std::size_t begin) noexcept;
+  void require_whole(const Buffer& buffer) const;
   void remove(std::size_t bytes) noexcept { --live_buffers_, live_bytes_ -= bytes; }
 
  private:
@@ -75,7 +89,12 @@ class Faults {
   [[noreturn]] void raise(Step step, std::size_t bytes, const std::string& device) const;
 
   std::array<std::size_t, steps> counts_{};
-  std::size_t all_ = 0, failed_ = 0, live_buffers_ = 0, live_bytes_ = 0;
+  struct Part {
+    const Buffer* whole;
+    std::size_t begin, end;
+  };
+  std::vector<Part> live_parts_;
+  std::size_t all_ = 0, failed_ = 0, live_buffers_ = 0, live_bytes_ = 0, most_bytes_ = 0, parts_made_ = 0;
   Step step_ = Step::allocation;
   std::size_t at_ = never, lose_at_ = never;
   Moment moment_ = Moment::before;

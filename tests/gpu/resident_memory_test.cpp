@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cadt::test {
 namespace {
@@ -279,6 +280,59 @@ TEST_P(KeptMemory, SecondCallTakesNothingLarge) {
       EXPECT_LT(of_this + 8, first_call) << call;
       if (call == 1) peak = mesh.statistics().bytes_device_peak;
       EXPECT_NEAR(static_cast<double>(mesh.statistics().bytes_device_peak), static_cast<double>(peak), 40000) << call;
+    }
+  }
+}
+
+/// What is kept for the next call is lent within a call: several calls take no more than one, 100 bytes a point with
+/// input and result, and 80 if the input are floats. (Up to two more are in buffers that are too small to be lent.)
+TEST_P(KeptMemory, SeveralCallsTakeLittle) {
+  const Points xy = uniform_points(300'000);
+  const std::vector<float> single(xy.begin(), xy.end());
+  for (const Order order : {Order::canonical, Order::fast}) {
+    for (const bool floats : {false, true}) {
+      SCOPED_TRACE(std::string(order == Order::fast ? "fast, " : "canonical, ") + (floats ? "float" : "double"));
+      Options with = options();
+      with.order = order;
+      with.strategy = Strategy::automatic;
+      Triangulator triangulator(with);
+      if (!triangulator.device().gpu) GTEST_SKIP() << "processors keep more, of the memory of the process";
+      const DevicePoints points = floats ? DevicePoints{.x = memory->upload(std::span<const float>(single)),
+                                                        .size = single.size() / 2,
+                                                        .scalar = Scalar::float32}
+                                         : upload(xy);
+      std::uint64_t last = 0;
+      for (int call = 0; call < 4; ++call) {
+        const DeviceTriangulation mesh = triangulator.triangulate(points);
+        EXPECT_GT(mesh.statistics().proven_stars, points.size * 9 / 10);
+        EXPECT_LE(mesh.statistics().bytes_device_peak, (floats ? 74 : 86) * points.size) << call;
+        const std::uint64_t now = requests(mesh), of_this = now - std::exchange(last, now);
+        // what saves memory gives more of it back
+        if (call < 2 || !mesh.data().state->memory.keeps()) continue;
+        EXPECT_LE(of_this, floats ? 12U : 0U) << call;
+      }
+    }
+  }
+}
+
+/// reserve() asks for fewer buffers where they are lent, and they are enough.
+TEST_P(KeptMemory, ReservedMemoryIsLent) {
+  constexpr std::size_t n = 300'000;
+  const DevicePoints points = upload(uniform_points(n));
+  for (const Strategy strategy : {Strategy::locks, Strategy::automatic}) {
+    for (const Order order : {Order::canonical, Order::fast}) {
+      SCOPED_TRACE(std::string(to_string(strategy)) + (order == Order::fast ? ", fast" : ", canonical"));
+      Options with = options();
+      with.order = order;
+      with.strategy = strategy;
+      Triangulator triangulator(with);
+      if (!triangulator.device().gpu) GTEST_SKIP() << "processors lend nothing";
+      triangulator.reserve(n);
+      EXPECT_LE(triangulator.memory_needed(n), 166 * n);
+      for (int call = 0; call < 3; ++call) {
+        const DeviceTriangulation mesh = triangulator.triangulate(points);
+        EXPECT_LE(mesh.statistics().bytes_device_peak, triangulator.memory_needed(n)) << call;
+      }
     }
   }
 }

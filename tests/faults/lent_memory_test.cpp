@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Steps of a call borrow kept buffers of each other (common/host/memory.hpp): no two share a byte, the account is what
+// the device has given, meshes are the same, and after any fault all of it can be given back. The device makes parts of
+// buffers here whether or not it does so outside.
+#include "tests/faults/faulty_device.hpp"
+#include "tests/gpu/resident.hpp"
+
+namespace cadt::test {
+namespace {
+
+using Reals = std::span<const double>;
+
+constexpr std::size_t enough = 270'000;  // the smallest buffers that are borrowed have a word for each of 262,144
+
+class LentMemory : public ResidentTest {
+ protected:
+  void SetUp() override {
+    ResidentTest::SetUp();
+    faults->makes_parts = true;
+  }
+  [[nodiscard]] Options with(Strategy strategy, Order order) const {
+    Options chosen = options();
+    chosen.strategy = strategy;
+    chosen.order = order;
+    return chosen;
+  }
+  /// CUDA has a pool of its own.
+  [[nodiscard]] bool lends() const { return GetParam().backend != Backend::cuda; }
+
+  const std::shared_ptr<Faults> faults = std::make_shared<Faults>();
+  const Injection injection{faults};
+};
+
+Points with_equal_ones() {
+  Points xy = uniform_points(enough, 4);
+  const Points again(xy.begin(), xy.begin() + 2000);
+  xy.insert(xy.end(), again.begin(), again.end());
+  return xy;
+}
+
+/// Sets of several kinds and sizes in turn, so that what is kept of one is lent to another.
+TEST_P(LentMemory, MeshesAndAccounts) {
+  std::vector<Known> sets;
+  for (Points& xy : std::vector<Points>{with_equal_ones(), cluster_points(enough), grid_points(600, 500)})
+    sets.emplace_back(std::move(xy));
+  for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
+    for (const Order order : {Order::canonical, Order::fast}) {
+      SCOPED_TRACE(std::string(cadt::to_string(strategy)) + (order == Order::fast ? ", fast" : ", canonical"));
+      {
+        Triangulator triangulator(with(strategy, order));
+        for (int round = 0; round < 2; ++round) {
+          for (const Known& known : sets) {
+            SCOPED_TRACE(std::to_string(known.size()) + " points, round " + std::to_string(round));
+            const DevicePoints points = upload(known.xy);
+            faults->clear();
+            const DeviceTriangulation mesh = triangulator.triangulate(points);
+            EXPECT_EQ(mesh.statistics().bytes_device_peak, faults->most_bytes());
+            EXPECT_GE(faults->parts(), round == 1 && lends() ? 4U : 0U);
+            EXPECT_EQ(mesh.download().hash(), known.mesh.hash());
+            if (round == 0) continue;
+            EXPECT_EQ(triangulator.triangulate(Reals(known.xy)).hash(), known.mesh.hash());
+          }
+        }
+      }
+      EXPECT_EQ(faults->live_bytes(), 0U);
+    }
+  }
+}
+
+/// A step of each kind fails here and there while buffers are lent.
+TEST_P(LentMemory, AfterFaults) {
+  const Known known(cluster_points(enough));
+  for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
+    Triangulator triangulator(with(strategy, Order::canonical));
+    const auto hash = [&] { return triangulator.triangulate(Reals(known.xy)).hash(); };
+    EXPECT_EQ(hash(), known.mesh.hash());
+    faults->clear();
+    EXPECT_EQ(hash(), known.mesh.hash());
+    for (std::size_t s = 0; s < steps; ++s) {
+      const auto step = static_cast<Step>(s);
+      const std::size_t count = faults->count(step), stride = 1 + count / 3;
+      for (std::size_t k = 0; k < count && !HasFailure(); k += stride) {
+        SCOPED_TRACE(std::string(to_string(step)) + " " + std::to_string(k) + " of " + std::to_string(count));
+        faults->fail(step, k);
+        try {
+          EXPECT_EQ(hash(), known.mesh.hash());
+        } catch (const Error&) {
+          EXPECT_EQ(faults->failed(), 1U);
+        }
+        // A call that finds what the failed one has left, and one after all was given back.
+        faults->clear();
+        EXPECT_EQ(hash(), known.mesh.hash());
+        if (k % 2 == 0) continue;
+        triangulator.release_memory();
+        EXPECT_EQ(faults->live_bytes(), 0U);
+        EXPECT_EQ(hash(), known.mesh.hash());
+      }
+      faults->clear();
+      EXPECT_EQ(hash(), known.mesh.hash());
+    }
+  }
+  EXPECT_EQ(faults->live_bytes(), 0U);
+}
+
+CADT_ON_MAIN_BACKENDS(LentMemory);
+
+}  // namespace
+}  // namespace cadt::test

@@ -71,7 +71,7 @@ std::uint32_t Launcher::read_word(const Allocation& from, std::size_t index) {
 void Launcher::scan(const Allocation& data, std::size_t count) {
   if (count == 0) return;
   if (Primitives* own = device_.primitives()) {
-    const Allocation scratch = memory_.allocate(own->scan_scratch(count));
+    const Allocation scratch = memory_.borrow(own->scan_scratch(count));
     times_.time(KernelTimes::scan, [&] { own->scan(*scratch, *data, count); });
     return;
   }
@@ -90,7 +90,7 @@ void Launcher::scan(const Allocation& data, std::size_t count) {
 void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys, Allocation& spare_values,
                     std::size_t count, unsigned bits, bool identity) {
   if (Primitives* own = device_.primitives()) {
-    const Allocation scratch = memory_.allocate(own->sort_scratch(count, bits));
+    const Allocation scratch = memory_.borrow(own->sort_scratch(count, bits));
     const bool places = identity && own->sorts_places(count);
     if (identity && !places) {
       const Cut c = cut(count);

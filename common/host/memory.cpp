@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t small = 4096, smallest = 64;
 
 /// Smaller buffers are not borrowed: what they take together is little, and to have kept them saves time.
-constexpr std::size_t least_borrowed = std::size_t{1} << 20;
+constexpr std::size_t least_borrowed = std::size_t{1} << 18;
 /// Parts begin at multiples of this, or of what the device asks for.
 constexpr std::size_t part_step = 4096;
 /// What is lent is larger by as much as a few parts lose by that.
@@ -184,6 +184,7 @@ Allocation Memory::account(std::unique_ptr<Buffer> buffer) {
 }
 
 Allocation Memory::allocate(std::size_t bytes) {
+  if (borrows_all_ && lends(bytes)) return borrow(bytes);
   bytes = requested(bytes);
   if (auto buffer = take_kept(bytes)) return account(std::move(buffer));
   check_limit(bytes);
@@ -191,6 +192,7 @@ Allocation Memory::allocate(std::size_t bytes) {
 }
 
 Allocation Memory::allocate_zeros(std::size_t bytes) {
+  if (borrows_all_ && lends(bytes)) return borrow_zeros(bytes);
   bytes = requested(bytes);
   if (auto buffer = take_kept(bytes)) {
     device_.fill(*buffer, 0, (bytes + 3) / 4 * 4, 0);

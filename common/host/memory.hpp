@@ -67,6 +67,19 @@ class Memory {
   [[nodiscard]] Allocation allocate_once(std::size_t bytes);
   /// As borrow, filled with zeros.
   [[nodiscard]] Allocation borrow_zeros(std::size_t bytes);
+  /// As long as this lives, all is borrowed that is allocated.
+  class BorrowAll {
+   public:
+    BorrowAll(Memory& memory, bool really) noexcept
+        : memory_(memory), before_(std::exchange(memory.borrows_all_, really)) {}
+    ~BorrowAll() { memory_.borrows_all_ = before_; }
+    BorrowAll(const BorrowAll&) = delete;
+    BorrowAll& operator=(const BorrowAll&) = delete;
+
+   private:
+    Memory& memory_;
+    bool before_;
+  };
   /// Whether borrow() gives so many bytes otherwise than allocate().
   [[nodiscard]] bool lends(std::size_t bytes) const noexcept;
   /// The caller's data: aliased if the device can, else copied.
@@ -134,7 +147,7 @@ class Memory {
   [[nodiscard]] std::unique_ptr<Buffer> ask(const Allocate& allocate);
 
   Device& device_;
-  bool keep_, reserved_ = false, dropped_ = false;
+  bool keep_, reserved_ = false, dropped_ = false, borrows_all_ = false;
   std::size_t limit_ = 0, held_ = 0, peak_ = 0;
   std::size_t kept_bytes_ = 0, lent_bytes_ = 0;  // of whole buffers; those that lend are among both
   std::uint64_t allocations_ = 0;

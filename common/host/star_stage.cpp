@@ -151,8 +151,8 @@ class StarStage {
   [[nodiscard]] SpatialOrder take_unproven() {
     SpatialOrder rest;
     rest.distinct = unproven_;
-    rest.points = run_.memory.allocate_once(unproven_ * sizeof(cadt_point));
-    rest.labels = run_.memory.allocate_once(unproven_ * word);
+    rest.points = run_.memory.allocate(unproven_ * sizeof(cadt_point));
+    rest.labels = run_.memory.allocate(unproven_ * word);
     const Cut all = launch_.cut(n_);
     launch_.run(KernelId::cadt_unproven_pack, all.items, ranks_, order_.points, rest.points, rest.labels, count_,
                 all.grain);
@@ -221,6 +221,8 @@ class StarStage {
   }
 
   void join(SpatialOrder& rest) {
+    // The place of the stars is free now, unless it became that of the mesh.
+    const Memory::BorrowAll borrows(run_.memory, !run_.saves_memory);
     const std::uint64_t certified = run_.statistics.certified_edges;
     const DeviceMesh smaller = build_part(run_, rest, n_);
     run_.statistics.certified_edges = certified;  // those of the whole mesh count
@@ -228,17 +230,17 @@ class StarStage {
 
     const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
     const auto mask = static_cast<std::uint32_t>(places - 1), slots = static_cast<std::uint32_t>(smaller.slots);
-    Allocation table = run_.memory.borrow(places * word);
+    Allocation table = run_.memory.allocate(places * word);
     run_.device.fill(*table, 0, places * word, CADT_NONE);
     const Cut open = launch_.cut(open_count_);
     launch_.run(KernelId::cadt_join_enter, open.items, mesh_.vertices, open_, open_count_, open.grain, table, mask);
-    Allocation covers = run_.memory.borrow(3 * smaller.slots * word), roots = run_.memory.borrow(smaller.slots * word);
+    Allocation covers = run_.memory.allocate(3 * smaller.slots * word),
+               roots = run_.memory.allocate(smaller.slots * word);
     const Cut c = launch_.cut(smaller.slots);
     launch_.run(KernelId::cadt_join_cover, c.items, mesh_.vertices, smaller.records, rest.labels, slots, c.grain, table,
                 mask, covers, roots);
     launch_.run(KernelId::cadt_join_components, c.items, smaller.records, slots, c.grain, covers, roots);
-    Allocation hidden = run_.memory.borrow_zeros(smaller.slots * word),
-               ranks = run_.memory.borrow((2 * smaller.slots + 1) * word);
+    Allocation hidden = launch_.zeros(smaller.slots), ranks = run_.memory.allocate((2 * smaller.slots + 1) * word);
     launch_.run(KernelId::cadt_join_hide, c.items, covers, roots, slots, c.grain, hidden);
     launch_.run(KernelId::cadt_join_flags, c.items, smaller.records, roots, hidden, slots, c.grain, ranks);
     launch_.scan(ranks, 2 * smaller.slots + 1);

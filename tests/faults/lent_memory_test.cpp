@@ -10,7 +10,7 @@ namespace {
 
 using Reals = std::span<const double>;
 
-constexpr std::size_t enough = 270'000;  // the smallest buffers that are borrowed have a word for each of 262,144
+constexpr std::size_t enough = 70'000;  // the smallest buffers that are borrowed have a word for each of 65,536
 
 class LentMemory : public ResidentTest {
  protected:
@@ -41,7 +41,7 @@ Points with_equal_ones() {
 /// Sets of several kinds and sizes in turn, so that what is kept of one is lent to another.
 TEST_P(LentMemory, MeshesAndAccounts) {
   std::vector<Known> sets;
-  for (Points& xy : std::vector<Points>{with_equal_ones(), cluster_points(enough), grid_points(600, 500)})
+  for (Points& xy : std::vector<Points>{with_equal_ones(), cluster_points(enough), grid_points(270, 260)})
     sets.emplace_back(std::move(xy));
   for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
     for (const Order order : {Order::canonical, Order::fast}) {

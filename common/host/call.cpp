@@ -79,7 +79,7 @@ std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
 void keep_buffers(Memory& memory, std::size_t n, bool stars) {
   std::vector<Allocation> together;
   for (const std::size_t words : reserved_words(memory, n, stars))
-    together.push_back(memory.allocate((n * words + 1) * word));  // sums have one more
+    together.push_back(memory.allocate((n * words + (words <= 2 ? 1 : 0)) * word));  // sums have one more
 }
 
 void require_size(std::size_t points) {

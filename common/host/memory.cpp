@@ -59,7 +59,11 @@ void Memory::require(std::size_t bytes) {
 }
 
 std::size_t Memory::requested(std::size_t bytes) const noexcept {
-  if (lends(bytes)) return bytes + more_to_lend;
+  if (lends(bytes)) {
+    const std::uint64_t largest = device_.info().largest_buffer_bytes;  // 0: not known
+    const std::size_t more = bytes + more_to_lend;
+    return largest == 0 || more <= largest ? more : std::max(bytes, static_cast<std::size_t>(largest));
+  }
   return keep_ ? kept_size(bytes) : std::max<std::size_t>(bytes, 4);  // OpenCL has no empty buffers
 }
 

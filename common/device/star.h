@@ -147,11 +147,11 @@ CADT_FN cadt_u32 cadt_angle_key(const cadt_star_maker* m, cadt_u32 p, cadt_u32 f
   return place == first ? place : (CADT_CAST(cadt_u32, angle * 524280.0f) << CADT_PLACE_BITS) | place;
 }
 
-/* Inverse square of the distance of the point of this step from p, no number if there is none, or it is p itself: the
- * largest of that and something else is the other. */
-CADT_FN float cadt_swept_inverse(const cadt_sweep* s, cadt_u32 p, cadt_vector d) {
+/* Inverse square of the distance d of the point at `place` from p, no number if it is not one of the row that is swept,
+ * or p itself: the largest of that and something else is the other. */
+CADT_FN float cadt_swept_inverse(const cadt_sweep* s, cadt_u32 place, cadt_u32 p, cadt_vector d) {
   const float inverse = cadt_inverse_square(d);
-  return s->place < s->end && s->place != p ? inverse : cadt_float_of_bits(0x7FFFFFFFu);
+  return place < s->end && place != p ? inverse : cadt_float_of_bits(0x7FFFFFFFu);
 }
 
 /* The star of the point at place p in cell (x, y), searched for in the cells up to `reach` away, which must be in the
@@ -168,14 +168,17 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   cadt_sweep cells = cadt_sweep_around(w, x, y, near);
   cadt_u32 more = 1u;
   while (more) {
-    const cadt_vector d = cadt_vector_from(w, at_p, cells.place);
-    const float inverse = cadt_swept_inverse(&cells, p, d);
-    const float ux = cadt_mark(d.x * inverse, cells.place), uy = cadt_mark(d.y * inverse, cells.place);
-    nearest = cadt_maxf(nearest, inverse);
-    best[0] = cadt_maxf(best[0], ux);
-    best[2] = cadt_maxf(best[2], uy);
-    best[4] = cadt_maxf(best[4], -ux);
-    best[6] = cadt_maxf(best[6], -uy);
+    for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_SWEEP_POINTS); ++i) {
+      const cadt_u32 place = cells.place + i;
+      const cadt_vector d = cadt_vector_from(w, at_p, place);
+      const float inverse = cadt_swept_inverse(&cells, place, p, d);
+      const float ux = cadt_mark(d.x * inverse, place), uy = cadt_mark(d.y * inverse, place);
+      nearest = cadt_maxf(nearest, inverse);
+      best[0] = cadt_maxf(best[0], ux);
+      best[2] = cadt_maxf(best[2], uy);
+      best[4] = cadt_maxf(best[4], -ux);
+      best[6] = cadt_maxf(best[6], -uy);
+    }
     more = cadt_sweep_on(w, &cells);
   }
   if (!(nearest > 0.0f && nearest < 1e7f)) return 0u; /* nobody, or too near for single precision */
@@ -195,10 +198,13 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     cells = cadt_sweep_around(w, x, y, near);
     more = 1u;
     while (more) {
-      const cadt_vector d = cadt_vector_from(w, at_p, cells.place);
-      const float inverse = cadt_swept_inverse(&cells, p, d), ux = d.x * inverse, uy = d.y * inverse;
-      for (cadt_u32 k = 0u; k < 4u; ++k)
-        best[2u * k + 1u] = cadt_maxf(best[2u * k + 1u], cadt_mark(cadt_about_fma(ex[k], ux, ey[k] * uy), cells.place));
+      for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_SWEEP_POINTS); ++i) {
+        const cadt_u32 place = cells.place + i;
+        const cadt_vector d = cadt_vector_from(w, at_p, place);
+        const float inverse = cadt_swept_inverse(&cells, place, p, d), ux = d.x * inverse, uy = d.y * inverse;
+        for (cadt_u32 k = 0u; k < 4u; ++k)
+          best[2u * k + 1u] = cadt_maxf(best[2u * k + 1u], cadt_mark(cadt_about_fma(ex[k], ux, ey[k] * uy), place));
+      }
       more = cadt_sweep_on(w, &cells);
     }
   }
@@ -260,14 +266,17 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   cadt_u32 count = 0u;
   more = 1u;
   while (more) {
-    const cadt_u32 j = cells.place, here = j < cells.end ? 1u : 0u;
-    const float dx = w->x[j] - at_p.x, dy = w->y[j] - at_p.y;
-    float t = cadt_about_fma(nx[0], dx, ny[0] * dy);
-    for (cadt_u32 k = 1u; k < 8u; ++k) t = cadt_maxf(t, cadt_about_fma(nx[k], dx, ny[k] * dy));
-    /* not p itself */
-    if (cadt_about_fma(error, cadt_fabsf(dx) + cadt_fabsf(dy), t) > cadt_about_fma(dx, dx, dy * dy) * shrink && here) {
-      cadt_set_link_place(m, count & (2u * CADT_CANDIDATES - 1u), j); /* too many are of no use */
-      ++count;
+    for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_SWEEP_POINTS); ++i) {
+      const cadt_u32 j = cells.place + i, here = j < cells.end ? 1u : 0u;
+      const float dx = w->x[j] - at_p.x, dy = w->y[j] - at_p.y;
+      float t = cadt_about_fma(nx[0], dx, ny[0] * dy);
+      for (cadt_u32 k = 1u; k < 8u; ++k) t = cadt_maxf(t, cadt_about_fma(nx[k], dx, ny[k] * dy));
+      /* not p itself */
+      if (cadt_about_fma(error, cadt_fabsf(dx) + cadt_fabsf(dy), t) > cadt_about_fma(dx, dx, dy * dy) * shrink &&
+          here) {
+        cadt_set_link_place(m, count & (2u * CADT_CANDIDATES - 1u), j); /* too many are of no use */
+        ++count;
+      }
     }
     more = cadt_sweep_on(w, &cells);
   }

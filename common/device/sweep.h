@@ -7,10 +7,10 @@
 
 #include "common/device/window.h"
 
-/* The points of a rectangle of cells, row by row, in one loop: lanes whose rows are short do not wait. No loop within
- * it: in a row without points there is one step without a point. */
+/* The points of a rectangle of cells, row by row, in one loop: lanes whose rows are short do not wait. A step has
+ * CADT_SWEEP_POINTS places, of which those from `end` on are not in the row: in a row without points none is. */
 typedef struct {
-  cadt_u32 place, end; /* in the row */
+  cadt_u32 place, end; /* the first place of the step; in the row */
   cadt_u32 cell, last, width, side;
 } cadt_sweep;
 
@@ -32,7 +32,7 @@ CADT_FN cadt_sweep cadt_sweep_around(CADT_TEAM_PTR const cadt_window* w, cadt_u3
 
 /* To the next step; 0: there is none. */
 CADT_FN cadt_u32 cadt_sweep_on(CADT_TEAM_PTR const cadt_window* w, cadt_sweep* s) {
-  ++s->place;
+  s->place += CADT_CAST(cadt_u32, CADT_SWEEP_POINTS);
   const cadt_u32 over = s->place >= s->end ? 1u : 0u, more = !over || s->cell != s->last ? 1u : 0u;
   if (over && more) {
     s->cell += s->side;

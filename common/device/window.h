@@ -16,6 +16,7 @@ enum {
   CADT_WINDOW_PARTS = 32, /* of the cells, for their scan */
   CADT_TILE_SIDE = 16,
   CADT_CANDIDATES = 16,
+  CADT_SWEEP_POINTS = 2, /* of a step (sweep.h): what a step costs besides its points is shared by them */
   CADT_FEW_CELLS = 20, /* in which candidates are looked for: few stars need more, and all lanes would wait for them */
   CADT_LINK_PLACES = 2 * 16 * 128 /* twice CADT_CANDIDATES for each of CADT_STAR_LANES */
 };
@@ -32,9 +33,10 @@ typedef struct {
 } cadt_window_shape;
 
 typedef struct {
-  float x[CADT_WINDOW_POINTS + 1], y[CADT_WINDOW_POINTS + 1]; /* in cells, from the centre of the window */
-  cadt_u32 at[CADT_WINDOW_POINTS];                            /* positions */
-  cadt_u32 cells[CADT_WINDOW_CELLS + 1];                      /* where the points of a cell begin, once sorted */
+  /* In cells, from the centre of the window. A sweep looks beyond the last point (sweep.h). */
+  float x[CADT_WINDOW_POINTS + CADT_SWEEP_POINTS], y[CADT_WINDOW_POINTS + CADT_SWEEP_POINTS];
+  cadt_u32 at[CADT_WINDOW_POINTS];       /* positions */
+  cadt_u32 cells[CADT_WINDOW_CELLS + 1]; /* where the points of a cell begin, once sorted */
   cadt_u32 first[CADT_WINDOW_RANGES], offset[CADT_WINDOW_RANGES + 1], parts[CADT_WINDOW_PARTS];
   cadt_u32 rows[CADT_TILE_SIDE + 1]; /* points of the tile before each row of its cells */
   cadt_u16 link[CADT_LINK_PLACES];   /* a star in the making for each lane (star.h) */

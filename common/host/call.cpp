@@ -78,8 +78,9 @@ std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
 
 void keep_buffers(Memory& memory, std::size_t n, bool stars) {
   std::vector<Allocation> together;
+  // Sums have one more; what is larger may be all that fits the device's largest buffer.
   for (const std::size_t words : reserved_words(memory, n, stars))
-    together.push_back(memory.allocate((n * words + (words <= 2 ? 1 : 0)) * word));  // sums have one more
+    together.push_back(memory.allocate((n * words + (words <= 2 ? 1 : 0)) * word));
 }
 
 void require_size(std::size_t points) {

@@ -5,6 +5,8 @@
 #include "tests/faults/faulty_device.hpp"
 #include "tests/gpu/resident.hpp"
 
+#include "common/host/device_constants.hpp"
+
 namespace cadt::test {
 namespace {
 
@@ -66,8 +68,9 @@ TEST_P(LentMemory, MeshesAndAccounts) {
             Triangulator saving(with(strategy, order));
             for (int call = 0; call < 2; ++call) {
               faults->clear();
-              const std::uint64_t peak = saving.triangulate(floats).statistics().bytes_device_peak;
-              EXPECT_EQ(peak, faults->most_bytes() - held) << call;
+              const DeviceTriangulation saved = saving.triangulate(floats);
+              EXPECT_EQ(saved.statistics().bytes_device_peak, faults->most_bytes() - held) << call;
+              EXPECT_EQ(saved.download().hash(), on_host(PointsView(std::span<const float>(single))).hash()) << call;
             }
             EXPECT_EQ(triangulator.triangulate(Reals(known.xy)).hash(), known.mesh.hash());
           }
@@ -83,11 +86,19 @@ TEST_P(LentMemory, MeshesAndAccounts) {
 TEST_P(LentMemory, AfterFaults) {
   const Points xy = cluster_points(enough);
   const std::vector<float> single(xy.begin(), xy.end());
-  for (const bool floats : {false, true}) {
-    SCOPED_TRACE(floats ? "float" : "double");
+  struct Case {
+    const char* name;
+    bool floats;
+    Strategy strategy;
+    Order order;
+  };
+  for (const auto& [name, floats, strategy, order] : {Case{"doubles, locks", false, Strategy::locks, Order::canonical},
+                                                      Case{"doubles, stars", false, Strategy::stars, Order::canonical},
+                                                      Case{"floats, stars", true, Strategy::stars, Order::fast}}) {
+    SCOPED_TRACE(name);
     const PointsView points = floats ? PointsView(std::span<const float>(single)) : PointsView(Reals(xy));
     const auto expected = on_host(points).hash();
-    Triangulator triangulator(with(floats ? Strategy::stars : Strategy::locks, Order::fast));
+    Triangulator triangulator(with(strategy, order));
     const auto try_again = [&] {
       faults->clear();
       const Triangulation mesh = triangulator.triangulate(points);
@@ -114,6 +125,19 @@ TEST_P(LentMemory, AfterFaults) {
     }
   }
   EXPECT_EQ(faults->live_bytes(), 0U);
+}
+
+/// Buffers that are lent are larger than what was asked for, but not larger than the device's largest.
+TEST_P(LentMemory, LargestBufferJustFits) {
+  const Points xy = uniform_points(enough);
+  const auto expected = on_host(Reals(xy)).hash();
+  faults->largest_buffer_bytes = 2 * enough * sizeof(device_constants::cadt_record);
+  for (const bool reserved : {false, true}) {
+    SCOPED_TRACE(reserved ? "reserved" : "not reserved");
+    Triangulator triangulator(with(Strategy::locks, Order::canonical));
+    if (reserved) triangulator.reserve(enough);
+    for (int call = 0; call < 2; ++call) EXPECT_EQ(triangulator.triangulate(Reals(xy)).hash(), expected) << call;
+  }
 }
 
 CADT_ON_MAIN_BACKENDS(LentMemory);

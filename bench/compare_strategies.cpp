@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/gpu/device_memory.hpp"
+#include "tests/system/resident/device_memory.hpp"
 
 namespace {
 

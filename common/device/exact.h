@@ -8,7 +8,7 @@
 
 #include "common/device/fixed.h"
 
-/* Where a length of integers is taken. Tests may count (tests/device/device_predicates.ipp). */
+/* Where a length of integers is taken. Tests may count (tests/unit/predicates/device_predicates.ipp). */
 #ifndef CADT_STAGE
 #define CADT_STAGE(name) ((void)0)
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Sites of the lock protocol at which tests delay a work-item or let a claim fail (tests/concurrency). Nothing of it is
- * in the library: without CADT_PERTURBED all macros are empty.
+ * Sites of the lock protocol at which tests (tests/robustness/concurrency) delay a work-item or let a claim fail.
+ * Nothing of it is in the library: without CADT_PERTURBED all macros are empty.
  *
  * What is done comes with each call in Options::quality_epsilon, which insertion asks for nothing else while
  * Options::stabilize is off: eight times a seed, and a mode of cadt_noise_mode. So the same kernels serve all modes, on

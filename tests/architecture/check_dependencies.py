@@ -34,8 +34,8 @@ BACKENDS = ["host", "opencl", "cuda"]
 # Headers from outside -> folders that may use them.
 OUTSIDE = {
     r"CGAL/": ["tests", "bench"],
-    r"CL/": ["backends/opencl", "kernels_cl", "tests/device", "tests/gpu"],
-    r"cuda": ["backends/cuda", "kernels_cuda", "common/device", "tests/device", "tests/gpu", "examples"],
+    r"CL/": ["backends/opencl", "kernels_cl", "tests/system/resident"],
+    r"cuda": ["backends/cuda", "kernels_cuda", "common/device", "tests/system/resident", "examples"],
     r"cub/|thrust/": ["backends/cuda", "kernels_cuda"],
     r"cairo|png|zlib": ["io", "tests"],
     r"fast_float/": ["io"],

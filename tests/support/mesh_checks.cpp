@@ -57,7 +57,7 @@ AssertionResult same_indices(const char* name, std::span<const std::int32_t> hav
 }
 
 // Without CGAL: the mesh of the serial host, if the verifier, whose predicates are its own, accepts it with every tie.
-// What CGAL found is then compared through the table of tests/golden alone.
+// What CGAL found is then compared through the table of tests/system/golden alone.
 OracleMesh oracle_of(const Points& xy) {
 #if CADT_TEST_CGAL
   return cgal_delaunay(xy);

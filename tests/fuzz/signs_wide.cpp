@@ -1,7 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-#define CADT_WIDE 1
-#include "tests/fuzz/signs.ipp"
-
-namespace cadt::fuzz {
-std::vector<std::uint32_t> wide_words(const std::vector<test::SignCase>& cases) { return words(cases); }
-}  // namespace cadt::fuzz

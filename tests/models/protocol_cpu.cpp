@@ -1,4 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-#define CADT_CONTIGUOUS 1
-#define CADT_MODEL_SEARCH search_cpu
-#include "tests/models/protocol_model.ipp"

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Copies the kernels with one fault of the lock protocol planted in them, for the programs that must find it.
+
+usage: plant_fault.py ROOT TARGET FAULT      copies common/device and kernels_cl from ROOT to TARGET, changed
+       plant_fault.py --list [TOOL]          names of the faults (that TOOL is to find)
+
+The text that a fault replaces must be in the sources exactly once, so a fault that has become stale is an error.
+"""
+import pathlib
+import shutil
+import sys
+
+LOCK, CHANGE, INSERT, ATOMICS = (f"common/device/{name}.h" for name in ("lock", "change", "insert", "atomics"))
+
+# name: (what is wrong, tools that find it, [(file, text, replacement)])
+# Tools: host, opencl, gpu (cadt-tests-perturbed on the host, on OpenCL, and there as on GPUs), tsan (the same under the
+# thread sanitizer), relacy (tests/robustness/models/protocol_test.cpp; relacy-gpu with the memory orders of GPUs). No tool:
+# docs/reliability.md says why.
+FAULTS = {
+    "none": ("nothing: the control", [], []),
+    "flip_one_lock_short": (
+        "a flip claims three of its four records", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
+        [(CHANGE, "claim.record[3] = CADT_LINK_RECORD(outer_aq);", "claim.record[3] = CADT_NONE;")]),
+    "split_one_lock_short": (
+        "a split claims two of its three records", ["host", "opencl", "gpu"],
+        [(CHANGE, "claim.record[2] = CADT_LINK_RECORD(s.n2);", "claim.record[2] = CADT_NONE;")]),
+    "no_reread": (
+        "a claim takes whatever is there and asks nothing: neither the version nor the fields again",
+        ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
+        [(LOCK, "#elif CADT_CONTIGUOUS\n  if (*version == CADT_ANY_VERSION) *version", "#elif CADT_CONTIGUOUS\n  *version"),
+         (LOCK, "if (*version != CADT_ANY_VERSION && *version != found) {", "if (*version == 1u) {"),
+         (LOCK, "const cadt_snapshot now = cadt_look_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
+    "no_confirm": (
+        "GPUs: the version is compared, the fields are not read again", ["relacy-gpu"],
+        [(LOCK, "const cadt_snapshot now = cadt_look_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
+    "confirm_no_vertices": (
+        "GPUs: the vertices by which a flip was tested are not compared", ["relacy-gpu"],
+        [(LOCK, "cadt_u32 other = (now.v0 ^ s->v0) | (now.v1 ^ s->v1) | (now.v2 ^ s->v2);", "cadt_u32 other = 0u;")]),
+    "confirm_no_links": (
+        "GPUs: the links by which a flip has claimed are not compared", ["relacy-gpu"],
+        [(CHANGE, "cadt_confirm(m, t, k, CADT_LINKS_01, &s)", "cadt_confirm(m, t, k, 0u, &s)"),
+         (CHANGE, "cadt_confirm(m, n, j, CADT_LINKS_01, &u)", "cadt_confirm(m, n, j, 0u, &u)")]),
+    "release_early": (
+        "a flip gives its records back before it has written them", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
+        [(CHANGE,
+          "  cadt_write_flip(m, link, &s, &u, tally);\n  cadt_fence_locks();\n  cadt_release_claim(m, &claim);\n",
+          "  cadt_fence_locks();\n  cadt_release_claim(m, &claim);\n  cadt_write_flip(m, link, &s, &u, tally);\n")]),
+    "publish_early": (
+        "the new records of a split are made free before they are written", ["host", "opencl", "gpu"],
+        [(CHANGE, "  cadt_write_face(m, i, t, &s, edges, tally);\n",
+          "  cadt_publish_record(m, t1);\n  cadt_publish_record(m, t2);\n  cadt_write_face(m, i, t, &s, edges, tally);\n")]),
+    "same_version": (
+        "an unlock after a change does not raise the version", ["host", "opencl", "relacy"],
+        [(LOCK, "{ return version + 2u ? version + 2u : 2u; }", "{ return version; }")]),
+    "check_then_set": (
+        "a claim is a load and a store, not one operation", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
+        [(LOCK, "cadt_cas_lock(lock, *version, *version | 1u)) return 1u;",
+          "cadt_load_field(lock) == *version) {\n    cadt_store_relaxed(lock, *version | 1u);\n    return 1u;\n  }"),
+         (LOCK, "const cadt_u32 found = cadt_or_relaxed(lock, 1u);",
+          "const cadt_u32 found = cadt_load_relaxed(lock);\n  cadt_store_relaxed(lock, found | 1u);")]),
+    "lock_kept_at_failure": (
+        "a lost claim gives back all but the last record that it had", ["host", "opencl", "gpu"],
+        [(LOCK, "cadt_abandon_claim(m, c, i);", "cadt_abandon_claim(m, c, i ? i - 1u : 0u);")]),
+    "point_dropped": (
+        "a point that got no locks is on no list", ["host", "opencl", "gpu"],
+        [(INSERT, "const cadt_u32 at = cadt_add_relaxed(left_counts, 1u);",
+          "const cadt_u32 at = cadt_load_relaxed(left_counts);")]),
+    "plain_unlock": (
+        "the lock word is given back by a plain store", ["tsan"],
+        [(ATOMICS, "{ cadt_store_release(p, value); }\n/* behind claims", "{ *p = value; }\n/* behind claims")]),
+    "relaxed_claim": (
+        "CPUs: the compare-and-swap of a claim orders nothing", [],
+        [(ATOMICS, "  return cadt_cas_acq_rel(p, expected, desired);", "  return cadt_cas_relaxed(p, expected, desired);")]),
+    "relaxed_unlock": (
+        "CPUs: the store that gives a record back orders nothing", ["relacy"],
+        [(ATOMICS, "{ cadt_store_release(p, value); }\n/* behind claims",
+          "{ cadt_store_relaxed(p, value); }\n/* behind claims")]),
+    "relaxed_fields_load": (
+        "CPUs: fields are read in no order, and not read again", ["relacy"],
+        [(ATOMICS, "{ return cadt_load_acquire(p); }", "{ return cadt_load_relaxed(p); }")]),
+    "relaxed_fields_store": (
+        "CPUs: fields are written in no order", [],
+        [(ATOMICS, "{ cadt_store_release(p, value); }\nCADT_FN cadt_u32 cadt_cas_lock",
+          "{ cadt_store_relaxed(p, value); }\nCADT_FN cadt_u32 cadt_cas_lock")]),
+    "block_fence_claims": (
+        "GPUs: the fence behind the claims is none for other groups (block scope)", ["relacy-gpu"],
+        [(ATOMICS, "CADT_FN void cadt_fence_claims(void) { cadt_fence_acq_rel(); }", "CADT_FN void cadt_fence_claims(void) {}")]),
+    "block_fence_locks": (
+        "GPUs: the fence before the unlocks is none for other groups (block scope)", ["relacy-gpu"],
+        [(ATOMICS, "CADT_FN void cadt_fence_locks(void) { cadt_fence_acq_rel(); }", "CADT_FN void cadt_fence_locks(void) {}")]),
+    "abandon_by_store": (
+        "GPUs: a claim is given back unchanged by a store, which cuts the last owner's release sequence", [],
+        [(LOCK, "      cadt_add_relaxed(m->records[c->record[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);",
+          "      cadt_store_relaxed(m->records[c->record[i]].word + CADT_WORD_LOCK, c->version[i]);")]),
+}
+
+
+def plant(root, target, fault):
+    if target.exists():
+        shutil.rmtree(target)
+    for folder in ("common/device", "kernels_cl"):
+        shutil.copytree(root / folder, target / folder)
+    for name, old, new in FAULTS[fault][2]:
+        path = target / name
+        text = path.read_text()
+        if text.count(old) != 1:
+            sys.exit(f"plant_fault: {fault}: {name} has this {text.count(old)} times, not once:\n{old}")
+        path.write_text(text.replace(old, new))
+
+
+def main():
+    if len(sys.argv) in (2, 3) and sys.argv[1] == "--list":
+        print(";".join(name for name, (_, tools, _) in FAULTS.items() if len(sys.argv) == 2 or sys.argv[2] in tools), end="")
+    elif len(sys.argv) == 4 and sys.argv[3] in FAULTS:
+        plant(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3])
+    else:
+        sys.exit(__doc__)
+
+
+if __name__ == "__main__":
+    main()

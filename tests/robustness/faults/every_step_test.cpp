@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every allocation, launch, copy, fill and wait of every kind of call fails once, on every back end: a typed error,
+// nothing stays allocated, and the same triangulator goes on. Then the device is lost at each of them.
+#include "tests/robustness/faults/faulty_device.hpp"
+#include "tests/system/resident/resident.hpp"
+
+#include <cadt/batch.hpp>
+
+#include "common/host/registry.hpp"
+#include "common/host/selftest.hpp"
+
+namespace cadt::test {
+namespace {
+
+using Moment = Faults::Moment;
+using Reals = std::span<const double>;
+
+struct Outcome {
+  std::string hash;
+  std::size_t peak = 0;
+};
+
+Outcome outcome_of(const Triangulation& mesh) {
+  return {mesh.hash().to_string(), static_cast<std::size_t>(mesh.statistics().bytes_device_peak)};
+}
+
+/// The hashes of all sets.
+Outcome outcome_of(const TriangulationBatch& batch) {
+  Outcome all;
+  for (std::size_t s = 0; s < batch.size(); ++s) all.hash += batch.triangulation(s).hash().to_string();
+  all.peak = static_cast<std::size_t>(batch.statistics().bytes_device_peak);
+  return all;
+}
+
+/// What is asked of a triangulator again and again.
+using Call = std::function<Outcome(Triangulator&)>;
+
+Points some_points() {
+  Points xy = cluster_points(200);
+  const Points lattice = grid_points(8, 8), spread = uniform_points(100, 3);
+  for (const Points* more : {&lattice, &spread, &spread}) xy.insert(xy.end(), more->begin(), more->end());
+  return xy;
+}
+
+/// A few that fill and cross the limits of small sets: an empty one, one of equal points, one on a line.
+struct Sets {
+  Points xy;
+  std::vector<std::size_t> offsets = {0};
+  Sets() {
+    for (const Points& set : {uniform_points(150, 1), Points{}, Points(20, 1.5), Points{0, 0, 1, 1, 3, 3},
+                              hub_points(60), uniform_points(3, 2)}) {
+      xy.insert(xy.end(), set.begin(), set.end());
+      offsets.push_back(xy.size() / 2);
+    }
+  }
+};
+
+class EveryStep : public ResidentTest {
+ protected:
+  /// A queue of the library's own: those of the test have no clocks.
+  [[nodiscard]] Options without_queue() const {
+    Options with = options();
+    with.queue.reset();
+    return with;
+  }
+
+  /// Each step of `call` fails in turn. `warm`: memory that earlier calls left is kept.
+  void fail_each(const Options& with, const Call& call, bool warm = false) {
+    const auto faults = std::make_shared<Faults>();
+    {
+      const Injection injection(faults);
+      Triangulator triangulator(with);
+      const Outcome expected = call(triangulator);
+      triangulator.release_memory();
+      const std::size_t held = faults->live_bytes(), buffers = faults->live_buffers();
+      if (warm) (void)call(triangulator);
+      faults->clear();
+      EXPECT_EQ(call(triangulator).hash, expected.hash);
+      std::array<std::size_t, steps> counts{};
+      for (std::size_t s = 0; s < steps; ++s) counts[s] = faults->count(static_cast<Step>(s));
+      for (std::size_t s = 0; s < steps; ++s) {
+        std::size_t reached = 0;
+        for (std::size_t k = 0; k < counts[s] && !HasFailure(); ++k) {
+          const auto step = static_cast<Step>(s);
+          SCOPED_TRACE(std::string(to_string(step)) + " " + std::to_string(k) + " of " + std::to_string(counts[s]));
+          if (!warm) triangulator.release_memory();
+          faults->fail(step, k, k % 2 == 0 ? Moment::before : Moment::after);
+          expect_typed(triangulator, call, *faults, step, expected);
+          reached += faults->failed();
+          faults->clear();
+          triangulator.release_memory();
+          EXPECT_EQ(faults->live_bytes(), held);
+          EXPECT_EQ(faults->live_buffers(), buffers);
+          const Outcome next = call(triangulator);
+          EXPECT_EQ(next.hash, expected.hash);
+          EXPECT_LE(next.peak, expected.peak) << "memory is counted that nobody holds";
+        }
+        if (HasFailure()) return;
+        // Threads that get in one another's way make some launches, and what goes with them, more or less.
+        EXPECT_GE(4 * reached + 12, 3 * counts[s]) << to_string(static_cast<Step>(s));
+        RecordProperty(to_string(static_cast<Step>(s)), std::to_string(reached));
+      }
+    }
+    EXPECT_EQ(faults->live_buffers(), 0U);
+    EXPECT_EQ(faults->live_bytes(), 0U);
+  }
+
+  static void expect_typed(Triangulator& triangulator, const Call& call, const Faults& faults, Step step,
+                           const Outcome& expected) {
+    try {
+      EXPECT_EQ(call(triangulator).hash, expected.hash);
+      // an allocation is tried once more without the memory that is kept
+      EXPECT_TRUE(faults.failed() == 0 || step == Step::allocation) << "a fault was not noticed";
+    } catch (const OutOfMemory& error) {
+      EXPECT_EQ(step, Step::allocation) << error.what();
+      EXPECT_GT(error.needed(), 0U);
+    } catch (const DeviceError& error) {
+      EXPECT_NE(step, Step::allocation) << error.what();
+      EXPECT_EQ(error.code(), injected_code);
+      EXPECT_NE(std::string(error.what()).find(triangulator.device().name), std::string::npos) << error.what();
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << "another exception: " << error.what();
+    }
+  }
+};
+
+TEST_P(EveryStep, PointsOfTheHost) {
+  const Points xy = some_points();
+  const Call call = [&](Triangulator& t) { return outcome_of(t.triangulate(Reals(xy))); };
+  for (const bool warm : {false, true}) fail_each(options(), call, warm);
+}
+
+TEST_P(EveryStep, PointsOfTheDevice) {
+  const Points xy = some_points();
+  const DevicePoints points = upload(xy);
+  const Call call = [&](Triangulator& t) { return outcome_of(t.triangulate(points).download()); };
+  Options with = options();
+  with.order = Order::fast;
+  with.strategy = Strategy::locks;
+  fail_each(with, call);
+}
+
+TEST_P(EveryStep, Stars) {
+  const Points xy = some_points();
+  const Call call = [&](Triangulator& t) { return outcome_of(t.triangulate(Reals(xy))); };
+  Options with = options();
+  with.strategy = Strategy::stars;
+  fail_each(with, call);
+}
+
+TEST_P(EveryStep, PointsOnALine) {
+  Points xy;
+  for (int i = 0; i < 300; ++i) xy.insert(xy.end(), {3.0 * (i % 290), 2.0 * (i % 290)});
+  const Call call = [&](Triangulator& t) { return outcome_of(t.triangulate(Reals(xy))); };
+  fail_each(options(), call);
+}
+
+TEST_P(EveryStep, Clocks) {
+  const Points xy = some_points();
+  const Call call = [&](Triangulator& t) {
+    const Triangulation mesh = t.triangulate(Reals(xy));
+    EXPECT_FALSE(mesh.statistics().kernels.empty());
+    EXPECT_FALSE(mesh.statistics().milliseconds.empty());
+    return outcome_of(mesh);
+  };
+  Options with = without_queue();
+  with.kernel_times = true;
+  with.statistics = StatisticsDetail::counters;
+  fail_each(with, call);
+}
+
+TEST_P(EveryStep, Snapshots) {
+  const Points xy = some_points();
+  const Call call = [&](Triangulator& t) { return outcome_of(t.triangulate(Reals(xy))); };
+  Options with = options();
+  with.watch = [](const Snapshot&) {};
+  with.stabilize = Stabilize::defer;
+  fail_each(with, call);
+}
+
+TEST_P(EveryStep, SeveralSets) {
+  const Sets sets;
+  const DevicePoints points = upload(sets.xy);
+  fail_each(options(), [&](Triangulator& t) { return outcome_of(t.triangulate_batch(Reals(sets.xy), sets.offsets)); });
+  fail_each(options(),
+            [&](Triangulator& t) { return outcome_of(t.triangulate_batch(points, sets.offsets).download()); });
+}
+
+TEST_P(EveryStep, Verification) {
+  const Points xy = some_points();
+  const DevicePoints points = upload(xy);
+  const auto text = [](const VerifyReport& report) { return Outcome{report.summary(), 0}; };
+  fail_each(options(), [&](Triangulator& t) {
+    const DeviceTriangulation mesh = t.triangulate(points);
+    return text(t.verify(points, mesh));
+  });
+}
+
+/// The memory of reserve() as well.
+TEST_P(EveryStep, ReservedMemory) {
+  const Points xy = some_points();
+  const Call call = [&](Triangulator& t) {
+    t.reserve(1000);
+    return outcome_of(t.triangulate(Reals(xy)));
+  };
+  fail_each(options(), call);
+}
+
+/// What the self-test of a device needs when it is opened.
+TEST_P(EveryStep, SelfTest) {
+  const auto faults = std::make_shared<Faults>();
+  {
+    const auto device = faulty_device(open_device(without_queue()), faults);
+    run_selftest(*device);
+    const std::size_t all = faults->count();
+    EXPECT_GT(all, 7U);
+    std::size_t thrown = 0;
+    for (std::size_t s = 0; s < steps; ++s)
+      for (std::size_t k = 0; k < all; ++k) {
+        faults->fail(static_cast<Step>(s), k);
+        try {
+          run_selftest(*device);
+          EXPECT_EQ(faults->failed(), 0U);
+        } catch (const OutOfMemory&) {
+          ++thrown;
+        } catch (const DeviceError&) {
+          ++thrown;
+        }
+        EXPECT_EQ(faults->live_buffers(), 0U);
+      }
+    EXPECT_EQ(thrown, all);
+    faults->clear();
+    run_selftest(*device);
+  }
+}
+
+/// The device goes away at each step of a call, and stays away: one typed error a call, no more than a few steps are
+/// tried after the first that failed, nothing is thrown or asked for by destructors. A device that is opened anew
+/// works.
+TEST_P(EveryStep, DeviceIsLost) {
+  constexpr std::size_t few = 1;
+  const Points xy = some_points();
+  const DevicePoints points = upload(xy);
+  const auto faults = std::make_shared<Faults>();
+  const Injection injection(faults);
+  const Call call = [&](Triangulator& t) { return outcome_of(t.triangulate(points).download()); };
+  std::size_t count = 0;
+  const std::string expected = [&] {
+    Triangulator triangulator(options());
+    const DeviceTriangulation before = triangulator.triangulate(points);
+    faults->clear();
+    const Outcome found = call(triangulator);
+    count = faults->count();
+    return found.hash;
+  }();
+  EXPECT_GT(count, 40U);
+  // Each step on the host; opening other devices takes longer.
+  const std::size_t stride = GetParam().backend == Backend::host ? 1 : 1 + count / 40;
+  for (std::size_t k = 0; k < count && !HasFailure(); k += stride) {
+    SCOPED_TRACE("step " + std::to_string(k) + " of " + std::to_string(count));
+    {
+      Triangulator triangulator(options());
+      const DeviceTriangulation before = triangulator.triangulate(points);
+      faults->lose(k);
+      bool noticed = false;
+      try {
+        (void)call(triangulator);
+      } catch (const DeviceError& error) {
+        noticed = true;
+        EXPECT_EQ(error.code(), injected_code);
+      }
+      EXPECT_EQ(noticed, faults->failed() != 0);
+      // Threads that get in one another's way make some launches more or less.
+      EXPECT_TRUE(noticed || 4 * k >= 3 * count);
+      EXPECT_LE(faults->failed(), few);
+      for (int again = 0; noticed && again < 2; ++again) {
+        const std::size_t failed = faults->failed();
+        (void)thrown<DeviceError>([&] { (void)call(triangulator); });
+        (void)thrown<DeviceError>([&] { (void)before.download(); });
+        (void)thrown<DeviceError>([&] { (void)triangulator.verify(points, before); });
+        EXPECT_LE(faults->failed() - failed, 3 * few);
+      }
+      triangulator.release_memory();
+    }
+    EXPECT_EQ(faults->live_buffers(), 0U);
+    faults->clear();
+    Triangulator fresh(options());
+    EXPECT_EQ(call(fresh).hash, expected);
+  }
+  EXPECT_EQ(faults->live_buffers(), 0U);
+}
+
+/// The caller stops the call at each place where it can: nothing stays allocated, and the next call is as ever.
+TEST_P(EveryStep, Cancelled) {
+  const Points xy = some_points();
+  const auto faults = std::make_shared<Faults>();
+  {
+    const Injection injection(faults);
+    for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
+      Options with = options();
+      with.strategy = strategy;
+      Triangulator triangulator(with);
+      std::size_t calls = 0;
+      triangulator.options().progress = [&](const Progress&) { ++calls; };
+      const Outcome expected = outcome_of(triangulator.triangulate(Reals(xy)));
+      const std::size_t all = calls;
+      EXPECT_GT(all, 5U);
+      for (std::size_t k = 0; k < all; ++k) {
+        SCOPED_TRACE(k);
+        std::stop_source source;
+        triangulator.options().stop = source.get_token();
+        calls = 0;
+        triangulator.options().progress = [&](const Progress&) {
+          if (calls++ == k) source.request_stop();
+        };
+        bool stopped = false;
+        try {
+          (void)triangulator.triangulate(Reals(xy));
+        } catch (const cadt::Cancelled&) {
+          stopped = true;
+        }
+        EXPECT_EQ(stopped, calls > k);
+        triangulator.options().stop = {};
+        triangulator.options().progress = nullptr;
+        triangulator.release_memory();
+        EXPECT_EQ(faults->live_bytes(), 0U);
+        const Outcome next = outcome_of(triangulator.triangulate(Reals(xy)));
+        EXPECT_EQ(next.hash, expected.hash);
+        EXPECT_LE(next.peak, expected.peak);
+      }
+    }
+  }
+  EXPECT_EQ(faults->live_buffers(), 0U);
+}
+
+CADT_ON_MAIN_BACKENDS(EveryStep);
+
+}  // namespace
+}  // namespace cadt::test

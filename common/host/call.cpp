@@ -19,8 +19,9 @@ constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial result
 /// numbers, and lists of a word or less.
 constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
 
-/// Bytes a point of the largest buffer of the star stage, the stars.
-constexpr std::size_t star_pool_bytes = 26;
+/// Bytes of the largest buffer of the star stage, the stars (make_star_list of tiles.cpp): 25 a point, some for each
+/// tile and 49,216 for all.
+constexpr std::size_t star_pool_bytes(std::size_t n) { return fixed + 26 * n; }
 
 /// With the star stage besides: stars, lists, and what the rest of the points needs.
 constexpr std::size_t kept_star_words[] = {7, 1, 1, 1, 1, 1, 1};
@@ -127,7 +128,7 @@ void require_buffer(const Triangulator::State& state, std::size_t bytes) {
 bool require_memory(Triangulator::State& state, std::size_t n, const CallShape& call) {
   const bool stars = prefers_stars(state.options, *state.device) &&
                      (state.options.strategy == Strategy::stars || n > most_wrapped_on_circles);
-  require_buffer(state, stars ? n * star_pool_bytes : record_bytes(n));
+  require_buffer(state, stars ? star_pool_bytes(n) : record_bytes(n));
   const bool bounded = state.options.max_memory != 0;
   if (!stars) {
     if (n > state.known_points || bounded) state.memory.require(least_bytes(n, call.result_elsewhere));

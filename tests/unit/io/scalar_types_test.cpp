@@ -3,7 +3,7 @@
 // range of an unsigned type must not come back negative, and what needs all its bytes must not come back cut short.
 #include "io/support/npy_format.hpp"
 #include "io/support/zip_archive.hpp"
-#include "tests/io/io_test_support.hpp"
+#include "tests/unit/io/io_test_support.hpp"
 
 #include <limits>
 

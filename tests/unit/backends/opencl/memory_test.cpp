@@ -2,7 +2,7 @@
 // What counts as held: buffers once, parts and memory of the caller's not at all.
 #include <limits>
 
-#include "tests/opencl/support.hpp"
+#include "tests/unit/backends/opencl/support.hpp"
 
 namespace cadt::test {
 namespace {

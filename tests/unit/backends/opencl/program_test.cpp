@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "backends/opencl/program.hpp"
-#include "tests/opencl/support.hpp"
+#include "tests/unit/backends/opencl/support.hpp"
 
 namespace cadt::test {
 namespace {

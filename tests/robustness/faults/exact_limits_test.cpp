@@ -8,12 +8,12 @@
 
 #include <cstring>
 
-#include "common/host/device_constants.hpp"
+#include "common/driver/device_text.hpp"
 
 namespace cadt::test {
 namespace {
 
-using namespace device_constants;
+using namespace device_text;
 using Reals = std::span<const double>;
 using Call = std::function<void(Triangulator&)>;
 
@@ -91,7 +91,8 @@ TEST_P(ExactLimits, Insertion) {
   const std::size_t waiting = Triangulator(with).memory_needed(known.size());
   expect_exact(with, of_host, fixed + (on_host_itself() ? 97 : 124) * known.size(), waiting);
   expect_exact(with, of_device, fixed + 124 * known.size(), waiting);
-  for (const Call& call : {of_host, of_device}) expect_exact_buffer(with, call, 2 * known.size() * sizeof(cadt_record));
+  for (const Call& call : {of_host, of_device})
+    expect_exact_buffer(with, call, 2 * known.size() * sizeof(cadt_locked_triangle));
 }
 
 /// 83 bytes a point, or 71 where the points can be read once more. The stars are one buffer.
@@ -174,7 +175,7 @@ class ExactGroups : public ExactLimits {
   void SetUp() override {
     ExactLimits::SetUp();
     faults->change_launch = [this](KernelId kernel, std::vector<Arg>& args) {
-      if (kernel != KernelId::cadt_set_gather) return;
+      if (kernel != KernelId::cadt_batch_gather) return;
       Group group{};
       std::memcpy(&group.points, args[6].value(), sizeof group.points);
       std::memcpy(&group.sets, args[3].value(), sizeof group.sets);
@@ -204,7 +205,7 @@ constexpr std::uint32_t fewest = 65536;
 
 /// The records of a group are one buffer, which may be as large as the largest.
 TEST_P(ExactGroups, LargestBuffer) {
-  faults->largest_buffer_bytes = fewest * 2 * sizeof(cadt_record);
+  faults->largest_buffer_bytes = fewest * 2 * sizeof(cadt_locked_triangle);
   for (const std::size_t more : {0U, 1U}) {
     std::vector<std::size_t> sizes(150, 1024);
     sizes[63] += more;  // with it the first 64 sets are one point too many
@@ -269,7 +270,7 @@ TEST_P(ExactGroups, Sets) {
   const Points xy = uniform_points(offsets.back());
   const TriangulationBatch batch = triangulator.triangulate_batch(Reals(xy), offsets);
   expect_meshes(batch, xy, offsets);
-  EXPECT_EQ(batch.statistics().sets_together, 5U);
+  EXPECT_EQ(batch.statistics().batched_sets, 5U);
   EXPECT_EQ(groups, (std::vector<Group>{{300 + most, 3}, {700, 2}}));
 
   constexpr std::uint32_t most_sets = 1U << 20;

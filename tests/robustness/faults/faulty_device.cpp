@@ -154,7 +154,7 @@ class FaultyDevice final : public Device {
     take(Step::fill, 0, [&] { device_->fill(real(to), offset, bytes, word); });
   }
   using Device::launch;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
               std::uint32_t group) override {
     std::vector<Arg> given(args.begin(), args.end());
     if (faults_->change_launch) faults_->change_launch(kernel, given);

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "common/host/device.hpp"
+#include "common/driver/device.hpp"
 
 namespace cadt::test {
 

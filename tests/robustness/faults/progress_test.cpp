@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "common/host/device_constants.hpp"
+#include "common/driver/device_text.hpp"
 
 namespace cadt::test {
 namespace {
@@ -134,12 +134,12 @@ TEST_P(ToldProgress, WrappedStars) {
 
 /// Passes that are repeated tell nothing twice: here three find edges that could not be read.
 TEST_P(ToldProgress, RepeatedPasses) {
-  using namespace device_constants;
+  using namespace device_text;
   const Points xy = uniform_points(20000, 7);
   const Buffer* counts = nullptr;
   int unsettled = 0;
   faults->change_launch = [&](KernelId kernel, std::vector<Arg>& args) {
-    counts = kernel == KernelId::cadt_closing_pass ? args[args.size() - 3].buffer() : nullptr;
+    counts = kernel == KernelId::cadt_legality_sweep ? args[args.size() - 3].buffer() : nullptr;
   };
   faults->change_read = [&](const Buffer& from, std::size_t, void* to, std::size_t bytes) {
     const std::size_t at = (CADT_LEFT_COUNTS + 2) * sizeof(std::uint32_t);
@@ -152,7 +152,7 @@ TEST_P(ToldProgress, RepeatedPasses) {
   const Call call = [&](Triangulator& t) {
     unsettled = 0;
     const Statistics statistics = t.triangulate(Reals(xy)).statistics();
-    EXPECT_EQ(statistics.closing_sweeps, 4U);
+    EXPECT_EQ(statistics.legality_sweeps, 4U);
     return statistics;
   };
   expect_told(options(Strategy::locks), call, reports, with(insertion_phases, {"copy"}));

@@ -19,8 +19,8 @@ std::map<std::string, std::string> fields_of(const Statistics& s) {
                                                            {"distinct", s.distinct},
                                                            {"launches", s.launches},
                                                            {"walk_steps", s.walk_steps},
-                                                           {"claims", s.claims},
-                                                           {"lost_claims", s.lost_claims},
+                                                           {"lock_attempts", s.lock_attempts},
+                                                           {"lock_failures", s.lock_failures},
                                                            {"invalid_restarts", s.invalid_restarts},
                                                            {"insert_retries", s.insert_retries},
                                                            {"stale_edges", s.stale_edges},
@@ -34,8 +34,8 @@ std::map<std::string, std::string> fields_of(const Statistics& s) {
                                                            {"exact_orientations", s.exact_orientations},
                                                            {"exact_incircles", s.exact_incircles},
                                                            {"ties", s.ties},
-                                                           {"closing_sweeps", s.closing_sweeps},
-                                                           {"closing_repairs", s.closing_repairs},
+                                                           {"legality_sweeps", s.legality_sweeps},
+                                                           {"sweep_repairs", s.sweep_repairs},
                                                            {"cavities", s.cavities},
                                                            {"certified_edges", s.certified_edges},
                                                            {"stabilized_edges", s.stabilized_edges},
@@ -44,7 +44,7 @@ std::map<std::string, std::string> fields_of(const Statistics& s) {
                                                            {"proven_stars", s.proven_stars},
                                                            {"wrapped_stars", s.wrapped_stars},
                                                            {"sets", s.sets},
-                                                           {"sets_together", s.sets_together},
+                                                           {"batched_sets", s.batched_sets},
                                                            {"refined_points", s.refined_points},
                                                            {"bytes_device_peak", s.bytes_device_peak},
                                                            {"wide_arithmetic", s.wide_arithmetic ? 1 : 0},
@@ -94,7 +94,7 @@ class ToldStatistics : public ResidentTest {
     EXPECT_EQ(s.certified_edges, edges);
     EXPECT_TRUE(s.certified);
     EXPECT_EQ(s.illegal_edges, 0U);
-    EXPECT_GE(s.closing_sweeps, 1U);
+    EXPECT_GE(s.legality_sweeps, 1U);
     EXPECT_FALSE(s.wide_arithmetic);
     EXPECT_FALSE(s.milliseconds.empty());
     EXPECT_TRUE(s.kernels.empty());
@@ -124,7 +124,7 @@ TEST_P(ToldStatistics, OneSet) {
         s = triangulator.triangulate(Reals(xy)).statistics();
       }
       expect_told(s, triangulator.device(), n, distinct, 3 * distinct - 3);
-      EXPECT_EQ(s.sets + s.sets_together, 0U);
+      EXPECT_EQ(s.sets + s.batched_sets, 0U);
       if (strategy == Strategy::stars) {
         EXPECT_GT(s.proven_stars, distinct / 2);
         EXPECT_EQ(s.tiles == 0, s.proven_stars == 0);
@@ -165,7 +165,7 @@ TEST_P(ToldStatistics, SeveralSets) {
       }
       expect_told(s, triangulator.device(), n, distinct, edges);
       EXPECT_EQ(s.sets, 6U);
-      EXPECT_EQ(s.sets_together, 2U);
+      EXPECT_EQ(s.batched_sets, 2U);
       if (on_device) {
         EXPECT_EQ(fields_of(batch.download().statistics()), fields_of(s));
       }

@@ -12,12 +12,12 @@
 #include <optional>
 #include <utility>
 
-#include "common/host/device_constants.hpp"
+#include "common/driver/device_text.hpp"
 
 namespace cadt::test {
 namespace {
 
-using namespace device_constants;
+using namespace device_text;
 using Reals = std::span<const double>;
 using Word = std::uint32_t;
 using Face = std::array<Word, 3>;
@@ -28,12 +28,14 @@ constexpr Word link_of(Word triangle, Word edge) { return triangle << 2 | edge; 
 
 /// The mesh as it is on the device.
 struct Mesh {
-  std::vector<Face> vertices, links;
+  std::vector<Face> vertices, half_edges;
   std::vector<cadt_point> points;
 
   [[nodiscard]] bool real(Word t) const { return std::ranges::count(vertices[t], ghost) == 0; }
   /// The triangle across, and its edge.
-  [[nodiscard]] std::pair<Word, Word> across(Word t, Word k) const { return {links[t][k] >> 2, links[t][k] & 3U}; }
+  [[nodiscard]] std::pair<Word, Word> across(Word t, Word k) const {
+    return {half_edges[t][k] >> 2, half_edges[t][k] & 3U};
+  }
 
   /// An edge that is looked at from this triangle, which is not the first: its link may lead to an earlier one.
   [[nodiscard]] std::pair<Word, Word> edge_to_later() const {
@@ -57,12 +59,12 @@ struct Mesh {
         const Word p = vertices[t][k], a = vertices[t][(k + 1) % 3], b = vertices[t][(k + 2) % 3], q = vertices[u][j];
         if (area(p, a, q) <= 1e-6 || area(p, q, b) <= 1e-6) continue;
         // a, b and q, p keep their slots where they can: {p, a, q} and {q, b, p}
-        const Word beside_a = links[u][(j + 1) % 3], beside_b = links[t][(k + 1) % 3];
+        const Word beside_a = half_edges[u][(j + 1) % 3], beside_b = half_edges[t][(k + 1) % 3];
         vertices[t][(k + 2) % 3] = q;
         vertices[u][(j + 2) % 3] = p;
         const auto join = [&](Word triangle, Word edge, Word link) {
-          links[triangle][edge] = link;
-          links[link >> 2][link & 3U] = link_of(triangle, edge);
+          half_edges[triangle][edge] = link;
+          half_edges[link >> 2][link & 3U] = link_of(triangle, edge);
         };
         join(t, k, beside_a);
         join(u, j, beside_b);
@@ -89,7 +91,7 @@ struct Mesh {
       for (Word k = 0; k < 3; ++k) sides[{faces[t][(k + 1) % 3], faces[t][(k + 2) % 3]}] = link_of(t, k);
     vertices = faces;
     for (Word t = 0; t < faces.size(); ++t)
-      for (Word k = 0; k < 3; ++k) links[t][k] = sides.at({faces[t][(k + 2) % 3], faces[t][(k + 1) % 3]});
+      for (Word k = 0; k < 3; ++k) half_edges[t][k] = sides.at({faces[t][(k + 2) % 3], faces[t][(k + 1) % 3]});
   }
 };
 
@@ -111,11 +113,11 @@ void turn_back(Mesh& mesh) {
 
 void lose_an_edge(Mesh& mesh) {
   const auto [t, k] = mesh.edge_to_later();
-  mesh.links[t][k] = link_of(0, 0);  // neither side looks at it now
+  mesh.half_edges[t][k] = link_of(0, 0);  // neither side looks at it now
 }
 void unlink_an_edge(Mesh& mesh) {
   const auto [t, k] = mesh.edge_to_later();
-  mesh.links[t][k] = link_of(mesh.links[t][k] >> 2, ((mesh.links[t][k] & 3U) + 1) % 3);
+  mesh.half_edges[t][k] = link_of(mesh.half_edges[t][k] >> 2, ((mesh.half_edges[t][k] & 3U) + 1) % 3);
 }
 void flip_an_edge(Mesh& mesh) { mesh.flip_an_edge(); }
 
@@ -147,7 +149,7 @@ class WrongMesh : public ResidentTest {
                 read_all<cadt_point>(device, *args[2].buffer(), all / 2 + 1)};
       change(mesh);
       device.write(*args[0].buffer(), 0, mesh.vertices.data(), all * sizeof(Face));
-      device.write(*args[1].buffer(), 0, mesh.links.data(), all * sizeof(Face));
+      device.write(*args[1].buffer(), 0, mesh.half_edges.data(), all * sizeof(Face));
     };
   }
 
@@ -155,28 +157,29 @@ class WrongMesh : public ResidentTest {
   void change_records(std::size_t n, Change change) {
     changed = 0;
     faults->before_launch = [this, n, change](KernelId kernel, std::span<const Arg> args, Device& device) {
-      if (kernel != KernelId::cadt_closing_pass || changed++ != 0) return;
-      std::vector<cadt_record> records = read_all<cadt_record>(device, *args[0].buffer(), 2 * n);
+      if (kernel != KernelId::cadt_legality_sweep || changed++ != 0) return;
+      std::vector<cadt_locked_triangle> records = read_all<cadt_locked_triangle>(device, *args[0].buffer(), 2 * n);
       std::vector<Word> used, number(records.size());
       for (Word r = 0; r < records.size(); ++r)
         if (records[r].word[CADT_WORD_LOCK] != 0) number[r] = static_cast<Word>(used.size()), used.push_back(r);
       Mesh mesh;
       mesh.points = read_all<cadt_point>(device, *args[1].buffer(), n);
       for (const Word r : used) {
-        Face vertices{}, links{};
+        Face vertices{}, half_edges{};
         for (std::size_t k = 0; k < 3; ++k) {
           vertices[k] = records[r].word[k];
-          const Word link = records[r].word[CADT_WORD_LINK + k];
-          links[k] = link_of(number[link >> 2], link & 3U);
+          const Word link = records[r].word[CADT_WORD_HALF_EDGE + k];
+          half_edges[k] = link_of(number[link >> 2], link & 3U);
         }
         mesh.vertices.push_back(vertices);
-        mesh.links.push_back(links);
+        mesh.half_edges.push_back(half_edges);
       }
       change(mesh);
       for (std::size_t t = 0; t < used.size(); ++t) {
         for (std::size_t k = 0; k < 3; ++k) {
           records[used[t]].word[k] = mesh.vertices[t][k];
-          records[used[t]].word[CADT_WORD_LINK + k] = link_of(used[mesh.links[t][k] >> 2], mesh.links[t][k] & 3U);
+          records[used[t]].word[CADT_WORD_HALF_EDGE + k] =
+              link_of(used[mesh.half_edges[t][k] >> 2], mesh.half_edges[t][k] & 3U);
         }
       }
       device.write(*args[0].buffer(), 0, records.data(), records.size() * sizeof records[0]);
@@ -288,8 +291,8 @@ TEST_P(WrongMesh, RecordsWithAnIllegalEdge) {
   const Triangulation mesh = triangulator.triangulate(Reals(xy));
   EXPECT_GE(changed, 2U);
   EXPECT_EQ(mesh.hash(), on_host(Reals(xy)).hash());
-  EXPECT_GE(mesh.statistics().closing_sweeps, 2U);
-  EXPECT_GE(mesh.statistics().closing_repairs, 1U);
+  EXPECT_GE(mesh.statistics().legality_sweeps, 2U);
+  EXPECT_GE(mesh.statistics().sweep_repairs, 1U);
   EXPECT_EQ(mesh.statistics().certified_edges, 897U);
   expect_right(triangulator, xy);
 }

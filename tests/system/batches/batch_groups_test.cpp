@@ -98,7 +98,7 @@ TEST_P(BatchGroups, EveryFormOfPoints) {
       const TriangulationBatch batch = triangulator.triangulate_batch(points, groups.offsets);
       ASSERT_EQ(batch.size(), groups.sets.size());
       EXPECT_EQ(batch.statistics().sets, groups.sets.size());
-      EXPECT_EQ(batch.statistics().sets_together, 9U);  // those with points
+      EXPECT_EQ(batch.statistics().batched_sets, 9U);  // those with points
       EXPECT_EQ(batch.statistics().points, groups.points());
       std::uint64_t edges = 0, distinct = 0;
       for (std::size_t s = 0; s < groups.sets.size(); ++s) {

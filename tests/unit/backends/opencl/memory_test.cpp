@@ -61,9 +61,9 @@ TEST_F(OpenClMemory, MemoryOfTheCallerTakesNothing) {
 }
 
 /// Takes what it gives from another device of the same context.
-class Lender final : public DeviceAllocator {
+class Pool final : public DeviceAllocator {
  public:
-  explicit Lender(Device& from) : from_(from) {}
+  explicit Pool(Device& from) : from_(from) {}
   void* allocate(std::size_t bytes, void*) noexcept override {
     given_.push_back(from_.allocate(bytes));
     return from_.handle(*given_.back());
@@ -81,18 +81,18 @@ TEST_F(OpenClMemory, AnAllocatorHasNoLimitOfOurs) {
   opencl::OpenRequest request = small();
   request.fresh = false;
   const auto source = opencl::open_device(request);
-  const auto lender = std::make_shared<Lender>(*source);
-  request.allocator = lender;
+  const auto pool = std::make_shared<Pool>(*source);
+  request.allocator = pool;
   const auto device = opencl::open_device(request);
-  const std::size_t before = source->free_bytes(), returned = lender->returned;
+  const std::size_t before = source->free_bytes(), returned = pool->returned;
   EXPECT_EQ(device->free_bytes(), std::numeric_limits<std::size_t>::max());
   {
     const auto buffer = device->allocate(size);
     EXPECT_EQ(buffer->bytes(), size);
     EXPECT_EQ(source->free_bytes(), before - size) << "counted by the one that gave it, once";
-    EXPECT_EQ(lender->returned, returned);
+    EXPECT_EQ(pool->returned, returned);
   }
-  EXPECT_EQ(lender->returned, returned + size);
+  EXPECT_EQ(pool->returned, returned + size);
 }
 
 }  // namespace

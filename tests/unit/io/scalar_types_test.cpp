@@ -30,8 +30,8 @@ Scalar scalar(const char* name, T low, T high) {
 template <class T>
 Scalar integer(const char* name) {
   using Limits = std::numeric_limits<T>;
-  if constexpr (sizeof(T) < 8) return scalar<T>(name, Limits::lowest(), Limits::max());
-  constexpr T high = Limits::max() - (Limits::max() >> std::numeric_limits<double>::digits);
+  T high = Limits::max();
+  if constexpr (sizeof(T) == 8) high -= high >> std::numeric_limits<double>::digits;
   return scalar<T>(name, Limits::lowest(), high);
 }
 

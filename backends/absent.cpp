@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Answers for the back ends that are not compiled in. The build defines CADT_..._ABSENT to the reason for each of them.
-#include "common/host/backend.hpp"
+#include "common/driver/backend.hpp"
 
 namespace cadt {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/bandwidth.hpp"
 
-#include "common/host/launcher.hpp"
-#include "common/host/registry.hpp"
+#include "common/driver/launcher.hpp"
+#include "common/driver/registry.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -24,10 +24,10 @@ double copy_bandwidth(const Options& options, std::size_t bytes) {
   double best = 0;
   for (int run = 0; run < runs; ++run) {
     const auto words = static_cast<std::uint32_t>(bytes / word), points = static_cast<std::uint32_t>(bytes / point);
-    const Cut by_word = launch.cut(words), by_point = launch.cut(points);
-    launch.run(KernelId::cadt_copy_words, by_word.items, from, to, std::uint32_t{0}, words, by_word.grain);
-    launch.run(KernelId::cadt_import_doubles, by_point.items, from, from, std::uint32_t{0}, std::uint32_t{1},
-               std::uint32_t{2}, Allocation(), 1.0, 1.0, to, points, by_point.grain);
+    const LaunchGrid by_word = launch.grid(words), by_point = launch.grid(points);
+    launch.run<KernelId::cadt_copy_words>(by_word.items, from, to, std::uint32_t{0}, words, by_word.grain);
+    launch.run<KernelId::cadt_import_doubles>(by_point.items, from, from, std::uint32_t{0}, std::uint32_t{1},
+                                              std::uint32_t{2}, Allocation(), 1.0, 1.0, to, points, by_point.grain);
     for (const KernelTime& kernel : launch.kernel_times())
       best = std::max(best, 2e3 * static_cast<double>(bytes) / std::max(kernel.milliseconds, 1e-6));
   }

@@ -69,10 +69,10 @@ std::string comparison_json(const std::vector<Comparison>& all) {
       entry["threads"] = s.threads;
       entry["launches"] = s.launches;
       entry["walk_steps"] = s.walk_steps;
-      entry["lost_claims"] = s.lost_claims;
+      entry["lock_failures"] = s.lock_failures;
       entry["flips"] = s.flips;
       entry["exact_incircles"] = s.exact_incircles;
-      entry["closing_repairs"] = s.closing_repairs;
+      entry["sweep_repairs"] = s.sweep_repairs;
       for (const auto& [phase, time] : s.milliseconds) entry["milliseconds"][phase] = time;
       entry["device_seconds"] = m.device_seconds;
     }

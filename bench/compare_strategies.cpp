@@ -81,7 +81,7 @@ double compare(const Arguments& a, test::DeviceMemory& memory, const std::string
                 static_cast<unsigned long long>(last[s].distinct - last[s].proven_stars),
                 static_cast<unsigned long long>(last[s].wrapped_stars),
                 static_cast<unsigned long long>(last[s].launches),
-                static_cast<unsigned long long>(last[s].closing_repairs));
+                static_cast<unsigned long long>(last[s].sweep_repairs));
     triangulators[s].reset();
     Options options = options_of(a, memory, strategies[s]);
     options.kernel_times = true;

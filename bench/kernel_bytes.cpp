@@ -12,7 +12,7 @@ namespace {
 constexpr KernelBytes table[] = {
     {"cadt_import_doubles", Unit::point, 16, 16, "points"},
     {"cadt_bounds", Unit::point, 16, 0, "points"},
-    {"cadt_sort_keys", Unit::point, 16, 4, "points; keys; once: the tiles may keep them"},
+    {"cadt_hilbert_keys", Unit::point, 16, 4, "points; keys; once: the tiles may keep them"},
     {"cadt_identity", Unit::point, 0, 4, "places"},
     {"sort", Unit::pass, 8, 8, "keys and places"},
     {"cadt_radix_count", Unit::pass, 4, 0, "keys"},
@@ -24,34 +24,34 @@ constexpr KernelBytes table[] = {
     {"cadt_scan_sums", Unit::starred, 12, 0, "tiles, owned triangles, unproven vertices"},
     {"cadt_scan_apply", Unit::record, 4, 4, "flags of triangles; ranks"},
     {"cadt_scan_apply", Unit::starred, 12, 12, "tiles, owned triangles, unproven vertices"},
-    {"cadt_crowded_flags", Unit::point, 4, 4, "keys; flags"},
+    {"cadt_flag_overfull", Unit::point, 4, 4, "keys; flags"},
     {"cadt_gather_points", Unit::point, 20, 16, "places and points; points in order"},
     {"cadt_sort_runs", Unit::point, 4, 0, "keys"},
     {"cadt_unique_flags", Unit::point, 4, 4, "keys; flags"},
     {"cadt_unique_pack", Unit::point, 4, 0, "ranks"},
     {"cadt_unique_pack", Unit::distinct, 20, 20, "points and labels"},
     {"cadt_insert", Unit::inserted, 48, 100, "the point and its triangle; the three in its place, a hint"},
-    {"cadt_closing_pass", Unit::swept_record, 40, 0, "records, and their points: one for two of them"},
+    {"cadt_legality_sweep", Unit::swept_record, 40, 0, "records, and their points: one for two of them"},
     {"cadt_tile_flags", Unit::starred, 4, 4, "keys; flags"},
     {"cadt_tile_pack", Unit::starred, 4, 0, "ranks"},
-    {"cadt_stars", Unit::starred, 16, 4, "points; sizes"},
-    {"cadt_stars", Unit::proven, 0, 28, "stars, where they begin"},
-    {"cadt_star_proven", Unit::starred, 4, 0, "sizes"},
+    {"cadt_prove_stars", Unit::starred, 16, 4, "points; sizes"},
+    {"cadt_prove_stars", Unit::proven, 0, 28, "stars, where they begin"},
+    {"cadt_pack_proven", Unit::starred, 4, 0, "sizes"},
     {"cadt_star_counts", Unit::starred, 4, 10, "sizes; marks, owned triangles, unproven vertices"},
     {"cadt_star_counts", Unit::proven, 28, 0, "stars, where they begin"},
-    {"cadt_star_links", Unit::starred, 6, 0, "marks, first numbers"},
-    {"cadt_star_links", Unit::proven, 28, 24, "stars, where they begin; two triangles for each"},
+    {"cadt_star_half_edges", Unit::starred, 6, 0, "marks, first numbers"},
+    {"cadt_star_half_edges", Unit::proven, 28, 24, "stars, where they begin; two triangles for each"},
     {"cadt_star_vertices", Unit::starred, 2, 0, "marks"},
     {"cadt_star_vertices", Unit::proven, 28, 24, "stars, where they begin; two triangles for each"},
-    {"cadt_unproven_pack", Unit::starred, 4, 0, "ranks"},
-    {"cadt_unproven_pack", Unit::unproven, 16, 20, "points; points and places"},
+    {"cadt_pack_residual", Unit::starred, 4, 0, "ranks"},
+    {"cadt_pack_residual", Unit::unproven, 16, 20, "points; points and places"},
     {"cadt_certify", Unit::starred, 64, 0, "two triangles and a point for each"},
-    {"cadt_emit_arrays", Unit::starred, 4, 0, "labels"},
-    {"cadt_emit_arrays", Unit::starred, 48, 48, "two triangles for each"},
+    {"cadt_write_arrays", Unit::starred, 4, 0, "labels"},
+    {"cadt_write_arrays", Unit::starred, 48, 48, "two triangles for each"},
     {"cadt_flag_triangles", Unit::record, 32, 4, "records; flags"},
-    {"cadt_emit_ranked", Unit::record, 36, 0, "records and ranks"},
-    {"cadt_emit_ranked", Unit::distinct, 4, 0, "labels"},
-    {"cadt_emit_ranked", Unit::triangle, 0, 24, "vertices and neighbours"},
+    {"cadt_write_ranked", Unit::record, 36, 0, "records and ranks"},
+    {"cadt_write_ranked", Unit::distinct, 4, 0, "labels"},
+    {"cadt_write_ranked", Unit::triangle, 0, 24, "vertices and neighbours"},
     {"cadt_count_triangles", Unit::record, 32, 0, "records"},
     {"cadt_count_triangles", Unit::starred, 24, 0, "vertices of two triangles for each"},
     {"cadt_count_triangles", Unit::distinct, 8, 4, "labels and buckets; buckets"},
@@ -62,13 +62,13 @@ constexpr KernelBytes table[] = {
     {"cadt_sort_buckets", Unit::distinct, 4, 0, "buckets"},
     {"cadt_sort_buckets", Unit::triangle, 8, 0, "members"},
     {"cadt_number_triangles", Unit::triangle, 8, 4, "members; numbers"},
-    {"cadt_emit_triangles", Unit::record, 4, 0, "numbers"},
-    {"cadt_emit_triangles", Unit::distinct, 4, 0, "labels"},
-    {"cadt_emit_triangles", Unit::triangle, 32, 24, "records; vertices and neighbours"},
+    {"cadt_write_triangles", Unit::record, 4, 0, "numbers"},
+    {"cadt_write_triangles", Unit::distinct, 4, 0, "labels"},
+    {"cadt_write_triangles", Unit::triangle, 32, 24, "records; vertices and neighbours"},
     {"cadt_boundary_edges", Unit::triangle, 12, 0, "neighbours"},
 };
 
-/// As choose_grid of common/host/spatial_order.cpp has it where the box is about as wide as high.
+/// As choose_grid of common/points/spatial_sort.cpp has it where the box is about as wide as high.
 std::uint64_t sort_passes(std::uint64_t points) noexcept {
   const int bits = std::clamp(static_cast<int>(std::bit_width(points)) + 4, 4, 32);
   return static_cast<std::uint64_t>((bits + 7) / 8);
@@ -92,7 +92,7 @@ std::uint64_t units(Unit unit, const Statistics& run, std::uint64_t triangles) n
     case Unit::record:
       return stars ? 0 : 2 * run.distinct;  // the star stage has a mesh in arrays
     case Unit::swept_record:
-      return 2 * (stars ? run.distinct - run.proven_stars : run.distinct) * run.closing_sweeps;
+      return 2 * (stars ? run.distinct - run.proven_stars : run.distinct) * run.legality_sweeps;
     case Unit::triangle:
       return triangles;
     case Unit::pass:

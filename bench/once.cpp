@@ -48,7 +48,7 @@ void add_once(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"auto", "locks", "stars"}).description(""));
   command->footer(
       "Example:\n"
-      "  ncu --kernel-name cadt_stars --set full cadt-bench once -n 10M --backend cuda\n");
+      "  ncu --kernel-name cadt_prove_stars --set full cadt-bench once -n 10M --backend cuda\n");
   command->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 

@@ -15,7 +15,7 @@
 
 namespace cadt::bench {
 namespace {
-#include "common/device/fixed.h"
+#include "common/predicates/bigint.dev.h"
 
 /// Exponents of all bits of the coordinates.
 cadt_span bits_of(std::span<const double> xy) {

@@ -15,7 +15,7 @@
 namespace {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"  // not all of it is needed here
-#include "common/device/predicates.h"
+#include "common/predicates/filtered_predicates.dev.h"
 #pragma GCC diagnostic pop
 
 /// A triangle, counterclockwise. One vertex may be the ghost, the point at infinity: such a triangle stands for what
@@ -34,7 +34,7 @@ class Insertion {
  public:
   Insertion(std::span<const double> xy, std::span<std::uint32_t> labels)
       : xy_(xy), labels_(labels), count_(static_cast<std::uint32_t>(labels.size())) {
-    cadt_tally_clear(&tally_);
+    cadt_counters_clear(&tally_);
   }
 
   cadt::bench::SequentialMesh run() {
@@ -213,7 +213,7 @@ class Insertion {
   std::uint32_t recent_ = 0;  ///< a triangle of the last point
   std::vector<Record> records_;
   std::vector<std::uint32_t> stack_;
-  cadt_tally tally_;
+  cadt_counters tally_;
 };
 
 }  // namespace

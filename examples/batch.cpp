@@ -39,7 +39,7 @@ int main(int count, char** values) {
       least = std::min(least, area);
       most = std::max(most, area);
     }
-    std::cout << "sets        " << batch.size() << ", " << batch.statistics().sets_together << " of them together\n"
+    std::cout << "sets        " << batch.size() << ", " << batch.statistics().batched_sets << " of them together\n"
               << "triangles   " << batch.triangle_offsets().back() << '\n'
               << "hull areas  " << least << " to " << most << '\n'
               << "back end    " << batch.statistics().backend << ", " << batch.statistics().device << '\n';

@@ -3,7 +3,7 @@
  * Entry file of the OpenCL back end: the kernels of common/device are already OpenCL C, GPUs get a sort and a scan of
  * their own besides. The build embeds this file with all its includes in the library (cmake/EmbedKernels.cmake).
  */
-#include "common/device/kernels.h"
+#include "common/portable/kernels.dev.h"
 
 #if !CADT_CONTIGUOUS
 #include "kernels_cl/primitives.cl"

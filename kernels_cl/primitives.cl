@@ -10,7 +10,7 @@
 #ifndef CADT_PRIMITIVES_CL
 #define CADT_PRIMITIVES_CL
 
-#include "common/device/lang.h"
+#include "common/portable/dialect.dev.h"
 
 /* also in backends/opencl/primitives.cpp */
 enum { CADT_GROUP = 256, CADT_EACH = 16, CADT_TILE = CADT_GROUP * CADT_EACH };
@@ -158,9 +158,9 @@ enum { CADT_ROW = CADT_GROUP + 32, CADT_COUNTER_WORDS = 8 * CADT_ROW };
 
 /* `halves`: 16 half digits of 4 bits, of 16 elements in a row. Gives each its place in the stable order by them, two to
  * a word. Local memory that members read before may be written after. */
-CADT_GROUP_FN void cadt_rank_halves(__local cadt_u32* counters, __local cadt_u32* work, cadt_u64 halves,
+CADT_GROUP_FN void cadt_rank_halves(__local cadt_u32* counter_rows, __local cadt_u32* work, cadt_u64 halves,
                                     cadt_u32* places) {
-  __local cadt_u32* const mine = counters + CADT_GAP(cadt_lane);
+  __local cadt_u32* const mine = counter_rows + CADT_GAP(cadt_lane);
   cadt_u64 among_mine = 0u; /* how many of this member's elements before have the same half digit */
 #pragma unroll
   for (cadt_u32 row = 0u; row < 8u; ++row) mine[row * CADT_ROW] = 0u;
@@ -175,7 +175,7 @@ CADT_GROUP_FN void cadt_rank_halves(__local cadt_u32* counters, __local cadt_u32
   {
     /* A row of 256 counters is summed by 32 members, 8 words each; both halves of a word at once. */
     const cadt_u32 in_row = cadt_lane & 31u;
-    __local cadt_u32* const part = counters + (cadt_lane >> 5) * CADT_ROW + 8u * in_row + (in_row >> 2);
+    __local cadt_u32* const part = counter_rows + (cadt_lane >> 5) * CADT_ROW + 8u * in_row + (in_row >> 2);
     cadt_u32 words[8], sum = 0u, total;
 #pragma unroll
     for (cadt_u32 i = 0u; i < 8u; ++i) {
@@ -204,7 +204,7 @@ CADT_GROUP_FN void cadt_rank_halves(__local cadt_u32* counters, __local cadt_u32
 /* Local memory of the scatter by what it holds at the time. */
 typedef union {
   struct {
-    cadt_u32 counters[CADT_COUNTER_WORDS];
+    cadt_u32 counter_rows[CADT_COUNTER_WORDS];
     union {
       uchar digits[CADT_TILE];   /* of the elements as they come */
       ushort handles[CADT_TILE]; /* in the order of the lower halves: element, upper half << 12 */
@@ -258,7 +258,7 @@ CADT_GROUP_KERNEL void cadt_digit_scatter(__global const cadt_u32* keys_in, __gl
 #pragma unroll
     for (cadt_u32 i = 0u; i < CADT_EACH; ++i)
       halves |= (cadt_u64)((digits[i >> 2] >> ((i & 3u) << 3)) & 15u) << (4u * i);
-    cadt_rank_halves(memory.rank.counters, work, halves, places);
+    cadt_rank_halves(memory.rank.counter_rows, work, halves, places);
     if (mask < 16u) {
 #pragma unroll
       for (cadt_u32 i = 0u; i < CADT_EACH; ++i)
@@ -280,7 +280,7 @@ CADT_GROUP_KERNEL void cadt_digit_scatter(__global const cadt_u32* keys_in, __gl
       handles[i] = memory.rank.order.words[cadt_lane * (CADT_EACH / 2u) + i];
 #pragma unroll
     for (cadt_u32 i = 0u; i < CADT_EACH; ++i) halves |= (cadt_u64)(CADT_PLACE(handles, i) >> 12) << (4u * i);
-    cadt_rank_halves(memory.rank.counters, work, halves, places);
+    cadt_rank_halves(memory.rank.counter_rows, work, halves, places);
 #pragma unroll
     for (cadt_u32 i = 0u; i < CADT_EACH; ++i)
       memory.rank.order.places[CADT_PLACE(handles, i) & 0xFFFu] = (ushort)CADT_PLACE(places, i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Addresses of the CUDA kernels in the order of common/device/kernel_list.h.
+// Addresses of the CUDA kernels in the order of common/portable/kernel_list.h.
 #pragma once
 
 namespace cadt::cuda {

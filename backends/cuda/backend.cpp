@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/host/backend.hpp"
+#include "common/driver/backend.hpp"
 
 #include <mutex>
 #include <set>
 
 #include "backends/cuda/device.hpp"
-#include "common/host/selftest.hpp"
+#include "common/predicates/self_test.hpp"
 
 namespace cadt {
 namespace {

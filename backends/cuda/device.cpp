@@ -34,8 +34,8 @@ class CudaBuffer final : public Buffer {
   void* data_;
 };
 
-/// In the order of KernelBuild.
-std::array<const void* const*, kernel_builds> tables() { return {narrow_kernels(), wide_kernels(), timed_kernels()}; }
+/// In the order of KernelVariant.
+std::array<const void* const*, kernel_variants> tables() { return {narrow_kernels(), wide_kernels(), timed_kernels()}; }
 
 std::byte* data_of(const Buffer& buffer) { return static_cast<const CudaBuffer&>(buffer).data(); }
 std::uint32_t* words_of(const Buffer& buffer) { return reinterpret_cast<std::uint32_t*>(data_of(buffer)); }
@@ -154,7 +154,7 @@ void CudaDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::ui
   stream_->fill(data_of(to) + offset, word, bytes / sizeof word);
 }
 
-void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
                         std::uint32_t group) {
   if (items == 0) return;
   if (args.size() > most_parameters) throw InternalError("a kernel with too many parameters");
@@ -223,7 +223,7 @@ std::vector<double> CudaDevice::times() {
 
 void CudaDevice::load_kernels() {
   const ContextScope scope(stream_->context());
-  for (std::size_t build = 0; build < kernel_builds; ++build)
+  for (std::size_t build = 0; build < kernel_variants; ++build)
     for (std::size_t i = 0; i < kernel_count; ++i) static_cast<void>(largest_block_of(build, i));
   // The first launch of a kernel with a larger stack makes the
   // driver enlarge the memory of all stacks, which waits for the context as well. With parameters of zeros these find
@@ -232,7 +232,7 @@ void CudaDevice::load_kernels() {
   std::array<void*, most_parameters> parameters{};
   parameters.fill(&zero);
   for (const void* const* table : tables())
-    for (const KernelId kernel : {KernelId::cadt_insert, KernelId::cadt_legalize_edges, KernelId::cadt_closing_pass})
+    for (const KernelId kernel : {KernelId::cadt_insert, KernelId::cadt_legalize_edges, KernelId::cadt_legality_sweep})
       check_call(cudaLaunchKernel(table[static_cast<std::size_t>(kernel)], dim3(1), dim3(1), parameters.data(), 0,
                                   stream_->get()),
                  kernel_names[static_cast<std::size_t>(kernel)]);

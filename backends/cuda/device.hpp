@@ -6,7 +6,7 @@
 
 #include "backends/cuda/clock.hpp"
 #include "backends/cuda/context.hpp"
-#include "common/host/device.hpp"
+#include "common/driver/device.hpp"
 
 namespace cadt::cuda {
 
@@ -32,7 +32,7 @@ class CudaDevice final : public Device, private Primitives {
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
   using Device::launch;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
               std::uint32_t group) override;
   void finish() override;
   [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }
@@ -61,7 +61,7 @@ class CudaDevice final : public Device, private Primitives {
   unsigned block_size_;
   bool block_size_asked_;
   std::shared_ptr<Stream> stream_;
-  std::array<std::array<unsigned, kernel_count>, kernel_builds> largest_blocks_{};  ///< 0: not asked for yet
+  std::array<std::array<unsigned, kernel_count>, kernel_variants> largest_blocks_{};  ///< 0: not asked for yet
   std::vector<cudaEvent_t> events_;  ///< of this call and earlier ones; the first `marks_` are in use
   std::size_t marks_ = 0;
   void* staging_ = nullptr;  ///< page-locked host memory for small reads

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The host as a device: the kernels of common/device on threads of this process.
-#include "common/host/backend.hpp"
+#include "common/driver/backend.hpp"
 
 #include <cadt/triangulator.hpp>
 #include <cadt/version.hpp>
@@ -21,7 +21,7 @@
 
 #include "backends/host/kernel_table.hpp"
 #include "backends/host/thread_pool.hpp"
-#include "common/host/selftest.hpp"
+#include "common/predicates/self_test.hpp"
 
 namespace cadt::host {
 namespace {
@@ -172,9 +172,9 @@ class HostDevice final : public Device {
     }
   }
   using Device::launch;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
               std::uint32_t /*group*/) override {
-    const std::array tables = {&narrow_kernels, &wide_kernels, &timed_kernels};  // in the order of KernelBuild
+    const std::array tables = {&narrow_kernels, &wide_kernels, &timed_kernels};  // in the order of KernelVariant
     pool_.run((*tables[static_cast<std::size_t>(build)])[static_cast<std::size_t>(kernel)], items, args.data());
   }
   void finish() override {}

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "common/host/device.hpp"
+#include "common/driver/device.hpp"
 
 namespace cadt::host {
 

@@ -16,11 +16,11 @@
 namespace {
 
 #if defined(CADT_CHECKED)
-// A store to a record is right only by its owner or before it is published (common/device/mesh.h).
+// A store to a record is right only by its owner or before it is published (common/mesh/locked_mesh.dev.h).
 inline void cadt_assert_owned([[maybe_unused]] std::uint32_t owned) { assert(owned != 0); }
 #endif
 
-#include "common/device/kernels.h"
+#include "common/portable/kernels.dev.h"
 
 template <class Parameter>
 Parameter unpack(const cadt::Arg& arg) {

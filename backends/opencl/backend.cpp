@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/host/backend.hpp"
+#include "common/driver/backend.hpp"
 
 #include "backends/opencl/device.hpp"
 #include "backends/opencl/open.hpp"
-#include "common/host/selftest.hpp"
+#include "common/predicates/self_test.hpp"
 
 namespace cadt {
 namespace opencl {
@@ -13,7 +13,7 @@ std::unique_ptr<Device> open_device(const OpenRequest& request) {
   auto device = std::make_unique<ClDevice>(shared, request);
   // Once per context: what is tested is the compiled program and the device, which all its users share.
   shared->once([&] {
-    static_cast<void>(shared->program(KernelBuild::narrow, request.from_cache));
+    static_cast<void>(shared->program(KernelVariant::narrow, request.from_cache));
     run_selftest(*device);
   });
   return device;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "backends/opencl/cl.hpp"
-#include "common/host/device.hpp"
+#include "common/driver/device.hpp"
 
 namespace cadt::opencl {
 

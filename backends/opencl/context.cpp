@@ -83,8 +83,8 @@ SharedContext::SharedContext(const OpenRequest& request)
   device_.info.atomics = atomics_.text;
 }
 
-cl::Program SharedContext::program(KernelBuild build, bool* from_cache) {
-  if (!device_.facts.fp64 && build == KernelBuild::wide) build = KernelBuild::narrow;  // that one is wide already
+cl::Program SharedContext::program(KernelVariant build, bool* from_cache) {
+  if (!device_.facts.fp64 && build == KernelVariant::wide) build = KernelVariant::narrow;  // that one is wide already
   const std::lock_guard lock(build_mutex_);
   auto& slot = programs_[static_cast<std::size_t>(build)];
   if (!slot)

@@ -14,7 +14,7 @@
 #include "backends/opencl/open.hpp"
 #include "backends/opencl/platform.hpp"
 #include "backends/opencl/program.hpp"
-#include "common/host/kernel_id.hpp"
+#include "common/driver/kernel_id.hpp"
 
 namespace cadt::opencl {
 
@@ -28,7 +28,7 @@ class SharedContext {
   [[nodiscard]] const cl::Context& context() const noexcept { return context_; }
 
   /// Built at the first call. \throws KernelBuildError, DeviceError
-  [[nodiscard]] cl::Program program(KernelBuild build, bool* from_cache = nullptr);
+  [[nodiscard]] cl::Program program(KernelVariant build, bool* from_cache = nullptr);
 
   /// Runs `test` unless it has passed before in this context; it counts as passed when it returns.
   template <class Test>
@@ -50,7 +50,7 @@ class SharedContext {
   AtomicsPath atomics_;
   std::string source_, extra_options_;
   std::mutex build_mutex_, test_mutex_;
-  std::array<std::optional<cl::Program>, kernel_builds> programs_;
+  std::array<std::optional<cl::Program>, kernel_variants> programs_;
   bool tested_ = false;
 };
 

@@ -254,7 +254,7 @@ void ClDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint
   }
 }
 
-ClDevice::ReadyKernel ClDevice::make_ready(const char* name, KernelBuild build, std::size_t group) {
+ClDevice::ReadyKernel ClDevice::make_ready(const char* name, KernelVariant build, std::size_t group) {
   const cl::Program program = shared_->program(build);
   ReadyKernel made;
   made.name = name;
@@ -273,7 +273,7 @@ ClDevice::ReadyKernel ClDevice::make_ready(const char* name, KernelBuild build, 
   return made;
 }
 
-ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, KernelBuild build) {
+ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, KernelVariant build) {
   const auto number = static_cast<std::size_t>(kernel);
   auto& slot = kernels_[static_cast<std::size_t>(build)].at(number);
   if (!slot) {
@@ -283,7 +283,7 @@ ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, KernelBuild build) {
   return *slot;
 }
 
-void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
                       std::uint32_t wanted) {
   if (items == 0) return;
   ReadyKernel& target = ready(kernel, build);
@@ -327,7 +327,7 @@ void ClDevice::enqueue(ReadyKernel& target, std::size_t groups, std::size_t grou
 std::optional<double> ClDevice::occupancy(unsigned work_group_size) {
   const auto insert = static_cast<std::size_t>(KernelId::cadt_insert);
   if (work_group_size == 0 ||
-      make_ready(kernel_names[insert], KernelBuild::narrow, work_group_size).group < work_group_size)
+      make_ready(kernel_names[insert], KernelVariant::narrow, work_group_size).group < work_group_size)
     return 0.0;
   return std::nullopt;
 }

@@ -7,7 +7,7 @@
 
 #include "backends/opencl/clock.hpp"
 #include "backends/opencl/context.hpp"
-#include "common/host/device.hpp"
+#include "common/driver/device.hpp"
 
 namespace cadt::opencl {
 
@@ -32,7 +32,7 @@ class ClDevice final : public Device {
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
   using Device::launch;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
               std::uint32_t group) override;
   void finish() override;
   [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }
@@ -46,7 +46,7 @@ class ClDevice final : public Device {
     std::size_t group = 1;  ///< work-items of a group
   };
   /// A kernel for groups of `group` work-items, or of as many as the device allows.
-  [[nodiscard]] ReadyKernel make_ready(const char* name, KernelBuild build, std::size_t group);
+  [[nodiscard]] ReadyKernel make_ready(const char* name, KernelVariant build, std::size_t group);
   /// Puts groups of the kernel's size in the queue.
   void enqueue(ReadyKernel& kernel, std::size_t groups, std::span<const Arg> args) {
     enqueue(kernel, groups, kernel.group, args);
@@ -54,7 +54,7 @@ class ClDevice final : public Device {
 
  private:
   void enqueue(ReadyKernel& kernel, std::size_t groups, std::size_t group, std::span<const Arg> args);
-  ReadyKernel& ready(KernelId kernel, KernelBuild build);
+  ReadyKernel& ready(KernelId kernel, KernelVariant build);
 
   /// Calls `work` and translates what the bindings throw.
   template <class Work>
@@ -66,7 +66,7 @@ class ClDevice final : public Device {
   unsigned work_group_size_;
   std::size_t part_alignment_ = 0;
   std::shared_ptr<DeviceAllocator> allocator_;
-  std::array<std::array<std::optional<ReadyKernel>, kernel_count>, kernel_builds> kernels_;
+  std::array<std::array<std::optional<ReadyKernel>, kernel_count>, kernel_variants> kernels_;
   std::optional<std::unique_ptr<Primitives>> primitives_;  ///< made when first asked for
   std::optional<ClClock> clock_;
 };

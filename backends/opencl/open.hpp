@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "common/host/device.hpp"
+#include "common/driver/device.hpp"
 
 namespace cadt::opencl {
 

@@ -11,7 +11,7 @@
 namespace cadt::opencl {
 namespace {
 
-// Every operation that common/device/atomics.h needs, so that a compiler which takes this one takes that one.
+// Every operation that common/portable/atomics.dev.h needs, so that a compiler which takes this one takes that one.
 constexpr const char* probe_source = R"(
 __kernel void probe(__global uint* p) {
   volatile __global atomic_uint* a = (volatile __global atomic_uint*)p;
@@ -105,7 +105,7 @@ AtomicsPath choose_atomics(const cl::Context& context, const FoundDevice& device
   return best_effort;
 }
 
-std::string build_options(const FoundDevice& device, const AtomicsPath& atomics, KernelBuild build,
+std::string build_options(const FoundDevice& device, const AtomicsPath& atomics, KernelVariant build,
                           const std::string& extra) {
   // No option that relaxes arithmetic may ever stand here: the filters rely on each rounding (and the self-test would
   // refuse the device).
@@ -116,8 +116,8 @@ std::string build_options(const FoundDevice& device, const AtomicsPath& atomics,
     options += std::string(" -DCADT_FLOAT=1 -cl-single-precision-constant") +
                (device.facts.float_denormals ? "" : " -cl-denorms-are-zero");
   else
-    options += build == KernelBuild::wide ? " -DCADT_WIDE=1" : " -DCADT_WIDE=0";
-  if (build == KernelBuild::timed) options += " -DCADT_TIMED=1";
+    options += build == KernelVariant::wide ? " -DCADT_WIDE=1" : " -DCADT_WIDE=0";
+  if (build == KernelVariant::timed) options += " -DCADT_TIMED=1";
   options += device.info.gpu ? " -DCADT_CONTIGUOUS=0 -DCADT_RADIX_BITS=4" : " -DCADT_CONTIGUOUS=1 -DCADT_RADIX_BITS=8";
   // cadt_insert takes 118 registers if it may; with 96 more work-items fit in, which is faster (measured with CUDA).
   if (device.info.platform == "NVIDIA CUDA") options += " -cl-nv-maxrregcount=96";

@@ -5,7 +5,7 @@
 
 #include "backends/opencl/cl.hpp"
 #include "backends/opencl/platform.hpp"
-#include "common/host/kernel_id.hpp"
+#include "common/driver/kernel_id.hpp"
 
 namespace cadt::opencl {
 
@@ -22,7 +22,7 @@ struct AtomicsPath {
 [[nodiscard]] AtomicsPath choose_atomics(const cl::Context& context, const FoundDevice& device, AtomicsChoice choice);
 
 /// Compiler options of one variant of the kernels.
-[[nodiscard]] std::string build_options(const FoundDevice& device, const AtomicsPath& atomics, KernelBuild build,
+[[nodiscard]] std::string build_options(const FoundDevice& device, const AtomicsPath& atomics, KernelVariant build,
                                         const std::string& extra);
 
 /// Builds the source, or takes the result of an earlier build from disk. `from_cache` (may be null) tells which.

@@ -13,7 +13,7 @@ from rows import (DETAILS, Machine, Row, by_points, contestants, each, group, pe
 from style import Page
 from words import short, significant
 
-COUNTERS = ("claims", "lost_claims", "invalid_restarts", "insert_retries", "stale_edges", "deferred_points",
+COUNTERS = ("lock_attempts", "lock_failures", "invalid_restarts", "insert_retries", "stale_edges", "deferred_points",
             "deferred_edges", "flips", "walk_steps")
 
 

@@ -138,7 +138,7 @@ SECTIONS = (
     Section("statistics", "What the statistics cost and count", (*TIMES, "detail", *tables_work.COUNTED),
             drawn("statistics", "Cost of the statistics", plots_bars.statistics, tables_work.statistics)),
     Section("devices", "Every device",
-            (*TIMES, "device_ms", "distribution", "hash", "claims", "lost_claims", "certified"),
+            (*TIMES, "device_ms", "distribution", "hash", "lock_attempts", "lock_failures", "certified"),
             drawn("devices", "Every device", plots_bars.devices, tables_work.devices)),
     Section("kernels", "The kernels of a run",
             ("who", "device", "points", "device_ms", "strategy", "kernel", "kernel_launches", "kernel_ms",

@@ -9,7 +9,7 @@ from rows import (DETAILS, FLIP_BINS, MODES, Machine, Row, by_points, each, grou
 from tables import hash_check, named
 from words import NONE, bullets, count, number, percent, spread, table
 
-COUNTED = ("claims", "lost_claims", "invalid_restarts", "insert_retries", "deferred_points", "deferred_edges", "flips",
+COUNTED = ("lock_attempts", "lock_failures", "invalid_restarts", "insert_retries", "deferred_points", "deferred_edges", "flips",
            "walk_steps")
 
 
@@ -168,7 +168,7 @@ def statistics(machines: Sequence[Machine], paper: dict) -> list[str]:
         costs += [cost_line(name, row, base) for row in of_size if base]
         for row in by_points(r for r in rows if r.text("detail") in ("counters", "")):
             counted.append([name, count(row.number("points")), *(number(per_point(row, c)) for c in COUNTED),
-                            percent(ratio(row.number("lost_claims"), row.number("claims")), 2)])
+                            percent(ratio(row.number("lock_failures"), row.number("lock_attempts")), 2)])
     lines = []
     if costs:
         lines += ["### What it costs", "", *table(["device", "statistics", "points", "whole call, ms", "more than none",
@@ -194,7 +194,7 @@ def devices(machines: Sequence[Machine], paper: dict) -> list[str]:
     for (distribution, points), of in group(rows, "distribution", "points").items():
         body = [[named(row, several), spread(*(row.number(c) for c in ("min_ms", "median_ms", "max_ms"))),
                  number(row.number("device_ms")), row.text("hash")[:12] or NONE,
-                 percent(ratio(row.number("lost_claims"), row.number("claims")), 2),
+                 percent(ratio(row.number("lock_failures"), row.number("lock_attempts")), 2),
                  *(number(per_point(row, c)) for c in ("insert_retries", "deferred_points", "deferred_edges", "flips")),
                  row.text("certified") or NONE] for row in of]
         lines += [f"### {distribution}, {count(to_number(points))} points: meshes "

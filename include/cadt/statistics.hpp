@@ -23,7 +23,7 @@ enum class StatisticsDetail {
 
 /// What one kernel took in a run.
 struct KernelTime {
-  /// As in common/device/kernel_list.h; "sort" and "scan" are a device's own, each call of which counts as a launch.
+  /// As in common/portable/kernel_list.h; "sort" and "scan" are a device's own, each call of which counts as a launch.
   std::string name;
   std::uint64_t launches = 0;
   double milliseconds = 0;  ///< of all of them
@@ -40,9 +40,9 @@ struct Statistics {
   std::uint64_t distinct = 0;            ///< distinct points, all of them vertices unless dimension < 2
   std::uint64_t launches = 0;            ///< kernel launches, but those within a device's own sort and scan
   std::uint64_t walk_steps = 0;          ///< triangles visited by the point location
-  std::uint64_t claims = 0;              ///< lock attempts for a whole set of records; one for each change where a
+  std::uint64_t lock_attempts = 0;       ///< lock attempts for a whole set of records; one for each change where a
                                          ///< thread owns them without locks (CPUs, from 65,536 points on)
-  std::uint64_t lost_claims = 0;         ///< attempts that met a lock held, or a record that had changed:
+  std::uint64_t lock_failures = 0;       ///< attempts that met a lock held, or a record that had changed:
                                          ///< all claims but splits, edge_splits and flips
   std::uint64_t invalid_restarts = 0;    ///< of these, attempts that met a record that had changed since it was read
   std::uint64_t insert_retries = 0;      ///< point insertions that were tried again in the same launch
@@ -57,8 +57,8 @@ struct Statistics {
   std::uint64_t exact_orientations = 0;  ///< orientation signs that the filter left to exact arithmetic
   std::uint64_t exact_incircles = 0;     ///< incircle signs that the filter left to exact arithmetic
   std::uint64_t ties = 0;                ///< incircle signs that were zero and were decided symbolically
-  std::uint64_t closing_sweeps = 0;      ///< passes over all edges at the end; the last one found nothing
-  std::uint64_t closing_repairs = 0;     ///< illegal edges that the closing passes found and repaired
+  std::uint64_t legality_sweeps = 0;     ///< passes over all edges at the end; the last one found nothing
+  std::uint64_t sweep_repairs = 0;       ///< illegal edges that the closing passes found and repaired
   std::uint64_t cavities = 0;            ///< conflict regions that were triangulated anew at once (docs/algorithm.md)
   std::uint64_t certified_edges = 0;     ///< edges that the last closing pass examined and found legal
   std::uint64_t stabilized_edges = 0;    ///< times that an illegal edge was left because of `Options::stabilize`
@@ -67,7 +67,7 @@ struct Statistics {
   std::uint64_t proven_stars = 0;        ///< vertices whose neighbours it found and proved, without locks
   std::uint64_t wrapped_stars = 0;       ///< vertices whose neighbours were found by gift wrapping, without locks
   std::uint64_t sets = 0;                ///< sets of points, in a call with several (Triangulator::triangulate_batch)
-  std::uint64_t sets_together = 0;       ///< of these, sets that were triangulated together, not one by one
+  std::uint64_t batched_sets = 0;        ///< of these, sets that were triangulated together, not one by one
   std::uint64_t refined_points = 0;      ///< points whose sort key had to be refined
   std::uint64_t bytes_device_peak = 0;   ///< most bytes held on the device at a time
   bool wide_arithmetic = false;          ///< the exponents span so much that long integers were needed throughout

@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks that includes point only one way:
 
-    apps -> io -> include <- common/host -> backends -> kernels_* -> common/device
+    apps -> io -> include <- common <- backends -> kernels_cl, kernels_cuda -> device text of common
+
+Device text is what ends in .dev.h: C99, OpenCL C and CUDA C++ at once. It includes device text alone. Headers of the
+driver (common/driver/*.hpp) are what all stages share, so they know no stage.
 
 usage: check_dependencies.py ROOT      checks the tree
        check_dependencies.py --self-test   shows that it finds what it looks for
@@ -18,24 +21,31 @@ MAY_INCLUDE = {
     "include/cadt/io": ["include/cadt", "include/cadt/io"],
     "io": ["io", "include/cadt", "include/cadt/io"],
     "apps": ["apps", "include/cadt", "include/cadt/io"],
-    "common/host": ["common/host", "include/cadt", "backends", "common/device"],
-    "common/host/verify": ["common/host/verify", "include/cadt"],  # shares no predicate with the builder
-    "backends": ["backends", "common/host", "include/cadt", "kernels_cl", "kernels_cuda", "common/device"],
-    "kernels_cl": ["kernels_cl", "common/device"],
-    "kernels_cuda": ["kernels_cuda", "common/device"],
-    "common/device": ["common/device"],
+    "common": ["common", "include/cadt"],
+    "common/verify": ["common", "include/cadt"],
+    "common/verify/host": ["common/verify/host", "include/cadt"],  # shares no predicate with the builder
+    "backends": ["backends", "common", "include/cadt", "kernels_cl", "kernels_cuda"],
+    "kernels_cl": ["kernels_cl", "common"],
+    "kernels_cuda": ["kernels_cuda", "common"],
 }
-# Files that may include only these: the verifier's kernels share nothing with the builder's.
-ONLY = {
-    "common/device/verify": ["common/device/verify", "common/device/lang.h", "common/device/atomics.h"],
-}
+# (files, what of this project they may include): all rules that fit a file hold.
+DEVICE_TEXT = r"common/.*\.dev\.h$|common/portable/kernel_list\.h$"
+ONLY = [
+    (r"common/.*\.dev\.h$", DEVICE_TEXT),
+    (r"kernels_cl/", r"kernels_cl/|" + DEVICE_TEXT),
+    (r"kernels_cuda/", r"kernels_cuda/|" + DEVICE_TEXT),
+    # The verifier's kernels share nothing with the builder's.
+    (r"common/verify/device/.*\.dev\.h$", r"common/verify/device/|common/portable/(dialect|atomics)\.dev\.h$"),
+    # What all stages share knows no stage, but for the text of the kernels, of which it takes layouts and parameters.
+    (r"common/driver/(?!triangulat|device_triangulation|memory_plan|build).*\.hpp$", r"common/driver/|include/|common/portable/"),
+]
 # One back end knows nothing of another.
 BACKENDS = ["host", "opencl", "cuda"]
 # Headers from outside -> folders that may use them.
 OUTSIDE = {
     r"CGAL/": ["tests", "bench"],
-    r"CL/": ["backends/opencl", "kernels_cl", "tests/system/resident"],
-    r"cuda": ["backends/cuda", "kernels_cuda", "common/device", "tests/system/resident", "examples"],
+    r"CL/": ["backends/opencl", "kernels_cl", "tests"],
+    r"cuda": ["backends/cuda", "kernels_cuda", "common/portable", "tests", "examples"],
     r"cub/|thrust/": ["backends/cuda", "kernels_cuda"],
     r"cairo|png|zlib": ["io", "tests"],
     r"fast_float/": ["io"],
@@ -58,7 +68,7 @@ def folder_rule(path):
 
 def resolve(root, file, name):
     """Path of an included file of this project relative to the root, or None if it is from outside."""
-    for base in (file.parent, root, root / "include", root / "common" / "device"):
+    for base in (file.parent, root, root / "include"):
         target = (base / name).resolve()
         if target.is_file() and target.is_relative_to(root):
             return target.relative_to(root).as_posix()
@@ -69,8 +79,8 @@ def may_include(source, target):
     rule = folder_rule(source)
     if rule is None:
         return True  # tests, bench, examples: may use everything
-    for start, targets in ONLY.items():
-        if source.startswith(start) and not any(target.startswith(t) for t in targets):
+    for files, targets in ONLY:
+        if re.match(files, source) and not re.match(targets, target):
             return False
     allowed = MAY_INCLUDE[rule]
     target_rule = folder_rule(target)
@@ -120,29 +130,35 @@ def self_test():
     cases = [
         ("include/cadt/a.hpp", "#include <cadt/b.hpp>", True),
         ("include/cadt/a.hpp", "#include <cadt/io/c.hpp>", False),
-        ("include/cadt/a.hpp", '#include "common/host/d.hpp"', False),
+        ("include/cadt/a.hpp", '#include "common/driver/d.hpp"', False),
         ("include/cadt/io/c2.hpp", "#include <cadt/b.hpp>", True),
         ("io/x.cpp", "#include <cadt/io/c.hpp>", True),
-        ("io/x.cpp", '#include "common/host/d.hpp"', False),
+        ("io/x.cpp", '#include "common/driver/d.hpp"', False),
         ("io/x.cpp", "#include <CLI/CLI.hpp>", False),
         ("apps/y.cpp", '#include "io/support/e.hpp"', False),
         ("apps/y.cpp", "#include <CGAL/Kernel.h>", False),
-        ("common/host/d2.cpp", '#include "backends/host/f.hpp"', True),
-        ("common/host/d2.cpp", "#include <cadt/io/c.hpp>", False),
-        ("common/host/verify/v.cpp", '#include "common/device/g.h"', False),
-        ("backends/host/f2.cpp", '#include "common/device/g.h"', True),
+        ("common/stars/s.cpp", '#include "backends/host/f.hpp"', False),
+        ("common/stars/s.cpp", '#include "common/driver/d.hpp"', True),
+        ("common/stars/s.cpp", "#include <cadt/io/c.hpp>", False),
+        ("common/driver/d2.hpp", '#include "common/points/p.hpp"', False),
+        ("common/driver/d2.cpp", '#include "common/points/p.hpp"', True),
+        ("common/verify/host/v.cpp", '#include "common/points/g.dev.h"', False),
+        ("common/verify/device/v.cpp", '#include "common/driver/d.hpp"', True),
+        ("backends/host/f2.cpp", '#include "common/driver/d.hpp"', True),
         ("backends/opencl/f3.cpp", '#include "backends/host/f.hpp"', False),
         ("backends/host/f2.cpp", "#include <CL/opencl.hpp>", False),
-        ("kernels_cl/k.cl", '#include "common/host/d.hpp"', False),
-        ("common/device/g2.h", '#include "g.h"', True),
-        ("common/device/verify_g.h", '#include "common/device/g.h"', False),
-        ("common/device/verify_g.h", '#include "common/device/lang.h"', True),
-        ("common/device/g2.h", '#include "backends/host/f.hpp"', False),
-        ("common/device/g2.h", '#include "missing.h"', False),
-        ("tests/t.cpp", '#include "common/host/d.hpp"', True),
+        ("kernels_cl/k.cl", '#include "common/driver/d.hpp"', False),
+        ("kernels_cl/k.cl", '#include "common/points/g.dev.h"', True),
+        ("common/points/g2.dev.h", '#include "g.dev.h"', True),
+        ("common/points/g2.dev.h", '#include "common/points/p.hpp"', False),
+        ("common/verify/device/g3.dev.h", '#include "common/points/g.dev.h"', False),
+        ("common/verify/device/g3.dev.h", '#include "common/portable/dialect.dev.h"', True),
+        ("common/points/g2.dev.h", '#include "backends/host/f.hpp"', False),
+        ("common/points/g2.dev.h", '#include "missing.h"', False),
+        ("tests/t.cpp", '#include "common/driver/d.hpp"', True),
     ]
-    present = ["include/cadt/b.hpp", "include/cadt/io/c.hpp", "common/host/d.hpp", "io/support/e.hpp",
-               "backends/host/f.hpp", "common/device/g.h", "common/device/lang.h"]
+    present = ["include/cadt/b.hpp", "include/cadt/io/c.hpp", "common/driver/d.hpp", "common/points/p.hpp", "io/support/e.hpp",
+               "backends/host/f.hpp", "common/points/g.dev.h", "common/portable/dialect.dev.h"]
     failed = 0
     for source, line, allowed in cases:
         with tempfile.TemporaryDirectory() as folder:

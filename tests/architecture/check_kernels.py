@@ -3,7 +3,7 @@
 """Checks that no kernel can stop a device: nothing that traps, asserts, prints or loops without an end. What goes wrong
 is a word in memory that the driver reads. (Compilers also get such code wrong: PoCL issue 2113.)
 
-usage: check_kernels.py ROOT      checks common/device, kernels_cl and kernels_cuda
+usage: check_kernels.py ROOT      checks the device text of common, kernels_cl and kernels_cuda
        check_kernels.py --self-test   shows that it finds what it looks for
 """
 import pathlib
@@ -21,7 +21,7 @@ def without_comments(text):
 
 
 def findings(text):
-    """(line, word) of what is forbidden. cadt_assert_owned is of the checked build, on the host only (mesh.h)."""
+    """(line, word) of what is forbidden. cadt_assert_owned is of the checked build, on the host only (locked_mesh.dev.h)."""
     for number, line in enumerate(without_comments(text).split("\n"), 1):
         for match in FORBIDDEN.finditer(line):
             yield number, match.group()
@@ -42,8 +42,8 @@ def main():
     if sys.argv[1:] == ["--self-test"]:
         return self_test()
     root = pathlib.Path(sys.argv[1])
-    files = [path for folder in ("common/device", "kernels_cl", "kernels_cuda") for path in sorted((root / folder).iterdir())
-             if path.suffix in SUFFIXES]
+    files = sorted((root / "common").rglob("*.dev.h")) + [
+        path for folder in ("kernels_cl", "kernels_cuda") for path in sorted((root / folder).iterdir()) if path.suffix in SUFFIXES]
     found = [f"{path.relative_to(root)}:{line}: {word}" for path in files for line, word in findings(path.read_text())]
     print("\n".join(found) or f"{len(files)} files, nothing that stops a device")
     return 1 if found or len(files) < 30 else 0

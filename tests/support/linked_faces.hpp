@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records of a closed mesh from its faces, ghosts among them (common/device/mesh.h).
+// Records of a closed mesh from its faces, ghosts among them (common/mesh/locked_mesh.dev.h).
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace cadt::test {
 
 using Face = std::array<std::uint32_t, 3>;
 
-/// `Record` is cadt_record, which tests of the device code have as a type of their own.
+/// `Record` is cadt_locked_triangle, which tests of the device code have as a type of their own.
 template <class Record>
 std::vector<Record> linked_faces(const std::vector<Face>& faces, std::size_t slots) {
   constexpr std::size_t lock = 3, links = 4;                                // of the words of a record

@@ -57,7 +57,7 @@ class Conflicts : public BackendTest {
       const Triangulation mesh = triangulate(std::span<const double>(xy), options);
       ASSERT_TRUE(same_mesh(mesh, expected)) << "run " << run;
       const Statistics& s = mesh.statistics();
-      conflicts += s.lost_claims + s.insert_retries + s.deferred_points + s.deferred_edges;
+      conflicts += s.lock_failures + s.insert_retries + s.deferred_points + s.deferred_edges;
     }
     if (must_conflict && runs_in_parallel()) {
       EXPECT_GT(conflicts, 0u) << "no two threads ever met: the test shows nothing";

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The OpenCL kernels with delays and failures (common/device/perturb.h), and an assertion at every store to a record,
- * which ends the process.
+ * The OpenCL kernels with delays and failures (common/overlay/schedule_noise.dev.h), and an assertion at every store to
+ * a record, which ends the process.
  */
-#define CADT_PERTURBED
+#define CADT_SCHEDULE_NOISE
 #define CADT_CHECKED
 #define cadt_assert_owned(owned)    \
   do {                              \

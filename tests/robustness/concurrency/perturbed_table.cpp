@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host kernels with delays and failures (common/device/perturb.h) and an assertion at every store to a record.
-// Linked before the library, this table takes the place of the real one.
+// The host kernels with delays and failures (common/overlay/schedule_noise.dev.h) and an assertion at every store to a
+// record. Linked before the library, this table takes the place of the real one.
 #undef NDEBUG
 #define CADT_WIDE 0
 #define CADT_CHECKED
-#define CADT_PERTURBED
+#define CADT_SCHEDULE_NOISE
 #include "tests/robustness/concurrency/perturbed_table.hpp"
 
 #include <thread>
@@ -29,7 +29,7 @@ static_assert(CADT_SITES <= cadt::test::most_sites);
 // Its first work-item looks at all records before it counts; nobody writes to them any more.
 void count_triangles(std::uint32_t item, std::uint32_t items, const cadt::Arg* args) {
   if (item == 0) {
-    const auto* records = unpack<const cadt_record*>(args[0]);
+    const auto* records = unpack<const cadt_locked_triangle*>(args[0]);
     const auto slots = unpack<cadt_u32>(args[5]);
     cadt::test::RecordCounts counts;
     for (cadt_u32 t = 0; t < slots; ++t) {
@@ -57,6 +57,8 @@ constinit const KernelTable narrow_kernels = with_counts();
 namespace cadt::test {
 std::size_t number_of_sites() { return CADT_SITES; }
 std::size_t index_of(Site site) {
-  return site == Site::claimed ? CADT_AT_CLAIMED : site == Site::released ? CADT_AT_RELEASED : CADT_AT_ABANDONED;
+  return site == Site::claimed    ? CADT_AT_LOCKED
+         : site == Site::released ? CADT_AT_UNLOCKED
+                                  : CADT_AT_UNLOCKED_UNCHANGED;
 }
 }  // namespace cadt::test

@@ -9,7 +9,7 @@
 namespace cadt::test {
 
 inline constexpr std::size_t most_sites = 32;
-/// Names of common/device/perturb.h that the tests need.
+/// Names of common/overlay/schedule_noise.dev.h that the tests need.
 enum class Site : std::size_t { claimed, released, abandoned };
 [[nodiscard]] std::size_t number_of_sites();
 [[nodiscard]] std::size_t index_of(Site site);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Delays and failures at every step of the lock protocol (common/device/perturb.h): no schedule shows in the mesh, and
-// what is counted adds up.
+// Delays and failures at every step of the lock protocol (common/overlay/schedule_noise.dev.h): no schedule shows in
+// the mesh, and what is counted adds up.
 #include "tests/robustness/concurrency/perturbed_table.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
@@ -16,7 +16,7 @@
 namespace cadt::test {
 namespace {
 
-// The modes of common/device/perturb.h.
+// The modes of common/overlay/schedule_noise.dev.h.
 enum class Noise : unsigned { off, uniform, slow_items, slow_holders, failures, all };
 
 // CADT_PERTURBED_SEEDS: seeds for each set and mode.
@@ -80,10 +80,10 @@ class Perturbed : public BackendTest {
     EXPECT_EQ(s.points, s.distinct + mesh.duplicates().size());
     EXPECT_EQ(s.splits + s.edge_splits + 3, s.distinct) << "three points are there from the start";
     EXPECT_EQ(mesh.number_of_triangles() + mesh.hull().size(), 2 * s.distinct - 2);
-    EXPECT_EQ(s.claims, s.lost_claims + s.splits + s.edge_splits + s.flips);
+    EXPECT_EQ(s.lock_attempts, s.lock_failures + s.splits + s.edge_splits + s.flips);
     EXPECT_TRUE(s.certified);
     EXPECT_EQ(s.certified_edges, 3 * s.distinct - 3) << "the closing pass counts edges between records that are free";
-    lost_ += s.lost_claims;
+    lost_ += s.lock_failures;
     retries_ += s.insert_retries;
     deferred_ += s.deferred_points + s.deferred_edges;
     if (!host) return;
@@ -103,7 +103,7 @@ class Perturbed : public BackendTest {
         if (HasFatalFailure()) return;
       }
     }
-    RecordProperty("lost_claims", std::to_string(lost_));
+    RecordProperty("lock_failures", std::to_string(lost_));
     RecordProperty("insert_retries", std::to_string(retries_));
     RecordProperty("deferred", std::to_string(deferred_));
   }
@@ -153,11 +153,11 @@ TEST_P(PerturbedRepeats, TwentyThousandPoints) {
     ASSERT_EQ(mesh.hash(), first.hash()) << "repeat " << repeat << ", mode " << mode;
     const Statistics& s = mesh.statistics();
     ASSERT_TRUE(s.certified);
-    ASSERT_EQ(s.claims, s.lost_claims + s.splits + s.edge_splits + s.flips) << "repeat " << repeat;
-    lost_ += s.lost_claims;
+    ASSERT_EQ(s.lock_attempts, s.lock_failures + s.splits + s.edge_splits + s.flips) << "repeat " << repeat;
+    lost_ += s.lock_failures;
   }
   EXPECT_GT(lost_, 0U);
-  RecordProperty("lost_claims", std::to_string(lost_));
+  RecordProperty("lock_failures", std::to_string(lost_));
 }
 std::vector<BackendCase> repeated_opencl_case() { return {{"groups64", Backend::opencl, 0, 64}}; }
 std::vector<BackendCase> repeated_cuda_case() {

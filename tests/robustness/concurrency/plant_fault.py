@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Copies the kernels with one fault of the lock protocol planted in them, for the programs that must find it.
 
-usage: plant_fault.py ROOT TARGET FAULT      copies common/device and kernels_cl from ROOT to TARGET, changed
+usage: plant_fault.py ROOT TARGET FAULT      copies the device text from ROOT to TARGET, changed
        plant_fault.py --list [TOOL]          names of the faults (that TOOL is to find)
 
 The text that a fault replaces must be in the sources exactly once, so a fault that has become stale is an error.
@@ -11,7 +11,8 @@ import pathlib
 import shutil
 import sys
 
-LOCK, CHANGE, INSERT, ATOMICS = (f"common/device/{name}.h" for name in ("lock", "change", "insert", "atomics"))
+LOCK, CHANGE, INSERT = (f"common/insertion/{name}.dev.h" for name in ("lock", "split_and_flip", "insert"))
+ATOMICS = "common/portable/atomics.dev.h"
 
 # name: (what is wrong, tools that find it, [(file, text, replacement)])
 # Tools: host, opencl, gpu (cadt-tests-perturbed on the host, on OpenCL, and there as on GPUs), tsan (the same under the
@@ -21,10 +22,10 @@ FAULTS = {
     "none": ("nothing: the control", [], []),
     "flip_one_lock_short": (
         "a flip claims three of its four records", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
-        [(CHANGE, "claim.record[3] = CADT_LINK_RECORD(outer_aq);", "claim.record[3] = CADT_NONE;")]),
+        [(CHANGE, "locks.triangle[3] = CADT_TRIANGLE_OF(outer_aq);", "locks.triangle[3] = CADT_NONE;")]),
     "split_one_lock_short": (
         "a split claims two of its three records", ["host", "opencl", "gpu"],
-        [(CHANGE, "claim.record[2] = CADT_LINK_RECORD(s.n2);", "claim.record[2] = CADT_NONE;")]),
+        [(CHANGE, "locks.triangle[2] = CADT_TRIANGLE_OF(s.n2);", "locks.triangle[2] = CADT_NONE;")]),
     "no_reread": (
         "a claim takes whatever is there and asks nothing: neither the version nor the fields again",
         ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
@@ -39,17 +40,17 @@ FAULTS = {
         [(LOCK, "cadt_u32 other = (now.v0 ^ s->v0) | (now.v1 ^ s->v1) | (now.v2 ^ s->v2);", "cadt_u32 other = 0u;")]),
     "confirm_no_links": (
         "GPUs: the links by which a flip has claimed are not compared", ["relacy-gpu"],
-        [(CHANGE, "cadt_confirm(m, t, k, CADT_LINKS_01, &s)", "cadt_confirm(m, t, k, 0u, &s)"),
-         (CHANGE, "cadt_confirm(m, n, j, CADT_LINKS_01, &u)", "cadt_confirm(m, n, j, 0u, &u)")]),
+        [(CHANGE, "cadt_validate(m, t, k, CADT_HALF_EDGES_01, &s)", "cadt_validate(m, t, k, 0u, &s)"),
+         (CHANGE, "cadt_validate(m, n, j, CADT_HALF_EDGES_01, &u)", "cadt_validate(m, n, j, 0u, &u)")]),
     "release_early": (
         "a flip gives its records back before it has written them", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
         [(CHANGE,
-          "  cadt_write_flip(m, link, &s, &u, tally);\n  cadt_fence_locks();\n  cadt_release_claim(m, &claim);\n",
-          "  cadt_fence_locks();\n  cadt_release_claim(m, &claim);\n  cadt_write_flip(m, link, &s, &u, tally);\n")]),
+          "  cadt_write_flip(m, half_edge, &s, &u, counters);\n  cadt_fence_before_unlock();\n  cadt_unlock(m, &locks);\n",
+          "  cadt_fence_before_unlock();\n  cadt_unlock(m, &locks);\n  cadt_write_flip(m, half_edge, &s, &u, counters);\n")]),
     "publish_early": (
         "the new records of a split are made free before they are written", ["host", "opencl", "gpu"],
-        [(CHANGE, "  cadt_write_face(m, i, t, &s, edges, tally);\n",
-          "  cadt_publish_record(m, t1);\n  cadt_publish_record(m, t2);\n  cadt_write_face(m, i, t, &s, edges, tally);\n")]),
+        [(CHANGE, "  cadt_write_face(m, i, t, &s, edges, counters);\n",
+          "  cadt_publish_triangle(m, t1);\n  cadt_publish_triangle(m, t2);\n  cadt_write_face(m, i, t, &s, edges, counters);\n")]),
     "same_version": (
         "an unlock after a change does not raise the version", ["host", "opencl", "relacy"],
         [(LOCK, "{ return version + 2u ? version + 2u : 2u; }", "{ return version; }")]),
@@ -61,11 +62,11 @@ FAULTS = {
           "const cadt_u32 found = cadt_load_relaxed(lock);\n  cadt_store_relaxed(lock, found | 1u);")]),
     "lock_kept_at_failure": (
         "a lost claim gives back all but the last record that it had", ["host", "opencl", "gpu"],
-        [(LOCK, "cadt_abandon_claim(m, c, i);", "cadt_abandon_claim(m, c, i ? i - 1u : 0u);")]),
+        [(LOCK, "cadt_unlock_unchanged(m, c, i);", "cadt_unlock_unchanged(m, c, i ? i - 1u : 0u);")]),
     "point_dropped": (
         "a point that got no locks is on no list", ["host", "opencl", "gpu"],
-        [(INSERT, "const cadt_u32 at = cadt_add_relaxed(left_counts, 1u);",
-          "const cadt_u32 at = cadt_load_relaxed(left_counts);")]),
+        [(INSERT, "const cadt_u32 at = cadt_add_relaxed(deferred_counts, 1u);",
+          "const cadt_u32 at = cadt_load_relaxed(deferred_counts);")]),
     "plain_unlock": (
         "the lock word is given back by a plain store", ["tsan"],
         [(ATOMICS, "{ cadt_store_release(p, value); }\n/* behind claims", "{ *p = value; }\n/* behind claims")]),
@@ -85,22 +86,23 @@ FAULTS = {
           "{ cadt_store_relaxed(p, value); }\nCADT_FN cadt_u32 cadt_cas_lock")]),
     "block_fence_claims": (
         "GPUs: the fence behind the claims is none for other groups (block scope)", ["relacy-gpu"],
-        [(ATOMICS, "CADT_FN void cadt_fence_claims(void) { cadt_fence_acq_rel(); }", "CADT_FN void cadt_fence_claims(void) {}")]),
+        [(ATOMICS, "CADT_FN void cadt_fence_after_lock(void) { cadt_fence_acq_rel(); }", "CADT_FN void cadt_fence_after_lock(void) {}")]),
     "block_fence_locks": (
         "GPUs: the fence before the unlocks is none for other groups (block scope)", ["relacy-gpu"],
-        [(ATOMICS, "CADT_FN void cadt_fence_locks(void) { cadt_fence_acq_rel(); }", "CADT_FN void cadt_fence_locks(void) {}")]),
+        [(ATOMICS, "CADT_FN void cadt_fence_before_unlock(void) { cadt_fence_acq_rel(); }", "CADT_FN void cadt_fence_before_unlock(void) {}")]),
     "abandon_by_store": (
         "GPUs: a claim is given back unchanged by a store, which cuts the last owner's release sequence", [],
-        [(LOCK, "      cadt_add_relaxed(m->records[c->record[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);",
-          "      cadt_store_relaxed(m->records[c->record[i]].word + CADT_WORD_LOCK, c->version[i]);")]),
+        [(LOCK, "      cadt_add_relaxed(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);",
+          "      cadt_store_relaxed(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, c->version[i]);")]),
 }
 
 
 def plant(root, target, fault):
     if target.exists():
         shutil.rmtree(target)
-    for folder in ("common/device", "kernels_cl"):
-        shutil.copytree(root / folder, target / folder)
+    for folder in ("common", "kernels_cl"):
+        shutil.copytree(root / folder, target / folder,
+                        ignore=shutil.ignore_patterns("*.cpp", "*.hpp", "*.cmake", "CMakeLists.txt"))
     for name, old, new in FAULTS[fault][2]:
         path = target / name
         text = path.read_text()

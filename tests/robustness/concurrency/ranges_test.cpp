@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sets so large that processors insert most points in ranges without locks (common/device/range.h): ordinary ones, ties
-// everywhere, and such that hardly a triangle lies within one range.
+// Sets so large that processors insert most points in ranges without locks (common/insertion/partitioned.dev.h):
+// ordinary ones, ties everywhere, and such that hardly a triangle lies within one range.
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"
@@ -13,7 +13,7 @@
 namespace cadt::test {
 namespace {
 
-constexpr std::size_t enough = 80000;  // fewest_for_ranges is 65,536
+constexpr std::size_t enough = 80000;  // fewest_for_partitions is 65,536
 
 class Ranges : public BackendTest {
  protected:
@@ -30,7 +30,7 @@ class Ranges : public BackendTest {
 TEST_P(Ranges, Uniform) {
   const Statistics s = check(uniform_points(enough, 21));
   EXPECT_EQ(s.splits + s.edge_splits, s.distinct - 3);
-  EXPECT_EQ(s.claims, s.lost_claims + s.splits + s.edge_splits + s.flips);
+  EXPECT_EQ(s.lock_attempts, s.lock_failures + s.splits + s.edge_splits + s.flips);
 }
 // With one, two and more points in the last block, and with the least set.
 TEST_P(Ranges, Sizes) {

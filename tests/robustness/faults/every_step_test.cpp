@@ -6,8 +6,8 @@
 
 #include <cadt/batch.hpp>
 
-#include "common/host/registry.hpp"
-#include "common/host/selftest.hpp"
+#include "common/driver/registry.hpp"
+#include "common/predicates/self_test.hpp"
 
 namespace cadt::test {
 namespace {

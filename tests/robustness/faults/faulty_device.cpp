@@ -95,7 +95,10 @@ class FaultyDevice final : public Device {
   [[nodiscard]] unsigned threads() const noexcept override { return device_->threads(); }
   [[nodiscard]] bool keeps_memory() const noexcept override { return device_->keeps_memory(); }
   void trim() override { device_->trim(); }
-  [[nodiscard]] std::size_t free_bytes() override { return device_->free_bytes(); }
+  [[nodiscard]] std::size_t free_bytes() override {
+    const std::size_t all = faults_->device_bytes, out = faults_->live_bytes();
+    return all == 0 ? device_->free_bytes() : all - std::min(all, out);
+  }
   [[nodiscard]] std::optional<double> occupancy(unsigned size) override { return device_->occupancy(size); }
   [[nodiscard]] KernelClock* kernel_clock() noexcept override { return device_->kernel_clock(); }
   [[nodiscard]] Primitives* primitives() noexcept override { return primitives_ ? &*primitives_ : nullptr; }
@@ -151,10 +154,14 @@ class FaultyDevice final : public Device {
     take(Step::fill, 0, [&] { device_->fill(real(to), offset, bytes, word); });
   }
   using Device::launch;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
               std::uint32_t group) override {
     std::vector<Arg> given(args.begin(), args.end());
     if (faults_->change_launch) faults_->change_launch(kernel, given);
+    if (faults_->before_launch) {
+      device_->finish();
+      faults_->before_launch(kernel, given, *this);
+    }
     std::vector<Arg> own = given;
     for (Arg& arg : own) {
       if (!arg.is_buffer() || arg.buffer() == nullptr) continue;
@@ -187,10 +194,16 @@ class FaultyDevice final : public Device {
   }
 
  private:
-  void check_size(std::size_t bytes) const {
+  void check_size(std::size_t bytes) {
+    if (faults_->device_bytes != 0 && bytes > free_bytes())
+      throw OutOfMemory("a buffer of " + std::to_string(bytes) + " bytes, and the device has " +
+                            std::to_string(free_bytes()) + " free",
+                        bytes, free_bytes());
     const std::uint64_t largest = faults_->largest_buffer_bytes;
     if (largest != 0 && bytes > largest)
-      throw OutOfMemory("larger than the largest buffer", bytes, static_cast<std::size_t>(largest));
+      throw OutOfMemory(
+          "a buffer of " + std::to_string(bytes) + " bytes, and the largest has " + std::to_string(largest), bytes,
+          static_cast<std::size_t>(largest));
   }
   template <class Work>
   void take(Step step, std::size_t bytes, const Work& work) {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "common/host/device.hpp"
+#include "common/driver/device.hpp"
 
 namespace cadt::test {
 
@@ -55,12 +55,16 @@ class Faults {
   // What a test may change or look at, if set. Buffers are those that the driver holds.
   /// The arguments of each launch, before it.
   std::function<void(KernelId, std::vector<Arg>&)> change_launch;
+  /// Before each launch, when what was launched before has come to its end.
+  std::function<void(KernelId, std::span<const Arg>, Device&)> before_launch;
   /// After each launch, which has come to its end, with the milliseconds that it took.
   std::function<void(KernelId, std::span<const Arg>, Device&, double)> after_launch;
   /// What was read from a buffer.
   std::function<void(const Buffer&, std::size_t offset, void* to, std::size_t bytes)> change_read;
   /// Instead of the device's own, if not 0.
   std::uint64_t largest_buffer_bytes = 0;
+  /// Memory of the device, if not 0: what is not out is free, and no more is given.
+  std::size_t device_bytes = 0;
   bool watchdog = false;  ///< as if it drew a screen
   /// It makes parts of buffers even if the real one does not. What overlaps another part, and a launch with a buffer of
   /// which there are parts, is an InternalError.

@@ -9,15 +9,15 @@
 #include <map>
 #include <set>
 
-#include "common/host/device_constants.hpp"
+#include "common/driver/device_text.hpp"
 
 namespace cadt::test {
 namespace {
 
-using namespace device_constants;
+using namespace device_text;
 using Reals = std::span<const double>;
 
-constexpr std::size_t mesh_parameters = 11;  // CADT_MESH_PARAMETERS (common/device/mesh.h)
+constexpr std::size_t mesh_parameters = 11;  // CADT_MESH_PARAMETERS (common/mesh/locked_mesh.dev.h)
 
 template <class T>
 T value_of(const Arg& arg) {
@@ -47,12 +47,12 @@ TEST_P(HostileDevice, LockThatIsNeverGivenBack) {
     std::uint32_t launches = 0;
     faults->after_launch = [&](KernelId kernel, std::span<const Arg> args, Device& device, double) {
       ++launches;
-      if (kernel != KernelId::cadt_start_mesh) return;
+      if (kernel != KernelId::cadt_seed_mesh) return;
       // the first triangle and its ghosts: records 2 first, 2 first + 1, 2 second, 2 second + 1
       const auto first = value_of<std::uint32_t>(args[5]), second = value_of<std::uint32_t>(args[6]);
       const std::size_t record = 2 * std::size_t{which < 2 ? first : second} + which % 2;
       const std::uint32_t claimed = 1;
-      device.write(*args[0].buffer(), record * sizeof(cadt_record) + CADT_WORD_LOCK * sizeof claimed, &claimed,
+      device.write(*args[0].buffer(), record * sizeof(cadt_locked_triangle) + CADT_WORD_LOCK * sizeof claimed, &claimed,
                    sizeof claimed);
       poked = true;
     };
@@ -85,7 +85,7 @@ TEST_P(HostileDevice, ListOfEdgesThatIsTooShort) {
       // The capacity stands before the last argument, the counts before it.
       faults->change_launch = [&](KernelId kernel, std::vector<Arg>& args) {
         if (kernel != KernelId::cadt_insert && kernel != KernelId::cadt_legalize_edges &&
-            kernel != KernelId::cadt_closing_pass && kernel != KernelId::cadt_border_pass)
+            kernel != KernelId::cadt_legality_sweep && kernel != KernelId::cadt_border_sweep)
           return;
         const std::size_t last = args.size() - 1;
         EXPECT_GE(value_of<std::uint32_t>(args[last - 1]), n / 8);
@@ -101,7 +101,7 @@ TEST_P(HostileDevice, ListOfEdgesThatIsTooShort) {
         edges = std::min(edges, capacity);
         std::memcpy(static_cast<std::byte*>(to) + sizeof edges, &edges, sizeof edges);
       };
-      std::vector<cadt_record> records(2 * n);
+      std::vector<cadt_locked_triangle> records(2 * n);
       std::vector<std::size_t> claimed;
       std::size_t launches = 0;
       faults->after_launch = [&](KernelId kernel, std::span<const Arg> args, Device& device, double) {
@@ -112,7 +112,7 @@ TEST_P(HostileDevice, ListOfEdgesThatIsTooShort) {
         const auto set_locks = [&](std::uint32_t more) {
           for (const std::size_t r : claimed) {
             const std::uint32_t lock = records[r].word[CADT_WORD_LOCK] + more;
-            device.write(buffer, r * sizeof(cadt_record) + CADT_WORD_LOCK * sizeof lock, &lock, sizeof lock);
+            device.write(buffer, r * sizeof(cadt_locked_triangle) + CADT_WORD_LOCK * sizeof lock, &lock, sizeof lock);
           }
         };
         if (launches == claim_at) {
@@ -148,12 +148,12 @@ TEST_P(HostileDevice, ListOfEdgesThatIsTooShort) {
 /// The records of all points are one buffer. Where that cannot be, the call is refused before any work.
 TEST_P(HostileDevice, LargestBufferIsTooSmall) {
   const Points xy = uniform_points(20000);
-  faults->largest_buffer_bytes = 2 * 20000 * sizeof(cadt_record) - 1;
+  faults->largest_buffer_bytes = 2 * 20000 * sizeof(cadt_locked_triangle) - 1;
   Triangulator triangulator(insertion());
   const std::size_t launched = faults->count(Step::launch);
   const auto error = thrown<OutOfMemory>([&] { (void)triangulator.triangulate(Reals(xy)); });
   ASSERT_NE(error, nullptr);
-  EXPECT_EQ(error->needed(), 2 * 20000 * sizeof(cadt_record));
+  EXPECT_EQ(error->needed(), 2 * 20000 * sizeof(cadt_locked_triangle));
   EXPECT_EQ(error->available(), faults->largest_buffer_bytes);
   (void)thrown<OutOfMemory>([&] { (void)triangulator.triangulate(upload(xy)); });
   EXPECT_EQ(faults->count(Step::launch), launched);
@@ -192,7 +192,7 @@ TEST_P(HostileDevice, SetsInSmallerGroups) {
   const Points xy = uniform_points(sets * size);
   std::vector<std::size_t> offsets;
   for (std::size_t s = 0; s <= sets; ++s) offsets.push_back(s * size);
-  faults->largest_buffer_bytes = sets * size / 2 * 2 * sizeof(cadt_record) - 1;
+  faults->largest_buffer_bytes = sets * size / 2 * 2 * sizeof(cadt_locked_triangle) - 1;
   Triangulator triangulator(options());
   const TriangulationBatch batch = triangulator.triangulate_batch(Reals(xy), offsets);
   for (const std::size_t s : {std::size_t{0}, sets / 2, sets - 1}) {
@@ -209,7 +209,7 @@ TEST_P(HostileDevice, WorkOfALaunchIsBounded) {
   Triangulator triangulator(with);
   const bool contiguous = !triangulator.device().gpu;
   const std::uint64_t most_points = contiguous ? std::uint64_t{1} << 19 : std::uint64_t{1} << 25;
-  // CADT_FLIP_LIMIT and CADT_EDGE_FLIP_LIMIT of common/device/insert.h, and what is on the worklist then
+  // CADT_FLIP_LIMIT and CADT_EDGE_FLIP_LIMIT of common/insertion/insert.dev.h, and what is on the worklist then
   constexpr std::uint64_t worklist = 64;
   const std::uint64_t flips_of_a_point = (contiguous ? std::uint64_t{1} << 14 : 64) + worklist;
   const std::uint64_t flips_of_an_edge = (contiguous ? std::uint64_t{1} << 14 : 16) + worklist;
@@ -264,7 +264,7 @@ TEST_P(HostileDevice, WatchdogMakesLaunchesSmall) {
   faults->after_launch = [&](KernelId kernel, std::span<const Arg> args, Device&, double) {
     if (kernel == KernelId::cadt_insert)
       points = std::max<std::uint64_t>(points, value_of<std::uint32_t>(args[mesh_parameters + 3]));
-    if (kernel == KernelId::cadt_closing_pass)
+    if (kernel == KernelId::cadt_legality_sweep)
       slots = std::max<std::uint64_t>(slots, value_of<std::uint32_t>(args[mesh_parameters + 1]));
   };
   const Points xy = uniform_points(2500000);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The linker gives the library this function instead of its own open_device (--wrap, CMakeLists.txt), which has the
 // other name here.
-#include "common/host/registry.hpp"
+#include "common/driver/registry.hpp"
 #include "tests/robustness/faults/faulty_device.hpp"
 
 #include <utility>

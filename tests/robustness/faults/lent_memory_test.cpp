@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of a call borrow kept buffers of each other (common/host/memory.hpp): no two share a byte, the account is what
-// the device has given, meshes are the same, and after any fault all of it can be given back. The device makes parts of
-// buffers here whether or not it does so outside.
+// Steps of a call borrow kept buffers of each other (common/driver/memory.hpp): no two share a byte, the account is
+// what the device has given, meshes are the same, and after any fault all of it can be given back. The device makes
+// parts of buffers here whether or not it does so outside.
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 
-#include "common/host/device_constants.hpp"
+#include "common/driver/device_text.hpp"
 
 namespace cadt::test {
 namespace {
@@ -27,7 +27,7 @@ class LentMemory : public ResidentTest {
     return chosen;
   }
   /// CUDA has a pool of its own.
-  [[nodiscard]] bool lends() const { return GetParam().backend != Backend::cuda; }
+  [[nodiscard]] bool pools() const { return GetParam().backend != Backend::cuda; }
 
   const std::shared_ptr<Faults> faults = std::make_shared<Faults>();
   const Injection injection{faults};
@@ -57,7 +57,7 @@ TEST_P(LentMemory, MeshesAndAccounts) {
             faults->clear();
             const DeviceTriangulation mesh = triangulator.triangulate(points);
             EXPECT_EQ(mesh.statistics().bytes_device_peak, faults->most_bytes());
-            EXPECT_GE(faults->parts(), round == 1 && lends() ? 4U : 0U);
+            EXPECT_GE(faults->parts(), round == 1 && pools() ? 4U : 0U);
             EXPECT_EQ(mesh.download().hash(), known.mesh.hash());
             if (round == 0) continue;
             // these save memory, in another way
@@ -131,7 +131,7 @@ TEST_P(LentMemory, AfterFaults) {
 TEST_P(LentMemory, LargestBufferJustFits) {
   const Points xy = uniform_points(enough);
   const auto expected = on_host(Reals(xy)).hash();
-  faults->largest_buffer_bytes = 2 * enough * sizeof(device_constants::cadt_record);
+  faults->largest_buffer_bytes = 2 * enough * sizeof(device_text::cadt_locked_triangle);
   for (const bool reserved : {false, true}) {
     SCOPED_TRACE(reserved ? "reserved" : "not reserved");
     Triangulator triangulator(with(Strategy::locks, Order::canonical));

@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "common/host/device.hpp"
-#include "common/host/registry.hpp"
+#include "common/driver/device.hpp"
+#include "common/driver/registry.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 
@@ -61,7 +61,7 @@ class LostDevice : public BackendTest {
         const std::uint32_t count = 1 << 20;
         const std::array<Arg, 3> arguments = {Arg(null), Arg(count), Arg(1U)};
         expect(refused([&] {
-                 device->launch(KernelId::cadt_identity, count, arguments, KernelBuild::narrow);
+                 device->launch(KernelId::cadt_identity, count, arguments, KernelVariant::narrow);
                  device->finish();
                }),
                "the kernel that writes to no address");

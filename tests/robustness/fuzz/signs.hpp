@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel cadt_signs on the host.
+// The kernel cadt_predicate_probe on the host.
 #pragma once
 
 #include <cstdint>

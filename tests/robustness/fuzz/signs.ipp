@@ -9,7 +9,7 @@
 
 namespace {
 #pragma GCC diagnostic ignored "-Wunused-function"  // not all of the headers' are asked
-#include "common/device/signs.h"
+#include "common/predicates/predicate_probe.dev.h"
 
 std::vector<std::uint32_t> words(const std::vector<cadt::test::SignCase>& cases) {
   std::vector<cadt_point> points;
@@ -20,7 +20,7 @@ std::vector<std::uint32_t> words(const std::vector<cadt::test::SignCase>& cases)
   }
   std::vector<std::uint32_t> result(cases.size());
   const auto count = static_cast<cadt_u32>(cases.size());
-  cadt_signs(0, 1, points.data(), most.data(), result.data(), count, count);
+  cadt_predicate_probe(0, 1, points.data(), most.data(), result.data(), count, count);
   return result;
 }
 }  // namespace

@@ -3,8 +3,8 @@
 // value that C++ allows. CADT_CONTIGUOUS is set by the including file: 1 for the memory orders of CPUs, 0 for those of
 // GPUs, where fields are relaxed, fences order, and the owner reads its records again.
 //
-// Claims, validation, changes, releases and hints are those of change.h, lock.h and locate.h; three threads split and
-// flip in a mesh of eight vertices.
+// Claims, validation, changes, releases and hints are those of split_and_flip.dev.h, lock.dev.h and locate.dev.h; three
+// threads split and flip in a mesh of eight vertices.
 #include "tests/robustness/models/protocol.hpp"
 
 #include <array>
@@ -20,7 +20,7 @@
 #include <string>
 #include <thread>
 
-// Where std::atomic_ref is in the text of atomics.h there is a word of the model instead.
+// Where std::atomic_ref is in the text of atomics.dev.h there is a word of the model instead.
 namespace {
 namespace words {
 std::uint32_t load(const std::uint32_t* word, std::memory_order order);
@@ -68,8 +68,8 @@ inline void cadt_fence_acq_rel() { words::fence(std::memory_order_acq_rel); }
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wunused-parameter"
-#include "common/device/insert.h"
-#include "common/device/start.h"
+#include "common/insertion/insert.dev.h"
+#include "common/insertion/seed_triangle.dev.h"
 #pragma GCC diagnostic pop
 #undef atomic_ref
 }  // namespace
@@ -88,7 +88,7 @@ constexpr std::size_t vertices = 8, threads = 3;
 
 // Only addresses: what is in the words the model knows, or `plain` while the mesh is made by one thread.
 struct Memory {
-  cadt_record records[2 * vertices];
+  cadt_locked_triangle records[2 * vertices];
   cadt_u32 hints[vertices];
 };
 Memory plain;
@@ -155,11 +155,11 @@ const std::array<cadt_point, vertices> points = {
     {{0.1, 0.1}, {0.9, 0.12}, {0.45, 0.9}, {0.46, 0.72}, {0.29, 0.41}, {0.85, 0.18}, {0.35, 0.44}, {0.3, 0.32}}};
 constexpr cadt_u32 from_start = 6;  // vertices of the mesh that the threads find; they insert the others
 
-cadt_mesh view() {
-  cadt_mesh mesh{};
-  mesh.records = plain.records;
+cadt_locked_mesh view() {
+  cadt_locked_mesh mesh{};
+  mesh.locked = plain.locked;
   mesh.points = points.data();
-  mesh.hints = plain.hints;
+  mesh.vertex_to_triangle = plain.vertex_to_triangle;
   mesh.second = 1;
   mesh.third = 2;
   mesh.center = {(points[0].x + points[1].x + points[2].x) / 3, (points[0].y + points[1].y + points[2].y) / 3};
@@ -176,24 +176,24 @@ struct Start {
 Start make_start() {
   cells = nullptr;
   plain = {};
-  const cadt_mesh mesh = view();
-  cadt_tally tally;
-  cadt_tally_clear(&tally);
-  cadt_start(&mesh, &tally);
+  const cadt_locked_mesh mesh = view();
+  cadt_counters counters;
+  cadt_counters_clear(&counters);
+  cadt_start(&mesh, &counters);
   for (cadt_u32 i = 3; i < from_start; ++i) {
     cadt_u32 hint = 0, edges[4];
-    if (cadt_try_vertex(&mesh, i, points[i], &hint, edges, &tally) == 0) std::abort();
-    plain.hints[i] = hint;
+    if (cadt_try_vertex(&mesh, i, points[i], &hint, edges, &counters) == 0) std::abort();
+    plain.vertex_to_triangle[i] = hint;
   }
   Start start;
   std::memcpy(start.image.data(), &plain, sizeof plain);
   for (cadt_u32 t = 0; t < 2 * vertices; ++t)
-    for (cadt_u32 k = 0; k < 3 && plain.records[t].word[CADT_WORD_LOCK] != 0; ++k) {
+    for (cadt_u32 k = 0; k < 3 && plain.locked[t].word[CADT_WORD_LOCK] != 0; ++k) {
       const cadt_snapshot s = cadt_look_from(&mesh, t, k);
-      if (CADT_LINK_RECORD(s.n0) < t) continue;
-      const cadt_snapshot u = cadt_look_from(&mesh, CADT_LINK_RECORD(s.n0), CADT_LINK_EDGE(s.n0));
-      if (cadt_is_illegal(&mesh, s.v0, s.v1, s.v2, u.v0, &tally))
-        start.illegal.at(start.illegal_size++) = CADT_LINK(t, k);
+      if (CADT_TRIANGLE_OF(s.n0) < t) continue;
+      const cadt_snapshot u = cadt_look_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
+      if (cadt_is_illegal(&mesh, s.v0, s.v1, s.v2, u.v0, &counters))
+        start.illegal.at(start.illegal_size++) = CADT_HALF_EDGE(t, k);
     }
   return start;
 }
@@ -207,46 +207,46 @@ Totals totals;
 
 struct SplitsAndFlips : rl::test_suite<SplitsAndFlips, threads> {
   rl::atomic<cadt_u32> memory[words::count];
-  std::array<cadt_tally, threads> tallies;
+  std::array<cadt_counters, threads> tallies;
 
   void before() {
     cells = memory;
     for (std::size_t w = 0; w < words::count; ++w) memory[w].store(start().image[w], rl::mo_relaxed, RL_INFO);
-    for (cadt_tally& tally : tallies) cadt_tally_clear(&tally);
+    for (cadt_counters& counters : tallies) cadt_counters_clear(&counters);
   }
 
   // The first flips, the second inserts and flips what it finds illegal, the third does both.
   void thread(unsigned index) {
-    const cadt_mesh mesh = view();
-    cadt_tally& tally = tallies[index];
+    const cadt_locked_mesh mesh = view();
+    cadt_counters& counters = tallies[index];
     const std::size_t size_of_illegal = start().illegal_size;
     for (std::size_t e = 0; index != 1 && e < size_of_illegal; ++e)
-      flip(mesh, start().illegal[index == 0 ? e : size_of_illegal - 1 - e], CADT_NONE, tally);
+      flip(mesh, start().illegal[index == 0 ? e : size_of_illegal - 1 - e], CADT_NONE, counters);
     if (index == 0) return;
     const cadt_u32 i = from_start - 1 + index;
-    cadt_u32 hint = cadt_load_relaxed(mesh.hints + 3), edges[4], size = 0;
+    cadt_u32 hint = cadt_load_relaxed(mesh.vertex_to_triangle + 3), edges[4], size = 0;
     for (int tries = 0; tries < 3 && size == 0; ++tries)
-      size = cadt_try_vertex(&mesh, i, points[i], &hint, edges, &tally);
-    for (cadt_u32 e = 0; e < size; ++e) flip(mesh, edges[e], i, tally);
+      size = cadt_try_vertex(&mesh, i, points[i], &hint, edges, &counters);
+    for (cadt_u32 e = 0; e < size; ++e) flip(mesh, edges[e], i, counters);
   }
 
-  static void flip(const cadt_mesh& mesh, cadt_u32 link, cadt_u32 apex, cadt_tally& tally) {
+  static void flip(const cadt_locked_mesh& mesh, cadt_u32 link, cadt_u32 apex, cadt_counters& counters) {
     cadt_u32 partner = 0, all_sides = 0;
     const cadt_point at = apex == CADT_NONE ? cadt_point{0, 0} : points[apex];
     for (int tries = 0; tries < 2; ++tries)
-      if (cadt_legalize_edge(&mesh, link, apex, at, &partner, &all_sides, &tally) != CADT_EDGE_CONFLICT) return;
+      if (cadt_legalize_edge(&mesh, link, apex, at, &partner, &all_sides, &counters) != CADT_EDGE_CONFLICT) return;
   }
 
   void after() {
-    const cadt_mesh mesh = view();
-    cadt_tally none;
-    cadt_tally_clear(&none);
+    const cadt_locked_mesh mesh = view();
+    cadt_counters none;
+    cadt_counters_clear(&none);
     std::uint64_t splits = 0, live = 0;
-    for (const cadt_tally& tally : tallies) {
-      splits += tally.count[CADT_COUNT_SPLITS] + tally.count[CADT_COUNT_EDGE_SPLITS];
-      totals.flips += tally.count[CADT_COUNT_FLIPS];
-      totals.lost += tally.count[CADT_COUNT_LOST_CLAIMS];
-      totals.invalid += tally.count[CADT_COUNT_INVALID];
+    for (const cadt_counters& counters : tallies) {
+      splits += counters.count[CADT_COUNT_SPLITS] + counters.count[CADT_COUNT_EDGE_SPLITS];
+      totals.flips += counters.count[CADT_COUNT_FLIPS];
+      totals.lost += counters.count[CADT_COUNT_LOCK_FAILURES];
+      totals.invalid += counters.count[CADT_COUNT_INVALIDATED];
     }
     totals.splits += splits;
     for (cadt_u32 t = 0; t < 2 * vertices; ++t) {
@@ -258,10 +258,10 @@ struct SplitsAndFlips : rl::test_suite<SplitsAndFlips, threads> {
       RL_ASSERT((ghost || cadt_orientation(points[s.v0], points[s.v1], points[s.v2], &none) > 0) &&
                 "a triangle is not counterclockwise");
       for (cadt_u32 k = 0; k < 3; ++k) {
-        const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_LINK_RECORD(across);
-        RL_ASSERT(n < 2 * vertices && CADT_LINK_EDGE(across) < 3 && "a link to nowhere");
-        const cadt_snapshot u = cadt_look_from(&mesh, n, CADT_LINK_EDGE(across));
-        RL_ASSERT(u.lock != 0 && u.n0 == CADT_LINK(t, k) && "a neighbour does not know its neighbour");
+        const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_TRIANGLE_OF(across);
+        RL_ASSERT(n < 2 * vertices && CADT_EDGE_OF(across) < 3 && "a link to nowhere");
+        const cadt_snapshot u = cadt_look_from(&mesh, n, CADT_EDGE_OF(across));
+        RL_ASSERT(u.lock != 0 && u.n0 == CADT_HALF_EDGE(t, k) && "a neighbour does not know its neighbour");
         RL_ASSERT(u.v1 == CADT_VERTEX(s, CADT_PREV(k)) && u.v2 == CADT_VERTEX(s, CADT_NEXT(k)) &&
                   "neighbours do not share an edge");
       }
@@ -289,41 +289,41 @@ struct Claims : rl::test_suite<Claims, threads> {
     for (cadt_u32& count : changes) count = 0;
   }
 
-  static cadt_claim claim_of(cadt_u32 version, cadt_u32 second) {
+  static cadt_lock_set claim_of(cadt_u32 version, cadt_u32 second) {
     return {{0, second, CADT_NONE, CADT_NONE}, {version, CADT_ANY_VERSION, 0, 0}};
   }
 
   void thread(unsigned index) {
-    const cadt_mesh mesh = view();
-    cadt_tally tally;
-    cadt_tally_clear(&tally);
+    const cadt_locked_mesh mesh = view();
+    cadt_counters counters;
+    cadt_counters_clear(&counters);
     for (int round = 0; round < 2; ++round) {
       if (index == 1) { /* loses the second record, gives the first one back */
-        cadt_claim claim = claim_of(CADT_ANY_VERSION, 1);
-        RL_ASSERT(!cadt_try_claim(&mesh, &claim, &tally) && "a record that is held was claimed");
+        cadt_lock_set claim = claim_of(CADT_ANY_VERSION, 1);
+        RL_ASSERT(!cadt_try_lock(&mesh, &claim, &counters) && "a record that is held was claimed");
         continue;
       }
       cadt_snapshot s = cadt_look(&mesh, 0);
-      if (!cadt_is_free(s.lock)) continue;
-      cadt_claim claim = claim_of(s.lock, CADT_NONE);
-      if (!cadt_try_claim(&mesh, &claim, &tally)) continue;
-      if (!cadt_confirm(&mesh, 0, 0, CADT_LINKS_ALL, &s)) {
-        cadt_give_up(&mesh, &claim, &tally);
+      if (!cadt_is_unlocked(s.lock)) continue;
+      cadt_lock_set claim = claim_of(s.lock, CADT_NONE);
+      if (!cadt_try_lock(&mesh, &claim, &counters)) continue;
+      if (!cadt_validate(&mesh, 0, 0, CADT_HALF_EDGES_ALL, &s)) {
+        cadt_unlock_invalid(&mesh, &claim, &counters);
         continue;
       }
       const cadt_u32 now = expected(claim.version[0]), next = expected(claim.version[0] + 2);
       RL_ASSERT(s.v0 == now && s.v1 == now && s.v2 == now && s.n0 == now && s.n1 == now && s.n2 == now &&
                 "a claim was won with fields of another version");
       cadt_store_vertices(&mesh, 0, next, next, next);
-      for (cadt_u32 k = 0; k < 3; ++k) cadt_store_link(&mesh, 0, k, next);
-      cadt_fence_locks();
-      cadt_release_claim(&mesh, &claim);
+      for (cadt_u32 k = 0; k < 3; ++k) cadt_store_half_edge(&mesh, 0, k, next);
+      cadt_fence_before_unlock();
+      cadt_unlock(&mesh, &claim);
       ++changes[index];
     }
   }
 
   void after() {
-    const cadt_mesh mesh = view();
+    const cadt_locked_mesh mesh = view();
     const cadt_snapshot s = cadt_look(&mesh, 0);
     RL_ASSERT(s.lock == 2 + 2 * (changes[0] + changes[2]) && s.v0 == expected(s.lock) && "a change is lost");
     cells = nullptr;

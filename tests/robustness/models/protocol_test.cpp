@@ -28,7 +28,7 @@ void expect_clean(const model::Found& found) {
   EXPECT_GT(found.totals.invalid, 0U);
   for (const auto& [name, count] : {std::pair{"flips", found.totals.flips},
                                     {"splits", found.totals.splits},
-                                    {"lost_claims", found.totals.lost},
+                                    {"lock_failures", found.totals.lost},
                                     {"invalid", found.totals.invalid}})
     testing::Test::RecordProperty(name, std::to_string(count));
 }

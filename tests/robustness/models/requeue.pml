@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Claim, requeue and closing pass of the insertion (common/device/lock.h, insert.h, closing.h; the driver is
- * common/host/build_mesh.cpp) with sequentially consistent memory. What memory orders do is the matter of
+ * Claim, requeue and closing pass of the insertion (common/insertion/lock.dev.h, insert.dev.h, legality_sweep.dev.h; the driver is
+ * common/insertion/insertion.cpp) with sequentially consistent memory. What memory orders do is the matter of
  * protocol_test.cpp beside this.
  *
  * Items are points and edges. Each needs three of the records. Who inserts point p makes edge p illegal and owes its
@@ -33,7 +33,7 @@ byte needs[18];        /* the records of an item, in the order of claims */
 bool inserted[POINTS], illegal[POINTS];
 
 byte work[ITEMS], work_size;          /* of this launch */
-byte left_points[POINTS], left_edges[ROOM], points_left, edges_left;
+byte deferred_points[POINTS], deferred_edges[ROOM], points_left, edges_left;
 byte cursor, running, crew;           /* crew: workers of this launch */
 bool go[WORKERS + 1];                 /* by process; the driver has number 0 */
 bool closing, changed, found, finished;
@@ -143,12 +143,12 @@ inline requeue(item) {
     if
     :: item < POINTS ->
 #ifndef DROP_POINT
-      left_points[points_left] = item;
+      deferred_points[points_left] = item;
       points_left++
 #else
       skip
 #endif
-    :: item >= POINTS && edges_left < ROOM -> left_edges[edges_left] = item; edges_left++
+    :: item >= POINTS && edges_left < ROOM -> deferred_edges[edges_left] = item; edges_left++
     :: else /* a closing pass will find it */
     fi
   }
@@ -193,12 +193,12 @@ active proctype driver() {
       stalled = (changed || closing -> 0 : (stalled < PATIENCE -> stalled + 1 : stalled));
       work_size = 0; i = 0;
       do
-      :: i < points_left -> work[work_size] = left_points[i]; work_size++; i++
+      :: i < points_left -> work[work_size] = deferred_points[i]; work_size++; i++
       :: else -> break
       od;
       i = 0;
       do
-      :: i < edges_left -> work[work_size] = left_edges[i]; work_size++; i++
+      :: i < edges_left -> work[work_size] = deferred_edges[i]; work_size++; i++
       :: else -> break
       od;
       i = 0; points_left = 0; edges_left = 0

@@ -105,15 +105,15 @@ Points with_hub(std::size_t seed) {
 
 TEST_P(Batch, EvenlySpread) {
   const Statistics s = check(uniform_sets(50, 1000));
-  EXPECT_EQ(s.sets_together, 50u);
+  EXPECT_EQ(s.batched_sets, 50u);
   EXPECT_EQ(s.splits + s.edge_splits, on_card() ? 0u : 50u * 997u);
 }
 TEST_P(Batch, Stars) {
   const Statistics s = check(uniform_sets(50, 1000), stars());
-  EXPECT_EQ(s.sets_together, 50u);
+  EXPECT_EQ(s.batched_sets, 50u);
   EXPECT_GT(s.proven_stars, 40000u);
   EXPECT_EQ(s.proven_stars + s.wrapped_stars, 50000u);
-  EXPECT_EQ(s.closing_repairs + s.splits, 0u);
+  EXPECT_EQ(s.sweep_repairs + s.splits, 0u);
 }
 
 TEST_P(Batch, OneSet) { check(uniform_sets(1, 1500)); }
@@ -168,7 +168,7 @@ TEST_P(Batch, Exponents) {
   const Points even = uniform_points(400, 6);
   const Statistics s = check({scaled(even, 900), even, wide, scaled(even, -1000), scaled(even, 1023), even, wide});
   EXPECT_TRUE(s.wide_arithmetic);
-  EXPECT_EQ(s.sets_together, 5u);
+  EXPECT_EQ(s.batched_sets, 5u);
 }
 
 TEST_P(Batch, Hubs) {
@@ -177,7 +177,7 @@ TEST_P(Batch, Hubs) {
   sets[7] = with_hub(4);
   check(sets);
   const Statistics s = check(sets, stars());
-  EXPECT_EQ(s.sets_together, 6u);
+  EXPECT_EQ(s.batched_sets, 6u);
   EXPECT_GT(s.splits, 200u);
 }
 
@@ -229,12 +229,12 @@ TEST_P(Batch, StrategiesAndStabilize) {
   for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
     Options options = GetParam().options();
     options.strategy = strategy;
-    const std::uint64_t together = check(sets, options).sets_together;
+    const std::uint64_t together = check(sets, options).batched_sets;
     EXPECT_EQ(together, strategy == Strategy::locks && on_card() ? 0u : 2u);
   }
   Options options = GetParam().options();
   options.stabilize = Stabilize::defer;
-  EXPECT_EQ(check(sets, options).sets_together, 0u);
+  EXPECT_EQ(check(sets, options).batched_sets, 0u);
 }
 
 TEST_P(Batch, FastOrder) {

@@ -148,6 +148,42 @@ class Files(CliTest):
         self.assertEqual(self.names(), ["big.f64", "in.xy", "m.off"])
         self.assertEqual(self.path("m.off").read_text(), "old")
 
+    def test_each_kind_of_output_that_fails_leaves_nothing(self):
+        """A disk that is full from the first byte on, and one that a small file still fits."""
+        for limit, arguments, name in [(0, ["triangulate", "in.xy", "--stats=OUT"], "s.json"),
+                                       (512, ["triangulate", "in.xy", "--stats=OUT"], "s.json"),
+                                       (0, ["triangulate", "in.xy", "-o", "OUT"], "m.off"),
+                                       (0, ["triangulate", "in.xy", "-o", "OUT"], "m.npz"),
+                                       (0, ["triangulate", "in.xy", "-o", "OUT"], "m.svg"),
+                                       (64, ["triangulate", "in.xy", "-o", "OUT"], "m.png"),
+                                       (0, ["generate", "uniform", "-n", "100", "-o", "OUT"], "p.f64"),
+                                       (512, ["generate", "uniform", "-n", "100", "-o", "OUT"], "p.npy")]:
+            def little_room():
+                default_signals()
+                signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+                resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+            arguments = [word.replace("OUT", name) for word in arguments]
+            for old in (None, "old"):
+                with self.subTest(limit=limit, arguments=arguments, old=old):
+                    if old:
+                        self.write(name, old)
+                    result = self.cadt(*arguments, before=little_room, expect=3)
+                    self.assertRegex(result.err, rf"(?m)^cadt: error: {name}: cannot be written")
+                    self.assertEqual(self.names(), sorted(["in.xy"] + [name] * bool(old)))
+                    if old:
+                        self.assertEqual(self.path(name).read_text(), old)
+                        self.path(name).unlink()
+
+    def test_the_statistics_fail_after_the_mesh_is_there(self):
+        """The mesh has its name by then, and keeps it."""
+        def room_for_the_mesh():
+            default_signals()
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (1500, 1500))
+        self.fails(3, "triangulate", "in.xy", "-o", "m.off", "--stats=s.json", says="s.json", before=room_for_the_mesh)
+        self.assertEqual(self.names(), ["in.xy", "m.off"])
+        self.cadt("verify", "in.xy", "m.off")
+
 
 class Resources(CliTest):
     def test_back_end_that_is_not_there(self):

@@ -96,6 +96,16 @@ class Outputs(CliTest):
         self.assertEqual([[i + 1 for i in row] for row in corners("zero.ele")], corners("one.ele"))
         self.assertEqual(min(map(min, corners("one.ele"))), 1)
 
+    def test_fast_order_is_another_order_of_the_same_triangles(self):
+        meshes = []
+        for order in ("canonical", "fast"):
+            self.cadt("triangulate", "in.xy", "-o", "m.off", "--order", order, "--backend", "host", "--threads", 1)
+            meshes.append(read_off(self.path("m.off").read_text())[1])
+        rotated = [[min(t[k:] + t[:k] for k in range(3)) for t in mesh] for mesh in meshes]
+        self.assertEqual(rotated[0], sorted(rotated[0]), "canonical: ascending")
+        self.assertNotEqual(rotated[0], rotated[1])
+        self.assertEqual(rotated[0], sorted(rotated[1]))
+
     def test_ascii_is_text(self):
         self.cadt("triangulate", "in.xy", "-o", "b.ply", "-o", "c.ply", "--verify")
         self.cadt("triangulate", "in.xy", "-o", "a.ply", "--ascii")

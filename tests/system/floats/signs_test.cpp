@@ -3,7 +3,7 @@
 #include <iostream>
 #include <memory>
 
-#include "common/host/registry.hpp"
+#include "common/driver/registry.hpp"
 #include "tests/system/floats/floats.hpp"
 #include "tests/unit/predicates/cases.hpp"
 #include "tests/unit/predicates/counted.hpp"
@@ -20,7 +20,7 @@ Device& device() {
 class FloatSigns : public FloatTest {
  protected:
   static StageCounts check(const SignSet& set) {
-    const std::vector<std::uint32_t> words = words_of(device(), set.floats, KernelBuild::narrow);
+    const std::vector<std::uint32_t> words = words_of(device(), set.floats, KernelVariant::narrow);
     const WrongSigns wrong = compare(set.floats, words);
     EXPECT_EQ(wrong.fields, 0u) << set.name << ": " << wrong.signs << " wrong signs, further wrong stages "
                                 << wrong.stages << ", bits " << std::hex << wrong.fields << ", found "

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long rows of flips, each illegal by the one before, are done at once (common/host/cavities.hpp).
-#include "common/host/build_mesh.hpp"
-#include "common/host/device_constants.hpp"
-#include "common/host/registry.hpp"
+// Long rows of flips, each illegal by the one before, are done at once (common/insertion/cavity_retriangulation.hpp).
+#include "common/driver/device_text.hpp"
+#include "common/driver/registry.hpp"
+#include "common/insertion/insertion.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/support/linked_faces.hpp"
 
@@ -16,12 +16,12 @@
 namespace cadt::test {
 namespace {
 
-using namespace device_constants;
-class Cavities : public BackendTest {};
+using namespace device_text;
+class CavityRetriangulation : public BackendTest {};
 
 // Points of half a parabola, whose mesh is a fan of the first one. Three others have parts of it, each of which takes a
 // row of flips from its end.
-TEST_P(Cavities, FansOfWrongHubs) {
+TEST_P(CavityRetriangulation, FansOfWrongHubs) {
   constexpr std::uint32_t part = 100000, n = 3 * part + 10;
   constexpr std::array<std::uint32_t, 3> hubs = {35, part + 7, 2 * part + 1};
   std::vector<double> points;
@@ -45,28 +45,28 @@ TEST_P(Cavities, FansOfWrongHubs) {
   const auto device = open_device(options);
   Memory memory(*device, true);
   Statistics statistics;
-  cadt::Run run(*device, memory, options, statistics);
-  SpatialOrder order;
+  cadt::Context ctx(*device, memory, options, statistics);
+  SortedPoints order;
   order.distinct = n;
   order.points = memory.allocate(points.size() * sizeof(double));
   device->write(*order.points, 0, points.data(), points.size() * sizeof(double));
   for (std::uint32_t v = 0; v < n; ++v) faces.push_back({CADT_GHOST, (v + 1) % n, v});
-  auto records = linked_faces<cadt_record>(faces, 2 * std::size_t{n});
-  Allocation on_device = memory.allocate(records.size() * sizeof(cadt_record));
-  device->write(*on_device, 0, records.data(), records.size() * sizeof(cadt_record));
-  const DeviceMesh mesh = certify_mesh(run, order, std::move(on_device), 3 * std::uint64_t{n} - 3);
+  auto records = linked_faces<cadt_locked_triangle>(faces, 2 * std::size_t{n});
+  Allocation on_device = memory.allocate(records.size() * sizeof(cadt_locked_triangle));
+  device->write(*on_device, 0, records.data(), records.size() * sizeof(cadt_locked_triangle));
+  const Mesh mesh = sweep_legality(ctx, order, std::move(on_device), 3 * std::uint64_t{n} - 3);
 
   EXPECT_EQ(statistics.certified_edges, 3 * std::uint64_t{n} - 3);
-  EXPECT_LE(statistics.closing_repairs, 20U);  // beside the rows what rounded numbers leave
+  EXPECT_LE(statistics.sweep_repairs, 20U);  // beside the rows what rounded numbers leave
   EXPECT_GE(statistics.cavities, 1U);
-  EXPECT_LT(run.launcher.launches(), 60U);  // 16384 flips a launch on processors, 16 on cards
-  device->read(*mesh.records, 0, records.data(), records.size() * sizeof(cadt_record));
+  EXPECT_LT(ctx.launcher.launches(), 60U);  // 16384 flips a launch on processors, 16 on cards
+  device->read(*mesh.locked, 0, records.data(), records.size() * sizeof(cadt_locked_triangle));
   std::uint32_t around = 0;
-  for (const cadt_record& r : records)
+  for (const cadt_locked_triangle& r : records)
     for (std::uint32_t k = 0; k < 3 && r.word[CADT_WORD_LOCK] != 0; ++k) around += r.word[k] == 0 ? 1 : 0;
   EXPECT_EQ(around, n);  // n - 2 triangles and two ghosts
 }
-CADT_ON_MAIN_BACKENDS(Cavities);
+CADT_ON_MAIN_BACKENDS(CavityRetriangulation);
 
 }  // namespace
 }  // namespace cadt::test

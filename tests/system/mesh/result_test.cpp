@@ -181,7 +181,7 @@ TEST_P(Result, StatisticsDescribeTheRun) {
   EXPECT_LE(s.splits + s.edge_splits, s.distinct);
   EXPECT_GT(s.flips, 0u);
   EXPECT_GT(s.ties, 0u);
-  EXPECT_GE(s.closing_sweeps, 1u);
+  EXPECT_GE(s.legality_sweeps, 1u);
   EXPECT_GE(s.certified_edges, 3 * s.distinct - 3 - 2 * mesh.hull().size()) << "interior edges, each examined";
   EXPECT_GT(s.bytes_device_peak, 0u);
   EXPECT_FALSE(s.milliseconds.empty());

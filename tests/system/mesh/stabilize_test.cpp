@@ -78,8 +78,8 @@ TEST_P(Stabilize, DeferDefers) {
   options.stabilize = cadt::Stabilize::defer;
   const Triangulation deferred = triangulate(Reals(xy), options);
   EXPECT_GT(deferred.statistics().stabilized_edges, 1000u);
-  EXPECT_GT(deferred.statistics().closing_repairs, 1000u);
-  EXPECT_GT(deferred.statistics().closing_sweeps, 1u);
+  EXPECT_GT(deferred.statistics().sweep_repairs, 1000u);
+  EXPECT_GT(deferred.statistics().legality_sweeps, 1u);
   EXPECT_EQ(deferred.hash(), off.hash());
   // Nothing is left to do for a threshold that no edge reaches.
   options.flip_threshold = 1000;

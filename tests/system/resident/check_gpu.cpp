@@ -194,7 +194,7 @@ int run_sets(const Arguments& a, Triangulator& triangulator, test::DeviceMemory*
       "%llu proven, %llu wrapped",
       a.kind.c_str(), n, a.sets, a.backend.c_str(), s.device.c_str(), times[times.size() / 2], times.front(),
       times.back(), batch.triangle_offsets().back(), static_cast<double>(s.bytes_device_peak) / static_cast<double>(n),
-      static_cast<unsigned long long>(s.sets_together), static_cast<unsigned long long>(s.proven_stars),
+      static_cast<unsigned long long>(s.batched_sets), static_cast<unsigned long long>(s.proven_stars),
       static_cast<unsigned long long>(s.wrapped_stars));
   if (a.phases) {
     std::printf("\n   ");
@@ -277,9 +277,9 @@ int run(const Arguments& a) {
         " | a point: steps %.2f flips %.2f lost claims %.3f | deferred %llu + %llu, launches %llu, sweeps %llu, "
         "repairs %llu",
         static_cast<double>(s.walk_steps) / all, static_cast<double>(s.flips) / all,
-        static_cast<double>(s.lost_claims) / all, static_cast<unsigned long long>(s.deferred_points),
+        static_cast<double>(s.lock_failures) / all, static_cast<unsigned long long>(s.deferred_points),
         static_cast<unsigned long long>(s.deferred_edges), static_cast<unsigned long long>(s.launches),
-        static_cast<unsigned long long>(s.closing_sweeps), static_cast<unsigned long long>(s.closing_repairs));
+        static_cast<unsigned long long>(s.legality_sweeps), static_cast<unsigned long long>(s.sweep_repairs));
     std::printf(", tiles %llu, unproven %llu, wrapped %llu, refined %llu, exact %llu + %llu",
                 static_cast<unsigned long long>(s.tiles), static_cast<unsigned long long>(s.distinct - s.proven_stars),
                 static_cast<unsigned long long>(s.wrapped_stars), static_cast<unsigned long long>(s.refined_points),

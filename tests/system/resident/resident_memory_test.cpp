@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much device memory is taken, when, from whom, and what happens when there is none.
-#include "common/host/device_triangulation.hpp"
+#include "common/driver/device_triangulation.hpp"
 #include "tests/system/resident/resident.hpp"
 
 #include <algorithm>

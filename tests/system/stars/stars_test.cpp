@@ -111,7 +111,7 @@ class Stars : public BackendTest {
     EXPECT_LE(mesh.statistics().proven_stars, mesh.statistics().distinct);
     // One thread leaves no edge to the closing pass, so what that repairs was a star without a right to its proof.
     if (GetParam().backend == Backend::host && GetParam().threads == 1) {
-      EXPECT_EQ(mesh.statistics().closing_repairs, 0u);
+      EXPECT_EQ(mesh.statistics().sweep_repairs, 0u);
     }
     return mesh;
   }
@@ -476,12 +476,12 @@ TEST_P(Stars, EveryDetailOfStatistics) {
     for (const std::uint64_t count : s.flips_per_edge) edges += count;
     if (detail == StatisticsDetail::none) {
       EXPECT_TRUE(s.milliseconds.empty());
-      EXPECT_EQ(s.claims + s.flips + s.incircle_tests + edges, 0u);
+      EXPECT_EQ(s.lock_attempts + s.flips + s.incircle_tests + edges, 0u);
       continue;
     }
     EXPECT_EQ(edges, 3 * n - 3 - mesh.hull().size());
     EXPECT_LT(s.splits + s.edge_splits, n - s.proven_stars);
-    EXPECT_EQ(s.claims, s.lost_claims + s.splits + s.edge_splits + s.flips);
+    EXPECT_EQ(s.lock_attempts, s.lock_failures + s.splits + s.edge_splits + s.flips);
     std::set<std::string> phases;
     for (const auto& [name, ms] : s.milliseconds) phases.insert(name);
     for (const char* phase : {"sort", "tiles", "stars", "records", "join", "certify"})

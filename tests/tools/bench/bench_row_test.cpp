@@ -29,7 +29,7 @@ TEST(Row, QuotesWhatWouldBreakTheLine) {
 
 TEST(Row, CountsThatNobodyCountedAreEmpty) {
   Row row;
-  row.statistics.emplace().claims = 7;
+  row.statistics.emplace().lock_attempts = 7;
   row.statistics->launches = 5;
   row.detail = "counters";
   EXPECT_NE(json({row}).find("\"claims\": 7"), std::string::npos);

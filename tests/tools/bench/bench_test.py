@@ -17,9 +17,9 @@ SECONDS = 240
 
 EXPERIMENTS = ["sizes", "blocks", "breakdown", "distributions", "snapshots", "flips", "thresholds", "works", "bunny",
                "statistics", "devices", "kernels"]
-COUNTERS = ["launches", "walk_steps", "claims", "lost_claims", "invalid_restarts", "insert_retries", "stale_edges",
+COUNTERS = ["launches", "walk_steps", "lock_attempts", "lock_failures", "invalid_restarts", "insert_retries", "stale_edges",
             "deferred_points", "deferred_edges", "splits", "edge_splits", "flips", "incircle_tests",
-            "orientation_tests", "exact_orientations", "exact_incircles", "ties", "closing_sweeps", "closing_repairs",
+            "orientation_tests", "exact_orientations", "exact_incircles", "ties", "legality_sweeps", "sweep_repairs",
             "cavities", "certified_edges", "stabilized_edges", "illegal_edges", "refined_points", "bytes_device_peak"]
 # What the report reads: a change here is one there.
 COLUMNS = (["experiment", "distribution", "points", "who", "backend", "device", "threads", "block", "stabilize",
@@ -138,7 +138,7 @@ class Results(BenchTest):
         details = {row["detail"] for row in self.rows("statistics") if not row["skipped"]}
         self.assertEqual(details, {"none", "counters", "timing"})
         for row in self.rows("statistics"):
-            self.assertEqual(row["claims"] == "", row["detail"] in ("", "none"), "a count that nobody counted")
+            self.assertEqual(row["lock_attempts"] == "", row["detail"] in ("", "none"), "a count that nobody counted")
         timed = [row for row in self.rows("breakdown") if not row["skipped"] and row["who"] == "host"]
         self.assertTrue(timed)
         for row in timed:
@@ -174,7 +174,7 @@ class Results(BenchTest):
             self.assertAlmostEqual(sum(float(row["kernel_share"]) for row in rows), 1, places=4)
             kernels = {row["kernel"]: row for row in rows}
             self.assertEqual(len(kernels), len(rows))
-            self.assertEqual("cadt_stars" in kernels, strategy == "stars")
+            self.assertEqual("cadt_prove_stars" in kernels, strategy == "stars")
             self.assertEqual(int(kernels["cadt_gather_points"]["kernel_bytes"]), 36 * 3000)
             times = [float(row["kernel_ms"]) for row in rows]
             self.assertEqual(times, sorted(times, reverse=True))

@@ -2,7 +2,7 @@
 // The bytes of the kernels, and what a profiler wrote.
 #include "bench/kernel_bytes.hpp"
 #include "bench/profiler.hpp"
-#include "common/host/kernel_id.hpp"
+#include "common/driver/kernel_id.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,15 +33,15 @@ TEST(KernelBytes, OfARunWithLocks) {
   run.distinct = 900;
   run.splits = 800;
   run.edge_splits = 97;
-  run.closing_sweeps = 2;
+  run.legality_sweeps = 2;
   EXPECT_EQ(least_bytes("cadt_gather_points", run, 1780), 1000U * (4 + 16 + 16));
   EXPECT_EQ(least_bytes("cadt_insert", run, 1780), 897U * (16 + 32 + 3 * 32 + 4));
-  EXPECT_EQ(least_bytes("cadt_closing_pass", run, 1780), 2U * 900 * (2 * 32 + 16));
-  EXPECT_EQ(least_bytes("cadt_emit_ranked", run, 1780), 900U * (2 * 36 + 4) + 1780 * 24);
+  EXPECT_EQ(least_bytes("cadt_legality_sweep", run, 1780), 2U * 900 * (2 * 32 + 16));
+  EXPECT_EQ(least_bytes("cadt_write_ranked", run, 1780), 900U * (2 * 36 + 4) + 1780 * 24);
   // 14 bits are two passes; the places are not read in the first one
   EXPECT_EQ(least_bytes("cadt_radix_scatter", run, 1780), 1000U * (2 * 12 + 4));
   EXPECT_EQ(least_bytes("sort", run, 1780), 1000U * 2 * 16);
-  EXPECT_EQ(least_bytes("cadt_sort_keys", run, 1780), 1000U * 20);
+  EXPECT_EQ(least_bytes("cadt_hilbert_keys", run, 1780), 1000U * 20);
   EXPECT_EQ(least_bytes("cadt_legalize_edges", run, 1780), std::nullopt);
   EXPECT_EQ(least_bytes("no kernel", run, 1780), std::nullopt);
 }
@@ -51,8 +51,8 @@ TEST(KernelBytes, OfARunWithStars) {
   run.points = run.distinct = 1000;
   run.proven_stars = 990;
   run.splits = 7;
-  EXPECT_EQ(least_bytes("cadt_stars", run, 1980), 1000U * (16 + 4) + 990 * 28);
-  EXPECT_EQ(least_bytes("cadt_unproven_pack", run, 1980), 1000U * 4 + 10 * 36);
+  EXPECT_EQ(least_bytes("cadt_prove_stars", run, 1980), 1000U * (16 + 4) + 990 * 28);
+  EXPECT_EQ(least_bytes("cadt_pack_residual", run, 1980), 1000U * 4 + 10 * 36);
   EXPECT_EQ(least_bytes("cadt_star_counts", run, 1980), 1000U * 14 + 990 * 28);
   EXPECT_EQ(least_bytes("cadt_insert", run, 1980), 7U * 148);
 }

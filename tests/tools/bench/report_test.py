@@ -169,8 +169,8 @@ class TwoMachines(unittest.TestCase):
     def test_kernels(self):
         text = section(self.text, TITLES[11])
         self.assertIn("### one: cuda (Example Card 1, stars), 8,388,608 points", text)
-        row = next(r for r in self.one.rows["kernels"] if (r["who"], r["kernel"]) == ("cuda", "cadt_closing_pass"))
-        self.assertIn(f"| cadt_closing_pass | 1 | {words.number(row['kernel_ms'])} | 10.0 % | 671 | "
+        row = next(r for r in self.one.rows["kernels"] if (r["who"], r["kernel"]) == ("cuda", "cadt_legality_sweep"))
+        self.assertIn(f"| cadt_legality_sweep | 1 | {words.number(row['kernel_ms'])} | 10.0 % | 671 | "
                       f"{words.number(row['bandwidth_gbs'])} | {words.percent(row['bandwidth_gbs'] / 4100)} | 90.0 % | "
                       "65.0 % | 0.608 |", text)
         self.assertRegex(text, r"\| cadt_legalize_edges \| 7 \| [\d.]+ \| 0.1 % \| – \| – \| – \|")

@@ -12,9 +12,9 @@ import random
 import sys
 from pathlib import Path
 
-COUNTERS = ("launches walk_steps claims lost_claims invalid_restarts insert_retries stale_edges deferred_points "
+COUNTERS = ("launches walk_steps claims lock_failures invalid_restarts insert_retries stale_edges deferred_points "
             "deferred_edges splits edge_splits flips incircle_tests orientation_tests exact_orientations "
-            "exact_incircles ties closing_sweeps closing_repairs cavities certified_edges stabilized_edges illegal_edges "
+            "exact_incircles ties legality_sweeps sweep_repairs cavities certified_edges stabilized_edges illegal_edges "
             "refined_points bytes_device_peak").split()
 COLUMNS = ("experiment distribution points who backend device threads block stabilize threshold epsilon detail strategy "
            "warmups runs median_ms min_ms max_ms device_ms triangles hash occupancy differing_triangles".split() + COUNTERS +
@@ -110,8 +110,8 @@ def phases(on_device: float, whole: float) -> str:
 def counters(points: int, distribution: str) -> dict:
     crowded = 0.3 * points ** 0.75 * HARDER.get(distribution, 1)
     return {"launches": 20 + int(math.log2(points)), "walk_steps": int(4.2 * points),
-            "claims": int(4 * points + 3 * crowded),
-            "lost_claims": int(3 * crowded), "invalid_restarts": int(crowded), "insert_retries": int(1.5 * crowded),
+            "lock_attempts": int(4 * points + 3 * crowded),
+            "lock_failures": int(3 * crowded), "invalid_restarts": int(crowded), "insert_retries": int(1.5 * crowded),
             "stale_edges": int(2 * crowded), "deferred_points": int(0.4 * crowded),
             "deferred_edges": int(0.2 * crowded),
             "splits": points - 3, "flips": int(2.96 * points), "incircle_tests": 9 * points,
@@ -234,13 +234,13 @@ def kernels(writer: Writer) -> None:
 
 # Name, share of the time, bytes a point, launches; "insert" and the join have walks and hash tables in the place of a
 # model.
-KERNELS = {"locks": [("cadt_insert", 0.61, 148, 24), ("cadt_closing_pass", 0.1, 80, 1), ("sort", 0.08, 64, 1),
-                     ("cadt_emit_ranked", 0.07, 124, 1), ("cadt_flag_triangles", 0.05, 72, 1),
+KERNELS = {"locks": [("cadt_insert", 0.61, 148, 24), ("cadt_legality_sweep", 0.1, 80, 1), ("sort", 0.08, 64, 1),
+                     ("cadt_write_ranked", 0.07, 124, 1), ("cadt_flag_triangles", 0.05, 72, 1),
                      ("cadt_gather_points", 0.04, 36, 1), ("cadt_unique_pack", 0.02, 64, 1),
-                     ("scan", 0.01, 16, 1), ("cadt_sort_keys", 0.006, 20, 1), ("cadt_bounds", 0.005, 16, 1),
+                     ("scan", 0.01, 16, 1), ("cadt_hilbert_keys", 0.006, 20, 1), ("cadt_bounds", 0.005, 16, 1),
                      ("cadt_unique_flags", 0.004, 20, 1), ("cadt_sort_runs", 0.002, 4, 1),
-                     ("cadt_crowded_flags", 0.002, 8, 1), ("cadt_legalize_edges", 0.001, None, 7)],
-           "stars": [("cadt_stars", 0.7, 68, 1), ("cadt_star_links", 0.2, 120, 1), ("cadt_join_cover", 0.1, None, 1)]}
+                     ("cadt_flag_overfull", 0.002, 8, 1), ("cadt_legalize_edges", 0.001, None, 7)],
+           "stars": [("cadt_prove_stars", 0.7, 68, 1), ("cadt_star_half_edges", 0.2, 120, 1), ("cadt_stitch_cover", 0.1, None, 1)]}
 
 
 def roofs(writer: Writer) -> None:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The conflict region of a vertex, triangulated anew, in meshes that are far from Delaunay (common/device/cavity.h).
+// The conflict region of a vertex, triangulated anew, in meshes that are far from Delaunay
+// (common/insertion/cavity.dev.h).
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -17,8 +18,8 @@ namespace {
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/device/cavity.h"
-#include "common/device/start.h"
+#include "common/insertion/cavity.dev.h"
+#include "common/insertion/seed_triangle.dev.h"
 #pragma GCC diagnostic pop
 
 /// A mesh of random points, made by flips of any edge that may be flipped.
@@ -42,17 +43,17 @@ class RandomMesh {
 
   /// Flips random edges whose quadrilaterals are convex.
   void shuffle(std::uint32_t flips) {
-    cadt_mesh m = view();
-    cadt_tally tally;
-    cadt_tally_clear(&tally);
+    cadt_locked_mesh m = view();
+    cadt_counters counters;
+    cadt_counters_clear(&counters);
     for (std::uint32_t i = 0; i < flips; ++i) {
-      const std::uint32_t link = CADT_LINK(below(slots()), below(3));
-      const cadt_snapshot s = cadt_look_from(&m, CADT_LINK_RECORD(link), CADT_LINK_EDGE(link));
+      const std::uint32_t link = CADT_HALF_EDGE(below(slots()), below(3));
+      const cadt_snapshot s = cadt_look_from(&m, CADT_TRIANGLE_OF(link), CADT_EDGE_OF(link));
       if (s.lock == 0) continue;
-      const cadt_snapshot u = cadt_look_from(&m, CADT_LINK_RECORD(s.n0), CADT_LINK_EDGE(s.n0));
+      const cadt_snapshot u = cadt_look_from(&m, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
       if (s.v0 == CADT_GHOST || s.v1 == CADT_GHOST || s.v2 == CADT_GHOST || u.v0 == CADT_GHOST) continue;
       if (side(s.v0, s.v1, u.v0) <= 0 || side(s.v0, u.v0, s.v2) <= 0) continue;
-      cadt_write_flip(&m, link, &s, &u, &tally);
+      cadt_write_flip(&m, link, &s, &u, &counters);
     }
   }
 
@@ -92,11 +93,11 @@ class RandomMesh {
     for (std::uint32_t t = 0; t < slots(); ++t) {
       const std::uint32_t* r = records_[t].word;
       if (r[CADT_WORD_LOCK] == 0) continue;
-      EXPECT_TRUE(cadt_is_free(r[CADT_WORD_LOCK]));
+      EXPECT_TRUE(cadt_is_unlocked(r[CADT_WORD_LOCK]));
       for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::uint32_t* u = records_[CADT_LINK_RECORD(r[CADT_WORD_LINK + k])].word;
-        const std::uint32_t j = CADT_LINK_EDGE(r[CADT_WORD_LINK + k]);
-        EXPECT_EQ(u[CADT_WORD_LINK + j], CADT_LINK(t, k));
+        const std::uint32_t* u = records_[CADT_TRIANGLE_OF(r[CADT_WORD_HALF_EDGE + k])].word;
+        const std::uint32_t j = CADT_EDGE_OF(r[CADT_WORD_HALF_EDGE + k]);
+        EXPECT_EQ(u[CADT_WORD_HALF_EDGE + j], CADT_HALF_EDGE(t, k));
         EXPECT_EQ(u[(j + 1) % 3], r[(k + 2) % 3]);
         EXPECT_EQ(u[(j + 2) % 3], r[(k + 1) % 3]);
       }
@@ -109,15 +110,15 @@ class RandomMesh {
   }
 
   [[nodiscard]] std::uint32_t illegal_edges() {
-    const cadt_mesh m = view();
-    cadt_tally tally;
-    cadt_tally_clear(&tally);
+    const cadt_locked_mesh m = view();
+    cadt_counters counters;
+    cadt_counters_clear(&counters);
     std::uint32_t illegal = 0;
     for (std::uint32_t t = 0; t < slots(); ++t)
       for (std::uint32_t k = 0; k < 3 && records_[t].word[CADT_WORD_LOCK] != 0; ++k) {
         const cadt_snapshot s = cadt_look_from(&m, t, k);
-        const cadt_snapshot u = cadt_look_from(&m, CADT_LINK_RECORD(s.n0), CADT_LINK_EDGE(s.n0));
-        illegal += cadt_is_illegal(&m, s.v0, s.v1, s.v2, u.v0, &tally);
+        const cadt_snapshot u = cadt_look_from(&m, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
+        illegal += cadt_is_illegal(&m, s.v0, s.v1, s.v2, u.v0, &counters);
       }
     return illegal / 2;
   }
@@ -127,30 +128,30 @@ class RandomMesh {
   }
 
  private:
-  cadt_mesh view() {
-    cadt_mesh m{};
-    m.records = records_.data();
+  cadt_locked_mesh view() {
+    cadt_locked_mesh m{};
+    m.locked = records_.data();
     m.points = points_.data();
-    m.hints = hints_.data();
+    m.vertex_to_triangle = hints_.data();
     return m;
   }
   [[nodiscard]] int side(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-    cadt_tally tally;
-    cadt_tally_clear(&tally);
-    return cadt_orientation(points_[a], points_[b], points_[c], &tally);
+    cadt_counters counters;
+    cadt_counters_clear(&counters);
+    return cadt_orientation(points_[a], points_[b], points_[c], &counters);
   }
   /// By the kernels of the library.
   void make() {
     const auto n = vertices();
-    records_.assign(2 * std::size_t{n}, cadt_record{});
+    records_.assign(2 * std::size_t{n}, cadt_locked_triangle{});
     std::uint32_t third = 1;
     while (side(0, n / 2, third) == 0) ++third;
-    cadt_mesh m = view();
+    cadt_locked_mesh m = view();
     m.second = n / 2;
     m.third = third;
-    cadt_tally tally;
-    cadt_tally_clear(&tally);
-    cadt_start(&m, &tally);
+    cadt_counters counters;
+    cadt_counters_clear(&counters);
+    cadt_start(&m, &counters);
     std::vector<std::uint32_t> left(4096), counts(16);
     const cadt_deferred deferred = cadt_lists(left.data(), counts.data(), 4096);
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -159,15 +160,15 @@ class RandomMesh {
       CADT_WORKLIST_HERE(work);
       cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
       work.apex_point = points_[i];
-      work.size = cadt_try_vertex(&m, i, points_[i], &hint, work.link, &tally);
+      work.size = cadt_try_vertex(&m, i, points_[i], &hint, work.half_edge, &counters);
       hints_[i] = hint;
-      cadt_legalize(&m, &work, &deferred, &tally);
+      cadt_legalize(&m, &work, &deferred, &counters);
     }
   }
 
   std::mt19937 random_;
   std::vector<cadt_point> points_;
-  std::vector<cadt_record> records_;
+  std::vector<cadt_locked_triangle> records_;
   std::vector<std::uint32_t> hints_;
 };
 

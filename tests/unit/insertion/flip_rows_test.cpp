@@ -17,35 +17,36 @@ namespace {
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/device/closing.h"
-#include "common/device/start.h"
+#include "common/insertion/legality_sweep.dev.h"
+#include "common/insertion/seed_triangle.dev.h"
 #pragma GCC diagnostic pop
 
 struct Work {
   std::uint64_t flips = 0, most_flips = 0;  ///< of all; of one point or edge before it ends
-  std::uint64_t left_edges = 0;
+  std::uint64_t deferred_edges = 0;
 };
 
 /// Inserts the points in their order, each with at most `limit` flips before the rest is left for later.
-Work insert_in_order(const std::vector<cadt_point>& points, std::uint32_t limit, std::vector<cadt_record>& records) {
+Work insert_in_order(const std::vector<cadt_point>& points, std::uint32_t limit,
+                     std::vector<cadt_locked_triangle>& records) {
   const auto n = static_cast<std::uint32_t>(points.size());
-  records.assign(2 * n, cadt_record{});
+  records.assign(2 * n, cadt_locked_triangle{});
   std::vector<std::uint32_t> hints(n), edges(8 * n), counts(CADT_LEFT_COUNTS);
-  cadt_mesh mesh{};
-  mesh.records = records.data();
+  cadt_locked_mesh mesh{};
+  mesh.locked = records.data();
   mesh.points = points.data();
-  mesh.hints = hints.data();
+  mesh.vertex_to_triangle = hints.data();
   mesh.second = 1;
   mesh.third = 2;
   mesh.center = {(points[0].x + points[1].x + points[2].x) / 3, (points[0].y + points[1].y + points[2].y) / 3};
-  cadt_tally tally;
-  cadt_tally_clear(&tally);
-  cadt_start(&mesh, &tally);
+  cadt_counters counters;
+  cadt_counters_clear(&counters);
+  cadt_start(&mesh, &counters);
   Work done;
   std::uint32_t before = 0;
   const auto count_flips = [&] {
-    done.most_flips = std::max<std::uint64_t>(done.most_flips, tally.count[CADT_COUNT_FLIPS] - before);
-    before = tally.count[CADT_COUNT_FLIPS];
+    done.most_flips = std::max<std::uint64_t>(done.most_flips, counters.count[CADT_COUNT_FLIPS] - before);
+    before = counters.count[CADT_COUNT_FLIPS];
   };
   const cadt_deferred deferred = cadt_lists(edges.data(), counts.data(), static_cast<std::uint32_t>(edges.size()));
   for (std::uint32_t i = 3; i < n; ++i) {
@@ -54,35 +55,35 @@ Work insert_in_order(const std::vector<cadt_point>& points, std::uint32_t limit,
     cadt_worklist_begin(&work, i, limit);
     work.apex_point = points[i];
     for (int tries = 0; tries < CADT_INSERT_TRIES && work.size == 0; ++tries)
-      work.size = cadt_try_vertex(&mesh, i, points[i], &hint, work.link, &tally);
+      work.size = cadt_try_vertex(&mesh, i, points[i], &hint, work.half_edge, &counters);
     EXPECT_GT(work.size, 0U) << "point " << i;
     if (work.size == 0) return done;
     hints[i] = hint;
-    cadt_legalize(&mesh, &work, &deferred, &tally);
+    cadt_legalize(&mesh, &work, &deferred, &counters);
     count_flips();
     while (counts[1] != 0) {  // what a launch would leave to the next one
       const std::vector<std::uint32_t> left(edges.begin(), edges.begin() + counts[1]);
-      done.left_edges += left.size();
+      done.deferred_edges += left.size();
       counts[1] = 0;
       for (const std::uint32_t edge : left) {
         cadt_worklist_begin(&work, CADT_NONE, limit);
         work.next = edge;
-        cadt_legalize(&mesh, &work, &deferred, &tally);
+        cadt_legalize(&mesh, &work, &deferred, &counters);
         count_flips();
       }
     }
   }
-  done.flips = tally.count[CADT_COUNT_FLIPS];
-  EXPECT_EQ(tally.count[CADT_COUNT_LOST_CLAIMS], 0U) << "nobody else is there";
+  done.flips = counters.count[CADT_COUNT_FLIPS];
+  EXPECT_EQ(counters.count[CADT_COUNT_LOCK_FAILURES], 0U) << "nobody else is there";
   return done;
 }
 
-std::uint64_t illegal_edges(const std::vector<cadt_point>& points, std::vector<cadt_record>& records) {
-  cadt_mesh mesh{};
-  mesh.records = records.data();
+std::uint64_t illegal_edges(const std::vector<cadt_point>& points, std::vector<cadt_locked_triangle>& records) {
+  cadt_locked_mesh mesh{};
+  mesh.locked = records.data();
   mesh.points = points.data();
-  cadt_tally tally;
-  cadt_tally_clear(&tally);
+  cadt_counters counters;
+  cadt_counters_clear(&counters);
   std::uint64_t illegal = 0, live = 0;
   for (std::uint32_t t = 0; t < records.size(); ++t) {
     if (records[t].word[CADT_WORD_LOCK] == 0) continue;
@@ -90,9 +91,9 @@ std::uint64_t illegal_edges(const std::vector<cadt_point>& points, std::vector<c
     EXPECT_EQ(records[t].word[CADT_WORD_LOCK] & 1U, 0U);
     for (std::uint32_t k = 0; k < 3; ++k) {
       const cadt_snapshot s = cadt_look_from(&mesh, t, k);
-      const cadt_snapshot u = cadt_look_from(&mesh, CADT_LINK_RECORD(s.n0), CADT_LINK_EDGE(s.n0));
-      EXPECT_EQ(u.n0, CADT_LINK(t, k));
-      illegal += cadt_is_illegal(&mesh, s.v0, s.v1, s.v2, u.v0, &tally);
+      const cadt_snapshot u = cadt_look_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
+      EXPECT_EQ(u.n0, CADT_HALF_EDGE(t, k));
+      illegal += cadt_is_illegal(&mesh, s.v0, s.v1, s.v2, u.v0, &counters);
     }
   }
   EXPECT_EQ(live, 2 * points.size() - 2);
@@ -111,11 +112,11 @@ std::vector<cadt_point> axes(int arm) {
 
 TEST(RowsOfFlips, InsideOut) {
   const std::vector<cadt_point> points = axes(250);
-  std::vector<cadt_record> records;
+  std::vector<cadt_locked_triangle> records;
   const Work work = insert_in_order(points, CADT_FLIP_LIMIT, records);
   EXPECT_EQ(illegal_edges(points, records), 0U);
   EXPECT_LT(work.flips, 3 * points.size());
-  EXPECT_EQ(work.left_edges, 0U);
+  EXPECT_EQ(work.deferred_edges, 0U);
 }
 
 TEST(RowsOfFlips, FromLeftToRight) {
@@ -126,7 +127,7 @@ TEST(RowsOfFlips, FromLeftToRight) {
   // the first that is not on the line of the first two comes third
   const auto off_line = std::find_if(points.begin(), points.end(), [](const cadt_point& p) { return p.y != 0; });
   std::rotate(points.begin() + 2, off_line, off_line + 1);
-  std::vector<cadt_record> records, limited;
+  std::vector<cadt_locked_triangle> records, limited;
   const Work free = insert_in_order(points, CADT_FLIP_LIMIT, records);
   const std::uint64_t n = points.size();
   EXPECT_GE(free.flips, 123504U);
@@ -137,7 +138,7 @@ TEST(RowsOfFlips, FromLeftToRight) {
   const Work bounded = insert_in_order(points, few, limited);
   EXPECT_EQ(illegal_edges(points, limited), 0U);
   EXPECT_GE(bounded.flips, 123504U);
-  EXPECT_GT(bounded.left_edges, 0U);
+  EXPECT_GT(bounded.deferred_edges, 0U);
   EXPECT_GE(free.most_flips, static_cast<std::uint64_t>(arm)) << "or there was nothing to bound";
   EXPECT_LE(bounded.most_flips, few + CADT_WORKLIST)
       << "edges that are on the worklist by then may be flipped, once each";

@@ -26,10 +26,10 @@ namespace {
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/device/closing.h"
-#include "common/device/emit.h"
-#include "common/device/start.h"
-#include "common/device/verify.h"
+#include "common/insertion/legality_sweep.dev.h"
+#include "common/insertion/seed_triangle.dev.h"
+#include "common/output/renumber.dev.h"
+#include "common/verify/device/verify.dev.h"
 #pragma GCC diagnostic pop
 
 /// Zeros that take memory where they are written.
@@ -82,7 +82,7 @@ class Offsets : public testing::Test {
   void start(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     first = a, second = b, third = c;
     for (const std::uint32_t v : {a, b, c}) center.x += points[v].x / 3, center.y += points[v].y / 3;
-    call(cadt_start_mesh);
+    call(cadt_seed_mesh);
   }
 
   /// A kernel over the mesh as one work-item.
@@ -93,31 +93,31 @@ class Offsets : public testing::Test {
   }
 
   void insert(const std::uint32_t* list, std::uint32_t listed, std::uint32_t count, std::uint32_t level) {
-    call(cadt_insert, list, listed, 0U, count, n, level, count, left_points.data(), left_edges.data(),
-         left_counts.data(), static_cast<std::uint32_t>(left_edges.size()), tally.data());
-    EXPECT_EQ(left_counts[0], 0U) << "points are left";
-    EXPECT_EQ(left_counts[1], 0U) << "edges are left";
-    left_counts[2] = 0;
+    call(cadt_insert, list, listed, 0U, count, n, level, count, deferred_points.data(), deferred_edges.data(),
+         deferred_counts.data(), static_cast<std::uint32_t>(deferred_edges.size()), counters.data());
+    EXPECT_EQ(deferred_counts[0], 0U) << "points are left";
+    EXPECT_EQ(deferred_counts[1], 0U) << "edges are left";
+    deferred_counts[2] = 0;
   }
 
   /// The closing pass over the records of these vertices: all edges, all legal.
   void expect_certified(const std::vector<std::uint32_t>& vertices) {
     for (const std::uint32_t v : vertices)
-      call(cadt_closing_pass, 2 * v, 2U, 2U, 0U, left_edges.data(), left_counts.data(),
-           static_cast<std::uint32_t>(left_edges.size()), tally.data());
-    const std::vector<std::uint32_t> found(left_counts.begin() + CADT_LEFT_COUNTS, left_counts.end());
+      call(cadt_legality_sweep, 2 * v, 2U, 2U, 0U, deferred_edges.data(), deferred_counts.data(),
+           static_cast<std::uint32_t>(deferred_edges.size()), counters.data());
+    const std::vector<std::uint32_t> found(deferred_counts.begin() + CADT_LEFT_COUNTS, deferred_counts.end());
     EXPECT_EQ(found, (std::vector<std::uint32_t>{static_cast<std::uint32_t>(3 * vertices.size() - 3), 0, 0, 0, 0}));
   }
 
   Sparse<cadt_point> points{n};
-  Sparse<cadt_record> records{slots};
+  Sparse<cadt_locked_triangle> records{slots};
   Sparse<std::uint32_t> hints{n};
   cadt_point center{};
   std::uint32_t first = 0, second = 0, third = 0;
-  std::vector<std::uint32_t> left_points = std::vector<std::uint32_t>(1 << 16);
-  std::vector<std::uint32_t> left_edges = std::vector<std::uint32_t>(1 << 16);
-  std::vector<std::uint32_t> left_counts = std::vector<std::uint32_t>(CADT_LEFT_COUNTS + 5);
-  std::vector<std::uint32_t> tally = std::vector<std::uint32_t>(CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
+  std::vector<std::uint32_t> deferred_points = std::vector<std::uint32_t>(1 << 16);
+  std::vector<std::uint32_t> deferred_edges = std::vector<std::uint32_t>(1 << 16);
+  std::vector<std::uint32_t> deferred_counts = std::vector<std::uint32_t>(CADT_LEFT_COUNTS + 5);
+  std::vector<std::uint32_t> counters = std::vector<std::uint32_t>(CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
 };
 
 cadt::Triangulation small_mesh(const std::vector<cadt_point>& points) {
@@ -141,7 +141,7 @@ TEST_F(Offsets, FirstLevelsOfTheLargestCall) {
   const auto levels = static_cast<std::uint32_t>(std::bit_width(n - 1));
   ASSERT_EQ(levels, 29U);
   std::uint32_t root = 0;
-  cadt_root(0, 1, n, levels, &root);
+  cadt_first_representative(0, 1, n, levels, &root);
   std::set<std::uint32_t> chosen{n / 2};
   for (std::uint32_t block = 0; block <= (n - 1) >> last_level; ++block)
     chosen.insert(cadt_representative(last_level, block, n));
@@ -174,7 +174,7 @@ TEST_F(Offsets, FirstLevelsOfTheLargestCall) {
   EXPECT_TRUE(found == wanted);
   std::uint32_t highest = 0;
   for (const std::uint32_t v : vertices)
-    for (std::size_t k = 0; k < 3; ++k) highest = std::max(highest, records[2 * v].word[CADT_WORD_LINK + k]);
+    for (std::size_t k = 0; k < 3; ++k) highest = std::max(highest, records[2 * v].word[CADT_WORD_HALF_EDGE + k]);
   EXPECT_GT(highest, 0xFF000000U);
 }
 
@@ -241,8 +241,8 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
     cadt_number_triangles(item, all_triangles, members.data(), numbers.data(), 0U, all_triangles, grain);
   });
   over(first_slot, slots, [&](std::uint32_t item) {
-    cadt_emit_triangles(item, slots, records.data(), labels.data(), numbers.data(), triangles.data(), neighbors.data(),
-                        0, slots, grain);
+    cadt_write_triangles(item, slots, records.data(), labels.data(), numbers.data(), triangles.data(), neighbors.data(),
+                         0, slots, grain);
   });
   expect_result("canonical order");
 
@@ -319,8 +319,8 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
   };
   collect(canonical);
   over(first_slot, slots, [&](std::uint32_t item) {
-    cadt_emit_ranked(item, slots, records.data(), labels.data(), numbers.data(), triangles.data(), neighbors.data(), 0,
-                     slots, grain);
+    cadt_write_ranked(item, slots, records.data(), labels.data(), numbers.data(), triangles.data(), neighbors.data(), 0,
+                      slots, grain);
   });
   EXPECT_EQ(verify(), (std::array<std::uint32_t, 5>{0, 0, CADT_NONE, 0, CADT_NONE}));
   collect(ranked);
@@ -331,12 +331,12 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
 /// Every product of an index that the kernels form fits 32 bits in the largest call, and the one after it would not.
 TEST(IndexLimits, OfTheLargestCall) {
   const std::uint64_t most = cadt::max_points(), word = std::uint64_t{1} << 32;
-  EXPECT_LT(4 * (2 * most - 1) + 3, word - 1);          // a link, and no link is CADT_NONE
-  EXPECT_EQ(CADT_LINK(slots - 1, 3U) >> 2, slots - 1);  // which keeps its record
-  EXPECT_GE(4 * (2 * (most + 2)), word);                // two points more, and a link does not fit
-  EXPECT_LT(3 * (2 * most - 5), word - 1);              // an edge 3 * triangle + k
-  EXPECT_LT(3 * (2 * most), word - 1);                  // the same by record (join.h)
-  EXPECT_LT(2 * most, std::uint64_t{1} << 31);          // triangles are int32 in the result
+  EXPECT_LT(4 * (2 * most - 1) + 3, word - 1);               // a link, and no link is CADT_NONE
+  EXPECT_EQ(CADT_HALF_EDGE(slots - 1, 3U) >> 2, slots - 1);  // which keeps its record
+  EXPECT_GE(4 * (2 * (most + 2)), word);                     // two points more, and a link does not fit
+  EXPECT_LT(3 * (2 * most - 5), word - 1);                   // an edge 3 * triangle + k
+  EXPECT_LT(3 * (2 * most), word - 1);                       // the same by record (stitch.dev.h)
+  EXPECT_LT(2 * most, std::uint64_t{1} << 31);               // triangles are int32 in the result
   EXPECT_LT(most, std::uint64_t{std::numeric_limits<std::int32_t>::max()});
 }
 

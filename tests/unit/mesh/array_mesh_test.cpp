@@ -17,7 +17,7 @@ namespace {
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/device/array_mesh.h"
+#include "common/certify/certify.dev.h"
 #pragma GCC diagnostic pop
 
 constexpr std::uint32_t g = CADT_GHOST;
@@ -32,7 +32,8 @@ struct Arrays {
   explicit Arrays(const std::vector<Face>& faces) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> across;  // edge -> link
     for (std::uint32_t t = 0; t < faces.size(); ++t)
-      for (std::uint32_t k = 0; k < 3; ++k) across[{faces[t][(k + 1) % 3], faces[t][(k + 2) % 3]}] = CADT_LINK(t, k);
+      for (std::uint32_t k = 0; k < 3; ++k)
+        across[{faces[t][(k + 1) % 3], faces[t][(k + 2) % 3]}] = CADT_HALF_EDGE(t, k);
     for (const Face& face : faces) {
       vertices.insert(vertices.end(), face.begin(), face.end());
       for (std::uint32_t k = 0; k < 3; ++k) links.push_back(across.at({face[(k + 2) % 3], face[(k + 1) % 3]}));
@@ -96,9 +97,9 @@ TEST(ArrayMesh, HullThatIsNotConvex) {
 TEST(ArrayMesh, LinkThatIsNotMutual) {
   for (std::size_t i = 0; i < 3 * mesh.size(); ++i) {
     Arrays arrays(mesh);
-    const std::uint32_t right = arrays.links[i];
-    for (const std::uint32_t link : {CADT_LINK(9U, 3U), CADT_LINK(10U, 0U), CADT_NONE, right ^ 1U}) {
-      arrays.links[i] = link;
+    const std::uint32_t right = arrays.half_edges[i];
+    for (const std::uint32_t link : {CADT_HALF_EDGE(9U, 3U), CADT_HALF_EDGE(10U, 0U), CADT_NONE, right ^ 1U}) {
+      arrays.half_edges[i] = link;
       EXPECT_GT(arrays.look(points)[2], 0U) << i << ", " << link;
     }
   }

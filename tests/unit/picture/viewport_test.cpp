@@ -73,7 +73,7 @@ TEST_P(ViewportExtremes, CornersLandOnTheMarginsAndTheMiddleBetweenThem) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Boxes, ViewportExtremes,
+INSTANTIATE_TEST_SUITE_P(AabbTree, ViewportExtremes,
                          testing::Values(Box{"tiny", 0, 0, 1e-300, 1e-300}, Box{"huge", -1e300, 0, 1e300, 1e300},
                                          Box{"all", -largest, -largest, largest, largest},
                                          Box{"subnormal", 0, 0, smallest, smallest},

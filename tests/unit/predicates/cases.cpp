@@ -13,8 +13,8 @@
 namespace cadt::test {
 namespace {
 
-// Fields of the word, as in common/device/signs.h. Not included from there: these files share no code with the
-// predicates.
+// Fields of the word, as in common/predicates/predicate_probe.dev.h. Not included from there: these files share no code
+// with the predicates.
 enum {
   orientation = 0,
   incircle = 2,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cases for the predicates: four points, and the word that the kernel cadt_signs (common/device/signs.h) must give for
-// them. Signs come from whole numbers of any length, stages from the bounds as they are documented.
+// Cases for the predicates: four points, and the word that the kernel cadt_predicate_probe
+// (common/predicates/predicate_probe.dev.h) must give for them. Signs come from whole numbers of any length, stages
+// from the bounds as they are documented.
 #pragma once
 
 #include <array>

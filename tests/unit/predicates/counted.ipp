@@ -13,7 +13,7 @@ namespace {
 cadt::test::Lengths lengths;
 #define CADT_STAGE(name) (++lengths.name)
 #pragma GCC diagnostic ignored "-Wunused-function"  // not all of the header's are asked
-#include "common/device/predicates.h"
+#include "common/predicates/filtered_predicates.dev.h"
 
 cadt::test::Lengths count(const std::vector<cadt::test::SignCase>& cases) {
   const auto point = [](cadt::test::PlanePoint p) {
@@ -21,10 +21,10 @@ cadt::test::Lengths count(const std::vector<cadt::test::SignCase>& cases) {
   };
   lengths = {};
   for (const cadt::test::SignCase& c : cases) {
-    cadt_tally tally;
-    cadt_tally_clear(&tally);
+    cadt_counters counters;
+    cadt_counters_clear(&counters);
     const cadt_point a = point(c.points[0]), b = point(c.points[1]), d = point(c.points[2]), p = point(c.points[3]);
-    if (cadt_orientation(a, b, d, &tally) > 0) static_cast<void>(cadt_incircle(a, b, d, p, &tally));
+    if (cadt_orientation(a, b, d, &counters) > 0) static_cast<void>(cadt_incircle(a, b, d, p, &counters));
   }
   return lengths;
 }

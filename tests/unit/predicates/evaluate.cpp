@@ -23,15 +23,15 @@
 #endif
 
 namespace {
-#include "common/device/atomics.h"
+#include "common/portable/atomics.dev.h"
 #if defined(CADT_AS_GPU)
 #undef CADT_CONTIGUOUS
 #define CADT_CONTIGUOUS 0
 #endif
 #if defined(CADT_VERIFIER)
-#include "common/device/verify_predicates.h"
+#include "common/verify/device/verify_predicates.dev.h"
 #else
-#include "common/device/signs.h"
+#include "common/predicates/predicate_probe.dev.h"
 #endif
 
 // As SignCase of cases.hpp, which is not included: a patched header could reach it.
@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
 #if defined(CADT_VERIFIER)
     words = verifier_words(cases);
 #else
-    cadt_signs(0, 1, points.data(), most.data(), words.data(), count, count);
+    cadt_predicate_probe(0, 1, points.data(), most.data(), words.data(), count, count);
 #endif
     std::fesetenv(FE_DFL_ENV);
     unsigned long signs = 0, stages = 0;

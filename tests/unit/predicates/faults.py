@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The faults that tests/unit/predicates/mutants.py plants, one at a time.
 
-(group, words of the table, file of common/device, what stands there, what is put in its place), or with flags of the
+(group, words of the table, device text of common/predicates or common/verify/device, what stands there, what is put in its place), or with flags of the
 compiler in place of the last three. A text must stand there exactly once, or as often as a sixth entry says.
 """
 
-P, X, F, V = "predicates.h", "exact.h", "fixed.h", "verify_predicates.h"
+P, X, F, V = "filtered_predicates.dev.h", "exact_predicates.dev.h", "bigint.dev.h", "verify_predicates.dev.h"
 
 TEXTS = [
     # ---- filters

@@ -24,7 +24,7 @@ BUILDS = {"narrow": [], "GPU": ["-DCADT_AS_GPU"], "wide": ["-DCADT_WIDE=1"],
           # devices that have no doubles may flush as well
           "float": ["-DCADT_FLOAT=1", "-DCADT_PLANT_FLUSH"]}
 VERIFIER = {"verifier": ["-DCADT_VERIFIER"]}
-HEADERS = ["predicates.h", "exact.h", "fixed.h", "signs.h", "verify_predicates.h"]
+FOLDERS = ["common/predicates", "common/verify/device"]
 # Columns of the table; all other sets share one.
 COLUMNS = {"predicates_pscico_orient2d.txt": "classic orientation", "predicates_pscico_incircle.txt": "classic incircle",
            "gen_threshold_orient2d.txt": "threshold orientation", "gen_threshold_incircle.txt": "threshold incircle",
@@ -42,12 +42,12 @@ def faults():
 
 def patched(root, folder, fault):
     """A folder with the headers, one of them with the fault, to be searched before the root."""
-    target = folder / "common" / "device"
-    target.mkdir(parents=True)
-    for header in HEADERS:
-        shutil.copy(root / "common" / "device" / header, target / header)
+    for name in FOLDERS:
+        (folder / name).mkdir(parents=True)
+        for header in (root / name).glob("*.dev.h"):
+            shutil.copy(header, folder / name / header.name)
     if fault["file"]:
-        path = target / fault["file"]
+        path = next(folder / name / fault["file"] for name in FOLDERS if (folder / name / fault["file"]).exists())
         text = path.read_text()
         if text.count(fault["old"]) != fault["times"]:
             raise SystemExit(f"mutants: {fault['file']} has changed: {fault['times']} times expected: {fault['old']!r}")

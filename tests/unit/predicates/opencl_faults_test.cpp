@@ -62,7 +62,7 @@ TEST_P(OpenClFaults, AreSeen) {
   }
   const std::unique_ptr<Device> device = opencl::open_device(request);
   const SignSet set = generated_set(fault.set);
-  const WrongSigns wrong = compare(set.narrow, words_of(*device, set.narrow, KernelBuild::narrow));
+  const WrongSigns wrong = compare(set.narrow, words_of(*device, set.narrow, KernelVariant::narrow));
   if (*fault.from == '\0')
     EXPECT_EQ(wrong.fields, 0u);
   else

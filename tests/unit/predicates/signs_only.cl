@@ -2,5 +2,5 @@
  *
  * The predicates and the self-test alone: a program that is built in no time, once for each planted fault.
  */
-#include "common/device/selftest.h"
-#include "common/device/signs.h"
+#include "common/predicates/predicate_probe.dev.h"
+#include "common/predicates/self_test.dev.h"

@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "common/host/registry.hpp"
+#include "common/driver/registry.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/unit/predicates/cases.hpp"
 #include "tests/unit/predicates/counted.hpp"
@@ -44,7 +44,7 @@ class Signs : public BackendTest {
     for (const bool wide : {false, true}) {
       const std::vector<SignCase>& cases = wide ? set.wide : set.narrow;
       const std::vector<std::uint32_t> words =
-          words_of(device_of(GetParam()), cases, wide ? KernelBuild::wide : KernelBuild::narrow);
+          words_of(device_of(GetParam()), cases, wide ? KernelVariant::wide : KernelVariant::narrow);
       const WrongSigns wrong = compare(cases, words);
       ASSERT_EQ(wrong.fields, 0u) << set.name << (wide ? ", wide: " : ", narrow: ") << wrong.signs
                                   << " wrong signs, further wrong stages " << wrong.stages << ", bits " << std::hex

@@ -3,11 +3,11 @@
 
 #include <array>
 
-#include "common/host/device_points.hpp"
+#include "common/points/device_points.hpp"
 
 namespace cadt::test {
 
-std::vector<std::uint32_t> words_of(Device& device, const std::vector<SignCase>& cases, KernelBuild build) {
+std::vector<std::uint32_t> words_of(Device& device, const std::vector<SignCase>& cases, KernelVariant build) {
   const auto count = static_cast<std::uint32_t>(cases.size());
   std::vector<std::uint32_t> words(cases.size());
   if (cases.empty()) return words;
@@ -28,7 +28,7 @@ std::vector<std::uint32_t> words_of(Device& device, const std::vector<SignCase>&
   const LaunchShape shape = device.shape();
   const std::uint32_t grain = shape.contiguous ? 64 : 1, items = (count + grain - 1) / grain;
   const std::array<Arg, 5> arguments = {Arg(in), Arg(bounds), Arg(out), Arg(count), Arg(grain)};
-  device.launch(KernelId::cadt_signs, items, arguments, build);
+  device.launch(KernelId::cadt_predicate_probe, items, arguments, build);
   device.finish();
   device.read(*out, 0, words.data(), out->bytes());
   return words;

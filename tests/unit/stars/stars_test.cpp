@@ -23,7 +23,7 @@
 namespace {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/device/star_tiles.h"
+#include "common/stars/tile_stars.dev.h"
 #pragma GCC diagnostic pop
 
 using Keys = std::vector<std::uint32_t>;
@@ -70,11 +70,11 @@ Sorted sorted(const NamedPoints& set, double part = 1) {
   const auto n = static_cast<std::uint32_t>(points.size());
   Keys keys(n), low(n);
   if (fine != 0)
-    cadt_fine_keys(0, 1, points.data(), keys.data(), low.data(), s.low_bits, n, n, s.grid.half_min_x, s.grid.half_min_y,
-                   s.grid.scale, bits_x, bits_y);
+    cadt_fine_hilbert_keys(0, 1, points.data(), keys.data(), low.data(), s.low_bits, n, n, s.grid.half_min_x,
+                           s.grid.half_min_y, s.grid.scale, bits_x, bits_y);
   else
-    cadt_sort_keys(0, 1, points.data(), keys.data(), n, n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale, bits_x,
-                   bits_y);
+    cadt_hilbert_keys(0, 1, points.data(), keys.data(), n, n, s.grid.half_min_x, s.grid.half_min_y, s.grid.scale,
+                      bits_x, bits_y);
   std::vector<std::uint32_t> order(n);
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return std::pair(keys[i], low[i]); });
@@ -190,14 +190,14 @@ TEST(Windows, HaveEveryPointOfTheirSquares) {
   for (const NamedPoints& set : sets()) {
     SCOPED_TRACE(set.name);
     const Sorted s = sorted(set);
-    const auto window = std::make_unique<cadt_window>();
+    const auto window = std::make_unique<cadt_neighborhood>();
     const cadt_keys keys = s.view();
     std::size_t loaded = 0, owned = 0, inside = 0;
     for (std::size_t t = 0; t + 1 < s.tiles.size(); ++t) {
-      const cadt_window_shape shape =
-          cadt_shape_of_window(&s.grid, s.most, s.points.data(), s.tiles[t], s.tiles[t + 1].begin);
-      ASSERT_LE(shape.side * shape.side, static_cast<unsigned>(CADT_WINDOW_CELLS));
-      ASSERT_LE(shape.squares * shape.squares, static_cast<unsigned>(CADT_WINDOW_RANGES));
+      const cadt_neighborhood_shape shape =
+          cadt_shape_of_neighborhood(&s.grid, s.most, s.points.data(), s.tiles[t], s.tiles[t + 1].begin);
+      ASSERT_LE(shape.side * shape.side, static_cast<unsigned>(CADT_NEIGHBORHOOD_CELLS));
+      ASSERT_LE(shape.squares * shape.squares, static_cast<unsigned>(CADT_NEIGHBORHOOD_SPANS));
       // by definition: the points whose cells of the grid are within the window
       const double width = shape.side / shape.cells;
       std::set<std::uint32_t> expected;
@@ -206,7 +206,7 @@ TEST(Windows, HaveEveryPointOfTheirSquares) {
         const double x = std::floor(f.x) - shape.origin_x, y = std::floor(f.y) - shape.origin_y;
         if (x >= 0 && x < width && y >= 0 && y < width) expected.insert(i);
       }
-      const bool fits = expected.size() <= static_cast<std::size_t>(CADT_WINDOW_POINTS) &&
+      const bool fits = expected.size() <= static_cast<std::size_t>(CADT_NEIGHBORHOOD_POINTS) &&
                         shape.end - shape.begin <= static_cast<std::uint32_t>(CADT_TILE_POINTS);
       // where points from outside may be in the cells at the edge, windows keep off them
       const double square = shape.side / shape.cells / shape.squares;
@@ -215,9 +215,9 @@ TEST(Windows, HaveEveryPointOfTheirSquares) {
       };
       const bool inner = off(shape.origin_x, s.grid.bits_x) && off(shape.origin_y, s.grid.bits_y);
       inside += inner ? 1 : 0;
-      ASSERT_EQ(cadt_load_window(window.get(), &shape, &s.grid, s.points.data(), &keys, s.size(), 1) != 0,
+      ASSERT_EQ(cadt_load_neighborhood(window.get(), &shape, &s.grid, s.points.data(), &keys, s.size(), 1) != 0,
                 fits && inner);
-      ASSERT_EQ(cadt_load_window(window.get(), &shape, &s.grid, s.points.data(), &keys, s.size(), 0) != 0, fits);
+      ASSERT_EQ(cadt_load_neighborhood(window.get(), &shape, &s.grid, s.points.data(), &keys, s.size(), 0) != 0, fits);
       if (!fits) continue;
       ++loaded;
       const std::uint32_t total = window->cells[shape.side * shape.side];
@@ -228,7 +228,7 @@ TEST(Windows, HaveEveryPointOfTheirSquares) {
       for (std::uint32_t cell = 0; cell < shape.side * shape.side; ++cell) {
         for (std::uint32_t place = window->cells[cell]; place < window->cells[cell + 1]; ++place) {
           const cadt_point f = cadt_to_grid(&s.grid, s.points[window->at[place]]);
-          ASSERT_EQ(cadt_cell_in_window(&shape, f), cell);
+          ASSERT_EQ(cadt_cell_in_neighborhood(&shape, f), cell);
           const double x = (f.x - shape.origin_x) * shape.cells - 0.5 * shape.side;
           const double y = (f.y - shape.origin_y) * shape.cells - 0.5 * shape.side;
           ASSERT_NEAR(static_cast<double>(window->x[place]), x, 5e-7);
@@ -260,21 +260,21 @@ std::vector<std::vector<std::uint32_t>> links_of(const Sorted& s) {
       next[v(0)][v(1)] = v(2);
     }
   }
-  std::vector<std::vector<std::uint32_t>> links(s.size());
+  std::vector<std::vector<std::uint32_t>> star_vertices(s.size());
   for (std::uint32_t v = 0; v < s.size(); ++v) {
     std::uint32_t at = next[v].begin()->first;
     for (std::size_t k = 0; k < next[v].size(); ++k) {
       const auto found = next[v].find(at);
       if (found == next[v].end()) break;
-      links[v].push_back(at);
+      star_vertices[v].push_back(at);
       at = found->second;
     }
-    if (links[v].size() != next[v].size() || at != links[v].front()) links[v].clear();
+    if (star_vertices[v].size() != next[v].size() || at != star_vertices[v].front()) star_vertices[v].clear();
   }
-  return links;
+  return star_vertices;
 }
 
-/// What cadt_stars finds, as if a sample of one tile had said this of its points.
+/// What cadt_prove_stars finds, as if a sample of one tile had said this of its points.
 std::vector<std::uint32_t> after_a_sample(std::uint32_t unproven, std::uint32_t crowded) {
   std::vector<std::uint32_t> found(CADT_STARS_FOUND);
   const std::uint32_t sample[] = {1, 1U << 24, unproven, crowded};
@@ -290,9 +290,10 @@ struct StarsOf {
     const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
     stars.resize(std::size_t{n} * CADT_STAR_DEGREE);
     sizes.resize(n);
-    cadt_stars(0, 1, s.points.data(), s.keys.data(), s.low_keys(), s.low_bits, n, s.grid.half_min_x, s.grid.half_min_y,
-               s.grid.scale, s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(),
-               count, 1, cautious ? 1 : 0, count, stars.data(), nullptr, sizes.data(), 0, 0, found.data());
+    cadt_prove_stars(0, 1, s.points.data(), s.keys.data(), s.low_keys(), s.low_bits, n, s.grid.half_min_x,
+                     s.grid.half_min_y, s.grid.scale, s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr,
+                     nullptr, s.tiles.data(), count, 1, cautious ? 1 : 0, count, stars.data(), nullptr, sizes.data(), 0,
+                     0, found.data());
   }
   [[nodiscard]] auto proven() const {
     return std::ranges::count_if(sizes, [](std::uint32_t size) { return size != 0; });
@@ -305,13 +306,13 @@ void check_stars(double part, bool many, std::map<std::string, double>& shares) 
     SCOPED_TRACE(set.name);
     const Sorted s = sorted(set, part);
     const StarsOf made(s, after_a_sample(0, many ? 1U << 24 : 0), false);
-    const auto links = links_of(s);
+    const auto star_vertices = links_of(s);
     for (std::uint32_t v = 0; v < s.size(); ++v) {
       if (made.sizes[v] == 0) continue;
       const std::uint32_t* row = &made.stars[std::size_t{v} * CADT_STAR_DEGREE];
       std::vector<std::uint32_t> star(row, row + made.sizes[v]);
       std::ranges::rotate(star, std::ranges::min_element(star));
-      auto link = links[v];
+      auto link = star_vertices[v];
       ASSERT_FALSE(link.empty()) << "vertex " << v << " of the hull has a star";
       std::ranges::rotate(link, std::ranges::min_element(link));
       ASSERT_EQ(star, link) << "vertex " << v;
@@ -336,19 +337,20 @@ TEST(ProvenStars, AreThoseOfTheMesh) {
 
 /// Stars close together: of `words` behind those of the tiles.
 struct Packed {
-  std::vector<std::uint32_t> links, begins, sizes, found = after_a_sample(0, 1U << 24);
+  std::vector<std::uint32_t> star_vertices, begins, sizes, found = after_a_sample(0, 1U << 24);
   std::uint32_t overflow, room;
 
   Packed(const Sorted& s, std::uint32_t words, std::uint32_t lost) {
     const auto n = s.size(), count = static_cast<std::uint32_t>(s.tiles.size() - 1);
     overflow = cadt_pool_of_tile(count, n);
     room = overflow + words - lost;
-    links.assign(std::size_t{overflow} + words, CADT_NONE);
+    star_vertices.assign(std::size_t{overflow} + words, CADT_NONE);
     begins.resize(n);
     sizes.resize(n);
-    cadt_stars(0, 1, s.points.data(), s.keys.data(), s.low_keys(), s.low_bits, n, s.grid.half_min_x, s.grid.half_min_y,
-               s.grid.scale, s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr, nullptr, s.tiles.data(),
-               count, 1, 0, count, links.data(), begins.data(), sizes.data(), overflow, room, found.data());
+    cadt_prove_stars(0, 1, s.points.data(), s.keys.data(), s.low_keys(), s.low_bits, n, s.grid.half_min_x,
+                     s.grid.half_min_y, s.grid.scale, s.grid.bits_x, s.grid.bits_y, s.most.x, s.most.y, 0, nullptr,
+                     nullptr, s.tiles.data(), count, 1, 0, count, star_vertices.data(), begins.data(), sizes.data(),
+                     overflow, room, found.data());
   }
 };
 
@@ -373,16 +375,16 @@ TEST(ProvenStars, CloseTogether) {
     SCOPED_TRACE(set.name);
     const Sorted s = sorted(set);
     const Packed packed(s, 4096, 0), tight(s, 4096, 4096);
-    const auto links = links_of(s);
-    std::vector<char> taken(packed.links.size());
+    const auto star_vertices = links_of(s);
+    std::vector<char> taken(packed.star_vertices.size());
     for (std::uint32_t v = 0; v < s.size(); ++v) {
       for (const Packed* p : {&packed, &tight}) {
         if (p->sizes[v] == 0) continue;
         ASSERT_LE(p->begins[v] + p->sizes[v], p->room);
-        const auto begin = p->links.begin() + p->begins[v];
+        const auto begin = p->star_vertices.begin() + p->begins[v];
         std::vector<std::uint32_t> star(begin, begin + p->sizes[v]);
         std::ranges::rotate(star, std::ranges::min_element(star));
-        auto link = links[v];
+        auto link = star_vertices[v];
         ASSERT_FALSE(link.empty()) << "vertex " << v << " of the hull has a star";
         std::ranges::rotate(link, std::ranges::min_element(link));
         ASSERT_EQ(star, link) << "vertex " << v;

@@ -18,16 +18,16 @@
 namespace {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/device/tiles.h"
+#include "common/stars/tiles.dev.h"
 #pragma GCC diagnostic pop
 
 using Keys = std::vector<std::uint32_t>;
 
 /// Whether so many of the points in a square lie in a part of it.
 bool is_crowded(const Keys& keys, std::uint32_t begin, std::uint32_t end, unsigned level, unsigned levels) {
-  const unsigned part = level + CADT_CROWD_LEVELS;
-  for (std::uint32_t i = begin; part <= levels && i + CADT_TILE_CROWD <= end; ++i) {
-    const std::uint64_t first = keys[i], last = keys[i + CADT_TILE_CROWD - 1];
+  const unsigned part = level + CADT_OVERFULL_LEVELS;
+  for (std::uint32_t i = begin; part <= levels && i + CADT_TILE_OVERFULL <= end; ++i) {
+    const std::uint64_t first = keys[i], last = keys[i + CADT_TILE_OVERFULL - 1];
     if (first >> (2 * (levels - part)) == last >> (2 * (levels - part))) return true;
   }
   return false;
@@ -77,7 +77,7 @@ std::map<std::uint32_t, int> tiles_divided_again(const Keys& keys, unsigned leve
   make();
   crowded.assign(tiles.size() - 1, 0);
   std::uint32_t any = 0;
-  cadt_tile_crowds(0, 1, keys.data(), nullptr, 0, ranks.data(), tiles.data(), n, levels, n, crowded.data(), &any);
+  cadt_tile_overfull(0, 1, keys.data(), nullptr, 0, ranks.data(), tiles.data(), n, levels, n, crowded.data(), &any);
   EXPECT_EQ(any != 0, std::ranges::count(crowded, 1u) != 0);
   before = ranks;
   make();

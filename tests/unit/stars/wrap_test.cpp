@@ -17,8 +17,8 @@
 namespace {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/device/wrap.h"
-#include "common/device/wrap_near.h"
+#include "common/stars/wrap_exact.dev.h"
+#include "common/stars/wrap_fast.dev.h"
 #pragma GCC diagnostic pop
 
 using Points = std::vector<cadt_point>;
@@ -76,29 +76,29 @@ Points nearly_straight(int count) {
 }
 
 /// Points in boxes and crates.
-struct Boxes {
-  std::vector<cadt_box> boxes, crates;
+struct AabbTree {
+  std::vector<cadt_aabb> leaves, nodes;
 
-  Boxes(const Points& points, std::uint32_t* sizes, std::uint32_t* found)
-      : boxes((points.size() - 1) / CADT_WRAP_BOX + 1), crates((boxes.size() - 1) / CADT_WRAP_CRATE + 1) {
-    const auto crate_count = static_cast<std::uint32_t>(crates.size());
-    cadt_wrap_boxes(0, 1, points.data(), static_cast<std::uint32_t>(points.size()), nullptr, 0, crate_count,
-                    crate_count, boxes.data(), crates.data(), sizes, found);
+  AabbTree(const Points& points, std::uint32_t* sizes, std::uint32_t* found)
+      : leaves((points.size() - 1) / CADT_AABB_LEAF + 1), nodes((leaves.size() - 1) / CADT_AABB_FANOUT + 1) {
+    const auto crate_count = static_cast<std::uint32_t>(nodes.size());
+    cadt_build_aabb_tree(0, 1, points.data(), static_cast<std::uint32_t>(points.size()), nullptr, 0, crate_count,
+                         crate_count, leaves.data(), nodes.data(), sizes, found);
   }
 };
 
 /// What searches the star of w.p, by one work-item.
 struct Searcher {
-  Boxes in;
+  AabbTree in;
   std::unique_ptr<cadt_wrap_memory> memory = std::make_unique<cadt_wrap_memory>();
-  cadt_tally tally{};
+  cadt_counters counters{};
   cadt_wrapper w{};
 
   explicit Searcher(const Points& points) : in(points, nullptr, nullptr) {
     const auto n = static_cast<std::uint32_t>(points.size());
     w.m = memory.get();
-    w.in = cadt_boxed_of(cadt_wrap_range_of(nullptr, 0, n), points.data(), in.boxes.data(), in.crates.data());
-    w.tally = &tally;
+    w.in = cadt_aabb_tree_of(cadt_wrap_span_of(nullptr, 0, n), points.data(), in.leaves.data(), in.nodes.data());
+    w.counters = &counters;
     w.lanes = 1;
   }
   Searcher(const Searcher&) = delete;
@@ -117,12 +117,12 @@ struct Wrapped {
     begins.resize(n);
     sizes.resize(n);
     todo.resize(n);
-    const auto [boxes, crates] = Boxes(points, sizes.data(), found.data());
-    cadt_wrap_near(0, 1, points.data(), boxes.data(), crates.data(), n, n, links.data(), words, begins.data(),
+    const auto [leaves, nodes] = AabbTree(points, sizes.data(), found.data());
+    cadt_wrap_near(0, 1, points.data(), leaves.data(), nodes.data(), n, n, links.data(), words, begins.data(),
                    sizes.data(), todo.data(), arcs.data(), found.data());
     left = found[7];
     constexpr std::uint32_t effort = 96, spare = 4096;
-    cadt_wrap_stars(0, 1, points.data(), boxes.data(), crates.data(), n, todo.data(), 0, arcs.data(), nullptr, 0,
+    cadt_wrap_stars(0, 1, points.data(), leaves.data(), nodes.data(), n, todo.data(), 0, arcs.data(), nullptr, 0,
                     nullptr, nullptr, effort, spare, n, 0, links.data(), words, begins.data(), sizes.data(),
                     found.data());
   }
@@ -147,7 +147,7 @@ TEST(WrappedNear, HasTheStarsOfLattices) {
     const Wrapped wrapped(lattice(side, turn));
     EXPECT_LT(wrapped.left, 8 * side) << "turned by " << turn;
     EXPECT_GE(wrapped.left, 2 * side) << "turned by " << turn;
-    EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
+    EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_MOST_HIGH_DEGREE));
     EXPECT_LE(std::ranges::count(wrapped.sizes, 0U), wrapped.failed());
   }
 }
@@ -157,12 +157,12 @@ TEST(WrappedStars, GivesUpOnHulls) {
   for (const Points& points : {polygon(CADT_WRAP_HULL_EXACT + 1), parabola(CADT_WRAP_HULL + 1)}) {
     const Wrapped wrapped(points);
     EXPECT_EQ(wrapped.left, points.size());
-    EXPECT_GT(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
+    EXPECT_GT(wrapped.failed(), static_cast<std::uint32_t>(CADT_MOST_HIGH_DEGREE));
     EXPECT_EQ(wrapped.effort(), 0U);
   }
   for (const Points& points : {polygon(100), parabola(300)}) {
     const Wrapped wrapped(points);
-    EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
+    EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_MOST_HIGH_DEGREE));
     EXPECT_GT(wrapped.effort(), 0U);
   }
 }
@@ -182,8 +182,8 @@ TEST(WrappedNext, IsTheBestOfAll) {
       for (const int side : {1, -1}) {
         std::uint32_t best = CADT_NONE;
         for (std::uint32_t i = 0; i < n; ++i)
-          if (i != w.p && i != a && cadt_orientation(points[w.p], points[a], points[i], &search.tally) == side)
-            best = best == CADT_NONE ? i : cadt_wrap_better_of(points.data(), w.p, a, side, best, i, &search.tally);
+          if (i != w.p && i != a && cadt_orientation(points[w.p], points[a], points[i], &search.counters) == side)
+            best = best == CADT_NONE ? i : cadt_wrap_better_of(points.data(), w.p, a, side, best, i, &search.counters);
         ASSERT_EQ(cadt_wrap_next(&w, a, side), best) << "behind " << a << " of " << w.p << ", side " << side;
       }
     }
@@ -195,7 +195,7 @@ TEST(WrappedNext, IsTheBestOfAll) {
 TEST(WrappedStars, TakeFewExactTestsOfPointsFarAway) {
   const Points points = far_apart(32);
   const Wrapped wrapped(points);
-  EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
+  EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_MOST_HIGH_DEGREE));
   EXPECT_LT(wrapped.exact_tests(), 500U);
 }
 
@@ -214,7 +214,7 @@ TEST(WrappedStars, BeginAnywhere) {
       const std::uint32_t kind = cadt_wrap_star(&w, &begin, &size, &side);
       ASSERT_EQ(kind, expected.sizes[w.p] == 0 ? 0U : kind) << w.p;
       if (kind == 0) continue;
-      std::vector<std::uint32_t> star(w.m->link + begin, w.m->link + begin + size), known = expected.star(w.p);
+      std::vector<std::uint32_t> star(w.m->star + begin, w.m->star + begin + size), known = expected.star(w.p);
       if (side < 0) std::ranges::reverse(star);
       if (kind == 1) std::ranges::rotate(star, std::ranges::min_element(star));
       hull += kind == 2 ? 1U : 0U;
@@ -228,7 +228,7 @@ TEST(WrappedStars, BeginAnywhere) {
 // is known; those that bulge inwards by less than a point's distance hold few points nevertheless.
 TEST(WrappedStars, LookAtFewPointsBesideStraightSides) {
   const Wrapped wrapped(lattice(64, 0.3));
-  EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_WRAP_HUBS));
+  EXPECT_LE(wrapped.failed(), static_cast<std::uint32_t>(CADT_MOST_HIGH_DEGREE));
   EXPECT_LT(wrapped.effort(), 70000U);  // 89,000 without
 }
 
@@ -245,13 +245,13 @@ TEST(WrappedDisc, HoldsFlatArcs) {
       return cadt_point{p.x + along * (a.x - p.x) - off * (a.y - p.y), p.y + along * (a.y - p.y) + off * (a.x - p.x)};
     };
     const cadt_point b = beside(part(random)), c = beside(2 * part(random) - 0.5);
-    cadt_tally tally{};
-    const cadt_i32 side = cadt_orientation(p, a, b, &tally);
-    if (side == 0 || cadt_orientation(p, a, c, &tally) != side) continue;
+    cadt_counters counters{};
+    const cadt_i32 side = cadt_orientation(p, a, b, &counters);
+    if (side == 0 || cadt_orientation(p, a, c, &counters) != side) continue;
     const cadt_disc disc = cadt_disc_beside(p, a, b, side);
     const double length = std::hypot(a.x - p.x, a.y - p.y), radius = std::sqrt(disc.square);
     if (radius > 0.49 * CADT_WRAP_FLAT * length && radius < 0.51 * CADT_WRAP_FLAT * length) ++flat;
-    if (cadt_incircle(side > 0 ? p : a, side > 0 ? a : p, b, c, &tally) <= 0) continue;
+    if (cadt_incircle(side > 0 ? p : a, side > 0 ? a : p, b, c, &counters) <= 0) continue;
     ++better;
     const double x = c.x - p.x - disc.x, y = c.y - p.y - disc.y;
     ASSERT_FALSE(x * x + y * y > disc.square) << "trial " << trial;
@@ -290,20 +290,20 @@ TEST(WrappedDisc, HoldsItsCircleTightly) {
     const double near = length(), far = length();
     const cadt_point p{unit(random), unit(random)}, a{p.x + near * unit(random), p.y + near * unit(random)},
         b{p.x + far * unit(random), p.y + far * unit(random)};
-    cadt_tally tally{};
-    if (cadt_orientation(p, a, b, &tally) <= 0) continue;
+    cadt_counters counters{};
+    if (cadt_orientation(p, a, b, &counters) <= 0) continue;
     const cadt_disc disc = cadt_disc_around(p, a, b);
     if (!std::isfinite(disc.square)) continue;
     const double radius = std::hypot(disc.x, disc.y), along = 3.2 * unit(random);
     const double spare = std::ldexp(radius, -45 - static_cast<int>(random() % 9)) * unit(random);
     const cadt_point c{p.x + disc.x + (radius + spare) * std::cos(along),
                        p.y + disc.y + (radius + spare) * std::sin(along)};
-    if (cadt_incircle(p, a, b, c, &tally) <= 0) continue;
+    if (cadt_incircle(p, a, b, c, &counters) <= 0) continue;
     ++inside;
     const double x = c.x - p.x - disc.x, y = c.y - p.y - disc.y;
     ASSERT_LE(x * x + y * y, disc.square) << "trial " << trial;
-    cadt_box box{c, c};
-    ASSERT_TRUE(cadt_box_matters(box, p, 0, 0, 0, &disc)) << "trial " << trial;
+    cadt_aabb box{c, c};
+    ASSERT_TRUE(cadt_aabb_matters(box, p, 0, 0, 0, &disc)) << "trial " << trial;
   }
   EXPECT_GT(inside, 50000U);
   const cadt_disc fair = cadt_disc_around({0, 0}, {1e12, 0}, {0, 1e12});

@@ -7,7 +7,7 @@
 #include <cstring>
 
 namespace {
-#include "common/device/verify_predicates.h"
+#include "common/verify/device/verify_predicates.dev.h"
 
 using cadt::verifier::Point;
 cadt_point at(const Point& p) { return {p.x, p.y}; }

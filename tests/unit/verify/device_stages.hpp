@@ -2,7 +2,7 @@
 // The predicates of the verifier on the device, compiled as host C++.
 #pragma once
 
-#include "common/host/verify/exact_sign.hpp"
+#include "common/verify/host/exact_sign.hpp"
 
 namespace device_stage {
 

@@ -3,8 +3,8 @@
 // every family and file, and a kernel that does not run is noticed.
 #include "rejection.hpp"
 
-#include "common/host/registry.hpp"
-#include "common/host/verify_on_device.hpp"
+#include "common/driver/registry.hpp"
+#include "common/verify/device/verify_on_device.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/support/data_files.hpp"
 #include "tests/support/families.hpp"
@@ -220,7 +220,7 @@ class Lazy final : public Device {
     device_.fill(to, offset, bytes, word);
   }
   using Device::launch;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelBuild build,
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
               std::uint32_t group) override {
     if (kernel == kernel_) ++skipped, items = half_ ? items / 2 : 0;
     if (items != 0) device_.launch(kernel, items, args, build, group);
@@ -275,12 +275,12 @@ TEST(OnDevices, MeshThatIsOnlyInDeviceMemory) {
         SCOPED_TRACE(d.name);
         Statistics statistics;
         cadt::Memory memory(*d.device, false);
-        cadt::Run run(*d.device, memory, d.options, statistics);
-        const Allocation points = run.memory.import(m.xy.data(), m.xy.size() * sizeof(double));
-        const Allocation triangles = run.memory.import(m.triangles.data(), m.triangles.size() * 4);
-        const Allocation neighbors = run.memory.import(m.neighbors.data(), m.neighbors.size() * 4);
+        cadt::Context ctx(*d.device, memory, d.options, statistics);
+        const Allocation points = ctx.memory.import(m.xy.data(), m.xy.size() * sizeof(double));
+        const Allocation triangles = ctx.memory.import(m.triangles.data(), m.triangles.size() * 4);
+        const Allocation neighbors = ctx.memory.import(m.neighbors.data(), m.neighbors.size() * 4);
         const VerifyInput input{points, triangles, neighbors, m.xy.size() / 2, m.size(), m.hull, m.duplicates, listed};
-        expect_same_report(verify_on_device(run, input, {}), expected);
+        expect_same_report(verify_on_device(ctx, input, {}), expected);
       }
     }
 }

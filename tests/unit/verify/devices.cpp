@@ -2,8 +2,8 @@
 #include "devices.hpp"
 #include "strided_device.hpp"
 
-#include "common/host/registry.hpp"
-#include "common/host/verify_on_device.hpp"
+#include "common/driver/registry.hpp"
+#include "common/verify/device/verify_on_device.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/support/report_checks.hpp"
 

@@ -2,7 +2,7 @@
 // The verifier on every device of this machine beside that of the host: both must say the same.
 #pragma once
 
-#include "common/host/device.hpp"
+#include "common/driver/device.hpp"
 
 #include <cadt/verify.hpp>
 

@@ -5,7 +5,7 @@
 #include "rejection.hpp"
 #include "truth.hpp"
 
-#include "common/host/triangulation_data.hpp"
+#include "common/driver/triangulation_data.hpp"
 
 #include <algorithm>
 #include <array>

@@ -12,14 +12,14 @@
 
 namespace {
 
-#include "common/device/atomics.h"
-// From here on as in a build for GPUs (lang.h); the atomics remain those of the host.
+#include "common/portable/atomics.dev.h"
+// From here on as in a build for GPUs (dialect.dev.h); the atomics remain those of the host.
 #undef CADT_CONTIGUOUS
 #define CADT_CONTIGUOUS 0
 #undef CADT_FOR
 #define CADT_FOR(i, count, grain) for (cadt_u32 i = cadt_item; i < (count); i += cadt_items)
 #pragma GCC diagnostic ignored "-Wunused-parameter"  // grain
-#include "common/device/verify.h"
+#include "common/verify/device/verify.dev.h"
 
 using cadt::Arg;
 using cadt::KernelId;
@@ -68,7 +68,7 @@ class Strided final : public cadt::Device {
     host_.fill(to, offset, bytes, word);
   }
   using Device::launch;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, cadt::KernelBuild build,
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, cadt::KernelVariant build,
               std::uint32_t /*group*/) override {
     switch (kernel) {
       case KernelId::cadt_verify_structure:

@@ -3,7 +3,7 @@
 // for.
 #pragma once
 
-#include "common/host/device.hpp"
+#include "common/driver/device.hpp"
 
 #include <memory>
 

@@ -3,7 +3,7 @@
 // installed (CADT_TEST_GMP is 0) those of whole.hpp.
 #pragma once
 
-#include "common/host/verify/exact_sign.hpp"
+#include "common/verify/host/exact_sign.hpp"
 
 #if CADT_TEST_GMP
 #include <gmpxx.h>

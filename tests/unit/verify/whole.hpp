@@ -58,11 +58,11 @@ class Whole {
     } else {
       const bool smaller = std::lexicographical_compare(p.rbegin(), p.rend(), q.rbegin(), q.rend());
       if (smaller) std::swap(p, q);
-      std::uint64_t borrow = 0;
+      std::uint64_t transient = 0;
       for (std::size_t i = 0; i < size; ++i) {
-        const std::uint64_t difference = std::uint64_t{p[i]} - q[i] - borrow;
+        const std::uint64_t difference = std::uint64_t{p[i]} - q[i] - transient;
         p[i] = static_cast<std::uint32_t>(difference);
-        borrow = difference >> 63;
+        transient = difference >> 63;
       }
       result.negative_ = smaller ? b.negative_ : a.negative_;
     }

@@ -3,7 +3,7 @@
 
 #include <cadt/errors.hpp>
 
-#include "common/host/backend.hpp"
+#include "common/driver/backend.hpp"
 
 namespace cadt {
 namespace {

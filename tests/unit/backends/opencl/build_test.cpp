@@ -109,7 +109,7 @@ TEST_F(OpenClBuild, WideVariantIsBuiltAtItsFirstLaunch) {
   const auto device = opencl::open_device(request);  // the narrow one is all that is needed
   const std::vector<Arg> none;
   const auto error =
-      caught<KernelBuildError>([&] { device->launch(KernelId::cadt_selftest, 1, none, KernelBuild::wide); });
+      caught<KernelBuildError>([&] { device->launch(KernelId::cadt_selftest, 1, none, KernelVariant::wide); });
   EXPECT_NE(error.options().find("-DCADT_WIDE=1"), std::string::npos) << error.options();
   EXPECT_NE(error.log().find("only the wide build fails"), std::string::npos) << error.log();
   EXPECT_EQ(counted_items(*device, 10), 10u);
@@ -119,7 +119,7 @@ TEST_F(OpenClBuild, MissingKernelIsNamed) {
   const auto device = open_small();
   const std::vector<Arg> none;
   const auto error =
-      caught<InternalError>([&] { device->launch(KernelId::cadt_insert, 1, none, KernelBuild::narrow); });
+      caught<InternalError>([&] { device->launch(KernelId::cadt_insert, 1, none, KernelVariant::narrow); });
   EXPECT_NE(std::string(error.what()).find("cadt_insert"), std::string::npos) << error.what();
 }
 

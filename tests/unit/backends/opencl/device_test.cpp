@@ -79,13 +79,13 @@ TEST_F(OpenClDevice, WrongArgumentsAreRefused) {
   const auto device = open_small();
   const std::vector<Arg> too_few = {Arg(1u)};
   const auto count =
-      caught<InternalError>([&] { device->launch(KernelId::cadt_selftest, 1, too_few, KernelBuild::narrow); });
+      caught<InternalError>([&] { device->launch(KernelId::cadt_selftest, 1, too_few, KernelVariant::narrow); });
   EXPECT_NE(std::string(count.what()).find("takes 4 arguments, not 1"), std::string::npos) << count.what();
   // What the runtime notices arrives with its call and the name of its code.
   const auto buffer = device->allocate(256);
   const std::vector<Arg> wrong = {Arg(1u), Arg(buffer), Arg(buffer), Arg(1u)};
   const auto size =
-      caught<DeviceError>([&] { device->launch(KernelId::cadt_selftest, 1, wrong, KernelBuild::narrow); });
+      caught<DeviceError>([&] { device->launch(KernelId::cadt_selftest, 1, wrong, KernelVariant::narrow); });
   EXPECT_EQ(size.call(), "clSetKernelArg");
   EXPECT_EQ(size.device(), info.name);
   EXPECT_EQ(size.code(), -51);
@@ -102,7 +102,7 @@ TEST_F(OpenClDevice, NullBufferIsANullPointer) {
   const std::unique_ptr<Buffer> null;
   for (const std::uint32_t expected : {17u, 18u}) {
     const std::array<Arg, 2> arguments = {expected == 17u ? Arg(null) : Arg(out), Arg(out)};
-    device->launch(KernelId::cadt_bounds, 1, arguments, KernelBuild::narrow);
+    device->launch(KernelId::cadt_bounds, 1, arguments, KernelVariant::narrow);
     std::uint32_t answer = 0;
     device->read(*out, 0, &answer, 4);
     EXPECT_EQ(answer, expected);
@@ -163,7 +163,7 @@ TEST_F(OpenClDevice, AliasReadsTheCallersMemory) {
       const auto out = device->allocate(8 * sizeof(double)), words = device->allocate(20);
       device->fill(*words, 0, 20, 0);
       const std::array<Arg, 4> arguments = {Arg(alias), Arg(out), Arg(words), Arg(1u)};
-      device->launch(KernelId::cadt_selftest, 1, arguments, KernelBuild::narrow);
+      device->launch(KernelId::cadt_selftest, 1, arguments, KernelVariant::narrow);
       double first = 0;
       device->read(*out, 0, &first, sizeof first);
       EXPECT_EQ(first, 2.0 * 2.0 + 3.0);

@@ -80,7 +80,7 @@ std::uint32_t counted_items(Device& device, std::uint32_t items) {
   device.write(*in, 0, ones.data(), in->bytes());
   device.fill(*counters, 0, sizeof words, 0);
   const std::array<Arg, 4> arguments = {Arg(in), Arg(out), Arg(counters), Arg(items)};
-  device.launch(KernelId::cadt_selftest, items, arguments, KernelBuild::narrow);
+  device.launch(KernelId::cadt_selftest, items, arguments, KernelVariant::narrow);
   device.finish();
   device.read(*counters, 0, words.data(), sizeof words);
   return words[2];

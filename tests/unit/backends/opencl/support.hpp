@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "backends/opencl/open.hpp"
-#include "common/host/backend.hpp"
+#include "common/driver/backend.hpp"
 
 namespace cadt::opencl {
 /// selftest_only.cl, embedded like the kernels of the library.

@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Many small sets of points in one call. Each has a square of the key grid, one square after another on the curve, so
+ * sorted points stand set by set, and squares of the tiles never hold points of two. From the sort to the result they
+ * are one mesh of many components; positions, records and triangles of a set are neighbours, and two records a vertex
+ * have their place even where they are not used.
+ *
+ * Several kernels look for the set of an element among the first elements of all sets (`starts`, with the end of the
+ * last one behind): some dozen reads of what is in the cache anyway.
+ */
+#ifndef CADT_BATCH_BATCH_H
+#define CADT_BATCH_BATCH_H
+
+#include "common/mesh/locked_mesh.dev.h"
+#include "common/points/spatial_sort.dev.h"
+
+/* The last set that starts at i or before: the one that has element i. */
+CADT_FN cadt_u32 cadt_set_of(CADT_GLOBAL const cadt_u32* starts, cadt_u32 count, cadt_u32 i) {
+  cadt_u32 low = 0u, high = count;
+  while (high - low > 1u) {
+    const cadt_u32 middle = low + (high - low) / 2u;
+    if (starts[middle] <= i)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+CADT_FN cadt_key_grid cadt_grid_of_set(CADT_GLOBAL const cadt_set* sets, cadt_u32 set, cadt_u32 levels) {
+  cadt_key_grid grid;
+  grid.half_min_x = sets[set].half_min_x;
+  grid.half_min_y = sets[set].half_min_y;
+  grid.scale = sets[set].scale;
+  grid.bits_x = grid.bits_y = levels;
+  grid.set = set;
+  return grid;
+}
+
+/* Adding 0.0 turns -0.0 into 0.0. */
+CADT_FN cadt_point cadt_scale_point(CADT_GLOBAL const cadt_set* set, cadt_point p) {
+  p.x = p.x * set->factor * set->factor_again + 0.0;
+  p.y = p.y * set->factor * set->factor_again + 0.0;
+  return p;
+}
+
+CADT_FN double cadt_power_of_two(cadt_i32 exponent) {
+  return cadt_double_of_bits(CADT_CAST(cadt_u64, exponent + 1023) << 52);
+}
+
+/* Grid and factors of a set from the row of its points: coordinates become multiples of 2^-240 below 1, if that is
+ * exact. */
+CADT_FN cadt_set cadt_set_from_bounds(const cadt_bounds_row* row, cadt_u32 levels, cadt_u32 wide) {
+  cadt_set s;
+  const cadt_i32 exponent = wide || row->high < row->low ? 0 : 4096 - CADT_CAST(cadt_i32, row->high);
+  s.factor = cadt_power_of_two(exponent / 2);
+  s.factor_again = cadt_power_of_two(exponent - exponent / 2);
+  s.half_min_x = 0.5 * (row->min_x * s.factor * s.factor_again);
+  s.half_min_y = 0.5 * (row->min_y * s.factor * s.factor_again);
+  const double width = 0.5 * (row->max_x * s.factor * s.factor_again) - s.half_min_x;
+  const double height = 0.5 * (row->max_y * s.factor * s.factor_again) - s.half_min_y;
+  const double longer = width > height ? width : height, most = 1e300; /* if all points are equal, or nearly so */
+  s.scale = CADT_CAST(double, 1u << levels) / longer;
+  if (!(s.scale < most)) s.scale = most;
+  s.most_x = width * s.scale;
+  s.most_y = height * s.scale;
+  return s;
+}
+
+/* The table of the sets, by a team for each. `bad`: the first point with a coordinate that is no number. \pre it is
+ * CADT_NONE */
+CADT_KERNEL(cadt_batch_bounds, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* starts,
+            cadt_u32 set_count, cadt_u32 levels, cadt_u32 narrow_span, cadt_u32 grain, CADT_GLOBAL cadt_set* sets,
+            CADT_GLOBAL cadt_u32* states, CADT_GLOBAL cadt_u32* bad) {
+  CADT_TEAM_MEMORY cadt_bounds_row lanes[CADT_BOUNDS_LANES];
+  CADT_FOR_TEAMS(s, set_count, grain) {
+    const cadt_u32 begin = starts[s];
+    cadt_bounds_row row = cadt_bounds_of_nothing();
+    cadt_span span;
+    cadt_span_clear(&span);
+    CADT_TEAM_FOR(j, starts[s + 1u] - begin) {
+      if (!cadt_bounds_add_point(&row, &span, points[begin + j], begin + j)) break;
+    }
+    cadt_bounds_close(&row, &span);
+    cadt_bounds_of_team(lanes, row);
+    if (cadt_team_lane == 0u) {
+      row = lanes[0];
+      const cadt_u32 wide = row.high > row.low && row.high - row.low > narrow_span ? 1u : 0u;
+      sets[s] = cadt_set_from_bounds(&row, levels, wide);
+      states[s] = wide ? CADT_SET_WIDE : CADT_SET_BATCHED;
+      if (row.bad != CADT_NONE) cadt_min_relaxed(bad, row.bad);
+    }
+    CADT_TEAM_SYNC();
+  }
+}
+
+/* Sort keys. `scaled`: the points are so already. */
+CADT_KERNEL(cadt_batch_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* starts,
+            cadt_u32 set_count, CADT_GLOBAL const cadt_set* sets, cadt_u32 levels, cadt_u32 scaled,
+            CADT_GLOBAL cadt_u32* keys, cadt_u32 n, cadt_u32 grain) {
+  CADT_FOR(i, n, grain) {
+    const cadt_u32 set = cadt_set_of(starts, set_count, i);
+    const cadt_key_grid grid = cadt_grid_of_set(sets, set, levels);
+    const cadt_point p = scaled ? points[i] : cadt_scale_point(sets + set, points[i]);
+    const cadt_point f = cadt_clamp_to_grid(&grid, cadt_to_grid(&grid, p));
+    keys[i] = cadt_cell_key(&grid, CADT_CAST(cadt_u32, f.x), CADT_CAST(cadt_u32, f.y), levels);
+  }
+}
+
+/* Points in sorted order, scaled. */
+CADT_KERNEL(cadt_batch_gather, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* order,
+            CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, CADT_GLOBAL const cadt_set* sets,
+            CADT_GLOBAL cadt_point* sorted, cadt_u32 n, cadt_u32 grain) {
+  CADT_FOR(i, n, grain) {
+    /* place i is one of the set that has point i */
+    sorted[i] = cadt_scale_point(sets + cadt_set_of(starts, set_count, i), points[order[i]]);
+  }
+}
+
+/* The first positions of the sets among distinct points. `ranks`: scan of 1 for each that is the first of its kind. */
+CADT_KERNEL(cadt_batch_starts, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_u32* starts,
+            cadt_u32 set_count, cadt_u32 n, cadt_u32 distinct, cadt_u32 grain, CADT_GLOBAL cadt_u32* first) {
+  CADT_FOR(s, set_count + 1u, grain) { first[s] = starts[s] < n ? ranks[starts[s]] : distinct; }
+}
+
+/* What is to be done with each set, by a team for each: flat ones have fewer than three points or all on a line, those
+ * with more than `most` are alone. */
+CADT_KERNEL(cadt_batch_classify, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* starts,
+            cadt_u32 set_count, cadt_u32 most, cadt_u32 grain, CADT_GLOBAL cadt_u32* states) {
+  CADT_TEAM_MEMORY cadt_u32 turns;
+  cadt_counters counters;
+  cadt_counters_clear(&counters);
+  CADT_FOR_TEAMS(s, set_count, grain) {
+    const cadt_u32 begin = starts[s], count = starts[s + 1u] - begin, wide = states[s];
+    if (cadt_team_lane == 0u) turns = 0u;
+    CADT_TEAM_SYNC();
+    for (cadt_u32 j = 2u; !wide && j < count; j += cadt_team_lanes) {
+      const cadt_u32 k = j + cadt_team_lane;
+      if (k < count && cadt_orientation(points[begin], points[begin + 1u], points[begin + k], &counters) != 0)
+        cadt_team_add(&turns, 1u);
+      CADT_TEAM_SYNC();
+      const cadt_u32 found = turns;
+      CADT_TEAM_SYNC();
+      if (found) break;
+    }
+    if (cadt_team_lane == 0u && !wide)
+      states[s] = turns == 0u ? CADT_SET_FLAT : (count > most ? CADT_SET_INDIVIDUAL : CADT_SET_BATCHED);
+    CADT_TEAM_SYNC();
+  }
+}
+
+/* The vertices without a star of sets that are together: 1 each, and a 0 at the end. The stars of all have `row` words
+ * each: where they begin. */
+CADT_KERNEL(cadt_batch_unproven, CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* starts,
+            cadt_u32 set_count, CADT_GLOBAL const cadt_u32* states, cadt_u32 n, cadt_u32 grain, cadt_u32 row,
+            CADT_GLOBAL cadt_u32* unproven, CADT_GLOBAL cadt_u32* begins) {
+  if (cadt_item == 0u) unproven[n] = 0u;
+  CADT_FOR(v, n, grain) {
+    unproven[v] = sizes[v] == 0u && states[cadt_set_of(starts, set_count, v)] == CADT_SET_BATCHED ? 1u : 0u;
+    begins[v] = v * row;
+  }
+}
+
+/* Places of the flagged. `ranks` is the scan of the flags. */
+CADT_KERNEL(cadt_batch_list, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_u32* list, cadt_u32 n,
+            cadt_u32 grain) {
+  CADT_FOR(v, n, grain) {
+    if (ranks[v + 1u] != ranks[v]) list[ranks[v]] = v;
+  }
+}
+
+/* Whether the records of the sets begin where they should: 2 a vertex. Contradicting stars have another number. */
+CADT_KERNEL(cadt_batch_check, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, CADT_GLOBAL const cadt_u32* bases,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* wrong) {
+  CADT_FOR(s, set_count + 1u, grain) {
+    if (bases[starts[s]] != 2u * starts[s]) cadt_add_relaxed(wrong, 1u);
+  }
+}
+
+/* The points of one set. */
+CADT_KERNEL(cadt_batch_extract, CADT_GLOBAL const cadt_point* points, cadt_u32 begin, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_point* to) {
+  CADT_FOR(i, count, grain) { to[i] = points[begin + i]; }
+}
+
+/* From positions and records of a set to those of all. */
+CADT_FN void cadt_move_triangle(CADT_GLOBAL cadt_u32* word, cadt_u32 begin) {
+  for (cadt_u32 k = 0u; k < 3u; ++k) {
+    if (word[k] != CADT_GHOST) word[k] += begin;
+    word[CADT_WORD_HALF_EDGE + k] += CADT_HALF_EDGE(2u * begin, 0u);
+  }
+}
+
+/* Puts the mesh of one set at its place. Its vertices are those of `positions` in the set. */
+CADT_KERNEL(cadt_batch_store, CADT_GLOBAL const cadt_locked_triangle* from, CADT_GLOBAL const cadt_u32* positions,
+            cadt_u32 slots, cadt_u32 begin, cadt_u32 grain, CADT_GLOBAL cadt_locked_triangle* to) {
+  CADT_FOR(t, slots, grain) {
+    cadt_locked_triangle r = from[t];
+    for (cadt_u32 k = 0u; r.word[CADT_WORD_LOCK] != 0u && k < 3u; ++k)
+      if (r.word[k] != CADT_GHOST) r.word[k] = positions[r.word[k]];
+    to[2u * begin + t] = r;
+    cadt_move_triangle(to[2u * begin + t].word, begin);
+  }
+}
+
+/* values[i] -= by[set of element i / row], but for CADT_NONE. */
+CADT_KERNEL(cadt_batch_shift, CADT_GLOBAL cadt_u32* values, cadt_u32 first, cadt_u32 count, cadt_u32 row,
+            CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, CADT_GLOBAL const cadt_u32* by, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 down = by[cadt_set_of(starts, set_count, i)];
+    for (cadt_u32 k = 0u; k < row; ++k) {
+      const cadt_u32 at = row * (first + i) + k, value = values[at];
+      if (value != CADT_NONE) values[at] = value - down;
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/batch/batch_mesh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "common/driver/counters.hpp"
+#include "common/driver/device_text.hpp"
+#include "common/stars/local_stars.hpp"
+#include "common/stars/wrap.hpp"
+
+namespace cadt {
+namespace {
+
+using namespace device_text;
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+
+/// Words a vertex for stars with more neighbours than fit into a row. Those of more than 12 are less than 3.9 a vertex
+/// together, since all are 6 on average and none is below 3.
+constexpr std::size_t long_star_words = 4;
+
+class BatchStage {
+ public:
+  BatchStage(Context& ctx, SortedBatch& sets)
+      : ctx_(ctx),
+        launch_(ctx.launcher),
+        sets_(sets),
+        order_(sets.order),
+        n_(order_.distinct),
+        count_(static_cast<std::uint32_t>(n_)),
+        set_count_(static_cast<std::uint32_t>(sets.starts.count)) {}
+
+  [[nodiscard]] BatchMesh build() {
+    read_sets();
+    result_.mesh.slots = 2 * n_;
+    // One core is better at insertion, where it has a set for itself.
+    const bool insertion = ctx_.device.shape().contiguous && ctx_.options.strategy != Strategy::stars;
+    if (batched_ != 0 && !insertion) {
+      make_stars();
+      wrap();
+      count_triangles();
+    }
+    result_.mesh.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not in use
+    if (batched_ != 0) {
+      insertion ? insert() : write_records();
+      certify();
+    }
+    build_individual();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t points_of(std::size_t set) const noexcept {
+    return result_.positions[set + 1] - result_.positions[set];
+  }
+
+  void read_sets() {
+    states_.resize(set_count_);
+    result_.positions.resize(set_count_ + std::size_t{1});
+    ctx_.device.read(*sets_.positions(), 0, result_.positions.data(), result_.positions.size() * word);
+    read_states();
+    for (std::size_t s = 0; s < set_count_; ++s) {
+      if (states_[s] != CADT_SET_BATCHED) continue;
+      ++batched_;
+      vertices_ += points_of(s);
+    }
+  }
+
+  void read_states() { ctx_.device.read(*sets_.states, 0, states_.data(), states_.size() * word); }
+
+  void make_stars() {
+    const unsigned levels = order_.grid.levels();
+    const LaunchGrid c = launch_.grid(n_);
+    Allocation keys = std::move(order_.keys), none;
+    if (!keys) {
+      keys = ctx_.memory.allocate(n_ * word);
+      launch_.run<KernelId::cadt_batch_keys>(c.items, order_.points, sets_.positions(), set_count_, sets_.sets,
+                                             static_cast<std::uint32_t>(levels), 1U, keys, count_, c.grain);
+    }
+    const std::optional<TileList> tiles = make_tiles(ctx_, {keys, none}, n_, levels, least_points_of_tile);
+    ctx_.end_phase("tiles");
+    ctx_.check("stars", 0.1);
+    stars_.star_vertices = ctx_.memory.allocate(n_ * (CADT_STAR_DEGREE + long_star_words) * word);
+    stars_.sizes = ctx_.memory.allocate_zeros(n_ * word);
+    if (tiles)
+      prove_stars(ctx_, order_, {keys, none}, sets_.sets, sets_.states, *tiles, false, stars_).add_to(ctx_.statistics);
+    ctx_.end_phase("stars");
+    ctx_.check("stars", 0.4);
+  }
+
+  /// The stars that are not proven.
+  void wrap() {
+    const LaunchGrid c = launch_.grid(n_);
+    begins_ = ctx_.memory.allocate(n_ * word);
+    Allocation ranks = ctx_.memory.allocate((n_ + 1) * word);
+    launch_.run<KernelId::cadt_batch_unproven>(c.items, stars_.sizes, sets_.positions(), set_count_, sets_.states,
+                                               count_, c.grain, static_cast<std::uint32_t>(CADT_STAR_DEGREE), ranks,
+                                               begins_);
+    launch_.scan(ranks, n_ + 1);
+    unproven_ = launch_.read_word(ranks, n_);
+    ctx_.statistics.proven_stars += vertices_ - unproven_;
+    if (unproven_ == 0) return;
+    const Allocation list = ctx_.memory.allocate(std::size_t{unproven_} * word);
+    launch_.run<KernelId::cadt_batch_list>(c.items, ranks, list, count_, c.grain);
+    ranks.release();
+    const Allocation found = launch_.zeros(CADT_WRAP_WORDS);
+    wrap_batch(ctx_, order_.points, n_, {list, unproven_, sets_.positions(), sets_.states, set_count_},
+               {stars_.star_vertices, begins_, stars_.sizes, found, CADT_STAR_DEGREE,
+                n_ * (CADT_STAR_DEGREE + long_star_words)});
+    std::array<std::uint32_t, CADT_WRAP_FOUND> words{};
+    ctx_.device.read(*found, 0, words.data(), sizeof words);
+    ctx_.statistics.exact_orientations += words[3];
+    ctx_.statistics.exact_incircles += words[4];
+    ctx_.statistics.ties += words[5];
+    if (words[0] > n_ * long_star_words)
+      throw InternalError("the wrapped stars have " + std::to_string(words[0]) +
+                          " neighbours beyond their rows; please report this with the input");
+    ctx_.end_phase("wrap");
+    ctx_.check("stars", 0.6);
+  }
+
+  void count_triangles() {
+    bases_ = ctx_.memory.allocate((n_ + 1) * word);
+    const LaunchGrid c = launch_.grid(n_), each = launch_.grid(set_count_ + std::size_t{1});
+    launch_.run<KernelId::cadt_batch_counts>(c.items, stars_.star_vertices, begins_, stars_.sizes, sets_.positions(),
+                                             set_count_, sets_.states, count_, c.grain, bases_);
+    launch_.scan(bases_, n_ + 1);
+    const Allocation wrong = launch_.zeros(1);
+    launch_.run<KernelId::cadt_batch_check>(each.items, sets_.positions(), set_count_, bases_, each.grain, wrong);
+    if (const std::uint32_t sets = launch_.read_word(wrong, 0); sets != 0)
+      throw InternalError("stars contradict each other in or before " + std::to_string(sets) +
+                          " sets; please report this with the input");
+    read_states();
+    ctx_.statistics.wrapped_stars += unproven_;
+    for (const std::uint32_t state : states_) ctx_.statistics.wrapped_stars -= state / CADT_SET_FAILURE;
+  }
+
+  void write_records() {
+    const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
+    const Allocation edges;  // there are no hubs
+    launch_.run<KernelId::cadt_wrap_locked>(shares.items, stars_.star_vertices, begins_, stars_.sizes, bases_, edges,
+                                            0U, 0U, 0U, 0U, count_, shares.grain, result_.mesh.locked);
+    stars_ = {};
+    begins_.release();
+    bases_.release();
+    ctx_.end_phase("records");
+    ctx_.check("join", 0.7);
+  }
+
+  void insert() {
+    order_.keys.release();
+    const Counters counters(ctx_);
+    const Allocation vertex_to_triangle = ctx_.memory.allocate(n_ * word), deferred_counts = launch_.zeros(3);
+    // Small pieces, since sets are not alike.
+    const std::uint32_t pieces = 16 * ctx_.device.shape().parallelism, grain = std::min(set_count_ / pieces, 256U) + 1;
+    launch_.run<KernelId::cadt_batch_insert>((set_count_ - 1) / grain + 1, result_.mesh.locked, order_.points,
+                                             vertex_to_triangle, sets_.positions(), set_count_, sets_.states, grain,
+                                             deferred_counts, counters);
+    counters.collect(ctx_.statistics);
+    read_states();
+    ctx_.end_phase("insert");
+    ctx_.check("insert", 0.7);
+  }
+
+  void certify() {
+    std::uint64_t edges = 0;
+    for (std::size_t s = 0; s < set_count_; ++s) {
+      if (states_[s] != CADT_SET_BATCHED) continue;
+      edges += 3 * std::uint64_t{points_of(s)} - 3;
+      ++ctx_.statistics.batched_sets;
+    }
+    result_.mesh = sweep_legality(ctx_, order_, std::move(result_.mesh.locked), edges);
+  }
+
+  /// One by one: sets that are alone from the beginning, or one of whose stars was not found.
+  void build_individual() {
+    result_.flat.assign(set_count_, false);
+    for (std::size_t s = 0; s < set_count_; ++s) {
+      if (states_[s] == CADT_SET_BATCHED) continue;
+      const std::uint32_t size = points_of(s), begin = result_.positions[s];
+      if (size < 3 || states_[s] == CADT_SET_FLAT) {
+        result_.flat[s] = true;
+        continue;
+      }
+      ctx_.check("insert", 0.8);
+      launch_.set_variant(states_[s] == CADT_SET_WIDE ? KernelVariant::wide : narrow_variant(ctx_.options.statistics));
+      ctx_.statistics.wide_arithmetic = ctx_.statistics.wide_arithmetic || states_[s] == CADT_SET_WIDE;
+      SortedPoints one;
+      one.distinct = size;
+      one.points = ctx_.memory.allocate(size * sizeof(cadt_point));
+      one.input_ids = ctx_.memory.allocate(size * word);  // positions
+      const LaunchGrid c = launch_.grid(size);
+      launch_.run<KernelId::cadt_identity>(c.items, one.input_ids, size, c.grain);
+      launch_.run<KernelId::cadt_batch_extract>(c.items, order_.points, begin, size, c.grain, one.points);
+      const Mesh mesh = insert_incrementally(ctx_, one);
+      launch_.set_variant(narrow_variant(ctx_.options.statistics));
+      result_.flat[s] = mesh.flat;
+      if (mesh.flat) continue;
+      const LaunchGrid slots = launch_.grid(mesh.slots);
+      launch_.run<KernelId::cadt_batch_store>(slots.items, mesh.locked, one.input_ids,
+                                              static_cast<std::uint32_t>(mesh.slots), begin, slots.grain,
+                                              result_.mesh.locked);
+    }
+  }
+
+  Context& ctx_;
+  Launcher& launch_;
+  SortedBatch& sets_;
+  SortedPoints& order_;
+  std::size_t n_;
+  std::uint32_t count_, set_count_, unproven_ = 0;
+  std::size_t batched_ = 0, vertices_ = 0;  ///< sets that are together at first, and their vertices
+  std::vector<std::uint32_t> states_;
+  Stars stars_;
+  Allocation begins_, bases_;
+  BatchMesh result_;
+};
+
+}  // namespace
+
+BatchMesh build_batch(Context& ctx, SortedBatch& sets) { return BatchStage(ctx, sets).build(); }
+
+}  // namespace cadt

@@ -1,0 +1,357 @@
+// SPDX-License-Identifier: Apache-2.0
+// Calls with several sets of points. Neighbouring small sets go together; a large one is a call of its own, but for the
+// arrays of the result.
+#include <cadt/triangulator.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/batch/batch_mesh.hpp"
+#include "common/batch/sort_batch.hpp"
+#include "common/batch/triangulation_batch.hpp"
+#include "common/driver/registry.hpp"
+#include "common/driver/session.hpp"
+#include "common/output/renumber.hpp"
+#include "common/points/device_points.hpp"
+#include "common/points/import.hpp"
+#include "common/stars/mesh_from_stars.hpp"
+#include "common/stars/wrap.hpp"
+
+namespace cadt {
+namespace {
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+/// Together they fill any card, and what they need besides the result is bounded.
+constexpr std::size_t most_points_batched = std::size_t{1} << 24, fewest_points_batched = std::size_t{1} << 16;
+constexpr std::size_t most_sets_batched = std::size_t{1} << 20;
+
+/// Points of a set that goes together with others at most. A core inserts each by itself: longer ones are better
+/// shared, and bounds the time to a cancel. None without double precision: there each set is a call of its own.
+std::size_t most_points_of_set(const Device& device) noexcept {
+  if (takes_floats_only(device)) return 0;
+  constexpr std::size_t most_of_core = 8192;
+  return device.shape().contiguous ? most_of_core : most_wrapped(device);
+}
+
+/// Whether small sets go together at all.
+bool prefers_batched(const Options& options, const Device& device) noexcept {
+  const bool insertion = device.shape().contiguous || options.strategy != Strategy::locks;
+  return insertion && options.stabilize == Stabilize::off;
+}
+
+/// Device bytes of sets that go together, the result left out (docs/performance.md).
+constexpr std::size_t bytes_batched(std::size_t points, std::size_t sets) {
+  return (std::size_t{1} << 16) + 176 * points + 1300 * sets;
+}
+
+/// Triangles that n points have at most.
+constexpr std::size_t most_triangles(std::size_t n) { return n < 3 ? 0 : 2 * n - 5; }
+
+std::size_t most_triangles(std::span<const std::size_t> offsets) {
+  std::size_t sum = 0;
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) sum += most_triangles(offsets[s + 1] - offsets[s]);
+  return sum;
+}
+
+void require_offsets(std::span<const std::size_t> offsets, std::size_t points) {
+  if (offsets.empty() || offsets.front() != 0)
+    throw InputError("the offsets of the sets must begin with 0: give one number more than there are sets", 0);
+  for (std::size_t s = 1; s < offsets.size(); ++s)
+    if (offsets[s] < offsets[s - 1])
+      throw InputError("offset " + std::to_string(s) + " of the sets is " + std::to_string(offsets[s]) +
+                           ", below the one before: they must not descend",
+                       s);
+  if (offsets.back() != points)
+    throw InputError("the offsets of the sets end with " + std::to_string(offsets.back()) + ", but there are " +
+                         std::to_string(points) + " points",
+                     offsets.size() - 1);
+}
+
+/// Some neighbouring points.
+PointsView slice(const PointsView& points, std::size_t first, std::size_t size) {
+  const std::size_t stride = points.interleaved() ? 2 : 1;
+  const auto cut = [&]<class Real>(const void* memory, const Real*) {
+    return std::span(static_cast<const Real*>(memory) + first * stride, size * stride);
+  };
+  const auto view = [&]<class Real>(const Real* tag) {
+    const auto x = cut(points.x_data(), tag);
+    return points.interleaved() ? PointsView(x) : PointsView(x, cut(points.y_data(), tag));
+  };
+  return points.scalar_size() == sizeof(double) ? view(static_cast<const double*>(nullptr))
+                                                : view(static_cast<const float*>(nullptr));
+}
+
+DevicePoints slice(DevicePoints points, std::size_t first, std::size_t size) {
+  points.skip += first;
+  points.size = size;
+  return points;
+}
+
+template <class Points>
+class BatchBuilder2 {
+ public:
+  BatchBuilder2(Triangulator::State& state, Context& ctx, const Points& points, std::span<const std::size_t> offsets,
+                std::size_t most_points, BatchShape& shape, const Allocation& triangles, const Allocation& neighbors)
+      : state_(state),
+        ctx_(ctx),
+        points_(points),
+        offsets_(offsets),
+        most_points_(most_points),
+        most_batched_(most_points_of_set(ctx.device)),
+        shape_(shape),
+        triangles_(triangles),
+        neighbors_(neighbors) {}
+
+  void run() {
+    const std::size_t sets = offsets_.size() - 1;
+    for (std::size_t first = 0, end = 0; first < sets; first = end) {
+      end = first + 1;
+      const std::size_t begin = offsets_[first];
+      const bool large = offsets_[end] - begin > most_batched_;
+      while (!large && end < sets && offsets_[end + 1] - begin <= most_points_ && end - first < most_sets_batched &&
+             offsets_[end + 1] - offsets_[end] <= most_batched_)
+        ++end;
+      const std::size_t size = offsets_[end] - begin;
+      if (size != 0)
+        ctx_.begin_share(static_cast<double>(begin) / static_cast<double>(offsets_.back()),
+                         static_cast<double>(size) / static_cast<double>(offsets_.back()));
+      if (size == 0)
+        add_empty(end - first);
+      else if (large)
+        add_individual(first, begin, size);
+      else
+        add_batched(first, end);
+    }
+  }
+
+ private:
+  void add_empty(std::size_t sets) {
+    for (std::size_t s = 0; s < sets; ++s) close_set(shape_.triangles.back(), 0, false);
+  }
+
+  /// The next set: where its triangles end, its distinct points.
+  void close_set(std::size_t triangles, std::size_t distinct, bool flat) {
+    shape_.triangles.push_back(triangles);
+    shape_.duplicates.push_back(shape_.duplicate_list.size());
+    shape_.dimensions.push_back(distinct == 0 ? -1 : distinct == 1 ? 0 : flat ? 1 : 2);
+    ctx_.statistics.distinct += distinct;
+  }
+
+  [[nodiscard]] Allocation import(std::size_t begin, std::size_t size) {
+    ctx_.check("sort", 0);
+    Allocation input = import_points(ctx_, slice(points_, begin, size));
+    ctx_.end_phase("upload");
+    return input;
+  }
+
+  /// The duplicates of the points just sorted.
+  struct Pairs {
+    std::vector<std::uint32_t> points, representatives;
+  };
+  [[nodiscard]] Pairs read_pairs(const SortedPoints& order, std::size_t size) const {
+    const std::size_t count = size - order.distinct;
+    Pairs pairs{std::vector<std::uint32_t>(count), std::vector<std::uint32_t>(count)};
+    if (count == 0) return pairs;
+    ctx_.device.read(*order.duplicates, 0, pairs.points.data(), count * word);
+    ctx_.device.read(*order.representatives, 0, pairs.representatives.data(), count * word);
+    return pairs;
+  }
+  void add_pairs(const Pairs& pairs, std::size_t begin, std::size_t end, std::uint32_t first) {
+    for (std::size_t i = begin; i < end; ++i)
+      shape_.duplicate_list.push_back({static_cast<std::int32_t>(pairs.points[i] - first),
+                                       static_cast<std::int32_t>(pairs.representatives[i] - first)});
+  }
+
+  [[nodiscard]] Numbering emit(const Mesh& mesh, const SortedPoints& order, std::size_t size, const SetStarts* starts,
+                               std::size_t room) {
+    ctx_.check("collect", 0.9);
+    const std::size_t first = shape_.triangles.back();
+    Numbering numbering = renumber(ctx_, mesh, order.input_ids, size, starts);
+    if (numbering.triangles > room)
+      throw InternalError("there are " + std::to_string(numbering.triangles) + " triangles instead of " +
+                          std::to_string(room) + " at most; please report this with the input");
+    ctx_.check("collect", 0.95);
+    write_triangles(ctx_, mesh, order.input_ids, numbering, triangles_, neighbors_, first);
+    if (starts != nullptr) renumber_within_sets(ctx_, numbering, *starts, triangles_, neighbors_, first);
+    ctx_.end_phase("collect");
+    return numbering;
+  }
+
+  void add_individual(std::size_t set, std::size_t begin, std::size_t size) {
+    const bool stars = prefers_stars(ctx_.options, ctx_.device);
+    SortedPoints order = sort_large(set, begin, size, stars);
+    add_pairs(read_pairs(order, size), 0, size - order.distinct, 0);
+    ctx_.statistics.wide_arithmetic = ctx_.statistics.wide_arithmetic || order.wide;
+    const Mesh mesh = stars ? build_mesh(ctx_, order) : insert_incrementally(ctx_, order);
+    order.points.release();
+    std::size_t triangles = 0;
+    if (!mesh.flat) triangles = emit(mesh, order, size, nullptr, most_triangles(size)).triangles;
+    close_set(shape_.triangles.back() + triangles, order.distinct, mesh.flat);
+  }
+
+  [[nodiscard]] SortedPoints sort_large(std::size_t set, std::size_t begin, std::size_t size, bool stars) {
+    try {
+      return sort_spatially(ctx_, import(begin, size), size, stars);
+    } catch (const InputError& error) {
+      throw InputError("in set " + std::to_string(set) + ": " + error.what(), begin + error.index());
+    }
+  }
+
+  void add_batched(std::size_t first_set, std::size_t end_set) {
+    const std::size_t begin = offsets_[first_set], size = offsets_[end_set] - begin, sets = end_set - first_set;
+    std::vector<std::uint32_t> starts(sets + 1);
+    for (std::size_t s = 0; s <= sets; ++s) starts[s] = static_cast<std::uint32_t>(offsets_[first_set + s] - begin);
+    const bool together = prefers_batched(ctx_.options, ctx_.device);
+    SortedBatch order = sort_batch(ctx_, import(begin, size), starts, together ? most_batched_ : 0, begin, first_set);
+    const Pairs pairs = read_pairs(order.order, size);
+    BatchMesh mesh = build_batch(ctx_, order);
+    order.order.points.release();
+    const std::size_t before = shape_.triangles.back();
+    const std::size_t room = most_triangles(std::span(offsets_).subspan(first_set, sets + 1));
+    const Numbering numbering = emit(mesh.mesh, order.order, size, &order.starts, room);
+    std::vector<std::uint32_t> ends(sets + 1);
+    ctx_.device.read(*numbering.set_starts, 0, ends.data(), ends.size() * word);
+    for (std::size_t s = 0; s < sets; ++s) {
+      const std::size_t duplicates = starts[s] - mesh.positions[s];
+      add_pairs(pairs, duplicates, starts[s + 1] - mesh.positions[s + 1], starts[s]);
+      close_set(before + ends[s + 1], mesh.positions[s + 1] - mesh.positions[s], mesh.flat[s]);
+    }
+  }
+
+  Triangulator::State& state_;
+  Context& ctx_;
+  const Points& points_;
+  std::span<const std::size_t> offsets_;
+  std::size_t most_points_, most_batched_;
+  BatchShape& shape_;
+  const Allocation& triangles_;
+  const Allocation& neighbors_;
+};
+
+/// Points that go together at most, so that there is memory for them besides `results` bytes. \throws OutOfMemory
+/// before any work
+std::size_t choose_size(Triangulator::State& state, std::span<const std::size_t> offsets, std::size_t results) {
+  const std::size_t n = offsets.back(), sets = offsets.size() - 1, together = most_points_of_set(*state.device);
+  if (n <= state.known_batch_points && state.options.max_memory == 0) return most_points_batched;
+  std::size_t largest = 0;
+  for (std::size_t s = 0; s < sets; ++s) largest = std::max(largest, offsets[s + 1] - offsets[s]);
+  if (largest > together) {
+    require_buffer(state, record_bytes(largest));
+    state.memory.require(results + least_bytes(largest, true));
+  }
+  std::size_t most = most_points_batched;
+  const auto bytes = [&] {
+    const std::size_t points = std::min(n, most);
+    return results + bytes_batched(points, std::min({sets, points, most_sets_batched}));
+  };
+  while (most > fewest_points_batched &&
+         !(state.memory.allows(bytes()) && fits_buffers(state, record_bytes(std::min(n, most)))))
+    most /= 2;
+  state.memory.require(bytes());
+  return most;
+}
+
+/// \throws OptionError, InputError, LimitError
+void require_batch(const Options& options, std::span<const std::size_t> offsets, std::size_t points) {
+  require_size(points);
+  require_offsets(offsets, points);
+  if (options.watch) throw OptionError("watch", "shows one mesh; there is none in a call with several sets");
+}
+
+template <class Points>
+void run_batch(Triangulator::State& state, Context& ctx, const Points& points, std::span<const std::size_t> offsets,
+               std::size_t most_points, BatchShape& shape, const Allocation& triangles, const Allocation& neighbors) {
+  shape.points.assign(offsets.begin(), offsets.end());
+  shape.statistics.sets = offsets.size() - 1;
+  BatchBuilder2<Points>(state, ctx, points, offsets, most_points, shape, triangles, neighbors).run();
+  if (state.options.max_memory == 0)
+    state.known_batch_points = std::max(state.known_batch_points, std::min(offsets.back(), most_points));
+}
+
+TriangulationBatch batch_to_host(Triangulator::State& state, PointsView points, std::span<const std::size_t> offsets) {
+  require_batch(state.options, offsets, points.size());
+  auto result = std::make_unique<TriangulationBatch::Data>();
+  BatchShape& shape = result->shape;
+  begin_call(state, points.size(), shape.statistics);
+  const std::size_t values = 3 * most_triangles(offsets), bytes = values * word;
+  const std::size_t most = choose_size(state, offsets, is_host(*state.device) ? 0 : 2 * bytes);
+  Context ctx(*state.device, state.memory, state.options, shape.statistics);
+  result->triangles = make_words(values);
+  result->neighbors = make_words(values);
+  Allocation triangles, neighbors;
+  if (bytes != 0) {
+    triangles = ctx.memory.export_to(result->triangles.get(), bytes);
+    neighbors = ctx.memory.export_to(result->neighbors.get(), bytes);
+  }
+  const bool direct = bytes == 0 || (triangles && neighbors);
+  if (!direct) {
+    triangles = ctx.memory.allocate(bytes);
+    neighbors = ctx.memory.allocate(bytes);
+  }
+  run_batch(state, ctx, points, offsets, most, shape, triangles, neighbors);
+  if (const std::size_t used = 3 * shape.triangles.back() * word; !direct && used != 0) {
+    ctx.device.read(*triangles, 0, result->triangles.get(), used);
+    ctx.device.read(*neighbors, 0, result->neighbors.get(), used);
+  }
+  ctx.end_phase("copy");
+  ctx.begin_share(0, 1);
+  end_call(state, ctx, false);
+  return TriangulationBatch(std::move(result));
+}
+
+DeviceTriangulationBatch batch_to_device(const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points,
+                                         std::span<const std::size_t> offsets) {
+  require_batch(state->options, offsets, points.size);
+  auto data = std::make_unique<DeviceTriangulationBatch::Data>();
+  data->state = state;
+  BatchShape& shape = data->shape;
+  begin_call(*state, points.size, shape.statistics);
+  const std::size_t bytes = 3 * most_triangles(offsets) * word;
+  const std::size_t most = choose_size(*state, offsets, 2 * bytes + offsets.size() * word);
+  Context ctx(*state->device, state->memory, state->options, shape.statistics);
+  if (bytes != 0) {
+    data->triangles = ctx.memory.allocate(bytes);
+    data->neighbors = ctx.memory.allocate(bytes);
+  }
+  data->offsets = ctx.memory.allocate(offsets.size() * word);
+  run_batch(*state, ctx, points, offsets, most, shape, data->triangles, data->neighbors);
+  const std::vector<std::uint32_t> words(shape.triangles.begin(), shape.triangles.end());
+  ctx.device.write(*data->offsets, 0, words.data(), words.size() * word);
+  ctx.end_phase("collect");
+  ctx.begin_share(0, 1);
+  end_call(*state, ctx, true);
+  return DeviceTriangulationBatch(std::move(data));
+}
+
+}  // namespace
+
+TriangulationBatch Triangulator::triangulate_batch(PointsView points, std::span<const std::size_t> offsets) {
+  return batch_to_host(*state_, points, offsets);
+}
+
+DeviceTriangulationBatch Triangulator::triangulate_batch(const DevicePoints& points,
+                                                         std::span<const std::size_t> offsets) {
+  return batch_to_device(state_, points, offsets);
+}
+
+std::future<TriangulationBatch> Triangulator::triangulate_batch_async(PointsView points,
+                                                                      std::span<const std::size_t> offsets) {
+  return std::async(std::launch::async,
+                    [state = state_, points, offsets] { return batch_to_host(*state, points, offsets); });
+}
+
+std::future<DeviceTriangulationBatch> Triangulator::triangulate_batch_async(const DevicePoints& points,
+                                                                            std::span<const std::size_t> offsets) {
+  return std::async(std::launch::async,
+                    [state = state_, points, offsets] { return batch_to_device(state, points, offsets); });
+}
+
+TriangulationBatch triangulate_batch(PointsView points, std::span<const std::size_t> offsets, const Options& options) {
+  require_batch(options, offsets, points.size());
+  Triangulator::State state(options, open_device(options), false);
+  return batch_to_host(state, points, offsets);
+}
+
+}  // namespace cadt

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/certify/certify.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "common/driver/counters.hpp"
+#include "common/driver/device_text.hpp"
+
+namespace cadt {
+
+using namespace device_text;
+
+namespace {
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+
+bool counts_work(const Context& ctx) { return ctx.options.statistics != StatisticsDetail::none; }
+
+}  // namespace
+
+std::size_t certify_words(const Context& ctx) {
+  const std::size_t rows = counts_work(ctx) ? 1 + std::size_t{CADT_COUNTER_ROWS} : 1;
+  return rows * CADT_COUNTER_STRIDE;
+}
+
+void launch_certify(Context& ctx, const Allocation& points, const Mesh& mesh, std::size_t begin, std::size_t size,
+                    bool real_in_words, const Allocation& words, std::size_t row) {
+  const LaunchGrid c = ctx.launcher.grid_strided(size);
+  ctx.launcher.run<KernelId::cadt_certify>(
+      c.items, mesh.vertices, mesh.half_edges, points, static_cast<std::uint32_t>(mesh.slots),
+      real_in_words ? CADT_NONE : static_cast<std::uint32_t>(mesh.triangles), static_cast<std::uint32_t>(begin),
+      static_cast<std::uint32_t>(size), c.grain, words, static_cast<std::uint32_t>(row), counts_work(ctx) ? 1U : 0U);
+}
+
+void read_certificate(Context& ctx, std::span<const std::uint32_t> words, std::size_t n) {
+  const std::uint64_t edges = 3 * std::uint64_t{n} - 3;
+  const std::uint32_t examined = words[0], illegal = words[1], wrong = words[2], broken = words[3];
+  if (examined != edges || illegal != 0 || wrong != 0 || broken != 0)
+    throw InternalError("the mesh has " + std::to_string(examined) + " edges, and there should be " +
+                        std::to_string(edges) + "; " + std::to_string(illegal) + " are illegal, " +
+                        std::to_string(wrong) + " have sides that do not fit, " + std::to_string(broken) +
+                        " turn back; please report this with the input");
+  ctx.statistics.legality_sweeps = std::max<std::uint64_t>(ctx.statistics.legality_sweeps, 1);
+  ctx.statistics.certified_edges += examined;
+  if (counts_work(ctx)) add_counters(ctx.statistics, words.subspan(CADT_COUNTER_STRIDE));
+}
+
+void certify_arrays(Context& ctx, const SortedPoints& order, const Mesh& mesh) {
+  std::vector<std::uint32_t> words(certify_words(ctx));
+  const Allocation found = ctx.launcher.zeros(words.size());
+  const std::size_t most = slots_per_launch(ctx.device);
+  for (std::size_t begin = 0; begin < mesh.slots; begin += most) {
+    const std::size_t size = std::min(most, mesh.slots - begin);
+    launch_certify(ctx, order.points, mesh, begin, size, false, found, 0);
+    if (begin + size < mesh.slots) ctx.device.finish();
+    ctx.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(mesh.slots));
+  }
+  ctx.device.read(*found, 0, words.data(), words.size() * word);
+  read_certificate(ctx, words, order.distinct);
+  ctx.end_phase("certify");
+}
+
+}  // namespace cadt

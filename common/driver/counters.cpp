@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/driver/counters.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "common/driver/device_text.hpp"
+
+namespace cadt {
+
+using namespace device_text;
+
+namespace {
+
+/// In the order of CADT_TIME_...
+constexpr std::array<const char*, CADT_TIMES> accounts = {"locate", "claim",     "split", "test",
+                                                          "flip",   "neighbors", "other", "wait"};
+
+static_assert(int{CADT_COUNTERS} <= int{CADT_ROW_TIMES} &&
+              CADT_ROW_TIMES + int{CADT_TIMES} <= int{CADT_COUNTER_STRIDE});
+static_assert(std::tuple_size_v<decltype(Statistics::flips_per_edge)> == CADT_FLIP_BINS);
+
+}  // namespace
+
+Counters::Counters(Context& ctx) : device_(ctx.device) {
+  if (ctx.options.statistics == StatisticsDetail::none) return;
+  buffer_ = ctx.memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
+}
+
+void Counters::collect(Statistics& statistics) const {
+  if (!buffer_) return;
+  std::vector<std::uint32_t> words(static_cast<std::size_t>(CADT_COUNTER_ROWS) * CADT_COUNTER_STRIDE);
+  device_.read(*buffer_, 0, words.data(), words.size() * sizeof words[0]);
+  add_counters(statistics, words);
+}
+
+void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) {
+  std::array<std::uint64_t, CADT_COUNTER_STRIDE> sums{};
+  for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_COUNTER_STRIDE] += words[i];
+  const auto times = std::span(sums).subspan(CADT_ROW_TIMES, CADT_TIMES);
+  const auto all = static_cast<double>(std::accumulate(times.begin(), times.end(), std::uint64_t{0}));
+  // with the star stage there are two: what counts are the threads of the insertion, which is the first
+  for (std::size_t i = statistics.thread_time.size(); all > 0 && i < times.size(); ++i)
+    statistics.thread_time.emplace_back(accounts[i], static_cast<double>(times[i]) / all);
+  statistics.walk_steps += sums[CADT_COUNT_WALK_STEPS];
+  statistics.lock_attempts += sums[CADT_COUNT_LOCK_ATTEMPTS];
+  statistics.lock_failures += sums[CADT_COUNT_LOCK_FAILURES];
+  statistics.invalid_restarts += sums[CADT_COUNT_INVALIDATED];
+  statistics.insert_retries += sums[CADT_COUNT_INSERT_RETRIES];
+  statistics.stale_edges += sums[CADT_COUNT_STALE_EDGES];
+  statistics.deferred_points += sums[CADT_COUNT_DEFERRED_POINTS];
+  statistics.deferred_edges += sums[CADT_COUNT_DEFERRED_EDGES];
+  statistics.splits += sums[CADT_COUNT_SPLITS];
+  statistics.edge_splits += sums[CADT_COUNT_EDGE_SPLITS];
+  statistics.flips += sums[CADT_COUNT_FLIPS];
+  statistics.incircle_tests += sums[CADT_COUNT_INCIRCLE_TESTS];
+  statistics.stabilized_edges += sums[CADT_COUNT_STABILIZED];
+  statistics.orientation_tests += sums[CADT_COUNT_ORIENTATION_TESTS];
+  statistics.exact_orientations += sums[CADT_COUNT_EXACT_ORIENTATIONS];
+  statistics.exact_incircles += sums[CADT_COUNT_EXACT_INCIRCLES];
+  statistics.ties += sums[CADT_COUNT_TIES];
+}
+
+FlipHistogram::FlipHistogram(Context& ctx, bool wanted) : device_(ctx.device) {
+  if (ctx.options.statistics == StatisticsDetail::none || !wanted) return;
+  buffer_ = ctx.memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_FLIP_BINS);
+}
+
+void FlipHistogram::collect(Statistics& statistics, std::uint64_t sides) const {
+  if (!buffer_) return;
+  std::array<std::uint32_t, std::size_t{CADT_COUNTER_ROWS} * CADT_FLIP_BINS> words{};
+  device_.read(*buffer_, 0, words.data(), sizeof words);
+  std::array<std::uint64_t, CADT_FLIP_BINS> sums{};
+  for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_FLIP_BINS] += words[i];
+  if (sides != 0) sums[0] += sides - std::accumulate(sums.begin(), sums.end(), std::uint64_t{0});
+  for (std::size_t i = 0; i < sums.size(); ++i) statistics.flips_per_edge[i] += sums[i] / 2;  // met from both sides
+}
+
+}  // namespace cadt

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/driver/device_triangulation.hpp"
+
+#include <utility>
+
+#include "common/output/renumber.hpp"
+
+namespace cadt {
+namespace {
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+
+void* handle_of(const DeviceTriangulation::Data& data, const Allocation& memory) noexcept {
+  return memory ? data.state->device->handle(*memory) : nullptr;
+}
+
+}  // namespace
+
+void read_duplicates(Device& device, const DeviceTriangulation::Data& from, Triangulation::Data& to) {
+  const std::size_t count = from.duplicate_count;
+  if (count == 0) return;
+  std::vector<std::int32_t> points(count), representatives(count);
+  device.read(*from.duplicate_points, 0, points.data(), count * word);
+  device.read(*from.representatives, 0, representatives.data(), count * word);
+  to.duplicates.resize(count);
+  for (std::size_t i = 0; i < count; ++i) to.duplicates[i] = {points[i], representatives[i]};
+}
+
+void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, bool filled, Triangulation::Data& to) {
+  to.hull = find_hull(ctx, from.triangles, from.neighbors, from.triangle_count, from.hull_size(), from.points);
+  if (filled) return ctx.device.finish();
+  const std::size_t values = 3 * from.triangle_count;
+  if (to.triangles == nullptr) to.triangles = make_words(values);
+  if (to.neighbors == nullptr) to.neighbors = make_words(values);
+  ctx.device.read(*from.triangles, 0, to.triangles.get(), values * word);
+  ctx.device.read(*from.neighbors, 0, to.neighbors.get(), values * word);
+}
+
+DeviceTriangulation::DeviceTriangulation() : data_(std::make_unique<Data>()) {}
+DeviceTriangulation::DeviceTriangulation(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+DeviceTriangulation::~DeviceTriangulation() = default;
+DeviceTriangulation::DeviceTriangulation(DeviceTriangulation&&) noexcept = default;
+DeviceTriangulation& DeviceTriangulation::operator=(DeviceTriangulation&&) noexcept = default;
+
+std::size_t DeviceTriangulation::number_of_points() const noexcept { return data_->points; }
+std::size_t DeviceTriangulation::number_of_triangles() const noexcept { return data_->triangle_count; }
+std::size_t DeviceTriangulation::number_of_duplicates() const noexcept { return data_->duplicate_count; }
+int DeviceTriangulation::dimension() const noexcept { return data_->dimension; }
+const Statistics& DeviceTriangulation::statistics() const noexcept { return data_->statistics; }
+
+void* DeviceTriangulation::triangles() const noexcept { return handle_of(*data_, data_->triangles); }
+void* DeviceTriangulation::neighbors() const noexcept { return handle_of(*data_, data_->neighbors); }
+void* DeviceTriangulation::duplicate_points() const noexcept { return handle_of(*data_, data_->duplicate_points); }
+void* DeviceTriangulation::representatives() const noexcept { return handle_of(*data_, data_->representatives); }
+
+Triangulation DeviceTriangulation::download() const {
+  auto copy = std::make_unique<Triangulation::Data>();
+  copy->points = data_->points;
+  copy->triangle_count = data_->triangle_count;
+  copy->dimension = data_->dimension;
+  copy->statistics = data_->statistics;
+  if (data_->state == nullptr) return Triangulation(std::move(copy));
+  Device& device = *data_->state->device;
+  read_duplicates(device, *data_, *copy);
+  if (data_->triangle_count != 0) {
+    Context ctx(device, data_->state->memory, data_->state->options, copy->statistics);
+    read_mesh(ctx, *data_, false, *copy);
+  }
+  return Triangulation(std::move(copy));
+}
+
+}  // namespace cadt

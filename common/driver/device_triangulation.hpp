@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a DeviceTriangulation holds, and the state of a triangulator that it shares.
+#pragma once
+
+#include <cadt/triangulator.hpp>
+
+#include <memory>
+#include <vector>
+
+#include "common/driver/context.hpp"
+#include "common/driver/device.hpp"
+#include "common/driver/memory.hpp"
+#include "common/driver/triangulation_data.hpp"
+
+namespace cadt {
+
+struct Triangulator::State {
+  State(const Options& o, std::unique_ptr<Device> d, bool keep)
+      : options(o), device(std::move(d)), memory(*device, keep) {}
+  Options options;
+  std::unique_ptr<Device> device;
+  Memory memory;
+  std::size_t known_points = 0;         ///< a call with so many points has had its memory before
+  std::size_t known_star_points = 0;    ///< and with the star stage
+  std::size_t known_saving_points = 0;  ///< and with the star stage that saves memory
+  std::size_t known_batch_points = 0;   ///< and with several sets
+  std::size_t reserved_points = 0;      ///< buffers for calls with so many points are kept on the caller's wish
+
+  void forget_sizes() noexcept {
+    known_points = known_star_points = known_saving_points = known_batch_points = reserved_points = 0;
+  }
+};
+
+struct DeviceTriangulation::Data {
+  std::shared_ptr<Triangulator::State> state;  // first: goes last, after the memory
+  std::size_t points = 0, distinct = 0, triangle_count = 0, duplicate_count = 0;
+  Allocation triangles, neighbors;               ///< 3 words a triangle each
+  Allocation duplicate_points, representatives;  ///< null if there are none
+  int dimension = -1;
+  Statistics statistics;
+
+  [[nodiscard]] std::size_t hull_size() const noexcept {
+    return dimension == 2 ? 2 * distinct - 2 - triangle_count : 0;
+  }
+};
+
+/// The hull and, unless they are filled already, the arrays of the host's copy.
+void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, bool filled, Triangulation::Data& to);
+void read_duplicates(Device& device, const DeviceTriangulation::Data& from, Triangulation::Data& to);
+
+}  // namespace cadt

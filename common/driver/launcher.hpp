@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// Launches cut to the device's shape, and the two primitives built from kernels: scan and sort.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "common/driver/device.hpp"
+#include "common/driver/kernel_signature.hpp"
+#include "common/driver/kernel_times.hpp"
+#include "common/driver/memory.hpp"
+
+namespace cadt {
+
+/// How `count` elements are cut into work-items.
+struct LaunchGrid {
+  std::uint32_t items;  ///< work-items
+  std::uint32_t grain;  ///< neighbouring elements of one work-item (contiguous devices)
+};
+
+class Launcher {
+ public:
+  /// `grain` as in Options, 0 to choose.
+  Launcher(Device& device, Memory& memory, unsigned grain) noexcept
+      : device_(device), memory_(memory), times_(device), grain_(grain) {}
+
+  [[nodiscard]] Device& device() const noexcept { return device_; }
+  [[nodiscard]] Memory& memory() const noexcept { return memory_; }
+  [[nodiscard]] std::uint64_t launches() const noexcept { return launches_; }
+  /// As Statistics::kernels. \throws DeviceError
+  [[nodiscard]] std::vector<KernelTime> kernel_times() { return times_.sums(); }
+  void set_variant(KernelVariant build) noexcept { build_ = build; }
+
+  /// For kernels over `count` independent elements.
+  [[nodiscard]] LaunchGrid grid(std::size_t count) const noexcept;
+  /// For kernels with CADT_FOR_SPREAD: few elements get several work-items each on GPUs.
+  [[nodiscard]] LaunchGrid grid_spread(std::size_t count) const noexcept;
+  /// For kernels whose work-items add what they found to sums: on GPUs few of them, with many elements each.
+  [[nodiscard]] LaunchGrid grid_strided(std::size_t count) const noexcept;
+  /// For kernels with CADT_FOR_TEAMS: a group of `lanes` work-items for each of `count` elements on GPUs.
+  [[nodiscard]] LaunchGrid grid_of_teams(std::size_t count, std::size_t lanes) const noexcept;
+  /// For kernels with one row of partial results a work-item (CADT_FOR_PART).
+  [[nodiscard]] LaunchGrid parts(std::size_t count) const noexcept;
+  /// For kernels whose work-items need a contiguous chunk on every device.
+  [[nodiscard]] LaunchGrid chunks(std::size_t count) const noexcept;
+
+  /// Runs a kernel. Arguments that are not those of its parameters do not compile. \throws as Device::launch
+  template <KernelId kernel, class... Args>
+  void run(std::uint32_t items, const Args&... args) {
+    run_in_groups<kernel>(items, 0, args...);
+  }
+  /// With groups of `group` work-items on GPUs, unless the options ask for a size; 0: the device's choice.
+  template <KernelId kernel, class... Args>
+  void run_in_groups(std::uint32_t items, std::uint32_t group, const Args&... args) {
+    static_assert(takes_arguments<kernel, Args...>(), "other arguments than the kernel has parameters");
+    if (items == 0) return;
+    const Arg list[] = {Arg(args)...};
+    ++launches_;
+    times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, build_, group); });
+  }
+
+  /// Zeroed words for small results.
+  [[nodiscard]] Allocation zeros(std::size_t words);
+  [[nodiscard]] std::uint32_t read_word(const Allocation& from, std::size_t index);
+
+  /// Exclusive prefix sum in place.
+  void scan(const Allocation& data, std::size_t count);
+
+  /// Stable sort of 32-bit keys with values by the lowest `bits` bits. Begins with values 0, 1, 2, ... if
+  /// `identity`. `spare_*` are of the same size; on return `keys` and `values` hold the result (the buffers may be
+  /// swapped).
+  void sort(Allocation& keys, Allocation& values, Allocation& spare_keys, Allocation& spare_values, std::size_t count,
+            unsigned bits, bool identity);
+
+ private:
+  Device& device_;
+  Memory& memory_;
+  KernelTimes times_;
+  unsigned grain_;
+  KernelVariant build_ = KernelVariant::narrow;
+  std::uint64_t launches_ = 0;
+};
+
+}  // namespace cadt

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cadt/triangulation.hpp>
+
+#include <algorithm>
+#include <array>
+#include <new>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+#include "common/driver/triangulation_data.hpp"
+
+namespace cadt {
+namespace {
+
+/// Mixes 64 bits so that every input bit moves every output bit: two multiplications by odd constants between shifts.
+constexpr std::uint64_t mix(std::uint64_t x) noexcept {
+  x ^= x >> 32;
+  x *= 0xd6e8feb86659fd93U;
+  x ^= x >> 29;
+  x *= 0x9e3779b97f4a7c15U;
+  return x ^ (x >> 32);
+}
+
+/// One lane of the hash of up to three numbers; the sum over all items does not depend on their order.
+constexpr std::uint64_t lane(std::uint64_t seed, std::uint64_t a, std::uint64_t b, std::uint64_t c) noexcept {
+  return mix(mix(mix(seed + a) + b) + c);
+}
+
+void add(Hash128& hash, std::uint64_t kind, std::uint64_t a, std::uint64_t b, std::uint64_t c) noexcept {
+  hash.high += lane(0x243f6a8885a308d3U + kind, a, b, c);
+  hash.low += lane(0x13198a2e03707344U ^ (kind << 32), c, a, b);
+}
+
+/// A triangle from its smallest index on.
+using Corners = std::array<std::int32_t, 3>;
+
+std::vector<Corners> sorted_triangles(const Triangulation& mesh) {
+  const auto v = mesh.triangles();
+  std::vector<Corners> result(mesh.number_of_triangles());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    std::copy_n(v.begin() + static_cast<std::ptrdiff_t>(3 * i), 3, result[i].begin());
+    std::rotate(result[i].begin(), std::min_element(result[i].begin(), result[i].end()), result[i].end());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+}  // namespace
+
+Words make_words(std::size_t count) {
+  constexpr std::size_t huge_page = std::size_t{2} << 20;
+  const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(std::int32_t);
+  const bool large = bytes >= 2 * huge_page;
+  Words words(static_cast<std::int32_t*>(
+      large ? std::aligned_alloc(huge_page, (bytes + huge_page - 1) / huge_page * huge_page) : std::malloc(bytes)));
+  if (words == nullptr) throw std::bad_alloc();
+#if defined(MADV_HUGEPAGE)
+  if (large) ::madvise(words.get(), bytes, MADV_HUGEPAGE);  // advice only: failure changes nothing
+#endif
+  return words;
+}
+
+std::size_t count_differing(const Triangulation& mesh, const Triangulation& other) {
+  const std::vector<Corners> mine = sorted_triangles(mesh), theirs = sorted_triangles(other);
+  std::size_t common = 0;
+  for (auto a = mine.begin(), b = theirs.begin(); a != mine.end() && b != theirs.end();) {
+    if (*a == *b) {
+      ++common, ++a, ++b;
+    } else {
+      ++(*a < *b ? a : b);
+    }
+  }
+  return mine.size() - common;
+}
+
+std::string_view to_string(Strategy strategy) noexcept {
+  switch (strategy) {
+    case Strategy::automatic:
+      return "auto";
+    case Strategy::locks:
+      return "locks";
+    case Strategy::stars:
+      return "stars";
+  }
+  return "?";
+}
+
+std::string_view to_string(Stabilize mode) noexcept {
+  constexpr std::array<std::string_view, 3> names = {"off", "defer", "paper"};
+  return names[static_cast<std::size_t>(mode)];
+}
+
+std::string_view to_string(StatisticsDetail detail) noexcept {
+  constexpr std::array<std::string_view, 3> names = {"none", "counters", "timing"};
+  return names[static_cast<std::size_t>(detail)];
+}
+
+std::string Hash128::to_string() const {
+  std::string text;
+  for (const std::uint64_t part : {high, low})
+    for (int shift = 60; shift >= 0; shift -= 4) text += "0123456789abcdef"[(part >> shift) & 15U];
+  return text;
+}
+
+Triangulation::Triangulation() : data_(std::make_unique<Data>()) {}
+Triangulation::Triangulation(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+Triangulation::~Triangulation() = default;
+Triangulation::Triangulation(Triangulation&&) noexcept = default;
+Triangulation& Triangulation::operator=(Triangulation&&) noexcept = default;
+
+std::size_t Triangulation::number_of_points() const noexcept { return data_->points; }
+std::size_t Triangulation::number_of_triangles() const noexcept { return data_->triangle_count; }
+std::span<const std::int32_t> Triangulation::triangles() const noexcept {
+  return {data_->triangles.get(), 3 * data_->triangle_count};
+}
+std::span<const std::int32_t> Triangulation::neighbors() const noexcept {
+  return {data_->neighbors.get(), 3 * data_->triangle_count};
+}
+std::span<const std::int32_t> Triangulation::hull() const noexcept { return data_->hull; }
+std::span<const Duplicate> Triangulation::duplicates() const noexcept { return data_->duplicates; }
+int Triangulation::dimension() const noexcept { return data_->dimension; }
+const Statistics& Triangulation::statistics() const noexcept { return data_->statistics; }
+
+std::vector<std::int32_t> Triangulation::vertex_triangle() const {
+  std::vector<std::int32_t> result(data_->points, -1);
+  const auto vertices = triangles();
+  for (std::size_t i = vertices.size(); i-- > 0;)  // from the end: the lowest triangle is written last
+    result[static_cast<std::size_t>(vertices[i])] = static_cast<std::int32_t>(i / 3);
+  for (const Duplicate& d : data_->duplicates)
+    result[static_cast<std::size_t>(d.point)] = result[static_cast<std::size_t>(d.representative)];
+  return result;
+}
+
+Hash128 Triangulation::hash() const {
+  Hash128 hash;
+  const auto v = triangles();
+  for (std::size_t i = 0; i < v.size(); i += 3) {
+    const std::int32_t* t = &v[i];
+    const auto first = static_cast<std::size_t>(std::min_element(t, t + 3) - t);
+    add(hash, 1, static_cast<std::uint64_t>(t[first]), static_cast<std::uint64_t>(t[(first + 1) % 3]),
+        static_cast<std::uint64_t>(t[(first + 2) % 3]));
+  }
+  for (const Duplicate& d : data_->duplicates)
+    add(hash, 2, static_cast<std::uint64_t>(d.point), static_cast<std::uint64_t>(d.representative), 0);
+  add(hash, 3, data_->points, data_->triangle_count, data_->hull.size());
+  add(hash, 4, static_cast<std::uint64_t>(data_->dimension + 1), 0, 0);
+  return hash;
+}
+
+}  // namespace cadt

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/insertion/cavity_retriangulation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cadt {
+namespace {
+
+using namespace device_text;
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+constexpr std::uint32_t most_edges = 256;   // that are asked for the vertices opposite
+constexpr std::uint32_t least_region = 64;  // triangles: fewer are flipped in the time of a region
+constexpr std::size_t least_share = 16;     // of the illegal edges one of so many leads to a vertex that counts
+
+}  // namespace
+
+CavityRetriangulation::CavityRetriangulation(const LockedMesh& mesh)
+    : mesh_(mesh),
+      ctx_(mesh.ctx),
+      launch_(ctx_.launcher),
+      slots_(static_cast<std::uint32_t>(2 * mesh.order.distinct)) {}
+
+/// Four vertices for each edge, two opposite of it and its ends; CADT_NONE where it is not illegal.
+std::vector<std::uint32_t> CavityRetriangulation::ask(const Allocation& edges, std::uint32_t count) {
+  const std::uint32_t asked = std::min(count, most_edges);
+  const Allocation quads = ctx_.memory.allocate(4 * asked * word);
+  const LaunchGrid c = launch_.grid(asked);
+  mesh_.run_kernel<KernelId::cadt_cavity_candidates>(c.items, edges, asked, c.grain, quads);
+  std::vector<std::uint32_t> vertices(4 * std::size_t{asked});
+  ctx_.device.read(*quads, 0, vertices.data(), vertices.size() * word);
+  return vertices;
+}
+
+void CavityRetriangulation::note(const Allocation& edges, std::uint32_t count) {
+  noted_.clear();
+  const std::vector<std::uint32_t> quads = ask(edges, count);
+  for (std::size_t i = 0; i < quads.size(); ++i)
+    if (i % 4 < 2 && quads[i] != CADT_NONE) noted_.insert(quads[i]);
+}
+
+/// Those noted that most of the edges lead to.
+std::vector<std::uint32_t> CavityRetriangulation::candidates(const std::vector<std::uint32_t>& quads) {
+  std::map<std::uint32_t, std::size_t> often;
+  std::size_t illegal = 0;
+  for (std::size_t i = 0; i < quads.size(); ++i) {
+    if (quads[i] == CADT_NONE || i % 4 > 1) continue;
+    if (i % 4 == 0) ++illegal;
+    if (noted_.contains(quads[i])) ++often[quads[i]];
+  }
+  std::vector<std::pair<std::size_t, std::uint32_t>> ranked;
+  for (const auto& [v, times] : often)
+    if (times * least_share >= illegal) ranked.emplace_back(times, v);
+  std::ranges::sort(ranked, std::greater{});
+  ranked.resize(std::min<std::size_t>(ranked.size(), CADT_CAVITY_CANDIDATES));
+  std::vector<std::uint32_t> best;
+  for (const auto& [times, v] : ranked) best.push_back(v);
+  return best;
+}
+
+void CavityRetriangulation::set_ends(const std::vector<std::uint32_t>& quads) {
+  std::vector<std::uint32_t> ends(CADT_CAVITY_SET_WORDS);
+  for (std::size_t i = 0; i < quads.size(); ++i) {
+    if (quads[i] == CADT_NONE || i % 4 < 2) continue;
+    const std::uint32_t bit = CADT_CAVITY_BIT(quads[i]);
+    ends[bit >> 5] |= 1U << (bit & 31U);
+  }
+  if (!ends_) ends_ = ctx_.memory.allocate(ends.size() * word);
+  ctx_.device.write(*ends_, 0, ends.data(), ends.size() * word);
+}
+
+/// The large regions of these vertices, the largest first.
+std::vector<CavityRetriangulation::Region> CavityRetriangulation::large(const std::vector<std::uint32_t>& vertices) {
+  const auto count = static_cast<std::uint32_t>(vertices.size());
+  const Allocation list = ctx_.memory.allocate(count * word), sums = launch_.zeros(count);
+  ctx_.device.write(*list, 0, vertices.data(), count * word);
+  const LaunchGrid c = launch_.grid_strided(slots_);
+  mesh_.run_kernel<KernelId::cadt_cavity_sizes>(c.items, slots_, c.grain, ends_, list, count, sums);
+  std::vector<std::uint32_t> sizes(count);
+  ctx_.device.read(*sums, 0, sizes.data(), count * word);
+  std::vector<Region> regions;
+  for (std::uint32_t v = 0; v < count; ++v)
+    if (sizes[v] >= least_region) regions.push_back({sizes[v], vertices[v]});
+  std::ranges::sort(regions, std::greater{});
+  return regions;
+}
+
+/// Triangulates the region anew, as far as that is possible. False if it is not.
+bool CavityRetriangulation::fill(const Region& region) {
+  const std::uint32_t w = region.vertex, capacity = region.triangles + region.triangles / 4 + 64;
+  const std::size_t bytes = capacity * word;
+  if (!ctx_.memory.allows((CADT_CAVITY_SCRATCH + 4) * bytes)) return false;
+  const Allocation list = ctx_.memory.allocate(bytes), kept = ctx_.memory.allocate(bytes),
+                   scratch = ctx_.memory.allocate(CADT_CAVITY_SCRATCH * bytes),
+                   spokes = ctx_.memory.allocate(2 * bytes), found = launch_.zeros(CADT_CAVITY_WORDS);
+  const LaunchGrid all = launch_.grid_strided(slots_);
+  mesh_.run_kernel<KernelId::cadt_cavity_conflicts>(all.items, slots_, all.grain, ends_, w, list, capacity, found);
+  const std::uint32_t conflicts = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
+  LaunchGrid c = launch_.grid(conflicts);
+  mesh_.run_kernel<KernelId::cadt_cavity_star>(c.items, conflicts, c.grain, w, list, capacity, found);
+  // A list that has no room for all has some of the conflicts: what they are connected with can be seen or not.
+  const std::uint32_t listed = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
+  c = launch_.grid(listed);
+  launch_.run<KernelId::cadt_cavity_roots>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity);
+  launch_.run<KernelId::cadt_cavity_join>(c.items, mesh_.locked, listed, c.grain, list, scratch);
+  mesh_.run_kernel<KernelId::cadt_cavity_check>(c.items, listed, c.grain, w, list, scratch, capacity);
+  launch_.run<KernelId::cadt_cavity_keep>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity, kept, found);
+  const std::uint32_t count = launch_.read_word(found, CADT_CAVITY_KEPT);
+  if (count == 0) return false;
+  const Allocation& sides = scratch;  // nobody asks for the trees any more
+  c = launch_.grid(count);
+  mesh_.run_kernel<KernelId::cadt_cavity_boundary>(c.items, count, c.grain, w, kept, sides, spokes, capacity, found);
+  std::array<std::uint32_t, CADT_CAVITY_WORDS> words{};
+  ctx_.device.read(*found, 0, words.data(), sizeof words);
+  const std::uint32_t spoke_count = words[CADT_CAVITY_SPOKES];
+  if (words[CADT_CAVITY_SIDES] != count || spoke_count > capacity)
+    throw InternalError("the region of a vertex has " + std::to_string(count) + " triangles, " +
+                        std::to_string(words[CADT_CAVITY_SIDES]) + " sides and " + std::to_string(spoke_count) +
+                        " spokes; please report this with the input");
+  c = launch_.grid(std::size_t{count} + spoke_count);
+  mesh_.run_kernel<KernelId::cadt_cavity_fill>(c.items, count, spoke_count, c.grain, w, kept, sides, spokes);
+  c = launch_.grid(2 * std::size_t{count} + spoke_count);
+  mesh_.run_kernel<KernelId::cadt_cavity_release>(c.items, count, spoke_count, c.grain, kept, sides, spokes);
+  return true;
+}
+
+std::size_t CavityRetriangulation::make(const Allocation& edges, std::uint32_t count) {
+  const std::vector<std::uint32_t> quads = ask(edges, count), vertices = candidates(quads);
+  noted_.clear();
+  if (vertices.empty()) return 0;
+  set_ends(quads);
+  std::size_t made = 0;
+  for (const Region& region : large(vertices)) {
+    if (!fill(region)) break;  // others are not likely to be better
+    ++made;
+  }
+  return made;
+}
+
+}  // namespace cadt

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/insertion/insertion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "common/driver/counters.hpp"
+#include "common/driver/device_text.hpp"
+#include "common/insertion/cavity_retriangulation.hpp"
+#include "common/insertion/locked_mesh.hpp"
+#include "common/overlay/growth_snapshots.hpp"
+#include "common/points/device_points.hpp"
+
+namespace cadt {
+namespace {
+
+using namespace device_text;
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time to a cancel
+constexpr std::size_t points_per_launch_strided = std::size_t{1} << 25;
+constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a watchdog gives a launch two seconds
+// Ranges without locks: what every 2^partition_level positions have in common is inserted before, with locks. The fewer
+// positions a range has, the more of them are at its border.
+constexpr unsigned partition_level = 5;
+constexpr std::size_t least_partition = std::size_t{1} << 14, fewest_for_partitions = 4 * least_partition;
+constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
+constexpr int unresolvable_launches = 64;
+constexpr std::size_t least_asked = 4096;  // points of launches after which what they left is asked
+constexpr int cascades_from = 4;  // the launch before which rows of flips are looked for, again after twice as many
+constexpr int most_sweeps = 2000;
+constexpr std::size_t sweep_counts = 5, all_counts = CADT_LEFT_COUNTS + sweep_counts;
+
+/// Points that one launch inserts at most.
+std::size_t points_per_launch(const Device& device) {
+  if (device.shape().contiguous) return points_per_launch_contiguous;
+  return device.info().watchdog ? points_per_launch_watched : points_per_launch_strided;
+}
+
+static_assert(static_cast<int>(Stabilize::off) == CADT_STABILIZE_OFF &&
+              static_cast<int>(Stabilize::defer) == CADT_STABILIZE_DEFER &&
+              static_cast<int>(Stabilize::paper) == CADT_STABILIZE_PAPER);
+
+class Builder {
+ public:
+  Builder(Context& ctx, SortedPoints& order)
+      : ctx_(ctx),
+        launch_(ctx.launcher),
+        order_(order),
+        n_(order.distinct),
+        edge_capacity_(static_cast<std::uint32_t>(n_ / 8 + 4096)),
+        counters_(ctx),
+        mesh_{ctx, order, static_cast<std::uint32_t>(ctx.options.stabilize)} {}
+
+  [[nodiscard]] Mesh build() {
+    Mesh mesh;
+    if (n_ >= 3 && !ctx_.device.shape().contiguous) order_by_level();
+    if (n_ < 3 || !find_seed_triangle()) {
+      mesh.flat = true;
+      return mesh;
+    }
+    mesh_.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not in use yet
+    mesh_.vertex_to_triangle = ctx_.memory.transient(n_ * word);
+    // points of a launch: a level and what others left over, one by one or together
+    const std::size_t most = n_ / 2 + n_ / 32 + std::min(n_ / 2, least_asked) + 64;
+    for (Allocation& list : deferred_points_) list = ctx_.memory.transient(most * word);
+    make_edge_lists();
+    mesh_.run_kernel<KernelId::cadt_seed_mesh>(1);
+    ctx_.end_phase("start");
+
+    const unsigned last = use_partitions() ? partition_level : 0;
+    for (unsigned level = levels(); level-- > last;) insert_level(level, level == last);
+    if (last != 0) insert_partitions();
+    if (deferred_.points != 0 || deferred_.edges != 0) {
+      finish_deferred();
+      if (ctx_.options.watch) show();
+    }
+    ctx_.end_phase("insert");
+    return close(3 * std::uint64_t{n_} - 3);
+  }
+
+  /// Nothing walks in a mesh that is complete: its hints are written by repairs only, and its first triangle is not
+  /// asked for.
+  [[nodiscard]] Mesh adopt(Allocation locked, std::uint64_t edges) {
+    mesh_.locked = std::move(locked);
+    mesh_.vertex_to_triangle = ctx_.memory.transient(n_ * word);
+    make_edge_lists();
+    return close(edges);
+  }
+
+ private:
+  void make_edge_lists() {
+    for (Allocation& list : deferred_edges_) list = ctx_.memory.transient(edge_capacity_ * word);
+    deferred_counts_ = launch_.zeros(all_counts);
+  }
+
+  /// `edges`: of all spheres, ghost edges included.
+  Mesh close(std::uint64_t edges) {
+    Mesh mesh;
+    certify(edges);
+    ctx_.end_phase("certify");
+    counters_.collect(ctx_.statistics);
+    mesh.locked = std::move(mesh_.locked);
+    mesh.slots = 2 * n_;
+    return mesh;
+  }
+
+  /// Levels of halving until a block is one point.
+  [[nodiscard]] unsigned levels() const noexcept { return static_cast<unsigned>(std::bit_width(n_ - 1)); }
+
+  /// Puts the points in the order of insertion (common/insertion/insert.dev.h).
+  void order_by_level() {
+    Allocation points = ctx_.memory.transient(n_ * point_bytes(ctx_.device)),
+               input_ids = ctx_.memory.allocate(n_ * word);
+    const LaunchGrid c = launch_.grid(n_);
+    launch_.run<KernelId::cadt_by_level>(c.items, order_.points, order_.input_ids, static_cast<std::uint32_t>(n_),
+                                         c.grain, points, input_ids);
+    order_.points = std::move(points);
+    order_.input_ids = std::move(input_ids);
+    by_level_ = true;
+  }
+
+  /// Three points not on a line: the one that stands for all, the middle one, and the first that is not on their line.
+  bool find_seed_triangle() {
+    Allocation found = ctx_.memory.allocate(word);
+    if (!by_level_) {
+      launch_.run<KernelId::cadt_first_representative>(1, static_cast<std::uint32_t>(n_), levels(), found);
+      mesh_.first = launch_.read_word(found, 0);
+    }
+    mesh_.second = static_cast<std::uint32_t>(n_ / 2);
+    if (mesh_.second == mesh_.first) mesh_.second = 0;
+    ctx_.device.fill(*found, 0, word, CADT_NONE);
+    constexpr std::size_t few = 1024;  // enough unless the points are nearly all on a line
+    for (std::size_t begin = 0, end = std::min(n_, few); begin < n_; begin = end, end = n_) {
+      const LaunchGrid c = launch_.grid(end - begin);
+      launch_.run<KernelId::cadt_find_seed_triangle>(c.items, order_.points, mesh_.first, mesh_.second,
+                                                     static_cast<std::uint32_t>(begin),
+                                                     static_cast<std::uint32_t>(end - begin), c.grain, found);
+      mesh_.third = launch_.read_word(found, 0);
+      if (mesh_.third != CADT_NONE) break;
+    }
+    if (mesh_.third == CADT_NONE) return false;
+    mesh_.center = {0, 0};
+    for (const std::uint32_t at : {mesh_.first, mesh_.second, mesh_.third}) {
+      const auto p = read_coordinates<2>(ctx_.device, *order_.points, at * point_bytes(ctx_.device));
+      mesh_.center.x += p[0] / 3;
+      mesh_.center.y += p[1] / 3;
+    }
+    return true;
+  }
+
+  void insert_level(unsigned level, bool last) {
+    // blocks of 2^(level+1) positions that have two halves
+    const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
+    const std::size_t most = points_per_launch(ctx_.device);
+    for (std::size_t begin = 0; begin < count; begin += most) {
+      const std::size_t size = std::min(most, count - begin);
+      launch_insert(begin, size, level, false);
+      inserted_ += size;
+      // To ask what is left takes as long as the launch of a level of few points.
+      unasked_ += size;
+      if (unasked_ < least_asked && !last && !ctx_.options.watch) {
+        deferred_ = {};  // on the lists [1] no more; what this launch left stays on the others
+        continue;
+      }
+      unasked_ = 0;
+      // Few points left over go with the next launch; many would make its walks long.
+      take_deferred();
+      if (ctx_.options.watch) show();
+      if (deferred_.points > size / 8 + 32 || deferred_.edges > size / 8 + 32) finish_deferred();
+      ctx_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
+    }
+  }
+
+  [[nodiscard]] bool use_partitions() const noexcept {
+    return ctx_.device.shape().contiguous && n_ >= fewest_for_partitions && ctx_.options.grain == 0 &&
+           ctx_.options.stabilize == Stabilize::off && !ctx_.options.watch;
+  }
+
+  /// All levels below partition_level: ranges of positions side by side without locks, then what lies between them.
+  void insert_partitions() {
+    finish_deferred();  // who stands for a block must be in the mesh
+    const std::size_t all = ((n_ - 1) >> partition_level) + 1;
+    const std::size_t shares = std::clamp<std::size_t>(ctx_.device.shape().parallelism / 2, 1, n_ / least_partition);
+    const std::size_t blocks = (all - 1) / shares + 1, ranges = (all - 1) / blocks + 1;
+    const std::size_t points = std::min(points_per_launch(ctx_.device), n_ / 2);
+    const std::size_t step = std::max<std::size_t>((points >> partition_level) / ranges, 1);
+    for (std::size_t from = 0; from < blocks; from += step) {
+      const std::size_t to = std::min(blocks, from + step);
+      mesh_.run_kernel<KernelId::cadt_insert_partitions>(
+          static_cast<std::uint32_t>(ranges), static_cast<std::uint32_t>(n_), partition_level,
+          static_cast<std::uint32_t>(ranges), static_cast<std::uint32_t>(blocks), static_cast<std::uint32_t>(from),
+          static_cast<std::uint32_t>(to), deferred_points_[0], deferred_counts_, counters_);
+      inserted_ += std::min(n_, ((to - from) * ranges) << partition_level);
+      // The list has room for those that the next launch may leave.
+      if (to == blocks || launch_.read_word(deferred_counts_, 0) > n_ / 32) {
+        const LaunchGrid c = launch_.grid(2 * n_);
+        mesh_.run_kernel<KernelId::cadt_border_sweep>(c.items, static_cast<std::uint32_t>(2 * n_), c.grain,
+                                                      static_cast<std::uint32_t>(blocks << partition_level),
+                                                      deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
+        take_deferred();
+        finish_deferred();
+      }
+      ctx_.check("insert", 0.1 + 0.7 * static_cast<double>(std::min(inserted_, n_)) / static_cast<double>(n_));
+    }
+  }
+
+  void show() {
+    if (watcher_ == nullptr) watcher_ = std::make_unique<GrowthSnapshots>(ctx_.device, order_);
+    watcher_->show(*mesh_.locked, ctx_.options.watch);
+  }
+
+  /// What the last launches left over is on the second lists from here on; the first ones are empty.
+  void take_deferred() {
+    std::array<std::uint32_t, 3> left{};  // points, edges, work-items that changed the mesh
+    ctx_.device.read(*deferred_counts_, 0, left.data(), sizeof left);
+    deferred_ = {left[0], std::min(left[1], edge_capacity_), left[2]};
+    if (left[0] == 0 && left[1] == 0 && left[2] == 0) return;
+    ctx_.device.fill(*deferred_counts_, 0, sizeof left, 0);
+    std::swap(deferred_points_[0], deferred_points_[1]);
+    std::swap(deferred_edges_[0], deferred_edges_[1]);
+  }
+
+  /// The points left over and `size` blocks; the edges left over. `alone`: one work-item for each of both.
+  void launch_insert(std::size_t begin, std::size_t size, unsigned level, bool alone) {
+    const auto count = static_cast<std::uint32_t>(deferred_.points + size);
+    if (deferred_.edges != 0) {
+      const LaunchGrid c = alone ? LaunchGrid{1, deferred_.edges} : launch_.grid_spread(deferred_.edges);
+      mesh_.run_kernel<KernelId::cadt_legalize_edges>(c.items, deferred_edges_[1], deferred_.edges, c.grain,
+                                                      deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
+    }
+    if (count == 0) return;
+    const LaunchGrid c = alone ? LaunchGrid{1, count} : launch_.grid_spread(count);
+    mesh_.run_kernel<KernelId::cadt_insert>(c.items, deferred_points_[1], deferred_.points,
+                                            static_cast<std::uint32_t>(begin), count, static_cast<std::uint32_t>(n_),
+                                            level, c.grain, deferred_points_[0], deferred_edges_[0], deferred_counts_,
+                                            edge_capacity_, counters_);
+  }
+
+  /// Launches for what could not get its locks, until nothing is left.
+  void finish_deferred() {
+    int launches = 0, stalled = 0, next_cascades = cascades_from;
+    // Edges that are left after several launches may be in long rows; but with --stabilize those flipped often stay.
+    const bool may_be_cascades = mesh_.stabilize == CADT_STABILIZE_OFF;
+    CavityRetriangulation cavities(mesh_);
+    std::size_t last = 0;
+    while (deferred_.points != 0 || deferred_.edges != 0) {
+      const std::size_t now = std::size_t{deferred_.points} + deferred_.edges;
+      stalled = launches != 0 && now >= last && deferred_.changes == 0 ? stalled + 1 : 0;
+      last = now;
+      if (++launches > unresolvable_launches && stalled > unresolvable_launches) {
+        throw InternalError("no progress: " + std::to_string(deferred_.points) + " points and " +
+                            std::to_string(deferred_.edges) +
+                            " edges cannot get their locks; please report this with the input");
+      }
+      if (may_be_cascades && deferred_.edges != 0) {
+        if (launches == next_cascades - 1) cavities.note(deferred_edges_[1], deferred_.edges);
+        if (launches == next_cascades) {
+          const std::size_t made = cavities.make(deferred_edges_[1], deferred_.edges);
+          ctx_.statistics.cavities += made;
+          next_cascades *= made != 0 ? 2 : 4;
+        }
+      }
+      // One work-item alone meets no conflict, so it always gets on.
+      launch_insert(0, 0, 0, stalled >= stalled_launches);
+      take_deferred();
+    }
+  }
+
+  /// Closing passes until one finds nothing to do.
+  void certify(std::uint64_t edges) {
+    if (ctx_.options.stabilize == Stabilize::defer)
+      mesh_.stabilize = CADT_STABILIZE_OFF;  // what was put off is due now
+    const std::size_t slots = 2 * n_, most = 4 * points_per_launch(ctx_.device);
+    for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
+      std::uint64_t examined = 0, illegal = 0, unsettled = 0, left = 0, broken = 0;
+      for (std::size_t begin = 0; begin < slots; begin += most) {
+        const std::size_t size = std::min(most, slots - begin);
+        const LaunchGrid c = launch_.grid_strided(size);
+        mesh_.run_kernel<KernelId::cadt_legality_sweep>(
+            c.items, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(size), c.grain,
+            by_level_ ? static_cast<std::uint32_t>(n_) : 0U, deferred_edges_[0], deferred_counts_, edge_capacity_,
+            counters_);
+        std::array<std::uint32_t, all_counts> words{};
+        ctx_.device.read(*deferred_counts_, 0, words.data(), sizeof words);
+        examined += words[CADT_LEFT_COUNTS];
+        illegal += words[CADT_LEFT_COUNTS + 1];
+        unsettled += words[CADT_LEFT_COUNTS + 2];
+        left += words[CADT_LEFT_COUNTS + 3];
+        broken += words[CADT_LEFT_COUNTS + 4];
+        if (begin + size == slots && examined == edges && illegal + unsettled == 0) break;
+        ctx_.device.fill(*deferred_counts_, CADT_LEFT_COUNTS * word, sweep_counts * word, 0);
+        take_deferred();
+        finish_deferred();
+        ctx_.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(slots));
+      }
+      Statistics& statistics = ctx_.statistics;  // of all meshes of the call, if there are several
+      statistics.legality_sweeps = std::max(statistics.legality_sweeps, static_cast<std::uint64_t>(sweep));
+      statistics.sweep_repairs += illegal;
+      if (illegal == 0 && unsettled == 0) {
+        if (broken != 0)
+          throw InternalError("the boundary of the mesh turns back at " + std::to_string(broken) +
+                              " points; please report this with the input");
+        statistics.certified_edges += examined - left;
+        statistics.illegal_edges += left;
+        statistics.certified = statistics.certified && left == 0;
+        if (examined != edges) {
+          throw InternalError("the mesh has " + std::to_string(examined) + " edges instead of " +
+                              std::to_string(edges) + "; please report this with the input");
+        }
+        return;
+      }
+    }
+    throw InternalError("the closing pass still finds illegal edges after " + std::to_string(most_sweeps) +
+                        " sweeps; please report this with the input");
+  }
+
+  struct Deferred {
+    std::uint32_t points = 0, edges = 0;
+    std::uint32_t changes = 0;  ///< work-items that changed the mesh, if the launch had no other points
+  };
+
+  Context& ctx_;
+  Launcher& launch_;
+  SortedPoints& order_;
+  std::size_t n_;
+  std::uint32_t edge_capacity_;
+  Counters counters_;
+  LockedMesh mesh_;
+  Allocation deferred_counts_;
+  std::array<Allocation, 2> deferred_points_, deferred_edges_;  // [0] is written by the next launch, [1] read by it
+  Deferred deferred_;                                           // on the lists [1]
+  bool by_level_ = false;                                       // the points are in the order of insertion
+  std::unique_ptr<GrowthSnapshots> watcher_;
+  std::size_t inserted_ = 0, unasked_ = 0;  // of these, since what is left was asked
+};
+
+}  // namespace
+
+std::size_t slots_per_launch(const Device& device) { return 4 * points_per_launch(device); }
+
+Mesh insert_incrementally(Context& ctx, SortedPoints& order) { return Builder(ctx, order).build(); }
+
+Mesh sweep_legality(Context& ctx, SortedPoints& order, Allocation locked, std::uint64_t edges) {
+  return Builder(ctx, order).adopt(std::move(locked), edges);
+}
+
+}  // namespace cadt

@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The lock protocol. Nobody ever waits: a lock is tried, and on failure everything taken is given back.
+ *
+ * Lock word: 0 the record does not exist yet, even: free, and the number is its version, odd: claimed. A claim is one
+ * compare-and-swap from the version that the claimer has read before the fields (GPUs: one OR, and a look at what was
+ * there); it fails if the record is claimed or has changed since, so success proves that the fields read are the
+ * record's state: claim and validity check (paper, Algorithm 1, lines 9 and 15) in one operation. An unlock after a
+ * change raises the version.
+ *
+ * Why the proof holds on CPUs: a change stores fields with release after its claim (acquire), and fields are loaded
+ * with acquire, the lock word first. If a reader saw one field of a later change, the change's claim happens before the
+ * reader's compare-and-swap, which then cannot find the old version. On GPUs, where loads are relaxed, a field may be
+ * older than the version beside it. So the owner reads the record again under its lock (cadt_validate), compares what
+ * it has used and takes the rest from there; claims acquire, so it sees all that earlier owners wrote.
+ *
+ * Order: records are claimed by ascending index, so among any set of conflicting claimers the one that gets furthest
+ * meets nobody who is further (a fixed but unsorted order livelocks in a warp: ../docs/algorithm.md).
+ */
+#ifndef CADT_INSERTION_LOCK_H
+#define CADT_INSERTION_LOCK_H
+
+#include "common/mesh/locked_mesh.dev.h"
+
+#define CADT_ANY_VERSION 0u
+
+typedef struct {
+  cadt_u32 triangle[4]; /* ascending; CADT_NONE for an unused place */
+  cadt_u32 version[4];
+} cadt_lock_set;
+
+CADT_FN cadt_u32 cadt_is_unlocked(cadt_u32 lock) { return lock != 0u && !(lock & 1u) ? 1u : 0u; }
+CADT_FN cadt_u32 cadt_next_version(cadt_u32 version) { return version + 2u ? version + 2u : 2u; }
+
+CADT_FN void cadt_lock_order(cadt_lock_set* c, cadt_u32 i, cadt_u32 j) {
+  if (c->triangle[i] > c->triangle[j]) {
+    cadt_u32 r = c->triangle[i], v = c->version[i];
+    c->triangle[i] = c->triangle[j];
+    c->version[i] = c->version[j];
+    c->triangle[j] = r;
+    c->version[j] = v;
+  }
+}
+
+/* Gives back the records of the first `count` places, unchanged. \pre the caller owns them and has written nothing */
+CADT_FN void cadt_unlock_unchanged(const cadt_locked_mesh* m, const cadt_lock_set* c, cadt_u32 count) {
+#if CADT_CONTIGUOUS
+  for (cadt_u32 i = 0u; i < count; ++i)
+    if (c->triangle[i] != CADT_NONE) {
+      cadt_store_lock(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, c->version[i]);
+      CADT_NOISE_AT(m, CADT_AT_UNLOCKED_UNCHANGED);
+    }
+#else
+  /* By an addition: a store would take the place of the last owner's in what the next claimer synchronises with, and so
+   * need a fence before it. */
+  for (cadt_u32 i = 0u; i < count; ++i)
+    if (c->triangle[i] != CADT_NONE) {
+      cadt_add_relaxed(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);
+      CADT_NOISE_AT(m, CADT_AT_UNLOCKED_UNCHANGED);
+    }
+#endif
+}
+
+/* Claims one record if its lock word is `*version`, or even where that is CADT_ANY_VERSION. */
+CADT_FN cadt_u32 cadt_try_lock_one(CADT_GLOBAL cadt_u32* lock, cadt_u32* version, cadt_counters* counters) {
+#if defined(CADT_TEST_NO_LOCKS)
+  (void)counters;
+  if (*version == CADT_ANY_VERSION) *version = cadt_load_field(lock);
+  cadt_store_relaxed(lock, *version | 1u);
+  return 1u;
+#elif CADT_CONTIGUOUS
+  if (*version == CADT_ANY_VERSION) *version = cadt_load_field(lock);
+  if (cadt_is_unlocked(*version) && cadt_cas_lock(lock, *version, *version | 1u)) return 1u;
+  if (!(cadt_load_field(lock) & 1u)) CADT_COUNT_NOW(counters, CADT_COUNT_INVALIDATED);
+  return 0u;
+#else
+  /* One operation, where a comparison would first need the version. It changes nothing in a word that is odd. A word of
+   * 0 becomes odd: somebody is about to store 2 there. */
+  const cadt_u32 found = cadt_or_relaxed(lock, 1u);
+  if (!cadt_is_unlocked(found)) return 0u;
+  if (*version != CADT_ANY_VERSION && *version != found) {
+    cadt_add_relaxed(lock, 0xFFFFFFFFu);
+    CADT_COUNT_NOW(counters, CADT_COUNT_INVALIDATED);
+    return 0u;
+  }
+  *version = found;
+  return 1u;
+#endif
+}
+
+/* Claims up to four records. \pre versions were read by cadt_look before the fields, or are CADT_ANY_VERSION for
+ * records of which the caller needs no field. \post 1: the caller owns all of them, `version` has the versions to give
+ * back; 0: it owns none. */
+CADT_FN cadt_u32 cadt_try_lock(const cadt_locked_mesh* m, cadt_lock_set* c, cadt_counters* counters) {
+  counters->count[CADT_COUNT_LOCK_ATTEMPTS]++;
+  cadt_lock_order(c, 0, 1);
+  cadt_lock_order(c, 2, 3);
+  cadt_lock_order(c, 0, 2);
+  cadt_lock_order(c, 1, 3);
+  cadt_lock_order(c, 1, 2);
+  CADT_NOISE_AT(m, CADT_AT_LOCK);
+  for (cadt_u32 i = 0u; i < 4u; ++i) {
+    if (c->triangle[i] == CADT_NONE) break;
+    if (CADT_FAILS(m, CADT_AT_LOCK) ||
+        !cadt_try_lock_one(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, &c->version[i], counters)) {
+      cadt_unlock_unchanged(m, c, i);
+      CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
+      CADT_LAP(counters, CADT_TIME_LOCK);
+      return 0u;
+    }
+    CADT_NOISE_AT(m, CADT_AT_LOCKED);
+  }
+  cadt_fence_after_lock(); /* what the last owners wrote is seen from here on */
+  CADT_LAP(counters, CADT_TIME_LOCK);
+  return 1u;
+}
+
+/* Links of a record that the caller has used: a bit for each. */
+enum { CADT_HALF_EDGES_01 = 3, CADT_HALF_EDGES_12 = 6, CADT_HALF_EDGES_ALL = 7 };
+
+/* Whether the vertices of record t, seen from edge k, and those of its links that are in `links` are still what `s`
+ * says. On GPUs its links and counters are then those read again: what has not been used before need not be kept until
+ * here, where registers are short. On CPUs the claim has proved all of `s`. \pre the caller owns t */
+CADT_FN cadt_u32 cadt_validate(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 half_edges,
+                               cadt_snapshot* s) {
+  CADT_NOISE_AT(m, CADT_AT_VALIDATE);
+  if (CADT_FAILS(m, CADT_AT_VALIDATE)) return 0u;
+#if CADT_CONTIGUOUS
+  (void)m, (void)t, (void)k, (void)half_edges, (void)s;
+  return 1u;
+#else
+  const cadt_snapshot now = cadt_look_from(m, t, k);
+  cadt_u32 other = (now.v0 ^ s->v0) | (now.v1 ^ s->v1) | (now.v2 ^ s->v2);
+  if (half_edges & 1u) other |= now.n0 ^ s->n0;
+  if (half_edges & 2u) other |= now.n1 ^ s->n1;
+  if (half_edges & 4u) other |= now.n2 ^ s->n2;
+  s->n0 = now.n0;
+  s->n1 = now.n1;
+  s->n2 = now.n2;
+  s->flips = now.flips;
+  return other == 0u ? 1u : 0u;
+#endif
+}
+
+/* Gives the records back, changed. \pre the caller owns them; all stores to them are done */
+CADT_FN void cadt_unlock(const cadt_locked_mesh* m, const cadt_lock_set* c) {
+  CADT_NOISE_AT(m, CADT_AT_UNLOCK);
+  for (cadt_u32 i = 0u; i < 4u; ++i)
+    if (c->triangle[i] != CADT_NONE) {
+      cadt_store_lock(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, cadt_next_version(c->version[i]));
+      CADT_NOISE_AT(m, CADT_AT_UNLOCKED);
+    }
+}
+
+/* Makes a new record free. \pre its fields and all links to it are stored, and the caller still owns the records it was
+ * split from; until then whoever finds it reads lock word 0 and retries */
+CADT_FN void cadt_publish_triangle(const cadt_locked_mesh* m, cadt_u32 t) {
+  cadt_store_lock(m->locked[t].word + CADT_WORD_LOCK, 2u);
+}
+
+#endif

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mesh on the device while it is made: records, and what the kernels over it get besides.
+#pragma once
+
+#include <cstdint>
+
+#include "common/driver/context.hpp"
+#include "common/driver/device_text.hpp"
+#include "common/points/spatial_sort.hpp"
+
+namespace cadt {
+
+struct LockedMesh {
+  Context& ctx;
+  SortedPoints& order;
+  std::uint32_t stabilize;  ///< CADT_STABILIZE_...
+  Allocation locked = {}, vertex_to_triangle = {};
+  device_text::cadt_point center = {};
+  std::uint32_t first = 0, second = 0, third = 0;
+
+  /// A kernel over the mesh: its view comes first among the parameters.
+  template <KernelId kernel, class... Args>
+  void run_kernel(std::uint32_t items, const Args&... args) const {
+    ctx.launcher.run<kernel>(items, locked, order.points, vertex_to_triangle, center.x, center.y, first, second, third,
+                             stabilize, ctx.options.flip_threshold, ctx.options.quality_epsilon, args...);
+  }
+};
+
+}  // namespace cadt

@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The first triangle and its three ghosts: the mesh that everything is inserted into (in place of the paper's super
+ * triangle, section 4.1, which spoils the hull).
+ */
+#ifndef CADT_INSERTION_SEED_TRIANGLE_H
+#define CADT_INSERTION_SEED_TRIANGLE_H
+
+#include "common/insertion/split_and_flip.dev.h"
+
+/* Lowers *third to the first position that is not on the line of points `first` and `second`. */
+CADT_KERNEL(cadt_find_seed_triangle, CADT_GLOBAL const cadt_point* points, cadt_u32 first, cadt_u32 second,
+            cadt_u32 begin, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* third) {
+  cadt_counters counters;
+  cadt_counters_clear(&counters);
+  const cadt_point a = points[first], b = points[second];
+  CADT_FOR(i, count, grain) {
+    if (cadt_orientation(a, b, points[begin + i], &counters) != 0) {
+      cadt_min_relaxed(third, begin + i);
+      break;
+    }
+  }
+}
+
+/* \pre records are zero */
+CADT_FN void cadt_start(const cadt_locked_mesh* m, cadt_counters* counters) {
+  cadt_u32 a = m->first, b = m->second, c = m->third;
+  if (cadt_orientation(m->points[a], m->points[b], m->points[c], counters) < 0) {
+    b = m->third;
+    c = m->second;
+  }
+  const cadt_u32 face = 2u * a, g0 = face + 1u; /* ghosts opposite a, b, c */
+  const cadt_u32 g1 = 2u * m->second, g2 = g1 + 1u;
+  cadt_new_triangle(m, face, a, b, c, CADT_HALF_EDGE(g0, 0u), CADT_HALF_EDGE(g1, 0u), CADT_HALF_EDGE(g2, 0u), 0u);
+  cadt_new_triangle(m, g0, CADT_GHOST, c, b, CADT_HALF_EDGE(face, 0u), CADT_HALF_EDGE(g2, 2u), CADT_HALF_EDGE(g1, 1u),
+                    0u);
+  cadt_new_triangle(m, g1, CADT_GHOST, a, c, CADT_HALF_EDGE(face, 1u), CADT_HALF_EDGE(g0, 2u), CADT_HALF_EDGE(g2, 1u),
+                    0u);
+  cadt_new_triangle(m, g2, CADT_GHOST, b, a, CADT_HALF_EDGE(face, 2u), CADT_HALF_EDGE(g1, 2u), CADT_HALF_EDGE(g0, 1u),
+                    0u);
+  cadt_publish_triangle(m, face);
+  cadt_publish_triangle(m, g0);
+  cadt_publish_triangle(m, g1);
+  cadt_publish_triangle(m, g2);
+  cadt_store_relaxed(m->vertex_to_triangle + m->first, face);
+  cadt_store_relaxed(m->vertex_to_triangle + m->second, face);
+  cadt_store_relaxed(m->vertex_to_triangle + m->third, face);
+}
+
+CADT_KERNEL(cadt_seed_mesh, CADT_MESH_PARAMETERS) {
+  if (cadt_item != 0u) return;
+  CADT_MESH_VIEW(mesh);
+  cadt_counters counters;
+  cadt_counters_clear(&counters);
+  cadt_start(&mesh, &counters);
+}
+
+#endif

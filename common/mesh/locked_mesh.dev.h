@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The shared mesh. One record of 32 bytes a triangle: three vertices, the lock word, three links, the flip counters.
+ *
+ * Vertices are positions in sorted order; one ghost vertex at infinity closes the mesh to a sphere, so every hull edge
+ * has a ghost triangle and n vertices give exactly 2n - 2 records. Records are never removed: a split of point i
+ * rewrites one or two records and creates records 2i and 2i + 1, a flip rewrites two. So no allocation counter is
+ * needed.
+ *
+ * A link names the neighbour and the number of its edge: record * 4 + edge. Edge k of a record is opposite its vertex
+ * k. Vertices keep their slot in splits and flips, so a link to an edge that a change does not touch stays right and
+ * its record need not be claimed: a split 1->3 claims three records, a split 2->4 and a flip four (docs/algorithm.md).
+ */
+#ifndef CADT_MESH_LOCKED_MESH_H
+#define CADT_MESH_LOCKED_MESH_H
+
+#include "common/overlay/schedule_noise.dev.h"
+#include "common/portable/layout.dev.h"
+#include "common/predicates/filtered_predicates.dev.h"
+
+/* The mesh as the kernels see it. `center` is the centroid of the first three vertices (seed_triangle.dev.h), rounded.
+ */
+typedef struct {
+  CADT_GLOBAL cadt_locked_triangle* locked;
+  CADT_GLOBAL const cadt_point* points;
+  CADT_GLOBAL cadt_u32* vertex_to_triangle; /* position -> a record near it, CADT_NONE before it is inserted */
+  cadt_point center;
+  cadt_u32 first, second, third; /* positions of the first three vertices */
+  cadt_u32 stabilize,
+      threshold; /* what is done with edges that were flipped more than `threshold` times (split_and_flip.dev.h) */
+  cadt_real epsilon;
+#if defined(CADT_CHECKED)
+  cadt_u32 own_begin, own_size; /* the range of who works without claims (partitioned.dev.h), empty elsewhere */
+#endif
+#if defined(CADT_SCHEDULE_NOISE)
+  cadt_noise* noise;
+#endif
+} cadt_locked_mesh;
+
+#define CADT_MESH_PARAMETERS                                                                            \
+  CADT_GLOBAL cadt_locked_triangle *locked, CADT_GLOBAL const cadt_point *points,                       \
+      CADT_GLOBAL cadt_u32 *vertex_to_triangle, cadt_real center_x, cadt_real center_y, cadt_u32 first, \
+      cadt_u32 second, cadt_u32 third, cadt_u32 stabilize, cadt_u32 threshold, cadt_real epsilon
+#if defined(CADT_CHECKED)
+#define CADT_OWN_PARTITION(mesh, begin, size) mesh.own_begin = (begin), mesh.own_size = (size)
+#else
+#define CADT_OWN_PARTITION(mesh, begin, size) ((void)0)
+#endif
+#define CADT_MESH_VIEW(mesh)                    \
+  cadt_locked_mesh mesh;                        \
+  mesh.locked = locked;                         \
+  mesh.points = points;                         \
+  mesh.vertex_to_triangle = vertex_to_triangle; \
+  mesh.center.x = center_x;                     \
+  mesh.center.y = center_y;                     \
+  mesh.first = first;                           \
+  mesh.second = second;                         \
+  mesh.third = third;                           \
+  mesh.stabilize = stabilize;                   \
+  mesh.threshold = threshold;                   \
+  mesh.epsilon = epsilon;                       \
+  CADT_OWN_PARTITION(mesh, 0u, 0u);             \
+  CADT_NOISE_BEGIN(mesh, cadt_item, epsilon)
+
+#define CADT_HALF_EDGE(triangle, edge) (((triangle) << 2) | (edge))
+#define CADT_TRIANGLE_OF(half_edge) ((half_edge) >> 2)
+#define CADT_EDGE_OF(half_edge) ((half_edge)&3u)
+
+/* What a record held at one moment, if a claim with its lock word succeeds afterwards (lock.dev.h); a hint otherwise.
+ */
+typedef struct {
+  cadt_u32 v0, v1, v2, lock, n0, n1, n2, flips;
+} cadt_snapshot;
+
+#define CADT_VERTEX(s, k) CADT_PICK((k), (s).v0, (s).v1, (s).v2)
+#define CADT_NEIGHBOR(s, k) CADT_PICK((k), (s).n0, (s).n1, (s).n2)
+
+CADT_FN cadt_point cadt_point_of(const cadt_locked_mesh* m, cadt_u32 vertex) {
+  return cadt_load_point(m->points + vertex);
+}
+
+CADT_FN cadt_snapshot cadt_look(const cadt_locked_mesh* m, cadt_u32 t) {
+  cadt_snapshot s;
+  cadt_load_triangle(m->locked[t].word, &s.v0, &s.v1, &s.v2, &s.lock, &s.n0, &s.n1, &s.n2, &s.flips);
+  return s;
+}
+
+/* The same seen from edge k: v0 is opposite of it, n0 is the link across it. CPUs load by index, since a choice by k
+ * would be a branch that nobody can predict; GPUs load the record whole and rotate it in registers. */
+CADT_FN cadt_snapshot cadt_look_from(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k) {
+#if CADT_CONTIGUOUS
+  CADT_GLOBAL cadt_u32* w = m->locked[t].word;
+  const cadt_u32 k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
+  cadt_snapshot s;
+  s.lock = cadt_load_field(w + CADT_WORD_LOCK);
+  CADT_NOISE_AT(m, CADT_AT_FIELDS);
+  s.v0 = cadt_load_field(w + k);
+  s.v1 = cadt_load_field(w + k1);
+  s.v2 = cadt_load_field(w + k2);
+  s.n0 = cadt_load_field(w + CADT_WORD_HALF_EDGE + k);
+  s.n1 = cadt_load_field(w + CADT_WORD_HALF_EDGE + k1);
+  s.n2 = cadt_load_field(w + CADT_WORD_HALF_EDGE + k2);
+  s.flips = cadt_load_field(w + CADT_WORD_FLIPS);
+  return s;
+#else
+  const cadt_snapshot s = cadt_look(m, t);
+  cadt_snapshot r;
+  r.lock = s.lock;
+  r.v0 = CADT_PICK(k, s.v0, s.v1, s.v2);
+  r.v1 = CADT_PICK(k, s.v1, s.v2, s.v0);
+  r.v2 = CADT_PICK(k, s.v2, s.v0, s.v1);
+  r.n0 = CADT_PICK(k, s.n0, s.n1, s.n2);
+  r.n1 = CADT_PICK(k, s.n1, s.n2, s.n0);
+  r.n2 = CADT_PICK(k, s.n2, s.n0, s.n1);
+  r.flips = s.flips;
+  return r;
+#endif
+}
+
+#if defined(CADT_CHECKED)
+/* Whether record t may be changed: it is claimed or not there yet, or its vertices are in the own range, of which `any`
+ * (3: none) need not be. */
+CADT_FN cadt_u32 cadt_may_store(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 any) {
+  const cadt_u32 lock = cadt_load_relaxed(m->locked[t].word + CADT_WORD_LOCK);
+  if (m->own_size == 0u) return lock == 0u || (lock & 1u) ? 1u : 0u;
+  for (cadt_u32 k = 0u; lock != 0u && k < 3u; ++k)
+    if (k != any && cadt_load_relaxed(m->locked[t].word + k) - m->own_begin >= m->own_size) return 0u;
+  return 1u;
+}
+#define CADT_ASSERT_OWNED(m, t, any) cadt_assert_owned(cadt_may_store((m), (t), (any)))
+#else
+#define CADT_ASSERT_OWNED(m, t, any) ((void)0)
+#endif
+
+/* \pre the caller owns record t or has not linked it yet */
+CADT_FN void cadt_store_vertices(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2) {
+  CADT_GLOBAL cadt_u32* w = m->locked[t].word;
+  CADT_ASSERT_OWNED(m, t, 3u);
+  cadt_store_field(w, v0);
+  cadt_store_field(w + 1, v1);
+  cadt_store_field(w + 2, v2);
+}
+CADT_FN void cadt_store_vertex(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 v) {
+  CADT_ASSERT_OWNED(m, t, 3u);
+  cadt_store_field(m->locked[t].word + k, v);
+}
+CADT_FN void cadt_store_half_edge(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 half_edge) {
+  CADT_ASSERT_OWNED(m, t, k); /* who has both ends of an edge in its range may change the link across it */
+  cadt_store_field(m->locked[t].word + CADT_WORD_HALF_EDGE + k, half_edge);
+}
+CADT_FN void cadt_store_flips(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 flips) {
+  CADT_ASSERT_OWNED(m, t, 3u);
+  cadt_store_field(m->locked[t].word + CADT_WORD_FLIPS, flips);
+}
+
+#if !CADT_CONTIGUOUS
+/* All of record t as it is seen from edge k, with the lock word as the owner has it: two accesses on GPUs. */
+CADT_FN void cadt_store_from(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k, const cadt_snapshot* s) {
+  CADT_ASSERT_OWNED(m, t, 3u);
+  cadt_store_triangle(m->locked[t].word, CADT_PICK(k, s->v0, s->v2, s->v1), CADT_PICK(k, s->v1, s->v0, s->v2),
+                      CADT_PICK(k, s->v2, s->v1, s->v0), s->lock, CADT_PICK(k, s->n0, s->n2, s->n1),
+                      CADT_PICK(k, s->n1, s->n0, s->n2), CADT_PICK(k, s->n2, s->n1, s->n0), s->flips);
+}
+#endif
+
+/* Flip counters: ten bits for each edge slot, saturating. */
+CADT_FN cadt_u32 cadt_flips_get(cadt_u32 flips, cadt_u32 k) { return (flips >> (10u * k)) & 1023u; }
+CADT_FN cadt_u32 cadt_flips_set(cadt_u32 flips, cadt_u32 k, cadt_u32 count) {
+  return (flips & ~(1023u << (10u * k))) | (cadt_min_u32(count, 1023u) << (10u * k));
+}
+
+#endif

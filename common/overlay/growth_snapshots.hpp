@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of the growing mesh for Options::watch.
+#pragma once
+
+#include <cadt/triangulation.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "common/driver/device.hpp"
+#include "common/points/spatial_sort.hpp"
+
+namespace cadt {
+
+class GrowthSnapshots {
+ public:
+  GrowthSnapshots(Device& device, const SortedPoints& order);
+  /// Reads all records and calls `watch`. \pre no launch is running that changes the mesh
+  void show(const Buffer& locked, const std::function<void(const Snapshot&)>& watch);
+
+ private:
+  Device& device_;
+  std::vector<std::uint32_t> labels_;  ///< position in the mesh to index of the input
+};
+
+}  // namespace cadt

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/points/import.hpp"
+
+#include <string>
+
+#include "common/points/device_points.hpp"
+
+namespace cadt {
+namespace {
+
+/// Kernels count coordinates in 32 bits: 2 * (skip + n) of them.
+constexpr std::size_t most_skipped = (std::size_t{1} << 31) - 1 - max_points();
+
+/// Where the coordinates of one axis are: the i-th at first + i * stride.
+struct Axis {
+  const Allocation& memory;
+  std::size_t first;
+};
+
+Allocation convert(Context& ctx, Axis x, Axis y, std::uint32_t stride, Scalar scalar, std::size_t count,
+                   const SortedPoints* order) {
+  Allocation points = ctx.memory.transient(count * point_bytes(ctx.device), order == nullptr);
+  const Allocation all;
+  const Allocation& input_ids = order != nullptr ? order->input_ids : all;
+  const double scale = order != nullptr ? order->scale : 1, scale_again = order != nullptr ? order->scale_again : 1;
+  const LaunchGrid c = ctx.launcher.grid(count);
+  const auto launch = [&]<KernelId kernel>() {
+    ctx.launcher.run<kernel>(c.items, x.memory, y.memory, static_cast<std::uint32_t>(x.first),
+                             static_cast<std::uint32_t>(y.first), stride, input_ids, scale, scale_again, points,
+                             static_cast<std::uint32_t>(count), c.grain);
+  };
+  if (scalar == Scalar::float32)
+    launch.template operator()<KernelId::cadt_import_floats>();
+  else
+    launch.template operator()<KernelId::cadt_import_doubles>();
+  return points;
+}
+
+Allocation gather(Context& ctx, const Allocation& input, const SortedPoints& order) {
+  Allocation points = ctx.memory.transient(order.distinct * point_bytes(ctx.device));
+  const LaunchGrid c = ctx.launcher.grid(order.distinct);
+  ctx.launcher.run<KernelId::cadt_gather_points>(c.items, input, order.input_ids, points,
+                                                 static_cast<std::uint32_t>(order.distinct), c.grain, order.scale,
+                                                 order.scale_again);
+  return points;
+}
+
+/// The caller's points, all or (`order`) the distinct ones in this order.
+Allocation import_from(Context& ctx, const DevicePoints& points, const SortedPoints* order) {
+  const std::size_t n = points.size, size = scalar_bytes(points.scalar);
+  const std::size_t count = order != nullptr ? order->distinct : n;
+  if (points.x == nullptr) throw InputError("the points have no memory: DevicePoints::x is null", 0);
+  if (points.skip > most_skipped)
+    throw LimitError("at most " + std::to_string(most_skipped) + " points can be skipped, not " +
+                         std::to_string(points.skip) + ": pass a handle of a later place",
+                     points.skip, most_skipped);
+  require_scalar(ctx.device, size);
+  // Kernels of the library only read it.
+  const Allocation x = ctx.memory.wrap(const_cast<void*>(points.x), (points.skip + n) * size * (points.y ? 1 : 2));
+  if (points.y != nullptr) {
+    const Allocation y = ctx.memory.wrap(const_cast<void*>(points.y), (points.skip + n) * size);
+    return convert(ctx, {x, points.skip}, {y, points.skip}, 1, points.scalar, count, order);
+  }
+  if (size == coordinate_bytes(ctx.device) && points.skip == 0)
+    return order != nullptr ? gather(ctx, x, *order)
+                            : ctx.memory.wrap(const_cast<void*>(points.x), n * point_bytes(ctx.device));
+  return convert(ctx, {x, 2 * points.skip}, {x, 2 * points.skip + 1}, 2, points.scalar, count, order);
+}
+
+}  // namespace
+
+void require_scalar(const Device& device, std::size_t scalar_bytes) {
+  if (scalar_bytes == sizeof(float) || !takes_floats_only(device)) return;
+  const DeviceInfo& info = device.info();
+  throw BackendUnavailable(std::string(to_string(info.backend)),
+                           "'" + info.name +
+                               "' has no double precision and takes float coordinates only: give floats (float spans, "
+                               "Scalar::float32; in the program the option --floats), or name another device");
+}
+
+Allocation import_points(Context& ctx, const PointsView& points) {
+  const std::size_t n = points.size(), size = points.scalar_size();
+  require_scalar(ctx.device, size);
+  if (points.interleaved() && size == coordinate_bytes(ctx.device))
+    return ctx.memory.import(points.x_data(), n * point_bytes(ctx.device));
+  const Scalar scalar = size == sizeof(float) ? Scalar::float32 : Scalar::float64;
+  if (points.interleaved()) {
+    const Allocation xy = ctx.memory.import(points.x_data(), 2 * n * size);
+    return convert(ctx, {xy, 0}, {xy, 1}, 2, scalar, n, nullptr);
+  }
+  const Allocation x = ctx.memory.import(points.x_data(), n * size), y = ctx.memory.import(points.y_data(), n * size);
+  return convert(ctx, {x, 0}, {y, 0}, 1, scalar, n, nullptr);
+}
+
+Allocation import_points(Context& ctx, const DevicePoints& points) { return import_from(ctx, points, nullptr); }
+
+Allocation import_in_order(Context& ctx, const DevicePoints& points, const SortedPoints& order) {
+  return import_from(ctx, points, &order);
+}
+
+}  // namespace cadt

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// The caller's coordinates on the device, interleaved, as its kernels take them (device_points.hpp).
+#pragma once
+
+#include <cadt/triangulator.hpp>
+
+#include "common/driver/context.hpp"
+#include "common/points/spatial_sort.hpp"
+
+namespace cadt {
+
+/// Bytes of a coordinate.
+[[nodiscard]] constexpr std::size_t scalar_bytes(Scalar scalar) noexcept {
+  return scalar == Scalar::float32 ? sizeof(float) : sizeof(double);
+}
+
+/// From the host: without a copy where the device can read the caller's memory.
+[[nodiscard]] Allocation import_points(Context& ctx, const PointsView& points);
+
+/// From the device: without a copy if they are that already. \throws InputError for a handle that is missing
+[[nodiscard]] Allocation import_points(Context& ctx, const DevicePoints& points);
+
+/// Distinct points of `order` once more, without a copy of all points besides.
+[[nodiscard]] Allocation import_in_order(Context& ctx, const DevicePoints& points, const SortedPoints& order);
+
+}  // namespace cadt

@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Counters of work and conflicts, and clocks. A work-item counts privately and adds its counts once; they end in one of
+ * several rows, so the counters cost little. What happens seldom in the insertion is counted by CADT_COUNT_NOW: on a
+ * GPU at once in the memory of the group, since no register is free for it. The driver adds the rows up
+ * (common/driver/counters.cpp).
+ *
+ * Clocks are in the timed build only. A lap ends where CADT_LAP stands: the time since the last one goes to the named
+ * account. On a GPU that is the time of the lane, in which lanes of its warp that went another way may have worked.
+ */
+#ifndef CADT_PORTABLE_COUNTERS_H
+#define CADT_PORTABLE_COUNTERS_H
+
+#include "common/portable/atomics.dev.h"
+#include "common/portable/layout.dev.h"
+
+typedef struct {
+  cadt_u32 count[CADT_COUNTERS];
+#if CADT_GROUP_SUMS
+  CADT_LOCAL_PTR cadt_u32* sums; /* of the group */
+  cadt_u32 wanted;               /* whether anybody wants to know */
+#endif
+#if CADT_TIMED
+  cadt_u64 ticks[CADT_TIMES];
+  cadt_u64 lap;
+#endif
+} cadt_counters;
+
+#if CADT_GROUP_SUMS
+#define CADT_COUNT_NOW(counters, c) cadt_count_now((counters), (c))
+CADT_FN void cadt_count_now(const cadt_counters* counters, cadt_u32 c) {
+  if (counters->wanted) cadt_add_local(counters->sums + c, 1u);
+}
+#else
+#define CADT_COUNT_NOW(counters, c) ((counters)->count[c]++)
+#endif
+#if CADT_TIMED
+#define CADT_LAP(counters, timer) cadt_lap((counters), (timer))
+CADT_FN void cadt_lap(cadt_counters* counters, cadt_u32 timer) {
+  const cadt_u64 now = cadt_clock();
+  counters->ticks[timer] += now - counters->lap;
+  counters->lap = now;
+}
+#else
+#define CADT_LAP(counters, timer) ((void)0)
+#endif
+/* What was done since the last lap is nobody's account. */
+#if CADT_TIMED
+#define CADT_LAP_SKIP(counters) ((counters)->lap = cadt_clock())
+#else
+#define CADT_LAP_SKIP(counters) ((void)0)
+#endif
+/* Where lanes of a GPU's warp wait for each other; a CPU's thread waits for nobody. */
+#if CADT_CONTIGUOUS
+#define CADT_LAP_WAIT(counters) ((void)0)
+#else
+#define CADT_LAP_WAIT(counters) CADT_LAP((counters), CADT_TIME_WAIT)
+#endif
+
+CADT_FN void cadt_counters_clear(cadt_counters* counters) {
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c) counters->count[c] = 0u;
+#if CADT_GROUP_SUMS
+  counters->sums = 0;
+  counters->wanted = 0u;
+#endif
+#if CADT_TIMED
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c) counters->ticks[c] = 0u;
+  counters->lap = cadt_clock();
+#endif
+}
+
+CADT_FN CADT_GLOBAL cadt_u32* cadt_counter_row(CADT_GLOBAL cadt_u32* counter_rows, cadt_u32 item) {
+  return counter_rows + item % CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE;
+}
+
+/* A group of a GPU adds up in its own memory, and who comes last passes the sums on: lanes leave their loops one by
+ * one, so that there would be one addition in the device's memory for each lane and counter (5 % of the time of 10M
+ * points on an H200), and letting the lanes of a warp wait for each other, to add together, costs 3 %.
+ * CADT_GROUP_COUNTERS stands once in a kernel, before anything else; `counters` is null if nobody wants to know. */
+#if CADT_GROUP_SUMS
+enum { CADT_GROUP_DONE = CADT_COUNTERS + CADT_TIMES, CADT_GROUP_WORDS };
+#define CADT_GROUP_COUNTERS(counters, counter_rows)          \
+  CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS];                \
+  if (counter_rows) cadt_clear_sums(sums, CADT_GROUP_WORDS); \
+  cadt_counters counters;                                    \
+  cadt_counters_clear(&counters);                            \
+  counters.sums = sums;                                      \
+  counters.wanted = (counter_rows) != 0 ? 1u : 0u
+#define CADT_FLUSH_COUNTERS(counters, counter_rows) \
+  if (counter_rows) cadt_flush_group((counters), sums, (counter_rows))
+
+CADT_FN void cadt_clear_sums(CADT_LOCAL_PTR cadt_u32* sums, cadt_u32 count) {
+  for (cadt_u32 c = cadt_item_of_group; c < count; c += cadt_group_items) sums[c] = 0u;
+  cadt_group_barrier();
+}
+
+/* True for the work-item of the group that asks last: it sees the sums of all. */
+CADT_FN cadt_u32 cadt_is_last_of_group(CADT_LOCAL_PTR cadt_u32* done) {
+  cadt_fence_local();
+  if (cadt_add_local(done, 1u) + 1u != cadt_group_items) return 0u;
+  cadt_fence_local();
+  return 1u;
+}
+
+/* Instructions count here, since each lane executes this by itself: no branches for the common counters, one for all
+ * others. */
+CADT_FN void cadt_flush_group(cadt_counters* counters, CADT_LOCAL_PTR cadt_u32* sums,
+                              CADT_GLOBAL cadt_u32* counter_rows) {
+  cadt_u32 others = 0u;
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS_COMMON); ++c) cadt_add_local(sums + c, counters->count[c]);
+  for (cadt_u32 c = CADT_COUNTERS_COMMON; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c) others |= counters->count[c];
+  if (others) {
+    for (cadt_u32 c = CADT_COUNTERS_COMMON; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c)
+      if (counters->count[c]) cadt_add_local(sums + c, counters->count[c]);
+  }
+#if CADT_TIMED
+  CADT_LAP_WAIT(counters);
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c)
+    cadt_add_local(sums + CADT_COUNTERS + c, CADT_CAST(cadt_u32, counters->ticks[c] >> CADT_TIME_LANE_SHIFT));
+#endif
+  if (!cadt_is_last_of_group(sums + CADT_GROUP_DONE)) return;
+  CADT_GLOBAL cadt_u32* row = cadt_counter_row(counter_rows, cadt_item / cadt_group_items);
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_GROUP_DONE); ++c) {
+    const cadt_u32 sum = cadt_add_local(sums + c, 0u), counter = c < CADT_CAST(cadt_u32, CADT_COUNTERS) ? 1u : 0u;
+    const cadt_u32 at = counter ? c : c - CADT_COUNTERS + CADT_ROW_TIMES;
+    const cadt_u32 value = counter ? sum : sum >> CADT_TIME_GROUP_SHIFT;
+    if (value) cadt_add_relaxed(row + at, value);
+  }
+}
+#else
+#define CADT_GROUP_COUNTERS(counters, counter_rows) \
+  cadt_counters counters;                           \
+  cadt_counters_clear(&counters)
+#define CADT_FLUSH_COUNTERS(counters, counter_rows) \
+  if (counter_rows) cadt_flush_item((counters), (counter_rows), cadt_item)
+
+CADT_FN void cadt_flush_item(const cadt_counters* counters, CADT_GLOBAL cadt_u32* counter_rows, cadt_u32 item) {
+  CADT_GLOBAL cadt_u32* row = cadt_counter_row(counter_rows, item);
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c)
+    if (counters->count[c]) cadt_add_relaxed(row + c, counters->count[c]);
+#if CADT_TIMED
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c) {
+    const cadt_u32 time = CADT_CAST(cadt_u32, counters->ticks[c] >> CADT_TIME_ITEM_SHIFT);
+    if (time) cadt_add_relaxed(row + CADT_ROW_TIMES + c, time);
+  }
+#endif
+}
+#endif
+
+#endif

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * All kernels. A back end compiles this file; the names are listed in kernel_list.h. The build for floats has those of
+ * the strategy `locks`: the star stage, gift wrapping and the verifier have error bounds of their own, for doubles, and
+ * what they decide the others decide as well (docs/decisions/0015-float-path.md).
+ */
+#ifndef CADT_PORTABLE_KERNELS_H
+#define CADT_PORTABLE_KERNELS_H
+
+#include "common/portable/dialect.dev.h"
+/* The text for OpenCL compilers has each file once, where it is included first: not within a condition that is wider
+ * than its own. */
+#include "common/certify/certify.dev.h"
+#include "common/insertion/cavity.dev.h"
+#include "common/insertion/insert.dev.h"
+#include "common/insertion/legality_sweep.dev.h"
+#include "common/insertion/partitioned.dev.h"
+#include "common/insertion/seed_triangle.dev.h"
+#include "common/output/renumber.dev.h"
+#include "common/overlay/flip_histogram.dev.h"
+#include "common/points/key_refinement.dev.h"
+#include "common/points/spatial_sort.dev.h"
+#include "common/portable/radix_sort.dev.h"
+#include "common/portable/scan.dev.h"
+#include "common/predicates/predicate_probe.dev.h"
+#include "common/predicates/self_test.dev.h"
+#if !CADT_FLOAT
+#include "common/batch/batch.dev.h"
+#include "common/batch/batch_insertion.dev.h"
+#include "common/stars/assemble.dev.h"
+#include "common/stars/assemble_wrapped.dev.h"
+#include "common/stars/high_degree.dev.h"
+#include "common/stars/stitch.dev.h"
+#include "common/stars/tile_stars.dev.h"
+#include "common/stars/tiles.dev.h"
+#include "common/stars/wrap_exact.dev.h"
+#include "common/stars/wrap_fast.dev.h"
+#include "common/verify/device/verify.dev.h"
+#endif
+
+#endif

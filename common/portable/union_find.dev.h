@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Connected components: trees of elements, each of which names one above it, or itself if it is the root. Two trees are
+ * joined by one compare-and-swap of the higher root, so a component is named by its lowest element.
+ */
+#ifndef CADT_PORTABLE_UNION_FIND_H
+#define CADT_PORTABLE_UNION_FIND_H
+
+#include "common/portable/atomics.dev.h"
+
+CADT_FN cadt_u32 cadt_find_root(CADT_GLOBAL cadt_u32* roots, cadt_u32 r) {
+  for (;;) {
+    const cadt_u32 up = cadt_load_relaxed(roots + r);
+    if (up == r) return r;
+    const cadt_u32 further = cadt_load_relaxed(roots + up);
+    if (further != up) cadt_store_relaxed(roots + r, further); /* shorter for those who come later */
+    r = up;
+  }
+}
+
+CADT_FN void cadt_unite(CADT_GLOBAL cadt_u32* roots, cadt_u32 r, cadt_u32 other) {
+  cadt_u32 a = cadt_find_root(roots, r), b = cadt_find_root(roots, other);
+  while (a != b) {
+    const cadt_u32 high = a > b ? a : b, low = a > b ? b : a;
+    if (cadt_cas_relaxed(roots + high, high, low)) break;
+    a = cadt_find_root(roots, high);
+    b = cadt_find_root(roots, low);
+  }
+}
+
+#endif

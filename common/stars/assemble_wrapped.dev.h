@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * The mesh from wrapped stars, in records or in arrays. A triangle belongs to the lowest of its vertices that has a
+ * star. A hub has none, so its triangles are those of its neighbours. An edge between two without stars (hubs, or the
+ * ghost) is listed with the vertex on either side of it; high_degree.dev.h adds the triangles of three such vertices,
+ * each as its three half-edges.
+ */
+#ifndef CADT_STARS_ASSEMBLE_WRAPPED_H
+#define CADT_STARS_ASSEMBLE_WRAPPED_H
+
+#include "common/batch/batch.dev.h"
+#include "common/certify/certify.dev.h"
+
+typedef struct {
+  CADT_GLOBAL const cadt_u32* star_vertices;
+  CADT_GLOBAL const cadt_u32* begins;
+  CADT_GLOBAL const cadt_u32* sizes;
+  CADT_GLOBAL const cadt_u32* bases; /* number of the first triangle that belongs to a vertex */
+  CADT_GLOBAL const cadt_wrap_edge* edges;
+  cadt_u32 edge_count;
+  cadt_u32 first_extra; /* of the edges: from here on they are those of triangles without stars, whose numbers */
+  cadt_u32 extra_base;  /* begin here, in arrays those of the ghost's triangles */
+  cadt_u32 high_degree; /* whether there are any */
+  cadt_u32 apart;       /* in arrays: real triangles come before those of the ghost */
+} cadt_wrap_set;
+
+/* What a triangle with the neighbours a and b of its owner adds to the count. */
+CADT_FN cadt_u32 cadt_wrap_one(cadt_u32 apart, cadt_u32 a, cadt_u32 b) {
+  return apart && a != CADT_GHOST && b != CADT_GHOST ? 0x10000u : 1u;
+}
+
+/* Whether v comes before another vertex of its star: there it owns what they share. */
+CADT_FN cadt_u32 cadt_wrap_before(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 high_degree, cadt_u32 v, cadt_u32 other) {
+  return other > v || (high_degree && sizes[other] == 0u) ? 1u : 0u;
+}
+
+/* Whether the vertex has no star: a hub, or the ghost. */
+CADT_FN cadt_u32 cadt_wrap_starless(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 v) {
+  return v == CADT_GHOST || sizes[v] == 0u ? 1u : 0u;
+}
+
+/* Triangles that belong to v. */
+CADT_FN cadt_u32 cadt_wrap_owned(CADT_GLOBAL const cadt_u32* star, cadt_u32 size, CADT_GLOBAL const cadt_u32* sizes,
+                                 cadt_u32 high_degree, cadt_u32 apart, cadt_u32 v) {
+  cadt_u32 count = 0u;
+  for (cadt_u32 k = 0u; k < size; ++k) {
+    const cadt_u32 a = star[k], b = star[k + 1u < size ? k + 1u : 0u];
+    if (cadt_wrap_before(sizes, high_degree, v, a) && cadt_wrap_before(sizes, high_degree, v, b))
+      count += cadt_wrap_one(apart, a, b);
+  }
+  return count;
+}
+
+/* owned[v]: triangles that belong to v, in two counts if `apart`; a 0 behind the last, and then the first words of
+ * `found`, so that they can be read with the scan's total, and `zeros` zeros for who writes next. If not `apart`,
+ * half-edges between two vertices without stars are counted in found[6], and listed. */
+CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 apart, cadt_u32 grain, CADT_GLOBAL cadt_u32* found,
+            CADT_GLOBAL cadt_u32* owned, cadt_u32 zeros, CADT_GLOBAL cadt_wrap_edge* edges) {
+  for (cadt_u32 k = cadt_item; k < zeros; k += cadt_items) owned[n + 1u + CADT_WRAP_FOUND + k] = 0u;
+  if (cadt_item == 0u) {
+    owned[n] = 0u;
+    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_WRAP_FOUND); ++k) owned[n + 1u + k] = found[k];
+  }
+  const cadt_u32 high_degree = found[1];
+  CADT_FOR(v, n, grain) {
+    CADT_GLOBAL const cadt_u32* star = star_vertices + begins[v];
+    const cadt_u32 size = sizes[v];
+    for (cadt_u32 k = 0u; high_degree && !apart && k < size; ++k) {
+      const cadt_u32 a = star[k], b = star[k + 1u < size ? k + 1u : 0u];
+      if (cadt_wrap_starless(sizes, a) && cadt_wrap_starless(sizes, b)) {
+        const cadt_u32 at = cadt_add_relaxed(found + 6, 1u);
+        if (at < CADT_CAST(cadt_u32, CADT_WRAP_EDGES)) {
+          edges[at].from = a;
+          edges[at].to = b;
+          edges[at].left = v;
+        }
+      }
+    }
+    owned[v] = cadt_wrap_owned(star, size, sizes, high_degree, apart, v);
+  }
+}
+
+/* The same for sets together, which have no hubs; those that have failed lose their stars. Every set has two records a
+ * vertex: two of them belong to its last vertex and are not used, nor are any of a set without stars. */
+CADT_KERNEL(cadt_batch_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
+            CADT_GLOBAL const cadt_u32* states, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* owned) {
+  if (cadt_item == 0u) owned[n] = 0u;
+  CADT_FOR(v, n, grain) {
+    const cadt_u32 set = cadt_set_of(starts, set_count, v);
+    if (states[set] == CADT_SET_BATCHED) {
+      owned[v] = cadt_wrap_owned(star_vertices + begins[v], sizes[v], sizes, 0u, 0u, v) +
+                 (v + 1u == starts[set + 1u] ? 2u : 0u);
+    } else {
+      owned[v] = v == starts[set] ? 2u * (starts[set + 1u] - v) : 0u;
+      sizes[v] = 0u;
+    }
+  }
+}
+
+/* Place of vertex a in the star of v, and the count of triangles before it that belong to v. \pre it is there */
+CADT_FN cadt_u32 cadt_wrap_place(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32* owned) {
+  CADT_GLOBAL const cadt_u32* star = s->star_vertices + s->begins[v];
+  cadt_u32 k = 0u, count = 0u, now = star[0];
+  while (now != a) {
+    const cadt_u32 next = star[++k];
+    if (cadt_wrap_before(s->sizes, s->high_degree, v, now) && cadt_wrap_before(s->sizes, s->high_degree, v, next))
+      count += cadt_wrap_one(s->apart, now, next);
+    now = next;
+  }
+  *owned = count;
+  return k;
+}
+
+/* The neighbour of v before or behind its neighbour a. */
+CADT_FN cadt_u32 cadt_wrap_beside(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32 behind) {
+  cadt_u32 owned;
+  const cadt_u32 k = cadt_wrap_place(s, v, a, &owned), size = s->sizes[v];
+  const cadt_u32 other = behind ? (k + 1u < size ? k + 1u : 0u) : (k ? k - 1u : size - 1u);
+  return s->star_vertices[s->begins[v] + other];
+}
+
+/* The vertex to the right of the edge from a to b. */
+CADT_FN cadt_u32 cadt_wrap_right(const cadt_wrap_set* s, cadt_u32 a, cadt_u32 b) {
+  if (!cadt_wrap_starless(s->sizes, a)) return cadt_wrap_beside(s, a, b, 0u);
+  if (!cadt_wrap_starless(s->sizes, b)) return cadt_wrap_beside(s, b, a, 1u);
+  for (cadt_u32 e = 0u; e < s->edge_count; ++e)
+    if (s->edges[e].from == b && s->edges[e].to == a) return s->edges[e].left;
+  return CADT_NONE; /* never: the driver has matched all of them */
+}
+
+/* Number of the triangle of v with its neighbours a and b; `before`: count of those of v before it. */
+CADT_FN cadt_u32 cadt_wrap_number(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 before, cadt_u32 a, cadt_u32 b) {
+  const cadt_u32 sum = s->bases[v] + before;
+  if (!s->apart) return sum;
+  return a == CADT_GHOST || b == CADT_GHOST ? s->extra_base + CADT_WRAP_GHOSTS(sum) : CADT_WRAP_REAL(sum);
+}
+
+/* Link to the triangle x, y, z across the edge opposite of x (0), y (1) or z (2). */
+CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, cadt_u32 z, cadt_u32 opposite) {
+  const cadt_u32 none = CADT_GHOST; /* hubs own nothing */
+  const cadt_u32 i = s->high_degree && cadt_wrap_starless(s->sizes, x) ? none : x;
+  const cadt_u32 j = s->high_degree && cadt_wrap_starless(s->sizes, y) ? none : y;
+  const cadt_u32 k = s->high_degree && cadt_wrap_starless(s->sizes, z) ? none : z;
+  const cadt_u32 lowest = i < j ? (i < k ? 0u : 2u) : (j < k ? 1u : 2u);
+  const cadt_u32 owner = CADT_PICK(lowest, x, y, z), next = CADT_PICK(lowest, y, z, x);
+  if (CADT_PICK(lowest, i, j, k) == none) {
+    cadt_u32 e = s->first_extra;
+    while (e + 1u < s->edge_count && (s->edges[e].from != x || s->edges[e].to != y || s->edges[e].left != z)) ++e;
+    e -= s->first_extra;
+    return CADT_HALF_EDGE(s->extra_base + e / 3u, (opposite + e % 3u) % 3u);
+  }
+  cadt_u32 before;
+  cadt_wrap_place(s, owner, next, &before);
+  return CADT_HALF_EDGE(cadt_wrap_number(s, owner, before, next, CADT_PICK(lowest, z, x, y)),
+                        opposite >= lowest ? opposite - lowest : opposite + 3u - lowest);
+}
+
+/* A triangle that belongs to a vertex: its number, the neighbours a and b, the links. */
+typedef struct {
+  cadt_u32 number, a, b, star_vertices[3];
+} cadt_wrap_triangle;
+
+/* That of the neighbours k and the next; false if it belongs to another vertex. */
+CADT_FN cadt_u32 cadt_wrap_triangle_of(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 k, cadt_wrap_triangle* t) {
+  CADT_GLOBAL const cadt_u32* star = s->star_vertices + s->begins[v];
+  const cadt_u32 size = s->sizes[v], k1 = k + 1u < size ? k + 1u : 0u, a = star[k], b = star[k1];
+  if (!cadt_wrap_before(s->sizes, s->high_degree, v, a) || !cadt_wrap_before(s->sizes, s->high_degree, v, b)) return 0u;
+  cadt_u32 before;
+  cadt_wrap_place(s, v, a, &before);
+  t->number = cadt_wrap_number(s, v, before, a, b);
+  t->a = a;
+  t->b = b;
+  t->star_vertices[0] = cadt_wrap_link(s, a, cadt_wrap_right(s, a, b), b, 1u);
+  t->star_vertices[1] = cadt_wrap_link(s, v, b, star[k1 + 1u < size ? k1 + 1u : 0u], 2u);
+  t->star_vertices[2] = cadt_wrap_link(s, v, star[k ? k - 1u : size - 1u], a, 1u);
+  return 1u;
+}
+
+/* The mesh in arrays (certify.dev.h), real triangles first, of stars without hubs. bases[n] is the total, behind it is
+ * what was found: if that is not a mesh, nothing is written. The number of real triangles goes to the words of
+ * cadt_certify, in bases from `row` on. CADT_WRAP_SHARES work-items for each vertex. */
+CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL cadt_u32* bases, cadt_u32 link_words, cadt_u32 row,
+            cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* vertices, CADT_GLOBAL cadt_u32* half_edges) {
+  const cadt_u32 total = bases[n], real = CADT_WRAP_REAL(total);
+  if (real + CADT_WRAP_GHOSTS(total) != 2u * n - 2u || bases[n + 1u] > link_words || bases[n + 2u]) return;
+  if (cadt_item == 0u) bases[row + CADT_CERTIFY_REAL] = real;
+  cadt_wrap_set stars;
+  stars.star_vertices = star_vertices;
+  stars.begins = begins;
+  stars.sizes = sizes;
+  stars.bases = bases;
+  stars.edges = 0;
+  stars.edge_count = stars.first_extra = stars.high_degree = 0u;
+  stars.extra_base = real;
+  stars.apart = 1u;
+  CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
+    const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
+    for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {
+      cadt_wrap_triangle t;
+      if (!cadt_wrap_triangle_of(&stars, v, k, &t)) continue;
+      vertices[3u * t.number] = v;
+      vertices[3u * t.number + 1u] = t.a;
+      vertices[3u * t.number + 2u] = t.b;
+      for (cadt_u32 edge = 0u; edge < 3u; ++edge) half_edges[3u * t.number + edge] = t.star_vertices[edge];
+    }
+  }
+}
+
+/* CADT_WRAP_SHARES work-items for each vertex. The last two records are not used. \pre no triangle is missing */
+CADT_KERNEL(cadt_wrap_locked, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases,
+            CADT_GLOBAL const cadt_wrap_edge* edges, cadt_u32 edge_count, cadt_u32 first_extra, cadt_u32 extra_base,
+            cadt_u32 high_degree, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_locked_triangle* locked) {
+  cadt_wrap_set stars;
+  stars.star_vertices = star_vertices;
+  stars.begins = begins;
+  stars.sizes = sizes;
+  stars.bases = bases;
+  stars.edges = edges;
+  stars.edge_count = edge_count;
+  stars.first_extra = first_extra;
+  stars.extra_base = extra_base;
+  stars.high_degree = high_degree;
+  stars.apart = 0u;
+  if (cadt_item == 0u) {
+    locked[2u * n - 2u].word[CADT_WORD_LOCK] = 0u;
+    locked[2u * n - 1u].word[CADT_WORD_LOCK] = 0u;
+    for (cadt_u32 e = first_extra; e < edge_count; e += 3u) {
+      CADT_GLOBAL cadt_u32* w = locked[extra_base + (e - first_extra) / 3u].word;
+      const cadt_u32 a = edges[e].from, b = edges[e].to, c = edges[e].left;
+      cadt_store_four(w, a, b, c, 2u);
+      cadt_store_four(w + CADT_WORD_HALF_EDGE, cadt_wrap_link(&stars, b, cadt_wrap_right(&stars, b, c), c, 1u),
+                      cadt_wrap_link(&stars, c, cadt_wrap_right(&stars, c, a), a, 1u),
+                      cadt_wrap_link(&stars, a, cadt_wrap_right(&stars, a, b), b, 1u), 0u);
+    }
+  }
+  CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
+    const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
+    for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {
+      cadt_wrap_triangle t;
+      if (!cadt_wrap_triangle_of(&stars, v, k, &t)) continue;
+      CADT_GLOBAL cadt_u32* w = locked[t.number].word;
+      cadt_store_four(w, v, t.a, t.b, 2u);
+      cadt_store_four(w + CADT_WORD_HALF_EDGE, t.star_vertices[0], t.star_vertices[1], t.star_vertices[2], 0u);
+    }
+  }
+}
+
+#endif

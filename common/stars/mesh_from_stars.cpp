@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/stars/mesh_from_stars.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/certify/certify.hpp"
+#include "common/driver/counters.hpp"
+#include "common/driver/device_text.hpp"
+#include "common/stars/local_stars.hpp"
+#include "common/stars/wrap.hpp"
+
+namespace cadt {
+namespace {
+
+using namespace device_text;
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+constexpr unsigned most_bits =
+    26;  // of an axis: cells of a window are counted in 32 bits, see CADT_NEIGHBORHOOD_ERROR too
+
+/// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
+constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
+
+/// Edges between the two parts have a list and a hash table.
+constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * open > points; }
+
+/// The vertices of the mesh take the place of the stars in so many steps where memory is to be saved.
+constexpr std::uint32_t waves = 4;
+
+/// How many points are wrapped, rather than inserted or given to the star stage.
+std::size_t most_wrapped_of(const Context& ctx, const SortedPoints& order) {
+  const std::size_t most = most_wrapped(ctx.device);
+  if (ctx.options.strategy != Strategy::automatic) return most;
+  if (order.shapes.on_circles) return std::min(most, most_wrapped_on_circles);
+  if (order.shapes.on_lattice) return std::min(most, most_wrapped_on_lattice);
+  return order.shapes.on_ring ? std::min(most, most_wrapped_on_ring) : most;
+}
+
+/// The mesh without the star stage: by gift wrapping if the points are few, else by insertion.
+Mesh build_without_stars(Context& ctx, SortedPoints& order) {
+  std::optional<Mesh> wrapped;
+  if (order.distinct <= most_wrapped_of(ctx, order)) wrapped = wrap_mesh(ctx, order);
+  return wrapped ? std::move(*wrapped) : insert_incrementally(ctx, order);
+}
+
+/// The same for a part of a mesh of `all` points that is certified as a whole: in records, without a closing pass where
+/// that is no use.
+Mesh build_residual(Context& ctx, SortedPoints& order, std::size_t all) {
+  std::optional<Mesh> wrapped;
+  if (order.distinct <= most_wrapped(ctx.device)) wrapped = wrap_part(ctx, order.points, order.distinct, all);
+  return wrapped ? std::move(*wrapped) : insert_incrementally(ctx, order);
+}
+
+class StarStage {
+ public:
+  StarStage(Context& ctx, SortedPoints& order)
+      : ctx_(ctx),
+        launch_(ctx.launcher),
+        order_(order),
+        n_(order.distinct),
+        count_(static_cast<std::uint32_t>(n_)),
+        keys_(std::move(order.keys)) {}
+
+  [[nodiscard]] Mesh build() {
+    const bool made = make_stars();
+    keys_.release();
+    if (!made) {
+      release_stars();
+      return build_without_stars(ctx_, order_);
+    }
+    count_triangles();
+    if (too_many(unproven_, n_) || too_many_open(open_count_, n_)) {
+      release_stars();
+      ranks_.release();
+      return build_without_stars(ctx_, order_);
+    }
+    // stars that contradict each other would number more
+    if (proven_triangles_ > 2 * n_ - 2)
+      throw InternalError("the proven stars have " + std::to_string(proven_triangles_) + " triangles, more than " +
+                          std::to_string(2 * n_ - 2) + "; please report this with the input");
+    ctx_.statistics.proven_stars = n_ - unproven_;
+    SortedPoints residual = take_residual();
+    if (order_.points_again) order_.points.release();
+    write_triangles();
+    release_stars();
+    join(residual);
+    if (!order_.points) order_.points = order_.points_again(order_);
+    certify_arrays(ctx_, order_, mesh_);
+    return std::move(mesh_);
+  }
+
+ private:
+  /// False if there are no tiles, or too few stars.
+  bool make_stars() {
+    const KeyGrid& grid = order_.grid;
+    Allocation low;
+    if (!keys_) {
+      keys_ = ctx_.memory.transient(n_ * word);
+      if (grid.fine_levels != 0) {
+        low = ctx_.memory.transient(n_ * word);
+        make_fine_keys(ctx_, order_.points, keys_, low, n_, grid);
+      } else {
+        make_keys(ctx_, order_.points, keys_, n_, grid);
+      }
+    }
+    const SortKeys keys{keys_, low, 2 * grid.fine_levels};
+    const bool automatic = ctx_.options.strategy == Strategy::automatic;
+    const std::optional<TileList> tiles =
+        make_tiles(ctx_, keys, n_, grid.levels(), automatic ? least_points_of_tile : 0);
+    ctx_.end_phase("tiles");
+    if (!tiles) return false;
+    ctx_.check("stars", 0.1);
+    stars_ = allocate_stars(ctx_, n_, *tiles);
+    const StarCounters found = prove_stars(ctx_, order_, keys, {}, {}, *tiles, automatic, stars_);
+    found.add_to(ctx_.statistics);
+    ctx_.end_phase("stars");
+    ctx_.check("stars", 0.5);
+    return found.left_tiles == 0 && !too_many(found.unproven, n_);
+  }
+
+  void count_triangles() {
+    // All but one of the buffers that lend are taken as a whole while the bases are here; to save memory, there is one.
+    const std::size_t bases = (n_ + 1) * word;
+    bases_ = ctx_.saves_memory ? ctx_.memory.allocate_unpooled(bases) : ctx_.memory.transient(bases);
+    ranks_ = ctx_.memory.transient((n_ + 1) * word);
+    totals_ = launch_.zeros(2);
+    const LaunchGrid c = launch_.grid(n_);
+    const std::size_t words = (n_ - 1) / 32 + 1;
+    proven_ = ctx_.memory.allocate(words * word);
+    const std::size_t marks = n_ * sizeof(std::uint16_t);
+    marks_ = ctx_.saves_memory ? ctx_.memory.allocate_unpooled(marks) : ctx_.memory.allocate(marks);
+    const LaunchGrid of_words = launch_.grid(words);
+    launch_.run<KernelId::cadt_pack_proven>(of_words.items, stars_.sizes, count_, static_cast<std::uint32_t>(words),
+                                            of_words.grain, proven_);
+    launch_.run<KernelId::cadt_star_counts>(c.items, stars_.star_vertices, stars_.begins, stars_.sizes, proven_, count_,
+                                            c.grain, marks_, bases_, ranks_, totals_);
+    stars_.sizes.release();
+    launch_.scan(bases_, n_ + 1);
+    launch_.scan(ranks_, n_ + 1);
+    proven_triangles_ = launch_.read_word(bases_, n_);
+    unproven_ = launch_.read_word(ranks_, n_);
+    open_count_ = launch_.read_word(totals_, 0);
+  }
+
+  /// The vertices without a star, and in place of labels their positions.
+  [[nodiscard]] SortedPoints take_residual() {
+    SortedPoints residual;
+    residual.distinct = unproven_;
+    residual.points = ctx_.memory.allocate(unproven_ * sizeof(cadt_point));
+    residual.input_ids = ctx_.memory.allocate(unproven_ * word);
+    const LaunchGrid all = launch_.grid(n_);
+    launch_.run<KernelId::cadt_pack_residual>(all.items, ranks_, order_.points, residual.points, residual.input_ids,
+                                              count_, all.grain);
+    ranks_.release();
+    return residual;
+  }
+
+  /// Links and vertices of the triangles with a proven vertex.
+  void write_triangles() {
+    const std::size_t bytes = 3 * (2 * n_ - 2) * word;
+    const std::uint32_t groups = (count_ - 1) / CADT_ASSEMBLY_LANES + 1;
+    const LaunchGrid c = launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES);
+    mesh_.half_edges = ctx_.memory.allocate(bytes);
+    open_ = ctx_.memory.allocate(std::size_t{open_count_} * word);
+    const Allocation firsts = ctx_.memory.allocate((groups + std::size_t{1}) * word);
+    launch_.run<KernelId::cadt_star_half_edges>(c.items, stars_.star_vertices, stars_.begins, marks_, bases_, proven_,
+                                                count_, groups, c.grain, mesh_.half_edges, firsts, open_, totals_);
+    bases_.release();
+    if (!ctx_.saves_memory || !write_vertices_in_place(firsts, groups)) {
+      mesh_.vertices = ctx_.memory.allocate(bytes);
+      write_vertices(firsts, 0, groups, mesh_.vertices);
+    }
+    ctx_.end_phase("records");
+  }
+
+  void write_vertices(const Allocation& firsts, std::uint32_t from, std::uint32_t groups, const Allocation& to) {
+    const LaunchGrid c = launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES);
+    launch_.run<KernelId::cadt_star_vertices>(c.items, stars_.star_vertices, stars_.begins, marks_, firsts, count_,
+                                              from, groups, c.grain, to);
+  }
+
+  /// To where the stars are. Both are in the order of the points, six words a point, and there are some more before and
+  /// between the stars of the tiles: a share of the vertices, put together elsewhere, has room where no star is that is
+  /// still to be read. False if that is not so: where most triangles belong to the first of the points.
+  bool write_vertices_in_place(const Allocation& firsts, std::uint32_t groups) {
+    const std::uint32_t share = (groups - 1) / waves + 1;
+    std::vector<std::uint32_t> cuts;  // first triangles
+    std::size_t most = 0;
+    for (std::uint32_t from = 0; from < groups; from += share) {
+      cuts.push_back(launch_.read_word(firsts, from));
+      if (from == 0) continue;
+      most = std::max<std::size_t>(most, cuts.back() - cuts[cuts.size() - 2]);
+      const std::size_t begin = std::size_t{from} * CADT_ASSEMBLY_LANES;
+      const std::size_t tile = begin - std::min<std::size_t>(begin, CADT_TILE_POINTS);  // or later
+      if (std::size_t{3} * cuts.back() > CADT_STAR_LEAD + 6 * tile + tile / 8) return false;
+    }
+    cuts.push_back(proven_triangles_);
+    most = std::max<std::size_t>(most, cuts.back() - cuts[cuts.size() - 2]);
+    const Allocation together = ctx_.memory.transient(3 * most * word);
+    std::uint32_t from = 0;
+    for (std::size_t wave = 0; wave + 1 < cuts.size(); ++wave, from += share) {
+      write_vertices(firsts, from, std::min(share, groups - from), together);
+      const std::uint32_t words = 3 * (cuts[wave + 1] - cuts[wave]);
+      const LaunchGrid c = launch_.grid(words);
+      launch_.run<KernelId::cadt_copy_words>(c.items, together, stars_.star_vertices, 3 * cuts[wave], words, c.grain);
+    }
+    mesh_.vertices = std::move(stars_.star_vertices);
+    return true;
+  }
+
+  void release_stars() {
+    stars_ = {};
+    marks_.release();
+    proven_.release();
+    bases_.release();
+  }
+
+  void join(SortedPoints& residual) {
+    // The place of the stars is free now, unless it became that of the mesh.
+    const Memory::TransientScope borrows(ctx_.memory, !ctx_.saves_memory);
+    const std::uint64_t certified = ctx_.statistics.certified_edges;
+    const Mesh smaller = build_residual(ctx_, residual, n_);
+    ctx_.statistics.certified_edges = certified;  // those of the whole mesh count
+    if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
+
+    const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
+    const auto mask = static_cast<std::uint32_t>(places - 1), slots = static_cast<std::uint32_t>(smaller.slots);
+    Allocation table = ctx_.memory.allocate(places * word);
+    ctx_.device.fill(*table, 0, places * word, CADT_NONE);
+    const LaunchGrid open = launch_.grid(open_count_);
+    launch_.run<KernelId::cadt_stitch_enter>(open.items, mesh_.vertices, open_, open_count_, open.grain, table, mask);
+    Allocation covers = ctx_.memory.allocate(3 * smaller.slots * word),
+               roots = ctx_.memory.allocate(smaller.slots * word);
+    const LaunchGrid c = launch_.grid(smaller.slots);
+    launch_.run<KernelId::cadt_stitch_cover>(c.items, mesh_.vertices, smaller.locked, residual.input_ids, slots,
+                                             c.grain, table, mask, covers, roots);
+    launch_.run<KernelId::cadt_stitch_components>(c.items, smaller.locked, slots, c.grain, covers, roots);
+    Allocation hidden = launch_.zeros(smaller.slots), ranks = ctx_.memory.allocate((2 * smaller.slots + 1) * word);
+    launch_.run<KernelId::cadt_stitch_hide>(c.items, covers, roots, slots, c.grain, hidden);
+    launch_.run<KernelId::cadt_stitch_flags>(c.items, smaller.locked, roots, hidden, slots, c.grain, ranks);
+    launch_.scan(ranks, 2 * smaller.slots + 1);
+    const std::size_t triangles = std::size_t{proven_triangles_} + launch_.read_word(ranks, 2 * smaller.slots);
+    if (triangles != 2 * n_ - 2)
+      throw InternalError("the two parts of the mesh have " + std::to_string(triangles) + " triangles instead of " +
+                          std::to_string(2 * n_ - 2) + "; please report this with the input");
+    mesh_.slots = triangles;
+    mesh_.triangles = proven_triangles_ + launch_.read_word(ranks, smaller.slots);
+    const FlipHistogram flips(ctx_);
+    const LaunchGrid strided = launch_.grid_strided(smaller.slots);
+    launch_.run<KernelId::cadt_stitch_residual>(strided.items, smaller.locked, covers, ranks, residual.input_ids, slots,
+                                                strided.grain, proven_triangles_, mesh_.vertices, mesh_.half_edges,
+                                                flips);
+    // triangles and ghosts have 3 and 1 sides that count
+    flips.collect(ctx_.statistics, 3 * std::uint64_t{mesh_.triangles} + (mesh_.slots - mesh_.triangles));
+    ctx_.end_phase("join");
+    ctx_.check("join", 0.8);
+  }
+
+  Context& ctx_;
+  Launcher& launch_;
+  SortedPoints& order_;
+  std::size_t n_;
+  std::uint32_t count_;
+  Stars stars_;
+  Allocation keys_, proven_, marks_, bases_, ranks_, totals_, open_;
+  Mesh mesh_;
+  std::uint32_t proven_triangles_ = 0, unproven_ = 0, open_count_ = 0;
+};
+
+}  // namespace
+
+Mesh build_mesh(Context& ctx, SortedPoints& order) {
+  KeyGrid& grid = order.grid;
+  const int too_fine = static_cast<int>(std::max(grid.bits_x, grid.bits_y)) - static_cast<int>(most_bits);
+  if (too_fine > 0 && grid.fine_levels != 0) grid = grid.finer(-std::min(too_fine, static_cast<int>(grid.fine_levels)));
+  const bool automatic = ctx.options.strategy == Strategy::automatic;
+  const PointShapes& shapes = order.shapes;
+  // There are no triangles, or rounded numbers find few.
+  const bool convex = (shapes.on_circle && order.distinct > CADT_WRAP_HULL_EXACT) ||
+                      (shapes.on_hull && order.distinct > CADT_WRAP_HULL);
+  const bool insert = automatic && (shapes.on_line || convex || shapes.on_rays);
+  if (order.wide || insert) {
+    order.keys.release();
+    return insert_incrementally(ctx, order);
+  }
+  const bool without = automatic && (shapes.overfull || order.distinct <= most_wrapped_of(ctx, order));
+  if (without || order.distinct < 3 || std::max(grid.bits_x, grid.bits_y) > most_bits) {
+    order.keys.release();
+    return build_without_stars(ctx, order);
+  }
+  return StarStage(ctx, order).build();
+}
+
+}  // namespace cadt

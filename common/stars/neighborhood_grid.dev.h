@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * A tile and the points around it in the memory of a team, sorted into a small grid of their own: cells of a few
+ * points. The window is made of squares of the sort keys, so its points are a few ranges of positions, and it is known
+ * that there are no others in it.
+ */
+#ifndef CADT_STARS_NEIGHBORHOOD_GRID_H
+#define CADT_STARS_NEIGHBORHOOD_GRID_H
+
+#include "common/stars/tiles.dev.h"
+
+enum {
+  CADT_NEIGHBORHOOD_POINTS = 1600, /* below 2^11: the stars keep places of points in eleven bits */
+  CADT_NEIGHBORHOOD_CELLS = 24 * 24,
+  CADT_NEIGHBORHOOD_SPANS = 64,
+  CADT_NEIGHBORHOOD_PARTS = 32, /* of the cells, for their scan */
+  CADT_TILE_SIDE = 16,
+  CADT_CANDIDATES = 16,
+  CADT_SCAN_POINTS = 2, /* of a step (cell_scan.dev.h): what a step costs besides its points is shared by them */
+  CADT_FEW_CELLS = 20,  /* in which candidates are looked for: few stars need more, and all lanes would wait for them */
+  CADT_STAR_PLACES = 2 * 16 * 128 /* twice CADT_CANDIDATES for each of CADT_STAR_LANES */
+};
+
+/* The shape of a window: the same for all lanes. */
+typedef struct {
+  cadt_u32 begin, end;         /* positions of the tile */
+  cadt_u32 squares, rim;       /* squares along the window, of these on each side of the tile */
+  cadt_i32 square_x, square_y; /* the lowest square, in squares of its level */
+  cadt_u32 square_level;
+  cadt_u32 side, halo, tile_side;    /* cells along the window, on each side of the tile, of the tile */
+  cadt_i32 left, right, bottom, top; /* first cell with points of the grid's, and behind the last */
+  double origin_x, origin_y, cells;  /* in units of the grid: lowest corner; cells a unit */
+} cadt_neighborhood_shape;
+
+typedef struct {
+  /* In cells, from the centre of the window. A sweep looks beyond the last point (cell_scan.dev.h). */
+  float x[CADT_NEIGHBORHOOD_POINTS + CADT_SCAN_POINTS], y[CADT_NEIGHBORHOOD_POINTS + CADT_SCAN_POINTS];
+  cadt_u32 at[CADT_NEIGHBORHOOD_POINTS];       /* positions */
+  cadt_u32 cells[CADT_NEIGHBORHOOD_CELLS + 1]; /* where the points of a cell begin, once sorted */
+  cadt_u32 first[CADT_NEIGHBORHOOD_SPANS], offset[CADT_NEIGHBORHOOD_SPANS + 1], parts[CADT_NEIGHBORHOOD_PARTS];
+  cadt_u32 rows[CADT_TILE_SIDE + 1]; /* points of the tile before each row of its cells */
+  cadt_u16 star[CADT_STAR_PLACES];   /* a star in the making for each lane (local_star.dev.h) */
+  cadt_neighborhood_shape shape;
+  cadt_u32 again_count, unproven, overfull;  /* the last: had too many candidates */
+  cadt_u32 verdict;                          /* of the sample (tile_stars.dev.h) */
+  cadt_u32 pool_begin, pool_size, pool_used; /* of the words for its stars (tile_stars.dev.h) */
+  cadt_u16 again[CADT_TILE_POINTS];          /* points that are tried again, numbers in the tile */
+} cadt_neighborhood;
+
+/* Between the places of a star in the making. */
+#define CADT_STAR_STRIDE (CADT_GROUP_SUMS ? CADT_CAST(cadt_u32, CADT_STAR_LANES) : 1u)
+
+/* Behind the last cell with points along an axis of the grid, `cells` a unit. `most`: the largest coordinate. */
+CADT_FN cadt_i32 cadt_edge_of_points(double most, double cells, cadt_u32 bits) {
+  const double last = CADT_CAST(double, 1u << bits) * cells - 1.0, edge = most * cells;
+  return CADT_CAST(cadt_i32, edge < last ? edge : last) + 1;
+}
+
+/* `most`: the largest coordinates of all points, in units of the grid. */
+CADT_FN cadt_neighborhood_shape cadt_shape_of_neighborhood(const cadt_key_grid* grid, const cadt_point most,
+                                                           CADT_GLOBAL const cadt_point* points, const cadt_tile tile,
+                                                           cadt_u32 end) {
+  cadt_neighborhood_shape s;
+  const cadt_u32 levels = cadt_grid_levels(grid), level = CADT_CAST(cadt_u32, tile.level);
+  const cadt_u32 count = end - tile.begin, finer = cadt_min_u32(levels - level, 2u);
+  const cadt_point f = cadt_clamp_to_grid(grid, cadt_to_grid(grid, points[tile.begin]));
+  const cadt_u32 down = levels - level - finer; /* levels from the squares to the grid's cells */
+  s.begin = tile.begin;
+  s.end = end;
+  s.tile_side = finer < 2u ? 8u : (count > 256u ? 16u : (count > 60u ? 8u : 4u));
+  s.rim = finer == 2u && s.tile_side < 16u ? 2u : 1u;
+  s.squares = (1u << finer) + 2u * s.rim;
+  s.square_level = level + finer;
+  s.square_x =
+      CADT_CAST(cadt_i32, (CADT_CAST(cadt_u32, f.x) >> (levels - level)) << finer) - CADT_CAST(cadt_i32, s.rim);
+  s.square_y =
+      CADT_CAST(cadt_i32, (CADT_CAST(cadt_u32, f.y) >> (levels - level)) << finer) - CADT_CAST(cadt_i32, s.rim);
+  const cadt_i32 of_square = CADT_CAST(cadt_i32, s.tile_side >> finer);
+  s.halo = s.rim * (s.tile_side >> finer);
+  s.side = s.tile_side + 2u * s.halo;
+  s.left = -s.square_x * of_square;
+  s.bottom = -s.square_y * of_square;
+  s.origin_x = CADT_CAST(double, s.square_x) * CADT_CAST(double, 1u << down);
+  s.origin_y = CADT_CAST(double, s.square_y) * CADT_CAST(double, 1u << down);
+  s.cells = CADT_CAST(double, of_square) / CADT_CAST(double, 1u << down);
+  s.right = s.left + cadt_edge_of_points(most.x, s.cells, grid->bits_x);
+  s.top = s.bottom + cadt_edge_of_points(most.y, s.cells, grid->bits_y);
+  return s;
+}
+
+/* First position whose key, without its lowest bits, is not less than `square`. */
+CADT_FN cadt_u32 cadt_begin_of_square(const cadt_keys* keys, cadt_u32 n, cadt_u64 square, cadt_u32 shift) {
+  cadt_u32 low = 0u, high = n;
+  while (low < high) {
+    const cadt_u32 middle = low + (high - low) / 2u;
+    if (cadt_key_at(keys, middle) >> shift < square)
+      low = middle + 1u;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* The position of point j of the window, before it is sorted. */
+CADT_FN cadt_u32 cadt_position_in_neighborhood(CADT_TEAM_PTR const cadt_neighborhood* w, cadt_u32 ranges, cadt_u32 j) {
+  cadt_u32 low = 0u, high = ranges; /* the range is in [low, high) */
+  while (high - low > 1u) {
+    const cadt_u32 middle = (low + high) / 2u;
+    if (w->offset[middle] <= j)
+      low = middle;
+    else
+      high = middle;
+  }
+  return w->first[low] + (j - w->offset[low]);
+}
+
+/* The cell of a coordinate in grid units along one axis. Rounding must not carry it out of the window, nor beyond the
+ * edge of the grid: stars take for granted that there is nothing. */
+CADT_FN cadt_u32 cadt_cell_along(double f, double origin, double cells, cadt_u32 side, cadt_i32 edge) {
+  const cadt_u32 last = edge < CADT_CAST(cadt_i32, side) ? CADT_CAST(cadt_u32, edge) - 1u : side - 1u;
+  return cadt_min_u32(CADT_CAST(cadt_u32, ((f < 0.0 ? 0.0 : f) - origin) * cells), last);
+}
+
+CADT_FN cadt_u32 cadt_cell_in_neighborhood(const cadt_neighborhood_shape* s, cadt_point f) {
+  return cadt_cell_along(f.y, s->origin_y, s->cells, s->side, s->top) * s->side +
+         cadt_cell_along(f.x, s->origin_x, s->cells, s->side, s->right);
+}
+
+/* Whether points from outside of a clipped grid may be among those of the window: they are in the cells at its edge. */
+CADT_FN cadt_u32 cadt_at_edge(const cadt_neighborhood_shape* s, cadt_i32 squares_x, cadt_i32 squares_y) {
+  const cadt_i32 squares = CADT_CAST(cadt_i32, s->squares);
+  return s->square_x < 1 || s->square_y < 1 || s->square_x + squares >= squares_x || s->square_y + squares >= squares_y
+             ? 1u
+             : 0u;
+}
+
+/* Loads a window. Returns 0 if there are too many points, or the grid is clipped and the window at its edge; the same
+ * for all lanes. */
+CADT_FN cadt_u32 cadt_load_neighborhood(CADT_TEAM_PTR cadt_neighborhood* w, const cadt_neighborhood_shape* s,
+                                        const cadt_key_grid* grid, CADT_GLOBAL const cadt_point* points,
+                                        const cadt_keys* keys, cadt_u32 n, cadt_u32 clipped) {
+  const cadt_u32 ranges = s->squares * s->squares, levels = cadt_grid_levels(grid);
+  const cadt_u32 shift = 2u * (levels - s->square_level), cells = s->side * s->side;
+  const cadt_i32 squares_x = CADT_CAST(cadt_i32, 1u << (grid->bits_x - (levels - s->square_level)));
+  const cadt_i32 squares_y = CADT_CAST(cadt_i32, 1u << (grid->bits_y - (levels - s->square_level)));
+  if (clipped && cadt_at_edge(s, squares_x, squares_y)) return 0u;
+  CADT_TEAM_FOR(r, ranges) {
+    const cadt_u32 column = r % s->squares, row = r / s->squares;
+    const cadt_i32 x = s->square_x + CADT_CAST(cadt_i32, column), y = s->square_y + CADT_CAST(cadt_i32, row);
+    cadt_u32 first = 0u, size = 0u;
+    if (column >= s->rim && column + s->rim < s->squares && row >= s->rim && row + s->rim < s->squares) {
+      if (column == s->rim && row == s->rim) first = s->begin, size = s->end - s->begin; /* all of the tile */
+    } else if (x >= 0 && x < squares_x && y >= 0 && y < squares_y) {
+      const cadt_u64 square = cadt_fine_key(grid, CADT_CAST(cadt_u32, x), CADT_CAST(cadt_u32, y), s->square_level);
+      first = cadt_begin_of_square(keys, n, square, shift);
+      size = cadt_begin_of_square(keys, n, square + 1u, shift) - first;
+    }
+    w->first[r] = first;
+    w->offset[r] = size;
+  }
+  CADT_TEAM_FOR(c, cells + 1u) { w->cells[c] = 0u; }
+  CADT_TEAM_SYNC();
+  if (cadt_team_lane == 0u) {
+    cadt_u64 sum = 0u;
+    for (cadt_u32 r = 0u; r < ranges; ++r) {
+      const cadt_u32 size = w->offset[r];
+      w->offset[r] = CADT_CAST(cadt_u32, sum);
+      sum += size;
+      if (sum > CADT_NEIGHBORHOOD_POINTS) sum = CADT_NEIGHBORHOOD_POINTS + 1u;
+    }
+    w->offset[ranges] = CADT_CAST(cadt_u32, sum);
+    w->again_count = w->unproven = w->overfull = 0u;
+  }
+  CADT_TEAM_SYNC();
+  const cadt_u32 total = w->offset[ranges];
+  if (total > CADT_CAST(cadt_u32, CADT_NEIGHBORHOOD_POINTS) ||
+      s->end - s->begin > CADT_CAST(cadt_u32, CADT_TILE_POINTS))
+    return 0u;
+  CADT_TEAM_FOR(j, total) {
+    const cadt_point f = cadt_to_grid(grid, points[cadt_position_in_neighborhood(w, ranges, j)]);
+    cadt_team_add(&w->cells[1u + cadt_cell_in_neighborhood(s, f)], 1u);
+  }
+  CADT_TEAM_SYNC();
+  /* cells[1 + c] from size to begin of cell c; when the points are put there it becomes the end, which is where cell
+   * c + 1 begins */
+  const cadt_u32 of_part = (cells - 1u) / CADT_NEIGHBORHOOD_PARTS + 1u;
+  CADT_TEAM_FOR(part, CADT_CAST(cadt_u32, CADT_NEIGHBORHOOD_PARTS)) {
+    cadt_u32 sum = 0u;
+    for (cadt_u32 c = part * of_part; c < cadt_min_u32((part + 1u) * of_part, cells); ++c) sum += w->cells[1u + c];
+    w->parts[part] = sum;
+  }
+  CADT_TEAM_SYNC();
+  if (cadt_team_lane == 0u) {
+    cadt_u32 sum = 0u;
+    for (cadt_u32 part = 0u; part < CADT_CAST(cadt_u32, CADT_NEIGHBORHOOD_PARTS); ++part) {
+      const cadt_u32 size = w->parts[part];
+      w->parts[part] = sum;
+      sum += size;
+    }
+  }
+  CADT_TEAM_SYNC();
+  CADT_TEAM_FOR(part, CADT_CAST(cadt_u32, CADT_NEIGHBORHOOD_PARTS)) {
+    cadt_u32 sum = w->parts[part];
+    for (cadt_u32 c = part * of_part; c < cadt_min_u32((part + 1u) * of_part, cells); ++c) {
+      const cadt_u32 size = w->cells[1u + c];
+      w->cells[1u + c] = sum;
+      sum += size;
+    }
+  }
+  CADT_TEAM_SYNC();
+  const double middle = 0.5 * CADT_CAST(double, s->side);
+  CADT_TEAM_FOR(j, total) {
+    const cadt_u32 i = cadt_position_in_neighborhood(w, ranges, j);
+    const cadt_point f = cadt_to_grid(grid, points[i]);
+    const cadt_u32 place = cadt_team_add(&w->cells[1u + cadt_cell_in_neighborhood(s, f)], 1u);
+    w->x[place] = CADT_CAST(float, (f.x - s->origin_x) * s->cells - middle);
+    w->y[place] = CADT_CAST(float, (f.y - s->origin_y) * s->cells - middle);
+    w->at[place] = i;
+  }
+  CADT_TEAM_SYNC();
+  if (cadt_team_lane == 0u) {
+    cadt_u32 sum = 0u;
+    for (cadt_u32 row = 0u; row < s->tile_side; ++row) {
+      const cadt_u32 c = (s->halo + row) * s->side + s->halo;
+      w->rows[row] = sum;
+      sum += w->cells[c + s->tile_side] - w->cells[c];
+    }
+    w->rows[s->tile_side] = sum;
+  }
+  CADT_TEAM_SYNC();
+  return 1u;
+}
+
+#endif

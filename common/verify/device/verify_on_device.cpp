@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/verify/device/verify_on_device.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "common/driver/device_text.hpp"
+#include "common/verify/host/mesh.hpp"
+#include "common/verify/host/outcome.hpp"
+
+namespace cadt {
+namespace {
+
+using namespace verifier;
+using namespace device_text;
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+constexpr std::size_t triangles_per_launch_contiguous = std::size_t{1} << 20;  // bounds the lists: 4 words a triangle
+constexpr std::size_t triangles_per_launch_strided = std::size_t{1} << 23;
+constexpr std::size_t strided_items = std::size_t{1} << 17;  // fill a GPU, and each adds to the results once
+constexpr std::size_t entries_per_gather = std::size_t{1} << 18;
+
+/// The words of all rows of results put together.
+struct Found {
+  std::array<std::uint64_t, CADT_FOUND_WORDS> sum{};
+  std::array<std::uint32_t, CADT_FOUND_WORDS> least{};
+
+  [[nodiscard]] Tally tally(int finding) const {
+    const auto at = static_cast<std::size_t>(finding);
+    Tally t;
+    t.examined = sum[at];
+    t.failures = sum[at + 1];
+    if (t.failures != 0) t.first = least[at + 2];
+    return t;
+  }
+  [[nodiscard]] std::uint64_t count(int of) const { return sum[static_cast<std::size_t>(of)]; }
+};
+
+/// What the last stage, on the host, found.
+struct Settled {
+  std::uint64_t signs = 0;
+  Tally orientation;  // nothing is counted as examined here: the filter has done so
+  Circles circles;
+  void merge(const Settled& other) {
+    signs += other.signs;
+    orientation.merge(other.orientation);
+    circles.merge(other.circles);
+  }
+};
+
+class OnDevice : private Outcome {
+ public:
+  OnDevice(verifier::Mesh mesh, Context& ctx, const VerifyInput& input, const VerifyOptions& options)
+      : Outcome(input.number_of_points),
+        ctx_(ctx),
+        launch_(ctx.launcher),
+        input_(input),
+        options_(options),
+        n_(input.number_of_points),
+        count_(input.number_of_triangles),
+        mesh_(std::move(mesh)) {
+    mesh_.count = count_;
+    mesh_.threads = options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  }
+
+  VerifyReport run() {
+    if (!examine_structure()) {
+      skip({range, neighbors, orientations, vertices, boundary, euler, hull, delaunay, ties}, counts);
+      return finish();
+    }
+    if (!passed(range)) {
+      skip({neighbors, orientations, vertices, boundary, euler, hull, delaunay, ties}, range);
+      return finish();
+    }
+    examine_signs();
+    const Found found = results();
+    conclude_on_host(mesh_, found.tally(CADT_FOUND_NEIGHBORS), neighbors, conclude_neighbors);
+    Tally turns = found.tally(CADT_FOUND_ORIENTATION);
+    turns.merge(settled_.orientation);
+    report.triangles_examined = turns.examined;
+    conclude_on_host(mesh_, turns, orientations, conclude_orientation);
+    examine_vertices();
+    if (!passed(neighbors)) {
+      skip({boundary, euler, hull, delaunay, ties}, neighbors);
+    } else {
+      examine_boundary(found);
+      if (passed(orientations)) {
+        conclude_edges(found);
+      } else {
+        skip({delaunay, ties}, orientations);
+      }
+    }
+    examine_counts(found);
+    return finish();
+  }
+
+ private:
+  /// Work-items for kernels that add to the results once each.
+  [[nodiscard]] LaunchGrid cut(std::size_t count) const {
+    if (ctx_.device.shape().contiguous) return launch_.grid(count);
+    return {static_cast<std::uint32_t>(std::min(count, strided_items)), 1};
+  }
+  static std::uint32_t number(std::size_t value) { return static_cast<std::uint32_t>(value); }
+
+  [[nodiscard]] Found results() const {
+    std::vector<std::uint32_t> rows(static_cast<std::size_t>(CADT_FOUND_ROWS) * CADT_FOUND_WORDS);
+    ctx_.device.read(*results_, 0, rows.data(), rows.size() * word);
+    Found found;
+    found.least.fill(CADT_NONE);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      found.sum[i % CADT_FOUND_WORDS] += rows[i];
+      found.least[i % CADT_FOUND_WORDS] = std::min(found.least[i % CADT_FOUND_WORDS], rows[i]);
+    }
+    return found;
+  }
+
+  void clear_results() {
+    std::vector<std::uint32_t> rows(static_cast<std::size_t>(CADT_FOUND_ROWS) * CADT_FOUND_WORDS, 0);
+    for (std::size_t row = 0; row < rows.size(); row += CADT_FOUND_WORDS)
+      for (const int finding : {CADT_FOUND_RANGE, CADT_FOUND_NEIGHBORS, CADT_FOUND_POINTS, CADT_FOUND_DUPLICATES,
+                                CADT_FOUND_ORIENTATION, CADT_FOUND_EDGES, CADT_FOUND_TIES})
+        rows[row + static_cast<std::size_t>(finding) + 2] = CADT_NONE;
+    results_ = ctx_.memory.allocate(rows.size() * word);
+    ctx_.device.write(*results_, 0, rows.data(), rows.size() * word);
+  }
+
+  /// Messages quote the mesh, and a search of it needs all of it: both only if something has failed.
+  void fetch_mesh() {
+    if (!mesh_.triangles.empty()) return;
+    fetched_.resize(3 * count_);
+    mesh_.derived.resize(3 * count_);
+    ctx_.device.read(*input_.triangles, 0, fetched_.data(), fetched_.size() * word);
+    ctx_.device.read(*input_.neighbors, 0, mesh_.derived.data(), fetched_.size() * word);
+    mesh_.triangles = fetched_;
+    mesh_.neighbors = mesh_.derived;
+  }
+
+  template <class Conclude>
+  void conclude_on_host(const verifier::Mesh& mesh, const Tally& tally, Name name, const Conclude& to) {
+    if (tally.failures != 0) fetch_mesh();
+    to(mesh, tally, begin(name));
+  }
+
+  /// False if not everything was looked at: then indices must not be followed.
+  [[nodiscard]] bool examine_structure() {
+    clear_results();
+    used_ = launch_.zeros(n_);
+    const LaunchGrid all = cut(count_), points = cut(n_);
+    launch_.run<KernelId::cadt_verify_structure>(all.items, input_.triangles, input_.neighbors, number(n_),
+                                                 number(count_), all.grain, used_, results_);
+    launch_.run<KernelId::cadt_verify_points>(points.items, input_.points, number(n_), points.grain, used_, results_);
+    const Found found = results();
+    if (const Tally finite = found.tally(CADT_FOUND_POINTS); finite.failures != 0) refuse_point(finite.first);
+    mesh_.vertices = static_cast<std::size_t>(found.count(CADT_FOUND_USED));
+    const Tally triangles = found.tally(CADT_FOUND_RANGE);
+    const std::uint64_t points_examined = found.tally(CADT_FOUND_POINTS).examined;
+    begin(counts).passed = true;
+    if (triangles.examined != count_ || points_examined != n_) {
+      fail(begin(counts), -1,
+           std::to_string(triangles.examined) + " triangles and " + std::to_string(points_examined) +
+               " points were examined, there are " + std::to_string(count_) + " and " + std::to_string(n_));
+      return false;
+    }
+    conclude_on_host(mesh_, triangles, range, conclude_range);
+    symmetric_ = found.tally(CADT_FOUND_NEIGHBORS).failures == 0;
+    ctx_.check("verify", 0.2);
+    return true;
+  }
+
+  /// Orientations and, if neighbours are symmetric, edges: filter, exact sums, and the host for the rest.
+  void examine_signs() {
+    const std::size_t most =
+        ctx_.device.shape().contiguous ? triangles_per_launch_contiguous : triangles_per_launch_strided;
+    const auto capacity = [&](const LaunchGrid& c, std::size_t size) { return 4 * ((size + c.items - 1) / c.items); };
+    std::size_t lists_size = 0, sizes_size = 0;
+    for (const std::size_t size : {std::min(count_, most), count_ % most}) {
+      if (size == 0) continue;
+      const LaunchGrid c = cut(size);
+      lists_size = std::max(lists_size, c.items * std::max<std::size_t>(capacity(c, size), 4 * c.grain));
+      sizes_size = std::max<std::size_t>(sizes_size, c.items);
+    }
+    lists_ = ctx_.memory.allocate(lists_size * word);
+    sizes_ = launch_.zeros(sizes_size + 1);
+    deferred_ = launch_.zeros(1);
+    for (std::size_t at = 0; at < count_; at += most) {
+      const std::size_t size = std::min(most, count_ - at);
+      const LaunchGrid c = cut(size);
+      const auto room = number(std::max<std::size_t>(capacity(c, size), 4 * c.grain));
+      launch_.run<KernelId::cadt_verify_filter>(c.items, input_.points, input_.triangles, input_.neighbors, number(at),
+                                                number(size), symmetric_ ? 1U : 0U, c.grain, c.items, lists_, sizes_,
+                                                room, results_);
+      launch_.run<KernelId::cadt_verify_exact>(c.items, input_.points, input_.triangles, input_.neighbors, number(at),
+                                               c.items, lists_, sizes_, room, deferred_, results_);
+      if (const std::uint32_t left = launch_.read_word(deferred_, 0); left != 0) {
+        ctx_.device.fill(*deferred_, 0, word, 0);
+        settle_on_host(at, c.items, room, left);
+      }
+      ctx_.check("verify", 0.2 + 0.7 * static_cast<double>(at + size) / static_cast<double>(count_));
+    }
+    lists_.release();
+    sizes_.release();
+  }
+
+  void settle_on_host(std::size_t at, std::uint32_t items, std::uint32_t room, std::uint32_t left) {
+    ctx_.device.fill(*sizes_, items * word, word, 0);
+    launch_.scan(sizes_, std::size_t{items} + 1);
+    const std::size_t most = std::min<std::size_t>(left, entries_per_gather);
+    Allocation entries = ctx_.memory.allocate(most * word), corners = ctx_.memory.allocate(most * 4 * sizeof(Point));
+    std::vector<std::uint32_t> entry(most);
+    std::vector<std::array<Point, 4>> quad(most);
+    for (std::size_t from = 0; from < left; from += most) {
+      const std::size_t size = std::min(most, left - from);
+      ctx_.device.fill(*entries, 0, size * word, CADT_NONE);  // to see which are written
+      launch_.run<KernelId::cadt_verify_gather>(items, input_.points, input_.triangles, input_.neighbors, number(at),
+                                                items, lists_, sizes_, room, number(from), number(from + size), entries,
+                                                corners);
+      ctx_.device.read(*entries, 0, entry.data(), size * word);
+      ctx_.device.read(*corners, 0, quad.data(), size * sizeof quad[0]);
+      settled_.merge(
+          reduce_blocks<Settled>(size, mesh_.threads, [&](std::size_t begin, std::size_t end, Settled& mine) {
+            for (std::size_t i = begin; i < end; ++i) settle(at, entry[i], quad[i], mine);
+          }));
+    }
+  }
+
+  static void settle(std::size_t at, std::uint32_t entry, const std::array<Point, 4>& q, Settled& mine) {
+    if (entry == CADT_NONE) return;
+    ++mine.signs;
+    const std::size_t t = at + entry / CADT_OPEN_A_TRIANGLE, k = entry % CADT_OPEN_A_TRIANGLE;
+    if (k == CADT_OPEN_ORIENTATION) {
+      if (orientation(q[0], q[1], q[2]) <= 0) mine.orientation.fail(t);
+      return;
+    }
+    const int side = incircle(q[0], q[1], q[2], q[3]);
+    if (side > 0) mine.circles.illegal.fail(3 * t + k);
+    if (side != 0) return;
+    ++mine.circles.ties;
+    if (incircle_perturbed(q[0], q[1], q[2], q[3]) > 0) mine.circles.unusual.fail(3 * t + k);
+  }
+
+  void examine_vertices() {
+    const std::size_t unused = n_ - std::min(n_, mesh_.vertices);
+    Check& check = begin(vertices);
+    if (input_.has_duplicates) {
+      const std::span<const Duplicate> list = input_.duplicates;
+      if (!list.empty()) {
+        const Allocation pairs = ctx_.memory.import(list.data(), list.size_bytes());
+        const LaunchGrid c = cut(list.size());
+        launch_.run<KernelId::cadt_verify_duplicates>(c.items, input_.points, number(n_), used_, pairs,
+                                                      number(list.size()), c.grain, results_);
+      }
+      const Tally tally = results().tally(CADT_FOUND_DUPLICATES);
+      duplicates_examined_ = tally.examined;
+      return conclude_duplicates(list, unused, tally, check);
+    }
+    if (unused == 0) {
+      check.passed = true;
+      return;
+    }
+    // Which used point an unused one equals is found on the host.
+    std::vector<std::uint32_t> used(n_);
+    ctx_.device.read(*used_, 0, used.data(), n_ * word);
+    mesh_.used.assign(used.begin(), used.end());
+    if (mesh_.points.size() == 0) {
+      fetched_points_.resize(2 * n_);
+      ctx_.device.read(*input_.points, 0, fetched_points_.data(), fetched_points_.size() * sizeof(double));
+      mesh_.points = fetched_points_;
+    }
+    check_vertices(mesh_, MeshView{}, check);
+  }
+
+  void examine_boundary(const Found& found) {
+    const auto h = static_cast<std::size_t>(found.count(CADT_FOUND_BOUNDARY));
+    std::vector<std::array<std::uint32_t, 3>> edges(h);
+    std::vector<Point> starts(h);
+    if (h != 0) {
+      const Allocation list = ctx_.memory.allocate(h * sizeof edges[0]);
+      const Allocation corners = ctx_.memory.allocate(h * sizeof starts[0]);
+      const Allocation written = launch_.zeros(1);
+      const LaunchGrid c = cut(count_);
+      launch_.run<KernelId::cadt_verify_boundary>(c.items, input_.points, input_.triangles, input_.neighbors,
+                                                  number(count_), c.grain, list, corners, written, number(h));
+      boundary_written_ = launch_.read_word(written, 0);
+      if (boundary_written_ != h) return skip({boundary, euler, hull}, counts);
+      ctx_.device.read(*list, 0, edges.data(), h * sizeof edges[0]);
+      ctx_.device.read(*corners, 0, starts.data(), h * sizeof starts[0]);
+    }
+    for (const auto& [edge, from, to] : edges)
+      mesh_.boundary.push_back({static_cast<std::int32_t>(from), static_cast<std::int32_t>(to), edge});
+    report.hull_vertices = h;
+    link_boundary(mesh_, begin(boundary));
+    check_euler_formula(mesh_, begin(euler));
+    // With counterclockwise triangles one cycle has one component (docs/algorithm.md); else they must be counted.
+    if (passed(euler) && !(passed(boundary) && passed(orientations))) {
+      fetch_mesh();
+      check_connected(mesh_, begin(euler));
+    }
+    if (!passed(boundary)) {
+      if (mesh_.triangles.empty()) {  // once more, with the mesh to quote from
+        fetch_mesh();
+        mesh_.loop.clear();
+        link_boundary(mesh_, begin(boundary));
+      }
+      return skip({hull}, boundary);
+    }
+    std::vector<std::pair<std::int32_t, Point>> place(h);
+    for (std::size_t i = 0; i < h; ++i) place[i] = {static_cast<std::int32_t>(edges[i][1]), starts[i]};
+    const auto before = [](const auto& a, const auto& b) { return a.first < b.first; };
+    std::sort(place.begin(), place.end(), before);
+    std::vector<Point> corners;
+    corners.reserve(h);
+    for (const std::int32_t v : mesh_.loop)
+      corners.push_back(std::lower_bound(place.begin(), place.end(), std::pair{v, Point{}}, before)->second);
+    check_hull(mesh_.loop, corners, input_.hull, mesh_.threads, begin(hull));
+  }
+
+  void conclude_edges(const Found& found) {
+    Circles circles;
+    circles.illegal = found.tally(CADT_FOUND_EDGES);
+    circles.unusual = found.tally(CADT_FOUND_TIES);
+    circles.ties = circles.unusual.examined;
+    circles.merge(settled_.circles);
+    if (circles.illegal.failures + circles.unusual.failures != 0) fetch_mesh();
+    Check& check = begin(delaunay);
+    conclude_delaunay(mesh_, circles, check, begin(ties), options_, report);
+  }
+
+  /// What must have been examined, by the counts of the kernels themselves.
+  void examine_counts(const Found& found) {
+    const std::uint64_t edges = found.tally(CADT_FOUND_EDGES).examined, open = found.count(CADT_FOUND_OPEN);
+    report.signs_exact = found.count(CADT_FOUND_EXACT);
+    report.signs_on_host = settled_.signs;
+    report.signs_filtered = report.triangles_examined + edges - std::min(report.triangles_examined + edges, open);
+    const auto require = [&](std::uint64_t examined, std::uint64_t there, const std::string& of) {
+      if (examined != there)
+        fail(begin(counts), -1, std::to_string(examined) + of + " were examined, there are " + std::to_string(there));
+    };
+    require(found.tally(CADT_FOUND_NEIGHBORS).examined, 3 * count_, " sides of triangles");
+    require(report.triangles_examined, count_, " triangles");
+    require(report.signs_exact + settled_.signs, open, " signs that the filter left open");
+    require(duplicates_examined_, input_.has_duplicates ? input_.duplicates.size() : 0, " duplicates");
+    if (!passed(neighbors)) return;
+    require(boundary_written_, found.count(CADT_FOUND_BOUNDARY), " boundary edges");
+    require(2 * edges, 3 * count_ - found.count(CADT_FOUND_BOUNDARY), " sides of interior edges");
+  }
+
+  Context& ctx_;
+  Launcher& launch_;
+  const VerifyInput& input_;
+  const VerifyOptions& options_;
+  std::size_t n_, count_;
+  verifier::Mesh mesh_;
+  std::vector<std::int32_t> fetched_;
+  std::vector<double> fetched_points_;
+  Allocation results_, used_, lists_, sizes_, deferred_;
+  bool symmetric_ = false;
+  Settled settled_;
+  std::uint64_t duplicates_examined_ = 0, boundary_written_ = 0;
+};
+
+}  // namespace
+
+VerifyReport verify_on_device(Context& ctx, const VerifyInput& input, const VerifyOptions& options) {
+  return verify_on_device(ctx, input, options, verifier::Mesh{});
+}
+
+VerifyReport verify_on_device(Context& ctx, const VerifyInput& input, const VerifyOptions& options,
+                              verifier::Mesh known) {
+  require_ieee_arithmetic();
+  return OnDevice(std::move(known), ctx, input, options).run();
+}
+
+}  // namespace cadt

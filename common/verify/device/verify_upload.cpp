@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh of the host to the device and its verifier.
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "common/driver/registry.hpp"
+#include "common/points/device_points.hpp"
+#include "common/points/import.hpp"
+#include "common/verify/device/verify_on_device.hpp"
+#include "common/verify/host/mesh.hpp"
+
+namespace cadt {
+
+using namespace verifier;
+
+VerifyReport verify_on_device(Device& device, PointsView points, const MeshView& mesh, const Options& run_options,
+                              const VerifyOptions& options) {
+  // Nothing to examine, or no triangles: no work for a device. Without double precision none that it can do.
+  if (!size_error(points, mesh).empty() || mesh.triangles.empty() || points.size() == 0 || takes_floats_only(device))
+    return verify(points, mesh, options);
+  verifier::Mesh known;
+  known.points = points;
+  known.count = mesh.triangles.size() / 3;
+  known.triangles = mesh.triangles;
+  known.neighbors = mesh.neighbors;
+  known.threads = options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  if (mesh.neighbors.empty()) {
+    Check check;
+    std::uint64_t examined = 0;
+    check_range(known, check);
+    if (check.passed) derive_neighbors(known, check, examined);
+    if (!check.passed) return verify(points, mesh, options);
+    known.neighbors = known.derived;
+  }
+  Statistics statistics;
+  Memory memory(device, false);
+  memory.begin(run_options.max_memory, false);
+  Context ctx(device, memory, run_options, statistics);
+  ctx.check("verify", 0);
+  const Allocation device_points = import_points(ctx, points);
+  const Allocation triangles = ctx.memory.import(known.triangles.data(), known.triangles.size_bytes());
+  const Allocation neighbors = ctx.memory.import(known.neighbors.data(), known.neighbors.size_bytes());
+  const VerifyInput input{device_points, triangles, neighbors,       points.size(),
+                          known.count,   mesh.hull, mesh.duplicates, mesh.has_duplicates};
+  return verify_on_device(ctx, input, options, std::move(known));
+}
+
+VerifyReport verify_on_device(PointsView points, const MeshView& mesh, const Options& device,
+                              const VerifyOptions& options) {
+  return verify_on_device(*open_device(device), points, mesh, device, options);
+}
+
+VerifyReport verify_on_device(PointsView points, const Triangulation& mesh, const Options& device,
+                              const VerifyOptions& options) {
+  VerifyReport report = verify_on_device(points, view_of(mesh), device, options);
+  check_own_result(points, mesh, report);
+  return report;
+}
+
+}  // namespace cadt

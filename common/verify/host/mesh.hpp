@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the checks of `verify` work on, and the checks themselves.
+#pragma once
+
+#include "exact_sign.hpp"
+#include "parallel.hpp"
+
+#include <cadt/verify.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace cadt::verifier {
+
+/// A directed edge of the boundary, from `from` to `to` with the mesh on its left. `edge` is 3 * triangle + k.
+struct BoundaryEdge {
+  std::int32_t from, to;
+  std::int64_t edge;
+};
+
+struct Mesh {
+  PointsView points;
+  std::size_t count = 0;                    // triangles
+  std::span<const std::int32_t> triangles;  // 3 * count
+  std::span<const std::int32_t> neighbors;  // 3 * count; those of the caller, or `derived`
+  std::vector<std::int32_t> derived;
+  std::vector<std::uint8_t> used;      // per point: is it a vertex?
+  std::size_t vertices = 0;            // number of those
+  std::vector<BoundaryEdge> boundary;  // ascending by `from` once collected
+  std::vector<std::int32_t> loop;      // the boundary from its smallest index on
+  unsigned threads = 1;
+
+  [[nodiscard]] Point point(std::int32_t i) const {
+    const auto k = static_cast<std::size_t>(i);
+    return {points.x(k), points.y(k)};
+  }
+  [[nodiscard]] std::int32_t vertex(std::size_t t, std::size_t k) const { return triangles[3 * t + k]; }
+  [[nodiscard]] std::string describe_triangle(std::int64_t t) const;
+  [[nodiscard]] std::string describe_edge(std::int64_t edge) const;
+};
+
+constexpr std::size_t next3(std::size_t k) { return k == 2 ? 0 : k + 1; }
+constexpr std::size_t previous3(std::size_t k) { return k == 0 ? 2 : k - 1; }
+
+// Each check fills passed, failures, first and what. They run in this order; a check may rely on those named.
+void check_range(Mesh& mesh, Check& check);                                       // sets used, vertices
+void check_neighbors(const Mesh& mesh, Check& check, std::uint64_t& examined);    // after range
+void derive_neighbors(Mesh& mesh, Check& check, std::uint64_t& examined);         // after range
+void check_orientation(const Mesh& mesh, Check& check, std::uint64_t& examined);  // after range
+void check_vertices(const Mesh& mesh, const MeshView& view, Check& check);        // after range
+void check_collinear(const Mesh& mesh, const MeshView& view, Check& check);       // instead, without triangles
+void check_boundary(Mesh& mesh, Check& check);     // after neighbors; sets boundary, loop
+void check_euler(const Mesh& mesh, Check& check);  // after boundary has been collected
+void check_hull(const Mesh& mesh, std::span<const std::int32_t> given, Check& check);  // after boundary
+void check_delaunay(const Mesh& mesh, Check& delaunay, Check& ties, const VerifyOptions& options,
+                    VerifyReport& report);  // after neighbors and orientation
+
+// Parts of these that serve the verifier on the device as well (common/verify/device/verify_on_device.cpp).
+
+/// Interior edges: those that are not legal, and those whose tie is not decided as cadt does.
+struct Circles {
+  Tally illegal, unusual;
+  std::uint64_t ties = 0;
+  void merge(const Circles& other) {
+    illegal.merge(other.illegal);
+    unusual.merge(other.unusual);
+    ties += other.ties;
+  }
+};
+
+/// check_boundary once mesh.boundary is filled, in any order.
+void link_boundary(Mesh& mesh, Check& check);
+/// Euler's formula alone, and connectedness alone.
+void check_euler_formula(const Mesh& mesh, Check& check);
+void check_connected(const Mesh& mesh, Check& check);
+/// check_hull with the points of the loop.
+void check_hull(std::span<const std::int32_t> loop, std::span<const Point> corners, std::span<const std::int32_t> given,
+                unsigned threads, Check& check);
+
+/// Sets the outcome from a tally; `what` is only used if something failed.
+void conclude(Check& check, const Tally& tally, const std::string& what);
+void fail(Check& check, std::int64_t first, const std::string& what);
+void conclude_range(const Mesh& mesh, const Tally& tally, Check& check);
+void conclude_neighbors(const Mesh& mesh, const Tally& tally, Check& check);
+void conclude_orientation(const Mesh& mesh, const Tally& tally, Check& check);
+void conclude_duplicates(std::span<const Duplicate> list, std::size_t expected, const Tally& tally, Check& check);
+void conclude_delaunay(const Mesh& mesh, const Circles& circles, Check& delaunay, Check& ties,
+                       const VerifyOptions& options, VerifyReport& report);
+
+/// \throws InputError for the point of this index
+[[noreturn]] void refuse_point(std::int64_t index);
+/// Empty if the arrays fit together.
+[[nodiscard]] std::string size_error(PointsView points, const MeshView& view);
+/// The predicates rest on IEEE 754 arithmetic. A process may have changed it, e.g. by loading code made for fast
+/// arithmetic; then no verdict is better than a wrong one. Threads inherit the mode of the one that starts them.
+void require_ieee_arithmetic();
+/// What the library's own result promises beyond a bare mesh.
+void check_own_result(PointsView points, const Triangulation& mesh, VerifyReport& report);
+[[nodiscard]] MeshView view_of(const Triangulation& mesh);
+
+}  // namespace cadt::verifier

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a call tells while it runs, written down for each way through it: no report may be missing, each is further than
+// the one before it, and at each a stop is heard.
+#include "tests/robustness/faults/faulty_device.hpp"
+#include "tests/system/resident/resident.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "common/driver/device_text.hpp"
+
+namespace cadt::test {
+namespace {
+
+using Reals = std::span<const double>;
+using Call = std::function<Statistics(Triangulator&)>;
+using Names = std::vector<std::string>;
+
+/// Insertion tells how many points are in the mesh as often as it waits for that; the others are told once.
+std::string text_of(const Progress& progress) {
+  char text[64];
+  if (progress.phase == "insert") return "insert";
+  (void)std::snprintf(text, sizeof text, "%s %.4g", std::string(progress.phase).c_str(), progress.fraction);
+  return text;
+}
+
+Names names_of(const Statistics& statistics) {
+  Names names;
+  for (const auto& [name, milliseconds] : statistics.milliseconds) names.push_back(name);
+  return names;
+}
+
+Names sorted(Names names) {
+  std::ranges::sort(names);
+  return names;
+}
+
+class ToldProgress : public ResidentTest {
+ protected:
+  [[nodiscard]] Options options(Strategy strategy) const {
+    Options with = ResidentTest::options();
+    with.strategy = strategy;
+    return with;
+  }
+
+  /// `reports`: as text_of() has them, those of insertion once. `phases`: of Statistics::milliseconds.
+  void expect_told(const Options& with, const Call& call, const Names& reports, const Names& phases) {
+    Triangulator triangulator(with);
+    Names told;
+    std::size_t all = 0;
+    double last = -1;
+    triangulator.options().progress = [&](const Progress& progress) {
+      EXPECT_GT(progress.fraction, last) << progress.phase;
+      EXPECT_LE(progress.fraction, 1);
+      last = progress.fraction;
+      ++all;
+      if (told.empty() || told.back() != text_of(progress) || progress.phase != "insert")
+        told.push_back(text_of(progress));
+    };
+    const Statistics statistics = call(triangulator);
+    EXPECT_EQ(told, reports);
+    EXPECT_EQ(last, 1);
+    EXPECT_EQ(sorted(names_of(statistics)), sorted(phases));
+    // At each of them: a report is told and a stop requested there is heard, before the next one is told.
+    for (std::size_t stop_at = 0; stop_at < reports.size(); ++stop_at) {
+      std::stop_source source;
+      std::size_t later = 0;
+      triangulator.options().stop = source.get_token();
+      triangulator.options().progress = [&](const Progress& progress) {
+        if (source.stop_requested()) ++later;
+        if (text_of(progress) == reports[stop_at]) source.request_stop();
+      };
+      (void)thrown<Cancelled>([&] { (void)call(triangulator); });
+      EXPECT_TRUE(source.stop_requested()) << reports[stop_at];
+      EXPECT_EQ(later, 0U) << reports[stop_at];
+    }
+    triangulator.options().stop = {};
+    triangulator.options().progress = nullptr;
+    (void)call(triangulator);
+  }
+
+  const std::shared_ptr<Faults> faults = std::make_shared<Faults>();
+  const Injection injection{faults};
+};
+
+const Names of_insertion = {"sort 0", "sort 0.01", "insert", "collect 0.9", "collect 0.95", "collect 1"};
+const Names of_stars = {"sort 0",   "sort 0.01",   "stars 0.1",    "stars 0.5",
+                        "join 0.8", "certify 0.9", "collect 0.95", "collect 1"};
+const Names insertion_phases = {"upload", "bounds", "sort", "gather", "start", "insert", "certify", "collect"};
+const Names star_phases = {"upload",  "bounds", "sort", "gather",  "tiles",  "stars",
+                           "records", "wrap",   "join", "certify", "collect"};
+
+Names with(Names names, const Names& more) {
+  names.insert(names.end(), more.begin(), more.end());
+  return names;
+}
+
+Names without(Names names, const std::string& one) {
+  std::erase(names, one);
+  return names;
+}
+
+TEST_P(ToldProgress, Insertion) {
+  const Points xy = uniform_points(20000, 7);
+  const DevicePoints points = upload(xy);
+  expect_told(
+      options(Strategy::locks), [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); }, of_insertion,
+      with(insertion_phases, {"copy"}));
+  expect_told(
+      options(Strategy::locks), [&](Triangulator& t) { return t.triangulate(points).statistics(); }, of_insertion,
+      insertion_phases);
+}
+
+TEST_P(ToldProgress, Stars) {
+  const Points xy = uniform_points(20000, 7);
+  const DevicePoints points = upload(xy);
+  Options bounded = options(Strategy::stars);
+  bounded.max_memory = 2 * 65536 + 83 * xy.size() / 2;  // the triangles are put in order where they are
+  const Call of_host = [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); };
+  const Call of_device = [&](Triangulator& t) { return t.triangulate(points).statistics(); };
+  expect_told(options(Strategy::stars), of_host, of_stars, with(star_phases, {"copy"}));
+  expect_told(options(Strategy::stars), of_device, of_stars, star_phases);
+  expect_told(bounded, of_host, without(of_stars, "collect 0.95"), with(star_phases, {"copy"}));
+}
+
+/// Of few points all stars are wrapped, and there is nothing to join.
+TEST_P(ToldProgress, WrappedStars) {
+  const Points xy = {0, 0, 1, 0, 0, 1, 3, 3};
+  expect_told(options(Strategy::stars), [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); },
+              {"sort 0", "sort 0.01", "stars 0.1", "stars 0.5", "collect 0.9", "collect 0.95", "collect 1"},
+              {"upload", "bounds", "sort", "gather", "tiles", "stars", "wrap", "certify", "collect", "copy"});
+}
+
+/// Passes that are repeated tell nothing twice: here three find edges that could not be read.
+TEST_P(ToldProgress, RepeatedPasses) {
+  using namespace device_text;
+  const Points xy = uniform_points(20000, 7);
+  const Buffer* counts = nullptr;
+  int unsettled = 0;
+  faults->change_launch = [&](KernelId kernel, std::vector<Arg>& args) {
+    counts = kernel == KernelId::cadt_legality_sweep ? args[args.size() - 3].buffer() : nullptr;
+  };
+  faults->change_read = [&](const Buffer& from, std::size_t, void* to, std::size_t bytes) {
+    const std::size_t at = (CADT_LEFT_COUNTS + 2) * sizeof(std::uint32_t);
+    if (&from != counts || bytes <= at || unsettled++ % 4 == 3) return;
+    const std::uint32_t one = 1;
+    std::memcpy(static_cast<std::byte*>(to) + at, &one, sizeof one);
+  };
+  Names reports = of_insertion;  // a pass that is not the last one tells of itself
+  std::ranges::replace(reports, "collect 0.9", "certify 0.9");
+  const Call call = [&](Triangulator& t) {
+    unsettled = 0;
+    const Statistics statistics = t.triangulate(Reals(xy)).statistics();
+    EXPECT_EQ(statistics.legality_sweeps, 4U);
+    return statistics;
+  };
+  expect_told(options(Strategy::locks), call, reports, with(insertion_phases, {"copy"}));
+}
+
+CADT_ON_MAIN_BACKENDS(ToldProgress);
+
+}  // namespace
+}  // namespace cadt::test

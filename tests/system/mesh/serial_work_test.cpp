@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// One thread meets nobody: after each point all edges that it made illegal are flipped, so the closing pass has nothing
+// to repair, and no claim is lost. A mistake in what is put on the list of edges shows here and nowhere else: with many
+// threads, repairs hide it.
+#include "tests/support/backends.hpp"
+#include "tests/support/families.hpp"
+
+#include <gtest/gtest.h>
+
+namespace cadt::test {
+namespace {
+
+class SerialWork : public BackendTest {
+ protected:
+  static Statistics run(const Points& xy) {
+    Options options = GetParam().options();
+    options.strategy = Strategy::locks;
+    const Triangulation mesh = triangulate(std::span<const double>(xy), options);
+    const Statistics& s = mesh.statistics();
+    EXPECT_EQ(s.sweep_repairs, 0u);
+    EXPECT_EQ(s.legality_sweeps, 1u);
+    EXPECT_EQ(s.lock_failures, 0u);
+    EXPECT_EQ(s.deferred_edges, 0u);
+    EXPECT_GT(s.flips, mesh.number_of_points() / 4);
+    return s;
+  }
+};
+
+TEST_P(SerialWork, LeavesNothingToTheClosingPass) {
+  ASSERT_EQ(GetParam().threads, 1u);
+  EXPECT_GT(run(uniform_points(5000)).splits, 4900u);
+  EXPECT_GT(run(grid_points(60, 50)).edge_splits, 500u);  // points on edges, with four edges around them
+  run(shuffled(grid_points(60, 50), 3));
+  run(cluster_points(4000));
+  run(hub_points(1500));
+}
+
+}  // namespace
+
+std::vector<BackendCase> one_thread() { return {host_cases().front()}; }
+CADT_ON(host, SerialWork, one_thread);
+
+}  // namespace cadt::test

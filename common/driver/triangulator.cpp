@@ -263,9 +263,8 @@ void Triangulator::reserve(std::size_t points) {
 }
 
 void Triangulator::release_memory() {
-  state_->memory.drop_kept();
+  state_->memory.drop_kept();  // the next account forgets the sizes
   state_->device->trim();
-  state_->known = {};
 }
 
 Triangulation triangulate(PointsView points, const Options& options) {

@@ -13,8 +13,8 @@ namespace {
 using namespace device_text;
 using Method = BuildStrategy::Method;
 
-/// Up to so many points are wrapped if many are on circles or on a lattice: there exact tests take longer. Or on a ring,
-/// where circles are large and each turn looks at many points.
+/// Up to so many points are wrapped if many are on circles or on a lattice: there exact tests take longer. Or on a
+/// ring, where circles are large and each turn looks at many points.
 constexpr std::size_t most_wrapped_on_circles = 20000, most_wrapped_on_lattice = 20480, most_wrapped_on_ring = 28672;
 
 /// What wraps a whole mesh best, as far as the points tell.
@@ -57,8 +57,7 @@ BuildStrategy choose_strategy(const DeviceTraits& device, const Options& options
   const bool automatic = options.strategy == Strategy::automatic;
   if (automatic && are_for_insertion(profile)) return how;
   how.most_residual_wrapped = most_wrapped_by(device);
-  how.most_wrapped =
-      automatic ? most_wrapped_of(how.most_residual_wrapped, profile.shapes) : how.most_residual_wrapped;
+  how.most_wrapped = automatic ? most_wrapped_of(how.most_residual_wrapped, profile.shapes) : how.most_residual_wrapped;
   how.cautious = automatic;
   how.least_points_of_tile = automatic ? least_points_of_tile : 0;
   const bool few = profile.distinct <= how.most_wrapped;

@@ -49,8 +49,8 @@ struct KnownSizes {
 /// Points that are batched at most, so that there is memory for them besides `results` bytes. \throws OutOfMemory
 /// before any work
 [[nodiscard]] std::size_t plan_batch(Memory& memory, const Options& options, const DeviceInfo& device,
-                                     std::span<const std::size_t> offsets, std::size_t most_of_set,
-                                     std::size_t results, const KnownSizes& known);
+                                     std::span<const std::size_t> offsets, std::size_t most_of_set, std::size_t results,
+                                     const KnownSizes& known);
 /// Points and sets that are batched at most: they fill any card, and what they need besides the result is bounded.
 constexpr std::size_t most_points_batched = std::size_t{1} << 24, most_sets_batched = std::size_t{1} << 20;
 

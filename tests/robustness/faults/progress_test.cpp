@@ -46,6 +46,13 @@ class ToldProgress : public ResidentTest {
 
   /// `reports`: as text_of() has them, those of insertion once. `phases`: of Statistics::milliseconds.
   void expect_told(const Options& with, const Call& call, const Names& reports, const Names& phases) {
+    // A sweep that repairs something, which is up to the schedule, tells of itself, and the output then begins no
+    // later.
+    const bool sweeps = std::ranges::find(reports, "certify 0.9") != reports.end();
+    const auto report_of = [&](const Progress& progress) {
+      const std::string text = text_of(progress);
+      return text == "certify 0.9" && !sweeps ? std::string("output 0.9") : text;
+    };
     Triangulator triangulator(with);
     Names told;
     std::size_t all = 0;
@@ -55,8 +62,8 @@ class ToldProgress : public ResidentTest {
       EXPECT_LE(progress.fraction, 1);
       last = progress.fraction;
       ++all;
-      if (told.empty() || told.back() != text_of(progress) || progress.phase != "insert")
-        told.push_back(text_of(progress));
+      if (told.empty() || told.back() != report_of(progress) || progress.phase != "insert")
+        told.push_back(report_of(progress));
     };
     const Statistics statistics = call(triangulator);
     EXPECT_EQ(told, reports);
@@ -69,7 +76,7 @@ class ToldProgress : public ResidentTest {
       triangulator.options().stop = source.get_token();
       triangulator.options().progress = [&](const Progress& progress) {
         if (source.stop_requested()) ++later;
-        if (text_of(progress) == reports[stop_at]) source.request_stop();
+        if (report_of(progress) == reports[stop_at]) source.request_stop();
       };
       (void)thrown<Cancelled>([&] { (void)call(triangulator); });
       EXPECT_TRUE(source.stop_requested()) << reports[stop_at];

@@ -105,7 +105,8 @@ TEST(ChooseStrategy, IsATable) {
 
 TEST(ChooseStrategy, SameAnswerForTheSameValues) {
   for (const Row& row : rows())
-    EXPECT_EQ(choose_strategy(row.device, row.options, row.profile), choose_strategy(row.device, row.options, row.profile));
+    EXPECT_EQ(choose_strategy(row.device, row.options, row.profile),
+              choose_strategy(row.device, row.options, row.profile));
 }
 
 TEST(ChooseStrategy, MemoryIsPlannedForStarsFromTheFirstPointsThatMayHaveThem) {

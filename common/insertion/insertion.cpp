@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/driver/choose_strategy.hpp"
 #include "common/driver/counters.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/insertion/cavity_retriangulation.hpp"
@@ -27,7 +28,6 @@ constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a wa
 // Ranges without locks: what every 2^partition_level positions have in common is inserted before, with locks. The fewer
 // positions a range has, the more of them are at its border.
 constexpr unsigned partition_level = 5;
-constexpr std::size_t least_partition = std::size_t{1} << 14, fewest_for_partitions = 4 * least_partition;
 constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
 constexpr int unresolvable_launches = 64;
 constexpr std::size_t least_asked = 4096;  // points of launches after which what they left is asked
@@ -45,24 +45,22 @@ static_assert(static_cast<int>(Stabilize::off) == CADT_STABILIZE_OFF &&
               static_cast<int>(Stabilize::defer) == CADT_STABILIZE_DEFER &&
               static_cast<int>(Stabilize::paper) == CADT_STABILIZE_PAPER);
 
-class Builder {
+class Insertion {
  public:
-  Builder(Context& ctx, SortedPoints& order)
+  /// `points` are those of `own` where it is given, which build() needs.
+  Insertion(Context& ctx, const SortedPoints& points, SortedPoints* own = nullptr)
       : ctx_(ctx),
         launch_(ctx.launcher),
-        order_(order),
-        n_(order.distinct),
+        own_(own),
+        order_(points),
+        n_(points.distinct),
         edge_capacity_(static_cast<std::uint32_t>(n_ / 8 + 4096)),
         counters_(ctx),
-        mesh_{ctx, order, static_cast<std::uint32_t>(ctx.options.stabilize)} {}
+        mesh_{ctx, points, static_cast<std::uint32_t>(ctx.options.stabilize)} {}
 
   [[nodiscard]] Mesh build() {
-    Mesh mesh;
     if (n_ >= 3 && !ctx_.device.shape().contiguous) order_by_level();
-    if (n_ < 3 || !find_seed_triangle()) {
-      mesh.flat = true;
-      return mesh;
-    }
+    if (n_ < 3 || !find_seed_triangle()) return Mesh::without_triangles(std::move(own_->input_ids));
     mesh_.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not in use yet
     mesh_.vertex_to_triangle = ctx_.memory.transient(n_ * word);
     // points of a launch: a level and what others left over, one by one or together
@@ -70,9 +68,9 @@ class Builder {
     for (Allocation& list : deferred_points_) list = ctx_.memory.transient(most * word);
     make_edge_lists();
     mesh_.run_kernel<KernelId::cadt_seed_mesh>(1);
-    ctx_.end_phase("start");
+    ctx_.end_phase("seed");
 
-    const unsigned last = use_partitions() ? partition_level : 0;
+    const unsigned last = inserts_partitions(traits_of(ctx_.device), ctx_.options, n_) ? partition_level : 0;
     for (unsigned level = levels(); level-- > last;) insert_level(level, level == last);
     if (last != 0) insert_partitions();
     if (deferred_.points != 0 || deferred_.edges != 0) {
@@ -80,7 +78,9 @@ class Builder {
       if (ctx_.options.watch) show();
     }
     ctx_.end_phase("insert");
-    return close(3 * std::uint64_t{n_} - 3);
+    Mesh mesh = close(3 * std::uint64_t{n_} - 3);
+    mesh.input_ids = std::move(own_->input_ids);
+    return mesh;
   }
 
   /// Nothing walks in a mesh that is complete: its hints are written by repairs only, and its first triangle is not
@@ -119,8 +119,8 @@ class Builder {
     const LaunchGrid c = launch_.grid(n_);
     launch_.run<KernelId::cadt_by_level>(c.items, order_.points, order_.input_ids, static_cast<std::uint32_t>(n_),
                                          c.grain, points, input_ids);
-    order_.points = std::move(points);
-    order_.input_ids = std::move(input_ids);
+    own_->points = std::move(points);
+    own_->input_ids = std::move(input_ids);
     by_level_ = true;
   }
 
@@ -174,11 +174,6 @@ class Builder {
       if (deferred_.points > size / 8 + 32 || deferred_.edges > size / 8 + 32) finish_deferred();
       ctx_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
     }
-  }
-
-  [[nodiscard]] bool use_partitions() const noexcept {
-    return ctx_.device.shape().contiguous && n_ >= fewest_for_partitions && ctx_.options.grain == 0 &&
-           ctx_.options.stabilize == Stabilize::off && !ctx_.options.watch;
   }
 
   /// All levels below partition_level: ranges of positions side by side without locks, then what lies between them.
@@ -326,7 +321,8 @@ class Builder {
 
   Context& ctx_;
   Launcher& launch_;
-  SortedPoints& order_;
+  SortedPoints* own_;
+  const SortedPoints& order_;
   std::size_t n_;
   std::uint32_t edge_capacity_;
   Counters counters_;
@@ -343,10 +339,13 @@ class Builder {
 
 std::size_t slots_per_launch(const Device& device) { return 4 * points_per_launch(device); }
 
-Mesh insert_incrementally(Context& ctx, SortedPoints& order) { return Builder(ctx, order).build(); }
+Mesh insert_incrementally(Context& ctx, SortedPoints points) {
+  points.keys.release();
+  return Insertion(ctx, points, &points).build();
+}
 
-Mesh sweep_legality(Context& ctx, SortedPoints& order, Allocation locked, std::uint64_t edges) {
-  return Builder(ctx, order).adopt(std::move(locked), edges);
+Mesh sweep_legality(Context& ctx, const SortedPoints& points, Allocation locked, std::uint64_t edges) {
+  return Insertion(ctx, points).adopt(std::move(locked), edges);
 }
 
 }  // namespace cadt

@@ -59,7 +59,7 @@ TEST_P(CountedWork, AddsUp) {
     EXPECT_EQ(s.lock_attempts, s.lock_failures + s.splits + s.edge_splits + s.flips);
     EXPECT_LE(s.invalid_restarts, s.lock_failures);
     EXPECT_TRUE(s.thread_time.empty());
-    for (const char* phase : {"sort", "gather", "insert", "certify", "collect", "copy"})
+    for (const char* phase : {"sort", "gather", "insert", "certify", "output", "copy"})
       EXPECT_TRUE(names(s.milliseconds).count(phase)) << phase;
   }
 }

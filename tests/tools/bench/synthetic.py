@@ -99,9 +99,9 @@ def hash_of(distribution: str, points: int) -> str:
 
 
 def phases(on_device: float, whole: float) -> str:
-    shares = {"bounds": 0.01, "sort": 0.12, "refine": 0.02, "gather": 0.05, "start": 0.01, "insert": 0.64,
+    shares = {"bounds": 0.01, "sort": 0.12, "refine": 0.02, "gather": 0.05, "seed": 0.01, "insert": 0.64,
               "certify": 0.08,
-              "collect": 0.07}
+              "output": 0.07}
     parts = {"upload": (whole - on_device) * 0.4, **{k: v * on_device for k, v in shares.items()},
              "copy": (whole - on_device) * 0.6}
     return ";".join(f"{name}={value:.6g}" for name, value in parts.items())

@@ -299,7 +299,7 @@ CADT_FN cadt_u64 cadt_clock() {
 #endif
 #define CADT_TEAM_FOR(i, count) for (cadt_u32 i = cadt_team_lane; i < (count); i += cadt_team_lanes)
 
-/* Coordinates, and what is computed from them (docs/decisions/0015-float-path.md). */
+/* Coordinates, and what is computed from them (docs/decisions/0004-exact-integers-and-floats.md). */
 #if CADT_FLOAT
 typedef float cadt_real;
 #define CADT_MANTISSA_BITS 23 /* that are stored */

@@ -2,7 +2,7 @@
  *
  * All kernels. A back end compiles this file; the names are listed in kernel_list.h. The build for floats has those of
  * the strategy `locks`: the star stage, gift wrapping and the verifier have error bounds of their own, for doubles, and
- * what they decide the others decide as well (docs/decisions/0015-float-path.md).
+ * what they decide the others decide as well (docs/decisions/0004-exact-integers-and-floats.md).
  */
 #ifndef CADT_PORTABLE_KERNELS_H
 #define CADT_PORTABLE_KERNELS_H

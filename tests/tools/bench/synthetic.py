@@ -12,7 +12,7 @@ import random
 import sys
 from pathlib import Path
 
-COUNTERS = ("launches walk_steps claims lock_failures invalid_restarts insert_retries stale_edges deferred_points "
+COUNTERS = ("launches walk_steps lock_attempts lock_failures invalid_restarts insert_retries stale_edges deferred_points "
             "deferred_edges splits edge_splits flips incircle_tests orientation_tests exact_orientations "
             "exact_incircles ties legality_sweeps sweep_repairs cavities certified_edges stabilized_edges illegal_edges "
             "refined_points bytes_device_peak").split()

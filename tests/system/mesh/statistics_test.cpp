@@ -110,10 +110,10 @@ TEST_P(CountedWork, TimingTellsShares) {
   EXPECT_EQ(mesh.hash(), hash);
   EXPECT_GT(s.flips, 0u);
   EXPECT_EQ(names(s.thread_time),
-            (std::set<std::string>{"locate", "claim", "split", "test", "flip", "neighbors", "other", "wait"}));
+            (std::set<std::string>{"locate", "lock", "split", "test", "flip", "neighbors", "other", "wait"}));
   double sum = 0;
   for (const auto& [name, share] : s.thread_time) {
-    if (name == "locate" || name == "test" || name == "claim") {
+    if (name == "locate" || name == "test" || name == "lock") {
       EXPECT_GT(share, 0.0) << name;
     }
     sum += share;

@@ -196,7 +196,7 @@ def times(writer: Writer) -> None:
             writer.row("distributions", who, device, points, distribution=name, factor=1.1)
         for name in ("uniform", "circles"):
             row = writer.row("breakdown", who, device, 1 << 20, distribution=name, detail="timing")
-            row["thread_time"] = "locate=0.31;claim=0.12;split=0.08;test=0.14;flip=0.19;neighbors=0.11;other=0.05"
+            row["thread_time"] = "locate=0.31;lock=0.12;split=0.08;test=0.14;flip=0.19;neighbors=0.11;other=0.05"
         for name, points in (("uniform", 477), ("bunny_res4", 453), ("uniform", 1_000_000), ("uniform", 21_214_412)):
             writer.row("works", who, device, points, distribution=name)
         for points in SIZES[:8]:

@@ -14,7 +14,7 @@
 #include "common/driver/registry.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/triangulation_data.hpp"
-#include "common/output/renumber.hpp"
+#include "common/output/result.hpp"
 #include "common/points/device_points.hpp"
 #include "common/points/import.hpp"
 #include "common/points/spatial_sort.hpp"
@@ -25,88 +25,9 @@ namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 
-/// Writes the arrays of the result where they are to be.
-class Outputs {
- public:
-  virtual ~Outputs() = default;
-  /// Takes the mesh apart. `points`: of the input.
-  virtual void write(Context& ctx, Mesh& mesh, std::size_t points, DeviceTriangulation::Data& data) = 0;
-
- protected:
-  /// Whether the canonical order is made without a second array: to save memory, or since that second one would be in
-  /// nothing that is kept.
-  static bool in_place(const Context& ctx, const Mesh& mesh) noexcept {
-    return mesh.in_arrays() && (ctx.plan.compact || ctx.memory.pools(mesh.slots * word));
-  }
-  static Numbering number(Context& ctx, const Mesh& mesh, std::size_t points, DeviceTriangulation::Data& data) {
-    Numbering numbering = renumber(ctx, mesh, points);
-    data.triangle_count = numbering.triangles;
-    ctx.check("output", 0.95);
-    return numbering;
-  }
-};
-
-class OnDevice final : public Outputs {
- public:
-  void write(Context& ctx, Mesh& mesh, std::size_t points, DeviceTriangulation::Data& data) override {
-    if (in_place(ctx, mesh)) {
-      data.triangle_count = renumber_in_place(ctx, mesh, points);
-      data.triangles = std::move(mesh.vertices);
-      data.neighbors = std::move(mesh.half_edges);
-      return;
-    }
-    write(ctx, mesh, number(ctx, mesh, points, data), data);
-  }
-
-  static void write(Context& ctx, Mesh& mesh, const Numbering& numbering, DeviceTriangulation::Data& data) {
-    const std::size_t bytes = 3 * data.triangle_count * word;
-    if (!mesh.in_arrays()) {
-      data.triangles = ctx.memory.allocate(bytes);
-      data.neighbors = ctx.memory.allocate(bytes);
-      write_triangles(ctx, mesh, numbering, data.triangles, data.neighbors);
-    } else if (!numbering.numbers) {  // the arrays of the mesh become those of the result
-      write_triangles(ctx, mesh, numbering, mesh.vertices, mesh.half_edges);
-      data.triangles = std::move(mesh.vertices);
-      data.neighbors = std::move(mesh.half_edges);
-    } else {  // one after the other, so that each takes the place of the one before
-      data.neighbors = ctx.memory.allocate(bytes);
-      write_triangles(ctx, mesh, numbering, {}, data.neighbors);
-      mesh.half_edges.release();
-      data.triangles = ctx.memory.allocate(bytes);
-      write_triangles(ctx, mesh, numbering, data.triangles, {});
-    }
-  }
-};
-
-/// The arrays of a Triangulation if the device can write them, else copies on the device.
-class OnHost final : public Outputs {
- public:
-  explicit OnHost(Triangulation::Data& to) : to_(to) {}
-  void write(Context& ctx, Mesh& mesh, std::size_t points, DeviceTriangulation::Data& data) override {
-    if (in_place(ctx, mesh)) return on_device_.write(ctx, mesh, points, data);
-    const Numbering numbering = number(ctx, mesh, points, data);
-    const std::size_t values = 3 * data.triangle_count;
-    to_.triangles = make_words(values);
-    to_.neighbors = make_words(values);
-    data.triangles = ctx.memory.export_to(to_.triangles.get(), values * word);
-    data.neighbors = ctx.memory.export_to(to_.neighbors.get(), values * word);
-    direct_ = data.triangles && data.neighbors;
-    if (direct_)
-      write_triangles(ctx, mesh, numbering, data.triangles, data.neighbors);
-    else
-      OnDevice::write(ctx, mesh, numbering, data);
-  }
-  /// True if the arrays are filled when the device has finished.
-  [[nodiscard]] bool direct() const noexcept { return direct_; }
-
- private:
-  Triangulation::Data& to_;
-  OnDevice on_device_;
-  bool direct_ = false;
-};
-
-/// Sorts the points, builds their mesh, and has the arrays of the result written.
-void triangulate_into(Context& ctx, const InputPoints& input, Outputs& outputs, DeviceTriangulation::Data& data) {
+/// Sorts the points, builds their mesh and writes the result. True if its arrays are those of `host`.
+bool triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Data* host,
+                      DeviceTriangulation::Data& data) {
   const std::size_t n = input.size();
   ctx.check("sort", 0);
   Allocation imported = input.import(ctx);
@@ -119,9 +40,13 @@ void triangulate_into(Context& ctx, const InputPoints& input, Outputs& outputs, 
   data.representatives = std::move(points.representatives);
   Mesh mesh = build(ctx, std::move(points), input);
   data.dimension = mesh.flat ? (data.distinct >= 2 ? 1 : 0) : 2;
-  if (mesh.flat) return;
+  if (mesh.flat) return false;
   ctx.check("output", 0.9);
-  outputs.write(ctx, mesh, n, data);
+  ResultArrays result = write_result(ctx, std::move(mesh), n, host);
+  data.triangle_count = result.count;
+  data.triangles = std::move(result.triangles);
+  data.neighbors = std::move(result.neighbors);
+  return result.on_host;
 }
 
 Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
@@ -134,10 +59,9 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
   if (points.size() != 0) {
     const MemoryPlan plan = plan_call(*state, {points.size(), is_host(*state->device), false, points.scalar_size()});
     Context ctx(*state->device, state->memory, state->options, data.statistics, plan);
-    OnHost outputs(*result);
-    triangulate_into(ctx, points, outputs, data);
+    const bool filled = triangulate_into(ctx, points, result.get(), data);
     ctx.end_phase("output");
-    if (data.dimension == 2) read_mesh(ctx, data, outputs.direct(), *result);
+    if (data.dimension == 2) read_mesh(ctx, data, filled, *result);
     read_duplicates(*state->device, data, *result);
     ctx.end_phase("copy");
     remember_size(*state, data.statistics, plan);
@@ -159,8 +83,7 @@ DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state,
   if (points.size != 0) {
     const MemoryPlan plan = plan_call(*state, {points.size, false, true, scalar_bytes(points.scalar)});
     Context ctx(*state->device, state->memory, state->options, data->statistics, plan);
-    OnDevice outputs;
-    triangulate_into(ctx, points, outputs, *data);
+    (void)triangulate_into(ctx, points, nullptr, *data);
     ctx.end_phase("output");
     remember_size(*state, data->statistics, plan);
     end_call(*state, ctx, true);

@@ -68,7 +68,7 @@ constexpr KernelBytes table[] = {
     {"cadt_boundary_edges", Unit::triangle, 12, 0, "neighbours"},
 };
 
-/// As choose_grid of common/points/spatial_sort.cpp has it where the box is about as wide as high.
+/// As choose_grid of common/points/key_grid.cpp has it where the box is about as wide as high.
 std::uint64_t sort_passes(std::uint64_t points) noexcept {
   const int bits = std::clamp(static_cast<int>(std::bit_width(points)) + 4, 4, 32);
   return static_cast<std::uint64_t>((bits + 7) / 8);

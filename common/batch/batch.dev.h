@@ -12,7 +12,8 @@
 #define CADT_BATCH_BATCH_H
 
 #include "common/mesh/locked_mesh.dev.h"
-#include "common/points/spatial_sort.dev.h"
+#include "common/points/bounds.dev.h"
+#include "common/points/hilbert_keys.dev.h"
 
 /* The last set that starts at i or before: the one that has element i. */
 CADT_FN cadt_u32 cadt_set_of(CADT_GLOBAL const cadt_u32* starts, cadt_u32 count, cadt_u32 i) {

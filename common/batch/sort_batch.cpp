@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "common/driver/device_text.hpp"
+#include "common/points/duplicates.hpp"
+#include "common/points/key_refinement.hpp"
 
 namespace cadt {
 namespace {

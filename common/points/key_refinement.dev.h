@@ -8,6 +8,7 @@
 #ifndef CADT_POINTS_KEY_REFINEMENT_H
 #define CADT_POINTS_KEY_REFINEMENT_H
 
+#include "common/points/hilbert_keys.dev.h"
 #include "common/points/spatial_sort.dev.h"
 
 /* Flags the members of long runs; totals[0] counts them. */

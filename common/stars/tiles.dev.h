@@ -7,7 +7,8 @@
 #ifndef CADT_STARS_TILES_H
 #define CADT_STARS_TILES_H
 
-#include "common/points/spatial_sort.dev.h"
+#include "common/points/hilbert_keys.dev.h"
+#include "common/portable/atomics.dev.h"
 
 /* The smallest square, by its level, that holds the cells of both keys; -1: no square does. */
 CADT_FN cadt_i32 cadt_shared_level(cadt_u64 a, cadt_u64 b, cadt_u32 levels) {

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Shapes of the point set that decide on the strategy: a sample of the sorted points is compared with its neighbours in
+ * order, and with points far away.
+ */
+#ifndef CADT_POINTS_POINT_PROFILE_H
+#define CADT_POINTS_POINT_PROFILE_H
+
+#include "common/portable/atomics.dev.h"
+#include "common/portable/layout.dev.h"
+#include "common/predicates/filtered_predicates.dev.h"
+
+/* Whether points spread over all are on one side of the line from point i to the next, as far as rounded numbers tell:
+ * few points that are not on the hull have that. */
+CADT_FN cadt_u32 cadt_seems_on_hull(CADT_GLOBAL const cadt_point* sorted, cadt_u32 count, cadt_u32 i) {
+  if (i + 1u >= count) return 0u;
+  const cadt_point a = sorted[i], b = sorted[i + 1u];
+  const cadt_real x = b.x - a.x, y = b.y - a.y;
+  const cadt_u32 step = count / CADT_HULL_PROBES;
+  cadt_u32 left = 0u, right = 0u, at = i + step / 2u;
+  for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_HULL_PROBES); ++k, at += step) {
+    const cadt_point q = sorted[at % count];
+    const cadt_real side = x * (q.y - a.y) - y * (q.x - a.x);
+    left |= side > 0.0 ? 1u : 0u;
+    right |= side < 0.0 ? 1u : 0u;
+  }
+  return left ^ right;
+}
+
+/* What four points one after the other are as far as rounded numbers can tell: CADT_SHAPE_LINE, on a line; on a circle,
+ * CADT_SHAPE_MIRRORED if a cheap test does as along an axis, else CADT_SHAPE_CIRCLE; or CADT_NONE. */
+CADT_FN cadt_u32 cadt_shape_of(CADT_GLOBAL const cadt_point* p) {
+  cadt_real most;
+  for (cadt_u32 k = 0u; k < 3u; ++k)
+    if (cadt_same(p[k].x, p[k + 1u].x) && cadt_same(p[k].y, p[k + 1u].y)) return CADT_NONE;
+  if (cadt_incircle_rounded(p[0], p[1], p[2], p[3], &most) != 0) return CADT_NONE;
+  if (cadt_orientation_filter(p[0], p[1], p[2]) == CADT_UNSURE &&
+      cadt_orientation_filter(p[1], p[2], p[3]) == CADT_UNSURE)
+    return CADT_SHAPE_LINE;
+  return cadt_mirrored(p[0], p[1], p[2], p[3]) ? CADT_SHAPE_MIRRORED : CADT_SHAPE_CIRCLE;
+}
+
+/* Counts in `totals` what point i of a sample is (CADT_SHAPE_...): beside the line through two points for certain; on a
+ * circle with three others far away, as far as rounded numbers can tell; on the hull; and with `neighbours`, what it is
+ * with the next three. */
+CADT_FN void cadt_count_shapes(CADT_GLOBAL const cadt_point* sorted, cadt_u32 count, cadt_u32 i, cadt_u32 neighbours,
+                               CADT_GLOBAL cadt_u32* totals) {
+  const cadt_u32 far = count / 4u;
+  const cadt_i32 side = cadt_orientation_filter(sorted[0], sorted[count / 2u], sorted[i]);
+  cadt_real most;
+  if (side == 1 || side == -1) cadt_store_relaxed(totals + CADT_SHAPE_BESIDE, 1u);
+  if (cadt_incircle_rounded(sorted[(i + far) % count], sorted[(i + 2u * far) % count], sorted[(i + 3u * far) % count],
+                            sorted[i], &most) == 0)
+    cadt_add_relaxed(totals + CADT_SHAPE_ONE_CIRCLE, 1u);
+  if (cadt_seems_on_hull(sorted, count, i)) cadt_add_relaxed(totals + CADT_SHAPE_HULL, 1u);
+  if (neighbours && i + 3u < count) {
+    const cadt_u32 shape = cadt_shape_of(sorted + i);
+    if (shape != CADT_NONE) cadt_add_relaxed(totals + shape, 1u);
+  }
+}
+
+#endif

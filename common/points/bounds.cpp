@@ -12,7 +12,7 @@ namespace {
 
 using namespace device_text;
 
-/// cadt_bounds_row of a device without doubles.
+/// cadt_bounds_row of a device without double precision.
 struct FloatRow {
   float min_x, max_x, min_y, max_y;
   std::uint32_t low, high, bad, rows;
@@ -40,7 +40,7 @@ cadt_bounds_row read_row(Device& device, const Buffer& from) {
           f.rows};
 }
 
-/// The row of all points; `totals` become 0. `group`: work-items that share a row on this device.
+/// The row of all points; sets `totals` to 0. `group`: work-items that share a row on this device.
 cadt_bounds_row merge_bounds(Context& ctx, const Allocation& input, std::size_t n, std::uint32_t group,
                              const Allocation& totals) {
   const LaunchGrid c = ctx.launcher.parts(n);
@@ -50,14 +50,14 @@ cadt_bounds_row merge_bounds(Context& ctx, const Allocation& input, std::size_t 
   const std::uint32_t team = ctx.device.shape().contiguous ? 1 : CADT_BOUNDS_LANES;
   ctx.launcher.run_in_groups<KernelId::cadt_merge_bounds>(team, team, rows, room, totals);
   const cadt_bounds_row all = read_row(ctx.device, *rows);
-  // Devices may make smaller groups than they were asked for.
+  // Devices may make smaller groups than asked for.
   return all.rows > room ? merge_bounds(ctx, input, n, 1, totals) : all;
 }
 
 }  // namespace
 
 Bounds find_bounds(Context& ctx, const Allocation& input, std::size_t n, const Allocation& totals) {
-  constexpr std::uint32_t usual_group = 128;  // the least that a GPU has unless the options say so
+  constexpr std::uint32_t usual_group = 128;  // the smallest group of a GPU unless the options say so
   const unsigned asked = ctx.options.work_group_size;
   const std::uint32_t group = ctx.device.shape().contiguous ? 1
                               : asked == 0                  ? usual_group

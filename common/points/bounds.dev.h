@@ -28,7 +28,7 @@ CADT_FN void cadt_bounds_add(cadt_bounds_row* row, const cadt_bounds_row other) 
   row->bad = cadt_min_u32(row->bad, other.bad);
 }
 
-/* Adds point i; 0 if a coordinate is no number. The exponents are in `span` until the end. */
+/* Adds point i; returns 0 if a coordinate is NaN or infinite. The exponents stay in `span` until cadt_bounds_close. */
 CADT_FN cadt_u32 cadt_bounds_add_point(cadt_bounds_row* row, cadt_span* span, cadt_point p, cadt_u32 i) {
   /* an exponent of all ones is infinity or NaN */
   if (((cadt_bits_of_real(p.x) >> CADT_MANTISSA_BITS) & CADT_EXPONENTS) == CADT_EXPONENTS ||
@@ -48,7 +48,7 @@ CADT_FN void cadt_bounds_close(cadt_bounds_row* row, const cadt_span* span) {
   row->high = CADT_CAST(cadt_u32, span->high + 4096);
 }
 
-/* The rows of all lanes of a team as one, in lanes[0]. All lanes call it. */
+/* Reduces the rows of all lanes of a team to one, in lanes[0]. All lanes call it. */
 CADT_FN void cadt_bounds_of_team(CADT_TEAM_PTR cadt_bounds_row* lanes, cadt_bounds_row own) {
   const cadt_u32 most = CADT_BOUNDS_LANES;
   for (cadt_u32 begin = 0u; begin < cadt_team_lanes; begin += most) {
@@ -70,7 +70,7 @@ CADT_FN void cadt_bounds_of_team(CADT_TEAM_PTR cadt_bounds_row* lanes, cadt_boun
   }
 }
 
-/* Partial results: a row of each team of work-items, as far as there is room. */
+/* Partial results: a row for each team of work-items, as far as there is room. */
 CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 chunk, cadt_u32 parts,
             cadt_u32 room, CADT_GLOBAL cadt_bounds_row* rows) {
   CADT_TEAM_MEMORY cadt_bounds_row lanes[CADT_BOUNDS_LANES];
@@ -90,10 +90,10 @@ CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, c
   }
 }
 
-/* The first row becomes that of all, and the CADT_ORDER_WORDS of `totals` become 0. By one team. */
+/* Reduces all rows to the first, and sets the CADT_ORDER_WORDS of `totals` to 0. One team runs it. */
 CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL cadt_bounds_row* rows, cadt_u32 room, CADT_GLOBAL cadt_u32* totals) {
   CADT_TEAM_MEMORY cadt_bounds_row lanes[CADT_BOUNDS_LANES];
-  const cadt_u32 count = cadt_item < cadt_team_lanes ? rows[0].rows : 0u; /* launches are rounded up */
+  const cadt_u32 count = cadt_item < cadt_team_lanes ? rows[0].rows : 0u; /* launches are rounded up to whole groups */
   cadt_bounds_row row = cadt_bounds_of_nothing();
   CADT_TEAM_FOR(i, cadt_min_u32(count, room)) { cadt_bounds_add(&row, rows[i]); }
   if (cadt_item < cadt_team_lanes) CADT_TEAM_FOR(i, CADT_CAST(cadt_u32, CADT_ORDER_WORDS)) totals[i] = 0u;

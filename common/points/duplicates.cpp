@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 
-/// The points that equal an earlier one, ascending, and those that they equal.
+/// Lists the duplicates, ascending, and their representatives.
 void find_duplicates(Context& ctx, SortedPoints& result, const Allocation& order, const Allocation& ranks,
                      std::size_t n) {
   const std::size_t count = n - result.distinct;

@@ -8,10 +8,10 @@
 
 #include "common/points/point_profile.dev.h"
 
-/* 1 where a point differs from the one before; equal points of different sets have different keys. totals[CADT_EQUAL]
- * counts the others, and behind it is what a sample is like: CADT_SHAPE_BESIDE is positive if one is, the others are
- * counted. The sample needs many registers, but most work-items only compare: as many as fit run at the same time.
- * \pre totals are 0 */
+/* flags[i] = 1 where a point differs from the one before, else 0; equal points of different sets have different keys.
+ * totals[CADT_EQUAL] counts the zeros; from CADT_SHAPE_BESIDE on stand the counts of the sample: CADT_SHAPE_BESIDE is
+ * positive if some point is beside the line, the others are numbers of points. The sample needs many registers, but
+ * most work-items only compare: the launch bound keeps as many resident as possible. \pre totals are 0 */
 CADT_TEAM_KERNEL(128, 12, cadt_unique_flags, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* keys,
                  CADT_GLOBAL cadt_u32* flags, cadt_u32 count, cadt_u32 grain, cadt_u32 neighbours,
                  CADT_GLOBAL cadt_u32* totals) {
@@ -30,7 +30,7 @@ CADT_TEAM_KERNEL(128, 12, cadt_unique_flags, CADT_GLOBAL const cadt_point* sorte
   if (sum) cadt_add_relaxed(totals + CADT_EQUAL, sum);
 }
 
-/* Distinct points closed up. `ranks` is the exclusive scan of the flags. */
+/* Moves the distinct points together. `ranks` is the exclusive scan of the flags. */
 CADT_KERNEL(cadt_unique_pack, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL const cadt_u32* order,
             CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_point* points, CADT_GLOBAL cadt_u32* input_ids,
             cadt_u32 count, cadt_u32 distinct, cadt_u32 grain) {
@@ -42,14 +42,14 @@ CADT_KERNEL(cadt_unique_pack, CADT_GLOBAL const cadt_point* sorted, CADT_GLOBAL 
   }
 }
 
-/* Every point that is not the first of its kind, and the one that is. */
+/* The duplicates: each point that equals an earlier one, and the representative of both. */
 CADT_KERNEL(cadt_duplicate_pairs, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* ranks,
             CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL cadt_u32* duplicates,
             CADT_GLOBAL cadt_u32* representatives, cadt_u32 count, cadt_u32 distinct, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 rank = ranks[i], next = i + 1u < count ? ranks[i + 1u] : distinct;
     if (next != rank) continue;
-    const cadt_u32 at = i - rank; /* so many duplicates come before */
+    const cadt_u32 at = i - rank; /* number of duplicates before this one */
     duplicates[at] = order[i];
     representatives[at] = input_ids[rank - 1u];
   }

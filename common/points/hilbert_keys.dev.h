@@ -24,7 +24,7 @@
 
 #include "common/portable/layout.dev.h"
 
-/* Every second bit. */
+/* Moves the 16 low bits of x to the even places. */
 CADT_FN cadt_u32 cadt_spread_bits(cadt_u32 x) {
   x &= 0xFFFFu;
   x = (x | (x << 8)) & 0x00FF00FFu;
@@ -35,14 +35,15 @@ CADT_FN cadt_u32 cadt_spread_bits(cadt_u32 x) {
 
 /* Place of a cell along Hilbert's curve through 2^bits x 2^bits cells, from x = y = 0 to the other end of the x axis.
  * Unlike Morton's order it never jumps: neighbours on the curve are neighbours in the plane, so no walk from one to the
- * other is long. (One long walk in a launch on a GPU is waited for by everything.) A part: the bits of the place below
- * `from` and not below `to` of each coordinate, which afterwards are as the rest of the place needs them. */
+ * next is long. (One long walk on a GPU delays the whole launch.) The function returns a part of the place, that of the
+ * bits below `from` and not below `to` of each coordinate, and transforms x and y as the rest of the place needs them.
+ */
 CADT_FN cadt_u32 cadt_hilbert_part(cadt_u32* x, cadt_u32* y, cadt_u32 from, cadt_u32 to) {
   cadt_u32 place = 0u;
   for (cadt_u32 b = from; b-- > to;) {
     const cadt_u32 qx = (*x >> b) & 1u, qy = (*y >> b) & 1u;
     place = (place << 2) | ((3u * qx) ^ qy);
-    if (!qy) { /* the two lower quadrants are transposed, the last one is also turned round */
+    if (!qy) { /* the two lower quadrants are transposed, the last one is also rotated by half a turn */
       const cadt_u32 turn = 0u - qx, t = *x ^ turn;
       *x = *y ^ turn;
       *y = t;
@@ -52,12 +53,12 @@ CADT_FN cadt_u32 cadt_hilbert_part(cadt_u32* x, cadt_u32* y, cadt_u32 from, cadt
 }
 CADT_FN cadt_u32 cadt_hilbert(cadt_u32 x, cadt_u32 y, cadt_u32 bits) { return cadt_hilbert_part(&x, &y, bits, 0u); }
 
-/* The grid of the sort keys: 2^bits_x x 2^bits_y square cells. Coordinates are halved first: the width of the box may
- * exceed the largest double. */
+/* The grid of the sort keys: 2^bits_x x 2^bits_y square cells. Coordinates are halved first, because the width of the
+ * bounding box may exceed the largest double. */
 typedef struct {
   cadt_real half_min_x, half_min_y, scale;
   cadt_u32 bits_x, bits_y;
-  cadt_u32 set; /* squares of sets one after another (batch.dev.h); else 0 */
+  cadt_u32 set; /* number of the set in a batch: the squares of its sets follow one another (batch.dev.h); else 0 */
 } cadt_key_grid;
 
 #define CADT_GRID_PARAMETERS \
@@ -71,16 +72,15 @@ typedef struct {
   grid.bits_y = bits_y;         \
   grid.set = 0u
 
-/* A point in units of cells, and with the last cell of each axis closed to the right. */
+/* A point in units of cells. */
 CADT_FN cadt_point cadt_to_grid(const cadt_key_grid* grid, cadt_point p) {
   cadt_point f;
   f.x = (0.5 * p.x - grid->half_min_x) * grid->scale;
   f.y = (0.5 * p.y - grid->half_min_y) * grid->scale;
   return f;
 }
-/* The last cell of an axis with so many bits. A float may round it up, out of the grid: then the last below that is
- * one.
- */
+/* The last cell of an axis with `bits` bits, as a coordinate. A float may round it up, out of the grid: then the last
+ * cell below that is exact in a float. */
 CADT_FN cadt_real cadt_last_cell(cadt_u32 bits) {
   cadt_u32 cell = (1u << bits) - 1u;
 #if CADT_FLOAT
@@ -90,21 +90,21 @@ CADT_FN cadt_real cadt_last_cell(cadt_u32 bits) {
 }
 CADT_FN cadt_point cadt_clamp_to_grid(const cadt_key_grid* grid, cadt_point f) {
   const cadt_real limit_x = cadt_last_cell(grid->bits_x), limit_y = cadt_last_cell(grid->bits_y);
-  /* half of the least coordinate may have been rounded up */
+  /* halving may have rounded the least coordinate up */
   f.x = f.x < 0.0 ? 0.0 : (f.x < limit_x ? f.x : limit_x);
   f.y = f.y < 0.0 ? 0.0 : (f.y < limit_y ? f.y : limit_y);
   return f;
 }
 
-/* Bits of the axis that has fewer: levels of squares below the top ones. */
+/* Bits of the shorter axis: levels of squares below the top ones. */
 CADT_FN cadt_u32 cadt_grid_levels(const cadt_key_grid* grid) {
   return grid->bits_x < grid->bits_y ? grid->bits_x : grid->bits_y;
 }
 
-/* Hilbert key of a square cell of a level: 0 the largest squares, cadt_grid_levels the cells of the grid. The longer
- * axis has more bits; its surplus goes on top, so a long box is a row of squares, each entered where the one before is
- * left. So are the boxes of sets, which are squares. The key of a cell begins with that of each larger cell around
- * it. */
+/* Hilbert key of a square cell of a level: level 0 has the largest squares, level cadt_grid_levels the cells of the
+ * grid. The surplus bits of the longer axis go on top, so a long box is a row of squares, each entered where the one
+ * before is left. The squares of the sets of a batch form such a row too. The key of a cell begins with the key of each
+ * larger cell around it. */
 CADT_FN cadt_u32 cadt_cell_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y, cadt_u32 level) {
   const cadt_u32 mask = (1u << level) - 1u;
   const cadt_u32 along = grid->bits_x >= grid->bits_y ? x : y, across = grid->bits_x >= grid->bits_y ? y : x;
@@ -112,7 +112,7 @@ CADT_FN cadt_u32 cadt_cell_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y
   return level == 16u ? low : ((((along >> level) + grid->set) << (2u * level)) | low);
 }
 
-/* The same with up to 31 bits an axis: in two parts, since a part has 32 bits. */
+/* The same with up to 31 bits an axis, computed in two parts of at most 32 bits. */
 CADT_FN cadt_u64 cadt_fine_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y, cadt_u32 level) {
   const cadt_u32 mask = (1u << level) - 1u, fine = level > 16u ? level - 16u : 0u;
   const cadt_u32 longer = grid->bits_x >= grid->bits_y ? 1u : 0u, along = longer ? x : y;
@@ -121,10 +121,11 @@ CADT_FN cadt_u64 cadt_fine_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y
   return (CADT_CAST(cadt_u64, (along >> level) + grid->set) << (2u * level)) | (high << (2u * fine)) | low;
 }
 
-/* Sort keys of one word, or of two where cells would be crowded: `low_bits` of each are in the low one. */
+/* Sort keys of one word, or of two where one-word cells would be over-full: `low_bits` of each key are in the low word.
+ */
 typedef struct {
   CADT_GLOBAL const cadt_u32* high;
-  CADT_GLOBAL const cadt_u32* low; /* or null */
+  CADT_GLOBAL const cadt_u32* low; /* null for keys of one word */
   cadt_u32 low_bits;
 } cadt_keys;
 
@@ -141,8 +142,8 @@ CADT_FN cadt_u64 cadt_key_at(const cadt_keys* keys, cadt_u32 i) {
 }
 
 #if CADT_CONTIGUOUS
-/* cadt_cell_key for some cells side by side, for compilers that make vector operations of the loops over them. The
- * steps are those of cadt_hilbert by masks: a branch would be wrong half of the time. */
+/* cadt_cell_key for several cells at once, for compilers that vectorise loops. The steps of cadt_hilbert are done with
+ * masks: a branch would be mispredicted half of the time. */
 enum { CADT_KEYS_AT_ONCE = 16 };
 CADT_FN void cadt_cell_keys(const cadt_key_grid* grid, const cadt_u32* along, const cadt_u32* across, cadt_u32* keys) {
   const cadt_u32 level = cadt_grid_levels(grid), mask = (1u << level) - 1u;
@@ -191,7 +192,7 @@ CADT_KERNEL(cadt_hilbert_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL
 #endif
 }
 
-/* Keys of two words. */
+/* Two-word keys. */
 CADT_KERNEL(cadt_fine_hilbert_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL cadt_u32* high,
             CADT_GLOBAL cadt_u32* low, cadt_u32 low_bits, cadt_u32 count, cadt_u32 grain, CADT_GRID_PARAMETERS) {
   CADT_GRID_VIEW(grid);

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The caller's coordinates become points of the device; points by index, scaled by powers of two.
+ * Import: the caller's coordinates become points of the device; and points gathered by index. Both scale by powers of
+ * two.
  */
 #ifndef CADT_POINTS_IMPORT_H
 #define CADT_POINTS_IMPORT_H
 
 #include "common/portable/layout.dev.h"
 
-/* A coordinate times two powers of two (one may not be enough to reach all of a double's exponents); -0.0 becomes 0.0.
- * Floats are left as they are: a product could lose bits, and -0.0 is equal to 0.0 wherever they are compared. */
+/* A coordinate times two powers of two (one factor may not reach all of a double's exponents); -0.0 becomes 0.0. Floats
+ * stay as they are: a product could lose bits, and all comparisons of floats treat -0.0 and 0.0 as equal. */
 CADT_FN cadt_real cadt_multiplied(cadt_real x, cadt_real scale, cadt_real scale_again) {
 #if CADT_GRADUAL
   return x * scale * scale_again + 0.0;
@@ -24,8 +25,8 @@ CADT_FN cadt_point cadt_multiplied_point(cadt_point p, cadt_real scale, cadt_rea
   return p;
 }
 
-/* Points from the caller's memory: coordinate i of an axis is at first + i * stride. With `order`, those that it lists,
- * times both factors; null: all as they are. */
+/* Points from the caller's memory: coordinate i of an axis is at first + i * stride. With `order`: the points that it
+ * lists, times both factors; null: all points, unscaled. */
 #if !CADT_FLOAT
 CADT_KERNEL(cadt_import_doubles, CADT_GLOBAL const double* x, CADT_GLOBAL const double* y, cadt_u32 first_x,
             cadt_u32 first_y, cadt_u32 stride, CADT_GLOBAL const cadt_u32* order, cadt_real scale,
@@ -52,7 +53,7 @@ CADT_KERNEL(cadt_import_floats, CADT_GLOBAL const float* x, CADT_GLOBAL const fl
   }
 }
 
-/* Points in sorted order. */
+/* Points in the order of `order`, scaled. */
 CADT_KERNEL(cadt_gather_points, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* order,
             CADT_GLOBAL cadt_point* sorted, cadt_u32 count, cadt_u32 grain, cadt_real scale, cadt_real scale_again) {
   CADT_FOR(i, count, grain) { sorted[i] = cadt_multiplied_point(points[order[i]], scale, scale_again); }

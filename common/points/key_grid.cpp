@@ -10,13 +10,13 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t least_points_of_tiles = 400'000;  // fewer do not fill a card with tiles of that size
+constexpr std::size_t least_points_of_tiles = 400'000;  // fewer do not fill a GPU with tiles of that size
 constexpr double points_of_tile = 600, fewest_of_tile = 450;
 
-/// The largest squares of the grid with at most CADT_TILE_POINTS points are tiles (common/stars/tiles.dev.h), so evenly
-/// spread points have between a quarter of that in each and all of it. With cells up to twice as long they have about
-/// what is best for the star stage, and the last tiles along each axis are not slivers, whose windows have too many
-/// points. Returns the factor for the scale of the grid.
+/// The largest squares of the grid with at most CADT_TILE_POINTS points are tiles (common/stars/tiles.dev.h), so with
+/// evenly spread points a tile has between a quarter of that and all of it. Cells up to twice as long bring tiles close
+/// to the size that is best for local stars, and make the last tiles along each axis wide enough: the neighbourhood
+/// grid of a sliver has too many points. Returns the factor for the scale of the grid.
 double scale_for_tiles(const KeyGrid& grid, double width, double height, std::size_t n) {
   const double cells_x = std::max(1.0, grid.scale * width), cells_y = std::max(1.0, grid.scale * height);
   const double longer = std::max(cells_x, cells_y), shorter = std::min(cells_x, cells_y);
@@ -27,7 +27,7 @@ double scale_for_tiles(const KeyGrid& grid, double width, double height, std::si
   double best = side, cost = 2;
   for (double tiles = std::ceil(longer / most); tiles <= longer / least && tiles <= 4096; ++tiles) {
     const double rows = shorter * tiles / longer, sliver = std::ceil(rows - 1e-9) - rows;
-    // between two that leave the same, the larger tiles
+    // of two with equal remainders, the larger tiles
     const double price = (rows > 1 ? sliver : 0) + 0.5 * (1 - longer / tiles / most);
     if (price < cost) cost = price, best = longer / tiles;
   }
@@ -37,7 +37,7 @@ double scale_for_tiles(const KeyGrid& grid, double width, double height, std::si
 }  // namespace
 
 KeyGrid choose_grid(const Bounds& bounds, int bits) {
-  // Halved: the width of the box may exceed the largest double.
+  // Halved: the width of the bounding box may exceed the largest double.
   const double width = 0.5 * bounds.max_x - 0.5 * bounds.min_x, height = 0.5 * bounds.max_y - 0.5 * bounds.min_y;
   const double longer = std::max(width, height), shorter = std::min(width, height);
   int surplus = bits;
@@ -50,9 +50,9 @@ KeyGrid choose_grid(const Bounds& bounds, int bits) {
   grid.half_min_y = 0.5 * bounds.min_y;
   grid.bits_x = static_cast<unsigned>(width >= height ? longer_bits : shorter_bits);
   grid.bits_y = static_cast<unsigned>(width >= height ? shorter_bits : longer_bits);
-  grid.scale = std::numeric_limits<double>::max();  // if all points are equal, or nearly so: any finite scale does
+  grid.scale = std::numeric_limits<double>::max();  // any finite scale will do if all points are equal, or nearly so
   if (longer > 0) grid.scale = std::min(grid.scale, std::ldexp(1.0, longer_bits) / longer);
-  // the shorter axis must not leave its bits either, unless it has none
+  // the shorter axis must not exceed its bits either, unless it has none
   if (shorter > 0 && shorter_bits > 0) grid.scale = std::min(grid.scale, std::ldexp(1.0, shorter_bits) / shorter);
   return grid;
 }

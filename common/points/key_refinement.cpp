@@ -36,7 +36,7 @@ bool refine_overfull(Context& ctx, const Allocation& input, Allocation& keys, co
     Allocation members = ctx.memory.transient(bytes), runs = ctx.memory.transient(bytes);
     const LaunchGrid few = launch.grid(overfull_points);
     launch.run<KernelId::cadt_pack_overfull>(c.items, spare, places, count, overfull_points, c.grain);
-    for (;; ++round) {  // rounds in which all members of each run agree change nothing
+    for (;; ++round) {  // skip rounds in which all members of each run agree
       Allocation fresh = launch.zeros(1);
       launch.run<KernelId::cadt_refined_keys>(few.items, input, order, keys, places, round_keys, members, runs,
                                               overfull_points, round, few.grain, fresh);
@@ -47,7 +47,7 @@ bool refine_overfull(Context& ctx, const Allocation& input, Allocation& keys, co
     const std::uint32_t last_run = launch.read_word(runs, overfull_points - 1);
     Allocation from = ctx.memory.transient(bytes), sorted = ctx.memory.transient(bytes);
     Allocation spare_from = ctx.memory.transient(bytes), spare_sorted = ctx.memory.transient(bytes);
-    // Stable: first by the round's key, then by run. The sort permutes its keys, so it gets copies.
+    // Two stable sorts: by the key of the round, then by run. The sort permutes its keys, so it gets copies.
     launch.run<KernelId::cadt_copy_words>(few.items, round_keys, sorted, std::uint32_t{0}, overfull_points, few.grain);
     launch.sort(sorted, from, spare_sorted, spare_from, overfull_points, 32, true);
     if (last_run != 0) {

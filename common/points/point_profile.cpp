@@ -11,10 +11,11 @@ using namespace device_text;
 
 PointShapes shapes_of(std::span<const std::uint32_t> counts, std::size_t n, std::uint32_t overfull_points) noexcept {
   PointShapes shapes;
-  // On circles are a twelfth to a seventh of a turned lattice and a twelfth to a third of 12-gons, but less than a
-  // fourteenth of most lattices of triangles, which are better wrapped. On rays is a fifth of a polar grid or more, on
-  // lines hardly a point of other sets; on one circle are all corners of a polygon, and none of other sets. On the hull
-  // seem to be a seventh of a thin ring, but a tenth of evenly spread points.
+  // The thresholds lie between the shares seen on such sets and on all others. Cocircular with their neighbours: 1/12
+  // to 1/7 of a rotated lattice and 1/12 to 1/3 of sets of 12-gons, but less than 1/14 of most triangular lattices,
+  // which gift wrapping handles better. On rays: 1/5 of a polar grid or more; on lines of other sets hardly any. On one
+  // circle: all vertices of a polygon, none of other sets. Seemingly on the hull: 1/7 of a thin ring, 1/10 of evenly
+  // spread points.
   constexpr std::uint32_t samples = CADT_POINT_SAMPLES;
   shapes.overfull = overfull_points > n - n / 4 && counts[CADT_EQUAL] < n / 4;
   shapes.on_line = counts[CADT_SHAPE_BESIDE] == 0;

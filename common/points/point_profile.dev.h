@@ -10,8 +10,8 @@
 #include "common/portable/layout.dev.h"
 #include "common/predicates/filtered_predicates.dev.h"
 
-/* Whether points spread over all are on one side of the line from point i to the next, as far as rounded numbers tell:
- * few points that are not on the hull have that. */
+/* Whether CADT_HULL_PROBES points spread over the sorted order lie on one side of the line from point i to the next, as
+ * far as rounded arithmetic shows. Few points that are not on the hull pass. */
 CADT_FN cadt_u32 cadt_seems_on_hull(CADT_GLOBAL const cadt_point* sorted, cadt_u32 count, cadt_u32 i) {
   if (i + 1u >= count) return 0u;
   const cadt_point a = sorted[i], b = sorted[i + 1u];
@@ -27,8 +27,9 @@ CADT_FN cadt_u32 cadt_seems_on_hull(CADT_GLOBAL const cadt_point* sorted, cadt_u
   return left ^ right;
 }
 
-/* What four points one after the other are as far as rounded numbers can tell: CADT_SHAPE_LINE, on a line; on a circle,
- * CADT_SHAPE_MIRRORED if a cheap test does as along an axis, else CADT_SHAPE_CIRCLE; or CADT_NONE. */
+/* The shape of four points that follow one another, as far as the floating-point filter shows: CADT_SHAPE_LINE,
+ * collinear; cocircular: CADT_SHAPE_MIRRORED if a cheap exact test decides, as on an axis-parallel lattice, else
+ * CADT_SHAPE_CIRCLE; or CADT_NONE. */
 CADT_FN cadt_u32 cadt_shape_of(CADT_GLOBAL const cadt_point* p) {
   cadt_real most;
   for (cadt_u32 k = 0u; k < 3u; ++k)
@@ -40,9 +41,9 @@ CADT_FN cadt_u32 cadt_shape_of(CADT_GLOBAL const cadt_point* p) {
   return cadt_mirrored(p[0], p[1], p[2], p[3]) ? CADT_SHAPE_MIRRORED : CADT_SHAPE_CIRCLE;
 }
 
-/* Counts in `totals` what point i of a sample is (CADT_SHAPE_...): beside the line through two points for certain; on a
- * circle with three others far away, as far as rounded numbers can tell; on the hull; and with `neighbours`, what it is
- * with the next three. */
+/* Adds point i of the sample to `totals` (CADT_SHAPE_...): certainly beside the line through two points; cocircular
+ * with three far points, as far as the filter shows; on the hull; and with `neighbours`, its shape with the next three
+ * points. */
 CADT_FN void cadt_count_shapes(CADT_GLOBAL const cadt_point* sorted, cadt_u32 count, cadt_u32 i, cadt_u32 neighbours,
                                CADT_GLOBAL cadt_u32* totals) {
   const cadt_u32 far = count / 4u;

@@ -20,16 +20,16 @@ namespace {
 using namespace device_text;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-/// With so few points a wait for the device costs more than work that is done in vain where cells are crowded.
+/// Up to here, waiting for the device costs more than speculative work that over-full cells make useless.
 constexpr std::size_t most_ahead = std::size_t{1} << 17;
 
 constexpr std::size_t fewest_for_sample = 16384;
 
-/// Some of the points, the same in every run.
+/// A sample of the points, the same in every run.
 std::vector<cadt_point> sample_of(Context& ctx, const Allocation& input, std::size_t n) {
   const std::size_t samples = n <= most_ahead ? 1024 : 4096;
   std::vector<std::uint32_t> places(samples);
-  // In step with nothing that is in the data (D. E. Knuth's multiplicative hash).
+  // Knuth's multiplicative hash: the places keep step with no pattern in the data.
   for (std::size_t i = 0; i < samples; ++i) places[i] = static_cast<std::uint32_t>(i * 0x9E3779B97F4A7C15U % n);
   const Allocation list = ctx.memory.allocate(samples * word),
                    chosen = ctx.memory.allocate(samples * sizeof(cadt_point));
@@ -42,10 +42,10 @@ std::vector<cadt_point> sample_of(Context& ctx, const Allocation& input, std::si
   return points;
 }
 
-/// A grid without the outermost points, where that is a much smaller box: heavy tails, or a few points far away from
-/// all others, leave most points in one cell else.
+/// A grid without the outermost points, where their absence makes the bounding box much smaller: with heavy tails, or a
+/// few points far away from all others, most points would share one cell.
 std::optional<KeyGrid> grid_of_most(std::vector<cadt_point>& points, Bounds bounds) {
-  const std::size_t samples = points.size(), tail = samples / 340;  // on either side along each axis
+  const std::size_t samples = points.size(), tail = samples / 340;  // points cut off at either end of each axis
   constexpr double much_smaller = 16;
   const auto cut = [&](double cadt_point::*axis, double& low, double& high) {
     const double width = 0.5 * high - 0.5 * low;
@@ -68,11 +68,12 @@ std::optional<KeyGrid> grid_of_most(std::vector<cadt_point>& points, Bounds boun
   return grid;
 }
 
-/// Whether most points would share cells of a grid with hundreds of others: hardly one of a few is alone in its cell.
+/// Whether most points would share their cell of `grid` with hundreds of others: then hardly any point of a sample is
+/// alone in its cell.
 bool stays_crowded(std::span<const cadt_point> sample, const KeyGrid& grid) {
   constexpr std::size_t few = 256;
   std::vector<std::pair<double, double>> cells;
-  for (std::size_t i = 0; i < sample.size(); i += sample.size() / few) {  // grid_of_most has moved them about
+  for (std::size_t i = 0; i < sample.size(); i += sample.size() / few) {  // grid_of_most has permuted them
     const cadt_point& p = sample[i];
     cells.emplace_back(std::floor((0.5 * p.x - grid.half_min_x) * grid.scale),
                        std::floor((0.5 * p.y - grid.half_min_y) * grid.scale));
@@ -84,8 +85,8 @@ bool stays_crowded(std::span<const cadt_point> sample, const KeyGrid& grid) {
 
 constexpr int most_fine_levels = 15, fewest_fine_levels = 4;
 
-/// Sorts by keys of two words, of a grid with so many more levels that few cells are crowded; `keys` become the numbers
-/// of the runs of equal ones.
+/// Sorts by two-word keys, of a grid with so many more levels that few cells are over-full; `keys` become the numbers
+/// of the runs of equal keys.
 void sort_finely(Context& ctx, const Allocation& input, Allocation& keys, Allocation& order, Allocation& spare,
                  std::size_t n, const KeyGrid& grid) {
   Launcher& launch = ctx.launcher;
@@ -96,7 +97,7 @@ void sort_finely(Context& ctx, const Allocation& input, Allocation& keys, Alloca
   Allocation sorted = ctx.memory.transient(n * word), spare_order = ctx.memory.transient(n * word);
   launch.run<KernelId::cadt_copy_words>(c.items, low, sorted, std::uint32_t{0}, count, c.grain);
   launch.sort(sorted, order, spare, spare_order, n, 2 * grid.fine_levels, true);
-  // stable
+  // the second of two stable sorts
   launch.run<KernelId::cadt_gather_words>(c.items, keys, order, sorted, count, c.grain);
   launch.sort(sorted, order, spare, spare_order, n, grid.bits() - 2 * grid.fine_levels, false);
   launch.run<KernelId::cadt_gather_words>(c.items, low, order, spare, count, c.grain);
@@ -114,25 +115,25 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
 
   const Allocation totals = ctx.memory.allocate(CADT_ORDER_WORDS * word);
   const Bounds bounds = find_bounds(ctx, input, n, totals);
-  // Kernels for floats take any float as it is.
+  // The float kernels take any exponent.
   const bool floats = takes_floats_only(ctx.device);
   result.wide = !floats && bounds.high - bounds.low > narrow_span;
   launch.set_variant(result.wide ? KernelVariant::wide : narrow_variant(ctx.options.statistics));
   ctx.end_phase("bounds");
   ctx.check("sort", 0.01);
 
-  // All coordinates become multiples of 2^-240 below 1, in two steps since one factor may be out of range.
+  // All coordinates become multiples of 2^-240 below 1; in two steps, since one factor may be out of range.
   const int exponent = floats || result.wide || bounds.high < bounds.low ? 0 : -bounds.high;
   const double scale = std::ldexp(1.0, exponent / 2), scale_again = std::ldexp(1.0, exponent - exponent / 2);
 
-  // To save memory there are two large buffers to borrow from: the sorted points and their keys shall be in the one
-  // that is not of the stars.
+  // To save memory there are two large pooled buffers: the sorted points and their keys shall be in the one that the
+  // stars do not use.
   const bool tight = ctx.saves_memory && ctx.memory.pools(n * word);
   Allocation keys = ctx.memory.transient(n * word, tight), spare = ctx.memory.transient(n * word, tight);
   Allocation order = ctx.memory.transient(n * word), sorted;
   const auto gather = [&] {
     const std::size_t bytes = n * point_bytes(ctx.device);
-    // They are copied before the mesh takes their place, or made again after it.
+    // Transient if they are copied before the mesh takes their place, or gathered again after it.
     const bool brief = !ctx.device.shape().contiguous && (ctx.regathers || !keep_keys);
     sorted = brief ? ctx.memory.transient(bytes) : ctx.memory.allocate(bytes);
     launch.run<KernelId::cadt_gather_points>(c.items, input, order, sorted, count, c.grain, scale, scale_again);
@@ -154,7 +155,7 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
     ctx.device.read(*totals, 0, sums.data(), sizeof sums);
     if (sums[CADT_OVERFULL] != 0) sorted.release();
   }
-  // Flat sets have no use for keys.
+  // Flat sets need no keys.
   const bool for_stars = keep_keys && !(n <= most_ahead && sums[CADT_SHAPE_BESIDE] == 0);
   if (!sorted) {
     overfull_points = flag_overfull(ctx, keys, spare, n);
@@ -173,7 +174,7 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
       few_provable = ctx.options.strategy == Strategy::automatic && stays_crowded(sample, result.grid.finer(finer()));
     }
     const bool fine = for_stars && !few_provable && overfull_points > n / 4 && finer() >= fewest_fine_levels &&
-                      result.grid.scale < std::ldexp(1.0, 1000);  // else it is of points that are nearly all equal
+                      result.grid.scale < std::ldexp(1.0, 1000);  // else nearly all points are equal
     if (fine) {
       result.grid = result.grid.finer(finer());
       sort_finely(ctx, input, keys, order, spare, n, result.grid);
@@ -205,7 +206,8 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
     result.keys = std::move(keys);
   }
   keys.release();
-  // Labels are for long, and what was sorted is borrowed; buckets take their place (renumber.cpp), one more.
+  // The input ids live long, but the sorted order lies in a transient buffer; buckets will take their place
+  // (renumber.cpp), one more.
   if (sums[CADT_EQUAL] == 0 && ctx.memory.pools(n * word)) move_to(order, ctx.memory.allocate((n + 1) * word));
   compact_distinct(ctx, result, std::move(sorted), std::move(order), spare, n, sums[CADT_EQUAL]);
   ctx.end_phase("gather");

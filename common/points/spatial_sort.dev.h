@@ -10,8 +10,7 @@
 #include "common/portable/layout.dev.h"
 
 enum {
-  CADT_RUN =
-      16 /* runs of equal keys up to this length are sorted in place, longer ones are refined (key_refinement.dev.h) */
+  CADT_RUN = 16 /* longest run of equal keys that is sorted in place; longer ones are refined (key_refinement.dev.h) */
 };
 
 CADT_FN cadt_u32 cadt_lexicographic(cadt_point a, cadt_u32 i, cadt_point b, cadt_u32 j) {
@@ -20,9 +19,9 @@ CADT_FN cadt_u32 cadt_lexicographic(cadt_point a, cadt_u32 i, cadt_point b, cadt
   return i < j ? 1u : 0u;
 }
 
-/* Sorts each run of at most CADT_RUN equal keys lexicographically, equal points by index. Longer runs are left as they
- * are, and totals[CADT_OVERFULL] becomes 1; after refinement (key_refinement.dev.h) they are equal points in order of
- * their indices. */
+/* Sorts each run of at most CADT_RUN equal keys lexicographically, equal points by index. Longer runs stay as they are,
+ * and totals[CADT_OVERFULL] becomes 1; after refinement (key_refinement.dev.h) they are equal points ordered by index.
+ */
 CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_point* sorted,
             CADT_GLOBAL cadt_u32* order, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
   CADT_FOR(i, count, grain) {

@@ -10,10 +10,10 @@ using namespace device_text;
 namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-/// A large card works on 900 tiles at a time: while it has the sample, it has begun with others.
+/// A large GPU works on 900 tiles at a time: while it has the sample, it has begun others.
 constexpr std::uint32_t sampled_tiles = 512;
 
-/// The quadtree over the keys.
+/// The quadtree over the sort keys.
 class TileMaker {
  public:
   TileMaker(Context& ctx, const SortKeys& keys, std::size_t n, unsigned levels)
@@ -25,7 +25,7 @@ class TileMaker {
         levels_(static_cast<std::uint32_t>(levels)),
         cut_(launch_.grid(n)) {}
 
-  /// False if the keys are not in order.
+  /// Returns false if the keys are not in order.
   [[nodiscard]] bool make() {
     const Allocation descents = launch_.zeros(1);
     flag(descents);
@@ -34,7 +34,7 @@ class TileMaker {
     return true;
   }
 
-  /// Divides tiles again whose points are nearly all in a small part.
+  /// Divides over-full tiles again.
   void divide() {
     crowded_ = launch_.zeros(list_.count);
     const Allocation any = launch_.zeros(1);
@@ -42,7 +42,7 @@ class TileMaker {
                                               count_, levels_, cut_.grain, crowded_, any);
     if (launch_.read_word(any, 0) == 0) return;
     before_ = std::move(ranks_);
-    flag(any);  // which says nothing new: the keys are in order
+    flag(any);  // `any` is not read again: the keys are in order
     pack();
   }
 
@@ -79,21 +79,22 @@ std::optional<TileList> make_tiles(Context& ctx, const SortKeys& keys, std::size
                                    std::size_t least) {
   TileMaker maker(ctx, keys, n, levels);
   if (!maker.make() || n / maker.list().count < least) return std::nullopt;
-  // Keys of one word are for points that hardly crowd.
+  // Keys of one word are kept only where hardly any cell is over-full.
   if (keys.low_bits != 0) maker.divide();
   ctx.statistics.tiles += maker.list().count;
   return std::move(maker.list());
 }
 
 Stars allocate_stars(Context& ctx, std::size_t n, const TileList& tiles) {
-  // As cadt_pool_of_tile of the end, which is within 32 bits for max_points(). Tiles have about 6 words a vertex, so an
-  // eighth of a word for all is plenty where some have more; a star without room is one without a proof.
+  // As cadt_pool_of_tile at the end, which fits into 32 bits for max_points(). Blocks of tiles have about 6 words a
+  // vertex, so an eighth of a word a vertex is plenty for tiles that need more; a star without room is one without a
+  // proof.
   constexpr std::size_t least = 4096, read_ahead = 16;
   const std::size_t overflow = CADT_STAR_LEAD + 6 * n + n / 8 + std::size_t{CADT_STAR_SPARE} * tiles.count,
                     room = overflow + n / 8 + least;
   Stars list;
   list.star_vertices = ctx.memory.allocate((room + read_ahead) * word);
-  const std::size_t begins = (n + 1) * word;  // as buckets are
+  const std::size_t begins = (n + 1) * word;  // as many as buckets of renumber.cpp
   list.begins = ctx.saves_memory ? ctx.memory.allocate_unpooled(begins) : ctx.memory.allocate(begins);
   list.sizes = ctx.memory.transient_zeros(n * word);
   list.overflow = static_cast<std::uint32_t>(overflow);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The mesh from wrapped stars, in records or in arrays. A triangle belongs to the lowest of its vertices that has a
- * star. A hub has none, so its triangles are those of its neighbours. An edge between two without stars (hubs, or the
- * ghost) is listed with the vertex on either side of it; high_degree.dev.h adds the triangles of three such vertices,
- * each as its three half-edges.
+ * The mesh from wrapped stars, as locked triangles or in arrays. A triangle belongs to the lowest of its vertices that
+ * has a star. A high-degree vertex has none, so its triangles belong to its neighbours. An edge between two vertices
+ * without stars (high-degree vertices, or the ghost) is listed with the apex on either side; high_degree.dev.h adds the
+ * triangles of three such vertices, each as its three half-edges.
  */
 #ifndef CADT_STARS_ASSEMBLE_WRAPPED_H
 #define CADT_STARS_ASSEMBLE_WRAPPED_H
@@ -15,31 +15,32 @@ typedef struct {
   CADT_GLOBAL const cadt_u32* star_vertices;
   CADT_GLOBAL const cadt_u32* begins;
   CADT_GLOBAL const cadt_u32* sizes;
-  CADT_GLOBAL const cadt_u32* bases; /* number of the first triangle that belongs to a vertex */
+  CADT_GLOBAL const cadt_u32* bases; /* number of the first triangle of each vertex */
   CADT_GLOBAL const cadt_wrap_edge* edges;
   cadt_u32 edge_count;
-  cadt_u32 first_extra; /* of the edges: from here on they are those of triangles without stars, whose numbers */
-  cadt_u32 extra_base;  /* begin here, in arrays those of the ghost's triangles */
-  cadt_u32 high_degree; /* whether there are any */
-  cadt_u32 apart;       /* in arrays: real triangles come before those of the ghost */
+  cadt_u32
+      first_extra; /* the edges from here on are the half-edges of triangles that no star has; the numbers of those */
+  cadt_u32 extra_base;  /* begin here; in arrays those of the ghost's triangles */
+  cadt_u32 high_degree; /* whether there are high-degree vertices */
+  cadt_u32 apart;       /* in arrays: the real triangles come before those of the ghost */
 } cadt_wrap_set;
 
-/* What a triangle with the neighbours a and b of its owner adds to the count. */
+/* What a triangle of a vertex with its star vertices a and b adds to the packed count. */
 CADT_FN cadt_u32 cadt_wrap_one(cadt_u32 apart, cadt_u32 a, cadt_u32 b) {
   return apart && a != CADT_GHOST && b != CADT_GHOST ? 0x10000u : 1u;
 }
 
-/* Whether v comes before another vertex of its star: there it owns what they share. */
+/* Whether v precedes another vertex of its star: then v owns what they share. */
 CADT_FN cadt_u32 cadt_wrap_before(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 high_degree, cadt_u32 v, cadt_u32 other) {
   return other > v || (high_degree && sizes[other] == 0u) ? 1u : 0u;
 }
 
-/* Whether the vertex has no star: a hub, or the ghost. */
+/* Whether the vertex has no star: a high-degree vertex, or the ghost. */
 CADT_FN cadt_u32 cadt_wrap_starless(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 v) {
   return v == CADT_GHOST || sizes[v] == 0u ? 1u : 0u;
 }
 
-/* Triangles that belong to v. */
+/* Number of triangles that v owns. */
 CADT_FN cadt_u32 cadt_wrap_owned(CADT_GLOBAL const cadt_u32* star, cadt_u32 size, CADT_GLOBAL const cadt_u32* sizes,
                                  cadt_u32 high_degree, cadt_u32 apart, cadt_u32 v) {
   cadt_u32 count = 0u;
@@ -51,9 +52,9 @@ CADT_FN cadt_u32 cadt_wrap_owned(CADT_GLOBAL const cadt_u32* star, cadt_u32 size
   return count;
 }
 
-/* owned[v]: triangles that belong to v, in two counts if `apart`; a 0 behind the last, and then the first words of
- * `found`, so that they can be read with the scan's total, and `zeros` zeros for who writes next. If not `apart`,
- * half-edges between two vertices without stars are counted in found[6], and listed. */
+/* owned[v]: triangles that v owns, as a packed count if `apart`. Behind the last stand a 0, then the first words of
+ * `counts`, so that they can be read with the scan's total, and `zeros` zeros for the next writer. If not `apart`, the
+ * half-edges between two vertices without stars are listed and counted. */
 CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 apart, cadt_u32 grain, CADT_GLOBAL cadt_u32* found,
             CADT_GLOBAL cadt_u32* owned, cadt_u32 zeros, CADT_GLOBAL cadt_wrap_edge* edges) {
@@ -81,8 +82,8 @@ CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
   }
 }
 
-/* The same for sets together, which have no hubs; those that have failed lose their stars. Every set has two records a
- * vertex: two of them belong to its last vertex and are not used, nor are any of a set without stars. */
+/* The same for the batched sets, which have no high-degree vertices; sets that have failed lose their stars. Each set
+ * has two slots a vertex: two of them belong to its last vertex and stay empty, as do all of a set without stars. */
 CADT_KERNEL(cadt_batch_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
             CADT_GLOBAL const cadt_u32* states, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* owned) {
@@ -99,7 +100,7 @@ CADT_KERNEL(cadt_batch_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_G
   }
 }
 
-/* Place of vertex a in the star of v, and the count of triangles before it that belong to v. \pre it is there */
+/* Place of vertex a in the star of v, and the packed count of triangles before it that v owns. \pre a is there */
 CADT_FN cadt_u32 cadt_wrap_place(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32* owned) {
   CADT_GLOBAL const cadt_u32* star = s->star_vertices + s->begins[v];
   cadt_u32 k = 0u, count = 0u, now = star[0];
@@ -113,7 +114,7 @@ CADT_FN cadt_u32 cadt_wrap_place(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a,
   return k;
 }
 
-/* The neighbour of v before or behind its neighbour a. */
+/* The star vertex of v before or behind its star vertex a. */
 CADT_FN cadt_u32 cadt_wrap_beside(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32 behind) {
   cadt_u32 owned;
   const cadt_u32 k = cadt_wrap_place(s, v, a, &owned), size = s->sizes[v];
@@ -121,7 +122,7 @@ CADT_FN cadt_u32 cadt_wrap_beside(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a
   return s->star_vertices[s->begins[v] + other];
 }
 
-/* The vertex to the right of the edge from a to b. */
+/* The apex to the right of the edge from a to b. */
 CADT_FN cadt_u32 cadt_wrap_right(const cadt_wrap_set* s, cadt_u32 a, cadt_u32 b) {
   if (!cadt_wrap_starless(s->sizes, a)) return cadt_wrap_beside(s, a, b, 0u);
   if (!cadt_wrap_starless(s->sizes, b)) return cadt_wrap_beside(s, b, a, 1u);
@@ -130,16 +131,17 @@ CADT_FN cadt_u32 cadt_wrap_right(const cadt_wrap_set* s, cadt_u32 a, cadt_u32 b)
   return CADT_NONE; /* never: the driver has matched all of them */
 }
 
-/* Number of the triangle of v with its neighbours a and b; `before`: count of those of v before it. */
+/* Number of the triangle of v with its star vertices a and b; `before`: packed count of the triangles of v before it.
+ */
 CADT_FN cadt_u32 cadt_wrap_number(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 before, cadt_u32 a, cadt_u32 b) {
   const cadt_u32 sum = s->bases[v] + before;
   if (!s->apart) return sum;
   return a == CADT_GHOST || b == CADT_GHOST ? s->extra_base + CADT_WRAP_GHOSTS(sum) : CADT_WRAP_REAL(sum);
 }
 
-/* Link to the triangle x, y, z across the edge opposite of x (0), y (1) or z (2). */
+/* The half-edge in the triangle x, y, z opposite of x (0), y (1) or z (2). */
 CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, cadt_u32 z, cadt_u32 opposite) {
-  const cadt_u32 none = CADT_GHOST; /* hubs own nothing */
+  const cadt_u32 none = CADT_GHOST; /* high-degree vertices own nothing */
   const cadt_u32 i = s->high_degree && cadt_wrap_starless(s->sizes, x) ? none : x;
   const cadt_u32 j = s->high_degree && cadt_wrap_starless(s->sizes, y) ? none : y;
   const cadt_u32 k = s->high_degree && cadt_wrap_starless(s->sizes, z) ? none : z;
@@ -157,12 +159,12 @@ CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, 
                         opposite >= lowest ? opposite - lowest : opposite + 3u - lowest);
 }
 
-/* A triangle that belongs to a vertex: its number, the neighbours a and b, the links. */
+/* A triangle of its owner: number, star vertices a and b, half-edges across its edges. */
 typedef struct {
   cadt_u32 number, a, b, star_vertices[3];
 } cadt_wrap_triangle;
 
-/* That of the neighbours k and the next; false if it belongs to another vertex. */
+/* The triangle of v with star vertices k and k + 1; returns 0 if another vertex owns it. */
 CADT_FN cadt_u32 cadt_wrap_triangle_of(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 k, cadt_wrap_triangle* t) {
   CADT_GLOBAL const cadt_u32* star = s->star_vertices + s->begins[v];
   const cadt_u32 size = s->sizes[v], k1 = k + 1u < size ? k + 1u : 0u, a = star[k], b = star[k1];
@@ -178,9 +180,9 @@ CADT_FN cadt_u32 cadt_wrap_triangle_of(const cadt_wrap_set* s, cadt_u32 v, cadt_
   return 1u;
 }
 
-/* The mesh in arrays (certify.dev.h), real triangles first, of stars without hubs. bases[n] is the total, behind it is
- * what was found: if that is not a mesh, nothing is written. The number of real triangles goes to the words of
- * cadt_certify, in bases from `row` on. CADT_WRAP_SHARES work-items for each vertex. */
+/* The mesh in arrays (certify.dev.h), real triangles first, of stars without high-degree vertices. bases[n] is the
+ * total, the counts stand behind it: if they are not those of a mesh, nothing is written. The number of real triangles
+ * goes to the words of cadt_certify, in `bases` from `row` on. CADT_WRAP_SHARES work-items a vertex. */
 CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL cadt_u32* bases, cadt_u32 link_words, cadt_u32 row,
             cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* vertices, CADT_GLOBAL cadt_u32* half_edges) {
@@ -209,7 +211,8 @@ CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
   }
 }
 
-/* CADT_WRAP_SHARES work-items for each vertex. The last two records are not used. \pre no triangle is missing */
+/* The mesh as locked triangles; the last two slots stay empty. CADT_WRAP_SHARES work-items a vertex. \pre no triangle
+ * is missing */
 CADT_KERNEL(cadt_wrap_locked, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases,
             CADT_GLOBAL const cadt_wrap_edge* edges, cadt_u32 edge_count, cadt_u32 first_extra, cadt_u32 extra_base,

@@ -18,19 +18,19 @@ namespace {
 using namespace device_text;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr std::size_t most_teams = 4096;  // as many as run at the same time on a large card
+constexpr std::size_t most_teams = 4096;  // as many as a large GPU runs at the same time
 constexpr std::uint32_t box_lanes = CADT_AABB_FANOUT * CADT_WRAP_PARTS;
-constexpr std::uint32_t rest_lanes = 128;  // of the longest stars, which all wait for
-/// Boxes that are looked at and exact tests for a vertex, on average at most. What stars leave of 1M uniform points
-/// needs 14. Besides, for all together.
+constexpr std::uint32_t rest_lanes = 128;  // for the longest stars, which set the time
+/// Work limit: leaves tested plus exact tests, on average a vertex, and in addition for all vertices together. The
+/// residual vertices of 1M uniform points need 14.
 constexpr std::uint32_t wrap_work_limit = 96, spare_work_limit = 4096;
-/// Of cards. Where many have to look at many, all on a side of the hull, they do it at once: about 13,000 in a
-/// microsecond. So for each point of the whole mesh this is a nanosecond or two, when insertion of the rest, and the
-/// rows of flips that it leaves on such sides, takes several.
+/// On GPUs. Where many vertices have to look at many points, all on one side of the hull, they do so at once: about
+/// 13,000 leaves in a microsecond. So for each point of the whole mesh this is a nanosecond or two, while insertion of
+/// the residual vertices, and the flip cascades that it causes on such sides, takes several.
 constexpr std::uint32_t spare_work_of_cards = 1U << 21, spare_work_of_point = 20;
 constexpr std::uint32_t most_spare_work = 1U << 31, most_watched_work = 1U << 24;  // the latter: a few milliseconds
 
-/// `all`: the points of the mesh that the wrapped ones are part of.
+/// `all`: number of points of the mesh that the wrapped ones are part of.
 std::uint32_t spare_work_limit_of(const Device& device, std::size_t all) {
   if (device.shape().contiguous) return spare_work_limit;
   const std::uint64_t effort = spare_work_of_cards + std::uint64_t{spare_work_of_point} * all;
@@ -38,11 +38,11 @@ std::uint32_t spare_work_limit_of(const Device& device, std::size_t all) {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(effort, most));
 }
 
-/// Boxes and crates of points (common/stars/aabb_tree.dev.h); each set begins a box and a crate of its own.
+/// The AABB tree of the points (common/stars/aabb_tree.dev.h); each set begins a leaf and a node of its own.
 struct AabbTree {
   Allocation leaves, nodes;
 
-  /// `sizes` and `found` are set to 0 besides, if they are given.
+  /// Also zeroes `sizes` and `counts`, if they are given.
   AabbTree(Context& ctx, const Allocation& points, std::size_t n, const Allocation& starts, std::size_t sets,
            const Allocation& sizes, const Allocation& found) {
     const std::size_t crate_count = (n - 1) / (std::size_t{CADT_AABB_LEAF} * CADT_AABB_FANOUT) + 1 + sets;
@@ -55,7 +55,7 @@ struct AabbTree {
   }
 };
 
-/// All stars of one set of at most 2^15 points; `sizes` and `found` need not be 0 before.
+/// All stars of one set of at most 2^15 points; `sizes` and `counts` need not be 0 before.
 void wrap_all(Context& ctx, const Allocation& points, std::size_t n, std::uint32_t spare, const WrappedStars& stars) {
   Launcher& launch = ctx.launcher;
   const Allocation none, todo = ctx.memory.allocate(n * word),
@@ -66,7 +66,7 @@ void wrap_all(Context& ctx, const Allocation& points, std::size_t n, std::uint32
   launch.run_in_groups<KernelId::cadt_wrap_near>(teams.items, wrap_lanes, points, leaves.leaves, leaves.nodes, count,
                                                  teams.grain, stars.star_vertices, link_words, stars.begins,
                                                  stars.sizes, todo, arcs, stars.found);
-  // How many are left is known on the device only.
+  // Only the device knows how many are left to do.
   const LaunchGrid residual =
       ctx.device.shape().contiguous ? teams : launch.grid_of_teams(std::min(n, most_teams), rest_lanes);
   launch.run_in_groups<KernelId::cadt_wrap_stars>(residual.items, rest_lanes, points, leaves.leaves, leaves.nodes,
@@ -75,13 +75,13 @@ void wrap_all(Context& ctx, const Allocation& points, std::size_t n, std::uint32
                                                   stars.sizes, stars.found);
 }
 
-/// One set, its stars and its mesh.
+/// The stars of one set of points, and its mesh.
 class Wrapping {
  public:
   Wrapping(Context& ctx, const Allocation& points, std::size_t n)
       : ctx_(ctx), launch_(ctx.launcher), points_(points), n_(n), count_(static_cast<std::uint32_t>(n)) {}
 
-  /// `all`: the points of the mesh that these are part of.
+  /// `all`: number of points of the mesh that these are part of.
   void make_stars(std::size_t all) {
     star_vertices_ = ctx_.memory.allocate(link_words() * word);
     begins_ = ctx_.memory.allocate(n_ * word);
@@ -92,7 +92,8 @@ class Wrapping {
     edges_ = ctx_.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));
   }
 
-  /// The mesh in arrays and its closing pass, all without waiting for what came before. False if there are hubs.
+  /// The mesh in arrays and its certification, queued without waiting in between. False if there are high-degree
+  /// vertices.
   [[nodiscard]] bool make_arrays(Mesh& mesh) {
     const std::size_t row = (n_ + CADT_WRAP_FOUND) / CADT_COUNTER_STRIDE * CADT_COUNTER_STRIDE + CADT_COUNTER_STRIDE;
     bases_ = ctx_.memory.allocate((row + certify_words(ctx_)) * word);
@@ -115,15 +116,15 @@ class Wrapping {
     read_certificate(ctx_, std::span(words).subspan(row - n_), n_);
     ctx_.end_phase("certify");
     ctx_.statistics.wrapped_stars = n_;
-    if (ctx_.options.statistics != StatisticsDetail::none)  // edges met from both sides, nothing was flipped
+    if (ctx_.options.statistics != StatisticsDetail::none)  // each edge counted once; none was flipped
       ctx_.statistics.flips_per_edge[0] += (3 * mesh.triangles + (mesh.slots - mesh.triangles)) / 2;
     return true;
   }
 
-  /// Too many vertices have no star. \pre make_arrays
+  /// Whether too many vertices have no star. \pre make_arrays
   [[nodiscard]] bool failed() const noexcept { return high_degree_ > CADT_MOST_HIGH_DEGREE; }
 
-  /// The mesh in records. Nothing if there are too many hubs.
+  /// The mesh as locked triangles. Nothing if there are too many high-degree vertices.
   [[nodiscard]] std::optional<Mesh> make_records() {
     bases_ = ctx_.memory.allocate((n_ + 1 + CADT_WRAP_FOUND) * word);
     count(false, n_ + 1 + CADT_WRAP_FOUND);
@@ -153,10 +154,10 @@ class Wrapping {
 
  private:
   [[nodiscard]] std::size_t triangles() const noexcept { return 2 * n_ - 2; }
-  [[nodiscard]] std::size_t link_words() const noexcept { return 3 * triangles(); }  // ghosts have no star
+  [[nodiscard]] std::size_t link_words() const noexcept { return 3 * triangles(); }  // the ghost has no star
 
-  /// First triangles of the vertices; behind them the total, what was found, and zeros, `words` together. Vertices
-  /// without a star have size 0, so this may run before it is known whether there are too many.
+  /// First triangles of the vertices; behind them the total, the counts, and zeros, `words` words from n on in all.
+  /// Vertices without a star have size 0, so this may run before it is known whether there are too many.
   void count(bool apart, std::size_t words) {
     const LaunchGrid all = launch_.grid(n_);
     const auto zeros = static_cast<std::uint32_t>(words - (n_ + 1 + CADT_WRAP_FOUND));
@@ -165,14 +166,14 @@ class Wrapping {
     launch_.scan(bases_, n_ + 1);
   }
 
-  /// The total, and what was found.
+  /// Takes over the total and the counts.
   void note(std::span<const std::uint32_t> words) {
     used_words_ = words[1];
     high_degree_ = words[2];
     note_exact(words.subspan(4, 3));
   }
 
-  /// Exact tests so far.
+  /// Adds the exact tests since the last call to the statistics.
   void note_exact(std::span<const std::uint32_t> words) {
     ctx_.statistics.exact_orientations += words[0] - exact_[0];
     ctx_.statistics.exact_incircles += words[1] - exact_[1];
@@ -180,8 +181,8 @@ class Wrapping {
     std::ranges::copy(words, exact_.begin());
   }
 
-  /// Those of three vertices without stars, each as its three half-edges behind the `known` ones. Returns how many
-  /// half-edges there are then, CADT_NONE if that does not fill all gaps.
+  /// Adds the triangles of three vertices without stars, each as its three half-edges behind the `known` ones. Returns
+  /// how many half-edges there are then, or CADT_NONE if that does not fill all gaps.
   [[nodiscard]] std::uint32_t add_triangles_of_hubs(std::uint32_t known, std::size_t wanted) {
     if (known + 3 * wanted > CADT_WRAP_EDGES || known == 0) return CADT_NONE;
     std::vector<cadt_wrap_edge> edges(known);
@@ -193,7 +194,7 @@ class Wrapping {
     const LaunchGrid all = launch_.grid(n_);
     launch_.run<KernelId::cadt_list_high_degree>(all.items, sizes_, count_, all.grain, high_degree, listed);
     for (std::size_t round = 0; round < wanted; ++round) {
-      // Edges to the ghost need no search: the edges of the hull lead to all of its triangles.
+      // Edges to the ghost need no search: the hull edges lead to all of its triangles.
       std::vector<cadt_wrap_edge> open;
       for (const auto& [from, to] : sides)
         if (from != CADT_GHOST && to != CADT_GHOST && !sides.contains({to, from})) open.push_back({to, from, 0});
@@ -217,7 +218,7 @@ class Wrapping {
     return static_cast<std::uint32_t>(edges.size());
   }
 
-  /// What is to the left of edges between two hubs.
+  /// The apex to the left of edges between two high-degree vertices.
   void find_behind(std::vector<cadt_wrap_edge>& edges, const Allocation& high_degree) {
     const auto count = static_cast<std::uint32_t>(edges.size());
     const std::size_t bytes = edges.size() * sizeof edges[0];
@@ -242,7 +243,7 @@ class Wrapping {
   std::uint32_t count_;
   Allocation star_vertices_, begins_, sizes_, found_, edges_, bases_;
   std::uint32_t used_words_ = 0, high_degree_ = 0;
-  std::array<std::uint32_t, 3> exact_{};  // orientations, incircles, ties that the statistics have
+  std::array<std::uint32_t, 3> exact_{};  // exact orientations, incircles, ties already in the statistics
 };
 
 }  // namespace

@@ -1,10 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Stars of few points by gift wrapping: a team for each vertex, without locks and without levels. It finds one
- * neighbour after another: of the points on one side of p and the last neighbour, the one whose circle with both is
- * empty (docs/algorithm.md, "Gift wrapping"). A guess is made among the points next in sorted order; then all points
- * stand in boxes, and boxes in crates, so that those which the circle does not reach are passed over. What decides are
- * the exact predicates, so ties are decided as everywhere else.
+ * Exact gift wrapping: the star of one vertex p by a team, without locks. It finds one star vertex after another: among
+ * the points on one side of the line through p and the last star vertex a, the one whose circle with p and a is empty
+ * (docs/algorithm.md, "Gift wrapping").
+ *
+ *               ____
+ *            .-'    '-.
+ *         c *          \     . d     One step on side 1, left of the line from p to a:
+ *          |     b *    |            c is the best so far, the disc is its circle with p and a.
+ *          |            |            b lies in the disc: it becomes the best, and the disc shrinks.
+ *           \          /             d lies outside: it is not better.
+ *          p *--------* a            e lies on the other side: it is no candidate.
+ *             '-.__.-'
+ *          . e                       No point is left in the disc of b: p a b is a Delaunay triangle,
+ *                                    and the next step starts from b.
+ *
+ * A first guess comes from the points next to p in sorted order; then the nodes and leaves of the AABB tree that the
+ * disc reaches are searched. Exact predicates decide, so ties are broken as everywhere else.
  */
 #ifndef CADT_STARS_WRAP_EXACT_H
 #define CADT_STARS_WRAP_EXACT_H
@@ -12,13 +24,13 @@
 #include "common/stars/wrapped_star.dev.h"
 
 typedef struct {
-  cadt_u32 star[CADT_WRAP_DEGREE]; /* the neighbours found, in the order of the search */
+  cadt_u32 star[CADT_WRAP_DEGREE]; /* star vertices found, in the order of the search */
   cadt_u32 best[CADT_WRAP_LANES];
   cadt_u32 nodes[CADT_WRAP_NODES], leaves[CADT_WRAP_OPENED * CADT_AABB_FANOUT];
   cadt_u32 node_count, leaf_count; /* how many of each */
-  cadt_u32 better[2];              /* lanes that have found a better neighbour, at first and then */
-  cadt_u32 put_off, put_off_many;  /* lanes that have put off an exact test, that could not put off another */
-  cadt_u32 arc[CADT_WRAP_ROW];     /* what cadt_wrap_near has found out */
+  cadt_u32 better[2];              /* lanes that have found a better point, in either round */
+  cadt_u32 put_off, put_off_many;  /* lanes with a deferred exact test, lanes that would have needed more than one */
+  cadt_u32 arc[CADT_WRAP_ROW];     /* the partial star of cadt_wrap_near */
   cadt_u32 key, guess, place;
 } cadt_wrap_memory;
 
@@ -26,25 +38,26 @@ typedef struct {
   CADT_TEAM_PTR cadt_wrap_memory* m;
   cadt_aabb_tree in;
   cadt_counters* counters;
-  cadt_u32 lanes;  /* of the team that search: the first ones */
+  cadt_u32 lanes;  /* lanes of the team that search: the first ones */
   cadt_u32 p;      /* the vertex */
-  cadt_u32 looked; /* boxes whose points were looked at */
+  cadt_u32 looked; /* leaves whose points were tested */
 } cadt_wrapper;
 
-/* The search for the neighbour behind `a`, on one side of the line from p to a. */
+/* One step: the search for the star vertex after `a`, on one side of the line from p to a. */
 typedef struct {
   cadt_u32 a;
   cadt_i32 side;
-  cadt_u32 best;  /* the best so far, CADT_NONE if there is none */
-  cadt_disc disc; /* what is not in it is not better: it contains its circle with p and a, on that side */
+  cadt_u32 best;  /* best point so far, CADT_NONE if there is none */
+  cadt_disc disc; /* contains its circle with p and a, on that side: what is outside is not better */
 } cadt_wrap_turn;
 
-/* What becomes of c, which rounded numbers do not tell from b: it is better or worse, put off, or one too many. */
+/* What to do with c where the floating-point filter does not decide between b and c: c is better or worse, its exact
+ * test is deferred, or there is no room for another deferred test. */
 enum { CADT_WRAP_BETTER, CADT_WRAP_WORSE, CADT_WRAP_LATER, CADT_WRAP_LOST };
-#define CADT_WRAP_MANY 0xFFFFFFFEu /* instead of the point that a lane has put off: more than one */
+#define CADT_WRAP_MANY 0xFFFFFFFEu /* in place of the deferred point of a lane: more than one */
 
-/* Each lane can put off one exact test, of the point `later`, which another one replaces when that is known to be worse
- * than b. A function of its own: its code must not be in the way of what all lanes do. */
+/* Each lane can defer one exact test, of the point `deferred`; another point replaces it once it is known to be worse
+ * than b. A function of its own, so that its code is out of the way of what all lanes execute. */
 CADT_FN_SLOW cadt_u32 cadt_wrap_unsure(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a, cadt_i32 side,
                                        cadt_u32 b, cadt_u32 c, cadt_u32 put_off, cadt_u32 later,
                                        cadt_counters* counters) {
@@ -57,14 +70,14 @@ CADT_FN_SLOW cadt_u32 cadt_wrap_unsure(CADT_GLOBAL const cadt_point* points, cad
   return cadt_incircle_rounded(first, second, points[b], points[later], &most) < 0 ? CADT_WRAP_LATER : CADT_WRAP_LOST;
 }
 
-/* Each lane proposes a point and a key, or CADT_NONE for both: the point with the least key, or CADT_NONE if that is
- * not on that side for certain. All lanes call it. \pre key and guess in the memory of the team are CADT_NONE,
+/* Each lane proposes a point and its key, or CADT_NONE for both. Returns the point with the least key, or CADT_NONE if
+ * that is not certainly on that side. All lanes call it. \pre key and guess in the team's memory are CADT_NONE,
  * synchronised */
 CADT_FN cadt_u32 cadt_wrap_agree(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 key, cadt_u32 guess) {
   cadt_team_least(&w->m->key, key);
   CADT_TEAM_SYNC();
-  /* What is asked before a barrier is asked in another way behind it: PoCL 3.1 takes the first lane's answer for that
-   * of all lanes. */
+  /* The comparison must differ from the one before the barrier: PoCL 3.1 takes the first lane's answer to a repeated
+   * one for that of all lanes. */
   if (key == w->m->key && guess != CADT_NONE &&
       cadt_orientation(w->in.points[w->p], w->in.points[a], w->in.points[guess], w->counters) == side)
     cadt_team_min(&w->m->guess, guess);
@@ -72,8 +85,8 @@ CADT_FN cadt_u32 cadt_wrap_agree(const cadt_wrapper* w, cadt_u32 a, cadt_i32 sid
   return w->m->guess;
 }
 
-/* A likely neighbour among `count` points from `first` on, each `stride` further: that with the least cotangent of the
- * angle at which it sees p and a. CADT_NONE if there is none on that side. */
+/* A likely star vertex among `count` points from `first` on, `stride` apart: the one with the least cotangent of the
+ * angle at which it sees p and a. CADT_NONE if none is on that side. */
 CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side, cadt_u32 first, cadt_u32 count,
                                  cadt_u32 stride) {
   const cadt_point p = w->in.points[w->p], q = w->in.points[a];
@@ -94,10 +107,10 @@ CADT_FN cadt_u32 cadt_wrap_guess(const cadt_wrapper* w, cadt_u32 a, cadt_i32 sid
   return cadt_wrap_agree(w, a, side, key, guess);
 }
 
-/* Lists crates from `first` on that matter; returns how many. */
+/* Lists the nodes from `first` on that the disc reaches; returns how many. */
 CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_point p, double ax, double ay, double side,
                                 const cadt_disc* disc) {
-  CADT_TEAM_SYNC(); /* all have read what the last call returned */
+  CADT_TEAM_SYNC(); /* all lanes have read the last result */
   if (cadt_team_lane == 0u) w->m->node_count = 0u;
   CADT_TEAM_SYNC();
   CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_NODES, w->in.node_count - first)) {
@@ -108,7 +121,7 @@ CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_poin
   return w->m->node_count;
 }
 
-/* Nothing has been found yet, so every point is in the disc. */
+/* A step with no point found yet: the disc is the plane. */
 CADT_FN cadt_wrap_turn cadt_wrap_turn_behind(cadt_u32 a, cadt_i32 side) {
   cadt_wrap_turn t;
   t.a = a;
@@ -124,17 +137,17 @@ CADT_FN void cadt_wrap_take(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 b
   t->disc = cadt_disc_beside(w->in.points[w->p], w->in.points[t->a], w->in.points[best], t->side);
 }
 
-/* Whether point i, on that side, may be better than the best. */
+/* Whether point i is on that side and may be better than the best. */
 CADT_FN cadt_u32 cadt_wrap_reaches(const cadt_wrapper* w, const cadt_wrap_turn* t, cadt_u32 i) {
   if (i >= w->in.n || i == w->p || i == t->a || i == t->best) return 0u;
   const cadt_point p = w->in.points[w->p], c = w->in.points[i];
   const double x = c.x - p.x - t->disc.x, y = c.y - p.y - t->disc.y;
-  if (x * x + y * y > t->disc.square) return 0u; /* what is not a number is not */
+  if (x * x + y * y > t->disc.square) return 0u; /* false for NaN */
   return cadt_orientation(p, w->in.points[t->a], c, w->counters) == t->side ? 1u : 0u;
 }
 
-/* Which of two points is better. If rounded numbers cannot tell and `put_off`, it may be b: then c is *later, or that
- * is CADT_WRAP_MANY. */
+/* The better of two points. If the filter does not decide and tests may be deferred, the result may be b: then
+ * *deferred is c, or CADT_MANY_DEFERRED. */
 CADT_FN cadt_u32 cadt_wrap_compare(const cadt_wrapper* w, const cadt_wrap_turn* t, cadt_u32 b, cadt_u32 c,
                                    cadt_u32 put_off, cadt_u32* later) {
   if (c == CADT_NONE || b == c) return b;
@@ -150,7 +163,7 @@ CADT_FN cadt_u32 cadt_wrap_compare(const cadt_wrapper* w, const cadt_wrap_turn* 
   return so == CADT_CAST(cadt_u32, CADT_WRAP_BETTER) ? c : b;
 }
 
-/* The best of what the lanes have found. All lanes call it. \pre *better is 0 */
+/* Reduces the points that the lanes have found to the best. All lanes call it. \pre *better is 0 */
 CADT_FN void cadt_wrap_settle(const cadt_wrapper* w, cadt_wrap_turn* t, CADT_TEAM_PTR cadt_u32* better, cadt_u32 mine,
                               cadt_u32 put_off, cadt_u32* later) {
   /* the best so far has been compared already */
@@ -169,10 +182,10 @@ CADT_FN void cadt_wrap_settle(const cadt_wrapper* w, cadt_wrap_turn* t, CADT_TEA
   cadt_wrap_take(w, t, w->m->best[0]);
 }
 
-/* The best of the points in `boxes` boxes. For an exact test of one lane all others wait. So where boxes are many,
- * exact tests are put off until there is a best one by rounded numbers: in its disc is next to nothing of what they
- * could not tell. That is what the lanes have put off, or, where that was too much for one, what is there of all
- * points. Other points are worse than some point. \pre the counts in the memory are 0 */
+/* The best of the points in `leaves` leaves. All other lanes wait for the exact test of one lane. So where leaves are
+ * many, exact tests are deferred until the best point by rounded arithmetic is known: its disc has next to none of the
+ * undecided points. Then the deferred tests are done or, if a lane had more than one, all points in the disc are
+ * tested. Every point skipped is worse than some other point. \pre the counts in the team's memory are 0 */
 CADT_FN void cadt_wrap_search(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 leaves) {
   cadt_u32 put_off = leaves > CADT_CAST(cadt_u32, CADT_WRAP_WIDE) ? 1u : 0u;
   cadt_u32 count = leaves * CADT_AABB_LEAF, all = 1u, later = CADT_NONE;
@@ -199,8 +212,9 @@ CADT_FN void cadt_wrap_search(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32
   }
 }
 
-/* The neighbour of p behind its neighbour a, counterclockwise (side 1) or clockwise (-1); CADT_NONE if no point is on
- * that side. a may be any other point: then the neighbour behind it among the points on that side and a. */
+/* The star vertex of p after its star vertex a, counterclockwise (side 1) or clockwise (-1); CADT_NONE if no point is
+ * on that side. If a is any other point: the star vertex after a in the star of p among a and the points on that side.
+ */
 CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   const cadt_u32 own = w->p / CADT_AABB_LEAF, near = (own ? own - 1u : 0u) * CADT_AABB_LEAF;
   const cadt_u32 first =
@@ -212,7 +226,7 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   for (cadt_u32 node = 0u; node < w->in.node_count; node += CADT_WRAP_NODES) {
     cadt_u32 nodes = cadt_wrap_list(w, node, p, ax, ay, sign, &t.disc);
     if (node == 0u && nodes > (t.best == CADT_NONE ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_OPENED))) {
-      /* a large disc: a guess among all */
+      /* a large disc: guess among all points */
       const cadt_u32 guess = cadt_wrap_guess(w, a, side, 0u, w->in.leaf_count, CADT_AABB_LEAF);
       cadt_u32 later = CADT_NONE;
       if (guess != CADT_NONE && cadt_wrap_compare(w, &t, t.best, guess, 0u, &later) == guess) {
@@ -240,7 +254,7 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   return t.best;
 }
 
-/* Of the triangles that are proven that behind the neighbour a on that side: its other neighbour of p, or CADT_NONE. */
+/* The star vertex after `a` on that side by a proven triangle of the partial star, or CADT_NONE. */
 CADT_FN cadt_u32 cadt_wrap_known(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   const cadt_u32 size = w->m->arc[0] >> 1, closed = w->m->arc[0] & 1u;
   cadt_u32 found = CADT_NONE;
@@ -253,7 +267,7 @@ CADT_FN cadt_u32 cadt_wrap_known(const cadt_wrapper* w, cadt_u32 a, cadt_i32 sid
   return found;
 }
 
-/* A neighbour of a proven triangle, from which all that are found are neighbours; CADT_NONE if there is none. */
+/* A star vertex of a proven triangle, or CADT_NONE: from there on all points found are star vertices. */
 CADT_FN cadt_u32 cadt_wrap_known_one(const cadt_wrapper* w) {
   const cadt_u32 size = w->m->arc[0] >> 1;
   for (cadt_u32 k = 0u; k < size; ++k)
@@ -261,13 +275,13 @@ CADT_FN cadt_u32 cadt_wrap_known_one(const cadt_wrapper* w) {
   return CADT_NONE;
 }
 
-/* Searches the star of w->p. Its neighbours stand in w->m->link from *begin on, *size of them, counterclockwise if
- * *side is 1, else clockwise. Returns 0 if there is none: all points are on a line, or there are too many neighbours; 1
- * inside of the hull; 2 for a vertex of the hull, from one of its hull edges to the other. */
+/* Computes the star of w->p: *size star vertices in w->m->star from *begin on, counterclockwise if *side is 1, else
+ * clockwise. Returns 0 if there is none: all points are collinear, or there are too many star vertices; 1 for an inner
+ * vertex; 2 for a vertex of the hull, whose star goes from one hull edge to the other. */
 CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size, cadt_i32* side) {
   const cadt_u32 known = cadt_wrap_known_one(w), none = CADT_NONE;
   cadt_u32 at = known != none ? known : (w->p ? w->p - 1u : 1u), from_hull = 0u, pass = 0u, outcome = 0u, going = 1u;
-  cadt_u32 asked = none; /* whether from this place of the list on all are neighbours */
+  cadt_u32 asked = none; /* place in the list that is tested for whether all from there on are star vertices */
   *begin = *size = 0u;
   *side = 1;
   while (going) {
@@ -283,20 +297,20 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
     CADT_TEAM_SYNC();
     cadt_u32 restart = 0u;
     if (asked != none) {
-      /* It is a neighbour if it is found from the one behind it as well: their circle is empty on either side. */
+      /* It is a star vertex if it is found from the one behind it as well: their circle is empty on either side. */
       if (next == w->m->star[asked])
         certain = asked;
       else
         ++asked;
     } else if (next != none) {
-      /* The first one need not have been a neighbour; from a neighbour on all are, and come again. */
+      /* The first point need not have been a star vertex; from a star vertex on all are, and the search comes back to
+       * it. */
       for (cadt_u32 k = *begin; k < *size && !outcome; ++k)
         if (w->m->star[k] == next) *begin = k, outcome = 1u;
       if (outcome || *size + 1u >= CADT_CAST(cadt_u32, CADT_WRAP_DEGREE)) going = 0u;
       at = next;
     } else if (from_hull) {
-      /* Beyond the line p, at there is nothing: an edge of the hull. The star is what lies between it and the other
-       * one. */
+      /* Beyond the line p, at there is nothing: a hull edge. The star lies between it and the other hull edge. */
       outcome = 2u;
       going = 0u;
     } else {
@@ -306,11 +320,11 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
     if (certain == none && asked != none && (asked + 1u >= *size || asked == CADT_CAST(cadt_u32, CADT_WRAP_DOUBTFUL)))
       restart = 1u;
     if (certain != none || restart) at = w->m->star[restart ? *size - 1u : certain];
-    /* All have read what is written next. Once for all ways: PoCL 3.1 compiles what is behind a barrier of some ways
-     * anew for each of them. */
+    /* All lanes have read what is written next. A single barrier for all branches: PoCL 3.1 compiles the code behind a
+     * barrier in a branch anew for each branch. */
     CADT_TEAM_SYNC();
     if (certain != none) {
-      /* All from that one on are neighbours: turned round, the search goes on from it, which is entered again. */
+      /* All from that one on are star vertices: reversed, the search goes on from it, which is entered again. */
       CADT_TEAM_FOR(k, (*size - certain) / 2u) {
         const cadt_u32 other = w->m->star[*size - 1u - k];
         w->m->star[*size - 1u - k] = w->m->star[certain + k];
@@ -321,8 +335,8 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
       --*size;
     }
     if (restart) {
-      /* Once more from the last one. If it was found from a neighbour, it is one itself, and the edge one of the hull.
-       */
+      /* Start again from the last point. If it was found from a star vertex, it is one itself, and the edge is a hull
+       * edge. */
       from_hull = *size > 1u ? 1u : 0u;
       if (++pass > 2u) going = 0u;
       *size = 0u;
@@ -336,11 +350,11 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
   return *size < 2u ? 0u : outcome;
 }
 
-/* The stars of the vertices in `todo`: of `count`, which are of sets, or, with `arcs`, those that cadt_wrap_near has
- * left, found[7] of them. Nothing is done where these are nearly all and on the hull, as far as is known: each would
- * have to look at all points. Nor when more than CADT_MOST_HIGH_DEGREE have failed, or the effort is above its bound,
- * `effort` a point and `spare_work_limit`; of sets when one has failed, which states[set] counts, as efforts[set] the
- * effort. */
+/* The stars of the vertices in `todo`: `count` of them in a batch; or, with `arcs`, those that cadt_wrap_near has left
+ * to do. Nothing is done if these are nearly all points and on the hull as far as is known: each would have to look at
+ * all points. A vertex is skipped if more than CADT_MOST_HIGH_DEGREE have failed, or if the work exceeds the limit,
+ * `work_limit` a point and `spare_work_limit` in addition; in a batch, if one vertex of its set has failed, which
+ * states[set] counts, or the work work_done[set] exceeds it. */
 CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_aabb* leaves,
                  CADT_GLOBAL const cadt_aabb* nodes, cadt_u32 n, CADT_GLOBAL const cadt_u32* todo, cadt_u32 count,
                  CADT_GLOBAL const cadt_u16* arcs, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
@@ -352,7 +366,7 @@ CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
   const cadt_wrap_sink sink = cadt_wrap_sink_of(n, row, star_vertices, link_words, begins, sizes, found);
   const cadt_u32 hull =
       2u * found[9] > n ? CADT_CAST(cadt_u32, CADT_WRAP_HULL_EXACT) : CADT_CAST(cadt_u32, CADT_WRAP_HULL);
-  /* from words that this kernel does not change, so it is the same for all lanes of a team */
+  /* from words that this kernel does not change, so the same for all lanes of a team */
   const cadt_u32 crowd = arcs && n > hull && 10u * found[8] > 9u * n ? 1u : 0u;
   const cadt_u32 stars = crowd ? 0u : (arcs ? found[7] : count);
   if (crowd && cadt_item == 0u) cadt_add_relaxed(found + 1, CADT_CAST(cadt_u32, CADT_MOST_HIGH_DEGREE) + 1u);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Stars by gift wrapping in single precision, checked as a whole: a team for each vertex p. It wraps the points around
- * p. Then exact predicates say of each triangle that no other point is in its circle, which mostly is so small that all
- * of its points are known. Other stars, and those that rounded numbers do not find, are left to cadt_wrap_stars, which
- * decides each step exactly but takes over the triangles that are proven (docs/algorithm.md, "Gift wrapping").
+ * Gift wrapping in single precision, checked as a whole: the star of one vertex p by a team. It wraps the points around
+ * p; then exact predicates show for each triangle that no other point is in its circle, which mostly is so small that
+ * all of its points are known. Stars with larger circles, and those that single precision gets wrong, are left to
+ * cadt_wrap_stars, which decides each step exactly but takes over the proven triangles (docs/algorithm.md, "Gift
+ * wrapping").
  */
 #ifndef CADT_STARS_WRAP_FAST_H
 #define CADT_STARS_WRAP_FAST_H
@@ -11,11 +12,12 @@
 #include "common/stars/wrapped_star.dev.h"
 
 typedef struct {
-  float x[CADT_NEAR_POINTS], y[CADT_NEAR_POINTS]; /* from p, in the unit */
+  float x[CADT_NEAR_POINTS], y[CADT_NEAR_POINTS]; /* relative to p, scaled */
   cadt_u32 at[CADT_NEAR_POINTS];
-  cadt_u32 star[2 * CADT_WRAP_DEGREE]; /* places of the neighbours, counterclockwise; the first one is in the middle */
-  cadt_disc disc[CADT_WRAP_DEGREE];    /* of the triangles, */
-  cadt_u32 proven[CADT_WRAP_DEGREE];   /* and whether they are Delaunay for certain */
+  cadt_u32
+      star[2 * CADT_WRAP_DEGREE];    /* places of the star vertices, counterclockwise; the first one is in the middle */
+  cadt_disc disc[CADT_WRAP_DEGREE];  /* discs of the triangles */
+  cadt_u32 proven[CADT_WRAP_DEGREE]; /* whether they are certainly Delaunay */
   cadt_u32 nodes[CADT_WRAP_NODES], leaves[CADT_NEAR_LEAVES];
   cadt_steps steps;
   cadt_u32 place;
@@ -26,8 +28,8 @@ typedef struct {
   cadt_aabb_tree in;
   cadt_counters* counters;
   cadt_reach_around reach;
-  cadt_u32 p, step, known;    /* known points */
-  cadt_u32 low, size, closed; /* the star in m->link; whether it goes round p */
+  cadt_u32 p, step, known;    /* number of points gathered */
+  cadt_u32 low, size, closed; /* the star in m->star; whether it goes all the way round p */
 } cadt_near;
 
 CADT_FN cadt_u32 cadt_near_count(const cadt_near* w) { return cadt_team_add(&w->m->steps.count[w->step], 1u); }
@@ -35,14 +37,15 @@ CADT_FN cadt_u32 cadt_near_end_step(cadt_near* w, cadt_u32 value, cadt_u32* coun
   return cadt_end_step(&w->m->steps, &w->step, value, count);
 }
 
-/* Point i, which is at x, y from p. */
+/* Stores point i, which is at x, y relative to p. */
 CADT_FN void cadt_near_learn(const cadt_near* w, cadt_u32 slot, cadt_u32 i, double x, double y) {
   w->m->at[slot] = i;
   w->m->x[slot] = CADT_CAST(float, x * w->reach.unit);
   w->m->y[slot] = CADT_CAST(float, y * w->reach.unit);
 }
 
-/* The points within reach, which is chosen anew where they are too many or too few. Returns 0 if that does not help. */
+/* Gathers the points within reach; the reach changes if they are too many or too few. Returns 0 if that does not help.
+ */
 CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
   const cadt_point p = w->in.points[w->p];
   const cadt_u32 most = CADT_NEAR_POINTS, few = CADT_NEAR_FEW;
@@ -73,7 +76,7 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
       if (slot < most) cadt_near_learn(w, slot, i, x, y);
     }
     cadt_near_end_step(w, CADT_NONE, &w->known);
-    /* What is known must have been in reach of the last search. */
+    /* The points must have been within reach of the last search. */
     double change = many ? 0.1 : 4.0;
     if (w->known > most) many = 1u, change = 0.5 * CADT_CAST(double, most) / CADT_CAST(double, w->known);
     going = many || (w->known < few && w->in.n > 2u * few) ? 1u : 0u;
@@ -82,7 +85,7 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
   return !many;
 }
 
-/* The known point behind that at place `a` on one side, or nearest to p; CADT_NONE if there is none. */
+/* The gathered point after the one at place `a` on one side, or the nearest to p; CADT_NONE if there is none. */
 CADT_FN cadt_u32 cadt_near_next(cadt_near* w, cadt_u32 a, cadt_i32 side) {
   const float ax = a == CADT_NONE ? 0.0f : w->m->x[a], ay = a == CADT_NONE ? 0.0f : w->m->y[a];
   const cadt_u32 mask = CADT_NEAR_PLACE;
@@ -95,15 +98,15 @@ CADT_FN cadt_u32 cadt_near_next(cadt_near* w, cadt_u32 a, cadt_i32 side) {
   return key == CADT_NONE ? CADT_NONE : key & mask;
 }
 
-/* The exact test of two known points, at places b and c. A function of its own, as the one below. */
+/* The exact test of two gathered points, at places b and c. A function of its own, for the reason given below. */
 CADT_FN_SLOW cadt_u32 cadt_near_better(CADT_GLOBAL const cadt_point* points, CADT_TEAM_PTR const cadt_u32* at,
                                        cadt_u32 p, cadt_u32 a, cadt_i32 side, cadt_u32 b, cadt_u32 c,
                                        cadt_counters* counters) {
   return cadt_wrap_better_of(points, p, at[a], side, at[b], at[c], counters) == at[c] ? c : b;
 }
 
-/* The known point behind that at place `a` if it is `next` or one that rounded numbers do not tell from it, as the
- * exact test says. */
+/* The gathered point after the one at place `a`: `next`, or one that rounded arithmetic does not distinguish from it,
+ * whichever the exact test prefers. */
 CADT_FN cadt_u32 cadt_near_tell(cadt_near* w, cadt_u32 a, cadt_i32 side, cadt_u32 next) {
   const float ax = w->m->x[a], ay = w->m->y[a];
   const float value = cadt_wrap_key_value(cadt_wrap_key(ax, ay, w->m->x[next], w->m->y[next], side, 0u));
@@ -135,8 +138,8 @@ CADT_FN cadt_u32 cadt_near_tell(cadt_near* w, cadt_u32 a, cadt_i32 side, cadt_u3
   return w->m->nodes[0];
 }
 
-/* The star of p among the known points, by rounded numbers; `careful`: exactly where these do not tell. Returns 0 if it
- * makes no sense. */
+/* The star of p among the gathered points in rounded arithmetic; `careful`: exactly where that does not decide. Returns
+ * 0 if the result is no star. */
 CADT_FN cadt_u32 cadt_near_wrap(cadt_near* w, cadt_u32 careful) {
   cadt_u32 low = CADT_WRAP_DEGREE, high = low, start = CADT_NONE, now = CADT_NONE, sense = 1u, going = 1u;
   cadt_i32 side = 1;
@@ -148,7 +151,7 @@ CADT_FN cadt_u32 cadt_near_wrap(cadt_near* w, cadt_u32 careful) {
       start = now = next;
       if (start == CADT_NONE) going = sense = 0u;
       if (cadt_team_lane == 0u && sense) w->m->star[low] = start;
-    } else if (next == CADT_NONE) { /* from the hull to its other edge clockwise */
+    } else if (next == CADT_NONE) { /* then from a hull edge back, clockwise to the other one */
       if (side < 0) going = 0u;
       side = -1;
       now = start;
@@ -169,23 +172,24 @@ CADT_FN cadt_u32 cadt_near_wrap(cadt_near* w, cadt_u32 careful) {
   return sense && w->size >= 2u + w->closed ? 1u : 0u;
 }
 
-/* Triangles of the star. Of one on the hull there is one fewer than neighbours, and what comes last are the two edges
- * of the hull, behind its last neighbour and before its first. */
+/* Number of triangles of the star. On the hull it is one less than the number of star vertices, and last come the two
+ * hull edges, behind the last star vertex and before the first. */
 CADT_FN cadt_u32 cadt_near_triangles(const cadt_near* w) { return w->closed ? w->size : w->size - 1u; }
-/* The neighbour `k`, or the first one behind the last. */
+/* Star vertex `k`, or the first one behind the last. */
 CADT_FN cadt_u32 cadt_near_neighbor(const cadt_near* w, cadt_u32 k) {
   return w->m->at[w->m->star[w->low + (k < w->size ? k : 0u)]];
 }
 
-/* The triangles' discs; proven is what is counterclockwise for certain and has no points but known ones in its disc.
- * Returns how many triangles are. The disc of the others is empty: what is in it does not matter. */
+/* Computes the triangles' discs. A triangle becomes a candidate for a proof if it is certainly counterclockwise and
+ * only gathered points can be in its disc; returns how many are. The disc of the others is empty: what is in it does
+ * not matter. */
 CADT_FN cadt_u32 cadt_near_claim(cadt_near* w) {
   const cadt_point p = w->in.points[w->p];
   cadt_u32 count;
   CADT_TEAM_FOR(i, cadt_near_triangles(w)) {
     const cadt_point a = w->in.points[cadt_near_neighbor(w, i)], b = w->in.points[cadt_near_neighbor(w, i + 1u)];
     cadt_disc disc = cadt_disc_around(p, a, b);
-    /* The circle goes through p, so nothing in it is further off than its diameter. */
+    /* The circle goes through p, so nothing in it is further away than its diameter. */
     const cadt_u32 locked = cadt_orientation_filter(p, a, b) == 1 && 4.0 * disc.square <= w->reach.square ? 1u : 0u;
     if (!locked) disc.square = -1.0;
     w->m->disc[i] = disc;
@@ -196,14 +200,14 @@ CADT_FN cadt_u32 cadt_near_claim(cadt_near* w) {
   return count;
 }
 
-/* The exact test. A function of its own: its code must not be in the way of that which all lanes execute. */
+/* The exact test. A function of its own, so that its code is out of the way of what all lanes execute. */
 CADT_FN_SLOW cadt_u32 cadt_near_in_circle(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a, cadt_u32 b,
                                           cadt_u32 c, cadt_counters* counters) {
   return cadt_incircle(points[p], points[a], points[b], points[c], counters) > 0 ? 1u : 0u;
 }
 
-/* Known points in circles of what is to be proven: rounded numbers have erred, `erred` times. Returns whether no known
- * point is beyond an edge of the hull, or on its line, which is not decided here. */
+/* Withdraws the proof of triangles with a gathered point in their circle: rounded arithmetic has erred, `erred` times.
+ * Returns whether no gathered point is beyond a hull edge or on its line, which is not decided here. */
 CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w, cadt_u32* erred) {
   const cadt_point p = w->in.points[w->p];
   const cadt_u32 triangles = cadt_near_triangles(w);
@@ -211,7 +215,7 @@ CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w, cadt_u32* erred) {
   CADT_TEAM_FOR(j, triangles ? w->known : 0u) {
     const cadt_u32 i = w->m->at[j];
     const cadt_point c = w->in.points[i];
-    /* In two loops, so that lanes come to exact tests at the same time, not one after the other. */
+    /* Two loops, so that lanes reach exact tests at the same time, not one after the other. */
     for (cadt_u32 k = 0u; k < triangles; ++k) {
       cadt_u32 a = CADT_NONE, b = CADT_NONE;
       for (; k < triangles; ++k) {
@@ -233,8 +237,8 @@ CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w, cadt_u32* erred) {
   return cadt_near_end_step(w, wrong, erred) == CADT_NONE ? 1u : 0u;
 }
 
-/* Searches the star of w->p; returns its kind (wrapped_star.dev.h), 0 if it is not found this way: then there are
- * triangles of which those are right that are proven. */
+/* Computes the star of w->p; returns its kind (wrapped_star.dev.h), 0 if this way does not find it: then its proven
+ * triangles are right. */
 CADT_FN cadt_u32 cadt_near_star(cadt_near* w) {
   const cadt_u32 all = w->reach.square == CADT_CAST(double, CADT_INFINITY) ? 1u : 0u;
   cadt_u32 right = 0u, erred = 1u;
@@ -251,17 +255,17 @@ CADT_FN cadt_u32 cadt_near_star(cadt_near* w) {
   return right ? (w->closed ? 1u : 2u) : 0u;
 }
 
-/* Whether rounded numbers do not tell p from a point of the circle through others far away. */
+/* Whether the floating-point filter takes p for a point of the circle through three points far away. */
 CADT_FN cadt_u32 cadt_near_on_circle(CADT_GLOBAL const cadt_point* points, cadt_u32 n, cadt_u32 p) {
   const cadt_u32 step = n / 4u, a = (p + step) % n, b = (p + 2u * step) % n, c = (p + 3u * step) % n;
   double most;
   return cadt_incircle_rounded(points[a], points[b], points[c], points[p], &most) == 0 ? 1u : 0u;
 }
 
-/* Stars of all n points. Those that are not found are listed in `todo`, found[7] of them (found[8]: of those that do
- * not go round among the points that are known; found[9]: of these on a circle with others), and in the rows of `arcs`
- * how many neighbours they have here, whether those go round, and which, with CADT_WRAP_PROVEN where the triangle of it
- * and the next one is. \pre sizes are 0, n >= 2 */
+/* The stars of all n points. Those not found are listed in `todo` and counted (CADT_WRAP_TODO... of layout.dev.h);
+ * their rows of `arcs` hold the partial star: the number of star vertices times two, plus 1 if they go all the way
+ * round, then the star vertices, with CADT_WRAP_PROVEN if the triangle of one and the next is proven. \pre sizes are 0,
+ * n >= 2 */
 CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_aabb* leaves,
                  CADT_GLOBAL const cadt_aabb* nodes, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* star_vertices,
                  cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,

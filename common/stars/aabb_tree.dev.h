@@ -97,11 +97,11 @@ CADT_FN cadt_aabb cadt_aabb_of_leaves(CADT_TEAM_PTR const cadt_aabb* leaves, cad
  * they are given. */
 CADT_KERNEL(cadt_build_aabb_tree, CADT_GLOBAL const cadt_point* points, cadt_u32 n, CADT_GLOBAL const cadt_u32* starts,
             cadt_u32 set_count, cadt_u32 node_count, cadt_u32 grain, CADT_GLOBAL cadt_aabb* leaves,
-            CADT_GLOBAL cadt_aabb* nodes, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
+            CADT_GLOBAL cadt_aabb* nodes, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* counts) {
   CADT_TEAM_MEMORY cadt_aabb part[CADT_AABB_FANOUT * CADT_WRAP_PARTS];
   CADT_TEAM_MEMORY cadt_aabb inside[CADT_AABB_FANOUT];
-  if (found && cadt_item == 0u)
-    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_WRAP_WORDS); ++k) found[k] = 0u;
+  if (counts && cadt_item == 0u)
+    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_WRAP_WORDS); ++k) counts[k] = 0u;
   CADT_FOR_TEAMS(node, node_count, grain) {
     const cadt_wrap_span r = cadt_wrap_span_of(starts, starts ? cadt_wrap_set_of_node(starts, set_count, node) : 0u, n);
     const cadt_u32 begin = cadt_min_u32(r.count, (node - r.node) * CADT_AABB_FANOUT * CADT_AABB_LEAF);
@@ -237,27 +237,28 @@ CADT_FN cadt_u32 cadt_wrap_better_of(CADT_GLOBAL const cadt_point* points, cadt_
  * result can be read until the end of the next reduction. */
 typedef struct {
   cadt_u32 least[3], count[3]; /* of this reduction, of the next one, of the one after it */
-} cadt_steps;
+} cadt_reduction;
 
 /* \pre a barrier follows, and no lane reads earlier results any more */
-CADT_FN void cadt_begin_steps(CADT_TEAM_PTR cadt_steps* steps) {
+CADT_FN void cadt_begin_reductions(CADT_TEAM_PTR cadt_reduction* reductions) {
   if (cadt_team_lane != 0u) return;
-  steps->least[0] = CADT_NONE;
-  steps->count[0] = 0u;
+  reductions->least[0] = CADT_NONE;
+  reductions->count[0] = 0u;
 }
 
 /* Ends reduction `*now`, to which the lane contributes a value or CADT_NONE. */
-CADT_FN cadt_u32 cadt_end_step(CADT_TEAM_PTR cadt_steps* steps, cadt_u32* now, cadt_u32 value, cadt_u32* count) {
+CADT_FN cadt_u32 cadt_end_reduction(CADT_TEAM_PTR cadt_reduction* reductions, cadt_u32* now, cadt_u32 value,
+                                    cadt_u32* count) {
   const cadt_u32 this_one = *now, next = this_one == 2u ? 0u : this_one + 1u;
   if (cadt_team_lane == 0u) {
-    steps->least[next] = CADT_NONE;
-    steps->count[next] = 0u;
+    reductions->least[next] = CADT_NONE;
+    reductions->count[next] = 0u;
   }
-  cadt_team_least(&steps->least[this_one], value);
+  cadt_team_least(&reductions->least[this_one], value);
   CADT_TEAM_SYNC();
   *now = next;
-  *count = steps->count[this_one];
-  return steps->least[this_one];
+  *count = reductions->count[this_one];
+  return reductions->least[this_one];
 }
 
 #endif

@@ -21,21 +21,21 @@ CADT_KERNEL(cadt_list_high_degree, CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n
 /* Finds the apex to the left of edges[0] to edges[count - 1]: the high-degree vertex whose circle with both ends
  * contains no other, or the ghost if none is on that side. */
 CADT_KERNEL(cadt_apex_of_high_degree, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* high_degree,
-            cadt_u32 hub_count, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_wrap_edge* edges,
-            CADT_GLOBAL cadt_u32* found) {
+            cadt_u32 high_degree_count, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_wrap_edge* edges,
+            CADT_GLOBAL cadt_u32* counts) {
   cadt_counters counters;
   cadt_counters_clear(&counters);
   CADT_FOR(e, count, grain) {
     const cadt_u32 a = edges[e].from, b = edges[e].to;
     cadt_u32 best = CADT_GHOST;
-    for (cadt_u32 k = 0u; k < hub_count; ++k) {
+    for (cadt_u32 k = 0u; k < high_degree_count; ++k) {
       const cadt_u32 c = high_degree[k];
       if (c == a || c == b || cadt_orientation(points[a], points[b], points[c], &counters) <= 0) continue;
       best = best == CADT_GHOST ? c : cadt_wrap_better_of(points, a, b, 1, best, c, &counters);
     }
     edges[e].left = best;
   }
-  cadt_wrap_pass_on(&counters, found);
+  cadt_wrap_flush_counts(&counters, counts);
 }
 
 #endif

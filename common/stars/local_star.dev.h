@@ -120,7 +120,7 @@ CADT_FN cadt_i32 cadt_star_orientation(const cadt_star_maker* m, cadt_u32 p, cad
 
 /* Whether the hull keeps its last vertex b when c comes after it; a is the one before b. In rounded arithmetic:
  * CADT_STAR_UNSURE if the error bound does not decide. */
-#define CADT_STAR_SENSELESS 2u
+#define CADT_STAR_INVALID 2u
 #define CADT_STAR_UNSURE 3u
 CADT_FN cadt_u32 cadt_star_keeps(cadt_vector ua, cadt_vector ub, cadt_vector uc, float sigma) {
   cadt_vector e, f;
@@ -138,7 +138,7 @@ CADT_FN cadt_u32 cadt_star_keeps(cadt_vector ua, cadt_vector ub, cadt_vector uc,
 CADT_FN_SLOW cadt_u32 cadt_keeps_exactly(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a, cadt_u32 b,
                                          cadt_u32 c, cadt_u32 ordered, cadt_counters* counters) {
   const cadt_point P = points[p], A = points[a], B = points[b];
-  if (!ordered && cadt_orientation(P, A, B, counters) <= 0) return CADT_STAR_SENSELESS;
+  if (!ordered && cadt_orientation(P, A, B, counters) <= 0) return CADT_STAR_INVALID;
   return cadt_incircle(P, A, B, points[c], counters) < 0 ? 1u : 0u;
 }
 
@@ -336,8 +336,8 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       if (keeps == CADT_STAR_UNSURE) keeps = size >= 2u ? cadt_star_keeps(ua, ub, uc, sigma) : 1u;
       answer = CADT_STAR_UNSURE;
       stuck = keeps == CADT_STAR_UNSURE ? 1u : 0u;
-      if (!stuck) going = keeps != CADT_STAR_SENSELESS && !(keeps && at == count) ? 1u : 0u;
-      if (keeps == CADT_STAR_SENSELESS) proven = 0u;
+      if (!stuck) going = keeps != CADT_STAR_INVALID && !(keeps && at == count) ? 1u : 0u;
+      if (keeps == CADT_STAR_INVALID) proven = 0u;
       if (going && !stuck) {
         cadt_u32 next;
         if (keeps) {

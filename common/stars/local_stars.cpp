@@ -23,7 +23,7 @@ class TileMaker {
         n_(n),
         count_(static_cast<std::uint32_t>(n)),
         levels_(static_cast<std::uint32_t>(levels)),
-        cut_(launch_.grid(n)) {}
+        grid_(launch_.grid(n)) {}
 
   /// Returns false if the keys are not in order.
   [[nodiscard]] bool make() {
@@ -36,10 +36,10 @@ class TileMaker {
 
   /// Divides over-full tiles again.
   void divide() {
-    crowded_ = launch_.zeros(list_.count);
+    overfull_ = launch_.zeros(list_.count);
     const Allocation any = launch_.zeros(1);
-    launch_.run<KernelId::cadt_tile_overfull>(cut_.items, keys_.high, keys_.low, keys_.low_bits, ranks_, list_.tiles,
-                                              count_, levels_, cut_.grain, crowded_, any);
+    launch_.run<KernelId::cadt_tile_overfull>(grid_.items, keys_.high, keys_.low, keys_.low_bits, ranks_, list_.tiles,
+                                              count_, levels_, grid_.grain, overfull_, any);
     if (launch_.read_word(any, 0) == 0) return;
     before_ = std::move(ranks_);
     flag(any);  // `any` is not read again: the keys are in order
@@ -51,16 +51,16 @@ class TileMaker {
  private:
   void flag(const Allocation& descents) {
     ranks_ = ctx_.memory.transient((n_ + 1) * word);
-    launch_.run<KernelId::cadt_tile_flags>(cut_.items, keys_.high, keys_.low, keys_.low_bits, before_, crowded_, ranks_,
-                                           count_, levels_, cut_.grain, descents);
+    launch_.run<KernelId::cadt_tile_flags>(grid_.items, keys_.high, keys_.low, keys_.low_bits, before_, overfull_,
+                                           ranks_, count_, levels_, grid_.grain, descents);
   }
 
   void pack() {
     launch_.scan(ranks_, n_ + 1);
     list_.count = launch_.read_word(ranks_, n_);
     list_.tiles = ctx_.memory.allocate((list_.count + std::size_t{1}) * sizeof(cadt_tile));
-    launch_.run<KernelId::cadt_tile_pack>(cut_.items, keys_.high, keys_.low, keys_.low_bits, before_, crowded_, ranks_,
-                                          list_.tiles, count_, levels_, cut_.grain);
+    launch_.run<KernelId::cadt_tile_pack>(grid_.items, keys_.high, keys_.low, keys_.low_bits, before_, overfull_,
+                                          ranks_, list_.tiles, count_, levels_, grid_.grain);
   }
 
   Context& ctx_;
@@ -68,9 +68,9 @@ class TileMaker {
   const SortKeys& keys_;
   std::size_t n_;
   std::uint32_t count_, levels_;
-  LaunchGrid cut_;
+  LaunchGrid grid_;
   TileList list_;
-  Allocation ranks_, before_, crowded_;
+  Allocation ranks_, before_, overfull_;
 };
 
 }  // namespace
@@ -111,18 +111,18 @@ void StarCounters::add_to(Statistics& statistics) const noexcept {
 StarCounters prove_stars(Context& ctx, const SortedPoints& order, const SortKeys& keys, const Allocation& sets,
                          const Allocation& states, const TileList& tiles, bool cautious, const Stars& stars) {
   const KeyGrid& grid = order.grid;
-  const Allocation found = ctx.launcher.zeros(CADT_STARS_FOUND);
+  const Allocation counts = ctx.launcher.zeros(CADT_STARS_WORDS);
   const LaunchGrid teams = ctx.launcher.grid_of_teams(tiles.count, CADT_STAR_LANES);
   const std::uint32_t sample = !sets && tiles.count >= 2 * sampled_tiles ? sampled_tiles : 0;
   ctx.launcher.run<KernelId::cadt_prove_stars>(
       teams.items, order.points, keys.high, keys.low, keys.low_bits, static_cast<std::uint32_t>(order.distinct),
       grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y, grid.most_x, grid.most_y,
       grid.clipped ? 1U : 0U, sets, states, tiles.tiles, tiles.count, sample, cautious ? 1U : 0U, teams.grain,
-      stars.star_vertices, stars.begins, stars.sizes, stars.overflow, stars.room, found);
-  StarCounters counts;
-  static_assert(sizeof counts == CADT_STARS_FOUND * word);
-  ctx.device.read(*found, 0, &counts, sizeof counts);
-  return counts;
+      stars.star_vertices, stars.begins, stars.sizes, stars.overflow, stars.room, counts);
+  StarCounters result;
+  static_assert(sizeof result == CADT_STARS_WORDS * word);
+  ctx.device.read(*counts, 0, &result, sizeof result);
+  return result;
 }
 
 }  // namespace cadt

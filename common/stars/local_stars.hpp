@@ -43,7 +43,7 @@ struct Stars {
 struct StarCounters {
   std::uint32_t points = 0, unproven = 0, exact_orientations = 0, exact_incircles = 0, ties = 0, again = 0,
                 overflowed = 0;
-  std::uint32_t sampled_tiles = 0, sampled_points = 0, sampled_unproven = 0, sampled_crowded = 0;
+  std::uint32_t sampled_tiles = 0, sampled_points = 0, sampled_unproven = 0, sampled_overfull = 0;
   std::uint32_t left_tiles = 0;  ///< by the verdict of the sample: all of their points are unproven
   void add_to(Statistics& statistics) const noexcept;
 };

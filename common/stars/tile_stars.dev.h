@@ -51,11 +51,11 @@ CADT_FN cadt_u32 cadt_tile_of_turn(cadt_u32 turn, cadt_u32 count, cadt_u32 sampl
 }
 
 /* The verdict of the sample on all tiles, available when nearly all of the sample is done. */
-CADT_FN cadt_u32 cadt_verdict_of_sample(CADT_GLOBAL cadt_u32* found, cadt_u32 sample) {
-  if (!sample || 8u * cadt_load_relaxed(found + CADT_STARS_SAMPLED) < 7u * sample) return 0u;
-  const cadt_u32 points = cadt_load_relaxed(found + CADT_STARS_SAMPLED + 1u);
-  const cadt_u32 unproven = cadt_load_relaxed(found + CADT_STARS_SAMPLED + 2u);
-  const cadt_u32 overfull = cadt_load_relaxed(found + CADT_STARS_SAMPLED + 3u);
+CADT_FN cadt_u32 cadt_verdict_of_sample(CADT_GLOBAL cadt_u32* counts, cadt_u32 sample) {
+  if (!sample || 8u * cadt_load_relaxed(counts + CADT_STARS_SAMPLED_TILES) < 7u * sample) return 0u;
+  const cadt_u32 points = cadt_load_relaxed(counts + CADT_STARS_SAMPLED_POINTS);
+  const cadt_u32 unproven = cadt_load_relaxed(counts + CADT_STARS_SAMPLED_UNPROVEN);
+  const cadt_u32 overfull = cadt_load_relaxed(counts + CADT_STARS_SAMPLED_OVERFULL);
   /* the host's limit (common/stars/mesh_from_stars.cpp) */
   return (3u * unproven > points ? CADT_CAST(cadt_u32, CADT_SAMPLE_FEW_PROVEN) : 0u) |
          (8u * overfull > points ? CADT_CAST(cadt_u32, CADT_SAMPLE_MANY) : 0u);
@@ -76,7 +76,7 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_prove_stars, CADT_GLOBAL const cadt_po
                  CADT_GLOBAL const cadt_set* sets, CADT_GLOBAL const cadt_u32* states,
                  CADT_GLOBAL const cadt_tile* tiles, cadt_u32 tile_count, cadt_u32 sample, cadt_u32 cautious,
                  cadt_u32 grain, CADT_GLOBAL cadt_u32* star_vertices, CADT_GLOBAL cadt_u32* begins,
-                 CADT_GLOBAL cadt_u32* sizes, cadt_u32 overflow, cadt_u32 room, CADT_GLOBAL cadt_u32* found) {
+                 CADT_GLOBAL cadt_u32* sizes, cadt_u32 overflow, cadt_u32 room, CADT_GLOBAL cadt_u32* counts) {
   CADT_TEAM_MEMORY cadt_neighborhood near;
   CADT_GRID_VIEW(grid);
   const cadt_keys keys = cadt_keys_of(high_keys, low_keys, low_bits);
@@ -89,13 +89,13 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_prove_stars, CADT_GLOBAL const cadt_po
   pool.star_vertices = star_vertices;
   pool.begins = begins;
   pool.sizes = sizes;
-  pool.overflowed = found + 6;
+  pool.overflowed = counts + CADT_STARS_OVERFLOWED;
   pool.overflow = overflow;
   pool.room = room;
   CADT_FOR_TEAMS(turn, tile_count, grain) {
     const cadt_u32 t = cadt_tile_of_turn(turn, tile_count, sample);
     const cadt_tile tile = tiles[t];
-    if (cadt_team_lane == 0u) near.verdict = turn < sample ? 0u : cadt_verdict_of_sample(found, sample);
+    if (cadt_team_lane == 0u) near.verdict = turn < sample ? 0u : cadt_verdict_of_sample(counts, sample);
     CADT_TEAM_SYNC();
     const cadt_u32 many = near.verdict & CADT_SAMPLE_MANY;
     const cadt_u32 left = cautious ? near.verdict & CADT_SAMPLE_FEW_PROVEN : 0u;
@@ -153,26 +153,26 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_prove_stars, CADT_GLOBAL const cadt_po
       }
     }
     if (cadt_team_lane == 0u) {
-      cadt_add_relaxed(found, own);
+      cadt_add_relaxed(counts + CADT_STARS_POINTS, own);
       const cadt_u32 unproven = loaded ? near.unproven : own;
-      if (unproven) cadt_add_relaxed(found + 1, unproven);
+      if (unproven) cadt_add_relaxed(counts + CADT_STARS_UNPROVEN, unproven);
       const cadt_u32 again = loaded ? near.again_count : 0u, overfull = loaded ? near.overfull : 0u;
-      if (again) cadt_add_relaxed(found + 5, again);
-      if (left) cadt_add_relaxed(found + CADT_STARS_LEFT, 1u);
+      if (again) cadt_add_relaxed(counts + CADT_STARS_AGAIN, again);
+      if (left) cadt_add_relaxed(counts + CADT_STARS_SKIPPED_TILES, 1u);
       if (turn < sample) {
-        cadt_add_relaxed(found + CADT_STARS_SAMPLED + 1u, own);
-        cadt_add_relaxed(found + CADT_STARS_SAMPLED + 2u, unproven);
-        cadt_add_relaxed(found + CADT_STARS_SAMPLED + 3u, overfull);
-        cadt_add_relaxed(found + CADT_STARS_SAMPLED, 1u);
+        cadt_add_relaxed(counts + CADT_STARS_SAMPLED_POINTS, own);
+        cadt_add_relaxed(counts + CADT_STARS_SAMPLED_UNPROVEN, unproven);
+        cadt_add_relaxed(counts + CADT_STARS_SAMPLED_OVERFULL, overfull);
+        cadt_add_relaxed(counts + CADT_STARS_SAMPLED_TILES, 1u);
       }
     }
     CADT_TEAM_SYNC();
   }
   if (counters.count[CADT_COUNT_EXACT_ORIENTATIONS])
-    cadt_add_relaxed(found + 2, counters.count[CADT_COUNT_EXACT_ORIENTATIONS]);
+    cadt_add_relaxed(counts + CADT_STARS_EXACT_ORIENTATIONS, counters.count[CADT_COUNT_EXACT_ORIENTATIONS]);
   if (counters.count[CADT_COUNT_EXACT_INCIRCLES])
-    cadt_add_relaxed(found + 3, counters.count[CADT_COUNT_EXACT_INCIRCLES]);
-  if (counters.count[CADT_COUNT_TIES]) cadt_add_relaxed(found + 4, counters.count[CADT_COUNT_TIES]);
+    cadt_add_relaxed(counts + CADT_STARS_EXACT_INCIRCLES, counters.count[CADT_COUNT_EXACT_INCIRCLES]);
+  if (counters.count[CADT_COUNT_TIES]) cadt_add_relaxed(counts + CADT_STARS_TIES, counters.count[CADT_COUNT_TIES]);
 }
 
 #endif

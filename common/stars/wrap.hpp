@@ -18,8 +18,8 @@ constexpr std::uint32_t wrap_lanes = 32;
 /// Where wrapped stars are stored (common/stars/wrapped_star.dev.h). \pre `sizes` are 0; `counts` has CADT_WRAP_WORDS
 /// words
 struct WrappedStars {
-  const Allocation &star_vertices, &begins, &sizes, &found;
-  std::size_t row, link_words;
+  const Allocation &star_vertices, &begins, &sizes, &counts;
+  std::size_t row, star_words;
 };
 
 /// The vertices in `list` of a batch; the other arrays as in common/batch/batch.dev.h.

@@ -29,7 +29,8 @@ typedef struct {
   cadt_u32 nodes[CADT_WRAP_NODES], leaves[CADT_WRAP_OPENED * CADT_AABB_FANOUT];
   cadt_u32 node_count, leaf_count; /* how many of each */
   cadt_u32 better[2];              /* lanes that have found a better point, in either round */
-  cadt_u32 put_off, put_off_many;  /* lanes with a deferred exact test, lanes that would have needed more than one */
+  cadt_u32 deferred_count;         /* lanes with a deferred exact test */
+  cadt_u32 deferred_many;          /* lanes that would have needed more than one */
   cadt_u32 arc[CADT_WRAP_ROW];     /* the partial star of cadt_wrap_near */
   cadt_u32 key, guess, place;
 } cadt_wrap_memory;
@@ -38,9 +39,9 @@ typedef struct {
   CADT_TEAM_PTR cadt_wrap_memory* m;
   cadt_aabb_tree in;
   cadt_counters* counters;
-  cadt_u32 lanes;  /* lanes of the team that search: the first ones */
-  cadt_u32 p;      /* the vertex */
-  cadt_u32 looked; /* leaves whose points were tested */
+  cadt_u32 lanes;         /* lanes of the team that search: the first ones */
+  cadt_u32 p;             /* the vertex */
+  cadt_u32 leaves_tested; /* leaves whose points were tested */
 } cadt_wrapper;
 
 /* One step: the search for the star vertex after `a`, on one side of the line from p to a. */
@@ -49,25 +50,26 @@ typedef struct {
   cadt_i32 side;
   cadt_u32 best;  /* best point so far, CADT_NONE if there is none */
   cadt_disc disc; /* contains its circle with p and a, on that side: what is outside is not better */
-} cadt_wrap_turn;
+} cadt_wrap_step;
 
 /* What to do with c where the floating-point filter does not decide between b and c: c is better or worse, its exact
  * test is deferred, or there is no room for another deferred test. */
-enum { CADT_WRAP_BETTER, CADT_WRAP_WORSE, CADT_WRAP_LATER, CADT_WRAP_LOST };
-#define CADT_WRAP_MANY 0xFFFFFFFEu /* in place of the deferred point of a lane: more than one */
+enum { CADT_TEST_BETTER, CADT_TEST_WORSE, CADT_TEST_DEFERRED, CADT_TEST_DROPPED };
+#define CADT_MANY_DEFERRED 0xFFFFFFFEu /* in place of the deferred point of a lane: more than one */
 
 /* Each lane can defer one exact test, of the point `deferred`; another point replaces it once it is known to be worse
  * than b. A function of its own, so that its code is out of the way of what all lanes execute. */
 CADT_FN_SLOW cadt_u32 cadt_wrap_unsure(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a, cadt_i32 side,
-                                       cadt_u32 b, cadt_u32 c, cadt_u32 put_off, cadt_u32 later,
+                                       cadt_u32 b, cadt_u32 c, cadt_u32 may_defer, cadt_u32 deferred,
                                        cadt_counters* counters) {
   const cadt_point first = points[side > 0 ? p : a], second = points[side > 0 ? a : p];
   double most;
-  if (!put_off)
-    return cadt_incircle(first, second, points[b], points[c], counters) > 0 ? CADT_WRAP_BETTER : CADT_WRAP_WORSE;
-  if (later == CADT_NONE) return CADT_WRAP_LATER;
-  if (later == CADT_WRAP_MANY) return CADT_WRAP_LOST;
-  return cadt_incircle_rounded(first, second, points[b], points[later], &most) < 0 ? CADT_WRAP_LATER : CADT_WRAP_LOST;
+  if (!may_defer)
+    return cadt_incircle(first, second, points[b], points[c], counters) > 0 ? CADT_TEST_BETTER : CADT_TEST_WORSE;
+  if (deferred == CADT_NONE) return CADT_TEST_DEFERRED;
+  if (deferred == CADT_MANY_DEFERRED) return CADT_TEST_DROPPED;
+  return cadt_incircle_rounded(first, second, points[b], points[deferred], &most) < 0 ? CADT_TEST_DEFERRED
+                                                                                      : CADT_TEST_DROPPED;
 }
 
 /* Each lane proposes a point and its key, or CADT_NONE for both. Returns the point with the least key, or CADT_NONE if
@@ -122,8 +124,8 @@ CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_poin
 }
 
 /* A step with no point found yet: the disc is the plane. */
-CADT_FN cadt_wrap_turn cadt_wrap_turn_behind(cadt_u32 a, cadt_i32 side) {
-  cadt_wrap_turn t;
+CADT_FN cadt_wrap_step cadt_wrap_step_from(cadt_u32 a, cadt_i32 side) {
+  cadt_wrap_step t;
   t.a = a;
   t.side = side;
   t.best = CADT_NONE;
@@ -132,13 +134,13 @@ CADT_FN cadt_wrap_turn cadt_wrap_turn_behind(cadt_u32 a, cadt_i32 side) {
   return t;
 }
 
-CADT_FN void cadt_wrap_take(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 best) {
+CADT_FN void cadt_wrap_set_best(const cadt_wrapper* w, cadt_wrap_step* t, cadt_u32 best) {
   t->best = best;
   t->disc = cadt_disc_beside(w->in.points[w->p], w->in.points[t->a], w->in.points[best], t->side);
 }
 
 /* Whether point i is on that side and may be better than the best. */
-CADT_FN cadt_u32 cadt_wrap_reaches(const cadt_wrapper* w, const cadt_wrap_turn* t, cadt_u32 i) {
+CADT_FN cadt_u32 cadt_wrap_reaches(const cadt_wrapper* w, const cadt_wrap_step* t, cadt_u32 i) {
   if (i >= w->in.n || i == w->p || i == t->a || i == t->best) return 0u;
   const cadt_point p = w->in.points[w->p], c = w->in.points[i];
   const double x = c.x - p.x - t->disc.x, y = c.y - p.y - t->disc.y;
@@ -148,8 +150,8 @@ CADT_FN cadt_u32 cadt_wrap_reaches(const cadt_wrapper* w, const cadt_wrap_turn* 
 
 /* The better of two points. If the filter does not decide and tests may be deferred, the result may be b: then
  * *deferred is c, or CADT_MANY_DEFERRED. */
-CADT_FN cadt_u32 cadt_wrap_compare(const cadt_wrapper* w, const cadt_wrap_turn* t, cadt_u32 b, cadt_u32 c,
-                                   cadt_u32 put_off, cadt_u32* later) {
+CADT_FN cadt_u32 cadt_wrap_compare(const cadt_wrapper* w, const cadt_wrap_step* t, cadt_u32 b, cadt_u32 c,
+                                   cadt_u32 may_defer, cadt_u32* deferred) {
   if (c == CADT_NONE || b == c) return b;
   if (b == CADT_NONE) return c;
   CADT_GLOBAL const cadt_point* points = w->in.points;
@@ -157,15 +159,15 @@ CADT_FN cadt_u32 cadt_wrap_compare(const cadt_wrapper* w, const cadt_wrap_turn* 
   const cadt_i32 sign = cadt_incircle_rounded(points[t->side > 0 ? w->p : t->a], points[t->side > 0 ? t->a : w->p],
                                               points[b], points[c], &most);
   if (sign != 0) return sign > 0 ? c : b;
-  const cadt_u32 so = cadt_wrap_unsure(points, w->p, t->a, t->side, b, c, put_off, *later, w->counters);
-  if (so == CADT_CAST(cadt_u32, CADT_WRAP_LATER)) *later = c;
-  if (so == CADT_CAST(cadt_u32, CADT_WRAP_LOST)) *later = CADT_WRAP_MANY;
-  return so == CADT_CAST(cadt_u32, CADT_WRAP_BETTER) ? c : b;
+  const cadt_u32 so = cadt_wrap_unsure(points, w->p, t->a, t->side, b, c, may_defer, *deferred, w->counters);
+  if (so == CADT_CAST(cadt_u32, CADT_TEST_DEFERRED)) *deferred = c;
+  if (so == CADT_CAST(cadt_u32, CADT_TEST_DROPPED)) *deferred = CADT_MANY_DEFERRED;
+  return so == CADT_CAST(cadt_u32, CADT_TEST_BETTER) ? c : b;
 }
 
 /* Reduces the points that the lanes have found to the best. All lanes call it. \pre *better is 0 */
-CADT_FN void cadt_wrap_settle(const cadt_wrapper* w, cadt_wrap_turn* t, CADT_TEAM_PTR cadt_u32* better, cadt_u32 mine,
-                              cadt_u32 put_off, cadt_u32* later) {
+CADT_FN void cadt_wrap_reduce(const cadt_wrapper* w, cadt_wrap_step* t, CADT_TEAM_PTR cadt_u32* better, cadt_u32 mine,
+                              cadt_u32 may_defer, cadt_u32* deferred) {
   /* the best so far has been compared already */
   if (cadt_team_lane < w->lanes) w->m->best[cadt_team_lane] = mine != t->best ? mine : CADT_NONE;
   if (mine != t->best) cadt_team_add(better, 1u);
@@ -175,39 +177,39 @@ CADT_FN void cadt_wrap_settle(const cadt_wrapper* w, cadt_wrap_turn* t, CADT_TEA
     const cadt_u32 middle = (width + 1u) / 2u;
     if (cadt_team_lane + middle < width)
       w->m->best[cadt_team_lane] =
-          cadt_wrap_compare(w, t, w->m->best[cadt_team_lane], w->m->best[cadt_team_lane + middle], put_off, later);
+          cadt_wrap_compare(w, t, w->m->best[cadt_team_lane], w->m->best[cadt_team_lane + middle], may_defer, deferred);
     width = middle;
     CADT_TEAM_SYNC();
   }
-  cadt_wrap_take(w, t, w->m->best[0]);
+  cadt_wrap_set_best(w, t, w->m->best[0]);
 }
 
 /* The best of the points in `leaves` leaves. All other lanes wait for the exact test of one lane. So where leaves are
  * many, exact tests are deferred until the best point by rounded arithmetic is known: its disc has next to none of the
  * undecided points. Then the deferred tests are done or, if a lane had more than one, all points in the disc are
  * tested. Every point skipped is worse than some other point. \pre the counts in the team's memory are 0 */
-CADT_FN void cadt_wrap_search(const cadt_wrapper* w, cadt_wrap_turn* t, cadt_u32 leaves) {
-  cadt_u32 put_off = leaves > CADT_CAST(cadt_u32, CADT_WRAP_WIDE) ? 1u : 0u;
-  cadt_u32 count = leaves * CADT_AABB_LEAF, all = 1u, later = CADT_NONE;
+CADT_FN void cadt_wrap_search(const cadt_wrapper* w, cadt_wrap_step* t, cadt_u32 leaves) {
+  cadt_u32 may_defer = leaves > CADT_CAST(cadt_u32, CADT_WRAP_WIDE) ? 1u : 0u;
+  cadt_u32 count = leaves * CADT_AABB_LEAF, all = 1u, deferred = CADT_NONE;
   for (cadt_u32 round = 0u; round < 2u && count; ++round) {
-    const cadt_u32 own = later;
+    const cadt_u32 own = deferred;
     cadt_u32 mine = t->best;
-    later = CADT_NONE;
+    deferred = CADT_NONE;
     for (cadt_u32 j = cadt_team_lane; cadt_team_lane < w->lanes && j < count; j += w->lanes) {
       const cadt_u32 i = all ? cadt_wrap_in_leaves(w->m->leaves, j) : own;
-      if (cadt_wrap_reaches(w, t, i)) mine = cadt_wrap_compare(w, t, mine, i, put_off, &later);
+      if (cadt_wrap_reaches(w, t, i)) mine = cadt_wrap_compare(w, t, mine, i, may_defer, &deferred);
     }
-    cadt_wrap_settle(w, t, &w->m->better[round], mine, put_off, &later);
+    cadt_wrap_reduce(w, t, &w->m->better[round], mine, may_defer, &deferred);
     count = 0u;
-    if (put_off) {
-      if (later == CADT_WRAP_MANY)
-        cadt_team_add(&w->m->put_off_many, 1u);
-      else if (cadt_wrap_reaches(w, t, later))
-        cadt_team_add(&w->m->put_off, 1u);
+    if (may_defer) {
+      if (deferred == CADT_MANY_DEFERRED)
+        cadt_team_add(&w->m->deferred_many, 1u);
+      else if (cadt_wrap_reaches(w, t, deferred))
+        cadt_team_add(&w->m->deferred_count, 1u);
       CADT_TEAM_SYNC();
-      all = w->m->put_off_many ? 1u : 0u;
-      if (w->m->put_off_many || w->m->put_off) count = all ? leaves * CADT_AABB_LEAF : w->lanes;
-      put_off = 0u;
+      all = w->m->deferred_many ? 1u : 0u;
+      if (w->m->deferred_many || w->m->deferred_count) count = all ? leaves * CADT_AABB_LEAF : w->lanes;
+      may_defer = 0u;
     }
   }
 }
@@ -219,24 +221,24 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   const cadt_u32 own = w->p / CADT_AABB_LEAF, near = (own ? own - 1u : 0u) * CADT_AABB_LEAF;
   const cadt_u32 first =
       cadt_wrap_guess(w, a, side, near, cadt_min_u32(CADT_WRAP_NEAR * CADT_AABB_LEAF, w->in.n - near), 1u);
-  cadt_wrap_turn t = cadt_wrap_turn_behind(a, side);
+  cadt_wrap_step t = cadt_wrap_step_from(a, side);
   const cadt_point p = w->in.points[w->p], q = w->in.points[a];
   const double ax = q.x - p.x, ay = q.y - p.y, sign = side > 0 ? 1.0 : -1.0;
-  if (first != CADT_NONE) cadt_wrap_take(w, &t, first);
+  if (first != CADT_NONE) cadt_wrap_set_best(w, &t, first);
   for (cadt_u32 node = 0u; node < w->in.node_count; node += CADT_WRAP_NODES) {
     cadt_u32 nodes = cadt_wrap_list(w, node, p, ax, ay, sign, &t.disc);
     if (node == 0u && nodes > (t.best == CADT_NONE ? 0u : CADT_CAST(cadt_u32, CADT_WRAP_OPENED))) {
       /* a large disc: guess among all points */
       const cadt_u32 guess = cadt_wrap_guess(w, a, side, 0u, w->in.leaf_count, CADT_AABB_LEAF);
-      cadt_u32 later = CADT_NONE;
-      if (guess != CADT_NONE && cadt_wrap_compare(w, &t, t.best, guess, 0u, &later) == guess) {
-        cadt_wrap_take(w, &t, guess);
+      cadt_u32 deferred = CADT_NONE;
+      if (guess != CADT_NONE && cadt_wrap_compare(w, &t, t.best, guess, 0u, &deferred) == guess) {
+        cadt_wrap_set_best(w, &t, guess);
         nodes = cadt_wrap_list(w, node, p, ax, ay, sign, &t.disc);
       }
     }
     for (cadt_u32 opened = 0u; opened < nodes; opened += CADT_WRAP_OPENED) {
       if (cadt_team_lane == 0u)
-        w->m->leaf_count = w->m->better[0] = w->m->better[1] = w->m->put_off = w->m->put_off_many = 0u;
+        w->m->leaf_count = w->m->better[0] = w->m->better[1] = w->m->deferred_count = w->m->deferred_many = 0u;
       CADT_TEAM_SYNC();
       CADT_TEAM_FOR(j, cadt_min_u32(CADT_WRAP_OPENED, nodes - opened) * CADT_AABB_FANOUT) {
         const cadt_u32 c = w->m->nodes[opened + j / CADT_AABB_FANOUT] * CADT_AABB_FANOUT + j % CADT_AABB_FANOUT;
@@ -246,7 +248,7 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
       CADT_TEAM_SYNC();
       const cadt_u32 leaves = w->m->leaf_count;
       cadt_wrap_search(w, &t, leaves);
-      w->looked += leaves;
+      w->leaves_tested += leaves;
       CADT_TEAM_SYNC();
     }
   }
@@ -255,7 +257,7 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
 }
 
 /* The star vertex after `a` on that side by a proven triangle of the partial star, or CADT_NONE. */
-CADT_FN cadt_u32 cadt_wrap_known(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
+CADT_FN cadt_u32 cadt_wrap_proven_next(const cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   const cadt_u32 size = w->m->arc[0] >> 1, closed = w->m->arc[0] & 1u;
   cadt_u32 found = CADT_NONE;
   for (cadt_u32 k = 0u; k < size; ++k) {
@@ -268,7 +270,7 @@ CADT_FN cadt_u32 cadt_wrap_known(const cadt_wrapper* w, cadt_u32 a, cadt_i32 sid
 }
 
 /* A star vertex of a proven triangle, or CADT_NONE: from there on all points found are star vertices. */
-CADT_FN cadt_u32 cadt_wrap_known_one(const cadt_wrapper* w) {
+CADT_FN cadt_u32 cadt_wrap_proven_neighbor(const cadt_wrapper* w) {
   const cadt_u32 size = w->m->arc[0] >> 1;
   for (cadt_u32 k = 0u; k < size; ++k)
     if (w->m->arc[1u + k] & CADT_WRAP_PROVEN) return w->m->arc[1u + k] & ~CADT_WRAP_PROVEN;
@@ -279,7 +281,7 @@ CADT_FN cadt_u32 cadt_wrap_known_one(const cadt_wrapper* w) {
  * clockwise. Returns 0 if there is none: all points are collinear, or there are too many star vertices; 1 for an inner
  * vertex; 2 for a vertex of the hull, whose star goes from one hull edge to the other. */
 CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size, cadt_i32* side) {
-  const cadt_u32 known = cadt_wrap_known_one(w), none = CADT_NONE;
+  const cadt_u32 known = cadt_wrap_proven_neighbor(w), none = CADT_NONE;
   cadt_u32 at = known != none ? known : (w->p ? w->p - 1u : 1u), from_hull = 0u, pass = 0u, outcome = 0u, going = 1u;
   cadt_u32 asked = none; /* place in the list that is tested for whether all from there on are star vertices */
   *begin = *size = 0u;
@@ -292,7 +294,7 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
       at = w->m->star[asked + 1u];
     }
     const cadt_i32 towards = asked == none ? *side : -*side;
-    cadt_u32 next = cadt_wrap_known(w, at, towards), certain = none;
+    cadt_u32 next = cadt_wrap_proven_next(w, at, towards), certain = none;
     if (next == none) next = cadt_wrap_next(w, at, towards);
     CADT_TEAM_SYNC();
     cadt_u32 restart = 0u;
@@ -358,33 +360,34 @@ CADT_FN cadt_u32 cadt_wrap_star(cadt_wrapper* w, cadt_u32* begin, cadt_u32* size
 CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_aabb* leaves,
                  CADT_GLOBAL const cadt_aabb* nodes, cadt_u32 n, CADT_GLOBAL const cadt_u32* todo, cadt_u32 count,
                  CADT_GLOBAL const cadt_u16* arcs, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
-                 CADT_GLOBAL cadt_u32* states, CADT_GLOBAL cadt_u32* work_limits, cadt_u32 work_limit,
+                 CADT_GLOBAL cadt_u32* states, CADT_GLOBAL cadt_u32* work_done, cadt_u32 work_limit,
                  cadt_u32 spare_work_limit, cadt_u32 grain, cadt_u32 row, CADT_GLOBAL cadt_u32* star_vertices,
-                 cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
-                 CADT_GLOBAL cadt_u32* found) {
+                 cadt_u32 star_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
+                 CADT_GLOBAL cadt_u32* counts) {
   CADT_TEAM_MEMORY cadt_wrap_memory memory;
-  const cadt_wrap_sink sink = cadt_wrap_sink_of(n, row, star_vertices, link_words, begins, sizes, found);
-  const cadt_u32 hull =
-      2u * found[9] > n ? CADT_CAST(cadt_u32, CADT_WRAP_HULL_EXACT) : CADT_CAST(cadt_u32, CADT_WRAP_HULL);
+  const cadt_wrap_sink sink = cadt_wrap_sink_of(n, row, star_vertices, star_words, begins, sizes, counts);
+  const cadt_u32 hull = 2u * counts[CADT_WRAP_TODO_ON_CIRCLE] > n ? CADT_CAST(cadt_u32, CADT_WRAP_HULL_EXACT)
+                                                                  : CADT_CAST(cadt_u32, CADT_WRAP_HULL);
   /* from words that this kernel does not change, so the same for all lanes of a team */
-  const cadt_u32 crowd = arcs && n > hull && 10u * found[8] > 9u * n ? 1u : 0u;
-  const cadt_u32 stars = crowd ? 0u : (arcs ? found[7] : count);
-  if (crowd && cadt_item == 0u) cadt_add_relaxed(found + 1, CADT_CAST(cadt_u32, CADT_MOST_HIGH_DEGREE) + 1u);
+  const cadt_u32 mostly_hull = arcs && n > hull && 10u * counts[CADT_WRAP_TODO_OPEN] > 9u * n ? 1u : 0u;
+  const cadt_u32 stars = mostly_hull ? 0u : (arcs ? counts[CADT_WRAP_TODO] : count);
+  if (mostly_hull && cadt_item == 0u)
+    cadt_add_relaxed(counts + CADT_WRAP_FAILED, CADT_CAST(cadt_u32, CADT_MOST_HIGH_DEGREE) + 1u);
   cadt_counters counters;
   cadt_counters_clear(&counters);
   cadt_u32 exact_before = 0u;
   CADT_FOR_TEAMS(item, stars, grain) {
     const cadt_u32 v = todo[item], set = starts ? cadt_set_of(starts, set_count, v) : 0u;
     const cadt_wrap_span span = cadt_wrap_span_of(starts, set, n);
-    CADT_GLOBAL cadt_u32* failed = starts ? states + set : found + 1;
-    CADT_GLOBAL cadt_u32* done = starts ? work_limits + set : found + 2;
+    CADT_GLOBAL cadt_u32* failed = starts ? states + set : counts + CADT_WRAP_FAILED;
+    CADT_GLOBAL cadt_u32* done = starts ? work_done + set : counts + CADT_WRAP_WORK;
     cadt_wrapper w;
     w.m = &memory;
     w.in = cadt_aabb_tree_of(span, points, leaves, nodes);
     w.counters = &counters;
     w.lanes = cadt_min_u32(cadt_team_lanes, CADT_WRAP_LANES);
     w.p = v - span.begin;
-    w.looked = 0u;
+    w.leaves_tested = 0u;
     const cadt_u32 known = arcs ? arcs[item * CADT_WRAP_ROW] : 0u;
     CADT_TEAM_FOR(k, 1u + (known >> 1)) { memory.arc[k] = k ? arcs[item * CADT_WRAP_ROW + k] : known; }
     if (cadt_team_lane == 0u)
@@ -402,12 +405,12 @@ CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
     if (exact != exact_before) cadt_add_relaxed(done, exact - exact_before);
     exact_before = exact;
     if (cadt_team_lane == 0u) {
-      cadt_add_relaxed(done, w.looked);
+      cadt_add_relaxed(done, w.leaves_tested);
       if (!kind) cadt_add_relaxed(failed, starts ? CADT_CAST(cadt_u32, CADT_SET_FAILURE) : 1u);
     }
     cadt_wrap_store(&sink, &memory.place, v, span.begin, memory.star + begin, size, side > 0 ? 1u : 0u, kind);
   }
-  cadt_wrap_pass_on(&counters, found);
+  cadt_wrap_flush_counts(&counters, counts);
 }
 
 #endif

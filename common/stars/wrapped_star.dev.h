@@ -14,24 +14,24 @@
 #define CADT_WRAP_PROVEN 0x8000u
 
 typedef struct {
-  cadt_u32 n, row, link_words;
+  cadt_u32 n, row, star_words;
   CADT_GLOBAL cadt_u32* star_vertices;
   CADT_GLOBAL cadt_u32* begins;
   CADT_GLOBAL cadt_u32* sizes;
-  CADT_GLOBAL cadt_u32* found;
+  CADT_GLOBAL cadt_u32* counts;
 } cadt_wrap_sink;
 
 CADT_FN cadt_wrap_sink cadt_wrap_sink_of(cadt_u32 n, cadt_u32 row, CADT_GLOBAL cadt_u32* star_vertices,
-                                         cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
-                                         CADT_GLOBAL cadt_u32* found) {
+                                         cadt_u32 star_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
+                                         CADT_GLOBAL cadt_u32* counts) {
   cadt_wrap_sink s;
   s.n = n;
   s.row = row;
-  s.link_words = link_words;
+  s.star_words = star_words;
   s.star_vertices = star_vertices;
   s.begins = begins;
   s.sizes = sizes;
-  s.found = found;
+  s.counts = counts;
   return s;
 }
 
@@ -44,13 +44,13 @@ CADT_FN void cadt_wrap_store(const cadt_wrap_sink* s, CADT_TEAM_PTR cadt_u32* pl
   const cadt_u32 words = kind == 2u ? size + 1u : size;
   CADT_TEAM_SYNC();
   if (cadt_team_lane == 0u && kind) {
-    *place = words <= s->row ? s->begins[v] : s->n * s->row + cadt_add_relaxed(s->found, words);
+    *place = words <= s->row ? s->begins[v] : s->n * s->row + cadt_add_relaxed(s->counts + CADT_WRAP_OVERFLOWED, words);
     s->begins[v] = *place;
     s->sizes[v] = words;
   }
   CADT_TEAM_SYNC();
   if (kind &&
-      *place + words <= s->link_words) { /* else the driver sees from CADT_WRAP_OVERFLOWED that stars are wrong */
+      *place + words <= s->star_words) { /* else the driver sees from CADT_WRAP_OVERFLOWED that stars are wrong */
     CADT_GLOBAL cadt_u32* out = s->star_vertices + *place;
     CADT_TEAM_FOR(k, size) { out[k] = first + star[counterclockwise ? k : size - 1u - k]; }
     if (cadt_team_lane == 0u && kind == 2u) out[size] = CADT_GHOST;
@@ -59,12 +59,12 @@ CADT_FN void cadt_wrap_store(const cadt_wrap_sink* s, CADT_TEAM_PTR cadt_u32* pl
 }
 
 /* At the end of a work-item: adds its exact tests to the counts. */
-CADT_FN void cadt_wrap_pass_on(const cadt_counters* counters, CADT_GLOBAL cadt_u32* found) {
+CADT_FN void cadt_wrap_flush_counts(const cadt_counters* counters, CADT_GLOBAL cadt_u32* counts) {
   if (counters->count[CADT_COUNT_EXACT_ORIENTATIONS])
-    cadt_add_relaxed(found + 3, counters->count[CADT_COUNT_EXACT_ORIENTATIONS]);
+    cadt_add_relaxed(counts + CADT_WRAP_EXACT_ORIENTATIONS, counters->count[CADT_COUNT_EXACT_ORIENTATIONS]);
   if (counters->count[CADT_COUNT_EXACT_INCIRCLES])
-    cadt_add_relaxed(found + 4, counters->count[CADT_COUNT_EXACT_INCIRCLES]);
-  if (counters->count[CADT_COUNT_TIES]) cadt_add_relaxed(found + 5, counters->count[CADT_COUNT_TIES]);
+    cadt_add_relaxed(counts + CADT_WRAP_EXACT_INCIRCLES, counters->count[CADT_COUNT_EXACT_INCIRCLES]);
+  if (counters->count[CADT_COUNT_TIES]) cadt_add_relaxed(counts + CADT_WRAP_TIES, counters->count[CADT_COUNT_TIES]);
 }
 
 #endif

@@ -96,7 +96,7 @@ void conclude_delaunay(const Mesh& mesh, const Circles& circles, Check& delaunay
 [[nodiscard]] std::string size_error(PointsView points, const MeshView& view);
 /// The predicates rely on IEEE 754 arithmetic. A process may have changed it, e.g. by loading code built for fast
 /// arithmetic; then no verdict is better than a wrong one. Threads inherit the mode of the thread that starts them.
-/// \throws InternalError
+/// \throws Error
 void require_ieee_arithmetic();
 /// What the library's own result promises beyond a bare mesh.
 void check_own_result(PointsView points, const Triangulation& mesh, VerifyReport& report);

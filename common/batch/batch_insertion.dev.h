@@ -45,9 +45,9 @@ CADT_FN cadt_u32 cadt_insert_set(cadt_locked_mesh* m, cadt_u32 n, const cadt_def
     for (cadt_u32 block = 0u; block < blocks; ++block) {
       const cadt_u32 standing = 2u * block + cadt_right_half(level + 1u, block);
       const cadt_u32 i = cadt_representative(level, standing ^ 1u, n);
-      const cadt_u32 hint = cadt_load_relaxed(m->vertex_to_triangle + cadt_representative(level, standing, n));
+      const cadt_u32 start = cadt_load_relaxed(m->vertex_to_triangle + cadt_representative(level, standing, n));
       if (i == m->first || i == m->second || i == m->third) continue;
-      if (cadt_insert_own(&own, &partition, i, hint, counters)) continue;
+      if (cadt_insert_own(&own, &partition, i, start, counters)) continue;
       cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
       work.apex_point = cadt_point_of(m, i);
       cadt_u32 from = cadt_load_relaxed(m->vertex_to_triangle + i);

@@ -15,7 +15,6 @@ namespace cadt {
 enum class StatisticsDetail {
   none,  ///< sizes, launches and legality sweeps only, which are known anyway; no waiting for the device between phases
   counters,  ///< also work, conflicts, flips per edge and time per phase; costs 2 to 3 % on a GPU (docs/evaluation.md)
-             ///< (docs/evaluation.md)
   timing     ///< also the shares of the threads' time (`thread_time`), by kernels with timers: slower
 };
 /// "none", "counters", "timing".

@@ -57,7 +57,7 @@ CADT_KERNEL(cadt_certify, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL cons
   if (illegal) cadt_add_relaxed(found + 1, illegal);
   if (wrong) cadt_add_relaxed(found + 2, wrong);
   if (broken) cadt_add_relaxed(found + 3, broken);
-  CADT_LAP_SKIP(&counters);
+  CADT_SKIP_TIME(&counters);
   CADT_GLOBAL cadt_u32* counter_rows = counted ? found + CADT_COUNTER_STRIDE : 0;
   CADT_FLUSH_COUNTERS(&counters, counter_rows);
 }

@@ -28,8 +28,8 @@ CADT_KERNEL(cadt_cavity_candidates, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt
   cadt_counters_clear(&counters);
   CADT_FOR(e, count, grain) {
     const cadt_u32 half_edge = list[e];
-    const cadt_snapshot s = cadt_look_from(&mesh, CADT_TRIANGLE_OF(half_edge), CADT_EDGE_OF(half_edge));
-    const cadt_snapshot u = cadt_look_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
+    const cadt_snapshot s = cadt_snapshot_from(&mesh, CADT_TRIANGLE_OF(half_edge), CADT_EDGE_OF(half_edge));
+    const cadt_snapshot u = cadt_snapshot_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
     const cadt_u32 hull = s.v1 == CADT_GHOST || s.v2 == CADT_GHOST ? 1u : 0u;
     const cadt_u32 illegal = !hull && cadt_is_illegal(&mesh, s.v0, s.v1, s.v2, u.v0, &counters) ? 1u : 0u;
     quads[4u * e] = illegal ? s.v0 : CADT_NONE;
@@ -48,7 +48,7 @@ CADT_FN cadt_u32 cadt_is_in_set(CADT_GLOBAL const cadt_u32* set, cadt_u32 vertex
 /* Triangles that may be in a region: a row of flips turns around a vertex that has its edges wrongly, an end of all
  * edges of the row. So most triangles need no test, which for vertices far away would often be an exact one; what the
  * region lacks by this is flipped later. */
-CADT_FN cadt_u32 cadt_may_be_of_row(const cadt_snapshot* s, CADT_GLOBAL const cadt_u32* ends) {
+CADT_FN cadt_u32 cadt_may_be_of_cascade(const cadt_snapshot* s, CADT_GLOBAL const cadt_u32* ends) {
   if (s->lock == 0u || s->v0 == CADT_GHOST || s->v1 == CADT_GHOST || s->v2 == CADT_GHOST) return 0u;
   return cadt_is_in_set(ends, s->v0) | cadt_is_in_set(ends, s->v1) | cadt_is_in_set(ends, s->v2);
 }
@@ -58,7 +58,7 @@ CADT_FN cadt_u32 cadt_may_be_of_row(const cadt_snapshot* s, CADT_GLOBAL const ca
 CADT_FN cadt_u32 cadt_is_in_conflict(const cadt_locked_mesh* m, const cadt_snapshot* s, cadt_u32 w, cadt_point p) {
   cadt_real most;
   if (s->v0 == w || s->v1 == w || s->v2 == w) return 0u;
-  return cadt_incircle_rounded(cadt_point_of(m, s->v0), cadt_point_of(m, s->v1), cadt_point_of(m, s->v2), p, &most) > 0
+  return cadt_incircle_filter(cadt_point_of(m, s->v0), cadt_point_of(m, s->v1), cadt_point_of(m, s->v2), p, &most) > 0
              ? 1u
              : 0u;
 }
@@ -70,8 +70,8 @@ CADT_KERNEL(cadt_cavity_sizes, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 gr
             CADT_GLOBAL const cadt_u32* vertices, cadt_u32 vertex_count, CADT_GLOBAL cadt_u32* sums) {
   CADT_MESH_VIEW(mesh);
   CADT_FOR(t, count, grain) {
-    const cadt_snapshot s = cadt_look(&mesh, t);
-    if (!cadt_may_be_of_row(&s, ends)) continue;
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, t);
+    if (!cadt_may_be_of_cascade(&s, ends)) continue;
     for (cadt_u32 v = 0u; v < vertex_count; ++v)
       if (cadt_is_in_conflict(&mesh, &s, vertices[v], cadt_point_of(&mesh, vertices[v])))
         cadt_add_relaxed(sums + v, 1u);
@@ -79,8 +79,8 @@ CADT_KERNEL(cadt_cavity_sizes, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 gr
 }
 
 /* \pre no other kernel runs */
-CADT_FN void cadt_lock_alone(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 lock, CADT_GLOBAL cadt_u32* list,
-                             cadt_u32 capacity, CADT_GLOBAL cadt_u32* found) {
+CADT_FN void cadt_add_to_region(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 lock, CADT_GLOBAL cadt_u32* list,
+                                cadt_u32 capacity, CADT_GLOBAL cadt_u32* found) {
   const cadt_u32 at = cadt_add_relaxed(found + CADT_CAVITY_LISTED, 1u);
   if (at >= capacity) return;
   cadt_store_relaxed(m->locked[t].word + CADT_WORD_LOCK, lock | 1u);
@@ -94,9 +94,9 @@ CADT_KERNEL(cadt_cavity_conflicts, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u3
   CADT_MESH_VIEW(mesh);
   const cadt_point p = cadt_point_of(&mesh, w);
   CADT_FOR(t, count, grain) {
-    const cadt_snapshot s = cadt_look(&mesh, t);
-    if (cadt_may_be_of_row(&s, ends) && cadt_is_in_conflict(&mesh, &s, w, p))
-      cadt_lock_alone(&mesh, t, s.lock, list, capacity, found);
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, t);
+    if (cadt_may_be_of_cascade(&s, ends) && cadt_is_in_conflict(&mesh, &s, w, p))
+      cadt_add_to_region(&mesh, t, s.lock, list, capacity, found);
   }
 }
 
@@ -105,11 +105,11 @@ CADT_KERNEL(cadt_cavity_star, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 gra
             CADT_GLOBAL cadt_u32* list, cadt_u32 capacity, CADT_GLOBAL cadt_u32* found) {
   CADT_MESH_VIEW(mesh);
   CADT_FOR(i, count, grain) {
-    const cadt_snapshot s = cadt_look(&mesh, list[i]);
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, list[i]);
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 across = CADT_NEIGHBOR(s, k), t = CADT_TRIANGLE_OF(across);
-      const cadt_snapshot u = cadt_look_from(&mesh, t, CADT_EDGE_OF(across));
-      if (u.v0 == w) cadt_lock_alone(&mesh, t, u.lock, list, capacity, found);
+      const cadt_snapshot u = cadt_snapshot_from(&mesh, t, CADT_EDGE_OF(across));
+      if (u.v0 == w) cadt_add_to_region(&mesh, t, u.lock, list, capacity, found);
     }
   }
 }
@@ -163,7 +163,7 @@ CADT_KERNEL(cadt_cavity_check, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 gr
   const cadt_point p = cadt_point_of(&mesh, w);
   CADT_FOR(i, count, grain) {
     const cadt_u32 root = cadt_find_root(scratch, i);
-    const cadt_snapshot s = cadt_look(&mesh, list[i]);
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, list[i]);
     cadt_u32 balance = 1u;
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 from = CADT_VERTEX(s, CADT_NEXT(k)), to = CADT_VERTEX(s, CADT_PREV(k));
@@ -199,7 +199,7 @@ CADT_KERNEL(cadt_cavity_boundary, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32
             cadt_u32 capacity, CADT_GLOBAL cadt_u32* found) {
   CADT_MESH_VIEW(mesh);
   CADT_FOR(i, count, grain) {
-    const cadt_snapshot s = cadt_look(&mesh, kept[i]);
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, kept[i]);
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 across = CADT_NEIGHBOR(s, k);
       if (cadt_is_locked(locked, CADT_TRIANGLE_OF(across))) continue;
@@ -221,7 +221,7 @@ CADT_KERNEL(cadt_cavity_boundary, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32
 }
 
 /* Links two edges with each other. */
-CADT_FN void cadt_link_both(const cadt_locked_mesh* m, cadt_u32 a, cadt_u32 b) {
+CADT_FN void cadt_pair_half_edges(const cadt_locked_mesh* m, cadt_u32 a, cadt_u32 b) {
   cadt_store_field(m->locked[CADT_TRIANGLE_OF(a)].word + CADT_WORD_HALF_EDGE + CADT_EDGE_OF(a), b);
   cadt_store_field(m->locked[CADT_TRIANGLE_OF(b)].word + CADT_WORD_HALF_EDGE + CADT_EDGE_OF(b), a);
 }
@@ -239,14 +239,15 @@ CADT_KERNEL(cadt_cavity_fill, CADT_MESH_PARAMETERS, cadt_u32 side_count, cadt_u3
       const cadt_u32 flips = cadt_load_field(locked[CADT_TRIANGLE_OF(across)].word + CADT_WORD_FLIPS);
       cadt_store_vertices(&mesh, t, w, from, to);
       cadt_store_flips(&mesh, t, cadt_flips_set(0u, 0u, cadt_flips_get(flips, CADT_EDGE_OF(across))));
-      cadt_link_both(&mesh, CADT_HALF_EDGE(t, 0u), across);
-      cadt_link_both(
+      cadt_pair_half_edges(&mesh, CADT_HALF_EDGE(t, 0u), across);
+      cadt_pair_half_edges(
           &mesh, CADT_HALF_EDGE(t, 1u),
           next & CADT_SPOKE_BEGINS ? spokes[2u * (next & ~CADT_SPOKE_BEGINS)] : CADT_HALF_EDGE(kept[next], 2u));
     } else {
       const cadt_u32 j = i - side_count, end = spokes[2u * j + 1u];
       if (!(end & CADT_SPOKE_BEGINS))
-        cadt_link_both(&mesh, CADT_HALF_EDGE(kept[cadt_load_relaxed(vertex_to_triangle + end)], 2u), spokes[2u * j]);
+        cadt_pair_half_edges(&mesh, CADT_HALF_EDGE(kept[cadt_load_relaxed(vertex_to_triangle + end)], 2u),
+                             spokes[2u * j]);
     }
   }
 }

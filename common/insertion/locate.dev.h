@@ -76,12 +76,12 @@ CADT_FN cadt_u32 cadt_leave_face(const cadt_locked_mesh* m, const cadt_snapshot*
  * place->record is where to go on in any case. */
 CADT_FN void cadt_locate(const cadt_locked_mesh* m, cadt_point p, cadt_u32 start, cadt_place* place,
                          cadt_counters* counters) {
-  cadt_u32 t = start, entry = 3u, steps = 0u, noise = start * 2654435761u + 12345u;
+  cadt_u32 t = start, entry = 3u, steps = 0u, random = start * 2654435761u + 12345u;
   place->kind = CADT_LOST;
   place->edge = 0u;
   for (; steps < CADT_CAST(cadt_u32, CADT_WALK_LIMIT); ++steps) {
-    CADT_NOISE_AT(m, CADT_AT_WALK);
-    cadt_snapshot s = cadt_look(m, t);
+    CADT_NOISE_AT(m, CADT_SITE_WALK);
+    cadt_snapshot s = cadt_snapshot_of(m, t);
     cadt_u32 leave, on = 0u;
     if (s.lock == 0u) break;
     if (s.v0 == CADT_GHOST || s.v1 == CADT_GHOST || s.v2 == CADT_GHOST) {
@@ -92,8 +92,8 @@ CADT_FN void cadt_locate(const cadt_locked_mesh* m, cadt_point p, cadt_u32 start
     } else {
       cadt_u32 reverse = 0u;
       if (steps > CADT_CAST(cadt_u32, CADT_WALK_STRAIGHT)) {
-        noise = noise * 1664525u + 1013904223u;
-        reverse = noise >> 31;
+        random = random * 1664525u + 1013904223u;
+        reverse = random >> 31;
       }
       leave = cadt_leave_face(m, &s, entry, reverse, p, &on, counters);
       /* The entry edge was tested from the other side, but either side may have changed since: test it before it

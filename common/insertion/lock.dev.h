@@ -32,7 +32,7 @@ typedef struct {
 CADT_FN cadt_u32 cadt_is_unlocked(cadt_u32 lock) { return lock != 0u && !(lock & 1u) ? 1u : 0u; }
 CADT_FN cadt_u32 cadt_next_version(cadt_u32 version) { return version + 2u ? version + 2u : 2u; }
 
-CADT_FN void cadt_lock_order(cadt_lock_set* c, cadt_u32 i, cadt_u32 j) {
+CADT_FN void cadt_order_locks(cadt_lock_set* c, cadt_u32 i, cadt_u32 j) {
   if (c->triangle[i] > c->triangle[j]) {
     cadt_u32 r = c->triangle[i], v = c->version[i];
     c->triangle[i] = c->triangle[j];
@@ -48,7 +48,7 @@ CADT_FN void cadt_unlock_unchanged(const cadt_locked_mesh* m, const cadt_lock_se
   for (cadt_u32 i = 0u; i < count; ++i)
     if (c->triangle[i] != CADT_NONE) {
       cadt_store_lock(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, c->version[i]);
-      CADT_NOISE_AT(m, CADT_AT_UNLOCKED_UNCHANGED);
+      CADT_NOISE_AT(m, CADT_SITE_UNLOCKED_UNCHANGED);
     }
 #else
   /* By an addition: a store would take the place of the last owner's in what the next claimer synchronises with, and so
@@ -56,7 +56,7 @@ CADT_FN void cadt_unlock_unchanged(const cadt_locked_mesh* m, const cadt_lock_se
   for (cadt_u32 i = 0u; i < count; ++i)
     if (c->triangle[i] != CADT_NONE) {
       cadt_add_relaxed(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);
-      CADT_NOISE_AT(m, CADT_AT_UNLOCKED_UNCHANGED);
+      CADT_NOISE_AT(m, CADT_SITE_UNLOCKED_UNCHANGED);
     }
 #endif
 }
@@ -88,30 +88,30 @@ CADT_FN cadt_u32 cadt_try_lock_one(CADT_GLOBAL cadt_u32* lock, cadt_u32* version
 #endif
 }
 
-/* Claims up to four records. \pre versions were read by cadt_look before the fields, or are CADT_ANY_VERSION for
+/* Claims up to four records. \pre versions were read by cadt_snapshot_of before the fields, or are CADT_ANY_VERSION for
  * records of which the caller needs no field. \post 1: the caller owns all of them, `version` has the versions to give
  * back; 0: it owns none. */
 CADT_FN cadt_u32 cadt_try_lock(const cadt_locked_mesh* m, cadt_lock_set* c, cadt_counters* counters) {
   counters->count[CADT_COUNT_LOCK_ATTEMPTS]++;
-  cadt_lock_order(c, 0, 1);
-  cadt_lock_order(c, 2, 3);
-  cadt_lock_order(c, 0, 2);
-  cadt_lock_order(c, 1, 3);
-  cadt_lock_order(c, 1, 2);
-  CADT_NOISE_AT(m, CADT_AT_LOCK);
+  cadt_order_locks(c, 0, 1);
+  cadt_order_locks(c, 2, 3);
+  cadt_order_locks(c, 0, 2);
+  cadt_order_locks(c, 1, 3);
+  cadt_order_locks(c, 1, 2);
+  CADT_NOISE_AT(m, CADT_SITE_TRY_LOCK);
   for (cadt_u32 i = 0u; i < 4u; ++i) {
     if (c->triangle[i] == CADT_NONE) break;
-    if (CADT_FAILS(m, CADT_AT_LOCK) ||
+    if (CADT_NOISE_FAILS(m, CADT_SITE_TRY_LOCK) ||
         !cadt_try_lock_one(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, &c->version[i], counters)) {
       cadt_unlock_unchanged(m, c, i);
       CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
-      CADT_LAP(counters, CADT_TIME_LOCK);
+      CADT_ADD_TIME(counters, CADT_TIME_LOCK);
       return 0u;
     }
-    CADT_NOISE_AT(m, CADT_AT_LOCKED);
+    CADT_NOISE_AT(m, CADT_SITE_LOCKED);
   }
   cadt_fence_after_lock(); /* what the last owners wrote is seen from here on */
-  CADT_LAP(counters, CADT_TIME_LOCK);
+  CADT_ADD_TIME(counters, CADT_TIME_LOCK);
   return 1u;
 }
 
@@ -121,19 +121,18 @@ enum { CADT_HALF_EDGES_01 = 3, CADT_HALF_EDGES_12 = 6, CADT_HALF_EDGES_ALL = 7 }
 /* Whether the vertices of record t, seen from edge k, and those of its links that are in `links` are still what `s`
  * says. On GPUs its links and counters are then those read again: what has not been used before need not be kept until
  * here, where registers are short. On CPUs the claim has proved all of `s`. \pre the caller owns t */
-CADT_FN cadt_u32 cadt_validate(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 half_edges,
-                               cadt_snapshot* s) {
-  CADT_NOISE_AT(m, CADT_AT_VALIDATE);
-  if (CADT_FAILS(m, CADT_AT_VALIDATE)) return 0u;
+CADT_FN cadt_u32 cadt_validate(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 used, cadt_snapshot* s) {
+  CADT_NOISE_AT(m, CADT_SITE_VALIDATE);
+  if (CADT_NOISE_FAILS(m, CADT_SITE_VALIDATE)) return 0u;
 #if CADT_CONTIGUOUS
-  (void)m, (void)t, (void)k, (void)half_edges, (void)s;
+  (void)m, (void)t, (void)k, (void)used, (void)s;
   return 1u;
 #else
-  const cadt_snapshot now = cadt_look_from(m, t, k);
+  const cadt_snapshot now = cadt_snapshot_from(m, t, k);
   cadt_u32 other = (now.v0 ^ s->v0) | (now.v1 ^ s->v1) | (now.v2 ^ s->v2);
-  if (half_edges & 1u) other |= now.n0 ^ s->n0;
-  if (half_edges & 2u) other |= now.n1 ^ s->n1;
-  if (half_edges & 4u) other |= now.n2 ^ s->n2;
+  if (used & 1u) other |= now.n0 ^ s->n0;
+  if (used & 2u) other |= now.n1 ^ s->n1;
+  if (used & 4u) other |= now.n2 ^ s->n2;
   s->n0 = now.n0;
   s->n1 = now.n1;
   s->n2 = now.n2;
@@ -144,12 +143,21 @@ CADT_FN cadt_u32 cadt_validate(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k
 
 /* Gives the records back, changed. \pre the caller owns them; all stores to them are done */
 CADT_FN void cadt_unlock(const cadt_locked_mesh* m, const cadt_lock_set* c) {
-  CADT_NOISE_AT(m, CADT_AT_UNLOCK);
+  CADT_NOISE_AT(m, CADT_SITE_UNLOCK);
   for (cadt_u32 i = 0u; i < 4u; ++i)
     if (c->triangle[i] != CADT_NONE) {
       cadt_store_lock(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, cadt_next_version(c->version[i]));
-      CADT_NOISE_AT(m, CADT_AT_UNLOCKED);
+      CADT_NOISE_AT(m, CADT_SITE_UNLOCKED);
     }
+}
+
+/* Gives back a claim whose records turned out to have changed. Returns 0. */
+CADT_FN cadt_u32 cadt_unlock_invalid(const cadt_locked_mesh* m, const cadt_lock_set* locks, cadt_counters* counters) {
+  cadt_unlock_unchanged(m, locks, 4u);
+  CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
+  CADT_COUNT_NOW(counters, CADT_COUNT_INVALIDATED);
+  CADT_ADD_TIME(counters, CADT_TIME_LOCK);
+  return 0u;
 }
 
 /* Makes a new record free. \pre its fields and all links to it are stored, and the caller still owns the records it was

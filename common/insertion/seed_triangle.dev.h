@@ -6,7 +6,7 @@
 #ifndef CADT_INSERTION_SEED_TRIANGLE_H
 #define CADT_INSERTION_SEED_TRIANGLE_H
 
-#include "common/insertion/split_and_flip.dev.h"
+#include "common/insertion/split.dev.h"
 
 /* Lowers *third to the first position that is not on the line of points `first` and `second`. */
 CADT_KERNEL(cadt_find_seed_triangle, CADT_GLOBAL const cadt_point* points, cadt_u32 first, cadt_u32 second,
@@ -23,7 +23,7 @@ CADT_KERNEL(cadt_find_seed_triangle, CADT_GLOBAL const cadt_point* points, cadt_
 }
 
 /* \pre records are zero */
-CADT_FN void cadt_start(const cadt_locked_mesh* m, cadt_counters* counters) {
+CADT_FN void cadt_make_seed_mesh(const cadt_locked_mesh* m, cadt_counters* counters) {
   cadt_u32 a = m->first, b = m->second, c = m->third;
   if (cadt_orientation(m->points[a], m->points[b], m->points[c], counters) < 0) {
     b = m->third;
@@ -52,7 +52,7 @@ CADT_KERNEL(cadt_seed_mesh, CADT_MESH_PARAMETERS) {
   CADT_MESH_VIEW(mesh);
   cadt_counters counters;
   cadt_counters_clear(&counters);
-  cadt_start(&mesh, &counters);
+  cadt_make_seed_mesh(&mesh, &counters);
 }
 
 #endif

@@ -27,10 +27,11 @@ typedef struct {
   cadt_point center;
   cadt_u32 first, second, third; /* positions of the first three vertices */
   cadt_u32 stabilize,
-      threshold; /* what is done with edges that were flipped more than `threshold` times (split_and_flip.dev.h) */
+      threshold; /* what is done with edges that were flipped more than `threshold` times (stabilized_flips.dev.h) */
   cadt_real epsilon;
 #if defined(CADT_CHECKED)
-  cadt_u32 own_begin, own_size; /* the range of who works without claims (partitioned.dev.h), empty elsewhere */
+  cadt_u32 partition_begin,
+      partition_size; /* the range of who works without claims (partitioned.dev.h), empty elsewhere */
 #endif
 #if defined(CADT_SCHEDULE_NOISE)
   cadt_noise* noise;
@@ -42,9 +43,9 @@ typedef struct {
       CADT_GLOBAL cadt_u32 *vertex_to_triangle, cadt_real center_x, cadt_real center_y, cadt_u32 first, \
       cadt_u32 second, cadt_u32 third, cadt_u32 stabilize, cadt_u32 threshold, cadt_real epsilon
 #if defined(CADT_CHECKED)
-#define CADT_OWN_PARTITION(mesh, begin, size) mesh.own_begin = (begin), mesh.own_size = (size)
+#define CADT_SET_PARTITION(mesh, begin, size) mesh.partition_begin = (begin), mesh.partition_size = (size)
 #else
-#define CADT_OWN_PARTITION(mesh, begin, size) ((void)0)
+#define CADT_SET_PARTITION(mesh, begin, size) ((void)0)
 #endif
 #define CADT_MESH_VIEW(mesh)                    \
   cadt_locked_mesh mesh;                        \
@@ -59,7 +60,7 @@ typedef struct {
   mesh.stabilize = stabilize;                   \
   mesh.threshold = threshold;                   \
   mesh.epsilon = epsilon;                       \
-  CADT_OWN_PARTITION(mesh, 0u, 0u);             \
+  CADT_SET_PARTITION(mesh, 0u, 0u);             \
   CADT_NOISE_BEGIN(mesh, cadt_item, epsilon)
 
 #define CADT_HALF_EDGE(triangle, edge) (((triangle) << 2) | (edge))
@@ -79,7 +80,7 @@ CADT_FN cadt_point cadt_point_of(const cadt_locked_mesh* m, cadt_u32 vertex) {
   return cadt_load_point(m->points + vertex);
 }
 
-CADT_FN cadt_snapshot cadt_look(const cadt_locked_mesh* m, cadt_u32 t) {
+CADT_FN cadt_snapshot cadt_snapshot_of(const cadt_locked_mesh* m, cadt_u32 t) {
   cadt_snapshot s;
   cadt_load_triangle(m->locked[t].word, &s.v0, &s.v1, &s.v2, &s.lock, &s.n0, &s.n1, &s.n2, &s.flips);
   return s;
@@ -87,13 +88,13 @@ CADT_FN cadt_snapshot cadt_look(const cadt_locked_mesh* m, cadt_u32 t) {
 
 /* The same seen from edge k: v0 is opposite of it, n0 is the link across it. CPUs load by index, since a choice by k
  * would be a branch that nobody can predict; GPUs load the record whole and rotate it in registers. */
-CADT_FN cadt_snapshot cadt_look_from(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k) {
+CADT_FN cadt_snapshot cadt_snapshot_from(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k) {
 #if CADT_CONTIGUOUS
   CADT_GLOBAL cadt_u32* w = m->locked[t].word;
   const cadt_u32 k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
   cadt_snapshot s;
   s.lock = cadt_load_field(w + CADT_WORD_LOCK);
-  CADT_NOISE_AT(m, CADT_AT_FIELDS);
+  CADT_NOISE_AT(m, CADT_SITE_FIELDS);
   s.v0 = cadt_load_field(w + k);
   s.v1 = cadt_load_field(w + k1);
   s.v2 = cadt_load_field(w + k2);
@@ -103,7 +104,7 @@ CADT_FN cadt_snapshot cadt_look_from(const cadt_locked_mesh* m, cadt_u32 t, cadt
   s.flips = cadt_load_field(w + CADT_WORD_FLIPS);
   return s;
 #else
-  const cadt_snapshot s = cadt_look(m, t);
+  const cadt_snapshot s = cadt_snapshot_of(m, t);
   cadt_snapshot r;
   r.lock = s.lock;
   r.v0 = CADT_PICK(k, s.v0, s.v1, s.v2);
@@ -122,9 +123,9 @@ CADT_FN cadt_snapshot cadt_look_from(const cadt_locked_mesh* m, cadt_u32 t, cadt
  * (3: none) need not be. */
 CADT_FN cadt_u32 cadt_may_store(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 any) {
   const cadt_u32 lock = cadt_load_relaxed(m->locked[t].word + CADT_WORD_LOCK);
-  if (m->own_size == 0u) return lock == 0u || (lock & 1u) ? 1u : 0u;
+  if (m->partition_size == 0u) return lock == 0u || (lock & 1u) ? 1u : 0u;
   for (cadt_u32 k = 0u; lock != 0u && k < 3u; ++k)
-    if (k != any && cadt_load_relaxed(m->locked[t].word + k) - m->own_begin >= m->own_size) return 0u;
+    if (k != any && cadt_load_relaxed(m->locked[t].word + k) - m->partition_begin >= m->partition_size) return 0u;
   return 1u;
 }
 #define CADT_ASSERT_OWNED(m, t, any) cadt_assert_owned(cadt_may_store((m), (t), (any)))
@@ -151,6 +152,16 @@ CADT_FN void cadt_store_half_edge(const cadt_locked_mesh* m, cadt_u32 t, cadt_u3
 CADT_FN void cadt_store_flips(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 flips) {
   CADT_ASSERT_OWNED(m, t, 3u);
   cadt_store_field(m->locked[t].word + CADT_WORD_FLIPS, flips);
+}
+
+CADT_FN void cadt_relink(const cadt_locked_mesh* m, cadt_u32 outer, cadt_u32 half_edge) {
+  cadt_store_half_edge(m, CADT_TRIANGLE_OF(outer), CADT_EDGE_OF(outer), half_edge);
+}
+
+/* A flip takes a vertex away from each of its records; with its hint kept on a record of its own, walks take 3.3 steps
+ * instead of 5.8 (1M uniform points). Splits do the same, but there it makes no difference. */
+CADT_FN void cadt_set_vertex_triangle(const cadt_locked_mesh* m, cadt_u32 vertex, cadt_u32 t) {
+  if (vertex != CADT_GHOST) cadt_store_relaxed(m->vertex_to_triangle + vertex, t);
 }
 
 #if !CADT_CONTIGUOUS

@@ -21,7 +21,7 @@ class GrowthSnapshots {
 
  private:
   Device& device_;
-  std::vector<std::uint32_t> labels_;  ///< position in the mesh to index of the input
+  std::vector<std::uint32_t> input_ids_;  ///< position in the mesh to index of the input
 };
 
 }  // namespace cadt

@@ -15,27 +15,27 @@
 #if defined(CADT_SCHEDULE_NOISE)
 
 enum {
-  CADT_AT_WALK,               /* before a walk reads the next record as a hint */
-  CADT_AT_FIELDS,             /* CPUs: between a lock word and the fields behind it */
-  CADT_AT_START,              /* before the hint of a vertex is followed */
-  CADT_AT_SECOND,             /* between the reads of the two triangles of an edge */
-  CADT_AT_LOCK,               /* what was read is decided upon; before the first claim */
-  CADT_AT_LOCKED,             /* behind each claim that is won, and so between them. From here on records are held */
-  CADT_AT_VALIDATE,           /* all are claimed; before they are read again */
-  CADT_AT_WRITE,              /* before the first store */
-  CADT_AT_NEXT_TRIANGLE,      /* between the records of a change */
-  CADT_AT_HALF_EDGES,         /* before the links back from the neighbours */
-  CADT_AT_NEXT_HALF_EDGE,     /* between them */
-  CADT_AT_PUBLISH,            /* before new records are made free */
-  CADT_AT_NEXT_PUBLISH,       /* between them */
-  CADT_AT_UNLOCK,             /* before the first record is given back, changed */
-  CADT_AT_UNLOCKED,           /* behind each of them */
-  CADT_AT_UNLOCKED_UNCHANGED, /* behind each one that is given back unchanged. Up to here records are held */
-  CADT_AT_NEW_START,          /* between a flip and the hints of its vertices */
-  CADT_AT_TAKE,               /* before an edge is taken from the worklist */
-  CADT_AT_PUSH_EDGE,          /* before or behind an edge's way to the worklist or to the next launch */
-  CADT_AT_PUSH_POINT,         /* between the place on the list of points and its store */
-  CADT_AT_OWN,                /* ranges without locks: between the stores of a split and its publication */
+  CADT_SITE_WALK,               /* before a walk reads the next record as a hint */
+  CADT_SITE_FIELDS,             /* CPUs: between a lock word and the fields behind it */
+  CADT_SITE_WALK_START,         /* before the hint of a vertex is followed */
+  CADT_SITE_SECOND_TRIANGLE,    /* between the reads of the two triangles of an edge */
+  CADT_SITE_TRY_LOCK,           /* what was read is decided upon; before the first claim */
+  CADT_SITE_LOCKED,             /* behind each claim that is won, and so between them. From here on records are held */
+  CADT_SITE_VALIDATE,           /* all are claimed; before they are read again */
+  CADT_SITE_WRITE,              /* before the first store */
+  CADT_SITE_NEXT_TRIANGLE,      /* between the records of a change */
+  CADT_SITE_HALF_EDGES,         /* before the links back from the neighbours */
+  CADT_SITE_NEXT_HALF_EDGE,     /* between them */
+  CADT_SITE_PUBLISH,            /* before new records are made free */
+  CADT_SITE_NEXT_PUBLISH,       /* between them */
+  CADT_SITE_UNLOCK,             /* before the first record is given back, changed */
+  CADT_SITE_UNLOCKED,           /* behind each of them */
+  CADT_SITE_UNLOCKED_UNCHANGED, /* behind each one that is given back unchanged. Up to here records are held */
+  CADT_SITE_VERTEX_TRIANGLE,    /* between a flip and the hints of its vertices */
+  CADT_SITE_TAKE_EDGE,          /* before an edge is taken from the worklist */
+  CADT_SITE_PUSH_EDGE,          /* before or behind an edge's way to the worklist or to the next launch */
+  CADT_SITE_PUSH_POINT,         /* between the place on the list of points and its store */
+  CADT_SITE_PARTITION,          /* ranges without locks: between the stores of a split and its publication */
   CADT_SITES
 };
 
@@ -101,7 +101,7 @@ CADT_FN void cadt_noise_at(cadt_noise* noise, cadt_u32 site) {
 #endif
   if (noise->mode == CADT_NOISE_OFF) return;
   const cadt_u32 r = cadt_noise_next(noise) >> 8;
-  const cadt_u32 held = site >= CADT_AT_LOCKED && site <= CADT_AT_UNLOCKED_UNCHANGED ? 1u : 0u;
+  const cadt_u32 held = site >= CADT_SITE_LOCKED && site <= CADT_SITE_UNLOCKED_UNCHANGED ? 1u : 0u;
   if (noise->mode == CADT_NOISE_UNIFORM) {
     if ((r & 3u) == 0u) cadt_delay(1u << ((r >> 2) % 12u));
   } else if (noise->mode == CADT_NOISE_SLOW) {
@@ -114,20 +114,20 @@ CADT_FN void cadt_noise_at(cadt_noise* noise, cadt_u32 site) {
 }
 
 /* Whether this claim or confirmation is to fail though it need not. */
-CADT_FN cadt_u32 cadt_fails(cadt_noise* noise, cadt_u32 site) {
+CADT_FN cadt_u32 cadt_noise_fails(cadt_noise* noise, cadt_u32 site) {
   const cadt_u32 r = cadt_noise_next(noise) >> 12;
-  if (noise->mode == CADT_NOISE_FAILURES) return (r & (site == CADT_AT_LOCK ? 1u : 3u)) == 0u ? 1u : 0u;
+  if (noise->mode == CADT_NOISE_FAILURES) return (r & (site == CADT_SITE_TRY_LOCK ? 1u : 3u)) == 0u ? 1u : 0u;
   return noise->mode == CADT_NOISE_ALL && (r & 7u) == 0u ? 1u : 0u;
 }
 
 #define CADT_NOISE_AT(m, site) cadt_noise_at((m)->noise, (site))
-#define CADT_FAILS(m, site) cadt_fails((m)->noise, (site))
+#define CADT_NOISE_FAILS(m, site) cadt_noise_fails((m)->noise, (site))
 #define CADT_NOISE_BEGIN(mesh, item, setting)                 \
   cadt_noise mesh##_noise = cadt_noise_of((item), (setting)); \
   mesh.noise = &mesh##_noise
 #else
 #define CADT_NOISE_AT(m, site) ((void)0)
-#define CADT_FAILS(m, site) 0u
+#define CADT_NOISE_FAILS(m, site) 0u
 #define CADT_NOISE_BEGIN(mesh, item, setting) ((void)0)
 #endif
 

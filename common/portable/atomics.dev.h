@@ -14,7 +14,7 @@
 #ifndef CADT_PORTABLE_ATOMICS_H
 #define CADT_PORTABLE_ATOMICS_H
 
-#include "common/portable/dialect.dev.h"
+#include "common/portable/teams.dev.h"
 
 /* ---- OpenCL 3.0 with acquire/release at device scope: the C11 operations -------------------------------------------
  * NVIDIA's OpenCL does not advertise the features, yet compiles them to fences of device scope; the back end probes by

@@ -90,7 +90,7 @@
   X(cadt_batch_store)          /* batch.dev.h */                                                \
   X(cadt_batch_shift)          /* batch.dev.h: numbers in the set */                            \
   X(cadt_count_triangles)      /* renumber.dev.h */                                             \
-  X(cadt_cut_buckets)          /* renumber.dev.h */                                             \
+  X(cadt_split_buckets)        /* renumber.dev.h */                                             \
   X(cadt_bucket_triangles)     /* renumber.dev.h: canonical order */                            \
   X(cadt_sort_buckets)         /* renumber.dev.h */                                             \
   X(cadt_long_flags)           /* renumber.dev.h */                                             \

@@ -166,7 +166,7 @@ enum {
   CADT_TIME_NEIGHBORS, /* links from outside to what was changed */
   CADT_TIME_OTHER,     /* worklist, choice of the point */
   CADT_TIME_WAIT,      /* for other lanes of the warp */
-  CADT_TIMES,
+  CADT_TIMERS,
   /* A row has 32 bits for each. On a GPU an account is full after 1e15 ticks, seconds of all its lanes; a lane and a
    * group drop up to 2^4 and 2^12 of them. */
   CADT_TIME_LANE_SHIFT = 4,
@@ -194,10 +194,10 @@ enum {
 #define CADT_CAVITY_BIT(vertex) ((vertex)*2654435761u >> 17 & (32u * CADT_CAVITY_SET_WORDS - 1u))
 
 enum {
-  CADT_LEFT_COUNTS = 3 /* points, edges, work-items that changed the mesh (insert.dev.h) */
+  CADT_DEFERRED_COUNTS = 3 /* points, edges, work-items that changed the mesh (insert.dev.h) */
 };
 
-/* cadt_locked_mesh.stabilize (split_and_flip.dev.h) */
+/* cadt_locked_mesh.stabilize (stabilized_flips.dev.h) */
 enum { CADT_STABILIZE_OFF, CADT_STABILIZE_DEFER, CADT_STABILIZE_PAPER };
 
 #endif

@@ -68,7 +68,7 @@ CADT_FN cadt_i32 cadt_span_bits(const cadt_span* s) { return s->high > s->low ? 
 /* ---- 64-bit integers over one exponent, that of the largest coordinate ---------------------------------------------
  */
 typedef struct {
-#if CADT_GRADUAL
+#if CADT_GRADUAL_UNDERFLOW
   double scale; /* a power of two: the largest coordinate becomes less than 2^61 */
 #else
   cadt_i32 power; /* of two */
@@ -83,7 +83,7 @@ CADT_FN cadt_u64 cadt_larger_exponent(cadt_u64 exponent, cadt_point p) {
   return larger > exponent ? larger : exponent;
 }
 
-#if CADT_GRADUAL
+#if CADT_GRADUAL_UNDERFLOW
 /* \pre `exponent` is that of the largest coordinate, as in its bits */
 CADT_FN cadt_scale cadt_scale_of(cadt_u64 exponent) {
   cadt_scale s;

@@ -82,7 +82,7 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point 
   return cadt_sign_of_minor(d, n);
 }
 
-#if CADT_GRADUAL && !CADT_WIDE
+#if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
 /* A sum of two doubles, the second at most half of a last place of the first (T. J. Dekker, "A floating-point technique
  * for extending the available precision", 1971). What this takes the self-test asks of a device: sums and products are
  * rounded to nearest, one by one. */
@@ -122,10 +122,10 @@ CADT_FN cadt_pair cadt_pair_product(cadt_pair a, cadt_pair b) {
   return cadt_pair_of(product, lost + (a.high * b.low + a.low * b.high));
 }
 
-/* The sign of the incircle determinant by sums of two doubles, 0 if they cannot tell. The filter's bound is `most` / 2,
- * about 2^-50 of the sum of all products' magnitudes; here the errors are less than 2^-97 of that: five roundings of a
- * product, each below 2^-102. */
-CADT_FN_SLOW cadt_i32 cadt_incircle_pairs(const cadt_point* q, double most) {
+/* The sign of the incircle determinant by sums of two doubles, 0 if they cannot tell. The filter's bound is `max_det` /
+ * 2, about 2^-50 of the sum of all products' magnitudes; here the errors are less than 2^-97 of that: five roundings of
+ * a product, each below 2^-102. */
+CADT_FN_SLOW cadt_i32 cadt_incircle_pairs(const cadt_point* q, double max_det) {
   cadt_pair d[6], det; /* an array, and loops that stay loops: registers are wanted by who calls this */
   CADT_ROLLED
   for (cadt_i32 i = 0; i < 3; ++i) {
@@ -148,7 +148,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_pairs(const cadt_point* q, double most) {
     for (cadt_i32 k = 0; k < 2; ++k) part[k] = cadt_pair_sum(factor[2 * k], factor[2 * k + 1]);
     det = cadt_pair_sum(det, cadt_pair_product(part[0], part[1]));
   }
-  const double bound = most * 0x1p-45;
+  const double bound = max_det * 0x1p-45;
   return det.high > bound ? 1 : (-det.high > bound ? -1 : 0);
 }
 #endif
@@ -194,13 +194,13 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point
  * vol. 2, 4.2.2). Where subnormal numbers may be 0 that proves nothing. */
 CADT_FN cadt_real cadt_difference(cadt_real a, cadt_real b, cadt_u32* exact) {
   const cadt_real difference = a - b, part = difference - a;
-  if (!CADT_GRADUAL || (a - (difference - part)) - (b + part) != 0.0) *exact = 0u;
+  if (!CADT_GRADUAL_UNDERFLOW || (a - (difference - part)) - (b + part) != 0.0) *exact = 0u;
   return difference;
 }
 
-#if CADT_GRADUAL && !CADT_WIDE
-CADT_FN_SLOW cadt_i32 cadt_incircle_long(const cadt_point* q, cadt_real most) {
-  const cadt_i32 sign = cadt_incircle_pairs(q, most);
+#if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
+CADT_FN_SLOW cadt_i32 cadt_incircle_long(const cadt_point* q, cadt_real max_det) {
+  const cadt_i32 sign = cadt_incircle_pairs(q, max_det);
   if (sign != 0) {
     CADT_STAGE(incircle_pairs);
     return sign;
@@ -211,7 +211,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_long(const cadt_point* q, cadt_real most) {
 
 /* Incircle: 1 if p is inside the circle of the counterclockwise triangle a, b, c, 0 on it, -1 outside. The magnitude of
  * the determinant is known to be at most `most`. */
-CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_real most) {
+CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_real max_det) {
   cadt_u32 exact = 1u;
   cadt_point d[3];
   d[0].x = cadt_difference(a.x, p.x, &exact);
@@ -237,14 +237,14 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
       cx -= px, cy -= py;
     }
     if (s.fits) {
-#if CADT_GRADUAL
+#if CADT_GRADUAL_UNDERFLOW
       /* As integers without common factors 2. If then the determinant is below 2^191, 192 bits tell it, whatever is
        * lost of its terms. */
       const cadt_u64 bits = CADT_CAST(cadt_u64, ax | ay | bx | by | cx | cy);
       const cadt_i32 zeros = bits ? cadt_trailing_zeros(bits) : 0;
       const double unit = s.scale * cadt_double_of_bits(CADT_CAST(cadt_u64, 1023 - zeros) << 52), square = unit * unit;
       /* |differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. Loops keep the code short. */
-      if (most * square * square < 1.5e57) { /* 2^190 */
+      if (max_det * square * square < 1.5e57) { /* 2^190 */
         CADT_STAGE(incircle_192);
         cadt_i192 det;
         for (cadt_i32 i = 0; i < 3; ++i) det.word[i] = 0ul;
@@ -260,7 +260,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
         return cadt_sign_i192(&det);
       }
 #else
-      (void)most;
+      (void)max_det;
 #endif
       CADT_STAGE(incircle_256);
       cadt_i256 det;
@@ -276,13 +276,13 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
       return cadt_sign_i256(&det);
     }
   }
-#if CADT_GRADUAL && !CADT_WIDE
+#if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
   cadt_point q[4];
   q[0] = a;
   q[1] = b;
   q[2] = c;
   q[3] = p;
-  return cadt_incircle_long(q, most);
+  return cadt_incircle_long(q, max_det);
 #else
   return cadt_incircle_limbs(a, b, c, p);
 #endif

@@ -139,10 +139,10 @@ CADT_FN cadt_u32 cadt_mirrored(cadt_point a, cadt_point b, cadt_point c, cadt_po
 /* A point seen from another one. */
 typedef struct {
   cadt_real x, y, lift;
-} cadt_arm;
+} cadt_lifted_vector;
 
-CADT_FN cadt_arm cadt_reach(cadt_point from, cadt_point to) {
-  cadt_arm arm;
+CADT_FN cadt_lifted_vector cadt_lifted_vector_of(cadt_point from, cadt_point to) {
+  cadt_lifted_vector arm;
   arm.x = to.x - from.x;
   arm.y = to.y - from.y;
   arm.lift = arm.x * arm.x + arm.y * arm.y;
@@ -150,12 +150,12 @@ CADT_FN cadt_arm cadt_reach(cadt_point from, cadt_point to) {
 }
 
 /* CPUs share what is known of a point that many triangles are tested with. */
-#define CADT_ARMS (CADT_CONTIGUOUS && !CADT_WIDE)
-#if CADT_ARMS
+#define CADT_SHARED_LIFTS (CADT_CONTIGUOUS && !CADT_WIDE)
+#if CADT_SHARED_LIFTS
 /* A filter for points seen from p, 0 if it cannot tell. It is that of cadt_incircle with a bound that takes fewer
  * operations but is larger, much so where the points are in a row along an axis: |bx cy| + |by cx| <= (|b|^2 + |c|^2) /
  * 2 and so on. The factor makes up for its own rounding errors, a few times 2^-53. */
-CADT_FN cadt_i32 cadt_incircle_filter(cadt_arm a, cadt_arm b, cadt_arm c) {
+CADT_FN cadt_i32 cadt_incircle_loose_filter(cadt_lifted_vector a, cadt_lifted_vector b, cadt_lifted_vector c) {
   const cadt_real det =
       a.lift * (b.x * c.y - b.y * c.x) + b.lift * (c.x * a.y - c.y * a.x) + c.lift * (a.x * b.y - a.y * b.x);
   const cadt_real bound =
@@ -163,16 +163,16 @@ CADT_FN cadt_i32 cadt_incircle_filter(cadt_arm a, cadt_arm b, cadt_arm c) {
   if (det > bound) return 1;
   return -det > bound ? -1 : 0;
 }
-#define CADT_FN_TIGHT CADT_FN_SLOW /* it is seldom asked */
+#define CADT_FN_STAGED CADT_FN_SLOW /* it is seldom asked */
 #else
-#define CADT_FN_TIGHT CADT_FN
+#define CADT_FN_STAGED CADT_FN
 #endif
 
 /* The sign of the incircle determinant by rounded numbers; 0 if they cannot tell: then its magnitude is at most `most`.
  */
-CADT_FN cadt_i32 cadt_incircle_rounded(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_real* most) {
+CADT_FN cadt_i32 cadt_incircle_filter(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_real* max_det) {
   cadt_real ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y, cx = c.x - p.x, cy = c.y - p.y;
-  *most = CADT_INFINITY;
+  *max_det = CADT_INFINITY;
 #if CADT_WIDE
   const cadt_i32 e0 = cadt_exponent_of_largest(ax, ay, bx, by), e1 = cadt_exponent_of_largest(cx, cy, 0.0, 0.0);
   const cadt_i32 e = e0 > e1 ? e0 : e1;
@@ -193,22 +193,22 @@ CADT_FN cadt_i32 cadt_incircle_rounded(cadt_point a, cadt_point b, cadt_point c,
   if (det > bound) return 1;
   if (-det > bound) return -1;
 #if !CADT_WIDE
-  *most = 2.0 * bound;
+  *max_det = 2.0 * bound;
 #endif
   return 0;
 }
 
 /* Incircle of the counterclockwise triangle a, b, c and p, never 0. */
-CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_point c, cadt_point p,
-                                           cadt_counters* counters) {
-  cadt_real most;
-  const cadt_i32 rounded = cadt_incircle_rounded(a, b, c, p, &most);
+CADT_FN_STAGED cadt_i32 cadt_incircle_staged(cadt_point a, cadt_point b, cadt_point c, cadt_point p,
+                                             cadt_counters* counters) {
+  cadt_real max_det;
+  const cadt_i32 rounded = cadt_incircle_filter(a, b, c, p, &max_det);
   if (rounded != 0) return rounded;
   counters->count[CADT_COUNT_EXACT_INCIRCLES]++;
-  if (CADT_GRADUAL && cadt_mirrored(a, b, c, p)) {
+  if (CADT_GRADUAL_UNDERFLOW && cadt_mirrored(a, b, c, p)) {
     CADT_STAGE(mirrored);
   } else {
-    const cadt_i32 sign = cadt_incircle_exact(a, b, c, p, most);
+    const cadt_i32 sign = cadt_incircle_exact(a, b, c, p, max_det);
     if (sign != 0) return sign;
   }
   counters->count[CADT_COUNT_TIES]++;
@@ -216,11 +216,12 @@ CADT_FN_TIGHT cadt_i32 cadt_incircle_tight(cadt_point a, cadt_point b, cadt_poin
 }
 
 CADT_FN cadt_i32 cadt_incircle(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_counters* counters) {
-#if CADT_ARMS
-  const cadt_i32 sign = cadt_incircle_filter(cadt_reach(p, a), cadt_reach(p, b), cadt_reach(p, c));
+#if CADT_SHARED_LIFTS
+  const cadt_i32 sign =
+      cadt_incircle_loose_filter(cadt_lifted_vector_of(p, a), cadt_lifted_vector_of(p, b), cadt_lifted_vector_of(p, c));
   if (sign != 0) return sign;
 #endif
-  return cadt_incircle_tight(a, b, c, p, counters);
+  return cadt_incircle_staged(a, b, c, p, counters);
 }
 
 #endif

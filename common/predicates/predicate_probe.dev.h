@@ -27,7 +27,7 @@ CADT_FN cadt_u32 cadt_sign_bits(cadt_i32 sign, cadt_u32 at) { return CADT_CAST(c
 
 /* points: a, b, c, p of each case; most: an upper bound of the magnitude of its incircle determinant. The narrow build
  * takes what the driver makes of coordinates: multiples of 2^-240 below 1. */
-CADT_KERNEL(cadt_predicate_probe, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_real* most,
+CADT_KERNEL(cadt_predicate_probe, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_real* max_det,
             CADT_GLOBAL cadt_u32* words, cadt_u32 cases, cadt_u32 grain) {
   CADT_FOR(i, cases, grain) {
     const cadt_point a = points[4u * i], b = points[4u * i + 1u], c = points[4u * i + 2u], p = points[4u * i + 3u];
@@ -39,7 +39,7 @@ CADT_KERNEL(cadt_predicate_probe, CADT_GLOBAL const cadt_point* points, CADT_GLO
     word |= cadt_sign_bits(cadt_orientation_exact(a, b, c), CADT_SIGN_ORIENTED);
     word |= cadt_sign_bits(cadt_orientation_limbs(a, b, c), CADT_SIGN_ORIENTED_LONG);
     word |= cadt_sign_bits(cadt_incircle_exact(a, b, c, p, CADT_INFINITY), CADT_SIGN_INSIDE);
-    word |= cadt_sign_bits(cadt_incircle_exact(a, b, c, p, most[i]), CADT_SIGN_INSIDE_SMALL);
+    word |= cadt_sign_bits(cadt_incircle_exact(a, b, c, p, max_det[i]), CADT_SIGN_INSIDE_SMALL);
     word |= cadt_sign_bits(cadt_incircle_limbs(a, b, c, p), CADT_SIGN_INSIDE_LONG);
     word |= cadt_sign_bits(turn > 0 ? cadt_tie(a, b, c, p) : 0, CADT_SIGN_TIE);
     if (counters.count[CADT_COUNT_EXACT_ORIENTATIONS]) word |= 1u << CADT_SIGN_EXACT_ORIENTATION;

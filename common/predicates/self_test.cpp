@@ -37,7 +37,7 @@ constexpr std::array<Probe, 8> probes = {{
     {"64 x 64 bit product", 0x3FF123456789ABCD, 0x000000FEDCBA9871, 0xC24FD4316A3A0000},
 }};
 
-// The same for floats, in the lower words. Nothing relies on underflow or division there (CADT_GRADUAL).
+// The same for floats, in the lower words. Nothing relies on underflow or division there (CADT_GRADUAL_UNDERFLOW).
 constexpr std::array<Probe, 8> float_probes = {{
     // a = 1 + 2^-13, b = -(1 + 2^-12). a*a = 1 + 2^-12 + 2^-26 rounds to 1 + 2^-12. Fused: 2^-26.
     {"contraction of a*a+b", 0x3F800400, 0xBF800800, 0x00000000},

@@ -22,7 +22,7 @@ CADT_KERNEL(cadt_selftest, CADT_GLOBAL const cadt_real* in, CADT_GLOBAL cadt_rea
     /* Two-Sum: the rounding error of a sum; fast-math folds it to zero */
     cadt_real s = in[2] + in[3], t = s - in[2];
     out[1] = (in[2] - (s - t)) + (in[3] - t);
-#if CADT_GRADUAL
+#if CADT_GRADUAL_UNDERFLOW
     /* gradual underflow of a product and of a difference */
     out[2] = in[4] * in[5];
     out[3] = in[6] - in[7];

@@ -54,7 +54,7 @@ CADT_FN_SLOW cadt_u32 cadt_wrap_unsure(CADT_GLOBAL const cadt_point* points, cad
     return cadt_incircle(first, second, points[b], points[c], counters) > 0 ? CADT_WRAP_BETTER : CADT_WRAP_WORSE;
   if (later == CADT_NONE) return CADT_WRAP_LATER;
   if (later == CADT_WRAP_MANY) return CADT_WRAP_LOST;
-  return cadt_incircle_rounded(first, second, points[b], points[later], &most) < 0 ? CADT_WRAP_LATER : CADT_WRAP_LOST;
+  return cadt_incircle_filter(first, second, points[b], points[later], &most) < 0 ? CADT_WRAP_LATER : CADT_WRAP_LOST;
 }
 
 /* Each lane proposes a point and a key, or CADT_NONE for both: the point with the least key, or CADT_NONE if that is
@@ -141,8 +141,8 @@ CADT_FN cadt_u32 cadt_wrap_compare(const cadt_wrapper* w, const cadt_wrap_turn* 
   if (b == CADT_NONE) return c;
   CADT_GLOBAL const cadt_point* points = w->in.points;
   double most;
-  const cadt_i32 sign = cadt_incircle_rounded(points[t->side > 0 ? w->p : t->a], points[t->side > 0 ? t->a : w->p],
-                                              points[b], points[c], &most);
+  const cadt_i32 sign = cadt_incircle_filter(points[t->side > 0 ? w->p : t->a], points[t->side > 0 ? t->a : w->p],
+                                             points[b], points[c], &most);
   if (sign != 0) return sign > 0 ? c : b;
   const cadt_u32 so = cadt_wrap_unsure(points, w->p, t->a, t->side, b, c, put_off, *later, w->counters);
   if (so == CADT_CAST(cadt_u32, CADT_WRAP_LATER)) *later = c;

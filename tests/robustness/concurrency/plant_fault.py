@@ -11,7 +11,7 @@ import pathlib
 import shutil
 import sys
 
-LOCK, CHANGE, INSERT = (f"common/insertion/{name}.dev.h" for name in ("lock", "split_and_flip", "insert"))
+LOCK, SPLIT, FLIP, INSERT = (f"common/insertion/{name}.dev.h" for name in ("lock", "split", "flip", "insert"))
 ATOMICS = "common/portable/atomics.dev.h"
 
 # name: (what is wrong, tools that find it, [(file, text, replacement)])
@@ -22,35 +22,35 @@ FAULTS = {
     "none": ("nothing: the control", [], []),
     "flip_one_lock_short": (
         "a flip claims three of its four records", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
-        [(CHANGE, "locks.triangle[3] = CADT_TRIANGLE_OF(outer_aq);", "locks.triangle[3] = CADT_NONE;")]),
+        [(FLIP, "locks.triangle[3] = CADT_TRIANGLE_OF(outer_aq);", "locks.triangle[3] = CADT_NONE;")]),
     "split_one_lock_short": (
         "a split claims two of its three records", ["host", "opencl", "gpu"],
-        [(CHANGE, "locks.triangle[2] = CADT_TRIANGLE_OF(s.n2);", "locks.triangle[2] = CADT_NONE;")]),
+        [(SPLIT, "locks.triangle[2] = CADT_TRIANGLE_OF(s.n2);", "locks.triangle[2] = CADT_NONE;")]),
     "no_reread": (
         "a claim takes whatever is there and asks nothing: neither the version nor the fields again",
         ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
         [(LOCK, "#elif CADT_CONTIGUOUS\n  if (*version == CADT_ANY_VERSION) *version", "#elif CADT_CONTIGUOUS\n  *version"),
          (LOCK, "if (*version != CADT_ANY_VERSION && *version != found) {", "if (*version == 1u) {"),
-         (LOCK, "const cadt_snapshot now = cadt_look_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
+         (LOCK, "const cadt_snapshot now = cadt_snapshot_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
     "no_confirm": (
         "GPUs: the version is compared, the fields are not read again", ["relacy-gpu"],
-        [(LOCK, "const cadt_snapshot now = cadt_look_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
+        [(LOCK, "const cadt_snapshot now = cadt_snapshot_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
     "confirm_no_vertices": (
         "GPUs: the vertices by which a flip was tested are not compared", ["relacy-gpu"],
         [(LOCK, "cadt_u32 other = (now.v0 ^ s->v0) | (now.v1 ^ s->v1) | (now.v2 ^ s->v2);", "cadt_u32 other = 0u;")]),
     "confirm_no_links": (
         "GPUs: the links by which a flip has claimed are not compared", ["relacy-gpu"],
-        [(CHANGE, "cadt_validate(m, t, k, CADT_HALF_EDGES_01, &s)", "cadt_validate(m, t, k, 0u, &s)"),
-         (CHANGE, "cadt_validate(m, n, j, CADT_HALF_EDGES_01, &u)", "cadt_validate(m, n, j, 0u, &u)")]),
+        [(FLIP, "cadt_validate(m, t, k, CADT_HALF_EDGES_01, &s)", "cadt_validate(m, t, k, 0u, &s)"),
+         (FLIP, "cadt_validate(m, n, j, CADT_HALF_EDGES_01, &u)", "cadt_validate(m, n, j, 0u, &u)")]),
     "release_early": (
         "a flip gives its records back before it has written them", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
-        [(CHANGE,
+        [(FLIP,
           "  cadt_write_flip(m, half_edge, &s, &u, counters);\n  cadt_fence_before_unlock();\n  cadt_unlock(m, &locks);\n",
           "  cadt_fence_before_unlock();\n  cadt_unlock(m, &locks);\n  cadt_write_flip(m, half_edge, &s, &u, counters);\n")]),
     "publish_early": (
         "the new records of a split are made free before they are written", ["host", "opencl", "gpu"],
-        [(CHANGE, "  cadt_write_face(m, i, t, &s, edges, counters);\n",
-          "  cadt_publish_triangle(m, t1);\n  cadt_publish_triangle(m, t2);\n  cadt_write_face(m, i, t, &s, edges, counters);\n")]),
+        [(SPLIT, "  cadt_write_face_split(m, i, t, &s, edges, counters);\n",
+          "  cadt_publish_triangle(m, t1);\n  cadt_publish_triangle(m, t2);\n  cadt_write_face_split(m, i, t, &s, edges, counters);\n")]),
     "same_version": (
         "an unlock after a change does not raise the version", ["host", "opencl", "relacy"],
         [(LOCK, "{ return version + 2u ? version + 2u : 2u; }", "{ return version; }")]),

@@ -15,9 +15,9 @@ namespace {
 using namespace device_text;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr std::uint32_t max_edges = 256;  // that are read for the vertices opposite
-constexpr std::uint32_t min_region = 64;  // triangles: fewer are flipped in the time of a region
-constexpr std::size_t least_share = 16;   // of the illegal edges one of so many leads to a vertex that counts
+constexpr std::uint32_t max_edges = 256;  // of which the opposite vertices are read
+constexpr std::uint32_t min_region = 64;  // triangles: flips take less time for fewer
+constexpr std::size_t least_share = 16;   // a vertex counts if one of so many illegal edges leads to it
 
 }  // namespace
 
@@ -27,7 +27,7 @@ CavityRetriangulation::CavityRetriangulation(const LockedMesh& mesh)
       launch_(ctx_.launcher),
       slots_(static_cast<std::uint32_t>(2 * mesh.order.distinct)) {}
 
-/// Four vertices for each edge, two opposite of it and its ends; CADT_NONE where it is not illegal.
+/// Four vertices for each edge, the two opposite and its two ends; CADT_NONE if it is not illegal.
 std::vector<std::uint32_t> CavityRetriangulation::read_quads(const Allocation& edges, std::uint32_t count) {
   const std::uint32_t read = std::min(count, max_edges);
   const Allocation quads = ctx_.memory.allocate(4 * read * word);
@@ -45,7 +45,7 @@ void CavityRetriangulation::remember(const Allocation& edges, std::uint32_t coun
     if (i % 4 < 2 && quads[i] != CADT_NONE) remembered_.insert(quads[i]);
 }
 
-/// Those noted that most of the edges lead to.
+/// The remembered vertices to which most of the edges lead.
 std::vector<std::uint32_t> CavityRetriangulation::candidates(const std::vector<std::uint32_t>& quads) {
   std::map<std::uint32_t, std::size_t> counts;
   std::size_t illegal = 0;
@@ -75,7 +75,7 @@ void CavityRetriangulation::write_ends(const std::vector<std::uint32_t>& quads) 
   ctx_.device.write(*ends_, 0, ends.data(), ends.size() * word);
 }
 
-/// The large_regions regions of these vertices, the largest first.
+/// The large regions of these vertices, the largest first.
 std::vector<CavityRetriangulation::Region> CavityRetriangulation::large_regions(
     const std::vector<std::uint32_t>& vertices) {
   const auto count = static_cast<std::uint32_t>(vertices.size());
@@ -92,7 +92,7 @@ std::vector<CavityRetriangulation::Region> CavityRetriangulation::large_regions(
   return regions;
 }
 
-/// Triangulates the region anew, as far as that is possible. False if it is not.
+/// Retriangulates the region as far as possible. False if nothing is.
 bool CavityRetriangulation::retriangulate_region(const Region& region) {
   const std::uint32_t w = region.vertex, capacity = region.triangles + region.triangles / 4 + 64;
   const std::size_t bytes = capacity * word;
@@ -105,7 +105,7 @@ bool CavityRetriangulation::retriangulate_region(const Region& region) {
   const std::uint32_t conflicts = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
   LaunchGrid c = launch_.grid(conflicts);
   mesh_.run_kernel<KernelId::cadt_cavity_star>(c.items, conflicts, c.grain, w, list, capacity, found);
-  // A list that has no room for all has some of the conflicts: what they are connected with can be seen or not.
+  // If the list has no room for all conflicts, it has some of them: cadt_cavity_check sees which components are usable.
   const std::uint32_t listed = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
   c = launch_.grid(listed);
   launch_.run<KernelId::cadt_cavity_roots>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity);
@@ -114,7 +114,7 @@ bool CavityRetriangulation::retriangulate_region(const Region& region) {
   launch_.run<KernelId::cadt_cavity_keep>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity, kept, found);
   const std::uint32_t count = launch_.read_word(found, CADT_CAVITY_KEPT);
   if (count == 0) return false;
-  const Allocation& sides = scratch;  // nobody asks for the trees any more
+  const Allocation& sides = scratch;  // the components are not read any more
   c = launch_.grid(count);
   mesh_.run_kernel<KernelId::cadt_cavity_boundary>(c.items, count, c.grain, w, kept, sides, spokes, capacity, found);
   std::array<std::uint32_t, CADT_CAVITY_WORDS> words{};
@@ -138,7 +138,7 @@ std::size_t CavityRetriangulation::retriangulate(const Allocation& edges, std::u
   write_ends(quads);
   std::size_t regions = 0;
   for (const Region& region : large_regions(vertices)) {
-    if (!retriangulate_region(region)) break;  // others are not likely to be better
+    if (!retriangulate_region(region)) break;  // smaller regions are not likely to do better
     ++regions;
   }
   return regions;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * FLIPHEAD
+ * Where an edge is tested and flipped (paper, section 4.4, Algorithm 3). A flip locks what it writes, which validates
+ * what was read, then stores, then unlocks.
  */
 #ifndef CADT_INSERTION_FLIP_H
 #define CADT_INSERTION_FLIP_H
@@ -10,8 +11,8 @@
 
 enum { CADT_EDGE_LEGAL, CADT_EDGE_FLIPPED, CADT_EDGE_CONFLICT, CADT_EDGE_STABILIZED };
 
-/* Whether the edge a, b between the triangles p, a, b and q, b, a must be flipped. A circle through the ghost is the
- * outer side of a hull edge. */
+/* Whether the edge a, b between the triangles p, a, b and q, b, a is illegal. The circle through the ghost and a hull
+ * edge is the half-plane outside of that edge. */
 CADT_FN cadt_u32 cadt_is_illegal(const cadt_locked_mesh* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_u32 q,
                                  cadt_counters* counters) {
   counters->count[CADT_COUNT_INCIRCLE_TESTS]++;
@@ -26,14 +27,26 @@ CADT_FN cadt_u32 cadt_is_illegal(const cadt_locked_mesh* m, cadt_u32 p, cadt_u32
              : 0u;
 }
 
-/* The stores of a flip of the edge `link`, with its two triangles seen from it as `s` and `u`. \pre nobody else changes
- * the two, or the links back to them across the edges that change sides */
+/* The stores of a flip of edge `half_edge` = t.k; `s` and `u` are its two triangles t and n before, seen from it (from
+ * k and j on). In each triangle the new vertex takes the slot of the one that goes:
+ *
+ *            p                          p
+ *           / \                        /|\
+ *          /   \                      / | \               t = (p, a, q)    aq, n.j1, pa
+ *         /  t  \                    /  |  \              n = (q, b, p)    bp, t.k1, qb
+ *        a ----- b                  a t | n b
+ *         \  n  /                    \  |  /              locked: t, n and the triangles across bp and aq, which now
+ *          \   /                      \ | /               name n.j and t.k; those across pa and qb still name t.k2
+ *           \ /                        \|/                and n.j2
+ *            q                          q
+ *
+ * \pre nobody else changes t and n, or the half-edges back to them across bp and aq */
 CADT_FN void cadt_write_flip(const cadt_locked_mesh* m, cadt_u32 half_edge, const cadt_snapshot* s,
                              const cadt_snapshot* u, cadt_counters* counters) {
   const cadt_u32 t = CADT_TRIANGLE_OF(half_edge), k = CADT_EDGE_OF(half_edge), k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
   const cadt_u32 n = CADT_TRIANGLE_OF(s->n0), j = CADT_EDGE_OF(s->n0), j1 = CADT_NEXT(j), j2 = CADT_PREV(j);
   const cadt_u32 outer_bp = s->n1, outer_aq = u->n1;
-  /* t = (p, a, b) becomes (p, a, u->v0); n = (q, b, a) becomes (q, b, p); the counter of a-b goes on with p-q */
+  /* t = (p, a, b) becomes (p, a, q), n = (q, b, a) becomes (q, b, p); the flip counter of a-b goes on as that of p-q */
   const cadt_u32 flips = cadt_flips_get(s->flips, k) + 1u;
   CADT_NOISE_AT(m, CADT_SITE_WRITE);
 #if !CADT_CONTIGUOUS
@@ -71,12 +84,10 @@ CADT_FN void cadt_write_flip(const cadt_locked_mesh* m, cadt_u32 half_edge, cons
   counters->count[CADT_COUNT_FLIPS]++;
 }
 
-/* Tests an edge and flips it if it is illegal. `apex` is the vertex expected opposite of it, `apex_point` where it is,
- * or CADT_NONE for any.
- * \post CADT_EDGE_STABILIZED: it is illegal and stays so, for now or for good (cadt_is_stabilized). CADT_EDGE_FLIPPED:
- * the edge's record keeps its link, `*partner` is the record and edge on the other side of the quadrilateral that is
- * now opposite the same apex; `*all_sides`: the apex is another one than expected, so all four sides of the
- * quadrilateral may be illegal. */
+/* Tests an edge and flips it if it is illegal. `apex` is the vertex expected opposite, at `apex_point`, or CADT_NONE
+ * for any. \post CADT_EDGE_STABILIZED: the edge is illegal and stays so, for now or for good (stabilized_flips.dev.h).
+ * CADT_EDGE_FLIPPED: `half_edge` still names an edge opposite the apex, and `*partner` the other one, in the other
+ * triangle; `*all_sides`: the apex is not the expected one, so all four sides of the quadrilateral may be illegal. */
 CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_edge, cadt_u32 apex,
                                       cadt_point apex_point, cadt_u32* partner, cadt_u32* all_sides,
                                       cadt_counters* counters) {
@@ -89,8 +100,8 @@ CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_e
     CADT_ADD_TIME(counters, CADT_TIME_TEST);
     return CADT_EDGE_CONFLICT;
   }
-  /* A vertex of the triangle was flipped away by another thread, which did not know that this edge had yet to be
-   * checked: the check is owed all the same. */
+  /* Another thread flipped the expected apex away, and did not know that this edge had yet to be tested: it still has
+   * to be. */
   *all_sides = p != apex ? 1u : 0u;
   if (p != apex && apex != CADT_NONE) CADT_COUNT_NOW(counters, CADT_COUNT_STALE_EDGES);
   const cadt_u32 across = s.n0, n = CADT_TRIANGLE_OF(across), j = CADT_EDGE_OF(across);
@@ -105,7 +116,7 @@ CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_e
   }
   const cadt_u32 q = u.v0;
   cadt_u32 illegal;
-  /* the ghost is CADT_NONE, too */
+  /* the ghost is CADT_NONE as well */
   if (p == apex && p != CADT_GHOST && s.v1 != CADT_GHOST && s.v2 != CADT_GHOST && q != CADT_GHOST) {
     counters->count[CADT_COUNT_INCIRCLE_TESTS]++;
     illegal =
@@ -130,10 +141,10 @@ CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_e
   locks.triangle[3] = CADT_TRIANGLE_OF(outer_aq);
   locks.version[2] = locks.version[3] = CADT_ANY_VERSION;
   if (!cadt_try_lock(m, &locks, counters)) return CADT_EDGE_CONFLICT;
-  u.v1 = s.v2; /* as neighbours have it: what was read need not be kept until here */
+  u.v1 = s.v2; /* as both triangles have it in common: what was read need not stay in registers until here */
   u.v2 = s.v1;
   u.n0 = half_edge;
-  const cadt_u32 same = cadt_validate(m, t, k, CADT_HALF_EDGES_01, &s); /* both at once: reading takes long */
+  const cadt_u32 same = cadt_validate(m, t, k, CADT_HALF_EDGES_01, &s); /* both at once: their loads overlap */
   if (!(same & cadt_validate(m, n, j, CADT_HALF_EDGES_01, &u))) {
     cadt_unlock_invalid(m, &locks, counters);
     return CADT_EDGE_CONFLICT;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * INSERTHEAD
+ * Insertion: locate, split and legalise in one flow, without a barrier between them (paper, section 4.4, "unified
+ * execution flow"). A point that gets no locks in a bounded number of tries is deferred to the next launch.
  */
 #ifndef CADT_INSERTION_INSERT_H
 #define CADT_INSERTION_INSERT_H
@@ -10,8 +11,8 @@
 
 enum { CADT_INSERT_TRIES = 12 /* walks for one point in one launch */ };
 
-/* Walks from `*start` and inserts vertex i where the walk ends. Returns the number of `edges` opposite of it; 0 if that
- * is to be tried again, from the new `*start`. */
+/* Walks from triangle `*start` and inserts vertex i where the walk ends. Returns the number of `edges` opposite of it;
+ * 0: try again, from the new `*start`. */
 CADT_FN cadt_u32 cadt_try_insert(const cadt_locked_mesh* m, cadt_u32 i, cadt_point p, cadt_u32* start, cadt_u32* edges,
                                  cadt_counters* counters) {
   cadt_place place = {CADT_LOST, *start, 0u, {0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u}};
@@ -27,11 +28,16 @@ CADT_FN cadt_u32 cadt_try_insert(const cadt_locked_mesh* m, cadt_u32 i, cadt_poi
   return size;
 }
 
-/* Block b of level l holds the positions from b * 2^l on, 2^l of them. One of them stands for the block: that of one of
- * its two halves, chosen by a hash. (Always the left one would do for most sets; but where every other point in sorted
- * order is of another kind, two lines for instance, the last level would insert all of one kind into a mesh of the
- * other, with n / 8 flips a point.) Eight neighbouring blocks share their choice: evenly spaced points need fewer
- * flips. */
+/* Block b of level l holds the positions from b * 2^l on, 2^l of them. One position represents the block: that of one
+ * of its two halves, chosen by a hash. (Always the left one would do for most sets; but where every other point in
+ * sorted order is of another kind, two lines for instance, the last level would insert all of one kind into a mesh of
+ * the other, with n / 8 flips a point.) Eight neighbouring blocks share their choice: evenly spaced points then need
+ * fewer flips.
+ *
+ *     blocks of level 2  |       3       |
+ *     blocks of level 1  |   1   |   3   |      level 1 inserts 1, with a walk from 3
+ *     blocks of level 0  | 0 | 1 | 2 | 3 |      level 0 inserts 0, with a walk from 1, and 2, with a walk from 3
+ */
 CADT_FN cadt_u32 cadt_right_half(cadt_u32 level, cadt_u32 block) {
   cadt_u32 x = (block >> 3) * 2654435761u + level * 0x9E3779B9u;
   x ^= x >> 15;
@@ -49,10 +55,10 @@ CADT_FN cadt_u32 cadt_representative(cadt_u32 level, cadt_u32 block, cadt_u32 n)
   return block;
 }
 
-/* On GPUs the points are in the order in which they are inserted, level after level, each along the curve: what is in
- * the mesh when few are is close together, and lines of the cache are full of it. In this order, the place of the point
- * that stands for `block` of `level`: it is inserted at the first level from there on at which its block does not stand
- * for the two. */
+/* On GPUs the points are stored in the order of insertion, level after level, each along the curve: while few points
+ * are in the mesh they lie close together and fill cache lines. This is the place, in that order, of the point that
+ * represents `block` of `level`: it is inserted at the first level from there on at which its block does not represent
+ * the two. */
 CADT_FN cadt_u32 cadt_blocks_of(cadt_u32 level, cadt_u32 n) { return ((n - 1u) >> level) + 1u; }
 CADT_FN cadt_u32 cadt_rank_of(cadt_u32 level, cadt_u32 block, cadt_u32 n) {
   for (;; ++level, block >>= 1) {
@@ -63,7 +69,7 @@ CADT_FN cadt_u32 cadt_rank_of(cadt_u32 level, cadt_u32 block, cadt_u32 n) {
   }
 }
 
-/* Points and labels in that order. */
+/* Points and input ids in that order. */
 CADT_KERNEL(cadt_by_level, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* input_ids, cadt_u32 n,
             cadt_u32 grain, CADT_GLOBAL cadt_point* sorted_points, CADT_GLOBAL cadt_u32* sorted_input_ids) {
   CADT_FOR(i, n, grain) {
@@ -73,14 +79,14 @@ CADT_KERNEL(cadt_by_level, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL con
   }
 }
 
-/* Position of the point that stands for all: the first of the mesh. */
+/* Position of the point that represents all: the first of the mesh. */
 CADT_KERNEL(cadt_first_representative, cadt_u32 n, cadt_u32 levels, CADT_GLOBAL cadt_u32* position) {
   if (cadt_item == 0u) *position = cadt_representative(levels, 0u, n);
 }
 
 #if CADT_CONTIGUOUS
-/* The start of a point that an earlier launch left over: its own, or if it has none yet that of the point from which it
- * would have been inserted in its turn. */
+/* Where the walk of a deferred point starts: at its own triangle or, if it has none yet, at that of the point from
+ * which its level would have inserted it. */
 CADT_FN cadt_u32 cadt_start_of_deferred(const cadt_locked_mesh* m, cadt_u32 i, cadt_u32 n) {
   cadt_u32 start = cadt_load_relaxed(m->vertex_to_triangle + i);
   for (cadt_u32 level = 0u; start == CADT_NONE; ++level)
@@ -89,9 +95,9 @@ CADT_FN cadt_u32 cadt_start_of_deferred(const cadt_locked_mesh* m, cadt_u32 i, c
 }
 #endif
 
-/* Inserts `count` points: first `listed` ones that earlier launches left over, with their own hints; then one level: of
- * each block of 2^(level+1) positions, from block `begin` on, the half that does not stand for it, with a walk from the
- * point that does, which is in the mesh and near in sorted order. */
+/* Inserts `count` points: first `listed` deferred ones, each with a walk from its own triangle; then one level: of each
+ * block of 2^(level+1) positions, from block `begin` on, the half that does not represent it, with a walk from the
+ * representative, which is in the mesh and near in sorted order. */
 CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 listed, cadt_u32 begin,
             cadt_u32 count, cadt_u32 n, cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* deferred_points,
             CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts, cadt_u32 edge_capacity,
@@ -103,8 +109,8 @@ CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
   const cadt_u32 warp = cadt_lanes_of_warp();
   cadt_u32 u = CADT_SPREAD_BEGIN(count, grain), i = CADT_NONE, start = 0u, tries = 0u;
   cadt_worklist_begin(&work, CADT_NONE, 0u);
-  /* Lanes of a warp stay together, so that memory is waited for once for all of them; when the last one has no edge
-   * left, all have their next points. */
+  /* Lanes of a warp stay together, so that all of them wait for memory at once; when the last one has no edge left, all
+   * take their next points. */
   for (;;) {
     if (!cadt_any_lane(warp, cadt_worklist_pending(&work))) {
       const cadt_u32 idle = i != CADT_NONE || u < CADT_SPREAD_END(count, grain) ? 1u : 0u;

@@ -21,18 +21,17 @@ namespace {
 using namespace device_text;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time to a cancel
+constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time until a cancellation
 constexpr std::size_t points_per_launch_strided = std::size_t{1} << 25;
-constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a watchdog gives a launch two seconds
-// Ranges without locks: what every 2^partition_level positions have in common is inserted before, with locks. The fewer
-// positions a range has, the more of them are at its border.
+constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a watchdog allows two seconds a launch
+// Partitions without locks: the representatives of blocks of 2^partition_level positions are inserted before, with
+// locks. The smaller a partition, the more of its points lie at its border.
 constexpr unsigned partition_level = 5;
 constexpr std::size_t min_partition = std::size_t{1} << 14, min_points_for_partitions = 4 * min_partition;
-constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
+constexpr int stalled_launches = 4;  // launches without progress after which one work-item does everything
 constexpr int unresolvable_launches = 64;
-constexpr std::size_t poll_interval = 4096;  // points of launches after which what they left is asked
-constexpr int first_cascade_search =
-    4;  // the launch before which rows of flips are looked for, again after twice as many
+constexpr std::size_t poll_interval = 4096;  // points inserted between two reads of what was deferred
+constexpr int first_cascade_search = 4;      // the launch before which flip cascades are looked for first
 constexpr int max_sweeps = 2000;
 constexpr std::size_t sweep_counts = 5, all_counts = CADT_DEFERRED_COUNTS + sweep_counts;
 
@@ -64,9 +63,9 @@ class IncrementalInsertion {
       mesh.flat = true;
       return mesh;
     }
-    mesh_.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not in use yet
+    mesh_.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not there yet
     mesh_.vertex_to_triangle = ctx_.memory.transient(n_ * word);
-    // points of a launch: a level and what others left over, one by one or together
+    // points of a launch: a level and deferred ones, of one launch or of several since the last read
     const std::size_t limit = n_ / 2 + n_ / 32 + std::min(n_ / 2, poll_interval) + 64;
     for (Allocation& list : deferred_points_) list = ctx_.memory.transient(limit * word);
     make_edge_lists();
@@ -84,8 +83,8 @@ class IncrementalInsertion {
     return finish(3 * std::uint64_t{n_} - 3);
   }
 
-  /// Nothing walks in a mesh that is complete: its hints are written by repairs only, and its first triangle is not
-  /// asked for.
+  /// No point is located in a complete mesh: vertex_to_triangle is written by repairs only, and the seed triangle is
+  /// not used.
   [[nodiscard]] Mesh sweep(Allocation locked, std::uint64_t edges) {
     mesh_.locked = std::move(locked);
     mesh_.vertex_to_triangle = ctx_.memory.transient(n_ * word);
@@ -113,7 +112,7 @@ class IncrementalInsertion {
   /// Levels of halving until a block is one point.
   [[nodiscard]] unsigned levels() const noexcept { return static_cast<unsigned>(std::bit_width(n_ - 1)); }
 
-  /// Puts the points in the order of insertion (common/insertion/insert.dev.h).
+  /// Brings the points into the order of insertion (common/insertion/insert.dev.h).
   void order_by_level() {
     Allocation points = ctx_.memory.transient(n_ * point_bytes(ctx_.device)),
                input_ids = ctx_.memory.allocate(n_ * word);
@@ -125,7 +124,7 @@ class IncrementalInsertion {
     by_level_ = true;
   }
 
-  /// Three points not on a line: the one that stands for all, the middle one, and the first that is not on their line.
+  /// Three points not on a line: the representative of all, the middle one, and the first that is not on their line.
   bool find_seed_triangle() {
     Allocation found = ctx_.memory.allocate(word);
     if (!by_level_) {
@@ -135,7 +134,7 @@ class IncrementalInsertion {
     mesh_.second = static_cast<std::uint32_t>(n_ / 2);
     if (mesh_.second == mesh_.first) mesh_.second = 0;
     ctx_.device.fill(*found, 0, word, CADT_NONE);
-    constexpr std::size_t few = 1024;  // enough unless the points are nearly all on a line
+    constexpr std::size_t few = 1024;  // enough unless nearly all points are on a line
     for (std::size_t begin = 0, end = std::min(n_, few); begin < n_; begin = end, end = n_) {
       const LaunchGrid c = launch_.grid(end - begin);
       launch_.run<KernelId::cadt_find_seed_triangle>(c.items, order_.points, mesh_.first, mesh_.second,
@@ -162,14 +161,14 @@ class IncrementalInsertion {
       const std::size_t size = std::min(limit, count - begin);
       launch_insert(begin, size, level, false);
       inserted_ += size;
-      // To ask what is left takes as long as the launch of a level of few points.
+      // Reading what was deferred takes as long as the launch of a level of few points.
       since_poll_ += size;
       if (since_poll_ < poll_interval && !last && !ctx_.options.watch) {
-        deferred_ = {};  // on the lists [1] no more; what this launch left stays on the others
+        deferred_ = {};  // the lists [1] are done; what this launch defers stays on the lists [0]
         continue;
       }
       since_poll_ = 0;
-      // Few points left over go with the next launch; many would make its walks long.
+      // A few deferred points join the next launch; many would make its walks long.
       take_deferred();
       if (ctx_.options.watch) show_growth();
       if (deferred_.points > size / 8 + 32 || deferred_.edges > size / 8 + 32) finish_deferred();
@@ -182,9 +181,9 @@ class IncrementalInsertion {
            ctx_.options.stabilize == Stabilize::off && !ctx_.options.watch;
   }
 
-  /// All levels below partition_level: partitions of positions side by side without locks, then what lies between them.
+  /// All levels below partition_level: partitions side by side without locks, then the border between them.
   void insert_partitions() {
-    finish_deferred();  // who stands for a block must be in the mesh
+    finish_deferred();  // representatives of blocks must be in the mesh
     const std::size_t all = ((n_ - 1) >> partition_level) + 1;
     const std::size_t wanted = std::clamp<std::size_t>(ctx_.device.shape().parallelism / 2, 1, n_ / min_partition);
     const std::size_t blocks = (all - 1) / wanted + 1, partitions = (all - 1) / blocks + 1;
@@ -197,7 +196,7 @@ class IncrementalInsertion {
           static_cast<std::uint32_t>(partitions), static_cast<std::uint32_t>(blocks), static_cast<std::uint32_t>(from),
           static_cast<std::uint32_t>(to), deferred_points_[0], deferred_counts_, counters_);
       inserted_ += std::min(n_, ((to - from) * partitions) << partition_level);
-      // The list has room for those that the next launch may leave.
+      // The list has room for those that the next launch may defer.
       if (to == blocks || launch_.read_word(deferred_counts_, 0) > n_ / 32) {
         const LaunchGrid c = launch_.grid(2 * n_);
         mesh_.run_kernel<KernelId::cadt_border_sweep>(c.items, static_cast<std::uint32_t>(2 * n_), c.grain,
@@ -215,7 +214,7 @@ class IncrementalInsertion {
     snapshots_->show(*mesh_.locked, ctx_.options.watch);
   }
 
-  /// What the last launches left over is on the second lists from here on; the first ones are empty.
+  /// Moves what the last launches deferred to the lists [1]; the lists [0] are empty then.
   void take_deferred() {
     std::array<std::uint32_t, 3> counts{};  // points, edges, work-items that changed the mesh
     ctx_.device.read(*deferred_counts_, 0, counts.data(), sizeof counts);
@@ -226,7 +225,7 @@ class IncrementalInsertion {
     std::swap(deferred_edges_[0], deferred_edges_[1]);
   }
 
-  /// The points left over and `size` blocks; the edges left over. `serial`: one work-item for each of both.
+  /// Launches the deferred edges, and the deferred points with `size` blocks. `serial`: one work-item each.
   void launch_insert(std::size_t begin, std::size_t size, unsigned level, bool serial) {
     const auto count = static_cast<std::uint32_t>(deferred_.points + size);
     if (deferred_.edges != 0) {
@@ -242,10 +241,11 @@ class IncrementalInsertion {
                                             edge_capacity_, counters_);
   }
 
-  /// Launches for what could not get its locks, until nothing is left.
+  /// Launches for what got no locks, until nothing is deferred.
   void finish_deferred() {
     int launches = 0, stalled = 0, next_cascade_search = first_cascade_search;
-    // Edges that are left after several launches may be in long rows; but with --stabilize those flipped often stay.
+    // Edges that are deferred by several launches may be in long flip cascades; but with Stabilize they may be meant to
+    // stay.
     const bool may_be_cascades = mesh_.stabilize == CADT_STABILIZE_OFF;
     CavityRetriangulation cavities(mesh_);
     std::size_t last = 0;
@@ -266,16 +266,16 @@ class IncrementalInsertion {
           next_cascade_search *= made != 0 ? 2 : 4;
         }
       }
-      // One work-item serial meets no conflict, so it always gets on.
+      // A single work-item meets no conflict, so it always makes progress.
       launch_insert(0, 0, 0, stalled >= stalled_launches);
       take_deferred();
     }
   }
 
-  /// Closing passes until one finds nothing to do.
+  /// Legality sweeps until one finds nothing to repair.
   void certify(std::uint64_t edges) {
     if (ctx_.options.stabilize == Stabilize::defer)
-      mesh_.stabilize = CADT_STABILIZE_OFF;  // what was put off is due now
+      mesh_.stabilize = CADT_STABILIZE_OFF;  // flips deferred until now are due
     const std::size_t slots = 2 * n_, limit = 4 * points_per_launch(ctx_.device);
     for (int sweep = 1; sweep <= max_sweeps; ++sweep) {
       std::uint64_t examined = 0, illegal = 0, unsettled = 0, stabilized = 0, broken = 0;
@@ -316,13 +316,13 @@ class IncrementalInsertion {
         return;
       }
     }
-    throw InternalError("the closing pass still finds illegal edges after " + std::to_string(max_sweeps) +
+    throw InternalError("the legality sweep still finds illegal edges after " + std::to_string(max_sweeps) +
                         " sweeps; please report this with the input");
   }
 
   struct Deferred {
     std::uint32_t points = 0, edges = 0;
-    std::uint32_t changes = 0;  ///< work-items that changed the mesh, if the launch had no other points
+    std::uint32_t changes = 0;  ///< work-items that changed the mesh, if the launch had deferred points only
   };
 
   Context& ctx_;
@@ -337,7 +337,7 @@ class IncrementalInsertion {
   Deferred deferred_;                                           // on the lists [1]
   bool by_level_ = false;                                       // the points are in the order of insertion
   std::unique_ptr<GrowthSnapshots> snapshots_;
-  std::size_t inserted_ = 0, since_poll_ = 0;  // of these, since what is left was asked
+  std::size_t inserted_ = 0, since_poll_ = 0;  // since_poll_: since what was deferred was read
 };
 
 }  // namespace

@@ -9,26 +9,26 @@
 
 namespace cadt {
 
-/// The mesh on the device, certified: in records, or in two arrays without locks and flips (certify.dev.h).
+/// The certified mesh on the device: locked triangles, or two arrays without locks and flip counters (certify.dev.h).
 struct Mesh {
-  Allocation locked;                ///< two a distinct point; some of the first points' stay unused
-  std::size_t slots = 0;            ///< records allocated, or triangles of the arrays
-  bool flat = false;                ///< all points on one line or fewer than three: no records
+  Allocation locked;                ///< two for each distinct point; some of the first points' are unused
+  std::size_t slots = 0;            ///< locked triangles allocated, or triangles of the arrays
+  bool flat = false;                ///< all points on one line, or fewer than three: no triangles
   Allocation vertices, half_edges;  ///< the arrays, three words a triangle
-  std::size_t triangles = 0;        ///< of these the first so many are not of the ghost
+  std::size_t triangles = 0;        ///< so many of these, the first ones, are not of the ghost
 
   [[nodiscard]] bool in_arrays() const noexcept { return static_cast<bool>(vertices) || static_cast<bool>(half_edges); }
 };
 
-/// Inserts all points level by level, legalises, and certifies by closing passes. Releases nothing of `order`, but on
-/// GPUs brings points and labels into another order.
+/// Inserts all points level by level, legalises, and certifies by legality sweeps. Releases nothing of `order`, but on
+/// GPUs brings points and input ids into the order of insertion.
 [[nodiscard]] Mesh insert_incrementally(Context& ctx, SortedPoints& order);
 
-/// Closing passes over a mesh of two records a point that was made otherwise; it has so many edges, those to the ghost
-/// included.
+/// Legality sweeps over a mesh made otherwise, of two locked triangles a point; `edges`: how many it has, those to the
+/// ghost included.
 [[nodiscard]] Mesh sweep_legality(Context& ctx, SortedPoints& order, Allocation locked, std::uint64_t edges);
 
-/// Triangles or records that a closing pass looks at in one launch.
+/// Triangles that one launch of a legality sweep, or of cadt_certify, examines.
 [[nodiscard]] std::size_t slots_per_launch(const Device& device);
 
 }  // namespace cadt

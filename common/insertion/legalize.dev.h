@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * LEGALIZEHEAD
+ * Legalisation: the edges that a work-item has yet to test, and the flips that follow from them (paper, section 4.4).
+ * What is not done within a work limit, or gets no lock, goes on a list for the next launch.
  */
 #ifndef CADT_INSERTION_LEGALIZE_H
 #define CADT_INSERTION_LEGALIZE_H
@@ -8,11 +9,11 @@
 #include "common/insertion/flip.dev.h"
 
 enum {
-  CADT_WORKLIST = 64,       /* edges a work-item can have pending, a power of two */
-  CADT_WORKLIST_STACK = 48, /* above, the oldest is next: a long row of flips leaves a legal edge behind at each one */
-  CADT_EDGE_TRIES = 24,     /* conflicts in the worklist of one point */
-/* Flips for one point or edge in one launch: a launch ends in bounded time, and a long row of flips, which a lane of a
- * GPU alone does slowly, is shared with others as soon as it forks. */
+  CADT_WORKLIST = 64,       /* edges that a work-item can have pending, a power of two */
+  CADT_WORKLIST_STACK = 48, /* with more, the oldest is next: a flip cascade leaves a legal edge behind at each flip */
+  CADT_EDGE_TRIES = 24,     /* lock failures in the worklist of one point */
+/* Flips for one point or edge in one launch. So a launch ends in bounded time, and a long flip cascade, slow work for
+ * one lane of a GPU, is shared with others as soon as it forks. */
 #if CADT_CONTIGUOUS
   CADT_FLIP_LIMIT = 1 << 14,
   CADT_EDGE_FLIP_LIMIT = CADT_FLIP_LIMIT
@@ -22,8 +23,7 @@ enum {
 #endif
 };
 
-/* Where edges go that are left for the next launch. An edge that finds its list full is dropped: the closing pass will
- * meet it. */
+/* Where deferred edges go. An edge that finds the list full is dropped: the legality sweep will meet it. */
 typedef struct {
   CADT_GLOBAL cadt_u32* edges;
   CADT_GLOBAL cadt_u32* counts; /* points, edges, work-items that changed the mesh */
@@ -45,26 +45,26 @@ CADT_FN void cadt_defer_edge(const cadt_deferred* deferred, cadt_u32 half_edge, 
   CADT_COUNT_NOW(counters, CADT_COUNT_DEFERRED_EDGES);
 }
 
-/* Tells the driver that this work-item got on. For launches of what others left over only: in those of a level it would
- * be one more addition to one address for each point. */
+/* Tells the driver that this work-item made progress. Only in launches of deferred points and edges alone: in those of
+ * a level it would be one more addition to the same address for each point. */
 CADT_FN void cadt_report_changes(const cadt_counters* counters, CADT_GLOBAL cadt_u32* counts) {
   if (counters->count[CADT_COUNT_SPLITS] | counters->count[CADT_COUNT_EDGE_SPLITS] | counters->count[CADT_COUNT_FLIPS])
     cadt_add_relaxed(counts + 2, 1u);
 }
 
-/* Edges that a work-item has yet to look at: `next`, if there is one, then those in a ring from `first` on, the newest
+/* Edges that a work-item has yet to test: `next`, if there is one, then those in a ring from `first` on, the newest
  * before others, so that a fan of flips stays small. `apex` is the inserted vertex: then only edges opposite of it can
- * become illegal by its flips (paper, Algorithm 3); CADT_NONE: any edge, all four sides are checked. */
+ * become illegal by its flips (paper, Algorithm 3); CADT_NONE: any edge, and a flip adds all four sides. */
 typedef struct {
-  cadt_u32* half_edge; /* the ring, CADT_WORKLIST of them */
+  cadt_u32* half_edge; /* the ring, of CADT_WORKLIST */
   cadt_u32 next, first, size, apex;
   cadt_point apex_point;
-  cadt_u32 flips; /* flips left, and one; after them what becomes illegal is left for the next launch */
+  cadt_u32 flips; /* flips still allowed, plus one; at 0 what becomes illegal is deferred */
   cadt_u32 conflicts;
 } cadt_worklist;
 
-/* The ring apart from the rest: a struct with an array that is indexed at run time is in memory as a whole, and on a
- * GPU each store to it goes on to the L2 cache. */
+/* The ring is no member: a struct with an array that is indexed at run time lies in memory as a whole, and on a GPU
+ * each store to it goes on to the L2 cache. */
 #define CADT_DECLARE_WORKLIST(work)       \
   cadt_u32 ring_of_##work[CADT_WORKLIST]; \
   cadt_worklist work;                     \
@@ -99,8 +99,8 @@ CADT_FN cadt_u32 cadt_worklist_take(cadt_worklist* work) {
   return half_edge;
 }
 
-/* Looks at one edge of the worklist and flips it if it is illegal; then what may be illegal by that goes on the list.
- * \pre there is one */
+/* Tests one edge of the worklist and flips it if it is illegal; the edges that this may have made illegal join the
+ * list. \pre there is one */
 CADT_FN void cadt_legalize_next(const cadt_locked_mesh* m, cadt_worklist* work, const cadt_deferred* deferred,
                                 cadt_counters* counters) {
   const cadt_u32 mask = CADT_WORKLIST - 1u;
@@ -115,7 +115,7 @@ CADT_FN void cadt_legalize_next(const cadt_locked_mesh* m, cadt_worklist* work, 
     if (++work->conflicts > CADT_CAST(cadt_u32, CADT_EDGE_TRIES)) {
       CADT_NOISE_AT(m, CADT_SITE_PUSH_EDGE);
       cadt_defer_edge(deferred, half_edge, counters);
-    } else { /* to the far end: the other edges first, meanwhile the owner gets on */
+    } else { /* to the far end: the other edges come first, and the owner of the lock can finish */
       work->first--;
       work->half_edge[work->first & mask] = half_edge;
       work->size++;
@@ -152,7 +152,7 @@ CADT_FN void cadt_legalize(const cadt_locked_mesh* m, cadt_worklist* work, const
   while (cadt_worklist_pending(work)) cadt_legalize_next(m, work, deferred, counters);
 }
 
-/* Edges that earlier launches left over. */
+/* Legalises edges that earlier launches deferred. */
 CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counter_rows) {

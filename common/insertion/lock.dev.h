@@ -1,21 +1,28 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The lock protocol. Nobody ever waits: a lock is tried, and on failure everything taken is given back.
+ * The lock protocol: where locks are taken and given up. Nobody ever waits: a lock is tried, and after a failure all
+ * locks already taken are given up.
  *
- * Lock word: 0 the record does not exist yet, even: free, and the number is its version, odd: claimed. A claim is one
- * compare-and-swap from the version that the claimer has read before the fields (GPUs: one OR, and a look at what was
- * there); it fails if the record is claimed or has changed since, so success proves that the fields read are the
- * record's state: claim and validity check (paper, Algorithm 1, lines 9 and 15) in one operation. An unlock after a
+ * Lock word: 0: the triangle does not exist yet; even: unlocked, and the number is its version; odd: locked. A try-lock
+ * is one compare-and-swap from the version that was read before the fields (GPUs: one OR, and a look at the word that
+ * was there). It fails if the triangle is locked or has changed since. So success proves that the fields read are the
+ * triangle's state: lock and validity check (paper, Algorithm 1, lines 9 and 15) in one operation. An unlock after a
  * change raises the version.
  *
- * Why the proof holds on CPUs: a change stores fields with release after its claim (acquire), and fields are loaded
- * with acquire, the lock word first. If a reader saw one field of a later change, the change's claim happens before the
+ * Why the proof holds on CPUs: a change stores fields with release after its lock (acquire), and fields are loaded with
+ * acquire, the lock word first. If a reader saw one field of a later change, the lock of that change happens before the
  * reader's compare-and-swap, which then cannot find the old version. On GPUs, where loads are relaxed, a field may be
- * older than the version beside it. So the owner reads the record again under its lock (cadt_validate), compares what
- * it has used and takes the rest from there; claims acquire, so it sees all that earlier owners wrote.
+ * older than the version beside it. So the owner reads the triangle again under its lock (cadt_validate), compares what
+ * it has used and takes everything else from there; locks acquire, so it sees all that earlier owners wrote.
  *
- * Order: records are claimed by ascending index, so among any set of conflicting claimers the one that gets furthest
- * meets nobody who is further (a fixed but unsorted order livelocks in a warp: ../docs/algorithm.md).
+ * Order: triangles are locked by ascending index. So of any set of threads in conflict, the one that has come furthest
+ * meets nobody ahead of it:
+ *
+ *     thread 1 needs  { 3, 7, 12 }       3 -> 7 -> 12
+ *     thread 2 needs  { 7, 12, 20 }           7 -> 12 -> 20
+ *     thread 3 needs  { 12, 31 }                   12 -> 31
+ *
+ * (A fixed but unsorted order livelocks within a warp: docs/algorithm.md.)
  */
 #ifndef CADT_INSERTION_LOCK_H
 #define CADT_INSERTION_LOCK_H
@@ -25,7 +32,7 @@
 #define CADT_ANY_VERSION 0u
 
 typedef struct {
-  cadt_u32 triangle[4]; /* ascending; CADT_NONE for an unused place */
+  cadt_u32 triangle[4]; /* ascending; CADT_NONE: unused */
   cadt_u32 version[4];
 } cadt_lock_set;
 
@@ -42,7 +49,7 @@ CADT_FN void cadt_order_locks(cadt_lock_set* c, cadt_u32 i, cadt_u32 j) {
   }
 }
 
-/* Gives back the records of the first `count` places, unchanged. \pre the caller owns them and has written nothing */
+/* Unlocks the first `count` triangles, unchanged. \pre the caller owns them and has written nothing */
 CADT_FN void cadt_unlock_unchanged(const cadt_locked_mesh* m, const cadt_lock_set* c, cadt_u32 count) {
 #if CADT_CONTIGUOUS
   for (cadt_u32 i = 0u; i < count; ++i)
@@ -51,8 +58,8 @@ CADT_FN void cadt_unlock_unchanged(const cadt_locked_mesh* m, const cadt_lock_se
       CADT_NOISE_AT(m, CADT_SITE_UNLOCKED_UNCHANGED);
     }
 #else
-  /* By an addition: a store would take the place of the last owner's in what the next claimer synchronises with, and so
-   * need a fence before it. */
+  /* By an addition: a store would replace the last owner's store as what the next lock synchronises with, and so need a
+   * fence before it. */
   for (cadt_u32 i = 0u; i < count; ++i)
     if (c->triangle[i] != CADT_NONE) {
       cadt_add_relaxed(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);
@@ -61,7 +68,7 @@ CADT_FN void cadt_unlock_unchanged(const cadt_locked_mesh* m, const cadt_lock_se
 #endif
 }
 
-/* Claims one record if its lock word is `*version`, or even where that is CADT_ANY_VERSION. */
+/* Locks one triangle if its lock word is `*version`, or even where that is CADT_ANY_VERSION. */
 CADT_FN cadt_u32 cadt_try_lock_one(CADT_GLOBAL cadt_u32* lock, cadt_u32* version, cadt_counters* counters) {
 #if defined(CADT_TEST_NO_LOCKS)
   (void)counters;
@@ -74,8 +81,8 @@ CADT_FN cadt_u32 cadt_try_lock_one(CADT_GLOBAL cadt_u32* lock, cadt_u32* version
   if (!(cadt_load_field(lock) & 1u)) CADT_COUNT_NOW(counters, CADT_COUNT_INVALIDATED);
   return 0u;
 #else
-  /* One operation, where a comparison would first need the version. It changes nothing in a word that is odd. A word of
-   * 0 becomes odd: somebody is about to store 2 there. */
+  /* One operation, where a compare-and-swap would first need the version. It changes nothing in an odd word. A word of
+   * 0 becomes odd: the thread that creates the triangle is about to store 2 there. */
   const cadt_u32 found = cadt_or_relaxed(lock, 1u);
   if (!cadt_is_unlocked(found)) return 0u;
   if (*version != CADT_ANY_VERSION && *version != found) {
@@ -88,9 +95,9 @@ CADT_FN cadt_u32 cadt_try_lock_one(CADT_GLOBAL cadt_u32* lock, cadt_u32* version
 #endif
 }
 
-/* Claims up to four records. \pre versions were read by cadt_snapshot_of before the fields, or are CADT_ANY_VERSION for
- * records of which the caller needs no field. \post 1: the caller owns all of them, `version` has the versions to give
- * back; 0: it owns none. */
+/* Tries to lock up to four triangles. \pre versions were read by cadt_snapshot_of before the fields, or are
+ * CADT_ANY_VERSION for triangles of which the caller needs no field. \post 1: the caller owns all of them, and
+ * `version` has the versions to restore if nothing changes; 0: it owns none. */
 CADT_FN cadt_u32 cadt_try_lock(const cadt_locked_mesh* m, cadt_lock_set* c, cadt_counters* counters) {
   counters->count[CADT_COUNT_LOCK_ATTEMPTS]++;
   cadt_order_locks(c, 0, 1);
@@ -110,17 +117,17 @@ CADT_FN cadt_u32 cadt_try_lock(const cadt_locked_mesh* m, cadt_lock_set* c, cadt
     }
     CADT_NOISE_AT(m, CADT_SITE_LOCKED);
   }
-  cadt_fence_after_lock(); /* what the last owners wrote is seen from here on */
+  cadt_fence_after_lock(); /* from here on, all that earlier owners wrote is seen */
   CADT_ADD_TIME(counters, CADT_TIME_LOCK);
   return 1u;
 }
 
-/* Links of a record that the caller has used: a bit for each. */
+/* Half-edges of a triangle that the caller has used: a bit for each. */
 enum { CADT_HALF_EDGES_01 = 3, CADT_HALF_EDGES_12 = 6, CADT_HALF_EDGES_ALL = 7 };
 
-/* Whether the vertices of record t, seen from edge k, and those of its links that are in `links` are still what `s`
- * says. On GPUs its links and counters are then those read again: what has not been used before need not be kept until
- * here, where registers are short. On CPUs the claim has proved all of `s`. \pre the caller owns t */
+/* Whether the vertices of triangle t, seen from edge k, and those of its half-edges that are in `used` are still those
+ * of `s`. On GPUs, `s` then gets the half-edges and flip counters read again: what was not used before need not stay in
+ * registers until here. On CPUs the lock has proved all of `s`. \pre the caller owns t */
 CADT_FN cadt_u32 cadt_validate(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 used, cadt_snapshot* s) {
   CADT_NOISE_AT(m, CADT_SITE_VALIDATE);
   if (CADT_NOISE_FAILS(m, CADT_SITE_VALIDATE)) return 0u;
@@ -141,7 +148,7 @@ CADT_FN cadt_u32 cadt_validate(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k
 #endif
 }
 
-/* Gives the records back, changed. \pre the caller owns them; all stores to them are done */
+/* Unlocks changed triangles. \pre the caller owns them, and all stores to them are done */
 CADT_FN void cadt_unlock(const cadt_locked_mesh* m, const cadt_lock_set* c) {
   CADT_NOISE_AT(m, CADT_SITE_UNLOCK);
   for (cadt_u32 i = 0u; i < 4u; ++i)
@@ -151,7 +158,7 @@ CADT_FN void cadt_unlock(const cadt_locked_mesh* m, const cadt_lock_set* c) {
     }
 }
 
-/* Gives back a claim whose records turned out to have changed. Returns 0. */
+/* Unlocks triangles that turned out to have changed before they were locked. Returns 0. */
 CADT_FN cadt_u32 cadt_unlock_invalid(const cadt_locked_mesh* m, const cadt_lock_set* locks, cadt_counters* counters) {
   cadt_unlock_unchanged(m, locks, 4u);
   CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
@@ -160,8 +167,8 @@ CADT_FN cadt_u32 cadt_unlock_invalid(const cadt_locked_mesh* m, const cadt_lock_
   return 0u;
 }
 
-/* Makes a new record free. \pre its fields and all links to it are stored, and the caller still owns the records it was
- * split from; until then whoever finds it reads lock word 0 and retries */
+/* Unlocks a new triangle for the first time. \pre its fields and all half-edges to it are stored, and the caller still
+ * owns the triangles it was split from; until then whoever finds it reads lock word 0 and retries */
 CADT_FN void cadt_publish_triangle(const cadt_locked_mesh* m, cadt_u32 t) {
   cadt_store_lock(m->locked[t].word + CADT_WORD_LOCK, 2u);
 }

@@ -1,20 +1,25 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Insertion without locks, for CPUs. Each work-item owns a range of positions, a piece of the plane that is compact
- * since positions are sorted along a curve, and inserts the points of its range into a mesh of few points that is there
- * already.
+ * Insertion without locks, for CPUs. Each work-item owns a partition: consecutive positions, and so a compact piece of
+ * the plane, since positions are sorted along a curve. It inserts the points of its partition into a mesh of few points
+ * that is already there.
  *
- * It changes a triangle only if all vertices are in its range, and flips an edge only if all four of both triangles
- * are. So no two work-items ever change the same triangle, and the triangles that have vertices of several partitions,
- * or the ghost, keep their vertices: around the triangles of one range lies a border that does not move. Of a triangle
- * of the border the link across an edge is changed by nobody but who owns both ends of the edge. Hence no word of a
- * record is written by two work-items, and what a work-item reads of its own triangles is what it wrote: no claim is
- * needed. A walk may stray into what others are changing; it reads hints there, as all walks do, and a record that it
- * finds with three vertices of its own range is its own.
+ * It changes a triangle only if it owns all three vertices, and flips an edge only if it owns all four vertices of the
+ * two triangles. So no two work-items change the same triangle, and triangles with vertices of several partitions, or
+ * with the ghost, keep their vertices: they form a border around each partition that does not move.
  *
- * A point in a triangle of the border is left for a launch with locks, and an edge of such a triangle is left as it is:
- * within its border each range has a constrained Delaunay mesh. When all partitions are done, cadt_border_sweep looks
- * at the edges of the border and repairs them, with locks.
+ *      o---o---o . . . x---x---x         o, x     vertices of two partitions
+ *      | \ | \ | .   . | \ | \ |         --- |    edges of triangles with one owner, who splits and flips them
+ *      o---o---o . . . x---x---x         . .      the border: triangles with vertices of both
+ *
+ * In a triangle of the border, only the owner of both ends of an edge writes the half-edge across it. So no word of a
+ * locked triangle is written by two work-items, and what a work-item reads of its own triangles is what it wrote: no
+ * lock is needed. A walk may stray to where others work; what it reads there may be torn, as in every walk, and a
+ * triangle that it finds with three vertices of its own partition is its own.
+ *
+ * A point in a triangle of the border is deferred to a launch with locks, and edges of such a triangle stay as they
+ * are: within its border each partition has a constrained Delaunay mesh. When all partitions are done,
+ * cadt_border_sweep tests the edges of the border and repairs them, with locks.
  */
 #ifndef CADT_INSERTION_PARTITIONED_H
 #define CADT_INSERTION_PARTITIONED_H
@@ -32,7 +37,7 @@ CADT_FN cadt_u32 cadt_owns_all(const cadt_partition* partition, const cadt_snaps
   return cadt_owns(partition, s->v0) & cadt_owns(partition, s->v1) & cadt_owns(partition, s->v2);
 }
 
-/* Incircle of the counterclockwise triangle of vertices a, b, c and p, which sees them as these arms. */
+/* Incircle of the counterclockwise triangle of vertices a, b, c and p; u, v, w are a, b, c as seen from p. */
 CADT_FN cadt_i32 cadt_incircle_lifted(const cadt_locked_mesh* m, cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_point p,
                                       cadt_lifted_vector u, cadt_lifted_vector v, cadt_lifted_vector w,
                                       cadt_counters* counters) {
@@ -45,8 +50,8 @@ CADT_FN cadt_i32 cadt_incircle_lifted(const cadt_locked_mesh* m, cadt_u32 a, cad
   return cadt_incircle_staged(m->points[a], m->points[b], m->points[c], p, counters);
 }
 
-/* Legalises the edges opposite of a new vertex, at p, of own triangles, in the order in which they lie around it: one
- * after the other from `link` on. A flip puts two edges in the place of one, and the first of them is next. */
+/* Legalises the edges opposite a new vertex at p, of own triangles, one after the other around it from `half_edge` on.
+ * A flip replaces one edge by two, and the first of them is next. */
 CADT_FN_INLINE void cadt_legalize_around(const cadt_locked_mesh* m, const cadt_partition* partition, cadt_u32 half_edge,
                                          cadt_point p, cadt_counters* counters) {
   cadt_snapshot s = cadt_snapshot_from(m, CADT_TRIANGLE_OF(half_edge), CADT_EDGE_OF(half_edge));
@@ -75,7 +80,7 @@ CADT_FN_INLINE void cadt_legalize_around(const cadt_locked_mesh* m, const cadt_p
       }
     }
     if (s.v2 == first) break;
-    /* the next triangle has p after the vertex that is opposite of what it shares with this one */
+    /* in the next triangle, p follows the vertex opposite the edge that it shares with this one */
     half_edge = CADT_HALF_EDGE(CADT_TRIANGLE_OF(s.n1), CADT_NEXT(CADT_EDGE_OF(s.n1)));
     s = cadt_snapshot_from(m, CADT_TRIANGLE_OF(half_edge), CADT_EDGE_OF(half_edge));
     a = b;
@@ -84,10 +89,11 @@ CADT_FN_INLINE void cadt_legalize_around(const cadt_locked_mesh* m, const cadt_p
   }
 }
 
-enum { CADT_PARTITION_WALK_LIMIT = 64 /* of a walk that does not try edges in random order */ };
+enum { CADT_PARTITION_WALK_LIMIT = 64 /* steps of a walk that does not try edges in random order */ };
 
-/* Walks from record `start` through own triangles. Nobody changes them, so what was found at one side of an edge need
- * not be tested at the other. \post 1: `place` is p's, in own triangles; 0: `place->record` is where the walk ended */
+/* Walks from triangle `start` through own triangles. Nobody else changes them, so an edge tested from one side need not
+ * be tested from the other. \post 1: `place` is that of p, in own triangles; 0: `place->triangle` is where the walk
+ * ended */
 CADT_FN_INLINE cadt_u32 cadt_locate_in_partition(const cadt_locked_mesh* m, const cadt_partition* partition,
                                                  cadt_point p, cadt_u32 start, cadt_place* place,
                                                  cadt_counters* counters) {
@@ -126,7 +132,7 @@ CADT_FN_INLINE cadt_u32 cadt_locate_in_partition(const cadt_locked_mesh* m, cons
   return 1u;
 }
 
-/* As cadt_insert_vertex, in own triangles and with the flips. 0 if it cannot be done there. */
+/* Inserts vertex i with a walk from `start`, in own triangles, and legalises. 0 if it cannot be done there. */
 CADT_FN_INLINE cadt_u32 cadt_insert_in_partition(const cadt_locked_mesh* m, const cadt_partition* partition, cadt_u32 i,
                                                  cadt_u32 start, cadt_counters* counters) {
   const cadt_point p = m->points[i];
@@ -159,15 +165,16 @@ CADT_FN_INLINE cadt_u32 cadt_insert_in_partition(const cadt_locked_mesh* m, cons
   return 1u;
 }
 
-/* Where all points are on the hull, or all triangles have a vertex in common, hardly a triangle belongs to one range:
- * after sixteen blocks in vain, more than lie along a border by chance, only one of sixteen is tried. */
+/* Where all points lie on the hull, or all triangles have a vertex in common, hardly a triangle belongs to one
+ * partition: after sixteen stalled blocks, more than lie along a border by chance, only one block of sixteen is tried.
+ */
 CADT_FN cadt_u32 cadt_partition_stalled(cadt_u32 stalled_blocks) {
   return stalled_blocks > 16u && stalled_blocks % 16u != 0u ? 1u : 0u;
 }
 
-/* Of each of the `partitions`, which have 2^level * blocks positions each, the points of blocks `from` to `to` - 1 but
- * those that stand for a block. A block is finished before the next, so that what is read again is still in the cache.
- * \pre the points that stand for blocks are in the mesh */
+/* Inserts, in each of the `partitions` of 2^level * blocks positions, the points of blocks `from` to `to` - 1 but the
+ * blocks' representatives. A block is finished before the next, so that what is read again is still in the cache. \pre
+ * the representatives of all blocks are in the mesh */
 CADT_KERNEL(cadt_insert_partitions, CADT_MESH_PARAMETERS, cadt_u32 n, cadt_u32 level, cadt_u32 partitions,
             cadt_u32 blocks, cadt_u32 from, cadt_u32 to, CADT_GLOBAL cadt_u32* deferred_points,
             CADT_GLOBAL cadt_u32* deferred_counts, CADT_GLOBAL cadt_u32* counter_rows) {
@@ -179,7 +186,7 @@ CADT_KERNEL(cadt_insert_partitions, CADT_MESH_PARAMETERS, cadt_u32 n, cadt_u32 l
   partition.begin = cadt_begin_of(cadt_item, blocks << level, n);
   partition.size = cadt_min_u32(blocks << level, n - partition.begin);
   CADT_SET_PARTITION(mesh, partition.begin, partition.size);
-  cadt_u32 stalled_blocks = 0u; /* blocks one after another of which most points were left */
+  cadt_u32 stalled_blocks = 0u; /* consecutive blocks of which most points were deferred */
   for (cadt_u32 block = (partition.begin >> level) + from; block < (partition.begin >> level) + to; ++block) {
     const cadt_u32 stalled = cadt_partition_stalled(stalled_blocks);
     cadt_u32 inserted = 0u, deferred = 0u;
@@ -207,7 +214,7 @@ CADT_KERNEL(cadt_insert_partitions, CADT_MESH_PARAMETERS, cadt_u32 n, cadt_u32 l
 #endif
 }
 
-/* Whether all three vertices are in the same range of `size` positions. */
+/* Whether all three vertices are in the same partition of `size` positions. */
 CADT_FN cadt_u32 cadt_in_same_partition(cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 size) {
   cadt_partition partition;
   partition.begin = a - a % size;
@@ -215,8 +222,8 @@ CADT_FN cadt_u32 cadt_in_same_partition(cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt
   return a != CADT_GHOST && cadt_owns(&partition, b) && cadt_owns(&partition, c) ? 1u : 0u;
 }
 
-/* Looks at the edges between triangles with vertices of one range of `size` positions and others, and repairs what is
- * illegal. Two of the others have not changed. */
+/* Tests the edges between triangles with all vertices in one partition of `size` positions and other triangles, and
+ * repairs illegal ones. The edges between two of the others have not changed. */
 CADT_KERNEL(cadt_border_sweep, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 size,
             CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counter_rows) {

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * SPLITHEAD
+ * Where a triangle is split: a face 1 -> 3, an edge and its two triangles 2 -> 4 (paper, section 4.3, Algorithm 2). A
+ * split locks what it writes, which validates what was read, then stores, then unlocks. In the figures `t.k` is the
+ * half-edge of edge k of triangle t; a row lists the vertices of a triangle by slot, and what lies across its edges.
  */
 #ifndef CADT_INSERTION_SPLIT_H
 #define CADT_INSERTION_SPLIT_H
 
 #include "common/insertion/locate.dev.h"
 
-/* A record that is not visible yet. */
+/* Stores a triangle that no half-edge names yet. */
 CADT_FN void cadt_new_triangle(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2,
                                cadt_u32 n0, cadt_u32 n1, cadt_u32 n2, cadt_u32 flips) {
   cadt_store_vertices(m, t, v0, v1, v2);
@@ -17,12 +19,22 @@ CADT_FN void cadt_new_triangle(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 v
   cadt_store_flips(m, t, flips);
 }
 
-/* The stores of a split of face t, seen as `s`, by vertex i. `edges` gets the three links opposite i. \pre nobody else
- * changes t, or the links of its neighbours 1 and 2 back to it */
+/* The stores of a split of face t by vertex i; `s` is t before. i replaces v0 in t, v1 in t1 = 2i, v2 in t2 = 2i + 1:
+ *
+ *            v0                         v0
+ *           /  \                       / | \
+ *      n2  /    \  n1            n2   /  |  \   n1        t  = (i,  v1, v2)    n0,  t1.0, t2.0
+ *         /  t   \                   /t2 | t1\            t1 = (v0, i,  v2)    t.1, n1,   t2.1
+ *        /        \                 /   .i.   \           t2 = (v0, v1, i)     t.2, t1.2, n2
+ *       /          \               / .   t  .  \
+ *      v1 --------- v2            v1 ---------- v2        locked: t and the triangles of n1 and n2, which now name
+ *           n0                         n0                 t1.1 and t2.2; the triangle of n0 still names t.0
+ *
+ * `edges` gets the three half-edges opposite i. \pre nobody else changes t, or the half-edges of its neighbours 1 and 2
+ * back to it */
 CADT_FN void cadt_write_face_split(const cadt_locked_mesh* m, cadt_u32 i, cadt_u32 t, const cadt_snapshot* s,
                                    cadt_u32* edges, cadt_counters* counters) {
   const cadt_u32 t1 = 2u * i, t2 = 2u * i + 1u;
-  /* i takes the place of v0 in t, of v1 in t1, of v2 in t2 */
   CADT_NOISE_AT(m, CADT_SITE_WRITE);
 #if !CADT_CONTIGUOUS
   const cadt_u32 f0 = cadt_flips_get(s->flips, 0u), f1 = cadt_flips_get(s->flips, 1u);
@@ -65,7 +77,7 @@ CADT_FN void cadt_write_face_split(const cadt_locked_mesh* m, cadt_u32 i, cadt_u
   counters->count[CADT_COUNT_SPLITS]++;
 }
 
-/* Splits the face at `place` by vertex i. \post 1: `edges` has the three links opposite i; 0: nothing changed. */
+/* Splits the face at `place` by vertex i. \post 3: `edges` has the three half-edges opposite i; 0: nothing changed. */
 CADT_FN cadt_u32 cadt_split_face(const cadt_locked_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges,
                                  cadt_counters* counters) {
   const cadt_u32 t = place->triangle, t1 = 2u * i, t2 = 2u * i + 1u;
@@ -96,19 +108,31 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_locked_mesh* m, cadt_u32 i, const ca
   return 3u;
 }
 
-/* The stores of a split by vertex i of the edge at `place` and its two triangles, the second one seen as `u`. `edges`
- * gets the four links opposite i. \pre nobody else changes the two, or the links back to them across the edges that go
- * to new records */
+/* The stores of a split of the edge at `place`, edge k of t, and its two triangles by vertex i; `u` is the second
+ * triangle n before. New are ts = 2i and ns = 2i + 1. Slots count from k in t and ts, from j in n and ns:
+ *
+ *            c                          c
+ *           / \                        /|\
+ *          /   \                      / | \               t  = (c, a, i)    ns.j, ts.k2, ca
+ *         /  t  \                    /t | ts\             ts = (c, i, b)    n.j,  bc,    t.k1
+ *        a ----- b                  a - i -- b            n  = (d, b, i)    ts.k, ns.j2, db
+ *         \  n  /                    \ns|  n/             ns = (d, i, a)    t.k,  ad,    n.j1
+ *          \   /                      \ | /
+ *           \ /                        \|/                locked: t, n and the triangles across bc and ad; those
+ *            d                          d                 across ca and db still name t.k2 and n.j2
+ *
+ * `edges` gets the four half-edges opposite i. \pre nobody else changes t and n, or the half-edges back to them across
+ * bc and ad */
 CADT_FN void cadt_write_edge_split(const cadt_locked_mesh* m, cadt_u32 i, const cadt_place* place,
                                    const cadt_snapshot* u, cadt_u32* edges, cadt_counters* counters) {
   const cadt_snapshot* s = &place->at;
   const cadt_u32 t = place->triangle, k = place->edge, k1 = CADT_NEXT(k), k2 = CADT_PREV(k);
   const cadt_u32 across = CADT_NEIGHBOR(*s, k), n = CADT_TRIANGLE_OF(across), j = CADT_EDGE_OF(across);
   const cadt_u32 j1 = CADT_NEXT(j), j2 = CADT_PREV(j), ts = 2u * i, ns = 2u * i + 1u;
-  /* t = (c, a, b), n = (d, b, a) from vertices k and j on; i is between a and b */
+  /* t = (c, a, b), n = (d, b, a) from vertices k and j on; i lies between a and b */
   const cadt_u32 a = CADT_VERTEX(*s, k1), b = CADT_VERTEX(*s, k2), c = CADT_VERTEX(*s, k), d = CADT_VERTEX(*u, j);
   const cadt_u32 outer_bc = CADT_NEIGHBOR(*s, k1), outer_ad = CADT_NEIGHBOR(*u, j1);
-  /* new records, each in the slots of its parent: ts = (c, i, b), ns = (d, i, a) */
+  /* new triangles, each in the slots of its parent: ts = (c, i, b), ns = (d, i, a) */
   cadt_store_vertex(m, ts, k, c);
   cadt_store_vertex(m, ts, k1, i);
   cadt_store_vertex(m, ts, k2, b);
@@ -147,7 +171,7 @@ CADT_FN void cadt_write_edge_split(const cadt_locked_mesh* m, cadt_u32 i, const 
   counters->count[CADT_COUNT_EDGE_SPLITS]++;
 }
 
-/* Splits the edge at `place` and its two triangles by vertex i. \post 4: `edges` has the four links opposite i; 0:
+/* Splits the edge at `place` and its two triangles by vertex i. \post 4: `edges` has the four half-edges opposite i; 0:
  * nothing changed. */
 CADT_FN cadt_u32 cadt_split_edge(const cadt_locked_mesh* m, cadt_u32 i, const cadt_place* place, cadt_u32* edges,
                                  cadt_counters* counters) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * CANONHEAD
+ * Canonical order without a sort of all triangles: a triangle belongs to the bucket of its smallest input id; buckets
+ * are short, and within one no two triangles have the same second vertex.
  */
 #ifndef CADT_OUTPUT_CANONICAL_ORDER_H
 #define CADT_OUTPUT_CANONICAL_ORDER_H
@@ -12,11 +13,11 @@ typedef struct {
   cadt_u32 second, triangle;
 } cadt_member;
 
-/* On CPUs an addition in memory that is far away holds up everything behind it, so triangles get their places in their
- * buckets (`places`, by record) when they are counted; GPUs have no use for the memory traffic, and add again. */
+/* On CPUs an atomic addition to distant memory holds up everything behind it, so triangles get their places in the
+ * buckets (`places`, by triangle) when they are counted; GPUs spare the memory traffic and add again. */
 #define CADT_PLACES_KNOWN CADT_CONTIGUOUS
 
-/* Size of each bucket, and edges by flips. \pre buckets are zero */
+/* Counts the triangles of each bucket, and edges by flips. \pre buckets are zero */
 CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_locked_triangle* locked, CADT_GLOBAL const cadt_u32* vertices,
             CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_u32* places,
             cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* flips) {
@@ -36,8 +37,8 @@ CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_locked_triangle* locked
   CADT_FLIPS_END(bins, flips);
 }
 
-/* Cuts scanned buckets in `parts` with about as many triangles each. begins[2 * k]: the first bucket of part k, and the
- * first triangle; at the end those behind the last. \pre there are triangles */
+/* Splits scanned buckets into `parts` of about as many triangles each. begins[2 * k] and the next word: the first
+ * bucket and the first triangle of part k; at the end those behind the last part. \pre there are triangles */
 CADT_KERNEL(cadt_split_buckets, CADT_GLOBAL const cadt_u32* buckets, cadt_u32 count, cadt_u32 triangles, cadt_u32 parts,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* begins) {
   if (cadt_item == 0u) begins[0] = begins[1] = 0u;
@@ -52,9 +53,9 @@ CADT_KERNEL(cadt_split_buckets, CADT_GLOBAL const cadt_u32* buckets, cadt_u32 co
   }
 }
 
-/* Puts each real triangle of `size` buckets from `from` on, whose first is triangle `base`, in its bucket: (second
- * vertex, record). \pre buckets are scanned (their beginnings); \post their ends, or still their beginnings where
- * places are known */
+/* Puts each real triangle of the `size` buckets from `from` on, whose first triangle has number `base`, into its
+ * bucket: (second vertex, triangle). \pre buckets are scanned: where they begin; \post where they end, or still where
+ * they begin if places are known */
 CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_locked_triangle* locked, CADT_GLOBAL const cadt_u32* vertices,
             CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL const cadt_u32* places,
             CADT_GLOBAL cadt_member* members, cadt_u32 from, cadt_u32 size, cadt_u32 base, cadt_u32 count,
@@ -76,8 +77,8 @@ CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_locked_triangle* locke
   }
 }
 
-/* Sorts each bucket by the second vertex. The hub of a wheel has one triangle a point: long buckets are sorted by heap
- * sort, the longest as one list by all work-items, if there is memory for that. */
+/* Sorts each bucket by the second vertex. A high-degree vertex may have a long bucket, the hub of a wheel one triangle
+ * a point: heap sort takes those; the longest are sorted as one list by all work-items, if there is memory for it. */
 CADT_FN void cadt_sift_down(CADT_GLOBAL cadt_member* bucket, cadt_u32 at, cadt_u32 size) {
   const cadt_member moving = bucket[at];
   for (;;) {
@@ -102,8 +103,8 @@ CADT_FN cadt_u32 cadt_bucket_begin(CADT_GLOBAL const cadt_u32* buckets, cadt_u32
 #endif
 }
 
-/* `count` buckets from `from` on; the first triangle is `base`, at members. Buckets with more than `longest` are
- * skipped; `skipped` counts their triangles. */
+/* Sorts the `count` buckets from `from` on; the first triangle has number `base`, and stands at members[0]. Skips
+ * buckets with more than `longest` triangles and counts these in `skipped`. */
 CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 from,
             cadt_u32 count, cadt_u32 base, cadt_u32 longest, cadt_u32 grain, CADT_GLOBAL cadt_u32* skipped) {
   CADT_FOR(i, count, grain) {
@@ -156,7 +157,8 @@ CADT_KERNEL(cadt_long_flags, CADT_GLOBAL const cadt_u32* buckets, cadt_u32 from,
   }
 }
 
-/* Those triangles in one list: second vertex, record, bucket and place of each. `ranks` is the scan of the flags. */
+/* Packs these triangles into one list: second vertex, triangle, bucket and place of each. `ranks` is the scan of the
+ * flags. */
 CADT_KERNEL(cadt_long_pack, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL const cadt_member* members, cadt_u32 from,
             cadt_u32 size, cadt_u32 base, CADT_GLOBAL const cadt_u32* ranks, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* seconds, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* owners,
@@ -171,7 +173,7 @@ CADT_KERNEL(cadt_long_pack, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL con
   }
 }
 
-/* The list back to its places, sorted: entry `order[at]` goes to that of entry `at`. */
+/* Stores the sorted list back: entry order[at] goes to the place of entry `at`. */
 CADT_KERNEL(cadt_long_store, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* seconds,
             CADT_GLOBAL const cadt_u32* triangles, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_member* members,
             cadt_u32 count, cadt_u32 grain) {
@@ -181,7 +183,7 @@ CADT_KERNEL(cadt_long_store, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL cons
   }
 }
 
-/* numbers[record] = index of the triangle. \pre numbers of ghosts are CADT_NONE */
+/* numbers[t] = place of triangle t in the result. \pre numbers of ghosts are CADT_NONE */
 CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_GLOBAL cadt_u32* numbers, cadt_u32 base,
             cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(i, count, grain) { numbers[members[i].triangle] = base + i; }

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * HULLHEAD
+ * The hull: edges of the result without a neighbour.
  */
 #ifndef CADT_OUTPUT_HULL_H
 #define CADT_OUTPUT_HULL_H
 
 #include "common/portable/atomics.dev.h"
 
-/* Edges of the boundary counterclockwise as pairs of input indices, in any order. `size` counts them. */
+/* Lists the boundary edges, counterclockwise, as pairs of input ids in any order. `size` counts them. */
 CADT_KERNEL(cadt_boundary_edges, CADT_GLOBAL const cadt_u32* triangles, CADT_GLOBAL const cadt_u32* neighbors,
             cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* pairs, CADT_GLOBAL cadt_u32* size,
             cadt_u32 capacity) {

@@ -24,7 +24,7 @@ Allocation values_of_sets(Context& ctx, const Allocation& from, const Allocation
   return values;
 }
 
-/// Where the records of the sets begin: two a vertex.
+/// Where the triangles of the sets begin: two a vertex.
 Allocation first_records(Context& ctx, const SetStarts& sets) {
   std::vector<std::uint32_t> places(sets.count + 1);
   ctx.device.read(*(sets.positions ? sets.positions : sets.points), 0, places.data(), places.size() * word);
@@ -34,15 +34,15 @@ Allocation first_records(Context& ctx, const SetStarts& sets) {
   return result;
 }
 
-/// Parts of the canonical order that are made one after the other where memory is to be saved: the lists of each have
-/// this share of the triangles.
+/// The compact plan makes the canonical order in so many parts, one after the other: the lists of each have this share
+/// of the triangles.
 constexpr std::uint32_t parts_of_compact_plan = 2;
 
 struct PartBegin {
   std::uint32_t bucket = 0, triangle = 0;  ///< the first ones of a part
 };
 
-/// Where the parts begin, and the end of the last.
+/// Where the parts begin, and where the last one ends.
 std::vector<PartBegin> split_buckets(Context& ctx, const Allocation& buckets, std::size_t points,
                                      std::uint32_t triangles, std::uint32_t parts) {
   std::vector<PartBegin> begins(parts + std::size_t{1});
@@ -66,15 +66,15 @@ struct BucketPart {
   std::uint32_t base, count;  ///< triangles
 };
 
-/// Buckets with more triangles are sorted as one list by all work-items: one takes 2 microseconds a triangle.
-constexpr std::uint32_t longest_serial = 256;
+/// Longer buckets are sorted as one list by all work-items: one work-item takes 2 microseconds a triangle.
+constexpr std::uint32_t longest_serial_bucket = 256;
 
-/// Sorts what cadt_sort_buckets has skipped, `left` triangles.
+/// Sorts what cadt_sort_buckets has skipped, `listed` triangles.
 void sort_long_buckets(Context& ctx, const BucketPart& part, std::uint32_t listed) {
   Launcher& launch = ctx.launcher;
   Allocation ranks = ctx.memory.allocate((part.count + std::size_t{1}) * word);
   const LaunchGrid all = launch.grid(part.count), some = launch.grid(listed);
-  launch.run<KernelId::cadt_long_flags>(all.items, part.buckets, part.from, part.size, part.base, longest_serial,
+  launch.run<KernelId::cadt_long_flags>(all.items, part.buckets, part.from, part.size, part.base, longest_serial_bucket,
                                         part.count, all.grain, ranks);
   launch.scan(ranks, part.count + std::size_t{1});
   const std::size_t bytes = listed * word;
@@ -102,8 +102,8 @@ void sort_buckets(Context& ctx, const BucketPart& part) {
     launch.run<KernelId::cadt_sort_buckets>(c.items, part.buckets, part.members, part.from, part.size, part.base,
                                             longest, c.grain, found);
   };
-  sort(longest_serial);
-  const std::uint32_t skipped = part.count > longest_serial ? launch.read_word(found, 0) : 0;
+  sort(longest_serial_bucket);
+  const std::uint32_t skipped = part.count > longest_serial_bucket ? launch.read_word(found, 0) : 0;
   if (skipped == 0) return;
   if (ctx.memory.allows((part.count + 8 * std::size_t{skipped} + 1) * word))
     sort_long_buckets(ctx, part, skipped);
@@ -111,8 +111,8 @@ void sort_buckets(Context& ctx, const BucketPart& part) {
     sort(none);
 }
 
-/// The numbers of all triangles, from scanned buckets. \pre the numbers are places in buckets where the device knows
-/// them (renumber.dev.h)
+/// Numbers all triangles from scanned buckets. \pre `numbers` are places in buckets where the device knows them
+/// (canonical_order.dev.h)
 void number_by_buckets(Context& ctx, const Mesh& mesh, const Allocation& input_ids, Allocation buckets,
                        const Numbering& result, std::size_t points) {
   Launcher& launch = ctx.launcher;
@@ -166,7 +166,7 @@ Numbering renumber(Context& ctx, const Mesh& mesh, const Allocation& input_ids, 
   }
   const std::size_t places = mesh.in_arrays() ? mesh.triangles : mesh.slots;
   const auto slots = static_cast<std::uint32_t>(places);
-  const FlipHistogram flips(ctx, !mesh.in_arrays());  // arrays have none any more
+  const FlipHistogram flips(ctx, !mesh.in_arrays());  // arrays have no flip counters
   const LaunchGrid all = launch.grid_strided(places);
   if (ctx.options.order == Order::fast) {
     result.ranked = true;

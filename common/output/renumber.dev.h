@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * RENUMBERHEAD
+ * The mesh as arrays of input ids: vertices become input ids, half-edges become numbers of triangles.
  */
 #ifndef CADT_OUTPUT_RENUMBER_H
 #define CADT_OUTPUT_RENUMBER_H
@@ -8,12 +8,12 @@
 #include "common/certify/certify.dev.h"
 #include "common/overlay/flip_histogram.dev.h"
 
-/* A triangle in input indices, rotated so that the smallest comes first; `slot` is the slot of that vertex. */
+/* A triangle in input ids, rotated so that the smallest comes first; `slot` is where that vertex was. */
 typedef struct {
   cadt_u32 a, b, c, slot;
 } cadt_triangle;
 
-/* `labels` null: these are input indices. */
+/* Null `input_ids`: the vertices are input ids already. */
 CADT_FN cadt_triangle cadt_in_input_ids(CADT_GLOBAL const cadt_u32* input_ids, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2) {
   const cadt_u32 x = input_ids ? input_ids[v0] : v0, y = input_ids ? input_ids[v1] : v1,
                  z = input_ids ? input_ids[v2] : v2;
@@ -25,7 +25,7 @@ CADT_FN cadt_triangle cadt_in_input_ids(CADT_GLOBAL const cadt_u32* input_ids, c
   return t;
 }
 
-/* Whether the record is in use and not a ghost's. */
+/* Whether the triangle exists and has no ghost. */
 CADT_FN cadt_u32 cadt_is_real(const cadt_locked_triangle* r) {
   return r->word[CADT_WORD_LOCK] != 0u && r->word[0] != CADT_GHOST && r->word[1] != CADT_GHOST &&
                  r->word[2] != CADT_GHOST
@@ -33,7 +33,8 @@ CADT_FN cadt_u32 cadt_is_real(const cadt_locked_triangle* r) {
              : 0u;
 }
 
-/* Triangle t of the mesh, in records or, if these are null, in arrays that have real ones only: links are left out. */
+/* The vertices of triangle t, of the locked mesh or, if that is null, of arrays, of which only real
+ * triangles are read. */
 CADT_FN void cadt_read_vertices(CADT_GLOBAL const cadt_locked_triangle* locked, CADT_GLOBAL const cadt_u32* vertices,
                                 cadt_u32 t, cadt_locked_triangle* r) {
   if (locked) {
@@ -45,7 +46,7 @@ CADT_FN void cadt_read_vertices(CADT_GLOBAL const cadt_locked_triangle* locked, 
   r->word[CADT_WORD_FLIPS] = 0u;
 }
 
-/* Writes a triangle to its place. n0, n1, n2: the triangles across the edges as the mesh has them. */
+/* Writes a triangle to place `at`. n0, n1, n2: the triangles across its edges by the slots of the mesh. */
 CADT_FN void cadt_write_triangle(const cadt_triangle t, cadt_u32 at, cadt_u32 n0, cadt_u32 n1, cadt_u32 n2,
                                  CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors) {
   if (triangles) {
@@ -60,8 +61,8 @@ CADT_FN void cadt_write_triangle(const cadt_triangle t, cadt_u32 at, cadt_u32 n0
   }
 }
 
-/* Writes the triangles to their places, behind `first` others that have nothing to do with them. By record, so that
- * what is read (neighbours' numbers, labels) is near. */
+/* Writes the triangles to their places, behind `first` others that have nothing to do with them. In the order of the
+ * mesh, so that what is read (numbers of neighbours, input ids) is near. */
 CADT_KERNEL(cadt_write_triangles, CADT_GLOBAL const cadt_locked_triangle* locked, CADT_GLOBAL const cadt_u32* input_ids,
             CADT_GLOBAL const cadt_u32* numbers, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors,
             cadt_u32 first, cadt_u32 count, cadt_u32 grain) {
@@ -76,8 +77,8 @@ CADT_KERNEL(cadt_write_triangles, CADT_GLOBAL const cadt_locked_triangle* locked
   }
 }
 
-/* For the order of the records: 1 for each real triangle. flags[count] becomes 0, so its scan is the total. Edges by
- * flips besides. */
+/* For the order of the mesh: 1 for each real triangle; flags[count] becomes 0, so that its scan is the total. Counts
+ * edges by flips as well. */
 CADT_KERNEL(cadt_flag_triangles, CADT_GLOBAL const cadt_locked_triangle* locked, CADT_GLOBAL cadt_u32* flags,
             cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* flips) {
   CADT_FLIPS_BEGIN(bins, flips);
@@ -92,13 +93,13 @@ CADT_KERNEL(cadt_flag_triangles, CADT_GLOBAL const cadt_locked_triangle* locked,
   CADT_FLIPS_END(bins, flips);
 }
 
-/* Number of a triangle from the exclusive scan of the flags. */
+/* The number of the triangle of a half-edge, from the exclusive scan of the flags. */
 CADT_FN cadt_u32 cadt_rank(CADT_GLOBAL const cadt_u32* ranks, cadt_u32 half_edge) {
   const cadt_u32 t = CADT_TRIANGLE_OF(half_edge), rank = ranks[t];
   return ranks[t + 1u] != rank ? rank : CADT_NONE;
 }
 
-/* As cadt_write_triangles, in the order of the records. `ranks` is the exclusive scan of the flags. */
+/* As cadt_write_triangles, in the order of the mesh. `ranks` is the exclusive scan of the flags. */
 CADT_KERNEL(cadt_write_ranked, CADT_GLOBAL const cadt_locked_triangle* locked, CADT_GLOBAL const cadt_u32* input_ids,
             CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors,
             cadt_u32 first, cadt_u32 count, cadt_u32 grain) {
@@ -112,14 +113,14 @@ CADT_KERNEL(cadt_write_ranked, CADT_GLOBAL const cadt_locked_triangle* locked, C
   }
 }
 
-/* Number of the triangle behind a link in arrays; `numbers` null: as it is. */
+/* The number of the triangle of a half-edge in arrays; null `numbers`: its index. */
 CADT_FN cadt_u32 cadt_number_across(CADT_GLOBAL const cadt_u32* numbers, cadt_u32 half_edge, cadt_u32 count) {
   const cadt_u32 t = CADT_TRIANGLE_OF(half_edge);
   return t >= count ? CADT_NONE : (numbers ? numbers[t] : t);
 }
 
-/* As cadt_write_triangles, from arrays of which the first `count` triangles are real, each array by itself if the other
- * result is null. Without numbers the results may be the arrays themselves. */
+/* As cadt_write_triangles, from arrays whose first `count` triangles are real; if either result is null, only the other
+ * is written. Without numbers the results may be the arrays themselves. */
 CADT_KERNEL(cadt_write_arrays, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_u32* half_edges,
             CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL const cadt_u32* numbers, CADT_GLOBAL cadt_u32* triangles,
             CADT_GLOBAL cadt_u32* neighbors, cadt_u32 first, cadt_u32 count, cadt_u32 grain) {
@@ -128,7 +129,7 @@ CADT_KERNEL(cadt_write_arrays, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL
         cadt_in_input_ids(input_ids, cadt_word_of_three(vertices, t, 0u), cadt_word_of_three(vertices, t, 1u),
                           cadt_word_of_three(vertices, t, 2u));
     cadt_u32 n0 = CADT_NONE, n1 = CADT_NONE, n2 = CADT_NONE;
-    if (neighbors) { /* else there may be no links any more */
+    if (neighbors) { /* else the half-edges may be gone already */
       n0 = cadt_number_across(numbers, cadt_word_of_three(half_edges, t, 0u), count);
       n1 = cadt_number_across(numbers, cadt_word_of_three(half_edges, t, 1u), count);
       n2 = cadt_number_across(numbers, cadt_word_of_three(half_edges, t, 2u), count);
@@ -138,7 +139,8 @@ CADT_KERNEL(cadt_write_arrays, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL
 }
 
 /* Moves the triangles of a finished array to their places in three steps, one for each word `k` of a triangle, by way
- * of `moved`: it costs more time than a second array, and a third of its memory. `links`: the words are triangles. */
+ * of `moved`. It takes more time than a second array and a third of its memory. `neighbors`: the words are triangles.
+ */
 CADT_KERNEL(cadt_move_words, CADT_GLOBAL const cadt_u32* words, CADT_GLOBAL const cadt_u32* numbers, cadt_u32 k,
             cadt_u32 neighbors, CADT_GLOBAL cadt_u32* moved, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(t, count, grain) {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Edges by the number of their flips (paper, Fig. 9 and 10), ghost edges left out: counted by a kernel that reads all
- * records of the finished mesh anyway, each edge twice, once from each side.
+ * Histogram of edges by the number of their flips (paper, Fig. 9 and 10), without ghost edges. A kernel that reads all
+ * locked triangles of the finished mesh anyway counts each edge twice, once from each side.
  *
- *   CADT_FLIPS_BEGIN(bins, rows);            before anything else in the kernel
- *   CADT_FLIPS_COUNT(bins, rows, record);    in its loop
- *   CADT_FLIPS_END(bins, rows);              behind it
+ *   CADT_FLIPS_BEGIN(bins, rows);              before anything else in the kernel
+ *   CADT_FLIPS_COUNT(bins, rows, triangle);    in its loop
+ *   CADT_FLIPS_END(bins, rows);                behind it
  *
- * `rows` has CADT_FLIP_BINS words for each of CADT_COUNTER_ROWS, or is null if nobody wants to know.
+ * `rows` has CADT_FLIP_BINS words for each of CADT_COUNTER_ROWS, or is null: then nothing is counted.
  */
 #ifndef CADT_OVERLAY_FLIP_HISTOGRAM_H
 #define CADT_OVERLAY_FLIP_HISTOGRAM_H
@@ -21,13 +21,13 @@ CADT_FN cadt_u32 cadt_ghost_slot(const cadt_locked_triangle* r) {
 }
 
 #if CADT_GROUP_SUMS
-/* Counts of edges with 0, 1, ..., 15 or more flips: 8 bits each, in two words. */
+/* Edges with 0, 1, ..., 15 or more flips: 8 bits each, in two words. */
 typedef struct {
   cadt_u64 low, high;
-  cadt_u32 triangles; /* since the sums were passed on */
+  cadt_u32 triangles; /* since the last flush */
 } cadt_flip_bins;
 
-enum { CADT_BINS_FULL = 255 / 3 }; /* triangles until the sums must be passed on */
+enum { CADT_BINS_FULL = 255 / 3 }; /* triangles until the bins must be flushed */
 
 CADT_FN void cadt_bins_add(cadt_flip_bins* bins, cadt_u32 flips) {
   const cadt_u32 bin = cadt_min_u32(flips, CADT_FLIP_BINS - 1u);
@@ -78,7 +78,7 @@ CADT_FN void cadt_bins_end(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums, 
 #define CADT_FLIPS_END(bins, rows) \
   if (rows) cadt_bins_end(&bins, flip_sums, (rows))
 #else
-/* One row of bins for each slot: most edges have the same few numbers of flips, and an addition would wait for the one
+/* One row of bins for each slot: most edges have the same few flip counts, and an addition would wait for the one
  * before. */
 typedef struct {
   cadt_u32 bin[3][CADT_FLIP_BINS];

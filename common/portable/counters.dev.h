@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Counters of work and conflicts, and clocks. A work-item counts privately and adds its counts once; they end in one of
- * several rows, so the counters cost little. What happens seldom in the insertion is counted by CADT_COUNT_NOW: on a
- * GPU at once in the memory of the group, since no register is free for it. The driver adds the rows up
- * (common/driver/counters.cpp).
+ * Counters of work and conflicts, and timers. A work-item counts privately and adds its counts once, to one of several
+ * rows, so the counters cost little. CADT_COUNT_NOW counts what happens rarely in the insertion: on a GPU at once in
+ * the memory of the group, since no register is free for it. The driver adds the rows up (common/driver/counters.cpp).
  *
- * Clocks are in the timed build only. A lap ends where CADT_ADD_TIME stands: the time since the last one goes to the
- * named account. On a GPU that is the time of the lane, in which lanes of its warp that went another way may have
- * worked.
+ * Timers exist in the timed variant only. CADT_ADD_TIME adds the time since the last reading of the clock to a timer.
+ * On a GPU that is the time of the lane, during which divergent lanes of its warp may have run.
  */
 #ifndef CADT_PORTABLE_COUNTERS_H
 #define CADT_PORTABLE_COUNTERS_H
@@ -19,7 +17,7 @@ typedef struct {
   cadt_u32 count[CADT_COUNTERS];
 #if CADT_GROUP_SUMS
   CADT_LOCAL_PTR cadt_u32* sums; /* of the group */
-  cadt_u32 wanted;               /* whether anybody wants to know */
+  cadt_u32 wanted;               /* whether counters are requested */
 #endif
 #if CADT_TIMED
   cadt_u64 ticks[CADT_TIMERS];
@@ -45,13 +43,13 @@ CADT_FN void cadt_add_time(cadt_counters* counters, cadt_u32 timer) {
 #else
 #define CADT_ADD_TIME(counters, timer) ((void)0)
 #endif
-/* What was done since the last lap is nobody's account. */
+/* The time since the last reading goes to no timer. */
 #if CADT_TIMED
 #define CADT_SKIP_TIME(counters) ((counters)->last_clock = cadt_clock())
 #else
 #define CADT_SKIP_TIME(counters) ((void)0)
 #endif
-/* Where lanes of a GPU's warp wait for each other; a CPU's thread waits for nobody. */
+/* Where lanes of a GPU's warp wait for each other; a CPU's thread does not. */
 #if CADT_CONTIGUOUS
 #define CADT_ADD_WAIT_TIME(counters) ((void)0)
 #else
@@ -74,10 +72,10 @@ CADT_FN CADT_GLOBAL cadt_u32* cadt_counter_row(CADT_GLOBAL cadt_u32* counter_row
   return counter_rows + item % CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE;
 }
 
-/* A group of a GPU adds up in its own memory, and who comes last passes the sums on: lanes leave their loops one by
- * one, so that there would be one addition in the device's memory for each lane and counter (5 % of the time of 10M
- * points on an H200), and letting the lanes of a warp wait for each other, to add together, costs 3 %.
- * CADT_GROUP_COUNTERS stands once in a kernel, before anything else; `counters` is null if nobody wants to know. */
+/* A group of a GPU adds up in its own memory, and its last lane passes the sums on: lanes leave their loops one by one,
+ * so there would be one addition in device memory for each lane and counter (5 % of the time of 10M points on an H200),
+ * and letting the lanes of a warp wait for each other to add together costs 3 %. CADT_GROUP_COUNTERS stands once in a
+ * kernel, before anything else; null `counter_rows`: nothing is counted. */
 #if CADT_GROUP_SUMS
 enum { CADT_GROUP_DONE = CADT_COUNTERS + CADT_TIMERS, CADT_GROUP_WORDS };
 #define CADT_GROUP_COUNTERS(counters, counter_rows)          \
@@ -95,7 +93,7 @@ CADT_FN void cadt_clear_sums(CADT_LOCAL_PTR cadt_u32* sums, cadt_u32 count) {
   cadt_group_barrier();
 }
 
-/* True for the work-item of the group that asks last: it sees the sums of all. */
+/* True for the work-item of the group that calls last: it sees the sums of all. */
 CADT_FN cadt_u32 cadt_is_last_of_group(CADT_LOCAL_PTR cadt_u32* done) {
   cadt_fence_local();
   if (cadt_add_local(done, 1u) + 1u != cadt_group_items) return 0u;
@@ -103,8 +101,7 @@ CADT_FN cadt_u32 cadt_is_last_of_group(CADT_LOCAL_PTR cadt_u32* done) {
   return 1u;
 }
 
-/* Instructions count here, since each lane executes this by itself: no branches for the common counters, one for all
- * others. */
+/* Each lane executes this by itself, so instructions count: no branches for the common counters, one for all others. */
 CADT_FN void cadt_flush_group(cadt_counters* counters, CADT_LOCAL_PTR cadt_u32* sums,
                               CADT_GLOBAL cadt_u32* counter_rows) {
   cadt_u32 others = 0u;

@@ -1,16 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The dialect of common/device: C99 that is OpenCL C, CUDA C++ and host C++ at once.
- * This file finds the language once, then defines the words in which the rest is written. Nothing else in this folder
- * asks which language it is, but atomics.dev.h.
- *
- * A compile may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double), CADT_FLOAT (1:
- * coordinates are floats, any of them, and there are no doubles; this build is wide),
- * CADT_CONTIGUOUS (1: a work-item takes neighbouring elements, right for CPUs; 0: strided, right for GPUs),
- * CADT_RADIX_BITS (digit of the radix sort), CADT_TIMED (1: threads take
- * the time of what they do, counters.dev.h). For tests only: CADT_CHECKED (who stores to a record must own it,
- * locked_mesh.dev.h), CADT_SCHEDULE_NOISE (delays and failures, schedule_noise.dev.h), CADT_TEST_NO_LOCKS (a control:
- * locks are not taken).
+ * The dialect of the device text: C99 that is OpenCL C, CUDA C++ and host C++ at once. Here are the words in which the
+ * other files are written: coordinates, vector accesses, and how work-items share elements. Outside of this folder only
+ * schedule_noise.dev.h asks which language compiles it.
  */
 #ifndef CADT_PORTABLE_DIALECT_H
 #define CADT_PORTABLE_DIALECT_H
@@ -20,12 +12,12 @@
 /* Coordinates, and what is computed from them (docs/decisions/0015-float-path.md). */
 #if CADT_FLOAT
 typedef float cadt_real;
-#define CADT_MANTISSA_BITS 23 /* that are stored */
+#define CADT_MANTISSA_BITS 23 /* stored bits */
 #define CADT_EXPONENTS 0xFFul
 #define CADT_EXPONENT_BIAS 127
 #define CADT_SIGN_SHIFT 31
 #define cadt_bits_of_real(x) CADT_CAST(cadt_u64, cadt_bits_of_float(x))
-/* Devices may take subnormal floats for 0 and make them 0, in comparisons too. */
+/* Devices may take subnormal floats for 0 and turn them into 0, in comparisons too. */
 #define CADT_GRADUAL_UNDERFLOW 0
 /* \pre -126 <= e <= 127 */
 #undef cadt_ldexp
@@ -37,17 +29,17 @@ typedef double cadt_real;
 #define CADT_EXPONENT_BIAS 1023
 #define CADT_SIGN_SHIFT 63
 #define cadt_bits_of_real(x) cadt_bits_of_double(x)
-#define CADT_GRADUAL_UNDERFLOW 1 /* the self-test asks for it */
+#define CADT_GRADUAL_UNDERFLOW 1 /* the self-test checks it */
 #endif
 #define CADT_EXPONENT_MASK (CADT_EXPONENTS << CADT_MANTISSA_BITS)
 #define CADT_HIDDEN_BIT (1ul << CADT_MANTISSA_BITS)
 
-/* Comparison of coordinates that decides something. */
+/* Comparisons of coordinates on which a decision depends. */
 #if CADT_GRADUAL_UNDERFLOW
 #define cadt_less(a, b) ((a) < (b))
 #define cadt_same(a, b) ((a) == (b))
 #else
-/* Whole numbers in the order of the values; -0 is 0. */
+/* Integers in the order of the values; -0 is 0. */
 CADT_FN cadt_i32 cadt_float_order(cadt_real x) {
   const cadt_u32 bits = cadt_bits_of_float(x);
   const cadt_i32 magnitude = CADT_CAST(cadt_i32, bits & 0x7FFFFFFFu);
@@ -63,8 +55,8 @@ typedef struct {
 
 #define CADT_NONE 0xFFFFFFFFu
 
-/* A point at an address that is a multiple of its size, in one access: two would ask the L2 cache twice for one sector.
- */
+/* A point at an address that is a multiple of its size, in one access: two would ask the L2 cache
+ * twice for one sector. */
 #if defined(CADT_LANG_OPENCL) || defined(CADT_LANG_CUDA)
 #if CADT_FLOAT
 typedef float2 cadt_real2;
@@ -82,7 +74,7 @@ CADT_FN cadt_point cadt_load_point(CADT_GLOBAL const cadt_point* p) {
 CADT_FN cadt_point cadt_load_point(const cadt_point* p) { return *p; }
 #endif
 
-/* Four words of memory that nobody changes meanwhile, at an address that is a multiple of 16; two, of 8. */
+/* Four words, at an address that is a multiple of 16, or two, of 8. \pre nobody changes them meanwhile */
 #if defined(CADT_LANG_OPENCL) || defined(CADT_LANG_CUDA)
 CADT_FN void cadt_store_four(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 d) {
   uint4 four;
@@ -119,7 +111,7 @@ CADT_FN void cadt_store_two(cadt_u32* p, cadt_u32 a, cadt_u32 b) {
 }
 #endif
 
-/* Before a loop: it is not to be unrolled. */
+/* Before a loop that must not be unrolled. */
 #if defined(CADT_LANG_HOST) && defined(__GNUC__) && !defined(__clang__)
 #define CADT_ROLLED _Pragma("GCC unroll 1")
 #else
@@ -134,14 +126,14 @@ CADT_FN void cadt_store_two(cadt_u32* p, cadt_u32 a, cadt_u32 b) {
 
 CADT_FN cadt_u32 cadt_min_u32(cadt_u32 a, cadt_u32 b) { return a < b ? a : b; }
 
-/* The first element of a work-item that takes `size` neighbouring ones. The product may leave 32 bits: devices round
+/* The first element of a work-item that takes `size` neighbouring ones. The product may exceed 32 bits: devices round
  * the number of work-items up to whole groups. */
 CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
   const cadt_u64 begin = CADT_CAST(cadt_u64, item) * size;
   return begin < count ? CADT_CAST(cadt_u32, begin) : count;
 }
 
-/* The elements i < count that this work-item owns. `grain` is the number of neighbouring elements on CPUs. */
+/* The elements i < count of this work-item. `grain`: the number of neighbouring elements on CPUs. */
 #if CADT_CONTIGUOUS
 #define CADT_FOR(i, count, grain)                                                                             \
   for (cadt_u32 i = cadt_begin_of(cadt_item, (grain), (count)), i##_end = cadt_min_u32(i + (grain), (count)); \
@@ -150,7 +142,7 @@ CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
 #define CADT_FOR(i, count, grain) for (cadt_u32 i = cadt_item; i < (count); i += cadt_items)
 #endif
 
-/* The elements of part `part` of `parts`, for partial results: one after another in chunks, or strided. */
+/* The elements of part `part` of `parts`, for partial results: chunks of neighbours, or strided. */
 #if CADT_CONTIGUOUS
 #define CADT_FOR_PART(i, part, parts, count, chunk)                                                        \
   for (cadt_u32 i = cadt_begin_of((part), (chunk), (count)), i##_end = cadt_min_u32(i + (chunk), (count)); \
@@ -159,9 +151,9 @@ CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
 #define CADT_FOR_PART(i, part, parts, count, chunk) for (cadt_u32 i = (part); i < (count); i += (parts))
 #endif
 
-/* As CADT_FOR, for work that takes many steps and branches, in loops that are not over the elements alone: the first
- * element, one behind the last, and from one to the next. Lanes of a GPU's warp go separate ways one after another, so
- * where there are fewer elements than the device has lanes, `grain` lanes share an element and one of them works. */
+/* As CADT_FOR, for work of many steps and branches, in loops that are not over the elements alone: the first element,
+ * one behind the last, and the step. Divergent lanes of a warp run one after another, so where there are fewer elements
+ * than lanes, `grain` lanes share an element and one of them works. */
 #if CADT_CONTIGUOUS
 #define CADT_SPREAD_BEGIN(count, grain) cadt_begin_of(cadt_item, (grain), (count))
 #define CADT_SPREAD_END(count, grain) cadt_min_u32(CADT_SPREAD_BEGIN(count, grain) + (grain), (count))

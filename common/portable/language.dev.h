@@ -1,6 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * LANGHEAD
+ * What each language calls the types, qualifiers and functions of the device text. This file finds out which language
+ * compiles it: OpenCL C, CUDA C++ or host C++.
+ *
+ * A compilation may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double), CADT_FLOAT (1:
+ * coordinates are floats, any of them, and there are no doubles; this variant is wide), CADT_CONTIGUOUS (1: a work-item
+ * takes neighbouring elements, right for CPUs; 0: strided, right for GPUs), CADT_RADIX_BITS (digit of the radix sort),
+ * CADT_TIMED (1: timers, counters.dev.h). For tests only: CADT_CHECKED (whoever stores to a triangle must own it,
+ * locked_mesh.dev.h), CADT_SCHEDULE_NOISE (delays and failures, schedule_noise.dev.h), CADT_TEST_NO_LOCKS (a control:
+ * locks are not taken).
  */
 #ifndef CADT_PORTABLE_LANGUAGE_H
 #define CADT_PORTABLE_LANGUAGE_H
@@ -33,11 +41,11 @@
 #define CADT_LANG_HOST 1
 #endif
 
-/* ---- OpenCL C ------------------------------------------------------------------------------------------------- */
+/* ---- OpenCL C ---- */
 #if defined(CADT_LANG_OPENCL)
 
 #if CADT_FLOAT
-/* Any use is an error of the compiler, on devices that have them as well. Literals are floats by an option
+/* Any use is a compile-time error, even on devices that have doubles. Literals are floats by a compiler option
  * (backends/opencl/program.cpp). */
 #define double cadt_there_are_no_doubles_on_this_device
 #define double2 cadt_there_are_no_doubles_on_this_device
@@ -76,8 +84,7 @@ typedef long cadt_i64;
 #define cadt_fabsf(x) fabs((float)(x))
 #define cadt_maxf(a, b) fmax((float)(a), (float)(b))
 #define cadt_minf(a, b) fmin((float)(a), (float)(b))
-/* approximations, for what has a bound of its error: a * b + c, 1 / x, square root of
- * what is not 0 */
+/* Approximations, for use within an error bound: a * b + c, 1 / x, and the square root of what is not 0. */
 #define cadt_about_fma(a, b, c) fma((float)(a), (float)(b), (float)(c))
 #if defined(__NV_CL_C_VERSION)
 CADT_FN float cadt_about_inverse(float x) {
@@ -102,7 +109,7 @@ CADT_FN float cadt_about_sqrt(float x) {
 #define cadt_ldexp(x, e) ldexp((x), (e))
 #define cadt_atan2(y, x) atan2((y), (x))
 
-/* A clock of the thread's processor, for differences; 0 where there is none. */
+/* A clock of the work-item's processor, for differences; 0 where there is none. */
 #if defined(__NV_CL_C_VERSION)
 CADT_FN cadt_u64 cadt_clock(void) {
   cadt_u64 ticks;
@@ -115,7 +122,7 @@ CADT_FN cadt_u64 cadt_clock(void) { return __builtin_readcyclecounter(); }
 CADT_FN cadt_u64 cadt_clock(void) { return 0; }
 #endif
 
-/* ---- CUDA C++ ------------------------------------------------------------------------------------------------- */
+/* ---- CUDA C++ ---- */
 #elif defined(CADT_LANG_CUDA)
 
 typedef unsigned short cadt_u16;
@@ -129,8 +136,8 @@ typedef long long cadt_i64;
 #define CADT_FN_SLOW static __device__ __noinline__
 #define CADT_FN_INLINE static __device__ __forceinline__
 #define CADT_KERNEL(name, ...) static __global__ void name(__VA_ARGS__)
-/* Registers are given out so that so many teams run on a multiprocessor at the same time, if it has so many threads and
- * takes so many. */
+/* The compiler limits registers so that so many teams run on a multiprocessor at the same time, as far as it takes so
+ * many teams and threads. */
 #if !defined(__CUDA_ARCH__) || __CUDA_ARCH__ == 800 || (__CUDA_ARCH__ >= 900 && __CUDA_ARCH__ < 1200)
 #define CADT_MAX_THREADS 2048
 #define CADT_MAX_TEAMS 32
@@ -163,7 +170,7 @@ typedef long long cadt_i64;
 #define cadt_maxf(a, b) fmaxf((a), (b))
 #define cadt_minf(a, b) fminf((a), (b))
 #define cadt_about_fma(a, b, c) __fmaf_rn((a), (b), (c))
-/* Numbers that are not normal count as 0. */
+/* Subnormal numbers count as 0. */
 CADT_FN float cadt_about_inverse(float x) {
   float y;
   asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
@@ -187,8 +194,7 @@ CADT_FN cadt_u64 cadt_clock() {
   return ticks;
 }
 
-/* ---- host C++; the file that includes the kernels has included <atomic>, <chrono>, <cmath>, <cstdint>, <cstring>
- * before ---- */
+/* ---- host C++; whoever includes the kernels has included <atomic>, <chrono>, <cmath>, <cstdint>, <cstring> ---- */
 #else
 
 typedef std::uint16_t cadt_u16;
@@ -200,7 +206,7 @@ typedef std::int64_t cadt_i64;
 #define CADT_GLOBAL
 #define CADT_FN static inline
 #define CADT_FN_SLOW __attribute__((noinline)) static
-/* Each caller has the code to itself: what it keeps in registers need not go through memory for the other's sake. */
+/* Inlined into each caller, so that what a caller keeps in registers need not go through memory for another's sake. */
 #define CADT_FN_INLINE __attribute__((always_inline)) static inline
 /* A kernel is a function of its work-item; the host back end supplies the two numbers (backends/host). */
 #define CADT_KERNEL(name, ...) \
@@ -230,7 +236,7 @@ CADT_FN float cadt_float_of_bits(cadt_u32 bits) {
 }
 CADT_FN cadt_u32 cadt_popcount(cadt_u32 x) { return CADT_CAST(cadt_u32, __builtin_popcount(x)); }
 CADT_FN float cadt_fabsf(float x) { return std::fabs(x); }
-/* a if b is no number */
+/* a if b is NaN */
 CADT_FN float cadt_maxf(float a, float b) { return b > a ? b : a; }
 CADT_FN float cadt_minf(float a, float b) { return b < a ? b : a; }
 CADT_FN float cadt_about_fma(float a, float b, float c) { return a * b + c; }

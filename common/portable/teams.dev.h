@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * TEAMSHEAD
+ * Work-items that work together: groups that share local memory, teams, and the lanes of a warp.
  */
 #ifndef CADT_PORTABLE_TEAMS_H
 #define CADT_PORTABLE_TEAMS_H
@@ -14,8 +14,8 @@
 #define CADT_GROUP_SUMS 1
 #endif
 
-/* A team works on one thing with memory of its own: on GPUs a group, elsewhere a single work-item. Lanes share the
- * elements of CADT_TEAM_FOR; what one wrote is seen by the others after CADT_TEAM_SYNC, which all lanes must reach. */
+/* A team works on one item with memory of its own: on GPUs a group, elsewhere a single work-item. Lanes share the
+ * elements of CADT_TEAM_FOR; after CADT_TEAM_SYNC, which all lanes must reach, they see what the others wrote. */
 #if CADT_GROUP_SUMS
 #define CADT_TEAM_MEMORY CADT_LOCAL
 #define CADT_TEAM_PTR CADT_LOCAL_PTR
@@ -34,8 +34,8 @@
 #endif
 #define CADT_TEAM_FOR(i, count) for (cadt_u32 i = cadt_team_lane; i < (count); i += cadt_team_lanes)
 
-/* Lanes of a warp that went separate ways meet at cadt_any_lane and cadt_sync_lanes, which all lanes of `warp` must
- * reach. Elsewhere each work-item is a warp of its own. */
+/* Divergent lanes of a warp meet at cadt_any_lane and cadt_sync_lanes, which all lanes of `warp` must reach. Elsewhere
+ * each work-item is a warp of its own. */
 #if defined(CADT_LANG_CUDA)
 CADT_FN cadt_u32 cadt_lanes_of_warp() {
   const cadt_u32 left = blockDim.x - (threadIdx.x & ~31u);

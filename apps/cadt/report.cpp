@@ -173,7 +173,7 @@ std::string statistics_json(const RunReport& r) {
   const Triangulation& mesh = *r.mesh;
   const Statistics& s = mesh.statistics();
   Json json;
-  json["schema"] = 1;
+  json["schema"] = 2;
   json["cadt"] = CADT_VERSION;
   json["input"] = {{"file", r.input}, {"format", r.input_format}, {"heights", r.heights}};
   json["mesh"] = {{"points", mesh.number_of_points()},

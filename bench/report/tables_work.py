@@ -175,7 +175,7 @@ def statistics(machines: Sequence[Machine], paper: dict) -> list[str]:
                                                    "fastest to slowest", "on the device, ms"], costs, left=2)]
     if counted:
         lines += ["### Counted, a point", "", *table(["device", "points", *(c.replace("_", " ") for c in COUNTED),
-                                                      "lost of all claims"], counted)]
+                                                      "failed of all lock attempts"], counted)]
     return lines
 
 
@@ -199,7 +199,7 @@ def devices(machines: Sequence[Machine], paper: dict) -> list[str]:
                  row.text("certified") or NONE] for row in of]
         lines += [f"### {distribution}, {count(to_number(points))} points: meshes "
                   f"{verdicts.get((distribution, points), 'without hash')}", "",
-                  *table(["device", "whole call, ms", "on the device, ms", "hash", "lost of all claims",
+                  *table(["device", "whole call, ms", "on the device, ms", "hash", "failed of all lock attempts",
                           "retries a point",
                           "deferred points a point", "deferred edges a point", "flips a point", "certified"], body)]
     return lines

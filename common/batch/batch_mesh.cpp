@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "common/driver/choose_strategy.hpp"
 #include "common/driver/counters.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/stars/local_stars.hpp"
@@ -38,7 +39,7 @@ class BatchStage {
     read_sets();
     result_.mesh.slots = 2 * n_;
     // One core is better at insertion, where it has a set for itself.
-    const bool insertion = ctx_.device.shape().contiguous && ctx_.options.strategy != Strategy::stars;
+    const bool insertion = inserts_batched_sets(traits_of(ctx_.device), ctx_.options);
     if (batched_ != 0 && !insertion) {
       make_stars();
       wrap();
@@ -147,8 +148,8 @@ class BatchStage {
     stars_ = {};
     begins_.release();
     bases_.release();
-    ctx_.end_phase("records");
-    ctx_.check("join", 0.7);
+    ctx_.end_phase("assemble");
+    ctx_.check("stitch", 0.7);
   }
 
   void insert() {
@@ -196,12 +197,12 @@ class BatchStage {
       const LaunchGrid c = launch_.grid(size);
       launch_.run<KernelId::cadt_identity>(c.items, one.input_ids, size, c.grain);
       launch_.run<KernelId::cadt_batch_extract>(c.items, order_.points, begin, size, c.grain, one.points);
-      const Mesh mesh = insert_incrementally(ctx_, one);
+      const Mesh mesh = insert_incrementally(ctx_, std::move(one));
       launch_.set_variant(narrow_variant(ctx_.options.statistics));
       result_.flat[s] = mesh.flat;
       if (mesh.flat) continue;
       const LaunchGrid slots = launch_.grid(mesh.slots);
-      launch_.run<KernelId::cadt_batch_store>(slots.items, mesh.locked, one.input_ids,
+      launch_.run<KernelId::cadt_batch_store>(slots.items, mesh.locked, mesh.input_ids,
                                               static_cast<std::uint32_t>(mesh.slots), begin, slots.grain,
                                               result_.mesh.locked);
     }

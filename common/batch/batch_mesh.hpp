@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/batch/sort_batch.hpp"
-#include "common/insertion/insertion.hpp"
+#include "common/mesh/mesh.hpp"
 
 namespace cadt {
 

@@ -11,41 +11,17 @@
 #include "common/batch/batch_mesh.hpp"
 #include "common/batch/sort_batch.hpp"
 #include "common/batch/triangulation_batch.hpp"
+#include "common/driver/build.hpp"
+#include "common/driver/choose_strategy.hpp"
 #include "common/driver/registry.hpp"
 #include "common/driver/session.hpp"
 #include "common/output/renumber.hpp"
-#include "common/points/device_points.hpp"
 #include "common/points/import.hpp"
-#include "common/stars/mesh_from_stars.hpp"
-#include "common/stars/wrap.hpp"
 
 namespace cadt {
 namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-/// Together they fill any card, and what they need besides the result is bounded.
-constexpr std::size_t most_points_batched = std::size_t{1} << 24, fewest_points_batched = std::size_t{1} << 16;
-constexpr std::size_t most_sets_batched = std::size_t{1} << 20;
-
-/// Points of a set that goes together with others at most. A core inserts each by itself: longer ones are better
-/// shared, and bounds the time to a cancel. None without double precision: there each set is a call of its own.
-std::size_t most_points_of_set(const Device& device) noexcept {
-  if (takes_floats_only(device)) return 0;
-  constexpr std::size_t most_of_core = 8192;
-  return device.shape().contiguous ? most_of_core : most_wrapped(device);
-}
-
-/// Whether small sets go together at all.
-bool prefers_batched(const Options& options, const Device& device) noexcept {
-  const bool insertion = device.shape().contiguous || options.strategy != Strategy::locks;
-  return insertion && options.stabilize == Stabilize::off;
-}
-
-/// Device bytes of sets that go together, the result left out (docs/performance.md).
-constexpr std::size_t bytes_batched(std::size_t points, std::size_t sets) {
-  return (std::size_t{1} << 16) + 176 * points + 1300 * sets;
-}
-
 /// Triangles that n points have at most.
 constexpr std::size_t most_triangles(std::size_t n) { return n < 3 ? 0 : 2 * n - 5; }
 
@@ -90,16 +66,16 @@ DevicePoints slice(DevicePoints points, std::size_t first, std::size_t size) {
 }
 
 template <class Points>
-class BatchBuilder2 {
+class BatchCall {
  public:
-  BatchBuilder2(Triangulator::State& state, Context& ctx, const Points& points, std::span<const std::size_t> offsets,
-                std::size_t most_points, BatchShape& shape, const Allocation& triangles, const Allocation& neighbors)
+  BatchCall(Triangulator::State& state, Context& ctx, const Points& points, std::span<const std::size_t> offsets,
+            std::size_t most_points, BatchShape& shape, const Allocation& triangles, const Allocation& neighbors)
       : state_(state),
         ctx_(ctx),
         points_(points),
         offsets_(offsets),
         most_points_(most_points),
-        most_batched_(most_points_of_set(ctx.device)),
+        most_batched_(most_points_of_batched_set(traits_of(ctx.device))),
         shape_(shape),
         triangles_(triangles),
         neighbors_(neighbors) {}
@@ -164,31 +140,30 @@ class BatchBuilder2 {
                                        static_cast<std::int32_t>(pairs.representatives[i] - first)});
   }
 
-  [[nodiscard]] Numbering emit(const Mesh& mesh, const SortedPoints& order, std::size_t size, const SetStarts* starts,
-                               std::size_t room) {
-    ctx_.check("collect", 0.9);
+  [[nodiscard]] Numbering write(const Mesh& mesh, std::size_t size, const SetStarts* starts, std::size_t room) {
+    ctx_.check("output", 0.9);
     const std::size_t first = shape_.triangles.back();
-    Numbering numbering = renumber(ctx_, mesh, order.input_ids, size, starts);
+    Numbering numbering = renumber(ctx_, mesh, size, starts);
     if (numbering.triangles > room)
       throw InternalError("there are " + std::to_string(numbering.triangles) + " triangles instead of " +
                           std::to_string(room) + " at most; please report this with the input");
-    ctx_.check("collect", 0.95);
-    write_triangles(ctx_, mesh, order.input_ids, numbering, triangles_, neighbors_, first);
+    ctx_.check("output", 0.95);
+    write_triangles(ctx_, mesh, numbering, triangles_, neighbors_, first);
     if (starts != nullptr) renumber_within_sets(ctx_, numbering, *starts, triangles_, neighbors_, first);
-    ctx_.end_phase("collect");
+    ctx_.end_phase("output");
     return numbering;
   }
 
   void add_individual(std::size_t set, std::size_t begin, std::size_t size) {
-    const bool stars = prefers_stars(ctx_.options, ctx_.device);
+    const bool stars = may_use_stars(traits_of(ctx_.device), ctx_.options);
     SortedPoints order = sort_large(set, begin, size, stars);
     add_pairs(read_pairs(order, size), 0, size - order.distinct, 0);
     ctx_.statistics.wide_arithmetic = ctx_.statistics.wide_arithmetic || order.wide;
-    const Mesh mesh = stars ? build_mesh(ctx_, order) : insert_incrementally(ctx_, order);
-    order.points.release();
+    const std::size_t distinct = order.distinct;
+    const Mesh mesh = build(ctx_, std::move(order), slice(points_, begin, size));
     std::size_t triangles = 0;
-    if (!mesh.flat) triangles = emit(mesh, order, size, nullptr, most_triangles(size)).triangles;
-    close_set(shape_.triangles.back() + triangles, order.distinct, mesh.flat);
+    if (!mesh.flat) triangles = write(mesh, size, nullptr, most_triangles(size)).triangles;
+    close_set(shape_.triangles.back() + triangles, distinct, mesh.flat);
   }
 
   [[nodiscard]] SortedPoints sort_large(std::size_t set, std::size_t begin, std::size_t size, bool stars) {
@@ -203,14 +178,15 @@ class BatchBuilder2 {
     const std::size_t begin = offsets_[first_set], size = offsets_[end_set] - begin, sets = end_set - first_set;
     std::vector<std::uint32_t> starts(sets + 1);
     for (std::size_t s = 0; s <= sets; ++s) starts[s] = static_cast<std::uint32_t>(offsets_[first_set + s] - begin);
-    const bool together = prefers_batched(ctx_.options, ctx_.device);
+    const bool together = batches_sets(traits_of(ctx_.device), ctx_.options);
     SortedBatch order = sort_batch(ctx_, import(begin, size), starts, together ? most_batched_ : 0, begin, first_set);
     const Pairs pairs = read_pairs(order.order, size);
     BatchMesh mesh = build_batch(ctx_, order);
     order.order.points.release();
+    mesh.mesh.input_ids = std::move(order.order.input_ids);
     const std::size_t before = shape_.triangles.back();
     const std::size_t room = most_triangles(std::span(offsets_).subspan(first_set, sets + 1));
-    const Numbering numbering = emit(mesh.mesh, order.order, size, &order.starts, room);
+    const Numbering numbering = write(mesh.mesh, size, &order.starts, room);
     std::vector<std::uint32_t> ends(sets + 1);
     ctx_.device.read(*numbering.set_starts, 0, ends.data(), ends.size() * word);
     for (std::size_t s = 0; s < sets; ++s) {
@@ -230,27 +206,10 @@ class BatchBuilder2 {
   const Allocation& neighbors_;
 };
 
-/// Points that go together at most, so that there is memory for them besides `results` bytes. \throws OutOfMemory
-/// before any work
-std::size_t choose_size(Triangulator::State& state, std::span<const std::size_t> offsets, std::size_t results) {
-  const std::size_t n = offsets.back(), sets = offsets.size() - 1, together = most_points_of_set(*state.device);
-  if (n <= state.known_batch_points && state.options.max_memory == 0) return most_points_batched;
-  std::size_t largest = 0;
-  for (std::size_t s = 0; s < sets; ++s) largest = std::max(largest, offsets[s + 1] - offsets[s]);
-  if (largest > together) {
-    require_buffer(state, record_bytes(largest));
-    state.memory.require(results + least_bytes(largest, true));
-  }
-  std::size_t most = most_points_batched;
-  const auto bytes = [&] {
-    const std::size_t points = std::min(n, most);
-    return results + bytes_batched(points, std::min({sets, points, most_sets_batched}));
-  };
-  while (most > fewest_points_batched &&
-         !(state.memory.allows(bytes()) && fits_buffers(state, record_bytes(std::min(n, most)))))
-    most /= 2;
-  state.memory.require(bytes());
-  return most;
+/// Points that are batched at most. \throws OutOfMemory before any work
+std::size_t plan_call_of_batch(Triangulator::State& state, std::span<const std::size_t> offsets, std::size_t results) {
+  return plan_batch(state.memory, state.options, state.device->info(), offsets,
+                    most_points_of_batched_set(traits_of(*state.device)), results, state.known);
 }
 
 /// \throws OptionError, InputError, LimitError
@@ -265,9 +224,9 @@ void run_batch(Triangulator::State& state, Context& ctx, const Points& points, s
                std::size_t most_points, BatchShape& shape, const Allocation& triangles, const Allocation& neighbors) {
   shape.points.assign(offsets.begin(), offsets.end());
   shape.statistics.sets = offsets.size() - 1;
-  BatchBuilder2<Points>(state, ctx, points, offsets, most_points, shape, triangles, neighbors).run();
+  BatchCall<Points>(state, ctx, points, offsets, most_points, shape, triangles, neighbors).run();
   if (state.options.max_memory == 0)
-    state.known_batch_points = std::max(state.known_batch_points, std::min(offsets.back(), most_points));
+    state.known.batch = std::max(state.known.batch, std::min(offsets.back(), most_points));
 }
 
 TriangulationBatch batch_to_host(Triangulator::State& state, PointsView points, std::span<const std::size_t> offsets) {
@@ -276,7 +235,7 @@ TriangulationBatch batch_to_host(Triangulator::State& state, PointsView points, 
   BatchShape& shape = result->shape;
   begin_call(state, points.size(), shape.statistics);
   const std::size_t values = 3 * most_triangles(offsets), bytes = values * word;
-  const std::size_t most = choose_size(state, offsets, is_host(*state.device) ? 0 : 2 * bytes);
+  const std::size_t most = plan_call_of_batch(state, offsets, is_host(*state.device) ? 0 : 2 * bytes);
   Context ctx(*state.device, state.memory, state.options, shape.statistics);
   result->triangles = make_words(values);
   result->neighbors = make_words(values);
@@ -309,7 +268,7 @@ DeviceTriangulationBatch batch_to_device(const std::shared_ptr<Triangulator::Sta
   BatchShape& shape = data->shape;
   begin_call(*state, points.size, shape.statistics);
   const std::size_t bytes = 3 * most_triangles(offsets) * word;
-  const std::size_t most = choose_size(*state, offsets, 2 * bytes + offsets.size() * word);
+  const std::size_t most = plan_call_of_batch(*state, offsets, 2 * bytes + offsets.size() * word);
   Context ctx(*state->device, state->memory, state->options, shape.statistics);
   if (bytes != 0) {
     data->triangles = ctx.memory.allocate(bytes);
@@ -319,7 +278,7 @@ DeviceTriangulationBatch batch_to_device(const std::shared_ptr<Triangulator::Sta
   run_batch(*state, ctx, points, offsets, most, shape, data->triangles, data->neighbors);
   const std::vector<std::uint32_t> words(shape.triangles.begin(), shape.triangles.end());
   ctx.device.write(*data->offsets, 0, words.data(), words.size() * word);
-  ctx.end_phase("collect");
+  ctx.end_phase("output");
   ctx.begin_share(0, 1);
   end_call(*state, ctx, true);
   return DeviceTriangulationBatch(std::move(data));

@@ -13,12 +13,13 @@
 #include "common/driver/device.hpp"
 #include "common/driver/launcher.hpp"
 #include "common/driver/memory.hpp"
+#include "common/driver/memory_plan.hpp"
 
 namespace cadt {
 
 struct Context {
-  Context(Device& d, Memory& m, const Options& o, Statistics& s)
-      : device(d), options(o), statistics(s), memory(m), launcher(d, m, o.grain) {
+  Context(Device& d, Memory& m, const Options& o, Statistics& s, const MemoryPlan& p = {})
+      : device(d), options(o), statistics(s), memory(m), plan(p), launcher(d, m, o.grain) {
     if (options.statistics != StatisticsDetail::none) device.start_times();
   }
 
@@ -26,11 +27,8 @@ struct Context {
   const Options& options;
   Statistics& statistics;
   Memory& memory;
+  const MemoryPlan plan;
   Launcher launcher;
-  /// Steps that take less memory and more time, where there are two ways (docs/performance.md).
-  bool saves_memory = false;
-  /// The star stage gathers its points once more for the closing pass, rather than to keep them.
-  bool regathers = false;
 
   /// What is checked from here on is this part of the whole.
   void begin_share(double begin, double share) noexcept {

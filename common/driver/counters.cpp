@@ -18,8 +18,8 @@ using namespace device_text;
 namespace {
 
 /// In the order of CADT_TIME_...
-constexpr std::array<const char*, CADT_TIMERS> accounts = {"locate", "claim",     "split", "test",
-                                                           "flip",   "neighbors", "other", "wait"};
+constexpr std::array<const char*, CADT_TIMERS> timers = {"locate", "lock",      "split", "test",
+                                                         "flip",   "neighbors", "other", "wait"};
 
 static_assert(int{CADT_COUNTERS} <= int{CADT_ROW_TIMES} &&
               CADT_ROW_TIMES + int{CADT_TIMERS} <= int{CADT_COUNTER_STRIDE});
@@ -46,7 +46,7 @@ void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) 
   const auto all = static_cast<double>(std::accumulate(times.begin(), times.end(), std::uint64_t{0}));
   // with the star stage there are two: what counts are the threads of the insertion, which is the first
   for (std::size_t i = statistics.thread_time.size(); all > 0 && i < times.size(); ++i)
-    statistics.thread_time.emplace_back(accounts[i], static_cast<double>(times[i]) / all);
+    statistics.thread_time.emplace_back(timers[i], static_cast<double>(times[i]) / all);
   statistics.walk_steps += sums[CADT_COUNT_WALK_STEPS];
   statistics.lock_attempts += sums[CADT_COUNT_LOCK_ATTEMPTS];
   statistics.lock_failures += sums[CADT_COUNT_LOCK_FAILURES];

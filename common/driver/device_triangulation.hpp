@@ -10,6 +10,7 @@
 #include "common/driver/context.hpp"
 #include "common/driver/device.hpp"
 #include "common/driver/memory.hpp"
+#include "common/driver/memory_plan.hpp"
 #include "common/driver/triangulation_data.hpp"
 
 namespace cadt {
@@ -20,15 +21,7 @@ struct Triangulator::State {
   Options options;
   std::unique_ptr<Device> device;
   Memory memory;
-  std::size_t known_points = 0;         ///< a call with so many points has had its memory before
-  std::size_t known_star_points = 0;    ///< and with the star stage
-  std::size_t known_saving_points = 0;  ///< and with the star stage that saves memory
-  std::size_t known_batch_points = 0;   ///< and with several sets
-  std::size_t reserved_points = 0;      ///< buffers for calls with so many points are kept on the caller's wish
-
-  void forget_sizes() noexcept {
-    known_points = known_star_points = known_saving_points = known_batch_points = reserved_points = 0;
-  }
+  KnownSizes known;
 };
 
 struct DeviceTriangulation::Data {

@@ -4,21 +4,20 @@
 
 #include <algorithm>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "common/driver/build.hpp"
+#include "common/driver/choose_strategy.hpp"
 #include "common/driver/context.hpp"
 #include "common/driver/device_triangulation.hpp"
 #include "common/driver/registry.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/triangulation_data.hpp"
-#include "common/insertion/insertion.hpp"
-#include "common/output/renumber.hpp"
+#include "common/output/result.hpp"
 #include "common/points/device_points.hpp"
 #include "common/points/import.hpp"
 #include "common/points/spatial_sort.hpp"
-#include "common/stars/mesh_from_stars.hpp"
 #include "common/verify/device/verify_on_device.hpp"
 
 namespace cadt {
@@ -26,116 +25,28 @@ namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 
-/// Writes the arrays of the result where they are to be.
-class Outputs {
- public:
-  virtual ~Outputs() = default;
-  /// `labels` are not needed any more after it. `points`: of the input.
-  virtual void write(Context& ctx, Mesh& mesh, Allocation& input_ids, std::size_t points,
-                     DeviceTriangulation::Data& data) = 0;
-
- protected:
-  /// Whether the canonical order is made without a second array: to save memory, or since that second one would be in
-  /// nothing that is kept.
-  static bool in_place(const Context& ctx, const Mesh& mesh) noexcept {
-    return mesh.in_arrays() && (ctx.saves_memory || ctx.memory.pools(mesh.slots * word));
-  }
-  static Numbering number(Context& ctx, const Mesh& mesh, const Allocation& input_ids, std::size_t points,
-                          DeviceTriangulation::Data& data) {
-    Numbering numbering = renumber(ctx, mesh, input_ids, points);
-    data.triangle_count = numbering.triangles;
-    ctx.check("collect", 0.95);
-    return numbering;
-  }
-};
-
-class OnDevice final : public Outputs {
- public:
-  void write(Context& ctx, Mesh& mesh, Allocation& input_ids, std::size_t points,
-             DeviceTriangulation::Data& data) override {
-    if (in_place(ctx, mesh)) {
-      data.triangle_count = renumber_in_place(ctx, mesh, input_ids, points);
-      data.triangles = std::move(mesh.vertices);
-      data.neighbors = std::move(mesh.half_edges);
-      return;
-    }
-    emit(ctx, mesh, input_ids, number(ctx, mesh, input_ids, points, data), data);
-  }
-
-  static void emit(Context& ctx, Mesh& mesh, const Allocation& input_ids, const Numbering& numbering,
-                   DeviceTriangulation::Data& data) {
-    const std::size_t bytes = 3 * data.triangle_count * word;
-    if (!mesh.in_arrays()) {
-      data.triangles = ctx.memory.allocate(bytes);
-      data.neighbors = ctx.memory.allocate(bytes);
-      write_triangles(ctx, mesh, input_ids, numbering, data.triangles, data.neighbors);
-    } else if (!numbering.numbers) {  // the arrays of the mesh become those of the result
-      write_triangles(ctx, mesh, input_ids, numbering, mesh.vertices, mesh.half_edges);
-      data.triangles = std::move(mesh.vertices);
-      data.neighbors = std::move(mesh.half_edges);
-    } else {  // one after the other, so that each takes the place of the one before
-      data.neighbors = ctx.memory.allocate(bytes);
-      write_triangles(ctx, mesh, input_ids, numbering, {}, data.neighbors);
-      mesh.half_edges.release();
-      data.triangles = ctx.memory.allocate(bytes);
-      write_triangles(ctx, mesh, input_ids, numbering, data.triangles, {});
-    }
-  }
-};
-
-/// The arrays of a Triangulation if the device can write them, else copies on the device.
-class OnHost final : public Outputs {
- public:
-  explicit OnHost(Triangulation::Data& to) : to_(to) {}
-  void write(Context& ctx, Mesh& mesh, Allocation& input_ids, std::size_t points,
-             DeviceTriangulation::Data& data) override {
-    if (in_place(ctx, mesh)) return on_device_.write(ctx, mesh, input_ids, points, data);
-    const Numbering numbering = number(ctx, mesh, input_ids, points, data);
-    const std::size_t values = 3 * data.triangle_count;
-    to_.triangles = make_words(values);
-    to_.neighbors = make_words(values);
-    data.triangles = ctx.memory.export_to(to_.triangles.get(), values * word);
-    data.neighbors = ctx.memory.export_to(to_.neighbors.get(), values * word);
-    direct_ = data.triangles && data.neighbors;
-    if (direct_)
-      write_triangles(ctx, mesh, input_ids, numbering, data.triangles, data.neighbors);
-    else
-      OnDevice::emit(ctx, mesh, input_ids, numbering, data);
-  }
-  /// True if the arrays are filled when the device has finished.
-  [[nodiscard]] bool direct() const noexcept { return direct_; }
-
- private:
-  Triangulation::Data& to_;
-  OnDevice on_device_;
-  bool direct_ = false;
-};
-
-template <class Points>
-void build(Context& ctx, const Points& points, std::size_t n, bool stars, Outputs& outputs,
-           DeviceTriangulation::Data& data) {
-  Statistics& statistics = data.statistics;
+/// Sorts the points, builds their mesh and writes the result. True if its arrays are those of `host`.
+bool triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Data* host,
+                      DeviceTriangulation::Data& data) {
+  const std::size_t n = input.size();
   ctx.check("sort", 0);
-  Allocation input = import_points(ctx, points);
+  Allocation imported = input.import(ctx);
   ctx.end_phase("upload");
-  ctx.regathers = std::is_same_v<Points, DevicePoints>;
-  SortedPoints order = sort_spatially(ctx, std::move(input), n, stars);
-  statistics.distinct = data.distinct = order.distinct;
-  statistics.wide_arithmetic = order.wide;
-  if constexpr (std::is_same_v<Points, DevicePoints>)
-    order.points_again = [&](const SortedPoints& sorted) { return import_in_order(ctx, points, sorted); };
-  data.duplicate_count = n - order.distinct;
-  data.duplicate_points = std::move(order.duplicates);
-  data.representatives = std::move(order.representatives);
-  Mesh mesh = stars ? build_mesh(ctx, order) : insert_incrementally(ctx, order);
-  order.points.release();
-  if (mesh.flat) {
-    data.dimension = order.distinct >= 2 ? 1 : 0;
-    return;
-  }
-  data.dimension = 2;
-  ctx.check("collect", 0.9);
-  outputs.write(ctx, mesh, order.input_ids, n, data);
+  SortedPoints points = sort_spatially(ctx, std::move(imported), n, may_use_stars(traits_of(ctx.device), ctx.options));
+  data.statistics.distinct = data.distinct = points.distinct;
+  data.statistics.wide_arithmetic = points.wide;
+  data.duplicate_count = n - points.distinct;
+  data.duplicate_points = std::move(points.duplicates);
+  data.representatives = std::move(points.representatives);
+  Mesh mesh = build(ctx, std::move(points), input);
+  data.dimension = mesh.flat ? (data.distinct >= 2 ? 1 : 0) : 2;
+  if (mesh.flat) return false;
+  ctx.check("output", 0.9);
+  ResultArrays result = write_result(ctx, std::move(mesh), n, host);
+  data.triangle_count = result.count;
+  data.triangles = std::move(result.triangles);
+  data.neighbors = std::move(result.neighbors);
+  return result.on_host;
 }
 
 Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
@@ -146,16 +57,14 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
   data.points = points.size();
   begin_call(*state, points.size(), data.statistics);
   if (points.size() != 0) {
-    const bool saves = require_memory(*state, points.size(), {is_host(*state->device), false, points.scalar_size()});
-    Context ctx(*state->device, state->memory, state->options, data.statistics);
-    ctx.saves_memory = saves;
-    OnHost outputs(*result);
-    build(ctx, points, points.size(), prefers_stars(state->options, *state->device), outputs, data);
-    ctx.end_phase("collect");
-    if (data.dimension == 2) read_mesh(ctx, data, outputs.direct(), *result);
+    const MemoryPlan plan = plan_call(*state, {points.size(), is_host(*state->device), false, points.scalar_size()});
+    Context ctx(*state->device, state->memory, state->options, data.statistics, plan);
+    const bool filled = triangulate_into(ctx, points, result.get(), data);
+    ctx.end_phase("output");
+    if (data.dimension == 2) read_mesh(ctx, data, filled, *result);
     read_duplicates(*state->device, data, *result);
     ctx.end_phase("copy");
-    remember_size(*state, data.statistics, saves);
+    remember_size(*state, data.statistics, plan);
     end_call(*state, ctx, false);
   }
   result->points = data.points;
@@ -172,13 +81,11 @@ DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state,
   data->points = points.size;
   begin_call(*state, points.size, data->statistics);
   if (points.size != 0) {
-    const bool saves = require_memory(*state, points.size, {false, true, scalar_bytes(points.scalar)});
-    Context ctx(*state->device, state->memory, state->options, data->statistics);
-    ctx.saves_memory = saves;
-    OnDevice outputs;
-    build(ctx, points, points.size, prefers_stars(state->options, *state->device), outputs, *data);
-    ctx.end_phase("collect");
-    remember_size(*state, data->statistics, saves);
+    const MemoryPlan plan = plan_call(*state, {points.size, false, true, scalar_bytes(points.scalar)});
+    Context ctx(*state->device, state->memory, state->options, data->statistics, plan);
+    (void)triangulate_into(ctx, points, nullptr, *data);
+    ctx.end_phase("output");
+    remember_size(*state, data->statistics, plan);
     end_call(*state, ctx, true);
   }
   return DeviceTriangulation(std::move(data));
@@ -253,7 +160,7 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
 }
 
 std::size_t Triangulator::memory_needed(std::size_t points) const noexcept {
-  return most_bytes(state_->memory, points, prefers_stars(state_->options, *state_->device));
+  return most_bytes(state_->memory, points, may_use_stars(traits_of(*state_->device), state_->options));
 }
 
 void Triangulator::reserve(std::size_t points) {
@@ -261,11 +168,12 @@ void Triangulator::reserve(std::size_t points) {
   const std::size_t n = points, limit = state_->options.max_memory;
   Memory& memory = state_->memory;
   begin_budget(*state_, n);
-  (void)require_memory(*state_, n, {false, true, sizeof(double)});
-  if (n <= state_->reserved_points) return;
+  (void)plan_call(*state_, {n, false, true, sizeof(double)});
+  KnownSizes& known = state_->known;
+  if (n <= known.reserved) return;
   if (!memory.keeps()) {
-    state_->device->reserve(least_bytes(n, false));
-  } else if (const bool stars = prefers_stars(state_->options, *state_->device);
+    state_->device->reserve(most_bytes(memory, n, false));
+  } else if (const bool stars = may_use_stars(traits_of(*state_->device), state_->options);
              limit == 0 || most_bytes(memory, n, stars) <= limit) {
     memory.drop_kept();  // too small
     begin_budget(*state_, n);
@@ -273,14 +181,13 @@ void Triangulator::reserve(std::size_t points) {
   } else {
     return;  // enough for a call, but not for keeping all of its buffers
   }
-  state_->reserved_points = n;
-  state_->known_points = std::max(state_->known_points, n);
+  known.reserved = n;
+  known.insertion = std::max(known.insertion, n);
 }
 
 void Triangulator::release_memory() {
-  state_->memory.drop_kept();
+  state_->memory.drop_kept();  // the next account forgets the sizes
   state_->device->trim();
-  state_->forget_sizes();
 }
 
 Triangulation triangulate(PointsView points, const Options& options) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/driver/choose_strategy.hpp"
 #include "common/driver/counters.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/insertion/cavity_retriangulation.hpp"
@@ -27,7 +28,6 @@ constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a wa
 // Partitions without locks: the representatives of blocks of 2^partition_level positions are inserted before, with
 // locks. The smaller a partition, the more of its points lie at its border.
 constexpr unsigned partition_level = 5;
-constexpr std::size_t min_partition = std::size_t{1} << 14, min_points_for_partitions = 4 * min_partition;
 constexpr int stalled_launches = 4;  // launches without progress after which one work-item does everything
 constexpr int unresolvable_launches = 64;
 constexpr std::size_t poll_interval = 4096;  // points inserted between two reads of what was deferred
@@ -47,22 +47,20 @@ static_assert(static_cast<int>(Stabilize::off) == CADT_STABILIZE_OFF &&
 
 class IncrementalInsertion {
  public:
-  IncrementalInsertion(Context& ctx, SortedPoints& order)
+  /// `points` are those of `own` where it is given, which run() needs.
+  IncrementalInsertion(Context& ctx, const SortedPoints& points, SortedPoints* own = nullptr)
       : ctx_(ctx),
         launch_(ctx.launcher),
-        order_(order),
-        n_(order.distinct),
+        own_(own),
+        order_(points),
+        n_(points.distinct),
         edge_capacity_(static_cast<std::uint32_t>(n_ / 8 + 4096)),
         counters_(ctx),
-        mesh_{ctx, order, static_cast<std::uint32_t>(ctx.options.stabilize)} {}
+        mesh_{ctx, points, static_cast<std::uint32_t>(ctx.options.stabilize)} {}
 
   [[nodiscard]] Mesh run() {
-    Mesh mesh;
     if (n_ >= 3 && !ctx_.device.shape().contiguous) order_by_level();
-    if (n_ < 3 || !find_seed_triangle()) {
-      mesh.flat = true;
-      return mesh;
-    }
+    if (n_ < 3 || !find_seed_triangle()) return Mesh::without_triangles(std::move(own_->input_ids));
     mesh_.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not there yet
     mesh_.vertex_to_triangle = ctx_.memory.transient(n_ * word);
     // points of a launch: a level and deferred ones, of one launch or of several since the last read
@@ -70,9 +68,9 @@ class IncrementalInsertion {
     for (Allocation& list : deferred_points_) list = ctx_.memory.transient(limit * word);
     make_edge_lists();
     mesh_.run_kernel<KernelId::cadt_seed_mesh>(1);
-    ctx_.end_phase("start");
+    ctx_.end_phase("seed");
 
-    const unsigned last = use_partitions() ? partition_level : 0;
+    const unsigned last = inserts_partitions(traits_of(ctx_.device), ctx_.options, n_) ? partition_level : 0;
     for (unsigned level = levels(); level-- > last;) insert_level(level, level == last);
     if (last != 0) insert_partitions();
     if (deferred_.points != 0 || deferred_.edges != 0) {
@@ -80,7 +78,9 @@ class IncrementalInsertion {
       if (ctx_.options.watch) show_growth();
     }
     ctx_.end_phase("insert");
-    return finish(3 * std::uint64_t{n_} - 3);
+    Mesh mesh = finish(3 * std::uint64_t{n_} - 3);
+    mesh.input_ids = std::move(own_->input_ids);
+    return mesh;
   }
 
   /// No point is located in a complete mesh: vertex_to_triangle is written by repairs only, and the seed triangle is
@@ -119,8 +119,8 @@ class IncrementalInsertion {
     const LaunchGrid c = launch_.grid(n_);
     launch_.run<KernelId::cadt_by_level>(c.items, order_.points, order_.input_ids, static_cast<std::uint32_t>(n_),
                                          c.grain, points, input_ids);
-    order_.points = std::move(points);
-    order_.input_ids = std::move(input_ids);
+    own_->points = std::move(points);
+    own_->input_ids = std::move(input_ids);
     by_level_ = true;
   }
 
@@ -176,16 +176,11 @@ class IncrementalInsertion {
     }
   }
 
-  [[nodiscard]] bool use_partitions() const noexcept {
-    return ctx_.device.shape().contiguous && n_ >= min_points_for_partitions && ctx_.options.grain == 0 &&
-           ctx_.options.stabilize == Stabilize::off && !ctx_.options.watch;
-  }
-
   /// All levels below partition_level: partitions side by side without locks, then the border between them.
   void insert_partitions() {
     finish_deferred();  // representatives of blocks must be in the mesh
     const std::size_t all = ((n_ - 1) >> partition_level) + 1;
-    const std::size_t wanted = std::clamp<std::size_t>(ctx_.device.shape().parallelism / 2, 1, n_ / min_partition);
+    const std::size_t wanted = std::clamp<std::size_t>(ctx_.device.shape().parallelism / 2, 1, n_ / least_partition);
     const std::size_t blocks = (all - 1) / wanted + 1, partitions = (all - 1) / blocks + 1;
     const std::size_t points = std::min(points_per_launch(ctx_.device), n_ / 2);
     const std::size_t step = std::max<std::size_t>((points >> partition_level) / partitions, 1);
@@ -327,7 +322,8 @@ class IncrementalInsertion {
 
   Context& ctx_;
   Launcher& launch_;
-  SortedPoints& order_;
+  SortedPoints* own_;
+  const SortedPoints& order_;
   std::size_t n_;
   std::uint32_t edge_capacity_;
   Counters counters_;
@@ -344,10 +340,13 @@ class IncrementalInsertion {
 
 std::size_t slots_per_launch(const Device& device) { return 4 * points_per_launch(device); }
 
-Mesh insert_incrementally(Context& ctx, SortedPoints& order) { return IncrementalInsertion(ctx, order).run(); }
+Mesh insert_incrementally(Context& ctx, SortedPoints points) {
+  points.keys.release();
+  return IncrementalInsertion(ctx, points, &points).run();
+}
 
-Mesh sweep_legality(Context& ctx, SortedPoints& order, Allocation locked, std::uint64_t edges) {
-  return IncrementalInsertion(ctx, order).sweep(std::move(locked), edges);
+Mesh sweep_legality(Context& ctx, const SortedPoints& points, Allocation locked, std::uint64_t edges) {
+  return IncrementalInsertion(ctx, points).sweep(std::move(locked), edges);
 }
 
 }  // namespace cadt

@@ -12,7 +12,7 @@ namespace cadt {
 
 struct LockedMesh {
   Context& ctx;
-  SortedPoints& order;
+  const SortedPoints& order;
   std::uint32_t stabilize;  ///< CADT_STABILIZE_...
   Allocation locked = {}, vertex_to_triangle = {};
   device_text::cadt_point center = {};

@@ -113,11 +113,11 @@ void sort_buckets(Context& ctx, const BucketPart& part) {
 
 /// Numbers all triangles from scanned buckets. \pre `numbers` are places in buckets where the device knows them
 /// (canonical_order.dev.h)
-void number_by_buckets(Context& ctx, const Mesh& mesh, const Allocation& input_ids, Allocation buckets,
-                       const Numbering& result, std::size_t points) {
+void number_by_buckets(Context& ctx, const Mesh& mesh, Allocation buckets, const Numbering& result,
+                       std::size_t points) {
   Launcher& launch = ctx.launcher;
   const std::size_t places = mesh.in_arrays() ? mesh.triangles : mesh.slots;
-  const std::uint32_t parts = ctx.saves_memory && mesh.in_arrays() ? parts_of_compact_plan : 1;
+  const std::uint32_t parts = ctx.plan.compact && mesh.in_arrays() ? parts_of_compact_plan : 1;
   const std::vector<PartBegin> begins =
       split_buckets(ctx, buckets, points, static_cast<std::uint32_t>(result.triangles), parts);
   const LaunchGrid all = launch.grid(places);
@@ -125,7 +125,7 @@ void number_by_buckets(Context& ctx, const Mesh& mesh, const Allocation& input_i
     const auto [from, base] = begins[part];
     const std::uint32_t size = begins[part + 1].bucket - from, count = begins[part + 1].triangle - base;
     const Allocation members = ctx.memory.transient(std::size_t{count} * 2 * word);
-    launch.run<KernelId::cadt_bucket_triangles>(all.items, mesh.locked, mesh.vertices, input_ids, buckets,
+    launch.run<KernelId::cadt_bucket_triangles>(all.items, mesh.locked, mesh.vertices, mesh.input_ids, buckets,
                                                 result.numbers, members, from, size, base,
                                                 static_cast<std::uint32_t>(places), all.grain);
     sort_buckets(ctx, {buckets, members, from, size, base, count});
@@ -156,8 +156,7 @@ std::vector<std::int32_t> chain_loop(const std::vector<std::array<std::uint32_t,
   return loop;
 }
 
-Numbering renumber(Context& ctx, const Mesh& mesh, const Allocation& input_ids, std::size_t points,
-                   const SetStarts* sets) {
+Numbering renumber(Context& ctx, const Mesh& mesh, std::size_t points, const SetStarts* sets) {
   Launcher& launch = ctx.launcher;
   Numbering result;
   if (mesh.in_arrays() && ctx.options.order == Order::fast) {
@@ -181,28 +180,28 @@ Numbering renumber(Context& ctx, const Mesh& mesh, const Allocation& input_ids, 
   Allocation buckets = launch.zeros(points + 1);
   // until they are known: places in the buckets
   result.numbers = mesh.in_arrays() ? ctx.memory.transient(places * word) : ctx.memory.allocate(places * word);
-  launch.run<KernelId::cadt_count_triangles>(all.items, mesh.locked, mesh.vertices, input_ids, buckets, result.numbers,
-                                             slots, all.grain, flips);
+  launch.run<KernelId::cadt_count_triangles>(all.items, mesh.locked, mesh.vertices, mesh.input_ids, buckets,
+                                             result.numbers, slots, all.grain, flips);
   launch.scan(buckets, points + 1);
   result.triangles = mesh.in_arrays() ? mesh.triangles : launch.read_word(buckets, points);
   if (sets != nullptr) result.set_starts = values_of_sets(ctx, buckets, sets->points, *sets);
   flips.collect(ctx.statistics);
-  number_by_buckets(ctx, mesh, input_ids, std::move(buckets), result, points);
+  number_by_buckets(ctx, mesh, std::move(buckets), result, points);
   return result;
 }
 
-void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& input_ids, const Numbering& numbering,
-                     const Allocation& triangles, const Allocation& neighbors, std::size_t first) {
+void write_triangles(Context& ctx, const Mesh& mesh, const Numbering& numbering, const Allocation& triangles,
+                     const Allocation& neighbors, std::size_t first) {
   if (mesh.in_arrays()) {
     const LaunchGrid real = ctx.launcher.grid(mesh.triangles);
     ctx.launcher.run<KernelId::cadt_write_arrays>(
-        real.items, mesh.vertices, mesh.half_edges, input_ids, numbering.numbers, triangles, neighbors,
+        real.items, mesh.vertices, mesh.half_edges, mesh.input_ids, numbering.numbers, triangles, neighbors,
         static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh.triangles), real.grain);
     return;
   }
   const LaunchGrid all = ctx.launcher.grid(mesh.slots);
   const auto write = [&]<KernelId kernel>() {
-    ctx.launcher.run<kernel>(all.items, mesh.locked, input_ids, numbering.numbers, triangles, neighbors,
+    ctx.launcher.run<kernel>(all.items, mesh.locked, mesh.input_ids, numbering.numbers, triangles, neighbors,
                              static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh.slots), all.grain);
   };
   if (numbering.ranked)
@@ -211,13 +210,13 @@ void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& input_ids
     write.template operator()<KernelId::cadt_write_triangles>();
 }
 
-std::size_t renumber_in_place(Context& ctx, Mesh& mesh, Allocation& input_ids, std::size_t points) {
+std::size_t renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {
   Numbering as_they_are;
   as_they_are.triangles = mesh.triangles;
-  write_triangles(ctx, mesh, input_ids, as_they_are, mesh.vertices, mesh.half_edges);
-  input_ids.release();
+  write_triangles(ctx, mesh, as_they_are, mesh.vertices, mesh.half_edges);
+  mesh.input_ids.release();
   if (ctx.options.order == Order::fast) return mesh.triangles;
-  const Numbering numbering = renumber(ctx, mesh, input_ids, points);
+  const Numbering numbering = renumber(ctx, mesh, points);
   const auto count = static_cast<std::uint32_t>(numbering.triangles);
   const Allocation moved = ctx.memory.transient(count * word);
   const LaunchGrid c = ctx.launcher.grid(count);

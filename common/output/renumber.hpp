@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/driver/context.hpp"
-#include "common/insertion/insertion.hpp"
+#include "common/mesh/mesh.hpp"
 #include "common/points/spatial_sort.hpp"
 
 namespace cadt {
@@ -22,20 +22,19 @@ struct Numbering {
   Allocation set_starts;  ///< of a batch: the first triangle of each set, and the number of all
 };
 
-/// Numbers the triangles in the order of the options. `input_ids`: by vertex (null: vertices are input ids already);
-/// `points`: the number of input points; `sets`: where each set of a batch begins.
-[[nodiscard]] Numbering renumber(Context& ctx, const Mesh& mesh, const Allocation& input_ids, std::size_t points,
-                                 const SetStarts* sets = nullptr);
+/// Numbers the triangles in the order of the options. `points`: the number of input points; `sets`: where each set of a
+/// batch begins. If the mesh has no input ids, its vertices are input ids already.
+[[nodiscard]] Numbering renumber(Context& ctx, const Mesh& mesh, std::size_t points, const SetStarts* sets = nullptr);
 
 /// Writes the arrays of the result, three words a triangle, behind `first` triangles, in input ids and in numbers of
 /// `numbering`. From a mesh in arrays, either result can be null and is left out; without numbers the results can be
 /// the arrays of the mesh.
-void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& input_ids, const Numbering& numbering,
-                     const Allocation& triangles, const Allocation& neighbors, std::size_t first = 0);
+void write_triangles(Context& ctx, const Mesh& mesh, const Numbering& numbering, const Allocation& triangles,
+                     const Allocation& neighbors, std::size_t first = 0);
 
 /// The same with the arrays of the mesh as those of the result: slower than write_triangles with arrays of its own if
-/// the order is canonical. Releases `input_ids`. Returns the number of triangles.
-[[nodiscard]] std::size_t renumber_in_place(Context& ctx, Mesh& mesh, Allocation& input_ids, std::size_t points);
+/// the order is canonical. Releases the input ids. Returns the number of triangles.
+[[nodiscard]] std::size_t renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points);
 
 /// Turns the numbers of points and triangles that write_triangles has written into those within their own sets.
 void renumber_within_sets(Context& ctx, const Numbering& numbering, const SetStarts& sets, const Allocation& triangles,

@@ -94,8 +94,17 @@ Allocation import_points(Context& ctx, const PointsView& points) {
 
 Allocation import_points(Context& ctx, const DevicePoints& points) { return import_from(ctx, points, nullptr); }
 
-Allocation import_in_order(Context& ctx, const DevicePoints& points, const SortedPoints& order) {
-  return import_from(ctx, points, &order);
+std::size_t InputPoints::size() const noexcept {
+  const auto* host = std::get_if<PointsView>(&points_);
+  return host != nullptr ? host->size() : std::get<DevicePoints>(points_).size;
+}
+
+Allocation InputPoints::import(Context& ctx) const {
+  return std::visit([&](const auto& points) { return import_points(ctx, points); }, points_);
+}
+
+Allocation InputPoints::import_in_order(Context& ctx, const SortedPoints& order) const {
+  return import_from(ctx, std::get<DevicePoints>(points_), &order);
 }
 
 }  // namespace cadt

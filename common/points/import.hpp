@@ -4,6 +4,8 @@
 
 #include <cadt/triangulator.hpp>
 
+#include <variant>
+
 #include "common/driver/context.hpp"
 #include "common/points/spatial_sort.hpp"
 
@@ -20,7 +22,19 @@ namespace cadt {
 /// From the device: without a copy if they are that already. \throws InputError for a handle that is missing
 [[nodiscard]] Allocation import_points(Context& ctx, const DevicePoints& points);
 
-/// Distinct points of `order` once more, without a copy of all points besides.
-[[nodiscard]] Allocation import_in_order(Context& ctx, const DevicePoints& points, const SortedPoints& order);
+/// The points of a call, wherever they are. Does not own them.
+class InputPoints {
+ public:
+  InputPoints(const PointsView& points) : points_(points) {}    // NOLINT: implicit on purpose
+  InputPoints(const DevicePoints& points) : points_(points) {}  // NOLINT
+
+  [[nodiscard]] std::size_t size() const noexcept;
+  [[nodiscard]] Allocation import(Context& ctx) const;
+  /// The distinct points in this order, read again without a copy of all points besides. \pre they are on the device
+  [[nodiscard]] Allocation import_in_order(Context& ctx, const SortedPoints& order) const;
+
+ private:
+  std::variant<PointsView, DevicePoints> points_;
+};
 
 }  // namespace cadt

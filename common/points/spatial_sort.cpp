@@ -376,13 +376,13 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
 
   // To save memory there are two large buffers to borrow from: the sorted points and their keys shall be in the one
   // that is not of the stars.
-  const bool tight = ctx.saves_memory && ctx.memory.pools(n * word);
+  const bool tight = ctx.plan.compact && ctx.memory.pools(n * word);
   Allocation keys = ctx.memory.transient(n * word, tight), spare = ctx.memory.transient(n * word, tight);
   Allocation order = ctx.memory.transient(n * word), sorted;
   const auto gather = [&] {
     const std::size_t bytes = n * point_bytes(ctx.device);
     // They are copied before the mesh takes their place, or made again after it.
-    const bool brief = !ctx.device.shape().contiguous && (ctx.regathers || !keep_keys);
+    const bool brief = !ctx.device.shape().contiguous && (ctx.plan.regathers || !keep_keys);
     sorted = brief ? ctx.memory.transient(bytes) : ctx.memory.allocate(bytes);
     launch.run<KernelId::cadt_gather_points>(c.items, input, order, sorted, count, c.grain, scale, scale_again);
     flag_distinct(ctx, keys, sorted, order, spare, n, keep_keys && n >= fewest_sampled, totals);

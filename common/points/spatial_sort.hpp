@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <functional>
 
 #include "common/driver/context.hpp"
 
@@ -51,8 +50,6 @@ struct SortedPoints {
   bool wide = false;  ///< exponents span too much for the narrow kernels
   PointShapes shapes;
   double scale = 1, scale_again = 1;  ///< the points are the input's, times both
-  /// The points once more, if the input lies on the device anyway; else null. Set by who has called sort_spatially.
-  std::function<Allocation(const SortedPoints&)> points_again;
 };
 
 /// Where the sets of a call with several begin (common/batch/batch.dev.h), and the end of the last one.

@@ -9,7 +9,7 @@
 
 #include "common/portable/language.dev.h"
 
-/* Coordinates, and what is computed from them (docs/decisions/0015-float-path.md). */
+/* Coordinates, and what is computed from them (docs/decisions/0004-exact-integers-and-floats.md). */
 #if CADT_FLOAT
 typedef float cadt_real;
 #define CADT_MANTISSA_BITS 23 /* stored bits */

@@ -2,7 +2,7 @@
  *
  * All kernels. A back end compiles this file; kernel_list.h lists the names. The variant for floats has no star stage,
  * no gift wrapping and no verifier: their error bounds are for doubles, and what they decide the other kernels decide
- * as well (docs/decisions/0015-float-path.md).
+ * as well (docs/decisions/0004-exact-integers-and-floats.md).
  */
 #ifndef CADT_PORTABLE_KERNELS_H
 #define CADT_PORTABLE_KERNELS_H

@@ -4,7 +4,7 @@
  * the few coordinates of one predicate become integers over their smallest exponent: no rounding, no overflow, no
  * underflow, nothing that contraction, denormal flushing or a fast-math option could break. The coordinates at hand say
  * how long the integers are: 62 bits in most cases, in a wide variant up to the whole range of a double
- * (docs/decisions/0005-exact-integers.md).
+ * (docs/decisions/0004-exact-integers-and-floats.md).
  */
 #ifndef CADT_PREDICATES_BIGINT_H
 #define CADT_PREDICATES_BIGINT_H

@@ -8,7 +8,7 @@
  * driver has scaled all coordinates to multiples of 2^-240 below 1, so the smallest product of four differences is
  * 2^-960; in the wide variant each call scales its differences. So it does in the variant for floats, where more may be
  * lost: devices without gradual underflow take subnormal coordinates for 0, and make subnormal differences and products
- * 0 (docs/decisions/0015-float-path.md).
+ * 0 (docs/decisions/0004-exact-integers-and-floats.md).
  */
 #ifndef CADT_PREDICATES_FILTERED_PREDICATES_H
 #define CADT_PREDICATES_FILTERED_PREDICATES_H

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/stars/local_stars.hpp"
 
+#include <algorithm>
+
 #include "common/driver/device_text.hpp"
 
 namespace cadt {
@@ -75,6 +77,12 @@ class TileMaker {
 
 }  // namespace
 
+KeyGrid grid_for_stars(const KeyGrid& grid) noexcept {
+  const int too_fine = static_cast<int>(std::max(grid.bits_x, grid.bits_y)) - static_cast<int>(most_key_bits_of_stars);
+  return too_fine > 0 && grid.fine_levels != 0 ? grid.finer(-std::min(too_fine, static_cast<int>(grid.fine_levels)))
+                                               : grid;
+}
+
 std::optional<TileList> make_tiles(Context& ctx, const SortKeys& keys, std::size_t n, unsigned levels,
                                    std::size_t least) {
   TileMaker maker(ctx, keys, n, levels);
@@ -94,7 +102,7 @@ Stars allocate_stars(Context& ctx, std::size_t n, const TileList& tiles) {
   Stars list;
   list.star_vertices = ctx.memory.allocate((room + read_ahead) * word);
   const std::size_t begins = (n + 1) * word;  // as buckets are
-  list.begins = ctx.saves_memory ? ctx.memory.allocate_unpooled(begins) : ctx.memory.allocate(begins);
+  list.begins = ctx.plan.compact ? ctx.memory.allocate_unpooled(begins) : ctx.memory.allocate(begins);
   list.sizes = ctx.memory.transient_zeros(n * word);
   list.overflow = static_cast<std::uint32_t>(overflow);
   list.room = static_cast<std::uint32_t>(room);

@@ -14,6 +14,12 @@ namespace cadt {
 /// Points of a tile on average at least: it keeps 128 lanes of a card.
 constexpr std::size_t least_points_of_tile = 48;
 
+/// Bits of the keys along an axis at most: cells of a neighbourhood are counted in 32 bits, see CADT_NEIGHBORHOOD_ERROR
+/// too.
+constexpr unsigned most_key_bits_of_stars = 26;
+/// The grid without those of its fine levels that stars have no bits for.
+[[nodiscard]] KeyGrid grid_for_stars(const KeyGrid& grid) noexcept;
+
 struct TileList {
   Allocation tiles;
   std::uint32_t count = 0;

@@ -21,9 +21,6 @@ namespace {
 using namespace device_text;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr unsigned most_bits =
-    26;  // of an axis: cells of a window are counted in 32 bits, see CADT_NEIGHBORHOOD_ERROR too
-
 /// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
 
@@ -33,52 +30,44 @@ constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * 
 /// The vertices of the mesh take the place of the stars in so many steps where memory is to be saved.
 constexpr std::uint32_t waves = 4;
 
-/// How many points are wrapped, rather than inserted or given to the star stage.
-std::size_t most_wrapped_of(const Context& ctx, const SortedPoints& order) {
-  const std::size_t most = most_wrapped(ctx.device);
-  if (ctx.options.strategy != Strategy::automatic) return most;
-  if (order.shapes.on_circles) return std::min(most, most_wrapped_on_circles);
-  if (order.shapes.on_lattice) return std::min(most, most_wrapped_on_lattice);
-  return order.shapes.on_ring ? std::min(most, most_wrapped_on_ring) : most;
-}
-
-/// The mesh without the star stage: by gift wrapping if the points are few, else by insertion.
-Mesh build_without_stars(Context& ctx, SortedPoints& order) {
-  std::optional<Mesh> wrapped;
-  if (order.distinct <= most_wrapped_of(ctx, order)) wrapped = wrap_mesh(ctx, order);
-  return wrapped ? std::move(*wrapped) : insert_incrementally(ctx, order);
-}
-
-/// The same for a part of a mesh of `all` points that is certified as a whole: in records, without a closing pass where
-/// that is no use.
-Mesh build_residual(Context& ctx, SortedPoints& order, std::size_t all) {
-  std::optional<Mesh> wrapped;
-  if (order.distinct <= most_wrapped(ctx.device)) wrapped = wrap_part(ctx, order.points, order.distinct, all);
-  return wrapped ? std::move(*wrapped) : insert_incrementally(ctx, order);
+/// The mesh of the residual vertices of a mesh of `all` points, which is certified as a whole: in locked triangles, and
+/// without legality sweeps where they are of no use.
+Mesh build_residual(Context& ctx, SortedPoints points, std::size_t all, const BuildStrategy& how) {
+  if (points.distinct <= how.most_residual_wrapped) {
+    if (std::optional<Mesh> wrapped = wrap_part(ctx, points.points, points.distinct, all)) {
+      wrapped->input_ids = std::move(points.input_ids);
+      return std::move(*wrapped);
+    }
+  }
+  return insert_incrementally(ctx, std::move(points));
 }
 
 class StarStage {
  public:
-  StarStage(Context& ctx, SortedPoints& order)
+  StarStage(Context& ctx, SortedPoints points, const InputPoints& input, const BuildStrategy& how)
       : ctx_(ctx),
         launch_(ctx.launcher),
-        order_(order),
-        n_(order.distinct),
+        order_(std::move(points)),
+        input_(input),
+        how_(how),
+        n_(order_.distinct),
         count_(static_cast<std::uint32_t>(n_)),
-        keys_(std::move(order.keys)) {}
+        keys_(std::move(order_.keys)) {
+    order_.grid = grid_for_stars(order_.grid);
+  }
 
   [[nodiscard]] Mesh build() {
     const bool made = make_stars();
     keys_.release();
     if (!made) {
       release_stars();
-      return build_without_stars(ctx_, order_);
+      return wrap_or_insert(ctx_, std::move(order_), how_);
     }
     count_triangles();
     if (too_many(unproven_, n_) || too_many_open(open_count_, n_)) {
       release_stars();
       ranks_.release();
-      return build_without_stars(ctx_, order_);
+      return wrap_or_insert(ctx_, std::move(order_), how_);
     }
     // stars that contradict each other would number more
     if (proven_triangles_ > 2 * n_ - 2)
@@ -86,12 +75,13 @@ class StarStage {
                           std::to_string(2 * n_ - 2) + "; please report this with the input");
     ctx_.statistics.proven_stars = n_ - unproven_;
     SortedPoints residual = take_residual();
-    if (order_.points_again) order_.points.release();
+    if (ctx_.plan.regathers) order_.points.release();
     write_triangles();
     release_stars();
-    join(residual);
-    if (!order_.points) order_.points = order_.points_again(order_);
+    stitch(std::move(residual));
+    if (!order_.points) order_.points = input_.import_in_order(ctx_, order_);
     certify_arrays(ctx_, order_, mesh_);
+    mesh_.input_ids = std::move(order_.input_ids);
     return std::move(mesh_);
   }
 
@@ -110,14 +100,12 @@ class StarStage {
       }
     }
     const SortKeys keys{keys_, low, 2 * grid.fine_levels};
-    const bool automatic = ctx_.options.strategy == Strategy::automatic;
-    const std::optional<TileList> tiles =
-        make_tiles(ctx_, keys, n_, grid.levels(), automatic ? least_points_of_tile : 0);
+    const std::optional<TileList> tiles = make_tiles(ctx_, keys, n_, grid.levels(), how_.least_points_of_tile);
     ctx_.end_phase("tiles");
     if (!tiles) return false;
     ctx_.check("stars", 0.1);
     stars_ = allocate_stars(ctx_, n_, *tiles);
-    const StarCounters found = prove_stars(ctx_, order_, keys, {}, {}, *tiles, automatic, stars_);
+    const StarCounters found = prove_stars(ctx_, order_, keys, {}, {}, *tiles, how_.cautious, stars_);
     found.add_to(ctx_.statistics);
     ctx_.end_phase("stars");
     ctx_.check("stars", 0.5);
@@ -127,14 +115,14 @@ class StarStage {
   void count_triangles() {
     // All but one of the buffers that lend are taken as a whole while the bases are here; to save memory, there is one.
     const std::size_t bases = (n_ + 1) * word;
-    bases_ = ctx_.saves_memory ? ctx_.memory.allocate_unpooled(bases) : ctx_.memory.transient(bases);
+    bases_ = ctx_.plan.compact ? ctx_.memory.allocate_unpooled(bases) : ctx_.memory.transient(bases);
     ranks_ = ctx_.memory.transient((n_ + 1) * word);
     totals_ = launch_.zeros(2);
     const LaunchGrid c = launch_.grid(n_);
     const std::size_t words = (n_ - 1) / 32 + 1;
     proven_ = ctx_.memory.allocate(words * word);
     const std::size_t marks = n_ * sizeof(std::uint16_t);
-    marks_ = ctx_.saves_memory ? ctx_.memory.allocate_unpooled(marks) : ctx_.memory.allocate(marks);
+    marks_ = ctx_.plan.compact ? ctx_.memory.allocate_unpooled(marks) : ctx_.memory.allocate(marks);
     const LaunchGrid of_words = launch_.grid(words);
     launch_.run<KernelId::cadt_pack_proven>(of_words.items, stars_.sizes, count_, static_cast<std::uint32_t>(words),
                                             of_words.grain, proven_);
@@ -172,11 +160,11 @@ class StarStage {
     launch_.run<KernelId::cadt_star_half_edges>(c.items, stars_.star_vertices, stars_.begins, marks_, bases_, proven_,
                                                 count_, groups, c.grain, mesh_.half_edges, firsts, open_, totals_);
     bases_.release();
-    if (!ctx_.saves_memory || !write_vertices_in_place(firsts, groups)) {
+    if (!ctx_.plan.compact || !write_vertices_in_place(firsts, groups)) {
       mesh_.vertices = ctx_.memory.allocate(bytes);
       write_vertices(firsts, 0, groups, mesh_.vertices);
     }
-    ctx_.end_phase("records");
+    ctx_.end_phase("assemble");
   }
 
   void write_vertices(const Allocation& firsts, std::uint32_t from, std::uint32_t groups, const Allocation& to) {
@@ -221,11 +209,11 @@ class StarStage {
     bases_.release();
   }
 
-  void join(SortedPoints& residual) {
+  void stitch(SortedPoints residual) {
     // The place of the stars is free now, unless it became that of the mesh.
-    const Memory::TransientScope borrows(ctx_.memory, !ctx_.saves_memory);
+    const Memory::TransientScope borrows(ctx_.memory, !ctx_.plan.compact);
     const std::uint64_t certified = ctx_.statistics.certified_edges;
-    const Mesh smaller = build_residual(ctx_, residual, n_);
+    const Mesh smaller = build_residual(ctx_, std::move(residual), n_, how_);
     ctx_.statistics.certified_edges = certified;  // those of the whole mesh count
     if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
 
@@ -238,8 +226,8 @@ class StarStage {
     Allocation covers = ctx_.memory.allocate(3 * smaller.slots * word),
                roots = ctx_.memory.allocate(smaller.slots * word);
     const LaunchGrid c = launch_.grid(smaller.slots);
-    launch_.run<KernelId::cadt_stitch_cover>(c.items, mesh_.vertices, smaller.locked, residual.input_ids, slots,
-                                             c.grain, table, mask, covers, roots);
+    launch_.run<KernelId::cadt_stitch_cover>(c.items, mesh_.vertices, smaller.locked, smaller.input_ids, slots, c.grain,
+                                             table, mask, covers, roots);
     launch_.run<KernelId::cadt_stitch_components>(c.items, smaller.locked, slots, c.grain, covers, roots);
     Allocation hidden = launch_.zeros(smaller.slots), ranks = ctx_.memory.allocate((2 * smaller.slots + 1) * word);
     launch_.run<KernelId::cadt_stitch_hide>(c.items, covers, roots, slots, c.grain, hidden);
@@ -253,18 +241,20 @@ class StarStage {
     mesh_.triangles = proven_triangles_ + launch_.read_word(ranks, smaller.slots);
     const FlipHistogram flips(ctx_);
     const LaunchGrid strided = launch_.grid_strided(smaller.slots);
-    launch_.run<KernelId::cadt_stitch_residual>(strided.items, smaller.locked, covers, ranks, residual.input_ids, slots,
+    launch_.run<KernelId::cadt_stitch_residual>(strided.items, smaller.locked, covers, ranks, smaller.input_ids, slots,
                                                 strided.grain, proven_triangles_, mesh_.vertices, mesh_.half_edges,
                                                 flips);
     // triangles and ghosts have 3 and 1 sides that count
     flips.collect(ctx_.statistics, 3 * std::uint64_t{mesh_.triangles} + (mesh_.slots - mesh_.triangles));
-    ctx_.end_phase("join");
-    ctx_.check("join", 0.8);
+    ctx_.end_phase("stitch");
+    ctx_.check("stitch", 0.8);
   }
 
   Context& ctx_;
   Launcher& launch_;
-  SortedPoints& order_;
+  SortedPoints order_;
+  const InputPoints& input_;
+  const BuildStrategy& how_;
   std::size_t n_;
   std::uint32_t count_;
   Stars stars_;
@@ -275,26 +265,19 @@ class StarStage {
 
 }  // namespace
 
-Mesh build_mesh(Context& ctx, SortedPoints& order) {
-  KeyGrid& grid = order.grid;
-  const int too_fine = static_cast<int>(std::max(grid.bits_x, grid.bits_y)) - static_cast<int>(most_bits);
-  if (too_fine > 0 && grid.fine_levels != 0) grid = grid.finer(-std::min(too_fine, static_cast<int>(grid.fine_levels)));
-  const bool automatic = ctx.options.strategy == Strategy::automatic;
-  const PointShapes& shapes = order.shapes;
-  // There are no triangles, or rounded numbers find few.
-  const bool convex = (shapes.on_circle && order.distinct > CADT_WRAP_HULL_EXACT) ||
-                      (shapes.on_hull && order.distinct > CADT_WRAP_HULL);
-  const bool insert = automatic && (shapes.on_line || convex || shapes.on_rays);
-  if (order.wide || insert) {
-    order.keys.release();
-    return insert_incrementally(ctx, order);
+Mesh mesh_from_stars(Context& ctx, SortedPoints points, const InputPoints& input, const BuildStrategy& how) {
+  return StarStage(ctx, std::move(points), input, how).build();
+}
+
+Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how) {
+  points.keys.release();
+  if (points.distinct <= how.most_wrapped) {
+    if (std::optional<Mesh> wrapped = wrap_mesh(ctx, points)) {
+      wrapped->input_ids = std::move(points.input_ids);
+      return std::move(*wrapped);
+    }
   }
-  const bool without = automatic && (shapes.overfull || order.distinct <= most_wrapped_of(ctx, order));
-  if (without || order.distinct < 3 || std::max(grid.bits_x, grid.bits_y) > most_bits) {
-    order.keys.release();
-    return build_without_stars(ctx, order);
-  }
-  return StarStage(ctx, order).build();
+  return insert_incrementally(ctx, std::move(points));
 }
 
 }  // namespace cadt

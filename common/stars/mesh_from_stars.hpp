@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/insertion/insertion.hpp"
+#include "common/driver/choose_strategy.hpp"
+#include "common/mesh/mesh.hpp"
+#include "common/points/import.hpp"
+#include "common/points/spatial_sort.hpp"
 
 namespace cadt {
 
-/// So few points are wrapped instead (common/stars/wrap_exact.dev.h), unless the options ask for the star stage, if
-/// many are on circles, or on a lattice: there the exact tests of wrapping take longer. Or on a ring, where circles are
-/// large and each turn looks at many points. Of other sets all that can be wrapped are.
-constexpr std::size_t most_wrapped_on_circles = 20000, most_wrapped_on_lattice = 20480, most_wrapped_on_ring = 28672;
+/// The mesh by the star stage: local stars without locks, gift wrapping or insertion of the residual vertices, the
+/// stitch of both parts, certification. Where stars prove too little, all points are wrapped or inserted.
+[[nodiscard]] Mesh mesh_from_stars(Context& ctx, SortedPoints points, const InputPoints& input,
+                                   const BuildStrategy& how);
 
-/// The mesh by the star stage (common/stars/local_star.dev.h): stars of vertices without locks, insertion of the
-/// vertices whose star could not be proven, the join of both, closing passes. Releases the keys of `order`.
-[[nodiscard]] Mesh build_mesh(Context& ctx, SortedPoints& order);
+/// The mesh by gift wrapping of all points, if they are few enough and it does not take too long, else by insertion.
+[[nodiscard]] Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how);
 
 }  // namespace cadt

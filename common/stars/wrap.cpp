@@ -247,8 +247,6 @@ class Wrapping {
 
 }  // namespace
 
-std::size_t most_wrapped(const Device& device) noexcept { return device.shape().contiguous ? 2048 : 32768; }
-
 void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const StarsOfBatch& sets,
                 const WrappedStars& stars) {
   const AabbTree leaves(ctx, points, n, sets.starts, sets.count, {}, {});
@@ -269,7 +267,7 @@ std::optional<Mesh> wrap_part(Context& ctx, const Allocation& points, std::size_
   return wrapping.make_records();
 }
 
-std::optional<Mesh> wrap_mesh(Context& ctx, SortedPoints& order) {
+std::optional<Mesh> wrap_mesh(Context& ctx, const SortedPoints& order) {
   const std::size_t n = order.distinct;
   if (n < 3) return std::nullopt;
   Wrapping wrapping(ctx, order.points, n);

@@ -12,9 +12,6 @@ namespace cadt {
 /// Lanes of the team that wraps a vertex.
 constexpr std::uint32_t wrap_lanes = 32;
 
-/// Points for which gift wrapping is faster than insertion; it looks at a share of all points for each.
-[[nodiscard]] std::size_t most_wrapped(const Device& device) noexcept;
-
 /// Where wrapped stars are put (common/stars/wrapped_star.dev.h). `sizes` are 0; `found` has CADT_WRAP_WORDS words.
 struct WrappedStars {
   const Allocation &star_vertices, &begins, &sizes, &found;
@@ -36,7 +33,7 @@ void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const Sta
 /// The mesh of at most most_wrapped() points by gift wrapping (common/stars/wrap_exact.dev.h), without locks, and
 /// certified: in arrays, or in records if some vertices have too many neighbours to be wrapped. Nothing if the points
 /// are on a line or it would take too long: then insertion is to do it.
-[[nodiscard]] std::optional<Mesh> wrap_mesh(Context& ctx, SortedPoints& order);
+[[nodiscard]] std::optional<Mesh> wrap_mesh(Context& ctx, const SortedPoints& order);
 
 /// The same of n points that are part of a mesh of `all`: in records, and its edges have still to be certified.
 [[nodiscard]] std::optional<Mesh> wrap_part(Context& ctx, const Allocation& points, std::size_t n, std::size_t all);

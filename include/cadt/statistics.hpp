@@ -82,7 +82,7 @@ struct Statistics {
   std::array<std::uint64_t, 16> flips_per_edge{};
 
   /// How the threads of the insertion spend their time (paper, Fig. 6): shares of their sum, e.g. {"locate", 0.31}; the
-  /// names are locate, claim, split, test, flip, neighbors, other, wait (for threads that run in step with it). Empty
+  /// names are locate, lock, split, test, flip, neighbors, other, wait (for threads that run in step with it). Empty
   /// unless StatisticsDetail::timing, where the device has no clock, and with `wide_arithmetic`.
   std::vector<std::pair<std::string, double>> thread_time;
 

@@ -57,7 +57,7 @@ enum class Stabilize {
 
 /// State of a running triangulation, as told to `Options::progress`.
 struct Progress {
-  std::string_view phase;  ///< "sort", "insert", "certify", "collect"
+  std::string_view phase;  ///< "sort", "insert", "certify", "output"
   double fraction;         ///< of the whole work, 0 to 1, never decreasing
 };
 

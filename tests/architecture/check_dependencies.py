@@ -37,7 +37,7 @@ ONLY = [
     # The verifier's kernels share nothing with the builder's.
     (r"common/verify/device/.*\.dev\.h$", r"common/verify/device/|common/portable/(dialect|atomics)\.dev\.h$"),
     # What all stages share knows no stage, but for the text of the kernels, of which it takes layouts and parameters.
-    (r"common/driver/(?!triangulat|device_triangulation|memory_plan|build).*\.hpp$", r"common/driver/|include/|common/portable/"),
+    (r"common/driver/(?!triangulat|device_triangulation|choose_strategy|build|session).*\.hpp$", r"common/driver/|include/|common/portable/"),
 ]
 # One back end knows nothing of another.
 BACKENDS = ["host", "opencl", "cuda"]

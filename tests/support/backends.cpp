@@ -3,6 +3,8 @@
 
 #include "tests/support/device_choice.hpp"
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <ostream>
 #include <string_view>
@@ -88,11 +90,16 @@ bool required(Backend backend) {
 }
 
 void BackendTest::SetUp() {
+  if (const char* seconds = std::getenv("CADT_TEST_SECONDS")) alarm(static_cast<unsigned>(std::atoi(seconds)));
   const std::string reason = unavailable(GetParam().backend);
   if (reason.empty()) return;
   const std::string text = "back end '" + std::string(to_string(GetParam().backend)) + "' is not available: " + reason;
   if (required(GetParam().backend)) FAIL() << text << " (required by CADT_REQUIRE_BACKENDS)";
   GTEST_SKIP() << text;
+}
+
+void BackendTest::TearDown() {
+  if (std::getenv("CADT_TEST_SECONDS") != nullptr) alarm(0);
 }
 
 std::string case_name(const testing::TestParamInfo<BackendCase>& info) { return info.param.name; }

@@ -39,10 +39,12 @@ std::ostream& operator<<(std::ostream& out, const BackendCase& c);
 [[nodiscard]] bool required(Backend backend);
 
 /// Base of the tests that run once per configuration. A back end that is not there skips the test with the reason, or
-/// fails it if the back end is required.
+/// fails it if the back end is required. CADT_TEST_SECONDS: a test that takes longer ends the process (SIGALRM), so
+/// that one that hangs among many in a process does not take the time of all.
 class BackendTest : public testing::TestWithParam<BackendCase> {
  protected:
   void SetUp() override;
+  void TearDown() override;
 };
 
 [[nodiscard]] std::string case_name(const testing::TestParamInfo<BackendCase>& info);

@@ -56,6 +56,21 @@ Points signed_zero_lattice() {
   return xy;
 }
 
+// Zeros of either sign, more than are sorted in place in a cell, among points too near to be in other cells than they
+// are, and some far away.
+Points zeros_in_a_crowd() {
+  Random random(34);
+  Points xy;
+  for (std::size_t i = 0; i < 400; ++i) {
+    const double x = random.below(2) == 0 ? 0.0 : -0.0, y = random.below(2) == 0 ? 0.0 : -0.0;
+    xy.insert(xy.end(), {x, y});
+    if (i % 4 == 0) xy.insert(xy.end(), {random.uniform(-1e-30, 1e-30), random.uniform(-1e-30, 1e-30)});
+    if (i % 8 == 0) xy.insert(xy.end(), {random.uniform(-1e-30, 1e-30), y, x, random.uniform(-1e-30, 1e-30)});
+    if (i % 16 == 0) xy.insert(xy.end(), {random.uniform(-1e3, 1e3), random.uniform(-1e3, 1e3)});
+  }
+  return xy;
+}
+
 template <class Key>
 Points sorted_by(const Points& xy, Key key) {
   std::vector<std::size_t> order(xy.size() / 2);
@@ -229,6 +244,7 @@ std::vector<Family> duplicate_families() {
       {"three_places", [] { return few_places(2000, 3, 31); }},
       {"ten_places", [] { return few_places(2000, 10, 32); }},
       {"signed_zero_lattice", [] { return signed_zero_lattice(); }},
+      {"zeros_in_a_crowd", [] { return zeros_in_a_crowd(); }},
       {"line_five_times",
        [] {
          return shuffled(repeated({0, 0, 1, 1, 2, 2, 3, 3}, 5), 33);

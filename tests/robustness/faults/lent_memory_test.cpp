@@ -109,7 +109,7 @@ TEST_P(LentMemory, AfterFaults) {
       const auto step = static_cast<Step>(s);
       try_again();
       try_again();
-      const std::size_t count = faults->count(step), stride = 1 + count / (step == Step::allocation ? 16 : 3);
+      const std::size_t count = faults->count(step), stride = 1 + count / (step == Step::allocation ? 8 : 2);
       for (std::size_t k = 0; k < count && !HasFailure(); k += stride) {
         SCOPED_TRACE(std::string(to_string(step)) + " " + std::to_string(k) + " of " + std::to_string(count));
         faults->fail(step, k);

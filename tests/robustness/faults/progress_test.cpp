@@ -46,6 +46,13 @@ class ToldProgress : public ResidentTest {
 
   /// `reports`: as text_of() has them, those of insertion once. `phases`: of Statistics::milliseconds.
   void expect_told(const Options& with, const Call& call, const Names& reports, const Names& phases) {
+    // A sweep that repairs something, which is up to the schedule, tells of itself, and the output then begins no
+    // later.
+    const bool sweeps = std::ranges::find(reports, "certify 0.9") != reports.end();
+    const auto report_of = [&](const Progress& progress) {
+      const std::string text = text_of(progress);
+      return text == "certify 0.9" && !sweeps ? std::string("output 0.9") : text;
+    };
     Triangulator triangulator(with);
     Names told;
     std::size_t all = 0;
@@ -55,8 +62,8 @@ class ToldProgress : public ResidentTest {
       EXPECT_LE(progress.fraction, 1);
       last = progress.fraction;
       ++all;
-      if (told.empty() || told.back() != text_of(progress) || progress.phase != "insert")
-        told.push_back(text_of(progress));
+      if (told.empty() || told.back() != report_of(progress) || progress.phase != "insert")
+        told.push_back(report_of(progress));
     };
     const Statistics statistics = call(triangulator);
     EXPECT_EQ(told, reports);
@@ -69,7 +76,7 @@ class ToldProgress : public ResidentTest {
       triangulator.options().stop = source.get_token();
       triangulator.options().progress = [&](const Progress& progress) {
         if (source.stop_requested()) ++later;
-        if (text_of(progress) == reports[stop_at]) source.request_stop();
+        if (report_of(progress) == reports[stop_at]) source.request_stop();
       };
       (void)thrown<Cancelled>([&] { (void)call(triangulator); });
       EXPECT_TRUE(source.stop_requested()) << reports[stop_at];
@@ -84,12 +91,12 @@ class ToldProgress : public ResidentTest {
   const Injection injection{faults};
 };
 
-const Names of_insertion = {"sort 0", "sort 0.01", "insert", "collect 0.9", "collect 0.95", "collect 1"};
-const Names of_stars = {"sort 0",   "sort 0.01",   "stars 0.1",    "stars 0.5",
-                        "join 0.8", "certify 0.9", "collect 0.95", "collect 1"};
-const Names insertion_phases = {"upload", "bounds", "sort", "gather", "start", "insert", "certify", "collect"};
-const Names star_phases = {"upload",  "bounds", "sort", "gather",  "tiles",  "stars",
-                           "records", "wrap",   "join", "certify", "collect"};
+const Names of_insertion = {"sort 0", "sort 0.01", "insert", "output 0.9", "output 0.95", "output 1"};
+const Names of_stars = {"sort 0",     "sort 0.01",   "stars 0.1",   "stars 0.5",
+                        "stitch 0.8", "certify 0.9", "output 0.95", "output 1"};
+const Names insertion_phases = {"upload", "bounds", "sort", "gather", "seed", "insert", "certify", "output"};
+const Names star_phases = {"upload",   "bounds", "sort",   "gather",  "tiles", "stars",
+                           "assemble", "wrap",   "stitch", "certify", "output"};
 
 Names with(Names names, const Names& more) {
   names.insert(names.end(), more.begin(), more.end());
@@ -121,15 +128,15 @@ TEST_P(ToldProgress, Stars) {
   const Call of_device = [&](Triangulator& t) { return t.triangulate(points).statistics(); };
   expect_told(options(Strategy::stars), of_host, of_stars, with(star_phases, {"copy"}));
   expect_told(options(Strategy::stars), of_device, of_stars, star_phases);
-  expect_told(bounded, of_host, without(of_stars, "collect 0.95"), with(star_phases, {"copy"}));
+  expect_told(bounded, of_host, without(of_stars, "output 0.95"), with(star_phases, {"copy"}));
 }
 
 /// Of few points all stars are wrapped, and there is nothing to join.
 TEST_P(ToldProgress, WrappedStars) {
   const Points xy = {0, 0, 1, 0, 0, 1, 3, 3};
   expect_told(options(Strategy::stars), [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); },
-              {"sort 0", "sort 0.01", "stars 0.1", "stars 0.5", "collect 0.9", "collect 0.95", "collect 1"},
-              {"upload", "bounds", "sort", "gather", "tiles", "stars", "wrap", "certify", "collect", "copy"});
+              {"sort 0", "sort 0.01", "stars 0.1", "stars 0.5", "output 0.9", "output 0.95", "output 1"},
+              {"upload", "bounds", "sort", "gather", "tiles", "stars", "wrap", "certify", "output", "copy"});
 }
 
 /// Passes that are repeated tell nothing twice: here three find edges that could not be read.
@@ -148,7 +155,7 @@ TEST_P(ToldProgress, RepeatedPasses) {
     std::memcpy(static_cast<std::byte*>(to) + at, &one, sizeof one);
   };
   Names reports = of_insertion;  // a pass that is not the last one tells of itself
-  std::ranges::replace(reports, "collect 0.9", "certify 0.9");
+  std::ranges::replace(reports, "output 0.9", "certify 0.9");
   const Call call = [&](Triangulator& t) {
     unsettled = 0;
     const Statistics statistics = t.triangulate(Reals(xy)).statistics();

@@ -181,7 +181,7 @@ class Statistics(CliTest):
         result = self.cadt("triangulate", "in.xy", "--stats=s.json", "-o", "m.off", "--verify")
         self.assertEqual(result.out, "")
         data = json.loads(self.path("s.json").read_text())
-        self.assertEqual(data["schema"], 1)
+        self.assertEqual(data["schema"], 2)
         self.assertEqual(data["input"], {"file": "in.xy", "format": "xy", "heights": False})
         self.assertEqual(data["outputs"], [{"file": "m.off", "format": "off"}])
         self.assertEqual(data["mesh"]["triangles"], len(read_off(self.path("m.off").read_text())[1]))

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <thread>
 #include <vector>
 
 namespace cadt::test {
@@ -187,29 +186,6 @@ TEST_P(Result, StatisticsDescribeTheRun) {
   EXPECT_GT(s.bytes_device_peak, 0u);
   EXPECT_FALSE(s.milliseconds.empty());
   for (const auto& [phase, time] : s.milliseconds) EXPECT_GE(time, 0.0) << phase;
-}
-
-TEST_P(Result, CallsFromSeveralThreads) {
-  const Points first = mixed_points(), second = cluster_points(1500);
-  const ExpectedMesh expected[2] = {expected_mesh(first), expected_mesh(second)};
-  std::vector<testing::AssertionResult> results(4, testing::AssertionFailure() << "did not run");
-  {
-    std::vector<std::jthread> callers;
-    for (std::size_t c = 0; c < results.size(); ++c) {
-      callers.emplace_back([&, c] {
-        for (int run = 0; run < 3; ++run) {
-          try {
-            const Points& xy = c % 2 ? second : first;
-            results[c] = same_mesh(triangulate(Reals(xy), GetParam().options()), expected[c % 2]);
-          } catch (const std::exception& error) {
-            results[c] = testing::AssertionFailure() << error.what();
-          }
-          if (!results[c]) return;
-        }
-      });
-    }
-  }
-  for (const auto& result : results) EXPECT_TRUE(result);
 }
 
 TEST_P(Result, MovesLeaveAnEmptyOrEqualObject) {

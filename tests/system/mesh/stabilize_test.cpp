@@ -105,6 +105,7 @@ TEST_P(Stabilize, PaperLeavesFewEdgesAndSaysSo) {
     for (const Check& check : report.checks)
       if (check.name == "delaunay" || check.name == "ties") found += check.failures;
     EXPECT_EQ(s.illegal_edges, found);
+    EXPECT_EQ(s.certified_edges + s.illegal_edges, 3 * s.distinct - 3);
     EXPECT_EQ(s.certified, found == 0);
     EXPECT_EQ(s.certified, differing == 0);
     EXPECT_GE(s.stabilized_edges, s.illegal_edges);

@@ -59,7 +59,7 @@ TEST_P(CountedWork, AddsUp) {
     EXPECT_EQ(s.lock_attempts, s.lock_failures + s.splits + s.edge_splits + s.flips);
     EXPECT_LE(s.invalid_restarts, s.lock_failures);
     EXPECT_TRUE(s.thread_time.empty());
-    for (const char* phase : {"sort", "gather", "insert", "certify", "collect", "copy"})
+    for (const char* phase : {"sort", "gather", "insert", "certify", "output", "copy"})
       EXPECT_TRUE(names(s.milliseconds).count(phase)) << phase;
   }
 }
@@ -110,10 +110,10 @@ TEST_P(CountedWork, TimingTellsShares) {
   EXPECT_EQ(mesh.hash(), hash);
   EXPECT_GT(s.flips, 0u);
   EXPECT_EQ(names(s.thread_time),
-            (std::set<std::string>{"locate", "claim", "split", "test", "flip", "neighbors", "other", "wait"}));
+            (std::set<std::string>{"locate", "lock", "split", "test", "flip", "neighbors", "other", "wait"}));
   double sum = 0;
   for (const auto& [name, share] : s.thread_time) {
-    if (name == "locate" || name == "test" || name == "claim") {
+    if (name == "locate" || name == "test" || name == "lock") {
       EXPECT_GT(share, 0.0) << name;
     }
     sum += share;

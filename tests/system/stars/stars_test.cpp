@@ -484,7 +484,7 @@ TEST_P(Stars, EveryDetailOfStatistics) {
     EXPECT_EQ(s.lock_attempts, s.lock_failures + s.splits + s.edge_splits + s.flips);
     std::set<std::string> phases;
     for (const auto& [name, ms] : s.milliseconds) phases.insert(name);
-    for (const char* phase : {"sort", "tiles", "stars", "records", "join", "certify"})
+    for (const char* phase : {"sort", "tiles", "stars", "assemble", "stitch", "certify"})
       EXPECT_TRUE(phases.contains(phase)) << phase;
   }
 }

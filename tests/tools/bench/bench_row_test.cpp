@@ -32,9 +32,9 @@ TEST(Row, CountsThatNobodyCountedAreEmpty) {
   row.statistics.emplace().lock_attempts = 7;
   row.statistics->launches = 5;
   row.detail = "counters";
-  EXPECT_NE(json({row}).find("\"claims\": 7"), std::string::npos);
+  EXPECT_NE(json({row}).find("\"lock_attempts\": 7"), std::string::npos);
   row.detail = "none";
-  EXPECT_NE(json({row}).find("\"claims\": null"), std::string::npos);
+  EXPECT_NE(json({row}).find("\"lock_attempts\": null"), std::string::npos);
   EXPECT_NE(json({row}).find("\"launches\": 5"), std::string::npos);
 }
 

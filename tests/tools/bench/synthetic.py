@@ -12,7 +12,7 @@ import random
 import sys
 from pathlib import Path
 
-COUNTERS = ("launches walk_steps claims lock_failures invalid_restarts insert_retries stale_edges deferred_points "
+COUNTERS = ("launches walk_steps lock_attempts lock_failures invalid_restarts insert_retries stale_edges deferred_points "
             "deferred_edges splits edge_splits flips incircle_tests orientation_tests exact_orientations "
             "exact_incircles ties legality_sweeps sweep_repairs cavities certified_edges stabilized_edges illegal_edges "
             "refined_points bytes_device_peak").split()
@@ -99,9 +99,9 @@ def hash_of(distribution: str, points: int) -> str:
 
 
 def phases(on_device: float, whole: float) -> str:
-    shares = {"bounds": 0.01, "sort": 0.12, "refine": 0.02, "gather": 0.05, "start": 0.01, "insert": 0.64,
+    shares = {"bounds": 0.01, "sort": 0.12, "refine": 0.02, "gather": 0.05, "seed": 0.01, "insert": 0.64,
               "certify": 0.08,
-              "collect": 0.07}
+              "output": 0.07}
     parts = {"upload": (whole - on_device) * 0.4, **{k: v * on_device for k, v in shares.items()},
              "copy": (whole - on_device) * 0.6}
     return ";".join(f"{name}={value:.6g}" for name, value in parts.items())
@@ -196,7 +196,7 @@ def times(writer: Writer) -> None:
             writer.row("distributions", who, device, points, distribution=name, factor=1.1)
         for name in ("uniform", "circles"):
             row = writer.row("breakdown", who, device, 1 << 20, distribution=name, detail="timing")
-            row["thread_time"] = "locate=0.31;claim=0.12;split=0.08;test=0.14;flip=0.19;neighbors=0.11;other=0.05"
+            row["thread_time"] = "locate=0.31;lock=0.12;split=0.08;test=0.14;flip=0.19;neighbors=0.11;other=0.05"
         for name, points in (("uniform", 477), ("bunny_res4", 453), ("uniform", 1_000_000), ("uniform", 21_214_412)):
             writer.row("works", who, device, points, distribution=name)
         for points in SIZES[:8]:

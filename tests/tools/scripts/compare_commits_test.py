@@ -35,7 +35,7 @@ BENCH = """#!/usr/bin/env python3
 import json, random, sys
 noise = 1 + {noise} * random.random()
 said = {{"contestant": sys.argv[sys.argv.index("-w") + 1], "seconds": [noise * {ms} / 1000] * 3,
-        "milliseconds": {{"upload": 0.25 * {ms}, "insert": 0.5 * {ms} * noise, "collect": {device}, "copy": 0}}}}
+        "milliseconds": {{"upload": 0.25 * {ms}, "insert": 0.5 * {ms} * noise, "output": {device}, "copy": 0}}}}
 json.dump([said], open(sys.argv[sys.argv.index("--json") + 1], "w"))
 """
 
@@ -94,7 +94,7 @@ class Arithmetic(unittest.TestCase):
         self.assertTrue(0.85 < low < 0.98 * ratio and 1.02 * ratio < high < 1.15, (low, ratio, high))
 
     def test_measures_of_old_and_new_commits(self):
-        old = {"seconds": [0.003, 0.001, 0.002], "milliseconds": {"upload": 1, "insert": 2, "collect": 3, "copy": 4}}
+        old = {"seconds": [0.003, 0.001, 0.002], "milliseconds": {"upload": 1, "insert": 2, "output": 3, "copy": 4}}
         self.assertEqual(script.measures_of(old), {"whole": 2, "device": 5})
         self.assertEqual(script.measures_of({**old, "device_seconds": [0.004, 0.006, 0.005]}),
                          {"whole": 2, "device": 5})

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // On which side of a ray from the centre of the first triangle a point is. The centre is known rounded only, and where
 // points are as near to it as that, the sign of the rounded numbers is often wrong: then the filter must not decide.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -74,6 +75,21 @@ TEST(Center, SignsAreExactBesideIt) {
   }
   EXPECT_GT(misleading, all / 50) << "rounded numbers are hardly ever wrong here: the bound has nothing to do";
   EXPECT_GT(decided, all / 50) << "the filter never decides";
+}
+
+// Three times a coordinate less three others is six times as large as the largest of them, and has a sign: for each
+// number of bits the integers must be as long as that, up to what the narrow build takes.
+TEST(Center, IntegersAreLongEnoughForEveryNumberOfBits) {
+  for (int bits = 2; bits < 240; ++bits) {
+    const double k = std::ldexp(1.0, bits) - std::ldexp(1.0, std::max(0, bits - 53));  // as many ones as there are
+    const cadt_point c{-k, 0}, a{k, 0}, b{-k, 1};                                      // from c: (6 k, 0) and (0, 3)
+    ASSERT_EQ(cadt_orientation_centroid_exact(c, c, c, a, b), 1) << bits;
+    ASSERT_EQ(cadt_orientation_centroid_exact(c, c, c, b, a), -1) << bits;
+    const cadt_point d{0, -k}, e{0, k}, f{1, -k};
+    ASSERT_EQ(cadt_orientation_centroid_exact(d, d, d, f, e), 1) << bits;
+    ASSERT_EQ(cadt_orientation_centroid_exact(d, d, d, e, f), -1) << bits;
+    ASSERT_EQ(cadt_orientation_centroid_exact(d, d, d, e, e), 0) << bits;
+  }
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ using Face = std::array<std::uint32_t, 3>;
 using Found = std::array<std::uint32_t, 4>;  // examined, illegal, wrong, broken
 
 struct Arrays {
-  std::vector<std::uint32_t> vertices, links;
+  std::vector<std::uint32_t> vertices, half_edges;
   std::uint32_t real = 0;
 
   explicit Arrays(const std::vector<Face>& faces) {
@@ -36,7 +36,7 @@ struct Arrays {
         across[{faces[t][(k + 1) % 3], faces[t][(k + 2) % 3]}] = CADT_HALF_EDGE(t, k);
     for (const Face& face : faces) {
       vertices.insert(vertices.end(), face.begin(), face.end());
-      for (std::uint32_t k = 0; k < 3; ++k) links.push_back(across.at({face[(k + 2) % 3], face[(k + 1) % 3]}));
+      for (std::uint32_t k = 0; k < 3; ++k) half_edges.push_back(across.at({face[(k + 2) % 3], face[(k + 1) % 3]}));
       if (face[0] != g && face[1] != g && face[2] != g) ++real;
     }
   }
@@ -52,7 +52,7 @@ struct Arrays {
     for (std::uint32_t begin = 0; begin < all; begin += size) {
       const std::uint32_t count = std::min(size, all - begin), grain = (count - 1) / items + 1;
       for (std::uint32_t item = 0; item < items; ++item)
-        cadt_certify(item, items, vertices.data(), links.data(), points.data(), all, known, begin, count, grain,
+        cadt_certify(item, items, vertices.data(), half_edges.data(), points.data(), all, known, begin, count, grain,
                      words.data(), row, 1);
     }
     Found found{};
@@ -106,7 +106,7 @@ TEST(ArrayMesh, LinkThatIsNotMutual) {
 }
 
 TEST(ArrayMesh, SidesWithOtherEnds) {
-  // two triangles change places, their links do not: each edge still has two sides that name each other
+  // two triangles change places, their half_edges do not: each edge still has two sides that name each other
   Arrays arrays(mesh);
   for (std::size_t k = 0; k < 3; ++k) std::swap(arrays.vertices[k], arrays.vertices[6 + k]);
   EXPECT_GT(arrays.look(points)[2], 0U);

@@ -32,7 +32,7 @@ TEST(OpenClFacts, EachMissingPropertyIsNamed) {
   }
 }
 
-// docs/decisions/0015-float-path.md
+// docs/decisions/0004-exact-integers-and-floats.md
 TEST(OpenClFacts, WithoutDoublesFloatsMustBeRoundedToNearest) {
   Facts facts;
   facts.fp64 = facts.denormals = facts.round_to_nearest = facts.float_denormals = false;

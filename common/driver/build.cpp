@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// From sorted points to a certified mesh: the decision, and the stages that it names.
+#include "common/driver/build.hpp"
+
+#include <utility>
+
+#include "common/driver/choose_strategy.hpp"
+#include "common/insertion/insertion.hpp"
+#include "common/stars/mesh_from_stars.hpp"
+
+namespace cadt {
+
+Mesh build(Context& ctx, SortedPoints points, const InputPoints& input) {
+  const BuildStrategy how = choose_strategy(traits_of(ctx.device), ctx.options, profile_of(points));
+  switch (how.method) {
+    case BuildStrategy::Method::stars:
+      return mesh_from_stars(ctx, std::move(points), input, how);
+    case BuildStrategy::Method::wrapping:
+      return wrap_or_insert(ctx, std::move(points), how);
+    case BuildStrategy::Method::insertion:
+      break;
+  }
+  return insert_incrementally(ctx, std::move(points));
+}
+
+}  // namespace cadt

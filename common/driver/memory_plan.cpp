@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/driver/memory_plan.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <string>
+
+namespace cadt {
+namespace {
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial results
+constexpr std::size_t fewest_points_batched = std::size_t{1} << 16;
+
+/// Words a point of the buffers that a call without new ones needs: locked triangles, points sorted and not, results,
+/// their numbers, and lists of a word or less.
+constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
+
+/// With the star stage besides: stars, lists, and what the residual vertices need.
+constexpr std::size_t kept_star_words[] = {7, 1, 1, 1, 1, 1, 1};
+
+/// The same where steps take parts of each other's buffers: locked triangles, results, numbers of triangles, input ids
+/// and what is as large. With the star stage, stars.
+constexpr std::size_t pooled_words[] = {16, 6, 6, 2, 1, 1, 1};
+
+/// Words a point of each buffer that reserve_buffers() asks for.
+std::vector<std::size_t> reserved_words(const Memory& memory, std::size_t n, bool stars) {
+  if (memory.pools(n * word)) {
+    std::vector<std::size_t> all(std::begin(pooled_words), std::end(pooled_words));
+    if (stars) all.push_back(kept_star_words[0]);
+    return all;
+  }
+  std::vector<std::size_t> all(std::begin(kept_words), std::end(kept_words));
+  if (stars) all.insert(all.end(), std::begin(kept_star_words), std::end(kept_star_words));
+  return all;
+}
+
+/// Largest buffers: locked triangles; or stars (allocate_stars of common/stars/local_stars.cpp), 25 bytes a point, some
+/// for each tile and 49,216 for all.
+constexpr std::size_t locked_bytes(std::size_t n) noexcept { return n * 16 * word; }
+constexpr std::size_t star_pool_bytes(std::size_t n) noexcept { return fixed + 26 * n; }
+
+void require_buffer(const Options& options, const DeviceInfo& device, std::size_t bytes) {
+  if (fits_buffers(options, device, bytes)) return;
+  throw OutOfMemory("this needs a buffer of " + std::to_string(bytes) + " bytes and the largest of '" + device.name +
+                        "' has " + std::to_string(device.largest_buffer_bytes) +
+                        ": use fewer points or a device with larger buffers",
+                    bytes, static_cast<std::size_t>(device.largest_buffer_bytes));
+}
+
+/// Of batched sets, the result left out.
+constexpr std::size_t bytes_batched(std::size_t points, std::size_t sets) { return fixed + 176 * points + 1300 * sets; }
+
+}  // namespace
+
+MemoryPlan plan_memory(const CallShape& call, bool stars, bool compact) noexcept {
+  const std::size_t n = call.points;
+  if (!stars) return {false, false, call.input_stays, fixed + n * (call.result_elsewhere ? 97 : 124), locked_bytes(n)};
+  const std::size_t each = compact ? (call.input_stays ? 71 : 83) : (call.input_stays ? 85 : 101);
+  return {true, compact, call.input_stays, 2 * fixed + n * each, star_pool_bytes(n)};
+}
+
+MemoryPlan choose_memory_plan(Memory& memory, const Options& options, const DeviceInfo& device, const CallShape& call,
+                              bool stars, const KnownSizes& known) {
+  const std::size_t n = call.points;
+  const MemoryPlan fast = plan_memory(call, stars, false), compact = plan_memory(call, stars, true);
+  require_buffer(options, device, fast.largest_buffer);
+  const bool bounded = options.max_memory != 0;
+  if (!stars) {
+    if (n > known.insertion || bounded) memory.require(fast.bytes);
+    return fast;
+  }
+  if (n <= known.fast_stars && !bounded) return is_compact(call) ? compact : fast;
+  if (!is_compact(call) && memory.allows(fast.bytes)) return fast;
+  if (n > known.compact_stars || bounded) memory.require(compact.bytes);
+  return compact;
+}
+
+std::size_t plan_batch(Memory& memory, const Options& options, const DeviceInfo& device,
+                       std::span<const std::size_t> offsets, std::size_t most_of_set, std::size_t results,
+                       const KnownSizes& known) {
+  const std::size_t n = offsets.back(), sets = offsets.size() - 1;
+  if (n <= known.batch && options.max_memory == 0) return most_points_batched;
+  std::size_t largest = 0;
+  for (std::size_t s = 0; s < sets; ++s) largest = std::max(largest, offsets[s + 1] - offsets[s]);
+  if (largest > most_of_set) {
+    const MemoryPlan alone = plan_memory({largest, true, false, sizeof(double)}, false, false);
+    require_buffer(options, device, alone.largest_buffer);
+    memory.require(results + alone.bytes);
+  }
+  std::size_t most = most_points_batched;
+  const auto bytes = [&] {
+    const std::size_t points = std::min(n, most);
+    return results + bytes_batched(points, std::min({sets, points, most_sets_batched}));
+  };
+  while (most > fewest_points_batched &&
+         !(memory.allows(bytes()) && fits_buffers(options, device, locked_bytes(std::min(n, most)))))
+    most /= 2;
+  memory.require(bytes());
+  return most;
+}
+
+bool fits_buffers(const Options& options, const DeviceInfo& device, std::size_t bytes) noexcept {
+  const std::uint64_t largest = device.largest_buffer_bytes;
+  return options.allocator != nullptr || largest == 0 || bytes <= largest;  // an allocator knows its own limits
+}
+
+std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
+  if (!memory.keeps()) return plan_memory({n, false, false, sizeof(double)}, false, false).bytes;
+  const std::vector<std::size_t> words = reserved_words(memory, n, stars);
+  const std::size_t small = memory.pools(n * word) ? 1 : 0;  // those that are too small for the pool
+  return 4 * fixed + n * word * std::accumulate(words.begin(), words.end(), small);
+}
+
+void reserve_buffers(Memory& memory, std::size_t n, bool stars) {
+  std::vector<Allocation> together;
+  // Sums have one more; what is larger may be all that fits the device's largest buffer.
+  for (const std::size_t words : reserved_words(memory, n, stars))
+    together.push_back(memory.allocate((n * words + (words <= 2 ? 1 : 0)) * word));
+}
+
+}  // namespace cadt

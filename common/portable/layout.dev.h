@@ -76,12 +76,11 @@ enum {
   CADT_AABB_FANOUT = 32, /* leaf nodes of an inner node */
   CADT_WRAP_PART = 4,    /* points that a lane adds to a leaf node at a time */
   CADT_WRAP_PARTS = CADT_AABB_LEAF / CADT_WRAP_PART,
-  CADT_WRAP_NEAR = 3,   /* leaf nodes that are searched for a first neighbour */
-  CADT_WRAP_NODES = 32, /* inner nodes that are compared with a disc at a time, */
-  CADT_WRAP_OPENED = 4, /* of these opened */
-  CADT_WRAP_WIDE = 8,   /* with more leaf nodes, the floating-point filter chooses before exact tests */
-  CADT_WRAP_DEGREE =
-      40, /* neighbours of a star at most, the ghost included: others would wait for a high-degree vertex */
+  CADT_WRAP_NEAR = 3,         /* leaf nodes that are searched for a first neighbour */
+  CADT_WRAP_NODES = 32,       /* inner nodes that are compared with a disc at a time, */
+  CADT_WRAP_OPENED = 4,       /* of these opened */
+  CADT_WRAP_WIDE = 8,         /* with more leaf nodes, the floating-point filter chooses before exact tests */
+  CADT_WRAP_DEGREE = 40,      /* neighbours of a star at most, the ghost included; more make a high-degree vertex */
   CADT_WRAP_DOUBTFUL = 3,     /* points found first that are tested for being neighbours */
   CADT_MOST_HIGH_DEGREE = 64, /* vertices without a star at most, */
   CADT_WRAP_EDGES = 256,      /* half-edges between two of them */

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernels' own text under relacy, which runs three threads step by step in random order and lets each load see any
 // value that C++ allows. CADT_CONTIGUOUS is set by the including file: 1 for the memory orders of CPUs, 0 for those of
-// GPUs, where fields are relaxed, fences order, and the owner reads its records again.
+// GPUs, where fields are relaxed, fences order, and the owner reads its triangles again.
 //
-// Claims, validation, changes, releases and hints are those of split.dev.h, flip.dev.h, lock.dev.h and locate.dev.h;
-// three threads split and flip in a mesh of eight vertices.
+// Locks, validation, splits, flips and walks are those of lock.dev.h, split.dev.h, flip.dev.h and locate.dev.h; three
+// threads split and flip in a mesh of eight vertices.
 #include "tests/robustness/models/protocol.hpp"
 
 #include <array>
@@ -88,8 +88,8 @@ constexpr std::size_t vertices = 8, threads = 3;
 
 // Only addresses: what is in the words the model knows, or `plain` while the mesh is made by one thread.
 struct Memory {
-  cadt_locked_triangle records[2 * vertices];
-  cadt_u32 hints[vertices];
+  cadt_locked_triangle locked[2 * vertices];
+  cadt_u32 vertex_to_triangle[vertices];
 };
 Memory plain;
 constexpr std::size_t count = sizeof(Memory) / sizeof(cadt_u32);
@@ -266,7 +266,7 @@ struct SplitsAndFlips : rl::test_suite<SplitsAndFlips, threads> {
                   "neighbours do not share an edge");
       }
     }
-    RL_ASSERT(live == 2 * (from_start + splits) - 2 && "records are lost");
+    RL_ASSERT(live == 2 * (from_start + splits) - 2 && "triangles are lost");
     cells = nullptr;
   }
 };

@@ -4,7 +4,7 @@
  * one vertex to another. That vertex then gets them back flip by flip, each of which makes the next edge illegal: a
  * flip cascade that no other thread can shorten. Here all triangles are tested at once for whether the vertex lies in
  * their circles, and those where it does, together with triangles of the vertex that border on them, become a fan
- * around it (Bowyer-Watson for a vertex that is already in the mesh; docs/algorithm.md). Connected parts of the region
+ * around it (Bowyer-Watson for a vertex that is already in the mesh; docs/insertion.md). Connected parts of the region
  * that the vertex does not see stay as they are.
  *
  * The kernels run one after the other, and no others besides: a plain store locks a triangle, and the lock marks it as

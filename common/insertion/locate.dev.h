@@ -13,7 +13,7 @@
  *                   .   .
  *                  center
  *
- * While threads work the hull need not be convex, but it stays star-shaped around the centre (docs/algorithm.md,
+ * While threads work the hull need not be convex, but it stays star-shaped around the centre (docs/insertion.md,
  * "Outside the hull"). So at every moment each point of the plane lies in exactly one real triangle or wedge, and
  * inserting it there is always right.
  */

@@ -22,7 +22,7 @@
  *     thread 2 needs  { 7, 12, 20 }           7 -> 12 -> 20
  *     thread 3 needs  { 12, 31 }                   12 -> 31
  *
- * (A fixed but unsorted order livelocks within a warp: docs/algorithm.md.)
+ * (A fixed but unsorted order livelocks within a warp: docs/insertion.md.)
  */
 #ifndef CADT_INSERTION_LOCK_H
 #define CADT_INSERTION_LOCK_H

@@ -17,7 +17,7 @@
  *
  * Vertices keep their slots in splits and flips. So a half-edge stays right where the edge it names does not change,
  * and the triangle that holds it need not be locked: a split 1->3 locks three triangles, a split 2->4 and a flip lock
- * four (docs/algorithm.md).
+ * four (docs/insertion.md).
  */
 #ifndef CADT_MESH_LOCKED_MESH_H
 #define CADT_MESH_LOCKED_MESH_H

@@ -3,7 +3,7 @@
  * Gift wrapping in single precision, checked as a whole: the star of one vertex p by a team. It wraps the points around
  * p; then exact predicates show for each triangle that no other point is in its circle, which mostly is so small that
  * all of its points are known. Stars with larger circles, and those that single precision gets wrong, are left to
- * cadt_wrap_stars, which decides each step exactly but takes over the proven triangles (docs/algorithm.md, "Gift
+ * cadt_wrap_stars, which decides each step exactly but takes over the proven triangles (docs/stars.md, "Gift
  * wrapping").
  */
 #ifndef CADT_STARS_WRAP_FAST_H

@@ -80,8 +80,9 @@ class Batch : public BackendTest {
   }
   /// Also a processor that does what a card does.
   static bool on_card() {
-    return GetParam().backend == Backend::cuda || std::getenv("CADT_OPENCL_AS_GPU") != nullptr ||
-           std::getenv("CADT_TEST_OPENCL_DEVICE") != nullptr;
+    const bool opencl = GetParam().backend == Backend::opencl && (std::getenv("CADT_OPENCL_AS_GPU") != nullptr ||
+                                                                  std::getenv("CADT_TEST_OPENCL_DEVICE") != nullptr);
+    return GetParam().backend == Backend::cuda || opencl;
   }
 };
 

@@ -34,13 +34,13 @@ const std::vector<Face> square = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1
 constexpr Word real = 5;
 
 struct Mesh {
-  std::vector<Face> vertices = square, links{square.size()};
+  std::vector<Face> vertices = square, half_edges{square.size()};
   Mesh() {
     std::map<std::pair<Word, Word>, Word> sides;
     for (Word t = 0; t < square.size(); ++t)
       for (Word k = 0; k < 3; ++k) sides[{square[t][(k + 1) % 3], square[t][(k + 2) % 3]}] = CADT_HALF_EDGE(t, k);
     for (Word t = 0; t < square.size(); ++t)
-      for (Word k = 0; k < 3; ++k) links[t][k] = sides.at({square[t][(k + 2) % 3], square[t][(k + 1) % 3]});
+      for (Word k = 0; k < 3; ++k) half_edges[t][k] = sides.at({square[t][(k + 2) % 3], square[t][(k + 1) % 3]});
   }
   /// From where to where edge k of a triangle leads.
   [[nodiscard]] std::pair<Word, Word> side(Word t, Word k) const {

@@ -114,7 +114,7 @@ class Perturbed : public BackendTest {
 TEST_P(Perturbed, RandomDelays) { run(Noise::uniform); }
 TEST_P(Perturbed, SlowItems) { run(Noise::slow_items); }
 TEST_P(Perturbed, SlowHolders) { run(Noise::slow_holders); }
-TEST_P(Perturbed, ClaimsThatFail) {
+TEST_P(Perturbed, FailingTryLocks) {
   run(Noise::failures);
   EXPECT_GT(lost_, 0U);
   EXPECT_GT(retries_, 0U);
@@ -169,9 +169,9 @@ CADT_ON(opencl, PerturbedRepeats, repeated_opencl_case);
 CADT_ON(cuda, PerturbedRepeats, repeated_cuda_case);
 
 // Ranges have owners without locks, and a border with them.
-class PerturbedRanges : public Perturbed {};
+class PerturbedPartitions : public Perturbed {};
 
-TEST_P(PerturbedRanges, EverySiteIsPassed) {
+TEST_P(PerturbedPartitions, EverySiteIsPassed) {
   const Points large = uniform_points(70000, 9), small = few_distinct(1500, 25);
   std::vector<std::uint64_t> passed(number_of_sites());
   const auto add = [&] {
@@ -184,7 +184,7 @@ TEST_P(PerturbedRanges, EverySiteIsPassed) {
   EXPECT_GE(passed.size(), 12U);
   for (std::size_t site = 0; site < passed.size(); ++site) EXPECT_GT(passed[site], 0U) << "site " << site;
 }
-CADT_ON(host, PerturbedRanges, main_host_case);
+CADT_ON(host, PerturbedPartitions, main_host_case);
 
 }  // namespace
 }  // namespace cadt::test

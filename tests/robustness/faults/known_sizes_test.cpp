@@ -132,7 +132,7 @@ TEST_P(KnownSizes, FailedReserveIsNotDone) {
 }
 
 /// What earlier calls have kept counts: a lower bound makes it go.
-TEST_P(KnownSizes, KeptMemoryIsBoundedToo) {
+TEST_P(KnownSizes, CachedMemoryIsBoundedToo) {
   const Known many(uniform_points(100'000)), few(uniform_points(1000, 2));
   constexpr std::size_t bound = 4'000'000;
   for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {

@@ -36,7 +36,7 @@ Names sorted(Names names) {
   return names;
 }
 
-class ToldProgress : public ResidentTest {
+class ReportedProgress : public ResidentTest {
  protected:
   [[nodiscard]] Options options(Strategy strategy) const {
     Options with = ResidentTest::options();
@@ -108,7 +108,7 @@ Names without(Names names, const std::string& one) {
   return names;
 }
 
-TEST_P(ToldProgress, Insertion) {
+TEST_P(ReportedProgress, Insertion) {
   const Points xy = uniform_points(20000, 7);
   const DevicePoints points = upload(xy);
   expect_told(
@@ -119,7 +119,7 @@ TEST_P(ToldProgress, Insertion) {
       insertion_phases);
 }
 
-TEST_P(ToldProgress, Stars) {
+TEST_P(ReportedProgress, Stars) {
   const Points xy = uniform_points(20000, 7);
   const DevicePoints points = upload(xy);
   Options bounded = options(Strategy::stars);
@@ -132,7 +132,7 @@ TEST_P(ToldProgress, Stars) {
 }
 
 /// Of few points all stars are wrapped, and there is nothing to join.
-TEST_P(ToldProgress, WrappedStars) {
+TEST_P(ReportedProgress, WrappedStars) {
   const Points xy = {0, 0, 1, 0, 0, 1, 3, 3};
   expect_told(options(Strategy::stars), [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); },
               {"sort 0", "sort 0.01", "stars 0.1", "stars 0.5", "output 0.9", "output 0.95", "output 1"},
@@ -140,7 +140,7 @@ TEST_P(ToldProgress, WrappedStars) {
 }
 
 /// Passes that are repeated tell nothing twice: here three find edges that could not be read.
-TEST_P(ToldProgress, RepeatedPasses) {
+TEST_P(ReportedProgress, RepeatedPasses) {
   using namespace device_text;
   const Points xy = uniform_points(20000, 7);
   const Buffer* counts = nullptr;
@@ -165,7 +165,7 @@ TEST_P(ToldProgress, RepeatedPasses) {
   expect_told(options(Strategy::locks), call, reports, with(insertion_phases, {"copy"}));
 }
 
-CADT_ON_MAIN_BACKENDS(ToldProgress);
+CADT_ON_MAIN_BACKENDS(ReportedProgress);
 
 }  // namespace
 }  // namespace cadt::test

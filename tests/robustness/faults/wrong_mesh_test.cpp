@@ -274,7 +274,7 @@ TEST_P(WrongMesh, ArraysWhoseBoundaryTurnsBack) {
   expect_right(triangulator, row);
 }
 
-TEST_P(WrongMesh, RecordsWithoutAnEdge) {
+TEST_P(WrongMesh, LockedTrianglesWithoutAnEdge) {
   Triangulator triangulator(options(Strategy::locks));
   const Points xy = uniform_points(300, 7);
   change_records(300, lose_an_edge);
@@ -284,7 +284,7 @@ TEST_P(WrongMesh, RecordsWithoutAnEdge) {
 }
 
 /// That is what the closing pass is for: it repairs.
-TEST_P(WrongMesh, RecordsWithAnIllegalEdge) {
+TEST_P(WrongMesh, LockedTrianglesWithAnIllegalEdge) {
   Triangulator triangulator(options(Strategy::locks));
   const Points xy = uniform_points(300, 7);
   change_records(300, flip_an_edge);
@@ -297,7 +297,7 @@ TEST_P(WrongMesh, RecordsWithAnIllegalEdge) {
   expect_right(triangulator, xy);
 }
 
-TEST_P(WrongMesh, RecordsWithALinkThatIsNotMutual) {
+TEST_P(WrongMesh, LockedTrianglesWithAHalfEdgeThatIsNotMutual) {
   Triangulator triangulator(options(Strategy::locks));
   const Points xy = uniform_points(100, 7);
   change_records(100, unlink_an_edge);
@@ -306,7 +306,7 @@ TEST_P(WrongMesh, RecordsWithALinkThatIsNotMutual) {
   expect_right(triangulator, xy);
 }
 
-TEST_P(WrongMesh, RecordsWhoseBoundaryTurnsBack) {
+TEST_P(WrongMesh, LockedTrianglesWhoseBoundaryTurnsBack) {
   Triangulator triangulator(options(Strategy::locks));
   change_records(5, turn_back);
   const std::string text = refused(triangulator, row);

@@ -115,7 +115,7 @@ TEST_F(FloatMesh, APowerOfTwoChangesNothing) {
     EXPECT_EQ(triangulate(FloatSpan(floats_of(scaled(xy, exponent))), float_options()).hash(), hash) << exponent;
 }
 
-TEST_F(FloatMesh, CrowdsAndLongBoxes) {
+TEST_F(FloatMesh, OverfullCellsAndLongBoxes) {
   Points crowd = skewed_points(6000);
   check(floats_of(crowd), "skewed");
   const Points again = crowd;

@@ -34,7 +34,7 @@ Points nearly_collinear(int n) {
   return xy;
 }
 
-TEST_P(Regression, LongRowsOfFlipsAreProgress) {
+TEST_P(Regression, LongFlipCascadesAreProgress) {
   for (const int n : {1000, 5000, 40000}) {
     const Points xy = row_and_two_hubs(n);
     const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());

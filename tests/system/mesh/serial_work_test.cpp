@@ -26,7 +26,7 @@ class SerialWork : public BackendTest {
   }
 };
 
-TEST_P(SerialWork, LeavesNothingToTheClosingPass) {
+TEST_P(SerialWork, LeavesNothingToTheLegalitySweep) {
   ASSERT_EQ(GetParam().threads, 1u);
   EXPECT_GT(run(uniform_points(5000)).splits, 4900u);
   EXPECT_GT(run(grid_points(60, 50)).edge_splits, 500u);  // points on edges, with four edges around them

@@ -232,11 +232,11 @@ TEST_P(ResidentMemory, PeakIsWithinWhatIsNeeded) {
 }
 
 /// Of back ends whose memory is kept by the library; CUDA has a pool (CudaCalls.TakeNoMoreThanReserved).
-using KeptMemory = ResidentMemory;
+using CachedMemory = ResidentMemory;
 
 /// After reserve() the first call asks for small buffers only, those after it for a few of other sizes, and from the
 /// second call of a size on for none.
-TEST_P(KeptMemory, ReservedMemoryIsEnough) {
+TEST_P(CachedMemory, ReservedMemoryIsEnough) {
   std::vector<Known> sets;
   for (const std::size_t n : {60000, 59999, 40000, 30000, 14000, 5000}) sets.emplace_back(uniform_points(n, n));
   for (const Order order : {Order::canonical, Order::fast}) {
@@ -266,7 +266,7 @@ TEST_P(KeptMemory, ReservedMemoryIsEnough) {
   }
 }
 
-TEST_P(KeptMemory, SecondCallTakesNothingLarge) {
+TEST_P(CachedMemory, SecondCallTakesNothingLarge) {
   for (const Points& xy : {set_of_all_kinds(), uniform_points(40000)}) {
     const DevicePoints points = upload(xy);
     Triangulator triangulator(options());
@@ -286,7 +286,7 @@ TEST_P(KeptMemory, SecondCallTakesNothingLarge) {
 
 /// What is kept for the next call is lent within a call: several calls take no more than one, 100 bytes a point with
 /// input and result, and 80 if the input are floats. (Up to two more are in buffers that are too small to be lent.)
-TEST_P(KeptMemory, SeveralCallsTakeLittle) {
+TEST_P(CachedMemory, SeveralCallsTakeLittle) {
   const Points xy = uniform_points(300'000);
   const std::vector<float> single(xy.begin(), xy.end());
   for (const Order order : {Order::canonical, Order::fast}) {
@@ -316,7 +316,7 @@ TEST_P(KeptMemory, SeveralCallsTakeLittle) {
 }
 
 /// reserve() asks for fewer buffers where they are lent, and they are enough.
-TEST_P(KeptMemory, ReservedMemoryIsLent) {
+TEST_P(CachedMemory, ReservedMemoryIsPooled) {
   constexpr std::size_t n = 70'000;
   const DevicePoints points = upload(uniform_points(n));
   for (const Strategy strategy : {Strategy::locks, Strategy::automatic}) {
@@ -338,7 +338,7 @@ TEST_P(KeptMemory, ReservedMemoryIsLent) {
 }
 
 /// With an allocator the memory is the caller's: nothing is kept.
-TEST_P(ResidentMemory, NothingOfTheAllocatorIsKept) {
+TEST_P(ResidentMemory, NothingOfTheAllocatorIsCached) {
   const Known known(uniform_points(20000));
   const auto allocator = counting();
   Options with = options();
@@ -505,8 +505,8 @@ TEST_P(ResidentMemory, RefusedWhenOpened) {
 }
 
 CADT_ON_MAIN_BACKENDS(ResidentMemory);
-CADT_ON(host, KeptMemory, main_host_case);
-CADT_ON(opencl, KeptMemory, main_opencl_case);
+CADT_ON(host, CachedMemory, main_host_case);
+CADT_ON(opencl, CachedMemory, main_opencl_case);
 
 }  // namespace
 }  // namespace cadt::test

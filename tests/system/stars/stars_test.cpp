@@ -245,7 +245,7 @@ TEST_P(Stars, Lines) {
   expect_same("axes", axis_cross(150));
 }
 
-TEST_P(Stars, CrowdedCells) {
+TEST_P(Stars, OverfullCells) {
   expect_same("two clusters", clusters_apart(6000, 1e6));
   expect_same("two clusters, far", clusters_apart(6000, 1e12));
   expect_same("two clusters, 1e12 apart", two_clusters(6000));

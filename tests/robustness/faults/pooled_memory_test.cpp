@@ -14,7 +14,7 @@ using Reals = std::span<const double>;
 
 constexpr std::size_t enough = 70'000;  // the smallest buffers that are borrowed have a word for each of 65,536
 
-class LentMemory : public ResidentTest {
+class PooledMemory : public ResidentTest {
  protected:
   void SetUp() override {
     ResidentTest::SetUp();
@@ -41,7 +41,7 @@ Points with_equal_ones() {
 }
 
 /// Sets of several kinds and sizes in turn, so that what is kept of one is lent to another.
-TEST_P(LentMemory, MeshesAndAccounts) {
+TEST_P(PooledMemory, MeshesAndAccounts) {
   std::vector<Known> sets;
   for (Points& xy : std::vector<Points>{with_equal_ones(), cluster_points(enough), grid_points(270, 260)})
     sets.emplace_back(std::move(xy));
@@ -83,7 +83,7 @@ TEST_P(LentMemory, MeshesAndAccounts) {
 
 /// A step of each kind fails here and there while buffers are lent: with floats, which save memory, some are asked for
 /// in each call.
-TEST_P(LentMemory, AfterFaults) {
+TEST_P(PooledMemory, AfterFaults) {
   const Points xy = cluster_points(enough);
   const std::vector<float> single(xy.begin(), xy.end());
   struct Case {
@@ -128,7 +128,7 @@ TEST_P(LentMemory, AfterFaults) {
 }
 
 /// Buffers that are lent are larger than what was asked for, but not larger than the device's largest.
-TEST_P(LentMemory, LargestBufferJustFits) {
+TEST_P(PooledMemory, LargestBufferJustFits) {
   const Points xy = uniform_points(enough);
   const auto expected = on_host(Reals(xy)).hash();
   faults->largest_buffer_bytes = 2 * enough * sizeof(device_text::cadt_locked_triangle);
@@ -140,7 +140,7 @@ TEST_P(LentMemory, LargestBufferJustFits) {
   }
 }
 
-CADT_ON_MAIN_BACKENDS(LentMemory);
+CADT_ON_MAIN_BACKENDS(PooledMemory);
 
 }  // namespace
 }  // namespace cadt::test

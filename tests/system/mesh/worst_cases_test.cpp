@@ -33,8 +33,8 @@ class WorstCases : public BackendTest {
   }
 };
 
-// A sweep over the points needs n^2 / 8 flips, 123,504 for a thousand (tests/unit/insertion/flip_cascades_test.cpp makes
-// them).
+// A sweep over the points needs n^2 / 8 flips, 123,504 for a thousand (tests/unit/insertion/flip_cascades_test.cpp
+// makes them).
 TEST_P(WorstCases, AxesInsideOut) {
   const Points xy = axis_cross(250);
   const ExpectedMesh expected = expected_mesh(xy);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers for the back ends that are not compiled in. The build defines CADT_..._ABSENT to the reason for each of them.
+// Stands in for the back ends that are not compiled in. The build defines CADT_..._ABSENT as the reason for each.
 #include "common/driver/backend.hpp"
 
 namespace cadt {

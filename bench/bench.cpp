@@ -15,7 +15,7 @@ namespace {
 
 constexpr double second = 1000.0;
 
-/// Who is measured, for the predictions.
+/// Key of a contestant, for the predictions.
 std::string key_of(const Contestant& who) { return fmt::format("{} {} {}", who.who, who.index, who.threads); }
 
 std::string kind_of(const Task& task) {
@@ -23,10 +23,10 @@ std::string kind_of(const Task& task) {
                      to_string(task.strategy), task.kernel_times);
 }
 
-/// Host memory for a run with its result, in bytes a point. Roughly, and rather too much: a process that the system
-/// kills for its memory takes the results along.
+/// Host memory of a run with its result, in bytes a point. A generous estimate: a process that the system kills for its
+/// memory loses the results too.
 std::size_t bytes_a_point(const Contestant& who) {
-  constexpr std::size_t result = 60;  // triangles and neighbours, and the hull in the making
+  constexpr std::size_t result = 60;  // triangles, neighbours, and the temporaries of the hull
   if (who.backend) return result + (who.gpu ? 0 : 130);
   if (who.who == "scipy") return 1200;
   if (who.who == "cupy") return 150;
@@ -175,7 +175,7 @@ Row Bench::measure(const Task& task, Triangulation* mesh) {
     row.skipped = reason.what();
   } catch (const std::exception& error) {
     row.skipped = fmt::format("failed: {}", error.what());
-    // A device that has failed once may fail from now on; opened anew it has a chance.
+    // A device that has failed once may fail again; opened anew it may recover.
     std::erase_if(opened_, [&](const auto& entry) { return std::get<0>(entry.first) == who.who; });
     used_.clear();
   }
@@ -240,7 +240,7 @@ void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& ro
 
   std::optional<Triangulation> result;
   std::vector<Statistics> statistics;
-  // The memory is given back even if a call throws: the next contestant may be on the same card.
+  // Releases the memory even if a call throws: the next contestant may use the same GPU.
   struct Release {
     Triangulator& of;
     ~Release() { of.release_memory(); }
@@ -281,7 +281,7 @@ void Bench::time_sequential(const Task& task, std::optional<double> predicted, R
 
 void Bench::time_peer(const Task& task, std::optional<double> predicted, Row& row) {
   const Plan& plan = settings_.plan;
-  // The program cannot tell beforehand what a call takes; the prediction can.
+  // The program cannot know in advance what a call takes; the prediction can.
   const double calls = predicted ? plan.budget() / *predicted : 1e9;
   const int runs = static_cast<int>(std::clamp(calls, 1.0, static_cast<double>(plan.runs)));
   const int warm_up = calls >= 2.0 ? plan.warm_up : 0;
@@ -295,7 +295,7 @@ void Bench::time_peer(const Task& task, std::optional<double> predicted, Row& ro
   all.milliseconds = result.milliseconds;
   set_times(row, all);
   if (result.timing != "device") return;
-  // Without the ways to the card and back this is not the time of a whole call.
+  // Without the transfers to and from the GPU this is not the time of a whole call.
   row.device_ms = std::exchange(row.median_ms, std::nullopt);
   row.min_ms.reset();
   row.max_ms.reset();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the experiments share: the contestants, the points, opened devices, limits, and how a row comes about.
+// Shared by the experiments: contestants, points, opened devices, limits, and how a row is measured.
 #pragma once
 
 #include "apps/cadt/progress.hpp"
@@ -41,9 +41,9 @@ struct Task {
   unsigned threshold = 3;  // R and epsilon of the paper's figures 9 and 10
   double epsilon = 1e-4;
   StatisticsDetail detail = StatisticsDetail::counters;
-  Strategy strategy = Strategy::locks;  ///< what is repeated here is the paper's method
+  Strategy strategy = Strategy::locks;  ///< the paper's method is measured
   bool kernel_times = false;
-  int runs = 0;  ///< 0: as the plan has it
+  int runs = 0;  ///< 0: as in the plan
   std::function<void(const Snapshot&)> watch;
 };
 
@@ -56,21 +56,22 @@ class Bench {
   [[nodiscard]] PointStore& points() noexcept { return points_; }
 
   [[nodiscard]] std::vector<const Contestant*> everybody() const;
-  /// The back ends of cadt that are there.
+  /// The available back ends of cadt.
   [[nodiscard]] std::vector<const Contestant*> cadt() const;
   /// Those of them that are devices: the host has no blocks.
   [[nodiscard]] std::vector<const Contestant*> cadt_devices() const;
-  /// Graphics cards if there are any, else all of them.
+  /// GPUs if there are any, else all of them.
   [[nodiscard]] std::vector<const Contestant*> cadt_on_cards() const;
-  /// The fastest of them: cuda, else a graphics card with opencl, else the host, else opencl; none: null.
+  /// The fastest of them: cuda, else a GPU with opencl, else the host, else opencl; null if there is none.
   [[nodiscard]] const Contestant* fastest() const;
-  /// Those who cannot take part, but for the programs that are not cadt: a row for each with the reason.
+  /// Adds a row with the reason for each contestant that cannot take part; `with_peers`: also for other programs.
   void report_missing(std::vector<Row>& rows, bool with_peers) const;
 
-  /// Times it. What goes wrong is in the row's `skipped`. \param mesh gets that of the last run; empty if there is none
+  /// Times a task. A failure is stored in the row's `skipped`. \param mesh receives the mesh of the last run; empty if
+  /// there is none
   Row measure(const Task& task, Triangulation* mesh = nullptr);
 
-  /// On the terminal's progress line: the name of the experiment.
+  /// Sets the name of the experiment on the progress line.
   void begin(std::string experiment) { experiment_ = std::move(experiment); }
   void end() noexcept { progress_.clear(); }
 
@@ -84,8 +85,8 @@ class Bench {
   [[nodiscard]] Repeats repeats(const Task& task, std::optional<double> predicted,
                                 const std::function<double()>& call) const;
   Triangulator& opened(const Task& task);
-  /// OpenCL compiles a kernel when it is first enqueued, and each mode has its own: a call on few of the points, so
-  /// that this is in no time and in no prediction.
+  /// OpenCL compiles a kernel when it is first enqueued, and each mode has kernels of its own: a call on a few of the
+  /// points, so that no time and no prediction includes this.
   void use_once(const Task& task, Triangulator& triangulator, std::span<const double> xy);
 
   Settings settings_;

@@ -8,9 +8,9 @@ namespace cadt::bench {
 
 struct ChildResult {
   std::string output;     ///< what it wrote to standard output
-  std::string errors;     ///< the end of what it wrote to standard error
+  std::string errors;     ///< the end of its standard error
   int status = -1;        ///< exit status, 128 + signal if a signal ended it
-  std::string failure;    ///< why there is no status of its own: not started, too slow, too much output
+  std::string failure;    ///< why there is no exit status: not started, too slow, too much output
   bool too_slow = false;  ///< killed at the timeout
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What cadt-bench can be asked to do. Each one declares its options and, when the command line names it, sets the work.
+// The subcommands of cadt-bench. Each declares its options and, when the command line names it, sets the work.
 #pragma once
 
 #include <CLI/CLI.hpp>

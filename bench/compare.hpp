@@ -25,14 +25,14 @@ struct Comparison {
   [[nodiscard]] double best() const { return seconds.front(); }
 };
 
-/// Names what is not there on standard error. \throws BackendUnavailable for a name that is none
+/// Reports missing contestants on standard error. \throws BackendUnavailable for an unknown name
 [[nodiscard]] std::vector<Fighter> find_fighters(const std::vector<std::string>& names, unsigned threads,
                                                  const std::string& device);
 /// One warm-up, then `repeat` runs, each on a fresh copy of the points that is made before the clock starts.
 [[nodiscard]] Comparison compare(const Fighter& fighter, const std::vector<double>& xy, int repeat);
 /// Empty if the canonical set of triangles equals CGAL's, else what differs.
 [[nodiscard]] std::string difference_from_cgal(const Fighter& fighter, const std::vector<double>& xy);
-/// Whether CGAL was there when this was built.
+/// Whether this was built with CGAL.
 [[nodiscard]] bool has_cgal() noexcept;
 
 /// A line for each: best and median time, ratio to CGAL on the same points (above 1: faster than CGAL), and ratio to

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Strategy::automatic costs beside the better of the two others, on point sets of cadt generate: all three take
-// turns in one process, on the same points on the device. A line for each set; the promise is a ratio of at most 1.10.
+// The cost of Strategy::automatic relative to the better of the two others, on point sets of cadt generate: all three
+// take turns in one process, on the same points on the device. One line a set; the ratio should be at most 1.10.
 #include <cadt/cadt.hpp>
 #include <cadt/io/generate.hpp>
 

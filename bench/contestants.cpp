@@ -32,7 +32,7 @@ Contestant of_device(const DeviceInfo& device) {
   return result;
 }
 
-/// The library's own choice: the first usable graphics card, else the first usable device.
+/// The library's own choice: the first usable GPU, else the first usable device.
 Contestant of_backend(Backend backend, const std::string& asked) {
   std::optional<DeviceInfo> chosen;
   std::string reason = "no such device";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is measured: the sequential baseline, other people's programs, and each back end of cadt.
+// The contestants: the sequential baseline, other programs, and each back end of cadt.
 #pragma once
 
 #include "bench/peers.hpp"
@@ -24,7 +24,7 @@ struct Contestant {
   [[nodiscard]] bool present() const { return missing.empty(); }
 };
 
-/// Filters; an empty one lets all pass.
+/// Filters; an empty one accepts all.
 struct Choice {
   std::vector<std::string> who, backends;
   std::string device;  ///< number or part of its name; does not apply to the host
@@ -33,7 +33,7 @@ struct Choice {
 /// The names that `who` may have, in the order of the tables.
 [[nodiscard]] const std::vector<std::string>& all_who();
 
-/// One of each kind, cadt's on the device that the library would take itself. Those that are not there have the reason.
+/// One contestant of each kind, those of cadt on the library's default device. Missing ones have the reason.
 [[nodiscard]] std::vector<Contestant> find_contestants(const Choice& choice, const std::vector<Peer>& peers);
 /// cadt on every usable device of every back end and platform.
 [[nodiscard]] std::vector<Contestant> every_device(const Choice& choice);

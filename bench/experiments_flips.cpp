@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stabilised flipping: what Algorithm 4 of the paper does to flips, time and mesh.
+// Stabilised flips: the effect of Algorithm 4 of the paper on flips, time and mesh.
 #include "bench/experiments.hpp"
 
 namespace cadt::bench {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels of a run against what the device's memory can do.
+// Bandwidth of the kernels of a run relative to that of the device's memory.
 #include "bench/bandwidth.hpp"
 #include "bench/experiments.hpp"
 #include "bench/kernel_bytes.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Experiments whose meshes are to be seen.
+// Experiments that show meshes.
 #include "bench/experiments.hpp"
 #include "bench/interrupt.hpp"
 #include "bench/output.hpp"
@@ -21,7 +21,7 @@ struct Step {
   std::vector<std::int32_t> triangles;
 };
 
-/// Steps of an earlier run that had more of them would stay.
+/// Otherwise steps of an earlier, longer run would stay.
 void clear_folder(const std::filesystem::path& folder) {
   std::error_code ignored;
   std::filesystem::remove_all(folder, ignored);
@@ -56,7 +56,7 @@ std::vector<Row> run_snapshots(Bench& bench) {
     rows.push_back(measured);
     return rows;
   }
-  // What the closing passes and the collection made of the last step.
+  // The result of the last step after the legality sweeps and the output.
   steps.push_back({*measured.points, {mesh.triangles().begin(), mesh.triangles().end()}});
 
   const std::filesystem::path folder = bench.settings().out / "snapshots";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Experiments that are nothing but measurements.
+// Experiments that only measure time.
 #include "bench/experiments.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace {
 
 using Contestants = std::vector<const Contestant*>;
 
-/// All on the same points, one after the other, so that their ratios are those of one time and place.
+/// Measures all contestants on the same points, one after the other, so that their ratios hold for one time and place.
 void measure_all(Bench& bench, std::vector<Row>& rows, const SetId& set, const Contestants& who) {
   for (const Contestant* one : who) {
     Task task;

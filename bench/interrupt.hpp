@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C. A measurement is of no use once it is interrupted, so the process ends at once, but leaves nothing half:
-// files that are being written get their names first, temporary ones are removed.
+// Ctrl-C. An interrupted measurement is useless, so the process ends at once, but leaves nothing incomplete: files that
+// are being written get their names first, temporary ones are removed.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace cadt::bench {
 
 void install_interrupt_handlers();
 
-/// For as long as it lives, the end of the process waits.
+/// Delays the end of the process during its lifetime.
 class Writing {
  public:
   Writing() noexcept;

@@ -7,8 +7,8 @@
 namespace cadt::bench {
 namespace {
 
-// A point has 16 bytes, a record 32, a star 24, a triangle of the mesh in arrays 24; keys, places, labels, ranks, hints
-// and flags have 4, marks 2.
+// Bytes: a point 16, a locked triangle 32, a star 24, a triangle of a mesh in arrays 24; keys, places, input ids,
+// ranks, vertex_to_triangle and flags 4 each, marks 2.
 constexpr KernelBytes table[] = {
     {"cadt_import_doubles", Unit::point, 16, 16, "points"},
     {"cadt_bounds", Unit::point, 16, 0, "points"},
@@ -18,20 +18,21 @@ constexpr KernelBytes table[] = {
     {"cadt_radix_count", Unit::pass, 4, 0, "keys"},
     {"cadt_radix_scatter", Unit::pass, 4, 8, "keys; keys and places"},
     {"cadt_radix_scatter", Unit::later_pass, 4, 0, "places"},
-    {"scan", Unit::record, 4, 4, "flags of triangles; ranks"},
+    {"scan", Unit::slot, 4, 4, "flags of triangles; ranks"},
     {"scan", Unit::starred, 12, 12, "tiles, owned triangles, unproven vertices"},
-    {"cadt_scan_sums", Unit::record, 4, 0, "flags of triangles"},
+    {"cadt_scan_sums", Unit::slot, 4, 0, "flags of triangles"},
     {"cadt_scan_sums", Unit::starred, 12, 0, "tiles, owned triangles, unproven vertices"},
-    {"cadt_scan_apply", Unit::record, 4, 4, "flags of triangles; ranks"},
+    {"cadt_scan_apply", Unit::slot, 4, 4, "flags of triangles; ranks"},
     {"cadt_scan_apply", Unit::starred, 12, 12, "tiles, owned triangles, unproven vertices"},
     {"cadt_flag_overfull", Unit::point, 4, 4, "keys; flags"},
     {"cadt_gather_points", Unit::point, 20, 16, "places and points; points in order"},
     {"cadt_sort_runs", Unit::point, 4, 0, "keys"},
     {"cadt_unique_flags", Unit::point, 4, 4, "keys; flags"},
     {"cadt_unique_pack", Unit::point, 4, 0, "ranks"},
-    {"cadt_unique_pack", Unit::distinct, 20, 20, "points and labels"},
-    {"cadt_insert", Unit::inserted, 48, 100, "the point and its triangle; the three in its place, a hint"},
-    {"cadt_legality_sweep", Unit::swept_record, 40, 0, "records, and their points: one for two of them"},
+    {"cadt_unique_pack", Unit::distinct, 20, 20, "points and input ids"},
+    {"cadt_insert", Unit::inserted, 48, 100,
+     "the point and its triangle; the three that replace it, vertex_to_triangle"},
+    {"cadt_legality_sweep", Unit::swept_slot, 40, 0, "locked triangles, and their points: one for two of them"},
     {"cadt_tile_flags", Unit::starred, 4, 4, "keys; flags"},
     {"cadt_tile_pack", Unit::starred, 4, 0, "ranks"},
     {"cadt_prove_stars", Unit::starred, 16, 4, "points; sizes"},
@@ -46,29 +47,29 @@ constexpr KernelBytes table[] = {
     {"cadt_pack_residual", Unit::starred, 4, 0, "ranks"},
     {"cadt_pack_residual", Unit::unproven, 16, 20, "points; points and places"},
     {"cadt_certify", Unit::starred, 64, 0, "two triangles and a point for each"},
-    {"cadt_write_arrays", Unit::starred, 4, 0, "labels"},
+    {"cadt_write_arrays", Unit::starred, 4, 0, "input ids"},
     {"cadt_write_arrays", Unit::starred, 48, 48, "two triangles for each"},
-    {"cadt_flag_triangles", Unit::record, 32, 4, "records; flags"},
-    {"cadt_write_ranked", Unit::record, 36, 0, "records and ranks"},
-    {"cadt_write_ranked", Unit::distinct, 4, 0, "labels"},
+    {"cadt_flag_triangles", Unit::slot, 32, 4, "locked triangles; flags"},
+    {"cadt_write_ranked", Unit::slot, 36, 0, "locked triangles and ranks"},
+    {"cadt_write_ranked", Unit::distinct, 4, 0, "input ids"},
     {"cadt_write_ranked", Unit::triangle, 0, 24, "vertices and neighbours"},
-    {"cadt_count_triangles", Unit::record, 32, 0, "records"},
+    {"cadt_count_triangles", Unit::slot, 32, 0, "locked triangles"},
     {"cadt_count_triangles", Unit::starred, 24, 0, "vertices of two triangles for each"},
-    {"cadt_count_triangles", Unit::distinct, 8, 4, "labels and buckets; buckets"},
-    {"cadt_bucket_triangles", Unit::record, 32, 0, "records"},
+    {"cadt_count_triangles", Unit::distinct, 8, 4, "input ids and buckets; buckets"},
+    {"cadt_bucket_triangles", Unit::slot, 32, 0, "locked triangles"},
     {"cadt_bucket_triangles", Unit::starred, 24, 0, "vertices of two triangles for each"},
-    {"cadt_bucket_triangles", Unit::distinct, 8, 4, "labels and buckets; buckets"},
+    {"cadt_bucket_triangles", Unit::distinct, 8, 4, "input ids and buckets; buckets"},
     {"cadt_bucket_triangles", Unit::triangle, 0, 8, "members"},
     {"cadt_sort_buckets", Unit::distinct, 4, 0, "buckets"},
     {"cadt_sort_buckets", Unit::triangle, 8, 0, "members"},
     {"cadt_number_triangles", Unit::triangle, 8, 4, "members; numbers"},
-    {"cadt_write_triangles", Unit::record, 4, 0, "numbers"},
-    {"cadt_write_triangles", Unit::distinct, 4, 0, "labels"},
-    {"cadt_write_triangles", Unit::triangle, 32, 24, "records; vertices and neighbours"},
+    {"cadt_write_triangles", Unit::slot, 4, 0, "numbers"},
+    {"cadt_write_triangles", Unit::distinct, 4, 0, "input ids"},
+    {"cadt_write_triangles", Unit::triangle, 32, 24, "locked triangles; vertices and neighbours"},
     {"cadt_boundary_edges", Unit::triangle, 12, 0, "neighbours"},
 };
 
-/// As choose_grid of common/points/spatial_sort.cpp has it where the box is about as wide as high.
+/// As choose_grid of common/points/key_grid.cpp, for a bounding box that is about as wide as high.
 std::uint64_t sort_passes(std::uint64_t points) noexcept {
   const int bits = std::clamp(static_cast<int>(std::bit_width(points)) + 4, 4, 32);
   return static_cast<std::uint64_t>((bits + 7) / 8);
@@ -89,9 +90,9 @@ std::uint64_t units(Unit unit, const Statistics& run, std::uint64_t triangles) n
       return stars ? run.distinct - run.proven_stars : 0;
     case Unit::starred:
       return stars ? run.distinct : 0;
-    case Unit::record:
-      return stars ? 0 : 2 * run.distinct;  // the star stage has a mesh in arrays
-    case Unit::swept_record:
+    case Unit::slot:
+      return stars ? 0 : 2 * run.distinct;  // meshes from stars are in arrays
+    case Unit::swept_slot:
       return 2 * (stars ? run.distinct - run.proven_stars : run.distinct) * run.legality_sweeps;
     case Unit::triangle:
       return triangles;

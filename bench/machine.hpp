@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the measurements were made on.
+// The machine of the measurements.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +16,11 @@ struct PeerInfo {
 };
 
 [[nodiscard]] std::string cpu_name();
-/// As the process may use them, not as the machine has them.
+/// As many as the process may use, not as the machine has.
 [[nodiscard]] unsigned cores();
 /// Bytes that the system says can be taken without swapping; the largest number if it does not say.
 [[nodiscard]] std::uint64_t memory_available();
-/// The first usable graphics card, else the processor.
+/// The first usable GPU, else the processor.
 [[nodiscard]] std::string default_machine_name();
 /// machine.json
 [[nodiscard]] std::string machine_json(const std::string& name, const std::vector<PeerInfo>& peers);

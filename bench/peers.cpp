@@ -28,7 +28,7 @@ std::string last_line(const std::string& text) {
   return last;
 }
 
-/// Why a child that did not answer properly did not.
+/// Why a child gave no proper answer.
 std::string what_happened(const ChildResult& child) {
   if (!child.failure.empty()) return child.failure;
   const std::string said = last_line(child.errors);
@@ -46,7 +46,7 @@ std::string text_of(const json& answer, const char* key) {
   return found != answer.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// What the peer said of itself. \param timed whether there must be times
+/// Parses the peer's answer. \param timed whether there must be times
 PeerResult answer_of(const Peer& peer, const std::vector<std::string>& arguments, double timeout, bool timed) {
   PeerResult result;
   result.name = peer.name;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Other people's triangulators, each a program of its own, so that what is not installed is missed by nobody and what
-// crashes takes nobody along.
+// Other triangulators, each in a process of its own: a missing one affects no other, and neither does a crash.
 //
 // A peer is called in two ways:
 //
@@ -9,10 +8,10 @@
 //
 // POINTS.f64 holds interleaved little-endian doubles. The peer prints one JSON object, and nothing else, on standard
 // output: {"name", "version"}, in the second case with "triangles", "warmups" (how many it made) and "milliseconds" (an
-// array, one for each timed run) or with "error". It ends with 0, or with 3 if it cannot be used here, e.g. for want of
-// a module. A time is that from points in memory, as the peer likes them best, to the finished triangulation in memory;
-// "timing": "device" says that both are in the memory of a graphics card. Once the limit is used up no run starts, but
-// for one timed one.
+// array, one for each timed run) or with "error". It ends with 0, or with 3 if it cannot be used here, e.g. because a
+// module is missing. A time is that from points in memory, in the peer's own layout, to the triangulation in memory;
+// "timing": "device" says that both are in GPU memory. Once the limit is used up no run starts, except for one timed
+// run.
 #pragma once
 
 #include <cstddef>

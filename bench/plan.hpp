@@ -10,16 +10,15 @@
 
 namespace cadt::bench {
 
-/// tiny: seconds, for the tests of the program. small: minutes on a few cores. full: the sizes of the paper, on a
-/// graphics card.
+/// tiny: seconds, for the tests of the program. small: minutes on a few cores. full: the sizes of the paper, on a GPU.
 enum class Scale { tiny, small, full };
 [[nodiscard]] std::string_view to_string(Scale scale) noexcept;
 
 struct Plan {
   int warm_up, runs;
   double limit_seconds;  ///< of one call: one that is predicted to take longer is left out
-  /// For the repetitions of a measurement, in milliseconds: a call that takes all of the limit is worth it, for a table
-  /// has to say something; its repetitions are not.
+  /// Time for the repetitions of a measurement, in milliseconds. One call may take all of the limit, for a table needs
+  /// a number; its repetitions may not.
   [[nodiscard]] double budget() const { return 1000.0 * std::max(3.0, 0.25 * limit_seconds); }
   std::vector<std::size_t> sizes;         ///< Table 3
   std::size_t one_thread_up_to;           ///< the host is also measured with one thread

@@ -20,7 +20,7 @@ struct SetId {
   friend bool operator==(const SetId&, const SetId&) = default;
 };
 
-/// Why a measurement cannot be; the row says it.
+/// Why a measurement is skipped; the row contains the reason.
 class Skip : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What NVIDIA's profiler counts in CUDA's kernels, where it is there.
+// Counters of CUDA kernels from NVIDIA's profiler, where it is installed.
 #pragma once
 
 #include <filesystem>
@@ -27,7 +27,7 @@ struct Profile {
 /// Reads what `ncu --csv --page raw --print-units base` wrote.
 [[nodiscard]] Profile read_profile(std::string_view text);
 
-/// Runs a command under ncu. Takes long: each kernel is run several times.
+/// Runs a command under ncu. Slow: each kernel is replayed several times.
 [[nodiscard]] Profile profile(const std::vector<std::string>& command, double timeout_seconds);
 
 }  // namespace cadt::bench

@@ -31,7 +31,7 @@ struct Column {
   std::function<Cell(const Row&)> get;
 };
 
-// Without counters only the sizes, the launches and the closing passes are known; zeros would pass for counts.
+// Without counters only sizes, launches and legality sweeps are known; zeros would look like counts.
 enum class Counted { always, in_detail };
 
 template <class Get>
@@ -131,7 +131,7 @@ const std::vector<Column>& columns() {
   return all;
 }
 
-/// Nanoseconds are more than a clock tells.
+/// Eight digits: nanoseconds are finer than a clock measures.
 std::string number(double value) { return fmt::format("{:.8g}", value); }
 
 struct CsvField {

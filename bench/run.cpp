@@ -85,7 +85,7 @@ fs::path data_folder(const std::string& asked) {
 std::vector<Peer> peers_for(const std::vector<std::string>& who) {
   static const std::vector<std::string> names = {"cgal", "scipy", "cupy"};
   const auto asked = [&](const std::string& name) { return std::ranges::find(who, name) != who.end(); };
-  // To ask them all takes seconds: Python's modules are large.
+  // Querying all of them takes seconds: Python's modules are large.
   if (!who.empty() && std::ranges::none_of(names, asked)) return {};
   return find_peers(fs::read_symlink("/proc/self/exe").parent_path());
 }
@@ -158,7 +158,7 @@ const char* const footer =
     "  cadt-bench --list\n"
     "      the experiments, each with the paper's table or figure\n\n"
     "  cadt-bench all --out build/evaluation/here\n"
-    "      all of them, on what this machine has; 'full' needs a graphics card and 128 GiB of memory\n\n"
+    "      all of them, on what this machine has; 'full' needs a GPU and 128 GiB of memory\n\n"
     "  cadt-bench sizes flips --out out --who cgal,host,cuda --time-limit 60 --runs 9\n"
     "      Table 3 and Fig. 9, 10, of three contestants, each call up to a minute\n\n"
     "  cadt-bench all --out out --keep\n"
@@ -184,7 +184,7 @@ void add_experiments(CLI::App& app, Action& action) {
       ->type_name("DIR");
   app.add_option("--scale", arguments->scale,
                  "small: minutes on a few cores; full: up to 134,217,728 points. Default: full if there is a usable "
-                 "graphics card, else small")
+                 "GPU, else small")
       ->type_name("small|full");
   app.add_option("--time-limit", arguments->limit,
                  "seconds of one call; what is predicted to take longer is left out (default: small 8, full 7)")

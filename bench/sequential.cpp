@@ -38,7 +38,7 @@ SequentialMesh sequential_delaunay(std::span<const double> xy) {
   constexpr std::int32_t narrow_bits = 240;
   const cadt_span bits = bits_of(xy);
   const bool narrow = bits.high - bits.low <= narrow_bits;
-  std::vector<std::uint32_t> labels = insertion_order(xy);
+  std::vector<std::uint32_t> input_ids = insertion_order(xy);
 
   // To multiples of 2^-240 below 1, in two steps since one factor may be out of range.
   const int exponent = narrow && bits.high > bits.low ? -bits.high : 0;
@@ -46,9 +46,9 @@ SequentialMesh sequential_delaunay(std::span<const double> xy) {
   std::vector<double> points(2 * n);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t axis = 0; axis < 2; ++axis)
-      points[2 * i + axis] = xy[2 * std::size_t{labels[i]} + axis] * scale * scale_again;
+      points[2 * i + axis] = xy[2 * std::size_t{input_ids[i]} + axis] * scale * scale_again;
   }
-  return narrow ? insert_narrow(points, labels) : insert_wide(points, labels);
+  return narrow ? insert_narrow(points, input_ids) : insert_wide(points, input_ids);
 }
 
 }  // namespace cadt::bench

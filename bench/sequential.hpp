@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sequential baseline: incremental insertion with Lawson's flips on one core, written for one core. No locks, no
-// rounds, no certifying pass; the predicates and the decision of ties are those of the library, so the set of triangles
-// is the same.
+// The sequential baseline: incremental insertion with Lawson flips, written for one core: no locks, no rounds, no
+// legality sweep. Predicates and symbolic perturbation are the library's, so the set of triangles is the same.
 #pragma once
 
 #include <array>

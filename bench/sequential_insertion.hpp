@@ -8,9 +8,9 @@
 
 namespace cadt::bench {
 
-/// Inserts the points in their order; `labels` are their indices in the result. Of equal points the lowest label
-/// stands. Narrow: \pre coordinates are multiples of 2^-240 below 1
-[[nodiscard]] SequentialMesh insert_narrow(std::span<const double> xy, std::span<std::uint32_t> labels);
-[[nodiscard]] SequentialMesh insert_wide(std::span<const double> xy, std::span<std::uint32_t> labels);
+/// Inserts the points in their order; `input_ids` are their input ids. Of equal points the lowest id is the vertex.
+/// \pre narrow: coordinates are multiples of 2^-240 below 1
+[[nodiscard]] SequentialMesh insert_narrow(std::span<const double> xy, std::span<std::uint32_t> input_ids);
+[[nodiscard]] SequentialMesh insert_wide(std::span<const double> xy, std::span<std::uint32_t> input_ids);
 
 }  // namespace cadt::bench

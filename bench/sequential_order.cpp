@@ -72,7 +72,7 @@ void sort_by_key(std::span<Keyed> elements, std::span<Keyed> spare) {
   std::copy(elements.begin(), elements.end(), spare.begin());
 }
 
-/// Sets the keys of the elements by their places in the elements' own box; false if the box has no size.
+/// Sets the keys of the elements by their places in their own bounding box; false if the box has no extent.
 bool set_keys(std::span<const double> xy, std::span<Keyed> elements) {
   // Halved, for the width of the box may exceed the largest double.
   const auto at = [&](Keyed element, std::size_t axis) { return 0.5 * xy[2 * std::size_t{point_of(element)} + axis]; };
@@ -96,10 +96,10 @@ bool set_keys(std::span<const double> xy, std::span<Keyed> elements) {
   return true;
 }
 
-/// Sorts along the curve. Whoever shares a cell with many others is sorted again in the box of that cell's points;
-/// their smallest and largest coordinates have different keys there, so this ends.
+/// Sorts along the curve. Points that share a cell with many others are sorted again in the bounding box of that cell's
+/// points; the extreme coordinates have different keys there, so this terminates.
 void sort_along_curve(std::span<const double> xy, std::span<Keyed> elements, std::span<Keyed> spare) {
-  constexpr std::size_t crowd = 16;
+  constexpr std::size_t overfull = 16;
   std::vector<std::span<Keyed>> waiting = {elements};
   while (!waiting.empty()) {
     const std::span<Keyed> range = waiting.back();
@@ -108,7 +108,7 @@ void sort_along_curve(std::span<const double> xy, std::span<Keyed> elements, std
     sort_by_key(range, spare.first(range.size()));
     for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end) {
       while (end < range.size() && key_of(range[end]) == key_of(range[begin])) ++end;
-      if (end - begin > crowd) waiting.push_back(range.subspan(begin, end - begin));
+      if (end - begin > overfull) waiting.push_back(range.subspan(begin, end - begin));
     }
   }
 }

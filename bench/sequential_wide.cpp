@@ -3,7 +3,7 @@
 #include "bench/sequential_insertion.ipp"
 
 namespace cadt::bench {
-SequentialMesh insert_wide(std::span<const double> xy, std::span<std::uint32_t> labels) {
-  return Insertion(xy, labels).run();
+SequentialMesh insert_wide(std::span<const double> xy, std::span<std::uint32_t> input_ids) {
+  return Insertion(xy, input_ids).run();
 }
 }  // namespace cadt::bench

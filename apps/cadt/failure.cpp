@@ -84,7 +84,7 @@ int report_known_exception() {
   } catch (const std::length_error&) {  // a container that no memory could hold
     return out_of_host_memory();
   } catch (const std::system_error& e) {
-    // Threads that cannot be started are a lack of memory or of process slots.
+    // A thread that cannot be started means a lack of memory or of process slots.
     if (e.code() == std::errc::resource_unavailable_try_again || e.code() == std::errc::not_enough_memory) {
       return out_of_host_memory();
     }

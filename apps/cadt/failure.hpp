@@ -33,7 +33,7 @@ inline constexpr std::string_view exit_codes_help =
     "    7  the mesh failed the verification\n"
     "  130  interrupted (SIGINT, SIGTERM or SIGHUP)\n";
 
-/// An error that the program itself finds, with its exit code.
+/// An error detected by the program, not the library, with its exit code.
 class Failure : public std::runtime_error {
  public:
   Failure(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

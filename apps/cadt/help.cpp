@@ -15,7 +15,7 @@ constexpr std::size_t width = 92;
 
 std::string entry(const std::string& name, std::string_view text) {
   std::string result = "  " + name;
-  // A long name has the line for itself.
+  // A long name gets a line of its own.
   result += result.size() + 2 > indent ? "\n" + std::string(indent, ' ') : std::string(indent - result.size(), ' ');
   std::size_t column = indent;
   while (!text.empty()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// request_stop() may not be called from a signal handler (it takes a lock that the interrupted thread may hold), so the
-// handler only writes a byte to a pipe, and a thread that waits at the other end does the rest.
+// request_stop() must not be called from a signal handler (it takes a lock that the interrupted thread may hold), so
+// the handler only writes a byte to a pipe; a thread that waits at the other end does the rest.
 #include "interrupt.hpp"
 
 #include "failure.hpp"
@@ -35,7 +35,7 @@ State& state() {
 
 extern "C" void on_signal(int) {
   const int saved = errno;
-  // From now on any of the signals has its default effect, whatever this process hangs in.
+  // From now on each of the signals has its default effect, whatever the process is blocked in.
   for (std::size_t i = 0; i < signals.size(); ++i) {
     if (listening[i]) std::signal(signals[i], SIG_DFL);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C. The first signal asks for a clean end, the second one ends the process at once.
+// Ctrl-C: the first signal asks for a clean end, the second one ends the process at once.
 #pragma once
 
 #include <cadt/errors.hpp>
@@ -8,14 +8,14 @@
 
 namespace cadt::cli {
 
-/// What a signal has to respect at the moment it comes.
+/// How the process reacts to a signal at the moment.
 enum class Phase {
-  free,         ///< nothing is on disk and nothing listens (reading, checking): end right away
+  free,         ///< nothing is on disk and nothing listens (reading, checking): end at once
   cooperative,  ///< the library listens to the stop token and throws Cancelled
-  writing       ///< a temporary file exists: let it get its name, then stop
+  writing       ///< a temporary file exists: rename it first, then stop
 };
 
-/// Starts to listen. A signal that the parent process set to be ignored (nohup, background jobs) stays ignored.
+/// Installs the handlers. A signal that the parent process ignores (nohup, background jobs) stays ignored.
 void install_interrupt_handlers();
 
 [[nodiscard]] std::stop_token interrupt_token();
@@ -23,7 +23,7 @@ void install_interrupt_handlers();
 /// Throws Cancelled if a signal came.
 void check_interrupt();
 
-/// The phase for as long as the object lives.
+/// Sets the phase during its lifetime.
 class InPhase {
  public:
   explicit InPhase(Phase phase);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program `cadt`: chooses the subcommand and turns whatever happens into an exit code.
+// The program `cadt`: selects the subcommand and turns every outcome into an exit code.
 #include "commands.hpp"
 #include "failure.hpp"
 #include "help.hpp"
@@ -30,7 +30,7 @@ const std::string examples =
     "      a chosen back end, statistics as JSON, and an exact check of the file (of any program)\n\n"
     "Each command has its own help: cadt triangulate --help\n\n";
 
-// The help of a command that is meant: a file name in its place is the usual slip.
+// Points to the right subcommand: a file name in its place is the usual mistake.
 void explain_first_word(const CLI::App& app, int argc, char** argv) {
   if (argc < 2) throw Failure(exit_usage, "a command is missing; see: cadt --help");
   const std::string word = argv[1];

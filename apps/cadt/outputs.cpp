@@ -116,7 +116,7 @@ void write_text(const std::string& path, const std::string& text) {
     print(text);
     return;
   }
-  // A link is followed, so that the file it points to gets the text and the link stays.
+  // A link is followed, so that the file it points to is replaced and the link stays.
   std::error_code code;
   const fs::path resolved = fs::weakly_canonical(path, code);
   const std::string target = code ? path : resolved.string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where results go. Everything that can be known to be wrong about an output is found before the work starts.
+// Output files. Everything that can be known to be wrong about an output is found before the work starts.
 #pragma once
 
 #include "interrupt.hpp"
@@ -16,16 +16,16 @@ struct Output {
 
 /// Pairs the paths of -o with the formats of -t: none (from the suffixes), one for all, or one each ("auto": from the
 /// suffix). Throws Failure (usage) for an unknown suffix or format, a missing -t for "-", one name given twice, or the
-/// name of `input`; io::FileError for a folder that is not there or cannot be written to.
+/// name of `input`; io::FileError for a folder that does not exist or is not writable.
 [[nodiscard]] std::vector<Output> plan_outputs(const std::vector<std::string>& paths,
                                                const std::vector<std::string>& formats,
                                                const std::vector<std::string>& known, const std::string& input);
 
-/// Throws io::FileError if `path` cannot become a file: its folder is missing or closed, or it is a folder itself.
+/// Throws io::FileError if `path` cannot become a file: its folder does not exist or is not writable, or it is a folder
+/// itself.
 void require_writable(const std::string& path);
 
-/// What a signal has to respect while `path` is written: a file gets its name before the process ends, a pipe may be
-/// full for ever.
+/// The phase while `path` is written: a file gets its name before the process ends, a pipe may block for ever.
 [[nodiscard]] Phase writing_phase(const std::string& path);
 
 /// Text to a file that appears only when complete; "-" is standard output. Throws io::FileError.

@@ -50,7 +50,7 @@ void ProgressLine::update(const Progress& progress) noexcept {
     std::string line = fmt::format("{:<10} {:3.0f} %", progress.phase, 100 * progress.fraction);
     if (seconds > 0 && done > 0) line += fmt::format("  {}", rate(done / seconds));
     draw(line);
-  } catch (...) {  // a line that is not drawn is no reason to stop
+  } catch (...) {  // a line that cannot be drawn is no reason to stop
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One line on the terminal that says how far the work is. Nothing at all when standard error is not a terminal.
+// A progress line on the terminal; nothing when standard error is not a terminal.
 #pragma once
 
 #include <cadt/triangulation.hpp>
@@ -18,9 +18,9 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// A step whose length is not known, e.g. "reading in.xy".
+  /// A step of unknown length, e.g. "reading in.xy".
   void step(std::string_view text);
-  /// Start of the triangulation of that many points.
+  /// Start of the triangulation of `points` points.
   void start(std::size_t points);
   /// At most ten lines a second are drawn. Never throws: the library calls it.
   void update(const Progress& progress) noexcept;

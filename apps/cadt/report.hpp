@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run did, as a summary, as a table and as JSON. docs/cli.md documents the keys: a change of one is a change of
-// the interface and needs a new `schema` number.
+// Report of a run: as a summary, as a table and as JSON. docs/cli.md documents the keys: changing one changes the
+// interface and requires a new `schema` number.
 #pragma once
 
 #include "outputs.hpp"
@@ -25,7 +25,7 @@ struct RunReport {
   std::string stabilize;  ///< off, defer, paper
   unsigned flip_threshold = 0;
   double epsilon = 0;
-  std::optional<std::size_t> differing;  ///< triangles that are none of the exact mesh; --stabilize paper only
+  std::optional<std::size_t> differing;  ///< triangles that are not in the exact mesh; --stabilize paper only
   std::vector<Output> outputs;
   double read_seconds = 0, triangulate_seconds = 0, verify_seconds = 0, write_seconds = 0;
 };

@@ -24,7 +24,7 @@ std::optional<std::pair<double, std::string>> number_and_unit(std::string_view t
   return std::pair(value, lower(unit));
 }
 
-// 2^53: beyond, doubles would round a count.
+// 2^53: doubles beyond would round a count.
 std::optional<std::uint64_t> whole(double value) {
   if (value > 9007199254740992.0) return std::nullopt;
   return static_cast<std::uint64_t>(std::llround(value));

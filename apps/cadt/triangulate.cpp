@@ -120,7 +120,7 @@ Triangulation triangulate_file(const io::PointSet& points, const std::string& na
   }
 }
 
-// How far a mesh of --stabilize paper is from the exact one.
+// Number of triangles in which a mesh of --stabilize paper differs from the exact one.
 std::size_t differing_triangles(const io::PointSet& points, const std::string& name, bool as_floats, Options options,
                                 const Triangulation& mesh) {
   options.stabilize = Stabilize::off;
@@ -295,16 +295,17 @@ void add_work_options(CLI::App& command, TriangulateOptions& o) {
                   "(K M G T and KiB ... count 1024, KB ... 1000)")
       ->type_name("SIZE");
   command
-      .add_option(
-          "--strategy", o.strategy,
-          "how the same mesh is made: locks (points are inserted in one shared mesh), stars (as many vertices as "
-          "can be proven without locks, the others with) or auto (default: what is faster on the device)")
+      .add_option("--strategy", o.strategy,
+                  "how the mesh is computed; the result is the same: locks (parallel insertion in one mesh), stars "
+                  "(local stars "
+                  "without locks, the residual vertices by insertion) or auto (default: the faster one)")
       ->type_name("HOW")
       ->check(CLI::IsMember({"auto", "locks", "stars"}).description(""));
   command
-      .add_option("--stabilize", o.stabilize,
-                  "what is done with edges that are flipped again and again: off (default), defer (left to the closing "
-                  "pass, the same mesh) or paper (flipped only for a gain: some edges stay illegal)")
+      .add_option(
+          "--stabilize", o.stabilize,
+          "edges that are flipped again and again: off (default, no limit), defer (left to the legality sweep, the "
+          "same mesh) or paper (flipped only if quality improves: some edges stay illegal)")
       ->type_name("MODE")
       ->check(CLI::IsMember({"off", "defer", "paper"}).description(""));
   command.add_option("--flip-threshold", o.flip_threshold, "flips of an edge before --stabilize applies (default: 3)")
@@ -312,8 +313,8 @@ void add_work_options(CLI::App& command, TriangulateOptions& o) {
       ->check(CLI::Range(0, 1000).description(""));
   command
       .add_option("--epsilon", o.epsilon,
-                  "gain that --stabilize paper asks for: degrees of the smallest angle, or relative incircle "
-                  "determinant (default: 1e-4)")
+                  "improvement that --stabilize paper requires: degrees of the smallest angle, or relative "
+                  "incircle determinant (default: 1e-4)")
       ->type_name("E")
       ->check(CLI::NonNegativeNumber.description(""));
   command.add_flag("--strict", o.strict,

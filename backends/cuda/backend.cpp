@@ -10,7 +10,7 @@
 namespace cadt {
 namespace {
 
-constexpr int least_capability = 75;  // oldest generation that the kernels are compiled for
+constexpr int least_capability = 75;  // oldest compute capability that the kernels are compiled for
 
 std::string version(int number) { return std::to_string(number / 1000) + "." + std::to_string(number % 1000 / 10); }
 
@@ -84,7 +84,7 @@ class CudaEntry final : public BackendEntry {
     const DeviceInfo info = describe(index, driver);
     if (!info.usable) throw BackendUnavailable("cuda", "'" + info.name + "': " + info.reason);
     auto device = std::make_unique<cuda::CudaDevice>(info, options);
-    // Once a context: its kernels and the device are the same each time.
+    // Once per context: its kernels and the device do not change.
     const std::lock_guard lock(mutex_);
     if (tested_.count(device->context()) == 0) {
       device->load_kernels();

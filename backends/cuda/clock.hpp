@@ -9,8 +9,8 @@
 
 namespace cadt::cuda {
 
-/// Times of kernels by events before and behind them in the stream. A kernel that the host launches into an empty
-/// stream begins some microseconds after the event, which count.
+/// Kernel times by events before and after them in the stream. A kernel launched into an empty stream begins some
+/// microseconds after the event; that gap is part of its time.
 class CudaClock final : public KernelClock {
  public:
   explicit CudaClock(std::shared_ptr<Stream> stream) noexcept : stream_(std::move(stream)) {}
@@ -31,8 +31,8 @@ class CudaClock final : public KernelClock {
   void check_call(cudaError_t code, const char* call) const { check(code, call, stream_->name()); }
 
   std::shared_ptr<Stream> stream_;
-  std::vector<cudaEvent_t> events_;  ///< kept for later runs
-  std::size_t pairs_ = 0;            ///< that are in use
+  std::vector<cudaEvent_t> events_;  ///< cached for later runs
+  std::size_t pairs_ = 0;            ///< pairs in use
 };
 
 }  // namespace cadt::cuda

@@ -11,8 +11,8 @@
 namespace cadt::cuda {
 namespace {
 
-/// The driver's functions that the runtime has no equal of. They are asked of the runtime, so that the program starts
-/// without a driver.
+/// Driver functions that have no equivalent in the runtime. They are obtained through the runtime, so that the program
+/// starts without a driver.
 struct Driver {
   CUresult (*get_current)(CUcontext*) = nullptr;
   CUresult (*push)(CUcontext) = nullptr;
@@ -35,7 +35,7 @@ struct Driver {
     void* address = nullptr;
     cudaDriverEntryPointQueryResult found{};
 #if CUDART_VERSION >= 12050
-    constexpr unsigned version = 12000;  // the functions above are the same since 4.0 or 9.2
+    constexpr unsigned version = 12000;  // the functions above have not changed since 4.0 or 9.2
     const cudaError_t code = cudaGetDriverEntryPointByVersion(name, &address, version, cudaEnableDefault, &found);
 #else
     const cudaError_t code = cudaGetDriverEntryPoint(name, &address, cudaEnableDefault, &found);
@@ -58,8 +58,8 @@ void check_driver(CUresult code, const char* call, const std::string& device) {
   if (code != CUDA_SUCCESS) throw DeviceError(call, static_cast<int>(code), device, "error of the CUDA driver");
 }
 
-/// The device's primary context, made by the runtime if there is none yet. In a thread of its own, since cudaSetDevice
-/// changes the current device of the caller's, which cannot be undone where no context was current.
+/// The device's primary context, created by the runtime if there is none yet. On a thread of its own, since
+/// cudaSetDevice changes the current device of the calling thread, which cannot be undone where no context was current.
 cudaError_t primary_context(int device, CUcontext& context) {
   cudaError_t code = cudaSuccess;
   std::thread([&] {
@@ -73,7 +73,7 @@ cudaError_t primary_context(int device, CUcontext& context) {
 
 void check(cudaError_t code, const char* call, const std::string& device) {
   if (code == cudaSuccess) return;
-  cudaGetLastError();  // the error has been taken note of: the next call starts clean
+  cudaGetLastError();  // clears the error: the next call starts clean
   throw DeviceError(call, static_cast<int>(code), device,
                     std::string(cudaGetErrorName(code)) + ", " + cudaGetErrorString(code));
 }
@@ -92,7 +92,7 @@ CUcontext context_of(cudaStream_t stream) {
   CUcontext context = nullptr;
   std::optional<ContextScope> scope;
   if (driver().get_current(&context) != CUDA_SUCCESS || context == nullptr) {
-    // A runtime that has not been used in this thread yet: its first use would make the primary context current.
+    // If the runtime has not been used on this thread yet, its first use would make the primary context current.
     int device = 0;
     if (const cudaError_t code = cudaGetDevice(&device); code != cudaSuccess) {
       ignore(code);
@@ -123,7 +123,7 @@ Stream::Stream(int device, std::string name, std::optional<void*> queue, std::sh
   } else {
     check(primary_context(device, context_), "cudaSetDevice", name_);
     const ContextScope scope(context_);
-    // Does not wait for the default stream, and the default stream does not wait for it.
+    // Synchronises with the default stream in neither direction.
     check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreateWithFlags", name_);
     own_ = true;
   }
@@ -137,7 +137,7 @@ Stream::Stream(int device, std::string name, std::optional<void*> queue, std::sh
     if (own_) ignore(cudaStreamDestroy(stream_));
     check(code, "cudaMemPoolCreate", name_);
   }
-  // Freed memory stays with the pool: phases and calls reuse each other's.
+  // Freed memory stays in the pool: phases and calls reuse it.
   std::uint64_t keep = std::numeric_limits<std::uint64_t>::max();
   ignore(cudaMemPoolSetAttribute(pool_, cudaMemPoolAttrReleaseThreshold, &keep));
 }
@@ -171,7 +171,7 @@ void Stream::deallocate(void* memory, std::size_t bytes) noexcept {
   if (allocator_ != nullptr) {
     allocator_->deallocate(memory, bytes, stream_);
   } else {
-    ignore(cudaFreeAsync(memory, stream_));  // in order behind the launches that use it
+    ignore(cudaFreeAsync(memory, stream_));  // stream-ordered, after the launches that use it
   }
 }
 

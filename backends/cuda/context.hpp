@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contexts, streams and pools: where the work of one open device goes.
+// Context, stream and memory pool of an open device.
 #pragma once
 
 #include <cuda.h>
@@ -16,11 +16,10 @@ namespace cadt::cuda {
 /// \throws DeviceError unless `code` is cudaSuccess
 void check(cudaError_t code, const char* call, const std::string& device);
 
-/// For calls whose failure changes nothing: the caller's next call shall not find it. An earlier error of the caller's
-/// own stays.
+/// For calls whose failure does not matter: clears their error, but keeps an earlier error of the caller.
 void ignore(cudaError_t code) noexcept;
 
-/// Makes a context current and the caller's one again at the end.
+/// Makes a context current, and restores the caller's at the end of the scope.
 class ContextScope {
  public:
   explicit ContextScope(CUcontext context) noexcept;
@@ -32,16 +31,16 @@ class ContextScope {
   bool pushed_;
 };
 
-/// Ordinal of the device that a stream belongs to; -1 if it has none. The default streams are those of the current
-/// context, or of the current device's primary one. Leaves no context current that was not.
+/// Ordinal of the device that a stream belongs to; -1 if there is none. The default streams are those of the current
+/// context, or of the current device's primary context. Makes no context current.
 [[nodiscard]] int device_of(cudaStream_t stream);
-/// Null if it has none.
+/// The context of a stream; null if it has none.
 [[nodiscard]] CUcontext context_of(cudaStream_t stream);
 
-/// A stream, its context, and where its memory comes from. Lives as long as the last buffer.
+/// A stream, its context, and the source of its memory. Lives as long as the last buffer.
 class Stream {
  public:
-  /// The caller's stream, or a new one in the primary context of the device. \throws DeviceError
+  /// The caller's stream, or a new one in the device's primary context. \throws DeviceError
   Stream(int device, std::string name, std::optional<void*> queue, std::shared_ptr<DeviceAllocator> allocator);
   ~Stream();
   Stream(const Stream&) = delete;
@@ -51,7 +50,7 @@ class Stream {
   [[nodiscard]] CUcontext context() const noexcept { return context_; }
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
-  /// All three expect the context to be current. \throws OutOfMemory, DeviceError
+  /// \pre the context is current. Holds for all three. \throws OutOfMemory, DeviceError
   [[nodiscard]] void* allocate(std::size_t bytes);
   void deallocate(void* memory, std::size_t bytes) noexcept;
   void wait() { check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize", name_); }

@@ -12,14 +12,14 @@
 namespace cadt::cuda {
 namespace {
 
-constexpr unsigned default_block = 128;  // several blocks an SM even for kernels with many registers
+constexpr unsigned default_block = 128;  // leaves several resident blocks an SM even for kernels with many registers
 constexpr unsigned largest_block = 1024;
 constexpr std::size_t most_parameters = 32;
 constexpr std::size_t staging_bytes = std::size_t{1} << 16;
 
 class CudaBuffer final : public Buffer {
  public:
-  /// `stream`: null for memory of the caller's.
+  /// `stream`: null for memory that the caller owns.
   CudaBuffer(std::shared_ptr<Stream> stream, void* data, std::size_t bytes) noexcept
       : Buffer(bytes), stream_(std::move(stream)), data_(data) {}
   ~CudaBuffer() override {
@@ -46,8 +46,8 @@ void check_range(const char* what, const Buffer& buffer, std::size_t offset, std
                         " exceeds a buffer of " + std::to_string(buffer.bytes()));
 }
 
-/// CUB takes an error that the caller has not fetched yet for its own. Errors belong to a thread, so then another one
-/// does the work; but not in the stream that belongs to the thread itself, where the error is dropped.
+/// CUB mistakes an error that the caller has not fetched yet for its own. Errors are kept per thread, so in that case
+/// another thread does the work; except in the per-thread default stream, where the error is cleared.
 template <class Work>
 cudaError_t without_earlier_error(const Stream& stream, const Work& work) {
   if (cudaPeekAtLastError() == cudaSuccess) return work();
@@ -95,7 +95,7 @@ std::unique_ptr<Buffer> CudaDevice::allocate(std::size_t bytes) {
 }
 
 std::unique_ptr<Buffer> CudaDevice::alias(const void* /*data*/, std::size_t /*bytes*/) {
-  return nullptr;  // host memory would be fetched over the bus again and again
+  return nullptr;  // a GPU would fetch host memory over the bus again and again
 }
 
 std::unique_ptr<Buffer> CudaDevice::wrap(void* pointer, std::size_t bytes) {
@@ -105,9 +105,9 @@ std::unique_ptr<Buffer> CudaDevice::wrap(void* pointer, std::size_t bytes) {
 void* CudaDevice::handle(const Buffer& buffer) const noexcept { return data_of(buffer); }
 
 void CudaDevice::reserve(std::size_t bytes) {
-  if (stream_->has_allocator()) return;  // whose memory is the caller's business
+  if (stream_->has_allocator()) return;  // the caller's allocator manages its memory itself
   const ContextScope scope(stream_->context());
-  // Some more, since the pool rounds sizes up and cannot use every gap.
+  // A little more, since the pool rounds sizes up and cannot use every gap.
   const std::size_t taken = bytes + bytes / 8 + (std::size_t{64} << 20);
   stream_->deallocate(stream_->allocate(taken), taken);
   stream_->wait();
@@ -137,7 +137,7 @@ void CudaDevice::read(const Buffer& from, std::size_t offset, void* to, std::siz
   check_range("a read", from, offset, bytes);
   if (bytes == 0) return;
   const ContextScope scope(stream_->context());
-  // Small results come through page-locked memory, which takes half of the time.
+  // Small results are read through page-locked memory, which halves their time.
   const bool small = bytes <= staging_bytes;
   check_call(
       cudaMemcpyAsync(small ? staging_ : to, data_of(from) + offset, bytes, cudaMemcpyDeviceToHost, stream_->get()),
@@ -154,7 +154,7 @@ void CudaDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::ui
   stream_->fill(data_of(to) + offset, word, bytes / sizeof word);
 }
 
-void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
+void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant variant,
                         std::uint32_t group) {
   if (items == 0) return;
   if (args.size() > most_parameters) throw InternalError("a kernel with too many parameters");
@@ -169,20 +169,20 @@ void CudaDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Ar
       addresses[i] = const_cast<void*>(args[i].value());
     }
   }
-  const auto variant = static_cast<std::size_t>(build), number = static_cast<std::size_t>(kernel);
-  const void* function = tables()[variant][number];
+  const auto table = static_cast<std::size_t>(variant), number = static_cast<std::size_t>(kernel);
+  const void* function = tables()[table][number];
   const unsigned wanted = group == 0 || block_size_asked_ ? block_size_ : group;
-  const unsigned block = std::min({wanted, items, largest_block_of(variant, number)});
+  const unsigned block = std::min({wanted, items, largest_block_of(table, number)});
   const unsigned blocks = (items - 1) / block + 1;
   check_call(cudaLaunchKernel(function, dim3(blocks), dim3(block), addresses.data(), 0, stream_->get()),
              kernel_names[static_cast<std::size_t>(kernel)]);
 }
 
-unsigned CudaDevice::largest_block_of(std::size_t build, std::size_t kernel) {
-  unsigned& known = largest_blocks_[build][kernel];
+unsigned CudaDevice::largest_block_of(std::size_t variant, std::size_t kernel) {
+  unsigned& known = largest_blocks_[variant][kernel];
   if (known == 0) {
-    cudaFuncAttributes attributes{};  // asking for them loads the kernel
-    check_call(cudaFuncGetAttributes(&attributes, tables()[build][kernel]), kernel_names[kernel]);
+    cudaFuncAttributes attributes{};  // querying them loads the kernel
+    check_call(cudaFuncGetAttributes(&attributes, tables()[variant][kernel]), kernel_names[kernel]);
     known = static_cast<unsigned>(attributes.maxThreadsPerBlock);
   }
   return known;
@@ -223,11 +223,10 @@ std::vector<double> CudaDevice::times() {
 
 void CudaDevice::load_kernels() {
   const ContextScope scope(stream_->context());
-  for (std::size_t build = 0; build < kernel_variants; ++build)
-    for (std::size_t i = 0; i < kernel_count; ++i) static_cast<void>(largest_block_of(build, i));
-  // The first launch of a kernel with a larger stack makes the
-  // driver enlarge the memory of all stacks, which waits for the context as well. With parameters of zeros these find
-  // no work.
+  for (std::size_t variant = 0; variant < kernel_variants; ++variant)
+    for (std::size_t i = 0; i < kernel_count; ++i) static_cast<void>(largest_block_of(variant, i));
+  // The first launch of a kernel with a larger stack makes the driver enlarge the local memory of the context, which
+  // synchronises the context as well. With parameters of zero these kernels find no work.
   std::uint64_t zero = 0;
   std::array<void*, most_parameters> parameters{};
   parameters.fill(&zero);
@@ -236,7 +235,7 @@ void CudaDevice::load_kernels() {
       check_call(cudaLaunchKernel(table[static_cast<std::size_t>(kernel)], dim3(1), dim3(1), parameters.data(), 0,
                                   stream_->get()),
                  kernel_names[static_cast<std::size_t>(kernel)]);
-  // CUB's cannot be named, so they run: it has kernels of their own for few keys and for many.
+  // CUB's kernels have no names to query, so they are run: it has different kernels for few keys and for many.
   for (const std::size_t count : {std::size_t{1} << 8, std::size_t{1} << 17}) {
     const auto keys = allocate(4 * count), values = allocate(4 * count);
     const auto other_keys = allocate(4 * count), other_values = allocate(4 * count);
@@ -259,7 +258,7 @@ std::optional<double> CudaDevice::occupancy(unsigned work_group_size) {
   check_call(cudaGetDevice(&device), "cudaGetDevice");
   check_call(cudaDeviceGetAttribute(&most, cudaDevAttrMaxThreadsPerMultiProcessor, device), "cudaDeviceGetAttribute");
   check_call(cudaDeviceGetAttribute(&warp, cudaDevAttrWarpSize, device), "cudaDeviceGetAttribute");
-  const int warps = (static_cast<int>(work_group_size) - 1) / warp + 1;  // of a block: the last may not be full
+  const int warps = (static_cast<int>(work_group_size) - 1) / warp + 1;  // warps a block; the last may not be full
   return static_cast<double>(blocks * warps) / (static_cast<double>(most) / warp);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A CUDA device: buffers, copies, launches, and the primitives of the toolkit.
+// A CUDA device: buffers, copies, launches, and CUB's primitives.
 #pragma once
 
 #include <memory>
@@ -32,7 +32,7 @@ class CudaDevice final : public Device, private Primitives {
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
   using Device::launch;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant variant,
               std::uint32_t group) override;
   void finish() override;
   [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }
@@ -42,8 +42,7 @@ class CudaDevice final : public Device, private Primitives {
   [[nodiscard]] std::optional<double> occupancy(unsigned work_group_size) override;
 
   [[nodiscard]] CUcontext context() const noexcept { return stream_->context(); }
-  /// Does what is done at first use, so that no later launch has to: it may wait for everything that runs in the
-  /// context.
+  /// Does the work of first use, so that no later launch has to: that may synchronise the context.
   void load_kernels();
 
  private:
@@ -53,15 +52,15 @@ class CudaDevice final : public Device, private Primitives {
                           std::size_t count, unsigned bits, bool places) override;
   [[nodiscard]] std::size_t scan_scratch(std::size_t count) override;
   void scan(Buffer& scratch, Buffer& data, std::size_t count) override;
-  /// Largest block that a kernel starts with. \pre the context is current
-  [[nodiscard]] unsigned largest_block_of(std::size_t build, std::size_t kernel);
+  /// Largest block size that a kernel can be launched with. \pre the context is current
+  [[nodiscard]] unsigned largest_block_of(std::size_t variant, std::size_t kernel);
   void check_call(cudaError_t code, const char* call) const { check(code, call, info_.name); }
 
   DeviceInfo info_;
   unsigned block_size_;
   bool block_size_asked_;
   std::shared_ptr<Stream> stream_;
-  std::array<std::array<unsigned, kernel_count>, kernel_variants> largest_blocks_{};  ///< 0: not asked for yet
+  std::array<std::array<unsigned, kernel_count>, kernel_variants> largest_blocks_{};  ///< 0: not queried yet
   std::vector<cudaEvent_t> events_;  ///< of this call and earlier ones; the first `marks_` are in use
   std::size_t marks_ = 0;
   void* staging_ = nullptr;  ///< page-locked host memory for small reads

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host as a device: the kernels of common/device on threads of this process.
+// The host as a device: the device text compiled as C++, on threads of this process.
 #include "common/driver/backend.hpp"
 
 #include <cadt/triangulator.hpp>
@@ -26,16 +26,15 @@
 namespace cadt::host {
 namespace {
 
-// From this size on memory comes straight from the system: in huge pages, which spare page faults and address
-// translations (the mesh is read in no regular order), and zeroed by the system at first touch, by the thread that
-// touches it.
+// From this size on, memory comes straight from the system: in huge pages, which save page faults and TLB misses (the
+// mesh is accessed irregularly), and zeroed at first touch by the thread that touches it.
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 
 class HostBuffer final : public Buffer {
  public:
   explicit HostBuffer(std::size_t bytes) : Buffer(bytes) {
     if (bytes >= huge_page) {
-      // One page more than needed, so that a huge page can begin at the data.
+      // One page more than needed, so that the data can begin at a huge page.
       mapped_bytes_ = (bytes + 2 * huge_page - 1) / huge_page * huge_page;
       void* mapped = ::mmap(nullptr, mapped_bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
       if (mapped == MAP_FAILED) throw OutOfMemory("not enough host memory: use fewer points", bytes, 0);
@@ -172,10 +171,10 @@ class HostDevice final : public Device {
     }
   }
   using Device::launch;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant variant,
               std::uint32_t /*group*/) override {
     const std::array tables = {&narrow_kernels, &wide_kernels, &timed_kernels};  // in the order of KernelVariant
-    pool_.run((*tables[static_cast<std::size_t>(build)])[static_cast<std::size_t>(kernel)], items, args.data());
+    pool_.run((*tables[static_cast<std::size_t>(variant)])[static_cast<std::size_t>(kernel)], items, args.data());
   }
   void finish() override {}
   [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }

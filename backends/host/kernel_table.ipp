@@ -16,7 +16,7 @@
 namespace {
 
 #if defined(CADT_CHECKED)
-// A store to a record is right only by its owner or before it is published (common/mesh/locked_mesh.dev.h).
+// Only the owner of a triangle may store to it, unless it is not published yet (common/mesh/locked_mesh.dev.h).
 inline void cadt_assert_owned([[maybe_unused]] std::uint32_t owned) { assert(owned != 0); }
 #endif
 

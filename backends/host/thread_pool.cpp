@@ -3,7 +3,7 @@
 
 namespace cadt::host {
 
-ThreadPool::ThreadPool(unsigned threads, bool together) : shares_(threads), together_(together) {
+ThreadPool::ThreadPool(unsigned threads, bool interleaved) : shares_(threads), interleaved_(interleaved) {
   for (std::size_t i = 1; i < threads; ++i)
     workers_.emplace_back([this, i](const std::stop_token& stop) { serve(i, stop); });
 }
@@ -42,12 +42,12 @@ void ThreadPool::run(KernelFunction kernel, std::uint32_t items, const Arg* args
   kernel_ = kernel;
   args_ = args;
   items_ = items;
-  const std::size_t shares = together_ ? 1 : shares_.size();
+  const std::size_t shares = interleaved_ ? 1 : shares_.size();
   for (std::size_t i = 0; i < shares; ++i) {
     shares_[i].next.store(std::uint64_t{items} * i / shares, std::memory_order_relaxed);
     shares_[i].end = std::uint64_t{items} * (i + 1) / shares;
   }
-  if (workers_.empty() || items < 2) {  // waking the others would take longer
+  if (workers_.empty() || items < 2) {  // waking the workers would take longer
     work(0);
     return;
   }
@@ -58,7 +58,8 @@ void ThreadPool::run(KernelFunction kernel, std::uint32_t items, const Arg* args
   }
   start_.notify_all();
   work(0);
-  // No item is left. Who has not come by now is not waited for: on a busy machine that can be a time slice a launch.
+  // No item is left. Workers that have not joined by now are not waited for: on a busy machine that can cost a time
+  // slice a launch.
   std::unique_lock lock(mutex_);
   open_ = false;
   done_.wait(lock, [&] { return active_ == 0; });

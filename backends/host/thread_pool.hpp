@@ -12,35 +12,37 @@
 
 namespace cadt::host {
 
-/// A fixed number of threads, the caller among them, that share the work-items of one launch after another. Each thread
-/// has a contiguous share, so threads work far apart in the mesh and seldom meet; who is done helps the others.
+/// A fixed number of threads, among them the caller's, that share the work-items of one launch after another. Each
+/// thread has a contiguous share, so threads work far apart in the mesh and rarely conflict; a thread that has finished
+/// its share helps the others. One launch at a time.
 class ThreadPool {
  public:
-  /// `together`: no shares, all threads take the next item: they work side by side and meet often.
-  ThreadPool(unsigned threads, bool together);
+  /// `interleaved`: no shares; each thread takes the next item, so that threads work side by side and conflict often
+  /// (for tests).
+  ThreadPool(unsigned threads, bool interleaved);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
   [[nodiscard]] unsigned threads() const noexcept { return static_cast<unsigned>(workers_.size()) + 1; }
 
-  /// Runs items 0 to items - 1, each by one thread, in no order (in order with one thread). Returns when all are done.
+  /// Runs items 0 to items - 1, each on one thread, in no order (ascending with one thread). Returns when all are done.
   void run(KernelFunction kernel, std::uint32_t items, const Arg* args);
 
  private:
   void work(std::size_t self) noexcept;
   void serve(std::size_t self, const std::stop_token& stop) noexcept;
 
-  // The launch at hand. Written by run() while no worker is active.
+  // The current launch. run() writes it while no worker is active.
   KernelFunction kernel_ = nullptr;
   const Arg* args_ = nullptr;
   std::uint32_t items_ = 0;
   struct alignas(64) Share {
-    std::atomic<std::uint64_t> next{0};  // wider than an item: each thread overshoots by one
+    std::atomic<std::uint64_t> next{0};  // wider than an item number: each thread overshoots by one
     std::uint64_t end = 0;
   };
   std::vector<Share> shares_;
-  bool together_;
+  bool interleaved_;
 
   std::mutex mutex_;
   std::condition_variable_any start_;
@@ -48,7 +50,7 @@ class ThreadPool {
   std::uint64_t launch_ = 0;
   bool open_ = false;                  ///< whether workers may still join the launch
   unsigned active_ = 0;                ///< workers that have joined it and are not done
-  std::vector<std::jthread> workers_;  // last: joins before the rest goes
+  std::vector<std::jthread> workers_;  // declared last: joined before the other members are destroyed
 };
 
 }  // namespace cadt::host

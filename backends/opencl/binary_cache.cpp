@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The number is the version of the layout below.
+// The digit is the version of the layout below.
 constexpr std::array<char, 8> magic = {'c', 'a', 'd', 't', 'c', 'l', 'b', '1'};
 // A length field beyond this is damage, not a program.
 constexpr std::uint64_t largest_binary = std::uint64_t{1} << 30;
@@ -88,7 +88,8 @@ Digest digest_of(std::span<const unsigned char> bytes) {
 fs::path cache_directory() {
   if (const char* own = std::getenv("CADT_CACHE_DIR")) return own;
   const char* xdg = std::getenv("XDG_CACHE_HOME");
-  if (xdg != nullptr && *xdg == '/') return fs::path(xdg) / "cadt";  // relative ones count as unset, says XDG
+  if (xdg != nullptr && *xdg == '/')
+    return fs::path(xdg) / "cadt";  // relative paths are ignored (XDG base directory specification)
   const char* home = std::getenv("HOME");
   if (home != nullptr && *home != '\0') return fs::path(home) / ".cache" / "cadt";
   return {};
@@ -116,7 +117,7 @@ bool store_binary(const fs::path& directory, Digest key, std::span<const unsigne
   if (directory.empty() || binary.empty() || binary.size() > largest_binary) return false;
   std::error_code error;
   fs::create_directories(directory, error);
-  // In the same directory, since a rename is atomic only within a file system; under a name of our own, since several
+  // In the same directory, since a rename is atomic only within a file system; under a unique name, since several
   // processes may store the same program at once.
   std::random_device random;
   const fs::path target = cache_file(directory, key);

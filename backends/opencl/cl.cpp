@@ -6,7 +6,7 @@
 namespace cadt::opencl {
 namespace {
 
-// CL_PLATFORM_NOT_FOUND_KHR is in the headers of the loader only, the last one in NVIDIA's documentation only.
+// CL_PLATFORM_NOT_FOUND_KHR is only in the headers of the loader, the last code only in NVIDIA's documentation.
 constexpr int platform_not_found = -1001;
 constexpr int nvidia_illegal_access = -9999;
 

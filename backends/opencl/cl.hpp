@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Khronos C++ bindings, configured once, and what their exceptions become.
+// The Khronos C++ bindings, configured in one place, and the translation of their exceptions.
 #pragma once
 
 #include "backends/opencl/loader.hpp"
 
 #define CL_HPP_TARGET_OPENCL_VERSION 300
-// We need 1.2, but with that minimum the bindings of 2022 and 2023 (v2023.02.06 among them) lack a function of their
-// own.
+// cadt needs 1.2, but with that minimum the bindings of 2022 and 2023 (v2023.02.06 among them) lack a function that
+// they use.
 #define CL_HPP_MINIMUM_OPENCL_VERSION 110
 #define CL_HPP_ENABLE_EXCEPTIONS
 #include <CL/opencl.hpp>
@@ -14,10 +14,11 @@
 
 namespace cadt::opencl {
 
-/// "CL_OUT_OF_RESOURCES" etc.; "unknown code" if it is none of OpenCL's.
+/// "CL_OUT_OF_RESOURCES" etc.; "unknown code" for codes that OpenCL does not define.
 [[nodiscard]] const char* code_name(int code) noexcept;
 
-/// The context is of no use after these: an invalid access or a watchdog took it, and all later calls fail too.
+/// The context is unusable after these codes: an invalid access or a watchdog has destroyed it, and all later calls
+/// fail too.
 [[nodiscard]] bool is_fatal(int code) noexcept;
 
 /// \throws DeviceError with the call that failed, the code and its name

@@ -9,11 +9,11 @@
 
 namespace cadt::opencl {
 
-/// Times of kernels by the events of their launches: waiting between them is not in it.
+/// Kernel times by the events of their launches; gaps between launches do not count.
 class ClClock final : public KernelClock {
  public:
   explicit ClClock(std::string device) : device_(std::move(device)) {}
-  /// For the launch that comes now; null outside of begin and end.
+  /// Event for the next launch; null outside of begin and end.
   [[nodiscard]] cl::Event* next() { return running_ ? &current_.emplace_back() : nullptr; }
 
   void begin() override {
@@ -35,7 +35,7 @@ class ClClock final : public KernelClock {
  private:
   std::string device_;
   std::vector<cl::Event> current_;            ///< launches since begin
-  std::vector<std::vector<cl::Event>> done_;  ///< a primitive has several
+  std::vector<std::vector<cl::Event>> done_;  ///< a primitive has several launches
   bool running_ = false;
 };
 

@@ -29,15 +29,15 @@ AtomicsChoice choice_of(const OpenRequest& request) {
 
 using Key = std::tuple<int, std::string, std::string, AtomicsChoice>;
 
-// A map entry of its own lock: opening one device must not wait for the compiler of another.
+// An entry of the map with a lock of its own: opening one device must not wait for the compiler of another.
 struct Slot {
   std::mutex mutex;
   std::shared_ptr<SharedContext> context;
 };
 
 std::shared_ptr<Slot> slot_of(const OpenRequest& request) {
-  // Never destroyed, on purpose: at exit a driver may have taken itself down before our static destructors run, and
-  // releasing a context then crashes in some of them. The system reclaims everything anyway.
+  // Never destroyed, on purpose: at exit a driver may have shut down before the static destructors run, and releasing a
+  // context then crashes in some of them. The system reclaims everything anyway.
   static auto* const mutex = new std::mutex;
   static auto* const slots = new std::map<Key, std::shared_ptr<Slot>>;
   const std::lock_guard lock(*mutex);
@@ -57,7 +57,7 @@ std::shared_ptr<SharedContext> context_of_queue(const OpenRequest& request) {
     throw BackendUnavailable("opencl", std::string("Options::queue is no cl_command_queue: ") + code_name(error.err()));
   }
   const std::lock_guard lock(*mutex);
-  // The pointer names this context as long as the entry lives, for the entry holds the context.
+  // The pointer identifies this context as long as the entry lives, for the entry holds the context.
   auto& entry = (*contexts)[{context, request.index}];
   std::shared_ptr<SharedContext> shared = entry.lock();
   if (shared == nullptr || shared->lost) entry = shared = std::make_shared<SharedContext>(request);
@@ -83,13 +83,14 @@ SharedContext::SharedContext(const OpenRequest& request)
   device_.info.atomics = atomics_.text;
 }
 
-cl::Program SharedContext::program(KernelVariant build, bool* from_cache) {
-  if (!device_.facts.fp64 && build == KernelVariant::wide) build = KernelVariant::narrow;  // that one is wide already
+cl::Program SharedContext::program(KernelVariant variant, bool* from_cache) {
+  if (!device_.facts.fp64 && variant == KernelVariant::wide)
+    variant = KernelVariant::narrow;  // the float variant takes any exponent already
   const std::lock_guard lock(build_mutex_);
-  auto& slot = programs_[static_cast<std::size_t>(build)];
+  auto& slot = programs_[static_cast<std::size_t>(variant)];
   if (!slot)
-    slot =
-        build_program(context_, device_, source_, build_options(device_, atomics_, build, extra_options_), from_cache);
+    slot = build_program(context_, device_, source_, build_options(device_, atomics_, variant, extra_options_),
+                         from_cache);
   return *slot;
 }
 
@@ -110,7 +111,7 @@ int device_of(void* queue) {
     for (std::size_t i = 0; i < found.devices.size(); ++i)
       if (found.devices[i].device() == wanted()) return static_cast<int>(i);
   } catch (const cl::Error&) {
-    // no queue at all
+    // not a queue
   }
   return -1;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the open devices of one process share: a context and its programs.
+// What the open devices of a process share: a context and its programs.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace cadt::opencl {
 
-/// A context with the programs built in it. Used by several Devices, also at once from several threads.
+/// A context with the programs built in it. Shared by several devices. Thread-safe.
 class SharedContext {
  public:
   /// \throws BackendUnavailable, DeviceError
@@ -28,7 +28,7 @@ class SharedContext {
   [[nodiscard]] const cl::Context& context() const noexcept { return context_; }
 
   /// Built at the first call. \throws KernelBuildError, DeviceError
-  [[nodiscard]] cl::Program program(KernelVariant build, bool* from_cache = nullptr);
+  [[nodiscard]] cl::Program program(KernelVariant variant, bool* from_cache = nullptr);
 
   /// Runs `test` unless it has passed before in this context; it counts as passed when it returns.
   template <class Test>
@@ -39,9 +39,9 @@ class SharedContext {
     tested_ = true;
   }
 
-  /// Bytes in buffers of this context. Drivers that defer allocation accept far more than there is.
+  /// Bytes in buffers of this context: drivers that defer allocation accept far more than there is.
   std::atomic<std::uint64_t> held{0};
-  /// The runtime has given the context up; nobody shall get it any more.
+  /// The runtime has lost the context; it must not be handed out any more.
   std::atomic<bool> lost{false};
 
  private:
@@ -54,7 +54,7 @@ class SharedContext {
   bool tested_ = false;
 };
 
-/// The process's context for this device and these build options, made at the first call.
+/// The process's context for this device and these build options, created at the first call.
 [[nodiscard]] std::shared_ptr<SharedContext> shared_context(const OpenRequest& request);
 
 }  // namespace cadt::opencl

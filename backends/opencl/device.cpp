@@ -12,8 +12,8 @@
 namespace cadt::opencl {
 namespace {
 
-// A work-item on a CPU does a whole range of elements, so a group of one is no loss, and it spreads best. On GPUs 128
-// leaves the scheduler several groups per unit even for kernels with many registers.
+// On a CPU a work-item processes a contiguous range of elements, so groups of one cost nothing and balance best. On
+// GPUs 128 leaves several resident groups a compute unit even for kernels with many registers.
 constexpr std::size_t cpu_group = 1, gpu_group = 128;
 constexpr std::size_t largest_fill = std::size_t{1} << 30;
 
@@ -50,7 +50,7 @@ class AllocatorBuffer final : public Buffer {
   cl::Buffer memory_;
 };
 
-// The caller may free its memory as soon as this is gone, so the device must have finished with it.
+// The caller may free its memory as soon as the buffer is destroyed, so the device must have finished with it.
 class AliasBuffer final : public Buffer {
  public:
   AliasBuffer(cl::Buffer memory, cl::CommandQueue queue, std::size_t bytes)
@@ -71,8 +71,8 @@ const cl::Buffer& memory_of(const Buffer& buffer) {
   throw InternalError("a buffer of another back end was passed to an OpenCL device");
 }
 
-/// A parameter of type cadt_real where there are no doubles. All of them may be rounded: cells of the grid of keys, a
-/// centre that is not read, a bound of the user's.
+/// A parameter of type cadt_real on a device without doubles. All of these may be rounded: the grid of the sort keys, a
+/// centre that is not read, a bound chosen by the user.
 cl_float as_float(const Arg& arg) {
   double value = 0;
   std::memcpy(&value, arg.value(), sizeof value);
@@ -98,8 +98,9 @@ bool is_out_of_memory(int code) {
                     needed, available);
 }
 
-// PoCL counts the users of a compiled kernel without a lock (pocl_release_dlhandle_cache, seen in 3.1): two launches in
-// flight at once, from different queues, end the process by a failed assertion. So one is in flight in the process.
+// PoCL counts the users of a compiled kernel without a lock (pocl_release_dlhandle_cache, seen in 3.1): two concurrent
+// launches from different queues end the process with a failed assertion. So there is one launch at a time in the
+// process.
 std::mutex launching;
 bool launches_alone(const FoundDevice& device) {
   return !device.gpu_hardware && device.info.platform.find("Portable Computing Language") != std::string::npos;
@@ -127,7 +128,7 @@ ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& req
                                 request.kernel_times ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0});
     }
     if (request.kernel_times) clock_.emplace(info().name);
-    // What a processor keeps is memory of the process, of which there is more.
+    // On a CPU, device memory is memory of the process, which is not limited by this number.
     constexpr std::size_t bits = 8;
     if (info().gpu) part_alignment_ = shared_->device().device.getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>() / bits;
   } catch (const cl::Error& error) {
@@ -148,7 +149,7 @@ void ClDevice::run(const Work& work) {
   try {
     work();
   } catch (const cl::Error& error) {
-    // Some drivers look for the memory of a buffer only when a command needs it.
+    // Some drivers allocate a buffer only when a command needs it.
     if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE) {
       const std::size_t held = shared_->held;
       throw OutOfMemory("'" + info().name + "' found too little memory in " + error.what() + "; the buffers are " +
@@ -202,7 +203,7 @@ std::unique_ptr<Buffer> ClDevice::part(Buffer& of, std::size_t offset, std::size
 }
 
 std::unique_ptr<Buffer> ClDevice::alias(const void* data, std::size_t bytes) {
-  // A GPU would fetch it over the bus again and again. The alignment is that of the elements; more is not asked for.
+  // A GPU would fetch it over the bus again and again. The alignment must be that of the elements, no more.
   const bool aligned = reinterpret_cast<std::uintptr_t>(data) % alignof(double) == 0;
   if (info().gpu || data == nullptr || bytes == 0 || !aligned || bytes > info().largest_buffer_bytes) return nullptr;
   try {
@@ -248,14 +249,14 @@ void ClDevice::read(const Buffer& from, std::size_t offset, void* to, std::size_
 void ClDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) {
   check_range("a fill", to, offset, bytes);
   if (offset % 4 != 0 || bytes % 4 != 0) throw InternalError("a fill is not a multiple of four bytes");
-  // In pieces: what a driver does with more than 4 GiB in one command is its own business.
+  // In pieces: some drivers mishandle fills of more than 4 GiB.
   for (std::size_t done = 0; done < bytes; done += largest_fill) {
     run([&] { queue_.enqueueFillBuffer(memory_of(to), word, offset + done, std::min(bytes - done, largest_fill)); });
   }
 }
 
-ClDevice::ReadyKernel ClDevice::make_ready(const char* name, KernelVariant build, std::size_t group) {
-  const cl::Program program = shared_->program(build);
+ClDevice::ReadyKernel ClDevice::make_ready(const char* name, KernelVariant variant, std::size_t group) {
+  const cl::Program program = shared_->program(variant);
   ReadyKernel made;
   made.name = name;
   run([&] {
@@ -273,22 +274,22 @@ ClDevice::ReadyKernel ClDevice::make_ready(const char* name, KernelVariant build
   return made;
 }
 
-ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, KernelVariant build) {
+ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, KernelVariant variant) {
   const auto number = static_cast<std::size_t>(kernel);
-  auto& slot = kernels_[static_cast<std::size_t>(build)].at(number);
+  auto& slot = kernels_[static_cast<std::size_t>(variant)].at(number);
   if (!slot) {
     const std::size_t group = work_group_size_ != 0 ? work_group_size_ : (info().gpu ? gpu_group : cpu_group);
-    slot = make_ready(kernel_names[number], build, group);
+    slot = make_ready(kernel_names[number], variant, group);
   }
   return *slot;
 }
 
-void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
+void ClDevice::launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant variant,
                       std::uint32_t wanted) {
   if (items == 0) return;
-  ReadyKernel& target = ready(kernel, build);
-  // On a GPU one work-item must be one and not a group: the driver lets one alone do what others keep each other from.
-  // On a CPU the others find nothing to do, and PoCL compiles anew for each size of a group.
+  ReadyKernel& target = ready(kernel, variant);
+  // On a GPU one work-item must be launched alone, not as a group: lanes of a group would obstruct each other in what
+  // one lane can do. On a CPU the other work-items find nothing to do, and PoCL compiles anew for each group size.
   std::size_t group = target.group;
   if (info().gpu && wanted != 0 && work_group_size_ == 0) group = std::min<std::size_t>(group, wanted);
   if (info().gpu && (items == 1 || !launches_alone(shared_->device()))) group = std::min<std::size_t>(group, items);
@@ -299,7 +300,7 @@ void ClDevice::enqueue(ReadyKernel& target, std::size_t groups, std::size_t grou
   if (args.size() != target.parameters)
     throw InternalError(std::string(target.name) + " takes " + std::to_string(target.parameters) + " arguments, not " +
                         std::to_string(args.size()));
-  // The kernels number their work-items in 32 bits: one beyond would be taken for the first.
+  // The kernels number their work-items with 32 bits: numbers beyond would wrap around.
   if (groups > std::numeric_limits<std::uint32_t>::max() / group)
     throw InternalError(std::string(target.name) + " was launched with " + std::to_string(groups) + " groups of " +
                         std::to_string(group) + " work-items");

@@ -11,7 +11,7 @@
 
 namespace cadt::opencl {
 
-/// A queue of its own, kernels of its own: cl_kernel keeps its arguments and is not for two threads at once.
+/// A device with a queue and kernels of its own: cl_kernel holds its arguments, so it cannot serve two threads at once.
 class ClDevice final : public Device {
  public:
   ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& request);
@@ -32,7 +32,7 @@ class ClDevice final : public Device {
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
   using Device::launch;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant variant,
               std::uint32_t group) override;
   void finish() override;
   [[nodiscard]] KernelClock* kernel_clock() noexcept override { return clock_ ? &*clock_ : nullptr; }
@@ -43,20 +43,20 @@ class ClDevice final : public Device {
     const char* name = nullptr;
     cl::Kernel kernel;
     cl_uint parameters = 0;
-    std::size_t group = 1;  ///< work-items of a group
+    std::size_t group = 1;  ///< work-items a group
   };
   /// A kernel for groups of `group` work-items, or of as many as the device allows.
-  [[nodiscard]] ReadyKernel make_ready(const char* name, KernelVariant build, std::size_t group);
-  /// Puts groups of the kernel's size in the queue.
+  [[nodiscard]] ReadyKernel make_ready(const char* name, KernelVariant variant, std::size_t group);
+  /// Enqueues groups of the kernel's size.
   void enqueue(ReadyKernel& kernel, std::size_t groups, std::span<const Arg> args) {
     enqueue(kernel, groups, kernel.group, args);
   }
 
  private:
   void enqueue(ReadyKernel& kernel, std::size_t groups, std::size_t group, std::span<const Arg> args);
-  ReadyKernel& ready(KernelId kernel, KernelVariant build);
+  ReadyKernel& ready(KernelId kernel, KernelVariant variant);
 
-  /// Calls `work` and translates what the bindings throw.
+  /// Calls `work` and translates exceptions of the bindings.
   template <class Work>
   void run(const Work& work);
   void check_not_lost() const;
@@ -67,7 +67,7 @@ class ClDevice final : public Device {
   std::size_t part_alignment_ = 0;
   std::shared_ptr<DeviceAllocator> allocator_;
   std::array<std::array<std::optional<ReadyKernel>, kernel_count>, kernel_variants> kernels_;
-  std::optional<std::unique_ptr<Primitives>> primitives_;  ///< made when first asked for
+  std::optional<std::unique_ptr<Primitives>> primitives_;  ///< created on first use
   std::optional<ClClock> clock_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What decides whether a device is usable, apart from the calls that find it out, so that tests can make up devices.
+// Facts that decide whether a device is usable, separate from the queries, so that tests can make up devices.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ struct Facts {
   bool available = true;
   bool compiler = true;
   bool little_endian = true;
-  bool fp64 = true;              ///< without it the device takes float coordinates alone
+  bool fp64 = true;              ///< without it the device takes float coordinates only
   bool denormals = true;         ///< gradual underflow of double
   bool round_to_nearest = true;  ///< of double
   bool float_round_to_nearest = true;
@@ -22,7 +22,7 @@ struct Facts {
 /// Why the library cannot use such a device; empty if it can.
 [[nodiscard]] std::string unusable_reason(const Facts& facts);
 
-/// How its atomics will be built, as far as it is known before a build.
+/// How its atomics will be built, as far as is known before a build.
 [[nodiscard]] std::string expected_atomics(const Facts& facts);
 
 /// "OpenCL 3.0 anything" gives 300; 0 if the text is not of that form.

@@ -20,7 +20,7 @@ Library open_library() {
   Library library;
   const char* const soname = "libOpenCL.so.1";
   library.handle = dlopen(soname, RTLD_NOW | RTLD_LOCAL);
-  // The first error is the one to report: the other name is that of a development package, and seldom there.
+  // Report the first error: the other name belongs to a development package and rarely exists.
   if (library.handle == nullptr) library.failure = "the OpenCL loader cannot be loaded: " + last_error();
   if (library.handle == nullptr) library.handle = dlopen("libOpenCL.so", RTLD_NOW | RTLD_LOCAL);
   if (library.handle == nullptr) {
@@ -34,7 +34,7 @@ Library open_library() {
   return library;
 }
 
-// Never closed and never destroyed: contexts live as long as the process, and drivers start threads of their own.
+// Never closed and never destroyed: contexts live as long as the process, and drivers start threads.
 const Library& library() {
   static const auto* const opened = new Library(open_library());
   return *opened;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenCL's functions, found in the loader (libOpenCL.so.1) when they are first called. Nothing is linked, so a program
-// starts on a machine without the loader, and no name clashes with a libOpenCL that its user links.
+// OpenCL's functions, resolved in the loader (libOpenCL.so.1) at their first call. Nothing is linked, so a program
+// starts on a machine without the loader, and no symbol clashes with a libOpenCL that its user links.
 //
-// To be included before CL/opencl.hpp, whose calls of the functions named below then arrive here. If the bindings begin
-// to call another one, it is an undefined symbol: add its line. tests/architecture/check_linking.py finds that out.
+// Include this before CL/opencl.hpp, whose calls of the functions named below then arrive here. If the bindings begin
+// to call another function, it is an undefined symbol: add its line. tests/architecture/check_linking.py finds that
+// out.
 #pragma once
 
 #define CL_TARGET_OPENCL_VERSION 300
@@ -17,18 +18,18 @@
 
 namespace cadt::opencl {
 
-/// Why there is no OpenCL loader in this process, the same at every call; empty if there is one.
+/// Why this process has no OpenCL loader, the same at every call; empty if it has one.
 [[nodiscard]] const std::string& loader_failure();
 
 namespace loader {
 
-/// The function of the loader; null without a loader, and if it is older than the function.
+/// A function of the loader; null without a loader, or if the loader is too old for it.
 [[nodiscard]] void* find(const char* name);
 
-/// What a function returns that could not be called.
+/// The error code of a function that cannot be called.
 [[nodiscard]] cl_int missing_code();
 
-/// A text as an argument of a template.
+/// A string as a template argument.
 template <std::size_t Size>
 struct Name {
   char text[Size];
@@ -37,7 +38,7 @@ struct Name {
   }
 };
 
-// `declared` is named for its type only, never used: a use would ask the linker for it.
+// `declared` is named for its type only and never used: a use would need the linker.
 template <auto* declared, class = decltype(declared)>
 struct Function;
 template <auto* declared, class Result, class... Parameters>
@@ -48,7 +49,7 @@ struct Function<declared, Result(CL_API_CALL*)(Parameters...)> {
     if (found != nullptr) return found(values...);
     if constexpr (std::is_same_v<Result, cl_int>) {
       return missing_code();
-    } else {  // they return an object, and the code through the last parameter
+    } else {  // they return an object, and the error code through the last parameter
       cl_int* const code = std::get<sizeof...(values) - 1>(std::tuple(values...));
       if (code != nullptr) *code = missing_code();
       return nullptr;
@@ -59,11 +60,11 @@ struct Function<declared, Result(CL_API_CALL*)(Parameters...)> {
 }  // namespace loader
 }  // namespace cadt::opencl
 
-// Within its own expansion a macro's name is left alone, so it still means OpenCL's declaration. There is no comma in
-// it, which would divide an argument of another macro.
+// Within its own expansion a macro's name is not replaced, so it still means OpenCL's declaration. It contains no
+// comma, which would split an argument of another macro.
 #define CADT_CL(name) cadt::opencl::loader::Function<::name>::call<#name>
 
-// What the bindings call for us, without optimisation, where nothing is left out.
+// What the bindings call for us when compiled without optimisation, where nothing is left out.
 #define clBuildProgram CADT_CL(clBuildProgram)
 #define clCreateBuffer CADT_CL(clCreateBuffer)
 #define clCreateCommandQueue CADT_CL(clCreateCommandQueue)

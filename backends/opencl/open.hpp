@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opening a device, with what only tests may ask for. Free of OpenCL headers.
+// Opening a device, with options for tests. No OpenCL headers needed.
 #pragma once
 
 #include <cadt/triangulator.hpp>
@@ -19,7 +19,7 @@ struct OpenRequest {
   std::shared_ptr<DeviceAllocator> allocator;
   bool kernel_times = false;  ///< as in Options
 
-  // The rest is for tests.
+  // The following are for tests.
   std::string extra_options;   ///< appended to the compiler's options
   std::string source;          ///< instead of the embedded kernels, if not empty
   bool probe_atomics = false;  ///< try the compiler even if the device advertises acquire/release
@@ -34,7 +34,7 @@ struct OpenRequest {
 /// \throws BackendUnavailable, KernelBuildError, OutOfMemory, DeviceError
 [[nodiscard]] std::unique_ptr<Device> open_device(const OpenRequest& request);
 
-/// Makes the process's context for this request look as if the runtime had given it up. For tests.
+/// Marks the process's context for this request as lost by the runtime. For tests.
 void lose_context(const OpenRequest& request);
 
 }  // namespace cadt::opencl

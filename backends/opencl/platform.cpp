@@ -19,7 +19,7 @@ std::string no_platform() {
          "; install the driver of the GPU, or PoCL for the CPU";
 }
 
-// Drivers pad their texts with blanks, some with a terminator.
+// Drivers pad their strings with blanks, some with a terminator.
 std::string trimmed(std::string text) {
   while (!text.empty() && (text.back() == ' ' || text.back() == '\0')) text.pop_back();
   std::size_t first = 0;
@@ -32,13 +32,13 @@ bool wished(const char* variable) {
   return wish != nullptr && std::string_view(wish) == "1";
 }
 
-// For tests on machines without a GPU: CADT_OPENCL_AS_GPU=1 has every device do what is done on GPUs (strided
-// work-items, relaxed fields with fences, sort and scan of kernels_cl/primitives.cl). Correct on all devices, only
-// slower on CPUs.
+// For tests on machines without a GPU: with CADT_OPENCL_AS_GPU=1 every device is driven like a GPU (strided work-items,
+// relaxed accesses with fences, sort and scan of kernels_cl/primitives.cl). Correct on all devices, only slower on
+// CPUs.
 bool used_as_gpu() { return wished("CADT_OPENCL_AS_GPU"); }
 
-// CADT_OPENCL_NO_FP64=1: devices are taken for the least that is usable: without double precision and without subnormal
-// floats, with all that follows from that.
+// CADT_OPENCL_NO_FP64=1: devices are treated as the least that is usable: without double precision and without
+// subnormal floats.
 bool used_without_doubles() { return wished("CADT_OPENCL_NO_FP64"); }
 
 bool advertises_acquire_release(const cl::Device& device, int version) {
@@ -48,7 +48,7 @@ bool advertises_acquire_release(const cl::Device& device, int version) {
   return (has & CL_DEVICE_ATOMIC_ORDER_ACQ_REL) != 0 && (has & CL_DEVICE_ATOMIC_SCOPE_DEVICE) != 0;
 }
 
-// NVIDIA's cl_nv_device_attribute_query; nobody else tells.
+// NVIDIA's cl_nv_device_attribute_query; other vendors do not report it.
 bool has_watchdog(const cl::Device& device) {
   constexpr cl_device_info kernel_exec_timeout = 0x4005;
   if (device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_nv_device_attribute_query") == std::string::npos) return false;
@@ -93,7 +93,7 @@ void describe(FoundDevice& found) {
   info.usable = info.reason.empty();
 }
 
-// A platform without devices is no error: its driver is installed, its hardware is not there.
+// A platform without devices is no error: the driver is installed, its hardware is absent.
 std::vector<cl::Device> devices_of(const cl::Platform& platform, std::string& why) {
   std::vector<cl::Device> devices;
   try {

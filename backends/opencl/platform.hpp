@@ -14,16 +14,16 @@ struct FoundDevice {
   cl::Device device;
   Facts facts;
   DeviceInfo info;
-  bool gpu_hardware = false;  ///< info.gpu may be a wish of the tests
+  bool gpu_hardware = false;  ///< the real type; tests may override info.gpu
   std::string vendor, device_version, platform_version;
 };
 
 struct Found {
-  std::vector<FoundDevice> devices;  ///< of all platforms, in the loader's order; the position is the index
-  std::string none;                  ///< why there is no device, empty otherwise
+  std::vector<FoundDevice> devices;  ///< of all platforms, in the loader's order; the position is the device index
+  std::string none;                  ///< why there is no device; empty if there is one
 };
 
-/// Asks the loader. Failures of the runtime become reasons, never exceptions.
+/// Queries all platforms. Failures of the runtime become reasons, never exceptions.
 [[nodiscard]] Found find_devices();
 
 }  // namespace cadt::opencl

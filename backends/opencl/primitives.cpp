@@ -11,12 +11,12 @@ namespace {
 // As in kernels_cl/primitives.cl.
 constexpr std::size_t group = 256, tile = group * 16;
 constexpr unsigned digit_bits = 8;
-// With so few tiles each group adds up what a launch between would have told it, for itself.
+// With so few tiles each group computes the offset for itself, which saves a launch.
 constexpr std::size_t few_counts = 16, few_sums = group;
 
 constexpr std::size_t tiles_of(std::size_t count) noexcept { return (count + tile - 1) / tile; }
 
-/// Sums of tiles, sums of tiles of these, and so on down to one tile.
+/// Number of sums on all levels: of tiles, of tiles of these, and so on down to one tile.
 std::size_t sums_of(std::size_t count) noexcept {
   std::size_t words = 0;
   for (std::size_t tiles = tiles_of(count); tiles > 1; tiles = tiles_of(tiles)) words += tiles;
@@ -28,7 +28,7 @@ std::size_t counts_of(std::size_t count, unsigned bits) noexcept {
 }
 
 std::uint32_t word(std::size_t value) {
-  // The kernels number the elements of the last tile in 32 bits, with those beyond the end.
+  // The kernels number the elements of the last tile with 32 bits, including those beyond the end.
   if (value > std::numeric_limits<std::uint32_t>::max() - tile)
     throw InternalError("a sort or scan of " + std::to_string(value) + " words");
   return static_cast<std::uint32_t>(value);
@@ -42,7 +42,7 @@ std::unique_ptr<Primitives> ClPrimitives::make(ClDevice& device) noexcept try {
     if (kernel->group < group) return nullptr;
   return made;
 } catch (...) {
-  return nullptr;  // the kernels of common/device do it; if the device is lost, they will say so
+  return nullptr;  // the primitives of the device text serve instead; if the device is lost, they will report it
 }
 
 ClPrimitives::ClPrimitives(ClDevice& device)

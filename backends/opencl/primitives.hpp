@@ -25,7 +25,7 @@ class ClPrimitives final : public Primitives {
   void run(ClDevice::ReadyKernel& kernel, std::size_t groups, std::initializer_list<Arg> args) {
     device_.enqueue(kernel, groups, {args.begin(), args.size()});
   }
-  /// `count` words from `at`; what it needs lies in the scratch memory from `scratch_at`.
+  /// Scans `count` words from `at` on; its temporaries lie in the scratch memory from `scratch_at` on.
   void scan_words(Buffer& scratch, std::uint32_t scratch_at, Buffer& data, std::uint32_t at, std::size_t count);
 
   ClDevice& device_;

@@ -11,7 +11,7 @@
 namespace cadt::opencl {
 namespace {
 
-// Every operation that common/portable/atomics.dev.h needs, so that a compiler which takes this one takes that one.
+// Every operation that common/portable/atomics.dev.h needs: a compiler that accepts this source accepts that file.
 constexpr const char* probe_source = R"(
 __kernel void probe(__global uint* p) {
   volatile __global atomic_uint* a = (volatile __global atomic_uint*)p;
@@ -30,7 +30,7 @@ bool compiles(const cl::Context& context, const cl::Device& device, const std::s
   try {
     cl::Program program(context, std::string(probe_source));
     program.build(std::vector<cl::Device>{device}, options.c_str());
-    // Some drivers compile at once and link late: the kernel must exist as well.
+    // Some drivers defer the link: the kernel must exist as well.
     const cl::Kernel kernel(program, "probe");
     return kernel() != nullptr;
   } catch (const cl::Error&) {
@@ -47,7 +47,7 @@ std::string log_of(const cl::Program& program, const cl::Device& device, const c
   try {
     log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device);
   } catch (const cl::Error&) {
-    // The code below has to do.
+    // fall through to the next path
   }
   while (!log.empty() && (log.back() == '\0' || log.back() == '\n')) log.pop_back();
   return log + (log.empty() ? "" : "\n") + code_name(error.err()) + " (" + std::to_string(error.err()) + ")";
@@ -64,7 +64,7 @@ Digest key_of(const FoundDevice& device, const std::string& source, const std::s
   return digest_of(std::span<const std::string>(identity));
 }
 
-// A driver may refuse its own binary, e.g. after an update that kept the version: then it is built again.
+// A driver may reject its own binary, e.g. after an update that kept the version: then the program is built again.
 std::optional<cl::Program> from_binary(const cl::Context& context, const FoundDevice& device,
                                        std::vector<unsigned char> binary, const std::string& options) {
   try {
@@ -86,7 +86,7 @@ void keep_binary(const cl::Program& program, Digest key) {
     const std::vector<std::vector<unsigned char>> binaries = program.getInfo<CL_PROGRAM_BINARIES>();
     if (!binaries.empty()) store_binary(directory, key, binaries.front());
   } catch (const cl::Error&) {
-    // Not every driver hands its binaries out; the next process builds again.
+    // Not every driver returns its binaries; the next process builds again.
   }
 }
 
@@ -105,21 +105,22 @@ AtomicsPath choose_atomics(const cl::Context& context, const FoundDevice& device
   return best_effort;
 }
 
-std::string build_options(const FoundDevice& device, const AtomicsPath& atomics, KernelVariant build,
+std::string build_options(const FoundDevice& device, const AtomicsPath& atomics, KernelVariant variant,
                           const std::string& extra) {
-  // No option that relaxes arithmetic may ever stand here: the filters rely on each rounding (and the self-test would
-  // refuse the device).
+  // No option that relaxes arithmetic may ever be added: the filters rely on each rounding (and the self-test would
+  // reject the device).
   std::string options = atomics.options;
-  // Where there are no doubles, literals must be none. A device that does not promise subnormal numbers shall always be
-  // without them, rather than now and then.
+  // Without doubles, literals must be floats. A device that does not promise subnormal numbers shall flush them always,
+  // rather than sometimes.
   if (!device.facts.fp64)
     options += std::string(" -DCADT_FLOAT=1 -cl-single-precision-constant") +
                (device.facts.float_denormals ? "" : " -cl-denorms-are-zero");
   else
-    options += build == KernelVariant::wide ? " -DCADT_WIDE=1" : " -DCADT_WIDE=0";
-  if (build == KernelVariant::timed) options += " -DCADT_TIMED=1";
+    options += variant == KernelVariant::wide ? " -DCADT_WIDE=1" : " -DCADT_WIDE=0";
+  if (variant == KernelVariant::timed) options += " -DCADT_TIMED=1";
   options += device.info.gpu ? " -DCADT_CONTIGUOUS=0 -DCADT_RADIX_BITS=4" : " -DCADT_CONTIGUOUS=1 -DCADT_RADIX_BITS=8";
-  // cadt_insert takes 118 registers if it may; with 96 more work-items fit in, which is faster (measured with CUDA).
+  // cadt_insert uses 118 registers if it may; with 96 more work-items are resident, which is faster (measured with
+  // CUDA).
   if (device.info.platform == "NVIDIA CUDA") options += " -cl-nv-maxrregcount=96";
   if (!extra.empty()) options += " " + extra;
   return options;

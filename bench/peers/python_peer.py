@@ -23,7 +23,7 @@ def scipy_peer():
 
 
 def cupy_peer():
-    """CuPy's Delaunay is gDel2D, on the graphics card. Points and triangles stay there."""
+    """CuPy's Delaunay is gDel2D, on the GPU. Points and triangles stay there."""
     cupy = importlib.import_module("cupy")
     cupy.cuda.runtime.getDeviceCount()  # raises where there is no driver or no card
     delaunay = importlib.import_module("cupyx.scipy.spatial").Delaunay

@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Many small sets of points in one call. Each has a square of the key grid, one square after another on the curve, so
- * sorted points stand set by set, and squares of the tiles never hold points of two. From the sort to the result they
- * are one mesh of many components; positions, records and triangles of a set are neighbours, and two records a vertex
- * have their place even where they are not used.
+ * Batches: many small sets of points in one call. Each set has a square of the key grid of its own, one square after
+ * another on the curve, so sorted points stand set by set, and no square of a tile holds points of two sets. From the
+ * sort to the result the batch is one mesh with many components; positions and triangles of a set are contiguous, and
+ * each set has two triangle slots a vertex, used or not.
  *
- * Several kernels look for the set of an element among the first elements of all sets (`starts`, with the end of the
- * last one behind): some dozen reads of what is in the cache anyway.
+ * Several kernels find the set of an element among the first elements of all sets (`starts`, with the end of the last
+ * one behind) by binary search: some dozen reads that the cache serves.
  */
 #ifndef CADT_BATCH_BATCH_H
 #define CADT_BATCH_BATCH_H
 
 #include "common/mesh/locked_mesh.dev.h"
-#include "common/points/spatial_sort.dev.h"
+#include "common/points/bounds.dev.h"
+#include "common/points/hilbert_keys.dev.h"
 
-/* The last set that starts at i or before: the one that has element i. */
+/* The set of element i: the last one that starts at i or before. */
 CADT_FN cadt_u32 cadt_set_of(CADT_GLOBAL const cadt_u32* starts, cadt_u32 count, cadt_u32 i) {
   cadt_u32 low = 0u, high = count;
   while (high - low > 1u) {
@@ -48,7 +49,7 @@ CADT_FN double cadt_power_of_two(cadt_i32 exponent) {
   return cadt_double_of_bits(CADT_CAST(cadt_u64, exponent + 1023) << 52);
 }
 
-/* Grid and factors of a set from the row of its points: coordinates become multiples of 2^-240 below 1, if that is
+/* Grid and factors of a set from the bounds of its points: coordinates become multiples of 2^-240 below 1, if that is
  * exact. */
 CADT_FN cadt_set cadt_set_from_bounds(const cadt_bounds_row* row, cadt_u32 levels, cadt_u32 wide) {
   cadt_set s;
@@ -67,8 +68,8 @@ CADT_FN cadt_set cadt_set_from_bounds(const cadt_bounds_row* row, cadt_u32 level
   return s;
 }
 
-/* The table of the sets, by a team for each. `bad`: the first point with a coordinate that is no number. \pre it is
- * CADT_NONE */
+/* Fills the table of the sets, a team for each. `bad`: the first point with a coordinate that is NaN or infinite. \pre
+ * *bad is CADT_NONE */
 CADT_KERNEL(cadt_batch_bounds, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* starts,
             cadt_u32 set_count, cadt_u32 levels, cadt_u32 narrow_span, cadt_u32 grain, CADT_GLOBAL cadt_set* sets,
             CADT_GLOBAL cadt_u32* states, CADT_GLOBAL cadt_u32* bad) {
@@ -94,7 +95,7 @@ CADT_KERNEL(cadt_batch_bounds, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL
   }
 }
 
-/* Sort keys. `scaled`: the points are so already. */
+/* Sort keys. `scaled`: the points are scaled already. */
 CADT_KERNEL(cadt_batch_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* starts,
             cadt_u32 set_count, CADT_GLOBAL const cadt_set* sets, cadt_u32 levels, cadt_u32 scaled,
             CADT_GLOBAL cadt_u32* keys, cadt_u32 n, cadt_u32 grain) {
@@ -112,19 +113,19 @@ CADT_KERNEL(cadt_batch_gather, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL
             CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, CADT_GLOBAL const cadt_set* sets,
             CADT_GLOBAL cadt_point* sorted, cadt_u32 n, cadt_u32 grain) {
   CADT_FOR(i, n, grain) {
-    /* place i is one of the set that has point i */
+    /* place i belongs to the set of point i */
     sorted[i] = cadt_scale_point(sets + cadt_set_of(starts, set_count, i), points[order[i]]);
   }
 }
 
-/* The first positions of the sets among distinct points. `ranks`: scan of 1 for each that is the first of its kind. */
+/* First positions of the sets among the distinct points. `ranks`: scan of 1 for each distinct point. */
 CADT_KERNEL(cadt_batch_starts, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_u32* starts,
             cadt_u32 set_count, cadt_u32 n, cadt_u32 distinct, cadt_u32 grain, CADT_GLOBAL cadt_u32* first) {
   CADT_FOR(s, set_count + 1u, grain) { first[s] = starts[s] < n ? ranks[starts[s]] : distinct; }
 }
 
-/* What is to be done with each set, by a team for each: flat ones have fewer than three points or all on a line, those
- * with more than `most` are alone. */
+/* Classifies the sets, a team for each: flat ones have fewer than three points or only collinear ones, those with more
+ * than `most` points are processed individually. */
 CADT_KERNEL(cadt_batch_classify, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* starts,
             cadt_u32 set_count, cadt_u32 most, cadt_u32 grain, CADT_GLOBAL cadt_u32* states) {
   CADT_TEAM_MEMORY cadt_u32 turns;
@@ -149,8 +150,8 @@ CADT_KERNEL(cadt_batch_classify, CADT_GLOBAL const cadt_point* points, CADT_GLOB
   }
 }
 
-/* The vertices without a star of sets that are together: 1 each, and a 0 at the end. The stars of all have `row` words
- * each: where they begin. */
+/* Flags the vertices without a star in batched sets, with a 0 at the end, and sets begins[v]: each star has `row`
+ * words. */
 CADT_KERNEL(cadt_batch_unproven, CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* starts,
             cadt_u32 set_count, CADT_GLOBAL const cadt_u32* states, cadt_u32 n, cadt_u32 grain, cadt_u32 row,
             CADT_GLOBAL cadt_u32* unproven, CADT_GLOBAL cadt_u32* begins) {
@@ -161,7 +162,7 @@ CADT_KERNEL(cadt_batch_unproven, CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL 
   }
 }
 
-/* Places of the flagged. `ranks` is the scan of the flags. */
+/* Places of the flagged vertices. `ranks` is the scan of the flags. */
 CADT_KERNEL(cadt_batch_list, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_u32* list, cadt_u32 n,
             cadt_u32 grain) {
   CADT_FOR(v, n, grain) {
@@ -169,7 +170,8 @@ CADT_KERNEL(cadt_batch_list, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt
   }
 }
 
-/* Whether the records of the sets begin where they should: 2 a vertex. Contradicting stars have another number. */
+/* Counts in `wrong` the sets whose triangles do not begin where they should, at 2 a vertex: contradictory stars have
+ * another number. */
 CADT_KERNEL(cadt_batch_check, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, CADT_GLOBAL const cadt_u32* bases,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* wrong) {
   CADT_FOR(s, set_count + 1u, grain) {
@@ -183,7 +185,7 @@ CADT_KERNEL(cadt_batch_extract, CADT_GLOBAL const cadt_point* points, cadt_u32 b
   CADT_FOR(i, count, grain) { to[i] = points[begin + i]; }
 }
 
-/* From positions and records of a set to those of all. */
+/* Converts positions and triangle numbers of a set to those of the batch. */
 CADT_FN void cadt_move_triangle(CADT_GLOBAL cadt_u32* word, cadt_u32 begin) {
   for (cadt_u32 k = 0u; k < 3u; ++k) {
     if (word[k] != CADT_GHOST) word[k] += begin;
@@ -191,7 +193,7 @@ CADT_FN void cadt_move_triangle(CADT_GLOBAL cadt_u32* word, cadt_u32 begin) {
   }
 }
 
-/* Puts the mesh of one set at its place. Its vertices are those of `positions` in the set. */
+/* Stores the mesh of one set in its slots. Its vertices are indices into `positions` of the set. */
 CADT_KERNEL(cadt_batch_store, CADT_GLOBAL const cadt_locked_triangle* from, CADT_GLOBAL const cadt_u32* positions,
             cadt_u32 slots, cadt_u32 begin, cadt_u32 grain, CADT_GLOBAL cadt_locked_triangle* to) {
   CADT_FOR(t, slots, grain) {
@@ -203,7 +205,7 @@ CADT_KERNEL(cadt_batch_store, CADT_GLOBAL const cadt_locked_triangle* from, CADT
   }
 }
 
-/* values[i] -= by[set of element i / row], but for CADT_NONE. */
+/* values[i] -= by[set of element i / row], except where values[i] is CADT_NONE. */
 CADT_KERNEL(cadt_batch_shift, CADT_GLOBAL cadt_u32* values, cadt_u32 first, cadt_u32 count, cadt_u32 row,
             CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, CADT_GLOBAL const cadt_u32* by, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {

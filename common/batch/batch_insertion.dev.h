@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Sets of a call with several (batch.dev.h) on CPUs: each by one work-item, which inserts its points level by level as
- * cadt_insert does. Nobody else touches the mesh of the set, so inner triangles need no claims (partitioned.dev.h), and
- * claims of those at the ghost succeed.
+ * Batches (batch.dev.h) on CPUs: one work-item triangulates a set and inserts its points level by level as cadt_insert
+ * does. No other work-item touches the mesh of the set, so inner triangles need no locks (partitioned.dev.h), and
+ * locking those at the ghost always succeeds.
  */
 #ifndef CADT_BATCH_BATCH_INSERTION_H
 #define CADT_BATCH_BATCH_INSERTION_H
@@ -12,7 +12,8 @@
 #include "common/insertion/seed_triangle.dev.h"
 
 #if CADT_CONTIGUOUS
-/* Three points of `n` that are not on a line, as find_seed_triangle of the driver chooses them; 0: there are none. */
+/* Three points of `n` that are not collinear, as find_seed_triangle of the driver chooses them; returns 0 if there are
+ * none. */
 CADT_FN cadt_u32 cadt_choose_first(cadt_locked_mesh* m, cadt_u32 n, cadt_u32 levels, cadt_counters* counters) {
   m->first = cadt_representative(levels, 0u, n);
   m->second = n / 2u == m->first ? 0u : n / 2u;
@@ -27,7 +28,7 @@ CADT_FN cadt_u32 cadt_choose_first(cadt_locked_mesh* m, cadt_u32 n, cadt_u32 lev
   return 0u;
 }
 
-/* The mesh of n points. 0 if a point could not be placed. \pre records are zero */
+/* The mesh of n points; returns 0 if a point could not be placed. \pre the triangle slots are zero */
 CADT_FN cadt_u32 cadt_insert_set(cadt_locked_mesh* m, cadt_u32 n, const cadt_deferred* deferred,
                                  cadt_counters* counters) {
   const cadt_u32 levels = 64u - cadt_clz64(n - 1u);
@@ -44,9 +45,9 @@ CADT_FN cadt_u32 cadt_insert_set(cadt_locked_mesh* m, cadt_u32 n, const cadt_def
     for (cadt_u32 block = 0u; block < blocks; ++block) {
       const cadt_u32 standing = 2u * block + cadt_right_half(level + 1u, block);
       const cadt_u32 i = cadt_representative(level, standing ^ 1u, n);
-      const cadt_u32 hint = cadt_load_relaxed(m->vertex_to_triangle + cadt_representative(level, standing, n));
+      const cadt_u32 start = cadt_load_relaxed(m->vertex_to_triangle + cadt_representative(level, standing, n));
       if (i == m->first || i == m->second || i == m->third) continue;
-      if (cadt_insert_own(&own, &partition, i, hint, counters)) continue;
+      if (cadt_insert_own(&own, &partition, i, start, counters)) continue;
       cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
       work.apex_point = cadt_point_of(m, i);
       cadt_u32 from = cadt_load_relaxed(m->vertex_to_triangle + i);
@@ -61,8 +62,8 @@ CADT_FN cadt_u32 cadt_insert_set(cadt_locked_mesh* m, cadt_u32 n, const cadt_def
 }
 #endif
 
-/* The meshes of all sets that are together, each at its place. What a set cannot do, states[set] counts: then its
- * records are of no use. Edges that are left over are met by the closing pass. */
+/* The meshes of all batched sets, each in its slots. A failure is counted in states[set]: then its triangles are void.
+ * The legality sweep finds edges that are left over. */
 CADT_KERNEL(cadt_batch_insert, CADT_GLOBAL cadt_locked_triangle* locked, CADT_GLOBAL const cadt_point* points,
             CADT_GLOBAL cadt_u32* vertex_to_triangle, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
             CADT_GLOBAL cadt_u32* states, cadt_u32 grain, CADT_GLOBAL cadt_u32* deferred_counts,

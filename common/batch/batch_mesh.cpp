@@ -20,8 +20,8 @@ using namespace device_text;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 
-/// Words a vertex for stars with more neighbours than fit into a row. Those of more than 12 are less than 3.9 a vertex
-/// together, since all are 6 on average and none is below 3.
+/// Words a vertex for stars with more star vertices than fit into a row. Stars with more than 12 have fewer than 3.9 a
+/// vertex in all, since the average of all stars is 6 and none has fewer than 3.
 constexpr std::size_t long_star_words = 4;
 
 class BatchStage {
@@ -38,16 +38,17 @@ class BatchStage {
   [[nodiscard]] BatchMesh build() {
     read_sets();
     result_.mesh.slots = 2 * n_;
-    // One core is better at insertion, where it has a set for itself.
+    // One core inserts faster where it has a set for itself.
     const bool insertion = inserts_batched_sets(traits_of(ctx_.device), ctx_.options);
     if (batched_ != 0 && !insertion) {
       make_stars();
       wrap();
       count_triangles();
     }
-    result_.mesh.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not in use
+    result_.mesh.locked =
+        ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: slot not in use
     if (batched_ != 0) {
-      insertion ? insert() : write_records();
+      insertion ? insert() : write_locked();
       certify();
     }
     build_individual();
@@ -93,7 +94,7 @@ class BatchStage {
     ctx_.check("stars", 0.4);
   }
 
-  /// The stars that are not proven.
+  /// Wraps the stars that are not proven.
   void wrap() {
     const LaunchGrid c = launch_.grid(n_);
     begins_ = ctx_.memory.allocate(n_ * word);
@@ -108,17 +109,17 @@ class BatchStage {
     const Allocation list = ctx_.memory.allocate(std::size_t{unproven_} * word);
     launch_.run<KernelId::cadt_batch_list>(c.items, ranks, list, count_, c.grain);
     ranks.release();
-    const Allocation found = launch_.zeros(CADT_WRAP_WORDS);
+    const Allocation counts = launch_.zeros(CADT_WRAP_WORDS);
     wrap_batch(ctx_, order_.points, n_, {list, unproven_, sets_.positions(), sets_.states, set_count_},
-               {stars_.star_vertices, begins_, stars_.sizes, found, CADT_STAR_DEGREE,
+               {stars_.star_vertices, begins_, stars_.sizes, counts, CADT_STAR_DEGREE,
                 n_ * (CADT_STAR_DEGREE + long_star_words)});
-    std::array<std::uint32_t, CADT_WRAP_FOUND> words{};
-    ctx_.device.read(*found, 0, words.data(), sizeof words);
-    ctx_.statistics.exact_orientations += words[3];
-    ctx_.statistics.exact_incircles += words[4];
-    ctx_.statistics.ties += words[5];
-    if (words[0] > n_ * long_star_words)
-      throw InternalError("the wrapped stars have " + std::to_string(words[0]) +
+    std::array<std::uint32_t, CADT_WRAP_DRIVER_WORDS> words{};
+    ctx_.device.read(*counts, 0, words.data(), sizeof words);
+    ctx_.statistics.exact_orientations += words[CADT_WRAP_EXACT_ORIENTATIONS];
+    ctx_.statistics.exact_incircles += words[CADT_WRAP_EXACT_INCIRCLES];
+    ctx_.statistics.ties += words[CADT_WRAP_TIES];
+    if (words[CADT_WRAP_OVERFLOWED] > n_ * long_star_words)
+      throw InternalError("the wrapped stars have " + std::to_string(words[CADT_WRAP_OVERFLOWED]) +
                           " neighbours beyond their rows; please report this with the input");
     ctx_.end_phase("wrap");
     ctx_.check("stars", 0.6);
@@ -140,9 +141,9 @@ class BatchStage {
     for (const std::uint32_t state : states_) ctx_.statistics.wrapped_stars -= state / CADT_SET_FAILURE;
   }
 
-  void write_records() {
+  void write_locked() {
     const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
-    const Allocation edges;  // there are no hubs
+    const Allocation edges;  // there are no high-degree vertices
     launch_.run<KernelId::cadt_wrap_locked>(shares.items, stars_.star_vertices, begins_, stars_.sizes, bases_, edges,
                                             0U, 0U, 0U, 0U, count_, shares.grain, result_.mesh.locked);
     stars_ = {};
@@ -156,7 +157,7 @@ class BatchStage {
     order_.keys.release();
     const Counters counters(ctx_);
     const Allocation vertex_to_triangle = ctx_.memory.allocate(n_ * word), deferred_counts = launch_.zeros(3);
-    // Small pieces, since sets are not alike.
+    // Small pieces, since sets differ in size.
     const std::uint32_t pieces = 16 * ctx_.device.shape().parallelism, grain = std::min(set_count_ / pieces, 256U) + 1;
     launch_.run<KernelId::cadt_batch_insert>((set_count_ - 1) / grain + 1, result_.mesh.locked, order_.points,
                                              vertex_to_triangle, sets_.positions(), set_count_, sets_.states, grain,
@@ -177,7 +178,7 @@ class BatchStage {
     result_.mesh = sweep_legality(ctx_, order_, std::move(result_.mesh.locked), edges);
   }
 
-  /// One by one: sets that are alone from the beginning, or one of whose stars was not found.
+  /// Individually: sets classified so, and those with a vertex without a star.
   void build_individual() {
     result_.flat.assign(set_count_, false);
     for (std::size_t s = 0; s < set_count_; ++s) {
@@ -193,7 +194,7 @@ class BatchStage {
       SortedPoints one;
       one.distinct = size;
       one.points = ctx_.memory.allocate(size * sizeof(cadt_point));
-      one.input_ids = ctx_.memory.allocate(size * word);  // positions
+      one.input_ids = ctx_.memory.allocate(size * word);  // positions in the set
       const LaunchGrid c = launch_.grid(size);
       launch_.run<KernelId::cadt_identity>(c.items, one.input_ids, size, c.grain);
       launch_.run<KernelId::cadt_batch_extract>(c.items, order_.points, begin, size, c.grain, one.points);
@@ -214,7 +215,7 @@ class BatchStage {
   SortedPoints& order_;
   std::size_t n_;
   std::uint32_t count_, set_count_, unproven_ = 0;
-  std::size_t batched_ = 0, vertices_ = 0;  ///< sets that are together at first, and their vertices
+  std::size_t batched_ = 0, vertices_ = 0;  ///< batched sets after classification, and their vertices
   std::vector<std::uint32_t> states_;
   Stars stars_;
   Allocation begins_, bases_;

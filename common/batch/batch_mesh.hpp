@@ -9,16 +9,17 @@
 
 namespace cadt {
 
-/// The meshes of sets as one of many components: two records a vertex, so those of a set begin at twice its first
-/// position, and are not used if it is flat.
+/// The meshes of a batch as one mesh with many components: two triangle slots a vertex, so those of a set begin at
+/// twice its first position; a flat set leaves them unused.
 struct BatchMesh {
   Mesh mesh;
-  std::vector<std::uint32_t> positions;  ///< first positions of the sets, and the end
+  std::vector<std::uint32_t> positions;  ///< first positions of the sets, and the end of the last
   std::vector<bool> flat;                ///< sets without triangles
 };
 
-/// Stars of the vertices of all sets that are together (common/stars/local_star.dev.h, or by gift wrapping); the
-/// others, and those with vertices of too many neighbours, one by one. Releases the keys.
+/// Builds the meshes: of the batched sets from the stars of all vertices (common/stars/local_star.dev.h, and gift
+/// wrapping) or, on CPUs, by insertion; of the others, and of sets with high-degree vertices, individually by
+/// insertion. Releases the keys.
 [[nodiscard]] BatchMesh build_batch(Context& ctx, SortedBatch& sets);
 
 }  // namespace cadt

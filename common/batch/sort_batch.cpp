@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "common/driver/device_text.hpp"
+#include "common/points/duplicates.hpp"
+#include "common/points/key_refinement.hpp"
 
 namespace cadt {
 namespace {
@@ -16,7 +18,7 @@ using namespace device_text;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr unsigned key_bits = 32;
 
-/// Levels of the square of a set: about sixteen cells a point of the largest one, if there are the bits.
+/// Levels of the square of a set: about sixteen cells a point of the largest set, if there are enough bits.
 unsigned choose_levels(std::span<const std::uint32_t> starts) {
   std::size_t largest = 1;
   for (std::size_t s = 0; s + 1 < starts.size(); ++s)
@@ -36,7 +38,7 @@ unsigned choose_levels(std::span<const std::uint32_t> starts) {
 
 }  // namespace
 
-SortedBatch sort_batch(Context& ctx, Allocation input, std::span<const std::uint32_t> starts, std::size_t together,
+SortedBatch sort_batch(Context& ctx, Allocation input, std::span<const std::uint32_t> starts, std::size_t most_batched,
                        std::size_t first, std::size_t first_set) {
   Launcher& launch = ctx.launcher;
   launch.set_variant(narrow_variant(ctx.options.statistics));
@@ -85,9 +87,9 @@ SortedBatch sort_batch(Context& ctx, Allocation input, std::span<const std::uint
   if (!refined && equal == 0) result.order.keys = std::move(keys);
   keys.release();
   compact_distinct(ctx, result.order, std::move(sorted), std::move(order), spare, n, equal, &result.starts);
-  launch.run_in_groups<KernelId::cadt_batch_classify>(teams.items, CADT_SET_LANES, result.order.points,
-                                                      result.positions(), set_count,
-                                                      static_cast<std::uint32_t>(together), teams.grain, result.states);
+  launch.run_in_groups<KernelId::cadt_batch_classify>(
+      teams.items, CADT_SET_LANES, result.order.points, result.positions(), set_count,
+      static_cast<std::uint32_t>(most_batched), teams.grain, result.states);
   ctx.end_phase("gather");
   return result;
 }

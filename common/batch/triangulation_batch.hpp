@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the results of a call with several sets hold.
+// Data of the results of a batch.
 #pragma once
 
 #include <cadt/batch.hpp>
@@ -13,9 +13,9 @@
 
 namespace cadt {
 
-/// What both have on the host. Offsets have one number more than there are sets.
+/// What both results keep on the host. Lists of offsets have one entry more than there are sets.
 struct BatchShape {
-  std::vector<std::size_t> points = {0}, triangles = {0}, duplicates = {0};  ///< where those of each set begin
+  std::vector<std::size_t> points = {0}, triangles = {0}, duplicates = {0};  ///< first element of each set
   std::vector<std::int8_t> dimensions;
   std::vector<Duplicate> duplicate_list;
   Statistics statistics;
@@ -27,7 +27,7 @@ struct TriangulationBatch::Data {
 };
 
 struct DeviceTriangulationBatch::Data {
-  std::shared_ptr<Triangulator::State> state;  // first: goes last, after the memory
+  std::shared_ptr<Triangulator::State> state;  // declared first, so destroyed last: after the memory
   BatchShape shape;
   Allocation triangles, neighbors, offsets;
 };

@@ -9,7 +9,7 @@
 
 namespace cadt {
 
-/// Whether the device takes float coordinates alone.
+/// Whether the device takes float coordinates only.
 [[nodiscard]] inline bool takes_floats_only(const Device& device) noexcept { return !device.info().fp64; }
 
 [[nodiscard]] inline std::size_t coordinate_bytes(const Device& device) noexcept {
@@ -17,7 +17,7 @@ namespace cadt {
 }
 [[nodiscard]] inline std::size_t point_bytes(const Device& device) noexcept { return 2 * coordinate_bytes(device); }
 
-/// Reads `Count` coordinates at a byte offset.
+/// Reads `Count` coordinates from byte `offset` on; waits for the device.
 template <std::size_t Count>
 [[nodiscard]] std::array<double, Count> read_coordinates(Device& device, const Buffer& from, std::size_t offset) {
   std::array<double, Count> values;
@@ -31,7 +31,7 @@ template <std::size_t Count>
   return values;
 }
 
-/// \throws BackendUnavailable if the device cannot take coordinates of so many bytes; none is ever rounded
+/// \throws BackendUnavailable if the device cannot take coordinates of this size; they are never rounded
 void require_scalar(const Device& device, std::size_t scalar_bytes);
 
 }  // namespace cadt

@@ -8,10 +8,10 @@
 namespace cadt {
 namespace {
 
-/// Kernels count coordinates in 32 bits: 2 * (skip + n) of them.
+/// Kernels index coordinates with 32 bits: 2 * (skip + n) of them.
 constexpr std::size_t most_skipped = (std::size_t{1} << 31) - 1 - max_points();
 
-/// Where the coordinates of one axis are: the i-th at first + i * stride.
+/// The coordinates of one axis: the i-th is at first + i * stride.
 struct Axis {
   const Allocation& memory;
   std::size_t first;
@@ -45,7 +45,7 @@ Allocation gather(Context& ctx, const Allocation& input, const SortedPoints& ord
   return points;
 }
 
-/// The caller's points, all or (`order`) the distinct ones in this order.
+/// All of the caller's points, or the distinct ones of `order`, in its order.
 Allocation import_from(Context& ctx, const DevicePoints& points, const SortedPoints* order) {
   const std::size_t n = points.size, size = scalar_bytes(points.scalar);
   const std::size_t count = order != nullptr ? order->distinct : n;
@@ -55,7 +55,7 @@ Allocation import_from(Context& ctx, const DevicePoints& points, const SortedPoi
                          std::to_string(points.skip) + ": pass a handle of a later place",
                      points.skip, most_skipped);
   require_scalar(ctx.device, size);
-  // Kernels of the library only read it.
+  // The kernels of the library only read it.
   const Allocation x = ctx.memory.wrap(const_cast<void*>(points.x), (points.skip + n) * size * (points.y ? 1 : 2));
   if (points.y != nullptr) {
     const Allocation y = ctx.memory.wrap(const_cast<void*>(points.y), (points.skip + n) * size);

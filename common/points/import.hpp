@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The caller's coordinates on the device, interleaved, as its kernels take them (device_points.hpp).
+// The caller's coordinates on the device, interleaved as its kernels take them (device_points.hpp).
 #pragma once
 
 #include <cadt/triangulator.hpp>
@@ -11,15 +11,14 @@
 
 namespace cadt {
 
-/// Bytes of a coordinate.
 [[nodiscard]] constexpr std::size_t scalar_bytes(Scalar scalar) noexcept {
   return scalar == Scalar::float32 ? sizeof(float) : sizeof(double);
 }
 
-/// From the host: without a copy where the device can read the caller's memory.
+/// Points of the host. No copy where the device can read the caller's memory, which must then outlive the result.
 [[nodiscard]] Allocation import_points(Context& ctx, const PointsView& points);
 
-/// From the device: without a copy if they are that already. \throws InputError for a handle that is missing
+/// Points of the device. No copy if they have the device's layout already. \throws InputError if the handle is null
 [[nodiscard]] Allocation import_points(Context& ctx, const DevicePoints& points);
 
 /// The points of a call, wherever they are. Does not own them.
@@ -30,7 +29,8 @@ class InputPoints {
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] Allocation import(Context& ctx) const;
-  /// The distinct points in this order, read again without a copy of all points besides. \pre they are on the device
+  /// The distinct points in this order, scaled, straight from the caller's memory: no copy of all points is
+  /// made. \pre they are on the device
   [[nodiscard]] Allocation import_in_order(Context& ctx, const SortedPoints& order) const;
 
  private:

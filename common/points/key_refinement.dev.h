@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Refinement of crowded cells. Sort keys of 32 bits run out on skewed data: 99.9 % of the points may share one key, and
- * a walk through a crowd in no order is long. Points in runs of equal keys longer than CADT_RUN are sorted again by
- * more bits: those of the coordinates as ordered integers, sixteen an axis and round. After four rounds (two for
- * floats) all bits have been used, so what still shares a key are equal points.
+ * Refinement of over-full cells. Sort keys of 32 bits are too coarse for skewed data: 99.9 % of the points may share
+ * one key, and a walk among unsorted points of a cell is long. Runs of equal keys longer than CADT_RUN are therefore
+ * sorted again by more bits: those of the coordinates as ordered integers, 16 bits an axis and round. After four rounds
+ * (two for floats) all bits have been used, so points that still share a key are equal.
  */
 #ifndef CADT_POINTS_KEY_REFINEMENT_H
 #define CADT_POINTS_KEY_REFINEMENT_H
 
+#include "common/points/hilbert_keys.dev.h"
 #include "common/points/spatial_sort.dev.h"
 
-/* Flags the members of long runs; totals[0] counts them. */
+/* Flags the members of runs longer than CADT_RUN; totals[0] counts them. */
 CADT_KERNEL(cadt_flag_overfull, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_u32* flags, cadt_u32 count,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* totals) {
   cadt_u32 sum = 0u;
   CADT_FOR(i, count, grain) {
     const cadt_u32 key = keys[i];
-    /* a run is long if it holds CADT_RUN + 1 members: look for two of its members that far apart around i */
+    /* a run is long if it has CADT_RUN + 1 members: look for two members that far apart around i */
     cadt_u32 begin = i, end = i;
     while (begin > 0u && i - begin < CADT_RUN && keys[begin - 1u] == key) --begin;
     while (end + 1u < count && end - begin < CADT_RUN && keys[end + 1u] == key) ++end;
@@ -27,7 +28,7 @@ CADT_KERNEL(cadt_flag_overfull, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL ca
   if (sum) cadt_add_relaxed(totals, sum);
 }
 
-/* Places of the flagged. `ranks` is the exclusive scan of the flags, `total` its end. */
+/* Places of the flagged points. `ranks` is the exclusive scan of the flags, `total` its sum. */
 CADT_KERNEL(cadt_pack_overfull, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_u32* places, cadt_u32 count,
             cadt_u32 total, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
@@ -36,7 +37,7 @@ CADT_KERNEL(cadt_pack_overfull, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL c
   }
 }
 
-/* A coordinate as an integer of the same order, -0.0 like 0.0. */
+/* A coordinate as an integer in the same order; -0.0 and 0.0 are equal. */
 CADT_FN cadt_u64 cadt_ordered_bits(cadt_real x) {
 #if CADT_GRADUAL
   const cadt_u64 bits = cadt_bits_of_double(x + 0.0);
@@ -46,9 +47,9 @@ CADT_FN cadt_u64 cadt_ordered_bits(cadt_real x) {
 #endif
 }
 
-/* Keys of a round (0 to 3) for the members at `places`, their points, and 1 in `tails` where a run ends: the exclusive
- * scan of the tails numbers the runs. `fresh` counts the members that differ from the next one in the same run: if
- * there are none, the round changes nothing. */
+/* Keys of a round (0 to 3) for the members at `places`, their points, and tails[j] = 1 where a run ends: the exclusive
+ * scan of the tails numbers the runs. `fresh` counts the members that differ from the next one of their run: if there
+ * are none, the round changes nothing. */
 CADT_KERNEL(cadt_refined_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* order,
             CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_u32* round_keys,
             CADT_GLOBAL cadt_u32* members, CADT_GLOBAL cadt_u32* tails, cadt_u32 total, cadt_u32 round, cadt_u32 grain,
@@ -88,7 +89,7 @@ CADT_KERNEL(cadt_gather_words, CADT_GLOBAL const cadt_u32* in, CADT_GLOBAL const
   CADT_FOR(j, count, grain) { out[j] = in[index[j]]; }
 }
 
-/* 1 where a run of equal keys ends. `low`: their low words, or null. */
+/* 1 where a run of equal keys ends. `low`: the low words of the keys, or null. */
 CADT_KERNEL(cadt_run_tails, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL const cadt_u32* low,
             CADT_GLOBAL cadt_u32* tails, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
@@ -96,7 +97,7 @@ CADT_KERNEL(cadt_run_tails, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL const 
   }
 }
 
-/* Stores the members in their new order at the old places, and the ends of their new runs. \pre `from` lists the
+/* Stores the members in their new order at the old places, and flags the ends of their new runs. \pre `from` lists the
  * members sorted by run, then by key of the round */
 CADT_KERNEL(cadt_store_refined, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL const cadt_u32* members,
             CADT_GLOBAL const cadt_u32* from, CADT_GLOBAL const cadt_u32* runs, CADT_GLOBAL const cadt_u32* round_keys,

@@ -8,12 +8,12 @@
 #define CADT_KERNEL_LIST(X)                                                                     \
   X(cadt_selftest)             /* self_test.dev.h: arithmetic and atomics */                    \
   X(cadt_predicate_probe)      /* predicate_probe.dev.h: the predicates by themselves */        \
-  X(cadt_import_doubles)       /* spatial_sort.dev.h: points from the caller's memory */        \
-  X(cadt_import_floats)        /* spatial_sort.dev.h */                                         \
-  X(cadt_bounds)               /* spatial_sort.dev.h: box, exponents, first bad coordinate */   \
-  X(cadt_merge_bounds)         /* spatial_sort.dev.h */                                         \
-  X(cadt_hilbert_keys)         /* spatial_sort.dev.h: Hilbert keys */                           \
-  X(cadt_fine_hilbert_keys)    /* spatial_sort.dev.h: with two words */                         \
+  X(cadt_import_doubles)       /* import.dev.h: points from the caller's memory */              \
+  X(cadt_import_floats)        /* import.dev.h */                                               \
+  X(cadt_bounds)               /* bounds.dev.h: box, exponents, first bad coordinate */         \
+  X(cadt_merge_bounds)         /* bounds.dev.h */                                               \
+  X(cadt_hilbert_keys)         /* hilbert_keys.dev.h: Hilbert keys */                           \
+  X(cadt_fine_hilbert_keys)    /* hilbert_keys.dev.h: with two words */                         \
   X(cadt_radix_count)          /* radix_sort.dev.h */                                           \
   X(cadt_radix_scatter)        /* radix_sort.dev.h */                                           \
   X(cadt_scan_sums)            /* scan.dev.h */                                                 \
@@ -28,10 +28,10 @@
   X(cadt_run_tails)            /* key_refinement.dev.h */                                       \
   X(cadt_store_refined)        /* key_refinement.dev.h */                                       \
   X(cadt_sort_runs)            /* spatial_sort.dev.h: short runs, in place */                   \
-  X(cadt_gather_points)        /* spatial_sort.dev.h */                                         \
-  X(cadt_unique_flags)         /* spatial_sort.dev.h */                                         \
-  X(cadt_unique_pack)          /* spatial_sort.dev.h: distinct points */                        \
-  X(cadt_duplicate_pairs)      /* spatial_sort.dev.h */                                         \
+  X(cadt_gather_points)        /* import.dev.h */                                               \
+  X(cadt_unique_flags)         /* duplicates.dev.h */                                           \
+  X(cadt_unique_pack)          /* duplicates.dev.h: distinct points */                          \
+  X(cadt_duplicate_pairs)      /* duplicates.dev.h */                                           \
   X(cadt_find_seed_triangle)   /* seed_triangle.dev.h: three points not on a line */            \
   X(cadt_seed_mesh)            /* seed_triangle.dev.h */                                        \
   X(cadt_first_representative) /* insert.dev.h */                                               \

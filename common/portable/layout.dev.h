@@ -53,13 +53,43 @@ enum {
   CADT_STAR_SPARE = 8,
   /* Words before the stars of the first tile, so that vertices of triangles can take the place of stars in order. */
   CADT_STAR_LEAD = 8192,
-  /* Words of what cadt_prove_stars finds: where those of the sample begin, that of the tiles that were left, all. */
-  CADT_STARS_SAMPLED = 7,
-  CADT_STARS_LEFT = 11,
-  CADT_STARS_FOUND = 12,
   /* What a sample says: few have stars, many have many candidates. */
   CADT_SAMPLE_FEW_PROVEN = 1,
   CADT_SAMPLE_MANY = 2
+};
+
+/* Counts of cadt_prove_stars (StarCounters of local_stars.hpp). */
+enum {
+  CADT_STARS_POINTS,
+  CADT_STARS_UNPROVEN, /* points without a proven star */
+  CADT_STARS_EXACT_ORIENTATIONS,
+  CADT_STARS_EXACT_INCIRCLES,
+  CADT_STARS_TIES,
+  CADT_STARS_AGAIN,         /* points that were tried a second time */
+  CADT_STARS_OVERFLOWED,    /* words of stars that their tiles had no room for */
+  CADT_STARS_SAMPLED_TILES, /* of the sample: tiles, points, points without a proven star, points with too many
+                               candidates at first */
+  CADT_STARS_SAMPLED_POINTS,
+  CADT_STARS_SAMPLED_UNPROVEN,
+  CADT_STARS_SAMPLED_OVERFULL,
+  CADT_STARS_SKIPPED_TILES, /* by the verdict of the sample */
+  CADT_STARS_WORDS
+};
+
+/* Counts of the kernels of gift wrapping. */
+enum {
+  CADT_WRAP_OVERFLOWED, /* words of stars behind the rows */
+  CADT_WRAP_FAILED,     /* vertices without a star */
+  CADT_WRAP_WORK,       /* leaves tested plus exact tests */
+  CADT_WRAP_EXACT_ORIENTATIONS,
+  CADT_WRAP_EXACT_INCIRCLES,
+  CADT_WRAP_TIES,
+  CADT_WRAP_DRIVER_WORDS,                        /* those before go to the driver with the triangles */
+  CADT_WRAP_OPEN_EDGES = CADT_WRAP_DRIVER_WORDS, /* half-edges between two vertices without stars */
+  CADT_WRAP_TODO,                                /* vertices that cadt_wrap_near leaves to cadt_wrap_stars, */
+  CADT_WRAP_TODO_OPEN,                           /* of these those whose partial star does not go all the way round, */
+  CADT_WRAP_TODO_ON_CIRCLE,                      /* of these those that are cocircular with far points */
+  CADT_WRAP_WORDS
 };
 
 /* Gift wrapping (wrap_exact.dev.h). */
@@ -85,8 +115,6 @@ enum {
   CADT_MOST_HIGH_DEGREE = 64, /* vertices without a star at most, */
   CADT_WRAP_EDGES = 256,      /* half-edges between two of them */
   CADT_WRAP_LANES = 128,      /* lanes of a team that search */
-  CADT_WRAP_FOUND = 6,        /* words that are counted for the driver, */
-  CADT_WRAP_WORDS = 10,       /* and with those that kernels leave for the next */
   CADT_WRAP_HULL = 3000,      /* points that are wrapped even if nearly all are on the hull, */
   CADT_WRAP_HULL_EXACT = 400, /* and where that takes exact tests: all are on a circle */
   CADT_WRAP_SHARES = 8,       /* work-items that write the triangles of a vertex */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * For gift wrapping (wrap_fast.dev.h, wrap_exact.dev.h): points stand in boxes, and boxes in crates, so that those
- * which a circle does not reach are passed over.
+ * The AABB tree of gift wrapping (wrap_fast.dev.h, wrap_exact.dev.h), and discs to search it with. Its leaves are the
+ * bounding boxes of CADT_AABB_LEAF points that follow one another in sorted order, its nodes those of CADT_AABB_FANOUT
+ * leaves; leaves and nodes that a disc does not reach are skipped.
  */
 #ifndef CADT_STARS_AABB_TREE_H
 #define CADT_STARS_AABB_TREE_H
@@ -10,16 +11,16 @@
 #include "common/mesh/locked_mesh.dev.h"
 #include "common/predicates/filtered_predicates.dev.h"
 
-/* How far the points around a vertex are known: the square, in spacings of the points. */
+/* Radius^2 up to which the points around a vertex are gathered, in squared spacings of the points. */
 #define CADT_NEAR_SPACINGS 9.0
-/* A circle whose arc is flatter is no better known by rounded numbers (cadt_disc_beside). */
+/* A circle whose arc is flatter than this is not known better in rounded arithmetic (cadt_disc_beside). */
 #define CADT_WRAP_FLAT 65536.0
 
-/* The points among which stars are searched: all, or those of a set (batch.dev.h). Every set begins a new box and a new
- * crate, which leaves some numbers out. */
+/* The points among which stars are searched: all, or those of one set (batch.dev.h). Each set begins a new leaf and a
+ * new node, so some numbers of leaves and nodes are unused. */
 typedef struct {
-  cadt_u32 begin, count; /* positions */
-  cadt_u32 leaf, node;   /* the first ones */
+  cadt_u32 begin, count; /* positions in sorted order */
+  cadt_u32 leaf, node;   /* the first of the set */
 } cadt_wrap_span;
 
 /* `starts`: null for all n points. */
@@ -32,7 +33,7 @@ CADT_FN cadt_wrap_span cadt_wrap_span_of(CADT_GLOBAL const cadt_u32* starts, cad
   return r;
 }
 
-/* The last set whose first crate is not behind this one. */
+/* The set of a node: the last one whose first node is not behind it. */
 CADT_FN cadt_u32 cadt_wrap_set_of_node(CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, cadt_u32 node) {
   cadt_u32 low = 0u, high = set_count;
   while (high - low > 1u) {
@@ -46,9 +47,9 @@ CADT_FN cadt_u32 cadt_wrap_set_of_node(CADT_GLOBAL const cadt_u32* starts, cadt_
 }
 
 typedef struct {
-  CADT_GLOBAL const cadt_point* points; /* of a range, as the numbers of vertices, boxes and crates */
-  CADT_GLOBAL const cadt_aabb* leaves;  /* of CADT_AABB_LEAF points, */
-  CADT_GLOBAL const cadt_aabb* nodes;   /* of CADT_AABB_FANOUT boxes */
+  CADT_GLOBAL const cadt_point* points; /* of a span; vertices, leaves and nodes are counted in it */
+  CADT_GLOBAL const cadt_aabb* leaves;  /* boxes of CADT_AABB_LEAF points */
+  CADT_GLOBAL const cadt_aabb* nodes;   /* boxes of CADT_AABB_FANOUT leaves */
   cadt_u32 n, leaf_count, node_count;
 } cadt_aabb_tree;
 
@@ -64,7 +65,7 @@ CADT_FN cadt_aabb_tree cadt_aabb_tree_of(const cadt_wrap_span span, CADT_GLOBAL 
   return in;
 }
 
-/* Point `place` of those in the boxes of a list. */
+/* Point number `place` of those in the listed leaves. */
 CADT_FN cadt_u32 cadt_wrap_in_leaves(CADT_TEAM_PTR const cadt_u32* leaves, cadt_u32 place) {
   return leaves[place / CADT_AABB_LEAF] * CADT_AABB_LEAF + place % CADT_AABB_LEAF;
 }
@@ -76,10 +77,10 @@ CADT_FN void cadt_aabb_add(cadt_aabb* leaf, const cadt_aabb other) {
   if (other.high.y > leaf->high.y) leaf->high.y = other.high.y;
 }
 
-/* The box of `count` of them, of which there is one. */
+/* The bounding box of up to CADT_WRAP_PART points. \pre count > 0 */
 CADT_FN cadt_aabb cadt_aabb_of_points(CADT_GLOBAL const cadt_point* points, cadt_u32 count) {
   cadt_aabb leaf, point[CADT_WRAP_PART];
-  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_WRAP_PART); ++i) /* all at once: each wait is long */
+  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_WRAP_PART); ++i) /* all loads at once: each has a long latency */
     point[i].low = point[i].high = points[i < count ? i : 0u];
   leaf = point[0];
   for (cadt_u32 i = 1u; i < CADT_CAST(cadt_u32, CADT_WRAP_PART); ++i) cadt_aabb_add(&leaf, point[i]);
@@ -92,15 +93,15 @@ CADT_FN cadt_aabb cadt_aabb_of_leaves(CADT_TEAM_PTR const cadt_aabb* leaves, cad
   return leaf;
 }
 
-/* Boxes of CADT_AABB_LEAF points, and crates of CADT_AABB_FANOUT boxes: a team for each. Of all points also what
- * the kernels of the stars expect to be 0, if it is given. */
+/* Builds leaves and nodes, a team for each node. Also zeroes `sizes` and `counts` for the kernels of the stars, where
+ * they are given. */
 CADT_KERNEL(cadt_build_aabb_tree, CADT_GLOBAL const cadt_point* points, cadt_u32 n, CADT_GLOBAL const cadt_u32* starts,
             cadt_u32 set_count, cadt_u32 node_count, cadt_u32 grain, CADT_GLOBAL cadt_aabb* leaves,
-            CADT_GLOBAL cadt_aabb* nodes, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* found) {
+            CADT_GLOBAL cadt_aabb* nodes, CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* counts) {
   CADT_TEAM_MEMORY cadt_aabb part[CADT_AABB_FANOUT * CADT_WRAP_PARTS];
   CADT_TEAM_MEMORY cadt_aabb inside[CADT_AABB_FANOUT];
-  if (found && cadt_item == 0u)
-    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_WRAP_WORDS); ++k) found[k] = 0u;
+  if (counts && cadt_item == 0u)
+    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_WRAP_WORDS); ++k) counts[k] = 0u;
   CADT_FOR_TEAMS(node, node_count, grain) {
     const cadt_wrap_span r = cadt_wrap_span_of(starts, starts ? cadt_wrap_set_of_node(starts, set_count, node) : 0u, n);
     const cadt_u32 begin = cadt_min_u32(r.count, (node - r.node) * CADT_AABB_FANOUT * CADT_AABB_LEAF);
@@ -123,15 +124,15 @@ CADT_KERNEL(cadt_build_aabb_tree, CADT_GLOBAL const cadt_point* points, cadt_u32
   }
 }
 
-/* A disc that contains the circle through p, a and b for certain; coordinates are from p. */
+/* A disc that certainly contains the circle through p, a and b; coordinates are relative to p. */
 typedef struct {
-  double x, y, square; /* centre, radius^2; not a finite number: the disc may be the plane */
+  double x, y, square; /* centre, radius^2; if that is not finite, the disc may be the whole plane */
 } cadt_disc;
 
-/* With u = 2^-53 and K = |a| |b| / |a x b|, which is at least 1, centre and radius are off by less than
- * E = 24 u K (1 + K) (|a| + |b|) where K is known well, and that is at most 48 u (kk (1 + kk) (aa + bb))^(1/2). Whether
- * a point or a box is in the disc is found out from coordinates that are off by 8 u r. The radius may be many times as
- * long as the distances of the points that are asked for, so it must not be larger than it need be. */
+/* With u = 2^-53 and K = |a| |b| / |a x b|, which is at least 1, centre and radius are off by less than E = 24 u K (1 +
+ * K) (|a| + |b|) where K is well known, and that is at most 48 u (kk (1 + kk) (aa + bb))^(1/2). Tests whether a point
+ * or a box is in the disc use coordinates that are off by 8 u r. The radius may be many times the distance of the
+ * points that are tested, so it must not be larger than necessary. */
 CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
   const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
   const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;
@@ -146,10 +147,10 @@ CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
   return d;
 }
 
-/* The same as far as points on one side (1 left, -1 right) of the line from p to a are asked for, on which b is. If p
- * and a are seen from b in nearly opposite directions, the circle is all but a line, and its centre is not known; but
- * on that side there is only a flat arc of it, and a flatter circle contains that: the one that sees p and a at an
- * angle whose cotangent is -CADT_WRAP_FLAT, half of what is certain of b. */
+/* The same for points on one side (1 left, -1 right) of the line from p to a, on which b lies. If p and a are seen from
+ * b in nearly opposite directions, the circle is almost a line, and its centre is not known; but on that side it has
+ * only a flat arc, and a flatter circle contains that: the one that sees p and a at an angle whose cotangent is
+ * -CADT_WRAP_FLAT, half of what is certain of b. */
 CADT_FN cadt_disc cadt_disc_beside(cadt_point p, cadt_point a, cadt_point b, cadt_i32 side) {
   const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
   const double left = ax * by, right = ay * bx, across = bx * (bx - ax), along = by * (by - ay);
@@ -164,14 +165,14 @@ CADT_FN cadt_disc cadt_disc_beside(cadt_point p, cadt_point a, cadt_point b, cad
   return d;
 }
 
-/* Whether points of the box can lie in the disc and to the side (1 left, -1 right, 0 either) of the line from p to
- * p + (ax, ay). A comparison with what is not a number does not exclude them. */
+/* Whether points of the box can lie in the disc and to the side (1 left, -1 right, 0 either) of the line from p to p +
+ * (ax, ay). A comparison with NaN does not exclude them. */
 CADT_FN cadt_u32 cadt_aabb_matters(const cadt_aabb leaf, cadt_point p, double ax, double ay, double side,
                                    const cadt_disc* disc) {
   const double low_x = leaf.low.x - p.x, low_y = leaf.low.y - p.y, high_x = leaf.high.x - p.x,
                high_y = leaf.high.y - p.y;
   const double left = ax * (ax * side > 0.0 ? high_y : low_y), right = ay * (ay * side > 0.0 ? low_x : high_x);
-  /* or none beyond a line along an axis: both are 0 */
+  /* also none beyond an axis-parallel line: both are 0 */
   if (side != 0.0 && (left - right) * side <= -1e-15 * (cadt_fabs(left) + cadt_fabs(right))) return 0u;
   double x = low_x - disc->x, y = low_y - disc->y;
   if (x < 0.0) x = disc->x > high_x ? disc->x - high_x : 0.0;
@@ -180,12 +181,12 @@ CADT_FN cadt_u32 cadt_aabb_matters(const cadt_aabb leaf, cadt_point p, double ax
 }
 
 typedef struct {
-  double square; /* of the distance up to which all points are known; negative: they are not */
-  double unit;   /* factor for single precision */
+  double square; /* square of the distance up to which all points are known; negative: not known */
+  double unit;   /* scale factor for single precision */
 } cadt_reach_around;
 
-/* How far the points around p are to be known: three times the distance at which points lie, by the box of p and those
- * beside it in sorted order, which may stretch over a gap of the curve. */
+/* How far the points around p are gathered: three times the spacing of the points, estimated from the leaf of p and
+ * those beside it in sorted order, which may span a gap of the curve. */
 CADT_FN cadt_reach_around cadt_wrap_reach(const cadt_aabb_tree* in, cadt_u32 p) {
   const cadt_u32 own = p / CADT_AABB_LEAF, end = cadt_min_u32(own + 2u, in->leaf_count);
   double spacing = CADT_CAST(double, CADT_INFINITY), longest = 0.0;
@@ -193,7 +194,7 @@ CADT_FN cadt_reach_around cadt_wrap_reach(const cadt_aabb_tree* in, cadt_u32 p) 
     const cadt_aabb leaf = in->leaves[b];
     const double wide = leaf.high.x - leaf.low.x, high = leaf.high.y - leaf.low.y, longer = wide > high ? wide : high;
     const cadt_u32 count = cadt_min_u32(CADT_AABB_LEAF, in->n - b * CADT_AABB_LEAF);
-    if (b && 2u * count < CADT_CAST(cadt_u32, CADT_AABB_LEAF)) continue; /* too few to tell */
+    if (b && 2u * count < CADT_CAST(cadt_u32, CADT_AABB_LEAF)) continue; /* too few points for an estimate */
     const double inverse = 1.0 / CADT_CAST(double, count);
     const double area = wide * high * inverse, line = longer * longer * inverse * inverse;
     const double square = area > line ? area : line;
@@ -207,55 +208,57 @@ CADT_FN cadt_reach_around cadt_wrap_reach(const cadt_aabb_tree* in, cadt_u32 p) 
   return reach;
 }
 
-/* A number that is less than another one if x is. x is not NaN. */
+/* An integer in the same order as the float x. \pre x is not NaN */
 CADT_FN cadt_u32 cadt_wrap_order(float x) {
   const cadt_u32 bits = cadt_bits_of_float(x);
   return bits >> 31 ? ~bits : bits | 0x80000000u;
 }
 
-/* The point c as one behind a, both from p in the unit: the cotangent of the angle at which it sees p and a, as a
- * number that can be compared. With `nearest` its distance. CADT_NONE if it is not on that side. */
+/* Sort key of c as the next star vertex after a, both relative to p and scaled: the cotangent of the angle at which c
+ * sees p and a. With `nearest`: its squared distance. CADT_NONE if c is not on that side. */
 CADT_FN cadt_u32 cadt_wrap_key(float ax, float ay, float cx, float cy, cadt_i32 side, cadt_u32 nearest) {
   const float cross = side > 0 ? ax * cy - ay * cx : ay * cx - ax * cy, dot = cx * (cx - ax) + cy * (cy - ay);
   const float square = cx * cx + cy * cy, value = nearest ? square : dot * cadt_about_inverse(cross);
-  if (!((nearest ? square : cross) > 0.0f && cadt_fabsf(value) < 3e38f)) return CADT_NONE; /* p and a as well */
+  if (!((nearest ? square : cross) > 0.0f && cadt_fabsf(value) < 3e38f))
+    return CADT_NONE; /* excludes p and a as well */
   return cadt_wrap_order(value);
 }
 
-/* The cotangent again. */
+/* The cotangent from its key. */
 CADT_FN float cadt_wrap_key_value(cadt_u32 key) { return cadt_float_of_bits(key >> 31 ? key & 0x7FFFFFFFu : ~key); }
 
-/* Which of two points on one side of the line p, a has the circle without the other. */
+/* Which of two points on one side of the line p, a has an empty circle with p and a among the two. */
 CADT_FN cadt_u32 cadt_wrap_better_of(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a, cadt_i32 side,
                                      cadt_u32 b, cadt_u32 c, cadt_counters* counters) {
   return cadt_incircle(points[side > 0 ? p : a], points[side > 0 ? a : p], points[b], points[c], counters) > 0 ? c : b;
 }
 
-/* What lanes find out together from one barrier to the next: the least of their values, and how many they count. It can
- * be read until the end of the next step, so that a step takes one barrier. */
+/* A reduction over the lanes of a team that takes one barrier: the least of their values, and how many they count. The
+ * result can be read until the end of the next reduction. */
 typedef struct {
-  cadt_u32 least[3], count[3]; /* of a step, of the next one, of the one after it */
-} cadt_steps;
+  cadt_u32 least[3], count[3]; /* of this reduction, of the next one, of the one after it */
+} cadt_reduction;
 
-/* \pre a barrier follows, and nobody uses the last steps any more */
-CADT_FN void cadt_begin_steps(CADT_TEAM_PTR cadt_steps* steps) {
+/* \pre a barrier follows, and no lane reads earlier results any more */
+CADT_FN void cadt_begin_reductions(CADT_TEAM_PTR cadt_reduction* reductions) {
   if (cadt_team_lane != 0u) return;
-  steps->least[0] = CADT_NONE;
-  steps->count[0] = 0u;
+  reductions->least[0] = CADT_NONE;
+  reductions->count[0] = 0u;
 }
 
-/* Ends step `*now`, with a value or CADT_NONE. */
-CADT_FN cadt_u32 cadt_end_step(CADT_TEAM_PTR cadt_steps* steps, cadt_u32* now, cadt_u32 value, cadt_u32* count) {
+/* Ends reduction `*now`, to which the lane contributes a value or CADT_NONE. */
+CADT_FN cadt_u32 cadt_end_reduction(CADT_TEAM_PTR cadt_reduction* reductions, cadt_u32* now, cadt_u32 value,
+                                    cadt_u32* count) {
   const cadt_u32 this_one = *now, next = this_one == 2u ? 0u : this_one + 1u;
   if (cadt_team_lane == 0u) {
-    steps->least[next] = CADT_NONE;
-    steps->count[next] = 0u;
+    reductions->least[next] = CADT_NONE;
+    reductions->count[next] = 0u;
   }
-  cadt_team_least(&steps->least[this_one], value);
+  cadt_team_least(&reductions->least[this_one], value);
   CADT_TEAM_SYNC();
   *now = next;
-  *count = steps->count[this_one];
-  return steps->least[this_one];
+  *count = reductions->count[this_one];
+  return reductions->least[this_one];
 }
 
 #endif

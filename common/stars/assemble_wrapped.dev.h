@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The mesh from wrapped stars, in records or in arrays. A triangle belongs to the lowest of its vertices that has a
- * star. A hub has none, so its triangles are those of its neighbours. An edge between two without stars (hubs, or the
- * ghost) is listed with the vertex on either side of it; high_degree.dev.h adds the triangles of three such vertices,
- * each as its three half-edges.
+ * The mesh from wrapped stars, as locked triangles or in arrays. A triangle belongs to the lowest of its vertices that
+ * has a star. A high-degree vertex has none, so its triangles belong to its neighbours. An edge between two vertices
+ * without stars (high-degree vertices, or the ghost) is listed with the apex on either side; high_degree.dev.h adds the
+ * triangles of three such vertices, each as its three half-edges.
  */
 #ifndef CADT_STARS_ASSEMBLE_WRAPPED_H
 #define CADT_STARS_ASSEMBLE_WRAPPED_H
@@ -15,61 +15,63 @@ typedef struct {
   CADT_GLOBAL const cadt_u32* star_vertices;
   CADT_GLOBAL const cadt_u32* begins;
   CADT_GLOBAL const cadt_u32* sizes;
-  CADT_GLOBAL const cadt_u32* bases; /* number of the first triangle that belongs to a vertex */
+  CADT_GLOBAL const cadt_u32* bases; /* number of the first triangle of each vertex */
   CADT_GLOBAL const cadt_wrap_edge* edges;
   cadt_u32 edge_count;
-  cadt_u32 first_extra; /* of the edges: from here on they are those of triangles without stars, whose numbers */
-  cadt_u32 extra_base;  /* begin here, in arrays those of the ghost's triangles */
-  cadt_u32 high_degree; /* whether there are any */
-  cadt_u32 apart;       /* in arrays: real triangles come before those of the ghost */
+  cadt_u32
+      first_extra; /* the edges from here on are the half-edges of triangles that no star has; the numbers of those */
+  cadt_u32 extra_base;  /* begin here; in arrays those of the ghost's triangles */
+  cadt_u32 high_degree; /* whether there are high-degree vertices */
+  cadt_u32 apart;       /* in arrays: the real triangles come before those of the ghost */
 } cadt_wrap_set;
 
-/* What a triangle with the neighbours a and b of its owner adds to the count. */
-CADT_FN cadt_u32 cadt_wrap_one(cadt_u32 apart, cadt_u32 a, cadt_u32 b) {
+/* What a triangle of a vertex with its star vertices a and b adds to the packed count. */
+CADT_FN cadt_u32 cadt_wrap_packed_one(cadt_u32 apart, cadt_u32 a, cadt_u32 b) {
   return apart && a != CADT_GHOST && b != CADT_GHOST ? 0x10000u : 1u;
 }
 
-/* Whether v comes before another vertex of its star: there it owns what they share. */
-CADT_FN cadt_u32 cadt_wrap_before(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 high_degree, cadt_u32 v, cadt_u32 other) {
+/* Whether v precedes another vertex of its star: then v owns what they share. */
+CADT_FN cadt_u32 cadt_wrap_precedes(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 high_degree, cadt_u32 v,
+                                    cadt_u32 other) {
   return other > v || (high_degree && sizes[other] == 0u) ? 1u : 0u;
 }
 
-/* Whether the vertex has no star: a hub, or the ghost. */
-CADT_FN cadt_u32 cadt_wrap_starless(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 v) {
+/* Whether the vertex has no star: a high-degree vertex, or the ghost. */
+CADT_FN cadt_u32 cadt_lacks_star(CADT_GLOBAL const cadt_u32* sizes, cadt_u32 v) {
   return v == CADT_GHOST || sizes[v] == 0u ? 1u : 0u;
 }
 
-/* Triangles that belong to v. */
+/* Number of triangles that v owns. */
 CADT_FN cadt_u32 cadt_wrap_owned(CADT_GLOBAL const cadt_u32* star, cadt_u32 size, CADT_GLOBAL const cadt_u32* sizes,
                                  cadt_u32 high_degree, cadt_u32 apart, cadt_u32 v) {
   cadt_u32 count = 0u;
   for (cadt_u32 k = 0u; k < size; ++k) {
     const cadt_u32 a = star[k], b = star[k + 1u < size ? k + 1u : 0u];
-    if (cadt_wrap_before(sizes, high_degree, v, a) && cadt_wrap_before(sizes, high_degree, v, b))
-      count += cadt_wrap_one(apart, a, b);
+    if (cadt_wrap_precedes(sizes, high_degree, v, a) && cadt_wrap_precedes(sizes, high_degree, v, b))
+      count += cadt_wrap_packed_one(apart, a, b);
   }
   return count;
 }
 
-/* owned[v]: triangles that belong to v, in two counts if `apart`; a 0 behind the last, and then the first words of
- * `found`, so that they can be read with the scan's total, and `zeros` zeros for who writes next. If not `apart`,
- * half-edges between two vertices without stars are counted in found[6], and listed. */
+/* owned[v]: triangles that v owns, as a packed count if `apart`. Behind the last stand a 0, then the first words of
+ * `counts`, so that they can be read with the scan's total, and `zeros` zeros for the next writer. If not `apart`, the
+ * half-edges between two vertices without stars are listed and counted. */
 CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
-            CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 apart, cadt_u32 grain, CADT_GLOBAL cadt_u32* found,
+            CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 apart, cadt_u32 grain, CADT_GLOBAL cadt_u32* counts,
             CADT_GLOBAL cadt_u32* owned, cadt_u32 zeros, CADT_GLOBAL cadt_wrap_edge* edges) {
-  for (cadt_u32 k = cadt_item; k < zeros; k += cadt_items) owned[n + 1u + CADT_WRAP_FOUND + k] = 0u;
+  for (cadt_u32 k = cadt_item; k < zeros; k += cadt_items) owned[n + 1u + CADT_WRAP_DRIVER_WORDS + k] = 0u;
   if (cadt_item == 0u) {
     owned[n] = 0u;
-    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_WRAP_FOUND); ++k) owned[n + 1u + k] = found[k];
+    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_WRAP_DRIVER_WORDS); ++k) owned[n + 1u + k] = counts[k];
   }
-  const cadt_u32 high_degree = found[1];
+  const cadt_u32 high_degree = counts[CADT_WRAP_FAILED];
   CADT_FOR(v, n, grain) {
     CADT_GLOBAL const cadt_u32* star = star_vertices + begins[v];
     const cadt_u32 size = sizes[v];
     for (cadt_u32 k = 0u; high_degree && !apart && k < size; ++k) {
       const cadt_u32 a = star[k], b = star[k + 1u < size ? k + 1u : 0u];
-      if (cadt_wrap_starless(sizes, a) && cadt_wrap_starless(sizes, b)) {
-        const cadt_u32 at = cadt_add_relaxed(found + 6, 1u);
+      if (cadt_lacks_star(sizes, a) && cadt_lacks_star(sizes, b)) {
+        const cadt_u32 at = cadt_add_relaxed(counts + CADT_WRAP_OPEN_EDGES, 1u);
         if (at < CADT_CAST(cadt_u32, CADT_WRAP_EDGES)) {
           edges[at].from = a;
           edges[at].to = b;
@@ -81,8 +83,8 @@ CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
   }
 }
 
-/* The same for sets together, which have no hubs; those that have failed lose their stars. Every set has two records a
- * vertex: two of them belong to its last vertex and are not used, nor are any of a set without stars. */
+/* The same for the batched sets, which have no high-degree vertices; sets that have failed lose their stars. Each set
+ * has two slots a vertex: two of them belong to its last vertex and stay empty, as do all of a set without stars. */
 CADT_KERNEL(cadt_batch_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
             CADT_GLOBAL const cadt_u32* states, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* owned) {
@@ -99,50 +101,51 @@ CADT_KERNEL(cadt_batch_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_G
   }
 }
 
-/* Place of vertex a in the star of v, and the count of triangles before it that belong to v. \pre it is there */
+/* Place of vertex a in the star of v, and the packed count of triangles before it that v owns. \pre a is there */
 CADT_FN cadt_u32 cadt_wrap_place(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32* owned) {
   CADT_GLOBAL const cadt_u32* star = s->star_vertices + s->begins[v];
   cadt_u32 k = 0u, count = 0u, now = star[0];
   while (now != a) {
     const cadt_u32 next = star[++k];
-    if (cadt_wrap_before(s->sizes, s->high_degree, v, now) && cadt_wrap_before(s->sizes, s->high_degree, v, next))
-      count += cadt_wrap_one(s->apart, now, next);
+    if (cadt_wrap_precedes(s->sizes, s->high_degree, v, now) && cadt_wrap_precedes(s->sizes, s->high_degree, v, next))
+      count += cadt_wrap_packed_one(s->apart, now, next);
     now = next;
   }
   *owned = count;
   return k;
 }
 
-/* The neighbour of v before or behind its neighbour a. */
-CADT_FN cadt_u32 cadt_wrap_beside(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32 behind) {
+/* The star vertex of v before or behind its star vertex a. */
+CADT_FN cadt_u32 cadt_wrap_adjacent(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 a, cadt_u32 behind) {
   cadt_u32 owned;
   const cadt_u32 k = cadt_wrap_place(s, v, a, &owned), size = s->sizes[v];
   const cadt_u32 other = behind ? (k + 1u < size ? k + 1u : 0u) : (k ? k - 1u : size - 1u);
   return s->star_vertices[s->begins[v] + other];
 }
 
-/* The vertex to the right of the edge from a to b. */
-CADT_FN cadt_u32 cadt_wrap_right(const cadt_wrap_set* s, cadt_u32 a, cadt_u32 b) {
-  if (!cadt_wrap_starless(s->sizes, a)) return cadt_wrap_beside(s, a, b, 0u);
-  if (!cadt_wrap_starless(s->sizes, b)) return cadt_wrap_beside(s, b, a, 1u);
+/* The apex to the right of the edge from a to b. */
+CADT_FN cadt_u32 cadt_wrap_right_apex(const cadt_wrap_set* s, cadt_u32 a, cadt_u32 b) {
+  if (!cadt_lacks_star(s->sizes, a)) return cadt_wrap_adjacent(s, a, b, 0u);
+  if (!cadt_lacks_star(s->sizes, b)) return cadt_wrap_adjacent(s, b, a, 1u);
   for (cadt_u32 e = 0u; e < s->edge_count; ++e)
     if (s->edges[e].from == b && s->edges[e].to == a) return s->edges[e].left;
   return CADT_NONE; /* never: the driver has matched all of them */
 }
 
-/* Number of the triangle of v with its neighbours a and b; `before`: count of those of v before it. */
+/* Number of the triangle of v with its star vertices a and b; `before`: packed count of the triangles of v before it.
+ */
 CADT_FN cadt_u32 cadt_wrap_number(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 before, cadt_u32 a, cadt_u32 b) {
   const cadt_u32 sum = s->bases[v] + before;
   if (!s->apart) return sum;
   return a == CADT_GHOST || b == CADT_GHOST ? s->extra_base + CADT_WRAP_GHOSTS(sum) : CADT_WRAP_REAL(sum);
 }
 
-/* Link to the triangle x, y, z across the edge opposite of x (0), y (1) or z (2). */
-CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, cadt_u32 z, cadt_u32 opposite) {
-  const cadt_u32 none = CADT_GHOST; /* hubs own nothing */
-  const cadt_u32 i = s->high_degree && cadt_wrap_starless(s->sizes, x) ? none : x;
-  const cadt_u32 j = s->high_degree && cadt_wrap_starless(s->sizes, y) ? none : y;
-  const cadt_u32 k = s->high_degree && cadt_wrap_starless(s->sizes, z) ? none : z;
+/* The half-edge in the triangle x, y, z opposite of x (0), y (1) or z (2). */
+CADT_FN cadt_u32 cadt_wrap_half_edge(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, cadt_u32 z, cadt_u32 opposite) {
+  const cadt_u32 none = CADT_GHOST; /* high-degree vertices own nothing */
+  const cadt_u32 i = s->high_degree && cadt_lacks_star(s->sizes, x) ? none : x;
+  const cadt_u32 j = s->high_degree && cadt_lacks_star(s->sizes, y) ? none : y;
+  const cadt_u32 k = s->high_degree && cadt_lacks_star(s->sizes, z) ? none : z;
   const cadt_u32 lowest = i < j ? (i < k ? 0u : 2u) : (j < k ? 1u : 2u);
   const cadt_u32 owner = CADT_PICK(lowest, x, y, z), next = CADT_PICK(lowest, y, z, x);
   if (CADT_PICK(lowest, i, j, k) == none) {
@@ -157,35 +160,38 @@ CADT_FN cadt_u32 cadt_wrap_link(const cadt_wrap_set* s, cadt_u32 x, cadt_u32 y, 
                         opposite >= lowest ? opposite - lowest : opposite + 3u - lowest);
 }
 
-/* A triangle that belongs to a vertex: its number, the neighbours a and b, the links. */
+/* A triangle of its owner: number, star vertices a and b, half-edges across its edges. */
 typedef struct {
-  cadt_u32 number, a, b, star_vertices[3];
+  cadt_u32 number, a, b, half_edges[3];
 } cadt_wrap_triangle;
 
-/* That of the neighbours k and the next; false if it belongs to another vertex. */
+/* The triangle of v with star vertices k and k + 1; returns 0 if another vertex owns it. */
 CADT_FN cadt_u32 cadt_wrap_triangle_of(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 k, cadt_wrap_triangle* t) {
   CADT_GLOBAL const cadt_u32* star = s->star_vertices + s->begins[v];
   const cadt_u32 size = s->sizes[v], k1 = k + 1u < size ? k + 1u : 0u, a = star[k], b = star[k1];
-  if (!cadt_wrap_before(s->sizes, s->high_degree, v, a) || !cadt_wrap_before(s->sizes, s->high_degree, v, b)) return 0u;
+  if (!cadt_wrap_precedes(s->sizes, s->high_degree, v, a) || !cadt_wrap_precedes(s->sizes, s->high_degree, v, b))
+    return 0u;
   cadt_u32 before;
   cadt_wrap_place(s, v, a, &before);
   t->number = cadt_wrap_number(s, v, before, a, b);
   t->a = a;
   t->b = b;
-  t->star_vertices[0] = cadt_wrap_link(s, a, cadt_wrap_right(s, a, b), b, 1u);
-  t->star_vertices[1] = cadt_wrap_link(s, v, b, star[k1 + 1u < size ? k1 + 1u : 0u], 2u);
-  t->star_vertices[2] = cadt_wrap_link(s, v, star[k ? k - 1u : size - 1u], a, 1u);
+  t->half_edges[0] = cadt_wrap_half_edge(s, a, cadt_wrap_right_apex(s, a, b), b, 1u);
+  t->half_edges[1] = cadt_wrap_half_edge(s, v, b, star[k1 + 1u < size ? k1 + 1u : 0u], 2u);
+  t->half_edges[2] = cadt_wrap_half_edge(s, v, star[k ? k - 1u : size - 1u], a, 1u);
   return 1u;
 }
 
-/* The mesh in arrays (certify.dev.h), real triangles first, of stars without hubs. bases[n] is the total, behind it is
- * what was found: if that is not a mesh, nothing is written. The number of real triangles goes to the words of
- * cadt_certify, in bases from `row` on. CADT_WRAP_SHARES work-items for each vertex. */
+/* The mesh in arrays (certify.dev.h), real triangles first, of stars without high-degree vertices. bases[n] is the
+ * total, the counts stand behind it: if they are not those of a mesh, nothing is written. The number of real triangles
+ * goes to the words of cadt_certify, in `bases` from `row` on. CADT_WRAP_SHARES work-items a vertex. */
 CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
-            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL cadt_u32* bases, cadt_u32 link_words, cadt_u32 row,
+            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL cadt_u32* bases, cadt_u32 star_words, cadt_u32 row,
             cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* vertices, CADT_GLOBAL cadt_u32* half_edges) {
   const cadt_u32 total = bases[n], real = CADT_WRAP_REAL(total);
-  if (real + CADT_WRAP_GHOSTS(total) != 2u * n - 2u || bases[n + 1u] > link_words || bases[n + 2u]) return;
+  if (real + CADT_WRAP_GHOSTS(total) != 2u * n - 2u || bases[n + 1u + CADT_WRAP_OVERFLOWED] > star_words ||
+      bases[n + 1u + CADT_WRAP_FAILED])
+    return;
   if (cadt_item == 0u) bases[row + CADT_CERTIFY_REAL] = real;
   cadt_wrap_set stars;
   stars.star_vertices = star_vertices;
@@ -204,12 +210,13 @@ CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
       vertices[3u * t.number] = v;
       vertices[3u * t.number + 1u] = t.a;
       vertices[3u * t.number + 2u] = t.b;
-      for (cadt_u32 edge = 0u; edge < 3u; ++edge) half_edges[3u * t.number + edge] = t.star_vertices[edge];
+      for (cadt_u32 edge = 0u; edge < 3u; ++edge) half_edges[3u * t.number + edge] = t.half_edges[edge];
     }
   }
 }
 
-/* CADT_WRAP_SHARES work-items for each vertex. The last two records are not used. \pre no triangle is missing */
+/* The mesh as locked triangles; the last two slots stay empty. CADT_WRAP_SHARES work-items a vertex. \pre no triangle
+ * is missing */
 CADT_KERNEL(cadt_wrap_locked, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases,
             CADT_GLOBAL const cadt_wrap_edge* edges, cadt_u32 edge_count, cadt_u32 first_extra, cadt_u32 extra_base,
@@ -232,9 +239,10 @@ CADT_KERNEL(cadt_wrap_locked, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
       CADT_GLOBAL cadt_u32* w = locked[extra_base + (e - first_extra) / 3u].word;
       const cadt_u32 a = edges[e].from, b = edges[e].to, c = edges[e].left;
       cadt_store_four(w, a, b, c, 2u);
-      cadt_store_four(w + CADT_WORD_HALF_EDGE, cadt_wrap_link(&stars, b, cadt_wrap_right(&stars, b, c), c, 1u),
-                      cadt_wrap_link(&stars, c, cadt_wrap_right(&stars, c, a), a, 1u),
-                      cadt_wrap_link(&stars, a, cadt_wrap_right(&stars, a, b), b, 1u), 0u);
+      cadt_store_four(w + CADT_WORD_HALF_EDGE,
+                      cadt_wrap_half_edge(&stars, b, cadt_wrap_right_apex(&stars, b, c), c, 1u),
+                      cadt_wrap_half_edge(&stars, c, cadt_wrap_right_apex(&stars, c, a), a, 1u),
+                      cadt_wrap_half_edge(&stars, a, cadt_wrap_right_apex(&stars, a, b), b, 1u), 0u);
     }
   }
   CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
@@ -244,7 +252,7 @@ CADT_KERNEL(cadt_wrap_locked, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
       if (!cadt_wrap_triangle_of(&stars, v, k, &t)) continue;
       CADT_GLOBAL cadt_u32* w = locked[t.number].word;
       cadt_store_four(w, v, t.a, t.b, 2u);
-      cadt_store_four(w + CADT_WORD_HALF_EDGE, t.star_vertices[0], t.star_vertices[1], t.star_vertices[2], 0u);
+      cadt_store_four(w + CADT_WORD_HALF_EDGE, t.half_edges[0], t.half_edges[1], t.half_edges[2], 0u);
     }
   }
 }

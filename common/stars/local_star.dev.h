@@ -1,167 +1,54 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The star stage: stars of vertices, each by one lane from the points around it, without a lock. A star is proven, or
- * left to the lock-based insertion (docs/algorithm.md, "The star stage").
+ * Local stars: one lane computes the star of a vertex p from the points around it, without locks. A star is proven, or
+ * its vertex is left to gift wrapping and insertion (docs/algorithm.md, "The star stage").
  *
- * In inverted space, u = (q - p) / |q - p|^2, the link of p is the convex hull of all u, and incircle is orientation.
- * 1. An octagon: the extreme points in four directions among the nearest cells, and the furthest out between two of
- *    them. What lies inside of it is no neighbour of p, and that is most of the window; what may lie outside is a
- *    candidate.
- * 2. The hull of the candidates, by a scan in the order of their angles.
- * 3. All circles through p and two consecutive neighbours must lie within the cells that were searched.
- * All this is in single precision with bounds of its errors; what a bound does not decide, an exact predicate does, so
- * ties are decided as everywhere else.
+ * In inverted space, u = (q - p) / |q - p|^2, the star vertices of p are the vertices of the convex hull of all u, and
+ * incircle is orientation. Near points are far out:
+ *
+ *       plane                     inverted space
+ *                                         n
+ *         .     .                     *---*---*        p  at the origin
+ *      .    a      .                 /  .      \       *  extreme point in one of eight directions: the octagon
+ *             h                   w *     p  .  * e    .  inside of the octagon: not a star vertex
+ *    .    p        .                 \   .     /          outside, or too near to the boundary to tell: a candidate
+ *         b   g                       *---*---*
+ *       .       .                         s
+ *
+ * 1. The octagon: the extreme points in four directions among the points of the nearest cells, and between two of them
+ * the one furthest out. What lies inside of it is no star vertex, and that is most of the neighbourhood grid; what may
+ * lie outside is a candidate.
+ *
+ * 2. The convex hull of the candidates: a Graham scan in the order of their angles.
+ *
+ * 3. The proof: all circles through p and two consecutive star vertices lie within the cells that were searched.
+ *
+ * All of this is computed in single precision with error bounds; where a bound does not decide, an exact predicate
+ * does, so ties are broken as everywhere else.
  */
 #ifndef CADT_STARS_LOCAL_STAR_H
 #define CADT_STARS_LOCAL_STAR_H
 
 #include "common/batch/batch.dev.h"
 #include "common/portable/sorting_network.dev.h"
-#include "common/predicates/filtered_predicates.dev.h"
 #include "common/stars/cell_scan.dev.h"
+#include "common/stars/star_arithmetic.dev.h"
 
-/* Error of a difference of two points of a window, in cells: coordinates are at most 12 cells from the centre, so they
- * are rounded by at most 2^-21. Before, in units of a grid of at most 2^26 cells an axis, of which none is divided by
- * more than 8, they are exact to 2^-23. */
-#define CADT_NEIGHBORHOOD_ERROR 2e-6f
-#define CADT_PLACE_BITS 11u
-#define CADT_PLACE_MASK 2047u
-
-typedef struct {
-  float x, y;
-} cadt_vector;
-
-/* Where a point is in its window. From memory each time: a value that is kept through all of a star is kept in slow
- * memory, and fetched from there in each step of a loop. */
-CADT_FN cadt_vector cadt_place_of(CADT_TEAM_PTR const cadt_neighborhood* w, cadt_u32 place) {
-  cadt_vector v;
-  v.x = *CADT_CAST(volatile CADT_TEAM_PTR const float*, w->x + place);
-  v.y = *CADT_CAST(volatile CADT_TEAM_PTR const float*, w->y + place);
-  return v;
-}
-CADT_FN cadt_vector cadt_vector_from(CADT_TEAM_PTR const cadt_neighborhood* w, cadt_vector from, cadt_u32 to) {
-  cadt_vector d;
-  d.x = w->x[to] - from.x;
-  d.y = w->y[to] - from.y;
-  return d;
-}
-CADT_FN cadt_vector cadt_vector_to(CADT_TEAM_PTR const cadt_neighborhood* w, cadt_u32 from, cadt_u32 to) {
-  cadt_vector d;
-  d.x = w->x[to] - w->x[from];
-  d.y = w->y[to] - w->y[from];
-  return d;
-}
-CADT_FN float cadt_square(cadt_vector d) { return d.x * d.x + d.y * d.y; }
-CADT_FN float cadt_cross(cadt_vector a, cadt_vector b) { return a.x * b.y - a.y * b.x; }
-CADT_FN float cadt_size(cadt_vector a) { return cadt_fabsf(a.x) + cadt_fabsf(a.y); }
-CADT_FN float cadt_inverse_square(cadt_vector d) { return cadt_about_inverse(cadt_about_fma(d.x, d.x, d.y * d.y)); }
-CADT_FN cadt_vector cadt_invert(cadt_vector d) {
-  const float inverse = cadt_inverse_square(d);
-  d.x *= inverse;
-  d.y *= inverse;
-  return d;
-}
-
-/* A value with the place of a point in its lowest bits: the largest of several tells whose it is. */
-CADT_FN float cadt_mark(float value, cadt_u32 place) {
-  return cadt_float_of_bits((cadt_bits_of_float(value) & ~CADT_PLACE_MASK) | place);
-}
-CADT_FN cadt_u32 cadt_marked(float value) { return cadt_bits_of_float(value) & CADT_PLACE_MASK; }
-
-/* What a lane needs to make stars. */
-typedef struct {
-  CADT_TEAM_PTR cadt_neighborhood* w;
-  CADT_GLOBAL const cadt_point* points;
-  cadt_counters* counters;
-  cadt_u32 candidates; /* at most */
-} cadt_star_maker;
-
-CADT_FN cadt_u32 cadt_star_place(const cadt_star_maker* m, cadt_u32 k) {
-  return m->w->star[k * CADT_STAR_STRIDE + cadt_team_lane];
-}
-CADT_FN void cadt_set_star_place(const cadt_star_maker* m, cadt_u32 k, cadt_u32 place) {
-  m->w->star[k * CADT_STAR_STRIDE + cadt_team_lane] = CADT_CAST(cadt_u16, place);
-}
-
-/* Exact tests of points at these positions. Functions of their own: their code is long and must not be in the way of
- * that which all lanes execute. */
-CADT_FN_SLOW cadt_i32 cadt_exact_orientation_in(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a,
-                                                cadt_u32 b, cadt_counters* counters) {
-  return cadt_orientation(points[p], points[a], points[b], counters);
-}
-
-/* Whether the angle from a to b is less than two right ones for certain; the vectors are from p, inverted or not. */
-CADT_FN cadt_u32 cadt_star_ordered(cadt_vector ua, cadt_vector ub, float sigma) {
-  return cadt_cross(ua, ub) > 4.0f * sigma * cadt_size(ua) * cadt_size(ub) ? 1u : 0u;
-}
-
-/* Orientation of p, a, b. */
-CADT_FN cadt_i32 cadt_star_orientation(const cadt_star_maker* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_vector ua,
-                                       cadt_vector ub, float sigma) {
-  const float cross = cadt_cross(ua, ub), bound = 4.0f * sigma * cadt_size(ua) * cadt_size(ub);
-  if (cross > bound) return 1;
-  if (-cross > bound) return -1;
-  return cadt_exact_orientation_in(m->points, m->w->at[p], m->w->at[a], m->w->at[b], m->counters);
-}
-
-/* Whether the last corner of the first `size`, b, is one when c comes after it; a is the one before. By rounded
- * numbers: CADT_STAR_UNSURE if they cannot tell. */
-#define CADT_STAR_SENSELESS 2u
-#define CADT_STAR_UNSURE 3u
-CADT_FN cadt_u32 cadt_star_keeps(cadt_vector ua, cadt_vector ub, cadt_vector uc, float sigma) {
-  cadt_vector e, f;
-  e.x = ub.x - ua.x;
-  e.y = ub.y - ua.y;
-  f.x = uc.x - ub.x;
-  f.y = uc.y - ub.y;
-  const float largest = cadt_maxf(cadt_maxf(cadt_size(ua), cadt_size(ub)), cadt_size(uc));
-  const float cross = cadt_cross(e, f), bound = 4.0f * sigma * largest * (cadt_size(e) + cadt_size(f));
-  if (cross > bound) return 1u;
-  return -cross > bound ? 0u : CADT_STAR_UNSURE;
-}
-
-/* The same for certain. CADT_STAR_SENSELESS: a and b are not in order around p; `ordered`: it is known that they are.
- */
-CADT_FN_SLOW cadt_u32 cadt_keeps_exactly(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a, cadt_u32 b,
-                                         cadt_u32 c, cadt_u32 ordered, cadt_counters* counters) {
-  const cadt_point P = points[p], A = points[a], B = points[b];
-  if (!ordered && cadt_orientation(P, A, B, counters) <= 0) return CADT_STAR_SENSELESS;
-  return cadt_incircle(P, A, B, points[c], counters) < 0 ? 1u : 0u;
-}
-
-/* For the last two of `size` corners. */
-CADT_FN cadt_u32 cadt_star_keeps_exactly(const cadt_star_maker* m, cadt_u32 p, cadt_u32 size, cadt_u32 c,
-                                         cadt_vector ua, cadt_vector ub, float sigma) {
-  CADT_TEAM_PTR const cadt_u32* at = m->w->at;
-  return cadt_keeps_exactly(m->points, at[p], at[cadt_star_place(m, size - 2u)], at[cadt_star_place(m, size - 1u)],
-                            at[c], cadt_star_ordered(ua, ub, sigma), m->counters);
-}
-
-/* The angle of a candidate from that of `first` on, and its place. */
-CADT_FN cadt_u32 cadt_angle_key(const cadt_star_maker* m, cadt_u32 p, cadt_u32 first, cadt_vector start,
-                                cadt_u32 place) {
-  const cadt_vector d = cadt_vector_to(m->w, p, place);
-  const float cross = cadt_cross(start, d), dot = start.x * d.x + start.y * d.y;
-  const float t = cross * cadt_about_inverse(cadt_fabsf(cross) + cadt_fabsf(dot));
-  const float angle = dot >= 0.0f ? (cross >= 0.0f ? t : 4.0f + t) : 2.0f - t;
-  return place == first ? place : (CADT_CAST(cadt_u32, angle * 524280.0f) << CADT_PLACE_BITS) | place;
-}
-
-/* Inverse square of the distance d of the point at `place` from p, no number if it is not one of the row that is swept,
- * or p itself: the largest of that and something else is the other. */
+/* Inverse square of the distance d of the point at `place` from p; NaN if the place is not in the row of the scan, or
+ * is p itself: a maximum with NaN is the other value. */
 CADT_FN float cadt_scanned_inverse(const cadt_cell_scan* s, cadt_u32 place, cadt_u32 p, cadt_vector d) {
   const float inverse = cadt_inverse_square(d);
   return place < s->end && place != p ? inverse : cadt_float_of_bits(0x7FFFFFFFu);
 }
 
-/* The star of the point at place p in cell (x, y), searched for in the cells up to `reach` away, which must be in the
- * window; `near` cells are enough for the octagon, and `most_cells` for what lies outside of it. Returns the number of
- * neighbours, counterclockwise in w->link, or 0 if there is no proof. */
+/* Computes the star of the point at place p in cell (x, y) from the cells up to `reach` away, which must be in the
+ * grid; `near` cells are searched for the octagon, at most `most_cells` for the candidates. Returns the number of star
+ * vertices, which stand counterclockwise in w->star, or 0 if there is no proof. */
 CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x, cadt_u32 y, cadt_u32 near,
                                 cadt_u32 reach, cadt_u32 most_cells) {
   CADT_TEAM_PTR cadt_neighborhood* w = m->w;
   const float least = -3e38f;
-  float best[8];        /* in the order of their angles: east, between, north, ... */
+  float best[8];        /* by angle: east, north-east, north, ... */
   float nearest = 0.0f; /* 1 / distance^2 */
   for (cadt_u32 k = 0u; k < 8u; ++k) best[k] = least;
   cadt_vector at_p = cadt_place_of(w, p);
@@ -181,11 +68,11 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     }
     more = cadt_cell_scan_next(w, &cells);
   }
-  if (!(nearest > 0.0f && nearest < 1e7f)) return 0u; /* nobody, or too near for single precision */
-  /* Relative error of a difference, and of its inverse. Points further off than a cell have smaller ones. */
+  if (!(nearest > 0.0f && nearest < 1e7f)) return 0u; /* no point, or too near for single precision */
+  /* Relative error of a difference, and of its inverse. Points further away than a cell have smaller ones. */
   const float rho = CADT_NEIGHBORHOOD_ERROR * cadt_about_sqrt(cadt_maxf(nearest, 1.0f)), sigma = 3.0f * rho + 1e-6f;
 
-  /* Between two of the four: who is furthest out from the line through them. */
+  /* Between two of the four extreme points: the point furthest out from the line through them. */
   {
     float ex[4], ey[4];
     for (cadt_u32 k = 0u; k < 4u; ++k) {
@@ -209,9 +96,9 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     }
   }
 
-  /* Half-planes n . u < 1, that is n . d < d . d, of a polygon of some of the eight */
+  /* Half-planes n . u < 1, that is n . d < d . d, of a polygon through some of the eight points. */
   float nx[8], ny[8], error = 0.0f;
-  float west = 0.0f, east = 0.0f, south = 0.0f, north = 0.0f; /* twice how far what is not inside may be */
+  float west = 0.0f, east = 0.0f, south = 0.0f, north = 0.0f; /* twice the extent of what is not inside */
   cadt_u32 first = p;
   {
     float largest = 0.0f;
@@ -227,8 +114,8 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       if (next == place) continue;
       const float cross = cadt_cross(u, v), lengths = cadt_square(u) * cadt_square(v);
       if (cadt_square(v) > longest) longest = cadt_square(v), first = next;
-      if (!(cross > 0.0f && cross * cross > 0.0025f * lengths)) { /* not by a fair angle to the left */
-        /* Without a corner the polygon is smaller, which is right as well, but it must go round p. */
+      if (!(cross > 0.0f && cross * cross > 0.0025f * lengths)) { /* not clearly to the left */
+        /* Without this vertex the polygon is smaller, which is valid as well, but it must go round p. */
         if (u.x * v.x + u.y * v.y <= 0.0f || next == start) return 0u;
         continue;
       }
@@ -249,9 +136,9 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   }
 
   const float shrink = 1.0f - 4.0f * rho - 1e-6f;
-  /* What is not inside a half-plane is in the disc of diameter n, so all candidates are in these cells. A point that is
-   * out of all discs by 1e-5 of their radius and 1e-4 fails the test below, whose rounding errors are smaller, so it
-   * need not be made for the others. */
+  /* What is not inside a half-plane lies in the disc of diameter n, so all candidates are in these cells. A point that
+   * is outside of all discs by 1e-5 of their radius plus 1e-4 fails the test below, whose rounding errors are smaller,
+   * so the test is not needed for other cells. */
   const float middle = 0.5f * CADT_CAST(float, w->shape.side), stretch = 0.5f * cadt_about_inverse(shrink);
   at_p = cadt_place_of(w, p);
   const float at_x = at_p.x + middle, at_y = at_p.y + middle, margin = 1.25f * error + 2e-4f;
@@ -274,7 +161,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       /* not p itself */
       if (cadt_about_fma(error, cadt_fabsf(dx) + cadt_fabsf(dy), t) > cadt_about_fma(dx, dx, dy * dy) * shrink &&
           here) {
-        cadt_set_star_place(m, count & (2u * CADT_CANDIDATES - 1u), j); /* too many are of no use */
+        cadt_set_star_place(m, count & (2u * CADT_CANDIDATES - 1u), j); /* beyond the limit the star fails anyway */
         ++count;
       }
     }
@@ -283,11 +170,11 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   if (count > m->candidates) cadt_team_add(&w->overfull, 1u);
   if (count < 3u || count > m->candidates) return 0u;
 
-  /* Sorted by the angle from `first` on: 21 bits of it, and the place. */
+  /* Sort by the angle from `first` on: 21 bits of it, then the place. */
   const cadt_vector start = cadt_vector_to(w, p, first);
   {
     cadt_u32 key[CADT_CANDIDATES];
-    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_CANDIDATES); ++k) { /* no branch: lanes stay together */
+    for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_CANDIDATES); ++k) { /* no branch: lanes stay converged */
       const cadt_u32 made = cadt_angle_key(m, p, first, start, cadt_star_place(m, cadt_min_u32(k, count - 1u)));
       key[k] = k < count ? made : CADT_NONE;
     }
@@ -295,7 +182,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     for (cadt_u32 k = 0u; k < CADT_CAST(cadt_u32, CADT_CANDIDATES); ++k)
       if (k < count) cadt_set_star_place(m, k, key[k] & CADT_PLACE_MASK);
   }
-  for (cadt_u32 k = CADT_CANDIDATES; k < count; ++k) { /* in the second round only */
+  for (cadt_u32 k = CADT_CANDIDATES; k < count; ++k) { /* in the second attempt only */
     const cadt_u32 place = cadt_star_place(m, k), key = cadt_angle_key(m, p, first, start, place);
     cadt_u32 low = 0u, high = k;
     while (low < high) {
@@ -310,12 +197,12 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   }
   if (cadt_star_place(m, 0u) != first) return 0u;
 
-  /* The hull; what was on it and is no corner is dropped. It begins and ends with `first`. One test and one load a
-   * step, and no way out of the middle, so that the lanes of a warp stay together. Who is unsure waits until all are,
-   * or have finished: then exact tests are made by many lanes at a time. */
+  /* The hull: Graham scan, begins and ends with `first`; a point that is no vertex is popped. One test and one load a
+   * step, and no exit from the middle, so that the lanes of a warp stay converged. A lane that needs an exact test
+   * waits until all lanes do or have finished: then many lanes test at a time. */
   cadt_u32 size = 1u, at = 0u, c = first, going = 1u, proven = 1u, answer = CADT_STAR_UNSURE;
   const cadt_vector us = cadt_invert(start);
-  cadt_vector ua = us, ub = us, uc = us; /* of the last two corners and of candidate `at` */
+  cadt_vector ua = us, ub = us, uc = us; /* of the last two hull vertices and of candidate `at` */
   while (going) {
     cadt_u32 stuck = 0u;
     while (going && !stuck) {
@@ -323,8 +210,8 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       if (keeps == CADT_STAR_UNSURE) keeps = size >= 2u ? cadt_star_keeps(ua, ub, uc, sigma) : 1u;
       answer = CADT_STAR_UNSURE;
       stuck = keeps == CADT_STAR_UNSURE ? 1u : 0u;
-      if (!stuck) going = keeps != CADT_STAR_SENSELESS && !(keeps && at == count) ? 1u : 0u;
-      if (keeps == CADT_STAR_SENSELESS) proven = 0u;
+      if (!stuck) going = keeps != CADT_STAR_INVALID && !(keeps && at == count) ? 1u : 0u;
+      if (keeps == CADT_STAR_INVALID) proven = 0u;
       if (going && !stuck) {
         cadt_u32 next;
         if (keeps) {
@@ -343,7 +230,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
         const cadt_u32 place = cadt_star_place(m, next);
         const cadt_vector u = cadt_invert(cadt_vector_to(w, p, place));
         if (keeps) {
-          /* candidates must come in the order of their angles for certain */
+          /* the order of the candidates' angles must be certain */
           if (cadt_star_orientation(m, p, c, place, ub, u, sigma) <= 0) going = proven = 0u;
           c = place;
           uc = u;
@@ -356,7 +243,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     if (going) answer = cadt_star_keeps_exactly(m, p, size, c, ua, ub, sigma);
   }
   if (size < 3u || size > CADT_CAST(cadt_u32, CADT_STAR_DEGREE)) proven = 0u;
-  if (proven) { /* `first` is a corner too */
+  if (proven) { /* `first` must be a hull vertex too */
     const cadt_u32 second = cadt_star_place(m, 1u);
     cadt_set_star_place(m, size, first);
     cadt_u32 keeps = cadt_star_keeps(ub, us, cadt_invert(cadt_vector_to(w, p, second)), sigma);
@@ -364,7 +251,8 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     if (keeps != 1u) proven = 0u;
   }
 
-  /* The circles. Beyond the edge of the grid there are no points. */
+  /* The proof: each circle lies within the searched cells, or beyond the edge of the key grid, where there are no
+   * points. */
   const float far = 1e30f, px = w->x[p], py = w->y[p];
   const cadt_i32 first_x = CADT_CAST(cadt_i32, x - reach), first_y = CADT_CAST(cadt_i32, y - reach);
   const cadt_i32 end_x = CADT_CAST(cadt_i32, x + reach) + 1, end_y = CADT_CAST(cadt_i32, y + reach) + 1;
@@ -380,7 +268,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     const float inverse = cadt_about_inverse(cross);
     const float cx = 0.5f * (v.y - u.y) * inverse, cy = 0.5f * (u.x - v.x) * inverse;
     const float reached = cadt_about_sqrt(cx * cx + cy * cy) * (1.0f + 16.0f * sigma * lengths * inverse) + 1e-4f;
-    /* the angle at p is positive for certain, and what was said of rounding holds */
+    /* the angle at p is certainly positive, and the bound above holds */
     if (!(cross > 100.0f * sigma * lengths && cx + reached <= right && reached - cx <= left && cy + reached <= top &&
           reached - cy <= bottom))
       proven = 0u;

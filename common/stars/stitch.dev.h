@@ -1,12 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The join of the proven part of the mesh with the rest. A triangle without a proven vertex belongs to the Delaunay
- * triangulation of the unproven vertices alone, since an empty circle stays empty in a subset (docs/algorithm.md, "The
- * join"). That smaller mesh is built by insertion; here those of its triangles are found that do not lie under proven
- * ones, and both parts are linked.
+ * Stitching: the proven part of the mesh and the residual mesh become one. A triangle without a proven vertex belongs
+ * to the Delaunay triangulation of the unproven (residual) vertices alone, since an empty circle stays empty in a
+ * subset (docs/algorithm.md, "The join"). Insertion builds that residual mesh; here those of its triangles are found
+ * that fill the holes of the proven part, and both parts are connected.
  *
- * The two parts meet in edges whose ends are unproven: edge 0 of an open triangle on one side, an edge of the smaller
- * mesh on the other. The whole mesh is one in two arrays (certify.dev.h), the smaller one has records.
+ *    proven part with a hole     residual mesh               whole mesh
+ *
+ *       p -- u === u -- p             u --- u.                  p -- u --- u -- p
+ *       | \  |     |  / | \           | k / |  '.               | \  | k / |  / | \    p proven, u unproven
+ *       |  p | hole| p  |  u          |  /  | h   u             |  p |  /  | p  |  u   = edges where both meet
+ *       | /  |     |  \ | /           | / k |  .'               | /  | / k |  \ | /
+ *       p -- u === u -- p             u --- u'                  p -- u --- u -- p
+ *
+ *                            k kept, h hidden: the proven part covers it
+ *
+ * The two parts meet in edges between unproven vertices: edge 0 of an open triangle on one side, an edge of the
+ * residual mesh on the other. Those edges cut the residual mesh into components; a component is hidden if one of its
+ * triangles has an open triangle on its own side of an edge: there the proven part covers it. The whole mesh is in two
+ * arrays (certify.dev.h), the residual mesh consists of locked triangles.
  */
 #ifndef CADT_STARS_STITCH_H
 #define CADT_STARS_STITCH_H
@@ -14,7 +26,7 @@
 #include "common/overlay/flip_histogram.dev.h"
 #include "common/portable/union_find.dev.h"
 
-/* The unproven vertices, closed up. `ranks` is the scan of 1 for each. */
+/* Gathers the residual vertices. `ranks` is the scan of 1 for each. */
 CADT_KERNEL(cadt_pack_residual, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_point* points,
             CADT_GLOBAL cadt_point* subset, CADT_GLOBAL cadt_u32* positions, cadt_u32 n, cadt_u32 grain) {
   CADT_FOR(v, n, grain) {
@@ -44,7 +56,7 @@ CADT_KERNEL(cadt_stitch_enter, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL
   }
 }
 
-/* covers[3 r + k]: the open triangle that lies on this side of edge k of record r of the smaller mesh, or CADT_NONE */
+/* covers[3 r + k]: the open triangle on the same side of edge k as triangle r of the residual mesh, or CADT_NONE. */
 CADT_KERNEL(cadt_stitch_cover, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_locked_triangle* smaller,
             CADT_GLOBAL const cadt_u32* positions, cadt_u32 slots, cadt_u32 grain, CADT_GLOBAL const cadt_u32* table,
             cadt_u32 mask, CADT_GLOBAL cadt_u32* covers, CADT_GLOBAL cadt_u32* roots) {
@@ -69,7 +81,7 @@ CADT_KERNEL(cadt_stitch_cover, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL
   }
 }
 
-/* Components of the smaller mesh without the edges that have an open triangle on a side. */
+/* Components of the residual mesh without the edges that have an open triangle on either side. */
 CADT_KERNEL(cadt_stitch_components, CADT_GLOBAL const cadt_locked_triangle* smaller, cadt_u32 slots, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* covers, CADT_GLOBAL cadt_u32* roots) {
   CADT_FOR(r, slots, grain) {
@@ -84,7 +96,7 @@ CADT_KERNEL(cadt_stitch_components, CADT_GLOBAL const cadt_locked_triangle* smal
   }
 }
 
-/* hidden[root] = 1 for components under the proven part. \pre hidden is 0 */
+/* hidden[root] = 1 for components that the proven part covers. \pre hidden is 0 */
 CADT_KERNEL(cadt_stitch_hide, CADT_GLOBAL const cadt_u32* covers, CADT_GLOBAL cadt_u32* roots, cadt_u32 slots,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* hidden) {
   CADT_FOR(r, slots, grain) {
@@ -93,7 +105,7 @@ CADT_KERNEL(cadt_stitch_hide, CADT_GLOBAL const cadt_u32* covers, CADT_GLOBAL ca
   }
 }
 
-/* 1 for records that belong to the whole mesh, those of the ghost behind the others; their scan, with a 0 at the end,
+/* 1 for triangles that belong to the whole mesh, those of the ghost behind the others; their scan, with a 0 at the end,
  * numbers them. */
 CADT_KERNEL(cadt_stitch_flags, CADT_GLOBAL const cadt_locked_triangle* smaller, CADT_GLOBAL cadt_u32* roots,
             CADT_GLOBAL const cadt_u32* hidden, cadt_u32 slots, cadt_u32 grain, CADT_GLOBAL cadt_u32* flags) {
@@ -107,15 +119,15 @@ CADT_KERNEL(cadt_stitch_flags, CADT_GLOBAL const cadt_locked_triangle* smaller, 
   }
 }
 
-/* Number of record r among those that belong to the whole mesh, or CADT_NONE. */
+/* Number of triangle r among those that belong to the whole mesh, or CADT_NONE. */
 CADT_FN cadt_u32 cadt_stitch_number(CADT_GLOBAL const cadt_u32* ranks, cadt_u32 slots, cadt_u32 r) {
   const cadt_u32 real = ranks[r], ghost = ranks[slots + r];
   if (ranks[r + 1u] != real) return real;
   return ranks[slots + r + 1u] != ghost ? ghost : CADT_NONE;
 }
 
-/* Copies them behind the `before` triangles of the proven part, and links both. Edges by flips besides, those of the
- * ghost left out; an edge between the parts counts for both of its sides. */
+/* Copies the triangles behind the `before` triangles of the proven part, and connects both. Also counts edges by flips,
+ * except those of the ghost; an edge between the parts counts for both of its sides. */
 CADT_KERNEL(cadt_stitch_residual, CADT_GLOBAL const cadt_locked_triangle* smaller, CADT_GLOBAL const cadt_u32* covers,
             CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_u32* positions, cadt_u32 slots, cadt_u32 grain,
             cadt_u32 before, CADT_GLOBAL cadt_u32* vertices, CADT_GLOBAL cadt_u32* half_edges,
@@ -135,7 +147,7 @@ CADT_KERNEL(cadt_stitch_residual, CADT_GLOBAL const cadt_locked_triangle* smalle
         const cadt_u32 v = CADT_PICK(k, s.word[0], s.word[1], s.word[2]);
         cadt_u32 across = CADT_HALF_EDGE(beyond, 0u);
         if (beyond != CADT_NONE) {
-          cadt_locked_triangle side; /* of the ghost, so its edge 0 alone counts */
+          cadt_locked_triangle side; /* a ghost triangle, so that its edge 0 alone counts */
           side.word[0] = CADT_GHOST;
           side.word[1] = side.word[2] = 0u;
           side.word[CADT_WORD_FLIPS] = cadt_flips_set(0u, 0u, cadt_flips_get(s.word[CADT_WORD_FLIPS], k));

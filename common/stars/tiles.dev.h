@@ -1,35 +1,36 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Tiles: the leaves of the quadtree over the sort keys, the largest squares with at most CADT_TILE_POINTS points, or
+ * Tiles: the leaves of a quadtree over the sort keys, the largest squares with at most CADT_TILE_POINTS points, or
  * CADT_TILE_FEW where most of a square would be empty. The points of a square are neighbours in sorted order, so a tile
- * is a range of positions, and tiles come in that order.
+ * is an interval of positions, and the tiles follow one another in that order.
  */
 #ifndef CADT_STARS_TILES_H
 #define CADT_STARS_TILES_H
 
-#include "common/points/spatial_sort.dev.h"
+#include "common/points/hilbert_keys.dev.h"
+#include "common/portable/atomics.dev.h"
 
-/* The smallest square, by its level, that holds the cells of both keys; -1: no square does. */
+/* Level of the smallest square that holds the cells of both keys; -1 if no square does. */
 CADT_FN cadt_i32 cadt_shared_level(cadt_u64 a, cadt_u64 b, cadt_u32 levels) {
   if (a == b) return CADT_CAST(cadt_i32, levels);
-  const cadt_u32 highest = 63u - cadt_clz64(a ^ b); /* bit that differs */
+  const cadt_u32 highest = 63u - cadt_clz64(a ^ b); /* the highest bit that differs */
   return highest / 2u < levels ? CADT_CAST(cadt_i32, levels - 1u - highest / 2u) : -1;
 }
 
-/* Level of the tile with at most `most` points that begins at position i, -1 if none does. A square of the smallest
- * cells is a tile however many points it has. */
+/* Level of the tile with at most `most` points that begins at position i, -1 if none begins there. A square of the
+ * smallest cells is a tile however many points it has. */
 CADT_FN cadt_i32 cadt_tile_level(const cadt_keys* keys, cadt_u32 n, cadt_u32 i, cadt_u32 levels, cadt_u32 most) {
   const cadt_u64 key = cadt_key_at(keys, i);
-  /* squares smaller than `before` begin at i, squares smaller than `after` have few points from i on */
+  /* squares at levels above `before` begin at i; squares at levels above `after` have few points from i on */
   const cadt_i32 before = i ? cadt_shared_level(cadt_key_at(keys, i - 1u), key, levels) : -1;
   const cadt_i32 after = n - i > most ? cadt_shared_level(key, cadt_key_at(keys, i + most), levels) : -1;
   if (before == CADT_CAST(cadt_i32, levels)) return -1;
   if (after == CADT_CAST(cadt_i32, levels)) return after;
-  if (after >= before) return after + 1; /* the square around it has more than `most` from i on */
-  /* The square around it begins before i. Has it more than `most`? */
+  if (after >= before) return after + 1; /* the next larger square has more than `most` points from i on */
+  /* The next larger square begins before i. Has it more than `most` points? */
   const cadt_u32 shift = 2u * (levels - CADT_CAST(cadt_u32, before));
   const cadt_u64 square = key >> shift;
-  cadt_u32 low = i > most ? i - most : 0u, high = i; /* its begin is in [low, high], or before */
+  cadt_u32 low = i > most ? i - most : 0u, high = i; /* its begin is in [low, high], or before low */
   if (i >= most && cadt_key_at(keys, low) >> shift == square) return before + 1;
   while (low < high) {
     const cadt_u32 middle = (low + high) / 2u;
@@ -41,16 +42,17 @@ CADT_FN cadt_i32 cadt_tile_level(const cadt_keys* keys, cadt_u32 n, cadt_u32 i, 
   return n - low > most && cadt_key_at(keys, low + most) >> shift == square ? before + 1 : -1;
 }
 
-/* How many points the tile of point i may have. `ranks` and `crowded` are those of the tiles before, or null. */
+/* How many points the tile of point i may have. `ranks` and `overfull` are those of the tiles before the division, or
+ * null. */
 CADT_FN cadt_u32 cadt_most_of_tile(CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_u32* overfull,
                                    cadt_u32 i) {
   return overfull && overfull[ranks[i + 1u] - 1u] ? CADT_CAST(cadt_u32, CADT_TILE_FEW)
                                                   : CADT_CAST(cadt_u32, CADT_TILE_POINTS);
 }
 
-/* 1 where a tile begins; flags[n] = 0, so the scan ends with their number. With `crowded` tiles are divided again.
- * `descents`: keys that are not in order, which happens if coordinates have lost bits when they were scaled; then there
- * are no tiles. */
+/* 1 where a tile begins; flags[n] = 0, so the scan ends with the number of tiles. With `overfull`, over-full tiles are
+ * divided again. `descents` counts keys that are out of order, which happens if scaling has cost coordinates some bits;
+ * then there are no tiles. */
 CADT_KERNEL(cadt_tile_flags, CADT_GLOBAL const cadt_u32* high_keys, CADT_GLOBAL const cadt_u32* low_keys,
             cadt_u32 low_bits, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_u32* overfull,
             CADT_GLOBAL cadt_u32* flags, cadt_u32 n, cadt_u32 levels, cadt_u32 grain, CADT_GLOBAL cadt_u32* descents) {
@@ -64,8 +66,8 @@ CADT_KERNEL(cadt_tile_flags, CADT_GLOBAL const cadt_u32* high_keys, CADT_GLOBAL 
   if (wrong) cadt_add_relaxed(descents, wrong);
 }
 
-/* `ranks` is the scan of the flags, `before` that of the tiles before, if they are `crowded`. One more tile marks the
- * end. */
+/* Stores the tiles. `ranks` is the scan of the flags, `before` that of the tiles before the division, if some were
+ * `overfull`. One more tile marks the end. */
 CADT_KERNEL(cadt_tile_pack, CADT_GLOBAL const cadt_u32* high_keys, CADT_GLOBAL const cadt_u32* low_keys,
             cadt_u32 low_bits, CADT_GLOBAL const cadt_u32* before, CADT_GLOBAL const cadt_u32* overfull,
             CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL cadt_tile* tiles, cadt_u32 n, cadt_u32 levels,
@@ -85,8 +87,9 @@ CADT_KERNEL(cadt_tile_pack, CADT_GLOBAL const cadt_u32* high_keys, CADT_GLOBAL c
   }
 }
 
-/* Which tiles have so many points in a small part of them that the windows of the stars would have nearly all in a few
- * cells, and each star would look at all of these: 1 in `crowded`, and in any[0] if there are some. \pre these are 0 */
+/* Finds the over-full tiles: those with so many points in a small part that the neighbourhood grids of the stars would
+ * have nearly all of them in a few cells, and each star would have to look at all of these. Stores 1 in `overfull`, and
+ * in any[0] if there are some. \pre both are 0 */
 CADT_KERNEL(cadt_tile_overfull, CADT_GLOBAL const cadt_u32* high_keys, CADT_GLOBAL const cadt_u32* low_keys,
             cadt_u32 low_bits, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL const cadt_tile* tiles, cadt_u32 n,
             cadt_u32 levels, cadt_u32 grain, CADT_GLOBAL cadt_u32* overfull, CADT_GLOBAL cadt_u32* any) {

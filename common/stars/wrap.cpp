@@ -18,83 +18,85 @@ namespace {
 using namespace device_text;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr std::size_t most_teams = 4096;  // as many as run at the same time on a large card
-constexpr std::uint32_t box_lanes = CADT_AABB_FANOUT * CADT_WRAP_PARTS;
-constexpr std::uint32_t rest_lanes = 128;  // of the longest stars, which all wait for
-/// Boxes that are looked at and exact tests for a vertex, on average at most. What stars leave of 1M uniform points
-/// needs 14. Besides, for all together.
+constexpr std::size_t most_teams = 4096;  // as many as a large GPU runs at the same time
+constexpr std::uint32_t tree_lanes = CADT_AABB_FANOUT * CADT_WRAP_PARTS;
+constexpr std::uint32_t residual_lanes = 128;  // for the longest stars, which set the time
+/// Work limit: leaves tested plus exact tests, on average a vertex, and in addition for all vertices together. The
+/// residual vertices of 1M uniform points need 14.
 constexpr std::uint32_t wrap_work_limit = 96, spare_work_limit = 4096;
-/// Of cards. Where many have to look at many, all on a side of the hull, they do it at once: about 13,000 in a
-/// microsecond. So for each point of the whole mesh this is a nanosecond or two, when insertion of the rest, and the
-/// rows of flips that it leaves on such sides, takes several.
+/// On GPUs. Where many vertices have to look at many points, all on one side of the hull, they do so at once: about
+/// 13,000 leaves in a microsecond. So for each point of the whole mesh this is a nanosecond or two, while insertion of
+/// the residual vertices, and the flip cascades that it causes on such sides, takes several.
 constexpr std::uint32_t spare_work_of_cards = 1U << 21, spare_work_of_point = 20;
 constexpr std::uint32_t most_spare_work = 1U << 31, most_watched_work = 1U << 24;  // the latter: a few milliseconds
 
-/// `all`: the points of the mesh that the wrapped ones are part of.
+/// `all`: number of points of the mesh that the wrapped ones are part of.
 std::uint32_t spare_work_limit_of(const Device& device, std::size_t all) {
   if (device.shape().contiguous) return spare_work_limit;
-  const std::uint64_t effort = spare_work_of_cards + std::uint64_t{spare_work_of_point} * all;
+  const std::uint64_t limit = spare_work_of_cards + std::uint64_t{spare_work_of_point} * all;
   const std::uint32_t most = device.info().watchdog ? most_watched_work : most_spare_work;
-  return static_cast<std::uint32_t>(std::min<std::uint64_t>(effort, most));
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(limit, most));
 }
 
-/// Boxes and crates of points (common/stars/aabb_tree.dev.h); each set begins a box and a crate of its own.
+/// The AABB tree of the points (common/stars/aabb_tree.dev.h); each set begins a leaf and a node of its own.
 struct AabbTree {
   Allocation leaves, nodes;
 
-  /// `sizes` and `found` are set to 0 besides, if they are given.
+  /// Also zeroes `sizes` and `counts`, if they are given.
   AabbTree(Context& ctx, const Allocation& points, std::size_t n, const Allocation& starts, std::size_t sets,
-           const Allocation& sizes, const Allocation& found) {
-    const std::size_t crate_count = (n - 1) / (std::size_t{CADT_AABB_LEAF} * CADT_AABB_FANOUT) + 1 + sets;
+           const Allocation& sizes, const Allocation& counts) {
+    const std::size_t node_count = (n - 1) / (std::size_t{CADT_AABB_LEAF} * CADT_AABB_FANOUT) + 1 + sets;
     leaves = ctx.memory.allocate((n / CADT_AABB_LEAF + sets + 1) * sizeof(cadt_aabb));
-    nodes = ctx.memory.allocate(crate_count * sizeof(cadt_aabb));
-    const LaunchGrid c = ctx.launcher.grid_of_teams(crate_count, box_lanes);
+    nodes = ctx.memory.allocate(node_count * sizeof(cadt_aabb));
+    const LaunchGrid c = ctx.launcher.grid_of_teams(node_count, tree_lanes);
     ctx.launcher.run_in_groups<KernelId::cadt_build_aabb_tree>(
-        c.items, box_lanes, points, static_cast<std::uint32_t>(n), starts, static_cast<std::uint32_t>(sets),
-        static_cast<std::uint32_t>(crate_count), c.grain, leaves, nodes, sizes, found);
+        c.items, tree_lanes, points, static_cast<std::uint32_t>(n), starts, static_cast<std::uint32_t>(sets),
+        static_cast<std::uint32_t>(node_count), c.grain, leaves, nodes, sizes, counts);
   }
 };
 
-/// All stars of one set of at most 2^15 points; `sizes` and `found` need not be 0 before.
+/// All stars of one set of at most 2^15 points; `sizes` and `counts` need not be 0 before.
 void wrap_all(Context& ctx, const Allocation& points, std::size_t n, std::uint32_t spare, const WrappedStars& stars) {
   Launcher& launch = ctx.launcher;
   const Allocation none, todo = ctx.memory.allocate(n * word),
                          arcs = ctx.memory.allocate(n * CADT_WRAP_ROW * sizeof(std::uint16_t));
-  const AabbTree leaves(ctx, points, n, none, 0, stars.sizes, stars.found);
-  const auto count = static_cast<std::uint32_t>(n), link_words = static_cast<std::uint32_t>(stars.link_words);
+  const AabbTree leaves(ctx, points, n, none, 0, stars.sizes, stars.counts);
+  const auto count = static_cast<std::uint32_t>(n), star_words = static_cast<std::uint32_t>(stars.star_words);
   const LaunchGrid teams = launch.grid_of_teams(n, wrap_lanes);
   launch.run_in_groups<KernelId::cadt_wrap_near>(teams.items, wrap_lanes, points, leaves.leaves, leaves.nodes, count,
-                                                 teams.grain, stars.star_vertices, link_words, stars.begins,
-                                                 stars.sizes, todo, arcs, stars.found);
-  // How many are left is known on the device only.
+                                                 teams.grain, stars.star_vertices, star_words, stars.begins,
+                                                 stars.sizes, todo, arcs, stars.counts);
+  // Only the device knows how many are left to do.
   const LaunchGrid residual =
-      ctx.device.shape().contiguous ? teams : launch.grid_of_teams(std::min(n, most_teams), rest_lanes);
-  launch.run_in_groups<KernelId::cadt_wrap_stars>(residual.items, rest_lanes, points, leaves.leaves, leaves.nodes,
+      ctx.device.shape().contiguous ? teams : launch.grid_of_teams(std::min(n, most_teams), residual_lanes);
+  launch.run_in_groups<KernelId::cadt_wrap_stars>(residual.items, residual_lanes, points, leaves.leaves, leaves.nodes,
                                                   count, todo, 0U, arcs, none, 0U, none, none, wrap_work_limit, spare,
-                                                  residual.grain, 0U, stars.star_vertices, link_words, stars.begins,
-                                                  stars.sizes, stars.found);
+                                                  residual.grain, 0U, stars.star_vertices, star_words, stars.begins,
+                                                  stars.sizes, stars.counts);
 }
 
-/// One set, its stars and its mesh.
+/// The stars of one set of points, and its mesh.
 class Wrapping {
  public:
   Wrapping(Context& ctx, const Allocation& points, std::size_t n)
       : ctx_(ctx), launch_(ctx.launcher), points_(points), n_(n), count_(static_cast<std::uint32_t>(n)) {}
 
-  /// `all`: the points of the mesh that these are part of.
+  /// `all`: number of points of the mesh that these are part of.
   void make_stars(std::size_t all) {
-    star_vertices_ = ctx_.memory.allocate(link_words() * word);
+    star_vertices_ = ctx_.memory.allocate(star_words() * word);
     begins_ = ctx_.memory.allocate(n_ * word);
     sizes_ = ctx_.memory.allocate(n_ * word);
-    found_ = ctx_.memory.allocate(CADT_WRAP_WORDS * word);
+    counts_ = ctx_.memory.allocate(CADT_WRAP_WORDS * word);
     wrap_all(ctx_, points_, n_, spare_work_limit_of(ctx_.device, all),
-             {star_vertices_, begins_, sizes_, found_, 0, link_words()});
+             {star_vertices_, begins_, sizes_, counts_, 0, star_words()});
     edges_ = ctx_.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));
   }
 
-  /// The mesh in arrays and its closing pass, all without waiting for what came before. False if there are hubs.
+  /// The mesh in arrays and its certification, queued without waiting in between. False if there are high-degree
+  /// vertices.
   [[nodiscard]] bool make_arrays(Mesh& mesh) {
-    const std::size_t row = (n_ + CADT_WRAP_FOUND) / CADT_COUNTER_STRIDE * CADT_COUNTER_STRIDE + CADT_COUNTER_STRIDE;
+    const std::size_t row =
+        (n_ + CADT_WRAP_DRIVER_WORDS) / CADT_COUNTER_STRIDE * CADT_COUNTER_STRIDE + CADT_COUNTER_STRIDE;
     bases_ = ctx_.memory.allocate((row + certify_words(ctx_)) * word);
     count(true, row + certify_words(ctx_));  // all from n on is read at once
     mesh.slots = triangles();
@@ -102,7 +104,7 @@ class Wrapping {
     mesh.half_edges = ctx_.memory.allocate(3 * triangles() * word);
     const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
     launch_.run<KernelId::cadt_wrap_arrays>(shares.items, star_vertices_, begins_, sizes_, bases_,
-                                            static_cast<std::uint32_t>(link_words()), static_cast<std::uint32_t>(row),
+                                            static_cast<std::uint32_t>(star_words()), static_cast<std::uint32_t>(row),
                                             count_, shares.grain, mesh.vertices, mesh.half_edges);
     ctx_.end_phase("wrap");
     launch_certify(ctx_, points_, mesh, 0, triangles(), true, bases_, row);
@@ -115,27 +117,27 @@ class Wrapping {
     read_certificate(ctx_, std::span(words).subspan(row - n_), n_);
     ctx_.end_phase("certify");
     ctx_.statistics.wrapped_stars = n_;
-    if (ctx_.options.statistics != StatisticsDetail::none)  // edges met from both sides, nothing was flipped
+    if (ctx_.options.statistics != StatisticsDetail::none)  // each edge counted once; none was flipped
       ctx_.statistics.flips_per_edge[0] += (3 * mesh.triangles + (mesh.slots - mesh.triangles)) / 2;
     return true;
   }
 
-  /// Too many vertices have no star. \pre make_arrays
+  /// Whether too many vertices have no star. \pre make_arrays
   [[nodiscard]] bool failed() const noexcept { return high_degree_ > CADT_MOST_HIGH_DEGREE; }
 
-  /// The mesh in records. Nothing if there are too many hubs.
-  [[nodiscard]] std::optional<Mesh> make_records() {
-    bases_ = ctx_.memory.allocate((n_ + 1 + CADT_WRAP_FOUND) * word);
-    count(false, n_ + 1 + CADT_WRAP_FOUND);
-    std::array<std::uint32_t, 1 + CADT_WRAP_FOUND> words{};
+  /// The mesh as locked triangles. Nothing if there are too many high-degree vertices.
+  [[nodiscard]] std::optional<Mesh> make_locked() {
+    bases_ = ctx_.memory.allocate((n_ + 1 + CADT_WRAP_DRIVER_WORDS) * word);
+    count(false, n_ + 1 + CADT_WRAP_DRIVER_WORDS);
+    std::array<std::uint32_t, 1 + CADT_WRAP_DRIVER_WORDS> words{};
     ctx_.device.read(*bases_, n_ * word, words.data(), sizeof words);
     note(words);
     const std::uint32_t known = words[0];
-    const std::uint32_t first_extra = high_degree_ != 0 ? launch_.read_word(found_, CADT_WRAP_FOUND) : 0;
+    const std::uint32_t first_extra = high_degree_ != 0 ? launch_.read_word(counts_, CADT_WRAP_OPEN_EDGES) : 0;
     if (high_degree_ > CADT_MOST_HIGH_DEGREE || first_extra > CADT_WRAP_EDGES) return std::nullopt;
     std::uint32_t edge_count = first_extra;
     if (high_degree_ != 0 && known < triangles()) {
-      edge_count = add_triangles_of_hubs(first_extra, triangles() - std::size_t{known});
+      edge_count = add_triangles_of_high_degree(first_extra, triangles() - std::size_t{known});
       if (edge_count == CADT_NONE) return std::nullopt;
     } else {
       require_all(known);
@@ -153,26 +155,26 @@ class Wrapping {
 
  private:
   [[nodiscard]] std::size_t triangles() const noexcept { return 2 * n_ - 2; }
-  [[nodiscard]] std::size_t link_words() const noexcept { return 3 * triangles(); }  // ghosts have no star
+  [[nodiscard]] std::size_t star_words() const noexcept { return 3 * triangles(); }  // the ghost has no star
 
-  /// First triangles of the vertices; behind them the total, what was found, and zeros, `words` together. Vertices
-  /// without a star have size 0, so this may run before it is known whether there are too many.
+  /// First triangles of the vertices; behind them the total, the counts, and zeros, `words` words from n on in all.
+  /// Vertices without a star have size 0, so this may run before it is known whether there are too many.
   void count(bool apart, std::size_t words) {
     const LaunchGrid all = launch_.grid(n_);
-    const auto zeros = static_cast<std::uint32_t>(words - (n_ + 1 + CADT_WRAP_FOUND));
+    const auto zeros = static_cast<std::uint32_t>(words - (n_ + 1 + CADT_WRAP_DRIVER_WORDS));
     launch_.run<KernelId::cadt_wrap_counts>(all.items, star_vertices_, begins_, sizes_, count_, apart ? 1U : 0U,
-                                            all.grain, found_, bases_, zeros, edges_);
+                                            all.grain, counts_, bases_, zeros, edges_);
     launch_.scan(bases_, n_ + 1);
   }
 
-  /// The total, and what was found.
+  /// Takes over the total and the counts.
   void note(std::span<const std::uint32_t> words) {
-    used_words_ = words[1];
-    high_degree_ = words[2];
-    note_exact(words.subspan(4, 3));
+    used_words_ = words[1 + CADT_WRAP_OVERFLOWED];
+    high_degree_ = words[1 + CADT_WRAP_FAILED];
+    note_exact(words.subspan(1 + CADT_WRAP_EXACT_ORIENTATIONS, 3));
   }
 
-  /// Exact tests so far.
+  /// Adds the exact tests since the last call to the statistics.
   void note_exact(std::span<const std::uint32_t> words) {
     ctx_.statistics.exact_orientations += words[0] - exact_[0];
     ctx_.statistics.exact_incircles += words[1] - exact_[1];
@@ -180,9 +182,9 @@ class Wrapping {
     std::ranges::copy(words, exact_.begin());
   }
 
-  /// Those of three vertices without stars, each as its three half-edges behind the `known` ones. Returns how many
-  /// half-edges there are then, CADT_NONE if that does not fill all gaps.
-  [[nodiscard]] std::uint32_t add_triangles_of_hubs(std::uint32_t known, std::size_t wanted) {
+  /// Adds the triangles of three vertices without stars, each as its three half-edges behind the `known` ones. Returns
+  /// how many half-edges there are then, or CADT_NONE if that does not fill all gaps.
+  [[nodiscard]] std::uint32_t add_triangles_of_high_degree(std::uint32_t known, std::size_t wanted) {
     if (known + 3 * wanted > CADT_WRAP_EDGES || known == 0) return CADT_NONE;
     std::vector<cadt_wrap_edge> edges(known);
     ctx_.device.read(*edges_, 0, edges.data(), known * sizeof edges[0]);
@@ -193,12 +195,12 @@ class Wrapping {
     const LaunchGrid all = launch_.grid(n_);
     launch_.run<KernelId::cadt_list_high_degree>(all.items, sizes_, count_, all.grain, high_degree, listed);
     for (std::size_t round = 0; round < wanted; ++round) {
-      // Edges to the ghost need no search: the edges of the hull lead to all of its triangles.
+      // Edges to the ghost need no search: the hull edges lead to all of its triangles.
       std::vector<cadt_wrap_edge> open;
       for (const auto& [from, to] : sides)
         if (from != CADT_GHOST && to != CADT_GHOST && !sides.contains({to, from})) open.push_back({to, from, 0});
       if (open.empty()) break;
-      find_behind(open, high_degree);
+      find_apexes(open, high_degree);
       for (const auto& [a, b, c] : open) {
         if (sides.contains({a, b})) continue;  // of a triangle that another edge has led to
         if (edges.size() + 3 > CADT_WRAP_EDGES) return CADT_NONE;
@@ -208,29 +210,29 @@ class Wrapping {
         }
       }
     }
-    std::array<std::uint32_t, CADT_WRAP_FOUND> words{};
-    ctx_.device.read(*found_, 0, words.data(), sizeof words);
-    note_exact(std::span(words).subspan(3, 3));
+    std::array<std::uint32_t, CADT_WRAP_DRIVER_WORDS> words{};
+    ctx_.device.read(*counts_, 0, words.data(), sizeof words);
+    note_exact(std::span(words).subspan(CADT_WRAP_EXACT_ORIENTATIONS, 3));
     const bool closed = std::ranges::all_of(sides, [&](HalfEdge e) { return sides.contains({e.second, e.first}); });
     if (!closed || edges.size() != known + 3 * wanted || sides.size() != edges.size()) return CADT_NONE;
     ctx_.device.write(*edges_, 0, edges.data(), edges.size() * sizeof edges[0]);
     return static_cast<std::uint32_t>(edges.size());
   }
 
-  /// What is to the left of edges between two hubs.
-  void find_behind(std::vector<cadt_wrap_edge>& edges, const Allocation& high_degree) {
+  /// The apex to the left of edges between two high-degree vertices.
+  void find_apexes(std::vector<cadt_wrap_edge>& edges, const Allocation& high_degree) {
     const auto count = static_cast<std::uint32_t>(edges.size());
     const std::size_t bytes = edges.size() * sizeof edges[0];
     const Allocation list = ctx_.memory.allocate(bytes);
     ctx_.device.write(*list, 0, edges.data(), bytes);
     const LaunchGrid c = launch_.grid_spread(count);
     launch_.run<KernelId::cadt_apex_of_high_degree>(c.items, points_, high_degree, high_degree_, count, c.grain, list,
-                                                    found_);
+                                                    counts_);
     ctx_.device.read(*list, 0, edges.data(), bytes);
   }
 
   void require_all(std::size_t found) const {
-    if (found == triangles() && used_words_ <= link_words()) return;
+    if (found == triangles() && used_words_ <= star_words()) return;
     throw InternalError("the wrapped stars have " + std::to_string(found) + " triangles instead of " +
                         std::to_string(triangles()) + "; please report this with the input");
   }
@@ -240,9 +242,9 @@ class Wrapping {
   const Allocation& points_;
   std::size_t n_;
   std::uint32_t count_;
-  Allocation star_vertices_, begins_, sizes_, found_, edges_, bases_;
+  Allocation star_vertices_, begins_, sizes_, counts_, edges_, bases_;
   std::uint32_t used_words_ = 0, high_degree_ = 0;
-  std::array<std::uint32_t, 3> exact_{};  // orientations, incircles, ties that the statistics have
+  std::array<std::uint32_t, 3> exact_{};  // exact orientations, incircles, ties already in the statistics
 };
 
 }  // namespace
@@ -250,21 +252,21 @@ class Wrapping {
 void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const StarsOfBatch& sets,
                 const WrappedStars& stars) {
   const AabbTree leaves(ctx, points, n, sets.starts, sets.count, {}, {});
-  const Allocation efforts = ctx.launcher.zeros(sets.count), none;
+  const Allocation work_done = ctx.launcher.zeros(sets.count), none;
   const auto listed = static_cast<std::uint32_t>(sets.list_size);
   const LaunchGrid teams = ctx.launcher.grid_of_teams(listed, wrap_lanes);
   ctx.launcher.run_in_groups<KernelId::cadt_wrap_stars>(
       teams.items, wrap_lanes, points, leaves.leaves, leaves.nodes, static_cast<std::uint32_t>(n), sets.list, listed,
-      none, sets.starts, static_cast<std::uint32_t>(sets.count), sets.states, efforts, wrap_work_limit,
+      none, sets.starts, static_cast<std::uint32_t>(sets.count), sets.states, work_done, wrap_work_limit,
       spare_work_limit, teams.grain, static_cast<std::uint32_t>(stars.row), stars.star_vertices,
-      static_cast<std::uint32_t>(stars.link_words), stars.begins, stars.sizes, stars.found);
+      static_cast<std::uint32_t>(stars.star_words), stars.begins, stars.sizes, stars.counts);
 }
 
 std::optional<Mesh> wrap_part(Context& ctx, const Allocation& points, std::size_t n, std::size_t all) {
   if (n < 3) return std::nullopt;
   Wrapping wrapping(ctx, points, n);
   wrapping.make_stars(all);
-  return wrapping.make_records();
+  return wrapping.make_locked();
 }
 
 std::optional<Mesh> wrap_mesh(Context& ctx, const SortedPoints& order) {
@@ -276,7 +278,7 @@ std::optional<Mesh> wrap_mesh(Context& ctx, const SortedPoints& order) {
   if (wrapping.make_arrays(arrays)) return arrays;
   if (wrapping.failed()) return std::nullopt;
   arrays = {};
-  std::optional<Mesh> mesh = wrapping.make_records();
+  std::optional<Mesh> mesh = wrapping.make_locked();
   if (!mesh) return std::nullopt;
   return sweep_legality(ctx, order, std::move(mesh->locked), 3 * std::uint64_t{n} - 3);
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Stars by gift wrapping in single precision, checked as a whole: a team for each vertex p. It wraps the points around
- * p. Then exact predicates say of each triangle that no other point is in its circle, which mostly is so small that all
- * of its points are known. Other stars, and those that rounded numbers do not find, are left to cadt_wrap_stars, which
- * decides each step exactly but takes over the triangles that are proven (docs/algorithm.md, "Gift wrapping").
+ * Gift wrapping in single precision, checked as a whole: the star of one vertex p by a team. It wraps the points around
+ * p; then exact predicates show for each triangle that no other point is in its circle, which mostly is so small that
+ * all of its points are known. Stars with larger circles, and those that single precision gets wrong, are left to
+ * cadt_wrap_stars, which decides each step exactly but takes over the proven triangles (docs/algorithm.md, "Gift
+ * wrapping").
  */
 #ifndef CADT_STARS_WRAP_FAST_H
 #define CADT_STARS_WRAP_FAST_H
@@ -11,13 +12,14 @@
 #include "common/stars/wrapped_star.dev.h"
 
 typedef struct {
-  float x[CADT_NEAR_POINTS], y[CADT_NEAR_POINTS]; /* from p, in the unit */
+  float x[CADT_NEAR_POINTS], y[CADT_NEAR_POINTS]; /* relative to p, scaled */
   cadt_u32 at[CADT_NEAR_POINTS];
-  cadt_u32 star[2 * CADT_WRAP_DEGREE]; /* places of the neighbours, counterclockwise; the first one is in the middle */
-  cadt_disc disc[CADT_WRAP_DEGREE];    /* of the triangles, */
-  cadt_u32 proven[CADT_WRAP_DEGREE];   /* and whether they are Delaunay for certain */
+  cadt_u32
+      star[2 * CADT_WRAP_DEGREE];    /* places of the star vertices, counterclockwise; the first one is in the middle */
+  cadt_disc disc[CADT_WRAP_DEGREE];  /* discs of the triangles */
+  cadt_u32 proven[CADT_WRAP_DEGREE]; /* whether they are certainly Delaunay */
   cadt_u32 nodes[CADT_WRAP_NODES], leaves[CADT_NEAR_LEAVES];
-  cadt_steps steps;
+  cadt_reduction reductions;
   cadt_u32 place;
 } cadt_near_memory;
 
@@ -26,23 +28,26 @@ typedef struct {
   cadt_aabb_tree in;
   cadt_counters* counters;
   cadt_reach_around reach;
-  cadt_u32 p, step, known;    /* known points */
-  cadt_u32 low, size, closed; /* the star in m->link; whether it goes round p */
+  cadt_u32 p, reduction, known; /* number of points gathered */
+  cadt_u32 low, size, closed;   /* the star in m->star; whether it goes all the way round p */
 } cadt_near;
 
-CADT_FN cadt_u32 cadt_near_count(const cadt_near* w) { return cadt_team_add(&w->m->steps.count[w->step], 1u); }
-CADT_FN cadt_u32 cadt_near_end_step(cadt_near* w, cadt_u32 value, cadt_u32* count) {
-  return cadt_end_step(&w->m->steps, &w->step, value, count);
+CADT_FN cadt_u32 cadt_near_count(const cadt_near* w) {
+  return cadt_team_add(&w->m->reductions.count[w->reduction], 1u);
+}
+CADT_FN cadt_u32 cadt_near_reduce(cadt_near* w, cadt_u32 value, cadt_u32* count) {
+  return cadt_end_reduction(&w->m->reductions, &w->reduction, value, count);
 }
 
-/* Point i, which is at x, y from p. */
-CADT_FN void cadt_near_learn(const cadt_near* w, cadt_u32 slot, cadt_u32 i, double x, double y) {
+/* Stores point i, which is at x, y relative to p. */
+CADT_FN void cadt_near_store(const cadt_near* w, cadt_u32 slot, cadt_u32 i, double x, double y) {
   w->m->at[slot] = i;
   w->m->x[slot] = CADT_CAST(float, x * w->reach.unit);
   w->m->y[slot] = CADT_CAST(float, y * w->reach.unit);
 }
 
-/* The points within reach, which is chosen anew where they are too many or too few. Returns 0 if that does not help. */
+/* Gathers the points within reach; the reach changes if they are too many or too few. Returns 0 if that does not help.
+ */
 CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
   const cadt_point p = w->in.points[w->p];
   const cadt_u32 most = CADT_NEAR_POINTS, few = CADT_NEAR_FEW;
@@ -54,14 +59,14 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
     CADT_TEAM_FOR(j, w->in.node_count) {
       if (cadt_aabb_matters(w->in.nodes[j], p, 0.0, 0.0, 0.0, &disc)) w->m->nodes[cadt_near_count(w)] = j;
     }
-    cadt_near_end_step(w, CADT_NONE, &nodes);
+    cadt_near_reduce(w, CADT_NONE, &nodes);
     CADT_TEAM_FOR(j, nodes * CADT_AABB_FANOUT) {
       const cadt_u32 c = w->m->nodes[j / CADT_AABB_FANOUT] * CADT_AABB_FANOUT + j % CADT_AABB_FANOUT;
       if (c >= w->in.leaf_count || !cadt_aabb_matters(w->in.leaves[c], p, 0.0, 0.0, 0.0, &disc)) continue;
       const cadt_u32 slot = cadt_near_count(w);
       if (slot < CADT_CAST(cadt_u32, CADT_NEAR_LEAVES)) w->m->leaves[slot] = c;
     }
-    cadt_near_end_step(w, CADT_NONE, &leaves);
+    cadt_near_reduce(w, CADT_NONE, &leaves);
     many = leaves > CADT_CAST(cadt_u32, CADT_NEAR_LEAVES) ? 1u : 0u;
     CADT_TEAM_FOR(j, many ? 0u : leaves * CADT_AABB_LEAF) {
       const cadt_u32 i = cadt_wrap_in_leaves(w->m->leaves, j);
@@ -70,10 +75,10 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
       const double x = c.x - p.x, y = c.y - p.y;
       if (x * x + y * y > w->reach.square) continue;
       const cadt_u32 slot = cadt_near_count(w);
-      if (slot < most) cadt_near_learn(w, slot, i, x, y);
+      if (slot < most) cadt_near_store(w, slot, i, x, y);
     }
-    cadt_near_end_step(w, CADT_NONE, &w->known);
-    /* What is known must have been in reach of the last search. */
+    cadt_near_reduce(w, CADT_NONE, &w->known);
+    /* The points must have been within reach of the last search. */
     double change = many ? 0.1 : 4.0;
     if (w->known > most) many = 1u, change = 0.5 * CADT_CAST(double, most) / CADT_CAST(double, w->known);
     going = many || (w->known < few && w->in.n > 2u * few) ? 1u : 0u;
@@ -82,7 +87,7 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
   return !many;
 }
 
-/* The known point behind that at place `a` on one side, or nearest to p; CADT_NONE if there is none. */
+/* The gathered point after the one at place `a` on one side, or the nearest to p; CADT_NONE if there is none. */
 CADT_FN cadt_u32 cadt_near_next(cadt_near* w, cadt_u32 a, cadt_i32 side) {
   const float ax = a == CADT_NONE ? 0.0f : w->m->x[a], ay = a == CADT_NONE ? 0.0f : w->m->y[a];
   const cadt_u32 mask = CADT_NEAR_PLACE;
@@ -91,20 +96,20 @@ CADT_FN cadt_u32 cadt_near_next(cadt_near* w, cadt_u32 a, cadt_i32 side) {
     const cadt_u32 order = cadt_wrap_key(ax, ay, w->m->x[j], w->m->y[j], side, a == CADT_NONE ? 1u : 0u);
     if (order != CADT_NONE) key = cadt_min_u32(key, (order & ~mask) | j);
   }
-  key = cadt_near_end_step(w, key, &count);
+  key = cadt_near_reduce(w, key, &count);
   return key == CADT_NONE ? CADT_NONE : key & mask;
 }
 
-/* The exact test of two known points, at places b and c. A function of its own, as the one below. */
+/* The exact test of two gathered points, at places b and c. A function of its own, for the reason given below. */
 CADT_FN_SLOW cadt_u32 cadt_near_better(CADT_GLOBAL const cadt_point* points, CADT_TEAM_PTR const cadt_u32* at,
                                        cadt_u32 p, cadt_u32 a, cadt_i32 side, cadt_u32 b, cadt_u32 c,
                                        cadt_counters* counters) {
   return cadt_wrap_better_of(points, p, at[a], side, at[b], at[c], counters) == at[c] ? c : b;
 }
 
-/* The known point behind that at place `a` if it is `next` or one that rounded numbers do not tell from it, as the
- * exact test says. */
-CADT_FN cadt_u32 cadt_near_tell(cadt_near* w, cadt_u32 a, cadt_i32 side, cadt_u32 next) {
+/* The gathered point after the one at place `a`: `next`, or one that rounded arithmetic does not distinguish from it,
+ * whichever the exact test prefers. */
+CADT_FN cadt_u32 cadt_near_decide(cadt_near* w, cadt_u32 a, cadt_i32 side, cadt_u32 next) {
   const float ax = w->m->x[a], ay = w->m->y[a];
   const float value = cadt_wrap_key_value(cadt_wrap_key(ax, ay, w->m->x[next], w->m->y[next], side, 0u));
   const float most = value + 3e-5f * (1.0f + value * value);
@@ -113,7 +118,7 @@ CADT_FN cadt_u32 cadt_near_tell(cadt_near* w, cadt_u32 a, cadt_i32 side, cadt_u3
     const cadt_u32 key = cadt_wrap_key(ax, ay, w->m->x[j], w->m->y[j], side, 0u);
     if (key != CADT_NONE && cadt_wrap_key_value(key) <= most) w->m->leaves[cadt_near_count(w)] = j;
   }
-  cadt_near_end_step(w, CADT_NONE, &count);
+  cadt_near_reduce(w, CADT_NONE, &count);
   if (count < 2u) return next;
   const cadt_u32 lanes = cadt_min_u32(cadt_team_lanes, CADT_WRAP_NODES);
   cadt_u32 width = cadt_min_u32(lanes, count);
@@ -135,20 +140,20 @@ CADT_FN cadt_u32 cadt_near_tell(cadt_near* w, cadt_u32 a, cadt_i32 side, cadt_u3
   return w->m->nodes[0];
 }
 
-/* The star of p among the known points, by rounded numbers; `careful`: exactly where these do not tell. Returns 0 if it
- * makes no sense. */
+/* The star of p among the gathered points in rounded arithmetic; `careful`: exactly where that does not decide. Returns
+ * 0 if the result is no star. */
 CADT_FN cadt_u32 cadt_near_wrap(cadt_near* w, cadt_u32 careful) {
   cadt_u32 low = CADT_WRAP_DEGREE, high = low, start = CADT_NONE, now = CADT_NONE, sense = 1u, going = 1u;
   cadt_i32 side = 1;
   w->closed = 0u;
   while (going) {
     cadt_u32 next = cadt_near_next(w, now, side);
-    if (careful && now != CADT_NONE && next != CADT_NONE) next = cadt_near_tell(w, now, side, next);
+    if (careful && now != CADT_NONE && next != CADT_NONE) next = cadt_near_decide(w, now, side, next);
     if (start == CADT_NONE) { /* from the nearest point counterclockwise, */
       start = now = next;
       if (start == CADT_NONE) going = sense = 0u;
       if (cadt_team_lane == 0u && sense) w->m->star[low] = start;
-    } else if (next == CADT_NONE) { /* from the hull to its other edge clockwise */
+    } else if (next == CADT_NONE) { /* then from a hull edge back, clockwise to the other one */
       if (side < 0) going = 0u;
       side = -1;
       now = start;
@@ -169,49 +174,50 @@ CADT_FN cadt_u32 cadt_near_wrap(cadt_near* w, cadt_u32 careful) {
   return sense && w->size >= 2u + w->closed ? 1u : 0u;
 }
 
-/* Triangles of the star. Of one on the hull there is one fewer than neighbours, and what comes last are the two edges
- * of the hull, behind its last neighbour and before its first. */
+/* Number of triangles of the star. On the hull it is one less than the number of star vertices, and last come the two
+ * hull edges, behind the last star vertex and before the first. */
 CADT_FN cadt_u32 cadt_near_triangles(const cadt_near* w) { return w->closed ? w->size : w->size - 1u; }
-/* The neighbour `k`, or the first one behind the last. */
+/* Star vertex `k`, or the first one behind the last. */
 CADT_FN cadt_u32 cadt_near_neighbor(const cadt_near* w, cadt_u32 k) {
   return w->m->at[w->m->star[w->low + (k < w->size ? k : 0u)]];
 }
 
-/* The triangles' discs; proven is what is counterclockwise for certain and has no points but known ones in its disc.
- * Returns how many triangles are. The disc of the others is empty: what is in it does not matter. */
-CADT_FN cadt_u32 cadt_near_claim(cadt_near* w) {
+/* Computes the triangles' discs. A triangle becomes a candidate for a proof if it is certainly counterclockwise and
+ * only gathered points can be in its disc; returns how many are. The disc of the others is empty: what is in it does
+ * not matter. */
+CADT_FN cadt_u32 cadt_near_candidates(cadt_near* w) {
   const cadt_point p = w->in.points[w->p];
   cadt_u32 count;
   CADT_TEAM_FOR(i, cadt_near_triangles(w)) {
     const cadt_point a = w->in.points[cadt_near_neighbor(w, i)], b = w->in.points[cadt_near_neighbor(w, i + 1u)];
     cadt_disc disc = cadt_disc_around(p, a, b);
-    /* The circle goes through p, so nothing in it is further off than its diameter. */
-    const cadt_u32 locked = cadt_orientation_filter(p, a, b) == 1 && 4.0 * disc.square <= w->reach.square ? 1u : 0u;
-    if (!locked) disc.square = -1.0;
+    /* The circle goes through p, so nothing in it is further away than its diameter. */
+    const cadt_u32 candidate = cadt_orientation_filter(p, a, b) == 1 && 4.0 * disc.square <= w->reach.square ? 1u : 0u;
+    if (!candidate) disc.square = -1.0;
     w->m->disc[i] = disc;
-    w->m->proven[i] = locked;
-    if (locked) cadt_near_count(w);
+    w->m->proven[i] = candidate;
+    if (candidate) cadt_near_count(w);
   }
-  cadt_near_end_step(w, CADT_NONE, &count);
+  cadt_near_reduce(w, CADT_NONE, &count);
   return count;
 }
 
-/* The exact test. A function of its own: its code must not be in the way of that which all lanes execute. */
+/* The exact test. A function of its own, so that its code is out of the way of what all lanes execute. */
 CADT_FN_SLOW cadt_u32 cadt_near_in_circle(CADT_GLOBAL const cadt_point* points, cadt_u32 p, cadt_u32 a, cadt_u32 b,
                                           cadt_u32 c, cadt_counters* counters) {
   return cadt_incircle(points[p], points[a], points[b], points[c], counters) > 0 ? 1u : 0u;
 }
 
-/* Known points in circles of what is to be proven: rounded numbers have erred, `erred` times. Returns whether no known
- * point is beyond an edge of the hull, or on its line, which is not decided here. */
-CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w, cadt_u32* erred) {
+/* Withdraws the proof of triangles with a gathered point in their circle: rounded arithmetic has erred, `erred` times.
+ * Returns whether no gathered point is beyond a hull edge or on its line, which is not decided here. */
+CADT_FN cadt_u32 cadt_near_refute(cadt_near* w, cadt_u32* erred) {
   const cadt_point p = w->in.points[w->p];
   const cadt_u32 triangles = cadt_near_triangles(w);
   cadt_u32 wrong = CADT_NONE;
   CADT_TEAM_FOR(j, triangles ? w->known : 0u) {
     const cadt_u32 i = w->m->at[j];
     const cadt_point c = w->in.points[i];
-    /* In two loops, so that lanes come to exact tests at the same time, not one after the other. */
+    /* Two loops, so that lanes reach exact tests at the same time, not one after the other. */
     for (cadt_u32 k = 0u; k < triangles; ++k) {
       cadt_u32 a = CADT_NONE, b = CADT_NONE;
       for (; k < triangles; ++k) {
@@ -230,44 +236,44 @@ CADT_FN cadt_u32 cadt_near_contradict(cadt_near* w, cadt_u32* erred) {
     if (i != first && cadt_orientation_filter(p, w->in.points[first], c) != 1) wrong = 0u;
     if (i != last && cadt_orientation_filter(p, w->in.points[last], c) != -1) wrong = 0u;
   }
-  return cadt_near_end_step(w, wrong, erred) == CADT_NONE ? 1u : 0u;
+  return cadt_near_reduce(w, wrong, erred) == CADT_NONE ? 1u : 0u;
 }
 
-/* Searches the star of w->p; returns its kind (wrapped_star.dev.h), 0 if it is not found this way: then there are
- * triangles of which those are right that are proven. */
+/* Computes the star of w->p; returns its kind (wrapped_star.dev.h), 0 if this way does not find it: then its proven
+ * triangles are right. */
 CADT_FN cadt_u32 cadt_near_star(cadt_near* w) {
   const cadt_u32 all = w->reach.square == CADT_CAST(double, CADT_INFINITY) ? 1u : 0u;
   cadt_u32 right = 0u, erred = 1u;
   if (!cadt_near_gather(w)) w->known = 0u;
   for (cadt_u32 careful = 0u; careful < 2u && erred; ++careful) {
     if (!cadt_near_wrap(w, careful)) w->size = 0u, w->closed = 1u; /* no triangles */
-    const cadt_u32 locked = cadt_near_claim(w);
-    right = cadt_near_contradict(w, &erred);
+    const cadt_u32 candidates = cadt_near_candidates(w);
+    right = cadt_near_refute(w, &erred);
     if (!w->size && w->known) erred = 1u;
-    if (w->size && !locked) erred = 0u; /* none of its triangles would be proven */
+    if (w->size && !candidates) erred = 0u; /* none of its triangles would be proven */
   }
   if (!w->size || !(w->closed || all)) right = 0u;
   for (cadt_u32 k = 0u; k < cadt_near_triangles(w); ++k) right &= w->m->proven[k];
   return right ? (w->closed ? 1u : 2u) : 0u;
 }
 
-/* Whether rounded numbers do not tell p from a point of the circle through others far away. */
+/* Whether the floating-point filter takes p for a point of the circle through three points far away. */
 CADT_FN cadt_u32 cadt_near_on_circle(CADT_GLOBAL const cadt_point* points, cadt_u32 n, cadt_u32 p) {
   const cadt_u32 step = n / 4u, a = (p + step) % n, b = (p + 2u * step) % n, c = (p + 3u * step) % n;
   double most;
   return cadt_incircle_rounded(points[a], points[b], points[c], points[p], &most) == 0 ? 1u : 0u;
 }
 
-/* Stars of all n points. Those that are not found are listed in `todo`, found[7] of them (found[8]: of those that do
- * not go round among the points that are known; found[9]: of these on a circle with others), and in the rows of `arcs`
- * how many neighbours they have here, whether those go round, and which, with CADT_WRAP_PROVEN where the triangle of it
- * and the next one is. \pre sizes are 0, n >= 2 */
+/* The stars of all n points. Those not found are listed in `todo` and counted (CADT_WRAP_TODO... of layout.dev.h);
+ * their rows of `arcs` hold the partial star: the number of star vertices times two, plus 1 if they go all the way
+ * round, then the star vertices, with CADT_WRAP_PROVEN if the triangle of one and the next is proven. \pre sizes are 0,
+ * n >= 2 */
 CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_aabb* leaves,
                  CADT_GLOBAL const cadt_aabb* nodes, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* star_vertices,
-                 cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
-                 CADT_GLOBAL cadt_u32* todo, CADT_GLOBAL cadt_u16* arcs, CADT_GLOBAL cadt_u32* found) {
+                 cadt_u32 star_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
+                 CADT_GLOBAL cadt_u32* todo, CADT_GLOBAL cadt_u16* arcs, CADT_GLOBAL cadt_u32* counts) {
   CADT_TEAM_MEMORY cadt_near_memory memory;
-  const cadt_wrap_sink sink = cadt_wrap_sink_of(n, 0u, star_vertices, link_words, begins, sizes, found);
+  const cadt_wrap_sink sink = cadt_wrap_sink_of(n, 0u, star_vertices, star_words, begins, sizes, counts);
   cadt_counters counters;
   cadt_counters_clear(&counters);
   CADT_FOR_TEAMS(v, n, grain) {
@@ -277,15 +283,15 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
     w.counters = &counters;
     w.p = v;
     w.reach = cadt_wrap_reach(&w.in, v);
-    w.step = w.known = 0u;
-    cadt_begin_steps(&memory.steps);
+    w.reduction = w.known = 0u;
+    cadt_begin_reductions(&memory.reductions);
     CADT_TEAM_SYNC();
     const cadt_u32 kind = cadt_near_star(&w);
     if (cadt_team_lane == 0u && !kind) {
-      memory.place = cadt_add_relaxed(found + 7, 1u);
+      memory.place = cadt_add_relaxed(counts + CADT_WRAP_TODO, 1u);
       if (!w.closed) {
-        cadt_add_relaxed(found + 8, 1u);
-        if (cadt_near_on_circle(points, n, v)) cadt_add_relaxed(found + 9, 1u);
+        cadt_add_relaxed(counts + CADT_WRAP_TODO_OPEN, 1u);
+        if (cadt_near_on_circle(points, n, v)) cadt_add_relaxed(counts + CADT_WRAP_TODO_ON_CIRCLE, 1u);
       }
       todo[memory.place] = v;
     }
@@ -301,7 +307,7 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
     if (cadt_team_lane == 0u && !kind) arcs[memory.place * CADT_WRAP_ROW] = CADT_CAST(cadt_u16, noted << 1 | w.closed);
     cadt_wrap_store(&sink, &memory.place, v, 0u, memory.leaves, w.size, 1u, kind);
   }
-  cadt_wrap_pass_on(&counters, found);
+  cadt_wrap_flush_counts(&counters, counts);
 }
 
 #endif

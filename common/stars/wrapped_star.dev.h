@@ -1,57 +1,56 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Where the kernels of gift wrapping (wrap_fast.dev.h, wrap_exact.dev.h) put a star: sizes[v] words from
- * links[begins[v]] on, CADT_GHOST behind the last neighbour on the hull. Stars of at most `row` words have begins[v]
- * already, longer ones stand behind the rows. found: words used behind them, vertices without a star, effort: boxes
- * looked at and exact tests; exact orientations, exact incircles, ties; edges between two without stars; stars left to
- * do, of these those that do not go round, as far as cadt_wrap_near knows, of those those that are on a circle with
- * others.
+ * Where the kernels of gift wrapping (wrap_fast.dev.h, wrap_exact.dev.h) store a star: sizes[v] words of star_vertices
+ * from begins[v] on, with CADT_GHOST behind the last star vertex on the hull. The driver has set begins[v] for stars of
+ * at most `row` words; longer ones stand behind the rows. `counts`: CADT_WRAP_... (layout.dev.h).
  */
 #ifndef CADT_STARS_WRAPPED_STAR_H
 #define CADT_STARS_WRAPPED_STAR_H
 
 #include "common/stars/aabb_tree.dev.h"
 
-/* In a row of what is known of a star (CADT_WRAP_ROW): the triangle of this neighbour and the next one is proven. The
- * other bits are the number of the neighbour, so rows are for at most 2^15 points. */
+/* In the row of a partial star (CADT_WRAP_ROW): the triangle of this star vertex and the next one is proven. The other
+ * bits are the number of the star vertex, so rows serve at most 2^15 points. */
 #define CADT_WRAP_PROVEN 0x8000u
 
 typedef struct {
-  cadt_u32 n, row, link_words;
+  cadt_u32 n, row, star_words;
   CADT_GLOBAL cadt_u32* star_vertices;
   CADT_GLOBAL cadt_u32* begins;
   CADT_GLOBAL cadt_u32* sizes;
-  CADT_GLOBAL cadt_u32* found;
+  CADT_GLOBAL cadt_u32* counts;
 } cadt_wrap_sink;
 
 CADT_FN cadt_wrap_sink cadt_wrap_sink_of(cadt_u32 n, cadt_u32 row, CADT_GLOBAL cadt_u32* star_vertices,
-                                         cadt_u32 link_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
-                                         CADT_GLOBAL cadt_u32* found) {
+                                         cadt_u32 star_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
+                                         CADT_GLOBAL cadt_u32* counts) {
   cadt_wrap_sink s;
   s.n = n;
   s.row = row;
-  s.link_words = link_words;
+  s.star_words = star_words;
   s.star_vertices = star_vertices;
   s.begins = begins;
   s.sizes = sizes;
-  s.found = found;
+  s.counts = counts;
   return s;
 }
 
-/* The star of v: `size` neighbours, counterclockwise or not, by their numbers in a range that begins at `first`. Kind
- * 0: there is none; 2: v is on the hull. All lanes call it; there is a barrier before what it writes to *place. */
+/* Stores the star of v: `size` star vertices, counterclockwise or clockwise, by their numbers in a span that begins at
+ * `first`. Kind 0: there is none; 1: v is an inner vertex; 2: v is on the hull. All lanes call it; there is a barrier
+ * before it writes *place. */
 CADT_FN void cadt_wrap_store(const cadt_wrap_sink* s, CADT_TEAM_PTR cadt_u32* place, cadt_u32 v, cadt_u32 first,
                              CADT_TEAM_PTR const cadt_u32* star, cadt_u32 size, cadt_u32 counterclockwise,
                              cadt_u32 kind) {
   const cadt_u32 words = kind == 2u ? size + 1u : size;
   CADT_TEAM_SYNC();
   if (cadt_team_lane == 0u && kind) {
-    *place = words <= s->row ? s->begins[v] : s->n * s->row + cadt_add_relaxed(s->found, words);
+    *place = words <= s->row ? s->begins[v] : s->n * s->row + cadt_add_relaxed(s->counts + CADT_WRAP_OVERFLOWED, words);
     s->begins[v] = *place;
     s->sizes[v] = words;
   }
   CADT_TEAM_SYNC();
-  if (kind && *place + words <= s->link_words) { /* else the driver sees from found[0] that stars are wrong */
+  if (kind &&
+      *place + words <= s->star_words) { /* else the driver sees from CADT_WRAP_OVERFLOWED that stars are wrong */
     CADT_GLOBAL cadt_u32* out = s->star_vertices + *place;
     CADT_TEAM_FOR(k, size) { out[k] = first + star[counterclockwise ? k : size - 1u - k]; }
     if (cadt_team_lane == 0u && kind == 2u) out[size] = CADT_GHOST;
@@ -59,13 +58,13 @@ CADT_FN void cadt_wrap_store(const cadt_wrap_sink* s, CADT_TEAM_PTR cadt_u32* pl
   CADT_TEAM_SYNC();
 }
 
-/* At the end of a work-item: what exact tests it made. */
-CADT_FN void cadt_wrap_pass_on(const cadt_counters* counters, CADT_GLOBAL cadt_u32* found) {
+/* At the end of a work-item: adds its exact tests to the counts. */
+CADT_FN void cadt_wrap_flush_counts(const cadt_counters* counters, CADT_GLOBAL cadt_u32* counts) {
   if (counters->count[CADT_COUNT_EXACT_ORIENTATIONS])
-    cadt_add_relaxed(found + 3, counters->count[CADT_COUNT_EXACT_ORIENTATIONS]);
+    cadt_add_relaxed(counts + CADT_WRAP_EXACT_ORIENTATIONS, counters->count[CADT_COUNT_EXACT_ORIENTATIONS]);
   if (counters->count[CADT_COUNT_EXACT_INCIRCLES])
-    cadt_add_relaxed(found + 4, counters->count[CADT_COUNT_EXACT_INCIRCLES]);
-  if (counters->count[CADT_COUNT_TIES]) cadt_add_relaxed(found + 5, counters->count[CADT_COUNT_TIES]);
+    cadt_add_relaxed(counts + CADT_WRAP_EXACT_INCIRCLES, counters->count[CADT_COUNT_EXACT_INCIRCLES]);
+  if (counters->count[CADT_COUNT_TIES]) cadt_add_relaxed(counts + CADT_WRAP_TIES, counters->count[CADT_COUNT_TIES]);
 }
 
 #endif

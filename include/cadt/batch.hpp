@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The triangulations of many sets of points from one call.
+// Triangulations of many point sets from one call.
 #pragma once
 
 #include <cadt/triangulation.hpp>
@@ -11,10 +11,11 @@
 
 namespace cadt {
 
-/// The meshes of many sets, one after another in the same arrays. Set s, of size() sets, has the triangles from
-/// triangle_offsets()[s] on, below triangle_offsets()[s + 1]. Vertices are numbered from the first point of their own
-/// set on, neighbours from its first triangle on: what belongs to a set is exactly what `triangulate` gives for it
-/// alone. Functions of a set throw InputError where there is no such set.
+/// The meshes of many sets, one after another in the same arrays. Set s, of size() sets, has the triangles
+/// triangle_offsets()[s] to triangle_offsets()[s + 1] - 1. Its vertices are indices into its own points, its neighbours
+/// indices into its own triangles, both 0-based: the part of a set is exactly what `triangulate` returns for that set.
+/// Functions that take a set throw InputError if there is no such set. Spans are valid as long as this object lives and
+/// is not moved from. const functions may run concurrently.
 class TriangulationBatch {
  public:
   TriangulationBatch();
@@ -24,24 +25,24 @@ class TriangulationBatch {
 
   /// Number of sets.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// size() + 1 numbers: the first triangle of each set, and the number of all.
+  /// size() + 1 numbers: the first triangle of each set, then the number of all triangles.
   [[nodiscard]] std::span<const std::size_t> triangle_offsets() const noexcept;
-  /// Vertices and neighbours of all sets, n x 3 each, as in Triangulation.
+  /// Vertices (counterclockwise) and neighbours (-1 outside) of all sets: n x 3 each, as in Triangulation.
   [[nodiscard]] std::span<const std::int32_t> triangles() const noexcept;
   [[nodiscard]] std::span<const std::int32_t> neighbors() const noexcept;
 
-  /// The same of one set.
+  /// The same for one set.
   [[nodiscard]] std::span<const std::int32_t> triangles(std::size_t set) const;
   [[nodiscard]] std::span<const std::int32_t> neighbors(std::size_t set) const;
   [[nodiscard]] std::size_t number_of_points(std::size_t set) const;
-  /// As Triangulation::dimension() and duplicates(), with the numbers of the set's own points.
+  /// As Triangulation::dimension() and duplicates(); indices are those of the set's own points.
   [[nodiscard]] int dimension(std::size_t set) const;
   [[nodiscard]] std::span<const Duplicate> duplicates(std::size_t set) const;
-  /// A copy of one set's mesh with all that a Triangulation has, the hull too; statistics are those of the whole call.
-  /// O(points of the set).
+  /// A copy of one set's mesh as a Triangulation, with its hull; the statistics are those of the whole call. O(points
+  /// of the set).
   [[nodiscard]] Triangulation triangulation(std::size_t set) const;
 
-  /// Of the whole call.
+  /// Statistics of the whole call.
   [[nodiscard]] const Statistics& statistics() const noexcept;
 
   struct Data;  // internal
@@ -51,7 +52,7 @@ class TriangulationBatch {
   std::unique_ptr<Data> data_;
 };
 
-/// The same with the arrays in device memory. Its handles are valid as those of a DeviceTriangulation.
+/// The same with the arrays in device memory. The handles are valid as those of DeviceTriangulation.
 class DeviceTriangulationBatch {
  public:
   DeviceTriangulationBatch();
@@ -60,19 +61,19 @@ class DeviceTriangulationBatch {
   DeviceTriangulationBatch& operator=(DeviceTriangulationBatch&&) noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept;
-  /// On the host.
+  /// triangle_offsets() as in TriangulationBatch, on the host.
   [[nodiscard]] std::span<const std::size_t> triangle_offsets() const noexcept;
-  /// Handle of the same as size() + 1 words of 32 bits on the device.
+  /// Handle of triangle_offsets() as size() + 1 32-bit words on the device.
   [[nodiscard]] void* device_triangle_offsets() const noexcept;
-  /// Handles of the vertices and neighbours of all sets, n x 3 words each; null if there are none.
+  /// Handles of the vertices and neighbours of all sets: n x 3 32-bit words each; null if there are no triangles.
   [[nodiscard]] void* triangles() const noexcept;
   [[nodiscard]] void* neighbors() const noexcept;
-  /// On the host, as in TriangulationBatch.
+  /// As in TriangulationBatch, on the host.
   [[nodiscard]] int dimension(std::size_t set) const;
   [[nodiscard]] std::span<const Duplicate> duplicates(std::size_t set) const;
   [[nodiscard]] const Statistics& statistics() const noexcept;
 
-  /// A copy on the host. O(triangles). \throws DeviceError
+  /// A copy on the host; waits for the device. O(triangles). \throws DeviceError
   [[nodiscard]] TriangulationBatch download() const;
 
   struct Data;  // internal
@@ -82,11 +83,13 @@ class DeviceTriangulationBatch {
   std::unique_ptr<Data> data_;
 };
 
-/// Triangulates many sets in one call. Set s has the points from offsets[s] on, below offsets[s + 1]: one number more
-/// than there are sets, the first 0, none below the one before, the last points.size(). Sets may be empty.
+/// Triangulates many sets in one call. Set s has the points offsets[s] to offsets[s + 1] - 1: one offset more than
+/// there are sets, the first 0, none below the one before, the last points.size(). Sets may be empty. `points` and
+/// `offsets` are read only and need to live until the call returns.
 ///
-/// Throws as `triangulate`; InputError too for other offsets, with the place of the first wrong one as index. The index
-/// of a bad point counts from the first point of all, the text names set and point.
+/// Throws as `triangulate`; also InputError for invalid offsets, with the position of the first invalid one as index.
+/// The index of a point that is NaN or infinite counts from the first point of all sets; the message names set and
+/// point.
 [[nodiscard]] TriangulationBatch triangulate_batch(PointsView points, std::span<const std::size_t> offsets,
                                                    const Options& options = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that the library offers.
+// All of the library's public interface but the file formats (cadt/io).
 #pragma once
 
 #include <cadt/batch.hpp>

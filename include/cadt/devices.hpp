@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this machine can compute on.
+// The devices of this machine.
 #pragma once
 
 #include <cadt/triangulation.hpp>
@@ -17,18 +17,19 @@ struct DeviceInfo {
   std::string name;
   std::string driver;  ///< driver version
   bool usable = false;
-  std::string reason;  ///< why it is not usable, empty otherwise
+  std::string reason;  ///< why it is not usable; empty if it is
   std::uint64_t memory_bytes = 0;
   std::uint64_t largest_buffer_bytes = 0;
   unsigned compute_units = 0;
-  bool fp64 = false;  ///< false, if usable: it takes float coordinates alone, and only if it is named
+  bool fp64 = false;  ///< false for a usable device: it takes float coordinates only, and only if it is named
   bool gpu = false;
-  bool watchdog = false;  ///< its driver ends kernels that run for seconds: it draws a screen. Work is cut smaller then
-  std::string atomics;    ///< e.g. "C++20 acquire/release", "CL3.0 acquire/release, device scope"
+  bool watchdog =
+      false;  ///< its driver ends kernels that run for seconds, since it drives a display; launches are kept shorter
+  std::string atomics;  ///< e.g. "C++20 acquire/release", "CL3.0 acquire/release, device scope"
 };
 
-/// All devices of all back ends, usable or not. A back end that is not compiled in or finds no device has one entry
-/// with index -1 that says why. Never throws for a missing driver.
+/// All devices of all back ends, usable or not. A back end that is not compiled in or finds no device has one entry,
+/// with index -1 and the reason. A missing driver is no error.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
 }  // namespace cadt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error types of the library. Each one carries the data that a program needs to react; `what()` says what to do.
+// Exceptions of the library. Each carries the data that a program needs to react; `what()` says what to do.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace cadt {
 
-/// Base of everything that the library throws on purpose.
+/// Base of all exceptions that the library throws on purpose.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -26,7 +26,7 @@ class InputError : public Error {
   std::size_t index_;
 };
 
-/// More points than 32-bit records can address. See `max_points()`.
+/// More points than 32-bit indices allow (max_points()), or a larger DevicePoints::skip than they allow.
 class LimitError : public Error {
  public:
   LimitError(const std::string& message, std::size_t count, std::size_t limit)
@@ -38,7 +38,7 @@ class LimitError : public Error {
   std::size_t count_, limit_;
 };
 
-/// A member of Options that is out of its range.
+/// A member of Options that is out of range, or excluded by another.
 class OptionError : public Error {
  public:
   OptionError(std::string option, const std::string& message)
@@ -50,7 +50,7 @@ class OptionError : public Error {
   std::string option_;
 };
 
-/// The back end or device that was asked for is not there; `reason()` says why. Never answered by a fallback.
+/// The requested back end or device is not available; `reason()` says why. The library never falls back to another.
 class BackendUnavailable : public Error {
  public:
   BackendUnavailable(std::string backend, std::string reason)
@@ -64,7 +64,7 @@ class BackendUnavailable : public Error {
   std::string backend_, reason_;
 };
 
-/// Not enough memory on the device or below `Options::max_memory`. The process can go on with fewer points.
+/// Not enough memory on the device or below `Options::max_memory`. The process can continue, with fewer points.
 class OutOfMemory : public Error {
  public:
   OutOfMemory(const std::string& message, std::size_t needed, std::size_t available)
@@ -93,7 +93,7 @@ class DeviceError : public Error {
   int code_;
 };
 
-/// The device's compiler refused the kernels. `log()` is the compiler's own text.
+/// The device's compiler rejected the kernels. `log()` is the compiler's output.
 class KernelBuildError : public Error {
  public:
   KernelBuildError(std::string device, std::string options, std::string log)
@@ -109,13 +109,13 @@ class KernelBuildError : public Error {
   std::string device_, options_, log_;
 };
 
-/// The caller's stop token was triggered. Nothing was returned, nothing leaked.
+/// `Options::stop` was triggered. The call has no result, and its memory is released.
 class Cancelled : public Error {
  public:
   Cancelled() : Error("cancelled by the caller") {}
 };
 
-/// A promise of the library itself was broken: please report it.
+/// The library has found an error of its own: please report it.
 class InternalError : public Error {
  public:
   using Error::Error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A view of the caller's coordinates; nothing is copied.
+// A view of the caller's coordinates; no copy.
 #pragma once
 
 #include <cadt/errors.hpp>
@@ -12,24 +12,24 @@
 
 namespace cadt {
 
-/// Points of the plane as the caller holds them: double or float, interleaved x0 y0 x1 y1 ... or x and y apart.
-/// The coordinates must outlive the view. Float converts to double exactly.
+/// Points of the plane in the caller's memory: double or float, interleaved (x0 y0 x1 y1 ...) or x and y in separate
+/// arrays. The coordinates must outlive the view. Floats convert to double exactly. Concurrent reads are safe.
 class PointsView {
  public:
   PointsView() = default;
 
-  /// Interleaved x0 y0 x1 y1 ...; an odd size throws InputError.
+  /// n x 2 interleaved coordinates. \throws InputError for an odd number of values
   PointsView(std::span<const double> xy) : PointsView(xy.data(), xy.size()) {}  // NOLINT: implicit on purpose
   PointsView(std::span<const float> xy) : PointsView(xy.data(), xy.size()) {}   // NOLINT
 
-  /// The same from any array of doubles or floats in one piece, such as a std::vector.
+  /// The same from any contiguous range of doubles or floats, such as a std::vector.
   template <class Range>
   requires(std::ranges::contiguous_range<const Range&>&& std::ranges::sized_range<const Range&> &&
            (std::same_as<std::ranges::range_value_t<Range>, double> ||
             std::same_as<std::ranges::range_value_t<Range>, float>)) PointsView(const Range& xy)
       : PointsView(std::ranges::data(xy), std::ranges::size(xy)) {}  // NOLINT
 
-  /// Separate arrays of equal size; otherwise InputError with the smaller size as index.
+  /// Separate arrays of n values each. \throws InputError if their sizes differ, with the smaller size as index
   PointsView(std::span<const double> x, std::span<const double> y)
       : PointsView(x.data(), y.data(), x.size(), y.size()) {}
   PointsView(std::span<const float> x, std::span<const float> y) : PointsView(x.data(), y.data(), x.size(), y.size()) {}
@@ -42,12 +42,12 @@ class PointsView {
     return y64_ ? y64_[i * stride_] : static_cast<double>(y32_[i * stride_]);
   }
 
-  /// The coordinates themselves if they are interleaved doubles, else nullptr.
+  /// The coordinates if they are interleaved doubles, else nullptr.
   [[nodiscard]] const double* interleaved_doubles() const noexcept { return stride_ == 2 ? x64_ : nullptr; }
 
   /// Whether x and y alternate in one array.
   [[nodiscard]] bool interleaved() const noexcept { return stride_ == 2; }
-  /// Bytes of a coordinate.
+  /// Bytes a coordinate: 8 or 4.
   [[nodiscard]] std::size_t scalar_size() const noexcept { return x64_ != nullptr ? sizeof(double) : sizeof(float); }
   /// The first x and the first y in the caller's memory.
   [[nodiscard]] const void* x_data() const noexcept { return x64_ != nullptr ? static_cast<const void*>(x64_) : x32_; }

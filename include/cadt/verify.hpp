@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An independent check of a mesh against its points. Shares no predicate with the builder.
+// Independent verification of a mesh against its points. It shares no predicate with the builder.
 #pragma once
 
 #include <cadt/points.hpp>
@@ -19,8 +19,8 @@ struct Check {
                      ///< "delaunay", "ties"
   bool passed = false;
   std::uint64_t failures = 0;
-  std::int64_t first = -1;  ///< first offending triangle, point or edge (3 * triangle + k), as `what` says
-  std::string what;         ///< what failed, empty when passed
+  std::int64_t first = -1;  ///< first failing triangle, point or edge (3 * triangle + k), as `what` says
+  std::string what;         ///< what failed; empty if passed
 };
 
 struct VerifyReport {
@@ -28,38 +28,41 @@ struct VerifyReport {
   std::vector<Check> checks;
   std::uint64_t points = 0, triangles_examined = 0, edges_examined = 0, hull_vertices = 0;
   std::uint64_t ties = 0;          ///< interior edges whose four points are cocircular
-  std::uint64_t unusual_ties = 0;  ///< those that are not decided as cadt and CGAL decide them
-  /// `verify_on_device` alone: how the signs of all triangles and interior edges were found, by its filter, by exact
+  std::uint64_t unusual_ties = 0;  ///< of these, not decided as cadt and CGAL decide them
+  /// verify_on_device only: how the signs of all triangles and interior edges were decided: by its filter, by exact
   /// sums on the device, or by the exact predicates of `verify` on the host.
   std::uint64_t signs_filtered = 0, signs_exact = 0, signs_on_host = 0;
   /// One line: "ok: 945 triangles, ..." or the first failure.
   [[nodiscard]] std::string summary() const;
 };
 
-/// A mesh from any program. Only `triangles` is needed; empty spans are derived (neighbours) or not compared.
+/// A mesh from any program; views of the caller's arrays. Only `triangles` is required; empty spans are derived
+/// (neighbours) or not compared.
 struct MeshView {
   std::span<const std::int32_t> triangles;  ///< n x 3, counterclockwise, 0-based
-  std::span<const std::int32_t> neighbors;  ///< n x 3, neighbour k opposite vertex k, -1 outside
-  std::span<const std::int32_t> hull;       ///< ccw loop
+  std::span<const std::int32_t> neighbors;  ///< n x 3; the k-th is opposite vertex k, -1 outside
+  std::span<const std::int32_t> hull;       ///< counterclockwise loop
   std::span<const Duplicate> duplicates;
-  bool has_duplicates = false;  ///< compare `duplicates` with the points, otherwise derive them
+  bool has_duplicates = false;  ///< compare `duplicates` with the points; otherwise derive them
 };
 
 struct VerifyOptions {
   unsigned threads = 0;        ///< 0: all cores
-  bool canonical_ties = true;  ///< cocircular points must be decided as cadt and CGAL decide them
+  bool canonical_ties = true;  ///< ties must be decided as cadt and CGAL decide them
 };
 
-/// Checks structure, orientation, symmetry of neighbours, Euler's formula, the hull, that every input point is used or
-/// equals a used one, and the exact empty-circle property of every interior edge, which implies that of the whole
-/// triangulation (Delaunay lemma). O(triangles) expected; exact arithmetic only where a filter cannot decide.
+/// Checks structure, orientation, symmetry of neighbours, Euler's formula, the hull, that every input point is a vertex
+/// or equals one, and the exact empty-circle property of every interior edge, which implies that of the whole
+/// triangulation (Delaunay's lemma). O(triangles) expected; exact arithmetic only where a filter does not decide. A
+/// wrong mesh is reported, not thrown. Thread-safe. \throws InputError for NaN or infinity, Error if the floating-point
+/// mode is not IEEE 754
 [[nodiscard]] VerifyReport verify(PointsView points, const MeshView& mesh, const VerifyOptions& options = {});
 [[nodiscard]] VerifyReport verify(PointsView points, const Triangulation& mesh, const VerifyOptions& options = {});
 
-/// The same checks, with the same names and outcomes, on a device: 20 bytes a point and 24 a triangle go there. Its
-/// predicates differ from those of the builder in code, formula and arithmetic; the few signs that they cannot find are
-/// left to those of `verify`, as are the boundary and a mesh without triangles. Neighbours that are missing are derived
-/// on the host first. A device without double precision leaves all to `verify`. `device` says where: backend, device,
+/// The same checks, with the same names and outcomes, on a device: 20 bytes a point and 24 a triangle are uploaded. Its
+/// predicates differ from the builder's in code, formula and arithmetic; the few signs that they cannot decide are left
+/// to those of `verify`, as are the boundary and meshes without triangles. Missing neighbours are derived on the host
+/// first. On a device without double precision `verify` does all the work. `device` says where: backend, device,
 /// threads, work_group_size, grain, max_memory, stop, progress (phase "verify") are as for `triangulate`.
 ///
 /// Throws InputError (NaN or infinity, with the index of the first), BackendUnavailable, OutOfMemory, DeviceError,

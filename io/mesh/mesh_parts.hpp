@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the mesh writers need of a mesh, whoever computed it.
+// What the mesh writers need of a mesh, independent of its source.
 #pragma once
 
 #include "io/support/atomic_file.hpp"
@@ -15,7 +15,7 @@
 
 namespace cadt::io::detail {
 
-/// Borrowed arrays in the layout of Triangulation.
+/// Views of arrays in the layout of Triangulation.
 struct MeshParts {
   std::span<const double> xy;
   std::span<const double> height;  ///< empty or one a point
@@ -26,7 +26,7 @@ struct MeshParts {
 /// write_mesh for all formats but pictures.
 void write_mesh_parts(const std::string& path, const MeshParts& mesh, const WriteOptions& options);
 
-/// The format of a mesh to be written: WriteOptions::format or the suffix. Throws FileError.
+/// The format in which a mesh is written: WriteOptions::format or the suffix. Throws FileError.
 [[nodiscard]] std::string mesh_write_format(const std::string& path, const WriteOptions& options);
 
 void write_ele(AtomicFile& out, std::span<const std::int32_t> triangles, int base);
@@ -59,7 +59,7 @@ class TriangleCollector {
   std::vector<std::int32_t> indices_;
 };
 
-/// Number of corners of a face that are wanted, and the message for any other.
+/// Required number of vertices of a face, and the message for any other.
 inline constexpr std::size_t corners_of_triangle = 3;
 [[nodiscard]] std::string not_a_triangle(std::size_t corners);
 

@@ -37,7 +37,7 @@ MeshFile read_obj_mesh(const InputFile& file, std::size_t points) {
   while (next_obj_statement(scanner, "f", vertices)) {
     std::size_t corners = 0;
     for (std::string_view corner = scanner.word(); !corner.empty(); corner = scanner.word(), ++corners) {
-      // "vertex/texture/normal"; the other two are of no interest here.
+      // "vertex/texture/normal"; the other two are ignored.
       const auto number = parse_integer(corner.substr(0, corner.find('/')));
       if (!number || *number == 0) scanner.fail(quoted(corner) + " is not a corner of a face");
       // A negative number counts back from the last vertex before this line.

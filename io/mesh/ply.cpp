@@ -78,7 +78,7 @@ MeshFile read_ply_mesh(const InputFile& file, std::size_t points) {
       reader.next(element, row, corners);
       if (row.list.size() != corners_of_triangle) reader.fail(not_a_triangle(row.list.size()));
       for (const double value : row.list) {
-        // Compared as double first: the conversion of what does not fit an integer would be undefined.
+        // Compared as double first: converting a value that does not fit an integer is undefined.
         constexpr double most = 9e15;
         if (!(std::abs(value) < most) || value != std::floor(value)) reader.fail("an index is not an integer");
         const auto index = static_cast<std::int64_t>(value);

@@ -94,7 +94,8 @@ std::int64_t recognise_base(const Rows& rows, std::size_t points) {
   const auto [least, most] = std::minmax_element(rows.values.begin(), rows.values.end());
   if (rows.values.empty() || *least == 0) return 0;
   if (*most == static_cast<std::int64_t>(points)) return 1;
-  // Neither end is used: Triangle numbers its triangles from the same base as its points.
+  // Neither end is used, so the number of the first triangle decides: Triangle numbers triangles from the same base as
+  // points.
   return rows.first_number;
 }
 

@@ -43,7 +43,7 @@ std::string xml_header(const MeshParts& mesh) {
     xml += "<PointData Scalars=\"height\">\n" + appended.array("Float64", "height", 1, mesh.height.size_bytes()) +
            "</PointData>\n";
   }
-  // One statement an array: the places follow from the order of the calls, which a chain of + would leave open.
+  // One statement an array: the offsets depend on the order of the calls, which a chain of + would leave unspecified.
   xml += "<Points>\n";
   xml += appended.array("Float64", "Points", 3, 3 * points * sizeof(double));
   xml += "</Points>\n<Cells>\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one place where a Triangulation meets the writers.
+// Converts a Triangulation for the writers; the only file that sees both.
 #include "io/mesh/mesh_parts.hpp"
 
 #include <cadt/io/mesh_file.hpp>

@@ -34,9 +34,9 @@ class AreaScale {
   float low_ = 0.0f, high_ = 1.0f;
 };
 
-/// How far a triangle counts as ground: 1, but falling to a low value for triangles far larger than the usual ones that
-/// hang together with the hull: they fill bays of the outline, where nothing was measured. Large triangles in the
-/// middle (a lake, a flat field between contour lines) are ground.
+/// How far a triangle counts as ground: 1, but less for triangles that are far larger than usual and connected to the
+/// hull: they fill bays of the outline, where nothing was measured. Large triangles in the interior (a lake, a flat
+/// field between contour lines) are ground.
 class GroundOpacity {
  public:
   GroundOpacity(const Scene& scene, std::span<const Point2f> position, float median_edge_pixels);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture shows, as plain arrays: pictures do not depend on how the mesh was made.
+// The content of a picture, as plain arrays: pictures do not depend on how the mesh was computed.
 #pragma once
 
 #include <cadt/io/picture.hpp>
@@ -11,7 +11,8 @@
 
 namespace cadt::io::picture {
 
-/// Borrowed arrays. Points with a coordinate that is not finite, and triangles that use them, are left out.
+/// Views of the caller's arrays. Points with a coordinate that is not finite, and triangles that use them, are left
+/// out.
 struct Scene {
   std::span<const double> xy;               ///< interleaved
   std::span<const double> height;           ///< one a point, or empty

@@ -30,7 +30,7 @@ NodeHeader read_header(TextScanner& scanner) {
 PointSet read_node(const InputFile& file, const ReadOptions& options) {
   TextScanner scanner(file.name(), file.bytes());
   const NodeHeader header = read_header(scanner);
-  // A single attribute of a plane point is taken as its height; of several none is more likely than another.
+  // A single attribute of a plane point is taken as its height; of several, none is.
   const bool attribute_is_height = header.dimension == 2 && header.attributes == 1;
   PointCollector points(file.name(), options.projection, header.dimension == 3 || attribute_is_height);
   points.reserve(header.points);

@@ -22,7 +22,7 @@ PointSet read_npy(const InputFile& file, const ReadOptions& options) {
                                                          : load<double>(bytes, array.big_endian);
     return finite_or_fail(real, file.name(), array.data_offset + at);
   };
-  // The data fill the shape, so a shape without rows cannot claim columns out of nothing.
+  // The data fill the shape, so a shape without rows cannot promise columns.
   const std::size_t rows = array.data.empty() ? 0 : array.shape[0];
   PointCollector points(file.name(), options.projection, three);
   points.reserve(rows);

@@ -13,7 +13,7 @@ PointSet read_off_points(const InputFile& file, const ReadOptions& options) {
     const auto [x, y, z] = reader.vertex();
     points.add(x, y, z);
   }
-  // The faces are read as well: a file that was cut short is an error even if all vertices are there.
+  // The faces are read as well: a truncated file is an error even if all vertices are there.
   std::vector<std::int64_t> corners;
   for (std::size_t i = 0; i < reader.faces(); ++i) reader.face(corners);
   reader.expect_end();

@@ -59,7 +59,7 @@ PointSet read_table(const InputFile& file, const ReadOptions& options) {
 void write_table(AtomicFile& out, std::span<const double> xy, std::span<const double> height,
                  const std::string& format) {
   const bool csv = format == "csv";
-  // .xyz promises a third column; the others have it only when there is something to say.
+  // .xyz requires a third column; the others have it only if there are heights.
   const bool three = !height.empty() || format == "xyz";
   const char separator = csv ? ',' : ' ';
   if (csv) out.write(three ? "x,y,z\n" : "x,y\n");

@@ -82,7 +82,7 @@ void TableRows::split_at_separator(std::string_view line) {
     fields_.push_back(trimmed(line.substr(0, end)));
     line.remove_prefix(end + 1);
   }
-  // A separator at the end of the line is a habit of some writers, not one more field.
+  // A separator at the end of the line adds no field: some writers put it there.
   if (const std::string_view last = trimmed(line); !last.empty()) fields_.push_back(last);
 }
 

@@ -31,7 +31,7 @@ std::string resolved(const std::string& path) {
   return real ? std::string(real.get()) : path;
 }
 
-/// Some file systems and all pipes refuse to be synced; that is no loss of data.
+/// Some file systems and all pipes do not support syncing; no data are lost by that.
 bool sync_refused_for_good(int code) { return code == EINVAL || code == ENOTSUP || code == EROFS || code == ENOSYS; }
 
 }  // namespace
@@ -66,7 +66,7 @@ AtomicFile::~AtomicFile() {
 void AtomicFile::open_temporary() {
   static std::atomic<unsigned> serial{0};
   const std::string stem = folder_of(target_) + "/.cadt-" + std::to_string(::getpid()) + "-";
-  constexpr int most_tries = 1000;  // leftovers of a killed process with the same number
+  constexpr int most_tries = 1000;  // temporary files left by a killed process with the same number
   for (int i = 0; i < most_tries; ++i) {
     std::string candidate = stem + std::to_string(serial.fetch_add(1, std::memory_order_relaxed)) + ".tmp";
     // open() rather than mkstemp(): the umask of the process decides about the permissions.

@@ -27,7 +27,7 @@ OffReader::OffReader(const InputFile& file) : scanner_(file.name(), file.bytes()
   vertices_ = scanner_.count("the number of vertices", (scanner_.bytes_left() + 1) / 6);
   faces_ = scanner_.count("the number of faces", (scanner_.bytes_left() + 1) / 2);
   if (scanner_.words_left() != 0) {
-    static_cast<void>(scanner_.integer("the number of edges"));  // unused by every program, often wrong
+    static_cast<void>(scanner_.integer("the number of edges"));  // ignored: often wrong
   }
   scanner_.expect_end_of_line();
 }

@@ -140,7 +140,7 @@ ZipReader::Member ZipReader::read(std::string_view wanted) const {
     if (found->size != found->stored_size) fail_at_byte(name_, at, "the archive is damaged");
     member.content = packed;
   } else if (found->method == zip::deflated) {
-    // Deflate packs at most 258 bytes into 2 bits, so a claim beyond that is a lie that must not be allocated.
+    // Deflate packs at most 258 bytes into 2 bits, so a larger claim is false and must not be allocated.
     constexpr std::uint64_t largest_ratio = 1032;
     if (found->size / largest_ratio > packed.size())
       fail_at_byte(name_, at, "a member claims more bytes than it can hold");

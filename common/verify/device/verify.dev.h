@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The verifier on the device: kernels over plain arrays, which know nothing of the builder. points: the coordinates of
- * the input; triangles: 3 x count input indices; neighbors: 3 x count triangles, CADT_NONE outside, the k-th opposite
+ * The verifier on the device: kernels over plain arrays, independent of the builder. points: the coordinates of the
+ * input; triangles: 3 x count input indices; neighbors: 3 x count triangles, CADT_NONE outside, the k-th opposite
  * vertex k. The driver (common/verify/device/verify_on_device.cpp) draws the conclusions.
  *
- * Signs are found in three stages. cadt_verify_filter looks at all triangles and edges and lists what it cannot decide;
- * cadt_verify_exact decides what it can of the lists and leaves the rest in them; cadt_verify_gather packs that for the
- * host. Each work-item has a list of its own, so nothing is claimed by atomics and no list can overflow.
+ * Signs are found in three stages. cadt_verify_filter tests all triangles and edges and lists those that it cannot
+ * decide; cadt_verify_exact decides what it can of the lists and leaves the rest in them; cadt_verify_gather packs the
+ * rest for the host. Each work-item has a list of its own, so no slot is allocated by atomics and no list can overflow.
  */
 #ifndef CADT_VERIFY_DEVICE_VERIFY_H
 #define CADT_VERIFY_DEVICE_VERIFY_H
@@ -15,12 +15,12 @@
 #include "common/verify/device/verify_layout.dev.h"
 #include "common/verify/device/verify_predicates.dev.h"
 
-/* What a check found: how many it examined, how many failed, and the lowest that failed. */
+/* Outcome of a check: how many elements were examined, how many failed, and the lowest that failed. */
 typedef struct {
   cadt_u32 examined, failures, first;
 } cadt_finding;
 
-/* The elements of a work-item, and where its list has entry j. Only the first `items` work-items take part: a device
+/* The elements of a work-item, and where its list has entry j. Only the first `items` work-items take part: a launch
  * may start more, which have no list. */
 #if CADT_CONTIGUOUS
 #define CADT_VERIFY_FOR(i, count, grain, items) CADT_FOR(i, count, grain)
@@ -55,8 +55,9 @@ CADT_FN void cadt_finding_flush(const cadt_finding* finding, CADT_GLOBAL cadt_u3
 /* ---- structure ---------------------------------------------------------------------------------------------------
  */
 
-/* Is edge k of triangle t, from `from` to `to`, an edge of triangle s from `to` to `from`, and is t its neighbour
- * there? \pre s is a triangle. The vertices of a triangle differ, so at most one of its edges is this one reversed. */
+/* Whether edge k of triangle t, from `from` to `to`, is an edge of triangle s from `to` to `from`, and t is the
+ * neighbour of s there. \pre s is a triangle. The vertices of a triangle differ, so at most one of its edges is this
+ * one reversed. */
 CADT_FN cadt_u32 cadt_is_mutual(CADT_GLOBAL const cadt_u32* triangles, CADT_GLOBAL const cadt_u32* neighbors,
                                 cadt_u32 t, cadt_u32 s, cadt_u32 from, cadt_u32 to) {
   const cadt_u32 v0 = triangles[3u * s], v1 = triangles[3u * s + 1u], v2 = triangles[3u * s + 2u];
@@ -64,7 +65,7 @@ CADT_FN cadt_u32 cadt_is_mutual(CADT_GLOBAL const cadt_u32* triangles, CADT_GLOB
   return s != t && j != 3u && neighbors[3u * s + j] == t ? 1u : 0u;
 }
 
-/* Ranges, distinct vertices, symmetry of neighbours; marks the vertices. \pre used is zero */
+/* Checks index ranges, distinct vertices and symmetry of neighbours; marks the vertices in `used`. \pre used is zero */
 CADT_KERNEL(cadt_verify_structure, CADT_GLOBAL const cadt_u32* triangles, CADT_GLOBAL const cadt_u32* neighbors,
             cadt_u32 points, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* used,
             CADT_GLOBAL cadt_u32* results) {
@@ -102,7 +103,7 @@ CADT_KERNEL(cadt_verify_structure, CADT_GLOBAL const cadt_u32* triangles, CADT_G
 
 CADT_FN cadt_u32 cadt_is_finite(double x) { return ((cadt_bits_of_double(x) >> 52) & 0x7FFul) != 0x7FFul ? 1u : 0u; }
 
-/* Counts the vertices among the points; looks for coordinates that are not finite. */
+/* Counts the points that are vertices, and looks for coordinates that are not finite. */
 CADT_KERNEL(cadt_verify_points, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* used, CADT_GLOBAL cadt_u32* results) {
   cadt_finding finite;
@@ -119,8 +120,8 @@ CADT_KERNEL(cadt_verify_points, CADT_GLOBAL const cadt_point* points, cadt_u32 c
   cadt_found_count(row + CADT_FOUND_USED, vertices);
 }
 
-/* pairs: (point, representative), which must ascend; the point is no vertex, the representative is one, of a lower
- * index, and equal. */
+/* pairs: (point, representative), which must ascend; the point must be no vertex, the representative a vertex with a
+ * lower index and equal coordinates. */
 CADT_KERNEL(cadt_verify_duplicates, CADT_GLOBAL const cadt_point* points, cadt_u32 number_of_points,
             CADT_GLOBAL const cadt_u32* used, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* results) {
@@ -128,7 +129,7 @@ CADT_KERNEL(cadt_verify_duplicates, CADT_GLOBAL const cadt_point* points, cadt_u
   cadt_finding_clear(&finding);
   CADT_FOR(i, count, grain) {
     const cadt_u32 p = pairs[2u * i], r = pairs[2u * i + 1u];
-    const cadt_i32 before = i == 0u ? -1 : CADT_CAST(cadt_i32, pairs[2u * i - 2u]); /* may be negative itself */
+    const cadt_i32 before = i == 0u ? -1 : CADT_CAST(cadt_i32, pairs[2u * i - 2u]); /* may itself be negative */
     ++finding.examined;
     cadt_u32 good = p < number_of_points && r < p && before < CADT_CAST(cadt_i32, p) ? 1u : 0u;
     if (good) {
@@ -140,7 +141,7 @@ CADT_KERNEL(cadt_verify_duplicates, CADT_GLOBAL const cadt_point* points, cadt_u
   cadt_finding_flush(&finding, cadt_found_row(results, cadt_item) + CADT_FOUND_DUPLICATES);
 }
 
-/* Edges without a neighbour, in any order: 3 * triangle + k, from, to; and the point `from`. */
+/* Lists the edges without a neighbour, in any order: 3 * triangle + k, from, to; and the point `from`. */
 CADT_KERNEL(cadt_verify_boundary, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* triangles,
             CADT_GLOBAL const cadt_u32* neighbors, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* edges,
             CADT_GLOBAL cadt_point* corners, CADT_GLOBAL cadt_u32* written, cadt_u32 capacity) {
@@ -160,15 +161,15 @@ CADT_KERNEL(cadt_verify_boundary, CADT_GLOBAL const cadt_point* points, CADT_GLO
 /* ---- geometry ----------------------------------------------------------------------------------------------------
  */
 
-/* The vertex of triangle s that is on neither end of an edge. */
+/* The vertex of triangle s that is neither end of an edge. */
 CADT_FN cadt_u32 cadt_across(CADT_GLOBAL const cadt_u32* triangles, cadt_u32 s, cadt_u32 from, cadt_u32 to) {
   const cadt_u32 v0 = triangles[3u * s], v1 = triangles[3u * s + 1u];
   if (v0 != from && v0 != to) return v0;
   return v1 != from && v1 != to ? v1 : triangles[3u * s + 2u];
 }
 
-/* Orientation of triangles begin .. begin + count, and if `with_edges` the edges between each of them and a higher one.
- * Undecided ones go to the work-item's list. \pre indices are in range */
+/* Orientation of triangles begin to begin + count - 1 and, if `with_edges`, legality of the edges between each of them
+ * and a higher one. Undecided signs go to the work-item's list. \pre indices are in range */
 CADT_KERNEL(cadt_verify_filter, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* triangles,
             CADT_GLOBAL const cadt_u32* neighbors, cadt_u32 begin, cadt_u32 count, cadt_u32 with_edges, cadt_u32 grain,
             cadt_u32 items, CADT_GLOBAL cadt_u32* lists, CADT_GLOBAL cadt_u32* sizes, cadt_u32 capacity,
@@ -204,7 +205,7 @@ CADT_KERNEL(cadt_verify_filter, CADT_GLOBAL const cadt_point* points, CADT_GLOBA
   cadt_found_count(row + CADT_FOUND_OPEN, open);
 }
 
-/* Decides the entries of the lists where the differences of coordinates are exact; the others stay. left: how many */
+/* Decides the entries of the lists whose coordinate differences are exact; the others stay. left: how many stay. */
 CADT_KERNEL(cadt_verify_exact, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* triangles,
             CADT_GLOBAL const cadt_u32* neighbors, cadt_u32 begin, cadt_u32 items, CADT_GLOBAL cadt_u32* lists,
             CADT_GLOBAL cadt_u32* sizes, cadt_u32 capacity, CADT_GLOBAL cadt_u32* left, CADT_GLOBAL cadt_u32* results) {
@@ -218,7 +219,7 @@ CADT_KERNEL(cadt_verify_exact, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL
   for (cadt_u32 i = 0u; i < open; ++i) {
     const cadt_u32 entry = lists[CADT_LIST_AT(i, items, capacity)];
     const cadt_u32 t = begin + entry / CADT_OPEN_A_TRIANGLE, k = entry % CADT_OPEN_A_TRIANGLE;
-    const cadt_u32 first = k == CADT_OPEN_ORIENTATION ? 0u : k; /* the corner to begin with */
+    const cadt_u32 first = k == CADT_OPEN_ORIENTATION ? 0u : k; /* the vertex to begin with */
     const cadt_u32 from = triangles[3u * t + CADT_NEXT(first)], to = triangles[3u * t + CADT_PREV(first)];
     const cadt_point a = points[triangles[3u * t + first]], b = points[from], c = points[to];
     cadt_i32 sign;
@@ -245,8 +246,8 @@ CADT_KERNEL(cadt_verify_exact, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL
   cadt_found_count(row + CADT_FOUND_EXACT, open - kept);
 }
 
-/* Packs entries number from .. to of all lists together: the entry, and the points a, b, c, d of its edge (a, b, c, a
- * of its triangle). \pre offsets: sizes, scanned, with the total behind the last */
+/* Packs entries from_number to to_number - 1 of all lists: the entry, and the points a, b, c, d of its edge (a, b, c, a
+ * for a triangle). \pre offsets: the scanned sizes, with the total behind the last */
 CADT_KERNEL(cadt_verify_gather, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* triangles,
             CADT_GLOBAL const cadt_u32* neighbors, cadt_u32 begin, cadt_u32 items, CADT_GLOBAL const cadt_u32* lists,
             CADT_GLOBAL const cadt_u32* offsets, cadt_u32 capacity, cadt_u32 from_number, cadt_u32 to_number,

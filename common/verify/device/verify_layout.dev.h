@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Layout of what the kernels of the verifier and their driver share in memory.
+ * Memory layout that the kernels of the verifier share with their driver.
  */
 #ifndef CADT_VERIFY_DEVICE_VERIFY_LAYOUT_H
 #define CADT_VERIFY_DEVICE_VERIFY_LAYOUT_H
 
-/* Results: rows of words, a work-item adds to one of them. Findings have three words each. */
+/* Results: rows of words; each work-item adds to one row. Findings have three words each. */
 enum {
   CADT_FOUND_RANGE = 0,        /* triangles with an index out of range or a vertex twice */
   CADT_FOUND_NEIGHBORS = 3,    /* edges (3 * triangle + k) that the neighbour does not share */

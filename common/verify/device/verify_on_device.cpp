@@ -22,17 +22,17 @@ using namespace device_text;
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t triangles_per_launch_contiguous = std::size_t{1} << 20;  // bounds the lists: 4 words a triangle
 constexpr std::size_t triangles_per_launch_strided = std::size_t{1} << 23;
-constexpr std::size_t strided_items = std::size_t{1} << 17;  // fill a GPU, and each adds to the results once
+constexpr std::size_t strided_items = std::size_t{1} << 17;  // enough to fill a GPU; each adds to the results once
 constexpr std::size_t entries_per_gather = std::size_t{1} << 18;
 
-/// The words of all rows of results put together.
+/// The rows of results, reduced.
 struct Found {
   std::array<std::uint64_t, CADT_FOUND_WORDS> sum{};
   std::array<std::uint32_t, CADT_FOUND_WORDS> least{};
 
-  [[nodiscard]] Tally tally(int finding) const {
+  [[nodiscard]] Findings findings(int finding) const {
     const auto at = static_cast<std::size_t>(finding);
-    Tally t;
+    Findings t;
     t.examined = sum[at];
     t.failures = sum[at + 1];
     if (t.failures != 0) t.first = least[at + 2];
@@ -41,10 +41,10 @@ struct Found {
   [[nodiscard]] std::uint64_t count(int of) const { return sum[static_cast<std::size_t>(of)]; }
 };
 
-/// What the last stage, on the host, found.
+/// What the host decided, in the last stage.
 struct Settled {
   std::uint64_t signs = 0;
-  Tally orientation;  // nothing is counted as examined here: the filter has done so
+  Findings orientation;  // nothing is counted as examined here: the filter has done so
   Circles circles;
   void merge(const Settled& other) {
     signs += other.signs;
@@ -79,8 +79,8 @@ class OnDevice : private Outcome {
     }
     examine_signs();
     const Found found = results();
-    conclude_on_host(mesh_, found.tally(CADT_FOUND_NEIGHBORS), neighbors, conclude_neighbors);
-    Tally turns = found.tally(CADT_FOUND_ORIENTATION);
+    conclude_on_host(mesh_, found.findings(CADT_FOUND_NEIGHBORS), neighbors, conclude_neighbors);
+    Findings turns = found.findings(CADT_FOUND_ORIENTATION);
     turns.merge(settled_.orientation);
     report.triangles_examined = turns.examined;
     conclude_on_host(mesh_, turns, orientations, conclude_orientation);
@@ -100,8 +100,8 @@ class OnDevice : private Outcome {
   }
 
  private:
-  /// Work-items for kernels that add to the results once each.
-  [[nodiscard]] LaunchGrid cut(std::size_t count) const {
+  /// Launch grid for kernels whose work-items add to the results once each.
+  [[nodiscard]] LaunchGrid grid_for(std::size_t count) const {
     if (ctx_.device.shape().contiguous) return launch_.grid(count);
     return {static_cast<std::uint32_t>(std::min(count, strided_items)), 1};
   }
@@ -129,7 +129,7 @@ class OnDevice : private Outcome {
     ctx_.device.write(*results_, 0, rows.data(), rows.size() * word);
   }
 
-  /// Messages quote the mesh, and a search of it needs all of it: both only if something has failed.
+  /// Fetches the mesh, only if something has failed: messages quote it, and a search needs all of it.
   void fetch_mesh() {
     if (!mesh_.triangles.empty()) return;
     fetched_.resize(3 * count_);
@@ -141,24 +141,24 @@ class OnDevice : private Outcome {
   }
 
   template <class Conclude>
-  void conclude_on_host(const verifier::Mesh& mesh, const Tally& tally, Name name, const Conclude& to) {
-    if (tally.failures != 0) fetch_mesh();
-    to(mesh, tally, begin(name));
+  void conclude_on_host(const verifier::Mesh& mesh, const Findings& findings, Name name, const Conclude& to) {
+    if (findings.failures != 0) fetch_mesh();
+    to(mesh, findings, begin(name));
   }
 
-  /// False if not everything was looked at: then indices must not be followed.
+  /// Returns false if not everything was examined: then indices must not be followed.
   [[nodiscard]] bool examine_structure() {
     clear_results();
     used_ = launch_.zeros(n_);
-    const LaunchGrid all = cut(count_), points = cut(n_);
+    const LaunchGrid all = grid_for(count_), points = grid_for(n_);
     launch_.run<KernelId::cadt_verify_structure>(all.items, input_.triangles, input_.neighbors, number(n_),
                                                  number(count_), all.grain, used_, results_);
     launch_.run<KernelId::cadt_verify_points>(points.items, input_.points, number(n_), points.grain, used_, results_);
     const Found found = results();
-    if (const Tally finite = found.tally(CADT_FOUND_POINTS); finite.failures != 0) refuse_point(finite.first);
+    if (const Findings finite = found.findings(CADT_FOUND_POINTS); finite.failures != 0) refuse_point(finite.first);
     mesh_.vertices = static_cast<std::size_t>(found.count(CADT_FOUND_USED));
-    const Tally triangles = found.tally(CADT_FOUND_RANGE);
-    const std::uint64_t points_examined = found.tally(CADT_FOUND_POINTS).examined;
+    const Findings triangles = found.findings(CADT_FOUND_RANGE);
+    const std::uint64_t points_examined = found.findings(CADT_FOUND_POINTS).examined;
     begin(counts).passed = true;
     if (triangles.examined != count_ || points_examined != n_) {
       fail(begin(counts), -1,
@@ -167,12 +167,12 @@ class OnDevice : private Outcome {
       return false;
     }
     conclude_on_host(mesh_, triangles, range, conclude_range);
-    symmetric_ = found.tally(CADT_FOUND_NEIGHBORS).failures == 0;
+    symmetric_ = found.findings(CADT_FOUND_NEIGHBORS).failures == 0;
     ctx_.check("verify", 0.2);
     return true;
   }
 
-  /// Orientations and, if neighbours are symmetric, edges: filter, exact sums, and the host for the rest.
+  /// Orientations and, if neighbours are symmetric, edges: filter, exact sums, and the host for what is left.
   void examine_signs() {
     const std::size_t most =
         ctx_.device.shape().contiguous ? triangles_per_launch_contiguous : triangles_per_launch_strided;
@@ -180,7 +180,7 @@ class OnDevice : private Outcome {
     std::size_t lists_size = 0, sizes_size = 0;
     for (const std::size_t size : {std::min(count_, most), count_ % most}) {
       if (size == 0) continue;
-      const LaunchGrid c = cut(size);
+      const LaunchGrid c = grid_for(size);
       lists_size = std::max(lists_size, c.items * std::max<std::size_t>(capacity(c, size), 4 * c.grain));
       sizes_size = std::max<std::size_t>(sizes_size, c.items);
     }
@@ -189,7 +189,7 @@ class OnDevice : private Outcome {
     deferred_ = launch_.zeros(1);
     for (std::size_t at = 0; at < count_; at += most) {
       const std::size_t size = std::min(most, count_ - at);
-      const LaunchGrid c = cut(size);
+      const LaunchGrid c = grid_for(size);
       const auto room = number(std::max<std::size_t>(capacity(c, size), 4 * c.grain));
       launch_.run<KernelId::cadt_verify_filter>(c.items, input_.points, input_.triangles, input_.neighbors, number(at),
                                                 number(size), symmetric_ ? 1U : 0U, c.grain, c.items, lists_, sizes_,
@@ -215,7 +215,7 @@ class OnDevice : private Outcome {
     std::vector<std::array<Point, 4>> quad(most);
     for (std::size_t from = 0; from < left; from += most) {
       const std::size_t size = std::min(most, left - from);
-      ctx_.device.fill(*entries, 0, size * word, CADT_NONE);  // to see which are written
+      ctx_.device.fill(*entries, 0, size * word, CADT_NONE);  // shows which are written
       launch_.run<KernelId::cadt_verify_gather>(items, input_.points, input_.triangles, input_.neighbors, number(at),
                                                 items, lists_, sizes_, room, number(from), number(from + size), entries,
                                                 corners);
@@ -250,19 +250,19 @@ class OnDevice : private Outcome {
       const std::span<const Duplicate> list = input_.duplicates;
       if (!list.empty()) {
         const Allocation pairs = ctx_.memory.import(list.data(), list.size_bytes());
-        const LaunchGrid c = cut(list.size());
+        const LaunchGrid c = grid_for(list.size());
         launch_.run<KernelId::cadt_verify_duplicates>(c.items, input_.points, number(n_), used_, pairs,
                                                       number(list.size()), c.grain, results_);
       }
-      const Tally tally = results().tally(CADT_FOUND_DUPLICATES);
-      duplicates_examined_ = tally.examined;
-      return conclude_duplicates(list, unused, tally, check);
+      const Findings findings = results().findings(CADT_FOUND_DUPLICATES);
+      duplicates_examined_ = findings.examined;
+      return conclude_duplicates(list, unused, findings, check);
     }
     if (unused == 0) {
       check.passed = true;
       return;
     }
-    // Which used point an unused one equals is found on the host.
+    // The host finds the vertex that an unused point equals.
     std::vector<std::uint32_t> used(n_);
     ctx_.device.read(*used_, 0, used.data(), n_ * word);
     mesh_.used.assign(used.begin(), used.end());
@@ -282,7 +282,7 @@ class OnDevice : private Outcome {
       const Allocation list = ctx_.memory.allocate(h * sizeof edges[0]);
       const Allocation corners = ctx_.memory.allocate(h * sizeof starts[0]);
       const Allocation written = launch_.zeros(1);
-      const LaunchGrid c = cut(count_);
+      const LaunchGrid c = grid_for(count_);
       launch_.run<KernelId::cadt_verify_boundary>(c.items, input_.points, input_.triangles, input_.neighbors,
                                                   number(count_), c.grain, list, corners, written, number(h));
       boundary_written_ = launch_.read_word(written, 0);
@@ -295,7 +295,8 @@ class OnDevice : private Outcome {
     report.hull_vertices = h;
     link_boundary(mesh_, begin(boundary));
     check_euler_formula(mesh_, begin(euler));
-    // With counterclockwise triangles one cycle has one component (docs/algorithm.md); else they must be counted.
+    // With counterclockwise triangles one boundary cycle implies one component (docs/algorithm.md); else components
+    // must be counted.
     if (passed(euler) && !(passed(boundary) && passed(orientations))) {
       fetch_mesh();
       check_connected(mesh_, begin(euler));
@@ -321,8 +322,8 @@ class OnDevice : private Outcome {
 
   void conclude_edges(const Found& found) {
     Circles circles;
-    circles.illegal = found.tally(CADT_FOUND_EDGES);
-    circles.unusual = found.tally(CADT_FOUND_TIES);
+    circles.illegal = found.findings(CADT_FOUND_EDGES);
+    circles.unusual = found.findings(CADT_FOUND_TIES);
     circles.ties = circles.unusual.examined;
     circles.merge(settled_.circles);
     if (circles.illegal.failures + circles.unusual.failures != 0) fetch_mesh();
@@ -330,9 +331,9 @@ class OnDevice : private Outcome {
     conclude_delaunay(mesh_, circles, check, begin(ties), options_, report);
   }
 
-  /// What must have been examined, by the counts of the kernels themselves.
+  /// Checks the counts of the kernels against what had to be examined.
   void examine_counts(const Found& found) {
-    const std::uint64_t edges = found.tally(CADT_FOUND_EDGES).examined, open = found.count(CADT_FOUND_OPEN);
+    const std::uint64_t edges = found.findings(CADT_FOUND_EDGES).examined, open = found.count(CADT_FOUND_OPEN);
     report.signs_exact = found.count(CADT_FOUND_EXACT);
     report.signs_on_host = settled_.signs;
     report.signs_filtered = report.triangles_examined + edges - std::min(report.triangles_examined + edges, open);
@@ -340,7 +341,7 @@ class OnDevice : private Outcome {
       if (examined != there)
         fail(begin(counts), -1, std::to_string(examined) + of + " were examined, there are " + std::to_string(there));
     };
-    require(found.tally(CADT_FOUND_NEIGHBORS).examined, 3 * count_, " sides of triangles");
+    require(found.findings(CADT_FOUND_NEIGHBORS).examined, 3 * count_, " sides of triangles");
     require(report.triangles_examined, count_, " triangles");
     require(report.signs_exact + settled_.signs, open, " signs that the filter left open");
     require(duplicates_examined_, input_.has_duplicates ? input_.duplicates.size() : 0, " duplicates");

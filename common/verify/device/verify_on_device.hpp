@@ -15,9 +15,9 @@ namespace verifier {
 struct Mesh;
 }
 
-/// A mesh in device memory, and what goes with it on the host.
+/// A mesh in device memory, and what goes with it on the host. The memory must stay alive until the verifier returns.
 struct VerifyInput {
-  const Allocation& points;               ///< cadt_point each: the coordinates of the input, as they are
+  const Allocation& points;               ///< cadt_point each: the coordinates of the input, unscaled
   const Allocation& triangles;            ///< 3 x number_of_triangles words
   const Allocation& neighbors;            ///< the same number
   std::size_t number_of_points = 0;       ///< below 2^31
@@ -27,11 +27,11 @@ struct VerifyInput {
   bool has_duplicates = false;
 };
 
-/// The checks of `verify`, with the same names and outcomes. A kernel that did not run, or not over everything, fails
+/// The checks of `verify`, with the same names and outcomes. A kernel that did not run, or not over all elements, fails
 /// "counts". \throws InputError for a coordinate that is not finite, and what launches throw
 [[nodiscard]] VerifyReport verify_on_device(Context& run, const VerifyInput& input, const VerifyOptions& options);
 
-/// The same with what the host knows of the mesh (points, triangles, neighbours, or nothing), which need not be
+/// The same with what the host has of the mesh (points, triangles, neighbours, or nothing), which then need not be
 /// fetched.
 [[nodiscard]] VerifyReport verify_on_device(Context& run, const VerifyInput& input, const VerifyOptions& options,
                                             verifier::Mesh known);

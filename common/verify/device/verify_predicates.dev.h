@@ -1,23 +1,25 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Predicates of the verifier on the device. Nothing is shared with those of the builder (filtered_predicates.dev.h,
- * exact_predicates.dev.h, bigint.dev.h), neither code nor formula nor arithmetic: they take coordinates as they are
- * instead of scaled, look at the two angles across an edge instead of a lifted determinant, and where a filter cannot
- * tell they use sums of doubles instead of integers. What these cannot represent is left to the verifier of the host
- * (common/host/verify).
+ * Predicates of the verifier on the device. They share nothing with those of the builder (filtered_predicates.dev.h,
+ * exact_predicates.dev.h, bigint.dev.h), neither code nor formula nor arithmetic: they take coordinates unscaled,
+ * compare the two angles opposite an edge instead of a lifted determinant, and where a filter does not decide they use
+ * sums of doubles instead of integers. What these cannot represent is left to the verifier of the host
+ * (common/verify/host).
  *
  * Edge b-c with a on its left and d on its right, both triangles counterclockwise: d is outside the circle of a, b, c
- * exactly if the angles at a and d add up to less than two right ones, that is if
- *   sin(A + D) ~ cross_a dot_d + dot_a cross_d > 0,   cross_a = (b-a) x (c-a), dot_a = (b-a) . (c-a),
- *                                                     cross_d = (c-d) x (b-d), dot_d = (c-d) . (b-d)
- * (A. K. Cline, R. J. Renka, 1984). As a polynomial it is the incircle determinant with the other sign.
+ * exactly if the angles at a and d add up to less than 180 degrees, that is if
+ *
+ *   sin(A + D) ~ cross_a dot_d + dot_a cross_d > 0,
+ *   cross_a = (b-a) x (c-a), dot_a = (b-a) . (c-a), cross_d = (c-d) x (b-d), dot_d = (c-d) . (b-d)
+ *
+ * (A. K. Cline, R. J. Renka, 1984). As a polynomial it is the incircle determinant with the opposite sign.
  */
 #ifndef CADT_VERIFY_DEVICE_VERIFY_PREDICATES_H
 #define CADT_VERIFY_DEVICE_VERIFY_PREDICATES_H
 
 #include "common/portable/dialect.dev.h"
 
-/* A sign that a stage could not find. */
+/* A sign that a stage could not decide. */
 #define CADT_UNKNOWN 2
 
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
@@ -100,7 +102,7 @@ CADT_FN cadt_i32 cadt_sum_sign(const double* sum, cadt_u32 size) {
   return size == 0u ? 0 : (sum[size - 1u] > 0.0 ? 1 : -1);
 }
 
-/* *d = p - q; returns 1 if that is exact and of a magnitude for which all that follows is. */
+/* *d = p - q; returns 1 if that is exact and of a magnitude for which all later steps are exact. */
 CADT_FN cadt_u32 cadt_exact_difference(double p, double q, double* d) {
   const double r = p - q, magnitude = cadt_fabs(r);
   *d = r;
@@ -148,10 +150,11 @@ CADT_FN_SLOW cadt_i32 cadt_verify_edge_exact(cadt_point a, cadt_point b, cadt_po
 
 CADT_FN cadt_u32 cadt_is_beyond(cadt_point p, cadt_point q) { return p.x > q.x || (p.x == q.x && p.y > q.y) ? 1u : 0u; }
 
-/* Of two diagonals of four cocircular points the perturbation of O. Devillers and M. Teillaud (SODA 2003) keeps the one
- * that does not end in the lexicographically greatest of them: that point is lifted by more than all others together,
- * and raising an end of an edge makes the edge reflex, raising a point across makes it convex. It needs no orientation,
- * since the two triangles are counterclockwise and cocircular, hence a strictly convex quadrilateral. */
+/* Whether a tie is decided as the symbolic perturbation does. Of the two diagonals of four cocircular points the
+ * perturbation of O. Devillers and M. Teillaud (SODA 2003) keeps the one that does not end in the lexicographically
+ * greatest of them: that point is lifted by more than all others together; raising an end of an edge makes the edge
+ * reflex, raising a point across makes it convex. No orientation is needed, since the two triangles are
+ * counterclockwise and cocircular, hence form a strictly convex quadrilateral. */
 CADT_FN cadt_u32 cadt_verify_tie_is_usual(cadt_point a, cadt_point b, cadt_point c, cadt_point d) {
   const cadt_point across = cadt_is_beyond(a, d) ? a : d, end = cadt_is_beyond(b, c) ? b : c;
   return cadt_is_beyond(across, end);

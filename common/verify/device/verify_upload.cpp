@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh of the host to the device and its verifier.
+// Uploads a mesh of the host to the device and verifies it there.
 #include <algorithm>
 #include <thread>
 #include <utility>
@@ -16,7 +16,8 @@ using namespace verifier;
 
 VerifyReport verify_on_device(Device& device, PointsView points, const MeshView& mesh, const Options& run_options,
                               const VerifyOptions& options) {
-  // Nothing to examine, or no triangles: no work for a device. Without double precision none that it can do.
+  // With nothing to examine, or no triangles, there is no work for a device; without double precision there is none
+  // that it can do.
   if (!size_error(points, mesh).empty() || mesh.triangles.empty() || points.size() == 0 || takes_floats_only(device))
     return verify(points, mesh, options);
   verifier::Mesh known;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orientation of every triangle and the empty circle of every interior edge. By Delaunay's lemma the latter, which is
-// local, implies that the circle of every triangle is empty of all points.
+// Orientation of every triangle, and the empty circle of every interior edge. By Delaunay's lemma the latter, a local
+// property, implies that the circle of every triangle contains no point.
 #include "mesh.hpp"
 
 namespace cadt::verifier {
 
 void check_orientation(const Mesh& mesh, Check& check, std::uint64_t& examined) {
-  const Tally tally =
-      reduce_blocks<Tally>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Tally& mine) {
+  const Findings findings =
+      reduce_blocks<Findings>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
         for (std::size_t t = begin; t < end; ++t) {
           ++mine.examined;
           if (orientation(mesh.point(mesh.vertex(t, 0)), mesh.point(mesh.vertex(t, 1)),
@@ -15,20 +15,20 @@ void check_orientation(const Mesh& mesh, Check& check, std::uint64_t& examined) 
             mine.fail(t);
         }
       });
-  examined = tally.examined;
-  conclude_orientation(mesh, tally, check);
+  examined = findings.examined;
+  conclude_orientation(mesh, findings, check);
 }
 
-void conclude_orientation(const Mesh& mesh, const Tally& tally, Check& check) {
-  conclude(check, tally,
-           tally.first < 0 ? std::string() : mesh.describe_triangle(tally.first) + " is clockwise or flat");
+void conclude_orientation(const Mesh& mesh, const Findings& findings, Check& check) {
+  conclude(check, findings,
+           findings.first < 0 ? std::string() : mesh.describe_triangle(findings.first) + " is clockwise or flat");
 }
 
 namespace {
 
 void examine_edge(const Mesh& mesh, std::size_t t, std::size_t k, Circles& mine) {
   const auto other = static_cast<std::size_t>(mesh.neighbors[3 * t + k]);
-  // The vertex across is the one that is on neither end of the shared edge.
+  // The apex across is the vertex that is neither end of the shared edge.
   const std::int32_t from = mesh.vertex(t, next3(k)), to = mesh.vertex(t, previous3(k));
   std::int32_t across = mesh.vertex(other, 0);
   for (std::size_t j = 1; j < 3 && (across == from || across == to); ++j) across = mesh.vertex(other, j);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signed integers of variable length in a fixed array: the last resort of the verifier's predicates.
+// Signed integers of variable length in a fixed array: the last stage of the verifier's predicates.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@ namespace cadt::verifier {
 __extension__ typedef unsigned __int128 u128;
 __extension__ typedef __int128 i128;
 
-/// Sign and magnitude; only the `size` lowest limbs are in use, so short numbers cost little whatever the capacity is.
-/// Nothing checks the capacity: whoever forms a sum shows that it fits (see exact_sign.cpp).
+/// Sign and magnitude; only the `size` lowest limbs are in use, so short numbers cost little whatever the capacity. The
+/// capacity is not checked: the caller shows that each sum fits (see exact_sign.cpp).
 template <std::size_t Capacity>
 struct Integer {
   std::array<std::uint64_t, Capacity> limb;  // not initialised above `size`

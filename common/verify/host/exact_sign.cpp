@@ -37,7 +37,7 @@ Parts parts(double v) {
   return {m >> zeros, std::max(field, 1) - 1075 + zeros, (bits >> 63) != 0};
 }
 
-/// All coordinates as integers times 2^low; the greatest has `width` bits. width <= 2098 for finite doubles.
+/// All coordinates as integers times 2^low; the largest has `width` bits. width <= 2098 for finite doubles.
 template <std::size_t Count>
 struct Common {
   std::array<Parts, Count> part;
@@ -53,7 +53,7 @@ struct Common {
     }
     if (high > lowest) low = lowest, width = high - lowest;
   }
-  /// Needs width <= 62.
+  /// \pre width <= 62
   [[nodiscard]] std::int64_t small(std::size_t i) const {
     if (part[i].mantissa == 0) return 0;
     const auto m = static_cast<std::int64_t>(part[i].mantissa << (part[i].exponent - low));
@@ -185,9 +185,9 @@ int incircle(const Point& a, const Point& b, const Point& c, const Point& d) {
   return stage::incircle_long(a, b, c, d);
 }
 
-// The lifted point of rank i is raised by e^(4 - i): the greatest point in lexicographic order moves first. Raising d
-// puts it outside; raising a vertex puts d on the side that the cofactor of that vertex tells, which is the orientation
-// of the triangle with d in its place.
+// The lifted point of rank i is raised by e^(4 - i): the lexicographically greatest point dominates. Raising d puts it
+// outside; raising a vertex puts d on the side given by the sign of that vertex's cofactor, which is the orientation of
+// the triangle with d in its place.
 int incircle_perturbed(const Point& a, const Point& b, const Point& c, const Point& d) {
   std::array<const Point*, 4> order{&a, &b, &c, &d};
   std::sort(order.begin(), order.end(), [](const Point* p, const Point* q) { return lexicographic_less(*p, *q); });

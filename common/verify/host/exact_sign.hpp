@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verifier's own predicates, exact for all finite doubles. No code, and after the first filter no method, is shared
-// with the builder, so that one mistake cannot both make a wrong mesh and approve it.
+// The verifier's own predicates, exact for all finite doubles. They share no code with the builder and, after the first
+// filter, no method, so that no single error can both produce a wrong mesh and accept it.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ struct Point {
 }
 [[nodiscard]] inline bool equal(const Point& a, const Point& b) { return a.x == b.x && a.y == b.y; }
 
-/// The steps by which a sign is found, cheapest first. Each gives the right sign or none; tests call them one by one.
+/// The stages of a predicate, cheapest first. Each returns the right sign or none; tests call them one by one.
 namespace stage {
 
 using Sign = std::optional<int>;

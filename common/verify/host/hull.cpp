@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The boundary is the convex hull, with the points on its edges in order, and is wound exactly once.
+// Checks that the boundary is the convex hull, with the points on its edges in order, and is wound exactly once.
 #include "mesh.hpp"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace cadt::verifier {
 namespace {
 
-/// Direction of an edge by comparisons alone: differences of doubles may round or overflow, comparisons do not.
+/// Direction of an edge by comparisons only: differences of doubles may round or overflow, comparisons do not.
 struct Direction {
   int x, y;
 };
@@ -28,10 +28,10 @@ void check_hull(const Mesh& mesh, std::span<const std::int32_t> given, Check& ch
 void check_hull(std::span<const std::int32_t> loop, std::span<const Point> corners, std::span<const std::int32_t> given,
                 unsigned threads, Check& check) {
   const std::size_t h = loop.size();
-  struct Turns : Tally {
+  struct Turns : Findings {
     std::uint64_t half_turns = 0;
     void merge(const Turns& other) {
-      Tally::merge(other);
+      Findings::merge(other);
       half_turns += other.half_turns;
     }
   };
@@ -40,7 +40,7 @@ void check_hull(std::span<const std::int32_t> loop, std::span<const Point> corne
       const Point &a = corners[i == 0 ? h - 1 : i - 1], &b = corners[i], &c = corners[i + 1 == h ? 0 : i + 1];
       const Direction in = direction(a, b), out = direction(b, c);
       const int turn = orientation(a, b, c);
-      // Collinear points must go on in the same direction; for parallel edges the signs tell.
+      // Collinear points must continue in the same direction; for parallel edges the signs decide.
       const bool good = turn > 0 || (turn == 0 && in.x == out.x && in.y == out.y && (in.x != 0 || in.y != 0));
       if (!good) mine.fail(static_cast<std::size_t>(loop[i]));
       if (upper_half(in) != upper_half(out)) ++mine.half_turns;

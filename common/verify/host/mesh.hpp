@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the checks of `verify` work on, and the checks themselves.
+// The mesh that the checks of `verify` work on, and the checks.
 #pragma once
 
 #include "exact_sign.hpp"
@@ -27,10 +27,10 @@ struct Mesh {
   std::span<const std::int32_t> triangles;  // 3 * count
   std::span<const std::int32_t> neighbors;  // 3 * count; those of the caller, or `derived`
   std::vector<std::int32_t> derived;
-  std::vector<std::uint8_t> used;      // per point: is it a vertex?
-  std::size_t vertices = 0;            // number of those
+  std::vector<std::uint8_t> used;      // per point: whether it is a vertex
+  std::size_t vertices = 0;            // number of vertices
   std::vector<BoundaryEdge> boundary;  // ascending by `from` once collected
-  std::vector<std::int32_t> loop;      // the boundary from its smallest index on
+  std::vector<std::int32_t> loop;      // the boundary cycle from its smallest index on
   unsigned threads = 1;
 
   [[nodiscard]] Point point(std::int32_t i) const {
@@ -45,7 +45,7 @@ struct Mesh {
 constexpr std::size_t next3(std::size_t k) { return k == 2 ? 0 : k + 1; }
 constexpr std::size_t previous3(std::size_t k) { return k == 0 ? 2 : k - 1; }
 
-// Each check fills passed, failures, first and what. They run in this order; a check may rely on those named.
+// Each check fills passed, failures, first and what. They run in this order; a check may rely on the ones named.
 void check_range(Mesh& mesh, Check& check);                                       // sets used, vertices
 void check_neighbors(const Mesh& mesh, Check& check, std::uint64_t& examined);    // after range
 void derive_neighbors(Mesh& mesh, Check& check, std::uint64_t& examined);         // after range
@@ -58,11 +58,11 @@ void check_hull(const Mesh& mesh, std::span<const std::int32_t> given, Check& ch
 void check_delaunay(const Mesh& mesh, Check& delaunay, Check& ties, const VerifyOptions& options,
                     VerifyReport& report);  // after neighbors and orientation
 
-// Parts of these that serve the verifier on the device as well (common/verify/device/verify_on_device.cpp).
+// Parts of these that the verifier on the device uses as well (common/verify/device/verify_on_device.cpp).
 
-/// Interior edges: those that are not legal, and those whose tie is not decided as cadt does.
+/// Interior edges: illegal ones, and cocircular ones that are not decided as by the symbolic perturbation.
 struct Circles {
-  Tally illegal, unusual;
+  Findings illegal, unusual;
   std::uint64_t ties = 0;
   void merge(const Circles& other) {
     illegal.merge(other.illegal);
@@ -80,22 +80,23 @@ void check_connected(const Mesh& mesh, Check& check);
 void check_hull(std::span<const std::int32_t> loop, std::span<const Point> corners, std::span<const std::int32_t> given,
                 unsigned threads, Check& check);
 
-/// Sets the outcome from a tally; `what` is only used if something failed.
-void conclude(Check& check, const Tally& tally, const std::string& what);
+/// Sets the outcome from a findings; `what` is only used if something failed.
+void conclude(Check& check, const Findings& findings, const std::string& what);
 void fail(Check& check, std::int64_t first, const std::string& what);
-void conclude_range(const Mesh& mesh, const Tally& tally, Check& check);
-void conclude_neighbors(const Mesh& mesh, const Tally& tally, Check& check);
-void conclude_orientation(const Mesh& mesh, const Tally& tally, Check& check);
-void conclude_duplicates(std::span<const Duplicate> list, std::size_t expected, const Tally& tally, Check& check);
+void conclude_range(const Mesh& mesh, const Findings& findings, Check& check);
+void conclude_neighbors(const Mesh& mesh, const Findings& findings, Check& check);
+void conclude_orientation(const Mesh& mesh, const Findings& findings, Check& check);
+void conclude_duplicates(std::span<const Duplicate> list, std::size_t expected, const Findings& findings, Check& check);
 void conclude_delaunay(const Mesh& mesh, const Circles& circles, Check& delaunay, Check& ties,
                        const VerifyOptions& options, VerifyReport& report);
 
 /// \throws InputError for the point of this index
 [[noreturn]] void refuse_point(std::int64_t index);
-/// Empty if the arrays fit together.
+/// Why the sizes of the arrays do not fit together; empty if they do.
 [[nodiscard]] std::string size_error(PointsView points, const MeshView& view);
-/// The predicates rest on IEEE 754 arithmetic. A process may have changed it, e.g. by loading code made for fast
-/// arithmetic; then no verdict is better than a wrong one. Threads inherit the mode of the one that starts them.
+/// The predicates rely on IEEE 754 arithmetic. A process may have changed it, e.g. by loading code built for fast
+/// arithmetic; then no verdict is better than a wrong one. Threads inherit the mode of the thread that starts them.
+/// \throws Error
 void require_ieee_arithmetic();
 /// What the library's own result promises beyond a bare mesh.
 void check_own_result(PointsView points, const Triangulation& mesh, VerifyReport& report);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Neighbours: those of the caller are checked, missing ones are found by grouping edges by their lower end point.
+// Neighbours: the caller's are checked; missing ones are derived by grouping edges by their lower end.
 #include "mesh.hpp"
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 namespace cadt::verifier {
 
 void check_neighbors(const Mesh& mesh, Check& check, std::uint64_t& examined) {
-  const Tally tally =
-      reduce_blocks<Tally>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Tally& mine) {
+  const Findings findings =
+      reduce_blocks<Findings>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
         for (std::size_t t = begin; t < end; ++t)
           for (std::size_t k = 0; k < 3; ++k) {
             ++mine.examined;
@@ -25,21 +25,21 @@ void check_neighbors(const Mesh& mesh, Check& check, std::uint64_t& examined) {
             if (!mutual) mine.fail(3 * t + k);
           }
       });
-  examined = tally.examined;
-  conclude_neighbors(mesh, tally, check);
+  examined = findings.examined;
+  conclude_neighbors(mesh, findings, check);
 }
 
-void conclude_neighbors(const Mesh& mesh, const Tally& tally, Check& check) {
-  conclude(check, tally,
-           tally.first < 0 ? std::string()
-                           : mesh.describe_edge(tally.first) + ", is not shared with triangle " +
-                                 std::to_string(mesh.neighbors[static_cast<std::size_t>(tally.first)]) +
-                                 " in the opposite direction");
+void conclude_neighbors(const Mesh& mesh, const Findings& findings, Check& check) {
+  conclude(check, findings,
+           findings.first < 0 ? std::string()
+                              : mesh.describe_edge(findings.first) + ", is not shared with triangle " +
+                                    std::to_string(mesh.neighbors[static_cast<std::size_t>(findings.first)]) +
+                                    " in the opposite direction");
 }
 
 namespace {
 
-/// An edge as seen from its lower end point. `half` is 3 * triangle + k (below 2^32: see `verify`).
+/// A half-edge grouped by its lower end. `half` is 3 * triangle + k (below 2^32: see `verify`).
 struct Half {
   std::int32_t upper;
   std::uint32_t half;
@@ -53,7 +53,7 @@ void derive_neighbors(Mesh& mesh, Check& check, std::uint64_t& examined) {
   const auto lower_end = [&](std::size_t t, std::size_t k) {
     return static_cast<std::size_t>(std::min(mesh.vertex(t, next3(k)), mesh.vertex(t, previous3(k))));
   };
-  // Counting sort by the lower end point; the order within a group is settled by sorting it afterwards.
+  // Counting sort by the lower end; each group is sorted afterwards.
   std::vector<std::size_t> place(mesh.points.size() + 1, 0);
   for (std::size_t t = 0; t < mesh.count; ++t)
     for (std::size_t k = 0; k < 3; ++k) ++place[lower_end(t, k) + 1];
@@ -67,8 +67,8 @@ void derive_neighbors(Mesh& mesh, Check& check, std::uint64_t& examined) {
         halves[next[lower_end(t, k)]++] = {std::max(from, to), static_cast<std::uint32_t>(3 * t + k), from < to};
       }
   }
-  const Tally tally =
-      reduce_blocks<Tally>(mesh.points.size(), mesh.threads, [&](std::size_t begin, std::size_t end, Tally& mine) {
+  const Findings findings = reduce_blocks<Findings>(
+      mesh.points.size(), mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
         for (std::size_t v = begin; v < end; ++v) {
           const auto group_end = halves.begin() + static_cast<std::ptrdiff_t>(place[v + 1]);
           auto at = halves.begin() + static_cast<std::ptrdiff_t>(place[v]);
@@ -89,12 +89,12 @@ void derive_neighbors(Mesh& mesh, Check& check, std::uint64_t& examined) {
           }
         }
       });
-  examined = tally.examined;
+  examined = findings.examined;
   mesh.neighbors = mesh.derived;
-  conclude(check, tally,
-           tally.first < 0 ? std::string()
-                           : mesh.describe_edge(tally.first) +
-                                 ", is used by more than two triangles or by two in the same direction");
+  conclude(check, findings,
+           findings.first < 0 ? std::string()
+                              : mesh.describe_edge(findings.first) +
+                                    ", is used by more than two triangles or by two in the same direction");
 }
 
 }  // namespace cadt::verifier

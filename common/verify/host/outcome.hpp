@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A report in the making: the checks by name, and which of them need not run any more.
+// A report under construction: the checks by name, and which of them are skipped.
 #pragma once
 
 #include <cadt/verify.hpp>
@@ -27,7 +27,7 @@ enum Name : std::size_t {
 inline constexpr std::array<const char*, number_of_checks> names{
     "counts", "range", "neighbors", "orientation", "vertices", "boundary", "euler", "hull", "delaunay", "ties"};
 
-/// The order of dependence: a check whose ground has failed is not run and says so.
+/// Dependences between checks: a check whose precondition has failed is skipped and says so.
 struct Outcome {
   VerifyReport report;
 

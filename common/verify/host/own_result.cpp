@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The check of the library's own result, which promises more than a bare mesh does.
+// Checks of the library's own result, which promises more than a bare mesh.
 #include "mesh.hpp"
 
 #include <string>
@@ -7,7 +7,7 @@
 namespace cadt {
 namespace {
 
-/// Dimension that the report implies: the points of a mesh without triangles are collinear if the report is ok.
+/// Dimension implied by the report: the points of a mesh without triangles are collinear if the report is ok.
 int implied_dimension(PointsView points, const VerifyReport& report, std::size_t duplicates) {
   if (report.triangles_examined != 0) return 2;
   const std::size_t distinct = points.size() - duplicates;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops over index ranges on threads, with results that do not depend on their number.
+// Loops over index ranges on threads, with results that do not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace cadt::verifier {
 
-/// Failures of one check; the lowest offender is kept, so the outcome is the same for every number of threads.
-struct Tally {
+/// Outcome of one check; the lowest failing index is kept, so it is the same for every number of threads.
+struct Findings {
   std::uint64_t failures = 0, examined = 0;
   std::int64_t first = -1;
 
@@ -24,15 +24,15 @@ struct Tally {
     const auto w = static_cast<std::int64_t>(where);
     if (first < 0 || w < first) first = w;
   }
-  void merge(const Tally& other) {
+  void merge(const Findings& other) {
     if (other.first >= 0 && (first < 0 || other.first < first)) first = other.first;
     failures += other.failures;
     examined += other.examined;
   }
 };
 
-/// Calls body(begin, end, result) for blocks of [0, count) and merges the results of all threads. A thread that cannot
-/// be started only makes it slower. What a body throws is thrown here once all threads have ended.
+/// Calls body(begin, end, result) for blocks of [0, count) and merges the results of all threads. If a thread cannot be
+/// started, the others do its work. Rethrows an exception of a body once all threads have ended.
 template <class Result, class Body>
 Result reduce_blocks(std::size_t count, unsigned threads, const Body& body) {
   constexpr std::size_t block = std::size_t{1} << 13;
@@ -60,7 +60,7 @@ Result reduce_blocks(std::size_t count, unsigned threads, const Body& body) {
     if (wanted > 1) helpers.reserve(wanted - 1);
     try {
       while (helpers.size() + 1 < wanted) helpers.emplace_back(work);
-    } catch (const std::system_error&) {  // NOLINT: go on with those that did start
+    } catch (const std::system_error&) {  // NOLINT: continue with the threads that did start
     }
     work();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Order of the checks, and what they amount to.
+// The order of the checks, and their report.
 #include "mesh.hpp"
 #include "outcome.hpp"
 
@@ -29,7 +29,7 @@ std::string size_error(PointsView points, const MeshView& view) {
   if (!view.neighbors.empty() && view.neighbors.size() != view.triangles.size())
     return "there are " + std::to_string(view.neighbors.size()) + " neighbours for " +
            std::to_string(view.triangles.size()) + " edges";
-  // 3 * triangles has to fit 32 bits; no mesh of 32-bit records has more.
+  // 3 * triangles must fit into 32 bits; no mesh with 32-bit indices has more
   if (points.size() > limit || view.triangles.size() > 2 * limit)
     return "too many points or triangles for 32-bit indices";
   return {};
@@ -43,12 +43,12 @@ namespace {
 using namespace verifier;
 
 void require_finite(PointsView points, unsigned threads) {
-  const Tally tally =
-      reduce_blocks<Tally>(points.size(), threads, [&](std::size_t begin, std::size_t end, Tally& mine) {
+  const Findings findings =
+      reduce_blocks<Findings>(points.size(), threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
         for (std::size_t i = begin; i < end; ++i)
           if (!std::isfinite(points.x(i)) || !std::isfinite(points.y(i))) mine.fail(i);
       });
-  if (tally.failures != 0) refuse_point(tally.first);
+  if (findings.failures != 0) refuse_point(findings.first);
 }
 
 class Context : private Outcome {

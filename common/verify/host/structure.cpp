@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks that need no geometry: index ranges, the boundary cycle, Euler's formula. Together with positive orientation
-// and a convex boundary that is wound once they make the mesh a triangulation of the hull: O. Devillers, G. Liotta,
-// F. P. Preparata, R. Tamassia, "Checking the convexity of polytopes and the planarity of subdivisions" (1998).
+// Checks without geometry: index ranges, the boundary cycle, Euler's formula. Together with positive orientation and a
+// convex boundary that is wound once they make the mesh a triangulation of the hull: O. Devillers, G. Liotta, F. P.
+// Preparata, R. Tamassia, "Checking the convexity of polytopes and the planarity of subdivisions" (1998).
 #include "mesh.hpp"
 
 #include <algorithm>
@@ -22,10 +22,10 @@ std::string Mesh::describe_edge(std::int64_t edge) const {
          std::to_string(vertex(t, next3(k))) + " to " + std::to_string(vertex(t, previous3(k)));
 }
 
-void conclude(Check& check, const Tally& tally, const std::string& what) {
-  check.failures = tally.failures;
-  check.first = tally.first;
-  check.passed = tally.failures == 0;
+void conclude(Check& check, const Findings& findings, const std::string& what) {
+  check.failures = findings.failures;
+  check.first = findings.first;
+  check.passed = findings.failures == 0;
   check.what = check.passed ? std::string() : what;
 }
 
@@ -40,8 +40,8 @@ void check_range(Mesh& mesh, Check& check) {
   const auto points = static_cast<std::int64_t>(mesh.points.size());
   const auto count = static_cast<std::int64_t>(mesh.count);
   mesh.used.assign(mesh.points.size(), 0);
-  const Tally tally =
-      reduce_blocks<Tally>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Tally& mine) {
+  const Findings findings =
+      reduce_blocks<Findings>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
         for (std::size_t t = begin; t < end; ++t) {
           bool good = true;
           for (std::size_t k = 0; k < 3; ++k) {
@@ -61,14 +61,14 @@ void check_range(Mesh& mesh, Check& check) {
         }
       });
   mesh.vertices = static_cast<std::size_t>(std::accumulate(mesh.used.begin(), mesh.used.end(), std::uint64_t{0}));
-  conclude_range(mesh, tally, check);
+  conclude_range(mesh, findings, check);
 }
 
-void conclude_range(const Mesh& mesh, const Tally& tally, Check& check) {
-  conclude(check, tally,
-           tally.first < 0 ? std::string()
-                           : mesh.describe_triangle(tally.first) +
-                                 " has an index out of range, a neighbour out of range or a vertex twice");
+void conclude_range(const Mesh& mesh, const Findings& findings, Check& check) {
+  conclude(check, findings,
+           findings.first < 0 ? std::string()
+                              : mesh.describe_triangle(findings.first) +
+                                    " has an index out of range, a neighbour out of range or a vertex twice");
 }
 
 namespace {
@@ -97,13 +97,14 @@ void link_boundary(Mesh& mesh, Check& check) {
     return a.from != b.from ? a.from < b.from : a.edge < b.edge;
   });
   if (edges.empty()) return fail(check, -1, "the mesh has no boundary");
-  Tally tally;
+  Findings findings;
   for (std::size_t i = 1; i < edges.size(); ++i)
-    if (edges[i].from == edges[i - 1].from) tally.fail(static_cast<std::size_t>(edges[i].edge));
-  if (tally.failures != 0)
-    return conclude(check, tally,
-                    mesh.describe_edge(tally.first) + ", is not the only boundary edge that leaves its start");
-  // Exactly one edge leaves each vertex. If the walk from the first comes back to it after all edges, it is one cycle.
+    if (edges[i].from == edges[i - 1].from) findings.fail(static_cast<std::size_t>(edges[i].edge));
+  if (findings.failures != 0)
+    return conclude(check, findings,
+                    mesh.describe_edge(findings.first) + ", is not the only boundary edge that leaves its start");
+  // Exactly one edge leaves each vertex. If a walk from the first edge comes back to it after all edges, the boundary
+  // is one cycle.
   mesh.loop.reserve(edges.size());
   std::size_t at = 0;
   do {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every input point is a vertex or equals one; without triangles all points lie on one line.
+// Checks that every input point is a vertex or equals one, and, without triangles, that all points are collinear.
 #include "mesh.hpp"
 
 #include <algorithm>
@@ -9,35 +9,36 @@
 namespace cadt::verifier {
 namespace {
 
-/// The caller's list of duplicates. Each listed point must have `representative` as its lowest equal; `is_duplicate`
-/// says which points have to be listed.
+/// The caller's list of duplicates. Each listed point must have `representative` as the lowest point that it equals;
+/// `is_duplicate` says which points must be listed.
 template <class IsDuplicate, class IsRepresentative>
 void check_list(const Mesh& mesh, std::span<const Duplicate> list, std::size_t expected, Check& check,
                 const IsDuplicate& is_duplicate, const IsRepresentative& is_representative) {
   const auto points = static_cast<std::int64_t>(mesh.points.size());
-  const Tally tally =
-      reduce_blocks<Tally>(list.size(), mesh.threads, [&](std::size_t begin, std::size_t end, Tally& mine) {
+  const Findings findings =
+      reduce_blocks<Findings>(list.size(), mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
         for (std::size_t i = begin; i < end; ++i) {
           const auto [p, r] = list[i];
-          // Strictly ascending duplicates, as many as there are, are all of them.
+          // As many strictly ascending duplicates as there are in all are all of them.
           const bool good = p >= 0 && p < points && r >= 0 && r < p && (i == 0 || list[i - 1].point < p) &&
                             is_duplicate(static_cast<std::size_t>(p)) && equal(mesh.point(p), mesh.point(r)) &&
                             is_representative(static_cast<std::size_t>(p), static_cast<std::size_t>(r));
           if (!good) mine.fail(i);
         }
       });
-  conclude_duplicates(list, expected, tally, check);
+  conclude_duplicates(list, expected, findings, check);
 }
 
 bool less(const Mesh& mesh, std::int32_t a, std::int32_t b) { return lexicographic_less(mesh.point(a), mesh.point(b)); }
 
 }  // namespace
 
-void conclude_duplicates(std::span<const Duplicate> list, std::size_t expected, const Tally& tally, Check& check) {
-  if (tally.failures != 0) {
-    const Duplicate& d = list[static_cast<std::size_t>(tally.first)];
-    return conclude(check, tally,
-                    "entry " + std::to_string(tally.first) + " of the duplicates (point " + std::to_string(d.point) +
+void conclude_duplicates(std::span<const Duplicate> list, std::size_t expected, const Findings& findings,
+                         Check& check) {
+  if (findings.failures != 0) {
+    const Duplicate& d = list[static_cast<std::size_t>(findings.first)];
+    return conclude(check, findings,
+                    "entry " + std::to_string(findings.first) + " of the duplicates (point " + std::to_string(d.point) +
                         ", representative " + std::to_string(d.representative) + ") is wrong or out of order");
   }
   if (list.size() != expected)
@@ -63,7 +64,7 @@ void check_vertices(const Mesh& mesh, const MeshView& view, Check& check) {
   // Each vertex marks the first of the unused points that equal it.
   std::vector<std::uint8_t> met(unused.size(), 0);
   if (!unused.empty())
-    reduce_blocks<Tally>(mesh.points.size(), mesh.threads, [&](std::size_t begin, std::size_t end, Tally&) {
+    reduce_blocks<Findings>(mesh.points.size(), mesh.threads, [&](std::size_t begin, std::size_t end, Findings&) {
       for (std::size_t i = begin; i < end; ++i) {
         if (mesh.used[i] == 0) continue;
         const auto p = static_cast<std::int32_t>(i);
@@ -74,12 +75,12 @@ void check_vertices(const Mesh& mesh, const MeshView& view, Check& check) {
             .store(1, std::memory_order_relaxed);
       }
     });
-  Tally tally;
+  Findings findings;
   for (std::size_t i = 0; i < unused.size(); ++i) {
     if (i > 0 && equal(mesh.point(unused[i]), mesh.point(unused[i - 1]))) met[i] = met[i - 1];
-    if (met[i] == 0) tally.fail(static_cast<std::size_t>(unused[i]));
+    if (met[i] == 0) findings.fail(static_cast<std::size_t>(unused[i]));
   }
-  conclude(check, tally, "point " + std::to_string(tally.first) + " is not a vertex and equals none");
+  conclude(check, findings, "point " + std::to_string(findings.first) + " is not a vertex and equals none");
 }
 
 void check_collinear(const Mesh& mesh, const MeshView& view, Check& check) {
@@ -87,18 +88,20 @@ void check_collinear(const Mesh& mesh, const MeshView& view, Check& check) {
   std::vector<std::int32_t> order(n);
   std::iota(order.begin(), order.end(), 0);
   if (n > 0) {
-    // A point off the line through the two extreme ones makes a triangle. If these coincide, so do all points.
+    // A point off the line through the two extreme points makes a triangle. If these coincide, so do all points.
     const auto by_position = [&](std::int32_t a, std::int32_t b) { return less(mesh, a, b); };
     const std::int32_t low = *std::min_element(order.begin(), order.end(), by_position);
     const std::int32_t high = *std::max_element(order.begin(), order.end(), by_position);
-    const Tally tally = reduce_blocks<Tally>(n, mesh.threads, [&](std::size_t begin, std::size_t end, Tally& mine) {
-      for (std::size_t i = begin; i < end; ++i)
-        if (orientation(mesh.point(low), mesh.point(high), mesh.point(static_cast<std::int32_t>(i))) != 0) mine.fail(i);
-    });
-    if (tally.failures != 0)
-      return conclude(check, tally,
+    const Findings findings =
+        reduce_blocks<Findings>(n, mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
+          for (std::size_t i = begin; i < end; ++i)
+            if (orientation(mesh.point(low), mesh.point(high), mesh.point(static_cast<std::int32_t>(i))) != 0)
+              mine.fail(i);
+        });
+    if (findings.failures != 0)
+      return conclude(check, findings,
                       "there are no triangles, but points " + std::to_string(low) + ", " + std::to_string(high) +
-                          " and " + std::to_string(tally.first) + " are not collinear");
+                          " and " + std::to_string(findings.first) + " are not collinear");
   }
   if (!view.has_duplicates) {
     check.passed = true;

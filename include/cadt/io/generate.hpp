@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Point sets for tests, benchmarks and first steps. Equal on every machine for equal arguments as far as the C
-// library's sin, cos, exp and log are.
+// Point sets for tests, benchmarks and first steps. Equal arguments give equal points on every machine whose C library
+// computes the same sin, cos, exp and log.
 #pragma once
 
 #include <cadt/io/points_file.hpp>
@@ -25,11 +25,11 @@ struct Distribution {
   std::string_view description;
 };
 
-/// All names that `generate` takes, each with one line of description.
+/// All names that `generate` accepts, each with a one-line description.
 [[nodiscard]] const std::vector<Distribution>& distributions();
 
-/// Points of the named distribution, e.g. "uniform"; an unknown name throws std::invalid_argument. `terrain` has
-/// heights.
+/// Points of the named distribution, e.g. "uniform"; `terrain` has heights. O(n). \throws std::invalid_argument for an
+/// unknown name
 [[nodiscard]] PointSet generate(std::string_view distribution, const GenerateOptions& options = {});
 
 }  // namespace cadt::io

@@ -25,16 +25,16 @@ struct WriteOptions {
 void write_mesh(const std::string& path, const PointSet& points, const Triangulation& mesh,
                 const WriteOptions& options = {});
 
-/// Triangles as read from a mesh file of any program: ele (with or without its .node beside it), obj, off, ply, vtu (as
+/// Triangles as read from a mesh file of any program: ele (with or without its .node file), obj, off, ply, vtu (as
 /// written by cadt), npz (keys as written by cadt).
 struct MeshFile {
   std::vector<std::int32_t> triangles;  ///< n x 3, 0-based
   std::vector<std::int32_t> neighbors;  ///< n x 3 or empty
 };
 
-/// Reads triangles; `number_of_points` is that of the point file they index. `base` as in WriteOptions, -1: recognised
-/// (the .node beside an .ele, else the indices, else the number of the first triangle). Neighbours come from .npz and
-/// from the .neigh beside an .ele. Throws FileError, also for an index out of range.
+/// Reads triangles; `number_of_points` is that of the point file that they index. `base` as in WriteOptions, -1:
+/// detected (from the .node beside an .ele, else the indices, else the number of the first triangle). Neighbours come
+/// from .npz and from the .neigh beside an .ele. \throws FileError, also for an index out of range
 [[nodiscard]] MeshFile read_mesh(const std::string& path, std::size_t number_of_points, const std::string& format = {},
                                  int base = -1);
 

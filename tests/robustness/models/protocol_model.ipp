@@ -88,8 +88,8 @@ constexpr std::size_t vertices = 8, threads = 3;
 
 // Only addresses: what is in the words the model knows, or `plain` while the mesh is made by one thread.
 struct Memory {
-  cadt_locked_triangle records[2 * vertices];
-  cadt_u32 hints[vertices];
+  cadt_locked_triangle locked[2 * vertices];
+  cadt_u32 vertex_to_triangle[vertices];
 };
 Memory plain;
 constexpr std::size_t count = sizeof(Memory) / sizeof(cadt_u32);

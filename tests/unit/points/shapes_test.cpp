@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sample tells of the points in sorted order, as the host compiles it (common/points/spatial_sort.dev.h).
+// What a sample tells of the points in sorted order, as the host compiles it (common/points/point_profile.dev.h).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@
 namespace {
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/points/spatial_sort.dev.h"
+#include "common/points/duplicates.dev.h"
 #pragma GCC diagnostic pop
 
 using Points = std::vector<cadt_point>;

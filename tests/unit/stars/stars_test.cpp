@@ -276,9 +276,9 @@ std::vector<std::vector<std::uint32_t>> links_of(const Sorted& s) {
 
 /// What cadt_prove_stars finds, as if a sample of one tile had said this of its points.
 std::vector<std::uint32_t> after_a_sample(std::uint32_t unproven, std::uint32_t crowded) {
-  std::vector<std::uint32_t> found(CADT_STARS_FOUND);
+  std::vector<std::uint32_t> found(CADT_STARS_WORDS);
   const std::uint32_t sample[] = {1, 1U << 24, unproven, crowded};
-  std::ranges::copy(sample, found.begin() + CADT_STARS_SAMPLED);
+  std::ranges::copy(sample, found.begin() + CADT_STARS_SAMPLED_TILES);
   return found;
 }
 
@@ -317,8 +317,8 @@ void check_stars(double part, bool many, std::map<std::string, double>& shares) 
       std::ranges::rotate(link, std::ranges::min_element(link));
       ASSERT_EQ(star, link) << "vertex " << v;
     }
-    EXPECT_EQ(made.found[0], s.size());
-    EXPECT_EQ(made.found[0] - made.found[1], made.proven());
+    EXPECT_EQ(made.found[CADT_STARS_POINTS], s.size());
+    EXPECT_EQ(made.found[CADT_STARS_POINTS] - made.found[CADT_STARS_UNPROVEN], made.proven());
     shares[set.name] = static_cast<double>(made.proven()) / s.size();
   }
 }
@@ -392,8 +392,8 @@ TEST(ProvenStars, CloseTogether) {
       for (std::uint32_t k = 0; k < packed.sizes[v]; ++k) ASSERT_EQ(taken[packed.begins[v] + k]++, 0) << "vertex " << v;
       if (packed.sizes[v] != 0 && tight.sizes[v] == 0) ++without_room;
     }
-    overflowed += packed.found[6];
-    EXPECT_EQ(std::ranges::count(tight.sizes, 0U), tight.found[1]);
+    overflowed += packed.found[CADT_STARS_OVERFLOWED];
+    EXPECT_EQ(std::ranges::count(tight.sizes, 0U), tight.found[CADT_STARS_UNPROVEN]);
   }
   EXPECT_GT(overflowed, 6u) << "nothing that the tiles have no room for: a weak test";
   EXPECT_GT(without_room, 0u);
@@ -431,12 +431,12 @@ TEST(SampleOfTiles, EndsWhatIsInVain) {
   const StarsOf bold(s, after_a_sample(most, 0), false), hopeful(s, after_a_sample(most / 4, 0), true);
   EXPECT_EQ(bold.sizes, hopeful.sizes);
   EXPECT_GT(bold.proven(), n * 3 / 4);
-  EXPECT_EQ(bold.found[CADT_STARS_LEFT], 0U);
-  EXPECT_EQ(hopeful.found[CADT_STARS_LEFT], 0U);
+  EXPECT_EQ(bold.found[CADT_STARS_SKIPPED_TILES], 0U);
+  EXPECT_EQ(hopeful.found[CADT_STARS_SKIPPED_TILES], 0U);
   const StarsOf cautious(s, after_a_sample(most, 0), true);
-  EXPECT_EQ(cautious.found[CADT_STARS_LEFT], count - 1);
-  EXPECT_EQ(cautious.found[0], n);
-  EXPECT_EQ(n - cautious.found[1], cautious.proven());
+  EXPECT_EQ(cautious.found[CADT_STARS_SKIPPED_TILES], count - 1);
+  EXPECT_EQ(cautious.found[CADT_STARS_POINTS], n);
+  EXPECT_EQ(n - cautious.found[CADT_STARS_UNPROVEN], cautious.proven());
   EXPECT_LE(cautious.proven(), s.tiles[1].begin);
   for (std::uint32_t v = 0; v < s.tiles[1].begin; ++v) ASSERT_EQ(cautious.sizes[v], bold.sizes[v]) << v;
 }
@@ -456,7 +456,7 @@ TEST(CautiousTiles, LeaveWhatMakesNoStars) {
   EXPECT_GT(StarsOf(one, after_a_sample(0, 0), false).proven(), 50);
   const StarsOf cautious(one, after_a_sample(0, 0), true);
   EXPECT_EQ(cautious.proven(), 0);
-  EXPECT_EQ(cautious.found[1], one.size());
+  EXPECT_EQ(cautious.found[CADT_STARS_UNPROVEN], one.size());
 }
 
 // The points end within the grid: stars know that beyond the last of them there are none.

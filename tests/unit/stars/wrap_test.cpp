@@ -75,15 +75,15 @@ Points nearly_straight(int count) {
   return points;
 }
 
-/// Points in boxes and crates.
+/// The AABB tree of the points.
 struct AabbTree {
   std::vector<cadt_aabb> leaves, nodes;
 
-  AabbTree(const Points& points, std::uint32_t* sizes, std::uint32_t* found)
+  AabbTree(const Points& points, std::uint32_t* sizes, std::uint32_t* counts)
       : leaves((points.size() - 1) / CADT_AABB_LEAF + 1), nodes((leaves.size() - 1) / CADT_AABB_FANOUT + 1) {
-    const auto crate_count = static_cast<std::uint32_t>(nodes.size());
-    cadt_build_aabb_tree(0, 1, points.data(), static_cast<std::uint32_t>(points.size()), nullptr, 0, crate_count,
-                         crate_count, leaves.data(), nodes.data(), sizes, found);
+    const auto node_count = static_cast<std::uint32_t>(nodes.size());
+    cadt_build_aabb_tree(0, 1, points.data(), static_cast<std::uint32_t>(points.size()), nullptr, 0, node_count,
+                         node_count, leaves.data(), nodes.data(), sizes, counts);
   }
 };
 
@@ -107,31 +107,33 @@ struct Searcher {
 
 /// Both kernels, one work-item each.
 struct Wrapped {
-  std::vector<std::uint32_t> links, begins, sizes, todo, found = std::vector<std::uint32_t>(CADT_WRAP_WORDS);
+  std::vector<std::uint32_t> star_vertices, begins, sizes, todo, counts = std::vector<std::uint32_t>(CADT_WRAP_WORDS);
   std::uint32_t left = 0;  ///< by the first kernel
 
   explicit Wrapped(const Points& points) {
     const auto n = static_cast<std::uint32_t>(points.size()), words = 6 * n;
     std::vector<std::uint16_t> arcs(std::size_t{n} * CADT_WRAP_ROW);
-    links.resize(words);
+    star_vertices.resize(words);
     begins.resize(n);
     sizes.resize(n);
     todo.resize(n);
-    const auto [leaves, nodes] = AabbTree(points, sizes.data(), found.data());
-    cadt_wrap_near(0, 1, points.data(), leaves.data(), nodes.data(), n, n, links.data(), words, begins.data(),
-                   sizes.data(), todo.data(), arcs.data(), found.data());
-    left = found[7];
+    const auto [leaves, nodes] = AabbTree(points, sizes.data(), counts.data());
+    cadt_wrap_near(0, 1, points.data(), leaves.data(), nodes.data(), n, n, star_vertices.data(), words, begins.data(),
+                   sizes.data(), todo.data(), arcs.data(), counts.data());
+    left = counts[CADT_WRAP_TODO];
     constexpr std::uint32_t effort = 96, spare = 4096;
     cadt_wrap_stars(0, 1, points.data(), leaves.data(), nodes.data(), n, todo.data(), 0, arcs.data(), nullptr, 0,
-                    nullptr, nullptr, effort, spare, n, 0, links.data(), words, begins.data(), sizes.data(),
-                    found.data());
+                    nullptr, nullptr, effort, spare, n, 0, star_vertices.data(), words, begins.data(), sizes.data(),
+                    counts.data());
   }
-  [[nodiscard]] std::uint32_t failed() const { return found[1]; }
-  [[nodiscard]] std::uint32_t effort() const { return found[2]; }
-  [[nodiscard]] std::uint32_t exact_tests() const { return found[3] + found[4]; }
+  [[nodiscard]] std::uint32_t failed() const { return counts[CADT_WRAP_FAILED]; }
+  [[nodiscard]] std::uint32_t effort() const { return counts[CADT_WRAP_WORK]; }
+  [[nodiscard]] std::uint32_t exact_tests() const {
+    return counts[CADT_WRAP_EXACT_ORIENTATIONS] + counts[CADT_WRAP_EXACT_INCIRCLES];
+  }
   /// Neighbours, counterclockwise; the ghost is not one. From the hull edge on, or from the least one.
   [[nodiscard]] std::vector<std::uint32_t> star(std::uint32_t v) const {
-    std::vector<std::uint32_t> star(links.begin() + begins[v], links.begin() + begins[v] + sizes[v]);
+    std::vector<std::uint32_t> star(star_vertices.begin() + begins[v], star_vertices.begin() + begins[v] + sizes[v]);
     const auto ghost = std::ranges::find(star, CADT_GHOST);
     std::ranges::rotate(star, ghost != star.end() ? ghost : std::ranges::min_element(star));
     std::erase(star, CADT_GHOST);
@@ -167,7 +169,7 @@ TEST(WrappedStars, GivesUpOnHulls) {
   }
 }
 
-// The neighbour behind another point is the best of all on that side, whichever way it is looked for.
+// The neighbour behind another point is the best of all on that side, whichever way it is leaves_tested for.
 TEST(WrappedNext, IsTheBestOfAll) {
   for (const Points& points :
        {scattered(64), lattice(64, 0.0), lattice(32, 0.3), far_apart(32), polygon(500), nearly_straight(700)}) {
@@ -272,8 +274,8 @@ TEST(WrappedDisc, ThatIsNoNumberHoldsAll) {
   const Points points = {{0, 0}, {1, 0}, {2, 0}, {-3, 4}, {3, -4}};
   Searcher search(points);
   cadt_wrapper& w = search.w;
-  cadt_wrap_turn turn = cadt_wrap_turn_behind(1, 1);
-  cadt_wrap_take(&w, &turn, 2);
+  cadt_wrap_step turn = cadt_wrap_step_from(1, 1);
+  cadt_wrap_set_best(&w, &turn, 2);
   EXPECT_TRUE(std::isnan(turn.disc.x));
   EXPECT_EQ(cadt_wrap_reaches(&w, &turn, 3), 1U);
   EXPECT_EQ(cadt_wrap_reaches(&w, &turn, 4), 0U) << "it is on the other side";

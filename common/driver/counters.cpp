@@ -44,7 +44,7 @@ void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) 
   for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_COUNTER_STRIDE] += words[i];
   const auto times = std::span(sums).subspan(CADT_ROW_TIMES, CADT_TIMES);
   const auto all = static_cast<double>(std::accumulate(times.begin(), times.end(), std::uint64_t{0}));
-  // With the star stage there are two insertions: the first one's threads are reported.
+  // With the star stage certification adds counters too: the times are those of the insertion, which comes first.
   for (std::size_t i = statistics.thread_time.size(); all > 0 && i < times.size(); ++i)
     statistics.thread_time.emplace_back(timers[i], static_cast<double>(times[i]) / all);
   statistics.walk_steps += sums[CADT_COUNT_WALK_STEPS];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sets so large that processors insert most points in ranges without locks (common/insertion/partitioned.dev.h):
-// ordinary ones, ties everywhere, and such that hardly a triangle lies within one range.
+// Sets so large that CPUs insert most points in partitions without locks (common/insertion/partitioned.dev.h): ordinary
+// ones, ties everywhere, and sets with hardly a triangle within one partition.
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the statistics of a call say, field by field, against what the device was asked for; the copy of a mesh on the
-// device says the same as the mesh.
+// The statistics of a call, field by field, against the requests that the device counted; the host copy of a mesh on
+// the device has the same statistics as the mesh.
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 

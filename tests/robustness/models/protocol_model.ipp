@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernels' own text under relacy, which runs three threads step by step in random order and lets each load see any
 // value that C++ allows. CADT_CONTIGUOUS is set by the including file: 1 for the memory orders of CPUs, 0 for those of
-// GPUs, where fields are relaxed, fences order, and the owner reads its records again.
+// GPUs, where fields are relaxed, fences order, and the owner reads its triangles again.
 //
 // Claims, validation, changes, releases and hints are those of split_and_flip.dev.h, lock.dev.h and locate.dev.h; three
 // threads split and flip in a mesh of eight vertices.
@@ -271,8 +271,8 @@ struct SplitsAndFlips : rl::test_suite<SplitsAndFlips, threads> {
   }
 };
 
-// Nothing but a record that three threads claim and change, and one that somebody holds all the time: what the version
-// says must be in the fields. A small world, so that rare orders of steps come up.
+// Nothing but a triangle that three threads lock and change, and one that is held all the time: the fields must be
+// those of the version. A small model, so that rare interleavings come up.
 struct Claims : rl::test_suite<Claims, threads> {
   rl::atomic<cadt_u32> memory[words::count];
   cadt_u32 changes[threads];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Entry file of the OpenCL back end: the kernels of common/device are already OpenCL C, GPUs get a sort and a scan of
- * their own besides. The build embeds this file with all its includes in the library (cmake/EmbedKernels.cmake).
+ * Entry file of the OpenCL back end: the device text is OpenCL C already; GPUs get a sort and a scan of their own
+ * besides. The build embeds this file with all its includes in the library (cmake/EmbedKernels.cmake).
  */
 #include "common/portable/kernels.dev.h"
 

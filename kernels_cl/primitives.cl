@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
  * Scan and stable sort for GPUs, in groups of 256 work-items that share local memory. A group works on a tile of 4096
- * elements; groups never wait for one another. Nothing beyond OpenCL 1.2: no sub-groups. 22 KiB of local memory at
- * most.
+ * elements; groups never wait for one another. Needs no more than OpenCL 1.2 (no sub-groups) and 22 KiB of local
+ * memory.
  *
- * Which element a work-item takes: in global memory neighbours take neighbours (element i * 256 + item, "striped"); in
+ * Which elements a work-item takes: in global memory neighbours take neighbours (element i * 256 + item, "striped"); in
  * local memory each takes 16 in a row ("blocked") where the order matters.
  */
 #ifndef CADT_PRIMITIVES_CL
@@ -16,19 +16,19 @@
 enum { CADT_GROUP = 256, CADT_EACH = 16, CADT_TILE = CADT_GROUP * CADT_EACH };
 
 #define CADT_GROUP_KERNEL __kernel __attribute__((reqd_work_group_size(CADT_GROUP, 1, 1)))
-/* PoCL 3.1 crashes when it decides itself to inline a function with barriers into one of its kind. */
+/* PoCL 3.1 crashes when it decides by itself to inline one function with barriers into another. */
 #define CADT_GROUP_FN static __attribute__((always_inline))
 #define cadt_lane ((cadt_u32)get_local_id(0))
 #define cadt_tile ((cadt_u32)get_group_id(0))
 
-/* Words of a tile in local memory, with a gap after every 32 so that 16 in a row lie in different banks for each
+/* Words of a tile in local memory, with a gap after every 32, so that 16 in a row lie in different banks for each
  * work-item. */
 #define CADT_GAP(i) ((i) + ((i) >> 5))
 enum { CADT_TILE_WORDS = CADT_TILE + (CADT_TILE >> 5) };
 
-/* ---- sums over a group ------------------------------------------------------------------------------------------ */
+/* ---- sums over a group ---- */
 
-/* Two arrays of a word a member, each behind zeros so that reading before the first is a sum of nothing. */
+/* Two arrays of a word per work-item, each behind zeros, so that reading before the first adds nothing. */
 enum { CADT_BEFORE = 192, CADT_SIDE = CADT_BEFORE + CADT_GROUP, CADT_SUM_WORDS = 2 * CADT_SIDE };
 
 /* Once, before the first cadt_group_scan; its barrier is enough. */
@@ -39,8 +39,8 @@ CADT_GROUP_FN void cadt_group_scan_begin(__local cadt_u32* work) {
   }
 }
 
-/* Sum of the values of the members before this one. Each step takes four times as many together. The first barrier also
- * separates what the members did in local memory before from what they do after. */
+/* Sum of the values of the work-items before this one. Each step adds up four times as many. The first barrier also
+ * separates what the work-items did in local memory before from what they do after. */
 CADT_GROUP_FN cadt_u32 cadt_group_scan(__local cadt_u32* work, cadt_u32 value, cadt_u32* total) {
   __local cadt_u32* const a = work + CADT_BEFORE + cadt_lane;
   __local cadt_u32* const b = a + CADT_SIDE;
@@ -64,9 +64,9 @@ CADT_GROUP_FN cadt_u32 cadt_group_scan(__local cadt_u32* work, cadt_u32 value, c
   return sum - value;
 }
 
-/* ---- scan: sums of tiles, their scan (the same again), then each tile ------------------------------------------- */
+/* ---- scan: sums of tiles, their scan (the same again), then each tile ---- */
 
-/* data and sums may be the same memory; they begin at a word each */
+/* data and sums may be the same memory; each has the word at which it begins */
 CADT_GROUP_KERNEL void cadt_tile_sums(__global const cadt_u32* data, cadt_u32 data_at, __global cadt_u32* sums,
                                       cadt_u32 sums_at, cadt_u32 count) {
   __local cadt_u32 work[CADT_SUM_WORDS];
@@ -85,8 +85,8 @@ CADT_GROUP_KERNEL void cadt_tile_sums(__global const cadt_u32* data, cadt_u32 da
   if (cadt_lane == 0u) sums[sums_at + cadt_tile] = total;
 }
 
-/* Exclusive sums in place; sums[tile] is what comes before if they are `scanned`, else the sum of a tile: then there
- * are at most CADT_GROUP. sums may be null: there is one tile. */
+/* Exclusive sums in place; sums[tile] is the sum before the tile if `scanned`, else the sum of the tile: then there are
+ * at most CADT_GROUP tiles. Null sums: there is one tile. */
 CADT_GROUP_KERNEL void cadt_tile_scan(__global cadt_u32* data, cadt_u32 data_at, __global const cadt_u32* sums,
                                       cadt_u32 sums_at, cadt_u32 scanned, cadt_u32 count) {
   __local cadt_u32 work[CADT_SUM_WORDS];
@@ -119,12 +119,11 @@ CADT_GROUP_KERNEL void cadt_tile_scan(__global cadt_u32* data, cadt_u32 data_at,
     if (i * CADT_GROUP + cadt_lane < left) at[i * CADT_GROUP] = tile[CADT_GAP(i * CADT_GROUP + cadt_lane)];
 }
 
-/* ---- sort: a pass for each digit of up to 8 bits, from the lowest: counts by tile, their scan, scatter ------------
- * counts[digit * tiles + tile]; after the scan, where the first key of the tile with this digit goes. Where tiles are
- * few they are not scanned: each group adds them up.
- */
+/* ---- sort: a pass for each digit of up to 8 bits, from the lowest: counts by tile, their scan, scatter ----
+ * counts[digit * tiles + tile]; after the scan, where the first key of the tile with this digit goes. A few tiles are
+ * not scanned: each group adds them up. */
 
-/* Work-items that meet the same digit count in different words, of different banks. */
+/* Work-items with the same digit count in different words, of different banks. */
 enum { CADT_COPIES = 8 };
 
 CADT_GROUP_KERNEL void cadt_digit_counts(__global const cadt_u32* keys, __global cadt_u32* counts, cadt_u32 count,
@@ -152,16 +151,16 @@ CADT_GROUP_KERNEL void cadt_digit_counts(__global const cadt_u32* keys, __global
   }
 }
 
-/* Counters of the ranking, 16 bits for each member and each value of half a digit. Values d and d + 8 share a word, the
- * words of a member lie in its own bank, and so do the 8 words in a row that it sums up. */
+/* Counters of the ranking, 16 bits for each work-item and each value of half a digit. Values d and d + 8 share a word,
+ * the words of a work-item lie in its own bank, and so do the 8 words in a row that it sums up. */
 enum { CADT_ROW = CADT_GROUP + 32, CADT_COUNTER_WORDS = 8 * CADT_ROW };
 
-/* `halves`: 16 half digits of 4 bits, of 16 elements in a row. Gives each its place in the stable order by them, two to
- * a word. Local memory that members read before may be written after. */
+/* `halves`: 16 half digits of 4 bits, of 16 elements in a row. Gives each its place in the stable order by half digits,
+ * two places to a word. Afterwards the local memory that work-items read before may be written. */
 CADT_GROUP_FN void cadt_rank_halves(__local cadt_u32* counter_rows, __local cadt_u32* work, cadt_u64 halves,
                                     cadt_u32* places) {
   __local cadt_u32* const mine = counter_rows + CADT_GAP(cadt_lane);
-  cadt_u64 among_mine = 0u; /* how many of this member's elements before have the same half digit */
+  cadt_u64 among_mine = 0u; /* how many earlier elements of this work-item have the same half digit */
 #pragma unroll
   for (cadt_u32 row = 0u; row < 8u; ++row) mine[row * CADT_ROW] = 0u;
 #pragma unroll
@@ -173,7 +172,7 @@ CADT_GROUP_FN void cadt_rank_halves(__local cadt_u32* counter_rows, __local cadt
   }
   barrier(CLK_LOCAL_MEM_FENCE);
   {
-    /* A row of 256 counters is summed by 32 members, 8 words each; both halves of a word at once. */
+    /* 32 work-items sum a row of 256 counters, 8 words each; both halves of a word at once. */
     const cadt_u32 in_row = cadt_lane & 31u;
     __local cadt_u32* const part = counter_rows + (cadt_lane >> 5) * CADT_ROW + 8u * in_row + (in_row >> 2);
     cadt_u32 words[8], sum = 0u, total;
@@ -201,7 +200,7 @@ CADT_GROUP_FN void cadt_rank_halves(__local cadt_u32* counter_rows, __local cadt
 }
 #define CADT_PLACE(places, i) (((places)[(i) >> 1] >> (((i)&1u) << 4)) & 0xFFFFu)
 
-/* Local memory of the scatter by what it holds at the time. */
+/* Local memory of the scatter, by what it holds at the time. */
 typedef union {
   struct {
     cadt_u32 counter_rows[CADT_COUNTER_WORDS];
@@ -220,14 +219,15 @@ CADT_GROUP_KERNEL void cadt_digit_scatter(__global const cadt_u32* keys_in, __gl
                                           __global const cadt_u32* counts, cadt_u32 scanned, cadt_u32 count,
                                           cadt_u32 tiles, cadt_u32 shift, cadt_u32 mask) {
   __local cadt_u32 work[CADT_SUM_WORDS];
-  __local cadt_u32 goes_to[256]; /* of a digit: the first key's place in the output, then less its place in the tile */
+  __local cadt_u32
+      goes_to[256]; /* for each digit: the first key's place in the output, later less its place in the tile */
   __local cadt_scatter_memory memory;
   const cadt_u32 first = cadt_tile * CADT_TILE + cadt_lane;
   const cadt_u32 left = cadt_min_u32(count - cadt_tile * CADT_TILE, CADT_TILE);
   cadt_u32 keys[CADT_EACH], values[CADT_EACH], places[CADT_EACH / 2];
   cadt_u64 halves = 0u;
 
-  /* Beyond the end stand keys with the highest digit: the order is stable, so they stay behind all others. Without
+  /* Beyond the end stand keys with the highest digit: the order is stable, so they stay behind all others. With null
    * values_in the values are the places of the keys. */
 #pragma unroll
   for (cadt_u32 i = 0u; i < CADT_EACH; ++i)
@@ -249,7 +249,7 @@ CADT_GROUP_KERNEL void cadt_digit_scatter(__global const cadt_u32* keys_in, __gl
     memory.rank.order.digits[i * CADT_GROUP + cadt_lane] = (uchar)((keys[i] >> shift) & mask);
   barrier(CLK_LOCAL_MEM_FENCE);
 
-  /* The tile is sorted by the lower half of the digit, then by the upper one. What moves is a handle of 16 bits. */
+  /* Sorts the tile by the lower half of the digit, then by the upper one. What moves is a handle of 16 bits. */
   {
     cadt_u32 digits[CADT_EACH / 4];
 #pragma unroll

@@ -20,7 +20,7 @@ __global__ void __launch_bounds__(block_threads)
   const std::uint32_t first = threadIdx.x * thread_keys;
   for (int k = 0; k < thread_keys; ++k) {
     const bool here = first + k < count;
-    key[k] = here ? keys[first + k] : 0xFFFFFFFFU;  // behind all others, since they come last and the sort is stable
+    key[k] = here ? keys[first + k] : 0xFFFFFFFFU;  // after all others, since they come last and the sort is stable
     value[k] = here && !places ? values[first + k] : first + k;
   }
   Sort(memory).SortBlockedToStriped(key, value, 0, bits);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sort and scan of the toolkit's CUB. With `scratch` null both only tell its size.
+// Sort and scan by the toolkit's CUB. With null `scratch` both only tell its size.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -9,10 +9,10 @@
 
 namespace cadt::cuda {
 
-/// Up to so many keys are sorted by one group, in one launch.
+/// One group sorts up to so many keys, in one launch.
 constexpr std::uint32_t most_in_group = 8192;
 
-/// Stable radix sort by the lowest `bits` bits. `places`: the values are 0, 1, 2, ..., and not read; at most
+/// Stable radix sort by the lowest `bits` bits. `places`: the values are 0, 1, 2, ..., and are not read; at most
 /// most_in_group. `in_other`: whether the result is in the other pair of arrays.
 [[nodiscard]] cudaError_t sort_pairs(void* scratch, std::size_t& scratch_bytes, std::uint32_t* keys,
                                      std::uint32_t* values, std::uint32_t* other_keys, std::uint32_t* other_values,

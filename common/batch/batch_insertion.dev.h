@@ -33,13 +33,13 @@ CADT_FN cadt_u32 cadt_insert_set(cadt_locked_mesh* m, cadt_u32 n, const cadt_def
                                  cadt_counters* counters) {
   const cadt_u32 levels = 64u - cadt_clz64(n - 1u);
   if (!cadt_choose_first(m, n, levels, counters)) return 0u;
-  cadt_start(m, counters);
+  cadt_make_seed_mesh(m, counters);
   cadt_locked_mesh own = *m;
-  CADT_OWN_PARTITION(own, 0u, n);
+  CADT_SET_PARTITION(own, 0u, n);
   cadt_partition partition;
   partition.begin = 0u;
   partition.size = n;
-  CADT_WORKLIST_HERE(work);
+  CADT_DECLARE_WORKLIST(work);
   for (cadt_u32 level = levels; level-- > 0u;) {
     const cadt_u32 blocks = (((n - 1u) >> level) + 1u) / 2u;
     for (cadt_u32 block = 0u; block < blocks; ++block) {
@@ -47,12 +47,12 @@ CADT_FN cadt_u32 cadt_insert_set(cadt_locked_mesh* m, cadt_u32 n, const cadt_def
       const cadt_u32 i = cadt_representative(level, standing ^ 1u, n);
       const cadt_u32 start = cadt_load_relaxed(m->vertex_to_triangle + cadt_representative(level, standing, n));
       if (i == m->first || i == m->second || i == m->third) continue;
-      if (cadt_insert_own(&own, &partition, i, start, counters)) continue;
+      if (cadt_insert_in_partition(&own, &partition, i, start, counters)) continue;
       cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
       work.apex_point = cadt_point_of(m, i);
       cadt_u32 from = cadt_load_relaxed(m->vertex_to_triangle + i);
       for (cadt_u32 tries = 0u; !work.size && tries < CADT_CAST(cadt_u32, CADT_INSERT_TRIES); ++tries)
-        work.size = cadt_try_vertex(m, i, work.apex_point, &from, work.half_edge, counters);
+        work.size = cadt_try_insert(m, i, work.apex_point, &from, work.half_edge, counters);
       cadt_store_relaxed(m->vertex_to_triangle + i, from);
       if (!work.size) return 0u;
       cadt_legalize(m, &work, deferred, counters);
@@ -70,7 +70,7 @@ CADT_KERNEL(cadt_batch_insert, CADT_GLOBAL cadt_locked_triangle* locked, CADT_GL
             CADT_GLOBAL cadt_u32* counter_rows) {
 #if CADT_CONTIGUOUS
   CADT_GROUP_COUNTERS(counters, counter_rows);
-  const cadt_deferred none = cadt_lists(deferred_counts, deferred_counts, 0u);
+  const cadt_deferred none = cadt_deferred_lists(deferred_counts, deferred_counts, 0u);
   CADT_FOR(s, set_count, grain) {
     if (states[s] != CADT_SET_BATCHED) continue;
     const cadt_u32 begin = starts[s], n = starts[s + 1u] - begin;
@@ -81,7 +81,7 @@ CADT_KERNEL(cadt_batch_insert, CADT_GLOBAL cadt_locked_triangle* locked, CADT_GL
     mesh.stabilize = CADT_STABILIZE_OFF;
     mesh.threshold = 0u;
     mesh.epsilon = 0.0;
-    CADT_OWN_PARTITION(mesh, 0u, 0u);
+    CADT_SET_PARTITION(mesh, 0u, 0u);
     CADT_NOISE_BEGIN(mesh, s, 0.0);
     if (!cadt_insert_set(&mesh, n, &none, &counters)) {
       states[s] += CADT_SET_FAILURE;

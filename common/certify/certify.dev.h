@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * A finished mesh in two arrays: vertices and links, three words a triangle each, as records have them
- * (locked_mesh.dev.h) but without lock words and flip counters, since nothing is flipped any more. Triangles of the
- * ghost come last, so what is before them has the form of the result already.
+ * Certification: examines every edge of a finished mesh and repairs nothing.
+ *
+ * The mesh is two arrays of three words a triangle: vertices and half-edges, as in locked_mesh.dev.h but without lock
+ * words and flip counters, since nothing is flipped any more. Ghost triangles come last, so what is before them already
+ * has the form of the result.
  */
 #ifndef CADT_CERTIFY_CERTIFY_H
 #define CADT_CERTIFY_CERTIFY_H
@@ -13,11 +15,10 @@ CADT_FN cadt_u32 cadt_word_of_three(CADT_GLOBAL const cadt_u32* words, cadt_u32 
   return words[3u * triangle + k];
 }
 
-/* Looks at each edge of the mesh once, from the triangle that comes first, and repairs nothing. `known` of the `all`
- * triangles are not of the ghost. words[row] and on: edges examined; illegal ones; edges whose sides do not fit
- * together, and triangles of the ghost among the others; edges to the ghost at which the boundary turns back; the
- * number of real triangles if `known` is CADT_NONE, 0: there is no mesh. If `counted`, the rows behind it are counters
- * of work. */
+/* Examines each edge of the mesh once, from the triangle that comes first. `known` of the `all` triangles are not of
+ * the ghost. words[row] and on: edges examined; illegal edges; edges whose sides do not fit together, and ghost
+ * triangles among the others; edges to the ghost at which the boundary turns back; the number of real triangles if
+ * `known` is CADT_NONE, 0: there is no mesh. If `counted`, the rows behind are counters of work. */
 CADT_KERNEL(cadt_certify, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_u32* half_edges,
             CADT_GLOBAL const cadt_point* points, cadt_u32 all, cadt_u32 known, cadt_u32 begin, cadt_u32 count,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* words, cadt_u32 row, cadt_u32 counted) {
@@ -25,7 +26,7 @@ CADT_KERNEL(cadt_certify, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL cons
   CADT_GLOBAL cadt_u32* found = words + row;
   const cadt_u32 real = known != CADT_NONE ? known : found[CADT_CERTIFY_REAL];
   if (!real) return;
-  cadt_locked_mesh mesh; /* the tests ask for nothing but points */
+  cadt_locked_mesh mesh; /* the predicates read only its points */
   mesh.points = points;
   cadt_u32 examined = 0u, illegal = 0u, wrong = 0u, broken = 0u;
   CADT_FOR(i, count, grain) {
@@ -37,7 +38,7 @@ CADT_KERNEL(cadt_certify, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL cons
     if (ghost != (t >= real ? 1u : 0u)) ++wrong;
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 u = CADT_TRIANGLE_OF(half_edge[k]), j = CADT_EDGE_OF(half_edge[k]);
-      if (u < t) continue; /* seen from the other side */
+      if (u < t) continue; /* examined from the other side */
       ++examined;
       if (u >= all || j > 2u || cadt_word_of_three(half_edges, u, j) != CADT_HALF_EDGE(t, k)) {
         ++wrong;
@@ -57,7 +58,7 @@ CADT_KERNEL(cadt_certify, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL cons
   if (illegal) cadt_add_relaxed(found + 1, illegal);
   if (wrong) cadt_add_relaxed(found + 2, wrong);
   if (broken) cadt_add_relaxed(found + 3, broken);
-  CADT_LAP_SKIP(&counters);
+  CADT_SKIP_TIME(&counters);
   CADT_GLOBAL cadt_u32* counter_rows = counted ? found + CADT_COUNTER_STRIDE : 0;
   CADT_FLUSH_COUNTERS(&counters, counter_rows);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The closing pass of a mesh in arrays (common/certify/certify.dev.h).
+// Certification of a mesh in arrays (common/certify/certify.dev.h).
 #pragma once
 
 #include <cstddef>
@@ -12,19 +12,19 @@
 
 namespace cadt {
 
-/// Words that the pass counts in: what it found, and counters of work if the statistics want them.
+/// Words for what certification finds, and for counters of work if the statistics want them.
 [[nodiscard]] std::size_t certify_words(const Context& ctx);
 
-/// Edges of the arrays of `mesh`, those of its triangles from `begin` on; waits for nothing. Counts in `words` from
-/// `row` on, a multiple of CADT_COUNTER_STRIDE; they are 0 before the first part. With `real_in_words` the number of
-/// real triangles is one of the words, 0 if there is no mesh; else it is the mesh's.
+/// Launches the certification of edges of `mesh`, those of its triangles from `begin` on; waits for nothing. Counts in
+/// `words` from `row` on, a multiple of CADT_COUNTER_STRIDE; they must be 0 before the first launch. With
+/// `real_in_words` the number of real triangles is one of the words, 0 if there is no mesh; else it is the mesh's.
 void launch_certify(Context& ctx, const Allocation& points, const Mesh& mesh, std::size_t begin, std::size_t size,
                     bool real_in_words, const Allocation& words, std::size_t row);
 
-/// What the words say of a mesh of n points. \throws InternalError if an edge is not as it should be
+/// Checks the words for a mesh of n points. \throws InternalError if an edge is not as it should be
 void read_certificate(Context& ctx, std::span<const std::uint32_t> words, std::size_t n);
 
-/// One pass over a mesh in arrays. \throws InternalError if an edge is not as it should be: nothing is repaired
+/// Certifies a mesh in arrays. \throws InternalError if an edge is not as it should be: nothing is repaired
 void certify_arrays(Context& ctx, const SortedPoints& order, const Mesh& mesh);
 
 }  // namespace cadt

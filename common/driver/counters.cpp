@@ -18,11 +18,11 @@ using namespace device_text;
 namespace {
 
 /// In the order of CADT_TIME_...
-constexpr std::array<const char*, CADT_TIMES> timers = {"locate", "lock",      "split", "test",
-                                                        "flip",   "neighbors", "other", "wait"};
+constexpr std::array<const char*, CADT_TIMERS> timers = {"locate", "lock",      "split", "test",
+                                                         "flip",   "neighbors", "other", "wait"};
 
 static_assert(int{CADT_COUNTERS} <= int{CADT_ROW_TIMES} &&
-              CADT_ROW_TIMES + int{CADT_TIMES} <= int{CADT_COUNTER_STRIDE});
+              CADT_ROW_TIMES + int{CADT_TIMERS} <= int{CADT_COUNTER_STRIDE});
 static_assert(std::tuple_size_v<decltype(Statistics::flips_per_edge)> == CADT_FLIP_BINS);
 
 }  // namespace
@@ -42,7 +42,7 @@ void Counters::collect(Statistics& statistics) const {
 void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) {
   std::array<std::uint64_t, CADT_COUNTER_STRIDE> sums{};
   for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_COUNTER_STRIDE] += words[i];
-  const auto times = std::span(sums).subspan(CADT_ROW_TIMES, CADT_TIMES);
+  const auto times = std::span(sums).subspan(CADT_ROW_TIMES, CADT_TIMERS);
   const auto all = static_cast<double>(std::accumulate(times.begin(), times.end(), std::uint64_t{0}));
   // With the star stage certification adds counters too: the times are those of the insertion, which comes first.
   for (std::size_t i = statistics.thread_time.size(); all > 0 && i < times.size(); ++i)

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The conflict region of a vertex, triangulated anew at once. A vertex whose edges were given to another one by threads
- * that changed the same triangles gets them back flip after flip, each of which makes the next edge illegal: a row that
- * no other thread can shorten. Here all triangles are asked at once whether the vertex is in their circles, and those
- * that say yes, with those of the vertex that border on them, become a fan around it (Bowyer-Watson for a vertex that
- * is in the mesh already; docs/algorithm.md, "Rows of flips"). Connected parts of this region that cannot be seen from
- * the vertex stay as they are.
+ * Retriangulates the conflict region of a vertex in one step. Threads that change the same triangles may give edges of
+ * one vertex to another. That vertex then gets them back flip by flip, each of which makes the next edge illegal: a
+ * flip cascade that no other thread can shorten. Here all triangles are tested at once for whether the vertex lies in
+ * their circles, and those where it does, together with triangles of the vertex that border on them, become a fan
+ * around it (Bowyer-Watson for a vertex that is already in the mesh; docs/insertion.md). Connected parts of the region
+ * that the vertex does not see stay as they are.
  *
- * The kernels run one after the other, and no others besides: a record is claimed by a plain store, and that is the
- * mark that it is in the region.
+ * The kernels run one after the other, and no others besides: a plain store locks a triangle, and the lock marks it as
+ * part of the region.
  */
 #ifndef CADT_INSERTION_CAVITY_H
 #define CADT_INSERTION_CAVITY_H
@@ -16,10 +16,10 @@
 #include "common/insertion/insert.dev.h"
 #include "common/portable/union_find.dev.h"
 
-/* In place of a side: it is a spoke that begins at this vertex. */
+/* In place of a side: a spoke begins at this vertex. */
 #define CADT_SPOKE_BEGINS 0x80000000u
 
-/* quads[4 e] and on: the vertices opposite of edge list[e] and its ends, if it is illegal and not of the hull; else
+/* quads[4 e] and on: the two vertices opposite edge list[e] and its two ends if it is illegal and no hull edge; else
  * CADT_NONE. */
 CADT_KERNEL(cadt_cavity_candidates, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 count,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* quads) {
@@ -28,8 +28,8 @@ CADT_KERNEL(cadt_cavity_candidates, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt
   cadt_counters_clear(&counters);
   CADT_FOR(e, count, grain) {
     const cadt_u32 half_edge = list[e];
-    const cadt_snapshot s = cadt_look_from(&mesh, CADT_TRIANGLE_OF(half_edge), CADT_EDGE_OF(half_edge));
-    const cadt_snapshot u = cadt_look_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
+    const cadt_snapshot s = cadt_snapshot_from(&mesh, CADT_TRIANGLE_OF(half_edge), CADT_EDGE_OF(half_edge));
+    const cadt_snapshot u = cadt_snapshot_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
     const cadt_u32 hull = s.v1 == CADT_GHOST || s.v2 == CADT_GHOST ? 1u : 0u;
     const cadt_u32 illegal = !hull && cadt_is_illegal(&mesh, s.v0, s.v1, s.v2, u.v0, &counters) ? 1u : 0u;
     quads[4u * e] = illegal ? s.v0 : CADT_NONE;
@@ -39,39 +39,38 @@ CADT_KERNEL(cadt_cavity_candidates, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt
   }
 }
 
-/* A set of vertices that may contain a few others: one bit a vertex. */
+/* A set of vertices as a bit each, by a hash: it may seem to contain a few others. */
 CADT_FN cadt_u32 cadt_is_in_set(CADT_GLOBAL const cadt_u32* set, cadt_u32 vertex) {
   const cadt_u32 bit = CADT_CAVITY_BIT(vertex);
   return set[bit >> 5] >> (bit & 31u) & 1u;
 }
 
-/* Triangles that may be in a region: a row of flips turns around a vertex that has its edges wrongly, an end of all
- * edges of the row. So most triangles need no test, which for vertices far away would often be an exact one; what the
- * region lacks by this is flipped later. */
-CADT_FN cadt_u32 cadt_may_be_of_row(const cadt_snapshot* s, CADT_GLOBAL const cadt_u32* ends) {
+/* Triangles that may be in a region: a flip cascade turns around a vertex that holds the edges wrongly, an end of all
+ * edges of the cascade. So most triangles need no test, which for distant vertices would often be an exact one; what
+ * the region lacks by this is flipped later. */
+CADT_FN cadt_u32 cadt_may_be_of_cascade(const cadt_snapshot* s, CADT_GLOBAL const cadt_u32* ends) {
   if (s->lock == 0u || s->v0 == CADT_GHOST || s->v1 == CADT_GHOST || s->v2 == CADT_GHOST) return 0u;
   return cadt_is_in_set(ends, s->v0) | cadt_is_in_set(ends, s->v1) | cadt_is_in_set(ends, s->v2);
 }
 
-/* Whether vertex w at p is for certain in the circle of the triangle `s`, of which it is no vertex. What rounded
- * numbers do not tell is left to flips: one lane that needs long integers would keep all others waiting. */
+/* Whether vertex w, at p, is certain to lie in the circle of triangle `s`, of which it is no vertex. What the
+ * floating-point filter does not decide is left to flips: one lane with an exact test would keep all others waiting. */
 CADT_FN cadt_u32 cadt_is_in_conflict(const cadt_locked_mesh* m, const cadt_snapshot* s, cadt_u32 w, cadt_point p) {
   cadt_real most;
   if (s->v0 == w || s->v1 == w || s->v2 == w) return 0u;
-  return cadt_incircle_rounded(cadt_point_of(m, s->v0), cadt_point_of(m, s->v1), cadt_point_of(m, s->v2), p, &most) > 0
+  return cadt_incircle_filter(cadt_point_of(m, s->v0), cadt_point_of(m, s->v1), cadt_point_of(m, s->v2), p, &most) > 0
              ? 1u
              : 0u;
 }
 
-/* sums[v]: how many of the `count` records are in conflict with vertices[v], CADT_CAVITY_CANDIDATES at most. `ends` are
- * those of the edges to be flipped.
- * \pre sums are 0 */
+/* sums[v]: how many of the `count` triangles are in conflict with vertices[v]; at most CADT_CAVITY_CANDIDATES vertices.
+ * `ends`: the ends of the illegal edges. \pre sums are 0 */
 CADT_KERNEL(cadt_cavity_sizes, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL const cadt_u32* ends,
             CADT_GLOBAL const cadt_u32* vertices, cadt_u32 vertex_count, CADT_GLOBAL cadt_u32* sums) {
   CADT_MESH_VIEW(mesh);
   CADT_FOR(t, count, grain) {
-    const cadt_snapshot s = cadt_look(&mesh, t);
-    if (!cadt_may_be_of_row(&s, ends)) continue;
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, t);
+    if (!cadt_may_be_of_cascade(&s, ends)) continue;
     for (cadt_u32 v = 0u; v < vertex_count; ++v)
       if (cadt_is_in_conflict(&mesh, &s, vertices[v], cadt_point_of(&mesh, vertices[v])))
         cadt_add_relaxed(sums + v, 1u);
@@ -79,44 +78,44 @@ CADT_KERNEL(cadt_cavity_sizes, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 gr
 }
 
 /* \pre no other kernel runs */
-CADT_FN void cadt_lock_alone(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 lock, CADT_GLOBAL cadt_u32* list,
-                             cadt_u32 capacity, CADT_GLOBAL cadt_u32* found) {
+CADT_FN void cadt_add_to_region(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 lock, CADT_GLOBAL cadt_u32* list,
+                                cadt_u32 capacity, CADT_GLOBAL cadt_u32* found) {
   const cadt_u32 at = cadt_add_relaxed(found + CADT_CAVITY_LISTED, 1u);
   if (at >= capacity) return;
   cadt_store_relaxed(m->locked[t].word + CADT_WORD_LOCK, lock | 1u);
   list[at] = t;
 }
 
-/* Claims and lists the triangles in conflict with vertex w. */
+/* Locks and lists the triangles in conflict with vertex w. */
 CADT_KERNEL(cadt_cavity_conflicts, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* ends, cadt_u32 w, CADT_GLOBAL cadt_u32* list, cadt_u32 capacity,
             CADT_GLOBAL cadt_u32* found) {
   CADT_MESH_VIEW(mesh);
   const cadt_point p = cadt_point_of(&mesh, w);
   CADT_FOR(t, count, grain) {
-    const cadt_snapshot s = cadt_look(&mesh, t);
-    if (cadt_may_be_of_row(&s, ends) && cadt_is_in_conflict(&mesh, &s, w, p))
-      cadt_lock_alone(&mesh, t, s.lock, list, capacity, found);
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, t);
+    if (cadt_may_be_of_cascade(&s, ends) && cadt_is_in_conflict(&mesh, &s, w, p))
+      cadt_add_to_region(&mesh, t, s.lock, list, capacity, found);
   }
 }
 
-/* And those of w that border on one of the first `count`, each on one only, by the edge opposite of w. */
+/* Adds the triangles of w that border on one of the first `count`, each on one only, by the edge opposite w. */
 CADT_KERNEL(cadt_cavity_star, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 w,
             CADT_GLOBAL cadt_u32* list, cadt_u32 capacity, CADT_GLOBAL cadt_u32* found) {
   CADT_MESH_VIEW(mesh);
   CADT_FOR(i, count, grain) {
-    const cadt_snapshot s = cadt_look(&mesh, list[i]);
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, list[i]);
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 across = CADT_NEIGHBOR(s, k), t = CADT_TRIANGLE_OF(across);
-      const cadt_snapshot u = cadt_look_from(&mesh, t, CADT_EDGE_OF(across));
-      if (u.v0 == w) cadt_lock_alone(&mesh, t, u.lock, list, capacity, found);
+      const cadt_snapshot u = cadt_snapshot_from(&mesh, t, CADT_EDGE_OF(across));
+      if (u.v0 == w) cadt_add_to_region(&mesh, t, u.lock, list, capacity, found);
     }
   }
 }
 
-/* Parts of the scratch memory for a region of `capacity` triangles, behind the trees: triangles of a tree less its
- * sides; whether a side is hidden from w; the flip counters, while a record has its place in the list in their place.
- */
+/* Scratch memory for a region of `capacity` triangles, behind the union-find roots: per component, its triangles less
+ * its sides, and whether a side is hidden from w; per triangle its flip counters, whose word meanwhile holds the
+ * triangle's place in the list. */
 #define CADT_CAVITY_BALANCE(scratch, capacity) ((scratch) + (capacity))
 #define CADT_CAVITY_HIDDEN(scratch, capacity) ((scratch) + 2u * (capacity))
 #define CADT_CAVITY_FLIPS(scratch, capacity) ((scratch) + 3u * (capacity))
@@ -154,7 +153,7 @@ CADT_FN cadt_u32 cadt_is_hidden(const cadt_locked_mesh* m, cadt_point p, cadt_u3
   return cadt_orientation(p, cadt_point_of(m, from), cadt_point_of(m, to), counters) <= 0 ? 1u : 0u;
 }
 
-/* Sides of the region, edges to triangles out of it that do not end in w, for each tree. */
+/* Counts for each component its sides: edges to triangles outside that do not end in w. */
 CADT_KERNEL(cadt_cavity_check, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 w,
             CADT_GLOBAL const cadt_u32* list, CADT_GLOBAL cadt_u32* scratch, cadt_u32 capacity) {
   CADT_MESH_VIEW(mesh);
@@ -163,7 +162,7 @@ CADT_KERNEL(cadt_cavity_check, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 gr
   const cadt_point p = cadt_point_of(&mesh, w);
   CADT_FOR(i, count, grain) {
     const cadt_u32 root = cadt_find_root(scratch, i);
-    const cadt_snapshot s = cadt_look(&mesh, list[i]);
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, list[i]);
     cadt_u32 balance = 1u;
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 from = CADT_VERTEX(s, CADT_NEXT(k)), to = CADT_VERTEX(s, CADT_PREV(k));
@@ -176,8 +175,8 @@ CADT_KERNEL(cadt_cavity_check, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 gr
   }
 }
 
-/* Lists the triangles of trees that w sees whole, and that have as many sides as triangles: those are discs with w on
- * their boundaries, or within, and no other vertex within. The others are given back as they were. */
+/* Lists the triangles of components that w sees whole and that have as many sides as triangles: those are discs with w
+ * on the boundary or inside, and no other vertex inside. Unlocks the others unchanged. */
 CADT_KERNEL(cadt_cavity_keep, CADT_GLOBAL cadt_locked_triangle* locked, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* list, CADT_GLOBAL cadt_u32* scratch, cadt_u32 capacity,
             CADT_GLOBAL cadt_u32* kept, CADT_GLOBAL cadt_u32* found) {
@@ -191,15 +190,15 @@ CADT_KERNEL(cadt_cavity_keep, CADT_GLOBAL cadt_locked_triangle* locked, cadt_u32
   }
 }
 
-/* The boundary of the `count` kept triangles. Sides: link outwards, from, to, counterclockwise; spokes, which have w at
- * an end: link outwards, the other end, with CADT_SPOKE_BEGINS if the spoke begins there. hints[v] is the side or spoke
- * that begins at v. Both lists have room for `capacity`. */
+/* The boundary of the `count` kept triangles. Sides: the half-edge outwards, from, to, counterclockwise. Spokes, edges
+ * with w at an end: the half-edge outwards and the other end, with CADT_SPOKE_BEGINS if the spoke begins there.
+ * vertex_to_triangle[v] meanwhile is the side or spoke that begins at v. Both lists have room for `capacity`. */
 CADT_KERNEL(cadt_cavity_boundary, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 w,
             CADT_GLOBAL const cadt_u32* kept, CADT_GLOBAL cadt_u32* sides, CADT_GLOBAL cadt_u32* spokes,
             cadt_u32 capacity, CADT_GLOBAL cadt_u32* found) {
   CADT_MESH_VIEW(mesh);
   CADT_FOR(i, count, grain) {
-    const cadt_snapshot s = cadt_look(&mesh, kept[i]);
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, kept[i]);
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 across = CADT_NEIGHBOR(s, k);
       if (cadt_is_locked(locked, CADT_TRIANGLE_OF(across))) continue;
@@ -220,14 +219,15 @@ CADT_KERNEL(cadt_cavity_boundary, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32
   }
 }
 
-/* Links two edges with each other. */
-CADT_FN void cadt_link_both(const cadt_locked_mesh* m, cadt_u32 a, cadt_u32 b) {
+/* Makes two half-edges name each other. */
+CADT_FN void cadt_pair_half_edges(const cadt_locked_mesh* m, cadt_u32 a, cadt_u32 b) {
   cadt_store_field(m->locked[CADT_TRIANGLE_OF(a)].word + CADT_WORD_HALF_EDGE + CADT_EDGE_OF(a), b);
   cadt_store_field(m->locked[CADT_TRIANGLE_OF(b)].word + CADT_WORD_HALF_EDGE + CADT_EDGE_OF(b), a);
 }
 
-/* Side i of the boundary and w become the triangle kept[i]. Each links itself outwards and to the next one around w;
- * spokes that begin at w have nobody before them. \pre there are as many sides as kept triangles, all seen from w */
+/* Side i of the boundary and w become triangle kept[i], which is paired with its neighbour outwards and with the next
+ * one around w; a spoke that begins at w has no triangle before it. \pre there are as many sides as kept triangles, all
+ * seen from w */
 CADT_KERNEL(cadt_cavity_fill, CADT_MESH_PARAMETERS, cadt_u32 side_count, cadt_u32 spoke_count, cadt_u32 grain,
             cadt_u32 w, CADT_GLOBAL const cadt_u32* kept, CADT_GLOBAL const cadt_u32* sides,
             CADT_GLOBAL const cadt_u32* spokes) {
@@ -239,19 +239,20 @@ CADT_KERNEL(cadt_cavity_fill, CADT_MESH_PARAMETERS, cadt_u32 side_count, cadt_u3
       const cadt_u32 flips = cadt_load_field(locked[CADT_TRIANGLE_OF(across)].word + CADT_WORD_FLIPS);
       cadt_store_vertices(&mesh, t, w, from, to);
       cadt_store_flips(&mesh, t, cadt_flips_set(0u, 0u, cadt_flips_get(flips, CADT_EDGE_OF(across))));
-      cadt_link_both(&mesh, CADT_HALF_EDGE(t, 0u), across);
-      cadt_link_both(
+      cadt_pair_half_edges(&mesh, CADT_HALF_EDGE(t, 0u), across);
+      cadt_pair_half_edges(
           &mesh, CADT_HALF_EDGE(t, 1u),
           next & CADT_SPOKE_BEGINS ? spokes[2u * (next & ~CADT_SPOKE_BEGINS)] : CADT_HALF_EDGE(kept[next], 2u));
     } else {
       const cadt_u32 j = i - side_count, end = spokes[2u * j + 1u];
       if (!(end & CADT_SPOKE_BEGINS))
-        cadt_link_both(&mesh, CADT_HALF_EDGE(kept[cadt_load_relaxed(vertex_to_triangle + end)], 2u), spokes[2u * j]);
+        cadt_pair_half_edges(&mesh, CADT_HALF_EDGE(kept[cadt_load_relaxed(vertex_to_triangle + end)], 2u),
+                             spokes[2u * j]);
     }
   }
 }
 
-/* Gives the kept triangles back, and vertices of the boundary their hints. */
+/* Unlocks the kept triangles, and sets vertex_to_triangle of the vertices on the boundary again. */
 CADT_KERNEL(cadt_cavity_release, CADT_MESH_PARAMETERS, cadt_u32 side_count, cadt_u32 spoke_count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* kept, CADT_GLOBAL const cadt_u32* sides, CADT_GLOBAL const cadt_u32* spokes) {
   CADT_MESH_VIEW(mesh);

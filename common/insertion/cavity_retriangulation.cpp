@@ -15,9 +15,9 @@ namespace {
 using namespace device_text;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr std::uint32_t most_edges = 256;   // that are asked for the vertices opposite
-constexpr std::uint32_t least_region = 64;  // triangles: fewer are flipped in the time of a region
-constexpr std::size_t least_share = 16;     // of the illegal edges one of so many leads to a vertex that counts
+constexpr std::uint32_t max_edges = 256;  // of which the opposite vertices are read
+constexpr std::uint32_t min_region = 64;  // triangles: flips take less time for fewer
+constexpr std::size_t least_share = 16;   // a vertex counts if one of so many illegal edges leads to it
 
 }  // namespace
 
@@ -27,44 +27,44 @@ CavityRetriangulation::CavityRetriangulation(const LockedMesh& mesh)
       launch_(ctx_.launcher),
       slots_(static_cast<std::uint32_t>(2 * mesh.order.distinct)) {}
 
-/// Four vertices for each edge, two opposite of it and its ends; CADT_NONE where it is not illegal.
-std::vector<std::uint32_t> CavityRetriangulation::ask(const Allocation& edges, std::uint32_t count) {
-  const std::uint32_t asked = std::min(count, most_edges);
-  const Allocation quads = ctx_.memory.allocate(4 * asked * word);
-  const LaunchGrid c = launch_.grid(asked);
-  mesh_.run_kernel<KernelId::cadt_cavity_candidates>(c.items, edges, asked, c.grain, quads);
-  std::vector<std::uint32_t> vertices(4 * std::size_t{asked});
+/// Four vertices for each edge, the two opposite and its two ends; CADT_NONE if it is not illegal.
+std::vector<std::uint32_t> CavityRetriangulation::read_quads(const Allocation& edges, std::uint32_t count) {
+  const std::uint32_t read = std::min(count, max_edges);
+  const Allocation quads = ctx_.memory.allocate(4 * read * word);
+  const LaunchGrid c = launch_.grid(read);
+  mesh_.run_kernel<KernelId::cadt_cavity_candidates>(c.items, edges, read, c.grain, quads);
+  std::vector<std::uint32_t> vertices(4 * std::size_t{read});
   ctx_.device.read(*quads, 0, vertices.data(), vertices.size() * word);
   return vertices;
 }
 
-void CavityRetriangulation::note(const Allocation& edges, std::uint32_t count) {
-  noted_.clear();
-  const std::vector<std::uint32_t> quads = ask(edges, count);
+void CavityRetriangulation::remember(const Allocation& edges, std::uint32_t count) {
+  remembered_.clear();
+  const std::vector<std::uint32_t> quads = read_quads(edges, count);
   for (std::size_t i = 0; i < quads.size(); ++i)
-    if (i % 4 < 2 && quads[i] != CADT_NONE) noted_.insert(quads[i]);
+    if (i % 4 < 2 && quads[i] != CADT_NONE) remembered_.insert(quads[i]);
 }
 
-/// Those noted that most of the edges lead to.
+/// The remembered vertices to which most of the edges lead.
 std::vector<std::uint32_t> CavityRetriangulation::candidates(const std::vector<std::uint32_t>& quads) {
-  std::map<std::uint32_t, std::size_t> often;
+  std::map<std::uint32_t, std::size_t> counts;
   std::size_t illegal = 0;
   for (std::size_t i = 0; i < quads.size(); ++i) {
     if (quads[i] == CADT_NONE || i % 4 > 1) continue;
     if (i % 4 == 0) ++illegal;
-    if (noted_.contains(quads[i])) ++often[quads[i]];
+    if (remembered_.contains(quads[i])) ++counts[quads[i]];
   }
   std::vector<std::pair<std::size_t, std::uint32_t>> ranked;
-  for (const auto& [v, times] : often)
-    if (times * least_share >= illegal) ranked.emplace_back(times, v);
+  for (const auto& [v, count] : counts)
+    if (count * least_share >= illegal) ranked.emplace_back(count, v);
   std::ranges::sort(ranked, std::greater{});
   ranked.resize(std::min<std::size_t>(ranked.size(), CADT_CAVITY_CANDIDATES));
   std::vector<std::uint32_t> best;
-  for (const auto& [times, v] : ranked) best.push_back(v);
+  for (const auto& [count, v] : ranked) best.push_back(v);
   return best;
 }
 
-void CavityRetriangulation::set_ends(const std::vector<std::uint32_t>& quads) {
+void CavityRetriangulation::write_ends(const std::vector<std::uint32_t>& quads) {
   std::vector<std::uint32_t> ends(CADT_CAVITY_SET_WORDS);
   for (std::size_t i = 0; i < quads.size(); ++i) {
     if (quads[i] == CADT_NONE || i % 4 < 2) continue;
@@ -76,7 +76,8 @@ void CavityRetriangulation::set_ends(const std::vector<std::uint32_t>& quads) {
 }
 
 /// The large regions of these vertices, the largest first.
-std::vector<CavityRetriangulation::Region> CavityRetriangulation::large(const std::vector<std::uint32_t>& vertices) {
+std::vector<CavityRetriangulation::Region> CavityRetriangulation::large_regions(
+    const std::vector<std::uint32_t>& vertices) {
   const auto count = static_cast<std::uint32_t>(vertices.size());
   const Allocation list = ctx_.memory.allocate(count * word), sums = launch_.zeros(count);
   ctx_.device.write(*list, 0, vertices.data(), count * word);
@@ -86,13 +87,13 @@ std::vector<CavityRetriangulation::Region> CavityRetriangulation::large(const st
   ctx_.device.read(*sums, 0, sizes.data(), count * word);
   std::vector<Region> regions;
   for (std::uint32_t v = 0; v < count; ++v)
-    if (sizes[v] >= least_region) regions.push_back({sizes[v], vertices[v]});
+    if (sizes[v] >= min_region) regions.push_back({sizes[v], vertices[v]});
   std::ranges::sort(regions, std::greater{});
   return regions;
 }
 
-/// Triangulates the region anew, as far as that is possible. False if it is not.
-bool CavityRetriangulation::fill(const Region& region) {
+/// Retriangulates the region as far as possible. False if nothing is.
+bool CavityRetriangulation::retriangulate_region(const Region& region) {
   const std::uint32_t w = region.vertex, capacity = region.triangles + region.triangles / 4 + 64;
   const std::size_t bytes = capacity * word;
   if (!ctx_.memory.allows((CADT_CAVITY_SCRATCH + 4) * bytes)) return false;
@@ -104,7 +105,7 @@ bool CavityRetriangulation::fill(const Region& region) {
   const std::uint32_t conflicts = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
   LaunchGrid c = launch_.grid(conflicts);
   mesh_.run_kernel<KernelId::cadt_cavity_star>(c.items, conflicts, c.grain, w, list, capacity, found);
-  // A list that has no room for all has some of the conflicts: what they are connected with can be seen or not.
+  // If the list has no room for all conflicts, it has some of them: cadt_cavity_check sees which components are usable.
   const std::uint32_t listed = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
   c = launch_.grid(listed);
   launch_.run<KernelId::cadt_cavity_roots>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity);
@@ -113,7 +114,7 @@ bool CavityRetriangulation::fill(const Region& region) {
   launch_.run<KernelId::cadt_cavity_keep>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity, kept, found);
   const std::uint32_t count = launch_.read_word(found, CADT_CAVITY_KEPT);
   if (count == 0) return false;
-  const Allocation& sides = scratch;  // nobody asks for the trees any more
+  const Allocation& sides = scratch;  // the components are not read any more
   c = launch_.grid(count);
   mesh_.run_kernel<KernelId::cadt_cavity_boundary>(c.items, count, c.grain, w, kept, sides, spokes, capacity, found);
   std::array<std::uint32_t, CADT_CAVITY_WORDS> words{};
@@ -130,17 +131,17 @@ bool CavityRetriangulation::fill(const Region& region) {
   return true;
 }
 
-std::size_t CavityRetriangulation::make(const Allocation& edges, std::uint32_t count) {
-  const std::vector<std::uint32_t> quads = ask(edges, count), vertices = candidates(quads);
-  noted_.clear();
+std::size_t CavityRetriangulation::retriangulate(const Allocation& edges, std::uint32_t count) {
+  const std::vector<std::uint32_t> quads = read_quads(edges, count), vertices = candidates(quads);
+  remembered_.clear();
   if (vertices.empty()) return 0;
-  set_ends(quads);
-  std::size_t made = 0;
-  for (const Region& region : large(vertices)) {
-    if (!fill(region)) break;  // others are not likely to be better
-    ++made;
+  write_ends(quads);
+  std::size_t regions = 0;
+  for (const Region& region : large_regions(vertices)) {
+    if (!retriangulate_region(region)) break;  // smaller regions are not likely to do better
+    ++regions;
   }
-  return made;
+  return regions;
 }
 
 }  // namespace cadt

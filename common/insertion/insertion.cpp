@@ -22,18 +22,18 @@ namespace {
 using namespace device_text;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time to a cancel
+constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time until a cancellation
 constexpr std::size_t points_per_launch_strided = std::size_t{1} << 25;
-constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a watchdog gives a launch two seconds
-// Ranges without locks: what every 2^partition_level positions have in common is inserted before, with locks. The fewer
-// positions a range has, the more of them are at its border.
+constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a watchdog allows two seconds a launch
+// Partitions without locks: the representatives of blocks of 2^partition_level positions are inserted before, with
+// locks. The smaller a partition, the more of its points lie at its border.
 constexpr unsigned partition_level = 5;
-constexpr int stalled_launches = 4;  // launches without progress before the rest is done by one work-item
+constexpr int stalled_launches = 4;  // launches without progress after which one work-item does everything
 constexpr int unresolvable_launches = 64;
-constexpr std::size_t least_asked = 4096;  // points of launches after which what they left is asked
-constexpr int cascades_from = 4;  // the launch before which rows of flips are looked for, again after twice as many
-constexpr int most_sweeps = 2000;
-constexpr std::size_t sweep_counts = 5, all_counts = CADT_LEFT_COUNTS + sweep_counts;
+constexpr std::size_t poll_interval = 4096;  // points inserted between two reads of what was deferred
+constexpr int first_cascade_search = 4;      // the launch before which flip cascades are looked for first
+constexpr int max_sweeps = 2000;
+constexpr std::size_t sweep_counts = 5, all_counts = CADT_DEFERRED_COUNTS + sweep_counts;
 
 /// Points that one launch inserts at most.
 std::size_t points_per_launch(const Device& device) {
@@ -45,10 +45,10 @@ static_assert(static_cast<int>(Stabilize::off) == CADT_STABILIZE_OFF &&
               static_cast<int>(Stabilize::defer) == CADT_STABILIZE_DEFER &&
               static_cast<int>(Stabilize::paper) == CADT_STABILIZE_PAPER);
 
-class Insertion {
+class IncrementalInsertion {
  public:
-  /// `points` are those of `own` where it is given, which build() needs.
-  Insertion(Context& ctx, const SortedPoints& points, SortedPoints* own = nullptr)
+  /// `points` are those of `own` where it is given, which run() needs.
+  IncrementalInsertion(Context& ctx, const SortedPoints& points, SortedPoints* own = nullptr)
       : ctx_(ctx),
         launch_(ctx.launcher),
         own_(own),
@@ -58,14 +58,14 @@ class Insertion {
         counters_(ctx),
         mesh_{ctx, points, static_cast<std::uint32_t>(ctx.options.stabilize)} {}
 
-  [[nodiscard]] Mesh build() {
+  [[nodiscard]] Mesh run() {
     if (n_ >= 3 && !ctx_.device.shape().contiguous) order_by_level();
     if (n_ < 3 || !find_seed_triangle()) return Mesh::without_triangles(std::move(own_->input_ids));
-    mesh_.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not in use yet
+    mesh_.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not there yet
     mesh_.vertex_to_triangle = ctx_.memory.transient(n_ * word);
-    // points of a launch: a level and what others left over, one by one or together
-    const std::size_t most = n_ / 2 + n_ / 32 + std::min(n_ / 2, least_asked) + 64;
-    for (Allocation& list : deferred_points_) list = ctx_.memory.transient(most * word);
+    // points of a launch: a level and deferred ones, of one launch or of several since the last read
+    const std::size_t limit = n_ / 2 + n_ / 32 + std::min(n_ / 2, poll_interval) + 64;
+    for (Allocation& list : deferred_points_) list = ctx_.memory.transient(limit * word);
     make_edge_lists();
     mesh_.run_kernel<KernelId::cadt_seed_mesh>(1);
     ctx_.end_phase("seed");
@@ -75,21 +75,21 @@ class Insertion {
     if (last != 0) insert_partitions();
     if (deferred_.points != 0 || deferred_.edges != 0) {
       finish_deferred();
-      if (ctx_.options.watch) show();
+      if (ctx_.options.watch) show_growth();
     }
     ctx_.end_phase("insert");
-    Mesh mesh = close(3 * std::uint64_t{n_} - 3);
+    Mesh mesh = finish(3 * std::uint64_t{n_} - 3);
     mesh.input_ids = std::move(own_->input_ids);
     return mesh;
   }
 
-  /// Nothing walks in a mesh that is complete: its hints are written by repairs only, and its first triangle is not
-  /// asked for.
-  [[nodiscard]] Mesh adopt(Allocation locked, std::uint64_t edges) {
+  /// No point is located in a complete mesh: vertex_to_triangle is written by repairs only, and the seed triangle is
+  /// not used.
+  [[nodiscard]] Mesh sweep(Allocation locked, std::uint64_t edges) {
     mesh_.locked = std::move(locked);
     mesh_.vertex_to_triangle = ctx_.memory.transient(n_ * word);
     make_edge_lists();
-    return close(edges);
+    return finish(edges);
   }
 
  private:
@@ -99,7 +99,7 @@ class Insertion {
   }
 
   /// `edges`: of all spheres, ghost edges included.
-  Mesh close(std::uint64_t edges) {
+  Mesh finish(std::uint64_t edges) {
     Mesh mesh;
     certify(edges);
     ctx_.end_phase("certify");
@@ -112,7 +112,7 @@ class Insertion {
   /// Levels of halving until a block is one point.
   [[nodiscard]] unsigned levels() const noexcept { return static_cast<unsigned>(std::bit_width(n_ - 1)); }
 
-  /// Puts the points in the order of insertion (common/insertion/insert.dev.h).
+  /// Brings the points into the order of insertion (common/insertion/insert.dev.h).
   void order_by_level() {
     Allocation points = ctx_.memory.transient(n_ * point_bytes(ctx_.device)),
                input_ids = ctx_.memory.allocate(n_ * word);
@@ -124,7 +124,7 @@ class Insertion {
     by_level_ = true;
   }
 
-  /// Three points not on a line: the one that stands for all, the middle one, and the first that is not on their line.
+  /// Three points not on a line: the representative of all, the middle one, and the first that is not on their line.
   bool find_seed_triangle() {
     Allocation found = ctx_.memory.allocate(word);
     if (!by_level_) {
@@ -134,7 +134,7 @@ class Insertion {
     mesh_.second = static_cast<std::uint32_t>(n_ / 2);
     if (mesh_.second == mesh_.first) mesh_.second = 0;
     ctx_.device.fill(*found, 0, word, CADT_NONE);
-    constexpr std::size_t few = 1024;  // enough unless the points are nearly all on a line
+    constexpr std::size_t few = 1024;  // enough unless nearly all points are on a line
     for (std::size_t begin = 0, end = std::min(n_, few); begin < n_; begin = end, end = n_) {
       const LaunchGrid c = launch_.grid(end - begin);
       launch_.run<KernelId::cadt_find_seed_triangle>(c.items, order_.points, mesh_.first, mesh_.second,
@@ -156,42 +156,42 @@ class Insertion {
   void insert_level(unsigned level, bool last) {
     // blocks of 2^(level+1) positions that have two halves
     const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
-    const std::size_t most = points_per_launch(ctx_.device);
-    for (std::size_t begin = 0; begin < count; begin += most) {
-      const std::size_t size = std::min(most, count - begin);
+    const std::size_t limit = points_per_launch(ctx_.device);
+    for (std::size_t begin = 0; begin < count; begin += limit) {
+      const std::size_t size = std::min(limit, count - begin);
       launch_insert(begin, size, level, false);
       inserted_ += size;
-      // To ask what is left takes as long as the launch of a level of few points.
-      unasked_ += size;
-      if (unasked_ < least_asked && !last && !ctx_.options.watch) {
-        deferred_ = {};  // on the lists [1] no more; what this launch left stays on the others
+      // Reading what was deferred takes as long as the launch of a level of few points.
+      since_poll_ += size;
+      if (since_poll_ < poll_interval && !last && !ctx_.options.watch) {
+        deferred_ = {};  // the lists [1] are done; what this launch defers stays on the lists [0]
         continue;
       }
-      unasked_ = 0;
-      // Few points left over go with the next launch; many would make its walks long.
+      since_poll_ = 0;
+      // A few deferred points join the next launch; many would make its walks long.
       take_deferred();
-      if (ctx_.options.watch) show();
+      if (ctx_.options.watch) show_growth();
       if (deferred_.points > size / 8 + 32 || deferred_.edges > size / 8 + 32) finish_deferred();
       ctx_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
     }
   }
 
-  /// All levels below partition_level: ranges of positions side by side without locks, then what lies between them.
+  /// All levels below partition_level: partitions side by side without locks, then the border between them.
   void insert_partitions() {
-    finish_deferred();  // who stands for a block must be in the mesh
+    finish_deferred();  // representatives of blocks must be in the mesh
     const std::size_t all = ((n_ - 1) >> partition_level) + 1;
-    const std::size_t shares = std::clamp<std::size_t>(ctx_.device.shape().parallelism / 2, 1, n_ / least_partition);
-    const std::size_t blocks = (all - 1) / shares + 1, ranges = (all - 1) / blocks + 1;
+    const std::size_t wanted = std::clamp<std::size_t>(ctx_.device.shape().parallelism / 2, 1, n_ / least_partition);
+    const std::size_t blocks = (all - 1) / wanted + 1, partitions = (all - 1) / blocks + 1;
     const std::size_t points = std::min(points_per_launch(ctx_.device), n_ / 2);
-    const std::size_t step = std::max<std::size_t>((points >> partition_level) / ranges, 1);
+    const std::size_t step = std::max<std::size_t>((points >> partition_level) / partitions, 1);
     for (std::size_t from = 0; from < blocks; from += step) {
       const std::size_t to = std::min(blocks, from + step);
       mesh_.run_kernel<KernelId::cadt_insert_partitions>(
-          static_cast<std::uint32_t>(ranges), static_cast<std::uint32_t>(n_), partition_level,
-          static_cast<std::uint32_t>(ranges), static_cast<std::uint32_t>(blocks), static_cast<std::uint32_t>(from),
+          static_cast<std::uint32_t>(partitions), static_cast<std::uint32_t>(n_), partition_level,
+          static_cast<std::uint32_t>(partitions), static_cast<std::uint32_t>(blocks), static_cast<std::uint32_t>(from),
           static_cast<std::uint32_t>(to), deferred_points_[0], deferred_counts_, counters_);
-      inserted_ += std::min(n_, ((to - from) * ranges) << partition_level);
-      // The list has room for those that the next launch may leave.
+      inserted_ += std::min(n_, ((to - from) * partitions) << partition_level);
+      // The list has room for those that the next launch may defer.
       if (to == blocks || launch_.read_word(deferred_counts_, 0) > n_ / 32) {
         const LaunchGrid c = launch_.grid(2 * n_);
         mesh_.run_kernel<KernelId::cadt_border_sweep>(c.items, static_cast<std::uint32_t>(2 * n_), c.grain,
@@ -204,77 +204,78 @@ class Insertion {
     }
   }
 
-  void show() {
-    if (watcher_ == nullptr) watcher_ = std::make_unique<GrowthSnapshots>(ctx_.device, order_);
-    watcher_->show(*mesh_.locked, ctx_.options.watch);
+  void show_growth() {
+    if (snapshots_ == nullptr) snapshots_ = std::make_unique<GrowthSnapshots>(ctx_.device, order_);
+    snapshots_->show(*mesh_.locked, ctx_.options.watch);
   }
 
-  /// What the last launches left over is on the second lists from here on; the first ones are empty.
+  /// Moves what the last launches deferred to the lists [1]; the lists [0] are empty then.
   void take_deferred() {
-    std::array<std::uint32_t, 3> left{};  // points, edges, work-items that changed the mesh
-    ctx_.device.read(*deferred_counts_, 0, left.data(), sizeof left);
-    deferred_ = {left[0], std::min(left[1], edge_capacity_), left[2]};
-    if (left[0] == 0 && left[1] == 0 && left[2] == 0) return;
-    ctx_.device.fill(*deferred_counts_, 0, sizeof left, 0);
+    std::array<std::uint32_t, 3> counts{};  // points, edges, work-items that changed the mesh
+    ctx_.device.read(*deferred_counts_, 0, counts.data(), sizeof counts);
+    deferred_ = {counts[0], std::min(counts[1], edge_capacity_), counts[2]};
+    if (counts[0] == 0 && counts[1] == 0 && counts[2] == 0) return;
+    ctx_.device.fill(*deferred_counts_, 0, sizeof counts, 0);
     std::swap(deferred_points_[0], deferred_points_[1]);
     std::swap(deferred_edges_[0], deferred_edges_[1]);
   }
 
-  /// The points left over and `size` blocks; the edges left over. `alone`: one work-item for each of both.
-  void launch_insert(std::size_t begin, std::size_t size, unsigned level, bool alone) {
+  /// Launches the deferred edges, and the deferred points with `size` blocks. `serial`: one work-item each.
+  void launch_insert(std::size_t begin, std::size_t size, unsigned level, bool serial) {
     const auto count = static_cast<std::uint32_t>(deferred_.points + size);
     if (deferred_.edges != 0) {
-      const LaunchGrid c = alone ? LaunchGrid{1, deferred_.edges} : launch_.grid_spread(deferred_.edges);
+      const LaunchGrid c = serial ? LaunchGrid{1, deferred_.edges} : launch_.grid_spread(deferred_.edges);
       mesh_.run_kernel<KernelId::cadt_legalize_edges>(c.items, deferred_edges_[1], deferred_.edges, c.grain,
                                                       deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
     }
     if (count == 0) return;
-    const LaunchGrid c = alone ? LaunchGrid{1, count} : launch_.grid_spread(count);
+    const LaunchGrid c = serial ? LaunchGrid{1, count} : launch_.grid_spread(count);
     mesh_.run_kernel<KernelId::cadt_insert>(c.items, deferred_points_[1], deferred_.points,
                                             static_cast<std::uint32_t>(begin), count, static_cast<std::uint32_t>(n_),
                                             level, c.grain, deferred_points_[0], deferred_edges_[0], deferred_counts_,
                                             edge_capacity_, counters_);
   }
 
-  /// Launches for what could not get its locks, until nothing is left.
+  /// Launches for what got no locks, until nothing is deferred.
   void finish_deferred() {
-    int launches = 0, stalled = 0, next_cascades = cascades_from;
-    // Edges that are left after several launches may be in long rows; but with --stabilize those flipped often stay.
+    int launches = 0, stalled = 0, next_cascade_search = first_cascade_search;
+    // Edges that are deferred by several launches may be in long flip cascades; but with Stabilize they may be meant to
+    // stay.
     const bool may_be_cascades = mesh_.stabilize == CADT_STABILIZE_OFF;
     CavityRetriangulation cavities(mesh_);
     std::size_t last = 0;
     while (deferred_.points != 0 || deferred_.edges != 0) {
-      const std::size_t now = std::size_t{deferred_.points} + deferred_.edges;
-      stalled = launches != 0 && now >= last && deferred_.changes == 0 ? stalled + 1 : 0;
-      last = now;
+      const std::size_t remaining = std::size_t{deferred_.points} + deferred_.edges;
+      stalled = launches != 0 && remaining >= last && deferred_.changes == 0 ? stalled + 1 : 0;
+      last = remaining;
       if (++launches > unresolvable_launches && stalled > unresolvable_launches) {
         throw InternalError("no progress: " + std::to_string(deferred_.points) + " points and " +
                             std::to_string(deferred_.edges) +
                             " edges cannot get their locks; please report this with the input");
       }
       if (may_be_cascades && deferred_.edges != 0) {
-        if (launches == next_cascades - 1) cavities.note(deferred_edges_[1], deferred_.edges);
-        if (launches == next_cascades) {
-          const std::size_t made = cavities.make(deferred_edges_[1], deferred_.edges);
+        if (launches == next_cascade_search - 1) cavities.remember(deferred_edges_[1], deferred_.edges);
+        if (launches == next_cascade_search) {
+          const std::size_t made = cavities.retriangulate(deferred_edges_[1], deferred_.edges);
           ctx_.statistics.cavities += made;
-          next_cascades *= made != 0 ? 2 : 4;
+          next_cascade_search *= made != 0 ? 2 : 4;
         }
       }
-      // One work-item alone meets no conflict, so it always gets on.
+      // A single work-item meets no conflict, so it always makes progress.
       launch_insert(0, 0, 0, stalled >= stalled_launches);
       take_deferred();
     }
   }
 
-  /// Closing passes until one finds nothing to do.
+  /// Legality sweeps until one finds nothing to repair.
   void certify(std::uint64_t edges) {
     if (ctx_.options.stabilize == Stabilize::defer)
-      mesh_.stabilize = CADT_STABILIZE_OFF;  // what was put off is due now
-    const std::size_t slots = 2 * n_, most = 4 * points_per_launch(ctx_.device);
-    for (int sweep = 1; sweep <= most_sweeps; ++sweep) {
-      std::uint64_t examined = 0, illegal = 0, unsettled = 0, left = 0, broken = 0;
-      for (std::size_t begin = 0; begin < slots; begin += most) {
-        const std::size_t size = std::min(most, slots - begin);
+      mesh_.stabilize = CADT_STABILIZE_OFF;  // flips deferred until now are due
+    const std::size_t slots = 2 * n_, limit = 4 * points_per_launch(ctx_.device);
+    for (int sweep = 1; sweep <= max_sweeps; ++sweep) {
+      std::uint64_t examined = 0, illegal = 0, unsettled = 0, stabilized = 0, broken = 0;
+      for (std::size_t begin = 0; begin < slots; begin += limit) {
+        const std::size_t size = std::min(limit, slots - begin);
         const LaunchGrid c = launch_.grid_strided(size);
         mesh_.run_kernel<KernelId::cadt_legality_sweep>(
             c.items, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(size), c.grain,
@@ -282,13 +283,13 @@ class Insertion {
             counters_);
         std::array<std::uint32_t, all_counts> words{};
         ctx_.device.read(*deferred_counts_, 0, words.data(), sizeof words);
-        examined += words[CADT_LEFT_COUNTS];
-        illegal += words[CADT_LEFT_COUNTS + 1];
-        unsettled += words[CADT_LEFT_COUNTS + 2];
-        left += words[CADT_LEFT_COUNTS + 3];
-        broken += words[CADT_LEFT_COUNTS + 4];
+        examined += words[CADT_DEFERRED_COUNTS];
+        illegal += words[CADT_DEFERRED_COUNTS + 1];
+        unsettled += words[CADT_DEFERRED_COUNTS + 2];
+        stabilized += words[CADT_DEFERRED_COUNTS + 3];
+        broken += words[CADT_DEFERRED_COUNTS + 4];
         if (begin + size == slots && examined == edges && illegal + unsettled == 0) break;
-        ctx_.device.fill(*deferred_counts_, CADT_LEFT_COUNTS * word, sweep_counts * word, 0);
+        ctx_.device.fill(*deferred_counts_, CADT_DEFERRED_COUNTS * word, sweep_counts * word, 0);
         take_deferred();
         finish_deferred();
         ctx_.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(slots));
@@ -300,9 +301,9 @@ class Insertion {
         if (broken != 0)
           throw InternalError("the boundary of the mesh turns back at " + std::to_string(broken) +
                               " points; please report this with the input");
-        statistics.certified_edges += examined - left;
-        statistics.illegal_edges += left;
-        statistics.certified = statistics.certified && left == 0;
+        statistics.certified_edges += examined - stabilized;
+        statistics.illegal_edges += stabilized;
+        statistics.certified = statistics.certified && stabilized == 0;
         if (examined != edges) {
           throw InternalError("the mesh has " + std::to_string(examined) + " edges instead of " +
                               std::to_string(edges) + "; please report this with the input");
@@ -310,13 +311,13 @@ class Insertion {
         return;
       }
     }
-    throw InternalError("the closing pass still finds illegal edges after " + std::to_string(most_sweeps) +
+    throw InternalError("the legality sweep still finds illegal edges after " + std::to_string(max_sweeps) +
                         " sweeps; please report this with the input");
   }
 
   struct Deferred {
     std::uint32_t points = 0, edges = 0;
-    std::uint32_t changes = 0;  ///< work-items that changed the mesh, if the launch had no other points
+    std::uint32_t changes = 0;  ///< work-items that changed the mesh, if the launch had deferred points only
   };
 
   Context& ctx_;
@@ -331,8 +332,8 @@ class Insertion {
   std::array<Allocation, 2> deferred_points_, deferred_edges_;  // [0] is written by the next launch, [1] read by it
   Deferred deferred_;                                           // on the lists [1]
   bool by_level_ = false;                                       // the points are in the order of insertion
-  std::unique_ptr<GrowthSnapshots> watcher_;
-  std::size_t inserted_ = 0, unasked_ = 0;  // of these, since what is left was asked
+  std::unique_ptr<GrowthSnapshots> snapshots_;
+  std::size_t inserted_ = 0, since_poll_ = 0;  // since_poll_: since what was deferred was read
 };
 
 }  // namespace
@@ -341,11 +342,11 @@ std::size_t slots_per_launch(const Device& device) { return 4 * points_per_launc
 
 Mesh insert_incrementally(Context& ctx, SortedPoints points) {
   points.keys.release();
-  return Insertion(ctx, points, &points).build();
+  return IncrementalInsertion(ctx, points, &points).run();
 }
 
 Mesh sweep_legality(Context& ctx, const SortedPoints& points, Allocation locked, std::uint64_t edges) {
-  return Insertion(ctx, points).adopt(std::move(locked), edges);
+  return IncrementalInsertion(ctx, points).sweep(std::move(locked), edges);
 }
 
 }  // namespace cadt

@@ -10,14 +10,14 @@
 
 namespace cadt {
 
-/// Inserts all points level by level, legalizes, and certifies by legality sweeps.
+/// Inserts all points level by level, legalises, and certifies by legality sweeps.
 [[nodiscard]] Mesh insert_incrementally(Context& ctx, SortedPoints points);
 
-/// Legality sweeps over a mesh of two locked triangles a point that was made otherwise; it has so many edges, those to
-/// the ghost included. The result has no input ids.
+/// Legality sweeps over a mesh made otherwise, of two locked triangles a point; `edges`: how many it has, those to the
+/// ghost included. The result has no input ids.
 [[nodiscard]] Mesh sweep_legality(Context& ctx, const SortedPoints& points, Allocation locked, std::uint64_t edges);
 
-/// Triangles or records that a closing pass looks at in one launch.
+/// Triangles that one launch of a legality sweep, or of cadt_certify, examines.
 [[nodiscard]] std::size_t slots_per_launch(const Device& device);
 
 }  // namespace cadt

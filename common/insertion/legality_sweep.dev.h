@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The closing pass: looks at every edge of the mesh once and repairs what it finds illegal. With many threads it is
- * needed for correctness: the thread that inserts a point checks the edges opposite of it, which is enough only if
- * nobody else changes the star of the point meanwhile. The last pass finds nothing and so certifies the mesh.
+ * The legality sweep: tests every edge of the mesh once and repairs illegal ones. With many threads the mesh is correct
+ * only after it: the thread that inserts a point tests the edges opposite of it, which is enough only if nobody else
+ * changes the star of the point meanwhile. The last sweep finds nothing and so certifies the mesh.
  */
 #ifndef CADT_INSERTION_LEGALITY_SWEEP_H
 #define CADT_INSERTION_LEGALITY_SWEEP_H
@@ -10,9 +10,9 @@
 #include "common/insertion/insert.dev.h"
 #include "common/points/spatial_sort.dev.h"
 
-/* Whether the boundary turns back on itself at the edge a, b to the ghost, with p and q on its sides: three points on a
- * line, and the one in the middle is not between the others. To the signs of the orientations that is no error, and no
- * flip can mend it: it says that a mesh is none. */
+/* Whether the boundary turns back on itself at the edge a, b to the ghost, with p and q beside it: the three points lie
+ * on a line, and the middle one is not between the others. The orientation tests accept that and no flip can repair it:
+ * it is no valid mesh. */
 CADT_FN cadt_u32 cadt_turns_back(const cadt_locked_mesh* m, cadt_u32 p, cadt_u32 a, cadt_u32 b, cadt_u32 q,
                                  cadt_counters* counters) {
   if ((a != CADT_GHOST && b != CADT_GHOST) || p == CADT_GHOST || q == CADT_GHOST || p == q) return 0u;
@@ -24,17 +24,17 @@ CADT_FN cadt_u32 cadt_turns_back(const cadt_locked_mesh* m, cadt_u32 p, cadt_u32
 }
 
 #if CADT_CONTIGUOUS
-enum { CADT_SWEEP_BATCH = 192 /* edges that are listed before they are looked at */ };
+enum { CADT_SWEEP_BATCH = 192 /* edges that are listed before they are tested */ };
 
 typedef struct {
-  cadt_u32 examined, illegal, unsettled, left, broken;
+  cadt_u32 examined, illegal, unsettled, stabilized, broken;
 } cadt_findings;
 
-/* Looks at listed edges and repairs what is illegal. Nothing is known of an edge but its link: repairs change the mesh.
- */
-CADT_FN void cadt_close_edges(const cadt_locked_mesh* m, const cadt_u32* half_edges, cadt_u32 count,
+/* Tests listed edges and repairs illegal ones. Nothing is known of an edge but its half-edge: repairs
+ * change the mesh. */
+CADT_FN void cadt_sweep_edges(const cadt_locked_mesh* m, const cadt_u32* half_edges, cadt_u32 count,
                               const cadt_deferred* deferred, cadt_findings* found, cadt_counters* counters) {
-  CADT_WORKLIST_HERE(work);
+  CADT_DECLARE_WORKLIST(work);
   for (cadt_u32 e = 0u; e < count; ++e) {
     const cadt_u32 k = CADT_EDGE_OF(half_edges[e]);
     CADT_GLOBAL cadt_u32* t = m->locked[CADT_TRIANGLE_OF(half_edges[e])].word;
@@ -47,12 +47,12 @@ CADT_FN void cadt_close_edges(const cadt_locked_mesh* m, const cadt_u32* half_ed
         cadt_load_field(n + CADT_WORD_HALF_EDGE + j) != half_edges[e]) {
       found->unsettled++;
     } else if (cadt_is_illegal(m, p, a, b, q, counters)) {
-      if (cadt_is_left(m, CADT_TRIANGLE_OF(half_edges[e]), k, p, a, b, q)) {
-        found->left++;
+      if (cadt_is_stabilized(m, CADT_TRIANGLE_OF(half_edges[e]), k, p, a, b, q)) {
+        found->stabilized++;
         continue;
       }
       found->illegal++;
-      CADT_LAP_SKIP(counters); /* looking at all edges is no part of the insertion, repairs are */
+      CADT_SKIP_TIME(counters); /* testing all edges is not part of the insertion's time, repairs are */
       cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
       cadt_worklist_add(&work, half_edges[e]);
       cadt_legalize(m, &work, deferred, counters);
@@ -64,21 +64,20 @@ CADT_FN void cadt_close_edges(const cadt_locked_mesh* m, const cadt_u32* half_ed
 }
 #endif
 
-/* deferred_counts, behind those of the lists: edges examined, illegal ones that are to be flipped, ones that could not
- * be read because somebody was changing them, illegal ones that are left as they are (CADT_STABILIZE_PAPER), edges to
- * the ghost at which the boundary turns back. `n`: points in the order of levels (cadt_by_level), whose records are
- * looked at along the curve; 0: records as they are. \pre records of vertices that are not in the mesh have lock word 0
- */
+/* deferred_counts, behind those of the lists: edges examined; illegal edges to be flipped; edges that could not be read
+ * because a thread was changing them; illegal edges that stay (CADT_STABILIZE_PAPER); edges to the ghost at which the
+ * boundary turns back. `n`: the points are in the order of levels (cadt_by_level), and triangles are visited along the
+ * curve; 0: in the order of their indices. \pre triangles of vertices that are not in the mesh have lock word 0 */
 CADT_KERNEL(cadt_legality_sweep, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain, cadt_u32 n,
             CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counter_rows) {
   CADT_GROUP_COUNTERS(counters, counter_rows);
   CADT_MESH_VIEW(mesh);
-  const cadt_deferred deferred = cadt_lists(deferred_edges, deferred_counts, edge_capacity);
+  const cadt_deferred deferred = cadt_deferred_lists(deferred_edges, deferred_counts, edge_capacity);
 #if CADT_CONTIGUOUS
   (void)n;
-  /* An edge is seen from two triangles. Which of them takes it is settled without a branch, which would be wrong half
-   * of the time, before a batch of edges is looked at. */
+  /* An edge is seen from two triangles. Which of them takes it is settled without a branch, which would be mispredicted
+   * half of the time, before a batch of edges is tested. */
   cadt_u32 batch[CADT_SWEEP_BATCH + 3], listed = 0u;
   cadt_findings all = {0u, 0u, 0u, 0u, 0u};
   CADT_FOR(r, count, grain) {
@@ -91,34 +90,34 @@ CADT_KERNEL(cadt_legality_sweep, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 
       }
     }
     if (listed < CADT_CAST(cadt_u32, CADT_SWEEP_BATCH)) continue;
-    cadt_close_edges(&mesh, batch, listed, &deferred, &all, &counters);
+    cadt_sweep_edges(&mesh, batch, listed, &deferred, &all, &counters);
     listed = 0u;
   }
-  cadt_close_edges(&mesh, batch, listed, &deferred, &all, &counters);
-  const cadt_u32 examined = all.examined, illegal = all.illegal, unsettled = all.unsettled, left = all.left,
+  cadt_sweep_edges(&mesh, batch, listed, &deferred, &all, &counters);
+  const cadt_u32 examined = all.examined, illegal = all.illegal, unsettled = all.unsettled, stabilized = all.stabilized,
                  broken = all.broken;
 #else
-  cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u, left = 0u, broken = 0u;
+  cadt_u32 examined = 0u, illegal = 0u, unsettled = 0u, stabilized = 0u, broken = 0u;
   CADT_FOR(r, count, grain) {
     const cadt_u32 slot = begin + r, t = n ? 2u * cadt_rank_of(0u, slot >> 1, n) + (slot & 1u) : slot;
-    const cadt_snapshot s = cadt_look(&mesh, t);
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, t);
     if (s.lock == 0u) continue;
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_TRIANGLE_OF(across), j = CADT_EDGE_OF(across);
-      if (n < t) continue; /* seen from the other side */
-      const cadt_snapshot u = cadt_look_from(&mesh, n, j);
+      if (n < t) continue; /* tested from the other side */
+      const cadt_snapshot u = cadt_snapshot_from(&mesh, n, j);
       ++examined;
       if (!cadt_is_unlocked(s.lock) || !cadt_is_unlocked(u.lock) || u.n0 != CADT_HALF_EDGE(t, k)) {
         ++unsettled;
       } else if (cadt_is_illegal(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
                                  u.v0, &counters)) {
-        if (cadt_is_left(&mesh, t, k, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
-                         u.v0)) {
-          ++left;
+        if (cadt_is_stabilized(&mesh, t, k, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)),
+                               CADT_VERTEX(s, CADT_PREV(k)), u.v0)) {
+          ++stabilized;
           continue;
         }
         ++illegal;
-        /* to cadt_legalize_edges: without the repairs this kernel is smaller */
+        /* to cadt_legalize_edges: without the repairs this kernel needs fewer registers */
         cadt_defer_edge(&deferred, CADT_HALF_EDGE(t, k), &counters);
       } else if (cadt_turns_back(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
                                  u.v0, &counters)) {
@@ -127,13 +126,13 @@ CADT_KERNEL(cadt_legality_sweep, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 
     }
   }
 #endif
-  CADT_GLOBAL cadt_u32* found = deferred_counts + CADT_LEFT_COUNTS;
+  CADT_GLOBAL cadt_u32* found = deferred_counts + CADT_DEFERRED_COUNTS;
   if (examined) cadt_add_relaxed(found, examined);
   if (illegal) cadt_add_relaxed(found + 1, illegal);
   if (unsettled) cadt_add_relaxed(found + 2, unsettled);
-  if (left) cadt_add_relaxed(found + 3, left);
+  if (stabilized) cadt_add_relaxed(found + 3, stabilized);
   if (broken) cadt_add_relaxed(found + 4, broken);
-  CADT_LAP_SKIP(&counters);
+  CADT_SKIP_TIME(&counters);
   CADT_FLUSH_COUNTERS(&counters, counter_rows);
 }
 

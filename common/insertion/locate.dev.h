@@ -1,12 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
  * Point location: a walk without locks by orientation tests (paper, section 4.2, Algorithm 1; the visibility walk of
- * Guibas and Stolfi, 1985). Everything read is a hint; the claim that follows validates the last record.
+ * Guibas and Stolfi, 1985). What it reads may be torn or stale; the lock taken afterwards validates the last triangle.
  *
- * Outside the hull the plane is cut into wedges by the rays from the centre of the first triangle through the hull's
- * vertices: a ghost triangle owns the part of its wedge beyond its hull edge. While threads work the hull need not be
- * convex, but it stays star-shaped around the centre (docs/algorithm.md, "Outside the hull"), so at every moment each
- * point of the plane is in exactly one real triangle or wedge, and inserting it there is always right.
+ * Outside the hull, rays from the centre of the seed triangle through the hull's vertices divide the plane into wedges;
+ * a ghost triangle owns the part of its wedge beyond its hull edge:
+ *
+ *               .           .
+ *                . ghost   .           x, y: hull vertices
+ *                 y ----- x            the hull edge runs y -> x counterclockwise
+ *                  .     .
+ *                   .   .
+ *                  center
+ *
+ * While threads work the hull need not be convex, but it stays star-shaped around the centre (docs/insertion.md,
+ * "Outside the hull"). So at every moment each point of the plane lies in exactly one real triangle or wedge, and
+ * inserting it there is always right.
  */
 #ifndef CADT_INSERTION_LOCATE_H
 #define CADT_INSERTION_LOCATE_H
@@ -15,8 +24,9 @@
 
 enum { CADT_IN_FACE, CADT_ON_EDGE, CADT_LOST };
 enum {
-  CADT_WALK_LIMIT = 1 << 14, /* steps before the walk is continued by a later launch */
-  CADT_WALK_STRAIGHT = 64 /* steps before edges are tried in random order: the mesh is not Delaunay while others flip */
+  CADT_WALK_LIMIT = 1 << 14, /* steps in one launch; a later one goes on */
+  CADT_WALK_STRAIGHT =
+      64 /* steps before edges are tried in random order: while others flip, the mesh is not Delaunay */
 };
 
 typedef struct {
@@ -41,7 +51,8 @@ CADT_FN cadt_i32 cadt_around_center(const cadt_locked_mesh* m, cadt_point a, cad
                                          cadt_point_of(m, m->third), a, b);
 }
 
-/* Where to leave a ghost triangle whose ghost is vertex g: an edge, or 3 if p is in its wedge and strictly outside. */
+/* The edge by which to leave a ghost triangle whose vertex g is the ghost, or 3 if p is in its wedge and strictly
+ * outside the hull. */
 CADT_FN cadt_u32 cadt_leave_ghost(const cadt_locked_mesh* m, const cadt_snapshot* s, cadt_u32 g, cadt_point p,
                                   cadt_counters* counters) {
   cadt_u32 gx = CADT_NEXT(g), gy = CADT_PREV(g);
@@ -52,9 +63,9 @@ CADT_FN cadt_u32 cadt_leave_ghost(const cadt_locked_mesh* m, const cadt_snapshot
   return cadt_orientation(x, y, p, counters) > 0 ? 3u : g;
 }
 
-/* The edge by which to leave a real triangle towards p, or 3 if p is not outside of any edge; the bits of `on` name the
- * edges p is on the line of. `entry` is an edge known to have p on its inner side, or 3. The edges are tried from 0 to
- * 2, or from 2 to 0 if `reverse`: of two edges to leave by, either may be taken. */
+/* The edge by which to leave a real triangle towards p, or 3 if p is outside of no edge; then the bits of `on` name the
+ * edges on whose lines p lies. `entry` is an edge known to have p on its inner side, or 3. Edges are tried from 0 to 2,
+ * or from 2 to 0 if `reverse`: where two edges lead towards p, either will do. */
 CADT_FN cadt_u32 cadt_leave_face(const cadt_locked_mesh* m, const cadt_snapshot* s, cadt_u32 entry, cadt_u32 reverse,
                                  cadt_point p, cadt_u32* on, cadt_counters* counters) {
   cadt_point a = cadt_point_of(m, s->v0), b = cadt_point_of(m, s->v1), c = cadt_point_of(m, s->v2);
@@ -72,16 +83,16 @@ CADT_FN cadt_u32 cadt_leave_face(const cadt_locked_mesh* m, const cadt_snapshot*
   return 3u;
 }
 
-/* Walks from record `start` to the place of p. place->kind is CADT_LOST when the walk was too long or read nonsense;
- * place->record is where to go on in any case. */
+/* Walks from triangle `start` to the place of p. place->kind is CADT_LOST if the walk was too long or met a torn read;
+ * place->triangle is where to go on in any case. */
 CADT_FN void cadt_locate(const cadt_locked_mesh* m, cadt_point p, cadt_u32 start, cadt_place* place,
                          cadt_counters* counters) {
-  cadt_u32 t = start, entry = 3u, steps = 0u, noise = start * 2654435761u + 12345u;
+  cadt_u32 t = start, entry = 3u, steps = 0u, random = start * 2654435761u + 12345u;
   place->kind = CADT_LOST;
   place->edge = 0u;
   for (; steps < CADT_CAST(cadt_u32, CADT_WALK_LIMIT); ++steps) {
-    CADT_NOISE_AT(m, CADT_AT_WALK);
-    cadt_snapshot s = cadt_look(m, t);
+    CADT_NOISE_AT(m, CADT_SITE_WALK);
+    cadt_snapshot s = cadt_snapshot_of(m, t);
     cadt_u32 leave, on = 0u;
     if (s.lock == 0u) break;
     if (s.v0 == CADT_GHOST || s.v1 == CADT_GHOST || s.v2 == CADT_GHOST) {
@@ -92,8 +103,8 @@ CADT_FN void cadt_locate(const cadt_locked_mesh* m, cadt_point p, cadt_u32 start
     } else {
       cadt_u32 reverse = 0u;
       if (steps > CADT_CAST(cadt_u32, CADT_WALK_STRAIGHT)) {
-        noise = noise * 1664525u + 1013904223u;
-        reverse = noise >> 31;
+        random = random * 1664525u + 1013904223u;
+        reverse = random >> 31;
       }
       leave = cadt_leave_face(m, &s, entry, reverse, p, &on, counters);
       /* The entry edge was tested from the other side, but either side may have changed since: test it before it
@@ -114,7 +125,7 @@ CADT_FN void cadt_locate(const cadt_locked_mesh* m, cadt_point p, cadt_u32 start
     }
     const cadt_u32 half_edge = CADT_NEIGHBOR(s, leave);
     t = CADT_TRIANGLE_OF(half_edge);
-    /* a ghost is entered and left by wedges: nothing is known of the edges between them */
+    /* wedges decide how a ghost triangle is entered and left: that tells nothing of the edge between the two */
     entry = s.v0 == CADT_GHOST || s.v1 == CADT_GHOST || s.v2 == CADT_GHOST ? 3u : CADT_EDGE_OF(half_edge);
   }
   place->triangle = t;

@@ -1,21 +1,28 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The lock protocol. Nobody ever waits: a lock is tried, and on failure everything taken is given back.
+ * The lock protocol: where locks are taken and given up. Nobody ever waits: a lock is tried, and after a failure all
+ * locks already taken are given up.
  *
- * Lock word: 0 the record does not exist yet, even: free, and the number is its version, odd: claimed. A claim is one
- * compare-and-swap from the version that the claimer has read before the fields (GPUs: one OR, and a look at what was
- * there); it fails if the record is claimed or has changed since, so success proves that the fields read are the
- * record's state: claim and validity check (paper, Algorithm 1, lines 9 and 15) in one operation. An unlock after a
+ * Lock word: 0: the triangle does not exist yet; even: unlocked, and the number is its version; odd: locked. A try-lock
+ * is one compare-and-swap from the version that was read before the fields (GPUs: one OR, and a look at the word that
+ * was there). It fails if the triangle is locked or has changed since. So success proves that the fields read are the
+ * triangle's state: lock and validity check (paper, Algorithm 1, lines 9 and 15) in one operation. An unlock after a
  * change raises the version.
  *
- * Why the proof holds on CPUs: a change stores fields with release after its claim (acquire), and fields are loaded
- * with acquire, the lock word first. If a reader saw one field of a later change, the change's claim happens before the
+ * Why the proof holds on CPUs: a change stores fields with release after its lock (acquire), and fields are loaded with
+ * acquire, the lock word first. If a reader saw one field of a later change, the lock of that change happens before the
  * reader's compare-and-swap, which then cannot find the old version. On GPUs, where loads are relaxed, a field may be
- * older than the version beside it. So the owner reads the record again under its lock (cadt_validate), compares what
- * it has used and takes the rest from there; claims acquire, so it sees all that earlier owners wrote.
+ * older than the version beside it. So the owner reads the triangle again under its lock (cadt_validate), compares what
+ * it has used and takes everything else from there; locks acquire, so it sees all that earlier owners wrote.
  *
- * Order: records are claimed by ascending index, so among any set of conflicting claimers the one that gets furthest
- * meets nobody who is further (a fixed but unsorted order livelocks in a warp: ../docs/algorithm.md).
+ * Order: triangles are locked by ascending index. So of any set of threads in conflict, the one that has come furthest
+ * meets nobody ahead of it:
+ *
+ *     thread 1 needs  { 3, 7, 12 }       3 -> 7 -> 12
+ *     thread 2 needs  { 7, 12, 20 }           7 -> 12 -> 20
+ *     thread 3 needs  { 12, 31 }                   12 -> 31
+ *
+ * (A fixed but unsorted order livelocks within a warp: docs/insertion.md.)
  */
 #ifndef CADT_INSERTION_LOCK_H
 #define CADT_INSERTION_LOCK_H
@@ -25,14 +32,14 @@
 #define CADT_ANY_VERSION 0u
 
 typedef struct {
-  cadt_u32 triangle[4]; /* ascending; CADT_NONE for an unused place */
+  cadt_u32 triangle[4]; /* ascending; CADT_NONE: unused */
   cadt_u32 version[4];
 } cadt_lock_set;
 
 CADT_FN cadt_u32 cadt_is_unlocked(cadt_u32 lock) { return lock != 0u && !(lock & 1u) ? 1u : 0u; }
 CADT_FN cadt_u32 cadt_next_version(cadt_u32 version) { return version + 2u ? version + 2u : 2u; }
 
-CADT_FN void cadt_lock_order(cadt_lock_set* c, cadt_u32 i, cadt_u32 j) {
+CADT_FN void cadt_order_locks(cadt_lock_set* c, cadt_u32 i, cadt_u32 j) {
   if (c->triangle[i] > c->triangle[j]) {
     cadt_u32 r = c->triangle[i], v = c->version[i];
     c->triangle[i] = c->triangle[j];
@@ -42,26 +49,26 @@ CADT_FN void cadt_lock_order(cadt_lock_set* c, cadt_u32 i, cadt_u32 j) {
   }
 }
 
-/* Gives back the records of the first `count` places, unchanged. \pre the caller owns them and has written nothing */
+/* Unlocks the first `count` triangles, unchanged. \pre the caller owns them and has written nothing */
 CADT_FN void cadt_unlock_unchanged(const cadt_locked_mesh* m, const cadt_lock_set* c, cadt_u32 count) {
 #if CADT_CONTIGUOUS
   for (cadt_u32 i = 0u; i < count; ++i)
     if (c->triangle[i] != CADT_NONE) {
       cadt_store_lock(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, c->version[i]);
-      CADT_NOISE_AT(m, CADT_AT_UNLOCKED_UNCHANGED);
+      CADT_NOISE_AT(m, CADT_SITE_UNLOCKED_UNCHANGED);
     }
 #else
-  /* By an addition: a store would take the place of the last owner's in what the next claimer synchronises with, and so
-   * need a fence before it. */
+  /* By an addition: a store would replace the last owner's store as what the next lock synchronises with, and so need a
+   * fence before it. */
   for (cadt_u32 i = 0u; i < count; ++i)
     if (c->triangle[i] != CADT_NONE) {
       cadt_add_relaxed(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);
-      CADT_NOISE_AT(m, CADT_AT_UNLOCKED_UNCHANGED);
+      CADT_NOISE_AT(m, CADT_SITE_UNLOCKED_UNCHANGED);
     }
 #endif
 }
 
-/* Claims one record if its lock word is `*version`, or even where that is CADT_ANY_VERSION. */
+/* Locks one triangle if its lock word is `*version`, or even where that is CADT_ANY_VERSION. */
 CADT_FN cadt_u32 cadt_try_lock_one(CADT_GLOBAL cadt_u32* lock, cadt_u32* version, cadt_counters* counters) {
 #if defined(CADT_TEST_NO_LOCKS)
   (void)counters;
@@ -74,8 +81,8 @@ CADT_FN cadt_u32 cadt_try_lock_one(CADT_GLOBAL cadt_u32* lock, cadt_u32* version
   if (!(cadt_load_field(lock) & 1u)) CADT_COUNT_NOW(counters, CADT_COUNT_INVALIDATED);
   return 0u;
 #else
-  /* One operation, where a comparison would first need the version. It changes nothing in a word that is odd. A word of
-   * 0 becomes odd: somebody is about to store 2 there. */
+  /* One operation, where a compare-and-swap would first need the version. It changes nothing in an odd word. A word of
+   * 0 becomes odd: the thread that creates the triangle is about to store 2 there. */
   const cadt_u32 found = cadt_or_relaxed(lock, 1u);
   if (!cadt_is_unlocked(found)) return 0u;
   if (*version != CADT_ANY_VERSION && *version != found) {
@@ -88,52 +95,51 @@ CADT_FN cadt_u32 cadt_try_lock_one(CADT_GLOBAL cadt_u32* lock, cadt_u32* version
 #endif
 }
 
-/* Claims up to four records. \pre versions were read by cadt_look before the fields, or are CADT_ANY_VERSION for
- * records of which the caller needs no field. \post 1: the caller owns all of them, `version` has the versions to give
- * back; 0: it owns none. */
+/* Tries to lock up to four triangles. \pre versions were read by cadt_snapshot_of before the fields, or are
+ * CADT_ANY_VERSION for triangles of which the caller needs no field. \post 1: the caller owns all of them, and
+ * `version` has the versions to restore if nothing changes; 0: it owns none. */
 CADT_FN cadt_u32 cadt_try_lock(const cadt_locked_mesh* m, cadt_lock_set* c, cadt_counters* counters) {
   counters->count[CADT_COUNT_LOCK_ATTEMPTS]++;
-  cadt_lock_order(c, 0, 1);
-  cadt_lock_order(c, 2, 3);
-  cadt_lock_order(c, 0, 2);
-  cadt_lock_order(c, 1, 3);
-  cadt_lock_order(c, 1, 2);
-  CADT_NOISE_AT(m, CADT_AT_LOCK);
+  cadt_order_locks(c, 0, 1);
+  cadt_order_locks(c, 2, 3);
+  cadt_order_locks(c, 0, 2);
+  cadt_order_locks(c, 1, 3);
+  cadt_order_locks(c, 1, 2);
+  CADT_NOISE_AT(m, CADT_SITE_TRY_LOCK);
   for (cadt_u32 i = 0u; i < 4u; ++i) {
     if (c->triangle[i] == CADT_NONE) break;
-    if (CADT_FAILS(m, CADT_AT_LOCK) ||
+    if (CADT_NOISE_FAILS(m, CADT_SITE_TRY_LOCK) ||
         !cadt_try_lock_one(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, &c->version[i], counters)) {
       cadt_unlock_unchanged(m, c, i);
       CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
-      CADT_LAP(counters, CADT_TIME_LOCK);
+      CADT_ADD_TIME(counters, CADT_TIME_LOCK);
       return 0u;
     }
-    CADT_NOISE_AT(m, CADT_AT_LOCKED);
+    CADT_NOISE_AT(m, CADT_SITE_LOCKED);
   }
-  cadt_fence_after_lock(); /* what the last owners wrote is seen from here on */
-  CADT_LAP(counters, CADT_TIME_LOCK);
+  cadt_fence_after_lock(); /* from here on, all that earlier owners wrote is seen */
+  CADT_ADD_TIME(counters, CADT_TIME_LOCK);
   return 1u;
 }
 
-/* Links of a record that the caller has used: a bit for each. */
+/* Half-edges of a triangle that the caller has used: a bit for each. */
 enum { CADT_HALF_EDGES_01 = 3, CADT_HALF_EDGES_12 = 6, CADT_HALF_EDGES_ALL = 7 };
 
-/* Whether the vertices of record t, seen from edge k, and those of its links that are in `links` are still what `s`
- * says. On GPUs its links and counters are then those read again: what has not been used before need not be kept until
- * here, where registers are short. On CPUs the claim has proved all of `s`. \pre the caller owns t */
-CADT_FN cadt_u32 cadt_validate(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 half_edges,
-                               cadt_snapshot* s) {
-  CADT_NOISE_AT(m, CADT_AT_VALIDATE);
-  if (CADT_FAILS(m, CADT_AT_VALIDATE)) return 0u;
+/* Whether the vertices of triangle t, seen from edge k, and those of its half-edges that are in `used` are still those
+ * of `s`. On GPUs, `s` then gets the half-edges and flip counters read again: what was not used before need not stay in
+ * registers until here. On CPUs the lock has proved all of `s`. \pre the caller owns t */
+CADT_FN cadt_u32 cadt_validate(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k, cadt_u32 used, cadt_snapshot* s) {
+  CADT_NOISE_AT(m, CADT_SITE_VALIDATE);
+  if (CADT_NOISE_FAILS(m, CADT_SITE_VALIDATE)) return 0u;
 #if CADT_CONTIGUOUS
-  (void)m, (void)t, (void)k, (void)half_edges, (void)s;
+  (void)m, (void)t, (void)k, (void)used, (void)s;
   return 1u;
 #else
-  const cadt_snapshot now = cadt_look_from(m, t, k);
+  const cadt_snapshot now = cadt_snapshot_from(m, t, k);
   cadt_u32 other = (now.v0 ^ s->v0) | (now.v1 ^ s->v1) | (now.v2 ^ s->v2);
-  if (half_edges & 1u) other |= now.n0 ^ s->n0;
-  if (half_edges & 2u) other |= now.n1 ^ s->n1;
-  if (half_edges & 4u) other |= now.n2 ^ s->n2;
+  if (used & 1u) other |= now.n0 ^ s->n0;
+  if (used & 2u) other |= now.n1 ^ s->n1;
+  if (used & 4u) other |= now.n2 ^ s->n2;
   s->n0 = now.n0;
   s->n1 = now.n1;
   s->n2 = now.n2;
@@ -142,18 +148,27 @@ CADT_FN cadt_u32 cadt_validate(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k
 #endif
 }
 
-/* Gives the records back, changed. \pre the caller owns them; all stores to them are done */
+/* Unlocks changed triangles. \pre the caller owns them, and all stores to them are done */
 CADT_FN void cadt_unlock(const cadt_locked_mesh* m, const cadt_lock_set* c) {
-  CADT_NOISE_AT(m, CADT_AT_UNLOCK);
+  CADT_NOISE_AT(m, CADT_SITE_UNLOCK);
   for (cadt_u32 i = 0u; i < 4u; ++i)
     if (c->triangle[i] != CADT_NONE) {
       cadt_store_lock(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, cadt_next_version(c->version[i]));
-      CADT_NOISE_AT(m, CADT_AT_UNLOCKED);
+      CADT_NOISE_AT(m, CADT_SITE_UNLOCKED);
     }
 }
 
-/* Makes a new record free. \pre its fields and all links to it are stored, and the caller still owns the records it was
- * split from; until then whoever finds it reads lock word 0 and retries */
+/* Unlocks triangles that turned out to have changed before they were locked. Returns 0. */
+CADT_FN cadt_u32 cadt_unlock_invalid(const cadt_locked_mesh* m, const cadt_lock_set* locks, cadt_counters* counters) {
+  cadt_unlock_unchanged(m, locks, 4u);
+  CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
+  CADT_COUNT_NOW(counters, CADT_COUNT_INVALIDATED);
+  CADT_ADD_TIME(counters, CADT_TIME_LOCK);
+  return 0u;
+}
+
+/* Unlocks a new triangle for the first time. \pre its fields and all half-edges to it are stored, and the caller still
+ * owns the triangles it was split from; until then whoever finds it reads lock word 0 and retries */
 CADT_FN void cadt_publish_triangle(const cadt_locked_mesh* m, cadt_u32 t) {
   cadt_store_lock(m->locked[t].word + CADT_WORD_LOCK, 2u);
 }

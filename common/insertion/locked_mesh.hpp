@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mesh on the device while it is made: records, and what the kernels over it get besides.
+// The mesh on the device while points are inserted, with what its kernels take besides.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct LockedMesh {
   device_text::cadt_point center = {};
   std::uint32_t first = 0, second = 0, third = 0;
 
-  /// A kernel over the mesh: its view comes first among the parameters.
+  /// Launches a kernel over the mesh, whose view comes first among the parameters.
   template <KernelId kernel, class... Args>
   void run_kernel(std::uint32_t items, const Args&... args) const {
     ctx.launcher.run<kernel>(items, locked, order.points, vertex_to_triangle, center.x, center.y, first, second, third,

@@ -1,14 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The first triangle and its three ghosts: the mesh that everything is inserted into (in place of the paper's super
- * triangle, section 4.1, which spoils the hull).
+ * The seed triangle and its three ghost triangles: the mesh that all points are inserted into. (The paper's super
+ * triangle, section 4.1, would spoil the hull.)
+ *
+ *              c
+ *       g1    / \    g0         face = (a, b, c)      g0.0,   g1.0, g2.0
+ *            /   \              g0   = (G, c, b)      face.0, g2.2, g1.1
+ *           /face \             g1   = (G, a, c)      face.1, g0.2, g2.1
+ *          a ----- b            g2   = (G, b, a)      face.2, g1.2, g0.1
+ *              g2
+ *
+ * G is the ghost, at infinity; beside each triangle stand the half-edges across its edges 0, 1 and 2.
  */
 #ifndef CADT_INSERTION_SEED_TRIANGLE_H
 #define CADT_INSERTION_SEED_TRIANGLE_H
 
-#include "common/insertion/split_and_flip.dev.h"
+#include "common/insertion/split.dev.h"
 
-/* Lowers *third to the first position that is not on the line of points `first` and `second`. */
+/* Lowers *third to the first position that is not on the line through points `first` and `second`. */
 CADT_KERNEL(cadt_find_seed_triangle, CADT_GLOBAL const cadt_point* points, cadt_u32 first, cadt_u32 second,
             cadt_u32 begin, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* third) {
   cadt_counters counters;
@@ -22,8 +31,8 @@ CADT_KERNEL(cadt_find_seed_triangle, CADT_GLOBAL const cadt_point* points, cadt_
   }
 }
 
-/* \pre records are zero */
-CADT_FN void cadt_start(const cadt_locked_mesh* m, cadt_counters* counters) {
+/* \pre all locked triangles are zero */
+CADT_FN void cadt_make_seed_mesh(const cadt_locked_mesh* m, cadt_counters* counters) {
   cadt_u32 a = m->first, b = m->second, c = m->third;
   if (cadt_orientation(m->points[a], m->points[b], m->points[c], counters) < 0) {
     b = m->third;
@@ -52,7 +61,7 @@ CADT_KERNEL(cadt_seed_mesh, CADT_MESH_PARAMETERS) {
   CADT_MESH_VIEW(mesh);
   cadt_counters counters;
   cadt_counters_clear(&counters);
-  cadt_start(&mesh, &counters);
+  cadt_make_seed_mesh(&mesh, &counters);
 }
 
 #endif

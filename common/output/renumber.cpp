@@ -24,7 +24,7 @@ Allocation values_of_sets(Context& ctx, const Allocation& from, const Allocation
   return values;
 }
 
-/// Where the records of the sets begin: two a vertex.
+/// Where the triangles of the sets begin: two a vertex.
 Allocation first_records(Context& ctx, const SetStarts& sets) {
   std::vector<std::uint32_t> places(sets.count + 1);
   ctx.device.read(*(sets.positions ? sets.positions : sets.points), 0, places.data(), places.size() * word);
@@ -34,28 +34,28 @@ Allocation first_records(Context& ctx, const SetStarts& sets) {
   return result;
 }
 
-/// Parts of the canonical order that are made one after the other where memory is to be saved: the lists of each have
-/// this share of the triangles.
-constexpr std::uint32_t parts_to_save = 2;
+/// The compact plan makes the canonical order in so many parts, one after the other: the lists of each have this share
+/// of the triangles.
+constexpr std::uint32_t parts_of_compact_plan = 2;
 
-struct BucketPart0 {
+struct PartBegin {
   std::uint32_t bucket = 0, triangle = 0;  ///< the first ones of a part
 };
 
-/// Where the parts begin, and the end of the last.
-std::vector<BucketPart0> cut_buckets(Context& ctx, const Allocation& buckets, std::size_t points,
+/// Where the parts begin, and where the last one ends.
+std::vector<PartBegin> split_buckets(Context& ctx, const Allocation& buckets, std::size_t points,
                                      std::uint32_t triangles, std::uint32_t parts) {
-  std::vector<BucketPart0> cuts(parts + std::size_t{1});
+  std::vector<PartBegin> begins(parts + std::size_t{1});
   if (parts == 1) {
-    cuts[1] = {static_cast<std::uint32_t>(points), triangles};
-    return cuts;
+    begins[1] = {static_cast<std::uint32_t>(points), triangles};
+    return begins;
   }
-  const Allocation found = ctx.memory.allocate(cuts.size() * sizeof cuts[0]);
+  const Allocation found = ctx.memory.allocate(begins.size() * sizeof begins[0]);
   const LaunchGrid c = ctx.launcher.grid(points);
-  ctx.launcher.run<KernelId::cadt_cut_buckets>(c.items, buckets, static_cast<std::uint32_t>(points), triangles, parts,
-                                               c.grain, found);
-  ctx.device.read(*found, 0, cuts.data(), cuts.size() * sizeof cuts[0]);
-  return cuts;
+  ctx.launcher.run<KernelId::cadt_split_buckets>(c.items, buckets, static_cast<std::uint32_t>(points), triangles, parts,
+                                                 c.grain, found);
+  ctx.device.read(*found, 0, begins.data(), begins.size() * sizeof begins[0]);
+  return begins;
 }
 
 /// A part of the triangles in their buckets.
@@ -66,31 +66,31 @@ struct BucketPart {
   std::uint32_t base, count;  ///< triangles
 };
 
-/// Buckets with more triangles are sorted as one list by all work-items: one takes 2 microseconds a triangle.
-constexpr std::uint32_t longest_bucket = 256;
+/// Longer buckets are sorted as one list by all work-items: one work-item takes 2 microseconds a triangle.
+constexpr std::uint32_t longest_serial_bucket = 256;
 
-/// Sorts what cadt_sort_buckets has skipped, `left` triangles.
-void sort_long_buckets(Context& ctx, const BucketPart& part, std::uint32_t left) {
+/// Sorts what cadt_sort_buckets has skipped, `listed` triangles.
+void sort_long_buckets(Context& ctx, const BucketPart& part, std::uint32_t listed) {
   Launcher& launch = ctx.launcher;
   Allocation ranks = ctx.memory.allocate((part.count + std::size_t{1}) * word);
-  const LaunchGrid all = launch.grid(part.count), some = launch.grid(left);
-  launch.run<KernelId::cadt_long_flags>(all.items, part.buckets, part.from, part.size, part.base, longest_bucket,
+  const LaunchGrid all = launch.grid(part.count), some = launch.grid(listed);
+  launch.run<KernelId::cadt_long_flags>(all.items, part.buckets, part.from, part.size, part.base, longest_serial_bucket,
                                         part.count, all.grain, ranks);
   launch.scan(ranks, part.count + std::size_t{1});
-  const std::size_t bytes = left * word;
-  const Allocation seconds = ctx.memory.allocate(bytes), locked = ctx.memory.allocate(bytes);
+  const std::size_t bytes = listed * word;
+  const Allocation seconds = ctx.memory.allocate(bytes), numbers = ctx.memory.allocate(bytes);
   const Allocation owners = ctx.memory.allocate(bytes), places = ctx.memory.allocate(bytes);
   launch.run<KernelId::cadt_long_pack>(all.items, part.buckets, part.members, part.from, part.size, part.base, ranks,
-                                       part.count, all.grain, seconds, locked, owners, places);
+                                       part.count, all.grain, seconds, numbers, owners, places);
   ranks.release();
   Allocation sorted = ctx.memory.allocate(bytes), order = ctx.memory.allocate(bytes);
   Allocation spare = ctx.memory.allocate(bytes), spare_order = ctx.memory.allocate(bytes);
   // Stable: first by the second vertex, then by bucket. The sort permutes its keys, so it gets copies.
-  launch.run<KernelId::cadt_copy_words>(some.items, seconds, sorted, std::uint32_t{0}, left, some.grain);
-  launch.sort(sorted, order, spare, spare_order, left, 32, true);
-  launch.run<KernelId::cadt_gather_words>(some.items, owners, order, sorted, left, some.grain);
-  launch.sort(sorted, order, spare, spare_order, left, static_cast<unsigned>(std::bit_width(part.size)), false);
-  launch.run<KernelId::cadt_long_store>(some.items, order, seconds, locked, places, part.members, left, some.grain);
+  launch.run<KernelId::cadt_copy_words>(some.items, seconds, sorted, std::uint32_t{0}, listed, some.grain);
+  launch.sort(sorted, order, spare, spare_order, listed, 32, true);
+  launch.run<KernelId::cadt_gather_words>(some.items, owners, order, sorted, listed, some.grain);
+  launch.sort(sorted, order, spare, spare_order, listed, static_cast<unsigned>(std::bit_width(part.size)), false);
+  launch.run<KernelId::cadt_long_store>(some.items, order, seconds, numbers, places, part.members, listed, some.grain);
 }
 
 /// Sorts each bucket by the second vertex.
@@ -102,28 +102,28 @@ void sort_buckets(Context& ctx, const BucketPart& part) {
     launch.run<KernelId::cadt_sort_buckets>(c.items, part.buckets, part.members, part.from, part.size, part.base,
                                             longest, c.grain, found);
   };
-  sort(longest_bucket);
-  const std::uint32_t left = part.count > longest_bucket ? launch.read_word(found, 0) : 0;
-  if (left == 0) return;
-  if (ctx.memory.allows((part.count + 8 * std::size_t{left} + 1) * word))
-    sort_long_buckets(ctx, part, left);
+  sort(longest_serial_bucket);
+  const std::uint32_t skipped = part.count > longest_serial_bucket ? launch.read_word(found, 0) : 0;
+  if (skipped == 0) return;
+  if (ctx.memory.allows((part.count + 8 * std::size_t{skipped} + 1) * word))
+    sort_long_buckets(ctx, part, skipped);
   else
     sort(none);
 }
 
-/// The numbers of all triangles, from scanned buckets. \pre the numbers are places in buckets where the device knows
-/// them (renumber.dev.h)
+/// Numbers all triangles from scanned buckets. \pre `numbers` are places in buckets where the device knows them
+/// (canonical_order.dev.h)
 void number_by_buckets(Context& ctx, const Mesh& mesh, Allocation buckets, const Numbering& result,
                        std::size_t points) {
   Launcher& launch = ctx.launcher;
   const std::size_t places = mesh.in_arrays() ? mesh.triangles : mesh.slots;
-  const std::uint32_t parts = ctx.plan.compact && mesh.in_arrays() ? parts_to_save : 1;
-  const std::vector<BucketPart0> cuts =
-      cut_buckets(ctx, buckets, points, static_cast<std::uint32_t>(result.triangles), parts);
+  const std::uint32_t parts = ctx.plan.compact && mesh.in_arrays() ? parts_of_compact_plan : 1;
+  const std::vector<PartBegin> begins =
+      split_buckets(ctx, buckets, points, static_cast<std::uint32_t>(result.triangles), parts);
   const LaunchGrid all = launch.grid(places);
   for (std::uint32_t part = 0; part < parts; ++part) {
-    const auto [from, base] = cuts[part];
-    const std::uint32_t size = cuts[part + 1].bucket - from, count = cuts[part + 1].triangle - base;
+    const auto [from, base] = begins[part];
+    const std::uint32_t size = begins[part + 1].bucket - from, count = begins[part + 1].triangle - base;
     const Allocation members = ctx.memory.transient(std::size_t{count} * 2 * word);
     launch.run<KernelId::cadt_bucket_triangles>(all.items, mesh.locked, mesh.vertices, mesh.input_ids, buckets,
                                                 result.numbers, members, from, size, base,
@@ -165,12 +165,12 @@ Numbering renumber(Context& ctx, const Mesh& mesh, std::size_t points, const Set
   }
   const std::size_t places = mesh.in_arrays() ? mesh.triangles : mesh.slots;
   const auto slots = static_cast<std::uint32_t>(places);
-  const FlipHistogram flips(ctx, !mesh.in_arrays());  // arrays have none any more
-  const LaunchGrid locked = launch.grid_strided(places);
+  const FlipHistogram flips(ctx, !mesh.in_arrays());  // arrays have no flip counters
+  const LaunchGrid all = launch.grid_strided(places);
   if (ctx.options.order == Order::fast) {
     result.ranked = true;
     result.numbers = ctx.memory.allocate((mesh.slots + 1) * word);
-    launch.run<KernelId::cadt_flag_triangles>(locked.items, mesh.locked, result.numbers, slots, locked.grain, flips);
+    launch.run<KernelId::cadt_flag_triangles>(all.items, mesh.locked, result.numbers, slots, all.grain, flips);
     launch.scan(result.numbers, mesh.slots + 1);
     result.triangles = launch.read_word(result.numbers, mesh.slots);
     if (sets != nullptr) result.set_starts = values_of_sets(ctx, result.numbers, first_records(ctx, *sets), *sets);
@@ -180,8 +180,8 @@ Numbering renumber(Context& ctx, const Mesh& mesh, std::size_t points, const Set
   Allocation buckets = launch.zeros(points + 1);
   // until they are known: places in the buckets
   result.numbers = mesh.in_arrays() ? ctx.memory.transient(places * word) : ctx.memory.allocate(places * word);
-  launch.run<KernelId::cadt_count_triangles>(locked.items, mesh.locked, mesh.vertices, mesh.input_ids, buckets,
-                                             result.numbers, slots, locked.grain, flips);
+  launch.run<KernelId::cadt_count_triangles>(all.items, mesh.locked, mesh.vertices, mesh.input_ids, buckets,
+                                             result.numbers, slots, all.grain, flips);
   launch.scan(buckets, points + 1);
   result.triangles = mesh.in_arrays() ? mesh.triangles : launch.read_word(buckets, points);
   if (sets != nullptr) result.set_starts = values_of_sets(ctx, buckets, sets->points, *sets);

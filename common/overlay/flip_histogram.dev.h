@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Edges by the number of their flips (paper, Fig. 9 and 10), ghost edges left out: counted by a kernel that reads all
- * records of the finished mesh anyway, each edge twice, once from each side.
+ * Histogram of edges by the number of their flips (paper, Fig. 9 and 10), without ghost edges. A kernel that reads all
+ * locked triangles of the finished mesh anyway counts each edge twice, once from each side.
  *
- *   CADT_FLIPS_BEGIN(bins, rows);            before anything else in the kernel
- *   CADT_FLIPS_COUNT(bins, rows, record);    in its loop
- *   CADT_FLIPS_END(bins, rows);              behind it
+ *   CADT_FLIPS_BEGIN(bins, rows);              before anything else in the kernel
+ *   CADT_FLIPS_COUNT(bins, rows, triangle);    in its loop
+ *   CADT_FLIPS_END(bins, rows);                behind it
  *
- * `rows` has CADT_FLIP_BINS words for each of CADT_COUNTER_ROWS, or is null if nobody wants to know.
+ * `rows` has CADT_FLIP_BINS words for each of CADT_COUNTER_ROWS, or is null: then nothing is counted.
  */
 #ifndef CADT_OVERLAY_FLIP_HISTOGRAM_H
 #define CADT_OVERLAY_FLIP_HISTOGRAM_H
@@ -21,13 +21,13 @@ CADT_FN cadt_u32 cadt_ghost_slot(const cadt_locked_triangle* r) {
 }
 
 #if CADT_GROUP_SUMS
-/* Counts of edges with 0, 1, ..., 15 or more flips: 8 bits each, in two words. */
+/* Edges with 0, 1, ..., 15 or more flips: 8 bits each, in two words. */
 typedef struct {
   cadt_u64 low, high;
-  cadt_u32 triangles; /* since the sums were passed on */
+  cadt_u32 triangles; /* since the last flush */
 } cadt_flip_bins;
 
-enum { CADT_BINS_FULL = 255 / 3 }; /* triangles until the sums must be passed on */
+enum { CADT_BINS_FULL = 255 / 3 }; /* triangles until the bins must be flushed */
 
 CADT_FN void cadt_bins_add(cadt_flip_bins* bins, cadt_u32 flips) {
   const cadt_u32 bin = cadt_min_u32(flips, CADT_FLIP_BINS - 1u);
@@ -42,14 +42,15 @@ CADT_FN cadt_u32 cadt_bins_get(const cadt_flip_bins* bins, cadt_u32 bin) {
   return CADT_CAST(cadt_u32, (bin < 8u ? bins->low : bins->high) >> (8u * (bin & 7u))) & 255u;
 }
 
-CADT_FN void cadt_bins_pass_on(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums) {
+CADT_FN void cadt_bins_flush(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums) {
   for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin)
     if (cadt_bins_get(bins, bin)) cadt_add_local(sums + bin, cadt_bins_get(bins, bin));
   bins->low = bins->high = 0u;
   bins->triangles = 0u;
 }
 
-CADT_FN void cadt_bins_add_record(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums, const cadt_locked_triangle* r) {
+CADT_FN void cadt_bins_add_triangle(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums,
+                                    const cadt_locked_triangle* r) {
   const cadt_u32 flips = r->word[CADT_WORD_FLIPS], ghost = cadt_ghost_slot(r);
   if (flips == 0u && ghost == 3u) {
     bins->low += 3u;
@@ -57,11 +58,11 @@ CADT_FN void cadt_bins_add_record(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32*
     for (cadt_u32 k = 0u; k < 3u; ++k)
       if (ghost == 3u || ghost == k) cadt_bins_add(bins, cadt_flips_get(flips, k));
   }
-  if (++bins->triangles == CADT_CAST(cadt_u32, CADT_BINS_FULL)) cadt_bins_pass_on(bins, sums);
+  if (++bins->triangles == CADT_CAST(cadt_u32, CADT_BINS_FULL)) cadt_bins_flush(bins, sums);
 }
 
 CADT_FN void cadt_bins_end(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums, CADT_GLOBAL cadt_u32* rows) {
-  cadt_bins_pass_on(bins, sums);
+  cadt_bins_flush(bins, sums);
   cadt_group_barrier();
   CADT_GLOBAL cadt_u32* row = rows + cadt_item / cadt_group_items % CADT_COUNTER_ROWS * CADT_FLIP_BINS;
   for (cadt_u32 bin = cadt_item_of_group; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); bin += cadt_group_items)
@@ -73,11 +74,11 @@ CADT_FN void cadt_bins_end(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums, 
   if (rows) cadt_clear_sums(flip_sums, CADT_FLIP_BINS); \
   cadt_flip_bins bins = {0u, 0u, 0u}
 #define CADT_FLIPS_COUNT(bins, rows, triangle) \
-  if (rows) cadt_bins_add_record(&bins, flip_sums, &(triangle))
+  if (rows) cadt_bins_add_triangle(&bins, flip_sums, &(triangle))
 #define CADT_FLIPS_END(bins, rows) \
   if (rows) cadt_bins_end(&bins, flip_sums, (rows))
 #else
-/* One row of bins for each slot: most edges have the same few numbers of flips, and an addition would wait for the one
+/* One row of bins for each slot: most edges have the same few flip counts, and an addition would wait for the one
  * before. */
 typedef struct {
   cadt_u32 bin[3][CADT_FLIP_BINS];
@@ -88,7 +89,7 @@ CADT_FN void cadt_bins_clear(cadt_flip_bins* bins) {
     for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin) bins->bin[k][bin] = 0u;
 }
 
-CADT_FN void cadt_bins_add_record(cadt_flip_bins* bins, const cadt_locked_triangle* r) {
+CADT_FN void cadt_bins_add_triangle(cadt_flip_bins* bins, const cadt_locked_triangle* r) {
   const cadt_u32 ghost = cadt_ghost_slot(r);
   for (cadt_u32 k = 0u; k < 3u; ++k)
     if (ghost == 3u || ghost == k)
@@ -107,7 +108,7 @@ CADT_FN void cadt_bins_end(const cadt_flip_bins* bins, CADT_GLOBAL cadt_u32* row
   cadt_flip_bins bins;               \
   cadt_bins_clear(&bins)
 #define CADT_FLIPS_COUNT(bins, rows, triangle) \
-  if (rows) cadt_bins_add_record(&bins, &(triangle))
+  if (rows) cadt_bins_add_triangle(&bins, &(triangle))
 #define CADT_FLIPS_END(bins, rows) \
   if (rows) cadt_bins_end(&bins, (rows), cadt_item)
 #endif

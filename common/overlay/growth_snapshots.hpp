@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of the growing mesh for Options::watch.
+// Snapshots of the growing mesh for Options::watch.
 #pragma once
 
 #include <cadt/triangulation.hpp>
@@ -16,12 +16,12 @@ namespace cadt {
 class GrowthSnapshots {
  public:
   GrowthSnapshots(Device& device, const SortedPoints& order);
-  /// Reads all records and calls `watch`. \pre no launch is running that changes the mesh
+  /// Reads all triangles and calls `watch`. \pre no launch is running that changes the mesh
   void show(const Buffer& locked, const std::function<void(const Snapshot&)>& watch);
 
  private:
   Device& device_;
-  std::vector<std::uint32_t> labels_;  ///< position in the mesh to index of the input
+  std::vector<std::uint32_t> input_ids_;  ///< position -> index of the input
 };
 
 }  // namespace cadt

@@ -11,7 +11,7 @@
 /* A coordinate times two powers of two (one factor may not reach all of a double's exponents); -0.0 becomes 0.0. Floats
  * stay as they are: a product could lose bits, and all comparisons of floats treat -0.0 and 0.0 as equal. */
 CADT_FN cadt_real cadt_multiplied(cadt_real x, cadt_real scale, cadt_real scale_again) {
-#if CADT_GRADUAL
+#if CADT_GRADUAL_UNDERFLOW
   return x * scale * scale_again + 0.0;
 #else
   (void)scale, (void)scale_again;

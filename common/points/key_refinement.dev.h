@@ -39,7 +39,7 @@ CADT_KERNEL(cadt_pack_overfull, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL c
 
 /* A coordinate as an integer in the same order; -0.0 and 0.0 are equal. */
 CADT_FN cadt_u64 cadt_ordered_bits(cadt_real x) {
-#if CADT_GRADUAL
+#if CADT_GRADUAL_UNDERFLOW
   const cadt_u64 bits = cadt_bits_of_double(x + 0.0);
   return bits >> 63 ? ~bits : bits | 0x8000000000000000ul;
 #else

@@ -34,7 +34,7 @@ CADT_FN cadt_u32 cadt_shape_of(CADT_GLOBAL const cadt_point* p) {
   cadt_real most;
   for (cadt_u32 k = 0u; k < 3u; ++k)
     if (cadt_same(p[k].x, p[k + 1u].x) && cadt_same(p[k].y, p[k + 1u].y)) return CADT_NONE;
-  if (cadt_incircle_rounded(p[0], p[1], p[2], p[3], &most) != 0) return CADT_NONE;
+  if (cadt_incircle_filter(p[0], p[1], p[2], p[3], &most) != 0) return CADT_NONE;
   if (cadt_orientation_filter(p[0], p[1], p[2]) == CADT_UNSURE &&
       cadt_orientation_filter(p[1], p[2], p[3]) == CADT_UNSURE)
     return CADT_SHAPE_LINE;
@@ -50,8 +50,8 @@ CADT_FN void cadt_count_shapes(CADT_GLOBAL const cadt_point* sorted, cadt_u32 co
   const cadt_i32 side = cadt_orientation_filter(sorted[0], sorted[count / 2u], sorted[i]);
   cadt_real most;
   if (side == 1 || side == -1) cadt_store_relaxed(totals + CADT_SHAPE_BESIDE, 1u);
-  if (cadt_incircle_rounded(sorted[(i + far) % count], sorted[(i + 2u * far) % count], sorted[(i + 3u * far) % count],
-                            sorted[i], &most) == 0)
+  if (cadt_incircle_filter(sorted[(i + far) % count], sorted[(i + 2u * far) % count], sorted[(i + 3u * far) % count],
+                           sorted[i], &most) == 0)
     cadt_add_relaxed(totals + CADT_SHAPE_ONE_CIRCLE, 1u);
   if (cadt_seems_on_hull(sorted, count, i)) cadt_add_relaxed(totals + CADT_SHAPE_HULL, 1u);
   if (neighbours && i + 3u < count) {

@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * All atomic operations, with their memory order in the name, at device scope. Nothing else in this folder calls an
+ * All atomic operations, at device scope, with their memory order in the name. Nothing else in the device text calls an
  * atomic or a fence.
  *
- * Order. Whoever takes a lock must see what the last owner wrote, hence acquire on the claim and release on the unlock.
- * The fields of a record are also read without a lock, as hints, and validated by the claim. There are two ways to make
- * the claim prove them (lock.dev.h), because orderings cost nothing on x86 and much on GPUs:
+ * Order. Whoever takes a lock must see what the last owner wrote: acquire with the lock, release with the unlock. The
+ * fields of a triangle are also read without a lock, and validated when the lock is taken. There are two ways to make
+ * the lock prove them (lock.dev.h), because ordered accesses cost nothing on x86 and much on GPUs:
  * - CPUs: every field is stored with release and loaded with acquire. Then the version in the lock word proves the
- * fields.
- * - GPUs: fields are stored and loaded relaxed; one fence of device scope behind the claims acquires, one before the
- * unlocks releases, and the owner reads the fields again.
+ *   fields.
+ * - GPUs: fields are stored and loaded relaxed; one fence of device scope after the locks acquires, one before the
+ *   unlocks releases, and the owner reads the fields again.
  */
 #ifndef CADT_PORTABLE_ATOMICS_H
 #define CADT_PORTABLE_ATOMICS_H
 
-#include "common/portable/dialect.dev.h"
+#include "common/portable/teams.dev.h"
 
-/* ---- OpenCL 3.0 with acquire/release at device scope: the C11 operations -------------------------------------------
+/* ---- OpenCL 3.0 with acquire/release at device scope: the C11 operations ----
  * NVIDIA's OpenCL does not advertise the features, yet compiles them to fences of device scope; the back end probes by
  * compiling (CADT_CL_C11 is set by it). */
 #if defined(CADT_LANG_OPENCL) && defined(CADT_CL_C11)
@@ -58,15 +58,14 @@ CADT_FN cadt_u32 cadt_or_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 bits) {
 }
 CADT_FN void cadt_fence_acq_rel(void) {
 #if defined(__NV_CL_C_VERSION)
-  /* the driver makes the function below sequentially consistent, which is more than is needed */
+  /* the driver makes the function below sequentially consistent: more than needed */
   asm volatile("fence.acq_rel.gpu;" ::: "memory");
 #else
   atomic_work_item_fence(CLK_GLOBAL_MEM_FENCE, memory_order_acq_rel, memory_scope_device);
 #endif
 }
 
-/* ---- OpenCL 1.2: best effort; the standard promises no order between work-groups ----------------------------------
- */
+/* ---- OpenCL 1.2: best effort; the standard promises no order between work-groups ---- */
 #elif defined(CADT_LANG_OPENCL)
 
 CADT_FN cadt_u32 cadt_load_acquire(CADT_GLOBAL cadt_u32* p) {
@@ -100,8 +99,7 @@ CADT_FN cadt_u32 cadt_or_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 bits) {
 }
 CADT_FN void cadt_fence_acq_rel(void) { mem_fence(CLK_GLOBAL_MEM_FENCE); }
 
-/* ---- CUDA: volatile accesses are relaxed and bypass the L1 cache; orders are PTX at device scope -------------------
- */
+/* ---- CUDA: volatile accesses are relaxed and bypass the L1 cache; orders are PTX at device scope ---- */
 #elif defined(CADT_LANG_CUDA)
 
 CADT_FN cadt_u32 cadt_load_relaxed(CADT_GLOBAL cadt_u32* p) { return *(volatile cadt_u32*)p; }
@@ -125,19 +123,18 @@ CADT_FN void cadt_min_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { atomicM
 CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
   return atomicCAS(p, expected, desired) == expected ? 1u : 0u;
 }
-/* __threadfence is sequentially consistent, which is more than is needed. */
+/* __threadfence is sequentially consistent: more than needed. */
 CADT_FN void cadt_fence_acq_rel() { asm volatile("fence.acq_rel.gpu;" ::: "memory"); }
 #if defined(__CUDACC_VER_MAJOR__) && __CUDACC_VER_MAJOR__ >= 13
 CADT_FN void cadt_fence_acquire() { asm volatile("fence.acquire.gpu;" ::: "memory"); }
 CADT_FN void cadt_fence_release() { asm volatile("fence.release.gpu;" ::: "memory"); }
-#else /* older assemblers know no one-sided ones */
+#else /* older assemblers have no one-sided fences */
 CADT_FN void cadt_fence_acquire() { cadt_fence_acq_rel(); }
 CADT_FN void cadt_fence_release() { cadt_fence_acq_rel(); }
 #endif
 CADT_FN cadt_u32 cadt_or_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 bits) { return atomicOr(p, bits); }
 
-/* ---- host: ordered operations, no fences (ThreadSanitizer does not follow fences) ----------------------------------
- */
+/* ---- host: ordered operations, no fences (ThreadSanitizer does not follow fences) ---- */
 #else
 
 CADT_FN cadt_u32 cadt_load_acquire(cadt_u32* p) {
@@ -173,9 +170,7 @@ CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
 
 #endif
 
-/* ---- memory of a group: additions that any lane makes when it comes to it, and in what order they are seen
- * -----------
- */
+/* ---- local memory of a group: additions and minima in any order, and fences ---- */
 #if CADT_GROUP_SUMS && defined(CADT_LANG_OPENCL)
 CADT_FN cadt_u32 cadt_add_local(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
   return atomic_add((volatile CADT_LOCAL_PTR cadt_u32*)p, value);
@@ -192,7 +187,7 @@ CADT_FN cadt_u32 cadt_add_local(cadt_u32* p, cadt_u32 value) { return atomicAdd(
 CADT_FN void cadt_min_local(cadt_u32* p, cadt_u32 value) { atomicMin(p, value); }
 CADT_FN void cadt_least_local(cadt_u32* p, cadt_u32 value) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
-  /* Once for the lanes that are here: at one address one of them would wait for the other. */
+  /* One operation for all active lanes: at one address they would wait for each other. */
   const cadt_u32 mask = __activemask(), lane = threadIdx.x & 31u;
   value = __reduce_min_sync(mask, value);
   if (mask & ((1u << lane) - 1u)) return;
@@ -201,8 +196,8 @@ CADT_FN void cadt_least_local(cadt_u32* p, cadt_u32 value) {
 }
 CADT_FN void cadt_fence_local() { __threadfence_block(); }
 #endif
-/* In the memory of a team: an addition, and the value before it; the lesser of two; the least of what lanes have for
- * the same place, the largest number being nothing. */
+/* In the memory of a team: the lesser of two; the least of what many lanes have for the same place, 0xFFFFFFFF being
+ * nothing; an addition, which returns the value before. */
 #if CADT_GROUP_SUMS
 #define cadt_team_min(p, value) cadt_min_local((p), (value))
 #define cadt_team_least(p, value) cadt_least_local((p), (value))
@@ -219,8 +214,7 @@ CADT_FN cadt_u32 cadt_team_add(cadt_u32* p, cadt_u32 value) {
 }
 #endif
 
-/* ---- the two disciplines of the records' fields and locks ----------------------------------------------------------
- */
+/* ---- the two ways to order fields and locks ---- */
 #if CADT_CONTIGUOUS
 CADT_FN cadt_u32 cadt_load_field(CADT_GLOBAL cadt_u32* p) { return cadt_load_acquire(p); }
 CADT_FN void cadt_store_field(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_release(p, value); }
@@ -228,7 +222,7 @@ CADT_FN cadt_u32 cadt_cas_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, cadt_
   return cadt_cas_acq_rel(p, expected, desired);
 }
 CADT_FN void cadt_store_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_release(p, value); }
-/* behind claims and before unlocks: the operations themselves are ordered */
+/* after locks and before unlocks: the operations themselves are ordered */
 CADT_FN void cadt_fence_before_unlock(void) {}
 CADT_FN void cadt_fence_after_lock(void) {}
 #else
@@ -244,7 +238,8 @@ CADT_FN void cadt_fence_after_lock(void) { cadt_fence_acq_rel(); }
 #endif
 #endif
 
-/* The eight words of a record, in two accesses where the language can. NVIDIA's OpenCL C has the assembler of CUDA. */
+/* The eight words of a locked triangle, in two accesses where the language can. NVIDIA's OpenCL C has the assembler of
+ * CUDA. */
 #if defined(CADT_LANG_CUDA) || (defined(__NV_CL_C_VERSION) && defined(CADT_CL_C11) && !CADT_CONTIGUOUS)
 CADT_FN void cadt_load_triangle(CADT_GLOBAL const cadt_u32* p, cadt_u32* w0, cadt_u32* w1, cadt_u32* w2, cadt_u32* w3,
                                 cadt_u32* w4, cadt_u32* w5, cadt_u32* w6, cadt_u32* w7) {
@@ -267,7 +262,7 @@ CADT_FN void cadt_store_triangle(CADT_GLOBAL cadt_u32* p, cadt_u32 w0, cadt_u32 
 #else
 CADT_FN void cadt_load_triangle(CADT_GLOBAL cadt_u32* p, cadt_u32* w0, cadt_u32* w1, cadt_u32* w2, cadt_u32* w3,
                                 cadt_u32* w4, cadt_u32* w5, cadt_u32* w6, cadt_u32* w7) {
-  *w3 = cadt_load_field(p + 3); /* the lock word first: what is read after it is validated by it */
+  *w3 = cadt_load_field(p + 3); /* the lock word first: it validates what is read after it */
   *w0 = cadt_load_field(p);
   *w1 = cadt_load_field(p + 1);
   *w2 = cadt_load_field(p + 2);

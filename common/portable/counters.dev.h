@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Counters of work and conflicts, and clocks. A work-item counts privately and adds its counts once; they end in one of
- * several rows, so the counters cost little. What happens seldom in the insertion is counted by CADT_COUNT_NOW: on a
- * GPU at once in the memory of the group, since no register is free for it. The driver adds the rows up
- * (common/driver/counters.cpp).
+ * Counters of work and conflicts, and timers. A work-item counts privately and adds its counts once, to one of several
+ * rows, so the counters cost little. CADT_COUNT_NOW counts what happens rarely in the insertion: on a GPU at once in
+ * the memory of the group, since no register is free for it. The driver adds the rows up (common/driver/counters.cpp).
  *
- * Clocks are in the timed build only. A lap ends where CADT_LAP stands: the time since the last one goes to the named
- * account. On a GPU that is the time of the lane, in which lanes of its warp that went another way may have worked.
+ * Timers exist in the timed variant only. CADT_ADD_TIME adds the time since the last reading of the clock to a timer.
+ * On a GPU that is the time of the lane, during which divergent lanes of its warp may have run.
  */
 #ifndef CADT_PORTABLE_COUNTERS_H
 #define CADT_PORTABLE_COUNTERS_H
@@ -18,11 +17,11 @@ typedef struct {
   cadt_u32 count[CADT_COUNTERS];
 #if CADT_GROUP_SUMS
   CADT_LOCAL_PTR cadt_u32* sums; /* of the group */
-  cadt_u32 wanted;               /* whether anybody wants to know */
+  cadt_u32 wanted;               /* whether counters are requested */
 #endif
 #if CADT_TIMED
-  cadt_u64 ticks[CADT_TIMES];
-  cadt_u64 lap;
+  cadt_u64 ticks[CADT_TIMERS];
+  cadt_u64 last_clock;
 #endif
 } cadt_counters;
 
@@ -35,26 +34,26 @@ CADT_FN void cadt_count_now(const cadt_counters* counters, cadt_u32 c) {
 #define CADT_COUNT_NOW(counters, c) ((counters)->count[c]++)
 #endif
 #if CADT_TIMED
-#define CADT_LAP(counters, timer) cadt_lap((counters), (timer))
-CADT_FN void cadt_lap(cadt_counters* counters, cadt_u32 timer) {
+#define CADT_ADD_TIME(counters, timer) cadt_add_time((counters), (timer))
+CADT_FN void cadt_add_time(cadt_counters* counters, cadt_u32 timer) {
   const cadt_u64 now = cadt_clock();
-  counters->ticks[timer] += now - counters->lap;
-  counters->lap = now;
+  counters->ticks[timer] += now - counters->last_clock;
+  counters->last_clock = now;
 }
 #else
-#define CADT_LAP(counters, timer) ((void)0)
+#define CADT_ADD_TIME(counters, timer) ((void)0)
 #endif
-/* What was done since the last lap is nobody's account. */
+/* The time since the last reading goes to no timer. */
 #if CADT_TIMED
-#define CADT_LAP_SKIP(counters) ((counters)->lap = cadt_clock())
+#define CADT_SKIP_TIME(counters) ((counters)->last_clock = cadt_clock())
 #else
-#define CADT_LAP_SKIP(counters) ((void)0)
+#define CADT_SKIP_TIME(counters) ((void)0)
 #endif
-/* Where lanes of a GPU's warp wait for each other; a CPU's thread waits for nobody. */
+/* Where lanes of a GPU's warp wait for each other; a CPU's thread does not. */
 #if CADT_CONTIGUOUS
-#define CADT_LAP_WAIT(counters) ((void)0)
+#define CADT_ADD_WAIT_TIME(counters) ((void)0)
 #else
-#define CADT_LAP_WAIT(counters) CADT_LAP((counters), CADT_TIME_WAIT)
+#define CADT_ADD_WAIT_TIME(counters) CADT_ADD_TIME((counters), CADT_TIME_WAIT)
 #endif
 
 CADT_FN void cadt_counters_clear(cadt_counters* counters) {
@@ -64,8 +63,8 @@ CADT_FN void cadt_counters_clear(cadt_counters* counters) {
   counters->wanted = 0u;
 #endif
 #if CADT_TIMED
-  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c) counters->ticks[c] = 0u;
-  counters->lap = cadt_clock();
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMERS); ++c) counters->ticks[c] = 0u;
+  counters->last_clock = cadt_clock();
 #endif
 }
 
@@ -73,12 +72,12 @@ CADT_FN CADT_GLOBAL cadt_u32* cadt_counter_row(CADT_GLOBAL cadt_u32* counter_row
   return counter_rows + item % CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE;
 }
 
-/* A group of a GPU adds up in its own memory, and who comes last passes the sums on: lanes leave their loops one by
- * one, so that there would be one addition in the device's memory for each lane and counter (5 % of the time of 10M
- * points on an H200), and letting the lanes of a warp wait for each other, to add together, costs 3 %.
- * CADT_GROUP_COUNTERS stands once in a kernel, before anything else; `counters` is null if nobody wants to know. */
+/* A group of a GPU adds up in its own memory, and its last lane passes the sums on: lanes leave their loops one by one,
+ * so there would be one addition in device memory for each lane and counter (5 % of the time of 10M points on an H200),
+ * and letting the lanes of a warp wait for each other to add together costs 3 %. CADT_GROUP_COUNTERS stands once in a
+ * kernel, before anything else; null `counter_rows`: nothing is counted. */
 #if CADT_GROUP_SUMS
-enum { CADT_GROUP_DONE = CADT_COUNTERS + CADT_TIMES, CADT_GROUP_WORDS };
+enum { CADT_GROUP_DONE = CADT_COUNTERS + CADT_TIMERS, CADT_GROUP_WORDS };
 #define CADT_GROUP_COUNTERS(counters, counter_rows)          \
   CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS];                \
   if (counter_rows) cadt_clear_sums(sums, CADT_GROUP_WORDS); \
@@ -94,7 +93,7 @@ CADT_FN void cadt_clear_sums(CADT_LOCAL_PTR cadt_u32* sums, cadt_u32 count) {
   cadt_group_barrier();
 }
 
-/* True for the work-item of the group that asks last: it sees the sums of all. */
+/* True for the work-item of the group that calls last: it sees the sums of all. */
 CADT_FN cadt_u32 cadt_is_last_of_group(CADT_LOCAL_PTR cadt_u32* done) {
   cadt_fence_local();
   if (cadt_add_local(done, 1u) + 1u != cadt_group_items) return 0u;
@@ -102,8 +101,7 @@ CADT_FN cadt_u32 cadt_is_last_of_group(CADT_LOCAL_PTR cadt_u32* done) {
   return 1u;
 }
 
-/* Instructions count here, since each lane executes this by itself: no branches for the common counters, one for all
- * others. */
+/* Each lane executes this by itself, so instructions count: no branches for the common counters, one for all others. */
 CADT_FN void cadt_flush_group(cadt_counters* counters, CADT_LOCAL_PTR cadt_u32* sums,
                               CADT_GLOBAL cadt_u32* counter_rows) {
   cadt_u32 others = 0u;
@@ -114,8 +112,8 @@ CADT_FN void cadt_flush_group(cadt_counters* counters, CADT_LOCAL_PTR cadt_u32* 
       if (counters->count[c]) cadt_add_local(sums + c, counters->count[c]);
   }
 #if CADT_TIMED
-  CADT_LAP_WAIT(counters);
-  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c)
+  CADT_ADD_WAIT_TIME(counters);
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMERS); ++c)
     cadt_add_local(sums + CADT_COUNTERS + c, CADT_CAST(cadt_u32, counters->ticks[c] >> CADT_TIME_LANE_SHIFT));
 #endif
   if (!cadt_is_last_of_group(sums + CADT_GROUP_DONE)) return;
@@ -139,7 +137,7 @@ CADT_FN void cadt_flush_item(const cadt_counters* counters, CADT_GLOBAL cadt_u32
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c)
     if (counters->count[c]) cadt_add_relaxed(row + c, counters->count[c]);
 #if CADT_TIMED
-  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMES); ++c) {
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMERS); ++c) {
     const cadt_u32 time = CADT_CAST(cadt_u32, counters->ticks[c] >> CADT_TIME_ITEM_SHIFT);
     if (time) cadt_add_relaxed(row + CADT_ROW_TIMES + c, time);
   }

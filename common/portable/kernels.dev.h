@@ -1,21 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * All kernels. A back end compiles this file; the names are listed in kernel_list.h. The build for floats has those of
- * the strategy `locks`: the star stage, gift wrapping and the verifier have error bounds of their own, for doubles, and
- * what they decide the others decide as well (docs/decisions/0004-exact-integers-and-floats.md).
+ * All kernels. A back end compiles this file; kernel_list.h lists the names. The variant for floats has no star stage,
+ * no gift wrapping and no verifier: their error bounds are for doubles, and what they decide the other kernels decide
+ * as well (docs/decisions/0004-exact-integers-and-floats.md).
  */
 #ifndef CADT_PORTABLE_KERNELS_H
 #define CADT_PORTABLE_KERNELS_H
 
 #include "common/portable/dialect.dev.h"
-/* The text for OpenCL compilers has each file once, where it is included first: not within a condition that is wider
- * than its own. */
+/* The text for OpenCL compilers has each file once, where it is included first: so no include may stand within a wider
+ * condition than its own. */
 #include "common/certify/certify.dev.h"
 #include "common/insertion/cavity.dev.h"
 #include "common/insertion/insert.dev.h"
 #include "common/insertion/legality_sweep.dev.h"
+#include "common/insertion/legalize.dev.h"
 #include "common/insertion/partitioned.dev.h"
 #include "common/insertion/seed_triangle.dev.h"
+#include "common/output/canonical_order.dev.h"
+#include "common/output/hull.dev.h"
 #include "common/output/renumber.dev.h"
 #include "common/overlay/flip_histogram.dev.h"
 #include "common/points/bounds.dev.h"

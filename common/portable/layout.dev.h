@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Layout of what the kernels and the driver share in memory.
+ * What kernels and driver share in memory: layouts, sizes and the meaning of words.
  */
 #ifndef CADT_PORTABLE_LAYOUT_H
 #define CADT_PORTABLE_LAYOUT_H
@@ -13,12 +13,12 @@ typedef struct {
   cadt_u32 word[8]; /* v0 v1 v2 lock n0 n1 n2 flips */
 } __attribute__((aligned(32))) cadt_locked_triangle;
 
-/* Points that are looked at to tell what a set is like (spatial_sort.dev.h). */
-enum { CADT_POINT_SAMPLES = 1024, CADT_HULL_PROBES = 16 /* others that one of them is compared with */ };
+/* Points of the sample for the point profile (spatial_sort.dev.h). */
+enum { CADT_POINT_SAMPLES = 1024, CADT_HULL_PROBES = 16 /* others that each of them is compared with */ };
 
-/* Words that tell what was found when points were put in order: 1 if a cell is crowded; how many equal the one before;
- * and of the sample how many are beside a line, on one circle, on a circle with the next three, the same by a cheap
- * test, on a line with them, on the hull. */
+/* What sorting the points finds: 1 if a cell is over-full; how many points equal the one before; and how many of the
+ * sample lie beside a line, on one circle, on a circle with the next three, the same by a cheap test, on a line with
+ * them, on the hull. */
 enum {
   CADT_OVERFULL,
   CADT_EQUAL,
@@ -35,23 +35,23 @@ enum { CADT_WORD_LOCK = 3, CADT_WORD_HALF_EDGE = 4, CADT_WORD_FLIPS = 7 };
 
 /* The star stage: tiles (tiles.dev.h) and stars (local_star.dev.h). */
 typedef struct {
-  cadt_u32 begin; /* first position; the next tile's is the end */
+  cadt_u32 begin; /* first position; the tile ends where the next one begins */
   cadt_i32 level;
 } cadt_tile;
 
 enum {
   CADT_TILE_POINTS = 704,  /* at most, but for squares that cannot be divided */
-  CADT_TILE_OVERFULL = 64, /* so many of them in a square that is smaller by CADT_OVERFULL_LEVELS: */
+  CADT_TILE_OVERFULL = 64, /* if one square CADT_OVERFULL_LEVELS below holds so many points, */
   CADT_OVERFULL_LEVELS = 3,
-  CADT_TILE_FEW = 128,   /* then so many at most */
+  CADT_TILE_FEW = 128,   /* the tile has at most so many */
   CADT_STAR_DEGREE = 12, /* neighbours of a proven star at most */
   CADT_STAR_LANES = 128, /* lanes of a team that make stars */
-  /* Vertices whose triangles a team writes, and how many of them it collects (more are written at once). */
+  /* Vertices whose triangles a team writes, and how many triangles it collects (more are written at once). */
   CADT_ASSEMBLY_LANES = 128,
   CADT_TRIANGLES_OF_TEAM = 320,
-  /* Words for the stars of a tile: 6 a vertex on average, and these for what some tiles have more. */
+  /* Words for the stars of a tile: 6 a vertex on average, and these as some tiles have more. */
   CADT_STAR_SPARE = 8,
-  /* Words before the stars of the first tile, so that vertices of triangles can take the place of stars in order. */
+  /* Words before the stars of the first tile, so that vertices of triangles can overwrite stars in order. */
   CADT_STAR_LEAD = 8192,
   /* What a sample says: few have stars, many have many candidates. */
   CADT_SAMPLE_FEW_PROVEN = 1,
@@ -102,66 +102,66 @@ typedef struct {
 } cadt_wrap_edge;
 
 enum {
-  CADT_AABB_LEAF = 32,   /* points of a box */
-  CADT_AABB_FANOUT = 32, /* boxes of a crate */
-  CADT_WRAP_PART = 4,    /* points that a lane puts into a box at a time */
+  CADT_AABB_LEAF = 32,   /* points of a leaf node */
+  CADT_AABB_FANOUT = 32, /* leaf nodes of an inner node */
+  CADT_WRAP_PART = 4,    /* points that a lane adds to a leaf node at a time */
   CADT_WRAP_PARTS = CADT_AABB_LEAF / CADT_WRAP_PART,
-  CADT_WRAP_NEAR = 3,         /* boxes in which a first neighbour is looked for */
-  CADT_WRAP_NODES = 32,       /* crates that are compared with a disc at a time, */
+  CADT_WRAP_NEAR = 3,         /* leaf nodes that are searched for a first neighbour */
+  CADT_WRAP_NODES = 32,       /* inner nodes that are compared with a disc at a time, */
   CADT_WRAP_OPENED = 4,       /* of these opened */
-  CADT_WRAP_WIDE = 8,         /* boxes above which rounded numbers choose before exact tests */
-  CADT_WRAP_DEGREE = 40,      /* neighbours of a star at most, the ghost among them: others would wait for a hub */
-  CADT_WRAP_DOUBTFUL = 3,     /* points found first that are asked whether they are neighbours */
+  CADT_WRAP_WIDE = 8,         /* with more leaf nodes, the floating-point filter chooses before exact tests */
+  CADT_WRAP_DEGREE = 40,      /* neighbours of a star at most, the ghost included; more make a high-degree vertex */
+  CADT_WRAP_DOUBTFUL = 3,     /* points found first that are tested for being neighbours */
   CADT_MOST_HIGH_DEGREE = 64, /* vertices without a star at most, */
   CADT_WRAP_EDGES = 256,      /* half-edges between two of them */
   CADT_WRAP_LANES = 128,      /* lanes of a team that search */
   CADT_WRAP_HULL = 3000,      /* points that are wrapped even if nearly all are on the hull, */
-  CADT_WRAP_HULL_EXACT = 400, /* and where that takes exact tests: all are on a circle */
+  CADT_WRAP_HULL_EXACT = 400, /* and if all are on a circle, which takes exact tests */
   CADT_WRAP_SHARES = 8,       /* work-items that write the triangles of a vertex */
-  CADT_WRAP_ROW = 24,         /* half-words of what is known of a star: how many neighbours, and which */
-  CADT_NEAR_PLACE = 127,      /* the bits of a place among */
-  CADT_NEAR_POINTS = 96,      /* the points that are known of a vertex (wrap_fast.dev.h), */
-  CADT_NEAR_FEW = 8,          /* and how many there should be; */
-  CADT_NEAR_LEAVES = 128      /* from how many boxes at most */
+  CADT_WRAP_ROW = 24,         /* half-words of the known neighbours of a vertex: how many, and which */
+  CADT_NEAR_PLACE = 127,      /* bits of a place among */
+  CADT_NEAR_POINTS = 96,      /* the points known to be near a vertex (wrap_fast.dev.h), */
+  CADT_NEAR_FEW = 8,          /* how many there should be, */
+  CADT_NEAR_LEAVES = 128      /* and from how many leaf nodes at most */
 };
 
-/* Two counts in a word: real triangles, and those of the ghost. At most 2^15 points are wrapped in arrays. */
+/* Two counts in a word: real triangles, and ghost triangles. Arrays hold at most 2^15 wrapped points. */
 #define CADT_WRAP_REAL(sum) ((sum) >> 16)
 #define CADT_WRAP_GHOSTS(sum) ((sum)&0xFFFFu)
 
-/* One of several sets of points in a call (batch.dev.h). Its points are halved and counted in cells after they have
- * been multiplied by both factors, powers of two. */
+/* One set of a batch (batch.dev.h). Its points are multiplied by both factors, powers of two, then halved and counted
+ * in cells. */
 typedef struct {
   cadt_real factor, factor_again;
-  cadt_real half_min_x, half_min_y, scale; /* its square of the key grid, as cadt_key_grid */
+  cadt_real half_min_x, half_min_y, scale; /* its square of the key grid, as in cadt_key_grid */
   cadt_real most_x, most_y;                /* the largest coordinates of its points, in cells */
 } cadt_set;
 
-/* The state of a set, in the lowest bits of a word; above them the number of its vertices that have failed. */
+/* The state of a set, in the lowest bits of a word; above them the number of its vertices without a proven star. */
 enum {
   CADT_SET_BATCHED,    /* it is triangulated together with others */
   CADT_SET_FLAT,       /* there are no triangles */
-  CADT_SET_INDIVIDUAL, /* not together with others */
-  CADT_SET_WIDE,       /* nor in narrow arithmetic */
+  CADT_SET_INDIVIDUAL, /* by itself */
+  CADT_SET_WIDE,       /* by itself, in wide arithmetic */
   CADT_SET_STATES = 3,
   CADT_SET_FAILURE = 4,
-  CADT_SET_LANES = 32 /* of a team for a set */
+  CADT_SET_LANES = 32 /* lanes of a team for a set */
 };
 
 /* What cadt_bounds finds. */
 typedef struct {
   cadt_real min_x, max_x, min_y, max_y;
   cadt_u32 low, high; /* lowest exponent, highest exponent, + 4096 */
-  cadt_u32 bad;       /* first point with a coordinate that is no number */
-  cadt_u32 rows;      /* how many rows of partial results there are */
+  cadt_u32 bad;       /* first point with a coordinate that is not finite */
+  cadt_u32 rows;      /* number of rows of partial results */
 } cadt_bounds_row;
 
 enum {
-  CADT_BOUNDS_LANES = 128 /* of a team that merge */
+  CADT_BOUNDS_LANES = 128 /* lanes of a team that merge */
 };
 
-/* Counters of work and conflicts (counters.dev.h). Those before CADT_COUNTERS_COMMON are hardly ever 0 where points are
- * inserted. */
+/* Counters of work and conflicts (counters.dev.h). Where points are inserted, those before CADT_COUNTERS_COMMON are
+ * hardly ever 0. */
 enum {
   CADT_COUNT_WALK_STEPS,
   CADT_COUNT_LOCK_ATTEMPTS,
@@ -184,25 +184,25 @@ enum {
   CADT_COUNTERS
 };
 
-/* What a thread spends its time with (counters.dev.h). */
+/* Timers: what a work-item spends its time on (counters.dev.h). */
 enum {
   CADT_TIME_LOCATE,
-  CADT_TIME_LOCK, /* claims and releases */
+  CADT_TIME_LOCK, /* locks and unlocks */
   CADT_TIME_SPLIT,
   CADT_TIME_TEST, /* reading both triangles of an edge, incircle */
   CADT_TIME_FLIP,
-  CADT_TIME_NEIGHBORS, /* links from outside to what was changed */
+  CADT_TIME_NEIGHBORS, /* neighbours' half-edges back */
   CADT_TIME_OTHER,     /* worklist, choice of the point */
   CADT_TIME_WAIT,      /* for other lanes of the warp */
-  CADT_TIMES,
-  /* A row has 32 bits for each. On a GPU an account is full after 1e15 ticks, seconds of all its lanes; a lane and a
+  CADT_TIMERS,
+  /* A row has 32 bits for each timer. On a GPU a timer is full after 1e15 ticks, seconds of all its lanes; a lane and a
    * group drop up to 2^4 and 2^12 of them. */
   CADT_TIME_LANE_SHIFT = 4,
   CADT_TIME_GROUP_SHIFT = 8,
   CADT_TIME_ITEM_SHIFT = 8 /* CPUs: hours of a core */
 };
 
-/* A row of counters: counts, times. Edges by flips have rows of their own (flip_histogram.dev.h). */
+/* A row of counters: counts, then times. The flip histogram has rows of its own (flip_histogram.dev.h). */
 enum {
   CADT_ROW_TIMES = 20,
   CADT_FLIP_BINS = 16,
@@ -222,10 +222,10 @@ enum {
 #define CADT_CAVITY_BIT(vertex) ((vertex)*2654435761u >> 17 & (32u * CADT_CAVITY_SET_WORDS - 1u))
 
 enum {
-  CADT_LEFT_COUNTS = 3 /* points, edges, work-items that changed the mesh (insert.dev.h) */
+  CADT_DEFERRED_COUNTS = 3 /* points, edges, work-items that changed the mesh (legalize.dev.h) */
 };
 
-/* cadt_locked_mesh.stabilize (split_and_flip.dev.h) */
+/* cadt_locked_mesh.stabilize (stabilized_flips.dev.h) */
 enum { CADT_STABILIZE_OFF, CADT_STABILIZE_DEFER, CADT_STABILIZE_PAPER };
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * A sorting network for a few keys.
+ * A sorting network for 16 keys.
  */
 #ifndef CADT_PORTABLE_SORTING_NETWORK_H
 #define CADT_PORTABLE_SORTING_NETWORK_H

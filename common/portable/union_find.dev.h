@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Connected components: trees of elements, each of which names one above it, or itself if it is the root. Two trees are
- * joined by one compare-and-swap of the higher root, so a component is named by its lowest element.
+ * Union-find: connected components as trees of elements, each of which names its parent, or itself if it is the root.
+ * One compare-and-swap of the higher root joins two trees, so the root of a component is its lowest element.
  */
 #ifndef CADT_PORTABLE_UNION_FIND_H
 #define CADT_PORTABLE_UNION_FIND_H
@@ -13,7 +13,7 @@ CADT_FN cadt_u32 cadt_find_root(CADT_GLOBAL cadt_u32* roots, cadt_u32 r) {
     const cadt_u32 up = cadt_load_relaxed(roots + r);
     if (up == r) return r;
     const cadt_u32 further = cadt_load_relaxed(roots + up);
-    if (further != up) cadt_store_relaxed(roots + r, further); /* shorter for those who come later */
+    if (further != up) cadt_store_relaxed(roots + r, further); /* path halving: shorter for later searches */
     r = up;
   }
 }

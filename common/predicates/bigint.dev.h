@@ -2,9 +2,9 @@
  *
  * Exact arithmetic on coordinates as integers. Every finite double (or float) is an integer times a power of two, so
  * the few coordinates of one predicate become integers over their smallest exponent: no rounding, no overflow, no
- * underflow, nothing that contraction, denormal flushing or a fast-math option could break. How long the integers are
- * follows from the coordinates at hand: 62 bits in most cases, any length up to the whole range of a double in a wide
- * build (docs/decisions/0004-exact-integers-and-floats.md).
+ * underflow, nothing that contraction, denormal flushing or a fast-math option could break. The coordinates at hand say
+ * how long the integers are: 62 bits in most cases, in a wide variant up to the whole range of a double
+ * (docs/decisions/0004-exact-integers-and-floats.md).
  */
 #ifndef CADT_PREDICATES_BIGINT_H
 #define CADT_PREDICATES_BIGINT_H
@@ -65,11 +65,10 @@ CADT_FN cadt_span cadt_span_of(cadt_point a, cadt_point b, cadt_point c) {
 /* Bits of the largest magnitude; 0 if all values are zero. */
 CADT_FN cadt_i32 cadt_span_bits(const cadt_span* s) { return s->high > s->low ? s->high - s->low : 0; }
 
-/* ---- 64-bit integers over one exponent, that of the largest coordinate ---------------------------------------------
- */
+/* ---- 64-bit integers over one exponent, that of the largest coordinate ---- */
 typedef struct {
-#if CADT_GRADUAL
-  double scale; /* a power of two: the largest coordinate becomes less than 2^61 */
+#if CADT_GRADUAL_UNDERFLOW
+  double scale; /* a power of two that makes the largest coordinate less than 2^61 */
 #else
   cadt_i32 power; /* of two */
 #endif
@@ -83,7 +82,7 @@ CADT_FN cadt_u64 cadt_larger_exponent(cadt_u64 exponent, cadt_point p) {
   return larger > exponent ? larger : exponent;
 }
 
-#if CADT_GRADUAL
+#if CADT_GRADUAL_UNDERFLOW
 /* \pre `exponent` is that of the largest coordinate, as in its bits */
 CADT_FN cadt_scale cadt_scale_of(cadt_u64 exponent) {
   cadt_scale s;
@@ -101,7 +100,7 @@ CADT_FN cadt_i64 cadt_scaled(cadt_scale* s, double value) {
   return integer;
 }
 #else
-/* The same by the bits of the coordinates alone. */
+/* The same from the bits of the coordinates alone. */
 CADT_FN cadt_scale cadt_scale_of(cadt_u64 exponent) {
   cadt_scale s;
   s.power = 60 + CADT_EXPONENT_BIAS - CADT_CAST(cadt_i32, exponent >> CADT_MANTISSA_BITS);
@@ -122,7 +121,7 @@ CADT_FN cadt_i64 cadt_scaled(cadt_scale* s, cadt_real value) {
 }
 #endif
 
-/* ---- 128-bit integers -------------------------------------------------------------------------------------------- */
+/* ---- 128-bit integers ---- */
 typedef struct {
   cadt_i64 high;
   cadt_u64 low;
@@ -150,8 +149,7 @@ CADT_FN cadt_i32 cadt_compare_i128(cadt_i128 a, cadt_i128 b) {
   return a.low == b.low ? 0 : (a.low < b.low ? -1 : 1);
 }
 
-/* ---- 256-bit integers: two's complement, little-endian -------------------------------------------------------------
- */
+/* ---- 256-bit integers: two's complement, little-endian ---- */
 typedef struct {
   cadt_u64 word[4];
 } cadt_i256;
@@ -197,8 +195,7 @@ CADT_FN void cadt_add_product_i256(cadt_i256* sum, cadt_i128 a, cadt_i128 b) {
   }
 }
 
-/* ---- 192-bit integers: two's complement, little-endian -------------------------------------------------------------
- */
+/* ---- 192-bit integers: two's complement, little-endian ---- */
 typedef struct {
   cadt_u64 word[3];
 } cadt_i192;
@@ -211,7 +208,7 @@ CADT_FN void cadt_add_product_i192(cadt_i192* sum, cadt_i128 a, cadt_i128 b) {
   cadt_u64 high = cadt_mulhi_u64(a.low, b1) + cadt_mulhi_u64(a1, b.low) + a1 * b1 + (middle < left ? 1ul : 0ul);
   middle += right;
   high += middle < right ? 1ul : 0ul;
-  if (a.high < 0) high -= b.low; /* the upper words were taken for unsigned ones */
+  if (a.high < 0) high -= b.low; /* the upper words were taken as unsigned */
   if (b.high < 0) high -= a.low;
   sum->word[0] += low;
   const cadt_u64 carry = sum->word[0] < low ? 1ul : 0ul, partial = sum->word[1] + middle;
@@ -229,7 +226,7 @@ CADT_FN cadt_i32 cadt_sign_i256(const cadt_i256* a) {
   return (a->word[0] | a->word[1] | a->word[2] | a->word[3]) != 0ul ? 1 : 0;
 }
 
-/* ---- integers of any length: little-endian 32-bit limbs ---------------------------------------------------------- */
+/* ---- integers of any length: little-endian 32-bit limbs ---- */
 
 /* x = value / 2^low, two's complement, n limbs */
 CADT_FN void cadt_limbs_load(cadt_u32* x, cadt_i32 n, cadt_real value, cadt_i32 low) {

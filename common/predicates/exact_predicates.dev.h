@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Exact signs, for when a filter cannot tell (filtered_predicates.dev.h). Functions of their own, not inlined: they are
- * rare and eat registers.
+ * Exact signs, for where the filter does not decide (filtered_predicates.dev.h). Functions of their own, not inlined:
+ * they are rare and take many registers.
  */
 #ifndef CADT_PREDICATES_EXACT_PREDICATES_H
 #define CADT_PREDICATES_EXACT_PREDICATES_H
 
 #include "common/predicates/bigint.dev.h"
 
-/* Where a length of integers is taken. Tests may count (tests/unit/predicates/device_predicates.ipp). */
+/* Marks which integers are taken. Tests count them (tests/unit/predicates/device_predicates.ipp). */
 #ifndef CADT_STAGE
 #define CADT_STAGE(name) ((void)0)
 #endif
 
-/* Sign of the determinant of the rows (d0, d1), (d2, d3), n limbs each; destroys d. */
+/* Sign of the determinant with rows (d0, d1), (d2, d3), of n limbs each; destroys d. */
 CADT_FN cadt_i32 cadt_sign_of_minor(cadt_u32 (*d)[CADT_LIMBS], cadt_i32 n) {
   cadt_u32 negative[4], product[2 * CADT_LIMBS], det[2 * CADT_LIMBS + 1];
   for (cadt_i32 i = 0; i < 4; ++i) negative[i] = cadt_limbs_abs(d[i], n);
@@ -25,7 +25,7 @@ CADT_FN cadt_i32 cadt_sign_of_minor(cadt_u32 (*d)[CADT_LIMBS], cadt_i32 n) {
   return cadt_limbs_sign(det, 2 * n + 1);
 }
 
-/* Orientation, any length. */
+/* Orientation, by integers of any length. */
 CADT_FN_SLOW cadt_i32 cadt_orientation_limbs(cadt_point a, cadt_point b, cadt_point c) {
   cadt_u32 d[4][CADT_LIMBS], origin[CADT_LIMBS];
   CADT_STAGE(orientation_long);
@@ -57,8 +57,7 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_exact(cadt_point a, cadt_point b, cadt_po
   return cadt_orientation_limbs(a, b, c);
 }
 
-/* Orientation of m, a, b where m = (c0 + c1 + c2) / 3 is no coordinate in general: with everything tripled, m is an
- * integer. */
+/* Orientation of m, a, b where m = (c0 + c1 + c2) / 3 is in general no coordinate: tripled, m is an integer. */
 CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point c1, cadt_point c2, cadt_point a,
                                                       cadt_point b) {
   cadt_u32 d[4][CADT_LIMBS], term[CADT_LIMBS];
@@ -82,10 +81,10 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point 
   return cadt_sign_of_minor(d, n);
 }
 
-#if CADT_GRADUAL && !CADT_WIDE
-/* A sum of two doubles, the second at most half of a last place of the first (T. J. Dekker, "A floating-point technique
- * for extending the available precision", 1971). What this takes the self-test asks of a device: sums and products are
- * rounded to nearest, one by one. */
+#if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
+/* A sum of two doubles, the second at most half a unit in the last place of the first (T. J. Dekker, "A floating-point
+ * technique for extending the available precision", 1971). The self-test checks what this needs of a device: sums and
+ * products are rounded to nearest, one by one. */
 typedef struct {
   double high, low;
 } cadt_pair;
@@ -104,7 +103,7 @@ CADT_FN cadt_pair cadt_pair_difference(double a, double b) {
   r.low = (a - (difference - part)) - (b + part);
   return r;
 }
-/* Off by less than 2^-103 of |a| + |b|. */
+/* The error is less than 2^-103 of |a| + |b|. */
 CADT_FN cadt_pair cadt_pair_sum(cadt_pair a, cadt_pair b) {
   const double sum = a.high + b.high, part = sum - a.high;
   return cadt_pair_of(sum, ((a.high - (sum - part)) + (b.high - part)) + (a.low + b.low));
@@ -114,7 +113,7 @@ CADT_FN double cadt_upper_half(double a) {
   const double stretched = 134217729.0 * a; /* 2^27 + 1 */
   return stretched - (stretched - a);
 }
-/* Off by less than 2^-102 of |a b|. */
+/* The error is less than 2^-102 of |a b|. */
 CADT_FN cadt_pair cadt_pair_product(cadt_pair a, cadt_pair b) {
   const double product = a.high * b.high;
   const double au = cadt_upper_half(a.high), al = a.high - au, bu = cadt_upper_half(b.high), bl = b.high - bu;
@@ -122,11 +121,11 @@ CADT_FN cadt_pair cadt_pair_product(cadt_pair a, cadt_pair b) {
   return cadt_pair_of(product, lost + (a.high * b.low + a.low * b.high));
 }
 
-/* The sign of the incircle determinant by sums of two doubles, 0 if they cannot tell. The filter's bound is `most` / 2,
- * about 2^-50 of the sum of all products' magnitudes; here the errors are less than 2^-97 of that: five roundings of a
- * product, each below 2^-102. */
-CADT_FN_SLOW cadt_i32 cadt_incircle_pairs(const cadt_point* q, double most) {
-  cadt_pair d[6], det; /* an array, and loops that stay loops: registers are wanted by who calls this */
+/* The sign of the incircle determinant by sums of two doubles, 0 if they do not decide. The filter's bound is `max_det`
+ * / 2, about 2^-50 of the sum of all products' magnitudes; here the errors are less than 2^-97 of that: five roundings
+ * of a product, each below 2^-102. */
+CADT_FN_SLOW cadt_i32 cadt_incircle_pairs(const cadt_point* q, double max_det) {
+  cadt_pair d[6], det; /* an array, and loops that are not unrolled: the caller needs registers */
   CADT_ROLLED
   for (cadt_i32 i = 0; i < 3; ++i) {
     d[2 * i] = cadt_pair_difference(q[i].x, q[3].x);
@@ -148,12 +147,12 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_pairs(const cadt_point* q, double most) {
     for (cadt_i32 k = 0; k < 2; ++k) part[k] = cadt_pair_sum(factor[2 * k], factor[2 * k + 1]);
     det = cadt_pair_sum(det, cadt_pair_product(part[0], part[1]));
   }
-  const double bound = most * 0x1p-45;
+  const double bound = max_det * 0x1p-45;
   return det.high > bound ? 1 : (-det.high > bound ? -1 : 0);
 }
 #endif
 
-/* Sign of the incircle determinant, any length. */
+/* Sign of the incircle determinant, by integers of any length. */
 CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point c, cadt_point p) {
   cadt_u32 d[6][CADT_LIMBS], negative[6];
   cadt_u32 product[2 * CADT_LIMBS], lift[2 * CADT_LIMBS + 1], minor[2 * CADT_LIMBS + 1];
@@ -190,17 +189,17 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_limbs(cadt_point a, cadt_point b, cadt_point
   return cadt_limbs_sign(det, 4 * n + 3);
 }
 
-/* A difference of coordinates, and whether it is exact: what was lost (D. E. Knuth, "The Art of Computer Programming",
- * vol. 2, 4.2.2). Where subnormal numbers may be 0 that proves nothing. */
+/* A difference of coordinates, and whether it is exact: what rounding lost (D. E. Knuth, "The Art of Computer
+ * Programming", vol. 2, 4.2.2). Where subnormal numbers may be 0 that proves nothing. */
 CADT_FN cadt_real cadt_difference(cadt_real a, cadt_real b, cadt_u32* exact) {
   const cadt_real difference = a - b, part = difference - a;
-  if (!CADT_GRADUAL || (a - (difference - part)) - (b + part) != 0.0) *exact = 0u;
+  if (!CADT_GRADUAL_UNDERFLOW || (a - (difference - part)) - (b + part) != 0.0) *exact = 0u;
   return difference;
 }
 
-#if CADT_GRADUAL && !CADT_WIDE
-CADT_FN_SLOW cadt_i32 cadt_incircle_long(const cadt_point* q, cadt_real most) {
-  const cadt_i32 sign = cadt_incircle_pairs(q, most);
+#if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
+CADT_FN_SLOW cadt_i32 cadt_incircle_long(const cadt_point* q, cadt_real max_det) {
+  const cadt_i32 sign = cadt_incircle_pairs(q, max_det);
   if (sign != 0) {
     CADT_STAGE(incircle_pairs);
     return sign;
@@ -209,9 +208,9 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_long(const cadt_point* q, cadt_real most) {
 }
 #endif
 
-/* Incircle: 1 if p is inside the circle of the counterclockwise triangle a, b, c, 0 on it, -1 outside. The magnitude of
- * the determinant is known to be at most `most`. */
-CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_real most) {
+/* Incircle: 1 if p is inside the circle of the counterclockwise triangle a, b, c, 0 on it, -1 outside. \pre the
+ * magnitude of the determinant is at most `max_det` */
+CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_real max_det) {
   cadt_u32 exact = 1u;
   cadt_point d[3];
   d[0].x = cadt_difference(a.x, p.x, &exact);
@@ -220,7 +219,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
   d[1].y = cadt_difference(b.y, p.y, &exact);
   d[2].x = cadt_difference(c.x, p.x, &exact);
   d[2].y = cadt_difference(c.y, p.y, &exact);
-  /* Of near points the differences are most often exact and fit where the coordinates do not. */
+  /* Of near points the differences are mostly exact, and fit where the coordinates do not. */
   const cadt_u64 none = 0ul;
   cadt_scale s =
       exact ? cadt_scale_of(cadt_larger_exponent(cadt_larger_exponent(cadt_larger_exponent(none, d[0]), d[1]), d[2]))
@@ -237,14 +236,15 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
       cx -= px, cy -= py;
     }
     if (s.fits) {
-#if CADT_GRADUAL
-      /* As integers without common factors 2. If then the determinant is below 2^191, 192 bits tell it, whatever is
-       * lost of its terms. */
+#if CADT_GRADUAL_UNDERFLOW
+      /* As integers without a common factor 2. If then the determinant is below 2^191, its value modulo 2^192 gives its
+       * sign, whatever its terms lose. */
       const cadt_u64 bits = CADT_CAST(cadt_u64, ax | ay | bx | by | cx | cy);
       const cadt_i32 zeros = bits ? cadt_trailing_zeros(bits) : 0;
       const double unit = s.scale * cadt_double_of_bits(CADT_CAST(cadt_u64, 1023 - zeros) << 52), square = unit * unit;
-      /* |differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. Loops keep the code short. */
-      if (most * square * square < 1.5e57) { /* 2^190 */
+      /* differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. Loops keep the code short.
+       */
+      if (max_det * square * square < 1.5e57) { /* 2^190 */
         CADT_STAGE(incircle_192);
         cadt_i192 det;
         for (cadt_i32 i = 0; i < 3; ++i) det.word[i] = 0ul;
@@ -260,7 +260,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
         return cadt_sign_i192(&det);
       }
 #else
-      (void)most;
+      (void)max_det;
 #endif
       CADT_STAGE(incircle_256);
       cadt_i256 det;
@@ -276,13 +276,13 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
       return cadt_sign_i256(&det);
     }
   }
-#if CADT_GRADUAL && !CADT_WIDE
+#if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
   cadt_point q[4];
   q[0] = a;
   q[1] = b;
   q[2] = c;
   q[3] = p;
-  return cadt_incircle_long(q, most);
+  return cadt_incircle_long(q, max_det);
 #else
   return cadt_incircle_limbs(a, b, c, p);
 #endif

@@ -37,7 +37,7 @@ constexpr std::array<Probe, 8> probes = {{
     {"64 x 64 bit product", 0x3FF123456789ABCD, 0x000000FEDCBA9871, 0xC24FD4316A3A0000},
 }};
 
-// The same for floats, in the lower words. Nothing relies on underflow or division there (CADT_GRADUAL).
+// The same for floats, in the lower words. Nothing relies on underflow or division there (CADT_GRADUAL_UNDERFLOW).
 constexpr std::array<Probe, 8> float_probes = {{
     // a = 1 + 2^-13, b = -(1 + 2^-12). a*a = 1 + 2^-12 + 2^-26 rounds to 1 + 2^-12. Fused: 2^-26.
     {"contraction of a*a+b", 0x3F800400, 0xBF800800, 0x00000000},
@@ -86,7 +86,7 @@ void compare(const DeviceInfo& info, const char* name, std::uint64_t expected, s
                                                                      ", found " + hexadecimal(found));
 }
 
-/// `Bits`: as many as a coordinate of the device has.
+/// `Bits`: an integer as wide as a coordinate of the device.
 template <class Bits>
 void run_probes(Device& device, const std::array<Probe, 8>& of, const std::array<std::uint32_t, 2>& product) {
   std::array<Bits, 2 * probes.size()> inputs{};
@@ -101,7 +101,8 @@ void run_probes(Device& device, const std::array<Probe, 8>& of, const std::array
   const auto in = device.allocate(sizeof inputs), out = device.allocate(sizeof outputs),
              counters = device.allocate(sizeof words);
   device.write(*in, 0, inputs.data(), sizeof inputs);
-  device.fill(*out, 0, sizeof outputs, 0xA5A5A5A5u);  // no answer has these bits: an output not written is seen
+  device.fill(*out, 0, sizeof outputs,
+              0xA5A5A5A5u);  // no answer has these bits: an output that is not written is noticed
   device.write(*counters, 0, words.data(), sizeof words);
   const std::array<Arg, 4> arguments = {Arg(in), Arg(out), Arg(counters), Arg(items)};
   device.launch(KernelId::cadt_selftest, items, arguments, KernelVariant::narrow);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Known answers of the arithmetic that the filters rely on, computed on the actual device from values in memory
- * (literals would be folded by the compiler). The host compares the bits and refuses the device by the name of the
- * probe that failed (common/predicates/self_test.cpp).
+ * Known answers of the arithmetic that the filters rely on, computed on the actual device from values in memory (a
+ * compiler would fold literals). The host compares the bits and refuses the device with the name of the probe that
+ * failed (common/predicates/self_test.cpp).
  */
 #ifndef CADT_PREDICATES_SELF_TEST_H
 #define CADT_PREDICATES_SELF_TEST_H
@@ -12,22 +12,22 @@
 
 enum { CADT_PROBES = 8, CADT_PROBE_WORDS = 5 };
 
-/* in: 2 * CADT_PROBES coordinates; out: CADT_PROBES of them; words: CADT_PROBE_WORDS words, zero at the start but the
- * last, which is CADT_NONE; items: those of the launch that count, for it may be rounded up */
+/* in: 2 * CADT_PROBES coordinates; out: CADT_PROBES of them; words: CADT_PROBE_WORDS, zero at the start but the last,
+ * which is CADT_NONE; items: so many work-items count, for the launch may be rounded up */
 CADT_KERNEL(cadt_selftest, CADT_GLOBAL const cadt_real* in, CADT_GLOBAL cadt_real* out, CADT_GLOBAL cadt_u32* words,
             cadt_u32 items) {
   if (cadt_item == 0u) {
-    /* contraction: a*a+b with an exact product that needs 54 bits; fused it is not zero */
+    /* contraction: a*a+b where the exact product needs 54 bits; fused it is not zero */
     out[0] = in[0] * in[0] + in[1];
     /* Two-Sum: the rounding error of a sum; fast-math folds it to zero */
     cadt_real s = in[2] + in[3], t = s - in[2];
     out[1] = (in[2] - (s - t)) + (in[3] - t);
-#if CADT_GRADUAL
+#if CADT_GRADUAL_UNDERFLOW
     /* gradual underflow of a product and of a difference */
     out[2] = in[4] * in[5];
     out[3] = in[6] - in[7];
 #else
-    /* subnormal numbers that are moved and chosen, not computed with, keep their bits */
+    /* subnormal numbers that are copied and compared, not computed with, keep their bits */
     out[2] = in[4];
     out[3] = cadt_less(in[6], in[7]) ? in[6] : in[7];
 #endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Known answers of the arithmetic and the atomics, asked from the actual device. Every back end runs this when it opens
-// a device.
+// Known answers of the arithmetic and the atomics, from the actual device. Every back end runs this when it opens a
+// device.
 #pragma once
 
 #include "common/driver/device.hpp"

@@ -3,7 +3,7 @@
  * Triangles of three vertices without stars, which appear in no star: of three high-degree vertices, or of two and the
  * ghost. They fill gaps whose edges are known from the other side. All three are Delaunay neighbours, so the triangle
  * beyond an edge is the one that the edge has in the Delaunay triangulation of the high-degree vertices alone: a step
- * of gift wrapping among few points (docs/algorithm.md, "Gift wrapping").
+ * of gift wrapping among few points (docs/stars.md, "Gift wrapping").
  */
 #ifndef CADT_STARS_HIGH_DEGREE_H
 #define CADT_STARS_HIGH_DEGREE_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
  * Local stars: one lane computes the star of a vertex p from the points around it, without locks. A star is proven, or
- * its vertex is left to gift wrapping and insertion (docs/algorithm.md, "The star stage").
+ * its vertex is left to gift wrapping and insertion (docs/stars.md, "Local stars").
  *
  * In inverted space, u = (q - p) / |q - p|^2, the star vertices of p are the vertices of the convex hull of all u, and
  * incircle is orientation. Near points are far out:

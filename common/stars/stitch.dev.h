@@ -2,7 +2,7 @@
  *
  * Stitching: the proven part of the mesh and the residual mesh become one. A triangle without a proven vertex belongs
  * to the Delaunay triangulation of the unproven (residual) vertices alone, since an empty circle stays empty in a
- * subset (docs/algorithm.md, "The join"). Insertion builds that residual mesh; here those of its triangles are found
+ * subset (docs/stars.md, "Stitching"). Insertion builds that residual mesh; here those of its triangles are found
  * that fill the holes of the proven part, and both parts are connected.
  *
  *    proven part with a hole     residual mesh               whole mesh

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
  * Exact gift wrapping: the star of one vertex p by a team, without locks. It finds one star vertex after another
- * (wrap_step.dev.h; docs/algorithm.md, "Gift wrapping"), each by exact predicates, so ties are broken as everywhere
+ * (wrap_step.dev.h; docs/stars.md, "Gift wrapping"), each by exact predicates, so ties are broken as everywhere
  * else.
  */
 #ifndef CADT_STARS_WRAP_EXACT_H

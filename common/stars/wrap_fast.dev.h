@@ -3,7 +3,7 @@
  * Gift wrapping in single precision, checked as a whole: the star of one vertex p by a team. It wraps the points around
  * p; then exact predicates show for each triangle that no other point is in its circle, which mostly is so small that
  * all of its points are known. Stars with larger circles, and those that single precision gets wrong, are left to
- * cadt_wrap_stars, which decides each step exactly but takes over the proven triangles (docs/algorithm.md, "Gift
+ * cadt_wrap_stars, which decides each step exactly but takes over the proven triangles (docs/stars.md, "Gift
  * wrapping").
  */
 #ifndef CADT_STARS_WRAP_FAST_H
@@ -261,7 +261,7 @@ CADT_FN cadt_u32 cadt_near_star(cadt_near* w) {
 CADT_FN cadt_u32 cadt_near_on_circle(CADT_GLOBAL const cadt_point* points, cadt_u32 n, cadt_u32 p) {
   const cadt_u32 step = n / 4u, a = (p + step) % n, b = (p + 2u * step) % n, c = (p + 3u * step) % n;
   double most;
-  return cadt_incircle_rounded(points[a], points[b], points[c], points[p], &most) == 0 ? 1u : 0u;
+  return cadt_incircle_filter(points[a], points[b], points[c], points[p], &most) == 0 ? 1u : 0u;
 }
 
 /* The stars of all n points. Those not found are listed in `todo` and counted (CADT_WRAP_TODO... of layout.dev.h);

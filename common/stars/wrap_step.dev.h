@@ -67,8 +67,8 @@ CADT_FN_SLOW cadt_u32 cadt_wrap_unsure(CADT_GLOBAL const cadt_point* points, cad
     return cadt_incircle(first, second, points[b], points[c], counters) > 0 ? CADT_TEST_BETTER : CADT_TEST_WORSE;
   if (deferred == CADT_NONE) return CADT_TEST_DEFERRED;
   if (deferred == CADT_MANY_DEFERRED) return CADT_TEST_DROPPED;
-  return cadt_incircle_rounded(first, second, points[b], points[deferred], &most) < 0 ? CADT_TEST_DEFERRED
-                                                                                      : CADT_TEST_DROPPED;
+  return cadt_incircle_filter(first, second, points[b], points[deferred], &most) < 0 ? CADT_TEST_DEFERRED
+                                                                                     : CADT_TEST_DROPPED;
 }
 
 /* Each lane proposes a point and its key, or CADT_NONE for both. Returns the point with the least key, or CADT_NONE if
@@ -155,8 +155,8 @@ CADT_FN cadt_u32 cadt_wrap_compare(const cadt_wrapper* w, const cadt_wrap_step* 
   if (b == CADT_NONE) return c;
   CADT_GLOBAL const cadt_point* points = w->in.points;
   double most;
-  const cadt_i32 sign = cadt_incircle_rounded(points[t->side > 0 ? w->p : t->a], points[t->side > 0 ? t->a : w->p],
-                                              points[b], points[c], &most);
+  const cadt_i32 sign = cadt_incircle_filter(points[t->side > 0 ? w->p : t->a], points[t->side > 0 ? t->a : w->p],
+                                             points[b], points[c], &most);
   if (sign != 0) return sign > 0 ? c : b;
   const cadt_u32 so = cadt_wrap_unsure(points, w->p, t->a, t->side, b, c, may_defer, *deferred, w->counters);
   if (so == CADT_CAST(cadt_u32, CADT_TEST_DEFERRED)) *deferred = c;

@@ -295,7 +295,7 @@ class OnDevice : private Outcome {
     report.hull_vertices = h;
     link_boundary(mesh_, begin(boundary));
     check_euler_formula(mesh_, begin(euler));
-    // With counterclockwise triangles one boundary cycle implies one component (docs/algorithm.md); else components
+    // With counterclockwise triangles one boundary cycle implies one component (docs/verification.md); else components
     // must be counted.
     if (passed(euler) && !(passed(boundary) && passed(orientations))) {
       fetch_mesh();

@@ -57,8 +57,8 @@ constinit const KernelTable narrow_kernels = with_counts();
 namespace cadt::test {
 std::size_t number_of_sites() { return CADT_SITES; }
 std::size_t index_of(Site site) {
-  return site == Site::claimed    ? CADT_AT_LOCKED
-         : site == Site::released ? CADT_AT_UNLOCKED
-                                  : CADT_AT_UNLOCKED_UNCHANGED;
+  return site == Site::claimed    ? CADT_SITE_LOCKED
+         : site == Site::released ? CADT_SITE_UNLOCKED
+                                  : CADT_SITE_UNLOCKED_UNCHANGED;
 }
 }  // namespace cadt::test

@@ -11,7 +11,7 @@ import pathlib
 import shutil
 import sys
 
-LOCK, CHANGE, INSERT = (f"common/insertion/{name}.dev.h" for name in ("lock", "split_and_flip", "insert"))
+LOCK, SPLIT, FLIP, INSERT = (f"common/insertion/{name}.dev.h" for name in ("lock", "split", "flip", "insert"))
 ATOMICS = "common/portable/atomics.dev.h"
 
 # name: (what is wrong, tools that find it, [(file, text, replacement)])
@@ -21,62 +21,62 @@ ATOMICS = "common/portable/atomics.dev.h"
 FAULTS = {
     "none": ("nothing: the control", [], []),
     "flip_one_lock_short": (
-        "a flip claims three of its four records", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
-        [(CHANGE, "locks.triangle[3] = CADT_TRIANGLE_OF(outer_aq);", "locks.triangle[3] = CADT_NONE;")]),
+        "a flip locks three of its four triangles", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
+        [(FLIP, "locks.triangle[3] = CADT_TRIANGLE_OF(outer_aq);", "locks.triangle[3] = CADT_NONE;")]),
     "split_one_lock_short": (
-        "a split claims two of its three records", ["host", "opencl", "gpu"],
-        [(CHANGE, "locks.triangle[2] = CADT_TRIANGLE_OF(s.n2);", "locks.triangle[2] = CADT_NONE;")]),
+        "a split locks two of its three triangles", ["host", "opencl", "gpu"],
+        [(SPLIT, "locks.triangle[2] = CADT_TRIANGLE_OF(s.n2);", "locks.triangle[2] = CADT_NONE;")]),
     "no_reread": (
-        "a claim takes whatever is there and asks nothing: neither the version nor the fields again",
+        "a lock is taken whatever the triangle holds: neither version nor fields are compared",
         ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
         [(LOCK, "#elif CADT_CONTIGUOUS\n  if (*version == CADT_ANY_VERSION) *version", "#elif CADT_CONTIGUOUS\n  *version"),
          (LOCK, "if (*version != CADT_ANY_VERSION && *version != found) {", "if (*version == 1u) {"),
-         (LOCK, "const cadt_snapshot now = cadt_look_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
+         (LOCK, "const cadt_snapshot now = cadt_snapshot_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
     "no_confirm": (
         "GPUs: the version is compared, the fields are not read again", ["relacy-gpu"],
-        [(LOCK, "const cadt_snapshot now = cadt_look_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
+        [(LOCK, "const cadt_snapshot now = cadt_snapshot_from(m, t, k);", "const cadt_snapshot now = *s;\n  (void)m, (void)t, (void)k;")]),
     "confirm_no_vertices": (
         "GPUs: the vertices by which a flip was tested are not compared", ["relacy-gpu"],
         [(LOCK, "cadt_u32 other = (now.v0 ^ s->v0) | (now.v1 ^ s->v1) | (now.v2 ^ s->v2);", "cadt_u32 other = 0u;")]),
     "confirm_no_links": (
-        "GPUs: the links by which a flip has claimed are not compared", ["relacy-gpu"],
-        [(CHANGE, "cadt_validate(m, t, k, CADT_HALF_EDGES_01, &s)", "cadt_validate(m, t, k, 0u, &s)"),
-         (CHANGE, "cadt_validate(m, n, j, CADT_HALF_EDGES_01, &u)", "cadt_validate(m, n, j, 0u, &u)")]),
+        "GPUs: the half-edges by which a flip chose its locks are not compared", ["relacy-gpu"],
+        [(FLIP, "cadt_validate(m, t, k, CADT_HALF_EDGES_01, &s)", "cadt_validate(m, t, k, 0u, &s)"),
+         (FLIP, "cadt_validate(m, n, j, CADT_HALF_EDGES_01, &u)", "cadt_validate(m, n, j, 0u, &u)")]),
     "release_early": (
-        "a flip gives its records back before it has written them", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
-        [(CHANGE,
+        "a flip unlocks its triangles before it has written them", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
+        [(FLIP,
           "  cadt_write_flip(m, half_edge, &s, &u, counters);\n  cadt_fence_before_unlock();\n  cadt_unlock(m, &locks);\n",
           "  cadt_fence_before_unlock();\n  cadt_unlock(m, &locks);\n  cadt_write_flip(m, half_edge, &s, &u, counters);\n")]),
     "publish_early": (
-        "the new records of a split are made free before they are written", ["host", "opencl", "gpu"],
-        [(CHANGE, "  cadt_write_face(m, i, t, &s, edges, counters);\n",
-          "  cadt_publish_triangle(m, t1);\n  cadt_publish_triangle(m, t2);\n  cadt_write_face(m, i, t, &s, edges, counters);\n")]),
+        "the new triangles of a split are published before they are written", ["host", "opencl", "gpu"],
+        [(SPLIT, "  cadt_write_face_split(m, i, t, &s, edges, counters);\n",
+          "  cadt_publish_triangle(m, t1);\n  cadt_publish_triangle(m, t2);\n  cadt_write_face_split(m, i, t, &s, edges, counters);\n")]),
     "same_version": (
         "an unlock after a change does not raise the version", ["host", "opencl", "relacy"],
         [(LOCK, "{ return version + 2u ? version + 2u : 2u; }", "{ return version; }")]),
     "check_then_set": (
-        "a claim is a load and a store, not one operation", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
+        "a try-lock is a load and a store, not one operation", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
         [(LOCK, "cadt_cas_lock(lock, *version, *version | 1u)) return 1u;",
           "cadt_load_field(lock) == *version) {\n    cadt_store_relaxed(lock, *version | 1u);\n    return 1u;\n  }"),
          (LOCK, "const cadt_u32 found = cadt_or_relaxed(lock, 1u);",
           "const cadt_u32 found = cadt_load_relaxed(lock);\n  cadt_store_relaxed(lock, found | 1u);")]),
     "lock_kept_at_failure": (
-        "a lost claim gives back all but the last record that it had", ["host", "opencl", "gpu"],
+        "a failed try-lock unlocks all but the last triangle that it had", ["host", "opencl", "gpu"],
         [(LOCK, "cadt_unlock_unchanged(m, c, i);", "cadt_unlock_unchanged(m, c, i ? i - 1u : 0u);")]),
     "point_dropped": (
         "a point that got no locks is on no list", ["host", "opencl", "gpu"],
         [(INSERT, "const cadt_u32 at = cadt_add_relaxed(deferred_counts, 1u);",
           "const cadt_u32 at = cadt_load_relaxed(deferred_counts);")]),
     "plain_unlock": (
-        "the lock word is given back by a plain store", ["tsan"],
-        [(ATOMICS, "{ cadt_store_release(p, value); }\n/* behind claims", "{ *p = value; }\n/* behind claims")]),
+        "the unlock is a plain store", ["tsan"],
+        [(ATOMICS, "{ cadt_store_release(p, value); }\n/* after locks", "{ *p = value; }\n/* after locks")]),
     "relaxed_claim": (
-        "CPUs: the compare-and-swap of a claim orders nothing", [],
+        "CPUs: the compare-and-swap of a lock orders nothing", [],
         [(ATOMICS, "  return cadt_cas_acq_rel(p, expected, desired);", "  return cadt_cas_relaxed(p, expected, desired);")]),
     "relaxed_unlock": (
-        "CPUs: the store that gives a record back orders nothing", ["relacy"],
-        [(ATOMICS, "{ cadt_store_release(p, value); }\n/* behind claims",
-          "{ cadt_store_relaxed(p, value); }\n/* behind claims")]),
+        "CPUs: the store of an unlock orders nothing", ["relacy"],
+        [(ATOMICS, "{ cadt_store_release(p, value); }\n/* after locks",
+          "{ cadt_store_relaxed(p, value); }\n/* after locks")]),
     "relaxed_fields_load": (
         "CPUs: fields are read in no order, and not read again", ["relacy"],
         [(ATOMICS, "{ return cadt_load_acquire(p); }", "{ return cadt_load_relaxed(p); }")]),
@@ -85,13 +85,13 @@ FAULTS = {
         [(ATOMICS, "{ cadt_store_release(p, value); }\nCADT_FN cadt_u32 cadt_cas_lock",
           "{ cadt_store_relaxed(p, value); }\nCADT_FN cadt_u32 cadt_cas_lock")]),
     "block_fence_claims": (
-        "GPUs: the fence behind the claims is none for other groups (block scope)", ["relacy-gpu"],
+        "GPUs: the fence after the locks is none for other groups (block scope)", ["relacy-gpu"],
         [(ATOMICS, "CADT_FN void cadt_fence_after_lock(void) { cadt_fence_acq_rel(); }", "CADT_FN void cadt_fence_after_lock(void) {}")]),
     "block_fence_locks": (
         "GPUs: the fence before the unlocks is none for other groups (block scope)", ["relacy-gpu"],
         [(ATOMICS, "CADT_FN void cadt_fence_before_unlock(void) { cadt_fence_acq_rel(); }", "CADT_FN void cadt_fence_before_unlock(void) {}")]),
     "abandon_by_store": (
-        "GPUs: a claim is given back unchanged by a store, which cuts the last owner's release sequence", [],
+        "GPUs: a triangle is unlocked unchanged by a store, which cuts the last owner's release sequence", [],
         [(LOCK, "      cadt_add_relaxed(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);",
           "      cadt_store_relaxed(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, c->version[i]);")]),
 }

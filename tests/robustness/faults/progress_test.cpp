@@ -149,7 +149,7 @@ TEST_P(ReportedProgress, RepeatedPasses) {
     counts = kernel == KernelId::cadt_legality_sweep ? args[args.size() - 3].buffer() : nullptr;
   };
   faults->change_read = [&](const Buffer& from, std::size_t, void* to, std::size_t bytes) {
-    const std::size_t at = (CADT_LEFT_COUNTS + 2) * sizeof(std::uint32_t);
+    const std::size_t at = (CADT_DEFERRED_COUNTS + 2) * sizeof(std::uint32_t);
     if (&from != counts || bytes <= at || unsettled++ % 4 == 3) return;
     const std::uint32_t one = 1;
     std::memcpy(static_cast<std::byte*>(to) + at, &one, sizeof one);

@@ -3,7 +3,7 @@
 // value that C++ allows. CADT_CONTIGUOUS is set by the including file: 1 for the memory orders of CPUs, 0 for those of
 // GPUs, where fields are relaxed, fences order, and the owner reads its triangles again.
 //
-// Claims, validation, changes, releases and hints are those of split_and_flip.dev.h, lock.dev.h and locate.dev.h; three
+// Locks, validation, splits, flips and walks are those of lock.dev.h, split.dev.h, flip.dev.h and locate.dev.h; three
 // threads split and flip in a mesh of eight vertices.
 #include "tests/robustness/models/protocol.hpp"
 
@@ -179,19 +179,19 @@ Start make_start() {
   const cadt_locked_mesh mesh = view();
   cadt_counters counters;
   cadt_counters_clear(&counters);
-  cadt_start(&mesh, &counters);
+  cadt_make_seed_mesh(&mesh, &counters);
   for (cadt_u32 i = 3; i < from_start; ++i) {
     cadt_u32 hint = 0, edges[4];
-    if (cadt_try_vertex(&mesh, i, points[i], &hint, edges, &counters) == 0) std::abort();
+    if (cadt_try_insert(&mesh, i, points[i], &hint, edges, &counters) == 0) std::abort();
     plain.vertex_to_triangle[i] = hint;
   }
   Start start;
   std::memcpy(start.image.data(), &plain, sizeof plain);
   for (cadt_u32 t = 0; t < 2 * vertices; ++t)
     for (cadt_u32 k = 0; k < 3 && plain.locked[t].word[CADT_WORD_LOCK] != 0; ++k) {
-      const cadt_snapshot s = cadt_look_from(&mesh, t, k);
+      const cadt_snapshot s = cadt_snapshot_from(&mesh, t, k);
       if (CADT_TRIANGLE_OF(s.n0) < t) continue;
-      const cadt_snapshot u = cadt_look_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
+      const cadt_snapshot u = cadt_snapshot_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
       if (cadt_is_illegal(&mesh, s.v0, s.v1, s.v2, u.v0, &counters))
         start.illegal.at(start.illegal_size++) = CADT_HALF_EDGE(t, k);
     }
@@ -226,7 +226,7 @@ struct SplitsAndFlips : rl::test_suite<SplitsAndFlips, threads> {
     const cadt_u32 i = from_start - 1 + index;
     cadt_u32 hint = cadt_load_relaxed(mesh.vertex_to_triangle + 3), edges[4], size = 0;
     for (int tries = 0; tries < 3 && size == 0; ++tries)
-      size = cadt_try_vertex(&mesh, i, points[i], &hint, edges, &counters);
+      size = cadt_try_insert(&mesh, i, points[i], &hint, edges, &counters);
     for (cadt_u32 e = 0; e < size; ++e) flip(mesh, edges[e], i, counters);
   }
 
@@ -234,7 +234,7 @@ struct SplitsAndFlips : rl::test_suite<SplitsAndFlips, threads> {
     cadt_u32 partner = 0, all_sides = 0;
     const cadt_point at = apex == CADT_NONE ? cadt_point{0, 0} : points[apex];
     for (int tries = 0; tries < 2; ++tries)
-      if (cadt_legalize_edge(&mesh, link, apex, at, &partner, &all_sides, &counters) != CADT_EDGE_CONFLICT) return;
+      if (cadt_flip_if_illegal(&mesh, link, apex, at, &partner, &all_sides, &counters) != CADT_EDGE_CONFLICT) return;
   }
 
   void after() {
@@ -250,7 +250,7 @@ struct SplitsAndFlips : rl::test_suite<SplitsAndFlips, threads> {
     }
     totals.splits += splits;
     for (cadt_u32 t = 0; t < 2 * vertices; ++t) {
-      const cadt_snapshot s = cadt_look(&mesh, t);
+      const cadt_snapshot s = cadt_snapshot_of(&mesh, t);
       RL_ASSERT((s.lock & 1u) == 0u && "a record is held at the end");
       if (s.lock == 0) continue;
       ++live;
@@ -260,13 +260,13 @@ struct SplitsAndFlips : rl::test_suite<SplitsAndFlips, threads> {
       for (cadt_u32 k = 0; k < 3; ++k) {
         const cadt_u32 across = CADT_NEIGHBOR(s, k), n = CADT_TRIANGLE_OF(across);
         RL_ASSERT(n < 2 * vertices && CADT_EDGE_OF(across) < 3 && "a link to nowhere");
-        const cadt_snapshot u = cadt_look_from(&mesh, n, CADT_EDGE_OF(across));
+        const cadt_snapshot u = cadt_snapshot_from(&mesh, n, CADT_EDGE_OF(across));
         RL_ASSERT(u.lock != 0 && u.n0 == CADT_HALF_EDGE(t, k) && "a neighbour does not know its neighbour");
         RL_ASSERT(u.v1 == CADT_VERTEX(s, CADT_PREV(k)) && u.v2 == CADT_VERTEX(s, CADT_NEXT(k)) &&
                   "neighbours do not share an edge");
       }
     }
-    RL_ASSERT(live == 2 * (from_start + splits) - 2 && "records are lost");
+    RL_ASSERT(live == 2 * (from_start + splits) - 2 && "triangles are lost");
     cells = nullptr;
   }
 };
@@ -303,7 +303,7 @@ struct Claims : rl::test_suite<Claims, threads> {
         RL_ASSERT(!cadt_try_lock(&mesh, &claim, &counters) && "a record that is held was claimed");
         continue;
       }
-      cadt_snapshot s = cadt_look(&mesh, 0);
+      cadt_snapshot s = cadt_snapshot_of(&mesh, 0);
       if (!cadt_is_unlocked(s.lock)) continue;
       cadt_lock_set claim = claim_of(s.lock, CADT_NONE);
       if (!cadt_try_lock(&mesh, &claim, &counters)) continue;
@@ -324,7 +324,7 @@ struct Claims : rl::test_suite<Claims, threads> {
 
   void after() {
     const cadt_locked_mesh mesh = view();
-    const cadt_snapshot s = cadt_look(&mesh, 0);
+    const cadt_snapshot s = cadt_snapshot_of(&mesh, 0);
     RL_ASSERT(s.lock == 2 + 2 * (changes[0] + changes[2]) && s.v0 == expected(s.lock) && "a change is lost");
     cells = nullptr;
   }

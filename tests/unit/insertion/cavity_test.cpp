@@ -48,9 +48,9 @@ class RandomMesh {
     cadt_counters_clear(&counters);
     for (std::uint32_t i = 0; i < flips; ++i) {
       const std::uint32_t link = CADT_HALF_EDGE(below(slots()), below(3));
-      const cadt_snapshot s = cadt_look_from(&m, CADT_TRIANGLE_OF(link), CADT_EDGE_OF(link));
+      const cadt_snapshot s = cadt_snapshot_from(&m, CADT_TRIANGLE_OF(link), CADT_EDGE_OF(link));
       if (s.lock == 0) continue;
-      const cadt_snapshot u = cadt_look_from(&m, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
+      const cadt_snapshot u = cadt_snapshot_from(&m, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
       if (s.v0 == CADT_GHOST || s.v1 == CADT_GHOST || s.v2 == CADT_GHOST || u.v0 == CADT_GHOST) continue;
       if (side(s.v0, s.v1, u.v0) <= 0 || side(s.v0, u.v0, s.v2) <= 0) continue;
       cadt_write_flip(&m, link, &s, &u, &counters);
@@ -116,8 +116,8 @@ class RandomMesh {
     std::uint32_t illegal = 0;
     for (std::uint32_t t = 0; t < slots(); ++t)
       for (std::uint32_t k = 0; k < 3 && records_[t].word[CADT_WORD_LOCK] != 0; ++k) {
-        const cadt_snapshot s = cadt_look_from(&m, t, k);
-        const cadt_snapshot u = cadt_look_from(&m, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
+        const cadt_snapshot s = cadt_snapshot_from(&m, t, k);
+        const cadt_snapshot u = cadt_snapshot_from(&m, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
         illegal += cadt_is_illegal(&m, s.v0, s.v1, s.v2, u.v0, &counters);
       }
     return illegal / 2;
@@ -151,16 +151,16 @@ class RandomMesh {
     m.third = third;
     cadt_counters counters;
     cadt_counters_clear(&counters);
-    cadt_start(&m, &counters);
+    cadt_make_seed_mesh(&m, &counters);
     std::vector<std::uint32_t> left(4096), counts(16);
-    const cadt_deferred deferred = cadt_lists(left.data(), counts.data(), 4096);
+    const cadt_deferred deferred = cadt_deferred_lists(left.data(), counts.data(), 4096);
     for (std::uint32_t i = 0; i < n; ++i) {
       if (i == m.first || i == m.second || i == m.third) continue;
       std::uint32_t hint = hints_[0];
-      CADT_WORKLIST_HERE(work);
+      CADT_DECLARE_WORKLIST(work);
       cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);
       work.apex_point = points_[i];
-      work.size = cadt_try_vertex(&m, i, points_[i], &hint, work.half_edge, &counters);
+      work.size = cadt_try_insert(&m, i, points_[i], &hint, work.half_edge, &counters);
       hints_[i] = hint;
       cadt_legalize(&m, &work, &deferred, &counters);
     }

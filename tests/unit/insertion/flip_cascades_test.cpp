@@ -31,7 +31,7 @@ Work insert_in_order(const std::vector<cadt_point>& points, std::uint32_t limit,
                      std::vector<cadt_locked_triangle>& records) {
   const auto n = static_cast<std::uint32_t>(points.size());
   records.assign(2 * n, cadt_locked_triangle{});
-  std::vector<std::uint32_t> hints(n), edges(8 * n), counts(CADT_LEFT_COUNTS);
+  std::vector<std::uint32_t> hints(n), edges(8 * n), counts(CADT_DEFERRED_COUNTS);
   cadt_locked_mesh mesh{};
   mesh.locked = records.data();
   mesh.points = points.data();
@@ -41,21 +41,22 @@ Work insert_in_order(const std::vector<cadt_point>& points, std::uint32_t limit,
   mesh.center = {(points[0].x + points[1].x + points[2].x) / 3, (points[0].y + points[1].y + points[2].y) / 3};
   cadt_counters counters;
   cadt_counters_clear(&counters);
-  cadt_start(&mesh, &counters);
+  cadt_make_seed_mesh(&mesh, &counters);
   Work done;
   std::uint32_t before = 0;
   const auto count_flips = [&] {
     done.most_flips = std::max<std::uint64_t>(done.most_flips, counters.count[CADT_COUNT_FLIPS] - before);
     before = counters.count[CADT_COUNT_FLIPS];
   };
-  const cadt_deferred deferred = cadt_lists(edges.data(), counts.data(), static_cast<std::uint32_t>(edges.size()));
+  const cadt_deferred deferred =
+      cadt_deferred_lists(edges.data(), counts.data(), static_cast<std::uint32_t>(edges.size()));
   for (std::uint32_t i = 3; i < n; ++i) {
     std::uint32_t hint = hints[i - 1];
-    CADT_WORKLIST_HERE(work);
+    CADT_DECLARE_WORKLIST(work);
     cadt_worklist_begin(&work, i, limit);
     work.apex_point = points[i];
     for (int tries = 0; tries < CADT_INSERT_TRIES && work.size == 0; ++tries)
-      work.size = cadt_try_vertex(&mesh, i, points[i], &hint, work.half_edge, &counters);
+      work.size = cadt_try_insert(&mesh, i, points[i], &hint, work.half_edge, &counters);
     EXPECT_GT(work.size, 0U) << "point " << i;
     if (work.size == 0) return done;
     hints[i] = hint;
@@ -90,8 +91,8 @@ std::uint64_t illegal_edges(const std::vector<cadt_point>& points, std::vector<c
     ++live;
     EXPECT_EQ(records[t].word[CADT_WORD_LOCK] & 1U, 0U);
     for (std::uint32_t k = 0; k < 3; ++k) {
-      const cadt_snapshot s = cadt_look_from(&mesh, t, k);
-      const cadt_snapshot u = cadt_look_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
+      const cadt_snapshot s = cadt_snapshot_from(&mesh, t, k);
+      const cadt_snapshot u = cadt_snapshot_from(&mesh, CADT_TRIANGLE_OF(s.n0), CADT_EDGE_OF(s.n0));
       EXPECT_EQ(u.n0, CADT_HALF_EDGE(t, k));
       illegal += cadt_is_illegal(&mesh, s.v0, s.v1, s.v2, u.v0, &counters);
     }

@@ -48,11 +48,11 @@ TEST(LegalitySweep, CountsIt) {
   const std::uint32_t g = CADT_GHOST;
   const auto pass = [&](const std::vector<cadt::test::Face>& faces) {
     auto records = cadt::test::linked_faces<cadt_locked_triangle>(faces, faces.size());
-    std::vector<std::uint32_t> counts(CADT_LEFT_COUNTS + 5), edges(64), hints(5), counters(2048);
+    std::vector<std::uint32_t> counts(CADT_DEFERRED_COUNTS + 5), edges(64), hints(5), counters(2048);
     const auto slots = static_cast<std::uint32_t>(records.size());
     cadt_legality_sweep(0, 1, records.data(), points.data(), hints.data(), 0, 0, 0, 0, 0, CADT_STABILIZE_OFF, 0, 0.0, 0,
                         slots, slots, 0, edges.data(), counts.data(), 64, counters.data());
-    return std::vector<std::uint32_t>(counts.begin() + CADT_LEFT_COUNTS, counts.end());
+    return std::vector<std::uint32_t>(counts.begin() + CADT_DEFERRED_COUNTS, counts.end());
   };
   // the boundary 0 1 3 4 2
   EXPECT_EQ(pass({{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {g, 1, 0}, {g, 3, 1}, {g, 4, 3}, {g, 2, 4}, {g, 0, 2}}),

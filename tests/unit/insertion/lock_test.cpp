@@ -17,7 +17,8 @@ namespace {
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/insertion/split_and_flip.dev.h"
+#include "common/insertion/flip.dev.h"
+#include "common/insertion/split.dev.h"
 #pragma GCC diagnostic pop
 
 constexpr std::uint32_t free_version = 10;

@@ -28,7 +28,8 @@ namespace {
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include "common/insertion/legality_sweep.dev.h"
 #include "common/insertion/seed_triangle.dev.h"
-#include "common/output/renumber.dev.h"
+#include "common/output/canonical_order.dev.h"
+#include "common/output/hull.dev.h"
 #include "common/verify/device/verify.dev.h"
 #pragma GCC diagnostic pop
 
@@ -105,7 +106,7 @@ class Offsets : public testing::Test {
     for (const std::uint32_t v : vertices)
       call(cadt_legality_sweep, 2 * v, 2U, 2U, 0U, deferred_edges.data(), deferred_counts.data(),
            static_cast<std::uint32_t>(deferred_edges.size()), counters.data());
-    const std::vector<std::uint32_t> found(deferred_counts.begin() + CADT_LEFT_COUNTS, deferred_counts.end());
+    const std::vector<std::uint32_t> found(deferred_counts.begin() + CADT_DEFERRED_COUNTS, deferred_counts.end());
     EXPECT_EQ(found, (std::vector<std::uint32_t>{static_cast<std::uint32_t>(3 * vertices.size() - 3), 0, 0, 0, 0}));
   }
 
@@ -116,7 +117,7 @@ class Offsets : public testing::Test {
   std::uint32_t first = 0, second = 0, third = 0;
   std::vector<std::uint32_t> deferred_points = std::vector<std::uint32_t>(1 << 16);
   std::vector<std::uint32_t> deferred_edges = std::vector<std::uint32_t>(1 << 16);
-  std::vector<std::uint32_t> deferred_counts = std::vector<std::uint32_t>(CADT_LEFT_COUNTS + 5);
+  std::vector<std::uint32_t> deferred_counts = std::vector<std::uint32_t>(CADT_DEFERRED_COUNTS + 5);
   std::vector<std::uint32_t> counters = std::vector<std::uint32_t>(CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
 };
 

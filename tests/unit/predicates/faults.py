@@ -95,8 +95,8 @@ TEXTS = [
     ("floats", "the filter asked of any size", P, "((e) < 5000 && (e) >= -41)", "((e) < 5000)"),
     ("floats", "lower bits cut off unseen", F, "if (shift < 0 && cadt_trailing_zeros(m) < -shift) {", "if (0) {"),
     ("floats", "sign of a coordinate", F, "return bits >> CADT_SIGN_SHIFT ? -CADT_CAST(cadt_i64, m) :", "return 0 ? 0 :"),
-    ("floats", "rounded differences taken for exact", X, "if (!CADT_GRADUAL || (a", "if ((a"),
-    ("floats", "mirrored pairs by comparison", P, "if (CADT_GRADUAL && cadt_mirrored", "if (cadt_mirrored"),
+    ("floats", "rounded differences taken for exact", X, "if (!CADT_GRADUAL_UNDERFLOW || (a", "if ((a"),
+    ("floats", "mirrored pairs by comparison", P, "if (CADT_GRADUAL_UNDERFLOW && cadt_mirrored", "if (cadt_mirrored"),
     ("floats", "order by value", P, "cadt_less(a.x, b.x) || (cadt_same(a.x, b.x) && cadt_less(a.y, b.y))",
      "a.x < b.x || (a.x == b.x && a.y < b.y)"),
     # ---- the verifier's predicates on devices: sums of doubles

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Canonical order without a sort of all triangles: a triangle belongs to the bucket of its smallest input id; buckets
+ * are short, and within one no two triangles have the same second vertex.
+ */
+#ifndef CADT_OUTPUT_CANONICAL_ORDER_H
+#define CADT_OUTPUT_CANONICAL_ORDER_H
+
+#include "common/output/renumber.dev.h"
+
+/* A real triangle in the bucket of its smallest vertex. */
+typedef struct {
+  cadt_u32 second, triangle;
+} cadt_member;
+
+/* On CPUs an atomic addition to distant memory holds up everything behind it, so triangles get their places in the
+ * buckets (`places`, by triangle) when they are counted; GPUs spare the memory traffic and add again. */
+#define CADT_PLACES_KNOWN CADT_CONTIGUOUS
+
+/* Counts the triangles of each bucket, and edges by flips. \pre buckets are zero */
+CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_locked_triangle* locked, CADT_GLOBAL const cadt_u32* vertices,
+            CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_u32* places,
+            cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* flips) {
+  CADT_FLIPS_BEGIN(bins, flips);
+  CADT_FOR(t, count, grain) {
+    cadt_locked_triangle r;
+    cadt_read_vertices(locked, vertices, t, &r);
+    if (r.word[CADT_WORD_LOCK] == 0u) continue;
+    CADT_FLIPS_COUNT(bins, flips, r);
+    if (!cadt_is_real(&r)) continue;
+#if CADT_PLACES_KNOWN
+    places[t] = cadt_add_relaxed(buckets + cadt_in_input_ids(input_ids, r.word[0], r.word[1], r.word[2]).a, 1u);
+#else
+    cadt_add_relaxed(buckets + cadt_in_input_ids(input_ids, r.word[0], r.word[1], r.word[2]).a, 1u);
+#endif
+  }
+  CADT_FLIPS_END(bins, flips);
+}
+
+/* Splits scanned buckets into `parts` of about as many triangles each. begins[2 * k] and the next word: the first
+ * bucket and the first triangle of part k; at the end those behind the last part. \pre there are triangles */
+CADT_KERNEL(cadt_split_buckets, CADT_GLOBAL const cadt_u32* buckets, cadt_u32 count, cadt_u32 triangles, cadt_u32 parts,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* begins) {
+  if (cadt_item == 0u) begins[0] = begins[1] = 0u;
+  CADT_FOR(v, count, grain) {
+    const cadt_u32 end = buckets[v + 1u];
+    const cadt_u32 before = CADT_CAST(cadt_u32, CADT_CAST(cadt_u64, buckets[v]) * parts / triangles);
+    const cadt_u32 after = CADT_CAST(cadt_u32, CADT_CAST(cadt_u64, end) * parts / triangles);
+    for (cadt_u32 k = before + 1u; k <= after; ++k) {
+      begins[2u * k] = v + 1u;
+      begins[2u * k + 1u] = end;
+    }
+  }
+}
+
+/* Puts each real triangle of the `size` buckets from `from` on, whose first triangle has number `base`, into its
+ * bucket: (second vertex, triangle). \pre buckets are scanned: where they begin; \post where they end, or still where
+ * they begin if places are known */
+CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_locked_triangle* locked, CADT_GLOBAL const cadt_u32* vertices,
+            CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL const cadt_u32* places,
+            CADT_GLOBAL cadt_member* members, cadt_u32 from, cadt_u32 size, cadt_u32 base, cadt_u32 count,
+            cadt_u32 grain) {
+  CADT_FOR(t, count, grain) {
+    cadt_locked_triangle r;
+    cadt_read_vertices(locked, vertices, t, &r);
+    if (!cadt_is_real(&r)) continue;
+    const cadt_triangle triangle = cadt_in_input_ids(input_ids, r.word[0], r.word[1], r.word[2]);
+    if (triangle.a - from >= size) continue;
+    cadt_member member;
+    member.second = triangle.b;
+    member.triangle = t;
+#if CADT_PLACES_KNOWN
+    members[buckets[triangle.a] + places[t] - base] = member;
+#else
+    members[cadt_add_relaxed(buckets + triangle.a, 1u) - base] = member;
+#endif
+  }
+}
+
+/* Sorts each bucket by the second vertex. A high-degree vertex may have a long bucket, the hub of a wheel one triangle
+ * a point: heap sort takes those; the longest are sorted as one list by all work-items, if there is memory for it. */
+CADT_FN void cadt_sift_down(CADT_GLOBAL cadt_member* bucket, cadt_u32 at, cadt_u32 size) {
+  const cadt_member moving = bucket[at];
+  for (;;) {
+    cadt_u32 child = 2u * at + 1u;
+    if (child >= size) break;
+    if (child + 1u < size && bucket[child + 1u].second > bucket[child].second) ++child;
+    if (bucket[child].second <= moving.second) break;
+    bucket[at] = bucket[child];
+    at = child;
+  }
+  bucket[at] = moving;
+}
+
+enum { CADT_SHORT_BUCKET = 24 };
+
+/* Where bucket v begins, after cadt_bucket_triangles. */
+CADT_FN cadt_u32 cadt_bucket_begin(CADT_GLOBAL const cadt_u32* buckets, cadt_u32 v) {
+#if CADT_PLACES_KNOWN
+  return buckets[v];
+#else
+  return v ? buckets[v - 1u] : 0u;
+#endif
+}
+
+/* Sorts the `count` buckets from `from` on; the first triangle has number `base`, and stands at members[0]. Skips
+ * buckets with more than `longest` triangles and counts these in `skipped`. */
+CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 from,
+            cadt_u32 count, cadt_u32 base, cadt_u32 longest, cadt_u32 grain, CADT_GLOBAL cadt_u32* skipped) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 begin = cadt_bucket_begin(buckets, from + i);
+    const cadt_u32 size = cadt_bucket_begin(buckets, from + i + 1u) - begin;
+    if (size > longest) {
+      cadt_add_relaxed(skipped, size);
+      continue;
+    }
+    CADT_GLOBAL cadt_member* bucket = members + (begin - base);
+    if (size <= CADT_CAST(cadt_u32, CADT_SHORT_BUCKET)) {
+      for (cadt_u32 e = 1u; e < size; ++e) {
+        const cadt_member moving = bucket[e];
+        cadt_u32 at = e;
+        for (; at > 0u && bucket[at - 1u].second > moving.second; --at) bucket[at] = bucket[at - 1u];
+        bucket[at] = moving;
+      }
+    } else {
+      for (cadt_u32 at = size / 2u; at-- > 0u;) cadt_sift_down(bucket, at, size);
+      for (cadt_u32 last = size - 1u; last > 0u; --last) {
+        const cadt_member moving = bucket[last];
+        bucket[last] = bucket[0];
+        bucket[0] = moving;
+        cadt_sift_down(bucket, 0u, last);
+      }
+    }
+  }
+}
+
+/* The bucket of triangle i, among `count` from `from` on. */
+CADT_FN cadt_u32 cadt_bucket_of(CADT_GLOBAL const cadt_u32* buckets, cadt_u32 from, cadt_u32 count, cadt_u32 i) {
+  cadt_u32 low = from, high = from + count;
+  while (high - low > 1u) {
+    const cadt_u32 middle = low + (high - low) / 2u;
+    if (cadt_bucket_begin(buckets, middle) <= i)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* 1 for each of `count` triangles from `base` on whose bucket has more than `longest`; flags[count] becomes 0. */
+CADT_KERNEL(cadt_long_flags, CADT_GLOBAL const cadt_u32* buckets, cadt_u32 from, cadt_u32 size, cadt_u32 base,
+            cadt_u32 longest, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* flags) {
+  if (cadt_item == 0u) flags[count] = 0u;
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 v = cadt_bucket_of(buckets, from, size, base + i);
+    flags[i] = cadt_bucket_begin(buckets, v + 1u) - cadt_bucket_begin(buckets, v) > longest ? 1u : 0u;
+  }
+}
+
+/* Packs these triangles into one list: second vertex, triangle, bucket and place of each. `ranks` is the scan of the
+ * flags. */
+CADT_KERNEL(cadt_long_pack, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL const cadt_member* members, cadt_u32 from,
+            cadt_u32 size, cadt_u32 base, CADT_GLOBAL const cadt_u32* ranks, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* seconds, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* owners,
+            CADT_GLOBAL cadt_u32* places) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 at = ranks[i];
+    if (ranks[i + 1u] == at) continue;
+    seconds[at] = members[i].second;
+    triangles[at] = members[i].triangle;
+    owners[at] = cadt_bucket_of(buckets, from, size, base + i) - from;
+    places[at] = i;
+  }
+}
+
+/* Stores the sorted list back: entry order[at] goes to the place of entry `at`. */
+CADT_KERNEL(cadt_long_store, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* seconds,
+            CADT_GLOBAL const cadt_u32* triangles, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_member* members,
+            cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(at, count, grain) {
+    members[places[at]].second = seconds[order[at]];
+    members[places[at]].triangle = triangles[order[at]];
+  }
+}
+
+/* numbers[t] = place of triangle t in the result. \pre numbers of ghosts are CADT_NONE */
+CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_GLOBAL cadt_u32* numbers, cadt_u32 base,
+            cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) { numbers[members[i].triangle] = base + i; }
+}
+
+#endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls with several sets of points. Neighbouring small sets go together; a large one is a call of its own, but for the
-// arrays of the result.
+// Calls with several sets of points. Consecutive small sets are batched; a large set is triangulated individually, into
+// the same result arrays.
 #include <cadt/triangulator.hpp>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace cadt {
 namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-/// Triangles that n points have at most.
+/// Most triangles of n points.
 constexpr std::size_t most_triangles(std::size_t n) { return n < 3 ? 0 : 2 * n - 5; }
 
 std::size_t most_triangles(std::span<const std::size_t> offsets) {
@@ -45,15 +45,15 @@ void require_offsets(std::span<const std::size_t> offsets, std::size_t points) {
                      offsets.size() - 1);
 }
 
-/// Some neighbouring points.
+/// `size` points from `first` on.
 PointsView slice(const PointsView& points, std::size_t first, std::size_t size) {
   const std::size_t stride = points.interleaved() ? 2 : 1;
-  const auto cut = [&]<class Real>(const void* memory, const Real*) {
+  const auto part = [&]<class Real>(const void* memory, const Real*) {
     return std::span(static_cast<const Real*>(memory) + first * stride, size * stride);
   };
   const auto view = [&]<class Real>(const Real* tag) {
-    const auto x = cut(points.x_data(), tag);
-    return points.interleaved() ? PointsView(x) : PointsView(x, cut(points.y_data(), tag));
+    const auto x = part(points.x_data(), tag);
+    return points.interleaved() ? PointsView(x) : PointsView(x, part(points.y_data(), tag));
   };
   return points.scalar_size() == sizeof(double) ? view(static_cast<const double*>(nullptr))
                                                 : view(static_cast<const float*>(nullptr));
@@ -104,11 +104,11 @@ class BatchCall {
 
  private:
   void add_empty(std::size_t sets) {
-    for (std::size_t s = 0; s < sets; ++s) close_set(shape_.triangles.back(), 0, false);
+    for (std::size_t s = 0; s < sets; ++s) append_set(shape_.triangles.back(), 0, false);
   }
 
-  /// The next set: where its triangles end, its distinct points.
-  void close_set(std::size_t triangles, std::size_t distinct, bool flat) {
+  /// Appends the next set, given where its triangles end and its number of distinct points.
+  void append_set(std::size_t triangles, std::size_t distinct, bool flat) {
     shape_.triangles.push_back(triangles);
     shape_.duplicates.push_back(shape_.duplicate_list.size());
     shape_.dimensions.push_back(distinct == 0 ? -1 : distinct == 1 ? 0 : flat ? 1 : 2);
@@ -163,7 +163,7 @@ class BatchCall {
     const Mesh mesh = build(ctx_, std::move(order), slice(points_, begin, size));
     std::size_t triangles = 0;
     if (!mesh.flat) triangles = write(mesh, size, nullptr, most_triangles(size)).triangles;
-    close_set(shape_.triangles.back() + triangles, distinct, mesh.flat);
+    append_set(shape_.triangles.back() + triangles, distinct, mesh.flat);
   }
 
   [[nodiscard]] SortedPoints sort_large(std::size_t set, std::size_t begin, std::size_t size, bool stars) {
@@ -178,8 +178,8 @@ class BatchCall {
     const std::size_t begin = offsets_[first_set], size = offsets_[end_set] - begin, sets = end_set - first_set;
     std::vector<std::uint32_t> starts(sets + 1);
     for (std::size_t s = 0; s <= sets; ++s) starts[s] = static_cast<std::uint32_t>(offsets_[first_set + s] - begin);
-    const bool together = batches_sets(traits_of(ctx_.device), ctx_.options);
-    SortedBatch order = sort_batch(ctx_, import(begin, size), starts, together ? most_batched_ : 0, begin, first_set);
+    const bool batched = batches_sets(traits_of(ctx_.device), ctx_.options);
+    SortedBatch order = sort_batch(ctx_, import(begin, size), starts, batched ? most_batched_ : 0, begin, first_set);
     const Pairs pairs = read_pairs(order.order, size);
     BatchMesh mesh = build_batch(ctx_, order);
     order.order.points.release();
@@ -192,7 +192,7 @@ class BatchCall {
     for (std::size_t s = 0; s < sets; ++s) {
       const std::size_t duplicates = starts[s] - mesh.positions[s];
       add_pairs(pairs, duplicates, starts[s + 1] - mesh.positions[s + 1], starts[s]);
-      close_set(before + ends[s + 1], mesh.positions[s + 1] - mesh.positions[s], mesh.flat[s]);
+      append_set(before + ends[s + 1], mesh.positions[s + 1] - mesh.positions[s], mesh.flat[s]);
     }
   }
 
@@ -206,7 +206,7 @@ class BatchCall {
   const Allocation& neighbors_;
 };
 
-/// Points that are batched at most. \throws OutOfMemory before any work
+/// Most points of a batch. \throws OutOfMemory before any work
 std::size_t plan_call_of_batch(Triangulator::State& state, std::span<const std::size_t> offsets, std::size_t results) {
   return plan_batch(state.memory, state.options, state.device->info(), offsets,
                     most_points_of_batched_set(traits_of(*state.device)), results, state.known);

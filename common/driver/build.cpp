@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From sorted points to a certified mesh: the decision, and the stages that it names.
+// From sorted points to a certified mesh: chooses the strategy and runs its stages.
 #include "common/driver/build.hpp"
 
 #include <utility>

@@ -7,8 +7,7 @@
 
 namespace cadt {
 
-/// The certified mesh of sorted points. `input` has them once more, for plans that read them again; `plan` is that of
-/// the context.
+/// The certified mesh of sorted points. `input` is where they came from, for memory plans that read them again.
 [[nodiscard]] Mesh build(Context& ctx, SortedPoints points, const InputPoints& input);
 
 }  // namespace cadt

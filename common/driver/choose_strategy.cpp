@@ -13,18 +13,19 @@ namespace {
 using namespace device_text;
 using Method = BuildStrategy::Method;
 
-/// Up to so many points are wrapped if many are on circles or on a lattice: there exact tests take longer. Or on a
-/// ring, where circles are large and each turn looks at many points.
+/// Most points that are wrapped if many lie on circles or on a lattice, where exact tests take longer, or on a ring,
+/// where circles are large and each step looks at many points.
 constexpr std::size_t most_wrapped_on_circles = 20000, most_wrapped_on_lattice = 20480, most_wrapped_on_ring = 28672;
 
-/// What wraps a whole mesh best, as far as the points tell.
+/// Most points to wrap as a whole mesh: `most`, or less for these shapes.
 std::size_t most_wrapped_of(std::size_t most, const PointShapes& shapes) noexcept {
   if (shapes.on_circles) return std::min(most, most_wrapped_on_circles);
   if (shapes.on_lattice) return std::min(most, most_wrapped_on_lattice);
   return shapes.on_ring ? std::min(most, most_wrapped_on_ring) : most;
 }
 
-/// Points that stars and gift wrapping are not for: there are no triangles, or rounded numbers find few of them.
+/// Whether neither stars nor gift wrapping suits the points: there are no triangles, or the floating-point filter
+/// decides few of them.
 bool are_for_insertion(const PointProfile& profile) noexcept {
   const PointShapes& shapes = profile.shapes;
   const bool convex = (shapes.on_circle && profile.distinct > CADT_WRAP_HULL_EXACT) ||
@@ -45,7 +46,7 @@ PointProfile profile_of(const SortedPoints& points) noexcept {
 
 bool may_use_stars(const DeviceTraits& device, const Options& options) noexcept {
   if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
-  // CPUs are faster without.
+  // CPUs are faster by insertion.
   return device.gpu && !device.floats_only && options.stabilize == Stabilize::off && !options.watch &&
          options.statistics != StatisticsDetail::timing;
 }
@@ -80,7 +81,7 @@ bool inserts_partitions(const DeviceTraits& device, const Options& options, std:
 
 std::size_t most_points_of_batched_set(const DeviceTraits& device) noexcept {
   if (device.floats_only) return 0;
-  // A core inserts each by itself: longer ones are better shared, and bound the time to a stop.
+  // One core inserts each set: larger sets are better shared among cores, and a stop would wait for them.
   constexpr std::size_t most_of_core = 8192;
   return device.contiguous ? most_of_core : most_wrapped_by(device);
 }

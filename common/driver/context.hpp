@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all phases of one triangulation share.
+// What all stages of one call share: device, options, statistics, memory and its plan, launcher.
 #pragma once
 
 #include <cadt/triangulation.hpp>
@@ -30,31 +30,31 @@ struct Context {
   const MemoryPlan plan;
   Launcher launcher;
 
-  /// What is checked from here on is this part of the whole.
+  /// The fractions passed to check() from here on are of this part of the call: `share` of it, from `begin` on.
   void begin_share(double begin, double share) noexcept {
     share_begin_ = begin;
     share_ = share;
   }
 
-  /// Tells the progress and looks for a request to stop. \throws Cancelled
+  /// Reports the progress and looks for a stop request. \throws Cancelled
   void check(std::string_view phase, double fraction) {
     if (options.stop.stop_requested()) throw Cancelled();
     fraction = share_begin_ + share_ * fraction;
-    if (options.progress && fraction > told_) {
-      told_ = fraction;
+    if (options.progress && fraction > reported_) {
+      reported_ = fraction;
       options.progress({phase, fraction});
       if (options.stop.stop_requested()) throw Cancelled();
     }
   }
 
-  /// Ends a phase: what is launched from here on belongs to the next one. Nothing for StatisticsDetail::none.
+  /// Ends a phase: what was launched since the last one belongs to it. Does nothing for StatisticsDetail::none.
   void end_phase(std::string_view name) {
     if (options.statistics == StatisticsDetail::none) return;
     device.mark_time();
     phases_.emplace_back(name);
   }
 
-  /// Waits for the device and notes how long the phases took.
+  /// Waits for the device and adds the times of the phases to the statistics.
   void finish() {
     device.finish();
     if (phases_.empty()) return;
@@ -71,7 +71,7 @@ struct Context {
 
  private:
   double share_begin_ = 0, share_ = 1;
-  double told_ = -1;  ///< passes that are repeated tell nothing new
+  double reported_ = -1;  ///< so that repeated passes report nothing again
   std::vector<std::string> phases_;
 };
 

@@ -44,7 +44,7 @@ void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) 
   for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_COUNTER_STRIDE] += words[i];
   const auto times = std::span(sums).subspan(CADT_ROW_TIMES, CADT_TIMERS);
   const auto all = static_cast<double>(std::accumulate(times.begin(), times.end(), std::uint64_t{0}));
-  // with the star stage there are two: what counts are the threads of the insertion, which is the first
+  // With the star stage certification adds counters too: the times are those of the insertion, which comes first.
   for (std::size_t i = statistics.thread_time.size(); all > 0 && i < times.size(); ++i)
     statistics.thread_time.emplace_back(timers[i], static_cast<double>(times[i]) / all);
   statistics.walk_steps += sums[CADT_COUNT_WALK_STEPS];
@@ -78,7 +78,7 @@ void FlipHistogram::collect(Statistics& statistics, std::uint64_t sides) const {
   std::array<std::uint64_t, CADT_FLIP_BINS> sums{};
   for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_FLIP_BINS] += words[i];
   if (sides != 0) sums[0] += sides - std::accumulate(sums.begin(), sums.end(), std::uint64_t{0});
-  for (std::size_t i = 0; i < sums.size(); ++i) statistics.flips_per_edge[i] += sums[i] / 2;  // met from both sides
+  for (std::size_t i = 0; i < sums.size(); ++i) statistics.flips_per_edge[i] += sums[i] / 2;  // counted from both sides
 }
 
 }  // namespace cadt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a back end supplies: memory, launches, and a word about the machine. The driver knows nothing else of it.
+// What a back end supplies: memory, launches, and the properties of the device. The driver knows nothing else of it.
 #pragma once
 
 #include <cadt/devices.hpp>
@@ -59,36 +59,37 @@ class Arg {
   alignas(8) std::byte value_[8] = {};
 };
 
-/// How a device wants its work cut.
+/// How a device wants its work divided into work-items.
 struct LaunchShape {
-  bool contiguous = true;         ///< a work-item takes neighbouring elements (CPUs) or strided ones (GPUs)
+  bool contiguous = true;         ///< a work-item takes contiguous elements (CPUs), not strided ones (GPUs)
   std::uint32_t parallelism = 1;  ///< work-items that keep the device busy
-  std::uint32_t grain = 256;      ///< most elements that a work-item takes in a row where the driver chooses
-  std::uint32_t resident = 0;     ///< GPUs: work-items of a large kernel that run at the same time
+  std::uint32_t grain = 256;      ///< most contiguous elements of a work-item where the driver chooses
+  std::uint32_t resident = 0;     ///< GPUs: work-items of a large kernel that are resident at the same time
 };
 
-/// Times of what a device is given to do (Options::kernel_times).
+/// Times launches on the device (Options::kernel_times).
 class KernelClock {
  public:
   virtual ~KernelClock() = default;
-  /// What is launched between these two is timed. A begin without its end, after an error, is forgotten. \throws
+  /// What is launched between these two is timed. A begin without an end, after an error, is dropped. \throws
   /// DeviceError
   virtual void begin() = 0;
   virtual void end() = 0;
-  /// Milliseconds of each pair since the last read or clear. Waits for the device. \throws DeviceError
+  /// Milliseconds of each begin-end pair since the last read or clear. Waits for the device. \throws DeviceError
   [[nodiscard]] virtual std::vector<double> read() = 0;
   virtual void clear() noexcept = 0;
 };
 
-/// Sort and scan of the device's own library. Scratch memory comes from the caller, so that it is counted.
+/// Sort and scan of the device's own library. The caller supplies scratch memory, so that the budget counts it.
 class Primitives {
  public:
   virtual ~Primitives() = default;
   [[nodiscard]] virtual std::size_t sort_scratch(std::size_t count, unsigned bits) = 0;
-  /// Whether it can sort so many places, values 0, 1, 2, ..., that nobody has written before.
+  /// Whether it can sort so many keys with the values 0, 1, 2, ... that are not written before (`places`).
   [[nodiscard]] virtual bool sorts_places(std::size_t count) const noexcept = 0;
-  /// Stable sort of pairs of words by the lowest `bits` bits of the key. `places`: the values are. True: the result is
-  /// in the second pair of buffers, false: in the first. \pre !places || sorts_places(count) \throws DeviceError
+  /// Stable sort of pairs of words by the lowest `bits` bits of the key. `places`: the values are 0, 1, 2, ... and
+  /// `values` is uninitialised. Returns whether the result is in the second pair of buffers, not in the first. \pre
+  /// !places || sorts_places(count) \throws DeviceError
   [[nodiscard]] virtual bool sort(Buffer& scratch, Buffer& keys, Buffer& values, Buffer& other_keys,
                                   Buffer& other_values, std::size_t count, unsigned bits, bool places) = 0;
   [[nodiscard]] virtual std::size_t scan_scratch(std::size_t count) = 0;
@@ -96,7 +97,7 @@ class Primitives {
   virtual void scan(Buffer& scratch, Buffer& data, std::size_t count) = 0;
 };
 
-/// One device, in order: every operation starts after the ones before it have finished.
+/// One device with one in-order queue: every operation starts after the ones before it have finished.
 class Device {
  public:
   virtual ~Device() = default;
@@ -117,27 +118,27 @@ class Device {
     fill(*buffer, 0, bytes / 4 * 4, 0);
     return buffer;
   }
-  /// Bytes from `offset` on of a buffer, which must outlive it. \pre offset is a multiple of part_alignment(), which is
+  /// A sub-buffer from `offset` on; the buffer must outlive it. \pre offset is a multiple of part_alignment(), which is
   /// not 0 \throws DeviceError
   [[nodiscard]] virtual std::unique_ptr<Buffer> part(Buffer& /*of*/, std::size_t /*offset*/, std::size_t /*bytes*/) {
     return nullptr;
   }
-  /// Where parts of a buffer may begin; 0: there are none.
+  /// Alignment of the offset of a part; 0: the device has no parts.
   [[nodiscard]] virtual std::size_t part_alignment() const noexcept { return 0; }
-  /// A read-only buffer that aliases the caller's memory where the device can, else nullptr (then copy).
+  /// A read-only buffer that aliases the caller's memory where the device can, else nullptr (then copy it).
   [[nodiscard]] virtual std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) = 0;
-  /// A buffer that writes straight to the caller's memory where the device can, else nullptr (then read it back).
+  /// A buffer that aliases the caller's memory for writing where the device can, else nullptr (then read back).
   [[nodiscard]] virtual std::unique_ptr<Buffer> alias_output(void* /*data*/, std::size_t /*bytes*/) { return nullptr; }
 
-  /// The caller's device memory by its handle in the device's language (triangulator.hpp); not freed with the buffer.
+  /// A buffer of the caller's device memory by its native handle (triangulator.hpp); not freed with the buffer.
   [[nodiscard]] virtual std::unique_ptr<Buffer> wrap(void* handle, std::size_t bytes) = 0;
-  /// The handle of a buffer.
+  /// The native handle of a buffer.
   [[nodiscard]] virtual void* handle(const Buffer& buffer) const noexcept = 0;
-  /// True if freed memory stays with the device for the next allocation; else the driver keeps buffers itself.
+  /// True if the device caches freed memory for the next allocation; else the driver caches buffers itself.
   [[nodiscard]] virtual bool keeps_memory() const noexcept { return false; }
-  /// Makes sure that `bytes` more can be had without asking the system. Only for devices that keep memory.
+  /// Makes `bytes` more available without asking the system. Only for devices that cache memory.
   virtual void reserve(std::size_t /*bytes*/) {}
-  /// Gives kept memory back to the system.
+  /// Returns cached memory to the system.
   virtual void trim() {}
   /// Bytes that can still be allocated as far as the device knows.
   [[nodiscard]] virtual std::size_t free_bytes() { return static_cast<std::size_t>(info().memory_bytes); }
@@ -145,10 +146,10 @@ class Device {
   /// As Triangulator::occupancy().
   [[nodiscard]] virtual std::optional<double> occupancy(unsigned /*work_group_size*/) { return std::nullopt; }
 
-  /// nullptr: it was opened without Options::kernel_times.
+  /// nullptr if the device was opened without Options::kernel_times.
   [[nodiscard]] virtual KernelClock* kernel_clock() noexcept { return nullptr; }
 
-  /// nullptr: the kernels of common/device do it.
+  /// nullptr: the kernels of common/portable sort and scan.
   [[nodiscard]] virtual Primitives* primitives() noexcept { return nullptr; }
 
   /// Blocking copies; offsets and sizes in bytes. \throws DeviceError
@@ -159,21 +160,21 @@ class Device {
 
   /// Runs a kernel with `items` work-items (possibly rounded up: kernels ignore items beyond their data). Returns
   /// before the work is done where the device can. \throws DeviceError, KernelBuildError (a variant may be built at its
-  /// first launch). `group`: work-items of a group where nobody has asked for a size; 0: the device's choice.
-  virtual void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build,
+  /// first launch). `group`: size of a work-group unless the options name one; 0: the device's choice.
+  virtual void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant variant,
                       std::uint32_t group) = 0;
-  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant build) {
-    launch(kernel, items, args, build, 0);
+  void launch(KernelId kernel, std::uint32_t items, std::span<const Arg> args, KernelVariant variant) {
+    launch(kernel, items, args, variant, 0);
   }
   /// Waits for everything launched. \throws DeviceError
   virtual void finish() = 0;
 
-  /// Times of phases: forgets all marks and makes the first one. \throws DeviceError
+  /// Times of phases: drops all marks and sets the first one. \throws DeviceError
   virtual void start_times() {
     marks_.clear();
     mark_time();
   }
-  /// Marks the moment when everything launched so far is done. Devices with clocks of their own do not wait for it.
+  /// Marks the time at which everything launched so far is done. Devices with clocks of their own do not wait for it.
   virtual void mark_time() {
     finish();
     marks_.push_back(std::chrono::steady_clock::now());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text of the kernels as host C++: its layouts and constants are those of the driver, and the parameters of its
-// kernels are those of every launch (kernel_signature.hpp). Nothing of it is called here.
+// The device text as host C++: the driver uses its layouts and constants, and the parameters of its kernels check every
+// launch (kernel_signature.hpp). None of its functions is called here.
 #pragma once
 
 #include <atomic>

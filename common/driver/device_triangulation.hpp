@@ -16,8 +16,8 @@
 namespace cadt {
 
 struct Triangulator::State {
-  State(const Options& o, std::unique_ptr<Device> d, bool keep)
-      : options(o), device(std::move(d)), memory(*device, keep) {}
+  State(const Options& o, std::unique_ptr<Device> d, bool cache)
+      : options(o), device(std::move(d)), memory(*device, cache) {}
   Options options;
   std::unique_ptr<Device> device;
   Memory memory;
@@ -25,7 +25,7 @@ struct Triangulator::State {
 };
 
 struct DeviceTriangulation::Data {
-  std::shared_ptr<Triangulator::State> state;  // first: goes last, after the memory
+  std::shared_ptr<Triangulator::State> state;  // first member: destroyed last, after the memory
   std::size_t points = 0, distinct = 0, triangle_count = 0, duplicate_count = 0;
   Allocation triangles, neighbors;               ///< 3 words a triangle each
   Allocation duplicate_points, representatives;  ///< null if there are none
@@ -37,7 +37,7 @@ struct DeviceTriangulation::Data {
   }
 };
 
-/// The hull and, unless they are filled already, the arrays of the host's copy.
+/// Copies the hull to the host and, unless `filled`, the arrays.
 void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, bool filled, Triangulation::Data& to);
 void read_duplicates(Device& device, const DeviceTriangulation::Data& from, Triangulation::Data& to);
 

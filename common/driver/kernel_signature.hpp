@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parameters of every kernel, read off its text, so that a launch with other arguments does not compile. The text
-// is the same in every language, so this holds on every back end.
+// The parameters of every kernel, deduced from its text, so that a launch with other arguments does not compile. The
+// text is the same in every language, so this holds on every back end.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ inline constexpr bool is_argument_for =
     std::is_pointer_v<Parameter> ? !std::is_arithmetic_v<Argument> && std::is_constructible_v<Arg, const Argument&>
                                  : std::is_same_v<Argument, Parameter>;
 
-/// Whether a kernel takes these arguments, each for one parameter.
+/// Whether the kernel has one parameter for each of these arguments.
 template <KernelId kernel, class... Arguments>
 [[nodiscard]] consteval bool takes_arguments() {
   return []<class... Parameters>(void (*)(std::uint32_t, std::uint32_t, Parameters...)) {

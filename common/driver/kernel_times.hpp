@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each kernel of a run took (Options::kernel_times).
+// The time that each kernel of a call takes (Options::kernel_times).
 #pragma once
 
 #include <cadt/statistics.hpp>
@@ -11,17 +11,17 @@
 
 namespace cadt {
 
-/// Asks the device's clock about each launch. Does nothing where the device was opened without one.
+/// Times each launch by the device's clock. Does nothing if the device was opened without one.
 class KernelTimes {
  public:
-  /// What is timed besides the kernels of the list: whole calls of a device's own primitives.
+  /// Timed besides the kernels of the list: whole calls of the device's own primitives.
   static constexpr std::size_t sort = kernel_count, scan = kernel_count + 1;
 
   explicit KernelTimes(Device& device) noexcept : clock_(device.kernel_clock()) {
-    if (clock_ != nullptr) clock_->clear();  // an earlier run may have been cancelled
+    if (clock_ != nullptr) clock_->clear();  // an earlier call may have been cancelled
   }
 
-  /// Does the work, which is a launch of one kernel or primitive.
+  /// Runs and times `work`, a launch of one kernel or primitive.
   template <class Work>
   void time(std::size_t what, const Work& work) {
     if (clock_ == nullptr) {
@@ -34,7 +34,7 @@ class KernelTimes {
     launched_.push_back(what);
   }
 
-  /// Sums by kernel, the longest first; none without a clock. Waits for the device. \throws DeviceError
+  /// Sums by kernel, longest first; none without a clock. Waits for the device. \throws DeviceError
   [[nodiscard]] std::vector<KernelTime> sums();
 
  private:

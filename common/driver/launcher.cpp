@@ -5,9 +5,9 @@ namespace cadt {
 namespace {
 
 constexpr std::size_t smallest_grain = 8;  // fewer elements are not worth waking a thread
-constexpr std::size_t device_chunk = 512;  // elements a work-item of a GPU scans or sorts in one go
-// Work-items with several elements each have less to begin and to end; of more elements than this the mesh does not
-// stay in the cache between two of them.
+constexpr std::size_t device_chunk = 512;  // contiguous elements that a work-item of a GPU scans or sorts
+// Several elements a work-item cost less set-up; with more elements than this the mesh does not stay in the cache
+// between two elements of a work-item.
 constexpr std::size_t most_strided = std::size_t{1} << 23;
 constexpr std::size_t longest_serial_scan = 4096;  // sums that one work-item adds up
 
@@ -18,7 +18,7 @@ constexpr std::size_t divide_up(std::size_t a, std::size_t b) noexcept { return 
 LaunchGrid Launcher::grid(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (!shape.contiguous) return {static_cast<std::uint32_t>(count), 1};
-  // Small pieces near the end keep the threads busy; large ones keep each thread in its own part of the mesh.
+  // A small grain balances the load at the end; a large one keeps each thread in its own part of the mesh.
   const std::size_t grain = grain_ != 0 ? std::min<std::size_t>(grain_, std::max<std::size_t>(count, 1))
                                         : std::clamp<std::size_t>(divide_up(count, std::size_t{shape.parallelism} * 4),
                                                                   smallest_grain, shape.grain);
@@ -28,7 +28,7 @@ LaunchGrid Launcher::grid(std::size_t count) const noexcept {
 LaunchGrid Launcher::grid_spread(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (shape.contiguous) return grid(count);
-  std::uint32_t lanes = 1;  // an element; a warp has 32
+  std::uint32_t lanes = 1;  // for each element; a warp has 32
   while (lanes < 32 && count * lanes * 2 <= shape.resident) lanes *= 2;
   if (lanes == 1 && count <= most_strided) return grid_strided(count);
   return {static_cast<std::uint32_t>(count * lanes), lanes};
@@ -37,13 +37,13 @@ LaunchGrid Launcher::grid_spread(std::size_t count) const noexcept {
 LaunchGrid Launcher::grid_strided(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (shape.contiguous) return grid(count);
-  constexpr std::size_t waves = 4;  // of work-items: who comes late finds less to do
+  constexpr std::size_t waves = 4;  // of work-items: those that start late have less left to do
   return {static_cast<std::uint32_t>(std::min(count, waves * std::max(1U, shape.parallelism))), 1};
 }
 
 LaunchGrid Launcher::grid_of_teams(std::size_t count, std::size_t lanes) const noexcept {
   if (device_.shape().contiguous) return grid(count);
-  constexpr std::size_t most = std::size_t{1} << 30;  // each group takes several
+  constexpr std::size_t most = std::size_t{1} << 30;  // beyond it each group takes several elements
   return {static_cast<std::uint32_t>(std::min(count * lanes, most)), 1};
 }
 
@@ -106,7 +106,7 @@ void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys
     }
     return;
   }
-  const unsigned digit = device_.shape().contiguous ? 8 : 4;  // the build's CADT_RADIX_BITS
+  const unsigned digit = device_.shape().contiguous ? 8 : 4;  // CADT_RADIX_BITS of the kernels
   const LaunchGrid c = chunks(count);
   const auto n = static_cast<std::uint32_t>(count);
   const std::size_t entries = (std::size_t{1} << digit) * c.items;

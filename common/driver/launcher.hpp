@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Launches cut to the device's shape, and the two primitives built from kernels: scan and sort.
+// Launches with a grid that fits the device, and the two primitives built from kernels: scan and sort.
 #pragma once
 
 #include <algorithm>
@@ -13,15 +13,15 @@
 
 namespace cadt {
 
-/// How `count` elements are cut into work-items.
+/// How elements are divided into work-items.
 struct LaunchGrid {
   std::uint32_t items;  ///< work-items
-  std::uint32_t grain;  ///< neighbouring elements of one work-item (contiguous devices)
+  std::uint32_t grain;  ///< contiguous elements of one work-item (contiguous devices)
 };
 
 class Launcher {
  public:
-  /// `grain` as in Options, 0 to choose.
+  /// `grain` as in Options; 0: chosen by the number of elements.
   Launcher(Device& device, Memory& memory, unsigned grain) noexcept
       : device_(device), memory_(memory), times_(device), grain_(grain) {}
 
@@ -30,46 +30,48 @@ class Launcher {
   [[nodiscard]] std::uint64_t launches() const noexcept { return launches_; }
   /// As Statistics::kernels. \throws DeviceError
   [[nodiscard]] std::vector<KernelTime> kernel_times() { return times_.sums(); }
-  void set_variant(KernelVariant build) noexcept { build_ = build; }
+  /// The variant of all kernels launched from here on.
+  void set_variant(KernelVariant variant) noexcept { variant_ = variant; }
 
   /// For kernels over `count` independent elements.
   [[nodiscard]] LaunchGrid grid(std::size_t count) const noexcept;
-  /// For kernels with CADT_FOR_SPREAD: few elements get several work-items each on GPUs.
+  /// For kernels with CADT_FOR_SPREAD: on GPUs, if elements are few, each gets several work-items.
   [[nodiscard]] LaunchGrid grid_spread(std::size_t count) const noexcept;
-  /// For kernels whose work-items add what they found to sums: on GPUs few of them, with many elements each.
+  /// For kernels whose work-items add to sums: on GPUs few work-items with many elements each.
   [[nodiscard]] LaunchGrid grid_strided(std::size_t count) const noexcept;
-  /// For kernels with CADT_FOR_TEAMS: a group of `lanes` work-items for each of `count` elements on GPUs.
+  /// For kernels with CADT_FOR_TEAMS: on GPUs a group of `lanes` work-items for each of `count` elements.
   [[nodiscard]] LaunchGrid grid_of_teams(std::size_t count, std::size_t lanes) const noexcept;
-  /// For kernels with one row of partial results a work-item (CADT_FOR_PART).
+  /// For kernels with one row of partial results for each work-item (CADT_FOR_PART).
   [[nodiscard]] LaunchGrid parts(std::size_t count) const noexcept;
-  /// For kernels whose work-items need a contiguous chunk on every device.
+  /// For kernels whose work-items take a contiguous chunk on every device.
   [[nodiscard]] LaunchGrid chunks(std::size_t count) const noexcept;
 
-  /// Runs a kernel. Arguments that are not those of its parameters do not compile. \throws as Device::launch
+  /// Runs a kernel. Arguments of other types than its parameters do not compile. \throws as Device::launch
   template <KernelId kernel, class... Args>
   void run(std::uint32_t items, const Args&... args) {
     run_in_groups<kernel>(items, 0, args...);
   }
-  /// With groups of `group` work-items on GPUs, unless the options ask for a size; 0: the device's choice.
+  /// The same with work-groups of `group` work-items on GPUs, unless the options name a size; 0: the device's choice.
   template <KernelId kernel, class... Args>
   void run_in_groups(std::uint32_t items, std::uint32_t group, const Args&... args) {
     static_assert(takes_arguments<kernel, Args...>(), "other arguments than the kernel has parameters");
     if (items == 0) return;
     const Arg list[] = {Arg(args)...};
     ++launches_;
-    times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, build_, group); });
+    times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, variant_, group); });
   }
 
-  /// Zeroed words for small results.
+  /// Words of zeros, for small results.
   [[nodiscard]] Allocation zeros(std::size_t words);
+  /// Waits for the device.
   [[nodiscard]] std::uint32_t read_word(const Allocation& from, std::size_t index);
 
-  /// Exclusive prefix sum in place.
+  /// Exclusive prefix sum of words in place.
   void scan(const Allocation& data, std::size_t count);
 
-  /// Stable sort of 32-bit keys with values by the lowest `bits` bits. Begins with values 0, 1, 2, ... if
-  /// `identity`. `spare_*` are of the same size; on return `keys` and `values` hold the result (the buffers may be
-  /// swapped).
+  /// Stable sort of 32-bit keys with values by the lowest `bits` bits. `identity`: the values are 0, 1, 2, ...,
+  /// whatever `values` holds. `spare_*` are of the same size; on return `keys` and `values` hold the result (the
+  /// buffers may have been swapped).
   void sort(Allocation& keys, Allocation& values, Allocation& spare_keys, Allocation& spare_values, std::size_t count,
             unsigned bits, bool identity);
 
@@ -78,7 +80,7 @@ class Launcher {
   Memory& memory_;
   KernelTimes times_;
   unsigned grain_;
-  KernelVariant build_ = KernelVariant::narrow;
+  KernelVariant variant_ = KernelVariant::narrow;
   std::uint64_t launches_ = 0;
 };
 

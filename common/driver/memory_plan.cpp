@@ -10,29 +10,29 @@ namespace cadt {
 namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr std::size_t fixed = std::size_t{1} << 16;  // counters, partial results
+constexpr std::size_t fixed = std::size_t{1} << 16;  // bytes of counters and partial results
 constexpr std::size_t fewest_points_batched = std::size_t{1} << 16;
 
-/// Words a point of the buffers that a call without new ones needs: locked triangles, points sorted and not, results,
-/// their numbers, and lists of a word or less.
-constexpr std::size_t kept_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
+/// Words a point of the buffers that must be cached for a call to allocate none: locked triangles, points sorted and
+/// not, results, the triangles' numbers, and lists of a word or less.
+constexpr std::size_t cached_words[] = {16, 6, 6, 4, 4, 2, 1, 1, 1, 1, 1, 1};
 
-/// With the star stage besides: stars, lists, and what the residual vertices need.
-constexpr std::size_t kept_star_words[] = {7, 1, 1, 1, 1, 1, 1};
+/// The same for the star stage, in addition: stars, lists, and what the residual vertices need.
+constexpr std::size_t cached_star_words[] = {7, 1, 1, 1, 1, 1, 1};
 
-/// The same where steps take parts of each other's buffers: locked triangles, results, numbers of triangles, input ids
-/// and what is as large. With the star stage, stars.
+/// The same where buffers are pooled: locked triangles, results, the triangles' numbers, input ids and what is as
+/// large. With the star stage, stars in addition.
 constexpr std::size_t pooled_words[] = {16, 6, 6, 2, 1, 1, 1};
 
 /// Words a point of each buffer that reserve_buffers() asks for.
 std::vector<std::size_t> reserved_words(const Memory& memory, std::size_t n, bool stars) {
   if (memory.pools(n * word)) {
     std::vector<std::size_t> all(std::begin(pooled_words), std::end(pooled_words));
-    if (stars) all.push_back(kept_star_words[0]);
+    if (stars) all.push_back(cached_star_words[0]);
     return all;
   }
-  std::vector<std::size_t> all(std::begin(kept_words), std::end(kept_words));
-  if (stars) all.insert(all.end(), std::begin(kept_star_words), std::end(kept_star_words));
+  std::vector<std::size_t> all(std::begin(cached_words), std::end(cached_words));
+  if (stars) all.insert(all.end(), std::begin(cached_star_words), std::end(cached_star_words));
   return all;
 }
 
@@ -49,7 +49,7 @@ void require_buffer(const Options& options, const DeviceInfo& device, std::size_
                     bytes, static_cast<std::size_t>(device.largest_buffer_bytes));
 }
 
-/// Of batched sets, the result left out.
+/// Device bytes of a batch without its result.
 constexpr std::size_t bytes_batched(std::size_t points, std::size_t sets) { return fixed + 176 * points + 1300 * sets; }
 
 }  // namespace
@@ -85,9 +85,9 @@ std::size_t plan_batch(Memory& memory, const Options& options, const DeviceInfo&
   std::size_t largest = 0;
   for (std::size_t s = 0; s < sets; ++s) largest = std::max(largest, offsets[s + 1] - offsets[s]);
   if (largest > most_of_set) {
-    const MemoryPlan alone = plan_memory({largest, true, false, sizeof(double)}, false, false);
-    require_buffer(options, device, alone.largest_buffer);
-    memory.require(results + alone.bytes);
+    const MemoryPlan individual = plan_memory({largest, true, false, sizeof(double)}, false, false);
+    require_buffer(options, device, individual.largest_buffer);
+    memory.require(results + individual.bytes);
   }
   std::size_t most = most_points_batched;
   const auto bytes = [&] {
@@ -107,17 +107,17 @@ bool fits_buffers(const Options& options, const DeviceInfo& device, std::size_t 
 }
 
 std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
-  if (!memory.keeps()) return plan_memory({n, false, false, sizeof(double)}, false, false).bytes;
+  if (!memory.caches()) return plan_memory({n, false, false, sizeof(double)}, false, false).bytes;
   const std::vector<std::size_t> words = reserved_words(memory, n, stars);
-  const std::size_t small = memory.pools(n * word) ? 1 : 0;  // those that are too small for the pool
+  const std::size_t small = memory.pools(n * word) ? 1 : 0;  // buffers that are too small for the pool
   return 4 * fixed + n * word * std::accumulate(words.begin(), words.end(), small);
 }
 
 void reserve_buffers(Memory& memory, std::size_t n, bool stars) {
-  std::vector<Allocation> together;
-  // Sums have one more; what is larger may be all that fits the device's largest buffer.
+  std::vector<Allocation> buffers;
+  // Prefix sums have one word more; a larger buffer may already be the largest that the device allows.
   for (const std::size_t words : reserved_words(memory, n, stars))
-    together.push_back(memory.allocate((n * words + (words <= 2 ? 1 : 0)) * word));
+    buffers.push_back(memory.allocate((n * words + (words <= 2 ? 1 : 0)) * word));
 }
 
 }  // namespace cadt

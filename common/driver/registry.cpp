@@ -57,7 +57,7 @@ std::unique_ptr<Device> open_in(BackendEntry& backend, const Options& options) {
   const int preferred = options.device.empty() ? backend.preferred_device() : -1;
   for (const DeviceInfo& info : devices)
     if (info.index >= 0 && info.index == preferred && info.usable) return backend.open(info.index, options);
-  // A GPU before a CPU, and what takes all coordinates before what takes floats alone.
+  // A GPU before a CPU; devices without double precision last.
   if (options.device.empty())
     for (const bool gpu : {true, false})
       for (const DeviceInfo& info : devices)
@@ -113,8 +113,8 @@ std::unique_ptr<Device> open_device(const Options& options) {
     throw BackendUnavailable("auto",
                              "no usable device matches '" + options.device + "'; 'cadt devices' lists what is there");
   }
-  // A GPU is the fastest, but one that takes floats alone must be named. Without one the host's threads are faster than
-  // OpenCL on the same cores.
+  // A GPU is the fastest, but one without double precision must be named. Without a GPU the host's threads are faster
+  // than OpenCL on the same cores.
   for (BackendEntry* backend : all_backends())
     for (const DeviceInfo& info : backend->devices())
       if (info.index >= 0 && info.usable && info.gpu && info.fp64) return open_in(*backend, options);

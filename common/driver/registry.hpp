@@ -7,7 +7,7 @@
 
 namespace cadt {
 
-/// Opens the device that the options name. Never falls back to another one. \throws BackendUnavailable
+/// Opens the device that the options name, never another one in its place. \throws BackendUnavailable
 [[nodiscard]] std::unique_ptr<Device> open_device(const Options& options);
 
 }  // namespace cadt

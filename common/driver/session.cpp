@@ -10,7 +10,7 @@
 namespace cadt {
 namespace {
 
-void require_rules(const Options& options, const Device& device) {
+void require_valid(const Options& options, const Device& device) {
   constexpr unsigned most_flips = 1000;  // counters have ten bits
   if (options.flip_threshold > most_flips)
     throw OptionError("flip_threshold", std::to_string(options.flip_threshold) + " is more than " +
@@ -34,14 +34,14 @@ void require_size(std::size_t points) {
 
 void begin_budget(Triangulator::State& state, std::size_t n) {
   if (state.memory.dropped()) state.known = {};
-  // Pooled buffers are few, and each is for what is as large.
+  // Pooled buffers are few, and each serves requests of its own size.
   const std::size_t reserved = state.known.reserved;
   const bool any_serves = n <= reserved && !state.memory.pools(reserved * sizeof(std::uint32_t));
   state.memory.begin(state.options.max_memory, any_serves);
 }
 
 void begin_call(Triangulator::State& state, std::size_t n, Statistics& statistics) {
-  require_rules(state.options, *state.device);
+  require_valid(state.options, *state.device);
   const DeviceInfo& info = state.device->info();
   statistics.points = n;
   statistics.certified = true;  // no edge is illegal until one is found

@@ -14,7 +14,7 @@
 namespace cadt {
 namespace {
 
-/// Mixes 64 bits so that every input bit moves every output bit: two multiplications by odd constants between shifts.
+/// Mixes 64 bits so that every input bit affects every output bit: multiplications by odd constants between shifts.
 constexpr std::uint64_t mix(std::uint64_t x) noexcept {
   x ^= x >> 32;
   x *= 0xd6e8feb86659fd93U;
@@ -33,7 +33,7 @@ void add(Hash128& hash, std::uint64_t kind, std::uint64_t a, std::uint64_t b, st
   hash.low += lane(0x13198a2e03707344U ^ (kind << 32), c, a, b);
 }
 
-/// A triangle from its smallest index on.
+/// The vertices of a triangle, the smallest index first.
 using Corners = std::array<std::int32_t, 3>;
 
 std::vector<Corners> sorted_triangles(const Triangulation& mesh) {
@@ -126,7 +126,7 @@ const Statistics& Triangulation::statistics() const noexcept { return data_->sta
 std::vector<std::int32_t> Triangulation::vertex_triangle() const {
   std::vector<std::int32_t> result(data_->points, -1);
   const auto vertices = triangles();
-  for (std::size_t i = vertices.size(); i-- > 0;)  // from the end: the lowest triangle is written last
+  for (std::size_t i = vertices.size(); i-- > 0;)  // backwards: the lowest triangle is written last
     result[static_cast<std::size_t>(vertices[i])] = static_cast<std::int32_t>(i / 3);
   for (const Duplicate& d : data_->duplicates)
     result[static_cast<std::size_t>(d.point)] = result[static_cast<std::size_t>(d.representative)];

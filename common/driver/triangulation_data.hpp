@@ -16,8 +16,8 @@ struct FreeWords {
 };
 using Words = std::unique_ptr<std::int32_t[], FreeWords>;
 
-/// Uninitialised. Large ones in huge pages where the system has them: triangles are written in no regular order, and
-/// what is new to the process costs a page fault each.
+/// Uninitialised words. Large arrays are in huge pages where the system has them: triangles are written in no regular
+/// order, and each first write to a page costs a page fault.
 [[nodiscard]] Words make_words(std::size_t count);
 
 /// What a Triangulation holds.

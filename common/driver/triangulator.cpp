@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole run: order the points, build the mesh, number and write the triangles.
+// A call from points to result: sort the points, build the mesh, number and write the triangles.
 #include <cadt/triangulator.hpp>
 
 #include <algorithm>
@@ -91,7 +91,7 @@ DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state,
   return DeviceTriangulation(std::move(data));
 }
 
-/// Copies all to the host and verifies it there.
+/// Copies points and mesh to the host and verifies them there.
 template <class Real>
 VerifyReport verify_copy(Device& device, const Allocation& input, const DeviceTriangulation::Data& data,
                          std::span<const Duplicate> duplicates, const VerifyOptions& options) {
@@ -171,22 +171,22 @@ void Triangulator::reserve(std::size_t points) {
   (void)plan_call(*state_, {n, false, true, sizeof(double)});
   KnownSizes& known = state_->known;
   if (n <= known.reserved) return;
-  if (!memory.keeps()) {
+  if (!memory.caches()) {
     state_->device->reserve(most_bytes(memory, n, false));
   } else if (const bool stars = may_use_stars(traits_of(*state_->device), state_->options);
              limit == 0 || most_bytes(memory, n, stars) <= limit) {
-    memory.drop_kept();  // too small
+    memory.drop_cached();  // too small
     begin_budget(*state_, n);
     reserve_buffers(memory, n, stars);
   } else {
-    return;  // enough for a call, but not for keeping all of its buffers
+    return;  // enough for a call, but not for caching all of its buffers
   }
   known.reserved = n;
   known.insertion = std::max(known.insertion, n);
 }
 
 void Triangulator::release_memory() {
-  state_->memory.drop_kept();  // the next account forgets the sizes
+  state_->memory.drop_cached();  // the next budget forgets the known sizes
   state_->device->trim();
 }
 

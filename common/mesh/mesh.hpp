@@ -13,11 +13,11 @@ namespace cadt {
 /// triangle, with the ghost triangles at the end (common/certify/certify.dev.h).
 struct Mesh {
   Allocation input_ids;             ///< of the vertices, which are positions in sorted order
-  Allocation locked;                ///< two a vertex; some of the first vertices' stay unused
+  Allocation locked;                ///< locked triangles, two a vertex; some of the first vertices' stay unused
   std::size_t slots = 0;            ///< locked triangles allocated, or triangles of the arrays
   Allocation vertices, half_edges;  ///< the arrays
   std::size_t triangles = 0;        ///< of the arrays the first so many have no ghost vertex
-  bool flat = false;                ///< there are no triangles: all vertices on one line, or fewer than three
+  bool flat = false;                ///< no triangles: all vertices are collinear, or there are fewer than three
 
   [[nodiscard]] static Mesh without_triangles(Allocation input_ids) {
     Mesh mesh;

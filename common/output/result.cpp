@@ -12,12 +12,12 @@ namespace {
 constexpr std::size_t word = sizeof(std::uint32_t);
 
 /// Whether the arrays of the mesh become those of the result without a second array for the canonical order: to save
-/// memory, or since that second one would be in no pooled buffer.
+/// memory, or because no pooled buffer would hold that array.
 bool in_place(const Context& ctx, const Mesh& mesh) noexcept {
   return mesh.in_arrays() && (ctx.plan.compact || ctx.memory.pools(mesh.slots * word));
 }
 
-/// Arrays on the device, the mesh's own where they can be.
+/// Writes the arrays on the device; reuses those of the mesh where possible.
 void write_on_device(Context& ctx, Mesh& mesh, const Numbering& numbering, ResultArrays& result) {
   const std::size_t bytes = 3 * result.count * word;
   if (!mesh.in_arrays()) {
@@ -28,7 +28,7 @@ void write_on_device(Context& ctx, Mesh& mesh, const Numbering& numbering, Resul
     write_triangles(ctx, mesh, numbering, mesh.vertices, mesh.half_edges);
     result.triangles = std::move(mesh.vertices);
     result.neighbors = std::move(mesh.half_edges);
-  } else {  // one after the other, so that each takes the place of the one before
+  } else {  // one after the other, so that the second reuses the memory of the mesh's half-edges
     result.neighbors = ctx.memory.allocate(bytes);
     write_triangles(ctx, mesh, numbering, {}, result.neighbors);
     mesh.half_edges.release();
@@ -37,7 +37,7 @@ void write_on_device(Context& ctx, Mesh& mesh, const Numbering& numbering, Resul
   }
 }
 
-/// Straight to the host's memory, if the device can write there.
+/// Writes straight to host memory; false if the device cannot.
 bool write_on_host(Context& ctx, const Mesh& mesh, const Numbering& numbering, Triangulation::Data& host,
                    ResultArrays& result) {
   const std::size_t values = 3 * result.count;

@@ -11,15 +11,15 @@
 
 namespace cadt {
 
-/// Three words a triangle each: vertices counterclockwise, as input ids, and neighbours.
+/// Three words a triangle each: vertices, as input ids, counterclockwise; and neighbours.
 struct ResultArrays {
   Allocation triangles, neighbors;
   std::size_t count = 0;
-  bool on_host = false;  ///< they are those of `host`, filled when the device has finished
+  bool on_host = false;  ///< the arrays alias those of `host`, which are filled when the device has finished
 };
 
-/// Numbers the triangles of `points` input points in the order that the options ask for and writes them. `host`: where
-/// they are to be in the end, null for a result on the device; its arrays are made if the device can write them.
+/// Renumbers the triangles of `points` input points in the order that the options name and writes them. `host`: where
+/// the result goes in the end, null for a result on the device; its arrays are made here if the device can write them.
 [[nodiscard]] ResultArrays write_result(Context& ctx, Mesh mesh, std::size_t points, Triangulation::Data* host);
 
 }  // namespace cadt

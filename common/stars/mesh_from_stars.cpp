@@ -21,17 +21,18 @@ namespace {
 using namespace device_text;
 
 constexpr std::size_t word = sizeof(std::uint32_t);
-/// With more than a third unproven the rest would need more memory than insertion of all points, and as much time.
+/// With more than a third unproven, the residual vertices would need more memory than insertion of all points, and as
+/// much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
 
-/// Edges between the two parts have a list and a hash table.
+/// Too many edges between the two parts for their list and hash table.
 constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * open > points; }
 
-/// The vertices of the mesh take the place of the stars in so many steps where memory is to be saved.
+/// Steps in which the compact plan replaces the stars by the vertices of the mesh.
 constexpr std::uint32_t waves = 4;
 
-/// The mesh of the residual vertices of a mesh of `all` points, which is certified as a whole: in locked triangles, and
-/// without legality sweeps where they are of no use.
+/// The mesh of the residual vertices of a mesh of `all` points, in locked triangles. The whole mesh is certified later,
+/// so there are no legality sweeps where they are of no use.
 Mesh build_residual(Context& ctx, SortedPoints points, std::size_t all, const BuildStrategy& how) {
   if (points.distinct <= how.most_residual_wrapped) {
     if (std::optional<Mesh> wrapped = wrap_part(ctx, points.points, points.distinct, all)) {
@@ -69,7 +70,7 @@ class StarStage {
       ranks_.release();
       return wrap_or_insert(ctx_, std::move(order_), how_);
     }
-    // stars that contradict each other would number more
+    // stars that contradict each other would have more
     if (proven_triangles_ > 2 * n_ - 2)
       throw InternalError("the proven stars have " + std::to_string(proven_triangles_) + " triangles, more than " +
                           std::to_string(2 * n_ - 2) + "; please report this with the input");
@@ -86,7 +87,7 @@ class StarStage {
   }
 
  private:
-  /// False if there are no tiles, or too few stars.
+  /// False if there are no tiles or too few stars are proven.
   bool make_stars() {
     const KeyGrid& grid = order_.grid;
     Allocation low;
@@ -113,7 +114,8 @@ class StarStage {
   }
 
   void count_triangles() {
-    // All but one of the buffers that lend are taken as a whole while the bases are here; to save memory, there is one.
+    // All pooled buffers but one are taken as a whole while the bases live; the compact plan gives them a buffer of
+    // their own.
     const std::size_t bases = (n_ + 1) * word;
     bases_ = ctx_.plan.compact ? ctx_.memory.allocate_unpooled(bases) : ctx_.memory.transient(bases);
     ranks_ = ctx_.memory.transient((n_ + 1) * word);
@@ -136,7 +138,7 @@ class StarStage {
     open_count_ = launch_.read_word(totals_, 0);
   }
 
-  /// The vertices without a star, and in place of labels their positions.
+  /// The vertices without a proven star; their input ids are positions in the sorted order.
   [[nodiscard]] SortedPoints take_residual() {
     SortedPoints residual;
     residual.distinct = unproven_;
@@ -149,7 +151,7 @@ class StarStage {
     return residual;
   }
 
-  /// Links and vertices of the triangles with a proven vertex.
+  /// Half-edges and vertices of the triangles with a proven vertex.
   void write_triangles() {
     const std::size_t bytes = 3 * (2 * n_ - 2) * word;
     const std::uint32_t groups = (count_ - 1) / CADT_ASSEMBLY_LANES + 1;
@@ -173,30 +175,31 @@ class StarStage {
                                               from, groups, c.grain, to);
   }
 
-  /// To where the stars are. Both are in the order of the points, six words a point, and there are some more before and
-  /// between the stars of the tiles: a share of the vertices, put together elsewhere, has room where no star is that is
-  /// still to be read. False if that is not so: where most triangles belong to the first of the points.
+  /// Writes the vertices over the stars. Both are in the order of the points, six words a point, and there are some
+  /// words more before and between the stars of the tiles: a share of the vertices, first written to a buffer of its
+  /// own, fits where no star is still to be read. False if it does not fit: where most triangles belong to the first
+  /// points.
   bool write_vertices_in_place(const Allocation& firsts, std::uint32_t groups) {
     const std::uint32_t share = (groups - 1) / waves + 1;
-    std::vector<std::uint32_t> cuts;  // first triangles
+    std::vector<std::uint32_t> bounds;  // first triangle of each share
     std::size_t most = 0;
     for (std::uint32_t from = 0; from < groups; from += share) {
-      cuts.push_back(launch_.read_word(firsts, from));
+      bounds.push_back(launch_.read_word(firsts, from));
       if (from == 0) continue;
-      most = std::max<std::size_t>(most, cuts.back() - cuts[cuts.size() - 2]);
+      most = std::max<std::size_t>(most, bounds.back() - bounds[bounds.size() - 2]);
       const std::size_t begin = std::size_t{from} * CADT_ASSEMBLY_LANES;
-      const std::size_t tile = begin - std::min<std::size_t>(begin, CADT_TILE_POINTS);  // or later
-      if (std::size_t{3} * cuts.back() > CADT_STAR_LEAD + 6 * tile + tile / 8) return false;
+      const std::size_t tile = begin - std::min<std::size_t>(begin, CADT_TILE_POINTS);  // its tile begins here or later
+      if (std::size_t{3} * bounds.back() > CADT_STAR_LEAD + 6 * tile + tile / 8) return false;
     }
-    cuts.push_back(proven_triangles_);
-    most = std::max<std::size_t>(most, cuts.back() - cuts[cuts.size() - 2]);
-    const Allocation together = ctx_.memory.transient(3 * most * word);
+    bounds.push_back(proven_triangles_);
+    most = std::max<std::size_t>(most, bounds.back() - bounds[bounds.size() - 2]);
+    const Allocation staged = ctx_.memory.transient(3 * most * word);
     std::uint32_t from = 0;
-    for (std::size_t wave = 0; wave + 1 < cuts.size(); ++wave, from += share) {
-      write_vertices(firsts, from, std::min(share, groups - from), together);
-      const std::uint32_t words = 3 * (cuts[wave + 1] - cuts[wave]);
+    for (std::size_t wave = 0; wave + 1 < bounds.size(); ++wave, from += share) {
+      write_vertices(firsts, from, std::min(share, groups - from), staged);
+      const std::uint32_t words = 3 * (bounds[wave + 1] - bounds[wave]);
       const LaunchGrid c = launch_.grid(words);
-      launch_.run<KernelId::cadt_copy_words>(c.items, together, stars_.star_vertices, 3 * cuts[wave], words, c.grain);
+      launch_.run<KernelId::cadt_copy_words>(c.items, staged, stars_.star_vertices, 3 * bounds[wave], words, c.grain);
     }
     mesh_.vertices = std::move(stars_.star_vertices);
     return true;
@@ -210,11 +213,11 @@ class StarStage {
   }
 
   void stitch(SortedPoints residual) {
-    // The place of the stars is free now, unless it became that of the mesh.
-    const Memory::TransientScope borrows(ctx_.memory, !ctx_.plan.compact);
+    // The buffer of the stars is free now, unless the mesh has taken it.
+    const Memory::TransientScope transient(ctx_.memory, !ctx_.plan.compact);
     const std::uint64_t certified = ctx_.statistics.certified_edges;
     const Mesh smaller = build_residual(ctx_, std::move(residual), n_, how_);
-    ctx_.statistics.certified_edges = certified;  // those of the whole mesh count
+    ctx_.statistics.certified_edges = certified;  // only those of the whole mesh count
     if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
 
     const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
@@ -244,7 +247,7 @@ class StarStage {
     launch_.run<KernelId::cadt_stitch_residual>(strided.items, smaller.locked, covers, ranks, smaller.input_ids, slots,
                                                 strided.grain, proven_triangles_, mesh_.vertices, mesh_.half_edges,
                                                 flips);
-    // triangles and ghosts have 3 and 1 sides that count
+    // a triangle has 3 sides that count, a ghost triangle 1
     flips.collect(ctx_.statistics, 3 * std::uint64_t{mesh_.triangles} + (mesh_.slots - mesh_.triangles));
     ctx_.end_phase("stitch");
     ctx_.check("stitch", 0.8);

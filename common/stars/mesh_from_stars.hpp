@@ -8,12 +8,13 @@
 
 namespace cadt {
 
-/// The mesh by the star stage: local stars without locks, gift wrapping or insertion of the residual vertices, the
-/// stitch of both parts, certification. Where stars prove too little, all points are wrapped or inserted.
+/// The certified mesh by the star stage: local stars without locks, gift wrapping or insertion of the residual
+/// vertices, and the stitch of both parts. If too few stars are proven, all points are wrapped or inserted.
 [[nodiscard]] Mesh mesh_from_stars(Context& ctx, SortedPoints points, const InputPoints& input,
                                    const BuildStrategy& how);
 
-/// The mesh by gift wrapping of all points, if they are few enough and it does not take too long, else by insertion.
+/// The certified mesh by gift wrapping of all points, if they are few enough and it does not take too long; else by
+/// insertion.
 [[nodiscard]] Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how);
 
 }  // namespace cadt

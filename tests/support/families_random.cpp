@@ -100,7 +100,7 @@ Points bit_reversed(const Points& xy, unsigned bits) {
   return reordered(xy, order);
 }
 
-// All points within one huge triangle, nearest to its middle first: all of them want the same record at the start.
+// All points within one huge triangle, nearest to its middle first: all contend for the same triangle at the start.
 Points inside_one_triangle() {
   Points inner =
       sorted_by(moved(uniform_points(997, 86), -0.5, -0.5), [](double x, double y) { return x * x + y * y; });

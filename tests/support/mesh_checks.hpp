@@ -45,7 +45,7 @@ struct ExpectedMesh {
 [[nodiscard]] std::vector<std::int32_t> canonical_set(std::span<const std::int32_t> triangles,
                                                       std::span<const std::int32_t> index = {});
 
-/// verify() passes, with the counts that the mesh claims.
+/// verify() passes, with the counts that the mesh reports.
 [[nodiscard]] testing::AssertionResult verified(const Points& xy, const Triangulation& mesh);
 
 /// Triangulates and compares everything; sets up to 5,000 points also in a random order.

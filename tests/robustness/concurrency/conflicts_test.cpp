@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sets made so that threads get in one another's way, run again and again: conflicts must happen, and must not show.
+// Sets made so that threads conflict, run again and again: conflicts must happen and must not change the mesh.
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"

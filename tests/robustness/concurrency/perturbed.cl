@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The OpenCL kernels with delays and failures (common/overlay/schedule_noise.dev.h), and an assertion at every store to
- * a record, which ends the process.
+ * The OpenCL kernels with schedule noise (common/overlay/schedule_noise.dev.h), and an assertion of ownership at every
+ * store to a triangle; a failed assertion ends the process.
  */
 #define CADT_SCHEDULE_NOISE
 #define CADT_CHECKED

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host kernels with delays and failures (common/overlay/schedule_noise.dev.h) and an assertion at every store to a
-// record. Linked before the library, this table takes the place of the real one.
+// The host kernels with schedule noise (common/overlay/schedule_noise.dev.h), and an assertion of ownership at every
+// store to a triangle. Linked before the library, this table replaces the real one.
 #undef NDEBUG
 #define CADT_WIDE 0
 #define CADT_CHECKED
@@ -11,7 +11,7 @@
 
 namespace cadt::test {
 std::atomic<std::uint64_t> site_counts[most_sites];
-RecordCounts last_records;
+LockedCounts last_locked;
 }  // namespace cadt::test
 
 namespace {
@@ -26,18 +26,18 @@ namespace {
 
 static_assert(CADT_SITES <= cadt::test::most_sites);
 
-// Its first work-item looks at all records before it counts; nobody writes to them any more.
+// Its first work-item looks at all locked triangles before it counts; no kernel writes to them any more.
 void count_triangles(std::uint32_t item, std::uint32_t items, const cadt::Arg* args) {
   if (item == 0) {
-    const auto* records = unpack<const cadt_locked_triangle*>(args[0]);
+    const auto* triangles = unpack<const cadt_locked_triangle*>(args[0]);
     const auto slots = unpack<cadt_u32>(args[5]);
-    cadt::test::RecordCounts counts;
+    cadt::test::LockedCounts counts;
     for (cadt_u32 t = 0; t < slots; ++t) {
-      const cadt_u32 lock = records[t].word[CADT_WORD_LOCK];
+      const cadt_u32 lock = triangles[t].word[CADT_WORD_LOCK];
       counts.live += lock != 0 ? 1 : 0;
       counts.held += lock & 1;
     }
-    cadt::test::last_records = counts;
+    cadt::test::last_locked = counts;
   }
   Trampoline<&cadt_count_triangles>::run(item, items, args);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the perturbed kernels of the host (perturbed_table.cpp) tell the tests.
+// What the perturbed kernels of the host (perturbed_table.cpp) report to the tests.
 #pragma once
 
 #include <atomic>
@@ -14,14 +14,14 @@ enum class Site : std::size_t { claimed, released, abandoned };
 [[nodiscard]] std::size_t number_of_sites();
 [[nodiscard]] std::size_t index_of(Site site);
 
-/// How often each site was passed, all work-items together.
+/// How often each site was passed, by all work-items.
 extern std::atomic<std::uint64_t> site_counts[most_sites];
 
-/// The records as they are when the triangles are counted, behind the last closing pass.
-struct RecordCounts {
+/// The locked triangles at the time when the triangles are counted, after the last legality sweep.
+struct LockedCounts {
   std::uint64_t live = 0;  ///< lock word not 0
   std::uint64_t held = 0;  ///< lock word odd
 };
-extern RecordCounts last_records;
+extern LockedCounts last_locked;
 
 }  // namespace cadt::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Delays and failures at every step of the lock protocol (common/overlay/schedule_noise.dev.h): no schedule shows in
-// the mesh, and what is counted adds up.
+// Schedule noise, delays and failures, at every step of the lock protocol (common/overlay/schedule_noise.dev.h): no
+// schedule changes the mesh, and the counters agree with each other.
 #include "tests/robustness/concurrency/perturbed_table.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
@@ -60,7 +60,7 @@ std::uint64_t count_of(Site site) { return site_counts[index_of(site)].load(); }
 
 void clear_counts() {
   for (auto& count : site_counts) count = 0;
-  last_records = {};
+  last_locked = {};
 }
 
 class Perturbed : public BackendTest {
@@ -82,15 +82,16 @@ class Perturbed : public BackendTest {
     EXPECT_EQ(mesh.number_of_triangles() + mesh.hull().size(), 2 * s.distinct - 2);
     EXPECT_EQ(s.lock_attempts, s.lock_failures + s.splits + s.edge_splits + s.flips);
     EXPECT_TRUE(s.certified);
-    EXPECT_EQ(s.certified_edges, 3 * s.distinct - 3) << "the closing pass counts edges between records that are free";
+    EXPECT_EQ(s.certified_edges, 3 * s.distinct - 3)
+        << "the legality sweep counts edges between triangles that are free";
     lost_ += s.lock_failures;
     retries_ += s.insert_retries;
     deferred_ += s.deferred_points + s.deferred_edges;
     if (!host) return;
     EXPECT_GT(count_of(Site::claimed), 0U);
     EXPECT_EQ(count_of(Site::claimed), count_of(Site::released) + count_of(Site::abandoned));
-    EXPECT_EQ(last_records.live, 2 * s.distinct - 2);
-    EXPECT_EQ(last_records.held, 0U);
+    EXPECT_EQ(last_locked.live, 2 * s.distinct - 2);
+    EXPECT_EQ(last_locked.held, 0U);
   }
 
   void run(Noise mode) {
@@ -114,7 +115,7 @@ class Perturbed : public BackendTest {
 TEST_P(Perturbed, RandomDelays) { run(Noise::uniform); }
 TEST_P(Perturbed, SlowItems) { run(Noise::slow_items); }
 TEST_P(Perturbed, SlowHolders) { run(Noise::slow_holders); }
-TEST_P(Perturbed, ClaimsThatFail) {
+TEST_P(Perturbed, FailingTryLocks) {
   run(Noise::failures);
   EXPECT_GT(lost_, 0U);
   EXPECT_GT(retries_, 0U);
@@ -168,10 +169,10 @@ CADT_ON(host, PerturbedRepeats, main_host_case);
 CADT_ON(opencl, PerturbedRepeats, repeated_opencl_case);
 CADT_ON(cuda, PerturbedRepeats, repeated_cuda_case);
 
-// Ranges have owners without locks, and a border with them.
-class PerturbedRanges : public Perturbed {};
+// Within a partition the owner takes no locks; at its border it does.
+class PerturbedPartitions : public Perturbed {};
 
-TEST_P(PerturbedRanges, EverySiteIsPassed) {
+TEST_P(PerturbedPartitions, EverySiteIsPassed) {
   const Points large = uniform_points(70000, 9), small = few_distinct(1500, 25);
   std::vector<std::uint64_t> passed(number_of_sites());
   const auto add = [&] {
@@ -184,7 +185,7 @@ TEST_P(PerturbedRanges, EverySiteIsPassed) {
   EXPECT_GE(passed.size(), 12U);
   for (std::size_t site = 0; site < passed.size(); ++site) EXPECT_GT(passed[site], 0U) << "site " << site;
 }
-CADT_ON(host, PerturbedRanges, main_host_case);
+CADT_ON(host, PerturbedPartitions, main_host_case);
 
 }  // namespace
 }  // namespace cadt::test

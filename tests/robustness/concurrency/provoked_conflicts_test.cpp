@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every kind of conflict happens when neighbouring points go to different threads on sets with a hub: claims are lost,
-// insertions tried again, points and edges left to later launches. The mesh shows none of it.
+// Every kind of conflict happens when neighbouring points go to different threads on sets with a high-degree vertex:
+// try-locks fail, insertions are retried, points and edges are deferred to later launches. The mesh stays the same.
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"
@@ -16,7 +16,7 @@
 namespace cadt::test {
 namespace {
 
-// A point in the middle of a circle of others: every flip there locks the records around the middle.
+// A point in the middle of a circle of others: every flip locks triangles around the middle.
 Points hub(std::size_t n) {
   Points xy{0, 0};
   for (std::size_t i = 0; i < n; ++i) {

@@ -64,7 +64,7 @@ class EveryStep : public ResidentTest {
     return with;
   }
 
-  /// Each step of `call` fails in turn. `warm`: memory that earlier calls left is kept.
+  /// Each step of `call` fails in turn. `warm`: with memory cached by earlier calls.
   void fail_each(const Options& with, const Call& call, bool warm = false) {
     const auto faults = std::make_shared<Faults>();
     {
@@ -96,7 +96,7 @@ class EveryStep : public ResidentTest {
           EXPECT_LE(next.peak, expected.peak) << "memory is counted that nobody holds";
         }
         if (HasFailure()) return;
-        // Threads that get in one another's way make some launches, and what goes with them, more or less.
+        // Conflicts between threads change the number of launches, and of what goes with them.
         EXPECT_GE(4 * reached + 12, 3 * counts[s]) << to_string(static_cast<Step>(s));
         RecordProperty(to_string(static_cast<Step>(s)), std::to_string(reached));
       }
@@ -109,7 +109,7 @@ class EveryStep : public ResidentTest {
                            const Outcome& expected) {
     try {
       EXPECT_EQ(call(triangulator).hash, expected.hash);
-      // an allocation is tried once more without the memory that is kept
+      // a failed allocation is retried once after the cached memory is freed
       EXPECT_TRUE(faults.failed() == 0 || step == Step::allocation) << "a fault was not noticed";
     } catch (const OutOfMemory& error) {
       EXPECT_EQ(step, Step::allocation) << error.what();
@@ -270,7 +270,7 @@ TEST_P(EveryStep, DeviceIsLost) {
         EXPECT_EQ(error.code(), injected_code);
       }
       EXPECT_EQ(noticed, faults->failed() != 0);
-      // Threads that get in one another's way make some launches more or less.
+      // Conflicts between threads change the number of launches.
       EXPECT_TRUE(noticed || 4 * k >= 3 * count);
       EXPECT_LE(faults->failed(), few);
       for (int again = 0; noticed && again < 2; ++again) {

@@ -78,7 +78,7 @@ class ExactLimits : public ResidentTest {
 
 constexpr std::size_t fixed = 65536;
 
-/// 124 bytes a point, or 97 where the result goes straight to memory of the host's (docs/performance.md). The records
+/// 124 bytes a point, or 97 where the result goes straight to host memory (docs/performance.md). The locked triangles
 /// are one buffer.
 TEST_P(ExactLimits, Insertion) {
   const Known known(uniform_points(20000));
@@ -200,10 +200,10 @@ class ExactGroups : public ExactLimits {
   std::vector<Group> groups;
 };
 
-/// Points that go together in a group at least, so that more is cut to that where it has to be.
+/// Fewest points of a group: where memory is short, groups shrink down to this.
 constexpr std::uint32_t fewest = 65536;
 
-/// The records of a group are one buffer, which may be as large as the largest.
+/// The locked triangles of a group are one buffer, up to the device's largest.
 TEST_P(ExactGroups, LargestBuffer) {
   faults->largest_buffer_bytes = fewest * 2 * sizeof(cadt_locked_triangle);
   for (const std::size_t more : {0U, 1U}) {
@@ -233,7 +233,7 @@ TEST_P(ExactGroups, Memory) {
   const Points xy = uniform_points(n);
   const DevicePoints points = upload(xy);
   const Options with = options(Strategy::automatic);
-  const auto together = [](std::size_t of) { return fixed + 176 * of + 1300 * sets; };
+  const auto batch_bytes = [](std::size_t of) { return fixed + 176 * of + 1300 * sets; };
   const std::size_t arrays = 2 * 3 * sizeof(std::uint32_t) * sets * (2 * size - 5);
   struct Form {
     std::size_t result;
@@ -245,11 +245,11 @@ TEST_P(ExactGroups, Memory) {
                              expect_meshes(t.triangulate_batch(points, offsets).download(), xy, offsets);
                            }};
   for (const Form& form : {host_points, device_points}) {
-    expect_exact(with, form.call, form.result + together(fewest), form.result + together(fewest));
-    // twice as many go together as soon as that fits
+    expect_exact(with, form.call, form.result + batch_bytes(fewest), form.result + batch_bytes(fewest));
+    // a group has twice as many points as soon as that fits
     Options bounded = with;
     for (const bool fits : {false, true}) {
-      bounded.max_memory = form.result + together(2 * fewest) - (fits ? 0 : 1);
+      bounded.max_memory = form.result + batch_bytes(2 * fewest) - (fits ? 0 : 1);
       Triangulator triangulator(bounded);
       groups.clear();
       faults->clear();
@@ -261,7 +261,7 @@ TEST_P(ExactGroups, Memory) {
   }
 }
 
-/// A set with so many points goes together with others, one with one more does not; nor are there more than 2^20 sets.
+/// A set with so many points is batched with others, a set with one more is not; a group has 2^20 sets at most.
 TEST_P(ExactGroups, Sets) {
   Triangulator triangulator(options(Strategy::automatic));
   const std::uint32_t most = triangulator.device().gpu ? 32768 : 8192;

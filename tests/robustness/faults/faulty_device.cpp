@@ -11,15 +11,14 @@
 namespace cadt::test {
 namespace {
 
-/// A buffer of the real device. Only memory that was allocated is accounted: what is aliased or wrapped is the
-/// caller's.
-class Accounted final : public Buffer {
+/// A buffer of the real device. Only memory that was allocated is counted: what is aliased or wrapped is the caller's.
+class CountedBuffer final : public Buffer {
  public:
-  Accounted(std::unique_ptr<Buffer> real, std::shared_ptr<Faults> faults, bool allocated)
+  CountedBuffer(std::unique_ptr<Buffer> real, std::shared_ptr<Faults> faults, bool allocated)
       : Buffer(real->bytes()), real_(std::move(real)), faults_(std::move(faults)), allocated_(allocated) {
     if (allocated_) faults_->add(bytes());
   }
-  ~Accounted() override {
+  ~CountedBuffer() override {
     if (allocated_) faults_->remove(bytes());
   }
   [[nodiscard]] Buffer& real() const noexcept { return *real_; }
@@ -30,7 +29,7 @@ class Accounted final : public Buffer {
   bool allocated_;
 };
 
-/// Of an accounted buffer.
+/// A part of a counted buffer.
 class PartOf final : public Buffer {
  public:
   PartOf(std::unique_ptr<Buffer> real, std::shared_ptr<Faults> faults, const Buffer& whole, std::size_t begin)
@@ -49,7 +48,7 @@ class PartOf final : public Buffer {
 
 Buffer& real(const Buffer& buffer) {
   if (const auto* part = dynamic_cast<const PartOf*>(&buffer)) return part->real();
-  return static_cast<const Accounted&>(buffer).real();
+  return static_cast<const CountedBuffer&>(buffer).real();
 }
 
 class FaultyPrimitives final : public Primitives {
@@ -211,7 +210,7 @@ class FaultyDevice final : public Device {
   }
   [[nodiscard]] std::unique_ptr<Buffer> account(std::unique_ptr<Buffer> buffer, bool allocated) {
     if (buffer == nullptr) return nullptr;
-    return std::make_unique<Accounted>(std::move(buffer), faults_, allocated);
+    return std::make_unique<CountedBuffer>(std::move(buffer), faults_, allocated);
   }
 
   std::unique_ptr<Device> device_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device that fails when it is told to: it stands between the driver and a real one and knows nothing of what the
-// back ends are. The test program's linker puts it there (inject.cpp); the library has no hook for it.
+// A device that fails on request: it stands between the driver and a real device and knows nothing of the back ends.
+// The test program's linker puts it there (inject.cpp); the library has no hook for it.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@ constexpr std::size_t steps = 5;
 /// The code that injected errors carry.
 constexpr int injected_code = -7777;
 
-/// Decides what fails, counts what is asked for, and keeps account of the memory that is out. Shared by a test and the
-/// devices that it opens; for one thread.
+/// Decides what fails, counts the requests, and tracks the memory that is allocated. Shared by a test and the devices
+/// that it opens; for one thread.
 class Faults {
  public:
   static constexpr std::size_t never = ~std::size_t{0};

@@ -107,7 +107,7 @@ void refuse_each(const std::function<std::string()>& call) {
     }
     until_refusal = never;
     EXPECT_EQ(refused, 1U);
-    EXPECT_LE(live, at_first + 1);  // a list that is kept
+    EXPECT_LE(live, at_first + 1);  // a list that is cached
     EXPECT_EQ(call(), expected);
     EXPECT_LE(live, before + 1);
   }

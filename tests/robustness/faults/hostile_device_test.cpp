@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices that are slower, smaller or more stubborn than any that was seen: locks that nobody gives back, lists that
-// are too short, buffers that are too small, and what a launch may cost at most.
+// Devices slower, smaller or less reliable than any real one: locks that are never released, lists that are too short,
+// buffers that are too small, and the most that a launch may cost.
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 
@@ -38,8 +38,8 @@ class HostileDevice : public ResidentTest {
   const Injection injection{faults};
 };
 
-/// A record that is claimed and never given back, as after a work-item that was killed: no call waits for it for ever.
-TEST_P(HostileDevice, LockThatIsNeverGivenBack) {
+/// A triangle that is locked and never released, as after a work-item that was killed: no call waits for it for ever.
+TEST_P(HostileDevice, LockThatIsNeverReleased) {
   const Points xy = uniform_points(3000);
   Triangulator triangulator(insertion());
   for (const std::size_t which : {0U, 1U, 2U, 3U}) {
@@ -48,12 +48,12 @@ TEST_P(HostileDevice, LockThatIsNeverGivenBack) {
     faults->after_launch = [&](KernelId kernel, std::span<const Arg> args, Device& device, double) {
       ++launches;
       if (kernel != KernelId::cadt_seed_mesh) return;
-      // the first triangle and its ghosts: records 2 first, 2 first + 1, 2 second, 2 second + 1
+      // the first triangle and its ghosts: triangles 2 first, 2 first + 1, 2 second, 2 second + 1
       const auto first = value_of<std::uint32_t>(args[5]), second = value_of<std::uint32_t>(args[6]);
       const std::size_t record = 2 * std::size_t{which < 2 ? first : second} + which % 2;
-      const std::uint32_t claimed = 1;
-      device.write(*args[0].buffer(), record * sizeof(cadt_locked_triangle) + CADT_WORD_LOCK * sizeof claimed, &claimed,
-                   sizeof claimed);
+      const std::uint32_t locked = 1;
+      device.write(*args[0].buffer(), record * sizeof(cadt_locked_triangle) + CADT_WORD_LOCK * sizeof locked, &locked,
+                   sizeof locked);
       poked = true;
     };
     const auto error = thrown<InternalError>([&] { (void)triangulator.triangulate(Reals(xy)); });
@@ -68,9 +68,9 @@ TEST_P(HostileDevice, LockThatIsNeverGivenBack) {
   }
 }
 
-/// The list of edges that are left for the next launch has room for few: the closing pass finds what was dropped. So
-/// that edges are left at all, every seventh record is claimed in the middle of the insertion, and given back two
-/// launches later. On cards the closing pass itself needs the list: without any room it gives up, and says so.
+/// The list of edges deferred to the next launch has room for few: the legality sweep finds those that were dropped. To
+/// make sure that edges are deferred, every seventh triangle is locked in the middle of the insertion and unlocked two
+/// launches later. On GPUs the legality sweep itself needs the list: without any room it stops with an error.
 TEST_P(HostileDevice, ListOfEdgesThatIsTooShort) {
   const Points uniform = uniform_points(6000, 4), lattice = grid_points(60, 70);
   std::uint64_t dropped = 0;
@@ -101,24 +101,24 @@ TEST_P(HostileDevice, ListOfEdgesThatIsTooShort) {
         edges = std::min(edges, capacity);
         std::memcpy(static_cast<std::byte*>(to) + sizeof edges, &edges, sizeof edges);
       };
-      std::vector<cadt_locked_triangle> records(2 * n);
-      std::vector<std::size_t> claimed;
+      std::vector<cadt_locked_triangle> triangles(2 * n);
+      std::vector<std::size_t> locked;
       std::size_t launches = 0;
       faults->after_launch = [&](KernelId kernel, std::span<const Arg> args, Device& device, double) {
         if (kernel != KernelId::cadt_insert && kernel != KernelId::cadt_legalize_edges) return;
         ++launches;
-        constexpr std::size_t claim_at = 9, give_back_at = 11;
+        constexpr std::size_t lock_at = 9, give_back_at = 11;
         Buffer& buffer = *args[0].buffer();
         const auto set_locks = [&](std::uint32_t more) {
-          for (const std::size_t r : claimed) {
-            const std::uint32_t lock = records[r].word[CADT_WORD_LOCK] + more;
+          for (const std::size_t r : locked) {
+            const std::uint32_t lock = triangles[r].word[CADT_WORD_LOCK] + more;
             device.write(buffer, r * sizeof(cadt_locked_triangle) + CADT_WORD_LOCK * sizeof lock, &lock, sizeof lock);
           }
         };
-        if (launches == claim_at) {
-          device.read(buffer, 0, records.data(), records.size() * sizeof records[0]);
-          for (std::size_t r = 0; r < records.size(); r += 7)
-            if (records[r].word[CADT_WORD_LOCK] != 0) claimed.push_back(r);
+        if (launches == lock_at) {
+          device.read(buffer, 0, triangles.data(), triangles.size() * sizeof triangles[0]);
+          for (std::size_t r = 0; r < triangles.size(); r += 7)
+            if (triangles[r].word[CADT_WORD_LOCK] != 0) locked.push_back(r);
           set_locks(1);
         } else if (launches == give_back_at) {
           set_locks(2);
@@ -135,7 +135,7 @@ TEST_P(HostileDevice, ListOfEdgesThatIsTooShort) {
         EXPECT_GT(mesh.statistics().deferred_edges, 0U);
       }
       EXPECT_FALSE(counts.empty());
-      EXPECT_GT(claimed.size(), n / 500);
+      EXPECT_GT(locked.size(), n / 500);
       faults->change_launch = nullptr;
       faults->change_read = nullptr;
       faults->after_launch = nullptr;
@@ -145,7 +145,7 @@ TEST_P(HostileDevice, ListOfEdgesThatIsTooShort) {
   RecordProperty("dropped", std::to_string(dropped));
 }
 
-/// The records of all points are one buffer. Where that cannot be, the call is refused before any work.
+/// The locked triangles of all points are one buffer. Where it cannot be so large, the call is refused before any work.
 TEST_P(HostileDevice, LargestBufferIsTooSmall) {
   const Points xy = uniform_points(20000);
   faults->largest_buffer_bytes = 2 * 20000 * sizeof(cadt_locked_triangle) - 1;
@@ -186,7 +186,7 @@ TEST_P(HostileDevice, KernelsThatDoNotBuildInTheMiddle) {
   }
 }
 
-/// Sets that go together go in as many groups as fit.
+/// Batched sets are split into as many groups as memory needs.
 TEST_P(HostileDevice, SetsInSmallerGroups) {
   constexpr std::size_t sets = 160, size = 1000;
   const Points xy = uniform_points(sets * size);

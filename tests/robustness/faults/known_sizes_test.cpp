@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a triangulator knows of earlier calls: sizes that had their memory, whether memory was saved, what is reserved
-// and what is kept. It must not know more than happened, and must forget what was given back.
+// What a triangulator knows of earlier calls: sizes that had their memory, whether the plan was compact, what is
+// reserved and what is cached. It must not know more than happened, and must forget what was freed.
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 
@@ -27,8 +27,8 @@ class KnownSizes : public ResidentTest {
   const Injection injection{faults};
 };
 
-/// Where memory is saved, the vertices of the mesh are put together in several launches. Buffers are lent here, so that
-/// what a call keeps is little more than it needs.
+/// In the compact plan the vertices of the mesh are written in several launches. Buffers are pooled here, so that a
+/// call caches little more than it needs.
 class KnownSavings : public KnownSizes {
  protected:
   void SetUp() override {
@@ -48,7 +48,7 @@ class KnownSavings : public KnownSizes {
   std::size_t launches = 0;
 };
 
-/// A call with floats saves memory whatever there is, and tells nothing of those that do not.
+/// A call with floats has the compact plan whatever memory there is, and says nothing about calls without it.
 TEST_P(KnownSavings, AreNotThoseOfOtherCalls) {
   const Known known(uniform_points(70'000));
   const std::vector<float> single(known.xy.begin(), known.xy.end());
@@ -131,8 +131,8 @@ TEST_P(KnownSizes, FailedReserveIsNotDone) {
   }
 }
 
-/// What earlier calls have kept counts: a lower bound makes it go.
-TEST_P(KnownSizes, KeptMemoryIsBoundedToo) {
+/// Memory cached by earlier calls counts: a lower bound frees it.
+TEST_P(KnownSizes, CachedMemoryIsBoundedToo) {
   const Known many(uniform_points(100'000)), few(uniform_points(1000, 2));
   constexpr std::size_t bound = 4'000'000;
   for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {

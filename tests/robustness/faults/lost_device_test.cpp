@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A real device that is lost: a kernel writes to an address that is none, which takes the context. In a process of its
-// own, since that has no device any more. Processors end the process instead, so only cards can have this test.
+// own, which has no device afterwards. CPUs end the process instead, so only GPUs can have this test.
 #include <cadt/cadt.hpp>
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a call tells while it runs, written down for each way through it: no report may be missing, each is further than
-// the one before it, and at each a stop is heard.
+// The progress that a call reports, listed for each path through it: no report may be missing, each fraction is greater
+// than the one before, and at each report a stop request takes effect.
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 
@@ -17,7 +17,7 @@ using Reals = std::span<const double>;
 using Call = std::function<Statistics(Triangulator&)>;
 using Names = std::vector<std::string>;
 
-/// Insertion tells how many points are in the mesh as often as it waits for that; the others are told once.
+/// Insertion reports the number of points in the mesh whenever it waits for it; other reports come once.
 std::string text_of(const Progress& progress) {
   char text[64];
   if (progress.phase == "insert") return "insert";
@@ -36,7 +36,7 @@ Names sorted(Names names) {
   return names;
 }
 
-class ToldProgress : public ResidentTest {
+class ReportedProgress : public ResidentTest {
  protected:
   [[nodiscard]] Options options(Strategy strategy) const {
     Options with = ResidentTest::options();
@@ -45,9 +45,9 @@ class ToldProgress : public ResidentTest {
   }
 
   /// `reports`: as text_of() has them, those of insertion once. `phases`: of Statistics::milliseconds.
-  void expect_told(const Options& with, const Call& call, const Names& reports, const Names& phases) {
-    // A sweep that repairs something, which is up to the schedule, tells of itself, and the output then begins no
-    // later.
+  void expect_reports(const Options& with, const Call& call, const Names& reports, const Names& phases) {
+    // A sweep that repairs something, which depends on the schedule, has a report of its own, and the output then
+    // begins no later.
     const bool sweeps = std::ranges::find(reports, "certify 0.9") != reports.end();
     const auto report_of = [&](const Progress& progress) {
       const std::string text = text_of(progress);
@@ -69,7 +69,7 @@ class ToldProgress : public ResidentTest {
     EXPECT_EQ(told, reports);
     EXPECT_EQ(last, 1);
     EXPECT_EQ(sorted(names_of(statistics)), sorted(phases));
-    // At each of them: a report is told and a stop requested there is heard, before the next one is told.
+    // A stop requested at any report takes effect before the next one.
     for (std::size_t stop_at = 0; stop_at < reports.size(); ++stop_at) {
       std::stop_source source;
       std::size_t later = 0;
@@ -108,39 +108,39 @@ Names without(Names names, const std::string& one) {
   return names;
 }
 
-TEST_P(ToldProgress, Insertion) {
+TEST_P(ReportedProgress, Insertion) {
   const Points xy = uniform_points(20000, 7);
   const DevicePoints points = upload(xy);
-  expect_told(
+  expect_reports(
       options(Strategy::locks), [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); }, of_insertion,
       with(insertion_phases, {"copy"}));
-  expect_told(
+  expect_reports(
       options(Strategy::locks), [&](Triangulator& t) { return t.triangulate(points).statistics(); }, of_insertion,
       insertion_phases);
 }
 
-TEST_P(ToldProgress, Stars) {
+TEST_P(ReportedProgress, Stars) {
   const Points xy = uniform_points(20000, 7);
   const DevicePoints points = upload(xy);
   Options bounded = options(Strategy::stars);
   bounded.max_memory = 2 * 65536 + 83 * xy.size() / 2;  // the triangles are put in order where they are
   const Call of_host = [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); };
   const Call of_device = [&](Triangulator& t) { return t.triangulate(points).statistics(); };
-  expect_told(options(Strategy::stars), of_host, of_stars, with(star_phases, {"copy"}));
-  expect_told(options(Strategy::stars), of_device, of_stars, star_phases);
-  expect_told(bounded, of_host, without(of_stars, "output 0.95"), with(star_phases, {"copy"}));
+  expect_reports(options(Strategy::stars), of_host, of_stars, with(star_phases, {"copy"}));
+  expect_reports(options(Strategy::stars), of_device, of_stars, star_phases);
+  expect_reports(bounded, of_host, without(of_stars, "output 0.95"), with(star_phases, {"copy"}));
 }
 
 /// Of few points all stars are wrapped, and there is nothing to join.
-TEST_P(ToldProgress, WrappedStars) {
+TEST_P(ReportedProgress, WrappedStars) {
   const Points xy = {0, 0, 1, 0, 0, 1, 3, 3};
-  expect_told(options(Strategy::stars), [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); },
-              {"sort 0", "sort 0.01", "stars 0.1", "stars 0.5", "output 0.9", "output 0.95", "output 1"},
-              {"upload", "bounds", "sort", "gather", "tiles", "stars", "wrap", "certify", "output", "copy"});
+  expect_reports(options(Strategy::stars), [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); },
+                 {"sort 0", "sort 0.01", "stars 0.1", "stars 0.5", "output 0.9", "output 0.95", "output 1"},
+                 {"upload", "bounds", "sort", "gather", "tiles", "stars", "wrap", "certify", "output", "copy"});
 }
 
-/// Passes that are repeated tell nothing twice: here three find edges that could not be read.
-TEST_P(ToldProgress, RepeatedPasses) {
+/// Repeated sweeps report nothing twice: here three find edges that could not be read.
+TEST_P(ReportedProgress, RepeatedPasses) {
   using namespace device_text;
   const Points xy = uniform_points(20000, 7);
   const Buffer* counts = nullptr;
@@ -154,7 +154,7 @@ TEST_P(ToldProgress, RepeatedPasses) {
     const std::uint32_t one = 1;
     std::memcpy(static_cast<std::byte*>(to) + at, &one, sizeof one);
   };
-  Names reports = of_insertion;  // a pass that is not the last one tells of itself
+  Names reports = of_insertion;  // a sweep that is not the last one has its own report
   std::ranges::replace(reports, "output 0.9", "certify 0.9");
   const Call call = [&](Triangulator& t) {
     unsettled = 0;
@@ -162,10 +162,10 @@ TEST_P(ToldProgress, RepeatedPasses) {
     EXPECT_EQ(statistics.legality_sweeps, 4U);
     return statistics;
   };
-  expect_told(options(Strategy::locks), call, reports, with(insertion_phases, {"copy"}));
+  expect_reports(options(Strategy::locks), call, reports, with(insertion_phases, {"copy"}));
 }
 
-CADT_ON_MAIN_BACKENDS(ToldProgress);
+CADT_ON_MAIN_BACKENDS(ReportedProgress);
 
 }  // namespace
 }  // namespace cadt::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes that are wrong when the certificate looks at them: a word of theirs was changed on the device. Each count of
-// the certificate alone is reason enough for an InternalError, and the triangulator goes on.
+// Meshes that are wrong when they are certified: one of their words was changed on the device. Each count of the
+// certification is sufficient for an InternalError, and the triangulator goes on.
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 
@@ -153,22 +153,22 @@ class WrongMesh : public ResidentTest {
     };
   }
 
-  /// The records before the first closing pass. Those in use are told apart, the others stay as they are.
-  void change_records(std::size_t n, Change change) {
+  /// Changes the locked triangles before the first legality sweep: those in use, as a mesh numbered without gaps.
+  void change_locked(std::size_t n, Change change) {
     changed = 0;
     faults->before_launch = [this, n, change](KernelId kernel, std::span<const Arg> args, Device& device) {
       if (kernel != KernelId::cadt_legality_sweep || changed++ != 0) return;
-      std::vector<cadt_locked_triangle> records = read_all<cadt_locked_triangle>(device, *args[0].buffer(), 2 * n);
-      std::vector<Word> used, number(records.size());
-      for (Word r = 0; r < records.size(); ++r)
-        if (records[r].word[CADT_WORD_LOCK] != 0) number[r] = static_cast<Word>(used.size()), used.push_back(r);
+      std::vector<cadt_locked_triangle> triangles = read_all<cadt_locked_triangle>(device, *args[0].buffer(), 2 * n);
+      std::vector<Word> used, number(triangles.size());
+      for (Word r = 0; r < triangles.size(); ++r)
+        if (triangles[r].word[CADT_WORD_LOCK] != 0) number[r] = static_cast<Word>(used.size()), used.push_back(r);
       Mesh mesh;
       mesh.points = read_all<cadt_point>(device, *args[1].buffer(), n);
       for (const Word r : used) {
         Face vertices{}, half_edges{};
         for (std::size_t k = 0; k < 3; ++k) {
-          vertices[k] = records[r].word[k];
-          const Word link = records[r].word[CADT_WORD_HALF_EDGE + k];
+          vertices[k] = triangles[r].word[k];
+          const Word link = triangles[r].word[CADT_WORD_HALF_EDGE + k];
           half_edges[k] = link_of(number[link >> 2], link & 3U);
         }
         mesh.vertices.push_back(vertices);
@@ -177,12 +177,12 @@ class WrongMesh : public ResidentTest {
       change(mesh);
       for (std::size_t t = 0; t < used.size(); ++t) {
         for (std::size_t k = 0; k < 3; ++k) {
-          records[used[t]].word[k] = mesh.vertices[t][k];
-          records[used[t]].word[CADT_WORD_HALF_EDGE + k] =
+          triangles[used[t]].word[k] = mesh.vertices[t][k];
+          triangles[used[t]].word[CADT_WORD_HALF_EDGE + k] =
               link_of(used[mesh.half_edges[t][k] >> 2], mesh.half_edges[t][k] & 3U);
         }
       }
-      device.write(*args[0].buffer(), 0, records.data(), records.size() * sizeof records[0]);
+      device.write(*args[0].buffer(), 0, triangles.data(), triangles.size() * sizeof triangles[0]);
     };
   }
 
@@ -223,7 +223,7 @@ std::optional<Counts> counts_of(const std::string& text) {
 
 TEST_P(WrongMesh, ArraysWithoutAnEdge) {
   Triangulator triangulator(options(Strategy::stars));
-  for (const std::size_t n : {300U, 20000U}) {  // wrapped, or of stars and a rest
+  for (const std::size_t n : {300U, 20000U}) {  // wrapped, or by stars and residual vertices
     const Points xy = uniform_points(n, 7);
     change_arrays(lose_an_edge);
     const auto found = counts_of(refused(triangulator, xy));
@@ -274,20 +274,20 @@ TEST_P(WrongMesh, ArraysWhoseBoundaryTurnsBack) {
   expect_right(triangulator, row);
 }
 
-TEST_P(WrongMesh, RecordsWithoutAnEdge) {
+TEST_P(WrongMesh, LockedTrianglesWithoutAnEdge) {
   Triangulator triangulator(options(Strategy::locks));
   const Points xy = uniform_points(300, 7);
-  change_records(300, lose_an_edge);
+  change_locked(300, lose_an_edge);
   const std::string text = refused(triangulator, xy);
   EXPECT_NE(text.find("has 896 edges instead of 897"), std::string::npos) << text;
   expect_right(triangulator, xy);
 }
 
-/// That is what the closing pass is for: it repairs.
-TEST_P(WrongMesh, RecordsWithAnIllegalEdge) {
+/// The legality sweep repairs it: that is its purpose.
+TEST_P(WrongMesh, LockedTrianglesWithAnIllegalEdge) {
   Triangulator triangulator(options(Strategy::locks));
   const Points xy = uniform_points(300, 7);
-  change_records(300, flip_an_edge);
+  change_locked(300, flip_an_edge);
   const Triangulation mesh = triangulator.triangulate(Reals(xy));
   EXPECT_GE(changed, 2U);
   EXPECT_EQ(mesh.hash(), on_host(Reals(xy)).hash());
@@ -297,18 +297,18 @@ TEST_P(WrongMesh, RecordsWithAnIllegalEdge) {
   expect_right(triangulator, xy);
 }
 
-TEST_P(WrongMesh, RecordsWithALinkThatIsNotMutual) {
+TEST_P(WrongMesh, LockedTrianglesWithAHalfEdgeThatIsNotMutual) {
   Triangulator triangulator(options(Strategy::locks));
   const Points xy = uniform_points(100, 7);
-  change_records(100, unlink_an_edge);
+  change_locked(100, unlink_an_edge);
   const std::string text = refused(triangulator, xy);
   EXPECT_NE(text.find("still finds illegal edges"), std::string::npos) << text;
   expect_right(triangulator, xy);
 }
 
-TEST_P(WrongMesh, RecordsWhoseBoundaryTurnsBack) {
+TEST_P(WrongMesh, LockedTrianglesWhoseBoundaryTurnsBack) {
   Triangulator triangulator(options(Strategy::locks));
-  change_records(5, turn_back);
+  change_locked(5, turn_back);
   const std::string text = refused(triangulator, row);
   EXPECT_NE(text.find("turns back at 2 points"), std::string::npos) << text;
   expect_right(triangulator, row);

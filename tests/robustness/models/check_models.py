@@ -19,13 +19,13 @@ LIVENESS = "acceptance cycle"
 # Defines, what must be found ("": nothing), and why.
 CASES = [
     ([], "", "no state is wrong"),
-    (["POINTS=2", "UNSORTED"], "", "claims in no order: who is alone gets on"),
-    (["NO_REREAD"], "assertion violated (version", "a claim that asks for no version"),
-    (["POINTS=2", "UNSORTED", "HOLD_AND_WAIT"], "invalid end state", "who waits and keeps what it holds"),
+    (["POINTS=2", "UNSORTED"], "", "locks in no order: a worker that is alone makes progress"),
+    (["NO_REREAD"], "assertion violated (version", "a lock that compares no version"),
+    (["POINTS=2", "UNSORTED", "HOLD_AND_WAIT"], "invalid end state", "hold and wait"),
     (["DROP_POINT"], "assertion violated (inserted", "a point that is on no list"),
-    (["ONE_PASS"], "assertion violated (inserted", "one closing pass, whatever it finds"),
-    (["POINTS=2", "KEEP_LOCK"], LIVENESS, "a lost claim that keeps a record"),
-    (["POINTS=2", "UNSORTED", "NO_FALLBACK"], LIVENESS, "claims in no order, and nobody is ever alone"),
+    (["ONE_PASS"], "assertion violated (inserted", "one legality sweep, whatever it finds"),
+    (["POINTS=2", "KEEP_LOCK"], LIVENESS, "a failed try-lock that keeps a triangle"),
+    (["POINTS=2", "UNSORTED", "NO_FALLBACK"], LIVENESS, "locks in no order, and no worker is ever alone"),
 ]
 
 

@@ -8,14 +8,14 @@
 
 namespace model {
 
-/// Of all threads of all runs of splits and flips; claims have ten times as many runs.
+/// Of all threads of all runs of splits and flips; locks alone have ten times as many runs.
 struct Totals {
   std::uint64_t flips = 0, splits = 0, lost = 0, invalid = 0;
 };
 
 struct Found {
-  bool claims_passed = false;  ///< claims, validation, stores and releases of one record
-  bool mesh_passed = false;    ///< splits and flips in a mesh; not looked at if the claims failed
+  bool claims_passed = false;  ///< lock, validation, stores and unlock of one triangle
+  bool mesh_passed = false;    ///< splits and flips in a mesh; not looked at if the locks failed
   std::string text;            ///< what relacy says
   std::size_t illegal = 0;     ///< edges that the mesh begins with
   Totals totals;

@@ -271,8 +271,8 @@ struct SplitsAndFlips : rl::test_suite<SplitsAndFlips, threads> {
   }
 };
 
-// Nothing but a record that three threads claim and change, and one that somebody holds all the time: what the version
-// says must be in the fields. A small world, so that rare orders of steps come up.
+// Nothing but a triangle that three threads lock and change, and one that is held all the time: the fields must be
+// those of the version. A small model, so that rare interleavings come up.
 struct Claims : rl::test_suite<Claims, threads> {
   rl::atomic<cadt_u32> memory[words::count];
   cadt_u32 changes[threads];

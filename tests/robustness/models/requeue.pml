@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Claim, requeue and closing pass of the insertion (common/insertion/lock.dev.h, insert.dev.h, legality_sweep.dev.h; the driver is
- * common/insertion/insertion.cpp) with sequentially consistent memory. What memory orders do is the matter of
+ * Lock, requeue and legality sweep of the insertion (common/insertion/lock.dev.h, insert.dev.h, legality_sweep.dev.h; the driver is
+ * common/insertion/insertion.cpp) with sequentially consistent memory. Memory orders are the subject of
  * protocol_test.cpp beside this.
  *
- * Items are points and edges. Each needs three of the records. Who inserts point p makes edge p illegal and owes its
- * check; it tries the edge at once, and after TRIES lost claims, or if the worklist is full, puts it on the list of the
- * next launch; if that is full, too, the edge is dropped and only a closing pass can find it. Points are never dropped.
+ * Items are points and edges. Each needs three of the triangles. A worker that inserts point p makes edge p illegal and
+ * must check it; it tries the edge at once, and after TRIES failed try-locks, or if the worklist is full, defers it to the
+ * next launch; if that list is full, too, the edge is dropped and only a legality sweep can find it. Points are never
+ * dropped.
  *
- * Checked: records are held by one worker at a time; what was read before a claim is true behind it; at the end all
+ * Checked: triangles are held by one worker at a time; what was read before a lock is true after it; at the end all
  * locks are free, each point was inserted once and no edge is illegal; no state without a successor; and the end comes
  * in every weakly fair run.
  *
  * check_models.py plants faults by -DHOLD_AND_WAIT, -DDROP_POINT, -DNO_REREAD, -DONE_PASS, -DKEEP_LOCK, -DUNSORTED and
- * -DNO_FALLBACK. Claims in no order (UNSORTED) are no fault by themselves: then the worker who is left alone at last gets on.
+ * -DNO_FALLBACK. Locks in no order (UNSORTED) are no fault by themselves: the worker that is alone in the end makes
+ * progress.
  */
 #ifndef WORKERS
 #define WORKERS 2
@@ -28,8 +30,8 @@
 #define PATIENCE 2 /* launches without progress, then one worker is alone */
 
 byte holder[RECORDS];  /* 0: free */
-byte version[RECORDS]; /* how often a record has changed */
-byte needs[18];        /* the records of an item, in the order of claims */
+byte version[RECORDS]; /* how often a triangle has changed */
+byte needs[18];        /* the triangles of an item, in the order of locks */
 bool inserted[POINTS], illegal[POINTS];
 
 byte work[ITEMS], work_size;          /* of this launch */
@@ -41,7 +43,7 @@ bool closing, changed, found, finished;
 #define NEED(item, k) needs[((item) < POINTS -> (item) : 3 + (item) - POINTS) * 3 + (k)]
 #define LOWEST(item) NEED(item, 0)
 
-/* Claims the three records of `item`; `won` tells whether that was possible. */
+/* Locks the three triangles of `item`; `won`: whether that was possible. */
 inline try_claim(item) {
   k = 0;
   do
@@ -86,7 +88,7 @@ inline try_claim(item) {
   fi
 }
 
-/* Reads, claims, changes and releases. \post done */
+/* Reads, locks, changes and unlocks. \post done */
 inline attempt(item) {
   done = false;
   atomic { r = LOWEST(item); seen = version[r]; won = false }
@@ -149,7 +151,7 @@ inline requeue(item) {
       skip
 #endif
     :: item >= POINTS && edges_left < ROOM -> deferred_edges[edges_left] = item; edges_left++
-    :: else /* a closing pass will find it */
+    :: else /* a legality sweep will find it */
     fi
   }
 }

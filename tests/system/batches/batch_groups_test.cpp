@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches of several groups: small sets go together, a large one between them ends the group before it. What holds for
-// the first group holds for those behind it, in every form of the points.
+// Calls with several groups: small sets are batched, a large set between them ends the group before it. What holds for
+// the first group holds for the later ones, in every form of the points.
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 

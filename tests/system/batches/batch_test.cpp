@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many sets of points in one call: each has the mesh that it has alone.
+// Many sets of points in one call: each has the mesh that it has individually.
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"
@@ -31,7 +31,7 @@ struct Joined {
   std::vector<std::size_t> offsets = {0};
 };
 
-/// All that a set has in a batch, against the serial host's mesh of the set alone.
+/// All that a set has in a batch, against the serial host's mesh of the individual set.
 void expect_set(const TriangulationBatch& batch, std::size_t set, const Points& xy) {
   Options options;
   options.backend = Backend::host;
@@ -162,7 +162,7 @@ TEST_P(Batch, Duplicates) {
   check(sets, stars());
 }
 
-// Each set has its own exponents; those that span too many go alone.
+// Each set has its own exponents; those that span too many binades are triangulated individually.
 TEST_P(Batch, Exponents) {
   Points wide = uniform_points(200, 5);
   for (std::size_t i = 0; i < 40; ++i) wide[i] = std::ldexp(wide[i], -280);
@@ -189,7 +189,7 @@ TEST_P(Batch, LargeSets) {
          small[4], uniform_points(40000, 3)});
 }
 
-// More sets than go together at a time.
+// More sets than a batch may have.
 TEST_P(Batch, ManySets) {
   const std::size_t count = (std::size_t{1} << 20) + 7;
   std::vector<std::size_t> offsets(count + 1);
@@ -208,7 +208,7 @@ TEST_P(Batch, ManySets) {
   EXPECT_EQ(batch.triangle_offsets().back(), 1050 * batch.triangles(3).size() / 3);
 }
 
-// What goes together is cut to the memory that there is.
+// The size of a batch follows the memory that there is.
 TEST_P(Batch, LittleMemory) {
   const Sets sets = uniform_sets(200, 1000);
   Options options = GetParam().options();

@@ -115,13 +115,13 @@ TEST_F(FloatMesh, APowerOfTwoChangesNothing) {
     EXPECT_EQ(triangulate(FloatSpan(floats_of(scaled(xy, exponent))), float_options()).hash(), hash) << exponent;
 }
 
-TEST_F(FloatMesh, CrowdsAndLongBoxes) {
+TEST_F(FloatMesh, OverfullCellsAndLongBoxes) {
   Points crowd = skewed_points(6000);
   check(floats_of(crowd), "skewed");
   const Points again = crowd;
   crowd.insert(crowd.end(), again.begin(), again.end());
   check(floats_of(crowd), "skewed, twice");
-  Floats subnormal;  // one crowd for the keys, which see zeros
+  Floats subnormal;  // one over-full cell for the keys, which see zeros
   for (int i = 0; i < 2000; ++i)
     subnormal.insert(subnormal.end(), {static_cast<float>(i % 41) * least, static_cast<float>(i % 37 - 20) * least});
   check(subnormal, "subnormal crowd");
@@ -133,8 +133,8 @@ TEST_F(FloatMesh, CrowdsAndLongBoxes) {
   check(floats_of(flat), "long box");
 }
 
-// So many points on a line get keys of 25 bits along it. The last cell must not be rounded up to the one behind it, the
-// key of which would be sorted as that of the first: equal points would not stand together.
+// So many points on a line get keys of 25 bits along it. The last cell must not be rounded up to the one behind it,
+// whose key would be sorted as that of the first: equal points would not be adjacent.
 TEST_F(FloatMesh, KeysOfMoreBitsThanAFloatHas) {
   Floats xy;
   Random random(4);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Long rows of flips, each illegal by the one before, are done at once (common/insertion/cavity_retriangulation.hpp).
+// Long flip cascades, each flip made necessary by the one before, are replaced by one retriangulation
+// (common/insertion/cavity_retriangulation.hpp).
 #include "common/driver/device_text.hpp"
 #include "common/driver/registry.hpp"
 #include "common/insertion/insertion.hpp"
@@ -19,8 +20,8 @@ namespace {
 using namespace device_text;
 class CavityRetriangulation : public BackendTest {};
 
-// Points of half a parabola, whose mesh is a fan of the first one. Three others have parts of it, each of which takes a
-// row of flips from its end.
+// Points of half a parabola, whose mesh is a fan of the first one. Three others have parts of the fan, each of which
+// takes a flip cascade from its end.
 TEST_P(CavityRetriangulation, FansOfWrongHubs) {
   constexpr std::uint32_t part = 100000, n = 3 * part + 10;
   constexpr std::array<std::uint32_t, 3> hubs = {35, part + 7, 2 * part + 1};
@@ -51,18 +52,18 @@ TEST_P(CavityRetriangulation, FansOfWrongHubs) {
   order.points = memory.allocate(points.size() * sizeof(double));
   device->write(*order.points, 0, points.data(), points.size() * sizeof(double));
   for (std::uint32_t v = 0; v < n; ++v) faces.push_back({CADT_GHOST, (v + 1) % n, v});
-  auto records = linked_faces<cadt_locked_triangle>(faces, 2 * std::size_t{n});
-  Allocation on_device = memory.allocate(records.size() * sizeof(cadt_locked_triangle));
-  device->write(*on_device, 0, records.data(), records.size() * sizeof(cadt_locked_triangle));
+  auto triangles = linked_faces<cadt_locked_triangle>(faces, 2 * std::size_t{n});
+  Allocation on_device = memory.allocate(triangles.size() * sizeof(cadt_locked_triangle));
+  device->write(*on_device, 0, triangles.data(), triangles.size() * sizeof(cadt_locked_triangle));
   const Mesh mesh = sweep_legality(ctx, order, std::move(on_device), 3 * std::uint64_t{n} - 3);
 
   EXPECT_EQ(statistics.certified_edges, 3 * std::uint64_t{n} - 3);
-  EXPECT_LE(statistics.sweep_repairs, 20U);  // beside the rows what rounded numbers leave
+  EXPECT_LE(statistics.sweep_repairs, 20U);  // besides the cascades, what the floating-point filter does not decide
   EXPECT_GE(statistics.cavities, 1U);
   EXPECT_LT(ctx.launcher.launches(), 60U);  // 16384 flips a launch on processors, 16 on cards
-  device->read(*mesh.locked, 0, records.data(), records.size() * sizeof(cadt_locked_triangle));
+  device->read(*mesh.locked, 0, triangles.data(), triangles.size() * sizeof(cadt_locked_triangle));
   std::uint32_t around = 0;
-  for (const cadt_locked_triangle& r : records)
+  for (const cadt_locked_triangle& r : triangles)
     for (std::uint32_t k = 0; k < 3 && r.word[CADT_WORD_LOCK] != 0; ++k) around += r.word[k] == 0 ? 1 : 0;
   EXPECT_EQ(around, n);  // n - 2 triangles and two ghosts
 }

@@ -14,8 +14,8 @@ namespace {
 
 class Regression : public BackendTest {};
 
-// A row of points, one far below and one far above: that one, inserted last, takes a fan of n flips in a row. The row
-// was cut into one launch for every few flips, and 64 such launches were taken for a lack of progress: InternalError.
+// A row of points, one far below and one far above: the last one, when inserted, causes a cascade of n flips.
+// The cascade was spread over launches of a few flips, and 64 such launches counted as no progress: InternalError.
 Points row_and_two_hubs(int n) {
   Points xy;
   for (int i = 0; i < n - 2; ++i) xy.insert(xy.end(), {static_cast<double>(i), 0.0});
@@ -23,7 +23,7 @@ Points row_and_two_hubs(int n) {
   return xy;
 }
 
-// Three lines one unit in the last place apart: long rows of flips in a mesh of slivers.
+// Three lines one unit in the last place apart: long flip cascades in a mesh of slivers.
 Points nearly_collinear(int n) {
   Points xy;
   Random random(5);
@@ -34,12 +34,12 @@ Points nearly_collinear(int n) {
   return xy;
 }
 
-TEST_P(Regression, LongRowsOfFlipsAreProgress) {
+TEST_P(Regression, LongFlipCascadesAreProgress) {
   for (const int n : {1000, 5000, 40000}) {
     const Points xy = row_and_two_hubs(n);
     const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
     EXPECT_TRUE(verified(xy, mesh)) << n;
-    // a launch does many flips of a row: 16 on GPUs, where a lane alone is slow
+    // a launch does many flips of a cascade: 16 on GPUs, where a single lane is slow
     EXPECT_LT(mesh.statistics().launches, 200u + static_cast<unsigned>(n) / 8) << n;
   }
 }

@@ -58,8 +58,8 @@ TEST_P(Result, CountsFollowTheFormula) {
   EXPECT_EQ(mesh.number_of_triangles(), 2 * distinct - 2 - mesh.hull().size());
 }
 
-// Points with so many triangles that these are sorted by all work-items together, several at a time and with others
-// between.
+// Vertices of so many triangles that all work-items cooperate to sort them, several such vertices in turn and with
+// others between.
 TEST_P(Result, CanonicalOrderAroundHubs) {
   for (const std::size_t hubs : {1U, 7U}) {
     Points xy, rings;

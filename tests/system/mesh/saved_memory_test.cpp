@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The star stage where memory is to be saved: triangles are put in order in two parts, vertices take the place of
-// stars. The meshes are those of the serial host, array by array.
+// The star stage with the compact plan: triangles are put in order in two parts, and vertices replace the stars in
+// place. The meshes are those of the serial host, array by array.
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/same_math.hpp"
@@ -65,8 +65,8 @@ Points hub_of_all_numbers(std::size_t n) {
   return xy;
 }
 
-/// The triangles whose smallest vertex is the hub are more than one work-item sorts. Their second vertices have numbers
-/// beyond those of the part of the order that is made.
+/// The triangles whose smallest vertex is the high-degree one are more than one work-item sorts. Their second vertices
+/// have numbers beyond those of the part of the order that is made.
 TEST_P(SavedMemory, LongBuckets) {
   const Points xy = hub_of_all_numbers(100'000);
   const Triangulation expected = on_serial_host(xy);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One thread meets nobody: after each point all edges that it made illegal are flipped, so the closing pass has nothing
-// to repair, and no claim is lost. A mistake in what is put on the list of edges shows here and nowhere else: with many
+// One thread has no conflicts: after each point all edges that it made illegal are flipped, so the legality sweep has
+// nothing to repair, and no try-lock fails. A mistake in what is put on the list of edges is seen only here: with many
 // threads, repairs hide it.
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
@@ -26,7 +26,7 @@ class SerialWork : public BackendTest {
   }
 };
 
-TEST_P(SerialWork, LeavesNothingToTheClosingPass) {
+TEST_P(SerialWork, LeavesNothingToTheLegalitySweep) {
   ASSERT_EQ(GetParam().threads, 1u);
   EXPECT_GT(run(uniform_points(5000)).splits, 4900u);
   EXPECT_GT(run(grid_points(60, 50)).edge_splits, 500u);  // points on edges, with four edges around them

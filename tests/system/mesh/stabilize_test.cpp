@@ -34,7 +34,7 @@ struct NamedSet {
   Points xy;
 };
 
-/// Every kind of set, small; those with long rows of flips among them.
+/// Every kind of set, small; those with long flip cascades among them.
 std::vector<NamedSet> every_family() {
   std::vector<NamedSet> sets;
   for (const FamilyGroup& group : family_groups())

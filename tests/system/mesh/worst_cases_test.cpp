@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sets that take the most flips or keep the most records claimed, and very many small ones. Every mesh is verified.
+// Sets that take the most flips or hold the most locks, and very many small ones. Every mesh is verified.
 //
 // CADT_HUB, CADT_ROTATIONS and CADT_SMALL_MESHES make them larger (docs/reliability.md).
 #include "tests/support/backends.hpp"
@@ -33,8 +33,8 @@ class WorstCases : public BackendTest {
   }
 };
 
-// A sweep over the points needs n^2 / 8 flips, 123,504 for a thousand (tests/unit/insertion/flip_rows_test.cpp makes
-// them).
+// A sweep over the points needs n^2 / 8 flips, 123,504 for a thousand (tests/unit/insertion/flip_cascades_test.cpp
+// makes them).
 TEST_P(WorstCases, AxesInsideOut) {
   const Points xy = axis_cross(250);
   const ExpectedMesh expected = expected_mesh(xy);
@@ -55,7 +55,7 @@ TEST_P(WorstCases, AxesInsideOut) {
   RecordProperty("flips_larger", std::to_string(mesh.statistics().flips));
 }
 
-// Each flip locks a record at the hub, and so do most insertions.
+// Each flip locks a triangle at the high-degree vertex, and so do most insertions.
 TEST_P(WorstCases, Hub) {
   const std::size_t degree = number_from("CADT_HUB", 20000);
   const Points xy = hub_points(static_cast<int>(degree));
@@ -73,10 +73,10 @@ TEST_P(WorstCases, Hub) {
 }
 
 TEST_P(WorstCases, RotationsOfALattice) {
-  const std::size_t rotations = number_from("CADT_ROTATIONS", 1000), side = 32, together = 250;
+  const std::size_t rotations = number_from("CADT_ROTATIONS", 1000), side = 32, batch = 250;
   Triangulator triangulator(GetParam().options());
-  for (std::size_t begin = 0; begin < rotations; begin += together) {
-    const std::size_t end = std::min(rotations, begin + together);
+  for (std::size_t begin = 0; begin < rotations; begin += batch) {
+    const std::size_t end = std::min(rotations, begin + batch);
     std::vector<Points> sets;
     Points all;
     std::vector<std::size_t> offsets = {0};
@@ -123,20 +123,20 @@ Points small_set(Random& random) {
   return xy;
 }
 
-// Many at once, on processors without claims, against each alone with them.
+// Many in one batch, on CPUs without locks, against each individually with locks.
 TEST_P(WorstCases, SmallMeshes) {
-  const std::size_t meshes = number_from("CADT_SMALL_MESHES", 10000), together = 1000;
+  const std::size_t meshes = number_from("CADT_SMALL_MESHES", 10000), batch = 1000;
   Random random(static_cast<std::uint64_t>(64 + meshes));
   Options alone;
   alone.backend = Backend::host;
   alone.threads = 1;
   alone.strategy = Strategy::locks;
   Triangulator one(alone), many(GetParam().options());
-  for (std::size_t begin = 0; begin < meshes; begin += together) {
+  for (std::size_t begin = 0; begin < meshes; begin += batch) {
     std::vector<Points> sets;
     Points all;
     std::vector<std::size_t> offsets = {0};
-    for (std::size_t s = begin; s < std::min(meshes, begin + together); ++s) {
+    for (std::size_t s = begin; s < std::min(meshes, begin + batch); ++s) {
       sets.push_back(small_set(random));
       all.insert(all.end(), sets.back().begin(), sets.back().end());
       offsets.push_back(all.size() / 2);
@@ -152,7 +152,7 @@ TEST_P(WorstCases, SmallMeshes) {
 }
 CADT_ON_MAIN_BACKENDS(WorstCases);
 
-// Launches with claims in which threads meet, of sets so small that all triangles are in dispute.
+// Launches with locks in which threads conflict, of sets so small that all triangles are contended.
 TEST_P(WorstCases, SmallMeshesInDispute) {
   const std::size_t meshes = number_from("CADT_SMALL_MESHES", 10000) / 10;
   Random random(static_cast<std::uint64_t>(65 + meshes));

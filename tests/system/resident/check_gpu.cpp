@@ -274,7 +274,7 @@ int run(const Arguments& a) {
     }
     const auto all = static_cast<double>(n);
     std::printf(
-        " | a point: steps %.2f flips %.2f lost claims %.3f | deferred %llu + %llu, launches %llu, sweeps %llu, "
+        " | a point: steps %.2f flips %.2f failed locks %.3f | deferred %llu + %llu, launches %llu, sweeps %llu, "
         "repairs %llu",
         static_cast<double>(s.walk_steps) / all, static_cast<double>(s.flips) / all,
         static_cast<double>(s.lock_failures) / all, static_cast<unsigned long long>(s.deferred_points),

@@ -429,7 +429,7 @@ TEST_P(CudaCalls, TakeNoMoreThanReserved) {
   EXPECT_EQ(least, 0U) << "bytes were taken beyond the reservation";
 }
 
-/// The rest of the device's memory is taken by the test, so that too little is left for points that are there.
+/// The test allocates the remaining memory of the device, so that too little is left for points that are there.
 TEST_P(CudaCalls, TakesAllMemory) {
   constexpr std::size_t n = 8'000'000, left = std::size_t{600} << 20;
   const Known few(uniform_points(1000));

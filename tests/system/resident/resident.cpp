@@ -70,7 +70,7 @@ void expect_same(DeviceMemory& memory, const DeviceTriangulation& found, const T
   expect_same(found.download(), expected);
 }
 
-CountingAllocator::~CountingAllocator() { EXPECT_EQ(live_.size(), 0U) << "memory was not given back"; }
+CountingAllocator::~CountingAllocator() { EXPECT_EQ(live_.size(), 0U) << "memory was not freed"; }
 
 void CountingAllocator::fail_at(std::size_t call, bool and_later) {
   until_failure_ = call;

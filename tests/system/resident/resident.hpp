@@ -52,7 +52,7 @@ std::unique_ptr<Exception> thrown(const Work& work) {
   return nullptr;
 }
 
-/// Allocates through the test's own calls, keeps account, and has none left when it is told so.
+/// Allocates through the test's own calls, counts what is live, and has no memory left when asked to refuse.
 class CountingAllocator final : public DeviceAllocator {
  public:
   explicit CountingAllocator(DeviceMemory& memory) : memory_(memory) {}

@@ -101,7 +101,7 @@ TEST_P(ResidentMemory, LittleWithFloats) {
         if (bounded)
           with.max_memory = 71 * known.size() + 131072;
         else
-          with.allocator = counting();  // nothing is kept, so the peak is what the call needs
+          with.allocator = counting();  // nothing is cached, so the peak is what the call needs
         Triangulator triangulator(with);
         const DevicePoints points{.x = apart ? x_alone : together,
                                   .y = apart ? y_alone : nullptr,
@@ -119,7 +119,7 @@ TEST_P(ResidentMemory, LittleWithFloats) {
 }
 
 /// Points that are gathered once more from floats, from coordinates apart or from doubles are those of before, in any
-/// range: the closing pass of a lattice, all of whose circles are ties, finds nothing.
+/// range: the certification of a lattice, all of whose circles are ties, finds nothing.
 TEST_P(ResidentMemory, GatheredAgain) {
   for (const int exponent : {-500, -100, 100, 500}) {
     std::vector<double> x, y;
@@ -175,7 +175,7 @@ TEST_P(ResidentMemory, StarsThatMustStay) {
   expect_same(mesh.download(), known.mesh);
 }
 
-/// So many bytes a point are enough, whatever is kept, and a call under that bound keeps to it.
+/// So many bytes a point are enough, whatever is cached, and a call under that bound stays within it.
 TEST_P(ResidentMemory, BoundOfWhatIsNeeded) {
   const Known known(uniform_points(50000)), few(uniform_points(7000, 2));
   const DevicePoints points = upload(known.xy), fewer = upload(few.xy);
@@ -231,12 +231,12 @@ TEST_P(ResidentMemory, PeakIsWithinWhatIsNeeded) {
   }
 }
 
-/// Of back ends whose memory is kept by the library; CUDA has a pool (CudaCalls.TakeNoMoreThanReserved).
-using KeptMemory = ResidentMemory;
+/// On back ends whose memory the library caches; CUDA has a pool (CudaCalls.TakeNoMoreThanReserved).
+using CachedMemory = ResidentMemory;
 
 /// After reserve() the first call asks for small buffers only, those after it for a few of other sizes, and from the
 /// second call of a size on for none.
-TEST_P(KeptMemory, ReservedMemoryIsEnough) {
+TEST_P(CachedMemory, ReservedMemoryIsEnough) {
   std::vector<Known> sets;
   for (const std::size_t n : {60000, 59999, 40000, 30000, 14000, 5000}) sets.emplace_back(uniform_points(n, n));
   for (const Order order : {Order::canonical, Order::fast}) {
@@ -266,7 +266,7 @@ TEST_P(KeptMemory, ReservedMemoryIsEnough) {
   }
 }
 
-TEST_P(KeptMemory, SecondCallTakesNothingLarge) {
+TEST_P(CachedMemory, SecondCallTakesNothingLarge) {
   for (const Points& xy : {set_of_all_kinds(), uniform_points(40000)}) {
     const DevicePoints points = upload(xy);
     Triangulator triangulator(options());
@@ -284,9 +284,9 @@ TEST_P(KeptMemory, SecondCallTakesNothingLarge) {
   }
 }
 
-/// What is kept for the next call is lent within a call: several calls take no more than one, 100 bytes a point with
-/// input and result, and 80 if the input are floats. (Up to two more are in buffers that are too small to be lent.)
-TEST_P(KeptMemory, SeveralCallsTakeLittle) {
+/// Memory cached for the next call is pooled within a call: several calls take no more than one, 100 bytes a point with
+/// input and result, and 80 if the input is floats. (Up to two more are in buffers that are too small to be pooled.)
+TEST_P(CachedMemory, SeveralCallsTakeLittle) {
   const Points xy = uniform_points(300'000);
   const std::vector<float> single(xy.begin(), xy.end());
   for (const Order order : {Order::canonical, Order::fast}) {
@@ -307,16 +307,16 @@ TEST_P(KeptMemory, SeveralCallsTakeLittle) {
         EXPECT_GT(mesh.statistics().proven_stars, points.size * 9 / 10);
         EXPECT_LE(mesh.statistics().bytes_device_peak, (floats ? 74 : 86) * points.size) << call;
         const std::uint64_t now = requests(mesh), of_this = now - std::exchange(last, now);
-        // what saves memory gives more of it back
-        if (call < 2 || !mesh.data().state->memory.keeps()) continue;
+        // the compact plan frees more of it
+        if (call < 2 || !mesh.data().state->memory.caches()) continue;
         EXPECT_LE(of_this, floats ? 12U : 0U) << call;
       }
     }
   }
 }
 
-/// reserve() asks for fewer buffers where they are lent, and they are enough.
-TEST_P(KeptMemory, ReservedMemoryIsLent) {
+/// reserve() allocates fewer buffers where they are pooled, and they are enough.
+TEST_P(CachedMemory, ReservedMemoryIsPooled) {
   constexpr std::size_t n = 70'000;
   const DevicePoints points = upload(uniform_points(n));
   for (const Strategy strategy : {Strategy::locks, Strategy::automatic}) {
@@ -326,7 +326,7 @@ TEST_P(KeptMemory, ReservedMemoryIsLent) {
       with.order = order;
       with.strategy = strategy;
       Triangulator triangulator(with);
-      if (!triangulator.device().gpu) GTEST_SKIP() << "processors lend nothing";
+      if (!triangulator.device().gpu) GTEST_SKIP() << "CPUs pool nothing";
       triangulator.reserve(n);
       EXPECT_LE(triangulator.memory_needed(n), 170 * n);
       for (int call = 0; call < 3; ++call) {
@@ -337,8 +337,8 @@ TEST_P(KeptMemory, ReservedMemoryIsLent) {
   }
 }
 
-/// With an allocator the memory is the caller's: nothing is kept.
-TEST_P(ResidentMemory, NothingOfTheAllocatorIsKept) {
+/// With an allocator the memory is the caller's: nothing is cached.
+TEST_P(ResidentMemory, NothingOfTheAllocatorIsCached) {
   const Known known(uniform_points(20000));
   const auto allocator = counting();
   Options with = options();
@@ -505,8 +505,8 @@ TEST_P(ResidentMemory, RefusedWhenOpened) {
 }
 
 CADT_ON_MAIN_BACKENDS(ResidentMemory);
-CADT_ON(host, KeptMemory, main_host_case);
-CADT_ON(opencl, KeptMemory, main_opencl_case);
+CADT_ON(host, CachedMemory, main_host_case);
+CADT_ON(opencl, CachedMemory, main_opencl_case);
 
 }  // namespace
 }  // namespace cadt::test

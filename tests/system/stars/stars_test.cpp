@@ -62,7 +62,7 @@ Points tight_squares(std::size_t squares, std::size_t points_of_each, double sid
   return xy;
 }
 
-/// Crowded cells at the end of both axes of the sort keys' grid, where cells are closed on all sides.
+/// Over-full cells at the end of both axes of the sort keys' grid, where cells are closed on all sides.
 Points crowd_in_a_corner(std::size_t n, double size) {
   Points xy = uniform_points(n, 32);
   const Points crowd = uniform_points(4 * n, 33);
@@ -109,7 +109,7 @@ class Stars : public BackendTest {
       EXPECT_EQ(mesh.statistics().certified_edges, 3 * mesh.statistics().distinct - 3);
     }
     EXPECT_LE(mesh.statistics().proven_stars, mesh.statistics().distinct);
-    // One thread leaves no edge to the closing pass, so what that repairs was a star without a right to its proof.
+    // One thread leaves no edge to the legality sweep, so any repair is of a star that was wrongly proven.
     if (GetParam().backend == Backend::host && GetParam().threads == 1) {
       EXPECT_EQ(mesh.statistics().sweep_repairs, 0u);
     }
@@ -245,7 +245,7 @@ TEST_P(Stars, Lines) {
   expect_same("axes", axis_cross(150));
 }
 
-TEST_P(Stars, CrowdedCells) {
+TEST_P(Stars, OverfullCells) {
   expect_same("two clusters", clusters_apart(6000, 1e6));
   expect_same("two clusters, far", clusters_apart(6000, 1e12));
   expect_same("two clusters, 1e12 apart", two_clusters(6000));
@@ -277,8 +277,8 @@ TEST_P(Stars, CrowdedCells) {
   }
 }
 
-/// A crowd in the lower left corner, so that windows reach beyond the box there, and a point just below a border of the
-/// keys' cells: its cell, counted from outside the box, rounds up to one beyond the window.
+/// Many points in the lower left corner, so that neighbourhood grids reach beyond the bounds there, and a point just
+/// below a border of the keys' cells: its cell, counted from outside the bounds, rounds up to one beyond the grid.
 TEST_P(Stars, RoundingAtTheLowerEdges) {
   const double h = 1.0 / 256;
   for (const bool sideways : {false, true})
@@ -378,7 +378,7 @@ TEST_P(Stars, GroupsOfEverySize) {
   const Points xy = uniform_points(12000, 51), lattice = grid_points(60, 50);
   const Triangulation expected = with_locks(Reals(xy)), expected_lattice = with_locks(Reals(lattice));
   std::set<std::uint64_t> proven;
-  // Where a lane works alone the size hardly matters, and kernels are compiled for each.
+  // Where lanes work independently the size hardly matters, and kernels are compiled for each size.
   const std::string name = stars().triangulate(Reals(lattice)).statistics().device;
   const bool gpu = std::ranges::any_of(list_devices(), [&](const DeviceInfo& device) {
     return device.backend == GetParam().backend && device.gpu && device.name == name;
@@ -426,7 +426,7 @@ TEST_P(Stars, Stop) {
   EXPECT_TRUE(same_arrays(stars().triangulate(Reals(xy)), expected)) << "after calls that were stopped";
 }
 
-/// Any bound is kept: the call runs below it, or it is OutOfMemory.
+/// Every bound holds: the call runs below it or throws OutOfMemory.
 TEST_P(Stars, MaxMemoryIsABound) {
   const Points xy = uniform_points(20000, 53);
   Options options = GetParam().options();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gift wrapping (common/stars/wrap_exact.dev.h): small sets that the star stage leaves, and what it gives up.
+// Gift wrapping (common/stars/wrap_exact.dev.h): small sets, residual vertices of the star stage, and work limits.
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"
@@ -102,8 +102,8 @@ TEST_P(Wrap, HullsAlmostStraight) {
   }
 }
 
-// Rounded numbers hardly tell the points of the other cluster apart, but nearly all of them from the best one. For an
-// exact test of a lane all others wait.
+// The floating-point filter hardly separates the points of the other cluster from each other, but nearly all of them
+// from the best one. During an exact test of one lane all others wait.
 TEST_P(Wrap, FarApart) {
   for (const std::size_t n : {1500u, 4000u}) {
     const Statistics s = check(two_clusters(n));
@@ -118,7 +118,7 @@ TEST_P(Wrap, Duplicates) {
   check(shuffled(xy, 9));
 }
 
-// A hub has no star of its own: its triangles are those of its neighbours.
+// A high-degree vertex has no star of its own: its triangles come from its neighbours' stars.
 TEST_P(Wrap, Hubs) {
   EXPECT_EQ(check(noisy_hub(30)).wrapped_stars, 31u);
   for (const std::size_t neighbours : {60u, 1200u}) {
@@ -156,7 +156,7 @@ void add_arc(Points& xy, double x, double y, double from, double to) {
   }
 }
 
-// Triangles of hubs alone: of three, and of two and what is outside of the hull.
+// Triangles of high-degree vertices only: of three, and of two and the ghost vertex.
 TEST_P(Wrap, HubsBesideEachOther) {
   Points three = {0, 0, 10, 0, 5, 8.66};
   add_arc(three, 0, 0, 130, 290);
@@ -169,7 +169,7 @@ TEST_P(Wrap, HubsBesideEachOther) {
   EXPECT_EQ(check(shuffled(two, 5)).wrapped_stars, 120u);
 }
 
-// Edges between two hubs with triangles of hubs on either side, which nobody's star tells of.
+// Edges between two high-degree vertices with triangles of such vertices on either side, which are in no star.
 TEST_P(Wrap, ManyHubsBesideEachOther) {
   Points four = {0, 0, 10, 1, 0, 11, 9, 10};
   add_arc(four, 0, 0, 150, 290);
@@ -214,7 +214,7 @@ TEST_P(Wrap, GivesUpTooManyHubsBesideEachOther) {
   EXPECT_EQ(s.wrapped_stars, 0u);
   EXPECT_GT(s.splits + s.edge_splits, 0u);
 }
-// How much it does before it gives up depends on how many vertices are searched at a time.
+// The work before the early-out depends on how many vertices are searched at a time.
 TEST_P(Wrap, EndlessTies) {
   check(hub_points(400));
   check(regular_polygon(2000, 0, 0, 1));
@@ -228,12 +228,12 @@ bool made_by_card(const Statistics& s, Backend backend) {
   return gpu;
 }
 
-// A card wraps small sets of its own accord; processors never do.
+// By default a GPU wraps small sets; CPUs never do.
 TEST_P(Wrap, ChosenOnCards) {
   const Statistics s = check(uniform_points(3000, 4), Strategy::automatic);
   EXPECT_EQ(s.wrapped_stars, made_by_card(s, GetParam().backend) ? 3000u : 0u);
 }
-// Crowded cells get keys of two words there, and need not be refined bit by bit.
+// Over-full cells get keys of two words there, and need no refinement bit by bit.
 TEST_P(Wrap, FinerKeysOnCards) {
   const Statistics s = check(cluster_points(4000), Strategy::automatic);
   const bool card = made_by_card(s, GetParam().backend);

@@ -20,7 +20,7 @@ namespace {
 #include "common/insertion/legality_sweep.dev.h"
 #pragma GCC diagnostic pop
 
-TEST(Closing, BoundaryThatTurnsBack) {
+TEST(LegalitySweep, BoundaryThatTurnsBack) {
   const std::vector<cadt_point> points = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {1, 5}, {0, 1}, {0, 2}, {0, 3}};
   cadt_locked_mesh mesh{};
   mesh.points = points.data();
@@ -43,7 +43,7 @@ TEST(Closing, BoundaryThatTurnsBack) {
   EXPECT_EQ(cadt_turns_back(&mesh, CADT_GHOST, 0, 1, 2, &counters), 0u);
 }
 
-TEST(Closing, CountsIt) {
+TEST(LegalitySweep, CountsIt) {
   const std::vector<cadt_point> points = {{0, 0}, {2, 0}, {1, 5}, {3, 0}, {4, 0}};
   const std::uint32_t g = CADT_GHOST;
   const auto pass = [&](const std::vector<cadt::test::Face>& faces) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the statistics of a call say, field by field, against what the device was asked for; the copy of a mesh on the
-// device says the same as the mesh.
+// The statistics of a call, field by field, against the requests that the device counted; the host copy of a mesh on
+// the device has the same statistics as the mesh.
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 
@@ -71,7 +71,7 @@ Points some_points(std::size_t n) {
   return xy;
 }
 
-class ToldStatistics : public ResidentTest {
+class ReportedStatistics : public ResidentTest {
  protected:
   void SetUp() override {
     ResidentTest::SetUp();
@@ -105,7 +105,7 @@ class ToldStatistics : public ResidentTest {
   const Injection injection{faults};
 };
 
-TEST_P(ToldStatistics, OneSet) {
+TEST_P(ReportedStatistics, OneSet) {
   const Points xy = some_points(20000);
   const std::size_t n = xy.size() / 2, distinct = n - 50;
   const DevicePoints points = upload(xy);
@@ -139,7 +139,7 @@ TEST_P(ToldStatistics, OneSet) {
   }
 }
 
-TEST_P(ToldStatistics, SeveralSets) {
+TEST_P(ReportedStatistics, SeveralSets) {
   Points xy = some_points(500);
   std::vector<std::size_t> offsets = {0, xy.size() / 2};
   for (const Points& set : {uniform_points(700, 2), Points{}, Points{1, 2}, Points{0, 0, 1, 1}, some_points(33'000)}) {
@@ -173,7 +173,7 @@ TEST_P(ToldStatistics, SeveralSets) {
   }
 }
 
-CADT_ON_MAIN_BACKENDS(ToldStatistics);
+CADT_ON_MAIN_BACKENDS(ReportedStatistics);
 
 }  // namespace
 }  // namespace cadt::test

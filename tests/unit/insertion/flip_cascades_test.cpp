@@ -111,7 +111,7 @@ std::vector<cadt_point> axes(int arm) {
   return points;
 }
 
-TEST(RowsOfFlips, InsideOut) {
+TEST(FlipCascades, InsideOut) {
   const std::vector<cadt_point> points = axes(250);
   std::vector<cadt_locked_triangle> records;
   const Work work = insert_in_order(points, CADT_FLIP_LIMIT, records);
@@ -120,7 +120,7 @@ TEST(RowsOfFlips, InsideOut) {
   EXPECT_EQ(work.deferred_edges, 0U);
 }
 
-TEST(RowsOfFlips, FromLeftToRight) {
+TEST(FlipCascades, FromLeftToRight) {
   constexpr int arm = 250;
   std::vector<cadt_point> points = axes(arm);
   std::sort(points.begin(), points.end(),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of a call borrow kept buffers of each other (common/driver/memory.hpp): no two share a byte, the account is
-// what the device has given, meshes are the same, and after any fault all of it can be given back. The device makes
-// parts of buffers here whether or not it does so outside.
+// Steps of a call use parts of cached buffers (common/driver/memory.hpp): no two parts share a byte, the budget equals
+// what the device has allocated, meshes are the same, and after any fault all memory can be freed. The device makes
+// parts of buffers here whether or not it does so elsewhere.
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 
@@ -12,9 +12,9 @@ namespace {
 
 using Reals = std::span<const double>;
 
-constexpr std::size_t enough = 70'000;  // the smallest buffers that are borrowed have a word for each of 65,536
+constexpr std::size_t enough = 70'000;  // the smallest pooled buffers have a word for each of 65,536
 
-class LentMemory : public ResidentTest {
+class PooledMemory : public ResidentTest {
  protected:
   void SetUp() override {
     ResidentTest::SetUp();
@@ -40,8 +40,8 @@ Points with_equal_ones() {
   return xy;
 }
 
-/// Sets of several kinds and sizes in turn, so that what is kept of one is lent to another.
-TEST_P(LentMemory, MeshesAndAccounts) {
+/// Sets of several kinds and sizes in turn, so that buffers cached by one are pooled by another.
+TEST_P(PooledMemory, MeshesAndBudgets) {
   std::vector<Known> sets;
   for (Points& xy : std::vector<Points>{with_equal_ones(), cluster_points(enough), grid_points(270, 260)})
     sets.emplace_back(std::move(xy));
@@ -81,9 +81,9 @@ TEST_P(LentMemory, MeshesAndAccounts) {
   }
 }
 
-/// A step of each kind fails here and there while buffers are lent: with floats, which save memory, some are asked for
-/// in each call.
-TEST_P(LentMemory, AfterFaults) {
+/// Steps of each kind fail while parts of buffers are in use: with floats, whose plan is compact, each call allocates
+/// some.
+TEST_P(PooledMemory, AfterFaults) {
   const Points xy = cluster_points(enough);
   const std::vector<float> single(xy.begin(), xy.end());
   struct Case {
@@ -127,8 +127,8 @@ TEST_P(LentMemory, AfterFaults) {
   EXPECT_EQ(faults->live_bytes(), 0U);
 }
 
-/// Buffers that are lent are larger than what was asked for, but not larger than the device's largest.
-TEST_P(LentMemory, LargestBufferJustFits) {
+/// Pooled buffers are larger than requested, but not larger than the device's largest.
+TEST_P(PooledMemory, LargestBufferJustFits) {
   const Points xy = uniform_points(enough);
   const auto expected = on_host(Reals(xy)).hash();
   faults->largest_buffer_bytes = 2 * enough * sizeof(device_text::cadt_locked_triangle);
@@ -140,7 +140,7 @@ TEST_P(LentMemory, LargestBufferJustFits) {
   }
 }
 
-CADT_ON_MAIN_BACKENDS(LentMemory);
+CADT_ON_MAIN_BACKENDS(PooledMemory);
 
 }  // namespace
 }  // namespace cadt::test

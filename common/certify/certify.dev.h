@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Certification: examines every edge of a finished mesh and repairs nothing.
+ * Certification of a mesh in two arrays: examines every edge and repairs nothing. Locked triangles, as insertion makes
+ * them, are certified by the last legality sweep, which repairs nothing either
+ * (common/insertion/legality_sweep.dev.h).
  *
- * The mesh is two arrays of three words a triangle: vertices and half-edges, as in locked_mesh.dev.h but without lock
- * words and flip counters, since nothing is flipped any more. Ghost triangles come last, so what is before them already
- * has the form of the result.
+ * The arrays, vertices and half-edges, have three words a triangle, as in locked_mesh.dev.h but without lock words and
+ * flip counters, since nothing is flipped any more. Ghost triangles come last, so what is before them already has the
+ * form of the result.
  */
 #ifndef CADT_CERTIFY_CERTIFY_H
 #define CADT_CERTIFY_CERTIFY_H

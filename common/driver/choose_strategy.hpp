@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a mesh is made: one decision, a pure function of device, options and the profile of the points. No stage decides
-// again.
+// again; where stars or gift wrapping prove too little, they hand over to insertion.
 #pragma once
 
 #include <cadt/triangulation.hpp>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Device memory of one triangulator: counted, bounded, and cached for the next call.
+// Device memory of one triangulator as it is taken: counted, bounded, and cached for the next call. What a call will
+// take is planned before (memory_plan.hpp).
 #pragma once
 
 #include <memory>

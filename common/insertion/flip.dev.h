@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Where an edge is tested and flipped (paper, section 4.4, Algorithm 3). A flip locks what it writes, which validates
- * what was read, then stores, then unlocks.
+ * Where an edge is tested and flipped (paper, section 4.4, Algorithm 3). A flip locks what it writes, stores, and
+ * unlocks, as a split does (split.dev.h).
  */
 #ifndef CADT_INSERTION_FLIP_H
 #define CADT_INSERTION_FLIP_H

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
  * Where a triangle is split: a face 1 -> 3, an edge and its two triangles 2 -> 4 (paper, section 4.3, Algorithm 2). A
- * split locks what it writes, which validates what was read, then stores, then unlocks. In the figures `t.k` is the
+ * split locks what it writes, stores, and unlocks. That what was read still holds is proved by the lock itself on CPUs,
+ * and on GPUs by reading it again (cadt_validate). In the figures `t.k` is the
  * half-edge of edge k of triangle t; a row lists the vertices of a triangle by slot, and what lies across its edges.
  */
 #ifndef CADT_INSERTION_SPLIT_H

@@ -2,8 +2,8 @@
  *
  * Stitching: the proven part of the mesh and the residual mesh become one. A triangle without a proven vertex belongs
  * to the Delaunay triangulation of the unproven (residual) vertices alone, since an empty circle stays empty in a
- * subset (docs/stars.md, "Stitching"). Insertion builds that residual mesh; here those of its triangles are found
- * that fill the holes of the proven part, and both parts are connected.
+ * subset (docs/stars.md, "Stitching"). Gift wrapping builds that residual mesh, or insertion where it cannot; here
+ * those of its triangles are found that fill the holes of the proven part, and both parts are connected.
  *
  *    proven part with a hole     residual mesh               whole mesh
  *
@@ -15,10 +15,10 @@
  *
  *                            k kept, h hidden: the proven part covers it
  *
- * The two parts meet in edges between unproven vertices: edge 0 of an open triangle on one side, an edge of the
- * residual mesh on the other. Those edges cut the residual mesh into components; a component is hidden if one of its
- * triangles has an open triangle on its own side of an edge: there the proven part covers it. The whole mesh is in two
- * arrays (certify.dev.h), the residual mesh consists of locked triangles.
+ * An open triangle has one proven vertex; its edge 0 is opposite of that. The two parts meet in such edges: an open
+ * triangle on one side, the residual mesh on the other. They cut the residual mesh into components; a component is
+ * hidden if an open triangle lies on the same side of an edge as one of its triangles: there the proven part covers it.
+ * The whole mesh is in two arrays (certify.dev.h), the residual mesh consists of locked triangles.
  */
 #ifndef CADT_STARS_STITCH_H
 #define CADT_STARS_STITCH_H

@@ -73,10 +73,10 @@ TEST_P(WorstCases, Hub) {
 }
 
 TEST_P(WorstCases, RotationsOfALattice) {
-  const std::size_t rotations = number_from("CADT_ROTATIONS", 1000), side = 32, batch = 250;
+  const std::size_t rotations = number_from("CADT_ROTATIONS", 1000), side = 32, per_batch = 250;
   Triangulator triangulator(GetParam().options());
-  for (std::size_t begin = 0; begin < rotations; begin += batch) {
-    const std::size_t end = std::min(rotations, begin + batch);
+  for (std::size_t begin = 0; begin < rotations; begin += per_batch) {
+    const std::size_t end = std::min(rotations, begin + per_batch);
     std::vector<Points> sets;
     Points all;
     std::vector<std::size_t> offsets = {0};
@@ -125,18 +125,18 @@ Points small_set(Random& random) {
 
 // Many in one batch, on CPUs without locks, against each individually with locks.
 TEST_P(WorstCases, SmallMeshes) {
-  const std::size_t meshes = number_from("CADT_SMALL_MESHES", 10000), batch = 1000;
+  const std::size_t meshes = number_from("CADT_SMALL_MESHES", 10000), per_batch = 1000;
   Random random(static_cast<std::uint64_t>(64 + meshes));
   Options alone;
   alone.backend = Backend::host;
   alone.threads = 1;
   alone.strategy = Strategy::locks;
   Triangulator one(alone), many(GetParam().options());
-  for (std::size_t begin = 0; begin < meshes; begin += batch) {
+  for (std::size_t begin = 0; begin < meshes; begin += per_batch) {
     std::vector<Points> sets;
     Points all;
     std::vector<std::size_t> offsets = {0};
-    for (std::size_t s = begin; s < std::min(meshes, begin + batch); ++s) {
+    for (std::size_t s = begin; s < std::min(meshes, begin + per_batch); ++s) {
       sets.push_back(small_set(random));
       all.insert(all.end(), sets.back().begin(), sets.back().end());
       offsets.push_back(all.size() / 2);

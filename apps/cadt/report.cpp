@@ -159,7 +159,7 @@ std::string statistics_text(const RunReport& r) {
                        fmt::format("{:.3f} %", 100 * static_cast<double>(count) / edges)});
     }
   }
-  text += '\n' + table(flips);
+  if (edges > 0) text += '\n' + table(flips);
   if (!s.thread_time.empty()) {
     std::vector<std::vector<std::string>> shares = {{"threads' time", "share"}};
     for (const auto& [name, share] : s.thread_time) shares.push_back({name, fmt::format("{:.1f} %", 100 * share)});

@@ -12,6 +12,7 @@
 #define CADT_BATCH_BATCH_H
 
 #include "common/mesh/locked_mesh.dev.h"
+#include "common/mesh/mesh_view.dev.h"
 #include "common/points/bounds.dev.h"
 #include "common/points/hilbert_keys.dev.h"
 
@@ -193,15 +194,21 @@ CADT_FN void cadt_move_triangle(CADT_GLOBAL cadt_u32* word, cadt_u32 begin) {
   }
 }
 
-/* Stores the mesh of one set in its slots. Its vertices are indices into `positions` of the set. */
-CADT_KERNEL(cadt_batch_store, CADT_GLOBAL const cadt_locked_triangle* from, CADT_GLOBAL const cadt_u32* positions,
-            cadt_u32 slots, cadt_u32 begin, cadt_u32 grain, CADT_GLOBAL cadt_locked_triangle* to) {
-  CADT_FOR(t, slots, grain) {
-    cadt_locked_triangle r = from[t];
-    for (cadt_u32 k = 0u; r.word[CADT_WORD_LOCK] != 0u && k < 3u; ++k)
-      if (r.word[k] != CADT_GHOST) r.word[k] = positions[r.word[k]];
-    to[2u * begin + t] = r;
-    cadt_move_triangle(to[2u * begin + t].word, begin);
+/* Stores the mesh of one set in its slots, as locked triangles. Its vertices are indices into `positions` of the set.
+ */
+CADT_KERNEL(cadt_batch_store, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u32* positions, cadt_u32 begin,
+            cadt_u32 grain, CADT_GLOBAL cadt_locked_triangle* to) {
+  CADT_MESH_VIEW(mesh);
+  CADT_FOR(t, mesh.all, grain) {
+    CADT_GLOBAL cadt_u32* word = to[2u * begin + t].word;
+    for (cadt_u32 k = 0u; k < 3u; ++k) {
+      const cadt_u32 v = cadt_vertex_of(&mesh, t, k);
+      word[k] = v == CADT_GHOST ? v : positions[v];
+      word[CADT_WORD_HALF_EDGE + k] = mesh.across[3u * t + k];
+    }
+    word[CADT_WORD_LOCK] = 2u;
+    word[CADT_WORD_FLIPS] = 0u;
+    cadt_move_triangle(word, begin);
   }
 }
 

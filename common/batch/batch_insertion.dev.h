@@ -78,6 +78,7 @@ CADT_KERNEL(cadt_batch_insert, CADT_GLOBAL cadt_locked_triangle* locked, CADT_GL
     mesh.locked = locked + 2u * begin;
     mesh.points = points + begin;
     mesh.vertex_to_triangle = vertex_to_triangle + begin;
+    mesh.edge_flags = 0;
     mesh.stabilize = CADT_STABILIZE_OFF;
     mesh.threshold = 0u;
     mesh.epsilon = 0.0;

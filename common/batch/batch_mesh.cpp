@@ -37,7 +37,6 @@ class BatchStage {
 
   [[nodiscard]] BatchMesh build() {
     read_sets();
-    result_.mesh.slots = 2 * n_;
     // One core inserts faster where it has a set for itself.
     const bool insertion = inserts_batched_sets(traits_of(ctx_.device), ctx_.options);
     if (batched_ != 0 && !insertion) {
@@ -45,13 +44,13 @@ class BatchStage {
       wrap();
       count_triangles();
     }
-    result_.mesh.locked =
-        ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: slot not in use
+    locked_ = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: slot not in use
     if (batched_ != 0) {
       insertion ? insert() : write_locked();
       certify();
     }
     build_individual();
+    drop_locks();
     return std::move(result_);
   }
 
@@ -143,9 +142,8 @@ class BatchStage {
 
   void write_locked() {
     const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
-    const Allocation edges;  // there are no high-degree vertices
-    launch_.run<KernelId::cadt_wrap_locked>(shares.items, stars_.star_vertices, begins_, stars_.sizes, bases_, edges,
-                                            0U, 0U, 0U, 0U, count_, shares.grain, result_.mesh.locked);
+    launch_.run<KernelId::cadt_batch_locked>(shares.items, stars_.star_vertices, begins_, stars_.sizes, bases_, count_,
+                                             shares.grain, locked_);
     stars_ = {};
     begins_.release();
     bases_.release();
@@ -159,9 +157,9 @@ class BatchStage {
     const Allocation vertex_to_triangle = ctx_.memory.allocate(n_ * word), deferred_counts = launch_.zeros(3);
     // Small pieces, since sets differ in size.
     const std::uint32_t pieces = 16 * ctx_.device.shape().parallelism, grain = std::min(set_count_ / pieces, 256U) + 1;
-    launch_.run<KernelId::cadt_batch_insert>((set_count_ - 1) / grain + 1, result_.mesh.locked, order_.points,
-                                             vertex_to_triangle, sets_.positions(), set_count_, sets_.states, grain,
-                                             deferred_counts, counters);
+    launch_.run<KernelId::cadt_batch_insert>((set_count_ - 1) / grain + 1, locked_, order_.points, vertex_to_triangle,
+                                             sets_.positions(), set_count_, sets_.states, grain, deferred_counts,
+                                             counters);
     counters.collect(ctx_.statistics);
     read_states();
     ctx_.end_phase("insert");
@@ -175,11 +173,20 @@ class BatchStage {
       edges += 3 * std::uint64_t{points_of(s)} - 3;
       ++ctx_.statistics.batched_sets;
     }
-    result_.mesh = sweep_legality(ctx_, order_, std::move(result_.mesh.locked), edges);
+    locked_ = std::move(sweep_legality(ctx_, order_, std::move(locked_), edges).triangles);
+  }
+
+  void drop_locks() {
+    std::vector<std::uint32_t> first_slots = result_.positions;  // two a vertex
+    for (std::uint32_t& slot : first_slots) slot *= 2;
+    order_.points.release();
+    result_.mesh = drop_locks_of_sets(ctx_, {std::move(locked_), {}, 2 * n_}, first_slots, result_.set_starts);
+    result_.mesh.input_ids = std::move(order_.input_ids);
   }
 
   /// Individually: sets classified so, and those with a vertex without a star.
   void build_individual() {
+    const Allocation none;
     result_.flat.assign(set_count_, false);
     for (std::size_t s = 0; s < set_count_; ++s) {
       if (states_[s] == CADT_SET_BATCHED) continue;
@@ -198,14 +205,13 @@ class BatchStage {
       const LaunchGrid c = launch_.grid(size);
       launch_.run<KernelId::cadt_identity>(c.items, one.input_ids, size, c.grain);
       launch_.run<KernelId::cadt_batch_extract>(c.items, order_.points, begin, size, c.grain, one.points);
-      const Mesh mesh = insert_incrementally(ctx_, std::move(one));
+      const Mesh mesh = insert_incrementally(ctx_, std::move(one), MeshUse::stitching);
       launch_.set_variant(narrow_variant(ctx_.options.statistics));
       result_.flat[s] = mesh.flat;
       if (mesh.flat) continue;
-      const LaunchGrid slots = launch_.grid(mesh.slots);
-      launch_.run<KernelId::cadt_batch_store>(slots.items, mesh.locked, mesh.input_ids,
-                                              static_cast<std::uint32_t>(mesh.slots), begin, slots.grain,
-                                              result_.mesh.locked);
+      const LaunchGrid all = launch_.grid(mesh.all);
+      view_of(mesh, none)
+          .run<KernelId::cadt_batch_store>(launch_, all.items, mesh.input_ids, begin, all.grain, locked_);
     }
   }
 
@@ -218,7 +224,7 @@ class BatchStage {
   std::size_t batched_ = 0, vertices_ = 0;  ///< batched sets after classification, and their vertices
   std::vector<std::uint32_t> states_;
   Stars stars_;
-  Allocation begins_, bases_;
+  Allocation begins_, bases_, locked_;
   BatchMesh result_;
 };
 

@@ -9,10 +9,10 @@
 
 namespace cadt {
 
-/// The meshes of a batch as one mesh with many components: two triangle slots a vertex, so those of a set begin at
-/// twice its first position; a flat set leaves them unused.
+/// The meshes of a batch as one mesh with many components, set after set, without ghost triangles.
 struct BatchMesh {
   Mesh mesh;
+  Allocation set_starts;                 ///< the first triangle of each set, and the number of all
   std::vector<std::uint32_t> positions;  ///< first positions of the sets, and the end of the last
   std::vector<bool> flat;                ///< sets without triangles
 };

@@ -140,19 +140,18 @@ class BatchCall {
                                        static_cast<std::int32_t>(pairs.representatives[i] - first)});
   }
 
-  [[nodiscard]] Numbering write(const Mesh& mesh, std::size_t size, const SetStarts* starts, std::size_t room) {
+  void write(const Mesh& mesh, std::size_t size, std::size_t room) {
     ctx_.check("output", 0.9);
-    const std::size_t first = shape_.triangles.back();
-    Numbering numbering = renumber(ctx_, mesh, size, starts);
-    if (numbering.triangles > room)
-      throw InternalError("there are " + std::to_string(numbering.triangles) + " triangles instead of " +
+    if (mesh.triangles > room)
+      throw InternalError("there are " + std::to_string(mesh.triangles) + " triangles instead of " +
                           std::to_string(room) + " at most; please report this with the input");
+    const Allocation numbers = number_triangles(ctx_, mesh, size);
     ctx_.check("output", 0.95);
-    write_triangles(ctx_, mesh, numbering, triangles_, neighbors_, first);
-    if (starts != nullptr) renumber_within_sets(ctx_, numbering, *starts, triangles_, neighbors_, first);
-    ctx_.end_phase("output");
-    return numbering;
+    write_triangles(ctx_, mesh, numbers, place());
   }
+
+  /// Behind what is written already.
+  [[nodiscard]] ResultPlace place() const { return {triangles_, neighbors_, none_, shape_.triangles.back()}; }
 
   void add_individual(std::size_t set, std::size_t begin, std::size_t size) {
     const bool stars = may_use_stars(traits_of(ctx_.device), ctx_.options);
@@ -161,9 +160,9 @@ class BatchCall {
     ctx_.statistics.wide_arithmetic = ctx_.statistics.wide_arithmetic || order.wide;
     const std::size_t distinct = order.distinct;
     const Mesh mesh = build(ctx_, std::move(order), slice(points_, begin, size));
-    std::size_t triangles = 0;
-    if (!mesh.flat) triangles = write(mesh, size, nullptr, most_triangles(size)).triangles;
-    append_set(shape_.triangles.back() + triangles, distinct, mesh.flat);
+    if (!mesh.flat) write(mesh, size, most_triangles(size));
+    ctx_.end_phase("output");
+    append_set(shape_.triangles.back() + mesh.triangles, distinct, mesh.flat);
   }
 
   [[nodiscard]] SortedPoints sort_large(std::size_t set, std::size_t begin, std::size_t size, bool stars) {
@@ -181,14 +180,13 @@ class BatchCall {
     const bool batched = batches_sets(traits_of(ctx_.device), ctx_.options);
     SortedBatch order = sort_batch(ctx_, import(begin, size), starts, batched ? most_batched_ : 0, begin, first_set);
     const Pairs pairs = read_pairs(order.order, size);
-    BatchMesh mesh = build_batch(ctx_, order);
-    order.order.points.release();
-    mesh.mesh.input_ids = std::move(order.order.input_ids);
+    const BatchMesh mesh = build_batch(ctx_, order);
     const std::size_t before = shape_.triangles.back();
-    const std::size_t room = most_triangles(std::span(offsets_).subspan(first_set, sets + 1));
-    const Numbering numbering = write(mesh.mesh, size, &order.starts, room);
+    write(mesh.mesh, size, most_triangles(std::span(offsets_).subspan(first_set, sets + 1)));
+    renumber_within_sets(ctx_, mesh.set_starts, order.starts, place(), mesh.mesh.triangles);
+    ctx_.end_phase("output");
     std::vector<std::uint32_t> ends(sets + 1);
-    ctx_.device.read(*numbering.set_starts, 0, ends.data(), ends.size() * word);
+    ctx_.device.read(*mesh.set_starts, 0, ends.data(), ends.size() * word);
     for (std::size_t s = 0; s < sets; ++s) {
       const std::size_t duplicates = starts[s] - mesh.positions[s];
       add_pairs(pairs, duplicates, starts[s + 1] - mesh.positions[s + 1], starts[s]);
@@ -204,6 +202,7 @@ class BatchCall {
   BatchShape& shape_;
   const Allocation& triangles_;
   const Allocation& neighbors_;
+  const Allocation none_;
 };
 
 /// Most points of a batch. \throws OutOfMemory before any work

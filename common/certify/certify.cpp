@@ -7,6 +7,7 @@
 
 #include "common/driver/counters.hpp"
 #include "common/driver/device_text.hpp"
+#include "common/insertion/insertion.hpp"
 
 namespace cadt {
 
@@ -25,13 +26,12 @@ std::size_t certify_words(const Context& ctx) {
   return rows * CADT_COUNTER_STRIDE;
 }
 
-void launch_certify(Context& ctx, const Allocation& points, const Mesh& mesh, std::size_t begin, std::size_t size,
-                    bool real_in_words, const Allocation& words, std::size_t row) {
+void launch_certify(Context& ctx, const ReadOnlyMesh& mesh, std::size_t begin, std::size_t size,
+                    const Allocation& words, std::size_t row) {
   const LaunchGrid c = ctx.launcher.grid_strided(size);
-  ctx.launcher.run<KernelId::cadt_certify>(
-      c.items, mesh.vertices, mesh.half_edges, points, static_cast<std::uint32_t>(mesh.slots),
-      real_in_words ? CADT_NONE : static_cast<std::uint32_t>(mesh.triangles), static_cast<std::uint32_t>(begin),
-      static_cast<std::uint32_t>(size), c.grain, words, static_cast<std::uint32_t>(row), counts_work(ctx) ? 1U : 0U);
+  mesh.run<KernelId::cadt_certify>(ctx.launcher, c.items, static_cast<std::uint32_t>(begin),
+                                   static_cast<std::uint32_t>(size), c.grain, words, static_cast<std::uint32_t>(row),
+                                   counts_work(ctx) ? 1U : 0U);
 }
 
 void read_certificate(Context& ctx, std::span<const std::uint32_t> words, std::size_t n) {
@@ -47,18 +47,18 @@ void read_certificate(Context& ctx, std::span<const std::uint32_t> words, std::s
   if (counts_work(ctx)) add_counters(ctx.statistics, words.subspan(CADT_COUNTER_STRIDE));
 }
 
-void certify_arrays(Context& ctx, const SortedPoints& order, const Mesh& mesh) {
+void certify(Context& ctx, const Mesh& mesh) {
   std::vector<std::uint32_t> words(certify_words(ctx));
   const Allocation found = ctx.launcher.zeros(words.size());
   const std::size_t most = slots_per_launch(ctx.device);
-  for (std::size_t begin = 0; begin < mesh.slots; begin += most) {
-    const std::size_t size = std::min(most, mesh.slots - begin);
-    launch_certify(ctx, order.points, mesh, begin, size, false, found, 0);
-    if (begin + size < mesh.slots) ctx.device.finish();
-    ctx.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(mesh.slots));
+  for (std::size_t begin = 0; begin < mesh.all; begin += most) {
+    const std::size_t size = std::min(most, mesh.all - begin);
+    launch_certify(ctx, view_of(mesh, mesh.points), begin, size, found, 0);
+    if (begin + size < mesh.all) ctx.device.finish();
+    ctx.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(mesh.all));
   }
   ctx.device.read(*found, 0, words.data(), words.size() * word);
-  read_certificate(ctx, words, order.distinct);
+  read_certificate(ctx, words, mesh.all / 2 + 1);  // with ghosts, n points have 2n - 2 triangles
   ctx.end_phase("certify");
 }
 

@@ -7,8 +7,7 @@
 #include <span>
 
 #include "common/driver/context.hpp"
-#include "common/insertion/insertion.hpp"
-#include "common/points/spatial_sort.hpp"
+#include "common/mesh/mesh.hpp"
 
 namespace cadt {
 
@@ -16,15 +15,15 @@ namespace cadt {
 [[nodiscard]] std::size_t certify_words(const Context& ctx);
 
 /// Launches the certification of edges of `mesh`, those of its triangles from `begin` on; waits for nothing. Counts in
-/// `words` from `row` on, a multiple of CADT_COUNTER_STRIDE; they must be 0 before the first launch. With
-/// `real_in_words` the number of real triangles is one of the words, 0 if there is no mesh; else it is the mesh's.
-void launch_certify(Context& ctx, const Allocation& points, const Mesh& mesh, std::size_t begin, std::size_t size,
-                    bool real_in_words, const Allocation& words, std::size_t row);
+/// `words` from `row` on, a multiple of CADT_COUNTER_STRIDE; they must be 0 before the first launch. If the mesh has
+/// CADT_NONE triangles, their number is one of the words, 0 if there is no mesh.
+void launch_certify(Context& ctx, const ReadOnlyMesh& mesh, std::size_t begin, std::size_t size,
+                    const Allocation& words, std::size_t row);
 
 /// Checks the words for a mesh of n points. \throws InternalError if an edge is not as it should be
 void read_certificate(Context& ctx, std::span<const std::uint32_t> words, std::size_t n);
 
-/// Certifies a mesh in arrays. \throws InternalError if an edge is not as it should be: nothing is repaired
-void certify_arrays(Context& ctx, const SortedPoints& order, const Mesh& mesh);
+/// Certifies a mesh with its points. \throws InternalError if an edge is not as it should be: nothing is repaired
+void certify(Context& ctx, const Mesh& mesh);
 
 }  // namespace cadt

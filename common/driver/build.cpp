@@ -4,14 +4,16 @@
 
 #include <utility>
 
+#include "common/certify/certify.hpp"
 #include "common/driver/choose_strategy.hpp"
 #include "common/insertion/insertion.hpp"
 #include "common/stars/mesh_from_stars.hpp"
 
 namespace cadt {
 
-Mesh build(Context& ctx, SortedPoints points, const InputPoints& input) {
-  const BuildStrategy how = choose_strategy(traits_of(ctx.device), ctx.options, profile_of(points));
+namespace {
+
+Mesh build_by(const BuildStrategy& how, Context& ctx, SortedPoints points, const InputPoints& input) {
   switch (how.method) {
     case BuildStrategy::Method::stars:
       return mesh_from_stars(ctx, std::move(points), input, how);
@@ -21,6 +23,16 @@ Mesh build(Context& ctx, SortedPoints points, const InputPoints& input) {
       break;
   }
   return insert_incrementally(ctx, std::move(points));
+}
+
+}  // namespace
+
+Mesh build(Context& ctx, SortedPoints points, const InputPoints& input) {
+  const BuildStrategy how = choose_strategy(traits_of(ctx.device), ctx.options, profile_of(points));
+  Mesh mesh = build_by(how, ctx, std::move(points), input);
+  if (!mesh.certified) certify(ctx, mesh);  // insertion's last legality sweep has certified its own
+  mesh.points.release();
+  return mesh;
 }
 
 }  // namespace cadt

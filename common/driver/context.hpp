@@ -29,6 +29,7 @@ struct Context {
   Memory& memory;
   const MemoryPlan plan;
   Launcher launcher;
+  bool result_on_host = false;  ///< the result goes to memory of the host: kernels write there if the device can
 
   /// The fractions passed to check() from here on are of this part of the call: `share` of it, from `begin` on.
   void begin_share(double begin, double share) noexcept {

@@ -71,13 +71,12 @@ FlipHistogram::FlipHistogram(Context& ctx, bool wanted) : device_(ctx.device) {
   buffer_ = ctx.memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_FLIP_BINS);
 }
 
-void FlipHistogram::collect(Statistics& statistics, std::uint64_t sides) const {
+void FlipHistogram::collect(Statistics& statistics) const {
   if (!buffer_) return;
   std::array<std::uint32_t, std::size_t{CADT_COUNTER_ROWS} * CADT_FLIP_BINS> words{};
   device_.read(*buffer_, 0, words.data(), sizeof words);
   std::array<std::uint64_t, CADT_FLIP_BINS> sums{};
   for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_FLIP_BINS] += words[i];
-  if (sides != 0) sums[0] += sides - std::accumulate(sums.begin(), sums.end(), std::uint64_t{0});
   for (std::size_t i = 0; i < sums.size(); ++i) statistics.flips_per_edge[i] += sums[i] / 2;  // counted from both sides
 }
 

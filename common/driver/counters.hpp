@@ -33,11 +33,10 @@ void add_counters(Statistics& statistics, std::span<const std::uint32_t> rows);
 class FlipHistogram {
  public:
   /// `wanted`: if false, nothing is counted.
-  explicit FlipHistogram(Context& ctx, bool wanted = true);
+  FlipHistogram(Context& ctx, bool wanted);
   operator Arg() const noexcept { return buffer_; }  // NOLINT
-  /// Adds the histogram to the statistics. `sides`: the number of all sides of edges, two an edge, if the device did
-  /// not count all of them: the others had no flips; 0: it did.
-  void collect(Statistics& statistics, std::uint64_t sides = 0) const;
+  /// Adds the histogram to the statistics.
+  void collect(Statistics& statistics) const;
 
  private:
   Device& device_;

@@ -26,14 +26,17 @@ void read_duplicates(Device& device, const DeviceTriangulation::Data& from, Tria
   for (std::size_t i = 0; i < count; ++i) to.duplicates[i] = {points[i], representatives[i]};
 }
 
-void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, bool filled, Triangulation::Data& to) {
+void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, Triangulation::Data& to) {
   to.hull = find_hull(ctx, from.triangles, from.neighbors, from.triangle_count, from.hull_size(), from.points);
-  if (filled) return ctx.device.finish();
   const std::size_t values = 3 * from.triangle_count;
-  if (to.triangles == nullptr) to.triangles = make_words(values);
-  if (to.neighbors == nullptr) to.neighbors = make_words(values);
-  ctx.device.read(*from.triangles, 0, to.triangles.get(), values * word);
-  ctx.device.read(*from.neighbors, 0, to.neighbors.get(), values * word);
+  const auto fetch = [&](const Allocation& array, Words& words) {
+    if (words != nullptr) return;  // the array itself
+    words = make_words(values);
+    ctx.device.read(*array, 0, words.get(), values * word);
+  };
+  fetch(from.triangles, to.triangles);
+  fetch(from.neighbors, to.neighbors);
+  ctx.device.finish();
 }
 
 DeviceTriangulation::DeviceTriangulation() : data_(std::make_unique<Data>()) {}
@@ -64,7 +67,7 @@ Triangulation DeviceTriangulation::download() const {
   read_duplicates(device, *data_, *copy);
   if (data_->triangle_count != 0) {
     Context ctx(device, data_->state->memory, data_->state->options, copy->statistics);
-    read_mesh(ctx, *data_, false, *copy);
+    read_mesh(ctx, *data_, *copy);
   }
   return Triangulation(std::move(copy));
 }

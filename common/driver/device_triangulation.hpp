@@ -37,8 +37,8 @@ struct DeviceTriangulation::Data {
   }
 };
 
-/// Copies the hull to the host and, unless `filled`, the arrays.
-void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, bool filled, Triangulation::Data& to);
+/// Copies the hull to the host, and the arrays that it has not.
+void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, Triangulation::Data& to);
 void read_duplicates(Device& device, const DeviceTriangulation::Data& from, Triangulation::Data& to);
 
 }  // namespace cadt

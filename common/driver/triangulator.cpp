@@ -25,9 +25,11 @@ namespace {
 
 constexpr std::size_t word = sizeof(std::uint32_t);
 
-/// Sorts the points, builds their mesh and writes the result. True if its arrays are those of `host`.
-bool triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Data* host,
+/// Sorts the points, builds their mesh and writes the result; what is written straight to memory of the host goes to
+/// `host`.
+void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Data* host,
                       DeviceTriangulation::Data& data) {
+  ctx.result_on_host = host != nullptr;
   const std::size_t n = input.size();
   ctx.check("sort", 0);
   Allocation imported = input.import(ctx);
@@ -40,28 +42,30 @@ bool triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Dat
   data.representatives = std::move(points.representatives);
   Mesh mesh = build(ctx, std::move(points), input);
   data.dimension = mesh.flat ? (data.distinct >= 2 ? 1 : 0) : 2;
-  if (mesh.flat) return false;
+  if (mesh.flat) return;
   ctx.check("output", 0.9);
-  ResultArrays result = write_result(ctx, std::move(mesh), n, host);
+  ResultArrays result = write_result(ctx, std::move(mesh), n);
   data.triangle_count = result.count;
-  data.triangles = std::move(result.triangles);
-  data.neighbors = std::move(result.neighbors);
-  return result.on_host;
+  data.triangles = std::move(result.triangles.device);
+  data.neighbors = std::move(result.neighbors.device);
+  if (host == nullptr) return;
+  host->triangles = std::move(result.triangles.host);
+  host->neighbors = std::move(result.neighbors.host);
 }
 
 Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
   require_size(points.size());
   auto result = std::make_unique<Triangulation::Data>();
-  DeviceTriangulation::Data data;
+  DeviceTriangulation::Data data;  // after the result, which it may alias
   data.state = state;
   data.points = points.size();
   begin_call(*state, points.size(), data.statistics);
   if (points.size() != 0) {
     const MemoryPlan plan = plan_call(*state, {points.size(), is_host(*state->device), false, points.scalar_size()});
     Context ctx(*state->device, state->memory, state->options, data.statistics, plan);
-    const bool filled = triangulate_into(ctx, points, result.get(), data);
+    triangulate_into(ctx, points, result.get(), data);
     ctx.end_phase("output");
-    if (data.dimension == 2) read_mesh(ctx, data, filled, *result);
+    if (data.dimension == 2) read_mesh(ctx, data, *result);
     read_duplicates(*state->device, data, *result);
     ctx.end_phase("copy");
     remember_size(*state, data.statistics, plan);
@@ -83,7 +87,7 @@ DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state,
   if (points.size != 0) {
     const MemoryPlan plan = plan_call(*state, {points.size, false, true, scalar_bytes(points.scalar)});
     Context ctx(*state->device, state->memory, state->options, data->statistics, plan);
-    (void)triangulate_into(ctx, points, nullptr, *data);
+    triangulate_into(ctx, points, nullptr, *data);
     ctx.end_phase("output");
     remember_size(*state, data->statistics, plan);
     end_call(*state, ctx, true);

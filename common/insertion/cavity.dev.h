@@ -21,9 +21,9 @@
 
 /* quads[4 e] and on: the two vertices opposite edge list[e] and its two ends if it is illegal and no hull edge; else
  * CADT_NONE. */
-CADT_KERNEL(cadt_cavity_candidates, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 count,
+CADT_KERNEL(cadt_cavity_candidates, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 count,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* quads) {
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   cadt_counters counters;
   cadt_counters_clear(&counters);
   CADT_FOR(e, count, grain) {
@@ -65,9 +65,10 @@ CADT_FN cadt_u32 cadt_is_in_conflict(const cadt_locked_mesh* m, const cadt_snaps
 
 /* sums[v]: how many of the `count` triangles are in conflict with vertices[v]; at most CADT_CAVITY_CANDIDATES vertices.
  * `ends`: the ends of the illegal edges. \pre sums are 0 */
-CADT_KERNEL(cadt_cavity_sizes, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL const cadt_u32* ends,
-            CADT_GLOBAL const cadt_u32* vertices, cadt_u32 vertex_count, CADT_GLOBAL cadt_u32* sums) {
-  CADT_MESH_VIEW(mesh);
+CADT_KERNEL(cadt_cavity_sizes, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL const cadt_u32* ends, CADT_GLOBAL const cadt_u32* vertices, cadt_u32 vertex_count,
+            CADT_GLOBAL cadt_u32* sums) {
+  CADT_LOCKED_MESH(mesh);
   CADT_FOR(t, count, grain) {
     const cadt_snapshot s = cadt_snapshot_of(&mesh, t);
     if (!cadt_may_be_of_cascade(&s, ends)) continue;
@@ -87,10 +88,10 @@ CADT_FN void cadt_add_to_region(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 
 }
 
 /* Locks and lists the triangles in conflict with vertex w. */
-CADT_KERNEL(cadt_cavity_conflicts, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain,
+CADT_KERNEL(cadt_cavity_conflicts, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* ends, cadt_u32 w, CADT_GLOBAL cadt_u32* list, cadt_u32 capacity,
             CADT_GLOBAL cadt_u32* found) {
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   const cadt_point p = cadt_point_of(&mesh, w);
   CADT_FOR(t, count, grain) {
     const cadt_snapshot s = cadt_snapshot_of(&mesh, t);
@@ -100,9 +101,9 @@ CADT_KERNEL(cadt_cavity_conflicts, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u3
 }
 
 /* Adds the triangles of w that border on one of the first `count`, each on one only, by the edge opposite w. */
-CADT_KERNEL(cadt_cavity_star, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 w,
+CADT_KERNEL(cadt_cavity_star, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 w,
             CADT_GLOBAL cadt_u32* list, cadt_u32 capacity, CADT_GLOBAL cadt_u32* found) {
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   CADT_FOR(i, count, grain) {
     const cadt_snapshot s = cadt_snapshot_of(&mesh, list[i]);
     for (cadt_u32 k = 0u; k < 3u; ++k) {
@@ -154,9 +155,9 @@ CADT_FN cadt_u32 cadt_is_hidden(const cadt_locked_mesh* m, cadt_point p, cadt_u3
 }
 
 /* Counts for each component its sides: edges to triangles outside that do not end in w. */
-CADT_KERNEL(cadt_cavity_check, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 w,
+CADT_KERNEL(cadt_cavity_check, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 w,
             CADT_GLOBAL const cadt_u32* list, CADT_GLOBAL cadt_u32* scratch, cadt_u32 capacity) {
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   cadt_counters counters;
   cadt_counters_clear(&counters);
   const cadt_point p = cadt_point_of(&mesh, w);
@@ -193,10 +194,10 @@ CADT_KERNEL(cadt_cavity_keep, CADT_GLOBAL cadt_locked_triangle* locked, cadt_u32
 /* The boundary of the `count` kept triangles. Sides: the half-edge outwards, from, to, counterclockwise. Spokes, edges
  * with w at an end: the half-edge outwards and the other end, with CADT_SPOKE_BEGINS if the spoke begins there.
  * vertex_to_triangle[v] meanwhile is the side or spoke that begins at v. Both lists have room for `capacity`. */
-CADT_KERNEL(cadt_cavity_boundary, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 w,
+CADT_KERNEL(cadt_cavity_boundary, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 w,
             CADT_GLOBAL const cadt_u32* kept, CADT_GLOBAL cadt_u32* sides, CADT_GLOBAL cadt_u32* spokes,
             cadt_u32 capacity, CADT_GLOBAL cadt_u32* found) {
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   CADT_FOR(i, count, grain) {
     const cadt_snapshot s = cadt_snapshot_of(&mesh, kept[i]);
     for (cadt_u32 k = 0u; k < 3u; ++k) {
@@ -228,10 +229,10 @@ CADT_FN void cadt_pair_half_edges(const cadt_locked_mesh* m, cadt_u32 a, cadt_u3
 /* Side i of the boundary and w become triangle kept[i], which is paired with its neighbour outwards and with the next
  * one around w; a spoke that begins at w has no triangle before it. \pre there are as many sides as kept triangles, all
  * seen from w */
-CADT_KERNEL(cadt_cavity_fill, CADT_MESH_PARAMETERS, cadt_u32 side_count, cadt_u32 spoke_count, cadt_u32 grain,
+CADT_KERNEL(cadt_cavity_fill, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 side_count, cadt_u32 spoke_count, cadt_u32 grain,
             cadt_u32 w, CADT_GLOBAL const cadt_u32* kept, CADT_GLOBAL const cadt_u32* sides,
             CADT_GLOBAL const cadt_u32* spokes) {
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   CADT_FOR(i, side_count + spoke_count, grain) {
     if (i < side_count) {
       const cadt_u32 t = kept[i], across = sides[3u * i], from = sides[3u * i + 1u], to = sides[3u * i + 2u];
@@ -253,9 +254,9 @@ CADT_KERNEL(cadt_cavity_fill, CADT_MESH_PARAMETERS, cadt_u32 side_count, cadt_u3
 }
 
 /* Unlocks the kept triangles, and sets vertex_to_triangle of the vertices on the boundary again. */
-CADT_KERNEL(cadt_cavity_release, CADT_MESH_PARAMETERS, cadt_u32 side_count, cadt_u32 spoke_count, cadt_u32 grain,
+CADT_KERNEL(cadt_cavity_release, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 side_count, cadt_u32 spoke_count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* kept, CADT_GLOBAL const cadt_u32* sides, CADT_GLOBAL const cadt_u32* spokes) {
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   CADT_FOR(i, 2u * side_count + spoke_count, grain) {
     if (i < side_count) {
       CADT_GLOBAL cadt_u32* lock = locked[kept[i]].word + CADT_WORD_LOCK;

@@ -75,6 +75,11 @@ CADT_FN void cadt_write_flip(const cadt_locked_mesh* m, cadt_u32 half_edge, cons
   cadt_store_half_edge(m, n, j1, CADT_HALF_EDGE(t, k1));
   cadt_store_flips(m, n, cadt_flips_set(cadt_flips_set(u->flips, j, cadt_flips_get(s->flips, k1)), j1, flips));
 #endif
+  if (m->edge_flags) { /* aq and bp take theirs along, pq is a new edge */
+    const cadt_u32 ft = cadt_load_field(m->edge_flags + t), fn = cadt_load_field(m->edge_flags + n);
+    cadt_store_field(m->edge_flags + t, cadt_edge_flag_set(cadt_edge_flag_set(ft, k, cadt_edge_flag(fn, j1)), k1, 0u));
+    cadt_store_field(m->edge_flags + n, cadt_edge_flag_set(cadt_edge_flag_set(fn, j, cadt_edge_flag(ft, k1)), j1, 0u));
+  }
   CADT_ADD_TIME(counters, CADT_TIME_FLIP);
   CADT_NOISE_AT(m, CADT_SITE_HALF_EDGES);
   cadt_relink(m, outer_aq, CADT_HALF_EDGE(t, k));
@@ -84,10 +89,11 @@ CADT_FN void cadt_write_flip(const cadt_locked_mesh* m, cadt_u32 half_edge, cons
   counters->count[CADT_COUNT_FLIPS]++;
 }
 
-/* Tests an edge and flips it if it is illegal. `apex` is the vertex expected opposite, at `apex_point`, or CADT_NONE
- * for any. \post CADT_EDGE_STABILIZED: the edge is illegal and stays so, for now or for good (stabilized_flips.dev.h).
- * CADT_EDGE_FLIPPED: `half_edge` still names an edge opposite the apex, and `*partner` the other one, in the other
- * triangle; `*all_sides`: the apex is not the expected one, so all four sides of the quadrilateral may be illegal. */
+/* Tests an edge and flips it if it is illegal and not constrained. `apex` is the vertex expected opposite, at
+ * `apex_point`, or CADT_NONE for any. \post CADT_EDGE_STABILIZED: the edge is illegal and stays so, for now or for good
+ * (stabilized_flips.dev.h). CADT_EDGE_FLIPPED: `half_edge` still names an edge opposite the apex, and `*partner` the
+ * other one, in the other triangle; `*all_sides`: the apex is not the expected one, so all four sides of the
+ * quadrilateral may be illegal. */
 CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_edge, cadt_u32 apex,
                                       cadt_point apex_point, cadt_u32* partner, cadt_u32* all_sides,
                                       cadt_counters* counters) {
@@ -148,6 +154,10 @@ CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_e
   if (!(same & cadt_validate(m, n, j, CADT_HALF_EDGES_01, &u))) {
     cadt_unlock_invalid(m, &locks, counters);
     return CADT_EDGE_CONFLICT;
+  }
+  if (cadt_edge_is_constrained(m, t, k)) { /* certain only under the lock */
+    cadt_unlock_unchanged(m, &locks, 4u);
+    return CADT_EDGE_LEGAL;
   }
   cadt_write_flip(m, half_edge, &s, &u, counters);
   cadt_fence_before_unlock();

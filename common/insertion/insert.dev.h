@@ -98,12 +98,12 @@ CADT_FN cadt_u32 cadt_start_of_deferred(const cadt_locked_mesh* m, cadt_u32 i, c
 /* Inserts `count` points: first `listed` deferred ones, each with a walk from its own triangle; then one level: of each
  * block of 2^(level+1) positions, from block `begin` on, the half that does not represent it, with a walk from the
  * representative, which is in the mesh and near in sorted order. */
-CADT_KERNEL(cadt_insert, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 listed, cadt_u32 begin,
+CADT_KERNEL(cadt_insert, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 listed, cadt_u32 begin,
             cadt_u32 count, cadt_u32 n, cadt_u32 level, cadt_u32 grain, CADT_GLOBAL cadt_u32* deferred_points,
             CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counter_rows) {
   CADT_GROUP_COUNTERS(counters, counter_rows);
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   const cadt_deferred deferred = cadt_deferred_lists(deferred_edges, deferred_counts, edge_capacity);
   CADT_DECLARE_WORKLIST(work);
   const cadt_u32 warp = cadt_lanes_of_warp();

@@ -12,6 +12,7 @@
 #include "common/driver/counters.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/insertion/cavity_retriangulation.hpp"
+#include "common/insertion/drop_locks.hpp"
 #include "common/insertion/locked_mesh.hpp"
 #include "common/overlay/growth_snapshots.hpp"
 #include "common/points/device_points.hpp"
@@ -58,7 +59,7 @@ class IncrementalInsertion {
         counters_(ctx),
         mesh_{ctx, points, static_cast<std::uint32_t>(ctx.options.stabilize)} {}
 
-  [[nodiscard]] Mesh run() {
+  [[nodiscard]] Mesh run(MeshUse use) {
     if (n_ >= 3 && !ctx_.device.shape().contiguous) order_by_level();
     if (n_ < 3 || !find_seed_triangle()) return Mesh::without_triangles(std::move(own_->input_ids));
     mesh_.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not there yet
@@ -78,14 +79,16 @@ class IncrementalInsertion {
       if (ctx_.options.watch) show_growth();
     }
     ctx_.end_phase("insert");
-    Mesh mesh = finish(3 * std::uint64_t{n_} - 3);
+    LockedTriangles locked = finish(3 * std::uint64_t{n_} - 3);
+    own_->points.release();
+    Mesh mesh = drop_locks(ctx_, std::move(locked), 2 * mesh_.third, use);
     mesh.input_ids = std::move(own_->input_ids);
     return mesh;
   }
 
   /// No point is located in a complete mesh: vertex_to_triangle is written by repairs only, and the seed triangle is
   /// not used.
-  [[nodiscard]] Mesh sweep(Allocation locked, std::uint64_t edges) {
+  [[nodiscard]] LockedTriangles sweep(Allocation locked, std::uint64_t edges) {
     mesh_.locked = std::move(locked);
     mesh_.vertex_to_triangle = ctx_.memory.transient(n_ * word);
     make_edge_lists();
@@ -98,15 +101,15 @@ class IncrementalInsertion {
     deferred_counts_ = launch_.zeros(all_counts);
   }
 
-  /// `edges`: of all spheres, ghost edges included.
-  Mesh finish(std::uint64_t edges) {
-    Mesh mesh;
+  /// `edges`: of all spheres, ghost edges included. Nothing is left but the triangles.
+  LockedTriangles finish(std::uint64_t edges) {
     certify(edges);
     ctx_.end_phase("certify");
     counters_.collect(ctx_.statistics);
-    mesh.locked = std::move(mesh_.locked);
-    mesh.slots = 2 * n_;
-    return mesh;
+    mesh_.vertex_to_triangle.release();
+    for (Allocation& list : deferred_points_) list.release();
+    for (Allocation& list : deferred_edges_) list.release();
+    return {std::move(mesh_.locked), std::move(mesh_.edge_flags), 2 * n_};
   }
 
   /// Levels of halving until a block is one point.
@@ -340,12 +343,12 @@ class IncrementalInsertion {
 
 std::size_t slots_per_launch(const Device& device) { return 4 * points_per_launch(device); }
 
-Mesh insert_incrementally(Context& ctx, SortedPoints points) {
+Mesh insert_incrementally(Context& ctx, SortedPoints points, MeshUse use) {
   points.keys.release();
-  return IncrementalInsertion(ctx, points, &points).run();
+  return IncrementalInsertion(ctx, points, &points).run(use);
 }
 
-Mesh sweep_legality(Context& ctx, const SortedPoints& points, Allocation locked, std::uint64_t edges) {
+LockedTriangles sweep_legality(Context& ctx, const SortedPoints& points, Allocation locked, std::uint64_t edges) {
   return IncrementalInsertion(ctx, points).sweep(std::move(locked), edges);
 }
 

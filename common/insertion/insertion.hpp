@@ -5,17 +5,19 @@
 #include <cstdint>
 
 #include "common/driver/context.hpp"
+#include "common/insertion/drop_locks.hpp"
 #include "common/mesh/mesh.hpp"
 #include "common/points/spatial_sort.hpp"
 
 namespace cadt {
 
-/// Inserts all points level by level, legalises, and certifies by legality sweeps.
-[[nodiscard]] Mesh insert_incrementally(Context& ctx, SortedPoints points);
+/// Inserts all points level by level, legalises, and certifies by legality sweeps. The mesh has no points.
+[[nodiscard]] Mesh insert_incrementally(Context& ctx, SortedPoints points, MeshUse use = MeshUse::result);
 
 /// Legality sweeps over a mesh made otherwise, of two locked triangles a point; `edges`: how many it has, those to the
-/// ghost included. The result has no input ids.
-[[nodiscard]] Mesh sweep_legality(Context& ctx, const SortedPoints& points, Allocation locked, std::uint64_t edges);
+/// ghost included.
+[[nodiscard]] LockedTriangles sweep_legality(Context& ctx, const SortedPoints& points, Allocation locked,
+                                             std::uint64_t edges);
 
 /// Triangles that one launch of a legality sweep, or of cadt_certify, examines.
 [[nodiscard]] std::size_t slots_per_launch(const Device& device);

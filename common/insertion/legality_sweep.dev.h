@@ -46,7 +46,8 @@ CADT_FN void cadt_sweep_edges(const cadt_locked_mesh* m, const cadt_u32* half_ed
     if (!cadt_is_unlocked(lock) || !cadt_is_unlocked(lock_across) ||
         cadt_load_field(n + CADT_WORD_HALF_EDGE + j) != half_edges[e]) {
       found->unsettled++;
-    } else if (cadt_is_illegal(m, p, a, b, q, counters)) {
+    } else if (cadt_is_illegal(m, p, a, b, q, counters) &&
+               !cadt_edge_is_constrained(m, CADT_TRIANGLE_OF(half_edges[e]), k)) {
       if (cadt_is_stabilized(m, CADT_TRIANGLE_OF(half_edges[e]), k, p, a, b, q)) {
         found->stabilized++;
         continue;
@@ -68,11 +69,11 @@ CADT_FN void cadt_sweep_edges(const cadt_locked_mesh* m, const cadt_u32* half_ed
  * because a thread was changing them; illegal edges that stay (CADT_STABILIZE_PAPER); edges to the ghost at which the
  * boundary turns back. `n`: the points are in the order of levels (cadt_by_level), and triangles are visited along the
  * curve; 0: in the order of their indices. \pre triangles of vertices that are not in the mesh have lock word 0 */
-CADT_KERNEL(cadt_legality_sweep, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain, cadt_u32 n,
-            CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts, cadt_u32 edge_capacity,
-            CADT_GLOBAL cadt_u32* counter_rows) {
+CADT_KERNEL(cadt_legality_sweep, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain,
+            cadt_u32 n, CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts,
+            cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counter_rows) {
   CADT_GROUP_COUNTERS(counters, counter_rows);
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   const cadt_deferred deferred = cadt_deferred_lists(deferred_edges, deferred_counts, edge_capacity);
 #if CADT_CONTIGUOUS
   (void)n;
@@ -110,7 +111,8 @@ CADT_KERNEL(cadt_legality_sweep, CADT_MESH_PARAMETERS, cadt_u32 begin, cadt_u32 
       if (!cadt_is_unlocked(s.lock) || !cadt_is_unlocked(u.lock) || u.n0 != CADT_HALF_EDGE(t, k)) {
         ++unsettled;
       } else if (cadt_is_illegal(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
-                                 u.v0, &counters)) {
+                                 u.v0, &counters) &&
+                 !cadt_edge_is_constrained(&mesh, t, k)) {
         if (cadt_is_stabilized(&mesh, t, k, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)),
                                CADT_VERTEX(s, CADT_PREV(k)), u.v0)) {
           ++stabilized;

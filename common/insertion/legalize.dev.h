@@ -153,11 +153,11 @@ CADT_FN void cadt_legalize(const cadt_locked_mesh* m, cadt_worklist* work, const
 }
 
 /* Legalises edges that earlier launches deferred. */
-CADT_KERNEL(cadt_legalize_edges, CADT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts, cadt_u32 edge_capacity,
-            CADT_GLOBAL cadt_u32* counter_rows) {
+CADT_KERNEL(cadt_legalize_edges, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 count,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts,
+            cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counter_rows) {
   CADT_GROUP_COUNTERS(counters, counter_rows);
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   const cadt_deferred deferred = cadt_deferred_lists(deferred_edges, deferred_counts, edge_capacity);
   CADT_DECLARE_WORKLIST(work);
   const cadt_u32 warp = cadt_lanes_of_warp();

@@ -15,14 +15,16 @@ struct LockedMesh {
   const SortedPoints& order;
   std::uint32_t stabilize;  ///< CADT_STABILIZE_...
   Allocation locked = {}, vertex_to_triangle = {};
+  Allocation edge_flags = {};  ///< a word a triangle; null while no edge is constrained
   device_text::cadt_point center = {};
   std::uint32_t first = 0, second = 0, third = 0;
 
   /// Launches a kernel over the mesh, whose view comes first among the parameters.
   template <KernelId kernel, class... Args>
   void run_kernel(std::uint32_t items, const Args&... args) const {
-    ctx.launcher.run<kernel>(items, locked, order.points, vertex_to_triangle, center.x, center.y, first, second, third,
-                             stabilize, ctx.options.flip_threshold, ctx.options.quality_epsilon, args...);
+    ctx.launcher.run<kernel>(items, locked, order.points, vertex_to_triangle, edge_flags, center.x, center.y, first,
+                             second, third, stabilize, ctx.options.flip_threshold, ctx.options.quality_epsilon,
+                             args...);
   }
 };
 

@@ -65,7 +65,7 @@ CADT_FN_INLINE void cadt_legalize_around(const cadt_locked_mesh* m, const cadt_p
       counters->count[CADT_COUNT_INCIRCLE_TESTS]++;
       const cadt_i32 side = cadt_incircle_lifted(m, s.v1, u.v0, s.v2, p, a, q, b, counters);
       CADT_ADD_TIME(counters, CADT_TIME_TEST);
-      if (side > 0) {
+      if (side > 0 && !cadt_edge_is_constrained(m, CADT_TRIANGLE_OF(half_edge), CADT_EDGE_OF(half_edge))) {
         cadt_write_flip(m, half_edge, &s, &u, counters);
         cadt_store_relaxed(m->vertex_to_triangle + s.v1, CADT_TRIANGLE_OF(half_edge));
         cadt_store_relaxed(m->vertex_to_triangle + s.v2, n);
@@ -175,13 +175,13 @@ CADT_FN cadt_u32 cadt_partition_stalled(cadt_u32 stalled_blocks) {
 /* Inserts, in each of the `partitions` of 2^level * blocks positions, the points of blocks `from` to `to` - 1 but the
  * blocks' representatives. A block is finished before the next, so that what is read again is still in the cache. \pre
  * the representatives of all blocks are in the mesh */
-CADT_KERNEL(cadt_insert_partitions, CADT_MESH_PARAMETERS, cadt_u32 n, cadt_u32 level, cadt_u32 partitions,
+CADT_KERNEL(cadt_insert_partitions, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 n, cadt_u32 level, cadt_u32 partitions,
             cadt_u32 blocks, cadt_u32 from, cadt_u32 to, CADT_GLOBAL cadt_u32* deferred_points,
             CADT_GLOBAL cadt_u32* deferred_counts, CADT_GLOBAL cadt_u32* counter_rows) {
 #if CADT_CONTIGUOUS
   if (cadt_item >= partitions) return;
   CADT_GROUP_COUNTERS(counters, counter_rows);
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   cadt_partition partition;
   partition.begin = cadt_begin_of(cadt_item, blocks << level, n);
   partition.size = cadt_min_u32(blocks << level, n - partition.begin);
@@ -224,12 +224,12 @@ CADT_FN cadt_u32 cadt_in_same_partition(cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt
 
 /* Tests the edges between triangles with all vertices in one partition of `size` positions and other triangles, and
  * repairs illegal ones. The edges between two of the others have not changed. */
-CADT_KERNEL(cadt_border_sweep, CADT_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 size,
+CADT_KERNEL(cadt_border_sweep, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 size,
             CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts, cadt_u32 edge_capacity,
             CADT_GLOBAL cadt_u32* counter_rows) {
 #if CADT_CONTIGUOUS
   CADT_GROUP_COUNTERS(counters, counter_rows);
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   const cadt_deferred deferred = cadt_deferred_lists(deferred_edges, deferred_counts, edge_capacity);
   CADT_DECLARE_WORKLIST(work);
   CADT_FOR(t, count, grain) {

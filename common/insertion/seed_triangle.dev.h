@@ -56,9 +56,9 @@ CADT_FN void cadt_make_seed_mesh(const cadt_locked_mesh* m, cadt_counters* count
   cadt_store_relaxed(m->vertex_to_triangle + m->third, face);
 }
 
-CADT_KERNEL(cadt_seed_mesh, CADT_MESH_PARAMETERS) {
+CADT_KERNEL(cadt_seed_mesh, CADT_LOCKED_MESH_PARAMETERS) {
   if (cadt_item != 0u) return;
-  CADT_MESH_VIEW(mesh);
+  CADT_LOCKED_MESH(mesh);
   cadt_counters counters;
   cadt_counters_clear(&counters);
   cadt_make_seed_mesh(&mesh, &counters);

@@ -66,6 +66,12 @@ CADT_FN void cadt_write_face_split(const cadt_locked_mesh* m, cadt_u32 i, cadt_u
   cadt_store_half_edge(m, t, 2u, CADT_HALF_EDGE(t2, 0u));
   cadt_store_flips(m, t, cadt_flips_set(0u, 0u, cadt_flips_get(s->flips, 0u)));
 #endif
+  if (m->edge_flags) { /* each triangle keeps that of its old edge */
+    const cadt_u32 flags = cadt_load_field(m->edge_flags + t);
+    cadt_store_field(m->edge_flags + t1, flags & 2u);
+    cadt_store_field(m->edge_flags + t2, flags & 4u);
+    cadt_store_field(m->edge_flags + t, flags & 1u);
+  }
   CADT_ADD_TIME(counters, CADT_TIME_SPLIT);
   CADT_NOISE_AT(m, CADT_SITE_HALF_EDGES);
   cadt_relink(m, s->n1, CADT_HALF_EDGE(t1, 1u));
@@ -159,6 +165,14 @@ CADT_FN void cadt_write_edge_split(const cadt_locked_mesh* m, cadt_u32 i, const 
   cadt_store_half_edge(m, n, j, CADT_HALF_EDGE(ts, k));
   cadt_store_half_edge(m, n, j1, CADT_HALF_EDGE(ns, j2));
   cadt_store_flips(m, n, cadt_flips_set(0u, j2, cadt_flips_get(u->flips, j2)));
+  if (m->edge_flags) { /* of a constrained edge both halves are */
+    const cadt_u32 ft = cadt_load_field(m->edge_flags + t), fn = cadt_load_field(m->edge_flags + n);
+    const cadt_u32 flag = cadt_edge_flag(ft, k);
+    cadt_store_field(m->edge_flags + ts, flag << k | cadt_edge_flag(ft, k1) << k1);
+    cadt_store_field(m->edge_flags + ns, flag << j | cadt_edge_flag(fn, j1) << j1);
+    cadt_store_field(m->edge_flags + t, flag << k | cadt_edge_flag(ft, k2) << k2);
+    cadt_store_field(m->edge_flags + n, flag << j | cadt_edge_flag(fn, j2) << j2);
+  }
   CADT_ADD_TIME(counters, CADT_TIME_SPLIT);
   CADT_NOISE_AT(m, CADT_SITE_HALF_EDGES);
   cadt_relink(m, outer_bc, CADT_HALF_EDGE(ts, k1));

@@ -32,6 +32,7 @@ typedef struct {
   CADT_GLOBAL cadt_locked_triangle* locked;
   CADT_GLOBAL const cadt_point* points;
   CADT_GLOBAL cadt_u32* vertex_to_triangle; /* position -> a triangle near it, CADT_NONE until the point is inserted */
+  CADT_GLOBAL cadt_u32* edge_flags;         /* a word a triangle, bit k: its edge k is constrained; null: none is */
   cadt_point center;
   cadt_u32 first, second, third; /* positions of the first three vertices */
   cadt_u32 stabilize,
@@ -46,20 +47,22 @@ typedef struct {
 #endif
 } cadt_locked_mesh;
 
-#define CADT_MESH_PARAMETERS                                                                            \
-  CADT_GLOBAL cadt_locked_triangle *locked, CADT_GLOBAL const cadt_point *points,                       \
-      CADT_GLOBAL cadt_u32 *vertex_to_triangle, cadt_real center_x, cadt_real center_y, cadt_u32 first, \
-      cadt_u32 second, cadt_u32 third, cadt_u32 stabilize, cadt_u32 threshold, cadt_real epsilon
+#define CADT_LOCKED_MESH_PARAMETERS                                                                                \
+  CADT_GLOBAL cadt_locked_triangle *locked, CADT_GLOBAL const cadt_point *points,                                  \
+      CADT_GLOBAL cadt_u32 *vertex_to_triangle, CADT_GLOBAL cadt_u32 *edge_flags, cadt_real center_x,              \
+      cadt_real center_y, cadt_u32 first, cadt_u32 second, cadt_u32 third, cadt_u32 stabilize, cadt_u32 threshold, \
+      cadt_real epsilon
 #if defined(CADT_CHECKED)
 #define CADT_SET_PARTITION(mesh, begin, size) mesh.partition_begin = (begin), mesh.partition_size = (size)
 #else
 #define CADT_SET_PARTITION(mesh, begin, size) ((void)0)
 #endif
-#define CADT_MESH_VIEW(mesh)                    \
+#define CADT_LOCKED_MESH(mesh)                  \
   cadt_locked_mesh mesh;                        \
   mesh.locked = locked;                         \
   mesh.points = points;                         \
   mesh.vertex_to_triangle = vertex_to_triangle; \
+  mesh.edge_flags = edge_flags;                 \
   mesh.center.x = center_x;                     \
   mesh.center.y = center_y;                     \
   mesh.first = first;                           \
@@ -181,6 +184,15 @@ CADT_FN void cadt_store_from(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k, 
                       CADT_PICK(k, s->n1, s->n0, s->n2), CADT_PICK(k, s->n2, s->n1, s->n0), s->flips);
 }
 #endif
+
+/* Constrained edges: each of the two triangles has a bit for the edge. Whoever owns a triangle may change its word. */
+CADT_FN cadt_u32 cadt_edge_flag(cadt_u32 flags, cadt_u32 k) { return flags >> k & 1u; }
+CADT_FN cadt_u32 cadt_edge_flag_set(cadt_u32 flags, cadt_u32 k, cadt_u32 flag) {
+  return (flags & ~(1u << k)) | flag << k;
+}
+CADT_FN cadt_u32 cadt_edge_is_constrained(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 k) {
+  return m->edge_flags ? cadt_edge_flag(cadt_load_field(m->edge_flags + t), k) : 0u;
+}
 
 /* Flip counters: ten bits for each edge slot, saturating. */
 CADT_FN cadt_u32 cadt_flips_get(cadt_u32 flips, cadt_u32 k) { return (flips >> (10u * k)) & 1023u; }

@@ -3,29 +3,78 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
-#include "common/driver/memory.hpp"
+#include "common/driver/context.hpp"
+#include "common/driver/triangulation_data.hpp"
 
 namespace cadt {
 
-/// A certified mesh, ghost triangles included: locked triangles as insertion leaves them, or two arrays, three words a
-/// triangle, with the ghost triangles at the end (common/certify/certify.dev.h).
+/// Three words a triangle, which may become an array of the result: then they are in the result's memory, on the host
+/// if it can be written from the device.
+struct MeshArray {
+  Words host;  ///< what `device` aliases, if that is memory of the host
+  Allocation device;
+
+  void release() noexcept {
+    device.release();
+    host.reset();
+  }
+  [[nodiscard]] explicit operator bool() const noexcept { return static_cast<bool>(device); }
+  operator Arg() const noexcept { return device; }  // NOLINT: passed to kernels as it is
+};
+
+/// What becomes of a mesh.
+enum class MeshUse {
+  result,    ///< its arrays are those of the result, if the call asks for memory of the host
+  stitching  ///< a part of another mesh
+};
+
+/// \throws OutOfMemory
+[[nodiscard]] MeshArray make_mesh_array(Context& ctx, std::size_t triangles, MeshUse use);
+
+/// A mesh in arrays (common/mesh/mesh_view.dev.h). No stage changes it but by making another one.
 struct Mesh {
-  Allocation input_ids;             ///< of the vertices, which are positions in sorted order
-  Allocation locked;                ///< locked triangles, two a vertex; some of the first vertices' stay unused
-  std::size_t slots = 0;            ///< locked triangles allocated, or triangles of the arrays
-  Allocation vertices, half_edges;  ///< the arrays
-  std::size_t triangles = 0;        ///< of the arrays the first so many have no ghost vertex
-  bool flat = false;                ///< no triangles: all vertices are collinear, or there are fewer than three
+  Allocation points;               ///< of the vertices; null if nobody needs them any more
+  Allocation input_ids;            ///< of the vertices
+  MeshArray vertices, half_edges;  ///< of `all` triangles
+  Allocation edge_flags;           ///< of `all` triangles; null if no edge is constrained
+  std::size_t triangles = 0;       ///< the first so many have no ghost vertex
+  std::size_t all = 0;             ///< with ghost triangles
+  bool flat = false;               ///< no triangles: all vertices are collinear, or there are fewer than three
+  bool certified = false;          ///< insertion's last legality sweep has examined all edges
 
   [[nodiscard]] static Mesh without_triangles(Allocation input_ids) {
     Mesh mesh;
     mesh.input_ids = std::move(input_ids);
-    mesh.flat = true;
+    mesh.flat = mesh.certified = true;
     return mesh;
   }
-  [[nodiscard]] bool in_arrays() const noexcept { return static_cast<bool>(vertices) || static_cast<bool>(half_edges); }
 };
+
+/// What a kernel with CADT_MESH_VIEW_PARAMETERS reads: a mesh within a run, or the arrays of a finished one.
+struct ReadOnlyMesh {
+  const Allocation &points, &vertices, &across, &edge_flags;
+  std::uint32_t triangles, all;
+  std::uint32_t edge_bits;  ///< 2: half-edges across; 0: triangles
+
+  /// Launches a kernel whose parameters begin with the view.
+  template <KernelId kernel, class... Args>
+  void run(Launcher& launch, std::uint32_t items, const Args&... args) const {
+    launch.run<kernel>(items, points, vertices, across, edge_flags, triangles, all, edge_bits, args...);
+  }
+};
+
+/// `points`: of the vertices; null if the kernel reads none.
+[[nodiscard]] inline ReadOnlyMesh view_of(const Mesh& mesh, const Allocation& points) {
+  return {points,
+          mesh.vertices.device,
+          mesh.half_edges.device,
+          mesh.edge_flags,
+          static_cast<std::uint32_t>(mesh.triangles),
+          static_cast<std::uint32_t>(mesh.all),
+          2};
+}
 
 }  // namespace cadt

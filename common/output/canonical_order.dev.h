@@ -8,7 +8,7 @@
 
 #include "common/output/renumber.dev.h"
 
-/* A real triangle in the bucket of its smallest vertex. */
+/* A triangle in the bucket of its smallest vertex. */
 typedef struct {
   cadt_u32 second, triangle;
 } cadt_member;
@@ -17,24 +17,21 @@ typedef struct {
  * buckets (`places`, by triangle) when they are counted; GPUs spare the memory traffic and add again. */
 #define CADT_PLACES_KNOWN CADT_CONTIGUOUS
 
-/* Counts the triangles of each bucket, and edges by flips. \pre buckets are zero */
-CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_locked_triangle* locked, CADT_GLOBAL const cadt_u32* vertices,
-            CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_u32* places,
-            cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* flips) {
-  CADT_FLIPS_BEGIN(bins, flips);
+CADT_FN cadt_triangle cadt_read_triangle(CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_u32* input_ids,
+                                         cadt_u32 t) {
+  return cadt_in_input_ids(input_ids, vertices[3u * t], vertices[3u * t + 1u], vertices[3u * t + 2u]);
+}
+
+/* Counts the triangles of each bucket. \pre buckets are zero */
+CADT_KERNEL(cadt_count_triangles, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_u32* input_ids,
+            CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL cadt_u32* places, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(t, count, grain) {
-    cadt_locked_triangle r;
-    cadt_read_vertices(locked, vertices, t, &r);
-    if (r.word[CADT_WORD_LOCK] == 0u) continue;
-    CADT_FLIPS_COUNT(bins, flips, r);
-    if (!cadt_is_real(&r)) continue;
 #if CADT_PLACES_KNOWN
-    places[t] = cadt_add_relaxed(buckets + cadt_in_input_ids(input_ids, r.word[0], r.word[1], r.word[2]).a, 1u);
+    places[t] = cadt_add_relaxed(buckets + cadt_read_triangle(vertices, input_ids, t).a, 1u);
 #else
-    cadt_add_relaxed(buckets + cadt_in_input_ids(input_ids, r.word[0], r.word[1], r.word[2]).a, 1u);
+    cadt_add_relaxed(buckets + cadt_read_triangle(vertices, input_ids, t).a, 1u);
 #endif
   }
-  CADT_FLIPS_END(bins, flips);
 }
 
 /* Splits scanned buckets into `parts` of about as many triangles each. begins[2 * k] and the next word: the first
@@ -53,18 +50,14 @@ CADT_KERNEL(cadt_split_buckets, CADT_GLOBAL const cadt_u32* buckets, cadt_u32 co
   }
 }
 
-/* Puts each real triangle of the `size` buckets from `from` on, whose first triangle has number `base`, into its
+/* Puts each triangle of the `size` buckets from `from` on, whose first triangle has number `base`, into its
  * bucket: (second vertex, triangle). \pre buckets are scanned: where they begin; \post where they end, or still where
  * they begin if places are known */
-CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_locked_triangle* locked, CADT_GLOBAL const cadt_u32* vertices,
-            CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL const cadt_u32* places,
-            CADT_GLOBAL cadt_member* members, cadt_u32 from, cadt_u32 size, cadt_u32 base, cadt_u32 count,
-            cadt_u32 grain) {
+CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_u32* input_ids,
+            CADT_GLOBAL cadt_u32* buckets, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_member* members,
+            cadt_u32 from, cadt_u32 size, cadt_u32 base, cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(t, count, grain) {
-    cadt_locked_triangle r;
-    cadt_read_vertices(locked, vertices, t, &r);
-    if (!cadt_is_real(&r)) continue;
-    const cadt_triangle triangle = cadt_in_input_ids(input_ids, r.word[0], r.word[1], r.word[2]);
+    const cadt_triangle triangle = cadt_read_triangle(vertices, input_ids, t);
     if (triangle.a - from >= size) continue;
     cadt_member member;
     member.second = triangle.b;
@@ -183,7 +176,7 @@ CADT_KERNEL(cadt_long_store, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL cons
   }
 }
 
-/* numbers[t] = place of triangle t in the result. \pre numbers of ghosts are CADT_NONE */
+/* numbers[t] = place of triangle t in the result. */
 CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_GLOBAL cadt_u32* numbers, cadt_u32 base,
             cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(i, count, grain) { numbers[members[i].triangle] = base + i; }

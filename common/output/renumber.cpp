@@ -15,25 +15,6 @@ namespace {
 constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::uint32_t none = 0xFFFFFFFFU;
 
-/// The values of `from` where the sets begin.
-Allocation values_of_sets(Context& ctx, const Allocation& from, const Allocation& places, const SetStarts& sets) {
-  Allocation values = ctx.memory.allocate((sets.count + 1) * word);
-  const LaunchGrid c = ctx.launcher.grid(sets.count + 1);
-  ctx.launcher.run<KernelId::cadt_gather_words>(c.items, from, places, values,
-                                                static_cast<std::uint32_t>(sets.count + 1), c.grain);
-  return values;
-}
-
-/// Where the triangles of the sets begin: two a vertex.
-Allocation first_records(Context& ctx, const SetStarts& sets) {
-  std::vector<std::uint32_t> places(sets.count + 1);
-  ctx.device.read(*(sets.positions ? sets.positions : sets.points), 0, places.data(), places.size() * word);
-  for (std::uint32_t& place : places) place *= 2;
-  Allocation result = ctx.memory.allocate(places.size() * word);
-  ctx.device.write(*result, 0, places.data(), places.size() * word);
-  return result;
-}
-
 /// The compact plan makes the canonical order in so many parts, one after the other: the lists of each have this share
 /// of the triangles.
 constexpr std::uint32_t parts_of_compact_plan = 2;
@@ -113,26 +94,23 @@ void sort_buckets(Context& ctx, const BucketPart& part) {
 
 /// Numbers all triangles from scanned buckets. \pre `numbers` are places in buckets where the device knows them
 /// (canonical_order.dev.h)
-void number_by_buckets(Context& ctx, const Mesh& mesh, Allocation buckets, const Numbering& result,
+void number_by_buckets(Context& ctx, const Mesh& mesh, Allocation buckets, const Allocation& numbers,
                        std::size_t points) {
   Launcher& launch = ctx.launcher;
-  const std::size_t places = mesh.in_arrays() ? mesh.triangles : mesh.slots;
-  const std::uint32_t parts = ctx.plan.compact && mesh.in_arrays() ? parts_of_compact_plan : 1;
-  const std::vector<PartBegin> begins =
-      split_buckets(ctx, buckets, points, static_cast<std::uint32_t>(result.triangles), parts);
-  const LaunchGrid all = launch.grid(places);
+  const auto triangles = static_cast<std::uint32_t>(mesh.triangles);
+  const std::uint32_t parts = ctx.plan.compact ? parts_of_compact_plan : 1;
+  const std::vector<PartBegin> begins = split_buckets(ctx, buckets, points, triangles, parts);
+  const LaunchGrid all = launch.grid(triangles);
   for (std::uint32_t part = 0; part < parts; ++part) {
     const auto [from, base] = begins[part];
     const std::uint32_t size = begins[part + 1].bucket - from, count = begins[part + 1].triangle - base;
     const Allocation members = ctx.memory.transient(std::size_t{count} * 2 * word);
-    launch.run<KernelId::cadt_bucket_triangles>(all.items, mesh.locked, mesh.vertices, mesh.input_ids, buckets,
-                                                result.numbers, members, from, size, base,
-                                                static_cast<std::uint32_t>(places), all.grain);
+    launch.run<KernelId::cadt_bucket_triangles>(all.items, mesh.vertices, mesh.input_ids, buckets, numbers, members,
+                                                from, size, base, triangles, all.grain);
     sort_buckets(ctx, {buckets, members, from, size, base, count});
     if (part + 1 == parts) buckets.release();
-    if (!mesh.in_arrays()) ctx.device.fill(*result.numbers, 0, places * word, none);  // arrays: all get a number
     const LaunchGrid real = launch.grid(count);
-    launch.run<KernelId::cadt_number_triangles>(real.items, members, result.numbers, base, count, real.grain);
+    launch.run<KernelId::cadt_number_triangles>(real.items, members, numbers, base, count, real.grain);
   }
 }
 
@@ -156,91 +134,57 @@ std::vector<std::int32_t> chain_loop(const std::vector<std::array<std::uint32_t,
   return loop;
 }
 
-Numbering renumber(Context& ctx, const Mesh& mesh, std::size_t points, const SetStarts* sets) {
+Allocation number_triangles(Context& ctx, const Mesh& mesh, std::size_t points) {
+  if (ctx.options.order == Order::fast) return {};
   Launcher& launch = ctx.launcher;
-  Numbering result;
-  if (mesh.in_arrays() && ctx.options.order == Order::fast) {
-    result.triangles = mesh.triangles;
-    return result;
-  }
-  const std::size_t places = mesh.in_arrays() ? mesh.triangles : mesh.slots;
-  const auto slots = static_cast<std::uint32_t>(places);
-  const FlipHistogram flips(ctx, !mesh.in_arrays());  // arrays have no flip counters
-  const LaunchGrid all = launch.grid_strided(places);
-  if (ctx.options.order == Order::fast) {
-    result.ranked = true;
-    result.numbers = ctx.memory.allocate((mesh.slots + 1) * word);
-    launch.run<KernelId::cadt_flag_triangles>(all.items, mesh.locked, result.numbers, slots, all.grain, flips);
-    launch.scan(result.numbers, mesh.slots + 1);
-    result.triangles = launch.read_word(result.numbers, mesh.slots);
-    if (sets != nullptr) result.set_starts = values_of_sets(ctx, result.numbers, first_records(ctx, *sets), *sets);
-    flips.collect(ctx.statistics);
-    return result;
-  }
   Allocation buckets = launch.zeros(points + 1);
-  // until they are known: places in the buckets
-  result.numbers = mesh.in_arrays() ? ctx.memory.transient(places * word) : ctx.memory.allocate(places * word);
-  launch.run<KernelId::cadt_count_triangles>(all.items, mesh.locked, mesh.vertices, mesh.input_ids, buckets,
-                                             result.numbers, slots, all.grain, flips);
+  Allocation numbers = ctx.memory.transient(mesh.triangles * word);  // until they are known: places in the buckets
+  const LaunchGrid all = launch.grid_strided(mesh.triangles);
+  launch.run<KernelId::cadt_count_triangles>(all.items, mesh.vertices, mesh.input_ids, buckets, numbers,
+                                             static_cast<std::uint32_t>(mesh.triangles), all.grain);
   launch.scan(buckets, points + 1);
-  result.triangles = mesh.in_arrays() ? mesh.triangles : launch.read_word(buckets, points);
-  if (sets != nullptr) result.set_starts = values_of_sets(ctx, buckets, sets->points, *sets);
-  flips.collect(ctx.statistics);
-  number_by_buckets(ctx, mesh, std::move(buckets), result, points);
-  return result;
+  number_by_buckets(ctx, mesh, std::move(buckets), numbers, points);
+  return numbers;
 }
 
-void write_triangles(Context& ctx, const Mesh& mesh, const Numbering& numbering, const Allocation& triangles,
-                     const Allocation& neighbors, std::size_t first) {
-  if (mesh.in_arrays()) {
-    const LaunchGrid real = ctx.launcher.grid(mesh.triangles);
-    ctx.launcher.run<KernelId::cadt_write_arrays>(
-        real.items, mesh.vertices, mesh.half_edges, mesh.input_ids, numbering.numbers, triangles, neighbors,
-        static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh.triangles), real.grain);
-    return;
-  }
-  const LaunchGrid all = ctx.launcher.grid(mesh.slots);
-  const auto write = [&]<KernelId kernel>() {
-    ctx.launcher.run<kernel>(all.items, mesh.locked, mesh.input_ids, numbering.numbers, triangles, neighbors,
-                             static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(mesh.slots), all.grain);
-  };
-  if (numbering.ranked)
-    write.template operator()<KernelId::cadt_write_ranked>();
-  else
-    write.template operator()<KernelId::cadt_write_triangles>();
+void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& numbers, const ResultPlace& to) {
+  const Allocation none;
+  const LaunchGrid all = ctx.launcher.grid(mesh.triangles);
+  view_of(mesh, none)
+      .run<KernelId::cadt_write_triangles>(ctx.launcher, all.items, mesh.input_ids, numbers, to.triangles, to.neighbors,
+                                           to.edge_flags, static_cast<std::uint32_t>(to.first), all.grain);
 }
 
-std::size_t renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {
-  Numbering as_they_are;
-  as_they_are.triangles = mesh.triangles;
-  write_triangles(ctx, mesh, as_they_are, mesh.vertices, mesh.half_edges);
+void renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {
+  const Allocation as_they_are;
+  write_triangles(ctx, mesh, as_they_are, {mesh.vertices.device, mesh.half_edges.device, mesh.edge_flags});
   mesh.input_ids.release();
-  if (ctx.options.order == Order::fast) return mesh.triangles;
-  const Numbering numbering = renumber(ctx, mesh, points);
-  const auto count = static_cast<std::uint32_t>(numbering.triangles);
+  const Allocation numbers = number_triangles(ctx, mesh, points);
+  if (!numbers) return;
+  const auto count = static_cast<std::uint32_t>(mesh.triangles);
   const Allocation moved = ctx.memory.transient(count * word);
   const LaunchGrid c = ctx.launcher.grid(count);
-  for (const Allocation* array : {&mesh.vertices, &mesh.half_edges}) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t half_edges = array == &mesh.half_edges ? 1 : 0;
-      ctx.launcher.run<KernelId::cadt_move_words>(c.items, *array, numbering.numbers, k, half_edges, moved, count,
-                                                  c.grain);
-      ctx.launcher.run<KernelId::cadt_put_words>(c.items, moved, *array, k, count, c.grain);
+  const auto move = [&](const Allocation& array, std::uint32_t row, std::uint32_t neighbors) {
+    for (std::uint32_t k = 0; array && k < row; ++k) {
+      ctx.launcher.run<KernelId::cadt_move_words>(c.items, array, numbers, row, k, neighbors, moved, count, c.grain);
+      ctx.launcher.run<KernelId::cadt_put_words>(c.items, moved, array, row, k, count, c.grain);
     }
-  }
-  return count;
+  };
+  move(mesh.vertices.device, 3, 0);
+  move(mesh.half_edges.device, 3, 1);
+  move(mesh.edge_flags, 1, 0);
 }
 
-void renumber_within_sets(Context& ctx, const Numbering& numbering, const SetStarts& sets, const Allocation& triangles,
-                          const Allocation& neighbors, std::size_t first) {
-  const LaunchGrid c = ctx.launcher.grid(numbering.triangles);
+void renumber_within_sets(Context& ctx, const Allocation& set_starts, const SetStarts& sets, const ResultPlace& of,
+                          std::size_t count) {
+  const LaunchGrid c = ctx.launcher.grid(count);
   const auto shift = [&](const Allocation& values, const Allocation& by) {
-    ctx.launcher.run<KernelId::cadt_batch_shift>(
-        c.items, values, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(numbering.triangles), 3U,
-        numbering.set_starts, static_cast<std::uint32_t>(sets.count), by, c.grain);
+    ctx.launcher.run<KernelId::cadt_batch_shift>(c.items, values, static_cast<std::uint32_t>(of.first),
+                                                 static_cast<std::uint32_t>(count), 3U, set_starts,
+                                                 static_cast<std::uint32_t>(sets.count), by, c.grain);
   };
-  shift(triangles, sets.points);
-  shift(neighbors, numbering.set_starts);
+  shift(of.triangles, sets.points);
+  shift(of.neighbors, set_starts);
 }
 
 std::vector<std::int32_t> find_hull(Context& ctx, const Allocation& triangles, const Allocation& neighbors,

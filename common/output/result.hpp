@@ -2,8 +2,6 @@
 // From the mesh to the arrays of the result.
 #pragma once
 
-#include <cadt/triangulation.hpp>
-
 #include <cstddef>
 
 #include "common/driver/context.hpp"
@@ -13,13 +11,12 @@ namespace cadt {
 
 /// Three words a triangle each: vertices, as input ids, counterclockwise; and neighbours.
 struct ResultArrays {
-  Allocation triangles, neighbors;
+  MeshArray triangles, neighbors;
+  Allocation edge_flags;  ///< a word a triangle, as in common/mesh/mesh_view.dev.h; null: no edge is constrained
   std::size_t count = 0;
-  bool on_host = false;  ///< the arrays alias those of `host`, which are filled when the device has finished
 };
 
-/// Renumbers the triangles of `points` input points in the order that the options name and writes them. `host`: where
-/// the result goes in the end, null for a result on the device; its arrays are made here if the device can write them.
-[[nodiscard]] ResultArrays write_result(Context& ctx, Mesh mesh, std::size_t points, Triangulation::Data* host);
+/// Renumbers the triangles of a mesh of `points` input points in the order that the options name and writes them.
+[[nodiscard]] ResultArrays write_result(Context& ctx, Mesh mesh, std::size_t points);
 
 }  // namespace cadt

@@ -62,7 +62,9 @@
   X(cadt_cavity_boundary)      /* cavity.dev.h */                                          \
   X(cadt_cavity_fill)          /* cavity.dev.h: a fan in its place */                      \
   X(cadt_cavity_release)       /* cavity.dev.h */                                          \
-  X(cadt_legality_sweep)       /* legality_sweep.dev.h: test and repair all edges */
+  X(cadt_legality_sweep)       /* legality_sweep.dev.h: test and repair all edges */       \
+  X(cadt_flag_triangles)       /* drop_locks.dev.h */                                      \
+  X(cadt_drop_locks)           /* drop_locks.dev.h: the mesh in arrays */
 
 /* common/stars: proven local stars, gift wrapping, assembly, stitching */
 #define CADT_STARS_KERNELS(X)                                                                    \
@@ -87,7 +89,7 @@
   X(cadt_wrap_counts)         /* assemble_wrapped.dev.h: who owns which triangle */              \
   X(cadt_batch_counts)        /* assemble_wrapped.dev.h */                                       \
   X(cadt_wrap_arrays)         /* assemble_wrapped.dev.h */                                       \
-  X(cadt_wrap_locked)         /* assemble_wrapped.dev.h: as locked triangles */                  \
+  X(cadt_batch_locked)        /* assemble_wrapped.dev.h: as locked triangles */                  \
   X(cadt_list_high_degree)    /* high_degree.dev.h */                                            \
   X(cadt_apex_of_high_degree) /* high_degree.dev.h */
 
@@ -120,9 +122,6 @@
   X(cadt_long_store)       /* canonical_order.dev.h */                               \
   X(cadt_number_triangles) /* canonical_order.dev.h */                               \
   X(cadt_write_triangles)  /* renumber.dev.h */                                      \
-  X(cadt_flag_triangles)   /* renumber.dev.h: order of the mesh */                   \
-  X(cadt_write_ranked)     /* renumber.dev.h */                                      \
-  X(cadt_write_arrays)     /* renumber.dev.h */                                      \
   X(cadt_move_words)       /* renumber.dev.h: in place, where memory is short */     \
   X(cadt_put_words)        /* renumber.dev.h */                                      \
   X(cadt_boundary_edges)   /* hull.dev.h: the hull */

@@ -12,6 +12,7 @@
  * condition than its own. */
 #include "common/certify/certify.dev.h"
 #include "common/insertion/cavity.dev.h"
+#include "common/insertion/drop_locks.dev.h"
 #include "common/insertion/insert.dev.h"
 #include "common/insertion/legality_sweep.dev.h"
 #include "common/insertion/legalize.dev.h"

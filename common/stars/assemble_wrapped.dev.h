@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The mesh from wrapped stars, as locked triangles or in arrays. A triangle belongs to the lowest of its vertices that
- * has a star. A high-degree vertex has none, so its triangles belong to its neighbours. An edge between two vertices
- * without stars (high-degree vertices, or the ghost) is listed with the apex on either side; high_degree.dev.h adds the
- * triangles of three such vertices, each as its three half-edges.
+ * The mesh from wrapped stars. A triangle belongs to the lowest of its vertices that has a star. A high-degree vertex
+ * has none, so its triangles belong to its neighbours. An edge between two vertices without stars (high-degree
+ * vertices, or the ghost) is listed with the apex on either side; high_degree.dev.h adds the triangles of three such
+ * vertices, each as its three half-edges.
  */
 #ifndef CADT_STARS_ASSEMBLE_WRAPPED_H
 #define CADT_STARS_ASSEMBLE_WRAPPED_H
@@ -18,11 +18,12 @@ typedef struct {
   CADT_GLOBAL const cadt_u32* bases; /* number of the first triangle of each vertex */
   CADT_GLOBAL const cadt_wrap_edge* edges;
   cadt_u32 edge_count;
-  cadt_u32
-      first_extra; /* the edges from here on are the half-edges of triangles that no star has; the numbers of those */
-  cadt_u32 extra_base;  /* begin here; in arrays those of the ghost's triangles */
-  cadt_u32 high_degree; /* whether there are high-degree vertices */
-  cadt_u32 apart;       /* in arrays: the real triangles come before those of the ghost */
+  cadt_u32 first_extra;     /* the edges from here on are the half-edges of triangles that no star has, */
+  cadt_u32 extra_real;      /* so many without the ghost first: */
+  cadt_u32 first_extras[2]; /* numbers of the first of these, and of the first with the ghost */
+  cadt_u32 ghosts;          /* number of the first ghost triangle of a star */
+  cadt_u32 high_degree;     /* whether there are high-degree vertices */
+  cadt_u32 apart;           /* the triangles without the ghost come before the others */
 } cadt_wrap_set;
 
 /* What a triangle of a vertex with its star vertices a and b adds to the packed count. */
@@ -53,11 +54,11 @@ CADT_FN cadt_u32 cadt_wrap_owned(CADT_GLOBAL const cadt_u32* star, cadt_u32 size
   return count;
 }
 
-/* owned[v]: triangles that v owns, as a packed count if `apart`. Behind the last stand a 0, then the first words of
- * `counts`, so that they can be read with the scan's total, and `zeros` zeros for the next writer. If not `apart`, the
- * half-edges between two vertices without stars are listed and counted. */
+/* owned[v]: triangles that v owns, as a packed count. Behind the last stand a 0, then the first words of `counts`, so
+ * that they can be read with the scan's total, and `zeros` zeros for the next writer. The half-edges between two
+ * vertices without stars are listed and counted. */
 CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
-            CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 apart, cadt_u32 grain, CADT_GLOBAL cadt_u32* counts,
+            CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* counts,
             CADT_GLOBAL cadt_u32* owned, cadt_u32 zeros, CADT_GLOBAL cadt_wrap_edge* edges) {
   for (cadt_u32 k = cadt_item; k < zeros; k += cadt_items) owned[n + 1u + CADT_WRAP_DRIVER_WORDS + k] = 0u;
   if (cadt_item == 0u) {
@@ -68,7 +69,7 @@ CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
   CADT_FOR(v, n, grain) {
     CADT_GLOBAL const cadt_u32* star = star_vertices + begins[v];
     const cadt_u32 size = sizes[v];
-    for (cadt_u32 k = 0u; high_degree && !apart && k < size; ++k) {
+    for (cadt_u32 k = 0u; high_degree && k < size; ++k) {
       const cadt_u32 a = star[k], b = star[k + 1u < size ? k + 1u : 0u];
       if (cadt_lacks_star(sizes, a) && cadt_lacks_star(sizes, b)) {
         const cadt_u32 at = cadt_add_relaxed(counts + CADT_WRAP_OPEN_EDGES, 1u);
@@ -79,7 +80,7 @@ CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
         }
       }
     }
-    owned[v] = cadt_wrap_owned(star, size, sizes, high_degree, apart, v);
+    owned[v] = cadt_wrap_owned(star, size, sizes, high_degree, 1u, v);
   }
 }
 
@@ -137,7 +138,12 @@ CADT_FN cadt_u32 cadt_wrap_right_apex(const cadt_wrap_set* s, cadt_u32 a, cadt_u
 CADT_FN cadt_u32 cadt_wrap_number(const cadt_wrap_set* s, cadt_u32 v, cadt_u32 before, cadt_u32 a, cadt_u32 b) {
   const cadt_u32 sum = s->bases[v] + before;
   if (!s->apart) return sum;
-  return a == CADT_GHOST || b == CADT_GHOST ? s->extra_base + CADT_WRAP_GHOSTS(sum) : CADT_WRAP_REAL(sum);
+  return a == CADT_GHOST || b == CADT_GHOST ? s->ghosts + CADT_WRAP_GHOSTS(sum) : CADT_WRAP_REAL(sum);
+}
+
+/* Number of a triangle that no star has; `extra`: which of them. */
+CADT_FN cadt_u32 cadt_wrap_extra_number(const cadt_wrap_set* s, cadt_u32 extra) {
+  return extra < s->extra_real ? s->first_extras[0] + extra : s->first_extras[1] + (extra - s->extra_real);
 }
 
 /* The half-edge in the triangle x, y, z opposite of x (0), y (1) or z (2). */
@@ -152,7 +158,7 @@ CADT_FN cadt_u32 cadt_wrap_half_edge(const cadt_wrap_set* s, cadt_u32 x, cadt_u3
     cadt_u32 e = s->first_extra;
     while (e + 1u < s->edge_count && (s->edges[e].from != x || s->edges[e].to != y || s->edges[e].left != z)) ++e;
     e -= s->first_extra;
-    return CADT_HALF_EDGE(s->extra_base + e / 3u, (opposite + e % 3u) % 3u);
+    return CADT_HALF_EDGE(cadt_wrap_extra_number(s, e / 3u), (opposite + e % 3u) % 3u);
   }
   cadt_u32 before;
   cadt_wrap_place(s, owner, next, &before);
@@ -182,45 +188,29 @@ CADT_FN cadt_u32 cadt_wrap_triangle_of(const cadt_wrap_set* s, cadt_u32 v, cadt_
   return 1u;
 }
 
-/* The mesh in arrays (certify.dev.h), real triangles first, of stars without high-degree vertices. bases[n] is the
- * total, the counts stand behind it: if they are not those of a mesh, nothing is written. The number of real triangles
- * goes to the words of cadt_certify, in `bases` from `row` on. CADT_WRAP_SHARES work-items a vertex. */
-CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
-            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL cadt_u32* bases, cadt_u32 star_words, cadt_u32 row,
-            cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* vertices, CADT_GLOBAL cadt_u32* half_edges) {
-  const cadt_u32 total = bases[n], real = CADT_WRAP_REAL(total);
-  if (real + CADT_WRAP_GHOSTS(total) != 2u * n - 2u || bases[n + 1u + CADT_WRAP_OVERFLOWED] > star_words ||
-      bases[n + 1u + CADT_WRAP_FAILED])
-    return;
-  if (cadt_item == 0u) bases[row + CADT_CERTIFY_REAL] = real;
-  cadt_wrap_set stars;
-  stars.star_vertices = star_vertices;
-  stars.begins = begins;
-  stars.sizes = sizes;
-  stars.bases = bases;
-  stars.edges = 0;
-  stars.edge_count = stars.first_extra = stars.high_degree = 0u;
-  stars.extra_base = real;
-  stars.apart = 1u;
-  CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
-    const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
-    for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {
-      cadt_wrap_triangle t;
-      if (!cadt_wrap_triangle_of(&stars, v, k, &t)) continue;
-      vertices[3u * t.number] = v;
-      vertices[3u * t.number + 1u] = t.a;
-      vertices[3u * t.number + 2u] = t.b;
-      for (cadt_u32 edge = 0u; edge < 3u; ++edge) half_edges[3u * t.number + edge] = t.half_edges[edge];
-    }
-  }
+CADT_FN void cadt_write_wrapped(CADT_GLOBAL cadt_u32* vertices, CADT_GLOBAL cadt_u32* half_edges, cadt_u32 v,
+                                const cadt_wrap_triangle* t) {
+  vertices[3u * t->number] = v;
+  vertices[3u * t->number + 1u] = t->a;
+  vertices[3u * t->number + 2u] = t->b;
+  for (cadt_u32 edge = 0u; edge < 3u; ++edge) half_edges[3u * t->number + edge] = t->half_edges[edge];
 }
 
-/* The mesh as locked triangles; the last two slots stay empty. CADT_WRAP_SHARES work-items a vertex. \pre no triangle
- * is missing */
-CADT_KERNEL(cadt_wrap_locked, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
-            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases,
-            CADT_GLOBAL const cadt_wrap_edge* edges, cadt_u32 edge_count, cadt_u32 first_extra, cadt_u32 extra_base,
-            cadt_u32 high_degree, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_locked_triangle* locked) {
+/* The mesh in arrays (mesh_view.dev.h). bases[n] is the total of the stars, the counts stand behind it: if these are
+ * not those of a mesh with `extra` triangles that no star has, or have a high-degree vertex where none is expected,
+ * nothing is written. Else the number of triangles without the ghost goes to the words of cadt_certify, in `bases` from
+ * `row` on. CADT_WRAP_SHARES work-items a vertex. */
+CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL cadt_u32* bases, cadt_u32 star_words, cadt_u32 row,
+            CADT_GLOBAL const cadt_wrap_edge* edges, cadt_u32 edge_count, cadt_u32 first_extra, cadt_u32 extra_real,
+            cadt_u32 high_degree, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* vertices,
+            CADT_GLOBAL cadt_u32* half_edges) {
+  const cadt_u32 total = bases[n], extra = (edge_count - first_extra) / 3u;
+  const cadt_u32 real = CADT_WRAP_REAL(total) + extra_real, ghosts = CADT_WRAP_GHOSTS(total) + (extra - extra_real);
+  if (real + ghosts != 2u * n - 2u || bases[n + 1u + CADT_WRAP_OVERFLOWED] > star_words ||
+      (bases[n + 1u + CADT_WRAP_FAILED] && !high_degree))
+    return;
+  if (cadt_item == 0u) bases[row + CADT_CERTIFY_REAL] = real;
   cadt_wrap_set stars;
   stars.star_vertices = star_vertices;
   stars.begins = begins;
@@ -229,22 +219,47 @@ CADT_KERNEL(cadt_wrap_locked, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
   stars.edges = edges;
   stars.edge_count = edge_count;
   stars.first_extra = first_extra;
-  stars.extra_base = extra_base;
+  stars.extra_real = extra_real;
+  stars.first_extras[0] = CADT_WRAP_REAL(total);
+  stars.first_extras[1] = real + CADT_WRAP_GHOSTS(total);
+  stars.ghosts = real;
   stars.high_degree = high_degree;
-  stars.apart = 0u;
+  stars.apart = 1u;
   if (cadt_item == 0u) {
-    locked[2u * n - 2u].word[CADT_WORD_LOCK] = 0u;
-    locked[2u * n - 1u].word[CADT_WORD_LOCK] = 0u;
     for (cadt_u32 e = first_extra; e < edge_count; e += 3u) {
-      CADT_GLOBAL cadt_u32* w = locked[extra_base + (e - first_extra) / 3u].word;
-      const cadt_u32 a = edges[e].from, b = edges[e].to, c = edges[e].left;
-      cadt_store_four(w, a, b, c, 2u);
-      cadt_store_four(w + CADT_WORD_HALF_EDGE,
-                      cadt_wrap_half_edge(&stars, b, cadt_wrap_right_apex(&stars, b, c), c, 1u),
-                      cadt_wrap_half_edge(&stars, c, cadt_wrap_right_apex(&stars, c, a), a, 1u),
-                      cadt_wrap_half_edge(&stars, a, cadt_wrap_right_apex(&stars, a, b), b, 1u), 0u);
+      const cadt_u32 x = edges[e].from, y = edges[e].to, z = edges[e].left;
+      cadt_wrap_triangle t;
+      t.number = cadt_wrap_extra_number(&stars, (e - first_extra) / 3u);
+      t.a = y;
+      t.b = z;
+      t.half_edges[0] = cadt_wrap_half_edge(&stars, y, cadt_wrap_right_apex(&stars, y, z), z, 1u);
+      t.half_edges[1] = cadt_wrap_half_edge(&stars, z, cadt_wrap_right_apex(&stars, z, x), x, 1u);
+      t.half_edges[2] = cadt_wrap_half_edge(&stars, x, cadt_wrap_right_apex(&stars, x, y), y, 1u);
+      cadt_write_wrapped(vertices, half_edges, x, &t);
     }
   }
+  CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
+    const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
+    for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {
+      cadt_wrap_triangle t;
+      if (cadt_wrap_triangle_of(&stars, v, k, &t)) cadt_write_wrapped(vertices, half_edges, v, &t);
+    }
+  }
+}
+
+/* The meshes of batched sets as locked triangles, which have no high-degree vertices. CADT_WRAP_SHARES work-items a
+ * vertex. \pre no triangle is missing */
+CADT_KERNEL(cadt_batch_locked, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases, cadt_u32 n, cadt_u32 grain,
+            CADT_GLOBAL cadt_locked_triangle* locked) {
+  cadt_wrap_set stars;
+  stars.star_vertices = star_vertices;
+  stars.begins = begins;
+  stars.sizes = sizes;
+  stars.bases = bases;
+  stars.edges = 0;
+  stars.edge_count = stars.first_extra = stars.extra_real = stars.ghosts = stars.high_degree = stars.apart = 0u;
+  stars.first_extras[0] = stars.first_extras[1] = 0u;
   CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
     const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
     for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {

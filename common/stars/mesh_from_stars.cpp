@@ -9,8 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "common/certify/certify.hpp"
-#include "common/driver/counters.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/stars/local_stars.hpp"
 #include "common/stars/wrap.hpp"
@@ -31,8 +29,8 @@ constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * 
 /// Steps in which the compact plan replaces the stars by the vertices of the mesh.
 constexpr std::uint32_t waves = 4;
 
-/// The mesh of the residual vertices of a mesh of `all` points, in locked triangles. The whole mesh is certified later,
-/// so there are no legality sweeps where they are of no use.
+/// The mesh of the residual vertices of a mesh of `all` points. The whole mesh is certified later, so there are no
+/// legality sweeps where they are of no use.
 Mesh build_residual(Context& ctx, SortedPoints points, std::size_t all, const BuildStrategy& how) {
   if (points.distinct <= how.most_residual_wrapped) {
     if (std::optional<Mesh> wrapped = wrap_part(ctx, points.points, points.distinct, all)) {
@@ -40,7 +38,7 @@ Mesh build_residual(Context& ctx, SortedPoints points, std::size_t all, const Bu
       return std::move(*wrapped);
     }
   }
-  return insert_incrementally(ctx, std::move(points));
+  return insert_incrementally(ctx, std::move(points), MeshUse::stitching);
 }
 
 class StarStage {
@@ -80,8 +78,7 @@ class StarStage {
     write_triangles();
     release_stars();
     stitch(std::move(residual));
-    if (!order_.points) order_.points = input_.import_in_order(ctx_, order_);
-    certify_arrays(ctx_, order_, mesh_);
+    mesh_.points = order_.points ? std::move(order_.points) : input_.import_in_order(ctx_, order_);
     mesh_.input_ids = std::move(order_.input_ids);
     return std::move(mesh_);
   }
@@ -153,18 +150,18 @@ class StarStage {
 
   /// Half-edges and vertices of the triangles with a proven vertex.
   void write_triangles() {
-    const std::size_t bytes = 3 * (2 * n_ - 2) * word;
+    mesh_.all = 2 * n_ - 2;
     const std::uint32_t groups = (count_ - 1) / CADT_ASSEMBLY_LANES + 1;
     const LaunchGrid c = launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES);
-    mesh_.half_edges = ctx_.memory.allocate(bytes);
+    mesh_.half_edges = make_mesh_array(ctx_, mesh_.all, MeshUse::result);
     open_ = ctx_.memory.allocate(std::size_t{open_count_} * word);
     const Allocation firsts = ctx_.memory.allocate((groups + std::size_t{1}) * word);
     launch_.run<KernelId::cadt_star_half_edges>(c.items, stars_.star_vertices, stars_.begins, marks_, bases_, proven_,
                                                 count_, groups, c.grain, mesh_.half_edges, firsts, open_, totals_);
     bases_.release();
     if (!ctx_.plan.compact || !write_vertices_in_place(firsts, groups)) {
-      mesh_.vertices = ctx_.memory.allocate(bytes);
-      write_vertices(firsts, 0, groups, mesh_.vertices);
+      mesh_.vertices = make_mesh_array(ctx_, mesh_.all, MeshUse::result);
+      write_vertices(firsts, 0, groups, mesh_.vertices.device);
     }
     ctx_.end_phase("assemble");
   }
@@ -201,7 +198,7 @@ class StarStage {
       const LaunchGrid c = launch_.grid(words);
       launch_.run<KernelId::cadt_copy_words>(c.items, staged, stars_.star_vertices, 3 * bounds[wave], words, c.grain);
     }
-    mesh_.vertices = std::move(stars_.star_vertices);
+    mesh_.vertices.device = std::move(stars_.star_vertices);
     return true;
   }
 
@@ -219,36 +216,31 @@ class StarStage {
     const Mesh smaller = build_residual(ctx_, std::move(residual), n_, how_);
     ctx_.statistics.certified_edges = certified;  // only those of the whole mesh count
     if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
+    const Allocation none;
+    const ReadOnlyMesh residual_mesh = view_of(smaller, none);
 
     const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
-    const auto mask = static_cast<std::uint32_t>(places - 1), slots = static_cast<std::uint32_t>(smaller.slots);
+    const auto mask = static_cast<std::uint32_t>(places - 1), all = residual_mesh.all;
     Allocation table = ctx_.memory.allocate(places * word);
     ctx_.device.fill(*table, 0, places * word, CADT_NONE);
     const LaunchGrid open = launch_.grid(open_count_);
     launch_.run<KernelId::cadt_stitch_enter>(open.items, mesh_.vertices, open_, open_count_, open.grain, table, mask);
-    Allocation covers = ctx_.memory.allocate(3 * smaller.slots * word),
-               roots = ctx_.memory.allocate(smaller.slots * word);
-    const LaunchGrid c = launch_.grid(smaller.slots);
-    launch_.run<KernelId::cadt_stitch_cover>(c.items, mesh_.vertices, smaller.locked, smaller.input_ids, slots, c.grain,
-                                             table, mask, covers, roots);
-    launch_.run<KernelId::cadt_stitch_components>(c.items, smaller.locked, slots, c.grain, covers, roots);
-    Allocation hidden = launch_.zeros(smaller.slots), ranks = ctx_.memory.allocate((2 * smaller.slots + 1) * word);
-    launch_.run<KernelId::cadt_stitch_hide>(c.items, covers, roots, slots, c.grain, hidden);
-    launch_.run<KernelId::cadt_stitch_flags>(c.items, smaller.locked, roots, hidden, slots, c.grain, ranks);
-    launch_.scan(ranks, 2 * smaller.slots + 1);
-    const std::size_t triangles = std::size_t{proven_triangles_} + launch_.read_word(ranks, 2 * smaller.slots);
-    if (triangles != 2 * n_ - 2)
+    Allocation covers = ctx_.memory.allocate(3 * smaller.all * word), roots = ctx_.memory.allocate(smaller.all * word);
+    const LaunchGrid c = launch_.grid(all);
+    residual_mesh.run<KernelId::cadt_stitch_cover>(launch_, c.items, mesh_.vertices, smaller.input_ids, c.grain, table,
+                                                   mask, covers, roots);
+    residual_mesh.run<KernelId::cadt_stitch_components>(launch_, c.items, c.grain, covers, roots);
+    Allocation hidden = launch_.zeros(smaller.all), ranks = ctx_.memory.allocate((smaller.all + 1) * word);
+    launch_.run<KernelId::cadt_stitch_hide>(c.items, covers, roots, all, c.grain, hidden);
+    launch_.run<KernelId::cadt_stitch_flags>(c.items, roots, hidden, all, c.grain, ranks);
+    launch_.scan(ranks, smaller.all + 1);
+    const std::size_t triangles = std::size_t{proven_triangles_} + launch_.read_word(ranks, smaller.all);
+    if (triangles != mesh_.all)
       throw InternalError("the two parts of the mesh have " + std::to_string(triangles) + " triangles instead of " +
-                          std::to_string(2 * n_ - 2) + "; please report this with the input");
-    mesh_.slots = triangles;
-    mesh_.triangles = proven_triangles_ + launch_.read_word(ranks, smaller.slots);
-    const FlipHistogram flips(ctx_);
-    const LaunchGrid strided = launch_.grid_strided(smaller.slots);
-    launch_.run<KernelId::cadt_stitch_residual>(strided.items, smaller.locked, covers, ranks, smaller.input_ids, slots,
-                                                strided.grain, proven_triangles_, mesh_.vertices, mesh_.half_edges,
-                                                flips);
-    // a triangle has 3 sides that count, a ghost triangle 1
-    flips.collect(ctx_.statistics, 3 * std::uint64_t{mesh_.triangles} + (mesh_.slots - mesh_.triangles));
+                          std::to_string(mesh_.all) + "; please report this with the input");
+    mesh_.triangles = proven_triangles_ + launch_.read_word(ranks, smaller.triangles);
+    residual_mesh.run<KernelId::cadt_stitch_residual>(launch_, c.items, covers, ranks, smaller.input_ids, c.grain,
+                                                      proven_triangles_, mesh_.vertices, mesh_.half_edges);
     ctx_.end_phase("stitch");
     ctx_.check("stitch", 0.8);
   }
@@ -276,6 +268,7 @@ Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how)
   points.keys.release();
   if (points.distinct <= how.most_wrapped) {
     if (std::optional<Mesh> wrapped = wrap_mesh(ctx, points)) {
+      wrapped->points = std::move(points.points);
       wrapped->input_ids = std::move(points.input_ids);
       return std::move(*wrapped);
     }

@@ -92,78 +92,88 @@ class Wrapping {
     edges_ = ctx_.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));
   }
 
-  /// The mesh in arrays and its certification, queued without waiting in between. False if there are high-degree
-  /// vertices.
-  [[nodiscard]] bool make_arrays(Mesh& mesh) {
-    const std::size_t row =
-        (n_ + CADT_WRAP_DRIVER_WORDS) / CADT_COUNTER_STRIDE * CADT_COUNTER_STRIDE + CADT_COUNTER_STRIDE;
-    bases_ = ctx_.memory.allocate((row + certify_words(ctx_)) * word);
-    count(true, row + certify_words(ctx_));  // all from n on is read at once
-    mesh.slots = triangles();
-    mesh.vertices = ctx_.memory.allocate(3 * triangles() * word);
-    mesh.half_edges = ctx_.memory.allocate(3 * triangles() * word);
-    const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
-    launch_.run<KernelId::cadt_wrap_arrays>(shares.items, star_vertices_, begins_, sizes_, bases_,
-                                            static_cast<std::uint32_t>(star_words()), static_cast<std::uint32_t>(row),
-                                            count_, shares.grain, mesh.vertices, mesh.half_edges);
+  /// Makes the mesh; if there are no high-degree vertices, all steps are queued without waiting in between, with its
+  /// certification if that is wanted. False if too many vertices have no star.
+  [[nodiscard]] bool make_arrays(Mesh& mesh, MeshUse use) {
+    bases_ = ctx_.memory.allocate((row() + certify_words(ctx_)) * word);
+    count();  // all from n on is read at once
+    mesh.all = triangles();
+    mesh.vertices = make_mesh_array(ctx_, mesh.all, use);
+    mesh.half_edges = make_mesh_array(ctx_, mesh.all, use);
+    write(mesh, {});
     ctx_.end_phase("wrap");
-    launch_certify(ctx_, points_, mesh, 0, triangles(), true, bases_, row);
-    std::vector<std::uint32_t> words(row + certify_words(ctx_) - n_);
+    const bool certifies = use == MeshUse::result;
+    if (certifies) launch_certify(ctx_, unnumbered_view(mesh), 0, mesh.all, bases_, row());
+    std::vector<std::uint32_t> words(row() + certify_words(ctx_) - n_);
     ctx_.device.read(*bases_, n_ * word, words.data(), words.size() * word);
     note(words);
-    if (high_degree_ != 0) return false;
+    if (high_degree_ != 0) return add_high_degree(mesh, words[0]);
     mesh.triangles = CADT_WRAP_REAL(words[0]);
     require_all(mesh.triangles + CADT_WRAP_GHOSTS(words[0]));
-    read_certificate(ctx_, std::span(words).subspan(row - n_), n_);
-    ctx_.end_phase("certify");
     ctx_.statistics.wrapped_stars = n_;
-    if (ctx_.options.statistics != StatisticsDetail::none)  // each edge counted once; none was flipped
-      ctx_.statistics.flips_per_edge[0] += (3 * mesh.triangles + (mesh.slots - mesh.triangles)) / 2;
+    if (!certifies) return true;
+    read_certificate(ctx_, std::span(words).subspan(row() - n_), n_);
+    ctx_.end_phase("certify");
+    mesh.certified = true;
     return true;
   }
 
-  /// Whether too many vertices have no star. \pre make_arrays
-  [[nodiscard]] bool failed() const noexcept { return high_degree_ > CADT_MOST_HIGH_DEGREE; }
+ private:
+  /// Half-edges between vertices without stars; those from `first_extra` on are of triangles that no star has, so many
+  /// `extra_real` without the ghost first.
+  struct HighDegreeEdges {
+    std::uint32_t count = 0, first_extra = 0, extra_real = 0, high_degree = 0;
+  };
 
-  /// The mesh as locked triangles. Nothing if there are too many high-degree vertices.
-  [[nodiscard]] std::optional<Mesh> make_locked() {
-    bases_ = ctx_.memory.allocate((n_ + 1 + CADT_WRAP_DRIVER_WORDS) * word);
-    count(false, n_ + 1 + CADT_WRAP_DRIVER_WORDS);
-    std::array<std::uint32_t, 1 + CADT_WRAP_DRIVER_WORDS> words{};
-    ctx_.device.read(*bases_, n_ * word, words.data(), sizeof words);
-    note(words);
-    const std::uint32_t known = words[0];
-    const std::uint32_t first_extra = high_degree_ != 0 ? launch_.read_word(counts_, CADT_WRAP_OPEN_EDGES) : 0;
-    if (high_degree_ > CADT_MOST_HIGH_DEGREE || first_extra > CADT_WRAP_EDGES) return std::nullopt;
-    std::uint32_t edge_count = first_extra;
-    if (high_degree_ != 0 && known < triangles()) {
-      edge_count = add_triangles_of_high_degree(first_extra, triangles() - std::size_t{known});
-      if (edge_count == CADT_NONE) return std::nullopt;
-    } else {
-      require_all(known);
-    }
-    ctx_.statistics.wrapped_stars = n_ - high_degree_;
-    Mesh mesh;
-    mesh.slots = 2 * n_;
-    mesh.locked = ctx_.memory.allocate(mesh.slots * sizeof(cadt_locked_triangle));
+  void write(const Mesh& mesh, const HighDegreeEdges& e) {
     const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
-    launch_.run<KernelId::cadt_wrap_locked>(shares.items, star_vertices_, begins_, sizes_, bases_, edges_, edge_count,
-                                            first_extra, known, high_degree_, count_, shares.grain, mesh.locked);
-    ctx_.end_phase("wrap");
-    return mesh;
+    launch_.run<KernelId::cadt_wrap_arrays>(shares.items, star_vertices_, begins_, sizes_, bases_,
+                                            static_cast<std::uint32_t>(star_words()), static_cast<std::uint32_t>(row()),
+                                            edges_, e.count, e.first_extra, e.extra_real, e.high_degree, count_,
+                                            shares.grain, mesh.vertices, mesh.half_edges);
   }
 
- private:
+  /// The mesh whose number of triangles only the device knows.
+  [[nodiscard]] ReadOnlyMesh unnumbered_view(const Mesh& mesh) const {
+    ReadOnlyMesh view = view_of(mesh, points_);
+    view.triangles = CADT_NONE;
+    return view;
+  }
+
+  /// `known`: the packed count of the triangles of stars.
+  [[nodiscard]] bool add_high_degree(Mesh& mesh, std::uint32_t known) {
+    const std::uint32_t real = CADT_WRAP_REAL(known), found = real + CADT_WRAP_GHOSTS(known);
+    HighDegreeEdges e;
+    e.first_extra = e.count = launch_.read_word(counts_, CADT_WRAP_OPEN_EDGES);
+    e.high_degree = high_degree_;
+    if (high_degree_ > CADT_MOST_HIGH_DEGREE || e.first_extra > CADT_WRAP_EDGES) return false;
+    if (found < triangles()) {
+      if (!add_triangles_of_high_degree(e, triangles() - found)) return false;
+    } else {
+      require_all(found);
+    }
+    mesh.triangles = real + e.extra_real;
+    ctx_.statistics.wrapped_stars = n_ - high_degree_;
+    write(mesh, e);
+    ctx_.end_phase("wrap");
+    return true;
+  }
+
   [[nodiscard]] std::size_t triangles() const noexcept { return 2 * n_ - 2; }
   [[nodiscard]] std::size_t star_words() const noexcept { return 3 * triangles(); }  // the ghost has no star
 
-  /// First triangles of the vertices; behind them the total, the counts, and zeros, `words` words from n on in all.
-  /// Vertices without a star have size 0, so this may run before it is known whether there are too many.
-  void count(bool apart, std::size_t words) {
+  /// Where the words of certification begin, behind the first triangles, their total and the counts.
+  [[nodiscard]] std::size_t row() const noexcept {
+    return (n_ + CADT_WRAP_DRIVER_WORDS) / CADT_COUNTER_STRIDE * CADT_COUNTER_STRIDE + CADT_COUNTER_STRIDE;
+  }
+
+  /// First triangles of the vertices; behind them the total, the counts, and zeros. Vertices without a star have size
+  /// 0, so this may run before it is known whether there are too many.
+  void count() {
     const LaunchGrid all = launch_.grid(n_);
-    const auto zeros = static_cast<std::uint32_t>(words - (n_ + 1 + CADT_WRAP_DRIVER_WORDS));
-    launch_.run<KernelId::cadt_wrap_counts>(all.items, star_vertices_, begins_, sizes_, count_, apart ? 1U : 0U,
-                                            all.grain, counts_, bases_, zeros, edges_);
+    const auto zeros = static_cast<std::uint32_t>(row() + certify_words(ctx_) - (n_ + 1 + CADT_WRAP_DRIVER_WORDS));
+    launch_.run<KernelId::cadt_wrap_counts>(all.items, star_vertices_, begins_, sizes_, count_, all.grain, counts_,
+                                            bases_, zeros, edges_);
     launch_.scan(bases_, n_ + 1);
   }
 
@@ -182,18 +192,19 @@ class Wrapping {
     std::ranges::copy(words, exact_.begin());
   }
 
-  /// Adds the triangles of three vertices without stars, each as its three half-edges behind the `known` ones. Returns
-  /// how many half-edges there are then, or CADT_NONE if that does not fill all gaps.
-  [[nodiscard]] std::uint32_t add_triangles_of_high_degree(std::uint32_t known, std::size_t wanted) {
-    if (known + 3 * wanted > CADT_WRAP_EDGES || known == 0) return CADT_NONE;
+  /// Adds the triangles of three vertices without stars, each as its three half-edges behind the known ones, those
+  /// without the ghost first. False if that does not fill all gaps.
+  [[nodiscard]] bool add_triangles_of_high_degree(HighDegreeEdges& all, std::size_t wanted) {
+    const std::uint32_t known = all.first_extra;
+    if (known + 3 * wanted > CADT_WRAP_EDGES || known == 0) return false;
     std::vector<cadt_wrap_edge> edges(known);
     ctx_.device.read(*edges_, 0, edges.data(), known * sizeof edges[0]);
     using HalfEdge = std::pair<std::uint32_t, std::uint32_t>;
     std::set<HalfEdge> sides;  // half-edges whose triangle is known
     for (const cadt_wrap_edge& e : edges) sides.emplace(e.from, e.to);
     const Allocation high_degree = ctx_.memory.allocate(high_degree_ * word), listed = launch_.zeros(1);
-    const LaunchGrid all = launch_.grid(n_);
-    launch_.run<KernelId::cadt_list_high_degree>(all.items, sizes_, count_, all.grain, high_degree, listed);
+    const LaunchGrid vertices = launch_.grid(n_);
+    launch_.run<KernelId::cadt_list_high_degree>(vertices.items, sizes_, count_, vertices.grain, high_degree, listed);
     for (std::size_t round = 0; round < wanted; ++round) {
       // Edges to the ghost need no search: the hull edges lead to all of its triangles.
       std::vector<cadt_wrap_edge> open;
@@ -203,7 +214,7 @@ class Wrapping {
       find_apexes(open, high_degree);
       for (const auto& [a, b, c] : open) {
         if (sides.contains({a, b})) continue;  // of a triangle that another edge has led to
-        if (edges.size() + 3 > CADT_WRAP_EDGES) return CADT_NONE;
+        if (edges.size() + 3 > CADT_WRAP_EDGES) return false;
         for (const cadt_wrap_edge& e : {cadt_wrap_edge{a, b, c}, {b, c, a}, {c, a, b}}) {
           edges.push_back(e);
           sides.emplace(e.from, e.to);
@@ -214,9 +225,24 @@ class Wrapping {
     ctx_.device.read(*counts_, 0, words.data(), sizeof words);
     note_exact(std::span(words).subspan(CADT_WRAP_EXACT_ORIENTATIONS, 3));
     const bool closed = std::ranges::all_of(sides, [&](HalfEdge e) { return sides.contains({e.second, e.first}); });
-    if (!closed || edges.size() != known + 3 * wanted || sides.size() != edges.size()) return CADT_NONE;
+    if (!closed || edges.size() != known + 3 * wanted || sides.size() != edges.size()) return false;
+    all.extra_real = sort_ghosts_last(edges, known);
+    all.count = static_cast<std::uint32_t>(edges.size());
     ctx_.device.write(*edges_, 0, edges.data(), edges.size() * sizeof edges[0]);
-    return static_cast<std::uint32_t>(edges.size());
+    return true;
+  }
+
+  /// Of the triangles from half-edge `known` on, three half-edges each; returns how many have no ghost.
+  static std::uint32_t sort_ghosts_last(std::vector<cadt_wrap_edge>& edges, std::uint32_t known) {
+    using Triangle = std::array<cadt_wrap_edge, 3>;
+    std::vector<Triangle> extra;
+    for (std::size_t e = known; e < edges.size(); e += 3) extra.push_back({edges[e], edges[e + 1], edges[e + 2]});
+    const auto ghosts = std::ranges::stable_partition(extra, [](const Triangle& t) {
+      return t[0].from != CADT_GHOST && t[0].to != CADT_GHOST && t[0].left != CADT_GHOST;
+    });
+    edges.resize(known);
+    for (const Triangle& t : extra) edges.insert(edges.end(), t.begin(), t.end());
+    return static_cast<std::uint32_t>(extra.size() - ghosts.size());
   }
 
   /// The apex to the left of edges between two high-degree vertices.
@@ -262,25 +288,25 @@ void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const Sta
       static_cast<std::uint32_t>(stars.star_words), stars.begins, stars.sizes, stars.counts);
 }
 
-std::optional<Mesh> wrap_part(Context& ctx, const Allocation& points, std::size_t n, std::size_t all) {
+namespace {
+
+std::optional<Mesh> wrap(Context& ctx, const Allocation& points, std::size_t n, std::size_t all, MeshUse use) {
   if (n < 3) return std::nullopt;
   Wrapping wrapping(ctx, points, n);
   wrapping.make_stars(all);
-  return wrapping.make_locked();
+  Mesh mesh;
+  if (!wrapping.make_arrays(mesh, use)) return std::nullopt;
+  return mesh;
+}
+
+}  // namespace
+
+std::optional<Mesh> wrap_part(Context& ctx, const Allocation& points, std::size_t n, std::size_t all) {
+  return wrap(ctx, points, n, all, MeshUse::stitching);
 }
 
 std::optional<Mesh> wrap_mesh(Context& ctx, const SortedPoints& order) {
-  const std::size_t n = order.distinct;
-  if (n < 3) return std::nullopt;
-  Wrapping wrapping(ctx, order.points, n);
-  wrapping.make_stars(n);
-  Mesh arrays;
-  if (wrapping.make_arrays(arrays)) return arrays;
-  if (wrapping.failed()) return std::nullopt;
-  arrays = {};
-  std::optional<Mesh> mesh = wrapping.make_locked();
-  if (!mesh) return std::nullopt;
-  return sweep_legality(ctx, order, std::move(mesh->locked), 3 * std::uint64_t{n} - 3);
+  return wrap(ctx, order.points, order.distinct, order.distinct, MeshUse::result);
 }
 
 }  // namespace cadt

@@ -31,12 +31,12 @@ struct StarsOfBatch {
 void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const StarsOfBatch& sets,
                 const WrappedStars& stars);
 
-/// The mesh of at most 2^15 points by gift wrapping (common/stars/wrap_exact.dev.h), without locks, and
-/// certified: in arrays, or as locked triangles if some vertices have too many neighbours to be wrapped. Nothing if the
-/// points are collinear or the work limit is exceeded: then insertion takes over.
+/// The mesh of at most 2^15 points by gift wrapping (common/stars/wrap_exact.dev.h), without locks, points and input
+/// ids; certified unless it has high-degree vertices, with too many neighbours to be wrapped. Nothing if the points are
+/// collinear or the work limit is exceeded: then insertion takes over.
 [[nodiscard]] std::optional<Mesh> wrap_mesh(Context& ctx, const SortedPoints& order);
 
-/// The same for n points that are part of a mesh of `all`: as locked triangles, edges not yet certified.
+/// The same for n points that are part of a mesh of `all`; not certified.
 [[nodiscard]] std::optional<Mesh> wrap_part(Context& ctx, const Allocation& points, std::size_t n, std::size_t all);
 
 }  // namespace cadt

@@ -75,9 +75,10 @@ struct Statistics {
   /// with Stabilize::paper.
   bool certified = false;
 
-  /// Edges of the result by the number of flips of their slot: flips_per_edge[k] edges with k flips, the last entry
-  /// with 15 or more. An edge keeps its counter when it is flipped and when it becomes part of another triangle; the
-  /// edges of a split start at 0 (paper, Fig. 9, 10). The sum is the number of edges.
+  /// Edges of a mesh that insertion has made alone (Strategy::locks) by the number of flips of their slot:
+  /// flips_per_edge[k] edges with k flips, the last entry with 15 or more. An edge keeps its counter when it is flipped
+  /// and when it becomes part of another triangle; the edges of a split start at 0 (paper, Fig. 9, 10). The sum is the
+  /// number of edges; 0 for meshes from stars and for batched sets.
   std::array<std::uint64_t, 16> flips_per_edge{};
 
   /// How the threads of the insertion spend their time (paper, Fig. 6): shares of their sum, e.g. {"locate", 0.31}; the

@@ -27,10 +27,10 @@ namespace {
 static_assert(CADT_SITES <= cadt::test::most_sites);
 
 // Its first work-item looks at all locked triangles before it counts; no kernel writes to them any more.
-void count_triangles(std::uint32_t item, std::uint32_t items, const cadt::Arg* args) {
+void flag_triangles(std::uint32_t item, std::uint32_t items, const cadt::Arg* args) {
   if (item == 0) {
     const auto* triangles = unpack<const cadt_locked_triangle*>(args[0]);
-    const auto slots = unpack<cadt_u32>(args[5]);
+    const auto slots = unpack<cadt_u32>(args[2]);
     cadt::test::LockedCounts counts;
     for (cadt_u32 t = 0; t < slots; ++t) {
       const cadt_u32 lock = triangles[t].word[CADT_WORD_LOCK];
@@ -39,12 +39,12 @@ void count_triangles(std::uint32_t item, std::uint32_t items, const cadt::Arg* a
     }
     cadt::test::last_locked = counts;
   }
-  Trampoline<&cadt_count_triangles>::run(item, items, args);
+  Trampoline<&cadt_flag_triangles>::run(item, items, args);
 }
 
 constexpr cadt::host::KernelTable with_counts() {
   cadt::host::KernelTable result = table;
-  result[static_cast<std::size_t>(cadt::KernelId::cadt_count_triangles)] = &count_triangles;
+  result[static_cast<std::size_t>(cadt::KernelId::cadt_flag_triangles)] = &flag_triangles;
   return result;
 }
 

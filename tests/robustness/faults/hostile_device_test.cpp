@@ -17,7 +17,7 @@ namespace {
 using namespace device_text;
 using Reals = std::span<const double>;
 
-constexpr std::size_t mesh_parameters = 11;  // CADT_MESH_PARAMETERS (common/mesh/locked_mesh.dev.h)
+constexpr std::size_t mesh_parameters = 12;  // CADT_LOCKED_MESH_PARAMETERS (common/mesh/locked_mesh.dev.h)
 
 template <class T>
 T value_of(const Arg& arg) {
@@ -49,7 +49,7 @@ TEST_P(HostileDevice, LockThatIsNeverReleased) {
       ++launches;
       if (kernel != KernelId::cadt_seed_mesh) return;
       // the first triangle and its ghosts: triangles 2 first, 2 first + 1, 2 second, 2 second + 1
-      const auto first = value_of<std::uint32_t>(args[5]), second = value_of<std::uint32_t>(args[6]);
+      const auto first = value_of<std::uint32_t>(args[6]), second = value_of<std::uint32_t>(args[7]);
       const std::size_t record = 2 * std::size_t{which < 2 ? first : second} + which % 2;
       const std::uint32_t locked = 1;
       device.write(*args[0].buffer(), record * sizeof(cadt_locked_triangle) + CADT_WORD_LOCK * sizeof locked, &locked,

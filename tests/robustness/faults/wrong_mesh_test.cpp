@@ -144,12 +144,12 @@ class WrongMesh : public ResidentTest {
     faults->before_launch = [this, change](KernelId kernel, std::span<const Arg> args, Device& device) {
       if (kernel != KernelId::cadt_certify || changed++ != 0) return;
       Word all = 0;
-      std::memcpy(&all, args[3].value(), sizeof all);
-      Mesh mesh{read_all<Face>(device, *args[0].buffer(), all), read_all<Face>(device, *args[1].buffer(), all),
-                read_all<cadt_point>(device, *args[2].buffer(), all / 2 + 1)};
+      std::memcpy(&all, args[5].value(), sizeof all);
+      Mesh mesh{read_all<Face>(device, *args[1].buffer(), all), read_all<Face>(device, *args[2].buffer(), all),
+                read_all<cadt_point>(device, *args[0].buffer(), all / 2 + 1)};
       change(mesh);
-      device.write(*args[0].buffer(), 0, mesh.vertices.data(), all * sizeof(Face));
-      device.write(*args[1].buffer(), 0, mesh.half_edges.data(), all * sizeof(Face));
+      device.write(*args[1].buffer(), 0, mesh.vertices.data(), all * sizeof(Face));
+      device.write(*args[2].buffer(), 0, mesh.half_edges.data(), all * sizeof(Face));
     };
   }
 

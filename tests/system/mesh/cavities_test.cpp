@@ -55,13 +55,13 @@ TEST_P(CavityRetriangulation, FansOfWrongHubs) {
   auto triangles = linked_faces<cadt_locked_triangle>(faces, 2 * std::size_t{n});
   Allocation on_device = memory.allocate(triangles.size() * sizeof(cadt_locked_triangle));
   device->write(*on_device, 0, triangles.data(), triangles.size() * sizeof(cadt_locked_triangle));
-  const Mesh mesh = sweep_legality(ctx, order, std::move(on_device), 3 * std::uint64_t{n} - 3);
+  const LockedTriangles mesh = sweep_legality(ctx, order, std::move(on_device), 3 * std::uint64_t{n} - 3);
 
   EXPECT_EQ(statistics.certified_edges, 3 * std::uint64_t{n} - 3);
   EXPECT_LE(statistics.sweep_repairs, 20U);  // besides the cascades, what the floating-point filter does not decide
   EXPECT_GE(statistics.cavities, 1U);
   EXPECT_LT(ctx.launcher.launches(), 60U);  // 16384 flips a launch on processors, 16 on cards
-  device->read(*mesh.locked, 0, triangles.data(), triangles.size() * sizeof(cadt_locked_triangle));
+  device->read(*mesh.triangles, 0, triangles.data(), triangles.size() * sizeof(cadt_locked_triangle));
   std::uint32_t around = 0;
   for (const cadt_locked_triangle& r : triangles)
     for (std::uint32_t k = 0; k < 3 && r.word[CADT_WORD_LOCK] != 0; ++k) around += r.word[k] == 0 ? 1 : 0;

@@ -63,7 +63,8 @@ class RandomMesh {
         scratch(CADT_CAVITY_SCRATCH * capacity);
     std::array<std::uint32_t, CADT_CAVITY_WORDS> found{};
     const auto run = [&](auto kernel, auto... rest) {
-      kernel(0, 1, records_.data(), points_.data(), hints_.data(), 0, 0, 0, 0, 0, CADT_STABILIZE_OFF, 0, 0.0, rest...);
+      kernel(0, 1, records_.data(), points_.data(), hints_.data(), nullptr, 0, 0, 0, 0, 0, CADT_STABILIZE_OFF, 0, 0.0,
+             rest...);
     };
     std::uint32_t size = 0;
     run(cadt_cavity_sizes, slots(), slots(), ends.data(), &w, 1, &size);

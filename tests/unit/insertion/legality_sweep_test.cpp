@@ -50,8 +50,8 @@ TEST(LegalitySweep, CountsIt) {
     auto records = cadt::test::linked_faces<cadt_locked_triangle>(faces, faces.size());
     std::vector<std::uint32_t> counts(CADT_DEFERRED_COUNTS + 5), edges(64), hints(5), counters(2048);
     const auto slots = static_cast<std::uint32_t>(records.size());
-    cadt_legality_sweep(0, 1, records.data(), points.data(), hints.data(), 0, 0, 0, 0, 0, CADT_STABILIZE_OFF, 0, 0.0, 0,
-                        slots, slots, 0, edges.data(), counts.data(), 64, counters.data());
+    cadt_legality_sweep(0, 1, records.data(), points.data(), hints.data(), nullptr, 0, 0, 0, 0, 0, CADT_STABILIZE_OFF,
+                        0, 0.0, 0, slots, slots, 0, edges.data(), counts.data(), 64, counters.data());
     return std::vector<std::uint32_t>(counts.begin() + CADT_DEFERRED_COUNTS, counts.end());
   };
   // the boundary 0 1 3 4 2

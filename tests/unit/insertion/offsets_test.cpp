@@ -26,6 +26,7 @@ namespace {
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
+#include "common/insertion/drop_locks.dev.h"
 #include "common/insertion/legality_sweep.dev.h"
 #include "common/insertion/seed_triangle.dev.h"
 #include "common/output/canonical_order.dev.h"
@@ -58,7 +59,7 @@ class Sparse {
 };
 
 const auto n = static_cast<std::uint32_t>(cadt::max_points());
-const std::uint32_t slots = 2 * n, all_triangles = 2 * n - 5;  // the most there can be
+const std::uint32_t slots = 2 * n, all_triangles = 2 * n - 2;  // with ghosts
 
 /// A lattice, whose ties need the exact stages, and points without order.
 std::vector<cadt_point> some_points(std::size_t count) {
@@ -89,7 +90,7 @@ class Offsets : public testing::Test {
   /// A kernel over the mesh as one work-item.
   template <class Kernel, class... Args>
   void call(Kernel kernel, Args... args) {
-    kernel(0, 1, records.data(), points.data(), hints.data(), center.x, center.y, first, second, third,
+    kernel(0, 1, records.data(), points.data(), hints.data(), nullptr, center.x, center.y, first, second, third,
            CADT_STABILIZE_OFF, 0U, 0.0, args...);
   }
 
@@ -165,7 +166,7 @@ TEST_F(Offsets, FirstLevelsOfTheLargestCall) {
   std::set<Face> found, wanted;
   for (const std::uint32_t v : vertices)
     for (const std::uint32_t r : {2 * v, 2 * v + 1})
-      if (cadt_is_real(&records[r]))
+      if (records[r].word[CADT_WORD_LOCK] != 0 && cadt_ghost_slot(&records[r]) == 3)
         found.insert(rotated({records[r].word[0], records[r].word[1], records[r].word[2]}));
   const auto triangles = expected.triangles();
   for (std::size_t i = 0; i < triangles.size(); i += 3) {
@@ -196,20 +197,44 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
   EXPECT_EQ(records[slots - 1].word[CADT_WORD_LOCK] % 2, 0U);
 
   const auto real = static_cast<std::uint32_t>(expected.number_of_triangles());
-  const std::uint32_t before = all_triangles - real;  // triangles that come before those of the test
+  // As if all triangles of the vertices before had no ghost.
+  const std::uint32_t before = 2 * base, last = before + real;
   Sparse<std::uint32_t> labels(n), buckets(std::size_t{n} + 2), numbers(std::size_t{slots} + 1), used(n);
+  Sparse<std::uint32_t> vertices_of(std::size_t{3} * all_triangles), half_edges(std::size_t{3} * all_triangles);
   Sparse<std::uint32_t> triangles(std::size_t{3} * all_triangles), neighbors(std::size_t{3} * all_triangles);
   Sparse<cadt_member> members(all_triangles);
-  if (!labels || !buckets || !numbers || !used || !triangles || !neighbors || !members)
-    GTEST_SKIP() << "no address space for 40 GB more";
+  if (!labels || !buckets || !numbers || !used || !vertices_of || !half_edges || !triangles || !neighbors || !members)
+    GTEST_SKIP() << "no address space for 50 GB more";
   for (const std::uint32_t v : vertices) labels[v] = v;
   // One work-item for each element of the range, as if there were as many for all of them.
   const auto over = [](std::uint32_t begin, std::uint32_t end, const auto& kernel) {
     for (std::uint32_t i = begin; i < end; ++i) kernel(i);
   };
-  const std::uint32_t first_slot = 2 * base;
   constexpr std::uint32_t grain = 1;
   std::vector<std::uint32_t> flips(CADT_COUNTER_ROWS * CADT_FLIP_BINS);
+
+  // Without locks: the ghosts behind the others.
+  over(before, slots, [&](std::uint32_t item) {
+    cadt_flag_triangles(item, slots, records.data(), numbers.data(), slots, grain, flips.data());
+  });
+  std::uint32_t sum = before;
+  numbers[slots] = 0;
+  for (std::uint32_t r = before; r <= slots; ++r) sum += std::exchange(numbers[r], sum);
+  ASSERT_EQ(numbers[slots], last);
+  over(before, slots, [&](std::uint32_t item) {
+    cadt_drop_locks(item, slots, records.data(), nullptr, numbers.data(), slots, 2 * third, grain, vertices_of.data(),
+                    half_edges.data(), nullptr);
+  });
+  for (std::uint32_t t = before; t < all_triangles; ++t) {
+    const std::size_t at = std::size_t{3} * t;
+    const bool ghost =
+        vertices_of[at] == CADT_GHOST || vertices_of[at + 1] == CADT_GHOST || vertices_of[at + 2] == CADT_GHOST;
+    ASSERT_EQ(ghost, t >= last) << t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t across = half_edges[at + k];
+      ASSERT_EQ(half_edges[std::size_t{3} * (across >> 2) + (across & 3U)], t << 2 | k) << t;
+    }
+  }
 
   const auto expect_result = [&](const char* what) {
     const auto t = expected.triangles(), s = expected.neighbors();
@@ -221,38 +246,38 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
     }
     EXPECT_EQ(wrong, 0U) << what;
   };
-  over(first_slot, slots, [&](std::uint32_t item) {
-    cadt_count_triangles(item, slots, records.data(), nullptr, labels.data(), buckets.data(), numbers.data(), slots,
-                         grain, flips.data());
+  over(before, last, [&](std::uint32_t item) {
+    cadt_count_triangles(item, last, vertices_of.data(), labels.data(), buckets.data(), numbers.data(), last, grain);
   });
-  std::uint32_t sum = before;
+  sum = before;
   for (std::uint32_t v = base; v <= n; ++v) sum += std::exchange(buckets[v], sum);
-  EXPECT_EQ(buckets[n], all_triangles);
-  over(first_slot, slots, [&](std::uint32_t item) {
-    cadt_bucket_triangles(item, slots, records.data(), nullptr, labels.data(), buckets.data(), numbers.data(),
-                          members.data(), 0U, n, 0U, slots, grain);
+  EXPECT_EQ(buckets[n], last);
+  over(before, last, [&](std::uint32_t item) {
+    cadt_bucket_triangles(item, last, vertices_of.data(), labels.data(), buckets.data(), numbers.data(), members.data(),
+                          0U, n, 0U, last, grain);
   });
   std::uint32_t skipped = 0;
   over(base, n, [&](std::uint32_t item) {
     cadt_sort_buckets(item, n, buckets.data(), members.data(), 0U, n, 0U, CADT_NONE, grain, &skipped);
   });
   EXPECT_EQ(skipped, 0U);
-  for (std::uint32_t r = first_slot; r < slots; ++r) numbers[r] = CADT_NONE;
-  over(before, all_triangles, [&](std::uint32_t item) {
-    cadt_number_triangles(item, all_triangles, members.data(), numbers.data(), 0U, all_triangles, grain);
-  });
-  over(first_slot, slots, [&](std::uint32_t item) {
-    cadt_write_triangles(item, slots, records.data(), labels.data(), numbers.data(), triangles.data(), neighbors.data(),
-                         0, slots, grain);
-  });
+  over(before, last,
+       [&](std::uint32_t item) { cadt_number_triangles(item, last, members.data(), numbers.data(), 0U, last, grain); });
+  const auto write = [&](const std::uint32_t* order) {
+    over(before, last, [&](std::uint32_t item) {
+      cadt_write_triangles(item, last, nullptr, vertices_of.data(), half_edges.data(), nullptr, last, all_triangles, 2U,
+                           labels.data(), order, triangles.data(), neighbors.data(), nullptr, 0, grain);
+    });
+  };
+  write(numbers.data());
   expect_result("canonical order");
 
   // The boundary.
   std::uint32_t size = 0;
   std::vector<std::uint32_t> pairs(2 * expected.hull().size());
-  over(before, all_triangles, [&](std::uint32_t item) {
-    cadt_boundary_edges(item, all_triangles, triangles.data(), neighbors.data(), all_triangles, grain, pairs.data(),
-                        &size, static_cast<std::uint32_t>(expected.hull().size()));
+  over(before, last, [&](std::uint32_t item) {
+    cadt_boundary_edges(item, last, triangles.data(), neighbors.data(), last, grain, pairs.data(), &size,
+                        static_cast<std::uint32_t>(expected.hull().size()));
   });
   EXPECT_EQ(size, expected.hull().size());
   const auto hull = expected.hull();
@@ -269,9 +294,9 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
       for (const int finding :
            {CADT_FOUND_RANGE, CADT_FOUND_NEIGHBORS, CADT_FOUND_ORIENTATION, CADT_FOUND_EDGES, CADT_FOUND_TIES})
         results[row + static_cast<std::size_t>(finding) + 2] = CADT_NONE;
-    over(before, all_triangles, [&](std::uint32_t item) {
-      cadt_verify_structure(item, all_triangles, triangles.data(), neighbors.data(), n, all_triangles, grain,
-                            used.data(), results.data());
+    over(before, last, [&](std::uint32_t item) {
+      cadt_verify_structure(item, last, triangles.data(), neighbors.data(), n, last, grain, used.data(),
+                            results.data());
     });
     std::vector<std::uint32_t> lists(4 * real), sizes(1), left(1);
     cadt_verify_filter(0, 1, points.data(), triangles.data(), neighbors.data(), before, real, 1, real, 1, lists.data(),
@@ -293,7 +318,7 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
                       sums[CADT_FOUND_NEIGHBORS + 1], least[CADT_FOUND_NEIGHBORS + 2]};
   };
   EXPECT_EQ(verify(), (std::array<std::uint32_t, 5>{0, 0, CADT_NONE, 0, CADT_NONE}));
-  const std::uint32_t turned = all_triangles - 5;
+  const std::uint32_t turned = last - 5;
   std::swap(triangles[std::size_t{3} * turned + 1], triangles[std::size_t{3} * turned + 2]);
   const auto found = verify();
   EXPECT_EQ(found[1], 1U);
@@ -302,27 +327,17 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
   EXPECT_GT(found[4], 3U * before);
   std::swap(triangles[std::size_t{3} * turned + 1], triangles[std::size_t{3} * turned + 2]);
 
-  // In the order of the records: the same triangles.
-  over(first_slot, slots, [&](std::uint32_t item) {
-    cadt_flag_triangles(item, slots, records.data(), numbers.data(), slots, grain, flips.data());
-  });
-  sum = before;
-  numbers[slots] = 0;
-  for (std::uint32_t r = first_slot; r <= slots; ++r) sum += std::exchange(numbers[r], sum);
-  EXPECT_EQ(numbers[slots], all_triangles);
+  // In the order of the mesh: the same triangles.
   std::set<Face> canonical, ranked;
   const auto collect = [&](std::set<Face>& into) {
-    for (std::uint32_t t = before; t < all_triangles; ++t) {
+    for (std::uint32_t t = before; t < last; ++t) {
       const std::size_t at = std::size_t{3} * t;
       into.insert(rotated({triangles[at], triangles[at + 1], triangles[at + 2]}));
       for (std::size_t k = 0; k < 3; ++k) triangles[at + k] = 0;
     }
   };
   collect(canonical);
-  over(first_slot, slots, [&](std::uint32_t item) {
-    cadt_write_ranked(item, slots, records.data(), labels.data(), numbers.data(), triangles.data(), neighbors.data(), 0,
-                      slots, grain);
-  });
+  write(nullptr);
   EXPECT_EQ(verify(), (std::array<std::uint32_t, 5>{0, 0, CADT_NONE, 0, CADT_NONE}));
   collect(ranked);
   EXPECT_EQ(ranked.size(), real);

@@ -52,8 +52,8 @@ struct Arrays {
     for (std::uint32_t begin = 0; begin < all; begin += size) {
       const std::uint32_t count = std::min(size, all - begin), grain = (count - 1) / items + 1;
       for (std::uint32_t item = 0; item < items; ++item)
-        cadt_certify(item, items, vertices.data(), half_edges.data(), points.data(), all, known, begin, count, grain,
-                     words.data(), row, 1);
+        cadt_certify(item, items, points.data(), vertices.data(), half_edges.data(), nullptr, known, all, 2, begin,
+                     count, grain, words.data(), row, 1);
     }
     Found found{};
     std::copy_n(words.begin() + row, found.size(), found.begin());

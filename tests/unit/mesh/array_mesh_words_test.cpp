@@ -74,8 +74,8 @@ Counts expected(const Mesh& mesh) {
 Counts found(const Mesh& mesh) {
   const auto all = static_cast<Word>(mesh.vertices.size());
   std::vector<Word> words((1 + CADT_COUNTER_ROWS) * CADT_COUNTER_STRIDE);
-  cadt_certify(0, 1, mesh.vertices[0].data(), mesh.half_edges[0].data(), points.data(), all, real, 0, all, all,
-               words.data(), 0, 1);
+  cadt_certify(0, 1, points.data(), mesh.vertices[0].data(), mesh.half_edges[0].data(), nullptr, real, all, 2, 0, all,
+               all, words.data(), 0, 1);
   return {words[0], words[2], words[1] + words[3]};
 }
 

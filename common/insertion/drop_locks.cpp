@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/insertion/drop_locks.hpp"
+
+#include <utility>
+
+#include "common/driver/counters.hpp"
+#include "common/driver/device_text.hpp"
+
+namespace cadt {
+namespace {
+
+using namespace device_text;
+
+constexpr std::size_t word = sizeof(std::uint32_t);
+
+/// Triangles without a ghost before each slot, and their number behind the last.
+Allocation rank_triangles(Context& ctx, const LockedTriangles& locked, MeshUse use) {
+  Allocation ranks = ctx.memory.allocate((locked.slots + 1) * word);
+  const FlipHistogram flips(ctx, use == MeshUse::result);
+  const LaunchGrid c = ctx.launcher.grid_strided(locked.slots);
+  ctx.launcher.run<KernelId::cadt_flag_triangles>(c.items, locked.triangles, ranks,
+                                                  static_cast<std::uint32_t>(locked.slots), c.grain, flips);
+  ctx.launcher.scan(ranks, locked.slots + 1);
+  flips.collect(ctx.statistics);
+  return ranks;
+}
+
+Mesh write_arrays(Context& ctx, const LockedTriangles& locked, const Allocation& ranks, std::uint32_t unused,
+                  MeshUse use) {
+  Mesh mesh;
+  mesh.triangles = ctx.launcher.read_word(ranks, locked.slots);
+  mesh.all = unused == CADT_NONE ? mesh.triangles : locked.slots - 2;
+  mesh.vertices = make_mesh_array(ctx, mesh.all, use);
+  mesh.half_edges = make_mesh_array(ctx, mesh.all, use);
+  if (locked.edge_flags) mesh.edge_flags = ctx.memory.allocate(mesh.all * word);
+  mesh.certified = true;
+  const LaunchGrid c = ctx.launcher.grid(locked.slots);
+  ctx.launcher.run<KernelId::cadt_drop_locks>(c.items, locked.triangles, locked.edge_flags, ranks,
+                                              static_cast<std::uint32_t>(locked.slots), unused, c.grain, mesh.vertices,
+                                              mesh.half_edges, mesh.edge_flags);
+  return mesh;
+}
+
+}  // namespace
+
+Mesh drop_locks(Context& ctx, LockedTriangles locked, std::uint32_t first_unused, MeshUse use) {
+  return write_arrays(ctx, locked, rank_triangles(ctx, locked, use), first_unused, use);
+}
+
+Mesh drop_locks_of_sets(Context& ctx, LockedTriangles locked, std::span<const std::uint32_t> first_slots,
+                        Allocation& set_starts) {
+  const Allocation ranks = rank_triangles(ctx, locked, MeshUse::stitching);
+  const auto sets = static_cast<std::uint32_t>(first_slots.size());
+  const Allocation slots = ctx.memory.allocate(sets * word);
+  ctx.device.write(*slots, 0, first_slots.data(), sets * word);
+  set_starts = ctx.memory.allocate(sets * word);
+  const LaunchGrid c = ctx.launcher.grid(sets);
+  ctx.launcher.run<KernelId::cadt_gather_words>(c.items, ranks, slots, set_starts, sets, c.grain);
+  return write_arrays(ctx, locked, ranks, CADT_NONE, MeshUse::stitching);
+}
+
+}  // namespace cadt

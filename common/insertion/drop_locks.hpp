@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/driver/context.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace cadt {
+
+/// Locked triangles that nobody changes any more.
+struct LockedTriangles {
+  Allocation triangles;
+  Allocation edge_flags;  ///< a word each; null if no edge is constrained
+  std::size_t slots = 0;
+};
+
+/// The mesh of locked triangles, certified; without points and input ids. `first_unused`: the two slots from there on
+/// are the only ones not in use. \throws OutOfMemory
+[[nodiscard]] Mesh drop_locks(Context& ctx, LockedTriangles locked, std::uint32_t first_unused, MeshUse use);
+
+/// The same for the sets of a batch, whose triangles have slots of their own from `first_slots` on; the last one of
+/// these is where all slots end. Ghost triangles are left out. `set_starts` gets the first triangle of each set and the
+/// number of all.
+[[nodiscard]] Mesh drop_locks_of_sets(Context& ctx, LockedTriangles locked, std::span<const std::uint32_t> first_slots,
+                                      Allocation& set_starts);
+
+}  // namespace cadt

@@ -53,8 +53,7 @@ CADT_KERNEL(cadt_drop_locks, CADT_GLOBAL const cadt_locked_triangle* locked, CAD
       const cadt_u32 half_edge = CADT_PICK(k, r.word[4], r.word[5], r.word[6]);
       const cadt_u32 across = cadt_number_of_slot(ranks, real, unused, CADT_TRIANGLE_OF(half_edge));
       vertices[3u * number + k] = CADT_PICK(k, r.word[0], r.word[1], r.word[2]);
-      half_edges[3u * number + k] =
-          across == CADT_NONE ? CADT_NONE : CADT_HALF_EDGE(across, CADT_EDGE_OF(half_edge));
+      half_edges[3u * number + k] = across == CADT_NONE ? CADT_NONE : CADT_HALF_EDGE(across, CADT_EDGE_OF(half_edge));
     }
     if (edge_flags) edge_flags[number] = slot_flags[t];
   }

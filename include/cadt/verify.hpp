@@ -44,6 +44,9 @@ struct MeshView {
   std::span<const std::int32_t> hull;       ///< counterclockwise loop
   std::span<const Duplicate> duplicates;
   bool has_duplicates = false;  ///< compare `duplicates` with the points; otherwise derive them
+  /// One a triangle, bit k: edge k (opposite vertex k) is constrained. It need not be Delaunay, and the triangle across
+  /// must say so as well.
+  std::span<const std::uint32_t> edge_flags = {};
 };
 
 struct VerifyOptions {
@@ -52,10 +55,10 @@ struct VerifyOptions {
 };
 
 /// Checks structure, orientation, symmetry of neighbours, Euler's formula, the hull, that every input point is a vertex
-/// or equals one, and the exact empty-circle property of every interior edge, which implies that of the whole
-/// triangulation (Delaunay's lemma). O(triangles) expected; exact arithmetic only where a filter does not decide. A
-/// wrong mesh is reported, not thrown. Thread-safe. \throws InputError for NaN or infinity, Error if the floating-point
-/// mode is not IEEE 754
+/// or equals one, and the exact empty-circle property of every interior edge that is not constrained, which implies
+/// that of the whole triangulation if none is (Delaunay's lemma). O(triangles) expected; exact arithmetic only where a
+/// filter does not decide. A wrong mesh is reported, not thrown. Thread-safe. \throws InputError for NaN or infinity,
+/// Error if the floating-point mode is not IEEE 754
 [[nodiscard]] VerifyReport verify(PointsView points, const MeshView& mesh, const VerifyOptions& options = {});
 [[nodiscard]] VerifyReport verify(PointsView points, const Triangulation& mesh, const VerifyOptions& options = {});
 

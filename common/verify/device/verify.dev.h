@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The verifier on the device: kernels over plain arrays, independent of the builder. points: the coordinates of the
- * input; triangles: 3 x count input indices; neighbors: 3 x count triangles, CADT_NONE outside, the k-th opposite
- * vertex k. The driver (common/verify/device/verify_on_device.cpp) draws the conclusions.
+ * The verifier on the device: kernels over a finished mesh (mesh_view.dev.h: vertices are indices of the input,
+ * triangles stand across), independent of the builder. `points`: the coordinates of the input. The driver
+ * (common/verify/device/verify_on_device.cpp) draws the conclusions.
  *
  * Signs are found in three stages. cadt_verify_filter tests all triangles and edges and lists those that it cannot
  * decide; cadt_verify_exact decides what it can of the lists and leaves the rest in them; cadt_verify_gather packs the
@@ -11,6 +11,7 @@
 #ifndef CADT_VERIFY_DEVICE_VERIFY_H
 #define CADT_VERIFY_DEVICE_VERIFY_H
 
+#include "common/mesh/mesh_view.dev.h"
 #include "common/portable/atomics.dev.h"
 #include "common/verify/device/verify_layout.dev.h"
 #include "common/verify/device/verify_predicates.dev.h"
@@ -55,31 +56,34 @@ CADT_FN void cadt_finding_flush(const cadt_finding* finding, CADT_GLOBAL cadt_u3
 /* ---- structure ---------------------------------------------------------------------------------------------------
  */
 
-/* Whether edge k of triangle t, from `from` to `to`, is an edge of triangle s from `to` to `from`, and t is the
- * neighbour of s there. \pre s is a triangle. The vertices of a triangle differ, so at most one of its edges is this
- * one reversed. */
-CADT_FN cadt_u32 cadt_is_mutual(CADT_GLOBAL const cadt_u32* triangles, CADT_GLOBAL const cadt_u32* neighbors,
-                                cadt_u32 t, cadt_u32 s, cadt_u32 from, cadt_u32 to) {
-  const cadt_u32 v0 = triangles[3u * s], v1 = triangles[3u * s + 1u], v2 = triangles[3u * s + 2u];
+/* Whether edge k of triangle t, from `from` to `to`, is an edge of triangle s from `to` to `from`, t is the neighbour
+ * of s there, and both or neither say that the edge is constrained. \pre s is a triangle. The vertices of a triangle
+ * differ, so at most one of its edges is this one reversed. */
+CADT_FN cadt_u32 cadt_is_mutual(const cadt_mesh_view* mesh, cadt_u32 t, cadt_u32 k, cadt_u32 s, cadt_u32 from,
+                                cadt_u32 to) {
+  const cadt_u32 v0 = mesh->vertices[3u * s], v1 = mesh->vertices[3u * s + 1u], v2 = mesh->vertices[3u * s + 2u];
   const cadt_u32 j = v1 == to && v2 == from ? 0u : (v2 == to && v0 == from ? 1u : (v0 == to && v1 == from ? 2u : 3u));
-  return s != t && j != 3u && neighbors[3u * s + j] == t ? 1u : 0u;
+  return s != t && j != 3u && mesh->across[3u * s + j] == t &&
+                 cadt_is_constrained(mesh, s, j) == cadt_is_constrained(mesh, t, k)
+             ? 1u
+             : 0u;
 }
 
 /* Checks index ranges, distinct vertices and symmetry of neighbours; marks the vertices in `used`. \pre used is zero */
-CADT_KERNEL(cadt_verify_structure, CADT_GLOBAL const cadt_u32* triangles, CADT_GLOBAL const cadt_u32* neighbors,
-            cadt_u32 points, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* used,
-            CADT_GLOBAL cadt_u32* results) {
+CADT_KERNEL(cadt_verify_structure, CADT_MESH_VIEW_PARAMETERS, cadt_u32 number_of_points, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* used, CADT_GLOBAL cadt_u32* results) {
+  CADT_MESH_VIEW(mesh);
   cadt_finding range, mutual;
   cadt_finding_clear(&range);
   cadt_finding_clear(&mutual);
   cadt_u32 boundary = 0u;
-  CADT_FOR(t, count, grain) {
+  CADT_FOR(t, mesh.triangles, grain) {
     cadt_u32 good = 1u;
     ++range.examined;
     for (cadt_u32 k = 0u; k < 3u; ++k) {
-      const cadt_u32 v = triangles[3u * t + k], from = triangles[3u * t + CADT_NEXT(k)];
-      const cadt_u32 s = neighbors[3u * t + k];
-      if (v < points && v != from) {
+      const cadt_u32 v = mesh.vertices[3u * t + k], from = mesh.vertices[3u * t + CADT_NEXT(k)];
+      const cadt_u32 s = mesh.across[3u * t + k];
+      if (v < number_of_points && v != from) {
         if (cadt_load_relaxed(used + v) == 0u) cadt_store_relaxed(used + v, 1u);
       } else {
         good = 0u;
@@ -87,9 +91,9 @@ CADT_KERNEL(cadt_verify_structure, CADT_GLOBAL const cadt_u32* triangles, CADT_G
       ++mutual.examined;
       if (s == CADT_NONE) {
         ++boundary;
-      } else if (s >= count) {
+      } else if (s >= mesh.triangles) {
         good = 0u;
-      } else if (!cadt_is_mutual(triangles, neighbors, t, s, from, triangles[3u * t + CADT_PREV(k)])) {
+      } else if (!cadt_is_mutual(&mesh, t, k, s, from, mesh.vertices[3u * t + CADT_PREV(k)])) {
         cadt_finding_fail(&mutual, 3u * t + k);
       }
     }
@@ -142,18 +146,18 @@ CADT_KERNEL(cadt_verify_duplicates, CADT_GLOBAL const cadt_point* points, cadt_u
 }
 
 /* Lists the edges without a neighbour, in any order: 3 * triangle + k, from, to; and the point `from`. */
-CADT_KERNEL(cadt_verify_boundary, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* triangles,
-            CADT_GLOBAL const cadt_u32* neighbors, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* edges,
+CADT_KERNEL(cadt_verify_boundary, CADT_MESH_VIEW_PARAMETERS, cadt_u32 grain, CADT_GLOBAL cadt_u32* edges,
             CADT_GLOBAL cadt_point* corners, CADT_GLOBAL cadt_u32* written, cadt_u32 capacity) {
-  CADT_FOR(t, count, grain) {
+  CADT_MESH_VIEW(mesh);
+  CADT_FOR(t, mesh.triangles, grain) {
     for (cadt_u32 k = 0u; k < 3u; ++k) {
-      if (neighbors[3u * t + k] != CADT_NONE) continue;
-      const cadt_u32 at = cadt_add_relaxed(written, 1u), from = triangles[3u * t + CADT_NEXT(k)];
+      if (mesh.across[3u * t + k] != CADT_NONE) continue;
+      const cadt_u32 at = cadt_add_relaxed(written, 1u), from = mesh.vertices[3u * t + CADT_NEXT(k)];
       if (at >= capacity) continue;
       edges[3u * at] = 3u * t + k;
       edges[3u * at + 1u] = from;
-      edges[3u * at + 2u] = triangles[3u * t + CADT_PREV(k)];
-      corners[at] = points[from];
+      edges[3u * at + 2u] = mesh.vertices[3u * t + CADT_PREV(k)];
+      corners[at] = mesh.points[from];
     }
   }
 }
@@ -162,38 +166,39 @@ CADT_KERNEL(cadt_verify_boundary, CADT_GLOBAL const cadt_point* points, CADT_GLO
  */
 
 /* The vertex of triangle s that is neither end of an edge. */
-CADT_FN cadt_u32 cadt_across(CADT_GLOBAL const cadt_u32* triangles, cadt_u32 s, cadt_u32 from, cadt_u32 to) {
-  const cadt_u32 v0 = triangles[3u * s], v1 = triangles[3u * s + 1u];
+CADT_FN cadt_u32 cadt_across(const cadt_mesh_view* mesh, cadt_u32 s, cadt_u32 from, cadt_u32 to) {
+  const cadt_u32 v0 = mesh->vertices[3u * s], v1 = mesh->vertices[3u * s + 1u];
   if (v0 != from && v0 != to) return v0;
-  return v1 != from && v1 != to ? v1 : triangles[3u * s + 2u];
+  return v1 != from && v1 != to ? v1 : mesh->vertices[3u * s + 2u];
 }
 
 /* Orientation of triangles begin to begin + count - 1 and, if `with_edges`, legality of the edges between each of them
  * and a higher one. Undecided signs go to the work-item's list. \pre indices are in range */
-CADT_KERNEL(cadt_verify_filter, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* triangles,
-            CADT_GLOBAL const cadt_u32* neighbors, cadt_u32 begin, cadt_u32 count, cadt_u32 with_edges, cadt_u32 grain,
-            cadt_u32 items, CADT_GLOBAL cadt_u32* lists, CADT_GLOBAL cadt_u32* sizes, cadt_u32 capacity,
+CADT_KERNEL(cadt_verify_filter, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 with_edges,
+            cadt_u32 grain, cadt_u32 items, CADT_GLOBAL cadt_u32* lists, CADT_GLOBAL cadt_u32* sizes, cadt_u32 capacity,
             CADT_GLOBAL cadt_u32* results) {
+  CADT_MESH_VIEW(mesh);
   cadt_finding turn, edge;
   cadt_finding_clear(&turn);
   cadt_finding_clear(&edge);
   cadt_u32 open = 0u;
   CADT_VERIFY_FOR(r, count, grain, items) {
     const cadt_u32 t = begin + r;
-    const cadt_u32 v0 = triangles[3u * t], v1 = triangles[3u * t + 1u], v2 = triangles[3u * t + 2u];
-    const cadt_point p0 = points[v0], p1 = points[v1], p2 = points[v2];
+    const cadt_u32 v0 = mesh.vertices[3u * t], v1 = mesh.vertices[3u * t + 1u], v2 = mesh.vertices[3u * t + 2u];
+    const cadt_point p0 = mesh.points[v0], p1 = mesh.points[v1], p2 = mesh.points[v2];
     const cadt_i32 side = cadt_verify_turn_filter(p0, p1, p2);
     ++turn.examined;
     if (side < 0) cadt_finding_fail(&turn, t);
     if (side == CADT_UNKNOWN)
       lists[CADT_LIST_AT(open++, items, capacity)] = CADT_OPEN_A_TRIANGLE * r + CADT_OPEN_ORIENTATION;
     for (cadt_u32 k = 0u; with_edges && k < 3u; ++k) {
-      const cadt_u32 s = neighbors[3u * t + k];
+      const cadt_u32 s = mesh.across[3u * t + k];
       if (s == CADT_NONE || s < t) continue; /* the lower triangle of the two examines the edge */
-      const cadt_point d = points[cadt_across(triangles, s, CADT_PICK(k, v1, v2, v0), CADT_PICK(k, v2, v0, v1))];
+      const cadt_point d = mesh.points[cadt_across(&mesh, s, CADT_PICK(k, v1, v2, v0), CADT_PICK(k, v2, v0, v1))];
       const cadt_i32 legal =
           cadt_verify_edge_filter(CADT_PICK(k, p0, p1, p2), CADT_PICK(k, p1, p2, p0), CADT_PICK(k, p2, p0, p1), d);
       ++edge.examined;
+      if (cadt_is_constrained(&mesh, t, k)) continue; /* need not be legal */
       if (legal < 0) cadt_finding_fail(&edge, 3u * t + k);
       if (legal == CADT_UNKNOWN) lists[CADT_LIST_AT(open++, items, capacity)] = CADT_OPEN_A_TRIANGLE * r + k;
     }
@@ -206,9 +211,9 @@ CADT_KERNEL(cadt_verify_filter, CADT_GLOBAL const cadt_point* points, CADT_GLOBA
 }
 
 /* Decides the entries of the lists whose coordinate differences are exact; the others stay. left: how many stay. */
-CADT_KERNEL(cadt_verify_exact, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* triangles,
-            CADT_GLOBAL const cadt_u32* neighbors, cadt_u32 begin, cadt_u32 items, CADT_GLOBAL cadt_u32* lists,
+CADT_KERNEL(cadt_verify_exact, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_u32 items, CADT_GLOBAL cadt_u32* lists,
             CADT_GLOBAL cadt_u32* sizes, cadt_u32 capacity, CADT_GLOBAL cadt_u32* left, CADT_GLOBAL cadt_u32* results) {
+  CADT_MESH_VIEW(mesh);
   if (cadt_item >= items) return;
   cadt_finding turn, edge, tie;
   cadt_finding_clear(&turn);
@@ -220,14 +225,14 @@ CADT_KERNEL(cadt_verify_exact, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL
     const cadt_u32 entry = lists[CADT_LIST_AT(i, items, capacity)];
     const cadt_u32 t = begin + entry / CADT_OPEN_A_TRIANGLE, k = entry % CADT_OPEN_A_TRIANGLE;
     const cadt_u32 first = k == CADT_OPEN_ORIENTATION ? 0u : k; /* the vertex to begin with */
-    const cadt_u32 from = triangles[3u * t + CADT_NEXT(first)], to = triangles[3u * t + CADT_PREV(first)];
-    const cadt_point a = points[triangles[3u * t + first]], b = points[from], c = points[to];
+    const cadt_u32 from = mesh.vertices[3u * t + CADT_NEXT(first)], to = mesh.vertices[3u * t + CADT_PREV(first)];
+    const cadt_point a = mesh.points[mesh.vertices[3u * t + first]], b = mesh.points[from], c = mesh.points[to];
     cadt_i32 sign;
     if (k == CADT_OPEN_ORIENTATION) {
       sign = cadt_verify_turn_exact(a, b, c);
       if (sign <= 0) cadt_finding_fail(&turn, t);
     } else {
-      const cadt_point d = points[cadt_across(triangles, neighbors[3u * t + k], from, to)];
+      const cadt_point d = mesh.points[cadt_across(&mesh, mesh.across[3u * t + k], from, to)];
       sign = cadt_verify_edge_exact(a, b, c, d);
       if (sign < 0) cadt_finding_fail(&edge, 3u * t + k);
       if (sign == 0) {
@@ -248,10 +253,10 @@ CADT_KERNEL(cadt_verify_exact, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL
 
 /* Packs entries from_number to to_number - 1 of all lists: the entry, and the points a, b, c, d of its edge (a, b, c, a
  * for a triangle). \pre offsets: the scanned sizes, with the total behind the last */
-CADT_KERNEL(cadt_verify_gather, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* triangles,
-            CADT_GLOBAL const cadt_u32* neighbors, cadt_u32 begin, cadt_u32 items, CADT_GLOBAL const cadt_u32* lists,
-            CADT_GLOBAL const cadt_u32* offsets, cadt_u32 capacity, cadt_u32 from_number, cadt_u32 to_number,
-            CADT_GLOBAL cadt_u32* entries, CADT_GLOBAL cadt_point* corners) {
+CADT_KERNEL(cadt_verify_gather, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_u32 items,
+            CADT_GLOBAL const cadt_u32* lists, CADT_GLOBAL const cadt_u32* offsets, cadt_u32 capacity,
+            cadt_u32 from_number, cadt_u32 to_number, CADT_GLOBAL cadt_u32* entries, CADT_GLOBAL cadt_point* corners) {
+  CADT_MESH_VIEW(mesh);
   if (cadt_item >= items) return;
   const cadt_u32 first_number = offsets[cadt_item], end_number = offsets[cadt_item + 1u];
   for (cadt_u32 number = first_number; number < end_number; ++number) {
@@ -259,15 +264,15 @@ CADT_KERNEL(cadt_verify_gather, CADT_GLOBAL const cadt_point* points, CADT_GLOBA
     const cadt_u32 entry = lists[CADT_LIST_AT(number - first_number, items, capacity)];
     const cadt_u32 t = begin + entry / CADT_OPEN_A_TRIANGLE, k = entry % CADT_OPEN_A_TRIANGLE;
     const cadt_u32 first = k == CADT_OPEN_ORIENTATION ? 0u : k;
-    const cadt_u32 a = triangles[3u * t + first];
-    const cadt_u32 from = triangles[3u * t + CADT_NEXT(first)], to = triangles[3u * t + CADT_PREV(first)];
-    const cadt_u32 d = k == CADT_OPEN_ORIENTATION ? a : cadt_across(triangles, neighbors[3u * t + k], from, to);
+    const cadt_u32 a = mesh.vertices[3u * t + first];
+    const cadt_u32 from = mesh.vertices[3u * t + CADT_NEXT(first)], to = mesh.vertices[3u * t + CADT_PREV(first)];
+    const cadt_u32 d = k == CADT_OPEN_ORIENTATION ? a : cadt_across(&mesh, mesh.across[3u * t + k], from, to);
     const cadt_u32 at = number - from_number;
     entries[at] = entry;
-    corners[4u * at] = points[a];
-    corners[4u * at + 1u] = points[from];
-    corners[4u * at + 2u] = points[to];
-    corners[4u * at + 3u] = points[d];
+    corners[4u * at] = mesh.points[a];
+    corners[4u * at + 1u] = mesh.points[from];
+    corners[4u * at + 2u] = mesh.points[to];
+    corners[4u * at + 3u] = mesh.points[d];
   }
 }
 

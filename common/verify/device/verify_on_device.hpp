@@ -25,6 +25,7 @@ struct VerifyInput {
   std::span<const std::int32_t> hull;     ///< compared if it is not empty
   std::span<const Duplicate> duplicates;  ///< compared if `has_duplicates`
   bool has_duplicates = false;
+  const Allocation* edge_flags = nullptr;  ///< number_of_triangles words; null: no edge is constrained
 };
 
 /// The checks of `verify`, with the same names and outcomes. A kernel that did not run, or not over all elements, fails

@@ -25,6 +25,7 @@ VerifyReport verify_on_device(Device& device, PointsView points, const MeshView&
   known.count = mesh.triangles.size() / 3;
   known.triangles = mesh.triangles;
   known.neighbors = mesh.neighbors;
+  known.edge_flags = mesh.edge_flags;
   known.threads = options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
   if (mesh.neighbors.empty()) {
     Check check;
@@ -42,8 +43,10 @@ VerifyReport verify_on_device(Device& device, PointsView points, const MeshView&
   const Allocation device_points = import_points(ctx, points);
   const Allocation triangles = ctx.memory.import(known.triangles.data(), known.triangles.size_bytes());
   const Allocation neighbors = ctx.memory.import(known.neighbors.data(), known.neighbors.size_bytes());
-  const VerifyInput input{device_points, triangles, neighbors,       points.size(),
-                          known.count,   mesh.hull, mesh.duplicates, mesh.has_duplicates};
+  Allocation flags;
+  if (!known.edge_flags.empty()) flags = ctx.memory.import(known.edge_flags.data(), known.edge_flags.size_bytes());
+  const VerifyInput input{device_points, triangles,       neighbors,           points.size(), known.count,
+                          mesh.hull,     mesh.duplicates, mesh.has_duplicates, &flags};
   return verify_on_device(ctx, input, options, std::move(known));
 }
 

@@ -35,6 +35,7 @@ void examine_edge(const Mesh& mesh, std::size_t t, std::size_t k, Circles& mine)
   const Point a = mesh.point(mesh.vertex(t, 0)), b = mesh.point(mesh.vertex(t, 1)), c = mesh.point(mesh.vertex(t, 2));
   const Point d = mesh.point(across);
   ++mine.illegal.examined;
+  if (mesh.constrained(t, k)) return;
   const int side = incircle(a, b, c, d);
   if (side > 0) mine.illegal.fail(3 * t + k);
   if (side != 0) return;

@@ -23,9 +23,10 @@ struct BoundaryEdge {
 
 struct Mesh {
   PointsView points;
-  std::size_t count = 0;                    // triangles
-  std::span<const std::int32_t> triangles;  // 3 * count
-  std::span<const std::int32_t> neighbors;  // 3 * count; those of the caller, or `derived`
+  std::size_t count = 0;                      // triangles
+  std::span<const std::int32_t> triangles;    // 3 * count
+  std::span<const std::int32_t> neighbors;    // 3 * count; those of the caller, or `derived`
+  std::span<const std::uint32_t> edge_flags;  // count, or empty: no edge is constrained
   std::vector<std::int32_t> derived;
   std::vector<std::uint8_t> used;      // per point: whether it is a vertex
   std::size_t vertices = 0;            // number of vertices
@@ -38,6 +39,10 @@ struct Mesh {
     return {points.x(k), points.y(k)};
   }
   [[nodiscard]] std::int32_t vertex(std::size_t t, std::size_t k) const { return triangles[3 * t + k]; }
+  /// Whether edge k of triangle t is constrained.
+  [[nodiscard]] bool constrained(std::size_t t, std::size_t k) const {
+    return !edge_flags.empty() && (edge_flags[t] >> k & 1U) != 0;
+  }
   [[nodiscard]] std::string describe_triangle(std::int64_t t) const;
   [[nodiscard]] std::string describe_edge(std::int64_t edge) const;
 };

@@ -21,7 +21,8 @@ void check_neighbors(const Mesh& mesh, Check& check, std::uint64_t& examined) {
             for (std::size_t j = 0; j < 3 && other != t; ++j)
               mutual = mutual || (mesh.vertex(other, next3(j)) == mesh.vertex(t, previous3(k)) &&
                                   mesh.vertex(other, previous3(j)) == mesh.vertex(t, next3(k)) &&
-                                  mesh.neighbors[3 * other + j] == static_cast<std::int32_t>(t));
+                                  mesh.neighbors[3 * other + j] == static_cast<std::int32_t>(t) &&
+                                  mesh.constrained(other, j) == mesh.constrained(t, k));
             if (!mutual) mine.fail(3 * t + k);
           }
       });

@@ -29,6 +29,9 @@ std::string size_error(PointsView points, const MeshView& view) {
   if (!view.neighbors.empty() && view.neighbors.size() != view.triangles.size())
     return "there are " + std::to_string(view.neighbors.size()) + " neighbours for " +
            std::to_string(view.triangles.size()) + " edges";
+  if (!view.edge_flags.empty() && 3 * view.edge_flags.size() != view.triangles.size())
+    return "there are flags of the edges of " + std::to_string(view.edge_flags.size()) + " triangles, not of " +
+           std::to_string(view.triangles.size() / 3);
   // 3 * triangles must fit into 32 bits; no mesh with 32-bit indices has more
   if (points.size() > limit || view.triangles.size() > 2 * limit)
     return "too many points or triangles for 32-bit indices";
@@ -76,6 +79,7 @@ class Context : private Outcome {
     mesh_.count = view_.triangles.size() / 3;
     mesh_.triangles = view_.triangles;
     mesh_.neighbors = view_.neighbors;
+    mesh_.edge_flags = view_.edge_flags;
     if (mesh_.count == 0) return examine_no_triangles();
 
     check_range(mesh_, begin(range));

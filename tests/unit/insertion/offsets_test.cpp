@@ -295,14 +295,14 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
            {CADT_FOUND_RANGE, CADT_FOUND_NEIGHBORS, CADT_FOUND_ORIENTATION, CADT_FOUND_EDGES, CADT_FOUND_TIES})
         results[row + static_cast<std::size_t>(finding) + 2] = CADT_NONE;
     over(before, last, [&](std::uint32_t item) {
-      cadt_verify_structure(item, last, triangles.data(), neighbors.data(), n, last, grain, used.data(),
-                            results.data());
+      cadt_verify_structure(item, last, points.data(), triangles.data(), neighbors.data(), nullptr, last, last, 0U, n,
+                            grain, used.data(), results.data());
     });
     std::vector<std::uint32_t> lists(4 * real), sizes(1), left(1);
-    cadt_verify_filter(0, 1, points.data(), triangles.data(), neighbors.data(), before, real, 1, real, 1, lists.data(),
-                       sizes.data(), 4 * real, results.data());
-    cadt_verify_exact(0, 1, points.data(), triangles.data(), neighbors.data(), before, 1, lists.data(), sizes.data(),
-                      4 * real, left.data(), results.data());
+    cadt_verify_filter(0, 1, points.data(), triangles.data(), neighbors.data(), nullptr, last, last, 0U, before, real,
+                       1, real, 1, lists.data(), sizes.data(), 4 * real, results.data());
+    cadt_verify_exact(0, 1, points.data(), triangles.data(), neighbors.data(), nullptr, last, last, 0U, before, 1,
+                      lists.data(), sizes.data(), 4 * real, left.data(), results.data());
     EXPECT_EQ(left[0], 0U);
     std::vector<std::uint32_t> sums(CADT_FOUND_WORDS), least(CADT_FOUND_WORDS, CADT_NONE);
     for (std::size_t i = 0; i < results.size(); ++i) {

@@ -28,6 +28,7 @@ using Found = std::array<std::uint32_t, 4>;  // examined, illegal, wrong, broken
 struct Arrays {
   std::vector<std::uint32_t> vertices, half_edges;
   std::uint32_t real = 0;
+  std::vector<std::uint32_t> edge_flags;
 
   explicit Arrays(const std::vector<Face>& faces) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> across;  // edge -> link
@@ -52,8 +53,9 @@ struct Arrays {
     for (std::uint32_t begin = 0; begin < all; begin += size) {
       const std::uint32_t count = std::min(size, all - begin), grain = (count - 1) / items + 1;
       for (std::uint32_t item = 0; item < items; ++item)
-        cadt_certify(item, items, points.data(), vertices.data(), half_edges.data(), nullptr, known, all, 2, begin,
-                     count, grain, words.data(), row, 1);
+        cadt_certify(item, items, points.data(), vertices.data(), half_edges.data(),
+                     edge_flags.empty() ? nullptr : edge_flags.data(), known, all, 2, begin, count, grain, words.data(),
+                     row, 1);
     }
     Found found{};
     std::copy_n(words.begin() + row, found.size(), found.begin());
@@ -84,6 +86,22 @@ TEST(ArrayMesh, IllegalEdge) {
   flipped[1] = {1, 5, 4};
   flipped[4] = {4, 5, 2};
   EXPECT_EQ(Arrays(flipped).look(points), (Found{15, 1, 0, 0}));
+}
+
+/// An illegal edge may stay if it is constrained; both of its triangles must say so.
+TEST(ArrayMesh, ConstrainedEdge) {
+  std::vector<Face> flipped = mesh;
+  flipped[1] = {1, 5, 4};
+  flipped[4] = {4, 5, 2};
+  Arrays arrays(flipped);
+  arrays.edge_flags.assign(mesh.size(), 0);
+  EXPECT_EQ(arrays.look(points), (Found{15, 1, 0, 0}));
+  arrays.edge_flags[1] = 1;  // the edge 5, 4
+  EXPECT_EQ(arrays.look(points)[2], 1U);
+  arrays.edge_flags[4] = 4;
+  EXPECT_EQ(arrays.look(points), (Found{15, 0, 0, 0}));
+  arrays.edge_flags[1] = 0;
+  EXPECT_EQ(arrays.look(points)[2], 1U);
 }
 
 TEST(ArrayMesh, HullThatIsNotConvex) {

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Constrained edges from the mesh to the result: the same edges in both orders and both memory plans, wherever the
+// triangles go and however they are turned.
+#include "common/driver/registry.hpp"
+#include "common/output/result.hpp"
+#include "tests/support/backends.hpp"
+#include "tests/support/families.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numeric>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace cadt::test {
+namespace {
+
+using Word = std::uint32_t;
+using Edge = std::pair<Word, Word>;
+constexpr Word none = 0xFFFFFFFF;
+
+Edge edge(Word a, Word b) { return std::minmax(a, b); }
+
+/// The mesh of some points as a stage hands it over: vertices in another order than the input, half-edges across.
+struct MeshInArrays {
+  explicit MeshInArrays(const Triangulation& result) : input_ids(result.number_of_points()) {
+    std::mt19937 random(4);
+    std::iota(input_ids.begin(), input_ids.end(), 0U);
+    std::ranges::shuffle(input_ids, random);
+    std::vector<Word> position(input_ids.size());
+    for (Word v = 0; v < input_ids.size(); ++v) position[input_ids[v]] = v;
+    const auto triangles = result.triangles(), neighbors = result.neighbors();
+    edge_flags.resize(triangles.size() / 3);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      vertices.push_back(position[static_cast<std::size_t>(triangles[i])]);
+      const std::int32_t n = neighbors[i];
+      const auto here = static_cast<std::int32_t>(i / 3);
+      Word across = none;
+      for (std::size_t j = 0; n >= 0 && j < 3; ++j)
+        if (neighbors[3 * static_cast<std::size_t>(n) + j] == here) across = 4 * static_cast<Word>(n) + static_cast<Word>(j);
+      half_edges.push_back(across);
+      if (n > here && random() % 3 != 0) continue;
+      if (n >= here || n < 0) constrain(i, across, triangles);
+    }
+  }
+
+  void constrain(std::size_t i, Word across, std::span<const std::int32_t> triangles) {
+    const std::size_t t = i / 3 * 3, k = i % 3;
+    edge_flags[i / 3] |= 1U << k;
+    if (across != none) edge_flags[across / 4] |= 1U << across % 4;
+    constrained.insert(edge(static_cast<Word>(triangles[t + (k + 1) % 3]), static_cast<Word>(triangles[t + (k + 2) % 3])));
+  }
+
+  std::vector<Word> input_ids, vertices, half_edges, edge_flags;
+  std::set<Edge> constrained;  ///< pairs of input ids
+};
+
+class ConstrainedOutput : public BackendTest {};
+
+TEST_P(ConstrainedOutput, SameEdgesInBothOrders) {
+  const auto device = open_device(GetParam().options());
+  for (const std::size_t n : {300U, 40000U}) {  // without and with pooled memory
+    const std::vector<double> xy = uniform_points(n, 12);
+    const Triangulation expected = triangulate(std::span<const double>(xy), GetParam().options());
+    const MeshInArrays from(expected);
+    ASSERT_GT(from.constrained.size(), n / 2);
+    for (const Order order : {Order::fast, Order::canonical}) {
+      for (const bool compact : {false, true}) {
+        SCOPED_TRACE(std::string(order == Order::fast ? "fast" : "canonical") + (compact ? ", compact" : ""));
+        Options options = GetParam().options();
+        options.order = order;
+        Memory memory(*device, true);
+        Statistics statistics;
+        MemoryPlan plan;
+        plan.compact = compact;
+        Context ctx(*device, memory, options, statistics, plan);
+        const auto upload = [&](const std::vector<Word>& words) {
+          Allocation array = memory.allocate(words.size() * sizeof(Word));
+          device->write(*array, 0, words.data(), words.size() * sizeof(Word));
+          return array;
+        };
+        Mesh mesh;
+        mesh.triangles = mesh.all = expected.number_of_triangles();
+        mesh.input_ids = upload(from.input_ids);
+        mesh.vertices.device = upload(from.vertices);
+        mesh.half_edges.device = upload(from.half_edges);
+        mesh.edge_flags = upload(from.edge_flags);
+        const ResultArrays result = write_result(ctx, std::move(mesh), n);
+        ASSERT_EQ(result.count, expected.number_of_triangles());
+        std::vector<Word> triangles(3 * result.count), neighbors(3 * result.count), flags(result.count);
+        device->read(*result.triangles.device, 0, triangles.data(), triangles.size() * sizeof(Word));
+        device->read(*result.neighbors.device, 0, neighbors.data(), neighbors.size() * sizeof(Word));
+        device->read(*result.edge_flags, 0, flags.data(), flags.size() * sizeof(Word));
+        std::set<Edge> constrained;
+        std::size_t wrong = 0, one_sided = 0;
+        for (Word i = 0; i < triangles.size(); ++i) {
+          const Word t = i / 3 * 3, from_vertex = triangles[t + (i + 1) % 3], to_vertex = triangles[t + (i + 2) % 3];
+          const bool flagged = (flags[i / 3] >> i % 3 & 1U) != 0;
+          if (flagged) constrained.insert(edge(from_vertex, to_vertex));
+          const Word s = neighbors[i];
+          if (s == none) continue;
+          std::size_t back = 3;
+          for (std::size_t j = 0; j < 3; ++j)
+            if (neighbors[3 * s + j] == i / 3 && triangles[3 * s + (j + 1) % 3] == to_vertex) back = j;
+          wrong += back == 3;
+          one_sided += back != 3 && flagged != ((flags[s] >> back & 1U) != 0);
+        }
+        EXPECT_EQ(wrong + one_sided, 0U);
+        EXPECT_TRUE(constrained == from.constrained);
+        if (order == Order::canonical && GetParam().options().order == Order::canonical) {
+          EXPECT_TRUE(std::ranges::equal(triangles, expected.triangles(), {}, {}, [](std::int32_t v) { return static_cast<Word>(v); }));
+        }
+      }
+    }
+  }
+}
+CADT_ON_MAIN_BACKENDS(ConstrainedOutput);
+
+}  // namespace
+}  // namespace cadt::test

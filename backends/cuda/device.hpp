@@ -6,6 +6,7 @@
 
 #include "backends/cuda/clock.hpp"
 #include "backends/cuda/context.hpp"
+#include "common/driver/buffer_cache.hpp"
 #include "common/driver/device.hpp"
 
 namespace cadt::cuda {
@@ -23,7 +24,8 @@ class CudaDevice final : public Device, private Primitives {
   [[nodiscard]] std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) override;
   [[nodiscard]] std::unique_ptr<Buffer> wrap(void* pointer, std::size_t bytes) override;
   [[nodiscard]] void* handle(const Buffer& buffer) const noexcept override;
-  [[nodiscard]] bool keeps_memory() const noexcept override { return true; }  // the pool, or the caller's allocator
+  /// The pool caches memory, or the caller's allocator.
+  [[nodiscard]] std::unique_ptr<BufferCache> make_cache() override { return nullptr; }
   void reserve(std::size_t bytes) override;
   void trim() override;
   [[nodiscard]] std::size_t free_bytes() override;

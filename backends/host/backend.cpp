@@ -21,6 +21,7 @@
 
 #include "backends/host/kernel_table.hpp"
 #include "backends/host/thread_pool.hpp"
+#include "common/driver/buffer_cache.hpp"
 #include "common/predicates/self_test.hpp"
 
 namespace cadt::host {
@@ -153,7 +154,9 @@ class HostDevice final : public Device {
     return std::make_unique<HostBuffer>(pointer, bytes);
   }
   [[nodiscard]] void* handle(const Buffer& buffer) const noexcept override { return bytes_of(buffer); }
-  [[nodiscard]] bool keeps_memory() const noexcept override { return allocator_ != nullptr; }
+  [[nodiscard]] std::unique_ptr<BufferCache> make_cache() override {
+    return allocator_ != nullptr ? nullptr : Device::make_cache();
+  }
   [[nodiscard]] std::size_t free_bytes() override {
     return allocator_ != nullptr ? std::numeric_limits<std::size_t>::max() : Device::free_bytes();
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/opencl/device.hpp"
 
+#include "backends/opencl/buffer_pool.hpp"
 #include "backends/opencl/primitives.hpp"
 
 #include <algorithm>
@@ -17,6 +18,43 @@ namespace {
 constexpr std::size_t cpu_group = 1, gpu_group = 128;
 constexpr std::size_t largest_fill = std::size_t{1} << 30;
 
+std::size_t left_bytes(const SharedContext& shared) {
+  const std::uint64_t memory = shared.device().info.memory_bytes, held = shared.held;
+  return static_cast<std::size_t>(memory > held ? memory - held : 0);
+}
+
+void check_range(const char* what, const Buffer& buffer, std::size_t offset, std::size_t bytes) {
+  if (offset > buffer.bytes() || bytes > buffer.bytes() - offset)
+    throw InternalError(std::string(what) + " of " + std::to_string(bytes) + " bytes at " + std::to_string(offset) +
+                        " exceeds a buffer of " + std::to_string(buffer.bytes()));
+}
+
+void check_not_lost(const SharedContext& shared) {
+  if (shared.lost)
+    throw DeviceError("OpenCL", CL_INVALID_CONTEXT, shared.device().info.name,
+                      "an earlier error took the context; open it again");
+}
+
+/// Calls `work` and translates exceptions of the bindings.
+template <class Work>
+void run(SharedContext& shared, const Work& work) {
+  check_not_lost(shared);
+  try {
+    work();
+  } catch (const cl::Error& error) {
+    const std::string& name = shared.device().info.name;
+    // Some drivers allocate a buffer only when a command needs it.
+    if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE) {
+      const std::size_t held = shared.held;
+      throw OutOfMemory("'" + name + "' found too little memory in " + error.what() + "; the buffers are " +
+                            std::to_string(held) + " bytes together",
+                        held, left_bytes(shared));
+    }
+    if (is_fatal(error.err())) shared.lost = true;
+    throw_device_error(error, name);
+  }
+}
+
 class ClBuffer final : public Buffer {
  public:
   ClBuffer(std::shared_ptr<SharedContext> shared, cl::Buffer memory, std::size_t bytes, std::size_t counted)
@@ -25,6 +63,16 @@ class ClBuffer final : public Buffer {
   }
   ~ClBuffer() override { shared_->held -= counted_; }
 
+  [[nodiscard]] std::unique_ptr<Buffer> part(std::size_t offset, std::size_t bytes) override {
+    check_range("a part", *this, offset, bytes);
+    std::unique_ptr<Buffer> made;
+    run(*shared_, [&] {
+      const cl_buffer_region region{offset, bytes};
+      made = std::make_unique<ClBuffer>(
+          shared_, memory_.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region), bytes, 0);
+    });
+    return made;
+  }
   [[nodiscard]] const cl::Buffer& memory() const noexcept { return memory_; }
 
  private:
@@ -80,12 +128,6 @@ cl_float as_float(const Arg& arg) {
   return static_cast<cl_float>(std::clamp(value, -most, most));
 }
 
-void check_range(const char* what, const Buffer& buffer, std::size_t offset, std::size_t bytes) {
-  if (offset > buffer.bytes() || bytes > buffer.bytes() - offset)
-    throw InternalError(std::string(what) + " of " + std::to_string(bytes) + " bytes at " + std::to_string(offset) +
-                        " exceeds a buffer of " + std::to_string(buffer.bytes()));
-}
-
 bool is_out_of_memory(int code) {
   return code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES || code == CL_OUT_OF_HOST_MEMORY ||
          code == CL_INVALID_BUFFER_SIZE;
@@ -106,11 +148,6 @@ bool launches_alone(const FoundDevice& device) {
   return !device.gpu_hardware && device.info.platform.find("Portable Computing Language") != std::string::npos;
 }
 
-std::size_t left_bytes(const SharedContext& shared) {
-  const std::uint64_t memory = shared.device().info.memory_bytes, held = shared.held;
-  return static_cast<std::size_t>(memory > held ? memory - held : 0);
-}
-
 }  // namespace
 
 ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& request)
@@ -128,7 +165,6 @@ ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& req
                                 request.kernel_times ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0});
     }
     if (request.kernel_times) clock_.emplace(info().name);
-    // On a CPU, device memory is memory of the process, which is not limited by this number.
     constexpr std::size_t bits = 8;
     if (info().gpu) part_alignment_ = shared_->device().device.getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>() / bits;
   } catch (const cl::Error& error) {
@@ -138,27 +174,9 @@ ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& req
 
 ClDevice::~ClDevice() { clFinish(queue_()); }
 
-void ClDevice::check_not_lost() const {
-  if (shared_->lost)
-    throw DeviceError("OpenCL", CL_INVALID_CONTEXT, info().name, "an earlier error took the context; open it again");
-}
-
 template <class Work>
 void ClDevice::run(const Work& work) {
-  check_not_lost();
-  try {
-    work();
-  } catch (const cl::Error& error) {
-    // Some drivers allocate a buffer only when a command needs it.
-    if (error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE) {
-      const std::size_t held = shared_->held;
-      throw OutOfMemory("'" + info().name + "' found too little memory in " + error.what() + "; the buffers are " +
-                            std::to_string(held) + " bytes together",
-                        held, left_bytes(*shared_));
-    }
-    if (is_fatal(error.err())) shared_->lost = true;
-    throw_device_error(error, info().name);
-  }
+  opencl::run(*shared_, work);
 }
 
 LaunchShape ClDevice::shape() const noexcept {
@@ -168,7 +186,7 @@ LaunchShape ClDevice::shape() const noexcept {
 }
 
 std::unique_ptr<Buffer> ClDevice::allocate(std::size_t bytes) {
-  check_not_lost();
+  check_not_lost(*shared_);
   if (allocator_ != nullptr) {
     const std::size_t size = std::max<std::size_t>(bytes, 8);
     void* memory = allocator_->allocate(size, queue_());
@@ -190,16 +208,11 @@ std::unique_ptr<Buffer> ClDevice::allocate(std::size_t bytes) {
   }
 }
 
-std::unique_ptr<Buffer> ClDevice::part(Buffer& of, std::size_t offset, std::size_t bytes) {
-  check_range("a part", of, offset, bytes);
-  std::unique_ptr<Buffer> made;
-  run([&] {
-    const cl_buffer_region region{offset, bytes};
-    cl::Buffer whole = memory_of(of);
-    made = std::make_unique<ClBuffer>(
-        shared_, whole.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region), bytes, 0);
-  });
-  return made;
+std::unique_ptr<BufferCache> ClDevice::make_cache() {
+  if (allocator_ != nullptr) return nullptr;
+  // On a CPU, device memory is memory of the process, which is not limited by this number.
+  if (part_alignment_ == 0) return Device::make_cache();
+  return std::make_unique<BufferPool>(part_alignment_, info().largest_buffer_bytes);
 }
 
 std::unique_ptr<Buffer> ClDevice::alias(const void* data, std::size_t bytes) {
@@ -215,7 +228,7 @@ std::unique_ptr<Buffer> ClDevice::alias(const void* data, std::size_t bytes) {
 }
 
 std::unique_ptr<Buffer> ClDevice::wrap(void* memory, std::size_t bytes) {
-  check_not_lost();
+  check_not_lost(*shared_);
   cl::Buffer buffer(static_cast<cl_mem>(memory), true);  // retained: the caller may release its own reference
   std::size_t size = 0;
   run([&] {

@@ -21,12 +21,10 @@ class ClDevice final : public Device {
   [[nodiscard]] LaunchShape shape() const noexcept override;
   [[nodiscard]] unsigned threads() const noexcept override { return info().compute_units; }
   [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override;
-  [[nodiscard]] std::unique_ptr<Buffer> part(Buffer& of, std::size_t offset, std::size_t bytes) override;
-  [[nodiscard]] std::size_t part_alignment() const noexcept override { return part_alignment_; }
   [[nodiscard]] std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) override;
   [[nodiscard]] std::unique_ptr<Buffer> wrap(void* memory, std::size_t bytes) override;
   [[nodiscard]] void* handle(const Buffer& buffer) const noexcept override;
-  [[nodiscard]] bool keeps_memory() const noexcept override { return allocator_ != nullptr; }
+  [[nodiscard]] std::unique_ptr<BufferCache> make_cache() override;
   [[nodiscard]] std::size_t free_bytes() override;
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
@@ -59,7 +57,6 @@ class ClDevice final : public Device {
   /// Calls `work` and translates exceptions of the bindings.
   template <class Work>
   void run(const Work& work);
-  void check_not_lost() const;
 
   std::shared_ptr<SharedContext> shared_;
   cl::CommandQueue queue_;

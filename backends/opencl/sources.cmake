@@ -37,6 +37,7 @@ cadt_embed_kernels(CADT_EMBEDDED_KERNELS ${CADT_KERNELS_ENTRY} ${PROJECT_SOURCE_
 target_sources(cadt PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/backend.cpp
   ${CMAKE_CURRENT_LIST_DIR}/binary_cache.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/buffer_pool.cpp
   ${CMAKE_CURRENT_LIST_DIR}/cl.cpp
   ${CMAKE_CURRENT_LIST_DIR}/clock.cpp
   ${CMAKE_CURRENT_LIST_DIR}/context.cpp

@@ -28,10 +28,14 @@ class Buffer {
   Buffer(const Buffer&) = delete;
   Buffer& operator=(const Buffer&) = delete;
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+  /// A part of it, which is destroyed before it; null if the device has no parts. \throws DeviceError
+  [[nodiscard]] virtual std::unique_ptr<Buffer> part(std::size_t /*offset*/, std::size_t /*bytes*/) { return nullptr; }
 
  private:
   std::size_t bytes_;
 };
+
+class BufferCache;
 
 /// One argument of a kernel: a buffer or a scalar of 4 or 8 bytes, in the order of the kernel's parameters.
 class Arg {
@@ -118,13 +122,6 @@ class Device {
     fill(*buffer, 0, bytes / 4 * 4, 0);
     return buffer;
   }
-  /// A sub-buffer from `offset` on; the buffer must outlive it. \pre offset is a multiple of part_alignment(), which is
-  /// not 0 \throws DeviceError
-  [[nodiscard]] virtual std::unique_ptr<Buffer> part(Buffer& /*of*/, std::size_t /*offset*/, std::size_t /*bytes*/) {
-    return nullptr;
-  }
-  /// Alignment of the offset of a part; 0: the device has no parts.
-  [[nodiscard]] virtual std::size_t part_alignment() const noexcept { return 0; }
   /// A read-only buffer that aliases the caller's memory where the device can, else nullptr (then copy it).
   [[nodiscard]] virtual std::unique_ptr<Buffer> alias(const void* data, std::size_t bytes) = 0;
   /// A buffer that aliases the caller's memory for writing where the device can, else nullptr (then read back).
@@ -134,8 +131,8 @@ class Device {
   [[nodiscard]] virtual std::unique_ptr<Buffer> wrap(void* handle, std::size_t bytes) = 0;
   /// The native handle of a buffer.
   [[nodiscard]] virtual void* handle(const Buffer& buffer) const noexcept = 0;
-  /// True if the device caches freed memory for the next allocation; else the driver caches buffers itself.
-  [[nodiscard]] virtual bool keeps_memory() const noexcept { return false; }
+  /// A new cache of freed buffers (buffer_cache.hpp); nullptr if the device itself caches memory that is freed.
+  [[nodiscard]] virtual std::unique_ptr<BufferCache> make_cache();
   /// Makes `bytes` more available without asking the system. Only for devices that cache memory.
   virtual void reserve(std::size_t /*bytes*/) {}
   /// Returns cached memory to the system.

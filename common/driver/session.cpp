@@ -34,10 +34,8 @@ void require_size(std::size_t points) {
 
 void begin_budget(Triangulator::State& state, std::size_t n) {
   if (state.memory.dropped()) state.known = {};
-  // Pooled buffers are few, and each serves requests of its own size.
   const std::size_t reserved = state.known.reserved;
-  const bool any_serves = n <= reserved && !state.memory.pools(reserved * sizeof(std::uint32_t));
-  state.memory.begin(state.options.max_memory, any_serves);
+  state.memory.begin(state.options.max_memory, n <= reserved ? reserved * sizeof(std::uint32_t) : 0);
 }
 
 void begin_call(Triangulator::State& state, std::size_t n, Statistics& statistics) {

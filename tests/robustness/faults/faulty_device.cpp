@@ -8,26 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "backends/opencl/buffer_pool.hpp"
+
 namespace cadt::test {
 namespace {
-
-/// A buffer of the real device. Only memory that was allocated is counted: what is aliased or wrapped is the caller's.
-class CountedBuffer final : public Buffer {
- public:
-  CountedBuffer(std::unique_ptr<Buffer> real, std::shared_ptr<Faults> faults, bool allocated)
-      : Buffer(real->bytes()), real_(std::move(real)), faults_(std::move(faults)), allocated_(allocated) {
-    if (allocated_) faults_->add(bytes());
-  }
-  ~CountedBuffer() override {
-    if (allocated_) faults_->remove(bytes());
-  }
-  [[nodiscard]] Buffer& real() const noexcept { return *real_; }
-
- private:
-  std::unique_ptr<Buffer> real_;
-  std::shared_ptr<Faults> faults_;
-  bool allocated_;
-};
 
 /// A part of a counted buffer.
 class PartOf final : public Buffer {
@@ -44,6 +28,38 @@ class PartOf final : public Buffer {
   std::shared_ptr<Faults> faults_;
   const Buffer& whole_;
   std::size_t begin_;
+};
+
+/// A buffer of the real device. Only memory that was allocated is counted: what is aliased or wrapped is the caller's.
+class CountedBuffer final : public Buffer {
+ public:
+  CountedBuffer(std::unique_ptr<Buffer> real, std::shared_ptr<Faults> faults, Device& device, bool allocated)
+      : Buffer(real->bytes()),
+        real_(std::move(real)),
+        faults_(std::move(faults)),
+        device_(device),
+        allocated_(allocated) {
+    if (allocated_) faults_->add(bytes());
+  }
+  ~CountedBuffer() override {
+    if (allocated_) faults_->remove(bytes());
+  }
+  [[nodiscard]] Buffer& real() const noexcept { return *real_; }
+  [[nodiscard]] std::unique_ptr<Buffer> part(std::size_t offset, std::size_t bytes) override {
+    std::unique_ptr<Buffer> made;
+    faults_->take(Step::allocation, bytes, device_.info().name, [&] {
+      made = real_->part(offset, bytes);
+      if (made == nullptr)  // the handle is an address
+        made = device_.wrap(static_cast<std::byte*>(device_.handle(*real_)) + offset, bytes);
+    });
+    return std::make_unique<PartOf>(std::move(made), faults_, *this, offset);
+  }
+
+ private:
+  std::unique_ptr<Buffer> real_;
+  std::shared_ptr<Faults> faults_;
+  Device& device_;
+  bool allocated_;
 };
 
 Buffer& real(const Buffer& buffer) {
@@ -92,7 +108,13 @@ class FaultyDevice final : public Device {
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] LaunchShape shape() const noexcept override { return device_->shape(); }
   [[nodiscard]] unsigned threads() const noexcept override { return device_->threads(); }
-  [[nodiscard]] bool keeps_memory() const noexcept override { return device_->keeps_memory(); }
+  /// A pool is one of this device: the test decides whether there is one, and how large the largest buffer is.
+  [[nodiscard]] std::unique_ptr<BufferCache> make_cache() override {
+    constexpr std::size_t any_alignment = 64, large = std::size_t{1} << 30;
+    auto own = device_->make_cache();
+    if (own == nullptr || !(faults_->makes_parts || own->pools(large))) return own;
+    return std::make_unique<opencl::BufferPool>(any_alignment, info_.largest_buffer_bytes);
+  }
   void trim() override { device_->trim(); }
   [[nodiscard]] std::size_t free_bytes() override {
     const std::size_t all = faults_->device_bytes, out = faults_->live_bytes();
@@ -126,20 +148,6 @@ class FaultyDevice final : public Device {
   }
   [[nodiscard]] std::unique_ptr<Buffer> wrap(void* handle, std::size_t bytes) override {
     return account(device_->wrap(handle, bytes), false);
-  }
-
-  [[nodiscard]] std::unique_ptr<Buffer> part(Buffer& of, std::size_t offset, std::size_t bytes) override {
-    std::unique_ptr<Buffer> made;
-    take(Step::allocation, bytes, [&] {
-      made = device_->part(real(of), offset, bytes);
-      if (made == nullptr)
-        made = device_->wrap(static_cast<std::byte*>(device_->handle(real(of))) + offset, bytes);  // it is an address
-    });
-    return std::make_unique<PartOf>(std::move(made), faults_, of, offset);
-  }
-  [[nodiscard]] std::size_t part_alignment() const noexcept override {
-    constexpr std::size_t any = 64;
-    return faults_->makes_parts ? std::max(any, device_->part_alignment()) : device_->part_alignment();
   }
 
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
@@ -210,7 +218,7 @@ class FaultyDevice final : public Device {
   }
   [[nodiscard]] std::unique_ptr<Buffer> account(std::unique_ptr<Buffer> buffer, bool allocated) {
     if (buffer == nullptr) return nullptr;
-    return std::make_unique<CountedBuffer>(std::move(buffer), faults_, allocated);
+    return std::make_unique<CountedBuffer>(std::move(buffer), faults_, *device_, allocated);
   }
 
   std::unique_ptr<Device> device_;

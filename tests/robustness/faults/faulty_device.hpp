@@ -66,7 +66,7 @@ class Faults {
   /// Memory of the device, if not 0: what is not out is free, and no more is given.
   std::size_t device_bytes = 0;
   bool watchdog = false;  ///< as if it drew a screen
-  /// It makes parts of buffers even if the real one does not. What overlaps another part, and a launch with a buffer of
+  /// It pools buffers even if the real one does not. What overlaps another part, and a launch with a buffer of
   /// which there are parts, is an InternalError.
   bool makes_parts = false;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of a call use parts of cached buffers (common/driver/memory.hpp): no two parts share a byte, the budget equals
-// what the device has allocated, meshes are the same, and after any fault all memory can be freed. The device makes
-// parts of buffers here whether or not it does so elsewhere.
+// Steps of a call use parts of cached buffers (backends/opencl/buffer_pool.hpp): no two parts share a byte, the budget
+// equals what the device has allocated, meshes are the same, and after any fault all memory can be freed. The device
+// pools buffers here whether or not it does so elsewhere.
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 

@@ -42,7 +42,7 @@ class Chosen : public ::testing::Test {
  protected:
   MemoryPlan choose(std::size_t limit, const CallShape& shape, bool stars) {
     options_.max_memory = limit;
-    memory_.begin(limit, false);
+    memory_.begin(limit, 0);
     return choose_memory_plan(memory_, options_, info_, shape, stars, known_);
   }
   std::unique_ptr<Device> device_ = open_device({});
@@ -84,7 +84,7 @@ TEST_F(Chosen, BatchesGetSmallerUntilTheyFit) {
   const std::vector<std::size_t> offsets = {0, 1 << 20, 1 << 21};  // two sets of 2^20
   const auto most = [&](std::size_t limit) {
     options_.max_memory = limit;
-    memory_.begin(limit, false);
+    memory_.begin(limit, 0);
     return plan_batch(memory_, options_, info_, offsets, std::size_t{1} << 21, 1000, known_);
   };
   const auto bytes = [](std::size_t points) { return 1000 + fixed + 176 * points + 2 * 1300; };

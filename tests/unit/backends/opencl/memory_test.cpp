@@ -2,6 +2,7 @@
 // What counts as held: buffers once, parts and memory of the caller's not at all.
 #include <limits>
 
+#include "common/driver/buffer_cache.hpp"
 #include "tests/unit/backends/opencl/support.hpp"
 
 namespace cadt::test {
@@ -30,10 +31,10 @@ TEST_F(OpenClMemory, PartsTakeNothing) {
     auto whole = device->allocate(size);
     const std::size_t held = before - size;
     ASSERT_EQ(device->free_bytes(), held);
-    auto lower = device->part(*whole, 0, size / 2);
+    auto lower = whole->part(0, size / 2);
     EXPECT_EQ(lower->bytes(), size / 2);
     EXPECT_EQ(device->free_bytes(), held);
-    const auto upper = device->part(*whole, size / 2, size / 2);
+    const auto upper = whole->part(size / 2, size / 2);
     EXPECT_EQ(device->free_bytes(), held);
     lower.reset();
     EXPECT_EQ(device->free_bytes(), held);
@@ -44,7 +45,7 @@ TEST_F(OpenClMemory, PartsTakeNothing) {
   }
   EXPECT_EQ(device->free_bytes(), before);
   auto whole = device->allocate(64);
-  EXPECT_THROW(static_cast<void>(device->part(*whole, 32, 33)), InternalError);
+  EXPECT_THROW(static_cast<void>(whole->part(32, 33)), InternalError);
 }
 
 TEST_F(OpenClMemory, MemoryOfTheCallerTakesNothing) {
@@ -58,6 +59,14 @@ TEST_F(OpenClMemory, MemoryOfTheCallerTakesNothing) {
   const std::vector<double> own(size / sizeof(double), 1.0);
   const auto alias = device->alias(own.data(), size);
   EXPECT_EQ(device->free_bytes(), held);
+}
+
+/// GPUs pool, CPUs cache.
+TEST_F(OpenClMemory, CacheOfTheDevice) {
+  const auto device = open_small();
+  const auto made = device->make_cache();
+  ASSERT_NE(made, nullptr);
+  EXPECT_EQ(made->pools(size), device->info().gpu);
 }
 
 /// Takes what it gives from another device of the same context.
@@ -86,6 +95,7 @@ TEST_F(OpenClMemory, AnAllocatorHasNoLimitOfOurs) {
   const auto device = opencl::open_device(request);
   const std::size_t before = source->free_bytes(), returned = pool->returned;
   EXPECT_EQ(device->free_bytes(), std::numeric_limits<std::size_t>::max());
+  EXPECT_EQ(device->make_cache(), nullptr);
   {
     const auto buffer = device->allocate(size);
     EXPECT_EQ(buffer->bytes(), size);

@@ -302,7 +302,10 @@ TEST_P(WrongMesh, LockedTrianglesWithAHalfEdgeThatIsNotMutual) {
   const Points xy = uniform_points(100, 7);
   change_locked(100, unlink_an_edge);
   const std::string text = refused(triangulator, xy);
-  EXPECT_NE(text.find("still finds illegal edges"), std::string::npos) << text;
+  // The sweep cannot settle the edge, or it becomes illegal beside another one and gets no locks.
+  EXPECT_TRUE(text.find("still finds illegal edges") != std::string::npos ||
+              text.find("no progress") != std::string::npos)
+      << text;
   expect_right(triangulator, xy);
 }
 

@@ -42,7 +42,8 @@ struct MeshInArrays {
       const auto here = static_cast<std::int32_t>(i / 3);
       Word across = none;
       for (std::size_t j = 0; n >= 0 && j < 3; ++j)
-        if (neighbors[3 * static_cast<std::size_t>(n) + j] == here) across = 4 * static_cast<Word>(n) + static_cast<Word>(j);
+        if (neighbors[3 * static_cast<std::size_t>(n) + j] == here)
+          across = 4 * static_cast<Word>(n) + static_cast<Word>(j);
       half_edges.push_back(across);
       if (n > here && random() % 3 != 0) continue;
       if (n >= here || n < 0) constrain(i, across, triangles);
@@ -53,7 +54,8 @@ struct MeshInArrays {
     const std::size_t t = i / 3 * 3, k = i % 3;
     edge_flags[i / 3] |= 1U << k;
     if (across != none) edge_flags[across / 4] |= 1U << across % 4;
-    constrained.insert(edge(static_cast<Word>(triangles[t + (k + 1) % 3]), static_cast<Word>(triangles[t + (k + 2) % 3])));
+    constrained.insert(
+        edge(static_cast<Word>(triangles[t + (k + 1) % 3]), static_cast<Word>(triangles[t + (k + 2) % 3])));
   }
 
   std::vector<Word> input_ids, vertices, half_edges, edge_flags;
@@ -113,7 +115,8 @@ TEST_P(ConstrainedOutput, SameEdgesInBothOrders) {
         EXPECT_EQ(wrong + one_sided, 0U);
         EXPECT_TRUE(constrained == from.constrained);
         if (order == Order::canonical && GetParam().options().order == Order::canonical) {
-          EXPECT_TRUE(std::ranges::equal(triangles, expected.triangles(), {}, {}, [](std::int32_t v) { return static_cast<Word>(v); }));
+          EXPECT_TRUE(std::ranges::equal(triangles, expected.triangles(), {}, {},
+                                         [](std::int32_t v) { return static_cast<Word>(v); }));
         }
       }
     }

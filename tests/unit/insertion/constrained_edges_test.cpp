@@ -88,8 +88,8 @@ class ConstrainedMesh {
     }
   }
 
-  /// The flagged edges; each must be flagged on both sides. `illegal`: sides of edges that are illegal, those that are not
-  /// constrained and those that are.
+  /// The flagged edges; each must be flagged on both sides. `illegal`: sides of edges that are illegal, those that are
+  /// not constrained and those that are.
   std::set<Edge> flagged(std::array<std::size_t, 2>& illegal) {
     std::set<Edge> all;
     illegal = {};
@@ -112,7 +112,8 @@ class ConstrainedMesh {
 
   /// Edges that the legality sweep finds illegal.
   std::uint32_t sweep() {
-    std::vector<std::uint32_t> edges(64), counts(CADT_DEFERRED_COUNTS + 5), rows(CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
+    std::vector<std::uint32_t> edges(64), counts(CADT_DEFERRED_COUNTS + 5),
+        rows(CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
     const auto slots = static_cast<std::uint32_t>(locked_.size());
     cadt_legality_sweep(0, 1, locked_.data(), points_.data(), near_.data(), flags_.data(), 0, 0, 0, 0, 0,
                         CADT_STABILIZE_OFF, 0, 0.0, 0, slots, slots, 0, edges.data(), counts.data(), 64, rows.data());
@@ -131,7 +132,8 @@ class ConstrainedMesh {
                     half_edges.data(), flags.data());
     std::set<Edge> all;
     for (std::uint32_t i = 0; i < 3 * (slots - 2); ++i)
-      if (flags[i / 3] >> (i % 3) & 1U) all.insert(edge(vertices[i / 3 * 3 + (i + 1) % 3], vertices[i / 3 * 3 + (i + 2) % 3]));
+      if (flags[i / 3] >> (i % 3) & 1U)
+        all.insert(edge(vertices[i / 3 * 3 + (i + 1) % 3], vertices[i / 3 * 3 + (i + 2) % 3]));
     return all;
   }
 

@@ -110,8 +110,8 @@ class BatchStage {
     ranks.release();
     const Allocation counts = launch_.zeros(CADT_WRAP_WORDS);
     wrap_batch(ctx_, order_.points, n_, {list, unproven_, sets_.positions(), sets_.states, set_count_},
-               {stars_.star_vertices, begins_, stars_.sizes, counts, CADT_STAR_DEGREE,
-                n_ * (CADT_STAR_DEGREE + long_star_words)});
+               {CADT_STAR_DEGREE, stars_.star_vertices,
+                static_cast<std::uint32_t>(n_ * (CADT_STAR_DEGREE + long_star_words)), begins_, stars_.sizes, counts});
     std::array<std::uint32_t, CADT_WRAP_DRIVER_WORDS> words{};
     ctx_.device.read(*counts, 0, words.data(), sizeof words);
     ctx_.statistics.exact_orientations += words[CADT_WRAP_EXACT_ORIENTATIONS];
@@ -210,8 +210,8 @@ class BatchStage {
       result_.flat[s] = mesh.flat;
       if (mesh.flat) continue;
       const LaunchGrid all = launch_.grid(mesh.all);
-      view_of(mesh, none)
-          .run<KernelId::cadt_batch_store>(launch_, all.items, mesh.input_ids, begin, all.grain, locked_);
+      launch_.run<KernelId::cadt_batch_store>(all.items, view_of(mesh, none), mesh.input_ids, begin, all.grain,
+                                              locked_);
     }
   }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/driver/argument_group.hpp"
 #include "common/driver/device.hpp"
 #include "common/driver/kernel_signature.hpp"
 #include "common/driver/kernel_times.hpp"
@@ -46,7 +47,8 @@ class Launcher {
   /// For kernels whose work-items take a contiguous chunk on every device.
   [[nodiscard]] LaunchGrid chunks(std::size_t count) const noexcept;
 
-  /// Runs a kernel. Arguments of other types than its parameters do not compile. \throws as Device::launch
+  /// Runs a kernel. Arguments, or groups of them (argument_group.hpp), of other types than its parameters do not
+  /// compile. \throws as Device::launch
   template <KernelId kernel, class... Args>
   void run(std::uint32_t items, const Args&... args) {
     run_in_groups<kernel>(items, 0, args...);
@@ -54,11 +56,9 @@ class Launcher {
   /// The same with work-groups of `group` work-items on GPUs, unless the options name a size; 0: the device's choice.
   template <KernelId kernel, class... Args>
   void run_in_groups(std::uint32_t items, std::uint32_t group, const Args&... args) {
-    static_assert(takes_arguments<kernel, Args...>(), "other arguments than the kernel has parameters");
     if (items == 0) return;
-    const Arg list[] = {Arg(args)...};
-    ++launches_;
-    times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, variant_, group); });
+    std::apply([&](const auto&... all) { launch<kernel>(items, group, all...); },
+               std::tuple_cat(arguments_of(args)...));
   }
 
   /// Words of zeros, for small results.
@@ -76,6 +76,14 @@ class Launcher {
             unsigned bits, bool identity);
 
  private:
+  template <KernelId kernel, class... Args>
+  void launch(std::uint32_t items, std::uint32_t group, const Args&... args) {
+    static_assert(takes_arguments<kernel, Args...>(), "other arguments than the kernel has parameters");
+    const Arg list[] = {Arg(args)...};
+    ++launches_;
+    times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, variant_, group); });
+  }
+
   Device& device_;
   Memory& memory_;
   KernelTimes times_;

@@ -32,7 +32,7 @@ std::vector<std::uint32_t> CavityRetriangulation::read_quads(const Allocation& e
   const std::uint32_t read = std::min(count, max_edges);
   const Allocation quads = ctx_.memory.allocate(4 * read * word);
   const LaunchGrid c = launch_.grid(read);
-  mesh_.run_kernel<KernelId::cadt_cavity_candidates>(c.items, edges, read, c.grain, quads);
+  launch_.run<KernelId::cadt_cavity_candidates>(c.items, mesh_, edges, read, c.grain, quads);
   std::vector<std::uint32_t> vertices(4 * std::size_t{read});
   ctx_.device.read(*quads, 0, vertices.data(), vertices.size() * word);
   return vertices;
@@ -82,7 +82,7 @@ std::vector<CavityRetriangulation::Region> CavityRetriangulation::large_regions(
   const Allocation list = ctx_.memory.allocate(count * word), sums = launch_.zeros(count);
   ctx_.device.write(*list, 0, vertices.data(), count * word);
   const LaunchGrid c = launch_.grid_strided(slots_);
-  mesh_.run_kernel<KernelId::cadt_cavity_sizes>(c.items, slots_, c.grain, ends_, list, count, sums);
+  launch_.run<KernelId::cadt_cavity_sizes>(c.items, mesh_, slots_, c.grain, ends_, list, count, sums);
   std::vector<std::uint32_t> sizes(count);
   ctx_.device.read(*sums, 0, sizes.data(), count * word);
   std::vector<Region> regions;
@@ -101,22 +101,22 @@ bool CavityRetriangulation::retriangulate_region(const Region& region) {
                    scratch = ctx_.memory.allocate(CADT_CAVITY_SCRATCH * bytes),
                    spokes = ctx_.memory.allocate(2 * bytes), found = launch_.zeros(CADT_CAVITY_WORDS);
   const LaunchGrid all = launch_.grid_strided(slots_);
-  mesh_.run_kernel<KernelId::cadt_cavity_conflicts>(all.items, slots_, all.grain, ends_, w, list, capacity, found);
+  launch_.run<KernelId::cadt_cavity_conflicts>(all.items, mesh_, slots_, all.grain, ends_, w, list, capacity, found);
   const std::uint32_t conflicts = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
   LaunchGrid c = launch_.grid(conflicts);
-  mesh_.run_kernel<KernelId::cadt_cavity_star>(c.items, conflicts, c.grain, w, list, capacity, found);
+  launch_.run<KernelId::cadt_cavity_star>(c.items, mesh_, conflicts, c.grain, w, list, capacity, found);
   // If the list has no room for all conflicts, it has some of them: cadt_cavity_check sees which components are usable.
   const std::uint32_t listed = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
   c = launch_.grid(listed);
   launch_.run<KernelId::cadt_cavity_roots>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity);
   launch_.run<KernelId::cadt_cavity_join>(c.items, mesh_.locked, listed, c.grain, list, scratch);
-  mesh_.run_kernel<KernelId::cadt_cavity_check>(c.items, listed, c.grain, w, list, scratch, capacity);
+  launch_.run<KernelId::cadt_cavity_check>(c.items, mesh_, listed, c.grain, w, list, scratch, capacity);
   launch_.run<KernelId::cadt_cavity_keep>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity, kept, found);
   const std::uint32_t count = launch_.read_word(found, CADT_CAVITY_KEPT);
   if (count == 0) return false;
   const Allocation& sides = scratch;  // the components are not read any more
   c = launch_.grid(count);
-  mesh_.run_kernel<KernelId::cadt_cavity_boundary>(c.items, count, c.grain, w, kept, sides, spokes, capacity, found);
+  launch_.run<KernelId::cadt_cavity_boundary>(c.items, mesh_, count, c.grain, w, kept, sides, spokes, capacity, found);
   std::array<std::uint32_t, CADT_CAVITY_WORDS> words{};
   ctx_.device.read(*found, 0, words.data(), sizeof words);
   const std::uint32_t spoke_count = words[CADT_CAVITY_SPOKES];
@@ -125,9 +125,9 @@ bool CavityRetriangulation::retriangulate_region(const Region& region) {
                         std::to_string(words[CADT_CAVITY_SIDES]) + " sides and " + std::to_string(spoke_count) +
                         " spokes; please report this with the input");
   c = launch_.grid(std::size_t{count} + spoke_count);
-  mesh_.run_kernel<KernelId::cadt_cavity_fill>(c.items, count, spoke_count, c.grain, w, kept, sides, spokes);
+  launch_.run<KernelId::cadt_cavity_fill>(c.items, mesh_, count, spoke_count, c.grain, w, kept, sides, spokes);
   c = launch_.grid(2 * std::size_t{count} + spoke_count);
-  mesh_.run_kernel<KernelId::cadt_cavity_release>(c.items, count, spoke_count, c.grain, kept, sides, spokes);
+  launch_.run<KernelId::cadt_cavity_release>(c.items, mesh_, count, spoke_count, c.grain, kept, sides, spokes);
   return true;
 }
 

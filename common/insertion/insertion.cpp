@@ -68,7 +68,7 @@ class IncrementalInsertion {
     const std::size_t limit = n_ / 2 + n_ / 32 + std::min(n_ / 2, poll_interval) + 64;
     for (Allocation& list : deferred_points_) list = ctx_.memory.transient(limit * word);
     make_edge_lists();
-    mesh_.run_kernel<KernelId::cadt_seed_mesh>(1);
+    launch_.run<KernelId::cadt_seed_mesh>(1, mesh_);
     ctx_.end_phase("seed");
 
     const unsigned last = inserts_partitions(traits_of(ctx_.device), ctx_.options, n_) ? partition_level : 0;
@@ -189,17 +189,17 @@ class IncrementalInsertion {
     const std::size_t step = std::max<std::size_t>((points >> partition_level) / partitions, 1);
     for (std::size_t from = 0; from < blocks; from += step) {
       const std::size_t to = std::min(blocks, from + step);
-      mesh_.run_kernel<KernelId::cadt_insert_partitions>(
-          static_cast<std::uint32_t>(partitions), static_cast<std::uint32_t>(n_), partition_level,
+      launch_.run<KernelId::cadt_insert_partitions>(
+          static_cast<std::uint32_t>(partitions), mesh_, static_cast<std::uint32_t>(n_), partition_level,
           static_cast<std::uint32_t>(partitions), static_cast<std::uint32_t>(blocks), static_cast<std::uint32_t>(from),
           static_cast<std::uint32_t>(to), deferred_points_[0], deferred_counts_, counters_);
       inserted_ += std::min(n_, ((to - from) * partitions) << partition_level);
       // The list has room for those that the next launch may defer.
       if (to == blocks || launch_.read_word(deferred_counts_, 0) > n_ / 32) {
         const LaunchGrid c = launch_.grid(2 * n_);
-        mesh_.run_kernel<KernelId::cadt_border_sweep>(c.items, static_cast<std::uint32_t>(2 * n_), c.grain,
-                                                      static_cast<std::uint32_t>(blocks << partition_level),
-                                                      deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
+        launch_.run<KernelId::cadt_border_sweep>(c.items, mesh_, static_cast<std::uint32_t>(2 * n_), c.grain,
+                                                 static_cast<std::uint32_t>(blocks << partition_level),
+                                                 deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
         take_deferred();
         finish_deferred();
       }
@@ -228,15 +228,15 @@ class IncrementalInsertion {
     const auto count = static_cast<std::uint32_t>(deferred_.points + size);
     if (deferred_.edges != 0) {
       const LaunchGrid c = serial ? LaunchGrid{1, deferred_.edges} : launch_.grid_spread(deferred_.edges);
-      mesh_.run_kernel<KernelId::cadt_legalize_edges>(c.items, deferred_edges_[1], deferred_.edges, c.grain,
-                                                      deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
+      launch_.run<KernelId::cadt_legalize_edges>(c.items, mesh_, deferred_edges_[1], deferred_.edges, c.grain,
+                                                 deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
     }
     if (count == 0) return;
     const LaunchGrid c = serial ? LaunchGrid{1, count} : launch_.grid_spread(count);
-    mesh_.run_kernel<KernelId::cadt_insert>(c.items, deferred_points_[1], deferred_.points,
-                                            static_cast<std::uint32_t>(begin), count, static_cast<std::uint32_t>(n_),
-                                            level, c.grain, deferred_points_[0], deferred_edges_[0], deferred_counts_,
-                                            edge_capacity_, counters_);
+    launch_.run<KernelId::cadt_insert>(c.items, mesh_, deferred_points_[1], deferred_.points,
+                                       static_cast<std::uint32_t>(begin), count, static_cast<std::uint32_t>(n_), level,
+                                       c.grain, deferred_points_[0], deferred_edges_[0], deferred_counts_,
+                                       edge_capacity_, counters_);
   }
 
   /// Launches for what got no locks, until nothing is deferred.
@@ -280,10 +280,10 @@ class IncrementalInsertion {
       for (std::size_t begin = 0; begin < slots; begin += limit) {
         const std::size_t size = std::min(limit, slots - begin);
         const LaunchGrid c = launch_.grid_strided(size);
-        mesh_.run_kernel<KernelId::cadt_legality_sweep>(
-            c.items, static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(size), c.grain,
-            by_level_ ? static_cast<std::uint32_t>(n_) : 0U, deferred_edges_[0], deferred_counts_, edge_capacity_,
-            counters_);
+        launch_.run<KernelId::cadt_legality_sweep>(c.items, mesh_, static_cast<std::uint32_t>(begin),
+                                                   static_cast<std::uint32_t>(size), c.grain,
+                                                   by_level_ ? static_cast<std::uint32_t>(n_) : 0U, deferred_edges_[0],
+                                                   deferred_counts_, edge_capacity_, counters_);
         std::array<std::uint32_t, all_counts> words{};
         ctx_.device.read(*deferred_counts_, 0, words.data(), sizeof words);
         examined += words[CADT_DEFERRED_COUNTS];

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 
 #include "common/driver/context.hpp"
 #include "common/driver/device_text.hpp"
@@ -19,12 +20,10 @@ struct LockedMesh {
   device_text::cadt_point center = {};
   std::uint32_t first = 0, second = 0, third = 0;
 
-  /// Launches a kernel over the mesh, whose view comes first among the parameters.
-  template <KernelId kernel, class... Args>
-  void run_kernel(std::uint32_t items, const Args&... args) const {
-    ctx.launcher.run<kernel>(items, locked, order.points, vertex_to_triangle, edge_flags, center.x, center.y, first,
-                             second, third, stabilize, ctx.options.flip_threshold, ctx.options.quality_epsilon,
-                             args...);
+  /// CADT_LOCKED_MESH_PARAMETERS
+  [[nodiscard]] auto arguments() const {
+    return std::tie(locked, order.points, vertex_to_triangle, edge_flags, center.x, center.y, first, second, third,
+                    stabilize, ctx.options.flip_threshold, ctx.options.quality_epsilon);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 
 #include "common/driver/context.hpp"
@@ -53,16 +54,14 @@ struct Mesh {
   }
 };
 
-/// What a kernel with CADT_MESH_VIEW_PARAMETERS reads: a mesh within a run, or the arrays of a finished one.
+/// CADT_MESH_VIEW_PARAMETERS: a mesh within a run, or the arrays of a finished one.
 struct ReadOnlyMesh {
   const Allocation &points, &vertices, &across, &edge_flags;
   std::uint32_t triangles, all;
   std::uint32_t edge_bits;  ///< 2: half-edges across; 0: triangles
 
-  /// Launches a kernel whose parameters begin with the view.
-  template <KernelId kernel, class... Args>
-  void run(Launcher& launch, std::uint32_t items, const Args&... args) const {
-    launch.run<kernel>(items, points, vertices, across, edge_flags, triangles, all, edge_bits, args...);
+  [[nodiscard]] auto arguments() const {
+    return std::tie(points, vertices, across, edge_flags, triangles, all, edge_bits);
   }
 };
 

@@ -150,9 +150,9 @@ Allocation number_triangles(Context& ctx, const Mesh& mesh, std::size_t points) 
 void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& numbers, const ResultPlace& to) {
   const Allocation none;
   const LaunchGrid all = ctx.launcher.grid(mesh.triangles);
-  view_of(mesh, none)
-      .run<KernelId::cadt_write_triangles>(ctx.launcher, all.items, mesh.input_ids, numbers, to.triangles, to.neighbors,
-                                           to.edge_flags, static_cast<std::uint32_t>(to.first), all.grain);
+  ctx.launcher.run<KernelId::cadt_write_triangles>(all.items, view_of(mesh, none), mesh.input_ids, numbers,
+                                                   to.triangles, to.neighbors, to.edge_flags,
+                                                   static_cast<std::uint32_t>(to.first), all.grain);
 }
 
 void renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {

@@ -80,16 +80,14 @@ KeyGrid KeyGrid::finer(int levels) const noexcept {
 
 void make_keys(Context& ctx, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid) {
   const LaunchGrid c = ctx.launcher.grid(n);
-  ctx.launcher.run<KernelId::cadt_hilbert_keys>(c.items, points, keys, static_cast<std::uint32_t>(n), c.grain,
-                                                grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y);
+  ctx.launcher.run<KernelId::cadt_hilbert_keys>(c.items, points, keys, static_cast<std::uint32_t>(n), c.grain, grid);
 }
 
 void make_fine_keys(Context& ctx, const Allocation& points, const Allocation& high, const Allocation& low,
                     std::size_t n, const KeyGrid& grid) {
   const LaunchGrid c = ctx.launcher.grid(n);
   ctx.launcher.run<KernelId::cadt_fine_hilbert_keys>(c.items, points, high, low, 2 * grid.fine_levels,
-                                                     static_cast<std::uint32_t>(n), c.grain, grid.half_min_x,
-                                                     grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y);
+                                                     static_cast<std::uint32_t>(n), c.grain, grid);
 }
 
 }  // namespace cadt

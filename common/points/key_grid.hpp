@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <tuple>
 
 #include "common/driver/context.hpp"
 #include "common/points/bounds.hpp"
@@ -18,6 +19,8 @@ struct KeyGrid {
   double most_x = 0, most_y = 0;          ///< largest coordinates of the points, in cells
   bool clipped = false;                   ///< some points lie outside; their cell is the nearest at the edge
   unsigned fine_levels = 0;               ///< of `levels()`, those in the low word of two-word keys
+  /// CADT_GRID_PARAMETERS
+  [[nodiscard]] auto arguments() const { return std::tie(half_min_x, half_min_y, scale, bits_x, bits_y); }
   [[nodiscard]] unsigned bits() const noexcept { return bits_x + bits_y; }
   [[nodiscard]] unsigned levels() const noexcept { return std::min(bits_x, bits_y); }
   /// The grid with so many levels more (or fewer, if negative) in the low word.

@@ -40,8 +40,8 @@ class TileMaker {
   void divide() {
     overfull_ = launch_.zeros(list_.count);
     const Allocation any = launch_.zeros(1);
-    launch_.run<KernelId::cadt_tile_overfull>(grid_.items, keys_.high, keys_.low, keys_.low_bits, ranks_, list_.tiles,
-                                              count_, levels_, grid_.grain, overfull_, any);
+    launch_.run<KernelId::cadt_tile_overfull>(grid_.items, keys_, ranks_, list_.tiles, count_, levels_, grid_.grain,
+                                              overfull_, any);
     if (launch_.read_word(any, 0) == 0) return;
     before_ = std::move(ranks_);
     flag(any);  // `any` is not read again: the keys are in order
@@ -53,16 +53,16 @@ class TileMaker {
  private:
   void flag(const Allocation& descents) {
     ranks_ = ctx_.memory.transient((n_ + 1) * word);
-    launch_.run<KernelId::cadt_tile_flags>(grid_.items, keys_.high, keys_.low, keys_.low_bits, before_, overfull_,
-                                           ranks_, count_, levels_, grid_.grain, descents);
+    launch_.run<KernelId::cadt_tile_flags>(grid_.items, keys_, before_, overfull_, ranks_, count_, levels_, grid_.grain,
+                                           descents);
   }
 
   void pack() {
     launch_.scan(ranks_, n_ + 1);
     list_.count = launch_.read_word(ranks_, n_);
     list_.tiles = ctx_.memory.allocate((list_.count + std::size_t{1}) * sizeof(cadt_tile));
-    launch_.run<KernelId::cadt_tile_pack>(grid_.items, keys_.high, keys_.low, keys_.low_bits, before_, overfull_,
-                                          ranks_, list_.tiles, count_, levels_, grid_.grain);
+    launch_.run<KernelId::cadt_tile_pack>(grid_.items, keys_, before_, overfull_, ranks_, list_.tiles, count_, levels_,
+                                          grid_.grain);
   }
 
   Context& ctx_;
@@ -123,10 +123,8 @@ StarCounters prove_stars(Context& ctx, const SortedPoints& order, const SortKeys
   const LaunchGrid teams = ctx.launcher.grid_of_teams(tiles.count, CADT_STAR_LANES);
   const std::uint32_t sample = !sets && tiles.count >= 2 * sampled_tiles ? sampled_tiles : 0;
   ctx.launcher.run<KernelId::cadt_prove_stars>(
-      teams.items, order.points, keys.high, keys.low, keys.low_bits, static_cast<std::uint32_t>(order.distinct),
-      grid.half_min_x, grid.half_min_y, grid.scale, grid.bits_x, grid.bits_y, grid.most_x, grid.most_y,
-      grid.clipped ? 1U : 0U, sets, states, tiles.tiles, tiles.count, sample, cautious ? 1U : 0U, teams.grain,
-      stars.star_vertices, stars.begins, stars.sizes, stars.overflow, stars.room, counts);
+      teams.items, order.points, keys, static_cast<std::uint32_t>(order.distinct), grid, grid.most_x, grid.most_y,
+      grid.clipped ? 1U : 0U, sets, states, tiles, sample, cautious ? 1U : 0U, teams.grain, stars, counts);
   StarCounters result;
   static_assert(sizeof result == CADT_STARS_WORDS * word);
   ctx.device.read(*counts, 0, &result, sizeof result);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 
 #include "common/driver/context.hpp"
 #include "common/points/spatial_sort.hpp"
@@ -23,12 +24,14 @@ constexpr unsigned most_key_bits_of_stars = 26;
 struct TileList {
   Allocation tiles;
   std::uint32_t count = 0;
+  [[nodiscard]] auto arguments() const { return std::tie(tiles, count); }
 };
 
 /// Keys of sorted points in a key grid; the low words are null for keys of one word.
 struct SortKeys {
   const Allocation &high, &low;
   unsigned low_bits = 0;
+  [[nodiscard]] auto arguments() const { return std::tie(high, low, low_bits); }
 };
 
 /// Nothing if the keys are not in order, or if there are fewer than `least` points a tile on average. \pre the keys are
@@ -41,6 +44,7 @@ struct SortKeys {
 struct Stars {
   Allocation star_vertices, begins, sizes;
   std::uint32_t overflow = 0, room = 0;  ///< words in the blocks of the tiles, and in all
+  [[nodiscard]] auto arguments() const { return std::tie(star_vertices, begins, sizes, overflow, room); }
 };
 /// Memory for packed stars: about 25 bytes a vertex.
 [[nodiscard]] Stars allocate_stars(Context& ctx, std::size_t n, const TileList& tiles);

@@ -227,9 +227,9 @@ class StarStage {
     launch_.run<KernelId::cadt_stitch_enter>(open.items, mesh_.vertices, open_, open_count_, open.grain, table, mask);
     Allocation covers = ctx_.memory.allocate(3 * smaller.all * word), roots = ctx_.memory.allocate(smaller.all * word);
     const LaunchGrid c = launch_.grid(all);
-    residual_mesh.run<KernelId::cadt_stitch_cover>(launch_, c.items, mesh_.vertices, smaller.input_ids, c.grain, table,
-                                                   mask, covers, roots);
-    residual_mesh.run<KernelId::cadt_stitch_components>(launch_, c.items, c.grain, covers, roots);
+    launch_.run<KernelId::cadt_stitch_cover>(c.items, residual_mesh, mesh_.vertices, smaller.input_ids, c.grain, table,
+                                             mask, covers, roots);
+    launch_.run<KernelId::cadt_stitch_components>(c.items, residual_mesh, c.grain, covers, roots);
     Allocation hidden = launch_.zeros(smaller.all), ranks = ctx_.memory.allocate((smaller.all + 1) * word);
     launch_.run<KernelId::cadt_stitch_hide>(c.items, covers, roots, all, c.grain, hidden);
     launch_.run<KernelId::cadt_stitch_flags>(c.items, roots, hidden, all, c.grain, ranks);
@@ -239,8 +239,8 @@ class StarStage {
       throw InternalError("the two parts of the mesh have " + std::to_string(triangles) + " triangles instead of " +
                           std::to_string(mesh_.all) + "; please report this with the input");
     mesh_.triangles = proven_triangles_ + launch_.read_word(ranks, smaller.triangles);
-    residual_mesh.run<KernelId::cadt_stitch_residual>(launch_, c.items, covers, ranks, smaller.input_ids, c.grain,
-                                                      proven_triangles_, mesh_.vertices, mesh_.half_edges);
+    launch_.run<KernelId::cadt_stitch_residual>(c.items, residual_mesh, covers, ranks, smaller.input_ids, c.grain,
+                                                proven_triangles_, mesh_.vertices, mesh_.half_edges);
     ctx_.end_phase("stitch");
     ctx_.check("stitch", 0.8);
   }

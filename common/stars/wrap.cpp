@@ -41,6 +41,7 @@ std::uint32_t spare_work_limit_of(const Device& device, std::size_t all) {
 /// The AABB tree of the points (common/stars/aabb_tree.dev.h); each set begins a leaf and a node of its own.
 struct AabbTree {
   Allocation leaves, nodes;
+  [[nodiscard]] auto arguments() const { return std::tie(leaves, nodes); }
 
   /// Also zeroes `sizes` and `counts`, if they are given.
   AabbTree(Context& ctx, const Allocation& points, std::size_t n, const Allocation& starts, std::size_t sets,
@@ -55,24 +56,35 @@ struct AabbTree {
   }
 };
 
+/// The sets of a batch (common/batch/batch.dev.h), or none; `work_done` in each of them.
+struct WrappedSets {
+  const Allocation& starts;
+  std::uint32_t count;
+  const Allocation &states, &work_done;
+  [[nodiscard]] auto arguments() const { return std::tie(starts, count, states, work_done); }
+};
+
+struct WorkLimit {
+  std::uint32_t of_vertex, spare;
+  [[nodiscard]] auto arguments() const { return std::tie(of_vertex, spare); }
+};
+
 /// All stars of one set of at most 2^15 points; `sizes` and `counts` need not be 0 before.
 void wrap_all(Context& ctx, const Allocation& points, std::size_t n, std::uint32_t spare, const WrappedStars& stars) {
   Launcher& launch = ctx.launcher;
   const Allocation none, todo = ctx.memory.allocate(n * word),
                          arcs = ctx.memory.allocate(n * CADT_WRAP_ROW * sizeof(std::uint16_t));
-  const AabbTree leaves(ctx, points, n, none, 0, stars.sizes, stars.counts);
-  const auto count = static_cast<std::uint32_t>(n), star_words = static_cast<std::uint32_t>(stars.star_words);
+  const AabbTree tree(ctx, points, n, none, 0, stars.sizes, stars.counts);
+  const auto count = static_cast<std::uint32_t>(n);
   const LaunchGrid teams = launch.grid_of_teams(n, wrap_lanes);
-  launch.run_in_groups<KernelId::cadt_wrap_near>(teams.items, wrap_lanes, points, leaves.leaves, leaves.nodes, count,
-                                                 teams.grain, stars.star_vertices, star_words, stars.begins,
-                                                 stars.sizes, todo, arcs, stars.counts);
+  launch.run_in_groups<KernelId::cadt_wrap_near>(teams.items, wrap_lanes, points, tree, count, teams.grain, stars, todo,
+                                                 arcs);
   // Only the device knows how many are left to do.
   const LaunchGrid residual =
       ctx.device.shape().contiguous ? teams : launch.grid_of_teams(std::min(n, most_teams), residual_lanes);
-  launch.run_in_groups<KernelId::cadt_wrap_stars>(residual.items, residual_lanes, points, leaves.leaves, leaves.nodes,
-                                                  count, todo, 0U, arcs, none, 0U, none, none, wrap_work_limit, spare,
-                                                  residual.grain, 0U, stars.star_vertices, star_words, stars.begins,
-                                                  stars.sizes, stars.counts);
+  launch.run_in_groups<KernelId::cadt_wrap_stars>(residual.items, residual_lanes, points, tree, count, todo, 0U, arcs,
+                                                  WrappedSets{none, 0, none, none}, WorkLimit{wrap_work_limit, spare},
+                                                  residual.grain, stars);
 }
 
 /// The stars of one set of points, and its mesh.
@@ -88,7 +100,7 @@ class Wrapping {
     sizes_ = ctx_.memory.allocate(n_ * word);
     counts_ = ctx_.memory.allocate(CADT_WRAP_WORDS * word);
     wrap_all(ctx_, points_, n_, spare_work_limit_of(ctx_.device, all),
-             {star_vertices_, begins_, sizes_, counts_, 0, star_words()});
+             {0, star_vertices_, static_cast<std::uint32_t>(star_words()), begins_, sizes_, counts_});
     edges_ = ctx_.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));
   }
 
@@ -100,7 +112,7 @@ class Wrapping {
     mesh.all = triangles();
     mesh.vertices = make_mesh_array(ctx_, mesh.all, use);
     mesh.half_edges = make_mesh_array(ctx_, mesh.all, use);
-    write(mesh, {});
+    write(mesh, {edges_});
     ctx_.end_phase("wrap");
     const bool certifies = use == MeshUse::result;
     if (certifies) launch_certify(ctx_, unnumbered_view(mesh), 0, mesh.all, bases_, row());
@@ -122,15 +134,16 @@ class Wrapping {
   /// Half-edges between vertices without stars; those from `first_extra` on are of triangles that no star has, so many
   /// `extra_real` without the ghost first.
   struct HighDegreeEdges {
+    const Allocation& edges;
     std::uint32_t count = 0, first_extra = 0, extra_real = 0, high_degree = 0;
+    [[nodiscard]] auto arguments() const { return std::tie(edges, count, first_extra, extra_real, high_degree); }
   };
 
-  void write(const Mesh& mesh, const HighDegreeEdges& e) {
+  void write(const Mesh& mesh, const HighDegreeEdges& of_high_degree) {
     const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
     launch_.run<KernelId::cadt_wrap_arrays>(shares.items, star_vertices_, begins_, sizes_, bases_,
                                             static_cast<std::uint32_t>(star_words()), static_cast<std::uint32_t>(row()),
-                                            edges_, e.count, e.first_extra, e.extra_real, e.high_degree, count_,
-                                            shares.grain, mesh.vertices, mesh.half_edges);
+                                            of_high_degree, count_, shares.grain, mesh.vertices, mesh.half_edges);
   }
 
   /// The mesh whose number of triangles only the device knows.
@@ -143,7 +156,7 @@ class Wrapping {
   /// `known`: the packed count of the triangles of stars.
   [[nodiscard]] bool add_high_degree(Mesh& mesh, std::uint32_t known) {
     const std::uint32_t real = CADT_WRAP_REAL(known), found = real + CADT_WRAP_GHOSTS(known);
-    HighDegreeEdges e;
+    HighDegreeEdges e{edges_};
     e.first_extra = e.count = launch_.read_word(counts_, CADT_WRAP_OPEN_EDGES);
     e.high_degree = high_degree_;
     if (high_degree_ > CADT_MOST_HIGH_DEGREE || e.first_extra > CADT_WRAP_EDGES) return false;
@@ -277,15 +290,14 @@ class Wrapping {
 
 void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const StarsOfBatch& sets,
                 const WrappedStars& stars) {
-  const AabbTree leaves(ctx, points, n, sets.starts, sets.count, {}, {});
+  const AabbTree tree(ctx, points, n, sets.starts, sets.count, {}, {});
   const Allocation work_done = ctx.launcher.zeros(sets.count), none;
-  const auto listed = static_cast<std::uint32_t>(sets.list_size);
-  const LaunchGrid teams = ctx.launcher.grid_of_teams(listed, wrap_lanes);
+  const LaunchGrid teams = ctx.launcher.grid_of_teams(sets.list_size, wrap_lanes);
   ctx.launcher.run_in_groups<KernelId::cadt_wrap_stars>(
-      teams.items, wrap_lanes, points, leaves.leaves, leaves.nodes, static_cast<std::uint32_t>(n), sets.list, listed,
-      none, sets.starts, static_cast<std::uint32_t>(sets.count), sets.states, work_done, wrap_work_limit,
-      spare_work_limit, teams.grain, static_cast<std::uint32_t>(stars.row), stars.star_vertices,
-      static_cast<std::uint32_t>(stars.star_words), stars.begins, stars.sizes, stars.counts);
+      teams.items, wrap_lanes, points, tree, static_cast<std::uint32_t>(n), sets.list,
+      static_cast<std::uint32_t>(sets.list_size), none,
+      WrappedSets{sets.starts, static_cast<std::uint32_t>(sets.count), sets.states, work_done},
+      WorkLimit{wrap_work_limit, spare_work_limit}, teams.grain, stars);
 }
 
 namespace {

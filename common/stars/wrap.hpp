@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 
 #include "common/insertion/insertion.hpp"
 
@@ -15,8 +16,11 @@ constexpr std::uint32_t wrap_lanes = 32;
 /// Where wrapped stars are stored (common/stars/wrapped_star.dev.h). \pre `sizes` are 0; `counts` has CADT_WRAP_WORDS
 /// words
 struct WrappedStars {
-  const Allocation &star_vertices, &begins, &sizes, &counts;
-  std::size_t row, star_words;
+  std::uint32_t row;
+  const Allocation& star_vertices;
+  std::uint32_t star_words;
+  const Allocation &begins, &sizes, &counts;
+  [[nodiscard]] auto arguments() const { return std::tie(row, star_vertices, star_words, begins, sizes, counts); }
 };
 
 /// The vertices in `list` of a batch; the other arrays as in common/batch/batch.dev.h.

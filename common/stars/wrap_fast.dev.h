@@ -269,11 +269,12 @@ CADT_FN cadt_u32 cadt_near_on_circle(CADT_GLOBAL const cadt_point* points, cadt_
  * round, then the star vertices, with CADT_WRAP_PROVEN if the triangle of one and the next is proven. \pre sizes are 0,
  * n >= 2 */
 CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_aabb* leaves,
-                 CADT_GLOBAL const cadt_aabb* nodes, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* star_vertices,
-                 cadt_u32 star_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
-                 CADT_GLOBAL cadt_u32* todo, CADT_GLOBAL cadt_u16* arcs, CADT_GLOBAL cadt_u32* counts) {
+                 CADT_GLOBAL const cadt_aabb* nodes, cadt_u32 n, cadt_u32 grain, cadt_u32 row,
+                 CADT_GLOBAL cadt_u32* star_vertices, cadt_u32 star_words, CADT_GLOBAL cadt_u32* begins,
+                 CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* counts, CADT_GLOBAL cadt_u32* todo,
+                 CADT_GLOBAL cadt_u16* arcs) {
   CADT_TEAM_MEMORY cadt_near_memory memory;
-  const cadt_wrap_sink sink = cadt_wrap_sink_of(n, 0u, star_vertices, star_words, begins, sizes, counts);
+  const cadt_wrap_sink sink = cadt_wrap_sink_of(n, row, star_vertices, star_words, begins, sizes, counts);
   cadt_counters counters;
   cadt_counters_clear(&counters);
   CADT_FOR_TEAMS(v, n, grain) {

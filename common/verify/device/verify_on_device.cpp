@@ -161,7 +161,7 @@ class OnDevice : private Outcome {
     clear_results();
     used_ = launch_.zeros(n_);
     const LaunchGrid all = grid_for(count_), points = grid_for(n_);
-    view().run<KernelId::cadt_verify_structure>(launch_, all.items, number(n_), all.grain, used_, results_);
+    launch_.run<KernelId::cadt_verify_structure>(all.items, view(), number(n_), all.grain, used_, results_);
     launch_.run<KernelId::cadt_verify_points>(points.items, input_.points, number(n_), points.grain, used_, results_);
     const Found found = results();
     if (const Findings finite = found.findings(CADT_FOUND_POINTS); finite.failures != 0) refuse_point(finite.first);
@@ -200,10 +200,10 @@ class OnDevice : private Outcome {
       const std::size_t size = std::min(most, count_ - at);
       const LaunchGrid c = grid_for(size);
       const auto room = number(std::max<std::size_t>(capacity(c, size), 4 * c.grain));
-      view().run<KernelId::cadt_verify_filter>(launch_, c.items, number(at), number(size), symmetric_ ? 1U : 0U,
-                                               c.grain, c.items, lists_, sizes_, room, results_);
-      view().run<KernelId::cadt_verify_exact>(launch_, c.items, number(at), c.items, lists_, sizes_, room, deferred_,
-                                              results_);
+      launch_.run<KernelId::cadt_verify_filter>(c.items, view(), number(at), number(size), symmetric_ ? 1U : 0U,
+                                                c.grain, c.items, lists_, sizes_, room, results_);
+      launch_.run<KernelId::cadt_verify_exact>(c.items, view(), number(at), c.items, lists_, sizes_, room, deferred_,
+                                               results_);
       if (const std::uint32_t left = launch_.read_word(deferred_, 0); left != 0) {
         ctx_.device.fill(*deferred_, 0, word, 0);
         settle_on_host(at, c.items, room, left);
@@ -224,8 +224,8 @@ class OnDevice : private Outcome {
     for (std::size_t from = 0; from < left; from += most) {
       const std::size_t size = std::min(most, left - from);
       ctx_.device.fill(*entries, 0, size * word, CADT_NONE);  // shows which are written
-      view().run<KernelId::cadt_verify_gather>(launch_, items, number(at), items, lists_, sizes_, room, number(from),
-                                               number(from + size), entries, corners);
+      launch_.run<KernelId::cadt_verify_gather>(items, view(), number(at), items, lists_, sizes_, room, number(from),
+                                                number(from + size), entries, corners);
       ctx_.device.read(*entries, 0, entry.data(), size * word);
       ctx_.device.read(*corners, 0, quad.data(), size * sizeof quad[0]);
       settled_.merge(
@@ -290,7 +290,7 @@ class OnDevice : private Outcome {
       const Allocation corners = ctx_.memory.allocate(h * sizeof starts[0]);
       const Allocation written = launch_.zeros(1);
       const LaunchGrid c = grid_for(count_);
-      view().run<KernelId::cadt_verify_boundary>(launch_, c.items, c.grain, list, corners, written, number(h));
+      launch_.run<KernelId::cadt_verify_boundary>(c.items, view(), c.grain, list, corners, written, number(h));
       boundary_written_ = launch_.read_word(written, 0);
       if (boundary_written_ != h) return skip({boundary, euler, hull}, counts);
       ctx_.device.read(*list, 0, edges.data(), h * sizeof edges[0]);

@@ -118,8 +118,8 @@ struct Wrapped {
     sizes.resize(n);
     todo.resize(n);
     const auto [leaves, nodes] = AabbTree(points, sizes.data(), counts.data());
-    cadt_wrap_near(0, 1, points.data(), leaves.data(), nodes.data(), n, n, star_vertices.data(), words, begins.data(),
-                   sizes.data(), todo.data(), arcs.data(), counts.data());
+    cadt_wrap_near(0, 1, points.data(), leaves.data(), nodes.data(), n, n, 0, star_vertices.data(), words,
+                   begins.data(), sizes.data(), counts.data(), todo.data(), arcs.data());
     left = counts[CADT_WRAP_TODO];
     constexpr std::uint32_t effort = 96, spare = 4096;
     cadt_wrap_stars(0, 1, points.data(), leaves.data(), nodes.data(), n, todo.data(), 0, arcs.data(), nullptr, 0,

@@ -8,7 +8,9 @@
 namespace cadt {
 
 template <class T>
-concept ArgumentGroup = requires(const T& group) { group.arguments(); };
+concept ArgumentGroup = requires(const T& group) {
+  group.arguments();
+};
 
 /// The arguments that an argument stands for: those of a group, or itself.
 template <class T>

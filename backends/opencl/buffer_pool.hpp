@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenCL has no pool of memory, but parts of buffers (sub-buffers): so steps of a call use parts of buffers that are
-// cached for a later step, and both together need no more than the larger.
+// OpenCL has no memory pool, but sub-buffers. Short steps use parts of a cached buffer that a later step takes as a
+// whole, so both together need no more than the larger.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace cadt::opencl {
 /// none has room, it is a buffer of its own, which is not cached.
 class BufferPool final : public BufferCache {
  public:
-  /// Of the device: what offsets of parts must be multiples of, and its largest buffer (0: not known).
+  /// Alignment of the offsets of sub-buffers, and the device's largest buffer (0: not known).
   BufferPool(std::size_t alignment, std::uint64_t largest_buffer) noexcept;
 
   [[nodiscard]] bool pools(std::size_t bytes) const noexcept override;

@@ -205,7 +205,7 @@ class BatchStage {
       const LaunchGrid c = launch_.grid(size);
       launch_.run<KernelId::cadt_identity>(c.items, one.input_ids, size, c.grain);
       launch_.run<KernelId::cadt_batch_extract>(c.items, order_.points, begin, size, c.grain, one.points);
-      const Mesh mesh = insert_incrementally(ctx_, std::move(one), MeshUse::stitching);
+      const Mesh mesh = insert_incrementally(ctx_, std::move(one), MeshUse::part);
       launch_.set_variant(narrow_variant(ctx_.options.statistics));
       result_.flat[s] = mesh.flat;
       if (mesh.flat) continue;

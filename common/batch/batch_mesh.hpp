@@ -19,7 +19,7 @@ struct BatchMesh {
 
 /// Builds the meshes: of the batched sets from the stars of all vertices (common/stars/local_star.dev.h, and gift
 /// wrapping) or, on CPUs, by insertion; of the others, and of sets with high-degree vertices, individually by
-/// insertion. Releases the keys.
+/// insertion. Takes keys, points and input ids.
 [[nodiscard]] BatchMesh build_batch(Context& ctx, SortedBatch& sets);
 
 }  // namespace cadt

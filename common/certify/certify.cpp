@@ -26,7 +26,7 @@ std::size_t certify_words(const Context& ctx) {
   return rows * CADT_COUNTER_STRIDE;
 }
 
-void launch_certify(Context& ctx, const ReadOnlyMesh& mesh, std::size_t begin, std::size_t size,
+void launch_certify(Context& ctx, const DeviceMeshView& mesh, std::size_t begin, std::size_t size,
                     const Allocation& words, std::size_t row) {
   const LaunchGrid c = ctx.launcher.grid_strided(size);
   ctx.launcher.run<KernelId::cadt_certify>(c.items, mesh, static_cast<std::uint32_t>(begin),

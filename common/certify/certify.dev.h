@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Certification of a mesh in arrays (mesh_view.dev.h): examines every edge and repairs nothing. What insertion makes
- * was examined by its last legality sweep, which repairs nothing either (common/insertion/legality_sweep.dev.h).
+ * Certification of a mesh in arrays (mesh_view.dev.h): examines every edge and repairs nothing. The mesh of insertion
+ * is certified by its last legality sweep, the one that found nothing to repair
+ * (common/insertion/legality_sweep.dev.h).
  */
 #ifndef CADT_CERTIFY_CERTIFY_H
 #define CADT_CERTIFY_CERTIFY_H
@@ -9,11 +10,15 @@
 #include "common/insertion/legality_sweep.dev.h"
 #include "common/mesh/mesh_view.dev.h"
 
-/* Examines the edges of `count` triangles from `begin` on, each edge once, from the triangle that comes first.
- * words[row] and on: edges examined; illegal edges, but for constrained ones; edges whose sides do not fit together,
- * and ghost triangles among the others; edges to the ghost at which the boundary turns back; the number of triangles
- * without a ghost if `triangle_count` is CADT_NONE, 0: there is no mesh. If `counted`, the rows behind are counters of
- * work. */
+/* Examines the edges of `count` triangles from `begin` on, each edge once, from the triangle that comes first. Adds to
+ *
+ *   words[row]        edges examined
+ *   words[row + 1]    illegal edges that are not constrained
+ *   words[row + 2]    edges whose sides do not fit together, and ghost triangles among the others
+ *   words[row + 3]    edges to the ghost at which the boundary turns back
+ *
+ * If `triangle_count` is CADT_NONE, the number of triangles without a ghost is words[row + CADT_CERTIFY_REAL]; 0: there
+ * is no mesh. If `counted`, the rows behind are counters of work. */
 CADT_KERNEL(cadt_certify, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* words, cadt_u32 row, cadt_u32 counted) {
   CADT_GROUP_COUNTERS(counters, counted);

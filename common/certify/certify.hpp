@@ -15,9 +15,9 @@ namespace cadt {
 [[nodiscard]] std::size_t certify_words(const Context& ctx);
 
 /// Launches the certification of edges of `mesh`, those of its triangles from `begin` on; waits for nothing. Counts in
-/// `words` from `row` on, a multiple of CADT_COUNTER_STRIDE; they must be 0 before the first launch. If the mesh has
-/// CADT_NONE triangles, their number is one of the words, 0 if there is no mesh.
-void launch_certify(Context& ctx, const ReadOnlyMesh& mesh, std::size_t begin, std::size_t size,
+/// `words` from `row` on, a multiple of CADT_COUNTER_STRIDE; they must be 0 before the first launch. If the
+/// view has CADT_NONE triangles, the kernel reads their number from the words.
+void launch_certify(Context& ctx, const DeviceMeshView& mesh, std::size_t begin, std::size_t size,
                     const Allocation& words, std::size_t row);
 
 /// Checks the words for a mesh of n points. \throws InternalError if an edge is not as it should be

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arguments of kernels that travel together are one named group: `arguments()` gives them as a tuple of references, in
+// Kernel arguments that are always passed together form a group: `arguments()` gives them as a tuple of references, in
 // the order of the kernel's parameters.
 #pragma once
 

@@ -133,7 +133,7 @@ class Device {
   [[nodiscard]] virtual void* handle(const Buffer& buffer) const noexcept = 0;
   /// A new cache of freed buffers (buffer_cache.hpp); nullptr if the device itself caches memory that is freed.
   [[nodiscard]] virtual std::unique_ptr<BufferCache> make_cache();
-  /// Makes `bytes` more available without asking the system. Only for devices that cache memory.
+  /// Makes `bytes` more available without asking the system. Only where make_cache() is null.
   virtual void reserve(std::size_t /*bytes*/) {}
   /// Returns cached memory to the system.
   virtual void trim() {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Launches with a grid that fits the device, and the two primitives built from kernels: scan and sort.
+// Launches with a grid that fits the device; scan and sort, the device's own or from kernels.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace cadt {
 /// How elements are divided into work-items.
 struct LaunchGrid {
   std::uint32_t items;  ///< work-items
-  std::uint32_t grain;  ///< contiguous elements of one work-item (contiguous devices)
+  std::uint32_t grain;  ///< elements of a work-item; after grid_spread on GPUs, work-items of an element
 };
 
 class Launcher {

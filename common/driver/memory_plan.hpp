@@ -28,8 +28,8 @@ struct MemoryPlan {
   std::size_t largest_buffer = 0;
 };
 
-/// The plan of a call, fast or compact. Without stars there is one plan: its peak is writing the result (124 bytes a
-/// point) or, where the result goes straight to host memory, sorting the triangles (97).
+/// The plan of a call, fast or compact. Without stars there is one plan: its peak is dropping the locks, 124 bytes a
+/// point, or insertion, 97, where the arrays lie in host memory.
 [[nodiscard]] MemoryPlan plan_memory(const CallShape& call, bool stars, bool compact) noexcept;
 
 /// Whether the compact plan is the default: for input of floats, where memory counts. With input and result a call

@@ -16,7 +16,7 @@ constexpr std::size_t word = sizeof(std::uint32_t);
 /// Triangles without a ghost before each slot, and their number behind the last.
 Allocation rank_triangles(Context& ctx, const LockedTriangles& locked, MeshUse use) {
   Allocation ranks = ctx.memory.allocate((locked.slots + 1) * word);
-  const FlipHistogram flips(ctx, use == MeshUse::result);
+  const FlipHistogram flips(ctx, use == MeshUse::whole);
   const LaunchGrid c = ctx.launcher.grid_strided(locked.slots);
   ctx.launcher.run<KernelId::cadt_flag_triangles>(c.items, locked.triangles, ranks,
                                                   static_cast<std::uint32_t>(locked.slots), c.grain, flips);
@@ -49,14 +49,14 @@ Mesh drop_locks(Context& ctx, LockedTriangles locked, std::uint32_t first_unused
 
 Mesh drop_locks_of_sets(Context& ctx, LockedTriangles locked, std::span<const std::uint32_t> first_slots,
                         Allocation& set_starts) {
-  const Allocation ranks = rank_triangles(ctx, locked, MeshUse::stitching);
+  const Allocation ranks = rank_triangles(ctx, locked, MeshUse::part);
   const auto sets = static_cast<std::uint32_t>(first_slots.size());
   const Allocation slots = ctx.memory.allocate(sets * word);
   ctx.device.write(*slots, 0, first_slots.data(), sets * word);
   set_starts = ctx.memory.allocate(sets * word);
   const LaunchGrid c = ctx.launcher.grid(sets);
   ctx.launcher.run<KernelId::cadt_gather_words>(c.items, ranks, slots, set_starts, sets, c.grain);
-  return write_arrays(ctx, locked, ranks, CADT_NONE, MeshUse::stitching);
+  return write_arrays(ctx, locked, ranks, CADT_NONE, MeshUse::part);
 }
 
 }  // namespace cadt

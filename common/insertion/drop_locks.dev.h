@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * After the last legality sweep nobody changes the mesh any more: the locked triangles become the arrays that all
- * others read (common/mesh/mesh_view.dev.h), three vertices and three half-edges a triangle, without gaps, the ghost
- * triangles at the end.
+ * After the last legality sweep nobody changes the mesh any more. The locked triangles become the arrays that all later
+ * stages read (common/mesh/mesh_view.dev.h), three vertices and three half-edges a triangle, without gaps. Ghost
+ * triangles come last; batches drop them.
  *
  *    slots     0   1   2   3   4   5   6   7        g: ghost, -: never used
  *              a   g   b   c   -   -   g   d
  *    ranks     0   1   1   2   3   3   3   3   4    real triangles before; the last is their number
- *    arrays    a   b   c   d   g   g                ghosts: 4 + slot - unused slots before - rank
+ *    arrays    a   b   c   d   g   g                ghosts: real triangles (4) + slot - unused slots before - rank
  */
 #ifndef CADT_INSERTION_DROP_LOCKS_H
 #define CADT_INSERTION_DROP_LOCKS_H

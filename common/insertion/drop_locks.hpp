@@ -18,8 +18,8 @@ struct LockedTriangles {
   std::size_t slots = 0;
 };
 
-/// The mesh of locked triangles, certified; without points and input ids. `first_unused`: the two slots from there on
-/// are the only ones not in use. \throws OutOfMemory
+/// The arrays of locked triangles, marked as certified; without points and input ids. `first_unused`: the two slots
+/// from there on are the only ones not in use. \pre the last legality sweep found nothing to repair \throws OutOfMemory
 [[nodiscard]] Mesh drop_locks(Context& ctx, LockedTriangles locked, std::uint32_t first_unused, MeshUse use);
 
 /// The same for the sets of a batch, whose triangles have slots of their own from `first_slots` on; the last one of

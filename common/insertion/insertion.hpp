@@ -11,8 +11,8 @@
 
 namespace cadt {
 
-/// Inserts all points level by level, legalises, and certifies by legality sweeps. The mesh has no points.
-[[nodiscard]] Mesh insert_incrementally(Context& ctx, SortedPoints points, MeshUse use = MeshUse::result);
+/// Inserts all points level by level, certifies by legality sweeps and drops the locks. Mesh::points is null.
+[[nodiscard]] Mesh insert_incrementally(Context& ctx, SortedPoints points, MeshUse use = MeshUse::whole);
 
 /// Legality sweeps over a mesh made otherwise, of two locked triangles a point; `edges`: how many it has, those to the
 /// ghost included.

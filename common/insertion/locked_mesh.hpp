@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mesh on the device while points are inserted, with what its kernels take besides.
+// The mesh during insertion, and the other arguments of its kernels.
 #pragma once
 
 #include <cstdint>

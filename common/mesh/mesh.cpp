@@ -6,7 +6,7 @@ namespace cadt {
 MeshArray make_mesh_array(Context& ctx, std::size_t triangles, MeshUse use) {
   const std::size_t bytes = 3 * triangles * sizeof(std::uint32_t);
   MeshArray array;
-  if (use == MeshUse::result && ctx.result_on_host) {
+  if (use == MeshUse::whole && ctx.result_on_host) {
     array.host = make_words(3 * triangles);
     array.device = ctx.memory.export_to(array.host.get(), bytes);
     if (array.device) return array;

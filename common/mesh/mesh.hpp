@@ -12,8 +12,8 @@
 
 namespace cadt {
 
-/// Three words a triangle, which may become an array of the result: then they are in the result's memory, on the host
-/// if it can be written from the device.
+/// Three words a triangle. If the array may become one of a result on the host, and the device can write there, it lies
+/// there from the beginning.
 struct MeshArray {
   Words host;  ///< what `device` aliases, if that is memory of the host
   Allocation device;
@@ -28,14 +28,15 @@ struct MeshArray {
 
 /// What becomes of a mesh.
 enum class MeshUse {
-  result,    ///< its arrays are those of the result, if the call asks for memory of the host
-  stitching  ///< a part of another mesh
+  whole,  ///< its arrays may become those of the result, so they lie where that goes
+  part    ///< a part of another mesh
 };
 
 /// \throws OutOfMemory
 [[nodiscard]] MeshArray make_mesh_array(Context& ctx, std::size_t triangles, MeshUse use);
 
-/// A mesh in arrays (common/mesh/mesh_view.dev.h). No stage changes it but by making another one.
+/// A mesh in arrays (common/mesh/mesh_view.dev.h), which may be longer than needed. After certification only
+/// renumbering changes it.
 struct Mesh {
   Allocation points;               ///< of the vertices; null if nobody needs them any more
   Allocation input_ids;            ///< of the vertices
@@ -44,7 +45,7 @@ struct Mesh {
   std::size_t triangles = 0;       ///< the first so many have no ghost vertex
   std::size_t all = 0;             ///< with ghost triangles
   bool flat = false;               ///< no triangles: all vertices are collinear, or there are fewer than three
-  bool certified = false;          ///< insertion's last legality sweep has examined all edges
+  bool certified = false;          ///< a pass has examined all edges already
 
   [[nodiscard]] static Mesh without_triangles(Allocation input_ids) {
     Mesh mesh;
@@ -55,7 +56,7 @@ struct Mesh {
 };
 
 /// CADT_MESH_VIEW_PARAMETERS: a mesh within a run, or the arrays of a finished one.
-struct ReadOnlyMesh {
+struct DeviceMeshView {
   const Allocation &points, &vertices, &across, &edge_flags;
   std::uint32_t triangles, all;
   std::uint32_t edge_bits;  ///< 2: half-edges across; 0: triangles
@@ -66,7 +67,7 @@ struct ReadOnlyMesh {
 };
 
 /// `points`: of the vertices; null if the kernel reads none.
-[[nodiscard]] inline ReadOnlyMesh view_of(const Mesh& mesh, const Allocation& points) {
+[[nodiscard]] inline DeviceMeshView view_of(const Mesh& mesh, const Allocation& points) {
   return {points,
           mesh.vertices.device,
           mesh.half_edges.device,

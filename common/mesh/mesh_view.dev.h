@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The mesh as all see it who only read: certification, output, and whoever has a question. It has the form of
- * locked_mesh.dev.h without lock words and flip counters, since nobody changes it: three vertices a triangle,
- * counterclockwise, and three words that tell what lies across the edges opposite of them. One view fits both forms:
+ * The mesh for kernels that only read: certification, stitching, output, the verifier. Three vertices a triangle,
+ * counterclockwise, and three words for what lies across the edges opposite of them, as in locked_mesh.dev.h, but
+ * without lock words and flip counters. One view fits both forms:
  *
- *   within a run        vertices are positions of `points` as sorted; across stand half-edges (4 * triangle + edge);
- *                       ghost triangles come last
- *   of a finished mesh  vertices are indices of the input; across stand triangles, CADT_NONE outside of the hull
+ *   within a run        vertices are indices of `points`; across stand half-edges (4 * triangle + edge); ghost
+ * triangles come last of a finished mesh  vertices are indices of the input; across stand triangles, CADT_NONE outside
+ * of the hull
  *
  * A vertex is an index of `points` and nothing more: what comes after the sort may add points behind the others.
  */
@@ -38,7 +38,7 @@ typedef struct {
   view.all = all_count;            \
   view.edge_bits = edge_bits
 
-/* Vertex k of triangle t; CADT_GHOST in one of a ghost triangle. */
+/* Vertex k of triangle t. One vertex of a ghost triangle is CADT_GHOST. */
 CADT_FN cadt_u32 cadt_vertex_of(const cadt_mesh_view* m, cadt_u32 t, cadt_u32 k) { return m->vertices[3u * t + k]; }
 
 /* The triangle across edge k of triangle t, CADT_NONE outside of the hull. */

@@ -70,8 +70,8 @@ CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_u32* vertices, CADT_GL
   }
 }
 
-/* Sorts each bucket by the second vertex. A high-degree vertex may have a long bucket, the hub of a wheel one triangle
- * a point: heap sort takes those; the longest are sorted as one list by all work-items, if there is memory for it. */
+/* Sorts each bucket by the second vertex: insertion sort up to CADT_SHORT_BUCKET, heap sort above. The longest, around
+ * vertices of high degree, are sorted together by all work-items if there is memory for it. */
 CADT_FN void cadt_sift_down(CADT_GLOBAL cadt_member* bucket, cadt_u32 at, cadt_u32 size) {
   const cadt_member moving = bucket[at];
   for (;;) {

@@ -24,9 +24,9 @@ CADT_FN cadt_triangle cadt_in_input_ids(CADT_GLOBAL const cadt_u32* input_ids, c
   return t;
 }
 
-/* Writes the triangles to their places, behind `first` others that have nothing to do with them: `numbers` of the
- * triangles, null: as they are. In the order of the mesh, so that what is read (numbers of neighbours, input ids) is
- * near. A result that is null is left out. Without numbers the results may be the arrays of the mesh. */
+/* Writes triangle t to place first + numbers[t], or first + t if `numbers` is null. In the order of the mesh, so that
+ * what is read (numbers of neighbours, input ids) is near. Results that are null are skipped. Without numbers they may
+ * be the arrays of the mesh. */
 CADT_KERNEL(cadt_write_triangles, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u32* input_ids,
             CADT_GLOBAL const cadt_u32* numbers, CADT_GLOBAL cadt_u32* triangles, CADT_GLOBAL cadt_u32* neighbors,
             CADT_GLOBAL cadt_u32* flags, cadt_u32 first, cadt_u32 grain) {

@@ -13,8 +13,8 @@ constexpr std::size_t word = sizeof(std::uint32_t);
 /// Below, a few launches take longer than memory is worth.
 constexpr std::size_t small = std::size_t{1} << 18;
 
-/// Whether the arrays of the mesh become those of the result: in the order that they have, to save memory, or because
-/// what earlier stages have released is cached and not free for a second array.
+/// Whether the arrays of the mesh become those of the result: in the fast order, with the compact plan, or where cached
+/// buffers leave no memory for a second array.
 bool in_place(const Context& ctx, const Mesh& mesh) noexcept {
   if (ctx.options.order == Order::fast || ctx.plan.compact) return true;
   return !mesh.vertices.host && ctx.memory.caches() && mesh.all * word >= small;
@@ -35,10 +35,10 @@ ResultArrays write_result(Context& ctx, Mesh mesh, std::size_t points) {
   const Allocation numbers = number_triangles(ctx, mesh, points), none;
   ctx.check("output", 0.95);
   // one after the other, so that the second reuses the memory of the mesh's half-edges
-  result.neighbors = make_mesh_array(ctx, result.count, MeshUse::result);
+  result.neighbors = make_mesh_array(ctx, result.count, MeshUse::whole);
   write_triangles(ctx, mesh, numbers, {none, result.neighbors.device, none});
   mesh.half_edges.release();
-  result.triangles = make_mesh_array(ctx, result.count, MeshUse::result);
+  result.triangles = make_mesh_array(ctx, result.count, MeshUse::whole);
   if (mesh.edge_flags) result.edge_flags = ctx.memory.allocate(result.count * word);
   write_triangles(ctx, mesh, numbers, {result.triangles.device, none, result.edge_flags});
   return result;

@@ -16,7 +16,7 @@ struct ResultArrays {
   std::size_t count = 0;
 };
 
-/// Renumbers the triangles of a mesh of `points` input points in the order that the options name and writes them.
+/// Renumbers the triangles in the order that the options ask for, and writes them. `points`: number of input points.
 [[nodiscard]] ResultArrays write_result(Context& ctx, Mesh mesh, std::size_t points);
 
 }  // namespace cadt

@@ -26,7 +26,8 @@ typedef struct {
   cadt_u32 apart;           /* the triangles without the ghost come before the others */
 } cadt_wrap_set;
 
-/* What a triangle of a vertex with its star vertices a and b adds to the packed count. */
+/* What a triangle of a vertex with its star vertices a and b adds to the packed count: triangles without the ghost in
+ * the upper 16 bits, ghost triangles in the lower. */
 CADT_FN cadt_u32 cadt_wrap_packed_one(cadt_u32 apart, cadt_u32 a, cadt_u32 b) {
   return apart && a != CADT_GHOST && b != CADT_GHOST ? 0x10000u : 1u;
 }
@@ -85,7 +86,7 @@ CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
 }
 
 /* The same for the batched sets, which have no high-degree vertices; sets that have failed lose their stars. Each set
- * has two slots a vertex: two of them belong to its last vertex and stay empty, as do all of a set without stars. */
+ * has 2n slots and 2n - 2 triangles: its last two slots stay empty, as do all of a set without stars. */
 CADT_KERNEL(cadt_batch_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count,
             CADT_GLOBAL const cadt_u32* states, cadt_u32 n, cadt_u32 grain, CADT_GLOBAL cadt_u32* owned) {
@@ -247,7 +248,7 @@ CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
   }
 }
 
-/* The meshes of batched sets as locked triangles, which have no high-degree vertices. CADT_WRAP_SHARES work-items a
+/* Writes batched sets as locked triangles. These sets have no high-degree vertices. CADT_WRAP_SHARES work-items a
  * vertex. \pre no triangle is missing */
 CADT_KERNEL(cadt_batch_locked, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases, cadt_u32 n, cadt_u32 grain,

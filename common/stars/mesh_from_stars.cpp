@@ -38,7 +38,7 @@ Mesh build_residual(Context& ctx, SortedPoints points, std::size_t all, const Bu
       return std::move(*wrapped);
     }
   }
-  return insert_incrementally(ctx, std::move(points), MeshUse::stitching);
+  return insert_incrementally(ctx, std::move(points), MeshUse::part);
 }
 
 class StarStage {
@@ -153,14 +153,14 @@ class StarStage {
     mesh_.all = 2 * n_ - 2;
     const std::uint32_t groups = (count_ - 1) / CADT_ASSEMBLY_LANES + 1;
     const LaunchGrid c = launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES);
-    mesh_.half_edges = make_mesh_array(ctx_, mesh_.all, MeshUse::result);
+    mesh_.half_edges = make_mesh_array(ctx_, mesh_.all, MeshUse::whole);
     open_ = ctx_.memory.allocate(std::size_t{open_count_} * word);
     const Allocation firsts = ctx_.memory.allocate((groups + std::size_t{1}) * word);
     launch_.run<KernelId::cadt_star_half_edges>(c.items, stars_.star_vertices, stars_.begins, marks_, bases_, proven_,
                                                 count_, groups, c.grain, mesh_.half_edges, firsts, open_, totals_);
     bases_.release();
     if (!ctx_.plan.compact || !write_vertices_in_place(firsts, groups)) {
-      mesh_.vertices = make_mesh_array(ctx_, mesh_.all, MeshUse::result);
+      mesh_.vertices = make_mesh_array(ctx_, mesh_.all, MeshUse::whole);
       write_vertices(firsts, 0, groups, mesh_.vertices.device);
     }
     ctx_.end_phase("assemble");
@@ -217,7 +217,7 @@ class StarStage {
     ctx_.statistics.certified_edges = certified;  // only those of the whole mesh count
     if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
     const Allocation none;
-    const ReadOnlyMesh residual_mesh = view_of(smaller, none);
+    const DeviceMeshView residual_mesh = view_of(smaller, none);
 
     const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
     const auto mask = static_cast<std::uint32_t>(places - 1), all = residual_mesh.all;

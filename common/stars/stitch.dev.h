@@ -18,7 +18,7 @@
  * An open triangle has one proven vertex; its edge 0 is opposite of that. The two parts meet in such edges: an open
  * triangle on one side, the residual mesh on the other. They cut the residual mesh into components; a component is
  * hidden if an open triangle lies on the same side of an edge as one of its triangles: there the proven part covers it.
- * Constrained edges come after stitching: neither part has any.
+ * Stitched meshes have no constrained edges.
  */
 #ifndef CADT_STARS_STITCH_H
 #define CADT_STARS_STITCH_H

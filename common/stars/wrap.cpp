@@ -114,7 +114,7 @@ class Wrapping {
     mesh.half_edges = make_mesh_array(ctx_, mesh.all, use);
     write(mesh, {edges_});
     ctx_.end_phase("wrap");
-    const bool certifies = use == MeshUse::result;
+    const bool certifies = use == MeshUse::whole;
     if (certifies) launch_certify(ctx_, unnumbered_view(mesh), 0, mesh.all, bases_, row());
     std::vector<std::uint32_t> words(row() + certify_words(ctx_) - n_);
     ctx_.device.read(*bases_, n_ * word, words.data(), words.size() * word);
@@ -147,8 +147,8 @@ class Wrapping {
   }
 
   /// The mesh whose number of triangles only the device knows.
-  [[nodiscard]] ReadOnlyMesh unnumbered_view(const Mesh& mesh) const {
-    ReadOnlyMesh view = view_of(mesh, points_);
+  [[nodiscard]] DeviceMeshView unnumbered_view(const Mesh& mesh) const {
+    DeviceMeshView view = view_of(mesh, points_);
     view.triangles = CADT_NONE;
     return view;
   }
@@ -314,11 +314,11 @@ std::optional<Mesh> wrap(Context& ctx, const Allocation& points, std::size_t n, 
 }  // namespace
 
 std::optional<Mesh> wrap_part(Context& ctx, const Allocation& points, std::size_t n, std::size_t all) {
-  return wrap(ctx, points, n, all, MeshUse::stitching);
+  return wrap(ctx, points, n, all, MeshUse::part);
 }
 
 std::optional<Mesh> wrap_mesh(Context& ctx, const SortedPoints& order) {
-  return wrap(ctx, order.points, order.distinct, order.distinct, MeshUse::result);
+  return wrap(ctx, order.points, order.distinct, order.distinct, MeshUse::whole);
 }
 
 }  // namespace cadt

@@ -106,7 +106,7 @@ class OnDevice : private Outcome {
     if (ctx_.device.shape().contiguous) return launch_.grid(count);
     return {static_cast<std::uint32_t>(std::min(count, strided_items)), 1};
   }
-  [[nodiscard]] ReadOnlyMesh view() const {
+  [[nodiscard]] DeviceMeshView view() const {
     return {input_.points,
             input_.triangles,
             input_.neighbors,

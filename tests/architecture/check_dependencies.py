@@ -34,8 +34,8 @@ ONLY = [
     (r"common/.*\.dev\.h$", DEVICE_TEXT),
     (r"kernels_cl/", r"kernels_cl/|" + DEVICE_TEXT),
     (r"kernels_cuda/", r"kernels_cuda/|" + DEVICE_TEXT),
-    # The verifier's kernels share nothing with the builder's.
-    (r"common/verify/device/.*\.dev\.h$", r"common/verify/device/|common/portable/(dialect|atomics)\.dev\.h$"),
+    # The verifier's kernels share nothing with the builder's but the view of a mesh.
+    (r"common/verify/device/.*\.dev\.h$", r"common/verify/device/|common/portable/(dialect|atomics)\.dev\.h$|common/mesh/mesh_view\.dev\.h$"),
     # What all stages share knows no stage, but for the text of the kernels, of which it takes layouts and parameters.
     (r"common/driver/(?!triangulat|device_triangulation|choose_strategy|build|session).*\.hpp$", r"common/driver/|include/|common/portable/"),
 ]
@@ -153,12 +153,15 @@ def self_test():
         ("common/points/g2.dev.h", '#include "common/points/p.hpp"', False),
         ("common/verify/device/g3.dev.h", '#include "common/points/g.dev.h"', False),
         ("common/verify/device/g3.dev.h", '#include "common/portable/dialect.dev.h"', True),
+        ("common/verify/device/g3.dev.h", '#include "common/mesh/mesh_view.dev.h"', True),
+        ("common/verify/device/g3.dev.h", '#include "common/mesh/locked_mesh.dev.h"', False),
         ("common/points/g2.dev.h", '#include "backends/host/f.hpp"', False),
         ("common/points/g2.dev.h", '#include "missing.h"', False),
         ("tests/t.cpp", '#include "common/driver/d.hpp"', True),
     ]
     present = ["include/cadt/b.hpp", "include/cadt/io/c.hpp", "common/driver/d.hpp", "common/points/p.hpp", "io/support/e.hpp",
-               "backends/host/f.hpp", "common/points/g.dev.h", "common/portable/dialect.dev.h"]
+               "backends/host/f.hpp", "common/points/g.dev.h", "common/portable/dialect.dev.h",
+               "common/mesh/mesh_view.dev.h", "common/mesh/locked_mesh.dev.h"]
     failed = 0
     for source, line, allowed in cases:
         with tempfile.TemporaryDirectory() as folder:

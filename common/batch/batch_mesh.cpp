@@ -180,8 +180,8 @@ class BatchStage {
     std::vector<std::uint32_t> first_slots = result_.positions;  // two a vertex
     for (std::uint32_t& slot : first_slots) slot *= 2;
     order_.points.release();
-    result_.mesh = drop_locks_of_sets(ctx_, {std::move(locked_), {}, 2 * n_}, first_slots, result_.set_starts);
-    result_.mesh.input_ids = std::move(order_.input_ids);
+    result_.mesh =
+        drop_locks_of_sets(ctx_, {std::move(locked_), {}, 2 * n_}, first_slots, order_.input_ids, result_.set_starts);
   }
 
   /// Individually: sets classified so, and those with a vertex without a star.

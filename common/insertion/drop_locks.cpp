@@ -25,30 +25,36 @@ Allocation rank_triangles(Context& ctx, const LockedTriangles& locked, MeshUse u
   return ranks;
 }
 
-Mesh write_arrays(Context& ctx, const LockedTriangles& locked, const Allocation& ranks, std::uint32_t unused,
-                  MeshUse use) {
+/// Null `input_ids`: a part, with ghosts.
+Mesh write_arrays(Context& ctx, const LockedTriangles& locked, const Allocation& ranks, std::uint32_t first_unused,
+                  const Allocation& input_ids, MeshUse use) {
   Mesh mesh;
+  mesh.finished = static_cast<bool>(input_ids);
   mesh.triangles = ctx.launcher.read_word(ranks, locked.slots);
-  mesh.all = unused == CADT_NONE ? mesh.triangles : locked.slots - 2;
+  mesh.all = mesh.finished ? mesh.triangles : locked.slots - 2;
   mesh.vertices = make_mesh_array(ctx, mesh.all, use);
-  mesh.half_edges = make_mesh_array(ctx, mesh.all, use);
+  mesh.across = make_mesh_array(ctx, mesh.all, use);
   if (locked.edge_flags) mesh.edge_flags = ctx.memory.allocate(mesh.all * word);
   mesh.certified = true;
   const LaunchGrid c = ctx.launcher.grid(locked.slots);
-  ctx.launcher.run<KernelId::cadt_drop_locks>(c.items, locked.triangles, locked.edge_flags, ranks,
-                                              static_cast<std::uint32_t>(locked.slots), unused, c.grain, mesh.vertices,
-                                              mesh.half_edges, mesh.edge_flags);
+  ctx.launcher.run<KernelId::cadt_drop_locks>(
+      c.items, locked.triangles, locked.edge_flags, ranks, static_cast<std::uint32_t>(locked.slots),
+      mesh.finished ? CADT_NONE : first_unused, input_ids, c.grain, mesh.vertices, mesh.across, mesh.edge_flags);
   return mesh;
 }
 
 }  // namespace
 
-Mesh drop_locks(Context& ctx, LockedTriangles locked, std::uint32_t first_unused, MeshUse use) {
-  return write_arrays(ctx, locked, rank_triangles(ctx, locked, use), first_unused, use);
+Mesh drop_locks(Context& ctx, LockedTriangles locked, std::uint32_t first_unused, Allocation input_ids, MeshUse use) {
+  const Allocation ranks = rank_triangles(ctx, locked, use);
+  if (use == MeshUse::whole) return write_arrays(ctx, locked, ranks, first_unused, input_ids, use);
+  Mesh mesh = write_arrays(ctx, locked, ranks, first_unused, {}, use);
+  mesh.input_ids = std::move(input_ids);
+  return mesh;
 }
 
 Mesh drop_locks_of_sets(Context& ctx, LockedTriangles locked, std::span<const std::uint32_t> first_slots,
-                        Allocation& set_starts) {
+                        const Allocation& input_ids, Allocation& set_starts) {
   const Allocation ranks = rank_triangles(ctx, locked, MeshUse::part);
   const auto sets = static_cast<std::uint32_t>(first_slots.size());
   const Allocation slots = ctx.memory.allocate(sets * word);
@@ -56,7 +62,7 @@ Mesh drop_locks_of_sets(Context& ctx, LockedTriangles locked, std::span<const st
   set_starts = ctx.memory.allocate(sets * word);
   const LaunchGrid c = ctx.launcher.grid(sets);
   ctx.launcher.run<KernelId::cadt_gather_words>(c.items, ranks, slots, set_starts, sets, c.grain);
-  return write_arrays(ctx, locked, ranks, CADT_NONE, MeshUse::part);
+  return write_arrays(ctx, locked, ranks, CADT_NONE, input_ids, MeshUse::part);
 }
 
 }  // namespace cadt

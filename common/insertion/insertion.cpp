@@ -81,9 +81,7 @@ class IncrementalInsertion {
     ctx_.end_phase("insert");
     LockedTriangles locked = finish(3 * std::uint64_t{n_} - 3);
     own_->points.release();
-    Mesh mesh = drop_locks(ctx_, std::move(locked), 2 * mesh_.third, use);
-    mesh.input_ids = std::move(own_->input_ids);
-    return mesh;
+    return drop_locks(ctx_, std::move(locked), 2 * mesh_.third, std::move(own_->input_ids), use);
   }
 
   /// No point is located in a complete mesh: vertex_to_triangle is written by repairs only, and the seed triangle is

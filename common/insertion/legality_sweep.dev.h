@@ -46,8 +46,8 @@ CADT_FN void cadt_sweep_edges(const cadt_locked_mesh* m, const cadt_u32* half_ed
     if (!cadt_is_unlocked(lock) || !cadt_is_unlocked(lock_across) ||
         cadt_load_field(n + CADT_WORD_HALF_EDGE + j) != half_edges[e]) {
       found->unsettled++;
-    } else if (cadt_is_illegal(m, p, a, b, q, counters) &&
-               !cadt_edge_is_constrained(m, CADT_TRIANGLE_OF(half_edges[e]), k)) {
+    } else if (cadt_is_illegal(m, p, a, b, q, counters)) {
+      if (cadt_edge_is_constrained(m, CADT_TRIANGLE_OF(half_edges[e]), k)) continue;
       if (cadt_is_stabilized(m, CADT_TRIANGLE_OF(half_edges[e]), k, p, a, b, q)) {
         found->stabilized++;
         continue;
@@ -111,8 +111,8 @@ CADT_KERNEL(cadt_legality_sweep, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 begin, ca
       if (!cadt_is_unlocked(s.lock) || !cadt_is_unlocked(u.lock) || u.n0 != CADT_HALF_EDGE(t, k)) {
         ++unsettled;
       } else if (cadt_is_illegal(&mesh, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)), CADT_VERTEX(s, CADT_PREV(k)),
-                                 u.v0, &counters) &&
-                 !cadt_edge_is_constrained(&mesh, t, k)) {
+                                 u.v0, &counters)) {
+        if (cadt_edge_is_constrained(&mesh, t, k)) continue;
         if (cadt_is_stabilized(&mesh, t, k, CADT_VERTEX(s, k), CADT_VERTEX(s, CADT_NEXT(k)),
                                CADT_VERTEX(s, CADT_PREV(k)), u.v0)) {
           ++stabilized;

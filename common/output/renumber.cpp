@@ -156,9 +156,11 @@ void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& numbers, 
 }
 
 void renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {
-  const Allocation as_they_are;
-  write_triangles(ctx, mesh, as_they_are, {mesh.vertices.device, mesh.half_edges.device, mesh.edge_flags});
-  mesh.input_ids.release();
+  if (!mesh.finished) {
+    const Allocation as_they_are;
+    write_triangles(ctx, mesh, as_they_are, {mesh.vertices.device, mesh.across.device, mesh.edge_flags});
+    mesh.input_ids.release();
+  }
   const Allocation numbers = number_triangles(ctx, mesh, points);
   if (!numbers) return;
   const auto count = static_cast<std::uint32_t>(mesh.triangles);
@@ -171,7 +173,7 @@ void renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {
     }
   };
   move(mesh.vertices.device, 3, 0);
-  move(mesh.half_edges.device, 3, 1);
+  move(mesh.across.device, 3, 1);
   move(mesh.edge_flags, 1, 0);
 }
 

@@ -5,24 +5,8 @@
 #ifndef CADT_OUTPUT_RENUMBER_H
 #define CADT_OUTPUT_RENUMBER_H
 
+#include "common/mesh/finished_triangle.dev.h"
 #include "common/mesh/mesh_view.dev.h"
-
-/* A triangle in input ids, rotated so that the smallest comes first; `slot` is where that vertex was. */
-typedef struct {
-  cadt_u32 a, b, c, slot;
-} cadt_triangle;
-
-/* Null `input_ids`: the vertices are input ids already. */
-CADT_FN cadt_triangle cadt_in_input_ids(CADT_GLOBAL const cadt_u32* input_ids, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2) {
-  const cadt_u32 x = input_ids ? input_ids[v0] : v0, y = input_ids ? input_ids[v1] : v1,
-                 z = input_ids ? input_ids[v2] : v2;
-  cadt_triangle t;
-  t.slot = x < y ? (x < z ? 0u : 2u) : (y < z ? 1u : 2u);
-  t.a = CADT_PICK(t.slot, x, y, z);
-  t.b = CADT_PICK(t.slot, y, z, x);
-  t.c = CADT_PICK(t.slot, z, x, y);
-  return t;
-}
 
 /* Writes triangle t to place first + numbers[t], or first + t if `numbers` is null. In the order of the mesh, so that
  * what is read (numbers of neighbours, input ids) is near. Results that are null are skipped. Without numbers they may
@@ -41,19 +25,10 @@ CADT_KERNEL(cadt_write_triangles, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const c
         n[k] = cadt_neighbor_of(&mesh, t, k);
         if (numbers && n[k] != CADT_NONE) n[k] = numbers[n[k]];
       }
-      neighbors[3u * at] = CADT_PICK(r.slot, n[0], n[1], n[2]);
-      neighbors[3u * at + 1u] = CADT_PICK(r.slot, n[1], n[2], n[0]);
-      neighbors[3u * at + 2u] = CADT_PICK(r.slot, n[2], n[0], n[1]);
+      cadt_write_finished_neighbors(neighbors, at, r.slot, n[0], n[1], n[2]);
     }
-    if (triangles) {
-      triangles[3u * at] = r.a;
-      triangles[3u * at + 1u] = r.b;
-      triangles[3u * at + 2u] = r.c;
-    }
-    if (flags) { /* edge k of the result is edge slot + k of the mesh */
-      const cadt_u32 f = mesh.edge_flags[t];
-      flags[at] = (f >> r.slot | f << (3u - r.slot)) & 7u;
-    }
+    if (triangles) cadt_write_finished_vertices(triangles, at, &r);
+    if (flags) flags[at] = cadt_turned_flags(mesh.edge_flags[t], r.slot);
   }
 }
 

@@ -28,7 +28,7 @@ ResultArrays write_result(Context& ctx, Mesh mesh, std::size_t points) {
   if (in_place(ctx, mesh)) {
     renumber_in_place(ctx, mesh, points);
     result.triangles = std::move(mesh.vertices);
-    result.neighbors = std::move(mesh.half_edges);
+    result.neighbors = std::move(mesh.across);
     result.edge_flags = std::move(mesh.edge_flags);
     return result;
   }
@@ -37,7 +37,7 @@ ResultArrays write_result(Context& ctx, Mesh mesh, std::size_t points) {
   // one after the other, so that the second reuses the memory of the mesh's half-edges
   result.neighbors = make_mesh_array(ctx, result.count, MeshUse::whole);
   write_triangles(ctx, mesh, numbers, {none, result.neighbors.device, none});
-  mesh.half_edges.release();
+  mesh.across.release();
   result.triangles = make_mesh_array(ctx, result.count, MeshUse::whole);
   if (mesh.edge_flags) result.edge_flags = ctx.memory.allocate(result.count * word);
   write_triangles(ctx, mesh, numbers, {result.triangles.device, none, result.edge_flags});

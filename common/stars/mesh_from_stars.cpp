@@ -153,11 +153,11 @@ class StarStage {
     mesh_.all = 2 * n_ - 2;
     const std::uint32_t groups = (count_ - 1) / CADT_ASSEMBLY_LANES + 1;
     const LaunchGrid c = launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES);
-    mesh_.half_edges = make_mesh_array(ctx_, mesh_.all, MeshUse::whole);
+    mesh_.across = make_mesh_array(ctx_, mesh_.all, MeshUse::whole);
     open_ = ctx_.memory.allocate(std::size_t{open_count_} * word);
     const Allocation firsts = ctx_.memory.allocate((groups + std::size_t{1}) * word);
     launch_.run<KernelId::cadt_star_half_edges>(c.items, stars_.star_vertices, stars_.begins, marks_, bases_, proven_,
-                                                count_, groups, c.grain, mesh_.half_edges, firsts, open_, totals_);
+                                                count_, groups, c.grain, mesh_.across, firsts, open_, totals_);
     bases_.release();
     if (!ctx_.plan.compact || !write_vertices_in_place(firsts, groups)) {
       mesh_.vertices = make_mesh_array(ctx_, mesh_.all, MeshUse::whole);
@@ -240,7 +240,7 @@ class StarStage {
                           std::to_string(mesh_.all) + "; please report this with the input");
     mesh_.triangles = proven_triangles_ + launch_.read_word(ranks, smaller.triangles);
     launch_.run<KernelId::cadt_stitch_residual>(c.items, residual_mesh, covers, ranks, smaller.input_ids, c.grain,
-                                                proven_triangles_, mesh_.vertices, mesh_.half_edges);
+                                                proven_triangles_, mesh_.vertices, mesh_.across);
     ctx_.end_phase("stitch");
     ctx_.check("stitch", 0.8);
   }

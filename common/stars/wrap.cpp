@@ -111,7 +111,7 @@ class Wrapping {
     count();  // all from n on is read at once
     mesh.all = triangles();
     mesh.vertices = make_mesh_array(ctx_, mesh.all, use);
-    mesh.half_edges = make_mesh_array(ctx_, mesh.all, use);
+    mesh.across = make_mesh_array(ctx_, mesh.all, use);
     write(mesh, {edges_});
     ctx_.end_phase("wrap");
     const bool certifies = use == MeshUse::whole;
@@ -143,7 +143,7 @@ class Wrapping {
     const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
     launch_.run<KernelId::cadt_wrap_arrays>(shares.items, star_vertices_, begins_, sizes_, bases_,
                                             static_cast<std::uint32_t>(star_words()), static_cast<std::uint32_t>(row()),
-                                            of_high_degree, count_, shares.grain, mesh.vertices, mesh.half_edges);
+                                            of_high_degree, count_, shares.grain, mesh.vertices, mesh.across);
   }
 
   /// The mesh whose number of triangles only the device knows.

@@ -90,7 +90,7 @@ TEST_P(ConstrainedOutput, SameEdgesInBothOrders) {
         mesh.triangles = mesh.all = expected.number_of_triangles();
         mesh.input_ids = upload(from.input_ids);
         mesh.vertices.device = upload(from.vertices);
-        mesh.half_edges.device = upload(from.half_edges);
+        mesh.across.device = upload(from.half_edges);
         mesh.edge_flags = upload(from.edge_flags);
         const ResultArrays result = write_result(ctx, std::move(mesh), n);
         ASSERT_EQ(result.count, expected.number_of_triangles());

@@ -128,8 +128,8 @@ class ConstrainedMesh {
     cadt_flag_triangles(0, 1, locked_.data(), ranks.data(), slots, slots, nullptr);
     std::uint32_t sum = 0;
     for (std::uint32_t& rank : ranks) sum += std::exchange(rank, sum);
-    cadt_drop_locks(0, 1, locked_.data(), flags_.data(), ranks.data(), slots, 2 * mesh_.third, slots, vertices.data(),
-                    half_edges.data(), flags.data());
+    cadt_drop_locks(0, 1, locked_.data(), flags_.data(), ranks.data(), slots, 2 * mesh_.third, nullptr, slots,
+                    vertices.data(), half_edges.data(), flags.data());
     std::set<Edge> all;
     for (std::uint32_t i = 0; i < 3 * (slots - 2); ++i)
       if (flags[i / 3] >> (i % 3) & 1U)

@@ -222,8 +222,8 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
   for (std::uint32_t r = before; r <= slots; ++r) sum += std::exchange(numbers[r], sum);
   ASSERT_EQ(numbers[slots], last);
   over(before, slots, [&](std::uint32_t item) {
-    cadt_drop_locks(item, slots, records.data(), nullptr, numbers.data(), slots, 2 * third, grain, vertices_of.data(),
-                    half_edges.data(), nullptr);
+    cadt_drop_locks(item, slots, records.data(), nullptr, numbers.data(), slots, 2 * third, nullptr, grain,
+                    vertices_of.data(), half_edges.data(), nullptr);
   });
   for (std::uint32_t t = before; t < all_triangles; ++t) {
     const std::size_t at = std::size_t{3} * t;

@@ -34,7 +34,7 @@ ResultArrays write_result(Context& ctx, Mesh mesh, std::size_t points) {
   }
   const Allocation numbers = number_triangles(ctx, mesh, points), none;
   ctx.check("output", 0.95);
-  // one after the other, so that the second reuses the memory of the mesh's half-edges
+  // one after the other, so that the second reuses the memory of one of the mesh's
   result.neighbors = make_mesh_array(ctx, result.count, MeshUse::whole);
   write_triangles(ctx, mesh, numbers, {none, result.neighbors.device, none});
   mesh.across.release();

@@ -26,40 +26,50 @@ constexpr Word none = 0xFFFFFFFF;
 
 Edge edge(Word a, Word b) { return std::minmax(a, b); }
 
-/// The mesh of some points as a stage hands it over: vertices in another order than the input, half-edges across.
+/// The mesh of some points as a stage hands it over: vertices and triangles in another order than in the result,
+/// triangles turned, half-edges across.
 struct MeshInArrays {
-  explicit MeshInArrays(const Triangulation& result) : input_ids(result.number_of_points()) {
-    std::mt19937 random(4);
-    std::iota(input_ids.begin(), input_ids.end(), 0U);
-    std::ranges::shuffle(input_ids, random);
+  explicit MeshInArrays(const Triangulation& result) {
+    const auto triangles = result.triangles(), neighbors = result.neighbors();
+    const std::size_t count = triangles.size() / 3;
+    input_ids = shuffled(result.number_of_points());
     std::vector<Word> position(input_ids.size());
     for (Word v = 0; v < input_ids.size(); ++v) position[input_ids[v]] = v;
-    const auto triangles = result.triangles(), neighbors = result.neighbors();
-    edge_flags.resize(triangles.size() / 3);
+    const std::vector<Word> place = shuffled(count);
+    // where edge k of triangle t of the result is, as a half-edge
+    const auto half_edge = [&](std::size_t t, std::size_t k) {
+      return 4 * place[t] + static_cast<Word>((k + place[t]) % 3);
+    };
+    vertices.resize(3 * count);
+    half_edges.resize(3 * count, none);
+    edge_flags.resize(count);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      vertices.push_back(position[static_cast<std::size_t>(triangles[i])]);
-      const std::int32_t n = neighbors[i];
-      const auto here = static_cast<std::int32_t>(i / 3);
-      Word across = none;
-      for (std::size_t j = 0; n >= 0 && j < 3; ++j)
-        if (neighbors[3 * static_cast<std::size_t>(n) + j] == here)
-          across = 4 * static_cast<Word>(n) + static_cast<Word>(j);
-      half_edges.push_back(across);
-      if (n > here && random() % 3 != 0) continue;
-      if (n >= here || n < 0) constrain(i, across, triangles);
+      const std::size_t t = i / 3, k = i % 3;
+      const Word here = half_edge(t, k), at = here / 4 * 3 + here % 4;
+      vertices[at] = position[static_cast<std::size_t>(triangles[i])];
+      const bool boundary = neighbors[i] < 0;
+      const auto n = static_cast<std::size_t>(std::max(neighbors[i], 0));
+      for (std::size_t j = 0; !boundary && j < 3; ++j)
+        if (neighbors[3 * n + j] == static_cast<std::int32_t>(t)) half_edges[at] = half_edge(n, j);
+      if (!boundary && (n < t || random_() % 3 != 0)) continue;
+      edge_flags[here / 4] |= 1U << here % 4;
+      if (!boundary) edge_flags[half_edges[at] / 4] |= 1U << half_edges[at] % 4;
+      constrained.insert(
+          edge(static_cast<Word>(triangles[3 * t + (k + 1) % 3]), static_cast<Word>(triangles[3 * t + (k + 2) % 3])));
     }
-  }
-
-  void constrain(std::size_t i, Word across, std::span<const std::int32_t> triangles) {
-    const std::size_t t = i / 3 * 3, k = i % 3;
-    edge_flags[i / 3] |= 1U << k;
-    if (across != none) edge_flags[across / 4] |= 1U << across % 4;
-    constrained.insert(
-        edge(static_cast<Word>(triangles[t + (k + 1) % 3]), static_cast<Word>(triangles[t + (k + 2) % 3])));
   }
 
   std::vector<Word> input_ids, vertices, half_edges, edge_flags;
   std::set<Edge> constrained;  ///< pairs of input ids
+
+ private:
+  std::vector<Word> shuffled(std::size_t count) {
+    std::vector<Word> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), 0U);
+    std::ranges::shuffle(numbers, random_);
+    return numbers;
+  }
+  std::mt19937 random_{4};
 };
 
 class ConstrainedOutput : public BackendTest {};

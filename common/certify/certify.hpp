@@ -23,7 +23,8 @@ void launch_certify(Context& ctx, const DeviceMeshView& mesh, std::size_t begin,
 /// Checks the words for a mesh of n points. \throws InternalError if an edge is not as it should be
 void read_certificate(Context& ctx, std::span<const std::uint32_t> words, std::size_t n);
 
-/// Certifies a mesh with its points. \throws InternalError if an edge is not as it should be: nothing is repaired
-void certify(Context& ctx, const Mesh& mesh);
+/// Certifies the mesh of n points, which it has. \throws InternalError if an edge is not as it should be: nothing is
+/// repaired
+void certify(Context& ctx, const Mesh& mesh, std::size_t n);
 
 }  // namespace cadt

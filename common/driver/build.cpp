@@ -29,8 +29,9 @@ Mesh build_by(const BuildStrategy& how, Context& ctx, SortedPoints points, const
 
 Mesh build(Context& ctx, SortedPoints points, const InputPoints& input) {
   const BuildStrategy how = choose_strategy(traits_of(ctx.device), ctx.options, profile_of(points));
+  const std::size_t n = points.distinct;  // not the mesh's own number, which may be wrong
   Mesh mesh = build_by(how, ctx, std::move(points), input);
-  if (!mesh.certified) certify(ctx, mesh);  // insertion's last legality sweep has certified its own
+  if (!mesh.certified) certify(ctx, mesh, n);  // insertion's last legality sweep has certified its own
   mesh.points.release();
   return mesh;
 }

@@ -9,6 +9,8 @@ foreach(candidate IN ITEMS ${Python3_EXECUTABLE} /usr/bin/python3)
     break()
   endif()
 endforeach()
-add_test(NAME bench.report COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1
-  ${report_python} ${CMAKE_CURRENT_LIST_DIR}/report_test.py -v)
-set_tests_properties(bench.report PROPERTIES LABELS bench TIMEOUT 900 SKIP_RETURN_CODE 77)
+foreach(part IN ITEMS report report_faults)
+  add_test(NAME bench.${part} COMMAND ${CMAKE_COMMAND} -E env PYTHONDONTWRITEBYTECODE=1
+    ${report_python} ${CMAKE_CURRENT_LIST_DIR}/${part}_test.py -v)
+  set_tests_properties(bench.${part} PROPERTIES LABELS bench TIMEOUT 900 SKIP_RETURN_CODE 77)
+endforeach()

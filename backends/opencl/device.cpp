@@ -13,9 +13,8 @@
 namespace cadt::opencl {
 namespace {
 
-// On a CPU a work-item processes a contiguous range of elements, so groups of one cost nothing and balance best. On
-// GPUs 128 leaves several resident groups a compute unit even for kernels with many registers.
-constexpr std::size_t cpu_group = 1, gpu_group = 128;
+// On a CPU a work-item processes a contiguous range of elements, so groups of one cost nothing and balance best.
+constexpr std::size_t cpu_group = 1;
 constexpr std::size_t largest_fill = std::size_t{1} << 30;
 
 std::size_t left_bytes(const SharedContext& shared) {
@@ -291,7 +290,8 @@ ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, KernelVariant variant) {
   const auto number = static_cast<std::size_t>(kernel);
   auto& slot = kernels_[static_cast<std::size_t>(variant)].at(number);
   if (!slot) {
-    const std::size_t group = work_group_size_ != 0 ? work_group_size_ : (info().gpu ? gpu_group : cpu_group);
+    const std::size_t group =
+        work_group_size_ != 0 ? work_group_size_ : (info().gpu ? shared_->device().gpu_group : cpu_group);
     slot = make_ready(kernel_names[number], variant, group);
   }
   return *slot;

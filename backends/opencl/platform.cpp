@@ -34,8 +34,11 @@ bool wished(const char* variable) {
 
 // For tests on machines without a GPU: with CADT_OPENCL_AS_GPU=1 every device is driven like a GPU (strided work-items,
 // relaxed accesses with fences, sort and scan of kernels_cl/primitives.cl). Correct on all devices, only slower on
-// CPUs.
-bool used_as_gpu() { return wished("CADT_OPENCL_AS_GPU"); }
+// CPUs. A larger number is the size of its groups in addition. 0: no.
+unsigned long used_as_gpu() {
+  const char* wish = std::getenv("CADT_OPENCL_AS_GPU");
+  return wish != nullptr ? std::strtoul(wish, nullptr, 10) : 0;
+}
 
 // CADT_OPENCL_NO_FP64=1: devices are treated as the least that is usable: without double precision and without
 // subnormal floats.
@@ -66,7 +69,9 @@ void describe(FoundDevice& found) {
   info.largest_buffer_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   info.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
   found.gpu_hardware = (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
-  info.gpu = found.gpu_hardware || used_as_gpu();
+  const unsigned long as_gpu = used_as_gpu();
+  info.gpu = found.gpu_hardware || as_gpu != 0;
+  if (as_gpu > 1) found.gpu_group = as_gpu;
   info.watchdog = has_watchdog(device);
   found.vendor = trimmed(device.getInfo<CL_DEVICE_VENDOR>());
   found.device_version = trimmed(device.getInfo<CL_DEVICE_VERSION>());

@@ -15,6 +15,9 @@ struct FoundDevice {
   Facts facts;
   DeviceInfo info;
   bool gpu_hardware = false;  ///< the real type; tests may override info.gpu
+  /// Work-items of a group on GPUs: 128 leave several resident groups a compute unit even for kernels with many
+  /// registers.
+  std::size_t gpu_group = 128;
   std::string vendor, device_version, platform_version;
 };
 

@@ -41,7 +41,7 @@ std::vector<std::size_t> sorted(const Points& xy) {
   return ascending(xy.size() / 2, [&](std::size_t i) { return std::pair(xy[2 * i], xy[2 * i + 1]); });
 }
 
-std::vector<std::size_t> backwards(const Points& xy) {
+std::vector<std::size_t> last_first(const Points& xy) {
   std::vector<std::size_t> order = sorted(xy);
   std::reverse(order.begin(), order.end());
   return order;
@@ -82,7 +82,7 @@ std::vector<std::size_t> outwards(const Points& xy) {
 
 const std::vector<PointOrder>& point_orders() {
   static const std::vector<PointOrder> orders = {
-      {"random", by_random},    {"sorted", sorted},   {"reversed", backwards},
+      {"random", by_random},    {"sorted", sorted},   {"reversed", last_first},
       {"hilbert", along_curve}, {"radial", outwards},
   };
   return orders;

@@ -15,7 +15,7 @@ namespace {
 
 using namespace device_text;
 using Reals = std::span<const double>;
-using Call = std::function<void(Triangulator&)>;
+using Work = std::function<void(Triangulator&)>;
 
 class ExactLimits : public ResidentTest {
  protected:
@@ -26,7 +26,7 @@ class ExactLimits : public ResidentTest {
   }
   [[nodiscard]] bool on_host_itself() const { return GetParam().backend == Backend::host; }
 
-  void expect_refused(const Options& with, const Call& call, std::size_t needed, std::size_t available) {
+  void expect_refused(const Options& with, const Work& call, std::size_t needed, std::size_t available) {
     Triangulator triangulator(with);
     faults->clear();
     const auto error = thrown<OutOfMemory>([&] { call(triangulator); });
@@ -39,7 +39,7 @@ class ExactLimits : public ResidentTest {
 
   /// So many bytes as a bound of the caller's, and as all that the device has: then the call is not refused, but
   /// buffers that wait for a later phase or call take more, `waiting` in all.
-  void expect_exact(Options with, const Call& call, std::size_t bytes, std::size_t waiting) {
+  void expect_exact(Options with, const Work& call, std::size_t bytes, std::size_t waiting) {
     with.max_memory = bytes - 1;
     expect_refused(with, call, bytes, bytes - 1);
     with.max_memory = bytes;
@@ -61,7 +61,7 @@ class ExactLimits : public ResidentTest {
   }
 
   /// The largest buffer that the device makes.
-  void expect_exact_buffer(const Options& with, const Call& call, std::size_t bytes) {
+  void expect_exact_buffer(const Options& with, const Work& call, std::size_t bytes) {
     faults->largest_buffer_bytes = bytes - 1;
     expect_refused(with, call, bytes, bytes - 1);
     faults->largest_buffer_bytes = bytes;
@@ -84,14 +84,14 @@ TEST_P(ExactLimits, Insertion) {
   const Known known(uniform_points(20000));
   const DevicePoints points = upload(known.xy);
   const Options with = options(Strategy::locks);
-  const Call of_host = [&](Triangulator& t) { EXPECT_EQ(t.triangulate(Reals(known.xy)).hash(), known.mesh.hash()); };
-  const Call of_device = [&](Triangulator& t) {
+  const Work of_host = [&](Triangulator& t) { EXPECT_EQ(t.triangulate(Reals(known.xy)).hash(), known.mesh.hash()); };
+  const Work of_device = [&](Triangulator& t) {
     EXPECT_EQ(t.triangulate(points).download().hash(), known.mesh.hash());
   };
   const std::size_t waiting = Triangulator(with).memory_needed(known.size());
   expect_exact(with, of_host, fixed + (on_host_itself() ? 97 : 124) * known.size(), waiting);
   expect_exact(with, of_device, fixed + 124 * known.size(), waiting);
-  for (const Call& call : {of_host, of_device})
+  for (const Work& call : {of_host, of_device})
     expect_exact_buffer(with, call, 2 * known.size() * sizeof(cadt_locked_triangle));
 }
 
@@ -100,14 +100,14 @@ TEST_P(ExactLimits, Stars) {
   const Known known(uniform_points(40000));
   const DevicePoints points = upload(known.xy);
   const Options with = options(Strategy::stars);
-  const Call of_host = [&](Triangulator& t) { EXPECT_EQ(t.triangulate(Reals(known.xy)).hash(), known.mesh.hash()); };
-  const Call of_device = [&](Triangulator& t) {
+  const Work of_host = [&](Triangulator& t) { EXPECT_EQ(t.triangulate(Reals(known.xy)).hash(), known.mesh.hash()); };
+  const Work of_device = [&](Triangulator& t) {
     EXPECT_EQ(t.triangulate(points).download().hash(), known.mesh.hash());
   };
   const std::size_t waiting = Triangulator(with).memory_needed(known.size());
   expect_exact(with, of_host, 2 * fixed + 83 * known.size(), waiting);
   expect_exact(with, of_device, 2 * fixed + 71 * known.size(), waiting);
-  for (const Call& call : {of_host, of_device}) expect_exact_buffer(with, call, fixed + 26 * known.size());
+  for (const Work& call : {of_host, of_device}) expect_exact_buffer(with, call, fixed + 26 * known.size());
 }
 
 /// The call that reserve() is for has points and mesh on the device.
@@ -116,7 +116,7 @@ TEST_P(ExactLimits, Reserve) {
   for (const auto& [strategy, bytes] :
        {std::pair{Strategy::locks, fixed + 124 * n}, std::pair{Strategy::stars, 2 * fixed + 71 * n}}) {
     Options with = options(strategy);
-    const Call call = [](Triangulator& t) { t.reserve(n); };
+    const Work call = [](Triangulator& t) { t.reserve(n); };
     with.max_memory = bytes - 1;
     expect_refused(with, call, bytes, bytes - 1);
     with.max_memory = bytes;
@@ -237,7 +237,7 @@ TEST_P(ExactGroups, Memory) {
   const std::size_t arrays = 2 * 3 * sizeof(std::uint32_t) * sets * (2 * size - 5);
   struct Form {
     std::size_t result;
-    Call call;
+    Work call;
   };
   const Form host_points{on_host_itself() ? 0 : arrays, [&](Triangulator& t) {
                            const TriangulationBatch meshes = t.triangulate_batch(Reals(xy), offsets);

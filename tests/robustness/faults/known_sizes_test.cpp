@@ -11,7 +11,7 @@ namespace {
 
 using Reals = std::span<const double>;
 
-constexpr std::size_t fixed = 65536;
+constexpr std::size_t fixed_bytes = 65536;
 
 class KnownSizes : public ResidentTest {
  protected:
@@ -43,7 +43,7 @@ class KnownSavings : public KnownSizes {
     EXPECT_EQ(triangulator.triangulate(Reals(known.xy)).hash(), known.mesh.hash());
     return launches;
   }
-  static std::size_t quick(std::size_t n) { return 2 * fixed + 101 * n; }  ///< bytes of a call that does not save
+  static std::size_t quick(std::size_t n) { return 2 * fixed_bytes + 101 * n; }  ///< bytes of a call that does not save
 
   std::size_t launches = 0;
 };

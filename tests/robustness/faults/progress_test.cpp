@@ -14,7 +14,7 @@ namespace cadt::test {
 namespace {
 
 using Reals = std::span<const double>;
-using Call = std::function<Statistics(Triangulator&)>;
+using Counted = std::function<Statistics(Triangulator&)>;
 using Names = std::vector<std::string>;
 
 /// Insertion reports the number of points in the mesh whenever it waits for it; other reports come once.
@@ -45,7 +45,7 @@ class ReportedProgress : public ResidentTest {
   }
 
   /// `reports`: as text_of() has them, those of insertion once. `phases`: of Statistics::milliseconds.
-  void expect_reports(const Options& with, const Call& call, const Names& reports, const Names& phases) {
+  void expect_reports(const Options& with, const Counted& call, const Names& reports, const Names& phases) {
     // A sweep that repairs something, which depends on the schedule, has a report of its own, and the output then
     // begins no later.
     const bool sweeps = std::ranges::find(reports, "certify 0.9") != reports.end();
@@ -124,8 +124,8 @@ TEST_P(ReportedProgress, Stars) {
   const DevicePoints points = upload(xy);
   Options bounded = options(Strategy::stars);
   bounded.max_memory = 2 * 65536 + 83 * xy.size() / 2;  // the triangles are put in order where they are
-  const Call of_host = [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); };
-  const Call of_device = [&](Triangulator& t) { return t.triangulate(points).statistics(); };
+  const Counted of_host = [&](Triangulator& t) { return t.triangulate(Reals(xy)).statistics(); };
+  const Counted of_device = [&](Triangulator& t) { return t.triangulate(points).statistics(); };
   expect_reports(options(Strategy::stars), of_host, of_stars, with(star_phases, {"copy"}));
   expect_reports(options(Strategy::stars), of_device, of_stars, star_phases);
   expect_reports(bounded, of_host, without(of_stars, "output 0.95"), with(star_phases, {"copy"}));
@@ -156,7 +156,7 @@ TEST_P(ReportedProgress, RepeatedPasses) {
   };
   Names reports = of_insertion;  // a sweep that is not the last one has its own report
   std::ranges::replace(reports, "output 0.9", "certify 0.9");
-  const Call call = [&](Triangulator& t) {
+  const Counted call = [&](Triangulator& t) {
     unsettled = 0;
     const Statistics statistics = t.triangulate(Reals(xy)).statistics();
     EXPECT_EQ(statistics.legality_sweeps, 4U);

@@ -30,7 +30,7 @@ struct WrongDiagonal {
   }
 };
 
-std::string failed(const cadt::VerifyReport& report) {
+std::string failures(const cadt::VerifyReport& report) {
   for (const cadt::Check& check : report.checks)
     if (!check.passed) return check.name;
   return {};
@@ -42,23 +42,23 @@ TEST(ConstrainedEdges, NeedNotBeDelaunay) {
   EXPECT_TRUE(report.ok) << report.summary();
   EXPECT_EQ(report.edges_examined, 1U);
   mesh.flags = {0, 0};
-  EXPECT_EQ(failed(mesh.report()), "delaunay");
+  EXPECT_EQ(failures(mesh.report()), "delaunay");
   mesh.flags = {1, 3};  // others
-  EXPECT_EQ(failed(mesh.report()), "delaunay");
+  EXPECT_EQ(failures(mesh.report()), "delaunay");
 }
 
 TEST(ConstrainedEdges, AreSaidByBothTriangles) {
   WrongDiagonal mesh;
   for (const std::array<std::uint32_t, 2>& flags : {std::array{2U, 0U}, {0U, 4U}, {2U, 2U}, {4U, 4U}}) {
     mesh.flags.assign(flags.begin(), flags.end());
-    EXPECT_EQ(failed(mesh.report()), "neighbors") << flags[0] << ' ' << flags[1];
+    EXPECT_EQ(failures(mesh.report()), "neighbors") << flags[0] << ' ' << flags[1];
   }
 }
 
 TEST(ConstrainedEdges, HaveAWordForEachTriangle) {
   WrongDiagonal mesh;
   mesh.flags.push_back(0);
-  EXPECT_EQ(failed(mesh.report()), "counts");
+  EXPECT_EQ(failures(mesh.report()), "counts");
 }
 
 }  // namespace

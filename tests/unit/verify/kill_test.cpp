@@ -10,12 +10,12 @@
 
 namespace {
 
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 /// Flips the first interior edge for which `wanted` holds and which is the diagonal of a convex quadrilateral.
 bool flip_one(TestMesh& m, const std::function<bool(int incircle)>& wanted) {
   using cadt::verifier::Point;
-  const auto point = [&](std::int32_t v) { return Point{m.xy[2 * at(v)], m.xy[2 * at(v) + 1]}; };
+  const auto point = [&](std::int32_t v) { return Point{m.xy[2 * index(v)], m.xy[2 * index(v) + 1]}; };
   for (std::size_t e = 0; e < m.triangles.size(); ++e) {
     const std::int32_t s = m.neighbors[e];
     if (s < 0) continue;
@@ -23,12 +23,12 @@ bool flip_one(TestMesh& m, const std::function<bool(int incircle)>& wanted) {
     const std::int32_t a = m.triangles[e], b = m.triangles[3 * t + (e + 1) % 3], c = m.triangles[3 * t + (e + 2) % 3];
     std::int32_t d = -1;
     for (std::size_t j = 0; j < 3; ++j)
-      if (const std::int32_t v = m.triangles[3 * at(s) + j]; v != b && v != c) d = v;
+      if (const std::int32_t v = m.triangles[3 * index(s) + j]; v != b && v != c) d = v;
     if (truth::orientation(point(a), point(b), point(d)) <= 0 || truth::orientation(point(a), point(d), point(c)) <= 0)
       continue;
     if (!wanted(truth::incircle(point(a), point(b), point(c), point(d)))) continue;
     std::ranges::copy(std::array{a, b, d}, m.triangles.begin() + static_cast<std::ptrdiff_t>(3 * t));
-    std::ranges::copy(std::array{a, d, c}, m.triangles.begin() + static_cast<std::ptrdiff_t>(3 * at(s)));
+    std::ranges::copy(std::array{a, d, c}, m.triangles.begin() + static_cast<std::ptrdiff_t>(3 * index(s)));
     m.complete();
     return true;
   }
@@ -159,7 +159,7 @@ TEST_F(Kill, Slit) {
     const std::int32_t s = m.neighbors[e];
     if (s < 0) continue;
     for (std::size_t j = 0; j < 3; ++j)
-      if (m.neighbors[3 * at(s) + j] == static_cast<std::int32_t>(e / 3)) m.neighbors[3 * at(s) + j] = -1;
+      if (m.neighbors[3 * index(s) + j] == static_cast<std::int32_t>(e / 3)) m.neighbors[3 * index(s) + j] = -1;
     m.neighbors[e] = -1;
     expect_killed_by(verify_full(m), "boundary");
   }

@@ -65,14 +65,14 @@ TEST_F(OpenClCachedBuild, TruncatedFileIsReplaced) {
 TEST_F(OpenClCachedBuild, BinaryThatTheDriverRefusesIsReplaced) {
   ASSERT_FALSE(hit());
   const std::string name = cache.files().at(0).filename();
-  opencl::Digest key;
-  std::from_chars(name.data(), name.data() + 16, key.high, 16);
-  std::from_chars(name.data() + 16, name.data() + 32, key.low, 16);
-  ASSERT_TRUE(opencl::load_binary(cache.path(), key));
+  opencl::Digest digest;
+  std::from_chars(name.data(), name.data() + 16, digest.high, 16);
+  std::from_chars(name.data() + 16, name.data() + 32, digest.low, 16);
+  ASSERT_TRUE(opencl::load_binary(cache.path(), digest));
   const std::vector<unsigned char> rubbish(5000, 0x42);
-  ASSERT_TRUE(opencl::store_binary(cache.path(), key, rubbish));
+  ASSERT_TRUE(opencl::store_binary(cache.path(), digest, rubbish));
   EXPECT_FALSE(hit());
-  EXPECT_NE(opencl::load_binary(cache.path(), key), rubbish);
+  EXPECT_NE(opencl::load_binary(cache.path(), digest), rubbish);
   EXPECT_TRUE(hit());
 }
 

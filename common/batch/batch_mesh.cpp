@@ -32,7 +32,6 @@ class BatchStage {
         sets_(sets),
         order_(sets.order),
         n_(order_.distinct),
-        count_(static_cast<std::uint32_t>(n_)),
         set_count_(static_cast<std::uint32_t>(sets.starts.count)) {}
 
   [[nodiscard]] BatchMesh build() {
@@ -75,12 +74,11 @@ class BatchStage {
 
   void make_stars() {
     const unsigned levels = order_.grid.levels();
-    const LaunchGrid c = launch_.grid(n_);
     Allocation keys = std::move(order_.keys), none;
     if (!keys) {
       keys = ctx_.memory.allocate(n_ * word);
-      launch_.run<KernelId::cadt_batch_keys>(c.items, order_.points, sets_.positions(), set_count_, sets_.sets,
-                                             static_cast<std::uint32_t>(levels), 1U, keys, count_, c.grain);
+      launch_.run<KernelId::cadt_batch_keys>(order_.points, sets_.positions(), set_count_, sets_.sets, levels, true,
+                                             keys, launch_.grid(n_));
     }
     const std::optional<TileList> tiles = make_tiles(ctx_, {keys, none}, n_, levels, least_points_of_tile);
     ctx_.end_phase("tiles");
@@ -95,23 +93,22 @@ class BatchStage {
 
   /// Wraps the stars that are not proven.
   void wrap() {
-    const LaunchGrid c = launch_.grid(n_);
+    const LaunchGrid all = launch_.grid(n_);
     begins_ = ctx_.memory.allocate(n_ * word);
     Allocation ranks = ctx_.memory.allocate((n_ + 1) * word);
-    launch_.run<KernelId::cadt_batch_unproven>(c.items, stars_.sizes, sets_.positions(), set_count_, sets_.states,
-                                               count_, c.grain, static_cast<std::uint32_t>(CADT_STAR_DEGREE), ranks,
-                                               begins_);
+    launch_.run<KernelId::cadt_batch_unproven>(stars_.sizes, sets_.positions(), set_count_, sets_.states, all,
+                                               static_cast<std::uint32_t>(CADT_STAR_DEGREE), ranks, begins_);
     launch_.scan(ranks, n_ + 1);
     unproven_ = launch_.read_word(ranks, n_);
     ctx_.statistics.proven_stars += vertices_ - unproven_;
     if (unproven_ == 0) return;
     const Allocation list = ctx_.memory.allocate(std::size_t{unproven_} * word);
-    launch_.run<KernelId::cadt_batch_list>(c.items, ranks, list, count_, c.grain);
+    launch_.run<KernelId::cadt_batch_list>(ranks, list, all);
     ranks.release();
     const Allocation counts = launch_.zeros(CADT_WRAP_WORDS);
     wrap_batch(ctx_, order_.points, n_, {list, unproven_, sets_.positions(), sets_.states, set_count_},
-               {CADT_STAR_DEGREE, stars_.star_vertices,
-                static_cast<std::uint32_t>(n_ * (CADT_STAR_DEGREE + long_star_words)), begins_, stars_.sizes, counts});
+               {CADT_STAR_DEGREE, stars_.star_vertices, n_ * (CADT_STAR_DEGREE + long_star_words), begins_,
+                stars_.sizes, counts});
     std::array<std::uint32_t, CADT_WRAP_DRIVER_WORDS> words{};
     ctx_.device.read(*counts, 0, words.data(), sizeof words);
     ctx_.statistics.exact_orientations += words[CADT_WRAP_EXACT_ORIENTATIONS];
@@ -126,11 +123,11 @@ class BatchStage {
 
   void count_triangles() {
     bases_ = ctx_.memory.allocate((n_ + 1) * word);
-    const LaunchGrid c = launch_.grid(n_), each = launch_.grid(set_count_ + std::size_t{1});
-    launch_.run<KernelId::cadt_batch_counts>(c.items, stars_.star_vertices, begins_, stars_.sizes, sets_.positions(),
-                                             set_count_, sets_.states, count_, c.grain, bases_);
+    launch_.run<KernelId::cadt_batch_counts>(stars_.star_vertices, begins_, stars_.sizes, sets_.positions(), set_count_,
+                                             sets_.states, launch_.grid(n_), bases_);
     launch_.scan(bases_, n_ + 1);
     const Allocation wrong = launch_.zeros(1);
+    const LaunchGrid each = launch_.grid(set_count_ + std::size_t{1});
     launch_.run<KernelId::cadt_batch_check>(each.items, sets_.positions(), set_count_, bases_, each.grain, wrong);
     if (const std::uint32_t sets = launch_.read_word(wrong, 0); sets != 0)
       throw InternalError("stars contradict each other in or before " + std::to_string(sets) +
@@ -142,7 +139,7 @@ class BatchStage {
 
   void write_locked() {
     const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
-    launch_.run<KernelId::cadt_batch_locked>(shares.items, stars_.star_vertices, begins_, stars_.sizes, bases_, count_,
+    launch_.run<KernelId::cadt_batch_locked>(shares.items, stars_.star_vertices, begins_, stars_.sizes, bases_, n_,
                                              shares.grain, locked_);
     stars_ = {};
     begins_.release();
@@ -202,9 +199,8 @@ class BatchStage {
       one.distinct = size;
       one.points = ctx_.memory.allocate(size * sizeof(cadt_point));
       one.input_ids = ctx_.memory.allocate(size * word);  // positions in the set
-      const LaunchGrid c = launch_.grid(size);
-      launch_.run<KernelId::cadt_identity>(c.items, one.input_ids, size, c.grain);
-      launch_.run<KernelId::cadt_batch_extract>(c.items, order_.points, begin, size, c.grain, one.points);
+      launch_.run<KernelId::cadt_identity>(one.input_ids, launch_.grid(size));
+      launch_.run<KernelId::cadt_batch_extract>(order_.points, begin, launch_.grid(size), one.points);
       const Mesh mesh = insert_incrementally(ctx_, std::move(one), MeshUse::part);
       launch_.set_variant(narrow_variant(ctx_.options.statistics));
       result_.flat[s] = mesh.flat;
@@ -220,7 +216,7 @@ class BatchStage {
   SortedBatch& sets_;
   SortedPoints& order_;
   std::size_t n_;
-  std::uint32_t count_, set_count_, unproven_ = 0;
+  std::uint32_t set_count_, unproven_ = 0;
   std::size_t batched_ = 0, vertices_ = 0;  ///< batched sets after classification, and their vertices
   std::vector<std::uint32_t> states_;
   Stars stars_;

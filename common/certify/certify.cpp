@@ -28,10 +28,7 @@ std::size_t certify_words(const Context& ctx) {
 
 void launch_certify(Context& ctx, const DeviceMeshView& mesh, std::size_t begin, std::size_t size,
                     const Allocation& words, std::size_t row) {
-  const LaunchGrid c = ctx.launcher.grid_strided(size);
-  ctx.launcher.run<KernelId::cadt_certify>(c.items, mesh, static_cast<std::uint32_t>(begin),
-                                           static_cast<std::uint32_t>(size), c.grain, words,
-                                           static_cast<std::uint32_t>(row), counts_work(ctx) ? 1U : 0U);
+  ctx.launcher.run<KernelId::cadt_certify>(mesh, begin, ctx.launcher.grid_strided(size), words, row, counts_work(ctx));
 }
 
 void read_certificate(Context& ctx, std::span<const std::uint32_t> words, std::size_t n) {

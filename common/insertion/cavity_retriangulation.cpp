@@ -31,8 +31,7 @@ CavityRetriangulation::CavityRetriangulation(const LockedMesh& mesh)
 std::vector<std::uint32_t> CavityRetriangulation::read_quads(const Allocation& edges, std::uint32_t count) {
   const std::uint32_t read = std::min(count, max_edges);
   const Allocation quads = ctx_.memory.allocate(4 * read * word);
-  const LaunchGrid c = launch_.grid(read);
-  launch_.run<KernelId::cadt_cavity_candidates>(c.items, mesh_, edges, read, c.grain, quads);
+  launch_.run<KernelId::cadt_cavity_candidates>(mesh_, edges, launch_.grid(read), quads);
   std::vector<std::uint32_t> vertices(4 * std::size_t{read});
   ctx_.device.read(*quads, 0, vertices.data(), vertices.size() * word);
   return vertices;
@@ -78,15 +77,14 @@ void CavityRetriangulation::write_ends(const std::vector<std::uint32_t>& quads) 
 /// The large regions of these vertices, the largest first.
 std::vector<CavityRetriangulation::Region> CavityRetriangulation::large_regions(
     const std::vector<std::uint32_t>& vertices) {
-  const auto count = static_cast<std::uint32_t>(vertices.size());
+  const std::size_t count = vertices.size();
   const Allocation list = ctx_.memory.allocate(count * word), sums = launch_.zeros(count);
   ctx_.device.write(*list, 0, vertices.data(), count * word);
-  const LaunchGrid c = launch_.grid_strided(slots_);
-  launch_.run<KernelId::cadt_cavity_sizes>(c.items, mesh_, slots_, c.grain, ends_, list, count, sums);
+  launch_.run<KernelId::cadt_cavity_sizes>(mesh_, launch_.grid_strided(slots_), ends_, list, count, sums);
   std::vector<std::uint32_t> sizes(count);
   ctx_.device.read(*sums, 0, sizes.data(), count * word);
   std::vector<Region> regions;
-  for (std::uint32_t v = 0; v < count; ++v)
+  for (std::size_t v = 0; v < count; ++v)
     if (sizes[v] >= min_region) regions.push_back({sizes[v], vertices[v]});
   std::ranges::sort(regions, std::greater{});
   return regions;
@@ -100,23 +98,20 @@ bool CavityRetriangulation::retriangulate_region(const Region& region) {
   const Allocation list = ctx_.memory.allocate(bytes), kept = ctx_.memory.allocate(bytes),
                    scratch = ctx_.memory.allocate(CADT_CAVITY_SCRATCH * bytes),
                    spokes = ctx_.memory.allocate(2 * bytes), found = launch_.zeros(CADT_CAVITY_WORDS);
-  const LaunchGrid all = launch_.grid_strided(slots_);
-  launch_.run<KernelId::cadt_cavity_conflicts>(all.items, mesh_, slots_, all.grain, ends_, w, list, capacity, found);
+  launch_.run<KernelId::cadt_cavity_conflicts>(mesh_, launch_.grid_strided(slots_), ends_, w, list, capacity, found);
   const std::uint32_t conflicts = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
-  LaunchGrid c = launch_.grid(conflicts);
-  launch_.run<KernelId::cadt_cavity_star>(c.items, mesh_, conflicts, c.grain, w, list, capacity, found);
+  launch_.run<KernelId::cadt_cavity_star>(mesh_, launch_.grid(conflicts), w, list, capacity, found);
   // If the list has no room for all conflicts, it has some of them: cadt_cavity_check sees which components are usable.
   const std::uint32_t listed = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
-  c = launch_.grid(listed);
-  launch_.run<KernelId::cadt_cavity_roots>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity);
-  launch_.run<KernelId::cadt_cavity_join>(c.items, mesh_.locked, listed, c.grain, list, scratch);
-  launch_.run<KernelId::cadt_cavity_check>(c.items, mesh_, listed, c.grain, w, list, scratch, capacity);
-  launch_.run<KernelId::cadt_cavity_keep>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity, kept, found);
+  LaunchGrid c = launch_.grid(listed);
+  launch_.run<KernelId::cadt_cavity_roots>(mesh_.locked, c, list, scratch, capacity);
+  launch_.run<KernelId::cadt_cavity_join>(mesh_.locked, c, list, scratch);
+  launch_.run<KernelId::cadt_cavity_check>(mesh_, c, w, list, scratch, capacity);
+  launch_.run<KernelId::cadt_cavity_keep>(mesh_.locked, c, list, scratch, capacity, kept, found);
   const std::uint32_t count = launch_.read_word(found, CADT_CAVITY_KEPT);
   if (count == 0) return false;
   const Allocation& sides = scratch;  // the components are not read any more
-  c = launch_.grid(count);
-  launch_.run<KernelId::cadt_cavity_boundary>(c.items, mesh_, count, c.grain, w, kept, sides, spokes, capacity, found);
+  launch_.run<KernelId::cadt_cavity_boundary>(mesh_, launch_.grid(count), w, kept, sides, spokes, capacity, found);
   std::array<std::uint32_t, CADT_CAVITY_WORDS> words{};
   ctx_.device.read(*found, 0, words.data(), sizeof words);
   const std::uint32_t spoke_count = words[CADT_CAVITY_SPOKES];

@@ -117,9 +117,7 @@ class IncrementalInsertion {
   void order_by_level() {
     Allocation points = ctx_.memory.transient(n_ * point_bytes(ctx_.device)),
                input_ids = ctx_.memory.allocate(n_ * word);
-    const LaunchGrid c = launch_.grid(n_);
-    launch_.run<KernelId::cadt_by_level>(c.items, order_.points, order_.input_ids, static_cast<std::uint32_t>(n_),
-                                         c.grain, points, input_ids);
+    launch_.run<KernelId::cadt_by_level>(order_.points, order_.input_ids, launch_.grid(n_), points, input_ids);
     own_->points = std::move(points);
     own_->input_ids = std::move(input_ids);
     by_level_ = true;
@@ -129,7 +127,7 @@ class IncrementalInsertion {
   bool find_seed_triangle() {
     Allocation found = ctx_.memory.allocate(word);
     if (!by_level_) {
-      launch_.run<KernelId::cadt_first_representative>(1, static_cast<std::uint32_t>(n_), levels(), found);
+      launch_.run<KernelId::cadt_first_representative>(1, n_, levels(), found);
       mesh_.first = launch_.read_word(found, 0);
     }
     mesh_.second = static_cast<std::uint32_t>(n_ / 2);
@@ -137,10 +135,8 @@ class IncrementalInsertion {
     ctx_.device.fill(*found, 0, word, CADT_NONE);
     constexpr std::size_t few = 1024;  // enough unless nearly all points are on a line
     for (std::size_t begin = 0, end = std::min(n_, few); begin < n_; begin = end, end = n_) {
-      const LaunchGrid c = launch_.grid(end - begin);
-      launch_.run<KernelId::cadt_find_seed_triangle>(c.items, order_.points, mesh_.first, mesh_.second,
-                                                     static_cast<std::uint32_t>(begin),
-                                                     static_cast<std::uint32_t>(end - begin), c.grain, found);
+      launch_.run<KernelId::cadt_find_seed_triangle>(order_.points, mesh_.first, mesh_.second, begin,
+                                                     launch_.grid(end - begin), found);
       mesh_.third = launch_.read_word(found, 0);
       if (mesh_.third != CADT_NONE) break;
     }
@@ -187,16 +183,13 @@ class IncrementalInsertion {
     const std::size_t step = std::max<std::size_t>((points >> partition_level) / partitions, 1);
     for (std::size_t from = 0; from < blocks; from += step) {
       const std::size_t to = std::min(blocks, from + step);
-      launch_.run<KernelId::cadt_insert_partitions>(
-          static_cast<std::uint32_t>(partitions), mesh_, static_cast<std::uint32_t>(n_), partition_level,
-          static_cast<std::uint32_t>(partitions), static_cast<std::uint32_t>(blocks), static_cast<std::uint32_t>(from),
-          static_cast<std::uint32_t>(to), deferred_points_[0], deferred_counts_, counters_);
+      launch_.run<KernelId::cadt_insert_partitions>(static_cast<std::uint32_t>(partitions), mesh_, n_, partition_level,
+                                                    partitions, blocks, from, to, deferred_points_[0], deferred_counts_,
+                                                    counters_);
       inserted_ += std::min(n_, ((to - from) * partitions) << partition_level);
       // The list has room for those that the next launch may defer.
       if (to == blocks || launch_.read_word(deferred_counts_, 0) > n_ / 32) {
-        const LaunchGrid c = launch_.grid(2 * n_);
-        launch_.run<KernelId::cadt_border_sweep>(c.items, mesh_, static_cast<std::uint32_t>(2 * n_), c.grain,
-                                                 static_cast<std::uint32_t>(blocks << partition_level),
+        launch_.run<KernelId::cadt_border_sweep>(mesh_, launch_.grid(2 * n_), blocks << partition_level,
                                                  deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
         take_deferred();
         finish_deferred();
@@ -224,15 +217,13 @@ class IncrementalInsertion {
   /// Launches the deferred edges, and the deferred points with `size` blocks. `serial`: one work-item each.
   void launch_insert(std::size_t begin, std::size_t size, unsigned level, bool serial) {
     const auto count = static_cast<std::uint32_t>(deferred_.points + size);
-    if (deferred_.edges != 0) {
-      const LaunchGrid c = serial ? LaunchGrid{1, deferred_.edges} : launch_.grid_spread(deferred_.edges);
-      launch_.run<KernelId::cadt_legalize_edges>(c.items, mesh_, deferred_edges_[1], deferred_.edges, c.grain,
+    const auto grid_of = [&](std::uint32_t of) { return serial ? LaunchGrid{1, of, of} : launch_.grid_spread(of); };
+    if (deferred_.edges != 0)
+      launch_.run<KernelId::cadt_legalize_edges>(mesh_, deferred_edges_[1], grid_of(deferred_.edges),
                                                  deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
-    }
     if (count == 0) return;
-    const LaunchGrid c = serial ? LaunchGrid{1, count} : launch_.grid_spread(count);
-    launch_.run<KernelId::cadt_insert>(c.items, mesh_, deferred_points_[1], deferred_.points,
-                                       static_cast<std::uint32_t>(begin), count, static_cast<std::uint32_t>(n_), level,
+    const LaunchGrid c = grid_of(count);
+    launch_.run<KernelId::cadt_insert>(c.items, mesh_, deferred_points_[1], deferred_.points, begin, count, n_, level,
                                        c.grain, deferred_points_[0], deferred_edges_[0], deferred_counts_,
                                        edge_capacity_, counters_);
   }
@@ -277,11 +268,8 @@ class IncrementalInsertion {
       std::uint64_t examined = 0, illegal = 0, unsettled = 0, stabilized = 0, broken = 0;
       for (std::size_t begin = 0; begin < slots; begin += limit) {
         const std::size_t size = std::min(limit, slots - begin);
-        const LaunchGrid c = launch_.grid_strided(size);
-        launch_.run<KernelId::cadt_legality_sweep>(c.items, mesh_, static_cast<std::uint32_t>(begin),
-                                                   static_cast<std::uint32_t>(size), c.grain,
-                                                   by_level_ ? static_cast<std::uint32_t>(n_) : 0U, deferred_edges_[0],
-                                                   deferred_counts_, edge_capacity_, counters_);
+        launch_.run<KernelId::cadt_legality_sweep>(mesh_, begin, launch_.grid_strided(size), by_level_ ? n_ : 0,
+                                                   deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
         std::array<std::uint32_t, all_counts> words{};
         ctx_.device.read(*deferred_counts_, 0, words.data(), sizeof words);
         examined += words[CADT_DEFERRED_COUNTS];

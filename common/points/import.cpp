@@ -23,11 +23,9 @@ Allocation convert(Context& ctx, Axis x, Axis y, std::uint32_t stride, Scalar sc
   const Allocation all;
   const Allocation& input_ids = order != nullptr ? order->input_ids : all;
   const double scale = order != nullptr ? order->scale : 1, scale_again = order != nullptr ? order->scale_again : 1;
-  const LaunchGrid c = ctx.launcher.grid(count);
   const auto launch = [&]<KernelId kernel>() {
-    ctx.launcher.run<kernel>(c.items, x.memory, y.memory, static_cast<std::uint32_t>(x.first),
-                             static_cast<std::uint32_t>(y.first), stride, input_ids, scale, scale_again, points,
-                             static_cast<std::uint32_t>(count), c.grain);
+    ctx.launcher.run<kernel>(x.memory, y.memory, x.first, y.first, stride, input_ids, scale, scale_again, points,
+                             ctx.launcher.grid(count));
   };
   if (scalar == Scalar::float32)
     launch.template operator()<KernelId::cadt_import_floats>();
@@ -38,10 +36,8 @@ Allocation convert(Context& ctx, Axis x, Axis y, std::uint32_t stride, Scalar sc
 
 Allocation gather(Context& ctx, const Allocation& input, const SortedPoints& order) {
   Allocation points = ctx.memory.transient(order.distinct * point_bytes(ctx.device));
-  const LaunchGrid c = ctx.launcher.grid(order.distinct);
-  ctx.launcher.run<KernelId::cadt_gather_points>(c.items, input, order.input_ids, points,
-                                                 static_cast<std::uint32_t>(order.distinct), c.grain, order.scale,
-                                                 order.scale_again);
+  ctx.launcher.run<KernelId::cadt_gather_points>(input, order.input_ids, points, ctx.launcher.grid(order.distinct),
+                                                 order.scale, order.scale_again);
   return points;
 }
 

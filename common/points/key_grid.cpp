@@ -79,15 +79,13 @@ KeyGrid KeyGrid::finer(int levels) const noexcept {
 }
 
 void make_keys(Context& ctx, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid) {
-  const LaunchGrid c = ctx.launcher.grid(n);
-  ctx.launcher.run<KernelId::cadt_hilbert_keys>(c.items, points, keys, static_cast<std::uint32_t>(n), c.grain, grid);
+  ctx.launcher.run<KernelId::cadt_hilbert_keys>(points, keys, ctx.launcher.grid(n), grid);
 }
 
 void make_fine_keys(Context& ctx, const Allocation& points, const Allocation& high, const Allocation& low,
                     std::size_t n, const KeyGrid& grid) {
-  const LaunchGrid c = ctx.launcher.grid(n);
-  ctx.launcher.run<KernelId::cadt_fine_hilbert_keys>(c.items, points, high, low, 2 * grid.fine_levels,
-                                                     static_cast<std::uint32_t>(n), c.grain, grid);
+  ctx.launcher.run<KernelId::cadt_fine_hilbert_keys>(points, high, low, 2 * grid.fine_levels, ctx.launcher.grid(n),
+                                                     grid);
 }
 
 }  // namespace cadt

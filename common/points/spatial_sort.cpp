@@ -34,9 +34,7 @@ std::vector<cadt_point> sample_of(Context& ctx, const Allocation& input, std::si
   const Allocation list = ctx.memory.allocate(samples * word),
                    chosen = ctx.memory.allocate(samples * sizeof(cadt_point));
   ctx.device.write(*list, 0, places.data(), samples * word);
-  const LaunchGrid c = ctx.launcher.grid(samples);
-  ctx.launcher.run<KernelId::cadt_gather_points>(c.items, input, list, chosen, static_cast<std::uint32_t>(samples),
-                                                 c.grain, 1.0, 1.0);
+  ctx.launcher.run<KernelId::cadt_gather_points>(input, list, chosen, ctx.launcher.grid(samples), 1.0, 1.0);
   std::vector<cadt_point> points(samples);
   ctx.device.read(*chosen, 0, points.data(), samples * sizeof points[0]);
   return points;
@@ -90,18 +88,17 @@ constexpr int most_fine_levels = 15, fewest_fine_levels = 4;
 void sort_finely(Context& ctx, const Allocation& input, Allocation& keys, Allocation& order, Allocation& spare,
                  std::size_t n, const KeyGrid& grid) {
   Launcher& launch = ctx.launcher;
-  const auto count = static_cast<std::uint32_t>(n);
-  const LaunchGrid c = launch.grid(n);
+  const LaunchGrid all = launch.grid(n);
   const Allocation low = ctx.memory.transient(n * word);
   make_fine_keys(ctx, input, keys, low, n, grid);
   Allocation sorted = ctx.memory.transient(n * word), spare_order = ctx.memory.transient(n * word);
-  launch.run<KernelId::cadt_copy_words>(c.items, low, sorted, std::uint32_t{0}, count, c.grain);
+  launch.run<KernelId::cadt_copy_words>(low, sorted, 0U, all);
   launch.sort(sorted, order, spare, spare_order, n, 2 * grid.fine_levels, true);
   // the second of two stable sorts
-  launch.run<KernelId::cadt_gather_words>(c.items, keys, order, sorted, count, c.grain);
+  launch.run<KernelId::cadt_gather_words>(keys, order, sorted, all);
   launch.sort(sorted, order, spare, spare_order, n, grid.bits() - 2 * grid.fine_levels, false);
-  launch.run<KernelId::cadt_gather_words>(c.items, low, order, spare, count, c.grain);
-  launch.run<KernelId::cadt_run_tails>(c.items, sorted, spare, keys, count, c.grain);
+  launch.run<KernelId::cadt_gather_words>(low, order, spare, all);
+  launch.run<KernelId::cadt_run_tails>(sorted, spare, keys, all);
   launch.scan(keys, n);
 }
 
@@ -109,8 +106,7 @@ void sort_finely(Context& ctx, const Allocation& input, Allocation& keys, Alloca
 
 SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool keep_keys) {
   Launcher& launch = ctx.launcher;
-  const auto count = static_cast<std::uint32_t>(n);
-  const LaunchGrid c = launch.grid(n);
+  const LaunchGrid all = launch.grid(n);
   SortedPoints result;
 
   const Allocation totals = ctx.memory.allocate(CADT_ORDER_WORDS * word);
@@ -136,7 +132,7 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
     // Transient if they are copied before the mesh takes their place, or gathered again after it.
     const bool brief = !ctx.device.shape().contiguous && (ctx.plan.regathers || !keep_keys);
     sorted = brief ? ctx.memory.transient(bytes) : ctx.memory.allocate(bytes);
-    launch.run<KernelId::cadt_gather_points>(c.items, input, order, sorted, count, c.grain, scale, scale_again);
+    launch.run<KernelId::cadt_gather_points>(input, order, sorted, all, scale, scale_again);
     flag_distinct(ctx, keys, sorted, order, spare, n, keep_keys && n >= fewest_sampled, totals);
   };
   const auto sort = [&](const KeyGrid& grid) {
@@ -198,7 +194,7 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
   result.shapes = shapes_of(sums, n, overfull_points);
   input.release();
   const auto move_to = [&](Allocation& values, Allocation place) {
-    launch.run<KernelId::cadt_copy_words>(c.items, values, place, std::uint32_t{0}, count, c.grain);
+    launch.run<KernelId::cadt_copy_words>(values, place, 0U, all);
     values = std::move(place);
   };
   if (keep_keys && sorted_by_keys && sums[CADT_EQUAL] == 0) {

@@ -122,9 +122,9 @@ StarCounters prove_stars(Context& ctx, const SortedPoints& order, const SortKeys
   const Allocation counts = ctx.launcher.zeros(CADT_STARS_WORDS);
   const LaunchGrid teams = ctx.launcher.grid_of_teams(tiles.count, CADT_STAR_LANES);
   const std::uint32_t sample = !sets && tiles.count >= 2 * sampled_tiles ? sampled_tiles : 0;
-  ctx.launcher.run<KernelId::cadt_prove_stars>(
-      teams.items, order.points, keys, static_cast<std::uint32_t>(order.distinct), grid, grid.most_x, grid.most_y,
-      grid.clipped ? 1U : 0U, sets, states, tiles, sample, cautious ? 1U : 0U, teams.grain, stars, counts);
+  ctx.launcher.run<KernelId::cadt_prove_stars>(teams.items, order.points, keys, order.distinct, grid, grid.most_x,
+                                               grid.most_y, grid.clipped, sets, states, tiles, sample, cautious,
+                                               teams.grain, stars, counts);
   StarCounters result;
   static_assert(sizeof result == CADT_STARS_WORDS * word);
   ctx.device.read(*counts, 0, &result, sizeof result);

@@ -50,7 +50,6 @@ class StarStage {
         input_(input),
         how_(how),
         n_(order_.distinct),
-        count_(static_cast<std::uint32_t>(n_)),
         keys_(std::move(order_.keys)) {
     order_.grid = grid_for_stars(order_.grid);
   }
@@ -117,16 +116,13 @@ class StarStage {
     bases_ = ctx_.plan.compact ? ctx_.memory.allocate_unpooled(bases) : ctx_.memory.transient(bases);
     ranks_ = ctx_.memory.transient((n_ + 1) * word);
     totals_ = launch_.zeros(2);
-    const LaunchGrid c = launch_.grid(n_);
     const std::size_t words = (n_ - 1) / 32 + 1;
     proven_ = ctx_.memory.allocate(words * word);
     const std::size_t marks = n_ * sizeof(std::uint16_t);
     marks_ = ctx_.plan.compact ? ctx_.memory.allocate_unpooled(marks) : ctx_.memory.allocate(marks);
-    const LaunchGrid of_words = launch_.grid(words);
-    launch_.run<KernelId::cadt_pack_proven>(of_words.items, stars_.sizes, count_, static_cast<std::uint32_t>(words),
-                                            of_words.grain, proven_);
-    launch_.run<KernelId::cadt_star_counts>(c.items, stars_.star_vertices, stars_.begins, stars_.sizes, proven_, count_,
-                                            c.grain, marks_, bases_, ranks_, totals_);
+    launch_.run<KernelId::cadt_pack_proven>(stars_.sizes, n_, launch_.grid(words), proven_);
+    launch_.run<KernelId::cadt_star_counts>(stars_.star_vertices, stars_.begins, stars_.sizes, proven_,
+                                            launch_.grid(n_), marks_, bases_, ranks_, totals_);
     stars_.sizes.release();
     launch_.scan(bases_, n_ + 1);
     launch_.scan(ranks_, n_ + 1);
@@ -141,9 +137,8 @@ class StarStage {
     residual.distinct = unproven_;
     residual.points = ctx_.memory.allocate(unproven_ * sizeof(cadt_point));
     residual.input_ids = ctx_.memory.allocate(unproven_ * word);
-    const LaunchGrid all = launch_.grid(n_);
-    launch_.run<KernelId::cadt_pack_residual>(all.items, ranks_, order_.points, residual.points, residual.input_ids,
-                                              count_, all.grain);
+    launch_.run<KernelId::cadt_pack_residual>(ranks_, order_.points, residual.points, residual.input_ids,
+                                              launch_.grid(n_));
     ranks_.release();
     return residual;
   }
@@ -151,13 +146,13 @@ class StarStage {
   /// Half-edges and vertices of the triangles with a proven vertex.
   void write_triangles() {
     mesh_.all = 2 * n_ - 2;
-    const std::uint32_t groups = (count_ - 1) / CADT_ASSEMBLY_LANES + 1;
-    const LaunchGrid c = launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES);
+    const auto groups = static_cast<std::uint32_t>((n_ - 1) / CADT_ASSEMBLY_LANES + 1);
     mesh_.across = make_mesh_array(ctx_, mesh_.all, MeshUse::whole);
     open_ = ctx_.memory.allocate(std::size_t{open_count_} * word);
     const Allocation firsts = ctx_.memory.allocate((groups + std::size_t{1}) * word);
-    launch_.run<KernelId::cadt_star_half_edges>(c.items, stars_.star_vertices, stars_.begins, marks_, bases_, proven_,
-                                                count_, groups, c.grain, mesh_.across, firsts, open_, totals_);
+    launch_.run<KernelId::cadt_star_half_edges>(stars_.star_vertices, stars_.begins, marks_, bases_, proven_, n_,
+                                                launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES), mesh_.across,
+                                                firsts, open_, totals_);
     bases_.release();
     if (!ctx_.plan.compact || !write_vertices_in_place(firsts, groups)) {
       mesh_.vertices = make_mesh_array(ctx_, mesh_.all, MeshUse::whole);
@@ -167,9 +162,8 @@ class StarStage {
   }
 
   void write_vertices(const Allocation& firsts, std::uint32_t from, std::uint32_t groups, const Allocation& to) {
-    const LaunchGrid c = launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES);
-    launch_.run<KernelId::cadt_star_vertices>(c.items, stars_.star_vertices, stars_.begins, marks_, firsts, count_,
-                                              from, groups, c.grain, to);
+    launch_.run<KernelId::cadt_star_vertices>(stars_.star_vertices, stars_.begins, marks_, firsts, n_, from,
+                                              launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES), to);
   }
 
   /// Writes the vertices over the stars. Both are in the order of the points, six words a point, and there are some
@@ -195,8 +189,7 @@ class StarStage {
     for (std::size_t wave = 0; wave + 1 < bounds.size(); ++wave, from += share) {
       write_vertices(firsts, from, std::min(share, groups - from), staged);
       const std::uint32_t words = 3 * (bounds[wave + 1] - bounds[wave]);
-      const LaunchGrid c = launch_.grid(words);
-      launch_.run<KernelId::cadt_copy_words>(c.items, staged, stars_.star_vertices, 3 * bounds[wave], words, c.grain);
+      launch_.run<KernelId::cadt_copy_words>(staged, stars_.star_vertices, 3 * bounds[wave], launch_.grid(words));
     }
     mesh_.vertices.device = std::move(stars_.star_vertices);
     return true;
@@ -220,26 +213,25 @@ class StarStage {
     const DeviceMeshView residual_mesh = view_of(smaller, none);
 
     const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
-    const auto mask = static_cast<std::uint32_t>(places - 1), all = residual_mesh.all;
+    const std::size_t mask = places - 1;
     Allocation table = ctx_.memory.allocate(places * word);
     ctx_.device.fill(*table, 0, places * word, CADT_NONE);
-    const LaunchGrid open = launch_.grid(open_count_);
-    launch_.run<KernelId::cadt_stitch_enter>(open.items, mesh_.vertices, open_, open_count_, open.grain, table, mask);
+    launch_.run<KernelId::cadt_stitch_enter>(mesh_.vertices, open_, launch_.grid(open_count_), table, mask);
     Allocation covers = ctx_.memory.allocate(3 * smaller.all * word), roots = ctx_.memory.allocate(smaller.all * word);
-    const LaunchGrid c = launch_.grid(all);
-    launch_.run<KernelId::cadt_stitch_cover>(c.items, residual_mesh, mesh_.vertices, smaller.input_ids, c.grain, table,
-                                             mask, covers, roots);
-    launch_.run<KernelId::cadt_stitch_components>(c.items, residual_mesh, c.grain, covers, roots);
+    const LaunchGrid all = launch_.grid(smaller.all);
+    launch_.run<KernelId::cadt_stitch_cover>(all.items, residual_mesh, mesh_.vertices, smaller.input_ids, all.grain,
+                                             table, mask, covers, roots);
+    launch_.run<KernelId::cadt_stitch_components>(all.items, residual_mesh, all.grain, covers, roots);
     Allocation hidden = launch_.zeros(smaller.all), ranks = ctx_.memory.allocate((smaller.all + 1) * word);
-    launch_.run<KernelId::cadt_stitch_hide>(c.items, covers, roots, all, c.grain, hidden);
-    launch_.run<KernelId::cadt_stitch_flags>(c.items, roots, hidden, all, c.grain, ranks);
+    launch_.run<KernelId::cadt_stitch_hide>(covers, roots, all, hidden);
+    launch_.run<KernelId::cadt_stitch_flags>(roots, hidden, all, ranks);
     launch_.scan(ranks, smaller.all + 1);
     const std::size_t triangles = std::size_t{proven_triangles_} + launch_.read_word(ranks, smaller.all);
     if (triangles != mesh_.all)
       throw InternalError("the two parts of the mesh have " + std::to_string(triangles) + " triangles instead of " +
                           std::to_string(mesh_.all) + "; please report this with the input");
     mesh_.triangles = proven_triangles_ + launch_.read_word(ranks, smaller.triangles);
-    launch_.run<KernelId::cadt_stitch_residual>(c.items, residual_mesh, covers, ranks, smaller.input_ids, c.grain,
+    launch_.run<KernelId::cadt_stitch_residual>(all.items, residual_mesh, covers, ranks, smaller.input_ids, all.grain,
                                                 proven_triangles_, mesh_.vertices, mesh_.across);
     ctx_.end_phase("stitch");
     ctx_.check("stitch", 0.8);
@@ -251,7 +243,6 @@ class StarStage {
   const InputPoints& input_;
   const BuildStrategy& how_;
   std::size_t n_;
-  std::uint32_t count_;
   Stars stars_;
   Allocation keys_, proven_, marks_, bases_, ranks_, totals_, open_;
   Mesh mesh_;

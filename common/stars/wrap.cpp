@@ -50,16 +50,15 @@ struct AabbTree {
     leaves = ctx.memory.allocate((n / CADT_AABB_LEAF + sets + 1) * sizeof(cadt_aabb));
     nodes = ctx.memory.allocate(node_count * sizeof(cadt_aabb));
     const LaunchGrid c = ctx.launcher.grid_of_teams(node_count, tree_lanes);
-    ctx.launcher.run_in_groups<KernelId::cadt_build_aabb_tree>(
-        c.items, tree_lanes, points, static_cast<std::uint32_t>(n), starts, static_cast<std::uint32_t>(sets),
-        static_cast<std::uint32_t>(node_count), c.grain, leaves, nodes, sizes, counts);
+    ctx.launcher.run_in_groups<KernelId::cadt_build_aabb_tree>(c.items, tree_lanes, points, n, starts, sets, c, leaves,
+                                                               nodes, sizes, counts);
   }
 };
 
 /// The sets of a batch (common/batch/batch.dev.h), or none; `work_done` in each of them.
 struct WrappedSets {
   const Allocation& starts;
-  std::uint32_t count;
+  std::size_t count;
   const Allocation &states, &work_done;
   [[nodiscard]] auto arguments() const { return std::tie(starts, count, states, work_done); }
 };
@@ -75,14 +74,12 @@ void wrap_all(Context& ctx, const Allocation& points, std::size_t n, std::uint32
   const Allocation none, todo = ctx.memory.allocate(n * word),
                          arcs = ctx.memory.allocate(n * CADT_WRAP_ROW * sizeof(std::uint16_t));
   const AabbTree tree(ctx, points, n, none, 0, stars.sizes, stars.counts);
-  const auto count = static_cast<std::uint32_t>(n);
   const LaunchGrid teams = launch.grid_of_teams(n, wrap_lanes);
-  launch.run_in_groups<KernelId::cadt_wrap_near>(teams.items, wrap_lanes, points, tree, count, teams.grain, stars, todo,
-                                                 arcs);
+  launch.run_in_groups<KernelId::cadt_wrap_near>(teams.items, wrap_lanes, points, tree, teams, stars, todo, arcs);
   // Only the device knows how many are left to do.
   const LaunchGrid residual =
       ctx.device.shape().contiguous ? teams : launch.grid_of_teams(std::min(n, most_teams), residual_lanes);
-  launch.run_in_groups<KernelId::cadt_wrap_stars>(residual.items, residual_lanes, points, tree, count, todo, 0U, arcs,
+  launch.run_in_groups<KernelId::cadt_wrap_stars>(residual.items, residual_lanes, points, tree, n, todo, 0U, arcs,
                                                   WrappedSets{none, 0, none, none}, WorkLimit{wrap_work_limit, spare},
                                                   residual.grain, stars);
 }
@@ -91,7 +88,7 @@ void wrap_all(Context& ctx, const Allocation& points, std::size_t n, std::uint32
 class Wrapping {
  public:
   Wrapping(Context& ctx, const Allocation& points, std::size_t n)
-      : ctx_(ctx), launch_(ctx.launcher), points_(points), n_(n), count_(static_cast<std::uint32_t>(n)) {}
+      : ctx_(ctx), launch_(ctx.launcher), points_(points), n_(n) {}
 
   /// `all`: number of points of the mesh that these are part of.
   void make_stars(std::size_t all) {
@@ -100,7 +97,7 @@ class Wrapping {
     sizes_ = ctx_.memory.allocate(n_ * word);
     counts_ = ctx_.memory.allocate(CADT_WRAP_WORDS * word);
     wrap_all(ctx_, points_, n_, spare_work_limit_of(ctx_.device, all),
-             {0, star_vertices_, static_cast<std::uint32_t>(star_words()), begins_, sizes_, counts_});
+             {0, star_vertices_, star_words(), begins_, sizes_, counts_});
     edges_ = ctx_.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));
   }
 
@@ -141,9 +138,8 @@ class Wrapping {
 
   void write(const Mesh& mesh, const HighDegreeEdges& of_high_degree) {
     const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
-    launch_.run<KernelId::cadt_wrap_arrays>(shares.items, star_vertices_, begins_, sizes_, bases_,
-                                            static_cast<std::uint32_t>(star_words()), static_cast<std::uint32_t>(row()),
-                                            of_high_degree, count_, shares.grain, mesh.vertices, mesh.across);
+    launch_.run<KernelId::cadt_wrap_arrays>(shares.items, star_vertices_, begins_, sizes_, bases_, star_words(), row(),
+                                            of_high_degree, n_, shares.grain, mesh.vertices, mesh.across);
   }
 
   /// The mesh whose number of triangles only the device knows.
@@ -183,10 +179,9 @@ class Wrapping {
   /// First triangles of the vertices; behind them the total, the counts, and zeros. Vertices without a star have size
   /// 0, so this may run before it is known whether there are too many.
   void count() {
-    const LaunchGrid all = launch_.grid(n_);
-    const auto zeros = static_cast<std::uint32_t>(row() + certify_words(ctx_) - (n_ + 1 + CADT_WRAP_DRIVER_WORDS));
-    launch_.run<KernelId::cadt_wrap_counts>(all.items, star_vertices_, begins_, sizes_, count_, all.grain, counts_,
-                                            bases_, zeros, edges_);
+    const std::size_t zeros = row() + certify_words(ctx_) - (n_ + 1 + CADT_WRAP_DRIVER_WORDS);
+    launch_.run<KernelId::cadt_wrap_counts>(star_vertices_, begins_, sizes_, launch_.grid(n_), counts_, bases_, zeros,
+                                            edges_);
     launch_.scan(bases_, n_ + 1);
   }
 
@@ -216,8 +211,7 @@ class Wrapping {
     std::set<HalfEdge> sides;  // half-edges whose triangle is known
     for (const cadt_wrap_edge& e : edges) sides.emplace(e.from, e.to);
     const Allocation high_degree = ctx_.memory.allocate(high_degree_ * word), listed = launch_.zeros(1);
-    const LaunchGrid vertices = launch_.grid(n_);
-    launch_.run<KernelId::cadt_list_high_degree>(vertices.items, sizes_, count_, vertices.grain, high_degree, listed);
+    launch_.run<KernelId::cadt_list_high_degree>(sizes_, launch_.grid(n_), high_degree, listed);
     for (std::size_t round = 0; round < wanted; ++round) {
       // Edges to the ghost need no search: the hull edges lead to all of its triangles.
       std::vector<cadt_wrap_edge> open;
@@ -260,13 +254,11 @@ class Wrapping {
 
   /// The apex to the left of edges between two high-degree vertices.
   void find_apexes(std::vector<cadt_wrap_edge>& edges, const Allocation& high_degree) {
-    const auto count = static_cast<std::uint32_t>(edges.size());
     const std::size_t bytes = edges.size() * sizeof edges[0];
     const Allocation list = ctx_.memory.allocate(bytes);
     ctx_.device.write(*list, 0, edges.data(), bytes);
-    const LaunchGrid c = launch_.grid_spread(count);
-    launch_.run<KernelId::cadt_apex_of_high_degree>(c.items, points_, high_degree, high_degree_, count, c.grain, list,
-                                                    counts_);
+    launch_.run<KernelId::cadt_apex_of_high_degree>(points_, high_degree, high_degree_,
+                                                    launch_.grid_spread(edges.size()), list, counts_);
     ctx_.device.read(*list, 0, edges.data(), bytes);
   }
 
@@ -280,7 +272,6 @@ class Wrapping {
   Launcher& launch_;
   const Allocation& points_;
   std::size_t n_;
-  std::uint32_t count_;
   Allocation star_vertices_, begins_, sizes_, counts_, edges_, bases_;
   std::uint32_t used_words_ = 0, high_degree_ = 0;
   std::array<std::uint32_t, 3> exact_{};  // exact orientations, incircles, ties already in the statistics
@@ -294,10 +285,9 @@ void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const Sta
   const Allocation work_done = ctx.launcher.zeros(sets.count), none;
   const LaunchGrid teams = ctx.launcher.grid_of_teams(sets.list_size, wrap_lanes);
   ctx.launcher.run_in_groups<KernelId::cadt_wrap_stars>(
-      teams.items, wrap_lanes, points, tree, static_cast<std::uint32_t>(n), sets.list,
-      static_cast<std::uint32_t>(sets.list_size), none,
-      WrappedSets{sets.starts, static_cast<std::uint32_t>(sets.count), sets.states, work_done},
-      WorkLimit{wrap_work_limit, spare_work_limit}, teams.grain, stars);
+      teams.items, wrap_lanes, points, tree, n, sets.list, sets.list_size, none,
+      WrappedSets{sets.starts, sets.count, sets.states, work_done}, WorkLimit{wrap_work_limit, spare_work_limit},
+      teams.grain, stars);
 }
 
 namespace {

@@ -18,7 +18,7 @@ constexpr std::uint32_t wrap_lanes = 32;
 struct WrappedStars {
   std::uint32_t row;
   const Allocation& star_vertices;
-  std::uint32_t star_words;
+  std::size_t star_words;
   const Allocation &begins, &sizes, &counts;
   [[nodiscard]] auto arguments() const { return std::tie(row, star_vertices, star_words, begins, sizes, counts); }
 };

@@ -104,7 +104,7 @@ class OnDevice : private Outcome {
   /// Launch grid for kernels whose work-items add to the results once each.
   [[nodiscard]] LaunchGrid grid_for(std::size_t count) const {
     if (ctx_.device.shape().contiguous) return launch_.grid(count);
-    return {static_cast<std::uint32_t>(std::min(count, strided_items)), 1};
+    return {number(std::min(count, strided_items)), number(count), 1};
   }
   [[nodiscard]] DeviceMeshView view() const {
     return {input_.points,
@@ -160,9 +160,9 @@ class OnDevice : private Outcome {
   [[nodiscard]] bool examine_structure() {
     clear_results();
     used_ = launch_.zeros(n_);
-    const LaunchGrid all = grid_for(count_), points = grid_for(n_);
-    launch_.run<KernelId::cadt_verify_structure>(all.items, view(), number(n_), all.grain, used_, results_);
-    launch_.run<KernelId::cadt_verify_points>(points.items, input_.points, number(n_), points.grain, used_, results_);
+    const LaunchGrid all = grid_for(count_);
+    launch_.run<KernelId::cadt_verify_structure>(all.items, view(), n_, all.grain, used_, results_);
+    launch_.run<KernelId::cadt_verify_points>(input_.points, grid_for(n_), used_, results_);
     const Found found = results();
     if (const Findings finite = found.findings(CADT_FOUND_POINTS); finite.failures != 0) refuse_point(finite.first);
     mesh_.vertices = static_cast<std::size_t>(found.count(CADT_FOUND_USED));
@@ -199,11 +199,10 @@ class OnDevice : private Outcome {
     for (std::size_t at = 0; at < count_; at += most) {
       const std::size_t size = std::min(most, count_ - at);
       const LaunchGrid c = grid_for(size);
-      const auto room = number(std::max<std::size_t>(capacity(c, size), 4 * c.grain));
-      launch_.run<KernelId::cadt_verify_filter>(c.items, view(), number(at), number(size), symmetric_ ? 1U : 0U,
-                                                c.grain, c.items, lists_, sizes_, room, results_);
-      launch_.run<KernelId::cadt_verify_exact>(c.items, view(), number(at), c.items, lists_, sizes_, room, deferred_,
-                                               results_);
+      const std::size_t room = std::max<std::size_t>(capacity(c, size), 4 * c.grain);
+      launch_.run<KernelId::cadt_verify_filter>(c.items, view(), at, size, symmetric_, c.grain, c.items, lists_, sizes_,
+                                                room, results_);
+      launch_.run<KernelId::cadt_verify_exact>(c.items, view(), at, c.items, lists_, sizes_, room, deferred_, results_);
       if (const std::uint32_t left = launch_.read_word(deferred_, 0); left != 0) {
         ctx_.device.fill(*deferred_, 0, word, 0);
         settle_on_host(at, c.items, room, left);
@@ -214,7 +213,7 @@ class OnDevice : private Outcome {
     sizes_.release();
   }
 
-  void settle_on_host(std::size_t at, std::uint32_t items, std::uint32_t room, std::uint32_t left) {
+  void settle_on_host(std::size_t at, std::uint32_t items, std::size_t room, std::uint32_t left) {
     ctx_.device.fill(*sizes_, items * word, word, 0);
     launch_.scan(sizes_, std::size_t{items} + 1);
     const std::size_t most = std::min<std::size_t>(left, entries_per_gather);
@@ -224,8 +223,8 @@ class OnDevice : private Outcome {
     for (std::size_t from = 0; from < left; from += most) {
       const std::size_t size = std::min(most, left - from);
       ctx_.device.fill(*entries, 0, size * word, CADT_NONE);  // shows which are written
-      launch_.run<KernelId::cadt_verify_gather>(items, view(), number(at), items, lists_, sizes_, room, number(from),
-                                                number(from + size), entries, corners);
+      launch_.run<KernelId::cadt_verify_gather>(items, view(), at, items, lists_, sizes_, room, from, from + size,
+                                                entries, corners);
       ctx_.device.read(*entries, 0, entry.data(), size * word);
       ctx_.device.read(*corners, 0, quad.data(), size * sizeof quad[0]);
       settled_.merge(
@@ -257,9 +256,7 @@ class OnDevice : private Outcome {
       const std::span<const Duplicate> list = input_.duplicates;
       if (!list.empty()) {
         const Allocation pairs = ctx_.memory.import(list.data(), list.size_bytes());
-        const LaunchGrid c = grid_for(list.size());
-        launch_.run<KernelId::cadt_verify_duplicates>(c.items, input_.points, number(n_), used_, pairs,
-                                                      number(list.size()), c.grain, results_);
+        launch_.run<KernelId::cadt_verify_duplicates>(input_.points, n_, used_, pairs, grid_for(list.size()), results_);
       }
       const Findings findings = results().findings(CADT_FOUND_DUPLICATES);
       duplicates_examined_ = findings.examined;
@@ -290,7 +287,7 @@ class OnDevice : private Outcome {
       const Allocation corners = ctx_.memory.allocate(h * sizeof starts[0]);
       const Allocation written = launch_.zeros(1);
       const LaunchGrid c = grid_for(count_);
-      launch_.run<KernelId::cadt_verify_boundary>(c.items, view(), c.grain, list, corners, written, number(h));
+      launch_.run<KernelId::cadt_verify_boundary>(c.items, view(), c.grain, list, corners, written, h);
       boundary_written_ = launch_.read_word(written, 0);
       if (boundary_written_ != h) return skip({boundary, euler, hull}, counts);
       ctx_.device.read(*list, 0, edges.data(), h * sizeof edges[0]);

@@ -18,8 +18,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
-
 /// Words a vertex for stars with more star vertices than fit into a row. Stars with more than 12 have fewer than 3.9 a
 /// vertex in all, since the average of all stars is 6 and none has fewer than 3.
 constexpr std::size_t long_star_words = 4;

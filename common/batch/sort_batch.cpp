@@ -15,7 +15,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr unsigned key_bits = 32;
 
 /// Levels of the square of a set: about sixteen cells a point of the largest set, if there are enough bits.

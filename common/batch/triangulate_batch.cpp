@@ -21,7 +21,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 /// Most triangles of n points.
 constexpr std::size_t most_triangles(std::size_t n) { return n < 3 ? 0 : 2 * n - 5; }
 

@@ -15,8 +15,6 @@ using namespace device_text;
 
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
-
 bool counts_work(const Context& ctx) { return ctx.options.statistics != StatisticsDetail::none; }
 
 }  // namespace

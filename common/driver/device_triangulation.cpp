@@ -8,7 +8,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 
 void* handle_of(const DeviceTriangulation::Data& data, const Allocation& memory) noexcept {
   return memory ? data.state->device->handle(*memory) : nullptr;

@@ -4,6 +4,7 @@
 namespace cadt {
 namespace {
 
+using device_text::word;
 constexpr std::size_t smallest_grain = 8;  // fewer elements are not worth waking a thread
 constexpr std::size_t device_chunk = 512;  // contiguous elements that a work-item of a GPU scans or sorts
 // Several elements a work-item cost less set-up; with more elements than this the mesh does not stay in the cache
@@ -64,12 +65,12 @@ LaunchGrid Launcher::chunks(std::size_t count) const noexcept {
   return make_grid(divide_up(count, grain), count, grain);
 }
 
-Allocation Launcher::zeros(std::size_t words) { return memory_.allocate_zeros(words * sizeof(std::uint32_t)); }
+Allocation Launcher::zeros(std::size_t words) { return memory_.allocate_zeros(words * word); }
 
 std::uint32_t Launcher::read_word(const Allocation& from, std::size_t index) {
-  std::uint32_t word = 0;
-  device_.read(*from, index * sizeof word, &word, sizeof word);
-  return word;
+  std::uint32_t value = 0;
+  device_.read(*from, index * word, &value, word);
+  return value;
 }
 
 void Launcher::scan(const Allocation& data, std::size_t count) {
@@ -80,7 +81,7 @@ void Launcher::scan(const Allocation& data, std::size_t count) {
     return;
   }
   const LaunchGrid c = chunks(count);
-  Allocation sums = memory_.transient((c.items + std::size_t{1}) * sizeof(std::uint32_t));
+  Allocation sums = memory_.transient((c.items + std::size_t{1}) * word);
   run<KernelId::cadt_scan_sums>(data, sums, c);
   if (c.items <= longest_serial_scan) {
     run<KernelId::cadt_scan_total>(1, sums, c.items);
@@ -109,7 +110,7 @@ void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys
   const unsigned digit = device_.shape().contiguous ? 8 : 4;  // CADT_RADIX_BITS of the kernels
   const LaunchGrid c = chunks(count);
   const std::size_t entries = (std::size_t{1} << digit) * c.items;
-  Allocation counts = memory_.transient(entries * sizeof(std::uint32_t));
+  Allocation counts = memory_.transient(entries * word);
   const Allocation none;
   for (unsigned shift = 0; shift < std::max(bits, 1U); shift += digit) {
     run<KernelId::cadt_radix_count>(keys, counts, c, c.items, shift);

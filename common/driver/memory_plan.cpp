@@ -6,10 +6,12 @@
 #include <numeric>
 #include <string>
 
+#include "common/driver/device_text.hpp"
+
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 constexpr std::size_t fixed = std::size_t{1} << 16;  // bytes of counters and partial results
 constexpr std::size_t fewest_points_batched = std::size_t{1} << 16;
 

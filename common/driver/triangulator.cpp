@@ -23,7 +23,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 
 /// Sorts the points, builds their mesh and writes the result; what is written straight to memory of the host goes to
 /// `host`.

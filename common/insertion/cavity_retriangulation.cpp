@@ -14,7 +14,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::uint32_t max_edges = 256;  // of which the opposite vertices are read
 constexpr std::uint32_t min_region = 64;  // triangles: flips take less time for fewer
 constexpr std::size_t least_share = 16;   // a vertex counts if one of so many illegal edges leads to it

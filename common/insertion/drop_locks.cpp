@@ -11,8 +11,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
-
 /// Triangles without a ghost before each slot, and their number behind the last.
 Allocation rank_triangles(Context& ctx, const LockedTriangles& locked, MeshUse use) {
   Allocation ranks = ctx.memory.allocate((locked.slots + 1) * word);

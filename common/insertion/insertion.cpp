@@ -22,7 +22,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time until a cancellation
 constexpr std::size_t points_per_launch_strided = std::size_t{1} << 25;
 constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a watchdog allows two seconds a launch

@@ -4,7 +4,7 @@
 namespace cadt {
 
 MeshArray make_mesh_array(Context& ctx, std::size_t triangles, MeshUse use) {
-  const std::size_t bytes = 3 * triangles * sizeof(std::uint32_t);
+  const std::size_t bytes = 3 * triangles * device_text::word;
   MeshArray array;
   if (use == MeshUse::whole && ctx.result_on_host) {
     array.host = make_words(3 * triangles);

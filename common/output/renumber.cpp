@@ -12,7 +12,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 constexpr std::uint32_t none = 0xFFFFFFFFU;
 
 /// The compact plan makes the canonical order in so many parts, one after the other: the lists of each have this share

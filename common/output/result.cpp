@@ -8,7 +8,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 
 /// Below, a few launches take longer than memory is worth.
 constexpr std::size_t small = std::size_t{1} << 18;

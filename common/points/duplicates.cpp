@@ -10,7 +10,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 
 /// Lists the duplicates, ascending, and their representatives.
 void find_duplicates(Context& ctx, SortedPoints& result, const Allocation& order, const Allocation& ranks,

@@ -9,9 +9,7 @@
 
 namespace cadt {
 
-namespace {
-constexpr std::size_t word = sizeof(std::uint32_t);
-}
+using device_text::word;
 
 std::uint32_t flag_overfull(Context& ctx, const Allocation& keys, const Allocation& flags, std::size_t n) {
   const Allocation totals = ctx.launcher.zeros(1);

@@ -19,7 +19,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 /// Up to here, waiting for the device costs more than speculative work that over-full cells make useless.
 constexpr std::size_t most_ahead = std::size_t{1} << 17;
 

@@ -11,7 +11,6 @@ using namespace device_text;
 
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 /// A large GPU works on 900 tiles at a time: while it has the sample, it has begun others.
 constexpr std::uint32_t sampled_tiles = 512;
 

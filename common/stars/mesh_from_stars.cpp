@@ -18,7 +18,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 /// With more than a third unproven, the residual vertices would need more memory than insertion of all points, and as
 /// much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }

@@ -17,7 +17,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t most_teams = 4096;  // as many as a large GPU runs at the same time
 constexpr std::uint32_t tree_lanes = CADT_AABB_FANOUT * CADT_WRAP_PARTS;
 constexpr std::uint32_t residual_lanes = 128;  // for the longest stars, which set the time

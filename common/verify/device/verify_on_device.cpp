@@ -20,7 +20,6 @@ namespace {
 using namespace verifier;
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t triangles_per_launch_contiguous = std::size_t{1} << 20;  // bounds the lists: 4 words a triangle
 constexpr std::size_t triangles_per_launch_strided = std::size_t{1} << 23;
 constexpr std::size_t strided_items = std::size_t{1} << 17;  // enough to fill a GPU; each adds to the results once

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "common/driver/choose_strategy.hpp"
@@ -113,8 +112,7 @@ class BatchStage {
     ctx_.statistics.exact_incircles += words[CADT_WRAP_EXACT_INCIRCLES];
     ctx_.statistics.ties += words[CADT_WRAP_TIES];
     if (words[CADT_WRAP_OVERFLOWED] > n_ * long_star_words)
-      throw InternalError("the wrapped stars have " + std::to_string(words[CADT_WRAP_OVERFLOWED]) +
-                          " neighbours beyond their rows; please report this with the input");
+      give_up("the wrapped stars have ", words[CADT_WRAP_OVERFLOWED], " neighbours beyond their rows");
     ctx_.end_phase("wrap");
     ctx_.check("stars", 0.6);
   }
@@ -128,8 +126,7 @@ class BatchStage {
     const LaunchGrid each = launch_.grid(set_count_ + std::size_t{1});
     launch_.run<KernelId::cadt_batch_check>(each.items, sets_.positions(), set_count_, bases_, each.grain, wrong);
     if (const std::uint32_t sets = launch_.read_word(wrong, 0); sets != 0)
-      throw InternalError("stars contradict each other in or before " + std::to_string(sets) +
-                          " sets; please report this with the input");
+      give_up("stars contradict each other in or before ", sets, " sets");
     read_states();
     ctx_.statistics.wrapped_stars += unproven_;
     for (const std::uint32_t state : states_) ctx_.statistics.wrapped_stars -= state / CADT_SET_FAILURE;

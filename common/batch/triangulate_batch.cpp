@@ -142,9 +142,7 @@ class BatchCall {
 
   void write(const Mesh& mesh, std::size_t size, std::size_t room) {
     ctx_.check("output", 0.9);
-    if (mesh.triangles > room)
-      throw InternalError("there are " + std::to_string(mesh.triangles) + " triangles instead of " +
-                          std::to_string(room) + " at most; please report this with the input");
+    if (mesh.triangles > room) give_up("there are ", mesh.triangles, " triangles instead of ", room, " at most");
     const Allocation numbers = number_triangles(ctx_, mesh, size);
     ctx_.check("output", 0.95);
     write_triangles(ctx_, mesh, numbers, place());

@@ -2,7 +2,6 @@
 #include "common/certify/certify.hpp"
 
 #include <algorithm>
-#include <string>
 #include <vector>
 
 #include "common/driver/counters.hpp"
@@ -33,10 +32,8 @@ void read_certificate(Context& ctx, std::span<const std::uint32_t> words, std::s
   const std::uint64_t edges = 3 * std::uint64_t{n} - 3;
   const std::uint32_t examined = words[0], illegal = words[1], wrong = words[2], broken = words[3];
   if (examined != edges || illegal != 0 || wrong != 0 || broken != 0)
-    throw InternalError("the mesh has " + std::to_string(examined) + " edges, and there should be " +
-                        std::to_string(edges) + "; " + std::to_string(illegal) + " are illegal, " +
-                        std::to_string(wrong) + " have sides that do not fit, " + std::to_string(broken) +
-                        " turn back; please report this with the input");
+    give_up("the mesh has ", examined, " edges, and there should be ", edges, "; ", illegal, " are illegal, ", wrong,
+            " have sides that do not fit, ", broken, " turn back");
   ctx.statistics.legality_sweeps = std::max<std::uint64_t>(ctx.statistics.legality_sweeps, 1);
   ctx.statistics.certified_edges += examined;
   if (counts_work(ctx)) add_counters(ctx.statistics, words.subspan(CADT_COUNTER_STRIDE));

@@ -5,7 +5,6 @@
 #include <array>
 #include <functional>
 #include <map>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -115,9 +114,8 @@ bool CavityRetriangulation::retriangulate_region(const Region& region) {
   ctx_.device.read(*found, 0, words.data(), sizeof words);
   const std::uint32_t spoke_count = words[CADT_CAVITY_SPOKES];
   if (words[CADT_CAVITY_SIDES] != count || spoke_count > capacity)
-    throw InternalError("the region of a vertex has " + std::to_string(count) + " triangles, " +
-                        std::to_string(words[CADT_CAVITY_SIDES]) + " sides and " + std::to_string(spoke_count) +
-                        " spokes; please report this with the input");
+    give_up("the region of a vertex has ", count, " triangles, ", words[CADT_CAVITY_SIDES], " sides and ", spoke_count,
+            " spokes");
   c = launch_.grid(std::size_t{count} + spoke_count);
   launch_.run<KernelId::cadt_cavity_fill>(c.items, mesh_, count, spoke_count, c.grain, w, kept, sides, spokes);
   c = launch_.grid(2 * std::size_t{count} + spoke_count);

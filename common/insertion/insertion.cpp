@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <memory>
-#include <string>
 #include <utility>
 
 #include "common/driver/choose_strategy.hpp"
@@ -240,9 +239,7 @@ class IncrementalInsertion {
       stalled = launches != 0 && remaining >= last && deferred_.changes == 0 ? stalled + 1 : 0;
       last = remaining;
       if (++launches > unresolvable_launches && stalled > unresolvable_launches) {
-        throw InternalError("no progress: " + std::to_string(deferred_.points) + " points and " +
-                            std::to_string(deferred_.edges) +
-                            " edges cannot get their locks; please report this with the input");
+        give_up("no progress: ", deferred_.points, " points and ", deferred_.edges, " edges cannot get their locks");
       }
       if (may_be_cascades && deferred_.edges != 0) {
         if (launches == next_cascade_search - 1) cavities.remember(deferred_edges_[1], deferred_.edges);
@@ -286,21 +283,17 @@ class IncrementalInsertion {
       statistics.legality_sweeps = std::max(statistics.legality_sweeps, static_cast<std::uint64_t>(sweep));
       statistics.sweep_repairs += illegal;
       if (illegal == 0 && unsettled == 0) {
-        if (broken != 0)
-          throw InternalError("the boundary of the mesh turns back at " + std::to_string(broken) +
-                              " points; please report this with the input");
+        if (broken != 0) give_up("the boundary of the mesh turns back at ", broken, " points");
         statistics.certified_edges += examined - stabilized;
         statistics.illegal_edges += stabilized;
         statistics.certified = statistics.certified && stabilized == 0;
         if (examined != edges) {
-          throw InternalError("the mesh has " + std::to_string(examined) + " edges instead of " +
-                              std::to_string(edges) + "; please report this with the input");
+          give_up("the mesh has ", examined, " edges instead of ", edges);
         }
         return;
       }
     }
-    throw InternalError("the legality sweep still finds illegal edges after " + std::to_string(max_sweeps) +
-                        " sweeps; please report this with the input");
+    give_up("the legality sweep still finds illegal edges after ", max_sweeps, " sweeps");
   }
 
   struct Deferred {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <string>
 #include <utility>
 
 #include "common/driver/counters.hpp"
@@ -127,7 +126,7 @@ std::vector<std::int32_t> chain_loop(const std::vector<std::array<std::uint32_t,
     loop.push_back(at);
   }
   if (loop.size() != edges.size() || next[static_cast<std::size_t>(loop.back())] != smallest)
-    throw InternalError("the hull is not one loop; please report this with the input");
+    give_up("the hull is not one loop");
   return loop;
 }
 
@@ -188,8 +187,7 @@ std::vector<std::int32_t> find_hull(Context& ctx, const Allocation& triangles, c
   Allocation pairs = ctx.memory.allocate(size * sizeof edges[0]);
   Allocation written = ctx.launcher.zeros(1);
   ctx.launcher.run<KernelId::cadt_boundary_edges>(triangles, neighbors, ctx.launcher.grid(count), pairs, written, size);
-  if (ctx.launcher.read_word(written, 0) != size)
-    throw InternalError("the boundary does not have the size of Euler's formula; please report this with the input");
+  if (ctx.launcher.read_word(written, 0) != size) give_up("the boundary does not have the size of Euler's formula");
   ctx.device.read(*pairs, 0, edges.data(), size * sizeof edges[0]);
   return chain_loop(edges, points);
 }

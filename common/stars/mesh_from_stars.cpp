@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -68,8 +67,7 @@ class StarStage {
     }
     // stars that contradict each other would have more
     if (proven_triangles_ > 2 * n_ - 2)
-      throw InternalError("the proven stars have " + std::to_string(proven_triangles_) + " triangles, more than " +
-                          std::to_string(2 * n_ - 2) + "; please report this with the input");
+      give_up("the proven stars have ", proven_triangles_, " triangles, more than ", 2 * n_ - 2);
     ctx_.statistics.proven_stars = n_ - unproven_;
     SortedPoints residual = take_residual();
     if (ctx_.plan.regathers) order_.points.release();
@@ -207,7 +205,7 @@ class StarStage {
     const std::uint64_t certified = ctx_.statistics.certified_edges;
     const Mesh smaller = build_residual(ctx_, std::move(residual), n_, how_);
     ctx_.statistics.certified_edges = certified;  // only those of the whole mesh count
-    if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
+    if (smaller.flat) give_up("the unproven vertices are on a line");
     const Allocation none;
     const DeviceMeshView residual_mesh = view_of(smaller, none);
 
@@ -227,8 +225,7 @@ class StarStage {
     launch_.scan(ranks, smaller.all + 1);
     const std::size_t triangles = std::size_t{proven_triangles_} + launch_.read_word(ranks, smaller.all);
     if (triangles != mesh_.all)
-      throw InternalError("the two parts of the mesh have " + std::to_string(triangles) + " triangles instead of " +
-                          std::to_string(mesh_.all) + "; please report this with the input");
+      give_up("the two parts of the mesh have ", triangles, " triangles instead of ", mesh_.all);
     mesh_.triangles = proven_triangles_ + launch_.read_word(ranks, smaller.triangles);
     launch_.run<KernelId::cadt_stitch_residual>(all.items, residual_mesh, covers, ranks, smaller.input_ids, all.grain,
                                                 proven_triangles_, mesh_.vertices, mesh_.across);

@@ -5,7 +5,6 @@
 #include <array>
 #include <set>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -263,8 +262,7 @@ class Wrapping {
 
   void require_all(std::size_t found) const {
     if (found == triangles() && used_words_ <= star_words()) return;
-    throw InternalError("the wrapped stars have " + std::to_string(found) + " triangles instead of " +
-                        std::to_string(triangles()) + "; please report this with the input");
+    give_up("the wrapped stars have ", found, " triangles instead of ", triangles());
   }
 
   Context& ctx_;

@@ -2,7 +2,6 @@
 #include "common/batch/batch_mesh.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
@@ -56,9 +55,7 @@ class BatchStage {
   }
 
   void read_sets() {
-    states_.resize(set_count_);
-    result_.positions.resize(set_count_ + std::size_t{1});
-    ctx_.device.read(*sets_.positions(), 0, result_.positions.data(), result_.positions.size() * word);
+    result_.positions = ctx_.device.read_values(*sets_.positions(), set_count_ + std::size_t{1});
     read_states();
     for (std::size_t s = 0; s < set_count_; ++s) {
       if (states_[s] != CADT_SET_BATCHED) continue;
@@ -67,7 +64,7 @@ class BatchStage {
     }
   }
 
-  void read_states() { ctx_.device.read(*sets_.states, 0, states_.data(), states_.size() * word); }
+  void read_states() { states_ = ctx_.device.read_values(*sets_.states, set_count_); }
 
   void make_stars() {
     const unsigned levels = order_.grid.levels();
@@ -106,8 +103,7 @@ class BatchStage {
     wrap_batch(ctx_, order_.points, n_, {list, unproven_, sets_.positions(), sets_.states, set_count_},
                {CADT_STAR_DEGREE, stars_.star_vertices, n_ * (CADT_STAR_DEGREE + long_star_words), begins_,
                 stars_.sizes, counts});
-    std::array<std::uint32_t, CADT_WRAP_DRIVER_WORDS> words{};
-    ctx_.device.read(*counts, 0, words.data(), sizeof words);
+    const std::vector<std::uint32_t> words = ctx_.device.read_values(*counts, CADT_WRAP_DRIVER_WORDS);
     ctx_.statistics.exact_orientations += words[CADT_WRAP_EXACT_ORIENTATIONS];
     ctx_.statistics.exact_incircles += words[CADT_WRAP_EXACT_INCIRCLES];
     ctx_.statistics.ties += words[CADT_WRAP_TIES];

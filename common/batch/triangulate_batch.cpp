@@ -183,8 +183,7 @@ class BatchCall {
     write(mesh.mesh, size, most_triangles(std::span(offsets_).subspan(first_set, sets + 1)));
     renumber_within_sets(ctx_, mesh.set_starts, order.starts, place(), mesh.mesh.triangles);
     ctx_.end_phase("output");
-    std::vector<std::uint32_t> ends(sets + 1);
-    ctx_.device.read(*mesh.set_starts, 0, ends.data(), ends.size() * word);
+    const std::vector<std::uint32_t> ends = ctx_.device.read_values(*mesh.set_starts, sets + 1);
     for (std::size_t s = 0; s < sets; ++s) {
       const std::size_t duplicates = starts[s] - mesh.positions[s];
       add_pairs(pairs, duplicates, starts[s + 1] - mesh.positions[s + 1], starts[s]);

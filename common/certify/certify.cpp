@@ -40,8 +40,7 @@ void read_certificate(Context& ctx, std::span<const std::uint32_t> words, std::s
 }
 
 void certify(Context& ctx, const Mesh& mesh, std::size_t n) {
-  std::vector<std::uint32_t> words(certify_words(ctx));
-  const Allocation found = ctx.launcher.zeros(words.size());
+  const Allocation found = ctx.launcher.zeros(certify_words(ctx));
   const std::size_t most = slots_per_launch(ctx.device);
   for (std::size_t begin = 0; begin < mesh.all; begin += most) {
     const std::size_t size = std::min(most, mesh.all - begin);
@@ -49,8 +48,7 @@ void certify(Context& ctx, const Mesh& mesh, std::size_t n) {
     if (begin + size < mesh.all) ctx.device.finish();
     ctx.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(mesh.all));
   }
-  ctx.device.read(*found, 0, words.data(), words.size() * word);
-  read_certificate(ctx, words, n);
+  read_certificate(ctx, ctx.device.read_values(*found, certify_words(ctx)), n);
   ctx.end_phase("certify");
 }
 

@@ -152,6 +152,13 @@ class Device {
   /// Blocking copies; offsets and sizes in bytes. \throws DeviceError
   virtual void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) = 0;
   virtual void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) = 0;
+  /// The `count` values from the one of this index on.
+  template <class T = std::uint32_t>
+  [[nodiscard]] std::vector<T> read_values(const Buffer& from, std::size_t count, std::size_t first = 0) {
+    std::vector<T> values(count);
+    read(from, first * sizeof(T), values.data(), count * sizeof(T));
+    return values;
+  }
   /// Fills with copies of a word; offset and size in bytes, multiples of 4.
   virtual void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) = 0;
 

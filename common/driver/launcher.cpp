@@ -68,9 +68,7 @@ LaunchGrid Launcher::chunks(std::size_t count) const noexcept {
 Allocation Launcher::zeros(std::size_t words) { return memory_.allocate_zeros(words * word); }
 
 std::uint32_t Launcher::read_word(const Allocation& from, std::size_t index) {
-  std::uint32_t value = 0;
-  device_.read(*from, index * word, &value, word);
-  return value;
+  return device_.read_values(*from, 1, index)[0];
 }
 
 void Launcher::scan(const Allocation& data, std::size_t count) {

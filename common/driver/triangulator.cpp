@@ -99,12 +99,12 @@ DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state,
 template <class Real>
 VerifyReport verify_copy(Device& device, const Allocation& input, const DeviceTriangulation::Data& data,
                          std::span<const Duplicate> duplicates, const VerifyOptions& options) {
-  std::vector<Real> xy(2 * data.points);
-  if (!xy.empty()) device.read(*input, 0, xy.data(), xy.size() * sizeof xy[0]);
-  std::vector<std::int32_t> triangles(3 * data.triangle_count), neighbors(triangles.size());
-  if (!triangles.empty()) {
-    device.read(*data.triangles, 0, triangles.data(), triangles.size() * word);
-    device.read(*data.neighbors, 0, neighbors.data(), neighbors.size() * word);
+  std::vector<Real> xy;
+  std::vector<std::int32_t> triangles, neighbors;
+  if (input) xy = device.read_values<Real>(*input, 2 * data.points);
+  if (const std::size_t values = 3 * data.triangle_count; values != 0) {
+    triangles = device.read_values<std::int32_t>(*data.triangles, values);
+    neighbors = device.read_values<std::int32_t>(*data.neighbors, values);
   }
   MeshView view;
   view.triangles = triangles;

@@ -2,7 +2,6 @@
 #include "common/insertion/cavity_retriangulation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <map>
 #include <utility>
@@ -30,9 +29,7 @@ std::vector<std::uint32_t> CavityRetriangulation::read_quads(const Allocation& e
   const std::uint32_t read = std::min(count, max_edges);
   const Allocation quads = ctx_.memory.allocate(4 * read * word);
   launch_.run<KernelId::cadt_cavity_candidates>(mesh_, edges, launch_.grid(read), quads);
-  std::vector<std::uint32_t> vertices(4 * std::size_t{read});
-  ctx_.device.read(*quads, 0, vertices.data(), vertices.size() * word);
-  return vertices;
+  return ctx_.device.read_values(*quads, 4 * std::size_t{read});
 }
 
 void CavityRetriangulation::remember(const Allocation& edges, std::uint32_t count) {
@@ -79,8 +76,7 @@ std::vector<CavityRetriangulation::Region> CavityRetriangulation::large_regions(
   const Allocation list = ctx_.memory.allocate(count * word), sums = launch_.zeros(count);
   ctx_.device.write(*list, 0, vertices.data(), count * word);
   launch_.run<KernelId::cadt_cavity_sizes>(mesh_, launch_.grid_strided(slots_), ends_, list, count, sums);
-  std::vector<std::uint32_t> sizes(count);
-  ctx_.device.read(*sums, 0, sizes.data(), count * word);
+  const std::vector<std::uint32_t> sizes = ctx_.device.read_values(*sums, count);
   std::vector<Region> regions;
   for (std::size_t v = 0; v < count; ++v)
     if (sizes[v] >= min_region) regions.push_back({sizes[v], vertices[v]});
@@ -110,8 +106,7 @@ bool CavityRetriangulation::retriangulate_region(const Region& region) {
   if (count == 0) return false;
   const Allocation& sides = scratch;  // the components are not read any more
   launch_.run<KernelId::cadt_cavity_boundary>(mesh_, launch_.grid(count), w, kept, sides, spokes, capacity, found);
-  std::array<std::uint32_t, CADT_CAVITY_WORDS> words{};
-  ctx_.device.read(*found, 0, words.data(), sizeof words);
+  const std::vector<std::uint32_t> words = ctx_.device.read_values(*found, CADT_CAVITY_WORDS);
   const std::uint32_t spoke_count = words[CADT_CAVITY_SPOKES];
   if (words[CADT_CAVITY_SIDES] != count || spoke_count > capacity)
     give_up("the region of a vertex has ", count, " triangles, ", words[CADT_CAVITY_SIDES], " sides and ", spoke_count,

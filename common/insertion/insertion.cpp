@@ -32,7 +32,7 @@ constexpr int unresolvable_launches = 64;
 constexpr std::size_t poll_interval = 4096;  // points inserted between two reads of what was deferred
 constexpr int first_cascade_search = 4;      // the launch before which flip cascades are looked for first
 constexpr int max_sweeps = 2000;
-constexpr std::size_t sweep_counts = 5, all_counts = CADT_DEFERRED_COUNTS + sweep_counts;
+constexpr std::size_t sweep_counts = 5;
 
 /// Points that one launch inserts at most.
 std::size_t points_per_launch(const Device& device) {
@@ -94,7 +94,7 @@ class IncrementalInsertion {
  private:
   void make_edge_lists() {
     for (Allocation& list : deferred_edges_) list = ctx_.memory.transient(edge_capacity_ * word);
-    deferred_counts_ = launch_.zeros(all_counts);
+    deferred_counts_ = launch_.zeros(CADT_DEFERRED_COUNTS + sweep_counts);
   }
 
   /// `edges`: of all spheres, ghost edges included. Nothing is left but the triangles.
@@ -203,11 +203,11 @@ class IncrementalInsertion {
 
   /// Moves what the last launches deferred to the lists [1]; the lists [0] are empty then.
   void take_deferred() {
-    std::array<std::uint32_t, 3> counts{};  // points, edges, work-items that changed the mesh
-    ctx_.device.read(*deferred_counts_, 0, counts.data(), sizeof counts);
+    const auto counts =
+        ctx_.device.read_values(*deferred_counts_, 3);  // points, edges, work-items that changed the mesh
     deferred_ = {counts[0], std::min(counts[1], edge_capacity_), counts[2]};
     if (counts[0] == 0 && counts[1] == 0 && counts[2] == 0) return;
-    ctx_.device.fill(*deferred_counts_, 0, sizeof counts, 0);
+    ctx_.device.fill(*deferred_counts_, 0, 3 * word, 0);
     std::swap(deferred_points_[0], deferred_points_[1]);
     std::swap(deferred_edges_[0], deferred_edges_[1]);
   }
@@ -266,13 +266,12 @@ class IncrementalInsertion {
         const std::size_t size = std::min(limit, slots - begin);
         launch_.run<KernelId::cadt_legality_sweep>(mesh_, begin, launch_.grid_strided(size), by_level_ ? n_ : 0,
                                                    deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
-        std::array<std::uint32_t, all_counts> words{};
-        ctx_.device.read(*deferred_counts_, 0, words.data(), sizeof words);
-        examined += words[CADT_DEFERRED_COUNTS];
-        illegal += words[CADT_DEFERRED_COUNTS + 1];
-        unsettled += words[CADT_DEFERRED_COUNTS + 2];
-        stabilized += words[CADT_DEFERRED_COUNTS + 3];
-        broken += words[CADT_DEFERRED_COUNTS + 4];
+        const auto words = ctx_.device.read_values(*deferred_counts_, sweep_counts, CADT_DEFERRED_COUNTS);
+        examined += words[0];
+        illegal += words[1];
+        unsettled += words[2];
+        stabilized += words[3];
+        broken += words[4];
         if (begin + size == slots && examined == edges && illegal + unsettled == 0) break;
         ctx_.device.fill(*deferred_counts_, CADT_DEFERRED_COUNTS * word, sweep_counts * word, 0);
         take_deferred();

@@ -33,8 +33,7 @@ std::vector<PartBegin> split_buckets(Context& ctx, const Allocation& buckets, st
   const Allocation found = ctx.memory.allocate(begins.size() * sizeof begins[0]);
   const LaunchGrid c = ctx.launcher.grid(points);
   ctx.launcher.run<KernelId::cadt_split_buckets>(c.items, buckets, points, triangles, parts, c.grain, found);
-  ctx.device.read(*found, 0, begins.data(), begins.size() * sizeof begins[0]);
-  return begins;
+  return ctx.device.read_values<PartBegin>(*found, begins.size());
 }
 
 /// A part of the triangles in their buckets.
@@ -183,13 +182,12 @@ void renumber_within_sets(Context& ctx, const Allocation& set_starts, const SetS
 
 std::vector<std::int32_t> find_hull(Context& ctx, const Allocation& triangles, const Allocation& neighbors,
                                     std::size_t count, std::size_t size, std::size_t points) {
-  std::vector<std::array<std::uint32_t, 2>> edges(size);
-  Allocation pairs = ctx.memory.allocate(size * sizeof edges[0]);
+  using Edge = std::array<std::uint32_t, 2>;
+  Allocation pairs = ctx.memory.allocate(size * sizeof(Edge));
   Allocation written = ctx.launcher.zeros(1);
   ctx.launcher.run<KernelId::cadt_boundary_edges>(triangles, neighbors, ctx.launcher.grid(count), pairs, written, size);
   if (ctx.launcher.read_word(written, 0) != size) give_up("the boundary does not have the size of Euler's formula");
-  ctx.device.read(*pairs, 0, edges.data(), size * sizeof edges[0]);
-  return chain_loop(edges, points);
+  return chain_loop(ctx.device.read_values<Edge>(*pairs, size), points);
 }
 
 }  // namespace cadt

@@ -2,7 +2,6 @@
 #include "common/points/spatial_sort.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -34,9 +33,7 @@ std::vector<cadt_point> sample_of(Context& ctx, const Allocation& input, std::si
                    chosen = ctx.memory.allocate(samples * sizeof(cadt_point));
   ctx.device.write(*list, 0, places.data(), samples * word);
   ctx.launcher.run<KernelId::cadt_gather_points>(input, list, chosen, ctx.launcher.grid(samples), 1.0, 1.0);
-  std::vector<cadt_point> points(samples);
-  ctx.device.read(*chosen, 0, points.data(), samples * sizeof points[0]);
-  return points;
+  return ctx.device.read_values<cadt_point>(*chosen, samples);
 }
 
 /// A grid without the outermost points, where their absence makes the bounding box much smaller: with heavy tails, or a
@@ -142,12 +139,12 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
   };
   sort(grid_of_all(bounds, n));
   bool sorted_by_keys = true;
-  std::array<std::uint32_t, CADT_ORDER_WORDS> sums{};
+  std::vector<std::uint32_t> sums(CADT_ORDER_WORDS);
   std::uint32_t overfull_points = 0;
   if (n <= most_ahead) {
     ctx.end_phase("sort");
     gather();
-    ctx.device.read(*totals, 0, sums.data(), sizeof sums);
+    sums = ctx.device.read_values(*totals, CADT_ORDER_WORDS);
     if (sums[CADT_OVERFULL] != 0) sorted.release();
   }
   // Flat sets need no keys.
@@ -181,7 +178,7 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
     ctx.end_phase("refine");
     ctx.device.fill(*totals, 0, sums.size() * word, 0);
     gather();
-    ctx.device.read(*totals, 0, sums.data(), sizeof sums);
+    sums = ctx.device.read_values(*totals, CADT_ORDER_WORDS);
   }
   for (const double factor : {scale, scale_again}) {
     result.grid.half_min_x *= factor;

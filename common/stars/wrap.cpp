@@ -111,8 +111,7 @@ class Wrapping {
     ctx_.end_phase("wrap");
     const bool certifies = use == MeshUse::whole;
     if (certifies) launch_certify(ctx_, unnumbered_view(mesh), 0, mesh.all, bases_, row());
-    std::vector<std::uint32_t> words(row() + certify_words(ctx_) - n_);
-    ctx_.device.read(*bases_, n_ * word, words.data(), words.size() * word);
+    const auto words = ctx_.device.read_values(*bases_, row() + certify_words(ctx_) - n_, n_);
     note(words);
     if (high_degree_ != 0) return add_high_degree(mesh, words[0]);
     mesh.triangles = CADT_WRAP_REAL(words[0]);
@@ -203,8 +202,7 @@ class Wrapping {
   [[nodiscard]] bool add_triangles_of_high_degree(HighDegreeEdges& all, std::size_t wanted) {
     const std::uint32_t known = all.first_extra;
     if (known + 3 * wanted > CADT_WRAP_EDGES || known == 0) return false;
-    std::vector<cadt_wrap_edge> edges(known);
-    ctx_.device.read(*edges_, 0, edges.data(), known * sizeof edges[0]);
+    auto edges = ctx_.device.read_values<cadt_wrap_edge>(*edges_, known);
     using HalfEdge = std::pair<std::uint32_t, std::uint32_t>;
     std::set<HalfEdge> sides;  // half-edges whose triangle is known
     for (const cadt_wrap_edge& e : edges) sides.emplace(e.from, e.to);
@@ -226,9 +224,7 @@ class Wrapping {
         }
       }
     }
-    std::array<std::uint32_t, CADT_WRAP_DRIVER_WORDS> words{};
-    ctx_.device.read(*counts_, 0, words.data(), sizeof words);
-    note_exact(std::span(words).subspan(CADT_WRAP_EXACT_ORIENTATIONS, 3));
+    note_exact(ctx_.device.read_values(*counts_, 3, CADT_WRAP_EXACT_ORIENTATIONS));
     const bool closed = std::ranges::all_of(sides, [&](HalfEdge e) { return sides.contains({e.second, e.first}); });
     if (!closed || edges.size() != known + 3 * wanted || sides.size() != edges.size()) return false;
     all.extra_real = sort_ghosts_last(edges, known);

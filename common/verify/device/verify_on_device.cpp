@@ -117,8 +117,7 @@ class OnDevice : private Outcome {
   static std::uint32_t number(std::size_t value) { return static_cast<std::uint32_t>(value); }
 
   [[nodiscard]] Found results() const {
-    std::vector<std::uint32_t> rows(static_cast<std::size_t>(CADT_FOUND_ROWS) * CADT_FOUND_WORDS);
-    ctx_.device.read(*results_, 0, rows.data(), rows.size() * word);
+    const auto rows = ctx_.device.read_values(*results_, std::size_t{CADT_FOUND_ROWS} * CADT_FOUND_WORDS);
     Found found;
     found.least.fill(CADT_NONE);
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -141,10 +140,8 @@ class OnDevice : private Outcome {
   /// Fetches the mesh, only if something has failed: messages quote it, and a search needs all of it.
   void fetch_mesh() {
     if (!mesh_.triangles.empty()) return;
-    fetched_.resize(3 * count_);
-    mesh_.derived.resize(3 * count_);
-    ctx_.device.read(*input_.triangles, 0, fetched_.data(), fetched_.size() * word);
-    ctx_.device.read(*input_.neighbors, 0, mesh_.derived.data(), fetched_.size() * word);
+    fetched_ = ctx_.device.read_values<std::int32_t>(*input_.triangles, 3 * count_);
+    mesh_.derived = ctx_.device.read_values<std::int32_t>(*input_.neighbors, 3 * count_);
     mesh_.triangles = fetched_;
     mesh_.neighbors = mesh_.derived;
   }
@@ -266,12 +263,10 @@ class OnDevice : private Outcome {
       return;
     }
     // The host finds the vertex that an unused point equals.
-    std::vector<std::uint32_t> used(n_);
-    ctx_.device.read(*used_, 0, used.data(), n_ * word);
+    const std::vector<std::uint32_t> used = ctx_.device.read_values(*used_, n_);
     mesh_.used.assign(used.begin(), used.end());
     if (mesh_.points.size() == 0) {
-      fetched_points_.resize(2 * n_);
-      ctx_.device.read(*input_.points, 0, fetched_points_.data(), fetched_points_.size() * sizeof(double));
+      fetched_points_ = ctx_.device.read_values<double>(*input_.points, 2 * n_);
       mesh_.points = fetched_points_;
     }
     check_vertices(mesh_, MeshView{}, check);
@@ -279,18 +274,19 @@ class OnDevice : private Outcome {
 
   void examine_boundary(const Found& found) {
     const auto h = static_cast<std::size_t>(found.count(CADT_FOUND_BOUNDARY));
-    std::vector<std::array<std::uint32_t, 3>> edges(h);
-    std::vector<Point> starts(h);
+    using Edge = std::array<std::uint32_t, 3>;
+    std::vector<Edge> edges;
+    std::vector<Point> starts;
     if (h != 0) {
-      const Allocation list = ctx_.memory.allocate(h * sizeof edges[0]);
-      const Allocation corners = ctx_.memory.allocate(h * sizeof starts[0]);
+      const Allocation list = ctx_.memory.allocate(h * sizeof(Edge));
+      const Allocation corners = ctx_.memory.allocate(h * sizeof(Point));
       const Allocation written = launch_.zeros(1);
       const LaunchGrid c = grid_for(count_);
       launch_.run<KernelId::cadt_verify_boundary>(c.items, view(), c.grain, list, corners, written, h);
       boundary_written_ = launch_.read_word(written, 0);
       if (boundary_written_ != h) return skip({boundary, euler, hull}, counts);
-      ctx_.device.read(*list, 0, edges.data(), h * sizeof edges[0]);
-      ctx_.device.read(*corners, 0, starts.data(), h * sizeof starts[0]);
+      edges = ctx_.device.read_values<Edge>(*list, h);
+      starts = ctx_.device.read_values<Point>(*corners, h);
     }
     for (const auto& [edge, from, to] : edges)
       mesh_.boundary.push_back({static_cast<std::int32_t>(from), static_cast<std::int32_t>(to), edge});

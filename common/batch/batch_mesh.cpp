@@ -79,8 +79,7 @@ class BatchStage {
     ctx_.check("stars", 0.1);
     stars_.star_vertices = ctx_.memory.allocate(n_ * (CADT_STAR_DEGREE + long_star_words) * word);
     stars_.sizes = ctx_.memory.allocate_zeros(n_ * word);
-    if (tiles)
-      prove_stars(ctx_, order_, {keys, none}, sets_.sets, sets_.states, *tiles, false, stars_).add_to(ctx_.statistics);
+    if (tiles) prove_stars(ctx_, order_, {keys, none}, sets_.sets, sets_.states, *tiles, false, stars_);
     ctx_.end_phase("stars");
     ctx_.check("stars", 0.4);
   }
@@ -100,13 +99,11 @@ class BatchStage {
     launch_.run<KernelId::cadt_batch_list>(ranks, list, all);
     ranks.release();
     const Allocation counts = launch_.zeros(CADT_WRAP_WORDS);
-    wrap_batch(ctx_, order_.points, n_, {list, unproven_, sets_.positions(), sets_.states, set_count_},
+    wrap_batch(ctx_, order_.points, n_, list, unproven_, {sets_.positions(), set_count_, sets_.states},
                {CADT_STAR_DEGREE, stars_.star_vertices, n_ * (CADT_STAR_DEGREE + long_star_words), begins_,
                 stars_.sizes, counts});
     const std::vector<std::uint32_t> words = ctx_.device.read_values(*counts, CADT_WRAP_DRIVER_WORDS);
-    ctx_.statistics.exact_orientations += words[CADT_WRAP_EXACT_ORIENTATIONS];
-    ctx_.statistics.exact_incircles += words[CADT_WRAP_EXACT_INCIRCLES];
-    ctx_.statistics.ties += words[CADT_WRAP_TIES];
+    add_exact_tests(ctx_.statistics, std::span(words).subspan<CADT_WRAP_EXACT_ORIENTATIONS, 3>());
     if (words[CADT_WRAP_OVERFLOWED] > n_ * long_star_words)
       give_up("the wrapped stars have ", words[CADT_WRAP_OVERFLOWED], " neighbours beyond their rows");
     ctx_.end_phase("wrap");

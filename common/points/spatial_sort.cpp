@@ -86,7 +86,7 @@ void sort_finely(Context& ctx, const Allocation& input, Allocation& keys, Alloca
   Launcher& launch = ctx.launcher;
   const LaunchGrid all = launch.grid(n);
   const Allocation low = ctx.memory.transient(n * word);
-  make_fine_keys(ctx, input, keys, low, n, grid);
+  make_keys(ctx, input, keys, low, n, grid);
   Allocation sorted = ctx.memory.transient(n * word), spare_order = ctx.memory.transient(n * word);
   launch.run<KernelId::cadt_copy_words>(low, sorted, 0U, all);
   launch.sort(sorted, order, spare, spare_order, n, 2 * grid.fine_levels, true);
@@ -134,7 +134,7 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
   const auto sort = [&](const KeyGrid& grid) {
     Allocation spare_order = ctx.memory.transient(n * word);
     result.grid = grid;
-    make_keys(ctx, input, keys, n, grid);
+    make_keys(ctx, input, keys, {}, n, grid);
     launch.sort(keys, order, spare, spare_order, n, grid.bits(), true);
   };
   sort(grid_of_all(bounds, n));

@@ -2,7 +2,6 @@
 #include "common/stars/mesh_from_stars.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <optional>
 #include <utility>
@@ -27,40 +26,15 @@ constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * 
 /// Steps in which the compact plan replaces the stars by the vertices of the mesh.
 constexpr std::uint32_t waves = 4;
 
-/// The mesh of the residual vertices of a mesh of `all` points. The whole mesh is certified later, so there are no
-/// legality sweeps where they are of no use.
-Mesh build_residual(Context& ctx, SortedPoints points, std::size_t all, const BuildStrategy& how) {
-  if (points.distinct <= how.most_residual_wrapped) {
-    if (std::optional<Mesh> wrapped = wrap_part(ctx, points.points, points.distinct, all)) {
-      wrapped->input_ids = std::move(points.input_ids);
-      return std::move(*wrapped);
-    }
-  }
-  return insert_incrementally(ctx, std::move(points), MeshUse::part);
-}
-
 class StarStage {
  public:
   StarStage(Context& ctx, SortedPoints points, const InputPoints& input, const BuildStrategy& how)
-      : ctx_(ctx),
-        launch_(ctx.launcher),
-        order_(std::move(points)),
-        input_(input),
-        how_(how),
-        n_(order_.distinct),
-        keys_(std::move(order_.keys)) {
+      : ctx_(ctx), order_(std::move(points)), input_(input), how_(how) {
     order_.grid = grid_for_stars(order_.grid);
   }
 
   [[nodiscard]] Mesh build() {
-    const bool made = make_stars();
-    keys_.release();
-    if (!made) {
-      release_stars();
-      return wrap_or_insert(ctx_, std::move(order_), how_);
-    }
-    count_triangles();
-    if (too_many(unproven_, n_) || too_many_open(open_count_, n_)) {
+    if (!make_stars() || !count_triangles()) {
       release_stars();
       ranks_.release();
       return wrap_or_insert(ctx_, std::move(order_), how_);
@@ -83,30 +57,26 @@ class StarStage {
   /// False if there are no tiles or too few stars are proven.
   bool make_stars() {
     const KeyGrid& grid = order_.grid;
-    Allocation low;
-    if (!keys_) {
-      keys_ = ctx_.memory.transient(n_ * word);
-      if (grid.fine_levels != 0) {
-        low = ctx_.memory.transient(n_ * word);
-        make_fine_keys(ctx_, order_.points, keys_, low, n_, grid);
-      } else {
-        make_keys(ctx_, order_.points, keys_, n_, grid);
-      }
+    Allocation high = std::move(order_.keys), low;
+    if (!high) {
+      high = ctx_.memory.transient(n_ * word);
+      if (grid.fine_levels != 0) low = ctx_.memory.transient(n_ * word);
+      make_keys(ctx_, order_.points, high, low, n_, grid);
     }
-    const SortKeys keys{keys_, low, 2 * grid.fine_levels};
+    const SortKeys keys{high, low, 2 * grid.fine_levels};
     const std::optional<TileList> tiles = make_tiles(ctx_, keys, n_, grid.levels(), how_.least_points_of_tile);
     ctx_.end_phase("tiles");
     if (!tiles) return false;
     ctx_.check("stars", 0.1);
     stars_ = allocate_stars(ctx_, n_, *tiles);
     const StarCounters found = prove_stars(ctx_, order_, keys, {}, {}, *tiles, how_.cautious, stars_);
-    found.add_to(ctx_.statistics);
     ctx_.end_phase("stars");
     ctx_.check("stars", 0.5);
-    return found.left_tiles == 0 && !too_many(found.unproven, n_);
+    return found[CADT_STARS_SKIPPED_TILES] == 0 && !too_many(found[CADT_STARS_UNPROVEN], n_);
   }
 
-  void count_triangles() {
+  /// False if too few triangles are those of proven stars.
+  [[nodiscard]] bool count_triangles() {
     // All pooled buffers but one are taken as a whole while the bases live; the compact plan gives them a buffer of
     // their own.
     const std::size_t bases = (n_ + 1) * word;
@@ -126,6 +96,7 @@ class StarStage {
     proven_triangles_ = launch_.read_word(bases_, n_);
     unproven_ = launch_.read_word(ranks_, n_);
     open_count_ = launch_.read_word(totals_, 0);
+    return !too_many(unproven_, n_) && !too_many_open(open_count_, n_);
   }
 
   /// The vertices without a proven star; their input ids are positions in the sorted order.
@@ -203,7 +174,8 @@ class StarStage {
     // The buffer of the stars is free now, unless the mesh has taken it.
     const Memory::TransientScope transient(ctx_.memory, !ctx_.plan.compact);
     const std::uint64_t certified = ctx_.statistics.certified_edges;
-    const Mesh smaller = build_residual(ctx_, std::move(residual), n_, how_);
+    // Without legality sweeps where they are of no use: the whole mesh is certified later.
+    const Mesh smaller = wrap_or_insert(ctx_, std::move(residual), how_, n_);
     ctx_.statistics.certified_edges = certified;  // only those of the whole mesh count
     if (smaller.flat) give_up("the unproven vertices are on a line");
     const Allocation none;
@@ -234,13 +206,13 @@ class StarStage {
   }
 
   Context& ctx_;
-  Launcher& launch_;
+  Launcher& launch_ = ctx_.launcher;
   SortedPoints order_;
   const InputPoints& input_;
   const BuildStrategy& how_;
-  std::size_t n_;
+  std::size_t n_ = order_.distinct;
   Stars stars_;
-  Allocation keys_, proven_, marks_, bases_, ranks_, totals_, open_;
+  Allocation proven_, marks_, bases_, ranks_, totals_, open_;
   Mesh mesh_;
   std::uint32_t proven_triangles_ = 0, unproven_ = 0, open_count_ = 0;
 };
@@ -251,16 +223,18 @@ Mesh mesh_from_stars(Context& ctx, SortedPoints points, const InputPoints& input
   return StarStage(ctx, std::move(points), input, how).build();
 }
 
-Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how) {
+Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how, std::size_t all) {
+  const MeshUse use = all == 0 ? MeshUse::whole : MeshUse::part;
   points.keys.release();
-  if (points.distinct <= how.most_wrapped) {
-    if (std::optional<Mesh> wrapped = wrap_mesh(ctx, points)) {
-      wrapped->points = std::move(points.points);
+  if (points.distinct <= (use == MeshUse::whole ? how.most_wrapped : how.most_residual_wrapped)) {
+    const std::size_t of = use == MeshUse::whole ? points.distinct : all;
+    if (std::optional<Mesh> wrapped = wrap_mesh(ctx, points.points, points.distinct, of, use)) {
+      if (use == MeshUse::whole) wrapped->points = std::move(points.points);
       wrapped->input_ids = std::move(points.input_ids);
       return std::move(*wrapped);
     }
   }
-  return insert_incrementally(ctx, std::move(points));
+  return insert_incrementally(ctx, std::move(points), use);
 }
 
 }  // namespace cadt

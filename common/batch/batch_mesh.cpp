@@ -22,13 +22,7 @@ constexpr std::size_t long_star_words = 4;
 
 class BatchStage {
  public:
-  BatchStage(Context& ctx, SortedBatch& sets)
-      : ctx_(ctx),
-        launch_(ctx.launcher),
-        sets_(sets),
-        order_(sets.order),
-        n_(order_.distinct),
-        set_count_(static_cast<std::uint32_t>(sets.starts.count)) {}
+  BatchStage(Context& ctx, SortedBatch& sets) : ctx_(ctx), sets_(sets) {}
 
   [[nodiscard]] BatchMesh build() {
     read_sets();
@@ -55,7 +49,7 @@ class BatchStage {
   }
 
   void read_sets() {
-    result_.positions = ctx_.device.read_values(*sets_.positions(), set_count_ + std::size_t{1});
+    result_.positions = ctx_.device.read_values(*sets_.positions(), set_count_ + 1);
     read_states();
     for (std::size_t s = 0; s < set_count_; ++s) {
       if (states_[s] != CADT_SET_BATCHED) continue;
@@ -116,7 +110,7 @@ class BatchStage {
                                              sets_.states, launch_.grid(n_), bases_);
     launch_.scan(bases_, n_ + 1);
     const Allocation wrong = launch_.zeros(1);
-    const LaunchGrid each = launch_.grid(set_count_ + std::size_t{1});
+    const LaunchGrid each = launch_.grid(set_count_ + 1);
     launch_.run<KernelId::cadt_batch_check>(each.items, sets_.positions(), set_count_, bases_, each.grain, wrong);
     if (const std::uint32_t sets = launch_.read_word(wrong, 0); sets != 0)
       give_up("stars contradict each other in or before ", sets, " sets");
@@ -141,10 +135,11 @@ class BatchStage {
     const Counters counters(ctx_);
     const Allocation vertex_to_triangle = ctx_.memory.allocate(n_ * word), deferred_counts = launch_.zeros(3);
     // Small pieces, since sets differ in size.
-    const std::uint32_t pieces = 16 * ctx_.device.shape().parallelism, grain = std::min(set_count_ / pieces, 256U) + 1;
-    launch_.run<KernelId::cadt_batch_insert>((set_count_ - 1) / grain + 1, locked_, order_.points, vertex_to_triangle,
-                                             sets_.positions(), set_count_, sets_.states, grain, deferred_counts,
-                                             counters);
+    const std::size_t pieces = std::size_t{16} * ctx_.device.shape().parallelism,
+                      grain = std::min<std::size_t>(set_count_ / pieces, 256) + 1;
+    launch_.run<KernelId::cadt_batch_insert>(static_cast<std::uint32_t>((set_count_ - 1) / grain + 1), locked_,
+                                             order_.points, vertex_to_triangle, sets_.positions(), set_count_,
+                                             sets_.states, grain, deferred_counts, counters);
     counters.collect(ctx_.statistics);
     read_states();
     ctx_.end_phase("insert");
@@ -172,14 +167,10 @@ class BatchStage {
   /// Individually: sets classified so, and those with a vertex without a star.
   void build_individual() {
     const Allocation none;
-    result_.flat.assign(set_count_, false);
     for (std::size_t s = 0; s < set_count_; ++s) {
       if (states_[s] == CADT_SET_BATCHED) continue;
       const std::uint32_t size = points_of(s), begin = result_.positions[s];
-      if (size < 3 || states_[s] == CADT_SET_FLAT) {
-        result_.flat[s] = true;
-        continue;
-      }
+      if (size < 3 || states_[s] == CADT_SET_FLAT) continue;
       ctx_.check("insert", 0.8);
       launch_.set_variant(states_[s] == CADT_SET_WIDE ? KernelVariant::wide : narrow_variant(ctx_.options.statistics));
       ctx_.statistics.wide_arithmetic = ctx_.statistics.wide_arithmetic || states_[s] == CADT_SET_WIDE;
@@ -191,7 +182,6 @@ class BatchStage {
       launch_.run<KernelId::cadt_batch_extract>(order_.points, begin, launch_.grid(size), one.points);
       const Mesh mesh = insert_incrementally(ctx_, std::move(one), MeshUse::part);
       launch_.set_variant(narrow_variant(ctx_.options.statistics));
-      result_.flat[s] = mesh.flat;
       if (mesh.flat) continue;
       const LaunchGrid all = launch_.grid(mesh.all);
       launch_.run<KernelId::cadt_batch_store>(all.items, view_of(mesh, none), mesh.input_ids, begin, all.grain,
@@ -200,11 +190,11 @@ class BatchStage {
   }
 
   Context& ctx_;
-  Launcher& launch_;
+  Launcher& launch_ = ctx_.launcher;
   SortedBatch& sets_;
-  SortedPoints& order_;
-  std::size_t n_;
-  std::uint32_t set_count_, unproven_ = 0;
+  SortedPoints& order_ = sets_.order;
+  std::size_t n_ = order_.distinct, set_count_ = sets_.starts.count;
+  std::uint32_t unproven_ = 0;
   std::size_t batched_ = 0, vertices_ = 0;  ///< batched sets after classification, and their vertices
   std::vector<std::uint32_t> states_;
   Stars stars_;

@@ -66,7 +66,7 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
     triangulate_into(ctx, points, result.get(), data);
     ctx.end_phase("output");
     if (data.dimension == 2) read_mesh(ctx, data, *result);
-    read_duplicates(*state->device, data, *result);
+    result->duplicates = read_duplicates(data);
     ctx.end_phase("copy");
     remember_size(*state, data.statistics, plan);
     end_call(*state, ctx, false);
@@ -152,14 +152,12 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
   begin_budget(*state_, data.points);
   Statistics statistics;
   Context ctx(device, state_->memory, state_->options, statistics);
-  Triangulation::Data host;
-  read_duplicates(device, data, host);
+  const std::vector<Duplicate> duplicates = read_duplicates(data);
   const Allocation input = points.size == 0 ? Allocation() : import_points(ctx, points);
   // The verifier's kernels need double precision.
-  if (takes_floats_only(device)) return verify_copy<float>(device, input, data, host.duplicates, options);
-  if (data.triangle_count == 0) return verify_copy<double>(device, input, data, host.duplicates, options);
-  const VerifyInput what{input, data.triangles, data.neighbors, data.points, data.triangle_count, {}, host.duplicates,
-                         true};
+  if (takes_floats_only(device)) return verify_copy<float>(device, input, data, duplicates, options);
+  if (data.triangle_count == 0) return verify_copy<double>(device, input, data, duplicates, options);
+  const VerifyInput what{input, data.triangles, data.neighbors, data.points, data.triangle_count, {}, duplicates, true};
   return verify_on_device(ctx, what, options);
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <memory>
 #include <utility>
 
 #include "common/driver/choose_strategy.hpp"
@@ -48,14 +47,7 @@ class IncrementalInsertion {
  public:
   /// `points` are those of `own` where it is given, which run() needs.
   IncrementalInsertion(Context& ctx, const SortedPoints& points, SortedPoints* own = nullptr)
-      : ctx_(ctx),
-        launch_(ctx.launcher),
-        own_(own),
-        order_(points),
-        n_(points.distinct),
-        edge_capacity_(static_cast<std::uint32_t>(n_ / 8 + 4096)),
-        counters_(ctx),
-        mesh_{ctx, points, static_cast<std::uint32_t>(ctx.options.stabilize)} {}
+      : ctx_(ctx), own_(own), order_(points) {}
 
   [[nodiscard]] Mesh run(MeshUse use) {
     if (n_ >= 3 && !ctx_.device.shape().contiguous) order_by_level();
@@ -74,7 +66,7 @@ class IncrementalInsertion {
     if (last != 0) insert_partitions();
     if (deferred_.points != 0 || deferred_.edges != 0) {
       finish_deferred();
-      if (ctx_.options.watch) show_growth();
+      show_growth();
     }
     ctx_.end_phase("insert");
     LockedTriangles locked = finish(3 * std::uint64_t{n_} - 3);
@@ -165,7 +157,7 @@ class IncrementalInsertion {
       since_poll_ = 0;
       // A few deferred points join the next launch; many would make its walks long.
       take_deferred();
-      if (ctx_.options.watch) show_growth();
+      show_growth();
       if (deferred_.points > size / 8 + 32 || deferred_.edges > size / 8 + 32) finish_deferred();
       ctx_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
     }
@@ -197,8 +189,7 @@ class IncrementalInsertion {
   }
 
   void show_growth() {
-    if (snapshots_ == nullptr) snapshots_ = std::make_unique<GrowthSnapshots>(ctx_.device, order_);
-    snapshots_->show(*mesh_.locked, ctx_.options.watch);
+    if (ctx_.options.watch) show_snapshot(ctx_, mesh_.locked, order_);
   }
 
   /// Moves what the last launches deferred to the lists [1]; the lists [0] are empty then.
@@ -301,19 +292,18 @@ class IncrementalInsertion {
   };
 
   Context& ctx_;
-  Launcher& launch_;
+  Launcher& launch_ = ctx_.launcher;
   SortedPoints* own_;
   const SortedPoints& order_;
-  std::size_t n_;
-  std::uint32_t edge_capacity_;
-  Counters counters_;
-  LockedMesh mesh_;
+  std::size_t n_ = order_.distinct;
+  std::uint32_t edge_capacity_ = static_cast<std::uint32_t>(n_ / 8 + 4096);
+  Counters counters_{ctx_};
+  LockedMesh mesh_{ctx_, order_, static_cast<std::uint32_t>(ctx_.options.stabilize)};
   Allocation deferred_counts_;
   std::array<Allocation, 2> deferred_points_, deferred_edges_;  // [0] is written by the next launch, [1] read by it
   Deferred deferred_;                                           // on the lists [1]
   bool by_level_ = false;                                       // the points are in the order of insertion
-  std::unique_ptr<GrowthSnapshots> snapshots_;
-  std::size_t inserted_ = 0, since_poll_ = 0;  // since_poll_: since what was deferred was read
+  std::size_t inserted_ = 0, since_poll_ = 0;                   // since_poll_: since what was deferred was read
 };
 
 }  // namespace

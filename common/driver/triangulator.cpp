@@ -14,7 +14,7 @@
 #include "common/driver/registry.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/triangulation_data.hpp"
-#include "common/output/result.hpp"
+#include "common/output/renumber.hpp"
 #include "common/points/device_points.hpp"
 #include "common/points/import.hpp"
 #include "common/points/spatial_sort.hpp"
@@ -44,13 +44,13 @@ void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Dat
   data.dimension = mesh.flat ? (data.distinct >= 2 ? 1 : 0) : 2;
   if (mesh.flat) return;
   ctx.check("output", 0.9);
-  ResultArrays result = write_result(ctx, std::move(mesh), n);
-  data.triangle_count = result.count;
-  data.triangles = std::move(result.triangles.device);
-  data.neighbors = std::move(result.neighbors.device);
+  write_result(ctx, mesh, n);
+  data.triangle_count = mesh.triangles;
+  data.triangles = std::move(mesh.vertices.device);
+  data.neighbors = std::move(mesh.across.device);
   if (host == nullptr) return;
-  host->triangles = std::move(result.triangles.host);
-  host->neighbors = std::move(result.neighbors.host);
+  host->triangles = std::move(mesh.vertices.host);
+  host->neighbors = std::move(mesh.across.host);
 }
 
 Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {

@@ -148,6 +148,19 @@ void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& numbers, 
                                                    to.triangles, to.neighbors, to.edge_flags, to.first, all.grain);
 }
 
+namespace {
+
+/// Below, a few launches take longer than memory is worth.
+constexpr std::size_t small = std::size_t{1} << 18;
+
+/// Whether the arrays of the mesh become those of the result: in the fast order, with the compact plan, or where cached
+/// buffers leave no memory for a second array.
+bool in_place(const Context& ctx, const Mesh& mesh) noexcept {
+  if (ctx.options.order == Order::fast || ctx.plan.compact) return true;
+  return !mesh.vertices.host && ctx.memory.caches() && mesh.all * word >= small;
+}
+
+/// Slower than write_triangles with arrays of its own if the order is canonical.
 void renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {
   if (!mesh.finished) {
     const Allocation as_they_are;
@@ -167,6 +180,28 @@ void renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {
   move(mesh.vertices.device, 3, 0);
   move(mesh.across.device, 3, 1);
   move(mesh.edge_flags, 1, 0);
+}
+
+}  // namespace
+
+void write_result(Context& ctx, Mesh& mesh, std::size_t points) {
+  if (in_place(ctx, mesh)) return renumber_in_place(ctx, mesh, points);
+  Allocation numbers = number_triangles(ctx, mesh, points), flags;
+  const Allocation none;
+  ctx.check("output", 0.95);
+  // one after the other, so that the second reuses the memory of one of the mesh's
+  MeshArray neighbors = make_mesh_array(ctx, mesh.triangles, MeshUse::whole);
+  write_triangles(ctx, mesh, numbers, {none, neighbors.device, none});
+  mesh.across.release();
+  MeshArray triangles = make_mesh_array(ctx, mesh.triangles, MeshUse::whole);
+  if (mesh.edge_flags) flags = ctx.memory.allocate(mesh.triangles * word);
+  write_triangles(ctx, mesh, numbers, {triangles.device, none, flags});
+  numbers.release();
+  mesh.vertices.release();
+  mesh.vertices = std::move(triangles);
+  mesh.across = std::move(neighbors);
+  mesh.edge_flags = std::move(flags);
+  mesh.input_ids.release();
 }
 
 void renumber_within_sets(Context& ctx, const Allocation& set_starts, const SetStarts& sets, const ResultPlace& of,

@@ -41,8 +41,9 @@ class BufferCache;
 class Arg {
  public:
   Arg(Buffer& buffer) noexcept : buffer_(&buffer) {}  // NOLINT: implicit on purpose
-  Arg(const std::unique_ptr<Buffer>& buffer) noexcept
-      : buffer_(buffer.get()) {}  // NOLINT; nullptr passes a null pointer
+  template <class Deleter>
+  Arg(const std::unique_ptr<Buffer, Deleter>& buffer) noexcept
+      : buffer_(buffer.get()) {}  // NOLINT; null passes a null pointer
   template <class Scalar>
   requires(std::is_arithmetic_v<Scalar> && (sizeof(Scalar) == 4 || sizeof(Scalar) == 8)) Arg(Scalar value)
   noexcept : size_(sizeof(Scalar)), real_(std::is_same_v<Scalar, double>) {  // NOLINT

@@ -53,24 +53,31 @@ void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Dat
   host->neighbors = std::move(mesh.across.host);
 }
 
+/// A whole call; `host` is null if the result stays on the device.
+void run_call(const std::shared_ptr<Triangulator::State>& state, const InputPoints& points, const CallShape& shape,
+              Triangulation::Data* host, DeviceTriangulation::Data& data) {
+  data.state = state;
+  data.points = shape.points;
+  begin_call(*state, shape.points, data.statistics);
+  if (shape.points == 0) return;
+  const MemoryPlan plan = plan_call(*state, shape);
+  Context ctx(*state->device, state->memory, state->options, data.statistics, plan);
+  triangulate_into(ctx, points, host, data);
+  ctx.end_phase("output");
+  if (host != nullptr) {
+    if (data.dimension == 2) read_mesh(ctx, data, *host);
+    host->duplicates = read_duplicates(data);
+    ctx.end_phase("copy");
+  }
+  remember_size(*state, data.statistics, plan);
+  end_call(*state, ctx, host == nullptr);
+}
+
 Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
   require_size(points.size());
   auto result = std::make_unique<Triangulation::Data>();
   DeviceTriangulation::Data data;  // after the result, which it may alias
-  data.state = state;
-  data.points = points.size();
-  begin_call(*state, points.size(), data.statistics);
-  if (points.size() != 0) {
-    const MemoryPlan plan = plan_call(*state, {points.size(), is_host(*state->device), false, points.scalar_size()});
-    Context ctx(*state->device, state->memory, state->options, data.statistics, plan);
-    triangulate_into(ctx, points, result.get(), data);
-    ctx.end_phase("output");
-    if (data.dimension == 2) read_mesh(ctx, data, *result);
-    result->duplicates = read_duplicates(data);
-    ctx.end_phase("copy");
-    remember_size(*state, data.statistics, plan);
-    end_call(*state, ctx, false);
-  }
+  run_call(state, points, {points.size(), is_host(*state->device), false, points.scalar_size()}, result.get(), data);
   result->points = data.points;
   result->triangle_count = data.triangle_count;
   result->dimension = data.dimension;
@@ -81,17 +88,7 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
 DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points) {
   require_size(points.size);
   auto data = std::make_unique<DeviceTriangulation::Data>();
-  data->state = state;
-  data->points = points.size;
-  begin_call(*state, points.size, data->statistics);
-  if (points.size != 0) {
-    const MemoryPlan plan = plan_call(*state, {points.size, false, true, scalar_bytes(points.scalar)});
-    Context ctx(*state->device, state->memory, state->options, data->statistics, plan);
-    triangulate_into(ctx, points, nullptr, *data);
-    ctx.end_phase("output");
-    remember_size(*state, data->statistics, plan);
-    end_call(*state, ctx, true);
-  }
+  run_call(state, points, {points.size, false, true, scalar_bytes(points.scalar)}, nullptr, *data);
   return DeviceTriangulation(std::move(data));
 }
 

@@ -181,21 +181,13 @@ class OnDevice : private Outcome {
   void examine_signs() {
     const std::size_t most =
         ctx_.device.shape().contiguous ? triangles_per_launch_contiguous : triangles_per_launch_strided;
-    const auto capacity = [&](const LaunchGrid& c, std::size_t size) { return 4 * ((size + c.items - 1) / c.items); };
-    std::size_t lists_size = 0, sizes_size = 0;
-    for (const std::size_t size : {std::min(count_, most), count_ % most}) {
-      if (size == 0) continue;
-      const LaunchGrid c = grid_for(size);
-      lists_size = std::max(lists_size, c.items * std::max<std::size_t>(capacity(c, size), 4 * c.grain));
-      sizes_size = std::max<std::size_t>(sizes_size, c.items);
-    }
-    lists_ = ctx_.memory.allocate(lists_size * word);
-    sizes_ = launch_.zeros(sizes_size + 1);
+    const LaunchGrid c = grid_for(std::min(count_, most));  // for a smaller last launch too: then some lists stay empty
+    const std::size_t room = 4 * std::max((c.count + c.items - 1) / c.items, c.grain);
+    lists_ = ctx_.memory.allocate(c.items * room * word);
+    sizes_ = launch_.zeros(c.items + std::size_t{1});
     deferred_ = launch_.zeros(1);
     for (std::size_t at = 0; at < count_; at += most) {
       const std::size_t size = std::min(most, count_ - at);
-      const LaunchGrid c = grid_for(size);
-      const std::size_t room = std::max<std::size_t>(capacity(c, size), 4 * c.grain);
       launch_.run<KernelId::cadt_verify_filter>(c.items, view(), at, size, symmetric_, c.grain, c.items, lists_, sizes_,
                                                 room, results_);
       launch_.run<KernelId::cadt_verify_exact>(c.items, view(), at, c.items, lists_, sizes_, room, deferred_, results_);
@@ -223,10 +215,8 @@ class OnDevice : private Outcome {
                                                 entries, corners);
       ctx_.device.read(*entries, 0, entry.data(), size * word);
       ctx_.device.read(*corners, 0, quad.data(), size * sizeof quad[0]);
-      settled_.merge(
-          reduce_blocks<Settled>(size, mesh_.threads, [&](std::size_t begin, std::size_t end, Settled& mine) {
-            for (std::size_t i = begin; i < end; ++i) settle(at, entry[i], quad[i], mine);
-          }));
+      settled_.merge(reduce_each<Settled>(size, mesh_.threads,
+                                          [&](std::size_t i, Settled& mine) { settle(at, entry[i], quad[i], mine); }));
     }
   }
 
@@ -238,11 +228,7 @@ class OnDevice : private Outcome {
       if (orientation(q[0], q[1], q[2]) <= 0) mine.orientation.fail(t);
       return;
     }
-    const int side = incircle(q[0], q[1], q[2], q[3]);
-    if (side > 0) mine.circles.illegal.fail(3 * t + k);
-    if (side != 0) return;
-    ++mine.circles.ties;
-    if (incircle_perturbed(q[0], q[1], q[2], q[3]) > 0) mine.circles.unusual.fail(3 * t + k);
+    mine.circles.examine(3 * t + k, q[0], q[1], q[2], q[3]);
   }
 
   void examine_vertices() {

@@ -154,7 +154,10 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
   // The verifier's kernels need double precision.
   if (takes_floats_only(device)) return verify_copy<float>(device, input, data, duplicates, options);
   if (data.triangle_count == 0) return verify_copy<double>(device, input, data, duplicates, options);
-  const VerifyInput what{input, data.triangles, data.neighbors, data.points, data.triangle_count, {}, duplicates, true};
+  const auto count = static_cast<std::uint32_t>(data.triangle_count);
+  const Allocation no_flags;
+  const VerifyInput what{
+      {input, data.triangles, data.neighbors, no_flags, count, count, 0}, data.points, {}, duplicates, true};
   return verify_on_device(ctx, what, options);
 }
 

@@ -56,14 +56,7 @@ struct Settled {
 class OnDevice : private Outcome {
  public:
   OnDevice(verifier::Mesh mesh, Context& ctx, const VerifyInput& input, const VerifyOptions& options)
-      : Outcome(input.number_of_points),
-        ctx_(ctx),
-        launch_(ctx.launcher),
-        input_(input),
-        options_(options),
-        n_(input.number_of_points),
-        count_(input.number_of_triangles),
-        mesh_(std::move(mesh)) {
+      : Outcome(input.number_of_points), ctx_(ctx), input_(input), options_(options), mesh_(std::move(mesh)) {
     mesh_.count = count_;
     mesh_.threads = options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
   }
@@ -103,18 +96,8 @@ class OnDevice : private Outcome {
   /// Launch grid for kernels whose work-items add to the results once each.
   [[nodiscard]] LaunchGrid grid_for(std::size_t count) const {
     if (ctx_.device.shape().contiguous) return launch_.grid(count);
-    return {number(std::min(count, strided_items)), number(count), 1};
+    return {static_cast<std::uint32_t>(std::min(count, strided_items)), static_cast<std::uint32_t>(count), 1};
   }
-  [[nodiscard]] DeviceMeshView view() const {
-    return {input_.points,
-            input_.triangles,
-            input_.neighbors,
-            input_.edge_flags != nullptr ? *input_.edge_flags : none_,
-            number(count_),
-            number(count_),
-            0};
-  }
-  static std::uint32_t number(std::size_t value) { return static_cast<std::uint32_t>(value); }
 
   [[nodiscard]] Found results() const {
     const auto rows = ctx_.device.read_values(*results_, std::size_t{CADT_FOUND_ROWS} * CADT_FOUND_WORDS);
@@ -140,8 +123,8 @@ class OnDevice : private Outcome {
   /// Fetches the mesh, only if something has failed: messages quote it, and a search needs all of it.
   void fetch_mesh() {
     if (!mesh_.triangles.empty()) return;
-    fetched_ = ctx_.device.read_values<std::int32_t>(*input_.triangles, 3 * count_);
-    mesh_.derived = ctx_.device.read_values<std::int32_t>(*input_.neighbors, 3 * count_);
+    fetched_ = ctx_.device.read_values<std::int32_t>(*input_.mesh.vertices, 3 * count_);
+    mesh_.derived = ctx_.device.read_values<std::int32_t>(*input_.mesh.across, 3 * count_);
     mesh_.triangles = fetched_;
     mesh_.neighbors = mesh_.derived;
   }
@@ -157,8 +140,8 @@ class OnDevice : private Outcome {
     clear_results();
     used_ = launch_.zeros(n_);
     const LaunchGrid all = grid_for(count_);
-    launch_.run<KernelId::cadt_verify_structure>(all.items, view(), n_, all.grain, used_, results_);
-    launch_.run<KernelId::cadt_verify_points>(input_.points, grid_for(n_), used_, results_);
+    launch_.run<KernelId::cadt_verify_structure>(all.items, input_.mesh, n_, all.grain, used_, results_);
+    launch_.run<KernelId::cadt_verify_points>(input_.mesh.points, grid_for(n_), used_, results_);
     const Found found = results();
     if (const Findings finite = found.findings(CADT_FOUND_POINTS); finite.failures != 0) refuse_point(finite.first);
     mesh_.vertices = static_cast<std::size_t>(found.count(CADT_FOUND_USED));
@@ -188,9 +171,10 @@ class OnDevice : private Outcome {
     deferred_ = launch_.zeros(1);
     for (std::size_t at = 0; at < count_; at += most) {
       const std::size_t size = std::min(most, count_ - at);
-      launch_.run<KernelId::cadt_verify_filter>(c.items, view(), at, size, symmetric_, c.grain, c.items, lists_, sizes_,
-                                                room, results_);
-      launch_.run<KernelId::cadt_verify_exact>(c.items, view(), at, c.items, lists_, sizes_, room, deferred_, results_);
+      launch_.run<KernelId::cadt_verify_filter>(c.items, input_.mesh, at, size, symmetric_, c.grain, c.items, lists_,
+                                                sizes_, room, results_);
+      launch_.run<KernelId::cadt_verify_exact>(c.items, input_.mesh, at, c.items, lists_, sizes_, room, deferred_,
+                                               results_);
       if (const std::uint32_t left = launch_.read_word(deferred_, 0); left != 0) {
         ctx_.device.fill(*deferred_, 0, word, 0);
         settle_on_host(at, c.items, room, left);
@@ -211,7 +195,7 @@ class OnDevice : private Outcome {
     for (std::size_t from = 0; from < left; from += most) {
       const std::size_t size = std::min(most, left - from);
       ctx_.device.fill(*entries, 0, size * word, CADT_NONE);  // shows which are written
-      launch_.run<KernelId::cadt_verify_gather>(items, view(), at, items, lists_, sizes_, room, from, from + size,
+      launch_.run<KernelId::cadt_verify_gather>(items, input_.mesh, at, items, lists_, sizes_, room, from, from + size,
                                                 entries, corners);
       ctx_.device.read(*entries, 0, entry.data(), size * word);
       ctx_.device.read(*corners, 0, quad.data(), size * sizeof quad[0]);
@@ -238,7 +222,8 @@ class OnDevice : private Outcome {
       const std::span<const Duplicate> list = input_.duplicates;
       if (!list.empty()) {
         const Allocation pairs = ctx_.memory.import(list.data(), list.size_bytes());
-        launch_.run<KernelId::cadt_verify_duplicates>(input_.points, n_, used_, pairs, grid_for(list.size()), results_);
+        launch_.run<KernelId::cadt_verify_duplicates>(input_.mesh.points, n_, used_, pairs, grid_for(list.size()),
+                                                      results_);
       }
       const Findings findings = results().findings(CADT_FOUND_DUPLICATES);
       duplicates_examined_ = findings.examined;
@@ -252,7 +237,7 @@ class OnDevice : private Outcome {
     const std::vector<std::uint32_t> used = ctx_.device.read_values(*used_, n_);
     mesh_.used.assign(used.begin(), used.end());
     if (mesh_.points.size() == 0) {
-      fetched_points_ = ctx_.device.read_values<double>(*input_.points, 2 * n_);
+      fetched_points_ = ctx_.device.read_values<double>(*input_.mesh.points, 2 * n_);
       mesh_.points = fetched_points_;
     }
     check_vertices(mesh_, MeshView{}, check);
@@ -268,7 +253,7 @@ class OnDevice : private Outcome {
       const Allocation corners = ctx_.memory.allocate(h * sizeof(Point));
       const Allocation written = launch_.zeros(1);
       const LaunchGrid c = grid_for(count_);
-      launch_.run<KernelId::cadt_verify_boundary>(c.items, view(), c.grain, list, corners, written, h);
+      launch_.run<KernelId::cadt_verify_boundary>(c.items, input_.mesh, c.grain, list, corners, written, h);
       boundary_written_ = launch_.read_word(written, 0);
       if (boundary_written_ != h) return skip({boundary, euler, hull}, counts);
       edges = ctx_.device.read_values<Edge>(*list, h);
@@ -335,11 +320,10 @@ class OnDevice : private Outcome {
   }
 
   Context& ctx_;
-  Launcher& launch_;
+  Launcher& launch_ = ctx_.launcher;
   const VerifyInput& input_;
-  const Allocation none_;
   const VerifyOptions& options_;
-  std::size_t n_, count_;
+  std::size_t n_ = input_.number_of_points, count_ = input_.mesh.triangles;
   verifier::Mesh mesh_;
   std::vector<std::int32_t> fetched_;
   std::vector<double> fetched_points_;
@@ -350,10 +334,6 @@ class OnDevice : private Outcome {
 };
 
 }  // namespace
-
-VerifyReport verify_on_device(Context& ctx, const VerifyInput& input, const VerifyOptions& options) {
-  return verify_on_device(ctx, input, options, verifier::Mesh{});
-}
 
 VerifyReport verify_on_device(Context& ctx, const VerifyInput& input, const VerifyOptions& options,
                               verifier::Mesh known) {

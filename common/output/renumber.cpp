@@ -11,8 +11,7 @@
 namespace cadt {
 namespace {
 
-using device_text::word;
-constexpr std::uint32_t none = 0xFFFFFFFFU;
+using namespace device_text;
 
 /// The compact plan makes the canonical order in so many parts, one after the other: the lists of each have this share
 /// of the triangles.
@@ -86,7 +85,7 @@ void sort_buckets(Context& ctx, const BucketPart& part) {
   if (ctx.memory.allows((part.count + 8 * std::size_t{skipped} + 1) * word))
     sort_long_buckets(ctx, part, skipped);
   else
-    sort(none);
+    sort(CADT_NONE);
 }
 
 /// Numbers all triangles from scanned buckets. \pre `numbers` are places in buckets where the device knows them

@@ -23,11 +23,9 @@ double copy_bandwidth(const Options& options, std::size_t bytes) {
   for (const Allocation* buffer : {&from, &to}) device->fill(**buffer, 0, bytes, 1);  // so that there are pages
   double best = 0;
   for (int run = 0; run < runs; ++run) {
-    const auto words = static_cast<std::uint32_t>(bytes / word), points = static_cast<std::uint32_t>(bytes / point);
-    const LaunchGrid by_word = launch.grid(words), by_point = launch.grid(points);
-    launch.run<KernelId::cadt_copy_words>(by_word.items, from, to, std::uint32_t{0}, words, by_word.grain);
-    launch.run<KernelId::cadt_import_doubles>(by_point.items, from, from, std::uint32_t{0}, std::uint32_t{1},
-                                              std::uint32_t{2}, Allocation(), 1.0, 1.0, to, points, by_point.grain);
+    launch.run<KernelId::cadt_copy_words>(from, to, 0U, launch.grid(bytes / word));
+    launch.run<KernelId::cadt_import_doubles>(from, from, 0U, 1U, 2U, Allocation(), 1.0, 1.0, to,
+                                              launch.grid(bytes / point));
     for (const KernelTime& kernel : launch.kernel_times())
       best = std::max(best, 2e3 * static_cast<double>(bytes) / std::max(kernel.milliseconds, 1e-6));
   }

@@ -2,9 +2,7 @@
 #include "common/batch/batch_mesh.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "common/driver/choose_strategy.hpp"
@@ -18,22 +16,13 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
-
 /// Words a vertex for stars with more star vertices than fit into a row. Stars with more than 12 have fewer than 3.9 a
 /// vertex in all, since the average of all stars is 6 and none has fewer than 3.
 constexpr std::size_t long_star_words = 4;
 
 class BatchStage {
  public:
-  BatchStage(Context& ctx, SortedBatch& sets)
-      : ctx_(ctx),
-        launch_(ctx.launcher),
-        sets_(sets),
-        order_(sets.order),
-        n_(order_.distinct),
-        count_(static_cast<std::uint32_t>(n_)),
-        set_count_(static_cast<std::uint32_t>(sets.starts.count)) {}
+  BatchStage(Context& ctx, SortedBatch& sets) : ctx_(ctx), sets_(sets) {}
 
   [[nodiscard]] BatchMesh build() {
     read_sets();
@@ -60,9 +49,7 @@ class BatchStage {
   }
 
   void read_sets() {
-    states_.resize(set_count_);
-    result_.positions.resize(set_count_ + std::size_t{1});
-    ctx_.device.read(*sets_.positions(), 0, result_.positions.data(), result_.positions.size() * word);
+    result_.positions = ctx_.device.read_values(*sets_.positions(), set_count_ + 1);
     read_states();
     for (std::size_t s = 0; s < set_count_; ++s) {
       if (states_[s] != CADT_SET_BATCHED) continue;
@@ -71,70 +58,62 @@ class BatchStage {
     }
   }
 
-  void read_states() { ctx_.device.read(*sets_.states, 0, states_.data(), states_.size() * word); }
+  void read_states() { states_ = ctx_.device.read_values(*sets_.states, set_count_); }
 
   void make_stars() {
     const unsigned levels = order_.grid.levels();
-    const LaunchGrid c = launch_.grid(n_);
     Allocation keys = std::move(order_.keys), none;
     if (!keys) {
       keys = ctx_.memory.allocate(n_ * word);
-      launch_.run<KernelId::cadt_batch_keys>(c.items, order_.points, sets_.positions(), set_count_, sets_.sets,
-                                             static_cast<std::uint32_t>(levels), 1U, keys, count_, c.grain);
+      launch_.run<KernelId::cadt_batch_keys>(order_.points, sets_.positions(), set_count_, sets_.sets, levels, true,
+                                             keys, launch_.grid(n_));
     }
     const std::optional<TileList> tiles = make_tiles(ctx_, {keys, none}, n_, levels, least_points_of_tile);
     ctx_.end_phase("tiles");
     ctx_.check("stars", 0.1);
     stars_.star_vertices = ctx_.memory.allocate(n_ * (CADT_STAR_DEGREE + long_star_words) * word);
     stars_.sizes = ctx_.memory.allocate_zeros(n_ * word);
-    if (tiles)
-      prove_stars(ctx_, order_, {keys, none}, sets_.sets, sets_.states, *tiles, false, stars_).add_to(ctx_.statistics);
+    if (tiles) prove_stars(ctx_, order_, {keys, none}, sets_.sets, sets_.states, *tiles, false, stars_);
     ctx_.end_phase("stars");
     ctx_.check("stars", 0.4);
   }
 
   /// Wraps the stars that are not proven.
   void wrap() {
-    const LaunchGrid c = launch_.grid(n_);
+    const LaunchGrid all = launch_.grid(n_);
     begins_ = ctx_.memory.allocate(n_ * word);
     Allocation ranks = ctx_.memory.allocate((n_ + 1) * word);
-    launch_.run<KernelId::cadt_batch_unproven>(c.items, stars_.sizes, sets_.positions(), set_count_, sets_.states,
-                                               count_, c.grain, static_cast<std::uint32_t>(CADT_STAR_DEGREE), ranks,
-                                               begins_);
+    launch_.run<KernelId::cadt_batch_unproven>(stars_.sizes, sets_.positions(), set_count_, sets_.states, all,
+                                               static_cast<std::uint32_t>(CADT_STAR_DEGREE), ranks, begins_);
     launch_.scan(ranks, n_ + 1);
     unproven_ = launch_.read_word(ranks, n_);
     ctx_.statistics.proven_stars += vertices_ - unproven_;
     if (unproven_ == 0) return;
     const Allocation list = ctx_.memory.allocate(std::size_t{unproven_} * word);
-    launch_.run<KernelId::cadt_batch_list>(c.items, ranks, list, count_, c.grain);
+    launch_.run<KernelId::cadt_batch_list>(ranks, list, all);
     ranks.release();
     const Allocation counts = launch_.zeros(CADT_WRAP_WORDS);
-    wrap_batch(ctx_, order_.points, n_, {list, unproven_, sets_.positions(), sets_.states, set_count_},
-               {CADT_STAR_DEGREE, stars_.star_vertices,
-                static_cast<std::uint32_t>(n_ * (CADT_STAR_DEGREE + long_star_words)), begins_, stars_.sizes, counts});
-    std::array<std::uint32_t, CADT_WRAP_DRIVER_WORDS> words{};
-    ctx_.device.read(*counts, 0, words.data(), sizeof words);
-    ctx_.statistics.exact_orientations += words[CADT_WRAP_EXACT_ORIENTATIONS];
-    ctx_.statistics.exact_incircles += words[CADT_WRAP_EXACT_INCIRCLES];
-    ctx_.statistics.ties += words[CADT_WRAP_TIES];
+    wrap_batch(ctx_, order_.points, n_, list, unproven_, {sets_.positions(), set_count_, sets_.states},
+               {CADT_STAR_DEGREE, stars_.star_vertices, n_ * (CADT_STAR_DEGREE + long_star_words), begins_,
+                stars_.sizes, counts});
+    const std::vector<std::uint32_t> words = ctx_.device.read_values(*counts, CADT_WRAP_DRIVER_WORDS);
+    add_exact_tests(ctx_.statistics, std::span(words).subspan<CADT_WRAP_EXACT_ORIENTATIONS, 3>());
     if (words[CADT_WRAP_OVERFLOWED] > n_ * long_star_words)
-      throw InternalError("the wrapped stars have " + std::to_string(words[CADT_WRAP_OVERFLOWED]) +
-                          " neighbours beyond their rows; please report this with the input");
+      give_up("the wrapped stars have ", words[CADT_WRAP_OVERFLOWED], " neighbours beyond their rows");
     ctx_.end_phase("wrap");
     ctx_.check("stars", 0.6);
   }
 
   void count_triangles() {
     bases_ = ctx_.memory.allocate((n_ + 1) * word);
-    const LaunchGrid c = launch_.grid(n_), each = launch_.grid(set_count_ + std::size_t{1});
-    launch_.run<KernelId::cadt_batch_counts>(c.items, stars_.star_vertices, begins_, stars_.sizes, sets_.positions(),
-                                             set_count_, sets_.states, count_, c.grain, bases_);
+    launch_.run<KernelId::cadt_batch_counts>(stars_.star_vertices, begins_, stars_.sizes, sets_.positions(), set_count_,
+                                             sets_.states, launch_.grid(n_), bases_);
     launch_.scan(bases_, n_ + 1);
     const Allocation wrong = launch_.zeros(1);
+    const LaunchGrid each = launch_.grid(set_count_ + 1);
     launch_.run<KernelId::cadt_batch_check>(each.items, sets_.positions(), set_count_, bases_, each.grain, wrong);
     if (const std::uint32_t sets = launch_.read_word(wrong, 0); sets != 0)
-      throw InternalError("stars contradict each other in or before " + std::to_string(sets) +
-                          " sets; please report this with the input");
+      give_up("stars contradict each other in or before ", sets, " sets");
     read_states();
     ctx_.statistics.wrapped_stars += unproven_;
     for (const std::uint32_t state : states_) ctx_.statistics.wrapped_stars -= state / CADT_SET_FAILURE;
@@ -142,7 +121,7 @@ class BatchStage {
 
   void write_locked() {
     const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
-    launch_.run<KernelId::cadt_batch_locked>(shares.items, stars_.star_vertices, begins_, stars_.sizes, bases_, count_,
+    launch_.run<KernelId::cadt_batch_locked>(shares.items, stars_.star_vertices, begins_, stars_.sizes, bases_, n_,
                                              shares.grain, locked_);
     stars_ = {};
     begins_.release();
@@ -156,10 +135,11 @@ class BatchStage {
     const Counters counters(ctx_);
     const Allocation vertex_to_triangle = ctx_.memory.allocate(n_ * word), deferred_counts = launch_.zeros(3);
     // Small pieces, since sets differ in size.
-    const std::uint32_t pieces = 16 * ctx_.device.shape().parallelism, grain = std::min(set_count_ / pieces, 256U) + 1;
-    launch_.run<KernelId::cadt_batch_insert>((set_count_ - 1) / grain + 1, locked_, order_.points, vertex_to_triangle,
-                                             sets_.positions(), set_count_, sets_.states, grain, deferred_counts,
-                                             counters);
+    const std::size_t pieces = std::size_t{16} * ctx_.device.shape().parallelism,
+                      grain = std::min<std::size_t>(set_count_ / pieces, 256) + 1;
+    launch_.run<KernelId::cadt_batch_insert>(static_cast<std::uint32_t>((set_count_ - 1) / grain + 1), locked_,
+                                             order_.points, vertex_to_triangle, sets_.positions(), set_count_,
+                                             sets_.states, grain, deferred_counts, counters);
     counters.collect(ctx_.statistics);
     read_states();
     ctx_.end_phase("insert");
@@ -187,14 +167,10 @@ class BatchStage {
   /// Individually: sets classified so, and those with a vertex without a star.
   void build_individual() {
     const Allocation none;
-    result_.flat.assign(set_count_, false);
     for (std::size_t s = 0; s < set_count_; ++s) {
       if (states_[s] == CADT_SET_BATCHED) continue;
       const std::uint32_t size = points_of(s), begin = result_.positions[s];
-      if (size < 3 || states_[s] == CADT_SET_FLAT) {
-        result_.flat[s] = true;
-        continue;
-      }
+      if (size < 3 || states_[s] == CADT_SET_FLAT) continue;
       ctx_.check("insert", 0.8);
       launch_.set_variant(states_[s] == CADT_SET_WIDE ? KernelVariant::wide : narrow_variant(ctx_.options.statistics));
       ctx_.statistics.wide_arithmetic = ctx_.statistics.wide_arithmetic || states_[s] == CADT_SET_WIDE;
@@ -202,12 +178,10 @@ class BatchStage {
       one.distinct = size;
       one.points = ctx_.memory.allocate(size * sizeof(cadt_point));
       one.input_ids = ctx_.memory.allocate(size * word);  // positions in the set
-      const LaunchGrid c = launch_.grid(size);
-      launch_.run<KernelId::cadt_identity>(c.items, one.input_ids, size, c.grain);
-      launch_.run<KernelId::cadt_batch_extract>(c.items, order_.points, begin, size, c.grain, one.points);
+      launch_.run<KernelId::cadt_identity>(one.input_ids, launch_.grid(size));
+      launch_.run<KernelId::cadt_batch_extract>(order_.points, begin, launch_.grid(size), one.points);
       const Mesh mesh = insert_incrementally(ctx_, std::move(one), MeshUse::part);
       launch_.set_variant(narrow_variant(ctx_.options.statistics));
-      result_.flat[s] = mesh.flat;
       if (mesh.flat) continue;
       const LaunchGrid all = launch_.grid(mesh.all);
       launch_.run<KernelId::cadt_batch_store>(all.items, view_of(mesh, none), mesh.input_ids, begin, all.grain,
@@ -216,11 +190,11 @@ class BatchStage {
   }
 
   Context& ctx_;
-  Launcher& launch_;
+  Launcher& launch_ = ctx_.launcher;
   SortedBatch& sets_;
-  SortedPoints& order_;
-  std::size_t n_;
-  std::uint32_t count_, set_count_, unproven_ = 0;
+  SortedPoints& order_ = sets_.order;
+  std::size_t n_ = order_.distinct, set_count_ = sets_.starts.count;
+  std::uint32_t unproven_ = 0;
   std::size_t batched_ = 0, vertices_ = 0;  ///< batched sets after classification, and their vertices
   std::vector<std::uint32_t> states_;
   Stars stars_;

@@ -14,7 +14,6 @@ struct BatchMesh {
   Mesh mesh;
   Allocation set_starts;                 ///< the first triangle of each set, and the number of all
   std::vector<std::uint32_t> positions;  ///< first positions of the sets, and the end of the last
-  std::vector<bool> flat;                ///< sets without triangles
 };
 
 /// Builds the meshes: of the batched sets from the stars of all vertices (common/stars/local_star.dev.h, and gift

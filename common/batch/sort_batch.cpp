@@ -15,7 +15,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr unsigned key_bits = 32;
 
 /// Levels of the square of a set: about sixteen cells a point of the largest set, if there are enough bits.
@@ -42,10 +41,8 @@ SortedBatch sort_batch(Context& ctx, Allocation input, std::span<const std::uint
                        std::size_t first, std::size_t first_set) {
   Launcher& launch = ctx.launcher;
   launch.set_variant(narrow_variant(ctx.options.statistics));
-  const std::uint32_t count = starts.back();
-  const std::size_t n = count, sets = starts.size() - 1;
-  const auto set_count = static_cast<std::uint32_t>(sets);
-  const LaunchGrid c = launch.grid(n), teams = launch.grid_of_teams(sets, CADT_SET_LANES);
+  const std::size_t n = starts.back(), sets = starts.size() - 1;
+  const LaunchGrid all = launch.grid(n), teams = launch.grid_of_teams(sets, CADT_SET_LANES);
   SortedBatch result;
   result.starts.count = sets;
   result.starts.points = ctx.memory.allocate((sets + 1) * word);
@@ -55,7 +52,7 @@ SortedBatch sort_batch(Context& ctx, Allocation input, std::span<const std::uint
   const std::uint32_t levels = choose_levels(starts);
   const Allocation bad = ctx.memory.allocate(word);
   ctx.device.fill(*bad, 0, word, CADT_NONE);
-  launch.run_in_groups<KernelId::cadt_batch_bounds>(teams.items, CADT_SET_LANES, input, result.starts.points, set_count,
+  launch.run_in_groups<KernelId::cadt_batch_bounds>(teams.items, CADT_SET_LANES, input, result.starts.points, sets,
                                                     levels, static_cast<std::uint32_t>(narrow_span), teams.grain,
                                                     result.sets, result.states, bad);
   if (const std::uint32_t at = launch.read_word(bad, 0); at != CADT_NONE) refuse_point(starts, at, first, first_set);
@@ -65,8 +62,7 @@ SortedBatch sort_batch(Context& ctx, Allocation input, std::span<const std::uint
   Allocation keys = ctx.memory.allocate(n * word), spare = ctx.memory.allocate(n * word);
   Allocation order = ctx.memory.allocate(n * word);
   result.order.grid.bits_x = result.order.grid.bits_y = levels;
-  launch.run<KernelId::cadt_batch_keys>(c.items, input, result.starts.points, set_count, result.sets, levels, 0U, keys,
-                                        count, c.grain);
+  launch.run<KernelId::cadt_batch_keys>(input, result.starts.points, sets, result.sets, levels, false, keys, all);
   {
     Allocation spare_order = ctx.memory.allocate(n * word);
     const auto bits = static_cast<unsigned>(std::bit_width(sets - 1)) + 2 * levels;
@@ -78,8 +74,7 @@ SortedBatch sort_batch(Context& ctx, Allocation input, std::span<const std::uint
   ctx.end_phase("refine");
 
   Allocation sorted = ctx.memory.allocate(n * sizeof(cadt_point));
-  launch.run<KernelId::cadt_batch_gather>(c.items, input, order, result.starts.points, set_count, result.sets, sorted,
-                                          count, c.grain);
+  launch.run<KernelId::cadt_batch_gather>(input, order, result.starts.points, sets, result.sets, sorted, all);
   input.release();
   const Allocation totals = launch.zeros(CADT_ORDER_WORDS);
   flag_distinct(ctx, keys, sorted, order, spare, n, false, totals);
@@ -87,9 +82,9 @@ SortedBatch sort_batch(Context& ctx, Allocation input, std::span<const std::uint
   if (!refined && equal == 0) result.order.keys = std::move(keys);
   keys.release();
   compact_distinct(ctx, result.order, std::move(sorted), std::move(order), spare, n, equal, &result.starts);
-  launch.run_in_groups<KernelId::cadt_batch_classify>(
-      teams.items, CADT_SET_LANES, result.order.points, result.positions(), set_count,
-      static_cast<std::uint32_t>(most_batched), teams.grain, result.states);
+  launch.run_in_groups<KernelId::cadt_batch_classify>(teams.items, CADT_SET_LANES, result.order.points,
+                                                      result.positions(), sets, most_batched, teams.grain,
+                                                      result.states);
   ctx.end_phase("gather");
   return result;
 }

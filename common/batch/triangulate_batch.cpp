@@ -21,7 +21,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 /// Most triangles of n points.
 constexpr std::size_t most_triangles(std::size_t n) { return n < 3 ? 0 : 2 * n - 5; }
 
@@ -68,14 +68,12 @@ DevicePoints slice(DevicePoints points, std::size_t first, std::size_t size) {
 template <class Points>
 class BatchCall {
  public:
-  BatchCall(Triangulator::State& state, Context& ctx, const Points& points, std::span<const std::size_t> offsets,
-            std::size_t most_points, BatchShape& shape, const Allocation& triangles, const Allocation& neighbors)
-      : state_(state),
-        ctx_(ctx),
+  BatchCall(Context& ctx, const Points& points, std::span<const std::size_t> offsets, std::size_t most_points,
+            BatchShape& shape, const Allocation& triangles, const Allocation& neighbors)
+      : ctx_(ctx),
         points_(points),
         offsets_(offsets),
         most_points_(most_points),
-        most_batched_(most_points_of_batched_set(traits_of(ctx.device))),
         shape_(shape),
         triangles_(triangles),
         neighbors_(neighbors) {}
@@ -104,11 +102,12 @@ class BatchCall {
 
  private:
   void add_empty(std::size_t sets) {
-    for (std::size_t s = 0; s < sets; ++s) append_set(shape_.triangles.back(), 0, false);
+    for (std::size_t s = 0; s < sets; ++s) append_set(shape_.triangles.back(), 0);
   }
 
   /// Appends the next set, given where its triangles end and its number of distinct points.
-  void append_set(std::size_t triangles, std::size_t distinct, bool flat) {
+  void append_set(std::size_t triangles, std::size_t distinct) {
+    const bool flat = triangles == shape_.triangles.back();
     shape_.triangles.push_back(triangles);
     shape_.duplicates.push_back(shape_.duplicate_list.size());
     shape_.dimensions.push_back(distinct == 0 ? -1 : distinct == 1 ? 0 : flat ? 1 : 2);
@@ -122,29 +121,20 @@ class BatchCall {
     return input;
   }
 
-  /// The duplicates of the points just sorted.
-  struct Pairs {
-    std::vector<std::uint32_t> points, representatives;
-  };
-  [[nodiscard]] Pairs read_pairs(const SortedPoints& order, std::size_t size) const {
-    const std::size_t count = size - order.distinct;
-    Pairs pairs{std::vector<std::uint32_t>(count), std::vector<std::uint32_t>(count)};
-    if (count == 0) return pairs;
-    ctx_.device.read(*order.duplicates, 0, pairs.points.data(), count * word);
-    ctx_.device.read(*order.representatives, 0, pairs.representatives.data(), count * word);
-    return pairs;
+  /// The duplicates of `size` points just sorted.
+  [[nodiscard]] std::vector<Duplicate> read_pairs(const SortedPoints& order, std::size_t size) const {
+    return read_duplicates(ctx_.device, order.duplicates, order.representatives, size - order.distinct);
   }
-  void add_pairs(const Pairs& pairs, std::size_t begin, std::size_t end, std::uint32_t first) {
-    for (std::size_t i = begin; i < end; ++i)
-      shape_.duplicate_list.push_back({static_cast<std::int32_t>(pairs.points[i] - first),
-                                       static_cast<std::int32_t>(pairs.representatives[i] - first)});
+  /// Those of one set, whose points begin at `first`.
+  void add_pairs(std::span<const Duplicate> pairs, std::uint32_t first) {
+    const auto begin = static_cast<std::int32_t>(first);
+    for (const auto& [point, representative] : pairs)
+      shape_.duplicate_list.push_back({point - begin, representative - begin});
   }
 
   void write(const Mesh& mesh, std::size_t size, std::size_t room) {
     ctx_.check("output", 0.9);
-    if (mesh.triangles > room)
-      throw InternalError("there are " + std::to_string(mesh.triangles) + " triangles instead of " +
-                          std::to_string(room) + " at most; please report this with the input");
+    if (mesh.triangles > room) give_up("there are ", mesh.triangles, " triangles instead of ", room, " at most");
     const Allocation numbers = number_triangles(ctx_, mesh, size);
     ctx_.check("output", 0.95);
     write_triangles(ctx_, mesh, numbers, place());
@@ -156,13 +146,13 @@ class BatchCall {
   void add_individual(std::size_t set, std::size_t begin, std::size_t size) {
     const bool stars = may_use_stars(traits_of(ctx_.device), ctx_.options);
     SortedPoints order = sort_large(set, begin, size, stars);
-    add_pairs(read_pairs(order, size), 0, size - order.distinct, 0);
+    add_pairs(read_pairs(order, size), 0);
     ctx_.statistics.wide_arithmetic = ctx_.statistics.wide_arithmetic || order.wide;
     const std::size_t distinct = order.distinct;
     const Mesh mesh = build(ctx_, std::move(order), slice(points_, begin, size));
     if (!mesh.flat) write(mesh, size, most_triangles(size));
     ctx_.end_phase("output");
-    append_set(shape_.triangles.back() + mesh.triangles, distinct, mesh.flat);
+    append_set(shape_.triangles.back() + mesh.triangles, distinct);
   }
 
   [[nodiscard]] SortedPoints sort_large(std::size_t set, std::size_t begin, std::size_t size, bool stars) {
@@ -179,26 +169,24 @@ class BatchCall {
     for (std::size_t s = 0; s <= sets; ++s) starts[s] = static_cast<std::uint32_t>(offsets_[first_set + s] - begin);
     const bool batched = batches_sets(traits_of(ctx_.device), ctx_.options);
     SortedBatch order = sort_batch(ctx_, import(begin, size), starts, batched ? most_batched_ : 0, begin, first_set);
-    const Pairs pairs = read_pairs(order.order, size);
+    const std::vector<Duplicate> pairs = read_pairs(order.order, size);
     const BatchMesh mesh = build_batch(ctx_, order);
     const std::size_t before = shape_.triangles.back();
     write(mesh.mesh, size, most_triangles(std::span(offsets_).subspan(first_set, sets + 1)));
     renumber_within_sets(ctx_, mesh.set_starts, order.starts, place(), mesh.mesh.triangles);
     ctx_.end_phase("output");
-    std::vector<std::uint32_t> ends(sets + 1);
-    ctx_.device.read(*mesh.set_starts, 0, ends.data(), ends.size() * word);
+    const std::vector<std::uint32_t> ends = ctx_.device.read_values(*mesh.set_starts, sets + 1);
     for (std::size_t s = 0; s < sets; ++s) {
-      const std::size_t duplicates = starts[s] - mesh.positions[s];
-      add_pairs(pairs, duplicates, starts[s + 1] - mesh.positions[s + 1], starts[s]);
-      append_set(before + ends[s + 1], mesh.positions[s + 1] - mesh.positions[s], mesh.flat[s]);
+      const std::size_t from = starts[s] - mesh.positions[s], to = starts[s + 1] - mesh.positions[s + 1];
+      add_pairs(std::span(pairs).subspan(from, to - from), starts[s]);
+      append_set(before + ends[s + 1], mesh.positions[s + 1] - mesh.positions[s]);
     }
   }
 
-  Triangulator::State& state_;
   Context& ctx_;
   const Points& points_;
   std::span<const std::size_t> offsets_;
-  std::size_t most_points_, most_batched_;
+  std::size_t most_points_, most_batched_ = most_points_of_batched_set(traits_of(ctx_.device));
   BatchShape& shape_;
   const Allocation& triangles_;
   const Allocation& neighbors_;
@@ -223,7 +211,7 @@ void run_batch(Triangulator::State& state, Context& ctx, const Points& points, s
                std::size_t most_points, BatchShape& shape, const Allocation& triangles, const Allocation& neighbors) {
   shape.points.assign(offsets.begin(), offsets.end());
   shape.statistics.sets = offsets.size() - 1;
-  BatchCall<Points>(state, ctx, points, offsets, most_points, shape, triangles, neighbors).run();
+  BatchCall<Points>(ctx, points, offsets, most_points, shape, triangles, neighbors).run();
   if (state.options.max_memory == 0)
     state.known.batch = std::max(state.known.batch, std::min(offsets.back(), most_points));
 }

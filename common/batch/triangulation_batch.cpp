@@ -11,7 +11,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 
 void require_set(const BatchShape& shape, std::size_t set) {
   if (set >= shape.dimensions.size())

@@ -2,7 +2,6 @@
 #include "common/certify/certify.hpp"
 
 #include <algorithm>
-#include <string>
 #include <vector>
 
 #include "common/driver/counters.hpp"
@@ -15,8 +14,6 @@ using namespace device_text;
 
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
-
 bool counts_work(const Context& ctx) { return ctx.options.statistics != StatisticsDetail::none; }
 
 }  // namespace
@@ -28,28 +25,22 @@ std::size_t certify_words(const Context& ctx) {
 
 void launch_certify(Context& ctx, const DeviceMeshView& mesh, std::size_t begin, std::size_t size,
                     const Allocation& words, std::size_t row) {
-  const LaunchGrid c = ctx.launcher.grid_strided(size);
-  ctx.launcher.run<KernelId::cadt_certify>(c.items, mesh, static_cast<std::uint32_t>(begin),
-                                           static_cast<std::uint32_t>(size), c.grain, words,
-                                           static_cast<std::uint32_t>(row), counts_work(ctx) ? 1U : 0U);
+  ctx.launcher.run<KernelId::cadt_certify>(mesh, begin, ctx.launcher.grid_strided(size), words, row, counts_work(ctx));
 }
 
 void read_certificate(Context& ctx, std::span<const std::uint32_t> words, std::size_t n) {
   const std::uint64_t edges = 3 * std::uint64_t{n} - 3;
   const std::uint32_t examined = words[0], illegal = words[1], wrong = words[2], broken = words[3];
   if (examined != edges || illegal != 0 || wrong != 0 || broken != 0)
-    throw InternalError("the mesh has " + std::to_string(examined) + " edges, and there should be " +
-                        std::to_string(edges) + "; " + std::to_string(illegal) + " are illegal, " +
-                        std::to_string(wrong) + " have sides that do not fit, " + std::to_string(broken) +
-                        " turn back; please report this with the input");
+    give_up("the mesh has ", examined, " edges, and there should be ", edges, "; ", illegal, " are illegal, ", wrong,
+            " have sides that do not fit, ", broken, " turn back");
   ctx.statistics.legality_sweeps = std::max<std::uint64_t>(ctx.statistics.legality_sweeps, 1);
   ctx.statistics.certified_edges += examined;
   if (counts_work(ctx)) add_counters(ctx.statistics, words.subspan(CADT_COUNTER_STRIDE));
 }
 
 void certify(Context& ctx, const Mesh& mesh, std::size_t n) {
-  std::vector<std::uint32_t> words(certify_words(ctx));
-  const Allocation found = ctx.launcher.zeros(words.size());
+  const Allocation found = ctx.launcher.zeros(certify_words(ctx));
   const std::size_t most = slots_per_launch(ctx.device);
   for (std::size_t begin = 0; begin < mesh.all; begin += most) {
     const std::size_t size = std::min(most, mesh.all - begin);
@@ -57,8 +48,7 @@ void certify(Context& ctx, const Mesh& mesh, std::size_t n) {
     if (begin + size < mesh.all) ctx.device.finish();
     ctx.check("certify", 0.8 + 0.1 * static_cast<double>(begin + size) / static_cast<double>(mesh.all));
   }
-  ctx.device.read(*found, 0, words.data(), words.size() * word);
-  read_certificate(ctx, words, n);
+  read_certificate(ctx, ctx.device.read_values(*found, certify_words(ctx)), n);
   ctx.end_phase("certify");
 }
 

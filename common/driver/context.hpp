@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/driver/device.hpp"
+#include "common/driver/give_up.hpp"
 #include "common/driver/launcher.hpp"
 #include "common/driver/memory.hpp"
 #include "common/driver/memory_plan.hpp"

@@ -34,9 +34,7 @@ Counters::Counters(Context& ctx) : device_(ctx.device) {
 
 void Counters::collect(Statistics& statistics) const {
   if (!buffer_) return;
-  std::vector<std::uint32_t> words(static_cast<std::size_t>(CADT_COUNTER_ROWS) * CADT_COUNTER_STRIDE);
-  device_.read(*buffer_, 0, words.data(), words.size() * sizeof words[0]);
-  add_counters(statistics, words);
+  add_counters(statistics, device_.read_values(*buffer_, std::size_t{CADT_COUNTER_ROWS} * CADT_COUNTER_STRIDE));
 }
 
 void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) {
@@ -73,8 +71,7 @@ FlipHistogram::FlipHistogram(Context& ctx, bool wanted) : device_(ctx.device) {
 
 void FlipHistogram::collect(Statistics& statistics) const {
   if (!buffer_) return;
-  std::array<std::uint32_t, std::size_t{CADT_COUNTER_ROWS} * CADT_FLIP_BINS> words{};
-  device_.read(*buffer_, 0, words.data(), sizeof words);
+  const auto words = device_.read_values(*buffer_, std::size_t{CADT_COUNTER_ROWS} * CADT_FLIP_BINS);
   std::array<std::uint64_t, CADT_FLIP_BINS> sums{};
   for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_FLIP_BINS] += words[i];
   for (std::size_t i = 0; i < sums.size(); ++i) statistics.flips_per_edge[i] += sums[i] / 2;  // counted from both sides

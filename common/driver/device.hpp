@@ -41,8 +41,9 @@ class BufferCache;
 class Arg {
  public:
   Arg(Buffer& buffer) noexcept : buffer_(&buffer) {}  // NOLINT: implicit on purpose
-  Arg(const std::unique_ptr<Buffer>& buffer) noexcept
-      : buffer_(buffer.get()) {}  // NOLINT; nullptr passes a null pointer
+  template <class Deleter>
+  Arg(const std::unique_ptr<Buffer, Deleter>& buffer) noexcept
+      : buffer_(buffer.get()) {}  // NOLINT; null passes a null pointer
   template <class Scalar>
   requires(std::is_arithmetic_v<Scalar> && (sizeof(Scalar) == 4 || sizeof(Scalar) == 8)) Arg(Scalar value)
   noexcept : size_(sizeof(Scalar)), real_(std::is_same_v<Scalar, double>) {  // NOLINT
@@ -152,6 +153,13 @@ class Device {
   /// Blocking copies; offsets and sizes in bytes. \throws DeviceError
   virtual void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) = 0;
   virtual void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) = 0;
+  /// The `count` values from the one of this index on.
+  template <class T = std::uint32_t>
+  [[nodiscard]] std::vector<T> read_values(const Buffer& from, std::size_t count, std::size_t first = 0) {
+    std::vector<T> values(count);
+    read(from, first * sizeof(T), values.data(), count * sizeof(T));
+    return values;
+  }
   /// Fills with copies of a word; offset and size in bytes, multiples of 4.
   virtual void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) = 0;
 

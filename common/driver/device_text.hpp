@@ -15,5 +15,7 @@
 #endif
 namespace cadt::device_text {
 #include "common/portable/kernels.dev.h"
+
+constexpr std::size_t word = sizeof(cadt_u32);  // bytes
 }  // namespace cadt::device_text
 #pragma GCC diagnostic pop

@@ -8,7 +8,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 
 void* handle_of(const DeviceTriangulation::Data& data, const Allocation& memory) noexcept {
   return memory ? data.state->device->handle(*memory) : nullptr;
@@ -16,14 +16,14 @@ void* handle_of(const DeviceTriangulation::Data& data, const Allocation& memory)
 
 }  // namespace
 
-void read_duplicates(Device& device, const DeviceTriangulation::Data& from, Triangulation::Data& to) {
-  const std::size_t count = from.duplicate_count;
-  if (count == 0) return;
-  std::vector<std::int32_t> points(count), representatives(count);
-  device.read(*from.duplicate_points, 0, points.data(), count * word);
-  device.read(*from.representatives, 0, representatives.data(), count * word);
-  to.duplicates.resize(count);
-  for (std::size_t i = 0; i < count; ++i) to.duplicates[i] = {points[i], representatives[i]};
+std::vector<Duplicate> read_duplicates(Device& device, const Allocation& points, const Allocation& representatives,
+                                       std::size_t count) {
+  std::vector<Duplicate> list(count);
+  if (count == 0) return list;
+  const auto all = device.read_values<std::int32_t>(*points, count),
+             equal = device.read_values<std::int32_t>(*representatives, count);
+  for (std::size_t i = 0; i < count; ++i) list[i] = {all[i], equal[i]};
+  return list;
 }
 
 void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, Triangulation::Data& to) {
@@ -64,7 +64,7 @@ Triangulation DeviceTriangulation::download() const {
   copy->statistics = data_->statistics;
   if (data_->state == nullptr) return Triangulation(std::move(copy));
   Device& device = *data_->state->device;
-  read_duplicates(device, *data_, *copy);
+  copy->duplicates = read_duplicates(*data_);
   if (data_->triangle_count != 0) {
     Context ctx(device, data_->state->memory, data_->state->options, copy->statistics);
     read_mesh(ctx, *data_, *copy);

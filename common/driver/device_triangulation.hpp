@@ -39,6 +39,11 @@ struct DeviceTriangulation::Data {
 
 /// Copies the hull to the host, and the arrays that it has not.
 void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, Triangulation::Data& to);
-void read_duplicates(Device& device, const DeviceTriangulation::Data& from, Triangulation::Data& to);
+/// Reads lists of `count` words; they may be null if that is 0.
+[[nodiscard]] std::vector<Duplicate> read_duplicates(Device& device, const Allocation& points,
+                                                     const Allocation& representatives, std::size_t count);
+[[nodiscard]] inline std::vector<Duplicate> read_duplicates(const DeviceTriangulation::Data& from) {
+  return read_duplicates(*from.state->device, from.duplicate_points, from.representatives, from.duplicate_count);
+}
 
 }  // namespace cadt

@@ -23,11 +23,13 @@ struct KernelSignature;
 CADT_KERNEL_LIST(CADT_SIGNATURE)
 #undef CADT_SIGNATURE
 
-/// Buffers go to pointers; scalars to parameters of exactly their type.
+/// Buffers go to pointers; scalars to parameters of exactly their type, and std::size_t and bool to words.
 template <class Parameter, class Argument>
 inline constexpr bool is_argument_for =
     std::is_pointer_v<Parameter> ? !std::is_arithmetic_v<Argument> && std::is_constructible_v<Arg, const Argument&>
-                                 : std::is_same_v<Argument, Parameter>;
+                                 : std::is_same_v<Argument, Parameter> ||
+                                       (std::is_same_v<Parameter, std::uint32_t> &&
+                                        (std::is_same_v<Argument, std::size_t> || std::is_same_v<Argument, bool>));
 
 /// Whether the kernel has one parameter for each of these arguments.
 template <KernelId kernel, class... Arguments>

@@ -4,6 +4,7 @@
 namespace cadt {
 namespace {
 
+using device_text::word;
 constexpr std::size_t smallest_grain = 8;  // fewer elements are not worth waking a thread
 constexpr std::size_t device_chunk = 512;  // contiguous elements that a work-item of a GPU scans or sorts
 // Several elements a work-item cost less set-up; with more elements than this the mesh does not stay in the cache
@@ -13,16 +14,20 @@ constexpr std::size_t longest_serial_scan = 4096;  // sums that one work-item ad
 
 constexpr std::size_t divide_up(std::size_t a, std::size_t b) noexcept { return (a + b - 1) / b; }
 
+constexpr LaunchGrid make_grid(std::size_t items, std::size_t count, std::size_t grain) noexcept {
+  return {static_cast<std::uint32_t>(items), static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(grain)};
+}
+
 }  // namespace
 
 LaunchGrid Launcher::grid(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
-  if (!shape.contiguous) return {static_cast<std::uint32_t>(count), 1};
+  if (!shape.contiguous) return make_grid(count, count, 1);
   // A small grain balances the load at the end; a large one keeps each thread in its own part of the mesh.
   const std::size_t grain = grain_ != 0 ? std::min<std::size_t>(grain_, std::max<std::size_t>(count, 1))
                                         : std::clamp<std::size_t>(divide_up(count, std::size_t{shape.parallelism} * 4),
                                                                   smallest_grain, shape.grain);
-  return {static_cast<std::uint32_t>(divide_up(count, grain)), static_cast<std::uint32_t>(grain)};
+  return make_grid(divide_up(count, grain), count, grain);
 }
 
 LaunchGrid Launcher::grid_spread(std::size_t count) const noexcept {
@@ -31,41 +36,39 @@ LaunchGrid Launcher::grid_spread(std::size_t count) const noexcept {
   std::uint32_t lanes = 1;  // for each element; a warp has 32
   while (lanes < 32 && count * lanes * 2 <= shape.resident) lanes *= 2;
   if (lanes == 1 && count <= most_strided) return grid_strided(count);
-  return {static_cast<std::uint32_t>(count * lanes), lanes};
+  return make_grid(count * lanes, count, lanes);
 }
 
 LaunchGrid Launcher::grid_strided(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (shape.contiguous) return grid(count);
   constexpr std::size_t waves = 4;  // of work-items: those that start late have less left to do
-  return {static_cast<std::uint32_t>(std::min(count, waves * std::max(1U, shape.parallelism))), 1};
+  return make_grid(std::min(count, waves * std::max(1U, shape.parallelism)), count, 1);
 }
 
 LaunchGrid Launcher::grid_of_teams(std::size_t count, std::size_t lanes) const noexcept {
   if (device_.shape().contiguous) return grid(count);
   constexpr std::size_t most = std::size_t{1} << 30;  // beyond it each group takes several elements
-  return {static_cast<std::uint32_t>(std::min(count * lanes, most)), 1};
+  return make_grid(std::min(count * lanes, most), count, 1);
 }
 
 LaunchGrid Launcher::parts(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (shape.contiguous) return chunks(count);
-  return {static_cast<std::uint32_t>(std::min<std::size_t>(count, std::max(1U, shape.parallelism))), 1};
+  return make_grid(std::min<std::size_t>(count, std::max(1U, shape.parallelism)), count, 1);
 }
 
 LaunchGrid Launcher::chunks(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   const std::size_t grain =
       shape.contiguous ? std::max<std::size_t>(divide_up(count, shape.parallelism), 1024) : device_chunk;
-  return {static_cast<std::uint32_t>(divide_up(count, grain)), static_cast<std::uint32_t>(grain)};
+  return make_grid(divide_up(count, grain), count, grain);
 }
 
-Allocation Launcher::zeros(std::size_t words) { return memory_.allocate_zeros(words * sizeof(std::uint32_t)); }
+Allocation Launcher::zeros(std::size_t words) { return memory_.allocate_zeros(words * word); }
 
 std::uint32_t Launcher::read_word(const Allocation& from, std::size_t index) {
-  std::uint32_t word = 0;
-  device_.read(*from, index * sizeof word, &word, sizeof word);
-  return word;
+  return device_.read_values(*from, 1, index)[0];
 }
 
 void Launcher::scan(const Allocation& data, std::size_t count) {
@@ -76,15 +79,14 @@ void Launcher::scan(const Allocation& data, std::size_t count) {
     return;
   }
   const LaunchGrid c = chunks(count);
-  const auto n = static_cast<std::uint32_t>(count);
-  Allocation sums = memory_.transient((c.items + std::size_t{1}) * sizeof(std::uint32_t));
-  run<KernelId::cadt_scan_sums>(c.items, data, sums, n, c.grain);
+  Allocation sums = memory_.transient((c.items + std::size_t{1}) * word);
+  run<KernelId::cadt_scan_sums>(data, sums, c);
   if (c.items <= longest_serial_scan) {
     run<KernelId::cadt_scan_total>(1, sums, c.items);
   } else {
     scan(sums, c.items);
   }
-  run<KernelId::cadt_scan_apply>(c.items, data, sums, n, c.grain);
+  run<KernelId::cadt_scan_apply>(data, sums, c);
 }
 
 void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys, Allocation& spare_values,
@@ -92,10 +94,7 @@ void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys
   if (Primitives* own = device_.primitives()) {
     const Allocation scratch = memory_.transient(own->sort_scratch(count, bits));
     const bool places = identity && own->sorts_places(count);
-    if (identity && !places) {
-      const LaunchGrid c = grid(count);
-      run<KernelId::cadt_identity>(c.items, values, static_cast<std::uint32_t>(count), c.grain);
-    }
+    if (identity && !places) run<KernelId::cadt_identity>(values, grid(count));
     bool in_spare = false;
     times_.time(KernelTimes::sort, [&] {
       in_spare = own->sort(*scratch, *keys, *values, *spare_keys, *spare_values, count, std::max(bits, 1U), places);
@@ -108,16 +107,14 @@ void Launcher::sort(Allocation& keys, Allocation& values, Allocation& spare_keys
   }
   const unsigned digit = device_.shape().contiguous ? 8 : 4;  // CADT_RADIX_BITS of the kernels
   const LaunchGrid c = chunks(count);
-  const auto n = static_cast<std::uint32_t>(count);
   const std::size_t entries = (std::size_t{1} << digit) * c.items;
-  Allocation counts = memory_.transient(entries * sizeof(std::uint32_t));
+  Allocation counts = memory_.transient(entries * word);
   const Allocation none;
   for (unsigned shift = 0; shift < std::max(bits, 1U); shift += digit) {
-    run<KernelId::cadt_radix_count>(c.items, keys, counts, n, c.grain, c.items, shift);
+    run<KernelId::cadt_radix_count>(keys, counts, c, c.items, shift);
     scan(counts, entries);
     const Allocation& from = identity && shift == 0 ? none : values;
-    run<KernelId::cadt_radix_scatter>(c.items, keys, from, spare_keys, spare_values, counts, n, c.grain, c.items,
-                                      shift);
+    run<KernelId::cadt_radix_scatter>(keys, from, spare_keys, spare_values, counts, c, c.items, shift);
     std::swap(keys, spare_keys);
     std::swap(values, spare_values);
   }

@@ -3,7 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
+#include <limits>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "common/driver/argument_group.hpp"
@@ -14,11 +18,16 @@
 
 namespace cadt {
 
-/// How elements are divided into work-items.
+/// How elements are divided into work-items. As an argument it stands for the parameters `count` and `grain`.
 struct LaunchGrid {
   std::uint32_t items;  ///< work-items
+  std::uint32_t count;  ///< elements
   std::uint32_t grain;  ///< elements of a work-item; after grid_spread on GPUs, work-items of an element
+  [[nodiscard]] auto arguments() const { return std::tie(count, grain); }
 };
+
+template <class... Args>
+concept WithGrid = (std::is_same_v<Args, LaunchGrid> || ...);
 
 class Launcher {
  public:
@@ -26,8 +35,6 @@ class Launcher {
   Launcher(Device& device, Memory& memory, unsigned grain) noexcept
       : device_(device), memory_(memory), times_(device), grain_(grain) {}
 
-  [[nodiscard]] Device& device() const noexcept { return device_; }
-  [[nodiscard]] Memory& memory() const noexcept { return memory_; }
   [[nodiscard]] std::uint64_t launches() const noexcept { return launches_; }
   /// As Statistics::kernels. \throws DeviceError
   [[nodiscard]] std::vector<KernelTime> kernel_times() { return times_.sums(); }
@@ -50,8 +57,14 @@ class Launcher {
   /// Runs a kernel. Arguments, or groups of them (argument_group.hpp), of other types than its parameters do not
   /// compile. \throws as Device::launch
   template <KernelId kernel, class... Args>
-  void run(std::uint32_t items, const Args&... args) {
+  requires(!WithGrid<Args...>) void run(std::uint32_t items, const Args&... args) {
     run_in_groups<kernel>(items, 0, args...);
+  }
+  /// The same with the work-items of the one grid among the arguments.
+  template <KernelId kernel, class... Args>
+  requires WithGrid<Args...>
+  void run(const Args&... args) {
+    run_in_groups<kernel>(std::get<const LaunchGrid&>(std::tie(args...)).items, 0, args...);
   }
   /// The same with work-groups of `group` work-items on GPUs, unless the options name a size; 0: the device's choice.
   template <KernelId kernel, class... Args>
@@ -79,9 +92,20 @@ class Launcher {
   template <KernelId kernel, class... Args>
   void launch(std::uint32_t items, std::uint32_t group, const Args&... args) {
     static_assert(takes_arguments<kernel, Args...>(), "other arguments than the kernel has parameters");
-    const Arg list[] = {Arg(args)...};
+    const Arg list[] = {Arg(as_parameter(args))...};
     ++launches_;
     times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, variant_, group); });
+  }
+
+  /// Kernels take numbers of elements, and what is or is not, as words.
+  template <class T>
+  static decltype(auto) as_parameter(const T& argument) {
+    if constexpr (std::is_same_v<T, std::size_t> || std::is_same_v<T, bool>) {
+      assert(std::size_t{argument} <= std::numeric_limits<std::uint32_t>::max());
+      return static_cast<std::uint32_t>(argument);
+    } else {
+      return (argument);
+    }
   }
 
   Device& device_;

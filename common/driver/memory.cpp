@@ -6,9 +6,9 @@
 
 namespace cadt {
 
-void Allocation::release() noexcept {
-  if (buffer_ != nullptr && memory_ != nullptr) memory_->reclaim(std::move(buffer_), lifetime_);
-  buffer_.reset();
+void Allocation::Reclaim::operator()(Buffer* buffer) const noexcept {
+  std::unique_ptr<Buffer> owned(buffer);
+  if (memory != nullptr) memory->reclaim(std::move(owned), lifetime);
 }
 
 void Memory::begin(std::size_t limit, std::size_t reserved) noexcept {

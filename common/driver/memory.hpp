@@ -19,33 +19,22 @@ class Allocation {
  public:
   Allocation() = default;
   Allocation(Memory& memory, std::unique_ptr<Buffer> buffer, Lifetime lifetime) noexcept
-      : memory_(&memory), buffer_(std::move(buffer)), lifetime_(lifetime) {}
+      : buffer_(buffer.release(), {&memory, lifetime}) {}
   /// Memory of the caller's, which is in no budget.
-  explicit Allocation(std::unique_ptr<Buffer> callers) noexcept : buffer_(std::move(callers)) {}
-  ~Allocation() { release(); }
-  Allocation(Allocation&& other) noexcept { swap(other); }
-  Allocation& operator=(Allocation&& other) noexcept {
-    if (this != &other) {
-      release();
-      swap(other);
-    }
-    return *this;
-  }
+  explicit Allocation(std::unique_ptr<Buffer> callers) noexcept : buffer_(callers.release()) {}
 
-  void release() noexcept;
+  void release() noexcept { buffer_.reset(); }
   [[nodiscard]] Buffer& operator*() const noexcept { return *buffer_; }
   [[nodiscard]] explicit operator bool() const noexcept { return buffer_ != nullptr; }
   operator Arg() const noexcept { return {buffer_}; }  // NOLINT: an allocation is passed to kernels as it is
 
  private:
-  void swap(Allocation& other) noexcept {
-    std::swap(memory_, other.memory_);
-    std::swap(buffer_, other.buffer_);
-    std::swap(lifetime_, other.lifetime_);
-  }
-  Memory* memory_ = nullptr;
-  std::unique_ptr<Buffer> buffer_;
-  Lifetime lifetime_ = Lifetime::kept;
+  struct Reclaim {
+    Memory* memory;  ///< null unless given: in no budget
+    Lifetime lifetime;
+    void operator()(Buffer* buffer) const noexcept;
+  };
+  std::unique_ptr<Buffer, Reclaim> buffer_;
 };
 
 /// Outlives its allocations.

@@ -6,10 +6,12 @@
 #include <numeric>
 #include <string>
 
+#include "common/driver/device_text.hpp"
+
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 constexpr std::size_t fixed = std::size_t{1} << 16;  // bytes of counters and partial results
 constexpr std::size_t fewest_points_batched = std::size_t{1} << 16;
 
@@ -40,6 +42,12 @@ std::vector<std::size_t> reserved_words(const Memory& memory, std::size_t n, boo
 /// for each tile and 49,216 for all.
 constexpr std::size_t locked_bytes(std::size_t n) noexcept { return n * 16 * word; }
 constexpr std::size_t star_pool_bytes(std::size_t n) noexcept { return fixed + 26 * n; }
+
+/// Whether the device can allocate one buffer of so many bytes.
+bool fits_buffers(const Options& options, const DeviceInfo& device, std::size_t bytes) noexcept {
+  const std::uint64_t largest = device.largest_buffer_bytes;
+  return options.allocator != nullptr || largest == 0 || bytes <= largest;  // an allocator knows its own limits
+}
 
 void require_buffer(const Options& options, const DeviceInfo& device, std::size_t bytes) {
   if (fits_buffers(options, device, bytes)) return;
@@ -99,11 +107,6 @@ std::size_t plan_batch(Memory& memory, const Options& options, const DeviceInfo&
     most /= 2;
   memory.require(bytes());
   return most;
-}
-
-bool fits_buffers(const Options& options, const DeviceInfo& device, std::size_t bytes) noexcept {
-  const std::uint64_t largest = device.largest_buffer_bytes;
-  return options.allocator != nullptr || largest == 0 || bytes <= largest;  // an allocator knows its own limits
 }
 
 std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {

@@ -53,9 +53,6 @@ struct KnownSizes {
 /// Most points and sets of a batch: enough to fill any GPU, and a bound on the memory besides the result.
 constexpr std::size_t most_points_batched = std::size_t{1} << 24, most_sets_batched = std::size_t{1} << 20;
 
-/// Whether the device can allocate one buffer of so many bytes.
-[[nodiscard]] bool fits_buffers(const Options& options, const DeviceInfo& device, std::size_t bytes) noexcept;
-
 /// Device bytes of a call of n points, with the buffers cached for a later phase or call: the public figure.
 [[nodiscard]] std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars);
 /// Allocates the buffers of a call that are alive at the same time and releases them, so that they are cached.

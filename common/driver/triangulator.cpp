@@ -14,7 +14,7 @@
 #include "common/driver/registry.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/triangulation_data.hpp"
-#include "common/output/result.hpp"
+#include "common/output/renumber.hpp"
 #include "common/points/device_points.hpp"
 #include "common/points/import.hpp"
 #include "common/points/spatial_sort.hpp"
@@ -23,7 +23,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 
 /// Sorts the points, builds their mesh and writes the result; what is written straight to memory of the host goes to
 /// `host`.
@@ -44,33 +44,40 @@ void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Dat
   data.dimension = mesh.flat ? (data.distinct >= 2 ? 1 : 0) : 2;
   if (mesh.flat) return;
   ctx.check("output", 0.9);
-  ResultArrays result = write_result(ctx, std::move(mesh), n);
-  data.triangle_count = result.count;
-  data.triangles = std::move(result.triangles.device);
-  data.neighbors = std::move(result.neighbors.device);
+  write_result(ctx, mesh, n);
+  data.triangle_count = mesh.triangles;
+  data.triangles = std::move(mesh.vertices.device);
+  data.neighbors = std::move(mesh.across.device);
   if (host == nullptr) return;
-  host->triangles = std::move(result.triangles.host);
-  host->neighbors = std::move(result.neighbors.host);
+  host->triangles = std::move(mesh.vertices.host);
+  host->neighbors = std::move(mesh.across.host);
+}
+
+/// A whole call; `host` is null if the result stays on the device.
+void run_call(const std::shared_ptr<Triangulator::State>& state, const InputPoints& points, const CallShape& shape,
+              Triangulation::Data* host, DeviceTriangulation::Data& data) {
+  data.state = state;
+  data.points = shape.points;
+  begin_call(*state, shape.points, data.statistics);
+  if (shape.points == 0) return;
+  const MemoryPlan plan = plan_call(*state, shape);
+  Context ctx(*state->device, state->memory, state->options, data.statistics, plan);
+  triangulate_into(ctx, points, host, data);
+  ctx.end_phase("output");
+  if (host != nullptr) {
+    if (data.dimension == 2) read_mesh(ctx, data, *host);
+    host->duplicates = read_duplicates(data);
+    ctx.end_phase("copy");
+  }
+  remember_size(*state, data.statistics, plan);
+  end_call(*state, ctx, host == nullptr);
 }
 
 Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
   require_size(points.size());
   auto result = std::make_unique<Triangulation::Data>();
   DeviceTriangulation::Data data;  // after the result, which it may alias
-  data.state = state;
-  data.points = points.size();
-  begin_call(*state, points.size(), data.statistics);
-  if (points.size() != 0) {
-    const MemoryPlan plan = plan_call(*state, {points.size(), is_host(*state->device), false, points.scalar_size()});
-    Context ctx(*state->device, state->memory, state->options, data.statistics, plan);
-    triangulate_into(ctx, points, result.get(), data);
-    ctx.end_phase("output");
-    if (data.dimension == 2) read_mesh(ctx, data, *result);
-    read_duplicates(*state->device, data, *result);
-    ctx.end_phase("copy");
-    remember_size(*state, data.statistics, plan);
-    end_call(*state, ctx, false);
-  }
+  run_call(state, points, {points.size(), is_host(*state->device), false, points.scalar_size()}, result.get(), data);
   result->points = data.points;
   result->triangle_count = data.triangle_count;
   result->dimension = data.dimension;
@@ -81,17 +88,7 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
 DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points) {
   require_size(points.size);
   auto data = std::make_unique<DeviceTriangulation::Data>();
-  data->state = state;
-  data->points = points.size;
-  begin_call(*state, points.size, data->statistics);
-  if (points.size != 0) {
-    const MemoryPlan plan = plan_call(*state, {points.size, false, true, scalar_bytes(points.scalar)});
-    Context ctx(*state->device, state->memory, state->options, data->statistics, plan);
-    triangulate_into(ctx, points, nullptr, *data);
-    ctx.end_phase("output");
-    remember_size(*state, data->statistics, plan);
-    end_call(*state, ctx, true);
-  }
+  run_call(state, points, {points.size, false, true, scalar_bytes(points.scalar)}, nullptr, *data);
   return DeviceTriangulation(std::move(data));
 }
 
@@ -99,12 +96,12 @@ DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state,
 template <class Real>
 VerifyReport verify_copy(Device& device, const Allocation& input, const DeviceTriangulation::Data& data,
                          std::span<const Duplicate> duplicates, const VerifyOptions& options) {
-  std::vector<Real> xy(2 * data.points);
-  if (!xy.empty()) device.read(*input, 0, xy.data(), xy.size() * sizeof xy[0]);
-  std::vector<std::int32_t> triangles(3 * data.triangle_count), neighbors(triangles.size());
-  if (!triangles.empty()) {
-    device.read(*data.triangles, 0, triangles.data(), triangles.size() * word);
-    device.read(*data.neighbors, 0, neighbors.data(), neighbors.size() * word);
+  std::vector<Real> xy;
+  std::vector<std::int32_t> triangles, neighbors;
+  if (input) xy = device.read_values<Real>(*input, 2 * data.points);
+  if (const std::size_t values = 3 * data.triangle_count; values != 0) {
+    triangles = device.read_values<std::int32_t>(*data.triangles, values);
+    neighbors = device.read_values<std::int32_t>(*data.neighbors, values);
   }
   MeshView view;
   view.triangles = triangles;
@@ -152,14 +149,15 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
   begin_budget(*state_, data.points);
   Statistics statistics;
   Context ctx(device, state_->memory, state_->options, statistics);
-  Triangulation::Data host;
-  read_duplicates(device, data, host);
+  const std::vector<Duplicate> duplicates = read_duplicates(data);
   const Allocation input = points.size == 0 ? Allocation() : import_points(ctx, points);
   // The verifier's kernels need double precision.
-  if (takes_floats_only(device)) return verify_copy<float>(device, input, data, host.duplicates, options);
-  if (data.triangle_count == 0) return verify_copy<double>(device, input, data, host.duplicates, options);
-  const VerifyInput what{input, data.triangles, data.neighbors, data.points, data.triangle_count, {}, host.duplicates,
-                         true};
+  if (takes_floats_only(device)) return verify_copy<float>(device, input, data, duplicates, options);
+  if (data.triangle_count == 0) return verify_copy<double>(device, input, data, duplicates, options);
+  const auto count = static_cast<std::uint32_t>(data.triangle_count);
+  const Allocation no_flags;
+  const VerifyInput what{
+      {input, data.triangles, data.neighbors, no_flags, count, count, 0}, data.points, {}, duplicates, true};
   return verify_on_device(ctx, what, options);
 }
 

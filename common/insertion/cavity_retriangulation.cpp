@@ -2,10 +2,8 @@
 #include "common/insertion/cavity_retriangulation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <map>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,45 +12,27 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::uint32_t max_edges = 256;  // of which the opposite vertices are read
 constexpr std::uint32_t min_region = 64;  // triangles: flips take less time for fewer
 constexpr std::size_t least_share = 16;   // a vertex counts if one of so many illegal edges leads to it
 
-}  // namespace
-
-CavityRetriangulation::CavityRetriangulation(const LockedMesh& mesh)
-    : mesh_(mesh),
-      ctx_(mesh.ctx),
-      launch_(ctx_.launcher),
-      slots_(static_cast<std::uint32_t>(2 * mesh.order.distinct)) {}
-
 /// Four vertices for each edge, the two opposite and its two ends; CADT_NONE if it is not illegal.
-std::vector<std::uint32_t> CavityRetriangulation::read_quads(const Allocation& edges, std::uint32_t count) {
+std::vector<std::uint32_t> read_quads(const LockedMesh& mesh, const Allocation& edges, std::uint32_t count) {
   const std::uint32_t read = std::min(count, max_edges);
-  const Allocation quads = ctx_.memory.allocate(4 * read * word);
-  const LaunchGrid c = launch_.grid(read);
-  launch_.run<KernelId::cadt_cavity_candidates>(c.items, mesh_, edges, read, c.grain, quads);
-  std::vector<std::uint32_t> vertices(4 * std::size_t{read});
-  ctx_.device.read(*quads, 0, vertices.data(), vertices.size() * word);
-  return vertices;
-}
-
-void CavityRetriangulation::remember(const Allocation& edges, std::uint32_t count) {
-  remembered_.clear();
-  const std::vector<std::uint32_t> quads = read_quads(edges, count);
-  for (std::size_t i = 0; i < quads.size(); ++i)
-    if (i % 4 < 2 && quads[i] != CADT_NONE) remembered_.insert(quads[i]);
+  const Allocation quads = mesh.ctx.memory.allocate(4 * read * word);
+  mesh.ctx.launcher.run<KernelId::cadt_cavity_candidates>(mesh, edges, mesh.ctx.launcher.grid(read), quads);
+  return mesh.ctx.device.read_values(*quads, 4 * std::size_t{read});
 }
 
 /// The remembered vertices to which most of the edges lead.
-std::vector<std::uint32_t> CavityRetriangulation::candidates(const std::vector<std::uint32_t>& quads) {
+std::vector<std::uint32_t> candidates(const std::set<std::uint32_t>& remembered,
+                                      const std::vector<std::uint32_t>& quads) {
   std::map<std::uint32_t, std::size_t> counts;
   std::size_t illegal = 0;
   for (std::size_t i = 0; i < quads.size(); ++i) {
     if (quads[i] == CADT_NONE || i % 4 > 1) continue;
     if (i % 4 == 0) ++illegal;
-    if (remembered_.contains(quads[i])) ++counts[quads[i]];
+    if (remembered.contains(quads[i])) ++counts[quads[i]];
   }
   std::vector<std::pair<std::size_t, std::uint32_t>> ranked;
   for (const auto& [v, count] : counts)
@@ -64,81 +44,95 @@ std::vector<std::uint32_t> CavityRetriangulation::candidates(const std::vector<s
   return best;
 }
 
-void CavityRetriangulation::write_ends(const std::vector<std::uint32_t>& quads) {
+/// The set of the ends of the edges.
+std::vector<std::uint32_t> ends_of(const std::vector<std::uint32_t>& quads) {
   std::vector<std::uint32_t> ends(CADT_CAVITY_SET_WORDS);
   for (std::size_t i = 0; i < quads.size(); ++i) {
     if (quads[i] == CADT_NONE || i % 4 < 2) continue;
     const std::uint32_t bit = CADT_CAVITY_BIT(quads[i]);
     ends[bit >> 5] |= 1U << (bit & 31U);
   }
-  if (!ends_) ends_ = ctx_.memory.allocate(ends.size() * word);
-  ctx_.device.write(*ends_, 0, ends.data(), ends.size() * word);
+  return ends;
 }
 
+struct Region {
+  std::uint32_t triangles, vertex;
+  auto operator<=>(const Region&) const = default;
+};
+
+LaunchGrid grid_of_slots(const LockedMesh& mesh) { return mesh.ctx.launcher.grid_strided(2 * mesh.order.distinct); }
+
 /// The large regions of these vertices, the largest first.
-std::vector<CavityRetriangulation::Region> CavityRetriangulation::large_regions(
-    const std::vector<std::uint32_t>& vertices) {
-  const auto count = static_cast<std::uint32_t>(vertices.size());
-  const Allocation list = ctx_.memory.allocate(count * word), sums = launch_.zeros(count);
-  ctx_.device.write(*list, 0, vertices.data(), count * word);
-  const LaunchGrid c = launch_.grid_strided(slots_);
-  launch_.run<KernelId::cadt_cavity_sizes>(c.items, mesh_, slots_, c.grain, ends_, list, count, sums);
-  std::vector<std::uint32_t> sizes(count);
-  ctx_.device.read(*sums, 0, sizes.data(), count * word);
+std::vector<Region> large_regions(const LockedMesh& mesh, const Allocation& ends,
+                                  const std::vector<std::uint32_t>& vertices) {
+  Launcher& launch = mesh.ctx.launcher;
+  const std::size_t count = vertices.size();
+  const Allocation list = mesh.ctx.memory.allocate(count * word), sums = launch.zeros(count);
+  mesh.ctx.device.write(*list, 0, vertices.data(), count * word);
+  launch.run<KernelId::cadt_cavity_sizes>(mesh, grid_of_slots(mesh), ends, list, count, sums);
+  const std::vector<std::uint32_t> sizes = mesh.ctx.device.read_values(*sums, count);
   std::vector<Region> regions;
-  for (std::uint32_t v = 0; v < count; ++v)
+  for (std::size_t v = 0; v < count; ++v)
     if (sizes[v] >= min_region) regions.push_back({sizes[v], vertices[v]});
   std::ranges::sort(regions, std::greater{});
   return regions;
 }
 
 /// Retriangulates the region as far as possible. False if nothing is.
-bool CavityRetriangulation::retriangulate_region(const Region& region) {
+bool retriangulate_region(const LockedMesh& mesh, const Allocation& ends, const Region& region) {
+  Launcher& launch = mesh.ctx.launcher;
+  Memory& memory = mesh.ctx.memory;
   const std::uint32_t w = region.vertex, capacity = region.triangles + region.triangles / 4 + 64;
   const std::size_t bytes = capacity * word;
-  if (!ctx_.memory.allows((CADT_CAVITY_SCRATCH + 4) * bytes)) return false;
-  const Allocation list = ctx_.memory.allocate(bytes), kept = ctx_.memory.allocate(bytes),
-                   scratch = ctx_.memory.allocate(CADT_CAVITY_SCRATCH * bytes),
-                   spokes = ctx_.memory.allocate(2 * bytes), found = launch_.zeros(CADT_CAVITY_WORDS);
-  const LaunchGrid all = launch_.grid_strided(slots_);
-  launch_.run<KernelId::cadt_cavity_conflicts>(all.items, mesh_, slots_, all.grain, ends_, w, list, capacity, found);
-  const std::uint32_t conflicts = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
-  LaunchGrid c = launch_.grid(conflicts);
-  launch_.run<KernelId::cadt_cavity_star>(c.items, mesh_, conflicts, c.grain, w, list, capacity, found);
+  if (!memory.allows((CADT_CAVITY_SCRATCH + 4) * bytes)) return false;
+  const Allocation list = memory.allocate(bytes), kept = memory.allocate(bytes),
+                   scratch = memory.allocate(CADT_CAVITY_SCRATCH * bytes), spokes = memory.allocate(2 * bytes),
+                   found = launch.zeros(CADT_CAVITY_WORDS);
+  launch.run<KernelId::cadt_cavity_conflicts>(mesh, grid_of_slots(mesh), ends, w, list, capacity, found);
+  const std::uint32_t conflicts = std::min(launch.read_word(found, CADT_CAVITY_LISTED), capacity);
+  launch.run<KernelId::cadt_cavity_star>(mesh, launch.grid(conflicts), w, list, capacity, found);
   // If the list has no room for all conflicts, it has some of them: cadt_cavity_check sees which components are usable.
-  const std::uint32_t listed = std::min(launch_.read_word(found, CADT_CAVITY_LISTED), capacity);
-  c = launch_.grid(listed);
-  launch_.run<KernelId::cadt_cavity_roots>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity);
-  launch_.run<KernelId::cadt_cavity_join>(c.items, mesh_.locked, listed, c.grain, list, scratch);
-  launch_.run<KernelId::cadt_cavity_check>(c.items, mesh_, listed, c.grain, w, list, scratch, capacity);
-  launch_.run<KernelId::cadt_cavity_keep>(c.items, mesh_.locked, listed, c.grain, list, scratch, capacity, kept, found);
-  const std::uint32_t count = launch_.read_word(found, CADT_CAVITY_KEPT);
+  const std::uint32_t listed = std::min(launch.read_word(found, CADT_CAVITY_LISTED), capacity);
+  LaunchGrid c = launch.grid(listed);
+  launch.run<KernelId::cadt_cavity_roots>(mesh.locked, c, list, scratch, capacity);
+  launch.run<KernelId::cadt_cavity_join>(mesh.locked, c, list, scratch);
+  launch.run<KernelId::cadt_cavity_check>(mesh, c, w, list, scratch, capacity);
+  launch.run<KernelId::cadt_cavity_keep>(mesh.locked, c, list, scratch, capacity, kept, found);
+  const std::uint32_t count = launch.read_word(found, CADT_CAVITY_KEPT);
   if (count == 0) return false;
   const Allocation& sides = scratch;  // the components are not read any more
-  c = launch_.grid(count);
-  launch_.run<KernelId::cadt_cavity_boundary>(c.items, mesh_, count, c.grain, w, kept, sides, spokes, capacity, found);
-  std::array<std::uint32_t, CADT_CAVITY_WORDS> words{};
-  ctx_.device.read(*found, 0, words.data(), sizeof words);
+  launch.run<KernelId::cadt_cavity_boundary>(mesh, launch.grid(count), w, kept, sides, spokes, capacity, found);
+  const std::vector<std::uint32_t> words = mesh.ctx.device.read_values(*found, CADT_CAVITY_WORDS);
   const std::uint32_t spoke_count = words[CADT_CAVITY_SPOKES];
   if (words[CADT_CAVITY_SIDES] != count || spoke_count > capacity)
-    throw InternalError("the region of a vertex has " + std::to_string(count) + " triangles, " +
-                        std::to_string(words[CADT_CAVITY_SIDES]) + " sides and " + std::to_string(spoke_count) +
-                        " spokes; please report this with the input");
-  c = launch_.grid(std::size_t{count} + spoke_count);
-  launch_.run<KernelId::cadt_cavity_fill>(c.items, mesh_, count, spoke_count, c.grain, w, kept, sides, spokes);
-  c = launch_.grid(2 * std::size_t{count} + spoke_count);
-  launch_.run<KernelId::cadt_cavity_release>(c.items, mesh_, count, spoke_count, c.grain, kept, sides, spokes);
+    give_up("the region of a vertex has ", count, " triangles, ", words[CADT_CAVITY_SIDES], " sides and ", spoke_count,
+            " spokes");
+  c = launch.grid(std::size_t{count} + spoke_count);
+  launch.run<KernelId::cadt_cavity_fill>(c.items, mesh, count, spoke_count, c.grain, w, kept, sides, spokes);
+  c = launch.grid(2 * std::size_t{count} + spoke_count);
+  launch.run<KernelId::cadt_cavity_release>(c.items, mesh, count, spoke_count, c.grain, kept, sides, spokes);
   return true;
 }
 
+}  // namespace
+
+void CavityRetriangulation::remember(const Allocation& edges, std::uint32_t count) {
+  remembered_.clear();
+  const std::vector<std::uint32_t> quads = read_quads(mesh_, edges, count);
+  for (std::size_t i = 0; i < quads.size(); ++i)
+    if (i % 4 < 2 && quads[i] != CADT_NONE) remembered_.insert(quads[i]);
+}
+
 std::size_t CavityRetriangulation::retriangulate(const Allocation& edges, std::uint32_t count) {
-  const std::vector<std::uint32_t> quads = read_quads(edges, count), vertices = candidates(quads);
+  const std::vector<std::uint32_t> quads = read_quads(mesh_, edges, count), vertices = candidates(remembered_, quads);
   remembered_.clear();
   if (vertices.empty()) return 0;
-  write_ends(quads);
+  const std::vector<std::uint32_t> ends = ends_of(quads);
+  if (!ends_) ends_ = mesh_.ctx.memory.allocate(ends.size() * word);
+  mesh_.ctx.device.write(*ends_, 0, ends.data(), ends.size() * word);
   std::size_t regions = 0;
-  for (const Region& region : large_regions(vertices)) {
-    if (!retriangulate_region(region)) break;  // smaller regions are not likely to do better
+  for (const Region& region : large_regions(mesh_, ends_, vertices)) {
+    if (!retriangulate_region(mesh_, ends_, region)) break;  // smaller regions are not likely to do better
     ++regions;
   }
   return regions;

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <set>
-#include <vector>
 
 #include "common/insertion/locked_mesh.hpp"
 
@@ -14,7 +13,7 @@ namespace cadt {
 /// vertex to which they lead (common/insertion/cavity.dev.h). No other kernel may run on the mesh meanwhile.
 class CavityRetriangulation {
  public:
-  explicit CavityRetriangulation(const LockedMesh& mesh);
+  explicit CavityRetriangulation(const LockedMesh& mesh) : mesh_(mesh) {}
 
   /// Remembers the vertices opposite the deferred edges: the vertex of a cascade is among them again after more flips.
   void remember(const Allocation& edges, std::uint32_t count);
@@ -24,20 +23,7 @@ class CavityRetriangulation {
   std::size_t retriangulate(const Allocation& edges, std::uint32_t count);
 
  private:
-  struct Region {
-    std::uint32_t triangles, vertex;
-    auto operator<=>(const Region&) const = default;
-  };
-  std::vector<std::uint32_t> read_quads(const Allocation& edges, std::uint32_t count);
-  std::vector<std::uint32_t> candidates(const std::vector<std::uint32_t>& quads);
-  void write_ends(const std::vector<std::uint32_t>& quads);
-  std::vector<Region> large_regions(const std::vector<std::uint32_t>& vertices);
-  bool retriangulate_region(const Region& region);
-
   const LockedMesh& mesh_;
-  Context& ctx_;
-  Launcher& launch_;
-  std::uint32_t slots_;
   Allocation ends_;  // a set of vertices: the ends of the deferred edges
   std::set<std::uint32_t> remembered_;
 };

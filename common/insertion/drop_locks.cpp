@@ -11,15 +11,12 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
-
 /// Triangles without a ghost before each slot, and their number behind the last.
 Allocation rank_triangles(Context& ctx, const LockedTriangles& locked, MeshUse use) {
   Allocation ranks = ctx.memory.allocate((locked.slots + 1) * word);
   const FlipHistogram flips(ctx, use == MeshUse::whole);
-  const LaunchGrid c = ctx.launcher.grid_strided(locked.slots);
-  ctx.launcher.run<KernelId::cadt_flag_triangles>(c.items, locked.triangles, ranks,
-                                                  static_cast<std::uint32_t>(locked.slots), c.grain, flips);
+  ctx.launcher.run<KernelId::cadt_flag_triangles>(locked.triangles, ranks, ctx.launcher.grid_strided(locked.slots),
+                                                  flips);
   ctx.launcher.scan(ranks, locked.slots + 1);
   flips.collect(ctx.statistics);
   return ranks;
@@ -37,9 +34,9 @@ Mesh write_arrays(Context& ctx, const LockedTriangles& locked, const Allocation&
   if (locked.edge_flags) mesh.edge_flags = ctx.memory.allocate(mesh.all * word);
   mesh.certified = true;
   const LaunchGrid c = ctx.launcher.grid(locked.slots);
-  ctx.launcher.run<KernelId::cadt_drop_locks>(
-      c.items, locked.triangles, locked.edge_flags, ranks, static_cast<std::uint32_t>(locked.slots),
-      mesh.finished ? CADT_NONE : first_unused, input_ids, c.grain, mesh.vertices, mesh.across, mesh.edge_flags);
+  ctx.launcher.run<KernelId::cadt_drop_locks>(c.items, locked.triangles, locked.edge_flags, ranks, locked.slots,
+                                              mesh.finished ? CADT_NONE : first_unused, input_ids, c.grain,
+                                              mesh.vertices, mesh.across, mesh.edge_flags);
   return mesh;
 }
 
@@ -56,12 +53,11 @@ Mesh drop_locks(Context& ctx, LockedTriangles locked, std::uint32_t first_unused
 Mesh drop_locks_of_sets(Context& ctx, LockedTriangles locked, std::span<const std::uint32_t> first_slots,
                         const Allocation& input_ids, Allocation& set_starts) {
   const Allocation ranks = rank_triangles(ctx, locked, MeshUse::part);
-  const auto sets = static_cast<std::uint32_t>(first_slots.size());
+  const std::size_t sets = first_slots.size();
   const Allocation slots = ctx.memory.allocate(sets * word);
   ctx.device.write(*slots, 0, first_slots.data(), sets * word);
   set_starts = ctx.memory.allocate(sets * word);
-  const LaunchGrid c = ctx.launcher.grid(sets);
-  ctx.launcher.run<KernelId::cadt_gather_words>(c.items, ranks, slots, set_starts, sets, c.grain);
+  ctx.launcher.run<KernelId::cadt_gather_words>(ranks, slots, set_starts, ctx.launcher.grid(sets));
   return write_arrays(ctx, locked, ranks, CADT_NONE, input_ids, MeshUse::part);
 }
 

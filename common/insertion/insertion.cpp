@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <memory>
-#include <string>
 #include <utility>
 
 #include "common/driver/choose_strategy.hpp"
@@ -22,7 +20,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t points_per_launch_contiguous = std::size_t{1} << 19;  // bounds the time until a cancellation
 constexpr std::size_t points_per_launch_strided = std::size_t{1} << 25;
 constexpr std::size_t points_per_launch_watched = std::size_t{1} << 20;  // a watchdog allows two seconds a launch
@@ -34,7 +31,7 @@ constexpr int unresolvable_launches = 64;
 constexpr std::size_t poll_interval = 4096;  // points inserted between two reads of what was deferred
 constexpr int first_cascade_search = 4;      // the launch before which flip cascades are looked for first
 constexpr int max_sweeps = 2000;
-constexpr std::size_t sweep_counts = 5, all_counts = CADT_DEFERRED_COUNTS + sweep_counts;
+constexpr std::size_t sweep_counts = 5;
 
 /// Points that one launch inserts at most.
 std::size_t points_per_launch(const Device& device) {
@@ -50,14 +47,7 @@ class IncrementalInsertion {
  public:
   /// `points` are those of `own` where it is given, which run() needs.
   IncrementalInsertion(Context& ctx, const SortedPoints& points, SortedPoints* own = nullptr)
-      : ctx_(ctx),
-        launch_(ctx.launcher),
-        own_(own),
-        order_(points),
-        n_(points.distinct),
-        edge_capacity_(static_cast<std::uint32_t>(n_ / 8 + 4096)),
-        counters_(ctx),
-        mesh_{ctx, points, static_cast<std::uint32_t>(ctx.options.stabilize)} {}
+      : ctx_(ctx), own_(own), order_(points) {}
 
   [[nodiscard]] Mesh run(MeshUse use) {
     if (n_ >= 3 && !ctx_.device.shape().contiguous) order_by_level();
@@ -76,7 +66,7 @@ class IncrementalInsertion {
     if (last != 0) insert_partitions();
     if (deferred_.points != 0 || deferred_.edges != 0) {
       finish_deferred();
-      if (ctx_.options.watch) show_growth();
+      show_growth();
     }
     ctx_.end_phase("insert");
     LockedTriangles locked = finish(3 * std::uint64_t{n_} - 3);
@@ -96,7 +86,7 @@ class IncrementalInsertion {
  private:
   void make_edge_lists() {
     for (Allocation& list : deferred_edges_) list = ctx_.memory.transient(edge_capacity_ * word);
-    deferred_counts_ = launch_.zeros(all_counts);
+    deferred_counts_ = launch_.zeros(CADT_DEFERRED_COUNTS + sweep_counts);
   }
 
   /// `edges`: of all spheres, ghost edges included. Nothing is left but the triangles.
@@ -117,9 +107,7 @@ class IncrementalInsertion {
   void order_by_level() {
     Allocation points = ctx_.memory.transient(n_ * point_bytes(ctx_.device)),
                input_ids = ctx_.memory.allocate(n_ * word);
-    const LaunchGrid c = launch_.grid(n_);
-    launch_.run<KernelId::cadt_by_level>(c.items, order_.points, order_.input_ids, static_cast<std::uint32_t>(n_),
-                                         c.grain, points, input_ids);
+    launch_.run<KernelId::cadt_by_level>(order_.points, order_.input_ids, launch_.grid(n_), points, input_ids);
     own_->points = std::move(points);
     own_->input_ids = std::move(input_ids);
     by_level_ = true;
@@ -129,7 +117,7 @@ class IncrementalInsertion {
   bool find_seed_triangle() {
     Allocation found = ctx_.memory.allocate(word);
     if (!by_level_) {
-      launch_.run<KernelId::cadt_first_representative>(1, static_cast<std::uint32_t>(n_), levels(), found);
+      launch_.run<KernelId::cadt_first_representative>(1, n_, levels(), found);
       mesh_.first = launch_.read_word(found, 0);
     }
     mesh_.second = static_cast<std::uint32_t>(n_ / 2);
@@ -137,10 +125,8 @@ class IncrementalInsertion {
     ctx_.device.fill(*found, 0, word, CADT_NONE);
     constexpr std::size_t few = 1024;  // enough unless nearly all points are on a line
     for (std::size_t begin = 0, end = std::min(n_, few); begin < n_; begin = end, end = n_) {
-      const LaunchGrid c = launch_.grid(end - begin);
-      launch_.run<KernelId::cadt_find_seed_triangle>(c.items, order_.points, mesh_.first, mesh_.second,
-                                                     static_cast<std::uint32_t>(begin),
-                                                     static_cast<std::uint32_t>(end - begin), c.grain, found);
+      launch_.run<KernelId::cadt_find_seed_triangle>(order_.points, mesh_.first, mesh_.second, begin,
+                                                     launch_.grid(end - begin), found);
       mesh_.third = launch_.read_word(found, 0);
       if (mesh_.third != CADT_NONE) break;
     }
@@ -171,7 +157,7 @@ class IncrementalInsertion {
       since_poll_ = 0;
       // A few deferred points join the next launch; many would make its walks long.
       take_deferred();
-      if (ctx_.options.watch) show_growth();
+      show_growth();
       if (deferred_.points > size / 8 + 32 || deferred_.edges > size / 8 + 32) finish_deferred();
       ctx_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
     }
@@ -187,16 +173,13 @@ class IncrementalInsertion {
     const std::size_t step = std::max<std::size_t>((points >> partition_level) / partitions, 1);
     for (std::size_t from = 0; from < blocks; from += step) {
       const std::size_t to = std::min(blocks, from + step);
-      launch_.run<KernelId::cadt_insert_partitions>(
-          static_cast<std::uint32_t>(partitions), mesh_, static_cast<std::uint32_t>(n_), partition_level,
-          static_cast<std::uint32_t>(partitions), static_cast<std::uint32_t>(blocks), static_cast<std::uint32_t>(from),
-          static_cast<std::uint32_t>(to), deferred_points_[0], deferred_counts_, counters_);
+      launch_.run<KernelId::cadt_insert_partitions>(static_cast<std::uint32_t>(partitions), mesh_, n_, partition_level,
+                                                    partitions, blocks, from, to, deferred_points_[0], deferred_counts_,
+                                                    counters_);
       inserted_ += std::min(n_, ((to - from) * partitions) << partition_level);
       // The list has room for those that the next launch may defer.
       if (to == blocks || launch_.read_word(deferred_counts_, 0) > n_ / 32) {
-        const LaunchGrid c = launch_.grid(2 * n_);
-        launch_.run<KernelId::cadt_border_sweep>(c.items, mesh_, static_cast<std::uint32_t>(2 * n_), c.grain,
-                                                 static_cast<std::uint32_t>(blocks << partition_level),
+        launch_.run<KernelId::cadt_border_sweep>(mesh_, launch_.grid(2 * n_), blocks << partition_level,
                                                  deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
         take_deferred();
         finish_deferred();
@@ -206,17 +189,16 @@ class IncrementalInsertion {
   }
 
   void show_growth() {
-    if (snapshots_ == nullptr) snapshots_ = std::make_unique<GrowthSnapshots>(ctx_.device, order_);
-    snapshots_->show(*mesh_.locked, ctx_.options.watch);
+    if (ctx_.options.watch) show_snapshot(ctx_, mesh_.locked, order_);
   }
 
   /// Moves what the last launches deferred to the lists [1]; the lists [0] are empty then.
   void take_deferred() {
-    std::array<std::uint32_t, 3> counts{};  // points, edges, work-items that changed the mesh
-    ctx_.device.read(*deferred_counts_, 0, counts.data(), sizeof counts);
+    const auto counts =
+        ctx_.device.read_values(*deferred_counts_, 3);  // points, edges, work-items that changed the mesh
     deferred_ = {counts[0], std::min(counts[1], edge_capacity_), counts[2]};
     if (counts[0] == 0 && counts[1] == 0 && counts[2] == 0) return;
-    ctx_.device.fill(*deferred_counts_, 0, sizeof counts, 0);
+    ctx_.device.fill(*deferred_counts_, 0, 3 * word, 0);
     std::swap(deferred_points_[0], deferred_points_[1]);
     std::swap(deferred_edges_[0], deferred_edges_[1]);
   }
@@ -224,15 +206,13 @@ class IncrementalInsertion {
   /// Launches the deferred edges, and the deferred points with `size` blocks. `serial`: one work-item each.
   void launch_insert(std::size_t begin, std::size_t size, unsigned level, bool serial) {
     const auto count = static_cast<std::uint32_t>(deferred_.points + size);
-    if (deferred_.edges != 0) {
-      const LaunchGrid c = serial ? LaunchGrid{1, deferred_.edges} : launch_.grid_spread(deferred_.edges);
-      launch_.run<KernelId::cadt_legalize_edges>(c.items, mesh_, deferred_edges_[1], deferred_.edges, c.grain,
+    const auto grid_of = [&](std::uint32_t of) { return serial ? LaunchGrid{1, of, of} : launch_.grid_spread(of); };
+    if (deferred_.edges != 0)
+      launch_.run<KernelId::cadt_legalize_edges>(mesh_, deferred_edges_[1], grid_of(deferred_.edges),
                                                  deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
-    }
     if (count == 0) return;
-    const LaunchGrid c = serial ? LaunchGrid{1, count} : launch_.grid_spread(count);
-    launch_.run<KernelId::cadt_insert>(c.items, mesh_, deferred_points_[1], deferred_.points,
-                                       static_cast<std::uint32_t>(begin), count, static_cast<std::uint32_t>(n_), level,
+    const LaunchGrid c = grid_of(count);
+    launch_.run<KernelId::cadt_insert>(c.items, mesh_, deferred_points_[1], deferred_.points, begin, count, n_, level,
                                        c.grain, deferred_points_[0], deferred_edges_[0], deferred_counts_,
                                        edge_capacity_, counters_);
   }
@@ -250,9 +230,7 @@ class IncrementalInsertion {
       stalled = launches != 0 && remaining >= last && deferred_.changes == 0 ? stalled + 1 : 0;
       last = remaining;
       if (++launches > unresolvable_launches && stalled > unresolvable_launches) {
-        throw InternalError("no progress: " + std::to_string(deferred_.points) + " points and " +
-                            std::to_string(deferred_.edges) +
-                            " edges cannot get their locks; please report this with the input");
+        give_up("no progress: ", deferred_.points, " points and ", deferred_.edges, " edges cannot get their locks");
       }
       if (may_be_cascades && deferred_.edges != 0) {
         if (launches == next_cascade_search - 1) cavities.remember(deferred_edges_[1], deferred_.edges);
@@ -277,18 +255,14 @@ class IncrementalInsertion {
       std::uint64_t examined = 0, illegal = 0, unsettled = 0, stabilized = 0, broken = 0;
       for (std::size_t begin = 0; begin < slots; begin += limit) {
         const std::size_t size = std::min(limit, slots - begin);
-        const LaunchGrid c = launch_.grid_strided(size);
-        launch_.run<KernelId::cadt_legality_sweep>(c.items, mesh_, static_cast<std::uint32_t>(begin),
-                                                   static_cast<std::uint32_t>(size), c.grain,
-                                                   by_level_ ? static_cast<std::uint32_t>(n_) : 0U, deferred_edges_[0],
-                                                   deferred_counts_, edge_capacity_, counters_);
-        std::array<std::uint32_t, all_counts> words{};
-        ctx_.device.read(*deferred_counts_, 0, words.data(), sizeof words);
-        examined += words[CADT_DEFERRED_COUNTS];
-        illegal += words[CADT_DEFERRED_COUNTS + 1];
-        unsettled += words[CADT_DEFERRED_COUNTS + 2];
-        stabilized += words[CADT_DEFERRED_COUNTS + 3];
-        broken += words[CADT_DEFERRED_COUNTS + 4];
+        launch_.run<KernelId::cadt_legality_sweep>(mesh_, begin, launch_.grid_strided(size), by_level_ ? n_ : 0,
+                                                   deferred_edges_[0], deferred_counts_, edge_capacity_, counters_);
+        const auto words = ctx_.device.read_values(*deferred_counts_, sweep_counts, CADT_DEFERRED_COUNTS);
+        examined += words[0];
+        illegal += words[1];
+        unsettled += words[2];
+        stabilized += words[3];
+        broken += words[4];
         if (begin + size == slots && examined == edges && illegal + unsettled == 0) break;
         ctx_.device.fill(*deferred_counts_, CADT_DEFERRED_COUNTS * word, sweep_counts * word, 0);
         take_deferred();
@@ -299,21 +273,17 @@ class IncrementalInsertion {
       statistics.legality_sweeps = std::max(statistics.legality_sweeps, static_cast<std::uint64_t>(sweep));
       statistics.sweep_repairs += illegal;
       if (illegal == 0 && unsettled == 0) {
-        if (broken != 0)
-          throw InternalError("the boundary of the mesh turns back at " + std::to_string(broken) +
-                              " points; please report this with the input");
+        if (broken != 0) give_up("the boundary of the mesh turns back at ", broken, " points");
         statistics.certified_edges += examined - stabilized;
         statistics.illegal_edges += stabilized;
         statistics.certified = statistics.certified && stabilized == 0;
         if (examined != edges) {
-          throw InternalError("the mesh has " + std::to_string(examined) + " edges instead of " +
-                              std::to_string(edges) + "; please report this with the input");
+          give_up("the mesh has ", examined, " edges instead of ", edges);
         }
         return;
       }
     }
-    throw InternalError("the legality sweep still finds illegal edges after " + std::to_string(max_sweeps) +
-                        " sweeps; please report this with the input");
+    give_up("the legality sweep still finds illegal edges after ", max_sweeps, " sweeps");
   }
 
   struct Deferred {
@@ -322,19 +292,18 @@ class IncrementalInsertion {
   };
 
   Context& ctx_;
-  Launcher& launch_;
+  Launcher& launch_ = ctx_.launcher;
   SortedPoints* own_;
   const SortedPoints& order_;
-  std::size_t n_;
-  std::uint32_t edge_capacity_;
-  Counters counters_;
-  LockedMesh mesh_;
+  std::size_t n_ = order_.distinct;
+  std::uint32_t edge_capacity_ = static_cast<std::uint32_t>(n_ / 8 + 4096);
+  Counters counters_{ctx_};
+  LockedMesh mesh_{ctx_, order_, static_cast<std::uint32_t>(ctx_.options.stabilize)};
   Allocation deferred_counts_;
   std::array<Allocation, 2> deferred_points_, deferred_edges_;  // [0] is written by the next launch, [1] read by it
   Deferred deferred_;                                           // on the lists [1]
   bool by_level_ = false;                                       // the points are in the order of insertion
-  std::unique_ptr<GrowthSnapshots> snapshots_;
-  std::size_t inserted_ = 0, since_poll_ = 0;  // since_poll_: since what was deferred was read
+  std::size_t inserted_ = 0, since_poll_ = 0;                   // since_poll_: since what was deferred was read
 };
 
 }  // namespace

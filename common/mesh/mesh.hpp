@@ -33,7 +33,18 @@ enum class MeshUse {
 };
 
 /// \throws OutOfMemory
-[[nodiscard]] MeshArray make_mesh_array(Context& ctx, std::size_t triangles, MeshUse use);
+[[nodiscard]] inline MeshArray make_mesh_array(Context& ctx, std::size_t triangles, MeshUse use) {
+  const std::size_t bytes = 3 * triangles * device_text::word;
+  MeshArray array;
+  if (use == MeshUse::whole && ctx.result_on_host) {
+    array.host = make_words(3 * triangles);
+    array.device = ctx.memory.export_to(array.host.get(), bytes);
+    if (array.device) return array;
+    array.host.reset();
+  }
+  array.device = ctx.memory.allocate(bytes);
+  return array;
+}
 
 /// A mesh in arrays (common/mesh/mesh_view.dev.h), which may be longer than needed. After certification only
 /// renumbering changes it.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <string>
 #include <utility>
 
 #include "common/driver/counters.hpp"
@@ -12,8 +11,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
-constexpr std::uint32_t none = 0xFFFFFFFFU;
+using namespace device_text;
 
 /// The compact plan makes the canonical order in so many parts, one after the other: the lists of each have this share
 /// of the triangles.
@@ -33,10 +31,8 @@ std::vector<PartBegin> split_buckets(Context& ctx, const Allocation& buckets, st
   }
   const Allocation found = ctx.memory.allocate(begins.size() * sizeof begins[0]);
   const LaunchGrid c = ctx.launcher.grid(points);
-  ctx.launcher.run<KernelId::cadt_split_buckets>(c.items, buckets, static_cast<std::uint32_t>(points), triangles, parts,
-                                                 c.grain, found);
-  ctx.device.read(*found, 0, begins.data(), begins.size() * sizeof begins[0]);
-  return begins;
+  ctx.launcher.run<KernelId::cadt_split_buckets>(c.items, buckets, points, triangles, parts, c.grain, found);
+  return ctx.device.read_values<PartBegin>(*found, begins.size());
 }
 
 /// A part of the triangles in their buckets.
@@ -55,23 +51,23 @@ void sort_long_buckets(Context& ctx, const BucketPart& part, std::uint32_t liste
   Launcher& launch = ctx.launcher;
   Allocation ranks = ctx.memory.allocate((part.count + std::size_t{1}) * word);
   const LaunchGrid all = launch.grid(part.count), some = launch.grid(listed);
-  launch.run<KernelId::cadt_long_flags>(all.items, part.buckets, part.from, part.size, part.base, longest_serial_bucket,
-                                        part.count, all.grain, ranks);
+  launch.run<KernelId::cadt_long_flags>(part.buckets, part.from, part.size, part.base, longest_serial_bucket, all,
+                                        ranks);
   launch.scan(ranks, part.count + std::size_t{1});
   const std::size_t bytes = listed * word;
   const Allocation seconds = ctx.memory.allocate(bytes), numbers = ctx.memory.allocate(bytes);
   const Allocation owners = ctx.memory.allocate(bytes), places = ctx.memory.allocate(bytes);
-  launch.run<KernelId::cadt_long_pack>(all.items, part.buckets, part.members, part.from, part.size, part.base, ranks,
-                                       part.count, all.grain, seconds, numbers, owners, places);
+  launch.run<KernelId::cadt_long_pack>(part.buckets, part.members, part.from, part.size, part.base, ranks, all, seconds,
+                                       numbers, owners, places);
   ranks.release();
   Allocation sorted = ctx.memory.allocate(bytes), order = ctx.memory.allocate(bytes);
   Allocation spare = ctx.memory.allocate(bytes), spare_order = ctx.memory.allocate(bytes);
   // Stable: first by the second vertex, then by bucket. The sort permutes its keys, so it gets copies.
-  launch.run<KernelId::cadt_copy_words>(some.items, seconds, sorted, std::uint32_t{0}, listed, some.grain);
+  launch.run<KernelId::cadt_copy_words>(seconds, sorted, 0U, some);
   launch.sort(sorted, order, spare, spare_order, listed, 32, true);
-  launch.run<KernelId::cadt_gather_words>(some.items, owners, order, sorted, listed, some.grain);
+  launch.run<KernelId::cadt_gather_words>(owners, order, sorted, some);
   launch.sort(sorted, order, spare, spare_order, listed, static_cast<unsigned>(std::bit_width(part.size)), false);
-  launch.run<KernelId::cadt_long_store>(some.items, order, seconds, numbers, places, part.members, listed, some.grain);
+  launch.run<KernelId::cadt_long_store>(order, seconds, numbers, places, part.members, some);
 }
 
 /// Sorts each bucket by the second vertex.
@@ -89,7 +85,7 @@ void sort_buckets(Context& ctx, const BucketPart& part) {
   if (ctx.memory.allows((part.count + 8 * std::size_t{skipped} + 1) * word))
     sort_long_buckets(ctx, part, skipped);
   else
-    sort(none);
+    sort(CADT_NONE);
 }
 
 /// Numbers all triangles from scanned buckets. \pre `numbers` are places in buckets where the device knows them
@@ -100,17 +96,15 @@ void number_by_buckets(Context& ctx, const Mesh& mesh, Allocation buckets, const
   const auto triangles = static_cast<std::uint32_t>(mesh.triangles);
   const std::uint32_t parts = ctx.plan.compact ? parts_of_compact_plan : 1;
   const std::vector<PartBegin> begins = split_buckets(ctx, buckets, points, triangles, parts);
-  const LaunchGrid all = launch.grid(triangles);
   for (std::uint32_t part = 0; part < parts; ++part) {
     const auto [from, base] = begins[part];
     const std::uint32_t size = begins[part + 1].bucket - from, count = begins[part + 1].triangle - base;
     const Allocation members = ctx.memory.transient(std::size_t{count} * 2 * word);
-    launch.run<KernelId::cadt_bucket_triangles>(all.items, mesh.vertices, mesh.input_ids, buckets, numbers, members,
-                                                from, size, base, triangles, all.grain);
+    launch.run<KernelId::cadt_bucket_triangles>(mesh.vertices, mesh.input_ids, buckets, numbers, members, from, size,
+                                                base, launch.grid(triangles));
     sort_buckets(ctx, {buckets, members, from, size, base, count});
     if (part + 1 == parts) buckets.release();
-    const LaunchGrid real = launch.grid(count);
-    launch.run<KernelId::cadt_number_triangles>(real.items, members, numbers, base, count, real.grain);
+    launch.run<KernelId::cadt_number_triangles>(members, numbers, base, launch.grid(count));
   }
 }
 
@@ -130,7 +124,7 @@ std::vector<std::int32_t> chain_loop(const std::vector<std::array<std::uint32_t,
     loop.push_back(at);
   }
   if (loop.size() != edges.size() || next[static_cast<std::size_t>(loop.back())] != smallest)
-    throw InternalError("the hull is not one loop; please report this with the input");
+    give_up("the hull is not one loop");
   return loop;
 }
 
@@ -139,9 +133,8 @@ Allocation number_triangles(Context& ctx, const Mesh& mesh, std::size_t points) 
   Launcher& launch = ctx.launcher;
   Allocation buckets = launch.zeros(points + 1);
   Allocation numbers = ctx.memory.transient(mesh.triangles * word);  // until they are known: places in the buckets
-  const LaunchGrid all = launch.grid_strided(mesh.triangles);
-  launch.run<KernelId::cadt_count_triangles>(all.items, mesh.vertices, mesh.input_ids, buckets, numbers,
-                                             static_cast<std::uint32_t>(mesh.triangles), all.grain);
+  launch.run<KernelId::cadt_count_triangles>(mesh.vertices, mesh.input_ids, buckets, numbers,
+                                             launch.grid_strided(mesh.triangles));
   launch.scan(buckets, points + 1);
   number_by_buckets(ctx, mesh, std::move(buckets), numbers, points);
   return numbers;
@@ -151,10 +144,22 @@ void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& numbers, 
   const Allocation none;
   const LaunchGrid all = ctx.launcher.grid(mesh.triangles);
   ctx.launcher.run<KernelId::cadt_write_triangles>(all.items, view_of(mesh, none), mesh.input_ids, numbers,
-                                                   to.triangles, to.neighbors, to.edge_flags,
-                                                   static_cast<std::uint32_t>(to.first), all.grain);
+                                                   to.triangles, to.neighbors, to.edge_flags, to.first, all.grain);
 }
 
+namespace {
+
+/// Below, a few launches take longer than memory is worth.
+constexpr std::size_t small = std::size_t{1} << 18;
+
+/// Whether the arrays of the mesh become those of the result: in the fast order, with the compact plan, or where cached
+/// buffers leave no memory for a second array.
+bool in_place(const Context& ctx, const Mesh& mesh) noexcept {
+  if (ctx.options.order == Order::fast || ctx.plan.compact) return true;
+  return !mesh.vertices.host && ctx.memory.caches() && mesh.all * word >= small;
+}
+
+/// Slower than write_triangles with arrays of its own if the order is canonical.
 void renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {
   if (!mesh.finished) {
     const Allocation as_they_are;
@@ -163,13 +168,12 @@ void renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {
   }
   const Allocation numbers = number_triangles(ctx, mesh, points);
   if (!numbers) return;
-  const auto count = static_cast<std::uint32_t>(mesh.triangles);
-  const Allocation moved = ctx.memory.transient(count * word);
-  const LaunchGrid c = ctx.launcher.grid(count);
+  const Allocation moved = ctx.memory.transient(mesh.triangles * word);
+  const LaunchGrid all = ctx.launcher.grid(mesh.triangles);
   const auto move = [&](const Allocation& array, std::uint32_t row, std::uint32_t neighbors) {
     for (std::uint32_t k = 0; array && k < row; ++k) {
-      ctx.launcher.run<KernelId::cadt_move_words>(c.items, array, numbers, row, k, neighbors, moved, count, c.grain);
-      ctx.launcher.run<KernelId::cadt_put_words>(c.items, moved, array, row, k, count, c.grain);
+      ctx.launcher.run<KernelId::cadt_move_words>(array, numbers, row, k, neighbors, moved, all);
+      ctx.launcher.run<KernelId::cadt_put_words>(moved, array, row, k, all);
     }
   };
   move(mesh.vertices.device, 3, 0);
@@ -177,13 +181,34 @@ void renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points) {
   move(mesh.edge_flags, 1, 0);
 }
 
+}  // namespace
+
+void write_result(Context& ctx, Mesh& mesh, std::size_t points) {
+  if (in_place(ctx, mesh)) return renumber_in_place(ctx, mesh, points);
+  Allocation numbers = number_triangles(ctx, mesh, points), flags;
+  const Allocation none;
+  ctx.check("output", 0.95);
+  // one after the other, so that the second reuses the memory of one of the mesh's
+  MeshArray neighbors = make_mesh_array(ctx, mesh.triangles, MeshUse::whole);
+  write_triangles(ctx, mesh, numbers, {none, neighbors.device, none});
+  mesh.across.release();
+  MeshArray triangles = make_mesh_array(ctx, mesh.triangles, MeshUse::whole);
+  if (mesh.edge_flags) flags = ctx.memory.allocate(mesh.triangles * word);
+  write_triangles(ctx, mesh, numbers, {triangles.device, none, flags});
+  numbers.release();
+  mesh.vertices.release();
+  mesh.vertices = std::move(triangles);
+  mesh.across = std::move(neighbors);
+  mesh.edge_flags = std::move(flags);
+  mesh.input_ids.release();
+}
+
 void renumber_within_sets(Context& ctx, const Allocation& set_starts, const SetStarts& sets, const ResultPlace& of,
                           std::size_t count) {
   const LaunchGrid c = ctx.launcher.grid(count);
   const auto shift = [&](const Allocation& values, const Allocation& by) {
-    ctx.launcher.run<KernelId::cadt_batch_shift>(c.items, values, static_cast<std::uint32_t>(of.first),
-                                                 static_cast<std::uint32_t>(count), 3U, set_starts,
-                                                 static_cast<std::uint32_t>(sets.count), by, c.grain);
+    ctx.launcher.run<KernelId::cadt_batch_shift>(c.items, values, of.first, count, 3U, set_starts, sets.count, by,
+                                                 c.grain);
   };
   shift(of.triangles, sets.points);
   shift(of.neighbors, set_starts);
@@ -191,16 +216,12 @@ void renumber_within_sets(Context& ctx, const Allocation& set_starts, const SetS
 
 std::vector<std::int32_t> find_hull(Context& ctx, const Allocation& triangles, const Allocation& neighbors,
                                     std::size_t count, std::size_t size, std::size_t points) {
-  std::vector<std::array<std::uint32_t, 2>> edges(size);
-  const LaunchGrid c = ctx.launcher.grid(count);
-  Allocation pairs = ctx.memory.allocate(size * sizeof edges[0]);
+  using Edge = std::array<std::uint32_t, 2>;
+  Allocation pairs = ctx.memory.allocate(size * sizeof(Edge));
   Allocation written = ctx.launcher.zeros(1);
-  ctx.launcher.run<KernelId::cadt_boundary_edges>(c.items, triangles, neighbors, static_cast<std::uint32_t>(count),
-                                                  c.grain, pairs, written, static_cast<std::uint32_t>(size));
-  if (ctx.launcher.read_word(written, 0) != size)
-    throw InternalError("the boundary does not have the size of Euler's formula; please report this with the input");
-  ctx.device.read(*pairs, 0, edges.data(), size * sizeof edges[0]);
-  return chain_loop(edges, points);
+  ctx.launcher.run<KernelId::cadt_boundary_edges>(triangles, neighbors, ctx.launcher.grid(count), pairs, written, size);
+  if (ctx.launcher.read_word(written, 0) != size) give_up("the boundary does not have the size of Euler's formula");
+  return chain_loop(ctx.device.read_values<Edge>(*pairs, size), points);
 }
 
 }  // namespace cadt

@@ -27,9 +27,9 @@ struct ResultPlace {
 /// can be the arrays of the mesh.
 void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& numbers, const ResultPlace& to);
 
-/// The same with the arrays of the mesh as those of the result: slower than write_triangles with arrays of its own if
-/// the order is canonical. Releases the input ids.
-void renumber_in_place(Context& ctx, Mesh& mesh, std::size_t points);
+/// Replaces the arrays of the mesh by those of the result, in input ids and in the order that the options ask for. They
+/// may be the same ones, and longer than needed.
+void write_result(Context& ctx, Mesh& mesh, std::size_t points);
 
 /// Turns the numbers of points and triangles that write_triangles has written for `count` triangles into those within
 /// their own sets. `set_starts`: the first triangle of each set.

@@ -30,14 +30,7 @@ cadt_bounds_row read_row(Device& device, const Buffer& from) {
   }
   FloatRow f;
   device.read(from, 0, &f, sizeof f);
-  return {static_cast<double>(f.min_x),
-          static_cast<double>(f.max_x),
-          static_cast<double>(f.min_y),
-          static_cast<double>(f.max_y),
-          f.low,
-          f.high,
-          f.bad,
-          f.rows};
+  return {f.min_x, f.max_x, f.min_y, f.max_y, f.low, f.high, f.bad, f.rows};
 }
 
 /// The row of all points; sets `totals` to 0. `group`: work-items that share a row on this device.
@@ -46,7 +39,7 @@ cadt_bounds_row merge_bounds(Context& ctx, const Allocation& input, std::size_t 
   const LaunchGrid c = ctx.launcher.parts(n);
   const std::uint32_t room = (c.items - 1) / group + 1;
   const Allocation rows = ctx.memory.allocate(room * row_bytes(ctx.device));
-  ctx.launcher.run<KernelId::cadt_bounds>(c.items, input, static_cast<std::uint32_t>(n), c.grain, c.items, room, rows);
+  ctx.launcher.run<KernelId::cadt_bounds>(input, c, c.items, room, rows);
   const std::uint32_t team = ctx.device.shape().contiguous ? 1 : CADT_BOUNDS_LANES;
   ctx.launcher.run_in_groups<KernelId::cadt_merge_bounds>(team, team, rows, room, totals);
   const cadt_bounds_row all = read_row(ctx.device, *rows);

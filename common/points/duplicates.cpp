@@ -10,7 +10,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
+using device_text::word;
 
 /// Lists the duplicates, ascending, and their representatives.
 void find_duplicates(Context& ctx, SortedPoints& result, const Allocation& order, const Allocation& ranks,
@@ -21,8 +21,7 @@ void find_duplicates(Context& ctx, SortedPoints& result, const Allocation& order
   Allocation spare = ctx.memory.allocate(count * word), spare_values = ctx.memory.allocate(count * word);
   const LaunchGrid c = ctx.launcher.grid(n);
   ctx.launcher.run<KernelId::cadt_duplicate_pairs>(c.items, order, ranks, result.input_ids, result.duplicates,
-                                                   result.representatives, static_cast<std::uint32_t>(n),
-                                                   static_cast<std::uint32_t>(result.distinct), c.grain);
+                                                   result.representatives, n, result.distinct, c.grain);
   ctx.launcher.sort(result.duplicates, result.representatives, spare, spare_values, count,
                     static_cast<unsigned>(std::bit_width(n - 1)), false);
 }
@@ -32,17 +31,14 @@ void find_duplicates(Context& ctx, SortedPoints& result, const Allocation& order
 void flag_distinct(Context& ctx, const Allocation& keys, const Allocation& sorted, const Allocation& order,
                    const Allocation& flags, std::size_t n, bool neighbours, const Allocation& totals) {
   const LaunchGrid c = ctx.launcher.grid(n);
-  const auto count = static_cast<std::uint32_t>(n);
-  ctx.launcher.run<KernelId::cadt_sort_runs>(c.items, keys, sorted, order, count, c.grain, totals);
-  ctx.launcher.run<KernelId::cadt_unique_flags>(c.items, sorted, keys, flags, count, c.grain, std::uint32_t{neighbours},
-                                                totals);
+  ctx.launcher.run<KernelId::cadt_sort_runs>(keys, sorted, order, c, totals);
+  ctx.launcher.run<KernelId::cadt_unique_flags>(sorted, keys, flags, c, neighbours, totals);
 }
 
 void compact_distinct(Context& ctx, SortedPoints& result, Allocation sorted, Allocation order, const Allocation& flags,
                       std::size_t n, std::uint32_t equal, SetStarts* sets) {
   Launcher& launch = ctx.launcher;
-  const auto count = static_cast<std::uint32_t>(n), distinct = count - equal;
-  result.distinct = distinct;
+  const std::size_t distinct = result.distinct = n - equal;
   if (equal == 0) {
     result.points = std::move(sorted);
     result.input_ids = std::move(order);
@@ -52,14 +48,14 @@ void compact_distinct(Context& ctx, SortedPoints& result, Allocation sorted, All
   launch.scan(flags, n);
   result.points = ctx.memory.allocate(distinct * point_bytes(ctx.device));
   result.input_ids = ctx.memory.allocate(distinct * word);
-  launch.run<KernelId::cadt_unique_pack>(c.items, sorted, order, flags, result.points, result.input_ids, count,
-                                         distinct, c.grain);
+  launch.run<KernelId::cadt_unique_pack>(c.items, sorted, order, flags, result.points, result.input_ids, n, distinct,
+                                         c.grain);
   find_duplicates(ctx, result, order, flags, n);
   if (sets != nullptr) {
     const LaunchGrid s = launch.grid(sets->count + 1);
     sets->positions = ctx.memory.allocate((sets->count + 1) * word);
-    launch.run<KernelId::cadt_batch_starts>(s.items, flags, sets->points, static_cast<std::uint32_t>(sets->count),
-                                            count, distinct, s.grain, sets->positions);
+    launch.run<KernelId::cadt_batch_starts>(s.items, flags, sets->points, sets->count, n, distinct, s.grain,
+                                            sets->positions);
   }
 }
 

@@ -11,23 +11,17 @@ namespace {
 /// Kernels index coordinates with 32 bits: 2 * (skip + n) of them.
 constexpr std::size_t most_skipped = (std::size_t{1} << 31) - 1 - max_points();
 
-/// The coordinates of one axis: the i-th is at first + i * stride.
-struct Axis {
-  const Allocation& memory;
-  std::size_t first;
-};
-
-Allocation convert(Context& ctx, Axis x, Axis y, std::uint32_t stride, Scalar scalar, std::size_t count,
-                   const SortedPoints* order) {
+/// `y` is null if the coordinates of both axes alternate in `x`.
+Allocation convert(Context& ctx, const Allocation& x, const Allocation& y, std::size_t skip, Scalar scalar,
+                   std::size_t count, const SortedPoints* order) {
+  const std::size_t stride = y ? 1 : 2, first_x = stride * skip, first_y = y ? first_x : first_x + 1;
   Allocation points = ctx.memory.transient(count * point_bytes(ctx.device), order == nullptr);
   const Allocation all;
   const Allocation& input_ids = order != nullptr ? order->input_ids : all;
   const double scale = order != nullptr ? order->scale : 1, scale_again = order != nullptr ? order->scale_again : 1;
-  const LaunchGrid c = ctx.launcher.grid(count);
   const auto launch = [&]<KernelId kernel>() {
-    ctx.launcher.run<kernel>(c.items, x.memory, y.memory, static_cast<std::uint32_t>(x.first),
-                             static_cast<std::uint32_t>(y.first), stride, input_ids, scale, scale_again, points,
-                             static_cast<std::uint32_t>(count), c.grain);
+    ctx.launcher.run<kernel>(x, y ? y : x, first_x, first_y, stride, input_ids, scale, scale_again, points,
+                             ctx.launcher.grid(count));
   };
   if (scalar == Scalar::float32)
     launch.template operator()<KernelId::cadt_import_floats>();
@@ -38,10 +32,8 @@ Allocation convert(Context& ctx, Axis x, Axis y, std::uint32_t stride, Scalar sc
 
 Allocation gather(Context& ctx, const Allocation& input, const SortedPoints& order) {
   Allocation points = ctx.memory.transient(order.distinct * point_bytes(ctx.device));
-  const LaunchGrid c = ctx.launcher.grid(order.distinct);
-  ctx.launcher.run<KernelId::cadt_gather_points>(c.items, input, order.input_ids, points,
-                                                 static_cast<std::uint32_t>(order.distinct), c.grain, order.scale,
-                                                 order.scale_again);
+  ctx.launcher.run<KernelId::cadt_gather_points>(input, order.input_ids, points, ctx.launcher.grid(order.distinct),
+                                                 order.scale, order.scale_again);
   return points;
 }
 
@@ -56,15 +48,13 @@ Allocation import_from(Context& ctx, const DevicePoints& points, const SortedPoi
                      points.skip, most_skipped);
   require_scalar(ctx.device, size);
   // The kernels of the library only read it.
-  const Allocation x = ctx.memory.wrap(const_cast<void*>(points.x), (points.skip + n) * size * (points.y ? 1 : 2));
-  if (points.y != nullptr) {
-    const Allocation y = ctx.memory.wrap(const_cast<void*>(points.y), (points.skip + n) * size);
-    return convert(ctx, {x, points.skip}, {y, points.skip}, 1, points.scalar, count, order);
-  }
-  if (size == coordinate_bytes(ctx.device) && points.skip == 0)
-    return order != nullptr ? gather(ctx, x, *order)
-                            : ctx.memory.wrap(const_cast<void*>(points.x), n * point_bytes(ctx.device));
-  return convert(ctx, {x, 2 * points.skip}, {x, 2 * points.skip + 1}, 2, points.scalar, count, order);
+  Allocation x = ctx.memory.wrap(const_cast<void*>(points.x), (points.skip + n) * size * (points.y ? 1 : 2));
+  Allocation y;
+  if (points.y != nullptr)
+    y = ctx.memory.wrap(const_cast<void*>(points.y), (points.skip + n) * size);
+  else if (size == coordinate_bytes(ctx.device) && points.skip == 0)
+    return order != nullptr ? gather(ctx, x, *order) : std::move(x);
+  return convert(ctx, x, y, points.skip, points.scalar, count, order);
 }
 
 }  // namespace
@@ -84,12 +74,10 @@ Allocation import_points(Context& ctx, const PointsView& points) {
   if (points.interleaved() && size == coordinate_bytes(ctx.device))
     return ctx.memory.import(points.x_data(), n * point_bytes(ctx.device));
   const Scalar scalar = size == sizeof(float) ? Scalar::float32 : Scalar::float64;
-  if (points.interleaved()) {
-    const Allocation xy = ctx.memory.import(points.x_data(), 2 * n * size);
-    return convert(ctx, {xy, 0}, {xy, 1}, 2, scalar, n, nullptr);
-  }
-  const Allocation x = ctx.memory.import(points.x_data(), n * size), y = ctx.memory.import(points.y_data(), n * size);
-  return convert(ctx, {x, 0}, {y, 0}, 1, scalar, n, nullptr);
+  const Allocation x = ctx.memory.import(points.x_data(), (points.interleaved() ? 2 : 1) * n * size);
+  Allocation y;
+  if (!points.interleaved()) y = ctx.memory.import(points.y_data(), n * size);
+  return convert(ctx, x, y, 0, scalar, n, nullptr);
 }
 
 Allocation import_points(Context& ctx, const DevicePoints& points) { return import_from(ctx, points, nullptr); }

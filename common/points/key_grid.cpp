@@ -78,16 +78,13 @@ KeyGrid KeyGrid::finer(int levels) const noexcept {
   return grid;
 }
 
-void make_keys(Context& ctx, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid) {
-  const LaunchGrid c = ctx.launcher.grid(n);
-  ctx.launcher.run<KernelId::cadt_hilbert_keys>(c.items, points, keys, static_cast<std::uint32_t>(n), c.grain, grid);
-}
-
-void make_fine_keys(Context& ctx, const Allocation& points, const Allocation& high, const Allocation& low,
-                    std::size_t n, const KeyGrid& grid) {
-  const LaunchGrid c = ctx.launcher.grid(n);
-  ctx.launcher.run<KernelId::cadt_fine_hilbert_keys>(c.items, points, high, low, 2 * grid.fine_levels,
-                                                     static_cast<std::uint32_t>(n), c.grain, grid);
+void make_keys(Context& ctx, const Allocation& points, const Allocation& high, const Allocation& low, std::size_t n,
+               const KeyGrid& grid) {
+  const LaunchGrid all = ctx.launcher.grid(n);
+  if (low)
+    ctx.launcher.run<KernelId::cadt_fine_hilbert_keys>(points, high, low, 2 * grid.fine_levels, all, grid);
+  else
+    ctx.launcher.run<KernelId::cadt_hilbert_keys>(points, high, all, grid);
 }
 
 }  // namespace cadt

@@ -35,11 +35,8 @@ constexpr int most_key_bits = 32;  ///< of a one-word key
 /// The grid of n points with these bounds.
 [[nodiscard]] KeyGrid grid_of_all(const Bounds& bounds, std::size_t n);
 
-/// One-word sort keys of n points on the device.
-void make_keys(Context& ctx, const Allocation& points, const Allocation& keys, std::size_t n, const KeyGrid& grid);
-
-/// Two-word sort keys. \pre grid.fine_levels > 0
-void make_fine_keys(Context& ctx, const Allocation& points, const Allocation& high, const Allocation& low,
-                    std::size_t n, const KeyGrid& grid);
+/// Sort keys of n points on the device; one-word keys have no low words. \pre low || grid.fine_levels == 0
+void make_keys(Context& ctx, const Allocation& points, const Allocation& high, const Allocation& low, std::size_t n,
+               const KeyGrid& grid);
 
 }  // namespace cadt

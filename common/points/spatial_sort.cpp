@@ -2,7 +2,6 @@
 #include "common/points/spatial_sort.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -19,7 +18,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 /// Up to here, waiting for the device costs more than speculative work that over-full cells make useless.
 constexpr std::size_t most_ahead = std::size_t{1} << 17;
 
@@ -34,12 +32,8 @@ std::vector<cadt_point> sample_of(Context& ctx, const Allocation& input, std::si
   const Allocation list = ctx.memory.allocate(samples * word),
                    chosen = ctx.memory.allocate(samples * sizeof(cadt_point));
   ctx.device.write(*list, 0, places.data(), samples * word);
-  const LaunchGrid c = ctx.launcher.grid(samples);
-  ctx.launcher.run<KernelId::cadt_gather_points>(c.items, input, list, chosen, static_cast<std::uint32_t>(samples),
-                                                 c.grain, 1.0, 1.0);
-  std::vector<cadt_point> points(samples);
-  ctx.device.read(*chosen, 0, points.data(), samples * sizeof points[0]);
-  return points;
+  ctx.launcher.run<KernelId::cadt_gather_points>(input, list, chosen, ctx.launcher.grid(samples), 1.0, 1.0);
+  return ctx.device.read_values<cadt_point>(*chosen, samples);
 }
 
 /// A grid without the outermost points, where their absence makes the bounding box much smaller: with heavy tails, or a
@@ -90,18 +84,17 @@ constexpr int most_fine_levels = 15, fewest_fine_levels = 4;
 void sort_finely(Context& ctx, const Allocation& input, Allocation& keys, Allocation& order, Allocation& spare,
                  std::size_t n, const KeyGrid& grid) {
   Launcher& launch = ctx.launcher;
-  const auto count = static_cast<std::uint32_t>(n);
-  const LaunchGrid c = launch.grid(n);
+  const LaunchGrid all = launch.grid(n);
   const Allocation low = ctx.memory.transient(n * word);
-  make_fine_keys(ctx, input, keys, low, n, grid);
+  make_keys(ctx, input, keys, low, n, grid);
   Allocation sorted = ctx.memory.transient(n * word), spare_order = ctx.memory.transient(n * word);
-  launch.run<KernelId::cadt_copy_words>(c.items, low, sorted, std::uint32_t{0}, count, c.grain);
+  launch.run<KernelId::cadt_copy_words>(low, sorted, 0U, all);
   launch.sort(sorted, order, spare, spare_order, n, 2 * grid.fine_levels, true);
   // the second of two stable sorts
-  launch.run<KernelId::cadt_gather_words>(c.items, keys, order, sorted, count, c.grain);
+  launch.run<KernelId::cadt_gather_words>(keys, order, sorted, all);
   launch.sort(sorted, order, spare, spare_order, n, grid.bits() - 2 * grid.fine_levels, false);
-  launch.run<KernelId::cadt_gather_words>(c.items, low, order, spare, count, c.grain);
-  launch.run<KernelId::cadt_run_tails>(c.items, sorted, spare, keys, count, c.grain);
+  launch.run<KernelId::cadt_gather_words>(low, order, spare, all);
+  launch.run<KernelId::cadt_run_tails>(sorted, spare, keys, all);
   launch.scan(keys, n);
 }
 
@@ -109,8 +102,7 @@ void sort_finely(Context& ctx, const Allocation& input, Allocation& keys, Alloca
 
 SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool keep_keys) {
   Launcher& launch = ctx.launcher;
-  const auto count = static_cast<std::uint32_t>(n);
-  const LaunchGrid c = launch.grid(n);
+  const LaunchGrid all = launch.grid(n);
   SortedPoints result;
 
   const Allocation totals = ctx.memory.allocate(CADT_ORDER_WORDS * word);
@@ -136,23 +128,23 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
     // Transient if they are copied before the mesh takes their place, or gathered again after it.
     const bool brief = !ctx.device.shape().contiguous && (ctx.plan.regathers || !keep_keys);
     sorted = brief ? ctx.memory.transient(bytes) : ctx.memory.allocate(bytes);
-    launch.run<KernelId::cadt_gather_points>(c.items, input, order, sorted, count, c.grain, scale, scale_again);
+    launch.run<KernelId::cadt_gather_points>(input, order, sorted, all, scale, scale_again);
     flag_distinct(ctx, keys, sorted, order, spare, n, keep_keys && n >= fewest_sampled, totals);
   };
   const auto sort = [&](const KeyGrid& grid) {
     Allocation spare_order = ctx.memory.transient(n * word);
     result.grid = grid;
-    make_keys(ctx, input, keys, n, grid);
+    make_keys(ctx, input, keys, {}, n, grid);
     launch.sort(keys, order, spare, spare_order, n, grid.bits(), true);
   };
   sort(grid_of_all(bounds, n));
   bool sorted_by_keys = true;
-  std::array<std::uint32_t, CADT_ORDER_WORDS> sums{};
+  std::vector<std::uint32_t> sums(CADT_ORDER_WORDS);
   std::uint32_t overfull_points = 0;
   if (n <= most_ahead) {
     ctx.end_phase("sort");
     gather();
-    ctx.device.read(*totals, 0, sums.data(), sizeof sums);
+    sums = ctx.device.read_values(*totals, CADT_ORDER_WORDS);
     if (sums[CADT_OVERFULL] != 0) sorted.release();
   }
   // Flat sets need no keys.
@@ -186,7 +178,7 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
     ctx.end_phase("refine");
     ctx.device.fill(*totals, 0, sums.size() * word, 0);
     gather();
-    ctx.device.read(*totals, 0, sums.data(), sizeof sums);
+    sums = ctx.device.read_values(*totals, CADT_ORDER_WORDS);
   }
   for (const double factor : {scale, scale_again}) {
     result.grid.half_min_x *= factor;
@@ -198,7 +190,7 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
   result.shapes = shapes_of(sums, n, overfull_points);
   input.release();
   const auto move_to = [&](Allocation& values, Allocation place) {
-    launch.run<KernelId::cadt_copy_words>(c.items, values, place, std::uint32_t{0}, count, c.grain);
+    launch.run<KernelId::cadt_copy_words>(values, place, 0U, all);
     values = std::move(place);
   };
   if (keep_keys && sorted_by_keys && sums[CADT_EQUAL] == 0) {

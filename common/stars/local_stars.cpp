@@ -11,69 +11,8 @@ using namespace device_text;
 
 namespace {
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 /// A large GPU works on 900 tiles at a time: while it has the sample, it has begun others.
 constexpr std::uint32_t sampled_tiles = 512;
-
-/// The quadtree over the sort keys.
-class TileMaker {
- public:
-  TileMaker(Context& ctx, const SortKeys& keys, std::size_t n, unsigned levels)
-      : ctx_(ctx),
-        launch_(ctx.launcher),
-        keys_(keys),
-        n_(n),
-        count_(static_cast<std::uint32_t>(n)),
-        levels_(static_cast<std::uint32_t>(levels)),
-        grid_(launch_.grid(n)) {}
-
-  /// Returns false if the keys are not in order.
-  [[nodiscard]] bool make() {
-    const Allocation descents = launch_.zeros(1);
-    flag(descents);
-    if (launch_.read_word(descents, 0) != 0) return false;
-    pack();
-    return true;
-  }
-
-  /// Divides over-full tiles again.
-  void divide() {
-    overfull_ = launch_.zeros(list_.count);
-    const Allocation any = launch_.zeros(1);
-    launch_.run<KernelId::cadt_tile_overfull>(grid_.items, keys_, ranks_, list_.tiles, count_, levels_, grid_.grain,
-                                              overfull_, any);
-    if (launch_.read_word(any, 0) == 0) return;
-    before_ = std::move(ranks_);
-    flag(any);  // `any` is not read again: the keys are in order
-    pack();
-  }
-
-  [[nodiscard]] TileList& list() noexcept { return list_; }
-
- private:
-  void flag(const Allocation& descents) {
-    ranks_ = ctx_.memory.transient((n_ + 1) * word);
-    launch_.run<KernelId::cadt_tile_flags>(grid_.items, keys_, before_, overfull_, ranks_, count_, levels_, grid_.grain,
-                                           descents);
-  }
-
-  void pack() {
-    launch_.scan(ranks_, n_ + 1);
-    list_.count = launch_.read_word(ranks_, n_);
-    list_.tiles = ctx_.memory.allocate((list_.count + std::size_t{1}) * sizeof(cadt_tile));
-    launch_.run<KernelId::cadt_tile_pack>(grid_.items, keys_, before_, overfull_, ranks_, list_.tiles, count_, levels_,
-                                          grid_.grain);
-  }
-
-  Context& ctx_;
-  Launcher& launch_;
-  const SortKeys& keys_;
-  std::size_t n_;
-  std::uint32_t count_, levels_;
-  LaunchGrid grid_;
-  TileList list_;
-  Allocation ranks_, before_, overfull_;
-};
 
 }  // namespace
 
@@ -85,12 +24,36 @@ KeyGrid grid_for_stars(const KeyGrid& grid) noexcept {
 
 std::optional<TileList> make_tiles(Context& ctx, const SortKeys& keys, std::size_t n, unsigned levels,
                                    std::size_t least) {
-  TileMaker maker(ctx, keys, n, levels);
-  if (!maker.make() || n / maker.list().count < least) return std::nullopt;
-  // Keys of one word are kept only where hardly any cell is over-full.
-  if (keys.low_bits != 0) maker.divide();
-  ctx.statistics.tiles += maker.list().count;
-  return std::move(maker.list());
+  Launcher& launch = ctx.launcher;
+  const LaunchGrid all = launch.grid(n);
+  TileList list;
+  Allocation ranks, before, overfull;  // before: the ranks of tiles some of which are divided again
+  const auto flag = [&](const Allocation& descents) {
+    ranks = ctx.memory.transient((n + 1) * word);
+    launch.run<KernelId::cadt_tile_flags>(all.items, keys, before, overfull, ranks, n, levels, all.grain, descents);
+  };
+  const auto pack = [&] {
+    launch.scan(ranks, n + 1);
+    list.count = launch.read_word(ranks, n);
+    list.tiles = ctx.memory.allocate((list.count + std::size_t{1}) * sizeof(cadt_tile));
+    launch.run<KernelId::cadt_tile_pack>(all.items, keys, before, overfull, ranks, list.tiles, n, levels, all.grain);
+  };
+  const Allocation found = launch.zeros(1);
+  flag(found);
+  if (launch.read_word(found, 0) != 0) return std::nullopt;
+  pack();
+  if (n / list.count < least) return std::nullopt;
+  if (keys.low_bits != 0) {  // keys of one word are kept only where hardly any cell is over-full
+    overfull = launch.zeros(list.count);
+    launch.run<KernelId::cadt_tile_overfull>(all.items, keys, ranks, list.tiles, n, levels, all.grain, overfull, found);
+    if (launch.read_word(found, 0) != 0) {
+      before = std::move(ranks);
+      flag(found);  // not read again: the keys are in order
+      pack();
+    }
+  }
+  ctx.statistics.tiles += list.count;
+  return list;
 }
 
 Stars allocate_stars(Context& ctx, std::size_t n, const TileList& tiles) {
@@ -110,10 +73,10 @@ Stars allocate_stars(Context& ctx, std::size_t n, const TileList& tiles) {
   return list;
 }
 
-void StarCounters::add_to(Statistics& statistics) const noexcept {
-  statistics.exact_orientations += exact_orientations;
-  statistics.exact_incircles += exact_incircles;
-  statistics.ties += ties;
+void add_exact_tests(Statistics& statistics, std::span<const std::uint32_t, 3> counts) noexcept {
+  statistics.exact_orientations += counts[0];
+  statistics.exact_incircles += counts[1];
+  statistics.ties += counts[2];
 }
 
 StarCounters prove_stars(Context& ctx, const SortedPoints& order, const SortKeys& keys, const Allocation& sets,
@@ -122,13 +85,12 @@ StarCounters prove_stars(Context& ctx, const SortedPoints& order, const SortKeys
   const Allocation counts = ctx.launcher.zeros(CADT_STARS_WORDS);
   const LaunchGrid teams = ctx.launcher.grid_of_teams(tiles.count, CADT_STAR_LANES);
   const std::uint32_t sample = !sets && tiles.count >= 2 * sampled_tiles ? sampled_tiles : 0;
-  ctx.launcher.run<KernelId::cadt_prove_stars>(
-      teams.items, order.points, keys, static_cast<std::uint32_t>(order.distinct), grid, grid.most_x, grid.most_y,
-      grid.clipped ? 1U : 0U, sets, states, tiles, sample, cautious ? 1U : 0U, teams.grain, stars, counts);
-  StarCounters result;
-  static_assert(sizeof result == CADT_STARS_WORDS * word);
-  ctx.device.read(*counts, 0, &result, sizeof result);
-  return result;
+  ctx.launcher.run<KernelId::cadt_prove_stars>(teams.items, order.points, keys, order.distinct, grid, grid.most_x,
+                                               grid.most_y, grid.clipped, sets, states, tiles, sample, cautious,
+                                               teams.grain, stars, counts);
+  const StarCounters found = ctx.device.read_values(*counts, CADT_STARS_WORDS);
+  add_exact_tests(ctx.statistics, std::span(found).subspan<CADT_STARS_EXACT_ORIENTATIONS, 3>());
+  return found;
 }
 
 }  // namespace cadt

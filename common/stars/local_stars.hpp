@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <tuple>
+#include <vector>
 
 #include "common/driver/context.hpp"
 #include "common/points/spatial_sort.hpp"
@@ -49,17 +51,14 @@ struct Stars {
 /// Memory for packed stars: about 25 bytes a vertex.
 [[nodiscard]] Stars allocate_stars(Context& ctx, std::size_t n, const TileList& tiles);
 
-/// The counts of cadt_prove_stars, in their order (CADT_STARS_... of layout.dev.h).
-struct StarCounters {
-  std::uint32_t points = 0, unproven = 0, exact_orientations = 0, exact_incircles = 0, ties = 0, again = 0,
-                overflowed = 0;
-  std::uint32_t sampled_tiles = 0, sampled_points = 0, sampled_unproven = 0, sampled_overfull = 0;
-  std::uint32_t left_tiles = 0;  ///< by the verdict of the sample: all of their points are unproven
-  void add_to(Statistics& statistics) const noexcept;
-};
+/// Exact orientation tests, incircle tests and ties.
+void add_exact_tests(Statistics& statistics, std::span<const std::uint32_t, 3> counts) noexcept;
 
-/// Proves the stars of all tiles. `sets` and `states`: of a batch (batch.dev.h), else null. `cautious`: give up where
-/// the first points of a tile have no star, or hardly any tile of a sample has.
+/// The counts of cadt_prove_stars (CADT_STARS_... of layout.dev.h).
+using StarCounters = std::vector<std::uint32_t>;
+
+/// Proves the stars of all tiles; the statistics get the exact tests. `sets` and `states`: of a batch (batch.dev.h),
+/// else null. `cautious`: give up where the first points of a tile have no star, or hardly any tile of a sample has.
 StarCounters prove_stars(Context& ctx, const SortedPoints& order, const SortKeys& keys, const Allocation& sets,
                          const Allocation& states, const TileList& tiles, bool cautious, const Stars& stars);
 

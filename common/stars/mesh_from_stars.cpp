@@ -2,10 +2,8 @@
 #include "common/stars/mesh_from_stars.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,7 +16,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 /// With more than a third unproven, the residual vertices would need more memory than insertion of all points, and as
 /// much time.
 constexpr bool too_many(std::size_t unproven, std::size_t points) { return 3 * unproven > points; }
@@ -29,49 +26,22 @@ constexpr bool too_many_open(std::size_t open, std::size_t points) { return 2 * 
 /// Steps in which the compact plan replaces the stars by the vertices of the mesh.
 constexpr std::uint32_t waves = 4;
 
-/// The mesh of the residual vertices of a mesh of `all` points. The whole mesh is certified later, so there are no
-/// legality sweeps where they are of no use.
-Mesh build_residual(Context& ctx, SortedPoints points, std::size_t all, const BuildStrategy& how) {
-  if (points.distinct <= how.most_residual_wrapped) {
-    if (std::optional<Mesh> wrapped = wrap_part(ctx, points.points, points.distinct, all)) {
-      wrapped->input_ids = std::move(points.input_ids);
-      return std::move(*wrapped);
-    }
-  }
-  return insert_incrementally(ctx, std::move(points), MeshUse::part);
-}
-
 class StarStage {
  public:
   StarStage(Context& ctx, SortedPoints points, const InputPoints& input, const BuildStrategy& how)
-      : ctx_(ctx),
-        launch_(ctx.launcher),
-        order_(std::move(points)),
-        input_(input),
-        how_(how),
-        n_(order_.distinct),
-        count_(static_cast<std::uint32_t>(n_)),
-        keys_(std::move(order_.keys)) {
+      : ctx_(ctx), order_(std::move(points)), input_(input), how_(how) {
     order_.grid = grid_for_stars(order_.grid);
   }
 
   [[nodiscard]] Mesh build() {
-    const bool made = make_stars();
-    keys_.release();
-    if (!made) {
-      release_stars();
-      return wrap_or_insert(ctx_, std::move(order_), how_);
-    }
-    count_triangles();
-    if (too_many(unproven_, n_) || too_many_open(open_count_, n_)) {
+    if (!make_stars() || !count_triangles()) {
       release_stars();
       ranks_.release();
       return wrap_or_insert(ctx_, std::move(order_), how_);
     }
     // stars that contradict each other would have more
     if (proven_triangles_ > 2 * n_ - 2)
-      throw InternalError("the proven stars have " + std::to_string(proven_triangles_) + " triangles, more than " +
-                          std::to_string(2 * n_ - 2) + "; please report this with the input");
+      give_up("the proven stars have ", proven_triangles_, " triangles, more than ", 2 * n_ - 2);
     ctx_.statistics.proven_stars = n_ - unproven_;
     SortedPoints residual = take_residual();
     if (ctx_.plan.regathers) order_.points.release();
@@ -87,52 +57,46 @@ class StarStage {
   /// False if there are no tiles or too few stars are proven.
   bool make_stars() {
     const KeyGrid& grid = order_.grid;
-    Allocation low;
-    if (!keys_) {
-      keys_ = ctx_.memory.transient(n_ * word);
-      if (grid.fine_levels != 0) {
-        low = ctx_.memory.transient(n_ * word);
-        make_fine_keys(ctx_, order_.points, keys_, low, n_, grid);
-      } else {
-        make_keys(ctx_, order_.points, keys_, n_, grid);
-      }
+    Allocation high = std::move(order_.keys), low;
+    if (!high) {
+      high = ctx_.memory.transient(n_ * word);
+      if (grid.fine_levels != 0) low = ctx_.memory.transient(n_ * word);
+      make_keys(ctx_, order_.points, high, low, n_, grid);
     }
-    const SortKeys keys{keys_, low, 2 * grid.fine_levels};
+    const SortKeys keys{high, low, 2 * grid.fine_levels};
     const std::optional<TileList> tiles = make_tiles(ctx_, keys, n_, grid.levels(), how_.least_points_of_tile);
     ctx_.end_phase("tiles");
     if (!tiles) return false;
     ctx_.check("stars", 0.1);
     stars_ = allocate_stars(ctx_, n_, *tiles);
     const StarCounters found = prove_stars(ctx_, order_, keys, {}, {}, *tiles, how_.cautious, stars_);
-    found.add_to(ctx_.statistics);
     ctx_.end_phase("stars");
     ctx_.check("stars", 0.5);
-    return found.left_tiles == 0 && !too_many(found.unproven, n_);
+    return found[CADT_STARS_SKIPPED_TILES] == 0 && !too_many(found[CADT_STARS_UNPROVEN], n_);
   }
 
-  void count_triangles() {
+  /// False if too few triangles are those of proven stars.
+  [[nodiscard]] bool count_triangles() {
     // All pooled buffers but one are taken as a whole while the bases live; the compact plan gives them a buffer of
     // their own.
     const std::size_t bases = (n_ + 1) * word;
     bases_ = ctx_.plan.compact ? ctx_.memory.allocate_unpooled(bases) : ctx_.memory.transient(bases);
     ranks_ = ctx_.memory.transient((n_ + 1) * word);
     totals_ = launch_.zeros(2);
-    const LaunchGrid c = launch_.grid(n_);
     const std::size_t words = (n_ - 1) / 32 + 1;
     proven_ = ctx_.memory.allocate(words * word);
     const std::size_t marks = n_ * sizeof(std::uint16_t);
     marks_ = ctx_.plan.compact ? ctx_.memory.allocate_unpooled(marks) : ctx_.memory.allocate(marks);
-    const LaunchGrid of_words = launch_.grid(words);
-    launch_.run<KernelId::cadt_pack_proven>(of_words.items, stars_.sizes, count_, static_cast<std::uint32_t>(words),
-                                            of_words.grain, proven_);
-    launch_.run<KernelId::cadt_star_counts>(c.items, stars_.star_vertices, stars_.begins, stars_.sizes, proven_, count_,
-                                            c.grain, marks_, bases_, ranks_, totals_);
+    launch_.run<KernelId::cadt_pack_proven>(stars_.sizes, n_, launch_.grid(words), proven_);
+    launch_.run<KernelId::cadt_star_counts>(stars_.star_vertices, stars_.begins, stars_.sizes, proven_,
+                                            launch_.grid(n_), marks_, bases_, ranks_, totals_);
     stars_.sizes.release();
     launch_.scan(bases_, n_ + 1);
     launch_.scan(ranks_, n_ + 1);
     proven_triangles_ = launch_.read_word(bases_, n_);
     unproven_ = launch_.read_word(ranks_, n_);
     open_count_ = launch_.read_word(totals_, 0);
+    return !too_many(unproven_, n_) && !too_many_open(open_count_, n_);
   }
 
   /// The vertices without a proven star; their input ids are positions in the sorted order.
@@ -141,9 +105,8 @@ class StarStage {
     residual.distinct = unproven_;
     residual.points = ctx_.memory.allocate(unproven_ * sizeof(cadt_point));
     residual.input_ids = ctx_.memory.allocate(unproven_ * word);
-    const LaunchGrid all = launch_.grid(n_);
-    launch_.run<KernelId::cadt_pack_residual>(all.items, ranks_, order_.points, residual.points, residual.input_ids,
-                                              count_, all.grain);
+    launch_.run<KernelId::cadt_pack_residual>(ranks_, order_.points, residual.points, residual.input_ids,
+                                              launch_.grid(n_));
     ranks_.release();
     return residual;
   }
@@ -151,13 +114,13 @@ class StarStage {
   /// Half-edges and vertices of the triangles with a proven vertex.
   void write_triangles() {
     mesh_.all = 2 * n_ - 2;
-    const std::uint32_t groups = (count_ - 1) / CADT_ASSEMBLY_LANES + 1;
-    const LaunchGrid c = launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES);
+    const auto groups = static_cast<std::uint32_t>((n_ - 1) / CADT_ASSEMBLY_LANES + 1);
     mesh_.across = make_mesh_array(ctx_, mesh_.all, MeshUse::whole);
     open_ = ctx_.memory.allocate(std::size_t{open_count_} * word);
     const Allocation firsts = ctx_.memory.allocate((groups + std::size_t{1}) * word);
-    launch_.run<KernelId::cadt_star_half_edges>(c.items, stars_.star_vertices, stars_.begins, marks_, bases_, proven_,
-                                                count_, groups, c.grain, mesh_.across, firsts, open_, totals_);
+    launch_.run<KernelId::cadt_star_half_edges>(stars_.star_vertices, stars_.begins, marks_, bases_, proven_, n_,
+                                                launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES), mesh_.across,
+                                                firsts, open_, totals_);
     bases_.release();
     if (!ctx_.plan.compact || !write_vertices_in_place(firsts, groups)) {
       mesh_.vertices = make_mesh_array(ctx_, mesh_.all, MeshUse::whole);
@@ -167,9 +130,8 @@ class StarStage {
   }
 
   void write_vertices(const Allocation& firsts, std::uint32_t from, std::uint32_t groups, const Allocation& to) {
-    const LaunchGrid c = launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES);
-    launch_.run<KernelId::cadt_star_vertices>(c.items, stars_.star_vertices, stars_.begins, marks_, firsts, count_,
-                                              from, groups, c.grain, to);
+    launch_.run<KernelId::cadt_star_vertices>(stars_.star_vertices, stars_.begins, marks_, firsts, n_, from,
+                                              launch_.grid_of_teams(groups, CADT_ASSEMBLY_LANES), to);
   }
 
   /// Writes the vertices over the stars. Both are in the order of the points, six words a point, and there are some
@@ -195,8 +157,7 @@ class StarStage {
     for (std::size_t wave = 0; wave + 1 < bounds.size(); ++wave, from += share) {
       write_vertices(firsts, from, std::min(share, groups - from), staged);
       const std::uint32_t words = 3 * (bounds[wave + 1] - bounds[wave]);
-      const LaunchGrid c = launch_.grid(words);
-      launch_.run<KernelId::cadt_copy_words>(c.items, staged, stars_.star_vertices, 3 * bounds[wave], words, c.grain);
+      launch_.run<KernelId::cadt_copy_words>(staged, stars_.star_vertices, 3 * bounds[wave], launch_.grid(words));
     }
     mesh_.vertices.device = std::move(stars_.star_vertices);
     return true;
@@ -213,47 +174,45 @@ class StarStage {
     // The buffer of the stars is free now, unless the mesh has taken it.
     const Memory::TransientScope transient(ctx_.memory, !ctx_.plan.compact);
     const std::uint64_t certified = ctx_.statistics.certified_edges;
-    const Mesh smaller = build_residual(ctx_, std::move(residual), n_, how_);
+    // Without legality sweeps where they are of no use: the whole mesh is certified later.
+    const Mesh smaller = wrap_or_insert(ctx_, std::move(residual), how_, n_);
     ctx_.statistics.certified_edges = certified;  // only those of the whole mesh count
-    if (smaller.flat) throw InternalError("the unproven vertices are on a line; please report this with the input");
+    if (smaller.flat) give_up("the unproven vertices are on a line");
     const Allocation none;
     const DeviceMeshView residual_mesh = view_of(smaller, none);
 
     const std::size_t places = std::bit_ceil(2 * std::size_t{open_count_} + 2);
-    const auto mask = static_cast<std::uint32_t>(places - 1), all = residual_mesh.all;
+    const std::size_t mask = places - 1;
     Allocation table = ctx_.memory.allocate(places * word);
     ctx_.device.fill(*table, 0, places * word, CADT_NONE);
-    const LaunchGrid open = launch_.grid(open_count_);
-    launch_.run<KernelId::cadt_stitch_enter>(open.items, mesh_.vertices, open_, open_count_, open.grain, table, mask);
+    launch_.run<KernelId::cadt_stitch_enter>(mesh_.vertices, open_, launch_.grid(open_count_), table, mask);
     Allocation covers = ctx_.memory.allocate(3 * smaller.all * word), roots = ctx_.memory.allocate(smaller.all * word);
-    const LaunchGrid c = launch_.grid(all);
-    launch_.run<KernelId::cadt_stitch_cover>(c.items, residual_mesh, mesh_.vertices, smaller.input_ids, c.grain, table,
-                                             mask, covers, roots);
-    launch_.run<KernelId::cadt_stitch_components>(c.items, residual_mesh, c.grain, covers, roots);
+    const LaunchGrid all = launch_.grid(smaller.all);
+    launch_.run<KernelId::cadt_stitch_cover>(all.items, residual_mesh, mesh_.vertices, smaller.input_ids, all.grain,
+                                             table, mask, covers, roots);
+    launch_.run<KernelId::cadt_stitch_components>(all.items, residual_mesh, all.grain, covers, roots);
     Allocation hidden = launch_.zeros(smaller.all), ranks = ctx_.memory.allocate((smaller.all + 1) * word);
-    launch_.run<KernelId::cadt_stitch_hide>(c.items, covers, roots, all, c.grain, hidden);
-    launch_.run<KernelId::cadt_stitch_flags>(c.items, roots, hidden, all, c.grain, ranks);
+    launch_.run<KernelId::cadt_stitch_hide>(covers, roots, all, hidden);
+    launch_.run<KernelId::cadt_stitch_flags>(roots, hidden, all, ranks);
     launch_.scan(ranks, smaller.all + 1);
     const std::size_t triangles = std::size_t{proven_triangles_} + launch_.read_word(ranks, smaller.all);
     if (triangles != mesh_.all)
-      throw InternalError("the two parts of the mesh have " + std::to_string(triangles) + " triangles instead of " +
-                          std::to_string(mesh_.all) + "; please report this with the input");
+      give_up("the two parts of the mesh have ", triangles, " triangles instead of ", mesh_.all);
     mesh_.triangles = proven_triangles_ + launch_.read_word(ranks, smaller.triangles);
-    launch_.run<KernelId::cadt_stitch_residual>(c.items, residual_mesh, covers, ranks, smaller.input_ids, c.grain,
+    launch_.run<KernelId::cadt_stitch_residual>(all.items, residual_mesh, covers, ranks, smaller.input_ids, all.grain,
                                                 proven_triangles_, mesh_.vertices, mesh_.across);
     ctx_.end_phase("stitch");
     ctx_.check("stitch", 0.8);
   }
 
   Context& ctx_;
-  Launcher& launch_;
+  Launcher& launch_ = ctx_.launcher;
   SortedPoints order_;
   const InputPoints& input_;
   const BuildStrategy& how_;
-  std::size_t n_;
-  std::uint32_t count_;
+  std::size_t n_ = order_.distinct;
   Stars stars_;
-  Allocation keys_, proven_, marks_, bases_, ranks_, totals_, open_;
+  Allocation proven_, marks_, bases_, ranks_, totals_, open_;
   Mesh mesh_;
   std::uint32_t proven_triangles_ = 0, unproven_ = 0, open_count_ = 0;
 };
@@ -264,16 +223,18 @@ Mesh mesh_from_stars(Context& ctx, SortedPoints points, const InputPoints& input
   return StarStage(ctx, std::move(points), input, how).build();
 }
 
-Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how) {
+Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how, std::size_t all) {
+  const MeshUse use = all == 0 ? MeshUse::whole : MeshUse::part;
   points.keys.release();
-  if (points.distinct <= how.most_wrapped) {
-    if (std::optional<Mesh> wrapped = wrap_mesh(ctx, points)) {
-      wrapped->points = std::move(points.points);
+  if (points.distinct <= (use == MeshUse::whole ? how.most_wrapped : how.most_residual_wrapped)) {
+    const std::size_t of = use == MeshUse::whole ? points.distinct : all;
+    if (std::optional<Mesh> wrapped = wrap_mesh(ctx, points.points, points.distinct, of, use)) {
+      if (use == MeshUse::whole) wrapped->points = std::move(points.points);
       wrapped->input_ids = std::move(points.input_ids);
       return std::move(*wrapped);
     }
   }
-  return insert_incrementally(ctx, std::move(points));
+  return insert_incrementally(ctx, std::move(points), use);
 }
 
 }  // namespace cadt

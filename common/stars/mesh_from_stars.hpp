@@ -14,7 +14,7 @@ namespace cadt {
                                    const BuildStrategy& how);
 
 /// The certified mesh by gift wrapping of all points, if they are few enough and it does not take too long; else by
-/// insertion.
-[[nodiscard]] Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how);
+/// insertion. `all`: if not 0, they are part of a mesh of so many points, which is certified later.
+[[nodiscard]] Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how, std::size_t all = 0);
 
 }  // namespace cadt

@@ -5,7 +5,6 @@
 #include <array>
 #include <set>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,7 +16,6 @@ namespace {
 
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t most_teams = 4096;  // as many as a large GPU runs at the same time
 constexpr std::uint32_t tree_lanes = CADT_AABB_FANOUT * CADT_WRAP_PARTS;
 constexpr std::uint32_t residual_lanes = 128;  // for the longest stars, which set the time
@@ -50,18 +48,9 @@ struct AabbTree {
     leaves = ctx.memory.allocate((n / CADT_AABB_LEAF + sets + 1) * sizeof(cadt_aabb));
     nodes = ctx.memory.allocate(node_count * sizeof(cadt_aabb));
     const LaunchGrid c = ctx.launcher.grid_of_teams(node_count, tree_lanes);
-    ctx.launcher.run_in_groups<KernelId::cadt_build_aabb_tree>(
-        c.items, tree_lanes, points, static_cast<std::uint32_t>(n), starts, static_cast<std::uint32_t>(sets),
-        static_cast<std::uint32_t>(node_count), c.grain, leaves, nodes, sizes, counts);
+    ctx.launcher.run_in_groups<KernelId::cadt_build_aabb_tree>(c.items, tree_lanes, points, n, starts, sets, c, leaves,
+                                                               nodes, sizes, counts);
   }
-};
-
-/// The sets of a batch (common/batch/batch.dev.h), or none; `work_done` in each of them.
-struct WrappedSets {
-  const Allocation& starts;
-  std::uint32_t count;
-  const Allocation &states, &work_done;
-  [[nodiscard]] auto arguments() const { return std::tie(starts, count, states, work_done); }
 };
 
 struct WorkLimit {
@@ -69,29 +58,10 @@ struct WorkLimit {
   [[nodiscard]] auto arguments() const { return std::tie(of_vertex, spare); }
 };
 
-/// All stars of one set of at most 2^15 points; `sizes` and `counts` need not be 0 before.
-void wrap_all(Context& ctx, const Allocation& points, std::size_t n, std::uint32_t spare, const WrappedStars& stars) {
-  Launcher& launch = ctx.launcher;
-  const Allocation none, todo = ctx.memory.allocate(n * word),
-                         arcs = ctx.memory.allocate(n * CADT_WRAP_ROW * sizeof(std::uint16_t));
-  const AabbTree tree(ctx, points, n, none, 0, stars.sizes, stars.counts);
-  const auto count = static_cast<std::uint32_t>(n);
-  const LaunchGrid teams = launch.grid_of_teams(n, wrap_lanes);
-  launch.run_in_groups<KernelId::cadt_wrap_near>(teams.items, wrap_lanes, points, tree, count, teams.grain, stars, todo,
-                                                 arcs);
-  // Only the device knows how many are left to do.
-  const LaunchGrid residual =
-      ctx.device.shape().contiguous ? teams : launch.grid_of_teams(std::min(n, most_teams), residual_lanes);
-  launch.run_in_groups<KernelId::cadt_wrap_stars>(residual.items, residual_lanes, points, tree, count, todo, 0U, arcs,
-                                                  WrappedSets{none, 0, none, none}, WorkLimit{wrap_work_limit, spare},
-                                                  residual.grain, stars);
-}
-
 /// The stars of one set of points, and its mesh.
 class Wrapping {
  public:
-  Wrapping(Context& ctx, const Allocation& points, std::size_t n)
-      : ctx_(ctx), launch_(ctx.launcher), points_(points), n_(n), count_(static_cast<std::uint32_t>(n)) {}
+  Wrapping(Context& ctx, const Allocation& points, std::size_t n) : ctx_(ctx), points_(points), n_(n) {}
 
   /// `all`: number of points of the mesh that these are part of.
   void make_stars(std::size_t all) {
@@ -99,8 +69,7 @@ class Wrapping {
     begins_ = ctx_.memory.allocate(n_ * word);
     sizes_ = ctx_.memory.allocate(n_ * word);
     counts_ = ctx_.memory.allocate(CADT_WRAP_WORDS * word);
-    wrap_all(ctx_, points_, n_, spare_work_limit_of(ctx_.device, all),
-             {0, star_vertices_, static_cast<std::uint32_t>(star_words()), begins_, sizes_, counts_});
+    wrap(spare_work_limit_of(ctx_.device, all));
     edges_ = ctx_.memory.allocate(CADT_WRAP_EDGES * sizeof(cadt_wrap_edge));
   }
 
@@ -115,9 +84,9 @@ class Wrapping {
     write(mesh, {edges_});
     ctx_.end_phase("wrap");
     const bool certifies = use == MeshUse::whole;
-    if (certifies) launch_certify(ctx_, unnumbered_view(mesh), 0, mesh.all, bases_, row());
-    std::vector<std::uint32_t> words(row() + certify_words(ctx_) - n_);
-    ctx_.device.read(*bases_, n_ * word, words.data(), words.size() * word);
+    mesh.triangles = CADT_NONE;  // only the device knows them yet
+    if (certifies) launch_certify(ctx_, view_of(mesh, points_), 0, mesh.all, bases_, row());
+    const auto words = ctx_.device.read_values(*bases_, row() + certify_words(ctx_) - n_, n_);
     note(words);
     if (high_degree_ != 0) return add_high_degree(mesh, words[0]);
     mesh.triangles = CADT_WRAP_REAL(words[0]);
@@ -139,18 +108,25 @@ class Wrapping {
     [[nodiscard]] auto arguments() const { return std::tie(edges, count, first_extra, extra_real, high_degree); }
   };
 
-  void write(const Mesh& mesh, const HighDegreeEdges& of_high_degree) {
-    const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
-    launch_.run<KernelId::cadt_wrap_arrays>(shares.items, star_vertices_, begins_, sizes_, bases_,
-                                            static_cast<std::uint32_t>(star_words()), static_cast<std::uint32_t>(row()),
-                                            of_high_degree, count_, shares.grain, mesh.vertices, mesh.across);
+  void wrap(std::uint32_t spare_work) {
+    const Allocation none, todo = ctx_.memory.allocate(n_ * word),
+                           arcs = ctx_.memory.allocate(n_ * CADT_WRAP_ROW * sizeof(std::uint16_t));
+    const AabbTree tree(ctx_, points_, n_, none, 0, sizes_, counts_);
+    const WrappedStars stars{0, star_vertices_, star_words(), begins_, sizes_, counts_};
+    const LaunchGrid teams = launch_.grid_of_teams(n_, wrap_lanes);
+    launch_.run_in_groups<KernelId::cadt_wrap_near>(teams.items, wrap_lanes, points_, tree, teams, stars, todo, arcs);
+    // Only the device knows how many are left to do.
+    const LaunchGrid residual =
+        ctx_.device.shape().contiguous ? teams : launch_.grid_of_teams(std::min(n_, most_teams), residual_lanes);
+    launch_.run_in_groups<KernelId::cadt_wrap_stars>(residual.items, residual_lanes, points_, tree, n_, todo, 0U, arcs,
+                                                     WrappedSets{none, 0, none}, none,
+                                                     WorkLimit{wrap_work_limit, spare_work}, residual.grain, stars);
   }
 
-  /// The mesh whose number of triangles only the device knows.
-  [[nodiscard]] DeviceMeshView unnumbered_view(const Mesh& mesh) const {
-    DeviceMeshView view = view_of(mesh, points_);
-    view.triangles = CADT_NONE;
-    return view;
+  void write(const Mesh& mesh, const HighDegreeEdges& of_high_degree) {
+    const LaunchGrid shares = launch_.grid(n_ * CADT_WRAP_SHARES);
+    launch_.run<KernelId::cadt_wrap_arrays>(shares.items, star_vertices_, begins_, sizes_, bases_, star_words(), row(),
+                                            of_high_degree, n_, shares.grain, mesh.vertices, mesh.across);
   }
 
   /// `known`: the packed count of the triangles of stars.
@@ -183,10 +159,9 @@ class Wrapping {
   /// First triangles of the vertices; behind them the total, the counts, and zeros. Vertices without a star have size
   /// 0, so this may run before it is known whether there are too many.
   void count() {
-    const LaunchGrid all = launch_.grid(n_);
-    const auto zeros = static_cast<std::uint32_t>(row() + certify_words(ctx_) - (n_ + 1 + CADT_WRAP_DRIVER_WORDS));
-    launch_.run<KernelId::cadt_wrap_counts>(all.items, star_vertices_, begins_, sizes_, count_, all.grain, counts_,
-                                            bases_, zeros, edges_);
+    const std::size_t zeros = row() + certify_words(ctx_) - (n_ + 1 + CADT_WRAP_DRIVER_WORDS);
+    launch_.run<KernelId::cadt_wrap_counts>(star_vertices_, begins_, sizes_, launch_.grid(n_), counts_, bases_, zeros,
+                                            edges_);
     launch_.scan(bases_, n_ + 1);
   }
 
@@ -210,14 +185,13 @@ class Wrapping {
   [[nodiscard]] bool add_triangles_of_high_degree(HighDegreeEdges& all, std::size_t wanted) {
     const std::uint32_t known = all.first_extra;
     if (known + 3 * wanted > CADT_WRAP_EDGES || known == 0) return false;
-    std::vector<cadt_wrap_edge> edges(known);
-    ctx_.device.read(*edges_, 0, edges.data(), known * sizeof edges[0]);
+    const auto edges = ctx_.device.read_values<cadt_wrap_edge>(*edges_, known);
     using HalfEdge = std::pair<std::uint32_t, std::uint32_t>;
     std::set<HalfEdge> sides;  // half-edges whose triangle is known
     for (const cadt_wrap_edge& e : edges) sides.emplace(e.from, e.to);
+    std::vector<cadt_wrap_edge> real, ghosts;  // half-edges of the new triangles
     const Allocation high_degree = ctx_.memory.allocate(high_degree_ * word), listed = launch_.zeros(1);
-    const LaunchGrid vertices = launch_.grid(n_);
-    launch_.run<KernelId::cadt_list_high_degree>(vertices.items, sizes_, count_, vertices.grain, high_degree, listed);
+    launch_.run<KernelId::cadt_list_high_degree>(sizes_, launch_.grid(n_), high_degree, listed);
     for (std::size_t round = 0; round < wanted; ++round) {
       // Edges to the ghost need no search: the hull edges lead to all of its triangles.
       std::vector<cadt_wrap_edge> open;
@@ -227,60 +201,42 @@ class Wrapping {
       find_apexes(open, high_degree);
       for (const auto& [a, b, c] : open) {
         if (sides.contains({a, b})) continue;  // of a triangle that another edge has led to
-        if (edges.size() + 3 > CADT_WRAP_EDGES) return false;
+        if (known + real.size() + ghosts.size() + 3 > CADT_WRAP_EDGES) return false;
         for (const cadt_wrap_edge& e : {cadt_wrap_edge{a, b, c}, {b, c, a}, {c, a, b}}) {
-          edges.push_back(e);
+          (c == CADT_GHOST ? ghosts : real).push_back(e);
           sides.emplace(e.from, e.to);
         }
       }
     }
-    std::array<std::uint32_t, CADT_WRAP_DRIVER_WORDS> words{};
-    ctx_.device.read(*counts_, 0, words.data(), sizeof words);
-    note_exact(std::span(words).subspan(CADT_WRAP_EXACT_ORIENTATIONS, 3));
+    note_exact(ctx_.device.read_values(*counts_, 3, CADT_WRAP_EXACT_ORIENTATIONS));
     const bool closed = std::ranges::all_of(sides, [&](HalfEdge e) { return sides.contains({e.second, e.first}); });
-    if (!closed || edges.size() != known + 3 * wanted || sides.size() != edges.size()) return false;
-    all.extra_real = sort_ghosts_last(edges, known);
-    all.count = static_cast<std::uint32_t>(edges.size());
-    ctx_.device.write(*edges_, 0, edges.data(), edges.size() * sizeof edges[0]);
+    all.extra_real = static_cast<std::uint32_t>(real.size() / 3);
+    real.insert(real.end(), ghosts.begin(), ghosts.end());
+    if (!closed || real.size() != 3 * wanted || sides.size() != known + real.size()) return false;
+    all.count = static_cast<std::uint32_t>(known + real.size());
+    ctx_.device.write(*edges_, known * sizeof real[0], real.data(), real.size() * sizeof real[0]);
     return true;
-  }
-
-  /// Of the triangles from half-edge `known` on, three half-edges each; returns how many have no ghost.
-  static std::uint32_t sort_ghosts_last(std::vector<cadt_wrap_edge>& edges, std::uint32_t known) {
-    using Triangle = std::array<cadt_wrap_edge, 3>;
-    std::vector<Triangle> extra;
-    for (std::size_t e = known; e < edges.size(); e += 3) extra.push_back({edges[e], edges[e + 1], edges[e + 2]});
-    const auto ghosts = std::ranges::stable_partition(extra, [](const Triangle& t) {
-      return t[0].from != CADT_GHOST && t[0].to != CADT_GHOST && t[0].left != CADT_GHOST;
-    });
-    edges.resize(known);
-    for (const Triangle& t : extra) edges.insert(edges.end(), t.begin(), t.end());
-    return static_cast<std::uint32_t>(extra.size() - ghosts.size());
   }
 
   /// The apex to the left of edges between two high-degree vertices.
   void find_apexes(std::vector<cadt_wrap_edge>& edges, const Allocation& high_degree) {
-    const auto count = static_cast<std::uint32_t>(edges.size());
     const std::size_t bytes = edges.size() * sizeof edges[0];
     const Allocation list = ctx_.memory.allocate(bytes);
     ctx_.device.write(*list, 0, edges.data(), bytes);
-    const LaunchGrid c = launch_.grid_spread(count);
-    launch_.run<KernelId::cadt_apex_of_high_degree>(c.items, points_, high_degree, high_degree_, count, c.grain, list,
-                                                    counts_);
+    launch_.run<KernelId::cadt_apex_of_high_degree>(points_, high_degree, high_degree_,
+                                                    launch_.grid_spread(edges.size()), list, counts_);
     ctx_.device.read(*list, 0, edges.data(), bytes);
   }
 
   void require_all(std::size_t found) const {
     if (found == triangles() && used_words_ <= star_words()) return;
-    throw InternalError("the wrapped stars have " + std::to_string(found) + " triangles instead of " +
-                        std::to_string(triangles()) + "; please report this with the input");
+    give_up("the wrapped stars have ", found, " triangles instead of ", triangles());
   }
 
   Context& ctx_;
-  Launcher& launch_;
+  Launcher& launch_ = ctx_.launcher;
   const Allocation& points_;
   std::size_t n_;
-  std::uint32_t count_;
   Allocation star_vertices_, begins_, sizes_, counts_, edges_, bases_;
   std::uint32_t used_words_ = 0, high_degree_ = 0;
   std::array<std::uint32_t, 3> exact_{};  // exact orientations, incircles, ties already in the statistics
@@ -288,37 +244,23 @@ class Wrapping {
 
 }  // namespace
 
-void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const StarsOfBatch& sets,
-                const WrappedStars& stars) {
+void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const Allocation& list, std::size_t list_size,
+                const WrappedSets& sets, const WrappedStars& stars) {
   const AabbTree tree(ctx, points, n, sets.starts, sets.count, {}, {});
   const Allocation work_done = ctx.launcher.zeros(sets.count), none;
-  const LaunchGrid teams = ctx.launcher.grid_of_teams(sets.list_size, wrap_lanes);
-  ctx.launcher.run_in_groups<KernelId::cadt_wrap_stars>(
-      teams.items, wrap_lanes, points, tree, static_cast<std::uint32_t>(n), sets.list,
-      static_cast<std::uint32_t>(sets.list_size), none,
-      WrappedSets{sets.starts, static_cast<std::uint32_t>(sets.count), sets.states, work_done},
-      WorkLimit{wrap_work_limit, spare_work_limit}, teams.grain, stars);
+  const LaunchGrid teams = ctx.launcher.grid_of_teams(list_size, wrap_lanes);
+  ctx.launcher.run_in_groups<KernelId::cadt_wrap_stars>(teams.items, wrap_lanes, points, tree, n, list, list_size, none,
+                                                        sets, work_done, WorkLimit{wrap_work_limit, spare_work_limit},
+                                                        teams.grain, stars);
 }
 
-namespace {
-
-std::optional<Mesh> wrap(Context& ctx, const Allocation& points, std::size_t n, std::size_t all, MeshUse use) {
+std::optional<Mesh> wrap_mesh(Context& ctx, const Allocation& points, std::size_t n, std::size_t all, MeshUse use) {
   if (n < 3) return std::nullopt;
   Wrapping wrapping(ctx, points, n);
   wrapping.make_stars(all);
   Mesh mesh;
   if (!wrapping.make_arrays(mesh, use)) return std::nullopt;
   return mesh;
-}
-
-}  // namespace
-
-std::optional<Mesh> wrap_part(Context& ctx, const Allocation& points, std::size_t n, std::size_t all) {
-  return wrap(ctx, points, n, all, MeshUse::part);
-}
-
-std::optional<Mesh> wrap_mesh(Context& ctx, const SortedPoints& order) {
-  return wrap(ctx, order.points, order.distinct, order.distinct, MeshUse::whole);
 }
 
 }  // namespace cadt

@@ -18,29 +18,28 @@ constexpr std::uint32_t wrap_lanes = 32;
 struct WrappedStars {
   std::uint32_t row;
   const Allocation& star_vertices;
-  std::uint32_t star_words;
+  std::size_t star_words;
   const Allocation &begins, &sizes, &counts;
   [[nodiscard]] auto arguments() const { return std::tie(row, star_vertices, star_words, begins, sizes, counts); }
 };
 
-/// The vertices in `list` of a batch; the other arrays as in common/batch/batch.dev.h.
-struct StarsOfBatch {
-  const Allocation& list;
-  std::size_t list_size;
-  const Allocation &starts, &states;
+/// The sets of a batch (common/batch/batch.dev.h), or none.
+struct WrappedSets {
+  const Allocation& starts;
   std::size_t count;
+  const Allocation& states;
+  [[nodiscard]] auto arguments() const { return std::tie(starts, count, states); }
 };
 
-/// Wraps the stars of these vertices; does not wait for the device. \pre `counts` are 0
-void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const StarsOfBatch& sets,
-                const WrappedStars& stars);
+/// Wraps the stars of the vertices in `list`; does not wait for the device. \pre `counts` are 0
+void wrap_batch(Context& ctx, const Allocation& points, std::size_t n, const Allocation& list, std::size_t list_size,
+                const WrappedSets& sets, const WrappedStars& stars);
 
-/// The mesh of at most 2^15 points by gift wrapping (common/stars/wrap_exact.dev.h), without locks, points and input
-/// ids; certified unless it has high-degree vertices, with too many neighbours to be wrapped. Nothing if the points are
-/// collinear or the work limit is exceeded: then insertion takes over.
-[[nodiscard]] std::optional<Mesh> wrap_mesh(Context& ctx, const SortedPoints& order);
-
-/// The same for n points that are part of a mesh of `all`; not certified.
-[[nodiscard]] std::optional<Mesh> wrap_part(Context& ctx, const Allocation& points, std::size_t n, std::size_t all);
+/// The mesh of n points, at most 2^15, by gift wrapping (common/stars/wrap_exact.dev.h), without locks, points and
+/// input ids; certified unless it is a part, of a mesh of `all` points, or has high-degree vertices, with too many
+/// neighbours to be wrapped. Nothing if the points are collinear or the work limit is exceeded: then insertion takes
+/// over.
+[[nodiscard]] std::optional<Mesh> wrap_mesh(Context& ctx, const Allocation& points, std::size_t n, std::size_t all,
+                                            MeshUse use);
 
 }  // namespace cadt

@@ -20,7 +20,6 @@ namespace {
 using namespace verifier;
 using namespace device_text;
 
-constexpr std::size_t word = sizeof(std::uint32_t);
 constexpr std::size_t triangles_per_launch_contiguous = std::size_t{1} << 20;  // bounds the lists: 4 words a triangle
 constexpr std::size_t triangles_per_launch_strided = std::size_t{1} << 23;
 constexpr std::size_t strided_items = std::size_t{1} << 17;  // enough to fill a GPU; each adds to the results once
@@ -57,14 +56,7 @@ struct Settled {
 class OnDevice : private Outcome {
  public:
   OnDevice(verifier::Mesh mesh, Context& ctx, const VerifyInput& input, const VerifyOptions& options)
-      : Outcome(input.number_of_points),
-        ctx_(ctx),
-        launch_(ctx.launcher),
-        input_(input),
-        options_(options),
-        n_(input.number_of_points),
-        count_(input.number_of_triangles),
-        mesh_(std::move(mesh)) {
+      : Outcome(input.number_of_points), ctx_(ctx), input_(input), options_(options), mesh_(std::move(mesh)) {
     mesh_.count = count_;
     mesh_.threads = options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
   }
@@ -104,22 +96,11 @@ class OnDevice : private Outcome {
   /// Launch grid for kernels whose work-items add to the results once each.
   [[nodiscard]] LaunchGrid grid_for(std::size_t count) const {
     if (ctx_.device.shape().contiguous) return launch_.grid(count);
-    return {static_cast<std::uint32_t>(std::min(count, strided_items)), 1};
+    return {static_cast<std::uint32_t>(std::min(count, strided_items)), static_cast<std::uint32_t>(count), 1};
   }
-  [[nodiscard]] DeviceMeshView view() const {
-    return {input_.points,
-            input_.triangles,
-            input_.neighbors,
-            input_.edge_flags != nullptr ? *input_.edge_flags : none_,
-            number(count_),
-            number(count_),
-            0};
-  }
-  static std::uint32_t number(std::size_t value) { return static_cast<std::uint32_t>(value); }
 
   [[nodiscard]] Found results() const {
-    std::vector<std::uint32_t> rows(static_cast<std::size_t>(CADT_FOUND_ROWS) * CADT_FOUND_WORDS);
-    ctx_.device.read(*results_, 0, rows.data(), rows.size() * word);
+    const auto rows = ctx_.device.read_values(*results_, std::size_t{CADT_FOUND_ROWS} * CADT_FOUND_WORDS);
     Found found;
     found.least.fill(CADT_NONE);
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -142,10 +123,8 @@ class OnDevice : private Outcome {
   /// Fetches the mesh, only if something has failed: messages quote it, and a search needs all of it.
   void fetch_mesh() {
     if (!mesh_.triangles.empty()) return;
-    fetched_.resize(3 * count_);
-    mesh_.derived.resize(3 * count_);
-    ctx_.device.read(*input_.triangles, 0, fetched_.data(), fetched_.size() * word);
-    ctx_.device.read(*input_.neighbors, 0, mesh_.derived.data(), fetched_.size() * word);
+    fetched_ = ctx_.device.read_values<std::int32_t>(*input_.mesh.vertices, 3 * count_);
+    mesh_.derived = ctx_.device.read_values<std::int32_t>(*input_.mesh.across, 3 * count_);
     mesh_.triangles = fetched_;
     mesh_.neighbors = mesh_.derived;
   }
@@ -160,9 +139,9 @@ class OnDevice : private Outcome {
   [[nodiscard]] bool examine_structure() {
     clear_results();
     used_ = launch_.zeros(n_);
-    const LaunchGrid all = grid_for(count_), points = grid_for(n_);
-    launch_.run<KernelId::cadt_verify_structure>(all.items, view(), number(n_), all.grain, used_, results_);
-    launch_.run<KernelId::cadt_verify_points>(points.items, input_.points, number(n_), points.grain, used_, results_);
+    const LaunchGrid all = grid_for(count_);
+    launch_.run<KernelId::cadt_verify_structure>(all.items, input_.mesh, n_, all.grain, used_, results_);
+    launch_.run<KernelId::cadt_verify_points>(input_.mesh.points, grid_for(n_), used_, results_);
     const Found found = results();
     if (const Findings finite = found.findings(CADT_FOUND_POINTS); finite.failures != 0) refuse_point(finite.first);
     mesh_.vertices = static_cast<std::size_t>(found.count(CADT_FOUND_USED));
@@ -185,24 +164,16 @@ class OnDevice : private Outcome {
   void examine_signs() {
     const std::size_t most =
         ctx_.device.shape().contiguous ? triangles_per_launch_contiguous : triangles_per_launch_strided;
-    const auto capacity = [&](const LaunchGrid& c, std::size_t size) { return 4 * ((size + c.items - 1) / c.items); };
-    std::size_t lists_size = 0, sizes_size = 0;
-    for (const std::size_t size : {std::min(count_, most), count_ % most}) {
-      if (size == 0) continue;
-      const LaunchGrid c = grid_for(size);
-      lists_size = std::max(lists_size, c.items * std::max<std::size_t>(capacity(c, size), 4 * c.grain));
-      sizes_size = std::max<std::size_t>(sizes_size, c.items);
-    }
-    lists_ = ctx_.memory.allocate(lists_size * word);
-    sizes_ = launch_.zeros(sizes_size + 1);
+    const LaunchGrid c = grid_for(std::min(count_, most));  // for a smaller last launch too: then some lists stay empty
+    const std::size_t room = 4 * std::max((c.count + c.items - 1) / c.items, c.grain);
+    lists_ = ctx_.memory.allocate(c.items * room * word);
+    sizes_ = launch_.zeros(c.items + std::size_t{1});
     deferred_ = launch_.zeros(1);
     for (std::size_t at = 0; at < count_; at += most) {
       const std::size_t size = std::min(most, count_ - at);
-      const LaunchGrid c = grid_for(size);
-      const auto room = number(std::max<std::size_t>(capacity(c, size), 4 * c.grain));
-      launch_.run<KernelId::cadt_verify_filter>(c.items, view(), number(at), number(size), symmetric_ ? 1U : 0U,
-                                                c.grain, c.items, lists_, sizes_, room, results_);
-      launch_.run<KernelId::cadt_verify_exact>(c.items, view(), number(at), c.items, lists_, sizes_, room, deferred_,
+      launch_.run<KernelId::cadt_verify_filter>(c.items, input_.mesh, at, size, symmetric_, c.grain, c.items, lists_,
+                                                sizes_, room, results_);
+      launch_.run<KernelId::cadt_verify_exact>(c.items, input_.mesh, at, c.items, lists_, sizes_, room, deferred_,
                                                results_);
       if (const std::uint32_t left = launch_.read_word(deferred_, 0); left != 0) {
         ctx_.device.fill(*deferred_, 0, word, 0);
@@ -214,7 +185,7 @@ class OnDevice : private Outcome {
     sizes_.release();
   }
 
-  void settle_on_host(std::size_t at, std::uint32_t items, std::uint32_t room, std::uint32_t left) {
+  void settle_on_host(std::size_t at, std::uint32_t items, std::size_t room, std::uint32_t left) {
     ctx_.device.fill(*sizes_, items * word, word, 0);
     launch_.scan(sizes_, std::size_t{items} + 1);
     const std::size_t most = std::min<std::size_t>(left, entries_per_gather);
@@ -224,14 +195,12 @@ class OnDevice : private Outcome {
     for (std::size_t from = 0; from < left; from += most) {
       const std::size_t size = std::min(most, left - from);
       ctx_.device.fill(*entries, 0, size * word, CADT_NONE);  // shows which are written
-      launch_.run<KernelId::cadt_verify_gather>(items, view(), number(at), items, lists_, sizes_, room, number(from),
-                                                number(from + size), entries, corners);
+      launch_.run<KernelId::cadt_verify_gather>(items, input_.mesh, at, items, lists_, sizes_, room, from, from + size,
+                                                entries, corners);
       ctx_.device.read(*entries, 0, entry.data(), size * word);
       ctx_.device.read(*corners, 0, quad.data(), size * sizeof quad[0]);
-      settled_.merge(
-          reduce_blocks<Settled>(size, mesh_.threads, [&](std::size_t begin, std::size_t end, Settled& mine) {
-            for (std::size_t i = begin; i < end; ++i) settle(at, entry[i], quad[i], mine);
-          }));
+      settled_.merge(reduce_each<Settled>(size, mesh_.threads,
+                                          [&](std::size_t i, Settled& mine) { settle(at, entry[i], quad[i], mine); }));
     }
   }
 
@@ -243,11 +212,7 @@ class OnDevice : private Outcome {
       if (orientation(q[0], q[1], q[2]) <= 0) mine.orientation.fail(t);
       return;
     }
-    const int side = incircle(q[0], q[1], q[2], q[3]);
-    if (side > 0) mine.circles.illegal.fail(3 * t + k);
-    if (side != 0) return;
-    ++mine.circles.ties;
-    if (incircle_perturbed(q[0], q[1], q[2], q[3]) > 0) mine.circles.unusual.fail(3 * t + k);
+    mine.circles.examine(3 * t + k, q[0], q[1], q[2], q[3]);
   }
 
   void examine_vertices() {
@@ -257,9 +222,8 @@ class OnDevice : private Outcome {
       const std::span<const Duplicate> list = input_.duplicates;
       if (!list.empty()) {
         const Allocation pairs = ctx_.memory.import(list.data(), list.size_bytes());
-        const LaunchGrid c = grid_for(list.size());
-        launch_.run<KernelId::cadt_verify_duplicates>(c.items, input_.points, number(n_), used_, pairs,
-                                                      number(list.size()), c.grain, results_);
+        launch_.run<KernelId::cadt_verify_duplicates>(input_.mesh.points, n_, used_, pairs, grid_for(list.size()),
+                                                      results_);
       }
       const Findings findings = results().findings(CADT_FOUND_DUPLICATES);
       duplicates_examined_ = findings.examined;
@@ -270,12 +234,10 @@ class OnDevice : private Outcome {
       return;
     }
     // The host finds the vertex that an unused point equals.
-    std::vector<std::uint32_t> used(n_);
-    ctx_.device.read(*used_, 0, used.data(), n_ * word);
+    const std::vector<std::uint32_t> used = ctx_.device.read_values(*used_, n_);
     mesh_.used.assign(used.begin(), used.end());
     if (mesh_.points.size() == 0) {
-      fetched_points_.resize(2 * n_);
-      ctx_.device.read(*input_.points, 0, fetched_points_.data(), fetched_points_.size() * sizeof(double));
+      fetched_points_ = ctx_.device.read_values<double>(*input_.mesh.points, 2 * n_);
       mesh_.points = fetched_points_;
     }
     check_vertices(mesh_, MeshView{}, check);
@@ -283,18 +245,19 @@ class OnDevice : private Outcome {
 
   void examine_boundary(const Found& found) {
     const auto h = static_cast<std::size_t>(found.count(CADT_FOUND_BOUNDARY));
-    std::vector<std::array<std::uint32_t, 3>> edges(h);
-    std::vector<Point> starts(h);
+    using Edge = std::array<std::uint32_t, 3>;
+    std::vector<Edge> edges;
+    std::vector<Point> starts;
     if (h != 0) {
-      const Allocation list = ctx_.memory.allocate(h * sizeof edges[0]);
-      const Allocation corners = ctx_.memory.allocate(h * sizeof starts[0]);
+      const Allocation list = ctx_.memory.allocate(h * sizeof(Edge));
+      const Allocation corners = ctx_.memory.allocate(h * sizeof(Point));
       const Allocation written = launch_.zeros(1);
       const LaunchGrid c = grid_for(count_);
-      launch_.run<KernelId::cadt_verify_boundary>(c.items, view(), c.grain, list, corners, written, number(h));
+      launch_.run<KernelId::cadt_verify_boundary>(c.items, input_.mesh, c.grain, list, corners, written, h);
       boundary_written_ = launch_.read_word(written, 0);
       if (boundary_written_ != h) return skip({boundary, euler, hull}, counts);
-      ctx_.device.read(*list, 0, edges.data(), h * sizeof edges[0]);
-      ctx_.device.read(*corners, 0, starts.data(), h * sizeof starts[0]);
+      edges = ctx_.device.read_values<Edge>(*list, h);
+      starts = ctx_.device.read_values<Point>(*corners, h);
     }
     for (const auto& [edge, from, to] : edges)
       mesh_.boundary.push_back({static_cast<std::int32_t>(from), static_cast<std::int32_t>(to), edge});
@@ -357,11 +320,10 @@ class OnDevice : private Outcome {
   }
 
   Context& ctx_;
-  Launcher& launch_;
+  Launcher& launch_ = ctx_.launcher;
   const VerifyInput& input_;
-  const Allocation none_;
   const VerifyOptions& options_;
-  std::size_t n_, count_;
+  std::size_t n_ = input_.number_of_points, count_ = input_.mesh.triangles;
   verifier::Mesh mesh_;
   std::vector<std::int32_t> fetched_;
   std::vector<double> fetched_points_;
@@ -372,10 +334,6 @@ class OnDevice : private Outcome {
 };
 
 }  // namespace
-
-VerifyReport verify_on_device(Context& ctx, const VerifyInput& input, const VerifyOptions& options) {
-  return verify_on_device(ctx, input, options, verifier::Mesh{});
-}
 
 VerifyReport verify_on_device(Context& ctx, const VerifyInput& input, const VerifyOptions& options,
                               verifier::Mesh known) {

@@ -45,8 +45,12 @@ VerifyReport verify_on_device(Device& device, PointsView points, const MeshView&
   const Allocation neighbors = ctx.memory.import(known.neighbors.data(), known.neighbors.size_bytes());
   Allocation flags;
   if (!known.edge_flags.empty()) flags = ctx.memory.import(known.edge_flags.data(), known.edge_flags.size_bytes());
-  const VerifyInput input{device_points, triangles,       neighbors,           points.size(), known.count,
-                          mesh.hull,     mesh.duplicates, mesh.has_duplicates, &flags};
+  const auto count = static_cast<std::uint32_t>(known.count);
+  const VerifyInput input{{device_points, triangles, neighbors, flags, count, count, 0},
+                          points.size(),
+                          mesh.hull,
+                          mesh.duplicates,
+                          mesh.has_duplicates};
   return verify_on_device(ctx, input, options, std::move(known));
 }
 

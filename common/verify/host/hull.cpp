@@ -35,19 +35,18 @@ void check_hull(std::span<const std::int32_t> loop, std::span<const Point> corne
       half_turns += other.half_turns;
     }
   };
-  const Turns turns = reduce_blocks<Turns>(h, threads, [&](std::size_t begin, std::size_t end, Turns& mine) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Point &a = corners[i == 0 ? h - 1 : i - 1], &b = corners[i], &c = corners[i + 1 == h ? 0 : i + 1];
-      const Direction in = direction(a, b), out = direction(b, c);
-      const int turn = orientation(a, b, c);
-      // Collinear points must continue in the same direction; for parallel edges the signs decide.
-      const bool good = turn > 0 || (turn == 0 && in.x == out.x && in.y == out.y && (in.x != 0 || in.y != 0));
-      if (!good) mine.fail(static_cast<std::size_t>(loop[i]));
-      if (upper_half(in) != upper_half(out)) ++mine.half_turns;
-    }
+  const Turns turns = reduce_each<Turns>(h, threads, [&](std::size_t i, Turns& mine) {
+    const Point &a = corners[i == 0 ? h - 1 : i - 1], &b = corners[i], &c = corners[i + 1 == h ? 0 : i + 1];
+    const Direction in = direction(a, b), out = direction(b, c);
+    const int turn = orientation(a, b, c);
+    // Collinear points must continue in the same direction; for parallel edges the signs decide.
+    const bool good = turn > 0 || (turn == 0 && in.x == out.x && in.y == out.y && (in.x != 0 || in.y != 0));
+    if (!good) mine.fail(static_cast<std::size_t>(loop[i]));
+    if (upper_half(in) != upper_half(out)) ++mine.half_turns;
   });
   if (turns.failures != 0)
-    return conclude(check, turns, "the boundary turns right or back at point " + std::to_string(turns.first));
+    return conclude(check, turns,
+                    [&] { return "the boundary turns right or back at point " + std::to_string(turns.first); });
   // A closed chain of left turns changes between the upper and the lower half plane twice per winding.
   if (turns.half_turns != 2)
     return fail(check, -1, "the boundary winds " + std::to_string(turns.half_turns / 2) + " times around");

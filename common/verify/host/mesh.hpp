@@ -69,6 +69,8 @@ void check_delaunay(const Mesh& mesh, Check& delaunay, Check& ties, const Verify
 struct Circles {
   Findings illegal, unusual;
   std::uint64_t ties = 0;
+  /// The edge (3 * triangle + k) of the triangle a, b, c that d lies across.
+  void examine(std::size_t edge, const Point& a, const Point& b, const Point& c, const Point& d);
   void merge(const Circles& other) {
     illegal.merge(other.illegal);
     unusual.merge(other.unusual);
@@ -85,8 +87,14 @@ void check_connected(const Mesh& mesh, Check& check);
 void check_hull(std::span<const std::int32_t> loop, std::span<const Point> corners, std::span<const std::int32_t> given,
                 unsigned threads, Check& check);
 
-/// Sets the outcome from a findings; `what` is only used if something failed.
-void conclude(Check& check, const Findings& findings, const std::string& what);
+/// Sets the outcome from findings; `what()` describes the first failure, if there is one.
+template <class What>
+void conclude(Check& check, const Findings& findings, const What& what) {
+  check.failures = findings.failures;
+  check.first = findings.first;
+  check.passed = findings.failures == 0;
+  check.what = check.passed ? std::string() : what();
+}
 void fail(Check& check, std::int64_t first, const std::string& what);
 void conclude_range(const Mesh& mesh, const Findings& findings, Check& check);
 void conclude_neighbors(const Mesh& mesh, const Findings& findings, Check& check);

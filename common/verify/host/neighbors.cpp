@@ -8,34 +8,31 @@
 namespace cadt::verifier {
 
 void check_neighbors(const Mesh& mesh, Check& check, std::uint64_t& examined) {
-  const Findings findings =
-      reduce_blocks<Findings>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
-        for (std::size_t t = begin; t < end; ++t)
-          for (std::size_t k = 0; k < 3; ++k) {
-            ++mine.examined;
-            const std::int32_t s = mesh.neighbors[3 * t + k];
-            if (s < 0) continue;
-            const auto other = static_cast<std::size_t>(s);
-            // The three vertices of a triangle differ, so at most one of its edges is this one reversed.
-            bool mutual = false;
-            for (std::size_t j = 0; j < 3 && other != t; ++j)
-              mutual = mutual || (mesh.vertex(other, next3(j)) == mesh.vertex(t, previous3(k)) &&
-                                  mesh.vertex(other, previous3(j)) == mesh.vertex(t, next3(k)) &&
-                                  mesh.neighbors[3 * other + j] == static_cast<std::int32_t>(t) &&
-                                  mesh.constrained(other, j) == mesh.constrained(t, k));
-            if (!mutual) mine.fail(3 * t + k);
-          }
-      });
+  const Findings findings = reduce_each<Findings>(mesh.count, mesh.threads, [&](std::size_t t, Findings& mine) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      ++mine.examined;
+      const std::int32_t s = mesh.neighbors[3 * t + k];
+      if (s < 0) continue;
+      const auto other = static_cast<std::size_t>(s);
+      // The three vertices of a triangle differ, so at most one of its edges is this one reversed.
+      bool mutual = false;
+      for (std::size_t j = 0; j < 3 && other != t; ++j)
+        mutual = mutual || (mesh.vertex(other, next3(j)) == mesh.vertex(t, previous3(k)) &&
+                            mesh.vertex(other, previous3(j)) == mesh.vertex(t, next3(k)) &&
+                            mesh.neighbors[3 * other + j] == static_cast<std::int32_t>(t) &&
+                            mesh.constrained(other, j) == mesh.constrained(t, k));
+      if (!mutual) mine.fail(3 * t + k);
+    }
+  });
   examined = findings.examined;
   conclude_neighbors(mesh, findings, check);
 }
 
 void conclude_neighbors(const Mesh& mesh, const Findings& findings, Check& check) {
-  conclude(check, findings,
-           findings.first < 0 ? std::string()
-                              : mesh.describe_edge(findings.first) + ", is not shared with triangle " +
-                                    std::to_string(mesh.neighbors[static_cast<std::size_t>(findings.first)]) +
-                                    " in the opposite direction");
+  conclude(check, findings, [&] {
+    return mesh.describe_edge(findings.first) + ", is not shared with triangle " +
+           std::to_string(mesh.neighbors[static_cast<std::size_t>(findings.first)]) + " in the opposite direction";
+  });
 }
 
 namespace {
@@ -68,34 +65,29 @@ void derive_neighbors(Mesh& mesh, Check& check, std::uint64_t& examined) {
         halves[next[lower_end(t, k)]++] = {std::max(from, to), static_cast<std::uint32_t>(3 * t + k), from < to};
       }
   }
-  const Findings findings = reduce_blocks<Findings>(
-      mesh.points.size(), mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
-        for (std::size_t v = begin; v < end; ++v) {
-          const auto group_end = halves.begin() + static_cast<std::ptrdiff_t>(place[v + 1]);
-          auto at = halves.begin() + static_cast<std::ptrdiff_t>(place[v]);
-          std::sort(at, group_end, [](const Half& a, const Half& b) {
-            return a.upper != b.upper ? a.upper < b.upper : a.half < b.half;
-          });
-          while (at != group_end) {
-            const auto same = std::find_if(at, group_end, [&](const Half& h) { return h.upper != at->upper; });
-            const auto users = same - at;
-            mine.examined += static_cast<std::uint64_t>(users);
-            if (users == 2 && at[0].rising != at[1].rising) {
-              mesh.derived[at[0].half] = static_cast<std::int32_t>(at[1].half / 3);
-              mesh.derived[at[1].half] = static_cast<std::int32_t>(at[0].half / 3);
-            } else if (users != 1) {
-              mine.fail(at[0].half);
-            }
-            at = same;
-          }
-        }
-      });
+  const Findings findings = reduce_each<Findings>(mesh.points.size(), mesh.threads, [&](std::size_t v, Findings& mine) {
+    const auto group_end = halves.begin() + static_cast<std::ptrdiff_t>(place[v + 1]);
+    auto at = halves.begin() + static_cast<std::ptrdiff_t>(place[v]);
+    std::sort(at, group_end,
+              [](const Half& a, const Half& b) { return a.upper != b.upper ? a.upper < b.upper : a.half < b.half; });
+    while (at != group_end) {
+      const auto same = std::find_if(at, group_end, [&](const Half& h) { return h.upper != at->upper; });
+      const auto users = same - at;
+      mine.examined += static_cast<std::uint64_t>(users);
+      if (users == 2 && at[0].rising != at[1].rising) {
+        mesh.derived[at[0].half] = static_cast<std::int32_t>(at[1].half / 3);
+        mesh.derived[at[1].half] = static_cast<std::int32_t>(at[0].half / 3);
+      } else if (users != 1) {
+        mine.fail(at[0].half);
+      }
+      at = same;
+    }
+  });
   examined = findings.examined;
   mesh.neighbors = mesh.derived;
-  conclude(check, findings,
-           findings.first < 0 ? std::string()
-                              : mesh.describe_edge(findings.first) +
-                                    ", is used by more than two triangles or by two in the same direction");
+  conclude(check, findings, [&] {
+    return mesh.describe_edge(findings.first) + ", is used by more than two triangles or by two in the same direction";
+  });
 }
 
 }  // namespace cadt::verifier

@@ -31,10 +31,10 @@ struct Findings {
   }
 };
 
-/// Calls body(begin, end, result) for blocks of [0, count) and merges the results of all threads. If a thread cannot be
-/// started, the others do its work. Rethrows an exception of a body once all threads have ended.
+/// Calls body(i, result) for each i in [0, count) and merges the results of all threads. If a thread cannot be started,
+/// the others do its work. Rethrows an exception of a body once all threads have ended.
 template <class Result, class Body>
-Result reduce_blocks(std::size_t count, unsigned threads, const Body& body) {
+Result reduce_each(std::size_t count, unsigned threads, const Body& body) {
   constexpr std::size_t block = std::size_t{1} << 13;
   const std::size_t blocks = (count + block - 1) / block;
   std::atomic<std::size_t> next{0};
@@ -45,7 +45,7 @@ Result reduce_blocks(std::size_t count, unsigned threads, const Body& body) {
     try {
       Result mine;
       for (std::size_t b; (b = next.fetch_add(1, std::memory_order_relaxed)) < blocks;)
-        body(b * block, std::min(count, (b + 1) * block), mine);
+        for (std::size_t i = b * block, end = std::min(count, i + block); i < end; ++i) body(i, mine);
       const std::scoped_lock guard(lock);
       total.merge(mine);
     } catch (...) {

@@ -46,11 +46,9 @@ namespace {
 using namespace verifier;
 
 void require_finite(PointsView points, unsigned threads) {
-  const Findings findings =
-      reduce_blocks<Findings>(points.size(), threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
-        for (std::size_t i = begin; i < end; ++i)
-          if (!std::isfinite(points.x(i)) || !std::isfinite(points.y(i))) mine.fail(i);
-      });
+  const Findings findings = reduce_each<Findings>(points.size(), threads, [&](std::size_t i, Findings& mine) {
+    if (!std::isfinite(points.x(i)) || !std::isfinite(points.y(i))) mine.fail(i);
+  });
   if (findings.failures != 0) refuse_point(findings.first);
 }
 

@@ -22,13 +22,6 @@ std::string Mesh::describe_edge(std::int64_t edge) const {
          std::to_string(vertex(t, next3(k))) + " to " + std::to_string(vertex(t, previous3(k)));
 }
 
-void conclude(Check& check, const Findings& findings, const std::string& what) {
-  check.failures = findings.failures;
-  check.first = findings.first;
-  check.passed = findings.failures == 0;
-  check.what = check.passed ? std::string() : what;
-}
-
 void fail(Check& check, std::int64_t first, const std::string& what) {
   check.passed = false;
   check.failures = 1;
@@ -40,35 +33,32 @@ void check_range(Mesh& mesh, Check& check) {
   const auto points = static_cast<std::int64_t>(mesh.points.size());
   const auto count = static_cast<std::int64_t>(mesh.count);
   mesh.used.assign(mesh.points.size(), 0);
-  const Findings findings =
-      reduce_blocks<Findings>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
-        for (std::size_t t = begin; t < end; ++t) {
-          bool good = true;
-          for (std::size_t k = 0; k < 3; ++k) {
-            const std::int64_t v = mesh.vertex(t, k);
-            if (v < 0 || v >= points || v == mesh.vertex(t, next3(k))) {
-              good = false;
-            } else {
-              // Many triangles share a vertex; all of them write the same value.
-              std::atomic_ref<std::uint8_t>(mesh.used[static_cast<std::size_t>(v)]).store(1, std::memory_order_relaxed);
-            }
-            if (!mesh.neighbors.empty()) {
-              const std::int64_t s = mesh.neighbors[3 * t + k];
-              good = good && s >= -1 && s < count;
-            }
-          }
-          if (!good) mine.fail(t);
-        }
-      });
+  const Findings findings = reduce_each<Findings>(mesh.count, mesh.threads, [&](std::size_t t, Findings& mine) {
+    bool good = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t v = mesh.vertex(t, k);
+      if (v < 0 || v >= points || v == mesh.vertex(t, next3(k))) {
+        good = false;
+      } else {
+        // Many triangles share a vertex; all of them write the same value.
+        std::atomic_ref<std::uint8_t>(mesh.used[static_cast<std::size_t>(v)]).store(1, std::memory_order_relaxed);
+      }
+      if (!mesh.neighbors.empty()) {
+        const std::int64_t s = mesh.neighbors[3 * t + k];
+        good = good && s >= -1 && s < count;
+      }
+    }
+    if (!good) mine.fail(t);
+  });
   mesh.vertices = static_cast<std::size_t>(std::accumulate(mesh.used.begin(), mesh.used.end(), std::uint64_t{0}));
   conclude_range(mesh, findings, check);
 }
 
 void conclude_range(const Mesh& mesh, const Findings& findings, Check& check) {
-  conclude(check, findings,
-           findings.first < 0 ? std::string()
-                              : mesh.describe_triangle(findings.first) +
-                                    " has an index out of range, a neighbour out of range or a vertex twice");
+  conclude(check, findings, [&] {
+    return mesh.describe_triangle(findings.first) +
+           " has an index out of range, a neighbour out of range or a vertex twice";
+  });
 }
 
 namespace {
@@ -81,12 +71,11 @@ struct Edges {
 }  // namespace
 
 void check_boundary(Mesh& mesh, Check& check) {
-  mesh.boundary = reduce_blocks<Edges>(mesh.count, mesh.threads, [&](std::size_t begin, std::size_t end, Edges& mine) {
-                    for (std::size_t t = begin; t < end; ++t)
-                      for (std::size_t k = 0; k < 3; ++k)
-                        if (mesh.neighbors[3 * t + k] < 0)
-                          mine.list.push_back({mesh.vertex(t, next3(k)), mesh.vertex(t, previous3(k)),
-                                               static_cast<std::int64_t>(3 * t + k)});
+  mesh.boundary = reduce_each<Edges>(mesh.count, mesh.threads, [&](std::size_t t, Edges& mine) {
+                    for (std::size_t k = 0; k < 3; ++k)
+                      if (mesh.neighbors[3 * t + k] < 0)
+                        mine.list.push_back({mesh.vertex(t, next3(k)), mesh.vertex(t, previous3(k)),
+                                             static_cast<std::int64_t>(3 * t + k)});
                   }).list;
   link_boundary(mesh, check);
 }
@@ -101,8 +90,9 @@ void link_boundary(Mesh& mesh, Check& check) {
   for (std::size_t i = 1; i < edges.size(); ++i)
     if (edges[i].from == edges[i - 1].from) findings.fail(static_cast<std::size_t>(edges[i].edge));
   if (findings.failures != 0)
-    return conclude(check, findings,
-                    mesh.describe_edge(findings.first) + ", is not the only boundary edge that leaves its start");
+    return conclude(check, findings, [&] {
+      return mesh.describe_edge(findings.first) + ", is not the only boundary edge that leaves its start";
+    });
   // Exactly one edge leaves each vertex. If a walk from the first edge comes back to it after all edges, the boundary
   // is one cycle.
   mesh.loop.reserve(edges.size());

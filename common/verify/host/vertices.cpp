@@ -15,17 +15,14 @@ template <class IsDuplicate, class IsRepresentative>
 void check_list(const Mesh& mesh, std::span<const Duplicate> list, std::size_t expected, Check& check,
                 const IsDuplicate& is_duplicate, const IsRepresentative& is_representative) {
   const auto points = static_cast<std::int64_t>(mesh.points.size());
-  const Findings findings =
-      reduce_blocks<Findings>(list.size(), mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const auto [p, r] = list[i];
-          // As many strictly ascending duplicates as there are in all are all of them.
-          const bool good = p >= 0 && p < points && r >= 0 && r < p && (i == 0 || list[i - 1].point < p) &&
-                            is_duplicate(static_cast<std::size_t>(p)) && equal(mesh.point(p), mesh.point(r)) &&
-                            is_representative(static_cast<std::size_t>(p), static_cast<std::size_t>(r));
-          if (!good) mine.fail(i);
-        }
-      });
+  const Findings findings = reduce_each<Findings>(list.size(), mesh.threads, [&](std::size_t i, Findings& mine) {
+    const auto [p, r] = list[i];
+    // As many strictly ascending duplicates as there are in all are all of them.
+    const bool good = p >= 0 && p < points && r >= 0 && r < p && (i == 0 || list[i - 1].point < p) &&
+                      is_duplicate(static_cast<std::size_t>(p)) && equal(mesh.point(p), mesh.point(r)) &&
+                      is_representative(static_cast<std::size_t>(p), static_cast<std::size_t>(r));
+    if (!good) mine.fail(i);
+  });
   conclude_duplicates(list, expected, findings, check);
 }
 
@@ -37,9 +34,10 @@ void conclude_duplicates(std::span<const Duplicate> list, std::size_t expected, 
                          Check& check) {
   if (findings.failures != 0) {
     const Duplicate& d = list[static_cast<std::size_t>(findings.first)];
-    return conclude(check, findings,
-                    "entry " + std::to_string(findings.first) + " of the duplicates (point " + std::to_string(d.point) +
-                        ", representative " + std::to_string(d.representative) + ") is wrong or out of order");
+    return conclude(check, findings, [&] {
+      return "entry " + std::to_string(findings.first) + " of the duplicates (point " + std::to_string(d.point) +
+             ", representative " + std::to_string(d.representative) + ") is wrong or out of order";
+    });
   }
   if (list.size() != expected)
     return fail(check, -1,
@@ -64,23 +62,22 @@ void check_vertices(const Mesh& mesh, const MeshView& view, Check& check) {
   // Each vertex marks the first of the unused points that equal it.
   std::vector<std::uint8_t> met(unused.size(), 0);
   if (!unused.empty())
-    reduce_blocks<Findings>(mesh.points.size(), mesh.threads, [&](std::size_t begin, std::size_t end, Findings&) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (mesh.used[i] == 0) continue;
-        const auto p = static_cast<std::int32_t>(i);
-        const auto it = std::lower_bound(unused.begin(), unused.end(), p,
-                                         [&](std::int32_t a, std::int32_t b) { return less(mesh, a, b); });
-        if (it == unused.end() || !equal(mesh.point(*it), mesh.point(p))) continue;
-        std::atomic_ref<std::uint8_t>(met[static_cast<std::size_t>(it - unused.begin())])
-            .store(1, std::memory_order_relaxed);
-      }
+    reduce_each<Findings>(mesh.points.size(), mesh.threads, [&](std::size_t i, Findings&) {
+      if (mesh.used[i] == 0) return;
+      const auto p = static_cast<std::int32_t>(i);
+      const auto it = std::lower_bound(unused.begin(), unused.end(), p,
+                                       [&](std::int32_t a, std::int32_t b) { return less(mesh, a, b); });
+      if (it == unused.end() || !equal(mesh.point(*it), mesh.point(p))) return;
+      std::atomic_ref<std::uint8_t>(met[static_cast<std::size_t>(it - unused.begin())])
+          .store(1, std::memory_order_relaxed);
     });
   Findings findings;
   for (std::size_t i = 0; i < unused.size(); ++i) {
     if (i > 0 && equal(mesh.point(unused[i]), mesh.point(unused[i - 1]))) met[i] = met[i - 1];
     if (met[i] == 0) findings.fail(static_cast<std::size_t>(unused[i]));
   }
-  conclude(check, findings, "point " + std::to_string(findings.first) + " is not a vertex and equals none");
+  conclude(check, findings,
+           [&] { return "point " + std::to_string(findings.first) + " is not a vertex and equals none"; });
 }
 
 void check_collinear(const Mesh& mesh, const MeshView& view, Check& check) {
@@ -92,16 +89,14 @@ void check_collinear(const Mesh& mesh, const MeshView& view, Check& check) {
     const auto by_position = [&](std::int32_t a, std::int32_t b) { return less(mesh, a, b); };
     const std::int32_t low = *std::min_element(order.begin(), order.end(), by_position);
     const std::int32_t high = *std::max_element(order.begin(), order.end(), by_position);
-    const Findings findings =
-        reduce_blocks<Findings>(n, mesh.threads, [&](std::size_t begin, std::size_t end, Findings& mine) {
-          for (std::size_t i = begin; i < end; ++i)
-            if (orientation(mesh.point(low), mesh.point(high), mesh.point(static_cast<std::int32_t>(i))) != 0)
-              mine.fail(i);
-        });
+    const Findings findings = reduce_each<Findings>(n, mesh.threads, [&](std::size_t i, Findings& mine) {
+      if (orientation(mesh.point(low), mesh.point(high), mesh.point(static_cast<std::int32_t>(i))) != 0) mine.fail(i);
+    });
     if (findings.failures != 0)
-      return conclude(check, findings,
-                      "there are no triangles, but points " + std::to_string(low) + ", " + std::to_string(high) +
-                          " and " + std::to_string(findings.first) + " are not collinear");
+      return conclude(check, findings, [&] {
+        return "there are no triangles, but points " + std::to_string(low) + ", " + std::to_string(high) + " and " +
+               std::to_string(findings.first) + " are not collinear";
+      });
   }
   if (!view.has_duplicates) {
     check.passed = true;

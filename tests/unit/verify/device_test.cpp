@@ -279,7 +279,10 @@ TEST(OnDevices, MeshThatIsOnlyInDeviceMemory) {
         const Allocation points = ctx.memory.import(m.xy.data(), m.xy.size() * sizeof(double));
         const Allocation triangles = ctx.memory.import(m.triangles.data(), m.triangles.size() * 4);
         const Allocation neighbors = ctx.memory.import(m.neighbors.data(), m.neighbors.size() * 4);
-        const VerifyInput input{points, triangles, neighbors, m.xy.size() / 2, m.size(), m.hull, m.duplicates, listed};
+        const Allocation no_flags;
+        const auto count = static_cast<std::uint32_t>(m.size());
+        const VerifyInput input{
+            {points, triangles, neighbors, no_flags, count, count, 0}, m.xy.size() / 2, m.hull, m.duplicates, listed};
         expect_same_report(verify_on_device(ctx, input, {}), expected);
       }
     }

@@ -30,12 +30,7 @@ CADT_FN cadt_u32 cadt_set_of(CADT_GLOBAL const cadt_u32* starts, cadt_u32 count,
 }
 
 CADT_FN cadt_key_grid cadt_grid_of_set(CADT_GLOBAL const cadt_set* sets, cadt_u32 set, cadt_u32 levels) {
-  cadt_key_grid grid;
-  grid.half_min_x = sets[set].half_min_x;
-  grid.half_min_y = sets[set].half_min_y;
-  grid.scale = sets[set].scale;
-  grid.bits_x = grid.bits_y = levels;
-  grid.set = set;
+  const cadt_key_grid grid = {sets[set].half_min_x, sets[set].half_min_y, sets[set].scale, levels, levels, set};
   return grid;
 }
 

@@ -182,9 +182,8 @@ CADT_KERNEL(cadt_insert_partitions, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 n, cad
   if (cadt_item >= partitions) return;
   CADT_GROUP_COUNTERS(counters, counter_rows);
   CADT_LOCKED_MESH(mesh);
-  cadt_partition partition;
-  partition.begin = cadt_begin_of(cadt_item, blocks << level, n);
-  partition.size = cadt_min_u32(blocks << level, n - partition.begin);
+  const cadt_u32 own = cadt_begin_of(cadt_item, blocks << level, n);
+  const cadt_partition partition = {own, cadt_min_u32(blocks << level, n - own)};
   CADT_SET_PARTITION(mesh, partition.begin, partition.size);
   cadt_u32 stalled_blocks = 0u; /* consecutive blocks of which most points were deferred */
   for (cadt_u32 block = (partition.begin >> level) + from; block < (partition.begin >> level) + to; ++block) {
@@ -216,9 +215,7 @@ CADT_KERNEL(cadt_insert_partitions, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 n, cad
 
 /* Whether all three vertices are in the same partition of `size` positions. */
 CADT_FN cadt_u32 cadt_in_same_partition(cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 size) {
-  cadt_partition partition;
-  partition.begin = a - a % size;
-  partition.size = size;
+  const cadt_partition partition = {a - a % size, size};
   return a != CADT_GHOST && cadt_owns(&partition, b) && cadt_owns(&partition, c) ? 1u : 0u;
 }
 
@@ -230,7 +227,7 @@ CADT_KERNEL(cadt_border_sweep, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt
 #if CADT_CONTIGUOUS
   CADT_GROUP_COUNTERS(counters, counter_rows);
   CADT_LOCKED_MESH(mesh);
-  const cadt_deferred deferred = cadt_deferred_lists(deferred_edges, deferred_counts, edge_capacity);
+  const cadt_deferred deferred = {deferred_edges, deferred_counts, edge_capacity};
   CADT_DECLARE_WORKLIST(work);
   CADT_FOR(t, count, grain) {
     const cadt_snapshot s = cadt_snapshot_of(&mesh, t);

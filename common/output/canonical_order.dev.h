@@ -59,9 +59,7 @@ CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_u32* vertices, CADT_GL
   CADT_FOR(t, count, grain) {
     const cadt_triangle triangle = cadt_read_triangle(vertices, input_ids, t);
     if (triangle.a - from >= size) continue;
-    cadt_member member;
-    member.second = triangle.b;
-    member.triangle = t;
+    const cadt_member member = {triangle.b, t};
 #if CADT_PLACES_KNOWN
     members[buckets[triangle.a] + places[t] - base] = member;
 #else

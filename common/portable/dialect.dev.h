@@ -65,9 +65,7 @@ typedef double2 cadt_real2;
 #endif
 CADT_FN cadt_point cadt_load_point(CADT_GLOBAL const cadt_point* p) {
   const cadt_real2 both = *(CADT_GLOBAL const cadt_real2*)p;
-  cadt_point point;
-  point.x = both.x;
-  point.y = both.y;
+  const cadt_point point = {both.x, both.y};
   return point;
 }
 #else

@@ -130,12 +130,10 @@ typedef struct {
 CADT_FN cadt_i128 cadt_mul_i64(cadt_i64 a, cadt_i64 b) {
   cadt_u64 ua = CADT_CAST(cadt_u64, a), ub = CADT_CAST(cadt_u64, b);
   cadt_u64 high = cadt_mulhi_u64(ua, ub);
-  cadt_i128 r;
   /* the unsigned product exceeds the signed one by b * 2^64 if a < 0 and by a * 2^64 if b < 0 */
   if (a < 0) high -= ub;
   if (b < 0) high -= ua;
-  r.high = CADT_CAST(cadt_i64, high);
-  r.low = ua * ub;
+  const cadt_i128 r = {CADT_CAST(cadt_i64, high), ua * ub};
   return r;
 }
 CADT_FN cadt_i128 cadt_add_i128(cadt_i128 a, cadt_i128 b) {
@@ -162,9 +160,8 @@ CADT_FN cadt_i128 cadt_minor_i64(cadt_i64 a, cadt_i64 b, cadt_i64 c, cadt_i64 d)
 /* Magnitude of a; `negative` becomes all ones or 0. */
 CADT_FN cadt_i128 cadt_abs_i128(cadt_i128 a, cadt_u64* negative) {
   const cadt_u64 mask = CADT_CAST(cadt_u64, a.high >> 63), low = (a.low ^ mask) - mask;
-  cadt_i128 r;
-  r.high = CADT_CAST(cadt_i64, (CADT_CAST(cadt_u64, a.high) ^ mask) + (mask && low == 0ul ? 1ul : 0ul));
-  r.low = low;
+  const cadt_u64 high = (CADT_CAST(cadt_u64, a.high) ^ mask) + (mask && low == 0ul ? 1ul : 0ul);
+  const cadt_i128 r = {CADT_CAST(cadt_i64, high), low};
   *negative = mask;
   return r;
 }

@@ -143,10 +143,8 @@ typedef struct {
 } cadt_lifted_vector;
 
 CADT_FN cadt_lifted_vector cadt_lifted_vector_of(cadt_point from, cadt_point to) {
-  cadt_lifted_vector arm;
-  arm.x = to.x - from.x;
-  arm.y = to.y - from.y;
-  arm.lift = arm.x * arm.x + arm.y * arm.y;
+  const cadt_real x = to.x - from.x, y = to.y - from.y;
+  const cadt_lifted_vector arm = {x, y, x * x + y * y};
   return arm;
 }
 

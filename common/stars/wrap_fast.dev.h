@@ -53,9 +53,7 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
   const cadt_u32 most = CADT_NEAR_POINTS, few = CADT_NEAR_FEW;
   cadt_u32 nodes, leaves, many = 1u, going = 1u;
   for (cadt_u32 tries = 0u; tries < 3u && going; ++tries) {
-    cadt_disc disc;
-    disc.x = disc.y = 0.0;
-    disc.square = w->reach.square;
+    const cadt_disc disc = {0.0, 0.0, w->reach.square};
     CADT_TEAM_FOR(j, w->in.node_count) {
       if (cadt_aabb_matters(w->in.nodes[j], p, 0.0, 0.0, 0.0, &disc)) w->m->nodes[cadt_near_count(w)] = j;
     }
@@ -274,17 +272,12 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
                  CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* counts, CADT_GLOBAL cadt_u32* todo,
                  CADT_GLOBAL cadt_u16* arcs) {
   CADT_TEAM_MEMORY cadt_near_memory memory;
-  const cadt_wrap_sink sink = cadt_wrap_sink_of(n, row, star_vertices, star_words, begins, sizes, counts);
+  const cadt_wrap_sink sink = {n, row, star_words, star_vertices, begins, sizes, counts};
   cadt_counters counters;
   cadt_counters_clear(&counters);
   CADT_FOR_TEAMS(v, n, grain) {
-    cadt_near w;
-    w.m = &memory;
-    w.in = cadt_aabb_tree_of(cadt_wrap_span_of(0, 0u, n), points, leaves, nodes);
-    w.counters = &counters;
-    w.p = v;
-    w.reach = cadt_wrap_reach(&w.in, v);
-    w.reduction = w.known = 0u;
+    const cadt_aabb_tree in = cadt_aabb_tree_of(cadt_wrap_span_of(0, 0u, n), points, leaves, nodes);
+    cadt_near w = {&memory, in, &counters, cadt_wrap_reach(&in, v), v, 0u, 0u, 0u, 0u, 0u};
     cadt_begin_reductions(&memory.reductions);
     CADT_TEAM_SYNC();
     const cadt_u32 kind = cadt_near_star(&w);

@@ -72,7 +72,7 @@ CADT_FN cadt_point cadt_load_point(CADT_GLOBAL const cadt_point* p) {
 CADT_FN cadt_point cadt_load_point(const cadt_point* p) { return *p; }
 #endif
 
-/* Four words, at an address that is a multiple of 16, or two, of 8. \pre nobody changes them meanwhile */
+/* Four words, at an address that is a multiple of 16. \pre nobody changes them meanwhile */
 #if defined(CADT_LANG_OPENCL) || defined(CADT_LANG_CUDA)
 CADT_FN void cadt_store_four(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 d) {
   uint4 four;
@@ -81,12 +81,6 @@ CADT_FN void cadt_store_four(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b, ca
   four.z = c;
   four.w = d;
   *(CADT_GLOBAL uint4*)p = four;
-}
-CADT_FN void cadt_store_two(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b) {
-  uint2 two;
-  two.x = a;
-  two.y = b;
-  *(CADT_GLOBAL uint2*)p = two;
 }
 CADT_FN void cadt_load_four(CADT_GLOBAL const cadt_u32* p, cadt_u32* w) {
   const uint4 four = *(CADT_GLOBAL const uint4*)p;
@@ -102,10 +96,6 @@ CADT_FN void cadt_store_four(cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, ca
   p[1] = b;
   p[2] = c;
   p[3] = d;
-}
-CADT_FN void cadt_store_two(cadt_u32* p, cadt_u32 a, cadt_u32 b) {
-  p[0] = a;
-  p[1] = b;
 }
 #endif
 
@@ -131,15 +121,6 @@ CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
   return begin < count ? CADT_CAST(cadt_u32, begin) : count;
 }
 
-/* The elements i < count of this work-item. `grain`: the number of neighbouring elements on CPUs. */
-#if CADT_CONTIGUOUS
-#define CADT_FOR(i, count, grain)                                                                             \
-  for (cadt_u32 i = cadt_begin_of(cadt_item, (grain), (count)), i##_end = cadt_min_u32(i + (grain), (count)); \
-       i < i##_end; ++i)
-#else
-#define CADT_FOR(i, count, grain) for (cadt_u32 i = cadt_item; i < (count); i += cadt_items)
-#endif
-
 /* The elements of part `part` of `parts`, for partial results: chunks of neighbours, or strided. */
 #if CADT_CONTIGUOUS
 #define CADT_FOR_PART(i, part, parts, count, chunk)                                                        \
@@ -148,6 +129,8 @@ CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
 #else
 #define CADT_FOR_PART(i, part, parts, count, chunk) for (cadt_u32 i = (part); i < (count); i += (parts))
 #endif
+/* The elements i < count of this work-item. `grain`: the number of neighbouring elements on CPUs. */
+#define CADT_FOR(i, count, grain) CADT_FOR_PART(i, cadt_item, cadt_items, count, grain)
 
 /* As CADT_FOR, for work of many steps and branches, in loops that are not over the elements alone: the first element,
  * one behind the last, and the step. Divergent lanes of a warp run one after another, so where there are fewer elements

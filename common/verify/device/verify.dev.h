@@ -21,14 +21,10 @@ typedef struct {
   cadt_u32 examined, failures, first;
 } cadt_finding;
 
-/* The elements of a work-item, and where its list has entry j. Only the first `items` work-items take part: a launch
- * may start more, which have no list. */
+/* Where the list of a work-item has entry j. */
 #if CADT_CONTIGUOUS
-#define CADT_VERIFY_FOR(i, count, grain, items) CADT_FOR(i, count, grain)
 #define CADT_LIST_AT(j, items, capacity) (CADT_CAST(cadt_u64, cadt_item) * (capacity) + (j))
 #else
-#define CADT_VERIFY_FOR(i, count, grain, items) \
-  for (cadt_u32 i = cadt_item; cadt_item < (items) && i < (count); i += (items))
 #define CADT_LIST_AT(j, items, capacity) (CADT_CAST(cadt_u64, (j)) * (items) + cadt_item)
 #endif
 
@@ -178,11 +174,12 @@ CADT_KERNEL(cadt_verify_filter, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_
             cadt_u32 grain, cadt_u32 items, CADT_GLOBAL cadt_u32* lists, CADT_GLOBAL cadt_u32* sizes, cadt_u32 capacity,
             CADT_GLOBAL cadt_u32* results) {
   CADT_MESH_VIEW(mesh);
+  if (cadt_item >= items) return; /* the launch may start others, which have no list */
   cadt_finding turn, edge;
   cadt_finding_clear(&turn);
   cadt_finding_clear(&edge);
   cadt_u32 open = 0u;
-  CADT_VERIFY_FOR(r, count, grain, items) {
+  CADT_FOR_PART(r, cadt_item, items, count, grain) {
     const cadt_u32 t = begin + r;
     const cadt_u32 v0 = mesh.vertices[3u * t], v1 = mesh.vertices[3u * t + 1u], v2 = mesh.vertices[3u * t + 2u];
     const cadt_point p0 = mesh.points[v0], p1 = mesh.points[v1], p2 = mesh.points[v2];
@@ -203,7 +200,7 @@ CADT_KERNEL(cadt_verify_filter, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_
       if (legal == CADT_UNKNOWN) lists[CADT_LIST_AT(open++, items, capacity)] = CADT_OPEN_A_TRIANGLE * r + k;
     }
   }
-  if (cadt_item < items) sizes[cadt_item] = open;
+  sizes[cadt_item] = open;
   CADT_GLOBAL cadt_u32* row = cadt_found_row(results, cadt_item);
   cadt_finding_flush(&turn, row + CADT_FOUND_ORIENTATION);
   cadt_finding_flush(&edge, row + CADT_FOUND_EDGES);

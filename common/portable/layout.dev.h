@@ -143,9 +143,8 @@ enum {
   CADT_SET_FLAT,       /* there are no triangles */
   CADT_SET_INDIVIDUAL, /* by itself */
   CADT_SET_WIDE,       /* by itself, in wide arithmetic */
-  CADT_SET_STATES = 3,
-  CADT_SET_FAILURE = 4,
-  CADT_SET_LANES = 32 /* lanes of a team for a set */
+  CADT_SET_FAILURE,    /* the lowest bit above: one vertex */
+  CADT_SET_LANES = 32  /* lanes of a team for a set */
 };
 
 /* What cadt_bounds finds. */

@@ -28,10 +28,9 @@ typedef struct {
 #define CADT_LIST_AT(j, items, capacity) (CADT_CAST(cadt_u64, (j)) * (items) + cadt_item)
 #endif
 
-CADT_FN void cadt_finding_clear(cadt_finding* finding) {
-  finding->examined = 0u;
-  finding->failures = 0u;
-  finding->first = CADT_NONE;
+CADT_FN cadt_finding cadt_no_finding(void) {
+  const cadt_finding none = {0u, 0u, CADT_NONE};
+  return none;
 }
 CADT_FN void cadt_finding_fail(cadt_finding* finding, cadt_u32 where) {
   finding->failures++;
@@ -69,9 +68,7 @@ CADT_FN cadt_u32 cadt_is_mutual(const cadt_mesh_view* mesh, cadt_u32 t, cadt_u32
 CADT_KERNEL(cadt_verify_structure, CADT_MESH_VIEW_PARAMETERS, cadt_u32 number_of_points, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* used, CADT_GLOBAL cadt_u32* results) {
   CADT_MESH_VIEW(mesh);
-  cadt_finding range, mutual;
-  cadt_finding_clear(&range);
-  cadt_finding_clear(&mutual);
+  cadt_finding range = cadt_no_finding(), mutual = cadt_no_finding();
   cadt_u32 boundary = 0u;
   CADT_FOR(t, mesh.triangles, grain) {
     cadt_u32 good = 1u;
@@ -106,8 +103,7 @@ CADT_FN cadt_u32 cadt_is_finite(double x) { return ((cadt_bits_of_double(x) >> 5
 /* Counts the points that are vertices, and looks for coordinates that are not finite. */
 CADT_KERNEL(cadt_verify_points, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* used, CADT_GLOBAL cadt_u32* results) {
-  cadt_finding finite;
-  cadt_finding_clear(&finite);
+  cadt_finding finite = cadt_no_finding();
   cadt_u32 vertices = 0u;
   CADT_FOR(i, count, grain) {
     const cadt_point p = points[i];
@@ -125,8 +121,7 @@ CADT_KERNEL(cadt_verify_points, CADT_GLOBAL const cadt_point* points, cadt_u32 c
 CADT_KERNEL(cadt_verify_duplicates, CADT_GLOBAL const cadt_point* points, cadt_u32 number_of_points,
             CADT_GLOBAL const cadt_u32* used, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* results) {
-  cadt_finding finding;
-  cadt_finding_clear(&finding);
+  cadt_finding finding = cadt_no_finding();
   CADT_FOR(i, count, grain) {
     const cadt_u32 p = pairs[2u * i], r = pairs[2u * i + 1u];
     const cadt_i32 before = i == 0u ? -1 : CADT_CAST(cadt_i32, pairs[2u * i - 2u]); /* may itself be negative */
@@ -175,9 +170,7 @@ CADT_KERNEL(cadt_verify_filter, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_
             CADT_GLOBAL cadt_u32* results) {
   CADT_MESH_VIEW(mesh);
   if (cadt_item >= items) return; /* the launch may start others, which have no list */
-  cadt_finding turn, edge;
-  cadt_finding_clear(&turn);
-  cadt_finding_clear(&edge);
+  cadt_finding turn = cadt_no_finding(), edge = cadt_no_finding();
   cadt_u32 open = 0u;
   CADT_FOR_PART(r, cadt_item, items, count, grain) {
     const cadt_u32 t = begin + r;
@@ -212,10 +205,7 @@ CADT_KERNEL(cadt_verify_exact, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_u
             CADT_GLOBAL cadt_u32* sizes, cadt_u32 capacity, CADT_GLOBAL cadt_u32* left, CADT_GLOBAL cadt_u32* results) {
   CADT_MESH_VIEW(mesh);
   if (cadt_item >= items) return;
-  cadt_finding turn, edge, tie;
-  cadt_finding_clear(&turn);
-  cadt_finding_clear(&edge);
-  cadt_finding_clear(&tie);
+  cadt_finding turn = cadt_no_finding(), edge = cadt_no_finding(), tie = cadt_no_finding();
   const cadt_u32 open = sizes[cadt_item];
   cadt_u32 kept = 0u;
   for (cadt_u32 i = 0u; i < open; ++i) {

@@ -125,8 +125,7 @@ CADT_KERNEL(cadt_batch_starts, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL co
 CADT_KERNEL(cadt_batch_classify, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* starts,
             cadt_u32 set_count, cadt_u32 most, cadt_u32 grain, CADT_GLOBAL cadt_u32* states) {
   CADT_TEAM_MEMORY cadt_u32 turns;
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   CADT_FOR_TEAMS(s, set_count, grain) {
     const cadt_u32 begin = starts[s], count = starts[s + 1u] - begin, wide = states[s];
     if (cadt_team_lane == 0u) turns = 0u;

@@ -40,13 +40,10 @@ CADT_FN void cadt_add_time(cadt_counters* counters, cadt_u32 timer) {
   counters->ticks[timer] += now - counters->last_clock;
   counters->last_clock = now;
 }
-#else
-#define CADT_ADD_TIME(counters, timer) ((void)0)
-#endif
 /* The time since the last reading goes to no timer. */
-#if CADT_TIMED
 #define CADT_SKIP_TIME(counters) ((counters)->last_clock = cadt_clock())
 #else
+#define CADT_ADD_TIME(counters, timer) ((void)0)
 #define CADT_SKIP_TIME(counters) ((void)0)
 #endif
 /* Where lanes of a GPU's warp wait for each other; a CPU's thread does not. */
@@ -68,6 +65,11 @@ CADT_FN void cadt_counters_clear(cadt_counters* counters) {
 #endif
 }
 
+/* Counters of a work-item that start at 0. */
+#define CADT_DECLARE_COUNTERS(counters) \
+  cadt_counters counters;               \
+  cadt_counters_clear(&counters)
+
 CADT_FN CADT_GLOBAL cadt_u32* cadt_counter_row(CADT_GLOBAL cadt_u32* counter_rows, cadt_u32 item) {
   return counter_rows + item % CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE;
 }
@@ -81,8 +83,7 @@ enum { CADT_GROUP_DONE = CADT_COUNTERS + CADT_TIMERS, CADT_GROUP_WORDS };
 #define CADT_GROUP_COUNTERS(counters, counter_rows)          \
   CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS];                \
   if (counter_rows) cadt_clear_sums(sums, CADT_GROUP_WORDS); \
-  cadt_counters counters;                                    \
-  cadt_counters_clear(&counters);                            \
+  CADT_DECLARE_COUNTERS(counters);                           \
   counters.sums = sums;                                      \
   counters.wanted = (counter_rows) != 0 ? 1u : 0u
 #define CADT_FLUSH_COUNTERS(counters, counter_rows) \
@@ -126,9 +127,7 @@ CADT_FN void cadt_flush_group(cadt_counters* counters, CADT_LOCAL_PTR cadt_u32* 
   }
 }
 #else
-#define CADT_GROUP_COUNTERS(counters, counter_rows) \
-  cadt_counters counters;                           \
-  cadt_counters_clear(&counters)
+#define CADT_GROUP_COUNTERS(counters, counter_rows) CADT_DECLARE_COUNTERS(counters)
 #define CADT_FLUSH_COUNTERS(counters, counter_rows) \
   if (counter_rows) cadt_flush_item((counters), (counter_rows), cadt_item)
 

@@ -81,8 +81,7 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_prove_stars, CADT_GLOBAL const cadt_po
   CADT_GRID_VIEW(grid);
   const cadt_keys keys = cadt_keys_of(high_keys, low_keys, low_bits);
   cadt_point most = {most_x, most_y};
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   const cadt_star_pool pool = {star_vertices, begins, sizes, counts + CADT_STARS_OVERFLOWED, overflow, room};
   CADT_FOR_TEAMS(turn, tile_count, grain) {
     const cadt_u32 t = cadt_tile_of_turn(turn, tile_count, sample);

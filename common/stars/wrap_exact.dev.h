@@ -126,8 +126,7 @@ CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
   const cadt_u32 stars = mostly_hull ? 0u : (arcs ? counts[CADT_WRAP_TODO] : count);
   if (mostly_hull && cadt_item == 0u)
     cadt_add_relaxed(counts + CADT_WRAP_FAILED, CADT_CAST(cadt_u32, CADT_MOST_HIGH_DEGREE) + 1u);
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   cadt_u32 exact_before = 0u;
   CADT_FOR_TEAMS(item, stars, grain) {
     const cadt_u32 v = todo[item], set = starts ? cadt_set_of(starts, set_count, v) : 0u;

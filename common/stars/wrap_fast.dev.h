@@ -273,8 +273,7 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
                  CADT_GLOBAL cadt_u16* arcs) {
   CADT_TEAM_MEMORY cadt_near_memory memory;
   const cadt_wrap_sink sink = {n, row, star_words, star_vertices, begins, sizes, counts};
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   CADT_FOR_TEAMS(v, n, grain) {
     const cadt_aabb_tree in = cadt_aabb_tree_of(cadt_wrap_span_of(0, 0u, n), points, leaves, nodes);
     cadt_near w = {&memory, in, &counters, cadt_wrap_reach(&in, v), v, 0u, 0u, 0u, 0u, 0u};

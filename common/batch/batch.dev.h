@@ -19,13 +19,7 @@
 /* The set of element i: the last one that starts at i or before. */
 CADT_FN cadt_u32 cadt_set_of(CADT_GLOBAL const cadt_u32* starts, cadt_u32 count, cadt_u32 i) {
   cadt_u32 low = 0u, high = count;
-  while (high - low > 1u) {
-    const cadt_u32 middle = low + (high - low) / 2u;
-    if (starts[middle] <= i)
-      low = middle;
-    else
-      high = middle;
-  }
+  CADT_FIND_LAST(low, high, middle, starts[middle] <= i);
   return low;
 }
 

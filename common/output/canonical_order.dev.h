@@ -128,13 +128,7 @@ CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL 
 /* The bucket of triangle i, among `count` from `from` on. */
 CADT_FN cadt_u32 cadt_bucket_of(CADT_GLOBAL const cadt_u32* buckets, cadt_u32 from, cadt_u32 count, cadt_u32 i) {
   cadt_u32 low = from, high = from + count;
-  while (high - low > 1u) {
-    const cadt_u32 middle = low + (high - low) / 2u;
-    if (cadt_bucket_begin(buckets, middle) <= i)
-      low = middle;
-    else
-      high = middle;
-  }
+  CADT_FIND_LAST(low, high, middle, cadt_bucket_begin(buckets, middle) <= i);
   return low;
 }
 

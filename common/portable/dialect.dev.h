@@ -114,6 +114,26 @@ CADT_FN void cadt_store_four(cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, ca
 
 CADT_FN cadt_u32 cadt_min_u32(cadt_u32 a, cadt_u32 b) { return a < b ? a : b; }
 
+/* Binary search for the first place from `low` to `high` - 1 that is not `before`, which is said of place `middle`:
+ * then it is `low`, which equals `high` if there is none. \pre high < 2^31 */
+#define CADT_FIND_FIRST(low, high, middle, before) \
+  while (low < high) {                             \
+    const cadt_u32 middle = (low + high) / 2u;     \
+    if (before)                                    \
+      low = middle + 1u;                           \
+    else                                           \
+      high = middle;                               \
+  }
+/* The same for the last place that is `at_or_before`, as `low` certainly is. */
+#define CADT_FIND_LAST(low, high, middle, at_or_before) \
+  while (high - low > 1u) {                             \
+    const cadt_u32 middle = (low + high) / 2u;          \
+    if (at_or_before)                                   \
+      low = middle;                                     \
+    else                                                \
+      high = middle;                                    \
+  }
+
 /* The first element of a work-item that takes `size` neighbouring ones. The product may exceed 32 bits: devices round
  * the number of work-items up to whole groups. */
 CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {

@@ -36,13 +36,7 @@ CADT_FN cadt_wrap_span cadt_wrap_span_of(CADT_GLOBAL const cadt_u32* starts, cad
 /* The set of a node: the last one whose first node is not behind it. */
 CADT_FN cadt_u32 cadt_wrap_set_of_node(CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, cadt_u32 node) {
   cadt_u32 low = 0u, high = set_count;
-  while (high - low > 1u) {
-    const cadt_u32 middle = low + (high - low) / 2u;
-    if (cadt_wrap_span_of(starts, middle, 0u).node <= node)
-      low = middle;
-    else
-      high = middle;
-  }
+  CADT_FIND_LAST(low, high, middle, cadt_wrap_span_of(starts, middle, 0u).node <= node);
   return low;
 }
 

@@ -185,13 +185,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   for (cadt_u32 k = CADT_CANDIDATES; k < count; ++k) { /* in the second attempt only */
     const cadt_u32 place = cadt_star_place(m, k), key = cadt_angle_key(m, p, first, start, place);
     cadt_u32 low = 0u, high = k;
-    while (low < high) {
-      const cadt_u32 centre = (low + high) / 2u;
-      if (cadt_angle_key(m, p, first, start, cadt_star_place(m, centre)) < key)
-        low = centre + 1u;
-      else
-        high = centre;
-    }
+    CADT_FIND_FIRST(low, high, centre, cadt_angle_key(m, p, first, start, cadt_star_place(m, centre)) < key);
     for (cadt_u32 at = k; at > low; --at) cadt_set_star_place(m, at, cadt_star_place(m, at - 1u));
     cadt_set_star_place(m, low, place);
   }

@@ -81,9 +81,7 @@ CADT_FN void cadt_write_flip(const cadt_locked_mesh* m, cadt_u32 half_edge, cons
     cadt_store_field(m->edge_flags + n, cadt_edge_flag_set(cadt_edge_flag_set(fn, j, cadt_edge_flag(ft, k1)), j1, 0u));
   }
   CADT_ADD_TIME(counters, CADT_TIME_FLIP);
-  CADT_NOISE_AT(m, CADT_SITE_HALF_EDGES);
   cadt_relink(m, outer_aq, CADT_HALF_EDGE(t, k));
-  CADT_NOISE_AT(m, CADT_SITE_NEXT_HALF_EDGE);
   cadt_relink(m, outer_bp, CADT_HALF_EDGE(n, j));
   CADT_ADD_TIME(counters, CADT_TIME_NEIGHBORS);
   counters->count[CADT_COUNT_FLIPS]++;

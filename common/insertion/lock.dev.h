@@ -170,6 +170,7 @@ CADT_FN cadt_u32 cadt_unlock_invalid(const cadt_locked_mesh* m, const cadt_lock_
 /* Unlocks a new triangle for the first time. \pre its fields and all half-edges to it are stored, and the caller still
  * owns the triangles it was split from; until then whoever finds it reads lock word 0 and retries */
 CADT_FN void cadt_publish_triangle(const cadt_locked_mesh* m, cadt_u32 t) {
+  CADT_NOISE_AT(m, CADT_SITE_PUBLISH);
   cadt_store_lock(m->locked[t].word + CADT_WORD_LOCK, 2u);
 }
 

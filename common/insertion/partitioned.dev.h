@@ -158,7 +158,6 @@ CADT_FN_INLINE cadt_u32 cadt_insert_in_partition(const cadt_locked_mesh* m, cons
   if (!done) return 0u;
   CADT_NOISE_AT(m, CADT_SITE_PARTITION);
   cadt_publish_triangle(m, 2u * i);
-  CADT_NOISE_AT(m, CADT_SITE_PARTITION);
   cadt_publish_triangle(m, 2u * i + 1u);
   counters->count[CADT_COUNT_LOCK_ATTEMPTS]++;
   cadt_legalize_around(m, partition, edges[0], p, counters);

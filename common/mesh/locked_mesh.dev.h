@@ -160,6 +160,7 @@ CADT_FN void cadt_store_flips(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 fl
 }
 
 CADT_FN void cadt_relink(const cadt_locked_mesh* m, cadt_u32 outer, cadt_u32 half_edge) {
+  CADT_NOISE_AT(m, CADT_SITE_HALF_EDGE);
   cadt_store_half_edge(m, CADT_TRIANGLE_OF(outer), CADT_EDGE_OF(outer), half_edge);
 }
 

@@ -15,6 +15,7 @@
 #include "common/mesh/mesh_view.dev.h"
 #include "common/points/bounds.dev.h"
 #include "common/points/hilbert_keys.dev.h"
+#include "common/points/import.dev.h"
 
 /* The set of element i: the last one that starts at i or before. */
 CADT_FN cadt_u32 cadt_set_of(CADT_GLOBAL const cadt_u32* starts, cadt_u32 count, cadt_u32 i) {
@@ -28,11 +29,8 @@ CADT_FN cadt_key_grid cadt_grid_of_set(CADT_GLOBAL const cadt_set* sets, cadt_u3
   return grid;
 }
 
-/* Adding 0.0 turns -0.0 into 0.0. */
 CADT_FN cadt_point cadt_scale_point(CADT_GLOBAL const cadt_set* set, cadt_point p) {
-  p.x = p.x * set->factor * set->factor_again + 0.0;
-  p.y = p.y * set->factor * set->factor_again + 0.0;
-  return p;
+  return cadt_multiplied_point(p, set->factor, set->factor_again);
 }
 
 CADT_FN double cadt_power_of_two(cadt_i32 exponent) {

@@ -164,13 +164,6 @@ CADT_FN_INLINE cadt_u32 cadt_insert_in_partition(const cadt_locked_mesh* m, cons
   return 1u;
 }
 
-/* Where all points lie on the hull, or all triangles have a vertex in common, hardly a triangle belongs to one
- * partition: after sixteen stalled blocks, more than lie along a border by chance, only one block of sixteen is tried.
- */
-CADT_FN cadt_u32 cadt_partition_stalled(cadt_u32 stalled_blocks) {
-  return stalled_blocks > 16u && stalled_blocks % 16u != 0u ? 1u : 0u;
-}
-
 /* Inserts, in each of the `partitions` of 2^level * blocks positions, the points of blocks `from` to `to` - 1 but the
  * blocks' representatives. A block is finished before the next, so that what is read again is still in the cache. \pre
  * the representatives of all blocks are in the mesh */
@@ -186,7 +179,9 @@ CADT_KERNEL(cadt_insert_partitions, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 n, cad
   CADT_SET_PARTITION(mesh, partition.begin, partition.size);
   cadt_u32 stalled_blocks = 0u; /* consecutive blocks of which most points were deferred */
   for (cadt_u32 block = (partition.begin >> level) + from; block < (partition.begin >> level) + to; ++block) {
-    const cadt_u32 stalled = cadt_partition_stalled(stalled_blocks);
+    /* Where all points lie on the hull, or all triangles have a vertex in common, hardly a triangle belongs to one
+     * partition: after sixteen stalled blocks, more than lie along a border by chance, only one of sixteen is tried. */
+    const cadt_u32 stalled = stalled_blocks > 16u && stalled_blocks % 16u != 0u ? 1u : 0u;
     cadt_u32 inserted = 0u, deferred = 0u;
     for (cadt_u32 l = level; l-- > 0u;) {
       const cadt_u32 begin = block << (level - l - 1u), end = begin + (1u << (level - l - 1u));

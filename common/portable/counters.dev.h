@@ -70,6 +70,14 @@ CADT_FN void cadt_counters_clear(cadt_counters* counters) {
   cadt_counters counters;               \
   cadt_counters_clear(&counters)
 
+/* Adds the numbers of exact orientations, exact incircles and ties to the three words from `found` on. */
+CADT_FN void cadt_flush_exact(const cadt_counters* counters, CADT_GLOBAL cadt_u32* found) {
+  for (cadt_u32 k = 0u; k < 3u; ++k) {
+    const cadt_u32 count = counters->count[CADT_COUNT_EXACT_ORIENTATIONS + k];
+    if (count) cadt_add_relaxed(found + k, count);
+  }
+}
+
 CADT_FN CADT_GLOBAL cadt_u32* cadt_counter_row(CADT_GLOBAL cadt_u32* counter_rows, cadt_u32 item) {
   return counter_rows + item % CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE;
 }

@@ -34,7 +34,7 @@ CADT_KERNEL(cadt_apex_of_high_degree, CADT_GLOBAL const cadt_point* points, CADT
     }
     edges[e].left = best;
   }
-  cadt_wrap_flush_counts(&counters, counts);
+  cadt_flush_exact(&counters, counts + CADT_WRAP_EXACT_ORIENTATIONS);
 }
 
 #endif

@@ -156,11 +156,7 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_prove_stars, CADT_GLOBAL const cadt_po
     }
     CADT_TEAM_SYNC();
   }
-  if (counters.count[CADT_COUNT_EXACT_ORIENTATIONS])
-    cadt_add_relaxed(counts + CADT_STARS_EXACT_ORIENTATIONS, counters.count[CADT_COUNT_EXACT_ORIENTATIONS]);
-  if (counters.count[CADT_COUNT_EXACT_INCIRCLES])
-    cadt_add_relaxed(counts + CADT_STARS_EXACT_INCIRCLES, counters.count[CADT_COUNT_EXACT_INCIRCLES]);
-  if (counters.count[CADT_COUNT_TIES]) cadt_add_relaxed(counts + CADT_STARS_TIES, counters.count[CADT_COUNT_TIES]);
+  cadt_flush_exact(&counters, counts + CADT_STARS_EXACT_ORIENTATIONS);
 }
 
 #endif

@@ -158,7 +158,7 @@ CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
     }
     cadt_wrap_store(&sink, &memory.place, v, span.begin, memory.star + begin, size, side > 0 ? 1u : 0u, kind);
   }
-  cadt_wrap_flush_counts(&counters, counts);
+  cadt_flush_exact(&counters, counts + CADT_WRAP_EXACT_ORIENTATIONS);
 }
 
 #endif

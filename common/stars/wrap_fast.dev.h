@@ -39,13 +39,6 @@ CADT_FN cadt_u32 cadt_near_reduce(cadt_near* w, cadt_u32 value, cadt_u32* count)
   return cadt_end_reduction(&w->m->reductions, &w->reduction, value, count);
 }
 
-/* Stores point i, which is at x, y relative to p. */
-CADT_FN void cadt_near_store(const cadt_near* w, cadt_u32 slot, cadt_u32 i, double x, double y) {
-  w->m->at[slot] = i;
-  w->m->x[slot] = CADT_CAST(float, x * w->reach.unit);
-  w->m->y[slot] = CADT_CAST(float, y * w->reach.unit);
-}
-
 /* Gathers the points within reach; the reach changes if they are too many or too few. Returns 0 if that does not help.
  */
 CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
@@ -73,7 +66,10 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
       const double x = c.x - p.x, y = c.y - p.y;
       if (x * x + y * y > w->reach.square) continue;
       const cadt_u32 slot = cadt_near_count(w);
-      if (slot < most) cadt_near_store(w, slot, i, x, y);
+      if (slot >= most) continue;
+      w->m->at[slot] = i;
+      w->m->x[slot] = CADT_CAST(float, x * w->reach.unit);
+      w->m->y[slot] = CADT_CAST(float, y * w->reach.unit);
     }
     cadt_near_reduce(w, CADT_NONE, &w->known);
     /* The points must have been within reach of the last search. */
@@ -300,7 +296,7 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
     if (cadt_team_lane == 0u && !kind) arcs[memory.place * CADT_WRAP_ROW] = CADT_CAST(cadt_u16, noted << 1 | w.closed);
     cadt_wrap_store(&sink, &memory.place, v, 0u, memory.leaves, w.size, 1u, kind);
   }
-  cadt_wrap_flush_counts(&counters, counts);
+  cadt_flush_exact(&counters, counts + CADT_WRAP_EXACT_ORIENTATIONS);
 }
 
 #endif

@@ -44,13 +44,4 @@ CADT_FN void cadt_wrap_store(const cadt_wrap_sink* s, CADT_TEAM_PTR cadt_u32* pl
   CADT_TEAM_SYNC();
 }
 
-/* At the end of a work-item: adds its exact tests to the counts. */
-CADT_FN void cadt_wrap_flush_counts(const cadt_counters* counters, CADT_GLOBAL cadt_u32* counts) {
-  if (counters->count[CADT_COUNT_EXACT_ORIENTATIONS])
-    cadt_add_relaxed(counts + CADT_WRAP_EXACT_ORIENTATIONS, counters->count[CADT_COUNT_EXACT_ORIENTATIONS]);
-  if (counters->count[CADT_COUNT_EXACT_INCIRCLES])
-    cadt_add_relaxed(counts + CADT_WRAP_EXACT_INCIRCLES, counters->count[CADT_COUNT_EXACT_INCIRCLES]);
-  if (counters->count[CADT_COUNT_TIES]) cadt_add_relaxed(counts + CADT_WRAP_TIES, counters->count[CADT_COUNT_TIES]);
-}
-
 #endif

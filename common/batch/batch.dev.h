@@ -15,35 +15,22 @@
 #include "common/mesh/mesh_view.dev.h"
 #include "common/points/bounds.dev.h"
 #include "common/points/hilbert_keys.dev.h"
+#include "common/points/import.dev.h"
 
 /* The set of element i: the last one that starts at i or before. */
 CADT_FN cadt_u32 cadt_set_of(CADT_GLOBAL const cadt_u32* starts, cadt_u32 count, cadt_u32 i) {
   cadt_u32 low = 0u, high = count;
-  while (high - low > 1u) {
-    const cadt_u32 middle = low + (high - low) / 2u;
-    if (starts[middle] <= i)
-      low = middle;
-    else
-      high = middle;
-  }
+  CADT_FIND_LAST(low, high, middle, starts[middle] <= i);
   return low;
 }
 
 CADT_FN cadt_key_grid cadt_grid_of_set(CADT_GLOBAL const cadt_set* sets, cadt_u32 set, cadt_u32 levels) {
-  cadt_key_grid grid;
-  grid.half_min_x = sets[set].half_min_x;
-  grid.half_min_y = sets[set].half_min_y;
-  grid.scale = sets[set].scale;
-  grid.bits_x = grid.bits_y = levels;
-  grid.set = set;
+  const cadt_key_grid grid = {sets[set].half_min_x, sets[set].half_min_y, sets[set].scale, levels, levels, set};
   return grid;
 }
 
-/* Adding 0.0 turns -0.0 into 0.0. */
 CADT_FN cadt_point cadt_scale_point(CADT_GLOBAL const cadt_set* set, cadt_point p) {
-  p.x = p.x * set->factor * set->factor_again + 0.0;
-  p.y = p.y * set->factor * set->factor_again + 0.0;
-  return p;
+  return cadt_multiplied_point(p, set->factor, set->factor_again);
 }
 
 CADT_FN double cadt_power_of_two(cadt_i32 exponent) {
@@ -130,8 +117,7 @@ CADT_KERNEL(cadt_batch_starts, CADT_GLOBAL const cadt_u32* ranks, CADT_GLOBAL co
 CADT_KERNEL(cadt_batch_classify, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* starts,
             cadt_u32 set_count, cadt_u32 most, cadt_u32 grain, CADT_GLOBAL cadt_u32* states) {
   CADT_TEAM_MEMORY cadt_u32 turns;
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   CADT_FOR_TEAMS(s, set_count, grain) {
     const cadt_u32 begin = starts[s], count = starts[s + 1u] - begin, wide = states[s];
     if (cadt_team_lane == 0u) turns = 0u;

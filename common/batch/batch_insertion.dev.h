@@ -36,9 +36,7 @@ CADT_FN cadt_u32 cadt_insert_set(cadt_locked_mesh* m, cadt_u32 n, const cadt_def
   cadt_make_seed_mesh(m, counters);
   cadt_locked_mesh own = *m;
   CADT_SET_PARTITION(own, 0u, n);
-  cadt_partition partition;
-  partition.begin = 0u;
-  partition.size = n;
+  const cadt_partition partition = {0u, n};
   CADT_DECLARE_WORKLIST(work);
   for (cadt_u32 level = levels; level-- > 0u;) {
     const cadt_u32 blocks = (((n - 1u) >> level) + 1u) / 2u;
@@ -70,7 +68,7 @@ CADT_KERNEL(cadt_batch_insert, CADT_GLOBAL cadt_locked_triangle* locked, CADT_GL
             CADT_GLOBAL cadt_u32* counter_rows) {
 #if CADT_CONTIGUOUS
   CADT_GROUP_COUNTERS(counters, counter_rows);
-  const cadt_deferred none = cadt_deferred_lists(deferred_counts, deferred_counts, 0u);
+  const cadt_deferred none = {deferred_counts, deferred_counts, 0u};
   CADT_FOR(s, set_count, grain) {
     if (states[s] != CADT_SET_BATCHED) continue;
     const cadt_u32 begin = starts[s], n = starts[s + 1u] - begin;

@@ -24,8 +24,7 @@
 CADT_KERNEL(cadt_cavity_candidates, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 count,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* quads) {
   CADT_LOCKED_MESH(mesh);
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   CADT_FOR(e, count, grain) {
     const cadt_u32 half_edge = list[e];
     const cadt_snapshot s = cadt_snapshot_from(&mesh, CADT_TRIANGLE_OF(half_edge), CADT_EDGE_OF(half_edge));
@@ -158,8 +157,7 @@ CADT_FN cadt_u32 cadt_is_hidden(const cadt_locked_mesh* m, cadt_point p, cadt_u3
 CADT_KERNEL(cadt_cavity_check, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 w,
             CADT_GLOBAL const cadt_u32* list, CADT_GLOBAL cadt_u32* scratch, cadt_u32 capacity) {
   CADT_LOCKED_MESH(mesh);
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   const cadt_point p = cadt_point_of(&mesh, w);
   CADT_FOR(i, count, grain) {
     const cadt_u32 root = cadt_find_root(scratch, i);

@@ -81,9 +81,7 @@ CADT_FN void cadt_write_flip(const cadt_locked_mesh* m, cadt_u32 half_edge, cons
     cadt_store_field(m->edge_flags + n, cadt_edge_flag_set(cadt_edge_flag_set(fn, j, cadt_edge_flag(ft, k1)), j1, 0u));
   }
   CADT_ADD_TIME(counters, CADT_TIME_FLIP);
-  CADT_NOISE_AT(m, CADT_SITE_HALF_EDGES);
   cadt_relink(m, outer_aq, CADT_HALF_EDGE(t, k));
-  CADT_NOISE_AT(m, CADT_SITE_NEXT_HALF_EDGE);
   cadt_relink(m, outer_bp, CADT_HALF_EDGE(n, j));
   CADT_ADD_TIME(counters, CADT_TIME_NEIGHBORS);
   counters->count[CADT_COUNT_FLIPS]++;
@@ -138,14 +136,8 @@ CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_e
     return CADT_EDGE_STABILIZED;
   }
   const cadt_u32 outer_bp = s.n1, outer_aq = u.n1;
-  cadt_lock_set locks;
-  locks.triangle[0] = t;
-  locks.version[0] = s.lock;
-  locks.triangle[1] = n;
-  locks.version[1] = u.lock;
-  locks.triangle[2] = CADT_TRIANGLE_OF(outer_bp);
-  locks.triangle[3] = CADT_TRIANGLE_OF(outer_aq);
-  locks.version[2] = locks.version[3] = CADT_ANY_VERSION;
+  cadt_lock_set locks = {{t, n, CADT_TRIANGLE_OF(outer_bp), CADT_TRIANGLE_OF(outer_aq)},
+                         {s.lock, u.lock, CADT_ANY_VERSION, CADT_ANY_VERSION}};
   if (!cadt_try_lock(m, &locks, counters)) return CADT_EDGE_CONFLICT;
   u.v1 = s.v2; /* as both triangles have it in common: what was read need not stay in registers until here */
   u.v2 = s.v1;

@@ -104,7 +104,7 @@ CADT_KERNEL(cadt_insert, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32
             CADT_GLOBAL cadt_u32* counter_rows) {
   CADT_GROUP_COUNTERS(counters, counter_rows);
   CADT_LOCKED_MESH(mesh);
-  const cadt_deferred deferred = cadt_deferred_lists(deferred_edges, deferred_counts, edge_capacity);
+  const cadt_deferred deferred = {deferred_edges, deferred_counts, edge_capacity};
   CADT_DECLARE_WORKLIST(work);
   const cadt_u32 warp = cadt_lanes_of_warp();
   cadt_u32 u = CADT_SPREAD_BEGIN(count, grain), i = CADT_NONE, start = 0u, tries = 0u;

@@ -74,7 +74,7 @@ CADT_KERNEL(cadt_legality_sweep, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 begin, ca
             cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counter_rows) {
   CADT_GROUP_COUNTERS(counters, counter_rows);
   CADT_LOCKED_MESH(mesh);
-  const cadt_deferred deferred = cadt_deferred_lists(deferred_edges, deferred_counts, edge_capacity);
+  const cadt_deferred deferred = {deferred_edges, deferred_counts, edge_capacity};
 #if CADT_CONTIGUOUS
   (void)n;
   /* An edge is seen from two triangles. Which of them takes it is settled without a branch, which would be mispredicted

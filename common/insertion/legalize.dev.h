@@ -30,15 +30,6 @@ typedef struct {
   cadt_u32 edge_capacity;
 } cadt_deferred;
 
-CADT_FN cadt_deferred cadt_deferred_lists(CADT_GLOBAL cadt_u32* edges, CADT_GLOBAL cadt_u32* counts,
-                                          cadt_u32 edge_capacity) {
-  cadt_deferred lists;
-  lists.edges = edges;
-  lists.counts = counts;
-  lists.edge_capacity = edge_capacity;
-  return lists;
-}
-
 CADT_FN void cadt_defer_edge(const cadt_deferred* deferred, cadt_u32 half_edge, cadt_counters* counters) {
   cadt_u32 at = cadt_add_relaxed(deferred->counts + 1, 1u);
   if (at < deferred->edge_capacity) deferred->edges[at] = half_edge;
@@ -158,7 +149,7 @@ CADT_KERNEL(cadt_legalize_edges, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const 
             cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counter_rows) {
   CADT_GROUP_COUNTERS(counters, counter_rows);
   CADT_LOCKED_MESH(mesh);
-  const cadt_deferred deferred = cadt_deferred_lists(deferred_edges, deferred_counts, edge_capacity);
+  const cadt_deferred deferred = {deferred_edges, deferred_counts, edge_capacity};
   CADT_DECLARE_WORKLIST(work);
   const cadt_u32 warp = cadt_lanes_of_warp();
   cadt_u32 e = CADT_SPREAD_BEGIN(count, grain);

@@ -51,21 +51,17 @@ CADT_FN void cadt_order_locks(cadt_lock_set* c, cadt_u32 i, cadt_u32 j) {
 
 /* Unlocks the first `count` triangles, unchanged. \pre the caller owns them and has written nothing */
 CADT_FN void cadt_unlock_unchanged(const cadt_locked_mesh* m, const cadt_lock_set* c, cadt_u32 count) {
+  for (cadt_u32 i = 0u; i < count; ++i)
+    if (c->triangle[i] != CADT_NONE) {
 #if CADT_CONTIGUOUS
-  for (cadt_u32 i = 0u; i < count; ++i)
-    if (c->triangle[i] != CADT_NONE) {
       cadt_store_lock(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, c->version[i]);
-      CADT_NOISE_AT(m, CADT_SITE_UNLOCKED_UNCHANGED);
-    }
 #else
-  /* By an addition: a store would replace the last owner's store as what the next lock synchronises with, and so need a
-   * fence before it. */
-  for (cadt_u32 i = 0u; i < count; ++i)
-    if (c->triangle[i] != CADT_NONE) {
+      /* By an addition: a store would replace the last owner's store as what the next lock synchronises with, and so
+       * need a fence before it. */
       cadt_add_relaxed(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, 0xFFFFFFFFu);
+#endif
       CADT_NOISE_AT(m, CADT_SITE_UNLOCKED_UNCHANGED);
     }
-#endif
 }
 
 /* Locks one triangle if its lock word is `*version`, or even where that is CADT_ANY_VERSION. */
@@ -170,6 +166,7 @@ CADT_FN cadt_u32 cadt_unlock_invalid(const cadt_locked_mesh* m, const cadt_lock_
 /* Unlocks a new triangle for the first time. \pre its fields and all half-edges to it are stored, and the caller still
  * owns the triangles it was split from; until then whoever finds it reads lock word 0 and retries */
 CADT_FN void cadt_publish_triangle(const cadt_locked_mesh* m, cadt_u32 t) {
+  CADT_NOISE_AT(m, CADT_SITE_PUBLISH);
   cadt_store_lock(m->locked[t].word + CADT_WORD_LOCK, 2u);
 }
 

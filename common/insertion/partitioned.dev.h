@@ -158,18 +158,10 @@ CADT_FN_INLINE cadt_u32 cadt_insert_in_partition(const cadt_locked_mesh* m, cons
   if (!done) return 0u;
   CADT_NOISE_AT(m, CADT_SITE_PARTITION);
   cadt_publish_triangle(m, 2u * i);
-  CADT_NOISE_AT(m, CADT_SITE_PARTITION);
   cadt_publish_triangle(m, 2u * i + 1u);
   counters->count[CADT_COUNT_LOCK_ATTEMPTS]++;
   cadt_legalize_around(m, partition, edges[0], p, counters);
   return 1u;
-}
-
-/* Where all points lie on the hull, or all triangles have a vertex in common, hardly a triangle belongs to one
- * partition: after sixteen stalled blocks, more than lie along a border by chance, only one block of sixteen is tried.
- */
-CADT_FN cadt_u32 cadt_partition_stalled(cadt_u32 stalled_blocks) {
-  return stalled_blocks > 16u && stalled_blocks % 16u != 0u ? 1u : 0u;
 }
 
 /* Inserts, in each of the `partitions` of 2^level * blocks positions, the points of blocks `from` to `to` - 1 but the
@@ -182,13 +174,14 @@ CADT_KERNEL(cadt_insert_partitions, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 n, cad
   if (cadt_item >= partitions) return;
   CADT_GROUP_COUNTERS(counters, counter_rows);
   CADT_LOCKED_MESH(mesh);
-  cadt_partition partition;
-  partition.begin = cadt_begin_of(cadt_item, blocks << level, n);
-  partition.size = cadt_min_u32(blocks << level, n - partition.begin);
+  const cadt_u32 own = cadt_begin_of(cadt_item, blocks << level, n);
+  const cadt_partition partition = {own, cadt_min_u32(blocks << level, n - own)};
   CADT_SET_PARTITION(mesh, partition.begin, partition.size);
   cadt_u32 stalled_blocks = 0u; /* consecutive blocks of which most points were deferred */
   for (cadt_u32 block = (partition.begin >> level) + from; block < (partition.begin >> level) + to; ++block) {
-    const cadt_u32 stalled = cadt_partition_stalled(stalled_blocks);
+    /* Where all points lie on the hull, or all triangles have a vertex in common, hardly a triangle belongs to one
+     * partition: after sixteen stalled blocks, more than lie along a border by chance, only one of sixteen is tried. */
+    const cadt_u32 stalled = stalled_blocks > 16u && stalled_blocks % 16u != 0u ? 1u : 0u;
     cadt_u32 inserted = 0u, deferred = 0u;
     for (cadt_u32 l = level; l-- > 0u;) {
       const cadt_u32 begin = block << (level - l - 1u), end = begin + (1u << (level - l - 1u));
@@ -216,9 +209,7 @@ CADT_KERNEL(cadt_insert_partitions, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 n, cad
 
 /* Whether all three vertices are in the same partition of `size` positions. */
 CADT_FN cadt_u32 cadt_in_same_partition(cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 size) {
-  cadt_partition partition;
-  partition.begin = a - a % size;
-  partition.size = size;
+  const cadt_partition partition = {a - a % size, size};
   return a != CADT_GHOST && cadt_owns(&partition, b) && cadt_owns(&partition, c) ? 1u : 0u;
 }
 
@@ -230,7 +221,7 @@ CADT_KERNEL(cadt_border_sweep, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt
 #if CADT_CONTIGUOUS
   CADT_GROUP_COUNTERS(counters, counter_rows);
   CADT_LOCKED_MESH(mesh);
-  const cadt_deferred deferred = cadt_deferred_lists(deferred_edges, deferred_counts, edge_capacity);
+  const cadt_deferred deferred = {deferred_edges, deferred_counts, edge_capacity};
   CADT_DECLARE_WORKLIST(work);
   CADT_FOR(t, count, grain) {
     const cadt_snapshot s = cadt_snapshot_of(&mesh, t);

@@ -20,8 +20,7 @@
 /* Lowers *third to the first position that is not on the line through points `first` and `second`. */
 CADT_KERNEL(cadt_find_seed_triangle, CADT_GLOBAL const cadt_point* points, cadt_u32 first, cadt_u32 second,
             cadt_u32 begin, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* third) {
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   const cadt_point a = points[first], b = points[second];
   CADT_FOR(i, count, grain) {
     if (cadt_orientation(a, b, points[begin + i], &counters) != 0) {
@@ -59,8 +58,7 @@ CADT_FN void cadt_make_seed_mesh(const cadt_locked_mesh* m, cadt_counters* count
 CADT_KERNEL(cadt_seed_mesh, CADT_LOCKED_MESH_PARAMETERS) {
   if (cadt_item != 0u) return;
   CADT_LOCKED_MESH(mesh);
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   cadt_make_seed_mesh(&mesh, &counters);
 }
 

@@ -73,9 +73,7 @@ CADT_FN void cadt_write_face_split(const cadt_locked_mesh* m, cadt_u32 i, cadt_u
     cadt_store_field(m->edge_flags + t, flags & 1u);
   }
   CADT_ADD_TIME(counters, CADT_TIME_SPLIT);
-  CADT_NOISE_AT(m, CADT_SITE_HALF_EDGES);
   cadt_relink(m, s->n1, CADT_HALF_EDGE(t1, 1u));
-  CADT_NOISE_AT(m, CADT_SITE_NEXT_HALF_EDGE);
   cadt_relink(m, s->n2, CADT_HALF_EDGE(t2, 2u));
   CADT_ADD_TIME(counters, CADT_TIME_NEIGHBORS);
   edges[0] = CADT_HALF_EDGE(t, 0u);
@@ -94,21 +92,13 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_locked_mesh* m, cadt_u32 i, const ca
     CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
     return 0u;
   }
-  cadt_lock_set locks;
-  locks.triangle[0] = t;
-  locks.version[0] = s.lock;
-  locks.triangle[1] = CADT_TRIANGLE_OF(s.n1);
-  locks.triangle[2] = CADT_TRIANGLE_OF(s.n2);
-  locks.version[1] = locks.version[2] = CADT_ANY_VERSION;
-  locks.triangle[3] = CADT_NONE;
-  locks.version[3] = 0u;
+  cadt_lock_set locks = {{t, CADT_TRIANGLE_OF(s.n1), CADT_TRIANGLE_OF(s.n2), CADT_NONE},
+                         {s.lock, CADT_ANY_VERSION, CADT_ANY_VERSION, 0u}};
   if (!cadt_try_lock(m, &locks, counters)) return 0u;
   if (!cadt_validate(m, t, 0u, CADT_HALF_EDGES_12, &s)) return cadt_unlock_invalid(m, &locks, counters);
   cadt_write_face_split(m, i, t, &s, edges, counters);
   cadt_fence_before_unlock();
-  CADT_NOISE_AT(m, CADT_SITE_PUBLISH);
   cadt_publish_triangle(m, t1);
-  CADT_NOISE_AT(m, CADT_SITE_NEXT_PUBLISH);
   cadt_publish_triangle(m, t2);
   cadt_unlock(m, &locks);
   CADT_ADD_TIME(counters, CADT_TIME_LOCK);
@@ -174,9 +164,7 @@ CADT_FN void cadt_write_edge_split(const cadt_locked_mesh* m, cadt_u32 i, const 
     cadt_store_field(m->edge_flags + n, flag << j | cadt_edge_flag(fn, j2) << j2);
   }
   CADT_ADD_TIME(counters, CADT_TIME_SPLIT);
-  CADT_NOISE_AT(m, CADT_SITE_HALF_EDGES);
   cadt_relink(m, outer_bc, CADT_HALF_EDGE(ts, k1));
-  CADT_NOISE_AT(m, CADT_SITE_NEXT_HALF_EDGE);
   cadt_relink(m, outer_ad, CADT_HALF_EDGE(ns, j1));
   CADT_ADD_TIME(counters, CADT_TIME_NEIGHBORS);
   edges[0] = CADT_HALF_EDGE(t, k2);
@@ -203,22 +191,14 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_locked_mesh* m, cadt_u32 i, const ca
     return 0u;
   }
   const cadt_u32 outer_bc = CADT_NEIGHBOR(s, k1), outer_ad = CADT_NEIGHBOR(u, j1);
-  cadt_lock_set locks;
-  locks.triangle[0] = t;
-  locks.version[0] = s.lock;
-  locks.triangle[1] = n;
-  locks.version[1] = u.lock ? u.lock : 1u;
-  locks.triangle[2] = CADT_TRIANGLE_OF(outer_bc);
-  locks.triangle[3] = CADT_TRIANGLE_OF(outer_ad);
-  locks.version[2] = locks.version[3] = CADT_ANY_VERSION;
+  cadt_lock_set locks = {{t, n, CADT_TRIANGLE_OF(outer_bc), CADT_TRIANGLE_OF(outer_ad)},
+                         {s.lock, u.lock ? u.lock : 1u, CADT_ANY_VERSION, CADT_ANY_VERSION}};
   if (!cadt_try_lock(m, &locks, counters)) return 0u;
   if (!cadt_validate(m, t, 0u, CADT_HALF_EDGES_ALL, &s) || !cadt_validate(m, n, 0u, CADT_HALF_EDGES_ALL, &u))
     return cadt_unlock_invalid(m, &locks, counters);
   cadt_write_edge_split(m, i, place, &u, edges, counters);
   cadt_fence_before_unlock();
-  CADT_NOISE_AT(m, CADT_SITE_PUBLISH);
   cadt_publish_triangle(m, ts);
-  CADT_NOISE_AT(m, CADT_SITE_NEXT_PUBLISH);
   cadt_publish_triangle(m, ns);
   cadt_unlock(m, &locks);
   CADT_ADD_TIME(counters, CADT_TIME_LOCK);

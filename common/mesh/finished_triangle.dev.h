@@ -16,11 +16,8 @@ typedef struct {
 CADT_FN cadt_triangle cadt_in_input_ids(CADT_GLOBAL const cadt_u32* input_ids, cadt_u32 v0, cadt_u32 v1, cadt_u32 v2) {
   const cadt_u32 x = input_ids ? input_ids[v0] : v0, y = input_ids ? input_ids[v1] : v1,
                  z = input_ids ? input_ids[v2] : v2;
-  cadt_triangle t;
-  t.slot = x < y ? (x < z ? 0u : 2u) : (y < z ? 1u : 2u);
-  t.a = CADT_PICK(t.slot, x, y, z);
-  t.b = CADT_PICK(t.slot, y, z, x);
-  t.c = CADT_PICK(t.slot, z, x, y);
+  const cadt_u32 slot = x < y ? (x < z ? 0u : 2u) : (y < z ? 1u : 2u);
+  const cadt_triangle t = {CADT_PICK(slot, x, y, z), CADT_PICK(slot, y, z, x), CADT_PICK(slot, z, x, y), slot};
   return t;
 }
 

@@ -116,15 +116,9 @@ CADT_FN cadt_snapshot cadt_snapshot_from(const cadt_locked_mesh* m, cadt_u32 t, 
   return s;
 #else
   const cadt_snapshot s = cadt_snapshot_of(m, t);
-  cadt_snapshot r;
-  r.lock = s.lock;
-  r.v0 = CADT_PICK(k, s.v0, s.v1, s.v2);
-  r.v1 = CADT_PICK(k, s.v1, s.v2, s.v0);
-  r.v2 = CADT_PICK(k, s.v2, s.v0, s.v1);
-  r.n0 = CADT_PICK(k, s.n0, s.n1, s.n2);
-  r.n1 = CADT_PICK(k, s.n1, s.n2, s.n0);
-  r.n2 = CADT_PICK(k, s.n2, s.n0, s.n1);
-  r.flips = s.flips;
+  const cadt_snapshot r = {
+      CADT_PICK(k, s.v0, s.v1, s.v2), CADT_PICK(k, s.v1, s.v2, s.v0), CADT_PICK(k, s.v2, s.v0, s.v1), s.lock,
+      CADT_PICK(k, s.n0, s.n1, s.n2), CADT_PICK(k, s.n1, s.n2, s.n0), CADT_PICK(k, s.n2, s.n0, s.n1), s.flips};
   return r;
 #endif
 }
@@ -166,6 +160,7 @@ CADT_FN void cadt_store_flips(const cadt_locked_mesh* m, cadt_u32 t, cadt_u32 fl
 }
 
 CADT_FN void cadt_relink(const cadt_locked_mesh* m, cadt_u32 outer, cadt_u32 half_edge) {
+  CADT_NOISE_AT(m, CADT_SITE_HALF_EDGE);
   cadt_store_half_edge(m, CADT_TRIANGLE_OF(outer), CADT_EDGE_OF(outer), half_edge);
 }
 

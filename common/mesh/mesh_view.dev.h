@@ -28,15 +28,8 @@ typedef struct {
 #define CADT_MESH_VIEW_PARAMETERS                                                                                 \
   CADT_GLOBAL const cadt_point *points, CADT_GLOBAL const cadt_u32 *vertices, CADT_GLOBAL const cadt_u32 *across, \
       CADT_GLOBAL const cadt_u32 *edge_flags, cadt_u32 triangle_count, cadt_u32 all_count, cadt_u32 edge_bits
-#define CADT_MESH_VIEW(view)       \
-  cadt_mesh_view view;             \
-  view.points = points;            \
-  view.vertices = vertices;        \
-  view.across = across;            \
-  view.edge_flags = edge_flags;    \
-  view.triangles = triangle_count; \
-  view.all = all_count;            \
-  view.edge_bits = edge_bits
+#define CADT_MESH_VIEW(view) \
+  const cadt_mesh_view view = {points, vertices, across, edge_flags, triangle_count, all_count, edge_bits}
 
 /* Vertex k of triangle t. One vertex of a ghost triangle is CADT_GHOST. */
 CADT_FN cadt_u32 cadt_vertex_of(const cadt_mesh_view* m, cadt_u32 t, cadt_u32 k) { return m->vertices[3u * t + k]; }

@@ -59,9 +59,7 @@ CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_u32* vertices, CADT_GL
   CADT_FOR(t, count, grain) {
     const cadt_triangle triangle = cadt_read_triangle(vertices, input_ids, t);
     if (triangle.a - from >= size) continue;
-    cadt_member member;
-    member.second = triangle.b;
-    member.triangle = t;
+    const cadt_member member = {triangle.b, t};
 #if CADT_PLACES_KNOWN
     members[buckets[triangle.a] + places[t] - base] = member;
 #else
@@ -130,13 +128,7 @@ CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL 
 /* The bucket of triangle i, among `count` from `from` on. */
 CADT_FN cadt_u32 cadt_bucket_of(CADT_GLOBAL const cadt_u32* buckets, cadt_u32 from, cadt_u32 count, cadt_u32 i) {
   cadt_u32 low = from, high = from + count;
-  while (high - low > 1u) {
-    const cadt_u32 middle = low + (high - low) / 2u;
-    if (cadt_bucket_begin(buckets, middle) <= i)
-      low = middle;
-    else
-      high = middle;
-  }
+  CADT_FIND_LAST(low, high, middle, cadt_bucket_begin(buckets, middle) <= i);
   return low;
 }
 

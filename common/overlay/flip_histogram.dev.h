@@ -44,7 +44,7 @@ CADT_FN cadt_u32 cadt_bins_get(const cadt_flip_bins* bins, cadt_u32 bin) {
 
 CADT_FN void cadt_bins_flush(cadt_flip_bins* bins, CADT_LOCAL_PTR cadt_u32* sums) {
   for (cadt_u32 bin = 0u; bin < CADT_CAST(cadt_u32, CADT_FLIP_BINS); ++bin)
-    if (cadt_bins_get(bins, bin)) cadt_add_local(sums + bin, cadt_bins_get(bins, bin));
+    if (cadt_bins_get(bins, bin)) cadt_team_add(sums + bin, cadt_bins_get(bins, bin));
   bins->low = bins->high = 0u;
   bins->triangles = 0u;
 }

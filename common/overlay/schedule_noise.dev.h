@@ -23,10 +23,8 @@ enum {
   CADT_SITE_VALIDATE,           /* all are locked; before they are read again */
   CADT_SITE_WRITE,              /* before the first store */
   CADT_SITE_NEXT_TRIANGLE,      /* between the triangles of a split or flip */
-  CADT_SITE_HALF_EDGES,         /* before the neighbours' half-edges back */
-  CADT_SITE_NEXT_HALF_EDGE,     /* between them */
-  CADT_SITE_PUBLISH,            /* before new triangles are published */
-  CADT_SITE_NEXT_PUBLISH,       /* between them */
+  CADT_SITE_HALF_EDGE,          /* before a neighbour's half-edge back */
+  CADT_SITE_PUBLISH,            /* before a new triangle is published */
   CADT_SITE_UNLOCK,             /* before the first unlock of a changed triangle */
   CADT_SITE_UNLOCKED,           /* after each of these unlocks */
   CADT_SITE_UNLOCKED_UNCHANGED, /* after each unlock of an unchanged triangle. Up to here triangles are locked */

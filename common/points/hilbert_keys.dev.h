@@ -63,20 +63,11 @@ typedef struct {
 
 #define CADT_GRID_PARAMETERS \
   cadt_real half_min_x, cadt_real half_min_y, cadt_real grid_scale, cadt_u32 bits_x, cadt_u32 bits_y
-#define CADT_GRID_VIEW(grid)    \
-  cadt_key_grid grid;           \
-  grid.half_min_x = half_min_x; \
-  grid.half_min_y = half_min_y; \
-  grid.scale = grid_scale;      \
-  grid.bits_x = bits_x;         \
-  grid.bits_y = bits_y;         \
-  grid.set = 0u
+#define CADT_GRID_VIEW(grid) cadt_key_grid grid = {half_min_x, half_min_y, grid_scale, bits_x, bits_y, 0u}
 
 /* A point in units of cells. */
 CADT_FN cadt_point cadt_to_grid(const cadt_key_grid* grid, cadt_point p) {
-  cadt_point f;
-  f.x = (0.5 * p.x - grid->half_min_x) * grid->scale;
-  f.y = (0.5 * p.y - grid->half_min_y) * grid->scale;
+  const cadt_point f = {(0.5 * p.x - grid->half_min_x) * grid->scale, (0.5 * p.y - grid->half_min_y) * grid->scale};
   return f;
 }
 /* The last cell of an axis with `bits` bits, as a coordinate. A float may round it up, out of the grid: then the last
@@ -130,10 +121,7 @@ typedef struct {
 } cadt_keys;
 
 CADT_FN cadt_keys cadt_keys_of(CADT_GLOBAL const cadt_u32* high, CADT_GLOBAL const cadt_u32* low, cadt_u32 low_bits) {
-  cadt_keys keys;
-  keys.high = high;
-  keys.low = low;
-  keys.low_bits = low_bits;
+  const cadt_keys keys = {high, low, low_bits};
   return keys;
 }
 CADT_FN cadt_u64 cadt_key_at(const cadt_keys* keys, cadt_u32 i) {

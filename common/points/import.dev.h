@@ -27,31 +27,21 @@ CADT_FN cadt_point cadt_multiplied_point(cadt_point p, cadt_real scale, cadt_rea
 
 /* Points from the caller's memory: coordinate i of an axis is at first + i * stride. With `order`: the points that it
  * lists, times both factors; null: all points, unscaled. */
+#define CADT_IMPORT_KERNEL(name, type)                                                                        \
+  CADT_KERNEL(name, CADT_GLOBAL const type* x, CADT_GLOBAL const type* y, cadt_u32 first_x, cadt_u32 first_y, \
+              cadt_u32 stride, CADT_GLOBAL const cadt_u32* order, cadt_real scale, cadt_real scale_again,     \
+              CADT_GLOBAL cadt_point* points, cadt_u32 count, cadt_u32 grain) {                               \
+    CADT_FOR(i, count, grain) {                                                                               \
+      const cadt_u32 at = order ? order[i] : i;                                                               \
+      const cadt_point p = {CADT_CAST(cadt_real, x[first_x + at * stride]),                                   \
+                            CADT_CAST(cadt_real, y[first_y + at * stride])};                                  \
+      points[i] = order ? cadt_multiplied_point(p, scale, scale_again) : p;                                   \
+    }                                                                                                         \
+  }
 #if !CADT_FLOAT
-CADT_KERNEL(cadt_import_doubles, CADT_GLOBAL const double* x, CADT_GLOBAL const double* y, cadt_u32 first_x,
-            cadt_u32 first_y, cadt_u32 stride, CADT_GLOBAL const cadt_u32* order, cadt_real scale,
-            cadt_real scale_again, CADT_GLOBAL cadt_point* points, cadt_u32 count, cadt_u32 grain) {
-  CADT_FOR(i, count, grain) {
-    const cadt_u32 at = order ? order[i] : i;
-    cadt_point p;
-    p.x = x[first_x + at * stride];
-    p.y = y[first_y + at * stride];
-    points[i] = order ? cadt_multiplied_point(p, scale, scale_again) : p;
-  }
-}
+CADT_IMPORT_KERNEL(cadt_import_doubles, double)
 #endif
-
-CADT_KERNEL(cadt_import_floats, CADT_GLOBAL const float* x, CADT_GLOBAL const float* y, cadt_u32 first_x,
-            cadt_u32 first_y, cadt_u32 stride, CADT_GLOBAL const cadt_u32* order, cadt_real scale,
-            cadt_real scale_again, CADT_GLOBAL cadt_point* points, cadt_u32 count, cadt_u32 grain) {
-  CADT_FOR(i, count, grain) {
-    const cadt_u32 at = order ? order[i] : i;
-    cadt_point p;
-    p.x = CADT_CAST(cadt_real, x[first_x + at * stride]);
-    p.y = CADT_CAST(cadt_real, y[first_y + at * stride]);
-    points[i] = order ? cadt_multiplied_point(p, scale, scale_again) : p;
-  }
-}
+CADT_IMPORT_KERNEL(cadt_import_floats, float)
 
 /* Points in the order of `order`, scaled. */
 CADT_KERNEL(cadt_gather_points, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* order,

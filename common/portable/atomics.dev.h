@@ -125,13 +125,6 @@ CADT_FN cadt_u32 cadt_cas_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 expected, ca
 }
 /* __threadfence is sequentially consistent: more than needed. */
 CADT_FN void cadt_fence_acq_rel() { asm volatile("fence.acq_rel.gpu;" ::: "memory"); }
-#if defined(__CUDACC_VER_MAJOR__) && __CUDACC_VER_MAJOR__ >= 13
-CADT_FN void cadt_fence_acquire() { asm volatile("fence.acquire.gpu;" ::: "memory"); }
-CADT_FN void cadt_fence_release() { asm volatile("fence.release.gpu;" ::: "memory"); }
-#else /* older assemblers have no one-sided fences */
-CADT_FN void cadt_fence_acquire() { cadt_fence_acq_rel(); }
-CADT_FN void cadt_fence_release() { cadt_fence_acq_rel(); }
-#endif
 CADT_FN cadt_u32 cadt_or_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 bits) { return atomicOr(p, bits); }
 
 /* ---- host: ordered operations, no fences (ThreadSanitizer does not follow fences) ---- */
@@ -170,48 +163,42 @@ CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
 
 #endif
 
-/* ---- local memory of a group: additions and minima in any order, and fences ---- */
+/* ---- memory of a team, in any order: the lesser of two; the least of what many lanes have for the same place,
+ * 0xFFFFFFFF being nothing; an addition, which returns the value before. For a group also a fence ---- */
 #if CADT_GROUP_SUMS && defined(CADT_LANG_OPENCL)
-CADT_FN cadt_u32 cadt_add_local(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
+CADT_FN cadt_u32 cadt_team_add(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
   return atomic_add((volatile CADT_LOCAL_PTR cadt_u32*)p, value);
 }
-CADT_FN void cadt_min_local(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
+CADT_FN void cadt_team_min(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
   atomic_min((volatile CADT_LOCAL_PTR cadt_u32*)p, value);
 }
-CADT_FN void cadt_least_local(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
-  if (value != 0xFFFFFFFFu) cadt_min_local(p, value);
+CADT_FN void cadt_team_least(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
+  if (value != 0xFFFFFFFFu) cadt_team_min(p, value);
 }
 CADT_FN void cadt_fence_local(void) { mem_fence(CLK_LOCAL_MEM_FENCE); }
 #elif CADT_GROUP_SUMS
-CADT_FN cadt_u32 cadt_add_local(cadt_u32* p, cadt_u32 value) { return atomicAdd(p, value); }
-CADT_FN void cadt_min_local(cadt_u32* p, cadt_u32 value) { atomicMin(p, value); }
-CADT_FN void cadt_least_local(cadt_u32* p, cadt_u32 value) {
+CADT_FN cadt_u32 cadt_team_add(cadt_u32* p, cadt_u32 value) { return atomicAdd(p, value); }
+CADT_FN void cadt_team_min(cadt_u32* p, cadt_u32 value) { atomicMin(p, value); }
+CADT_FN void cadt_team_least(cadt_u32* p, cadt_u32 value) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
   /* One operation for all active lanes: at one address they would wait for each other. */
   const cadt_u32 mask = __activemask(), lane = threadIdx.x & 31u;
   value = __reduce_min_sync(mask, value);
   if (mask & ((1u << lane) - 1u)) return;
 #endif
-  if (value != 0xFFFFFFFFu) cadt_min_local(p, value);
+  if (value != 0xFFFFFFFFu) cadt_team_min(p, value);
 }
 CADT_FN void cadt_fence_local() { __threadfence_block(); }
-#endif
-/* In the memory of a team: the lesser of two; the least of what many lanes have for the same place, 0xFFFFFFFF being
- * nothing; an addition, which returns the value before. */
-#if CADT_GROUP_SUMS
-#define cadt_team_min(p, value) cadt_min_local((p), (value))
-#define cadt_team_least(p, value) cadt_least_local((p), (value))
-#define cadt_team_add(p, value) cadt_add_local((p), (value))
 #else
-CADT_FN void cadt_team_min(cadt_u32* p, cadt_u32 value) {
-  if (value < *p) *p = value;
-}
-#define cadt_team_least(p, value) cadt_team_min((p), (value))
 CADT_FN cadt_u32 cadt_team_add(cadt_u32* p, cadt_u32 value) {
   const cadt_u32 old = *p;
   *p += value;
   return old;
 }
+CADT_FN void cadt_team_min(cadt_u32* p, cadt_u32 value) {
+  if (value < *p) *p = value;
+}
+CADT_FN void cadt_team_least(cadt_u32* p, cadt_u32 value) { cadt_team_min(p, value); }
 #endif
 
 /* ---- the two ways to order fields and locks ---- */
@@ -229,10 +216,10 @@ CADT_FN void cadt_fence_after_lock(void) {}
 CADT_FN cadt_u32 cadt_load_field(CADT_GLOBAL cadt_u32* p) { return cadt_load_relaxed(p); }
 CADT_FN void cadt_store_field(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_relaxed(p, value); }
 CADT_FN void cadt_store_lock(CADT_GLOBAL cadt_u32* p, cadt_u32 value) { cadt_store_relaxed(p, value); }
-#if defined(CADT_LANG_CUDA)
-CADT_FN void cadt_fence_before_unlock(void) { cadt_fence_release(); }
-CADT_FN void cadt_fence_after_lock(void) { cadt_fence_acquire(); }
-#else
+#if defined(__CUDACC_VER_MAJOR__) && __CUDACC_VER_MAJOR__ >= 13
+CADT_FN void cadt_fence_before_unlock(void) { asm volatile("fence.release.gpu;" ::: "memory"); }
+CADT_FN void cadt_fence_after_lock(void) { asm volatile("fence.acquire.gpu;" ::: "memory"); }
+#else /* older assemblers have no one-sided fences */
 CADT_FN void cadt_fence_before_unlock(void) { cadt_fence_acq_rel(); }
 CADT_FN void cadt_fence_after_lock(void) { cadt_fence_acq_rel(); }
 #endif

@@ -28,7 +28,7 @@ typedef struct {
 #if CADT_GROUP_SUMS
 #define CADT_COUNT_NOW(counters, c) cadt_count_now((counters), (c))
 CADT_FN void cadt_count_now(const cadt_counters* counters, cadt_u32 c) {
-  if (counters->wanted) cadt_add_local(counters->sums + c, 1u);
+  if (counters->wanted) cadt_team_add(counters->sums + c, 1u);
 }
 #else
 #define CADT_COUNT_NOW(counters, c) ((counters)->count[c]++)
@@ -40,13 +40,10 @@ CADT_FN void cadt_add_time(cadt_counters* counters, cadt_u32 timer) {
   counters->ticks[timer] += now - counters->last_clock;
   counters->last_clock = now;
 }
-#else
-#define CADT_ADD_TIME(counters, timer) ((void)0)
-#endif
 /* The time since the last reading goes to no timer. */
-#if CADT_TIMED
 #define CADT_SKIP_TIME(counters) ((counters)->last_clock = cadt_clock())
 #else
+#define CADT_ADD_TIME(counters, timer) ((void)0)
 #define CADT_SKIP_TIME(counters) ((void)0)
 #endif
 /* Where lanes of a GPU's warp wait for each other; a CPU's thread does not. */
@@ -68,6 +65,19 @@ CADT_FN void cadt_counters_clear(cadt_counters* counters) {
 #endif
 }
 
+/* Counters of a work-item that start at 0. */
+#define CADT_DECLARE_COUNTERS(counters) \
+  cadt_counters counters;               \
+  cadt_counters_clear(&counters)
+
+/* Adds the numbers of exact orientations, exact incircles and ties to the three words from `found` on. */
+CADT_FN void cadt_flush_exact(const cadt_counters* counters, CADT_GLOBAL cadt_u32* found) {
+  for (cadt_u32 k = 0u; k < 3u; ++k) {
+    const cadt_u32 count = counters->count[CADT_COUNT_EXACT_ORIENTATIONS + k];
+    if (count) cadt_add_relaxed(found + k, count);
+  }
+}
+
 CADT_FN CADT_GLOBAL cadt_u32* cadt_counter_row(CADT_GLOBAL cadt_u32* counter_rows, cadt_u32 item) {
   return counter_rows + item % CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE;
 }
@@ -81,8 +91,7 @@ enum { CADT_GROUP_DONE = CADT_COUNTERS + CADT_TIMERS, CADT_GROUP_WORDS };
 #define CADT_GROUP_COUNTERS(counters, counter_rows)          \
   CADT_LOCAL cadt_u32 sums[CADT_GROUP_WORDS];                \
   if (counter_rows) cadt_clear_sums(sums, CADT_GROUP_WORDS); \
-  cadt_counters counters;                                    \
-  cadt_counters_clear(&counters);                            \
+  CADT_DECLARE_COUNTERS(counters);                           \
   counters.sums = sums;                                      \
   counters.wanted = (counter_rows) != 0 ? 1u : 0u
 #define CADT_FLUSH_COUNTERS(counters, counter_rows) \
@@ -96,7 +105,7 @@ CADT_FN void cadt_clear_sums(CADT_LOCAL_PTR cadt_u32* sums, cadt_u32 count) {
 /* True for the work-item of the group that calls last: it sees the sums of all. */
 CADT_FN cadt_u32 cadt_is_last_of_group(CADT_LOCAL_PTR cadt_u32* done) {
   cadt_fence_local();
-  if (cadt_add_local(done, 1u) + 1u != cadt_group_items) return 0u;
+  if (cadt_team_add(done, 1u) + 1u != cadt_group_items) return 0u;
   cadt_fence_local();
   return 1u;
 }
@@ -105,30 +114,28 @@ CADT_FN cadt_u32 cadt_is_last_of_group(CADT_LOCAL_PTR cadt_u32* done) {
 CADT_FN void cadt_flush_group(cadt_counters* counters, CADT_LOCAL_PTR cadt_u32* sums,
                               CADT_GLOBAL cadt_u32* counter_rows) {
   cadt_u32 others = 0u;
-  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS_COMMON); ++c) cadt_add_local(sums + c, counters->count[c]);
+  for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_COUNTERS_COMMON); ++c) cadt_team_add(sums + c, counters->count[c]);
   for (cadt_u32 c = CADT_COUNTERS_COMMON; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c) others |= counters->count[c];
   if (others) {
     for (cadt_u32 c = CADT_COUNTERS_COMMON; c < CADT_CAST(cadt_u32, CADT_COUNTERS); ++c)
-      if (counters->count[c]) cadt_add_local(sums + c, counters->count[c]);
+      if (counters->count[c]) cadt_team_add(sums + c, counters->count[c]);
   }
 #if CADT_TIMED
   CADT_ADD_WAIT_TIME(counters);
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMERS); ++c)
-    cadt_add_local(sums + CADT_COUNTERS + c, CADT_CAST(cadt_u32, counters->ticks[c] >> CADT_TIME_LANE_SHIFT));
+    cadt_team_add(sums + CADT_COUNTERS + c, CADT_CAST(cadt_u32, counters->ticks[c] >> CADT_TIME_LANE_SHIFT));
 #endif
   if (!cadt_is_last_of_group(sums + CADT_GROUP_DONE)) return;
   CADT_GLOBAL cadt_u32* row = cadt_counter_row(counter_rows, cadt_item / cadt_group_items);
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_GROUP_DONE); ++c) {
-    const cadt_u32 sum = cadt_add_local(sums + c, 0u), counter = c < CADT_CAST(cadt_u32, CADT_COUNTERS) ? 1u : 0u;
+    const cadt_u32 sum = cadt_team_add(sums + c, 0u), counter = c < CADT_CAST(cadt_u32, CADT_COUNTERS) ? 1u : 0u;
     const cadt_u32 at = counter ? c : c - CADT_COUNTERS + CADT_ROW_TIMES;
     const cadt_u32 value = counter ? sum : sum >> CADT_TIME_GROUP_SHIFT;
     if (value) cadt_add_relaxed(row + at, value);
   }
 }
 #else
-#define CADT_GROUP_COUNTERS(counters, counter_rows) \
-  cadt_counters counters;                           \
-  cadt_counters_clear(&counters)
+#define CADT_GROUP_COUNTERS(counters, counter_rows) CADT_DECLARE_COUNTERS(counters)
 #define CADT_FLUSH_COUNTERS(counters, counter_rows) \
   if (counter_rows) cadt_flush_item((counters), (counter_rows), cadt_item)
 

@@ -65,16 +65,14 @@ typedef double2 cadt_real2;
 #endif
 CADT_FN cadt_point cadt_load_point(CADT_GLOBAL const cadt_point* p) {
   const cadt_real2 both = *(CADT_GLOBAL const cadt_real2*)p;
-  cadt_point point;
-  point.x = both.x;
-  point.y = both.y;
+  const cadt_point point = {both.x, both.y};
   return point;
 }
 #else
 CADT_FN cadt_point cadt_load_point(const cadt_point* p) { return *p; }
 #endif
 
-/* Four words, at an address that is a multiple of 16, or two, of 8. \pre nobody changes them meanwhile */
+/* Four words, at an address that is a multiple of 16. \pre nobody changes them meanwhile */
 #if defined(CADT_LANG_OPENCL) || defined(CADT_LANG_CUDA)
 CADT_FN void cadt_store_four(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 d) {
   uint4 four;
@@ -83,12 +81,6 @@ CADT_FN void cadt_store_four(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b, ca
   four.z = c;
   four.w = d;
   *(CADT_GLOBAL uint4*)p = four;
-}
-CADT_FN void cadt_store_two(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b) {
-  uint2 two;
-  two.x = a;
-  two.y = b;
-  *(CADT_GLOBAL uint2*)p = two;
 }
 CADT_FN void cadt_load_four(CADT_GLOBAL const cadt_u32* p, cadt_u32* w) {
   const uint4 four = *(CADT_GLOBAL const uint4*)p;
@@ -104,10 +96,6 @@ CADT_FN void cadt_store_four(cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, ca
   p[1] = b;
   p[2] = c;
   p[3] = d;
-}
-CADT_FN void cadt_store_two(cadt_u32* p, cadt_u32 a, cadt_u32 b) {
-  p[0] = a;
-  p[1] = b;
 }
 #endif
 
@@ -126,21 +114,32 @@ CADT_FN void cadt_store_two(cadt_u32* p, cadt_u32 a, cadt_u32 b) {
 
 CADT_FN cadt_u32 cadt_min_u32(cadt_u32 a, cadt_u32 b) { return a < b ? a : b; }
 
+/* Binary search for the first place from `low` to `high` - 1 that is not `before`, which is said of place `middle`:
+ * then it is `low`, which equals `high` if there is none. \pre high < 2^31 */
+#define CADT_FIND_FIRST(low, high, middle, before) \
+  while (low < high) {                             \
+    const cadt_u32 middle = (low + high) / 2u;     \
+    if (before)                                    \
+      low = middle + 1u;                           \
+    else                                           \
+      high = middle;                               \
+  }
+/* The same for the last place that is `at_or_before`, as `low` certainly is. */
+#define CADT_FIND_LAST(low, high, middle, at_or_before) \
+  while (high - low > 1u) {                             \
+    const cadt_u32 middle = (low + high) / 2u;          \
+    if (at_or_before)                                   \
+      low = middle;                                     \
+    else                                                \
+      high = middle;                                    \
+  }
+
 /* The first element of a work-item that takes `size` neighbouring ones. The product may exceed 32 bits: devices round
  * the number of work-items up to whole groups. */
 CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
   const cadt_u64 begin = CADT_CAST(cadt_u64, item) * size;
   return begin < count ? CADT_CAST(cadt_u32, begin) : count;
 }
-
-/* The elements i < count of this work-item. `grain`: the number of neighbouring elements on CPUs. */
-#if CADT_CONTIGUOUS
-#define CADT_FOR(i, count, grain)                                                                             \
-  for (cadt_u32 i = cadt_begin_of(cadt_item, (grain), (count)), i##_end = cadt_min_u32(i + (grain), (count)); \
-       i < i##_end; ++i)
-#else
-#define CADT_FOR(i, count, grain) for (cadt_u32 i = cadt_item; i < (count); i += cadt_items)
-#endif
 
 /* The elements of part `part` of `parts`, for partial results: chunks of neighbours, or strided. */
 #if CADT_CONTIGUOUS
@@ -150,6 +149,8 @@ CADT_FN cadt_u32 cadt_begin_of(cadt_u32 item, cadt_u32 size, cadt_u32 count) {
 #else
 #define CADT_FOR_PART(i, part, parts, count, chunk) for (cadt_u32 i = (part); i < (count); i += (parts))
 #endif
+/* The elements i < count of this work-item. `grain`: the number of neighbouring elements on CPUs. */
+#define CADT_FOR(i, count, grain) CADT_FOR_PART(i, cadt_item, cadt_items, count, grain)
 
 /* As CADT_FOR, for work of many steps and branches, in loops that are not over the elements alone: the first element,
  * one behind the last, and the step. Divergent lanes of a warp run one after another, so where there are fewer elements

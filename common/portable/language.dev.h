@@ -74,7 +74,6 @@ typedef long cadt_i64;
 #define cadt_item_of_group ((cadt_u32)get_local_id(0))
 #define cadt_group_items ((cadt_u32)get_local_size(0))
 #define cadt_group_barrier() barrier(CLK_LOCAL_MEM_FENCE)
-#define CADT_CAST(type, value) ((type)(value))
 
 #define cadt_bits_of_double(x) as_ulong(x)
 #define cadt_double_of_bits(x) as_double(x)
@@ -86,40 +85,17 @@ typedef long cadt_i64;
 #define cadt_minf(a, b) fmin((float)(a), (float)(b))
 /* Approximations, for use within an error bound: a * b + c, 1 / x, and the square root of what is not 0. */
 #define cadt_about_fma(a, b, c) fma((float)(a), (float)(b), (float)(c))
-#if defined(__NV_CL_C_VERSION)
-CADT_FN float cadt_about_inverse(float x) {
-  float y;
-  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
-  return y;
-}
-CADT_FN float cadt_about_sqrt(float x) {
-  float y;
-  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
-  return y;
-}
-#else
-#define cadt_about_inverse(x) (1.0f / (x))
-#define cadt_about_sqrt(x) sqrt((float)(x))
-#endif
 #define cadt_clz64(x) ((cadt_u32)clz((ulong)(x)))
 #define cadt_mulhi_u64(a, b) mul_hi((ulong)(a), (ulong)(b))
-#define cadt_fabs(x) fabs(x)
-#define cadt_sqrt(x) sqrt(x)
-#define CADT_INFINITY INFINITY
-#define cadt_ldexp(x, e) ldexp((x), (e))
-#define cadt_atan2(y, x) atan2((y), (x))
-
+#if !defined(__NV_CL_C_VERSION) /* see below */
+#define cadt_about_inverse(x) (1.0f / (x))
+#define cadt_about_sqrt(x) sqrt((float)(x))
 /* A clock of the work-item's processor, for differences; 0 where there is none. */
-#if defined(__NV_CL_C_VERSION)
-CADT_FN cadt_u64 cadt_clock(void) {
-  cadt_u64 ticks;
-  asm volatile("mov.u64 %0, %%clock64;" : "=l"(ticks)::"memory");
-  return ticks;
-}
-#elif CADT_TIMED && CADT_CONTIGUOUS && defined(__clang__) && defined(__x86_64__)
+#if CADT_TIMED && CADT_CONTIGUOUS && defined(__clang__) && defined(__x86_64__)
 CADT_FN cadt_u64 cadt_clock(void) { return __builtin_readcyclecounter(); }
 #else
 CADT_FN cadt_u64 cadt_clock(void) { return 0; }
+#endif
 #endif
 
 /* ---- CUDA C++ ---- */
@@ -159,7 +135,6 @@ typedef long long cadt_i64;
 #define cadt_item_of_group ((cadt_u32)threadIdx.x)
 #define cadt_group_items ((cadt_u32)blockDim.x)
 #define cadt_group_barrier() __syncthreads()
-#define CADT_CAST(type, value) ((type)(value))
 
 #define cadt_bits_of_double(x) ((cadt_u64)__double_as_longlong(x))
 #define cadt_double_of_bits(x) __longlong_as_double((long long)(x))
@@ -170,29 +145,8 @@ typedef long long cadt_i64;
 #define cadt_maxf(a, b) fmaxf((a), (b))
 #define cadt_minf(a, b) fminf((a), (b))
 #define cadt_about_fma(a, b, c) __fmaf_rn((a), (b), (c))
-/* Subnormal numbers count as 0. */
-CADT_FN float cadt_about_inverse(float x) {
-  float y;
-  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
-  return y;
-}
-CADT_FN float cadt_about_sqrt(float x) {
-  float y;
-  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
-  return y;
-}
 #define cadt_clz64(x) ((cadt_u32)__clzll((long long)(x)))
 #define cadt_mulhi_u64(a, b) __umul64hi((a), (b))
-#define cadt_fabs(x) fabs(x)
-#define cadt_sqrt(x) sqrt(x)
-#define CADT_INFINITY INFINITY
-#define cadt_ldexp(x, e) ldexp((x), (e))
-#define cadt_atan2(y, x) atan2((y), (x))
-CADT_FN cadt_u64 cadt_clock() {
-  cadt_u64 ticks;
-  asm volatile("mov.u64 %0, %%clock64;" : "=l"(ticks)::"memory");
-  return ticks;
-}
 
 /* ---- host C++; whoever includes the kernels has included <atomic>, <chrono>, <cmath>, <cstdint>, <cstring> ---- */
 #else
@@ -214,26 +168,10 @@ typedef std::int64_t cadt_i64;
 #define CADT_TEAM_KERNEL(lanes, teams, name, ...) CADT_KERNEL(name, __VA_ARGS__)
 #define CADT_CAST(type, value) static_cast<type>(value)
 
-CADT_FN cadt_u64 cadt_bits_of_double(double x) {
-  cadt_u64 bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  return bits;
-}
-CADT_FN double cadt_double_of_bits(cadt_u64 bits) {
-  double x;
-  std::memcpy(&x, &bits, sizeof x);
-  return x;
-}
-CADT_FN cadt_u32 cadt_bits_of_float(float x) {
-  cadt_u32 bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  return bits;
-}
-CADT_FN float cadt_float_of_bits(cadt_u32 bits) {
-  float x;
-  std::memcpy(&x, &bits, sizeof x);
-  return x;
-}
+CADT_FN cadt_u64 cadt_bits_of_double(double x) { return __builtin_bit_cast(cadt_u64, x); }
+CADT_FN double cadt_double_of_bits(cadt_u64 bits) { return __builtin_bit_cast(double, bits); }
+CADT_FN cadt_u32 cadt_bits_of_float(float x) { return __builtin_bit_cast(cadt_u32, x); }
+CADT_FN float cadt_float_of_bits(cadt_u32 bits) { return __builtin_bit_cast(float, bits); }
 CADT_FN cadt_u32 cadt_popcount(cadt_u32 x) { return CADT_CAST(cadt_u32, __builtin_popcount(x)); }
 CADT_FN float cadt_fabsf(float x) { return std::fabs(x); }
 /* a if b is NaN */
@@ -247,17 +185,11 @@ CADT_FN cadt_u64 cadt_mulhi_u64(cadt_u64 a, cadt_u64 b) {
   __extension__ typedef unsigned __int128 u128;
   return CADT_CAST(cadt_u64, (CADT_CAST(u128, a) * b) >> 64);
 }
-#if CADT_FLOAT
-CADT_FN float cadt_fabs(float x) { return std::fabs(x); }
-#define CADT_INFINITY std::numeric_limits<float>::infinity()
-CADT_FN float cadt_atan2(float y, float x) { return std::atan2(y, x); }
-#else
-CADT_FN double cadt_fabs(double x) { return std::fabs(x); }
-CADT_FN double cadt_sqrt(double x) { return std::sqrt(x); }
-#define CADT_INFINITY std::numeric_limits<double>::infinity()
-CADT_FN double cadt_ldexp(double x, cadt_i32 e) { return std::ldexp(x, e); }
-CADT_FN double cadt_atan2(double y, double x) { return std::atan2(y, x); }
-#endif
+#define cadt_fabs(x) std::fabs(x)
+#define cadt_sqrt(x) std::sqrt(x)
+#define CADT_INFINITY std::numeric_limits<cadt_real>::infinity()
+#define cadt_ldexp(x, e) std::ldexp((x), (e))
+#define cadt_atan2(y, x) std::atan2((y), (x))
 CADT_FN cadt_u64 cadt_clock() {
 #if defined(__x86_64__)
   return __builtin_ia32_rdtsc();
@@ -266,6 +198,35 @@ CADT_FN cadt_u64 cadt_clock() {
 #endif
 }
 
+#endif
+
+/* ---- what OpenCL C and CUDA C++ have in common ---- */
+#if !defined(CADT_LANG_HOST)
+#define CADT_CAST(type, value) ((type)(value))
+#define cadt_fabs(x) fabs(x)
+#define cadt_sqrt(x) sqrt(x)
+#define CADT_INFINITY INFINITY
+#define cadt_ldexp(x, e) ldexp((x), (e))
+#define cadt_atan2(y, x) atan2((y), (x))
+#endif
+/* NVIDIA's OpenCL C has the assembler of CUDA. */
+#if defined(CADT_LANG_CUDA) || defined(__NV_CL_C_VERSION)
+/* Subnormal numbers count as 0. */
+CADT_FN float cadt_about_inverse(float x) {
+  float y;
+  asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+  return y;
+}
+CADT_FN float cadt_about_sqrt(float x) {
+  float y;
+  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+  return y;
+}
+CADT_FN cadt_u64 cadt_clock(void) {
+  cadt_u64 ticks;
+  asm volatile("mov.u64 %0, %%clock64;" : "=l"(ticks)::"memory");
+  return ticks;
+}
 #endif
 
 #endif

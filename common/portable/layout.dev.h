@@ -143,9 +143,8 @@ enum {
   CADT_SET_FLAT,       /* there are no triangles */
   CADT_SET_INDIVIDUAL, /* by itself */
   CADT_SET_WIDE,       /* by itself, in wide arithmetic */
-  CADT_SET_STATES = 3,
-  CADT_SET_FAILURE = 4,
-  CADT_SET_LANES = 32 /* lanes of a team for a set */
+  CADT_SET_FAILURE,    /* the lowest bit above: one vertex */
+  CADT_SET_LANES = 32  /* lanes of a team for a set */
 };
 
 /* What cadt_bounds finds. */
@@ -178,7 +177,7 @@ enum {
   CADT_COUNT_DEFERRED_EDGES,
   CADT_COUNT_EDGE_SPLITS,
   CADT_COUNT_STABILIZED,
-  CADT_COUNT_EXACT_ORIENTATIONS,
+  CADT_COUNT_EXACT_ORIENTATIONS, /* this and the next two in the same order everywhere (cadt_flush_exact) */
   CADT_COUNT_EXACT_INCIRCLES,
   CADT_COUNT_TIES,
   CADT_COUNTERS

@@ -17,7 +17,6 @@ CADT_KERNEL(cadt_scan_sums, CADT_GLOBAL const cadt_u32* data, CADT_GLOBAL cadt_u
   sums[cadt_item] = sum;
 }
 
-/* sums[chunks] becomes the total */
 CADT_KERNEL(cadt_scan_total, CADT_GLOBAL cadt_u32* sums, cadt_u32 chunks) {
   if (cadt_item != 0u) return;
   cadt_u32 sum = 0u;
@@ -26,7 +25,6 @@ CADT_KERNEL(cadt_scan_total, CADT_GLOBAL cadt_u32* sums, cadt_u32 chunks) {
     sums[i] = sum;
     sum += value;
   }
-  sums[chunks] = sum;
 }
 
 CADT_KERNEL(cadt_scan_apply, CADT_GLOBAL cadt_u32* data, CADT_GLOBAL const cadt_u32* sums, cadt_u32 count,

@@ -14,69 +14,45 @@
     key[i] = low < high ? low : high;           \
     key[j] = low < high ? high : low;           \
   } while (0)
-#define CADT_SORT_KEYS     \
-  CADT_ORDER_KEYS(0, 1);   \
-  CADT_ORDER_KEYS(2, 3);   \
-  CADT_ORDER_KEYS(4, 5);   \
-  CADT_ORDER_KEYS(6, 7);   \
-  CADT_ORDER_KEYS(8, 9);   \
-  CADT_ORDER_KEYS(10, 11); \
-  CADT_ORDER_KEYS(12, 13); \
-  CADT_ORDER_KEYS(14, 15); \
-  CADT_ORDER_KEYS(0, 2);   \
-  CADT_ORDER_KEYS(1, 3);   \
-  CADT_ORDER_KEYS(4, 6);   \
-  CADT_ORDER_KEYS(5, 7);   \
-  CADT_ORDER_KEYS(8, 10);  \
-  CADT_ORDER_KEYS(9, 11);  \
-  CADT_ORDER_KEYS(12, 14); \
-  CADT_ORDER_KEYS(13, 15); \
-  CADT_ORDER_KEYS(1, 2);   \
-  CADT_ORDER_KEYS(5, 6);   \
-  CADT_ORDER_KEYS(9, 10);  \
-  CADT_ORDER_KEYS(13, 14); \
-  CADT_ORDER_KEYS(0, 4);   \
-  CADT_ORDER_KEYS(1, 5);   \
-  CADT_ORDER_KEYS(2, 6);   \
-  CADT_ORDER_KEYS(3, 7);   \
-  CADT_ORDER_KEYS(8, 12);  \
-  CADT_ORDER_KEYS(9, 13);  \
-  CADT_ORDER_KEYS(10, 14); \
-  CADT_ORDER_KEYS(11, 15); \
-  CADT_ORDER_KEYS(2, 4);   \
-  CADT_ORDER_KEYS(3, 5);   \
-  CADT_ORDER_KEYS(10, 12); \
-  CADT_ORDER_KEYS(11, 13); \
-  CADT_ORDER_KEYS(1, 2);   \
-  CADT_ORDER_KEYS(3, 4);   \
-  CADT_ORDER_KEYS(5, 6);   \
-  CADT_ORDER_KEYS(9, 10);  \
-  CADT_ORDER_KEYS(11, 12); \
-  CADT_ORDER_KEYS(13, 14); \
-  CADT_ORDER_KEYS(0, 8);   \
-  CADT_ORDER_KEYS(1, 9);   \
-  CADT_ORDER_KEYS(2, 10);  \
-  CADT_ORDER_KEYS(3, 11);  \
-  CADT_ORDER_KEYS(4, 12);  \
-  CADT_ORDER_KEYS(5, 13);  \
-  CADT_ORDER_KEYS(6, 14);  \
-  CADT_ORDER_KEYS(7, 15);  \
-  CADT_ORDER_KEYS(4, 8);   \
-  CADT_ORDER_KEYS(5, 9);   \
-  CADT_ORDER_KEYS(6, 10);  \
-  CADT_ORDER_KEYS(7, 11);  \
-  CADT_ORDER_KEYS(2, 4);   \
-  CADT_ORDER_KEYS(3, 5);   \
-  CADT_ORDER_KEYS(6, 8);   \
-  CADT_ORDER_KEYS(7, 9);   \
-  CADT_ORDER_KEYS(10, 12); \
-  CADT_ORDER_KEYS(11, 13); \
-  CADT_ORDER_KEYS(1, 2);   \
-  CADT_ORDER_KEYS(3, 4);   \
-  CADT_ORDER_KEYS(5, 6);   \
-  CADT_ORDER_KEYS(7, 8);   \
-  CADT_ORDER_KEYS(9, 10);  \
-  CADT_ORDER_KEYS(11, 12); \
-  CADT_ORDER_KEYS(13, 14);
+#define CADT_ORDER_TWO(i, j) \
+  CADT_ORDER_KEYS(i, j);     \
+  CADT_ORDER_KEYS((i) + 1, (j) + 1)
+#define CADT_ORDER_FOUR(i, j) \
+  CADT_ORDER_TWO(i, j);       \
+  CADT_ORDER_TWO((i) + 2, (j) + 2)
+/* Three and four pairs of neighbours, from i on. */
+#define CADT_ORDER_THREE_PAIRS(i)    \
+  CADT_ORDER_KEYS(i, (i) + 1);       \
+  CADT_ORDER_KEYS((i) + 2, (i) + 3); \
+  CADT_ORDER_KEYS((i) + 4, (i) + 5)
+#define CADT_ORDER_FOUR_PAIRS(i) \
+  CADT_ORDER_THREE_PAIRS(i);     \
+  CADT_ORDER_KEYS((i) + 6, (i) + 7)
+/* Layer by layer: compilers for CPUs make less of other orders. */
+#define CADT_SORT_KEYS       \
+  CADT_ORDER_FOUR_PAIRS(0);  \
+  CADT_ORDER_FOUR_PAIRS(8);  \
+  CADT_ORDER_TWO(0, 2);      \
+  CADT_ORDER_TWO(4, 6);      \
+  CADT_ORDER_TWO(8, 10);     \
+  CADT_ORDER_TWO(12, 14);    \
+  CADT_ORDER_KEYS(1, 2);     \
+  CADT_ORDER_KEYS(5, 6);     \
+  CADT_ORDER_KEYS(9, 10);    \
+  CADT_ORDER_KEYS(13, 14);   \
+  CADT_ORDER_FOUR(0, 4);     \
+  CADT_ORDER_FOUR(8, 12);    \
+  CADT_ORDER_TWO(2, 4);      \
+  CADT_ORDER_TWO(10, 12);    \
+  CADT_ORDER_THREE_PAIRS(1); \
+  CADT_ORDER_THREE_PAIRS(9); \
+  CADT_ORDER_FOUR(0, 8);     \
+  CADT_ORDER_FOUR(4, 12);    \
+  CADT_ORDER_FOUR(4, 8);     \
+  CADT_ORDER_TWO(2, 4);      \
+  CADT_ORDER_TWO(6, 8);      \
+  CADT_ORDER_TWO(10, 12);    \
+  CADT_ORDER_FOUR_PAIRS(1);  \
+  CADT_ORDER_THREE_PAIRS(9)
 
 #endif

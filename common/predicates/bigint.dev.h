@@ -130,12 +130,10 @@ typedef struct {
 CADT_FN cadt_i128 cadt_mul_i64(cadt_i64 a, cadt_i64 b) {
   cadt_u64 ua = CADT_CAST(cadt_u64, a), ub = CADT_CAST(cadt_u64, b);
   cadt_u64 high = cadt_mulhi_u64(ua, ub);
-  cadt_i128 r;
   /* the unsigned product exceeds the signed one by b * 2^64 if a < 0 and by a * 2^64 if b < 0 */
   if (a < 0) high -= ub;
   if (b < 0) high -= ua;
-  r.high = CADT_CAST(cadt_i64, high);
-  r.low = ua * ub;
+  const cadt_i128 r = {CADT_CAST(cadt_i64, high), ua * ub};
   return r;
 }
 CADT_FN cadt_i128 cadt_add_i128(cadt_i128 a, cadt_i128 b) {
@@ -162,9 +160,8 @@ CADT_FN cadt_i128 cadt_minor_i64(cadt_i64 a, cadt_i64 b, cadt_i64 c, cadt_i64 d)
 /* Magnitude of a; `negative` becomes all ones or 0. */
 CADT_FN cadt_i128 cadt_abs_i128(cadt_i128 a, cadt_u64* negative) {
   const cadt_u64 mask = CADT_CAST(cadt_u64, a.high >> 63), low = (a.low ^ mask) - mask;
-  cadt_i128 r;
-  r.high = CADT_CAST(cadt_i64, (CADT_CAST(cadt_u64, a.high) ^ mask) + (mask && low == 0ul ? 1ul : 0ul));
-  r.low = low;
+  const cadt_u64 high = (CADT_CAST(cadt_u64, a.high) ^ mask) + (mask && low == 0ul ? 1ul : 0ul);
+  const cadt_i128 r = {CADT_CAST(cadt_i64, high), low};
   *negative = mask;
   return r;
 }
@@ -228,6 +225,15 @@ CADT_FN cadt_i32 cadt_sign_i256(const cadt_i256* a) {
 
 /* ---- integers of any length: little-endian 32-bit limbs ---- */
 
+/* x = -x, two's complement */
+CADT_FN void cadt_limbs_negate(cadt_u32* x, cadt_i32 n) {
+  cadt_u32 carry = 1u;
+  for (cadt_i32 i = 0; i < n; ++i) {
+    x[i] = ~x[i] + carry;
+    carry = carry && x[i] == 0u ? 1u : 0u;
+  }
+}
+
 /* x = value / 2^low, two's complement, n limbs */
 CADT_FN void cadt_limbs_load(cadt_u32* x, cadt_i32 n, cadt_real value, cadt_i32 low) {
   cadt_u64 bits = cadt_bits_of_real(value), m = cadt_mantissa(bits);
@@ -243,13 +249,7 @@ CADT_FN void cadt_limbs_load(cadt_u32* x, cadt_i32 n, cadt_real value, cadt_i32 
   x[at] = CADT_CAST(cadt_u32, lower);
   if (at + 1 < n) x[at + 1] = CADT_CAST(cadt_u32, lower >> 32);
   if (at + 2 < n) x[at + 2] = CADT_CAST(cadt_u32, upper);
-  if (bits >> CADT_SIGN_SHIFT) {
-    cadt_u32 carry = 1u;
-    for (cadt_i32 i = 0; i < n; ++i) {
-      x[i] = ~x[i] + carry;
-      carry = carry && x[i] == 0u ? 1u : 0u;
-    }
-  }
+  if (bits >> CADT_SIGN_SHIFT) cadt_limbs_negate(x, n);
 }
 
 /* x += y or x -= y; y has m <= n limbs and is unsigned or of the same length */
@@ -266,11 +266,7 @@ CADT_FN void cadt_limbs_accumulate(cadt_u32* x, cadt_i32 n, const cadt_u32* y, c
 /* Two's complement to magnitude in place; returns 1 if it was negative. */
 CADT_FN cadt_u32 cadt_limbs_abs(cadt_u32* x, cadt_i32 n) {
   if (!(x[n - 1] >> 31)) return 0u;
-  cadt_u32 carry = 1u;
-  for (cadt_i32 i = 0; i < n; ++i) {
-    x[i] = ~x[i] + carry;
-    carry = carry && x[i] == 0u ? 1u : 0u;
-  }
+  cadt_limbs_negate(x, n);
   return 1u;
 }
 

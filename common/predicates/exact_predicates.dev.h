@@ -81,6 +81,12 @@ CADT_FN_SLOW cadt_i32 cadt_orientation_centroid_exact(cadt_point c0, cadt_point 
   return cadt_sign_of_minor(d, n);
 }
 
+/* What rounding lost of a + b (D. E. Knuth, "The Art of Computer Programming", vol. 2, 4.2.2). */
+CADT_FN cadt_real cadt_lost_by_sum(cadt_real a, cadt_real b, cadt_real sum) {
+  const cadt_real part = sum - a;
+  return (a - (sum - part)) + (b - part);
+}
+
 #if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
 /* A sum of two doubles, the second at most half a unit in the last place of the first (T. J. Dekker, "A floating-point
  * technique for extending the available precision", 1971). The self-test checks what this needs of a device: sums and
@@ -90,23 +96,20 @@ typedef struct {
 } cadt_pair;
 
 CADT_FN cadt_pair cadt_pair_of(double high, double low) {
-  cadt_pair r;
-  r.high = high + low;
-  r.low = low - (r.high - high);
+  const double sum = high + low;
+  const cadt_pair r = {sum, low - (sum - high)};
   return r;
 }
 /* Exact. */
 CADT_FN cadt_pair cadt_pair_difference(double a, double b) {
-  const double difference = a - b, part = difference - a;
-  cadt_pair r;
-  r.high = difference;
-  r.low = (a - (difference - part)) - (b + part);
+  const double difference = a - b;
+  const cadt_pair r = {difference, cadt_lost_by_sum(a, -b, difference)};
   return r;
 }
 /* The error is less than 2^-103 of |a| + |b|. */
 CADT_FN cadt_pair cadt_pair_sum(cadt_pair a, cadt_pair b) {
-  const double sum = a.high + b.high, part = sum - a.high;
-  return cadt_pair_of(sum, ((a.high - (sum - part)) + (b.high - part)) + (a.low + b.low));
+  const double sum = a.high + b.high;
+  return cadt_pair_of(sum, cadt_lost_by_sum(a.high, b.high, sum) + (a.low + b.low));
 }
 /* The first 26 bits of the mantissa. */
 CADT_FN double cadt_upper_half(double a) {

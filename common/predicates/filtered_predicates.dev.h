@@ -114,12 +114,7 @@ CADT_FN_SLOW cadt_i32 cadt_tie(cadt_point a, cadt_point b, cadt_point c, cadt_po
   return -1;
 }
 
-/* Whether two sums are equal: both the rounded sums and what rounding lost (D. E. Knuth, "The Art of Computer
- * Programming", vol. 2, 4.2.2). */
-CADT_FN cadt_real cadt_lost_by_sum(cadt_real a, cadt_real b, cadt_real sum) {
-  const cadt_real part = sum - a;
-  return (a - (sum - part)) + (b - part);
-}
+/* Whether two sums are equal: both the rounded sums and what rounding lost. */
 CADT_FN cadt_u32 cadt_equal_sums(cadt_real a, cadt_real b, cadt_real c, cadt_real d) {
   const cadt_real left = a + b, right = c + d;
   return left == right && cadt_lost_by_sum(a, b, left) == cadt_lost_by_sum(c, d, right) ? 1u : 0u;
@@ -143,10 +138,8 @@ typedef struct {
 } cadt_lifted_vector;
 
 CADT_FN cadt_lifted_vector cadt_lifted_vector_of(cadt_point from, cadt_point to) {
-  cadt_lifted_vector arm;
-  arm.x = to.x - from.x;
-  arm.y = to.y - from.y;
-  arm.lift = arm.x * arm.x + arm.y * arm.y;
+  const cadt_real x = to.x - from.x, y = to.y - from.y;
+  const cadt_lifted_vector arm = {x, y, x * x + y * y};
   return arm;
 }
 

@@ -31,8 +31,7 @@ CADT_KERNEL(cadt_predicate_probe, CADT_GLOBAL const cadt_point* points, CADT_GLO
             CADT_GLOBAL cadt_u32* words, cadt_u32 cases, cadt_u32 grain) {
   CADT_FOR(i, cases, grain) {
     const cadt_point a = points[4u * i], b = points[4u * i + 1u], c = points[4u * i + 2u], p = points[4u * i + 3u];
-    cadt_counters counters;
-    cadt_counters_clear(&counters);
+    CADT_DECLARE_COUNTERS(counters);
     const cadt_i32 turn = cadt_orientation(a, b, c, &counters);
     cadt_u32 word = cadt_sign_bits(turn, CADT_SIGN_ORIENTATION);
     word |= cadt_sign_bits(turn > 0 ? cadt_incircle(a, b, c, p, &counters) : 0, CADT_SIGN_INCIRCLE);

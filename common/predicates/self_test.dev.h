@@ -10,10 +10,8 @@
 #include "common/portable/atomics.dev.h"
 #include "common/predicates/bigint.dev.h"
 
-enum { CADT_PROBES = 8, CADT_PROBE_WORDS = 5 };
-
-/* in: 2 * CADT_PROBES coordinates; out: CADT_PROBES of them; words: CADT_PROBE_WORDS, zero at the start but the last,
- * which is CADT_NONE; items: so many work-items count, for the launch may be rounded up */
+/* in: 16 coordinates; out: 8 of them; words: 5, zero at the start but the last, which is CADT_NONE; items: so many
+ * work-items count, for the launch may be rounded up */
 CADT_KERNEL(cadt_selftest, CADT_GLOBAL const cadt_real* in, CADT_GLOBAL cadt_real* out, CADT_GLOBAL cadt_u32* words,
             cadt_u32 items) {
   if (cadt_item == 0u) {

@@ -36,13 +36,7 @@ CADT_FN cadt_wrap_span cadt_wrap_span_of(CADT_GLOBAL const cadt_u32* starts, cad
 /* The set of a node: the last one whose first node is not behind it. */
 CADT_FN cadt_u32 cadt_wrap_set_of_node(CADT_GLOBAL const cadt_u32* starts, cadt_u32 set_count, cadt_u32 node) {
   cadt_u32 low = 0u, high = set_count;
-  while (high - low > 1u) {
-    const cadt_u32 middle = low + (high - low) / 2u;
-    if (cadt_wrap_span_of(starts, middle, 0u).node <= node)
-      low = middle;
-    else
-      high = middle;
-  }
+  CADT_FIND_LAST(low, high, middle, cadt_wrap_span_of(starts, middle, 0u).node <= node);
   return low;
 }
 
@@ -55,13 +49,10 @@ typedef struct {
 
 CADT_FN cadt_aabb_tree cadt_aabb_tree_of(const cadt_wrap_span span, CADT_GLOBAL const cadt_point* points,
                                          CADT_GLOBAL const cadt_aabb* leaves, CADT_GLOBAL const cadt_aabb* nodes) {
-  cadt_aabb_tree in;
-  in.points = points + span.begin;
-  in.leaves = leaves + span.leaf;
-  in.nodes = nodes + span.node;
-  in.n = span.count;
-  in.leaf_count = (span.count - 1u) / CADT_AABB_LEAF + 1u;
-  in.node_count = (in.leaf_count - 1u) / CADT_AABB_FANOUT + 1u;
+  const cadt_u32 leaf_count = (span.count - 1u) / CADT_AABB_LEAF + 1u;
+  const cadt_u32 node_count = (leaf_count - 1u) / CADT_AABB_FANOUT + 1u;
+  const cadt_aabb_tree in = {points + span.begin, leaves + span.leaf, nodes + span.node,
+                             span.count,          leaf_count,         node_count};
   return in;
 }
 
@@ -137,9 +128,7 @@ CADT_FN cadt_disc cadt_disc_around(cadt_point p, cadt_point a, cadt_point b) {
   const double ax = a.x - p.x, ay = a.y - p.y, bx = b.x - p.x, by = b.y - p.y;
   const double aa = ax * ax + ay * ay, bb = bx * bx + by * by;
   const double scale = 0.5 / (ax * by - ay * bx), kk = 4.0 * (aa * scale) * (bb * scale); /* K^2 */
-  cadt_disc d;
-  d.x = (by * aa - ay * bb) * scale;
-  d.y = (ax * bb - bx * aa) * scale;
+  cadt_disc d = {(by * aa - ay * bb) * scale, (ax * bb - bx * aa) * scale, 0.0};
   const double radius =
       cadt_sqrt(d.x * d.x + d.y * d.y) * (1.0 + 4e-15) + 1e-14 * cadt_sqrt(kk * (1.0 + kk) * (aa + bb));
   d.square = radius * radius;
@@ -158,10 +147,8 @@ CADT_FN cadt_disc cadt_disc_beside(cadt_point p, cadt_point a, cadt_point b, cad
   const double dot = across + along + 1e-15 * (cadt_fabs(across) + cadt_fabs(along));
   if (!(-dot > 2.0 * CADT_WRAP_FLAT * cross)) return cadt_disc_around(p, a, b);
   const double away = 0.5 * CADT_WRAP_FLAT * CADT_CAST(double, side);
-  cadt_disc d;
-  d.x = 0.5 * ax + away * ay;
-  d.y = 0.5 * ay - away * ax;
-  d.square = 0.25 * (ax * ax + ay * ay) * (1.0 + CADT_WRAP_FLAT * CADT_WRAP_FLAT) * (1.0 + 1e-14);
+  const cadt_disc d = {0.5 * ax + away * ay, 0.5 * ay - away * ax,
+                       0.25 * (ax * ax + ay * ay) * (1.0 + CADT_WRAP_FLAT * CADT_WRAP_FLAT) * (1.0 + 1e-14)};
   return d;
 }
 
@@ -202,9 +189,8 @@ CADT_FN cadt_reach_around cadt_wrap_reach(const cadt_aabb_tree* in, cadt_u32 p) 
     longest = longer > longest ? longer : longest;
   }
   const cadt_u32 all = in->n <= CADT_CAST(cadt_u32, CADT_NEAR_POINTS) ? 1u : 0u;
-  cadt_reach_around reach;
-  reach.square = all ? CADT_CAST(double, CADT_INFINITY) : CADT_NEAR_SPACINGS * spacing;
-  reach.unit = 1.0 / (all ? longest : cadt_sqrt(reach.square));
+  const double square = all ? CADT_CAST(double, CADT_INFINITY) : CADT_NEAR_SPACINGS * spacing;
+  const cadt_reach_around reach = {square, 1.0 / (all ? longest : cadt_sqrt(square))};
   return reach;
 }
 

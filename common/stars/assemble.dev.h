@@ -118,12 +118,7 @@ typedef struct {
 
 CADT_FN cadt_triangle_sink cadt_sink_of(CADT_TEAM_PTR cadt_triangle_page* page, CADT_GLOBAL cadt_u32* words,
                                         cadt_u32 first, cadt_u32 end, cadt_u32 triangles) {
-  cadt_triangle_sink sink;
-  sink.page = page;
-  sink.words = words;
-  sink.first = first;
-  sink.count = cadt_min_u32(end - first, CADT_TRIANGLES_OF_TEAM);
-  sink.triangles = triangles;
+  const cadt_triangle_sink sink = {page, words, first, cadt_min_u32(end - first, CADT_TRIANGLES_OF_TEAM), triangles};
   return sink;
 }
 
@@ -212,12 +207,7 @@ CADT_TEAM_KERNEL(CADT_ASSEMBLY_LANES, 12, cadt_star_half_edges, CADT_GLOBAL cons
                  cadt_u32 grain, CADT_GLOBAL cadt_u32* half_edges, CADT_GLOBAL cadt_u32* firsts,
                  CADT_GLOBAL cadt_u32* open, CADT_GLOBAL cadt_u32* totals) {
   CADT_TEAM_MEMORY cadt_triangle_page page;
-  cadt_star_set stars;
-  stars.star_vertices = star_vertices;
-  stars.begins = begins;
-  stars.marks = marks;
-  stars.bases = bases;
-  stars.has_star = has_star;
+  const cadt_star_set stars = {star_vertices, begins, marks, bases, has_star};
   if (cadt_item == 0u) firsts[groups] = bases[n];
   CADT_FOR_TEAMS(t, groups, grain) {
     const cadt_u32 begin = t * CADT_ASSEMBLY_LANES, vertices = cadt_min_u32(CADT_ASSEMBLY_LANES, n - begin);

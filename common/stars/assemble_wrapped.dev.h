@@ -75,9 +75,8 @@ CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
       if (cadt_lacks_star(sizes, a) && cadt_lacks_star(sizes, b)) {
         const cadt_u32 at = cadt_add_relaxed(counts + CADT_WRAP_OPEN_EDGES, 1u);
         if (at < CADT_CAST(cadt_u32, CADT_WRAP_EDGES)) {
-          edges[at].from = a;
-          edges[at].to = b;
-          edges[at].left = v;
+          const cadt_wrap_edge edge = {a, b, v};
+          edges[at] = edge;
         }
       }
     }
@@ -212,20 +211,10 @@ CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
       (bases[n + 1u + CADT_WRAP_FAILED] && !high_degree))
     return;
   if (cadt_item == 0u) bases[row + CADT_CERTIFY_REAL] = real;
-  cadt_wrap_set stars;
-  stars.star_vertices = star_vertices;
-  stars.begins = begins;
-  stars.sizes = sizes;
-  stars.bases = bases;
-  stars.edges = edges;
-  stars.edge_count = edge_count;
-  stars.first_extra = first_extra;
-  stars.extra_real = extra_real;
-  stars.first_extras[0] = CADT_WRAP_REAL(total);
-  stars.first_extras[1] = real + CADT_WRAP_GHOSTS(total);
-  stars.ghosts = real;
-  stars.high_degree = high_degree;
-  stars.apart = 1u;
+  const cadt_wrap_set stars = {star_vertices, begins,      sizes,
+                               bases,         edges,       edge_count,
+                               first_extra,   extra_real,  {CADT_WRAP_REAL(total), real + CADT_WRAP_GHOSTS(total)},
+                               real,          high_degree, 1u};
   if (cadt_item == 0u) {
     for (cadt_u32 e = first_extra; e < edge_count; e += 3u) {
       const cadt_u32 x = edges[e].from, y = edges[e].to, z = edges[e].left;
@@ -253,14 +242,7 @@ CADT_KERNEL(cadt_wrap_arrays, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
 CADT_KERNEL(cadt_batch_locked, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GLOBAL const cadt_u32* begins,
             CADT_GLOBAL const cadt_u32* sizes, CADT_GLOBAL const cadt_u32* bases, cadt_u32 n, cadt_u32 grain,
             CADT_GLOBAL cadt_locked_triangle* locked) {
-  cadt_wrap_set stars;
-  stars.star_vertices = star_vertices;
-  stars.begins = begins;
-  stars.sizes = sizes;
-  stars.bases = bases;
-  stars.edges = 0;
-  stars.edge_count = stars.first_extra = stars.extra_real = stars.ghosts = stars.high_degree = stars.apart = 0u;
-  stars.first_extras[0] = stars.first_extras[1] = 0u;
+  const cadt_wrap_set stars = {star_vertices, begins, sizes, bases, 0, 0u, 0u, 0u, {0u, 0u}, 0u, 0u, 0u};
   CADT_FOR(i, n * CADT_WRAP_SHARES, grain) {
     const cadt_u32 v = i / CADT_WRAP_SHARES, size = sizes[v];
     for (cadt_u32 k = i % CADT_WRAP_SHARES; k < size; k += CADT_WRAP_SHARES) {

@@ -23,8 +23,7 @@ CADT_KERNEL(cadt_list_high_degree, CADT_GLOBAL const cadt_u32* sizes, cadt_u32 n
 CADT_KERNEL(cadt_apex_of_high_degree, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* high_degree,
             cadt_u32 high_degree_count, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_wrap_edge* edges,
             CADT_GLOBAL cadt_u32* counts) {
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   CADT_FOR(e, count, grain) {
     const cadt_u32 a = edges[e].from, b = edges[e].to;
     cadt_u32 best = CADT_GHOST;
@@ -35,7 +34,7 @@ CADT_KERNEL(cadt_apex_of_high_degree, CADT_GLOBAL const cadt_point* points, CADT
     }
     edges[e].left = best;
   }
-  cadt_wrap_flush_counts(&counters, counts);
+  cadt_flush_exact(&counters, counts + CADT_WRAP_EXACT_ORIENTATIONS);
 }
 
 #endif

@@ -53,8 +53,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   for (cadt_u32 k = 0u; k < 8u; ++k) best[k] = least;
   cadt_vector at_p = cadt_place_of(w, p);
   cadt_cell_scan cells = cadt_scan_around(w, x, y, near);
-  cadt_u32 more = 1u;
-  while (more) {
+  do {
     for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_SCAN_POINTS); ++i) {
       const cadt_u32 place = cells.place + i;
       const cadt_vector d = cadt_vector_from(w, at_p, place);
@@ -66,8 +65,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
       best[4] = cadt_maxf(best[4], -ux);
       best[6] = cadt_maxf(best[6], -uy);
     }
-    more = cadt_cell_scan_next(w, &cells);
-  }
+  } while (cadt_cell_scan_next(w, &cells));
   if (!(nearest > 0.0f && nearest < 1e7f)) return 0u; /* no point, or too near for single precision */
   /* Relative error of a difference, and of its inverse. Points further away than a cell have smaller ones. */
   const float rho = CADT_NEIGHBORHOOD_ERROR * cadt_about_sqrt(cadt_maxf(nearest, 1.0f)), sigma = 3.0f * rho + 1e-6f;
@@ -83,8 +81,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
     }
     at_p = cadt_place_of(w, p);
     cells = cadt_scan_around(w, x, y, near);
-    more = 1u;
-    while (more) {
+    do {
       for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_SCAN_POINTS); ++i) {
         const cadt_u32 place = cells.place + i;
         const cadt_vector d = cadt_vector_from(w, at_p, place);
@@ -92,8 +89,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
         for (cadt_u32 k = 0u; k < 4u; ++k)
           best[2u * k + 1u] = cadt_maxf(best[2u * k + 1u], cadt_mark(cadt_about_fma(ex[k], ux, ey[k] * uy), place));
       }
-      more = cadt_cell_scan_next(w, &cells);
-    }
+    } while (cadt_cell_scan_next(w, &cells));
   }
 
   /* Half-planes n . u < 1, that is n . d < d . d, of a polygon through some of the eight points. */
@@ -151,8 +147,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   if ((to_x - from_x + 1u) * (to_y - from_y + 1u) > most_cells) return 0u;
   cells = cadt_cell_scan_of(w, from_x, from_y, to_x, to_y);
   cadt_u32 count = 0u;
-  more = 1u;
-  while (more) {
+  do {
     for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_SCAN_POINTS); ++i) {
       const cadt_u32 j = cells.place + i, here = j < cells.end ? 1u : 0u;
       const float dx = w->x[j] - at_p.x, dy = w->y[j] - at_p.y;
@@ -165,8 +160,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
         ++count;
       }
     }
-    more = cadt_cell_scan_next(w, &cells);
-  }
+  } while (cadt_cell_scan_next(w, &cells));
   if (count > m->candidates) cadt_team_add(&w->overfull, 1u);
   if (count < 3u || count > m->candidates) return 0u;
 
@@ -185,13 +179,7 @@ CADT_FN cadt_u32 cadt_make_star(const cadt_star_maker* m, cadt_u32 p, cadt_u32 x
   for (cadt_u32 k = CADT_CANDIDATES; k < count; ++k) { /* in the second attempt only */
     const cadt_u32 place = cadt_star_place(m, k), key = cadt_angle_key(m, p, first, start, place);
     cadt_u32 low = 0u, high = k;
-    while (low < high) {
-      const cadt_u32 centre = (low + high) / 2u;
-      if (cadt_angle_key(m, p, first, start, cadt_star_place(m, centre)) < key)
-        low = centre + 1u;
-      else
-        high = centre;
-    }
+    CADT_FIND_FIRST(low, high, centre, cadt_angle_key(m, p, first, start, cadt_star_place(m, centre)) < key);
     for (cadt_u32 at = k; at > low; --at) cadt_set_star_place(m, at, cadt_star_place(m, at - 1u));
     cadt_set_star_place(m, low, place);
   }

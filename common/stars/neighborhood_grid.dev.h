@@ -107,26 +107,14 @@ CADT_FN cadt_neighborhood_shape cadt_shape_of_neighborhood(const cadt_key_grid* 
 /* First position whose key, shifted by `shift`, is not less than `square`. */
 CADT_FN cadt_u32 cadt_begin_of_square(const cadt_keys* keys, cadt_u32 n, cadt_u64 square, cadt_u32 shift) {
   cadt_u32 low = 0u, high = n;
-  while (low < high) {
-    const cadt_u32 middle = low + (high - low) / 2u;
-    if (cadt_key_at(keys, middle) >> shift < square)
-      low = middle + 1u;
-    else
-      high = middle;
-  }
+  CADT_FIND_FIRST(low, high, middle, cadt_key_at(keys, middle) >> shift < square);
   return low;
 }
 
 /* Position of point j of the grid before it is sorted into cells. */
 CADT_FN cadt_u32 cadt_position_in_neighborhood(CADT_TEAM_PTR const cadt_neighborhood* w, cadt_u32 ranges, cadt_u32 j) {
   cadt_u32 low = 0u, high = ranges; /* the span is in [low, high) */
-  while (high - low > 1u) {
-    const cadt_u32 middle = (low + high) / 2u;
-    if (w->offset[middle] <= j)
-      low = middle;
-    else
-      high = middle;
-  }
+  CADT_FIND_LAST(low, high, middle, w->offset[middle] <= j);
   return w->first[low] + (j - w->offset[low]);
 }
 

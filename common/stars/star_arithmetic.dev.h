@@ -23,21 +23,16 @@ typedef struct {
 /* Coordinates of a place, read from memory each time: the compiler would spill a value that lives as long as a star,
  * and reload it in each step of a loop. */
 CADT_FN cadt_vector cadt_place_of(CADT_TEAM_PTR const cadt_neighborhood* w, cadt_u32 place) {
-  cadt_vector v;
-  v.x = *CADT_CAST(volatile CADT_TEAM_PTR const float*, w->x + place);
-  v.y = *CADT_CAST(volatile CADT_TEAM_PTR const float*, w->y + place);
+  const cadt_vector v = {*CADT_CAST(volatile CADT_TEAM_PTR const float*, w->x + place),
+                         *CADT_CAST(volatile CADT_TEAM_PTR const float*, w->y + place)};
   return v;
 }
 CADT_FN cadt_vector cadt_vector_from(CADT_TEAM_PTR const cadt_neighborhood* w, cadt_vector from, cadt_u32 to) {
-  cadt_vector d;
-  d.x = w->x[to] - from.x;
-  d.y = w->y[to] - from.y;
+  const cadt_vector d = {w->x[to] - from.x, w->y[to] - from.y};
   return d;
 }
 CADT_FN cadt_vector cadt_vector_to(CADT_TEAM_PTR const cadt_neighborhood* w, cadt_u32 from, cadt_u32 to) {
-  cadt_vector d;
-  d.x = w->x[to] - w->x[from];
-  d.y = w->y[to] - w->y[from];
+  const cadt_vector d = {w->x[to] - w->x[from], w->y[to] - w->y[from]};
   return d;
 }
 CADT_FN float cadt_square(cadt_vector d) { return d.x * d.x + d.y * d.y; }
@@ -98,11 +93,7 @@ CADT_FN cadt_i32 cadt_star_orientation(const cadt_star_maker* m, cadt_u32 p, cad
 #define CADT_STAR_INVALID 2u
 #define CADT_STAR_UNSURE 3u
 CADT_FN cadt_u32 cadt_star_keeps(cadt_vector ua, cadt_vector ub, cadt_vector uc, float sigma) {
-  cadt_vector e, f;
-  e.x = ub.x - ua.x;
-  e.y = ub.y - ua.y;
-  f.x = uc.x - ub.x;
-  f.y = uc.y - ub.y;
+  const cadt_vector e = {ub.x - ua.x, ub.y - ua.y}, f = {uc.x - ub.x, uc.y - ub.y};
   const float largest = cadt_maxf(cadt_maxf(cadt_size(ua), cadt_size(ub)), cadt_size(uc));
   const float cross = cadt_cross(e, f), bound = 4.0f * sigma * largest * (cadt_size(e) + cadt_size(f));
   if (cross > bound) return 1u;

@@ -80,18 +80,9 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_prove_stars, CADT_GLOBAL const cadt_po
   CADT_TEAM_MEMORY cadt_neighborhood near;
   CADT_GRID_VIEW(grid);
   const cadt_keys keys = cadt_keys_of(high_keys, low_keys, low_bits);
-  cadt_point most;
-  most.x = most_x;
-  most.y = most_y;
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
-  cadt_star_pool pool;
-  pool.star_vertices = star_vertices;
-  pool.begins = begins;
-  pool.sizes = sizes;
-  pool.overflowed = counts + CADT_STARS_OVERFLOWED;
-  pool.overflow = overflow;
-  pool.room = room;
+  cadt_point most = {most_x, most_y};
+  CADT_DECLARE_COUNTERS(counters);
+  const cadt_star_pool pool = {star_vertices, begins, sizes, counts + CADT_STARS_OVERFLOWED, overflow, room};
   CADT_FOR_TEAMS(turn, tile_count, grain) {
     const cadt_u32 t = cadt_tile_of_turn(turn, tile_count, sample);
     const cadt_tile tile = tiles[t];
@@ -108,10 +99,7 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_prove_stars, CADT_GLOBAL const cadt_po
       if (states[set] != CADT_SET_BATCHED) wanted = 0u;
     }
     const cadt_neighborhood_shape shape = cadt_shape_of_neighborhood(&grid, most, points, tile, tiles[t + 1u].begin);
-    cadt_star_maker maker;
-    maker.w = &near;
-    maker.points = points;
-    maker.counters = &counters;
+    cadt_star_maker maker = {&near, points, &counters, 0u};
     if (cadt_team_lane == 0u) {
       near.shape = shape; /* registers are scarce */
       near.pool_begin = cadt_pool_of_tile(t, shape.begin);
@@ -168,11 +156,7 @@ CADT_TEAM_KERNEL(CADT_STAR_LANES, 7, cadt_prove_stars, CADT_GLOBAL const cadt_po
     }
     CADT_TEAM_SYNC();
   }
-  if (counters.count[CADT_COUNT_EXACT_ORIENTATIONS])
-    cadt_add_relaxed(counts + CADT_STARS_EXACT_ORIENTATIONS, counters.count[CADT_COUNT_EXACT_ORIENTATIONS]);
-  if (counters.count[CADT_COUNT_EXACT_INCIRCLES])
-    cadt_add_relaxed(counts + CADT_STARS_EXACT_INCIRCLES, counters.count[CADT_COUNT_EXACT_INCIRCLES]);
-  if (counters.count[CADT_COUNT_TIES]) cadt_add_relaxed(counts + CADT_STARS_TIES, counters.count[CADT_COUNT_TIES]);
+  cadt_flush_exact(&counters, counts + CADT_STARS_EXACT_ORIENTATIONS);
 }
 
 #endif

@@ -32,13 +32,7 @@ CADT_FN cadt_i32 cadt_tile_level(const cadt_keys* keys, cadt_u32 n, cadt_u32 i, 
   const cadt_u64 square = key >> shift;
   cadt_u32 low = i > most ? i - most : 0u, high = i; /* its begin is in [low, high], or before low */
   if (i >= most && cadt_key_at(keys, low) >> shift == square) return before + 1;
-  while (low < high) {
-    const cadt_u32 middle = (low + high) / 2u;
-    if (cadt_key_at(keys, middle) >> shift < square)
-      low = middle + 1u;
-    else
-      high = middle;
-  }
+  CADT_FIND_FIRST(low, high, middle, cadt_key_at(keys, middle) >> shift < square);
   return n - low > most && cadt_key_at(keys, low + most) >> shift == square ? before + 1 : -1;
 }
 

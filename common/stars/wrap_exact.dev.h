@@ -118,7 +118,7 @@ CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
                  cadt_u32 star_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
                  CADT_GLOBAL cadt_u32* counts) {
   CADT_TEAM_MEMORY cadt_wrap_memory memory;
-  const cadt_wrap_sink sink = cadt_wrap_sink_of(n, row, star_vertices, star_words, begins, sizes, counts);
+  const cadt_wrap_sink sink = {n, row, star_words, star_vertices, begins, sizes, counts};
   const cadt_u32 hull = 2u * counts[CADT_WRAP_TODO_ON_CIRCLE] > n ? CADT_CAST(cadt_u32, CADT_WRAP_HULL_EXACT)
                                                                   : CADT_CAST(cadt_u32, CADT_WRAP_HULL);
   /* from words that this kernel does not change, so the same for all lanes of a team */
@@ -126,21 +126,16 @@ CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
   const cadt_u32 stars = mostly_hull ? 0u : (arcs ? counts[CADT_WRAP_TODO] : count);
   if (mostly_hull && cadt_item == 0u)
     cadt_add_relaxed(counts + CADT_WRAP_FAILED, CADT_CAST(cadt_u32, CADT_MOST_HIGH_DEGREE) + 1u);
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  CADT_DECLARE_COUNTERS(counters);
   cadt_u32 exact_before = 0u;
   CADT_FOR_TEAMS(item, stars, grain) {
     const cadt_u32 v = todo[item], set = starts ? cadt_set_of(starts, set_count, v) : 0u;
     const cadt_wrap_span span = cadt_wrap_span_of(starts, set, n);
     CADT_GLOBAL cadt_u32* failed = starts ? states + set : counts + CADT_WRAP_FAILED;
     CADT_GLOBAL cadt_u32* done = starts ? work_done + set : counts + CADT_WRAP_WORK;
-    cadt_wrapper w;
-    w.m = &memory;
-    w.in = cadt_aabb_tree_of(span, points, leaves, nodes);
-    w.counters = &counters;
-    w.lanes = cadt_min_u32(cadt_team_lanes, CADT_WRAP_LANES);
-    w.p = v - span.begin;
-    w.leaves_tested = 0u;
+    const cadt_aabb_tree in = cadt_aabb_tree_of(span, points, leaves, nodes);
+    const cadt_u32 lanes = cadt_min_u32(cadt_team_lanes, CADT_WRAP_LANES);
+    cadt_wrapper w = {&memory, in, &counters, lanes, v - span.begin, 0u};
     const cadt_u32 known = arcs ? arcs[item * CADT_WRAP_ROW] : 0u;
     CADT_TEAM_FOR(k, 1u + (known >> 1)) { memory.arc[k] = k ? arcs[item * CADT_WRAP_ROW + k] : known; }
     if (cadt_team_lane == 0u)
@@ -163,7 +158,7 @@ CADT_TEAM_KERNEL(128, 5, cadt_wrap_stars, CADT_GLOBAL const cadt_point* points, 
     }
     cadt_wrap_store(&sink, &memory.place, v, span.begin, memory.star + begin, size, side > 0 ? 1u : 0u, kind);
   }
-  cadt_wrap_flush_counts(&counters, counts);
+  cadt_flush_exact(&counters, counts + CADT_WRAP_EXACT_ORIENTATIONS);
 }
 
 #endif

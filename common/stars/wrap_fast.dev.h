@@ -39,13 +39,6 @@ CADT_FN cadt_u32 cadt_near_reduce(cadt_near* w, cadt_u32 value, cadt_u32* count)
   return cadt_end_reduction(&w->m->reductions, &w->reduction, value, count);
 }
 
-/* Stores point i, which is at x, y relative to p. */
-CADT_FN void cadt_near_store(const cadt_near* w, cadt_u32 slot, cadt_u32 i, double x, double y) {
-  w->m->at[slot] = i;
-  w->m->x[slot] = CADT_CAST(float, x * w->reach.unit);
-  w->m->y[slot] = CADT_CAST(float, y * w->reach.unit);
-}
-
 /* Gathers the points within reach; the reach changes if they are too many or too few. Returns 0 if that does not help.
  */
 CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
@@ -53,9 +46,7 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
   const cadt_u32 most = CADT_NEAR_POINTS, few = CADT_NEAR_FEW;
   cadt_u32 nodes, leaves, many = 1u, going = 1u;
   for (cadt_u32 tries = 0u; tries < 3u && going; ++tries) {
-    cadt_disc disc;
-    disc.x = disc.y = 0.0;
-    disc.square = w->reach.square;
+    const cadt_disc disc = {0.0, 0.0, w->reach.square};
     CADT_TEAM_FOR(j, w->in.node_count) {
       if (cadt_aabb_matters(w->in.nodes[j], p, 0.0, 0.0, 0.0, &disc)) w->m->nodes[cadt_near_count(w)] = j;
     }
@@ -75,7 +66,10 @@ CADT_FN cadt_u32 cadt_near_gather(cadt_near* w) {
       const double x = c.x - p.x, y = c.y - p.y;
       if (x * x + y * y > w->reach.square) continue;
       const cadt_u32 slot = cadt_near_count(w);
-      if (slot < most) cadt_near_store(w, slot, i, x, y);
+      if (slot >= most) continue;
+      w->m->at[slot] = i;
+      w->m->x[slot] = CADT_CAST(float, x * w->reach.unit);
+      w->m->y[slot] = CADT_CAST(float, y * w->reach.unit);
     }
     cadt_near_reduce(w, CADT_NONE, &w->known);
     /* The points must have been within reach of the last search. */
@@ -274,17 +268,11 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
                  CADT_GLOBAL cadt_u32* sizes, CADT_GLOBAL cadt_u32* counts, CADT_GLOBAL cadt_u32* todo,
                  CADT_GLOBAL cadt_u16* arcs) {
   CADT_TEAM_MEMORY cadt_near_memory memory;
-  const cadt_wrap_sink sink = cadt_wrap_sink_of(n, row, star_vertices, star_words, begins, sizes, counts);
-  cadt_counters counters;
-  cadt_counters_clear(&counters);
+  const cadt_wrap_sink sink = {n, row, star_words, star_vertices, begins, sizes, counts};
+  CADT_DECLARE_COUNTERS(counters);
   CADT_FOR_TEAMS(v, n, grain) {
-    cadt_near w;
-    w.m = &memory;
-    w.in = cadt_aabb_tree_of(cadt_wrap_span_of(0, 0u, n), points, leaves, nodes);
-    w.counters = &counters;
-    w.p = v;
-    w.reach = cadt_wrap_reach(&w.in, v);
-    w.reduction = w.known = 0u;
+    const cadt_aabb_tree in = cadt_aabb_tree_of(cadt_wrap_span_of(0, 0u, n), points, leaves, nodes);
+    cadt_near w = {&memory, in, &counters, cadt_wrap_reach(&in, v), v, 0u, 0u, 0u, 0u, 0u};
     cadt_begin_reductions(&memory.reductions);
     CADT_TEAM_SYNC();
     const cadt_u32 kind = cadt_near_star(&w);
@@ -308,7 +296,7 @@ CADT_TEAM_KERNEL(32, 24, cadt_wrap_near, CADT_GLOBAL const cadt_point* points, C
     if (cadt_team_lane == 0u && !kind) arcs[memory.place * CADT_WRAP_ROW] = CADT_CAST(cadt_u16, noted << 1 | w.closed);
     cadt_wrap_store(&sink, &memory.place, v, 0u, memory.leaves, w.size, 1u, kind);
   }
-  cadt_wrap_flush_counts(&counters, counts);
+  cadt_flush_exact(&counters, counts + CADT_WRAP_EXACT_ORIENTATIONS);
 }
 
 #endif

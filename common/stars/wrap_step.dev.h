@@ -122,17 +122,6 @@ CADT_FN cadt_u32 cadt_wrap_list(const cadt_wrapper* w, cadt_u32 first, cadt_poin
   return w->m->node_count;
 }
 
-/* A step with no point found yet: the disc is the plane. */
-CADT_FN cadt_wrap_step cadt_wrap_step_from(cadt_u32 a, cadt_i32 side) {
-  cadt_wrap_step t;
-  t.a = a;
-  t.side = side;
-  t.best = CADT_NONE;
-  t.disc.x = t.disc.y = 0.0;
-  t.disc.square = CADT_CAST(double, CADT_INFINITY);
-  return t;
-}
-
 CADT_FN void cadt_wrap_set_best(const cadt_wrapper* w, cadt_wrap_step* t, cadt_u32 best) {
   t->best = best;
   t->disc = cadt_disc_beside(w->in.points[w->p], w->in.points[t->a], w->in.points[best], t->side);
@@ -220,7 +209,7 @@ CADT_FN cadt_u32 cadt_wrap_next(cadt_wrapper* w, cadt_u32 a, cadt_i32 side) {
   const cadt_u32 own = w->p / CADT_AABB_LEAF, near = (own ? own - 1u : 0u) * CADT_AABB_LEAF;
   const cadt_u32 first =
       cadt_wrap_guess(w, a, side, near, cadt_min_u32(CADT_WRAP_NEAR * CADT_AABB_LEAF, w->in.n - near), 1u);
-  cadt_wrap_step t = cadt_wrap_step_from(a, side);
+  cadt_wrap_step t = {a, side, CADT_NONE, {0.0, 0.0, CADT_CAST(double, CADT_INFINITY)}}; /* no point yet: the plane */
   const cadt_point p = w->in.points[w->p], q = w->in.points[a];
   const double ax = q.x - p.x, ay = q.y - p.y, sign = side > 0 ? 1.0 : -1.0;
   if (first != CADT_NONE) cadt_wrap_set_best(w, &t, first);

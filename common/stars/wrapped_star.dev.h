@@ -21,20 +21,6 @@ typedef struct {
   CADT_GLOBAL cadt_u32* counts;
 } cadt_wrap_sink;
 
-CADT_FN cadt_wrap_sink cadt_wrap_sink_of(cadt_u32 n, cadt_u32 row, CADT_GLOBAL cadt_u32* star_vertices,
-                                         cadt_u32 star_words, CADT_GLOBAL cadt_u32* begins, CADT_GLOBAL cadt_u32* sizes,
-                                         CADT_GLOBAL cadt_u32* counts) {
-  cadt_wrap_sink s;
-  s.n = n;
-  s.row = row;
-  s.star_words = star_words;
-  s.star_vertices = star_vertices;
-  s.begins = begins;
-  s.sizes = sizes;
-  s.counts = counts;
-  return s;
-}
-
 /* Stores the star of v: `size` star vertices, counterclockwise or clockwise, by their numbers in a span that begins at
  * `first`. Kind 0: there is none; 1: v is an inner vertex; 2: v is on the hull. All lanes call it; there is a barrier
  * before it writes *place. */
@@ -56,15 +42,6 @@ CADT_FN void cadt_wrap_store(const cadt_wrap_sink* s, CADT_TEAM_PTR cadt_u32* pl
     if (cadt_team_lane == 0u && kind == 2u) out[size] = CADT_GHOST;
   }
   CADT_TEAM_SYNC();
-}
-
-/* At the end of a work-item: adds its exact tests to the counts. */
-CADT_FN void cadt_wrap_flush_counts(const cadt_counters* counters, CADT_GLOBAL cadt_u32* counts) {
-  if (counters->count[CADT_COUNT_EXACT_ORIENTATIONS])
-    cadt_add_relaxed(counts + CADT_WRAP_EXACT_ORIENTATIONS, counters->count[CADT_COUNT_EXACT_ORIENTATIONS]);
-  if (counters->count[CADT_COUNT_EXACT_INCIRCLES])
-    cadt_add_relaxed(counts + CADT_WRAP_EXACT_INCIRCLES, counters->count[CADT_COUNT_EXACT_INCIRCLES]);
-  if (counters->count[CADT_COUNT_TIES]) cadt_add_relaxed(counts + CADT_WRAP_TIES, counters->count[CADT_COUNT_TIES]);
 }
 
 #endif

@@ -21,21 +21,16 @@ typedef struct {
   cadt_u32 examined, failures, first;
 } cadt_finding;
 
-/* The elements of a work-item, and where its list has entry j. Only the first `items` work-items take part: a launch
- * may start more, which have no list. */
+/* Where the list of a work-item has entry j. */
 #if CADT_CONTIGUOUS
-#define CADT_VERIFY_FOR(i, count, grain, items) CADT_FOR(i, count, grain)
 #define CADT_LIST_AT(j, items, capacity) (CADT_CAST(cadt_u64, cadt_item) * (capacity) + (j))
 #else
-#define CADT_VERIFY_FOR(i, count, grain, items) \
-  for (cadt_u32 i = cadt_item; cadt_item < (items) && i < (count); i += (items))
 #define CADT_LIST_AT(j, items, capacity) (CADT_CAST(cadt_u64, (j)) * (items) + cadt_item)
 #endif
 
-CADT_FN void cadt_finding_clear(cadt_finding* finding) {
-  finding->examined = 0u;
-  finding->failures = 0u;
-  finding->first = CADT_NONE;
+CADT_FN cadt_finding cadt_no_finding(void) {
+  const cadt_finding none = {0u, 0u, CADT_NONE};
+  return none;
 }
 CADT_FN void cadt_finding_fail(cadt_finding* finding, cadt_u32 where) {
   finding->failures++;
@@ -73,9 +68,7 @@ CADT_FN cadt_u32 cadt_is_mutual(const cadt_mesh_view* mesh, cadt_u32 t, cadt_u32
 CADT_KERNEL(cadt_verify_structure, CADT_MESH_VIEW_PARAMETERS, cadt_u32 number_of_points, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* used, CADT_GLOBAL cadt_u32* results) {
   CADT_MESH_VIEW(mesh);
-  cadt_finding range, mutual;
-  cadt_finding_clear(&range);
-  cadt_finding_clear(&mutual);
+  cadt_finding range = cadt_no_finding(), mutual = cadt_no_finding();
   cadt_u32 boundary = 0u;
   CADT_FOR(t, mesh.triangles, grain) {
     cadt_u32 good = 1u;
@@ -110,8 +103,7 @@ CADT_FN cadt_u32 cadt_is_finite(double x) { return ((cadt_bits_of_double(x) >> 5
 /* Counts the points that are vertices, and looks for coordinates that are not finite. */
 CADT_KERNEL(cadt_verify_points, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* used, CADT_GLOBAL cadt_u32* results) {
-  cadt_finding finite;
-  cadt_finding_clear(&finite);
+  cadt_finding finite = cadt_no_finding();
   cadt_u32 vertices = 0u;
   CADT_FOR(i, count, grain) {
     const cadt_point p = points[i];
@@ -129,8 +121,7 @@ CADT_KERNEL(cadt_verify_points, CADT_GLOBAL const cadt_point* points, cadt_u32 c
 CADT_KERNEL(cadt_verify_duplicates, CADT_GLOBAL const cadt_point* points, cadt_u32 number_of_points,
             CADT_GLOBAL const cadt_u32* used, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* results) {
-  cadt_finding finding;
-  cadt_finding_clear(&finding);
+  cadt_finding finding = cadt_no_finding();
   CADT_FOR(i, count, grain) {
     const cadt_u32 p = pairs[2u * i], r = pairs[2u * i + 1u];
     const cadt_i32 before = i == 0u ? -1 : CADT_CAST(cadt_i32, pairs[2u * i - 2u]); /* may itself be negative */
@@ -178,11 +169,10 @@ CADT_KERNEL(cadt_verify_filter, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_
             cadt_u32 grain, cadt_u32 items, CADT_GLOBAL cadt_u32* lists, CADT_GLOBAL cadt_u32* sizes, cadt_u32 capacity,
             CADT_GLOBAL cadt_u32* results) {
   CADT_MESH_VIEW(mesh);
-  cadt_finding turn, edge;
-  cadt_finding_clear(&turn);
-  cadt_finding_clear(&edge);
+  if (cadt_item >= items) return; /* the launch may start others, which have no list */
+  cadt_finding turn = cadt_no_finding(), edge = cadt_no_finding();
   cadt_u32 open = 0u;
-  CADT_VERIFY_FOR(r, count, grain, items) {
+  CADT_FOR_PART(r, cadt_item, items, count, grain) {
     const cadt_u32 t = begin + r;
     const cadt_u32 v0 = mesh.vertices[3u * t], v1 = mesh.vertices[3u * t + 1u], v2 = mesh.vertices[3u * t + 2u];
     const cadt_point p0 = mesh.points[v0], p1 = mesh.points[v1], p2 = mesh.points[v2];
@@ -203,7 +193,7 @@ CADT_KERNEL(cadt_verify_filter, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_
       if (legal == CADT_UNKNOWN) lists[CADT_LIST_AT(open++, items, capacity)] = CADT_OPEN_A_TRIANGLE * r + k;
     }
   }
-  if (cadt_item < items) sizes[cadt_item] = open;
+  sizes[cadt_item] = open;
   CADT_GLOBAL cadt_u32* row = cadt_found_row(results, cadt_item);
   cadt_finding_flush(&turn, row + CADT_FOUND_ORIENTATION);
   cadt_finding_flush(&edge, row + CADT_FOUND_EDGES);
@@ -215,10 +205,7 @@ CADT_KERNEL(cadt_verify_exact, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_u
             CADT_GLOBAL cadt_u32* sizes, cadt_u32 capacity, CADT_GLOBAL cadt_u32* left, CADT_GLOBAL cadt_u32* results) {
   CADT_MESH_VIEW(mesh);
   if (cadt_item >= items) return;
-  cadt_finding turn, edge, tie;
-  cadt_finding_clear(&turn);
-  cadt_finding_clear(&edge);
-  cadt_finding_clear(&tie);
+  cadt_finding turn = cadt_no_finding(), edge = cadt_no_finding(), tie = cadt_no_finding();
   const cadt_u32 open = sizes[cadt_item];
   cadt_u32 kept = 0u;
   for (cadt_u32 i = 0u; i < open; ++i) {

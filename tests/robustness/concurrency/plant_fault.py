@@ -22,10 +22,10 @@ FAULTS = {
     "none": ("nothing: the control", [], []),
     "flip_one_lock_short": (
         "a flip locks three of its four triangles", ["host", "opencl", "gpu", "relacy", "relacy-gpu"],
-        [(FLIP, "locks.triangle[3] = CADT_TRIANGLE_OF(outer_aq);", "locks.triangle[3] = CADT_NONE;")]),
+        [(FLIP, "CADT_TRIANGLE_OF(outer_aq)}", "CADT_NONE}")]),
     "split_one_lock_short": (
         "a split locks two of its three triangles", ["host", "opencl", "gpu"],
-        [(SPLIT, "locks.triangle[2] = CADT_TRIANGLE_OF(s.n2);", "locks.triangle[2] = CADT_NONE;")]),
+        [(SPLIT, "CADT_TRIANGLE_OF(s.n2), CADT_NONE}", "CADT_NONE, CADT_NONE}")]),
     "no_reread": (
         "a lock is taken whatever the triangle holds: neither version nor fields are compared",
         ["host", "opencl", "gpu", "relacy", "relacy-gpu"],

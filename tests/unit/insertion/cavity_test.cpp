@@ -154,7 +154,7 @@ class RandomMesh {
     cadt_counters_clear(&counters);
     cadt_make_seed_mesh(&m, &counters);
     std::vector<std::uint32_t> left(4096), counts(16);
-    const cadt_deferred deferred = cadt_deferred_lists(left.data(), counts.data(), 4096);
+    const cadt_deferred deferred = {left.data(), counts.data(), 4096};
     for (std::uint32_t i = 0; i < n; ++i) {
       if (i == m.first || i == m.second || i == m.third) continue;
       std::uint32_t hint = hints_[0];

@@ -144,7 +144,7 @@ class ConstrainedMesh {
  private:
   void insert_with_locks(std::uint32_t i) {
     std::vector<std::uint32_t> deferred_edges(64), counts(CADT_DEFERRED_COUNTS);
-    const cadt_deferred deferred = cadt_deferred_lists(deferred_edges.data(), counts.data(), 64);
+    const cadt_deferred deferred = {deferred_edges.data(), counts.data(), 64};
     std::uint32_t start = near_[0];
     CADT_DECLARE_WORKLIST(work);
     cadt_worklist_begin(&work, i, CADT_FLIP_LIMIT);

@@ -48,8 +48,7 @@ Work insert_in_order(const std::vector<cadt_point>& points, std::uint32_t limit,
     done.most_flips = std::max<std::uint64_t>(done.most_flips, counters.count[CADT_COUNT_FLIPS] - before);
     before = counters.count[CADT_COUNT_FLIPS];
   };
-  const cadt_deferred deferred =
-      cadt_deferred_lists(edges.data(), counts.data(), static_cast<std::uint32_t>(edges.size()));
+  const cadt_deferred deferred = {edges.data(), counts.data(), static_cast<std::uint32_t>(edges.size())};
   for (std::uint32_t i = 3; i < n; ++i) {
     std::uint32_t hint = hints[i - 1];
     CADT_DECLARE_WORKLIST(work);

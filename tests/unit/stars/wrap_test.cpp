@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -274,7 +275,7 @@ TEST(WrappedDisc, ThatIsNoNumberHoldsAll) {
   const Points points = {{0, 0}, {1, 0}, {2, 0}, {-3, 4}, {3, -4}};
   Searcher search(points);
   cadt_wrapper& w = search.w;
-  cadt_wrap_step turn = cadt_wrap_step_from(1, 1);
+  cadt_wrap_step turn = {1, 1, CADT_NONE, {0.0, 0.0, std::numeric_limits<double>::infinity()}};
   cadt_wrap_set_best(&w, &turn, 2);
   EXPECT_TRUE(std::isnan(turn.disc.x));
   EXPECT_EQ(cadt_wrap_reaches(&w, &turn, 3), 1U);

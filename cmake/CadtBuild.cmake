@@ -21,12 +21,17 @@ endfunction()
 # compiler cache, which cannot look into it.
 function(cadt_shorten_build)
   get_target_property(sources cadt SOURCES)
-  # Short files behind long headers of their own: one unit for the compiler, which takes a third or half of the time.
+  # Short files behind the same long headers: one unit for the compiler, which takes a third or half of the time.
   set_target_properties(cadt PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  foreach(group "backends/opencl" "backends/cuda")
+  set(groups "backends/opencl" "backends/cuda")
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    list(APPEND groups "common/driver" "common/points" "common/insertion" "common/stars" "common/batch")
+  endif()
+  foreach(group IN LISTS groups)
     set(files ${sources})
     list(FILTER files INCLUDE REGEX "${group}/")
-    list(FILTER files EXCLUDE REGEX "opencl/loader")  # has macros of its own
+    # macros, or device text, of their own; open_device(), which tests replace when they are linked
+    list(FILTER files EXCLUDE REGEX "opencl/loader|point_profile|registry")
     string(REPLACE "/" "_" name ${group})
     set_source_files_properties(${files} TARGET_DIRECTORY cadt PROPERTIES UNITY_GROUP ${name})
   endforeach()

@@ -150,13 +150,13 @@ void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& numbers, 
 namespace {
 
 /// Below, a few launches take longer than memory is worth.
-constexpr std::size_t small = std::size_t{1} << 18;
+constexpr std::size_t few_words = std::size_t{1} << 18;
 
 /// Whether the arrays of the mesh become those of the result: in the fast order, with the compact plan, or where cached
 /// buffers leave no memory for a second array.
 bool in_place(const Context& ctx, const Mesh& mesh) noexcept {
   if (ctx.options.order == Order::fast || ctx.plan.compact) return true;
-  return !mesh.vertices.host && ctx.memory.caches() && mesh.all * word >= small;
+  return !mesh.vertices.host && ctx.memory.caches() && mesh.all * word >= few_words;
 }
 
 /// Slower than write_triangles with arrays of its own if the order is canonical.

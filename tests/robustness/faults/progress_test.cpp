@@ -148,11 +148,11 @@ TEST_P(ReportedProgress, RepeatedPasses) {
   faults->change_launch = [&](KernelId kernel, std::vector<Arg>& args) {
     counts = kernel == KernelId::cadt_legality_sweep ? args[args.size() - 3].buffer() : nullptr;
   };
-  faults->change_read = [&](const Buffer& from, std::size_t, void* to, std::size_t bytes) {
+  faults->change_read = [&](const Buffer& from, std::size_t offset, void* to, std::size_t bytes) {
     const std::size_t at = (CADT_DEFERRED_COUNTS + 2) * sizeof(std::uint32_t);
-    if (&from != counts || bytes <= at || unsettled++ % 4 == 3) return;
+    if (&from != counts || offset + bytes <= at || unsettled++ % 4 == 3) return;
     const std::uint32_t one = 1;
-    std::memcpy(static_cast<std::byte*>(to) + at, &one, sizeof one);
+    std::memcpy(static_cast<std::byte*>(to) + (at - offset), &one, sizeof one);
   };
   Names reports = of_insertion;  // a sweep that is not the last one has its own report
   std::ranges::replace(reports, "output 0.9", "certify 0.9");

@@ -66,8 +66,9 @@ const Input* running = nullptr;
 extern "C" void keep_input(int signal) {
   const std::string name = "crash-" + std::to_string(::getpid());
   const int file = ::open(name.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
-  if (running != nullptr && file >= 0 && ::write(file, running->data(), running->size()) >= 0)
-    static_cast<void>(::write(STDERR_FILENO, (name + "\n").c_str(), name.size() + 1));
+  if (running != nullptr && file >= 0 && ::write(file, running->data(), running->size()) >= 0) {
+    [[maybe_unused]] const auto told = ::write(STDERR_FILENO, (name + "\n").c_str(), name.size() + 1);
+  }
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }

@@ -22,7 +22,7 @@ namespace {
 
 using Word = std::uint32_t;
 using Edge = std::pair<Word, Word>;
-constexpr Word none = 0xFFFFFFFF;
+constexpr Word no_edge = 0xFFFFFFFF;
 
 Edge edge(Word a, Word b) { return std::minmax(a, b); }
 
@@ -41,7 +41,7 @@ struct MeshInArrays {
       return 4 * place[t] + static_cast<Word>((k + place[t]) % 3);
     };
     vertices.resize(3 * count);
-    half_edges.resize(3 * count, none);
+    half_edges.resize(3 * count, no_edge);
     edge_flags.resize(count);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       const std::size_t t = i / 3, k = i % 3;
@@ -115,7 +115,7 @@ TEST_P(ConstrainedOutput, SameEdgesInBothOrders) {
           const bool flagged = (flags[i / 3] >> i % 3 & 1U) != 0;
           if (flagged) constrained.insert(edge(from_vertex, to_vertex));
           const Word s = neighbors[i];
-          if (s == none) continue;
+          if (s == no_edge) continue;
           std::size_t back = 3;
           for (std::size_t j = 0; j < 3; ++j)
             if (neighbors[3 * s + j] == i / 3 && triangles[3 * s + (j + 1) % 3] == to_vertex) back = j;

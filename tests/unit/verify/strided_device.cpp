@@ -16,8 +16,8 @@ namespace {
 // From here on as in a build for GPUs (dialect.dev.h); the atomics remain those of the host.
 #undef CADT_CONTIGUOUS
 #define CADT_CONTIGUOUS 0
-#undef CADT_FOR
-#define CADT_FOR(i, count, grain) for (cadt_u32 i = cadt_item; i < (count); i += cadt_items)
+#undef CADT_FOR_PART
+#define CADT_FOR_PART(i, part, parts, count, chunk) for (cadt_u32 i = (part); i < (count); i += (parts))
 #pragma GCC diagnostic ignored "-Wunused-parameter"  // grain
 #include "common/verify/device/verify.dev.h"
 

@@ -30,11 +30,20 @@ typedef struct {
   cadt_u32 examined, illegal, unsettled, stabilized, broken;
 } cadt_findings;
 
+/* Flips an illegal edge and what becomes illegal by that. Hardly ever called: inlined it would cost the loop below its
+ * registers. */
+CADT_FN_SLOW void cadt_repair_edge(const cadt_locked_mesh* m, cadt_u32 half_edge, const cadt_deferred* deferred,
+                                   cadt_counters* counters) {
+  CADT_DECLARE_WORKLIST(work);
+  cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
+  cadt_worklist_add(&work, half_edge);
+  cadt_legalize(m, &work, deferred, counters);
+}
+
 /* Tests listed edges and repairs illegal ones. Nothing is known of an edge but its half-edge: repairs
  * change the mesh. */
 CADT_FN void cadt_sweep_edges(const cadt_locked_mesh* m, const cadt_u32* half_edges, cadt_u32 count,
                               const cadt_deferred* deferred, cadt_findings* found, cadt_counters* counters) {
-  CADT_DECLARE_WORKLIST(work);
   for (cadt_u32 e = 0u; e < count; ++e) {
     const cadt_u32 k = CADT_EDGE_OF(half_edges[e]);
     CADT_GLOBAL cadt_u32* t = m->locked[CADT_TRIANGLE_OF(half_edges[e])].word;
@@ -54,9 +63,7 @@ CADT_FN void cadt_sweep_edges(const cadt_locked_mesh* m, const cadt_u32* half_ed
       }
       found->illegal++;
       CADT_SKIP_TIME(counters); /* testing all edges is not part of the insertion's time, repairs are */
-      cadt_worklist_begin(&work, CADT_NONE, CADT_EDGE_FLIP_LIMIT);
-      cadt_worklist_add(&work, half_edges[e]);
-      cadt_legalize(m, &work, deferred, counters);
+      cadt_repair_edge(m, half_edges[e], deferred, counters);
     } else if (cadt_turns_back(m, p, a, b, q, counters)) {
       found->broken++;
     }

@@ -188,16 +188,23 @@ void write_result(Context& ctx, Mesh& mesh, std::size_t points) {
   Allocation numbers = number_triangles(ctx, mesh, points), flags;
   const Allocation none;
   ctx.check("output", 0.95);
-  // one after the other, so that the second reuses the memory of one of the mesh's
-  MeshArray neighbors = make_mesh_array(ctx, mesh.triangles, MeshUse::whole);
-  write_triangles(ctx, mesh, numbers, {none, neighbors.device, none});
-  mesh.across.release();
-  MeshArray triangles = make_mesh_array(ctx, mesh.triangles, MeshUse::whole);
-  if (mesh.edge_flags) flags = ctx.memory.allocate(mesh.triangles * word);
-  write_triangles(ctx, mesh, numbers, {triangles.device, none, flags});
+  MeshArray neighbors = make_mesh_array(ctx, mesh.triangles, MeshUse::whole), vertices;
+  const auto make_vertices = [&] {
+    vertices = make_mesh_array(ctx, mesh.triangles, MeshUse::whole);
+    if (mesh.edge_flags) flags = ctx.memory.allocate(mesh.triangles * word);
+  };
+  if (mesh.vertices.host) {
+    make_vertices();
+    write_triangles(ctx, mesh, numbers, {vertices.device, neighbors.device, flags});
+  } else {  // one after the other, so that the second reuses the memory of one of the mesh's
+    write_triangles(ctx, mesh, numbers, {none, neighbors.device, none});
+    mesh.across.release();
+    make_vertices();
+    write_triangles(ctx, mesh, numbers, {vertices.device, none, flags});
+  }
   numbers.release();
   mesh.vertices.release();
-  mesh.vertices = std::move(triangles);
+  mesh.vertices = std::move(vertices);
   mesh.across = std::move(neighbors);
   mesh.edge_flags = std::move(flags);
   mesh.input_ids.release();

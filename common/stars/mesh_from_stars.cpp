@@ -177,6 +177,7 @@ class StarStage {
     // Without legality sweeps where they are of no use: the whole mesh is certified later.
     const Mesh smaller = wrap_or_insert(ctx_, std::move(residual), how_, n_);
     ctx_.statistics.certified_edges = certified;  // only those of the whole mesh count
+    // Vertices on the hull have no proven star, so not all of these are on a line.
     if (smaller.flat) give_up("the unproven vertices are on a line");
     const Allocation none;
     const DeviceMeshView residual_mesh = view_of(smaller, none);

@@ -25,6 +25,14 @@ static_assert(int{CADT_COUNTERS} <= int{CADT_ROW_TIMES} &&
               CADT_ROW_TIMES + int{CADT_TIMERS} <= int{CADT_COUNTER_STRIDE});
 static_assert(std::tuple_size_v<decltype(Statistics::flips_per_edge)> == CADT_FLIP_BINS);
 
+/// cadt_flush_exact adds three counts to three words, wherever they are.
+constexpr bool are_three(int orientations, int incircles, int ties) {
+  return incircles == orientations + 1 && ties == orientations + 2;
+}
+static_assert(are_three(CADT_COUNT_EXACT_ORIENTATIONS, CADT_COUNT_EXACT_INCIRCLES, CADT_COUNT_TIES));
+static_assert(are_three(CADT_STARS_EXACT_ORIENTATIONS, CADT_STARS_EXACT_INCIRCLES, CADT_STARS_TIES));
+static_assert(are_three(CADT_WRAP_EXACT_ORIENTATIONS, CADT_WRAP_EXACT_INCIRCLES, CADT_WRAP_TIES));
+
 }  // namespace
 
 Counters::Counters(Context& ctx) : device_(ctx.device) {

@@ -68,7 +68,9 @@ LaunchGrid Launcher::chunks(std::size_t count) const noexcept {
 Allocation Launcher::zeros(std::size_t words) { return memory_.allocate_zeros(words * word); }
 
 std::uint32_t Launcher::read_word(const Allocation& from, std::size_t index) {
-  return device_.read_values(*from, 1, index)[0];
+  std::uint32_t value = 0;
+  device_.read(*from, index * word, &value, word);
+  return value;
 }
 
 void Launcher::scan(const Allocation& data, std::size_t count) {
@@ -79,7 +81,7 @@ void Launcher::scan(const Allocation& data, std::size_t count) {
     return;
   }
   const LaunchGrid c = chunks(count);
-  Allocation sums = memory_.transient((c.items + std::size_t{1}) * word);
+  Allocation sums = memory_.transient(c.items * word);
   run<KernelId::cadt_scan_sums>(data, sums, c);
   if (c.items <= longest_serial_scan) {
     run<KernelId::cadt_scan_total>(1, sums, c.items);

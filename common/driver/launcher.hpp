@@ -97,7 +97,7 @@ class Launcher {
     times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, variant_, group); });
   }
 
-  /// Kernels take numbers of elements, and what is or is not, as words.
+  /// Kernels take sizes and booleans as words.
   template <class T>
   static decltype(auto) as_parameter(const T& argument) {
     if constexpr (std::is_same_v<T, std::size_t> || std::is_same_v<T, bool>) {

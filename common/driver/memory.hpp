@@ -30,7 +30,7 @@ class Allocation {
 
  private:
   struct Reclaim {
-    Memory* memory;  ///< null unless given: in no budget
+    Memory* memory;  ///< null for a buffer of the caller, which is in no budget
     Lifetime lifetime;
     void operator()(Buffer* buffer) const noexcept;
   };

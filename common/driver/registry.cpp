@@ -75,8 +75,17 @@ std::unique_ptr<Device> open_in(BackendEntry& backend, const Options& options) {
 }  // namespace
 
 std::string_view to_string(Backend backend) noexcept {
-  constexpr std::array<std::string_view, 4> names = {"auto", "host", "opencl", "cuda"};
-  return names[static_cast<std::size_t>(backend)];
+  switch (backend) {
+    case Backend::automatic:
+      return "auto";
+    case Backend::host:
+      return "host";
+    case Backend::opencl:
+      return "opencl";
+    case Backend::cuda:
+      return "cuda";
+  }
+  return "unknown";
 }
 
 Backend backend_from_string(std::string_view name) {

@@ -76,8 +76,15 @@ std::size_t count_differing(const Triangulation& mesh, const Triangulation& othe
 }
 
 std::string_view to_string(Strategy strategy) noexcept {
-  constexpr std::array<std::string_view, 3> names = {"auto", "locks", "stars"};
-  return names[static_cast<std::size_t>(strategy)];
+  switch (strategy) {
+    case Strategy::automatic:
+      return "auto";
+    case Strategy::locks:
+      return "locks";
+    case Strategy::stars:
+      return "stars";
+  }
+  return "?";
 }
 
 std::string_view to_string(Stabilize mode) noexcept {

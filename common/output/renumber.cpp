@@ -193,7 +193,7 @@ void write_result(Context& ctx, Mesh& mesh, std::size_t points) {
     vertices = make_mesh_array(ctx, mesh.triangles, MeshUse::whole);
     if (mesh.edge_flags) flags = ctx.memory.allocate(mesh.triangles * word);
   };
-  if (mesh.vertices.host && !mesh.edge_flags) {
+  if (mesh.vertices.host && !mesh.edge_flags) {  // both at once: each triangle is read and rotated once
     make_vertices();
     write_triangles(ctx, mesh, numbers, {vertices.device, neighbors.device, none});
   } else {  // one after the other, so that the second reuses the memory of one of the mesh's

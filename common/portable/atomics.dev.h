@@ -163,8 +163,9 @@ CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
 
 #endif
 
-/* ---- memory of a team, in any order: the lesser of two; the least of what many lanes have for the same place,
- * 0xFFFFFFFF being nothing; an addition, which returns the value before. For a group also a fence ---- */
+/* ---- memory of a team; the lanes come in any order ----
+ * cadt_team_add returns the value before. cadt_team_min keeps the lesser of two values; cadt_team_least does the same
+ * where many lanes have a value for one place, 0xFFFFFFFF being none. cadt_fence_local is for groups only. */
 #if CADT_GROUP_SUMS && defined(CADT_LANG_OPENCL)
 CADT_FN cadt_u32 cadt_team_add(CADT_LOCAL_PTR cadt_u32* p, cadt_u32 value) {
   return atomic_add((volatile CADT_LOCAL_PTR cadt_u32*)p, value);

@@ -114,8 +114,8 @@ CADT_FN void cadt_store_four(cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, ca
 
 CADT_FN cadt_u32 cadt_min_u32(cadt_u32 a, cadt_u32 b) { return a < b ? a : b; }
 
-/* Binary search for the first place from `low` to `high` - 1 that is not `before`, which is said of place `middle`:
- * then it is `low`, which equals `high` if there is none. \pre high < 2^31 */
+/* Binary search: moves `low` to the first place below `high` for which `before` is false, or to `high`. `before` is a
+ * condition on the place `middle`, true up to some place and false from there on. \pre high < 2^31 */
 #define CADT_FIND_FIRST(low, high, middle, before) \
   while (low < high) {                             \
     const cadt_u32 middle = (low + high) / 2u;     \
@@ -124,7 +124,7 @@ CADT_FN cadt_u32 cadt_min_u32(cadt_u32 a, cadt_u32 b) { return a < b ? a : b; }
     else                                           \
       high = middle;                               \
   }
-/* The same for the last place that is `at_or_before`, as `low` certainly is. */
+/* Moves `low` to the last place below `high` for which `at_or_before` is true. \pre it is true for `low` */
 #define CADT_FIND_LAST(low, high, middle, at_or_before) \
   while (high - low > 1u) {                             \
     const cadt_u32 middle = (low + high) / 2u;          \

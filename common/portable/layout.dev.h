@@ -139,12 +139,12 @@ typedef struct {
 
 /* The state of a set, in the lowest bits of a word; above them the number of its vertices without a proven star. */
 enum {
-  CADT_SET_BATCHED,    /* it is triangulated together with others */
-  CADT_SET_FLAT,       /* there are no triangles */
-  CADT_SET_INDIVIDUAL, /* by itself */
-  CADT_SET_WIDE,       /* by itself, in wide arithmetic */
-  CADT_SET_FAILURE,    /* the lowest bit above: one vertex */
-  CADT_SET_LANES = 32  /* lanes of a team for a set */
+  CADT_SET_BATCHED,     /* it is triangulated together with others */
+  CADT_SET_FLAT,        /* there are no triangles */
+  CADT_SET_INDIVIDUAL,  /* by itself */
+  CADT_SET_WIDE,        /* by itself, in wide arithmetic */
+  CADT_SET_FAILURE = 4, /* one vertex: a bit above the states */
+  CADT_SET_LANES = 32   /* lanes of a team for a set */
 };
 
 /* What cadt_bounds finds. */
@@ -177,7 +177,7 @@ enum {
   CADT_COUNT_DEFERRED_EDGES,
   CADT_COUNT_EDGE_SPLITS,
   CADT_COUNT_STABILIZED,
-  CADT_COUNT_EXACT_ORIENTATIONS, /* this and the next two in the same order everywhere (cadt_flush_exact) */
+  CADT_COUNT_EXACT_ORIENTATIONS, /* cadt_flush_exact takes these three together */
   CADT_COUNT_EXACT_INCIRCLES,
   CADT_COUNT_TIES,
   CADT_COUNTERS

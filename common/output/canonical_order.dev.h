@@ -68,8 +68,7 @@ CADT_KERNEL(cadt_bucket_triangles, CADT_GLOBAL const cadt_u32* vertices, CADT_GL
   }
 }
 
-/* Sorts each bucket by the second vertex: insertion sort up to CADT_SHORT_BUCKET, heap sort above. The longest, around
- * vertices of high degree, are sorted together by all work-items if there is memory for it. */
+/* Heap sort by the second vertex. */
 CADT_FN void cadt_sift_down(CADT_GLOBAL cadt_member* bucket, cadt_u32 at, cadt_u32 size) {
   const cadt_member moving = bucket[at];
   for (;;) {
@@ -83,6 +82,16 @@ CADT_FN void cadt_sift_down(CADT_GLOBAL cadt_member* bucket, cadt_u32 at, cadt_u
   bucket[at] = moving;
 }
 
+CADT_FN void cadt_heap_sort(CADT_GLOBAL cadt_member* bucket, cadt_u32 size) {
+  for (cadt_u32 at = size / 2u; at-- > 0u;) cadt_sift_down(bucket, at, size);
+  for (cadt_u32 last = size - 1u; last > 0u; --last) {
+    const cadt_member moving = bucket[last];
+    bucket[last] = bucket[0];
+    bucket[0] = moving;
+    cadt_sift_down(bucket, 0u, last);
+  }
+}
+
 enum { CADT_SHORT_BUCKET = 24 };
 
 /* Where bucket v begins, after cadt_bucket_triangles. */
@@ -94,10 +103,13 @@ CADT_FN cadt_u32 cadt_bucket_begin(CADT_GLOBAL const cadt_u32* buckets, cadt_u32
 #endif
 }
 
-/* Sorts the `count` buckets from `from` on; the first triangle has number `base`, and stands at members[0]. Skips
- * buckets with more than `longest` triangles and counts these in `skipped`. */
-CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL cadt_member* members, cadt_u32 from,
-            cadt_u32 count, cadt_u32 base, cadt_u32 longest, cadt_u32 grain, CADT_GLOBAL cadt_u32* skipped) {
+/* numbers[t] = place of triangle t in the result, for the triangles of the `count` buckets from `from` on; the first
+ * has number `base`, and stands at members[0]. A short bucket stays as it is: a triangle comes behind those with a
+ * smaller second vertex. Skips buckets with more than `longest` triangles and counts these in `skipped`: the longest,
+ * around vertices of high degree, are sorted together by all work-items if there is memory for it. */
+CADT_KERNEL(cadt_number_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL cadt_member* members,
+            CADT_GLOBAL cadt_u32* numbers, cadt_u32 from, cadt_u32 count, cadt_u32 base, cadt_u32 longest,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* skipped) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 begin = cadt_bucket_begin(buckets, from + i);
     const cadt_u32 size = cadt_bucket_begin(buckets, from + i + 1u) - begin;
@@ -107,20 +119,15 @@ CADT_KERNEL(cadt_sort_buckets, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL 
     }
     CADT_GLOBAL cadt_member* bucket = members + (begin - base);
     if (size <= CADT_CAST(cadt_u32, CADT_SHORT_BUCKET)) {
-      for (cadt_u32 e = 1u; e < size; ++e) {
-        const cadt_member moving = bucket[e];
-        cadt_u32 at = e;
-        for (; at > 0u && bucket[at - 1u].second > moving.second; --at) bucket[at] = bucket[at - 1u];
-        bucket[at] = moving;
+      for (cadt_u32 e = 0u; e < size; ++e) {
+        const cadt_member member = bucket[e];
+        cadt_u32 place = begin;
+        for (cadt_u32 f = 0u; f < size; ++f) place += bucket[f].second < member.second ? 1u : 0u;
+        numbers[member.triangle] = place;
       }
     } else {
-      for (cadt_u32 at = size / 2u; at-- > 0u;) cadt_sift_down(bucket, at, size);
-      for (cadt_u32 last = size - 1u; last > 0u; --last) {
-        const cadt_member moving = bucket[last];
-        bucket[last] = bucket[0];
-        bucket[0] = moving;
-        cadt_sift_down(bucket, 0u, last);
-      }
+      cadt_heap_sort(bucket, size);
+      for (cadt_u32 e = 0u; e < size; ++e) numbers[bucket[e].triangle] = begin + e;
     }
   }
 }
@@ -158,20 +165,11 @@ CADT_KERNEL(cadt_long_pack, CADT_GLOBAL const cadt_u32* buckets, CADT_GLOBAL con
   }
 }
 
-/* Stores the sorted list back: entry order[at] goes to the place of entry `at`. */
-CADT_KERNEL(cadt_long_store, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* seconds,
-            CADT_GLOBAL const cadt_u32* triangles, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_member* members,
-            cadt_u32 count, cadt_u32 grain) {
-  CADT_FOR(at, count, grain) {
-    members[places[at]].second = seconds[order[at]];
-    members[places[at]].triangle = triangles[order[at]];
-  }
-}
-
-/* numbers[t] = place of triangle t in the result. */
-CADT_KERNEL(cadt_number_triangles, CADT_GLOBAL const cadt_member* members, CADT_GLOBAL cadt_u32* numbers, cadt_u32 base,
-            cadt_u32 count, cadt_u32 grain) {
-  CADT_FOR(i, count, grain) { numbers[members[i].triangle] = base + i; }
+/* numbers[t] of the triangles of the sorted list: entry order[at] comes to the place of entry `at`. */
+CADT_KERNEL(cadt_long_numbers, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* triangles,
+            CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_u32* numbers, cadt_u32 base, cadt_u32 count,
+            cadt_u32 grain) {
+  CADT_FOR(at, count, grain) { numbers[triangles[order[at]]] = base + places[at]; }
 }
 
 #endif

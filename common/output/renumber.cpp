@@ -39,6 +39,7 @@ std::vector<PartBegin> split_buckets(Context& ctx, const Allocation& buckets, st
 struct BucketPart {
   const Allocation& buckets;
   const Allocation& members;
+  const Allocation& numbers;  ///< of all triangles
   std::uint32_t from, size;   ///< buckets
   std::uint32_t base, count;  ///< triangles
 };
@@ -46,8 +47,8 @@ struct BucketPart {
 /// Longer buckets are sorted as one list by all work-items: one work-item takes 2 microseconds a triangle.
 constexpr std::uint32_t longest_serial_bucket = 256;
 
-/// Sorts what cadt_sort_buckets has skipped, `listed` triangles.
-void sort_long_buckets(Context& ctx, const BucketPart& part, std::uint32_t listed) {
+/// Numbers what cadt_number_buckets has skipped, `listed` triangles.
+void number_long_buckets(Context& ctx, const BucketPart& part, std::uint32_t listed) {
   Launcher& launch = ctx.launcher;
   Allocation ranks = ctx.memory.allocate((part.count + std::size_t{1}) * word);
   const LaunchGrid all = launch.grid(part.count), some = launch.grid(listed);
@@ -55,10 +56,10 @@ void sort_long_buckets(Context& ctx, const BucketPart& part, std::uint32_t liste
                                         ranks);
   launch.scan(ranks, part.count + std::size_t{1});
   const std::size_t bytes = listed * word;
-  const Allocation seconds = ctx.memory.allocate(bytes), numbers = ctx.memory.allocate(bytes);
+  const Allocation seconds = ctx.memory.allocate(bytes), triangles = ctx.memory.allocate(bytes);
   const Allocation owners = ctx.memory.allocate(bytes), places = ctx.memory.allocate(bytes);
   launch.run<KernelId::cadt_long_pack>(part.buckets, part.members, part.from, part.size, part.base, ranks, all, seconds,
-                                       numbers, owners, places);
+                                       triangles, owners, places);
   ranks.release();
   Allocation sorted = ctx.memory.allocate(bytes), order = ctx.memory.allocate(bytes);
   Allocation spare = ctx.memory.allocate(bytes), spare_order = ctx.memory.allocate(bytes);
@@ -67,30 +68,30 @@ void sort_long_buckets(Context& ctx, const BucketPart& part, std::uint32_t liste
   launch.sort(sorted, order, spare, spare_order, listed, 32, true);
   launch.run<KernelId::cadt_gather_words>(owners, order, sorted, some);
   launch.sort(sorted, order, spare, spare_order, listed, static_cast<unsigned>(std::bit_width(part.size)), false);
-  launch.run<KernelId::cadt_long_store>(order, seconds, numbers, places, part.members, some);
+  launch.run<KernelId::cadt_long_numbers>(order, triangles, places, part.numbers, part.base, some);
 }
 
-/// Sorts each bucket by the second vertex.
-void sort_buckets(Context& ctx, const BucketPart& part) {
+/// Numbers the triangles of each bucket by the second vertex.
+void number_buckets(Context& ctx, const BucketPart& part) {
   Launcher& launch = ctx.launcher;
   const Allocation found = launch.zeros(1);
   const LaunchGrid c = launch.grid(part.size);
-  const auto sort = [&](std::uint32_t longest) {
-    launch.run<KernelId::cadt_sort_buckets>(c.items, part.buckets, part.members, part.from, part.size, part.base,
-                                            longest, c.grain, found);
+  const auto number = [&](std::uint32_t longest) {
+    launch.run<KernelId::cadt_number_buckets>(c.items, part.buckets, part.members, part.numbers, part.from, part.size,
+                                              part.base, longest, c.grain, found);
   };
-  sort(longest_serial_bucket);
+  number(longest_serial_bucket);
   const std::uint32_t skipped = part.count > longest_serial_bucket ? launch.read_word(found, 0) : 0;
   if (skipped == 0) return;
   if (ctx.memory.allows((part.count + 8 * std::size_t{skipped} + 1) * word))
-    sort_long_buckets(ctx, part, skipped);
+    number_long_buckets(ctx, part, skipped);
   else
-    sort(CADT_NONE);
+    number(CADT_NONE);
 }
 
 /// Numbers all triangles from scanned buckets. \pre `numbers` are places in buckets where the device knows them
 /// (canonical_order.dev.h)
-void number_by_buckets(Context& ctx, const Mesh& mesh, Allocation buckets, const Allocation& numbers,
+void number_by_buckets(Context& ctx, const Mesh& mesh, const Allocation& buckets, const Allocation& numbers,
                        std::size_t points) {
   Launcher& launch = ctx.launcher;
   const auto triangles = static_cast<std::uint32_t>(mesh.triangles);
@@ -102,9 +103,7 @@ void number_by_buckets(Context& ctx, const Mesh& mesh, Allocation buckets, const
     const Allocation members = ctx.memory.transient(std::size_t{count} * 2 * word);
     launch.run<KernelId::cadt_bucket_triangles>(mesh.vertices, mesh.input_ids, buckets, numbers, members, from, size,
                                                 base, launch.grid(triangles));
-    sort_buckets(ctx, {buckets, members, from, size, base, count});
-    if (part + 1 == parts) buckets.release();
-    launch.run<KernelId::cadt_number_triangles>(members, numbers, base, launch.grid(count));
+    number_buckets(ctx, {buckets, members, numbers, from, size, base, count});
   }
 }
 
@@ -136,7 +135,7 @@ Allocation number_triangles(Context& ctx, const Mesh& mesh, std::size_t points) 
   launch.run<KernelId::cadt_count_triangles>(mesh.vertices, mesh.input_ids, buckets, numbers,
                                              launch.grid_strided(mesh.triangles));
   launch.scan(buckets, points + 1);
-  number_by_buckets(ctx, mesh, std::move(buckets), numbers, points);
+  number_by_buckets(ctx, mesh, buckets, numbers, points);
   return numbers;
 }
 

@@ -116,11 +116,10 @@
   X(cadt_count_triangles)  /* canonical_order.dev.h: buckets by smallest input id */ \
   X(cadt_split_buckets)    /* canonical_order.dev.h: parts of the compact plan */    \
   X(cadt_bucket_triangles) /* canonical_order.dev.h */                               \
-  X(cadt_sort_buckets)     /* canonical_order.dev.h */                               \
+  X(cadt_number_buckets)   /* canonical_order.dev.h */                               \
   X(cadt_long_flags)       /* canonical_order.dev.h: long buckets as one list */     \
   X(cadt_long_pack)        /* canonical_order.dev.h */                               \
-  X(cadt_long_store)       /* canonical_order.dev.h */                               \
-  X(cadt_number_triangles) /* canonical_order.dev.h */                               \
+  X(cadt_long_numbers)     /* canonical_order.dev.h */                               \
   X(cadt_write_triangles)  /* renumber.dev.h */                                      \
   X(cadt_move_words)       /* renumber.dev.h: in place, where memory is short */     \
   X(cadt_put_words)        /* renumber.dev.h */                                      \

@@ -80,7 +80,7 @@ TEST_P(Result, CanonicalOrderAroundHubs) {
     EXPECT_EQ(copy(mesh.neighbors()), neighbors_of(mesh.triangles())) << hubs << " hubs";
     EXPECT_EQ(mesh.hash(), triangulate(Reals(xy), serial()).hash());
     EXPECT_TRUE(std::ranges::any_of(mesh.statistics().kernels,
-                                    [](const KernelTime& kernel) { return kernel.name == "cadt_long_store"; }));
+                                    [](const KernelTime& kernel) { return kernel.name == "cadt_long_numbers"; }));
   }
 }
 

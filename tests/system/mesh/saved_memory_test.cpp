@@ -77,8 +77,8 @@ TEST_P(SavedMemory, LongBuckets) {
     expect_same(mesh, expected);
     const bool saves = more < 100 * xy.size();
     EXPECT_EQ(launches(mesh, "cadt_star_vertices"), saves ? 4U : 1U);
-    EXPECT_EQ(launches(mesh, "cadt_sort_buckets"), saves ? 2U : 1U);
-    EXPECT_EQ(launches(mesh, "cadt_long_store"), 1U);
+    EXPECT_EQ(launches(mesh, "cadt_number_buckets"), saves ? 2U : 1U);
+    EXPECT_EQ(launches(mesh, "cadt_long_numbers"), 1U);
   }
 }
 

@@ -37,7 +37,7 @@ TEST(KernelBytes, OfARunWithLocks) {
   EXPECT_EQ(least_bytes("cadt_gather_points", run, 1780), 1000U * (4 + 16 + 16));
   EXPECT_EQ(least_bytes("cadt_insert", run, 1780), 897U * (16 + 32 + 3 * 32 + 4));
   EXPECT_EQ(least_bytes("cadt_legality_sweep", run, 1780), 2U * 900 * (2 * 32 + 16));
-  EXPECT_EQ(least_bytes("cadt_write_ranked", run, 1780), 900U * (2 * 36 + 4) + 1780 * 24);
+  EXPECT_EQ(least_bytes("cadt_drop_locks", run, 1780), 900U * (2 * 36 + 4) + 1780 * 24);
   // 14 bits are two passes; the places are not read in the first one
   EXPECT_EQ(least_bytes("cadt_radix_scatter", run, 1780), 1000U * (2 * 12 + 4));
   EXPECT_EQ(least_bytes("sort", run, 1780), 1000U * 2 * 16);

@@ -13,7 +13,7 @@ std::unique_ptr<Device> open_device(const OpenRequest& request) {
   auto device = std::make_unique<ClDevice>(shared, request);
   // Once per context: what is tested is the compiled program and the device, which all its users share.
   shared->once([&] {
-    static_cast<void>(shared->program(KernelVariant::narrow, request.from_cache));
+    static_cast<void>(shared->program(Stage::self_test, KernelVariant::narrow, request.from_cache));
     run_selftest(*device);
   });
   return device;

@@ -67,9 +67,7 @@ std::shared_ptr<SharedContext> context_of_queue(const OpenRequest& request) {
 }  // namespace
 
 SharedContext::SharedContext(const OpenRequest& request)
-    : device_(find(request.index)),
-      source_(request.source.empty() ? kernel_source() : request.source),
-      extra_options_(request.extra_options) {
+    : device_(find(request.index)), source_(request.source), extra_options_(request.extra_options) {
   try {
     if (request.queue) {
       context_ = cl::CommandQueue(static_cast<cl_command_queue>(*request.queue), true).getInfo<CL_QUEUE_CONTEXT>();
@@ -83,14 +81,15 @@ SharedContext::SharedContext(const OpenRequest& request)
   device_.info.atomics = atomics_.text;
 }
 
-cl::Program SharedContext::program(KernelVariant variant, bool* from_cache) {
+cl::Program SharedContext::program(Stage stage, KernelVariant variant, bool* from_cache) {
   if (!device_.facts.fp64 && variant == KernelVariant::wide)
     variant = KernelVariant::narrow;  // the float variant takes any exponent already
+  if (!source_.empty()) stage = {};
   const std::lock_guard lock(build_mutex_);
-  auto& slot = programs_[static_cast<std::size_t>(variant)];
+  auto& slot = programs_[static_cast<std::size_t>(variant)][static_cast<std::size_t>(stage)];
   if (!slot)
-    slot = build_program(context_, device_, source_, build_options(device_, atomics_, variant, extra_options_),
-                         from_cache);
+    slot = build_program(context_, device_, source_.empty() ? kernel_source(stage) : source_,
+                         build_options(device_, atomics_, variant, extra_options_), from_cache);
   return *slot;
 }
 

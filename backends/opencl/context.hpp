@@ -28,7 +28,7 @@ class SharedContext {
   [[nodiscard]] const cl::Context& context() const noexcept { return context_; }
 
   /// Built at the first call. \throws KernelBuildError, DeviceError
-  [[nodiscard]] cl::Program program(KernelVariant variant, bool* from_cache = nullptr);
+  [[nodiscard]] cl::Program program(Stage stage, KernelVariant variant, bool* from_cache = nullptr);
 
   /// Runs `test` unless it has passed before in this context; it counts as passed when it returns.
   template <class Test>
@@ -50,7 +50,7 @@ class SharedContext {
   AtomicsPath atomics_;
   std::string source_, extra_options_;
   std::mutex build_mutex_, test_mutex_;
-  std::array<std::optional<cl::Program>, kernel_variants> programs_;
+  std::array<std::array<std::optional<cl::Program>, stage_count>, kernel_variants> programs_;
   bool tested_ = false;
 };
 

@@ -267,8 +267,8 @@ void ClDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint
   }
 }
 
-ClDevice::ReadyKernel ClDevice::make_ready(const char* name, KernelVariant variant, std::size_t group) {
-  const cl::Program program = shared_->program(variant);
+ClDevice::ReadyKernel ClDevice::make_ready(const char* name, Stage stage, KernelVariant variant, std::size_t group) {
+  const cl::Program program = shared_->program(stage, variant);
   ReadyKernel made;
   made.name = name;
   run([&] {
@@ -292,7 +292,7 @@ ClDevice::ReadyKernel& ClDevice::ready(KernelId kernel, KernelVariant variant) {
   if (!slot) {
     const std::size_t group =
         work_group_size_ != 0 ? work_group_size_ : (info().gpu ? shared_->device().gpu_group : cpu_group);
-    slot = make_ready(kernel_names[number], variant, group);
+    slot = make_ready(kernel_names[number], stage_of(kernel), variant, group);
   }
   return *slot;
 }
@@ -341,7 +341,8 @@ void ClDevice::enqueue(ReadyKernel& target, std::size_t groups, std::size_t grou
 std::optional<double> ClDevice::occupancy(unsigned work_group_size) {
   const auto insert = static_cast<std::size_t>(KernelId::cadt_insert);
   if (work_group_size == 0 ||
-      make_ready(kernel_names[insert], KernelVariant::narrow, work_group_size).group < work_group_size)
+      make_ready(kernel_names[insert], Stage::insertion, KernelVariant::narrow, work_group_size).group <
+          work_group_size)
     return 0.0;
   return std::nullopt;
 }

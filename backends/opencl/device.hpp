@@ -44,7 +44,7 @@ class ClDevice final : public Device {
     std::size_t group = 1;  ///< work-items a group
   };
   /// A kernel for groups of `group` work-items, or of as many as the device allows.
-  [[nodiscard]] ReadyKernel make_ready(const char* name, KernelVariant variant, std::size_t group);
+  [[nodiscard]] ReadyKernel make_ready(const char* name, Stage stage, KernelVariant variant, std::size_t group);
   /// Enqueues groups of the kernel's size.
   void enqueue(ReadyKernel& kernel, std::size_t groups, std::span<const Arg> args) {
     enqueue(kernel, groups, kernel.group, args);

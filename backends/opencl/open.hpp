@@ -21,7 +21,7 @@ struct OpenRequest {
 
   // The following are for tests.
   std::string extra_options;   ///< appended to the compiler's options
-  std::string source;          ///< instead of the embedded kernels, if not empty
+  std::string source;          ///< the program of all stages, instead of the embedded ones, if not empty
   bool probe_atomics = false;  ///< try the compiler even if the device advertises acquire/release
   bool best_effort_atomics = false;
   bool fresh = false;          ///< a context of its own instead of the process's

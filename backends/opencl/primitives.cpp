@@ -47,10 +47,10 @@ std::unique_ptr<Primitives> ClPrimitives::make(ClDevice& device) noexcept try {
 
 ClPrimitives::ClPrimitives(ClDevice& device)
     : device_(device),
-      tile_sums_(device.make_ready("cadt_tile_sums", KernelVariant::narrow, group)),
-      tile_scan_(device.make_ready("cadt_tile_scan", KernelVariant::narrow, group)),
-      digit_counts_(device.make_ready("cadt_digit_counts", KernelVariant::narrow, group)),
-      digit_scatter_(device.make_ready("cadt_digit_scatter", KernelVariant::narrow, group)) {}
+      tile_sums_(device.make_ready("cadt_tile_sums", Stage::portable, KernelVariant::narrow, group)),
+      tile_scan_(device.make_ready("cadt_tile_scan", Stage::portable, KernelVariant::narrow, group)),
+      digit_counts_(device.make_ready("cadt_digit_counts", Stage::portable, KernelVariant::narrow, group)),
+      digit_scatter_(device.make_ready("cadt_digit_scatter", Stage::portable, KernelVariant::narrow, group)) {}
 
 std::size_t ClPrimitives::scan_scratch(std::size_t count) { return sums_of(count) * sizeof(std::uint32_t); }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cadt/errors.hpp>
+#include <cstdlib>
 #include <optional>
 #include <vector>
 
@@ -64,6 +65,20 @@ Digest key_of(const FoundDevice& device, const std::string& source, const std::s
   return digest_of(std::span<const std::string>(identity));
 }
 
+// Drivers that keep on disk what they have compiled. A second cache gains nothing there, and PoCL, which compiles a
+// kernel at its first launch, would have to compile all of them to hand out the program: 23 s for the first call
+// instead of 5.
+bool driver_caches(const FoundDevice& device) {
+  const std::string& platform = device.info.platform;
+  return platform == "Portable Computing Language" || platform == "NVIDIA CUDA" || platform == "rusticl";
+}
+
+/// Empty: no cache.
+std::filesystem::path cache_directory_for(const FoundDevice& device) {
+  return driver_caches(device) && std::getenv("CADT_CACHE_DIR") == nullptr ? std::filesystem::path()
+                                                                           : cache_directory();
+}
+
 // A driver may reject its own binary, e.g. after an update that kept the version: then the program is built again.
 std::optional<cl::Program> from_binary(const cl::Context& context, const FoundDevice& device,
                                        std::vector<unsigned char> binary, const std::string& options) {
@@ -79,8 +94,7 @@ std::optional<cl::Program> from_binary(const cl::Context& context, const FoundDe
   }
 }
 
-void keep_binary(const cl::Program& program, Digest key) {
-  const std::filesystem::path directory = cache_directory();
+void keep_binary(const cl::Program& program, const std::filesystem::path& directory, Digest key) {
   if (directory.empty()) return;
   try {
     const std::vector<std::vector<unsigned char>> binaries = program.getInfo<CL_PROGRAM_BINARIES>();
@@ -129,8 +143,9 @@ std::string build_options(const FoundDevice& device, const AtomicsPath& atomics,
 cl::Program build_program(const cl::Context& context, const FoundDevice& device, const std::string& source,
                           const std::string& options, bool* from_cache) {
   const Digest key = key_of(device, source, options);
+  const std::filesystem::path directory = cache_directory_for(device);
   if (from_cache != nullptr) *from_cache = false;
-  if (auto binary = load_binary(cache_directory(), key)) {
+  if (auto binary = load_binary(directory, key)) {
     if (auto program = from_binary(context, device, std::move(*binary), options)) {
       if (from_cache != nullptr) *from_cache = true;
       return *program;
@@ -148,7 +163,7 @@ cl::Program build_program(const cl::Context& context, const FoundDevice& device,
   } catch (const cl::Error& error) {
     throw KernelBuildError(device.info.name, options, log_of(program, device.device, error));
   }
-  keep_binary(program, key);
+  keep_binary(program, directory, key);
   return program;
 }
 

@@ -29,10 +29,7 @@ endif()
 cadt_backend(opencl in "headers in ${CADT_OPENCL_HPP}, loader at run time")
 
 include(EmbedKernels)
-if(NOT DEFINED CADT_KERNELS_ENTRY)
-  set(CADT_KERNELS_ENTRY ${PROJECT_SOURCE_DIR}/kernels_cl/cadt.cl)
-endif()
-cadt_embed_kernels(CADT_EMBEDDED_KERNELS ${CADT_KERNELS_ENTRY} ${PROJECT_SOURCE_DIR} kernel_source)
+cadt_embed_kernels(CADT_EMBEDDED_KERNELS ${PROJECT_SOURCE_DIR})
 
 target_sources(cadt PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/backend.cpp

@@ -56,6 +56,7 @@ CADT_FN cadt_set cadt_set_from_bounds(const cadt_bounds_row* row, cadt_u32 level
   return s;
 }
 
+#if CADT_BUILDS(BATCH)
 /* Fills the table of the sets, a team for each. `bad`: the first point with a coordinate that is NaN or infinite. \pre
  * *bad is CADT_NONE */
 CADT_KERNEL(cadt_batch_bounds, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* starts,
@@ -171,6 +172,7 @@ CADT_KERNEL(cadt_batch_extract, CADT_GLOBAL const cadt_point* points, cadt_u32 b
             CADT_GLOBAL cadt_point* to) {
   CADT_FOR(i, count, grain) { to[i] = points[begin + i]; }
 }
+#endif
 
 /* Converts positions and triangle numbers of a set to those of the batch. */
 CADT_FN void cadt_move_triangle(CADT_GLOBAL cadt_u32* word, cadt_u32 begin) {
@@ -180,6 +182,7 @@ CADT_FN void cadt_move_triangle(CADT_GLOBAL cadt_u32* word, cadt_u32 begin) {
   }
 }
 
+#if CADT_BUILDS(BATCH)
 /* Stores the mesh of one set in its slots, as locked triangles. Its vertices are indices into `positions` of the set.
  */
 CADT_KERNEL(cadt_batch_store, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u32* positions, cadt_u32 begin,
@@ -209,5 +212,6 @@ CADT_KERNEL(cadt_batch_shift, CADT_GLOBAL cadt_u32* values, cadt_u32 first, cadt
     }
   }
 }
+#endif
 
 #endif

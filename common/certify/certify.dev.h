@@ -10,6 +10,7 @@
 #include "common/insertion/legality_sweep.dev.h"
 #include "common/mesh/mesh_view.dev.h"
 
+#if CADT_BUILDS(CERTIFY)
 /* Examines the edges of `count` triangles from `begin` on, each edge once, from the triangle that comes first. Adds to
  *
  *   words[row]        edges examined
@@ -64,5 +65,6 @@ CADT_KERNEL(cadt_certify, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_u32 co
   CADT_GLOBAL cadt_u32* counter_rows = counted ? found + CADT_COUNTER_STRIDE : 0;
   CADT_FLUSH_COUNTERS(&counters, counter_rows);
 }
+#endif
 
 #endif

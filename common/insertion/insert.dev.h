@@ -69,6 +69,7 @@ CADT_FN cadt_u32 cadt_rank_of(cadt_u32 level, cadt_u32 block, cadt_u32 n) {
   }
 }
 
+#if CADT_BUILDS(INSERTION)
 /* Points and input ids in that order. */
 CADT_KERNEL(cadt_by_level, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL const cadt_u32* input_ids, cadt_u32 n,
             cadt_u32 grain, CADT_GLOBAL cadt_point* sorted_points, CADT_GLOBAL cadt_u32* sorted_input_ids) {
@@ -83,6 +84,7 @@ CADT_KERNEL(cadt_by_level, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL con
 CADT_KERNEL(cadt_first_representative, cadt_u32 n, cadt_u32 levels, CADT_GLOBAL cadt_u32* position) {
   if (cadt_item == 0u) *position = cadt_representative(levels, 0u, n);
 }
+#endif
 
 #if CADT_CONTIGUOUS
 /* Where the walk of a deferred point starts: at its own triangle or, if it has none yet, at that of the point from
@@ -95,6 +97,7 @@ CADT_FN cadt_u32 cadt_start_of_deferred(const cadt_locked_mesh* m, cadt_u32 i, c
 }
 #endif
 
+#if CADT_BUILDS(INSERTION)
 /* Inserts `count` points: first `listed` deferred ones, each with a walk from its own triangle; then one level: of each
  * block of 2^(level+1) positions, from block `begin` on, the half that does not represent it, with a walk from the
  * representative, which is in the mesh and near in sorted order. */
@@ -165,5 +168,6 @@ CADT_KERNEL(cadt_insert, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32
   if (listed == count) cadt_report_changes(&counters, deferred_counts);
   CADT_FLUSH_COUNTERS(&counters, counter_rows);
 }
+#endif
 
 #endif

@@ -72,6 +72,7 @@ CADT_FN void cadt_sweep_edges(const cadt_locked_mesh* m, const cadt_u32* half_ed
 }
 #endif
 
+#if CADT_BUILDS(INSERTION)
 /* deferred_counts, behind those of the lists: edges examined; illegal edges to be flipped; edges that could not be read
  * because a thread was changing them; illegal edges that stay (CADT_STABILIZE_PAPER); edges to the ghost at which the
  * boundary turns back. `n`: the points are in the order of levels (cadt_by_level), and triangles are visited along the
@@ -144,5 +145,6 @@ CADT_KERNEL(cadt_legality_sweep, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 begin, ca
   CADT_SKIP_TIME(&counters);
   CADT_FLUSH_COUNTERS(&counters, counter_rows);
 }
+#endif
 
 #endif

@@ -143,6 +143,7 @@ CADT_FN void cadt_legalize(const cadt_locked_mesh* m, cadt_worklist* work, const
   while (cadt_worklist_pending(work)) cadt_legalize_next(m, work, deferred, counters);
 }
 
+#if CADT_BUILDS(INSERTION)
 /* Legalises edges that earlier launches deferred. */
 CADT_KERNEL(cadt_legalize_edges, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, cadt_u32 count,
             cadt_u32 grain, CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts,
@@ -167,5 +168,6 @@ CADT_KERNEL(cadt_legalize_edges, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const 
   cadt_report_changes(&counters, deferred_counts);
   CADT_FLUSH_COUNTERS(&counters, counter_rows);
 }
+#endif
 
 #endif

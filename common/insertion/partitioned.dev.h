@@ -164,6 +164,7 @@ CADT_FN_INLINE cadt_u32 cadt_insert_in_partition(const cadt_locked_mesh* m, cons
   return 1u;
 }
 
+#if CADT_BUILDS(INSERTION)
 /* Inserts, in each of the `partitions` of 2^level * blocks positions, the points of blocks `from` to `to` - 1 but the
  * blocks' representatives. A block is finished before the next, so that what is read again is still in the cache. \pre
  * the representatives of all blocks are in the mesh */
@@ -206,6 +207,7 @@ CADT_KERNEL(cadt_insert_partitions, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 n, cad
   CADT_FLUSH_COUNTERS(&counters, counter_rows);
 #endif
 }
+#endif
 
 /* Whether all three vertices are in the same partition of `size` positions. */
 CADT_FN cadt_u32 cadt_in_same_partition(cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 size) {
@@ -213,6 +215,7 @@ CADT_FN cadt_u32 cadt_in_same_partition(cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt
   return a != CADT_GHOST && cadt_owns(&partition, b) && cadt_owns(&partition, c) ? 1u : 0u;
 }
 
+#if CADT_BUILDS(INSERTION)
 /* Tests the edges between triangles with all vertices in one partition of `size` positions and other triangles, and
  * repairs illegal ones. The edges between two of the others have not changed. */
 CADT_KERNEL(cadt_border_sweep, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 size,
@@ -238,5 +241,6 @@ CADT_KERNEL(cadt_border_sweep, CADT_LOCKED_MESH_PARAMETERS, cadt_u32 count, cadt
   CADT_FLUSH_COUNTERS(&counters, counter_rows);
 #endif
 }
+#endif
 
 #endif

@@ -17,6 +17,7 @@
 
 #include "common/insertion/split.dev.h"
 
+#if CADT_BUILDS(INSERTION)
 /* Lowers *third to the first position that is not on the line through points `first` and `second`. */
 CADT_KERNEL(cadt_find_seed_triangle, CADT_GLOBAL const cadt_point* points, cadt_u32 first, cadt_u32 second,
             cadt_u32 begin, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* third) {
@@ -29,6 +30,7 @@ CADT_KERNEL(cadt_find_seed_triangle, CADT_GLOBAL const cadt_point* points, cadt_
     }
   }
 }
+#endif
 
 /* \pre all locked triangles are zero */
 CADT_FN void cadt_make_seed_mesh(const cadt_locked_mesh* m, cadt_counters* counters) {
@@ -55,11 +57,13 @@ CADT_FN void cadt_make_seed_mesh(const cadt_locked_mesh* m, cadt_counters* count
   cadt_store_relaxed(m->vertex_to_triangle + m->third, face);
 }
 
+#if CADT_BUILDS(INSERTION)
 CADT_KERNEL(cadt_seed_mesh, CADT_LOCKED_MESH_PARAMETERS) {
   if (cadt_item != 0u) return;
   CADT_LOCKED_MESH(mesh);
   CADT_DECLARE_COUNTERS(counters);
   cadt_make_seed_mesh(&mesh, &counters);
 }
+#endif
 
 #endif

@@ -7,6 +7,7 @@
 #define CADT_OUTPUT_CANONICAL_ORDER_H
 
 #include "common/output/renumber.dev.h"
+#include "common/portable/atomics.dev.h"
 
 /* A triangle in the bucket of its smallest vertex. */
 typedef struct {

@@ -7,6 +7,7 @@
 #define CADT_POINTS_BOUNDS_H
 
 #include "common/portable/layout.dev.h"
+#include "common/portable/teams.dev.h"
 #include "common/predicates/bigint.dev.h"
 
 CADT_FN cadt_bounds_row cadt_bounds_of_nothing(void) {
@@ -70,6 +71,7 @@ CADT_FN void cadt_bounds_of_team(CADT_TEAM_PTR cadt_bounds_row* lanes, cadt_boun
   }
 }
 
+#if CADT_BUILDS(POINTS)
 /* Partial results: a row for each team of work-items, as far as there is room. */
 CADT_KERNEL(cadt_bounds, CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 chunk, cadt_u32 parts,
             cadt_u32 room, CADT_GLOBAL cadt_bounds_row* rows) {
@@ -105,5 +107,6 @@ CADT_KERNEL(cadt_merge_bounds, CADT_GLOBAL cadt_bounds_row* rows, cadt_u32 room,
     rows[0] = row;
   }
 }
+#endif
 
 #endif

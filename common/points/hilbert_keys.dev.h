@@ -153,6 +153,7 @@ CADT_FN void cadt_cell_keys(const cadt_key_grid* grid, const cadt_u32* along, co
 }
 #endif
 
+#if CADT_BUILDS(POINTS)
 CADT_KERNEL(cadt_hilbert_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL cadt_u32* keys, cadt_u32 count,
             cadt_u32 grain, CADT_GRID_PARAMETERS) {
   CADT_GRID_VIEW(grid);
@@ -192,5 +193,6 @@ CADT_KERNEL(cadt_fine_hilbert_keys, CADT_GLOBAL const cadt_point* points, CADT_G
     low[i] = CADT_CAST(cadt_u32, key) & ((1u << low_bits) - 1u);
   }
 }
+#endif
 
 #endif

@@ -38,6 +38,7 @@ CADT_FN cadt_point cadt_multiplied_point(cadt_point p, cadt_real scale, cadt_rea
       points[i] = order ? cadt_multiplied_point(p, scale, scale_again) : p;                                   \
     }                                                                                                         \
   }
+#if CADT_BUILDS(POINTS)
 #if !CADT_FLOAT
 CADT_IMPORT_KERNEL(cadt_import_doubles, double)
 #endif
@@ -48,5 +49,6 @@ CADT_KERNEL(cadt_gather_points, CADT_GLOBAL const cadt_point* points, CADT_GLOBA
             CADT_GLOBAL cadt_point* sorted, cadt_u32 count, cadt_u32 grain, cadt_real scale, cadt_real scale_again) {
   CADT_FOR(i, count, grain) { sorted[i] = cadt_multiplied_point(points[order[i]], scale, scale_again); }
 }
+#endif
 
 #endif

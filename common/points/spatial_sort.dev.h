@@ -19,6 +19,7 @@ CADT_FN cadt_u32 cadt_lexicographic(cadt_point a, cadt_u32 i, cadt_point b, cadt
   return i < j ? 1u : 0u;
 }
 
+#if CADT_BUILDS(POINTS)
 /* Sorts each run of at most CADT_RUN equal keys lexicographically, equal points by index. Longer runs stay as they are,
  * and totals[CADT_OVERFULL] becomes 1; after refinement (key_refinement.dev.h) they are equal points ordered by index.
  */
@@ -46,5 +47,6 @@ CADT_KERNEL(cadt_sort_runs, CADT_GLOBAL const cadt_u32* keys, CADT_GLOBAL cadt_p
     }
   }
 }
+#endif
 
 #endif

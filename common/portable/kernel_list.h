@@ -6,10 +6,11 @@
 #ifndef CADT_PORTABLE_KERNEL_LIST_H
 #define CADT_PORTABLE_KERNEL_LIST_H
 
-/* common/predicates */
-#define CADT_PREDICATES_KERNELS(X)                                      \
-  X(cadt_selftest)        /* self_test.dev.h: arithmetic and atomics */ \
-  X(cadt_predicate_probe) /* predicate_probe.dev.h: the predicates by themselves */
+/* common/predicates: what is tried before any work */
+#define CADT_SELF_TEST_KERNELS(X) X(cadt_selftest) /* self_test.dev.h: arithmetic and atomics */
+
+/* common/predicates: the predicates by themselves, for tests */
+#define CADT_PREDICATES_KERNELS(X) X(cadt_predicate_probe) /* predicate_probe.dev.h */
 
 /* common/portable: sort and scan where the device has none of its own */
 #define CADT_PORTABLE_KERNELS(X)               \
@@ -136,6 +137,7 @@
   X(cadt_verify_gather)     /* verify.dev.h */
 
 #define CADT_KERNEL_LIST(X)  \
+  CADT_SELF_TEST_KERNELS(X)  \
   CADT_PREDICATES_KERNELS(X) \
   CADT_PORTABLE_KERNELS(X)   \
   CADT_POINTS_KERNELS(X)     \
@@ -145,5 +147,18 @@
   CADT_CERTIFY_KERNELS(X)    \
   CADT_OUTPUT_KERNELS(X)     \
   CADT_VERIFY_KERNELS(X)
+
+/* The same by stage: a back end may compile a program for each (CADT_PROGRAM of language.dev.h). */
+#define CADT_STAGE_LIST(S)               \
+  S(self_test, CADT_SELF_TEST_KERNELS)   \
+  S(predicates, CADT_PREDICATES_KERNELS) \
+  S(portable, CADT_PORTABLE_KERNELS)     \
+  S(points, CADT_POINTS_KERNELS)         \
+  S(insertion, CADT_INSERTION_KERNELS)   \
+  S(stars, CADT_STARS_KERNELS)           \
+  S(batch, CADT_BATCH_KERNELS)           \
+  S(certify, CADT_CERTIFY_KERNELS)       \
+  S(output, CADT_OUTPUT_KERNELS)         \
+  S(verify, CADT_VERIFY_KERNELS)
 
 #endif

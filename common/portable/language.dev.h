@@ -6,9 +6,9 @@
  * A compilation may set: CADT_WIDE (0: exponents of all coordinates within 240 binades, 1: any double), CADT_FLOAT (1:
  * coordinates are floats, any of them, and there are no doubles; this variant is wide), CADT_CONTIGUOUS (1: a work-item
  * takes neighbouring elements, right for CPUs; 0: strided, right for GPUs), CADT_RADIX_BITS (digit of the radix sort),
- * CADT_TIMED (1: timers, counters.dev.h). For tests only: CADT_CHECKED (whoever stores to a triangle must own it,
- * locked_mesh.dev.h), CADT_SCHEDULE_NOISE (delays and failures, schedule_noise.dev.h), CADT_TEST_NO_LOCKS (a control:
- * locks are not taken).
+ * CADT_TIMED (1: timers, counters.dev.h), CADT_PROGRAM (the kernels of one stage alone). For tests only: CADT_CHECKED
+ * (whoever stores to a triangle must own it, locked_mesh.dev.h), CADT_SCHEDULE_NOISE (delays and failures,
+ * schedule_noise.dev.h), CADT_TEST_NO_LOCKS (a control: locks are not taken).
  */
 #ifndef CADT_PORTABLE_LANGUAGE_H
 #define CADT_PORTABLE_LANGUAGE_H
@@ -31,6 +31,19 @@
 #endif
 #ifndef CADT_RADIX_BITS
 #define CADT_RADIX_BITS 8
+#endif
+
+/* Stages of kernel_list.h. A file that other stages include for its functions asks CADT_BUILDS before its kernels. */
+#define CADT_PROGRAM_POINTS 1
+#define CADT_PROGRAM_INSERTION 2
+#define CADT_PROGRAM_STARS 3
+#define CADT_PROGRAM_BATCH 4
+#define CADT_PROGRAM_CERTIFY 5
+#define CADT_PROGRAM_OTHER 6
+#ifdef CADT_PROGRAM
+#define CADT_BUILDS(stage) (CADT_PROGRAM == CADT_PROGRAM_##stage)
+#else
+#define CADT_BUILDS(stage) 1
 #endif
 
 #if defined(__OPENCL_VERSION__) || defined(__OPENCL_C_VERSION__)
@@ -65,7 +78,12 @@ typedef long cadt_i64;
 #define CADT_FN static
 #define CADT_FN_SLOW static __attribute__((noinline))
 #define CADT_FN_INLINE static __attribute__((always_inline))
+/* Groups of a CPU have one work-item: Intel's compiler would spend three quarters of its time on vectors of them. */
+#if CADT_CONTIGUOUS && defined(cl_intel_vec_len_hint)
+#define CADT_KERNEL(name, ...) __kernel __attribute__((intel_vec_len_hint(1))) void name(__VA_ARGS__)
+#else
 #define CADT_KERNEL(name, ...) __kernel void name(__VA_ARGS__)
+#endif
 #define CADT_TEAM_KERNEL(lanes, teams, name, ...) CADT_KERNEL(name, __VA_ARGS__)
 #define cadt_item ((cadt_u32)get_global_id(0))
 #define cadt_items ((cadt_u32)get_global_size(0))

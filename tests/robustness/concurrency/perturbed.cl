@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The OpenCL kernels with schedule noise (common/overlay/schedule_noise.dev.h), and an assertion of ownership at every
- * store to a triangle; a failed assertion ends the process.
+ * How the programs begin: with schedule noise (common/overlay/schedule_noise.dev.h), and an assertion of ownership at
+ * every store to a triangle; a failed assertion ends the process.
  */
 #define CADT_SCHEDULE_NOISE
 #define CADT_CHECKED
@@ -9,4 +9,3 @@
   do {                              \
     if (!(owned)) __builtin_trap(); \
   } while (0)
-#include "kernels_cl/cadt.cl"

@@ -41,7 +41,7 @@ function(cadt_shorten_build)
   target_precompile_headers(cadt PRIVATE ${PROJECT_SOURCE_DIR}/common/driver/context.hpp
     ${PROJECT_SOURCE_DIR}/common/driver/kernel_signature.hpp <algorithm> <array> <atomic> <chrono> <functional> <memory>
     <mutex> <numeric> <optional> <span> <string> <vector>)
-  list(FILTER sources INCLUDE REGEX "backends/host/kernels_|self_test\\.cpp|point_profile\\.cpp")
+  list(FILTER sources INCLUDE REGEX "backends/host/kernels_|self_test/|point_profile\\.cpp")
   set_source_files_properties(${sources} TARGET_DIRECTORY cadt PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 

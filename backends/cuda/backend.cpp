@@ -5,7 +5,7 @@
 #include <set>
 
 #include "backends/cuda/device.hpp"
-#include "common/predicates/self_test.hpp"
+#include "common/self_test/self_test.hpp"
 
 namespace cadt {
 namespace {
@@ -89,6 +89,7 @@ class CudaEntry final : public BackendEntry {
     if (tested_.count(device->context()) == 0) {
       device->load_kernels();
       run_selftest(*device);
+      run_lock_test(*device);
       tested_.insert(device->context());
     }
     return device;

@@ -22,7 +22,7 @@
 #include "backends/host/kernel_table.hpp"
 #include "backends/host/thread_pool.hpp"
 #include "common/driver/buffer_cache.hpp"
-#include "common/predicates/self_test.hpp"
+#include "common/self_test/self_test.hpp"
 
 namespace cadt::host {
 namespace {

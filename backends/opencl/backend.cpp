@@ -3,7 +3,7 @@
 
 #include "backends/opencl/device.hpp"
 #include "backends/opencl/open.hpp"
-#include "common/predicates/self_test.hpp"
+#include "common/self_test/self_test.hpp"
 
 namespace cadt {
 namespace opencl {
@@ -15,6 +15,7 @@ std::unique_ptr<Device> open_device(const OpenRequest& request) {
   shared->once([&] {
     static_cast<void>(shared->program(Stage::self_test, KernelVariant::narrow, request.from_cache));
     run_selftest(*device);
+    run_lock_test(*device);
   });
   return device;
 }

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <mutex>
+#include <vector>
 
 namespace cadt::opencl {
 namespace {
@@ -147,6 +148,10 @@ bool launches_alone(const FoundDevice& device) {
   return !device.gpu_hardware && device.info.platform.find("Portable Computing Language") != std::string::npos;
 }
 
+// Oclgrind looks for uses of uninitialised memory. To version 21.10 memory is uninitialised after a fill; so is the end
+// of a part of a buffer after a write, and that of a buffer at the address of a shorter one that was freed.
+bool reports_uninitialised(const FoundDevice& device) { return device.info.platform == "Oclgrind"; }
+
 }  // namespace
 
 ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& request)
@@ -165,7 +170,8 @@ ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& req
     }
     if (request.kernel_times) clock_.emplace(info().name);
     constexpr std::size_t bits = 8;
-    if (info().gpu) part_alignment_ = shared_->device().device.getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>() / bits;
+    if (info().gpu && !reports_uninitialised(shared_->device()))
+      part_alignment_ = shared_->device().device.getInfo<CL_DEVICE_MEM_BASE_ADDR_ALIGN>() / bits;
   } catch (const cl::Error& error) {
     throw_device_error(error, info().name);
   }
@@ -198,7 +204,9 @@ std::unique_ptr<Buffer> ClDevice::allocate(std::size_t bytes) {
   // OpenCL has no empty buffers.
   const std::size_t size = std::max<std::size_t>(bytes, 8);
   try {
-    return std::make_unique<ClBuffer>(shared_, cl::Buffer(shared_->context(), CL_MEM_READ_WRITE, size), bytes, size);
+    cl::Buffer memory(shared_->context(), CL_MEM_READ_WRITE, size);
+    if (reports_uninitialised(shared_->device())) clRetainMemObject(memory());  // never freed
+    return std::make_unique<ClBuffer>(shared_, std::move(memory), bytes, size);
   } catch (const cl::Error& error) {
     if (is_out_of_memory(error.err()))
       throw_out_of_memory(info(), std::string(code_name(error.err())) + "; as far as known it has left", bytes,
@@ -261,6 +269,10 @@ void ClDevice::read(const Buffer& from, std::size_t offset, void* to, std::size_
 void ClDevice::fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) {
   check_range("a fill", to, offset, bytes);
   if (offset % 4 != 0 || bytes % 4 != 0) throw InternalError("a fill is not a multiple of four bytes");
+  if (reports_uninitialised(shared_->device())) {
+    const std::vector<std::uint32_t> words(bytes / 4, word);
+    return write(to, offset, words.data(), bytes);
+  }
   // In pieces: some drivers mishandle fills of more than 4 GiB.
   for (std::size_t done = 0; done < bytes; done += largest_fill) {
     run([&] { queue_.enqueueFillBuffer(memory_of(to), word, offset + done, std::min(bytes - done, largest_fill)); });
@@ -276,7 +288,8 @@ ClDevice::ReadyKernel ClDevice::make_ready(const char* name, Stage stage, Kernel
       made.kernel = cl::Kernel(program, name);
     } catch (const cl::Error& error) {
       if (error.err() != CL_INVALID_KERNEL_NAME) throw;
-      throw InternalError(std::string("the program for '") + info().name + "' has no kernel " + name);
+      throw KernelBuildError(info().name, "",
+                             std::string("the driver has built the program, but not its kernel ") + name);
     }
     made.parameters = made.kernel.getInfo<CL_KERNEL_NUM_ARGS>();
     const auto limit = made.kernel.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(shared_->device().device);

@@ -6,8 +6,10 @@
 #ifndef CADT_PORTABLE_KERNEL_LIST_H
 #define CADT_PORTABLE_KERNEL_LIST_H
 
-/* common/predicates: what is tried before any work */
-#define CADT_SELF_TEST_KERNELS(X) X(cadt_selftest) /* self_test.dev.h: arithmetic and atomics */
+/* common/self_test: what is tried before any work */
+#define CADT_SELF_TEST_KERNELS(X)                            \
+  X(cadt_selftest)       /* arithmetic.dev.h: and atomics */ \
+  X(cadt_selftest_locks) /* locks.dev.h: the lock protocol */
 
 /* common/predicates: the predicates by themselves, for tests */
 #define CADT_PREDICATES_KERNELS(X) X(cadt_predicate_probe) /* predicate_probe.dev.h */

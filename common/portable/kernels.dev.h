@@ -32,7 +32,8 @@
 #include "common/portable/radix_sort.dev.h"
 #include "common/portable/scan.dev.h"
 #include "common/predicates/predicate_probe.dev.h"
-#include "common/predicates/self_test.dev.h"
+#include "common/self_test/arithmetic.dev.h"
+#include "common/self_test/locks.dev.h"
 #if !CADT_FLOAT
 #include "common/batch/batch.dev.h"
 #include "common/batch/batch_insertion.dev.h"

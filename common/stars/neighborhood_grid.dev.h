@@ -221,6 +221,8 @@ CADT_FN cadt_u32 cadt_load_neighborhood(CADT_TEAM_PTR cadt_neighborhood* w, cons
     w->y[place] = CADT_CAST(float, (f.y - s->origin_y) * s->cells - middle);
     w->at[place] = i;
   }
+  /* what the last step reads beyond the last point */
+  CADT_TEAM_FOR(k, CADT_CAST(cadt_u32, CADT_SCAN_POINTS)) w->x[total + k] = w->y[total + k] = 0.0f;
   CADT_TEAM_SYNC();
   if (cadt_team_lane == 0u) {
     cadt_u32 sum = 0u;

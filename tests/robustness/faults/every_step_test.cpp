@@ -7,7 +7,7 @@
 #include <cadt/batch.hpp>
 
 #include "common/driver/registry.hpp"
-#include "common/predicates/self_test.hpp"
+#include "common/self_test/self_test.hpp"
 
 namespace cadt::test {
 namespace {
@@ -206,12 +206,16 @@ TEST_P(EveryStep, ReservedMemory) {
   fail_each(options(), call);
 }
 
-/// What the self-test of a device needs when it is opened.
+/// What the self-tests of a device need when it is opened.
 TEST_P(EveryStep, SelfTest) {
   const auto faults = std::make_shared<Faults>();
+  const auto tests = [](Device& device) {
+    run_selftest(device);
+    run_lock_test(device);
+  };
   {
     const auto device = faulty_device(open_device(without_queue()), faults);
-    run_selftest(*device);
+    tests(*device);
     const std::size_t all = faults->count();
     EXPECT_GT(all, 7U);
     std::size_t thrown = 0;
@@ -219,7 +223,7 @@ TEST_P(EveryStep, SelfTest) {
       for (std::size_t k = 0; k < all; ++k) {
         faults->fail(static_cast<Step>(s), k);
         try {
-          run_selftest(*device);
+          tests(*device);
           EXPECT_EQ(faults->failed(), 0U);
         } catch (const OutOfMemory&) {
           ++thrown;
@@ -230,7 +234,7 @@ TEST_P(EveryStep, SelfTest) {
       }
     EXPECT_EQ(thrown, all);
     faults->clear();
-    run_selftest(*device);
+    tests(*device);
   }
 }
 

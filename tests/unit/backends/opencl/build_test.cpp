@@ -80,6 +80,62 @@ TEST_F(OpenClBuild, EachWrongOperationIsNamed) {
   }
 }
 
+// Each test of what work-items share notices the fault that it is for. Most faults need two threads that meet, so there
+// are several tries.
+TEST_F(OpenClBuild, EachFaultOfSharingIsNamed) {
+  if (info.gpu) GTEST_SKIP() << "the faults are planted in the text for CPUs";
+  struct Fault {
+    const char* what;
+    std::vector<std::array<const char*, 2>> edits;
+    const char* test;
+  };
+  const Fault faults[] = {
+      {"loops end", {{"turn < turns", "turn < turns && turn < 65535u"}}, "a loop of 100000 turns"},
+      {"a plain store for a compare-and-swap",
+       {{"return atomic_compare_exchange_strong_explicit(CADT_ATOMIC(p), &expected, desired, memory_order_acq_rel,",
+         "const cadt_u32 old = *(volatile CADT_GLOBAL cadt_u32*)p;\n"
+         "for (volatile cadt_u32 wait = 0u; wait < 100u; ++wait);\n"
+         "if (old == expected) *(volatile CADT_GLOBAL cadt_u32*)p = desired;\n"
+         "if (1) return old == expected ? 1u : 0u;\n"
+         "return atomic_compare_exchange_strong_explicit(CADT_ATOMIC(p), &expected, desired, memory_order_acq_rel,"}},
+       ""},
+      {"stores that others see after the unlock",
+       {{"    cadt_store_vertices(m, t[k], s[k].v0 + 1u,",
+         "    if (k == 0u) cadt_unlock(m, &locks);\n"
+         "    for (volatile cadt_u32 wait = 0u; wait < 100u; ++wait);\n    cadt_store_vertices(m, t[k], s[k].v0 + 1u,"},
+        {"cadt_fence_before_unlock();\n  cadt_unlock(m, &locks);\n  return 1u;", "return 1u;"}},
+       ""},
+      {"fields from a cache, older than the lock word",
+       {{"*w3 = cadt_load_field(p + 3);", ""},
+        {"*w7 = cadt_load_field(p + 7);",
+         "*w7 = cadt_load_field(p + 7);\n"
+         "for (volatile cadt_u32 wait = 0u; wait < 100u; ++wait);\n*w3 = cadt_load_field(p + 3);"}},
+       ""},
+      {"a lock that is not given up",
+       {{"cadt_unlock_unchanged(m, c, i);\n      CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);",
+         "CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);"}},
+       "locks are given up"},
+      {"what a launch has left is not seen by the next",
+       {{"locks.version[k] = s[k].lock;", "locks.version[k] = items == 1u ? 4u : s[k].lock;"},
+        {"cadt_u32* torn) {", "cadt_u32* torn, cadt_u32 items) {"},
+        {"&counters, &torn)", "&counters, &torn, items)"}},
+       "locks of one work-item alone"},
+  };
+  for (const Fault& fault : faults) {
+    opencl::OpenRequest request = small();
+    for (const auto& [from, to] : fault.edits) replace(request.source, from, to);
+    bool refused = false;
+    for (int tries = 0; tries < 20 && !refused; ++tries) try {
+        static_cast<void>(opencl::open_device(request));
+      } catch (const BackendUnavailable& error) {
+        refused = true;
+        EXPECT_NE(error.reason().find("fails the self-test '" + std::string(fault.test)), std::string::npos)
+            << fault.what << ": " << error.what();
+      }
+    EXPECT_TRUE(refused) << "accepted: " << fault.what;
+  }
+}
+
 TEST_F(OpenClBuild, SelfTestIsRepeatedUntilItPasses) {
   opencl::OpenRequest request = small();
   request.fresh = false;
@@ -120,7 +176,7 @@ TEST_F(OpenClBuild, MissingKernelIsNamed) {
   const auto device = open_small();
   const std::vector<Arg> none;
   const auto error =
-      caught<InternalError>([&] { device->launch(KernelId::cadt_insert, 1, none, KernelVariant::narrow); });
+      caught<KernelBuildError>([&] { device->launch(KernelId::cadt_insert, 1, none, KernelVariant::narrow); });
   EXPECT_NE(std::string(error.what()).find("cadt_insert"), std::string::npos) << error.what();
 }
 

@@ -2,10 +2,10 @@
  *
  * Known answers of the arithmetic that the filters rely on, computed on the actual device from values in memory (a
  * compiler would fold literals). The host compares the bits and refuses the device with the name of the probe that
- * failed (common/predicates/self_test.cpp).
+ * failed (arithmetic.cpp).
  */
-#ifndef CADT_PREDICATES_SELF_TEST_H
-#define CADT_PREDICATES_SELF_TEST_H
+#ifndef CADT_SELF_TEST_ARITHMETIC_H
+#define CADT_SELF_TEST_ARITHMETIC_H
 
 #include "common/portable/atomics.dev.h"
 #include "common/predicates/bigint.dev.h"

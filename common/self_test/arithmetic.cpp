@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/predicates/self_test.hpp"
+#include "common/self_test/self_test.hpp"
 
 #include <array>
 #include <cadt/errors.hpp>
@@ -16,7 +16,7 @@ struct Probe {
   std::uint64_t a, b, answer;
 };
 
-// One entry for each output of cadt_selftest (common/predicates/self_test.dev.h), in its order.
+// One entry for each output of cadt_selftest (common/self_test/arithmetic.dev.h), in its order.
 constexpr std::array<Probe, 8> probes = {{
     // a = 1 + 2^-27, b = -(1 + 2^-26). a*a = 1 + 2^-26 + 2^-54 rounds to 1 + 2^-26. Fused: 2^-54.
     {"contraction of a*a+b", 0x3FF0000002000000, 0xBFF0000004000000, 0x0000000000000000},

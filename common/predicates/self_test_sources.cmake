@@ -1,3 +1,0 @@
-# SPDX-License-Identifier: Apache-2.0
-include_guard(GLOBAL)
-target_sources(cadt PRIVATE ${CMAKE_CURRENT_LIST_DIR}/self_test.cpp)

@@ -29,9 +29,7 @@ using Words = std::array<std::uint32_t, 8>;  // of a locked triangle
 class LockTest {
  public:
   explicit LockTest(Device& device)
-      : device_(device),
-        locked_(device.allocate(sizeof(Words) * triangles)),
-        found_(device.allocate(sizeof(Found))) {
+      : device_(device), locked_(device.allocate(sizeof(Words) * triangles)), found_(device.allocate(sizeof(Found))) {
     std::vector<Words> words(triangles);
     for (Words& w : words) w = {0, 0, ~0U, 2, 0, 0, 0, 0};
     device.write(*locked_, 0, words.data(), sizeof(Words) * triangles);
@@ -40,8 +38,8 @@ class LockTest {
   Found run(std::uint32_t work_items, std::uint32_t tries, std::uint32_t loop) {
     const std::unique_ptr<Buffer> none;
     device_.fill(*found_, 0, sizeof(Found), 0);
-    const std::array<Arg, 17> arguments = {Arg(locked_), Arg(none), Arg(none), Arg(none), Arg(0.0),         Arg(0.0),
-                                           Arg(0U),      Arg(0U),   Arg(0U),   Arg(0U),   Arg(0U),          Arg(0.0),
+    const std::array<Arg, 17> arguments = {Arg(locked_),   Arg(none),  Arg(none),       Arg(none), Arg(0.0),   Arg(0.0),
+                                           Arg(0U),        Arg(0U),    Arg(0U),         Arg(0U),   Arg(0U),    Arg(0.0),
                                            Arg(triangles), Arg(tries), Arg(work_items), Arg(loop), Arg(found_)};
     device_.launch(KernelId::cadt_selftest_locks, work_items, arguments, KernelVariant::narrow);
     Found found;
@@ -59,9 +57,9 @@ class LockTest {
       const std::uint32_t count = w[0], lock = w[3];
       if (lock % 2 != 0) refuse(device_, "locks are given up", "a triangle stays locked");
       if (w[1] != count * factor || w[2] != ~count || lock != 2 + 2 * count)
-        refuse(device_, "updates under a lock", "a triangle was counted in " + std::to_string(count) +
-                                                    " times, and unlocked " + std::to_string((lock - 2) / 2) +
-                                                    " times after a change");
+        refuse(device_, "updates under a lock",
+               "a triangle was counted in " + std::to_string(count) + " times, and unlocked " +
+                   std::to_string((lock - 2) / 2) + " times after a change");
       sum += count;
     }
     if (sum != 3 * counted_)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The lock protocol (common/insertion/lock.dev.h) on a mesh of a few triangles with a known answer. Each work-item locks
- * three triangles at a time and counts in them. A count stands in all vertices of its triangle, each time in another
- * form, so that the words of different states do not fit:
+ * The lock protocol (common/insertion/lock.dev.h) on a mesh of a few triangles with a known answer. Each work-item
+ * locks three triangles at a time and counts in them. A count stands in all vertices of its triangle, each time in
+ * another form, so that the words of different states do not fit:
  *
  *     v0 = count      v1 = count * CADT_COUNT_FACTOR      v2 = ~count      lock word = 2 + 2 * count
  */

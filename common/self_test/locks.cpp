@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t triangles = 31;  // a prime number
 constexpr std::uint32_t items = 1001, rounds = 32;
-// More than 2^16: there is a driver that ends loops there, and computes on.
+// More than 2^16: there is a driver on which all loops of a work-item together end there, and which computes on.
 constexpr std::uint32_t turns = 100'000;
 constexpr std::uint32_t factor = 2654435761U;  // CADT_COUNT_FACTOR
 

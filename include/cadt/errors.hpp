@@ -93,7 +93,8 @@ class DeviceError : public Error {
   int code_;
 };
 
-/// The device's compiler rejected the kernels. `log()` is the compiler's output.
+/// The device's compiler rejected the kernels, or its driver cannot create one. `log()` is the compiler's output.
+/// OpenCL compiles the kernels of a stage when the first of them is launched, so a call may throw this too.
 class KernelBuildError : public Error {
  public:
   KernelBuildError(std::string device, std::string options, std::string log)

@@ -82,6 +82,28 @@ TEST_P(SavedMemory, LongBuckets) {
   }
 }
 
+/// The same with the high-degree vertex and its neighbours behind all others, so that its triangles are in the second
+/// part of the order.
+TEST_P(SavedMemory, LongBucketsOfTheSecondPart) {
+  constexpr std::size_t around = 500;
+  const Points mixed = hub_of_all_numbers(50'000);
+  Points xy, last = {mixed[0], mixed[1]};
+  const std::size_t n = mixed.size() / 2;
+  for (std::size_t i = 1; i < n; ++i) {
+    Points& to = i % (n / around) == 1 ? last : xy;
+    to.insert(to.end(), {mixed[2 * i], mixed[2 * i + 1]});
+  }
+  xy.insert(xy.end(), last.begin(), last.end());
+  const Triangulation expected = on_serial_host(xy);
+  for (const std::size_t more : {std::size_t{0}, 65536 + xy.size() / 2, 100 * xy.size()}) {
+    SCOPED_TRACE(more);
+    const Triangulation mesh = triangulate(Reals(xy), bounded(xy.size() / 2, more));
+    expect_same(mesh, expected);
+    EXPECT_EQ(launches(mesh, "cadt_number_buckets"), more < 100 * xy.size() ? 2U : 1U);
+    EXPECT_EQ(launches(mesh, "cadt_long_numbers"), 1U);
+  }
+}
+
 /// Columns on both sides of the middle, the closer the nearer to it, so that the triangles of `most` points of either
 /// side lie between the two. The left half comes first, and those triangles belong to it.
 Points two_halves(std::size_t most) {

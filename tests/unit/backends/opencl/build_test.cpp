@@ -143,6 +143,17 @@ TEST_F(OpenClBuild, SelfTestIsRepeatedUntilItPasses) {
   for (int i = 0; i < 2; ++i) EXPECT_THROW(static_cast<void>(opencl::open_device(request)), BackendUnavailable) << i;
 }
 
+// A driver that advertises doubles, whose compiler takes floats for them or does not know them. One that computes
+// wrongly is above.
+TEST_F(OpenClBuild, DriverThatLiesAboutDoubles) {
+  if (!info.fp64) GTEST_SKIP() << "the device does not claim to have doubles";
+  for (const char* lie : {"-Ddouble=float", "-Ddouble=no_such_type"}) {
+    opencl::OpenRequest request = small();
+    request.extra_options = lie;
+    EXPECT_THROW(static_cast<void>(opencl::open_device(request)), KernelBuildError) << lie;
+  }
+}
+
 TEST_F(OpenClBuild, FailureCarriesDeviceOptionsAndLog) {
   opencl::OpenRequest request = small();
   request.source += "\n#line 77 \"broken.h\"\n__kernel void cadt_broken(__global int* p) { *p = no_such_word; }\n";

@@ -93,5 +93,14 @@ TEST_F(OpenClCachedBuild, EmptyVariableTurnsItOff) {
   EXPECT_TRUE(cache.files().empty());
 }
 
+// Drivers that keep programs themselves are left alone, unless a folder is named.
+TEST_F(OpenClCachedBuild, DriversCacheIsEnough) {
+  const ScopedVariable unset("CADT_CACHE_DIR", nullptr);
+  const ScopedVariable home("XDG_CACHE_HOME", cache.path().c_str());
+  const bool caches = info.platform == "Portable Computing Language" || info.platform == "NVIDIA CUDA";
+  EXPECT_FALSE(hit("-DCADT_TEST_MARK=3"));
+  EXPECT_EQ(hit("-DCADT_TEST_MARK=3"), !caches);
+}
+
 }  // namespace
 }  // namespace cadt::test

@@ -2,6 +2,7 @@
 // Triangulations of many point sets from one call.
 #pragma once
 
+#include <cadt/export.hpp>
 #include <cadt/triangulation.hpp>
 
 #include <cstddef>
@@ -16,7 +17,7 @@ namespace cadt {
 /// indices into its own triangles, both 0-based: the part of a set is exactly what `triangulate` returns for that set.
 /// Functions that take a set throw InputError if there is no such set. Spans are valid as long as this object lives and
 /// is not moved from. const functions may run concurrently.
-class TriangulationBatch {
+class CADT_API TriangulationBatch {
  public:
   TriangulationBatch();
   ~TriangulationBatch();
@@ -53,7 +54,7 @@ class TriangulationBatch {
 };
 
 /// The same with the arrays in device memory. The handles are valid as those of DeviceTriangulation.
-class DeviceTriangulationBatch {
+class CADT_API DeviceTriangulationBatch {
  public:
   DeviceTriangulationBatch();
   ~DeviceTriangulationBatch();
@@ -90,7 +91,7 @@ class DeviceTriangulationBatch {
 /// Throws as `triangulate`; also InputError for invalid offsets, with the position of the first invalid one as index.
 /// The index of a point that is NaN or infinite counts from the first point of all sets; the message names set and
 /// point.
-[[nodiscard]] TriangulationBatch triangulate_batch(PointsView points, std::span<const std::size_t> offsets,
-                                                   const Options& options = {});
+[[nodiscard]] CADT_API TriangulationBatch triangulate_batch(PointsView points, std::span<const std::size_t> offsets,
+                                                            const Options& options = {});
 
 }  // namespace cadt

@@ -2,6 +2,7 @@
 // The devices of this machine.
 #pragma once
 
+#include <cadt/export.hpp>
 #include <cadt/triangulation.hpp>
 
 #include <cstdint>
@@ -30,6 +31,6 @@ struct DeviceInfo {
 
 /// All devices of all back ends, usable or not. A back end that is not compiled in or finds no device has one entry,
 /// with index -1 and the reason. A missing driver is no error.
-[[nodiscard]] std::vector<DeviceInfo> list_devices();
+[[nodiscard]] CADT_API std::vector<DeviceInfo> list_devices();
 
 }  // namespace cadt

@@ -2,6 +2,7 @@
 // Exceptions of the library. Each carries the data that a program needs to react; `what()` says what to do.
 #pragma once
 
+#include <cadt/export.hpp>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -10,13 +11,13 @@
 namespace cadt {
 
 /// Base of all exceptions that the library throws on purpose.
-class Error : public std::runtime_error {
+class CADT_API Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// A coordinate that is NaN or infinite, or arrays whose sizes do not fit together.
-class InputError : public Error {
+class CADT_API InputError : public Error {
  public:
   InputError(const std::string& message, std::size_t index) : Error(message), index_(index) {}
   /// Index of the first offending point (0-based).
@@ -27,7 +28,7 @@ class InputError : public Error {
 };
 
 /// More points than 32-bit indices allow (max_points()), or a larger DevicePoints::skip than they allow.
-class LimitError : public Error {
+class CADT_API LimitError : public Error {
  public:
   LimitError(const std::string& message, std::size_t count, std::size_t limit)
       : Error(message), count_(count), limit_(limit) {}
@@ -39,7 +40,7 @@ class LimitError : public Error {
 };
 
 /// A member of Options that is out of range, or excluded by another.
-class OptionError : public Error {
+class CADT_API OptionError : public Error {
  public:
   OptionError(std::string option, const std::string& message)
       : Error("Options::" + option + ": " + message), option_(std::move(option)) {}
@@ -51,7 +52,7 @@ class OptionError : public Error {
 };
 
 /// The requested back end or device is not available; `reason()` says why. The library never falls back to another.
-class BackendUnavailable : public Error {
+class CADT_API BackendUnavailable : public Error {
  public:
   BackendUnavailable(std::string backend, std::string reason)
       : Error("back end '" + backend + "' is not available: " + reason),
@@ -65,7 +66,7 @@ class BackendUnavailable : public Error {
 };
 
 /// Not enough memory on the device or below `Options::max_memory`. The process can continue, with fewer points.
-class OutOfMemory : public Error {
+class CADT_API OutOfMemory : public Error {
  public:
   OutOfMemory(const std::string& message, std::size_t needed, std::size_t available)
       : Error(message), needed_(needed), available_(available) {}
@@ -77,7 +78,7 @@ class OutOfMemory : public Error {
 };
 
 /// A call of the device's runtime failed.
-class DeviceError : public Error {
+class CADT_API DeviceError : public Error {
  public:
   DeviceError(std::string call, int code, std::string device, const std::string& text)
       : Error(call + " failed on '" + device + "': " + text + " (" + std::to_string(code) + ")"),
@@ -95,7 +96,7 @@ class DeviceError : public Error {
 
 /// The device's compiler rejected the kernels, or its driver cannot create one. `log()` is the compiler's output.
 /// OpenCL compiles the kernels of a stage when the first of them is launched, so a call may throw this too.
-class KernelBuildError : public Error {
+class CADT_API KernelBuildError : public Error {
  public:
   KernelBuildError(std::string device, std::string options, std::string log)
       : Error("the kernels could not be built for '" + device + "' with options '" + options + "':\n" + log),
@@ -111,13 +112,13 @@ class KernelBuildError : public Error {
 };
 
 /// `Options::stop` was triggered. The call has no result, and its memory is released.
-class Cancelled : public Error {
+class CADT_API Cancelled : public Error {
  public:
   Cancelled() : Error("cancelled by the caller") {}
 };
 
 /// The library has found an error of its own: please report it.
-class InternalError : public Error {
+class CADT_API InternalError : public Error {
  public:
   using Error::Error;
 };

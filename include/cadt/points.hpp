@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cadt/errors.hpp>
+#include <cadt/export.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -14,7 +15,7 @@ namespace cadt {
 
 /// Points of the plane in the caller's memory: double or float, interleaved (x0 y0 x1 y1 ...) or x and y in separate
 /// arrays. The coordinates must outlive the view. Floats convert to double exactly. Concurrent reads are safe.
-class PointsView {
+class CADT_API PointsView {
  public:
   PointsView() = default;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cadt/export.hpp>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -18,7 +19,7 @@ enum class StatisticsDetail {
   timing     ///< also the shares of the threads' time (`thread_time`), by kernels with timers: slower
 };
 /// "none", "counters", "timing".
-[[nodiscard]] std::string_view to_string(StatisticsDetail detail) noexcept;
+[[nodiscard]] CADT_API std::string_view to_string(StatisticsDetail detail) noexcept;
 
 /// Time of one kernel in a call.
 struct KernelTime {

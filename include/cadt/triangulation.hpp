@@ -2,6 +2,7 @@
 // The Delaunay triangulation of a set of points in the plane.
 #pragma once
 
+#include <cadt/export.hpp>
 #include <cadt/points.hpp>
 #include <cadt/statistics.hpp>
 
@@ -24,9 +25,9 @@ namespace cadt {
 enum class Backend { automatic, host, opencl, cuda };
 
 /// "auto", "host", "opencl", "cuda".
-[[nodiscard]] std::string_view to_string(Backend backend) noexcept;
+[[nodiscard]] CADT_API std::string_view to_string(Backend backend) noexcept;
 /// Inverse of `to_string`. \throws BackendUnavailable for any other name
-[[nodiscard]] Backend backend_from_string(std::string_view name);
+[[nodiscard]] CADT_API Backend backend_from_string(std::string_view name);
 
 class DeviceAllocator;  // triangulator.hpp
 
@@ -53,8 +54,8 @@ enum class Stabilize {
           ///< (`Statistics::illegal_edges`), depends on the schedule, and is not certified
 };
 /// "off", "defer", "paper".
-[[nodiscard]] std::string_view to_string(Strategy strategy) noexcept;
-[[nodiscard]] std::string_view to_string(Stabilize mode) noexcept;
+[[nodiscard]] CADT_API std::string_view to_string(Strategy strategy) noexcept;
+[[nodiscard]] CADT_API std::string_view to_string(Stabilize mode) noexcept;
 
 /// Progress of a running triangulation, for `Options::progress`.
 struct Progress {
@@ -135,7 +136,7 @@ struct Duplicate {
 /// ties between cocircular points are broken by the symbolic perturbation of Devillers and Teillaud ("Perturbations and
 /// vertex removal in a 3D Delaunay triangulation", SODA 2003) in the lexicographic order of the points, as in CGAL.
 /// Spans are valid as long as this object lives and is not moved from. const functions may run concurrently.
-class Triangulation {
+class CADT_API Triangulation {
  public:
   Triangulation();
   ~Triangulation();
@@ -174,7 +175,7 @@ class Triangulation {
 };
 
 /// Number of triangles of `mesh` that are not in `other`, both over the same points. O(n log n).
-[[nodiscard]] std::size_t count_differing(const Triangulation& mesh, const Triangulation& other);
+[[nodiscard]] CADT_API std::size_t count_differing(const Triangulation& mesh, const Triangulation& other);
 
 /// Most points that one call accepts: a triangle index and an edge number share 32 bits, and there are two triangle
 /// slots a point.
@@ -183,6 +184,6 @@ class Triangulation {
 /// Triangulates the points, which are read only and need to live until the call returns. For repeated calls use a
 /// Triangulator, which keeps the device open. Expected O(n log n) work for the sort and O(n) for the rest on
 /// well-spread points. Thread-safe.
-[[nodiscard]] Triangulation triangulate(PointsView points, const Options& options = {});
+[[nodiscard]] CADT_API Triangulation triangulate(PointsView points, const Options& options = {});
 
 }  // namespace cadt

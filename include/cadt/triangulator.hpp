@@ -5,6 +5,7 @@
 
 #include <cadt/batch.hpp>
 #include <cadt/devices.hpp>
+#include <cadt/export.hpp>
 #include <cadt/points.hpp>
 #include <cadt/triangulation.hpp>
 #include <cadt/verify.hpp>
@@ -42,7 +43,7 @@ struct DevicePoints {
 /// DevicePoints) are valid on the triangulator's stream or queue, in its order, as long as this object lives; it may
 /// outlive the triangulator, but not the caller's stream or queue. Not thread-safe: do not use it while another thread
 /// uses the triangulator.
-class DeviceTriangulation {
+class CADT_API DeviceTriangulation {
  public:
   DeviceTriangulation();
   ~DeviceTriangulation();
@@ -90,7 +91,7 @@ class DeviceTriangulation {
 ///     cadt::Triangulator triangulator(options);
 ///     auto mesh = triangulator.triangulate(cadt::DevicePoints{.x = xy, .size = n});
 ///     kernel<<<blocks, threads, 0, stream>>>(static_cast<const int*>(mesh.triangles()), mesh.number_of_triangles());
-class Triangulator {
+class CADT_API Triangulator {
  public:
   /// Opens the device and runs its self-test. \throws BackendUnavailable, KernelBuildError, DeviceError, OptionError
   explicit Triangulator(const Options& options = {});
@@ -163,7 +164,7 @@ class Triangulator {
 
 /// Device memory from the caller, e.g. from a framework's pool. The triangulator and its results share it; calls come
 /// from one thread at a time. Must not throw.
-class DeviceAllocator {
+class CADT_API DeviceAllocator {
  public:
   virtual ~DeviceAllocator() = default;
   /// Returns memory of at least `bytes` bytes, aligned to 256: a device pointer that may be used on `queue` (a

@@ -2,6 +2,7 @@
 // Independent verification of a mesh against its points. It shares no predicate with the builder.
 #pragma once
 
+#include <cadt/export.hpp>
 #include <cadt/points.hpp>
 #include <cadt/triangulation.hpp>
 
@@ -59,8 +60,9 @@ struct VerifyOptions {
 /// that of the whole triangulation if none is (Delaunay's lemma). O(triangles) expected; exact arithmetic only where a
 /// filter does not decide. A wrong mesh is reported, not thrown. Thread-safe. \throws InputError for NaN or infinity,
 /// Error if the floating-point mode is not IEEE 754
-[[nodiscard]] VerifyReport verify(PointsView points, const MeshView& mesh, const VerifyOptions& options = {});
-[[nodiscard]] VerifyReport verify(PointsView points, const Triangulation& mesh, const VerifyOptions& options = {});
+[[nodiscard]] CADT_API VerifyReport verify(PointsView points, const MeshView& mesh, const VerifyOptions& options = {});
+[[nodiscard]] CADT_API VerifyReport verify(PointsView points, const Triangulation& mesh,
+                                           const VerifyOptions& options = {});
 
 /// The same checks, with the same names and outcomes, on a device: 20 bytes a point and 24 a triangle are uploaded. Its
 /// predicates differ from the builder's in code, formula and arithmetic; the few signs that they cannot decide are left
@@ -70,9 +72,9 @@ struct VerifyOptions {
 ///
 /// Throws InputError (NaN or infinity, with the index of the first), BackendUnavailable, OutOfMemory, DeviceError,
 /// KernelBuildError, Cancelled.
-[[nodiscard]] VerifyReport verify_on_device(PointsView points, const MeshView& mesh, const Options& device,
-                                            const VerifyOptions& options = {});
-[[nodiscard]] VerifyReport verify_on_device(PointsView points, const Triangulation& mesh, const Options& device,
-                                            const VerifyOptions& options = {});
+[[nodiscard]] CADT_API VerifyReport verify_on_device(PointsView points, const MeshView& mesh, const Options& device,
+                                                     const VerifyOptions& options = {});
+[[nodiscard]] CADT_API VerifyReport verify_on_device(PointsView points, const Triangulation& mesh,
+                                                     const Options& device, const VerifyOptions& options = {});
 
 }  // namespace cadt

@@ -4,7 +4,9 @@
 # Warnings, C++20, no contraction of a*b+c (it breaks error bounds that assume separate roundings), sanitizers.
 function(cadt_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  # Into shared libraries of users, too; what is not marked CADT_API stays inside.
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off -fno-fast-math)
   if(CADT_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${CADT_SANITIZE} -fno-omit-frame-pointer)

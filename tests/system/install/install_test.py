@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What somebody else's project can do with an installed cadt, or with its sources.
+
+CADT_SOURCE: the source tree; CADT_BUILD: a finished build of it."""
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(os.environ["CADT_SOURCE"])
+BUILD = Path(os.environ["CADT_BUILD"])
+CONSUMER = SOURCE / "tests" / "system" / "install" / "consumer"
+
+
+def run(*command, **options):
+    done = subprocess.run([str(part) for part in command], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          stdin=subprocess.DEVNULL, **options)
+    if done.returncode != 0:
+        raise AssertionError(f"{' '.join(map(str, command))}: {done.returncode}\n{done.stdout[-3000:]}")
+    return done.stdout
+
+
+def installed(build, prefix):
+    run("cmake", "--install", build, "--prefix", prefix)
+    return prefix
+
+
+def library_folder(prefix):
+    return next(prefix.glob("lib*/**/cadt.pc")).parent.parent
+
+
+class InstallTest(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.folder = Path(self.scratch.name)
+
+    def consume_with_cmake(self, *options, files):
+        build = self.folder / "consumer"
+        run("cmake", "-S", CONSUMER, "-B", build, "-G", "Ninja", *options)
+        run("cmake", "--build", build)
+        programs = {path.name: path for path in build.glob("**/*") if path.name in ("consumer", "uses-user", "files") and
+                    path.is_file()}
+        self.assertIn("two triangles", run(programs["consumer"]))
+        run(programs["uses-user"])
+        self.assertEqual("files" in programs, files)
+        if files:
+            run(programs["files"], self.folder / "mesh.ply")
+            self.assertTrue((self.folder / "mesh.ply").stat().st_size > 1000)
+
+    def consume_with_pkg_config(self, prefix, *more):
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(library_folder(prefix) / "pkgconfig")}
+        flags = run("pkg-config", "--cflags", "--libs", *more, "cadt", env=environment).split()
+        program = self.folder / "by-hand"
+        run("g++", "-std=c++20", CONSUMER / "main.cpp", "-o", program, *flags)
+        environment["LD_LIBRARY_PATH"] = str(library_folder(prefix))
+        self.assertIn("two triangles", run(program, env=environment))
+        return run("pkg-config", "--modversion", "cadt", env=environment).strip()
+
+
+class Installed(InstallTest):
+    def test_find_package_and_pkg_config(self):
+        prefix = installed(BUILD, self.folder / "prefix")
+        self.consume_with_cmake(f"-DCMAKE_PREFIX_PATH={prefix}", files=True)
+        version = self.consume_with_pkg_config(prefix, "--static")
+        header = (prefix / "include" / "cadt" / "version.hpp").read_text()
+        self.assertIn(f'CADT_VERSION "{version}"', header)
+        self.assertIn(version, run(prefix / "bin" / "cadt", "--version"))
+        self.assertEqual([], [path for path in prefix.glob("include/**/*") if path.is_file() and path.suffix != ".hpp"])
+
+    def test_a_prefix_that_was_moved(self):
+        prefix = installed(BUILD, self.folder / "prefix").rename(self.folder / "elsewhere")
+        self.consume_with_cmake(f"-DCMAKE_PREFIX_PATH={prefix}", files=True)
+        self.consume_with_pkg_config(prefix, "--static")
+
+
+class Sources(InstallTest):
+    def test_fetch_content(self):
+        self.consume_with_cmake(f"-DCADT_SOURCE={SOURCE}", files=False)
+        cache = (self.folder / "consumer" / "CMakeCache.txt").read_text()
+        for variable in ("CMAKE_CUDA_ARCHITECTURES", "CMAKE_CUDA_COMPILER", "BUILD_TESTING"):
+            self.assertIsNone(re.search(rf"^{variable}:", cache, re.MULTILINE), variable)
+        self.assertIsNotNone(re.search(r"^CMAKE_BUILD_TYPE:STRING=$", cache, re.MULTILINE))
+        targets = run("cmake", "--build", self.folder / "consumer", "--target", "help")
+        for target in ("cadt_app", "cadt_io", "example", "test_"):
+            self.assertNotIn(target, targets)
+
+
+class SharedLibrary(InstallTest):
+    def test_install_and_symbols(self):
+        build, prefix = self.folder / "build", self.folder / "prefix"
+        run("cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", "-DBUILD_SHARED_LIBS=ON", "-DCADT_CUDA=OFF",
+            "-DCADT_BUILD_EXAMPLES=OFF")
+        run("cmake", "--build", build)
+        installed(build, prefix)
+        libraries = library_folder(prefix)
+        dynamic = run("readelf", "-d", libraries / "libcadt.so")
+        self.assertIn("soname: [libcadt.so.0]", dynamic)
+        self.assertEqual({"libcadt.so", "libcadt.so.0"} - {path.name for path in libraries.glob("libcadt.so*")}, set())
+        exported = run("nm", "-DC", "--defined-only", libraries / "libcadt.so").splitlines()
+        strangers = [line for line in exported if " cadt::" not in line and not re.search(r" [VWu] ", line) and
+                     not re.search(r"(typeinfo|vtable|typeinfo name) (for|name for) cadt::", line)]
+        self.assertEqual(strangers, [])
+        self.assertEqual([line for line in exported if "::opencl::" in line or "cadt::host::" in line], [])
+        self.consume_with_cmake(f"-DCMAKE_PREFIX_PATH={prefix}", files=True)
+        self.consume_with_pkg_config(prefix)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -4,9 +4,7 @@
 # Warnings, C++20, no contraction of a*b+c (it breaks error bounds that assume separate roundings), sanitizers.
 function(cadt_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  # Into shared libraries of users, too; what is not marked CADT_API stays inside.
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
-    VISIBILITY_INLINES_HIDDEN ON)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off -fno-fast-math)
   if(CADT_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${CADT_SANITIZE} -fno-omit-frame-pointer)
@@ -16,6 +14,11 @@ function(cadt_compile_options target)
     # Not the operands of comparisons (trace-cmp): in the kernels they take longer than the work. io has them.
     target_compile_options(${target} PRIVATE -fsanitize-coverage=inline-8bit-counters,pc-table)
   endif()
+endfunction()
+
+# cadt_library_options(TARGET): it may go into shared libraries of users; what is not marked CADT_API stays inside.
+function(cadt_library_options target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
 
 # cadt_shorten_build(): what each driver reads of the device text and of the library, precompiled for the target cadt:

@@ -48,6 +48,7 @@ target_sources(cadt PRIVATE
 add_library(cadt_opencl_kernels OBJECT ${CADT_EMBEDDED_KERNELS})
 target_include_directories(cadt_opencl_kernels PRIVATE ${PROJECT_SOURCE_DIR})
 cadt_compile_options(cadt_opencl_kernels)
+cadt_library_options(cadt_opencl_kernels)
 target_sources(cadt PRIVATE $<TARGET_OBJECTS:cadt_opencl_kernels>)
 target_include_directories(cadt SYSTEM PRIVATE ${CADT_OPENCL_HPP} ${CADT_OPENCL_H})
 target_link_libraries(cadt PRIVATE ${CMAKE_DL_LIBS})

@@ -117,7 +117,7 @@ struct Options {
 };
 
 /// A 128-bit hash of a canonical mesh.
-struct Hash128 {
+struct CADT_API Hash128 {
   std::uint64_t high = 0, low = 0;
   friend bool operator==(const Hash128&, const Hash128&) = default;
   /// 32 lower-case hexadecimal digits.

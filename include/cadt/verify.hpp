@@ -24,7 +24,7 @@ struct Check {
   std::string what;         ///< what failed; empty if passed
 };
 
-struct VerifyReport {
+struct CADT_API VerifyReport {
   bool ok = false;
   std::vector<Check> checks;
   std::uint64_t points = 0, triangles_examined = 0, edges_examined = 0, hull_vertices = 0;

@@ -12,4 +12,5 @@ add_library(cadt_host_verifier OBJECT
 target_include_directories(cadt_host_verifier PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR})
 set_target_properties(cadt_host_verifier PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
 cadt_compile_options(cadt_host_verifier)
+cadt_library_options(cadt_host_verifier)
 target_sources(cadt PRIVATE $<TARGET_OBJECTS:cadt_host_verifier>)

@@ -42,8 +42,8 @@ endif()
 
 cmake_minimum_required(VERSION 3.25)
 
-# Appends `path` with its includes to the global text. Each file goes in once, as its include guard would have it, and
-# #line keeps the compiler's messages in terms of the original files.
+# Appends `path` with its includes to the global text. Each file goes in once, where it is included first, so no include
+# may stand within a wider condition than its own. #line keeps the compiler's messages in terms of the original files.
 function(append_file path shown)
   get_property(seen GLOBAL PROPERTY EMBED_FILES)
   if(path IN_LIST seen)

@@ -84,7 +84,7 @@ std::string_view to_string(Strategy strategy) noexcept {
     case Strategy::stars:
       return "stars";
   }
-  return "?";
+  return "unknown";
 }
 
 std::string_view to_string(Stabilize mode) noexcept {

@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * All kernels. A back end compiles this file; kernel_list.h lists the names. The variant for floats has no star stage,
+ * All kernels. The host and CUDA compile this file, OpenCL a part of it for each stage (kernels_cl/); kernel_list.h has
+ * the names. The variant for floats has no star stage,
  * no gift wrapping and no verifier: their error bounds are for doubles, and what they decide the other kernels decide
  * as well (docs/decisions/0004-exact-integers-and-floats.md).
  */
 #ifndef CADT_PORTABLE_KERNELS_H
 #define CADT_PORTABLE_KERNELS_H
 
-#include "common/portable/dialect.dev.h"
-/* The text for OpenCL compilers has each file once, where it is included first: so no include may stand within a wider
- * condition than its own. */
 #include "common/certify/certify.dev.h"
 #include "common/insertion/cavity.dev.h"
 #include "common/insertion/drop_locks.dev.h"
@@ -29,6 +27,7 @@
 #include "common/points/key_refinement.dev.h"
 #include "common/points/point_profile.dev.h"
 #include "common/points/spatial_sort.dev.h"
+#include "common/portable/dialect.dev.h"
 #include "common/portable/radix_sort.dev.h"
 #include "common/portable/scan.dev.h"
 #include "common/predicates/predicate_probe.dev.h"

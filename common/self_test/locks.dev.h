@@ -13,7 +13,8 @@
 
 #define CADT_COUNT_FACTOR 2654435761u
 
-/* The state of triangle t, if it can be locked as it was read and its words fit; else nothing is stored. */
+/* Counts in three triangles, and returns 1, if they can be locked as they were read. `torn` counts triangles whose
+ * words do not fit. */
 CADT_FN cadt_u32 cadt_count_in_three(const cadt_locked_mesh* m, const cadt_u32* t, cadt_counters* counters,
                                      cadt_u32* torn) {
   cadt_snapshot s[3];

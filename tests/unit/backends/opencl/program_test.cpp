@@ -3,6 +3,7 @@
 // identity is changed alone here.
 #include <functional>
 
+#include "backends/opencl/kernel_source.hpp"
 #include "backends/opencl/program.hpp"
 #include "tests/unit/backends/opencl/support.hpp"
 
@@ -32,6 +33,14 @@ class OpenClProgram : public OpenClTest {
   opencl::FoundDevice found;
   cl::Context context;
 };
+
+// The list of kernels and the files of kernels_cl say the same.
+TEST(OpenClSource, EachKernelIsInTheProgramOfItsStage) {
+  for (std::size_t kernel = 0; kernel < kernel_count; ++kernel) {
+    const std::string head = std::string(kernel_names[kernel]) + ", ";
+    EXPECT_NE(opencl::kernel_source(stage_of(static_cast<KernelId>(kernel))).find(head), std::string::npos) << head;
+  }
+}
 
 struct Change {
   const char* what;

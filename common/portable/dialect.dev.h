@@ -72,6 +72,12 @@ CADT_FN cadt_point cadt_load_point(CADT_GLOBAL const cadt_point* p) {
 CADT_FN cadt_point cadt_load_point(const cadt_point* p) { return *p; }
 #endif
 
+#if CADT_FLOAT
+#define CADT_NAN cadt_float_of_bits(0x7FC00000u)
+#else
+#define CADT_NAN cadt_double_of_bits(0x7FF8000000000000ul)
+#endif
+
 /* Four words, at an address that is a multiple of 16. \pre nobody changes them meanwhile */
 #if defined(CADT_LANG_OPENCL) || defined(CADT_LANG_CUDA)
 CADT_FN void cadt_store_four(CADT_GLOBAL cadt_u32* p, cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 d) {

@@ -138,6 +138,38 @@
   X(cadt_verify_exact)      /* verify.dev.h */                                         \
   X(cadt_verify_gather)     /* verify.dev.h */
 
+/* common/queries */
+#define CADT_QUERIES_KERNELS(X)                                                              \
+  X(cadt_check_mesh)          /* locate.dev.h: the caller's arrays */                        \
+  X(cadt_lowest_triangles)    /* locate.dev.h: of each vertex */                             \
+  X(cadt_curve_flags)         /* locate.dev.h: vertices along Hilbert's curve */             \
+  X(cadt_curve_pack)          /* locate.dev.h */                                             \
+  X(cadt_locate_queries)      /* locate.dev.h */                                             \
+  X(cadt_nearest_vertices)    /* nearest.dev.h */                                            \
+  X(cadt_barycentric_of)      /* interpolate.dev.h */                                        \
+  X(cadt_interpolate_linear)  /* interpolate.dev.h */                                        \
+  X(cadt_interpolate_nearest) /* interpolate.dev.h */                                        \
+  X(cadt_interpolate_natural) /* natural_neighbor.dev.h */                                   \
+  X(cadt_clear_raster)        /* rasterize.dev.h */                                          \
+  X(cadt_draw_small)          /* rasterize.dev.h: triangles of a few cells */                \
+  X(cadt_large_rows)          /* rasterize.dev.h */                                          \
+  X(cadt_draw_large)          /* rasterize.dev.h: row by row */                              \
+  X(cadt_cell_centers)        /* rasterize.dev.h: as queries */                              \
+  X(cadt_drop_long_edges)     /* rasterize.dev.h */                                          \
+  X(cadt_circumcenters)       /* voronoi.dev.h */                                            \
+  X(cadt_cell_sizes)          /* voronoi.dev.h: triangles around each vertex */              \
+  X(cadt_cell_triangles)      /* voronoi.dev.h */                                            \
+  X(cadt_edge_counts)         /* voronoi.dev.h: edges with both triangles */                 \
+  X(cadt_list_edges)          /* voronoi.dev.h */                                            \
+  X(cadt_clip_cells)          /* voronoi.dev.h: cells within a box */                        \
+  X(cadt_pack_cells)          /* voronoi.dev.h */                                            \
+  X(cadt_radius_keys)         /* voronoi.dev.h: largest circumcircles */                     \
+  X(cadt_circles_of)          /* voronoi.dev.h */                                            \
+  X(cadt_flag_compact)        /* voronoi.dev.h: triangles with short edges, small circles */ \
+  X(cadt_pack_kept)           /* voronoi.dev.h */                                            \
+  X(cadt_outline_counts)      /* voronoi.dev.h: their boundary */                            \
+  X(cadt_outline_edges)       /* voronoi.dev.h */
+
 #define CADT_KERNEL_LIST(X)  \
   CADT_SELF_TEST_KERNELS(X)  \
   CADT_PREDICATES_KERNELS(X) \
@@ -148,7 +180,8 @@
   CADT_BATCH_KERNELS(X)      \
   CADT_CERTIFY_KERNELS(X)    \
   CADT_OUTPUT_KERNELS(X)     \
-  CADT_VERIFY_KERNELS(X)
+  CADT_VERIFY_KERNELS(X)     \
+  CADT_QUERIES_KERNELS(X)
 
 /* The same by stage: a back end may compile a program for each (CADT_PROGRAM of language.dev.h). */
 #define CADT_STAGE_LIST(S)               \
@@ -161,6 +194,7 @@
   S(batch, CADT_BATCH_KERNELS)           \
   S(certify, CADT_CERTIFY_KERNELS)       \
   S(output, CADT_OUTPUT_KERNELS)         \
-  S(verify, CADT_VERIFY_KERNELS)
+  S(verify, CADT_VERIFY_KERNELS)         \
+  S(queries, CADT_QUERIES_KERNELS)
 
 #endif

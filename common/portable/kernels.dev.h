@@ -2,8 +2,8 @@
  *
  * All kernels. The host and CUDA compile this file, OpenCL a part of it for each stage (kernels_cl/); kernel_list.h has
  * the names. The variant for floats has no star stage,
- * no gift wrapping and no verifier: their error bounds are for doubles, and what they decide the other kernels decide
- * as well (docs/decisions/0004-exact-integers-and-floats.md).
+ * no gift wrapping, no verifier and no queries: their error bounds are for doubles, and what they decide the other
+ * kernels decide as well (docs/decisions/0004-exact-integers-and-floats.md).
  */
 #ifndef CADT_PORTABLE_KERNELS_H
 #define CADT_PORTABLE_KERNELS_H
@@ -36,6 +36,10 @@
 #if !CADT_FLOAT
 #include "common/batch/batch.dev.h"
 #include "common/batch/batch_insertion.dev.h"
+#include "common/queries/locate.dev.h"
+#include "common/queries/nearest.dev.h"
+#include "common/queries/rasterize.dev.h"
+#include "common/queries/voronoi.dev.h"
 #include "common/stars/assemble.dev.h"
 #include "common/stars/assemble_wrapped.dev.h"
 #include "common/stars/high_degree.dev.h"

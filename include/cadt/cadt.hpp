@@ -6,6 +6,7 @@
 #include <cadt/devices.hpp>
 #include <cadt/errors.hpp>
 #include <cadt/points.hpp>
+#include <cadt/queries.hpp>
 #include <cadt/statistics.hpp>
 #include <cadt/triangulation.hpp>
 #include <cadt/triangulator.hpp>

@@ -157,6 +157,7 @@ class CADT_API Triangulator {
   void release_memory();
 
   struct State;  // internal
+  [[nodiscard]] const std::shared_ptr<State>& state() const noexcept { return state_; }
 
  private:
   std::shared_ptr<State> state_;

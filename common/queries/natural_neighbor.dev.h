@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Natural neighbour interpolation (R. Sibson, "A brief description of natural neighbour interpolation", 1981). If p became
+ * a vertex, its Voronoi cell would take a piece of each neighbour's cell; the share of the piece is the neighbour's
+ * weight. The triangles whose circles contain p are the cavity (conflict region) of p; its boundary, seen from p, is a
+ * polygon of p's neighbours. No list is kept of them, so no cavity is too large: the boundary is followed, and around each
+ * of its vertices v the triangles of the cavity are crossed one by one:
+ *
+ *            w                 piece of v: the polygon of the circumcentres of
+ *           /|\                  (p, u, v), the cavity's triangles at v from edge uv to edge vw, (p, v, w)
+ *          / | \
+ *         /  |  \              uv and vw are edges of the boundary; what lies beyond them is not in the cavity
+ *        /   p   \
+ *       /  .   .  \
+ *      v-----------u
+ *
+ * The sum of weight * (vertex - p) is 0; what rounding leaves of it is corrected with the slope that fits the neighbours
+ * best, so linear functions are reproduced whatever the triangles look like. Next to the hull, where circumcentres run
+ * away, the weights become those of the hull edge: there the function is linear in the triangle.
+ */
+#ifndef CADT_QUERIES_NATURAL_NEIGHBOR_H
+#define CADT_QUERIES_NATURAL_NEIGHBOR_H
+
+#include "common/queries/interpolate.dev.h"
+
+/* Whether p lies strictly inside the circle of triangle t. Ties need no decision: the piece that they add has no area. */
+CADT_FN cadt_u32 cadt_in_circle(const cadt_query_mesh* m, cadt_u32 t, cadt_point p) {
+  const cadt_point a = cadt_corner(m, t, 0u), b = cadt_corner(m, t, 1u), c = cadt_corner(m, t, 2u);
+  cadt_real max_det;
+  const cadt_i32 sign = cadt_incircle_filter(a, b, c, p, &max_det);
+  return (sign != 0 ? sign : cadt_incircle_exact(a, b, c, p, max_det)) > 0 ? 1u : 0u;
+}
+
+/* The circumcentre of the origin, u and v. */
+CADT_FN cadt_point cadt_center_with_origin(cadt_point u, cadt_point v) {
+  const cadt_real d = 2.0 * cadt_cross(u.x, u.y, v.x, v.y), uu = u.x * u.x + u.y * u.y, vv = v.x * v.x + v.y * v.y;
+  const cadt_point c = {(v.y * uu - u.y * vv) / d, (u.x * vv - v.x * uu) / d};
+  return c;
+}
+/* The circumcentre of triangle t, seen from p. */
+CADT_FN cadt_point cadt_center_seen_from(const cadt_query_mesh* m, cadt_u32 t, cadt_point p) {
+  const cadt_point a = cadt_corner(m, t, 0u), b = cadt_corner(m, t, 1u), c = cadt_corner(m, t, 2u);
+  const cadt_point u = {b.x - a.x, b.y - a.y}, v = {c.x - a.x, c.y - a.y};
+  cadt_point center = cadt_center_with_origin(u, v);
+  center.x += a.x - p.x;
+  center.y += a.y - p.y;
+  return center;
+}
+CADT_FN cadt_point cadt_seen_from(cadt_point a, cadt_point p) {
+  const cadt_point d = {a.x - p.x, a.y - p.y};
+  return d;
+}
+
+/* An edge of the cavity's boundary: edge k of a triangle of the cavity. */
+typedef struct {
+  cadt_u32 triangle, k;
+} cadt_cavity_edge;
+
+/* From boundary edge e, u -> v, around v to the next one, v -> w. Returns twice the area of the piece of v. */
+CADT_FN cadt_real cadt_next_piece(const cadt_query_mesh* m, cadt_point p, cadt_cavity_edge* e, cadt_point u, cadt_point v,
+                                  cadt_point* w, cadt_u32* steps) {
+  const cadt_point first = cadt_center_with_origin(u, v);
+  cadt_point before = first;
+  cadt_real area = 0.0;
+  cadt_u32 t = e->triangle, k = e->k; /* v is the vertex after next of edge k: k + 2 */
+  for (;; ++*steps) {
+    const cadt_point center = cadt_center_seen_from(m, t, p);
+    area += cadt_cross(before.x - first.x, before.y - first.y, center.x - first.x, center.y - first.y);
+    before = center;
+    const cadt_u32 across = CADT_NEXT(k), next = cadt_neighbor_of(&m->view, t, across); /* the edge that leaves v */
+    if (next == CADT_NONE || !cadt_in_circle(m, next, p)) {
+      e->triangle = t;
+      e->k = across;
+      *w = cadt_seen_from(cadt_corner(m, t, k), p);
+      break;
+    }
+    k = cadt_edge_towards(m, next, t);
+    t = next;
+  }
+  const cadt_point last = cadt_center_with_origin(v, *w);
+  area += cadt_cross(before.x - first.x, before.y - first.y, last.x - first.x, last.y - first.y);
+  return cadt_fabs(area);
+}
+
+/* The first boundary edge: from triangle t of the cavity, out through edge 0 as long as there is more of it. Edges seen
+ * from p strictly inside lead away from it, so this ends. */
+CADT_FN cadt_cavity_edge cadt_first_cavity_edge(const cadt_query_mesh* m, cadt_point p, cadt_u32 t) {
+  cadt_cavity_edge e = {t, 0u};
+  for (;;) {
+    const cadt_u32 next = cadt_neighbor_of(&m->view, e.triangle, e.k);
+    if (next == CADT_NONE || !cadt_in_circle(m, next, p)) return e;
+    const cadt_u32 back = cadt_edge_towards(m, next, e.triangle);
+    e.triangle = next;
+    e.k = CADT_NEXT(back);
+    /* the one of the two other edges that does not have p beyond it */
+    if (cadt_side(cadt_corner(m, next, CADT_NEXT(e.k)), cadt_corner(m, next, CADT_PREV(e.k)), p) <= 0) e.k = CADT_PREV(back);
+  }
+}
+
+/* Sums over the neighbours, seen from p. */
+typedef struct {
+  cadt_real weight, x, y, xx, xy, yy, f, fx, fy;
+} cadt_moments;
+
+CADT_FN void cadt_add_neighbor(cadt_moments* m, cadt_real weight, cadt_point v, cadt_real f) {
+  m->weight += weight;
+  m->x += weight * v.x;
+  m->y += weight * v.y;
+  m->xx += weight * v.x * v.x;
+  m->xy += weight * v.x * v.y;
+  m->yy += weight * v.y * v.y;
+  m->f += weight * f;
+  m->fx += weight * v.x * f;
+  m->fy += weight * v.y * f;
+}
+/* The weighted mean, less slope * mean place; the slope is that of the weighted least squares. */
+CADT_FN cadt_real cadt_corrected_mean(const cadt_moments* m) {
+  const cadt_real x = m->x / m->weight, y = m->y / m->weight, f = m->f / m->weight;
+  const cadt_real xx = m->xx / m->weight - x * x, xy = m->xy / m->weight - x * y, yy = m->yy / m->weight - y * y;
+  const cadt_real fx = m->fx / m->weight - f * x, fy = m->fy / m->weight - f * y, det = xx * yy - xy * xy;
+  const cadt_real rise = ((yy * fx - xy * fy) * x + (xx * fy - xy * fx) * y) / det;
+  return rise - rise == 0.0 ? f - rise : f; /* neighbours on a line have no slope */
+}
+
+/* Value `of` at p, strictly inside of the hull, by the boundary of its cavity from edge `begin` on. Infinite or NaN where
+ * a circumcentre has overflowed. */
+CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cadt_cavity_edge begin,
+                                     CADT_GLOBAL const cadt_real* values, cadt_u32 per_point, cadt_u32 of,
+                                     cadt_u32* open) {
+  cadt_cavity_edge e = begin;
+  cadt_point u = cadt_seen_from(cadt_corner(m, e.triangle, CADT_NEXT(e.k)), p),
+             v = cadt_seen_from(cadt_corner(m, e.triangle, CADT_PREV(e.k)), p);
+  cadt_moments sums = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  cadt_u32 steps = 0u;
+  do {
+    const cadt_u32 id = cadt_vertex_of(&m->view, e.triangle, CADT_PREV(e.k));
+    cadt_point w = v;
+    const cadt_real weight = cadt_next_piece(m, p, &e, u, v, &w, &steps);
+    if (weight != 0.0) cadt_add_neighbor(&sums, weight, v, values[CADT_CAST(cadt_u64, id) * per_point + of]);
+    u = v;
+    v = w;
+    if (++steps > 3u * m->view.triangles) {
+      *open = 1u;
+      break;
+    }
+  } while (e.triangle != begin.triangle || e.k != begin.k);
+  return cadt_corrected_mean(&sums);
+}
+
+/* Whether there is nothing beyond edge k of triangle t but the outside, or a thin triangle as there are along the hull. */
+CADT_FN cadt_u32 cadt_is_outermost(const cadt_query_mesh* m, cadt_u32 t, cadt_u32 k) {
+  const cadt_u32 n = cadt_neighbor_of(&m->view, t, k);
+  if (n == CADT_NONE) return 1u;
+  const cadt_point a = cadt_corner(m, n, 0u), b = cadt_corner(m, n, 1u), c = cadt_corner(m, n, 2u);
+  const cadt_point middle = {a.x + (b.x - a.x) / 3.0 + (c.x - a.x) / 3.0, a.y + (b.y - a.y) / 3.0 + (c.y - a.y) / 3.0};
+  cadt_u32 thin;
+  (void)cadt_barycentric(a, b, c, middle, &thin);
+  return thin;
+}
+
+/* Whether the natural neighbours of p in triangle t are taken as those of linear interpolation: at a vertex, in a thin
+ * triangle, on the hull or nearer to it than 2^-30 of the triangle's height. `w`: its barycentric coordinates. */
+CADT_FN cadt_u32 cadt_takes_linear(const cadt_query_mesh* m, cadt_u32 t, const cadt_weights* w, cadt_u32 thin) {
+  cadt_u32 linear = thin;
+  for (cadt_u32 k = 0u; k < 3u; ++k)
+    if (w->at[k] == 1.0 || (w->at[k] < 9.313225746154785e-10 && cadt_is_outermost(m, t, k))) linear = 1u;
+  return linear;
+}
+
+/* `per_point` values a query, as in cadt_interpolate_linear. `failed`: how many boundaries did not close, which cannot be
+ * in a Delaunay mesh. */
+CADT_KERNEL(cadt_interpolate_natural, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_point* queries,
+            CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* located, CADT_GLOBAL const cadt_u32* nearest,
+            CADT_GLOBAL const cadt_real* values, cadt_u32 per_point, CADT_GLOBAL cadt_real* results,
+            CADT_GLOBAL cadt_u32* failed, cadt_u32 count, cadt_u32 grain) {
+  CADT_QUERY_MESH(mesh);
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 q = order ? order[i] : i, t = located[q];
+    const cadt_point p = cadt_scaled_point(&mesh, queries + q);
+    CADT_GLOBAL cadt_real* result = results + CADT_CAST(cadt_u64, q) * per_point;
+    if (t == CADT_NONE) {
+      for (cadt_u32 of = 0u; of < per_point; ++of)
+        result[of] = nearest ? values[CADT_CAST(cadt_u64, nearest[q]) * per_point + of] : CADT_NAN;
+      continue;
+    }
+    cadt_u32 thin, open = 0u;
+    const cadt_weights w = cadt_barycentric(cadt_corner(&mesh, t, 0u), cadt_corner(&mesh, t, 1u), cadt_corner(&mesh, t, 2u), p, &thin);
+    const cadt_u32 linear = cadt_takes_linear(&mesh, t, &w, thin);
+    const cadt_cavity_edge none = {t, 0u}, begin = linear ? none : cadt_first_cavity_edge(&mesh, p, t);
+    for (cadt_u32 of = 0u; of < per_point; ++of) {
+      cadt_real value = CADT_NAN;
+      if (!linear) value = cadt_natural_value(&mesh, p, begin, values, per_point, of, &open);
+      /* not finite: a circumcentre has overflowed, or a value is not finite */
+      result[of] = value - value == 0.0 ? value : cadt_weighted(&mesh, t, &w, values, per_point, of);
+    }
+    if (open) cadt_add_relaxed(failed, 1u);
+  }
+}
+
+#endif

@@ -1,0 +1,213 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * From the mesh to a grid of cells, by triangles: each writes the cells whose centres it contains. A centre on an edge or
+ * on a vertex belongs to the lowest triangle there, as in cadt_locate_queries, so each cell is written by one triangle
+ * and no two work-items meet. Centres are computed in one way everywhere, and all signs are exact.
+ *
+ *      +---+---+---+---+
+ *      |   |   | /.|   |     A small triangle goes through the cells of its bounding box. A large one is listed, and a
+ *      +---+---+/--\---+     work-item takes one row of it: the cells between the two edges that the row meets, and one
+ *      |   | /.| . |\  |     more on either side, since those ends are rounded.
+ *      +---/---+---+-\-+
+ *      | / | . | . | .\|
+ *      +---+---+---+---+
+ */
+#ifndef CADT_QUERIES_RASTERIZE_H
+#define CADT_QUERIES_RASTERIZE_H
+
+#include "common/portable/atomics.dev.h"
+#include "common/queries/interpolate.dev.h"
+
+/* Cell (column i, row j) has its centre at x0 + (i + 0.5) dx, y0 + (j + 0.5) dy. */
+typedef struct {
+  cadt_real x0, y0, dx, dy;
+  cadt_u32 columns, rows;
+} cadt_raster;
+#define CADT_RASTER_PARAMETERS \
+  cadt_real raster_x0, cadt_real raster_y0, cadt_real raster_dx, cadt_real raster_dy, cadt_u32 columns, cadt_u32 rows
+#define CADT_RASTER(raster) \
+  const cadt_raster raster = {raster_x0, raster_y0, raster_dx, raster_dy, columns, rows}
+
+enum { CADT_RASTER_SMALL = 64 /* cells of a bounding box that its triangle's work-item goes through by itself */ };
+
+CADT_FN cadt_real cadt_cell_x(const cadt_raster* r, cadt_u32 i) { return r->x0 + (CADT_CAST(cadt_real, i) + 0.5) * r->dx; }
+CADT_FN cadt_real cadt_cell_y(const cadt_raster* r, cadt_u32 j) { return r->y0 + (CADT_CAST(cadt_real, j) + 0.5) * r->dy; }
+
+/* The cells of an axis whose centres may lie between `low` and `high`, with one more at either end for rounding:
+ * `first` to one before `end`. */
+typedef struct {
+  cadt_u32 first, end;
+} cadt_cells;
+CADT_FN cadt_u32 cadt_clamped_cell(cadt_real x, cadt_u32 count) {
+  return x > 0.0 ? (x < CADT_CAST(cadt_real, count) ? CADT_CAST(cadt_u32, x) : count) : 0u;
+}
+CADT_FN cadt_cells cadt_cells_between(cadt_real origin, cadt_real step, cadt_u32 count, cadt_real low, cadt_real high) {
+  const cadt_real a = low / step - origin / step, b = high / step - origin / step;
+  const cadt_real from = a < b ? a : b, to = a < b ? b : a;
+  const cadt_real slack = 1e-12 * (cadt_fabs(origin / step) + CADT_CAST(cadt_real, count));
+  const cadt_cells cells = {cadt_clamped_cell(from - 1.5 - slack, count), cadt_clamped_cell(to + 1.5 + slack, count)};
+  return cells;
+}
+
+typedef struct {
+  cadt_point corner[3]; /* scaled */
+  cadt_u32 triangle;
+} cadt_drawn;
+
+/* Whether the triangle is the lowest one that contains p. */
+CADT_FN cadt_u32 cadt_owns(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, const cadt_drawn* d, cadt_point p) {
+  const cadt_i32 s0 = cadt_side(d->corner[1], d->corner[2], p);
+  if (s0 < 0) return 0u;
+  const cadt_i32 s1 = cadt_side(d->corner[2], d->corner[0], p);
+  if (s1 < 0) return 0u;
+  const cadt_i32 s2 = cadt_side(d->corner[0], d->corner[1], p);
+  if (s2 < 0) return 0u;
+  if (s0 > 0 && s1 > 0 && s2 > 0) return 1u;
+  const cadt_query_place at = {d->triangle, (s0 == 0 ? 1u : 0u) | (s1 == 0 ? 2u : 0u) | (s2 == 0 ? 4u : 0u), CADT_NONE};
+  return cadt_lowest_at(m, lowest, &at) == d->triangle ? 1u : 0u;
+}
+
+/* Writes the cells `cells` of row j that belong to the triangle. */
+CADT_FN void cadt_draw_row(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, const cadt_raster* r,
+                           const cadt_drawn* d, cadt_u32 j, cadt_cells cells, CADT_GLOBAL const cadt_real* values,
+                           CADT_GLOBAL cadt_real* raster) {
+  const cadt_real y = cadt_cell_y(r, j);
+  for (cadt_u32 i = cells.first; i < cells.end; ++i) {
+    cadt_point p = {cadt_cell_x(r, i), y};
+    p = cadt_multiplied_point(p, m->scale, m->scale_again);
+    if (!cadt_owns(m, lowest, d, p)) continue;
+    cadt_u32 thin;
+    const cadt_weights w = cadt_barycentric(d->corner[0], d->corner[1], d->corner[2], p, &thin);
+    raster[CADT_CAST(cadt_u64, j) * r->columns + i] = cadt_weighted(m, d->triangle, &w, values, 1u, 0u);
+  }
+}
+
+CADT_FN cadt_real cadt_least(cadt_real a, cadt_real b, cadt_real c) { return a < b ? (a < c ? a : c) : (b < c ? b : c); }
+CADT_FN cadt_real cadt_most(cadt_real a, cadt_real b, cadt_real c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
+
+CADT_FN cadt_drawn cadt_drawn_of(const cadt_query_mesh* m, cadt_u32 t) {
+  const cadt_drawn d = {{cadt_corner(m, t, 0u), cadt_corner(m, t, 1u), cadt_corner(m, t, 2u)}, t};
+  return d;
+}
+/* Whether one of the triangle's edges is longer than `most` (scaled). */
+CADT_FN cadt_u32 cadt_longer_than(const cadt_drawn* d, cadt_real most) {
+  for (cadt_u32 k = 0u; k < 3u; ++k) {
+    const cadt_point a = d->corner[k], b = d->corner[CADT_NEXT(k)];
+    const cadt_real x = (a.x - b.x) / most, y = (a.y - b.y) / most;
+    if (x * x + y * y > 1.0) return 1u;
+  }
+  return 0u;
+}
+CADT_FN cadt_cells cadt_columns_of(const cadt_query_mesh* m, const cadt_raster* r, cadt_real low, cadt_real high) {
+  return cadt_cells_between(cadt_multiplied(r->x0, m->scale, m->scale_again), cadt_multiplied(r->dx, m->scale, m->scale_again),
+                            r->columns, low, high);
+}
+CADT_FN cadt_cells cadt_rows_of(const cadt_query_mesh* m, const cadt_raster* r, const cadt_drawn* d) {
+  return cadt_cells_between(cadt_multiplied(r->y0, m->scale, m->scale_again), cadt_multiplied(r->dy, m->scale, m->scale_again),
+                            r->rows, cadt_least(d->corner[0].y, d->corner[1].y, d->corner[2].y),
+                            cadt_most(d->corner[0].y, d->corner[1].y, d->corner[2].y));
+}
+
+/* Triangles whose bounding boxes are small write their cells; of each other one `rows_of` gets the number of rows, 0 for
+ * all others. */
+CADT_KERNEL(cadt_draw_small, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* lowest, CADT_RASTER_PARAMETERS,
+            cadt_real max_edge, CADT_GLOBAL const cadt_real* values, CADT_GLOBAL cadt_real* cells,
+            CADT_GLOBAL cadt_u32* large, CADT_GLOBAL cadt_u32* large_count, cadt_u32 grain) {
+  CADT_QUERY_MESH(mesh);
+  CADT_RASTER(raster);
+  CADT_FOR(t, mesh.view.triangles, grain) {
+    const cadt_drawn d = cadt_drawn_of(&mesh, t);
+    if (max_edge < CADT_INFINITY && cadt_longer_than(&d, max_edge)) continue;
+    const cadt_cells over = cadt_rows_of(&mesh, &raster, &d);
+    if (over.first >= over.end) continue;
+    const cadt_cells along = cadt_columns_of(&mesh, &raster, cadt_least(d.corner[0].x, d.corner[1].x, d.corner[2].x),
+                                             cadt_most(d.corner[0].x, d.corner[1].x, d.corner[2].x));
+    if (along.first >= along.end) continue;
+    if (CADT_CAST(cadt_u64, over.end - over.first) * (along.end - along.first) > CADT_CAST(cadt_u64, CADT_RASTER_SMALL)) {
+      large[cadt_add_relaxed(large_count, 1u)] = t;
+      continue;
+    }
+    for (cadt_u32 j = over.first; j < over.end; ++j) cadt_draw_row(&mesh, lowest, &raster, &d, j, along, values, cells);
+  }
+}
+
+/* The number of rows of each listed triangle. rows_of[count] is 0. */
+CADT_KERNEL(cadt_large_rows, CADT_QUERY_MESH_PARAMETERS, CADT_RASTER_PARAMETERS, CADT_GLOBAL const cadt_u32* large,
+            CADT_GLOBAL cadt_u32* rows_of, cadt_u32 count, cadt_u32 grain) {
+  CADT_QUERY_MESH(mesh);
+  CADT_RASTER(raster);
+  CADT_FOR(i, count, grain) {
+    const cadt_drawn d = cadt_drawn_of(&mesh, large[i]);
+    const cadt_cells over = cadt_rows_of(&mesh, &raster, &d);
+    rows_of[i] = over.end - over.first;
+    if (i == 0u) rows_of[count] = 0u;
+  }
+}
+
+/* The columns in which row y of the triangle may have cells: between the points where the row, and the two lines a cell
+ * above and below it, meet the edges. */
+CADT_FN cadt_cells cadt_span_of_row(const cadt_query_mesh* m, const cadt_raster* r, const cadt_drawn* d, cadt_u32 j) {
+  const cadt_real y = cadt_multiplied(cadt_cell_y(r, j), m->scale, m->scale_again);
+  const cadt_real dy = cadt_fabs(cadt_multiplied(r->dy, m->scale, m->scale_again));
+  cadt_real low = CADT_INFINITY, high = -CADT_INFINITY;
+  for (cadt_u32 k = 0u; k < 3u; ++k) {
+    const cadt_point a = d->corner[k], b = d->corner[CADT_NEXT(k)];
+    const cadt_real below = a.y < b.y ? a.y : b.y, above = a.y < b.y ? b.y : a.y;
+    if (below > y + dy || above < y - dy) continue;
+    for (cadt_u32 side = 0u; side < 2u; ++side) {
+      const cadt_real line = side ? y + dy : y - dy;
+      cadt_real along = above > below ? (line - a.y) / (b.y - a.y) : 0.0;
+      along = along > 0.0 ? (along < 1.0 ? along : 1.0) : 0.0;
+      const cadt_real x = a.x + along * (b.x - a.x), other = above > below ? x : b.x;
+      low = x < low ? x : low;
+      low = other < low ? other : low;
+      high = x > high ? x : high;
+      high = other > high ? other : high;
+    }
+  }
+  const cadt_cells none = {0u, 0u};
+  return low <= high ? cadt_columns_of(m, r, low, high) : none;
+}
+
+/* One row of a listed triangle a work-item; `first_row`: scanned. */
+CADT_KERNEL(cadt_draw_large, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* lowest, CADT_RASTER_PARAMETERS,
+            CADT_GLOBAL const cadt_u32* large, CADT_GLOBAL const cadt_u32* first_row, cadt_u32 listed,
+            CADT_GLOBAL const cadt_real* values, CADT_GLOBAL cadt_real* cells, cadt_u32 count, cadt_u32 grain) {
+  CADT_QUERY_MESH(mesh);
+  CADT_RASTER(raster);
+  CADT_FOR(i, count, grain) {
+    cadt_u32 at = 0u, end = listed;
+    CADT_FIND_LAST(at, end, middle, first_row[middle] <= i)
+    const cadt_drawn d = cadt_drawn_of(&mesh, large[at]);
+    const cadt_u32 j = cadt_rows_of(&mesh, &raster, &d).first + (i - first_row[at]);
+    cadt_draw_row(&mesh, lowest, &raster, &d, j, cadt_span_of_row(&mesh, &raster, &d, j), values, cells);
+  }
+}
+
+/* Every cell becomes NaN. */
+CADT_KERNEL(cadt_clear_raster, CADT_GLOBAL cadt_real* cells, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) { cells[i] = CADT_NAN; }
+}
+
+/* The centres of the cells from `first` on, row by row. */
+CADT_KERNEL(cadt_cell_centers, CADT_RASTER_PARAMETERS, cadt_u32 first, CADT_GLOBAL cadt_point* centers, cadt_u32 count,
+            cadt_u32 grain) {
+  CADT_RASTER(raster);
+  CADT_FOR(i, count, grain) {
+    centers[i].x = cadt_cell_x(&raster, (first + i) % columns);
+    centers[i].y = cadt_cell_y(&raster, (first + i) / columns);
+  }
+}
+
+/* Cells whose triangle has an edge longer than `max_edge` become NaN. */
+CADT_KERNEL(cadt_drop_long_edges, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* located, cadt_real max_edge,
+            CADT_GLOBAL cadt_real* cells, cadt_u32 count, cadt_u32 grain) {
+  CADT_QUERY_MESH(mesh);
+  CADT_FOR(i, count, grain) {
+    if (located[i] == CADT_NONE) continue;
+    const cadt_drawn d = cadt_drawn_of(&mesh, located[i]);
+    if (cadt_longer_than(&d, max_edge)) cells[i] = CADT_NAN;
+  }
+}
+
+#endif

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/queries/voronoi.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "common/driver/device_text.hpp"
+#include "common/queries/results.hpp"
+
+namespace cadt {
+namespace {
+
+using namespace device_text;
+
+/// The first place of each point's triangles; one word more than points.
+Allocation scan_cell_sizes(Context& ctx, const MeshIndex& mesh) {
+  Launcher& launch = ctx.launcher;
+  Allocation begin = launch.zeros(mesh.point_count + 1);
+  const LaunchGrid all = launch.grid(mesh.triangles);
+  launch.run<KernelId::cadt_cell_sizes>(all.items, mesh.view(), begin, all.grain);
+  launch.scan(begin, mesh.point_count + 1);
+  return begin;
+}
+
+QueryMesh in_own_scale(Context& ctx, const MeshIndex& mesh) { return {mesh.view(), scale_for(ctx, mesh, mesh.bounds)}; }
+
+}  // namespace
+
+void write_circumcenters(Context& ctx, const MeshIndex& mesh, const Allocation& xy) {
+  if (mesh.triangles == 0) return;
+  const LaunchGrid all = ctx.launcher.grid(mesh.triangles);
+  ctx.launcher.run<KernelId::cadt_circumcenters>(all.items, in_own_scale(ctx, mesh), xy, all.grain);
+}
+
+VoronoiDiagram make_voronoi(Context& ctx, const MeshIndex& mesh) {
+  Launcher& launch = ctx.launcher;
+  VoronoiDiagram result;
+  const std::size_t n = mesh.point_count, triangles = mesh.triangles;
+  if (triangles == 0) {
+    result.cell_begin.assign(n + 1, 0);
+    return result;
+  }
+  const LaunchGrid all = launch.grid(triangles);
+  result.vertices =
+      to_vector<double>(ctx, 2 * triangles, [&](const Allocation& to) { write_circumcenters(ctx, mesh, to); });
+  ctx.check("voronoi", 0.3);
+  {
+    const Allocation begin = scan_cell_sizes(ctx, mesh);
+    result.cell_begin = ctx.device.read_values(*begin, n + 1);
+    result.cells = to_vector<std::int32_t>(ctx, 3 * triangles, [&](const Allocation& to) {
+      launch.run<KernelId::cadt_cell_triangles>(in_own_scale(ctx, mesh), mesh.lowest, begin, to, launch.grid(n));
+    });
+  }
+  ctx.check("voronoi", 0.6);
+  const Allocation begin = ctx.memory.allocate((triangles + 1) * word);
+  launch.run<KernelId::cadt_edge_counts>(all.items, mesh.view(), begin, all.grain);
+  launch.scan(begin, triangles + 1);
+  const std::size_t edges = launch.read_word(begin, triangles);
+  result.edge_points = to_vector<std::int32_t>(ctx, 2 * edges, [&](const Allocation& ends) {
+    result.edge_vertices = to_vector<std::int32_t>(ctx, 2 * edges, [&](const Allocation& sides) {
+      launch.run<KernelId::cadt_list_edges>(all.items, mesh.view(), begin, ends, sides, all.grain);
+    });
+  });
+  ctx.check("voronoi", 1);
+  return result;
+}
+
+VoronoiPolygons clip_voronoi(Context& ctx, const MeshIndex& mesh, const Box& box) {
+  for (const double value : {box.min_x, box.min_y, box.max_x, box.max_y})
+    if (!std::isfinite(value)) throw InputError("the box has a side that is not finite", 0);
+  if (!(box.min_x < box.max_x && box.min_y < box.max_y)) throw InputError("the box has no area: min must be below max", 0);
+  Launcher& launch = ctx.launcher;
+  VoronoiPolygons result;
+  const std::size_t n = mesh.point_count;
+  if (mesh.triangles == 0) {
+    result.begin.assign(n + 1, 0);
+    return result;
+  }
+  const Allocation begin = scan_cell_sizes(ctx, mesh);
+  const Allocation rows = ctx.memory.allocate((3 * mesh.triangles + 5 * n) * sizeof(cadt_point));
+  const Allocation sizes = ctx.memory.allocate((n + 1) * word);
+  launch.run<KernelId::cadt_clip_cells>(in_own_scale(ctx, mesh), mesh.lowest, begin, box.min_x, box.min_y, box.max_x,
+                                        box.max_y, rows, sizes, launch.grid(n));
+  launch.scan(sizes, n + 1);
+  result.begin = ctx.device.read_values(*sizes, n + 1);
+  ctx.check("voronoi", 0.7);
+  result.xy = to_vector<double>(ctx, 2 * std::size_t{result.begin.back()}, [&](const Allocation& to) {
+    launch.run<KernelId::cadt_pack_cells>(rows, begin, sizes, to, launch.grid(n));
+  });
+  ctx.check("voronoi", 1);
+  return result;
+}
+
+std::vector<Circle> find_largest_circles(Context& ctx, const MeshIndex& mesh, std::size_t wanted) {
+  Launcher& launch = ctx.launcher;
+  const std::size_t count = mesh.triangles, bytes = count * word;
+  std::vector<Circle> found;
+  if (count == 0 || wanted == 0) return found;
+  Allocation keys = ctx.memory.allocate(bytes), order = ctx.memory.allocate(bytes);
+  {
+    Allocation spare = ctx.memory.allocate(bytes), spare_order = ctx.memory.allocate(bytes);
+    const LaunchGrid all = launch.grid(count);
+    launch.run<KernelId::cadt_radius_keys>(all.items, in_own_scale(ctx, mesh), keys, all.grain);
+    launch.sort(keys, order, spare, spare_order, count, 32, true);
+  }
+  ctx.check("circles", 0.5);
+  // From large to small until enough have their centres in the hull. The keys are rounded radii, so a part of the list ends
+  // with a key that is not the same as the next one.
+  const std::vector<std::uint32_t> key = ctx.device.read_values(*keys, count);
+  for (std::size_t from = 0; from < count && found.size() < wanted;) {
+    std::size_t end = std::min(count, from + 2 * wanted + 256);
+    while (end < count && key[end] == key[end - 1]) ++end;
+    const std::size_t size = end - from;
+    const auto triangles = ctx.device.read_values(*order, size, from);
+    const Allocation list = ctx.memory.allocate(size * word), circles = ctx.memory.allocate(size * sizeof(cadt_circle));
+    ctx.device.write(*list, 0, triangles.data(), size * word);
+    launch.run<KernelId::cadt_circles_of>(in_own_scale(ctx, mesh), list, circles, launch.grid(size));
+    const auto circle = ctx.device.read_values<cadt_circle>(*circles, size);
+    std::vector<Circle> finite;
+    std::vector<double> centers;
+    for (std::size_t i = 0; i < size; ++i) {
+      if (!std::isfinite(circle[i].x) || !std::isfinite(circle[i].y) || !std::isfinite(circle[i].radius)) continue;
+      finite.push_back({circle[i].x, circle[i].y, circle[i].radius, static_cast<std::int32_t>(triangles[i])});
+      centers.insert(centers.end(), {circle[i].x, circle[i].y});
+    }
+    if (!finite.empty()) {
+      Allocation points = ctx.memory.allocate(centers.size() * sizeof(double));
+      ctx.device.write(*points, 0, centers.data(), centers.size() * sizeof(double));
+      const QueryBatch queries = prepare_queries(ctx, mesh, std::move(points), finite.size());
+      const Allocation located = ctx.memory.allocate(finite.size() * word), none;
+      locate_queries(ctx, mesh, queries, located, none);
+      const auto inside = ctx.device.read_values(*located, finite.size());
+      std::vector<Circle> kept;
+      for (std::size_t i = 0; i < finite.size(); ++i)
+        if (inside[i] != CADT_NONE) kept.push_back(finite[i]);
+      std::ranges::sort(kept, [](const Circle& a, const Circle& b) {
+        return std::tuple(-a.radius, a.triangle) < std::tuple(-b.radius, b.triangle);
+      });
+      found.insert(found.end(), kept.begin(), kept.end());
+    }
+    from = end;
+  }
+  if (found.size() > wanted) found.resize(wanted);
+  return found;
+}
+
+Outline make_outline(Context& ctx, const MeshIndex& mesh, double max_radius, double max_edge) {
+  for (const auto& [name, value] : {std::pair("max_radius", max_radius), std::pair("max_edge", max_edge)})
+    if (!(value >= 0)) throw OptionError(name, "must be a number and not negative");
+  Launcher& launch = ctx.launcher;
+  Outline result;
+  const std::size_t count = mesh.triangles;
+  if (count == 0) return result;
+  const LaunchGrid all = launch.grid(count);
+  const Allocation places = ctx.memory.allocate((count + 1) * word);
+  launch.run<KernelId::cadt_flag_compact>(all.items, in_own_scale(ctx, mesh), max_edge, max_radius, places, all.grain);
+  launch.scan(places, count + 1);
+  result.triangles = to_vector<std::int32_t>(ctx, launch.read_word(places, count), [&](const Allocation& to) {
+    launch.run<KernelId::cadt_pack_kept>(places, to, all);
+  });
+  const Allocation begin = ctx.memory.allocate((count + 1) * word);
+  launch.run<KernelId::cadt_outline_counts>(all.items, mesh.view(), places, begin, all.grain);
+  launch.scan(begin, count + 1);
+  result.edges =
+      to_vector<std::int32_t>(ctx, 2 * std::size_t{launch.read_word(begin, count)}, [&](const Allocation& to) {
+        launch.run<KernelId::cadt_outline_edges>(all.items, mesh.view(), places, begin, to, all.grain);
+      });
+  return result;
+}
+
+}  // namespace cadt

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The dual of the mesh, and what circumcircles tell (voronoi.dev.h).
+#pragma once
+
+#include <cadt/queries.hpp>
+
+#include <cstddef>
+#include <vector>
+
+#include "common/queries/mesh_index.hpp"
+
+namespace cadt {
+
+void write_circumcenters(Context& ctx, const MeshIndex& mesh, const Allocation& xy);
+[[nodiscard]] VoronoiDiagram make_voronoi(Context& ctx, const MeshIndex& mesh);
+/// \throws InputError
+[[nodiscard]] VoronoiPolygons clip_voronoi(Context& ctx, const MeshIndex& mesh, const Box& box);
+[[nodiscard]] std::vector<Circle> find_largest_circles(Context& ctx, const MeshIndex& mesh, std::size_t wanted);
+/// \throws OptionError
+[[nodiscard]] Outline make_outline(Context& ctx, const MeshIndex& mesh, double max_radius, double max_edge);
+
+}  // namespace cadt

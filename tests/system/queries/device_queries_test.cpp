@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Queries, values and results in device memory, against those of the host.
+#include "tests/system/queries/brute_force.hpp"
+#include "tests/system/resident/resident.hpp"
+
+#include <cmath>
+
+namespace cadt::test {
+namespace {
+
+class DeviceQueries : public ResidentTest {
+ protected:
+  static constexpr std::int32_t untouched = 123456789;
+  static bool same(const std::vector<double>& a, const std::vector<double>& b) {
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (!(a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i])))) return false;
+    return a.size() == b.size();
+  }
+  template <class T>
+  [[nodiscard]] DeviceArray array(std::size_t size, T value = static_cast<T>(untouched)) const {
+    return {memory->upload(std::span<const T>(std::vector<T>(size + 1, value))), size};
+  }
+};
+
+TEST_P(DeviceQueries, EqualThoseOfTheHost) {
+  const Asked set("", uniform_points(1000, 3));
+  std::vector<double> values(1000);
+  Random random(9);
+  for (double& value : values) value = random.normal();
+  Triangulator triangulator(options());
+  const Points queries = near_queries(set);  // natural neighbours take no far ones
+  const DevicePoints points = upload(set.xy), where = upload(queries);
+  const DeviceTriangulation mesh = triangulator.triangulate(points);
+  MeshQueries resident(triangulator, points, mesh);
+  MeshQueries host(std::span<const double>(set.xy), set.mesh, GetParam().options());
+  const std::size_t n = where.size;
+
+  const DeviceArray triangles = array<std::int32_t>(n), weights = array<double>(3 * n), vertices = array<std::int32_t>(4 * n);
+  EXPECT_EQ(resident.locate_barycentric(where, triangles, weights), n);
+  EXPECT_EQ(memory->download<std::int32_t>(triangles.memory, n), host.locate(queries));
+  EXPECT_EQ(memory->download<std::int32_t>(triangles.memory, n + 1).back(), untouched);
+  EXPECT_TRUE(same(memory->download<double>(weights.memory, 3 * n), host.locate_barycentric(queries).barycentric));
+  EXPECT_EQ(resident.nearest_vertices(where, 4, vertices), 4 * n);
+  EXPECT_EQ(memory->download<std::int32_t>(vertices.memory, 4 * n), host.nearest_vertices(queries, 4));
+
+  const DeviceArray on_device{memory->upload(std::span<const double>(values)), values.size()};
+  const Grid grid{-0.1, -0.1, 0.02, 0.03, 60, 40};
+  for (const Interpolation method : {Interpolation::linear, Interpolation::nearest, Interpolation::natural}) {
+    const DeviceArray results = array<double>(n), cells = array<double>(grid.cells());
+    EXPECT_EQ(resident.interpolate(on_device, where, results, method), n);
+    EXPECT_TRUE(same(memory->download<double>(results.memory, n), host.interpolate(values, queries, method)));
+    EXPECT_EQ(resident.rasterize(grid, on_device, cells, method), grid.cells());
+    EXPECT_TRUE(same(memory->download<double>(cells.memory, grid.cells()), host.rasterize(grid, values, method)));
+    EXPECT_EQ(memory->download<double>(cells.memory, grid.cells() + 1).back(), double{untouched});
+  }
+  const DeviceArray centers = array<double>(2 * mesh.number_of_triangles());
+  EXPECT_EQ(resident.circumcenters(centers), 2 * mesh.number_of_triangles());
+  EXPECT_TRUE(same(memory->download<double>(centers.memory, centers.size), host.circumcenters()));
+}
+
+TEST_P(DeviceQueries, WhatIsTooSmallStaysAsItIs) {
+  const Asked set("", uniform_points(300, 3));
+  Triangulator triangulator(options());
+  const DevicePoints points = upload(set.xy), where = upload(set.queries);
+  const DeviceTriangulation mesh = triangulator.triangulate(points);
+  MeshQueries resident(triangulator, points, mesh);
+  const std::size_t n = set.size();
+  const DeviceArray small = array<std::int32_t>(n - 1), one_less = array<double>(3 * n - 1);
+  const auto refused = [&](const auto& call) {
+    const auto error = thrown<InputError>(call);
+    ASSERT_NE(error, nullptr);
+    EXPECT_NE(std::string(error->what()).find("are needed"), std::string::npos) << error->what();
+  };
+  refused([&] { (void)resident.locate(where, small); });
+  refused([&] { (void)resident.locate_barycentric(where, array<std::int32_t>(n), one_less); });
+  refused([&] { (void)resident.nearest_vertices(where, 2, array<std::int32_t>(2 * n - 1)); });
+  refused([&] { (void)resident.circumcenters(array<double>(2 * mesh.number_of_triangles() - 1)); });
+  EXPECT_EQ(memory->download<std::int32_t>(small.memory, n), std::vector<std::int32_t>(n, untouched));
+  EXPECT_THROW((void)resident.locate(where, {nullptr, n}), InputError);
+  EXPECT_THROW((void)resident.interpolate(array<double>(299), where, array<double>(n)), InputError);
+  EXPECT_THROW((void)resident.rasterize({0, 0, 1, 1, 3, 3}, array<double>(300), array<double>(8)), InputError);
+  // and then it works
+  EXPECT_EQ(resident.locate(where, array<std::int32_t>(n)), n);
+}
+
+TEST_P(DeviceQueries, AnotherMeshIsRefused) {
+  const Points xy = uniform_points(200, 1);
+  Triangulator one(options()), other(options());
+  const DevicePoints points = upload(xy);
+  const DeviceTriangulation mesh = one.triangulate(points);
+  EXPECT_THROW(MeshQueries(other, points, mesh), InputError);
+  DevicePoints fewer = points;
+  fewer.size = 199;
+  EXPECT_THROW(MeshQueries(one, fewer, mesh), InputError);
+}
+
+CADT_ON_MAIN_BACKENDS(DeviceQueries);
+
+}  // namespace
+}  // namespace cadt::test

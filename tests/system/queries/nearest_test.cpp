@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/backends.hpp"
+#include "tests/system/queries/brute_force.hpp"
+
+#include <algorithm>
+
+namespace cadt::test {
+namespace {
+
+class Nearest : public BackendTest {};
+
+TEST_P(Nearest, OneEqualsBruteForceInExactArithmetic) {
+  for_each_set(1500, [&](const Asked& set) {
+    if (set.mesh.number_of_triangles() == 0) return;
+    SCOPED_TRACE(set.name);
+    MeshQueries queries(std::span<const double>(set.xy), set.mesh, GetParam().options());
+    const auto found = queries.nearest_vertex(set.queries);
+    ASSERT_EQ(found.size(), set.size());
+    for (std::size_t q = 0; q < found.size(); ++q)
+      ASSERT_EQ(std::vector{found[q]}, nearest(set, set.queries[2 * q], set.queries[2 * q + 1], 1))
+          << "query " << q << ": " << set.queries[2 * q] << " " << set.queries[2 * q + 1];
+  });
+}
+
+TEST_P(Nearest, SeveralAreAsNearAsBruteForceFindsThem) {
+  for_each_set(400, [&](const Asked& set) {
+    if (set.mesh.number_of_triangles() == 0) return;
+    SCOPED_TRACE(set.name);
+    MeshQueries queries(std::span<const double>(set.xy), set.mesh, GetParam().options());
+    constexpr std::size_t k = 7;
+    const auto found = queries.nearest_vertices(set.queries, k);
+    ASSERT_EQ(found.size(), k * set.size());
+    for (std::size_t q = 0; q < set.size(); q += 3) {
+      const double x = set.queries[2 * q], y = set.queries[2 * q + 1];
+      const auto expected = nearest(set, x, y, k);
+      std::vector<std::int32_t> row(found.begin() + static_cast<std::ptrdiff_t>(k * q),
+                                    found.begin() + static_cast<std::ptrdiff_t>(k * q + k));
+      for (std::size_t i = expected.size(); i < k; ++i) ASSERT_EQ(row[i], -1);
+      row.resize(expected.size());
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        ASSERT_GE(row[i], 0);
+        ASSERT_EQ(compare_distances(set, x, y, row[i], expected[i]), 0) << "query " << q << ", place " << i;
+      }
+      std::ranges::sort(row);
+      ASSERT_EQ(std::ranges::adjacent_find(row), row.end()) << "a vertex twice, query " << q;
+    }
+  });
+}
+
+TEST_P(Nearest, OfManyOnACircleAroundTheQueryTheLowest) {
+  for (const int n : {3, 4, 5, 12, 64, 300}) {
+    // integer points on circles with many: 5^2 13^2 17^2 = 1105^2
+    Points xy;
+    for (int x = -1105; x <= 1105 && static_cast<int>(xy.size()) < 2 * n; ++x)
+      for (int y = -1105; y <= 1105; ++y)
+        if (x * x + y * y == 1105 * 1105) xy.insert(xy.end(), {double(x), double(y)});
+    std::reverse(xy.begin(), xy.end());
+    for (std::size_t i = 0; i < xy.size(); i += 2) std::swap(xy[i], xy[i + 1]);
+    for (int i = 0; i < 8; ++i) xy.insert(xy.end(), {2000.0 + i, 100.0 * i * i});
+    std::rotate(xy.begin(), xy.begin() + 2 * (n % 5 + 1), xy.end());
+    const Asked set("", xy);
+    MeshQueries queries(std::span<const double>(set.xy), set.mesh, GetParam().options());
+    EXPECT_EQ(queries.nearest_vertex(Points{0, 0}), nearest(set, 0, 0, 1));
+  }
+}
+
+CADT_ON_MAIN_BACKENDS(Nearest);
+
+}  // namespace
+}  // namespace cadt::test

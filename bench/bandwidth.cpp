@@ -13,7 +13,7 @@ double copy_bandwidth(const Options& options, std::size_t bytes) {
   constexpr int runs = 10;  // the first ones find cold pages and a slow clock
   constexpr std::size_t point = 16, word = 4;
   Options timed = options;
-  timed.kernel_times = true;
+  timed.tuning.kernel_times = true;
   const std::unique_ptr<Device> device = open_device(timed);
   const std::size_t most = std::min<std::size_t>(device->free_bytes() / 4, device->info().largest_buffer_bytes);
   bytes = std::max(std::min(bytes, most) / point, std::size_t{1}) * point;

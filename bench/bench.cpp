@@ -208,8 +208,8 @@ Triangulator& Bench::opened(const Task& task) {
     options.device = who.index;
     if (who.backend == Backend::host) options.threads = who.threads;
     options.order = Order::fast;
-    options.work_group_size = task.block;
-    options.kernel_times = task.kernel_times;
+    options.tuning.work_group_size = task.block;
+    options.tuning.kernel_times = task.kernel_times;
     found = std::make_unique<Triangulator>(options);
   }
   return *found;
@@ -218,7 +218,7 @@ Triangulator& Bench::opened(const Task& task) {
 void Bench::use_once(const Task& task, Triangulator& triangulator, std::span<const double> xy) {
   if (!used_.insert({&triangulator, task.stabilize, task.detail, task.strategy}).second) return;
   constexpr std::size_t few = 2000;
-  triangulator.options().watch = nullptr;
+  triangulator.options().tuning.watch = nullptr;
   static_cast<void>(triangulator.triangulate(PointsView(xy.first(std::min(xy.size(), 2 * few)))));
 }
 
@@ -229,10 +229,10 @@ void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& ro
     if (row.occupancy && *row.occupancy <= 0.0) throw Skip(fmt::format("does not start with {} threads", task.block));
   }
   Options& options = triangulator.options();
-  options.strategy = task.strategy;
-  options.stabilize = task.stabilize;
-  options.flip_threshold = task.threshold;
-  options.quality_epsilon = task.epsilon;
+  options.tuning.strategy = task.strategy;
+  options.tuning.stabilize = task.stabilize;
+  options.tuning.flip_threshold = task.threshold;
+  options.tuning.quality_epsilon = task.epsilon;
   options.statistics = task.detail;
   const std::span<const double> xy = points_.get(task.set);
   const PointsView view(xy);
@@ -245,7 +245,7 @@ void Bench::time_cadt(const Task& task, std::optional<double> predicted, Row& ro
     Triangulator& of;
     ~Release() { of.release_memory(); }
   } const release{triangulator};
-  options.watch = task.watch;
+  options.tuning.watch = task.watch;
   const Repeats all = repeats(task, predicted, [&] {
     result.reset();
     const Stopwatch watch;

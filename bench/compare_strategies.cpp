@@ -48,7 +48,7 @@ Options options_of(const Arguments& a, test::DeviceMemory& memory, Strategy stra
   options.backend = backend_from_string(a.backend);
   if (options.backend != Backend::host) options.queue = memory.queue();
   options.order = a.canonical ? Order::canonical : Order::fast;
-  options.strategy = strategy;
+  options.tuning.strategy = strategy;
   return options;
 }
 
@@ -84,7 +84,7 @@ double compare(const Arguments& a, test::DeviceMemory& memory, const std::string
                 static_cast<unsigned long long>(last[s].sweep_repairs));
     triangulators[s].reset();
     Options options = options_of(a, memory, strategies[s]);
-    options.kernel_times = true;
+    options.tuning.kernel_times = true;
     Triangulator timed(options);
     for (int run = 0; run < 2; ++run) last[s] = timed.triangulate(input).statistics();
     double others = 0;

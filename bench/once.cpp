@@ -24,7 +24,7 @@ int run(const Arguments& arguments) {
   options.device = arguments.device;
   options.order = Order::fast;
   for (const Strategy strategy : {Strategy::automatic, Strategy::locks, Strategy::stars})
-    if (arguments.strategy == to_string(strategy)) options.strategy = strategy;
+    if (arguments.strategy == to_string(strategy)) options.tuning.strategy = strategy;
   const std::vector<double> xy = io::generate(arguments.distribution, generate).xy;
   cli::print(triangulate(PointsView(xy), options).hash().to_string() + '\n');
   return cli::exit_done;

@@ -89,17 +89,17 @@ Options library_options(const TriangulateOptions& options, ProgressLine& line) {
   result.threads = options.threads;
   result.order = options.order == "fast" ? Order::fast : Order::canonical;
   if (!options.max_memory.empty()) result.max_memory = parse_bytes(options.max_memory);
-  result.strategy = options.strategy == "locks"   ? Strategy::locks
-                    : options.strategy == "stars" ? Strategy::stars
-                                                  : Strategy::automatic;
-  result.stabilize = options.stabilize == "paper"   ? Stabilize::paper
-                     : options.stabilize == "defer" ? Stabilize::defer
-                                                    : Stabilize::off;
-  result.flip_threshold = options.flip_threshold.value_or(result.flip_threshold);
-  result.quality_epsilon = options.epsilon.value_or(result.quality_epsilon);
+  result.tuning.strategy = options.strategy == "locks"   ? Strategy::locks
+                           : options.strategy == "stars" ? Strategy::stars
+                                                         : Strategy::automatic;
+  result.tuning.stabilize = options.stabilize == "paper"   ? Stabilize::paper
+                            : options.stabilize == "defer" ? Stabilize::defer
+                                                           : Stabilize::off;
+  result.tuning.flip_threshold = options.flip_threshold.value_or(result.tuning.flip_threshold);
+  result.tuning.quality_epsilon = options.epsilon.value_or(result.tuning.quality_epsilon);
   if (options.stats.empty()) result.statistics = StatisticsDetail::none;  // nobody will see them
   if (options.timing) result.statistics = StatisticsDetail::timing;
-  result.kernel_times = options.kernel_times;
+  result.tuning.kernel_times = options.kernel_times;
   result.stop = interrupt_token();
   result.progress = [&line](const Progress& progress) { line.update(progress); };
   return result;
@@ -123,9 +123,9 @@ Triangulation triangulate_file(const io::PointSet& points, const std::string& na
 // Number of triangles in which a mesh of --stabilize paper differs from the exact one.
 std::size_t differing_triangles(const io::PointSet& points, const std::string& name, bool as_floats, Options options,
                                 const Triangulation& mesh) {
-  options.stabilize = Stabilize::off;
+  options.tuning.stabilize = Stabilize::off;
   options.statistics = StatisticsDetail::none;
-  options.kernel_times = false;
+  options.tuning.kernel_times = false;
   options.progress = nullptr;
   return count_differing(mesh, triangulate_file(points, name, as_floats, options));
 }
@@ -217,9 +217,9 @@ int run(const TriangulateOptions& options) {
   report.hash = mesh.hash().to_string();
 
   report.stabilize = options.stabilize;
-  report.flip_threshold = chosen.flip_threshold;
-  report.epsilon = chosen.quality_epsilon;
-  if (chosen.stabilize == Stabilize::paper) {
+  report.flip_threshold = chosen.tuning.flip_threshold;
+  report.epsilon = chosen.tuning.quality_epsilon;
+  if (chosen.tuning.stabilize == Stabilize::paper) {
     line.step("comparing with the exact mesh");
     report.differing = differing_triangles(points, name, options.input.floats, chosen, mesh);
     line.clear();

@@ -67,13 +67,13 @@ cudaError_t without_earlier_error(const Stream& stream, const Work& work) {
 
 CudaDevice::CudaDevice(DeviceInfo info, const Options& options)
     : info_(std::move(info)),
-      block_size_(options.work_group_size != 0 ? std::clamp(options.work_group_size, 1U, largest_block)
-                                               : default_block),
-      block_size_asked_(options.work_group_size != 0),
+      block_size_(options.tuning.work_group_size != 0 ? std::clamp(options.tuning.work_group_size, 1U, largest_block)
+                                                      : default_block),
+      block_size_asked_(options.tuning.work_group_size != 0),
       stream_(std::make_shared<Stream>(info_.index, info_.name, options.queue, options.allocator)) {
   const ContextScope scope(stream_->context());
   check_call(cudaHostAlloc(&staging_, staging_bytes, cudaHostAllocDefault), "cudaHostAlloc");
-  if (options.kernel_times) clock_.emplace(stream_);
+  if (options.tuning.kernel_times) clock_.emplace(stream_);
 }
 
 CudaDevice::~CudaDevice() {

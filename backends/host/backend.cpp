@@ -126,10 +126,10 @@ class HostClock final : public KernelClock {
 class HostDevice final : public Device {
  public:
   explicit HostDevice(const Options& options)
-      : pool_(options.threads != 0 ? options.threads : all_cores(), options.grain != 0),
+      : pool_(options.threads != 0 ? options.threads : all_cores(), options.tuning.grain != 0),
         info_(describe()),
         allocator_(options.allocator) {
-    if (options.kernel_times) clock_.emplace();
+    if (options.tuning.kernel_times) clock_.emplace();
   }
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }

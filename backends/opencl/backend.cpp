@@ -45,10 +45,10 @@ class OpenClEntry final : public BackendEntry {
   [[nodiscard]] std::unique_ptr<Device> open(int index, const Options& options) override {
     opencl::OpenRequest request;
     request.index = index;
-    request.work_group_size = options.work_group_size;
+    request.work_group_size = options.tuning.work_group_size;
     request.queue = options.queue;
     request.allocator = options.allocator;
-    request.kernel_times = options.kernel_times;
+    request.kernel_times = options.tuning.kernel_times;
     return opencl::open_device(request);
   }
 

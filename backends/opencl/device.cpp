@@ -163,7 +163,7 @@ ClDevice::ClDevice(std::shared_ptr<SharedContext> shared, const OpenRequest& req
       if ((properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
         throw BackendUnavailable("opencl", "the queue executes out of order; cadt needs one that keeps the order");
       if (request.kernel_times && (properties & CL_QUEUE_PROFILING_ENABLE) == 0)
-        throw OptionError("kernel_times", "Options::queue was made without CL_QUEUE_PROFILING_ENABLE");
+        throw OptionError("tuning.kernel_times", "Options::queue was made without CL_QUEUE_PROFILING_ENABLE");
     } else {
       queue_ = cl::CommandQueue(shared_->context(), shared_->device().device,
                                 request.kernel_times ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0});

@@ -203,7 +203,8 @@ std::size_t plan_call_of_batch(Triangulator::State& state, std::span<const std::
 void require_batch(const Options& options, std::span<const std::size_t> offsets, std::size_t points) {
   require_size(points);
   require_offsets(offsets, points);
-  if (options.watch) throw OptionError("watch", "shows one mesh; there is none in a call with several sets");
+  if (options.tuning.watch)
+    throw OptionError("tuning.watch", "shows one mesh; there is none in a call with several sets");
 }
 
 template <class Points>

@@ -45,9 +45,9 @@ PointProfile profile_of(const SortedPoints& points) noexcept {
 }
 
 bool may_use_stars(const DeviceTraits& device, const Options& options) noexcept {
-  if (options.strategy != Strategy::automatic) return options.strategy == Strategy::stars;
+  if (options.tuning.strategy != Strategy::automatic) return options.tuning.strategy == Strategy::stars;
   // CPUs are faster by insertion.
-  return device.gpu && !device.floats_only && options.stabilize == Stabilize::off && !options.watch &&
+  return device.gpu && !device.floats_only && options.tuning.stabilize == Stabilize::off && !options.tuning.watch &&
          options.statistics != StatisticsDetail::timing;
 }
 
@@ -55,7 +55,7 @@ BuildStrategy choose_strategy(const DeviceTraits& device, const Options& options
                               const PointProfile& profile) noexcept {
   BuildStrategy how;
   if (!may_use_stars(device, options) || profile.wide) return how;
-  const bool automatic = options.strategy == Strategy::automatic;
+  const bool automatic = options.tuning.strategy == Strategy::automatic;
   if (automatic && are_for_insertion(profile)) return how;
   how.most_residual_wrapped = most_wrapped_by(device);
   how.most_wrapped = automatic ? most_wrapped_of(how.most_residual_wrapped, profile.shapes) : how.most_residual_wrapped;
@@ -71,12 +71,12 @@ BuildStrategy choose_strategy(const DeviceTraits& device, const Options& options
 std::size_t most_wrapped_by(const DeviceTraits& device) noexcept { return device.contiguous ? 2048 : 32768; }
 
 std::size_t fewest_for_stars(const Options& options) noexcept {
-  return options.strategy == Strategy::stars ? 0 : most_wrapped_on_circles + 1;
+  return options.tuning.strategy == Strategy::stars ? 0 : most_wrapped_on_circles + 1;
 }
 
 bool inserts_partitions(const DeviceTraits& device, const Options& options, std::size_t n) noexcept {
-  return device.contiguous && n >= 4 * least_partition && options.grain == 0 && options.stabilize == Stabilize::off &&
-         !options.watch;
+  return device.contiguous && n >= 4 * least_partition && options.tuning.grain == 0 &&
+         options.tuning.stabilize == Stabilize::off && !options.tuning.watch;
 }
 
 std::size_t most_points_of_batched_set(const DeviceTraits& device) noexcept {
@@ -87,12 +87,12 @@ std::size_t most_points_of_batched_set(const DeviceTraits& device) noexcept {
 }
 
 bool batches_sets(const DeviceTraits& device, const Options& options) noexcept {
-  const bool insertion = device.contiguous || options.strategy != Strategy::locks;
-  return insertion && options.stabilize == Stabilize::off;
+  const bool insertion = device.contiguous || options.tuning.strategy != Strategy::locks;
+  return insertion && options.tuning.stabilize == Stabilize::off;
 }
 
 bool inserts_batched_sets(const DeviceTraits& device, const Options& options) noexcept {
-  return device.contiguous && options.strategy != Strategy::stars;
+  return device.contiguous && options.tuning.strategy != Strategy::stars;
 }
 
 }  // namespace cadt

@@ -20,7 +20,7 @@ namespace cadt {
 
 struct Context {
   Context(Device& d, Memory& m, const Options& o, Statistics& s, const MemoryPlan& p = {})
-      : device(d), options(o), statistics(s), memory(m), plan(p), launcher(d, m, o.grain) {
+      : device(d), options(o), statistics(s), memory(m), plan(p), launcher(d, m, o.tuning.grain) {
     if (options.statistics != StatisticsDetail::none) device.start_times();
   }
 

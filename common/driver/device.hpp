@@ -72,7 +72,7 @@ struct LaunchShape {
   std::uint32_t resident = 0;     ///< GPUs: work-items of a large kernel that are resident at the same time
 };
 
-/// Times launches on the device (Options::kernel_times).
+/// Times launches on the device (Tuning::kernel_times).
 class KernelClock {
  public:
   virtual ~KernelClock() = default;
@@ -144,7 +144,7 @@ class Device {
   /// As Triangulator::occupancy().
   [[nodiscard]] virtual std::optional<double> occupancy(unsigned /*work_group_size*/) { return std::nullopt; }
 
-  /// nullptr if the device was opened without Options::kernel_times.
+  /// nullptr if the device was opened without Tuning::kernel_times.
   [[nodiscard]] virtual KernelClock* kernel_clock() noexcept { return nullptr; }
 
   /// nullptr: the kernels of common/portable sort and scan.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time that each kernel of a call takes (Options::kernel_times).
+// The time that each kernel of a call takes (Tuning::kernel_times).
 #pragma once
 
 #include <cadt/statistics.hpp>

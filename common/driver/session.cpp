@@ -12,15 +12,17 @@ namespace {
 
 void require_valid(const Options& options, const Device& device) {
   constexpr unsigned most_flips = 1000;  // counters have ten bits
-  if (options.flip_threshold > most_flips)
-    throw OptionError("flip_threshold", std::to_string(options.flip_threshold) + " is more than " +
-                                            std::to_string(most_flips) + ", the most flips that are told apart");
-  if (options.strategy == Strategy::stars && (options.stabilize != Stabilize::off || options.watch))
-    throw OptionError("strategy", "stars goes with neither stabilize nor watch: they are about insertion");
-  if (options.strategy == Strategy::stars && takes_floats_only(device))
-    throw OptionError("strategy", "stars needs double precision, which '" + device.info().name +
-                                      "' has not: take locks (or automatic, which does)");
-  if (!(options.quality_epsilon >= 0)) throw OptionError("quality_epsilon", "must be a number and not negative");
+  if (options.tuning.flip_threshold > most_flips)
+    throw OptionError("tuning.flip_threshold", std::to_string(options.tuning.flip_threshold) + " is more than " +
+                                                   std::to_string(most_flips) + ", the most flips that are told apart");
+  if (options.tuning.strategy == Strategy::stars &&
+      (options.tuning.stabilize != Stabilize::off || options.tuning.watch))
+    throw OptionError("tuning.strategy", "stars goes with neither stabilize nor watch: they are about insertion");
+  if (options.tuning.strategy == Strategy::stars && takes_floats_only(device))
+    throw OptionError("tuning.strategy", "stars needs double precision, which '" + device.info().name +
+                                             "' has not: take locks (or automatic, which does)");
+  if (!(options.tuning.quality_epsilon >= 0))
+    throw OptionError("tuning.quality_epsilon", "must be a number and not negative");
 }
 
 }  // namespace
@@ -65,7 +67,7 @@ void remember_size(Triangulator::State& state, const Statistics& statistics, con
 
 void end_call(Triangulator::State& state, Context& ctx, bool ordered) {
   Statistics& statistics = ctx.statistics;
-  const bool measured = ctx.options.statistics != StatisticsDetail::none || ctx.options.kernel_times;
+  const bool measured = ctx.options.statistics != StatisticsDetail::none || ctx.options.tuning.kernel_times;
   if (measured || !ordered || !ctx.options.queue) ctx.finish();
   statistics.launches = ctx.launcher.launches();
   statistics.kernels = ctx.launcher.kernel_times();

@@ -150,7 +150,7 @@ class IncrementalInsertion {
       inserted_ += size;
       // Reading what was deferred takes as long as the launch of a level of few points.
       since_poll_ += size;
-      if (since_poll_ < poll_interval && !last && !ctx_.options.watch) {
+      if (since_poll_ < poll_interval && !last && !ctx_.options.tuning.watch) {
         deferred_ = {};  // the lists [1] are done; what this launch defers stays on the lists [0]
         continue;
       }
@@ -189,7 +189,7 @@ class IncrementalInsertion {
   }
 
   void show_growth() {
-    if (ctx_.options.watch) show_snapshot(ctx_, mesh_.locked, order_);
+    if (ctx_.options.tuning.watch) show_snapshot(ctx_, mesh_.locked, order_);
   }
 
   /// Moves what the last launches deferred to the lists [1]; the lists [0] are empty then.
@@ -248,7 +248,7 @@ class IncrementalInsertion {
 
   /// Legality sweeps until one finds nothing to repair.
   void certify(std::uint64_t edges) {
-    if (ctx_.options.stabilize == Stabilize::defer)
+    if (ctx_.options.tuning.stabilize == Stabilize::defer)
       mesh_.stabilize = CADT_STABILIZE_OFF;  // flips deferred until now are due
     const std::size_t slots = 2 * n_, limit = 4 * points_per_launch(ctx_.device);
     for (int sweep = 1; sweep <= max_sweeps; ++sweep) {
@@ -298,7 +298,7 @@ class IncrementalInsertion {
   std::size_t n_ = order_.distinct;
   std::uint32_t edge_capacity_ = static_cast<std::uint32_t>(n_ / 8 + 4096);
   Counters counters_{ctx_};
-  LockedMesh mesh_{ctx_, order_, static_cast<std::uint32_t>(ctx_.options.stabilize)};
+  LockedMesh mesh_{ctx_, order_, static_cast<std::uint32_t>(ctx_.options.tuning.stabilize)};
   Allocation deferred_counts_;
   std::array<Allocation, 2> deferred_points_, deferred_edges_;  // [0] is written by the next launch, [1] read by it
   Deferred deferred_;                                           // on the lists [1]

@@ -23,7 +23,7 @@ struct LockedMesh {
   /// CADT_LOCKED_MESH_PARAMETERS
   [[nodiscard]] auto arguments() const {
     return std::tie(locked, order.points, vertex_to_triangle, edge_flags, center.x, center.y, first, second, third,
-                    stabilize, ctx.options.flip_threshold, ctx.options.quality_epsilon);
+                    stabilize, ctx.options.tuning.flip_threshold, ctx.options.tuning.quality_epsilon);
   }
 };
 

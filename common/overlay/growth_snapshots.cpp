@@ -20,7 +20,7 @@ void show_snapshot(Context& ctx, const Allocation& locked, const SortedPoints& o
     if (std::find(triangle.word, triangle.word + 3, CADT_GHOST) != triangle.word + 3) continue;
     for (int k = 0; k < 3; ++k) triangles.push_back(input_ids[triangle.word[k]]);
   }
-  ctx.options.watch({live / 2 + 1, triangles});  // with ghosts, n points have 2n - 2 triangles
+  ctx.options.tuning.watch({live / 2 + 1, triangles});  // with ghosts, n points have 2n - 2 triangles
 }
 
 }  // namespace cadt

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snapshots of the growing mesh for Options::watch.
+// Snapshots of the growing mesh for Tuning::watch.
 #pragma once
 
 #include "common/driver/context.hpp"
@@ -7,7 +7,7 @@
 
 namespace cadt {
 
-/// Reads all triangles and calls Options::watch. \pre no launch is running that changes the mesh
+/// Reads all triangles and calls Tuning::watch. \pre no launch is running that changes the mesh
 void show_snapshot(Context& ctx, const Allocation& locked, const SortedPoints& order);
 
 }  // namespace cadt

@@ -51,7 +51,7 @@ cadt_bounds_row merge_bounds(Context& ctx, const Allocation& input, std::size_t 
 
 Bounds find_bounds(Context& ctx, const Allocation& input, std::size_t n, const Allocation& totals) {
   constexpr std::uint32_t usual_group = 128;  // the smallest group of a GPU unless the options say so
-  const unsigned asked = ctx.options.work_group_size;
+  const unsigned asked = ctx.options.tuning.work_group_size;
   const std::uint32_t group = ctx.device.shape().contiguous ? 1
                               : asked == 0                  ? usual_group
                                                             : std::min(asked, usual_group);

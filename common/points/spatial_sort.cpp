@@ -163,7 +163,8 @@ SortedPoints sort_spatially(Context& ctx, Allocation input, std::size_t n, bool 
         sort(*grid);
         overfull_points = flag_overfull(ctx, keys, spare, n);
       }
-      few_provable = ctx.options.strategy == Strategy::automatic && stays_crowded(sample, result.grid.finer(finer()));
+      few_provable =
+          ctx.options.tuning.strategy == Strategy::automatic && stays_crowded(sample, result.grid.finer(finer()));
     }
     const bool fine = for_stars && !few_provable && overfull_points > n / 4 && finer() >= fewest_fine_levels &&
                       result.grid.scale < std::ldexp(1.0, 1000);  // else nearly all points are equal

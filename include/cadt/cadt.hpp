@@ -5,6 +5,7 @@
 #include <cadt/batch.hpp>
 #include <cadt/devices.hpp>
 #include <cadt/errors.hpp>
+#include <cadt/options.hpp>
 #include <cadt/points.hpp>
 #include <cadt/queries.hpp>
 #include <cadt/statistics.hpp>

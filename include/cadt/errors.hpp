@@ -44,7 +44,7 @@ class CADT_API OptionError : public Error {
  public:
   OptionError(std::string option, const std::string& message)
       : Error("Options::" + option + ": " + message), option_(std::move(option)) {}
-  /// Name of the member, e.g. "flip_threshold".
+  /// Name of the member, e.g. "queue" or "tuning.flip_threshold".
   [[nodiscard]] const std::string& option() const noexcept { return option_; }
 
  private:

@@ -61,7 +61,7 @@ struct Statistics {
   std::uint64_t sweep_repairs = 0;     ///< illegal edges that the legality sweeps found and repaired
   std::uint64_t cavities = 0;          ///< conflict regions that were retriangulated as a whole (docs/insertion.md)
   std::uint64_t certified_edges = 0;   ///< edges that the last legality sweep examined and found legal
-  std::uint64_t stabilized_edges = 0;  ///< times that an illegal edge was left because of `Options::stabilize`
+  std::uint64_t stabilized_edges = 0;  ///< times that an illegal edge was left because of `Tuning::stabilize`
   std::uint64_t illegal_edges = 0;     ///< illegal edges of the result: 0, except with Stabilize::paper
   std::uint64_t tiles = 0;             ///< tiles of the plane for local stars; 0: not tried
   std::uint64_t proven_stars = 0;      ///< vertices whose local star was proven, without locks
@@ -90,7 +90,7 @@ struct Statistics {
   /// Milliseconds per phase, in order of execution, e.g. {"sort", 12.3}.
   std::vector<std::pair<std::string, double>> milliseconds;
 
-  /// With Options::kernel_times: the time of each kernel, the longest first; else empty. Copies and fills of memory do
+  /// With Tuning::kernel_times: the time of each kernel, the longest first; else empty. Copies and fills of memory do
   /// not count.
   std::vector<KernelTime> kernels;
 };

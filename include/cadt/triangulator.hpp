@@ -100,8 +100,8 @@ class CADT_API Triangulator {
   Triangulator& operator=(Triangulator&&) noexcept;
 
   [[nodiscard]] const DeviceInfo& device() const noexcept;
-  /// `backend`, `device`, `threads`, `work_group_size`, `queue`, `allocator` and `kernel_times` are read once, when the
-  /// device is opened; the other options may be changed between calls.
+  /// `backend`, `device`, `threads`, `queue` and `allocator`, and of `tuning` `work_group_size` and `kernel_times`, are
+  /// read once, when the device is opened; the other options may be changed between calls.
   [[nodiscard]] Options& options() noexcept;
   /// Theoretical occupancy of the insertion kernel with work groups of this size: resident warps over the maximum, 0 to
   /// 1; 0 if groups of this size cannot be launched (a call then uses the largest size that can). Empty where the
@@ -111,7 +111,7 @@ class CADT_API Triangulator {
   /// Triangulates points on the host; the mesh is on the host. \throws as cadt::triangulate
   [[nodiscard]] Triangulation triangulate(PointsView points);
   /// Triangulates points on the device; the mesh is on the device and complete when the call returns. With a queue of
-  /// the caller (Options::queue), StatisticsDetail::none and no Options::kernel_times it is complete in the order of
+  /// the caller (Options::queue), StatisticsDetail::none and no Tuning::kernel_times it is complete in the order of
   /// that queue: its last kernels may still be pending. \throws as cadt::triangulate, and InputError for a null handle.
   /// After an error the triangulator can be used again.
   [[nodiscard]] DeviceTriangulation triangulate(const DevicePoints& points);
@@ -125,8 +125,8 @@ class CADT_API Triangulator {
 
   /// Many point sets, as cadt::triangulate_batch. Sets of up to 32,768 points (CPUs: 2,048) are triangulated batched,
   /// some 16 million points at a time: with common launches, and without locks. Larger sets, those with a vertex of
-  /// more than 39 neighbours, and all sets if `Options::strategy` or `stabilize` ask for insertion or the device has no
-  /// double precision, are triangulated individually within the same call. \throws OptionError for `Options::watch`
+  /// more than 39 neighbours, and all sets if `Tuning::strategy` or `stabilize` ask for insertion or the device has no
+  /// double precision, are triangulated individually within the same call. \throws OptionError for `Tuning::watch`
   [[nodiscard]] TriangulationBatch triangulate_batch(PointsView points, std::span<const std::size_t> offsets);
   [[nodiscard]] DeviceTriangulationBatch triangulate_batch(const DevicePoints& points,
                                                            std::span<const std::size_t> offsets);
@@ -144,7 +144,7 @@ class CADT_API Triangulator {
 
   /// Upper bound of the device memory for a first call with so many points, in bytes: with its result and the memory
   /// cached for the next call, without the caller's points on the device. 124 a point where the device or
-  /// `Options::allocator` pools memory, else 176, and 228 with local stars (Options::strategy). With
+  /// `Options::allocator` pools memory, else 176, and 228 with local stars (Tuning::strategy). With
   /// `Options::max_memory` 124 are enough, on the host 97 for a mesh on the host; with local stars 71, or 83 for points
   /// on the host (below 85 and 101 a call takes about 5 % more time, 15 % in the canonical order), unless more than
   /// about 4 % of the vertices are residual. Over-full cells (more than 16 points in 2^-16 of the bounding box's width)

@@ -68,7 +68,8 @@ struct VerifyOptions {
 /// predicates differ from the builder's in code, formula and arithmetic; the few signs that they cannot decide are left
 /// to those of `verify`, as are the boundary and meshes without triangles. Missing neighbours are derived on the host
 /// first. On a device without double precision `verify` does all the work. `device` says where: backend, device,
-/// threads, work_group_size, grain, max_memory, stop, progress (phase "verify") are as for `triangulate`.
+/// threads, max_memory, stop, progress (phase "verify"), tuning.work_group_size and tuning.grain are as for
+/// `triangulate`.
 ///
 /// Throws InputError (NaN or infinity, with the index of the first), BackendUnavailable, OutOfMemory, DeviceError,
 /// KernelBuildError, Cancelled.

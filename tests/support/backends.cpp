@@ -16,9 +16,9 @@ Options BackendCase::options() const {
   options.backend = backend;
   options.device = chosen_device(backend);
   options.threads = threads;
-  options.work_group_size = work_group_size;
+  options.tuning.work_group_size = work_group_size;
   // Cards would do small sets without a lock: as users have it where the size of a group is theirs, else by insertion.
-  if (work_group_size != 0) options.strategy = Strategy::locks;
+  if (work_group_size != 0) options.tuning.strategy = Strategy::locks;
   return options;
 }
 

@@ -52,7 +52,7 @@ class Conflicts : public BackendTest {
     const ExpectedMesh expected = expected_mesh(xy);
     std::uint64_t conflicts = 0;
     Options options = GetParam().options();
-    options.strategy = Strategy::locks;
+    options.tuning.strategy = Strategy::locks;
     // On a busy machine threads may take turns for a while: up to five times as many runs until two have met.
     const bool needs_conflict = must_conflict && runs_in_parallel();
     for (int run = 0; run < runs() || (needs_conflict && conflicts == 0 && run < 5 * runs()); ++run) {

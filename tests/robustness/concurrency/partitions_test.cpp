@@ -19,7 +19,7 @@ class Partitions : public BackendTest {
  protected:
   static Statistics check(const Points& xy) {
     Options options = GetParam().options();
-    options.strategy = Strategy::locks;
+    options.tuning.strategy = Strategy::locks;
     const Triangulation mesh = triangulate(std::span<const double>(xy), options);
     EXPECT_TRUE(same_mesh(mesh, expected_mesh(xy)));
     EXPECT_TRUE(mesh.statistics().certified);

@@ -68,9 +68,9 @@ class Perturbed : public BackendTest {
   void triangulate_with(Noise mode, const Points& xy, const ExpectedMesh& expected, unsigned seed, unsigned grain) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(xy.size() / 2) + " points");
     Options options = GetParam().options();
-    options.strategy = Strategy::locks;
-    options.grain = grain;
-    options.quality_epsilon = 8.0 * seed + static_cast<unsigned>(mode);
+    options.tuning.strategy = Strategy::locks;
+    options.tuning.grain = grain;
+    options.tuning.quality_epsilon = 8.0 * seed + static_cast<unsigned>(mode);
     const bool host = GetParam().backend == Backend::host;
     if (host) clear_counts();
     const Triangulation mesh = triangulate(std::span<const double>(xy), options);
@@ -144,12 +144,12 @@ TEST_P(PerturbedRepeats, TwentyThousandPoints) {
   const Triangulation first = reference.triangulate(std::span<const double>(xy));
   ASSERT_TRUE(verified(xy, first));
   Options options = GetParam().options();
-  options.strategy = Strategy::locks;
-  options.grain = 1;
+  options.tuning.strategy = Strategy::locks;
+  options.tuning.grain = 1;
   Triangulator triangulator(options);
   for (unsigned repeat = 0; repeat < static_cast<unsigned>(repeats); ++repeat) {
     const unsigned mode = 1 + repeat % static_cast<unsigned>(Noise::all);
-    triangulator.options().quality_epsilon = 8.0 * (repeat + 1) + mode;
+    triangulator.options().tuning.quality_epsilon = 8.0 * (repeat + 1) + mode;
     const Triangulation mesh = triangulator.triangulate(std::span<const double>(xy));
     ASSERT_EQ(mesh.hash(), first.hash()) << "repeat " << repeat << ", mode " << mode;
     const Statistics& s = mesh.statistics();

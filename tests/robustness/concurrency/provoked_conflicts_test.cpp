@@ -51,8 +51,8 @@ TEST_P(ProvokedConflicts, AreCountedAndDoNotShow) {
   for (int run = 0; run < runs || missing(); ++run) {
     const std::size_t set = static_cast<std::size_t>(run) % 2;
     Options options = GetParam().options();
-    options.strategy = Strategy::locks;
-    options.grain = 1;
+    options.tuning.strategy = Strategy::locks;
+    options.tuning.grain = 1;
     const Triangulation mesh = triangulate(std::span<const double>(sets[set]), options);
     ASSERT_TRUE(same_mesh(mesh, expected[set])) << "run " << run;
     const Statistics& s = mesh.statistics();

@@ -136,7 +136,7 @@ TEST_P(EveryStep, PointsOfTheDevice) {
   const Call call = [&](Triangulator& t) { return outcome_of(t.triangulate(points).download()); };
   Options with = options();
   with.order = Order::fast;
-  with.strategy = Strategy::locks;
+  with.tuning.strategy = Strategy::locks;
   fail_each(with, call);
 }
 
@@ -144,7 +144,7 @@ TEST_P(EveryStep, Stars) {
   const Points xy = some_points();
   const Call call = [&](Triangulator& t) { return outcome_of(t.triangulate(Reals(xy))); };
   Options with = options();
-  with.strategy = Strategy::stars;
+  with.tuning.strategy = Strategy::stars;
   fail_each(with, call);
 }
 
@@ -164,7 +164,7 @@ TEST_P(EveryStep, Clocks) {
     return outcome_of(mesh);
   };
   Options with = without_queue();
-  with.kernel_times = true;
+  with.tuning.kernel_times = true;
   with.statistics = StatisticsDetail::counters;
   fail_each(with, call);
 }
@@ -173,8 +173,8 @@ TEST_P(EveryStep, Snapshots) {
   const Points xy = some_points();
   const Call call = [&](Triangulator& t) { return outcome_of(t.triangulate(Reals(xy))); };
   Options with = options();
-  with.watch = [](const Snapshot&) {};
-  with.stabilize = Stabilize::defer;
+  with.tuning.watch = [](const Snapshot&) {};
+  with.tuning.stabilize = Stabilize::defer;
   fail_each(with, call);
 }
 
@@ -302,7 +302,7 @@ TEST_P(EveryStep, Cancelled) {
     const Injection injection(faults);
     for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
       Options with = options();
-      with.strategy = strategy;
+      with.tuning.strategy = strategy;
       Triangulator triangulator(with);
       std::size_t calls = 0;
       triangulator.options().progress = [&](const Progress&) { ++calls; };

@@ -21,7 +21,7 @@ class ExactLimits : public ResidentTest {
  protected:
   [[nodiscard]] Options options(Strategy strategy) const {
     Options with = ResidentTest::options();
-    with.strategy = strategy;
+    with.tuning.strategy = strategy;
     return with;
   }
   [[nodiscard]] bool on_host_itself() const { return GetParam().backend == Backend::host; }

@@ -138,7 +138,7 @@ TEST(HostMemory, Triangulator) {
     const DeviceTriangulation mesh = triangulator.triangulate(points);
     return triangulator.verify(points, mesh).summary();
   });
-  triangulator.options().strategy = Strategy::stars;
+  triangulator.options().tuning.strategy = Strategy::stars;
   refuse_each([&] { return triangulator.triangulate(Reals(xy)).hash().to_string(); });
 }
 

@@ -31,7 +31,7 @@ class HostileDevice : public ResidentTest {
  protected:
   [[nodiscard]] Options insertion() const {
     Options with = options();
-    with.strategy = Strategy::locks;
+    with.tuning.strategy = Strategy::locks;
     return with;
   }
   const std::shared_ptr<Faults> faults = std::make_shared<Faults>();

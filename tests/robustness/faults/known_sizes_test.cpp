@@ -17,7 +17,7 @@ class KnownSizes : public ResidentTest {
  protected:
   [[nodiscard]] Options options(Strategy strategy) const {
     Options with = ResidentTest::options();
-    with.strategy = strategy;
+    with.tuning.strategy = strategy;
     return with;
   }
   /// CUDA has a pool of its own, which knows what is free.

@@ -22,7 +22,7 @@ class PooledMemory : public ResidentTest {
   }
   [[nodiscard]] Options with(Strategy strategy, Order order) const {
     Options chosen = options();
-    chosen.strategy = strategy;
+    chosen.tuning.strategy = strategy;
     chosen.order = order;
     return chosen;
   }

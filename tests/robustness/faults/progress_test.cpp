@@ -40,7 +40,7 @@ class ReportedProgress : public ResidentTest {
  protected:
   [[nodiscard]] Options options(Strategy strategy) const {
     Options with = ResidentTest::options();
-    with.strategy = strategy;
+    with.tuning.strategy = strategy;
     return with;
   }
 

@@ -79,7 +79,7 @@ class ReportedStatistics : public ResidentTest {
   }
   [[nodiscard]] Options options(Strategy strategy) const {
     Options with = ResidentTest::options();
-    with.strategy = strategy;
+    with.tuning.strategy = strategy;
     return with;
   }
   void expect_told(const Statistics& s, const DeviceInfo& device, std::size_t n, std::size_t distinct,

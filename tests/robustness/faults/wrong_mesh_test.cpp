@@ -127,7 +127,7 @@ class WrongMesh : public ResidentTest {
  protected:
   [[nodiscard]] Options options(Strategy strategy) const {
     Options with = ResidentTest::options();
-    with.strategy = strategy;
+    with.tuning.strategy = strategy;
     return with;
   }
 

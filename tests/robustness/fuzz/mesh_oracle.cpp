@@ -18,10 +18,10 @@ Triangulator& triangulator(unsigned threads, unsigned grain) {
   Options options;
   options.backend = Backend::host;
   options.threads = threads;
-  options.grain = grain;
+  options.tuning.grain = grain;
   static auto* const serial = new Triangulator([&] {
     Options one = options;
-    one.threads = 1, one.grain = 0;
+    one.threads = 1, one.tuning.grain = 0;
     return one;
   }());
   if (threads == 1) return *serial;
@@ -36,14 +36,14 @@ Counter& meshes() {
 
 Triangulation by(Strategy strategy, std::span<const double> xy, unsigned threads = 1) {
   Triangulator& t = triangulator(threads, 1);
-  t.options().strategy = strategy;
+  t.options().tuning.strategy = strategy;
   meshes() += 1;
   return t.triangulate(PointsView(xy));
 }
 
 TriangulationBatch wrapped(std::span<const double> xy) {
   Triangulator& t = triangulator(1, 0);
-  t.options().strategy = Strategy::automatic;
+  t.options().tuning.strategy = Strategy::automatic;
   const std::array<std::size_t, 4> offsets = {0, 0, xy.size() / 4, xy.size() / 2};
   meshes() += 2;
   return t.triangulate_batch(PointsView(xy), offsets);

@@ -78,7 +78,7 @@ class BatchGroups : public BackendTest {
  protected:
   static Options options(Strategy strategy) {
     Options with = GetParam().options();
-    with.strategy = strategy;
+    with.tuning.strategy = strategy;
     return with;
   }
 };

@@ -75,7 +75,7 @@ class Batch : public BackendTest {
   }
   static Options stars() {
     Options options = GetParam().options();
-    options.strategy = Strategy::stars;
+    options.tuning.strategy = Strategy::stars;
     return options;
   }
   /// Also a processor that does what a card does.
@@ -229,12 +229,12 @@ TEST_P(Batch, StrategiesAndStabilize) {
   const Sets sets = {uniform_points(300, 1), grid_points(20, 20), {}, uniform_points(2, 1), grid_points(1, 30)};
   for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
     Options options = GetParam().options();
-    options.strategy = strategy;
+    options.tuning.strategy = strategy;
     const std::uint64_t together = check(sets, options).batched_sets;
     EXPECT_EQ(together, strategy == Strategy::locks && on_card() ? 0u : 2u);
   }
   Options options = GetParam().options();
-  options.stabilize = Stabilize::defer;
+  options.tuning.stabilize = Stabilize::defer;
   EXPECT_EQ(check(sets, options).batched_sets, 0u);
 }
 
@@ -298,7 +298,7 @@ TEST_P(Batch, Errors) {
     EXPECT_EQ(error.index(), 95u);
     EXPECT_NE(std::string(error.what()).find("in set 2: point 15 "), std::string::npos) << error.what();
   }
-  triangulator.options().watch = [](const Snapshot&) {};
+  triangulator.options().tuning.watch = [](const Snapshot&) {};
   EXPECT_THROW((void)triangulator.triangulate_batch(joined.xy, joined.offsets), OptionError);
 }
 

@@ -95,7 +95,7 @@ TEST_F(FloatInterface, NoNumbersAreNamed) {
 
 TEST_F(FloatInterface, StarsAreAnOptionErrorAndAutomaticTakesLocks) {
   Options options = float_options();
-  options.strategy = Strategy::stars;
+  options.tuning.strategy = Strategy::stars;
   const Floats xy = floats_of(uniform_points(1000, 2));
   try {
     static_cast<void>(triangulate(FloatSpan(xy), options));
@@ -129,10 +129,10 @@ TEST_F(FloatInterface, Stabilize) {
   const Floats xy = floats_of(cluster_points(4000));
   Options options = float_options();
   const Hash128 hash = triangulate(FloatSpan(xy), host_options()).hash();
-  options.stabilize = Stabilize::defer;
-  options.flip_threshold = 1;
+  options.tuning.stabilize = Stabilize::defer;
+  options.tuning.flip_threshold = 1;
   EXPECT_EQ(triangulate(FloatSpan(xy), options).hash(), hash);
-  options.stabilize = Stabilize::paper;
+  options.tuning.stabilize = Stabilize::paper;
   const Triangulation mesh = triangulate(FloatSpan(xy), options);
   EXPECT_EQ(mesh.number_of_triangles(), triangulate(FloatSpan(xy), host_options()).number_of_triangles());
 }
@@ -141,12 +141,12 @@ TEST_F(FloatInterface, StatisticsAndWatch) {
   const Floats xy = floats_of(uniform_points(3000, 2));
   Options options = float_options();
   std::size_t shown = 0;
-  options.watch = [&](const Snapshot&) { ++shown; };
+  options.tuning.watch = [&](const Snapshot&) { ++shown; };
   EXPECT_EQ(triangulate(FloatSpan(xy), options).hash(), triangulate(FloatSpan(xy), host_options()).hash());
   EXPECT_GT(shown, 3u);
-  options.watch = nullptr;
+  options.tuning.watch = nullptr;
   options.statistics = StatisticsDetail::timing;
-  options.kernel_times = true;
+  options.tuning.kernel_times = true;
   EXPECT_FALSE(triangulate(FloatSpan(xy), options).statistics().kernels.empty());
 }
 

@@ -25,8 +25,8 @@ class FloatMesh : public FloatTest {};
 TEST_F(FloatMesh, Uniform) {
   check(floats_of(uniform_points(40000, 3)), "uniform");
   Options small_groups = float_options();
-  small_groups.work_group_size = 16;
-  small_groups.strategy = Strategy::locks;
+  small_groups.tuning.work_group_size = 16;
+  small_groups.tuning.strategy = Strategy::locks;
   check(floats_of(uniform_points(20000, 5)), "groups of 16", small_groups);
   check(floats_of(moved(uniform_points(20000, 4), 500000, 5000000)), "far from the origin: duplicates and lattices");
 }

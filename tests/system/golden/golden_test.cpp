@@ -99,9 +99,9 @@ class Golden : public BackendTest {
   static Triangulation deferring(const BackendCase& c, const Points& xy) {
     struct Scope {
       Options& options;
-      ~Scope() { options.stabilize = Stabilize::off; }
+      ~Scope() { options.tuning.stabilize = Stabilize::off; }
     } const scope{opened(c).options()};
-    scope.options.stabilize = Stabilize::defer;
+    scope.options.tuning.stabilize = Stabilize::defer;
     return opened(c).triangulate(std::span<const double>(xy));
   }
 
@@ -109,9 +109,9 @@ class Golden : public BackendTest {
   static Triangulation with_stars(const BackendCase& c, const Points& xy) {
     struct Scope {
       Options& options;
-      ~Scope() { options.strategy = Strategy::automatic; }
+      ~Scope() { options.tuning.strategy = Strategy::automatic; }
     } const scope{opened(c).options()};
-    scope.options.strategy = Strategy::stars;
+    scope.options.tuning.strategy = Strategy::stars;
     return opened(c).triangulate(std::span<const double>(xy));
   }
 

@@ -81,8 +81,8 @@ TEST_P(Regression, AnyGrainCutsTheWorkOnce) {
   for (const unsigned group : {0u, 4u, 64u}) {
     for (const unsigned grain : {1u << 26, 1u << 30, 1u << 31, ~0u}) {
       Options options = GetParam().options();
-      options.work_group_size = group;
-      options.grain = grain;
+      options.tuning.work_group_size = group;
+      options.tuning.grain = grain;
       EXPECT_TRUE(verified(xy, triangulate(std::span<const double>(xy), options))) << group << " and " << grain;
     }
   }

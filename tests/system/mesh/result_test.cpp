@@ -74,7 +74,7 @@ TEST_P(Result, CanonicalOrderAroundHubs) {
     rings = shuffled(rings, 8);
     xy.insert(xy.end(), rings.begin(), rings.end());
     Options options = GetParam().options();
-    options.kernel_times = true;
+    options.tuning.kernel_times = true;
     const Triangulation mesh = triangulate(Reals(xy), options);
     EXPECT_EQ(copy(mesh.triangles()), canonical_set(mesh.triangles())) << hubs << " hubs";
     EXPECT_EQ(copy(mesh.neighbors()), neighbors_of(mesh.triangles())) << hubs << " hubs";
@@ -164,7 +164,7 @@ TEST_P(Result, TinySets) {
 TEST_P(Result, StatisticsDescribeTheRun) {
   const Points xy = mixed_points();
   Options options = GetParam().options();
-  options.strategy = Strategy::locks;
+  options.tuning.strategy = Strategy::locks;
   const Triangulation mesh = triangulate(Reals(xy), options);
   const Statistics& s = mesh.statistics();
   EXPECT_EQ(s.backend, to_string(GetParam().backend)) << "the back end that was asked for did not run";

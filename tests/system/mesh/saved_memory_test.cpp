@@ -21,8 +21,8 @@ class SavedMemory : public BackendTest {
   /// The least that a call with points of the host's takes, and `more`.
   static Options bounded(std::size_t n, std::size_t more) {
     Options with = GetParam().options();
-    with.strategy = Strategy::stars;
-    with.kernel_times = true;
+    with.tuning.strategy = Strategy::stars;
+    with.tuning.kernel_times = true;
     with.max_memory = 2 * 65536 + 83 * n + more;
     return with;
   }

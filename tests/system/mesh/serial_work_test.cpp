@@ -14,7 +14,7 @@ class SerialWork : public BackendTest {
  protected:
   static Statistics run(const Points& xy) {
     Options options = GetParam().options();
-    options.strategy = Strategy::locks;
+    options.tuning.strategy = Strategy::locks;
     const Triangulation mesh = triangulate(std::span<const double>(xy), options);
     const Statistics& s = mesh.statistics();
     EXPECT_EQ(s.sweep_repairs, 0u);

@@ -58,9 +58,9 @@ TEST_P(Stabilize, DeferIsTheSameMesh) {
     SCOPED_TRACE(name);
     Options options = GetParam().options();
     const Triangulation off = triangulate(Reals(xy), options);
-    options.stabilize = cadt::Stabilize::defer;
+    options.tuning.stabilize = cadt::Stabilize::defer;
     for (const unsigned threshold : {0U, 3U}) {
-      options.flip_threshold = threshold;
+      options.tuning.flip_threshold = threshold;
       const Triangulation deferred = triangulate(Reals(xy), options);
       ASSERT_TRUE(std::ranges::equal(deferred.triangles(), off.triangles()));
       ASSERT_TRUE(std::ranges::equal(deferred.neighbors(), off.neighbors()));
@@ -75,14 +75,14 @@ TEST_P(Stabilize, DeferDefers) {
   Options options = GetParam().options();
   const Triangulation off = triangulate(Reals(xy), options);
   EXPECT_EQ(off.statistics().stabilized_edges, 0u);
-  options.stabilize = cadt::Stabilize::defer;
+  options.tuning.stabilize = cadt::Stabilize::defer;
   const Triangulation deferred = triangulate(Reals(xy), options);
   EXPECT_GT(deferred.statistics().stabilized_edges, 1000u);
   EXPECT_GT(deferred.statistics().sweep_repairs, 1000u);
   EXPECT_GT(deferred.statistics().legality_sweeps, 1u);
   EXPECT_EQ(deferred.hash(), off.hash());
   // Nothing is left to do for a threshold that no edge reaches.
-  options.flip_threshold = 1000;
+  options.tuning.flip_threshold = 1000;
   EXPECT_EQ(triangulate(Reals(xy), options).statistics().stabilized_edges, 0u);
 }
 
@@ -92,7 +92,7 @@ TEST_P(Stabilize, PaperLeavesFewEdgesAndSaysSo) {
     Options options = GetParam().options();
     const Triangulation exact = triangulate(Reals(xy), options);
     EXPECT_TRUE(exact.statistics().certified);
-    options.stabilize = cadt::Stabilize::paper;
+    options.tuning.stabilize = cadt::Stabilize::paper;
     const Triangulation mesh = triangulate(Reals(xy), options);
     const Statistics& s = mesh.statistics();
     const std::size_t differing = count_differing(mesh, exact);
@@ -119,15 +119,15 @@ TEST_P(Stabilize, PaperLeavesFewEdgesAndSaysSo) {
 TEST_P(Stabilize, PaperObeysItsParameters) {
   const Points xy = uniform_points(3000, 7);
   Options options = GetParam().options();
-  options.stabilize = cadt::Stabilize::paper;
-  options.flip_threshold = 0;
-  options.quality_epsilon = 1000;
+  options.tuning.stabilize = cadt::Stabilize::paper;
+  options.tuning.flip_threshold = 0;
+  options.tuning.quality_epsilon = 1000;
   const Triangulation none = triangulate(Reals(xy), options);
   EXPECT_TRUE(valid_structure(xy, none));
   EXPECT_GT(none.statistics().illegal_edges, 1000u);
   EXPECT_GT(none.statistics().flips_per_edge[1], 1000u);
   EXPECT_LT(none.statistics().flips_per_edge[2], 100u);
-  options.quality_epsilon = 0;  // every gain is taken: the mesh is Delaunay's
+  options.tuning.quality_epsilon = 0;  // every gain is taken: the mesh is Delaunay's
   const Triangulation all = triangulate(Reals(xy), options);
   EXPECT_TRUE(all.statistics().certified);
   EXPECT_EQ(all.hash(), triangulate(Reals(xy), GetParam().options()).hash());
@@ -137,8 +137,8 @@ TEST_P(Stabilize, PaperOnEveryFamilyIsAValidMesh) {
   for (const auto& [name, xy] : every_family()) {
     SCOPED_TRACE(name);
     Options options = GetParam().options();
-    options.stabilize = cadt::Stabilize::paper;
-    options.flip_threshold = 1;
+    options.tuning.stabilize = cadt::Stabilize::paper;
+    options.tuning.flip_threshold = 1;
     const Triangulation mesh = triangulate(Reals(xy), options);
     ASSERT_TRUE(valid_structure(xy, mesh));
   }
@@ -147,16 +147,16 @@ TEST_P(Stabilize, PaperOnEveryFamilyIsAValidMesh) {
 TEST_P(Stabilize, RefusesWhatItCannotCount) {
   const Points xy = uniform_points(10);
   Options options = GetParam().options();
-  options.flip_threshold = 1001;
+  options.tuning.flip_threshold = 1001;
   try {
     static_cast<void>(triangulate(Reals(xy), options));
     FAIL() << "accepted";
   } catch (const OptionError& e) {
-    EXPECT_EQ(e.option(), "flip_threshold");
+    EXPECT_EQ(e.option(), "tuning.flip_threshold");
   }
-  options.flip_threshold = 3;
+  options.tuning.flip_threshold = 3;
   for (const double epsilon : {-1e-9, std::numeric_limits<double>::quiet_NaN()}) {
-    options.quality_epsilon = epsilon;
+    options.tuning.quality_epsilon = epsilon;
     EXPECT_THROW(static_cast<void>(triangulate(Reals(xy), options)), OptionError);
   }
 }

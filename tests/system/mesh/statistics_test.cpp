@@ -39,7 +39,7 @@ class CountedWork : public BackendTest {
  protected:
   static Options options() {
     Options options = GetParam().options();
-    options.strategy = Strategy::locks;
+    options.tuning.strategy = Strategy::locks;
     return options;
   }
 };
@@ -128,11 +128,11 @@ TEST_P(KernelTimes, AreThoseOfTheLaunches) {
   Options options = GetParam().options();
   options.order = Order::fast;
   for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
-    options.strategy = strategy;
-    options.kernel_times = false;
+    options.tuning.strategy = strategy;
+    options.tuning.kernel_times = false;
     const Triangulation without = triangulate(Reals(xy), options);
     EXPECT_TRUE(without.statistics().kernels.empty());
-    options.kernel_times = true;
+    options.tuning.kernel_times = true;
     Triangulator triangulator(options);
     for (int run = 0; run < 2; ++run) {
       const Triangulation mesh = triangulator.triangulate(Reals(xy));
@@ -169,8 +169,8 @@ TEST_P(KernelTimes, AreThoseOfTheLaunches) {
 TEST_P(KernelTimes, BeginAnewAfterACancelledRun) {
   const Points xy = uniform_points(20000, 12);
   Options options = GetParam().options();
-  options.kernel_times = true;
-  options.strategy = Strategy::locks;  // the others may have no phase of insertion
+  options.tuning.kernel_times = true;
+  options.tuning.strategy = Strategy::locks;  // the others may have no phase of insertion
   Triangulator triangulator(options);
   std::stop_source source;
   triangulator.options().stop = source.get_token();
@@ -193,7 +193,7 @@ TEST_P(Snapshots, ShowTheGrowingMesh) {
   const Points xy = uniform_points(2048, 10);
   Options options = GetParam().options();
   std::vector<std::size_t> points, triangles;
-  options.watch = [&](const Snapshot& snapshot) {
+  options.tuning.watch = [&](const Snapshot& snapshot) {
     points.push_back(snapshot.points);
     triangles.push_back(snapshot.triangles.size() / 3);
     ASSERT_EQ(snapshot.triangles.size() % 3, 0u);

@@ -28,7 +28,7 @@ class WorstCases : public BackendTest {
  protected:
   [[nodiscard]] static Options with_locks() {
     Options options = GetParam().options();
-    options.strategy = Strategy::locks;
+    options.tuning.strategy = Strategy::locks;
     return options;
   }
 };
@@ -40,7 +40,7 @@ TEST_P(WorstCases, AxesInsideOut) {
   const ExpectedMesh expected = expected_mesh(xy);
   for (const unsigned grain : {0U, 1U, 1000U}) {
     Options options = with_locks();
-    options.grain = grain;
+    options.tuning.grain = grain;
     const Triangulation mesh = triangulate(std::span<const double>(xy), options);
     ASSERT_TRUE(same_mesh(mesh, expected));
     ASSERT_TRUE(verified(xy, mesh));
@@ -61,7 +61,7 @@ TEST_P(WorstCases, Hub) {
   const Points xy = hub_points(static_cast<int>(degree));
   Options options = with_locks();
   for (const unsigned grain : {0U, 1U}) {
-    options.grain = grain;
+    options.tuning.grain = grain;
     const Triangulation mesh = triangulate(std::span<const double>(xy), options);
     ASSERT_TRUE(verified(xy, mesh));
     // Rounded, some of the points are not corners of the hull, but all are neighbours of the hub.
@@ -130,7 +130,7 @@ TEST_P(WorstCases, SmallMeshes) {
   Options alone;
   alone.backend = Backend::host;
   alone.threads = 1;
-  alone.strategy = Strategy::locks;
+  alone.tuning.strategy = Strategy::locks;
   Triangulator one(alone), many(GetParam().options());
   for (std::size_t begin = 0; begin < meshes; begin += per_batch) {
     std::vector<Points> sets;
@@ -157,7 +157,7 @@ TEST_P(WorstCases, SmallMeshesInDispute) {
   const std::size_t meshes = number_from("CADT_SMALL_MESHES", 10000) / 10;
   Random random(static_cast<std::uint64_t>(65 + meshes));
   Options options = with_locks();
-  options.grain = 1;
+  options.tuning.grain = 1;
   Triangulator disputed(options);
   Options serial;
   serial.backend = Backend::host;

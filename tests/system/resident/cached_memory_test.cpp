@@ -71,7 +71,7 @@ TEST_P(CachedMemory, SeveralCallsTakeLittle) {
       SCOPED_TRACE(std::string(order == Order::fast ? "fast, " : "canonical, ") + (floats ? "float" : "double"));
       Options with = options();
       with.order = order;
-      with.strategy = Strategy::automatic;
+      with.tuning.strategy = Strategy::automatic;
       Triangulator triangulator(with);
       if (!triangulator.device().gpu) GTEST_SKIP() << "processors keep more, of the memory of the process";
       const DevicePoints points = floats ? DevicePoints{.x = memory->upload(std::span<const float>(single)),
@@ -101,7 +101,7 @@ TEST_P(CachedMemory, ReservedMemoryIsPooled) {
       SCOPED_TRACE(std::string(to_string(strategy)) + (order == Order::fast ? ", fast" : ", canonical"));
       Options with = options();
       with.order = order;
-      with.strategy = strategy;
+      with.tuning.strategy = strategy;
       Triangulator triangulator(with);
       if (!triangulator.device().gpu) GTEST_SKIP() << "CPUs pool nothing";
       triangulator.reserve(n);

@@ -221,9 +221,9 @@ int run(const Arguments& a) {
   Options options;
   options.backend = backend_from_string(a.backend);
   options.order = a.order;
-  options.work_group_size = a.block;
-  options.strategy = a.strategy;
-  options.stabilize = a.stabilize;
+  options.tuning.work_group_size = a.block;
+  options.tuning.strategy = a.strategy;
+  options.tuning.stabilize = a.stabilize;
   options.statistics = a.statistics;
   std::unique_ptr<test::DeviceMemory> memory;
   options.max_memory = a.most_bytes * n;

@@ -66,7 +66,7 @@ TEST_P(CudaCalls, TakesAllMemory) {
   const Known few(uniform_points(1000));
   const DevicePoints points = upload(uniform_points(n)), fewer = upload(few.xy);
   Options with = options();
-  with.strategy = Strategy::locks;  // the least that is needed
+  with.tuning.strategy = Strategy::locks;  // the least that is needed
   Triangulator triangulator(with);
   expect_same(*memory, triangulator.triangulate(fewer), few.mesh);
   triangulator.release_memory();

@@ -38,7 +38,7 @@ TEST_P(ResidentMemory, LittleWithTheStarStage) {
     for (const std::size_t each : {85, 71}) {
       SCOPED_TRACE(std::to_string(each) + " bytes a point");
       Options with = options();
-      with.strategy = Strategy::stars;
+      with.tuning.strategy = Strategy::stars;
       with.order = order;
       with.max_memory = each * known.size() + 131072;
       Triangulator triangulator(with);
@@ -77,7 +77,7 @@ TEST_P(ResidentMemory, LittleWithFloats) {
       for (const bool bounded : {false, true}) {
         SCOPED_TRACE(std::string(apart ? "coordinates apart" : "interleaved") + (bounded ? ", bounded" : ""));
         Options with = options();
-        with.strategy = Strategy::stars;
+        with.tuning.strategy = Strategy::stars;
         with.order = order;
         if (bounded)
           with.max_memory = 71 * known.size() + 131072;
@@ -111,7 +111,7 @@ TEST_P(ResidentMemory, GatheredAgain) {
     const std::vector<float> single(xy.begin(), has_floats ? xy.end() : xy.begin() + 2);
     const Known known(xy);
     Options with = options();
-    with.strategy = Strategy::stars;
+    with.tuning.strategy = Strategy::stars;
     Triangulator triangulator(with);
     const DevicePoints floats{
         .x = memory->upload(std::span<const float>(single)), .size = known.size(), .scalar = Scalar::float32};
@@ -148,7 +148,7 @@ TEST_P(ResidentMemory, StarsThatMustStay) {
   const std::vector<float> single(xy.begin(), xy.end());
   const Known known(Points(single.begin(), single.end()));
   Options with = options();
-  with.strategy = Strategy::stars;
+  with.tuning.strategy = Strategy::stars;
   Triangulator triangulator(with);
   const DeviceTriangulation mesh = triangulator.triangulate(DevicePoints{
       .x = memory->upload(std::span<const float>(single)), .size = known.size(), .scalar = Scalar::float32});

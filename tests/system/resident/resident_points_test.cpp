@@ -138,7 +138,7 @@ TEST_P(Resident, OrderMayChangeBetweenCalls) {
 
 TEST_P(Resident, StarsGiveTheSame) {
   Options with = options();
-  with.strategy = Strategy::stars;
+  with.tuning.strategy = Strategy::stars;
   Triangulator triangulator(with);
   for (const Points& xy : {uniform_points(20000, 3), grid_points(70, 60), with_duplicates(), Points{0, 0, 1, 0, 0, 1},
                            Points{0, 0, 1, 1, 2, 2}, regular_polygon(50, 0, 0, 1)}) {

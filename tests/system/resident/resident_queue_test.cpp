@@ -78,9 +78,9 @@ TEST_P(ClQueue, OutOfOrder) {
 
 TEST_P(ClQueue, WithoutProfiling) {
   Options with = options();
-  with.kernel_times = true;
+  with.tuning.kernel_times = true;
   if (const auto error = thrown<OptionError>([&] { const Triangulator t(with); }); error != nullptr) {
-    EXPECT_EQ(error->option(), "kernel_times");
+    EXPECT_EQ(error->option(), "tuning.kernel_times");
   }
   const cl::CommandQueue queue(own().getInfo<CL_QUEUE_CONTEXT>(), own().getInfo<CL_QUEUE_DEVICE>(),
                                CL_QUEUE_PROFILING_ENABLE);

@@ -22,7 +22,7 @@ inline Triangulation with_locks(PointsView points) {
   Options options;
   options.backend = Backend::host;
   options.threads = 1;
-  options.strategy = Strategy::locks;
+  options.tuning.strategy = Strategy::locks;
   return triangulate(points, options);
 }
 
@@ -42,7 +42,7 @@ class Stars : public BackendTest {
     BackendTest::SetUp();
     if (IsSkipped() || HasFatalFailure()) return;
     Options options = GetParam().options();
-    options.strategy = Strategy::stars;
+    options.tuning.strategy = Strategy::stars;
     stars_.emplace(options);
   }
   void TearDown() override { stars_.reset(); }

@@ -23,8 +23,8 @@ TEST_P(Stars, GroupsOfEverySize) {
   for (const unsigned size : gpu ? std::vector{32u, 64u, 128u, 256u} : std::vector{64u}) {
     SCOPED_TRACE(size);
     Options options = GetParam().options();
-    options.strategy = Strategy::stars;
-    options.work_group_size = size;
+    options.tuning.strategy = Strategy::stars;
+    options.tuning.work_group_size = size;
     const Triangulation mesh = triangulate(Reals(xy), options);
     EXPECT_TRUE(same_arrays(mesh, expected));
     EXPECT_TRUE(same_arrays(triangulate(Reals(lattice), options), expected_lattice));
@@ -67,7 +67,7 @@ TEST_P(Stars, Stop) {
 TEST_P(Stars, MaxMemoryIsABound) {
   const Points xy = uniform_points(20000, 53);
   Options options = GetParam().options();
-  options.strategy = Strategy::stars;
+  options.tuning.strategy = Strategy::stars;
   const Triangulation unbounded = triangulate(Reals(xy), options);
   const auto peak = static_cast<double>(unbounded.statistics().bytes_device_peak);
   int refused = 0, ran = 0;
@@ -138,16 +138,16 @@ std::string refused_option(const Points& xy, const Options& options) {
 TEST_P(Stars, RefusesWhatShowsInsertion) {
   const Points xy = uniform_points(50);
   for (const Strategy strategy : {Strategy::automatic, Strategy::locks, Strategy::stars}) {
-    const std::string expected = strategy == Strategy::stars ? "strategy" : "none";
+    const std::string expected = strategy == Strategy::stars ? "tuning.strategy" : "none";
     Options options = GetParam().options();
-    options.strategy = strategy;
+    options.tuning.strategy = strategy;
     EXPECT_EQ(refused_option(xy, options), "none");
     for (const Stabilize mode : {Stabilize::defer, Stabilize::paper}) {
-      options.stabilize = mode;
+      options.tuning.stabilize = mode;
       EXPECT_EQ(refused_option(xy, options), expected) << to_string(strategy) << ", " << to_string(mode);
     }
-    options.stabilize = Stabilize::off;
-    options.watch = [](const Snapshot&) {};
+    options.tuning.stabilize = Stabilize::off;
+    options.tuning.watch = [](const Snapshot&) {};
     EXPECT_EQ(refused_option(xy, options), expected) << to_string(strategy) << ", watch";
   }
 }

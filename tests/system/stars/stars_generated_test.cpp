@@ -19,10 +19,10 @@ TEST_P(StarsOfGenerated, EveryDistributionAndSize) {
   Options options;
   options.backend = Backend::host;
   options.threads = 1;
-  options.strategy = Strategy::locks;
+  options.tuning.strategy = Strategy::locks;
   Triangulator locks(options);
   options = GetParam().options();
-  options.strategy = Strategy::stars;
+  options.tuning.strategy = Strategy::stars;
   Triangulator stars(options);
   std::size_t proven = 0;
   for (const io::Distribution& distribution : io::distributions()) {

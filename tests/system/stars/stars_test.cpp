@@ -288,7 +288,7 @@ TEST_P(Stars, AlternatesWithLocks) {
     for (const Points* xy : {&large, &small, &line, &large}) {
       const Triangulation expected = with_locks(Reals(*xy));
       for (const Strategy strategy : {Strategy::locks, Strategy::stars, Strategy::stars, Strategy::automatic}) {
-        stars().options().strategy = strategy;
+        stars().options().tuning.strategy = strategy;
         const Triangulation mesh = stars().triangulate(Reals(*xy));
         EXPECT_TRUE(same_arrays(mesh, expected)) << round << ", " << xy->size() / 2 << ", " << to_string(strategy);
         if (strategy == Strategy::locks) {

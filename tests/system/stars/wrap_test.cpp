@@ -18,7 +18,7 @@ class Wrap : public BackendTest {
  protected:
   static Statistics check(const Points& xy, Strategy strategy = Strategy::stars) {
     Options options = GetParam().options();
-    options.strategy = strategy;
+    options.tuning.strategy = strategy;
     const Triangulation mesh = triangulate(Reals(xy), options);
     EXPECT_TRUE(same_mesh(mesh, expected_mesh(xy)));
     const Statistics& s = mesh.statistics();

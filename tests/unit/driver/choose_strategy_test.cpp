@@ -17,7 +17,7 @@ constexpr DeviceTraits cpu{true, false, false}, gpu{false, true, false}, float_g
 
 Options options_of(Strategy strategy) {
   Options options;
-  options.strategy = strategy;
+  options.tuning.strategy = strategy;
   return options;
 }
 
@@ -42,8 +42,8 @@ struct Row {
 std::vector<Row> rows() {
   const Options automatic, locks = options_of(Strategy::locks), stars = options_of(Strategy::stars);
   Options deferred, watched, timed, none;
-  deferred.stabilize = Stabilize::defer;
-  watched.watch = [](const Snapshot&) {};
+  deferred.tuning.stabilize = Stabilize::defer;
+  watched.tuning.watch = [](const Snapshot&) {};
   timed.statistics = StatisticsDetail::timing;
   none.statistics = StatisticsDetail::none;
   PointProfile wide = points(1000000), fine = points(1000000), finest = points(1000000), hull_exact = points(400),
@@ -116,9 +116,9 @@ TEST(ChooseStrategy, MemoryIsPlannedForStarsFromTheFirstPointsThatMayHaveThem) {
 
 TEST(ChooseStrategy, PartitionsAreForThreadsWithPointsEnough) {
   Options options, grain, watched, deferred;
-  grain.grain = 1;
-  watched.watch = [](const Snapshot&) {};
-  deferred.stabilize = Stabilize::defer;
+  grain.tuning.grain = 1;
+  watched.tuning.watch = [](const Snapshot&) {};
+  deferred.tuning.stabilize = Stabilize::defer;
   EXPECT_TRUE(inserts_partitions(cpu, options, 65536));
   EXPECT_FALSE(inserts_partitions(cpu, options, 65535));
   EXPECT_FALSE(inserts_partitions(gpu, options, 65536));
@@ -133,7 +133,7 @@ TEST(ChooseStrategy, SmallSetsAreBatched) {
   EXPECT_EQ(most_points_of_batched_set(float_gpu), 0U);
   const Options automatic, locks = options_of(Strategy::locks), stars = options_of(Strategy::stars);
   Options deferred;
-  deferred.stabilize = Stabilize::defer;
+  deferred.tuning.stabilize = Stabilize::defer;
   EXPECT_TRUE(batches_sets(cpu, automatic));
   EXPECT_TRUE(batches_sets(cpu, locks));
   EXPECT_TRUE(batches_sets(gpu, automatic));

@@ -162,7 +162,7 @@ inline std::vector<std::vector<std::uint32_t>> links_of(const Sorted& s) {
   cadt::Options options;
   options.backend = cadt::Backend::host;
   options.threads = 1;
-  options.strategy = cadt::Strategy::locks;
+  options.tuning.strategy = cadt::Strategy::locks;
   std::vector<double> xy;
   for (const cadt_point& p : s.points) xy.insert(xy.end(), {p.x, p.y});
   const cadt::Triangulation mesh = cadt::triangulate(std::span<const double>(xy), options);

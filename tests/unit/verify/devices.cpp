@@ -31,7 +31,7 @@ const std::vector<OpenDevice>& open_devices() {
     cadt::Options tiny;
     tiny.backend = Backend::host;
     tiny.threads = 3;
-    tiny.grain = 1;
+    tiny.tuning.grain = 1;
     open("host in tiny pieces", tiny);
     list->push_back({"strided as on a GPU", tiny, strided_device(*list->front().device)});
     return list;

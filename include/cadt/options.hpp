@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a caller chooses: where a triangulation is computed, and what else the call does.
+#pragma once
+
+#include <cadt/export.hpp>
+#include <cadt/statistics.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <string_view>
+
+namespace cadt {
+
+/// Where the triangulation is computed. `automatic` takes the fastest usable device: a GPU if there is one, else the
+/// host.
+enum class Backend { automatic, host, opencl, cuda };
+
+/// "auto", "host", "opencl", "cuda".
+[[nodiscard]] CADT_API std::string_view to_string(Backend backend) noexcept;
+/// Inverse of `to_string`. \throws BackendUnavailable for any other name
+[[nodiscard]] CADT_API Backend backend_from_string(std::string_view name);
+
+class DeviceAllocator;  // triangulator.hpp
+
+/// Order of the triangles in the result.
+enum class Order {
+  canonical,  ///< each triangle starts with its smallest index, triangles ascend: the same arrays from every device and
+              ///< call
+  fast        ///< as the device left them: the same set of triangles, in an order that depends on the schedule
+};
+
+/// How the mesh is computed. The result does not depend on it.
+enum class Strategy {
+  automatic,  ///< the faster one, as far as is known for the device and the points
+  locks,      ///< parallel insertion and flips in one shared mesh
+  stars  ///< local stars, proven without locks, where possible; the residual vertices by gift wrapping and insertion
+};
+
+/// What happens to an edge that is flipped again and again (paper, section 4.4.4, Algorithm 4). Hull edges are always
+/// flipped.
+enum class Stabilize {
+  off,    ///< nothing: with exact predicates flips terminate
+  defer,  ///< after more than `Tuning::flip_threshold` flips it is left to the legality sweep. The same mesh
+  paper   ///< after that it is flipped only if that improves quality enough: the mesh may keep illegal edges
+          ///< (`Statistics::illegal_edges`), depends on the schedule, and is not certified
+};
+/// "off", "defer", "paper".
+[[nodiscard]] CADT_API std::string_view to_string(Strategy strategy) noexcept;
+[[nodiscard]] CADT_API std::string_view to_string(Stabilize mode) noexcept;
+
+/// Progress of a running triangulation, for `Options::progress`.
+struct Progress {
+  std::string_view phase;  ///< "sort", "insert", "certify", "output"
+  double fraction;         ///< of the whole work, 0 to 1, never decreasing
+};
+
+/// The mesh between two launches of a running triangulation.
+struct Snapshot {
+  std::size_t points;                       ///< number of points inserted so far
+  std::span<const std::int32_t> triangles;  ///< n x 3 input indices, counterclockwise; not yet all Delaunay
+};
+
+/// How the work is done: for those who measure, tune or repeat the paper. The mesh does not depend on it, but with
+/// Stabilize::paper.
+struct Tuning {
+  /// Strategy::stars with `stabilize` or `watch` is an OptionError: those apply to insertion.
+  Strategy strategy = Strategy::automatic;
+  /// Work-group (block) size on a device; 0: the library chooses.
+  unsigned work_group_size = 0;
+  /// Consecutive elements that one work-item of a CPU processes; 0: the library chooses. Small numbers make threads
+  /// work side by side: slower, with many conflicts (for tests).
+  unsigned grain = 0;
+  /// Times each kernel (Statistics::kernels) by the device's clock. The markers in the queue cost some microseconds a
+  /// launch; without this there are none. A queue of the caller must have CL_QUEUE_PROFILING_ENABLE, else OptionError.
+  bool kernel_times = false;
+  Stabilize stabilize = Stabilize::off;
+  /// R of Algorithm 4: flips of an edge slot before `stabilize` applies. At most 1000.
+  unsigned flip_threshold = 3;
+  /// Epsilon of Algorithm 4 (Stabilize::paper): an illegal edge is left if its incircle determinant, divided by the
+  /// fourth power of the largest coordinate difference, is below this, and a flip raises the smallest angle of the two
+  /// triangles by at most this many degrees. Not negative, not NaN.
+  double quality_epsilon = 1e-4;
+  /// Called on the calling thread with a copy of the mesh, for pictures: after each launch of a level of points, and
+  /// once more if deferred points were inserted. Costs a copy of the whole mesh each time. The snapshot is valid during
+  /// the call only. Must not throw.
+  std::function<void(const Snapshot&)> watch;
+};
+
+struct Options {
+  Backend backend = Backend::automatic;
+  /// Device of the back end: its number from `list_devices()`, or a part of its name. Empty: the first usable GPU, else
+  /// the first usable device, among those with double precision. Devices without (`DeviceInfo::fp64`) take float
+  /// coordinates only: with doubles BackendUnavailable, with Strategy::stars OptionError.
+  std::string device;
+  /// Host threads; 0: one for each core, 1: serial (the reference).
+  unsigned threads = 0;
+  Order order = Order::canonical;
+  /// Limit of the device memory that the library holds, in bytes; 0: none. If a call needs more: OutOfMemory, before
+  /// any work. (Earlier results of a triangulator that still exist count as well.)
+  std::size_t max_memory = 0;
+  /// The caller's stream (a cudaStream_t, also a default stream) or in-order queue (a cl_command_queue): all work is
+  /// enqueued there, on its device. Requires a named back end. It must outlive the triangulator and its results. Not
+  /// set: a queue of the library's own.
+  std::optional<void*> queue;
+  /// Source of device memory. Null: the library allocates it.
+  std::shared_ptr<DeviceAllocator> allocator;
+  StatisticsDetail statistics = StatisticsDetail::counters;
+  /// Checked between launches; once triggered, the call throws Cancelled.
+  std::stop_token stop;
+  /// Called on the calling thread between launches. Must not throw.
+  std::function<void(const Progress&)> progress;
+  /// For those who measure, tune or repeat the paper.
+  Tuning tuning;
+};
+
+}  // namespace cadt

@@ -3,8 +3,11 @@
 
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
 #include <CGAL/Triangulation_data_structure_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
 
 #include <chrono>
 #include <cstddef>
@@ -50,6 +53,38 @@ InsertionTime cgal_insertion(std::span<const double> xy) {
   delaunay.insert(points.begin(), points.end());
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   return {delaunay.number_of_faces(), taken.count()};
+}
+
+LocatedFaces cgal_locate(std::span<const double> xy, std::span<const double> queries) {
+  std::vector<std::pair<Kernel::Point_2, std::int32_t>> points, where;
+  for (std::size_t i = 0; i + 1 < xy.size(); i += 2)
+    points.emplace_back(Kernel::Point_2(xy[i], xy[i + 1]), static_cast<std::int32_t>(i / 2));
+  for (std::size_t i = 0; i + 1 < queries.size(); i += 2)
+    where.emplace_back(Kernel::Point_2(queries[i], queries[i + 1]), static_cast<std::int32_t>(i / 2));
+  const Delaunay delaunay(points.begin(), points.end());
+  using Map = CGAL::First_of_pair_property_map<std::pair<Kernel::Point_2, std::int32_t>>;
+  CGAL::spatial_sort(where.begin(), where.end(), CGAL::Spatial_sort_traits_adapter_2<Kernel, Map>());
+  LocatedFaces found;
+  found.faces.assign(where.size(), {-1, -1, -1});
+  std::vector<Delaunay::Face_handle> faces(where.size());
+  std::vector<char> inside(where.size());
+  Delaunay::Face_handle hint;
+  const auto start = std::chrono::steady_clock::now();
+  for (std::size_t i = 0; i < where.size(); ++i) {
+    Delaunay::Locate_type type;
+    int index;
+    hint = delaunay.locate(where[i].first, type, index, hint);
+    faces[i] = hint;
+    inside[i] = type == Delaunay::FACE;
+  }
+  found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (std::size_t i = 0; i < where.size(); ++i) {
+    if (!inside[i]) continue;
+    std::vector<Triangle> one = {{faces[i]->vertex(0)->info(), faces[i]->vertex(1)->info(), faces[i]->vertex(2)->info()}};
+    make_canonical(one);
+    found.faces[static_cast<std::size_t>(where[i].second)] = one.front();
+  }
+  return found;
 }
 
 }  // namespace cadt::test

@@ -33,6 +33,13 @@ struct InsertionTime {
 /// `insert`, without the conversion to CGAL's points. For benchmarks.
 [[nodiscard]] InsertionTime cgal_insertion(std::span<const double> xy);
 
+struct LocatedFaces {
+  std::vector<Triangle> faces;  ///< canonical; -1 for a query that is not strictly inside of a face
+  double seconds = 0.0;         ///< of the calls of `locate` alone
+};
+/// Locates queries that are sorted along CGAL's space filling curve, each from the face of the one before.
+[[nodiscard]] LocatedFaces cgal_locate(std::span<const double> xy, std::span<const double> queries);
+
 /// Rotates each triangle to start with its smallest index and sorts them.
 void make_canonical(std::vector<Triangle>& triangles);
 

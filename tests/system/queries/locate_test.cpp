@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/backends.hpp"
+#include "tests/support/oracle.hpp"
 #include "tests/system/queries/brute_force.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cadt::test {
@@ -25,6 +27,24 @@ TEST_P(Locate, EqualsBruteForceInExactArithmetic) {
   EXPECT_GT(on_something, 1000u);
   EXPECT_GT(outside, 1000u);
 }
+
+#if CADT_TEST_CGAL
+TEST_P(Locate, EqualsTheFacesOfCgal) {
+  const Points xy = uniform_points(3000, 71), where = uniform_points(5000, 72);
+  const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
+  MeshQueries queries(std::span<const double>(xy), mesh, GetParam().options());
+  const auto found = queries.locate(where);
+  const LocatedFaces expected = cgal_locate(xy, where);
+  std::size_t inside = 0;
+  for (std::size_t q = 0; q < found.size(); ++q) {
+    Triangle mine = {-1, -1, -1};
+    if (found[q] >= 0) std::copy_n(&mesh.triangles()[3 * static_cast<std::size_t>(found[q])], 3, mine.begin());
+    ASSERT_EQ(mine, expected.faces[q]) << q;
+    inside += found[q] >= 0 ? 1 : 0;
+  }
+  EXPECT_GT(inside, 4900u);
+}
+#endif
 
 TEST_P(Locate, OneQueryAtATimeAndAllTogetherAreTheSame) {
   const Asked set("", uniform_points(700, 5));

@@ -94,6 +94,7 @@ typedef long cadt_i64;
 #define cadt_group_barrier() barrier(CLK_LOCAL_MEM_FENCE)
 
 #define cadt_prefetch_to_write(p) ((void)(p))
+#define cadt_prefetch_to_read(p) ((void)(p))
 #define cadt_bits_of_double(x) as_ulong(x)
 #define cadt_double_of_bits(x) as_double(x)
 #define cadt_bits_of_float(x) as_uint(x)
@@ -156,6 +157,7 @@ typedef long long cadt_i64;
 #define cadt_group_barrier() __syncthreads()
 
 #define cadt_prefetch_to_write(p) ((void)(p))
+#define cadt_prefetch_to_read(p) ((void)(p))
 #define cadt_bits_of_double(x) ((cadt_u64)__double_as_longlong(x))
 #define cadt_double_of_bits(x) __longlong_as_double((long long)(x))
 #define cadt_bits_of_float(x) ((cadt_u32)__float_as_uint(x))
@@ -188,8 +190,9 @@ typedef std::int64_t cadt_i64;
 #define CADT_TEAM_KERNEL(lanes, teams, name, ...) CADT_KERNEL(name, __VA_ARGS__)
 #define CADT_CAST(type, value) static_cast<type>(value)
 
-/* The processor may fetch the word at p, which will be written soon. */
+/* The processor may fetch the word at p, which will be written, or read, soon. */
 #define cadt_prefetch_to_write(p) __builtin_prefetch((p), 1)
+#define cadt_prefetch_to_read(p) __builtin_prefetch((p), 0)
 CADT_FN cadt_u64 cadt_bits_of_double(double x) { return __builtin_bit_cast(cadt_u64, x); }
 CADT_FN double cadt_double_of_bits(cadt_u64 bits) { return __builtin_bit_cast(double, bits); }
 CADT_FN cadt_u32 cadt_bits_of_float(float x) { return __builtin_bit_cast(cadt_u32, x); }

@@ -274,7 +274,7 @@ VoronoiDiagram MeshQueries::voronoi() {
   return make_voronoi(call.ctx, state_->mesh);
 }
 
-VoronoiPolygons MeshQueries::voronoi(const Box& box) {
+VoronoiPolygons MeshQueries::voronoi_polygons(const Box& box) {
   Call call(*state_);
   return clip_voronoi(call.ctx, state_->mesh, box);
 }
@@ -352,6 +352,33 @@ std::size_t MeshQueries::circumcenters(const DeviceArray& xy) {
   Call call(*state_);
   write_circumcenters(call.ctx, state_->mesh, array_of(call.ctx, xy, sizeof(double)));
   return 2 * state_->mesh.triangles;
+}
+
+std::size_t MeshQueries::voronoi(const DeviceVoronoi& to) {
+  const std::size_t triangles = state_->mesh.triangles, n = state_->mesh.point_count;
+  const bool edges = to.edge_points.memory != nullptr || to.edge_vertices.memory != nullptr;
+  const auto require = [](const DeviceArray& array, std::size_t needed, const char* what) {
+    if (array.memory != nullptr) require_room(array, needed, what);
+  };
+  require(to.vertices, 2 * triangles, "vertices");
+  require(to.cells, 3 * triangles, "cells");
+  if (to.cells.memory != nullptr || to.cell_begin.memory != nullptr) require_room(to.cell_begin, n + 1, "cell_begin");
+  Call call(*state_);
+  Context& ctx = call.ctx;
+  Allocation begin;
+  std::size_t count = 0;
+  if (edges && triangles != 0) {
+    begin = count_edges(ctx, state_->mesh);
+    count = ctx.launcher.read_word(begin, triangles);
+    require(to.edge_points, 2 * count, "edge_points");
+    require(to.edge_vertices, 2 * count, "edge_vertices");
+  }
+  if (to.vertices.memory != nullptr) write_circumcenters(ctx, state_->mesh, array_of(ctx, to.vertices, sizeof(double)));
+  if (to.cell_begin.memory != nullptr)
+    write_cells(ctx, state_->mesh, array_of(ctx, to.cell_begin, word), array_of(ctx, to.cells, word));
+  if (count != 0)
+    write_edges(ctx, state_->mesh, begin, array_of(ctx, to.edge_points, word), array_of(ctx, to.edge_vertices, word));
+  return count;
 }
 
 }  // namespace cadt

@@ -57,52 +57,70 @@ typedef struct {
 } cadt_query_place;
 #define CADT_LOST_WALK 3u
 
-/* The visibility walk (L. Guibas, J. Stolfi, "Primitives for the manipulation of general subdivisions", 1985) from
- * triangle `t`: while p lies beyond an edge, cross it. In a Delaunay mesh it comes to no triangle twice (H. Edelsbrunner,
- * "An acyclicity theorem for cell complexes in d dimensions", 1990). With other meshes, edges that are tried in random
- * order lead out of every cycle sooner or later (O. Devillers, S. Pion, M. Teillaud, "Walking in a triangulation",
- * 2001). The hull is convex: what lies beyond a hull edge is outside. */
-CADT_FN cadt_query_place cadt_walk(const cadt_query_mesh* m, cadt_point p, cadt_u32 t) {
-  cadt_query_place place = {t, 0u, CADT_LOST_WALK};
-  cadt_u32 entry = 3u, random = t * 2654435761u + 12345u;
+typedef struct {
+  cadt_u32 triangle;
+  cadt_u32 entry; /* the edge by which it was entered, or 3 */
+  cadt_u32 steps, random;
+} cadt_walker;
+
+CADT_FN cadt_walker cadt_walker_from(cadt_u32 triangle) {
+  const cadt_walker w = {triangle, 3u, 0u, triangle * 2654435761u + 12345u};
+  return w;
+}
+
+/* One step of the visibility walk (L. Guibas, J. Stolfi, "Primitives for the manipulation of general subdivisions", 1985):
+ * if p lies beyond an edge, cross it. 0 if the walk has come to its place. In a Delaunay mesh it comes to no triangle
+ * twice (H. Edelsbrunner, "An acyclicity theorem for cell complexes in d dimensions", 1990). With other meshes, edges that
+ * are tried in random order lead out of every cycle sooner or later (O. Devillers, S. Pion, M. Teillaud, "Walking in a
+ * triangulation", 2001). The hull is convex: what lies beyond a hull edge is outside. */
+CADT_FN cadt_u32 cadt_step(const cadt_query_mesh* m, cadt_point p, cadt_walker* walker, cadt_query_place* place) {
+  const cadt_u32 t = walker->triangle, entry = walker->entry;
   const cadt_u32 limit = m->view.triangles < 0x20000000u ? 4u * m->view.triangles + 4096u : 0x80000000u;
-  for (cadt_u32 steps = 0u; steps < limit; ++steps) {
-    /* The entry edge comes last: p is on its inner side. */
-    const cadt_u32 k0 = entry == 3u ? 0u : CADT_NEXT(entry), k1 = CADT_NEXT(k0), k2 = CADT_NEXT(k1);
-    const cadt_point q0 = cadt_corner(m, t, k0), q1 = cadt_corner(m, t, k1), q2 = cadt_corner(m, t, k2);
-    cadt_u32 second = 0u, leave = 3u;
-    if (steps >= CADT_CAST(cadt_u32, CADT_QUERY_STRAIGHT)) {
-      random = random * 1664525u + 1013904223u;
-      second = random >> 31;
-    }
-    const cadt_i32 first_side = second ? cadt_side(q2, q0, p) : cadt_side(q1, q2, p);
-    cadt_i32 other_side = 1, last_side = 1;
-    if (first_side < 0) {
-      leave = second ? k1 : k0;
-    } else {
-      other_side = second ? cadt_side(q1, q2, p) : cadt_side(q2, q0, p);
-      if (other_side < 0) {
-        leave = second ? k0 : k1;
-      } else if (entry == 3u) {
-        last_side = cadt_side(q0, q1, p);
-        if (last_side < 0) leave = k2;
-      }
-    }
-    if (leave == 3u) {
-      place.edge = CADT_NONE;
-      place.on = (first_side == 0 ? 1u << (second ? k1 : k0) : 0u) | (other_side == 0 ? 1u << (second ? k0 : k1) : 0u) |
-                 (last_side == 0 ? 1u << k2 : 0u);
-      break;
-    }
-    const cadt_u32 next = cadt_neighbor_of(&m->view, t, leave);
-    if (next == CADT_NONE) {
-      place.edge = leave;
-      break;
-    }
-    entry = cadt_edge_towards(m, next, t);
-    t = next;
+  /* The entry edge comes last: p is on its inner side. */
+  const cadt_u32 k0 = entry == 3u ? 0u : CADT_NEXT(entry), k1 = CADT_NEXT(k0), k2 = CADT_NEXT(k1);
+  const cadt_point q0 = cadt_corner(m, t, k0), q1 = cadt_corner(m, t, k1), q2 = cadt_corner(m, t, k2);
+  cadt_u32 second = 0u, leave = 3u;
+  if (walker->steps >= CADT_CAST(cadt_u32, CADT_QUERY_STRAIGHT)) {
+    walker->random = walker->random * 1664525u + 1013904223u;
+    second = walker->random >> 31;
   }
-  place.triangle = t;
+  const cadt_i32 first_side = second ? cadt_side(q2, q0, p) : cadt_side(q1, q2, p);
+  cadt_i32 other_side = 1, last_side = 1;
+  if (first_side < 0) {
+    leave = second ? k1 : k0;
+  } else {
+    other_side = second ? cadt_side(q1, q2, p) : cadt_side(q2, q0, p);
+    if (other_side < 0) {
+      leave = second ? k0 : k1;
+    } else if (entry == 3u) {
+      last_side = cadt_side(q0, q1, p);
+      if (last_side < 0) leave = k2;
+    }
+  }
+  place->triangle = t;
+  place->on = 0u;
+  place->edge = CADT_NONE;
+  if (leave == 3u) {
+    place->on = (first_side == 0 ? 1u << (second ? k1 : k0) : 0u) | (other_side == 0 ? 1u << (second ? k0 : k1) : 0u) |
+                (last_side == 0 ? 1u << k2 : 0u);
+    return 0u;
+  }
+  const cadt_u32 next = cadt_neighbor_of(&m->view, t, leave);
+  if (next == CADT_NONE || ++walker->steps >= limit) {
+    place->edge = next == CADT_NONE ? leave : CADT_LOST_WALK;
+    return 0u;
+  }
+  walker->entry = cadt_edge_towards(m, next, t);
+  walker->triangle = next;
+  return 1u;
+}
+
+/* The walk from triangle `t`. */
+CADT_FN cadt_query_place cadt_walk(const cadt_query_mesh* m, cadt_point p, cadt_u32 t) {
+  cadt_walker walker = cadt_walker_from(t);
+  cadt_query_place place;
+  while (cadt_step(m, p, &walker, &place)) {
+  }
   return place;
 }
 

@@ -33,8 +33,8 @@ enum { CADT_RASTER_SMALL = 64 /* cells of a bounding box that its triangle's wor
 CADT_FN cadt_real cadt_cell_x(const cadt_raster* r, cadt_u32 i) { return r->x0 + (CADT_CAST(cadt_real, i) + 0.5) * r->dx; }
 CADT_FN cadt_real cadt_cell_y(const cadt_raster* r, cadt_u32 j) { return r->y0 + (CADT_CAST(cadt_real, j) + 0.5) * r->dy; }
 
-/* The cells of an axis whose centres may lie between `low` and `high`, with one more at either end for rounding:
- * `first` to one before `end`. */
+/* The cells of an axis whose centres may lie between `low` and `high`, `first` to one before `end`: cell i has its centre at
+ * origin + (i + 0.5) step. Rounding moves an end by less than `slack`. */
 typedef struct {
   cadt_u32 first, end;
 } cadt_cells;
@@ -42,10 +42,10 @@ CADT_FN cadt_u32 cadt_clamped_cell(cadt_real x, cadt_u32 count) {
   return x > 0.0 ? (x < CADT_CAST(cadt_real, count) ? CADT_CAST(cadt_u32, x) : count) : 0u;
 }
 CADT_FN cadt_cells cadt_cells_between(cadt_real origin, cadt_real step, cadt_u32 count, cadt_real low, cadt_real high) {
-  const cadt_real a = low / step - origin / step, b = high / step - origin / step;
+  const cadt_real inverse = 1.0 / step, start = origin * inverse, a = low * inverse - start, b = high * inverse - start;
   const cadt_real from = a < b ? a : b, to = a < b ? b : a;
-  const cadt_real slack = 1e-12 * (cadt_fabs(origin / step) + CADT_CAST(cadt_real, count));
-  const cadt_cells cells = {cadt_clamped_cell(from - 1.5 - slack, count), cadt_clamped_cell(to + 1.5 + slack, count)};
+  const cadt_real slack = 1e-14 * (cadt_fabs(start) + CADT_CAST(cadt_real, count));
+  const cadt_cells cells = {cadt_clamped_cell(from + 0.5 - slack, count), cadt_clamped_cell(to + 0.5 + slack, count)};
   return cells;
 }
 

@@ -15,16 +15,6 @@ namespace {
 
 using namespace device_text;
 
-/// The first place of each point's triangles; one word more than points.
-Allocation scan_cell_sizes(Context& ctx, const MeshIndex& mesh) {
-  Launcher& launch = ctx.launcher;
-  Allocation begin = launch.zeros(mesh.point_count + 1);
-  const LaunchGrid all = launch.grid(mesh.triangles);
-  launch.run<KernelId::cadt_cell_sizes>(all.items, mesh.view(), begin, all.grain);
-  launch.scan(begin, mesh.point_count + 1);
-  return begin;
-}
-
 QueryMesh in_own_scale(Context& ctx, const MeshIndex& mesh) { return {mesh.view(), scale_for(ctx, mesh, mesh.bounds)}; }
 
 }  // namespace
@@ -35,34 +25,53 @@ void write_circumcenters(Context& ctx, const MeshIndex& mesh, const Allocation& 
   ctx.launcher.run<KernelId::cadt_circumcenters>(all.items, in_own_scale(ctx, mesh), xy, all.grain);
 }
 
-VoronoiDiagram make_voronoi(Context& ctx, const MeshIndex& mesh) {
+void write_cells(Context& ctx, const MeshIndex& mesh, const Allocation& begin, const Allocation& cells) {
   Launcher& launch = ctx.launcher;
+  const std::size_t n = mesh.point_count;
+  ctx.device.fill(*begin, 0, (n + 1) * word, 0);
+  if (mesh.triangles == 0) return;
+  const LaunchGrid all = launch.grid(mesh.triangles);
+  launch.run<KernelId::cadt_cell_sizes>(all.items, mesh.view(), begin, all.grain);
+  launch.scan(begin, n + 1);
+  if (!cells) return;
+  launch.run<KernelId::cadt_cell_triangles>(in_own_scale(ctx, mesh), mesh.lowest, begin, cells, launch.grid(n));
+}
+
+Allocation count_edges(Context& ctx, const MeshIndex& mesh) {
+  Launcher& launch = ctx.launcher;
+  Allocation begin = ctx.memory.allocate((mesh.triangles + 1) * word);
+  const LaunchGrid all = launch.grid(mesh.triangles);
+  launch.run<KernelId::cadt_edge_counts>(all.items, mesh.view(), begin, all.grain);
+  launch.scan(begin, mesh.triangles + 1);
+  return begin;
+}
+
+void write_edges(Context& ctx, const MeshIndex& mesh, const Allocation& begin, const Allocation& points,
+                 const Allocation& vertices) {
+  const LaunchGrid all = ctx.launcher.grid(mesh.triangles);
+  ctx.launcher.run<KernelId::cadt_list_edges>(all.items, mesh.view(), begin, points, vertices, all.grain);
+}
+
+VoronoiDiagram make_voronoi(Context& ctx, const MeshIndex& mesh) {
   VoronoiDiagram result;
   const std::size_t n = mesh.point_count, triangles = mesh.triangles;
   if (triangles == 0) {
     result.cell_begin.assign(n + 1, 0);
     return result;
   }
-  const LaunchGrid all = launch.grid(triangles);
   result.vertices =
       to_vector<double>(ctx, 2 * triangles, [&](const Allocation& to) { write_circumcenters(ctx, mesh, to); });
   ctx.check("voronoi", 0.3);
-  {
-    const Allocation begin = scan_cell_sizes(ctx, mesh);
-    result.cell_begin = ctx.device.read_values(*begin, n + 1);
-    result.cells = to_vector<std::int32_t>(ctx, 3 * triangles, [&](const Allocation& to) {
-      launch.run<KernelId::cadt_cell_triangles>(in_own_scale(ctx, mesh), mesh.lowest, begin, to, launch.grid(n));
-    });
-  }
+  result.cell_begin = to_vector<std::uint32_t>(ctx, n + 1, [&](const Allocation& begin) {
+    result.cells = to_vector<std::int32_t>(ctx, 3 * triangles,
+                                           [&](const Allocation& cells) { write_cells(ctx, mesh, begin, cells); });
+  });
   ctx.check("voronoi", 0.6);
-  const Allocation begin = ctx.memory.allocate((triangles + 1) * word);
-  launch.run<KernelId::cadt_edge_counts>(all.items, mesh.view(), begin, all.grain);
-  launch.scan(begin, triangles + 1);
-  const std::size_t edges = launch.read_word(begin, triangles);
-  result.edge_points = to_vector<std::int32_t>(ctx, 2 * edges, [&](const Allocation& ends) {
-    result.edge_vertices = to_vector<std::int32_t>(ctx, 2 * edges, [&](const Allocation& sides) {
-      launch.run<KernelId::cadt_list_edges>(all.items, mesh.view(), begin, ends, sides, all.grain);
-    });
+  const Allocation begin = count_edges(ctx, mesh);
+  const std::size_t edges = ctx.launcher.read_word(begin, triangles);
+  result.edge_points = to_vector<std::int32_t>(ctx, 2 * edges, [&](const Allocation& points) {
+    result.edge_vertices = to_vector<std::int32_t>(
+        ctx, 2 * edges, [&](const Allocation& vertices) { write_edges(ctx, mesh, begin, points, vertices); });
   });
   ctx.check("voronoi", 1);
   return result;
@@ -79,7 +88,8 @@ VoronoiPolygons clip_voronoi(Context& ctx, const MeshIndex& mesh, const Box& box
     result.begin.assign(n + 1, 0);
     return result;
   }
-  const Allocation begin = scan_cell_sizes(ctx, mesh);
+  const Allocation begin = ctx.memory.allocate((n + 1) * word), none;
+  write_cells(ctx, mesh, begin, none);
   const Allocation rows = ctx.memory.allocate((3 * mesh.triangles + 5 * n) * sizeof(cadt_point));
   const Allocation sizes = ctx.memory.allocate((n + 1) * word);
   launch.run<KernelId::cadt_clip_cells>(in_own_scale(ctx, mesh), mesh.lowest, begin, box.min_x, box.min_y, box.max_x,

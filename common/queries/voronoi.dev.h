@@ -78,7 +78,7 @@ CADT_KERNEL(cadt_edge_counts, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL cadt_u32* s
     if (t == 0u) sizes[mesh.triangles] = 0u;
   }
 }
-/* Both vertices of each edge, and both triangles; CADT_NONE outside. The first triangle is on the left of the edge from
+/* Both vertices of each edge, and both triangles; CADT_NONE outside. Null arrays are left out. The first triangle is on the left of the edge from
  * the first vertex to the second. */
 CADT_KERNEL(cadt_list_edges, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u32* begin, CADT_GLOBAL cadt_u32* ends,
             CADT_GLOBAL cadt_u32* sides, cadt_u32 grain) {
@@ -87,10 +87,14 @@ CADT_KERNEL(cadt_list_edges, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u
     cadt_u32 at = begin[t];
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       if (!cadt_lists_edge(&mesh, t, k)) continue;
-      ends[2u * at] = cadt_vertex_of(&mesh, t, CADT_NEXT(k));
-      ends[2u * at + 1u] = cadt_vertex_of(&mesh, t, CADT_PREV(k));
-      sides[2u * at] = t;
-      sides[2u * at + 1u] = cadt_neighbor_of(&mesh, t, k);
+      if (ends) {
+        ends[2u * at] = cadt_vertex_of(&mesh, t, CADT_NEXT(k));
+        ends[2u * at + 1u] = cadt_vertex_of(&mesh, t, CADT_PREV(k));
+      }
+      if (sides) {
+        sides[2u * at] = t;
+        sides[2u * at + 1u] = cadt_neighbor_of(&mesh, t, k);
+      }
       ++at;
     }
   }

@@ -12,6 +12,13 @@
 namespace cadt {
 
 void write_circumcenters(Context& ctx, const MeshIndex& mesh, const Allocation& xy);
+/// begin: points + 1 words; cells: 3 a triangle, or null.
+void write_cells(Context& ctx, const MeshIndex& mesh, const Allocation& begin, const Allocation& cells);
+/// The first edge of each triangle; one word more than triangles.
+[[nodiscard]] Allocation count_edges(Context& ctx, const MeshIndex& mesh);
+/// \pre `begin` is of count_edges
+void write_edges(Context& ctx, const MeshIndex& mesh, const Allocation& begin, const Allocation& points,
+                 const Allocation& vertices);
 [[nodiscard]] VoronoiDiagram make_voronoi(Context& ctx, const MeshIndex& mesh);
 /// \throws InputError
 [[nodiscard]] VoronoiPolygons clip_voronoi(Context& ctx, const MeshIndex& mesh, const Box& box);

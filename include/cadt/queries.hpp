@@ -95,6 +95,11 @@ struct DeviceArray {
   std::size_t size = 0;  ///< elements (int32 or double); a result that needs more is an InputError, and nothing is written
 };
 
+/// Where a Voronoi diagram goes (VoronoiDiagram); `cell_begin` is needed for `cells`.
+struct DeviceVoronoi {
+  DeviceArray vertices, cell_begin, cells, edge_points, edge_vertices;
+};
+
 /// A mesh prepared for queries on a device: the vertices are sorted along Hilbert's curve, so a query starts near.
 /// All answers are exact functions of mesh and query: the same from every device, however many are asked at a time. Points
 /// on an edge or vertex belong to the lowest of its triangles.
@@ -160,7 +165,7 @@ class CADT_API MeshQueries {
   [[nodiscard]] VoronoiDiagram voronoi();
   /// The cells within `box`. Their areas sum to that of the box but for rounding. \throws InputError for a box that is not
   /// finite or has no area
-  [[nodiscard]] VoronoiPolygons voronoi(const Box& box);
+  [[nodiscard]] VoronoiPolygons voronoi_polygons(const Box& box);
   /// The k largest circles without a point inside whose centres are in the convex hull, largest first: circumcircles (the
   /// holes of the paper's Table 1, [18]). Fewer if there are no more.
   [[nodiscard]] std::vector<Circle> largest_empty_circles(std::size_t k);
@@ -180,6 +185,10 @@ class CADT_API MeshQueries {
                         Interpolation method = Interpolation::linear,
                         double max_edge = std::numeric_limits<double>::infinity());
   std::size_t circumcenters(const DeviceArray& xy);
+  /// As voronoi(), in arrays that may be null (left out). Sizes: vertices 2 a triangle, cell_begin points + 1, cells 3 a
+  /// triangle, edge_points and edge_vertices at most 3 a triangle + 3 points each. Returns the number of edges; 0 if both
+  /// are left out.
+  std::size_t voronoi(const DeviceVoronoi& to);
 
   struct State;  // internal
 

@@ -56,6 +56,22 @@ TEST_P(DeviceQueries, EqualThoseOfTheHost) {
   const DeviceArray centers = array<double>(2 * mesh.number_of_triangles());
   EXPECT_EQ(resident.circumcenters(centers), 2 * mesh.number_of_triangles());
   EXPECT_TRUE(same(memory->download<double>(centers.memory, centers.size), host.circumcenters()));
+
+  const VoronoiDiagram expected = host.voronoi();
+  const std::size_t edges = expected.edge_points.size() / 2;
+  const DeviceVoronoi diagram{array<double>(expected.vertices.size()), array<std::uint32_t>(1001),
+                              array<std::int32_t>(expected.cells.size()), array<std::int32_t>(2 * edges),
+                              array<std::int32_t>(2 * edges)};
+  EXPECT_EQ(resident.voronoi(diagram), edges);
+  EXPECT_TRUE(same(memory->download<double>(diagram.vertices.memory, expected.vertices.size()), expected.vertices));
+  EXPECT_EQ(memory->download<std::uint32_t>(diagram.cell_begin.memory, 1001), expected.cell_begin);
+  EXPECT_EQ(memory->download<std::int32_t>(diagram.cells.memory, expected.cells.size()), expected.cells);
+  EXPECT_EQ(memory->download<std::int32_t>(diagram.edge_points.memory, 2 * edges), expected.edge_points);
+  EXPECT_EQ(memory->download<std::int32_t>(diagram.edge_vertices.memory, 2 * edges), expected.edge_vertices);
+  // each alone
+  EXPECT_EQ(resident.voronoi({{}, {}, {}, array<std::int32_t>(2 * edges), {}}), edges);
+  EXPECT_EQ(resident.voronoi({{}, array<std::uint32_t>(1001), {}, {}, {}}), 0u);
+  EXPECT_EQ(resident.voronoi(DeviceVoronoi{}), 0u);
 }
 
 TEST_P(DeviceQueries, WhatIsTooSmallStaysAsItIs) {
@@ -75,6 +91,9 @@ TEST_P(DeviceQueries, WhatIsTooSmallStaysAsItIs) {
   refused([&] { (void)resident.locate_barycentric(where, array<std::int32_t>(n), one_less); });
   refused([&] { (void)resident.nearest_vertices(where, 2, array<std::int32_t>(2 * n - 1)); });
   refused([&] { (void)resident.circumcenters(array<double>(2 * mesh.number_of_triangles() - 1)); });
+  refused([&] { (void)resident.voronoi({array<double>(2 * mesh.number_of_triangles() - 1), {}, {}, {}, {}}); });
+  refused([&] { (void)resident.voronoi({{}, {}, array<std::int32_t>(3 * mesh.number_of_triangles()), {}, {}}); });
+  refused([&] { (void)resident.voronoi({{}, {}, {}, {}, array<std::int32_t>(100)}); });
   EXPECT_EQ(memory->download<std::int32_t>(small.memory, n), std::vector<std::int32_t>(n, untouched));
   EXPECT_THROW((void)resident.locate(where, {nullptr, n}), InputError);
   EXPECT_THROW((void)resident.interpolate(array<double>(299), where, array<double>(n)), InputError);

@@ -93,7 +93,7 @@ TEST_P(Interpolate, NaturalNeighboursAreTheAreasThatACellTakes) {
   MeshQueries queries(std::span<const double>(xy), mesh, GetParam().options());
   const Box box{-1e3, -1e3, 1e3, 1e3};
   const auto areas = [&](MeshQueries& of, std::size_t n) {
-    const VoronoiPolygons cells = of.voronoi(box);
+    const VoronoiPolygons cells = of.voronoi_polygons(box);
     std::vector<double> area(n, 0.0);
     for (std::size_t p = 0; p < n; ++p)
       for (std::size_t i = cells.begin[p]; i < cells.begin[p + 1]; ++i) {

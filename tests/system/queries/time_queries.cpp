@@ -113,6 +113,16 @@ int run(const Arguments& a) {
   repeat("natural neighbours", n, [&] { asked.interpolate(values, queries, results, Interpolation::natural); });
   repeat("raster, linear", static_cast<double>(grid.cells()), [&] { asked.rasterize(grid, values, cells); });
   repeat("circumcentres", static_cast<double>(mesh.number_of_triangles()), [&] { asked.circumcenters(centers); });
+  const std::size_t m = mesh.number_of_triangles();
+  const DeviceVoronoi diagram{centers,
+                              {memory->allocate(4 * (a.points + 1)), a.points + 1},
+                              {memory->allocate(12 * m), 3 * m},
+                              {memory->allocate(16 * m), 4 * m},
+                              {memory->allocate(16 * m), 4 * m}};
+  repeat("Voronoi: vertices, cells, edges", static_cast<double>(m), [&] { asked.voronoi(diagram); });
+  repeat("Voronoi: vertices, cells", static_cast<double>(m), [&] {
+    asked.voronoi({diagram.vertices, diagram.cell_begin, diagram.cells, {}, {}});
+  });
   repeat("Voronoi, to the host", static_cast<double>(mesh.number_of_triangles()), [&] { (void)asked.voronoi(); });
 #if CADT_TEST_CGAL
   if (a.cgal) {

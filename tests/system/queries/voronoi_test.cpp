@@ -105,7 +105,7 @@ TEST_P(Voronoi, AreasOfClippedCellsSumToTheBox) {
     MeshQueries queries(std::span<const double>(set.xy), set.mesh, GetParam().options());
     for (const double margin : {0.3, -0.2}) {
       const Box box{low[0] - margin * width, low[1] - margin * height, high[0] + margin * width, high[1] + margin * height};
-      const VoronoiPolygons cells = queries.voronoi(box);
+      const VoronoiPolygons cells = queries.voronoi_polygons(box);
       ASSERT_EQ(cells.begin.size(), set.xy.size() / 2 + 1);
       ASSERT_EQ(cells.begin.back() * std::size_t{2}, cells.xy.size());
       double area = 0;

@@ -63,8 +63,8 @@ TEST_P(WrongInput, Grids) {
   EXPECT_THROW((void)queries.rasterize({0, 0, 1, 1, 2, 2}, values, Interpolation::linear, std::nan("")), OptionError);
   EXPECT_THROW((void)queries.rasterize({0, 0, 1, 1, 2, 2}, values, Interpolation::linear, -1), OptionError);
   EXPECT_TRUE(queries.rasterize({0, 0, 1, 1, 0, 2}, values).empty());
-  EXPECT_THROW((void)queries.voronoi({0, 0, 0, 1}), InputError);
-  EXPECT_THROW((void)queries.voronoi({0, 0, inf, 1}), InputError);
+  EXPECT_THROW((void)queries.voronoi_polygons({0, 0, 0, 1}), InputError);
+  EXPECT_THROW((void)queries.voronoi_polygons({0, 0, inf, 1}), InputError);
   EXPECT_THROW((void)queries.outline(std::nan("")), OptionError);
   EXPECT_THROW((void)queries.outline(1, -1), OptionError);
 }
@@ -113,7 +113,7 @@ TEST_P(WrongInput, PointsOfAnotherMeshEndTheWalk) {
   ends([&] { (void)queries.nearest_vertices(set.queries, 3); });
   ends([&] { (void)queries.interpolate(values, set.queries, Interpolation::natural); });
   ends([&] { (void)queries.rasterize({0, 0, 0.1, 0.1, 10, 10}, values); });
-  ends([&] { (void)queries.voronoi({-1, -1, 2, 2}); });
+  ends([&] { (void)queries.voronoi_polygons({-1, -1, 2, 2}); });
 }
 
 TEST_P(WrongInput, StopEndsACall) {

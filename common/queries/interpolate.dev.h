@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Barycentric coordinates and linear interpolation in the triangle that contains a point, and values of nearest vertices.
+ * Barycentric coordinates and linear interpolation in the triangle that contains a point, and values of nearest
+ * vertices.
  */
 #ifndef CADT_QUERIES_INTERPOLATE_H
 #define CADT_QUERIES_INTERPOLATE_H
@@ -28,59 +29,70 @@ CADT_FN_SLOW cadt_real cadt_area_of_arms(cadt_point p, cadt_point a, cadt_point 
 #define CADT_THIN 1.4901161193847656e-08
 
 /* Along the longest of the three edges, seen from p: for triangles that have no area left. */
-CADT_FN cadt_weights cadt_along_longest(const cadt_real* x, const cadt_real* y) {
+CADT_FN_SLOW cadt_weights cadt_along_longest(cadt_point a, cadt_point b, cadt_point c) {
+  cadt_point q[3];
+  cadt_weights w = {{0.0, 0.0, 0.0}};
   cadt_u32 longest = 0u;
   cadt_real square = -1.0;
+  q[0] = a, q[1] = b, q[2] = c;
   for (cadt_u32 k = 0u; k < 3u; ++k) {
-    const cadt_real dx = x[CADT_NEXT(k)] - x[k], dy = y[CADT_NEXT(k)] - y[k];
+    const cadt_real dx = q[CADT_NEXT(k)].x - q[k].x, dy = q[CADT_NEXT(k)].y - q[k].y;
     if (dx * dx + dy * dy > square) square = dx * dx + dy * dy, longest = k;
   }
   const cadt_u32 end = CADT_NEXT(longest);
-  const cadt_real dx = x[end] - x[longest], dy = y[end] - y[longest];
-  cadt_real share = square > 0.0 ? -(x[longest] * dx + y[longest] * dy) / square : 0.0;
+  const cadt_real dx = q[end].x - q[longest].x, dy = q[end].y - q[longest].y;
+  cadt_real share = square > 0.0 ? -(q[longest].x * dx + q[longest].y * dy) / square : 0.0;
   share = share > 0.0 ? (share < 1.0 ? share : 1.0) : 0.0;
-  cadt_weights w = {{0.0, 0.0, 0.0}};
   w.at[longest] = 1.0 - share;
   w.at[end] = share;
   return w;
 }
 
-/* Barycentric coordinates of p in the triangle a, b, c that contains it: not negative, their sum is 1 but for rounding. At
- * a vertex they are exactly 0 and 1. `thin`: whether the triangle is. */
-CADT_FN cadt_weights cadt_barycentric(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_u32* thin) {
-  cadt_real x[3], y[3];
-  x[0] = a.x - p.x, x[1] = b.x - p.x, x[2] = c.x - p.x;
-  y[0] = a.y - p.y, y[1] = b.y - p.y, y[2] = c.y - p.y;
 #if CADT_WIDE
-  /* x and y apart, as in cadt_orientation_filter: a common factor of all areas. A difference may overflow: halve first. */
-  cadt_i32 ex = cadt_exponent_of_largest(x[0], x[1], x[2], 0.0), ey = cadt_exponent_of_largest(y[0], y[1], y[2], 0.0);
-  if (ex == 5000) x[0] = 0.5 * a.x - 0.5 * p.x, x[1] = 0.5 * b.x - 0.5 * p.x, x[2] = 0.5 * c.x - 0.5 * p.x, ex = 1023;
-  if (ey == 5000) y[0] = 0.5 * a.y - 0.5 * p.y, y[1] = 0.5 * b.y - 0.5 * p.y, y[2] = 0.5 * c.y - 0.5 * p.y, ey = 1023;
-  for (cadt_u32 k = 0u; k < 3u; ++k) x[k] = cadt_ldexp(x[k], -ex), y[k] = cadt_ldexp(y[k], -ey);
-#endif
-  cadt_weights w;
-  cadt_real all = 0.0, terms = 0.0;
-  for (cadt_u32 k = 0u; k < 3u; ++k) {
-    const cadt_u32 i = CADT_NEXT(k), j = CADT_PREV(k);
-    const cadt_real left = x[i] * y[j], right = y[i] * x[j];
-    w.at[k] = cadt_positive(left - right);
-    all += w.at[k];
-    terms += cadt_fabs(left) + cadt_fabs(right);
+/* The three arms from p with x and y scaled apart, as in cadt_orientation_filter: a common factor of all areas. */
+CADT_FN void cadt_scale_axis(cadt_real a, cadt_real b, cadt_real c, cadt_real p, cadt_real* x) {
+  cadt_i32 e = cadt_exponent_of_largest(x[0], x[1], x[2], 0.0);
+  if (e == 5000) { /* a difference has overflowed: halve first */
+    x[0] = 0.5 * a - 0.5 * p;
+    x[1] = 0.5 * b - 0.5 * p;
+    x[2] = 0.5 * c - 0.5 * p;
+    e = 1023;
   }
+  for (cadt_u32 k = 0u; k < 3u; ++k) x[k] = cadt_ldexp(x[k], -e);
+}
+#endif
+
+/* Barycentric coordinates of p in the triangle a, b, c that contains it: not negative, their sum is 1 but for rounding.
+ * At a vertex they are exactly 0 and 1. `thin`: whether the triangle is. */
+CADT_FN cadt_weights cadt_barycentric(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_u32* thin) {
+  cadt_point u = {a.x - p.x, a.y - p.y}, v = {b.x - p.x, b.y - p.y}, w = {c.x - p.x, c.y - p.y};
+#if CADT_WIDE
+  cadt_real x[3], y[3];
+  x[0] = u.x, x[1] = v.x, x[2] = w.x, y[0] = u.y, y[1] = v.y, y[2] = w.y;
+  cadt_scale_axis(a.x, b.x, c.x, p.x, x);
+  cadt_scale_axis(a.y, b.y, c.y, p.y, y);
+  u.x = x[0], v.x = x[1], w.x = x[2], u.y = y[0], v.y = y[1], w.y = y[2];
+#endif
+  const cadt_real vw = v.x * w.y, wv = v.y * w.x, wu = w.x * u.y, uw = w.y * u.x, uv = u.x * v.y, vu = u.y * v.x;
+  cadt_weights result = {{cadt_positive(vw - wv), cadt_positive(wu - uw), cadt_positive(uv - vu)}};
+  cadt_real all = result.at[0] + result.at[1] + result.at[2];
+  const cadt_real terms = cadt_fabs(vw) + cadt_fabs(wv) + cadt_fabs(wu) + cadt_fabs(uw) + cadt_fabs(uv) + cadt_fabs(vu);
   *thin = all < CADT_THIN * terms ? 1u : 0u;
   if (*thin) {
 #if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
-    w.at[0] = cadt_positive(cadt_area_of_arms(p, b, c));
-    w.at[1] = cadt_positive(cadt_area_of_arms(p, c, a));
-    w.at[2] = cadt_positive(cadt_area_of_arms(p, a, b));
-    all = w.at[0] + w.at[1] + w.at[2];
-    if (!(all > 0.0)) return cadt_along_longest(x, y);
+    result.at[0] = cadt_positive(cadt_area_of_arms(p, b, c));
+    result.at[1] = cadt_positive(cadt_area_of_arms(p, c, a));
+    result.at[2] = cadt_positive(cadt_area_of_arms(p, a, b));
+    all = result.at[0] + result.at[1] + result.at[2];
+    if (!(all > 0.0)) return cadt_along_longest(u, v, w);
 #else
-    return cadt_along_longest(x, y);
+    return cadt_along_longest(u, v, w);
 #endif
   }
-  for (cadt_u32 k = 0u; k < 3u; ++k) w.at[k] /= all;
-  return w;
+  result.at[0] /= all;
+  result.at[1] /= all;
+  result.at[2] /= all;
+  return result;
 }
 
 CADT_FN cadt_weights cadt_weights_in(const cadt_query_mesh* m, cadt_u32 t, cadt_point p) {
@@ -91,10 +103,12 @@ CADT_FN cadt_weights cadt_weights_in(const cadt_query_mesh* m, cadt_u32 t, cadt_
 /* Value `of` of the triangle's vertices, weighted. A vertex without weight does not count, whatever its value. */
 CADT_FN cadt_real cadt_weighted(const cadt_query_mesh* m, cadt_u32 t, const cadt_weights* w,
                                 CADT_GLOBAL const cadt_real* values, cadt_u32 per_point, cadt_u32 of) {
+  const cadt_u64 a = cadt_vertex_of(&m->view, t, 0u), b = cadt_vertex_of(&m->view, t, 1u),
+                 c = cadt_vertex_of(&m->view, t, 2u);
   cadt_real sum = 0.0;
-  for (cadt_u32 k = 0u; k < 3u; ++k)
-    if (w->at[k] != 0.0)
-      sum += w->at[k] * values[CADT_CAST(cadt_u64, cadt_vertex_of(&m->view, t, k)) * per_point + of];
+  if (w->at[0] != 0.0) sum += w->at[0] * values[a * per_point + of];
+  if (w->at[1] != 0.0) sum += w->at[1] * values[b * per_point + of];
+  if (w->at[2] != 0.0) sum += w->at[2] * values[c * per_point + of];
   return sum;
 }
 

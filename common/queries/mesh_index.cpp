@@ -59,10 +59,11 @@ void check_mesh(Context& ctx, const MeshIndex& mesh) {
   ctx.launcher.run<KernelId::cadt_check_mesh>(all.items, mesh.view(), mesh.point_count, first, all.grain);
   const std::uint32_t wrong = ctx.launcher.read_word(first, 0);
   if (wrong == CADT_NONE) return;
-  throw InputError("triangle " + std::to_string(wrong) +
-                       " has an index out of range, a vertex twice, or a neighbour that does not have the same edge: give "
-                       "a mesh of these points with its neighbours, 0-based (verify() says more)",
-                   wrong);
+  throw InputError(
+      "triangle " + std::to_string(wrong) +
+          " has an index out of range, a vertex twice, or a neighbour that does not have the same edge: give "
+          "a mesh of these points with its neighbours, 0-based (verify() says more)",
+      wrong);
 }
 
 void index_mesh(Context& ctx, MeshIndex& mesh) {
@@ -92,9 +93,10 @@ void index_mesh(Context& ctx, MeshIndex& mesh) {
   launch.scan(flags, n + 1);
   mesh.curve_size = launch.read_word(flags, n);
   mesh.start = ctx.memory.allocate(mesh.curve_size * word);
+  mesh.along = ctx.memory.allocate(mesh.curve_size * word);
   mesh.curve_high = ctx.memory.allocate(mesh.curve_size * word);
   if (curve.low) mesh.curve_low = ctx.memory.allocate(mesh.curve_size * word);
-  launch.run<KernelId::cadt_curve_pack>(curve.order, mesh.lowest, flags, curve.high, curve.low, mesh.start,
+  launch.run<KernelId::cadt_curve_pack>(curve.order, mesh.lowest, flags, curve.high, curve.low, mesh.along, mesh.start,
                                         mesh.curve_high, mesh.curve_low, all);
   ctx.check("index", 1);
 }
@@ -143,9 +145,10 @@ void locate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& queri
                                             queries.points, queries.curve.high, queries.curve.low, queries.curve.order,
                                             located, reached, lost, launch.grid(queries.count));
   if (launch.read_word(lost, 0) != 0)
-    throw InputError("the mesh is no triangulation of the convex hull of these points, counterclockwise: a walk through it "
-                     "did not end (verify() says more)",
-                     0);
+    throw InputError(
+        "the mesh is no triangulation of the convex hull of these points, counterclockwise: a walk through it "
+        "did not end (verify() says more)",
+        0);
   ctx.check("locate", 0.8);
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/driver/device_text.hpp"
+#include "common/points/spatial_sort.hpp"
 #include "common/queries/interpolate.hpp"
 
 namespace cadt {
@@ -19,7 +20,7 @@ constexpr std::size_t cells_at_a_time = std::size_t{1} << 24;  // where each is 
 
 /// CADT_RASTER_PARAMETERS
 struct RasterArguments {
-  const Grid& grid;
+  Grid grid;
   std::uint32_t columns = static_cast<std::uint32_t>(grid.columns), rows = static_cast<std::uint32_t>(grid.rows);
   [[nodiscard]] auto arguments() const { return std::tie(grid.x0, grid.y0, grid.dx, grid.dy, columns, rows); }
 };
@@ -38,6 +39,10 @@ Bounds bounds_of_centers(const Grid& grid) {
   Bounds bounds;
   add_exponents(bounds, grid.x0, grid.dx, grid.columns);
   add_exponents(bounds, grid.y0, grid.dy, grid.rows);
+  // Centres that are rounded to subnormal numbers are not the scaled ones: they need the wide kernels, which do not
+  // scale.
+  constexpr int lowest = std::numeric_limits<double>::min_exponent - std::numeric_limits<double>::digits;
+  if (bounds.low < lowest) bounds.high = std::max(bounds.high, bounds.low + narrow_span + 1);
   return bounds;
 }
 
@@ -45,8 +50,11 @@ Bounds bounds_of_centers(const Grid& grid) {
 void draw(Context& ctx, const MeshIndex& mesh, const Grid& grid, const Allocation& values, double max_edge,
           const Allocation& cells) {
   Launcher& launch = ctx.launcher;
-  const RasterArguments raster{grid};
   const QueryMesh in{mesh.view(), scale_for(ctx, mesh, bounds_of_centers(grid))};
+  Grid scaled = grid;
+  for (double* value : {&scaled.x0, &scaled.y0, &scaled.dx, &scaled.dy})
+    *value = *value * in.by.scale * in.by.scale_again;
+  const RasterArguments raster{scaled};
   const Allocation large = ctx.memory.allocate(mesh.triangles * word), listed = launch.zeros(1);
   const LaunchGrid all = launch.grid(mesh.triangles);
   const double longest = max_edge * in.by.scale * in.by.scale_again;
@@ -112,8 +120,8 @@ void require_grid(const Grid& grid) {
     throw LimitError("a raster has fewer than 2^31 cells: take larger ones, or several rasters", grid.columns, most);
 }
 
-void rasterize_mesh(Context& ctx, const MeshIndex& mesh, const Grid& grid, const Allocation& values, Interpolation method,
-                    double max_edge, const Allocation& cells) {
+void rasterize_mesh(Context& ctx, const MeshIndex& mesh, const Grid& grid, const Allocation& values,
+                    Interpolation method, double max_edge, const Allocation& cells) {
   if (method == Interpolation::linear || mesh.triangles == 0)
     ctx.launcher.run<KernelId::cadt_clear_raster>(cells, ctx.launcher.grid(grid.cells()));
   if (mesh.triangles == 0) return;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * From the mesh to a grid of cells, by triangles: each writes the cells whose centres it contains. A centre on an edge or
- * on a vertex belongs to the lowest triangle there, as in cadt_locate_queries, so each cell is written by one triangle
- * and no two work-items meet. Centres are computed in one way everywhere, and all signs are exact.
+ * From the mesh to a grid of cells, by triangles: each writes the cells whose centres it contains. A centre on an edge
+ * or on a vertex belongs to the lowest triangle there, as in cadt_locate_queries, so each cell is written by one
+ * triangle and no two work-items meet. Centres are computed in one way everywhere, and all signs are exact.
  *
  *      +---+---+---+---+
  *      |   |   | /.|   |     A small triangle goes through the cells of its bounding box. A large one is listed, and a
@@ -18,23 +18,28 @@
 #include "common/portable/atomics.dev.h"
 #include "common/queries/interpolate.dev.h"
 
-/* Cell (column i, row j) has its centre at x0 + (i + 0.5) dx, y0 + (j + 0.5) dy. */
+/* Cell (column i, row j) has its centre at x0 + (i + 0.5) dx, y0 + (j + 0.5) dy. Kernels that draw take a raster that
+ * is scaled like the points: powers of two change no rounding, so the centres are those of cadt_cell_centers, scaled.
+ */
 typedef struct {
   cadt_real x0, y0, dx, dy;
   cadt_u32 columns, rows;
 } cadt_raster;
 #define CADT_RASTER_PARAMETERS \
   cadt_real raster_x0, cadt_real raster_y0, cadt_real raster_dx, cadt_real raster_dy, cadt_u32 columns, cadt_u32 rows
-#define CADT_RASTER(raster) \
-  const cadt_raster raster = {raster_x0, raster_y0, raster_dx, raster_dy, columns, rows}
+#define CADT_RASTER(raster) const cadt_raster raster = {raster_x0, raster_y0, raster_dx, raster_dy, columns, rows}
 
 enum { CADT_RASTER_SMALL = 64 /* cells of a bounding box that its triangle's work-item goes through by itself */ };
 
-CADT_FN cadt_real cadt_cell_x(const cadt_raster* r, cadt_u32 i) { return r->x0 + (CADT_CAST(cadt_real, i) + 0.5) * r->dx; }
-CADT_FN cadt_real cadt_cell_y(const cadt_raster* r, cadt_u32 j) { return r->y0 + (CADT_CAST(cadt_real, j) + 0.5) * r->dy; }
+CADT_FN cadt_real cadt_cell_x(const cadt_raster* r, cadt_u32 i) {
+  return r->x0 + (CADT_CAST(cadt_real, i) + 0.5) * r->dx;
+}
+CADT_FN cadt_real cadt_cell_y(const cadt_raster* r, cadt_u32 j) {
+  return r->y0 + (CADT_CAST(cadt_real, j) + 0.5) * r->dy;
+}
 
-/* The cells of an axis whose centres may lie between `low` and `high`, `first` to one before `end`: cell i has its centre at
- * origin + (i + 0.5) step. Rounding moves an end by less than `slack`. */
+/* The cells of an axis whose centres may lie between `low` and `high`, `first` to one before `end`: cell i has its
+ * centre at origin + (i + 0.5) step. Rounding moves an end by less than `slack`. */
 typedef struct {
   cadt_u32 first, end;
 } cadt_cells;
@@ -50,17 +55,18 @@ CADT_FN cadt_cells cadt_cells_between(cadt_real origin, cadt_real step, cadt_u32
 }
 
 typedef struct {
-  cadt_point corner[3]; /* scaled */
+  cadt_point a, b, c;
   cadt_u32 triangle;
 } cadt_drawn;
 
 /* Whether the triangle is the lowest one that contains p. */
-CADT_FN cadt_u32 cadt_owns(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, const cadt_drawn* d, cadt_point p) {
-  const cadt_i32 s0 = cadt_side(d->corner[1], d->corner[2], p);
+CADT_FN cadt_u32 cadt_owns(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, const cadt_drawn* d,
+                           cadt_point p) {
+  const cadt_i32 s0 = cadt_side(d->b, d->c, p);
   if (s0 < 0) return 0u;
-  const cadt_i32 s1 = cadt_side(d->corner[2], d->corner[0], p);
+  const cadt_i32 s1 = cadt_side(d->c, d->a, p);
   if (s1 < 0) return 0u;
-  const cadt_i32 s2 = cadt_side(d->corner[0], d->corner[1], p);
+  const cadt_i32 s2 = cadt_side(d->a, d->b, p);
   if (s2 < 0) return 0u;
   if (s0 > 0 && s1 > 0 && s2 > 0) return 1u;
   const cadt_query_place at = {d->triangle, (s0 == 0 ? 1u : 0u) | (s1 == 0 ? 2u : 0u) | (s2 == 0 ? 4u : 0u), CADT_NONE};
@@ -73,43 +79,39 @@ CADT_FN void cadt_draw_row(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32*
                            CADT_GLOBAL cadt_real* raster) {
   const cadt_real y = cadt_cell_y(r, j);
   for (cadt_u32 i = cells.first; i < cells.end; ++i) {
-    cadt_point p = {cadt_cell_x(r, i), y};
-    p = cadt_multiplied_point(p, m->scale, m->scale_again);
+    const cadt_point p = {cadt_cell_x(r, i), y};
     if (!cadt_owns(m, lowest, d, p)) continue;
     cadt_u32 thin;
-    const cadt_weights w = cadt_barycentric(d->corner[0], d->corner[1], d->corner[2], p, &thin);
+    const cadt_weights w = cadt_barycentric(d->a, d->b, d->c, p, &thin);
     raster[CADT_CAST(cadt_u64, j) * r->columns + i] = cadt_weighted(m, d->triangle, &w, values, 1u, 0u);
   }
 }
 
-CADT_FN cadt_real cadt_least(cadt_real a, cadt_real b, cadt_real c) { return a < b ? (a < c ? a : c) : (b < c ? b : c); }
+CADT_FN cadt_real cadt_least(cadt_real a, cadt_real b, cadt_real c) {
+  return a < b ? (a < c ? a : c) : (b < c ? b : c);
+}
 CADT_FN cadt_real cadt_most(cadt_real a, cadt_real b, cadt_real c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
 
 CADT_FN cadt_drawn cadt_drawn_of(const cadt_query_mesh* m, cadt_u32 t) {
-  const cadt_drawn d = {{cadt_corner(m, t, 0u), cadt_corner(m, t, 1u), cadt_corner(m, t, 2u)}, t};
+  const cadt_drawn d = {cadt_corner(m, t, 0u), cadt_corner(m, t, 1u), cadt_corner(m, t, 2u), t};
   return d;
 }
 /* Whether one of the triangle's edges is longer than `most` (scaled). */
+CADT_FN cadt_u32 cadt_is_longer(cadt_point a, cadt_point b, cadt_real most) {
+  const cadt_real x = (a.x - b.x) / most, y = (a.y - b.y) / most;
+  return x * x + y * y > 1.0 ? 1u : 0u;
+}
 CADT_FN cadt_u32 cadt_longer_than(const cadt_drawn* d, cadt_real most) {
-  for (cadt_u32 k = 0u; k < 3u; ++k) {
-    const cadt_point a = d->corner[k], b = d->corner[CADT_NEXT(k)];
-    const cadt_real x = (a.x - b.x) / most, y = (a.y - b.y) / most;
-    if (x * x + y * y > 1.0) return 1u;
-  }
-  return 0u;
+  return cadt_is_longer(d->a, d->b, most) || cadt_is_longer(d->b, d->c, most) || cadt_is_longer(d->c, d->a, most) ? 1u
+                                                                                                                  : 0u;
 }
-CADT_FN cadt_cells cadt_columns_of(const cadt_query_mesh* m, const cadt_raster* r, cadt_real low, cadt_real high) {
-  return cadt_cells_between(cadt_multiplied(r->x0, m->scale, m->scale_again), cadt_multiplied(r->dx, m->scale, m->scale_again),
-                            r->columns, low, high);
-}
-CADT_FN cadt_cells cadt_rows_of(const cadt_query_mesh* m, const cadt_raster* r, const cadt_drawn* d) {
-  return cadt_cells_between(cadt_multiplied(r->y0, m->scale, m->scale_again), cadt_multiplied(r->dy, m->scale, m->scale_again),
-                            r->rows, cadt_least(d->corner[0].y, d->corner[1].y, d->corner[2].y),
-                            cadt_most(d->corner[0].y, d->corner[1].y, d->corner[2].y));
+CADT_FN cadt_cells cadt_rows_of(const cadt_raster* r, const cadt_drawn* d) {
+  return cadt_cells_between(r->y0, r->dy, r->rows, cadt_least(d->a.y, d->b.y, d->c.y),
+                            cadt_most(d->a.y, d->b.y, d->c.y));
 }
 
-/* Triangles whose bounding boxes are small write their cells; of each other one `rows_of` gets the number of rows, 0 for
- * all others. */
+/* Triangles whose bounding boxes are small write their cells; of each other one `rows_of` gets the number of rows, 0
+ * for all others. */
 CADT_KERNEL(cadt_draw_small, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* lowest, CADT_RASTER_PARAMETERS,
             cadt_real max_edge, CADT_GLOBAL const cadt_real* values, CADT_GLOBAL cadt_real* cells,
             CADT_GLOBAL cadt_u32* large, CADT_GLOBAL cadt_u32* large_count, cadt_u32 grain) {
@@ -118,12 +120,13 @@ CADT_KERNEL(cadt_draw_small, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
   CADT_FOR(t, mesh.view.triangles, grain) {
     const cadt_drawn d = cadt_drawn_of(&mesh, t);
     if (max_edge < CADT_INFINITY && cadt_longer_than(&d, max_edge)) continue;
-    const cadt_cells over = cadt_rows_of(&mesh, &raster, &d);
+    const cadt_cells over = cadt_rows_of(&raster, &d);
     if (over.first >= over.end) continue;
-    const cadt_cells along = cadt_columns_of(&mesh, &raster, cadt_least(d.corner[0].x, d.corner[1].x, d.corner[2].x),
-                                             cadt_most(d.corner[0].x, d.corner[1].x, d.corner[2].x));
+    const cadt_cells along = cadt_cells_between(raster.x0, raster.dx, raster.columns, cadt_least(d.a.x, d.b.x, d.c.x),
+                                                cadt_most(d.a.x, d.b.x, d.c.x));
     if (along.first >= along.end) continue;
-    if (CADT_CAST(cadt_u64, over.end - over.first) * (along.end - along.first) > CADT_CAST(cadt_u64, CADT_RASTER_SMALL)) {
+    if (CADT_CAST(cadt_u64, over.end - over.first) * (along.end - along.first) >
+        CADT_CAST(cadt_u64, CADT_RASTER_SMALL)) {
       large[cadt_add_relaxed(large_count, 1u)] = t;
       continue;
     }
@@ -138,35 +141,34 @@ CADT_KERNEL(cadt_large_rows, CADT_QUERY_MESH_PARAMETERS, CADT_RASTER_PARAMETERS,
   CADT_RASTER(raster);
   CADT_FOR(i, count, grain) {
     const cadt_drawn d = cadt_drawn_of(&mesh, large[i]);
-    const cadt_cells over = cadt_rows_of(&mesh, &raster, &d);
+    const cadt_cells over = cadt_rows_of(&raster, &d);
     rows_of[i] = over.end - over.first;
     if (i == 0u) rows_of[count] = 0u;
   }
 }
 
-/* The columns in which row y of the triangle may have cells: between the points where the row, and the two lines a cell
- * above and below it, meet the edges. */
-CADT_FN cadt_cells cadt_span_of_row(const cadt_query_mesh* m, const cadt_raster* r, const cadt_drawn* d, cadt_u32 j) {
-  const cadt_real y = cadt_multiplied(cadt_cell_y(r, j), m->scale, m->scale_again);
-  const cadt_real dy = cadt_fabs(cadt_multiplied(r->dy, m->scale, m->scale_again));
-  cadt_real low = CADT_INFINITY, high = -CADT_INFINITY;
-  for (cadt_u32 k = 0u; k < 3u; ++k) {
-    const cadt_point a = d->corner[k], b = d->corner[CADT_NEXT(k)];
-    const cadt_real below = a.y < b.y ? a.y : b.y, above = a.y < b.y ? b.y : a.y;
-    if (below > y + dy || above < y - dy) continue;
-    for (cadt_u32 side = 0u; side < 2u; ++side) {
-      const cadt_real line = side ? y + dy : y - dy;
-      cadt_real along = above > below ? (line - a.y) / (b.y - a.y) : 0.0;
-      along = along > 0.0 ? (along < 1.0 ? along : 1.0) : 0.0;
-      const cadt_real x = a.x + along * (b.x - a.x), other = above > below ? x : b.x;
-      low = x < low ? x : low;
-      low = other < low ? other : low;
-      high = x > high ? x : high;
-      high = other > high ? other : high;
-    }
+/* The columns in which row y of the triangle may have cells: between the points where the lines a row above and below
+ * it meet the edges. */
+CADT_FN void cadt_meet_edge(cadt_point a, cadt_point b, cadt_real low_y, cadt_real high_y, cadt_real* low,
+                            cadt_real* high) {
+  const cadt_real below = a.y < b.y ? a.y : b.y, above = a.y < b.y ? b.y : a.y;
+  if (below > high_y || above < low_y) return;
+  for (cadt_u32 side = 0u; side < 2u; ++side) {
+    cadt_real along = above > below ? ((side ? high_y : low_y) - a.y) / (b.y - a.y) : (side ? 1.0 : 0.0);
+    along = along > 0.0 ? (along < 1.0 ? along : 1.0) : 0.0;
+    const cadt_real x = along < 1.0 ? a.x + along * (b.x - a.x) : b.x;
+    *low = x < *low ? x : *low;
+    *high = x > *high ? x : *high;
   }
+}
+CADT_FN cadt_cells cadt_span_of_row(const cadt_raster* r, const cadt_drawn* d, cadt_u32 j) {
+  const cadt_real y = cadt_cell_y(r, j), dy = cadt_fabs(r->dy);
   const cadt_cells none = {0u, 0u};
-  return low <= high ? cadt_columns_of(m, r, low, high) : none;
+  cadt_real low = CADT_INFINITY, high = -CADT_INFINITY;
+  cadt_meet_edge(d->a, d->b, y - dy, y + dy, &low, &high);
+  cadt_meet_edge(d->b, d->c, y - dy, y + dy, &low, &high);
+  cadt_meet_edge(d->c, d->a, y - dy, y + dy, &low, &high);
+  return low <= high ? cadt_cells_between(r->x0, r->dx, r->columns, low, high) : none;
 }
 
 /* One row of a listed triangle a work-item; `first_row`: scanned. */
@@ -179,8 +181,8 @@ CADT_KERNEL(cadt_draw_large, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
     cadt_u32 at = 0u, end = listed;
     CADT_FIND_LAST(at, end, middle, first_row[middle] <= i)
     const cadt_drawn d = cadt_drawn_of(&mesh, large[at]);
-    const cadt_u32 j = cadt_rows_of(&mesh, &raster, &d).first + (i - first_row[at]);
-    cadt_draw_row(&mesh, lowest, &raster, &d, j, cadt_span_of_row(&mesh, &raster, &d, j), values, cells);
+    const cadt_u32 j = cadt_rows_of(&raster, &d).first + (i - first_row[at]);
+    cadt_draw_row(&mesh, lowest, &raster, &d, j, cadt_span_of_row(&raster, &d, j), values, cells);
   }
 }
 

@@ -21,6 +21,16 @@ function(cadt_library_options target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
 
+# cadt_export_interface_alone(TARGET): of a shared library, what cmake/cadt.map lets out. The linkers of other systems than
+# Linux read no such file; there it is what is marked CADT_API.
+function(cadt_export_interface_alone target)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "SHARED_LIBRARY" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+    target_link_options(${target} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/cadt.map)
+    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/cadt.map)
+  endif()
+endfunction()
+
 # cadt_shorten_build(): what each driver reads of the device text and of the library, precompiled for the target cadt:
 # two of the three seconds that most of its files take. The kernels of the host do not see it. Without a
 # compiler cache, which cannot look into it.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-from spack_repo.builtin.build_systems.cmake import CMakePackage
+from spack_repo.builtin.build_systems.cmake import CMakePackage, generator
 from spack_repo.builtin.build_systems.cuda import CudaPackage
 
 from spack.package import *
@@ -21,15 +21,15 @@ class Cadt(CMakePackage, CudaPackage):
     depends_on("cxx", type="build")
     depends_on("cmake@3.25:", type="build")
     depends_on("ninja", type="build")
-    depends_on("opencl-headers", type="build", when="+opencl")
-    depends_on("opencl-clhpp", type="build", when="+opencl")
+    depends_on("opencl-c-headers", type="build", when="+opencl")
+    depends_on("opencl-clhpp@2022.05.18:", type="build", when="+opencl")
     with when("+program"):
         depends_on("pkgconfig", type="build")
         depends_on("cli11", type="build")
         depends_on("nlohmann-json", type="build")
         depends_on("fast-float")
         depends_on("fmt")
-        depends_on("cairo+png+svg")
+        depends_on("cairo")
         depends_on("libpng")
         depends_on("zlib-api")
 

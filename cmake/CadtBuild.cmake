@@ -28,7 +28,19 @@ function(cadt_export_interface_alone target)
   if(type STREQUAL "SHARED_LIBRARY" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
     target_link_options(${target} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/cadt.map)
     set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/cadt.map)
+    if(NOT CADT_SANITIZE)
+      target_link_options(${target} PRIVATE -Wl,-z,defs)  # nothing is left open, either
+    endif()
   endif()
+endfunction()
+
+# cadt_library_of_same_objects(TARGET SHARED|STATIC): a second library of all that the target cadt is made of.
+function(cadt_library_of_same_objects target kind)
+  get_target_property(sources cadt SOURCES)
+  list(FILTER sources INCLUDE REGEX "TARGET_OBJECTS")
+  add_library(${target} ${kind} $<TARGET_OBJECTS:cadt> ${sources})
+  set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX)
+  target_link_libraries(${target} PRIVATE $<TARGET_PROPERTY:cadt,LINK_LIBRARIES>)
 endfunction()
 
 # cadt_shorten_build(): what each driver reads of the device text and of the library, precompiled for the target cadt:

@@ -19,8 +19,8 @@ set(maintainer "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
 set(revision 1)
 
 # The static library beside the shared one, of the same object files. Other installations have one of them.
-add_library(cadt_archive STATIC $<TARGET_OBJECTS:cadt>)
-set_target_properties(cadt_archive PROPERTIES OUTPUT_NAME cadt LINKER_LANGUAGE CXX)
+cadt_library_of_same_objects(cadt_archive STATIC)
+set_target_properties(cadt_archive PROPERTIES OUTPUT_NAME cadt)
 install(TARGETS cadt_archive ARCHIVE COMPONENT cadt_development EXCLUDE_FROM_ALL)
 
 # The manual page says what --help says.

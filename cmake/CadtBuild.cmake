@@ -18,7 +18,8 @@ endfunction()
 
 # cadt_library_options(TARGET): it may go into shared libraries of users; what is not marked CADT_API stays inside.
 function(cadt_library_options target)
-  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden CUDA_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
 
 # cadt_export_interface_alone(TARGET): of a shared library, what cmake/cadt.map lets out. The linkers of other systems than

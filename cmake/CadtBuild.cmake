@@ -18,7 +18,30 @@ endfunction()
 
 # cadt_library_options(TARGET): it may go into shared libraries of users; what is not marked CADT_API stays inside.
 function(cadt_library_options target)
-  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden CUDA_VISIBILITY_PRESET hidden
+    VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
+
+# cadt_export_interface_alone(TARGET): of a shared library, what cmake/cadt.map lets out. The linkers of other systems than
+# Linux read no such file; there it is what is marked CADT_API.
+function(cadt_export_interface_alone target)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "SHARED_LIBRARY" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+    target_link_options(${target} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/cadt.map)
+    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/cadt.map)
+    if(NOT CADT_SANITIZE)
+      target_link_options(${target} PRIVATE -Wl,-z,defs)  # nothing is left open, either
+    endif()
+  endif()
+endfunction()
+
+# cadt_library_of_same_objects(TARGET SHARED|STATIC): a second library of all that the target cadt is made of.
+function(cadt_library_of_same_objects target kind)
+  get_target_property(sources cadt SOURCES)
+  list(FILTER sources INCLUDE REGEX "TARGET_OBJECTS")
+  add_library(${target} ${kind} $<TARGET_OBJECTS:cadt> ${sources})
+  set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX)
+  target_link_libraries(${target} PRIVATE $<TARGET_PROPERTY:cadt,LINK_LIBRARIES>)
 endfunction()
 
 # cadt_shorten_build(): what each driver reads of the device text and of the library, precompiled for the target cadt:

@@ -100,16 +100,20 @@ CADT_FN cadt_weights cadt_weights_in(const cadt_query_mesh* m, cadt_u32 t, cadt_
   return cadt_barycentric(cadt_corner(m, t, 0u), cadt_corner(m, t, 1u), cadt_corner(m, t, 2u), p, &thin);
 }
 
-/* Value `of` of the triangle's vertices, weighted. A vertex without weight does not count, whatever its value. */
+/* A vertex without weight does not count, whatever its value. */
+CADT_FN cadt_real cadt_weighted_sum(const cadt_weights* w, cadt_real a, cadt_real b, cadt_real c) {
+  cadt_real sum = 0.0;
+  if (w->at[0] != 0.0) sum += w->at[0] * a;
+  if (w->at[1] != 0.0) sum += w->at[1] * b;
+  if (w->at[2] != 0.0) sum += w->at[2] * c;
+  return sum;
+}
+/* Value `of` of the triangle's vertices, weighted. */
 CADT_FN cadt_real cadt_weighted(const cadt_query_mesh* m, cadt_u32 t, const cadt_weights* w,
                                 CADT_GLOBAL const cadt_real* values, cadt_u32 per_point, cadt_u32 of) {
   const cadt_u64 a = cadt_vertex_of(&m->view, t, 0u), b = cadt_vertex_of(&m->view, t, 1u),
                  c = cadt_vertex_of(&m->view, t, 2u);
-  cadt_real sum = 0.0;
-  if (w->at[0] != 0.0) sum += w->at[0] * values[a * per_point + of];
-  if (w->at[1] != 0.0) sum += w->at[1] * values[b * per_point + of];
-  if (w->at[2] != 0.0) sum += w->at[2] * values[c * per_point + of];
-  return sum;
+  return cadt_weighted_sum(w, values[a * per_point + of], values[b * per_point + of], values[c * per_point + of]);
 }
 
 /* Three barycentric coordinates a query; NaN outside. */

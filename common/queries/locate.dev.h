@@ -65,16 +65,15 @@ CADT_KERNEL(cadt_curve_flags, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL con
     if (i == 0u) flags[count] = 0u;
   }
 }
-/* Each of them, its lowest triangle and its key, in order; `places`: the flags, scanned. Null `low`: keys of one word.
+/* The lowest triangle and the key of each, in order; `places`: the flags, scanned. Null `low`: keys of one word.
  */
 CADT_KERNEL(cadt_curve_pack, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* lowest,
             CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL const cadt_u32* high, CADT_GLOBAL const cadt_u32* low,
-            CADT_GLOBAL cadt_u32* along, CADT_GLOBAL cadt_u32* start, CADT_GLOBAL cadt_u32* curve_high,
-            CADT_GLOBAL cadt_u32* curve_low, cadt_u32 count, cadt_u32 grain) {
+            CADT_GLOBAL cadt_u32* start, CADT_GLOBAL cadt_u32* curve_high, CADT_GLOBAL cadt_u32* curve_low,
+            cadt_u32 count, cadt_u32 grain) {
   CADT_FOR(i, count, grain) {
     const cadt_u32 place = places[i];
     if (places[i + 1u] == place) continue;
-    along[place] = order[i];
     start[place] = lowest[order[i]];
     curve_high[place] = high[i];
     if (low) curve_low[place] = low[i];

@@ -93,10 +93,9 @@ void index_mesh(Context& ctx, MeshIndex& mesh) {
   launch.scan(flags, n + 1);
   mesh.curve_size = launch.read_word(flags, n);
   mesh.start = ctx.memory.allocate(mesh.curve_size * word);
-  mesh.along = ctx.memory.allocate(mesh.curve_size * word);
   mesh.curve_high = ctx.memory.allocate(mesh.curve_size * word);
   if (curve.low) mesh.curve_low = ctx.memory.allocate(mesh.curve_size * word);
-  launch.run<KernelId::cadt_curve_pack>(curve.order, mesh.lowest, flags, curve.high, curve.low, mesh.along, mesh.start,
+  launch.run<KernelId::cadt_curve_pack>(curve.order, mesh.lowest, flags, curve.high, curve.low, mesh.start,
                                         mesh.curve_high, mesh.curve_low, all);
   ctx.check("index", 1);
 }

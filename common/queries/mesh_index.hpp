@@ -26,7 +26,6 @@ struct MeshIndex {
   Bounds bounds;
   KeyGrid grid;
   Allocation curve_high, curve_low, start;  ///< CADT_CURVE_PARAMETERS; `curve_low` is null for keys of one word
-  Allocation along;                         ///< the vertex at each place of the curve
   std::size_t curve_size = 0;
 
   [[nodiscard]] DeviceMeshView view() const {

@@ -147,9 +147,12 @@ CADT_FN cadt_u32 cadt_index_in(const cadt_query_mesh* m, cadt_u32 t, cadt_u32 ve
 }
 /* The next triangle around the vertex, counterclockwise or clockwise; beyond the hull its triangle is CADT_NONE. */
 CADT_FN cadt_spoke cadt_turn(const cadt_query_mesh* m, cadt_spoke s, cadt_u32 clockwise) {
-  const cadt_u32 vertex = cadt_vertex_of(&m->view, s.triangle, s.k);
   const cadt_u32 next = cadt_neighbor_of(&m->view, s.triangle, clockwise ? CADT_PREV(s.k) : CADT_NEXT(s.k));
-  const cadt_spoke result = {next, next == CADT_NONE ? 0u : cadt_index_in(m, next, vertex)};
+  cadt_spoke result = {next, 0u};
+  if (next == CADT_NONE) return result;
+  /* The vertex is at one end of the edge that is crossed. */
+  const cadt_u32 entry = cadt_edge_towards(m, next, s.triangle);
+  result.k = clockwise ? CADT_PREV(entry) : CADT_NEXT(entry);
   return result;
 }
 

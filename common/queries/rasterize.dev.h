@@ -47,7 +47,11 @@ CADT_FN cadt_u32 cadt_clamped_cell(cadt_real x, cadt_u32 count) {
   return x > 0.0 ? (x < CADT_CAST(cadt_real, count) ? CADT_CAST(cadt_u32, x) : count) : 0u;
 }
 CADT_FN cadt_cells cadt_cells_between(cadt_real origin, cadt_real step, cadt_u32 count, cadt_real low, cadt_real high) {
+#if CADT_WIDE /* the inverse of a subnormal number may overflow */
+  const cadt_real start = origin / step, a = low / step - start, b = high / step - start;
+#else
   const cadt_real inverse = 1.0 / step, start = origin * inverse, a = low * inverse - start, b = high * inverse - start;
+#endif
   const cadt_real from = a < b ? a : b, to = a < b ? b : a;
   const cadt_real slack = 1e-14 * (cadt_fabs(start) + CADT_CAST(cadt_real, count));
   const cadt_cells cells = {cadt_clamped_cell(from + 0.5 - slack, count), cadt_clamped_cell(to + 0.5 + slack, count)};
@@ -56,6 +60,7 @@ CADT_FN cadt_cells cadt_cells_between(cadt_real origin, cadt_real step, cadt_u32
 
 typedef struct {
   cadt_point a, b, c;
+  cadt_real value_a, value_b, value_c;
   cadt_u32 triangle;
 } cadt_drawn;
 
@@ -75,15 +80,14 @@ CADT_FN cadt_u32 cadt_owns(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32*
 
 /* Writes the cells `cells` of row j that belong to the triangle. */
 CADT_FN void cadt_draw_row(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, const cadt_raster* r,
-                           const cadt_drawn* d, cadt_u32 j, cadt_cells cells, CADT_GLOBAL const cadt_real* values,
-                           CADT_GLOBAL cadt_real* raster) {
+                           const cadt_drawn* d, cadt_u32 j, cadt_cells cells, CADT_GLOBAL cadt_real* raster) {
   const cadt_real y = cadt_cell_y(r, j);
   for (cadt_u32 i = cells.first; i < cells.end; ++i) {
     const cadt_point p = {cadt_cell_x(r, i), y};
     if (!cadt_owns(m, lowest, d, p)) continue;
     cadt_u32 thin;
     const cadt_weights w = cadt_barycentric(d->a, d->b, d->c, p, &thin);
-    raster[CADT_CAST(cadt_u64, j) * r->columns + i] = cadt_weighted(m, d->triangle, &w, values, 1u, 0u);
+    raster[CADT_CAST(cadt_u64, j) * r->columns + i] = cadt_weighted_sum(&w, d->value_a, d->value_b, d->value_c);
   }
 }
 
@@ -92,8 +96,17 @@ CADT_FN cadt_real cadt_least(cadt_real a, cadt_real b, cadt_real c) {
 }
 CADT_FN cadt_real cadt_most(cadt_real a, cadt_real b, cadt_real c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
 
-CADT_FN cadt_drawn cadt_drawn_of(const cadt_query_mesh* m, cadt_u32 t) {
-  const cadt_drawn d = {cadt_corner(m, t, 0u), cadt_corner(m, t, 1u), cadt_corner(m, t, 2u), t};
+/* `values`: of the points, or null if none are needed. */
+CADT_FN cadt_drawn cadt_drawn_of(const cadt_query_mesh* m, cadt_u32 t, CADT_GLOBAL const cadt_real* values) {
+  const cadt_u32 a = cadt_vertex_of(&m->view, t, 0u), b = cadt_vertex_of(&m->view, t, 1u),
+                 c = cadt_vertex_of(&m->view, t, 2u);
+  const cadt_drawn d = {cadt_mesh_point(m, a),
+                        cadt_mesh_point(m, b),
+                        cadt_mesh_point(m, c),
+                        values ? values[a] : 0.0,
+                        values ? values[b] : 0.0,
+                        values ? values[c] : 0.0,
+                        t};
   return d;
 }
 /* Whether one of the triangle's edges is longer than `most` (scaled). */
@@ -118,7 +131,7 @@ CADT_KERNEL(cadt_draw_small, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
   CADT_QUERY_MESH(mesh);
   CADT_RASTER(raster);
   CADT_FOR(t, mesh.view.triangles, grain) {
-    const cadt_drawn d = cadt_drawn_of(&mesh, t);
+    const cadt_drawn d = cadt_drawn_of(&mesh, t, values);
     if (max_edge < CADT_INFINITY && cadt_longer_than(&d, max_edge)) continue;
     const cadt_cells over = cadt_rows_of(&raster, &d);
     if (over.first >= over.end) continue;
@@ -130,7 +143,7 @@ CADT_KERNEL(cadt_draw_small, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
       large[cadt_add_relaxed(large_count, 1u)] = t;
       continue;
     }
-    for (cadt_u32 j = over.first; j < over.end; ++j) cadt_draw_row(&mesh, lowest, &raster, &d, j, along, values, cells);
+    for (cadt_u32 j = over.first; j < over.end; ++j) cadt_draw_row(&mesh, lowest, &raster, &d, j, along, cells);
   }
 }
 
@@ -140,7 +153,7 @@ CADT_KERNEL(cadt_large_rows, CADT_QUERY_MESH_PARAMETERS, CADT_RASTER_PARAMETERS,
   CADT_QUERY_MESH(mesh);
   CADT_RASTER(raster);
   CADT_FOR(i, count, grain) {
-    const cadt_drawn d = cadt_drawn_of(&mesh, large[i]);
+    const cadt_drawn d = cadt_drawn_of(&mesh, large[i], 0);
     const cadt_cells over = cadt_rows_of(&raster, &d);
     rows_of[i] = over.end - over.first;
     if (i == 0u) rows_of[count] = 0u;
@@ -180,9 +193,9 @@ CADT_KERNEL(cadt_draw_large, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
   CADT_FOR(i, count, grain) {
     cadt_u32 at = 0u, end = listed;
     CADT_FIND_LAST(at, end, middle, first_row[middle] <= i)
-    const cadt_drawn d = cadt_drawn_of(&mesh, large[at]);
+    const cadt_drawn d = cadt_drawn_of(&mesh, large[at], values);
     const cadt_u32 j = cadt_rows_of(&raster, &d).first + (i - first_row[at]);
-    cadt_draw_row(&mesh, lowest, &raster, &d, j, cadt_span_of_row(&raster, &d, j), values, cells);
+    cadt_draw_row(&mesh, lowest, &raster, &d, j, cadt_span_of_row(&raster, &d, j), cells);
   }
 }
 
@@ -207,7 +220,7 @@ CADT_KERNEL(cadt_drop_long_edges, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const 
   CADT_QUERY_MESH(mesh);
   CADT_FOR(i, count, grain) {
     if (located[i] == CADT_NONE) continue;
-    const cadt_drawn d = cadt_drawn_of(&mesh, located[i]);
+    const cadt_drawn d = cadt_drawn_of(&mesh, located[i], 0);
     if (cadt_longer_than(&d, max_edge)) cells[i] = CADT_NAN;
   }
 }

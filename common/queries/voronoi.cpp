@@ -34,8 +34,7 @@ void write_cells(Context& ctx, const MeshIndex& mesh, const Allocation& begin, c
   launch.run<KernelId::cadt_cell_sizes>(all.items, mesh.view(), begin, all.grain);
   launch.scan(begin, n + 1);
   if (!cells) return;
-  launch.run<KernelId::cadt_cell_triangles>(in_own_scale(ctx, mesh), mesh.lowest, mesh.along, begin, cells,
-                                            launch.grid(mesh.curve_size));
+  launch.run<KernelId::cadt_cell_triangles>(in_own_scale(ctx, mesh), mesh.lowest, begin, cells, launch.grid(n));
 }
 
 Allocation count_edges(Context& ctx, const MeshIndex& mesh) {

@@ -38,14 +38,14 @@ CADT_KERNEL(cadt_cell_sizes, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL cadt_u32* si
   }
 }
 
-/* The triangles around each vertex, taken along the curve (`along`), counterclockwise: from the lowest on, and around a
+/* The triangles around each point, counterclockwise: from the lowest on, and around a
  * hull vertex from hull edge to hull edge. `begin`: the sizes, scanned. */
 CADT_KERNEL(cadt_cell_triangles, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* lowest,
-            CADT_GLOBAL const cadt_u32* along, CADT_GLOBAL const cadt_u32* begin, CADT_GLOBAL cadt_u32* cells,
-            cadt_u32 count, cadt_u32 grain) {
+            CADT_GLOBAL const cadt_u32* begin, CADT_GLOBAL cadt_u32* cells, cadt_u32 count, cadt_u32 grain) {
   CADT_QUERY_MESH(mesh);
-  CADT_FOR(i, count, grain) {
-    const cadt_u32 v = along[i], size = begin[v + 1u] - begin[v], t = lowest[v];
+  CADT_FOR(v, count, grain) {
+    const cadt_u32 size = begin[v + 1u] - begin[v], t = lowest[v];
+    if (size == 0u) continue;
     cadt_spoke s = {t, cadt_index_in(&mesh, t, v)};
     cadt_u32 placed = 0u;
     for (; placed < size; ++placed) {

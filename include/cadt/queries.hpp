@@ -107,7 +107,7 @@ struct DeviceVoronoi {
 /// All answers are exact functions of mesh and query: the same from every device, however many are asked at a time.
 /// Points on an edge or vertex belong to the lowest of its triangles.
 ///
-/// Preparing costs O(n log n) for n points, about a tenth of the triangulation, and 16 bytes of device memory a point
+/// Preparing costs O(n log n) for n points, about a tenth of the triangulation, and 12 bytes of device memory a point
 /// beside points and mesh. Not thread-safe: one thread at a time may use an object; different ones are independent.
 /// Devices without double precision are refused (BackendUnavailable).
 ///

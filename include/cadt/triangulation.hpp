@@ -21,7 +21,8 @@
 namespace cadt {
 
 /// Where the triangulation is computed. `automatic` takes the fastest usable device: a GPU if there is one, else the
-/// host.
+/// host. The function triangulate() takes the host for fewer than 200,000 points, unless `Options::device` names a
+/// device: opening a GPU takes longer.
 enum class Backend { automatic, host, opencl, cuda };
 
 /// "auto", "host", "opencl", "cuda".
@@ -75,7 +76,7 @@ struct Options {
   /// the first usable device, among those with double precision. Devices without (`DeviceInfo::fp64`) take float
   /// coordinates only: with doubles BackendUnavailable, with Strategy::stars OptionError.
   std::string device;
-  /// Host threads; 0: one for each core, 1: serial (the reference).
+  /// Host threads at most; 0: one for each core, 1: serial (the reference). Small sets are left to one of them.
   unsigned threads = 0;
   Order order = Order::canonical;
   /// Limit of the device memory that the library holds, in bytes; 0: none. If a call needs more: OutOfMemory, before
@@ -181,9 +182,10 @@ class CADT_API Triangulation {
 /// slots a point.
 [[nodiscard]] constexpr std::size_t max_points() noexcept { return (std::size_t{1} << 29) - 2; }
 
-/// Triangulates the points, which are read only and need to live until the call returns. For repeated calls use a
-/// Triangulator, which keeps the device open. Expected O(n log n) work for the sort and O(n) for the rest on
-/// well-spread points. Thread-safe.
+/// Triangulates the points, which are read only and need to live until the call returns. For repeated calls with many
+/// points use a Triangulator, which keeps the device open. With up to 16,383 points on the host the calling thread
+/// works alone and keeps up to 8 MiB of memory for its next call, until it ends. Expected O(n log n) work for the sort
+/// and O(n) for the rest on well-spread points. Thread-safe; calls from `Options::progress` are allowed.
 [[nodiscard]] CADT_API Triangulation triangulate(PointsView points, const Options& options = {});
 
 }  // namespace cadt

@@ -117,8 +117,8 @@ const DeviceInfo& this_host() {
 /// Whether this thread rounds to nearest and keeps subnormal numbers, as threads do unless the program has changed it.
 bool has_usual_arithmetic() noexcept {
   const volatile double one = 1, little = 0x1p-60, smallest = 0x1p-1022, half = 0.5;
-  return one + little == 1 && one - little == 1 &&
-         smallest * half != 0;  // nor if it counts as zero where it is compared
+  const bool to_nearest = one + little == 1 && one - little == 1;
+  return to_nearest && smallest * half != 0;  // also 0 if it counts as 0 where it is compared
 }
 
 /// A launch returns when its work is done.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -107,6 +108,19 @@ DeviceInfo describe() {
   return info;
 }
 
+/// Never destroyed: destructors of the program may still call the library.
+const DeviceInfo& this_host() {
+  static const DeviceInfo* const info = new DeviceInfo(describe());
+  return *info;
+}
+
+/// Whether this thread rounds to nearest and keeps subnormal numbers, as threads do unless the program has changed it.
+bool has_usual_arithmetic() noexcept {
+  const volatile double one = 1, little = 0x1p-60, smallest = 0x1p-1022, half = 0.5;
+  const bool to_nearest = one + little == 1 && one - little == 1;
+  return to_nearest && smallest * half != 0;  // also 0 if it counts as 0 where it is compared
+}
+
 /// A launch returns when its work is done.
 class HostClock final : public KernelClock {
  public:
@@ -127,7 +141,7 @@ class HostDevice final : public Device {
  public:
   explicit HostDevice(const Options& options)
       : pool_(options.threads != 0 ? options.threads : all_cores(), options.tuning.grain != 0),
-        info_(describe()),
+        info_(this_host()),
         allocator_(options.allocator) {
     if (options.tuning.kernel_times) clock_.emplace();
   }
@@ -137,6 +151,7 @@ class HostDevice final : public Device {
     return {.contiguous = true, .parallelism = pool_.threads() * 4, .grain = 512, .resident = 0};
   }
   [[nodiscard]] unsigned threads() const noexcept override { return pool_.threads(); }
+  void begin_call() override;
 
   [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes) override { return make(bytes); }
   [[nodiscard]] std::unique_ptr<Buffer> allocate_zeros(std::size_t bytes) override {
@@ -198,13 +213,36 @@ class HostDevice final : public Device {
   std::optional<HostClock> clock_;
 };
 
+void selftest_variants(Device& device) {
+  for (const KernelVariant variant : {KernelVariant::narrow, KernelVariant::wide, KernelVariant::timed})
+    run_selftest(device, variant);
+}
+
+/// Runs the self-test of each variant of the kernels once a process, and again if it has failed. A thread with another
+/// arithmetic does the test by itself each time, so that no other thread answers for it. \throws BackendUnavailable
+void require_selftest(Device& device) {
+  static std::atomic<bool> passed{false};
+  if (!has_usual_arithmetic()) {
+    Options alone;
+    alone.threads = 1;
+    HostDevice of_this_thread(alone);
+    selftest_variants(of_this_thread);
+    return;
+  }
+  if (passed.load(std::memory_order_relaxed)) return;
+  selftest_variants(device);
+  passed.store(true, std::memory_order_relaxed);
+}
+
+void HostDevice::begin_call() { require_selftest(*this); }
+
 class HostBackend final : public BackendEntry {
  public:
   [[nodiscard]] Backend id() const noexcept override { return Backend::host; }
-  [[nodiscard]] std::vector<DeviceInfo> devices() override { return {describe()}; }
+  [[nodiscard]] std::vector<DeviceInfo> devices() override { return {this_host()}; }
   [[nodiscard]] std::unique_ptr<Device> open(int /*index*/, const Options& options) override {
     auto device = std::make_unique<HostDevice>(options);
-    run_selftest(*device);
+    require_selftest(*device);
     return device;
   }
 };

@@ -39,6 +39,10 @@ void ThreadPool::serve(std::size_t self, const std::stop_token& stop) noexcept {
 }
 
 void ThreadPool::run(KernelFunction kernel, std::uint32_t items, const Arg* args) {
+  if (workers_.empty() || items < 2) {  // waking the workers would take longer
+    for (std::uint32_t item = 0; item < items; ++item) kernel(item, items, args);
+    return;
+  }
   kernel_ = kernel;
   args_ = args;
   items_ = items;
@@ -47,16 +51,16 @@ void ThreadPool::run(KernelFunction kernel, std::uint32_t items, const Arg* args
     shares_[i].next.store(std::uint64_t{items} * i / shares, std::memory_order_relaxed);
     shares_[i].end = std::uint64_t{items} * (i + 1) / shares;
   }
-  if (workers_.empty() || items < 2) {  // waking the workers would take longer
-    work(0);
-    return;
-  }
   {
     std::lock_guard lock(mutex_);
     ++launch_;
     open_ = true;
   }
-  start_.notify_all();
+  // Each woken thread has an item at least.
+  if (const std::size_t wanted = items - std::size_t{1}; wanted < workers_.size())
+    for (std::size_t i = 0; i < wanted; ++i) start_.notify_one();
+  else
+    start_.notify_all();
   work(0);
   // No item is left. Workers that have not joined by now are not waited for: on a busy machine that can cost a time
   // slice a launch.

@@ -30,15 +30,19 @@ bool BufferCache::suits(std::size_t available, std::size_t bytes) const noexcept
 
 std::unique_ptr<Buffer> BufferCache::take(std::size_t bytes, Lifetime lifetime) {
   bytes = new_size(bytes, lifetime);
-  std::size_t best = idle_.size();  // the smallest that is large enough
-  for (std::size_t i = 0; i < idle_.size(); ++i)
-    if (suits(idle_[i]->bytes(), bytes) && (best == idle_.size() || idle_[i]->bytes() < idle_[best]->bytes())) best = i;
+  std::size_t best = idle_.size();                // the smallest that is large enough
+  for (std::size_t i = idle_.size(); i-- > 0;) {  // backwards: what was used last may still be in the processor's cache
+    const std::size_t available = idle_[i]->bytes();
+    if (available == bytes) return take_idle(i);
+    if (suits(available, bytes) && (best == idle_.size() || available < idle_[best]->bytes())) best = i;
+  }
   return best < idle_.size() ? take_idle(best) : nullptr;
 }
 
 std::unique_ptr<Buffer> BufferCache::take_idle(std::size_t place) noexcept {
-  auto buffer = std::move(idle_[place]);
-  idle_.erase(idle_.begin() + static_cast<std::ptrdiff_t>(place));
+  auto buffer = std::exchange(idle_[place], nullptr);
+  std::swap(idle_[place], idle_.back());
+  idle_.pop_back();
   bytes_ -= buffer->bytes();
   return buffer;
 }

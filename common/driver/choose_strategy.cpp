@@ -33,10 +33,16 @@ bool are_for_insertion(const PointProfile& profile) noexcept {
   return shapes.on_line || convex || shapes.on_rays;
 }
 
+/// Fewest points that are inserted in partitions. One thread gains nothing by them but short launches.
+std::size_t fewest_partitioned(const DeviceTraits& device) noexcept {
+  return (device.threads > 1 ? 4 : 16) * least_partition;
+}
+
 }  // namespace
 
 DeviceTraits traits_of(const Device& device) noexcept {
-  return {device.shape().contiguous, device.info().gpu, takes_floats_only(device)};
+  return {device.shape().contiguous, device.info().gpu, takes_floats_only(device),
+          device.info().backend == Backend::host ? device.threads() : 0};
 }
 
 PointProfile profile_of(const SortedPoints& points) noexcept {
@@ -74,8 +80,13 @@ std::size_t fewest_for_stars(const Options& options) noexcept {
   return options.tuning.strategy == Strategy::stars ? 0 : most_wrapped_on_circles + 1;
 }
 
+bool inserts_serially(const DeviceTraits& device, const Options& options, std::size_t n) noexcept {
+  return device.threads != 0 && n < fewest_partitioned(device) && options.tuning.strategy == Strategy::automatic &&
+         options.tuning.grain == 0 && options.tuning.stabilize == Stabilize::off && !options.tuning.watch;
+}
+
 bool inserts_partitions(const DeviceTraits& device, const Options& options, std::size_t n) noexcept {
-  return device.contiguous && n >= 4 * least_partition && options.tuning.grain == 0 &&
+  return device.contiguous && n >= fewest_partitioned(device) && options.tuning.grain == 0 &&
          options.tuning.stabilize == Stabilize::off && !options.tuning.watch;
 }
 

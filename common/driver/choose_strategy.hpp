@@ -17,6 +17,7 @@ struct DeviceTraits {
   bool contiguous = true;    ///< a work-item takes contiguous elements, as on CPUs
   bool gpu = false;          ///< many lightweight work-items
   bool floats_only = false;  ///< no double precision
+  unsigned threads = 0;      ///< of the host; 0: another device
 };
 [[nodiscard]] DeviceTraits traits_of(const Device& device) noexcept;
 
@@ -55,10 +56,17 @@ struct BuildStrategy {
 /// The fewest points for which the star stage may need its memory.
 [[nodiscard]] std::size_t fewest_for_stars(const Options& options) noexcept;
 
+/// Whether one work-item inserts all n points, without locks and without waking a thread.
+[[nodiscard]] bool inserts_serially(const DeviceTraits& device, const Options& options, std::size_t n) noexcept;
+
+/// Most points of a call that the calling thread does alone, with a device that it keeps: opening one with threads
+/// takes longer than they save.
+constexpr std::size_t most_points_of_calling_thread = (std::size_t{1} << 14) - 1;
+
 /// Whether each thread inserts a partition of the n points (common/insertion/partitioned.dev.h).
 [[nodiscard]] bool inserts_partitions(const DeviceTraits& device, const Options& options, std::size_t n) noexcept;
 /// Fewest points of a partition.
-constexpr std::size_t least_partition = std::size_t{1} << 14;
+constexpr std::size_t least_partition = std::size_t{1} << 12;
 
 /// Most points of a set that may be batched; a larger set is triangulated individually. 0: so is every set.
 [[nodiscard]] std::size_t most_points_of_batched_set(const DeviceTraits& device) noexcept;

@@ -21,7 +21,9 @@ namespace cadt {
 struct Context {
   Context(Device& d, Memory& m, const Options& o, Statistics& s, const MemoryPlan& p = {})
       : device(d), options(o), statistics(s), memory(m), plan(p), launcher(d, m, o.tuning.grain) {
-    if (options.statistics != StatisticsDetail::none) device.start_times();
+    if (options.statistics == StatisticsDetail::none) return;
+    device.start_times();
+    phases_.reserve(16);
   }
 
   Device& device;
@@ -49,11 +51,12 @@ struct Context {
     }
   }
 
-  /// Ends a phase: what was launched since the last one belongs to it. Does nothing for StatisticsDetail::none.
+  /// Ends a phase: what was launched since the last one belongs to it. Does nothing for StatisticsDetail::none. `name`:
+  /// a literal.
   void end_phase(std::string_view name) {
     if (options.statistics == StatisticsDetail::none) return;
     device.mark_time();
-    phases_.emplace_back(name);
+    phases_.push_back(name);
   }
 
   /// Waits for the device and adds the times of the phases to the statistics.
@@ -61,6 +64,7 @@ struct Context {
     device.finish();
     if (phases_.empty()) return;
     const std::vector<double> times = device.times();
+    statistics.milliseconds.reserve(statistics.milliseconds.size() + phases_.size());
     for (std::size_t i = 0; i < phases_.size(); ++i) {
       const auto same = std::ranges::find(statistics.milliseconds, phases_[i], &std::pair<std::string, double>::first);
       if (same == statistics.milliseconds.end())
@@ -74,7 +78,7 @@ struct Context {
  private:
   double share_begin_ = 0, share_ = 1;
   double reported_ = -1;  ///< so that repeated passes report nothing again
-  std::vector<std::string> phases_;
+  std::vector<std::string_view> phases_;
 };
 
 }  // namespace cadt

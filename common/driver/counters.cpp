@@ -33,16 +33,27 @@ static_assert(are_three(CADT_COUNT_EXACT_ORIENTATIONS, CADT_COUNT_EXACT_INCIRCLE
 static_assert(are_three(CADT_STARS_EXACT_ORIENTATIONS, CADT_STARS_EXACT_INCIRCLES, CADT_STARS_TIES));
 static_assert(are_three(CADT_WRAP_EXACT_ORIENTATIONS, CADT_WRAP_EXACT_INCIRCLES, CADT_WRAP_TIES));
 
+/// Rows that the work-items of this call have added to: on CPUs, where none does another's work, as many as there were
+/// in one launch.
+std::size_t rows_used(const Context& ctx) {
+  constexpr std::size_t all = CADT_COUNTER_ROWS;
+  return ctx.device.shape().contiguous ? std::min<std::size_t>(all, ctx.launcher.most_items()) : all;
+}
+
 }  // namespace
 
-Counters::Counters(Context& ctx) : device_(ctx.device) {
+Counters::Counters(Context& ctx) : ctx_(ctx) {
   if (ctx.options.statistics == StatisticsDetail::none) return;
   buffer_ = ctx.memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
 }
 
+void Counters::clear() {
+  if (buffer_) ctx_.device.fill(*buffer_, 0, sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE, 0);
+}
+
 void Counters::collect(Statistics& statistics) const {
   if (!buffer_) return;
-  add_counters(statistics, device_.read_values(*buffer_, std::size_t{CADT_COUNTER_ROWS} * CADT_COUNTER_STRIDE));
+  add_counters(statistics, ctx_.device.read_values(*buffer_, rows_used(ctx_) * CADT_COUNTER_STRIDE));
 }
 
 void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) {
@@ -72,14 +83,14 @@ void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) 
   statistics.ties += sums[CADT_COUNT_TIES];
 }
 
-FlipHistogram::FlipHistogram(Context& ctx, bool wanted) : device_(ctx.device) {
+FlipHistogram::FlipHistogram(Context& ctx, bool wanted) : ctx_(ctx) {
   if (ctx.options.statistics == StatisticsDetail::none || !wanted) return;
   buffer_ = ctx.memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_FLIP_BINS);
 }
 
 void FlipHistogram::collect(Statistics& statistics) const {
   if (!buffer_) return;
-  const auto words = device_.read_values(*buffer_, std::size_t{CADT_COUNTER_ROWS} * CADT_FLIP_BINS);
+  const auto words = ctx_.device.read_values(*buffer_, rows_used(ctx_) * CADT_FLIP_BINS);
   std::array<std::uint64_t, CADT_FLIP_BINS> sums{};
   for (std::size_t i = 0; i < words.size(); ++i) sums[i % CADT_FLIP_BINS] += words[i];
   for (std::size_t i = 0; i < sums.size(); ++i) statistics.flips_per_edge[i] += sums[i] / 2;  // counted from both sides

@@ -17,11 +17,13 @@ class Counters {
  public:
   explicit Counters(Context& ctx);
   operator Arg() const noexcept { return buffer_; }  // NOLINT
+  /// Forgets what was counted.
+  void clear();
   /// Reads the counters and adds all rows to the statistics.
   void collect(Statistics& statistics) const;
 
  private:
-  Device& device_;
+  Context& ctx_;
   Allocation buffer_;
 };
 
@@ -39,7 +41,7 @@ class FlipHistogram {
   void collect(Statistics& statistics) const;
 
  private:
-  Device& device_;
+  Context& ctx_;
   Allocation buffer_;
 };
 

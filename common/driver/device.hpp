@@ -114,6 +114,9 @@ class Device {
   [[nodiscard]] virtual LaunchShape shape() const noexcept = 0;
   /// Worker threads (host) or compute units.
   [[nodiscard]] virtual unsigned threads() const noexcept = 0;
+  /// Begins a call: where the program may have changed the arithmetic since the self-test, it is made again. \throws
+  /// BackendUnavailable
+  virtual void begin_call() {}
 
   /// Uninitialised memory. \throws OutOfMemory, DeviceError
   [[nodiscard]] virtual std::unique_ptr<Buffer> allocate(std::size_t bytes) = 0;

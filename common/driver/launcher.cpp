@@ -5,7 +5,11 @@ namespace cadt {
 namespace {
 
 using device_text::word;
-constexpr std::size_t smallest_grain = 8;  // fewer elements are not worth waking a thread
+// Waking a thread of a CPU takes 10 to 30 microseconds, and more where cores are busy: the launch ends with its slowest
+// thread. What is not worth it, in elements: of the cheap kernels (5 to 20 nanoseconds each), of a chunk (1 to 3),
+// points or edges of insertion (500), and what is for a team elsewhere, such as a set or a tile.
+constexpr std::size_t most_serial = 16384, smallest_chunk = 8192, smallest_spread = 64, smallest_of_teams = 8;
+constexpr std::size_t usual_grain = 4096;  // of the cheap kernels, beyond most_serial
 constexpr std::size_t device_chunk = 512;  // contiguous elements that a work-item of a GPU scans or sorts
 // Several elements a work-item cost less set-up; with more elements than this the mesh does not stay in the cache
 // between two elements of a work-item.
@@ -20,19 +24,26 @@ constexpr LaunchGrid make_grid(std::size_t items, std::size_t count, std::size_t
 
 }  // namespace
 
-LaunchGrid Launcher::grid(std::size_t count) const noexcept {
-  const LaunchShape shape = device_.shape();
-  if (!shape.contiguous) return make_grid(count, count, 1);
-  // A small grain balances the load at the end; a large one keeps each thread in its own part of the mesh.
-  const std::size_t grain = grain_ != 0 ? std::min<std::size_t>(grain_, std::max<std::size_t>(count, 1))
-                                        : std::clamp<std::size_t>(divide_up(count, std::size_t{shape.parallelism} * 4),
-                                                                  smallest_grain, shape.grain);
+LaunchGrid Launcher::grid_of_grains(std::size_t count, std::size_t grain) const noexcept {
+  if (grain_ != 0) grain = std::min<std::size_t>(grain_, std::max<std::size_t>(count, 1));
   return make_grid(divide_up(count, grain), count, grain);
+}
+
+LaunchGrid Launcher::grid_balanced(std::size_t count, std::size_t smallest) const noexcept {
+  const LaunchShape shape = device_.shape();
+  // A small grain balances the load at the end; a large one keeps each thread in its own part of the mesh.
+  return grid_of_grains(
+      count, std::clamp<std::size_t>(divide_up(count, std::size_t{shape.parallelism} * 4), smallest, shape.grain));
+}
+
+LaunchGrid Launcher::grid(std::size_t count) const noexcept {
+  if (!device_.shape().contiguous) return make_grid(count, count, 1);
+  return grid_of_grains(count, count <= most_serial ? most_serial : usual_grain);
 }
 
 LaunchGrid Launcher::grid_spread(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
-  if (shape.contiguous) return grid(count);
+  if (shape.contiguous) return grid_balanced(count, smallest_spread);
   std::uint32_t lanes = 1;  // for each element; a warp has 32
   while (lanes < 32 && count * lanes * 2 <= shape.resident) lanes *= 2;
   if (lanes == 1 && count <= most_strided) return grid_strided(count);
@@ -47,7 +58,7 @@ LaunchGrid Launcher::grid_strided(std::size_t count) const noexcept {
 }
 
 LaunchGrid Launcher::grid_of_teams(std::size_t count, std::size_t lanes) const noexcept {
-  if (device_.shape().contiguous) return grid(count);
+  if (device_.shape().contiguous) return grid_balanced(count, smallest_of_teams);
   constexpr std::size_t most = std::size_t{1} << 30;  // beyond it each group takes several elements
   return make_grid(std::min(count * lanes, most), count, 1);
 }
@@ -61,7 +72,7 @@ LaunchGrid Launcher::parts(std::size_t count) const noexcept {
 LaunchGrid Launcher::chunks(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   const std::size_t grain =
-      shape.contiguous ? std::max<std::size_t>(divide_up(count, shape.parallelism), 1024) : device_chunk;
+      shape.contiguous ? std::max<std::size_t>(divide_up(count, shape.parallelism), smallest_chunk) : device_chunk;
   return make_grid(divide_up(count, grain), count, grain);
 }
 
@@ -82,6 +93,11 @@ void Launcher::scan(const Allocation& data, std::size_t count) {
   }
   const LaunchGrid c = chunks(count);
   Allocation sums = memory_.transient(c.items * word);
+  if (c.items == 1) {  // nothing is before the only chunk
+    device_.fill(*sums, 0, word, 0);
+    run<KernelId::cadt_scan_apply>(data, sums, c);
+    return;
+  }
   run<KernelId::cadt_scan_sums>(data, sums, c);
   if (c.items <= longest_serial_scan) {
     run<KernelId::cadt_scan_total>(1, sums, c.items);

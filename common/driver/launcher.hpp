@@ -36,6 +36,8 @@ class Launcher {
       : device_(device), memory_(memory), times_(device), grain_(grain) {}
 
   [[nodiscard]] std::uint64_t launches() const noexcept { return launches_; }
+  /// Work-items of the largest launch so far.
+  [[nodiscard]] std::uint32_t most_items() const noexcept { return most_items_; }
   /// As Statistics::kernels. \throws DeviceError
   [[nodiscard]] std::vector<KernelTime> kernel_times() { return times_.sums(); }
   /// The variant of all kernels launched from here on.
@@ -94,8 +96,14 @@ class Launcher {
     static_assert(takes_arguments<kernel, Args...>(), "other arguments than the kernel has parameters");
     const Arg list[] = {Arg(as_parameter(args))...};
     ++launches_;
+    most_items_ = std::max(most_items_, items);
     times_.time(static_cast<std::size_t>(kernel), [&] { device_.launch(kernel, items, list, variant_, group); });
   }
+
+  /// For CPUs: `grain` contiguous elements for each work-item, unless the options say otherwise.
+  [[nodiscard]] LaunchGrid grid_of_grains(std::size_t count, std::size_t grain) const noexcept;
+  /// The same with several work-items for each thread, if that leaves `smallest` elements for each of them.
+  [[nodiscard]] LaunchGrid grid_balanced(std::size_t count, std::size_t smallest) const noexcept;
 
   /// Kernels take sizes and booleans as words.
   template <class T>
@@ -114,6 +122,7 @@ class Launcher {
   unsigned grain_;
   KernelVariant variant_ = KernelVariant::narrow;
   std::uint64_t launches_ = 0;
+  std::uint32_t most_items_ = 0;
 };
 
 }  // namespace cadt

@@ -121,4 +121,16 @@ std::unique_ptr<Device> open_device(const Options& options) {
   return open_in(host_backend(), options);
 }
 
+bool takes_host(const Options& options, std::size_t points) noexcept {
+  return options.backend == Backend::automatic && options.device.empty() && !options.queue &&
+         points < fewest_points_for_gpu;
+}
+
+std::unique_ptr<Device> open_device(const Options& options, std::size_t points) {
+  if (!takes_host(options, points)) return open_device(options);
+  Options on_host = options;
+  on_host.backend = Backend::host;
+  return open_device(on_host);
+}
+
 }  // namespace cadt

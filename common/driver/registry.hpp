@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "common/driver/device.hpp"
@@ -9,5 +10,13 @@ namespace cadt {
 
 /// Opens the device that the options name, never another one in its place. \throws BackendUnavailable
 [[nodiscard]] std::unique_ptr<Device> open_device(const Options& options);
+/// The same for one call of so many points: Backend::automatic takes a GPU only if they are enough.
+[[nodiscard]] std::unique_ptr<Device> open_device(const Options& options, std::size_t points);
+
+/// Fewest points of one call for which Backend::automatic opens a GPU: opening its context takes 200 milliseconds and
+/// more, and one core of the host triangulates so many points in 100.
+constexpr std::size_t fewest_points_for_gpu = 200'000;
+/// Whether Backend::automatic means the host for one call of so many points.
+[[nodiscard]] bool takes_host(const Options& options, std::size_t points) noexcept;
 
 }  // namespace cadt

@@ -42,6 +42,7 @@ void begin_budget(Triangulator::State& state, std::size_t n) {
 
 void begin_call(Triangulator::State& state, std::size_t n, Statistics& statistics) {
   require_valid(state.options, *state.device);
+  state.device->begin_call();
   const DeviceInfo& info = state.device->info();
   statistics.points = n;
   statistics.certified = true;  // no edge is illegal until one is found

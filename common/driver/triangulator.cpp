@@ -13,6 +13,7 @@
 #include "common/driver/device_triangulation.hpp"
 #include "common/driver/registry.hpp"
 #include "common/driver/session.hpp"
+#include "common/driver/thread_state.hpp"
 #include "common/driver/triangulation_data.hpp"
 #include "common/output/renumber.hpp"
 #include "common/points/device_points.hpp"
@@ -194,7 +195,8 @@ void Triangulator::release_memory() {
 
 Triangulation triangulate(PointsView points, const Options& options) {
   require_size(points.size());
-  return to_host(std::make_shared<Triangulator::State>(options, open_device(options), false), points);
+  const CallState state(options, points.size());
+  return to_host(*state, points);
 }
 
 }  // namespace cadt

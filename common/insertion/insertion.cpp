@@ -54,20 +54,9 @@ class IncrementalInsertion {
     if (n_ < 3 || !find_seed_triangle()) return Mesh::without_triangles(std::move(own_->input_ids));
     mesh_.locked = ctx_.memory.allocate_zeros(2 * n_ * sizeof(cadt_locked_triangle));  // lock word 0: not there yet
     mesh_.vertex_to_triangle = ctx_.memory.transient(n_ * word);
-    // points of a launch: a level and deferred ones, of one launch or of several since the last read
-    const std::size_t limit = n_ / 2 + n_ / 32 + std::min(n_ / 2, poll_interval) + 64;
-    for (Allocation& list : deferred_points_) list = ctx_.memory.transient(limit * word);
     make_edge_lists();
-    launch_.run<KernelId::cadt_seed_mesh>(1, mesh_);
     ctx_.end_phase("seed");
-
-    const unsigned last = inserts_partitions(traits_of(ctx_.device), ctx_.options, n_) ? partition_level : 0;
-    for (unsigned level = levels(); level-- > last;) insert_level(level, level == last);
-    if (last != 0) insert_partitions();
-    if (deferred_.points != 0 || deferred_.edges != 0) {
-      finish_deferred();
-      show_growth();
-    }
+    if (!inserts_serially(traits_of(ctx_.device), ctx_.options, n_) || !insert_serially()) insert_in_parallel();
     ctx_.end_phase("insert");
     LockedTriangles locked = finish(3 * std::uint64_t{n_} - 3);
     own_->points.release();
@@ -138,6 +127,41 @@ class IncrementalInsertion {
       mesh_.center.y += p[1] / 3;
     }
     return true;
+  }
+
+  /// One work-item inserts all points, as it does with a set of a batch (common/batch/batch_insertion.dev.h). False if
+  /// it could not place one: then the mesh is empty again.
+  bool insert_serially() {
+    const std::array<std::uint32_t, 2> ends = {0, static_cast<std::uint32_t>(n_)};
+    const Allocation starts = ctx_.memory.allocate(sizeof ends), state = launch_.zeros(1);
+    static_assert(CADT_SET_BATCHED == 0);
+    ctx_.device.write(*starts, 0, ends.data(), sizeof ends);
+    launch_.run<KernelId::cadt_batch_insert>(1, mesh_.locked, order_.points, mesh_.vertex_to_triangle, starts, 1U,
+                                             state, 1U, deferred_counts_, counters_);
+    // Edges for which the worklist had no place are counted but on no list: the legality sweep finds them.
+    ctx_.device.fill(*deferred_counts_, 0, CADT_DEFERRED_COUNTS * word, 0);
+    if (launch_.read_word(state, 0) == CADT_SET_BATCHED) {
+      ctx_.check("insert", 0.8);
+      return true;
+    }
+    ctx_.device.fill(*mesh_.locked, 0, 2 * n_ * sizeof(cadt_locked_triangle), 0);
+    counters_.clear();
+    return false;
+  }
+
+  /// All work-items insert points into the same mesh, level by level.
+  void insert_in_parallel() {
+    // points of a launch: a level and deferred ones, of one launch or of several since the last read
+    const std::size_t limit = n_ / 2 + n_ / 32 + std::min(n_ / 2, poll_interval) + 64;
+    for (Allocation& list : deferred_points_) list = ctx_.memory.transient(limit * word);
+    launch_.run<KernelId::cadt_seed_mesh>(1, mesh_);
+    const unsigned last = inserts_partitions(traits_of(ctx_.device), ctx_.options, n_) ? partition_level : 0;
+    for (unsigned level = levels(); level-- > last;) insert_level(level, level == last);
+    if (last != 0) insert_partitions();
+    if (deferred_.points != 0 || deferred_.edges != 0) {
+      finish_deferred();
+      show_growth();
+    }
   }
 
   void insert_level(unsigned level, bool last) {

@@ -88,7 +88,8 @@ void compare(const DeviceInfo& info, const char* name, std::uint64_t expected, s
 
 /// `Bits`: an integer as wide as a coordinate of the device.
 template <class Bits>
-void run_probes(Device& device, const std::array<Probe, 8>& of, const std::array<std::uint32_t, 2>& product) {
+void run_probes(Device& device, const std::array<Probe, 8>& of, const std::array<std::uint32_t, 2>& product,
+                KernelVariant variant) {
   std::array<Bits, 2 * probes.size()> inputs{};
   for (std::size_t i = 0; i < of.size(); ++i) {
     inputs[2 * i] = static_cast<Bits>(of[i].a);
@@ -105,7 +106,7 @@ void run_probes(Device& device, const std::array<Probe, 8>& of, const std::array
               0xA5A5A5A5u);  // no answer has these bits: an output that is not written is noticed
   device.write(*counters, 0, words.data(), sizeof words);
   const std::array<Arg, 4> arguments = {Arg(in), Arg(out), Arg(counters), Arg(items)};
-  device.launch(KernelId::cadt_selftest, items, arguments, KernelVariant::narrow);
+  device.launch(KernelId::cadt_selftest, items, arguments, variant);
   device.finish();
   device.read(*out, 0, outputs.data(), sizeof outputs);
   device.read(*counters, 0, words.data(), sizeof words);
@@ -117,11 +118,11 @@ void run_probes(Device& device, const std::array<Probe, 8>& of, const std::array
 
 }  // namespace
 
-void run_selftest(Device& device) {
+void run_selftest(Device& device, KernelVariant variant) {
   if (takes_floats_only(device))
-    run_probes<std::uint32_t>(device, float_probes, float_product_words);
+    run_probes<std::uint32_t>(device, float_probes, float_product_words, variant);
   else
-    run_probes<std::uint64_t>(device, probes, product_words);
+    run_probes<std::uint64_t>(device, probes, product_words, variant);
 }
 
 }  // namespace cadt

@@ -8,7 +8,7 @@ namespace cadt {
 
 /// The arithmetic and the atomics. Every back end runs it when it opens a device. \throws BackendUnavailable with the
 /// name of the first probe that failed, the expected bits and those found
-void run_selftest(Device& device);
+void run_selftest(Device& device, KernelVariant variant = KernelVariant::narrow);
 
 /// The lock protocol on a few triangles that many work-items change, and a long loop: back ends whose compiler or
 /// driver is not known when the library is built run it too, once a context. It takes milliseconds, and finds what

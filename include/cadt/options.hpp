@@ -18,7 +18,8 @@
 namespace cadt {
 
 /// Where the triangulation is computed. `automatic` takes the fastest usable device: a GPU if there is one, else the
-/// host.
+/// host. The function triangulate() takes the host for fewer than 200,000 points, unless `Options::device` names a
+/// device: opening a GPU takes longer.
 enum class Backend { automatic, host, opencl, cuda };
 
 /// "auto", "host", "opencl", "cuda".
@@ -98,7 +99,7 @@ struct Options {
   /// the first usable device, among those with double precision. Devices without (`DeviceInfo::fp64`) take float
   /// coordinates only: with doubles BackendUnavailable, with Strategy::stars OptionError.
   std::string device;
-  /// Host threads; 0: one for each core, 1: serial (the reference).
+  /// Host threads at most; 0: one for each core, 1: serial (the reference). Small sets are left to one of them.
   unsigned threads = 0;
   Order order = Order::canonical;
   /// Limit of the device memory that the library holds, in bytes; 0: none. If a call needs more: OutOfMemory, before

@@ -34,14 +34,14 @@ struct KernelTime {
 struct Statistics {
   std::string backend;   ///< "host", "opencl", "cuda"
   std::string device;    ///< device name as its driver gives it
-  unsigned threads = 0;  ///< host threads, or compute units of the device
+  unsigned threads = 0;  ///< host threads, or compute units of the device; 1 where the calling thread worked alone
 
   std::uint64_t points = 0;         ///< input points
   std::uint64_t distinct = 0;       ///< distinct points, all of them vertices unless dimension < 2
   std::uint64_t launches = 0;       ///< kernel launches, without those inside the device's own sort and scan
   std::uint64_t walk_steps = 0;     ///< triangles visited by point location
   std::uint64_t lock_attempts = 0;  ///< attempts to lock all triangles of a split or flip; one for each split or flip
-                                    ///< where a thread owns its triangles without locks (CPUs, from 65,536 points on)
+                                    ///< where a thread owns its triangles without locks (CPUs)
   std::uint64_t lock_failures = 0;  ///< attempts that met a held lock or a changed triangle: all attempts but splits,
                                     ///< edge_splits and flips
   std::uint64_t invalid_restarts = 0;    ///< of these, attempts that met a triangle that had changed since it was read

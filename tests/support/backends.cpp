@@ -19,6 +19,8 @@ Options BackendCase::options() const {
   options.tuning.work_group_size = work_group_size;
   // Cards would do small sets without a lock: as users have it where the size of a group is theirs, else by insertion.
   if (work_group_size != 0) options.tuning.strategy = Strategy::locks;
+  // So would the host, with one thread: as users have it with one thread and with eight, else by all threads.
+  if (backend == Backend::host && (threads == 2 || threads == 3)) options.tuning.strategy = Strategy::locks;
   return options;
 }
 

@@ -108,6 +108,7 @@ class FaultyDevice final : public Device {
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] LaunchShape shape() const noexcept override { return device_->shape(); }
   [[nodiscard]] unsigned threads() const noexcept override { return device_->threads(); }
+  void begin_call() override { device_->begin_call(); }
   /// A pool is one of this device: the test decides whether there is one, and how large the largest buffer is.
   [[nodiscard]] std::unique_ptr<BufferCache> make_cache() override {
     constexpr std::size_t any_alignment = 64, large = std::size_t{1} << 30;

@@ -13,7 +13,7 @@ namespace {
 using Method = BuildStrategy::Method;
 
 constexpr DeviceTraits cpu{true, false, false}, gpu{false, true, false}, float_gpu{false, true, true},
-    pocl_as_gpu{false, true, false};
+    pocl_as_gpu{false, true, false}, one_thread{true, false, false, 1}, two_threads{true, false, false, 2};
 
 Options options_of(Strategy strategy) {
   Options options;
@@ -125,6 +125,28 @@ TEST(ChooseStrategy, PartitionsAreForThreadsWithPointsEnough) {
   EXPECT_FALSE(inserts_partitions(cpu, grain, 65536));
   EXPECT_FALSE(inserts_partitions(cpu, watched, 65536));
   EXPECT_FALSE(inserts_partitions(cpu, deferred, 65536));
+  EXPECT_TRUE(inserts_partitions(two_threads, options, 16384));
+  EXPECT_FALSE(inserts_partitions(two_threads, options, 16383));
+  EXPECT_TRUE(inserts_partitions(one_thread, options, 65536));
+  EXPECT_FALSE(inserts_partitions(one_thread, options, 65535));
+}
+
+TEST(ChooseStrategy, OneThreadInsertsSmallSetsAlone) {
+  Options automatic, grain, watched, deferred;
+  grain.grain = 1;
+  watched.watch = [](const Snapshot&) {};
+  deferred.stabilize = Stabilize::defer;
+  EXPECT_TRUE(inserts_serially(two_threads, automatic, 3));
+  EXPECT_TRUE(inserts_serially(two_threads, automatic, 16383));
+  EXPECT_FALSE(inserts_serially(two_threads, automatic, 16384));
+  EXPECT_TRUE(inserts_serially(one_thread, automatic, 65535));
+  EXPECT_FALSE(inserts_serially(one_thread, automatic, 65536));
+  EXPECT_FALSE(inserts_serially(cpu, automatic, 100)) << "OpenCL compiles that kernel for batches only";
+  EXPECT_FALSE(inserts_serially(gpu, automatic, 100));
+  EXPECT_FALSE(inserts_serially(two_threads, options_of(Strategy::locks), 100)) << "all threads, as asked for";
+  EXPECT_FALSE(inserts_serially(two_threads, grain, 100));
+  EXPECT_FALSE(inserts_serially(two_threads, watched, 100));
+  EXPECT_FALSE(inserts_serially(two_threads, deferred, 100));
 }
 
 TEST(ChooseStrategy, SmallSetsAreBatched) {

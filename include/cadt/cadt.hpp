@@ -7,6 +7,7 @@
 #include <cadt/errors.hpp>
 #include <cadt/points.hpp>
 #include <cadt/statistics.hpp>
+#include <cadt/triangle.hpp>
 #include <cadt/triangulation.hpp>
 #include <cadt/triangulator.hpp>
 #include <cadt/verify.hpp>

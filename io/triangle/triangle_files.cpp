@@ -14,10 +14,10 @@ namespace cadt::io {
 namespace detail {
 namespace {
 
-/// The suffix with its dot; empty if the last component of the path has none.
+/// What follows the last dot, with it. It may have a slash, and is then nobody's suffix.
 std::string last_suffix(const std::string& path) {
-  const std::size_t dot = path.find_last_of('.'), slash = path.find_last_of('/');
-  return dot == std::string::npos || (slash != std::string::npos && dot < slash) ? std::string() : path.substr(dot);
+  const std::size_t dot = path.find_last_of('.');
+  return dot == std::string::npos ? std::string() : path.substr(dot);
 }
 
 bool is_number(std::string_view text) {

@@ -13,7 +13,7 @@ namespace {
 
 using Whole = __int128;
 
-/// For corners that are whole numbers below 2^26: the centre as an exact quotient, rounded twice.
+/// For corners that are whole numbers up to 2^30: the centre as an exact quotient, rounded twice.
 struct Quotient {
   Whole x, y, divisor;
 };
@@ -43,15 +43,17 @@ void expect_center(const Corner& a, const Corner& b, const Corner& c) {
   const auto& w = found.weights;
   const double largest = std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
   EXPECT_NEAR(w[0] + w[1] + w[2], 1, 32 * unit * largest);
-  const double extent = std::max({std::abs(a[0]), std::abs(a[1]), std::abs(b[0]), std::abs(b[1]), std::abs(c[0]),
-                                  std::abs(c[1])});
+  const double extent =
+      std::max({std::abs(a[0]), std::abs(a[1]), std::abs(b[0]), std::abs(b[1]), std::abs(c[0]), std::abs(c[1])});
   EXPECT_NEAR(w[0] * a[0] + w[1] * b[0] + w[2] * c[0], x, 32 * unit * largest * extent);
   EXPECT_NEAR(w[0] * a[1] + w[1] * b[1] + w[2] * c[1], y, 32 * unit * largest * extent);
 }
 
 TEST(Circumcenter, OfRandomTrianglesIsThatOfWholeNumbers) {
   std::mt19937_64 random(7);
-  const auto below = [&](std::int64_t n) { return static_cast<double>(static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(n))); };
+  const auto below = [&](std::int64_t n) {
+    return static_cast<double>(static_cast<std::int64_t>(random() % static_cast<std::uint64_t>(n)));
+  };
   for (int i = 0; i < 20000; ++i) {
     const Corner a{below(1 << 20), below(1 << 20)};
     const Corner b{a[0] + below(1 << (i % 20 + 1)), a[1] - below(1 << (i % 20 + 1))};
@@ -62,22 +64,23 @@ TEST(Circumcenter, OfRandomTrianglesIsThatOfWholeNumbers) {
 }
 
 TEST(Circumcenter, OfSliversHasTheRightSignedArea) {
-  // Collinear but for one unit in 2^25: without an exact sum the area is noise.
+  // Collinear but for one unit in 2^30: products of 60 bits that cancel.
   for (int i = 1; i < 200; ++i) {
-    const double n = (1 << 25) - i;
-    expect_center({0, 0}, {n, n - 1}, {n / 2 > 1 ? std::floor(n / 2) : 1, std::floor(n / 2) + 1});
+    const double n = (1 << 30) - i;
+    expect_center({0, 0}, {n, n - 1}, {std::floor(n / 2), std::floor(n / 2) + 1});
     expect_center({0, 0}, {n, n + 1}, {n - 1, n});
     expect_center({n, n}, {n + 1, n}, {0, 1});
   }
 }
 
 TEST(Circumcenter, LosesNothingInDifferences) {
-  // b - a and c - a are no doubles: 1 + 2^-60 and its like. Scaled by 2^60 all is a whole number.
-  const double e = std::ldexp(1, -60);
-  const Circumcenter found = circumcenter({-e, 0}, {1, e}, {2, 3 * e});
-  // Through (0, 0), (1 + e, e), (2 + e, 3 e): twice the area is (1 + e) 3 e - e (2 + e) = e + 2 e^2.
-  // y = ((1 + e) |c|^2 - (2 + e) |b|^2) / (2 area) = (2 + ...) / (2 e): about 2^60.
-  EXPECT_NEAR(found.y, std::ldexp(1, 60), std::ldexp(1, 60) * 8 * unit);
+  // b - a = (1 + d, 1) and c - a = (2 + d, 2) are no doubles, and twice the area is d.
+  const double d = std::ldexp(1, -54);
+  for (const auto& [p, q, r] : {std::array<Corner, 3>{{{-d, 0}, {1, 1}, {2, 2}}}, {{{1, 1}, {2, 2}, {-d, 0}}}}) {
+    const Circumcenter found = circumcenter(p, q, r);
+    EXPECT_NEAR(found.x, -2 / d, 8 * unit / d);
+    EXPECT_NEAR(found.y, 2 / d, 8 * unit / d);
+  }
 }
 
 TEST(Circumcenter, IsScaledExactly) {

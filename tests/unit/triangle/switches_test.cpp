@@ -13,10 +13,21 @@ namespace {
 /// The letters of the members that are true.
 std::string letters(const TriangleSwitches& s) {
   std::string text;
-  for (const auto& [set, letter] :
-       {std::pair{s.neighbors, 'n'}, {s.edges, 'e'}, {s.voronoi, 'v'}, {s.hull_segments, 'c'}, {s.off, 'g'},
-        {s.jettison, 'j'}, {s.zero_based, 'z'}, {s.no_markers, 'B'}, {s.no_poly, 'P'}, {s.no_nodes, 'N'},
-        {s.no_elements, 'E'}, {s.no_iteration, 'I'}, {s.quiet, 'Q'}, {s.verbose, 'V'}, {s.help, 'h'}}) {
+  for (const auto& [set, letter] : {std::pair{s.neighbors, 'n'},
+                                    {s.edges, 'e'},
+                                    {s.voronoi, 'v'},
+                                    {s.hull_segments, 'c'},
+                                    {s.off, 'g'},
+                                    {s.jettison, 'j'},
+                                    {s.zero_based, 'z'},
+                                    {s.no_markers, 'B'},
+                                    {s.no_poly, 'P'},
+                                    {s.no_nodes, 'N'},
+                                    {s.no_elements, 'E'},
+                                    {s.no_iteration, 'I'},
+                                    {s.quiet, 'Q'},
+                                    {s.verbose, 'V'},
+                                    {s.help, 'h'}}) {
     if (set) text += letter;
   }
   return text;

@@ -29,7 +29,8 @@ std::map<std::string, std::string> files_of(const std::string& node, const std::
       triangle_output({nodes.xy, nodes.attributes, nodes.attributes_per_point, nodes.markers}, mesh, switches);
   write_triangle_files(folder / "out", output, switches, nodes.base);
   std::map<std::string, std::string> files;
-  for (const std::string& file : triangle_output_files("out", switches)) files[file.substr(3)] = content_of(folder / file);
+  for (const std::string& file : triangle_output_files("out", switches))
+    files[file.substr(3)] = content_of(folder / file);
   EXPECT_EQ(folder.entries(), files.size() + 1);  // no other and no temporary one
   return files;
 }
@@ -184,8 +185,7 @@ using Names = std::vector<std::string>;
 TEST(TriangleFiles, AreThoseThatTheSwitchesAskFor) {
   const auto names = [](const char* letters) { return triangle_output_files("a", parse_triangle_switches(letters)); };
   EXPECT_EQ(names(""), (Names{"a.node", "a.ele"}));
-  EXPECT_EQ(names("nevcg"),
-            (Names{"a.node", "a.ele", "a.poly", "a.edge", "a.v.node", "a.v.edge", "a.neigh", "a.off"}));
+  EXPECT_EQ(names("nevcg"), (Names{"a.node", "a.ele", "a.poly", "a.edge", "a.v.node", "a.v.edge", "a.neigh", "a.off"}));
   EXPECT_EQ(names("N"), (Names{"a.ele"}));
   EXPECT_EQ(names("E"), (Names{"a.node"}));
   EXPECT_EQ(names("I"), (Names{"a.ele"}));
@@ -251,8 +251,10 @@ TEST(TriangleFiles, ComeBackAsTheyWere) {
     EXPECT_EQ(nodes.base, base);
     EXPECT_EQ(read_points(folder / "out.node").xy, xy);
     const MeshFile read = read_mesh(folder / "out.ele", xy.size() / 2);
-    EXPECT_TRUE(std::equal(read.triangles.begin(), read.triangles.end(), mesh.triangles().begin(), mesh.triangles().end()));
-    EXPECT_TRUE(std::equal(read.neighbors.begin(), read.neighbors.end(), mesh.neighbors().begin(), mesh.neighbors().end()));
+    EXPECT_TRUE(
+        std::equal(read.triangles.begin(), read.triangles.end(), mesh.triangles().begin(), mesh.triangles().end()));
+    EXPECT_TRUE(
+        std::equal(read.neighbors.begin(), read.neighbors.end(), mesh.neighbors().begin(), mesh.neighbors().end()));
     EXPECT_EQ(read_node_file(folder / "out.v.node").xy, output.centers);
     EXPECT_EQ(read_node_file(folder / "out.v.node").attributes, output.center_attributes);
   }

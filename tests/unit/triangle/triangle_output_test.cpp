@@ -160,7 +160,8 @@ TEST(TriangleOutput, JettisonNumbersTheVerticesAnew) {
   EXPECT_EQ(out.markers, (std::vector<int>{3, 1, 6, 8}));
   EXPECT_EQ(out.segments, (Indices{0, 1, 1, 3, 3, 2, 2, 0}));
   const Triangulation alone = mesh_of({0, 0, 1, 0, 0, 1, 1, 1});
-  EXPECT_TRUE(std::equal(out.triangles.begin(), out.triangles.end(), alone.triangles().begin(), alone.triangles().end()));
+  EXPECT_TRUE(
+      std::equal(out.triangles.begin(), out.triangles.end(), alone.triangles().begin(), alone.triangles().end()));
   EXPECT_EQ(out.edges, triangle_output(input_of({0, 0, 1, 0, 0, 1, 1, 1}), alone, use).edges);
   EXPECT_EQ(out.edge_triangles, moved.edge_triangles);
   EXPECT_EQ(out.centers, moved.centers);

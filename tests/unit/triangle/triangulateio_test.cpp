@@ -32,9 +32,9 @@ class Output : public Struct {
  public:
   Output() : Struct{} {}
   ~Output() {
-    for (void* array : std::initializer_list<void*>{pointlist, pointattributelist, pointmarkerlist, trianglelist,
-                                                     neighborlist, segmentlist, segmentmarkerlist, edgelist,
-                                                     edgemarkerlist, normlist}) {
+    for (void* array :
+         std::initializer_list<void*>{pointlist, pointattributelist, pointmarkerlist, trianglelist, neighborlist,
+                                      segmentlist, segmentmarkerlist, edgelist, edgemarkerlist, normlist}) {
       if (callers_.count(array) == 0) cadt_trifree(array);
     }
   }

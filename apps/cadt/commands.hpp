@@ -15,6 +15,7 @@ void add_triangulate(CLI::App& app, Action& chosen);
 void add_verify(CLI::App& app, Action& chosen);
 void add_generate(CLI::App& app, Action& chosen);
 void add_devices(CLI::App& app, Action& chosen);
+void add_triangle(CLI::App& app, Action& chosen);
 void add_info(CLI::App& app, Action& chosen);
 
 }  // namespace cadt::cli

@@ -5,6 +5,7 @@
 
 #include <cadt/errors.hpp>
 #include <cadt/io/errors.hpp>
+#include <cadt/triangle.hpp>
 
 #include <fmt/format.h>
 #include <sys/sysinfo.h>
@@ -62,6 +63,8 @@ int report_known_exception() {
     return error(exit_file, e.what());
   } catch (const InputError& e) {
     return error(exit_file, fmt::format("point {} (counted from 0): {}", e.index(), e.what()));
+  } catch (const SwitchError& e) {
+    return error(exit_switch, e.what(), "cadt triangle --help lists the switches that it takes.");
   } catch (const OptionError& e) {
     return error(exit_usage, e.what());
   } catch (const LimitError& e) {

@@ -17,6 +17,7 @@ enum ExitCode : int {
   exit_device = 5,
   exit_memory = 6,
   exit_verify = 7,
+  exit_switch = 8,
   exit_interrupted = 130  // 128 + SIGINT, as shells have it
 };
 
@@ -31,6 +32,7 @@ inline constexpr std::string_view exit_codes_help =
     "    5  the back end or device is not available\n"
     "    6  out of memory\n"
     "    7  the mesh failed the verification\n"
+    "    8  cadt triangle: a switch of Triangle that cadt does not take\n"
     "  130  interrupted (SIGINT, SIGTERM or SIGHUP)\n";
 
 /// An error detected by the program, not the library, with its exit code.

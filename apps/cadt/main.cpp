@@ -54,6 +54,7 @@ int parse_and_run(int argc, char** argv) {
   app.set_help_flag("-h,--help", "print this help and exit");
   app.formatter(std::make_shared<HelpFormatter>());
   add_triangulate(app, action);
+  add_triangle(app, action);
   add_verify(app, action);
   add_generate(app, action);
   add_devices(app, action);

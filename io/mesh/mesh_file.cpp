@@ -38,7 +38,7 @@ void write_mesh_parts(const std::string& path, const MeshParts& mesh, const Writ
   }
   AtomicFile out(path);
   if (format == "node") {
-    write_node(out, mesh.xy, mesh.height, options.base);
+    write_node(out, node_columns(mesh.xy, mesh.height), options.base);
   } else if (format == "ele") {
     write_ele(out, mesh.triangles, options.base);
   } else if (format == "neigh") {

@@ -4,6 +4,8 @@
 #include "io/support/number_format.hpp"
 #include "io/support/text_scanner.hpp"
 
+#include <cadt/io/triangle_files.hpp>
+
 namespace cadt::io::detail {
 namespace {
 
@@ -25,17 +27,12 @@ NodeHeader read_header(TextScanner& scanner) {
   return header;
 }
 
-}  // namespace
-
-PointSet read_node(const InputFile& file, const ReadOptions& options) {
-  TextScanner scanner(file.name(), file.bytes());
-  const NodeHeader header = read_header(scanner);
-  // A single attribute of a plane point is taken as its height; of several, none is.
-  const bool attribute_is_height = header.dimension == 2 && header.attributes == 1;
-  PointCollector points(file.name(), options.projection, header.dimension == 3 || attribute_is_height);
-  points.reserve(header.points);
+/// Reads the points one after another, each by `read_point` from behind its index, and the end of the text. Returns the
+/// first index.
+template <class ReadPoint>
+int read_rows(TextScanner& scanner, std::size_t points, const ReadPoint& read_point) {
   std::int64_t base = 0;
-  for (std::size_t i = 0; i < header.points; ++i) {
+  for (std::size_t i = 0; i < points; ++i) {
     scanner.need_content_line("a point");
     const std::int64_t index = scanner.integer("the index of a point");
     if (i == 0) {
@@ -46,33 +43,54 @@ PointSet read_node(const InputFile& file, const ReadOptions& options) {
     if (index != expected) {
       scanner.fail("the index is " + std::to_string(index) + " where " + std::to_string(expected) + " should be");
     }
+    read_point();
+  }
+  scanner.expect_end_of_text();
+  return static_cast<int>(base);
+}
+
+void expect_columns(const TextScanner& scanner, std::size_t columns) {
+  if (scanner.words_left() == columns) return;
+  scanner.fail("the line has " + std::to_string(scanner.words_left()) + " attributes and markers after the point, " +
+               std::to_string(columns) + " expected");
+}
+
+}  // namespace
+
+PointSet read_node(const InputFile& file, const ReadOptions& options) {
+  TextScanner scanner(file.name(), file.bytes());
+  const NodeHeader header = read_header(scanner);
+  // A single attribute of a plane point is taken as its height; of several, none is.
+  const bool attribute_is_height = header.dimension == 2 && header.attributes == 1;
+  PointCollector points(file.name(), options.projection, header.dimension == 3 || attribute_is_height);
+  points.reserve(header.points);
+  read_rows(scanner, header.points, [&] {
     const double x = scanner.number("x");
     const double y = scanner.number("y");
     double z = header.dimension == 3 ? scanner.number("z") : 0.0;
     if (attribute_is_height) z = scanner.number("the attribute");
-    const std::size_t others = (attribute_is_height ? 0 : header.attributes) + header.markers;
-    if (scanner.words_left() != others) {
-      scanner.fail("the line has " + std::to_string(scanner.words_left()) +
-                   " attributes and markers after the point, " + std::to_string(others) + " expected");
-    }
+    expect_columns(scanner, (attribute_is_height ? 0 : header.attributes) + header.markers);
     points.add(x, y, z);
-  }
-  scanner.expect_end_of_text();
+  });
   return points.take();
 }
 
-void write_node(AtomicFile& out, std::span<const double> xy, std::span<const double> height, int base) {
-  char* at = out.room(4 * number_room);
-  at = put(at, static_cast<std::int64_t>(xy.size() / 2));
-  at = height.empty() ? put(at, "  2  0  0\n") : put(at, "  2  1  0\n");
-  out.advance(at);
-  for (std::size_t i = 0; 2 * i < xy.size(); ++i) {
-    at = put_aligned(out.room(5 * number_room), static_cast<std::int64_t>(i) + base);
+void write_node(AtomicFile& out, const NodeColumns& nodes, int base) {
+  out.write(std::to_string(nodes.xy.size() / 2) + "  2  " + std::to_string(nodes.attributes_per_point) +
+            (nodes.has_markers ? "  1\n" : "  0\n"));
+  for (std::size_t i = 0; 2 * i < nodes.xy.size(); ++i) {
+    char* at = put_aligned(out.room(4 * number_room), static_cast<std::int64_t>(i) + base);
     at = put(at, "    ");
-    at = put(at, xy[2 * i]);
+    at = put(at, nodes.xy[2 * i]);
     at = put(at, "  ");
-    at = put(at, xy[2 * i + 1]);
-    if (!height.empty()) at = put(put(at, "  "), height[i]);
+    at = put(at, nodes.xy[2 * i + 1]);
+    for (std::size_t k = 0; k < nodes.attributes_per_point; ++k) {
+      out.advance(at);
+      at = put(put(out.room(2 * number_room), "  "), nodes.attributes[i * nodes.attributes_per_point + k]);
+    }
+    out.advance(at);
+    at = out.room(2 * number_room);
+    if (nodes.has_markers) at = put(put(at, "    "), std::int64_t{nodes.markers[i]});
     *at++ = '\n';
     out.advance(at);
   }
@@ -80,3 +98,30 @@ void write_node(AtomicFile& out, std::span<const double> xy, std::span<const dou
 }
 
 }  // namespace cadt::io::detail
+
+namespace cadt::io {
+
+NodeFile read_node_file(const std::string& path) {
+  using namespace detail;
+  const InputFile file(path);
+  TextScanner scanner(file.name(), file.bytes());
+  const NodeHeader header = read_header(scanner);
+  if (header.dimension != 2) scanner.fail("the dimension must be 2, as in Triangle");
+  NodeFile nodes;
+  nodes.attributes_per_point = header.attributes;
+  nodes.xy.reserve(2 * header.points);
+  nodes.markers.reserve(header.markers * header.points);
+  nodes.base = read_rows(scanner, header.points, [&] {
+    for (const char* name : {"x", "y"}) nodes.xy.push_back(scanner.number(name));
+    expect_columns(scanner, header.attributes + header.markers);
+    for (std::size_t i = 0; i < header.attributes; ++i) nodes.attributes.push_back(scanner.number("an attribute"));
+    if (header.markers == 0) return;
+    const std::int64_t marker = scanner.integer("the marker");
+    if (marker != static_cast<int>(marker)) scanner.fail("the marker does not fit in 32 bits");
+    nodes.markers.push_back(static_cast<int>(marker));
+  });
+  if (nodes.xy.empty()) throw FileError(file.name(), 0, "has no points");
+  return nodes;
+}
+
+}  // namespace cadt::io

@@ -54,7 +54,7 @@ void write_points(const std::string& path, const PointSet& points, const std::st
   if (is_table(format)) {
     write_table(out, points.xy, points.height, format);
   } else if (format == "node") {
-    write_node(out, points.xy, points.height, 0);
+    write_node(out, node_columns(points.xy, points.height), 0);
   } else if (format == "ply") {
     write_ply_points(out, points.xy, points.height);
   } else if (format == "npy") {

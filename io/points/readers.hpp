@@ -59,10 +59,22 @@ class PointCollector {
 /// Interleaved little-endian floats of `bytes` (4 or 8) each.
 [[nodiscard]] PointSet read_raw(const InputFile& file, const ReadOptions& options, std::size_t bytes);
 
+/// The columns of a .node file but the index.
+struct NodeColumns {
+  std::span<const double> xy, attributes;
+  std::size_t attributes_per_point = 0;
+  std::span<const int> markers = {};
+  bool has_markers = false;
+};
+/// Heights, if there are any, are the only attribute.
+[[nodiscard]] inline NodeColumns node_columns(std::span<const double> xy, std::span<const double> height) {
+  return {xy, height, height.empty() ? std::size_t{0} : std::size_t{1}};
+}
+
 /// Writers take coordinates as spans so that meshes can share them; `height` is empty or has one value a point.
 void write_table(AtomicFile& out, std::span<const double> xy, std::span<const double> height,
                  const std::string& format);
-void write_node(AtomicFile& out, std::span<const double> xy, std::span<const double> height, int base);
+void write_node(AtomicFile& out, const NodeColumns& nodes, int base);
 void write_ply_points(AtomicFile& out, std::span<const double> xy, std::span<const double> height);
 void write_npy(AtomicFile& out, std::span<const double> xy, std::span<const double> height);
 void write_raw(AtomicFile& out, const std::string& name, std::span<const double> xy, std::size_t bytes);

@@ -4,6 +4,7 @@
 
 #include <cadt/errors.hpp>
 #include <cadt/io/errors.hpp>
+#include <cadt/triangle.hpp>
 
 #include <gtest/gtest.h>
 
@@ -39,6 +40,7 @@ std::vector<Row> rows() {
       {"Failure_file", throwing<Failure>(exit_file, "text"), 3, {"cadt: error: text\n"}},
       {"Failure_degenerate", throwing<Failure>(exit_degenerate, "text"), 4, {"cadt: error: text\n"}},
       {"Failure_verify", throwing<Failure>(exit_verify, "text"), 7, {"cadt: error: text\n"}},
+      {"SwitchError", throwing<SwitchError>("text", "p"), 8, {"cadt: error: text\n", "cadt triangle --help"}},
       {"FileError", throwing<io::FileError>("a.xy", 7u, "text"), 3, {"cadt: error: a.xy:7: text\n"}},
       {"InputError", throwing<InputError>("text", 41u), 3, {"cadt: error: point 41 (counted from 0): text\n"}},
       {"OptionError", throwing<OptionError>("threads", "text"), 2, {"cadt: error: Options::threads: text\n"}},

@@ -202,7 +202,7 @@ class Info(CliTest):
 
 
 class Help(CliTest):
-    COMMANDS = ("triangulate", "verify", "generate", "devices", "info")
+    COMMANDS = ("triangulate", "triangle", "verify", "generate", "devices", "info")
 
     def test_version(self):
         header = (SOURCE / "include" / "cadt" / "version.hpp").read_text()
@@ -213,7 +213,7 @@ class Help(CliTest):
         text = self.cadt("--help").out
         for command in self.COMMANDS:
             self.assertRegex(text, rf"(?m)^  {command} ")
-        for code in (0, 1, 2, 3, 4, 5, 6, 7, 130):
+        for code in (0, 1, 2, 3, 4, 5, 6, 7, 8, 130):
             self.assertRegex(text, rf"(?m)^ +{code}  [\w-]")
         self.assertGreaterEqual(text.count("\n\n  cadt ") + text.count("Examples:\n  cadt "), 3)
         self.assertEqual(self.cadt("-h").out, text)

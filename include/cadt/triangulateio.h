@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* C99: the call and the struct of Jonathan Shewchuk's Triangle, for programs that link it. Names differ, so that both
+   can be linked; to change over a program, put these three lines before its calls:
+
+       #define triangulateio cadt_triangulateio
+       #define triangulate cadt_triangulate
+       #define trifree cadt_trifree
+
+   docs/triangle.md says which switches there are, and what differs. */
+#ifndef CADT_TRIANGULATEIO_H
+#define CADT_TRIANGULATEIO_H
+
+#include <cadt/export.hpp>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The members of Triangle's struct, in its order. Arrays start at [0]; their first item has number 1, with switch z 0.
+   `in` is read, `out` and `vorout` are written. Members that cadt has no use for are neither read nor written. */
+struct cadt_triangulateio {
+  double* pointlist;          /* in, out: numberofpoints x 2 */
+  double* pointattributelist; /* in, out: numberofpoints x numberofpointattributes */
+  int* pointmarkerlist;       /* in (NULL: all 0), out: numberofpoints */
+  int numberofpoints;         /* in, out */
+  int numberofpointattributes;
+
+  int* trianglelist;              /* out: numberoftriangles x 3, counterclockwise */
+  double* triangleattributelist;  /* not used */
+  double* trianglearealist;       /* not used */
+  int* neighborlist;              /* out: numberoftriangles x 3; the k-th is opposite corner k, -1 outside */
+  int numberoftriangles;          /* out */
+  int numberofcorners;            /* out: 3 */
+  int numberoftriangleattributes; /* out: 0 */
+
+  int* segmentlist;       /* out, with c: numberofsegments x 2, the hull counterclockwise */
+  int* segmentmarkerlist; /* out, with c: 1 each */
+  int numberofsegments;   /* out: edges of the hull */
+
+  double* holelist; /* not used */
+  int numberofholes;
+
+  double* regionlist; /* not used */
+  int numberofregions;
+
+  int* edgelist;       /* out: numberofedges x 2. vorout: numbers of two points of vorout; -1: a ray from the first */
+  int* edgemarkerlist; /* out: 1 on the hull, else 0. vorout: not used */
+  double* normlist;    /* vorout: numberofedges x 2, the direction of a ray; 0 0 for other edges */
+  int numberofedges;   /* out, vorout */
+};
+
+/* What cadt_triangulate returns; the numbers are the exit codes of the program cadt. */
+enum cadt_triangulate_status {
+  CADT_TRIANGULATE_DONE = 0,
+  CADT_TRIANGULATE_INTERNAL = 1, /* a defect of cadt: please report it */
+  CADT_TRIANGULATE_INPUT = 3,    /* NaN, infinity, a missing array, too many points */
+  CADT_TRIANGULATE_DEVICE = 5,   /* the device failed */
+  CADT_TRIANGULATE_MEMORY = 6,
+  CADT_TRIANGULATE_SWITCHES = 8 /* a switch that cadt does not take */
+};
+
+/* Triangulates in->pointlist. `switches` are Triangle's ("zneQ"): n fills neighborlist, e edgelist and edgemarkerlist,
+   c segmentlist and segmentmarkerlist, v vorout, which may be NULL without it; B leaves markers out, N points, E
+   triangles, P segments. An array of `out` or `vorout` that is to be filled is allocated with malloc if its member is
+   NULL, and is to be freed with cadt_trifree; else it is written to the caller's memory, which must be large enough. It
+   may be that of `in`. All counts are set. Nothing is printed, and g, I, Q, V, h have no effect.
+
+   Returns 0, or a status after which nothing of `out` and `vorout` has changed. Points on one line give no triangles
+   and no error. Computes on the fastest usable device. Thread-safe for different structs. Cost: that of
+   cadt::triangulate and O(points + triangles). */
+CADT_API int cadt_triangulate(const char* switches, const struct cadt_triangulateio* in, struct cadt_triangulateio* out,
+                              struct cadt_triangulateio* vorout);
+
+/* What was wrong with the calling thread's last cadt_triangulate, in UTF-8; "" if it succeeded. Valid until its next.
+ */
+CADT_API const char* cadt_triangulate_message(void);
+
+/* Frees an array that cadt_triangulate has allocated; NULL is allowed. The same as free of the C library in use. */
+CADT_API void cadt_trifree(void* array);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

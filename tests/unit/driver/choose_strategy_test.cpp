@@ -133,7 +133,7 @@ TEST(ChooseStrategy, PartitionsAreForThreadsWithPointsEnough) {
 
 TEST(ChooseStrategy, OneThreadInsertsSmallSetsAlone) {
   Options automatic, grain, watched, deferred;
-  grain.grain = 1;
+  grain.tuning.grain = 1;
   watched.watch = [](const Snapshot&) {};
   deferred.stabilize = Stabilize::defer;
   EXPECT_TRUE(inserts_serially(two_threads, automatic, 3));

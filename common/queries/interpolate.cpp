@@ -12,9 +12,10 @@ using namespace device_text;
 
 void require_narrow(const QueryBatch& queries) {
   if (queries.by.wide)
-    throw InputError("natural neighbours need coordinates within 240 binades (a factor of 10^72 between the largest and the "
-                     "lowest bit): scale or round them, or take linear",
-                     0);
+    throw InputError(
+        "natural neighbours need coordinates within 240 binades (a factor of 10^72 between the largest and the "
+        "lowest bit): scale or round them, or take linear",
+        0);
 }
 
 }  // namespace
@@ -44,8 +45,8 @@ void interpolate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& 
                                                            values, per_point, results, all);
     case Interpolation::nearest: {
       const Allocation all_of_the_plane;
-      return launch.run<KernelId::cadt_interpolate_nearest>(outside == Outside::nan ? located : all_of_the_plane, nearest,
-                                                            values, per_point, results, all);
+      return launch.run<KernelId::cadt_interpolate_nearest>(outside == Outside::nan ? located : all_of_the_plane,
+                                                            nearest, values, per_point, results, all);
     }
     case Interpolation::natural:
       break;
@@ -54,9 +55,10 @@ void interpolate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& 
   launch.run<KernelId::cadt_interpolate_natural>(in, queries.points, queries.curve.order, located, nearest, values,
                                                  per_point, results, failed, all);
   if (launch.read_word(failed, 0) != 0)
-    throw InputError("natural neighbours need a Delaunay mesh of these points: the boundary of a conflict region did not "
-                     "close (verify() says more)",
-                     0);
+    throw InputError(
+        "natural neighbours need a Delaunay mesh of these points: the boundary of a conflict region did not "
+        "close (verify() says more)",
+        0);
 }
 
 }  // namespace cadt

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Barycentric coordinates and linear interpolation in the triangle that contains a point, and values of nearest vertices.
+ * Barycentric coordinates and linear interpolation in the triangle that contains a point, and values of nearest
+ * vertices.
  */
 #ifndef CADT_QUERIES_INTERPOLATE_H
 #define CADT_QUERIES_INTERPOLATE_H
@@ -45,14 +46,15 @@ CADT_FN cadt_weights cadt_along_longest(const cadt_real* x, const cadt_real* y) 
   return w;
 }
 
-/* Barycentric coordinates of p in the triangle a, b, c that contains it: not negative, their sum is 1 but for rounding. At
- * a vertex they are exactly 0 and 1. `thin`: whether the triangle is. */
+/* Barycentric coordinates of p in the triangle a, b, c that contains it: not negative, their sum is 1 but for rounding.
+ * At a vertex they are exactly 0 and 1. `thin`: whether the triangle is. */
 CADT_FN cadt_weights cadt_barycentric(cadt_point a, cadt_point b, cadt_point c, cadt_point p, cadt_u32* thin) {
   cadt_real x[3], y[3];
   x[0] = a.x - p.x, x[1] = b.x - p.x, x[2] = c.x - p.x;
   y[0] = a.y - p.y, y[1] = b.y - p.y, y[2] = c.y - p.y;
 #if CADT_WIDE
-  /* x and y apart, as in cadt_orientation_filter: a common factor of all areas. A difference may overflow: halve first. */
+  /* x and y apart, as in cadt_orientation_filter: a common factor of all areas. A difference may overflow: halve first.
+   */
   cadt_i32 ex = cadt_exponent_of_largest(x[0], x[1], x[2], 0.0), ey = cadt_exponent_of_largest(y[0], y[1], y[2], 0.0);
   if (ex == 5000) x[0] = 0.5 * a.x - 0.5 * p.x, x[1] = 0.5 * b.x - 0.5 * p.x, x[2] = 0.5 * c.x - 0.5 * p.x, ex = 1023;
   if (ey == 5000) y[0] = 0.5 * a.y - 0.5 * p.y, y[1] = 0.5 * b.y - 0.5 * p.y, y[2] = 0.5 * c.y - 0.5 * p.y, ey = 1023;
@@ -93,8 +95,7 @@ CADT_FN cadt_real cadt_weighted(const cadt_query_mesh* m, cadt_u32 t, const cadt
                                 CADT_GLOBAL const cadt_real* values, cadt_u32 per_point, cadt_u32 of) {
   cadt_real sum = 0.0;
   for (cadt_u32 k = 0u; k < 3u; ++k)
-    if (w->at[k] != 0.0)
-      sum += w->at[k] * values[CADT_CAST(cadt_u64, cadt_vertex_of(&m->view, t, k)) * per_point + of];
+    if (w->at[k] != 0.0) sum += w->at[k] * values[CADT_CAST(cadt_u64, cadt_vertex_of(&m->view, t, k)) * per_point + of];
   return sum;
 }
 

@@ -16,7 +16,7 @@ void interpolate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& 
 void require_grid(const Grid& grid);
 
 /// One value of each cell to `cells`. \pre require_grid
-void rasterize_mesh(Context& ctx, const MeshIndex& mesh, const Grid& grid, const Allocation& values, Interpolation method,
-                    double max_edge, const Allocation& cells);
+void rasterize_mesh(Context& ctx, const MeshIndex& mesh, const Grid& grid, const Allocation& values,
+                    Interpolation method, double max_edge, const Allocation& cells);
 
 }  // namespace cadt

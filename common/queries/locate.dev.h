@@ -24,7 +24,8 @@ CADT_KERNEL(cadt_check_mesh, CADT_MESH_VIEW_PARAMETERS, cadt_u32 point_count, CA
   CADT_FOR(t, mesh.triangles, grain) {
     cadt_u32 good = 1u;
     for (cadt_u32 k = 0u; k < 3u; ++k)
-      if (cadt_vertex_of(&mesh, t, k) >= point_count || cadt_vertex_of(&mesh, t, k) == cadt_vertex_of(&mesh, t, CADT_NEXT(k)))
+      if (cadt_vertex_of(&mesh, t, k) >= point_count ||
+          cadt_vertex_of(&mesh, t, k) == cadt_vertex_of(&mesh, t, CADT_NEXT(k)))
         good = 0u;
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 n = mesh.across[3u * t + k];
@@ -35,7 +36,8 @@ CADT_KERNEL(cadt_check_mesh, CADT_MESH_VIEW_PARAMETERS, cadt_u32 point_count, CA
       }
       cadt_u32 same = 0u;
       for (cadt_u32 j = 0u; j < 3u; ++j)
-        if (mesh.across[3u * n + j] == t && cadt_vertex_of(&mesh, n, CADT_NEXT(j)) == cadt_vertex_of(&mesh, t, CADT_PREV(k)) &&
+        if (mesh.across[3u * n + j] == t &&
+            cadt_vertex_of(&mesh, n, CADT_NEXT(j)) == cadt_vertex_of(&mesh, t, CADT_PREV(k)) &&
             cadt_vertex_of(&mesh, n, CADT_PREV(j)) == cadt_vertex_of(&mesh, t, CADT_NEXT(k)))
           ++same;
       if (same != 1u) good = 0u;
@@ -78,7 +80,7 @@ CADT_KERNEL(cadt_curve_pack, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL cons
 }
 
 /* The vertices along the curve: their keys, and the lowest triangle of each. */
-#define CADT_CURVE_PARAMETERS                                                                                    \
+#define CADT_CURVE_PARAMETERS                                                                                       \
   CADT_GLOBAL const cadt_u32 *curve_high, CADT_GLOBAL const cadt_u32 *curve_low, CADT_GLOBAL const cadt_u32 *start, \
       cadt_u32 curve_size, cadt_u32 low_bits
 
@@ -105,8 +107,8 @@ CADT_FN void cadt_write_place(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u
 }
 
 #if CADT_CONTIGUOUS
-/* A processor takes so many walks at a time, a step of each in turn, and has fetched what one needs while it was busy with
- * the others: 1M queries in 1M points take half of the time. (A GPU has other threads for that.) */
+/* A processor takes so many walks at a time, a step of each in turn, and has fetched what one needs while it was busy
+ * with the others: 1M queries in 1M points take half of the time. (A GPU has other threads for that.) */
 enum { CADT_WALKS = 16 };
 CADT_FN void cadt_fetch_triangle(const cadt_query_mesh* m, cadt_u32 t) {
   cadt_prefetch_to_read(m->view.vertices + 3u * t);
@@ -124,7 +126,8 @@ CADT_KERNEL(cadt_locate_queries, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const c
             CADT_GLOBAL const cadt_u32* keys_low, CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL cadt_u32* located,
             CADT_GLOBAL cadt_u32* reached, CADT_GLOBAL cadt_u32* lost, cadt_u32 count, cadt_u32 grain) {
   CADT_QUERY_MESH(mesh);
-  const cadt_keys curve = cadt_keys_of(curve_high, curve_low, low_bits), keys = cadt_keys_of(keys_high, keys_low, low_bits);
+  const cadt_keys curve = cadt_keys_of(curve_high, curve_low, low_bits),
+                  keys = cadt_keys_of(keys_high, keys_low, low_bits);
   cadt_u32 place = 0u;
 #if CADT_CONTIGUOUS
   cadt_walker walkers[CADT_WALKS];

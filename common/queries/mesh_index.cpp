@@ -59,10 +59,11 @@ void check_mesh(Context& ctx, const MeshIndex& mesh) {
   ctx.launcher.run<KernelId::cadt_check_mesh>(all.items, mesh.view(), mesh.point_count, first, all.grain);
   const std::uint32_t wrong = ctx.launcher.read_word(first, 0);
   if (wrong == CADT_NONE) return;
-  throw InputError("triangle " + std::to_string(wrong) +
-                       " has an index out of range, a vertex twice, or a neighbour that does not have the same edge: give "
-                       "a mesh of these points with its neighbours, 0-based (verify() says more)",
-                   wrong);
+  throw InputError(
+      "triangle " + std::to_string(wrong) +
+          " has an index out of range, a vertex twice, or a neighbour that does not have the same edge: give "
+          "a mesh of these points with its neighbours, 0-based (verify() says more)",
+      wrong);
 }
 
 void index_mesh(Context& ctx, MeshIndex& mesh) {
@@ -143,9 +144,10 @@ void locate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& queri
                                             queries.points, queries.curve.high, queries.curve.low, queries.curve.order,
                                             located, reached, lost, launch.grid(queries.count));
   if (launch.read_word(lost, 0) != 0)
-    throw InputError("the mesh is no triangulation of the convex hull of these points, counterclockwise: a walk through it "
-                     "did not end (verify() says more)",
-                     0);
+    throw InputError(
+        "the mesh is no triangulation of the convex hull of these points, counterclockwise: a walk through it "
+        "did not end (verify() says more)",
+        0);
   ctx.check("locate", 0.8);
 }
 

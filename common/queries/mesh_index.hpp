@@ -71,7 +71,8 @@ void index_mesh(Context& ctx, MeshIndex& mesh);
 /// \throws InputError for the first query that is not finite
 [[nodiscard]] QueryBatch prepare_queries(Context& ctx, const MeshIndex& mesh, Allocation points, std::size_t count);
 
-/// Where each query lies, as cadt_locate_queries says. Null results are left out. \throws InputError if a walk did not end
+/// Where each query lies, as cadt_locate_queries says. Null results are left out. \throws InputError if a walk did not
+/// end
 void locate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& queries, const Allocation& located,
                     const Allocation& reached);
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Natural neighbour interpolation (R. Sibson, "A brief description of natural neighbour interpolation", 1981). If p became
- * a vertex, its Voronoi cell would take a piece of each neighbour's cell; the share of the piece is the neighbour's
- * weight. The triangles whose circles contain p are the cavity (conflict region) of p; its boundary, seen from p, is a
- * polygon of p's neighbours. No list is kept of them, so no cavity is too large: the boundary is followed, and around each
- * of its vertices v the triangles of the cavity are crossed one by one:
+ * Natural neighbour interpolation (R. Sibson, "A brief description of natural neighbour interpolation", 1981). If p
+ * became a vertex, its Voronoi cell would take a piece of each neighbour's cell; the share of the piece is the
+ * neighbour's weight. The triangles whose circles contain p are the cavity (conflict region) of p; its boundary, seen
+ * from p, is a polygon of p's neighbours. No list is kept of them, so no cavity is too large: the boundary is followed,
+ * and around each of its vertices v the triangles of the cavity are crossed one by one:
  *
  *            w                 piece of v: the polygon of the circumcentres of
  *           /|\                  (p, u, v), the cavity's triangles at v from edge uv to edge vw, (p, v, w)
@@ -14,16 +14,17 @@
  *       /  .   .  \
  *      v-----------u
  *
- * The sum of weight * (vertex - p) is 0; what rounding leaves of it is corrected with the slope that fits the neighbours
- * best, so linear functions are reproduced whatever the triangles look like. Next to the hull, where circumcentres run
- * away, the weights become those of the hull edge: there the function is linear in the triangle.
+ * The sum of weight * (vertex - p) is 0; what rounding leaves of it is corrected with the slope that fits the
+ * neighbours best, so linear functions are reproduced whatever the triangles look like. Next to the hull, where
+ * circumcentres run away, the weights become those of the hull edge: there the function is linear in the triangle.
  */
 #ifndef CADT_QUERIES_NATURAL_NEIGHBOR_H
 #define CADT_QUERIES_NATURAL_NEIGHBOR_H
 
 #include "common/queries/interpolate.dev.h"
 
-/* Whether p lies strictly inside the circle of triangle t. Ties need no decision: the piece that they add has no area. */
+/* Whether p lies strictly inside the circle of triangle t. Ties need no decision: the piece that they add has no area.
+ */
 CADT_FN cadt_u32 cadt_in_circle(const cadt_query_mesh* m, cadt_u32 t, cadt_point p) {
   const cadt_point a = cadt_corner(m, t, 0u), b = cadt_corner(m, t, 1u), c = cadt_corner(m, t, 2u);
   cadt_real max_det;
@@ -57,8 +58,8 @@ typedef struct {
 } cadt_cavity_edge;
 
 /* From boundary edge e, u -> v, around v to the next one, v -> w. Returns twice the area of the piece of v. */
-CADT_FN cadt_real cadt_next_piece(const cadt_query_mesh* m, cadt_point p, cadt_cavity_edge* e, cadt_point u, cadt_point v,
-                                  cadt_point* w, cadt_u32* steps) {
+CADT_FN cadt_real cadt_next_piece(const cadt_query_mesh* m, cadt_point p, cadt_cavity_edge* e, cadt_point u,
+                                  cadt_point v, cadt_point* w, cadt_u32* steps) {
   const cadt_point first = cadt_center_with_origin(u, v);
   cadt_point before = first;
   cadt_real area = 0.0;
@@ -93,7 +94,8 @@ CADT_FN cadt_cavity_edge cadt_first_cavity_edge(const cadt_query_mesh* m, cadt_p
     e.triangle = next;
     e.k = CADT_NEXT(back);
     /* the one of the two other edges that does not have p beyond it */
-    if (cadt_side(cadt_corner(m, next, CADT_NEXT(e.k)), cadt_corner(m, next, CADT_PREV(e.k)), p) <= 0) e.k = CADT_PREV(back);
+    if (cadt_side(cadt_corner(m, next, CADT_NEXT(e.k)), cadt_corner(m, next, CADT_PREV(e.k)), p) <= 0)
+      e.k = CADT_PREV(back);
   }
 }
 
@@ -122,8 +124,8 @@ CADT_FN cadt_real cadt_corrected_mean(const cadt_moments* m) {
   return rise - rise == 0.0 ? f - rise : f; /* neighbours on a line have no slope */
 }
 
-/* Value `of` at p, strictly inside of the hull, by the boundary of its cavity from edge `begin` on. Infinite or NaN where
- * a circumcentre has overflowed. */
+/* Value `of` at p, strictly inside of the hull, by the boundary of its cavity from edge `begin` on. Infinite or NaN
+ * where a circumcentre has overflowed. */
 CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cadt_cavity_edge begin,
                                      CADT_GLOBAL const cadt_real* values, cadt_u32 per_point, cadt_u32 of,
                                      cadt_u32* open) {
@@ -147,7 +149,8 @@ CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cad
   return cadt_corrected_mean(&sums);
 }
 
-/* Whether there is nothing beyond edge k of triangle t but the outside, or a thin triangle as there are along the hull. */
+/* Whether there is nothing beyond edge k of triangle t but the outside, or a thin triangle as there are along the hull.
+ */
 CADT_FN cadt_u32 cadt_is_outermost(const cadt_query_mesh* m, cadt_u32 t, cadt_u32 k) {
   const cadt_u32 n = cadt_neighbor_of(&m->view, t, k);
   if (n == CADT_NONE) return 1u;
@@ -167,8 +170,8 @@ CADT_FN cadt_u32 cadt_takes_linear(const cadt_query_mesh* m, cadt_u32 t, const c
   return linear;
 }
 
-/* `per_point` values a query, as in cadt_interpolate_linear. `failed`: how many boundaries did not close, which cannot be
- * in a Delaunay mesh. */
+/* `per_point` values a query, as in cadt_interpolate_linear. `failed`: how many boundaries did not close, which cannot
+ * be in a Delaunay mesh. */
 CADT_KERNEL(cadt_interpolate_natural, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_point* queries,
             CADT_GLOBAL const cadt_u32* order, CADT_GLOBAL const cadt_u32* located, CADT_GLOBAL const cadt_u32* nearest,
             CADT_GLOBAL const cadt_real* values, cadt_u32 per_point, CADT_GLOBAL cadt_real* results,
@@ -184,7 +187,8 @@ CADT_KERNEL(cadt_interpolate_natural, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL co
       continue;
     }
     cadt_u32 thin, open = 0u;
-    const cadt_weights w = cadt_barycentric(cadt_corner(&mesh, t, 0u), cadt_corner(&mesh, t, 1u), cadt_corner(&mesh, t, 2u), p, &thin);
+    const cadt_weights w =
+        cadt_barycentric(cadt_corner(&mesh, t, 0u), cadt_corner(&mesh, t, 1u), cadt_corner(&mesh, t, 2u), p, &thin);
     const cadt_u32 linear = cadt_takes_linear(&mesh, t, &w, thin);
     const cadt_cavity_edge none = {t, 0u}, begin = linear ? none : cadt_first_cavity_edge(&mesh, p, t);
     for (cadt_u32 of = 0u; of < per_point; ++of) {

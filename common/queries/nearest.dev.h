@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Nearest vertices. In a Delaunay mesh a vertex that is not the nearest to p has a neighbour that is nearer, so going to
- * the nearest neighbour again and again ends at the nearest vertex (F. Aurenhammer, "Voronoi diagrams: a survey of a
- * fundamental geometric data structure", 1991). Each further one is a neighbour of one found before: the circle around p
- * through it, shrunk towards it, becomes empty while another vertex, which is nearer, lies on it.
+ * Nearest vertices. In a Delaunay mesh a vertex that is not the nearest to p has a neighbour that is nearer, so going
+ * to the nearest neighbour again and again ends at the nearest vertex (F. Aurenhammer, "Voronoi diagrams: a survey of a
+ * fundamental geometric data structure", 1991). Each further one is a neighbour of one found before: the circle around
+ * p through it, shrunk towards it, becomes empty while another vertex, which is nearer, lies on it.
  */
 #ifndef CADT_QUERIES_NEAREST_H
 #define CADT_QUERIES_NEAREST_H
@@ -51,8 +51,8 @@ CADT_FN cadt_i32 cadt_compare_distances(cadt_point p, cadt_point a, cadt_point b
   return cadt_compare_distances_exact(p, a, b);
 }
 
-/* Whether vertex v at `a` comes before vertex w at `b`: by the distance to p, then by index. `tied`: 1 if both are equally
- * near. */
+/* Whether vertex v at `a` comes before vertex w at `b`: by the distance to p, then by index. `tied`: 1 if both are
+ * equally near. */
 CADT_FN cadt_u32 cadt_is_nearer(cadt_point p, cadt_u32 v, cadt_point a, cadt_u32 w, cadt_point b, cadt_u32* tied) {
   const cadt_i32 order = cadt_compare_distances(p, a, b);
   if (order == 0) *tied = 1u;
@@ -60,7 +60,8 @@ CADT_FN cadt_u32 cadt_is_nearer(cadt_point p, cadt_u32 v, cadt_point a, cadt_u32
 }
 
 /* All triangles of the vertex of `s`, in a loop body that finds `next` the vertex after it and `behind` the one before
- * it, counterclockwise. Each neighbour is `next` once, but for the last one at a hull vertex, which is only `behind`. */
+ * it, counterclockwise. Each neighbour is `next` once, but for the last one at a hull vertex, which is only `behind`.
+ */
 typedef struct {
   cadt_u32 vertex;
   cadt_spoke spoke; /* its first triangle, cadt_first_spoke */
@@ -72,7 +73,8 @@ CADT_FN cadt_star_of cadt_star_at(const cadt_query_mesh* m, cadt_u32 t, cadt_u32
   return star;
 }
 /* The neighbour at `*s`, and the step to the next one; CADT_NONE when all have been there. */
-CADT_FN cadt_u32 cadt_next_neighbor(const cadt_query_mesh* m, const cadt_star_of* star, cadt_spoke* s, cadt_u32* state) {
+CADT_FN cadt_u32 cadt_next_neighbor(const cadt_query_mesh* m, const cadt_star_of* star, cadt_spoke* s,
+                                    cadt_u32* state) {
   if (*state == 2u) return CADT_NONE;
   if (*state == 1u) { /* behind the last triangle of a hull vertex */
     *state = 2u;
@@ -89,8 +91,8 @@ CADT_FN cadt_u32 cadt_next_neighbor(const cadt_query_mesh* m, const cadt_star_of
   return neighbor;
 }
 
-/* The vertices at the same, smallest distance are on an empty circle: the edges of their convex polygon are in the mesh.
- * From `v` around it, to the lowest. */
+/* The vertices at the same, smallest distance are on an empty circle: the edges of their convex polygon are in the
+ * mesh. From `v` around it, to the lowest. */
 CADT_FN_SLOW cadt_u32 cadt_lowest_of_nearest(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, cadt_point p,
                                              cadt_u32 v, cadt_u32 points) {
   const cadt_point a = cadt_mesh_point(m, v);
@@ -120,8 +122,8 @@ CADT_FN_SLOW cadt_u32 cadt_lowest_of_nearest(const cadt_query_mesh* m, CADT_GLOB
 }
 
 /* The nearest vertex to p, of equally near ones the lowest; `t`: a triangle near it. */
-CADT_FN cadt_u32 cadt_nearest_vertex(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, cadt_point p, cadt_u32 t,
-                                     cadt_u32 points) {
+CADT_FN cadt_u32 cadt_nearest_vertex(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, cadt_point p,
+                                     cadt_u32 t, cadt_u32 points) {
   cadt_u32 tied = 0u, k = 0u, best = cadt_vertex_of(&m->view, t, 0u);
   cadt_point at = cadt_mesh_point(m, best);
   for (cadt_u32 j = 1u; j < 3u; ++j) {

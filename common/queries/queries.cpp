@@ -31,7 +31,8 @@ namespace {
 
 /// One call: its options, statistics and context.
 struct Call {
-  explicit Call(MeshQueries::State& state) : ctx(*state.device->device, state.device->memory, state.options, statistics) {
+  explicit Call(MeshQueries::State& state)
+      : ctx(*state.device->device, state.device->memory, state.options, statistics) {
     begin_budget(*state.device, state.mesh.point_count);
     ctx.check("queries", 0);
   }
@@ -42,8 +43,9 @@ struct Call {
 void require_doubles(const Device& device) {
   if (!takes_floats_only(device)) return;
   const DeviceInfo& info = device.info();
-  throw BackendUnavailable(std::string(to_string(info.backend)),
-                           "'" + info.name + "' has no double precision, which queries need: name another device, or the host");
+  throw BackendUnavailable(
+      std::string(to_string(info.backend)),
+      "'" + info.name + "' has no double precision, which queries need: name another device, or the host");
 }
 
 void require_mesh_of(std::size_t points, std::size_t of) {
@@ -197,9 +199,8 @@ std::vector<std::int32_t> MeshQueries::locate(PointsView queries) {
   if (queries.size() == 0) return {};
   Call call(*state_);
   const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size());
-  return to_vector<std::int32_t>(call.ctx, batch.count, [&](const Allocation& to) {
-    locate_into(call, state_->mesh, batch, to, {});
-  });
+  return to_vector<std::int32_t>(call.ctx, batch.count,
+                                 [&](const Allocation& to) { locate_into(call, state_->mesh, batch, to, {}); });
 }
 
 Located MeshQueries::locate_barycentric(PointsView queries) {
@@ -231,9 +232,8 @@ std::vector<std::int32_t> MeshQueries::nearest_vertices(PointsView queries, std:
   if (queries.size() == 0) return {};
   Call call(*state_);
   const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size());
-  return to_vector<std::int32_t>(call.ctx, k * batch.count, [&](const Allocation& to) {
-    nearest_into(call, state_->mesh, batch, k, to);
-  });
+  return to_vector<std::int32_t>(call.ctx, k * batch.count,
+                                 [&](const Allocation& to) { nearest_into(call, state_->mesh, batch, k, to); });
 }
 
 std::vector<double> MeshQueries::interpolate(std::span<const double> values, PointsView queries, Interpolation method,

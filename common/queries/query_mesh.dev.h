@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * What all queries share: a finished mesh whose points are scaled as they are read, signs, the walk to the triangle of a
- * point, and the way around a vertex.
+ * What all queries share: a finished mesh whose points are scaled as they are read, signs, the walk to the triangle of
+ * a point, and the way around a vertex.
  *
  * The narrow variant takes coordinates within 240 binades below 1. The caller's points stay as they are, so a query,
  * which has bounds of its own, chooses the two factors for both; in the wide variant they are 1.
@@ -19,10 +19,9 @@ typedef struct {
 } cadt_query_mesh;
 
 #define CADT_QUERY_MESH_PARAMETERS CADT_MESH_VIEW_PARAMETERS, cadt_real scale, cadt_real scale_again
-#define CADT_QUERY_MESH(mesh)    \
-  CADT_MESH_VIEW(mesh##_view);   \
-  const cadt_query_mesh mesh = { \
-      mesh##_view, scale, scale_again }
+#define CADT_QUERY_MESH(mesh)  \
+  CADT_MESH_VIEW(mesh##_view); \
+  const cadt_query_mesh mesh = {mesh##_view, scale, scale_again}
 
 /* A point of the caller's, scaled. */
 CADT_FN cadt_point cadt_scaled_point(const cadt_query_mesh* m, CADT_GLOBAL const cadt_point* p) {
@@ -47,7 +46,9 @@ CADT_FN cadt_u32 cadt_edge_towards(const cadt_query_mesh* m, cadt_u32 n, cadt_u3
 }
 
 /* ---- the walk ---- */
-enum { CADT_QUERY_STRAIGHT = 256 /* steps before the order of edges becomes random: for meshes that are not Delaunay */ };
+enum {
+  CADT_QUERY_STRAIGHT = 256 /* steps before the order of edges becomes random: for meshes that are not Delaunay */
+};
 
 /* Where a walk to a point ended. */
 typedef struct {
@@ -68,11 +69,11 @@ CADT_FN cadt_walker cadt_walker_from(cadt_u32 triangle) {
   return w;
 }
 
-/* One step of the visibility walk (L. Guibas, J. Stolfi, "Primitives for the manipulation of general subdivisions", 1985):
- * if p lies beyond an edge, cross it. 0 if the walk has come to its place. In a Delaunay mesh it comes to no triangle
- * twice (H. Edelsbrunner, "An acyclicity theorem for cell complexes in d dimensions", 1990). With other meshes, edges that
- * are tried in random order lead out of every cycle sooner or later (O. Devillers, S. Pion, M. Teillaud, "Walking in a
- * triangulation", 2001). The hull is convex: what lies beyond a hull edge is outside. */
+/* One step of the visibility walk (L. Guibas, J. Stolfi, "Primitives for the manipulation of general subdivisions",
+ * 1985): if p lies beyond an edge, cross it. 0 if the walk has come to its place. In a Delaunay mesh it comes to no
+ * triangle twice (H. Edelsbrunner, "An acyclicity theorem for cell complexes in d dimensions", 1990). With other
+ * meshes, edges that are tried in random order lead out of every cycle sooner or later (O. Devillers, S. Pion, M.
+ * Teillaud, "Walking in a triangulation", 2001). The hull is convex: what lies beyond a hull edge is outside. */
 CADT_FN cadt_u32 cadt_step(const cadt_query_mesh* m, cadt_point p, cadt_walker* walker, cadt_query_place* place) {
   const cadt_u32 t = walker->triangle, entry = walker->entry;
   const cadt_u32 limit = m->view.triangles < 0x20000000u ? 4u * m->view.triangles + 4096u : 0x80000000u;
@@ -125,7 +126,8 @@ CADT_FN cadt_query_place cadt_walk(const cadt_query_mesh* m, cadt_point p, cadt_
 }
 
 /* The lowest triangle that contains the point of a place; CADT_NONE outside. `lowest`: of each vertex. */
-CADT_FN cadt_u32 cadt_lowest_at(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, const cadt_query_place* at) {
+CADT_FN cadt_u32 cadt_lowest_at(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest,
+                                const cadt_query_place* at) {
   if (at->edge != CADT_NONE) return CADT_NONE;
   if (at->on == 0u) return at->triangle;
   if (at->on == 1u || at->on == 2u || at->on == 4u)
@@ -151,8 +153,8 @@ CADT_FN cadt_spoke cadt_turn(const cadt_query_mesh* m, cadt_spoke s, cadt_u32 cl
   return result;
 }
 
-/* The first triangle of the vertex, counterclockwise: at a hull vertex the one that has no other before it, else the one
- * given. */
+/* The first triangle of the vertex, counterclockwise: at a hull vertex the one that has no other before it, else the
+ * one given. */
 CADT_FN cadt_spoke cadt_first_spoke(const cadt_query_mesh* m, cadt_spoke s) {
   const cadt_u32 begin = s.triangle;
   for (;;) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * From the mesh to a grid of cells, by triangles: each writes the cells whose centres it contains. A centre on an edge or
- * on a vertex belongs to the lowest triangle there, as in cadt_locate_queries, so each cell is written by one triangle
- * and no two work-items meet. Centres are computed in one way everywhere, and all signs are exact.
+ * From the mesh to a grid of cells, by triangles: each writes the cells whose centres it contains. A centre on an edge
+ * or on a vertex belongs to the lowest triangle there, as in cadt_locate_queries, so each cell is written by one
+ * triangle and no two work-items meet. Centres are computed in one way everywhere, and all signs are exact.
  *
  *      +---+---+---+---+
  *      |   |   | /.|   |     A small triangle goes through the cells of its bounding box. A large one is listed, and a
@@ -25,16 +25,19 @@ typedef struct {
 } cadt_raster;
 #define CADT_RASTER_PARAMETERS \
   cadt_real raster_x0, cadt_real raster_y0, cadt_real raster_dx, cadt_real raster_dy, cadt_u32 columns, cadt_u32 rows
-#define CADT_RASTER(raster) \
-  const cadt_raster raster = {raster_x0, raster_y0, raster_dx, raster_dy, columns, rows}
+#define CADT_RASTER(raster) const cadt_raster raster = {raster_x0, raster_y0, raster_dx, raster_dy, columns, rows}
 
 enum { CADT_RASTER_SMALL = 64 /* cells of a bounding box that its triangle's work-item goes through by itself */ };
 
-CADT_FN cadt_real cadt_cell_x(const cadt_raster* r, cadt_u32 i) { return r->x0 + (CADT_CAST(cadt_real, i) + 0.5) * r->dx; }
-CADT_FN cadt_real cadt_cell_y(const cadt_raster* r, cadt_u32 j) { return r->y0 + (CADT_CAST(cadt_real, j) + 0.5) * r->dy; }
+CADT_FN cadt_real cadt_cell_x(const cadt_raster* r, cadt_u32 i) {
+  return r->x0 + (CADT_CAST(cadt_real, i) + 0.5) * r->dx;
+}
+CADT_FN cadt_real cadt_cell_y(const cadt_raster* r, cadt_u32 j) {
+  return r->y0 + (CADT_CAST(cadt_real, j) + 0.5) * r->dy;
+}
 
-/* The cells of an axis whose centres may lie between `low` and `high`, `first` to one before `end`: cell i has its centre at
- * origin + (i + 0.5) step. Rounding moves an end by less than `slack`. */
+/* The cells of an axis whose centres may lie between `low` and `high`, `first` to one before `end`: cell i has its
+ * centre at origin + (i + 0.5) step. Rounding moves an end by less than `slack`. */
 typedef struct {
   cadt_u32 first, end;
 } cadt_cells;
@@ -55,7 +58,8 @@ typedef struct {
 } cadt_drawn;
 
 /* Whether the triangle is the lowest one that contains p. */
-CADT_FN cadt_u32 cadt_owns(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, const cadt_drawn* d, cadt_point p) {
+CADT_FN cadt_u32 cadt_owns(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, const cadt_drawn* d,
+                           cadt_point p) {
   const cadt_i32 s0 = cadt_side(d->corner[1], d->corner[2], p);
   if (s0 < 0) return 0u;
   const cadt_i32 s1 = cadt_side(d->corner[2], d->corner[0], p);
@@ -82,7 +86,9 @@ CADT_FN void cadt_draw_row(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32*
   }
 }
 
-CADT_FN cadt_real cadt_least(cadt_real a, cadt_real b, cadt_real c) { return a < b ? (a < c ? a : c) : (b < c ? b : c); }
+CADT_FN cadt_real cadt_least(cadt_real a, cadt_real b, cadt_real c) {
+  return a < b ? (a < c ? a : c) : (b < c ? b : c);
+}
 CADT_FN cadt_real cadt_most(cadt_real a, cadt_real b, cadt_real c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
 
 CADT_FN cadt_drawn cadt_drawn_of(const cadt_query_mesh* m, cadt_u32 t) {
@@ -99,17 +105,18 @@ CADT_FN cadt_u32 cadt_longer_than(const cadt_drawn* d, cadt_real most) {
   return 0u;
 }
 CADT_FN cadt_cells cadt_columns_of(const cadt_query_mesh* m, const cadt_raster* r, cadt_real low, cadt_real high) {
-  return cadt_cells_between(cadt_multiplied(r->x0, m->scale, m->scale_again), cadt_multiplied(r->dx, m->scale, m->scale_again),
-                            r->columns, low, high);
+  return cadt_cells_between(cadt_multiplied(r->x0, m->scale, m->scale_again),
+                            cadt_multiplied(r->dx, m->scale, m->scale_again), r->columns, low, high);
 }
 CADT_FN cadt_cells cadt_rows_of(const cadt_query_mesh* m, const cadt_raster* r, const cadt_drawn* d) {
-  return cadt_cells_between(cadt_multiplied(r->y0, m->scale, m->scale_again), cadt_multiplied(r->dy, m->scale, m->scale_again),
-                            r->rows, cadt_least(d->corner[0].y, d->corner[1].y, d->corner[2].y),
+  return cadt_cells_between(cadt_multiplied(r->y0, m->scale, m->scale_again),
+                            cadt_multiplied(r->dy, m->scale, m->scale_again), r->rows,
+                            cadt_least(d->corner[0].y, d->corner[1].y, d->corner[2].y),
                             cadt_most(d->corner[0].y, d->corner[1].y, d->corner[2].y));
 }
 
-/* Triangles whose bounding boxes are small write their cells; of each other one `rows_of` gets the number of rows, 0 for
- * all others. */
+/* Triangles whose bounding boxes are small write their cells; of each other one `rows_of` gets the number of rows, 0
+ * for all others. */
 CADT_KERNEL(cadt_draw_small, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* lowest, CADT_RASTER_PARAMETERS,
             cadt_real max_edge, CADT_GLOBAL const cadt_real* values, CADT_GLOBAL cadt_real* cells,
             CADT_GLOBAL cadt_u32* large, CADT_GLOBAL cadt_u32* large_count, cadt_u32 grain) {
@@ -123,7 +130,8 @@ CADT_KERNEL(cadt_draw_small, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
     const cadt_cells along = cadt_columns_of(&mesh, &raster, cadt_least(d.corner[0].x, d.corner[1].x, d.corner[2].x),
                                              cadt_most(d.corner[0].x, d.corner[1].x, d.corner[2].x));
     if (along.first >= along.end) continue;
-    if (CADT_CAST(cadt_u64, over.end - over.first) * (along.end - along.first) > CADT_CAST(cadt_u64, CADT_RASTER_SMALL)) {
+    if (CADT_CAST(cadt_u64, over.end - over.first) * (along.end - along.first) >
+        CADT_CAST(cadt_u64, CADT_RASTER_SMALL)) {
       large[cadt_add_relaxed(large_count, 1u)] = t;
       continue;
     }

@@ -80,7 +80,8 @@ VoronoiDiagram make_voronoi(Context& ctx, const MeshIndex& mesh) {
 VoronoiPolygons clip_voronoi(Context& ctx, const MeshIndex& mesh, const Box& box) {
   for (const double value : {box.min_x, box.min_y, box.max_x, box.max_y})
     if (!std::isfinite(value)) throw InputError("the box has a side that is not finite", 0);
-  if (!(box.min_x < box.max_x && box.min_y < box.max_y)) throw InputError("the box has no area: min must be below max", 0);
+  if (!(box.min_x < box.max_x && box.min_y < box.max_y))
+    throw InputError("the box has no area: min must be below max", 0);
   Launcher& launch = ctx.launcher;
   VoronoiPolygons result;
   const std::size_t n = mesh.point_count;
@@ -117,8 +118,8 @@ std::vector<Circle> find_largest_circles(Context& ctx, const MeshIndex& mesh, st
     launch.sort(keys, order, spare, spare_order, count, 32, true);
   }
   ctx.check("circles", 0.5);
-  // From large to small until enough have their centres in the hull. The keys are rounded radii, so a part of the list ends
-  // with a key that is not the same as the next one.
+  // From large to small until enough have their centres in the hull. The keys are rounded radii, so a part of the list
+  // ends with a key that is not the same as the next one.
   const std::vector<std::uint32_t> key = ctx.device.read_values(*keys, count);
   for (std::size_t from = 0; from < count && found.size() < wanted;) {
     std::size_t end = std::min(count, from + 2 * wanted + 256);

@@ -38,8 +38,8 @@ CADT_KERNEL(cadt_cell_sizes, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL cadt_u32* si
   }
 }
 
-/* The triangles around each point, counterclockwise: from the lowest on, and around a hull vertex from hull edge to hull
- * edge. `begin`: the sizes, scanned. */
+/* The triangles around each point, counterclockwise: from the lowest on, and around a hull vertex from hull edge to
+ * hull edge. `begin`: the sizes, scanned. */
 CADT_KERNEL(cadt_cell_triangles, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* lowest,
             CADT_GLOBAL const cadt_u32* begin, CADT_GLOBAL cadt_u32* cells, cadt_u32 count, cadt_u32 grain) {
   CADT_QUERY_MESH(mesh);
@@ -78,8 +78,8 @@ CADT_KERNEL(cadt_edge_counts, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL cadt_u32* s
     if (t == 0u) sizes[mesh.triangles] = 0u;
   }
 }
-/* Both vertices of each edge, and both triangles; CADT_NONE outside. Null arrays are left out. The first triangle is on the left of the edge from
- * the first vertex to the second. */
+/* Both vertices of each edge, and both triangles; CADT_NONE outside. Null arrays are left out. The first triangle is on
+ * the left of the edge from the first vertex to the second. */
 CADT_KERNEL(cadt_list_edges, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u32* begin, CADT_GLOBAL cadt_u32* ends,
             CADT_GLOBAL cadt_u32* sides, cadt_u32 grain) {
   CADT_MESH_VIEW(mesh);
@@ -102,8 +102,9 @@ CADT_KERNEL(cadt_list_edges, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u
 
 /* ---- cells within a box ---- */
 
-/* Cuts the convex polygon in row[0] to row[size - 1] (counterclockwise, seen from a generator) to the points nearer to the
- * generator than to its neighbour at `arm`. Returns its new size. In place: two points are read ahead of what is written.
+/* Cuts the convex polygon in row[0] to row[size - 1] (counterclockwise, seen from a generator) to the points nearer to
+ * the generator than to its neighbour at `arm`. Returns its new size. In place: two points are read ahead of what is
+ * written.
  */
 CADT_FN cadt_u32 cadt_cut_cell(CADT_GLOBAL cadt_point* row, cadt_u32 size, cadt_point arm) {
   const cadt_real limit = 0.5 * (arm.x * arm.x + arm.y * arm.y);
@@ -153,10 +154,13 @@ CADT_KERNEL(cadt_clip_cells, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
     cadt_spoke s = {t, cadt_index_in(&mesh, t, v)};
     s = cadt_first_spoke(&mesh, s);
     for (; turns > 0u; --turns) {
-      size = cadt_cut_cell(row, size, cadt_seen_from(mesh.view.points[cadt_vertex_of(&mesh.view, s.triangle, CADT_NEXT(s.k))], center));
+      size = cadt_cut_cell(
+          row, size, cadt_seen_from(mesh.view.points[cadt_vertex_of(&mesh.view, s.triangle, CADT_NEXT(s.k))], center));
       const cadt_spoke next = cadt_turn(&mesh, s, 0u);
       if (next.triangle == CADT_NONE) {
-        size = cadt_cut_cell(row, size, cadt_seen_from(mesh.view.points[cadt_vertex_of(&mesh.view, s.triangle, CADT_PREV(s.k))], center));
+        size = cadt_cut_cell(
+            row, size,
+            cadt_seen_from(mesh.view.points[cadt_vertex_of(&mesh.view, s.triangle, CADT_PREV(s.k))], center));
         break;
       }
       s = next;
@@ -190,14 +194,14 @@ CADT_KERNEL(cadt_radius_keys, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL cadt_u32* 
   }
 }
 /* The circumcircles of the listed triangles. */
-CADT_KERNEL(cadt_circles_of, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list, CADT_GLOBAL cadt_circle* circles,
-            cadt_u32 count, cadt_u32 grain) {
+CADT_KERNEL(cadt_circles_of, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* list,
+            CADT_GLOBAL cadt_circle* circles, cadt_u32 count, cadt_u32 grain) {
   CADT_QUERY_MESH(mesh);
   CADT_FOR(i, count, grain) { circles[i] = cadt_circumcircle(&mesh, list[i]); }
 }
 
-/* 1 for triangles without an edge longer than `max_edge` whose circumradius is at most `max_radius` (both in the caller's
- * units); flags[count] is 0. */
+/* 1 for triangles without an edge longer than `max_edge` whose circumradius is at most `max_radius` (both in the
+ * caller's units); flags[count] is 0. */
 CADT_KERNEL(cadt_flag_compact, CADT_QUERY_MESH_PARAMETERS, cadt_real max_edge, cadt_real max_radius,
             CADT_GLOBAL cadt_u32* flags, cadt_u32 grain) {
   CADT_QUERY_MESH(mesh);
@@ -205,7 +209,8 @@ CADT_KERNEL(cadt_flag_compact, CADT_QUERY_MESH_PARAMETERS, cadt_real max_edge, c
     cadt_u32 kept = cadt_circumcircle(&mesh, t).radius <= max_radius ? 1u : 0u;
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_point arm = cadt_seen_from(cadt_corner(&mesh, t, k), cadt_corner(&mesh, t, CADT_NEXT(k)));
-      const cadt_real x = arm.x / mesh.scale / mesh.scale_again / max_edge, y = arm.y / mesh.scale / mesh.scale_again / max_edge;
+      const cadt_real x = arm.x / mesh.scale / mesh.scale_again / max_edge,
+                      y = arm.y / mesh.scale / mesh.scale_again / max_edge;
       if (x * x + y * y > 1.0) kept = 0u;
     }
     flags[t] = kept;
@@ -213,7 +218,8 @@ CADT_KERNEL(cadt_flag_compact, CADT_QUERY_MESH_PARAMETERS, cadt_real max_edge, c
   }
 }
 /* The kept triangles; `places`: the flags, scanned. */
-CADT_KERNEL(cadt_pack_kept, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_u32* kept, cadt_u32 count, cadt_u32 grain) {
+CADT_KERNEL(cadt_pack_kept, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_u32* kept, cadt_u32 count,
+            cadt_u32 grain) {
   CADT_FOR(t, count, grain) {
     if (places[t + 1u] != places[t]) kept[places[t]] = t;
   }
@@ -224,8 +230,8 @@ CADT_FN cadt_u32 cadt_bounds_kept(const cadt_mesh_view* m, CADT_GLOBAL const cad
   return places[t + 1u] != places[t] && (n == CADT_NONE || places[n + 1u] == places[n]) ? 1u : 0u;
 }
 /* How many edges of each triangle are; sizes[count] is 0. */
-CADT_KERNEL(cadt_outline_counts, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL cadt_u32* sizes,
-            cadt_u32 grain) {
+CADT_KERNEL(cadt_outline_counts, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u32* places,
+            CADT_GLOBAL cadt_u32* sizes, cadt_u32 grain) {
   CADT_MESH_VIEW(mesh);
   CADT_FOR(t, mesh.triangles, grain) {
     sizes[t] = cadt_bounds_kept(&mesh, places, t, 0u) + cadt_bounds_kept(&mesh, places, t, 1u) +

@@ -36,9 +36,9 @@ enum class Outside {
   nearest  ///< the value of the nearest vertex
 };
 
-/// A grid of columns x rows cells. Cell (column i, row j) has its centre at x0 + (i + 0.5) dx, y0 + (j + 0.5) dy, and is
-/// element j * columns + i of a raster. For images and GIS formats, whose first row is the top one, y0 is the top edge and
-/// dy is negative.
+/// A grid of columns x rows cells. Cell (column i, row j) has its centre at x0 + (i + 0.5) dx, y0 + (j + 0.5) dy, and
+/// is element j * columns + i of a raster. For images and GIS formats, whose first row is the top one, y0 is the top
+/// edge and dy is negative.
 struct Grid {
   double x0 = 0, y0 = 0;  ///< a corner of the grid
   double dx = 1, dy = 1;  ///< width and height of a cell; not 0
@@ -57,23 +57,25 @@ struct Located {
   std::vector<double> barycentric;      ///< n x 3, of the triangle's vertices in order; not negative; NaN outside
 };
 
-/// The Voronoi diagram of the vertices. Its vertices are the circumcentres of the triangles, in the order of the triangles.
+/// The Voronoi diagram of the vertices. Its vertices are the circumcentres of the triangles, in the order of the
+/// triangles.
 struct VoronoiDiagram {
   std::vector<double> vertices;  ///< n x 2: x0 y0 x1 y1 ..., one a triangle; infinite if a triangle is too thin
-  /// Cell of point p: the Voronoi vertices cells[cell_begin[p]] to cells[cell_begin[p + 1] - 1], counterclockwise. The cell
-  /// of a hull vertex is unbounded: between its last and its first vertex it reaches to infinity. A duplicate has none.
+  /// Cell of point p: the Voronoi vertices cells[cell_begin[p]] to cells[cell_begin[p + 1] - 1], counterclockwise. The
+  /// cell of a hull vertex is unbounded: between its last and its first vertex it reaches to infinity. A duplicate has
+  /// none.
   std::vector<std::uint32_t> cell_begin;
   std::vector<std::int32_t> cells;
-  /// Edges, two words each: the points on both sides (generators), and the two Voronoi vertices; -1: it is a ray, from the
-  /// first vertex to the outside, at a right angle to the hull edge, on the right of the line from the first generator to
-  /// the second.
+  /// Edges, two words each: the points on both sides (generators), and the two Voronoi vertices; -1: it is a ray, from
+  /// the first vertex to the outside, at a right angle to the hull edge, on the right of the line from the first
+  /// generator to the second.
   std::vector<std::int32_t> edge_points, edge_vertices;
 };
 
 /// Voronoi cells within a box, as polygons.
 struct VoronoiPolygons {
-  /// Polygon of point p: points begin[p] to begin[p + 1] - 1 of xy, counterclockwise. None for a duplicate, or if the cell
-  /// does not meet the box.
+  /// Polygon of point p: points begin[p] to begin[p + 1] - 1 of xy, counterclockwise. None for a duplicate, or if the
+  /// cell does not meet the box.
   std::vector<std::uint32_t> begin;
   std::vector<double> xy;
 };
@@ -92,7 +94,8 @@ struct Outline {
 /// Memory of the caller's on the triangulator's device, for results. Handles as for DevicePoints.
 struct DeviceArray {
   void* memory = nullptr;
-  std::size_t size = 0;  ///< elements (int32 or double); a result that needs more is an InputError, and nothing is written
+  std::size_t size =
+      0;  ///< elements (int32 or double); a result that needs more is an InputError, and nothing is written
 };
 
 /// Where a Voronoi diagram goes (VoronoiDiagram); `cell_begin` is needed for `cells`.
@@ -101,8 +104,8 @@ struct DeviceVoronoi {
 };
 
 /// A mesh prepared for queries on a device: the vertices are sorted along Hilbert's curve, so a query starts near.
-/// All answers are exact functions of mesh and query: the same from every device, however many are asked at a time. Points
-/// on an edge or vertex belong to the lowest of its triangles.
+/// All answers are exact functions of mesh and query: the same from every device, however many are asked at a time.
+/// Points on an edge or vertex belong to the lowest of its triangles.
 ///
 /// Preparing costs O(n log n) for n points, about a tenth of the triangulation, and 20 bytes of device memory a point
 /// beside points and mesh. Not thread-safe: one thread at a time may use an object; different ones are independent.
@@ -115,15 +118,16 @@ struct DeviceVoronoi {
 class CADT_API MeshQueries {
  public:
   /// A mesh of the host. Points and mesh are not copied where the device can read them: they must live as long as this
-  /// object, and must not change. `options` says where: backend, device, threads, queue, allocator, max_memory, stop and
-  /// progress are as for triangulate(). \throws InputError if the mesh is not one of so many points, and as triangulate()
+  /// object, and must not change. `options` says where: backend, device, threads, queue, allocator, max_memory, stop
+  /// and progress are as for triangulate(). \throws InputError if the mesh is not one of so many points, and as
+  /// triangulate()
   MeshQueries(PointsView points, const Triangulation& mesh, const Options& options = {});
   /// The mesh of another program, with neighbours; its arrays are checked. Nearest vertices, natural neighbours and the
-  /// Voronoi diagram take a Delaunay mesh, the rest any triangulation of the convex hull. \throws InputError if an index is
-  /// out of range, or an edge is not the same from both sides, with the first such triangle as index
+  /// Voronoi diagram take a Delaunay mesh, the rest any triangulation of the convex hull. \throws InputError if an
+  /// index is out of range, or an edge is not the same from both sides, with the first such triangle as index
   MeshQueries(PointsView points, const MeshView& mesh, const Options& options = {});
-  /// A mesh on the device of `triangulator`, which it shares. Both must live as long as this object. \throws InputError for
-  /// a mesh of another triangulator or of other points
+  /// A mesh on the device of `triangulator`, which it shares. Both must live as long as this object. \throws InputError
+  /// for a mesh of another triangulator or of other points
   MeshQueries(Triangulator& triangulator, const DevicePoints& points, const DeviceTriangulation& mesh);
   ~MeshQueries();
   MeshQueries(MeshQueries&&) noexcept;
@@ -134,7 +138,8 @@ class CADT_API MeshQueries {
   [[nodiscard]] const DeviceInfo& device() const noexcept;
 
   /// The triangle that contains each query (hull and edges included), the lowest if there are several; -1 outside.
-  /// O(log n) each, and a walk of a few triangles. \throws InputError for a query that is NaN or infinite, with its index
+  /// O(log n) each, and a walk of a few triangles. \throws InputError for a query that is NaN or infinite, with its
+  /// index
   [[nodiscard]] std::vector<std::int32_t> locate(PointsView queries);
   [[nodiscard]] Located locate_barycentric(PointsView queries);
   /// Whether each query lies in the convex hull, its boundary included: 1 or 0.
@@ -147,15 +152,16 @@ class CADT_API MeshQueries {
   /// each. \throws OptionError for k = 0, LimitError for more than 2^31 results
   [[nodiscard]] std::vector<std::int32_t> nearest_vertices(PointsView queries, std::size_t k);
 
-  /// `values`: m for each point, point by point. Returns m for each query. Values are the device's doubles: equal on all
-  /// devices but for what their compilers do to divisions. \throws InputError if the number of values is no multiple of the
-  /// points', for queries as locate, and for natural neighbours if the coordinates span more than 240 binades
+  /// `values`: m for each point, point by point. Returns m for each query. Values are the device's doubles: equal on
+  /// all devices but for what their compilers do to divisions. \throws InputError if the number of values is no
+  /// multiple of the points', for queries as locate, and for natural neighbours if the coordinates span more than 240
+  /// binades
   [[nodiscard]] std::vector<double> interpolate(std::span<const double> values, PointsView queries,
                                                 Interpolation method = Interpolation::linear,
                                                 Outside outside = Outside::nan);
-  /// The same at the centre of each cell. A cell belongs to the triangle that `locate` finds for its centre; NaN outside of
-  /// the hull, and in triangles with an edge longer than `max_edge`. Linear: O(triangles + cells). \throws InputError for a
-  /// grid that is not finite, or whose cells have no size; LimitError for 2^32 cells or more
+  /// The same at the centre of each cell. A cell belongs to the triangle that `locate` finds for its centre; NaN
+  /// outside of the hull, and in triangles with an edge longer than `max_edge`. Linear: O(triangles + cells). \throws
+  /// InputError for a grid that is not finite, or whose cells have no size; LimitError for 2^32 cells or more
   [[nodiscard]] std::vector<double> rasterize(const Grid& grid, std::span<const double> values,
                                               Interpolation method = Interpolation::linear,
                                               double max_edge = std::numeric_limits<double>::infinity());
@@ -163,21 +169,22 @@ class CADT_API MeshQueries {
   /// The circumcentre of each triangle: x0 y0 x1 y1 ...
   [[nodiscard]] std::vector<double> circumcenters();
   [[nodiscard]] VoronoiDiagram voronoi();
-  /// The cells within `box`. Their areas sum to that of the box but for rounding. \throws InputError for a box that is not
-  /// finite or has no area
+  /// The cells within `box`. Their areas sum to that of the box but for rounding. \throws InputError for a box that is
+  /// not finite or has no area
   [[nodiscard]] VoronoiPolygons voronoi_polygons(const Box& box);
-  /// The k largest circles without a point inside whose centres are in the convex hull, largest first: circumcircles (the
-  /// holes of the paper's Table 1, [18]). Fewer if there are no more.
+  /// The k largest circles without a point inside whose centres are in the convex hull, largest first: circumcircles
+  /// (the holes of the paper's Table 1, [18]). Fewer if there are no more.
   [[nodiscard]] std::vector<Circle> largest_empty_circles(std::size_t k);
-  /// The triangles without an edge longer than `max_edge` and with a circumradius of at most `max_radius` (an alpha shape:
-  /// H. Edelsbrunner, D. Kirkpatrick, R. Seidel, "On the shape of a set of points in the plane", 1983), and their boundary.
-  /// \throws OptionError for a bound that is negative or NaN
+  /// The triangles without an edge longer than `max_edge` and with a circumradius of at most `max_radius` (an alpha
+  /// shape: H. Edelsbrunner, D. Kirkpatrick, R. Seidel, "On the shape of a set of points in the plane", 1983), and
+  /// their boundary. \throws OptionError for a bound that is negative or NaN
   [[nodiscard]] Outline outline(double max_radius, double max_edge = std::numeric_limits<double>::infinity());
 
   /// The same on the device: queries, values and results in its memory, in the order of the triangulator's stream or
   /// queue. Each returns the number of elements written, known before: one, or k, or 3, or m a query; one a cell.
   std::size_t locate(const DevicePoints& queries, const DeviceArray& triangles);
-  std::size_t locate_barycentric(const DevicePoints& queries, const DeviceArray& triangles, const DeviceArray& barycentric);
+  std::size_t locate_barycentric(const DevicePoints& queries, const DeviceArray& triangles,
+                                 const DeviceArray& barycentric);
   std::size_t nearest_vertices(const DevicePoints& queries, std::size_t k, const DeviceArray& vertices);
   std::size_t interpolate(const DeviceArray& values, const DevicePoints& queries, const DeviceArray& results,
                           Interpolation method = Interpolation::linear, Outside outside = Outside::nan);
@@ -185,9 +192,9 @@ class CADT_API MeshQueries {
                         Interpolation method = Interpolation::linear,
                         double max_edge = std::numeric_limits<double>::infinity());
   std::size_t circumcenters(const DeviceArray& xy);
-  /// As voronoi(), in arrays that may be null (left out). Sizes: vertices 2 a triangle, cell_begin points + 1, cells 3 a
-  /// triangle, edge_points and edge_vertices at most 3 a triangle + 3 points each. Returns the number of edges; 0 if both
-  /// are left out.
+  /// As voronoi(), in arrays that may be null (left out). Sizes: vertices 2 a triangle, cell_begin points + 1, cells 3
+  /// a triangle, edge_points and edge_vertices at most 3 a triangle + 3 points each. Returns the number of edges; 0 if
+  /// both are left out.
   std::size_t voronoi(const DeviceVoronoi& to);
 
   struct State;  // internal

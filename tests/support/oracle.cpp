@@ -80,7 +80,8 @@ LocatedFaces cgal_locate(std::span<const double> xy, std::span<const double> que
   found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (std::size_t i = 0; i < where.size(); ++i) {
     if (!inside[i]) continue;
-    std::vector<Triangle> one = {{faces[i]->vertex(0)->info(), faces[i]->vertex(1)->info(), faces[i]->vertex(2)->info()}};
+    std::vector<Triangle> one = {
+        {faces[i]->vertex(0)->info(), faces[i]->vertex(1)->info(), faces[i]->vertex(2)->info()}};
     make_canonical(one);
     found.faces[static_cast<std::size_t>(where[i].second)] = one.front();
   }

@@ -71,7 +71,8 @@ Points queries_for(const Points& xy, const Triangulation& mesh) {
   }
   const double width = 0.5 * high[0] - 0.5 * low[0], height = 0.5 * high[1] - 0.5 * low[1];
   for (int k = 0; k < 40; ++k)
-    add(queries, low[0] - 0.2 * width + random.uniform() * 2.4 * width, low[1] - 0.2 * height + random.uniform() * 2.4 * height);
+    add(queries, low[0] - 0.2 * width + random.uniform() * 2.4 * width,
+        low[1] - 0.2 * height + random.uniform() * 2.4 * height);
   add(queries, -1e300, 1e300);
   add(queries, high[0] + 100 * width, low[1]);
   add(queries, 0, 0);
@@ -112,7 +113,8 @@ std::int32_t containing(const Asked& set, double x, double y) {
   const Point p{x, y};
   for (std::size_t i = 0; i < t.size(); i += 3) {
     const Point a = point_of(set, t[i]), b = point_of(set, t[i + 1]), c = point_of(set, t[i + 2]);
-    if (verifier::orientation(a, b, p) >= 0 && verifier::orientation(b, c, p) >= 0 && verifier::orientation(c, a, p) >= 0)
+    if (verifier::orientation(a, b, p) >= 0 && verifier::orientation(b, c, p) >= 0 &&
+        verifier::orientation(c, a, p) >= 0)
       return static_cast<std::int32_t>(i / 3);
   }
   return -1;
@@ -121,7 +123,8 @@ std::int32_t containing(const Asked& set, double x, double y) {
 int compare_distances(const Asked& set, double x, double y, std::int32_t a, std::int32_t b) {
   const Point p = point_of(set, a), q = point_of(set, b);
   const double ax = p.x - x, ay = p.y - y, bx = q.x - x, by = q.y - y, da = ax * ax + ay * ay, db = bx * bx + by * by;
-  if (da > 1e-200 && db > 1e-200 && da < 1e200 && db < 1e200 && std::abs(da - db) > 1e-14 * (da + db)) return da < db ? -1 : 1;
+  if (da > 1e-200 && db > 1e-200 && da < 1e200 && db < 1e200 && std::abs(da - db) > 1e-14 * (da + db))
+    return da < db ? -1 : 1;
   using verifier::sum;
   const auto distance = [&](const Point& v) {
     return sum(square(sum(integer(v.x), integer(x), true)), square(sum(integer(v.y), integer(y), true)));

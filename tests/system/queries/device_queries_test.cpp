@@ -35,7 +35,8 @@ TEST_P(DeviceQueries, EqualThoseOfTheHost) {
   MeshQueries host(std::span<const double>(set.xy), set.mesh, GetParam().options());
   const std::size_t n = where.size;
 
-  const DeviceArray triangles = array<std::int32_t>(n), weights = array<double>(3 * n), vertices = array<std::int32_t>(4 * n);
+  const DeviceArray triangles = array<std::int32_t>(n), weights = array<double>(3 * n),
+                    vertices = array<std::int32_t>(4 * n);
   EXPECT_EQ(resident.locate_barycentric(where, triangles, weights), n);
   EXPECT_EQ(memory->download<std::int32_t>(triangles.memory, n), host.locate(queries));
   EXPECT_EQ(memory->download<std::int32_t>(triangles.memory, n + 1).back(), untouched);

@@ -62,13 +62,14 @@ TEST_P(Interpolate, ValuesOfVerticesAreKept) {
 }
 
 TEST_P(Interpolate, NaturalNeighboursAreSibsons) {
-  // The weights of the centre of a unit square's corners are equal; moved along the axis of a rectangle they are those of
-  // the areas that the new cell takes.
+  // The weights of the centre of a unit square's corners are equal; moved along the axis of a rectangle they are those
+  // of the areas that the new cell takes.
   const Points xy = {0, 0, 4, 0, 4, 4, 0, 4};
   const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
   MeshQueries queries(std::span<const double>(xy), mesh, GetParam().options());
-  // Seen from (1, 2): the cell is x from -1.25 to 2.25 at y = 2 between lines to the corners. By hand: the bisectors with
-  // (0, 0) and (0, 4) meet the old bisector y = 2 at x = (1 + 4 - 4) / 2 - ..., so areas are those of the four pieces.
+  // Seen from (1, 2): the cell is x from -1.25 to 2.25 at y = 2 between lines to the corners. By hand: the bisectors
+  // with (0, 0) and (0, 4) meet the old bisector y = 2 at x = (1 + 4 - 4) / 2 - ..., so areas are those of the four
+  // pieces.
   const auto share = [&](double px, double py) {
     std::vector<double> weights;
     for (std::size_t of = 0; of < 4; ++of) {
@@ -86,7 +87,8 @@ TEST_P(Interpolate, NaturalNeighboursAreSibsons) {
   EXPECT_NEAR(left[0] + left[1] + left[2] + left[3], 1, 1e-15);
 }
 
-/// Sibson's weights from clipped Voronoi cells with and without the query, which shares no text with the kernel for them.
+/// Sibson's weights from clipped Voronoi cells with and without the query, which shares no text with the kernel for
+/// them.
 TEST_P(Interpolate, NaturalNeighboursAreTheAreasThatACellTakes) {
   const Points xy = uniform_points(60, 33);
   const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
@@ -126,7 +128,8 @@ TEST_P(Interpolate, OutsideIsNanOrTheNearestVertex) {
   MeshQueries queries(std::span<const double>(xy), mesh, GetParam().options());
   const Points where = {-5, -5, 3, 0.1, 0.25, 0.25};
   for (const Interpolation method : {Interpolation::linear, Interpolation::nearest, Interpolation::natural}) {
-    const auto nan = queries.interpolate(values, where, method), near = queries.interpolate(values, where, method, Outside::nearest);
+    const auto nan = queries.interpolate(values, where, method),
+               near = queries.interpolate(values, where, method, Outside::nearest);
     EXPECT_TRUE(std::isnan(nan[0]) && std::isnan(nan[1]) && !std::isnan(nan[2]));
     EXPECT_EQ(near[0], 1);
     EXPECT_EQ(near[1], 2);

@@ -72,7 +72,8 @@ TEST_P(Locate, BarycentricCoordinatesGiveThePointBack) {
       }
       double at[2] = {0, 0}, size = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto v = static_cast<std::size_t>(set.mesh.triangles()[3 * static_cast<std::size_t>(found.triangles[q]) + k]);
+        const auto v =
+            static_cast<std::size_t>(set.mesh.triangles()[3 * static_cast<std::size_t>(found.triangles[q]) + k]);
         ASSERT_GE(w[k], 0);
         for (std::size_t axis = 0; axis < 2; ++axis) {
           at[axis] += w[k] * set.xy[2 * v + axis];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times of queries on large sets: points, queries and results in device memory, on the host beside CGAL. One line a query.
+// Times of queries on large sets: points, queries and results in device memory, on the host beside CGAL. One line a
+// query.
 #include <cadt/cadt.hpp>
 
 #include <algorithm>
@@ -20,9 +21,12 @@ namespace {
 using namespace cadt;
 
 [[noreturn]] void usage() {
-  std::fputs("usage: cadt-time-queries [--backend cuda|opencl|host] [--points N] [--queries Q] [--cells C] [--runs R] [--cgal]\n"
-             "prints the median of R runs (and the least and the most) in milliseconds; --cgal: locate of CGAL in turn with ours\n",
-             stderr);
+  std::fputs(
+      "usage: cadt-time-queries [--backend cuda|opencl|host] [--points N] [--queries Q] [--cells C] [--runs R] "
+      "[--cgal]\n"
+      "prints the median of R runs (and the least and the most) in milliseconds; --cgal: locate of CGAL in turn with "
+      "ours\n",
+      stderr);
   std::exit(2);
 }
 
@@ -67,7 +71,8 @@ double time_of(const std::function<void()>& call) {
 void print(const char* what, std::vector<double> times, double elements) {
   std::ranges::sort(times);
   const double median = times[times.size() / 2];
-  std::printf("%-34s %9.3f ms  (%.3f to %.3f)  %8.1f M/s\n", what, median, times.front(), times.back(), elements / median / 1e3);
+  std::printf("%-34s %9.3f ms  (%.3f to %.3f)  %8.1f M/s\n", what, median, times.front(), times.back(),
+              elements / median / 1e3);
 }
 
 int run(const Arguments& a) {
@@ -91,7 +96,8 @@ int run(const Arguments& a) {
   const DeviceArray cells{memory->allocate(8 * grid.cells()), grid.cells()};
   const DeviceTriangulation mesh = triangulator.triangulate(points);
   const DeviceArray centers{memory->allocate(16 * mesh.number_of_triangles()), 2 * mesh.number_of_triangles()};
-  std::printf("%s: %zu points, %zu queries, %zu cells\n", triangulator.device().name.c_str(), a.points, a.queries, grid.cells());
+  std::printf("%s: %zu points, %zu queries, %zu cells\n", triangulator.device().name.c_str(), a.points, a.queries,
+              grid.cells());
 
   const auto repeat = [&](const char* what, double elements, const std::function<void()>& call) {
     call();
@@ -129,10 +135,11 @@ int run(const Arguments& a) {
     std::vector<double> ours, theirs;
     for (int i = 0; i < 3; ++i) {
       theirs.push_back(1e3 * test::cgal_locate(xy, where).seconds);
-      for (int k = 0; k < 3; ++k) ours.push_back(time_of([&] {
-        asked.locate(queries, triangles);
-        memory->wait();
-      }));
+      for (int k = 0; k < 3; ++k)
+        ours.push_back(time_of([&] {
+          asked.locate(queries, triangles);
+          memory->wait();
+        }));
     }
     print("locate, in turn with CGAL", ours, n);
     print("CGAL's locate, sorted, with hints", theirs, n);

@@ -36,10 +36,12 @@ TEST_P(Voronoi, CellsAreTheTrianglesAroundEachVertex) {
         different.insert(diagram.cells[diagram.cell_begin[v] + i]);
         // v is vertex k of t; the next triangle counterclockwise is across the edge from v to the vertex before it
         const auto corners = set.mesh.triangles().subspan(3 * t, 3);
-        const auto k = static_cast<std::size_t>(std::ranges::find(corners, static_cast<std::int32_t>(v)) - corners.begin());
+        const auto k =
+            static_cast<std::size_t>(std::ranges::find(corners, static_cast<std::int32_t>(v)) - corners.begin());
         ASSERT_LT(k, 3u);
         const std::int32_t next = set.mesh.neighbors()[3 * t + (k + 1) % 3];
-        const std::int32_t around = hull.contains(static_cast<std::int32_t>(v)) ? -1 : diagram.cells[diagram.cell_begin[v]];
+        const std::int32_t around =
+            hull.contains(static_cast<std::int32_t>(v)) ? -1 : diagram.cells[diagram.cell_begin[v]];
         ASSERT_EQ(next, i + 1 < size ? diagram.cells[diagram.cell_begin[v] + i + 1] : around);
       }
       ASSERT_EQ(different.size(), size);
@@ -104,7 +106,8 @@ TEST_P(Voronoi, AreasOfClippedCellsSumToTheBox) {
     ++sets;
     MeshQueries queries(std::span<const double>(set.xy), set.mesh, GetParam().options());
     for (const double margin : {0.3, -0.2}) {
-      const Box box{low[0] - margin * width, low[1] - margin * height, high[0] + margin * width, high[1] + margin * height};
+      const Box box{low[0] - margin * width, low[1] - margin * height, high[0] + margin * width,
+                    high[1] + margin * height};
       const VoronoiPolygons cells = queries.voronoi_polygons(box);
       ASSERT_EQ(cells.begin.size(), set.xy.size() / 2 + 1);
       ASSERT_EQ(cells.begin.back() * std::size_t{2}, cells.xy.size());
@@ -137,7 +140,8 @@ TEST_P(Voronoi, LargestEmptyCirclesAreEmptyAndTheLargest) {
   std::vector<double> radii;
   for (std::size_t t = 0; t < set.mesh.number_of_triangles(); ++t) {
     const std::size_t v = at(set.mesh.triangles(), 3 * t);
-    if (inside[t] >= 0) radii.push_back(std::hypot(centers[2 * t] - set.xy[2 * v], centers[2 * t + 1] - set.xy[2 * v + 1]));
+    if (inside[t] >= 0)
+      radii.push_back(std::hypot(centers[2 * t] - set.xy[2 * v], centers[2 * t + 1] - set.xy[2 * v + 1]));
   }
   std::ranges::sort(radii, std::greater<>());
   for (const std::size_t k : {std::size_t{1}, std::size_t{10}, radii.size(), radii.size() + 5}) {

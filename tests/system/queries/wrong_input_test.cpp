@@ -21,7 +21,8 @@ class WrongInput : public BackendTest {
 
 TEST_P(WrongInput, QueriesThatAreNotFiniteHaveAnIndex) {
   MeshQueries queries(std::span<const double>(xy), mesh, GetParam().options());
-  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()})
+  for (const double bad :
+       {std::nan(""), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()})
     for (const std::size_t at : {0u, 3u, 9u}) {
       Points where(20, 0.5);
       where[2 * at + 1] = bad;

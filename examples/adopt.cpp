@@ -13,8 +13,8 @@ int main() {
     std::vector<std::int32_t> triangles = {0, 3, 2, 3, 1, 2};  // as SciPy, Triangle or CGAL gave them
 
     const cadt::Triangulation mesh = cadt::Triangulation::adopt(points, triangles);
-    std::cout << "adopted: " << mesh.number_of_triangles() << " triangles, neighbour of 0 across vertex 0: "
-              << mesh.neighbor(0, 0) << '\n';
+    std::cout << "adopted: " << mesh.number_of_triangles()
+              << " triangles, neighbour of 0 across vertex 0: " << mesh.neighbor(0, 0) << '\n';
 
     triangles = {0, 1, 2, 0, 3, 1};  // the other diagonal
     try {

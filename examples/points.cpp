@@ -32,10 +32,11 @@ int main() {
     same.push_back(cadt::triangulate({{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0.5}}, options));
     same.push_back(cadt::triangulate({xs, ys}, options));
     same.push_back(cadt::triangulate({stations, &Station::lon, &Station::lat}, options));
-    same.push_back(cadt::triangulate(cadt::copy_points(
-                                         by_name.begin(), by_name.end(), [](const auto& entry) { return entry.second.x; },
-                                         [](const auto& entry) { return entry.second.y; }),
-                                     options));
+    same.push_back(
+        cadt::triangulate(cadt::copy_points(
+                              by_name.begin(), by_name.end(), [](const auto& entry) { return entry.second.x; },
+                              [](const auto& entry) { return entry.second.y; }),
+                          options));
     for (const cadt::Triangulation& other : same)
       if (other.hash() != mesh.hash()) throw cadt::Error("not the same mesh");
 

@@ -34,7 +34,8 @@ int main(int count, char** values) {
     auto edges = cadt::edges(mesh);
     double sum = 0;
     for (const auto& [a, b] : edges) sum += length(a, b);
-    std::cout << "edges           " << edges.size() << ", mean length " << sum / static_cast<double>(edges.size()) << '\n';
+    std::cout << "edges           " << edges.size() << ", mean length " << sum / static_cast<double>(edges.size())
+              << '\n';
 
     // Kruskal: the minimum spanning tree is part of the Delaunay triangulation.
     std::ranges::sort(edges, {}, [&](const auto& e) { return length(e[0], e[1]); });

@@ -83,6 +83,7 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
   result->triangle_count = data.triangle_count;
   result->dimension = data.dimension;
   result->statistics = std::move(data.statistics);
+  result->keep(points, state->options.keep_points);
   return Triangulation(std::move(result));
 }
 

@@ -23,6 +23,7 @@ using device_text::word;
 
 struct MeshQueries::State {
   std::shared_ptr<Triangulator::State> device;  // first member: destroyed last, after the memory
+  std::optional<Triangulation> of;              ///< what `mesh` may alias
   Options options;
   MeshIndex mesh;
 };
@@ -153,7 +154,15 @@ std::string_view to_string(Interpolation method) noexcept {
 
 MeshQueries::MeshQueries(PointsView points, const Triangulation& mesh, const Options& options) : state_(open(options)) {
   require_mesh_of(points.size(), mesh.number_of_points());
+  state_->of = mesh;
   index(*state_, points, mesh.triangles(), mesh.neighbors(), true);
+}
+
+MeshQueries::MeshQueries(const Triangulation& mesh, const Options& options) : state_(open(options)) {
+  if (mesh.points().size() != mesh.number_of_points())
+    throw InputError("the mesh has not kept its points: set Options::keep_points, or give them", 0);
+  state_->of = mesh;
+  index(*state_, state_->of->points(), mesh.triangles(), mesh.neighbors(), true);
 }
 
 MeshQueries::MeshQueries(PointsView points, const MeshView& mesh, const Options& options) : state_(open(options)) {

@@ -10,20 +10,20 @@
 
 extern int failures;
 
-#define CHECK(what)                                                                         \
-  do {                                                                                      \
-    if (!(what)) {                                                                          \
-      ++failures;                                                                           \
+#define CHECK(what)                                                                                          \
+  do {                                                                                                       \
+    if (!(what)) {                                                                                           \
+      ++failures;                                                                                            \
       fprintf(stderr, "%s:%d: %s (last error: %s)\n", __FILE__, __LINE__, #what, cadt_last_error_message()); \
-    }                                                                                       \
+    }                                                                                                        \
   } while (0)
 /* A call with this status, which the last error has as well. */
 #define CHECK_STATUS(expected, call) CHECK((call) == (expected) && last_error().status == (expected))
 #define CHECK_OK(call) CHECK((call) == CADT_OK)
 /* What must not be NULL, with the argument's name. */
-#define CHECK_NULL(call, argument)               \
-  do {                                           \
-    CHECK_STATUS(CADT_INVALID_ARGUMENT, call);   \
+#define CHECK_NULL(call, argument)                   \
+  do {                                               \
+    CHECK_STATUS(CADT_INVALID_ARGUMENT, call);       \
     CHECK(strcmp(last_error().name, argument) == 0); \
   } while (0)
 

@@ -176,8 +176,9 @@ class CADT_API MeshQueries {
   /// their boundary. \throws OptionError for a bound that is negative or NaN
   [[nodiscard]] Outline outline(double max_radius, double max_edge = std::numeric_limits<double>::infinity());
 
-  /// The same on the device: queries, values and results in its memory, in the order of the caller's stream or queue, or
-  /// complete when the call returns if the triangulator has one of its own. Each returns the number of elements written, known before: one, or k, or 3, or m a query; one a cell.
+  /// The same on the device: queries, values and results in its memory, in the order of the caller's stream or queue,
+  /// or complete when the call returns if the triangulator has one of its own. Each returns the number of elements
+  /// written, known before: one, or k, or 3, or m a query; one a cell.
   std::size_t locate(const DevicePoints& queries, const DeviceArray& triangles);
   std::size_t locate_barycentric(const DevicePoints& queries, const DeviceArray& triangles,
                                  const DeviceArray& barycentric);

@@ -40,5 +40,6 @@ void test_adopt_and_verify(void);
 void test_triangulator(void);
 void test_callbacks(void);
 void test_batches(void);
+void test_queries(void);
 
 #endif

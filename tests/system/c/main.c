@@ -42,6 +42,7 @@ int main(void) {
   test_triangulator();
   test_callbacks();
   test_batches();
+  test_queries();
   if (failures == 0) printf("the C interface does what it says\n");
   return failures == 0 ? 0 : 1;
 }

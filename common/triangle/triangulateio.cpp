@@ -184,7 +184,7 @@ int status_of_exception() noexcept {
 
 extern "C" {
 
-int cadt_triangulate(const char* switches, const struct cadt_triangulateio* in, struct cadt_triangulateio* out,
+int cadt_triangle(const char* switches, const struct cadt_triangulateio* in, struct cadt_triangulateio* out,
                      struct cadt_triangulateio* vorout) {
   try {
     cadt::run(switches, in, out, vorout);
@@ -194,7 +194,7 @@ int cadt_triangulate(const char* switches, const struct cadt_triangulateio* in, 
   }
 }
 
-const char* cadt_triangulate_message(void) { return cadt::message; }
+const char* cadt_triangle_message(void) { return cadt::message; }
 
 void cadt_trifree(void* array) { std::free(array); }
 }

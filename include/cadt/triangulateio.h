@@ -51,12 +51,12 @@ struct cadt_triangulateio {
 
 /* What cadt_triangle returns; the numbers are the exit codes of the program cadt. */
 enum cadt_triangle_status {
-  CADT_TRIANGULATE_DONE = 0,
-  CADT_TRIANGULATE_INTERNAL = 1, /* a defect of cadt: please report it */
-  CADT_TRIANGULATE_INPUT = 3,    /* NaN, infinity, a missing array, too many points */
-  CADT_TRIANGULATE_DEVICE = 5,   /* the device failed */
-  CADT_TRIANGULATE_MEMORY = 6,
-  CADT_TRIANGULATE_SWITCHES = 8 /* a switch that cadt does not take */
+  CADT_TRIANGLE_DONE = 0,
+  CADT_TRIANGLE_INTERNAL = 1, /* a defect of cadt: please report it */
+  CADT_TRIANGLE_INPUT = 3,    /* NaN, infinity, a missing array, too many points */
+  CADT_TRIANGLE_DEVICE = 5,   /* the device failed */
+  CADT_TRIANGLE_MEMORY = 6,
+  CADT_TRIANGLE_SWITCHES = 8 /* a switch that cadt does not take */
 };
 
 /* Triangulates in->pointlist. `switches` are Triangle's ("zneQ"): n fills neighborlist, e edgelist and edgemarkerlist,

@@ -184,8 +184,8 @@ int status_of_exception() noexcept {
 
 extern "C" {
 
-int cadt_triangulate(const char* switches, const struct cadt_triangulateio* in, struct cadt_triangulateio* out,
-                     struct cadt_triangulateio* vorout) {
+int cadt_triangulate_io(const char* switches, const struct cadt_triangulateio* in, struct cadt_triangulateio* out,
+                        struct cadt_triangulateio* vorout) {
   try {
     cadt::run(switches, in, out, vorout);
     return cadt::finished(CADT_TRIANGULATE_DONE, "");
@@ -194,7 +194,7 @@ int cadt_triangulate(const char* switches, const struct cadt_triangulateio* in, 
   }
 }
 
-const char* cadt_triangulate_message(void) { return cadt::message; }
+const char* cadt_triangulate_io_message(void) { return cadt::message; }
 
 void cadt_trifree(void* array) { std::free(array); }
 }

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define triangulateio cadt_triangulateio
-#define triangulate cadt_triangulate
+#define triangulate cadt_triangulate_io
 #define trifree cadt_trifree
 
 int run_as_c99(int* triangles, double* center);

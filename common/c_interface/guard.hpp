@@ -61,7 +61,8 @@ T& required(T* argument, const char* name) {
   return *argument;
 }
 
-/// A struct of the caller's with its size first; those of later versions are longer. \throws InvalidArgument
+/// A struct of the caller's with its size first; those of later versions are longer. (Once one has grown, the size of
+/// its first version is the least, and what a short one lacks is the default.) \throws InvalidArgument
 template <class T>
 void require_size_of(const T& given, const char* name) {
   if (given.size < sizeof(T))

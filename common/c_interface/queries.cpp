@@ -185,7 +185,7 @@ cadt_status cadt_queries_voronoi(cadt_queries* queries, cadt_voronoi** diagram) 
 cadt_status cadt_voronoi_vertices(const cadt_voronoi* diagram, const double** xy, size_t* vertices) {
   return guarded([&] {
     const auto& list = required(diagram, "diagram").diagram.vertices;
-    auto &array = required(xy, "xy");
+    auto& array = required(xy, "xy");
     required(vertices, "vertices") = list.size() / 2;
     array = list.data();
   });
@@ -221,12 +221,13 @@ cadt_status cadt_queries_voronoi_polygons(cadt_queries* queries, const cadt_box*
   return guarded([&] {
     auto& result = required(polygons, "polygons");
     const cadt_box& b = required(box, "box");
-    result = new cadt_polygons{
-        required(queries, "queries").queries.voronoi_polygons({b.min_x, b.min_y, b.max_x, b.max_y})};
+    result =
+        new cadt_polygons{required(queries, "queries").queries.voronoi_polygons({b.min_x, b.min_y, b.max_x, b.max_y})};
   });
 }
 
-cadt_status cadt_polygons_get(const cadt_polygons* polygons, const uint32_t** begin, size_t* points, const double** xy) {
+cadt_status cadt_polygons_get(const cadt_polygons* polygons, const uint32_t** begin, size_t* points,
+                              const double** xy) {
   return guarded([&] {
     const auto& of = required(polygons, "polygons").polygons;
     auto& first = required(begin, "begin");

@@ -66,8 +66,7 @@ typedef struct cadt_error {
   uint64_t needed;     /* bytes, points or elements, by the status */
   uint64_t available;
 } cadt_error;
-/* The last failure in this thread; status CADT_OK if there was none. Its strings are valid until the thread's next one.
- */
+/* The last failure in this thread; status CADT_OK if there was none. Its strings are valid until its next one. */
 CADT_API cadt_status cadt_last_error(cadt_error* error);
 /* Its message; "" if there was none. Never NULL. */
 CADT_API const char* cadt_last_error_message(void);

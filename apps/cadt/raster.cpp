@@ -69,6 +69,10 @@ int run(const RasterCommand& command) {
     throw Failure(exit_usage, fmt::format("--nodata belongs to .asc files; in .{} cells without data are {}",
                                           output.format, output.format == "npy" ? "nan" : "blank"));
   }
+  if (!(command.resolution > 0 && std::isfinite(command.resolution)))
+    throw Failure(exit_usage, fmt::format("--res {}: a cell needs a finite size above 0", command.resolution));
+  if (command.max_edge && !(*command.max_edge >= 0))
+    throw Failure(exit_usage, fmt::format("--max-edge {}: a length is needed, 0 or more", *command.max_edge));
   const std::optional<Box> bounds = parse_rectangle("--bounds", command.bounds);
   QueryRun run(options);
   const io::Values values = run.read_values();
@@ -97,13 +101,11 @@ void add_raster(CLI::App& app, Action& chosen) {
   add_value_options(*command, options->query);
   command->add_option("--res", options->resolution, "width and height of a cell, in the units of the points")
       ->type_name("R")
-      ->required()
-      ->check(CLI::PositiveNumber.description(""));
+      ->required();
   command
       ->add_option("--max-edge", options->max_edge,
                    "no data in triangles with a longer edge: bays and holes in the points stay open")
-      ->type_name("L")
-      ->check(CLI::NonNegativeNumber.description(""));
+      ->type_name("L");
   command
       ->add_option("--bounds", options->bounds,
                    "rectangle to cover; the lower left corner is that of a cell (default: the box of the points)")

@@ -9,7 +9,7 @@ import struct
 import unittest
 import zipfile
 
-from harness import CliTest, integer_points, read_off, twice_area, xy_text
+from harness import SOURCE, CliTest, integer_points, read_off, twice_area, xy_text
 
 
 def plane(x, y):
@@ -480,6 +480,41 @@ class QueryProgress(CliTest):
         self.assertRegex(text, r"\r +\rpoints      1000000\r\n")
         self.assertNotIn("\r", self.cadt("locate", *arguments).err)
         self.assertEqual(self.cadt("locate", *arguments, "-q").err, "")
+
+
+class QueryDocumentation(CliTest):
+    """docs/queries.md shows what is."""
+
+    def setUp(self):
+        super().setUp()
+        self.text = (SOURCE / "docs" / "queries.md").read_text()
+
+    def same_words(self, shown, found):
+        """Numbers may differ in their last digits: compilers differ in what they do to divisions."""
+        split = lambda text: re.findall(r"-?\d[\d.e+-]*|[^-\d]+|-", text)
+        self.assertEqual(len(split(shown)), len(split(found)), found)
+        for a, b in zip(split(shown), split(found)):
+            if "." in a:
+                self.assertAlmostEqual(float(a), float(b), places=9)
+            else:
+                self.assertEqual(a, b)
+
+    def test_commands_have_the_output_that_is_shown(self):
+        commands = 0
+        for block in re.findall(r"```console\n(.*?)```", self.text, re.S):
+            for command, shown in re.findall(r"(?m)^\$ (.*)\n((?:(?!\$ ).*\n)*)", block):
+                commands += 1
+                if command.startswith("printf"):
+                    text, name = re.fullmatch(r"printf '(.*)' > (\S+)", command).groups()
+                    self.write(name, text.replace("\\n", "\n"))
+                else:
+                    self.same_words(shown, self.cadt(*command.split()[1:]).out)
+        self.assertEqual(commands, 9)
+
+    def test_programs_are_the_examples(self):
+        shown = re.findall(r"```cpp\n(.*?)```", self.text, re.S)
+        files = [(SOURCE / "examples" / name).read_text() for name in ("queries.cpp", "device_queries.cpp")]
+        self.assertEqual(shown, [text[text.index("#include"):] for text in files])
 
 
 if __name__ == "__main__":

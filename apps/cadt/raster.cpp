@@ -25,7 +25,7 @@ struct RasterCommand {
   std::string bounds;
 };
 
-/// Cells of size `cell` that cover `length`. What is whole but for the rounding of decimals (1.1 / 0.1) is whole.
+/// Cells of size `cell` that cover `length`. What is whole but for the rounding of decimals (2.1 / 0.3) is whole.
 double cells_along(double length, double cell) {
   const double exact = length / cell;
   const double whole = std::round(exact);

@@ -282,12 +282,12 @@ class RasterCommand(CliTest):
             self.assertEqual([-9999 if math.isnan(v) else v for v in numbers], cells)
 
     def test_a_plane_with_the_top_row_first(self):
-        self.write("p.xyz", xyz_text([(0, 0), (1.1, 0), (0, 0.7), (1.1, 0.7)]))
-        header, rows = read_asc(self.cadt("raster", "p.xyz", "--res", "0.1", "-o", "-", "-t", "asc").out)
-        self.assertEqual((header["ncols"], header["nrows"]), (11, 7))  # 1.1 / 0.1 is more than 11 in doubles
+        self.write("p.xyz", xyz_text([(0, 0), (2.1, 0), (0, 0.9), (2.1, 0.9)]))
+        header, rows = read_asc(self.cadt("raster", "p.xyz", "--res", "0.3", "-o", "-", "-t", "asc").out)
+        self.assertEqual((header["ncols"], header["nrows"]), (7, 3))  # 2.1 / 0.3 is more than 7 in doubles
         for j, row in enumerate(rows):
             for i, value in enumerate(row):
-                self.assertAlmostEqual(value, plane(0.1 * (i + 0.5), 0.1 * (6 - j + 0.5)), places=9)
+                self.assertAlmostEqual(value, plane(0.3 * (i + 0.5), 0.3 * (2 - j + 0.5)), places=9)
 
     def test_bounds_nodata_and_long_edges(self):
         self.write("p.xyz", "0 0 1\n1 0 1\n0 1 1\n1 1 1\n9 0 1\n9 1 1\n")
@@ -373,6 +373,9 @@ class VoronoiCommand(CliTest):
         self.assertIn(f"<title>{len(points)} Voronoi cells</title>", text)
         self.assertEqual(text.count("z") - text.count("size"), len(points))
         self.assertEqual(text.count("h0"), len(points) + 1)
+        self.cadt("voronoi", "p.xy", "-o", "v.svg", "--box", "0,0,20,30", "-q")
+        inside = [p for p in points + points[:1] if p[0] <= 20 and p[1] <= 30]
+        self.assertEqual(self.path("v.svg").read_text().count("h0"), len(inside))
 
 
 class QueryErrors(CliTest):
@@ -406,6 +409,9 @@ class QueryErrors(CliTest):
         self.fails(2, "locate", "-", "-", "-f", "xy", says="only one of POINTS and QUERIES")
         self.fails(2, "locate", "p.xy", "q.xy", "-k", "3", says="--nearest")
         self.fails(2, "locate", "p.xy", "q.xy", "--nearest", "-k", "0", says="-k")
+        self.write("many.xy", "0.2 0.2\n" * 3000)
+        self.before = sorted(self.before + ["many.xy"])
+        self.fails(2, "locate", "p.xy", "many.xy", "--nearest", "-k", "1000000", says="3000000000 results")
         self.fails(2, "locate", "p.xy", "q.xy", "--nearest", "--barycentric", says="leave one of them out")
         self.fails(2, "interpolate", "p.xyz", "q.xy", "--method", "cubic", says="--method")
         self.fails(2, "interpolate", "p.xyz", "q.xy", "--values", "-", says="not standard input")

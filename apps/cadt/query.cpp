@@ -102,11 +102,10 @@ QueryRun::QueryRun(const QueryOptions& options) : line(options.quiet), options_(
 
 void QueryRun::make_mesh() {
   line.start(points.size());
-  mesh = guarded("triangulate", [&] { return triangulate(points.view(), library_); });
+  mesh = guarded("triangulating", {}, [&] { return triangulate(points.view(), library_); });
   library_.progress = nullptr;
-  queries_.emplace(guarded("preparing", [&] { return MeshQueries(points.view(), mesh, library_); }));
+  queries_.emplace(guarded("preparing", {}, [&] { return MeshQueries(points.view(), mesh, library_); }));
   line.clear();
-  asking_ = true;
   if (mesh.dimension() < 2 && !options_.quiet) {
     say(
         fmt::format("cadt: warning: {}: no triangles: the points are fewer than three, or all on one line; check "
@@ -143,11 +142,10 @@ io::PointSet QueryRun::read_queries() {
   return io::read_points(options_.queries, read);
 }
 
-void QueryRun::refuse(const InputError& error) const {
-  const bool of_queries = asking_ && !options_.queries.empty();
-  throw Failure(exit_file, fmt::format("{}: point {} (counted from 0): {}",
-                                       display_name(of_queries ? options_.queries : options_.input.path, true),
-                                       error.index(), error.what()));
+// The readers let finite coordinates through only, so this is about all of them, or about what an option says.
+void QueryRun::refuse(const InputError& error, const std::string& about) const {
+  if (!about.empty()) throw Failure(exit_usage, fmt::format("{}: {}", about, error.what()));
+  throw Failure(exit_file, fmt::format("{}: {}", display_name(options_.input.path, true), error.what()));
 }
 
 void QueryRun::write(const Output& output, const std::function<void()>& writer,
@@ -166,7 +164,8 @@ void QueryRun::write(const Output& output, const std::function<void()>& writer,
   std::string text =
       fmt::format("{:<12}{}\n{:<12}{}\n", "points", points.size(), "triangles", mesh.number_of_triangles());
   for (const auto& [key, value] : summary) text += fmt::format("{:<12}{}\n", key, value);
-  say(text + fmt::format("{:<12}{:.3f} s\n{:<12}{}\n{:<12}{}\n", "time", seconds, "device", queries_->device().name,
+  say(text + fmt::format("{:<12}{:.3f} s\n{:<12}{}\n{:<12}{}\n", "time", seconds, "back end",
+                         fmt::format("{}, {}", to_string(queries_->device().backend), queries_->device().name),
                          "written", name));
 }
 

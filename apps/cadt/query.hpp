@@ -57,10 +57,10 @@ class QueryRun {
   [[nodiscard]] io::Values read_values() const;
   [[nodiscard]] io::PointSet read_queries();
 
-  /// Asks the mesh; interruptions and wrong queries are reported with the file's name.
+  /// Asks the mesh. What it refuses is an error of the option `about`, or of the files if that is empty.
   template <class Question>
-  auto ask(const std::string& what, Question question) {
-    auto answer = guarded(what, [&] { return question(mesh_queries()); });
+  auto ask(const std::string& what, Question question, const std::string& about = {}) {
+    auto answer = guarded(what, about, [&] { return question(*queries_); });
     line.clear();
     return answer;
   }
@@ -74,25 +74,22 @@ class QueryRun {
 
  private:
   template <class Work>
-  auto guarded(const std::string& what, Work work) {
-    begin(what);
+  auto guarded(const std::string& what, const std::string& about, Work work) {
+    line.step(what);
     try {
       const InPhase phase(Phase::cooperative);
       auto result = work();
       check_interrupt();
       return result;
     } catch (const InputError& e) {
-      refuse(e);
+      refuse(e, about);
     }
   }
-  void begin(const std::string& what) { line.step(what); }
-  [[noreturn]] void refuse(const InputError& error) const;
-  [[nodiscard]] MeshQueries& mesh_queries() { return *queries_; }
+  [[noreturn]] void refuse(const InputError& error, const std::string& about) const;
 
   const QueryOptions& options_;
   Options library_;
   std::optional<MeshQueries> queries_;
-  bool asking_ = false;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

@@ -29,7 +29,7 @@ struct RasterCommand {
 double cells_along(double length, double cell) {
   const double exact = length / cell;
   const double whole = std::round(exact);
-  return std::fabs(exact - whole) <= 1e-9 * std::max(1.0, whole) ? whole : std::ceil(exact);
+  return whole >= 1 && std::fabs(exact - whole) <= 1e-9 * whole ? whole : std::ceil(exact);
 }
 
 Grid make_grid(const RasterCommand& command, const Box& box) {
@@ -42,10 +42,9 @@ Grid make_grid(const RasterCommand& command, const Box& box) {
   }
   constexpr double most_cells = 4294967295.0;
   if (!(columns * rows <= most_cells)) {
-    throw Failure(exit_usage,
-                  fmt::format("--res {}: {:.0f} x {:.0f} cells, at most {:.0f} in all: take a larger --res, "
-                              "or tiles with --bounds",
-                              cell, columns, rows, most_cells));
+    throw Failure(exit_usage, fmt::format("--res {}: {} x {} cells, at most {:.0f} in all: take a larger --res, "
+                                          "or tiles with --bounds",
+                                          cell, columns, rows, most_cells));
   }
   Grid grid;
   grid.columns = static_cast<std::size_t>(columns);

@@ -63,7 +63,10 @@ int run(const VoronoiCommand& command) {
   VoronoiDiagram diagram;
   if (arrays) diagram = run.ask("Voronoi diagram", [](MeshQueries& mesh) { return mesh.voronoi(); });
   std::optional<VoronoiPolygons> polygons;
-  if (box) polygons = run.ask("Voronoi cells", [&](MeshQueries& mesh) { return mesh.voronoi_polygons(*box); });
+  if (box) {
+    polygons = run.ask(
+        "Voronoi cells", [&](MeshQueries& mesh) { return mesh.voronoi_polygons(*box); }, "--box");
+  }
 
   std::vector<std::pair<std::string, std::string>> summary;
   if (arrays) {

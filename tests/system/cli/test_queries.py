@@ -5,6 +5,7 @@ import json
 import math
 import random
 import re
+import signal
 import struct
 import unittest
 import zipfile
@@ -434,6 +435,8 @@ class QueryErrors(CliTest):
         self.fails(2, "raster", "line.xyz", "--res", "1", "-o", "a.asc", says=["no cells", "--bounds"])
         self.fails(2, "raster", "p.xyz", "--res", "1e-6", "-o", "a.asc", says=["1000000 x 1000000 cells", "larger --res"])
         self.fails(2, "raster", "p.xyz", "--res", "1e-320", "-o", "a.asc", says="larger --res")
+        self.fails(2, "voronoi", "p.xyz", "--box=-1.7e308,-1.7e308,1.7e308,1.7e308", "-o", "a.geojson",
+                   says="--box: the box is so large")
         self.fails(3, "raster", "p.xyz", "--res", "1e-5", "--bounds", "0,0,1,1e-5", "-o", "a.png", says="too many for a picture")
 
     def test_values(self):
@@ -466,6 +469,13 @@ class QueryErrors(CliTest):
         self.fails(3, "locate", "p.xy", "bad.xy", says="bad.xy:2: ")
         self.fails(3, "locate", "p.xy", "absent.xy", says="absent.xy")
 
+    def test_coordinates_that_natural_neighbours_do_not_take(self):
+        self.write("w.xyz", "0 0 1\n1e300 0 2\n0 1e-300 3\n")
+        self.before = sorted(self.before + ["w.xyz"])
+        self.fails(3, "interpolate", "w.xyz", "q.xy", "--method", "natural", says="w.xyz: natural neighbours need")
+        self.fails(3, "raster", "w.xyz", "--res", "1e299", "--bounds", "0,0,1e300,1e300", "--method", "natural",
+                   "-o", "a.asc", says="w.xyz: natural neighbours need")
+
     def test_a_failure_while_writing_keeps_the_old_file(self):
         self.write("a.asc", "old")
         self.before = sorted(self.before + ["a.asc"])
@@ -486,6 +496,19 @@ class QueryProgress(CliTest):
         self.assertRegex(text, r"\r +\rpoints      1000000\r\n")
         self.assertNotIn("\r", self.cadt("locate", *arguments).err)
         self.assertEqual(self.cadt("locate", *arguments, "-q").err, "")
+
+
+class QueryInterruption(CliTest):
+    def test_leaves_nothing(self):
+        self.scattered("p.f64", 1000000)
+        self.path("v.npy").write_bytes(npy_bytes("<f8", (1000000,), "d", [1.0] * 1000000))
+        with self.on_terminal("raster", "p.f64", "--values", "v.npy", "--method", "natural", "--res", "0.0002", "-o",
+                              "d.npy", "--backend", "host") as (process, terminal):
+            terminal.wait_for("filling the cells")
+            process.send_signal(signal.SIGINT)
+            terminal.wait_for()
+            self.assertEqual(process.wait(timeout=60), 130, terminal.text)
+        self.assertEqual(self.names(), ["p.f64", "v.npy"])
 
 
 class QueryDocumentation(CliTest):

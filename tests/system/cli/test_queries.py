@@ -234,6 +234,11 @@ class InterpolateCommand(CliTest):
         out = self.cadt("interpolate", "t.csv", "-", "--columns", "lon,lat,depth", stdin="0.5 0.5\n").out
         self.assertEqual(out, "2.5\n")
 
+    def test_of_equal_points_the_first_value_counts(self):
+        self.write("p.xyz", "0 0 1\n1 0 2\n0 1 3\n1 0 70\n0 0 80\n")
+        for method in ("linear", "natural", "nearest"):
+            self.assertEqual(self.cadt("interpolate", "p.xyz", "-", "--method", method, stdin="1 0\n0 0\n").out, "2\n1\n")
+
     def test_outside(self):
         self.write("p.xyz", "0 0 1\n1 0 2\n0 1 3\n")
         self.assertEqual(self.cadt("interpolate", "p.xyz", "-", stdin="5 0.1\n").out, "nan\n")

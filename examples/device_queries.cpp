@@ -2,7 +2,7 @@
 // Queries whose points, values and results stay in device memory. Here the device is the host, whose memory is ordinary
 // memory; with CUDA the pointers come from cudaMalloc, and nothing else changes.
 //
-// usage: example-device-queries [points]
+// usage: example-device_queries [points]
 #include <cadt/cadt.hpp>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ int main(int count, char** values) {
     std::vector<double> found(n);
     queries.interpolate(cadt::DeviceArray{height.data(), n}, asked, cadt::DeviceArray{found.data(), n},
                         cadt::Interpolation::natural, cadt::Outside::nearest);
-    // CUDA: cudaStreamSynchronize(stream) before the host looks at results.
+    // With a stream of the caller: cudaStreamSynchronize(stream) before the host looks at results.
 
     std::size_t inside = 0;
     double worst = 0;
@@ -51,7 +51,7 @@ int main(int count, char** values) {
               << "device      " << queries.device().name << '\n';
     return worst < 1e-9 ? EXIT_SUCCESS : EXIT_FAILURE;
   } catch (const std::exception& error) {
-    std::cerr << "example-device-queries: " << error.what() << '\n';
+    std::cerr << "example-device_queries: " << error.what() << '\n';
     return EXIT_FAILURE;
   }
 }

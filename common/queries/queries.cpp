@@ -23,6 +23,7 @@ using device_text::word;
 
 struct MeshQueries::State {
   std::shared_ptr<Triangulator::State> device;  // first member: destroyed last, after the memory
+  std::optional<Triangulation> of;              ///< what `mesh` may alias
   Options options;
   MeshIndex mesh;
 };
@@ -35,6 +36,10 @@ struct Call {
       : ctx(*state.device->device, state.device->memory, state.options, statistics) {
     begin_budget(*state.device, state.mesh.point_count);
     ctx.check("queries", 0);
+  }
+  /// Results in device memory are there when the call returns, or in the order of the caller's queue.
+  void end() {
+    if (!ctx.options.queue) ctx.device.finish();
   }
   Statistics statistics;
   Context ctx;
@@ -153,7 +158,15 @@ std::string_view to_string(Interpolation method) noexcept {
 
 MeshQueries::MeshQueries(PointsView points, const Triangulation& mesh, const Options& options) : state_(open(options)) {
   require_mesh_of(points.size(), mesh.number_of_points());
+  state_->of = mesh;
   index(*state_, points, mesh.triangles(), mesh.neighbors(), true);
+}
+
+MeshQueries::MeshQueries(const Triangulation& mesh, const Options& options) : state_(open(options)) {
+  if (mesh.points().size() != mesh.number_of_points())
+    throw InputError("the mesh has not kept its points: set Options::keep_points, or give them", 0);
+  state_->of = mesh;
+  index(*state_, state_->of->points(), mesh.triangles(), mesh.neighbors(), true);
 }
 
 MeshQueries::MeshQueries(PointsView points, const MeshView& mesh, const Options& options) : state_(open(options)) {
@@ -303,6 +316,7 @@ std::size_t MeshQueries::locate_barycentric(const DevicePoints& queries, const D
   const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size);
   locate_into(call, state_->mesh, batch, array_of(call.ctx, triangles, word),
               array_of(call.ctx, barycentric, sizeof(double)));
+  call.end();
   return batch.count;
 }
 
@@ -314,6 +328,7 @@ std::size_t MeshQueries::nearest_vertices(const DevicePoints& queries, std::size
   Call call(*state_);
   const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size);
   nearest_into(call, state_->mesh, batch, k, array_of(call.ctx, vertices, word));
+  call.end();
   return k * batch.count;
 }
 
@@ -329,6 +344,7 @@ std::size_t MeshQueries::interpolate(const DeviceArray& values, const DevicePoin
   const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size);
   interpolate_queries(call.ctx, state_->mesh, batch, array_of(call.ctx, values, sizeof(double)), each, method, outside,
                       array_of(call.ctx, results, sizeof(double)));
+  call.end();
   return each * batch.count;
 }
 
@@ -343,6 +359,7 @@ std::size_t MeshQueries::rasterize(const Grid& grid, const DeviceArray& values, 
   Call call(*state_);
   rasterize_mesh(call.ctx, state_->mesh, grid, array_of(call.ctx, values, sizeof(double)), method, max_edge,
                  array_of(call.ctx, cells, sizeof(double)));
+  call.end();
   return grid.cells();
 }
 
@@ -351,6 +368,7 @@ std::size_t MeshQueries::circumcenters(const DeviceArray& xy) {
   if (state_->mesh.triangles == 0) return 0;
   Call call(*state_);
   write_circumcenters(call.ctx, state_->mesh, array_of(call.ctx, xy, sizeof(double)));
+  call.end();
   return 2 * state_->mesh.triangles;
 }
 
@@ -378,6 +396,7 @@ std::size_t MeshQueries::voronoi(const DeviceVoronoi& to) {
     write_cells(ctx, state_->mesh, array_of(ctx, to.cell_begin, word), array_of(ctx, to.cells, word));
   if (count != 0)
     write_edges(ctx, state_->mesh, begin, array_of(ctx, to.edge_points, word), array_of(ctx, to.edge_vertices, word));
+  call.end();
   return count;
 }
 

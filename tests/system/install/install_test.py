@@ -69,7 +69,7 @@ class Installed(InstallTest):
         header = (prefix / "include" / "cadt" / "version.hpp").read_text()
         self.assertIn(f'CADT_VERSION "{version}"', header)
         self.assertIn(version, run(prefix / "bin" / "cadt", "--version"))
-        self.assertEqual([], [path for path in prefix.glob("include/**/*") if path.is_file() and path.suffix != ".hpp"])
+        self.assertEqual([], [path for path in prefix.glob("include/**/*") if path.is_file() and path.suffix not in (".hpp", ".h")])
 
     def test_a_prefix_that_was_moved(self):
         prefix = installed(BUILD, self.folder / "prefix").rename(self.folder / "elsewhere")

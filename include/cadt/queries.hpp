@@ -166,7 +166,7 @@ class CADT_API MeshQueries {
   [[nodiscard]] std::vector<double> circumcenters();
   [[nodiscard]] VoronoiDiagram voronoi();
   /// The cells within `box`. Their areas sum to that of the box but for rounding. \throws InputError for a box that is
-  /// not finite or has no area
+  /// not finite, has no area, or is so large that corners of cells exceed the largest double
   [[nodiscard]] VoronoiPolygons voronoi_polygons(const Box& box);
   /// The k largest circles without a point inside whose centres are in the convex hull, largest first: circumcircles
   /// (the holes of the paper's Table 1, [18]). Fewer if there are no more.

@@ -47,7 +47,8 @@ TEST_P(Nearest, SeveralAreAsNearAsBruteForceFindsThem) {
       // Equally near ones by index, but for those at the very smallest distance.
       std::size_t first = 1;
       while (first < row.size() && compare_distances(set, x, y, expected[0], expected[first]) == 0) ++first;
-      for (std::size_t i = first; i < row.size(); ++i) ASSERT_EQ(row[i], expected[i]) << "query " << q << ", place " << i;
+      for (std::size_t i = first; i < row.size(); ++i)
+        ASSERT_EQ(row[i], expected[i]) << "query " << q << ", place " << i;
       std::ranges::sort(row);
       ASSERT_EQ(std::ranges::adjacent_find(row), row.end()) << "a vertex twice, query " << q;
     }

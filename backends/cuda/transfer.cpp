@@ -5,7 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cstring>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -24,13 +23,6 @@ bool locked(const void* host) noexcept {
   return attributes.type != cudaMemoryTypeUnregistered;
 }
 
-struct JoinAll {
-  std::vector<std::thread>& threads;
-  ~JoinAll() {
-    for (std::thread& thread : threads) thread.join();
-  }
-};
-
 }  // namespace
 
 /// One copy, which the lanes take piece by piece.
@@ -39,7 +31,7 @@ struct Transfer::Job {
   std::byte* device;
   std::size_t bytes, piece;
   bool to_host;
-  std::atomic<std::size_t> next = 0;            ///< first byte that nobody has taken
+  std::atomic<std::size_t> next = 0;             ///< first byte that nobody has taken
   std::atomic<cudaError_t> error = cudaSuccess;  ///< the first one; ends the job
 
   struct Piece {
@@ -90,9 +82,9 @@ struct Transfer::Lane {
   /// The bus copies a piece from or to a slot.
   bool start(Job& job, const Job::Piece& piece, std::size_t slot) noexcept {
     std::byte* const there = job.device + piece.offset;
-    const cudaError_t code =
-        job.to_host ? cudaMemcpyAsync(slots[slot], there, piece.bytes, cudaMemcpyDeviceToHost, stream)
-                    : cudaMemcpyAsync(there, slots[slot], piece.bytes, cudaMemcpyHostToDevice, stream);
+    const cudaError_t code = job.to_host
+                                 ? cudaMemcpyAsync(slots[slot], there, piece.bytes, cudaMemcpyDeviceToHost, stream)
+                                 : cudaMemcpyAsync(there, slots[slot], piece.bytes, cudaMemcpyHostToDevice, stream);
     return job.check(code) && job.check(cudaEventRecord(done[slot], stream));
   }
 
@@ -165,20 +157,10 @@ void Transfer::make_lanes(std::size_t bytes) {
 void Transfer::run(Job& job) {
   stream_->wait();  // the lanes' streams know nothing of it
   const std::size_t pieces = (job.bytes - 1) / job.piece + 1, lanes = std::min(lanes_.size(), pieces);
-  std::vector<std::thread> threads;
-  threads.reserve(lanes);
-  {
-    const JoinAll join{threads};
-    try {
-      for (std::size_t i = 1; i < lanes; ++i)
-        threads.emplace_back([&job, lane = lanes_[i].get(), context = stream_->context()] {
-          const ContextScope scope(context);
-          lane->work(job);
-        });
-    } catch (const std::system_error&) {  // no more threads: those that run share the work
-    }
-    lanes_[0]->work(job);
-  }
+  workers_.run(lanes, [&](std::size_t lane) {
+    const ContextScope scope(stream_->context());
+    lanes_[lane]->work(job);
+  });
   check(job.error, job.to_host ? "a copy to the host" : "a copy to the device", stream_->name());
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "backends/cuda/context.hpp"
+#include "backends/cuda/workers.hpp"
 
 namespace cadt::cuda {
 
@@ -20,8 +21,8 @@ namespace cadt::cuda {
 /// is false, and the caller takes the driver's copy, which is slower.
 class Transfer {
  public:
-  static constexpr std::size_t slot_bytes = std::size_t{2} << 20;  ///< a huge page: no two threads make the same one
-  static constexpr std::size_t fewest_bytes = std::size_t{2} << 20;  ///< below, starting threads takes longer
+  static constexpr std::size_t slot_bytes = std::size_t{2} << 20;    ///< a huge page: no two threads make the same one
+  static constexpr std::size_t fewest_bytes = std::size_t{2} << 20;  ///< below, waking threads takes longer
   static constexpr unsigned most_threads = 16;
 
   /// `threads`: at most; 0: one for each core.
@@ -50,6 +51,7 @@ class Transfer {
   unsigned threads_;
   bool refused_ = false;  ///< the system locks no more memory
   std::vector<std::unique_ptr<Lane>> lanes_;
+  Workers workers_;
 };
 
 }  // namespace cadt::cuda

@@ -130,19 +130,21 @@ void Transfer::release() noexcept {
   const ContextScope scope(stream_->context());
   lanes_.clear();
   refused_ = false;
+  copied_ = 0;
 }
 
 bool Transfer::suits(const void* host, std::size_t bytes) {
-  if (bytes < fewest_bytes || host == nullptr) return false;
+  if (bytes < fewest_bytes || threads_ == 1) return false;
   const auto* last = static_cast<const std::byte*>(host) + (bytes - 1);
   if (locked(host) && locked(last)) return false;
-  make_lanes(bytes);
-  return !lanes_.empty();
+  copied_ += bytes;
+  return lanes_for(bytes) != 0;
 }
 
-void Transfer::make_lanes(std::size_t bytes) {
+std::size_t Transfer::lanes_for(std::size_t bytes) {
   const std::size_t wanted = std::min<std::size_t>(threads_, (bytes - 1) / slot_bytes + 1);
-  while (lanes_.size() < wanted && !refused_) {
+  const std::size_t earned = std::min(wanted, copied_ / bytes_a_lane), fewest = std::min(wanted, fewest_lanes);
+  while (earned >= fewest && lanes_.size() < earned && !refused_) {
     auto lane = std::make_unique<Lane>();
     if (const cudaError_t code = lane->make(); code == cudaErrorMemoryAllocation) {
       cudaGetLastError();
@@ -152,6 +154,8 @@ void Transfer::make_lanes(std::size_t bytes) {
       lanes_.push_back(std::move(lane));
     }
   }
+  const std::size_t lanes = std::min(lanes_.size(), wanted);
+  return lanes >= fewest ? lanes : 0;
 }
 
 void Transfer::run(Job& job) {

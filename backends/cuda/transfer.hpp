@@ -16,13 +16,17 @@ namespace cadt::cuda {
 /// written for the first time are made by all threads. The driver's own copy of pageable memory does that with one
 /// thread.
 ///
-/// The buffers, `slot_bytes` * 2 a thread, are allocated by the first copy that needs them and kept until release().
-/// Where the system refuses to lock so much memory or to start so many threads, there are fewer; without any, suits()
-/// is false, and the caller takes the driver's copy, which is slower.
+/// Locking memory takes as long as several copies of it. So a thread gets its buffers, `slot_bytes` * 2, only when
+/// `bytes_a_lane` more have been copied: a device that is opened for one call of a million points spends nothing, and
+/// one that is kept has all buffers after a few calls. They are kept until release(). Where the system refuses to lock
+/// so much memory or to start so many threads, there are fewer; without enough of them suits() is false, and the caller
+/// takes the driver's copy, which is slower.
 class Transfer {
  public:
   static constexpr std::size_t slot_bytes = std::size_t{2} << 20;    ///< a huge page: no two threads make the same one
   static constexpr std::size_t fewest_bytes = std::size_t{2} << 20;  ///< below, waking threads takes longer
+  static constexpr std::size_t bytes_a_lane = std::size_t{16} << 20;
+  static constexpr std::size_t fewest_lanes = 4;  ///< the driver's copy is as fast as fewer, unless they are all
   static constexpr unsigned most_threads = 16;
 
   /// `threads`: at most; 0: one for each core.
@@ -43,13 +47,14 @@ class Transfer {
  private:
   struct Lane;
   struct Job;
-  /// As many lanes as a copy of so many bytes keeps busy, if there is memory for them.
-  void make_lanes(std::size_t bytes);
+  /// Lanes for a copy of so many bytes; 0: the driver's copy is as fast.
+  [[nodiscard]] std::size_t lanes_for(std::size_t bytes);
   void run(Job& job);
 
   std::shared_ptr<Stream> stream_;
   unsigned threads_;
-  bool refused_ = false;  ///< the system locks no more memory
+  std::size_t copied_ = 0;  ///< bytes of all large copies
+  bool refused_ = false;    ///< the system locks no more memory
   std::vector<std::unique_ptr<Lane>> lanes_;
   Workers workers_;
 };

@@ -11,7 +11,8 @@
 namespace cadt::cuda {
 namespace {
 
-constexpr std::size_t least_piece = std::size_t{256} << 10;  // a copy of fewer bytes takes longer to start than to do
+constexpr std::size_t least_piece = Transfer::slot_bytes / 2;  // the bus takes as long to start as to copy a quarter
+constexpr std::size_t huge_page = std::size_t{2} << 20;
 
 /// Whether the driver copies this byte directly.
 bool locked(const void* host) noexcept {
@@ -25,22 +26,24 @@ bool locked(const void* host) noexcept {
 
 }  // namespace
 
-/// One copy, which the lanes take piece by piece.
+struct Transfer::Piece {
+  std::size_t offset = 0, bytes = 0;  ///< no bytes: nothing is left
+};
+
+/// One copy, which the lanes take block by block. Of each block, pieces go through the slots of one lane: no two
+/// threads make the pages of one huge page.
 struct Transfer::Job {
   std::byte* host;
   std::byte* device;
-  std::size_t bytes, piece;
+  std::size_t bytes, block, piece;
   bool to_host;
   std::atomic<std::size_t> next = 0;             ///< first byte that nobody has taken
   std::atomic<cudaError_t> error = cudaSuccess;  ///< the first one; ends the job
 
-  struct Piece {
-    std::size_t offset = 0, bytes = 0;  ///< no bytes: nothing is left
-  };
   [[nodiscard]] Piece take() noexcept {
     if (error.load(std::memory_order_relaxed) != cudaSuccess) return {};
-    const std::size_t offset = next.fetch_add(piece, std::memory_order_relaxed);
-    return offset < bytes ? Piece{offset, std::min(piece, bytes - offset)} : Piece{};
+    const std::size_t offset = next.fetch_add(block, std::memory_order_relaxed);
+    return offset < bytes ? Piece{offset, std::min(block, bytes - offset)} : Piece{};
   }
   /// Whether the call succeeded.
   bool check(cudaError_t code) noexcept {
@@ -57,6 +60,7 @@ struct Transfer::Lane {
   cudaStream_t stream = nullptr;
   std::array<cudaEvent_t, 2> done{};  ///< the bus has copied the slot
   std::array<std::byte*, 2> slots{};
+  Piece rest;  ///< of the block that was taken last
 
   Lane() = default;
   ~Lane() {
@@ -79,8 +83,15 @@ struct Transfer::Lane {
     return code;
   }
 
+  [[nodiscard]] Piece take(Job& job) noexcept {
+    if (rest.bytes == 0) rest = job.take();
+    const Piece piece{rest.offset, std::min(job.piece, rest.bytes)};
+    rest = {rest.offset + piece.bytes, rest.bytes - piece.bytes};
+    return piece;
+  }
+
   /// The bus copies a piece from or to a slot.
-  bool start(Job& job, const Job::Piece& piece, std::size_t slot) noexcept {
+  bool start(Job& job, const Piece& piece, std::size_t slot) noexcept {
     std::byte* const there = job.device + piece.offset;
     const cudaError_t code = job.to_host
                                  ? cudaMemcpyAsync(slots[slot], there, piece.bytes, cudaMemcpyDeviceToHost, stream)
@@ -89,6 +100,7 @@ struct Transfer::Lane {
   }
 
   void work(Job& job) noexcept {
+    rest = {};
     if (job.to_host)
       fetch(job);
     else
@@ -98,11 +110,11 @@ struct Transfer::Lane {
 
   void fetch(Job& job) noexcept {
     std::size_t slot = 0;
-    Job::Piece piece = job.take();
+    Piece piece = take(job);
     if (piece.bytes == 0 || !start(job, piece, slot)) return;
     while (piece.bytes != 0) {
       if (!job.check(cudaEventSynchronize(done[slot]))) return;
-      const Job::Piece following = job.take();
+      const Piece following = take(job);
       if (following.bytes != 0 && !start(job, following, 1 - slot)) return;
       std::memcpy(job.host + piece.offset, slots[slot], piece.bytes);
       piece = following;
@@ -112,7 +124,7 @@ struct Transfer::Lane {
 
   void send(Job& job) noexcept {
     std::size_t slot = 0;
-    for (Job::Piece piece = job.take(); piece.bytes != 0; piece = job.take(), slot = 1 - slot) {
+    for (Piece piece = take(job); piece.bytes != 0; piece = take(job), slot = 1 - slot) {
       if (!job.check(cudaEventSynchronize(done[slot]))) return;  // an event of an earlier copy is done
       std::memcpy(slots[slot], job.host + piece.offset, piece.bytes);
       if (!start(job, piece, slot)) return;
@@ -160,7 +172,7 @@ std::size_t Transfer::lanes_for(std::size_t bytes) {
 
 void Transfer::run(Job& job) {
   stream_->wait();  // the lanes' streams know nothing of it
-  const std::size_t pieces = (job.bytes - 1) / job.piece + 1, lanes = std::min(lanes_.size(), pieces);
+  const std::size_t blocks = (job.bytes - 1) / job.block + 1, lanes = std::min(lanes_.size(), blocks);
   workers_.run(lanes, [&](std::size_t lane) {
     const ContextScope scope(stream_->context());
     lanes_[lane]->work(job);
@@ -169,11 +181,13 @@ void Transfer::run(Job& job) {
 }
 
 void Transfer::to_device(void* device, const void* host, std::size_t bytes) {
-  const std::size_t share = bytes / (2 * lanes_.size()) / least_piece * least_piece;
+  const std::size_t share = (bytes / lanes_.size() + least_piece - 1) / least_piece * least_piece;
+  const std::size_t piece = std::clamp(share, least_piece, slot_bytes);
   Job job{.host = const_cast<std::byte*>(static_cast<const std::byte*>(host)),
           .device = static_cast<std::byte*>(device),
           .bytes = bytes,
-          .piece = std::clamp(share, least_piece, slot_bytes),
+          .block = piece,
+          .piece = piece,
           .to_host = false};
   run(job);
 }
@@ -182,6 +196,7 @@ void Transfer::to_host(void* host, const void* device, std::size_t bytes) {
   Job job{.host = static_cast<std::byte*>(host),
           .device = const_cast<std::byte*>(static_cast<const std::byte*>(device)),
           .bytes = bytes,
+          .block = bytes >= lanes_.size() * huge_page ? huge_page : slot_bytes,
           .piece = slot_bytes,
           .to_host = true};
   run(job);

@@ -23,9 +23,9 @@ namespace cadt::cuda {
 /// takes the driver's copy, which is slower.
 class Transfer {
  public:
-  static constexpr std::size_t slot_bytes = std::size_t{2} << 20;    ///< a huge page: no two threads make the same one
-  static constexpr std::size_t fewest_bytes = std::size_t{2} << 20;  ///< below, waking threads takes longer
-  static constexpr std::size_t bytes_a_lane = std::size_t{16} << 20;
+  static constexpr std::size_t slot_bytes = std::size_t{1} << 20;     ///< smaller ones keep the bus waiting
+  static constexpr std::size_t fewest_bytes = std::size_t{2} << 20;   ///< below, waking threads takes longer
+  static constexpr std::size_t bytes_a_lane = std::size_t{16} << 20;  ///< about twice what locking its memory takes
   static constexpr std::size_t fewest_lanes = 4;  ///< the driver's copy is as fast as fewer, unless they are all
   static constexpr unsigned most_threads = 16;
 
@@ -47,6 +47,7 @@ class Transfer {
  private:
   struct Lane;
   struct Job;
+  struct Piece;
   /// Lanes for a copy of so many bytes; 0: the driver's copy is as fast.
   [[nodiscard]] std::size_t lanes_for(std::size_t bytes);
   void run(Job& job);

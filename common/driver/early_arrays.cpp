@@ -10,7 +10,7 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t page_words = 4096 / sizeof(std::int32_t);                   // or a part of a page
+constexpr std::size_t page_words = 4096 / sizeof(std::int32_t);                     // or a part of a page
 constexpr std::size_t block_words = (std::size_t{2} << 20) / sizeof(std::int32_t);  // a huge page, or a part of it
 
 }  // namespace

@@ -134,8 +134,8 @@ TEST(ChooseStrategy, PartitionsAreForThreadsWithPointsEnough) {
 TEST(ChooseStrategy, OneThreadInsertsSmallSetsAlone) {
   Options automatic, grain, watched, deferred;
   grain.tuning.grain = 1;
-  watched.watch = [](const Snapshot&) {};
-  deferred.stabilize = Stabilize::defer;
+  watched.tuning.watch = [](const Snapshot&) {};
+  deferred.tuning.stabilize = Stabilize::defer;
   EXPECT_TRUE(inserts_serially(two_threads, automatic, 3));
   EXPECT_TRUE(inserts_serially(two_threads, automatic, 16383));
   EXPECT_FALSE(inserts_serially(two_threads, automatic, 16384));

@@ -25,6 +25,7 @@ TEST(ChainLoop, RefusesWhatIsNotOneLoop) {
   const std::vector<Edges> wrong = {
       {{1, 2}, {2, 3}, {3, 4}},                          // open
       {{1, 2}, {2, 3}, {3, 1}, {4, 5}, {5, 6}, {6, 4}},  // two loops
+      {{1, 2}, {3, 1}},                                  // with a gap
       {{1, 2}, {2, 3}, {3, 2}},                          // does not return to its start
       {{1, 2}, {2, 1}, {2, 3}},                          // two from one vertex
   };

@@ -13,6 +13,10 @@ using Action = std::function<int()>;
 
 void add_triangulate(CLI::App& app, Action& chosen);
 void add_verify(CLI::App& app, Action& chosen);
+void add_locate(CLI::App& app, Action& chosen);
+void add_interpolate(CLI::App& app, Action& chosen);
+void add_raster(CLI::App& app, Action& chosen);
+void add_voronoi(CLI::App& app, Action& chosen);
 void add_generate(CLI::App& app, Action& chosen);
 void add_devices(CLI::App& app, Action& chosen);
 void add_triangle(CLI::App& app, Action& chosen);

@@ -28,6 +28,8 @@ const std::string examples =
     "  cadt triangulate points.xy --backend host --threads 4 -o mesh.ele --stats=run.json\n"
     "  cadt verify points.xy mesh.ele\n"
     "      a chosen back end, statistics as JSON, and an exact check of the file (of any program)\n\n"
+    "  cadt raster terrain.xyz --res 10 --method natural -o dem.asc\n"
+    "      a terrain model from scattered heights, by natural neighbours\n\n"
     "Each command has its own help: cadt triangulate --help\n\n";
 
 // Points to the right subcommand: a file name in its place is the usual mistake.
@@ -56,6 +58,10 @@ int parse_and_run(int argc, char** argv) {
   add_triangulate(app, action);
   add_triangle(app, action);
   add_verify(app, action);
+  add_locate(app, action);
+  add_interpolate(app, action);
+  add_raster(app, action);
+  add_voronoi(app, action);
   add_generate(app, action);
   add_devices(app, action);
   add_info(app, action);

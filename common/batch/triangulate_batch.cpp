@@ -46,18 +46,7 @@ void require_offsets(std::span<const std::size_t> offsets, std::size_t points) {
 }
 
 /// `size` points from `first` on.
-PointsView slice(const PointsView& points, std::size_t first, std::size_t size) {
-  const std::size_t stride = points.interleaved() ? 2 : 1;
-  const auto part = [&]<class Real>(const void* memory, const Real*) {
-    return std::span(static_cast<const Real*>(memory) + first * stride, size * stride);
-  };
-  const auto view = [&]<class Real>(const Real* tag) {
-    const auto x = part(points.x_data(), tag);
-    return points.interleaved() ? PointsView(x) : PointsView(x, part(points.y_data(), tag));
-  };
-  return points.scalar_size() == sizeof(double) ? view(static_cast<const double*>(nullptr))
-                                                : view(static_cast<const float*>(nullptr));
-}
+PointsView slice(const PointsView& points, std::size_t first, std::size_t size) { return points.subview(first, size); }
 
 DevicePoints slice(DevicePoints points, std::size_t first, std::size_t size) {
   points.skip += first;

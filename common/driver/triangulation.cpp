@@ -49,6 +49,10 @@ std::vector<Corners> sorted_triangles(const Triangulation& mesh) {
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 
+void require_triangle(std::size_t t, std::size_t count) {
+  if (t >= count) throw InputError("there is no triangle " + std::to_string(t) + ", only " + std::to_string(count), t);
+}
+
 }  // namespace
 
 Words make_words(std::size_t count) {
@@ -118,7 +122,21 @@ std::string Hash128::to_string() const {
   return text;
 }
 
-Triangulation::Triangulation() : data_(std::make_unique<Data>()) {}
+void Triangulation::Data::keep(const PointsView& points_to_keep, KeepPoints how) {
+  if (how == KeepPoints::no) return;
+  view = points_to_keep;
+  if (how == KeepPoints::view) return;
+  coordinates.resize(2 * view.size());
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    coordinates[2 * i] = view.x(i);
+    coordinates[2 * i + 1] = view.y(i);
+  }
+  view = coordinates;
+}
+
+Triangulation::Triangulation() : data_(std::make_shared<Data>()) {}
+Triangulation::Triangulation(const Triangulation&) noexcept = default;
+Triangulation& Triangulation::operator=(const Triangulation&) noexcept = default;
 Triangulation::Triangulation(std::unique_ptr<Data> data) : data_(std::move(data)) {}
 Triangulation::~Triangulation() = default;
 Triangulation::Triangulation(Triangulation&&) noexcept = default;
@@ -132,8 +150,26 @@ std::span<const std::int32_t> Triangulation::triangles() const noexcept {
 std::span<const std::int32_t> Triangulation::neighbors() const noexcept {
   return {data_->neighbors.get(), 3 * data_->triangle_count};
 }
+std::array<std::int32_t, 3> Triangulation::triangle(std::size_t t) const {
+  require_triangle(t, data_->triangle_count);
+  const std::int32_t* vertices = data_->triangles.get() + 3 * t;
+  return {vertices[0], vertices[1], vertices[2]};
+}
+std::int32_t Triangulation::neighbor(std::size_t t, std::size_t k) const {
+  require_triangle(t, data_->triangle_count);
+  if (k > 2) throw InputError("a triangle has neighbours 0, 1 and 2, not " + std::to_string(k), k);
+  return data_->neighbors[3 * t + k];
+}
+PointsView Triangulation::points() const noexcept { return data_->view; }
 std::span<const std::int32_t> Triangulation::hull() const noexcept { return data_->hull; }
 std::span<const Duplicate> Triangulation::duplicates() const noexcept { return data_->duplicates; }
+std::int32_t Triangulation::duplicate_of(std::size_t point) const {
+  if (point >= data_->points)
+    throw InputError("there is no point " + std::to_string(point) + ", only " + std::to_string(data_->points), point);
+  const auto p = static_cast<std::int32_t>(point);
+  const auto at = std::ranges::lower_bound(data_->duplicates, p, {}, &Duplicate::point);
+  return at != data_->duplicates.end() && at->point == p ? at->representative : -1;
+}
 int Triangulation::dimension() const noexcept { return data_->dimension; }
 const Statistics& Triangulation::statistics() const noexcept { return data_->statistics; }
 

@@ -31,6 +31,10 @@ struct Triangulation::Data {
   std::vector<Duplicate> duplicates;
   int dimension = -1;
   Statistics statistics;
+  PointsView view;  ///< of the points that are kept: the caller's, or of `coordinates`
+  std::vector<double> coordinates;
+
+  void keep(const PointsView& points_to_keep, KeepPoints how);
 };
 
 }  // namespace cadt

@@ -3,6 +3,7 @@
 #include <cadt/triangulator.hpp>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,6 +86,7 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
   result->triangle_count = data.triangle_count;
   result->dimension = data.dimension;
   result->statistics = std::move(data.statistics);
+  result->keep(points, state->options.keep_points);
   return Triangulation(std::move(result));
 }
 
@@ -93,6 +95,28 @@ DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state,
   auto data = std::make_unique<DeviceTriangulation::Data>();
   run_call(state, points, {points.size, false, true, scalar_bytes(points.scalar)}, nullptr, *data);
   return DeviceTriangulation(std::move(data));
+}
+
+/// \throws InputError if `triangles` do not fit in an array of `size` words
+void require_words(std::size_t size, std::size_t triangles, const char* name) {
+  if (size == 0 || size >= 3 * triangles) return;
+  throw InputError(std::string("the array for ") + name + " has " + std::to_string(size) + " elements, " +
+                       std::to_string(3 * triangles) + " are needed; 6 a point are always enough",
+                   size / 3);
+}
+
+/// Copies the mesh to arrays of `sizes` words (triangles, neighbours; 0: left out) by `copy`. Returns the number of
+/// triangles.
+template <class Copy>
+std::size_t give_mesh(const DeviceTriangulation::Data& data, std::array<std::size_t, 2> sizes, const Copy& copy) {
+  const std::size_t count = data.triangle_count;
+  require_words(sizes[0], count, "triangles");
+  require_words(sizes[1], count, "neighbors");
+  if (count == 0) return 0;
+  if (sizes[0] != 0) copy(data.triangles, 0);
+  if (sizes[1] != 0) copy(data.neighbors, 1);
+  data.state->device->finish();
+  return count;
 }
 
 /// Copies points and mesh to the host and verifies them there.
@@ -132,6 +156,33 @@ std::optional<double> Triangulator::occupancy(unsigned work_group_size) const {
 Triangulation Triangulator::triangulate(PointsView points) { return to_host(state_, points); }
 
 DeviceTriangulation Triangulator::triangulate(const DevicePoints& points) { return to_device(state_, points); }
+
+std::size_t Triangulator::triangulate(PointsView points, std::span<std::int32_t> triangles,
+                                      std::span<std::int32_t> neighbors) {
+  require_size(points.size());
+  DeviceTriangulation::Data data;
+  run_call(state_, points, {points.size(), false, false, points.scalar_size()}, nullptr, data);
+  return give_mesh(data, {triangles.size(), neighbors.size()}, [&](const Allocation& from, std::size_t which) {
+    state_->device->read(*from, 0, (which == 0 ? triangles : neighbors).data(), 3 * data.triangle_count * word);
+  });
+}
+
+std::size_t Triangulator::triangulate(const DevicePoints& points, const DeviceArray& triangles,
+                                      const DeviceArray& neighbors) {
+  for (const DeviceArray* array : {&triangles, &neighbors})
+    if (array->size != 0 && array->memory == nullptr)
+      throw InputError("an array of results has no memory: DeviceArray::memory is null", 0);
+  require_size(points.size);
+  DeviceTriangulation::Data data;
+  run_call(state_, points, {points.size, false, true, scalar_bytes(points.scalar)}, nullptr, data);
+  Statistics statistics;
+  Context ctx(*state_->device, state_->memory, state_->options, statistics);
+  return give_mesh(data, {triangles.size, neighbors.size}, [&](const Allocation& from, std::size_t which) {
+    const DeviceArray& to = which == 0 ? triangles : neighbors;
+    const Allocation array = ctx.memory.wrap(to.memory, to.size * word);
+    ctx.launcher.run<KernelId::cadt_copy_words>(from, array, 0U, ctx.launcher.grid(3 * data.triangle_count));
+  });
+}
 
 std::future<Triangulation> Triangulator::triangulate_async(PointsView points) {
   return std::async(std::launch::async, [state = state_, points] { return to_host(state, points); });

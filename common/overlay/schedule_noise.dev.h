@@ -3,7 +3,7 @@
  * Schedule noise: sites of the lock protocol at which tests (tests/robustness/concurrency) delay a work-item or let a
  * lock fail. Nothing of it is in the library: without CADT_SCHEDULE_NOISE all macros are empty.
  *
- * Seed and mode come with each call in Options::quality_epsilon, which insertion does not read while Options::stabilize
+ * Seed and mode come with each call in Tuning::quality_epsilon, which insertion does not read while Options::stabilize
  * is off: eight times a seed, plus a mode. So the same kernels serve all modes, on every back end.
  */
 #ifndef CADT_OVERLAY_SCHEDULE_NOISE_H

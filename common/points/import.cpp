@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/points/import.hpp"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "common/points/device_points.hpp"
 
@@ -35,6 +37,25 @@ Allocation gather(Context& ctx, const Allocation& input, const SortedPoints& ord
   ctx.launcher.run<KernelId::cadt_gather_points>(input, order.input_ids, points, ctx.launcher.grid(order.distinct),
                                                  order.scale, order.scale_again);
   return points;
+}
+
+/// Points whose coordinates have other bytes between them, as the device has its points. In pieces, so that the host
+/// holds no second copy of all.
+template <class Real>
+Allocation pack(Context& ctx, const PointsView& points) {
+  constexpr std::size_t piece = std::size_t{1} << 18;
+  const std::size_t n = points.size(), bytes = 2 * sizeof(Real);
+  Allocation packed = ctx.memory.transient(n * bytes, true);
+  std::vector<Real> xy(2 * std::min(n, piece));
+  for (std::size_t first = 0; first < n; first += piece) {
+    const std::size_t count = std::min(piece, n - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      xy[2 * i] = static_cast<Real>(points.x(first + i));  // exact: a device of floats is given floats
+      xy[2 * i + 1] = static_cast<Real>(points.y(first + i));
+    }
+    ctx.device.write(*packed, first * bytes, xy.data(), count * bytes);
+  }
+  return packed;
 }
 
 /// All of the caller's points, or the distinct ones of `order`, in its order.
@@ -71,6 +92,8 @@ void require_scalar(const Device& device, std::size_t scalar_bytes) {
 Allocation import_points(Context& ctx, const PointsView& points) {
   const std::size_t n = points.size(), size = points.scalar_size();
   require_scalar(ctx.device, size);
+  if (!points.interleaved() && !points.separate())
+    return takes_floats_only(ctx.device) ? pack<float>(ctx, points) : pack<double>(ctx, points);
   if (points.interleaved() && size == coordinate_bytes(ctx.device))
     return ctx.memory.import(points.x_data(), n * point_bytes(ctx.device));
   const Scalar scalar = size == sizeof(float) ? Scalar::float32 : Scalar::float64;

@@ -25,8 +25,9 @@ CADT_FN_SLOW cadt_real cadt_area_of_arms(cadt_point p, cadt_point a, cadt_point 
 }
 #endif
 
-/* A triangle is thin if rounding may change its area by more than 2^-26 of it. */
+/* A triangle is thin if rounding may change its area by 2^-26 of it; from 2^-36 on its areas are not rounded. */
 #define CADT_THIN 1.4901161193847656e-08
+#define CADT_ROUNDED 1.52587890625e-05
 
 /* Along the longest of the three edges, seen from p: for triangles that have no area left. */
 CADT_FN_SLOW cadt_weights cadt_along_longest(cadt_point a, cadt_point b, cadt_point c) {
@@ -78,17 +79,17 @@ CADT_FN cadt_weights cadt_barycentric(cadt_point a, cadt_point b, cadt_point c, 
   cadt_real all = result.at[0] + result.at[1] + result.at[2];
   const cadt_real terms = cadt_fabs(vw) + cadt_fabs(wv) + cadt_fabs(wu) + cadt_fabs(uw) + cadt_fabs(uv) + cadt_fabs(vu);
   *thin = all < CADT_THIN * terms ? 1u : 0u;
-  if (*thin) {
 #if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
+  if (all < CADT_ROUNDED * terms) {
     result.at[0] = cadt_positive(cadt_area_of_arms(p, b, c));
     result.at[1] = cadt_positive(cadt_area_of_arms(p, c, a));
     result.at[2] = cadt_positive(cadt_area_of_arms(p, a, b));
     all = result.at[0] + result.at[1] + result.at[2];
     if (!(all > 0.0)) return cadt_along_longest(u, v, w);
-#else
-    return cadt_along_longest(u, v, w);
-#endif
   }
+#else
+  if (*thin) return cadt_along_longest(u, v, w);
+#endif
   result.at[0] /= all;
   result.at[1] /= all;
   result.at[2] /= all;

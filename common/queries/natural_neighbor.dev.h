@@ -99,46 +99,39 @@ CADT_FN cadt_cavity_edge cadt_first_cavity_edge(const cadt_query_mesh* m, cadt_p
   }
 }
 
-/* Sums over the neighbours, seen from p. */
-typedef struct {
-  cadt_real weight, x, y, xx, xy, yy, f, fx, fy;
-} cadt_moments;
-
-CADT_FN void cadt_add_neighbor(cadt_moments* m, cadt_real weight, cadt_point v, cadt_real f) {
-  m->weight += weight;
-  m->x += weight * v.x;
-  m->y += weight * v.y;
-  m->xx += weight * v.x * v.x;
-  m->xy += weight * v.x * v.y;
-  m->yy += weight * v.y * v.y;
-  m->f += weight * f;
-  m->fx += weight * v.x * f;
-  m->fy += weight * v.y * f;
-}
-/* The weighted mean, less slope * mean place; the slope is that of the weighted least squares. */
-CADT_FN cadt_real cadt_corrected_mean(const cadt_moments* m) {
-  const cadt_real x = m->x / m->weight, y = m->y / m->weight, f = m->f / m->weight;
-  const cadt_real xx = m->xx / m->weight - x * x, xy = m->xy / m->weight - x * y, yy = m->yy / m->weight - y * y;
-  const cadt_real fx = m->fx / m->weight - f * x, fy = m->fy / m->weight - f * y, det = xx * yy - xy * xy;
-  const cadt_real rise = ((yy * fx - xy * fy) * x + (xx * fy - xy * fx) * y) / det;
-  return rise - rise == 0.0 ? f - rise : f; /* neighbours on a line have no slope */
+/* How much the linear function of triangle t with values fa, fb, fc rises along `way`. */
+CADT_FN cadt_real cadt_rise_along(const cadt_query_mesh* m, cadt_u32 t, cadt_real fa, cadt_real fb, cadt_real fc,
+                                  cadt_point way) {
+  const cadt_point a = cadt_corner(m, t, 0u), b = cadt_corner(m, t, 1u), c = cadt_corner(m, t, 2u);
+  const cadt_point ab = cadt_seen_from(b, a), ac = cadt_seen_from(c, a);
+  const cadt_real left = ab.x * ac.y, right = ab.y * ac.x;
+  cadt_real area = left - right;
+#if CADT_GRADUAL_UNDERFLOW && !CADT_WIDE
+  if (area < CADT_ROUNDED * (cadt_fabs(left) + cadt_fabs(right))) area = cadt_area_of_arms(a, b, c);
+#endif
+  return ((fb - fa) * cadt_cross(way.x, way.y, ac.x, ac.y) - (fc - fa) * cadt_cross(way.x, way.y, ab.x, ab.y)) / area;
 }
 
-/* Value `of` at p, strictly inside of the hull, by the boundary of its cavity from edge `begin` on. Infinite or NaN
- * where a circumcentre has overflowed. */
-CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cadt_cavity_edge begin,
+/* Value `of` at p in triangle t, strictly inside of the hull, by the boundary of its cavity from edge `begin` on.
+ * Infinite or NaN where a circumcentre has overflowed. */
+CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cadt_u32 t, cadt_cavity_edge begin,
                                      CADT_GLOBAL const cadt_real* values, cadt_u32 per_point, cadt_u32 of,
                                      cadt_u32* open) {
   cadt_cavity_edge e = begin;
   cadt_point u = cadt_seen_from(cadt_corner(m, e.triangle, CADT_NEXT(e.k)), p),
-             v = cadt_seen_from(cadt_corner(m, e.triangle, CADT_PREV(e.k)), p);
-  cadt_moments sums = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+             v = cadt_seen_from(cadt_corner(m, e.triangle, CADT_PREV(e.k)), p), mean = {0.0, 0.0};
+  cadt_real all = 0.0, sum = 0.0;
   cadt_u32 steps = 0u;
   do {
-    const cadt_u32 id = cadt_vertex_of(&m->view, e.triangle, CADT_PREV(e.k));
+    const cadt_u64 id = cadt_vertex_of(&m->view, e.triangle, CADT_PREV(e.k));
     cadt_point w = v;
     const cadt_real weight = cadt_next_piece(m, p, &e, u, v, &w, &steps);
-    if (weight != 0.0) cadt_add_neighbor(&sums, weight, v, values[CADT_CAST(cadt_u64, id) * per_point + of]);
+    if (weight != 0.0) {
+      all += weight;
+      sum += weight * values[id * per_point + of];
+      mean.x += weight * v.x;
+      mean.y += weight * v.y;
+    }
     u = v;
     v = w;
     if (++steps > 3u * m->view.triangles) {
@@ -146,7 +139,12 @@ CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cad
       break;
     }
   } while (e.triangle != begin.triangle || e.k != begin.k);
-  return cadt_corrected_mean(&sums);
+  mean.x /= all;
+  mean.y /= all;
+  const cadt_u64 a = cadt_vertex_of(&m->view, t, 0u), b = cadt_vertex_of(&m->view, t, 1u),
+                 c = cadt_vertex_of(&m->view, t, 2u);
+  return sum / all - cadt_rise_along(m, t, values[a * per_point + of], values[b * per_point + of],
+                                     values[c * per_point + of], mean);
 }
 
 /* Whether there is nothing beyond edge k of triangle t but the outside, or a thin triangle as there are along the hull.
@@ -193,7 +191,7 @@ CADT_KERNEL(cadt_interpolate_natural, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL co
     const cadt_cavity_edge none = {t, 0u}, begin = linear ? none : cadt_first_cavity_edge(&mesh, p, t);
     for (cadt_u32 of = 0u; of < per_point; ++of) {
       cadt_real value = CADT_NAN;
-      if (!linear) value = cadt_natural_value(&mesh, p, begin, values, per_point, of, &open);
+      if (!linear) value = cadt_natural_value(&mesh, p, t, begin, values, per_point, of, &open);
       /* not finite: a circumcentre has overflowed, or a value is not finite */
       result[of] = value - value == 0.0 ? value : cadt_weighted(&mesh, t, &w, values, per_point, of);
     }

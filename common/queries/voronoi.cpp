@@ -101,6 +101,8 @@ VoronoiPolygons clip_voronoi(Context& ctx, const MeshIndex& mesh, const Box& box
   result.xy = to_vector<double>(ctx, 2 * std::size_t{result.begin.back()}, [&](const Allocation& to) {
     launch.run<KernelId::cadt_pack_cells>(rows, begin, sizes, to, launch.grid(n));
   });
+  if (!std::ranges::all_of(result.xy, [](double v) { return std::isfinite(v); }))
+    throw InputError("the box is so large that corners exceed the largest double: take a smaller one", 0);
   ctx.check("voronoi", 1);
   return result;
 }

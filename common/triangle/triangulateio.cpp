@@ -153,29 +153,29 @@ int status_of_exception() noexcept {
   try {
     throw;
   } catch (const SwitchError& e) {
-    return finished(CADT_TRIANGULATE_SWITCHES, e.what());
+    return finished(CADT_TRIANGLE_SWITCHES, e.what());
   } catch (const InputError& e) {
-    return finished(CADT_TRIANGULATE_INPUT, e.what());
+    return finished(CADT_TRIANGLE_INPUT, e.what());
   } catch (const LimitError& e) {
-    return finished(CADT_TRIANGULATE_INPUT, e.what());
+    return finished(CADT_TRIANGLE_INPUT, e.what());
   } catch (const BackendUnavailable& e) {
-    return finished(CADT_TRIANGULATE_DEVICE, e.what());
+    return finished(CADT_TRIANGLE_DEVICE, e.what());
   } catch (const KernelBuildError& e) {
-    return finished(CADT_TRIANGULATE_DEVICE, e.what());
+    return finished(CADT_TRIANGLE_DEVICE, e.what());
   } catch (const DeviceError& e) {
-    return finished(CADT_TRIANGULATE_DEVICE, e.what());
+    return finished(CADT_TRIANGLE_DEVICE, e.what());
   } catch (const OutOfMemory& e) {
-    return finished(CADT_TRIANGULATE_MEMORY, e.what());
+    return finished(CADT_TRIANGLE_MEMORY, e.what());
   } catch (const std::bad_alloc&) {
-    return finished(CADT_TRIANGULATE_MEMORY, no_memory);
+    return finished(CADT_TRIANGLE_MEMORY, no_memory);
   } catch (const std::length_error&) {  // an array that no memory could hold
-    return finished(CADT_TRIANGULATE_MEMORY, no_memory);
+    return finished(CADT_TRIANGLE_MEMORY, no_memory);
   } catch (const std::system_error& e) {  // a thread that cannot be started
-    return finished(CADT_TRIANGULATE_MEMORY, e.what());
+    return finished(CADT_TRIANGLE_MEMORY, e.what());
   } catch (const std::exception& e) {
-    return finished(CADT_TRIANGULATE_INTERNAL, e.what());
+    return finished(CADT_TRIANGLE_INTERNAL, e.what());
   } catch (...) {
-    return finished(CADT_TRIANGULATE_INTERNAL, "unknown exception");
+    return finished(CADT_TRIANGLE_INTERNAL, "unknown exception");
   }
 }
 
@@ -184,17 +184,17 @@ int status_of_exception() noexcept {
 
 extern "C" {
 
-int cadt_triangulate(const char* switches, const struct cadt_triangulateio* in, struct cadt_triangulateio* out,
-                     struct cadt_triangulateio* vorout) {
+int cadt_triangle(const char* switches, const struct cadt_triangulateio* in, struct cadt_triangulateio* out,
+                  struct cadt_triangulateio* vorout) {
   try {
     cadt::run(switches, in, out, vorout);
-    return cadt::finished(CADT_TRIANGULATE_DONE, "");
+    return cadt::finished(CADT_TRIANGLE_DONE, "");
   } catch (...) {
     return cadt::status_of_exception();
   }
 }
 
-const char* cadt_triangulate_message(void) { return cadt::message; }
+const char* cadt_triangle_message(void) { return cadt::message; }
 
 void cadt_trifree(void* array) { std::free(array); }
 }

@@ -9,6 +9,7 @@
 #include <cadt/points.hpp>
 #include <cadt/queries.hpp>
 #include <cadt/statistics.hpp>
+#include <cadt/topology.hpp>
 #include <cadt/triangle.hpp>
 #include <cadt/triangulation.hpp>
 #include <cadt/triangulator.hpp>

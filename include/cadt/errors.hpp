@@ -4,6 +4,7 @@
 
 #include <cadt/export.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -25,6 +26,21 @@ class CADT_API InputError : public Error {
 
  private:
   std::size_t index_;
+};
+
+/// A mesh of another program that is not a Delaunay triangulation of its points (Triangulation::adopt).
+class CADT_API InvalidMesh : public Error {
+ public:
+  InvalidMesh(std::string check, std::int64_t first, const std::string& message)
+      : Error("the mesh is invalid (" + check + "): " + message), check_(std::move(check)), first_(first) {}
+  /// Name of the first check that failed, as in VerifyReport: "range", "neighbors", "delaunay", ...
+  [[nodiscard]] const std::string& check() const noexcept { return check_; }
+  /// First failing triangle, point or edge (3 * triangle + k), as the message says; -1: none in particular.
+  [[nodiscard]] std::int64_t first() const noexcept { return first_; }
+
+ private:
+  std::string check_;
+  std::int64_t first_;
 };
 
 /// More points than 32-bit indices allow (max_points()), or a larger DevicePoints::skip than they allow.

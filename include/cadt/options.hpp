@@ -36,6 +36,14 @@ enum class Order {
   fast        ///< as the device left them: the same set of triangles, in an order that depends on the schedule
 };
 
+/// Whether a mesh knows its points (Triangulation::points).
+enum class KeepPoints {
+  no,
+  copy,  ///< the mesh has a copy, as doubles: 16 bytes a point
+  view   ///< the mesh has the caller's view: the coordinates must stay where they are and what they are as long as the
+         ///< mesh or a copy of it lives
+};
+
 /// How the mesh is computed. The result does not depend on it.
 enum class Strategy {
   automatic,  ///< the faster one, as far as is known for the device and the points
@@ -103,6 +111,8 @@ struct Options {
   /// With a GPU: those that copy large sets and results and make the pages of results.
   unsigned threads = 0;
   Order order = Order::canonical;
+  /// For points of the host, and not for batches.
+  KeepPoints keep_points = KeepPoints::no;
   /// Limit of the device memory that the library holds, in bytes; 0: none. If a call needs more: OutOfMemory, before
   /// any work. (Earlier results of a triangulator that still exist count as well.)
   std::size_t max_memory = 0;

@@ -91,13 +91,6 @@ struct Outline {
   std::vector<std::int32_t> edges;      ///< n x 2 points; the kept triangles are on the left
 };
 
-/// Memory of the caller's on the triangulator's device, for results. Handles as for DevicePoints.
-struct DeviceArray {
-  void* memory = nullptr;
-  std::size_t size =
-      0;  ///< elements (int32 or double); a result that needs more is an InputError, and nothing is written
-};
-
 /// Where a Voronoi diagram goes (VoronoiDiagram); `cell_begin` is needed for `cells`.
 struct DeviceVoronoi {
   DeviceArray vertices, cell_begin, cells, edge_points, edge_vertices;
@@ -117,14 +110,17 @@ struct DeviceVoronoi {
 ///     std::vector<double> heights = queries.interpolate(z, where);
 class CADT_API MeshQueries {
  public:
-  /// A mesh of the host. Points and mesh are not copied where the device can read them: they must live as long as this
-  /// object, and must not change. `options` says where: backend, device, threads, queue, allocator, max_memory, stop
-  /// and progress are as for triangulate(). \throws InputError if the mesh is not one of so many points, and as
+  /// A mesh of the host, and its points, which are not copied where the device can read them: they must live as long as
+  /// this object, and must not change. `options` says where: backend, device, threads, queue, allocator, max_memory,
+  /// stop and progress are as for triangulate(). \throws InputError if the mesh is not one of so many points, and as
   /// triangulate()
   MeshQueries(PointsView points, const Triangulation& mesh, const Options& options = {});
-  /// The mesh of another program, with neighbours; its arrays are checked. Nearest vertices, natural neighbours and the
-  /// Voronoi diagram take a Delaunay mesh, the rest any triangulation of the convex hull. \throws InputError if an
-  /// index is out of range, or an edge is not the same from both sides, with the first such triangle as index
+  /// The same with the points that the mesh has kept (Options::keep_points). \throws InputError if it has kept none
+  explicit MeshQueries(const Triangulation& mesh, const Options& options = {});
+  /// The mesh of another program, with neighbours; its arrays are checked. Like the points, they must outlive this
+  /// object. Nearest vertices, natural neighbours and the Voronoi diagram take a Delaunay mesh, the rest any
+  /// triangulation of the convex hull. \throws InputError if an index is out of range, or an edge is not the same from
+  /// both sides, with the first such triangle as index
   MeshQueries(PointsView points, const MeshView& mesh, const Options& options = {});
   /// A mesh on the device of `triangulator`, which it shares. Both must live as long as this object. \throws InputError
   /// for a mesh of another triangulator or of other points
@@ -170,7 +166,7 @@ class CADT_API MeshQueries {
   [[nodiscard]] std::vector<double> circumcenters();
   [[nodiscard]] VoronoiDiagram voronoi();
   /// The cells within `box`. Their areas sum to that of the box but for rounding. \throws InputError for a box that is
-  /// not finite or has no area
+  /// not finite, has no area, or is so large that corners of cells exceed the largest double
   [[nodiscard]] VoronoiPolygons voronoi_polygons(const Box& box);
   /// The k largest circles without a point inside whose centres are in the convex hull, largest first: circumcircles
   /// (the holes of the paper's Table 1, [18]). Fewer if there are no more.
@@ -180,8 +176,9 @@ class CADT_API MeshQueries {
   /// their boundary. \throws OptionError for a bound that is negative or NaN
   [[nodiscard]] Outline outline(double max_radius, double max_edge = std::numeric_limits<double>::infinity());
 
-  /// The same on the device: queries, values and results in its memory, in the order of the triangulator's stream or
-  /// queue. Each returns the number of elements written, known before: one, or k, or 3, or m a query; one a cell.
+  /// The same on the device: queries, values and results in its memory, in the order of the caller's stream or queue,
+  /// or complete when the call returns if the triangulator has one of its own. Each returns the number of elements
+  /// written, known before: one, or k, or 3, or m a query; one a cell.
   std::size_t locate(const DevicePoints& queries, const DeviceArray& triangles);
   std::size_t locate_barycentric(const DevicePoints& queries, const DeviceArray& triangles,
                                  const DeviceArray& barycentric);

@@ -3,7 +3,7 @@
    can be linked; to change over a program, put these three lines before its calls:
 
        #define triangulateio cadt_triangulateio
-       #define triangulate cadt_triangulate
+       #define triangulate cadt_triangle
        #define trifree cadt_trifree
 
    docs/triangle.md says which switches there are, and what differs. */
@@ -49,14 +49,14 @@ struct cadt_triangulateio {
   int numberofedges;   /* out, vorout */
 };
 
-/* What cadt_triangulate returns; the numbers are the exit codes of the program cadt. */
-enum cadt_triangulate_status {
-  CADT_TRIANGULATE_DONE = 0,
-  CADT_TRIANGULATE_INTERNAL = 1, /* a defect of cadt: please report it */
-  CADT_TRIANGULATE_INPUT = 3,    /* NaN, infinity, a missing array, too many points */
-  CADT_TRIANGULATE_DEVICE = 5,   /* the device failed */
-  CADT_TRIANGULATE_MEMORY = 6,
-  CADT_TRIANGULATE_SWITCHES = 8 /* a switch that cadt does not take */
+/* What cadt_triangle returns; the numbers are the exit codes of the program cadt. */
+enum cadt_triangle_status {
+  CADT_TRIANGLE_DONE = 0,
+  CADT_TRIANGLE_INTERNAL = 1, /* a defect of cadt: please report it */
+  CADT_TRIANGLE_INPUT = 3,    /* NaN, infinity, a missing array, too many points */
+  CADT_TRIANGLE_DEVICE = 5,   /* the device failed */
+  CADT_TRIANGLE_MEMORY = 6,
+  CADT_TRIANGLE_SWITCHES = 8 /* a switch that cadt does not take */
 };
 
 /* Triangulates in->pointlist. `switches` are Triangle's ("zneQ"): n fills neighborlist, e edgelist and edgemarkerlist,
@@ -68,14 +68,14 @@ enum cadt_triangulate_status {
    Returns 0, or a status after which nothing of `out` and `vorout` has changed. Points on one line give no triangles
    and no error. Computes on the fastest usable device. Thread-safe for different structs. Cost: that of
    cadt::triangulate and O(points + triangles). */
-CADT_API int cadt_triangulate(const char* switches, const struct cadt_triangulateio* in, struct cadt_triangulateio* out,
-                              struct cadt_triangulateio* vorout);
+CADT_API int cadt_triangle(const char* switches, const struct cadt_triangulateio* in, struct cadt_triangulateio* out,
+                           struct cadt_triangulateio* vorout);
 
-/* What was wrong with the calling thread's last cadt_triangulate, in UTF-8; "" if it succeeded. Valid until its next.
+/* What was wrong with the calling thread's last cadt_triangle, in UTF-8; "" if it succeeded. Valid until its next.
  */
-CADT_API const char* cadt_triangulate_message(void);
+CADT_API const char* cadt_triangle_message(void);
 
-/* Frees an array that cadt_triangulate has allocated; NULL is allowed. The same as free of the C library in use. */
+/* Frees an array that cadt_triangle has allocated; NULL is allowed. The same as free of the C library in use. */
 CADT_API void cadt_trifree(void* array);
 
 #ifdef __cplusplus

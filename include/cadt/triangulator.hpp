@@ -39,6 +39,13 @@ struct DevicePoints {
   std::size_t skip = 0;
 };
 
+/// Memory of the caller's on the triangulator's device, for results. Handles as for DevicePoints.
+struct DeviceArray {
+  void* memory = nullptr;
+  std::size_t size =
+      0;  ///< elements (int32 or double); a result that needs more is an InputError, and nothing is written
+};
+
 /// A triangulation in device memory: int32 arrays of 0-based indices, as in Triangulation. The handles (see
 /// DevicePoints) are valid on the triangulator's stream or queue, in its order, as long as this object lives; it may
 /// outlive the triangulator, but not the caller's stream or queue. Not thread-safe: do not use it while another thread
@@ -116,9 +123,16 @@ class CADT_API Triangulator {
   /// After an error the triangulator can be used again.
   [[nodiscard]] DeviceTriangulation triangulate(const DevicePoints& points);
 
-  /// The same on a thread of its own, so that the caller's thread is free: a call waits for the device some ten times.
-  /// Until the future is ready the triangulator must not be used otherwise, and points, offsets and options must not
-  /// change. `Options::progress` is called on that thread. The future rethrows what the call throws; destroying it
+  /// The mesh in arrays of the caller's, three words a triangle: on the host, or on the device, e.g. in buffers that a
+  /// graphics library has mapped. There are at most 2 triangles a point; an array that is empty is left out. Returns
+  /// the number of triangles. Costs a copy on the device, or what a copy to the host costs. \throws InputError if there
+  /// are more than an array takes, with the number that it takes as index: then nothing is written
+  std::size_t triangulate(PointsView points, std::span<std::int32_t> triangles, std::span<std::int32_t> neighbors);
+  std::size_t triangulate(const DevicePoints& points, const DeviceArray& triangles, const DeviceArray& neighbors);
+
+  /// The first two on a thread of their own, so that the caller's thread is free: a call waits for the device some ten
+  /// times. Until the future is ready the triangulator must not be used otherwise, and points, offsets and options must
+  /// not change. `Options::progress` is called on that thread. The future rethrows what the call throws; destroying it
   /// waits.
   [[nodiscard]] std::future<Triangulation> triangulate_async(PointsView points);
   [[nodiscard]] std::future<DeviceTriangulation> triangulate_async(const DevicePoints& points);

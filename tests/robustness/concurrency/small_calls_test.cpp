@@ -79,7 +79,7 @@ TEST(SmallCalls, ErrorsInBetween) {
   Points bad = uniform_points(100, 5);
   bad[77] = std::numeric_limits<double>::quiet_NaN();
   Options wrong = on_host(), stopped = on_host();
-  wrong.flip_threshold = 1001;
+  wrong.tuning.flip_threshold = 1001;
   for (int round = 0; round < 3; ++round) {
     EXPECT_THROW((void)triangulate(Reals(bad), on_host()), InputError);
     expect_right_meshes();

@@ -196,6 +196,51 @@ TEST_P(EveryStep, Verification) {
   });
 }
 
+/// Every question to a mesh, on the device and from the host.
+TEST_P(EveryStep, Queries) {
+  const Points xy = uniform_points(60, 3), where = uniform_points(20, 4);
+  const std::vector<double> values(60, 1.5);
+  const DevicePoints points = upload(xy), queries = upload(where);
+  const DeviceArray heights{memory->upload(std::span<const double>(values)), values.size()};
+  const std::vector<double> room(400);
+  const DeviceArray numbers{memory->upload(std::span<const double>(room)), 800};
+  const Box box{-1, -1, 2, 2};
+  const Grid grid{0, 0, 0.1, 0.1, 10, 10};
+  fail_each(options(), [&](Triangulator& t) {
+    const DeviceTriangulation mesh = t.triangulate(points);
+    MeshQueries asked(t, points, mesh);
+    Outcome all;
+    const auto add = [&](const auto& list) {
+      for (const auto value : list) all.hash += std::to_string(value) + ' ';
+    };
+    (void)asked.locate(queries, numbers);
+    add(memory->download<std::int32_t>(numbers.memory, 20));
+    (void)asked.interpolate(heights, queries, {numbers.memory, 20}, Interpolation::natural, Outside::nearest);
+    add(memory->download<double>(numbers.memory, 20));
+    (void)t.triangulate(points, numbers, {});
+    add(memory->download<std::int32_t>(numbers.memory, 60));
+    return all;
+  });
+  const Triangulation mesh = on_host(Reals(xy));
+  fail_each(options(), [&](Triangulator& t) {
+    MeshQueries asked(Reals(xy), MeshView{mesh.triangles(), mesh.neighbors(), {}, {}}, t.options());
+    Outcome all;
+    const auto add = [&](const auto& list) {
+      for (const auto value : list) all.hash += std::to_string(value) + ' ';
+    };
+    add(asked.locate_barycentric(where).barycentric);
+    add(asked.nearest_vertices(where, 3));
+    add(asked.interpolate(values, where));
+    add(asked.rasterize(grid, values, Interpolation::linear, 0.3));
+    add(asked.rasterize(grid, values, Interpolation::nearest, 0.3));
+    add(asked.voronoi().cells);
+    add(asked.voronoi_polygons(box).begin);
+    add(asked.outline(0.2).edges);
+    for (const Circle& circle : asked.largest_empty_circles(3)) add(std::vector{circle.triangle});
+    return all;
+  });
+}
+
 /// The memory of reserve() as well.
 TEST_P(EveryStep, ReservedMemory) {
   const Points xy = some_points();

@@ -10,7 +10,9 @@
 #include <functional>
 #include <new>
 #include <string>
+#include <vector>
 
+#include "common/c_interface/convert.hpp"
 #include "tests/support/families.hpp"
 
 namespace {
@@ -160,6 +162,72 @@ TEST(HostMemory, Verification) {
   VerifyOptions alone;
   alone.threads = 1;
   refuse_each([&] { return verify(Reals(xy), mesh, alone).summary(); });
+}
+
+/// The same through the interface of C, which no exception may leave.
+void require_ok(cadt_status status) {
+  cadt_error error{};
+  error.size = sizeof error;
+  EXPECT_EQ(cadt_last_error(&error), CADT_OK);
+  if (status == CADT_OK) return;
+  EXPECT_EQ(status, CADT_OUT_OF_MEMORY);
+  EXPECT_EQ(error.status, status);
+  EXPECT_NE(error.message[0], '\0');
+  throw std::bad_alloc();
+}
+
+TEST(HostMemory, CInterface) {
+  const Points xy = some_points();
+  const cadt_points points{xy.data(), nullptr, xy.size() / 2, 0, CADT_FLOAT64};
+  const cadt_device_points on_device{xy.data(), nullptr, xy.size() / 2, 0, CADT_FLOAT64};
+  const std::size_t offsets[] = {0, 100, xy.size() / 2};
+  cadt_options options{};
+  require_ok(cadt_options_init(&options, sizeof options));
+  options.backend = CADT_BACKEND_HOST;
+  options.threads = 1;
+  options.cancelled = [](void*) { return 0; };
+  struct Handles {
+    ~Handles() {
+      cadt_triangulator_free(triangulator);
+      cadt_triangulation_free(mesh);
+      cadt_device_triangulation_free(on_device);
+      cadt_batch_free(batch);
+      cadt_report_free(report);
+    }
+    cadt_triangulator* triangulator = nullptr;
+    cadt_triangulation* mesh = nullptr;
+    cadt_device_triangulation* on_device = nullptr;
+    cadt_batch* batch = nullptr;
+    cadt_report* report = nullptr;
+  };
+  refuse_each([&] {
+    Handles h;
+    require_ok(cadt_triangulate(&points, &options, &h.mesh));
+    return h.mesh->mesh.hash().to_string();
+  });
+  refuse_each([&] {
+    Handles h;
+    require_ok(cadt_triangulator_open(&options, &h.triangulator));
+    require_ok(cadt_triangulator_triangulate_device(h.triangulator, &on_device, &h.on_device));
+    require_ok(cadt_device_triangulation_download(h.on_device, &h.mesh));
+    require_ok(cadt_triangulator_triangulate_batch(h.triangulator, &points, offsets, 2, &h.batch));
+    std::size_t count = 0;
+    std::vector<std::int32_t> words(2 * 3 * xy.size());
+    require_ok(cadt_triangulation_edges(h.mesh, words.data(), words.size(), &count));
+    return std::to_string(count) + h.mesh->mesh.hash().to_string();
+  });
+  const Triangulation mesh = triangulate(Reals(xy), on_host());
+  refuse_each([&] {
+    Handles h;
+    require_ok(cadt_triangulation_adopt(&points, mesh.triangles().data(), nullptr, mesh.number_of_triangles(), 1,
+                                        CADT_KEEP_COPY, &h.mesh));
+    require_ok(cadt_triangulation_verify(h.mesh, &points, nullptr, &h.report));
+    return h.report->summary;
+  });
+  // A message that finds no memory: the status tells all the same.
+  until_refusal = 0;
+  EXPECT_EQ(cadt_triangulate(nullptr, &options, nullptr), CADT_OUT_OF_MEMORY);
+  until_refusal = never;
 }
 
 }  // namespace

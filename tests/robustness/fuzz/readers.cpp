@@ -6,6 +6,7 @@
 
 #include <cadt/io/mesh_file.hpp>
 #include <cadt/io/points_file.hpp>
+#include <cadt/io/query_files.hpp>
 #include <cmath>
 #include <new>
 #include <string>
@@ -19,6 +20,7 @@ std::vector<std::string> formats() {
   std::vector<std::string> all;
   for (const std::string& f : cadt::io::point_read_formats()) all.push_back("points:" + f);
   for (const std::string& f : cadt::io::mesh_read_formats()) all.push_back("mesh:" + f);
+  for (const std::string& f : cadt::io::value_read_formats()) all.push_back("values:" + f);
   return all;
 }
 
@@ -46,6 +48,13 @@ void check_points(const cadt::io::PointSet& points) {
   if (!points.height.empty() && points.height.size() != points.size()) cadt::fuzz::fail("heights are missing");
   for (const double v : points.xy)
     if (!std::isfinite(v)) cadt::fuzz::fail("a coordinate that is no finite number");
+}
+
+void check_values(const cadt::io::Values& values) {
+  if (values.per_row == 0 || values.values.empty()) cadt::fuzz::fail("no values");
+  if (values.values.size() % values.per_row != 0) cadt::fuzz::fail("a part of a row");
+  for (const double v : values.values)
+    if (!std::isfinite(v)) cadt::fuzz::fail("a value that is no finite number");
 }
 
 void check_mesh(const cadt::io::MeshFile& mesh, std::size_t points) {
@@ -76,6 +85,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       cadt::io::ReadOptions options;
       options.format = name;
       check_points(cadt::io::read_points(file.path(), options));
+    } else if (kind == "values") {
+      check_values(cadt::io::read_values(file.path(), name));
     } else {
       const std::size_t points = 8 + size % 2;  // of the nine that the corpus has: an index may be one too high
       check_mesh(cadt::io::read_mesh(file.path(), points, name), points);

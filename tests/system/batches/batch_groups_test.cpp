@@ -61,6 +61,7 @@ struct Forms {
     for (std::size_t i = 0; i < xy.size(); i += 2) {
       x.push_back(xy[i]), y.push_back(xy[i + 1]);
       float_x.push_back(floats[i]), float_y.push_back(floats[i + 1]);
+      records.push_back({i, xy[i + 1], xy[i]});
     }
   }
   [[nodiscard]] std::vector<std::pair<std::string, PointsView>> views() const {
@@ -68,8 +69,14 @@ struct Forms {
     return {{"interleaved doubles", Reals(interleaved)},
             {"separate doubles", PointsView(Reals(x), Reals(y))},
             {"interleaved floats", Floats(floats)},
-            {"separate floats", PointsView(Floats(float_x), Floats(float_y))}};
+            {"separate floats", PointsView(Floats(float_x), Floats(float_y))},
+            {"doubles among other members", PointsView(records)}};
   }
+  struct Record {
+    std::size_t id;
+    double y, x;
+  };
+  std::vector<Record> records;
   Points interleaved, x, y;
   std::vector<float> floats, float_x, float_y;
 };

@@ -202,7 +202,8 @@ class Info(CliTest):
 
 
 class Help(CliTest):
-    COMMANDS = ("triangulate", "triangle", "verify", "generate", "devices", "info")
+    COMMANDS = ("triangulate", "triangle", "verify", "locate", "interpolate", "raster", "voronoi", "generate", "devices",
+                "info")
 
     def test_version(self):
         header = (SOURCE / "include" / "cadt" / "version.hpp").read_text()

@@ -4,15 +4,19 @@
 CADT_SOURCE: the source tree; CADT_BUILD: a finished build of it."""
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
+import check_exports
+
 SOURCE = Path(os.environ["CADT_SOURCE"])
 BUILD = Path(os.environ["CADT_BUILD"])
 CONSUMER = SOURCE / "tests" / "system" / "install" / "consumer"
+C_TESTS = SOURCE / "tests" / "system" / "c"
 
 
 def run(*command, **options):
@@ -69,7 +73,15 @@ class Installed(InstallTest):
         header = (prefix / "include" / "cadt" / "version.hpp").read_text()
         self.assertIn(f'CADT_VERSION "{version}"', header)
         self.assertIn(version, run(prefix / "bin" / "cadt", "--version"))
-        self.assertEqual([], [path for path in prefix.glob("include/**/*") if path.is_file() and path.suffix != ".hpp"])
+        self.assertEqual([], [path for path in prefix.glob("include/**/*") if path.is_file() and path.suffix not in (".hpp", ".h")])
+
+    def test_functions_of_c_are_those_that_are_exported(self):
+        """check_exports.py compares the list with the library."""
+        prefix, declared = installed(BUILD, self.folder / "prefix"), set()
+        for header in prefix.glob("include/**/*.h"):
+            text = re.sub(r"/\*.*?\*/", "", header.read_text(), flags=re.DOTALL)
+            declared |= set(re.findall(r"\b(cadt_\w+)\(", text))
+        self.assertEqual(sorted(declared), check_exports.listed(check_exports.C_SYMBOLS.read_text()))
 
     def test_a_prefix_that_was_moved(self):
         prefix = installed(BUILD, self.folder / "prefix").rename(self.folder / "elsewhere")
@@ -103,6 +115,30 @@ class SharedLibrary(InstallTest):
         run(sys.executable, SOURCE / "tests" / "system" / "install" / "check_exports.py", "nm", libraries / "libcadt.so")
         self.consume_with_cmake(f"-DCMAKE_PREFIX_PATH={prefix}", files=True)
         self.consume_with_pkg_config(prefix)
+        self.consume_from_c(prefix)
+        self.consume_from_python(libraries)
+        self.consume_from_rust(libraries)
+
+    def consume_from_c(self, prefix):
+        """The program of docs/c.md, without a compiler of C++."""
+        source, program = self.folder / "mesh.c", self.folder / "mesh"
+        source.write_text(re.search(r"```c\n(.*?)```", (SOURCE / "docs" / "c.md").read_text(), re.DOTALL).group(1))
+        environment = {**os.environ, "PKG_CONFIG_PATH": str(library_folder(prefix) / "pkgconfig"),
+                       "LD_LIBRARY_PATH": str(library_folder(prefix))}
+        flags = run("pkg-config", "--cflags", "--libs", "cadt", env=environment).split()
+        run("cc", "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", source, "-o", program, *flags)
+        self.assertEqual(run(program, env=environment), "0 1 4\n0 4 3\n1 2 4\n2 3 4\n")
+
+    def consume_from_python(self, libraries):
+        self.assertIn("ctypes: ok", run(sys.executable, C_TESTS / "smoke.py", libraries / "libcadt.so.0"))
+
+    def consume_from_rust(self, libraries):
+        with self.subTest("Rust"):
+            if shutil.which("rustc") is None:
+                self.skipTest("there is no rustc")
+            program = self.folder / "smoke"
+            run("rustc", "--edition", "2021", "-D", "warnings", C_TESTS / "smoke.rs", "-L", libraries, "-o", program)
+            self.assertIn("rust: ok", run(program, env={**os.environ, "LD_LIBRARY_PATH": str(libraries)}))
 
 
 if __name__ == "__main__":

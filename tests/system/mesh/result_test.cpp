@@ -134,6 +134,21 @@ TEST_P(Result, LayoutsAgree) {
   EXPECT_TRUE(same_mesh(triangulate(PointsView(Reals(x), Reals(y)), options), expected)) << "separate doubles";
   EXPECT_TRUE(same_mesh(triangulate(PointsView(Floats(narrow_x), Floats(narrow_y)), options), expected))
       << "separate floats";
+  struct Record {
+    int id;
+    double y, x;
+  };
+  struct Sample {
+    float y, height, x;
+  };
+  std::vector<Record> records;
+  std::vector<Sample> samples;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    records.push_back({static_cast<int>(i), y[i], x[i]});
+    samples.push_back({narrow_y[i], 0, narrow_x[i]});
+  }
+  EXPECT_TRUE(same_mesh(triangulate(records, options), expected)) << "doubles among other members";
+  EXPECT_TRUE(same_mesh(triangulate(samples, options), expected)) << "floats among other members";
 }
 
 TEST_P(Result, TinySets) {

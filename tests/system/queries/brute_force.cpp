@@ -68,6 +68,9 @@ Points queries_for(const Points& xy, const Triangulation& mesh) {
     const double x = 0.5 * a.x + 0.5 * b.x, y = 0.5 * a.y + 0.5 * b.y;
     add(queries, std::nextafter(x, -INFINITY), y);
     add(queries, std::nextafter(x, INFINITY), std::nextafter(y, INFINITY));
+    const double inwards = std::pow(10, -static_cast<double>(k));
+    const Point c = point_of(xy, random.below(n));
+    add(queries, x + inwards * (c.x - x), y + inwards * (c.y - y));
   }
   const double width = 0.5 * high[0] - 0.5 * low[0], height = 0.5 * high[1] - 0.5 * low[1];
   for (int k = 0; k < 40; ++k)

@@ -3,7 +3,9 @@
 #include "tests/system/queries/brute_force.hpp"
 #include "tests/system/resident/resident.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace cadt::test {
 namespace {
@@ -112,6 +114,61 @@ TEST_P(DeviceQueries, AnotherMeshIsRefused) {
   DevicePoints fewer = points;
   fewer.size = 199;
   EXPECT_THROW(MeshQueries(one, fewer, mesh), InputError);
+}
+
+TEST_P(DeviceQueries, TheMeshGoesWhereItIsWanted) {
+  const Asked set("", uniform_points(500, 13));
+  Triangulator triangulator(options());
+  const DevicePoints points = upload(set.xy);
+  const std::size_t m = set.mesh.number_of_triangles();
+  const std::vector<std::int32_t> expected(set.mesh.triangles().begin(), set.mesh.triangles().end()),
+      across(set.mesh.neighbors().begin(), set.mesh.neighbors().end());
+  const DeviceArray triangles = array<std::int32_t>(3000), neighbors = array<std::int32_t>(3 * m);
+  EXPECT_EQ(triangulator.triangulate(points, triangles, neighbors), m);
+  EXPECT_EQ(memory->download<std::int32_t>(triangles.memory, 3 * m), expected);
+  EXPECT_EQ(memory->download<std::int32_t>(triangles.memory, 3 * m + 1).back(), untouched);
+  EXPECT_EQ(memory->download<std::int32_t>(neighbors.memory, 3 * m), across);
+  EXPECT_EQ(memory->download<std::int32_t>(neighbors.memory, 3 * m + 1).back(), untouched);
+  EXPECT_EQ(triangulator.triangulate(points, array<std::int32_t>(3 * m), {}), m);
+
+  std::vector<std::int32_t> to(3000, untouched), beside(3 * m, untouched);
+  EXPECT_EQ(triangulator.triangulate(std::span<const double>(set.xy), to, beside), m);
+  EXPECT_TRUE(std::equal(expected.begin(), expected.end(), to.begin()));
+  EXPECT_EQ(to[3 * m], untouched);
+  EXPECT_EQ(beside, across);
+
+  // too small, in either place: nothing is written
+  const DeviceArray small = array<std::int32_t>(3 * m - 1);
+  std::ranges::fill(to, untouched);
+  beside.resize(3 * m - 1);
+  const auto refused = [&](const auto& call) {
+    const auto error = thrown<InputError>(call);
+    ASSERT_NE(error, nullptr);
+    EXPECT_EQ(error->index(), m - 1);
+  };
+  refused([&] { (void)triangulator.triangulate(points, small, {}); });
+  refused([&] { (void)triangulator.triangulate(points, triangles, small); });
+  refused([&] { (void)triangulator.triangulate(std::span<const double>(set.xy), to, beside); });
+  EXPECT_EQ(memory->download<std::int32_t>(small.memory, 3 * m), std::vector<std::int32_t>(3 * m, untouched));
+  EXPECT_EQ(to, std::vector<std::int32_t>(3000, untouched));
+  EXPECT_THROW((void)triangulator.triangulate(points, {nullptr, 3000}, {}), InputError);
+  EXPECT_EQ(triangulator.triangulate(DevicePoints{.x = points.x, .size = 2}, triangles, {}), 0u);
+}
+
+TEST_P(DeviceQueries, AMeshThatKeepsItsPointsNeedsNothingElse) {
+  std::optional<MeshQueries> queries;
+  const Points where = {0.5, 0.5, 0.1, 0.9};
+  std::vector<std::int32_t> expected;
+  {
+    const Points xy = uniform_points(400, 8);
+    Options keeping = GetParam().options();
+    EXPECT_THROW(MeshQueries(triangulate(std::span<const double>(xy), keeping), keeping), InputError);
+    keeping.keep_points = KeepPoints::copy;
+    const Triangulation mesh = triangulate(std::span<const double>(xy), keeping);
+    queries.emplace(mesh, keeping);
+    expected = MeshQueries(std::span<const double>(xy), mesh, keeping).locate(where);
+  }
+  EXPECT_EQ(queries->locate(where), expected);
 }
 
 CADT_ON_MAIN_BACKENDS(DeviceQueries);

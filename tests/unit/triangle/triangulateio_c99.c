@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define triangulateio cadt_triangulateio
-#define triangulate cadt_triangulate
+#define triangulate cadt_triangle
 #define trifree cadt_trifree
 
 int run_as_c99(int* triangles, double* center);
@@ -21,7 +21,7 @@ int run_as_c99(int* triangles, double* center) {
   in.pointlist = points;
   in.numberofpoints = 3;
   status = triangulate("zvQ", &in, &out, &vorout);
-  if (status != CADT_TRIANGULATE_DONE) return status;
+  if (status != CADT_TRIANGLE_DONE) return status;
   if (out.numberoftriangles == 1) memcpy(triangles, out.trianglelist, 3 * sizeof(int));
   if (vorout.numberofpoints == 1) memcpy(center, vorout.pointlist, 2 * sizeof(double));
   trifree(out.pointlist);

@@ -74,8 +74,8 @@ TEST(TriangulateIoC99, RunsAsAProgramOfTriangle) {
 }
 
 TEST_F(TriangulateIo, CountsFromOneUnlessAskedOtherwise) {
-  ASSERT_EQ(cadt_triangulate("n", &in, &out, nullptr), CADT_TRIANGULATE_DONE) << cadt_triangulate_message();
-  EXPECT_STREQ(cadt_triangulate_message(), "");
+  ASSERT_EQ(cadt_triangle("n", &in, &out, nullptr), CADT_TRIANGLE_DONE) << cadt_triangle_message();
+  EXPECT_STREQ(cadt_triangle_message(), "");
   EXPECT_EQ(out.numberoftriangles, 2);
   EXPECT_EQ(out.numberofcorners, 3);
   EXPECT_EQ(ints(out.trianglelist, 6), (Ints{1, 2, 3, 1, 3, 5}));
@@ -88,7 +88,7 @@ TEST_F(TriangulateIo, CountsFromOneUnlessAskedOtherwise) {
   EXPECT_EQ(out.segmentlist, nullptr);
   EXPECT_EQ(out.pointattributelist, nullptr);
   Output zero;
-  ASSERT_EQ(cadt_triangulate("zn", &in, &zero, nullptr), CADT_TRIANGULATE_DONE);
+  ASSERT_EQ(cadt_triangle("zn", &in, &zero, nullptr), CADT_TRIANGLE_DONE);
   EXPECT_EQ(ints(zero.trianglelist, 6), (Ints{0, 1, 2, 0, 2, 4}));
   EXPECT_EQ(ints(zero.neighborlist, 6), (Ints{-1, 1, -1, -1, -1, 0}));
 }
@@ -97,7 +97,7 @@ TEST_F(TriangulateIo, FillsEveryArray) {
   in.pointattributelist = attributes.data();
   in.numberofpointattributes = 1;
   in.pointmarkerlist = markers.data();
-  ASSERT_EQ(cadt_triangulate("zevc", &in, &out, &vorout), CADT_TRIANGULATE_DONE) << cadt_triangulate_message();
+  ASSERT_EQ(cadt_triangle("zevc", &in, &out, &vorout), CADT_TRIANGLE_DONE) << cadt_triangle_message();
   EXPECT_EQ(doubles(out.pointattributelist, 5), attributes);
   EXPECT_EQ(ints(out.pointmarkerlist, 5), (Ints{1, 7, 1, 8, 1}));
   EXPECT_EQ(ints(out.segmentlist, 8), (Ints{0, 1, 1, 2, 2, 4, 4, 0}));
@@ -113,7 +113,7 @@ TEST_F(TriangulateIo, FillsEveryArray) {
   EXPECT_EQ(ints(vorout.edgelist, 10), (Ints{0, -1, 0, 1, 0, -1, 1, -1, 1, -1}));
   EXPECT_EQ(doubles(vorout.normlist, 10), (Values{2, 0, 0, 0, 0, -4, 1, 4, -3, 0}));
   Output one, voronoi;
-  ASSERT_EQ(cadt_triangulate("evc", &in, &one, &voronoi), CADT_TRIANGULATE_DONE);
+  ASSERT_EQ(cadt_triangle("evc", &in, &one, &voronoi), CADT_TRIANGLE_DONE);
   EXPECT_EQ(ints(one.segmentlist, 2), (Ints{1, 2}));
   EXPECT_EQ(ints(one.edgelist, 2), (Ints{2, 3}));
   EXPECT_EQ(ints(voronoi.edgelist, 4), (Ints{1, -1, 1, 2}));
@@ -122,7 +122,7 @@ TEST_F(TriangulateIo, FillsEveryArray) {
 TEST_F(TriangulateIo, LeavesOutWhatIsNotWanted) {
   in.pointattributelist = attributes.data();
   in.numberofpointattributes = 1;
-  ASSERT_EQ(cadt_triangulate("BNEPecn", &in, &out, nullptr), CADT_TRIANGULATE_DONE);
+  ASSERT_EQ(cadt_triangle("BNEPecn", &in, &out, nullptr), CADT_TRIANGLE_DONE);
   EXPECT_EQ(out.pointlist, nullptr);
   EXPECT_EQ(out.pointattributelist, nullptr);
   EXPECT_EQ(out.pointmarkerlist, nullptr);
@@ -134,7 +134,7 @@ TEST_F(TriangulateIo, LeavesOutWhatIsNotWanted) {
   EXPECT_NE(out.neighborlist, nullptr);
   EXPECT_EQ(out.numberoftriangles, 2);
   Output marked;
-  ASSERT_EQ(cadt_triangulate("cB", &in, &marked, nullptr), CADT_TRIANGULATE_DONE);
+  ASSERT_EQ(cadt_triangle("cB", &in, &marked, nullptr), CADT_TRIANGLE_DONE);
   EXPECT_NE(marked.segmentlist, nullptr);
   EXPECT_EQ(marked.segmentmarkerlist, nullptr);
   EXPECT_EQ(marked.pointmarkerlist, nullptr);
@@ -142,7 +142,7 @@ TEST_F(TriangulateIo, LeavesOutWhatIsNotWanted) {
 
 TEST_F(TriangulateIo, JettisonsDuplicates) {
   in.pointmarkerlist = markers.data();
-  ASSERT_EQ(cadt_triangulate("zj", &in, &out, nullptr), CADT_TRIANGULATE_DONE);
+  ASSERT_EQ(cadt_triangle("zj", &in, &out, nullptr), CADT_TRIANGLE_DONE);
   EXPECT_EQ(out.numberofpoints, 4);
   EXPECT_EQ(doubles(out.pointlist, 8), (Values{0, 0, 4, 0, 4, 2, 0, 3}));
   EXPECT_EQ(ints(out.pointmarkerlist, 4), (Ints{1, 7, 1, 1}));
@@ -156,7 +156,7 @@ TEST_F(TriangulateIo, WritesToTheCallersMemory) {
   out.pointlist = points.data();  // that of the input, as Triangle's header proposes
   for (void* array : std::initializer_list<void*>{triangles.data(), edges.data(), points.data()}) out.is_callers(array);
   const Values before = points;
-  ASSERT_EQ(cadt_triangulate("ze", &in, &out, nullptr), CADT_TRIANGULATE_DONE);
+  ASSERT_EQ(cadt_triangle("ze", &in, &out, nullptr), CADT_TRIANGLE_DONE);
   EXPECT_EQ(out.trianglelist, triangles.data());
   EXPECT_EQ(triangles, (Ints{0, 1, 2, 0, 2, 4, -7}));
   EXPECT_EQ(edges, (Ints{1, 2, 2, 0, 0, 1, 2, 4, 4, 0, -7}));
@@ -166,7 +166,7 @@ TEST_F(TriangulateIo, WritesToTheCallersMemory) {
 TEST_F(TriangulateIo, TakesFewPointsAndLines) {
   in.numberofpoints = 0;
   in.pointlist = nullptr;
-  ASSERT_EQ(cadt_triangulate("zev", &in, &out, &vorout), CADT_TRIANGULATE_DONE) << cadt_triangulate_message();
+  ASSERT_EQ(cadt_triangle("zev", &in, &out, &vorout), CADT_TRIANGLE_DONE) << cadt_triangle_message();
   EXPECT_EQ(out.numberoftriangles, 0);
   EXPECT_EQ(vorout.numberofpoints, 0);
   EXPECT_NE(out.trianglelist, nullptr);  // something to free, as from malloc
@@ -174,7 +174,7 @@ TEST_F(TriangulateIo, TakesFewPointsAndLines) {
   in.pointlist = points.data();
   in.numberofpoints = 3;
   Output line;
-  ASSERT_EQ(cadt_triangulate("ze", &in, &line, nullptr), CADT_TRIANGULATE_DONE);
+  ASSERT_EQ(cadt_triangle("ze", &in, &line, nullptr), CADT_TRIANGLE_DONE);
   EXPECT_EQ(line.numberoftriangles, 0);
   EXPECT_EQ(line.numberofedges, 0);
   EXPECT_EQ(line.numberofpoints, 3);
@@ -191,46 +191,46 @@ struct Wrong {
 TEST_F(TriangulateIo, RefusesAndChangesNothing) {
   static Values infinite = {0, 0, 1, 0, 0, std::numeric_limits<double>::infinity(), 3, 3, 4, 4};
   for (const Wrong& wrong : std::vector<Wrong>{
-           {"switch", [](Struct&) {}, "zpq", CADT_TRIANGULATE_SWITCHES, "-p reads segments"},
-           {"points", [](Struct& s) { s.pointlist = nullptr; }, "z", CADT_TRIANGULATE_INPUT, "pointlist is NULL"},
-           {"count", [](Struct& s) { s.numberofpoints = -1; }, "z", CADT_TRIANGULATE_INPUT, "numberofpoints is neg"},
-           {"attributes", [](Struct& s) { s.numberofpointattributes = 2; }, "z", CADT_TRIANGULATE_INPUT,
+           {"switch", [](Struct&) {}, "zpq", CADT_TRIANGLE_SWITCHES, "-p reads segments"},
+           {"points", [](Struct& s) { s.pointlist = nullptr; }, "z", CADT_TRIANGLE_INPUT, "pointlist is NULL"},
+           {"count", [](Struct& s) { s.numberofpoints = -1; }, "z", CADT_TRIANGLE_INPUT, "numberofpoints is neg"},
+           {"attributes", [](Struct& s) { s.numberofpointattributes = 2; }, "z", CADT_TRIANGLE_INPUT,
             "pointattributelist is NULL"},
-           {"attribute count", [](Struct& s) { s.numberofpointattributes = -2; }, "z", CADT_TRIANGULATE_INPUT,
+           {"attribute count", [](Struct& s) { s.numberofpointattributes = -2; }, "z", CADT_TRIANGLE_INPUT,
             "numberofpointattributes is neg"},
-           {"infinity", [](Struct& s) { s.pointlist = infinite.data(); }, "z", CADT_TRIANGULATE_INPUT,
+           {"infinity", [](Struct& s) { s.pointlist = infinite.data(); }, "z", CADT_TRIANGLE_INPUT,
             "pointlist, point 2"},
-           {"voronoi", [](Struct&) {}, "v", CADT_TRIANGULATE_INPUT, "vorout"},
-           {"no switches", [](Struct&) {}, nullptr, CADT_TRIANGULATE_INPUT, "is NULL"},
+           {"voronoi", [](Struct&) {}, "v", CADT_TRIANGLE_INPUT, "vorout"},
+           {"no switches", [](Struct&) {}, nullptr, CADT_TRIANGLE_INPUT, "is NULL"},
        }) {
     Struct spoiled = in;
     wrong.spoil(spoiled);
     Struct result{};
     result.numberofpoints = 77;
     const Struct before = result;
-    EXPECT_EQ(cadt_triangulate(wrong.switches, &spoiled, &result, nullptr), wrong.status) << wrong.name;
-    EXPECT_NE(std::string(cadt_triangulate_message()).find(wrong.says), std::string::npos)
-        << wrong.name << ": " << cadt_triangulate_message();
+    EXPECT_EQ(cadt_triangle(wrong.switches, &spoiled, &result, nullptr), wrong.status) << wrong.name;
+    EXPECT_NE(std::string(cadt_triangle_message()).find(wrong.says), std::string::npos)
+        << wrong.name << ": " << cadt_triangle_message();
     EXPECT_EQ(std::memcmp(&before, &result, sizeof before), 0) << wrong.name;
   }
-  EXPECT_EQ(cadt_triangulate("z", nullptr, &out, nullptr), CADT_TRIANGULATE_INPUT);
-  EXPECT_EQ(cadt_triangulate("z", &in, nullptr, nullptr), CADT_TRIANGULATE_INPUT);
+  EXPECT_EQ(cadt_triangle("z", nullptr, &out, nullptr), CADT_TRIANGLE_INPUT);
+  EXPECT_EQ(cadt_triangle("z", &in, nullptr, nullptr), CADT_TRIANGLE_INPUT);
 }
 
 TEST_F(TriangulateIo, MessagesBelongToTheThread) {
-  EXPECT_EQ(cadt_triangulate("p", &in, &out, nullptr), CADT_TRIANGULATE_SWITCHES);
+  EXPECT_EQ(cadt_triangle("p", &in, &out, nullptr), CADT_TRIANGLE_SWITCHES);
   std::thread([] {
-    EXPECT_STREQ(cadt_triangulate_message(), "");
-    EXPECT_EQ(cadt_triangulate(nullptr, nullptr, nullptr, nullptr), CADT_TRIANGULATE_INPUT);
+    EXPECT_STREQ(cadt_triangle_message(), "");
+    EXPECT_EQ(cadt_triangle(nullptr, nullptr, nullptr, nullptr), CADT_TRIANGLE_INPUT);
   }).join();
-  EXPECT_NE(std::string(cadt_triangulate_message()).find("-p"), std::string::npos);
+  EXPECT_NE(std::string(cadt_triangle_message()).find("-p"), std::string::npos);
 }
 
 TEST_F(TriangulateIo, LongMessagesAreCut) {
   std::string all;
   for (int c = 1; c < 256; ++c) all += static_cast<char>(c);
-  EXPECT_EQ(cadt_triangulate(all.c_str(), &in, &out, nullptr), CADT_TRIANGULATE_SWITCHES);
-  EXPECT_EQ(std::strlen(cadt_triangulate_message()), 2047U);
+  EXPECT_EQ(cadt_triangle(all.c_str(), &in, &out, nullptr), CADT_TRIANGLE_SWITCHES);
+  EXPECT_EQ(std::strlen(cadt_triangle_message()), 2047U);
 }
 
 }  // namespace

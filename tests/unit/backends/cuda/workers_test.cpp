@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
+#include <thread>
 #include <vector>
 
 namespace cadt::cuda {
@@ -36,6 +38,23 @@ TEST(Workers, WorkAtTheSameTime) {
     while (here < 3) std::this_thread::yield();  // all must come
   });
   EXPECT_EQ(here, 3);
+}
+
+TEST(Workers, ThoseThatCameAreWaitedFor) {
+  Workers workers;
+  for (int round = 0; round < 20; ++round) {
+    std::atomic<bool> came = false, done = false;
+    workers.run(2, [&](std::size_t self) {
+      if (self == 0) {
+        while (!came) std::this_thread::yield();
+        return;
+      }
+      came = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      done = true;
+    });
+    ASSERT_TRUE(done) << round;
+  }
 }
 
 TEST(Workers, MayBeLeftWithoutWork) { const Workers workers; }

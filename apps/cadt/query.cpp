@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "query.hpp"
+
+#include "failure.hpp"
+#include "interrupt.hpp"
+#include "text.hpp"
+
+#include <fmt/format.h>
+
+namespace cadt::cli {
+
+void add_query_points(CLI::App& command, QueryOptions& o) {
+  command
+      .add_option("QUERIES", o.queries,
+                  "file with the points to ask for, of any format of POINTS; '-' is standard input, as text unless "
+                  "--query-format says otherwise")
+      ->required();
+  command.add_option("--query-format", o.query_format, "format of QUERIES; default: from the suffix")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember(io::point_read_formats(), CLI::ignore_case).description(""));
+  command.add_option("--query-columns", o.query_columns, "columns of QUERIES, as --columns for POINTS")
+      ->type_name("X,Y");
+}
+
+void add_value_options(CLI::App& command, QueryOptions& o) {
+  command
+      .add_option("--values", o.values,
+                  "values at the points: z, their third coordinate (default; --columns names it), or a file with a row "
+                  "for each point, in their order: " +
+                      join(io::value_read_formats(), " "))
+      ->type_name("z|FILE");
+  command
+      .add_option("--method", o.method,
+                  "between the points: linear (in the triangle; default), nearest (the nearest point's) or natural "
+                  "(natural neighbours: smooth)")
+      ->type_name("METHOD")
+      ->check(CLI::IsMember({"linear", "nearest", "natural"}).description(""));
+}
+
+void add_query_output(CLI::App& command, QueryOptions& o, const std::vector<std::string>& formats,
+                      const std::string& what) {
+  command.add_option("-o,--output", o.output, what)->type_name("FILE");
+  command.add_option("-t,--to", o.format, "format of the output: " + join(formats, " ") + "; default: from the suffix")
+      ->type_name("FORMAT");
+}
+
+void add_query_work(CLI::App& command, QueryOptions& o) {
+  command
+      .add_option("--backend", o.backend,
+                  "where to compute: auto, host, opencl or cuda (default: auto, the fastest usable)")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"auto", "host", "opencl", "cuda"}).description(""));
+  command
+      .add_option("--device", o.device, "device of the back end, its number or a part of its name (see: cadt devices)")
+      ->type_name("DEVICE");
+  command.add_option("--threads", o.threads, "host threads; 0 takes all cores (default: 0)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096).description(""));
+  command
+      .add_option("--max-memory", o.max_memory,
+                  "refuse before any work if more device memory is needed: 4G, 512M, 1.5GiB "
+                  "(K M G T and KiB ... count 1024, KB ... 1000)")
+      ->type_name("SIZE");
+  command.add_flag("-q,--quiet", o.quiet, "nothing on standard error but errors");
+}
+
+Output plan_query_output(const QueryOptions& o, const std::vector<std::string>& formats, const std::string& fallback) {
+  std::vector<std::string> format;
+  if (!o.format.empty()) {
+    format = {o.format};
+  } else if (o.output == "-" && !fallback.empty()) {
+    format = {fallback};
+  }
+  if (o.input.path == "-" && o.queries == "-") {
+    throw Failure(exit_usage, "only one of POINTS and QUERIES can be standard input");
+  }
+  if (o.values == "-") throw Failure(exit_usage, "--values takes z or a file, not standard input");
+  Output output;
+  for (const std::string& input : {o.input.path, o.queries, o.values == "z" ? std::string() : o.values}) {
+    output = plan_outputs({o.output}, format, formats, input).front();
+  }
+  return output;
+}
+
+Interpolation method_of(const QueryOptions& o) {
+  return o.method == "nearest"   ? Interpolation::nearest
+         : o.method == "natural" ? Interpolation::natural
+                                 : Interpolation::linear;
+}
+
+QueryRun::QueryRun(const QueryOptions& options) : line(options.quiet), options_(options) {
+  library_.backend = backend_from_string(options.backend);
+  library_.device = options.device;
+  library_.threads = options.threads;
+  if (!options.max_memory.empty()) library_.max_memory = parse_bytes(options.max_memory);
+  library_.statistics = StatisticsDetail::none;
+  library_.stop = interrupt_token();
+  library_.progress = [this](const Progress& progress) { line.update(progress); };
+  line.step(fmt::format("reading {}", display_name(options.input.path, true)));
+  points = read_input(options.input);
+}
+
+void QueryRun::make_mesh() {
+  line.start(points.size());
+  mesh = guarded("triangulating", {}, [&] { return triangulate(points.view(), library_); });
+  library_.progress = nullptr;
+  queries_.emplace(guarded("preparing", {}, [&] { return MeshQueries(points.view(), mesh, library_); }));
+  line.clear();
+  if (mesh.dimension() < 2 && !options_.quiet) {
+    say(
+        fmt::format("cadt: warning: {}: no triangles: the points are fewer than three, or all on one line; check "
+                    "--columns and --project if you expected some\n",
+                    display_name(options_.input.path, true)));
+  }
+}
+
+io::Values QueryRun::read_values() const {
+  const std::string name = display_name(options_.input.path, true);
+  if (options_.values == "z") {
+    if (points.height.empty()) {
+      throw Failure(exit_file,
+                    fmt::format("{}: no values: the points have no third coordinate; name three columns with "
+                                "--columns x,y,depth, or a file with a row for each point with --values FILE",
+                                name));
+    }
+    return {points.height, 1};
+  }
+  io::Values values = io::read_values(options_.values);
+  if (values.rows() != points.size()) {
+    throw Failure(exit_file, fmt::format("{}: {} rows of values for the {} points of {}; there must be a row for each "
+                                         "point, in the same order",
+                                         options_.values, values.rows(), points.size(), name));
+  }
+  return values;
+}
+
+io::PointSet QueryRun::read_queries() {
+  line.step(fmt::format("reading {}", display_name(options_.queries, true)));
+  io::ReadOptions read;
+  read.format = options_.queries == "-" && options_.query_format.empty() ? "txt" : lower(options_.query_format);
+  read.columns = options_.query_columns;
+  return io::read_points(options_.queries, read);
+}
+
+// The readers let finite coordinates through only, so this is about all of them, or about what an option says.
+void QueryRun::refuse(const InputError& error, const std::string& about) const {
+  if (!about.empty()) throw Failure(exit_usage, fmt::format("{}: {}", about, error.what()));
+  throw Failure(exit_file, fmt::format("{}: {}", display_name(options_.input.path, true), error.what()));
+}
+
+void QueryRun::write(const Output& output, const std::function<void()>& writer,
+                     const std::vector<std::pair<std::string, std::string>>& summary) {
+  const std::string name = display_name(output.path, false);
+  {
+    const InPhase phase(writing_phase(output.path));
+    if (output.path != "-") line.step(fmt::format("writing {}", name));
+    writer();
+    if (output.path == "-") finish_stdout();
+  }
+  line.clear();
+  check_interrupt();
+  if (options_.quiet || output.path == "-") return;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  std::string text =
+      fmt::format("{:<12}{}\n{:<12}{}\n", "points", points.size(), "triangles", mesh.number_of_triangles());
+  for (const auto& [key, value] : summary) text += fmt::format("{:<12}{}\n", key, value);
+  say(text + fmt::format("{:<12}{:.3f} s\n{:<12}{}\n{:<12}{}\n", "time", seconds, "back end",
+                         fmt::format("{}, {}", to_string(queries_->device().backend), queries_->device().name),
+                         "written", name));
+}
+
+}  // namespace cadt::cli

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <new>
+#include <utility>
+
+#include "common/c_interface/guard.hpp"
+
+namespace cadt::c_interface {
+namespace {
+
+/// The strings are in `text`, or, if there was no memory for them, constants.
+struct LastError {
+  cadt_error error{};
+  std::array<std::string, 3> text;
+};
+
+LastError& last() noexcept {
+  thread_local LastError error;
+  return error;
+}
+
+cadt_error without_data(cadt_status status) noexcept {
+  cadt_error error{};
+  error.size = sizeof error;
+  error.status = status;
+  error.message = error.name = error.detail = "";
+  error.index = -1;
+  return error;
+}
+
+cadt_error& begin(cadt_status status) noexcept { return last().error = without_data(status); }
+
+void keep_text(std::string message, std::string name = {}, std::string detail = {}) noexcept {
+  LastError& kept = last();
+  kept.text = {std::move(message), std::move(name), std::move(detail)};
+  kept.error.message = kept.text[0].c_str();
+  kept.error.name = kept.text[1].c_str();
+  kept.error.detail = kept.text[2].c_str();
+}
+
+void keep_sizes(std::size_t needed, std::size_t available) noexcept {
+  last().error.needed = needed;
+  last().error.available = available;
+}
+
+/// Rethrows the exception that is being handled. May run out of memory itself.
+void keep_known() {
+  try {
+    throw;
+  } catch (const InvalidArgument& e) {
+    begin(CADT_INVALID_ARGUMENT);
+    keep_text(e.what(), e.argument());
+  } catch (const BufferTooSmall& e) {
+    begin(CADT_BUFFER_TOO_SMALL);
+    keep_sizes(e.needed(), e.available());
+    keep_text(e.what());
+  } catch (const InputError& e) {
+    begin(CADT_INPUT_ERROR).index = static_cast<std::int64_t>(e.index());
+    keep_text(e.what());
+  } catch (const LimitError& e) {
+    begin(CADT_LIMIT_ERROR);
+    keep_sizes(e.count(), e.limit());
+    keep_text(e.what());
+  } catch (const OptionError& e) {
+    begin(CADT_OPTION_ERROR);
+    keep_text(e.what(), e.option());
+  } catch (const BackendUnavailable& e) {
+    begin(CADT_BACKEND_UNAVAILABLE);
+    keep_text(e.what(), e.backend(), e.reason());
+  } catch (const OutOfMemory& e) {
+    begin(CADT_OUT_OF_MEMORY);
+    keep_sizes(e.needed(), e.available());
+    keep_text(e.what());
+  } catch (const DeviceError& e) {
+    begin(CADT_DEVICE_ERROR).code = e.code();
+    keep_text(e.what(), e.call(), e.device());
+  } catch (const KernelBuildError& e) {
+    begin(CADT_KERNEL_BUILD_ERROR);
+    keep_text(e.what(), e.device(), e.log());
+  } catch (const Cancelled& e) {
+    begin(CADT_CANCELLED);
+    keep_text(e.what());
+  } catch (const InvalidMesh& e) {
+    begin(CADT_INVALID_MESH).index = e.first();
+    keep_text(e.what(), e.check());
+  } catch (const InternalError& e) {
+    begin(CADT_INTERNAL_ERROR);
+    keep_text(e.what());
+  } catch (const std::bad_alloc&) {
+    begin(CADT_OUT_OF_MEMORY).message = "the host has too little memory";
+  } catch (const std::exception& e) {
+    begin(CADT_ERROR);
+    keep_text(e.what());
+  } catch (...) {
+    begin(CADT_ERROR).message = "an exception of an unknown type";
+  }
+}
+
+}  // namespace
+
+cadt_status keep_exception() noexcept {
+  try {
+    keep_known();
+  } catch (...) {
+    // There was no memory for the message: the status, which was kept first, says what happened.
+    last().error.message = "there was too little memory for the message";
+  }
+  return last().error.status;
+}
+
+}  // namespace cadt::c_interface
+
+using namespace cadt::c_interface;
+
+extern "C" {
+
+int32_t cadt_abi_version(void) { return CADT_ABI_VERSION; }
+
+const char* cadt_version(void) { return CADT_VERSION; }
+
+const char* cadt_status_name(cadt_status status) {
+  constexpr std::array names = {"CADT_OK",
+                                "CADT_INVALID_ARGUMENT",
+                                "CADT_INPUT_ERROR",
+                                "CADT_LIMIT_ERROR",
+                                "CADT_OPTION_ERROR",
+                                "CADT_BACKEND_UNAVAILABLE",
+                                "CADT_OUT_OF_MEMORY",
+                                "CADT_DEVICE_ERROR",
+                                "CADT_KERNEL_BUILD_ERROR",
+                                "CADT_CANCELLED",
+                                "CADT_INVALID_MESH",
+                                "CADT_INTERNAL_ERROR",
+                                "CADT_BUFFER_TOO_SMALL",
+                                "CADT_ERROR"};
+  static_assert(names.size() == CADT_ERROR + 1);
+  return status < 0 || static_cast<std::size_t>(status) >= names.size() ? "unknown status"
+                                                                        : names[static_cast<std::size_t>(status)];
+}
+
+cadt_status cadt_last_error(cadt_error* error) {
+  // A failure of this function leaves the last error as it is.
+  if (error == nullptr || error->size < sizeof(cadt_error)) return CADT_INVALID_ARGUMENT;
+  give(error, last().error.message != nullptr ? last().error : without_data(CADT_OK), "error");
+  return CADT_OK;
+}
+
+const char* cadt_last_error_message(void) {
+  const char* message = last().error.message;
+  return message != nullptr ? message : "";
+}
+}

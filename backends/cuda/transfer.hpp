@@ -24,7 +24,7 @@ namespace cadt::cuda {
 class Transfer {
  public:
   static constexpr std::size_t slot_bytes = std::size_t{1} << 20;     ///< smaller ones keep the bus waiting
-  static constexpr std::size_t fewest_bytes = std::size_t{2} << 20;   ///< below, waking threads takes longer
+  static constexpr std::size_t fewest_bytes = std::size_t{2} << 20;   ///< below, the gain is not clear
   static constexpr std::size_t bytes_a_lane = std::size_t{16} << 20;  ///< about twice what locking its memory takes
   static constexpr std::size_t fewest_lanes = 4;  ///< the driver's copy is as fast as fewer, unless they are all
   static constexpr unsigned most_threads = 16;

@@ -70,7 +70,8 @@ CudaDevice::CudaDevice(DeviceInfo info, const Options& options)
       block_size_(options.tuning.work_group_size != 0 ? std::clamp(options.tuning.work_group_size, 1U, largest_block)
                                                       : default_block),
       block_size_asked_(options.tuning.work_group_size != 0),
-      stream_(std::make_shared<Stream>(info_.index, info_.name, options.queue, options.allocator)) {
+      stream_(std::make_shared<Stream>(info_.index, info_.name, options.queue, options.allocator)),
+      transfer_(stream_, options.threads) {
   const ContextScope scope(stream_->context());
   check_call(cudaHostAlloc(&staging_, staging_bytes, cudaHostAllocDefault), "cudaHostAlloc");
   if (options.tuning.kernel_times) clock_.emplace(stream_);
@@ -115,6 +116,7 @@ void CudaDevice::reserve(std::size_t bytes) {
 
 void CudaDevice::trim() {
   const ContextScope scope(stream_->context());
+  transfer_.release();
   stream_->trim();
 }
 
@@ -128,6 +130,7 @@ void CudaDevice::write(Buffer& to, std::size_t offset, const void* from, std::si
   check_range("a write", to, offset, bytes);
   if (bytes == 0) return;
   const ContextScope scope(stream_->context());
+  if (transfer_.suits(from, bytes)) return transfer_.to_device(data_of(to) + offset, from, bytes);
   check_call(cudaMemcpyAsync(data_of(to) + offset, from, bytes, cudaMemcpyHostToDevice, stream_->get()),
              "cudaMemcpyAsync");
   stream_->wait();
@@ -137,6 +140,7 @@ void CudaDevice::read(const Buffer& from, std::size_t offset, void* to, std::siz
   check_range("a read", from, offset, bytes);
   if (bytes == 0) return;
   const ContextScope scope(stream_->context());
+  if (transfer_.suits(to, bytes)) return transfer_.to_host(to, data_of(from) + offset, bytes);
   // Small results are read through page-locked memory, which halves their time.
   const bool small = bytes <= staging_bytes;
   check_call(

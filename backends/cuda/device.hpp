@@ -6,6 +6,7 @@
 
 #include "backends/cuda/clock.hpp"
 #include "backends/cuda/context.hpp"
+#include "backends/cuda/transfer.hpp"
 #include "common/driver/buffer_cache.hpp"
 #include "common/driver/device.hpp"
 
@@ -66,6 +67,7 @@ class CudaDevice final : public Device, private Primitives {
   std::vector<cudaEvent_t> events_;  ///< of this call and earlier ones; the first `marks_` are in use
   std::size_t marks_ = 0;
   void* staging_ = nullptr;  ///< page-locked host memory for small reads
+  Transfer transfer_;        ///< large copies
   std::optional<CudaClock> clock_;
 };
 

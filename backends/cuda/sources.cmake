@@ -88,7 +88,7 @@ cadt_library_options(cadt_cuda_kernels)
 set_target_properties(cadt_cuda_kernels PROPERTIES CUDA_SEPARABLE_COMPILATION OFF)
 target_sources(cadt PRIVATE ${CMAKE_CURRENT_LIST_DIR}/backend.cpp
   ${CMAKE_CURRENT_LIST_DIR}/clock.cpp ${CMAKE_CURRENT_LIST_DIR}/context.cpp ${CMAKE_CURRENT_LIST_DIR}/device.cpp
-               $<TARGET_OBJECTS:cadt_cuda_kernels>)
+  ${CMAKE_CURRENT_LIST_DIR}/transfer.cpp ${CMAKE_CURRENT_LIST_DIR}/workers.cpp $<TARGET_OBJECTS:cadt_cuda_kernels>)
 # The static runtime looks for the driver when it is first called: a machine without one starts the program all the same.
 target_include_directories(cadt SYSTEM PRIVATE ${CUDAToolkit_INCLUDE_DIRS})
 target_link_libraries(cadt PRIVATE CUDA::cudart_static)

@@ -91,7 +91,7 @@ Triangulation TriangulationBatch::triangulation(std::size_t set) const {
     edges.push_back({static_cast<std::uint32_t>(vertices[first + (i + 1) % 3]),
                      static_cast<std::uint32_t>(vertices[first + (i + 2) % 3])});
   }
-  if (!edges.empty()) one->hull = chain_loop(edges, one->points);
+  if (!edges.empty()) one->hull = chain_loop(std::move(edges), one->points);
   return Triangulation(std::move(one));
 }
 

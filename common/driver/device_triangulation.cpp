@@ -26,12 +26,12 @@ std::vector<Duplicate> read_duplicates(Device& device, const Allocation& points,
   return list;
 }
 
-void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, Triangulation::Data& to) {
+void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, Triangulation::Data& to, EarlyArrays& arrays) {
   to.hull = find_hull(ctx, from.triangles, from.neighbors, from.triangle_count, from.hull_size(), from.points);
   const std::size_t values = 3 * from.triangle_count;
   const auto fetch = [&](const Allocation& array, Words& words) {
     if (words != nullptr) return;  // the array itself
-    words = make_words(values);
+    words = arrays.take(values);
     ctx.device.read(*array, 0, words.get(), values * word);
   };
   fetch(from.triangles, to.triangles);
@@ -67,7 +67,8 @@ Triangulation DeviceTriangulation::download() const {
   copy->duplicates = read_duplicates(*data_);
   if (data_->triangle_count != 0) {
     Context ctx(device, data_->state->memory, data_->state->options, copy->statistics);
-    read_mesh(ctx, *data_, *copy);
+    EarlyArrays none;
+    read_mesh(ctx, *data_, *copy, none);
   }
   return Triangulation(std::move(copy));
 }

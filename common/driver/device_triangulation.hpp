@@ -9,6 +9,7 @@
 
 #include "common/driver/context.hpp"
 #include "common/driver/device.hpp"
+#include "common/driver/early_arrays.hpp"
 #include "common/driver/memory.hpp"
 #include "common/driver/memory_plan.hpp"
 #include "common/driver/triangulation_data.hpp"
@@ -37,8 +38,8 @@ struct DeviceTriangulation::Data {
   }
 };
 
-/// Copies the hull to the host, and the arrays that it has not.
-void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, Triangulation::Data& to);
+/// Copies the hull to the host, and the arrays that it has not, to `arrays` where there are some.
+void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, Triangulation::Data& to, EarlyArrays& arrays);
 /// Reads lists of `count` words; they may be null if that is 0.
 [[nodiscard]] std::vector<Duplicate> read_duplicates(Device& device, const Allocation& points,
                                                      const Allocation& representatives, std::size_t count);

@@ -19,6 +19,8 @@ using Words = std::unique_ptr<std::int32_t[], FreeWords>;
 /// Uninitialised words. Large arrays are in huge pages where the system has them: triangles are written in no regular
 /// order, and each first write to a page costs a page fault.
 [[nodiscard]] Words make_words(std::size_t count);
+/// The first `count` of `all` words of make_words(all): the system gets back whole pages behind them, where it can.
+[[nodiscard]] Words cut_words(Words words, std::size_t all, std::size_t count) noexcept;
 
 /// What a Triangulation holds.
 struct Triangulation::Data {

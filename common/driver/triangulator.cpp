@@ -29,7 +29,7 @@ using device_text::word;
 
 /// Sorts the points, builds their mesh and writes the result; what is written straight to memory of the host goes to
 /// `host`.
-void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Data* host,
+void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Data* host, EarlyArrays& arrays,
                       DeviceTriangulation::Data& data) {
   ctx.result_on_host = host != nullptr;
   const std::size_t n = input.size();
@@ -42,6 +42,7 @@ void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Dat
   data.duplicate_count = n - points.distinct;
   data.duplicate_points = std::move(points.duplicates);
   data.representatives = std::move(points.representatives);
+  if (host != nullptr && ctx.device.info().gpu) arrays.begin(6 * points.distinct, ctx.options.threads);
   Mesh mesh = build(ctx, std::move(points), input);
   data.dimension = mesh.flat ? (data.distinct >= 2 ? 1 : 0) : 2;
   if (mesh.flat) return;
@@ -64,10 +65,11 @@ void run_call(const std::shared_ptr<Triangulator::State>& state, const InputPoin
   if (shape.points == 0) return;
   const MemoryPlan plan = plan_call(*state, shape);
   Context ctx(*state->device, state->memory, state->options, data.statistics, plan);
-  triangulate_into(ctx, points, host, data);
+  EarlyArrays arrays;
+  triangulate_into(ctx, points, host, arrays, data);
   ctx.end_phase("output");
   if (host != nullptr) {
-    if (data.dimension == 2) read_mesh(ctx, data, *host);
+    if (data.dimension == 2) read_mesh(ctx, data, *host, arrays);
     host->duplicates = read_duplicates(data);
     ctx.end_phase("copy");
   }

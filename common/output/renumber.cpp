@@ -109,21 +109,29 @@ void number_by_buckets(Context& ctx, const Mesh& mesh, const Allocation& buckets
 
 }  // namespace
 
-std::vector<std::int32_t> chain_loop(const std::vector<std::array<std::uint32_t, 2>>& edges, std::size_t points) {
-  std::vector<std::int32_t> next(points, -1);
+std::vector<std::int32_t> chain_loop(std::vector<std::array<std::uint32_t, 2>> edges, std::size_t points) {
+  // Few edges are searched: a table by point would be as long as the whole set, and writing it takes longer.
+  const bool few = edges.size() < points / 64;
+  std::vector<std::int32_t> table(few ? 0 : points, -1);
+  if (few) std::sort(edges.begin(), edges.end());
   std::int32_t smallest = static_cast<std::int32_t>(edges.front()[0]);
-  for (const auto& edge : edges) {
-    next[edge[0]] = static_cast<std::int32_t>(edge[1]);
-    smallest = std::min(smallest, static_cast<std::int32_t>(edge[0]));
+  for (const auto& [from, to] : edges) {
+    if (!few) table[from] = static_cast<std::int32_t>(to);
+    smallest = std::min(smallest, static_cast<std::int32_t>(from));
   }
+  const auto next = [&](std::int32_t at) {
+    const auto from = static_cast<std::uint32_t>(at);
+    if (!few) return table[from];
+    const auto found = std::lower_bound(edges.begin(), edges.end(), std::array<std::uint32_t, 2>{from, 0});
+    return found != edges.end() && (*found)[0] == from ? static_cast<std::int32_t>((*found)[1]) : -1;
+  };
   std::vector<std::int32_t> loop;
   loop.reserve(edges.size());
-  for (std::int32_t at = smallest; loop.size() < edges.size() && at >= 0; at = next[static_cast<std::size_t>(at)]) {
+  for (std::int32_t at = smallest; loop.size() < edges.size() && at >= 0; at = next(at)) {
     if (!loop.empty() && at == smallest) break;
     loop.push_back(at);
   }
-  if (loop.size() != edges.size() || next[static_cast<std::size_t>(loop.back())] != smallest)
-    give_up("the hull is not one loop");
+  if (loop.size() != edges.size() || next(loop.back()) != smallest) give_up("the hull is not one loop");
   return loop;
 }
 

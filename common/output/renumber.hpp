@@ -37,8 +37,7 @@ void renumber_within_sets(Context& ctx, const Allocation& set_starts, const SetS
                           std::size_t count);
 
 /// Edges (from, to) as one loop that starts at the smallest index. \throws InternalError if they are not one
-[[nodiscard]] std::vector<std::int32_t> chain_loop(const std::vector<std::array<std::uint32_t, 2>>& edges,
-                                                   std::size_t points);
+[[nodiscard]] std::vector<std::int32_t> chain_loop(std::vector<std::array<std::uint32_t, 2>> edges, std::size_t points);
 
 /// The boundary as one counterclockwise loop from its smallest index. `size`: its vertices, by Euler's formula.
 [[nodiscard]] std::vector<std::int32_t> find_hull(Context& ctx, const Allocation& triangles,

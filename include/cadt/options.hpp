@@ -108,6 +108,7 @@ struct Options {
   /// coordinates only: with doubles BackendUnavailable, with Strategy::stars OptionError.
   std::string device;
   /// Host threads at most; 0: one for each core, 1: serial (the reference). Small sets are left to one of them.
+  /// With a GPU: those that copy large sets and results and make the pages of results.
   unsigned threads = 0;
   Order order = Order::canonical;
   /// For points of the host, and not for batches.

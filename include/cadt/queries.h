@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The part of cadt.h that asks a mesh, and gives meshes in arrays of the caller's; docs/queries.md and queries.hpp explain
- * each function. The rules of cadt.h hold here. */
+/* The part of cadt.h that asks a mesh, and gives meshes in arrays of the caller's; docs/queries.md and queries.hpp
+ * explain each function. The rules of cadt.h hold here. */
 #ifndef CADT_QUERIES_C_H
 #define CADT_QUERIES_C_H
 

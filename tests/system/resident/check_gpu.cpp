@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Large sets on a GPU: the time from points on the device to triangles and neighbours on the device, and the check of
-// the mesh. One line a run. Needs nothing but the library.
+// the mesh; or whole calls from host memory to host memory. One line a run. Needs nothing but the library.
 #include <cadt/cadt.hpp>
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <initializer_list>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -25,11 +26,11 @@ struct Arguments {
   std::string backend = "cuda", device, kind = "uniform", file, verify = "none";
   int runs = 10, warm_up = 3;
   unsigned block = 0;
-  Order order = Order::fast;
+  std::optional<Order> order;  ///< of the run's kind
   Strategy strategy = Strategy::automatic;
   Stabilize stabilize = Stabilize::off;
   StatisticsDetail statistics = StatisticsDetail::counters;
-  bool phases = false, hash = false, floats = false;
+  bool phases = false, hash = false, floats = false, host_to_host = false;
 };
 
 [[noreturn]] void usage() {
@@ -40,10 +41,14 @@ struct Arguments {
       "                      [--order fast|canonical] [--verify none|host|device] [--phases] [--hash]\n"
       "                      [--strategy auto|locks|stars] [--stabilize off|defer|paper]\n"
       "                      [--statistics none|counters|timing] [--sets S] [--floats] [--most-bytes B]\n"
+      "                      [--host-to-host]\n"
       "--sets: the points are those of S sets of the same size, in one call\n"
       "--floats: the points as floats; --most-bytes: Options::max_memory, a point\n"
       "--file: points as raw 64-bit numbers x0 y0 x1 y1 ... (cadt generate NAME -t f64)\n"
-      "prints the median time (and the least and the most) from points on the device to a mesh on the device\n",
+      "--host-to-host: from the caller's pageable memory to a new Triangulation, in the canonical order unless "
+      "--order\n"
+      "otherwise prints the median time (and the least and the most) from points on the device to a mesh on the "
+      "device\n",
       stderr);
   std::exit(2);
 }
@@ -98,6 +103,8 @@ Arguments parse(int count, char** values) {
       a.hash = true;
     else if (words[i] == "--floats")
       a.floats = true;
+    else if (words[i] == "--host-to-host")
+      a.host_to_host = true;
     else if (words[i] == "--most-bytes")
       a.most_bytes = std::stoul(value());
     else
@@ -213,6 +220,68 @@ int run_sets(const Arguments& a, Triangulator& triangulator, test::DeviceMemory*
   return wrong == 0 ? 0 : 1;
 }
 
+/// Medians of the phases of all runs. Some names come twice.
+class Phases {
+ public:
+  void add(const Statistics& statistics) {
+    names_.clear();
+    for (const auto& [name, ms] : statistics.milliseconds) {
+      names_.push_back(name);
+      runs_.resize(std::max(runs_.size(), names_.size()));
+      runs_[names_.size() - 1].push_back(ms);
+    }
+  }
+  void print() {
+    std::printf("\n   ");
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      auto& list = runs_[i];
+      std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
+      std::printf(" %s %.2f", names_[i].c_str(), list[list.size() / 2]);
+    }
+  }
+
+ private:
+  std::vector<std::vector<double>> runs_;
+  std::vector<std::string> names_;
+};
+
+/// Whole calls: points in pageable memory of the host, a new Triangulation. The one before is destroyed outside of the
+/// time. The first call is named as well: it makes what later ones reuse.
+int run_from_host(const Arguments& a, const Options& options, PointsView points) {
+  const double before = now();
+  Triangulator triangulator(options);
+  const double opened = now();
+  Triangulation mesh;
+  std::vector<double> times;
+  Phases phases;
+  double first = 0;
+  for (int r = 0; r < a.warm_up + a.runs; ++r) {
+    mesh = Triangulation();
+    const double begin = now();
+    mesh = triangulator.triangulate(points);
+    const double took = now() - begin;
+    if (r == 0) first = took;
+    if (r < a.warm_up) continue;
+    times.push_back(took);
+    phases.add(mesh.statistics());
+  }
+  std::sort(times.begin(), times.end());
+  std::printf("%s %zu %s '%s' host to host: %.3f ms (%.3f to %.3f), opened in %.1f, first call %.1f, %zu triangles",
+              (a.file.empty() ? a.kind : a.file).c_str(), points.size(), a.backend.c_str(),
+              mesh.statistics().device.c_str(), times[times.size() / 2], times.front(), times.back(), opened - before,
+              first, mesh.number_of_triangles());
+  if (a.phases) phases.print();
+  if (a.hash) std::printf(", %s", mesh.hash().to_string().c_str());
+  bool ok = true;
+  if (a.verify != "none") {
+    const VerifyReport report = verify(points, mesh);
+    ok = report.ok;
+    std::printf(", %s", report.summary().c_str());
+  }
+  std::printf("\n");
+  return ok ? 0 : 1;
+}
+
 int run(const Arguments& a) {
   std::vector<double> xy = a.file.empty() ? make_points(a.kind, a.points) : read_points(a.file);
   const std::vector<float> single(xy.begin(), a.floats ? xy.end() : xy.begin());
@@ -220,13 +289,18 @@ int run(const Arguments& a) {
   const std::size_t n = xy.size() / 2;
   Options options;
   options.backend = backend_from_string(a.backend);
-  options.order = a.order;
+  options.order = a.order.value_or(a.host_to_host ? Order::canonical : Order::fast);
   options.tuning.work_group_size = a.block;
   options.tuning.strategy = a.strategy;
   options.tuning.stabilize = a.stabilize;
   options.statistics = a.statistics;
   std::unique_ptr<test::DeviceMemory> memory;
   options.max_memory = a.most_bytes * n;
+  if (a.host_to_host) {
+    options.device = options.backend == Backend::opencl ? a.device : std::string();
+    return a.floats ? run_from_host(a, options, std::span<const float>(single))
+                    : run_from_host(a, options, std::span<const double>(xy));
+  }
   const void* points = a.floats ? static_cast<const void*>(single.data()) : xy.data();
   if (options.backend != Backend::host) {
     const int device = chosen_device(options.backend, options.backend == Backend::opencl ? a.device : std::string());
@@ -243,8 +317,7 @@ int run(const Arguments& a) {
   if (a.sets != 0) return run_sets(a, triangulator, memory.get(), input, xy);
   DeviceTriangulation mesh;
   std::vector<double> times;
-  std::vector<std::vector<double>> phases;  // some names come twice
-  std::vector<std::string> names;
+  Phases phases;
   for (int r = 0; r < a.warm_up + a.runs; ++r) {
     mesh = DeviceTriangulation();
     const double begin = now();
@@ -252,12 +325,7 @@ int run(const Arguments& a) {
     if (memory) memory->wait();
     if (r < a.warm_up) continue;
     times.push_back(now() - begin);
-    names.clear();
-    for (const auto& [name, ms] : mesh.statistics().milliseconds) {
-      names.push_back(name);
-      phases.resize(std::max(phases.size(), names.size()));
-      phases[names.size() - 1].push_back(ms);
-    }
+    phases.add(mesh.statistics());
   }
   std::sort(times.begin(), times.end());
   const Statistics& s = mesh.statistics();
@@ -266,12 +334,7 @@ int run(const Arguments& a) {
               times[times.size() / 2], times.front(), times.back(), mesh.number_of_triangles(),
               static_cast<double>(s.bytes_device_peak) / static_cast<double>(n));
   if (a.phases) {
-    std::printf("\n   ");
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      auto& list = phases[i];
-      std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2), list.end());
-      std::printf(" %s %.2f", names[i].c_str(), list[list.size() / 2]);
-    }
+    phases.print();
     const auto all = static_cast<double>(n);
     std::printf(
         " | a point: steps %.2f flips %.2f failed locks %.3f | deferred %llu + %llu, launches %llu, sweeps %llu, "

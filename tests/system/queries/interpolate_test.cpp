@@ -51,6 +51,22 @@ TEST_P(Interpolate, LinearFunctionsAreReproduced) {
   EXPECT_GT(compared, 1000u);
 }
 
+TEST_P(Interpolate, ValuesStayBetweenThoseOfTheVertices) {
+  for_each_set(1500, [&](const Asked& set) {
+    const Points asked = near_queries(set);
+    if (set.mesh.number_of_triangles() == 0 || !narrow(set)) return;
+    SCOPED_TRACE(set.name);
+    MeshQueries queries(std::span<const double>(set.xy), set.mesh, GetParam().options());
+    std::vector<double> values(set.xy.size() / 2);
+    Random random(values.size());
+    for (double& value : values) value = random.uniform();
+    for (const Interpolation method : {Interpolation::linear, Interpolation::natural})
+      for (const double found : queries.interpolate(values, asked, method)) {
+        ASSERT_FALSE(found < -1e-6 || found > 1 + 1e-6) << found << ' ' << to_string(method);
+      }
+  });
+}
+
 TEST_P(Interpolate, ValuesOfVerticesAreKept) {
   const Asked set("", uniform_points(800, 21));
   MeshQueries queries(std::span<const double>(set.xy), set.mesh, GetParam().options());

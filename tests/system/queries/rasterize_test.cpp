@@ -102,6 +102,19 @@ TEST_P(Rasterize, LongEdgesLeaveHoles) {
   }
 }
 
+TEST_P(Rasterize, ACellOnAnEdgeBelongsToOneTriangle) {
+  // A centre lies on the edge between a triangle that is too long and one that is not: the lower one decides.
+  for (const bool long_one_first : {true, false}) {
+    Points xy = {0, 0, 2, 0, 2, 2, 0, 2};
+    xy.insert(long_one_first ? xy.begin() : xy.end(), {10, 1});
+    const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
+    MeshQueries queries(std::span<const double>(xy), mesh, GetParam().options());
+    const auto raster = queries.rasterize({1.5, 0.5, 1, 1, 1, 1}, std::vector<double>(5, 7.0), Interpolation::linear, 5);
+    EXPECT_EQ(queries.locate(Points{2, 1}), std::vector<std::int32_t>{long_one_first ? 0 : 1});
+    EXPECT_EQ(std::isnan(raster.at(0)), long_one_first);
+  }
+}
+
 CADT_ON_MAIN_BACKENDS(Rasterize);
 
 }  // namespace

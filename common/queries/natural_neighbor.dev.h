@@ -147,27 +147,6 @@ CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cad
                                      values[c * per_point + of], mean);
 }
 
-/* Whether there is nothing beyond edge k of triangle t but the outside, or a thin triangle as there are along the hull.
- */
-CADT_FN cadt_u32 cadt_is_outermost(const cadt_query_mesh* m, cadt_u32 t, cadt_u32 k) {
-  const cadt_u32 n = cadt_neighbor_of(&m->view, t, k);
-  if (n == CADT_NONE) return 1u;
-  const cadt_point a = cadt_corner(m, n, 0u), b = cadt_corner(m, n, 1u), c = cadt_corner(m, n, 2u);
-  const cadt_point middle = {a.x + (b.x - a.x) / 3.0 + (c.x - a.x) / 3.0, a.y + (b.y - a.y) / 3.0 + (c.y - a.y) / 3.0};
-  cadt_u32 thin;
-  (void)cadt_barycentric(a, b, c, middle, &thin);
-  return thin;
-}
-
-/* Whether the natural neighbours of p in triangle t are taken as those of linear interpolation: at a vertex, in a thin
- * triangle, on the hull or nearer to it than 2^-30 of the triangle's height. `w`: its barycentric coordinates. */
-CADT_FN cadt_u32 cadt_takes_linear(const cadt_query_mesh* m, cadt_u32 t, const cadt_weights* w, cadt_u32 thin) {
-  cadt_u32 linear = thin;
-  for (cadt_u32 k = 0u; k < 3u; ++k)
-    if (w->at[k] == 1.0 || (w->at[k] < 9.313225746154785e-10 && cadt_is_outermost(m, t, k))) linear = 1u;
-  return linear;
-}
-
 /* `per_point` values a query, as in cadt_interpolate_linear. `failed`: how many boundaries did not close, which cannot
  * be in a Delaunay mesh. */
 CADT_KERNEL(cadt_interpolate_natural, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_point* queries,
@@ -187,7 +166,7 @@ CADT_KERNEL(cadt_interpolate_natural, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL co
     cadt_u32 thin, open = 0u;
     const cadt_weights w =
         cadt_barycentric(cadt_corner(&mesh, t, 0u), cadt_corner(&mesh, t, 1u), cadt_corner(&mesh, t, 2u), p, &thin);
-    const cadt_u32 linear = cadt_takes_linear(&mesh, t, &w, thin);
+    const cadt_u32 linear = thin || w.at[0] == 1.0 || w.at[1] == 1.0 || w.at[2] == 1.0 ? 1u : 0u; /* or at a vertex */
     const cadt_cavity_edge none = {t, 0u}, begin = linear ? none : cadt_first_cavity_edge(&mesh, p, t);
     for (cadt_u32 of = 0u; of < per_point; ++of) {
       cadt_real value = CADT_NAN;

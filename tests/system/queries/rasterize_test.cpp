@@ -109,7 +109,8 @@ TEST_P(Rasterize, ACellOnAnEdgeBelongsToOneTriangle) {
     xy.insert(long_one_first ? xy.begin() : xy.end(), {10, 1});
     const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
     MeshQueries queries(std::span<const double>(xy), mesh, GetParam().options());
-    const auto raster = queries.rasterize({1.5, 0.5, 1, 1, 1, 1}, std::vector<double>(5, 7.0), Interpolation::linear, 5);
+    const auto raster =
+        queries.rasterize({1.5, 0.5, 1, 1, 1, 1}, std::vector<double>(5, 7.0), Interpolation::linear, 5);
     EXPECT_EQ(queries.locate(Points{2, 1}), std::vector<std::int32_t>{long_one_first ? 0 : 1});
     EXPECT_EQ(std::isnan(raster.at(0)), long_one_first);
   }

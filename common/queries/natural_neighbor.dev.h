@@ -14,9 +14,9 @@
  *       /  .   .  \
  *      v-----------u
  *
- * The sum of weight * (vertex - p) is 0; what rounding leaves of it is corrected with the slope that fits the
- * neighbours best, so linear functions are reproduced whatever the triangles look like. Next to the hull, where
- * circumcentres run away, the weights become those of the hull edge: there the function is linear in the triangle.
+ * The sum of weight * (vertex - p) is 0; what rounding leaves of it is corrected with the slope of the triangle that
+ * contains p, so linear functions are reproduced. On the hull, where a circumcentre is infinite, and in thin triangles,
+ * of which there are some along it, the function is linear.
  */
 #ifndef CADT_QUERIES_NATURAL_NEIGHBOR_H
 #define CADT_QUERIES_NATURAL_NEIGHBOR_H

@@ -145,7 +145,7 @@ TEST_P(CudaCalls, KeepTheOrderOfTheStream) {
     ASSERT_EQ(cudaLaunchHostFunc(stream, pause, nullptr), cudaSuccess);
     ASSERT_EQ(cudaMemcpyAsync(target, source, bytes, cudaMemcpyHostToDevice, stream), cudaSuccess);
     {
-      const DeviceTriangulation mesh = triangulator.triangulate({.x = target, .size = known.size()});
+      const DeviceTriangulation mesh = triangulator.triangulate(DevicePoints{.x = target, .size = known.size()});
       ASSERT_EQ(mesh.number_of_triangles(), known.mesh.number_of_triangles());
       ASSERT_EQ(cudaMemcpyAsync(results, mesh.triangles(), result_bytes, cudaMemcpyDeviceToHost, stream), cudaSuccess);
     }  // the result goes while the copy may still wait

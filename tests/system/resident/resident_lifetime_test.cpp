@@ -90,7 +90,7 @@ TEST_P(ResidentLifetime, FourThreads) {
       for (int call = 0; call < calls; ++call) {
         const Known& known = (call + t) % 2 == 0 ? first : second;
         const void* handle = mine->upload(std::span<const double>(known.xy));
-        const DeviceTriangulation mesh = triangulator.triangulate({.x = handle, .size = known.size()});
+        const DeviceTriangulation mesh = triangulator.triangulate(DevicePoints{.x = handle, .size = known.size()});
         expect_same(*mine, mesh, known.mesh);
         if (call % 4 == 3) expect_same(triangulator.triangulate(std::span<const double>(known.xy)), known.mesh);
         if (call % 4 == 1) triangulator.release_memory();

@@ -37,7 +37,8 @@ class Resident : public ResidentTest {
       const void* handle_y = memory->upload(std::span<const Real>(y));
       {
         SCOPED_TRACE("interleaved");
-        expect_same(*memory, triangulator.triangulate({.x = handle, .size = n, .scalar = scalar, .skip = skip}),
+        expect_same(*memory,
+                    triangulator.triangulate(DevicePoints{.x = handle, .size = n, .scalar = scalar, .skip = skip}),
                     expected);
       }
       {
@@ -116,7 +117,7 @@ TEST_P(Resident, NoPoints) {
   const Triangulation nothing = on_host(PointsView());
   expect_same(*memory, triangulator.triangulate(DevicePoints{}), nothing);
   const void* handle = memory->upload(std::span<const double>(Points{1, 2}));
-  expect_same(*memory, triangulator.triangulate({.x = handle, .size = 0}), nothing);
+  expect_same(*memory, triangulator.triangulate(DevicePoints{.x = handle, .size = 0}), nothing);
   expect_same(*memory, DeviceTriangulation(), nothing);
 }
 
@@ -189,7 +190,8 @@ TEST_P(Resident, TooManyPoints) {
   Triangulator triangulator(options());
   const DevicePoints good = upload(known.xy);
   for (const std::size_t n : {max_points() + 1, std::size_t{1} << 32, ~std::size_t{0}}) {
-    if (const auto error = thrown<LimitError>([&] { (void)triangulator.triangulate({.x = good.x, .size = n}); });
+    if (const auto error =
+            thrown<LimitError>([&] { (void)triangulator.triangulate(DevicePoints{.x = good.x, .size = n}); });
         error != nullptr) {
       EXPECT_EQ(error->count(), n);
       EXPECT_EQ(error->limit(), max_points());
@@ -197,7 +199,8 @@ TEST_P(Resident, TooManyPoints) {
     (void)thrown<LimitError>([&] { triangulator.reserve(n); });
   }
   for (const std::size_t skip : {std::size_t{1} << 31, ~std::size_t{0} - 50})
-    (void)thrown<LimitError>([&] { (void)triangulator.triangulate({.x = good.x, .size = 100, .skip = skip}); });
+    (void)thrown<LimitError>(
+        [&] { (void)triangulator.triangulate(DevicePoints{.x = good.x, .size = 100, .skip = skip}); });
   expect_same(*memory, triangulator.triangulate(good), known.mesh);
 }
 

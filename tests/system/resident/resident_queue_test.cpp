@@ -97,9 +97,10 @@ TEST_P(ClQueue, BufferOfAnotherContext) {
   const void* strange = other->upload(std::span<const double>(known.xy));
   Triangulator triangulator(options());
   const DevicePoints points = upload(known.xy);
-  (void)thrown<BackendUnavailable>([&] { (void)triangulator.triangulate({.x = strange, .size = known.size()}); });
   (void)thrown<BackendUnavailable>(
-      [&] { (void)triangulator.triangulate({.x = points.x, .y = strange, .size = known.size()}); });
+      [&] { (void)triangulator.triangulate(DevicePoints{.x = strange, .size = known.size()}); });
+  (void)thrown<BackendUnavailable>(
+      [&] { (void)triangulator.triangulate(DevicePoints{.x = points.x, .y = strange, .size = known.size()}); });
   expect_same(*memory, triangulator.triangulate(points), known.mesh);
 }
 

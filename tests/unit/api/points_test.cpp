@@ -31,7 +31,7 @@ struct Record {
 };
 #pragma pack(pop)
 
-const Points square = {0.5, 1.5, -2, 4, 7, 8, 1e300, -0.0};
+const Points some_points = {0.5, 1.5, -2, 4, 7, 8, 1e300, -0.0};
 
 /// The view has the points of `xy`.
 void expect_points(const PointsView& view, const Points& xy) {
@@ -53,11 +53,11 @@ std::vector<P> points_as(const Points& xy) {
 }
 
 TEST(PointsView, OfRangesOfPoints) {
-  expect_points(points_as<Site>(square), square);
-  expect_points(std::span<const Site>(points_as<Site>(square)).subspan(1), {-2, 4, 7, 8, 1e300, -0.0});
+  expect_points(points_as<Site>(some_points), some_points);
+  expect_points(std::span<const Site>(points_as<Site>(some_points)).subspan(1), {-2, 4, 7, 8, 1e300, -0.0});
   const Points small = {0.5, 1.5, -2, 4, 7, 8};
   expect_points(points_as<Station>(small), small);
-  expect_points(points_as<Record>(square), square);  // unaligned
+  expect_points(points_as<Record>(some_points), some_points);  // unaligned
   expect_points(std::vector<std::array<double, 2>>{{0.5, 1.5}, {-2, 4}, {7, 8}}, small);
   expect_points(std::vector<std::array<float, 3>>{{0.5F, 1.5F, 9}, {-2, 4, 9}, {7, 8, 9}}, small);
   expect_points(std::vector<std::pair<float, float>>{{0.5F, 1.5F}, {-2.0F, 4.0F}, {7.0F, 8.0F}}, small);
@@ -84,12 +84,12 @@ TEST(PointsView, OfListsAndSeparateArrays) {
 }
 
 TEST(PointsView, SaysHowItsPointsLie) {
-  const auto sites = points_as<Site>(square);
+  const auto sites = points_as<Site>(some_points);
   const PointsView view(sites);
   EXPECT_TRUE(view.interleaved());
   EXPECT_EQ(view.interleaved_doubles(), &sites[0].x);
   EXPECT_EQ(view.stride(), sizeof(Site));
-  const auto records = points_as<Record>(square);
+  const auto records = points_as<Record>(some_points);
   const PointsView packed(records);
   EXPECT_FALSE(packed.interleaved());
   EXPECT_FALSE(packed.separate());

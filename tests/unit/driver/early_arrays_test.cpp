@@ -17,13 +17,13 @@
 namespace cadt {
 namespace {
 
-constexpr std::size_t few = EarlyArrays::fewest_words - 1, many = 3 * EarlyArrays::fewest_words + 1234;
+constexpr std::size_t few_words = EarlyArrays::fewest_words - 1, many = 3 * EarlyArrays::fewest_words + 1234;
 
 void write_all(const Words& words, std::size_t count) { std::fill_n(words.get(), count, 7); }
 
 TEST(EarlyArrays, GiveWhatIsAskedFor) {
   for (const unsigned threads : {0U, 1U, 2U, 3U, 100U})
-    for (const std::size_t most : {std::size_t{0}, few, few + 1, many})
+    for (const std::size_t most : {std::size_t{0}, few_words, few_words + 1, many})
       for (const std::size_t count : {std::size_t{0}, std::size_t{1}, most / 2, most, most + 1}) {
         EarlyArrays arrays;
         arrays.begin(most, threads);

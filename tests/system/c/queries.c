@@ -50,6 +50,45 @@ static void test_answers(cadt_queries* queries) {
   CHECK_NULL(cadt_queries_rasterize(queries, NULL, values, n, CADT_LINEAR, INFINITY, cells, 16, &count), "grid");
 }
 
+/* Each function refuses NULL for its handle, and for what it needs besides. */
+static void test_nothing(cadt_queries* queries) {
+  const double where[] = {1, 1}, values[n] = {0};
+  const cadt_points asked = points_of(where, 1);
+  const cadt_grid grid = {0, 0, 1, 1, 1, 1};
+  const cadt_box box = {0, 0, 1, 1};
+  cadt_voronoi* diagram = NULL;
+  cadt_polygons* polygons = NULL;
+  int32_t words[6];
+  double numbers[9];
+  cadt_circle circle;
+  size_t count = 0;
+
+  CHECK_NULL(cadt_queries_locate_barycentric(NULL, &asked, words, numbers, 1, &count), "queries");
+  CHECK_NULL(cadt_queries_locate_barycentric(queries, &asked, words, NULL, 1, &count), "barycentric");
+  CHECK_NULL(cadt_queries_nearest_vertices(NULL, &asked, 1, words, 1, &count), "queries");
+  CHECK_NULL(cadt_queries_nearest_vertices(queries, NULL, 1, words, 1, &count), "points");
+  CHECK_NULL(cadt_queries_interpolate(NULL, values, n, &asked, CADT_LINEAR, CADT_OUTSIDE_NAN, numbers, 1, &count), "queries");
+  CHECK_NULL(cadt_queries_interpolate(queries, NULL, n, &asked, CADT_LINEAR, CADT_OUTSIDE_NAN, numbers, 1, &count), "values");
+  CHECK_NULL(cadt_queries_rasterize(NULL, &grid, values, n, CADT_LINEAR, INFINITY, numbers, 1, &count), "queries");
+  CHECK_NULL(cadt_queries_rasterize(queries, &grid, NULL, n, CADT_LINEAR, INFINITY, numbers, 1, &count), "values");
+  CHECK_NULL(cadt_queries_circumcenters(NULL, numbers, 8, &count), "queries");
+  CHECK_NULL(cadt_queries_largest_empty_circles(NULL, 1, &circle, 1, &count), "queries");
+  CHECK_NULL(cadt_queries_voronoi(queries, NULL), "diagram");
+  CHECK_NULL(cadt_queries_voronoi(NULL, &diagram), "queries");
+  CHECK_NULL(cadt_voronoi_vertices(NULL, NULL, &count), "diagram");
+  CHECK_NULL(cadt_voronoi_cells(NULL, NULL, &count, NULL), "diagram");
+  CHECK_NULL(cadt_voronoi_edges(NULL, NULL, NULL, &count), "diagram");
+  CHECK_NULL(cadt_queries_voronoi_polygons(queries, NULL, &polygons), "box");
+  CHECK_NULL(cadt_queries_voronoi_polygons(NULL, &box, &polygons), "queries");
+  CHECK_NULL(cadt_polygons_get(NULL, NULL, &count, NULL), "polygons");
+  CHECK_NULL(cadt_outline_triangles(NULL, NULL, &count), "outline");
+  CHECK_NULL(cadt_outline_edges(NULL, NULL, &count), "outline");
+  CHECK_NULL(cadt_queries_locate_device(NULL, NULL, NULL), "queries");
+  CHECK_NULL(cadt_queries_open_device(NULL, NULL, NULL, &queries), "triangulator");
+  CHECK_NULL(cadt_triangulator_triangulate_into(NULL, &asked, words, 6, NULL, 0, &count), "triangulator");
+  CHECK_NULL(cadt_triangulator_triangulate_device_into(NULL, NULL, NULL, NULL, &count), "triangulator");
+}
+
 static void test_duals(cadt_queries* queries) {
   const cadt_box box = {-1, -1, 5, 5}, flat = {0, 0, 0, 1};
   cadt_voronoi* diagram = NULL;
@@ -152,6 +191,7 @@ void test_queries(void) {
   CHECK_OK(cadt_queries_open(&points, mesh, &options, &queries));
   test_answers(queries);
   test_duals(queries);
+  test_nothing(queries);
   cadt_queries_free(queries);
 
   arrays.size = sizeof arrays;

@@ -159,12 +159,12 @@ class CADT_API PointsView {
   [[nodiscard]] const void* y_data() const noexcept { return y_; }
 
  private:
-  template <class R>
+  template <detail::Real R>
   PointsView(const R* xy, std::size_t values) {
     if (values % 2 != 0) throw InputError("interleaved coordinates need an even number of values", values / 2);
     set(xy, xy == nullptr ? nullptr : xy + 1, values / 2, 2 * sizeof(R));
   }
-  template <class R>
+  template <detail::Real R>
   PointsView(const R* x, const R* y, std::size_t nx, std::size_t ny) {
     if (nx != ny) throw InputError("the x and y arrays differ in size", std::min(nx, ny));
     set(x, y, nx, sizeof(R));
@@ -176,7 +176,7 @@ class CADT_API PointsView {
     const auto [x, y] = members(points[0]);
     set(x, y, n, sizeof(P));
   }
-  template <class R>
+  template <detail::Real R>
   void set(const R* x, const R* y, std::size_t n, std::size_t stride) noexcept {
     x_ = reinterpret_cast<const std::byte*>(x);
     y_ = reinterpret_cast<const std::byte*>(y);
@@ -188,7 +188,7 @@ class CADT_API PointsView {
   [[nodiscard]] double value(const std::byte* from, std::size_t i) const noexcept {
     return doubles_ ? load<double>(from + i * stride_) : static_cast<double>(load<float>(from + i * stride_));
   }
-  template <class R>
+  template <detail::Real R>
   [[nodiscard]] static R load(const std::byte* from) noexcept {
     R number;
     std::memcpy(&number, from, sizeof number);

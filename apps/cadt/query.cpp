@@ -45,22 +45,8 @@ void add_query_output(CLI::App& command, QueryOptions& o, const std::vector<std:
 }
 
 void add_query_work(CLI::App& command, QueryOptions& o) {
-  command
-      .add_option("--backend", o.backend,
-                  "where to compute: auto, host, opencl or cuda (default: auto, the fastest usable)")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"auto", "host", "opencl", "cuda"}).description(""));
-  command
-      .add_option("--device", o.device, "device of the back end, its number or a part of its name (see: cadt devices)")
-      ->type_name("DEVICE");
-  command.add_option("--threads", o.threads, "host threads; 0 takes all cores (default: 0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
-  command
-      .add_option("--max-memory", o.max_memory,
-                  "refuse before any work if more device memory is needed: 4G, 512M, 1.5GiB "
-                  "(K M G T and KiB ... count 1024, KB ... 1000)")
-      ->type_name("SIZE");
+  add_device_options(command, o.device);
+  add_memory_option(command, o.device);
   command.add_flag("-q,--quiet", o.quiet, "nothing on standard error but errors");
 }
 
@@ -88,11 +74,8 @@ Interpolation method_of(const QueryOptions& o) {
                                  : Interpolation::linear;
 }
 
-QueryRun::QueryRun(const QueryOptions& options) : line(options.quiet), options_(options) {
-  library_.backend = backend_from_string(options.backend);
-  library_.device = options.device;
-  library_.threads = options.threads;
-  if (!options.max_memory.empty()) library_.max_memory = parse_bytes(options.max_memory);
+QueryRun::QueryRun(const QueryOptions& options)
+    : line(options.quiet), options_(options), library_(library_options(options.device)) {
   library_.statistics = StatisticsDetail::none;
   library_.stop = interrupt_token();
   library_.progress = [this](const Progress& progress) { line.update(progress); };

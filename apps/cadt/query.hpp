@@ -2,6 +2,7 @@
 // What the commands that ask a mesh share: options, the mesh of a point file, values, the end of a run.
 #pragma once
 
+#include "device_options.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
@@ -26,8 +27,7 @@ struct QueryOptions {
   std::string queries, query_format, query_columns;
   std::string values = "z", method = "linear", outside = "nan";
   std::string output = "-", format;
-  std::string backend = "auto", device, max_memory;
-  unsigned threads = 0;
+  DeviceOptions device;
   bool quiet = false;
 };
 

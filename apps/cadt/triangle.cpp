@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // cadt triangle: the command line of Jonathan Shewchuk's Triangle, for point sets.
 #include "commands.hpp"
+#include "device_options.hpp"
 #include "failure.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
@@ -22,8 +23,7 @@ namespace {
 
 struct TriangleCommand {
   std::vector<std::string> files;
-  std::string backend = "auto", device;
-  unsigned threads = 0;
+  DeviceOptions device;
 };
 
 struct Request {
@@ -73,10 +73,7 @@ int run(const TriangleCommand& command, const Request& request) {
   for (const std::string& file : files) require_writable(file);
 
   ProgressLine line(switches.quiet);
-  Options options;
-  options.backend = backend_from_string(command.backend);
-  options.device = command.device;
-  options.threads = command.threads;
+  Options options = library_options(command.device);
   if (!switches.verbose) options.statistics = StatisticsDetail::none;
   options.stop = interrupt_token();
   options.progress = [&line](const Progress& progress) { line.update(progress); };
@@ -123,13 +120,7 @@ void add_triangle(CLI::App& app, Action& chosen) {
   command->allow_extras();
   command->add_option("FILE", options->files,
                       "file with points, in Triangle's .node format; its suffix may be left out");
-  command->add_option("--backend", options->backend, "where to compute: auto, host, opencl or cuda (default: auto)")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"auto", "host", "opencl", "cuda"}).description(""));
-  command->add_option("--device", options->device, "device of the back end (see: cadt devices)")->type_name("DEVICE");
-  command->add_option("--threads", options->threads, "host threads; 0 takes all cores (default: 0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
+  add_device_options(*command, options->device);
   command->footer(
       "Reads FILE.node and writes FILE.1.node and FILE.1.ele, from FILE.1.node FILE.2.node and so on.\n\n"
       "Switches, as in Triangle, alone or together:\n"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands.hpp"
+#include "device_options.hpp"
 #include "failure.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
@@ -26,10 +27,10 @@ namespace {
 struct TriangulateOptions {
   InputOptions input;
   std::vector<std::string> outputs, formats;
-  std::string backend = "auto", device, max_memory, order = "canonical", stats;
+  DeviceOptions device;
+  std::string order = "canonical", stats;
   std::string strategy = "auto";
   std::string stabilize = "off";
-  unsigned threads = 0;
   std::optional<unsigned> flip_threshold;
   std::optional<double> epsilon;
   int base = 0, width = 1600;
@@ -83,12 +84,8 @@ std::vector<Output> check_outputs(const TriangulateOptions& options) {
 }
 
 Options library_options(const TriangulateOptions& options, ProgressLine& line) {
-  Options result;
-  result.backend = backend_from_string(options.backend);
-  result.device = options.device;
-  result.threads = options.threads;
+  Options result = library_options(options.device);
   result.order = options.order == "fast" ? Order::fast : Order::canonical;
-  if (!options.max_memory.empty()) result.max_memory = parse_bytes(options.max_memory);
   result.tuning.strategy = options.strategy == "locks"   ? Strategy::locks
                            : options.strategy == "stars" ? Strategy::stars
                                                          : Strategy::automatic;
@@ -229,7 +226,7 @@ int run(const TriangulateOptions& options) {
   if (options.verify) {
     line.step("verifying");
     VerifyOptions verify_options;
-    verify_options.threads = options.threads;
+    verify_options.threads = options.device.threads;
     report.verification = verify(points.view(), mesh, verify_options);
     report.verify_seconds = watch.lap();
     line.clear();
@@ -278,22 +275,8 @@ void add_output_options(CLI::App& command, TriangulateOptions& o) {
 }
 
 void add_work_options(CLI::App& command, TriangulateOptions& o) {
-  command
-      .add_option("--backend", o.backend,
-                  "where to compute: auto, host, opencl or cuda (default: auto, the fastest usable)")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"auto", "host", "opencl", "cuda"}).description(""));
-  command
-      .add_option("--device", o.device, "device of the back end, its number or a part of its name (see: cadt devices)")
-      ->type_name("DEVICE");
-  command.add_option("--threads", o.threads, "host threads; 0 takes all cores (default: 0)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
-  command
-      .add_option("--max-memory", o.max_memory,
-                  "refuse before any work if more device memory is needed: 4G, 512M, 1.5GiB "
-                  "(K M G T and KiB ... count 1024, KB ... 1000)")
-      ->type_name("SIZE");
+  add_device_options(command, o.device);
+  add_memory_option(command, o.device);
   command
       .add_option("--strategy", o.strategy,
                   "how the mesh is computed; the result is the same: locks (parallel insertion in one mesh), stars "

@@ -20,14 +20,17 @@ void require_narrow(const QueryBatch& queries) {
 
 }  // namespace
 
-void interpolate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& queries, const Allocation& values,
-                         std::size_t per_point, Interpolation method, Outside outside, const Allocation& results) {
+Allocation interpolate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& queries, const Allocation& values,
+                               std::size_t per_point, Interpolation method, Outside outside,
+                               const Allocation& results) {
   Launcher& launch = ctx.launcher;
   const std::size_t count = queries.count;
-  if (mesh.triangles == 0) return launch.run<KernelId::cadt_clear_raster>(results, launch.grid(count * per_point));
+  if (mesh.triangles == 0) {
+    launch.run<KernelId::cadt_clear_raster>(results, launch.grid(count * per_point));
+    return {};
+  }
   if (method == Interpolation::natural) require_narrow(queries);
-  const Allocation located = ctx.memory.allocate(count * word);
-  Allocation nearest;
+  Allocation located = ctx.memory.allocate(count * word), nearest;
   if (method == Interpolation::nearest || outside == Outside::nearest) {
     const Allocation reached = ctx.memory.allocate(count * word);
     nearest = ctx.memory.allocate(count * word);
@@ -41,24 +44,28 @@ void interpolate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& 
   const QueryMesh in{mesh.view(), queries.by};
   switch (method) {
     case Interpolation::linear:
-      return launch.run<KernelId::cadt_interpolate_linear>(in, queries.points, queries.curve.order, located, nearest,
-                                                           values, per_point, results, all);
+      launch.run<KernelId::cadt_interpolate_linear>(in, queries.points, queries.curve.order, located, nearest, values,
+                                                    per_point, results, all);
+      break;
     case Interpolation::nearest: {
       const Allocation all_of_the_plane;
-      return launch.run<KernelId::cadt_interpolate_nearest>(outside == Outside::nan ? located : all_of_the_plane,
-                                                            nearest, values, per_point, results, all);
-    }
-    case Interpolation::natural:
+      launch.run<KernelId::cadt_interpolate_nearest>(outside == Outside::nan ? located : all_of_the_plane, nearest,
+                                                     values, per_point, results, all);
       break;
+    }
+    case Interpolation::natural: {
+      const Allocation failed = launch.zeros(1);
+      launch.run<KernelId::cadt_interpolate_natural>(in, queries.points, queries.curve.order, located, nearest, values,
+                                                     per_point, results, failed, all);
+      if (launch.read_word(failed, 0) != 0)
+        throw InputError(
+            "natural neighbours need a Delaunay mesh of these points: the boundary of a conflict region did "
+            "not close (verify() says more)",
+            0);
+      break;
+    }
   }
-  const Allocation failed = launch.zeros(1);
-  launch.run<KernelId::cadt_interpolate_natural>(in, queries.points, queries.curve.order, located, nearest, values,
-                                                 per_point, results, failed, all);
-  if (launch.read_word(failed, 0) != 0)
-    throw InputError(
-        "natural neighbours need a Delaunay mesh of these points: the boundary of a conflict region did not "
-        "close (verify() says more)",
-        0);
+  return located;
 }
 
 }  // namespace cadt

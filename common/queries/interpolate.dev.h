@@ -25,7 +25,7 @@ CADT_FN_SLOW cadt_real cadt_area_of_arms(cadt_point p, cadt_point a, cadt_point 
 }
 #endif
 
-/* A triangle is thin if rounding may change its area by 2^-26 of it; from 2^-36 on its areas are not rounded. */
+/* A triangle is thin if rounding may change its area by 2^-26 of it; from 2^-36 on, areas are sums of two doubles. */
 #define CADT_THIN 1.4901161193847656e-08
 #define CADT_ROUNDED 1.52587890625e-05
 

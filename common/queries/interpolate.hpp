@@ -8,9 +8,10 @@
 
 namespace cadt {
 
-/// `per_point` values of each query to `results`. \throws InputError
-void interpolate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& queries, const Allocation& values,
-                         std::size_t per_point, Interpolation method, Outside outside, const Allocation& results);
+/// `per_point` values of each query to `results`. Returns the triangle of each, as locate_queries; null without
+/// triangles. \throws InputError
+Allocation interpolate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& queries, const Allocation& values,
+                               std::size_t per_point, Interpolation method, Outside outside, const Allocation& results);
 
 /// \throws InputError, LimitError
 void require_grid(const Grid& grid);

@@ -94,10 +94,8 @@ void query_cells(Context& ctx, const MeshIndex& mesh, const Grid& grid, const Al
     const Allocation results = ctx.memory.allocate(count * sizeof(double));
     launch.run<KernelId::cadt_cell_centers>(RasterArguments{grid}, from, centers, launch.grid(count));
     const QueryBatch queries = prepare_queries(ctx, mesh, std::move(centers), count);
-    interpolate_queries(ctx, mesh, queries, values, 1, method, Outside::nan, results);
+    const Allocation located = interpolate_queries(ctx, mesh, queries, values, 1, method, Outside::nan, results);
     if (max_edge < unbounded) {
-      const Allocation located = ctx.memory.allocate(count * word), none;
-      locate_queries(ctx, mesh, queries, located, none);
       launch.run<KernelId::cadt_drop_long_edges>(QueryMesh{mesh.view(), queries.by}, located,
                                                  max_edge * queries.by.scale * queries.by.scale_again, results,
                                                  launch.grid(count));

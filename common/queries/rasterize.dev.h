@@ -123,8 +123,7 @@ CADT_FN cadt_cells cadt_rows_of(const cadt_raster* r, const cadt_drawn* d) {
                             cadt_most(d->a.y, d->b.y, d->c.y));
 }
 
-/* Triangles whose bounding boxes are small write their cells; of each other one `rows_of` gets the number of rows, 0
- * for all others. */
+/* Triangles whose bounding boxes are small write their cells; the others are listed in `large`, in any order. */
 CADT_KERNEL(cadt_draw_small, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* lowest, CADT_RASTER_PARAMETERS,
             cadt_real max_edge, CADT_GLOBAL const cadt_real* values, CADT_GLOBAL cadt_real* cells,
             CADT_GLOBAL cadt_u32* large, CADT_GLOBAL cadt_u32* large_count, cadt_u32 grain) {

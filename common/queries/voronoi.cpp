@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <tuple>
 #include <utility>
 
@@ -14,6 +15,18 @@ namespace cadt {
 namespace {
 
 using namespace device_text;
+
+/// The first place from `end` on whose key is not the one before it, or `count`. \pre end > 0
+std::size_t end_of_equal_keys(Context& ctx, const Allocation& keys, std::size_t count, std::size_t end) {
+  constexpr std::size_t at_a_time = 4096;
+  while (end < count) {
+    const auto key = ctx.device.read_values(*keys, std::min(at_a_time, count - end) + 1, end - 1);
+    const auto other = std::ranges::adjacent_find(key, std::not_equal_to<>());
+    end += static_cast<std::size_t>((other == key.end() ? key.end() - 1 : other) - key.begin());
+    if (other != key.end()) break;
+  }
+  return end;
+}
 
 QueryMesh in_own_scale(Context& ctx, const MeshIndex& mesh) { return {mesh.view(), scale_for(ctx, mesh, mesh.bounds)}; }
 
@@ -122,10 +135,8 @@ std::vector<Circle> find_largest_circles(Context& ctx, const MeshIndex& mesh, st
   ctx.check("circles", 0.5);
   // From large to small until enough have their centres in the hull. The keys are rounded radii, so a part of the list
   // ends with a key that is not the same as the next one.
-  const std::vector<std::uint32_t> key = ctx.device.read_values(*keys, count);
   for (std::size_t from = 0; from < count && found.size() < wanted;) {
-    std::size_t end = std::min(count, from + 2 * wanted + 256);
-    while (end < count && key[end] == key[end - 1]) ++end;
+    const std::size_t end = end_of_equal_keys(ctx, keys, count, std::min(count, from + 2 * wanted + 256));
     const std::size_t size = end - from;
     const auto triangles = ctx.device.read_values(*order, size, from);
     const Allocation list = ctx.memory.allocate(size * word), circles = ctx.memory.allocate(size * sizeof(cadt_circle));

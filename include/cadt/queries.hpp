@@ -97,8 +97,8 @@ struct DeviceVoronoi {
 };
 
 /// A mesh prepared for queries on a device: the vertices are sorted along Hilbert's curve, so a query starts near.
-/// All answers are exact functions of mesh and query: the same from every device, however many are asked at a time.
-/// Points on an edge or vertex belong to the lowest of its triangles.
+/// Which triangle, vertex or cell an answer is about is exact: the same from every device, however many are asked at a
+/// time. Values and places are doubles and rounded. Points on an edge or vertex belong to the lowest of its triangles.
 ///
 /// Preparing costs O(n log n) for n points, about a tenth of the triangulation, and 12 bytes of device memory a point
 /// beside points and mesh. Not thread-safe: one thread at a time may use an object; different ones are independent.

@@ -5,6 +5,14 @@
 using namespace cadt::c_interface;
 
 struct cadt_queries {
+  /// Its callbacks are asked from here on; what was cancelled before is forgotten.
+  cadt::MeshQueries& begin_call() {
+    cadt::Options now = options.begin_call();
+    queries.options().stop = std::move(now.stop);
+    queries.options().progress = std::move(now.progress);
+    return queries;
+  }
+  CallOptions options;
   cadt::MeshQueries queries;
 };
 struct cadt_voronoi {
@@ -68,9 +76,10 @@ cadt_status cadt_queries_open(const cadt_points* points, const cadt_triangulatio
   return guarded([&] {
     auto& result = required(queries, "queries");
     const cadt::Triangulation& of = required(mesh, "mesh").mesh;
-    const cadt::Options with = CallOptions(options).begin_call();
-    result = new cadt_queries{points == nullptr ? cadt::MeshQueries(of, with)
-                                                : cadt::MeshQueries(points_of(points), of, with)};
+    const CallOptions given(options);
+    const cadt::Options with = given.begin_call();
+    result = new cadt_queries{
+        given, points == nullptr ? cadt::MeshQueries(of, with) : cadt::MeshQueries(points_of(points), of, with)};
   });
 }
 
@@ -79,11 +88,12 @@ cadt_status cadt_queries_open_arrays(const cadt_points* points, const cadt_mesh_
   return guarded([&] {
     auto& result = required(queries, "queries");
     const cadt::PointsView view = points_of(points);
-    const auto given = take(mesh, "mesh");
-    const std::size_t indices = indices_of(given.triangle_count);
-    if (indices != 0) require(given.triangles, "mesh"), require(given.neighbors, "mesh");
-    const cadt::MeshView arrays{{given.triangles, indices}, {given.neighbors, indices}, {}, {}};
-    result = new cadt_queries{cadt::MeshQueries(view, arrays, CallOptions(options).begin_call())};
+    const auto of = take(mesh, "mesh");
+    const std::size_t indices = indices_of(of.triangle_count);
+    if (indices != 0) require(of.triangles, "mesh"), require(of.neighbors, "mesh");
+    const cadt::MeshView arrays{{of.triangles, indices}, {of.neighbors, indices}, {}, {}};
+    const CallOptions given(options);
+    result = new cadt_queries{given, cadt::MeshQueries(view, arrays, given.begin_call())};
   });
 }
 
@@ -93,7 +103,8 @@ cadt_status cadt_queries_open_device(cadt_triangulator* triangulator, const cadt
     auto& result = required(queries, "queries");
     auto& of = required(triangulator, "triangulator");
     const cadt::DevicePoints at = points_of(points);
-    result = new cadt_queries{cadt::MeshQueries(of.begin_call(), at, required(mesh, "mesh").mesh)};
+    const cadt::DeviceTriangulation& on_device = required(mesh, "mesh").mesh;
+    result = new cadt_queries{of.options, cadt::MeshQueries(of.begin_call(), at, on_device)};
   });
 }
 
@@ -102,7 +113,7 @@ void cadt_queries_free(cadt_queries* queries) { delete queries; }
 cadt_status cadt_queries_locate(cadt_queries* queries, const cadt_points* where, int32_t* triangles, size_t capacity,
                                 size_t* count) {
   return guarded([&] {
-    auto& asked = required(queries, "queries").queries;
+    auto& asked = required(queries, "queries").begin_call();
     const cadt::PointsView at = points_of(where);
     if (has_room(triangles, capacity, at.size(), count)) std::ranges::copy(asked.locate(at), triangles);
   });
@@ -111,7 +122,7 @@ cadt_status cadt_queries_locate(cadt_queries* queries, const cadt_points* where,
 cadt_status cadt_queries_locate_barycentric(cadt_queries* queries, const cadt_points* where, int32_t* triangles,
                                             double* barycentric, size_t capacity, size_t* count) {
   return guarded([&] {
-    auto& asked = required(queries, "queries").queries;
+    auto& asked = required(queries, "queries").begin_call();
     const cadt::PointsView at = points_of(where);
     if (!has_room(triangles, capacity, at.size(), count)) return;
     require(barycentric, "barycentric");
@@ -124,7 +135,7 @@ cadt_status cadt_queries_locate_barycentric(cadt_queries* queries, const cadt_po
 cadt_status cadt_queries_nearest_vertices(cadt_queries* queries, const cadt_points* where, size_t k, int32_t* vertices,
                                           size_t capacity, size_t* count) {
   return guarded([&] {
-    auto& asked = required(queries, "queries").queries;
+    auto& asked = required(queries, "queries").begin_call();
     const cadt::PointsView at = points_of(where);
     if (has_room(vertices, capacity, times(at.size(), k), count))
       std::ranges::copy(asked.nearest_vertices(at, k), vertices);
@@ -135,7 +146,7 @@ cadt_status cadt_queries_interpolate(cadt_queries* queries, const double* values
                                      const cadt_points* where, int32_t method, int32_t outside, double* results,
                                      size_t capacity, size_t* count) {
   return guarded([&] {
-    auto& asked = required(queries, "queries").queries;
+    auto& asked = required(queries, "queries").begin_call();
     const cadt::PointsView at = points_of(where);
     const auto from = values_of(values, value_count);
     const cadt::Interpolation by = method_of(method);
@@ -150,7 +161,7 @@ cadt_status cadt_queries_rasterize(cadt_queries* queries, const cadt_grid* grid,
                                    size_t value_count, int32_t method, double max_edge, double* cells, size_t capacity,
                                    size_t* count) {
   return guarded([&] {
-    auto& asked = required(queries, "queries").queries;
+    auto& asked = required(queries, "queries").begin_call();
     const cadt::Grid to = grid_of(grid);
     const auto from = values_of(values, value_count);
     const cadt::Interpolation by = method_of(method);
@@ -161,7 +172,7 @@ cadt_status cadt_queries_rasterize(cadt_queries* queries, const cadt_grid* grid,
 
 cadt_status cadt_queries_circumcenters(cadt_queries* queries, double* xy, size_t capacity, size_t* count) {
   return guarded([&] {
-    auto& asked = required(queries, "queries").queries;
+    auto& asked = required(queries, "queries").begin_call();
     if (has_room(xy, capacity, 2 * asked.number_of_triangles(), count)) std::ranges::copy(asked.circumcenters(), xy);
   });
 }
@@ -169,7 +180,7 @@ cadt_status cadt_queries_circumcenters(cadt_queries* queries, double* xy, size_t
 cadt_status cadt_queries_largest_empty_circles(cadt_queries* queries, size_t k, cadt_circle* circles, size_t capacity,
                                                size_t* count) {
   return guarded([&] {
-    const auto found = required(queries, "queries").queries.largest_empty_circles(k);
+    const auto found = required(queries, "queries").begin_call().largest_empty_circles(k);
     if (!has_room(circles, capacity, found.size(), count)) return;
     for (const cadt::Circle& circle : found) *circles++ = {circle.x, circle.y, circle.radius, circle.triangle};
   });
@@ -178,7 +189,7 @@ cadt_status cadt_queries_largest_empty_circles(cadt_queries* queries, size_t k, 
 cadt_status cadt_queries_voronoi(cadt_queries* queries, cadt_voronoi** diagram) {
   return guarded([&] {
     auto& result = required(diagram, "diagram");
-    result = new cadt_voronoi{required(queries, "queries").queries.voronoi()};
+    result = new cadt_voronoi{required(queries, "queries").begin_call().voronoi()};
   });
 }
 
@@ -221,8 +232,8 @@ cadt_status cadt_queries_voronoi_polygons(cadt_queries* queries, const cadt_box*
   return guarded([&] {
     auto& result = required(polygons, "polygons");
     const cadt_box& b = required(box, "box");
-    result =
-        new cadt_polygons{required(queries, "queries").queries.voronoi_polygons({b.min_x, b.min_y, b.max_x, b.max_y})};
+    result = new cadt_polygons{
+        required(queries, "queries").begin_call().voronoi_polygons({b.min_x, b.min_y, b.max_x, b.max_y})};
   });
 }
 
@@ -243,7 +254,7 @@ void cadt_polygons_free(cadt_polygons* polygons) { delete polygons; }
 cadt_status cadt_queries_outline(cadt_queries* queries, double max_radius, double max_edge, cadt_outline** outline) {
   return guarded([&] {
     auto& result = required(outline, "outline");
-    result = new cadt_outline{required(queries, "queries").queries.outline(max_radius, max_edge)};
+    result = new cadt_outline{required(queries, "queries").begin_call().outline(max_radius, max_edge)};
   });
 }
 
@@ -270,13 +281,13 @@ void cadt_outline_free(cadt_outline* outline) { delete outline; }
 cadt_status cadt_queries_locate_device(cadt_queries* queries, const cadt_device_points* where,
                                        const cadt_device_array* triangles) {
   return guarded(
-      [&] { required(queries, "queries").queries.locate(points_of(where), array_of(triangles, "triangles")); });
+      [&] { required(queries, "queries").begin_call().locate(points_of(where), array_of(triangles, "triangles")); });
 }
 
 cadt_status cadt_queries_nearest_vertices_device(cadt_queries* queries, const cadt_device_points* where, size_t k,
                                                  const cadt_device_array* vertices) {
   return guarded([&] {
-    required(queries, "queries").queries.nearest_vertices(points_of(where), k, array_of(vertices, "vertices"));
+    required(queries, "queries").begin_call().nearest_vertices(points_of(where), k, array_of(vertices, "vertices"));
   });
 }
 
@@ -285,8 +296,9 @@ cadt_status cadt_queries_interpolate_device(cadt_queries* queries, const cadt_de
                                             const cadt_device_array* results) {
   return guarded([&] {
     required(queries, "queries")
-        .queries.interpolate(array_of(values, "values"), points_of(where), array_of(results, "results"),
-                             method_of(method), outside_of(outside));
+        .begin_call()
+        .interpolate(array_of(values, "values"), points_of(where), array_of(results, "results"), method_of(method),
+                     outside_of(outside));
   });
 }
 
@@ -294,8 +306,8 @@ cadt_status cadt_queries_rasterize_device(cadt_queries* queries, const cadt_grid
                                           int32_t method, double max_edge, const cadt_device_array* cells) {
   return guarded([&] {
     required(queries, "queries")
-        .queries.rasterize(grid_of(grid), array_of(values, "values"), array_of(cells, "cells"), method_of(method),
-                           max_edge);
+        .begin_call()
+        .rasterize(grid_of(grid), array_of(values, "values"), array_of(cells, "cells"), method_of(method), max_edge);
   });
 }
 

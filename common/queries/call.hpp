@@ -28,6 +28,7 @@ namespace query {
 struct Call {
   explicit Call(MeshQueries::State& state)
       : ctx(*state.device->device, state.device->memory, state.options, statistics) {
+    state.device->device->begin_call();
     begin_budget(*state.device, state.mesh.point_count);
     ctx.check("queries", 0);
   }

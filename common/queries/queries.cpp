@@ -108,6 +108,7 @@ MeshQueries& MeshQueries::operator=(MeshQueries&&) noexcept = default;
 std::size_t MeshQueries::number_of_points() const noexcept { return state_->mesh.point_count; }
 std::size_t MeshQueries::number_of_triangles() const noexcept { return state_->mesh.triangles; }
 const DeviceInfo& MeshQueries::device() const noexcept { return state_->device->device->info(); }
+Options& MeshQueries::options() noexcept { return state_->options; }
 
 std::vector<std::int32_t> MeshQueries::locate(PointsView queries) {
   require_size(queries.size());

@@ -132,6 +132,8 @@ class CADT_API MeshQueries {
   [[nodiscard]] std::size_t number_of_points() const noexcept;
   [[nodiscard]] std::size_t number_of_triangles() const noexcept;
   [[nodiscard]] const DeviceInfo& device() const noexcept;
+  /// `stop` and `progress` may be changed between calls; the rest was read when this was opened.
+  [[nodiscard]] Options& options() noexcept;
 
   /// The triangle that contains each query (hull and edges included), the lowest if there are several; -1 outside.
   /// O(log n) each, and a walk of a few triangles. \throws InputError for a query that is NaN or infinite, with its

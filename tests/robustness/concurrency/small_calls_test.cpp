@@ -156,15 +156,18 @@ class Arithmetic : public ::testing::Test {
   static void expect_refused(const Change& change, const Restore& restore) {
     const Points& xy = sets()[0];
     Triangulator triangulator(on_host());
-    EXPECT_TRUE(same_mesh(triangulate(Reals(xy), on_host()), expected()[0]));
+    const Triangulation mesh = triangulate(Reals(xy), on_host());
+    MeshQueries queries(Reals(xy), mesh, on_host());
+    EXPECT_TRUE(same_mesh(mesh, expected()[0]));
     EXPECT_TRUE(same_mesh(triangulator.triangulate(Reals(xy)), expected()[0]));
     for (int round = 0; round < 2; ++round) {
       change();
-      const std::array<bool, 3> refused = {is_refused([&] { (void)triangulate(Reals(xy), on_host()); }),
+      const std::array<bool, 4> refused = {is_refused([&] { (void)triangulate(Reals(xy), on_host()); }),
                                            is_refused([&] { (void)triangulator.triangulate(Reals(xy)); }),
-                                           is_refused([&] { const Triangulator other(on_host()); })};
+                                           is_refused([&] { const Triangulator other(on_host()); }),
+                                           is_refused([&] { (void)queries.locate(Reals(xy)); })};
       restore();
-      EXPECT_EQ(refused, (std::array{true, true, true})) << "round " << round;
+      EXPECT_EQ(refused, (std::array{true, true, true, true})) << "round " << round;
     }
     EXPECT_TRUE(same_mesh(triangulate(Reals(xy), on_host()), expected()[0]));
     EXPECT_TRUE(same_mesh(triangulator.triangulate(Reals(xy)), expected()[0]));

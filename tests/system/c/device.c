@@ -187,6 +187,29 @@ void test_callbacks(void) {
   mesh = NULL;
   cadt_triangulator_free(triangulator);
 
+  /* so it is with queries */
+  {
+    cadt_triangulation* kept = NULL;
+    cadt_queries* queries = NULL;
+    int32_t triangle = -1;
+    const cadt_points one = points_of(xy, 1);
+    size_t count = 0;
+    CHECK_OK(cadt_triangulate(&points, NULL, &kept));
+    seen.calls = 0;
+    CHECK_OK(cadt_queries_open(&points, kept, &options, &queries));
+    CHECK(seen.calls > 0);
+    seen.calls = 0;
+    seen.cancel_after = 1;
+    CHECK_STATUS(CADT_CANCELLED, cadt_queries_locate(queries, &one, &triangle, 1, &count));
+    CHECK(triangle == -1 && seen.calls == 1);
+    seen.calls = 0;
+    seen.cancel_after = -1;
+    CHECK_OK(cadt_queries_locate(queries, &one, &triangle, 1, &count));
+    CHECK(triangle >= 0);
+    cadt_queries_free(queries);
+    cadt_triangulation_free(kept);
+  }
+
   options = on_host();
   options.user = &seen;
   options.allocate = give;

@@ -59,9 +59,8 @@ CADT_FN cadt_u32 cadt_is_nearer(cadt_point p, cadt_u32 v, cadt_point a, cadt_u32
   return order < 0 || (order == 0 && v < w) ? 1u : 0u;
 }
 
-/* All triangles of the vertex of `s`, in a loop body that finds `next` the vertex after it and `behind` the one before
- * it, counterclockwise. Each neighbour is `next` once, but for the last one at a hull vertex, which is only `behind`.
- */
+/* A vertex, and the triangle from which cadt_next_neighbor goes around it, counterclockwise. Each neighbour comes once;
+ * that of a hull vertex which is behind its last triangle comes last. */
 typedef struct {
   cadt_u32 vertex;
   cadt_spoke spoke; /* its first triangle, cadt_first_spoke */
@@ -72,7 +71,7 @@ CADT_FN cadt_star_of cadt_star_at(const cadt_query_mesh* m, cadt_u32 t, cadt_u32
   const cadt_star_of star = {cadt_vertex_of(&m->view, t, k), cadt_first_spoke(m, s)};
   return star;
 }
-/* The neighbour at `*s`, and the step to the next one; CADT_NONE when all have been there. */
+/* The neighbour at `*s`, and the step to the next one; CADT_NONE when all have come. `*state` is 0 at first. */
 CADT_FN cadt_u32 cadt_next_neighbor(const cadt_query_mesh* m, const cadt_star_of* star, cadt_spoke* s,
                                     cadt_u32* state) {
   if (*state == 2u) return CADT_NONE;

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import threading
 from collections import OrderedDict
@@ -125,12 +126,16 @@ def release_memory() -> None:
         triangulator.release_memory()
 
 
+# Before drivers end with the process.
+atexit.register(_open.clear)
+
+
 def _after_fork() -> None:
     # A child has no context of the parent's devices: nothing of theirs may be called, not even a destructor.
-    global _open, _lock, _in_child
+    global _lock, _in_child
     _in_child = _in_child or bool(_open)
-    _kept_for_ever.append(_open)
-    _open = OrderedDict()
+    _kept_for_ever.append(dict(_open))
+    _open.clear()
     _lock = threading.Lock()
 
 

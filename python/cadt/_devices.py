@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import atexit
+import ctypes
 import os
 import threading
 from collections import OrderedDict
@@ -134,12 +135,12 @@ def _after_fork() -> None:
     # A child has no context of the parent's devices: nothing of theirs may be called, not even a destructor.
     global _lock, _in_child
     _in_child = _in_child or bool(_open)
-    _kept_for_ever.append(dict(_open))
+    for triangulator in _open.values():
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(triangulator))
     _open.clear()
     _lock = threading.Lock()
 
 
-_kept_for_ever: list[Any] = []
 _in_child = False
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_after_fork)

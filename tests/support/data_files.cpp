@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/data_files.hpp"
 
-#include <unistd.h>
+#include "tests/support/portable.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -45,7 +45,7 @@ fs::path made_by(const std::string& command, const fs::path& source, const std::
   const auto made = fs::last_write_time(result, missing);
   if (!missing && made >= fs::last_write_time(source)) return result;
   fs::create_directories(result.parent_path());
-  const fs::path part = result.string() + "." + std::to_string(::getpid());
+  const fs::path part = result.string() + "." + std::to_string(process_number());
   if (std::system((command + " > " + quoted(part)).c_str()) != 0) throw std::runtime_error("failed: " + command);
   fs::rename(part, result);
   return result;
@@ -58,10 +58,10 @@ Points parse_text(const std::string& text) {
   while (true) {
     while (at != end && std::strchr(" \t\r\n", *at)) ++at;
     if (at == end) break;
-    double value = 0.0;
-    const auto [next, error] = std::from_chars(at, end, value);
-    // Subnormal decimals are in range; libstdc++ reports only what becomes zero or infinity.
-    if (error != std::errc()) throw std::runtime_error("not a number: " + std::string(at, std::min(at + 20, end)));
+    char* next = nullptr;  // not std::from_chars(), which takes no double in libc++ before version 20
+    const double value = std::strtod(at, &next);
+    if (next == at || std::isinf(value))
+      throw std::runtime_error("not a number: " + std::string(at, std::min(at + 20, end)));
     xy.push_back(value);
     at = next;
   }

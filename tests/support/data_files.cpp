@@ -4,6 +4,7 @@
 #include "tests/support/portable.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -39,7 +40,7 @@ std::string quoted(const fs::path& path) {
 // several processes may want it at a time: each writes under a name of its own and renames.
 fs::path made_by(const std::string& command, const fs::path& source, const std::string& name) {
   std::string of_folder = folder().string();
-  std::replace(of_folder.begin(), of_folder.end(), '/', '_');
+  for (const char separator : {'/', '\\', ':'}) std::replace(of_folder.begin(), of_folder.end(), separator, '_');
   const fs::path result = fs::path(CADT_TEST_CACHE_DIR) / of_folder / name;
   std::error_code missing;
   const auto made = fs::last_write_time(result, missing);
@@ -59,8 +60,9 @@ Points parse_text(const std::string& text) {
     while (at != end && std::strchr(" \t\r\n", *at)) ++at;
     if (at == end) break;
     char* next = nullptr;  // not std::from_chars(), which takes no double in libc++ before version 20
+    errno = 0;
     const double value = std::strtod(at, &next);
-    if (next == at || std::isinf(value))
+    if (next == at || (errno == ERANGE && std::isinf(value)))  // "inf" is a number, and what is subnormal
       throw std::runtime_error("not a number: " + std::string(at, std::min(at + 20, end)));
     xy.push_back(value);
     at = next;

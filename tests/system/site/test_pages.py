@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every command and every program in C++ on the pages of the site does what is shown beside it."""
+import pathlib
+import subprocess
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "cli"))
+from documentation import DocumentationTest  # noqa: E402
+from harness import PROGRAM, SECONDS, SOURCE  # noqa: E402
+
+SITE = SOURCE / "docs" / "site"
+sys.path.insert(0, str(SITE / "tools"))
+import pages  # noqa: E402
+
+
+class PageTest(DocumentationTest):
+    def programs(self, page):
+        """Runs the programs of a page. Behind each that prints stands a block with what it prints."""
+        blocks = pages.of_page(page)
+        count = 0
+        for block, after in zip(blocks, [*blocks[1:], None]):
+            if block.language != "cpp":
+                continue
+            self.assertTrue(block.caption, f"{page}:{block.line}: a program needs a caption, its name")
+            count += 1
+            program = pathlib.Path(PROGRAM).parent / f"cadt-site-{page.stem}.{pathlib.Path(block.caption).stem}"
+            done = subprocess.run([program], cwd=self.folder, capture_output=True, text=True, timeout=SECONDS)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            if after is not None and after.language == "text":
+                self.same_words(after.text, done.stdout)
+        return count
+
+
+class StartPage(PageTest):
+    def setUp(self):
+        super().setUp()
+        self.blocks = pages.of_page(SITE / "index.md")
+
+    def test_the_shell_tab(self):
+        for block in self.blocks:
+            if block.tab == "Shell":
+                self.run_commands(f"```console\n{block.text}```")
+        self.assertEqual(self.names(), ["hills.ply", "hills.png", "hills.xyz", "where.xy"])
+
+    def test_the_programs_picture_is_that_of_the_shell_and_of_the_page(self):
+        self.assertEqual(self.programs(SITE / "index.md"), 1)
+        picture = self.path("hills.png").read_bytes()
+        self.test_the_shell_tab()
+        self.assertEqual(picture, self.path("hills.png").read_bytes())
+        self.assertEqual(picture, (SITE / "figures" / "hills.png").read_bytes())
+
+    def test_the_tabs_are_three(self):
+        self.assertEqual(list(dict.fromkeys(block.tab for block in self.blocks)), ["Python", "C++", "Shell"])
+
+
+class Pages(PageTest):
+    def test_commands(self):
+        count = 0
+        for page in sorted([*SITE.glob("*.md"), *SITE.glob("coming_from/*.md")]):
+            if page.stem != "index":
+                with self.subTest(page=page.name):
+                    count += self.run_commands(page.read_text())
+        self.assertGreaterEqual(count, 8)
+
+    def test_programs(self):
+        count = 0
+        for page in sorted(SITE.glob("coming_from/*.md")):
+            with self.subTest(page=page.name):
+                count += self.programs(page)
+        self.assertGreaterEqual(count, 2)
+
+    def test_no_block_is_left_out(self):
+        """Each language is one that a test runs (Python: sybil), or output and files that are shown."""
+        for page in sorted(SITE.rglob("*.md")):
+            for block in pages.of_page(page):
+                self.assertIn(block.language, ["console", "cpp", "cmake", "python", "text"], f"{page}:{block.line}")
+
+
+if __name__ == "__main__":
+    unittest.main()

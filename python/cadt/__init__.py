@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Exact, parallel Delaunay triangulation in the plane, on CPUs and GPUs.
+
+>>> import cadt
+>>> mesh = cadt.Delaunay([[0, 0], [1, 0], [0, 1], [1, 1]])
+>>> mesh.simplices
+array([[0, 1, 2],
+       [1, 3, 2]], dtype=int32)
+>>> mesh.find_simplex([[0.2, 0.2], [5, 5]])
+array([ 0, -1], dtype=int32)
+
+``cadt.Delaunay`` is the mesh and what it can be asked; ``cadt.scipy`` has SciPy's classes and ``cadt.cupy`` CuPy's, with
+their names and shapes. NumPy is imported by the first call, not by ``import cadt``.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cadt._batch import Batch, triangulate_batch
+    from cadt._delaunay import Delaunay
+    from cadt._devices import DeviceInfo, devices, release_memory
+    from cadt._errors import (
+        BackendUnavailable,
+        Cancelled,
+        DeviceError,
+        Error,
+        InputError,
+        InternalError,
+        InvalidMesh,
+        KernelBuildError,
+        LimitError,
+        OptionError,
+        OutOfMemory,
+    )
+    from cadt._results import Check, VerifyReport, Voronoi
+    from cadt._verify import verify
+
+_MODULES = {
+    "_batch": ("Batch", "triangulate_batch"),
+    "_delaunay": ("Delaunay",),
+    "_devices": ("DeviceInfo", "devices", "release_memory"),
+    "_errors": (
+        "BackendUnavailable",
+        "Cancelled",
+        "DeviceError",
+        "Error",
+        "InputError",
+        "InternalError",
+        "InvalidMesh",
+        "KernelBuildError",
+        "LimitError",
+        "OptionError",
+        "OutOfMemory",
+    ),
+    "_results": ("Check", "VerifyReport", "Voronoi"),
+    "_verify": ("verify",),
+}
+_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
+
+__all__ = [
+    "BackendUnavailable",
+    "Batch",
+    "Cancelled",
+    "Check",
+    "Delaunay",
+    "DeviceError",
+    "DeviceInfo",
+    "Error",
+    "InputError",
+    "InternalError",
+    "InvalidMesh",
+    "KernelBuildError",
+    "LimitError",
+    "OptionError",
+    "OutOfMemory",
+    "VerifyReport",
+    "Voronoi",
+    "__version__",
+    "devices",
+    "release_memory",
+    "triangulate_batch",
+    "verify",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _MODULE_OF:
+        value = getattr(importlib.import_module(f"cadt.{_MODULE_OF[name]}"), name)
+    elif name == "__version__":
+        value = importlib.import_module("cadt._cadt").version
+    elif name in ("scipy", "cupy", "terrain"):
+        return importlib.import_module(f"cadt.{name}")
+    else:
+        raise AttributeError(f"module 'cadt' has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

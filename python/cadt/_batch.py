@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Many small sets in one call."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cadt import _cadt, _devices
+from cadt._delaunay import Delaunay
+from cadt._errors import InputError
+from cadt._points import as_points
+from cadt._progress import reporter
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+
+class Batch:
+    """The triangulations of many sets: ``batch[s]`` is that of set s, a `Delaunay`.
+
+    Attributes
+    ----------
+    simplices, neighbors : (t, 3) int32
+        Of all sets, one after another; indices are those of the set's own points and triangles.
+    triangle_offsets : (sets + 1,) int64
+        Set s has the triangles ``triangle_offsets[s]`` to ``triangle_offsets[s + 1] - 1``.
+    statistics : dict
+        Of the whole call.
+    """
+
+    def __init__(self, points: np.ndarray, offsets: np.ndarray, batch: Any, options: _cadt.Options) -> None:
+        self._points, self._offsets, self._batch, self._options = points, offsets, batch, options
+        self.simplices: np.ndarray = batch.triangles
+        self.neighbors: np.ndarray = batch.neighbors
+        self.triangle_offsets: np.ndarray = batch.triangle_offsets
+        self.statistics: dict[str, Any] = batch.statistics
+
+    def __len__(self) -> int:
+        return self._batch.size
+
+    def __getitem__(self, s: int) -> Delaunay:
+        s = range(len(self))[s]
+        mesh = Delaunay.__new__(Delaunay)
+        mesh._points = self._points[self._offsets[s] : self._offsets[s + 1]]
+        mesh._gpu, mesh._cache, mesh._options = None, {}, self._options.on_host()
+        mesh._mesh = self._batch.triangulation(s)
+        return mesh
+
+    def __iter__(self) -> Iterator[Delaunay]:
+        return (self[s] for s in range(len(self)))
+
+    def __repr__(self) -> str:
+        return f"<cadt.Batch: {len(self):,} sets, {len(self._points):,} points, {len(self.simplices):,} triangles>"
+
+
+def triangulate_batch(
+    points: Any,
+    offsets: Any,
+    *,
+    backend: str | None = None,
+    device: int | str | None = None,
+    order: str = "canonical",
+    threads: int | None = None,
+    max_memory: int | None = None,
+    progress: bool | Callable[[str, float], object] | None = None,
+) -> Batch:
+    """Triangulates many sets in one call, small ones with common launches.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        The points of all sets, one set after another.
+    offsets : array_like of int, shape (sets + 1,)
+        Set s has the points ``offsets[s]`` to ``offsets[s + 1] - 1``; the first is 0, the last n. Sets may be empty.
+
+    The other parameters, and what is raised, are as for `Delaunay`.
+
+    >>> batch = cadt.triangulate_batch([[0, 0], [1, 0], [0, 1], [0, 0], [2, 0], [2, 2]], [0, 3, 6])
+    >>> len(batch), batch[1].simplices.tolist()
+    (2, [[0, 1, 2]])
+    """
+    p = as_points(points)
+    begin = np.asarray(offsets)
+    if begin.ndim != 1 or begin.dtype.kind not in "iu" or begin.size == 0:
+        raise InputError("offsets must be integers of shape (sets + 1,)", 0)
+    if begin.min() < 0:
+        raise InputError("offsets must not be negative", int(np.argmin(begin)))
+    begin = np.ascontiguousarray(begin, dtype=np.int64)
+    options = _devices.make_options(backend, device, order, threads, max_memory, "counters")
+    if options.backend == "auto":
+        options = options.on_host() if len(p) < _devices.SMALL else options
+    with reporter(progress) as report:
+        return Batch(p, begin, _cadt.triangulate_batch(p, begin, options, report), options)

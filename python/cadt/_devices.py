@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where meshes are computed: options, devices, and those that stay open."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import Any
+
+from cadt import _cadt
+from cadt._errors import BackendUnavailable, OptionError
+
+# Below this, opening a GPU takes longer than the host's whole work (docs/backends.md).
+SMALL = 200_000
+_KEPT = 4  # open devices at most, of which memory is kept
+
+_lock = threading.Lock()
+_open: OrderedDict[tuple, Any] = OrderedDict()
+_automatic_is_host: bool | None = None
+
+
+@dataclass(frozen=True)
+class DeviceInfo:
+    """A device of this machine. `usable` or not, and then why (`reason`).
+
+    ``Delaunay(points, backend=info.backend, device=info.index)`` computes there.
+    """
+
+    backend: str
+    index: int
+    platform: str
+    name: str
+    driver: str
+    usable: bool
+    reason: str
+    memory_bytes: int
+    compute_units: int
+    fp64: bool
+    gpu: bool
+
+
+def devices() -> list[DeviceInfo]:
+    """All devices of all back ends, usable or not. A missing driver is no error: `reason` names it.
+
+    >>> [d.name for d in cadt.devices() if d.backend == "host"] != []
+    True
+    """
+    return [DeviceInfo(**d) for d in _cadt.devices()]
+
+
+def make_options(
+    backend: str | None,
+    device: int | str | None,
+    order: str,
+    threads: int | None,
+    max_memory: int | None,
+    statistics: str,
+    queue: int | None = None,
+) -> _cadt.Options:
+    if order not in ("canonical", "fast"):
+        raise OptionError(f"order must be 'canonical' or 'fast', not {order!r}", "order")
+    if statistics not in ("none", "counters", "timing"):
+        raise OptionError(f"statistics must be 'none', 'counters' or 'timing', not {statistics!r}", "statistics")
+    if threads is not None and not 0 <= threads < 2**31:
+        raise OptionError(f"threads must be a small number that is not negative, not {threads}", "threads")
+    if max_memory is not None and max_memory < 0:
+        raise OptionError(f"max_memory must not be negative, but it is {max_memory}", "max_memory")
+    if device is not None and backend is None:
+        raise OptionError("device needs backend=: 'host', 'opencl' or 'cuda'", "device")
+    if backend is not None and not isinstance(backend, str):
+        raise TypeError(f"backend must be a string, not {type(backend).__name__}")
+    return _cadt.Options(
+        backend or "auto",
+        "" if device is None else str(device),
+        threads or 0,
+        order == "canonical",
+        max_memory or 0,
+        statistics,
+        queue,
+    )
+
+
+def open_device(options: _cadt.Options, key: tuple) -> Any:
+    """The triangulator for `key`, which stays open for the next call. The four used last are kept."""
+    with _lock:
+        triangulator = _open.get(key)
+        if triangulator is not None:
+            _open.move_to_end(key)
+            return triangulator
+    triangulator = _cadt.Triangulator(options)
+    with _lock:
+        triangulator = _open.setdefault(key, triangulator)
+        while len(_open) > _KEPT:
+            _open.popitem(last=False)
+    return triangulator
+
+
+def device_for(options: _cadt.Options, device: int | str | None, threads: int | None, n: int) -> Any:
+    """The open device for points of the host, or None: the host's own call is the faster one, or asked for."""
+    global _automatic_is_host
+    backend = options.backend
+    if backend == "host" or (backend == "auto" and (n < SMALL or _automatic_is_host)):
+        return None
+    triangulator = open_device(options, (backend, device, threads, None))
+    if triangulator.backend == "host":
+        _automatic_is_host = True
+        with _lock:
+            _open.pop((backend, device, threads, None), None)
+        return None
+    return triangulator
+
+
+def release_memory() -> None:
+    """Closes the devices that `Delaunay` keeps open for its next call, and releases their memory.
+
+    What meshes and their arrays on a GPU use is released with the last of them.
+    """
+    with _lock:
+        kept = list(_open.values())
+        _open.clear()
+    for triangulator in kept:
+        triangulator.release_memory()
+
+
+def _after_fork() -> None:
+    # A child has no context of the parent's devices: nothing of theirs may be called, not even a destructor.
+    global _open, _lock, _in_child
+    _in_child = _in_child or bool(_open)
+    _kept_for_ever.append(_open)
+    _open = OrderedDict()
+    _lock = threading.Lock()
+
+
+_kept_for_ever: list[Any] = []
+_in_child = False
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)
+
+
+def refuse_after_fork() -> None:
+    """GPU runtimes do not survive a fork."""
+    if _in_child:
+        raise BackendUnavailable(
+            "this process was forked after a device had been opened, which drivers do not survive: "
+            "use multiprocessing.set_start_method('spawn'), or backend='host'",
+            "",
+            "forked",
+        )

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Points and values from whatever holds them, without a copy where the library can read them as they are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cadt._errors import InputError
+
+_FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
+
+
+def as_points(points: Any, what: str = "points", *, columns: str = "(n, 2)") -> np.ndarray:
+    """An array of shape (n, 2), float64 or float32, whose memory the library reads: `points` itself where possible."""
+    a = points if type(points) is np.ndarray else to_array(points, what)
+    if a.ndim != 2 or a.shape[1] != 2:
+        if a.size == 0 and a.ndim == 1:
+            return np.empty((0, 2))
+        hint = "; cadt.scipy.Delaunay takes more dimensions (with Qhull)" if a.ndim == 2 and what == "points" else ""
+        raise InputError(f"{what} must have shape {columns}, not {a.shape}{hint}", 0)
+    if a.dtype not in _FLOATS or not a.dtype.isnative:
+        a = to_float(a, what)
+    s0, s1 = a.strides
+    size = a.dtype.itemsize
+    if s0 < 0 or s0 % size or s1 % size or not a.flags.aligned:
+        a = np.ascontiguousarray(a)
+    return a
+
+
+def to_array(points: Any, what: str) -> np.ndarray:
+    """Lists, anything with ``__array__`` or, on the host, ``__dlpack__``."""
+    if isinstance(points, np.ma.MaskedArray):
+        if np.ma.is_masked(points):
+            raise InputError(f"{what} are masked: pass {what}.compressed() or the rows without a mask", 0)
+        points = points.data
+    if isinstance(points, (list, tuple)) or hasattr(points, "__array__"):
+        try:
+            return np.asarray(points)
+        except ValueError as e:
+            raise InputError(f"{what} must have shape (n, 2): {e}", 0) from None
+    if hasattr(points, "__dlpack__"):
+        return np.from_dlpack(points)
+    a = np.asarray(points)
+    if a.dtype == object:
+        raise TypeError(f"{what} must be an array of shape (n, 2), not {type(points).__name__}")
+    return a
+
+
+def to_float(a: np.ndarray, what: str) -> np.ndarray:
+    """float64 without a change of any value, or an error."""
+    if a.dtype.kind in "iu":
+        f = a.astype(np.float64)
+        if a.dtype.itemsize >= 8 and a.size:
+            changed = (np.abs(f) > 2.0**53).any(axis=-1) if a.ndim > 1 else np.abs(f) > 2.0**53
+            if changed.any():
+                first = int(np.argmax(changed))
+                raise InputError(
+                    f"{what}: the integers of row {first} exceed 2**53 and have no float64; subtract an offset first",
+                    first,
+                )
+        return f
+    if a.dtype.kind == "f" and a.dtype.itemsize <= 8:
+        return a.astype(np.float64 if a.dtype.itemsize != 4 else np.float32)
+    if a.dtype.kind == "b" or a.dtype.kind not in "OSUVMmcf" or a.dtype == object:
+        kind = "objects" if a.dtype == object else str(a.dtype)
+        raise TypeError(f"{what} must be float64 or float32 (or integers), not {kind}")
+    raise TypeError(f"{what} must be float64 or float32 (or integers), not {a.dtype}: convert them first")
+
+
+def as_queries(xi: Any) -> tuple[np.ndarray, tuple[int, ...]]:
+    """Queries of shape (..., 2) as rows, and the shape of the answers."""
+    if isinstance(xi, tuple) and len(xi) == 2 and not np.isscalar(xi[0]):
+        x, y = np.broadcast_arrays(*xi)
+        xi = np.stack([x, y], axis=-1)
+    a = xi if type(xi) is np.ndarray else to_array(xi, "queries")
+    if a.ndim == 0 or a.shape[-1] != 2:
+        raise InputError(f"queries must have shape (..., 2), not {a.shape}", 0)
+    shape = a.shape[:-1]
+    return as_points(a.reshape(-1, 2), "queries"), shape
+
+
+def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:
+    """Values of shape (n, ...) as a contiguous (n, m) array of float64, and the shape of one point's."""
+    a = np.asarray(values)
+    if a.dtype.kind not in "iuf":
+        raise TypeError(f"values must be real numbers, not {a.dtype}")
+    if a.ndim == 0 or a.shape[0] != n:
+        raise InputError(f"values must have shape ({n},) or ({n}, m): one row a point, not {a.shape}", 0)
+    m = int(np.prod(a.shape[1:]))
+    return np.ascontiguousarray(a.reshape(n, m), dtype=np.float64), a.shape[1:]

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Meshes for other libraries: matplotlib, PyVista, meshio, files."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from cadt._delaunay import Delaunay
+
+
+def _need(module: str, extra: str) -> Any:
+    import importlib
+
+    try:
+        return importlib.import_module(module)
+    except ImportError:
+        raise ImportError(f"this needs {extra}: pip install {extra}") from None
+
+
+def _heights(mesh: Delaunay, z: Any) -> np.ndarray:
+    xyz = np.zeros((mesh.n_points, 3))
+    xyz[:, :2] = mesh._host_points
+    if z is not None:
+        xyz[:, 2] = np.asarray(z)
+    return xyz
+
+
+def to_matplotlib(mesh: Delaunay) -> Any:
+    tri = _need("matplotlib.tri", "matplotlib")
+    xy = mesh._host_points
+    result = tri.Triangulation(xy[:, 0], xy[:, 1], mesh._host_mesh.triangles)
+    # matplotlib's neighbour k is across the edge from vertex k to the next, ours is opposite vertex k.
+    result._neighbors = np.ascontiguousarray(np.roll(mesh._host_mesh.neighbors, 1, axis=1))
+    return result
+
+
+def plot(mesh: Delaunay, ax: Any, how: dict[str, Any]) -> Any:
+    if ax is None:
+        ax = _need("matplotlib.pyplot", "matplotlib").gca()
+    how.setdefault("linewidth", 0.6)
+    ax.triplot(to_matplotlib(mesh), **how)
+    ax.set_aspect("equal")
+    return ax
+
+
+def to_pyvista(mesh: Delaunay, z: Any) -> Any:
+    pyvista = _need("pyvista", "pyvista")
+    faces = np.insert(mesh._host_mesh.triangles, 0, 3, axis=1)
+    return pyvista.PolyData(_heights(mesh, z), faces.ravel())
+
+
+def to_meshio(mesh: Delaunay, z: Any) -> Any:
+    meshio = _need("meshio", "meshio")
+    xyz = _heights(mesh, z)
+    return meshio.Mesh(xyz if z is not None else xyz[:, :2], [("triangle", mesh._host_mesh.triangles)])
+
+
+def save(mesh: Delaunay, path: Any, z: Any) -> None:
+    path = Path(path)
+    if path.suffix not in (".npz",):
+        _need("meshio", "meshio")
+    handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+    os.close(handle)
+    try:
+        if path.suffix == ".npz":
+            host = mesh._host_mesh
+            arrays = {"points": mesh._host_points, "simplices": host.triangles, "neighbors": host.neighbors}
+            if z is not None:
+                arrays["z"] = np.asarray(z)
+            np.savez(name, **arrays)
+        else:
+            # A plane mesh gets a third coordinate: most formats have no other.
+            to_meshio(mesh, np.zeros(mesh.n_points) if z is None else z).write(name)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(name, 0o666 & ~mask)
+        os.replace(name, path)
+    except BaseException:
+        os.unlink(name)
+        raise

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The exact check of any program's mesh."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cadt import _cadt
+from cadt._delaunay import _indices
+from cadt._points import as_points
+from cadt._results import VerifyReport, report_of
+
+
+def verify(points: Any, simplices: Any, neighbors: Any = None, *, canonical_ties: bool = False) -> VerifyReport:
+    """Checks the mesh of any program exactly: structure, orientation, hull, all vertices, all empty circles.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+    simplices : array_like of int, shape (t, 3)
+        Counterclockwise.
+    neighbors : array_like of int, shape (t, 3), optional
+    canonical_ties : bool
+        Whether cocircular points must be triangulated as cadt and CGAL do.
+
+    A wrong mesh is reported, not raised.
+
+    >>> print(cadt.verify([[0, 0], [4, 0], [4, 1], [0, 3]], [[0, 1, 2], [0, 2, 3]]))
+    FAILED: delaunay: ...
+    """
+    return report_of(
+        _cadt.verify(
+            as_points(points),
+            _indices(simplices, "simplices"),
+            None if neighbors is None else _indices(neighbors, "neighbors"),
+            canonical_ties,
+        )
+    )

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// What all bindings share: points from arrays, arrays from results, calls that release the GIL and end on Ctrl-C.
+#pragma once
+
+#include <cadt/cadt.hpp>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <utility>
+#include <vector>
+
+namespace cadt_python {
+
+namespace nb = nanobind;
+
+/// Points of the host, n x 2 doubles or floats with strides that are not negative (cadt/_points.py sees to that).
+using Points = nb::ndarray<nb::ro, nb::ndim<2>, nb::device::cpu>;
+using Values = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Indices = nb::ndarray<const std::int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+
+[[nodiscard]] cadt::PointsView view_of(const Points& points);
+
+template <class T>
+using NumpyArray = nb::ndarray<nb::numpy, T>;
+
+/// A read-only array of memory that `owner` keeps; it keeps a copy of the owner, which costs O(1).
+template <class T, class Owner>
+[[nodiscard]] nb::object array_of(std::span<const T> values, std::size_t columns, const Owner& owner) {
+  nb::capsule keep(new Owner(owner), [](void* p) noexcept { delete static_cast<Owner*>(p); });
+  const std::array<std::size_t, 2> shape{columns == 0 ? values.size() : values.size() / columns, columns};
+  return nb::cast(NumpyArray<const T>(values.data(), columns == 0 ? 1 : 2, shape.data(), keep));
+}
+
+/// An array of a vector, which it takes over. `columns` 0: one dimension.
+template <class T>
+[[nodiscard]] nb::object array_of(std::vector<T>&& values, std::size_t columns = 0) {
+  auto* kept = new std::vector<T>(std::move(values));
+  nb::capsule keep(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+  const std::array<std::size_t, 2> shape{columns == 0 ? kept->size() : kept->size() / columns, columns};
+  return nb::cast(NumpyArray<T>(kept->data(), columns == 0 ? 1 : 2, shape.data(), keep));
+}
+
+/// A call of the library without the GIL. While it runs, Ctrl-C and what `progress(phase, fraction)` raises end it: the
+/// exception is raised again here.
+class Call {
+ public:
+  Call(cadt::Options& options, const nb::object& progress) : options_(options), progress_(progress) {
+    options_.stop = source_.get_token();
+    options_.progress = [this](const cadt::Progress& p) { report(p); };
+  }
+  ~Call() {
+    options_.stop = {};
+    options_.progress = nullptr;
+  }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+  template <class Work>
+  auto operator()(Work&& work) {
+    try {
+      auto result = [&] {
+        nb::gil_scoped_release released;
+        return work();
+      }();
+      if (raised_) throw std::move(*raised_);
+      return result;
+    } catch (const cadt::Cancelled&) {
+      if (raised_) throw std::move(*raised_);
+      throw;
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void report(const cadt::Progress& p);
+
+  cadt::Options& options_;
+  const nb::object& progress_;
+  std::stop_source source_;
+  std::optional<nb::python_error> raised_;
+  Clock::time_point next_ = Clock::now() + std::chrono::milliseconds(20);
+};
+
+[[nodiscard]] nb::dict to_dict(const cadt::Statistics& statistics);
+
+void bind_errors();
+void bind_options(nb::module_& m);
+void bind_mesh(nb::module_& m);
+void bind_device(nb::module_& m);
+void bind_queries(nb::module_& m);
+
+}  // namespace cadt_python

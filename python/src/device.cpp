@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangulators that stay open, points and meshes in device memory.
+#include "device.hpp"
+
+namespace cadt_python {
+
+namespace {
+
+using Shared = std::shared_ptr<SharedTriangulator>;
+using Mesh = std::shared_ptr<DeviceMesh>;
+
+/// An array of CUDA memory that keeps the mesh; for __dlpack__ of array libraries.
+nb::object cuda_array(const Mesh& mesh, void* memory) {
+  nb::capsule keep(new Mesh(mesh), [](void* p) noexcept { delete static_cast<Mesh*>(p); });
+  const std::array<std::size_t, 2> shape{mesh->mesh().number_of_triangles(), 3};
+  return nb::cast(nb::ndarray<std::int32_t>(memory, 2, shape.data(), keep, nullptr, nb::dtype<std::int32_t>(),
+                                            nb::device::cuda::value, mesh->shared().device().index));
+}
+
+}  // namespace
+
+void bind_device(nb::module_& m) {
+  nb::class_<DeviceCoordinates>(m, "DevicePoints")
+      .def(
+          "__init__",
+          [](DeviceCoordinates* self, std::uintptr_t x, std::size_t size, bool float32, std::size_t skip) {
+            new (self) DeviceCoordinates{x, size, float32, skip};
+          },
+          nb::arg("x"), nb::arg("size"), nb::arg("float32"), nb::arg("skip") = 0);
+
+  nb::class_<SharedTriangulator>(m, "Triangulator")
+      .def("__init__",
+           [](SharedTriangulator* self, const cadt::Options& options) {
+             nb::gil_scoped_release released;
+             new (self) SharedTriangulator(options);
+           })
+      .def_prop_ro("backend",
+                   [](const SharedTriangulator& t) { return std::string(cadt::to_string(t.device().backend)); })
+      .def_prop_ro("device", [](const SharedTriangulator& t) { return t.device().name; })
+      .def_prop_ro("device_index", [](const SharedTriangulator& t) { return t.device().index; })
+      .def("release_memory",
+           [](SharedTriangulator& t) {
+             t.run(nb::none(), [](cadt::Triangulator& own) {
+               own.release_memory();
+               return 0;
+             });
+           })
+      .def(
+          "triangulate",
+          [](SharedTriangulator& t, const Points& points, const cadt::Options& options, const nb::object& progress) {
+            const cadt::PointsView view = view_of(points);
+            return t.run(options, progress, [&](cadt::Triangulator& own) { return own.triangulate(view); });
+          },
+          nb::arg("points"), nb::arg("options"), nb::arg("progress") = nb::none());
+
+  m.def(
+      "triangulate_on_device",
+      [](const Shared& shared, const DeviceCoordinates& points, const cadt::Options& options,
+         const nb::object& progress) {
+        return std::make_shared<DeviceMesh>(shared, shared->run(options, progress, [&](cadt::Triangulator& own) {
+          return own.triangulate(points.points());
+        }));
+      },
+      nb::arg("triangulator"), nb::arg("points"), nb::arg("options"), nb::arg("progress") = nb::none());
+
+  nb::class_<DeviceMesh>(m, "DeviceTriangulation")
+      .def_prop_ro("number_of_points", [](const DeviceMesh& d) { return d.mesh().number_of_points(); })
+      .def_prop_ro("number_of_triangles", [](const DeviceMesh& d) { return d.mesh().number_of_triangles(); })
+      .def_prop_ro("dimension", [](const DeviceMesh& d) { return d.mesh().dimension(); })
+      .def_prop_ro("statistics", [](const DeviceMesh& d) { return to_dict(d.mesh().statistics()); })
+      .def_prop_ro("triangles_handle",
+                   [](const DeviceMesh& d) { return reinterpret_cast<std::uintptr_t>(d.mesh().triangles()); })
+      .def_prop_ro("neighbors_handle",
+                   [](const DeviceMesh& d) { return reinterpret_cast<std::uintptr_t>(d.mesh().neighbors()); })
+      .def("download", [](const DeviceMesh& d) {
+        return d.shared().run(nb::none(), [&](cadt::Triangulator&) { return d.mesh().download(); });
+      });
+  m.def("cuda_triangles", [](const Mesh& mesh) { return cuda_array(mesh, mesh->mesh().triangles()); });
+  m.def("cuda_neighbors", [](const Mesh& mesh) { return cuda_array(mesh, mesh->mesh().neighbors()); });
+}
+
+}  // namespace cadt_python

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// An open device that Python objects share, and meshes in its memory.
+#pragma once
+
+#include "common.hpp"
+
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace cadt_python {
+
+/// A triangulator, which one thread at a time may use, and so may no other thread destroy its meshes meanwhile. Python
+/// destroys objects in any thread, and with the GIL, which a running call may need to report progress: what is
+/// destroyed while the triangulator is busy waits for the next call.
+class SharedTriangulator {
+ public:
+  explicit SharedTriangulator(const cadt::Options& options) : triangulator_(options) {}
+
+  /// Runs `work(triangulator)` without the GIL, after other threads' calls.
+  template <class Work>
+  auto run(const nb::object& progress, Work&& work) {
+    const std::unique_lock<std::mutex> lock = occupy();
+    return Call(triangulator_.options(), progress)([&] { return work(triangulator_); });
+  }
+
+  /// The same with the options that may change between calls.
+  template <class Work>
+  auto run(const cadt::Options& options, const nb::object& progress, Work&& work) {
+    const std::unique_lock<std::mutex> lock = occupy();
+    cadt::Options& own = triangulator_.options();
+    own.order = options.order;
+    own.max_memory = options.max_memory;
+    own.statistics = options.statistics;
+    return Call(own, progress)([&] { return work(triangulator_); });
+  }
+
+  void retire(std::shared_ptr<void> object) {
+    if (const std::unique_lock lock(busy_, std::try_to_lock); lock) return object.reset();
+    const std::lock_guard lock(retired_mutex_);
+    retired_.push_back(std::move(object));
+  }
+
+  [[nodiscard]] const cadt::DeviceInfo& device() const noexcept { return triangulator_.device(); }
+
+ private:
+  std::unique_lock<std::mutex> occupy() {
+    std::unique_lock lock(busy_, std::defer_lock);
+    nb::gil_scoped_release released;
+    lock.lock();
+    const std::lock_guard retired(retired_mutex_);
+    retired_.clear();
+    return lock;
+  }
+
+  std::mutex busy_, retired_mutex_;
+  cadt::Triangulator triangulator_;
+  std::vector<std::shared_ptr<void>> retired_;
+};
+
+/// A mesh in device memory; it may outlive all other objects of Python.
+class DeviceMesh {
+ public:
+  DeviceMesh(std::shared_ptr<SharedTriangulator> shared, cadt::DeviceTriangulation&& mesh)
+      : shared_(std::move(shared)), mesh_(std::make_shared<cadt::DeviceTriangulation>(std::move(mesh))) {}
+  ~DeviceMesh() {
+    if (mesh_) shared_->retire(std::move(mesh_));
+  }
+  DeviceMesh(DeviceMesh&&) = default;
+  DeviceMesh& operator=(DeviceMesh&&) = delete;
+
+  [[nodiscard]] const cadt::DeviceTriangulation& mesh() const noexcept { return *mesh_; }
+  [[nodiscard]] SharedTriangulator& shared() const noexcept { return *shared_; }
+
+ private:
+  std::shared_ptr<SharedTriangulator> shared_;
+  std::shared_ptr<cadt::DeviceTriangulation> mesh_;
+};
+
+/// n x 2 coordinates in device memory, as numbers.
+struct DeviceCoordinates {
+  std::uintptr_t x = 0;
+  std::size_t size = 0;
+  bool float32 = false;
+  std::size_t skip = 0;
+  [[nodiscard]] cadt::DevicePoints points() const noexcept {
+    return {.x = reinterpret_cast<const void*>(x),
+            .y = nullptr,
+            .size = size,
+            .scalar = float32 ? cadt::Scalar::float32 : cadt::Scalar::float64,
+            .skip = skip};
+  }
+};
+
+}  // namespace cadt_python

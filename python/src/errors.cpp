@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The library's exceptions as those of cadt/_errors.py, with their data.
+#include "common.hpp"
+
+#include <cadt/errors.hpp>
+
+namespace cadt_python {
+
+namespace {
+
+template <class... Data>
+void raise(const char* type, const std::exception& error, Data&&... data) {
+  const nb::object exception =
+      nb::module_::import_("cadt._errors").attr(type)(error.what(), std::forward<Data>(data)...);
+  PyErr_SetObject(exception.type().ptr(), exception.ptr());
+}
+
+void translate(const std::exception_ptr& thrown, void* /*unused*/) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const cadt::InputError& e) {
+    raise("InputError", e, e.index());
+  } catch (const cadt::InvalidMesh& e) {
+    raise("InvalidMesh", e, e.check(), e.first());
+  } catch (const cadt::LimitError& e) {
+    raise("LimitError", e, e.count(), e.limit());
+  } catch (const cadt::OptionError& e) {
+    raise("OptionError", e, e.option());
+  } catch (const cadt::BackendUnavailable& e) {
+    raise("BackendUnavailable", e, e.backend(), e.reason());
+  } catch (const cadt::OutOfMemory& e) {
+    raise("OutOfMemory", e, e.needed(), e.available());
+  } catch (const cadt::DeviceError& e) {
+    raise("DeviceError", e, e.call(), e.device(), e.code());
+  } catch (const cadt::KernelBuildError& e) {
+    raise("KernelBuildError", e, e.device(), e.options(), e.log());
+  } catch (const cadt::Cancelled& e) {
+    raise("Cancelled", e);
+  } catch (const cadt::InternalError& e) {
+    raise("InternalError", e);
+  } catch (const cadt::Error& e) {
+    raise("Error", e);
+  }
+}
+
+}  // namespace
+
+void bind_errors() { nb::register_exception_translator(translate); }
+
+}  // namespace cadt_python

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The extension module cadt._cadt: the C++ interface for the Python code of the package, which documents it.
+#include "common.hpp"
+
+NB_MODULE(_cadt, m) {
+  using namespace cadt_python;
+  m.attr("version") = CADT_VERSION;
+  bind_errors();
+  bind_options(m);
+  bind_mesh(m);
+  bind_device(m);
+  bind_queries(m);
+}

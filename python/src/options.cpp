@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// Options, devices, statistics.
+#include "common.hpp"
+
+namespace cadt_python {
+
+cadt::PointsView view_of(const Points& points) {
+  const std::size_t n = points.shape(0);
+  if (points.shape(1) != 2) throw nb::value_error("points must have shape (n, 2)");
+  if (n == 0) return {};
+  const auto strided = [&]<class R>(const R* first) {
+    return cadt::PointsView::strided(first, first + points.stride(1), n,
+                                     static_cast<std::size_t>(points.stride(0)) * sizeof(R));
+  };
+  if (points.stride(0) < 0) throw nb::value_error("points must not run backwards in memory");
+  if (points.dtype() == nb::dtype<double>()) return strided(static_cast<const double*>(points.data()));
+  if (points.dtype() == nb::dtype<float>()) return strided(static_cast<const float*>(points.data()));
+  throw nb::type_error("points must be float64 or float32");
+}
+
+void Call::report(const cadt::Progress& p) {
+  const auto now = Clock::now();
+  if (now < next_ || raised_) return;
+  next_ = now + std::chrono::milliseconds(50);
+  nb::gil_scoped_acquire held;
+  try {
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    if (!progress_.is_none()) progress_(nb::str(p.phase.data(), p.phase.size()), p.fraction);
+  } catch (nb::python_error& e) {
+    raised_.emplace(std::move(e));
+    source_.request_stop();
+  }
+}
+
+nb::dict to_dict(const cadt::Statistics& s) {
+  nb::dict d;
+  d["backend"] = s.backend;
+  d["device"] = s.device;
+  d["threads"] = s.threads;
+  const std::pair<const char*, std::uint64_t> counters[] = {
+      {"points", s.points},
+      {"distinct", s.distinct},
+      {"launches", s.launches},
+      {"walk_steps", s.walk_steps},
+      {"lock_attempts", s.lock_attempts},
+      {"lock_failures", s.lock_failures},
+      {"invalid_restarts", s.invalid_restarts},
+      {"insert_retries", s.insert_retries},
+      {"stale_edges", s.stale_edges},
+      {"deferred_points", s.deferred_points},
+      {"deferred_edges", s.deferred_edges},
+      {"splits", s.splits},
+      {"edge_splits", s.edge_splits},
+      {"flips", s.flips},
+      {"incircle_tests", s.incircle_tests},
+      {"orientation_tests", s.orientation_tests},
+      {"exact_orientations", s.exact_orientations},
+      {"exact_incircles", s.exact_incircles},
+      {"ties", s.ties},
+      {"legality_sweeps", s.legality_sweeps},
+      {"sweep_repairs", s.sweep_repairs},
+      {"cavities", s.cavities},
+      {"certified_edges", s.certified_edges},
+      {"tiles", s.tiles},
+      {"proven_stars", s.proven_stars},
+      {"wrapped_stars", s.wrapped_stars},
+      {"sets", s.sets},
+      {"batched_sets", s.batched_sets},
+      {"refined_points", s.refined_points},
+      {"bytes_device_peak", s.bytes_device_peak},
+  };
+  for (const auto& [name, value] : counters) d[name] = value;
+  d["wide_arithmetic"] = s.wide_arithmetic;
+  d["certified"] = s.certified;
+  nb::dict milliseconds;
+  for (const auto& [phase, time] : s.milliseconds) milliseconds[phase.c_str()] = time;
+  d["milliseconds"] = milliseconds;
+  return d;
+}
+
+void bind_options(nb::module_& m) {
+  nb::class_<cadt::Options>(m, "Options")
+      .def(
+          "__init__",
+          [](cadt::Options* self, const std::string& backend, const std::string& device, unsigned threads,
+             bool canonical, std::size_t max_memory, const std::string& statistics,
+             std::optional<std::uintptr_t> queue) {
+            new (self) cadt::Options;
+            self->backend = cadt::backend_from_string(backend);
+            self->device = device;
+            self->threads = threads;
+            self->order = canonical ? cadt::Order::canonical : cadt::Order::fast;
+            self->max_memory = max_memory;
+            self->statistics = statistics == "none"     ? cadt::StatisticsDetail::none
+                               : statistics == "timing" ? cadt::StatisticsDetail::timing
+                                                        : cadt::StatisticsDetail::counters;
+            if (queue) self->queue = reinterpret_cast<void*>(*queue);
+          },
+          nb::arg("backend") = "auto", nb::arg("device") = "", nb::arg("threads") = 0, nb::arg("canonical") = true,
+          nb::arg("max_memory") = 0, nb::arg("statistics") = "counters", nb::arg("queue") = nb::none())
+      .def_prop_ro("backend", [](const cadt::Options& o) { return std::string(cadt::to_string(o.backend)); })
+      .def("on_host", [](const cadt::Options& o) {
+        cadt::Options host = o;
+        host.backend = cadt::Backend::host;
+        return host;
+      });
+
+  m.def("devices", [] {
+    std::vector<cadt::DeviceInfo> devices;
+    {
+      nb::gil_scoped_release released;
+      devices = cadt::list_devices();
+    }
+    nb::list list;
+    for (const cadt::DeviceInfo& device : devices) {
+      nb::dict d;
+      d["backend"] = std::string(cadt::to_string(device.backend));
+      d["index"] = device.index;
+      d["platform"] = device.platform;
+      d["name"] = device.name;
+      d["driver"] = device.driver;
+      d["usable"] = device.usable;
+      d["reason"] = device.reason;
+      d["memory_bytes"] = device.memory_bytes;
+      d["compute_units"] = device.compute_units;
+      d["fp64"] = device.fp64;
+      d["gpu"] = device.gpu;
+      list.append(d);
+    }
+    return list;
+  });
+}
+
+}  // namespace cadt_python

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a mesh can be asked, from host arrays and in device memory.
+#include "device.hpp"
+
+#include <nanobind/stl/array.h>
+
+namespace cadt_python {
+
+namespace {
+
+cadt::Interpolation method_of(const std::string& name) {
+  for (const auto method : {cadt::Interpolation::linear, cadt::Interpolation::nearest, cadt::Interpolation::natural})
+    if (cadt::to_string(method) == name) return method;
+  throw nb::value_error("method must be 'linear', 'nearest' or 'natural'");
+}
+cadt::Outside outside_of(const std::string& name) {
+  if (name != "nan" && name != "nearest") throw nb::value_error("outside must be 'nan' or 'nearest'");
+  return name == "nan" ? cadt::Outside::nan : cadt::Outside::nearest;
+}
+using Corners = std::array<double, 4>;
+
+/// Queries of a mesh of the host; it keeps mesh and points.
+class HostQueries {
+ public:
+  HostQueries(const Points& points, const cadt::Triangulation& mesh, const cadt::Options& options)
+      : points_(points), mesh_(mesh), queries_(view_of(points), mesh_, options) {}
+
+  template <class Work>
+  auto run(Work&& work) {
+    std::unique_lock lock(busy_, std::defer_lock);
+    {
+      nb::gil_scoped_release released;
+      lock.lock();
+    }
+    return Call(queries_.options(), none_)([&] { return work(queries_); });
+  }
+  [[nodiscard]] std::size_t number_of_points() const noexcept { return queries_.number_of_points(); }
+
+ private:
+  Points points_;
+  cadt::Triangulation mesh_;
+  cadt::MeshQueries queries_;
+  nb::object none_ = nb::none();
+  std::mutex busy_;
+};
+
+/// Queries of a mesh in device memory.
+class DeviceQueries {
+ public:
+  DeviceQueries(const std::shared_ptr<DeviceMesh>& mesh, const DeviceCoordinates& points)
+      : mesh_(mesh), queries_(mesh->shared().run(nb::none(), [&](cadt::Triangulator& triangulator) {
+          return std::make_shared<cadt::MeshQueries>(triangulator, points.points(), mesh->mesh());
+        })) {}
+  ~DeviceQueries() {
+    if (queries_) mesh_->shared().retire(std::move(queries_));
+  }
+  DeviceQueries(const DeviceQueries&) = delete;
+  DeviceQueries& operator=(const DeviceQueries&) = delete;
+
+  template <class Work>
+  auto run(Work&& work) {
+    return mesh_->shared().run(nb::none(), [&](cadt::Triangulator&) { return work(*queries_); });
+  }
+
+ private:
+  std::shared_ptr<DeviceMesh> mesh_;
+  std::shared_ptr<cadt::MeshQueries> queries_;
+};
+
+/// Memory of the caller's: address or cl_mem, and elements.
+cadt::DeviceArray memory(const std::pair<std::uintptr_t, std::size_t>& m) {
+  return {reinterpret_cast<void*>(m.first), m.second};
+}
+using Memory = std::pair<std::uintptr_t, std::size_t>;
+
+void bind_device_queries(nb::module_& m) {
+  nb::class_<DeviceQueries>(m, "DeviceQueries")
+      .def(nb::init<const std::shared_ptr<DeviceMesh>&, const DeviceCoordinates&>())
+      .def("locate",
+           [](DeviceQueries& q, const DeviceCoordinates& p, const Memory& to) {
+             return q.run([&](cadt::MeshQueries& own) { return own.locate(p.points(), memory(to)); });
+           })
+      .def("barycentric",
+           [](DeviceQueries& q, const DeviceCoordinates& p, const Memory& triangles, const Memory& weights) {
+             return q.run([&](cadt::MeshQueries& own) {
+               return own.locate_barycentric(p.points(), memory(triangles), memory(weights));
+             });
+           })
+      .def("nearest",
+           [](DeviceQueries& q, const DeviceCoordinates& p, std::size_t k, const Memory& to) {
+             return q.run([&](cadt::MeshQueries& own) { return own.nearest_vertices(p.points(), k, memory(to)); });
+           })
+      .def("interpolate",
+           [](DeviceQueries& q, const Memory& values, const DeviceCoordinates& p, const Memory& to,
+              const std::string& method, const std::string& outside) {
+             return q.run([&, how = method_of(method), beyond = outside_of(outside)](cadt::MeshQueries& own) {
+               return own.interpolate(memory(values), p.points(), memory(to), how, beyond);
+             });
+           })
+      .def("rasterize",
+           [](DeviceQueries& q, const Corners& grid, std::size_t columns, std::size_t rows, const Memory& values,
+              const Memory& to, const std::string& method, double max_edge) {
+             const cadt::Grid cells{grid[0], grid[1], grid[2], grid[3], columns, rows};
+             return q.run([&, how = method_of(method)](cadt::MeshQueries& own) {
+               return own.rasterize(cells, memory(values), memory(to), how, max_edge);
+             });
+           })
+      .def("circumcenters", [](DeviceQueries& q, const Memory& to) {
+        return q.run([&](cadt::MeshQueries& own) { return own.circumcenters(memory(to)); });
+      });
+}
+
+}  // namespace
+
+void bind_queries(nb::module_& m) {
+  nb::class_<HostQueries>(m, "Queries")
+      .def(nb::init<const Points&, const cadt::Triangulation&, const cadt::Options&>())
+      .def("locate",
+           [](HostQueries& q, const Points& p) {
+             return array_of(q.run([&, view = view_of(p)](cadt::MeshQueries& own) { return own.locate(view); }));
+           })
+      .def("barycentric",
+           [](HostQueries& q, const Points& p) {
+             cadt::Located located =
+                 q.run([&, view = view_of(p)](cadt::MeshQueries& own) { return own.locate_barycentric(view); });
+             return nb::make_tuple(array_of(std::move(located.triangles)), array_of(std::move(located.barycentric), 3));
+           })
+      .def("within_hull",
+           [](HostQueries& q, const Points& p) {
+             return array_of(q.run([&, view = view_of(p)](cadt::MeshQueries& own) { return own.within_hull(view); }));
+           })
+      .def("nearest",
+           [](HostQueries& q, const Points& p, std::size_t k) {
+             return array_of(q.run([&, view = view_of(p)](cadt::MeshQueries& own) {
+               return k == 1 ? own.nearest_vertex(view) : own.nearest_vertices(view, k);
+             }));
+           })
+      .def("interpolate",
+           [](HostQueries& q, const Values& values, const Points& p, const std::string& method,
+              const std::string& outside) {
+             return array_of(q.run(
+                 [&, view = view_of(p), how = method_of(method), beyond = outside_of(outside)](cadt::MeshQueries& own) {
+                   return own.interpolate({values.data(), values.size()}, view, how, beyond);
+                 }));
+           })
+      .def("rasterize",
+           [](HostQueries& q, const Corners& grid, std::size_t columns, std::size_t rows, const Values& values,
+              const std::string& method, double max_edge) {
+             const cadt::Grid cells{grid[0], grid[1], grid[2], grid[3], columns, rows};
+             return array_of(q.run([&, how = method_of(method)](cadt::MeshQueries& own) {
+               return own.rasterize(cells, {values.data(), values.size()}, how, max_edge);
+             }));
+           })
+      .def(
+          "circumcenters",
+          [](HostQueries& q) { return array_of(q.run([](cadt::MeshQueries& own) { return own.circumcenters(); }), 2); })
+      .def("voronoi",
+           [](HostQueries& q) {
+             cadt::VoronoiDiagram v = q.run([](cadt::MeshQueries& own) { return own.voronoi(); });
+             return nb::make_tuple(array_of(std::move(v.vertices), 2), array_of(std::move(v.cell_begin)),
+                                   array_of(std::move(v.cells)), array_of(std::move(v.edge_points), 2),
+                                   array_of(std::move(v.edge_vertices), 2));
+           })
+      .def("voronoi_polygons",
+           [](HostQueries& q, const Corners& box) {
+             cadt::VoronoiPolygons v = q.run([&](cadt::MeshQueries& own) {
+               return own.voronoi_polygons({box[0], box[1], box[2], box[3]});
+             });
+             return nb::make_tuple(array_of(std::move(v.begin)), array_of(std::move(v.xy), 2));
+           })
+      .def("largest_empty_circles",
+           [](HostQueries& q, std::size_t k) {
+             const auto circles = q.run([&](cadt::MeshQueries& own) { return own.largest_empty_circles(k); });
+             std::vector<double> centers, radii;
+             std::vector<std::int32_t> triangles;
+             for (const cadt::Circle& c : circles) {
+               centers.insert(centers.end(), {c.x, c.y});
+               radii.push_back(c.radius);
+               triangles.push_back(c.triangle);
+             }
+             return nb::make_tuple(array_of(std::move(centers), 2), array_of(std::move(radii)),
+                                   array_of(std::move(triangles)));
+           })
+      .def("outline", [](HostQueries& q, double max_radius, double max_edge) {
+        cadt::Outline outline = q.run([&](cadt::MeshQueries& own) { return own.outline(max_radius, max_edge); });
+        return nb::make_tuple(array_of(std::move(outline.triangles)), array_of(std::move(outline.edges), 2));
+      });
+  bind_device_queries(m);
+}
+
+}  // namespace cadt_python

@@ -20,7 +20,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.intersphinx",
     "sphinx.ext.mathjax",
-    "sphinx.ext.napoleon",
+    "numpydoc",
     "breathe",
     "sphinx_copybutton",
     "sphinx_design",
@@ -49,10 +49,10 @@ cpp_id_attributes = ["CADT_API"]
 c_id_attributes = ["CADT_API"]
 
 # Python
+default_role = "code"  # `name` in docstrings
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
-napoleon_google_docstring = False
-napoleon_use_rtype = False
+numpydoc_show_class_members = False
 intersphinx_mapping: dict[str, tuple[str, str | None]] = {}
 
 # The gallery

@@ -23,7 +23,7 @@ tri = cadt.Delaunay(points)
 mesh = tri.to_matplotlib()
 
 fig, (left, right) = plt.subplots(1, 2, figsize=(10, 5), layout="constrained", sharex=True, sharey=True)
-tri.plot(left, lw=0.3)
+tri.plot(left, linewidth=0.3)
 left.set(title=f"{tri.n_triangles} triangles", aspect="equal")
 filled = right.tricontourf(mesh, depth, levels=np.arange(-45, 20, 5), cmap="terrain")
 lines = right.tricontour(mesh, depth, levels=np.arange(-45, 20, 5), colors="k", linewidths=0.5)

@@ -19,24 +19,25 @@ def hills(x, y):
 
 
 rng = np.random.default_rng(7)
-corners = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
-points = np.concatenate([rng.random((350, 2)), corners])
+side = np.linspace(0, 1, 11)[:-1]  # and ten points on each side of the square
+sides = [np.stack([side, 0 * side], 1), np.stack([1 - side, 1 + 0 * side], 1), np.stack([0 * side, 1 - side], 1),
+         np.stack([1 + 0 * side, side], 1)]
+points = np.concatenate([rng.random((180, 2)), *sides])
 value = hills(*points.T)
 tri = cadt.Delaunay(points)
 
-side = 400
-centre = (np.arange(side) + 0.5) / side
+cells = 400
+centre = (np.arange(cells) + 0.5) / cells
 truth = hills(*np.meshgrid(centre, centre[::-1]))  # the first row is the top one
 
 light = LightSource(azdeg=315, altdeg=35)
 fig, axes = plt.subplots(1, 4, figsize=(13, 3.8), layout="constrained")
 images = {"truth": truth}
 for method in ("nearest", "linear", "natural"):
-    images[method] = tri.rasterize(value, bounds=(0, 0, 1, 1), shape=(side, side), method=method)
+    images[method] = tri.rasterize(value, bounds=(0, 0, 1, 1), shape=(cells, cells), method=method)
 for ax, (name, image) in zip(axes, images.items()):
-    ax.imshow(light.shade(image, plt.get_cmap("viridis"), vert_exag=0.25, dx=1 / side, dy=1 / side, blend_mode="soft",
-                          vmin=truth.min(), vmax=truth.max()), extent=(0, 1, 0, 1))
+    ax.imshow(light.hillshade(image, vert_exag=0.5, dx=1 / cells, dy=1 / cells), cmap="gray", extent=(0, 1, 0, 1))
     error = np.sqrt(np.nanmean((image - truth) ** 2))
     ax.set(title=name if name == "truth" else f"{name}: error {error:.3f}", xticks=[], yticks=[])
-    ax.plot(*points.T, "w.", ms=1)
+    ax.plot(*points.T, ".", color="C3", ms=2)
 plt.show()

@@ -40,7 +40,7 @@ print("duplicates:", (twice_mesh.duplicate_of >= 0).sum(), "- point 125 equals p
 # A scan in UTM coordinates. As floats, northings of five million metres are multiples of half a metre: most points fall on others, and
 # the rest form a lattice. The mesh of those is right, and useless. Keep doubles, or subtract an offset first.
 
-scan = rng.random((1500, 2)) * 8 + (691_000, 5_334_000)
+scan = rng.random((1500, 2)) * 6 + (691_000, 5_334_000)
 as_floats = scan.astype(np.float32)
 exact, rounded = cadt.Delaunay(scan), cadt.Delaunay(as_floats)
 print("as doubles:", exact.n_triangles, "triangles; as floats:", rounded.n_triangles)

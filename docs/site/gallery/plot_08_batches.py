@@ -3,7 +3,9 @@
 Thousands of small sets in one call
 ===================================
 
-One call for 2,000 sets costs far less than 2,000 calls. Each set gets the mesh that it has alone, with the indices of its own points.
+``triangulate_batch`` takes the points of all sets, one set after another. Each set gets the mesh that it has alone, with the indices
+of its own points. The smaller the sets, the more one call saves; on a graphics card, where a call costs more than a small set,
+it is the only way.
 """
 
 import time
@@ -14,7 +16,7 @@ import numpy as np
 import cadt
 
 rng = np.random.default_rng(6)
-sizes = rng.integers(20, 200, 2000)
+sizes = rng.integers(10, 90, 5000)
 offsets = np.concatenate([[0], np.cumsum(sizes)])
 angle = rng.random(offsets[-1]) * 2 * np.pi
 radius = np.sqrt(rng.random(offsets[-1]))

@@ -59,7 +59,7 @@ def header_page(xml: pathlib.Path, header: str, refid: str) -> str:
     assert compound is not None
     page = f"({refid})=\n\n# `<{header}>`\n\n"
     if compound.find("detaileddescription/para") is not None:
-        page += f"```{{doxygenfile}} {header}\n:sections: detaileddescription\n```\n\n"
+        page += f"```{{doxygenfile}} {header}\n:sections: briefdescription detaileddescription\n```\n\n"
     kinds = [section.get("kind") for section in compound.findall("sectiondef")]
     if kinds:
         title = "Functions and types" if "func" in kinds else "Types and macros"

@@ -4,6 +4,7 @@
     pytest -p site_blocks docs/site README.md      with docs/site/tools on PYTHONPATH
 """
 import importlib.util
+import pathlib
 
 import pytest
 from sybil import Sybil
@@ -31,6 +32,7 @@ def prepare(namespace: dict) -> None:
 
 pytest_collect_file = Sybil(
     parsers=[PythonCodeBlockParser(), SkipParser()],
+    path=str(pathlib.Path(__file__).resolve().parents[3]),  # the repository
     patterns=["*.md"],
     setup=prepare,
     fixtures=["in_a_folder"],

@@ -145,6 +145,8 @@ std::string statistics_text(const RunReport& r) {
     rows.push_back({counter.name, std::to_string(value), fmt::format("{:.3f}", static_cast<double>(value) / points)});
   }
   rows.push_back({"bytes_device_peak", std::to_string(s.bytes_device_peak), human_bytes(s.bytes_device_peak)});
+  rows.push_back({"bytes_to_device", std::to_string(s.bytes_to_device), human_bytes(s.bytes_to_device)});
+  rows.push_back({"bytes_from_device", std::to_string(s.bytes_from_device), human_bytes(s.bytes_from_device)});
   rows.push_back({"wide_arithmetic", s.wide_arithmetic ? "yes" : "no", ""});
   std::vector<std::vector<std::string>> phases = {{"phase", "milliseconds"}};
   for (const auto& [name, ms] : s.milliseconds) phases.push_back({name, fmt::format("{:.3f}", ms)});
@@ -203,6 +205,8 @@ std::string statistics_json(const RunReport& r) {
   json["certified"] = s.certified;
   json["differing_triangles"] = r.differing ? Json(*r.differing) : s.certified ? Json(0) : Json(nullptr);
   json["bytes_device_peak"] = s.bytes_device_peak;
+  json["bytes_to_device"] = s.bytes_to_device;
+  json["bytes_from_device"] = s.bytes_from_device;
   json["wide_arithmetic"] = s.wide_arithmetic;
   json["verification"] = r.verification ? verification_json(*r.verification) : Json(nullptr);
   json["outputs"] = Json::array();

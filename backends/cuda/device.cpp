@@ -129,6 +129,7 @@ std::size_t CudaDevice::free_bytes() {
 void CudaDevice::write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
   check_range("a write", to, offset, bytes);
   if (bytes == 0) return;
+  copied_.to_device += bytes;
   const ContextScope scope(stream_->context());
   if (transfer_.suits(from, bytes)) return transfer_.to_device(data_of(to) + offset, from, bytes);
   check_call(cudaMemcpyAsync(data_of(to) + offset, from, bytes, cudaMemcpyHostToDevice, stream_->get()),
@@ -139,6 +140,7 @@ void CudaDevice::write(Buffer& to, std::size_t offset, const void* from, std::si
 void CudaDevice::read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) {
   check_range("a read", from, offset, bytes);
   if (bytes == 0) return;
+  copied_.from_device += bytes;
   const ContextScope scope(stream_->context());
   if (transfer_.suits(to, bytes)) return transfer_.to_host(to, data_of(from) + offset, bytes);
   // Small results are read through page-locked memory, which halves their time.

@@ -31,6 +31,7 @@ class CudaDevice final : public Device, private Primitives {
   void trim() override;
   [[nodiscard]] std::size_t free_bytes() override;
   [[nodiscard]] Primitives* primitives() noexcept override { return this; }
+  [[nodiscard]] Copied copied() const noexcept override { return copied_; }
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
@@ -69,6 +70,7 @@ class CudaDevice final : public Device, private Primitives {
   void* staging_ = nullptr;  ///< page-locked host memory for small reads
   Transfer transfer_;        ///< large copies
   std::optional<CudaClock> clock_;
+  Copied copied_;
 };
 
 }  // namespace cadt::cuda

@@ -258,11 +258,13 @@ std::size_t ClDevice::free_bytes() {
 
 void ClDevice::write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
   check_range("a write", to, offset, bytes);
+  copied_.to_device += bytes;
   if (bytes != 0) run([&] { queue_.enqueueWriteBuffer(memory_of(to), CL_TRUE, offset, bytes, from); });
 }
 
 void ClDevice::read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) {
   check_range("a read", from, offset, bytes);
+  copied_.from_device += bytes;
   if (bytes != 0) run([&] { queue_.enqueueReadBuffer(memory_of(from), CL_TRUE, offset, bytes, to); });
 }
 

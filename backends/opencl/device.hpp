@@ -26,6 +26,7 @@ class ClDevice final : public Device {
   [[nodiscard]] void* handle(const Buffer& buffer) const noexcept override;
   [[nodiscard]] std::unique_ptr<BufferCache> make_cache() override;
   [[nodiscard]] std::size_t free_bytes() override;
+  [[nodiscard]] Copied copied() const noexcept override { return copied_; }
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override;
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override;
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override;
@@ -66,6 +67,7 @@ class ClDevice final : public Device {
   std::array<std::array<std::optional<ReadyKernel>, kernel_count>, kernel_variants> kernels_;
   std::optional<std::unique_ptr<Primitives>> primitives_;  ///< created on first use
   std::optional<ClClock> clock_;
+  Copied copied_;
 };
 
 }  // namespace cadt::opencl

@@ -145,6 +145,8 @@ void give_statistics(const Statistics& from, cadt_statistics* to) {
   s.bytes_device_peak = from.bytes_device_peak;
   for (const auto& [phase, milliseconds] : from.milliseconds) s.milliseconds += milliseconds;
   s.certified = from.certified ? 1 : 0;
+  s.bytes_to_device = from.bytes_to_device;
+  s.bytes_from_device = from.bytes_from_device;
   give(to, s, "statistics");
 }
 

@@ -153,6 +153,11 @@ class Device {
   /// nullptr: the kernels of common/portable sort and scan.
   [[nodiscard]] virtual Primitives* primitives() noexcept { return nullptr; }
 
+  /// Bytes copied between host and device so far.
+  struct Copied {
+    std::uint64_t to_device = 0, from_device = 0;
+  };
+  [[nodiscard]] virtual Copied copied() const noexcept { return {}; }
   /// Blocking copies; offsets and sizes in bytes. \throws DeviceError
   virtual void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) = 0;
   virtual void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) = 0;

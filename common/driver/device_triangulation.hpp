@@ -23,6 +23,7 @@ struct Triangulator::State {
   std::unique_ptr<Device> device;
   Memory memory;
   KnownSizes known;
+  Device::Copied copied_before;  ///< what the device had copied when the call began
 };
 
 struct DeviceTriangulation::Data {

@@ -43,6 +43,7 @@ void begin_budget(Triangulator::State& state, std::size_t n) {
 void begin_call(Triangulator::State& state, std::size_t n, Statistics& statistics) {
   require_valid(state.options, *state.device);
   state.device->begin_call();
+  state.copied_before = state.device->copied();
   const DeviceInfo& info = state.device->info();
   statistics.points = n;
   statistics.certified = true;  // no edge is illegal until one is found
@@ -73,6 +74,9 @@ void end_call(Triangulator::State& state, Context& ctx, bool ordered) {
   statistics.launches = ctx.launcher.launches();
   statistics.kernels = ctx.launcher.kernel_times();
   statistics.bytes_device_peak = state.memory.peak();
+  const Device::Copied copied = state.device->copied();
+  statistics.bytes_to_device = copied.to_device - state.copied_before.to_device;
+  statistics.bytes_from_device = copied.from_device - state.copied_before.from_device;
   ctx.check("output", 1);
 }
 

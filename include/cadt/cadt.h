@@ -146,6 +146,7 @@ typedef struct cadt_statistics {
   uint64_t proven_stars, wrapped_stars, sets, batched_sets, bytes_device_peak;
   double milliseconds; /* of all phases; 0 with CADT_STATISTICS_NONE */
   int32_t certified;
+  uint64_t bytes_to_device, bytes_from_device;
 } cadt_statistics;
 
 /* Opens the device, triangulates, and closes it. `options` may be NULL: the defaults. */

@@ -70,6 +70,9 @@ struct Statistics {
   std::uint64_t batched_sets = 0;      ///< of these, sets that were triangulated batched, not individually
   std::uint64_t refined_points = 0;    ///< points in over-full cells, whose sort keys were refined
   std::uint64_t bytes_device_peak = 0;  ///< peak of the bytes held on the device
+  /// Bytes copied between host and device: points and meshes of the host, and the words that steer the call (some
+  /// kilobytes). 0 on the host, and for memory that a device uses in place.
+  std::uint64_t bytes_to_device = 0, bytes_from_device = 0;
   bool wide_arithmetic = false;         ///< the exponents span so much that the wide kernels ran, which take any double
 
   /// The last legality sweep found every edge legal, so the mesh is the Delaunay triangulation. Always true, except

@@ -82,14 +82,15 @@ def make_options(
     )
 
 
-def open_device(options: _cadt.Options, key: tuple) -> Any:
+def open_device(options: _cadt.Options, key: tuple, stream: Any = None) -> Any:
     """The triangulator for `key`, which stays open for the next call. The four used last are kept."""
+    _refuse_after_fork()
     with _lock:
         triangulator = _open.get(key)
         if triangulator is not None:
             _open.move_to_end(key)
             return triangulator
-    triangulator = _cadt.Triangulator(options)
+    triangulator = _cadt.Triangulator(options, stream)  # which keeps the stream
     with _lock:
         triangulator = _open.setdefault(key, triangulator)
         while len(_open) > _KEPT:
@@ -139,7 +140,7 @@ if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_after_fork)
 
 
-def refuse_after_fork() -> None:
+def _refuse_after_fork() -> None:
     """GPU runtimes do not survive a fork."""
     if _in_child:
         raise BackendUnavailable(

@@ -44,6 +44,7 @@ class Array:
     backend = "cuda"
     device: int | None = 0
     queue: int | None = None
+    stream: Any = None  # the object that owns the queue
 
     def __init__(self, a: Any) -> None:
         self.a = self.rows(a, "points")
@@ -110,7 +111,8 @@ class CuPy(Array):
         self.xp = cupy
         self.device = int(a.device.id)
         with cupy.cuda.Device(self.device):
-            self.queue = int(cupy.cuda.get_current_stream().ptr)
+            self.stream = cupy.cuda.get_current_stream()
+            self.queue = int(self.stream.ptr)
             super().__init__(a)
 
     def convert(self, a: Any, dtype: str) -> Any:
@@ -157,7 +159,8 @@ class Torch(Array):
         self.xp = sys.modules["torch"]
         self.where = a.device
         self.device = a.device.index
-        self.queue = int(self.xp.cuda.current_stream(a.device).cuda_stream)
+        self.stream = self.xp.cuda.current_stream(a.device)
+        self.queue = int(self.stream.cuda_stream)
         super().__init__(a.detach())
 
     def convert(self, a: Any, dtype: str) -> Any:
@@ -221,7 +224,7 @@ class Jax(Array):
     def triangles(self, mesh: Any, which: str) -> Any:
         if mesh.number_of_triangles == 0:
             return self.from_host(np.empty((0, 3), np.int32))
-        return self.jax.dlpack.from_dlpack(getattr(_cadt, f"cuda_{which}")(mesh))
+        return self.jax.numpy.from_dlpack(getattr(_cadt, f"cuda_{which}")(mesh))
 
 
 class OpenCl(Array):
@@ -232,7 +235,7 @@ class OpenCl(Array):
         import pyopencl.array
 
         self.cl = sys.modules["pyopencl"]
-        self.cl_queue = a.queue
+        self.cl_queue = self.stream = a.queue
         self.queue = int(a.queue.int_ptr)
         super().__init__(a)
 
@@ -282,7 +285,8 @@ class Mesh:
         self.options = _devices.make_options(
             array.backend, array.device, order, threads, max_memory, statistics, array.queue
         )
-        self.triangulator = _devices.open_device(self.options, (array.backend, array.device, threads, array.queue))
+        key = (array.backend, array.device, threads, array.queue)
+        self.triangulator = _devices.open_device(self.options, key, array.stream)
         if self.triangulator.backend != array.backend:
             raise BackendUnavailable("the device of the points cannot be used", array.backend, "")
         self.points = array.coordinates(array.a)

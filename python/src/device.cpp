@@ -29,11 +29,7 @@ void bind_device(nb::module_& m) {
           nb::arg("x"), nb::arg("size"), nb::arg("float32"), nb::arg("skip") = 0);
 
   nb::class_<SharedTriangulator>(m, "Triangulator")
-      .def("__init__",
-           [](SharedTriangulator* self, const cadt::Options& options) {
-             nb::gil_scoped_release released;
-             new (self) SharedTriangulator(options);
-           })
+      .def(nb::init<const cadt::Options&, nb::object>(), nb::arg("options"), nb::arg("stream") = nb::none())
       .def_prop_ro("backend",
                    [](const SharedTriangulator& t) { return std::string(cadt::to_string(t.device().backend)); })
       .def_prop_ro("device", [](const SharedTriangulator& t) { return t.device().name; })

@@ -16,7 +16,12 @@ namespace cadt_python {
 /// destroyed while the triangulator is busy waits for the next call.
 class SharedTriangulator {
  public:
-  explicit SharedTriangulator(const cadt::Options& options) : triangulator_(options) {}
+  /// `stream`: the Python object whose stream or queue `options` names; it lives as long as this and its meshes.
+  SharedTriangulator(const cadt::Options& options, nb::object stream)
+      : stream_(std::move(stream)), triangulator_([&] {
+          nb::gil_scoped_release released;
+          return cadt::Triangulator(options);
+        }()) {}
 
   /// Runs `work(triangulator)` without the GIL, after other threads' calls.
   template <class Work>
@@ -55,6 +60,7 @@ class SharedTriangulator {
   }
 
   std::mutex busy_, retired_mutex_;
+  nb::object stream_;
   cadt::Triangulator triangulator_;
   std::vector<std::shared_ptr<void>> retired_;
 };

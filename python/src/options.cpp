@@ -68,6 +68,8 @@ nb::dict to_dict(const cadt::Statistics& s) {
       {"batched_sets", s.batched_sets},
       {"refined_points", s.refined_points},
       {"bytes_device_peak", s.bytes_device_peak},
+      {"bytes_to_device", s.bytes_to_device},
+      {"bytes_from_device", s.bytes_from_device},
   };
   for (const auto& [name, value] : counters) d[name] = value;
   d["wide_arithmetic"] = s.wide_arithmetic;

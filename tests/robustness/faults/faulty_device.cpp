@@ -151,11 +151,14 @@ class FaultyDevice final : public Device {
     return account(device_->wrap(handle, bytes), false);
   }
 
+  [[nodiscard]] Copied copied() const noexcept override { return device_->copied(); }
   void write(Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
     take(Step::copy, 0, [&] { device_->write(real(to), offset, from, bytes); });
+    faults_->copied.to_device += bytes;
   }
   void read(const Buffer& from, std::size_t offset, void* to, std::size_t bytes) override {
     take(Step::copy, 0, [&] { device_->read(real(from), offset, to, bytes); });
+    faults_->copied.from_device += bytes;
     if (faults_->change_read) faults_->change_read(from, offset, to, bytes);
   }
   void fill(Buffer& to, std::size_t offset, std::size_t bytes, std::uint32_t word) override {
@@ -236,6 +239,7 @@ const char* to_string(Step step) noexcept {
 }
 
 void Faults::clear() noexcept {
+  copied = {};
   counts_.fill(0);
   all_ = failed_ = parts_made_ = 0;
   most_bytes_ = live_bytes_;

@@ -52,6 +52,9 @@ class Faults {
   /// Parts made since the last clear().
   [[nodiscard]] std::size_t parts() const noexcept { return parts_made_; }
 
+  /// What was copied since the last clear(), as this counts it.
+  Device::Copied copied;
+
   // What a test may change or look at, if set. Buffers are those that the driver holds.
   /// The arguments of each launch, before it.
   std::function<void(KernelId, std::vector<Arg>&)> change_launch;

@@ -47,6 +47,8 @@ std::map<std::string, std::string> fields_of(const Statistics& s) {
                                                            {"batched_sets", s.batched_sets},
                                                            {"refined_points", s.refined_points},
                                                            {"bytes_device_peak", s.bytes_device_peak},
+                                                           {"bytes_to_device", s.bytes_to_device},
+                                                           {"bytes_from_device", s.bytes_from_device},
                                                            {"wide_arithmetic", s.wide_arithmetic ? 1 : 0},
                                                            {"certified", s.certified ? 1 : 0}};
   for (const auto& [name, value] : numbers) fields[name] = std::to_string(value);
@@ -91,6 +93,9 @@ class ReportedStatistics : public ResidentTest {
     EXPECT_EQ(s.distinct, distinct);
     EXPECT_EQ(s.launches, launches);
     EXPECT_EQ(s.bytes_device_peak, faults->most_bytes());
+    const bool copies = GetParam().backend != Backend::host;
+    EXPECT_EQ(s.bytes_to_device, copies ? faults->copied.to_device : 0);
+    EXPECT_EQ(s.bytes_from_device, copies ? faults->copied.from_device : 0);
     EXPECT_EQ(s.certified_edges, edges);
     EXPECT_TRUE(s.certified);
     EXPECT_EQ(s.illegal_edges, 0U);

@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays that are on a GPU: results of the same kind, equal to the host's, and nothing through the host."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cadt
+
+MODULES = ["cupy", "torch", "jax"]
+
+
+def has_cuda() -> str:
+    infos = [d for d in cadt.devices() if d.backend == "cuda"]
+    return "" if any(d.usable for d in infos) else infos[0].reason
+
+
+pytestmark = pytest.mark.skipif(bool(has_cuda()), reason=f"no CUDA device: {has_cuda()}")
+
+
+class Library:
+    """One array library, in the test's words."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.xp = pytest.importorskip(name)
+
+    def put(self, a: np.ndarray):
+        if self.name == "torch":
+            return self.xp.from_numpy(np.array(a)).cuda()
+        if self.name == "jax":
+            self.xp.config.update("jax_enable_x64", True)
+            return self.xp.device_put(a, self.xp.devices("gpu")[0])
+        return self.xp.asarray(a)
+
+    def get(self, a) -> np.ndarray:
+        self.check(a)
+        if self.name == "torch":
+            return a.cpu().numpy()
+        return self.xp.asnumpy(a) if self.name == "cupy" else np.asarray(a)
+
+    def check(self, a) -> None:
+        if self.name == "torch":
+            assert a.is_cuda
+        elif self.name == "cupy":
+            assert isinstance(a, self.xp.ndarray)
+        else:
+            assert next(iter(a.devices())).platform in ("gpu", "cuda")
+
+
+@pytest.fixture(params=MODULES)
+def library(request) -> Library:
+    return Library(request.param)
+
+
+@pytest.fixture(params=["cupy", "torch"])
+def writable(request) -> Library:
+    return Library(request.param)
+
+
+def sets():
+    rng = np.random.default_rng(1)
+    yield "uniform", rng.random((20_000, 2))
+    yield "float32", rng.random((20_000, 2)).astype(np.float32)
+    yield "lattice", np.stack(np.meshgrid(np.arange(90.0), np.arange(110.0)), -1).reshape(-1, 2)
+    yield "UTM", rng.random((20_000, 2)) * 1000 + [500_000, 5_600_000]
+    points = rng.random((5_000, 2))
+    yield "duplicates", np.concatenate([points, points[::7]])
+    yield "three", np.array([[0.0, 0], [1, 0], [0, 1]])
+
+
+@pytest.mark.parametrize("name,points", list(sets()), ids=[n for n, _ in sets()])
+def test_equals_host(library, name, points):
+    given = library.put(points)
+    mesh, host = cadt.Delaunay(given), cadt.Delaunay(points, backend="host")
+    assert mesh.device.startswith("cuda")
+    assert mesh.hash == host.hash
+    for member in ("simplices", "neighbors", "hull", "convex_hull", "edges", "duplicate_of", "half_edges"):
+        np.testing.assert_array_equal(library.get(getattr(mesh, member)), getattr(host, member), member)
+    for got, wanted in zip(mesh.vertex_neighbors, host.vertex_neighbors):
+        np.testing.assert_array_equal(library.get(got), wanted)
+    np.testing.assert_array_equal(library.get(given), points)
+    assert mesh.verify()
+
+
+def test_nothing_through_the_host(library):
+    n = 200_000
+    mesh = cadt.Delaunay(library.put(np.random.default_rng(2).random((n, 2))))
+    moved = mesh.statistics["bytes_to_device"] + mesh.statistics["bytes_from_device"]
+    assert moved < 64 * 1024, "words that steer the call, and no array"
+    through_host = cadt.Delaunay(np.random.default_rng(2).random((n, 2)), backend="cuda").statistics
+    assert through_host["bytes_to_device"] >= 16 * n
+    assert through_host["bytes_from_device"] >= 24 * (2 * n - 100)
+
+
+@pytest.mark.parametrize("dtype", ["float64", "float32"])
+def test_queries_equal_host(writable, dtype):
+    rng = np.random.default_rng(3)
+    points = rng.random((30_000, 2)).astype(dtype)
+    mesh, host = cadt.Delaunay(writable.put(points)), cadt.Delaunay(points, backend="host")
+    q = rng.random((50, 40, 2)) * 1.2 - 0.1
+    z = np.stack([points[:, 0] ** 2, points.sum(axis=1)], axis=1)
+    put, get = writable.put, writable.get
+    for xi in (put(q), q):  # queries of the host are copied there
+        np.testing.assert_array_equal(get(mesh.find_simplex(xi)), host.find_simplex(q))
+        np.testing.assert_array_equal(get(mesh.nearest_vertex(xi)), host.nearest_vertex(q))
+        np.testing.assert_array_equal(get(mesh.nearest_vertex(xi, 5)), host.nearest_vertex(q, 5))
+        np.testing.assert_array_equal(get(mesh.within_hull(xi)), host.within_hull(q))
+        for method in ("linear", "nearest", "natural"):
+            for outside in ("nan", "nearest"):
+                got = get(mesh.interpolate(put(z), xi, method, outside=outside))
+                np.testing.assert_allclose(got, host.interpolate(z, q, method, outside=outside), rtol=1e-12, atol=1e-12)
+    triangles, weights = mesh.barycentric(put(q))
+    np.testing.assert_array_equal(get(triangles), host.barycentric(q)[0])
+    np.testing.assert_allclose(get(weights), host.barycentric(q)[1], rtol=1e-12, atol=1e-12)
+    image = mesh.rasterize(put(z[:, 0].copy()), shape=(60, 80), bounds=(0, 0, 1, 1))
+    np.testing.assert_allclose(get(image), host.rasterize(z[:, 0], shape=(60, 80), bounds=(0, 0, 1, 1)), atol=1e-13)
+    np.testing.assert_allclose(get(mesh.circumcenters()), host.circumcenters(), rtol=1e-12)
+
+
+def test_arrays_outlive_the_mesh(library):
+    points = np.random.default_rng(4).random((10_000, 2))
+    simplices = cadt.Delaunay(library.put(points)).simplices
+    for seed in range(5):  # memory that was returned would be used again
+        cadt.Delaunay(library.put(np.random.default_rng(seed).random((10_000, 2))))
+    np.testing.assert_array_equal(library.get(simplices), cadt.Delaunay(points).simplices)
+
+
+def test_current_stream_torch():
+    torch = pytest.importorskip("torch")
+    stream = torch.cuda.Stream()
+    points = np.random.default_rng(5).random((1_000_000, 2))
+    pinned = torch.from_numpy(points).pin_memory()
+    with torch.cuda.stream(stream):
+        for _ in range(5):
+            torch.cuda._sleep(20_000_000)  # the copy waits in this stream; a call in another one would read zeros
+            given = torch.zeros(points.shape, dtype=torch.float64, device="cuda")
+            given.copy_(pinned, non_blocking=True)
+            simplices = cadt.Delaunay(given, order="fast").simplices
+            total = simplices.long().sum()
+    stream.synchronize()
+    assert int(total) == int(cadt.Delaunay(points).simplices.astype(np.int64).sum())
+
+
+def test_current_stream_cupy():
+    cupy = pytest.importorskip("cupy")
+    points = np.random.default_rng(6).random((100_000, 2))
+    with cupy.cuda.Stream(non_blocking=True):
+        given = cupy.asarray(points) * 1.0
+        mesh = cadt.Delaunay(given)
+        np.testing.assert_array_equal(cupy.asnumpy(mesh.simplices), cadt.Delaunay(points).simplices)
+
+
+def test_strides_and_dtypes(writable):
+    rng = np.random.default_rng(7)
+    wide = rng.random((5_000, 5))
+    given = writable.put(wide)
+    wanted = cadt.Delaunay(np.ascontiguousarray(wide[:, 1:3]), backend="host").hash
+    assert cadt.Delaunay(given[:, 1:3]).hash == wanted
+    assert cadt.Delaunay(writable.put(np.asfortranarray(wide[:, 1:3]))).hash == wanted
+    integers = rng.integers(0, 10_000, (5_000, 2)).astype(np.int32)
+    assert cadt.Delaunay(writable.put(integers)).hash == cadt.Delaunay(integers, backend="host").hash
+    for dtype in (np.int64, np.complex128, np.bool_):
+        with pytest.raises(TypeError):
+            cadt.Delaunay(writable.put(np.ones((4, 2), dtype)))
+
+
+def test_bad_input(writable):
+    put = writable.put
+    with pytest.raises(cadt.InputError):
+        cadt.Delaunay(put(np.ones((4, 3))))
+    with pytest.raises(cadt.InputError) as e:
+        cadt.Delaunay(put(np.array([[0, 0], [1, 0], [np.nan, 1]])))
+    assert e.value.index == 2
+    with pytest.raises(cadt.OptionError):
+        cadt.Delaunay(put(np.ones((4, 2))), backend="host")
+    mesh = cadt.Delaunay(put(np.random.default_rng(8).random((100, 2))))
+    with pytest.raises(cadt.InputError):
+        mesh.find_simplex(put(np.array([[0, np.inf]])))
+    with pytest.raises(cadt.InputError):
+        mesh.interpolate(put(np.ones(99)), put(np.ones((4, 2))))
+    assert cadt.Delaunay(put(np.empty((0, 2)))).n_triangles == 0
+    line = cadt.Delaunay(put(np.array([[0.0, 0], [1, 1], [2, 2]])))
+    assert line.dimension == 1 and tuple(line.simplices.shape) == (0, 3)
+
+
+def test_jax_queries_are_refused():
+    library = Library("jax")
+    mesh = cadt.Delaunay(library.put(np.random.default_rng(9).random((100, 2))))
+    with pytest.raises(NotImplementedError):
+        mesh.find_simplex([[0.5, 0.5]])
+
+
+def test_threads(writable):
+    from concurrent.futures import ThreadPoolExecutor
+
+    def work(seed: int) -> tuple[str, str]:
+        points = np.random.default_rng(seed).random((20_000, 2))
+        mesh = cadt.Delaunay(writable.put(points))
+        found = writable.get(mesh.find_simplex(points[:100]))
+        assert (found >= 0).all()
+        return mesh.hash, cadt.Delaunay(points, backend="host").hash
+
+    with ThreadPoolExecutor(8) as pool:
+        for got, wanted in pool.map(work, range(24)):
+            assert got == wanted
+
+
+def test_release_memory(writable):
+    mesh = cadt.Delaunay(writable.put(np.random.default_rng(10).random((10_000, 2))))
+    before = writable.get(mesh.simplices).copy()
+    cadt.release_memory()
+    np.testing.assert_array_equal(writable.get(mesh.simplices), before)
+    assert writable.get(mesh.find_simplex([[0.5, 0.5]])) >= 0
+
+
+def test_fork_is_refused():
+    import os
+
+    cadt.Delaunay(np.random.default_rng(11).random((1000, 2)), backend="cuda")
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            cadt.Delaunay(np.zeros((3, 2)), backend="cuda")
+        except cadt.BackendUnavailable as e:
+            code = 0 if "fork" in str(e) else 2
+        except BaseException:
+            code = 3
+        os._exit(code)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+

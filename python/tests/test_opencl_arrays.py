@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays of PyOpenCL: results on the same queue, equal to the host's."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cadt
+
+cl = pytest.importorskip("pyopencl")
+cl_array = pytest.importorskip("pyopencl.array")
+
+
+@pytest.fixture(scope="module")
+def queue():
+    for platform in cl.get_platforms():
+        for device in platform.get_devices():
+            if "fp64" in device.extensions:
+                return cl.CommandQueue(cl.Context([device]))
+    pytest.skip("no OpenCL device with double precision")
+
+
+@pytest.mark.parametrize("dtype", ["float64", "float32"])
+def test_equals_host(queue, dtype):
+    points = np.random.default_rng(1).random((3_000, 2)).astype(dtype)
+    given = cl_array.to_device(queue, points)
+    mesh, host = cadt.Delaunay(given), cadt.Delaunay(points, backend="host")
+    assert mesh.device.startswith("opencl")
+    for member in ("simplices", "neighbors", "hull", "edges"):
+        got = getattr(mesh, member)
+        assert isinstance(got, cl_array.Array)
+        np.testing.assert_array_equal(got.get(), getattr(host, member))
+    q = np.random.default_rng(2).random((500, 2))
+    np.testing.assert_array_equal(mesh.find_simplex(cl_array.to_device(queue, q)).get(), host.find_simplex(q))
+    z = points[:, 0].astype(np.float64)
+    np.testing.assert_allclose(mesh.interpolate(z, q).get(), host.interpolate(z, q), rtol=1e-12)
+
+
+def test_arrays_outlive_the_mesh(queue):
+    points = np.random.default_rng(3).random((3_000, 2))
+    simplices = cadt.Delaunay(cl_array.to_device(queue, points)).simplices
+    for seed in range(3):
+        cadt.Delaunay(cl_array.to_device(queue, np.random.default_rng(seed).random((3_000, 2))))
+    np.testing.assert_array_equal(simplices.get(), cadt.Delaunay(points).simplices)
+
+
+def test_parts_of_buffers(queue):
+    points = np.random.default_rng(4).random((1_000, 2))
+    given = cl_array.to_device(queue, points)
+    assert cadt.Delaunay(given[100:]).hash == cadt.Delaunay(points[100:]).hash

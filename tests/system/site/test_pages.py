@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every command and every program in C++ on the pages of the site does what is shown beside it."""
 import pathlib
+import re
 import subprocess
 import sys
 import unittest
@@ -52,6 +53,30 @@ class StartPage(PageTest):
 
     def test_the_tabs_are_three(self):
         self.assertEqual(list(dict.fromkeys(block.tab for block in self.blocks)), ["Python", "C++", "Shell"])
+
+
+class FirstBlocks(PageTest):
+    """Python on the start page and in the READMEs. Each document's blocks are one program."""
+
+    def run_python(self, text):
+        program = self.write("blocks.py", text)
+        done = subprocess.run([sys.executable, program], cwd=self.folder, capture_output=True, text=True, timeout=SECONDS)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def test_the_python_tab(self):
+        program, = (block.text for block in pages.of_page(SITE / "index.md") if block.language == "python")
+        self.assertRegex(self.run_python(program), r"^3982 triangles; height in the middle: \[-0\.11428\d+\]\n$")
+        self.assertEqual(self.path("hills.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertGreater(self.path("hills.png").stat().st_size, 100_000, "a blank picture")
+
+    def test_the_readmes(self):
+        count = 0
+        for readme in (SOURCE / "README.md", SOURCE / "python" / "README.md"):
+            blocks = re.findall(r"(?ms)^```python\n(.*?)^```", readme.read_text())
+            count += len(blocks)
+            self.run_python("\n".join(blocks))
+        self.assertGreaterEqual(count, 1)
 
 
 class Pages(PageTest):

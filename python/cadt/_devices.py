@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import atexit
+import ctypes
 import os
 import threading
 from collections import OrderedDict
@@ -125,16 +127,20 @@ def release_memory() -> None:
         triangulator.release_memory()
 
 
+# Before drivers end with the process.
+atexit.register(_open.clear)
+
+
 def _after_fork() -> None:
     # A child has no context of the parent's devices: nothing of theirs may be called, not even a destructor.
-    global _open, _lock, _in_child
+    global _lock, _in_child
     _in_child = _in_child or bool(_open)
-    _kept_for_ever.append(_open)
-    _open = OrderedDict()
+    for triangulator in _open.values():
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(triangulator))
+    _open.clear()
     _lock = threading.Lock()
 
 
-_kept_for_ever: list[Any] = []
 _in_child = False
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_after_fork)

@@ -73,9 +73,11 @@ def save(mesh: Delaunay, path: Any, z: Any) -> None:
     try:
         if path.suffix == ".npz":
             host = mesh._host_mesh
+            # As the program's, whose readers take it.
             arrays = {"points": mesh._host_points, "simplices": host.triangles, "neighbors": host.neighbors}
+            arrays["convex_hull"] = np.stack([host.hull, np.roll(host.hull, -1)], axis=1)
             if z is not None:
-                arrays["z"] = np.asarray(z)
+                arrays["height"] = np.asarray(z)
             np.savez(name, **arrays)
         else:
             # A plane mesh gets a third coordinate: most formats have no other.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sphinx's configuration. scripts/site builds the site; it says here where what it made lies."""
+
 import os
 import pathlib
 import re

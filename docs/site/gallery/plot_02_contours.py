@@ -3,14 +3,13 @@
 Contours of scattered points
 ============================
 
-``to_matplotlib`` gives a ``matplotlib.tri.Triangulation``, with the same triangles and neighbours. So contours, and all else that
-matplotlib does with triangles, need no grid.
+``to_matplotlib`` gives a ``matplotlib.tri.Triangulation``, with the same triangles and neighbours.
+So contours, and all else that matplotlib does with triangles, need no grid.
 """
 
+import cadt
 import matplotlib.pyplot as plt
 import numpy as np
-
-import cadt
 
 rng = np.random.default_rng(1)
 # More points where the ground is steep, as surveyors do it.
@@ -22,7 +21,9 @@ depth = -20 - 15 * x + 34 * np.exp(-((x - 0.62) ** 2 + (y - 0.55) ** 2) / 0.02) 
 tri = cadt.Delaunay(points)
 mesh = tri.to_matplotlib()
 
-fig, (left, right) = plt.subplots(1, 2, figsize=(10, 5), layout="constrained", sharex=True, sharey=True)
+fig, (left, right) = plt.subplots(
+    1, 2, figsize=(10, 5), layout="constrained", sharex=True, sharey=True
+)
 tri.plot(left, linewidth=0.3)
 left.set(title=f"{tri.n_triangles} triangles", aspect="equal")
 filled = right.tricontourf(mesh, depth, levels=np.arange(-45, 20, 5), cmap="terrain")

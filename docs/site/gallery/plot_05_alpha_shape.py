@@ -3,15 +3,14 @@
 Alpha shapes: the outline of points
 ===================================
 
-The convex hull closes bays and holes. ``alpha_shape`` keeps the triangles whose circle is small, and gives the boundary of what is
-left: the lower the radius, the more it follows the points.
+The convex hull closes bays and holes. ``alpha_shape`` keeps the triangles whose circle is small,
+and gives the boundary of what is left: the lower the radius, the more it follows the points.
 """
 
+import cadt
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
-
-import cadt
 
 rng = np.random.default_rng(2)
 points = rng.random((60_000, 2)) * (4, 2) - (2, 1)
@@ -26,8 +25,20 @@ tri = cadt.Delaunay(points)
 fig, axes = plt.subplots(1, 3, figsize=(12, 3.2), layout="constrained", sharex=True, sharey=True)
 for ax, r in zip(axes, (np.inf, 0.15, 0.045)):
     triangles, edges = tri.alpha_shape(r)
-    ax.tripcolor(*points.T, tri.simplices[triangles], facecolors=np.ones(len(triangles)), cmap="Blues", vmin=0, vmax=3)
+    ax.tripcolor(
+        *points.T,
+        tri.simplices[triangles],
+        facecolors=np.ones(len(triangles)),
+        cmap="Blues",
+        vmin=0,
+        vmax=3,
+    )
     ax.plot(*points.T, ".", color="0.4", ms=0.6)
     ax.add_collection(LineCollection(points[edges], color="C3", linewidth=1.6))
-    ax.set(title=f"radius {r}: {len(triangles)} triangles, {len(edges)} edges", aspect="equal", xticks=[], yticks=[])
+    ax.set(
+        title=f"radius {r}: {len(triangles)} triangles, {len(edges)} edges",
+        aspect="equal",
+        xticks=[],
+        yticks=[],
+    )
 plt.show()

@@ -3,15 +3,15 @@
 Verify the mesh of any program
 ==============================
 
-``from_simplices`` takes a mesh of another program, if it is one: it is checked exactly, with predicates that share no code with those
-that build. What is wrong is named, with the first triangle or edge.
+``from_simplices`` takes a mesh of another program, if it is one: it is checked exactly, with
+predicates that share no code with those that build. What is wrong is named, with the first triangle
+or edge.
 """
 
+import cadt
 import matplotlib.pyplot as plt
 import numpy as np
 import scipy.spatial
-
-import cadt
 
 rng = np.random.default_rng(8)
 points = rng.random((60, 2))
@@ -57,7 +57,16 @@ for corners in points[broken[[t, u]]]:
     (ax_, ay), (bx, by), (cx, cy) = corners
     determinant = 2 * (ax_ * (by - cy) + bx * (cy - ay) + cx * (ay - by))
     s = (corners**2).sum(axis=1)
-    centre = np.array([s @ (by - cy, cy - ay, ay - by), s @ (cx - bx, ax_ - cx, bx - ax_)]) / determinant
+    centre = (
+        np.array([s @ (by - cy, cy - ay, ay - by), s @ (cx - bx, ax_ - cx, bx - ax_)]) / determinant
+    )
     right.add_patch(plt.Circle(centre, np.linalg.norm(corners[0] - centre), fill=False, color="C1"))
-right.set(title=f"refused: {refused.check}", aspect="equal", xticks=[], yticks=[], xlim=left.get_xlim(), ylim=left.get_ylim())
+right.set(
+    title=f"refused: {refused.check}",
+    aspect="equal",
+    xticks=[],
+    yticks=[],
+    xlim=left.get_xlim(),
+    ylim=left.get_ylim(),
+)
 plt.show()

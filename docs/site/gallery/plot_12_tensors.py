@@ -3,24 +3,27 @@
 A mesh on tensors
 =================
 
-Points can be tensors of torch, JAX or CuPy; they are taken by DLPack, without a copy where the device can read them. On a graphics card
-the arrays of the mesh are tensors too and nothing passes through the host; else they are NumPy's, which ``torch.from_numpy`` and
-``jax.numpy.asarray`` take over.
+Points can be tensors of torch, JAX or CuPy; they are taken by DLPack, without a copy where the
+device can read them. On a graphics card the arrays of the mesh are tensors too and nothing passes
+through the host; else they are NumPy's, which ``torch.from_numpy`` and ``jax.numpy.asarray`` take
+over.
 
-Here a thousand points push each other apart along the edges of their mesh, which is made anew after each twenty steps.
+Here a thousand points push each other apart along the edges of their mesh, which is made anew after
+each twenty steps.
 """
 
+import cadt
 import matplotlib.pyplot as plt
 import numpy as np
-
-import cadt
 
 try:
     import torch
 
     device = "cuda" if torch.cuda.is_available() else "cpu"
     tensor = lambda array: torch.as_tensor(array, device=device)
-    add_rows = lambda n, index, rows: torch.zeros((n, 2), dtype=rows.dtype, device=device).index_add_(0, index.long(), rows)
+    add_rows = lambda n, index, rows: torch.zeros(
+        (n, 2), dtype=rows.dtype, device=device
+    ).index_add_(0, index.long(), rows)
     norm = lambda rows: torch.linalg.norm(rows, dim=1, keepdim=True)
     kind = f"torch {torch.__version__} on {device}"
 except ImportError:
@@ -53,12 +56,19 @@ print(kind, "-", tri)
 last = np.asarray(points.cpu() if hasattr(points, "cpu") else points)
 triangles = np.asarray(tri.simplices.cpu() if hasattr(tri.simplices, "cpu") else tri.simplices)
 fig, axes = plt.subplots(1, 2, figsize=(10, 5), layout="constrained")
-for ax, p, t, title in ((axes[0], start, cadt.Delaunay(start).simplices, "before"), (axes[1], last, triangles, "after 100 steps")):
+for ax, p, t, title in (
+    (axes[0], start, cadt.Delaunay(start).simplices, "before"),
+    (axes[1], last, triangles, "after 100 steps"),
+):
     corner = p[t]
     sides = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2)
     a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    quality = 2 * np.sqrt(3) * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / (sides**2).sum(axis=1)
-    drawn = ax.tripcolor(*p.T, t, facecolors=quality, cmap="RdYlGn", vmin=0, vmax=1, edgecolors="k", linewidth=0.2)
+    quality = (
+        2 * np.sqrt(3) * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / (sides**2).sum(axis=1)
+    )
+    drawn = ax.tripcolor(
+        *p.T, t, facecolors=quality, cmap="RdYlGn", vmin=0, vmax=1, edgecolors="k", linewidth=0.2
+    )
     ax.set(title=title, aspect="equal", xticks=[], yticks=[])
 fig.colorbar(drawn, ax=axes, label="quality of a triangle (1: equilateral)", shrink=0.8)
 plt.show()

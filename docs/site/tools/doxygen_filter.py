@@ -5,6 +5,7 @@
 The headers have plain comments: // at the top of a file, and in C /* before a declaration or behind a member. Here the
 top becomes the description of the file, and comments of C become documentation. Lines keep their numbers.
 """
+
 import pathlib
 import re
 import sys

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What Doxygen's XML lacks for pages by header: whole names of files, and what a file declares in its namespace."""
+
 import copy
 import pathlib
 import xml.etree.ElementTree as xml_tree
@@ -28,7 +29,9 @@ def complete(xml: pathlib.Path) -> None:
             name.text = file_of(compound)  # there are two errors.hpp
             files[name.text] = path, tree, compound
     for path, tree, compound in files.values():
-        place = list(compound).index(compound.find("detaileddescription"))
+        described = compound.find("detaileddescription")
+        assert described is not None
+        place = list(compound).index(described)
         for namespace in namespaces:
             assert namespace is not None
             for section in namespace.findall("sectiondef"):

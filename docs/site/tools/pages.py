@@ -3,6 +3,7 @@
 
 usage: pages.py --programs FOLDER PAGE...    writes each C++ program of the pages as FOLDER/PAGE.CAPTION, and says which
 """
+
 import dataclasses
 import pathlib
 import re
@@ -12,8 +13,8 @@ import sys
 @dataclasses.dataclass
 class Block:
     language: str  # "cpp", "python", "console", "text", ...
-    caption: str   # name of the file, "" if it has none
-    tab: str       # title of the tab, "" outside
+    caption: str  # name of the file, "" if it has none
+    tab: str  # title of the tab, "" outside
     text: str
     line: int
 

@@ -7,6 +7,7 @@ usage: prepare.py ROOT BUILD PROGRAM      BUILD/doxygen/xml is there
 BUILD/source has the layout of the repository, so that links between documents, and from them to sources, lead to the
 same files as in the repository. Files that did not change keep their times: Sphinx reads again only what did.
 """
+
 import pathlib
 import re
 import shutil
@@ -21,8 +22,15 @@ HEADERS = {
         "The mesh": ["triangulator", "points", "options", "triangulation", "errors", "version"],
         "Asking it": ["queries", "topology", "verify"],
         "Further": ["batch", "devices", "statistics", "triangle", "cadt"],
-        "Files and pictures (component io)": ["io/points_file", "io/mesh_file", "io/query_files", "io/triangle_files",
-                                              "io/picture", "io/generate", "io/errors"],
+        "Files and pictures (component io)": [
+            "io/points_file",
+            "io/mesh_file",
+            "io/query_files",
+            "io/triangle_files",
+            "io/picture",
+            "io/generate",
+            "io/errors",
+        ],
     },
     "c": {"": ["cadt", "queries", "triangulateio"]},
 }
@@ -96,7 +104,9 @@ def header_pages(root: pathlib.Path, build: pathlib.Path, language: str, made: s
         entries.append((f"## {title}\n\n" if title else "") + f"```{{toctree}}\n:maxdepth: 1\n\n{tree}\n```\n")
         for name in names:
             header = f"cadt/{name}{suffix}"
-            made.add(write(folder / language / f"{name.replace('/', '_')}.md", header_page(xml, header, refids[header])))
+            made.add(
+                write(folder / language / f"{name.replace('/', '_')}.md", header_page(xml, header, refids[header]))
+            )
     introduction = (root / f"docs/site/reference/{language}.md").read_text(encoding="utf-8")
     made.add(write(folder / f"{language}.md", introduction.rstrip("\n") + "\n\n" + "\n".join(entries)))
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A plug-in of pytest: the Python blocks of documents are tests.
 
-    pytest -p site_blocks docs/site README.md      with docs/site/tools on PYTHONPATH
+pytest -p site_blocks docs/site README.md      with docs/site/tools on PYTHONPATH
 """
+
 import importlib.util
 import pathlib
 
@@ -12,7 +13,7 @@ from sybil.parsers.myst import PythonCodeBlockParser, SkipParser
 
 
 @pytest.fixture
-def in_a_folder(tmp_path, monkeypatch):
+def in_a_folder(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What a block writes goes to a folder of its own; pictures are drawn without a window."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("MPLBACKEND", "Agg")
@@ -21,12 +22,12 @@ def in_a_folder(tmp_path, monkeypatch):
 def has_gpu() -> bool:
     if importlib.util.find_spec("cupy") is None:
         return False
-    import cupy
+    import cupy  # type: ignore[import-not-found,unused-ignore]
 
-    return cupy.cuda.is_available()
+    return bool(cupy.cuda.is_available())
 
 
-def prepare(namespace: dict) -> None:
+def prepare(namespace: dict[str, object]) -> None:
     namespace["no_gpu"] = not has_gpu()
 
 

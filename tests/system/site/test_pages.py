@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every command and every program in C++ on the pages of the site does what is shown beside it."""
+import gzip
 import pathlib
 import re
 import subprocess
@@ -53,6 +54,42 @@ class StartPage(PageTest):
 
     def test_the_tabs_are_three(self):
         self.assertEqual(list(dict.fromkeys(block.tab for block in self.blocks)), ["Python", "C++", "Shell"])
+
+
+class IndentedCommands(PageTest):
+    """The lines of README.md and docs/cli.md that begin with `cadt`, but for synopses, run with files of the names
+    that they have. Points are fewer, to save time; LAS and GeoTIFF are for the Python package's tests."""
+
+    def setUp(self):
+        super().setUp()
+        rows = [(i % 7 + 0.013 * i, i // 7 - 0.021 * i, 1 + i % 5) for i in range(70)]
+        self.write("survey.csv", "lon,lat,easting,northing,depth\n" + "".join(f"{x},{y},{x},{y},{z}\n" for x, y, z in rows))
+        self.write("stations.csv", "lon,lat\n" + "".join(f"{x},{y}\n" for x, y, _ in rows))
+        self.write("dots.node", "5 2 0 0\n1 0 0\n2 4 0\n3 4 3\n4 0 3\n5 2 1\n")
+        self.write("path.xy", "0.5 0.5\n0.6 0.5\n")
+        self.write("where.xy", "0.5 0.5\n")
+        text = "".join(f"{x} {y}\n" for x, y, _ in rows)
+        self.write("points.xy", text)
+        self.path("points.txt.gz").write_bytes(gzip.compress(text.encode()))
+        self.shell("cadt generate terrain -n 2000 -q -o terrain.xyz")
+
+    def run_lines(self, path):
+        count = 0
+        for line in re.findall(r"(?m)^    ((?:zcat .* \| )?cadt .*)$", path.read_text()):
+            command = line.split(" # ")[0].strip()
+            if re.search(r"[\[\]]|\b[A-Z]{2,}\b|\.\.\.|\.la[sz]\b|\.tif", re.sub(r"-?\w*\d\w*", "", command)):
+                continue
+            if re.search(r"  +", command):  # a synopsis with its explanation
+                continue
+            count += 1
+            self.shell(re.sub(r"(-n \w*1)M\b", r"\g<1>0000", command))
+        return count
+
+    def test_the_readme(self):
+        self.assertGreaterEqual(self.run_lines(SOURCE / "README.md"), 10)
+
+    def test_the_programs_page(self):
+        self.assertGreaterEqual(self.run_lines(SOURCE / "docs" / "cli.md"), 8)
 
 
 class FirstBlocks(PageTest):

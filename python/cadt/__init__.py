@@ -16,9 +16,11 @@ their names and shapes. NumPy is imported by the first call, not by ``import cad
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING, Any
 
+TYPE_CHECKING = False  # typing's own would take most of the time of the import
 if TYPE_CHECKING:
+    from typing import Any
+
     from cadt._batch import Batch, triangulate_batch
     from cadt._delaunay import Delaunay
     from cadt._devices import DeviceInfo, devices, release_memory

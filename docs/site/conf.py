@@ -80,8 +80,10 @@ html_static_path = [str(ROOT / "docs/site/_static")]
 html_css_files = ["cadt.css"]
 html_extra_path = [str(ROOT / "docs/site/redirect")]
 html_show_sourcelink = False
+html_sidebars = {f"site/{page}": [] for page in ("index", "install", "choosing_a_back_end", "guarantees")}
 html_theme_options = {
     "navbar_align": "left",
+    "header_links_before_dropdown": 7,
     "show_toc_level": 2,
     "navigation_with_keys": False,
     "footer_start": ["copyright"],

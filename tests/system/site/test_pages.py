@@ -105,7 +105,7 @@ class FirstBlocks(PageTest):
 
     def test_the_python_tab(self):
         program, = (block.text for block in pages.of_page(SITE / "index.md") if block.language == "python")
-        self.assertRegex(self.run_python(program), r"^3982 triangles; height in the middle: \[-0\.11428\d+\]\n$")
+        self.assertRegex(self.run_python(program), r"^3982 triangles; in the middle: \[-0\.11428\d+\]\n$")
         self.assertLess(pictures.difference(self.path("hills.png"), SITE / "figures" / "hills_python.png"), 4)
 
     def test_the_readmes(self):

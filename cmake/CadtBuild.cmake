@@ -5,7 +5,12 @@
 function(cadt_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off -fno-fast-math)
+  if(MSVC)  # clang-cl: /W4 is clang's -Wall -Wextra. std::getenv and its like are no concern of Microsoft's
+    target_compile_options(${target} PRIVATE /W4 -Wconversion -Wshadow /fp:precise /clang:-ffp-contract=off /EHsc /bigobj /utf-8)
+    target_compile_definitions(${target} PRIVATE _CRT_SECURE_NO_WARNINGS _CRT_NONSTDC_NO_WARNINGS)
+  else()
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow -ffp-contract=off -fno-fast-math)
+  endif()
   if(CADT_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${CADT_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${CADT_SANITIZE})
@@ -23,9 +28,12 @@ function(cadt_library_options target)
 endfunction()
 
 # cadt_export_interface_alone(TARGET): of a shared library, what cmake/cadt.map lets out. The linkers of other systems than
-# Linux read no such file; there it is what is marked CADT_API.
+# Linux read no such file; there it is what is marked CADT_API, for which Windows must know who builds and who uses it.
 function(cadt_export_interface_alone target)
   get_target_property(type ${target} TYPE)
+  if(type STREQUAL "SHARED_LIBRARY")
+    target_compile_definitions(${target} PUBLIC CADT_SHARED PRIVATE CADT_BUILDS_SHARED)
+  endif()
   if(type STREQUAL "SHARED_LIBRARY" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
     target_link_options(${target} PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/cadt.map)
     set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/cadt.map)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "failure.hpp"
 
+#include "system.hpp"
 #include "text.hpp"
 
 #include <cadt/errors.hpp>
@@ -8,7 +9,6 @@
 #include <cadt/triangle.hpp>
 
 #include <fmt/format.h>
-#include <sys/sysinfo.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -29,10 +29,9 @@ int error(ExitCode code, std::string_view message, std::string_view advice = {})
 
 // No allocation here: there may be nothing left to allocate.
 int out_of_host_memory() noexcept {
-  struct sysinfo system {};
   char line[256];
-  if (sysinfo(&system) == 0) {
-    const double free_gib = static_cast<double>(system.freeram) * system.mem_unit / (1024.0 * 1024.0 * 1024.0);
+  if (const auto free = free_memory()) {
+    const double free_gib = static_cast<double>(*free) / (1024.0 * 1024.0 * 1024.0);
     std::snprintf(line, sizeof line,
                   "cadt: error: out of memory: bytes needed: more than the system gave this process, free: %.2f GiB\n",
                   free_gib);

@@ -4,27 +4,33 @@
 #include "interrupt.hpp"
 
 #include "failure.hpp"
-
-#include <fcntl.h>
-#include <unistd.h>
+#include "system.hpp"
 
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <mutex>
 #include <thread>
+
+#if defined(_WIN32)
+#define WIN32_LEAN_AND_MEAN
+#if !defined(NOMINMAX)
+#define NOMINMAX
+#endif
+#include <windows.h>
+#else
+#include <fcntl.h>
+#include <unistd.h>
+#endif
 
 namespace cadt::cli {
 namespace {
 
-constexpr std::array signals = {SIGINT, SIGTERM, SIGHUP};
-int pipe_ends[2] = {-1, -1};
-volatile std::sig_atomic_t listening[signals.size()] = {};
-
 struct State {
   std::mutex mutex;
   Phase phase = Phase::free;
-  std::stop_source stop;
+  cadt::stop_source stop;
 };
 
 // Never destroyed: the waiting thread may outlive main().
@@ -32,6 +38,33 @@ State& state() {
   static State* const instance = new State;
   return *instance;
 }
+
+void stop_or_end() {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  s.stop.request_stop();
+  const bool terminal = errors_go_to_terminal();
+  if (s.phase == Phase::free) {
+    say(terminal ? "\ncadt: interrupted\n" : "cadt: interrupted\n");
+    std::_Exit(exit_interrupted);
+  }
+  if (terminal) say("\ncadt: stopping; interrupt again to end at once\n");
+}
+
+#if defined(_WIN32)
+
+// Runs in a thread of its own. The second time the default handler ends the process.
+BOOL WINAPI on_console_event(DWORD /*event*/) {
+  if (state().stop.stop_requested()) return FALSE;
+  stop_or_end();
+  return TRUE;
+}
+
+#else
+
+constexpr std::array signals = {SIGINT, SIGTERM, SIGHUP};
+int pipe_ends[2] = {-1, -1};
+volatile std::sig_atomic_t listening[signals.size()] = {};
 
 extern "C" void on_signal(int) {
   const int saved = errno;
@@ -48,22 +81,26 @@ void wait_for_signal() {
   char byte = 0;
   while (read(pipe_ends[0], &byte, 1) < 0 && errno == EINTR) {
   }
-  State& s = state();
-  const std::lock_guard lock(s.mutex);
-  s.stop.request_stop();
-  const bool terminal = isatty(STDERR_FILENO) != 0;
-  if (s.phase == Phase::free) {
-    say(terminal ? "\ncadt: interrupted\n" : "cadt: interrupted\n");
-    _exit(exit_interrupted);
-  }
-  if (terminal) say("\ncadt: stopping; interrupt again to end at once\n");
+  stop_or_end();
 }
+
+#endif
 
 }  // namespace
 
+#if defined(_WIN32)
+
 void install_interrupt_handlers() {
   state();
-  if (pipe2(pipe_ends, O_CLOEXEC) != 0) return;  // then the signals keep their default effect
+  ::SetConsoleCtrlHandler(on_console_event, TRUE);
+}
+
+#else
+
+void install_interrupt_handlers() {
+  state();
+  if (pipe(pipe_ends) != 0) return;  // then the signals keep their default effect
+  for (const int end : pipe_ends) fcntl(end, F_SETFD, FD_CLOEXEC);
   // The thread that waits must not be the one that a signal interrupts in a read of standard input.
   sigset_t all, before;
   sigfillset(&all);
@@ -84,7 +121,9 @@ void install_interrupt_handlers() {
   }
 }
 
-std::stop_token interrupt_token() { return state().stop.get_token(); }
+#endif
+
+cadt::stop_token interrupt_token() { return state().stop.get_token(); }
 
 void check_interrupt() {
   if (state().stop.stop_requested()) throw Cancelled();

@@ -3,8 +3,7 @@
 #pragma once
 
 #include <cadt/errors.hpp>
-
-#include <stop_token>
+#include <cadt/stop_token.hpp>
 
 namespace cadt::cli {
 
@@ -18,7 +17,7 @@ enum class Phase {
 /// Installs the handlers. A signal that the parent process ignores (nohup, background jobs) stays ignored.
 void install_interrupt_handlers();
 
-[[nodiscard]] std::stop_token interrupt_token();
+[[nodiscard]] cadt::stop_token interrupt_token();
 
 /// Throws Cancelled if a signal came.
 void check_interrupt();

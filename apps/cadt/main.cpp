@@ -92,7 +92,9 @@ int parse_and_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   int code = exit_done;
+#if defined(SIGXFSZ)
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows over its limit is an error of the write, with the file's name
+#endif
   try {
     code = parse_and_run(argc, argv);
     finish_stdout();

@@ -2,12 +2,12 @@
 #include "outputs.hpp"
 
 #include "failure.hpp"
+#include "system.hpp"
 #include "text.hpp"
 
 #include <cadt/io/errors.hpp>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -98,7 +98,7 @@ void require_writable(const std::string& path) {
   std::error_code code;
   if (fs::is_directory(path, code)) throw io::FileError(path, 0, "is a folder; name a file in it");
   if (is_device(path)) {  // /dev/null, a named pipe: written in place
-    if (access(path.c_str(), W_OK) != 0) refuse(path, errno);
+    if (!may_write(path)) refuse(path, errno);
     return;
   }
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
@@ -106,7 +106,7 @@ void require_writable(const std::string& path) {
     throw io::FileError(path, 0,
                         fmt::format("cannot be written: there is no folder '{}'; create it first", folder.string()));
   }
-  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(path, errno);
+  if (!may_write(folder.string())) refuse(path, errno);
 }
 
 Phase writing_phase(const std::string& path) { return path == "-" || is_device(path) ? Phase::free : Phase::writing; }
@@ -121,7 +121,7 @@ void write_text(const std::string& path, const std::string& text) {
   const fs::path resolved = fs::weakly_canonical(path, code);
   const std::string target = code ? path : resolved.string();
   const bool in_place = is_device(target);
-  const std::string name = in_place ? target : fmt::format("{}.{}.tmp", target, getpid());
+  const std::string name = in_place ? target : fmt::format("{}.{}.tmp", target, process_number());
   const auto fail = [&](int why) {
     if (!in_place) std::remove(name.c_str());
     refuse(path, why == 0 ? EIO : why);
@@ -133,7 +133,9 @@ void write_text(const std::string& path, const std::string& text) {
   const int why = errno;
   const bool closed = std::fclose(file) == 0;
   if (!written || !closed) fail(written ? errno : why);
-  if (!in_place && std::rename(name.c_str(), target.c_str()) != 0) fail(errno);
+  if (in_place) return;
+  fs::rename(name, target, code);  // std::rename() refuses on Windows if the file exists
+  if (code) fail(code.default_error_condition().value());
 }
 
 }  // namespace cadt::cli

@@ -2,22 +2,14 @@
 #include "progress.hpp"
 
 #include "failure.hpp"
+#include "system.hpp"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 
 namespace cadt::cli {
 namespace {
-
-// A line that wraps cannot be overwritten, so it is cut to the terminal.
-std::size_t terminal_width() {
-  struct winsize size {};
-  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1) return size.ws_col;
-  return 80;
-}
 
 std::string rate(double per_second) {
   if (per_second >= 1e6) return fmt::format("{:.1f}M points/s", per_second / 1e6);
@@ -27,7 +19,7 @@ std::string rate(double per_second) {
 
 }  // namespace
 
-ProgressLine::ProgressLine(bool quiet) : shown_(!quiet && isatty(STDERR_FILENO) != 0) {}
+ProgressLine::ProgressLine(bool quiet) : shown_(!quiet && errors_go_to_terminal()) {}
 
 void ProgressLine::step(std::string_view text) {
   if (shown_) draw(text);
@@ -65,6 +57,7 @@ void ProgressLine::clear() noexcept {
 }
 
 void ProgressLine::draw(std::string_view text) {
+  // A line that wraps cannot be overwritten, so it is cut to the terminal.
   const std::string_view cut = text.substr(0, terminal_width() - 1);
   say(fmt::format("\r{:<{}}", cut, std::max(cut.size(), length_)));
   length_ = std::max(cut.size(), length_);

@@ -3,10 +3,10 @@
 
 #include "failure.hpp"
 
+#include <fast_float/fast_float.h>  // std::from_chars takes no double in libc++ before version 20
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -20,7 +20,7 @@ std::optional<Box> parse_rectangle(const std::string& option, const std::string&
   bool good = true;
   for (double* value : {&box.min_x, &box.min_y, &box.max_x, &box.max_y}) {
     if (value != &box.min_x) good = good && at != end && *at++ == ',';
-    const auto [stop, code] = std::from_chars(at, end, *value);
+    const auto [stop, code] = fast_float::from_chars(at, end, *value);
     good = good && code == std::errc() && std::isfinite(*value);
     if (!good) break;
     at = stop;

@@ -3,11 +3,11 @@
 
 #include "failure.hpp"
 
+#include <fast_float/fast_float.h>  // std::from_chars takes no double in libc++ before version 20
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -17,7 +17,7 @@ namespace {
 // A number and the word after it; nullopt unless the number is finite and not negative.
 std::optional<std::pair<double, std::string>> number_and_unit(std::string_view text) {
   double value = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, code] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
   if (code != std::errc() || !std::isfinite(value) || value < 0) return std::nullopt;
   std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
   while (!unit.empty() && unit.front() == ' ') unit.remove_prefix(1);

@@ -5,15 +5,11 @@
 #include <cadt/triangulator.hpp>
 #include <cadt/version.hpp>
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
-#include <fstream>
+#include <cstring>
 #include <limits>
 #include <new>
 #include <optional>
@@ -23,33 +19,27 @@
 #include "backends/host/kernel_table.hpp"
 #include "backends/host/thread_pool.hpp"
 #include "common/driver/buffer_cache.hpp"
+#include "common/platform/machine.hpp"
+#include "common/platform/pages.hpp"
 #include "common/self_test/self_test.hpp"
 
 namespace cadt::host {
 namespace {
 
-// From this size on, memory comes straight from the system: in huge pages, which save page faults and TLB misses (the
+// From a huge page on, memory comes straight from the system: in huge pages, which save page faults and TLB misses (the
 // mesh is accessed irregularly), and zeroed at first touch by the thread that touches it.
-constexpr std::size_t huge_page = std::size_t{2} << 20;
-
 class HostBuffer final : public Buffer {
  public:
   explicit HostBuffer(std::size_t bytes) : Buffer(bytes) {
-    if (bytes >= huge_page) {
-      // One page more than needed, so that the data can begin at a huge page.
-      mapped_bytes_ = (bytes + 2 * huge_page - 1) / huge_page * huge_page;
-      void* mapped = ::mmap(nullptr, mapped_bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-      if (mapped == MAP_FAILED) throw OutOfMemory("not enough host memory: use fewer points", bytes, 0);
-      mapped_ = mapped;
-      const auto at = reinterpret_cast<std::uintptr_t>(mapped);
-      data_ = static_cast<std::byte*>(mapped) + ((huge_page - at % huge_page) % huge_page);
-      ::madvise(data_, bytes, MADV_HUGEPAGE);  // advice only: failure changes nothing
+    if (bytes >= platform::huge_page) {
+      pages_ = platform::map_pages(bytes);
+      data_ = pages_.data;
     } else {
       const std::size_t line = 64;
-      data_ = std::aligned_alloc(line, (std::max<std::size_t>(bytes, 1) + line - 1) / line * line);
-      if (data_ == nullptr) throw OutOfMemory("not enough host memory: use fewer points", bytes, 0);
+      data_ = platform::allocate(line, bytes);
       owned_ = true;
     }
+    if (data_ == nullptr) throw OutOfMemory("not enough host memory: use fewer points", bytes, 0);
   }
   HostBuffer(const void* data, std::size_t bytes) : Buffer(bytes), data_(const_cast<void*>(data)) {}
   /// From the caller's allocator.
@@ -62,32 +52,20 @@ class HostBuffer final : public Buffer {
   }
   ~HostBuffer() override {
     if (allocator_ != nullptr) allocator_->deallocate(data_, bytes(), nullptr);
-    if (mapped_ != nullptr) ::munmap(mapped_, mapped_bytes_);
-    if (owned_) std::free(data_);
+    platform::unmap_pages(pages_);
+    if (owned_) platform::deallocate(data_);
   }
   HostBuffer(const HostBuffer&) = delete;
   HostBuffer& operator=(const HostBuffer&) = delete;
   [[nodiscard]] void* data() const noexcept { return data_; }
-  [[nodiscard]] bool zeroed() const noexcept { return mapped_ != nullptr; }
+  [[nodiscard]] bool zeroed() const noexcept { return pages_.data != nullptr; }
 
  private:
   void* data_ = nullptr;
-  void* mapped_ = nullptr;
-  std::size_t mapped_bytes_ = 0;
+  platform::Pages pages_;
   std::shared_ptr<DeviceAllocator> allocator_;
   bool owned_ = false;
 };
-
-std::string processor_name() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("model name", 0) == 0) {
-      const auto colon = line.find(':');
-      if (colon != std::string::npos && colon + 2 <= line.size()) return line.substr(colon + 2);
-    }
-  }
-  return "host processor";
-}
 
 unsigned all_cores() noexcept { return std::max(1U, std::thread::hardware_concurrency()); }
 
@@ -96,11 +74,11 @@ DeviceInfo describe() {
   info.backend = Backend::host;
   info.index = 0;
   info.platform = "host";
-  info.name = processor_name();
+  info.name = platform::processor_name();
+  if (info.name.empty()) info.name = "host processor";
   info.driver = "cadt " CADT_VERSION;
   info.usable = true;
-  const long pages = ::sysconf(_SC_PHYS_PAGES), page = ::sysconf(_SC_PAGE_SIZE);
-  if (pages > 0 && page > 0) info.memory_bytes = static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page);
+  info.memory_bytes = platform::memory_bytes();
   info.largest_buffer_bytes = info.memory_bytes;
   info.compute_units = all_cores();
   info.fp64 = true;

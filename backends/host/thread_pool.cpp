@@ -4,12 +4,23 @@
 namespace cadt::host {
 
 ThreadPool::ThreadPool(unsigned threads, bool interleaved) : shares_(threads), interleaved_(interleaved) {
-  for (std::size_t i = 1; i < threads; ++i)
-    workers_.emplace_back([this, i](const std::stop_token& stop) { serve(i, stop); });
+  try {
+    for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this, i] { serve(i); });
+  } catch (...) {  // there are no more threads to be had
+    stop();
+    throw;
+  }
 }
 
-ThreadPool::~ThreadPool() {
-  for (auto& worker : workers_) worker.request_stop();
+ThreadPool::~ThreadPool() { stop(); }
+
+void ThreadPool::stop() noexcept {
+  {
+    std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  start_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
 }
 
 void ThreadPool::work(std::size_t self) noexcept {
@@ -23,12 +34,13 @@ void ThreadPool::work(std::size_t self) noexcept {
   }
 }
 
-void ThreadPool::serve(std::size_t self, const std::stop_token& stop) noexcept {
+void ThreadPool::serve(std::size_t self) noexcept {
   std::uint64_t seen = 0;
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      if (!start_.wait(lock, stop, [&] { return open_ && launch_ != seen; })) return;
+      start_.wait(lock, [&] { return ended_ || (open_ && launch_ != seen); });
+      if (ended_) return;
       seen = launch_;
       ++active_;
     }

@@ -31,7 +31,8 @@ class ThreadPool {
 
  private:
   void work(std::size_t self) noexcept;
-  void serve(std::size_t self, const std::stop_token& stop) noexcept;
+  void serve(std::size_t self) noexcept;
+  void stop() noexcept;
 
   // The current launch. run() writes it while no worker is active.
   KernelFunction kernel_ = nullptr;
@@ -45,12 +46,12 @@ class ThreadPool {
   bool interleaved_;
 
   std::mutex mutex_;
-  std::condition_variable_any start_;
-  std::condition_variable done_;
+  std::condition_variable start_, done_;
   std::uint64_t launch_ = 0;
-  bool open_ = false;                  ///< whether workers may still join the launch
-  unsigned active_ = 0;                ///< workers that have joined it and are not done
-  std::vector<std::jthread> workers_;  // declared last: joined before the other members are destroyed
+  bool open_ = false;    ///< whether workers may still join the launch
+  bool ended_ = false;   ///< whether workers shall end
+  unsigned active_ = 0;  ///< workers that have joined it and are not done
+  std::vector<std::thread> workers_;
 };
 
 }  // namespace cadt::host

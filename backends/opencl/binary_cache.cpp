@@ -87,12 +87,17 @@ Digest digest_of(std::span<const unsigned char> bytes) {
 
 fs::path cache_directory() {
   if (const char* own = std::getenv("CADT_CACHE_DIR")) return own;
+#if defined(_WIN32)
+  const char* local = std::getenv("LOCALAPPDATA");
+  return local != nullptr && *local != '\0' ? fs::path(local) / "cadt" / "cache" : fs::path();
+#else
   const char* xdg = std::getenv("XDG_CACHE_HOME");
   if (xdg != nullptr && *xdg == '/')
     return fs::path(xdg) / "cadt";  // relative paths are ignored (XDG base directory specification)
   const char* home = std::getenv("HOME");
   if (home != nullptr && *home != '\0') return fs::path(home) / ".cache" / "cadt";
   return {};
+#endif
 }
 
 fs::path cache_file(const fs::path& directory, Digest key) { return directory / (key.hex() + ".clbin"); }

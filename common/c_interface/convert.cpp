@@ -73,7 +73,7 @@ CallOptions::CallOptions(const cadt_options* from) {
 Options CallOptions::begin_call() const {
   Options options = options_;
   if (callbacks_.progress == nullptr && callbacks_.cancelled == nullptr) return options;
-  std::stop_source stop;
+  cadt::stop_source stop;
   options.stop = stop.get_token();
   if (callbacks_.cancelled != nullptr && callbacks_.cancelled(callbacks_.user) != 0) stop.request_stop();
   options.progress = [asked = callbacks_, stop](const Progress& now) mutable {

@@ -11,21 +11,21 @@ namespace {
 
 /// Buffers below this are cached in sizes of powers of two, so that those of one call serve the next, whatever its
 /// size. Allocating and freeing one costs as much as two launches with OpenCL.
-constexpr std::size_t small = 4096, smallest = 64;
+constexpr std::size_t small_buffer = 4096, smallest_buffer = 64;
 
 }  // namespace
 
 std::unique_ptr<BufferCache> Device::make_cache() { return std::make_unique<BufferCache>(); }
 
 std::size_t BufferCache::new_size(std::size_t bytes, Lifetime /*lifetime*/) const noexcept {
-  return bytes >= small ? bytes : std::bit_ceil(std::max(bytes, smallest));
+  return bytes >= small_buffer ? bytes : std::bit_ceil(std::max(bytes, smallest_buffer));
 }
 
 bool BufferCache::suits(std::size_t available, std::size_t bytes) const noexcept {
   if (available < bytes) return false;
-  if (bytes < small) return available == bytes;  // larger buffers are for larger requests
-  if (bounded_) return available == bytes;       // the excess would count, and may be what is missing later
-  return any_serves_ || available / 2 <= bytes;  // not so large that it would be missed
+  if (bytes < small_buffer) return available == bytes;  // larger buffers are for larger requests
+  if (bounded_) return available == bytes;              // the excess would count, and may be what is missing later
+  return any_serves_ || available / 2 <= bytes;         // not so large that it would be missed
 }
 
 std::unique_ptr<Buffer> BufferCache::take(std::size_t bytes, Lifetime lifetime) {

@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <new>
-
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
 
 #include "common/driver/triangulation_data.hpp"
 
@@ -47,8 +44,6 @@ std::vector<Corners> sorted_triangles(const Triangulation& mesh) {
   return result;
 }
 
-constexpr std::size_t huge_page = std::size_t{2} << 20;
-
 void require_triangle(std::size_t t, std::size_t count) {
   if (t >= count) throw InputError("there is no triangle " + std::to_string(t) + ", only " + std::to_string(count), t);
 }
@@ -56,27 +51,13 @@ void require_triangle(std::size_t t, std::size_t count) {
 }  // namespace
 
 Words make_words(std::size_t count) {
-  const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(std::int32_t);
-  const bool large = bytes >= huge_page;
-  Words words(static_cast<std::int32_t*>(
-      large ? std::aligned_alloc(huge_page, (bytes + huge_page - 1) / huge_page * huge_page) : std::malloc(bytes)));
+  Words words(static_cast<std::int32_t*>(platform::allocate(alignof(std::max_align_t), count * sizeof(std::int32_t))));
   if (words == nullptr) throw std::bad_alloc();
-#if defined(MADV_HUGEPAGE)
-  if (large) ::madvise(words.get(), bytes, MADV_HUGEPAGE);  // advice only: failure changes nothing
-#endif
   return words;
 }
 
 Words cut_words(Words words, std::size_t all, std::size_t count) noexcept {
-#if defined(__linux__)
-  // Whole huge pages, counted from the first word: make_words() aligns large arrays.
-  const std::size_t bytes = all * sizeof(std::int32_t);
-  const std::size_t kept = (count * sizeof(std::int32_t) + huge_page - 1) / huge_page * huge_page;
-  if (bytes >= huge_page && kept < bytes)
-    ::madvise(reinterpret_cast<std::byte*>(words.get()) + kept, (bytes - kept) / huge_page * huge_page, MADV_DONTNEED);
-#else
-  static_cast<void>(all), static_cast<void>(count);
-#endif
+  platform::give_back(words.get(), all * sizeof(std::int32_t), count * sizeof(std::int32_t));
   return words;
 }
 

@@ -5,14 +5,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <vector>
+
+#include "common/platform/pages.hpp"
 
 namespace cadt {
 
 struct FreeWords {
-  void operator()(std::int32_t* words) const noexcept { std::free(words); }
+  void operator()(std::int32_t* words) const noexcept { platform::deallocate(words); }
 };
 using Words = std::unique_ptr<std::int32_t[], FreeWords>;
 

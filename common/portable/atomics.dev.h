@@ -138,32 +138,53 @@ CADT_FN cadt_u32 cadt_or_relaxed(CADT_GLOBAL cadt_u32* p, cadt_u32 bits) { retur
 /* ---- host: ordered operations, no fences (ThreadSanitizer does not follow fences) ---- */
 #else
 
+#if defined(__cpp_lib_atomic_ref)
+typedef std::atomic_ref<cadt_u32> cadt_atomic;
+#else /* libc++ before version 19 */
+struct cadt_atomic {
+  explicit cadt_atomic(cadt_u32& word) : cell(&word) {}
+  cadt_u32 load(std::memory_order order) const { return __atomic_load_n(cell, CADT_CAST(int, order)); }
+  void store(cadt_u32 value, std::memory_order order) const { __atomic_store_n(cell, value, CADT_CAST(int, order)); }
+  cadt_u32 fetch_add(cadt_u32 value, std::memory_order order) const {
+    return __atomic_fetch_add(cell, value, CADT_CAST(int, order));
+  }
+  bool compare_exchange_strong(cadt_u32& expected, cadt_u32 desired, std::memory_order success,
+                               std::memory_order failure = std::memory_order_relaxed) const {
+    return __atomic_compare_exchange_n(cell, &expected, desired, false, CADT_CAST(int, success), CADT_CAST(int, failure));
+  }
+  bool compare_exchange_weak(cadt_u32& expected, cadt_u32 desired, std::memory_order order) const {
+    return __atomic_compare_exchange_n(cell, &expected, desired, true, CADT_CAST(int, order), __ATOMIC_RELAXED);
+  }
+  cadt_u32* cell;
+};
+#endif
+
 CADT_FN cadt_u32 cadt_load_acquire(cadt_u32* p) {
-  return std::atomic_ref<cadt_u32>(*p).load(std::memory_order_acquire);
+  return cadt_atomic(*p).load(std::memory_order_acquire);
 }
 CADT_FN cadt_u32 cadt_load_relaxed(cadt_u32* p) {
-  return std::atomic_ref<cadt_u32>(*p).load(std::memory_order_relaxed);
+  return cadt_atomic(*p).load(std::memory_order_relaxed);
 }
 CADT_FN void cadt_store_release(cadt_u32* p, cadt_u32 value) {
-  std::atomic_ref<cadt_u32>(*p).store(value, std::memory_order_release);
+  cadt_atomic(*p).store(value, std::memory_order_release);
 }
 CADT_FN void cadt_store_relaxed(cadt_u32* p, cadt_u32 value) {
-  std::atomic_ref<cadt_u32>(*p).store(value, std::memory_order_relaxed);
+  cadt_atomic(*p).store(value, std::memory_order_relaxed);
 }
 CADT_FN cadt_u32 cadt_cas_acq_rel(cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
-  return std::atomic_ref<cadt_u32>(*p).compare_exchange_strong(expected, desired, std::memory_order_acq_rel,
+  return cadt_atomic(*p).compare_exchange_strong(expected, desired, std::memory_order_acq_rel,
                                                                std::memory_order_relaxed)
              ? 1u
              : 0u;
 }
 CADT_FN cadt_u32 cadt_cas_relaxed(cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
-  return std::atomic_ref<cadt_u32>(*p).compare_exchange_strong(expected, desired, std::memory_order_relaxed) ? 1u : 0u;
+  return cadt_atomic(*p).compare_exchange_strong(expected, desired, std::memory_order_relaxed) ? 1u : 0u;
 }
 CADT_FN cadt_u32 cadt_add_relaxed(cadt_u32* p, cadt_u32 value) {
-  return std::atomic_ref<cadt_u32>(*p).fetch_add(value, std::memory_order_relaxed);
+  return cadt_atomic(*p).fetch_add(value, std::memory_order_relaxed);
 }
 CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
-  std::atomic_ref<cadt_u32> cell(*p);
+  cadt_atomic cell(*p);
   cadt_u32 old = cell.load(std::memory_order_relaxed);
   while (value < old && !cell.compare_exchange_weak(old, value, std::memory_order_relaxed)) {
   }

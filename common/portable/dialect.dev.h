@@ -13,7 +13,7 @@
 #if CADT_FLOAT
 typedef float cadt_real;
 #define CADT_MANTISSA_BITS 23 /* stored bits */
-#define CADT_EXPONENTS 0xFFul
+#define CADT_EXPONENTS CADT_CAST(cadt_u64, 0xFF)
 #define CADT_EXPONENT_BIAS 127
 #define CADT_SIGN_SHIFT 31
 #define cadt_bits_of_real(x) CADT_CAST(cadt_u64, cadt_bits_of_float(x))
@@ -25,14 +25,14 @@ typedef float cadt_real;
 #else
 typedef double cadt_real;
 #define CADT_MANTISSA_BITS 52
-#define CADT_EXPONENTS 0x7FFul
+#define CADT_EXPONENTS CADT_CAST(cadt_u64, 0x7FF)
 #define CADT_EXPONENT_BIAS 1023
 #define CADT_SIGN_SHIFT 63
 #define cadt_bits_of_real(x) cadt_bits_of_double(x)
 #define CADT_GRADUAL_UNDERFLOW 1 /* the self-test checks it */
 #endif
 #define CADT_EXPONENT_MASK (CADT_EXPONENTS << CADT_MANTISSA_BITS)
-#define CADT_HIDDEN_BIT (1ul << CADT_MANTISSA_BITS)
+#define CADT_HIDDEN_BIT (CADT_CAST(cadt_u64, 1) << CADT_MANTISSA_BITS)
 
 /* Comparisons of coordinates on which a decision depends. */
 #if CADT_GRADUAL_UNDERFLOW

@@ -20,7 +20,11 @@ Sum exact_sum(double a, double b) noexcept {
 
 Sum exact_product(double a, double b) noexcept {
   const double high = a * b;
+#if defined(__MINGW32__)  // whose std::fma() rounds twice
+  return {high, static_cast<double>(static_cast<__float128>(a) * b - high)};
+#else
   return {high, std::fma(a, b, -high)};
+#endif
 }
 
 /// b - a for points, divided by a power of two that brings the larger component to 1/2 ... 1.

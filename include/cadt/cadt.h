@@ -30,7 +30,7 @@ extern "C" {
  * that begin with their size may grow at their end without that. */
 #define CADT_ABI_VERSION 0
 CADT_API int32_t cadt_abi_version(void);
-/* "0.1.0": that of the library, which may be newer than this header's CADT_VERSION. */
+/* "0.2.0": that of the library, which may be newer than this header's CADT_VERSION. */
 CADT_API const char* cadt_version(void);
 
 /* ---- errors ---- */

@@ -4,6 +4,7 @@
 
 #include <cadt/export.hpp>
 #include <cadt/statistics.hpp>
+#include <cadt/stop_token.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +12,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -123,8 +123,9 @@ struct Options {
   /// Source of device memory. Null: the library allocates it.
   std::shared_ptr<DeviceAllocator> allocator;
   StatisticsDetail statistics = StatisticsDetail::counters;
-  /// Checked between launches; once triggered, the call throws Cancelled.
-  std::stop_token stop;
+  /// Checked between launches; once triggered, the call throws Cancelled. std::stop_token where the standard library
+  /// has it.
+  cadt::stop_token stop;
   /// Called on the calling thread between launches. Must not throw.
   std::function<void(const Progress&)> progress;
   /// For those who measure, tune or repeat the paper.

@@ -2,6 +2,6 @@
 #pragma once
 
 #define CADT_VERSION_MAJOR 0
-#define CADT_VERSION_MINOR 1
+#define CADT_VERSION_MINOR 2
 #define CADT_VERSION_PATCH 0
-#define CADT_VERSION "0.1.0"
+#define CADT_VERSION "0.2.0"

@@ -2,9 +2,9 @@
 // Triangles and neighbours in the formats of Triangle: .ele .neigh
 #include "io/mesh/mesh_parts.hpp"
 #include "io/support/number_format.hpp"
+#include "io/support/system_file.hpp"
 #include "io/support/text_scanner.hpp"
 
-#include <unistd.h>
 #include <algorithm>
 
 namespace cadt::io::detail {
@@ -20,17 +20,15 @@ constexpr std::size_t shortest_line = 8;
 /// The same file name with another suffix.
 std::string sibling(const std::string& path, const char* suffix) {
   const std::size_t dot = path.find_last_of('.');
-  const std::size_t slash = path.find_last_of('/');
+  const std::size_t slash = path.find_last_of(system_file::separators);
   const bool has_suffix = dot != std::string::npos && (slash == std::string::npos || dot > slash);
   return (has_suffix ? path.substr(0, dot) : path) + suffix;
 }
 
-bool is_readable(const std::string& path) { return ::access(path.c_str(), R_OK) == 0; }
-
 /// First index of the .node file beside the .ele; nothing if there is none.
 std::optional<std::int64_t> base_of_node_file(const std::string& path) {
   const std::string node = sibling(path, ".node");
-  if (path == "-" || !is_readable(node)) return std::nullopt;
+  if (path == "-" || !system_file::is_readable(node)) return std::nullopt;
   const InputFile file(node);
   TextScanner scanner(file.name(), file.bytes());
   scanner.need_content_line("the header of a .node file");
@@ -102,7 +100,7 @@ std::int64_t recognise_base(const Rows& rows, std::size_t points) {
 /// The .neigh file beside the .ele, if there is one.
 std::vector<std::int32_t> read_neigh_beside(const std::string& path, std::size_t triangles, std::int64_t base) {
   const std::string name = sibling(path, ".neigh");
-  if (path == "-" || !is_readable(name)) return {};
+  if (path == "-" || !system_file::is_readable(name)) return {};
   const InputFile file(name);
   TextScanner scanner(file.name(), file.bytes());
   scanner.need_content_line("the header of a .neigh file");

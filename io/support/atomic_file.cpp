@@ -3,74 +3,50 @@
 
 #include <cadt/io/errors.hpp>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <system_error>
 
+#include "io/support/system_file.hpp"
+
 namespace cadt::io::detail {
-namespace {
-
-std::string folder_of(const std::string& path) {
-  const std::size_t slash = path.find_last_of('/');
-  if (slash == std::string::npos) return ".";
-  return slash == 0 ? "/" : path.substr(0, slash);
-}
-
-/// The file that a symbolic link leads to: renaming onto the link would replace the link itself.
-std::string resolved(const std::string& path) {
-  struct Free {
-    void operator()(char* p) const { std::free(p); }
-  };
-  const std::unique_ptr<char, Free> real(::realpath(path.c_str(), nullptr));
-  return real ? std::string(real.get()) : path;
-}
-
-/// Some file systems and all pipes do not support syncing; no data are lost by that.
-bool sync_refused_for_good(int code) { return code == EINVAL || code == ENOTSUP || code == EROFS || code == ENOSYS; }
-
-}  // namespace
 
 AtomicFile::AtomicFile(const std::string& path)
     : name_(path == "-" ? "<stdout>" : path), buffer_(std::make_unique_for_overwrite<char[]>(buffer_size)) {
   if (path == "-") {
-    descriptor_ = STDOUT_FILENO;
+    descriptor_ = system_file::standard_output();
     owned_ = false;
     return;
   }
   if (path.empty()) throw FileError(name_, 0, "an output file needs a name");
-  struct stat status {};
-  const bool exists = ::stat(path.c_str(), &status) == 0;
-  if (exists && S_ISDIR(status.st_mode)) throw FileError(name_, 0, "is a directory");
-  if (exists && !S_ISREG(status.st_mode)) {
-    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  const system_file::Kind kind = system_file::kind_of(path);
+  if (kind.folder) throw FileError(name_, 0, "is a directory");
+  if (kind.exists && !kind.regular) {
+    descriptor_ = system_file::open_to_write(path);
     if (descriptor_ < 0) fail("cannot be opened", errno);
     return;
   }
-  target_ = exists ? resolved(path) : path;
+  // Renaming onto a symbolic link would replace the link itself.
+  target_ = kind.exists ? system_file::resolved(path) : path;
   open_temporary();
   // A replaced file keeps its permissions; failing to copy them is not worth losing the data for.
-  if (exists) static_cast<void>(::fchmod(descriptor_, status.st_mode & 07777));
+  if (kind.exists) system_file::set_permissions(descriptor_, kind.permissions);
 }
 
 AtomicFile::~AtomicFile() {
-  if (descriptor_ >= 0 && owned_) ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (descriptor_ >= 0 && owned_) system_file::close(descriptor_);
+  if (!temporary_.empty()) system_file::remove(temporary_);
 }
 
 void AtomicFile::open_temporary() {
   static std::atomic<unsigned> serial{0};
-  const std::string stem = folder_of(target_) + "/.cadt-" + std::to_string(::getpid()) + "-";
+  const std::string stem =
+      system_file::folder_of(target_) + "/.cadt-" + std::to_string(system_file::process_number()) + "-";
   constexpr int most_tries = 1000;  // temporary files left by a killed process with the same number
   for (int i = 0; i < most_tries; ++i) {
     std::string candidate = stem + std::to_string(serial.fetch_add(1, std::memory_order_relaxed)) + ".tmp";
-    // open() rather than mkstemp(): the umask of the process decides about the permissions.
-    descriptor_ = ::open(candidate.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor_ = system_file::create(candidate);
     if (descriptor_ >= 0) {
       temporary_ = std::move(candidate);
       return;
@@ -86,12 +62,8 @@ void AtomicFile::fail(const char* action, int code) const {
 
 void AtomicFile::write_through(const char* bytes, std::size_t size) {
   while (size != 0) {
-    constexpr std::size_t most_per_call = std::size_t{1} << 30;
-    const ssize_t put = ::write(descriptor_, bytes, std::min(size, most_per_call));
-    if (put < 0) {
-      if (errno == EINTR) continue;
-      fail("cannot be written", errno);
-    }
+    const std::ptrdiff_t put = system_file::write(descriptor_, bytes, size);
+    if (put < 0) fail("cannot be written", errno);
     bytes += put;
     size -= static_cast<std::size_t>(put);
   }
@@ -119,19 +91,13 @@ void AtomicFile::write(const void* bytes, std::size_t size) {
 void AtomicFile::commit() {
   flush();
   if (!owned_) return;
-  if (::fsync(descriptor_) != 0 && !sync_refused_for_good(errno)) fail("cannot be synced", errno);
-  const int closed = ::close(descriptor_);
+  if (!system_file::sync(descriptor_)) fail("cannot be synced", errno);
+  const bool closed = system_file::close(descriptor_);
   descriptor_ = -1;
-  if (closed != 0 && errno != EINTR) fail("cannot be closed", errno);
+  if (!closed) fail("cannot be closed", errno);
   if (temporary_.empty()) return;
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot be renamed from its temporary file", errno);
+  if (!system_file::replace(temporary_, target_)) fail("cannot be renamed from its temporary file", errno);
   temporary_.clear();
-  // The name itself is durable once its folder is; the data already are, so a refusal is not an error.
-  const int folder = ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder >= 0) {
-    static_cast<void>(::fsync(folder));
-    ::close(folder);
-  }
 }
 
 }  // namespace cadt::io::detail

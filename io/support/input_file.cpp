@@ -3,13 +3,12 @@
 
 #include <cadt/io/errors.hpp>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+
+#include "io/support/system_file.hpp"
 
 namespace cadt::io::detail {
 namespace {
@@ -17,17 +16,14 @@ namespace {
 /// Closes a descriptor that was opened here; standard input stays open.
 class Descriptor {
  public:
-  Descriptor(int value, bool owned) : value_(value), owned_(owned) {}
-  ~Descriptor() {
-    if (owned_) ::close(value_);
-  }
+  explicit Descriptor(int value) : value_(value) {}
+  ~Descriptor() { system_file::close(value_); }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   [[nodiscard]] int get() const noexcept { return value_; }
 
  private:
   int value_;
-  bool owned_;
 };
 
 std::string system_text(int code) { return std::generic_category().message(code); }
@@ -36,12 +32,14 @@ std::string system_text(int code) { return std::generic_category().message(code)
 
 InputFile::InputFile(const std::string& path) : name_(path == "-" ? "<stdin>" : path) {
   if (path == "-") {
-    read_all(STDIN_FILENO);
+    read_all(system_file::standard_input());
     return;
   }
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // Windows opens no folder and says "permission denied".
+  if (system_file::kind_of(path).folder) throw FileError(name_, 0, "is a directory");
+  const int descriptor = system_file::open_to_read(path);
   if (descriptor < 0) throw FileError(name_, 0, "cannot be opened: " + system_text(errno));
-  const Descriptor guard(descriptor, true);
+  const Descriptor guard(descriptor);
   read_all(guard.get());
 }
 
@@ -53,27 +51,23 @@ void InputFile::grow(std::size_t capacity) {
 }
 
 void InputFile::read_all(int descriptor) {
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0) throw FileError(name_, 0, "cannot be read: " + system_text(errno));
-  if (S_ISDIR(status.st_mode)) throw FileError(name_, 0, "is a directory");
+  const system_file::Kind kind = system_file::kind_of(descriptor);
+  if (!kind.exists) throw FileError(name_, 0, "cannot be read: " + system_text(errno));
+  if (kind.folder) throw FileError(name_, 0, "is a directory");
   // One byte more than the size lets the last read see the end of the file without growing.
   constexpr std::size_t pipe_start = std::size_t{1} << 16;
-  grow(S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) + 1 : pipe_start);
+  grow(kind.regular ? kind.size + 1 : pipe_start);
   for (;;) {
     if (size_ == capacity_) grow(capacity_ * 2);
-    constexpr std::size_t most_per_call = std::size_t{1} << 30;  // the kernel reads at most 2 GiB at a time
-    const ssize_t got = ::read(descriptor, data_.get() + size_, std::min(capacity_ - size_, most_per_call));
-    if (got < 0) {
-      if (errno == EINTR) continue;
-      throw FileError(name_, 0, "cannot be read: " + system_text(errno));
-    }
+    const std::ptrdiff_t got = system_file::read(descriptor, data_.get() + size_, capacity_ - size_);
+    if (got < 0) throw FileError(name_, 0, "cannot be read: " + system_text(errno));
     if (got == 0) return;
     size_ += static_cast<std::size_t>(got);
   }
 }
 
 std::string suffix_of(const std::string& path) {
-  const std::size_t slash = path.find_last_of('/');
+  const std::size_t slash = path.find_last_of(system_file::separators);
   const std::size_t start = slash == std::string::npos ? 0 : slash + 1;
   const std::size_t dot = path.find_last_of('.');
   if (dot == std::string::npos || dot < start) return {};

@@ -19,7 +19,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <utility>
 #include <vector>
 
@@ -91,7 +90,7 @@ class Call {
 
   cadt::Options& options_;
   const nb::object& progress_;
-  std::stop_source source_;
+  cadt::stop_source source_;
   std::optional<nb::python_error> raised_;
   Clock::time_point next_ = Clock::now() + std::chrono::milliseconds(20);
 };

@@ -48,7 +48,7 @@ OUTSIDE = {
     r"cuda": ["backends/cuda", "kernels_cuda", "common/portable", "tests", "examples"],
     r"cub/|thrust/": ["backends/cuda", "kernels_cuda"],
     r"cairo|png|zlib": ["io", "tests"],
-    r"fast_float/": ["io"],
+    r"fast_float/": ["apps", "io"],
     r"CLI/": ["apps", "bench"],
     r"nlohmann/": ["apps", "bench", "tests"],
     r"gtest/|gmock/": ["tests"],

@@ -3,7 +3,9 @@
 
 #include "tests/support/device_choice.hpp"
 
+#if !defined(_WIN32)
 #include <unistd.h>
+#endif
 
 #include <cstdlib>
 #include <ostream>
@@ -91,8 +93,15 @@ bool required(Backend backend) {
   return false;
 }
 
+/// Ends the process then; 0: not any more. On Windows ctest's own limit is all there is.
+static void end_after([[maybe_unused]] int seconds) {
+#if !defined(_WIN32)
+  alarm(static_cast<unsigned>(seconds));
+#endif
+}
+
 void BackendTest::SetUp() {
-  if (const char* seconds = std::getenv("CADT_TEST_SECONDS")) alarm(static_cast<unsigned>(std::atoi(seconds)));
+  if (const char* seconds = std::getenv("CADT_TEST_SECONDS")) end_after(std::atoi(seconds));
   const std::string reason = unavailable(GetParam().backend);
   if (reason.empty()) return;
   const std::string text = "back end '" + std::string(to_string(GetParam().backend)) + "' is not available: " + reason;
@@ -101,7 +110,7 @@ void BackendTest::SetUp() {
 }
 
 void BackendTest::TearDown() {
-  if (std::getenv("CADT_TEST_SECONDS") != nullptr) alarm(0);
+  if (std::getenv("CADT_TEST_SECONDS") != nullptr) end_after(0);
 }
 
 std::string case_name(const testing::TestParamInfo<BackendCase>& info) { return info.param.name; }

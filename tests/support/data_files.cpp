@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/data_files.hpp"
 
-#include <unistd.h>
+#include "tests/support/portable.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -39,13 +40,13 @@ std::string quoted(const fs::path& path) {
 // several processes may want it at a time: each writes under a name of its own and renames.
 fs::path made_by(const std::string& command, const fs::path& source, const std::string& name) {
   std::string of_folder = folder().string();
-  std::replace(of_folder.begin(), of_folder.end(), '/', '_');
+  for (const char separator : {'/', '\\', ':'}) std::replace(of_folder.begin(), of_folder.end(), separator, '_');
   const fs::path result = fs::path(CADT_TEST_CACHE_DIR) / of_folder / name;
   std::error_code missing;
   const auto made = fs::last_write_time(result, missing);
   if (!missing && made >= fs::last_write_time(source)) return result;
   fs::create_directories(result.parent_path());
-  const fs::path part = result.string() + "." + std::to_string(::getpid());
+  const fs::path part = result.string() + "." + std::to_string(process_number());
   if (std::system((command + " > " + quoted(part)).c_str()) != 0) throw std::runtime_error("failed: " + command);
   fs::rename(part, result);
   return result;
@@ -58,10 +59,11 @@ Points parse_text(const std::string& text) {
   while (true) {
     while (at != end && std::strchr(" \t\r\n", *at)) ++at;
     if (at == end) break;
-    double value = 0.0;
-    const auto [next, error] = std::from_chars(at, end, value);
-    // Subnormal decimals are in range; libstdc++ reports only what becomes zero or infinity.
-    if (error != std::errc()) throw std::runtime_error("not a number: " + std::string(at, std::min(at + 20, end)));
+    char* next = nullptr;  // not std::from_chars(), which takes no double in libc++ before version 20
+    errno = 0;
+    const double value = std::strtod(at, &next);
+    if (next == at || (errno == ERANGE && std::isinf(value)))  // "inf" is a number, and what is subnormal
+      throw std::runtime_error("not a number: " + std::string(at, std::min(at + 20, end)));
     xy.push_back(value);
     at = next;
   }

@@ -21,7 +21,11 @@ Pair sum(double a, double b) {
 }
 Pair product(double a, double b) {
   const double p = a * b;
+#if defined(__MINGW32__)  // whose std::fma() rounds twice
+  return {p, static_cast<double>(static_cast<__float128>(a) * b - p)};
+#else
   return {p, std::fma(a, b, -p)};  // exact wherever it is computed
+#endif
 }
 Pair operator+(Pair a, Pair b) {
   const Pair high = sum(a.high, b.high), low = sum(a.low, b.low);

@@ -55,7 +55,14 @@ Result reduce_each(std::size_t count, unsigned threads, const Body& body) {
     }
   };
   {
-    std::vector<std::jthread> helpers;
+    struct Helpers {  // no jthread: libc++ has it only since version 20
+      std::vector<std::thread> all;
+      ~Helpers() {
+        for (std::thread& helper : all) helper.join();
+      }
+    };
+    Helpers started;
+    std::vector<std::thread>& helpers = started.all;
     const std::size_t wanted = std::min<std::size_t>(threads, blocks);
     if (wanted > 1) helpers.reserve(wanted - 1);
     try {

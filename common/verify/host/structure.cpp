@@ -2,10 +2,10 @@
 // Checks without geometry: index ranges, the boundary cycle, Euler's formula. Together with positive orientation and a
 // convex boundary that is wound once they make the mesh a triangulation of the hull: O. Devillers, G. Liotta, F. P.
 // Preparata, R. Tamassia, "Checking the convexity of polytopes and the planarity of subdivisions" (1998).
+#include "mark.hpp"
 #include "mesh.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 
 namespace cadt::verifier {
@@ -41,7 +41,7 @@ void check_range(Mesh& mesh, Check& check) {
         good = false;
       } else {
         // Many triangles share a vertex; all of them write the same value.
-        std::atomic_ref<std::uint8_t>(mesh.used[static_cast<std::size_t>(v)]).store(1, std::memory_order_relaxed);
+        mark(mesh.used[static_cast<std::size_t>(v)]);
       }
       if (!mesh.neighbors.empty()) {
         const std::int64_t s = mesh.neighbors[3 * t + k];

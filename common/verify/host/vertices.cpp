@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks that every input point is a vertex or equals one, and, without triangles, that all points are collinear.
+#include "mark.hpp"
 #include "mesh.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 
 namespace cadt::verifier {
@@ -68,8 +68,7 @@ void check_vertices(const Mesh& mesh, const MeshView& view, Check& check) {
       const auto it = std::lower_bound(unused.begin(), unused.end(), p,
                                        [&](std::int32_t a, std::int32_t b) { return less(mesh, a, b); });
       if (it == unused.end() || !equal(mesh.point(*it), mesh.point(p))) return;
-      std::atomic_ref<std::uint8_t>(met[static_cast<std::size_t>(it - unused.begin())])
-          .store(1, std::memory_order_relaxed);
+      mark(met[static_cast<std::size_t>(it - unused.begin())]);
     });
   Findings findings;
   for (std::size_t i = 0; i < unused.size(); ++i) {

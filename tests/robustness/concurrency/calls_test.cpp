@@ -3,6 +3,7 @@
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"
+#include "tests/support/portable.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ TEST_P(Calls, FromSeveralThreads) {
   const ExpectedMesh expected[2] = {expected_mesh(first), expected_mesh(second)};
   std::vector<testing::AssertionResult> results(4, testing::AssertionFailure() << "did not run");
   {
-    std::vector<std::jthread> callers;
+    std::vector<JoinedThread> callers;
     for (std::size_t c = 0; c < results.size(); ++c) {
       callers.emplace_back([&, c] {
         for (int run = 0; run < 3; ++run) {

@@ -4,6 +4,7 @@
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"
+#include "tests/support/portable.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +57,7 @@ TEST(SmallCalls, ResultsOutliveTheirThreads) {
   (void)expected();
   std::vector<std::vector<Triangulation>> meshes(threads);
   {
-    std::vector<std::jthread> callers;
+    std::vector<JoinedThread> callers;
     for (std::size_t t = 0; t < threads; ++t)
       callers.emplace_back([&, t] {
         for (std::size_t call = 0; call < 2 * sets().size(); ++call) {
@@ -86,7 +87,7 @@ TEST(SmallCalls, ErrorsInBetween) {
     EXPECT_THROW((void)triangulate(Reals(sets()[1]), wrong), OptionError);
     expect_right_meshes();
     for (const std::string_view phase : {"sort", "insert", "output"}) {
-      std::stop_source stop;
+      cadt::stop_source stop;
       stopped.stop = stop.get_token();
       stopped.progress = [&](const Progress& progress) {
         if (progress.phase == phase) stop.request_stop();

@@ -356,7 +356,7 @@ TEST_P(EveryStep, Cancelled) {
       EXPECT_GT(all, 5U);
       for (std::size_t k = 0; k < all; ++k) {
         SCOPED_TRACE(k);
-        std::stop_source source;
+        cadt::stop_source source;
         triangulator.options().stop = source.get_token();
         calls = 0;
         triangulator.options().progress = [&](const Progress&) {

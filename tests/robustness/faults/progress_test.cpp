@@ -71,7 +71,7 @@ class ReportedProgress : public ResidentTest {
     EXPECT_EQ(sorted(names_of(statistics)), sorted(phases));
     // A stop requested at any report takes effect before the next one.
     for (std::size_t stop_at = 0; stop_at < reports.size(); ++stop_at) {
-      std::stop_source source;
+      cadt::stop_source source;
       std::size_t later = 0;
       triangulator.options().stop = source.get_token();
       triangulator.options().progress = [&](const Progress& progress) {

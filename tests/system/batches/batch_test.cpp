@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
-#include <stop_token>
 #include <string>
 
 namespace cadt::test {
@@ -326,7 +325,7 @@ TEST_P(Batch, ProgressAndCancel) {
   ASSERT_GT(told.size(), 3u);
   EXPECT_TRUE(std::ranges::is_sorted(told));
   EXPECT_EQ(told.back(), 1.0);
-  std::stop_source source;
+  cadt::stop_source source;
   options.stop = source.get_token();
   options.progress = [&](const Progress& p) {
     if (p.fraction > 0.5) source.request_stop();

@@ -95,7 +95,7 @@ TEST_P(Limits, StopsBeforeAndDuringTheWork) {
   const Points xy = uniform_points(20000);
   const ExpectedMesh expected = expected_mesh(xy);
   for (const double when : {-1.0, 0.0, 0.3, 0.6}) {
-    std::stop_source source;
+    cadt::stop_source source;
     Options options = GetParam().options();
     options.stop = source.get_token();
     bool asked = false;
@@ -110,7 +110,7 @@ TEST_P(Limits, StopsBeforeAndDuringTheWork) {
 }
 
 TEST_P(Limits, AnUntouchedStopTokenChangesNothing) {
-  std::stop_source source;
+  cadt::stop_source source;
   const Points xy = uniform_points(1000);
   Options options = GetParam().options();
   options.stop = source.get_token();

@@ -11,7 +11,6 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -172,7 +171,7 @@ TEST_P(KernelTimes, BeginAnewAfterACancelledRun) {
   options.tuning.kernel_times = true;
   options.tuning.strategy = Strategy::locks;  // the others may have no phase of insertion
   Triangulator triangulator(options);
-  std::stop_source source;
+  cadt::stop_source source;
   triangulator.options().stop = source.get_token();
   triangulator.options().progress = [&](const Progress& progress) {
     if (progress.phase == "insert") source.request_stop();

@@ -119,7 +119,7 @@ TEST_P(WrongInput, PointsOfAnotherMeshEndTheWalk) {
 }
 
 TEST_P(WrongInput, StopEndsACall) {
-  std::stop_source source;
+  cadt::stop_source source;
   Options options = GetParam().options();
   options.stop = source.get_token();
   std::vector<std::string> phases;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/system/resident/device_memory.hpp"
 
-#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -13,10 +12,9 @@ class HostMemory final : public DeviceMemory {
   ~HostMemory() override { free_uploads(); }
   [[nodiscard]] void* queue() const override { return nullptr; }
   [[nodiscard]] void* allocate(std::size_t bytes) noexcept override {
-    constexpr std::size_t alignment = 256;
-    return std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+    return ::operator new(bytes, alignment, std::nothrow);  // std::aligned_alloc() is not everywhere
   }
-  void free(void* memory) noexcept override { std::free(memory); }
+  void free(void* memory) noexcept override { ::operator delete(memory, alignment); }
   void read(const void* memory, std::size_t offset, std::span<std::byte> to) override {
     std::memcpy(to.data(), static_cast<const std::byte*>(memory) + offset, to.size());
   }
@@ -24,6 +22,9 @@ class HostMemory final : public DeviceMemory {
     std::memcpy(static_cast<std::byte*>(memory) + offset, from.data(), from.size());
   }
   void wait() override {}
+
+ private:
+  static constexpr std::align_val_t alignment{256};
 };
 
 }  // namespace

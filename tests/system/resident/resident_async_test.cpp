@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <limits>
-#include <stop_token>
 #include <thread>
 
 namespace cadt::test {
@@ -48,7 +47,7 @@ TEST_P(ResidentAsync, ErrorsAndCancel) {
   Points xy = uniform_points(5000);
   xy[2 * 17] = std::numeric_limits<double>::quiet_NaN();
   Options with = options();
-  std::stop_source source;
+  cadt::stop_source source;
   with.stop = source.get_token();
   Triangulator triangulator(with);
   std::future<DeviceTriangulation> bad = triangulator.triangulate_async(upload(xy));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who may outlive whom, and several triangulators at a time.
+#include "tests/support/portable.hpp"
 #include "tests/system/resident/resident.hpp"
 
 #include <optional>
@@ -80,7 +81,7 @@ TEST_P(ResidentLifetime, TwoTriangulatorsInOneThread) {
 
 TEST_P(ResidentLifetime, FourThreads) {
   constexpr int threads = 4, calls = 10;
-  std::vector<std::jthread> all;
+  std::vector<JoinedThread> all;
   for (int t = 0; t < threads; ++t)
     all.emplace_back([&, t] {
       const auto mine = device_memory(GetParam().backend, device_index(GetParam().backend));
@@ -100,7 +101,7 @@ TEST_P(ResidentLifetime, FourThreads) {
 
 /// The same with queues of the library's own, which share a context.
 TEST_P(ResidentLifetime, FourThreadsWithoutQueues) {
-  std::vector<std::jthread> all;
+  std::vector<JoinedThread> all;
   for (int t = 0; t < 4; ++t)
     all.emplace_back([&, t] {
       Options with = options();

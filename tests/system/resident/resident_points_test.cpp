@@ -6,7 +6,6 @@
 #include <array>
 #include <cstring>
 #include <limits>
-#include <stop_token>
 
 namespace cadt::test {
 namespace {
@@ -208,7 +207,7 @@ TEST_P(Resident, Stopped) {
   const Known known(with_duplicates());
   const DevicePoints points = upload(known.xy);
   Triangulator triangulator(options());
-  std::stop_source source;
+  cadt::stop_source source;
   source.request_stop();
   triangulator.options().stop = source.get_token();
   (void)thrown<Cancelled>([&] { (void)triangulator.triangulate(points); });
@@ -237,7 +236,7 @@ TEST_P(Resident, StoppedAtEveryReport) {
     const int all = reports;
     EXPECT_GT(all, 5);
     for (int stop_at = 1; stop_at <= all; ++stop_at) {
-      std::stop_source source;
+      cadt::stop_source source;
       reports = 0;
       triangulator.options().stop = source.get_token();
       triangulator.options().progress = [&](const Progress&) {

@@ -49,7 +49,7 @@ TEST_P(Stars, Stop) {
   const int all = reports;
   EXPECT_GT(all, 5);
   for (int stop_at = 0; stop_at <= all; ++stop_at) {
-    std::stop_source source;
+    cadt::stop_source source;
     stars().options().stop = source.get_token();
     reports = 0;
     stars().options().progress = [&](const Progress&) {

@@ -88,7 +88,7 @@ class Writer:
                             "platform": "", "name": "", "driver": "", "gpu": False})
         machine = {"schema": 1, "name": self.name, "cpu": "Example Processor 9000", "cores": 16,
                    "memory_bytes": 64 << 30,
-                   "os": "Example Linux 12", "compiler": "GCC 12.2.0", "cadt": "0.1.0",
+                   "os": "Example Linux 12", "compiler": "GCC 12.2.0", "cadt": "0.2.0",
                    "commit": "0123456789abcdef0123456789abcdef01234567", "date": "2030-01-02T03:04:05Z",
                    "devices": devices, "peers": peers}
         (self.folder / "machine.json").write_text(json.dumps(machine, indent=1), encoding="utf-8")

@@ -38,7 +38,7 @@ TEST_F(LaunchGrids, WhatIsForTeamsElsewhereIsMuchWork) {
 }
 
 TEST_F(LaunchGrids, EveryElementHasAWorkItem) {
-  for (const std::size_t count : {1, 64, 65, 8192, 8193, 16384, 16385, 100'000})
+  for (const std::size_t count : {1U, 64U, 65U, 8192U, 8193U, 16384U, 16385U, 100'000U})
     for (const LaunchGrid& grid :
          {usual.grid(count), usual.grid_spread(count), usual.grid_of_teams(count, 32), usual.chunks(count)}) {
       EXPECT_EQ(grid.count, count);

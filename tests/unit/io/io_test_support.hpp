@@ -6,7 +6,6 @@
 #include <cadt/io/points_file.hpp>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -15,6 +14,8 @@
 #include <string>
 #include <utility>
 
+#include "tests/support/portable.hpp"
+
 namespace cadt::io::test {
 
 /// A folder that exists as long as the test.
@@ -22,8 +23,8 @@ class Folder {
  public:
   Folder() {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    std::string name =
-        std::string("cadt-io-") + std::to_string(::getpid()) + "-" + info->test_suite_name() + "-" + info->name();
+    std::string name = std::string("cadt-io-") + std::to_string(cadt::test::process_number()) + "-" +
+                       info->test_suite_name() + "-" + info->name();
     for (char& c : name) {
       if (c == '/') c = '_';
     }

@@ -180,7 +180,7 @@ TEST_P(VerifyOnDevice, StopsAndRespectsTheMemoryBound) {
   const Points xy = uniform_points(20000);
   const Triangulation mesh = mesh_of(xy);
   Options options = GetParam().options();
-  std::stop_source stop;
+  cadt::stop_source stop;
   options.stop = stop.get_token();
   options.progress = [&](const Progress& progress) {
     EXPECT_EQ(progress.phase, "verify");

@@ -102,7 +102,7 @@ class Whole {
   void trim() {
     while (!digits_.empty() && digits_.back() == 0) digits_.pop_back();
     const auto used = std::find_if(digits_.begin(), digits_.end(), [](std::uint32_t digit) { return digit != 0; });
-    low_ = digits_.empty() ? 0 : low_ + (used - digits_.begin());
+    low_ = digits_.empty() ? 0 : low_ + static_cast<long>(used - digits_.begin());
     digits_.erase(digits_.begin(), used);
   }
 

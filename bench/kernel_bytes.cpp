@@ -53,12 +53,15 @@ constexpr KernelBytes table[] = {
     {"cadt_drop_locks", Unit::triangle, 0, 24, "vertices and neighbours"},
     {"cadt_count_triangles", Unit::triangle, 12, 0, "vertices"},
     {"cadt_count_triangles", Unit::distinct, 8, 4, "input ids and buckets; buckets"},
+    {"cadt_sizes_by_input", Unit::distinct, 8, 4, "buckets and input ids; their sizes by input id"},
     {"cadt_bucket_triangles", Unit::triangle, 12, 8, "vertices; members"},
     {"cadt_bucket_triangles", Unit::distinct, 8, 4, "input ids and buckets; buckets"},
-    {"cadt_number_buckets", Unit::distinct, 4, 0, "buckets"},
+    {"cadt_number_buckets", Unit::distinct, 12, 0, "buckets, input ids, places"},
     {"cadt_number_buckets", Unit::triangle, 8, 4, "members; numbers"},
     {"cadt_write_triangles", Unit::distinct, 4, 0, "input ids"},
     {"cadt_write_triangles", Unit::triangle, 28, 24, "numbers, vertices and neighbours; the same"},
+    {"cadt_write_numbered", Unit::distinct, 4, 0, "input ids"},
+    {"cadt_write_numbered", Unit::triangle, 32, 24, "numbers twice, vertices and neighbours; the same"},
     {"cadt_boundary_edges", Unit::triangle, 12, 0, "neighbours"},
 };
 

@@ -4,6 +4,7 @@
 #include "failure.hpp"
 #include "help.hpp"
 #include "interrupt.hpp"
+#include "terrain.hpp"
 
 #include <cadt/version.hpp>
 
@@ -30,6 +31,8 @@ const std::string examples =
     "      a chosen back end, statistics as JSON, and an exact check of the file (of any program)\n\n"
     "  cadt raster terrain.xyz --res 10 --method natural -o dem.asc\n"
     "      a terrain model from scattered heights, by natural neighbours\n\n"
+    "  cadt raster scan.laz dem.tif --res 1 --class 2\n"
+    "      a GeoTIFF from the ground points of a scan; this, contour and tin need: pip install \"cadt[terrain]\"\n\n"
     "Each command has its own help: cadt triangulate --help\n\n";
 
 // Points to the right subcommand: a file name in its place is the usual mistake.
@@ -62,6 +65,7 @@ int parse_and_run(int argc, char** argv) {
   add_locate(app, action);
   add_interpolate(app, action);
   add_raster(app, action);
+  add_terrain_commands(app);
   add_voronoi(app, action);
   add_generate(app, action);
   add_devices(app, action);
@@ -69,6 +73,7 @@ int parse_and_run(int argc, char** argv) {
   app.footer(examples + std::string(exit_codes_help));
 
   explain_first_word(app, argc, argv);
+  if (is_for_terrain(argc, argv)) become_terrain(argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {  // help and version

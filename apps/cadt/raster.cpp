@@ -122,7 +122,11 @@ void add_raster(CLI::App& app, Action& chosen) {
       "Examples:\n"
       "  cadt raster terrain.xyz --res 1 -o dem.asc\n"
       "  cadt raster survey.csv --columns easting,northing,depth --res 0.5 --max-edge 20 --method natural -o sea.npy\n"
-      "  cadt raster terrain.xyz --res 10 --bounds 500000,4100000,501000,4102000 -o tile.png\n");
+      "  cadt raster terrain.xyz --res 10 --bounds 500000,4100000,501000,4102000 -o tile.png\n\n"
+      "LAS, LAZ, GIS files and GeoTIFF, with pip install \"cadt[terrain]\":\n"
+      "  cadt raster scan.laz dem.tif --res 1 --class 2 --max-edge 50\n"
+      "  cadt raster scan.laz dem.tif --help\n"
+      "      its options: several files, --class, --align, --fill, --crs ...\n");
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

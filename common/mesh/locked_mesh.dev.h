@@ -74,10 +74,6 @@ typedef struct {
   CADT_SET_PARTITION(mesh, 0u, 0u);             \
   CADT_NOISE_BEGIN(mesh, cadt_item, epsilon)
 
-#define CADT_HALF_EDGE(triangle, edge) (((triangle) << 2) | (edge))
-#define CADT_TRIANGLE_OF(half_edge) ((half_edge) >> 2)
-#define CADT_EDGE_OF(half_edge) ((half_edge)&3u)
-
 /* What a triangle held at one moment, if its lock is then taken with this lock word (lock.dev.h; GPUs read again); else
  * it may be torn. */
 typedef struct {

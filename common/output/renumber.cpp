@@ -39,9 +39,11 @@ std::vector<PartBegin> split_buckets(Context& ctx, const Allocation& buckets, st
 struct BucketPart {
   const Allocation& buckets;
   const Allocation& members;
-  const Allocation& numbers;  ///< of all triangles
-  std::uint32_t from, size;   ///< buckets
-  std::uint32_t base, count;  ///< triangles
+  const Allocation& input_ids;
+  const Allocation& result_begins;  ///< where buckets begin in the result; null: as their members do
+  const Allocation& numbers;        ///< of all triangles
+  std::uint32_t from, size;         ///< buckets
+  std::uint32_t base, count;        ///< triangles
 };
 
 /// Longer buckets are sorted as one list by all work-items: one work-item takes 2 microseconds a triangle.
@@ -56,10 +58,10 @@ void number_long_buckets(Context& ctx, const BucketPart& part, std::uint32_t lis
                                         ranks);
   launch.scan(ranks, part.count + std::size_t{1});
   const std::size_t bytes = listed * word;
-  const Allocation seconds = ctx.memory.allocate(bytes), triangles = ctx.memory.allocate(bytes);
+  const Allocation seconds = ctx.memory.allocate(bytes), half_edges = ctx.memory.allocate(bytes);
   const Allocation owners = ctx.memory.allocate(bytes), places = ctx.memory.allocate(bytes);
-  launch.run<KernelId::cadt_long_pack>(part.buckets, part.members, part.from, part.size, part.base, ranks, all, seconds,
-                                       triangles, owners, places);
+  launch.run<KernelId::cadt_long_pack>(part.buckets, part.members, part.input_ids, part.result_begins, part.from,
+                                       part.size, part.base, ranks, all, seconds, half_edges, owners, places);
   ranks.release();
   Allocation sorted = ctx.memory.allocate(bytes), order = ctx.memory.allocate(bytes);
   Allocation spare = ctx.memory.allocate(bytes), spare_order = ctx.memory.allocate(bytes);
@@ -68,7 +70,7 @@ void number_long_buckets(Context& ctx, const BucketPart& part, std::uint32_t lis
   launch.sort(sorted, order, spare, spare_order, listed, 32, true);
   launch.run<KernelId::cadt_gather_words>(owners, order, sorted, some);
   launch.sort(sorted, order, spare, spare_order, listed, static_cast<unsigned>(std::bit_width(part.size)), false);
-  launch.run<KernelId::cadt_long_numbers>(order, triangles, places, part.numbers, part.base, some);
+  launch.run<KernelId::cadt_long_numbers>(order, half_edges, places, part.numbers, some);
 }
 
 /// Numbers the triangles of each bucket by the second vertex.
@@ -77,8 +79,8 @@ void number_buckets(Context& ctx, const BucketPart& part) {
   const Allocation found = launch.zeros(1);
   const LaunchGrid c = launch.grid(part.size);
   const auto number = [&](std::uint32_t longest) {
-    launch.run<KernelId::cadt_number_buckets>(c.items, part.buckets, part.members, part.numbers, part.from, part.size,
-                                              part.base, longest, c.grain, found);
+    launch.run<KernelId::cadt_number_buckets>(c.items, part.buckets, part.members, part.input_ids, part.result_begins,
+                                              part.numbers, part.from, part.size, part.base, longest, c.grain, found);
   };
   number(longest_serial_bucket);
   const std::uint32_t skipped = part.count > longest_serial_bucket ? launch.read_word(found, 0) : 0;
@@ -91,8 +93,8 @@ void number_buckets(Context& ctx, const BucketPart& part) {
 
 /// Numbers all triangles from scanned buckets. \pre `numbers` are places in buckets where the device knows them
 /// (canonical_order.dev.h)
-void number_by_buckets(Context& ctx, const Mesh& mesh, const Allocation& buckets, const Allocation& numbers,
-                       std::size_t points) {
+void number_by_buckets(Context& ctx, const Mesh& mesh, const Allocation& buckets, const Allocation& result_begins,
+                       const Allocation& numbers, std::size_t points) {
   Launcher& launch = ctx.launcher;
   const auto triangles = static_cast<std::uint32_t>(mesh.triangles);
   const std::uint32_t parts = ctx.plan.compact ? parts_of_compact_plan : 1;
@@ -100,10 +102,10 @@ void number_by_buckets(Context& ctx, const Mesh& mesh, const Allocation& buckets
   for (std::uint32_t part = 0; part < parts; ++part) {
     const auto [from, base] = begins[part];
     const std::uint32_t size = begins[part + 1].bucket - from, count = begins[part + 1].triangle - base;
-    const Allocation members = ctx.memory.transient(std::size_t{count} * 2 * word);
+    const Allocation members = ctx.memory.transient(std::size_t{count} * sizeof(cadt_member));
     launch.run<KernelId::cadt_bucket_triangles>(mesh.vertices, mesh.input_ids, buckets, numbers, members, from, size,
                                                 base, launch.grid(triangles));
-    number_buckets(ctx, {buckets, members, numbers, from, size, base, count});
+    number_buckets(ctx, {buckets, members, mesh.input_ids, result_begins, numbers, from, size, base, count});
   }
 }
 
@@ -138,17 +140,30 @@ std::vector<std::int32_t> chain_loop(std::vector<std::array<std::uint32_t, 2>> e
 Allocation number_triangles(Context& ctx, const Mesh& mesh, std::size_t points) {
   if (ctx.options.order == Order::fast) return {};
   Launcher& launch = ctx.launcher;
-  Allocation buckets = launch.zeros(points + 1);
+  const Allocation buckets = launch.zeros(points + 1);               // by vertex, of which there are as many or fewer
+  Allocation result_begins;                                          // of buckets, by input id
   Allocation numbers = ctx.memory.transient(mesh.triangles * word);  // until they are known: places in the buckets
   launch.run<KernelId::cadt_count_triangles>(mesh.vertices, mesh.input_ids, buckets, numbers,
                                              launch.grid_strided(mesh.triangles));
+  if (mesh.input_ids) {
+    result_begins = ctx.memory.transient_zeros((points + 1) * word);
+    launch.run<KernelId::cadt_sizes_by_input>(buckets, mesh.input_ids, result_begins, launch.grid(points));
+    launch.scan(result_begins, points + 1);
+  }
   launch.scan(buckets, points + 1);
-  number_by_buckets(ctx, mesh, buckets, numbers, points);
+  number_by_buckets(ctx, mesh, buckets, result_begins, numbers, points);
   return numbers;
 }
 
 void write_triangles(Context& ctx, const Mesh& mesh, const Allocation& numbers, const ResultPlace& to) {
   const Allocation none;
+  if (numbers && !ctx.device.shape().contiguous) {
+    const std::size_t groups = (mesh.triangles - 1) / CADT_OUTPUT_LANES + 1;
+    ctx.launcher.run<KernelId::cadt_write_numbered>(view_of(mesh, none), mesh.input_ids, numbers, to.triangles,
+                                                    to.neighbors, to.edge_flags, to.first,
+                                                    ctx.launcher.grid_of_teams(groups, CADT_OUTPUT_LANES));
+    return;
+  }
   const LaunchGrid all = ctx.launcher.grid(mesh.triangles);
   ctx.launcher.run<KernelId::cadt_write_triangles>(all.items, view_of(mesh, none), mesh.input_ids, numbers,
                                                    to.triangles, to.neighbors, to.edge_flags, to.first, all.grain);

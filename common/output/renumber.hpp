@@ -13,8 +13,9 @@
 
 namespace cadt {
 
-/// The number of each triangle of the mesh in the result, in the order of the options; null: its index. `points`: the
-/// number of input points. If the mesh has no input ids, its vertices are input ids already.
+/// The number of each triangle of the mesh in the result, in the order of the options, as a half-edge
+/// (renumber.dev.h); null: its index. `points`: the number of input points. If the mesh has no input ids, its vertices
+/// are input ids already.
 [[nodiscard]] Allocation number_triangles(Context& ctx, const Mesh& mesh, std::size_t points);
 
 /// Where the result is written: three words a triangle, and one of flags where edges are constrained.

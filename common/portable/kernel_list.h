@@ -117,6 +117,7 @@
 /* common/output: numbers, arrays of the result, hull */
 #define CADT_OUTPUT_KERNELS(X)                                                       \
   X(cadt_count_triangles)  /* canonical_order.dev.h: buckets by smallest input id */ \
+  X(cadt_sizes_by_input)   /* canonical_order.dev.h */                               \
   X(cadt_split_buckets)    /* canonical_order.dev.h: parts of the compact plan */    \
   X(cadt_bucket_triangles) /* canonical_order.dev.h */                               \
   X(cadt_number_buckets)   /* canonical_order.dev.h */                               \
@@ -124,6 +125,7 @@
   X(cadt_long_pack)        /* canonical_order.dev.h */                               \
   X(cadt_long_numbers)     /* canonical_order.dev.h */                               \
   X(cadt_write_triangles)  /* renumber.dev.h */                                      \
+  X(cadt_write_numbered)   /* renumber.dev.h: in canonical order on GPUs */          \
   X(cadt_move_words)       /* renumber.dev.h: in place, where memory is short */     \
   X(cadt_put_words)        /* renumber.dev.h */                                      \
   X(cadt_boundary_edges)   /* hull.dev.h: the hull */

@@ -9,6 +9,11 @@
 
 #define CADT_GHOST 0xFFFFFFFFu
 
+/* A half-edge: a triangle and one of its edges. */
+#define CADT_HALF_EDGE(triangle, edge) (((triangle) << 2) | (edge))
+#define CADT_TRIANGLE_OF(half_edge) ((half_edge) >> 2)
+#define CADT_EDGE_OF(half_edge) ((half_edge)&3u)
+
 typedef struct {
   cadt_u32 word[8]; /* v0 v1 v2 lock n0 n1 n2 flips */
 } __attribute__((aligned(32))) cadt_locked_triangle;

@@ -73,7 +73,7 @@ struct Statistics {
   /// Bytes copied between host and device: points and meshes of the host, and the words that steer the call (some
   /// kilobytes). 0 on the host, and for memory that a device uses in place.
   std::uint64_t bytes_to_device = 0, bytes_from_device = 0;
-  bool wide_arithmetic = false;         ///< the exponents span so much that the wide kernels ran, which take any double
+  bool wide_arithmetic = false;  ///< the exponents span so much that the wide kernels ran, which take any double
 
   /// The last legality sweep found every edge legal, so the mesh is the Delaunay triangulation. Always true, except
   /// with Stabilize::paper.

@@ -75,8 +75,12 @@ def triangulate_batch(
     offsets : array_like of int, shape (sets + 1,)
         Set s has the points ``offsets[s]`` to ``offsets[s + 1] - 1``; the first is 0, the last n. Sets may be empty.
 
+    Notes
+    -----
     The other parameters, and what is raised, are as for `Delaunay`.
 
+    Examples
+    --------
     >>> batch = cadt.triangulate_batch([[0, 0], [1, 0], [0, 1], [0, 0], [2, 0], [2, 2]], [0, 3, 6])
     >>> len(batch), batch[1].simplices.tolist()
     (2, [[0, 1, 2]])

@@ -4,18 +4,21 @@
 from __future__ import annotations
 
 import math
+import operator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cadt import _cadt, _devices, _gpu, _show
-from cadt._errors import InputError, OptionError
+from cadt._errors import InputError, LimitError, OptionError
 from cadt._points import as_points, as_queries, as_values
 from cadt._progress import reporter
 from cadt._results import VerifyReport, Voronoi, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+
+_METHODS = ("linear", "nearest", "natural")
 
 
 class Delaunay:
@@ -278,6 +281,7 @@ class Delaunay:
             return self._gpu.barycentric(xi)
         q, shape = as_queries(xi)
         if self._empty():
+            _finite(q)
             return np.full(shape, -1, dtype=np.int32), np.full((*shape, 3), np.nan)
         triangles, weights = self._queries().barycentric(q)
         return triangles.reshape(shape), weights.reshape(*shape, 3)
@@ -288,6 +292,7 @@ class Delaunay:
             return self._gpu.find_simplex(xi) >= 0
         q, shape = as_queries(xi)
         if self._empty():
+            _finite(q)
             return np.zeros(shape, dtype=bool)
         return self._queries().within_hull(q).view(bool).reshape(shape)
 
@@ -299,6 +304,7 @@ class Delaunay:
         >>> Delaunay([[0, 0], [1, 0], [0, 1]]).nearest_vertex([0.9, 0.2])
         array(1, dtype=int32)
         """
+        k = operator.index(k)
         if k < 1:
             raise OptionError(f"k must be 1 or more, not {k}", "k")
         if self._gpu is not None:
@@ -306,8 +312,13 @@ class Delaunay:
         q, shape = as_queries(xi)
         wanted = shape if k == 1 else (*shape, k)
         if self._empty():
+            _finite(q)
             return np.full(wanted, -1, dtype=np.int32)
-        return self._queries().nearest(q, k).reshape(wanted)
+        if k <= self.n_points:
+            return self._queries().nearest(q, k).reshape(wanted)
+        result = np.full(wanted, -1, dtype=np.int32)
+        result[..., : self.n_points] = self._queries().nearest(q, self.n_points).reshape(*shape, -1)
+        return result
 
     def interpolate(self, values: Any, xi: Any, method: str = "linear", *, outside: str = "nan") -> Any:
         """Values between the points: (..., m...) float64 for values of shape (n, m...).
@@ -325,13 +336,16 @@ class Delaunay:
         >>> float(mesh.interpolate([0, 10, 20], [0.25, 0.25]))
         7.5
         """
+        _one_of(method, _METHODS, "method")
+        _one_of(outside, ("nan", "nearest"), "outside")
         if self._gpu is not None:
             return self._gpu.interpolate(values, xi, method, outside)
         v, one = as_values(values, self.n_points)
         q, shape = as_queries(xi)
-        if self._empty():
+        if self._empty() or v.shape[1] == 0:
+            _finite(q)
             return np.full((*shape, *one), np.nan)
-        return self._queries().interpolate(v, q, method, outside).reshape(*shape, *one)
+        return self._queries().interpolate(v, q, method, outside).reshape((*shape, *one))
 
     def rasterize(
         self,
@@ -361,6 +375,8 @@ class Delaunay:
         origin : {"upper", "lower"}
             Whether the first row is the top one, as in images and GIS, or the bottom one.
         """
+        _one_of(method, _METHODS, "method")
+        longest = _length(max_edge, "max_edge")
         points = self.points if self._gpu is None else None
         if bounds is None:
             if points is None:
@@ -371,13 +387,18 @@ class Delaunay:
                 low, high = points.min(axis=0), points.max(axis=0)
                 bounds = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
         grid, rows, columns = grid_of(bounds, shape, resolution, origin)
-        longest = math.inf if max_edge is None else float(max_edge)
         if self._gpu is not None:
             return self._gpu.rasterize(values, grid, rows, columns, method, longest)
         v, one = as_values(values, self.n_points)
-        if self._empty():
+        if self._empty() or v.shape[1] == 0:
             return np.full((rows, columns, *one), np.nan)
-        return self._queries().rasterize(grid, columns, rows, v, method, longest).reshape(rows, columns, *one)
+        # The library makes a raster of one value a point.
+        rasters = [
+            self._queries().rasterize(grid, columns, rows, np.ascontiguousarray(v[:, [j]]), method, longest)
+            for j in range(v.shape[1])
+        ]
+        result = rasters[0] if len(rasters) == 1 else np.stack(rasters, axis=-1)
+        return result.reshape(rows, columns, *one)
 
     def circumcenters(self) -> Any:
         """The circumcentre of each triangle: (t, 2) float64."""
@@ -403,6 +424,7 @@ class Delaunay:
 
         Returns their centres (k, 2), radii (k,) and triangles (k,), whose circumcircles they are.
         """
+        k = operator.index(k)
         if k < 0:
             raise OptionError(f"k must not be negative, but it is {k}", "k")
         return self._queries().largest_empty_circles(k)
@@ -413,7 +435,7 @@ class Delaunay:
         Returns the indices of the triangles, ascending, and edges (e, 2) with the triangles on the left (Edelsbrunner,
         Kirkpatrick, Seidel, 1983).
         """
-        return self._queries().outline(float(radius), math.inf if max_edge is None else float(max_edge))
+        return self._queries().outline(_length(radius, "radius"), _length(max_edge, "max_edge"))
 
     def verify(self) -> VerifyReport:
         """Checks the whole mesh exactly, with predicates that share no code with those that made it. O(n)."""
@@ -514,10 +536,19 @@ def grid_of(
             raise OptionError(f"resolution must be positive, not {resolution}", "resolution")
         columns, rows = (max(1, math.ceil((b - a) / d - 1e-9)) for a, b, d in ((x0, x1, dx), (y0, y1, dy)))
     else:
-        rows, columns = (int(s) for s in shape)  # type: ignore[union-attr]
+        try:
+            rows, columns = (operator.index(s) for s in shape)  # type: ignore[union-attr]
+        except (TypeError, ValueError):
+            raise OptionError(f"shape must be two whole numbers (rows, columns), not {shape!r}", "shape") from None
         if rows < 1 or columns < 1:
             raise OptionError(f"shape must be (rows, columns), 1 or more, not {shape}", "shape")
         dx, dy = (x1 - x0) / columns, (y1 - y0) / rows
+    if rows * columns >= 2**31:
+        raise LimitError(
+            f"a raster has fewer than 2**31 cells, not {rows:,} x {columns:,}: take larger cells, or several rasters",
+            rows * columns,
+            2**31 - 1,
+        )
     return ((x0, y1, dx, -dy) if origin == "upper" else (x0, y0, dx, dy)), rows, columns
 
 
@@ -528,6 +559,18 @@ def _indices(a: Any, what: str) -> np.ndarray:
     if a.size and (a.max() > np.iinfo(np.int32).max or a.min() < -1):
         raise InputError(f"{what} must lie between -1 and 2**31 - 1", 0)
     return np.array(a, dtype=np.int32, order="C")
+
+
+def _one_of(value: str, names: Sequence[str], option: str) -> None:
+    if value not in names:
+        raise OptionError(f"{option} must be one of {', '.join(map(repr, names))}, not {value!r}", option)
+
+
+def _length(value: float | None, option: str) -> float:
+    result = math.inf if value is None else float(value)
+    if not result >= 0:
+        raise OptionError(f"{option} must be a number and not negative, not {value}", option)
+    return result
 
 
 def _finite(q: np.ndarray) -> None:

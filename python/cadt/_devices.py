@@ -104,7 +104,7 @@ def device_for(options: _cadt.Options, device: int | str | None, threads: int | 
     """The open device for points of the host, or None: the host's own call is the faster one, or asked for."""
     global _automatic_is_host
     backend = options.backend
-    if backend == "host" or (backend == "auto" and (n < SMALL or _automatic_is_host)):
+    if backend == "host" or (backend == "auto" and (n < SMALL or _automatic_is_host or _in_child)):
         return None
     triangulator = open_device(options, (backend, device, threads, None))
     if triangulator.backend == "host":
@@ -134,6 +134,7 @@ atexit.register(_open.clear)
 def _after_fork() -> None:
     # A child has no context of the parent's devices: nothing of theirs may be called, not even a destructor.
     global _lock, _in_child
+    _cadt.forked()
     _in_child = _in_child or bool(_open)
     for triangulator in _open.values():
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(triangulator))

@@ -232,7 +232,6 @@ class OpenCl(Array):
     device = None
 
     def __init__(self, a: Any) -> None:
-        import pyopencl.array
 
         self.cl = sys.modules["pyopencl"]
         self.cl_queue = self.stream = a.queue
@@ -355,9 +354,19 @@ class Mesh:
 
     def rasterize(self, values: Any, grid: tuple, rows: int, columns: int, method: str, max_edge: float) -> Any:
         v, one = self._values(values)
-        result = self.array.empty((rows, columns, *one), "float64")
         memory = self.array.memory
-        self._ask().rasterize(grid, columns, rows, memory(v), memory(result), method, max_edge)
+        if not one:
+            result = self.array.empty((rows, columns), "float64")
+            self._ask().rasterize(grid, columns, rows, memory(v), memory(result), method, max_edge)
+            return result
+        # The library makes a raster of one value a point.
+        result = self.array.empty((rows, columns, *one), "float64")
+        of, to = v.reshape(v.shape[0], math.prod(one)), result.reshape(rows, columns, math.prod(one))
+        raster = self.array.empty((rows, columns), "float64")
+        for j in range(math.prod(one)):
+            column = self.array.contiguous(of[:, j])
+            self._ask().rasterize(grid, columns, rows, memory(column), memory(raster), method, max_edge)
+            to[..., j] = raster
         return result
 
     def circumcenters(self) -> Any:

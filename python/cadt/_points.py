@@ -53,7 +53,8 @@ def to_float(a: np.ndarray, what: str) -> np.ndarray:
     if a.dtype.kind in "iu":
         f = a.astype(np.float64)
         if a.dtype.itemsize >= 8 and a.size:
-            changed = (np.abs(f) > 2.0**53).any(axis=-1) if a.ndim > 1 else np.abs(f) > 2.0**53
+            beyond = (a > 2**53) | (a < -(2**53)) if a.dtype.kind == "i" else a > 2**53
+            changed = beyond.any(axis=-1) if a.ndim > 1 else beyond
             if changed.any():
                 first = int(np.argmax(changed))
                 raise InputError(
@@ -83,6 +84,8 @@ def as_queries(xi: Any) -> tuple[np.ndarray, tuple[int, ...]]:
 
 def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:
     """Values of shape (n, ...) as a contiguous (n, m) array of float64, and the shape of one point's."""
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        raise InputError("values are masked: fill them (NaN is a value), or leave out the points", 0)
     a = np.asarray(values)
     if a.dtype.kind not in "iuf":
         raise TypeError(f"values must be real numbers, not {a.dtype}")

@@ -35,7 +35,11 @@ def to_matplotlib(mesh: Delaunay) -> Any:
     tri = _need("matplotlib.tri", "matplotlib")
     xy = mesh._host_points
     result = tri.Triangulation(xy[:, 0], xy[:, 1], mesh._host_mesh.triangles)
+    # Its own object in C++ must be made first: with neighbours it takes none (matplotlib 3.11).
+    result.get_cpp_triangulation()
     # matplotlib's neighbour k is across the edge from vertex k to the next, ours is opposite vertex k.
+    result.is_delaunay = True
+    result.get_cpp_triangulation()  # before there are neighbours: matplotlib 3.11 refuses any
     result._neighbors = np.ascontiguousarray(np.roll(mesh._host_mesh.neighbors, 1, axis=1))
     return result
 
@@ -43,7 +47,8 @@ def to_matplotlib(mesh: Delaunay) -> Any:
 def plot(mesh: Delaunay, ax: Any, how: dict[str, Any]) -> Any:
     if ax is None:
         ax = _need("matplotlib.pyplot", "matplotlib").gca()
-    how.setdefault("linewidth", 0.6)
+    if "lw" not in how:
+        how.setdefault("linewidth", 0.6)
     ax.triplot(to_matplotlib(mesh), **how)
     ax.set_aspect("equal")
     return ax
@@ -75,7 +80,7 @@ def save(mesh: Delaunay, path: Any, z: Any) -> None:
             arrays["convex_hull"] = np.stack([host.hull, np.roll(host.hull, -1)], axis=1)
             if z is not None:
                 arrays["height"] = np.asarray(z)
-            np.savez(name, **arrays)
+            np.savez(name, **arrays)  # type: ignore[arg-type]
         else:
             # A plane mesh gets a third coordinate: most formats have no other.
             to_meshio(mesh, np.zeros(mesh.n_points) if z is None else z).write(name)

@@ -25,8 +25,8 @@ def verify(points: Any, simplices: Any, neighbors: Any = None, *, canonical_ties
 
     A wrong mesh is reported, not raised.
 
-    >>> print(cadt.verify([[0, 0], [4, 0], [4, 1], [0, 3]], [[0, 1, 2], [0, 2, 3]]))
-    FAILED: delaunay: ...
+    >>> print(cadt.verify([[0, 0], [4, 0], [4, 1], [0, 3]], [[0, 1, 3], [1, 2, 3]]))
+    delaunay failed: the edge opposite vertex 0 of triangle 0 (0 1 3), from 1 to 3, ...
     """
     return report_of(
         _cadt.verify(

@@ -38,19 +38,19 @@ using NumpyArray = nb::ndarray<nb::numpy, T>;
 
 /// A read-only array of memory that `owner` keeps; it keeps a copy of the owner, which costs O(1).
 template <class T, class Owner>
-[[nodiscard]] nb::object array_of(std::span<const T> values, std::size_t columns, const Owner& owner) {
+[[nodiscard]] NumpyArray<const T> array_of(std::span<const T> values, std::size_t columns, const Owner& owner) {
   nb::capsule keep(new Owner(owner), [](void* p) noexcept { delete static_cast<Owner*>(p); });
   const std::array<std::size_t, 2> shape{columns == 0 ? values.size() : values.size() / columns, columns};
-  return nb::cast(NumpyArray<const T>(values.data(), columns == 0 ? 1 : 2, shape.data(), keep));
+  return NumpyArray<const T>(values.data(), columns == 0 ? 1 : 2, shape.data(), keep);
 }
 
 /// An array of a vector, which it takes over. `columns` 0: one dimension.
 template <class T>
-[[nodiscard]] nb::object array_of(std::vector<T>&& values, std::size_t columns = 0) {
+[[nodiscard]] NumpyArray<T> array_of(std::vector<T>&& values, std::size_t columns = 0) {
   auto* kept = new std::vector<T>(std::move(values));
   nb::capsule keep(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
   const std::array<std::size_t, 2> shape{columns == 0 ? kept->size() : kept->size() / columns, columns};
-  return nb::cast(NumpyArray<T>(kept->data(), columns == 0 ? 1 : 2, shape.data(), keep));
+  return NumpyArray<T>(kept->data(), columns == 0 ? 1 : 2, shape.data(), keep);
 }
 
 /// A call of the library without the GIL. While it runs, Ctrl-C and what `progress(phase, fraction)` raises end it: the
@@ -94,6 +94,11 @@ class Call {
   std::optional<nb::python_error> raised_;
   Clock::time_point next_ = Clock::now() + std::chrono::milliseconds(20);
 };
+
+/// How often this process has been forked, counted in the child (cadt/_devices.py tells). A child has none of the
+/// parent's threads: what they had locked stays locked, and what they are needed for cannot even be destroyed.
+[[nodiscard]] unsigned forks() noexcept;
+void forked() noexcept;
 
 [[nodiscard]] nb::dict to_dict(const cadt::Statistics& statistics);
 

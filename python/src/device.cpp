@@ -13,8 +13,9 @@ using Mesh = std::shared_ptr<DeviceMesh>;
 nb::object cuda_array(const Mesh& mesh, void* memory) {
   nb::capsule keep(new Mesh(mesh), [](void* p) noexcept { delete static_cast<Mesh*>(p); });
   const std::array<std::size_t, 2> shape{mesh->mesh().number_of_triangles(), 3};
-  return nb::cast(nb::ndarray<nb::array_api, std::int32_t>(memory, 2, shape.data(), keep, nullptr, nb::dtype<std::int32_t>(),
-                                            nb::device::cuda::value, mesh->shared().device().index));
+  return nb::cast(nb::ndarray<nb::array_api, std::int32_t>(memory, 2, shape.data(), keep, nullptr,
+                                                           nb::dtype<std::int32_t>(), nb::device::cuda::value,
+                                                           mesh->shared().device().index));
 }
 
 }  // namespace

@@ -20,37 +20,49 @@ class SharedTriangulator {
   SharedTriangulator(const cadt::Options& options, nb::object stream)
       : stream_(std::move(stream)), triangulator_([&] {
           nb::gil_scoped_release released;
-          return cadt::Triangulator(options);
+          return std::make_unique<cadt::Triangulator>(options);
         }()) {}
+
+  ~SharedTriangulator() {
+    if (forks_ != forks()) static_cast<void>(triangulator_.release());
+  }
+  SharedTriangulator(const SharedTriangulator&) = delete;
+  SharedTriangulator& operator=(const SharedTriangulator&) = delete;
 
   /// Runs `work(triangulator)` without the GIL, after other threads' calls.
   template <class Work>
   auto run(const nb::object& progress, Work&& work) {
     const std::unique_lock<std::mutex> lock = occupy();
-    return Call(triangulator_.options(), progress)([&] { return work(triangulator_); });
+    return Call(triangulator_->options(), progress)([&] { return work(*triangulator_); });
   }
 
   /// The same with the options that may change between calls.
   template <class Work>
   auto run(const cadt::Options& options, const nb::object& progress, Work&& work) {
     const std::unique_lock<std::mutex> lock = occupy();
-    cadt::Options& own = triangulator_.options();
+    cadt::Options& own = triangulator_->options();
     own.order = options.order;
     own.max_memory = options.max_memory;
     own.statistics = options.statistics;
-    return Call(own, progress)([&] { return work(triangulator_); });
+    return Call(own, progress)([&] { return work(*triangulator_); });
   }
 
   void retire(std::shared_ptr<void> object) {
+    if (forks_ != forks()) return static_cast<void>(new std::shared_ptr<void>(std::move(object)));  // for ever
     if (const std::unique_lock lock(busy_, std::try_to_lock); lock) return object.reset();
     const std::lock_guard lock(retired_mutex_);
     retired_.push_back(std::move(object));
   }
 
-  [[nodiscard]] const cadt::DeviceInfo& device() const noexcept { return triangulator_.device(); }
+  [[nodiscard]] const cadt::DeviceInfo& device() const noexcept { return triangulator_->device(); }
 
  private:
   std::unique_lock<std::mutex> occupy() {
+    if (forks_ != forks())
+      throw cadt::BackendUnavailable(
+          std::string(cadt::to_string(device().backend)),
+          "this process was forked after the device had been opened, which drivers do not survive: use "
+          "multiprocessing.set_start_method(\"spawn\"), or backend=\"host\"");
     std::unique_lock lock(busy_, std::defer_lock);
     nb::gil_scoped_release released;
     lock.lock();
@@ -61,8 +73,9 @@ class SharedTriangulator {
 
   std::mutex busy_, retired_mutex_;
   nb::object stream_;
-  cadt::Triangulator triangulator_;
+  std::unique_ptr<cadt::Triangulator> triangulator_;
   std::vector<std::shared_ptr<void>> retired_;
+  unsigned forks_ = forks();
 };
 
 /// A mesh in device memory; it may outlive all other objects of Python.

@@ -8,13 +8,13 @@ namespace {
 
 using cadt::Triangulation;
 
-nb::object duplicates_of(const Triangulation& mesh) {
+NumpyArray<const std::int32_t> duplicates_of(const Triangulation& mesh) {
   static_assert(sizeof(cadt::Duplicate) == 2 * sizeof(std::int32_t));
   const auto duplicates = mesh.duplicates();
   return array_of(std::span(reinterpret_cast<const std::int32_t*>(duplicates.data()), 2 * duplicates.size()), 2, mesh);
 }
 
-nb::object rows(cadt::CompressedRows&& r) {
+nb::tuple rows(cadt::CompressedRows&& r) {
   std::vector<std::int64_t> begin(r.indptr.begin(), r.indptr.end());
   return nb::make_tuple(array_of(std::move(begin)), array_of(std::move(r.indices)));
 }
@@ -54,10 +54,13 @@ void bind_mesh(nb::module_& m) {
       .def_prop_ro("number_of_points", &Triangulation::number_of_points)
       .def_prop_ro("number_of_triangles", &Triangulation::number_of_triangles)
       .def_prop_ro("dimension", &Triangulation::dimension)
-      .def_prop_ro("triangles", [](const Triangulation& t) { return array_of(t.triangles(), 3, t); })
-      .def_prop_ro("neighbors", [](const Triangulation& t) { return array_of(t.neighbors(), 3, t); })
-      .def_prop_ro("hull", [](const Triangulation& t) { return array_of(t.hull(), 0, t); })
-      .def_prop_ro("duplicates", &duplicates_of)
+      .def_prop_ro(
+          "triangles", [](const Triangulation& t) { return array_of(t.triangles(), 3, t); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "neighbors", [](const Triangulation& t) { return array_of(t.neighbors(), 3, t); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "hull", [](const Triangulation& t) { return array_of(t.hull(), 0, t); }, nb::rv_policy::automatic)
+      .def_prop_ro("duplicates", &duplicates_of, nb::rv_policy::automatic)
       .def_prop_ro("statistics", [](const Triangulation& t) { return to_dict(t.statistics()); })
       .def("vertex_triangle",
            [](const Triangulation& t) { return array_of(without_gil([&] { return t.vertex_triangle(); })); })
@@ -109,13 +112,19 @@ void bind_mesh(nb::module_& m) {
   };
   nb::class_<BatchOf>(m, "TriangulationBatch")
       .def_prop_ro("size", [](const BatchOf& b) { return b.batch->size(); })
-      .def_prop_ro("triangles", [](const BatchOf& b) { return array_of(b.batch->triangles(), 3, b.batch); })
-      .def_prop_ro("neighbors", [](const BatchOf& b) { return array_of(b.batch->neighbors(), 3, b.batch); })
-      .def_prop_ro("triangle_offsets",
-                   [](const BatchOf& b) {
-                     const auto offsets = b.batch->triangle_offsets();
-                     return array_of(std::vector<std::int64_t>(offsets.begin(), offsets.end()));
-                   })
+      .def_prop_ro(
+          "triangles", [](const BatchOf& b) { return array_of(b.batch->triangles(), 3, b.batch); },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "neighbors", [](const BatchOf& b) { return array_of(b.batch->neighbors(), 3, b.batch); },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "triangle_offsets",
+          [](const BatchOf& b) {
+            const auto offsets = b.batch->triangle_offsets();
+            return array_of(std::vector<std::int64_t>(offsets.begin(), offsets.end()));
+          },
+          nb::rv_policy::automatic)
       .def_prop_ro("statistics", [](const BatchOf& b) { return to_dict(b.batch->statistics()); })
       .def("triangulation", [](const BatchOf& b, std::size_t set) { return b.batch->triangulation(set); });
   m.def(

@@ -4,6 +4,10 @@
 
 NB_MODULE(_cadt, m) {
   using namespace cadt_python;
+  // The library's exceptions, open devices and hooks of os.fork are those of the process.
+  if (PyInterpreterState_GetID(PyInterpreterState_Get()) != 0)
+    throw nb::import_error(
+        "cadt works in the main interpreter alone, not in subinterpreters: use threads or processes");
   m.attr("version") = CADT_VERSION;
   bind_errors();
   bind_options(m);

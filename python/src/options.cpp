@@ -18,6 +18,12 @@ cadt::PointsView view_of(const Points& points) {
   throw nb::type_error("points must be float64 or float32");
 }
 
+namespace {
+unsigned number_of_forks = 0;  // written while the child has one thread
+}
+unsigned forks() noexcept { return number_of_forks; }
+void forked() noexcept { ++number_of_forks; }
+
 void Call::report(const cadt::Progress& p) {
   const auto now = Clock::now();
   if (now < next_ || raised_) return;
@@ -107,6 +113,7 @@ void bind_options(nb::module_& m) {
         return host;
       });
 
+  m.def("forked", &forked);
   m.def("devices", [] {
     std::vector<cadt::DeviceInfo> devices;
     {

@@ -19,29 +19,48 @@ cadt::Outside outside_of(const std::string& name) {
 }
 using Corners = std::array<double, 4>;
 
-/// Queries of a mesh of the host; it keeps mesh and points.
+/// Queries of a mesh of the host; it keeps mesh and points. One thread at a time asks.
 class HostQueries {
  public:
   HostQueries(const Points& points, const cadt::Triangulation& mesh, const cadt::Options& options)
-      : points_(points), mesh_(mesh), queries_(view_of(points), mesh_, options) {}
+      : points_(points), mesh_(mesh), options_(options), state_(open()) {}
+  ~HostQueries() {
+    if (state_->forks != forks()) static_cast<void>(state_.release());
+  }
+  HostQueries(const HostQueries&) = delete;
+  HostQueries& operator=(const HostQueries&) = delete;
 
   template <class Work>
   auto run(Work&& work) {
-    std::unique_lock lock(busy_, std::defer_lock);
+    if (state_->forks != forks()) {  // with the GIL: once
+      static_cast<void>(state_.release());
+      state_ = open();
+    }
+    State& state = *state_;
+    std::unique_lock lock(state.busy, std::defer_lock);
     {
       nb::gil_scoped_release released;
       lock.lock();
     }
-    return Call(queries_.options(), none_)([&] { return work(queries_); });
+    return Call(state.queries.options(), none_)([&] { return work(state.queries); });
   }
-  [[nodiscard]] std::size_t number_of_points() const noexcept { return queries_.number_of_points(); }
+  [[nodiscard]] std::size_t number_of_points() const noexcept { return state_->queries.number_of_points(); }
 
  private:
+  struct State {
+    cadt::MeshQueries queries;
+    unsigned forks;
+    std::mutex busy;
+  };
+  [[nodiscard]] std::unique_ptr<State> open() {
+    return std::unique_ptr<State>(new State{{view_of(points_), mesh_, options_}, forks(), {}});
+  }
+
   Points points_;
   cadt::Triangulation mesh_;
-  cadt::MeshQueries queries_;
+  cadt::Options options_;
+  std::unique_ptr<State> state_;
   nb::object none_ = nb::none();
-  std::mutex busy_;
 };
 
 /// Queries of a mesh in device memory.

@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
+import cadt
 import numpy as np
 import pytest
-
-import cadt
 
 MODULES = ["cupy", "torch", "jax"]
 
@@ -230,5 +229,3 @@ def test_fork_is_refused():
             code = 3
         os._exit(code)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
-
-

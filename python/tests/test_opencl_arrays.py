@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
+import cadt
 import numpy as np
 import pytest
-
-import cadt
 
 cl = pytest.importorskip("pyopencl")
 cl_array = pytest.importorskip("pyopencl.array")

@@ -6,6 +6,7 @@ import signal
 import unittest
 
 from answers import npy_bytes
+from documentation import DocumentationTest
 from harness import SOURCE, CliTest
 
 
@@ -141,34 +142,15 @@ class QueryInterruption(CliTest):
         self.assertEqual(self.names(), ["p.f64", "v.npy"])
 
 
-class QueryDocumentation(CliTest):
+class QueryDocumentation(DocumentationTest):
     """docs/queries.md shows what is."""
 
     def setUp(self):
         super().setUp()
         self.text = (SOURCE / "docs" / "queries.md").read_text()
 
-    def same_words(self, shown, found):
-        """Numbers may differ in their last digits: compilers differ in what they do to divisions."""
-        split = lambda text: re.findall(r"-?\d[\d.e+-]*|[^-\d]+|-", text)
-        self.assertEqual(len(split(shown)), len(split(found)), found)
-        for a, b in zip(split(shown), split(found)):
-            if "." in a:
-                self.assertAlmostEqual(float(a), float(b), places=9)
-            else:
-                self.assertEqual(a, b)
-
     def test_commands_have_the_output_that_is_shown(self):
-        commands = 0
-        for block in re.findall(r"```console\n(.*?)```", self.text, re.S):
-            for command, shown in re.findall(r"(?m)^\$ (.*)\n((?:(?!\$ ).*\n)*)", block):
-                commands += 1
-                if command.startswith("printf"):
-                    text, name = re.fullmatch(r"printf '(.*)' > (\S+)", command).groups()
-                    self.write(name, text.replace("\\n", "\n"))
-                else:
-                    self.same_words(shown, self.cadt(*command.split()[1:]).out)
-        self.assertEqual(commands, 9)
+        self.assertEqual(self.run_commands(self.text), 9)
 
     def test_programs_are_the_examples(self):
         shown = re.findall(r"```cpp\n(.*?)```", self.text, re.S)

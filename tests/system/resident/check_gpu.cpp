@@ -30,7 +30,7 @@ struct Arguments {
   Strategy strategy = Strategy::automatic;
   Stabilize stabilize = Stabilize::off;
   StatisticsDetail statistics = StatisticsDetail::counters;
-  bool phases = false, hash = false, floats = false, host_to_host = false;
+  bool phases = false, kernels = false, hash = false, floats = false, host_to_host = false;
 };
 
 [[noreturn]] void usage() {
@@ -38,7 +38,8 @@ struct Arguments {
       "usage: cadt-check-gpu [--points N] [--backend cuda|opencl|host] [--device D]\n"
       "                      [--kind uniform|circles|gaussian|lattice] [--file FILE] [--runs R] [--warm-up W] [--block "
       "B]\n"
-      "                      [--order fast|canonical] [--verify none|host|device] [--phases] [--hash]\n"
+      "                      [--order fast|canonical] [--verify none|host|device] [--phases] [--kernel-times] "
+      "[--hash]\n"
       "                      [--strategy auto|locks|stars] [--stabilize off|defer|paper]\n"
       "                      [--statistics none|counters|timing] [--sets S] [--floats] [--most-bytes B]\n"
       "                      [--host-to-host]\n"
@@ -99,6 +100,8 @@ Arguments parse(int count, char** values) {
       a.verify = value();
     else if (words[i] == "--phases")
       a.phases = true;
+    else if (words[i] == "--kernel-times")
+      a.kernels = true;
     else if (words[i] == "--hash")
       a.hash = true;
     else if (words[i] == "--floats")
@@ -294,6 +297,7 @@ int run(const Arguments& a) {
   options.tuning.strategy = a.strategy;
   options.tuning.stabilize = a.stabilize;
   options.statistics = a.statistics;
+  options.tuning.kernel_times = a.kernels;
   std::unique_ptr<test::DeviceMemory> memory;
   options.max_memory = a.most_bytes * n;
   if (a.host_to_host) {
@@ -357,6 +361,9 @@ int run(const Arguments& a) {
     for (const unsigned block : {32U, 64U, 128U, 256U, 512U, 1024U})
       std::printf(" %u: %.3f", block, triangulator.occupancy(block).value_or(-1));
   }
+  for (const KernelTime& kernel : s.kernels)
+    std::printf("\n    %s %llu x, %.3f ms", kernel.name.c_str(), static_cast<unsigned long long>(kernel.launches),
+                kernel.milliseconds);
   bool ok = true;
   if (a.verify == "device") {
     const double begin = now();

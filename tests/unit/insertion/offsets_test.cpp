@@ -199,11 +199,13 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
   const auto real = static_cast<std::uint32_t>(expected.number_of_triangles());
   // As if all triangles of the vertices before had no ghost.
   const std::uint32_t before = 2 * base, last = before + real;
-  Sparse<std::uint32_t> labels(n), buckets(std::size_t{n} + 2), numbers(std::size_t{slots} + 1), used(n);
+  Sparse<std::uint32_t> labels(n), buckets(std::size_t{n} + 2), places(std::size_t{n} + 2),
+      numbers(std::size_t{slots} + 1), used(n);
   Sparse<std::uint32_t> vertices_of(std::size_t{3} * all_triangles), half_edges(std::size_t{3} * all_triangles);
   Sparse<std::uint32_t> triangles(std::size_t{3} * all_triangles), neighbors(std::size_t{3} * all_triangles);
   Sparse<cadt_member> members(all_triangles);
-  if (!labels || !buckets || !numbers || !used || !vertices_of || !half_edges || !triangles || !neighbors || !members)
+  if (!labels || !buckets || !places || !numbers || !used || !vertices_of || !half_edges || !triangles || !neighbors ||
+      !members)
     GTEST_SKIP() << "no address space for 50 GB more";
   for (const std::uint32_t v : vertices) labels[v] = v;
   // One work-item for each element of the range, as if there were as many for all of them.
@@ -249,16 +251,22 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
   over(before, last, [&](std::uint32_t item) {
     cadt_count_triangles(item, last, vertices_of.data(), labels.data(), buckets.data(), numbers.data(), last, grain);
   });
-  sum = before;
-  for (std::uint32_t v = base; v <= n; ++v) sum += std::exchange(buckets[v], sum);
-  EXPECT_EQ(buckets[n], last);
+  over(base, n, [&](std::uint32_t item) {
+    cadt_sizes_by_input(item, n, buckets.data(), labels.data(), places.data(), n, grain);
+  });
+  for (auto* const scanned : {&buckets, &places}) {
+    sum = before;
+    for (std::uint32_t v = base; v <= n; ++v) sum += std::exchange((*scanned)[v], sum);
+    EXPECT_EQ((*scanned)[n], last);
+  }
   over(before, last, [&](std::uint32_t item) {
     cadt_bucket_triangles(item, last, vertices_of.data(), labels.data(), buckets.data(), numbers.data(), members.data(),
                           0U, n, 0U, last, grain);
   });
   std::uint32_t skipped = 0;
   over(base, n, [&](std::uint32_t item) {
-    cadt_number_buckets(item, n, buckets.data(), members.data(), numbers.data(), 0U, n, 0U, CADT_NONE, grain, &skipped);
+    cadt_number_buckets(item, n, buckets.data(), members.data(), labels.data(), places.data(), numbers.data(), 0U, n,
+                        0U, CADT_NONE, grain, &skipped);
   });
   EXPECT_EQ(skipped, 0U);
   const auto write = [&](const std::uint32_t* order) {
@@ -269,6 +277,13 @@ TEST_F(Offsets, LastTrianglesOfTheLargestCall) {
   };
   write(numbers.data());
   expect_result("canonical order");
+  for (std::uint32_t word = 3 * before; word < 3 * last; ++word) triangles[word] = neighbors[word] = 0;
+  const std::uint32_t groups = (last - 1) / CADT_OUTPUT_LANES + 1;
+  over(before / CADT_OUTPUT_LANES, groups, [&](std::uint32_t item) {
+    cadt_write_numbered(item, groups, nullptr, vertices_of.data(), half_edges.data(), nullptr, last, all_triangles, 2U,
+                        labels.data(), numbers.data(), triangles.data(), neighbors.data(), nullptr, 0, groups, grain);
+  });
+  expect_result("canonical order by teams");
 
   // The boundary.
   std::uint32_t size = 0;

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""cadt-terrain: what the program cadt hands LAS, LAZ, GIS files and GeoTIFF to. Every outcome is an exit code."""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import sys
+import warnings
+from collections.abc import Sequence
+from types import FrameType
+
+from . import errors
+from ._progress import ProgressLine
+
+
+def _explain(error: BaseException) -> int:
+    """Says what happened on standard error; the exit code."""
+    code, advice = (
+        errors.EXIT_INTERNAL,
+        "This is a defect of cadt: please report it with the command line and the input.",
+    )
+    if isinstance(error, errors.TerrainError):
+        code, advice = error.code, ""
+    elif isinstance(error, (KeyboardInterrupt, errors.Cancelled)):
+        print("cadt: interrupted", file=sys.stderr)
+        return errors.EXIT_INTERRUPTED
+    elif isinstance(error, MemoryError):
+        code, advice = errors.EXIT_MEMORY, "Use fewer points, a larger --res, or close other programs."
+    elif (known := errors.code_of(error)) is not None:
+        code, advice = known
+    text = str(error) or type(error).__name__
+    print(
+        f"cadt: error: {text if code != errors.EXIT_INTERNAL else f'internal: {type(error).__name__}: {text}'}",
+        file=sys.stderr,
+    )
+    if advice:
+        print(f"  {advice}", file=sys.stderr)
+    return code
+
+
+def _stop(number: int, frame: FrameType | None) -> None:
+    signal.signal(number, signal.SIG_DFL)  # a second one ends the process at once
+    raise KeyboardInterrupt
+
+
+def run(command: str, words: Sequence[str]) -> int:
+    from . import _options
+
+    options = _options.parse(command, words)
+    if options.threads:
+        os.environ.setdefault("RAYON_NUM_THREADS", str(options.threads))  # of lazrs
+    line = ProgressLine(options.quiet)
+    try:
+        if command == "raster":
+            from .raster import raster_command as work
+        elif command == "contour":
+            from .contour import contour_command as work
+        else:
+            from .tin import tin_command as work
+        summary = work(options, line)
+    finally:
+        line.clear()
+    if not options.quiet:
+        for key, value in summary.items():
+            print(f"{key:<12}{value}", file=sys.stderr)
+    return errors.EXIT_DONE
+
+
+def command(words: Sequence[str]) -> int:
+    """One command line; the exit code. Every error is a message on standard error."""
+    try:
+        from . import _options
+
+        if not words or words[0] in ("-h", "--help"):
+            print(_options.main_help(), end="")
+            return errors.EXIT_DONE if words else errors.EXIT_USAGE
+        if words[0] not in _options.SUMMARIES:
+            raise errors.UsageError(f"there is no command '{words[0]}'; there are: {', '.join(_options.SUMMARIES)}")
+        return run(words[0], words[1:])
+    except SystemExit as done:  # --help
+        return int(done.code or 0)
+    except BaseException as error:  # noqa: BLE001  an exit code and a message for each
+        return _explain(error)
+
+
+def main() -> int:
+    for number in (signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)):
+        if signal.getsignal(number) is not signal.SIG_IGN:  # nohup stays nohup
+            signal.signal(number, _stop)
+    # What libraries have to say about a file becomes one error of ours, or nothing.
+    logging.getLogger("laspy").addHandler(logging.NullHandler())
+    warnings.simplefilter("ignore")
+    return command(sys.argv[1:])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Points sorted into square buckets: those of any region are slices, and which discs reach beyond a region is counted."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+import cadt
+
+from .cloud import Cloud
+
+PER_BUCKET = 150  # points on average: a ring of buckets around a tile of 300,000 points is a tenth of it
+MOST_BUCKETS = 65_000  # their numbers are sorted as 16-bit words, which NumPy does by radix
+PIECE = 1 << 20
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+class Buckets:
+    """A cloud in the order of its buckets, row by row from the lower left; within a bucket the order is as before."""
+
+    def __init__(self, cloud: Cloud, per_bucket: int = PER_BUCKET) -> None:
+        n = len(cloud)
+        self.x0, self.y0, x1, y1 = cloud.bounds
+        width, height = max(x1 - self.x0, 1e-300), max(y1 - self.y0, 1e-300)
+        count = min(max(n // per_bucket, 1), MOST_BUCKETS)
+        self.side = max(math.sqrt(width * height / count), width / 4000, height / 4000)
+        self.nx, self.ny = (max(1, math.ceil(length / self.side)) for length in (width, height))
+        while self.nx * self.ny > MOST_BUCKETS:
+            self.side *= 1.1
+            self.nx, self.ny = (max(1, math.ceil(length / self.side)) for length in (width, height))
+        # A bucket's points lie in its square but for the rounding of the division.
+        self.slack = 1e-9 * self.side + 8 * float(np.spacing(max(map(abs, cloud.bounds))))
+
+        number = np.empty(n, np.uint16)
+        for i in range(0, n, PIECE):
+            column, row = self.place(cloud.xy[i : i + PIECE])
+            number[i : i + PIECE] = row * self.nx + column
+        order = np.argsort(number, kind="stable").astype(np.int32)
+        self.begin = np.concatenate(([0], np.cumsum(np.bincount(number, minlength=self.nx * self.ny))))
+        del number
+        # Old and new points stand side by side once; pieces, because NumPy makes 64-bit words of the order's.
+        pairs = np.ascontiguousarray(cloud.xy).view(np.complex128)[
+            :, 0
+        ]  # one number a point is gathered sooner than two
+        sorted_pairs, self.z = np.empty(n, np.complex128), np.empty(n)
+        for i in range(0, n, PIECE):
+            part = order[i : i + PIECE]
+            sorted_pairs[i : i + PIECE], self.z[i : i + PIECE] = pairs[part], cloud.z[part]
+        del order
+        self.xy = sorted_pairs.view(np.float64).reshape(-1, 2)
+        self.filled: Mask = (np.diff(self.begin) > 0).reshape(self.ny, self.nx)
+        # Points in the buckets left of and below a corner.
+        self._sums = np.zeros((self.ny + 1, self.nx + 1), np.int64)
+        self._sums[1:, 1:] = np.diff(self.begin).reshape(self.ny, self.nx).cumsum(axis=0).cumsum(axis=1)
+
+        self.first_of_each = self.begin[:-1][self.filled.ravel()]
+        self.sketch = cadt.Delaunay(self.xy[self.first_of_each], backend="host", statistics="none")
+        self.hull = self._hull()
+
+    @property
+    def useful(self) -> bool:
+        """Whether tiles are smaller than the whole: not if nearly all points lie in a few buckets, as with an outlier."""
+        return self.sketch.n_triangles > 0 and 16 * int(np.diff(self.begin).max()) < len(self.z)
+
+    def place(self, xy: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Column and row of each point's bucket; the nearest one for those outside."""
+        column = np.clip((xy[:, 0] - self.x0) / self.side, 0, self.nx - 1).astype(np.int64)
+        row = np.clip((xy[:, 1] - self.y0) / self.side, 0, self.ny - 1).astype(np.int64)
+        return column, row
+
+    def _hull(self) -> NDArray[np.int64]:
+        """The vertices of the convex hull of all points. A bucket whose square lies in the hull of the sketch has none but
+        what the sketch has."""
+        rows, columns = np.nonzero(self.filled)
+        deep = np.ones(len(rows), bool)
+        if self.sketch.n_triangles == 0:
+            deep[:] = False
+        else:
+            for right in (0, 1):
+                for up in (0, 1):
+                    corner = np.empty((len(rows), 2))
+                    corner[:, 0] = self.x0 + (columns + right) * self.side + (2 * right - 1) * self.slack
+                    corner[:, 1] = self.y0 + (rows + up) * self.side + (2 * up - 1) * self.slack
+                    deep &= np.asarray(self.sketch.within_hull(corner), bool)
+        border = np.zeros((self.ny, self.nx), bool)
+        border[rows[~deep], columns[~deep]] = True
+        candidates = np.concatenate((self.of_mask(border), self.first_of_each))
+        mesh = cadt.Delaunay(self.xy[candidates], backend="host", statistics="none")
+        return np.unique(candidates[np.asarray(mesh.hull)]) if mesh.n_triangles else np.empty(0, np.int64)
+
+    def count(self, x0: int, y0: int, x1: int, y1: int) -> int:
+        """Points in the buckets x0 <= column < x1, y0 <= row < y1."""
+        s = self._sums
+        return int(s[y1, x1] - s[y0, x1] - s[y1, x0] + s[y0, x0])
+
+    def of_rectangle(self, x0: int, y0: int, x1: int, y1: int) -> tuple[Floats, Floats]:
+        """Coordinates and values of the points in a rectangle of buckets, and of the hull's vertices, in their order."""
+        rows = np.arange(y0, y1) * self.nx
+        ends = np.column_stack((self.begin[rows + x0], self.begin[rows + x1]))
+        run = np.searchsorted(ends[:, 0], self.hull, side="right") - 1
+        others = self.hull[(run < 0) | (self.hull >= ends[run, 1])]
+        ends = np.concatenate((ends, np.column_stack((others, others + 1))))
+        ends = ends[np.argsort(ends[:, 0], kind="stable")].tolist()
+        return np.concatenate([self.xy[a:b] for a, b in ends]), np.concatenate([self.z[a:b] for a, b in ends])
+
+    def of_buckets(self, mask: Mask) -> NDArray[np.int64]:
+        """The points in the buckets of a mask, and the hull's vertices, ascending."""
+        return np.union1d(self.of_mask(mask), self.hull)
+
+    def of_mask(self, mask: Mask) -> NDArray[np.int64]:
+        """The points in the buckets of a mask, ascending."""
+        numbers = np.flatnonzero(mask)
+        length = self.begin[numbers + 1] - self.begin[numbers]
+        offset = np.repeat(self.begin[numbers] - np.concatenate(([0], np.cumsum(length)[:-1])), length)
+        return np.arange(length.sum()) + offset
+
+    def reached(self, center: Floats, radius: Floats, of: Mask) -> tuple[NDArray[np.int64], Mask]:
+        """How many buckets of the mask `of` each disc reaches, and which buckets are reached at all."""
+        radius = np.where(np.isfinite(radius), radius, np.inf) + self.slack
+        edge = self.y0 + np.arange(self.ny + 1) * self.side
+        sums = np.zeros((self.ny, self.nx + 1), np.int64)
+        sums[:, 1:] = of.cumsum(axis=1)
+        counts = np.zeros(len(radius), np.int64)
+        change = np.zeros((self.ny, self.nx + 1), np.int64)
+        for i in range(0, len(radius), 4096):
+            c, r = center[i : i + 4096], radius[i : i + 4096]
+            below, above = edge[None, :-1] - c[:, 1:], c[:, 1:] - edge[None, 1:]
+            near = np.maximum(np.maximum(below, above), 0)
+            with np.errstate(invalid="ignore", over="ignore"):
+                half = np.sqrt(r[:, None] ** 2 - near**2)
+                left, right = (c[:, :1] - half - self.x0) / self.side, (c[:, :1] + half - self.x0) / self.side
+            whole = ~np.isfinite(c).all(axis=1) | np.isinf(r)
+            half[whole], left[whole], right[whole] = 0, 0, self.nx
+            touched = ~np.isnan(half) & (right >= 0) & (left < self.nx)
+            k, row = np.nonzero(touched)
+            a = np.clip(np.floor(left[k, row]), 0, self.nx - 1).astype(np.int64)
+            b = np.clip(np.floor(right[k, row]), 0, self.nx - 1).astype(np.int64) + 1
+            counts[i : i + 4096] = np.bincount(k, sums[row, b] - sums[row, a], minlength=len(r)).astype(np.int64)
+            np.add.at(change, (row, a), 1)
+            np.add.at(change, (row, b), -1)
+        return counts, of & (change.cumsum(axis=1)[:, :-1] > 0)

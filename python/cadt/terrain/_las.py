@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""LAS and LAZ, through laspy and lazrs: in pieces, so that only what is kept is held."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._files import why
+from .errors import CrsError, FileError, TerrainError, Unavailable, UsageError
+
+if TYPE_CHECKING:
+    import pyproj
+
+CHUNK = 1 << 20  # points decoded at a time: 20 to 40 MB
+
+
+def _laspy() -> Any:
+    try:
+        import laspy
+    except ImportError as error:
+        raise Unavailable("reading LAS and LAZ", "laspy") from error
+    return laspy
+
+
+class LasSource:
+    """A LAS or LAZ file: how many points it promises, its reference system, and the points that a filter keeps."""
+
+    def __init__(self, path: str, classes: Sequence[int] | None, values: str, with_crs: bool) -> None:
+        self.path = path
+        self._classes = classes
+        self._values = values
+        with self._open() as reader:
+            header = reader.header
+            if header.are_points_compressed and not _laspy().LazBackend.detect_available():
+                raise Unavailable("reading LAZ", "lazrs")
+            self.count = int(header.point_count)
+            names = set(header.point_format.dimension_names)
+            self.crs = self._crs(header) if with_crs else None
+        if classes is not None and "classification" not in names:
+            raise FileError(path, "has no classes; leave out --class")
+        if values != "z" and values not in names:
+            raise UsageError(f"--values {values}: {path} has no such dimension; it has: {', '.join(sorted(names))}")
+
+    def _open(self) -> Any:
+        laspy = _laspy()
+        selection = laspy.DecompressionSelection
+        wanted = selection.base() | selection.Z | selection.CLASSIFICATION
+        if self._values not in ("z", "classification"):
+            wanted = selection.all()
+        try:
+            return laspy.open(self.path, decompression_selection=wanted)
+        except Exception as error:  # whatever a damaged header leads to: numpy, struct, lazrs
+            raise FileError(self.path, f"is no LAS or LAZ file: {why(error)}") from error
+
+    def _crs(self, header: Any) -> pyproj.CRS | None:
+        try:
+            import pyproj
+        except ImportError as error:
+            raise Unavailable("the reference system of LAS files", "pyproj") from error
+        try:
+            return header.parse_crs()
+        except pyproj.exceptions.CRSError as error:
+            if not any(
+                vlr.record_id == 2112 and vlr.string.strip("\0 '\"") for vlr in header.vlrs if hasattr(vlr, "string")
+            ):
+                return None  # a record that is empty
+            raise CrsError(
+                self.path, f"its reference system is not understood: {why(error)}; name it with --crs"
+            ) from error
+
+    def read(self, xy: NDArray[np.float64], z: NDArray[np.float64], step: Callable[[int], None]) -> int:
+        """Fills the heads of both arrays with the points that are kept; returns how many these are."""
+        kept = seen = 0
+        try:
+            with self._open() as reader:
+                header = reader.header
+                for points in reader.chunk_iterator(CHUNK):
+                    seen += len(points)
+                    which: Any = slice(None)
+                    if self._classes is not None:
+                        which = np.flatnonzero(np.isin(np.asarray(points.classification), self._classes))
+                    end = kept + (len(points) if isinstance(which, slice) else len(which))
+                    # A coordinate is a whole number of steps from an offset: one product and one sum, both rounded.
+                    for k, (name, out) in enumerate(
+                        (("X", xy[kept:end, 0]), ("Y", xy[kept:end, 1]), ("Z", z[kept:end]))
+                    ):
+                        if k == 2 and self._values != "z":
+                            out[:] = np.asarray(points[self._values])[which]
+                            continue
+                        np.multiply(np.asarray(points[name])[which], header.scales[k], out=out)
+                        out += header.offsets[k]
+                    kept = end
+                    step(seen)
+        except TerrainError:
+            raise
+        except MemoryError:
+            raise
+        except Exception as error:
+            raise FileError(self.path, f"damaged after {seen} of {self.count} points: {why(error)}") from error
+        if seen != self.count:
+            raise FileError(self.path, f"truncated: {seen} points of the {self.count} that its header promises")
+        return kept

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Points and shapes of GIS files: pyogrio for GeoPackage, GeoJSON and FlatGeobuf, geopandas for GeoParquet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._files import complete_file, why
+from .errors import CrsError, FileError, Unavailable, UsageError
+
+if TYPE_CHECKING:
+    import pyproj
+
+CHUNK = 1 << 18  # features read at a time: each is a Python object
+DRIVERS = {"gpkg": "GPKG", "geojson": "GeoJSON", "fgb": "FlatGeobuf"}
+
+
+def _pyogrio(what: str) -> Any:
+    try:
+        import pyogrio
+    except ImportError as error:
+        raise Unavailable(what, "pyogrio") from error
+    return pyogrio
+
+
+def parse_crs(path: str, text: object) -> pyproj.CRS | None:
+    if text is None:
+        return None
+    try:
+        import pyproj
+    except ImportError as error:
+        raise Unavailable("reference systems", "pyproj") from error
+    try:
+        return pyproj.CRS.from_user_input(text)
+    except pyproj.exceptions.CRSError as error:
+        raise CrsError(path, f"its reference system is not understood: {why(error)}; name it with --crs") from error
+
+
+def _coordinates(path: str, geometry: NDArray[np.object_], first: int) -> NDArray[np.float64]:
+    """x, y, z of points in well-known binary; z is NaN where there is none."""
+    result = np.full((len(geometry), 3), np.nan)
+    sizes = np.fromiter((-1 if g is None else len(g) for g in geometry), np.int64, len(geometry))
+    # Byte order, type, coordinates. Type 1 is a point; 1001, or the highest bit, says that there is a z.
+    for size, words, types in ((21, 2, (1,)), (29, 3, (1001, 0x80000001))):
+        rows = np.flatnonzero(sizes == size)
+        if len(rows) == 0:
+            continue
+        raw = np.frombuffer(b"".join(geometry[rows]), np.uint8).reshape(len(rows), size)
+        kind = raw[:, 1:5].copy().view("<u4")[:, 0]
+        good = (raw[:, 0] == 1) & np.isin(kind, types)
+        result[rows, :words] = raw[:, 5:].copy().view("<f8")
+        sizes[rows[good]] = 0
+    bad = np.flatnonzero(sizes != 0)
+    if len(bad):
+        what = "has no geometry" if sizes[bad[0]] == -1 else "is no point"
+        raise FileError(path, f"feature {first + int(bad[0])} (counted from 0) {what}; only points can be read")
+    lost = np.flatnonzero(~np.isfinite(result[:, :2]).all(axis=1))
+    if len(lost):
+        raise FileError(path, f"feature {first + int(lost[0])} (counted from 0) has no finite coordinates")
+    return result
+
+
+class OgrSource:
+    """Points of a GeoPackage, a GeoJSON or a FlatGeobuf file."""
+
+    def __init__(self, path: str, values: str, with_crs: bool) -> None:
+        self.path = path
+        self._values = values
+        self._ogr = _pyogrio(f"reading {path}")
+        try:
+            layers = self._ogr.list_layers(path)
+            if len(layers) > 1:
+                names = ", ".join(str(name) for name in layers[:, 0])
+                raise FileError(path, f"has several layers ({names}); export one of them to a file of its own")
+            info = self._ogr.read_info(path, force_feature_count=True)
+        except self._ogr.errors.DataSourceError as error:
+            raise FileError(path, f"cannot be read: {why(error)}") from error
+        self.count = int(info["features"])
+        self.crs = parse_crs(path, info["crs"]) if with_crs else None
+        fields = [str(name) for name in info["fields"]]
+        if values != "z" and values not in fields:
+            raise UsageError(f"--values {values}: {path} has no such attribute; it has: {', '.join(fields) or 'none'}")
+
+    def read(self, xy: NDArray[np.float64], z: NDArray[np.float64], step: Callable[[int], None]) -> int:
+        columns = [] if self._values == "z" else [self._values]
+        done = 0
+        while done < self.count:
+            try:
+                _, _, geometry, fields = self._ogr.raw.read(
+                    self.path, columns=columns, skip_features=done, max_features=CHUNK
+                )
+            except (self._ogr.errors.DataSourceError, self._ogr.errors.FeatureError) as error:
+                raise FileError(self.path, f"cannot be read: {why(error)}") from error
+            if len(geometry) == 0:
+                break
+            points = _coordinates(self.path, geometry, done)
+            end = done + len(points)
+            xy[done:end] = points[:, :2]
+            z[done:end] = fields[0] if columns else points[:, 2]
+            check_values(self.path, z[done:end], self._values, done)
+            done = end
+            step(done)
+        return done
+
+
+class ParquetSource:
+    """Points of a GeoParquet file."""
+
+    def __init__(self, path: str, values: str, with_crs: bool) -> None:
+        try:
+            import geopandas
+            import pyarrow  # noqa: F401  geopandas finds it out late
+            import shapely
+        except ImportError as error:
+            raise Unavailable(f"reading {path}", "geopandas and pyarrow", "geopandas pyarrow") from error
+        self.path = path
+        self._values = values
+        try:
+            frame = geopandas.read_parquet(path)
+        except Exception as error:  # pyarrow's, geopandas' and pandas' errors have no common base
+            raise FileError(path, f"cannot be read: {why(error)}") from error
+        self.count = len(frame)
+        self.crs = parse_crs(path, frame.crs) if with_crs else None
+        if values != "z" and values not in frame.columns:
+            raise UsageError(
+                f"--values {values}: {path} has no such column; it has: {', '.join(map(str, frame.columns))}"
+            )
+        self._geometry = np.asarray(shapely.to_wkb(frame.geometry.values, byte_order=1), dtype=object)
+        self._column = None if values == "z" else np.asarray(frame[values], dtype=float)
+
+    def read(self, xy: NDArray[np.float64], z: NDArray[np.float64], step: Callable[[int], None]) -> int:
+        points = _coordinates(self.path, self._geometry, 0)
+        xy[: self.count] = points[:, :2]
+        z[: self.count] = points[:, 2] if self._column is None else self._column
+        check_values(self.path, z[: self.count], self._values, 0)
+        step(self.count)
+        return self.count
+
+
+def check_values(path: str, z: NDArray[np.float64], name: str, first: int) -> None:
+    """Raises FileError if a point has no value: 2D points, or an empty attribute."""
+    bad = np.flatnonzero(~np.isfinite(z))
+    if len(bad):
+        what = "no height" if name == "z" else f"no number as '{name}'"
+        raise FileError(
+            path, f"point {first + int(bad[0])} (counted from 0) has {what}; name an attribute with --values"
+        )
+
+
+def write_features(
+    path: str,
+    geometry: NDArray[np.object_],
+    kind: str,
+    fields: dict[str, NDArray[Any]],
+    crs: pyproj.CRS | None,
+    layer: str,
+) -> None:
+    """Writes well-known binary of one kind (LineString, Polygon Z) with its attributes. The driver is that of the suffix, and the
+    file appears when it is complete."""
+    ogr = _pyogrio(f"writing {path}")
+    suffix = path.rsplit(".", 1)[-1].lower()
+    options: dict[str, Any] = {} if suffix == "geojson" else {"layer": layer}
+    try:
+        with complete_file(path) as name:
+            ogr.raw.write(
+                name,
+                geometry,
+                list(fields.values()),
+                list(fields),
+                geometry_type=kind,
+                driver=DRIVERS[suffix],
+                crs=None if crs is None else crs.to_wkt(),
+                **options,
+            )
+    except (ogr.errors.DataSourceError, ogr.errors.FeatureError) as error:
+        raise FileError(path, f"cannot be written: {why(error)}") from error

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Grids of square or rectangular cells, the first row at the top."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import TYPE_CHECKING
+
+from ._files import check_input, why
+from .cloud import Cloud, name_of, same_crs
+from .errors import CrsError, FileError, Unavailable, UsageError
+
+if TYPE_CHECKING:
+    import pyproj
+
+MOST_CELLS = (1 << 32) - 1
+Box = tuple[float, float, float, float]
+
+
+@dataclasses.dataclass(frozen=True)
+class Grid:
+    """rows x columns cells of width dx and height dy; (x0, y1) is the upper left corner."""
+
+    x0: float
+    y1: float
+    dx: float
+    dy: float
+    columns: int
+    rows: int
+
+    @property
+    def cells(self) -> int:
+        return self.columns * self.rows
+
+    def bounds(self, first: int = 0, last: int | None = None) -> Box:
+        """xmin, ymin, xmax, ymax of the rows from `first` to before `last`."""
+        last = self.rows if last is None else last
+        return self.x0, self.y1 - last * self.dy, self.x0 + self.columns * self.dx, self.y1 - first * self.dy
+
+
+def cells_along(length: float, cell: float) -> float:
+    """Cells that cover a length. What is whole but for the rounding of decimals (2.1 / 0.3) is whole."""
+    exact = length / cell
+    whole = float(round(exact)) if math.isfinite(exact) else exact
+    return (
+        whole
+        if whole >= 1 and abs(exact - whole) <= 1e-9 * whole
+        else float(math.ceil(exact))
+        if math.isfinite(exact)
+        else exact
+    )
+
+
+def check_resolution(resolution: float) -> None:
+    if not (resolution > 0 and math.isfinite(resolution)):
+        raise UsageError(f"--res {resolution:g}: a cell needs a finite size above 0")
+
+
+def grid_of(cloud: Cloud, resolution: float, bounds: Box | None) -> Grid:
+    """Cells of one size, the lower left corner of one of them on that of `bounds`, or of the box of the points."""
+    check_resolution(resolution)
+    x0, y0, x1, y1 = bounds if bounds is not None else cloud.bounds
+    columns, rows = cells_along(x1 - x0, resolution), cells_along(y1 - y0, resolution)
+    if not (columns >= 1 and rows >= 1):
+        raise UsageError(
+            f"the points span {x1 - x0:g} x {y1 - y0:g}, which gives no cells of {resolution:g}: say where with "
+            "--bounds x0,y0,x1,y1"
+        )
+    check_size(columns, rows, f"--res {resolution:g}")
+    return Grid(x0, y0 + rows * resolution, resolution, resolution, int(columns), int(rows))
+
+
+def check_size(columns: float, rows: float, about: str) -> None:
+    if not columns * rows <= MOST_CELLS:
+        raise UsageError(
+            f"{about}: {columns:.0f} x {rows:.0f} cells, at most {MOST_CELLS} in all: take a larger --res, or tiles with --bounds"
+        )
+
+
+def grid_of_file(path: str, crs: pyproj.CRS | None, bounds: Box | None) -> Grid:
+    """The grid of a raster file; with `bounds` the cells of that grid that cover them."""
+    try:
+        import rasterio
+    except ImportError as error:
+        raise Unavailable("--align", "rasterio") from error
+    check_input(path)
+    try:
+        with rasterio.open(path) as raster:
+            transform, columns, rows, wkt = raster.transform, raster.width, raster.height, raster.crs
+    except rasterio.errors.RasterioError as error:
+        raise FileError(path, f"is no raster: {why(error)}") from error
+    if transform.b or transform.d or transform.a <= 0 or transform.e >= 0:
+        raise FileError(
+            path, "its rows do not run from west to east, the first one in the north: --align cannot follow them"
+        )
+    if wkt is not None and crs is not None:
+        import pyproj
+
+        other = pyproj.CRS.from_wkt(wkt.to_wkt())
+        if not same_crs(other, crs) and not same_crs(other, _horizontal(crs)):
+            raise CrsError(path, f"its reference system is {name_of(other)}, that of the points is {name_of(crs)}")
+    whole = Grid(transform.c, transform.f, transform.a, -transform.e, columns, rows)
+    if bounds is None:
+        return whole
+    x0, y0, x1, y1 = bounds
+    left, right = math.floor((x0 - whole.x0) / whole.dx), math.ceil((x1 - whole.x0) / whole.dx)
+    top, bottom = math.floor((whole.y1 - y1) / whole.dy), math.ceil((whole.y1 - y0) / whole.dy)
+    check_size(right - left, bottom - top, f"--align {path}")
+    return Grid(whole.x0 + left * whole.dx, whole.y1 - top * whole.dy, whole.dx, whole.dy, right - left, bottom - top)
+
+
+def _horizontal(crs: pyproj.CRS) -> pyproj.CRS:
+    """The part for x and y of a system with heights."""
+    return crs.sub_crs_list[0] if crs.sub_crs_list else crs
+
+
+def parse_bounds(text: str) -> Box | None:
+    """The rectangle of --bounds."""
+    if not text:
+        return None
+    try:
+        numbers = [float(word) for word in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 4 or not all(map(math.isfinite, numbers)):
+        raise UsageError(f"--bounds {text}: four numbers with commas are needed: x0,y0,x1,y1")
+    x0, y0, x1, y1 = numbers
+    if not (x0 < x1 and y0 < y1):
+        raise UsageError(f"--bounds {text}: it is empty; the lower left corner comes first: x0 < x1 and y0 < y1")
+    return x0, y0, x1, y1

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""cadt raster: values between the points, at the centres of a grid's cells, as a GeoTIFF."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+import cadt
+
+from ._buckets import Buckets, Floats
+from ._files import check_output
+from ._mesh import check_max_edge, no_triangles, rasterize, read, triangulate
+from ._progress import ProgressLine
+from ._tiles import TiledRaster
+from .cloud import Cloud, require_crs
+from .cog import BLOCK, check_nodata, open_cog
+from .errors import UsageError
+from .grid import Grid, check_resolution, grid_of, grid_of_file, parse_bounds
+
+WRITE_FORMATS = ("tif", "tiff")
+SMALL = 200_000  # points: the host has them done before a graphics card is opened
+
+
+def choose_grid(cloud: Cloud, options: argparse.Namespace) -> Grid:
+    bounds = parse_bounds(options.bounds)
+    if options.align is not None:
+        return grid_of_file(options.align, cloud.crs, bounds)
+    return grid_of(cloud, options.res, bounds)
+
+
+def rows_at_a_time(grid: Grid, points: int) -> int:
+    """So many that a pass over the triangles is worth it: as many cells as points, in whole tiles of the file."""
+    rows = max(points, 1 << 22) // grid.columns
+    return min(grid.rows, max(BLOCK, rows // BLOCK * BLOCK))
+
+
+def fill_nearest(
+    mesh: cadt.Delaunay, z: NDArray[np.float64], cells: NDArray[np.float64], grid: Grid, first: int
+) -> None:
+    """Puts the nearest point's value where there is none."""
+    for row in range(len(cells)):
+        columns = np.flatnonzero(np.isnan(cells[row]))
+        if len(columns):
+            where = np.empty((len(columns), 2))
+            where[:, 0] = grid.x0 + (columns + 0.5) * grid.dx
+            where[:, 1] = grid.y1 - (first + row + 0.5) * grid.dy
+            cells[row, columns] = z[mesh.nearest_vertex(where)]
+
+
+def by_whole(mesh: cadt.Delaunay, z: NDArray[np.float64], grid: Grid, options: argparse.Namespace) -> Iterator[Floats]:
+    """The rows from a mesh of all points, some at a time."""
+    step = rows_at_a_time(grid, len(z))
+    for first in range(0, grid.rows, step):
+        last = min(first + step, grid.rows)
+        part = Grid(grid.x0, grid.y1 - first * grid.dy, grid.dx, grid.dy, grid.columns, last - first)
+        cells = rasterize(mesh, z, part, options.method, options.max_edge)
+        if options.fill == "nearest":
+            fill_nearest(mesh, z, cells, grid, first)
+        yield cells
+
+
+def on_host(options: argparse.Namespace, points: int) -> bool:
+    """Whether the host computes: it is asked for, or no graphics card is there."""
+    if options.backend != "auto":
+        return bool(options.backend == "host")
+    return points < SMALL or not any(device.usable and device.gpu for device in cadt.devices())
+
+
+def raster_command(options: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    start = time.monotonic()
+    if (options.res is None) == (options.align is None):
+        raise UsageError("say the cells either with --res R or with --align GRID.tif")
+    if options.res is not None:
+        check_resolution(options.res)
+    check_max_edge(options.max_edge)
+    check_nodata(options.nodata, options.dtype)
+    parse_bounds(options.bounds)
+    others = [options.align] if options.align is not None else []
+    check_output(options.output, WRITE_FORMATS, options.inputs + others)
+
+    cloud = read(options, line)
+    require_crs(cloud, options.crs, options.output)
+    name, n, crs = ", ".join(cloud.sources), len(cloud), cloud.crs
+    grid = choose_grid(cloud, options)
+    read_at = time.monotonic()
+    with open_cog(
+        options.output, grid, crs, nodata=options.nodata, dtype=options.dtype, threads=options.threads
+    ) as rows:
+        line.step("sorting")
+        points = Buckets(cloud)
+        del cloud  # it is there once more, in another order
+        device = "host, by tiles"
+        if options.method == "linear" and points.useful and on_host(options, n):
+            if len(points.hull) == 0:
+                raise no_triangles(name, n)
+            made = TiledRaster(
+                points,
+                grid,
+                max_edge=options.max_edge,
+                fill=options.fill == "nearest",
+                threads=options.threads,
+                progress=lambda fraction: line.update("filling", fraction),
+            ).rows()
+        else:
+            mesh = triangulate(points.xy, name, options, line)
+            device = mesh.device
+            made = by_whole(mesh, points.z, grid, options)
+        for cells in made:
+            rows.write(cells)
+            line.update("filling", rows.next / grid.rows)
+        del made, points
+        line.step(f"compressing {options.output}")
+    return {
+        "points": n,
+        "cells": f"{grid.columns} x {grid.rows}",
+        "no data": rows.blank,
+        "time": f"{time.monotonic() - start:.3f} s (read {read_at - start:.3f})",
+        "back end": device,
+        "written": options.output,
+    }

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
+"""QGIS finds the plugin here."""
+
+
+def classFactory(iface):
+    from .provider import CadtPlugin
+
+    return CadtPlugin()

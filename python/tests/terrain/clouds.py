@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Clouds for the tests of cadt.terrain."""
+
+from __future__ import annotations
+
+import pathlib
+from typing import Any
+
+import cadt
+import laspy
+import numpy as np
+import pyproj
+
+PACKAGES = str(pathlib.Path(cadt.__file__).parents[1])
+ROOT = pathlib.Path(__file__).parents[3]
+
+
+def make_las(
+    path: pathlib.Path,
+    xyz: np.ndarray,
+    classes: Any = 2,
+    crs: str | None = "EPSG:25832",
+    scale: float = 0.001,
+    offset: tuple[float, float, float] = (500_000.0, 5_400_000.0, 0.0),
+) -> str:
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.scales, header.offsets = [scale] * 3, list(offset)
+    if crs is not None:
+        header.add_crs(pyproj.CRS.from_user_input(crs))
+    las = laspy.LasData(header)
+    las.x, las.y, las.z = np.asarray(xyz, float).reshape(-1, 3).T
+    las.classification = np.broadcast_to(classes, len(las.x)).astype(np.uint8)
+    las.write(str(path))
+    return str(path)
+
+
+def hills(n: int, size: float = 100.0, seed: int = 1, at: tuple[float, float] = (500_000.0, 5_400_000.0)) -> np.ndarray:
+    """n points on a millimetre grid, scattered, of a smooth surface."""
+    xy = np.random.default_rng(seed).uniform(0, size, (n, 2))
+    z = 300 + 20 * np.sin(xy[:, 0] / size * 7) * np.cos(xy[:, 1] / size * 5)
+    return np.round(np.column_stack((xy[:, 0] + at[0], xy[:, 1] + at[1], z)), 3)

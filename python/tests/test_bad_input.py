@@ -1,0 +1,279 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What cannot be triangulated or asked ends in an exception of Python, and what is merely unusual works."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import cadt
+import numpy as np
+import pytest
+from cadt import InputError, LimitError, OptionError
+
+P = np.random.default_rng(0).random((50, 2))
+SQUARE = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1]])
+
+
+def unaligned(dtype: str) -> np.ndarray:
+    memory = np.zeros(1 + 100 * np.dtype(dtype).itemsize, dtype=np.uint8)
+    a = memory[1:].view(dtype).reshape(50, 2)
+    a[:] = P
+    return a
+
+
+def packed_fields() -> np.ndarray:
+    record = np.zeros(50, dtype=[("flag", "i1"), ("x", "f8"), ("y", "f8")])
+    record["x"], record["y"] = P.T
+    return np.lib.stride_tricks.as_strided(record["x"], shape=(50, 2), strides=(17, 8))
+
+
+def read_only() -> np.ndarray:
+    a = P.copy()
+    a.flags.writeable = False
+    return a
+
+
+class WithArray:
+    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray:
+        return P
+
+
+SAME: dict[str, Any] = {
+    "read-only": read_only(),
+    "rows backwards": P[::-1][::-1],
+    "negative row stride": np.ascontiguousarray(P[::-1])[::-1],
+    "negative column stride": np.ascontiguousarray(P[:, ::-1])[:, ::-1],
+    "every second row": np.repeat(P, 2, axis=0)[::2],
+    "columns of a wider array": np.insert(P, [1, 2], 0, axis=1)[:, ::2],
+    "Fortran's order": np.asfortranarray(P),
+    "byte-swapped": P.astype(">f8"),
+    "not aligned": unaligned("f8"),
+    "packed fields": packed_fields(),
+    "memoryview": memoryview(P),
+    "list": P.tolist(),
+    "tuples": tuple(map(tuple, P)),
+    "masked, but nothing is": np.ma.array(P),
+    "__array__": WithArray(),
+}
+
+
+@pytest.mark.parametrize("name", SAME)
+def test_any_memory(name: str) -> None:
+    assert cadt.Delaunay(SAME[name]).hash == cadt.Delaunay(P).hash
+    mesh = cadt.Delaunay(P)
+    assert (mesh.find_simplex(SAME[name]) == mesh.find_simplex(P)).all()
+
+
+@pytest.mark.parametrize("dtype", ["f4", ">f4", "f2", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", ">i4"])
+def test_dtypes(dtype: str) -> None:
+    p = (100 * P).astype(dtype)
+    assert cadt.Delaunay(p).hash == cadt.Delaunay(p.astype(np.float64)).hash
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        P.astype(complex),
+        P.astype(np.longdouble),
+        P > 0.5,
+        P.astype(object),
+        P.astype(str),
+        P.astype("S8"),
+        {},
+        {1, 2},
+        None,
+    ]
+    + [
+        np.ones((3, 2), "m8[s]"),
+        np.ones((3, 2), "M8[s]"),
+        np.zeros((3, 2), [("x", "f8")]),
+        (p for p in P),
+        [[10**400, 0]],
+    ],
+    ids=lambda p: getattr(getattr(p, "dtype", None), "name", type(p).__name__),
+)
+def test_types_that_are_refused(points: Any) -> None:
+    if np.longdouble == np.float64 and getattr(points, "dtype", None) == np.longdouble:
+        pytest.skip("long doubles are doubles here")
+    with pytest.raises(TypeError):
+        cadt.Delaunay(points)
+
+
+@pytest.mark.parametrize("shape", [(6,), (5, 3), (5, 0), (5, 1), (2, 3, 2), (0, 3), ()])
+def test_shapes_that_are_refused(shape: tuple[int, ...]) -> None:
+    with pytest.raises(InputError, match="shape"):
+        cadt.Delaunay(np.zeros(shape))
+    with pytest.raises(ValueError):
+        cadt.Delaunay([[1, 2], [3]])
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_coordinates_that_are_not_finite(bad: float, dtype: type) -> None:
+    p = P.astype(dtype)
+    p[17, 1] = bad
+    with pytest.raises(InputError) as caught:
+        cadt.Delaunay(p)
+    assert caught.value.index == 17
+    with pytest.raises(InputError):
+        cadt.triangulate_batch(p, [0, 20, 50])
+
+
+@pytest.mark.parametrize("huge", [2**53 + 1, 2**60, 2**63 - 1, -(2**63)])
+def test_integers_without_a_double(huge: int) -> None:
+    with pytest.raises(InputError, match="2\\*\\*53") as caught:
+        cadt.Delaunay(np.array([[0, 0], [1, 0], [0, huge]]))
+    assert caught.value.index == 2
+    with pytest.raises(InputError):
+        cadt.Delaunay(np.array([[0, 2**63]], dtype=np.uint64))
+    assert cadt.Delaunay([[0, 0], [2**53, 0], [0, -(2**53)]]).n_triangles == 1
+
+
+def test_extreme_doubles() -> None:
+    for scale in (5e-324, 1e-308, 1e154, 1.7e308):
+        mesh = cadt.Delaunay(SQUARE * scale)
+        assert mesh.n_triangles == 2 and mesh.verify()
+        assert mesh.find_simplex([[0, 0], [scale, scale], [-scale, 0]]).tolist() == [0, 1, -1]
+
+
+@pytest.mark.parametrize("masked", [np.ma.array(P, mask=P > 0.9), np.ma.masked_all((4, 2)), np.ma.masked_all(1)])
+def test_masked(masked: Any) -> None:
+    with pytest.raises(InputError, match="masked"):
+        cadt.Delaunay(masked)
+    with pytest.raises(InputError, match="masked"):
+        cadt.Delaunay(P).find_simplex(masked)
+    with pytest.raises(InputError, match="masked"):
+        cadt.Delaunay(P).interpolate(np.ma.array(P[:, 0], mask=P[:, 0] > 0.5), P)
+
+
+FLAT = {
+    "none": np.empty((0, 2)),
+    "one": P[:1],
+    "two": P[:2],
+    "equal": np.ones((4, 2)),
+    "line": np.arange(10.0).reshape(5, 2),
+}
+MEMBERS = "simplices neighbors hull convex_hull edges vertex_neighbors incident_triangles half_edges vertex_to_simplex"
+
+
+@pytest.mark.parametrize("name", FLAT)
+def test_without_triangles(name: str) -> None:
+    mesh = cadt.Delaunay(FLAT[name])
+    assert mesh.n_triangles == 0 and mesh.n_points == len(FLAT[name]) and mesh.dimension < 2
+    for member in (*MEMBERS.split(), "duplicate_of", "hash", "statistics", "device"):
+        getattr(mesh, member)
+    assert mesh.simplices.shape == (0, 3) and mesh.convex_hull.shape == (0, 2) and "0 triangles" in repr(mesh)
+    q, z = [[0.5, 0.5], [9, 9]], np.zeros(mesh.n_points)
+    assert mesh.find_simplex(q).tolist() == [-1, -1] and not mesh.within_hull(q).any()
+    assert np.isnan(mesh.barycentric(q)[1]).all() and np.isnan(mesh.interpolate(z, q)).all()
+    assert mesh.nearest_vertex(q, 3).tolist() == [[-1] * 3] * 2
+    assert np.isnan(mesh.rasterize(z, bounds=(0, 0, 1, 1), shape=(2, 3))).all()
+    assert mesh.circumcenters().shape == (0, 2) and len(mesh.largest_empty_circles(2)[1]) == 0
+    assert len(mesh.voronoi().vertices) == 0 and len(mesh.voronoi_polygons((0, 0, 1, 1))[1]) == 0
+    assert len(mesh.alpha_shape(1)[0]) == 0 and mesh.verify()
+    for f in (mesh.find_simplex, mesh.barycentric, mesh.within_hull, mesh.nearest_vertex):
+        with pytest.raises(InputError, match="finite"):
+            f([[0, 0], [np.nan, 0]])
+    with pytest.raises(InputError):
+        mesh.interpolate(z, [[np.inf, 0]])
+
+
+MESH = cadt.Delaunay(P)
+Z = P[:, 0]
+REFUSED: list[tuple[type[Exception], Callable[[], object]]] = [
+    (InputError, lambda: MESH.find_simplex([[1, 2, 3]])),
+    (InputError, lambda: MESH.find_simplex(3)),
+    (InputError, lambda: MESH.find_simplex([[0, np.nan]])),
+    (TypeError, lambda: MESH.find_simplex(P.astype(complex))),
+    (TypeError, lambda: MESH.find_simplex(None)),
+    (OptionError, lambda: MESH.nearest_vertex(P, 0)),
+    (OptionError, lambda: MESH.nearest_vertex(P, -1)),
+    (TypeError, lambda: MESH.nearest_vertex(P, 1.5)),  # type: ignore[arg-type]
+    (InputError, lambda: MESH.interpolate(np.zeros(49), P)),
+    (InputError, lambda: MESH.interpolate(3, P)),
+    (TypeError, lambda: MESH.interpolate(Z + 1j, P)),
+    (TypeError, lambda: MESH.interpolate(["a"] * 50, P)),
+    (OptionError, lambda: MESH.interpolate(Z, P, "cubic")),
+    (OptionError, lambda: MESH.interpolate(Z, P, outside="zero")),
+    (OptionError, lambda: MESH.rasterize(Z)),
+    (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), resolution=1)),
+    (OptionError, lambda: MESH.rasterize(Z, shape=(0, 2))),
+    (OptionError, lambda: MESH.rasterize(Z, shape=(2.5, 2))),  # type: ignore[arg-type]
+    (OptionError, lambda: MESH.rasterize(Z, shape=5)),  # type: ignore[arg-type]
+    (LimitError, lambda: MESH.rasterize(Z, shape=(2**20, 2**20))),
+    (LimitError, lambda: MESH.rasterize(Z, resolution=1e-300)),
+    (OptionError, lambda: MESH.rasterize(Z, resolution=0)),
+    (OptionError, lambda: MESH.rasterize(Z, resolution=np.nan)),
+    (InputError, lambda: MESH.rasterize(Z, shape=(2, 2), bounds=(0, 0, np.nan, 1))),
+    (InputError, lambda: MESH.rasterize(Z, shape=(2, 2), bounds=(1, 1, 0, 0))),
+    (InputError, lambda: MESH.rasterize(Z, shape=(2, 2), bounds=(0, 0, 1))),
+    (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), max_edge=-1)),
+    (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), max_edge=np.nan)),
+    (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), method="cubic")),
+    (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), origin="left")),
+    (InputError, lambda: MESH.voronoi_polygons((0, 0, 0, 0))),
+    (InputError, lambda: MESH.voronoi_polygons((0, 0, np.nan, 1))),
+    (InputError, lambda: MESH.voronoi_polygons((0, 0, 1))),
+    (OptionError, lambda: MESH.largest_empty_circles(-1)),
+    (TypeError, lambda: MESH.largest_empty_circles(1.5)),  # type: ignore[arg-type]
+    (OptionError, lambda: MESH.alpha_shape(-1)),
+    (OptionError, lambda: MESH.alpha_shape(np.nan)),
+    (cadt.BackendUnavailable, lambda: cadt.Delaunay(P, backend="opencl", device="no such device")),
+    (cadt.BackendUnavailable, lambda: cadt.Delaunay(P, backend="metal")),
+    (TypeError, lambda: cadt.Delaunay(P, backend=3)),  # type: ignore[arg-type]
+    (OptionError, lambda: cadt.Delaunay(P, device=0)),
+    (OptionError, lambda: cadt.Delaunay(P, order="random")),
+    (OptionError, lambda: cadt.Delaunay(P, threads=-1)),
+    (OptionError, lambda: cadt.Delaunay(P, threads=2**40)),
+    (OptionError, lambda: cadt.Delaunay(P, max_memory=-1)),
+    (OptionError, lambda: cadt.Delaunay(P, statistics="all")),
+    (TypeError, lambda: cadt.Delaunay(P, progress=3)),  # type: ignore[arg-type]
+    (InputError, lambda: cadt.triangulate_batch(P, [0, 60])),
+    (InputError, lambda: cadt.triangulate_batch(P, [5, 50])),
+    (InputError, lambda: cadt.triangulate_batch(P, [0, 30, 20, 50])),
+    (InputError, lambda: cadt.triangulate_batch(P, [-1, 50])),
+    (InputError, lambda: cadt.triangulate_batch(P, [])),
+    (InputError, lambda: cadt.triangulate_batch(P, [0.0, 50.0])),
+    (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1, 99]])),
+    (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1, -1]])),
+    (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1]])),
+    (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1, 2**40]])),
+    (ValueError, lambda: cadt.Delaunay.from_simplices(SQUARE, [[0, 1, 2], [0, 1, 2]], verify=False)),
+    (
+        ValueError,
+        lambda: cadt.Delaunay.from_simplices(SQUARE, MESH.simplices[:2], [[7, 7, 7], [9, 9, 9]], verify=False),
+    ),
+    (ImportError, lambda: cadt.Delaunay(P).save("mesh.no_such_format")),
+    (AttributeError, lambda: cadt.no_such_name),
+]
+
+
+@pytest.mark.parametrize("k", range(len(REFUSED)))
+def test_arguments_that_are_refused(k: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "meshio", None)
+    error, call = REFUSED[k]
+    with pytest.raises(error) as caught:
+        call()
+    assert str(caught.value) and "incompatible function arguments" not in str(caught.value)
+
+
+def test_no_queries_and_no_values() -> None:
+    none = np.empty((0, 2))
+    assert MESH.find_simplex(none).shape == MESH.nearest_vertex(none).shape == MESH.interpolate(Z, none).shape == (0,)
+    assert MESH.nearest_vertex(none, 4).shape == (0, 4) and MESH.barycentric(none)[1].shape == (0, 3)
+    assert MESH.interpolate(np.empty((50, 0)), P).shape == (50, 0)
+    assert MESH.rasterize(np.empty((50, 0)), shape=(2, 3)).shape == (2, 3, 0)
+    assert len(cadt.triangulate_batch(none, [0])) == 0
+
+
+def test_arrays_of_a_mesh_outlive_it() -> None:
+    mesh = cadt.Delaunay(P)
+    copies = mesh.simplices.copy(), mesh.edges.copy()
+    kept, ask = (mesh.simplices, mesh.edges), mesh.find_simplex
+    expected = ask(P)
+    del mesh
+    _ = [cadt.Delaunay(P + k).simplices for k in range(50)]  # memory is used again
+    assert all(np.array_equal(a, b) for a, b in zip(kept, copies)) and np.array_equal(ask(P), expected)
+    with pytest.raises(ValueError):
+        kept[0][0, 0] = 99  # it is the mesh's

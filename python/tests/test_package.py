@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The examples of the documentation, and the types."""
+
+from __future__ import annotations
+
+import doctest
+import importlib
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
+
+import cadt
+import numpy as np
+import pytest
+
+MODULES = sorted(m.name for m in pkgutil.walk_packages(cadt.__path__, "cadt.") if not m.name.startswith("cadt._cadt"))
+# What needs packages of its own and is tested beside them.
+EXTRA = {"cadt.terrain": "laspy", "cadt.scipy": "scipy"}
+
+
+@pytest.mark.parametrize("name", ["cadt", *MODULES])
+def test_examples(name: str) -> None:
+    for prefix, package in EXTRA.items():
+        if name.startswith(prefix):
+            pytest.importorskip(package)
+    if name.endswith("__main__"):
+        pytest.skip("a program")
+    names = {"cadt": cadt, "np": np, "Delaunay": cadt.Delaunay}
+    if name.startswith("cadt.scipy"):
+        names["scipy"] = pytest.importorskip("scipy")
+        importlib.import_module("scipy.spatial")
+    module = importlib.import_module(name)
+    flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+    result = doctest.testmod(
+        module, extraglobs={k: v for k, v in names.items() if not hasattr(module, k)}, optionflags=flags
+    )
+    assert result.failed == 0
+
+
+def test_there_are_examples() -> None:
+    finder = doctest.DocTestFinder()
+    with_examples = sum(
+        bool(t.examples)
+        for n in ("cadt._delaunay", "cadt.scipy._interpolate")
+        for t in finder.find(importlib.import_module(n))
+    )
+    assert with_examples >= 10
+
+
+def test_types() -> None:
+    pytest.importorskip("mypy")
+    folder = Path(cadt.__path__[0])
+    assert (folder / "_cadt.pyi").exists() and (folder / "py.typed").exists()
+    config = Path(__file__).parents[2] / "pyproject.toml"
+    command = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--config-file",
+        str(config),
+        "--cache-dir",
+        str(folder.parent / ".mypy_cache"),
+    ]
+    done = subprocess.run([*command, "-p", "cadt"], check=False, cwd=folder.parent, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -54,6 +54,7 @@ int parse_and_run(int argc, char** argv) {
   CLI::App app(
       "cadt computes the Delaunay triangulation of points of the plane: exact, the same on every device, in parallel.",
       "cadt");
+  app.allow_windows_style_options(false);  // /data/points.xy is a file there too
   Action action;
   app.set_version_flag("--version", "cadt " CADT_VERSION, "print the version and exit");
   app.set_help_flag("-h,--help", "print this help and exit");

@@ -150,7 +150,8 @@ struct cadt_atomic {
   }
   bool compare_exchange_strong(cadt_u32& expected, cadt_u32 desired, std::memory_order success,
                                std::memory_order failure = std::memory_order_relaxed) const {
-    return __atomic_compare_exchange_n(cell, &expected, desired, false, CADT_CAST(int, success), CADT_CAST(int, failure));
+    return __atomic_compare_exchange_n(cell, &expected, desired, false, CADT_CAST(int, success),
+                                       CADT_CAST(int, failure));
   }
   bool compare_exchange_weak(cadt_u32& expected, cadt_u32 desired, std::memory_order order) const {
     return __atomic_compare_exchange_n(cell, &expected, desired, true, CADT_CAST(int, order), __ATOMIC_RELAXED);
@@ -159,12 +160,8 @@ struct cadt_atomic {
 };
 #endif
 
-CADT_FN cadt_u32 cadt_load_acquire(cadt_u32* p) {
-  return cadt_atomic(*p).load(std::memory_order_acquire);
-}
-CADT_FN cadt_u32 cadt_load_relaxed(cadt_u32* p) {
-  return cadt_atomic(*p).load(std::memory_order_relaxed);
-}
+CADT_FN cadt_u32 cadt_load_acquire(cadt_u32* p) { return cadt_atomic(*p).load(std::memory_order_acquire); }
+CADT_FN cadt_u32 cadt_load_relaxed(cadt_u32* p) { return cadt_atomic(*p).load(std::memory_order_relaxed); }
 CADT_FN void cadt_store_release(cadt_u32* p, cadt_u32 value) {
   cadt_atomic(*p).store(value, std::memory_order_release);
 }
@@ -173,7 +170,7 @@ CADT_FN void cadt_store_relaxed(cadt_u32* p, cadt_u32 value) {
 }
 CADT_FN cadt_u32 cadt_cas_acq_rel(cadt_u32* p, cadt_u32 expected, cadt_u32 desired) {
   return cadt_atomic(*p).compare_exchange_strong(expected, desired, std::memory_order_acq_rel,
-                                                               std::memory_order_relaxed)
+                                                 std::memory_order_relaxed)
              ? 1u
              : 0u;
 }

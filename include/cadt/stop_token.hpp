@@ -30,13 +30,13 @@ class stop_token {
 
  private:
   friend class stop_source;
-  explicit stop_token(std::shared_ptr<std::atomic<bool>> requested) noexcept : requested_(std::move(requested)) {}
-  std::shared_ptr<std::atomic<bool>> requested_;
+  explicit stop_token(std::shared_ptr<std::atomic<bool> > requested) noexcept : requested_(std::move(requested)) {}
+  std::shared_ptr<std::atomic<bool> > requested_;
 };
 
 class stop_source {
  public:
-  stop_source() : requested_(std::make_shared<std::atomic<bool>>(false)) {}
+  stop_source() : requested_(std::make_shared<std::atomic<bool> >(false)) {}
   [[nodiscard]] stop_token get_token() const noexcept { return stop_token(requested_); }
   [[nodiscard]] bool stop_requested() const noexcept { return requested_->load(); }
   [[nodiscard]] bool stop_possible() const noexcept { return true; }
@@ -44,7 +44,7 @@ class stop_source {
   bool request_stop() noexcept { return !requested_->exchange(true); }
 
  private:
-  std::shared_ptr<std::atomic<bool>> requested_;
+  std::shared_ptr<std::atomic<bool> > requested_;
 };
 
 }  // namespace cadt

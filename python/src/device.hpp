@@ -29,6 +29,14 @@ class SharedTriangulator {
   SharedTriangulator(const SharedTriangulator&) = delete;
   SharedTriangulator& operator=(const SharedTriangulator&) = delete;
 
+  /// Runs `work()` without the GIL, after other threads' calls. `options` are those that the work looks at.
+  template <class Work>
+  auto run_with(cadt::Options& options, Work&& work) {
+    const std::unique_lock<std::mutex> lock = occupy();
+    const nb::object none = nb::none();
+    return Call(options, none)(work);
+  }
+
   /// Runs `work(triangulator)` without the GIL, after other threads' calls.
   template <class Work>
   auto run(const nb::object& progress, Work&& work) {

@@ -69,7 +69,11 @@ class DeviceQueries {
   DeviceQueries(const std::shared_ptr<DeviceMesh>& mesh, const DeviceCoordinates& points)
       : mesh_(mesh), queries_(mesh->shared().run(nb::none(), [&](cadt::Triangulator& triangulator) {
           return std::make_shared<cadt::MeshQueries>(triangulator, points.points(), mesh->mesh());
-        })) {}
+        })) {
+    // It has copied the options, and with them what reports to the call that has just ended.
+    queries_->options().progress = nullptr;
+    queries_->options().stop = {};
+  }
   ~DeviceQueries() {
     if (queries_) mesh_->shared().retire(std::move(queries_));
   }
@@ -78,7 +82,7 @@ class DeviceQueries {
 
   template <class Work>
   auto run(Work&& work) {
-    return mesh_->shared().run(nb::none(), [&](cadt::Triangulator&) { return work(*queries_); });
+    return mesh_->shared().run_with(queries_->options(), [&] { return work(*queries_); });
   }
 
  private:

@@ -27,7 +27,7 @@ class QueryErrors(CliTest):
     def test_outputs(self):
         self.fails(2, "locate", "p.xy", "q.xy", "-o", "a.off", says=["unknown suffix '.off'", "csv, txt, npy, npz"])
         self.fails(2, "voronoi", "p.xy", "-o", "a.csv", says="npz, geojson, svg")
-        self.fails(2, "raster", "p.xyz", "--res", "1", "-o", "a.tif", says="asc, npy, png")
+        self.fails(2, "raster", "p.xyz", "--res", "1", "-o", "a.gif", says="asc, npy, png")
         self.fails(2, "raster", "p.xyz", "--res", "1", says="--output")
         self.fails(2, "raster", "p.xyz", "--res", "1", "-o", "-", says="-t asc")
         self.fails(2, "voronoi", "p.xy", says="--output")

@@ -5,6 +5,9 @@
 function(cadt_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  if(WIN32)  # of <windows.h> what is needed, and no macros min and max
+    target_compile_definitions(${target} PRIVATE WIN32_LEAN_AND_MEAN NOMINMAX)
+  endif()
   if(MSVC)  # clang-cl: /W4 is clang's -Wall -Wextra. std::getenv and its like are no concern of Microsoft's
     target_compile_options(${target} PRIVATE /W4 -Wconversion -Wshadow /fp:precise /clang:-ffp-contract=off /EHsc /bigobj /utf-8)
     target_compile_definitions(${target} PRIVATE _CRT_SECURE_NO_WARNINGS _CRT_NONSTDC_NO_WARNINGS)

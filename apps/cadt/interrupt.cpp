@@ -14,10 +14,6 @@
 #include <thread>
 
 #if defined(_WIN32)
-#define WIN32_LEAN_AND_MEAN
-#if !defined(NOMINMAX)
-#define NOMINMAX
-#endif
 #include <windows.h>
 #else
 #include <fcntl.h>

@@ -120,9 +120,8 @@ class HostDevice final : public Device {
   explicit HostDevice(const Options& options)
       : pool_(options.threads != 0 ? options.threads : all_cores(), options.tuning.grain != 0),
         info_(this_host()),
-        allocator_(options.allocator) {
-    if (options.tuning.kernel_times) clock_.emplace();
-  }
+        allocator_(options.allocator),
+        clock_(options.tuning.kernel_times ? std::optional<HostClock>(std::in_place) : std::nullopt) {}
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] LaunchShape shape() const noexcept override {

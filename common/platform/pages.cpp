@@ -6,10 +6,6 @@
 #include <cstdlib>
 
 #if defined(_WIN32)
-#define WIN32_LEAN_AND_MEAN
-#if !defined(NOMINMAX)
-#define NOMINMAX
-#endif
 #include <windows.h>
 
 #include <malloc.h>

@@ -10,10 +10,6 @@
 #include <memory>
 
 #if defined(_WIN32)
-#define WIN32_LEAN_AND_MEAN
-#if !defined(NOMINMAX)
-#define NOMINMAX
-#endif
 #include <io.h>
 #include <windows.h>
 #else

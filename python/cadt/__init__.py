@@ -40,27 +40,19 @@ if TYPE_CHECKING:
     from cadt._results import Check, VerifyReport, Voronoi
     from cadt._verify import verify
 
-_MODULES = {
-    "_batch": ("Batch", "triangulate_batch"),
-    "_delaunay": ("Delaunay",),
-    "_devices": ("DeviceInfo", "devices", "release_memory"),
-    "_errors": (
-        "BackendUnavailable",
-        "Cancelled",
-        "DeviceError",
-        "Error",
-        "InputError",
-        "InternalError",
-        "InvalidMesh",
-        "KernelBuildError",
-        "LimitError",
-        "OptionError",
-        "OutOfMemory",
-    ),
-    "_results": ("Check", "VerifyReport", "Voronoi"),
-    "_verify": ("verify",),
+# Where a name stands; all others of __all__ are exceptions, in _errors.
+_MODULE_OF = {
+    "Batch": "_batch",
+    "Check": "_results",
+    "Delaunay": "_delaunay",
+    "DeviceInfo": "_devices",
+    "VerifyReport": "_results",
+    "Voronoi": "_results",
+    "devices": "_devices",
+    "release_memory": "_devices",
+    "triangulate_batch": "_batch",
+    "verify": "_verify",
 }
-_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
 
 __all__ = [
     "BackendUnavailable",
@@ -89,10 +81,10 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name in _MODULE_OF:
-        value = getattr(importlib.import_module(f"cadt.{_MODULE_OF[name]}"), name)
-    elif name == "__version__":
+    if name == "__version__":
         value = importlib.import_module("cadt._cadt").version
+    elif name in __all__:
+        value = getattr(importlib.import_module(f"cadt.{_MODULE_OF.get(name, '_errors')}"), name)
     elif name in ("scipy", "cupy", "terrain"):
         return importlib.import_module(f"cadt.{name}")
     else:

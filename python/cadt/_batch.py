@@ -42,11 +42,8 @@ class Batch:
 
     def __getitem__(self, s: int) -> Delaunay:
         s = range(len(self))[s]
-        mesh = Delaunay.__new__(Delaunay)
-        mesh._points = self._points[self._offsets[s] : self._offsets[s + 1]]
-        mesh._gpu, mesh._cache, mesh._options = None, {}, self._options.on_host()
-        mesh._mesh = self._batch.triangulation(s)
-        return mesh
+        points = self._points[self._offsets[s] : self._offsets[s + 1]]
+        return Delaunay._of_mesh(points, self._batch.triangulation(s), self._options.on_host())
 
     def __iter__(self) -> Iterator[Delaunay]:
         return (self[s] for s in range(len(self)))

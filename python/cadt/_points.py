@@ -93,3 +93,13 @@ def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:
         raise InputError(f"values must have shape ({n},) or ({n}, m): one row a point, not {a.shape}", 0)
     m = int(np.prod(a.shape[1:]))
     return np.ascontiguousarray(a.reshape(n, m), dtype=np.float64), a.shape[1:]
+
+
+def as_indices(a: Any, what: str) -> np.ndarray:
+    """A copy of integers of shape (t, 3) as int32."""
+    a = np.asarray(a)
+    if a.ndim != 2 or a.shape[1] != 3 or a.dtype.kind not in "iu":
+        raise InputError(f"{what} must be integers of shape (t, 3), not {a.dtype} of {a.shape}", 0)
+    if a.size and (a.max() > np.iinfo(np.int32).max or a.min() < -1):
+        raise InputError(f"{what} must lie between -1 and 2**31 - 1", 0)
+    return np.array(a, dtype=np.int32, order="C")

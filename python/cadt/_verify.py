@@ -6,8 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from cadt import _cadt
-from cadt._delaunay import _indices
-from cadt._points import as_points
+from cadt._points import as_indices, as_points
 from cadt._results import VerifyReport, report_of
 
 
@@ -31,8 +30,8 @@ def verify(points: Any, simplices: Any, neighbors: Any = None, *, canonical_ties
     return report_of(
         _cadt.verify(
             as_points(points),
-            _indices(simplices, "simplices"),
-            None if neighbors is None else _indices(neighbors, "neighbors"),
+            as_indices(simplices, "simplices"),
+            None if neighbors is None else as_indices(neighbors, "neighbors"),
             canonical_ties,
         )
     )

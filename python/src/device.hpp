@@ -4,8 +4,11 @@
 
 #include "common.hpp"
 
+#include <atomic>
 #include <memory>
 #include <mutex>
+#include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -32,7 +35,7 @@ class SharedTriangulator {
   /// Runs `work()` without the GIL, after other threads' calls. `options` are those that the work looks at.
   template <class Work>
   auto run_with(cadt::Options& options, Work&& work) {
-    const std::unique_lock<std::mutex> lock = occupy();
+    const Use use(*this);
     const nb::object none = nb::none();
     return Call(options, none)(work);
   }
@@ -40,14 +43,14 @@ class SharedTriangulator {
   /// Runs `work(triangulator)` without the GIL, after other threads' calls.
   template <class Work>
   auto run(const nb::object& progress, Work&& work) {
-    const std::unique_lock<std::mutex> lock = occupy();
+    const Use use(*this);
     return Call(triangulator_->options(), progress)([&] { return work(*triangulator_); });
   }
 
   /// The same with the options that may change between calls.
   template <class Work>
   auto run(const cadt::Options& options, const nb::object& progress, Work&& work) {
-    const std::unique_lock<std::mutex> lock = occupy();
+    const Use use(*this);
     cadt::Options& own = triangulator_->options();
     own.order = options.order;
     own.max_memory = options.max_memory;
@@ -57,7 +60,8 @@ class SharedTriangulator {
 
   void retire(std::shared_ptr<void> object) {
     if (forks_ != forks()) return static_cast<void>(new std::shared_ptr<void>(std::move(object)));  // for ever
-    if (const std::unique_lock lock(busy_, std::try_to_lock); lock) return object.reset();
+    if (user_ != std::this_thread::get_id())
+      if (const std::unique_lock lock(busy_, std::try_to_lock); lock) return object.reset();
     const std::lock_guard lock(retired_mutex_);
     retired_.push_back(std::move(object));
   }
@@ -65,24 +69,44 @@ class SharedTriangulator {
   [[nodiscard]] const cadt::DeviceInfo& device() const noexcept { return triangulator_->device(); }
 
  private:
-  std::unique_lock<std::mutex> occupy() {
+  /// While this lives, the triangulator is the calling thread's.
+  class Use {
+   public:
+    explicit Use(SharedTriangulator& shared) : shared_(shared), lock_(shared.busy_, std::defer_lock) {
+      shared.require_usable();
+      nb::gil_scoped_release released;
+      lock_.lock();
+      shared.user_ = std::this_thread::get_id();
+      const std::lock_guard retired(shared.retired_mutex_);
+      shared.retired_.clear();
+    }
+    ~Use() { shared_.user_ = std::thread::id(); }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    SharedTriangulator& shared_;
+    std::unique_lock<std::mutex> lock_;
+  };
+
+  void require_usable() const {
+    const std::string backend(cadt::to_string(device().backend));
     if (forks_ != forks())
       throw cadt::BackendUnavailable(
-          std::string(cadt::to_string(device().backend)),
+          backend,
           "this process was forked after the device had been opened, which drivers do not survive: use "
           "multiprocessing.set_start_method(\"spawn\"), or backend=\"host\"");
-    std::unique_lock lock(busy_, std::defer_lock);
-    nb::gil_scoped_release released;
-    lock.lock();
-    const std::lock_guard retired(retired_mutex_);
-    retired_.clear();
-    return lock;
+    if (user_ == std::this_thread::get_id())
+      throw cadt::BackendUnavailable(backend,
+                                     "the device is in a call that reports to this progress function: use it after "
+                                     "that call, or backend=\"host\" here");
   }
 
   std::mutex busy_, retired_mutex_;
   nb::object stream_;
   std::unique_ptr<cadt::Triangulator> triangulator_;
   std::vector<std::shared_ptr<void>> retired_;
+  std::atomic<std::thread::id> user_{};  ///< the thread whose call is running
   unsigned forks_ = forks();
 };
 

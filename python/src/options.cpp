@@ -83,6 +83,12 @@ nb::dict to_dict(const cadt::Statistics& s) {
   nb::dict milliseconds;
   for (const auto& [phase, time] : s.milliseconds) milliseconds[phase.c_str()] = time;
   d["milliseconds"] = milliseconds;
+  nb::dict shares;
+  for (const auto& [name, share] : s.thread_time) shares[name.c_str()] = share;
+  d["thread_time"] = shares;
+  nb::list flips;
+  for (const std::uint64_t edges : s.flips_per_edge) flips.append(edges);
+  d["flips_per_edge"] = flips;
   return d;
 }
 

@@ -283,3 +283,13 @@ def test_devices() -> None:
     assert all(d.usable or d.reason for d in infos)
     cadt.release_memory()
     assert all(hasattr(cadt, name) for name in dir(cadt)) and cadt.__version__.count(".") == 2
+
+
+def test_statistics() -> None:
+    points = np.random.default_rng(3).random((50_000, 2))
+    plain = cadt.Delaunay(points, statistics="none").statistics
+    timing = cadt.Delaunay(points, statistics="timing", threads=2).statistics
+    assert plain["points"] == timing["points"] == 50_000
+    assert plain["milliseconds"] == {} and timing["milliseconds"]["sort"] > 0
+    assert len(timing["flips_per_edge"]) == 16
+    assert plain["thread_time"] == {} and all(0 <= share <= 1 for share in timing["thread_time"].values())

@@ -48,3 +48,29 @@ def test_parts_of_buffers(queue):
     points = np.random.default_rng(4).random((1_000, 2))
     given = cl_array.to_device(queue, points)
     assert cadt.Delaunay(given[100:]).hash == cadt.Delaunay(points[100:]).hash
+
+
+def test_a_progress_function_cannot_use_the_device_that_reports_to_it(queue):
+    points = np.random.default_rng(5).random((100_000, 2))
+    asked = []
+
+    def progress(phase: str, fraction: float) -> None:
+        asked.append(phase)
+        meshes[:] = []  # a mesh that ends meanwhile
+        cadt.Delaunay(points[:100], backend="opencl")
+
+    meshes = [cadt.Delaunay(cl_array.to_device(queue, points[:100]))]
+    with pytest.raises(cadt.BackendUnavailable, match="progress function"):
+        cadt.Delaunay(points, backend="opencl", progress=progress)
+    assert len(asked) == 1
+    assert cadt.Delaunay(points[:100], backend="opencl").n_triangles > 0
+
+
+def test_a_query_reports_to_its_own_call(queue):
+    """Queries once reported to the call that had opened them, which had ended."""
+    points = np.random.default_rng(6).random((50_000, 2))
+    mesh = cadt.Delaunay(cl_array.to_device(queue, points))
+    q = np.random.default_rng(7).random((500_000, 2))  # longer than it takes until there is a report
+    for _ in range(3):
+        assert (mesh.find_simplex(q).get() >= -1).all()
+        np.testing.assert_array_equal(mesh.circumcenters().get(), cadt.Delaunay(points).circumcenters())

@@ -151,9 +151,7 @@ def clouds():
 SLOW = ("dense corner", "far point")  # many buckets are asked again
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=pytest.mark.thorough) if n in SLOW else n for n in clouds()]
-)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.thorough) if n in SLOW else n for n in clouds()])
 @pytest.mark.parametrize("max_edge", [None, 3.0])
 @pytest.mark.parametrize("fill", [False, True])
 def test_tiles_give_the_raster_of_the_whole(name, max_edge, fill):

@@ -209,7 +209,7 @@ class Delaunay(Queries):
 
     @property
     def vertex_to_simplex(self) -> Any:
-        """The lowest triangle of each point: (n,) int32, -1 without triangles."""
+        """The lowest triangle of each point: (n,) int32, -1 without triangles. A duplicate has that of what it equals."""
         return self._cached("vertex_to_simplex", lambda m: m.vertex_triangle())
 
     @property

@@ -157,15 +157,26 @@ class Queries:
             else:
                 low, high = points.min(axis=0), points.max(axis=0)
                 bounds = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
-        grid, rows, columns = grid_of(bounds, shape, resolution, origin)
+        return self._raster(values, *grid_of(bounds, shape, resolution, origin), method, longest)
+
+    def _raster(
+        self,
+        values: Any,
+        grid: tuple[float, float, float, float],
+        rows: int,
+        columns: int,
+        method: str = "linear",
+        max_edge: float = math.inf,
+    ) -> Any:
+        """`rasterize` on a grid by its corner and the size of its cells (cadt::Grid)."""
         if self._gpu is not None:
-            return self._gpu.rasterize(values, grid, rows, columns, method, longest)
+            return self._gpu.rasterize(values, grid, rows, columns, method, max_edge)
         v, one = as_values(values, self.n_points)
         if v.shape[1] == 0:
             return np.empty((rows, columns, *one))
         # The library makes a raster of one value a point.
         rasters = [
-            self._queries().rasterize(grid, columns, rows, np.ascontiguousarray(v[:, [j]]), method, longest)
+            self._queries().rasterize(grid, columns, rows, np.ascontiguousarray(v[:, [j]]), method, max_edge)
             for j in range(v.shape[1])
         ]
         result = rasters[0] if len(rasters) == 1 else np.stack(rasters, axis=-1)

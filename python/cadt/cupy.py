@@ -105,11 +105,9 @@ class Delaunay:
         indptr, indices = self.mesh.vertex_neighbors
         return Rows((indptr.astype(np.int32), indices))
 
-    @cached_property
+    @property
     def vertex_to_simplex(self) -> Any:
-        result, equal = self.mesh.vertex_to_simplex.copy(), self.mesh.duplicate_of
-        result[equal >= 0] = result[equal[equal >= 0]]
-        return result
+        return self.mesh.vertex_to_simplex
 
     @cached_property
     def coplanar(self) -> Any:

@@ -28,7 +28,9 @@ try:
 except ImportError as e:
     raise ImportError('cadt.scipy needs SciPy: pip install "cadt[scipy]"') from e
 
-from cadt.scipy._delaunay import Delaunay, tsearch
+from scipy.spatial import tsearch
+
+from cadt.scipy._delaunay import Delaunay
 from cadt.scipy._interpolate import (
     CloughTocher2DInterpolator,
     LinearNDInterpolator,

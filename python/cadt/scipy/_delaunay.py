@@ -138,9 +138,8 @@ class Delaunay(Plane, _Triangulation):
     def vertex_to_simplex(self) -> np.ndarray:
         if self._vertex_to_simplex is None and self.mesh is not None:
             result = np.array(self.mesh.vertex_to_simplex, dtype=np.intc)
-            equal = self.mesh.duplicate_of
-            duplicates = np.flatnonzero(equal >= 0)
-            result[duplicates] = result[equal[duplicates]] if "Qc" in self._options else -1
+            if "Qc" not in self._options:
+                result[self.mesh.duplicate_of >= 0] = -1
             self._vertex_to_simplex = result
         return super().vertex_to_simplex
 
@@ -219,8 +218,3 @@ def locate(mesh: cadt.Delaunay, x: np.ndarray) -> np.ndarray:
     found = np.full(len(x), -1, dtype=np.int32)
     found[finite] = mesh.find_simplex(x[finite])
     return found
-
-
-def tsearch(tri: _Triangulation, xi: Any) -> np.ndarray:
-    """``tri.find_simplex(xi)``."""
-    return tri.find_simplex(xi)

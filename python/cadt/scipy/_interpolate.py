@@ -137,9 +137,7 @@ class _OnMesh:
             axes = [(a - self.offset[k]) / self.scale[k] for k, a in enumerate(axes)]  # type: ignore[attr-defined]
         steps = [(a[-1] - a[0]) / (len(a) - 1) for a in axes]
         corner = [a[0] - step / 2 for a, step in zip(axes, steps)]
-        values = np.ascontiguousarray(self.values, dtype=np.float64)
-        raster = self.tri.mesh._queries().rasterize((*corner, *steps), len(x), len(y), values, "linear", np.inf)
-        raster = raster.reshape(len(y), len(x))
+        raster = self.tri.mesh._raster(self.values[:, 0], (*corner, *steps), len(y), len(x))
         if rows_are_x:
             raster = np.ascontiguousarray(raster.T)
         # Outside, or at the hull, or values that are NaN: one by one.

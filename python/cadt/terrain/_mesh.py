@@ -60,11 +60,8 @@ def rasterize(
 ) -> NDArray[np.float64]:
     """The cells of a grid, with its very cell size: `Delaunay.rasterize` derives that from the bounds."""
     longest = math.inf if max_edge is None else float(max_edge)
-    queries = mesh._queries()
-    cells = queries.rasterize(
-        (grid.x0, grid.y1, grid.dx, -grid.dy), grid.columns, grid.rows, z.reshape(-1, 1), method, longest
-    )
-    return np.asarray(cells).reshape(grid.rows, grid.columns)
+    corner = (grid.x0, grid.y1, grid.dx, -grid.dy)
+    return np.asarray(mesh._raster(z, corner, grid.rows, grid.columns, method, longest))
 
 
 def kept_triangles(mesh: cadt.Delaunay, max_edge: float | None) -> NDArray[np.int64] | None:

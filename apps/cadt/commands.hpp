@@ -21,5 +21,6 @@ void add_generate(CLI::App& app, Action& chosen);
 void add_devices(CLI::App& app, Action& chosen);
 void add_triangle(CLI::App& app, Action& chosen);
 void add_info(CLI::App& app, Action& chosen);
+void add_render(CLI::App& app, Action& chosen);
 
 }  // namespace cadt::cli

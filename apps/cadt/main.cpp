@@ -67,6 +67,9 @@ int parse_and_run(int argc, char** argv) {
   add_raster(app, action);
   add_terrain_commands(app);
   add_voronoi(app, action);
+#ifdef CADT_HAS_VIEWER
+  add_render(app, action);
+#endif
   add_generate(app, action);
   add_devices(app, action);
   add_info(app, action);

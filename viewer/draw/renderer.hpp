@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws a mesh by compute programs alone, from the library's arrays. The same picture on every driver but for the
+// rounding of colours.
+//
+//     blocks of 4,096 consecutive triangles -> those that are seen -> which triangle each sample belongs to -> picture
+//
+// No time goes into triangles outside of the picture. A triangle that is smaller than a pixel adds its colour, weighted
+// by its area, to the pixel, so a far view is the mean of what lies there.
+#pragma once
+
+#include "viewer/draw/camera.hpp"
+#include "viewer/draw/mesh_buffers.hpp"
+#include "viewer/draw/style.hpp"
+#include "viewer/gl/objects.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace cadt::viewer {
+
+/// Rows of pixels from the top, four bytes each: red, green, blue, 255.
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+/// Lines over the mesh, in coordinates of the plane.
+struct Stroke {
+  std::vector<std::array<double, 4>> segments;  ///< x0 y0 x1 y1
+  std::uint32_t colour = 0;                     ///< 0xRRGGBB
+  float width = 1;                              ///< pixels
+};
+
+/// One for each context, current on the thread of all calls. Not thread-safe.
+class Renderer {
+ public:
+  /// Compiles the programs. \throws DisplayError
+  Renderer();
+
+  /// To be called after the contents of a mesh have changed: finds the boxes of its blocks. O(triangles).
+  void update(const MeshBuffers& mesh);
+  /// Values that the colour depends on: one a point (height, degree, level) or one a triangle (conflicts). Empty: none.
+  void set_values(std::span<const float> values);
+  /// The values of the ramp's ends for `colour`, from a sample of the triangles. Call after update() and set_values().
+  void fit_ramp(const MeshBuffers& mesh, ColourBy colour);
+
+  /// The picture, in texture(). \pre update(mesh)
+  void draw(const MeshBuffers& mesh, const Camera& camera, const Style& style, std::span<const Stroke> strokes = {});
+  [[nodiscard]] const gl::Texture& texture() const noexcept { return picture_; }
+  /// Waits for the device.
+  [[nodiscard]] Image read() const;
+  /// The triangle at a pixel of the last picture.
+  [[nodiscard]] std::optional<std::size_t> triangle_at(int x, int y) const;
+  /// Ends of the ramp: of the values, or of log2 of them for an area.
+  [[nodiscard]] std::array<float, 2> ramp_ends() const noexcept { return ends_; }
+
+ private:
+  void make_room(const Camera& camera, int side);
+  void bind(const MeshBuffers& mesh) const;
+  void draw_triangles(const MeshBuffers& mesh);
+  void draw_strokes(std::span<const Stroke> strokes);
+  void choose_ramp(ColourBy colour);
+
+  gl::Program bounds_, cull_, blocks_, large_, resolve_, strokes_, discs_, sample_;
+  gl::Buffer frame_, values_, boxes_, seen_, commands_, owners_, sums_, large_list_, overlay_, segments_;
+  gl::Texture picture_;
+  gl::Name<gl::delete_texture> ramp_;
+  std::optional<ColourBy> ramp_of_;
+  std::array<float, 2> ends_{0, 1};
+  float relief_ = 0;  ///< samples of the reference view for a unit of height
+  Camera reference_;
+  std::size_t value_count_ = 0;
+  int side_ = 0;
+};
+
+}  // namespace cadt::viewer

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Owners of OpenGL's objects. All calls are for the context that is current on the thread.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cadt::viewer::gl {
+
+/// A name that is deleted once.
+template <void (*destroy)(GLuint)>
+class Name {
+ public:
+  Name() = default;
+  explicit Name(GLuint id) : id_(id) {}
+  Name(Name&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  Name& operator=(Name&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~Name() {
+    if (id_ != 0) destroy(id_);
+  }
+  [[nodiscard]] GLuint id() const noexcept { return id_; }
+
+ private:
+  GLuint id_ = 0;
+};
+
+void delete_buffer(GLuint id);
+void delete_texture(GLuint id);
+void delete_program(GLuint id);
+void delete_framebuffer(GLuint id);
+
+/// A buffer in the memory of the display's device.
+class Buffer {
+ public:
+  Buffer() = default;
+  /// Of so many bytes, which are undefined. \throws OutOfMemory
+  explicit Buffer(std::size_t bytes);
+
+  [[nodiscard]] GLuint id() const noexcept { return name_.id(); }
+  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+  void write(std::span<const std::byte> data, std::size_t offset = 0);
+  template <class T>
+  void write_values(std::span<const T> values, std::size_t offset = 0) {
+    write(std::as_bytes(values), offset);
+  }
+  template <class T>
+  [[nodiscard]] std::vector<T> read_values(std::size_t count, std::size_t offset = 0) const {
+    std::vector<T> values(count);
+    read(std::as_writable_bytes(std::span(values)), offset);
+    return values;
+  }
+  /// Fills the first `bytes` bytes with a word.
+  void fill(GLuint word, std::size_t bytes);
+  void bind(GLuint slot) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, slot, name_.id()); }
+
+ private:
+  void read(std::span<std::byte> data, std::size_t offset) const;
+  Name<delete_buffer> name_;
+  std::size_t bytes_ = 0;
+};
+
+/// A compute program. `text` follows "#version 450 core". \throws DisplayError with the driver's log
+class Program {
+ public:
+  Program() = default;
+  Program(const std::string& name, const std::string& text);
+  void use() const { glUseProgram(name_.id()); }
+  [[nodiscard]] GLuint id() const noexcept { return name_.id(); }
+
+ private:
+  Name<delete_program> name_;
+};
+
+/// An image of 8 bits a channel, sRGB bytes as they are shown, that a compute program writes.
+class Texture {
+ public:
+  Texture() = default;
+  Texture(int width, int height);
+  [[nodiscard]] GLuint id() const noexcept { return name_.id(); }
+  [[nodiscard]] int width() const noexcept { return width_; }
+  [[nodiscard]] int height() const noexcept { return height_; }
+
+ private:
+  Name<delete_texture> name_;
+  int width_ = 0, height_ = 0;
+};
+
+}  // namespace cadt::viewer::gl

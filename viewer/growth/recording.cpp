@@ -17,7 +17,7 @@ namespace {
 std::vector<std::uint16_t> narrowed(std::span<const std::uint32_t> counts) {
   constexpr std::uint32_t most = std::numeric_limits<std::uint16_t>::max();
   std::vector<std::uint16_t> result(counts.size());
-  std::ranges::transform(counts, result.begin(), [](std::uint32_t c) { return static_cast<std::uint16_t>(std::min(c, most)); });
+  std::ranges::transform(counts, result.begin(), [=](std::uint32_t c) { return static_cast<std::uint16_t>(std::min(c, most)); });
   return result;
 }
 

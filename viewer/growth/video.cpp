@@ -92,7 +92,7 @@ Video::Video(std::string path, int width, int height, double fps) : path_(std::m
 Video::~Video() {
   if (pipe_ >= 0) ::close(pipe_);
   if (process_ >= 0) {
-    ::kill(process_, SIGKILL);
+    ::kill(-process_, SIGKILL);  // its group, which has its children
     wait();
   }
   if (messages_ >= 0) ::close(messages_);

@@ -69,7 +69,8 @@ TEST(Recording, HasStepsWithinLevels) {
   EXPECT_GE(recording.size(), 64u);
   EXPECT_LE(recording.size(), 64u + 2 * 13);
   for (std::size_t i = 1; i < recording.size(); ++i)
-    EXPECT_LE(recording.counters(i).points, recording.counters(i - 1).points + 64 + recording.counters(i - 1).waiting_points);
+    EXPECT_LE(recording.counters(i).points,
+              recording.counters(i - 1).points + 64 + recording.counters(i - 1).waiting_points);
 }
 
 TEST(Recording, KnowsLevelsOfPoints) {

@@ -7,6 +7,7 @@
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "progress.hpp"
+#include "render_growth.hpp"
 #include "text.hpp"
 #include "viewer_options.hpp"
 
@@ -14,6 +15,7 @@
 #include <cadt/triangulation.hpp>
 
 #include "viewer/draw/image_file.hpp"
+#include "viewer/gl/context.hpp"
 #include "viewer/still/still.hpp"
 
 #include <fmt/format.h>
@@ -30,6 +32,7 @@ struct RenderCommand {
   StyleOptions style;
   std::string output, format, size = "1600", camera;
   DeviceOptions device;
+  GrowthOptions growth;
   int samples = 2;
   bool quiet = false;
 };
@@ -47,7 +50,41 @@ void check_vector_options(const RenderCommand& command, const std::string& forma
   }
 }
 
+/// The mesh while it grows, with the size, camera and style of the command.
+int run_growth(const RenderCommand& command) {
+  if (!command.format.empty())
+    throw Failure(exit_usage,
+                  "-t: a picture of growth is named by its output: FILE.png, .mp4, .webm, .gif, or a folder");
+  check_growth(command.growth, command.output);
+  GrowthView view;
+  parse_size(command.size, view.width, view.height);
+  view.quiet = command.quiet;
+  view.style = style_of(command.style);
+  view.style.samples = command.samples;
+  if (const std::optional<viewer::View> seen = parse_camera(command.camera)) {
+    view.aim = [seen](viewer::Camera& camera) {
+      camera.look_at(seen->x, seen->y);
+      camera.zoom(seen->magnification, 0.5 * camera.width(), 0.5 * camera.height());
+    };
+  }
+  ProgressLine line(command.quiet);
+  const io::PointSet points = read_subject(command.subject, line);
+  view.style.colour = command.style.colour.empty() ? viewer::ColourBy::level : colour_of(command.style, points, {});
+  const viewer::gl::HeadlessContext context;
+  int code = exit_done;
+  try {
+    code = render_growth(points, library_options(command.device), command.output, command.growth, view, line);
+  } catch (const InputError& e) {
+    refuse_points(command.subject, e);
+  }
+  line.clear();
+  if (viewer::gl::errors_seen() != 0)
+    throw Failure(exit_internal, "OpenGL reported errors; CADT_GL_DEBUG=1 prints them. Please report them");
+  return code;
+}
+
 int run(const RenderCommand& command) {
+  if (shows_growth(command.growth, command.output) || command.growth.timed) return run_growth(command);
   const Output output =
       plan_outputs({command.output}, command.format.empty() ? std::vector<std::string>{} : std::vector{command.format},
                    {"png", "svg", "pdf"}, command.subject.input.path)
@@ -66,7 +103,7 @@ int run(const RenderCommand& command) {
   ProgressLine line(command.quiet);
   options.progress = [&line](const Progress& progress) { line.update(progress); };
   const io::PointSet points = read_subject(command.subject, line);
-  still.colour = colour_of(command.style, points, {"level", "conflicts"});
+  still.colour = colour_of(command.style, points, {"level", "conflicts", "flips"});
   line.start(points.size());
   const Triangulation mesh = triangulate_subject(command.subject, points, options);
   check_interrupt();
@@ -101,8 +138,10 @@ void add_render(CLI::App& app, Action& chosen) {
   const auto options = std::make_shared<RenderCommand>();
   add_subject_options(*command, options->subject);
   command
-      ->add_option("-o,--output", options->output,
-                   "file for the picture: .png, .svg, .pdf; '-' is standard output (with -t)")
+      ->add_option(
+          "-o,--output", options->output,
+          "file for the picture: .png, .svg, .pdf; '-' is standard output (with -t). Of the growing mesh: .mp4, "
+          ".webm, .gif, or a folder for the frames")
       ->type_name("FILE")
       ->required();
   command->add_option("-t,--to", options->format, "format: png svg pdf; default: from the suffix")->type_name("FORMAT");
@@ -122,6 +161,7 @@ void add_render(CLI::App& app, Action& chosen) {
                    "samples along the side of a pixel, 1 to 4 (default: 2): 4 is smoother")
       ->type_name("S")
       ->check(CLI::Range(1, 4).description(""));
+  add_growth_options(*command, options->growth);
   add_device_options(*command, options->device);
   command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");
   command->footer(
@@ -131,7 +171,10 @@ void add_render(CLI::App& app, Action& chosen) {
       "Examples:\n"
       "  cadt render terrain.xyz -o terrain.png --size 3840x2160\n"
       "  cadt render points.xy -o angles.png --colour angle --camera 0.5,0.5,40\n"
-      "  cadt render --generate clusters -n 1M -o clusters.png --dark\n");
+      "  cadt render --generate clusters -n 1M -o clusters.png --dark\n"
+      "  cadt render points.xy --growth 4 -o growth.png\n"
+      "      four snapshots of the mesh as it grows\n"
+      "  cadt render points.xy -o growth.mp4 --seconds 12\n");
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

@@ -27,9 +27,12 @@ bool parse_number(std::string_view text, double& value) {
 void add_subject_options(CLI::App& command, SubjectOptions& options) {
   add_input_options(command, options.input, "IN", "file with points");
   command.get_option("IN")->required(false);
-  command.add_option("--generate", options.generate, "a point set of 'cadt generate' in place of a file")->type_name("NAME");
-  command.add_option("-n", options.n, "number of points of --generate, 250000, 2M or 1e6 (default: 10000)")->type_name("N");
-  command.add_option("--seed", options.generator.seed, "of --generate: equal seeds give equal points (default: 1)")->type_name("S");
+  command.add_option("--generate", options.generate, "a point set of 'cadt generate' in place of a file")
+      ->type_name("NAME");
+  command.add_option("-n", options.n, "number of points of --generate, 250000, 2M or 1e6 (default: 10000)")
+      ->type_name("N");
+  command.add_option("--seed", options.generator.seed, "of --generate: equal seeds give equal points (default: 1)")
+      ->type_name("S");
 }
 
 std::string name_of(const SubjectOptions& options) {
@@ -59,8 +62,12 @@ Triangulation triangulate_subject(const SubjectOptions& subject, const io::Point
     const InPhase phase(Phase::cooperative);
     return triangulate(points.view(), options);
   } catch (const InputError& e) {
-    throw Failure(exit_file, fmt::format("{}: point {} (counted from 0): {}", name_of(subject), e.index(), e.what()));
+    refuse_points(subject, e);
   }
+}
+
+void refuse_points(const SubjectOptions& subject, const InputError& e) {
+  throw Failure(exit_file, fmt::format("{}: point {} (counted from 0): {}", name_of(subject), e.index(), e.what()));
 }
 
 void add_style_options(CLI::App& command, StyleOptions& options) {
@@ -86,7 +93,8 @@ viewer::Style style_of(const StyleOptions& options) {
   return style;
 }
 
-viewer::ColourBy colour_of(const StyleOptions& options, const io::PointSet& points, const std::vector<std::string>& refused) {
+viewer::ColourBy colour_of(const StyleOptions& options, const io::PointSet& points,
+                           const std::vector<std::string>& refused) {
   const auto& names = viewer::names_of_colours();
   const auto found = std::find(names.begin(), names.end(), options.colour);
   if (found == names.end()) return points.height.empty() ? viewer::ColourBy::area : viewer::ColourBy::height;
@@ -94,7 +102,8 @@ viewer::ColourBy colour_of(const StyleOptions& options, const io::PointSet& poin
     throw Failure(exit_usage, fmt::format("--colour {} is known of a mesh that grows only", options.colour));
   const auto colour = static_cast<viewer::ColourBy>(found - names.begin());
   if (colour == viewer::ColourBy::height && points.height.empty())
-    throw Failure(exit_usage, "--colour height: the points have no third column; take another colour, or name it with --columns");
+    throw Failure(exit_usage,
+                  "--colour height: the points have no third column; take another colour, or name it with --columns");
   return colour;
 }
 
@@ -105,7 +114,8 @@ void parse_size(const std::string& text, int& width, int& height) {
   const auto fits = [](double v) { return v == std::floor(v) && v >= 16 && v <= largest_side; };
   if (!parse_number(std::string_view(text).substr(0, x), w) || !fits(w) ||
       (both && (!parse_number(std::string_view(text).substr(x + 1), h) || !fits(h)))) {
-    throw Failure(exit_usage, fmt::format("--size {}: a width, or width and height as 1920x1080, of 16 to {} pixels", text, largest_side));
+    throw Failure(exit_usage, fmt::format("--size {}: a width, or width and height as 1920x1080, of 16 to {} pixels",
+                                          text, largest_side));
   }
   width = static_cast<int>(w);
   height = static_cast<int>(h);
@@ -117,8 +127,10 @@ std::optional<viewer::View> parse_camera(const std::string& text) {
   std::string_view rest = text;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t comma = i < 2 ? rest.find(',') : rest.size();
-    if (comma == std::string_view::npos || !parse_number(rest.substr(0, comma), number[i]) || (i == 2 && !(number[i] > 0)))
-      throw Failure(exit_usage, fmt::format("--camera {}: three numbers are needed, x,y,magnification, the last above 0", text));
+    if (comma == std::string_view::npos || !parse_number(rest.substr(0, comma), number[i]) ||
+        (i == 2 && !(number[i] > 0)))
+      throw Failure(exit_usage,
+                    fmt::format("--camera {}: three numbers are needed, x,y,magnification, the last above 0", text));
     rest.remove_prefix(std::min(rest.size(), comma + 1));
   }
   return viewer::View{number[0], number[1], number[2]};

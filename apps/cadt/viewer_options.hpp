@@ -32,6 +32,8 @@ void add_subject_options(CLI::App& command, SubjectOptions& options);
 /// A point that the library refuses is an error of the file.
 [[nodiscard]] Triangulation triangulate_subject(const SubjectOptions& subject, const io::PointSet& points,
                                                 const Options& options);
+/// Throws Failure for a point that the library refuses.
+[[noreturn]] void refuse_points(const SubjectOptions& subject, const InputError& error);
 /// "terrain.xyz", or "uniform" for a generated set.
 [[nodiscard]] std::string name_of(const SubjectOptions& options);
 

@@ -36,8 +36,8 @@ std::vector<float> degrees_of(const io::PointSet& points, const Triangulation& m
 
 }  // namespace
 
-void prepare_colour(Renderer& renderer, const MeshBuffers& buffers, const io::PointSet& points, const Triangulation& mesh,
-                    ColourBy colour) {
+void prepare_colour(Renderer& renderer, const MeshBuffers& buffers, const io::PointSet& points,
+                    const Triangulation& mesh, ColourBy colour) {
   renderer.set_values({});
   renderer.set_outside({}, 0);
   if (colour == ColourBy::height) prepare_heights(renderer, points, mesh);

@@ -10,8 +10,8 @@
 namespace cadt::viewer {
 
 /// Sets the renderer's values and ramp for the mesh, which is in `buffers`. O(points + triangles).
-void prepare_colour(Renderer& renderer, const MeshBuffers& buffers, const io::PointSet& points, const Triangulation& mesh,
-                    ColourBy colour);
+void prepare_colour(Renderer& renderer, const MeshBuffers& buffers, const io::PointSet& points,
+                    const Triangulation& mesh, ColourBy colour);
 
 /// The hull as lines. O(hull).
 [[nodiscard]] Stroke hull_stroke(const io::PointSet& points, const Triangulation& mesh, bool dark);

@@ -18,7 +18,7 @@ struct View {
 
 struct StillOptions {
   int width = 1600;
-  int height = 0;  ///< 0: as the box of the points needs, at most 4000
+  int height = 0;                  ///< 0: as the box of the points needs, at most 4000
   std::optional<ColourBy> colour;  ///< not set: the height if the points have one, else the area
   std::optional<View> view;        ///< not set: the whole mesh
   Style style;                     ///< its colour is not used

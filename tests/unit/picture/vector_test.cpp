@@ -84,7 +84,9 @@ TEST(Svg, CoordinatesAreThoseOfThePointsWithYUp) {
   const Path edges = edges_of(svg_of(mesh, {.width = 1000}));
   ASSERT_EQ(edges.at.size(), 6U);
   for (const auto& [x, y] : std::vector<std::array<double, 2>>{{15, 500}, {985, 500}, {15, 15}}) {  // margin: 1.5 %
-    const auto same = [x = x, y = y](const auto& p) { return std::fabs(p[0] - x) < 1e-3 && std::fabs(p[1] - y) < 1e-3; };
+    const auto same = [x = x, y = y](const auto& p) {
+      return std::fabs(p[0] - x) < 1e-3 && std::fabs(p[1] - y) < 1e-3;
+    };
     EXPECT_EQ(std::count_if(edges.at.begin(), edges.at.end(), same), 2) << x << ' ' << y;
   }
 }

@@ -22,8 +22,9 @@ TEST(Camera, FitsTheBoxWithAMargin) {
 }
 
 TEST(Camera, PlaceIsTheInverseOfPixel) {
-  for (const Box& box : {Box{{0, 0}, {1, 1}}, Box{{-1e300, -1e300}, {1e300, 1e300}}, Box{{-1.7e308, 0}, {1.7e308, 1e308}},
-                         Box{{0, 0}, {4e-320, 4e-320}}, Box{{500000, 4100000}, {500100, 4100050}}}) {
+  for (const Box& box :
+       {Box{{0, 0}, {1, 1}}, Box{{-1e300, -1e300}, {1e300, 1e300}}, Box{{-1.7e308, 0}, {1.7e308, 1e308}},
+        Box{{0, 0}, {4e-320, 4e-320}}, Box{{500000, 4100000}, {500100, 4100050}}}) {
     const Camera camera(box, 300, 200);
     for (const double s : {0.0, 0.25, 1.0}) {
       const double x = box.low[0] * (1 - s) + box.high[0] * s, y = box.low[1] * (1 - s) + box.high[1] * s;

@@ -66,7 +66,8 @@ struct Drawing {
 };
 
 std::array<int, 3> at(const Image& image, int x, int y) {
-  const std::uint8_t* p = image.rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+  const std::uint8_t* p = image.rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                                   static_cast<std::size_t>(x));
   return {p[0], p[1], p[2]};
 }
 std::array<int, 3> bytes(std::uint32_t rgb) {
@@ -93,7 +94,8 @@ std::ptrdiff_t triangle_of(const Scene& scene, double x, double y) {
     const auto side = [&](std::size_t k) {
       const auto a = static_cast<std::size_t>(t[i + k]), b = static_cast<std::size_t>(t[i + (k + 1) % 3]);
       const auto& p = scene.points.xy;
-      return static_cast<long double>(p[2 * b] - p[2 * a]) * (y - p[2 * a + 1]) - static_cast<long double>(p[2 * b + 1] - p[2 * a + 1]) * (x - p[2 * a]);
+      return static_cast<long double>(p[2 * b] - p[2 * a]) * (y - p[2 * a + 1]) -
+             static_cast<long double>(p[2 * b + 1] - p[2 * a + 1]) * (x - p[2 * a]);
     };
     if (side(0) >= 0 && side(1) >= 0 && side(2) >= 0) return static_cast<std::ptrdiff_t>(i / 3);
   }
@@ -182,7 +184,8 @@ Image reference(const Scene& scene, int width, int height, ColourBy colour) {
   large.camera.zoom(8 * small.scale() / large.camera.scale(), 4 * width, 4 * height);
   large.style.samples = 2;
   const Image fine = large.draw();
-  Image result{width, height, std::vector<std::uint8_t>(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 255)};
+  Image result{width, height,
+               std::vector<std::uint8_t>(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 255)};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       io::picture::Rgb sum;
@@ -194,7 +197,8 @@ Image reference(const Scene& scene, int width, int height, ColourBy colour) {
         }
       }
       const std::uint32_t mean = io::picture::to_srgb(sum);
-      std::uint8_t* to = result.rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+      std::uint8_t* to = result.rgba.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                                   static_cast<std::size_t>(x));
       for (int k = 0; k < 3; ++k) to[k] = static_cast<std::uint8_t>(mean >> (16 - 8 * k));
     }
   }
@@ -203,8 +207,12 @@ Image reference(const Scene& scene, int width, int height, ColourBy colour) {
 
 TEST(Renderer, FarViewIsTheMeanOfWhatLiesThere) {
   // From triangles of many pixels to hundreds of triangles a pixel; a lattice would show moire.
-  for (const auto& [name, n] : std::vector<std::pair<std::string, std::size_t>>{
-           {"uniform", 300}, {"uniform", 20'000}, {"uniform", 200'000}, {"circles", 50'000}, {"lattice", 90'000}, {"clusters", 100'000}}) {
+  for (const auto& [name, n] : std::vector<std::pair<std::string, std::size_t>>{{"uniform", 300},
+                                                                                {"uniform", 20'000},
+                                                                                {"uniform", 200'000},
+                                                                                {"circles", 50'000},
+                                                                                {"lattice", 90'000},
+                                                                                {"clusters", 100'000}}) {
     const Scene scene = scene_of(name, n);
     for (const ColourBy colour : {ColourBy::angle, ColourBy::area}) {
       Drawing drawing(scene, 120, 120, colour);
@@ -287,8 +295,12 @@ TEST(Renderer, LinesLieOnTheEdgesAndFadeWithTheTriangles) {
   const auto t = scene.mesh.triangles();
   for (std::size_t i = 0; i < t.size(); i += 3) {
     const auto a = static_cast<std::size_t>(t[i]), b = static_cast<std::size_t>(t[i + 1]);
-    const auto p = drawing.camera.pixel(0.5 * (scene.points.xy[2 * a] + scene.points.xy[2 * b]), 0.5 * (scene.points.xy[2 * a + 1] + scene.points.xy[2 * b + 1]));
-    EXPECT_GT(difference(at(lined, static_cast<int>(p[0]), static_cast<int>(p[1])), at(plain, static_cast<int>(p[0]), static_cast<int>(p[1]))), 20) << i;
+    const auto p = drawing.camera.pixel(0.5 * (scene.points.xy[2 * a] + scene.points.xy[2 * b]),
+                                        0.5 * (scene.points.xy[2 * a + 1] + scene.points.xy[2 * b + 1]));
+    EXPECT_GT(difference(at(lined, static_cast<int>(p[0]), static_cast<int>(p[1])),
+                         at(plain, static_cast<int>(p[0]), static_cast<int>(p[1]))),
+              20)
+        << i;
   }
   const double changed = share_of_different(plain, lined, 10);
   EXPECT_GT(changed, 0.02);
@@ -317,7 +329,8 @@ TEST(Renderer, StrokesAreDrawnOverTheMesh) {
 TEST(Renderer, SetsWithoutTrianglesAreDrawnAsPoints) {
   for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{3}, std::size_t{100'000}}) {
     Scene scene;
-    for (std::size_t i = 0; i < n; ++i) scene.points.xy.insert(scene.points.xy.end(), {3.0 * static_cast<double>(i), 2.0 * static_cast<double>(i)});
+    for (std::size_t i = 0; i < n; ++i)
+      scene.points.xy.insert(scene.points.xy.end(), {3.0 * static_cast<double>(i), 2.0 * static_cast<double>(i)});
     scene.mesh = triangulate(scene.points.view());
     Drawing drawing(scene, 90, 60, ColourBy::area);
     drawing.style.point_radius = 3;

@@ -89,8 +89,8 @@ class RenderErrorTest(CliTest):
     def test_without_opengl(self):
         # No vendor's file, so that the loader finds no driver.
         environment = {**os.environ, "__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null"}
-        self.fails(5, "render", "--generate", "uniform", "-n", 100, "-o", "a.png", env=environment,
+        self.fails(5, "render", "--generate", "uniform", "-n", 100, "-o", "a.png", environment=environment,
                    says=("no OpenGL without a window", "libegl-mesa0"))
         environment = {**os.environ, "MESA_GL_VERSION_OVERRIDE": "3.3"}
-        self.fails(5, "render", "--generate", "uniform", "-n", 100, "-o", "a.png", env=environment, says="OpenGL 4.5")
+        self.fails(5, "render", "--generate", "uniform", "-n", 100, "-o", "a.png", environment=environment, says="OpenGL 4.5")
         self.assertEqual(self.names(), [])

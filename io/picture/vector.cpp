@@ -231,11 +231,16 @@ std::string file_of(const Scene& scene, const PictureOptions& options, Create cr
 }  // namespace
 
 std::string svg_bytes(const Scene& scene, const PictureOptions& options) {
-  return file_of(scene, options, [](auto... of) {
+  std::string svg = file_of(scene, options, [](auto... of) {
     cairo_surface_t* surface = cairo_svg_surface_create_for_stream(of...);
     cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_USER);
     return surface;
   });
+  // Cairo counts the surfaces of the process; the same mesh has the same bytes.
+  const std::string counted = "id=\"surface";
+  if (const auto at = svg.find(counted); at != std::string::npos)
+    svg.replace(at, svg.find('"', at + counted.size()) + 1 - at, "id=\"mesh\"");
+  return svg;
 }
 
 std::string pdf_bytes(const Scene& scene, const PictureOptions& options) {

@@ -176,7 +176,7 @@ class TiledRaster:
         corners, neighbors = np.asarray(mesh.simplices), np.asarray(mesh.neighbors)
         x, y = xy[:, 0], xy[:, 1]
         beyond = (x < taken[0]) | (y < taken[1]) | (x > taken[2]) | (y > taken[3])
-        front = np.flatnonzero(beyond[corners].any(axis=1))
+        front = np.unique(np.flatnonzero(beyond[corners.ravel()]) // 3)
         seen = np.zeros(len(corners) + 1, bool)
         seen[-1] = True  # -1: no neighbour
         while len(front):

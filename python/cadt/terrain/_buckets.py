@@ -15,8 +15,9 @@ import cadt
 
 from .cloud import Cloud
 
-PER_BUCKET = 150  # points on average: a ring of buckets around a tile of 300,000 points is a tenth of it
-MOST_BUCKETS = 65_000  # their numbers are sorted as 16-bit words, which NumPy does by radix
+PER_BUCKET = 40  # points on average: a ring of buckets around a tile of 300,000 points is a twentieth of it
+MOST_BUCKETS = 1 << 18
+MOST_OF_SKETCH = 50_000
 PIECE = 1 << 20  # points sorted at a time: they fit in a cache, and several threads have work
 MOST_PIECES = 32
 Floats = NDArray[np.float64]
@@ -48,7 +49,7 @@ class Buckets:
 
         size = max(piece, -(-n // MOST_PIECES))
         # Where bucket k of piece i begins, and where it ends: begin[i, k] and begin[i, k + 1].
-        self.begin = np.empty((-(-n // size), self.nx * self.ny + 1), np.int64)
+        self.begin = np.empty((-(-n // size), self.nx * self.ny + 1), np.int32)
         with concurrent.futures.ThreadPoolExecutor(threads or cores()) as pool:
             list(pool.map(self._sort, range(0, n, size), itertools.repeat(size), self.begin))
         counts = np.diff(self.begin)
@@ -61,19 +62,26 @@ class Buckets:
 
         full = np.flatnonzero(in_bucket)
         self.first_of_each = self.begin[(counts[:, full] > 0).argmax(axis=0), full]
-        self.sketch = cadt.Delaunay(self.xy[self.first_of_each], backend="host", statistics="none")
+        some = self.first_of_each[:: -(-len(full) // MOST_OF_SKETCH)]
+        self.sketch_points = self.xy[some]
+        self.sketch = cadt.Delaunay(self.sketch_points, backend="host", statistics="none")
         self.hull = self._hull()
 
-    def _sort(self, first: int, size: int, begin: NDArray[np.int64]) -> None:
+    def _sort(self, first: int, size: int, begin: NDArray[np.int32]) -> None:
         xy, z = self.xy[first : first + size], self.z[first : first + size]
         column, row = self.place(xy)
-        number = (row * self.nx + column).astype(np.uint16)
-        order = np.argsort(number, kind="stable")
-        pairs = xy.view(np.complex128)[:, 0]  # one number a point is gathered sooner than two
-        pairs[:], z[:] = pairs[order], z[order]
+        number = row * self.nx + column
         begin[0] = first
         np.cumsum(np.bincount(number, minlength=self.nx * self.ny), out=begin[1:])
         begin[1:] += first
+        # Numbers of buckets with those of points below them: NumPy sorts words sooner than it sorts indices by words.
+        bits = size.bit_length()
+        number <<= bits
+        number += np.arange(len(z))
+        number.sort()
+        number &= (1 << bits) - 1
+        pairs = xy.view(np.complex128)[:, 0]  # one number a point is gathered sooner than two
+        pairs[:], z[:] = pairs[number], z[number]
 
     @property
     def useful(self) -> bool:
@@ -87,22 +95,15 @@ class Buckets:
         return column, row
 
     def _hull(self) -> NDArray[np.int64]:
-        """The vertices of the convex hull of all points. A bucket whose square lies in the hull of the sketch has none but
-        what the sketch has."""
-        rows, columns = np.nonzero(self.filled)
-        deep = np.ones(len(rows), bool)
-        if self.sketch.n_triangles == 0:
-            deep[:] = False
-        else:
-            for right in (0, 1):
-                for up in (0, 1):
-                    corner = np.empty((len(rows), 2))
-                    corner[:, 0] = self.x0 + (columns + right) * self.side + (2 * right - 1) * self.slack
-                    corner[:, 1] = self.y0 + (rows + up) * self.side + (2 * up - 1) * self.slack
-                    deep &= np.asarray(self.sketch.within_hull(corner), bool)
-        border = np.zeros((self.ny, self.nx), bool)
-        border[rows[~deep], columns[~deep]] = True
-        candidates = np.concatenate((self.of_mask(border), self.first_of_each))
+        """The vertices of the convex hull of all points. A bucket deep in the hull of the sketch has none."""
+        inside = np.zeros((self.ny + 1, self.nx + 1), bool)
+        if self.sketch.n_triangles:
+            x, y = self.x0 + np.arange(self.nx + 1) * self.side, self.y0 + np.arange(self.ny + 1) * self.side
+            corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+            inside = np.asarray(self.sketch.within_hull(corners), bool).reshape(inside.shape)
+        deep = np.zeros_like(self.filled)  # all buckets around it have their corners in the hull: so rounding is harmless
+        deep[1:-1, 1:-1] = inside[:-3, :-3] & inside[:-3, 3:] & inside[3:, :-3] & inside[3:, 3:]
+        candidates = np.concatenate((self.of_mask(self.filled & ~deep), self.first_of_each))
         mesh = cadt.Delaunay(self.xy[candidates], backend="host", statistics="none")
         return np.unique(candidates[np.asarray(mesh.hull)]) if mesh.n_triangles else np.empty(0, np.int64)
 
@@ -142,8 +143,8 @@ class Buckets:
         sums[:, 1:] = of.cumsum(axis=1)
         counts = np.zeros(len(radius), np.int64)
         change = np.zeros((self.ny, self.nx + 1), np.int64)
-        for i in range(0, len(radius), 4096):
-            c, r = center[i : i + 4096], radius[i : i + 4096]
+        for i in range(0, len(radius), 1024):
+            c, r = center[i : i + 1024], radius[i : i + 1024]
             below, above = edge[None, :-1] - c[:, 1:], c[:, 1:] - edge[None, 1:]
             near = np.maximum(np.maximum(below, above), 0)
             with np.errstate(invalid="ignore", over="ignore"):
@@ -155,7 +156,7 @@ class Buckets:
             k, row = np.nonzero(touched)
             a = np.clip(np.floor(left[k, row]), 0, self.nx - 1).astype(np.int64)
             b = np.clip(np.floor(right[k, row]), 0, self.nx - 1).astype(np.int64) + 1
-            counts[i : i + 4096] = np.bincount(k, sums[row, b] - sums[row, a], minlength=len(r)).astype(np.int64)
+            counts[i : i + 1024] = np.bincount(k, sums[row, b] - sums[row, a], minlength=len(r)).astype(np.int64)
             np.add.at(change, (row, a), 1)
             np.add.at(change, (row, b), -1)
         return counts, of & (change.cumsum(axis=1)[:, :-1] > 0)

@@ -271,7 +271,7 @@ class TiledRaster:
         for i in range(0, len(row), 1 << 18):
             r, c = row[i : i + (1 << 18)], column[i : i + (1 << 18)]
             where = self._centers(r + first, c)
-            near = points.xy[points.first_of_each[points.sketch.nearest_vertex(where)]]
+            near = points.sketch_points[points.sketch.nearest_vertex(where)]
             distance = np.hypot(*(where - near).T) * (1 + 8 * EPS)
             chosen = points.of_buckets(points.reached(where, distance, points.filled)[1])
             mesh = self._mesh(points.xy[chosen], "canonical", self.threads)

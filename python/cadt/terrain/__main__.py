@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import logging
 import os
 import signal
@@ -86,16 +85,7 @@ def command(words: Sequence[str]) -> int:
         return _explain(error)
 
 
-def _give_memory_back() -> None:
-    """The GNU C library keeps freed arrays of up to 32 MB for later ones, which then lie between others: 230 MB of the
-    peak of 10M points. From 2 MB on, arrays are to be the system's again at once."""
-    mmap_threshold = -3  # M_MMAP_THRESHOLD of <malloc.h>
-    if sys.platform == "linux" and hasattr(library := ctypes.CDLL(None), "gnu_get_libc_version"):
-        library.mallopt(mmap_threshold, 2 << 20)
-
-
 def main() -> int:
-    _give_memory_back()
     for number in (signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)):
         if signal.getsignal(number) is not signal.SIG_IGN:  # nohup stays nohup
             signal.signal(number, _stop)

@@ -24,7 +24,7 @@ from ._buckets import Buckets, Floats, Mask, cores
 from ._mesh import rasterize
 from .grid import Grid
 
-PER_TILE = 300_000  # points: the mesh and its queries fit in the caches of one core
+PER_TILE = 150_000  # points: the mesh and its queries fit in the caches of one core
 MOST_CELLS = 1 << 21  # of a tile
 EPS = float(np.finfo(float).eps)
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pyproj
 
 BLOCK = 512  # side of a tile of the file
-CACHE = 64 << 20  # bytes of decoded tiles that GDAL keeps
+CACHE = 32 << 20  # bytes of decoded tiles that GDAL keeps
 
 
 def check_nodata(nodata: float, dtype: str) -> None:

@@ -61,9 +61,8 @@ class Buckets:
         self._sums[1:, 1:] = in_bucket.reshape(self.ny, self.nx).cumsum(axis=0).cumsum(axis=1)
 
         full = np.flatnonzero(in_bucket)
-        self.first_of_each = self.begin[(counts[:, full] > 0).argmax(axis=0), full]
-        some = self.first_of_each[:: -(-len(full) // MOST_OF_SKETCH)]
-        self.sketch_points = self.xy[some]
+        full = full[:: -(-len(full) // MOST_OF_SKETCH)]
+        self.sketch_points = self.xy[self.begin[(counts[:, full] > 0).argmax(axis=0), full]]
         self.sketch = cadt.Delaunay(self.sketch_points, backend="host", statistics="none")
         self.hull = self._hull()
 
@@ -96,14 +95,15 @@ class Buckets:
 
     def _hull(self) -> NDArray[np.int64]:
         """The vertices of the convex hull of all points. A bucket deep in the hull of the sketch has none."""
-        inside = np.zeros((self.ny + 1, self.nx + 1), bool)
+        inside: Mask = np.zeros((self.ny + 1, self.nx + 1), bool)
         if self.sketch.n_triangles:
             x, y = self.x0 + np.arange(self.nx + 1) * self.side, self.y0 + np.arange(self.ny + 1) * self.side
             corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
             inside = np.asarray(self.sketch.within_hull(corners), bool).reshape(inside.shape)
-        deep = np.zeros_like(self.filled)  # all buckets around it have their corners in the hull: so rounding is harmless
+        # With a ring of buckets around it, so that rounding is harmless.
+        deep = np.zeros_like(self.filled)
         deep[1:-1, 1:-1] = inside[:-3, :-3] & inside[:-3, 3:] & inside[3:, :-3] & inside[3:, 3:]
-        candidates = np.concatenate((self.of_mask(self.filled & ~deep), self.first_of_each))
+        candidates = self.of_mask(self.filled & ~deep)
         mesh = cadt.Delaunay(self.xy[candidates], backend="host", statistics="none")
         return np.unique(candidates[np.asarray(mesh.hull)]) if mesh.n_triangles else np.empty(0, np.int64)
 
@@ -132,8 +132,8 @@ class Buckets:
         numbers = np.flatnonzero(mask)
         first = self.begin[:, numbers].ravel()
         length = self.begin[:, numbers + 1].ravel() - first
-        offset = np.repeat(first - np.concatenate(([0], np.cumsum(length)[:-1])), length)
-        return np.arange(length.sum()) + offset
+        offset = np.repeat(first - (length.cumsum() - length), length)
+        return np.arange(len(offset)) + offset
 
     def reached(self, center: Floats, radius: Floats, of: Mask) -> tuple[NDArray[np.int64], Mask]:
         """How many buckets of the mask `of` each disc reaches, and which buckets are reached at all."""

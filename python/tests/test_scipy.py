@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import copy
-import importlib
 import itertools
 import pickle
 import warnings
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -123,21 +121,6 @@ def test_tolerance_outside(angle: float) -> None:
     for kind in (ours.LinearNDInterpolator, ours.NaturalNeighborInterpolator):
         assert np.allclose(kind(tri, plane)(border), border @ [2.0, -1.0], atol=1e-12)
         assert (kind(tri, plane, fill_value=7)(outwards) == 7).all()
-
-
-def test_degenerate_set_of_scipy() -> None:
-    """What else SciPy's test_degenerate_barycentric_transforms asserts."""
-    folder = Path(importlib.import_module("scipy.spatial.tests").__path__[0])
-    with np.load(folder / "data" / "degenerate_pointset.npz") as f:
-        points = f["c"]
-    tri = ours.Delaunay(points)
-    assert tri.mesh is not None and tri.mesh.verify()
-    thin = np.isnan(tri.transform[:, 0, 0])
-    assert thin.sum() == 31
-    centers = points[tri.simplices].mean(axis=1)
-    c = np.einsum("ijk,ik->ij", tri.transform[:, :2], centers - tri.transform[:, 2])
-    assert (np.abs(c[~thin] * 3 - 1) < 0.1).all()
-    assert (tri.find_simplex(centers[~thin]) >= 0).all()
 
 
 def test_duplicates(rng: np.random.Generator) -> None:

@@ -34,6 +34,20 @@ def test_equals_host(queue, dtype):
     np.testing.assert_array_equal(mesh.find_simplex(cl_array.to_device(queue, q)).get(), host.find_simplex(q))
     z = points[:, 0].astype(np.float64)
     np.testing.assert_allclose(mesh.interpolate(z, q).get(), host.interpolate(z, q), rtol=1e-12)
+    both = np.stack([z, points[:, 1] ** 2], axis=1)
+    image = mesh.rasterize(both, bounds=(0, 0, 1, 1), shape=(9, 13))
+    assert isinstance(image, cl_array.Array)
+    np.testing.assert_allclose(image.get(), host.rasterize(both, bounds=(0, 0, 1, 1), shape=(9, 13)), rtol=1e-12)
+
+
+@pytest.mark.parametrize("n", [3, 100, 1_001])
+def test_bounds_are_taken_on_the_device(queue, n, monkeypatch):
+    points = np.random.default_rng(8).random((n, 2)) * [3, 2] - 1
+    mesh, host = cadt.Delaunay(cl_array.to_device(queue, points)), cadt.Delaunay(points, backend="host")
+    monkeypatch.setattr(type(mesh._gpu.array), "to_host", None)  # type: ignore[union-attr]
+    z = points[:, 0].copy()
+    image = mesh.rasterize(z, shape=(7, 5)).get()
+    np.testing.assert_allclose(image, host.rasterize(z, shape=(7, 5)), rtol=1e-12, atol=1e-12)
 
 
 def test_arrays_outlive_the_mesh(queue):

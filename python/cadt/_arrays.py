@@ -116,8 +116,9 @@ class Array:
         return self.xp.stack(rasters, -1)
 
     def bounds(self) -> tuple[float, float, float, float]:
-        (x0, y0), (x1, y1) = self.xp.amin(self.a, 0).tolist(), self.xp.amax(self.a, 0).tolist()
-        return (x0, y0, x1, y1)
+        x, y = self.a[:, 0], self.a[:, 1]  # not along an axis, which takes CuPy 32 ms for ten million
+        low, high = self.xp.amin, self.xp.amax
+        return (float(low(x)), float(low(y)), float(high(x)), float(high(y)))
 
     def triangles(self, mesh: Any, which: str) -> Any:
         """The arrays of a mesh, without a copy; they keep it."""

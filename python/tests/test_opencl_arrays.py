@@ -58,6 +58,29 @@ def test_arrays_outlive_the_mesh(queue):
     np.testing.assert_array_equal(simplices.get(), cadt.Delaunay(points).simplices)
 
 
+def test_each_queue_is_used_for_its_own_arrays(queue):
+    points = np.random.default_rng(9).random((2_000, 2))
+    other = cl.CommandQueue(cl.Context(queue.context.devices))
+    wanted = cadt.Delaunay(points)
+    for q in (queue, other, queue):
+        mesh = cadt.Delaunay(cl_array.to_device(q, points))
+        assert mesh.simplices.queue == mesh.find_simplex(points).queue == q
+        np.testing.assert_array_equal(mesh.simplices.get(), wanted.simplices)
+
+
+def test_options_of_each_call_on_an_open_device():
+    points = np.random.default_rng(10).random((4_000, 2))
+    wanted = cadt.Delaunay(points).simplices
+    for _ in range(2):
+        fast = cadt.Delaunay(points, backend="opencl", order="fast")
+        assert not np.array_equal(fast.simplices, wanted)
+        assert np.array_equal(cadt.Delaunay(points, backend="opencl").simplices, wanted)
+        with pytest.raises(cadt.OutOfMemory):
+            cadt.Delaunay(points, backend="opencl", max_memory=10_000)
+        assert cadt.Delaunay(points, backend="opencl", statistics="timing").statistics["milliseconds"]
+        assert not cadt.Delaunay(points, backend="opencl", statistics="none").statistics["milliseconds"]
+
+
 def test_parts_of_buffers(queue):
     points = np.random.default_rng(4).random((1_000, 2))
     given = cl_array.to_device(queue, points)

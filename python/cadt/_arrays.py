@@ -116,9 +116,8 @@ class Array:
         return self.xp.stack(rasters, -1)
 
     def bounds(self) -> tuple[float, float, float, float]:
-        x, y = self.a[:, 0], self.a[:, 1]  # not along an axis, which takes CuPy 32 ms for ten million
-        low, high = self.xp.amin, self.xp.amax
-        return (float(low(x)), float(low(y)), float(high(x)), float(high(y)))
+        (x0, y0), (x1, y1) = self.xp.amin(self.a, 0).tolist(), self.xp.amax(self.a, 0).tolist()
+        return (x0, y0, x1, y1)
 
     def triangles(self, mesh: Any, which: str) -> Any:
         """The arrays of a mesh, without a copy; they keep it."""
@@ -144,6 +143,10 @@ class CuPy(Array):
 
     def address(self, a: Any) -> int:
         return int(a.data.ptr)
+
+    def bounds(self) -> tuple[float, float, float, float]:
+        x, y = self.column(self.a, 0), self.column(self.a, 1)  # what is not contiguous takes 8 ms for ten million
+        return (float(x.min()), float(y.min()), float(x.max()), float(y.max()))
 
     def to_host(self) -> np.ndarray:
         return self.xp.asnumpy(self.a)

@@ -66,7 +66,7 @@ CALLS: dict[str, Callable[[np.ndarray, cadt.Delaunay], object]] = {
     "verify": lambda p, mesh: mesh.verify(),
     "cadt.verify": lambda p, mesh: cadt.verify(p, mesh.simplices),
     "from_simplices": lambda p, mesh: cadt.Delaunay.from_simplices(p, mesh.simplices),
-    "find_simplex": lambda p, mesh: [mesh.find_simplex(p) for _ in range(4)],
+    "find_simplex": lambda p, mesh: mesh.find_simplex(np.concatenate([p] * 4)),
 }
 
 

@@ -169,6 +169,14 @@ def test_what_is_left_to_scipy(rng: np.random.Generator) -> None:
         ours.Delaunay(p2, incremental=True, qhull_options="Qbb")
 
 
+def test_points_that_are_not_aligned(general: np.ndarray) -> None:
+    memory = np.zeros(1 + general.nbytes, dtype=np.uint8)
+    points = memory[1:].view(np.float64).reshape(-1, 2)
+    points[:] = general
+    assert not points.flags.aligned and ours.Delaunay(points).points.flags.aligned
+    assert np.array_equal(ours.Delaunay(points).equations, ours.Delaunay(general).equations)
+
+
 def test_flat_points() -> None:
     for points in ([[1, 2]], [[0, 0], [1, 1]], [[0, 0], [1, 1], [3, 3]], np.ones((5, 2))):
         for kind in (ours.Delaunay, ours.Voronoi):

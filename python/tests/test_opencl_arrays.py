@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import threading
 
 import cadt
 import numpy as np
@@ -107,29 +106,6 @@ def test_a_progress_function_cannot_use_the_device_that_reports_to_it(queue):
         cadt.Delaunay(points, backend="opencl", progress=progress)
     assert len(asked) == 1
     assert cadt.Delaunay(points[:100], backend="opencl").n_triangles > 0
-
-
-def test_meshes_that_end_while_another_thread_computes(queue):
-    """They are freed by the next call, and not while the device is in use."""
-    rng = np.random.default_rng(11)
-    points = rng.random((3_000, 2))
-    wanted, given = cadt.Delaunay(points).hash, cl_array.to_device(queue, points)
-    small = [cl_array.to_device(queue, rng.random((20 + k, 2))) for k in range(40)]
-    kept = [cadt.Delaunay(s).simplices for s in small for _ in range(30)]
-    ended = threading.Event()
-
-    def drop() -> None:
-        while kept and not ended.is_set():
-            kept.pop()
-
-    for _ in range(3):
-        other = threading.Thread(target=drop)
-        other.start()
-        for _ in range(3):
-            assert cadt.Delaunay(given).hash == wanted
-        ended.set()
-        other.join()
-        ended.clear()
 
 
 def test_a_query_reports_to_its_own_call(queue):

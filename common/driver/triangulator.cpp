@@ -12,6 +12,7 @@
 #include "common/driver/choose_strategy.hpp"
 #include "common/driver/context.hpp"
 #include "common/driver/device_triangulation.hpp"
+#include "common/driver/gpu_bound.hpp"
 #include "common/driver/registry.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/thread_state.hpp"
@@ -259,7 +260,10 @@ void Triangulator::release_memory() {
 Triangulation triangulate(PointsView points, const Options& options) {
   require_size(points.size());
   const CallState state(options, points.size());
-  return to_host(*state, points);
+  Triangulation mesh = to_host(*state, points);
+  const DeviceInfo& device = (*state)->device->info();
+  if (device.gpu && is_free_to_choose(options)) measure_gpu_bound(device, options);
+  return mesh;
 }
 
 }  // namespace cadt

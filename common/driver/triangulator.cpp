@@ -242,6 +242,16 @@ void Triangulator::reserve(std::size_t points) {
   known.insertion = std::max(known.insertion, n);
 }
 
+std::shared_ptr<void> Triangulator::allocate(std::size_t bytes) {
+  if (bytes == 0) return nullptr;
+  struct Held {
+    std::shared_ptr<State> state;  // first member: destroyed last, after the memory
+    Allocation memory;
+  };
+  const auto held = std::make_shared<Held>(state_, state_->memory.allocate(bytes));
+  return {held, state_->device->handle(*held->memory)};
+}
+
 void Triangulator::release_memory() {
   state_->memory.drop_cached();  // the next budget forgets the known sizes
   state_->device->trim();

@@ -83,7 +83,8 @@ void Buffer::read(std::span<std::byte> data, std::size_t offset) const {
 
 void Buffer::fill(GLuint word, std::size_t bytes) {
   if (bytes == 0) return;
-  glClearNamedBufferSubData(name_.id(), GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+  glClearNamedBufferSubData(name_.id(), GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER, GL_UNSIGNED_INT,
+                            &word);
 }
 
 Program::Program(const std::string& name, const std::string& text) {
@@ -98,7 +99,8 @@ Program::Program(const std::string& name, const std::string& text) {
   glGetProgramiv(id, GL_INFO_LOG_LENGTH, &size);
   std::string log(static_cast<std::size_t>(size > 0 ? size : 1), '\0');
   glGetProgramInfoLog(id, size, nullptr, log.data());
-  throw DisplayError("the OpenGL driver cannot compile '" + name + "': update the driver, or report this with its log:\n" + log);
+  throw DisplayError("the OpenGL driver cannot compile '" + name +
+                     "': update the driver, or report this with its log:\n" + log);
 }
 
 Texture::Texture(int width, int height) : width_(width), height_(height) {

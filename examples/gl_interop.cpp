@@ -146,7 +146,8 @@ void run(std::size_t n, bool headless) {
   glViewport(0, 0, width, height);
 
   cudaGraphicsResource_t shared[2] = {};
-  for (int k = 0; k < 2; ++k) check(cudaGraphicsGLRegisterBuffer(&shared[k], buffers[k], cudaGraphicsRegisterFlagsWriteDiscard));
+  for (int k = 0; k < 2; ++k)
+    check(cudaGraphicsGLRegisterBuffer(&shared[k], buffers[k], cudaGraphicsRegisterFlagsWriteDiscard));
   cudaStream_t stream = nullptr;
   check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking));
   cadt::Options options;
@@ -166,7 +167,8 @@ void run(std::size_t n, bool headless) {
     for (int k = 0; k < 2; ++k) check(cudaGraphicsResourceGetMappedPointer(&memory[k], &bytes, shared[k]));
     grow<<<static_cast<unsigned>((n + 255) / 256), 256, 0, stream>>>(static_cast<double2*>(memory[0]), n, frame / 60.0);
     check(cudaGetLastError());
-    count = triangulator.triangulate(cadt::DevicePoints{.x = memory[0], .size = n}, cadt::DeviceArray{memory[1], 6 * n}, {});
+    count = triangulator.triangulate(cadt::DevicePoints{.x = memory[0], .size = n}, cadt::DeviceArray{memory[1], 6 * n},
+                                     {});
     check(cudaGraphicsUnmapResources(2, shared, stream));  // what OpenGL does now comes after the work of the stream
 
     glClear(GL_COLOR_BUFFER_BIT);
@@ -180,7 +182,8 @@ void run(std::size_t n, bool headless) {
   std::printf("points     %zu\ntriangles  %zu\nframe      %.2f ms\ndevice     %s\n", n, count, time.count() / frame,
               triangulator.device().name.c_str());
   for (cudaGraphicsResource_t resource : shared) check(cudaGraphicsUnregisterResource(resource));
-  if (headless && std::abs(covered() - pi * 0.95 * 0.95 / 4) > 0.01) throw std::runtime_error("the picture is not the disc");
+  if (headless && std::abs(covered() - pi * 0.95 * 0.95 / 4) > 0.01)
+    throw std::runtime_error("the picture is not the disc");
 }
 
 }  // namespace

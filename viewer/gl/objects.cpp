@@ -54,7 +54,8 @@ Buffer::Buffer(std::size_t bytes, int file) : bytes_(bytes), serial_(next_serial
   name_ = Name<delete_buffer>(buffer);
   glNamedBufferStorageMemEXT(buffer, static_cast<GLsizeiptr>(bytes), id, 0);
   if (const GLenum code = glGetError(); code != GL_NO_ERROR)
-    throw DisplayError("OpenGL cannot use memory of another interface (error " + std::to_string(code) + "): update the driver");
+    throw DisplayError("OpenGL cannot use memory of another interface (error " + std::to_string(code) +
+                       "): update the driver");
 }
 
 void Buffer::write(std::span<const std::byte> data, std::size_t offset) {
@@ -72,9 +73,12 @@ void Buffer::write(std::span<const std::byte> data, std::size_t offset) {
 void Buffer::read(std::span<std::byte> data, std::size_t offset) const {
   if (data.empty()) return;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  if (memory_.id() != 0) {  // NVIDIA's driver would give what it read before: it does not know that others write, too
+  // NVIDIA's driver moves a buffer that is read to the memory of the host; and of memory that others write, too, it
+  // would give what it read before.
+  if (memory_.id() != 0 || data.size() < bytes_) {
     const Buffer staging(data.size());
-    glCopyNamedBufferSubData(name_.id(), staging.id(), static_cast<GLintptr>(offset), 0, static_cast<GLsizeiptr>(data.size()));
+    glCopyNamedBufferSubData(name_.id(), staging.id(), static_cast<GLintptr>(offset), 0,
+                             static_cast<GLsizeiptr>(data.size()));
     staging.read(data, 0);
     return;
   }

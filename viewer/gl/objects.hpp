@@ -45,8 +45,8 @@ class Buffer {
   Buffer() = default;
   /// Of so many bytes, which are undefined. \throws OutOfMemory
   explicit Buffer(std::size_t bytes);
-  /// In memory of another interface to the same device, which `file` stands for (GL_EXT_memory_object_fd). Takes the file
-  /// over. \throws DisplayError if the driver cannot do that
+  /// In memory of another interface to the same device, which `file` stands for (GL_EXT_memory_object_fd). Takes the
+  /// file over. \throws DisplayError if the driver cannot do that
   Buffer(std::size_t bytes, int file);
 
   [[nodiscard]] GLuint id() const noexcept { return name_.id(); }

@@ -78,7 +78,8 @@ class Known {
 
  private:
   void move(gl::Buffer& buffer, std::size_t used, int device) {
-    if (!epoxy_has_gl_extension("GL_EXT_memory_object_fd")) throw DisplayError("the driver has no GL_EXT_memory_object_fd");
+    if (!epoxy_has_gl_extension("GL_EXT_memory_object_fd"))
+      throw DisplayError("the driver has no GL_EXT_memory_object_fd");
     LargePages pages(device, buffer.bytes());
     gl::Buffer moved(pages.bytes(), pages.take_file());
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -108,7 +109,8 @@ class Mapped {
     waits_ = resources_.size() < 2;
     if (waits_) glFinish();
     if (!resources_.empty())
-      check(cudaGraphicsMapResources(static_cast<int>(resources_.size()), resources_.data(), stream_), "cudaGraphicsMapResources");
+      check(cudaGraphicsMapResources(static_cast<int>(resources_.size()), resources_.data(), stream_),
+            "cudaGraphicsMapResources");
   }
   ~Mapped() {
     if (open_) (void)give_back();
@@ -121,7 +123,8 @@ class Mapped {
   cudaError_t give_back() {
     open_ = false;
     cudaError_t code = cudaSuccess;
-    if (!resources_.empty()) code = cudaGraphicsUnmapResources(static_cast<int>(resources_.size()), resources_.data(), stream_);
+    if (!resources_.empty())
+      code = cudaGraphicsUnmapResources(static_cast<int>(resources_.size()), resources_.data(), stream_);
     if (code == cudaSuccess && waits_) code = cudaStreamSynchronize(stream_);
     return code;
   }

@@ -50,7 +50,8 @@ const Driver& driver() {
 
 void check(CUresult code, const char* call) {
   if (code != CUDA_SUCCESS)
-    throw DeviceError(call, static_cast<int>(code), "CUDA", code == CUDA_ERROR_OUT_OF_MEMORY ? "out of memory" : "see CUresult in cuda.h");
+    throw DeviceError(call, static_cast<int>(code), "CUDA",
+                      code == CUDA_ERROR_OUT_OF_MEMORY ? "out of memory" : "see CUresult in cuda.h");
 }
 
 }  // namespace
@@ -63,7 +64,8 @@ LargePages::LargePages(int device, std::size_t wanted) {
   properties.location = where;
   properties.requestedHandleTypes = CU_MEM_HANDLE_TYPE_POSIX_FILE_DESCRIPTOR;
   std::size_t page = 0;
-  check(cu.cuMemGetAllocationGranularity(&page, &properties, CU_MEM_ALLOC_GRANULARITY_RECOMMENDED), "cuMemGetAllocationGranularity");
+  check(cu.cuMemGetAllocationGranularity(&page, &properties, CU_MEM_ALLOC_GRANULARITY_RECOMMENDED),
+        "cuMemGetAllocationGranularity");
   const std::size_t bytes = (wanted + page - 1) / page * page;
   CUdeviceptr address = 0;
   check(cu.cuMemAddressReserve(&address, bytes, 0, 0, 0), "cuMemAddressReserve");
@@ -82,7 +84,8 @@ LargePages::LargePages(int device, std::size_t wanted) {
   bytes_ = bytes;
   const CUmemAccessDesc access{where, CU_MEM_ACCESS_FLAGS_PROT_READWRITE};
   code = cu.cuMemSetAccess(address, bytes, &access, 1);
-  if (code == CUDA_SUCCESS) code = cu.cuMemExportToShareableHandle(&file_, memory, CU_MEM_HANDLE_TYPE_POSIX_FILE_DESCRIPTOR, 0);
+  if (code == CUDA_SUCCESS)
+    code = cu.cuMemExportToShareableHandle(&file_, memory, CU_MEM_HANDLE_TYPE_POSIX_FILE_DESCRIPTOR, 0);
   cu.cuMemRelease(memory);  // the mapping and the file keep it
   if (code != CUDA_SUCCESS) {
     LargePages(std::move(*this));  // unmaps
@@ -91,7 +94,9 @@ LargePages::LargePages(int device, std::size_t wanted) {
 }
 
 LargePages::LargePages(LargePages&& other) noexcept
-    : address_(std::exchange(other.address_, 0)), bytes_(std::exchange(other.bytes_, 0)), file_(std::exchange(other.file_, -1)) {}
+    : address_(std::exchange(other.address_, 0)),
+      bytes_(std::exchange(other.bytes_, 0)),
+      file_(std::exchange(other.file_, -1)) {}
 
 LargePages& LargePages::operator=(LargePages&& other) noexcept {
   std::swap(address_, other.address_);

@@ -38,8 +38,9 @@ class Mesher {
   [[nodiscard]] const DeviceInfo& device() const noexcept;
 
   /// Triangulates the points of `mesh` into its triangles. `mesh.triangle_count` and `bytes_through_host` are updated;
-  /// the caller tells the Renderer. Large buffers may be replaced by others with the same contents. With `statistics` the library counts its work, which takes 2 to 3 % longer.
-  /// \pre room for two triangles a point \throws what Triangulator::triangulate throws
+  /// the caller tells the Renderer. Large buffers may be replaced by others with the same contents. With `statistics`
+  /// the library counts its work, which takes 2 to 3 % longer. \pre room for two triangles a point \throws what
+  /// Triangulator::triangulate throws
   void triangulate(MeshBuffers& mesh, Statistics* statistics = nullptr);
   /// Order::fast unless changed; `statistics` is set by triangulate().
   [[nodiscard]] Options& options() noexcept;

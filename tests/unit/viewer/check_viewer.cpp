@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // What scripts/check_viewer measures: from points on the device to the first frame, frames of a flight, moving points.
-// All times are of the host's clock with glFinish() at the end, so they hold everything.
+// Times are of the host's clock with glFinish() before and after, so they hold everything. Pictures of 1920 x 1080.
 //
-// usage: cadt-check-viewer [--points N]... [--moving N]... [--pictures FOLDER] [--interop WAY] [--backend NAME]
+// usage: cadt-check-viewer [--points N]... [--moving N]... [--interop WAY] [--pictures FOLDER] [--limits 1]
 #include "viewer/draw/image_file.hpp"
 #include "viewer/draw/renderer.hpp"
 #include "viewer/gl/context.hpp"
 #include "viewer/live/live_points.hpp"
 #include "viewer/mesh/mesher.hpp"
 
-#include <cadt/cadt.hpp>
-
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,23 +22,45 @@ namespace cadt::viewer {
 namespace {
 
 constexpr int width = 1920, height = 1080;
+constexpr double slowest_frame = 20, slowest_moving_100k = 4, slowest_moving_1m = 8;  // ms, on an H100
 
 struct Choice {
   std::vector<std::size_t> points, moving;
   std::string pictures;
   Interop interop = Interop::automatic;
-  Options options;
+  bool limits = false;
 };
 
-double now() { return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+class Check {
+ public:
+  explicit Check(const Choice& choice) : choice_(choice), mesher_(Options{}, choice.interop) {}
+  void run();
+
+ private:
+  void warm_up();
+  void measure_size(std::size_t n);
+  void measure_moving(std::size_t n, Motion motion);
+  double slowest_of_flight(const MeshBuffers& mesh, const Style& style);
+  void save(const std::string& name) const {
+    if (!choice_.pictures.empty()) write_png(choice_.pictures + "/" + name + ".png", renderer_.read());
+  }
+  void require(bool passed, const std::string& what) {
+    if (!passed) failures_ += (failures_.empty() ? "" : "; ") + what;
+  }
+
+  const Choice& choice_;
+  Mesher mesher_;
+  Renderer renderer_;
+  std::string failures_;
+};
 
 template <class Work>
 double milliseconds(Work&& work) {
   glFinish();
-  const double start = now();
+  const auto start = std::chrono::steady_clock::now();
   work();
   glFinish();
-  return now() - start;
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 double quantile(std::vector<double> values, double q) {
@@ -50,165 +68,166 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-void save(const Choice& choice, const Renderer& renderer, const std::string& name) {
-  if (!choice.pictures.empty()) write_png(choice.pictures + "/" + name + ".png", renderer.read());
+template <class Work>
+double median(int times, Work&& work) {
+  std::vector<double> all;
+  for (int k = 0; k < times; ++k) all.push_back(milliseconds(work));
+  return quantile(all, 0.5);
 }
 
-/// Frames from the whole box down to one in 2^18 at several places, three of each.
-double fly(const Choice& choice, Renderer& renderer, const MeshBuffers& mesh, const Style& style) {
-  constexpr double places[][2] = {{0.5, 0.5}, {0.31, 0.73}, {0.02, 0.01}, {0.875, 0.126}, {0.66, 0.66}};
-  double worst = 0, worst_zoom = 1;
-  std::string line;
-  for (double zoom = 1; zoom < 3e5; zoom *= 2) {
-    double here = 0;
-    int number = 0;
-    for (const auto& place : places) {
-      Camera camera(mesh.box, width, height);
-      camera.look_at(place[0], place[1]);
-      camera.zoom(zoom, 0.5 * width, 0.5 * height);
-      std::vector<double> times;
-      for (int k = 0; k < 3; ++k) times.push_back(milliseconds([&] { renderer.draw(mesh, camera, style); }));
-      here = std::max(here, quantile(times, 0.5));
-      if (number == (zoom == 1 ? 0 : 1) && (zoom == 1 || zoom == 16 || zoom == 512 || zoom == 65536))
-        save(choice, renderer, "flight_" + std::to_string(mesh.point_count / 1'000'000) + "M_" + std::to_string(static_cast<int>(zoom)));
-      ++number;
-    }
-    char text[64];
-    std::snprintf(text, sizeof text, " %.0f:%.2f", zoom, here);
-    line += text;
-    if (here > worst) {
-      worst = here;
-      worst_zoom = zoom;
-    }
-  }
-  std::printf("  zoom:ms%s\n", line.c_str());
-  std::printf("  slowest %.2f ms at zoom %.0f\n", worst, worst_zoom);
-  return worst;
+MeshBuffers unit_square() {
+  MeshBuffers mesh;
+  mesh.box = {{0, 0}, {1, 1}};
+  return mesh;
 }
 
-/// Share of the samples within the square that belong to a triangle.
-double covered(const Renderer& renderer) {
-  const Image image = renderer.read();
-  const int side = height - 2 * 40, left = (width - side) / 2;
+/// The share of a picture of the unit square that is not background, within a margin.
+double covered(const Image& image) {
+  constexpr int margin = 40, side = height - 2 * margin, left = (width - side) / 2;
   std::size_t found = 0;
-  for (int y = 40; y < 40 + side; ++y) {
+  for (int y = margin; y < margin + side; ++y) {
     for (int x = left; x < left + side; ++x) {
-      const std::uint8_t* const pixel = image.rgba.data() + 4 * (static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x));
-      found += pixel[0] != image.rgba[0] || pixel[1] != image.rgba[1] || pixel[2] != image.rgba[2] ? 1u : 0u;
+      const auto at = 4 * (static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x));
+      found += std::equal(image.rgba.begin(), image.rgba.begin() + 3, image.rgba.data() + at) ? 0u : 1u;
     }
   }
   return static_cast<double>(found) / (static_cast<double>(side) * side);
 }
 
-void measure_size(const Choice& choice, Mesher& mesher, Renderer& renderer, std::size_t n) {
-  MeshBuffers mesh;
-  mesh.box = {{0, 0}, {1, 1}};
+/// What is compiled, loaded or allocated at its first use.
+void Check::warm_up() {
+  MeshBuffers mesh = unit_square();
+  const LivePoints points(mesh, 300'000, 3);
+  mesher_.triangulate(mesh);
+  renderer_.update(mesh);
+  renderer_.fit_ramp(mesh, ColourBy::area);
+  renderer_.draw(mesh, Camera(mesh.box, width, height), Style{});
+  Statistics statistics;
+  mesher_.triangulate(mesh, &statistics);
+  const std::uint64_t bytes = statistics.bytes_to_device + statistics.bytes_from_device;
+  std::printf("between host and device, of 300,000 points (4,800,000 bytes) and their mesh: %llu bytes\n\n",
+              static_cast<unsigned long long>(bytes));
+  if (mesher_.interop() != Interop::copy) require(bytes < 100'000, "points went through the host");
+}
+
+/// From the whole box down to one in 2^18 at several places, the median of three frames each.
+double Check::slowest_of_flight(const MeshBuffers& mesh, const Style& style) {
+  constexpr double places[][2] = {{0.5, 0.5}, {0.31, 0.73}, {0.02, 0.01}, {0.875, 0.126}, {0.66, 0.66}};
+  double slowest = 0;
+  for (double zoom = 1; zoom < 3e5; zoom *= 2) {
+    for (const auto& place : places) {
+      Camera camera(mesh.box, width, height);
+      camera.look_at(place[0], place[1]);
+      camera.zoom(zoom, 0.5 * width, 0.5 * height);
+      slowest = std::max(slowest, median(3, [&] { renderer_.draw(mesh, camera, style); }));
+    }
+    if (zoom == 1 || zoom == 64 || zoom == 4096)
+      save(std::to_string(mesh.point_count) + "_zoom_" + std::to_string(static_cast<int>(zoom)));
+  }
+  return slowest;
+}
+
+void Check::measure_size(std::size_t n) {
+  MeshBuffers mesh = unit_square();
   { const LivePoints points(mesh, n, 1); }
-  Camera camera(mesh.box, width, height);
-  Style style;
-  style.hull = false;
+  const Camera camera(mesh.box, width, height);
+  const Style style;
   mesh.bytes_through_host = 0;
-  double parts[4];
   const double first = milliseconds([&] {
-    parts[0] = milliseconds([&] { mesher.triangulate(mesh); });
-    parts[1] = milliseconds([&] { renderer.update(mesh); });
-    parts[2] = milliseconds([&] { renderer.fit_ramp(mesh, style.colour); });
-    parts[3] = milliseconds([&] { renderer.draw(mesh, camera, style); });
+    mesher_.triangulate(mesh);
+    renderer_.update(mesh);
+    renderer_.fit_ramp(mesh, style.colour);
+    renderer_.draw(mesh, camera, style);
   });
-  std::printf("%zu points, %zu triangles: first frame %.1f ms = triangulate %.1f + boxes %.1f + ramp %.1f + draw %.1f; through the host %zu bytes\n", n,
-              mesh.triangle_count, first, parts[0], parts[1], parts[2], parts[3], mesh.bytes_through_host);
-  const double again = milliseconds([&] {
-    mesher.triangulate(mesh);
-    renderer.update(mesh);
-    renderer.draw(mesh, camera, style);
+  save(std::to_string(n));
+  require(covered(renderer_.read()) == 1, std::to_string(n) + " points do not cover their square");
+  const double again = median(3, [&] {
+    mesher_.triangulate(mesh);
+    renderer_.update(mesh);
+    renderer_.draw(mesh, camera, style);
   });
-  std::printf("  again %.1f ms\n", again);
-  std::printf("  covered %.6f\n", covered(renderer));
-  fly(choice, renderer, mesh, style);
+  const double flight = slowest_of_flight(mesh, style);
+  const double pick = median(5, [&] { (void)renderer_.triangle_at(width / 2, height / 2); });
+  const double fit = median(5, [&] { renderer_.draw(mesh, camera, style); });
+  std::printf("%11zu %11zu %14.1f %14.1f %10.2f %10.2f %10.2f %12zu\n", n, mesh.triangle_count, first, again, fit,
+              flight, pick, mesh.bytes_through_host);
+  if (choice_.limits) require(flight <= slowest_frame, "a frame of " + std::to_string(n) + " points is too slow");
+  if (mesher_.interop() != Interop::copy) require(mesh.bytes_through_host == 0, "bytes went through the host");
 }
 
-void measure_moving(const Choice& choice, Mesher& mesher, Renderer& renderer, std::size_t n) {
-  MeshBuffers mesh;
-  mesh.box = {{0, 0}, {1, 1}};
+void Check::measure_moving(std::size_t n, Motion motion) {
+  MeshBuffers mesh = unit_square();
   LivePoints points(mesh, n, 2);
-  Camera camera(mesh.box, width, height);
-  Style style;
-  mesher.triangulate(mesh);
-  renderer.update(mesh);
-  renderer.fit_ramp(mesh, style.colour);
+  const Camera camera(mesh.box, width, height);
+  const Style style;
+  mesher_.triangulate(mesh);
+  renderer_.update(mesh);
+  renderer_.fit_ramp(mesh, style.colour);
   mesh.bytes_through_host = 0;
-  for (const Motion motion : {Motion::flow, Motion::bounce, Motion::orbit, Motion::particles}) {
-    std::vector<double> frames, parts[4];
-    const double start = now();
-    for (int k = 0; k < 120 && (k < 3 || now() - start < 3000); ++k) {
-      frames.push_back(milliseconds([&] {
-        points.step(1.0 / 60, motion);
-        mesher.triangulate(mesh);
-        renderer.update(mesh);
-        renderer.draw(mesh, camera, style);
-      }));
-    }
-    for (int k = 0; k < 30 && (k < 3 || now() - start < 5000); ++k) {
-      parts[0].push_back(milliseconds([&] { points.step(1.0 / 60, motion); }));
-      parts[1].push_back(milliseconds([&] { mesher.triangulate(mesh); }));
-      parts[2].push_back(milliseconds([&] { renderer.update(mesh); }));
-      parts[3].push_back(milliseconds([&] { renderer.draw(mesh, camera, style); }));
-    }
-    save(choice, renderer, "moving_" + std::to_string(n) + "_" + std::string(to_string(motion)));
-    std::printf("moving %zu, %s: frame %.2f ms (95 %%: %.2f) = step %.2f + triangulate %.2f + boxes %.2f + draw %.2f; through the host %zu bytes\n", n,
-                std::string(to_string(motion)).c_str(), quantile(frames, 0.5), quantile(frames, 0.95), quantile(parts[0], 0.5),
-                quantile(parts[1], 0.5), quantile(parts[2], 0.5), quantile(parts[3], 0.5), mesh.bytes_through_host);
-  }
+  const auto move = [&] { points.step(1.0 / 60, motion); };
+  const auto triangulate = [&] { mesher_.triangulate(mesh); };
+  const auto draw = [&] {
+    renderer_.update(mesh);
+    renderer_.draw(mesh, camera, style);
+  };
+  std::vector<double> frames;
+  for (int k = 0; k < 120; ++k)
+    frames.push_back(milliseconds([&] {
+      move();
+      triangulate();
+      draw();
+    }));
+  const double frame = quantile(frames, 0.5);
+  save("moving_" + std::to_string(n) + "_" + std::string(to_string(motion)));
+  std::printf("%11zu %-11s %9.2f %9.2f %9.2f %12.2f %9.2f %12zu\n", n, std::string(to_string(motion)).c_str(), frame,
+              quantile(frames, 0.95), median(15, move), median(15, triangulate), median(15, draw),
+              mesh.bytes_through_host);
+  const double limit = n <= 100'000 ? slowest_moving_100k : slowest_moving_1m;
+  if (choice_.limits && n <= 1'000'000) require(frame <= limit, std::to_string(n) + " moving points are too slow");
+  if (mesher_.interop() != Interop::copy) require(mesh.bytes_through_host == 0, "bytes went through the host");
 }
 
-void run(const Choice& choice) {
-  const gl::HeadlessContext context;
-  std::printf("display: %s, OpenGL %s\n", context.driver().renderer.c_str(), context.driver().version.c_str());
-  GLint64 largest = 0;
-  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
-  GLint blocks = 0;
-  glGetIntegerv(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, &blocks);
-  std::printf("storage blocks: %d of at most %lld bytes\n", blocks, static_cast<long long>(largest));
-  Mesher mesher(choice.options, choice.interop);
-  std::printf("interop: %s (%s) %s\n", std::string(to_string(mesher.interop())).c_str(), mesher.device().name.c_str(), mesher.reason().c_str());
-  Renderer renderer;
-  {  // whatever is compiled or loaded at its first use
-    MeshBuffers mesh;
-    mesh.box = {{0, 0}, {1, 1}};
-    const LivePoints points(mesh, 300'000, 3);
-    mesher.triangulate(mesh);
-    renderer.update(mesh);
-    renderer.fit_ramp(mesh, ColourBy::area);
-    renderer.draw(mesh, Camera(mesh.box, width, height), Style{});
-    Statistics statistics;
-    mesher.triangulate(mesh, &statistics);
-    std::printf("counted by the library for 300,000 points (4,800,000 bytes): %llu bytes to the device, %llu from it\n",
-                static_cast<unsigned long long>(statistics.bytes_to_device), static_cast<unsigned long long>(statistics.bytes_from_device));
-  }
-  for (const std::size_t n : choice.moving) measure_moving(choice, mesher, renderer, n);
-  for (const std::size_t n : choice.points) measure_size(choice, mesher, renderer, n);
-  const int errors = gl::errors_seen();
-  std::printf("OpenGL errors: %d\n", errors);
-  if (errors != 0) throw std::runtime_error("OpenGL reported errors");
+void Check::run() {
+  const std::string reason = mesher_.reason();
+  std::printf("computes:  %s (%s)\ninterop:   %s%s%s\n", mesher_.device().name.c_str(),
+              std::string(to_string(mesher_.device().backend)).c_str(),
+              std::string(to_string(mesher_.interop())).c_str(), reason.empty() ? "" : ", because of ", reason.c_str());
+  warm_up();
+  if (!choice_.points.empty())
+    std::printf("points at random, %d x %d pixels, milliseconds\n%11s %11s %14s %14s %10s %10s %10s %12s\n", width,
+                height, "points", "triangles", "first frame", "mesh + frame", "whole view", "slowest", "pick",
+                "through host");
+  for (const std::size_t n : choice_.points) measure_size(n);
+  if (!choice_.moving.empty())
+    std::printf("\nmoving points, milliseconds\n%11s %-11s %9s %9s %9s %12s %9s %12s\n", "points", "motion", "frame",
+                "95 %", "= step", "triangulate", "draw", "through host");
+  for (const std::size_t n : choice_.moving)
+    for (const Motion motion : {Motion::flow, Motion::bounce, Motion::orbit, Motion::particles})
+      measure_moving(n, motion);
+  require(gl::errors_seen() == 0, "OpenGL reported errors");
+  if (!mesher_.reason().empty()) std::printf("\nnote: %s\n", mesher_.reason().c_str());
+  if (!failures_.empty()) throw std::runtime_error(failures_);
 }
 
 Choice parse(int count, char** values) {
   Choice choice;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string name = values[i], value = values[i + 1];
+  for (int i = 1; i < count; i += 2) {
+    const std::string name = values[i], value = i + 1 < count ? values[i + 1] : "";
     if (name == "--points") {
       choice.points.push_back(std::stoull(value));
     } else if (name == "--moving") {
       choice.moving.push_back(std::stoull(value));
     } else if (name == "--pictures") {
       choice.pictures = value;
-    } else if (name == "--backend") {
-      choice.options.backend = backend_from_string(value);
+    } else if (name == "--limits") {
+      choice.limits = value != "0";
     } else if (name == "--interop") {
-      for (const Interop way : {Interop::automatic, Interop::cuda, Interop::opencl, Interop::copy})
-        if (to_string(way) == value) choice.interop = way;
+      const Interop all[] = {Interop::automatic, Interop::cuda, Interop::opencl, Interop::copy};
+      const auto* const found = std::ranges::find_if(all, [&](Interop way) { return to_string(way) == value; });
+      if (found == std::end(all)) throw std::runtime_error("--interop is auto, cuda, opencl or copy");
+      choice.interop = *found;
     } else {
-      throw std::runtime_error("what is " + name + "?");
+      throw std::runtime_error("unknown option " + name);
     }
   }
   return choice;
@@ -218,11 +237,14 @@ Choice parse(int count, char** values) {
 }  // namespace cadt::viewer
 
 int main(int count, char** values) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   try {
-    cadt::viewer::run(cadt::viewer::parse(count, values));
+    const cadt::viewer::Choice choice = cadt::viewer::parse(count, values);
+    const cadt::viewer::gl::HeadlessContext context;
+    std::printf("draws:     %s, OpenGL %s\n", context.driver().renderer.c_str(), context.driver().version.c_str());
+    cadt::viewer::Check(choice).run();
     return EXIT_SUCCESS;
   } catch (const std::exception& error) {
+    std::fflush(stdout);
     std::fprintf(stderr, "cadt-check-viewer: %s\n", error.what());
     return EXIT_FAILURE;
   }

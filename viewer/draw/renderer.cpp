@@ -215,9 +215,9 @@ void Renderer::make_room(const Camera& camera, int side) {
   grow(owners_, pixels * each * sizeof(std::uint32_t));
   grow(sums_, pixels * 4 * sizeof(std::uint32_t));
   grow(overlay_, pixels * sizeof(std::uint32_t));
-  owners_.fill(0, pixels * each * sizeof(std::uint32_t));
-  sums_.fill(0, pixels * 4 * sizeof(std::uint32_t));
-  overlay_.fill(0, pixels * sizeof(std::uint32_t));
+  clear_(owners_, pixels * each, 0);
+  clear_(sums_, pixels * 4, 0);
+  clear_(overlay_, pixels, 0);
   if (picture_.width() != camera.width() || picture_.height() != camera.height())
     picture_ = gl::Texture(camera.width(), camera.height());
   side_ = side;

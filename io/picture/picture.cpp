@@ -13,10 +13,11 @@ namespace {
 picture::Scene scene_of(const std::string& path, const PointSet& points, const Triangulation& mesh) {
   const picture::Scene scene{points.xy, points.height, mesh.triangles(), mesh.hull()};
   if (scene.faces() > most_drawn_triangles || scene.points() > most_drawn_triangles) {
-    throw FileError(path, 0,
-                    fmt::format("{} triangles of {} points are too many to be drawn one by one (at most {}): 'cadt render' "
-                                "draws them as a .png",
-                                scene.faces(), scene.points(), most_drawn_triangles));
+    throw FileError(
+        path, 0,
+        fmt::format("{} triangles of {} points are too many to be drawn one by one (at most {}): 'cadt render' "
+                    "draws them as a .png",
+                    scene.faces(), scene.points(), most_drawn_triangles));
   }
   return scene;
 }

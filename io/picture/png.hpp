@@ -19,7 +19,9 @@ class Pixels {
   [[nodiscard]] int width() const noexcept { return width_; }
   [[nodiscard]] int height() const noexcept { return height_; }
   /// 0x00RRGGBB each: Cairo's RGB24.
-  [[nodiscard]] std::uint32_t* row(int y) { return pixel_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_); }
+  [[nodiscard]] std::uint32_t* row(int y) {
+    return pixel_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+  }
 
   /// The picture as a PNG file, 8-bit RGB.
   [[nodiscard]] std::string png() const;

@@ -181,7 +181,8 @@ void draw(cairo_t* to, const Scene& scene, const Viewport& view, const PictureOp
       // Strokes go to a mask first: drawn one over the other with alpha, the joints would be darker than the edges.
       cairo_push_group_with_content(to, CAIRO_CONTENT_ALPHA);
       draw_edges(to, scene, position, pixels);
-      const std::unique_ptr<cairo_pattern_t, decltype(&cairo_pattern_destroy)> mask(cairo_pop_group(to), cairo_pattern_destroy);
+      const std::unique_ptr<cairo_pattern_t, decltype(&cairo_pattern_destroy)> mask(cairo_pop_group(to),
+                                                                                    cairo_pattern_destroy);
       set_colour(to, line_colour, alpha);
       cairo_mask(to, mask.get());
     } else {
@@ -216,7 +217,8 @@ std::string file_of(const Scene& scene, const PictureOptions& options, Create cr
   const Viewport view(scene.xy, options.width, options.max_height);
   std::string bytes;
   {
-    const Surface surface(create(append, &bytes, static_cast<double>(view.width()), static_cast<double>(view.height())));
+    const Surface surface(
+        create(append, &bytes, static_cast<double>(view.width()), static_cast<double>(view.height())));
     check(cairo_surface_status(surface.get()));
     const Context context(cairo_create(surface.get()));
     draw(context.get(), scene, view, options, false);

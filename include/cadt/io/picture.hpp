@@ -12,7 +12,8 @@
 namespace cadt::io {
 
 struct PictureOptions {
-  int width = 1600;  ///< pixels, user units of an SVG, or points of a PDF; the height follows from the bounding box of the points
+  int width = 1600;  ///< pixels, user units of an SVG, or points of a PDF; the height follows from the bounding box of
+                     ///< the points
   int max_height = 4000;
   bool shade = true;  ///< fill triangles by height (if given) or by size
 };

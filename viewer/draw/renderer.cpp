@@ -33,7 +33,7 @@ struct Frame {
 static_assert(offsetof(Frame, samples) == 48 && offsetof(Frame, background) == 112 && sizeof(Frame) == 176);
 
 enum Flag { shade = 1, fill = 2, logarithm = 4, points_alone = 8, fade = 16 };
-enum By { by_nothing, by_angle, by_area, by_order, by_point, by_triangle, by_youngest };
+enum By { by_nothing, by_angle, by_area, by_order, by_point, by_triangle, by_mean };
 
 By by_of(ColourBy colour) {
   switch (colour) {
@@ -49,7 +49,7 @@ By by_of(ColourBy colour) {
     case ColourBy::degree:
       return by_point;
     case ColourBy::level:
-      return by_youngest;
+      return by_mean;
     case ColourBy::conflicts:
     case ColourBy::flips:
       return by_triangle;

@@ -33,7 +33,7 @@ struct Frame {
 static_assert(offsetof(Frame, samples) == 48 && offsetof(Frame, background) == 112 && sizeof(Frame) == 176);
 
 enum Flag { shade = 1, fill = 2, logarithm = 4, points_alone = 8, fade = 16 };
-enum By { by_nothing, by_angle, by_area, by_order, by_point, by_triangle };
+enum By { by_nothing, by_angle, by_area, by_order, by_point, by_triangle, by_mean };
 
 By by_of(ColourBy colour) {
   switch (colour) {
@@ -47,8 +47,9 @@ By by_of(ColourBy colour) {
       return by_order;
     case ColourBy::height:
     case ColourBy::degree:
-    case ColourBy::level:
       return by_point;
+    case ColourBy::level:
+      return by_mean;
     case ColourBy::conflicts:
     case ColourBy::flips:
       return by_triangle;

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// What lies over the mesh for a while: progress, messages, search, help.
+#include "viewer/window/cards.hpp"
+
+#include "viewer/window/app.hpp"
+#include "viewer/window/look.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace cadt::viewer {
+namespace {
+
+constexpr ImGuiWindowFlags card_flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
+                                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
+
+/// A card whose place of the mesh's picture (0 to 1) is the same place of it.
+void begin_card(const App& app, const char* name, float x, float y, float width, ImGuiWindowFlags flags = 0) {
+  const float scale = static_cast<float>(app.view.scale), gap = 16 * scale;
+  const float w = static_cast<float>(app.view.camera.width()), h = static_cast<float>(app.view.camera.height());
+  ImGui::SetNextWindowPos({gap + x * (w - 2 * gap), gap + y * (h - 2 * gap)}, ImGuiCond_Always, {x, y});
+  const float wide = std::min(width * scale, w - 2 * gap);
+  if (width > 0) ImGui::SetNextWindowSizeConstraints({wide, 0}, {wide, h - 2 * gap});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 9 * scale);
+  ImGui::Begin(name, nullptr, (card_flags | flags) & ~(flags & ImGuiWindowFlags_NoNav));
+}
+
+void end_card() {
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
+
+void title(const std::string& text) {
+  ImGui::PushFont(title_font());
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopFont();
+}
+
+void draw_progress(App& app, Work& work) {
+  const Work::State state = work.state();
+  if (state.seconds < 0.2) return;
+  begin_card(app, "##progress", 0.5f, 1.0f, 380);
+  title(state.stopping ? "Stopping ..." : "Working");
+  const std::string text = state.phase + (state.fraction >= 0 ? fmt::format(", {:.0f} %", 100 * state.fraction) : "") +
+                           fmt::format(", {:.0f} s", state.seconds);
+  ImGui::TextUnformatted(text.c_str());
+  const float button = 90 * static_cast<float>(app.view.scale);
+  // A bar that runs where the length of the work is not known.
+  if (state.fraction >= 0)
+    ImGui::ProgressBar(static_cast<float>(state.fraction), {-button - ImGui::GetStyle().ItemSpacing.x, 0}, "");
+  else
+    ImGui::ProgressBar(static_cast<float>(state.seconds - std::floor(state.seconds)), {-button - ImGui::GetStyle().ItemSpacing.x, 0}, "");
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel", {button, 0})) work.cancel();
+  end_card();
+}
+
+void draw_message(App& app) {
+  begin_card(app, "##message", 0.5f, 0.4f, 500, ImGuiWindowFlags_None);
+  if (app.message->error)
+    ImGui::PushStyleColor(ImGuiCol_Text, app.view.dark ? ImVec4(1.0f, 0.62f, 0.5f, 1) : ImVec4(0.68f, 0.16f, 0.08f, 1));
+  title(app.message->title);
+  if (app.message->error) ImGui::PopStyleColor();
+  ImGui::PushTextWrapPos(0);
+  ImGui::Spacing();
+  ImGui::TextUnformatted(app.message->text.c_str());
+  if (!app.message->advice.empty()) {
+    ImGui::Spacing();
+    ImGui::TextUnformatted(app.message->advice.c_str());
+  }
+  ImGui::PopTextWrapPos();
+  ImGui::Spacing();
+  const bool close = ImGui::Button("Close (Esc)");
+  end_card();
+  if (close) app.message.reset();
+}
+
+void draw_search(App& app) {
+  static std::array<char, 64> text{};
+  begin_card(app, "##search", 0.5f, 0.06f, 380);
+  title("Go to");
+  ImGui::TextDisabled("12 or t 12: a triangle.  p 12: a point");
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::IsWindowAppearing()) {
+    text[0] = 0;
+    ImGui::SetKeyboardFocusHere();
+  }
+  const bool done = ImGui::InputText("##index", text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+  end_card();
+  if (done) app.search(text.data());
+}
+
+void draw_help(App& app) {
+  begin_card(app, "##help", 0.5f, 0.5f, 0);
+  title("Keys and mouse");
+  std::string_view group;
+  const float scale = static_cast<float>(app.view.scale);
+  // Two columns of groups.
+  if (ImGui::BeginTable("##keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    int groups = 0;
+    bool open = false;
+    for (const Binding& b : bindings()) {
+      if (b.shown.empty()) continue;
+      if (b.group != group) {
+        if (open) ImGui::EndTable();
+        if (++groups == 4) ImGui::TableNextColumn();
+        group = b.group;
+        ImGui::Spacing();
+        ImGui::TextDisabled("%s", std::string(group).c_str());
+        open = ImGui::BeginTable(std::string(group).c_str(), 2, ImGuiTableFlags_SizingFixedFit);
+        if (!open) continue;
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 84 * scale);
+      }
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(b.shown.data(), b.shown.data() + b.shown.size());
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(b.what.data(), b.what.data() + b.what.size());
+    }
+    if (open) ImGui::EndTable();
+    ImGui::EndTable();
+  }
+  ImGui::Spacing();
+  ImGui::TextDisabled("? or Esc closes this");
+  end_card();
+}
+
+void draw_toast(App& app) {
+  begin_card(app, "##toast", 0.0f, 1.0f, 0, ImGuiWindowFlags_NoInputs);
+  ImGui::TextUnformatted(app.toast.c_str());
+  end_card();
+}
+
+/// Where there is nothing to see, why.
+void draw_hint(App& app) {
+  if (app.loaded == nullptr || app.message) return;
+  std::string text;
+  if (app.scene->mesh.point_count == 0)
+    text = "There are no points.";
+  else if (app.scene->mesh.triangle_count == 0)
+    text = app.scene->mesh.point_count < 3 ? "Fewer than three points have no triangle."
+                                           : "There is no triangle: all points lie on one line, or are equal.";
+  if (text.empty()) return;
+  begin_card(app, "##hint", 0.5f, 0.0f, 0, ImGuiWindowFlags_NoInputs);
+  ImGui::TextUnformatted(text.c_str());
+  end_card();
+}
+
+}  // namespace
+
+void draw_cards(App& app) {
+  if (app.scene == nullptr) {
+    begin_card(app, "##opening", 0.5f, 0.5f, 0);
+    ImGui::TextUnformatted("Opening the display ...");
+    end_card();
+    return;
+  }
+  draw_hint(app);
+  if (app.toast_shown()) draw_toast(app);
+  if (app.loading.running())
+    draw_progress(app, app.loading);
+  else if (app.asking.running())
+    draw_progress(app, app.asking);
+  if (app.message) draw_message(app);
+  if (app.search_shown) draw_search(app);
+  if (app.help_shown) draw_help(app);
+}
+
+}  // namespace cadt::viewer

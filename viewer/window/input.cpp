@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/window/input.hpp"
+
+#include "viewer/window/app.hpp"
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <cmath>
+#include <memory>
+
+namespace cadt::viewer {
+namespace {
+
+/// A press that moves less than this is a click.
+constexpr double click_reach = 4;
+
+struct Drag {
+  bool down = false, moved = false;
+  double x = 0, y = 0;
+};
+
+bool is_whole(double v) { return v == std::floor(v); }
+
+}  // namespace
+
+Events events_for(App& app) {
+  const auto drag = std::make_shared<Drag>();
+  Events events;
+  events.character = [&app](char32_t c) {
+    if (ImGui::GetIO().WantTextInput || (app.panel_focused && c == U' ')) return;
+    if (const auto command = command_of(c)) app.ask(*command);
+  };
+  events.key = [&app](int key, int modifiers, bool) {
+    const bool moves = key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT || key == GLFW_KEY_UP || key == GLFW_KEY_DOWN ||
+                       key == GLFW_KEY_HOME || key == GLFW_KEY_TAB || key == GLFW_KEY_PAGE_UP || key == GLFW_KEY_PAGE_DOWN;
+    if (moves && (ImGui::GetIO().WantTextInput || app.panel_focused)) return;
+    // Esc in a field of the panel ends the input, and nothing else.
+    if (key == GLFW_KEY_ESCAPE && ImGui::GetIO().WantTextInput && !app.search_shown) return;
+    if (const auto command = command_of(Key{key, modifiers & control})) app.ask(*command);
+  };
+  events.button = [&app, drag](int button, bool down, int, double x, double y) {
+    if (button != GLFW_MOUSE_BUTTON_LEFT && button != GLFW_MOUSE_BUTTON_MIDDLE) return;
+    if (down) {
+      *drag = {!ImGui::GetIO().WantCaptureMouse && app.over_mesh(x, y), false, x, y};
+      return;
+    }
+    if (drag->down && !drag->moved && button == GLFW_MOUSE_BUTTON_LEFT) app.select_at(x, y);
+    drag->down = false;
+  };
+  events.move = [&app, drag](double x, double y) {
+    if (!drag->down) {
+      if (!ImGui::GetIO().WantCaptureMouse) app.hover(x, y);
+      return;
+    }
+    if (!drag->moved && std::hypot(x - drag->x, y - drag->y) < click_reach * app.view.scale) return;
+    drag->moved = true;
+    app.view.camera.pan(x - drag->x, y - drag->y);
+    drag->x = x;
+    drag->y = y;
+  };
+  events.scroll = [&app](double dx, double dy, int modifiers, double x, double y) {
+    if (ImGui::GetIO().WantCaptureMouse || !app.over_mesh(x, y)) return;
+    // A wheel makes whole steps; two fingers make fractions where the system tells them apart, and move sideways.
+    const bool fingers = !is_whole(dy) || dx != 0;
+    if ((modifiers & control) == 0 && (fingers || (modifiers & shift) != 0)) {
+      const double step = fingers && !(is_whole(dx) && is_whole(dy)) ? 12 : 40;
+      if ((modifiers & shift) != 0 && dx == 0) std::swap(dx, dy);
+      app.view.camera.pan(dx * step * app.view.scale, dy * step * app.view.scale);
+    } else {
+      app.view.wheel(dy, x, y);
+    }
+    app.hover(x, y);
+  };
+  return events;
+}
+
+}  // namespace cadt::viewer

@@ -3,6 +3,8 @@
 
 #include "viewer/gl/errors.hpp"
 
+#include <atomic>
+
 namespace cadt::viewer::gl {
 
 void delete_buffer(GLuint id) { glDeleteBuffers(1, &id); }
@@ -11,6 +13,8 @@ void delete_program(GLuint id) { glDeleteProgram(id); }
 void delete_framebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
 
 Buffer::Buffer(std::size_t bytes) : bytes_(bytes) {
+  static std::atomic<std::uint64_t> made{0};
+  serial_ = ++made;
   GLuint id = 0;
   glCreateBuffers(1, &id);
   name_ = Name<delete_buffer>(id);

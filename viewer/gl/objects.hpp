@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -46,6 +47,8 @@ class Buffer {
 
   [[nodiscard]] GLuint id() const noexcept { return name_.id(); }
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+  /// Differs from that of each other buffer of this process, also if OpenGL gives an id away again.
+  [[nodiscard]] std::uint64_t serial() const noexcept { return serial_; }
   void write(std::span<const std::byte> data, std::size_t offset = 0);
   template <class T>
   void write_values(std::span<const T> values, std::size_t offset = 0) {
@@ -65,6 +68,7 @@ class Buffer {
   void read(std::span<std::byte> data, std::size_t offset) const;
   Name<delete_buffer> name_;
   std::size_t bytes_ = 0;
+  std::uint64_t serial_ = 0;
 };
 
 /// A compute program. `text` follows "#version 450 core". \throws DisplayError with the driver's log

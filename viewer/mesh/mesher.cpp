@@ -2,10 +2,34 @@
 #include "viewer/mesh/mesher.hpp"
 
 #include "viewer/gl/errors.hpp"
+#include "viewer/mesh/way.hpp"
 
-#include <vector>
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cctype>
 
 namespace cadt::viewer {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  const auto equal = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+  return !std::ranges::search(text, part, equal).empty();
+}
+
+}  // namespace
+
+bool is_named(const DeviceInfo& info, const std::string& device) {
+  if (device.empty()) return true;
+  if (std::ranges::all_of(device, [](unsigned char c) { return std::isdigit(c) != 0; }))
+    return device == std::to_string(info.index);
+  return contains(info.name, device) || contains(info.platform, device);
+}
+
+std::string name_of_display() {
+  const auto* const renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return renderer == nullptr ? "an unknown device" : renderer;
+}
 
 std::string_view to_string(Interop interop) noexcept {
   switch (interop) {
@@ -21,29 +45,37 @@ std::string_view to_string(Interop interop) noexcept {
   return "unknown";
 }
 
-struct Mesher::Device {
-  Triangulator triangulator;
-  Interop interop = Interop::copy;
-  std::string reason;
-  explicit Device(const Options& options) : triangulator(options) {}
-};
-
-Mesher::Mesher(const Options& options, Interop interop) : device_(std::make_unique<Device>(options)) {
-  if (interop == Interop::cuda || interop == Interop::opencl)
-    throw DisplayError("--interop " + std::string(to_string(interop)) + " is not possible: this build has it not");
+Mesher::Mesher(const Options& chosen, Interop interop) {
+  Options options = chosen;
+  options.order = Order::fast;
+  const auto try_way = [&](Interop way, Backend backend, auto open) {
+    if (way_ != nullptr || (interop != Interop::automatic && interop != way)) return;
+    std::string why;
+    if (options.backend != Backend::automatic && options.backend != backend)
+      why = "the mesh is computed by the back end '" + std::string(to_string(options.backend)) + "'";
+    else
+      way_ = open(options, why);
+    if (way_ != nullptr) {
+      interop_ = way;
+      return;
+    }
+    if (interop == way)
+      throw DisplayError("--interop " + std::string(to_string(way)) + " is not possible: " + why +
+                         "; leave --interop out, and the fastest possible way is taken");
+    reason_ += (reason_.empty() ? "" : "; ") + std::string(to_string(way)) + ": " + why;
+  };
+  try_way(Interop::cuda, Backend::cuda, open_cuda);
+  try_way(Interop::opencl, Backend::opencl, open_opencl);
+  if (way_ == nullptr) way_ = open_copy(options);
 }
 
 Mesher::~Mesher() = default;
-Interop Mesher::interop() const noexcept { return device_->interop; }
-const std::string& Mesher::reason() const noexcept { return device_->reason; }
-const DeviceInfo& Mesher::device() const noexcept { return device_->triangulator.device(); }
-Options& Mesher::options() noexcept { return device_->triangulator.options(); }
+const DeviceInfo& Mesher::device() const noexcept { return way_->triangulator().device(); }
+Options& Mesher::options() noexcept { return way_->triangulator().options(); }
 
-void Mesher::triangulate(MeshBuffers& mesh) {
-  const std::vector<double> xy = mesh.points.read_values<double>(2 * mesh.point_count);
-  mesh.bytes_through_host += xy.size() * sizeof(double);
-  const Triangulation result = device_->triangulator.triangulate(std::span<const double>(xy));
-  mesh.write_triangles(result.triangles());
+void Mesher::triangulate(MeshBuffers& mesh, Statistics* statistics) {
+  mesh.triangle_count = 0;  // after an error the mesh has none
+  if (mesh.point_count != 0) mesh.triangle_count = way_->triangulate(mesh, statistics);
 }
 
 }  // namespace cadt::viewer

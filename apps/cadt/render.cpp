@@ -7,6 +7,7 @@
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "progress.hpp"
+#include "render_growth.hpp"
 #include "text.hpp"
 
 #include <cadt/io/generate.hpp>
@@ -32,9 +33,38 @@ struct RenderCommand {
   DeviceOptions device;
   int samples = 2;
   bool dark = false, quiet = false;
+  GrowthOptions growth;
 };
 
+/// With the size, camera and style of the command.
+int run_growth(const RenderCommand& command, const io::PointSet& points, ProgressLine& line) {
+  GrowthView view;
+  std::sscanf(command.size.c_str(), "%dx%d", &view.width, &view.height);
+  view.quiet = command.quiet;
+  view.style.dark = command.dark;
+  view.style.samples = command.samples;
+  view.style.fill = command.style != "wireframe";
+  view.style.points_alone = command.style == "points";
+  view.style.colour = ColourBy::level;
+  for (std::size_t i = 0; i < names_of_colours().size(); ++i)
+    if (names_of_colours()[i] == command.colour) view.style.colour = static_cast<ColourBy>(i);
+  if (!command.camera.empty())
+    view.aim = [&](Camera& camera) {
+      double x = 0, y = 0, zoom = 1;
+      std::sscanf(command.camera.c_str(), "%lf,%lf,%lf", &x, &y, &zoom);
+      camera.look_at(x, y);
+      camera.zoom(zoom, 0.5 * camera.width(), 0.5 * camera.height());
+    };
+  const gl::HeadlessContext context;
+  const int code = render_growth(points, library_options(command.device), command.output, command.growth, view, line);
+  line.clear();
+  if (gl::errors_seen() != 0) throw Failure(exit_internal, "OpenGL reported errors");
+  return code;
+}
+
 int run(const RenderCommand& command) {
+  const bool grows = shows_growth(command.growth, command.output);
+  if (grows || command.growth.timed) check_growth(command.growth, command.output);
   ProgressLine line(command.quiet);
   io::PointSet points;
   if (!command.generate.empty()) {
@@ -44,6 +74,7 @@ int run(const RenderCommand& command) {
   } else {
     points = read_input(command.input);
   }
+  if (grows) return run_growth(command, points, line);
   Options options = library_options(command.device);
   options.order = Order::fast;
   const Triangulation mesh = triangulate(points.view(), options);
@@ -102,13 +133,14 @@ void add_render(CLI::App& app, Action& chosen) {
   command->get_option("IN")->required(false);
   command->add_option("--generate", options->generate, "a point set of cadt generate in place of a file")->type_name("NAME");
   command->add_option("-n", options->n, "number of points of --generate (default: 10000)")->type_name("N");
-  command->add_option("-o,--output", options->output, "file for the picture: .png")->type_name("FILE")->required();
+  command->add_option("-o,--output", options->output, "file for the picture: .png; the growing mesh: .mp4, .webm, .gif, or a folder for frames")->type_name("FILE")->required();
   command->add_option("--size", options->size, "width, or widthxheight, in pixels (default: 1600)")->type_name("WxH");
   command->add_option("--colour,--color", options->colour, "what decides the colour: " + join(names_of_colours(), " "))->type_name("BY");
   command->add_option("--style", options->style, "filled, wireframe or points")->type_name("STYLE");
   command->add_option("--camera", options->camera, "x,y,magnification")->type_name("X,Y,M");
   command->add_option("--samples", options->samples, "along the side of a pixel (default: 2)")->type_name("S");
   command->add_flag("--dark", options->dark, "light on dark");
+  add_growth_options(*command, options->growth);
   add_device_options(*command, options->device);
   command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });

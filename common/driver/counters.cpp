@@ -22,7 +22,8 @@ constexpr std::array<const char*, CADT_TIMERS> timers = {"locate", "lock",      
                                                          "flip",   "neighbors", "other", "wait"};
 
 static_assert(int{CADT_COUNTERS} <= int{CADT_ROW_TIMES} &&
-              CADT_ROW_TIMES + int{CADT_TIMERS} <= int{CADT_COUNTER_STRIDE});
+              CADT_ROW_TIMES + int{CADT_TIMERS} <= int{CADT_ROW_LOST_LOCKS} &&
+              int{CADT_ROW_LOST_LOCKS} < int{CADT_COUNTER_STRIDE});
 static_assert(std::tuple_size_v<decltype(Statistics::flips_per_edge)> == CADT_FLIP_BINS);
 
 /// cadt_flush_exact adds three counts to three words, wherever they are.
@@ -42,9 +43,11 @@ std::size_t rows_used(const Context& ctx) {
 
 }  // namespace
 
-Counters::Counters(Context& ctx) : ctx_(ctx) {
+Counters::Counters(Context& ctx, std::size_t lost_locks) : ctx_(ctx), lost_locks_(lost_locks) {
   if (ctx.options.statistics == StatisticsDetail::none) return;
-  buffer_ = ctx.memory.allocate_zeros(sizeof(std::uint32_t) * CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE);
+  buffer_ = ctx.memory.allocate_zeros(word * (CADT_COUNTER_ROWS * CADT_COUNTER_STRIDE + lost_locks));
+  const std::uint32_t counted = lost_locks != 0 ? 1 : 0;
+  if (counted != 0) ctx.device.write(*buffer_, CADT_ROW_LOST_LOCKS * word, &counted, word);
 }
 
 void Counters::clear() {
@@ -81,6 +84,11 @@ void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) 
   statistics.exact_orientations += sums[CADT_COUNT_EXACT_ORIENTATIONS];
   statistics.exact_incircles += sums[CADT_COUNT_EXACT_INCIRCLES];
   statistics.ties += sums[CADT_COUNT_TIES];
+}
+
+std::vector<std::uint32_t> Counters::lost_locks() const {
+  if (!buffer_ || lost_locks_ == 0) return {};
+  return ctx_.device.read_values(*buffer_, lost_locks_, std::size_t{CADT_COUNTER_ROWS} * CADT_COUNTER_STRIDE);
 }
 
 FlipHistogram::FlipHistogram(Context& ctx, bool wanted) : ctx_(ctx) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "common/driver/context.hpp"
 
@@ -15,16 +16,21 @@ namespace cadt {
 /// null for StatisticsDetail::none.
 class Counters {
  public:
-  explicit Counters(Context& ctx);
+  /// `lost_locks`: triangles for which lost locks are counted, in the timed variant alone
+  /// (common/overlay/lost_locks.dev.h).
+  explicit Counters(Context& ctx, std::size_t lost_locks = 0);
   operator Arg() const noexcept { return buffer_; }  // NOLINT
   /// Forgets what was counted.
   void clear();
   /// Reads the counters and adds all rows to the statistics.
   void collect(Statistics& statistics) const;
+  /// One a triangle; empty if they are not counted.
+  [[nodiscard]] std::vector<std::uint32_t> lost_locks() const;
 
  private:
   Context& ctx_;
   Allocation buffer_;
+  std::size_t lost_locks_;
 };
 
 /// Adds these rows of counters to the statistics.

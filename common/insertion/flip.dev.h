@@ -101,6 +101,7 @@ CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_e
   if (!cadt_is_unlocked(s.lock)) {
     counters->count[CADT_COUNT_LOCK_ATTEMPTS]++; /* an attempt that ends before its first compare-and-swap */
     CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
+    CADT_LOST_LOCK(counters, t);
     CADT_ADD_TIME(counters, CADT_TIME_TEST);
     return CADT_EDGE_CONFLICT;
   }
@@ -115,6 +116,7 @@ CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_e
     counters->count[CADT_COUNT_LOCK_ATTEMPTS]++;
     CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
     if (cadt_is_unlocked(u.lock)) CADT_COUNT_NOW(counters, CADT_COUNT_INVALIDATED);
+    CADT_LOST_LOCK(counters, n);
     CADT_ADD_TIME(counters, CADT_TIME_TEST);
     return CADT_EDGE_CONFLICT;
   }
@@ -144,6 +146,7 @@ CADT_FN cadt_u32 cadt_flip_if_illegal(const cadt_locked_mesh* m, cadt_u32 half_e
   u.n0 = half_edge;
   const cadt_u32 same = cadt_validate(m, t, k, CADT_HALF_EDGES_01, &s); /* both at once: their loads overlap */
   if (!(same & cadt_validate(m, n, j, CADT_HALF_EDGES_01, &u))) {
+    CADT_LOST_LOCK(counters, t);
     cadt_unlock_invalid(m, &locks, counters);
     return CADT_EDGE_CONFLICT;
   }

@@ -82,6 +82,7 @@ class IncrementalInsertion {
   LockedTriangles finish(std::uint64_t edges) {
     certify(edges);
     ctx_.end_phase("certify");
+    show_growth(0, true);
     counters_.collect(ctx_.statistics);
     mesh_.vertex_to_triangle.release();
     for (Allocation& list : deferred_points_) list.release();
@@ -158,16 +159,15 @@ class IncrementalInsertion {
     const unsigned last = inserts_partitions(traits_of(ctx_.device), ctx_.options, n_) ? partition_level : 0;
     for (unsigned level = levels(); level-- > last;) insert_level(level, level == last);
     if (last != 0) insert_partitions();
-    if (deferred_.points != 0 || deferred_.edges != 0) {
-      finish_deferred();
-      show_growth();
-    }
+    if (deferred_.points != 0 || deferred_.edges != 0) finish_deferred();
   }
 
   void insert_level(unsigned level, bool last) {
     // blocks of 2^(level+1) positions that have two halves
     const std::size_t count = (((n_ - 1) >> level) + 1) / 2;
-    const std::size_t limit = points_per_launch(ctx_.device);
+    std::size_t limit = points_per_launch(ctx_.device);
+    if (ctx_.options.tuning.watch && ctx_.options.tuning.watch_points != 0)
+      limit = std::min(limit, ctx_.options.tuning.watch_points);
     for (std::size_t begin = 0; begin < count; begin += limit) {
       const std::size_t size = std::min(limit, count - begin);
       launch_insert(begin, size, level, false);
@@ -181,7 +181,7 @@ class IncrementalInsertion {
       since_poll_ = 0;
       // A few deferred points join the next launch; many would make its walks long.
       take_deferred();
-      show_growth();
+      show_growth(level, false);
       if (deferred_.points > size / 8 + 32 || deferred_.edges > size / 8 + 32) finish_deferred();
       ctx_.check("insert", 0.1 + 0.7 * static_cast<double>(inserted_) / static_cast<double>(n_));
     }
@@ -212,8 +212,15 @@ class IncrementalInsertion {
     }
   }
 
-  void show_growth() {
-    if (ctx_.options.tuning.watch) show_snapshot(ctx_, mesh_.locked, order_);
+  /// `level`: of halving.
+  void show_growth(unsigned level, bool complete) {
+    if (!ctx_.options.tuning.watch) return;
+    Snapshot snapshot;
+    snapshot.level = levels() - level;
+    snapshot.complete = complete;
+    snapshot.waiting_points = deferred_.points;
+    snapshot.waiting_edges = deferred_.edges;
+    show_snapshot(ctx_, mesh_.locked, order_, counters_, snapshot);
   }
 
   /// Moves what the last launches deferred to the lists [1]; the lists [0] are empty then.
@@ -321,7 +328,7 @@ class IncrementalInsertion {
   const SortedPoints& order_;
   std::size_t n_ = order_.distinct;
   std::uint32_t edge_capacity_ = static_cast<std::uint32_t>(n_ / 8 + 4096);
-  Counters counters_{ctx_};
+  Counters counters_{ctx_, counted_lost_locks(ctx_.options, order_)};
   LockedMesh mesh_{ctx_, order_, static_cast<std::uint32_t>(ctx_.options.tuning.stabilize)};
   Allocation deferred_counts_;
   std::array<Allocation, 2> deferred_points_, deferred_edges_;  // [0] is written by the next launch, [1] read by it

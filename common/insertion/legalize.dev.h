@@ -149,6 +149,7 @@ CADT_KERNEL(cadt_legalize_edges, CADT_LOCKED_MESH_PARAMETERS, CADT_GLOBAL const 
             cadt_u32 grain, CADT_GLOBAL cadt_u32* deferred_edges, CADT_GLOBAL cadt_u32* deferred_counts,
             cadt_u32 edge_capacity, CADT_GLOBAL cadt_u32* counter_rows) {
   CADT_GROUP_COUNTERS(counters, counter_rows);
+  CADT_LOST_LOCKS_BEGIN(counters, counter_rows);
   CADT_LOCKED_MESH(mesh);
   const cadt_deferred deferred = {deferred_edges, deferred_counts, edge_capacity};
   CADT_DECLARE_WORKLIST(work);

@@ -28,6 +28,7 @@
 #define CADT_INSERTION_LOCK_H
 
 #include "common/mesh/locked_mesh.dev.h"
+#include "common/overlay/lost_locks.dev.h"
 
 #define CADT_ANY_VERSION 0u
 
@@ -108,6 +109,7 @@ CADT_FN cadt_u32 cadt_try_lock(const cadt_locked_mesh* m, cadt_lock_set* c, cadt
         !cadt_try_lock_one(m->locked[c->triangle[i]].word + CADT_WORD_LOCK, &c->version[i], counters)) {
       cadt_unlock_unchanged(m, c, i);
       CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
+      CADT_LOST_LOCK(counters, c->triangle[i]);
       CADT_ADD_TIME(counters, CADT_TIME_LOCK);
       return 0u;
     }

@@ -90,12 +90,16 @@ CADT_FN cadt_u32 cadt_split_face(const cadt_locked_mesh* m, cadt_u32 i, const ca
   if (!cadt_is_unlocked(s.lock)) {
     counters->count[CADT_COUNT_LOCK_ATTEMPTS]++;
     CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
+    CADT_LOST_LOCK(counters, t);
     return 0u;
   }
   cadt_lock_set locks = {{t, CADT_TRIANGLE_OF(s.n1), CADT_TRIANGLE_OF(s.n2), CADT_NONE},
                          {s.lock, CADT_ANY_VERSION, CADT_ANY_VERSION, 0u}};
   if (!cadt_try_lock(m, &locks, counters)) return 0u;
-  if (!cadt_validate(m, t, 0u, CADT_HALF_EDGES_12, &s)) return cadt_unlock_invalid(m, &locks, counters);
+  if (!cadt_validate(m, t, 0u, CADT_HALF_EDGES_12, &s)) {
+    CADT_LOST_LOCK(counters, t);
+    return cadt_unlock_invalid(m, &locks, counters);
+  }
   cadt_write_face_split(m, i, t, &s, edges, counters);
   cadt_fence_before_unlock();
   cadt_publish_triangle(m, t1);
@@ -188,14 +192,17 @@ CADT_FN cadt_u32 cadt_split_edge(const cadt_locked_mesh* m, cadt_u32 i, const ca
     counters->count[CADT_COUNT_LOCK_ATTEMPTS]++;
     CADT_COUNT_NOW(counters, CADT_COUNT_LOCK_FAILURES);
     CADT_COUNT_NOW(counters, CADT_COUNT_INVALIDATED);
+    CADT_LOST_LOCK(counters, n);
     return 0u;
   }
   const cadt_u32 outer_bc = CADT_NEIGHBOR(s, k1), outer_ad = CADT_NEIGHBOR(u, j1);
   cadt_lock_set locks = {{t, n, CADT_TRIANGLE_OF(outer_bc), CADT_TRIANGLE_OF(outer_ad)},
                          {s.lock, u.lock ? u.lock : 1u, CADT_ANY_VERSION, CADT_ANY_VERSION}};
   if (!cadt_try_lock(m, &locks, counters)) return 0u;
-  if (!cadt_validate(m, t, 0u, CADT_HALF_EDGES_ALL, &s) || !cadt_validate(m, n, 0u, CADT_HALF_EDGES_ALL, &u))
+  if (!cadt_validate(m, t, 0u, CADT_HALF_EDGES_ALL, &s) || !cadt_validate(m, n, 0u, CADT_HALF_EDGES_ALL, &u)) {
+    CADT_LOST_LOCK(counters, t);
     return cadt_unlock_invalid(m, &locks, counters);
+  }
   cadt_write_edge_split(m, i, place, &u, edges, counters);
   cadt_fence_before_unlock();
   cadt_publish_triangle(m, ts);

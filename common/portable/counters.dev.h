@@ -22,6 +22,7 @@ typedef struct {
 #if CADT_TIMED
   cadt_u64 ticks[CADT_TIMERS];
   cadt_u64 last_clock;
+  CADT_GLOBAL cadt_u32* lost_locks; /* a word a triangle, or null (lost_locks.dev.h) */
 #endif
 } cadt_counters;
 
@@ -62,6 +63,7 @@ CADT_FN void cadt_counters_clear(cadt_counters* counters) {
 #if CADT_TIMED
   for (cadt_u32 c = 0; c < CADT_CAST(cadt_u32, CADT_TIMERS); ++c) counters->ticks[c] = 0u;
   counters->last_clock = cadt_clock();
+  counters->lost_locks = 0;
 #endif
 }
 

@@ -209,6 +209,7 @@ enum {
 /* A row of counters: counts, then times. The flip histogram has rows of its own (flip_histogram.dev.h). */
 enum {
   CADT_ROW_TIMES = 20,
+  CADT_ROW_LOST_LOCKS = 31, /* lost_locks.dev.h */
   CADT_FLIP_BINS = 16,
   CADT_COUNTER_STRIDE = 32, /* words a row, so rows do not share cache lines */
   CADT_COUNTER_ROWS = 64,

@@ -69,10 +69,28 @@ struct Progress {
   double fraction;         ///< of the whole work, 0 to 1, never decreasing
 };
 
-/// The mesh between two launches of a running triangulation.
+/// The mesh between two launches of a running triangulation. The spans are valid during the call only.
 struct Snapshot {
-  std::size_t points;                       ///< number of points inserted so far
-  std::span<const std::int32_t> triangles;  ///< n x 3 input indices, counterclockwise; not yet all Delaunay
+  std::size_t points = 0;                        ///< number of points inserted so far
+  std::span<const std::int32_t> triangles = {};  ///< n x 3 input indices, counterclockwise; not yet all Delaunay
+  /// Of insertion, from 1 on: each level has as many points as all before it together, but for the first and the last.
+  /// A large one takes several launches.
+  unsigned level = 0;
+  /// The last snapshot: the legality sweep is over, and these are the triangles of the result.
+  bool complete = false;
+  /// Points and edges that got no locks, or had no place in a worklist, and wait for the next launch.
+  std::uint64_t waiting_points = 0, waiting_edges = 0;
+  /// Work and conflicts of the call up to here; zeros with StatisticsDetail::none. What only the end can tell is not in
+  /// it before `complete`: certified_edges, illegal_edges, certified, flips_per_edge, and times.
+  Statistics statistics = {};
+  /// One a triangle: flips of its three edges, counted as in Statistics::flips_per_edge.
+  std::span<const std::uint32_t> flips = {};
+  /// One a triangle: how often a thread has locked its slot and changed it, by a split or flip of it or beside it.
+  std::span<const std::uint32_t> changes = {};
+  /// One a triangle: attempts to lock its slot that failed. With StatisticsDetail::timing alone, and only where
+  /// Statistics::thread_time is not empty; else empty. They and those of triangles at the hull's outside, which are not
+  /// shown, add up to Statistics::lock_failures.
+  std::span<const std::uint32_t> lost_locks = {};
 };
 
 /// How the work is done: for those who measure, tune or repeat the paper. The mesh does not depend on it, but with
@@ -96,9 +114,12 @@ struct Tuning {
   /// triangles by at most this many degrees. Not negative, not NaN.
   double quality_epsilon = 1e-4;
   /// Called on the calling thread with a copy of the mesh, for pictures: after each launch of a level of points, and
-  /// once more if deferred points were inserted. Costs a copy of the whole mesh each time. The snapshot is valid during
-  /// the call only. Must not throw.
+  /// once more when the mesh is complete. Never for points without triangles. Costs a copy of the whole mesh each time.
+  /// Must not throw.
   std::function<void(const Snapshot&)> watch;
+  /// With `watch`: a launch inserts at most so many points, so a level is seen in several steps, along the curve.
+  /// 0: the library chooses.
+  std::size_t watch_points = 0;
 };
 
 struct Options {

@@ -20,6 +20,7 @@ const Ramp& ramp_for(ColourBy colour) {
       return order;
     case ColourBy::degree:
     case ColourBy::conflicts:
+    case ColourBy::flips:
       return heat;
     case ColourBy::nothing:
     case ColourBy::area:
@@ -40,7 +41,7 @@ const Palette& palette(bool dark) {
 }
 
 const std::vector<std::string>& names_of_colours() {
-  static const std::vector<std::string> names{"nothing", "angle", "area", "order", "height", "degree", "level", "conflicts"};
+  static const std::vector<std::string> names{"nothing", "angle", "area", "order", "height", "degree", "level", "conflicts", "flips"};
   return names;
 }
 

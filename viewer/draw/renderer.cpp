@@ -49,6 +49,7 @@ By by_of(ColourBy colour) {
     case ColourBy::level:
       return by_point;
     case ColourBy::conflicts:
+    case ColourBy::flips:
       return by_triangle;
   }
   return by_nothing;

@@ -18,7 +18,8 @@ enum class ColourBy {
   height,    ///< of the points, with light from the upper left
   degree,    ///< number of triangles around each vertex
   level,     ///< level of insertion of the points
-  conflicts  ///< of each triangle, while it grew
+  conflicts, ///< lost locks of each triangle, while it grew
+  flips      ///< of the edges of each triangle, while it grew
 };
 [[nodiscard]] std::string_view to_string(ColourBy by) noexcept;
 /// All names, in the order of the enumerators.

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_growth.hpp"
+
+#include "failure.hpp"
+#include "interrupt.hpp"
+#include "outputs.hpp"
+#include "text.hpp"
+
+#include <cadt/io/errors.hpp>
+
+#include "viewer/draw/image_file.hpp"
+#include "viewer/draw/palette.hpp"
+#include "viewer/draw/renderer.hpp"
+#include "viewer/growth/recording.hpp"
+#include "viewer/growth/video.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+namespace cadt::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace viewer;
+
+constexpr double final_seconds = 1;     // at the end of a film nothing moves
+constexpr double most_pictures = 9999;  // names of frames have four digits
+
+bool is_folder(const std::string& output) {
+  std::error_code ignored;
+  return output.ends_with('/') || fs::is_directory(output, ignored);
+}
+
+bool is_frame(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  return file.extension() == ".png" && !stem.empty() && std::ranges::all_of(stem, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+std::size_t pictures_of(const GrowthOptions& growth) {
+  return static_cast<std::size_t>(std::max(1.0, std::round(growth.fps * growth.seconds)));
+}
+
+/// Draws snapshots, all with the colours of the complete mesh.
+class GrowthPainter {
+ public:
+  GrowthPainter(const io::PointSet& points, const Recording& recording, const GrowthView& view, int width, int height)
+      : points_(points), recording_(recording), style_(view.style), buffers_(MeshBuffers::with_room(points.xy.size() / 2)) {
+    buffers_.write_points(points.xy);
+    buffers_.box = box_of(points.xy);
+    camera_ = Camera(buffers_.box, width, height);
+    if (view.aim) view.aim(camera_);
+    show(recording.size() - 1);
+    renderer_.fit_ramp(buffers_, style_.colour);
+  }
+
+  Image draw(std::size_t frame) {
+    show(frame);
+    renderer_.draw(buffers_, camera_, style_);
+    return renderer_.read();
+  }
+
+ private:
+  void show(std::size_t frame) {
+    if (shown_ == frame + 1) return;
+    shown_ = frame + 1;
+    buffers_.write_triangles(recording_.triangles(frame));
+    renderer_.set_values(values(frame));
+    renderer_.update(buffers_);
+  }
+
+  std::vector<float> values(std::size_t frame) const {
+    switch (style_.colour) {
+      case ColourBy::level:
+        return {recording_.levels().begin(), recording_.levels().end()};
+      case ColourBy::flips:
+        return recording_.values(frame, GrowthValue::flips);
+      case ColourBy::conflicts:
+        return recording_.values(frame, GrowthValue::lost_locks);
+      case ColourBy::height:
+        return {points_.height.begin(), points_.height.end()};
+      case ColourBy::degree: {
+        std::vector<float> degrees(points_.xy.size() / 2);
+        for (const std::int32_t v : recording_.triangles(frame)) ++degrees[static_cast<std::size_t>(v)];
+        return degrees;
+      }
+      default:
+        return {};
+    }
+  }
+
+  const io::PointSet& points_;
+  const Recording& recording_;
+  Style style_;
+  Renderer renderer_;
+  MeshBuffers buffers_;
+  Camera camera_;
+  std::size_t shown_ = 0;  ///< one more than the frame in the buffers
+};
+
+void paste(Image& sheet, const Image& picture, int left, int top) {
+  for (int y = 0; y < picture.height; ++y) {
+    const auto from = picture.rgba.begin() + std::ptrdiff_t{4} * y * picture.width;
+    std::copy_n(from, std::ptrdiff_t{4} * picture.width,
+                sheet.rgba.begin() + std::ptrdiff_t{4} * ((top + y) * std::ptrdiff_t{sheet.width} + left));
+  }
+}
+
+std::vector<std::string> row_of(const Recording& recording, std::size_t frame) {
+  const GrowthCounters& c = recording.counters(frame);
+  return {std::to_string(c.level),      std::to_string(c.points),          std::to_string(c.triangles),
+          std::to_string(c.flips),      std::to_string(c.lost_locks),      std::to_string(c.deferred_points),
+          std::to_string(c.waiting_edges), std::to_string(recording.illegal_edges(frame))};
+}
+
+/// One picture of several snapshots, in rows, and their counters on standard output.
+void write_sheet(const io::PointSet& points, const Recording& recording, const std::string& output, int panels,
+                 const GrowthView& view) {
+  const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(panels))));
+  const int rows = (panels + columns - 1) / columns, gap = std::max(2, view.width / 100);
+  const int width = (view.width - gap * (columns - 1)) / columns;
+  const int height = view.height == 0 ? Camera::height_for(box_of(points.xy), width, 4000) : (view.height - gap * (rows - 1)) / rows;
+  if (width < 1 || height < 1) throw Failure(exit_usage, fmt::format("--size: there is no room for {} pictures", panels));
+  Image sheet{columns * width + gap * (columns - 1), rows * height + gap * (rows - 1), {}};
+  const std::uint32_t background = palette(view.style.dark).background;
+  for (int i = 0; i < sheet.width * sheet.height; ++i)
+    for (const int byte : {16, 8, 0, -1}) sheet.rgba.push_back(byte < 0 ? 255 : static_cast<std::uint8_t>(background >> byte));
+  GrowthPainter painter(points, recording, view, width, height);
+  std::vector<std::vector<std::string>> lines{
+      {"picture", "level", "points", "triangles", "flips", "lost locks", "deferred points", "waiting edges", "illegal edges"}};
+  const auto all = static_cast<double>(recording.counters(recording.size() - 1).points);
+  for (int k = 0; k < panels; ++k) {
+    check_interrupt();
+    // Points as squares: 1/16, 1/4, 9/16 and all for four pictures.
+    const double share = (k + 1.0) / panels;
+    const std::size_t frame = k + 1 == panels ? recording.size() - 1 : recording.frame_with_points(share * share * all);
+    paste(sheet, painter.draw(frame), (width + gap) * (k % columns), (height + gap) * (k / columns));
+    std::vector<std::string> line = row_of(recording, frame);
+    line.insert(line.begin(), std::to_string(k + 1));
+    lines.push_back(std::move(line));
+  }
+  write_png(output, sheet);
+  if (!view.quiet) print(table(lines));
+}
+
+/// The frames of a film, in turn; equal ones are drawn once.
+template <class Write>
+void each_picture(const Recording& recording, const GrowthOptions& growth, GrowthPainter& painter, ProgressLine& line, Write&& write) {
+  const std::size_t count = pictures_of(growth);
+  const double moving = std::max(1.0, static_cast<double>(count) - std::min(final_seconds * growth.fps, 0.25 * static_cast<double>(count)));
+  Image picture;
+  std::size_t drawn = recording.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    check_interrupt();
+    const std::size_t frame = count == 1 ? recording.size() - 1 : recording.frame_at(static_cast<double>(i) / moving);
+    if (frame != drawn) picture = painter.draw(frame);
+    drawn = frame;
+    write(i, picture);
+    line.step(fmt::format("picture {} of {}", i + 1, count));
+  }
+}
+
+}  // namespace
+
+void add_growth_options(CLI::App& command, GrowthOptions& options) {
+  command.add_option("--growth", options.panels, "so many snapshots of the growing mesh side by side, up to the complete one")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100));
+  const auto timed = [&options](double& value) {
+    return [&options, &value](const double& given) {
+      value = given;
+      options.timed = true;
+    };
+  };
+  command.add_option_function<double>("--fps", timed(options.fps), "film or frames: pictures a second (default: 30)")
+      ->type_name("F")
+      ->check(CLI::Range(1.0, 240.0));
+  command.add_option_function<double>("--seconds", timed(options.seconds), "film or frames: how long it is (default: 8)")
+      ->type_name("S")
+      ->check(CLI::Range(0.1, 3600.0));
+}
+
+bool shows_growth(const GrowthOptions& options, const std::string& output) {
+  return options.panels != 0 || is_video(output) || is_folder(output);
+}
+
+void check_growth(const GrowthOptions& options, const std::string& output) {
+  const bool film = is_video(output), folder = is_folder(output);
+  if (options.panels != 0 && (film || folder))
+    throw Failure(exit_usage, "--growth is for a picture, as in -o growth.png; a film or a folder of frames shows all snapshots without it");
+  if (options.timed && !film && !folder)
+    throw Failure(exit_usage, "--fps and --seconds are for a film or its frames: -o growth.mp4, .webm, .gif or a folder, as in -o frames/");
+  if ((film || folder) && options.fps * options.seconds > most_pictures)
+    throw Failure(exit_usage, fmt::format("--fps times --seconds is {:.0f} pictures; take at most {:.0f}", options.fps * options.seconds, most_pictures));
+  if (film) {
+    require_writable(output);
+    if (!has_ffmpeg())
+      throw io::FileError(output, 0, "needs the program ffmpeg, which is not on the path: install it, or write the frames as pictures, as in -o frames/");
+    return;
+  }
+  if (!folder) {
+    require_writable(output);
+    return;
+  }
+  std::error_code code;
+  fs::create_directories(output, code);
+  if (code) throw io::FileError(output, 0, "cannot be made: " + code.message());
+  for (const fs::directory_entry& entry : fs::directory_iterator(output))
+    if (is_frame(entry.path()))
+      throw io::FileError(output, 0, "has frames already, which would mix with the new ones: name another folder, or remove them");
+}
+
+int render_growth(const io::PointSet& points, const Options& options, const std::string& output,
+                  const GrowthOptions& growth, const GrowthView& view, ProgressLine& line) {
+  const InPhase phase(Phase::cooperative);
+  Options with = options;
+  with.stop = interrupt_token();
+  with.progress = [&line](const Progress& progress) { line.update(progress); };
+  if (view.style.colour == ColourBy::conflicts) with.statistics = StatisticsDetail::timing;
+  RecordingLimits limits;
+  limits.steps = growth.panels != 0 ? 64 : pictures_of(growth);
+  line.start(points.xy.size() / 2);
+  const Recording recording(points.xy, with, limits);
+  if (recording.size() == 0)
+    throw Failure(exit_degenerate, "there is nothing that grows: the points are fewer than three, or on one line");
+  if (view.style.colour == ColourBy::conflicts && recording.values(recording.size() - 1, GrowthValue::lost_locks).empty())
+    throw Failure(exit_device, "this device does not count lost locks by triangle: take --backend host, or --colour flips");
+  if (recording.dropped() != 0 && !view.quiet)
+    say(fmt::format("cadt: note: {} snapshots had no room in {} and are left out\n", recording.dropped(), human_bytes(limits.most_bytes)));
+  line.step("drawing");
+  if (growth.panels != 0) {
+    write_sheet(points, recording, output, growth.panels, view);
+    return exit_done;
+  }
+  const int width = std::max(2, view.width & ~1);  // most films need even sizes
+  const int height = std::max(2, (view.height == 0 ? Camera::height_for(box_of(points.xy), width, 4000) : view.height) & ~1);
+  GrowthPainter painter(points, recording, view, width, height);
+  if (!is_video(output)) {
+    each_picture(recording, growth, painter, line, [&](std::size_t i, const Image& picture) {
+      write_png((fs::path(output) / fmt::format("{:04}.png", i + 1)).string(), picture);
+    });
+    return exit_done;
+  }
+  Video video(output, width, height, growth.fps);
+  each_picture(recording, growth, painter, line, [&](std::size_t, const Image& picture) { video.write(picture); });
+  video.finish();
+  return exit_done;
+}
+
+}  // namespace cadt::cli

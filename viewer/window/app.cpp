@@ -59,6 +59,8 @@ void App::run() {
     }
     loading.abandon();
     asking.abandon();
+    editing.reset();
+    growing.reset();
     const bool errors = scene != nullptr && !again && gl::errors_seen() != 0;
     scene.reset();
     window.reset();
@@ -74,6 +76,10 @@ void App::session() {
   window->listen(events_for(*this));
   look_ = {-1, -1, -1, -1};
   loaded.reset();
+  selection = {};
+  hovered.reset();
+  selected.reset();
+  selected_place.reset();
   values_of_.reset();
   diagram_.reset();
   drawn_.clear();
@@ -83,14 +89,17 @@ void App::session() {
   restart_asked_ = true;
   int frames = 2;  // ImGui needs a second one for what follows from the first
   while (!window->should_close()) {
-    const bool busy = loading.running() || asking.running() || !settled_ || Clock::now() < toast_until_;
-    if (window->wait(!window->visible() ? -1 : frames > 0 ? 0 : busy ? busy_wait : -1)) frames = 3;
+    const bool busy = loading.running() || asking.running() || !settled_ || points_stale_ || Clock::now() < toast_until_;
+    if (window->wait(!window->visible() ? -1 : frames > 0 || animated() ? 0 : busy ? busy_wait : -1)) frames = 3;
     if (window->lost()) throw ContextLost("the driver was reset");
-    std::exception_ptr error;
-    if (loading.finished(error)) finish_loading(error);
-    if (asking.finished(error)) finish_asking(error);
-    if (restart_asked_ && !loading.running()) start_loading();
-    ask_next();
+    guarded([&] {
+      std::exception_ptr error;
+      if (loading.finished(error)) finish_loading(error);
+      if (asking.finished(error)) finish_asking(error);
+      if (restart_asked_ && !loading.running()) start_loading();
+      advance();
+      ask_next();
+    });
     if (!window->visible()) continue;
     frame();
     if (frames > 0) --frames;
@@ -163,13 +172,33 @@ void App::start_loading() {
 }
 
 void App::finish_loading(const std::exception_ptr& error) {
+  const auto coming = std::exchange(coming_, nullptr);
+  const auto recorded = std::exchange(recorded_, nullptr);
   if (restart_asked_) return;  // by something newer
+  if (error) std::rethrow_exception(error);
+  if (coming != nullptr) show(*coming);
+  if (recorded != nullptr) finish_recording(*recorded);
+}
+
+void App::guarded(const std::function<void()>& action) noexcept {
   try {
-    if (error) std::rethrow_exception(error);
-    show(*std::exchange(coming_, nullptr));
+    action();
   } catch (...) {
     report(explain(std::current_exception()));
   }
+}
+
+bool App::animated() const { return (growing && growing->playback.playing()) || (editing != nullptr && editing->moving); }
+
+void App::advance() {
+  const auto now = Clock::now();
+  const double seconds = std::chrono::duration<double>(now - last_frame_).count();
+  last_frame_ = now;
+  if (growing) advance_growing(seconds);
+  if (editing != nullptr) advance_editing(seconds);
+  // After a pause what was edited comes to the host, if something there needs it.
+  if (editing != nullptr && points_stale_ && !editing->moving && !editing->held && now - edited_ > std::chrono::milliseconds(300))
+    take_points_back();
 }
 
 void App::report(const Message& what) {
@@ -186,6 +215,9 @@ void App::show_toast(std::string text) {
 void App::show(const std::shared_ptr<Loaded>& next) {
   Scene& s = *scene;
   const auto begin = Clock::now();
+  editing.reset();
+  growing.reset();
+  points_stale_ = false;
   s.mesh = {};  // first: both may not fit
   if (next->mesh) {
     s.mesh = MeshBuffers::copy(next->points.xy, next->mesh->triangles());
@@ -196,7 +228,7 @@ void App::show(const std::shared_ptr<Loaded>& next) {
     s.mesh.bytes_through_host = 0;  // the points of a file come from there; what counts is the mesh
     s.mesher->options() = options.compute;
     const auto start = Clock::now();
-    s.mesher->triangulate(s.mesh);
+    s.mesher->triangulate(s.mesh, &next->statistics);
     triangulate_milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     next->device = s.mesher->device();
   }
@@ -204,10 +236,11 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   loaded = next;
   hovered.reset();
   diagram_.reset();
-  voronoi_of_.clear();
   voronoi_note.clear();
   degrees_.clear();
-  if (!same) view.show(s.mesh.box, !loaded->heights.empty());
+  if (!same) view.show(s.mesh.box, s.mesh.point_count, !loaded->heights.empty());
+  view.colours = loaded->heights.empty() ? View::usual_colours() : View::colours_with_heights();
+  if (std::find(view.colours.begin(), view.colours.end(), view.colour) == view.colours.end()) view.colour = ColourBy::area;
   if (!same && !colour_chosen_) view.colour = loaded->heights.empty() ? ColourBy::area : ColourBy::height;
   s.renderer.update(s.mesh);
   mark({});
@@ -239,6 +272,10 @@ void App::ask(Command command) {
         panel_focused = false;
       else if (!selection.empty())
         mark({});
+      else if (growing)
+        stop_growing();
+      else if (editing != nullptr)
+        stop_editing();
       return;
     case Command::quit:
       window->close();
@@ -274,6 +311,19 @@ void App::ask(Command command) {
     case Command::screenshot:
     case Command::screenshot_of_window:
       screenshot_ = command;
+      return;
+    case Command::grow:
+    case Command::play:
+    case Command::step:
+    case Command::back:
+    case Command::faster:
+    case Command::slower:
+      grow_command(command);
+      return;
+    case Command::edit:
+    case Command::next_tool:
+    case Command::move_points:
+      edit_command(command);
       return;
     default:
       return;

@@ -5,6 +5,9 @@
 
 #include "viewer/draw/renderer.hpp"
 #include "viewer/gl/errors.hpp"
+#include "viewer/growth/playback.hpp"
+#include "viewer/growth/recording.hpp"
+#include "viewer/live/live_points.hpp"
 #include "viewer/mesh/mesher.hpp"
 #include "viewer/window/facts.hpp"
 #include "viewer/window/message.hpp"
@@ -49,6 +52,34 @@ struct Scene {
   std::unique_ptr<Mesher> mesher;  ///< where the device writes OpenGL's buffers; else null, and `Work` makes the mesh
 };
 
+/// The mesh as it grows: one snapshot of a recording after the other is in OpenGL's buffers.
+struct Growing {
+  std::shared_ptr<const Recording> recording;
+  Playback playback;
+  double speed = 8;  ///< snapshots a second
+  std::optional<std::size_t> shown;
+  std::vector<std::optional<std::uint64_t>> illegal_edges;  ///< of each snapshot; found when it is looked at for a while
+};
+
+/// What the mouse does to points.
+enum class Tool { drag, paint, erase };
+
+/// Points that are edited or move; the mesh is made anew for each picture.
+struct Editing {
+  std::unique_ptr<Mesher> own;  ///< where the scene has none
+  Mesher* mesher = nullptr;
+  std::unique_ptr<LivePoints> points;
+  Tool tool = Tool::drag;
+  Motion motion = Motion::flow;
+  bool moving = false;
+  float brush = 30;  ///< radius, pixels
+  int amount = 40;   ///< points of a dab of paint
+  std::optional<std::size_t> held;
+  bool changed = false;  ///< the triangles are of other points
+  double mesh_milliseconds = 0, frame_milliseconds = 0;
+  std::chrono::steady_clock::time_point last;
+};
+
 class App {
  public:
   explicit App(ViewOptions options);
@@ -68,6 +99,8 @@ class App {
   std::optional<Message> message;
   std::string toast, voronoi_note, interop_reason;
   bool panel_shown = true, panel_focused = false, help_shown = false, search_shown = false;
+  std::optional<Growing> growing;
+  std::unique_ptr<Editing> editing;
   double picture_milliseconds = 0, triangulate_milliseconds = 0;
   std::unique_ptr<Window> window;
   std::unique_ptr<Scene> scene;
@@ -85,7 +118,19 @@ class App {
   [[nodiscard]] std::string way_text() const;
   [[nodiscard]] bool toast_shown() const { return std::chrono::steady_clock::now() < toast_until_; }
 
+  /// A snapshot of the recording; pauses.
+  void show_snapshot(std::size_t which);
+  void choose_tool(Tool tool);
+  /// Whether something moves by itself.
+  [[nodiscard]] bool animated() const;
+
   // ---- what the input calls ----
+  /// Runs it; what it throws becomes a message.
+  void guarded(const std::function<void()>& action) noexcept;
+  /// Tools: press, move, release. False: there is nothing to edit here.
+  bool press(double x, double y);
+  void drag_to(double x, double y);
+  void release();
   void select_at(double x, double y);
   void hover(double x, double y);
   [[nodiscard]] bool over_mesh(double x, double y) const;
@@ -108,21 +153,38 @@ class App {
   void say(const std::string& text);
   void report(const Message& what);
   void show_toast(std::string text);
+  void advance();
+  void grow_command(Command command);
+  void edit_command(Command command);
+  void start_growing();
+  void finish_recording(const std::shared_ptr<const Recording>& recording);
+  void stop_growing();
+  void advance_growing(double seconds);
+  void upload_snapshot();
+  [[nodiscard]] std::vector<float> growth_values() const;
+  void start_editing();
+  void stop_editing();
+  void advance_editing(double seconds);
+  void points_changed();
+  void take_points_back();
   void save_screenshot(int width, int height);
   [[nodiscard]] std::vector<double> signature(int samples) const;
 
   struct Asked;  ///< what the thread of `asking` brings
   std::shared_ptr<Asked> asked_;
   std::shared_ptr<std::shared_ptr<Loaded>> coming_;  ///< what the thread of `loading` brings
+  std::shared_ptr<std::shared_ptr<const Recording>> recorded_;
+  ColourBy before_growing_ = ColourBy::area;
+  std::optional<ColourBy> ramp_of_growth_;
   Triangulators triangulators_;
   std::shared_ptr<const VoronoiDiagram> diagram_;
-  std::vector<double> voronoi_of_;         ///< the view whose lines are in strokes_
   std::optional<ColourBy> values_of_;      ///< whose values and ends the renderer has
   std::vector<float> degrees_;
-  std::vector<Stroke> strokes_;
+  std::array<Stroke, 2> strokes_;          ///< hull, Voronoi cells
   int version_ = 0;  ///< counts changes of mesh, values and strokes
   std::vector<double> drawn_;
-  std::chrono::steady_clock::time_point changed_, toast_until_;
+  bool points_stale_ = false;  ///< loaded->points are not those that are drawn
+  std::chrono::steady_clock::time_point last_frame_, edited_, changed_, toast_until_;
   bool colour_chosen_ = false, settled_ = true, restart_asked_ = false;
   std::optional<Command> screenshot_;
   std::array<float, 4> look_{-1, -1, -1, -1};

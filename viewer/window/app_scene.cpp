@@ -40,7 +40,8 @@ struct App::Asked {
 };
 
 void App::ask_next() {
-  if (asking.running() || loading.running() || loaded == nullptr || scene == nullptr) return;
+  if (asking.running() || loading.running() || loaded == nullptr || scene == nullptr || growing || points_stale_) return;
+  if (editing != nullptr && editing->moving) return;
   if (scene->mesh.triangle_count == 0) return;
   const auto asked = std::make_shared<Asked>();
   asked->of = loaded;
@@ -95,25 +96,34 @@ void App::finish_asking(const std::exception_ptr& error) {
 void App::update_colour() {
   if (values_of_ == view.colour) return;
   Renderer& r = scene->renderer;
-  if (view.colour == ColourBy::height)
+  if (growing && ramp_of_growth_ != view.colour) {
+    // The ends are those of the complete mesh, so that colours mean the same in each snapshot.
+    const double position = growing->playback.position();
+    growing->playback.seek(growing->playback.last());
+    upload_snapshot();
+    r.set_values(growth_values());
+    r.fit_ramp(scene->mesh, view.colour);
+    ramp_of_growth_ = view.colour;
+    growing->playback.seek(position);
+    upload_snapshot();
+  }
+  if (growing)
+    r.set_values(growth_values());
+  else if (view.colour == ColourBy::height)
     r.set_values(loaded->heights);
   else if (view.colour == ColourBy::degree)
     r.set_values(degrees_);
-  if (scene->mesh.triangle_count != 0 && !(view.colour == ColourBy::degree && degrees_.empty()))
+  if (!growing && scene->mesh.triangle_count != 0 && !(view.colour == ColourBy::degree && degrees_.empty()))
     r.fit_ramp(scene->mesh, view.colour);
   values_of_ = view.colour;
   ++version_;
 }
 
 void App::update_strokes() {
-  strokes_.clear();
-  voronoi_of_.clear();
+  for (Stroke& stroke : strokes_) stroke.segments.clear();
   ++version_;
-  if (loaded == nullptr || !loaded->mesh) return;
-  if (view.hull) {
-    strokes_.push_back({hull_segments(loaded->points.xy, loaded->mesh->hull()), palette(view.dark).hull,
-                        static_cast<float>(1.6 * view.scale)});
-  }
+  if (loaded == nullptr || !loaded->mesh || points_stale_) return;
+  if (view.hull) strokes_[0].segments = hull_segments(loaded->points.xy, loaded->mesh->hull());
 }
 
 std::vector<double> App::signature(int samples) const {
@@ -142,17 +152,15 @@ void App::draw_mesh() {
   if (picture_milliseconds > slow_picture && Clock::now() - changed_ < std::chrono::milliseconds(150)) style.samples = 1;
   settled_ = style.samples == most;
   if (!moved && !settled_) return;
-  if (view.voronoi && diagram_ != nullptr) {
+  strokes_[0].colour = palette(view.dark).hull;
+  strokes_[0].width = static_cast<float>(1.6 * view.scale);
+  strokes_[1].segments.clear();
+  voronoi_note.clear();
+  if (view.voronoi && diagram_ != nullptr && !growing && !points_stale_) {
     VoronoiLines lines = voronoi_lines(loaded->points.xy, *diagram_, view.camera, most_voronoi_lines);
-    voronoi_note = lines.segments.empty() && lines.in_view > 0
-                       ? fmt::format("{} edges in view: zoom in", number_text(lines.in_view))
-                       : "";
-    strokes_.resize(view.hull && loaded->mesh ? 1 : 0);
-    strokes_.push_back({std::move(lines.segments), view.dark ? voronoi_colour_dark : voronoi_colour,
-                        static_cast<float>(1.2 * view.scale)});
+    if (lines.segments.empty() && lines.in_view > 0) voronoi_note = fmt::format("{} edges in view: zoom in", number_text(lines.in_view));
+    strokes_[1] = {std::move(lines.segments), view.dark ? voronoi_colour_dark : voronoi_colour, static_cast<float>(1.2 * view.scale)};
   }
-  for (Stroke& stroke : strokes_)
-    if (&stroke == &strokes_.front() && view.hull) stroke.colour = palette(view.dark).hull;
   const auto begin = Clock::now();
   scene->renderer.draw(scene->mesh, view.camera, style, strokes_);
   glFinish();
@@ -170,7 +178,7 @@ TriangleFacts App::facts(std::size_t triangle) const {
     places[k] = {xy[0], xy[1]};
   }
   TriangleFacts facts = facts_of(triangle, {corners[0], corners[1], corners[2]}, places);
-  if (loaded->mesh) {
+  if (loaded->mesh && !growing && !points_stale_) {
     const auto all = loaded->mesh->neighbors();
     facts.neighbours = {all[3 * triangle], all[3 * triangle + 1], all[3 * triangle + 2]};
   }

@@ -18,22 +18,6 @@ namespace {
 constexpr ImGuiWindowFlags card_flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
                                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
 
-/// A card whose place of the mesh's picture (0 to 1) is the same place of it.
-void begin_card(const App& app, const char* name, float x, float y, float width, ImGuiWindowFlags flags = 0) {
-  const float scale = static_cast<float>(app.view.scale), gap = 16 * scale;
-  const float w = static_cast<float>(app.view.camera.width()), h = static_cast<float>(app.view.camera.height());
-  ImGui::SetNextWindowPos({gap + x * (w - 2 * gap), gap + y * (h - 2 * gap)}, ImGuiCond_Always, {x, y});
-  const float wide = std::min(width * scale, w - 2 * gap);
-  if (width > 0) ImGui::SetNextWindowSizeConstraints({wide, 0}, {wide, h - 2 * gap});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 9 * scale);
-  ImGui::Begin(name, nullptr, (card_flags | flags) & ~(flags & ImGuiWindowFlags_NoNav));
-}
-
-void end_card() {
-  ImGui::End();
-  ImGui::PopStyleVar();
-}
-
 void title(const std::string& text) {
   ImGui::PushFont(title_font());
   ImGui::TextUnformatted(text.c_str());
@@ -43,7 +27,7 @@ void title(const std::string& text) {
 void draw_progress(App& app, Work& work) {
   const Work::State state = work.state();
   if (state.seconds < 0.2) return;
-  begin_card(app, "##progress", 0.5f, 1.0f, 380);
+  begin_card(app, "##progress", 0.5f, app.growing ? 0.8f : 1.0f, 380);
   title(state.stopping ? "Stopping ..." : "Working");
   const std::string text = state.phase + (state.fraction >= 0 ? fmt::format(", {:.0f} %", 100 * state.fraction) : "") +
                            fmt::format(", {:.0f} s", state.seconds);
@@ -60,7 +44,7 @@ void draw_progress(App& app, Work& work) {
 }
 
 void draw_message(App& app) {
-  begin_card(app, "##message", 0.5f, 0.4f, 500, ImGuiWindowFlags_None);
+  begin_card(app, "##message", 0.5f, 0.4f, 500);
   if (app.message->error)
     ImGui::PushStyleColor(ImGuiCol_Text, app.view.dark ? ImVec4(1.0f, 0.62f, 0.5f, 1) : ImVec4(0.68f, 0.16f, 0.08f, 1));
   title(app.message->title);
@@ -132,7 +116,7 @@ void draw_help(App& app) {
 }
 
 void draw_toast(App& app) {
-  begin_card(app, "##toast", 0.0f, 1.0f, 0, ImGuiWindowFlags_NoInputs);
+  begin_card(app, "##toast", 0.0f, app.growing ? 0.8f : 1.0f, 0, false);
   ImGui::TextUnformatted(app.toast.c_str());
   end_card();
 }
@@ -147,12 +131,27 @@ void draw_hint(App& app) {
     text = app.scene->mesh.point_count < 3 ? "Fewer than three points have no triangle."
                                            : "There is no triangle: all points lie on one line, or are equal.";
   if (text.empty()) return;
-  begin_card(app, "##hint", 0.5f, 0.0f, 0, ImGuiWindowFlags_NoInputs);
+  begin_card(app, "##hint", 0.5f, 0.0f, 0, false);
   ImGui::TextUnformatted(text.c_str());
   end_card();
 }
 
 }  // namespace
+
+void begin_card(const App& app, const char* name, float x, float y, float width, bool inputs) {
+  const float scale = static_cast<float>(app.view.scale), gap = 16 * scale;
+  const float w = static_cast<float>(app.view.camera.width()), h = static_cast<float>(app.view.camera.height());
+  ImGui::SetNextWindowPos({gap + x * (w - 2 * gap), gap + y * (h - 2 * gap)}, ImGuiCond_Always, {x, y});
+  const float wide = std::min(width * scale, w - 2 * gap);
+  if (width > 0) ImGui::SetNextWindowSizeConstraints({wide, 0}, {wide, h - 2 * gap});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 9 * scale);
+  ImGui::Begin(name, nullptr, card_flags | (inputs ? ImGuiWindowFlags_None : ImGuiWindowFlags_NoInputs));
+}
+
+void end_card() {
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
 
 void draw_cards(App& app) {
   if (app.scene == nullptr) {
@@ -162,6 +161,7 @@ void draw_cards(App& app) {
     return;
   }
   draw_hint(app);
+  if (app.growing) draw_timeline(app);
   if (app.toast_shown()) draw_toast(app);
   if (app.loading.running())
     draw_progress(app, app.loading);

@@ -44,7 +44,7 @@ TriangleFacts facts_of(std::size_t index, const std::array<std::int32_t, 3>& poi
   return facts;
 }
 
-std::string text_of(const Place& place) { return fmt::format("{}, {}", place[0], place[1]); }
+std::string text_of(const Place& place) { return fmt::format("{}\n{}", place[0], place[1]); }
 
 std::vector<std::pair<std::string, std::string>> lines_of(const TriangleFacts& facts) {
   std::vector<std::pair<std::string, std::string>> lines;
@@ -60,7 +60,7 @@ std::vector<std::pair<std::string, std::string>> lines_of(const TriangleFacts& f
     }
   }
   lines.emplace_back("neighbours", neighbours);
-  lines.emplace_back("circumcentre", facts.circle ? fmt::format("{:.9g}, {:.9g}", facts.circle->centre[0], facts.circle->centre[1])
+  lines.emplace_back("circumcentre", facts.circle ? fmt::format("{:.12g}\n{:.12g}", facts.circle->centre[0], facts.circle->centre[1])
                                                   : "beyond the largest double");
   if (facts.circle) lines.emplace_back("circumradius", fmt::format("{:.6g}", facts.circle->radius));
   lines.emplace_back("smallest angle", fmt::format("{:.2f} degrees", facts.smallest_angle));

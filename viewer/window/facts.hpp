@@ -37,7 +37,7 @@ struct TriangleFacts {
 
 /// Names and values for the panel. Coordinates have all digits that they have.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> lines_of(const TriangleFacts& facts);
-/// The shortest decimals that read back to the same doubles.
+/// The shortest decimals that read back to the same doubles, one a line.
 [[nodiscard]] std::string text_of(const Place& place);
 
 /// The part of a circle that can be seen, as a polyline in pixels. A circle of any size: of a very large one the arc

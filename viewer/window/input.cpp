@@ -16,7 +16,7 @@ namespace {
 constexpr double click_reach = 4;
 
 struct Drag {
-  bool down = false, moved = false;
+  bool down = false, moved = false, edits = false;
   double x = 0, y = 0;
 };
 
@@ -29,7 +29,7 @@ Events events_for(App& app) {
   Events events;
   events.character = [&app](char32_t c) {
     if (ImGui::GetIO().WantTextInput || (app.panel_focused && c == U' ')) return;
-    if (const auto command = command_of(c)) app.ask(*command);
+    if (const auto command = command_of(c)) app.guarded([&] { app.ask(*command); });
   };
   events.key = [&app](int key, int modifiers, bool) {
     const bool moves = key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT || key == GLFW_KEY_UP || key == GLFW_KEY_DOWN ||
@@ -37,20 +37,30 @@ Events events_for(App& app) {
     if (moves && (ImGui::GetIO().WantTextInput || app.panel_focused)) return;
     // Esc in a field of the panel ends the input, and nothing else.
     if (key == GLFW_KEY_ESCAPE && ImGui::GetIO().WantTextInput && !app.search_shown) return;
-    if (const auto command = command_of(Key{key, modifiers & control})) app.ask(*command);
+    if (const auto command = command_of(Key{key, modifiers & control})) app.guarded([&] { app.ask(*command); });
   };
   events.button = [&app, drag](int button, bool down, int, double x, double y) {
-    if (button != GLFW_MOUSE_BUTTON_LEFT && button != GLFW_MOUSE_BUTTON_MIDDLE) return;
+    const bool left = button == GLFW_MOUSE_BUTTON_LEFT;
     if (down) {
-      *drag = {!ImGui::GetIO().WantCaptureMouse && app.over_mesh(x, y), false, x, y};
+      *drag = {!ImGui::GetIO().WantCaptureMouse && app.over_mesh(x, y), false, false, x, y};
+      if (drag->down && left) app.guarded([&] { drag->edits = app.press(x, y); });
       return;
     }
-    if (drag->down && !drag->moved && button == GLFW_MOUSE_BUTTON_LEFT) app.select_at(x, y);
-    drag->down = false;
+    app.guarded([&] {
+      if (drag->edits)
+        app.release();
+      else if (drag->down && !drag->moved && left)
+        app.select_at(x, y);
+    });
+    drag->down = drag->edits = false;
   };
   events.move = [&app, drag](double x, double y) {
     if (!drag->down) {
-      if (!ImGui::GetIO().WantCaptureMouse) app.hover(x, y);
+      if (!ImGui::GetIO().WantCaptureMouse) app.guarded([&] { app.hover(x, y); });
+      return;
+    }
+    if (drag->edits) {
+      app.guarded([&] { app.drag_to(x, y); });
       return;
     }
     if (!drag->moved && std::hypot(x - drag->x, y - drag->y) < click_reach * app.view.scale) return;
@@ -70,7 +80,7 @@ Events events_for(App& app) {
     } else {
       app.view.wheel(dy, x, y);
     }
-    app.hover(x, y);
+    app.guarded([&] { app.hover(x, y); });
   };
   return events;
 }

@@ -21,35 +21,6 @@ namespace {
 
 float scale_of(const App& app) { return static_cast<float>(app.view.scale); }
 
-bool begin_rows(const char* name, float scale) {
-  if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingStretchProp)) return false;
-  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 118 * scale);
-  ImGui::TableSetupColumn("");
-  return true;
-}
-
-void row(const std::string& name, const std::string& value) {
-  ImGui::TableNextRow();
-  ImGui::TableNextColumn();
-  ImGui::TextDisabled("%s", name.c_str());
-  ImGui::TableNextColumn();
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(value.c_str());
-  ImGui::PopTextWrapPos();
-}
-
-bool section(const char* name, bool open) {
-  ImGui::Spacing();
-  return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
-}
-
-void begin_field(const App& app, const char* name) {
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("%s", name);
-  ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + 112 * scale_of(app));
-  ImGui::SetNextItemWidth(-1);
-}
-
 /// A field whose value is one of a list; true: another one was chosen.
 template <class Names>
 bool choice(const App& app, const char* name, std::size_t& chosen, const Names& names) {
@@ -167,7 +138,9 @@ std::string words_for(ColourBy by) {
     case ColourBy::level:
       return "insertion level";
     case ColourBy::conflicts:
-      return "conflicts";
+      return "lost locks";
+    case ColourBy::flips:
+      return "flips";
   }
   return "";
 }
@@ -319,6 +292,35 @@ void draw_facts(App& app) {
 
 }  // namespace
 
+bool begin_rows(const char* name, float scale) {
+  if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingStretchProp)) return false;
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 112 * scale);
+  ImGui::TableSetupColumn("");
+  return true;
+}
+
+void row(const std::string& name, const std::string& value) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextDisabled("%s", name.c_str());
+  ImGui::TableNextColumn();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(value.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+bool section(const char* name, bool open) {
+  ImGui::Spacing();
+  return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
+}
+
+void begin_field(const App& app, const char* name) {
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", name);
+  ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + 112 * static_cast<float>(app.view.scale));
+  ImGui::SetNextItemWidth(-1);
+}
+
 void draw_panel(App& app) {
   const auto [width, height] = app.window->size();
   ImGui::SetNextWindowPos({static_cast<float>(width - app.panel_width), 0});
@@ -336,6 +338,7 @@ void draw_panel(App& app) {
   draw_file(app);
   draw_drawing(app);
   draw_facts(app);
+  draw_tools(app);
   draw_device(app);
   draw_statistics(app);
   draw_generated(app);

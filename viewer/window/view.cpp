@@ -80,11 +80,21 @@ bool View::apply(Command command) {
 
 void View::wheel(double steps, double x, double y) { camera.zoom(std::pow(step_of_wheel, steps), x, y); }
 
-void View::show(const Box& box, bool has_heights) {
+std::vector<ColourBy> View::usual_colours() {
+  return {ColourBy::nothing, ColourBy::angle, ColourBy::area, ColourBy::order, ColourBy::degree};
+}
+
+std::vector<ColourBy> View::colours_with_heights() {
+  std::vector<ColourBy> all = usual_colours();
+  all.push_back(ColourBy::height);
+  return all;
+}
+
+void View::show(const Box& box, std::size_t points, bool has_heights) {
   box_ = box;
+  points_ = points;
   camera = Camera(box, camera.width(), camera.height());
-  colours = {ColourBy::nothing, ColourBy::angle, ColourBy::area, ColourBy::order, ColourBy::degree};
-  if (has_heights) colours.push_back(ColourBy::height);
+  colours = has_heights ? colours_with_heights() : usual_colours();
   if (std::find(colours.begin(), colours.end(), colour) == colours.end()) colour = ColourBy::area;
 }
 
@@ -107,7 +117,11 @@ Style View::style() const {
   style.fill = drawing != Drawing::wireframe;
   style.points_alone = drawing == Drawing::points;
   style.line_width = static_cast<float>(scale);
-  style.point_radius = static_cast<float>((drawing == Drawing::points ? 1.6 : 2.2) * scale);
+  // Vertices are drawn where they are far apart: smaller triangles would be covered by them.
+  const double area = std::fabs((box_.high[0] - box_.low[0]) * camera.scale() * (box_.high[1] - box_.low[1]) * camera.scale());
+  const double apart = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, points_)));
+  const bool vertices = !(apart < 22 * scale);
+  style.point_radius = static_cast<float>(drawing == Drawing::points ? 1.6 * scale : vertices ? 2.4 * scale : 0);
   style.hull = hull;
   style.dark = dark;
   return style;

@@ -28,14 +28,16 @@ class View {
   double scale = 1;  ///< of text and lines: pixels for a 96th of an inch
 
   /// Colours there are values for; the others are passed over.
-  std::vector<ColourBy> colours{ColourBy::nothing, ColourBy::angle, ColourBy::area, ColourBy::order, ColourBy::degree};
+  std::vector<ColourBy> colours = usual_colours();
+  [[nodiscard]] static std::vector<ColourBy> usual_colours();
+  [[nodiscard]] static std::vector<ColourBy> colours_with_heights();
 
   /// Does what the command asks of the view. False: it is none of the view's.
   bool apply(Command command);
   /// A step of the wheel to zoom in (positive) or out, at a pixel.
   void wheel(double steps, double x, double y);
   /// A new mesh: everything in view.
-  void show(const Box& box, bool has_heights);
+  void show(const Box& box, std::size_t points, bool has_heights);
   /// Another size of the picture; what is seen stays.
   void resize(int width, int height);
   /// A place to the middle, so large that `size` (a length of the plane) takes about a third of the picture; 0: only
@@ -46,6 +48,7 @@ class View {
 
  private:
   Box box_{{0, 0}, {1, 1}};
+  std::size_t points_ = 0;
 };
 
 /// What is marked: by hand, or found by its index.

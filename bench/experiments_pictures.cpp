@@ -50,14 +50,11 @@ std::vector<Row> run_snapshots(Bench& bench) {
   task.watch = [&steps](const Snapshot& snapshot) {
     steps.push_back({snapshot.points, {snapshot.triangles.begin(), snapshot.triangles.end()}});
   };
-  Triangulation mesh;
-  const Row measured = bench.measure(task, &mesh);
+  const Row measured = bench.measure(task);
   if (!measured.skipped.empty()) {
     rows.push_back(measured);
     return rows;
   }
-  // The result of the last step after the legality sweeps and the output.
-  steps.push_back({*measured.points, {mesh.triangles().begin(), mesh.triangles().end()}});
 
   const std::filesystem::path folder = bench.settings().out / "snapshots";
   clear_folder(folder);

@@ -9,118 +9,125 @@
 #include "progress.hpp"
 #include "render_growth.hpp"
 #include "text.hpp"
+#include "viewer_options.hpp"
 
-#include <cadt/io/generate.hpp>
+#include <cadt/io/picture.hpp>
 #include <cadt/triangulation.hpp>
 
 #include "viewer/draw/image_file.hpp"
-#include "viewer/draw/renderer.hpp"
 #include "viewer/gl/context.hpp"
+#include "viewer/still/still.hpp"
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 
 namespace cadt::cli {
 namespace {
 
-using namespace viewer;
-
 struct RenderCommand {
-  InputOptions input;
-  std::string output, size = "1600", colour, style = "filled", n = "10000", generate, camera;
+  SubjectOptions subject;
+  StyleOptions style;
+  std::string output, format, size = "1600", camera;
   DeviceOptions device;
-  int samples = 2;
-  bool dark = false, quiet = false;
   GrowthOptions growth;
+  int samples = 2;
+  bool quiet = false;
 };
 
-/// With the size, camera and style of the command.
-int run_growth(const RenderCommand& command, const io::PointSet& points, ProgressLine& line) {
+/// Shapes in a file of them are all alike; what only pixels have is refused there.
+void check_vector_options(const RenderCommand& command, const std::string& format) {
+  const std::pair<const char*, bool> given[] = {{"--camera", !command.camera.empty()},
+                                                {"--colour", !command.style.colour.empty()},
+                                                {"--style", command.style.style != "filled"},
+                                                {"--dark", command.style.dark}};
+  for (const auto& [name, is_given] : given) {
+    if (is_given)
+      throw Failure(exit_usage, fmt::format("{} is for pictures of pixels, not for .{}: write a .png, or leave it out",
+                                            name, format));
+  }
+}
+
+/// The mesh while it grows, with the size, camera and style of the command.
+int run_growth(const RenderCommand& command) {
+  if (!command.format.empty())
+    throw Failure(exit_usage,
+                  "-t: a picture of growth is named by its output: FILE.png, .mp4, .webm, .gif, or a folder");
+  check_growth(command.growth, command.output);
   GrowthView view;
-  std::sscanf(command.size.c_str(), "%dx%d", &view.width, &view.height);
+  parse_size(command.size, view.width, view.height);
   view.quiet = command.quiet;
-  view.style.dark = command.dark;
+  view.style = style_of(command.style);
   view.style.samples = command.samples;
-  view.style.fill = command.style != "wireframe";
-  view.style.points_alone = command.style == "points";
-  view.style.colour = ColourBy::level;
-  for (std::size_t i = 0; i < names_of_colours().size(); ++i)
-    if (names_of_colours()[i] == command.colour) view.style.colour = static_cast<ColourBy>(i);
-  if (!command.camera.empty())
-    view.aim = [&](Camera& camera) {
-      double x = 0, y = 0, zoom = 1;
-      std::sscanf(command.camera.c_str(), "%lf,%lf,%lf", &x, &y, &zoom);
-      camera.look_at(x, y);
-      camera.zoom(zoom, 0.5 * camera.width(), 0.5 * camera.height());
+  if (const std::optional<viewer::View> seen = parse_camera(command.camera)) {
+    view.aim = [seen](viewer::Camera& camera) {
+      camera.look_at(seen->x, seen->y);
+      camera.zoom(seen->magnification, 0.5 * camera.width(), 0.5 * camera.height());
     };
-  const gl::HeadlessContext context;
-  const int code = render_growth(points, library_options(command.device), command.output, command.growth, view, line);
+  }
+  ProgressLine line(command.quiet);
+  const io::PointSet points = read_subject(command.subject, line);
+  view.style.colour = command.style.colour.empty() ? viewer::ColourBy::level : colour_of(command.style, points, {});
+  const viewer::gl::HeadlessContext context;
+  int code = exit_done;
+  try {
+    code = render_growth(points, library_options(command.device), command.output, command.growth, view, line);
+  } catch (const InputError& e) {
+    refuse_points(command.subject, e);
+  }
   line.clear();
-  if (gl::errors_seen() != 0) throw Failure(exit_internal, "OpenGL reported errors");
+  if (viewer::gl::errors_seen() != 0)
+    throw Failure(exit_internal, "OpenGL reported errors; CADT_GL_DEBUG=1 prints them. Please report them");
   return code;
 }
 
 int run(const RenderCommand& command) {
-  const bool grows = shows_growth(command.growth, command.output);
-  if (grows || command.growth.timed) check_growth(command.growth, command.output);
-  ProgressLine line(command.quiet);
-  io::PointSet points;
-  if (!command.generate.empty()) {
-    io::GenerateOptions options;
-    options.n = parse_count(command.n);
-    points = io::generate(command.generate, options);
-  } else {
-    points = read_input(command.input);
-  }
-  if (grows) return run_growth(command, points, line);
+  if (shows_growth(command.growth, command.output) || command.growth.timed) return run_growth(command);
+  const Output output =
+      plan_outputs({command.output}, command.format.empty() ? std::vector<std::string>{} : std::vector{command.format},
+                   {"png", "svg", "pdf"}, command.subject.input.path)
+          .front();
+  if (output.format != "png") check_vector_options(command, output.format);
+  viewer::StillOptions still;
+  parse_size(command.size, still.width, still.height);
+  still.view = parse_camera(command.camera);
+  still.style = style_of(command.style);
+  still.style.samples = command.samples;
   Options options = library_options(command.device);
   options.order = Order::fast;
-  const Triangulation mesh = triangulate(points.view(), options);
+  options.statistics = StatisticsDetail::none;
+  options.stop = interrupt_token();
+
+  ProgressLine line(command.quiet);
+  options.progress = [&line](const Progress& progress) { line.update(progress); };
+  const io::PointSet points = read_subject(command.subject, line);
+  still.colour = colour_of(command.style, points, {"level", "conflicts", "flips"});
+  line.start(points.size());
+  const Triangulation mesh = triangulate_subject(command.subject, points, options);
+  check_interrupt();
   line.step("drawing");
-  const gl::HeadlessContext context;
-  Renderer renderer;
-  MeshBuffers buffers = MeshBuffers::copy(points.xy, mesh.triangles());
-  int width = 1600, height = 0;
-  if (const auto x = command.size.find('x'); x != std::string::npos) {
-    width = std::stoi(command.size.substr(0, x));
-    height = std::stoi(command.size.substr(x + 1));
-  } else {
-    width = std::stoi(command.size);
-    height = Camera::height_for(buffers.box, width, 4000);
+  const auto start = std::chrono::steady_clock::now();
+  {
+    const InPhase phase(writing_phase(output.path));
+    if (output.format == "png") {
+      viewer::write_png(output.path, viewer::draw_still(points, mesh, still));
+    } else {
+      io::PictureOptions picture;
+      picture.width = still.width;
+      if (still.height != 0) picture.max_height = still.height;
+      (output.format == "svg" ? io::write_svg : io::write_pdf)(output.path, points, mesh, picture);
+    }
+    if (output.path == "-") finish_stdout();
   }
-  Camera camera(buffers.box, width, height);
-  if (!command.camera.empty()) {
-    double x = 0, y = 0, zoom = 1;
-    std::sscanf(command.camera.c_str(), "%lf,%lf,%lf", &x, &y, &zoom);
-    camera.look_at(x, y);
-    camera.zoom(zoom, 0.5 * width, 0.5 * height);
-  }
-  Style style;
-  style.dark = command.dark;
-  style.samples = command.samples;
-  style.fill = command.style != "wireframe";
-  style.points_alone = command.style == "points";
-  style.colour = points.height.empty() ? ColourBy::area : ColourBy::height;
-  for (std::size_t i = 0; i < names_of_colours().size(); ++i)
-    if (names_of_colours()[i] == command.colour) style.colour = static_cast<ColourBy>(i);
-  if (style.colour == ColourBy::height) {
-    const std::vector<float> heights(points.height.begin(), points.height.end());
-    renderer.set_values(heights);
-  }
-  renderer.update(buffers);
-  renderer.fit_ramp(buffers, style.colour);
-  Stroke hull{{}, 0xb3472f, 1.5f};
-  const auto loop = mesh.hull();
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    const auto a = static_cast<std::size_t>(loop[i]), b = static_cast<std::size_t>(loop[(i + 1) % loop.size()]);
-    hull.segments.push_back({points.xy[2 * a], points.xy[2 * a + 1], points.xy[2 * b], points.xy[2 * b + 1]});
-  }
-  renderer.draw(buffers, camera, style, std::span<const Stroke>(&hull, 1));
-  write_png(command.output, renderer.read());
+  check_interrupt();
   line.clear();
-  if (gl::errors_seen() != 0) throw Failure(exit_internal, "OpenGL reported errors");
+  if (!command.quiet) {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    say(fmt::format("{} triangles of {} points drawn in {:.2f} s: {}\n", mesh.number_of_triangles(), points.size(),
+                    seconds.count(), display_name(output.path, false)));
+  }
   return exit_done;
 }
 
@@ -129,20 +136,45 @@ int run(const RenderCommand& command) {
 void add_render(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("render", "a picture of a mesh, drawn by OpenGL without a window");
   const auto options = std::make_shared<RenderCommand>();
-  add_input_options(*command, options->input, "IN", "file with points");
-  command->get_option("IN")->required(false);
-  command->add_option("--generate", options->generate, "a point set of cadt generate in place of a file")->type_name("NAME");
-  command->add_option("-n", options->n, "number of points of --generate (default: 10000)")->type_name("N");
-  command->add_option("-o,--output", options->output, "file for the picture: .png; the growing mesh: .mp4, .webm, .gif, or a folder for frames")->type_name("FILE")->required();
-  command->add_option("--size", options->size, "width, or widthxheight, in pixels (default: 1600)")->type_name("WxH");
-  command->add_option("--colour,--color", options->colour, "what decides the colour: " + join(names_of_colours(), " "))->type_name("BY");
-  command->add_option("--style", options->style, "filled, wireframe or points")->type_name("STYLE");
-  command->add_option("--camera", options->camera, "x,y,magnification")->type_name("X,Y,M");
-  command->add_option("--samples", options->samples, "along the side of a pixel (default: 2)")->type_name("S");
-  command->add_flag("--dark", options->dark, "light on dark");
+  add_subject_options(*command, options->subject);
+  command
+      ->add_option(
+          "-o,--output", options->output,
+          "file for the picture: .png, .svg, .pdf; '-' is standard output (with -t). Of the growing mesh: .mp4, "
+          ".webm, .gif, or a folder for the frames")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("-t,--to", options->format, "format: png svg pdf; default: from the suffix")->type_name("FORMAT");
+  command
+      ->add_option(
+          "--size", options->size,
+          "pixels: the width, the height follows from the points; or width and height, 3840x2160 (default: 1600)")
+      ->type_name("W[xH]");
+  add_style_options(*command, options->style);
+  command
+      ->add_option(
+          "--camera", options->camera,
+          "what is in the middle, and how many times larger than the whole mesh it is drawn: 500100.5,4100200,20")
+      ->type_name("X,Y,M");
+  command
+      ->add_option("--samples", options->samples,
+                   "samples along the side of a pixel, 1 to 4 (default: 2): 4 is smoother")
+      ->type_name("S")
+      ->check(CLI::Range(1, 4).description(""));
   add_growth_options(*command, options->growth);
   add_device_options(*command, options->device);
   command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");
+  command->footer(
+      "A GPU draws if OpenGL finds one without a window (EGL), else the CPU. Triangles smaller than a pixel are "
+      "averaged,\n"
+      "so a hundred million points look right from afar, too. SVG and PDF take small meshes.\n\n"
+      "Examples:\n"
+      "  cadt render terrain.xyz -o terrain.png --size 3840x2160\n"
+      "  cadt render points.xy -o angles.png --colour angle --camera 0.5,0.5,40\n"
+      "  cadt render --generate clusters -n 1M -o clusters.png --dark\n"
+      "  cadt render points.xy --growth 4 -o growth.png\n"
+      "      four snapshots of the mesh as it grows\n"
+      "  cadt render points.xy -o growth.mp4 --seconds 12\n");
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

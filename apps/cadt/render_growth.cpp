@@ -37,7 +37,8 @@ bool is_folder(const std::string& output) {
 
 bool is_frame(const fs::path& file) {
   const std::string stem = file.stem().string();
-  return file.extension() == ".png" && !stem.empty() && std::ranges::all_of(stem, [](char c) { return c >= '0' && c <= '9'; });
+  return file.extension() == ".png" && !stem.empty() &&
+         std::ranges::all_of(stem, [](char c) { return c >= '0' && c <= '9'; });
 }
 
 std::size_t pictures_of(const GrowthOptions& growth) {
@@ -48,7 +49,10 @@ std::size_t pictures_of(const GrowthOptions& growth) {
 class GrowthPainter {
  public:
   GrowthPainter(const io::PointSet& points, const Recording& recording, const GrowthView& view, int width, int height)
-      : points_(points), recording_(recording), style_(view.style), buffers_(MeshBuffers::with_room(points.xy.size() / 2)) {
+      : points_(points),
+        recording_(recording),
+        style_(view.style),
+        buffers_(MeshBuffers::with_room(points.xy.size() / 2)) {
     buffers_.write_points(points.xy);
     buffers_.box = box_of(points.xy);
     camera_ = Camera(buffers_.box, width, height);
@@ -111,8 +115,9 @@ void paste(Image& sheet, const Image& picture, int left, int top) {
 
 std::vector<std::string> row_of(const Recording& recording, std::size_t frame) {
   const GrowthCounters& c = recording.counters(frame);
-  return {std::to_string(c.level),      std::to_string(c.points),          std::to_string(c.triangles),
-          std::to_string(c.flips),      std::to_string(c.lost_locks),      std::to_string(c.deferred_points),
+  return {std::to_string(c.level),         std::to_string(c.points),
+          std::to_string(c.triangles),     std::to_string(c.flips),
+          std::to_string(c.lost_locks),    std::to_string(c.deferred_points),
           std::to_string(c.waiting_edges), std::to_string(recording.illegal_edges(frame))};
 }
 
@@ -122,15 +127,18 @@ void write_sheet(const io::PointSet& points, const Recording& recording, const s
   const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(panels))));
   const int rows = (panels + columns - 1) / columns, gap = std::max(2, view.width / 100);
   const int width = (view.width - gap * (columns - 1)) / columns;
-  const int height = view.height == 0 ? Camera::height_for(box_of(points.xy), width, 4000) : (view.height - gap * (rows - 1)) / rows;
-  if (width < 1 || height < 1) throw Failure(exit_usage, fmt::format("--size: there is no room for {} pictures", panels));
+  const int height =
+      view.height == 0 ? Camera::height_for(box_of(points.xy), width, 4000) : (view.height - gap * (rows - 1)) / rows;
+  if (width < 1 || height < 1)
+    throw Failure(exit_usage, fmt::format("--size: there is no room for {} pictures", panels));
   Image sheet{columns * width + gap * (columns - 1), rows * height + gap * (rows - 1), {}};
   const std::uint32_t background = palette(view.style.dark).background;
   for (int i = 0; i < sheet.width * sheet.height; ++i)
-    for (const int byte : {16, 8, 0, -1}) sheet.rgba.push_back(byte < 0 ? 255 : static_cast<std::uint8_t>(background >> byte));
+    for (const int byte : {16, 8, 0, -1})
+      sheet.rgba.push_back(byte < 0 ? 255 : static_cast<std::uint8_t>(background >> byte));
   GrowthPainter painter(points, recording, view, width, height);
-  std::vector<std::vector<std::string>> lines{
-      {"picture", "level", "points", "triangles", "flips", "lost locks", "deferred points", "waiting edges", "illegal edges"}};
+  std::vector<std::vector<std::string>> lines{{"picture", "level", "points", "triangles", "flips", "lost locks",
+                                               "deferred points", "waiting edges", "illegal edges"}};
   const auto all = static_cast<double>(recording.counters(recording.size() - 1).points);
   for (int k = 0; k < panels; ++k) {
     check_interrupt();
@@ -148,9 +156,11 @@ void write_sheet(const io::PointSet& points, const Recording& recording, const s
 
 /// The frames of a film, in turn; equal ones are drawn once.
 template <class Write>
-void each_picture(const Recording& recording, const GrowthOptions& growth, GrowthPainter& painter, ProgressLine& line, Write&& write) {
+void each_picture(const Recording& recording, const GrowthOptions& growth, GrowthPainter& painter, ProgressLine& line,
+                  Write&& write) {
   const std::size_t count = pictures_of(growth);
-  const double moving = std::max(1.0, static_cast<double>(count) - std::min(final_seconds * growth.fps, 0.25 * static_cast<double>(count)));
+  const double moving = std::max(
+      1.0, static_cast<double>(count) - std::min(final_seconds * growth.fps, 0.25 * static_cast<double>(count)));
   Image picture;
   std::size_t drawn = recording.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -166,7 +176,9 @@ void each_picture(const Recording& recording, const GrowthOptions& growth, Growt
 }  // namespace
 
 void add_growth_options(CLI::App& command, GrowthOptions& options) {
-  command.add_option("--growth", options.panels, "so many snapshots of the growing mesh side by side, up to the complete one")
+  command
+      .add_option("--growth", options.panels,
+                  "so many snapshots of the growing mesh side by side, up to the complete one")
       ->type_name("N")
       ->check(CLI::Range(1, 100));
   const auto timed = [&options](double& value) {
@@ -178,7 +190,8 @@ void add_growth_options(CLI::App& command, GrowthOptions& options) {
   command.add_option_function<double>("--fps", timed(options.fps), "film or frames: pictures a second (default: 30)")
       ->type_name("F")
       ->check(CLI::Range(1.0, 240.0));
-  command.add_option_function<double>("--seconds", timed(options.seconds), "film or frames: how long it is (default: 8)")
+  command
+      .add_option_function<double>("--seconds", timed(options.seconds), "film or frames: how long it is (default: 8)")
       ->type_name("S")
       ->check(CLI::Range(0.1, 3600.0));
 }
@@ -190,15 +203,22 @@ bool shows_growth(const GrowthOptions& options, const std::string& output) {
 void check_growth(const GrowthOptions& options, const std::string& output) {
   const bool film = is_video(output), folder = is_folder(output);
   if (options.panels != 0 && (film || folder))
-    throw Failure(exit_usage, "--growth is for a picture, as in -o growth.png; a film or a folder of frames shows all snapshots without it");
+    throw Failure(
+        exit_usage,
+        "--growth is for a picture, as in -o growth.png; a film or a folder of frames shows all snapshots without it");
   if (options.timed && !film && !folder)
-    throw Failure(exit_usage, "--fps and --seconds are for a film or its frames: -o growth.mp4, .webm, .gif or a folder, as in -o frames/");
+    throw Failure(
+        exit_usage,
+        "--fps and --seconds are for a film or its frames: -o growth.mp4, .webm, .gif or a folder, as in -o frames/");
   if ((film || folder) && options.fps * options.seconds > most_pictures)
-    throw Failure(exit_usage, fmt::format("--fps times --seconds is {:.0f} pictures; take at most {:.0f}", options.fps * options.seconds, most_pictures));
+    throw Failure(exit_usage, fmt::format("--fps times --seconds is {:.0f} pictures; take at most {:.0f}",
+                                          options.fps * options.seconds, most_pictures));
   if (film) {
     require_writable(output);
     if (!has_ffmpeg())
-      throw io::FileError(output, 0, "needs the program ffmpeg, which is not on the path: install it, or write the frames as pictures, as in -o frames/");
+      throw io::FileError(output, 0,
+                          "needs the program ffmpeg, which is not on the path: install it, or write the frames as "
+                          "pictures, as in -o frames/");
     return;
   }
   if (!folder) {
@@ -210,7 +230,8 @@ void check_growth(const GrowthOptions& options, const std::string& output) {
   if (code) throw io::FileError(output, 0, "cannot be made: " + code.message());
   for (const fs::directory_entry& entry : fs::directory_iterator(output))
     if (is_frame(entry.path()))
-      throw io::FileError(output, 0, "has frames already, which would mix with the new ones: name another folder, or remove them");
+      throw io::FileError(output, 0,
+                          "has frames already, which would mix with the new ones: name another folder, or remove them");
 }
 
 int render_growth(const io::PointSet& points, const Options& options, const std::string& output,
@@ -226,17 +247,21 @@ int render_growth(const io::PointSet& points, const Options& options, const std:
   const Recording recording(points.xy, with, limits);
   if (recording.size() == 0)
     throw Failure(exit_degenerate, "there is nothing that grows: the points are fewer than three, or on one line");
-  if (view.style.colour == ColourBy::conflicts && recording.values(recording.size() - 1, GrowthValue::lost_locks).empty())
-    throw Failure(exit_device, "this device does not count lost locks by triangle: take --backend host, or --colour flips");
+  if (view.style.colour == ColourBy::conflicts &&
+      recording.values(recording.size() - 1, GrowthValue::lost_locks).empty())
+    throw Failure(exit_device,
+                  "this device does not count lost locks by triangle: take --backend host, or --colour flips");
   if (recording.dropped() != 0 && !view.quiet)
-    say(fmt::format("cadt: note: {} snapshots had no room in {} and are left out\n", recording.dropped(), human_bytes(limits.most_bytes)));
+    say(fmt::format("cadt: note: {} snapshots had no room in {} and are left out\n", recording.dropped(),
+                    human_bytes(limits.most_bytes)));
   line.step("drawing");
   if (growth.panels != 0) {
     write_sheet(points, recording, output, growth.panels, view);
     return exit_done;
   }
   const int width = std::max(2, view.width & ~1);  // most films need even sizes
-  const int height = std::max(2, (view.height == 0 ? Camera::height_for(box_of(points.xy), width, 4000) : view.height) & ~1);
+  const int height =
+      std::max(2, (view.height == 0 ? Camera::height_for(box_of(points.xy), width, 4000) : view.height) & ~1);
   GrowthPainter painter(points, recording, view, width, height);
   if (!is_video(output)) {
     each_picture(recording, growth, painter, line, [&](std::size_t i, const Image& picture) {

@@ -6,7 +6,7 @@
 namespace cadt::io {
 
 std::vector<std::string> mesh_write_formats() {
-  return {"node", "ele", "neigh", "obj", "off", "ply", "vtu", "npz", "svg", "png"};
+  return {"node", "ele", "neigh", "obj", "off", "ply", "vtu", "npz", "svg", "pdf", "png"};
 }
 
 std::vector<std::string> mesh_read_formats() { return {"ele", "obj", "off", "ply", "vtu", "npz"}; }

@@ -15,10 +15,11 @@ void write_mesh(const std::string& path, const PointSet& points, const Triangula
                     "the triangulation is not that of the points: it has " + std::to_string(mesh.number_of_points()) +
                         " points, not " + std::to_string(points.size()));
   }
-  if (format == "svg" || format == "png") {
+  if (format == "svg" || format == "pdf" || format == "png") {
     PictureOptions picture;
     picture.width = options.width;
-    format == "svg" ? write_svg(path, points, mesh, picture) : write_png(path, points, mesh, picture);
+    const auto write = format == "svg" ? write_svg : format == "pdf" ? write_pdf : write_png;
+    write(path, points, mesh, picture);
     return;
   }
   detail::MeshParts parts;

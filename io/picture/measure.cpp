@@ -122,7 +122,7 @@ GroundOpacity::GroundOpacity(const Scene& scene, std::span<const Point2f> positi
     grown = false;
     for (const std::size_t t : large) {
       const std::int32_t* v = scene.triangles.data() + 3 * t;
-      const auto at = [&](int k) -> char& { return outer_[static_cast<std::size_t>(v[k])]; };
+      const auto at = [&](int k) -> std::uint8_t& { return outer_[static_cast<std::size_t>(v[k])]; };
       const int known = at(0) + at(1) + at(2);
       if (known == 0 || known == 3) continue;
       at(0) = at(1) = at(2) = 1;

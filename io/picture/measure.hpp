@@ -6,6 +6,7 @@
 #include "io/picture/viewport.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -42,13 +43,17 @@ class GroundOpacity {
   GroundOpacity(const Scene& scene, std::span<const Point2f> position, float median_edge_pixels);
   /// \pre t < scene.faces()
   [[nodiscard]] float operator()(std::size_t t) const;
+  /// One a point: whether large triangles connect it with the hull.
+  [[nodiscard]] std::span<const std::uint8_t> outer() const noexcept { return outer_; }
+  /// Pixels of the longest edge from which on such a triangle is less than ground.
+  [[nodiscard]] float begin() const noexcept { return begin_; }
 
  private:
   [[nodiscard]] float longest_edge(std::size_t t) const;
   const Scene& scene_;
   std::span<const Point2f> position_;
   float begin_, end_;
-  std::vector<char> outer_;  ///< point that large triangles connect with the hull
+  std::vector<std::uint8_t> outer_;
 };
 
 }  // namespace cadt::io::picture

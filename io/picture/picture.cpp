@@ -10,8 +10,16 @@ namespace cadt::io {
 
 namespace {
 
-picture::Scene scene_of(const PointSet& points, const Triangulation& mesh) {
-  return {points.xy, points.height, mesh.triangles(), mesh.hull()};
+picture::Scene scene_of(const std::string& path, const PointSet& points, const Triangulation& mesh) {
+  const picture::Scene scene{points.xy, points.height, mesh.triangles(), mesh.hull()};
+  if (scene.faces() > most_drawn_triangles || scene.points() > most_drawn_triangles) {
+    throw FileError(
+        path, 0,
+        fmt::format("{} triangles of {} points are too many to be drawn one by one (at most {}): 'cadt render' "
+                    "draws them as a .png",
+                    scene.faces(), scene.points(), most_drawn_triangles));
+  }
+  return scene;
 }
 
 void write_file(const std::string& path, const std::string& bytes) {
@@ -24,18 +32,17 @@ void write_file(const std::string& path, const std::string& bytes) {
 
 void write_svg(const std::string& path, const PointSet& points, const Triangulation& mesh,
                const PictureOptions& options) {
-  const picture::Scene scene = scene_of(points, mesh);
-  if (scene.faces() > picture::svg_max_faces || scene.points() > picture::svg_max_faces) {
-    throw FileError(path, 0,
-                    fmt::format("{} triangles of {} points are too many for an SVG (at most {}): write a .png instead",
-                                scene.faces(), scene.points(), picture::svg_max_faces));
-  }
-  write_file(path, picture::svg_text(scene, options));
+  write_file(path, picture::svg_bytes(scene_of(path, points, mesh), options));
+}
+
+void write_pdf(const std::string& path, const PointSet& points, const Triangulation& mesh,
+               const PictureOptions& options) {
+  write_file(path, picture::pdf_bytes(scene_of(path, points, mesh), options));
 }
 
 void write_png(const std::string& path, const PointSet& points, const Triangulation& mesh,
                const PictureOptions& options) {
-  write_file(path, picture::png_bytes(scene_of(points, mesh), options));
+  write_file(path, picture::png_bytes(scene_of(path, points, mesh), options));
 }
 
 }  // namespace cadt::io

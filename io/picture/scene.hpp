@@ -41,11 +41,9 @@ void for_each_edge(const Scene& scene, Edge edge) {
   }
 }
 
-/// The whole SVG text. \pre scene.faces() <= svg_max_faces
-[[nodiscard]] std::string svg_text(const Scene& scene, const PictureOptions& options);
-inline constexpr std::size_t svg_max_faces = 200'000;
-
-/// The whole PNG file.
+/// The whole file. \pre scene.faces() <= most_drawn_triangles, and as many points
+[[nodiscard]] std::string svg_bytes(const Scene& scene, const PictureOptions& options);
+[[nodiscard]] std::string pdf_bytes(const Scene& scene, const PictureOptions& options);
 [[nodiscard]] std::string png_bytes(const Scene& scene, const PictureOptions& options);
 
 }  // namespace cadt::io::picture

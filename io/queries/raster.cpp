@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rasters: ESRI ASCII grids, arrays of NumPy, pictures.
-#include "io/picture/canvas.hpp"
 #include "io/picture/colour.hpp"
+#include "io/picture/png.hpp"
 #include "io/support/atomic_file.hpp"
 #include "io/support/input_file.hpp"
 #include "io/support/npy_format.hpp"
@@ -75,16 +75,15 @@ std::string raster_png(const Grid& grid, std::span<const double> cells) {
     std::nth_element(slopes.begin(), steep, slopes.end());
     if (*steep > 0) scale = 1 / *steep;
   }
-  Canvas canvas(static_cast<int>(grid.columns), static_cast<int>(grid.rows), paper);
+  Pixels pixels(static_cast<int>(grid.columns), static_cast<int>(grid.rows), paper);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (std::isnan(cells[i])) continue;
     const std::size_t x = i % grid.columns, y = i / grid.columns;
     const float light = hill_shade(scale * slope(i, x, grid.columns, 1), scale * slope(i, y, grid.rows, grid.columns));
     const Rgb colour = terrain_ramp()(relative(i));
-    canvas.set(static_cast<int>(x), static_cast<int>(y),
-               to_srgb({colour.r * light, colour.g * light, colour.b * light}));
+    pixels.row(static_cast<int>(y))[x] = to_srgb({colour.r * light, colour.g * light, colour.b * light});
   }
-  return canvas.png();
+  return pixels.png();
 }
 
 }  // namespace

@@ -63,10 +63,13 @@ Box box_of(std::span<const double> xy) {
 
 int Camera::height_for(const Box& box, int width, int most) {
   const double inner = width * (1 - 2 * margin_share);
-  return std::clamp(static_cast<int>(std::lround(inner * aspect_of(box) + 2 * margin_share * width)), 8, std::max(8, most));
+  return std::clamp(static_cast<int>(std::lround(inner * aspect_of(box) + 2 * margin_share * width)), 8,
+                    std::max(8, most));
 }
 
-Camera::Camera(const Box& box, int width, int height) : box_(box), before_(factor_before(box)) { resize(width, height); }
+Camera::Camera(const Box& box, int width, int height) : box_(box), before_(factor_before(box)) {
+  resize(width, height);
+}
 
 void Camera::resize(int width, int height) {
   const bool fresh = width_ == 1 && height_ == 1;
@@ -98,7 +101,8 @@ void Camera::limit() {
   // Neighbouring doubles at the middle must not lie further apart than a tenth of a pixel.
   double most = 1e12;
   for (std::size_t k = 0; k < 2; ++k) {
-    const double ulp = std::nextafter(std::fabs(middle_[k]), std::numeric_limits<double>::infinity()) - std::fabs(middle_[k]);
+    const double ulp =
+        std::nextafter(std::fabs(middle_[k]), std::numeric_limits<double>::infinity()) - std::fabs(middle_[k]);
     const double pixels = ulp * first_[k] * fitted_[k];
     if (pixels > 0) most = std::min(most, 0.1 / pixels);
   }

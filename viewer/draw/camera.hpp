@@ -60,7 +60,7 @@ class Camera {
   Box box_;
   int width_ = 1, height_ = 1;
   double before_ = 1, magnification_ = 1;
-  std::array<double, 2> middle_{0, 0};  ///< times before_
+  std::array<double, 2> middle_{0, 0};                ///< times before_
   std::array<double, 2> first_{1, 1}, fitted_{1, 1};  ///< factors of the fitted view; y's are negative
 };
 

@@ -35,13 +35,15 @@ std::array<float, 4> linear(std::uint32_t srgb, float alpha) {
 }
 
 const Palette& palette(bool dark) {
-  static const Palette light{io::picture::paper, 0xe6ecee, io::picture::line_colour, 0x1d2a3a, io::picture::hull_colour};
+  static const Palette light{io::picture::paper, 0xe6ecee, io::picture::line_colour, 0x1d2a3a,
+                             io::picture::hull_colour};
   static const Palette night{0x15181d, 0x2a313b, 0xc9d6e2, 0xf0f4f8, 0xe8866a};
   return dark ? night : light;
 }
 
 const std::vector<std::string>& names_of_colours() {
-  static const std::vector<std::string> names{"nothing", "angle", "area", "order", "height", "degree", "level", "conflicts", "flips"};
+  static const std::vector<std::string> names{"nothing", "angle", "area",      "order", "height",
+                                              "degree",  "level", "conflicts", "flips"};
   return names;
 }
 

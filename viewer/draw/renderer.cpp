@@ -13,12 +13,13 @@ namespace {
 
 using io::picture::Rgb;
 
-constexpr std::size_t block = 4096;           // triangles; BLOCK of common.glsl
-constexpr std::size_t most_large = 4 << 20;   // triangles that get a group of their own; the others are drawn by one item
-constexpr int most_groups = 32768;            // along x
-constexpr int reference_width = 1000;         // pixels of the view in which values are sampled
+constexpr std::size_t block = 4096;  // triangles; BLOCK of common.glsl
+constexpr std::size_t most_large =
+    4 << 20;                           // triangles that get a group of their own; the others are drawn by one item
+constexpr int most_groups = 32768;     // along x
+constexpr int reference_width = 1000;  // pixels of the view in which values are sampled
 
-enum Slot : GLuint { points, triangles, values, boxes, seen, commands, owners, sums, large, overlay };
+enum Slot : GLuint { points, triangles, values, boxes, seen, commands, owners, sums, large, overlay, outside };
 
 /// The block Frame of common.glsl.
 struct Frame {
@@ -26,12 +27,12 @@ struct Frame {
   std::array<std::int32_t, 2> samples;
   std::uint32_t triangle_count, point_count, block_count, large_capacity;
   std::int32_t side, colour_by, flags;
-  float before, low, high, line_width, point_radius, relief, spare;
+  float before, low, high, line_width, point_radius, relief, fade_begin;
   std::array<float, 4> background, fill_colour, line_colour, point_colour;
 };
 static_assert(offsetof(Frame, samples) == 48 && offsetof(Frame, background) == 112 && sizeof(Frame) == 176);
 
-enum Flag { shade = 1, fill = 2, logarithm = 4, points_alone = 8 };
+enum Flag { shade = 1, fill = 2, logarithm = 4, points_alone = 8, fade = 16 };
 enum By { by_nothing, by_angle, by_area, by_order, by_point, by_triangle };
 
 By by_of(ColourBy colour) {
@@ -71,7 +72,9 @@ void dispatch(std::size_t groups) {
   glDispatchCompute(x, static_cast<GLuint>((groups + most_groups - 1) / most_groups), 1);
 }
 
-void wait_for_writes() { glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT); }
+void wait_for_writes() {
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
 
 float quantile(std::vector<float>& values, double q) {
   if (values.empty()) return 0;
@@ -97,6 +100,7 @@ Renderer::Renderer()
       sample_("sample", shaders::common + shaders::shade + shaders::sample),
       frame_(sizeof(Frame)),
       values_(16),
+      outside_(16),
       commands_(8 * sizeof(std::uint32_t)) {}
 
 void Renderer::bind(const MeshBuffers& mesh) const {
@@ -111,6 +115,7 @@ void Renderer::bind(const MeshBuffers& mesh) const {
   sums_.bind(sums);
   large_list_.bind(large);
   overlay_.bind(overlay);
+  outside_.bind(outside);
 }
 
 void Renderer::update(const MeshBuffers& mesh) {
@@ -132,6 +137,15 @@ void Renderer::set_values(std::span<const float> all) {
   grow(values_, std::max<std::size_t>(16, all.size_bytes()));
   values_.write_values(all);
   value_count_ = all.size();
+}
+
+void Renderer::set_outside(std::span<const std::uint8_t> all, double begin) {
+  std::vector<std::uint32_t> bits(all.size() / 32 + 1);
+  for (std::size_t v = 0; v < all.size(); ++v)
+    if (all[v] != 0) bits[v / 32] |= 1u << v % 32;
+  grow(outside_, bits.size() * sizeof(std::uint32_t));
+  outside_.write_values(std::span<const std::uint32_t>(bits));
+  fade_begin_ = all.empty() ? 0 : begin;
 }
 
 void Renderer::choose_ramp(ColourBy colour) {
@@ -240,7 +254,8 @@ void Renderer::draw_strokes(std::span<const Stroke> strokes) {
   }
 }
 
-void Renderer::draw(const MeshBuffers& mesh, const Camera& camera, const Style& style, std::span<const Stroke> strokes) {
+void Renderer::draw(const MeshBuffers& mesh, const Camera& camera, const Style& style,
+                    std::span<const Stroke> strokes) {
   const int side = std::clamp(style.samples, 1, 4);
   const bool alone = style.points_alone || mesh.triangle_count == 0;
   choose_ramp(style.colour);
@@ -254,7 +269,9 @@ void Renderer::draw(const MeshBuffers& mesh, const Camera& camera, const Style& 
   frame.large_capacity = static_cast<std::uint32_t>(std::min(mesh.triangle_count, most_large));
   frame.colour_by = value_count_ == 0 && by_of(style.colour) >= by_point ? by_nothing : by_of(style.colour);
   frame.flags = (style.fill ? fill : 0) | (style.colour == ColourBy::area || alone ? logarithm : 0) |
-                (alone ? points_alone : 0) | (relief_ > 0 && style.colour == ColourBy::height ? shade : 0);
+                (alone ? points_alone : 0) | (relief_ > 0 && style.colour == ColourBy::height ? shade : 0) |
+                (fade_begin_ > 0 && style.colour == ColourBy::height ? fade : 0);
+  frame.fade_begin = static_cast<float>(fade_begin_ * camera.scale() * side);
   frame.low = ends_[0];
   frame.high = ends_[1];
   // The values were sampled in another view.
@@ -291,7 +308,8 @@ void Renderer::draw(const MeshBuffers& mesh, const Camera& camera, const Style& 
   bind(mesh);
   glBindImageTexture(0, picture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);
   resolve_.use();
-  glDispatchCompute(static_cast<GLuint>((camera.width() + 15) / 16), static_cast<GLuint>((camera.height() + 15) / 16), 1);
+  glDispatchCompute(static_cast<GLuint>((camera.width() + 15) / 16), static_cast<GLuint>((camera.height() + 15) / 16),
+                    1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT |
                   GL_BUFFER_UPDATE_BARRIER_BIT);
 }
@@ -300,13 +318,15 @@ Image Renderer::read() const {
   Image image{picture_.width(), picture_.height(), {}};
   image.rgba.resize(4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glGetTextureImage(picture_.id(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(image.rgba.size()), image.rgba.data());
+  glGetTextureImage(picture_.id(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(image.rgba.size()),
+                    image.rgba.data());
   return image;
 }
 
 std::optional<std::size_t> Renderer::triangle_at(int x, int y) const {
   if (x < 0 || y < 0 || x >= picture_.width() || y >= picture_.height() || side_ == 0) return std::nullopt;
-  const auto row = static_cast<std::size_t>(y * side_ + side_ / 2), column = static_cast<std::size_t>(x * side_ + side_ / 2);
+  const auto row = static_cast<std::size_t>(y * side_ + side_ / 2),
+             column = static_cast<std::size_t>(x * side_ + side_ / 2);
   const std::size_t at = row * static_cast<std::size_t>(picture_.width() * side_) + column;
   const std::uint32_t word = owners_.read_values<std::uint32_t>(1, at * sizeof(std::uint32_t))[0] & 0x7fffffffu;
   if (word == 0) return std::nullopt;

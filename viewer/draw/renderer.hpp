@@ -44,6 +44,10 @@ class Renderer {
   void update(const MeshBuffers& mesh);
   /// Values that the colour depends on: one a point (height, degree, level) or one a triangle (conflicts). Empty: none.
   void set_values(std::span<const float> values);
+  /// Points of triangles that fill bays of the outline, where nothing was measured; the larger such a triangle, the
+  /// fainter it is drawn when the colour is that of the height. `begin` is the length from which on, in the unit of
+  /// the points along x. Empty: none.
+  void set_outside(std::span<const std::uint8_t> outside, double begin);
   /// The values of the ramp's ends for `colour`, from a sample of the triangles. Call after update() and set_values().
   void fit_ramp(const MeshBuffers& mesh, ColourBy colour);
 
@@ -65,7 +69,7 @@ class Renderer {
   void choose_ramp(ColourBy colour);
 
   gl::Program bounds_, cull_, blocks_, large_, resolve_, strokes_, discs_, sample_;
-  gl::Buffer frame_, values_, boxes_, seen_, commands_, owners_, sums_, large_list_, overlay_, segments_;
+  gl::Buffer frame_, values_, outside_, boxes_, seen_, commands_, owners_, sums_, large_list_, overlay_, segments_;
   gl::Texture picture_;
   gl::Name<gl::delete_texture> ramp_;
   std::optional<ColourBy> ramp_of_;
@@ -73,6 +77,7 @@ class Renderer {
   float relief_ = 0;  ///< samples of the reference view for a unit of height
   Camera reference_;
   std::size_t value_count_ = 0;
+  double fade_begin_ = 0;  ///< 0: nothing is faded
   int side_ = 0;
 };
 

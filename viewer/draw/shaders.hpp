@@ -6,7 +6,7 @@
 
 namespace cadt::viewer::shaders {
 
-extern const std::string common, shade, raster;                                                    // parts of others
+extern const std::string common, shade, raster;                                         // parts of others
 extern const std::string bounds, cull, blocks, large, resolve, strokes, discs, sample;  // programs
 
 }  // namespace cadt::viewer::shaders

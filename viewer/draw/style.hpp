@@ -11,15 +11,15 @@ namespace cadt::viewer {
 
 /// What decides the colour of a triangle.
 enum class ColourBy {
-  nothing,   ///< one colour
-  angle,     ///< smallest angle, degrees
-  area,      ///< on a log scale
-  order,     ///< place in the array of triangles
-  height,    ///< of the points, with light from the upper left
-  degree,    ///< number of triangles around each vertex
-  level,     ///< level of insertion of the points
-  conflicts, ///< lost locks of each triangle, while it grew
-  flips      ///< of the edges of each triangle, while it grew
+  nothing,    ///< one colour
+  angle,      ///< smallest angle, degrees
+  area,       ///< on a log scale
+  order,      ///< place in the array of triangles
+  height,     ///< of the points, with light from the upper left
+  degree,     ///< number of triangles around each vertex
+  level,      ///< level of insertion of the points
+  conflicts,  ///< lost locks of each triangle, while it grew
+  flips       ///< of the edges of each triangle, while it grew
 };
 [[nodiscard]] std::string_view to_string(ColourBy by) noexcept;
 /// All names, in the order of the enumerators.

@@ -106,9 +106,11 @@ DriverInfo check_driver() {
     return found == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(found));
   };
   DriverInfo info{text(GL_RENDERER), text(GL_VERSION), false};
-  info.software = info.renderer.find("llvmpipe") != std::string::npos || info.renderer.find("softpipe") != std::string::npos;
+  info.software =
+      info.renderer.find("llvmpipe") != std::string::npos || info.renderer.find("softpipe") != std::string::npos;
   if (epoxy_gl_version() < 45) {
-    throw DisplayError("the OpenGL of '" + info.renderer + "' is too old (" + info.version + "), 4.5 is needed: " + advice);
+    throw DisplayError("the OpenGL of '" + info.renderer + "' is too old (" + info.version +
+                       "), 4.5 is needed: " + advice);
   }
   return info;
 }
@@ -152,8 +154,15 @@ HeadlessContext::HeadlessContext(std::optional<int> cuda) {
     }
     handles->display = display;
     eglBindAPI(EGL_OPENGL_API);
-    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE, EGL_NONE};
+    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
+                             4,
+                             EGL_CONTEXT_MINOR_VERSION,
+                             5,
+                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                             EGL_CONTEXT_OPENGL_DEBUG,
+                             EGL_TRUE,
+                             EGL_NONE};
     handles->context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
     if (handles->context == EGL_NO_CONTEXT ||
         !eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles->context)) {

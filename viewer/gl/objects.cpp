@@ -22,7 +22,10 @@ Buffer::Buffer(std::size_t bytes) : bytes_(bytes) {
   }
   // A buffer without bytes cannot be bound.
   glNamedBufferData(id, static_cast<GLsizeiptr>(bytes == 0 ? 16 : bytes), nullptr, GL_DYNAMIC_COPY);
-  if (glGetError() == GL_OUT_OF_MEMORY) throw OutOfMemory("the display's device has no room for a buffer of " + std::to_string(bytes) + " bytes: draw fewer points, or close other programs that use it", bytes, 0);
+  if (glGetError() == GL_OUT_OF_MEMORY)
+    throw OutOfMemory("the display's device has no room for a buffer of " + std::to_string(bytes) +
+                          " bytes: draw fewer points, or close other programs that use it",
+                      bytes, 0);
 }
 
 void Buffer::write(std::span<const std::byte> data, std::size_t offset) {
@@ -38,7 +41,8 @@ void Buffer::read(std::span<std::byte> data, std::size_t offset) const {
 
 void Buffer::fill(GLuint word, std::size_t bytes) {
   if (bytes == 0) return;
-  glClearNamedBufferSubData(name_.id(), GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+  glClearNamedBufferSubData(name_.id(), GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER, GL_UNSIGNED_INT,
+                            &word);
 }
 
 Program::Program(const std::string& name, const std::string& text) {
@@ -53,7 +57,8 @@ Program::Program(const std::string& name, const std::string& text) {
   glGetProgramiv(id, GL_INFO_LOG_LENGTH, &size);
   std::string log(static_cast<std::size_t>(size > 0 ? size : 1), '\0');
   glGetProgramInfoLog(id, size, nullptr, log.data());
-  throw DisplayError("the OpenGL driver cannot compile '" + name + "': update the driver, or report this with its log:\n" + log);
+  throw DisplayError("the OpenGL driver cannot compile '" + name +
+                     "': update the driver, or report this with its log:\n" + log);
 }
 
 Texture::Texture(int width, int height) : width_(width), height_(height) {

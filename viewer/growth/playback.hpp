@@ -13,7 +13,8 @@ class Playback {
  public:
   explicit Playback(std::size_t frames = 0) noexcept : last_(frames == 0 ? 0 : static_cast<double>(frames - 1)) {}
 
-  /// Snapshots a second; negative: back, below 1: slow motion, 0: pause. From the end (or the start, back) it begins anew.
+  /// Snapshots a second; negative: back, below 1: slow motion, 0: pause. From the end (or the start, back) it begins
+  /// anew.
   void play(double speed) noexcept {
     speed_ = speed;
     if (speed > 0 && position_ >= last_) position_ = 0;

@@ -17,7 +17,8 @@ namespace {
 std::vector<std::uint16_t> narrowed(std::span<const std::uint32_t> counts) {
   constexpr std::uint32_t most = std::numeric_limits<std::uint16_t>::max();
   std::vector<std::uint16_t> result(counts.size());
-  std::ranges::transform(counts, result.begin(), [](std::uint32_t c) { return static_cast<std::uint16_t>(std::min(c, most)); });
+  std::ranges::transform(counts, result.begin(),
+                         [=](std::uint32_t c) { return static_cast<std::uint16_t>(std::min(c, most)); });
   return result;
 }
 
@@ -53,7 +54,8 @@ struct HashOfTriangle {
 }  // namespace
 
 std::size_t Recording::Frame::bytes() const noexcept {
-  return triangles.size() * sizeof(std::int32_t) + (flips.size() + changes.size() + lost_locks.size()) * sizeof(std::uint16_t);
+  return triangles.size() * sizeof(std::int32_t) +
+         (flips.size() + changes.size() + lost_locks.size()) * sizeof(std::uint16_t);
 }
 
 Recording::Recording(std::span<const double> xy, Options options, const RecordingLimits& limits)
@@ -108,7 +110,9 @@ void Recording::keep(const Snapshot& snapshot) {
 
 std::vector<float> Recording::values(std::size_t frame, GrowthValue value) const {
   const Frame& of = frames_[frame];
-  const auto floats = [](const std::vector<std::uint16_t>& counts) { return std::vector<float>(counts.begin(), counts.end()); };
+  const auto floats = [](const std::vector<std::uint16_t>& counts) {
+    return std::vector<float>(counts.begin(), counts.end());
+  };
   switch (value) {
     case GrowthValue::flips:
       return floats(of.flips);
@@ -143,7 +147,8 @@ std::uint64_t Recording::illegal_edges(std::size_t frame) const {
 }
 
 std::size_t Recording::frame_with_points(double points) const noexcept {
-  const auto found = std::ranges::find_if(frames_, [&](const Frame& f) { return static_cast<double>(f.counters.points) >= points; });
+  const auto found =
+      std::ranges::find_if(frames_, [&](const Frame& f) { return static_cast<double>(f.counters.points) >= points; });
   return found == frames_.end() ? frames_.size() - 1 : static_cast<std::size_t>(found - frames_.begin());
 }
 

@@ -54,8 +54,21 @@ bool has_ffmpeg() {
 Video::Video(std::string path, int width, int height, double fps) : path_(std::move(path)) {
   const std::filesystem::path target(path_);
   temporary_ = (target.parent_path() / fmt::format(".cadt-{}{}.tmp", ::getpid(), target.extension().string())).string();
-  std::vector<std::string> words{"ffmpeg", "-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba",
-                                 "-s", fmt::format("{}x{}", width, height), "-r", fmt::format("{}", fps), "-i", "-"};
+  std::vector<std::string> words{"ffmpeg",
+                                 "-hide_banner",
+                                 "-loglevel",
+                                 "error",
+                                 "-y",
+                                 "-f",
+                                 "rawvideo",
+                                 "-pix_fmt",
+                                 "rgba",
+                                 "-s",
+                                 fmt::format("{}x{}", width, height),
+                                 "-r",
+                                 fmt::format("{}", fps),
+                                 "-i",
+                                 "-"};
   for (std::string& word : output_options(suffix_of(path_))) words.push_back(std::move(word));
   words.push_back("file:" + temporary_);
   std::vector<char*> arguments;
@@ -63,7 +76,8 @@ Video::Video(std::string path, int width, int height, double fps) : path_(std::m
   arguments.push_back(nullptr);
 
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) throw io::FileError(path_, 0, std::string("no pipe to ffmpeg: ") + std::strerror(errno));
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    throw io::FileError(path_, 0, std::string("no pipe to ffmpeg: ") + std::strerror(errno));
   // Its messages go to a file without a name: a pipe could fill up while nobody reads it.
   messages_ = ::open(std::filesystem::temp_directory_path().c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   posix_spawn_file_actions_t actions;
@@ -92,7 +106,7 @@ Video::Video(std::string path, int width, int height, double fps) : path_(std::m
 Video::~Video() {
   if (pipe_ >= 0) ::close(pipe_);
   if (process_ >= 0) {
-    ::kill(process_, SIGKILL);
+    ::kill(-process_, SIGKILL);  // its group, which has its children
     wait();
   }
   if (messages_ >= 0) ::close(messages_);

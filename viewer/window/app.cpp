@@ -237,9 +237,8 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   hovered.reset();
   diagram_.reset();
   voronoi_note.clear();
-  degrees_.clear();
   if (!same) view.show(s.mesh.box, s.mesh.point_count, !loaded->heights.empty());
-  view.colours = loaded->heights.empty() ? View::usual_colours() : View::colours_with_heights();
+  view.colours = loaded->heights.empty() ? ViewState::usual_colours() : ViewState::colours_with_heights();
   if (std::find(view.colours.begin(), view.colours.end(), view.colour) == view.colours.end()) view.colour = ColourBy::area;
   if (!same && !colour_chosen_) view.colour = loaded->heights.empty() ? ColourBy::area : ColourBy::height;
   s.renderer.update(s.mesh);
@@ -268,6 +267,8 @@ void App::ask(Command command) {
         message.reset();
       else if (loading.running())
         loading.cancel();
+      else if (asking.running())
+        asking.cancel();
       else if (panel_focused)
         panel_focused = false;
       else if (!selection.empty())

@@ -90,7 +90,7 @@ class App {
   // ---- what panel and cards read ----
   ViewOptions options;  ///< `compute` is what the next triangulation does
   std::size_t current = 0;  ///< of options.sources
-  View view;
+  ViewState view;
   Selection selection;
   std::optional<TriangleFacts> hovered, selected;
   std::optional<Place> selected_place;  ///< of selection.point
@@ -179,7 +179,6 @@ class App {
   Triangulators triangulators_;
   std::shared_ptr<const VoronoiDiagram> diagram_;
   std::optional<ColourBy> values_of_;      ///< whose values and ends the renderer has
-  std::vector<float> degrees_;
   std::array<Stroke, 2> strokes_;          ///< hull, Voronoi cells
   int version_ = 0;  ///< counts changes of mesh, values and strokes
   std::vector<double> drawn_;

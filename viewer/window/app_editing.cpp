@@ -44,7 +44,7 @@ void App::stop_editing() {
   if (editing->changed) advance_editing(0);
   editing.reset();
   take_points_back();
-  view.colours = loaded->heights.empty() ? View::usual_colours() : View::colours_with_heights();
+  view.colours = loaded->heights.empty() ? ViewState::usual_colours() : ViewState::colours_with_heights();
   say(fmt::format("edited: {} points {} triangles", scene->mesh.point_count, scene->mesh.triangle_count));
 }
 
@@ -52,12 +52,13 @@ void App::stop_editing() {
 void App::take_points_back() {
   if (!points_stale_) return;
   const auto now = std::make_shared<Loaded>(*loaded);
-  now->points = {};
+  now->points.height.clear();
   now->points.xy = scene->mesh.points.read_values<double>(2 * scene->mesh.point_count);
   now->heights.clear();
   now->mesh.reset();
   loaded = now;
   points_stale_ = false;
+  values_of_.reset();
 }
 
 void App::points_changed() {
@@ -82,7 +83,6 @@ void App::advance_editing(double seconds) {
   hovered.reset();
   mark({});
   diagram_.reset();
-  degrees_.clear();
   for (Stroke& stroke : strokes_) stroke.segments.clear();
   ++version_;
 }

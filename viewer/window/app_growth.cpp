@@ -56,7 +56,7 @@ void App::finish_recording(const std::shared_ptr<const Recording>& recording) {
 void App::stop_growing() {
   if (!growing) return;
   growing.reset();
-  view.colours = loaded->heights.empty() ? View::usual_colours() : View::colours_with_heights();
+  view.colours = loaded->heights.empty() ? ViewState::usual_colours() : ViewState::colours_with_heights();
   view.colour = before_growing_;
   if (loaded->mesh)
     scene->mesh.write_triangles(loaded->mesh->triangles());

@@ -2,6 +2,7 @@
 // The viewer's picture: when it is drawn anew, what lies over it, and what has to be computed for that.
 #include "viewer/draw/image_file.hpp"
 #include "viewer/draw/palette.hpp"
+#include "viewer/still/scene_values.hpp"
 #include "viewer/window/app.hpp"
 #include "viewer/window/overlays.hpp"
 #include "viewer/window/screenshot.hpp"
@@ -36,27 +37,33 @@ struct App::Asked {
   std::shared_ptr<Loaded> of;
   std::optional<Triangulation> mesh;
   std::shared_ptr<const VoronoiDiagram> diagram;
-  std::optional<std::vector<float>> degrees;
+  std::shared_ptr<const Recording> recording;  ///< whose snapshot `frame` has so many illegal edges
+  std::size_t frame = 0;
+  std::uint64_t illegal_edges = 0;
 };
 
 void App::ask_next() {
-  if (asking.running() || loading.running() || loaded == nullptr || scene == nullptr || growing || points_stale_) return;
+  if (asking.running() || loading.running() || loaded == nullptr || scene == nullptr || points_stale_) return;
   if (editing != nullptr && editing->moving) return;
   if (scene->mesh.triangle_count == 0) return;
   const auto asked = std::make_shared<Asked>();
   asked->of = loaded;
-  if (!loaded->mesh) {
+  if (growing) {
+    const std::size_t frame = *growing->shown;
+    if (growing->playback.playing() || growing->illegal_edges[frame]) return;
+    asked->recording = growing->recording;
+    asked->frame = frame;
+    asking.start([asked](Work::Desk& desk) {
+      desk.report("illegal edges", -1);
+      asked->illegal_edges = asked->recording->illegal_edges(asked->frame);
+    });
+  } else if (!loaded->mesh) {
     if (!needs_mesh_of_host(*this)) return;
     // The device made the mesh: neighbours and hull are the host's to find.
     auto triangles = scene->mesh.triangles.read_values<std::int32_t>(3 * scene->mesh.triangle_count);
     asking.start([asked, triangles = std::move(triangles)](Work::Desk& desk) {
       desk.report("neighbours", -1);
       asked->mesh = Triangulation::adopt(asked->of->points.view(), triangles, {}, Trust::geometry);
-    });
-  } else if (view.colour == ColourBy::degree && degrees_.empty()) {
-    asking.start([asked](Work::Desk& desk) {
-      desk.report("degrees", -1);
-      asked->degrees = degrees_of(asked->of->points.size(), asked->of->mesh->triangles());
     });
   } else if (view.voronoi && diagram_ == nullptr) {
     asking.start([asked](Work::Desk& desk) {
@@ -76,6 +83,11 @@ void App::ask_next() {
 void App::finish_asking(const std::exception_ptr& error) {
   const auto asked = std::exchange(asked_, nullptr);
   if (asked == nullptr || asked->of != loaded) return;
+  if (asked->recording != nullptr) {
+    if (error) std::rethrow_exception(error);
+    if (growing && growing->recording == asked->recording) growing->illegal_edges[asked->frame] = asked->illegal_edges;
+    return;
+  }
   if (error) {
     view.voronoi = false;  // else it would be asked again for ever
     view.hull = false;
@@ -86,7 +98,6 @@ void App::finish_asking(const std::exception_ptr& error) {
   }
   if (asked->mesh) loaded->mesh = std::move(*asked->mesh);
   if (asked->diagram) diagram_ = asked->diagram;
-  if (asked->degrees) degrees_ = std::move(*asked->degrees);
   mark(selection);
   values_of_.reset();
   update_strokes();
@@ -107,14 +118,15 @@ void App::update_colour() {
     growing->playback.seek(position);
     upload_snapshot();
   }
-  if (growing)
+  if (growing) {
     r.set_values(growth_values());
-  else if (view.colour == ColourBy::height)
-    r.set_values(loaded->heights);
-  else if (view.colour == ColourBy::degree)
-    r.set_values(degrees_);
-  if (!growing && scene->mesh.triangle_count != 0 && !(view.colour == ColourBy::degree && degrees_.empty()))
-    r.fit_ramp(scene->mesh, view.colour);
+  } else if (loaded->mesh && !points_stale_) {
+    prepare_colour(r, scene->mesh, loaded->points, *loaded->mesh, view.colour);
+  } else {
+    r.set_outside({}, 0);
+    r.set_values(view.colour == ColourBy::height ? loaded->heights : std::vector<float>());
+    if (scene->mesh.triangle_count != 0) r.fit_ramp(scene->mesh, view.colour);
+  }
   values_of_ = view.colour;
   ++version_;
 }
@@ -123,7 +135,7 @@ void App::update_strokes() {
   for (Stroke& stroke : strokes_) stroke.segments.clear();
   ++version_;
   if (loaded == nullptr || !loaded->mesh || points_stale_) return;
-  if (view.hull) strokes_[0].segments = hull_segments(loaded->points.xy, loaded->mesh->hull());
+  if (view.hull) strokes_[0] = hull_stroke(loaded->points, *loaded->mesh, view.dark);
 }
 
 std::vector<double> App::signature(int samples) const {

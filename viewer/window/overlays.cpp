@@ -30,16 +30,6 @@ struct Sight {
 
 }  // namespace
 
-std::vector<std::array<double, 4>> hull_segments(std::span<const double> xy, std::span<const std::int32_t> hull) {
-  std::vector<std::array<double, 4>> segments;
-  segments.reserve(hull.size());
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const auto a = static_cast<std::size_t>(hull[i]), b = static_cast<std::size_t>(hull[i + 1 == hull.size() ? 0 : i + 1]);
-    segments.push_back({xy[2 * a], xy[2 * a + 1], xy[2 * b], xy[2 * b + 1]});
-  }
-  return segments;
-}
-
 VoronoiLines voronoi_lines(std::span<const double> xy, const VoronoiDiagram& diagram, const Camera& camera,
                            std::size_t most) {
   const Sight sight(camera);
@@ -64,12 +54,6 @@ VoronoiLines voronoi_lines(std::span<const double> xy, const VoronoiDiagram& dia
   }
   if (lines.in_view > most) lines.segments.clear();
   return lines;
-}
-
-std::vector<float> degrees_of(std::size_t points, std::span<const std::int32_t> triangles) {
-  std::vector<float> degrees(points, 0.0f);
-  for (const std::int32_t p : triangles) degrees[static_cast<std::size_t>(p)] += 1;
-  return degrees;
 }
 
 }  // namespace cadt::viewer

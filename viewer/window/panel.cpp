@@ -147,7 +147,7 @@ std::string words_for(ColourBy by) {
 
 void draw_drawing(App& app) {
   if (!section("Drawing", true)) return;
-  View& view = app.view;
+  ViewState& view = app.view;
   for (const auto& [drawing, command, name] :
        {std::tuple{Drawing::points, Command::points, "Points"}, std::tuple{Drawing::wireframe, Command::wireframe, "Wireframe"},
         std::tuple{Drawing::filled, Command::filled, "Filled"}}) {

@@ -134,6 +134,9 @@ void draw_picture(App& app) {
       marks.triangle(*app.selected, true);
       marks.names(*app.selected);
     }
+    const ImVec2 mouse = ImGui::GetMousePos();
+    if (app.editing != nullptr && app.editing->tool != Tool::drag && app.over_mesh(mouse.x, mouse.y))
+      list.AddCircle(mouse, app.editing->brush * static_cast<float>(app.view.scale), ink_for(app.view.dark).strong, 0, 1.6f);
     if (app.selected_place) marks.point(*app.selected_place, *app.selection.point);
   }
   list.PopClipRect();

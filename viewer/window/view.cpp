@@ -22,7 +22,7 @@ std::optional<Drawing> drawing_from_string(std::string_view name) noexcept {
   return std::nullopt;
 }
 
-bool View::apply(Command command) {
+bool ViewState::apply(Command command) {
   const double across = 0.1 * std::min(camera.width(), camera.height());
   const double x = 0.5 * camera.width(), y = 0.5 * camera.height();
   switch (command) {
@@ -78,19 +78,19 @@ bool View::apply(Command command) {
   }
 }
 
-void View::wheel(double steps, double x, double y) { camera.zoom(std::pow(step_of_wheel, steps), x, y); }
+void ViewState::wheel(double steps, double x, double y) { camera.zoom(std::pow(step_of_wheel, steps), x, y); }
 
-std::vector<ColourBy> View::usual_colours() {
+std::vector<ColourBy> ViewState::usual_colours() {
   return {ColourBy::nothing, ColourBy::angle, ColourBy::area, ColourBy::order, ColourBy::degree};
 }
 
-std::vector<ColourBy> View::colours_with_heights() {
+std::vector<ColourBy> ViewState::colours_with_heights() {
   std::vector<ColourBy> all = usual_colours();
   all.push_back(ColourBy::height);
   return all;
 }
 
-void View::show(const Box& box, std::size_t points, bool has_heights) {
+void ViewState::show(const Box& box, std::size_t points, bool has_heights) {
   box_ = box;
   points_ = points;
   camera = Camera(box, camera.width(), camera.height());
@@ -98,9 +98,9 @@ void View::show(const Box& box, std::size_t points, bool has_heights) {
   if (std::find(colours.begin(), colours.end(), colour) == colours.end()) colour = ColourBy::area;
 }
 
-void View::resize(int width, int height) { camera.resize(width, height); }
+void ViewState::resize(int width, int height) { camera.resize(width, height); }
 
-void View::go_to(double x, double y, double size) {
+void ViewState::go_to(double x, double y, double size) {
   camera.look_at(x, y);
   const double wanted = std::min(camera.width(), camera.height()) / 3.0;
   const double now = std::fabs(size * camera.scale());
@@ -111,7 +111,7 @@ void View::go_to(double x, double y, double size) {
   camera.zoom(wanted / now, 0.5 * camera.width(), 0.5 * camera.height());
 }
 
-Style View::style() const {
+Style ViewState::style() const {
   Style style;
   style.colour = colour;
   style.fill = drawing != Drawing::wireframe;

@@ -19,7 +19,7 @@ enum class Drawing { points, wireframe, filled };
 /// "points", "wireframe", "filled".
 [[nodiscard]] std::optional<Drawing> drawing_from_string(std::string_view name) noexcept;
 
-class View {
+class ViewState {
  public:
   Camera camera;
   Drawing drawing = Drawing::filled;

@@ -6,22 +6,27 @@
 #include <cadt/io/points_file.hpp>
 #include <cadt/triangulation.hpp>
 
+#include <cstddef>
 #include <string>
 
 namespace cadt::io {
 
 struct PictureOptions {
-  int width = 1600;  ///< pixels, or user units of an SVG; the height follows from the bounding box of the points
+  int width = 1600;  ///< pixels, user units of an SVG, or points of a PDF; the height follows from the bounding box of
+                     ///< the points
   int max_height = 4000;
   bool shade = true;  ///< fill triangles by height (if given) or by size
 };
 
-/// SVG of a small mesh (edges as one path, hull emphasised). \throws FileError above 200,000 triangles, which need PNG
+/// Triangles and points that a picture takes. More are drawn by the program: cadt render.
+inline constexpr std::size_t most_drawn_triangles = 200'000;
+
+/// Edges, ground by height or size, hull and, where they stay apart, points; drawn by Cairo. O(triangles + pixels).
+/// \throws FileError also above most_drawn_triangles
 void write_svg(const std::string& path, const PointSet& points, const Triangulation& mesh,
                const PictureOptions& options = {});
-
-/// PNG: anti-aliased edges for meshes whose triangles are larger than a few pixels, edge density (or shaded heights)
-/// for millions of triangles. O(triangles + pixels). \throws FileError
+void write_pdf(const std::string& path, const PointSet& points, const Triangulation& mesh,
+               const PictureOptions& options = {});
 void write_png(const std::string& path, const PointSet& points, const Triangulation& mesh,
                const PictureOptions& options = {});
 

@@ -3,10 +3,13 @@
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/support/mesh_checks.hpp"
+#include "tests/support/same_math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -186,15 +189,33 @@ TEST_P(KernelTimes, BeginAnewAfterACancelledRun) {
   EXPECT_EQ(launches, s.launches);
 }
 
+using Triangle = std::array<std::int32_t, 3>;
+
+std::set<Triangle> triangles_of(std::span<const std::int32_t> indices) {
+  std::set<Triangle> result;
+  for (std::size_t t = 0; t < indices.size(); t += 3) {
+    Triangle v{indices[t], indices[t + 1], indices[t + 2]};
+    std::rotate(v.begin(), std::ranges::min_element(v), v.end());
+    result.insert(v);
+  }
+  return result;
+}
+
+std::uint64_t sum(std::span<const std::uint32_t> counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+
 class Snapshots : public BackendTest {};
 
 TEST_P(Snapshots, ShowTheGrowingMesh) {
   const Points xy = uniform_points(2048, 10);
   Options options = GetParam().options();
   std::vector<std::size_t> points, triangles;
+  std::set<Triangle> last;
   options.tuning.watch = [&](const Snapshot& snapshot) {
     points.push_back(snapshot.points);
     triangles.push_back(snapshot.triangles.size() / 3);
+    last = triangles_of(snapshot.triangles);
     ASSERT_EQ(snapshot.triangles.size() % 3, 0u);
     std::map<std::pair<std::int32_t, std::int32_t>, int> edges;
     for (std::size_t t = 0; t < snapshot.triangles.size(); t += 3) {
@@ -212,9 +233,84 @@ TEST_P(Snapshots, ShowTheGrowingMesh) {
   EXPECT_TRUE(std::ranges::is_sorted(points));
   EXPECT_GE(points.front(), 3u);
   EXPECT_EQ(points.back(), 2048u);
-  EXPECT_TRUE(std::ranges::is_sorted(triangles));
-  EXPECT_LE(triangles.back(), mesh.number_of_triangles());  // the hull may not be convex yet
+  EXPECT_EQ(triangles.back(), mesh.number_of_triangles());
+  EXPECT_EQ(last, triangles_of(mesh.triangles()));
   EXPECT_TRUE(verified(xy, mesh));
+}
+
+TEST_P(Snapshots, CountAsTheyGo) {
+  const Points xy = uniform_points(5000, 12);
+  Options options = GetParam().options();
+  Statistics before;
+  unsigned level = 0;
+  std::size_t seen = 0, complete = 0;
+  options.tuning.watch = [&](const Snapshot& snapshot) {
+    const Statistics& s = snapshot.statistics;
+    ++seen;
+    EXPECT_EQ(complete, 0u) << "a snapshot after the last";
+    complete += snapshot.complete ? 1 : 0;
+    EXPECT_GE(snapshot.level, std::max(1u, level));
+    EXPECT_GE(s.flips, before.flips);
+    EXPECT_GE(s.lock_attempts, before.lock_attempts);
+    EXPECT_GE(s.lock_failures, before.lock_failures);
+    EXPECT_GE(s.deferred_points, before.deferred_points);
+    EXPECT_EQ(s.splits + s.edge_splits + 3, snapshot.points) << "counters of another moment";
+    EXPECT_EQ(s.lock_attempts, s.lock_failures + s.splits + s.edge_splits + s.flips);
+    EXPECT_EQ(s.certified, snapshot.complete);
+    EXPECT_LE(snapshot.points + snapshot.waiting_points, 5000u);
+    if (snapshot.complete) EXPECT_EQ(snapshot.waiting_points + snapshot.waiting_edges, 0u);
+    const std::size_t count = snapshot.triangles.size() / 3;
+    ASSERT_EQ(snapshot.flips.size(), count);
+    ASSERT_EQ(snapshot.changes.size(), count);
+    EXPECT_TRUE(snapshot.lost_locks.empty());
+    // A flip changes four triangles and adds one to the counter of an edge, which two triangles share.
+    EXPECT_LE(sum(snapshot.flips), 2 * s.flips);
+    EXPECT_LE(sum(snapshot.changes), 4 * (s.flips + s.edge_splits) + 3 * s.splits);
+    if (snapshot.complete) {
+      EXPECT_GT(sum(snapshot.flips), s.flips / 2);
+      EXPECT_GT(sum(snapshot.changes), 3 * s.flips);
+    }
+    before = s;
+    level = snapshot.level;
+  };
+  const Triangulation mesh = triangulate(Reals(xy), options);
+  EXPECT_EQ(complete, 1u);
+  EXPECT_EQ(level, 13u);  // 2^13 is the first power of two above 5000
+  EXPECT_EQ(before.flips, mesh.statistics().flips);
+  EXPECT_EQ(before.lock_failures, mesh.statistics().lock_failures);
+
+  const std::size_t levels_alone = seen;
+  seen = complete = 0;
+  level = 0;
+  before = {};
+  options.tuning.watch_points = 100;
+  const Hash128 hash = triangulate(Reals(xy), options).hash();
+  EXPECT_EQ(hash, mesh.hash());
+  EXPECT_GE(seen, levels_alone + 5000 / 100 - 10);
+}
+
+TEST_P(Snapshots, TellWhereLocksAreLost) {
+  // All triangles meet at one point.
+  Points xy{0.0, 0.0};
+  for (int i = 0; i < 6000; ++i) {
+    const double angle = 6.283185307179586 * i / 6000;
+    xy.insert(xy.end(), {same_cos(angle), same_sin(angle)});
+  }
+  Options options = GetParam().options();
+  options.statistics = StatisticsDetail::timing;
+  options.tuning.strategy = Strategy::locks;
+  options.tuning.grain = 1;
+  std::uint64_t lost = 0;
+  options.tuning.watch = [&](const Snapshot& snapshot) {
+    ASSERT_EQ(snapshot.lost_locks.size(), snapshot.triangles.size() / 3);
+    EXPECT_LE(sum(snapshot.lost_locks), snapshot.statistics.lock_failures);
+    if (snapshot.complete) lost += sum(snapshot.lost_locks);
+  };
+  // On a busy machine threads hardly ever meet.
+  const auto start = std::chrono::steady_clock::now();
+  while (lost == 0 && std::chrono::steady_clock::now() - start < std::chrono::seconds(60))
+    EXPECT_TRUE(triangulate(Reals(xy), options).statistics().certified);
+  EXPECT_GT(lost, 0u);
 }
 
 CADT_ON_MAIN_BACKENDS(CountedWork);

@@ -62,8 +62,17 @@ vec3 ramp_colour(float value) {
   return texture(ramp, clamp((value - low) / max(high - low, 1e-30), 0.0, 1.0) * (511.0 / 512.0) + 0.5 / 512.0).rgb;
 }
 
+/// How far a triangle counts as ground: 1, but less for large ones that fill bays of the outline.
+float ground(uint t, Corners p) {
+  const uint v = uint(corner[3u * t]);
+  if ((outside[v >> 5u] >> (v & 31u) & 1u) == 0u) return 1.0;
+  const float longest = float(sqrt(max(dot(p.b - p.a, p.b - p.a), max(dot(p.c - p.b, p.c - p.b), dot(p.a - p.c, p.a - p.c)))));
+  return 1.0 - 0.8 * clamp((longest - fade_begin) / (2.0 * fade_begin), 0.0, 1.0);
+}
+
 vec3 colour_of(uint t, Corners p, vec3 at) {
   vec3 colour = colour_by == BY_NOTHING ? fill_colour.rgb : ramp_colour(raw_value(t, p, at));
   if ((flags & SHADE) != 0) colour *= light(t, p);
+  if ((flags & FADE) != 0) colour = mix(background.rgb, colour, ground(t, p));
   return colour;
 }

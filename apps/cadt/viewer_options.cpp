@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer_options.hpp"
+
+#include "failure.hpp"
+#include "interrupt.hpp"
+#include "text.hpp"
+
+#include <fast_float/fast_float.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace cadt::cli {
+namespace {
+
+constexpr int largest_side = 16384;
+
+bool parse_number(std::string_view text, double& value) {
+  const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() && std::isfinite(value);
+}
+
+}  // namespace
+
+void add_subject_options(CLI::App& command, SubjectOptions& options) {
+  add_input_options(command, options.input, "IN", "file with points");
+  command.get_option("IN")->required(false);
+  command.add_option("--generate", options.generate, "a point set of 'cadt generate' in place of a file")
+      ->type_name("NAME");
+  command.add_option("-n", options.n, "number of points of --generate, 250000, 2M or 1e6 (default: 10000)")
+      ->type_name("N");
+  command.add_option("--seed", options.generator.seed, "of --generate: equal seeds give equal points (default: 1)")
+      ->type_name("S");
+}
+
+std::string name_of(const SubjectOptions& options) {
+  return options.generate.empty() ? display_name(options.input.path, true) : options.generate;
+}
+
+io::PointSet read_subject(const SubjectOptions& options, ProgressLine& line) {
+  if (options.generate.empty() == options.input.path.empty())
+    throw Failure(exit_usage, "name a file with points, or a point set with --generate, and not both");
+  if (options.generate.empty()) {
+    line.step(fmt::format("reading {}", name_of(options)));
+    return read_input(options.input);
+  }
+  const auto& all = io::distributions();
+  if (std::none_of(all.begin(), all.end(), [&](const auto& entry) { return entry.name == options.generate; }))
+    throw Failure(exit_usage, fmt::format("there is no point set '{}' (see: cadt generate --list)", options.generate));
+  io::GenerateOptions generator = options.generator;
+  generator.n = parse_count(options.n);
+  if (generator.n > max_points())
+    throw Failure(exit_usage, fmt::format("-n {}: a triangulation takes at most {} points", options.n, max_points()));
+  line.step(fmt::format("making {} points", options.n));
+  return io::generate(options.generate, generator);
+}
+
+Triangulation triangulate_subject(const SubjectOptions& subject, const io::PointSet& points, const Options& options) {
+  try {
+    const InPhase phase(Phase::cooperative);
+    return triangulate(points.view(), options);
+  } catch (const InputError& e) {
+    refuse_points(subject, e);
+  }
+}
+
+void refuse_points(const SubjectOptions& subject, const InputError& e) {
+  throw Failure(exit_file, fmt::format("{}: point {} (counted from 0): {}", name_of(subject), e.index(), e.what()));
+}
+
+void add_style_options(CLI::App& command, StyleOptions& options) {
+  command
+      .add_option("--colour,--color", options.colour,
+                  "what decides the colour of a triangle: " + join(viewer::names_of_colours(), " ") +
+                      " (default: height if the points have one, else area)")
+      ->type_name("BY")
+      ->check(CLI::IsMember(viewer::names_of_colours()).description(""));
+  command.add_option("--style", options.style, "filled (default), wireframe, or points without triangles")
+      ->type_name("STYLE")
+      ->check(CLI::IsMember({"filled", "wireframe", "points"}).description(""));
+  command.add_flag("--no-hull", options.no_hull, "do not emphasise the convex hull");
+  command.add_flag("--dark", options.dark, "light on dark");
+}
+
+viewer::Style style_of(const StyleOptions& options) {
+  viewer::Style style;
+  style.fill = options.style == "filled";
+  style.points_alone = options.style == "points";
+  style.hull = !options.no_hull;
+  style.dark = options.dark;
+  return style;
+}
+
+viewer::ColourBy colour_of(const StyleOptions& options, const io::PointSet& points,
+                           const std::vector<std::string>& refused) {
+  const auto& names = viewer::names_of_colours();
+  const auto found = std::find(names.begin(), names.end(), options.colour);
+  if (found == names.end()) return points.height.empty() ? viewer::ColourBy::area : viewer::ColourBy::height;
+  if (std::find(refused.begin(), refused.end(), options.colour) != refused.end())
+    throw Failure(exit_usage, fmt::format("--colour {} is known of a mesh that grows only", options.colour));
+  const auto colour = static_cast<viewer::ColourBy>(found - names.begin());
+  if (colour == viewer::ColourBy::height && points.height.empty())
+    throw Failure(exit_usage,
+                  "--colour height: the points have no third column; take another colour, or name it with --columns");
+  return colour;
+}
+
+void parse_size(const std::string& text, int& width, int& height) {
+  const std::size_t x = text.find('x');
+  double w = 0, h = 0;
+  const bool both = x != std::string::npos;
+  const auto fits = [](double v) { return v == std::floor(v) && v >= 16 && v <= largest_side; };
+  if (!parse_number(std::string_view(text).substr(0, x), w) || !fits(w) ||
+      (both && (!parse_number(std::string_view(text).substr(x + 1), h) || !fits(h)))) {
+    throw Failure(exit_usage, fmt::format("--size {}: a width, or width and height as 1920x1080, of 16 to {} pixels",
+                                          text, largest_side));
+  }
+  width = static_cast<int>(w);
+  height = static_cast<int>(h);
+}
+
+std::optional<viewer::View> parse_camera(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::array<double, 3> number{0, 0, 0};
+  std::string_view rest = text;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t comma = i < 2 ? rest.find(',') : rest.size();
+    if (comma == std::string_view::npos || !parse_number(rest.substr(0, comma), number[i]) ||
+        (i == 2 && !(number[i] > 0)))
+      throw Failure(exit_usage,
+                    fmt::format("--camera {}: three numbers are needed, x,y,magnification, the last above 0", text));
+    rest.remove_prefix(std::min(rest.size(), comma + 1));
+  }
+  return viewer::View{number[0], number[1], number[2]};
+}
+
+}  // namespace cadt::cli

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""cadt render of the growing mesh: snapshots in one picture, films, frames."""
+import os
+import pathlib
+import shutil
+import struct
+import unittest
+import zlib
+
+from harness import CliTest
+
+
+def png_size(path):
+    return struct.unpack(">II", path.read_bytes()[16:24])
+
+
+def png_rows(path):
+    """The rows of an 8-bit RGB picture, each a bytes object."""
+    data, at, body = path.read_bytes(), 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        body += data[at + 8:at + 8 + length] if kind == b"IDAT" else b""
+        at += 12 + length
+    width, height = png_size(path)
+    raw, rows, above = zlib.decompress(body), [], bytes(3 * width)
+    for y in range(height):
+        kind, line = raw[y * (3 * width + 1)], bytearray(raw[y * (3 * width + 1) + 1:(y + 1) * (3 * width + 1)])
+        for i in range(3 * width):
+            left, up, corner = (line[i - 3] if i > 2 else 0), above[i], (above[i - 3] if i > 2 else 0)
+            guess = min((abs(up - corner), 0, left), (abs(left - corner), 1, up), (abs(left + up - 2 * corner), 2, corner))[2]
+            line[i] = (line[i] + (0, left, up, (left + up) // 2, guess)[kind]) & 255
+        above = bytes(line)
+        rows.append(above)
+    return rows
+
+
+class GrowthSheetTest(CliTest):
+    def test_four_snapshots_in_one_picture(self):
+        out = self.cadt("render", "--generate", "uniform", "-n", 2048, "-o", "growth.png", "--growth", 4, "--size", 404, "-q")
+        self.assertEqual(out.out, "")
+        out = self.cadt("render", "--generate", "uniform", "-n", 2048, "-o", "growth.png", "--growth", 4, "--size", 404)
+        self.assertEqual(self.names(), ["growth.png"])
+        rows = [line.split() for line in out.out.splitlines()[1:]]
+        self.assertEqual([row[0] for row in rows], ["1", "2", "3", "4"])
+        points = [int(row[2]) for row in rows]
+        self.assertEqual(points, sorted(points))
+        self.assertEqual(points[-1], 2048)
+        for have, want in zip(points, (128, 512, 1152, 2048)):
+            self.assertLessEqual(abs(have - want), 40)
+        self.assertEqual(rows[-1][-2:], ["0", "0"], "nothing waits, no edge is illegal")
+        triangles = [int(row[3]) for row in rows]
+        self.assertTrue(all(t < 2 * p for t, p in zip(triangles, points)))
+        width, height = png_size(self.path("growth.png"))
+        self.assertEqual(width, 404)
+        self.assertLess(abs(height - width), 12, "two rows of square pictures")
+        pixels = png_rows(self.path("growth.png"))
+        quarters = [{r[i:i + 3] for r in pixels[y:y + 190] for i in range(3 * x, 3 * x + 570, 3)}
+                    for y in (4, 210) for x in (4, 210)]
+        self.assertTrue(all(len(q) > 20 for q in quarters), "a picture is empty")
+
+    def test_sizes_and_colours(self):
+        for colour in ("level", "flips", "conflicts", "degree", "area", "nothing"):
+            self.cadt("render", "--generate", "circles", "-n", 500, "-o", f"{colour}.png", "--growth", 3, "--size", "300x200",
+                      "--colour", colour, "--backend", "host", "-q")
+            width, height = png_size(self.path(f"{colour}.png"))
+            self.assertTrue(298 <= width <= 300 and 198 <= height <= 200, (width, height))
+        self.assertNotEqual(self.path("flips.png").read_bytes(), self.path("level.png").read_bytes())
+
+    def test_what_does_not_go_together(self):
+        self.fails(2, "render", "--generate", "uniform", "-o", "a.mp4", "--growth", 4, says=("--growth is for a picture", "growth.png"))
+        self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--fps", 10, says="-o growth.mp4")
+        self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--growth", 4, "--seconds", 3, says="frames/")
+        self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--growth", 0)
+        self.fails(2, "render", "--generate", "uniform", "-o", "a.gif", "--fps", 240, "--seconds", 3600, says="864000 pictures")
+        self.fails(3, "render", "--generate", "uniform", "-o", "nowhere/a.png", "--growth", 4, says="nowhere")
+        self.assertEqual(self.names(), [])
+
+    def test_points_without_triangles(self):
+        self.write("line.xy", "0 0\n1 1\n2 2\n")
+        self.fails(4, "render", "line.xy", "-o", "a.png", "--growth", 4, says="on one line")
+        self.assertEqual(self.names(), ["line.xy"])
+
+
+class GrowthFilmTest(CliTest):
+    def test_frames_in_a_folder(self):
+        self.cadt("render", "--generate", "uniform", "-n", 300, "-o", "frames/", "--size", "64x48", "--fps", 5, "--seconds", 2, "-q")
+        names = sorted(f.name for f in self.path("frames").iterdir())
+        self.assertEqual(names, [f"{i:04}.png" for i in range(1, 11)])
+        pictures = [(self.path("frames") / name).read_bytes() for name in names]
+        self.assertEqual({png_size(self.path("frames") / name) for name in names}, {(64, 48)})
+        self.assertGreater(len(set(pictures)), 5, "it does not move")
+        self.assertEqual(pictures[-1], pictures[-2], "the end stands still")
+        self.fails(3, "render", "--generate", "uniform", "-n", 300, "-o", "frames", says="has frames already")
+
+    def test_films(self):
+        if shutil.which("ffmpeg") is None:
+            self.fail("ffmpeg is not installed: scripts/setup --tests installs it")
+        for suffix, mark in ((".mp4", b"ftyp"), (".webm", b"webm"), (".gif", b"GIF89a")):
+            name = "film" + suffix
+            self.cadt("render", "--generate", "uniform", "-n", 300, "-o", name, "--size", "65x49", "--fps", 5, "--seconds", 1, "-q")
+            self.assertIn(mark, self.path(name).read_bytes()[:64])
+        self.assertEqual(self.names(), ["film.gif", "film.mp4", "film.webm"])
+
+    def stand_in(self, text):
+        """A program called ffmpeg, before all others."""
+        folder = pathlib.Path(self.path("bin"))
+        folder.mkdir(exist_ok=True)
+        (folder / "ffmpeg").write_text("#!/bin/sh\n" + text + "\n")
+        (folder / "ffmpeg").chmod(0o755)
+        before = os.environ["PATH"]
+        self.addCleanup(os.environ.__setitem__, "PATH", before)
+        os.environ["PATH"] = f"{folder}:{before}"
+
+    def test_what_ffmpeg_says_is_said(self):
+        self.stand_in("cat > /dev/null; echo 'Unknown encoder' >&2; exit 8")
+        self.fails(3, "render", "--generate", "uniform", "-n", 300, "-o", "a.mp4", "--size", 64, "--seconds", 1,
+                   says=("a.mp4", "ffmpeg ended with exit code 8: Unknown encoder"))
+        self.assertEqual(self.names(), ["bin"])
+
+    def test_without_ffmpeg_it_says_what_to_do(self):
+        before = os.environ["PATH"]
+        self.addCleanup(os.environ.__setitem__, "PATH", before)
+        os.environ["PATH"] = str(self.folder)
+        self.fails(3, "render", "--generate", "uniform", "-n", 300, "-o", "a.mp4", says=("ffmpeg", "-o frames/"))
+        self.assertEqual(self.names(), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

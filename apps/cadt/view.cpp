@@ -29,7 +29,7 @@ struct ViewCommand {
   std::uint64_t seed = 1;
   DeviceOptions device;
   double scale = 0;
-  bool dark = false, log = false;
+  bool dark = false, log = false, lose_context = false;
 };
 
 std::array<int, 2> parse_size(const std::string& text) {
@@ -82,6 +82,7 @@ int run(const ViewCommand& command) {
   options.scale = command.scale;
   options.dark = command.dark;
   options.log = command.log;
+  options.lose_context = command.lose_context;
   options.free_memory = [] { return static_cast<std::size_t>(free_memory().value_or(0)); };
   try {
     viewer::App(std::move(options)).run();
@@ -125,6 +126,7 @@ void add_view(CLI::App& app, Action& chosen) {
   add_device_options(*command, options->device);
   add_memory_option(*command, options->device);
   command->add_flag("--log", options->log, "what happens, on standard output")->group("");
+  command->add_flag("--lose-context", options->lose_context, "as if the driver was reset, once")->group("");
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

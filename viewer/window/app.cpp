@@ -91,7 +91,7 @@ void App::session() {
   while (!window->should_close()) {
     const bool busy = loading.running() || asking.running() || !settled_ || points_stale_ || Clock::now() < toast_until_;
     if (window->wait(!window->visible() ? -1 : frames > 0 || animated() ? 0 : busy ? busy_wait : -1)) frames = 3;
-    if (window->lost()) throw ContextLost("the driver was reset");
+    if (window->lost() || (loaded != nullptr && std::exchange(options.lose_context, false))) throw ContextLost("the driver was reset");
     guarded([&] {
       std::exception_ptr error;
       if (loading.finished(error)) finish_loading(error);

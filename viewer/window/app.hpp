@@ -36,6 +36,7 @@ struct ViewOptions {
   int width = 1280, height = 800;
   double scale = 0;  ///< of text and lines; 0: the system's
   bool log = false;  ///< says on standard output what has happened, for tests
+  bool lose_context = false;  ///< once, for tests: as if the driver had been reset
   std::function<std::size_t()> free_memory;  ///< bytes of the host; 0: not known
 };
 
@@ -99,6 +100,7 @@ class App {
   std::optional<Message> message;
   std::string toast, voronoi_note, interop_reason;
   bool panel_shown = true, panel_focused = false, help_shown = false, search_shown = false;
+  std::array<double, 2> height_ends{0, 1};  ///< of which the renderer's values are shares
   std::optional<Growing> growing;
   std::unique_ptr<Editing> editing;
   double picture_milliseconds = 0, triangulate_milliseconds = 0;

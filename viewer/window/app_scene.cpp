@@ -31,6 +31,18 @@ bool needs_mesh_of_host(const App& app) {
          (app.view.hull && app.scene->mesh.triangle_count <= most_hull_by_itself);
 }
 
+/// Heights that have the values 0 and 1 of relative_heights: quantiles of a sample.
+std::array<double, 2> ends_of(const std::vector<float>& heights) {
+  std::vector<float> sample;
+  const std::size_t step = std::max<std::size_t>(1, heights.size() / 100'000);
+  for (std::size_t i = 0; i < heights.size(); i += step)
+    if (std::isfinite(heights[i])) sample.push_back(heights[i]);
+  if (sample.empty()) return {0, 1};
+  std::sort(sample.begin(), sample.end());
+  const auto at = [&](double q) { return static_cast<double>(sample[static_cast<std::size_t>(q * static_cast<double>(sample.size() - 1) + 0.5)]); };
+  return {at(0.005), at(0.995)};
+}
+
 }  // namespace
 
 struct App::Asked {
@@ -122,7 +134,9 @@ void App::update_colour() {
     r.set_values(growth_values());
   } else if (loaded->mesh && !points_stale_) {
     prepare_colour(r, scene->mesh, loaded->points, *loaded->mesh, view.colour);
+    height_ends = ends_of(loaded->heights);
   } else {
+    height_ends = {0, 1};
     r.set_outside({}, 0);
     r.set_values(view.colour == ColourBy::height ? loaded->heights : std::vector<float>());
     if (scene->mesh.triangle_count != 0) r.fit_ramp(scene->mesh, view.colour);
@@ -234,7 +248,8 @@ void App::select_at(double x, double y) {
     }
   }
   mark(next);
-  say(fmt::format("picked triangle {}{}", *found, next.point ? fmt::format(" point {}", *next.point) : ""));
+  say(fmt::format("picked triangle {} of points {} {} {}{}", *found, there.points[0], there.points[1], there.points[2],
+                  next.point ? fmt::format(", point {}", *next.point) : ""));
 }
 
 void App::pick_next() {

@@ -77,7 +77,8 @@ std::string number_text(std::size_t number) {
   return text;
 }
 
-std::size_t parse_number(std::string text) {
+std::size_t parse_number(const std::string& given) {
+  std::string text = given;
   std::erase_if(text, [](char c) { return c == ',' || c == ' ' || c == '_'; });
   double factor = 1;
   if (!text.empty()) {
@@ -85,10 +86,14 @@ std::size_t parse_number(std::string text) {
     factor = last == 'k' ? 1e3 : last == 'm' ? 1e6 : last == 'g' ? 1e9 : 1;
     if (factor != 1) text.pop_back();
   }
+  double value = -1;
   std::size_t used = 0;
-  const double value = text.empty() ? -1 : std::stod(text, &used) * factor;
+  try {
+    value = std::stod(text, &used) * factor;
+  } catch (const std::exception&) {  // no number, or beyond the largest double
+  }
   if (used != text.size() || !(value >= 0) || value != std::floor(value) || value > 1e18)
-    throw std::invalid_argument(fmt::format("'{}' is no number of points: write 250000, 2M or 1e6", text));
+    throw std::invalid_argument(fmt::format("'{}' is no number of points: write 250000, 2M or 1e6", given));
   return static_cast<std::size_t>(value);
 }
 

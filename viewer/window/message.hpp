@@ -21,6 +21,6 @@ struct Message {
 /// "1,234,567".
 [[nodiscard]] std::string number_text(std::size_t number);
 /// A number of points: "250000", "2M", "1e6", "1,000"; K M G count 1000. Throws std::invalid_argument.
-[[nodiscard]] std::size_t parse_number(std::string text);
+[[nodiscard]] std::size_t parse_number(const std::string& text);
 
 }  // namespace cadt::viewer

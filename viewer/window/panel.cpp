@@ -108,6 +108,8 @@ void draw_ramp(App& app) {
   const auto ends = app.scene->renderer.ramp_ends();
   const auto text = [&](float v) {
     if (app.view.colour == ColourBy::angle) return fmt::format("{:.0f} degrees", v);
+    if (app.view.colour == ColourBy::height)
+      return fmt::format("{:.4g}", app.height_ends[0] + static_cast<double>(v) * (app.height_ends[1] - app.height_ends[0]));
     if (app.view.colour != ColourBy::area) return fmt::format("{:.6g}", v);
     // The renderer knows areas in samples of a view of 1,000 pixels.
     const Camera reference(app.view.box(), 1000, 1000);

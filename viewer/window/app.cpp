@@ -150,6 +150,7 @@ void App::choose_colour(ColourBy colour) {
 }
 
 void App::restart() {
+  message.reset();
   restart_asked_ = true;
   loading.cancel();
   Window::wake();
@@ -157,7 +158,6 @@ void App::restart() {
 
 void App::start_loading() {
   restart_asked_ = false;
-  message.reset();
   if (!open_way()) return;
   asking.cancel();
   const Source& source = options.sources[current];
@@ -220,7 +220,9 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   points_stale_ = false;
   s.mesh = {};  // first: both may not fit
   if (next->mesh) {
-    s.mesh = MeshBuffers::copy(next->points.xy, next->mesh->triangles());
+    s.mesh = MeshBuffers::with_room(next->points.size());  // also for points that are edited
+    s.mesh.write_points(next->points.xy);
+    s.mesh.write_triangles(next->mesh->triangles());
     triangulate_milliseconds = next->mesh_milliseconds;
   } else {
     s.mesh = MeshBuffers::with_room(next->points.size());
@@ -286,6 +288,7 @@ void App::ask(Command command) {
       return;
     case Command::search:
       search_shown = true;
+      search_text.clear();
       return;
     case Command::pick:
       pick_next();
@@ -339,7 +342,7 @@ void App::frame() {
   look_ = look;
   panel_width = panel_shown ? std::min(width / 2, static_cast<int>(340 * view.scale)) : 0;
   view.resize(width - panel_width, height);
-  if (scene != nullptr && loaded != nullptr) draw_mesh();
+  if (scene != nullptr && loaded != nullptr) guarded([&] { draw_mesh(screenshot_.has_value()); });
   window->begin_frame();
   const auto shot = std::exchange(screenshot_, std::nullopt);
   draw_picture(*this);

@@ -98,7 +98,7 @@ class App {
   std::shared_ptr<Loaded> loaded;       ///< null until the first is there
   Work loading, asking;
   std::optional<Message> message;
-  std::string toast, voronoi_note, interop_reason;
+  std::string toast, voronoi_note, interop_reason, search_text;
   bool panel_shown = true, panel_focused = false, help_shown = false, search_shown = false;
   std::array<double, 2> height_ends{0, 1};  ///< of which the renderer's values are shares
   std::optional<Growing> growing;
@@ -147,7 +147,8 @@ class App {
   void finish_asking(const std::exception_ptr& error);
   void update_colour();
   void update_strokes();
-  void draw_mesh();
+  /// `complete`: with all samples at once.
+  void draw_mesh(bool complete);
   void frame();
   void mark(const Selection& what);
   [[nodiscard]] TriangleFacts facts(std::size_t triangle) const;

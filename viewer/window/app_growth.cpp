@@ -55,13 +55,17 @@ void App::finish_recording(const std::shared_ptr<const Recording>& recording) {
 
 void App::stop_growing() {
   if (!growing) return;
+  const auto recording = growing->recording;
+  const std::span<const std::int32_t> last = recording->triangles(recording->size() - 1);
   growing.reset();
   view.colours = loaded->heights.empty() ? ViewState::usual_colours() : ViewState::colours_with_heights();
   view.colour = before_growing_;
   if (loaded->mesh)
     scene->mesh.write_triangles(loaded->mesh->triangles());
-  else
+  else if (scene->mesher != nullptr)
     scene->mesher->triangulate(scene->mesh);
+  else
+    scene->mesh.write_triangles(last);
   scene->renderer.update(scene->mesh);
   hovered.reset();
   mark({});
@@ -75,7 +79,9 @@ void App::upload_snapshot() {
   const std::size_t frame = g.playback.frame();
   if (g.shown == frame) return;
   g.shown = frame;
-  scene->mesh.write_triangles(g.recording->triangles(frame));
+  const std::span<const std::int32_t> triangles = g.recording->triangles(frame);
+  if (scene->mesh.triangles.bytes() < triangles.size_bytes()) scene->mesh.triangles = gl::Buffer(triangles.size_bytes());
+  scene->mesh.write_triangles(triangles);
   scene->renderer.update(scene->mesh);
   hovered.reset();
   mark({});

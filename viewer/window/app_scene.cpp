@@ -160,7 +160,7 @@ std::vector<double> App::signature(int samples) const {
           static_cast<double>(samples)};
 }
 
-void App::draw_mesh() {
+void App::draw_mesh(bool complete) {
   if (scene->mesh.point_count == 0) {
     settled_ = true;
     return;
@@ -175,7 +175,7 @@ void App::draw_mesh() {
   const bool moved = drawn_ != signature(1);
   if (moved) changed_ = Clock::now();
   // While things move the picture is drawn with one sample a pixel if all of them take too long.
-  if (picture_milliseconds > slow_picture && Clock::now() - changed_ < std::chrono::milliseconds(150)) style.samples = 1;
+  if (!complete && picture_milliseconds > slow_picture && Clock::now() - changed_ < std::chrono::milliseconds(150)) style.samples = 1;
   settled_ = style.samples == most;
   if (!moved && !settled_) return;
   strokes_[0].colour = palette(view.dark).hull;
@@ -215,7 +215,7 @@ void App::hover(double x, double y) {
   hovered.reset();
   if (!view.inspect || scene == nullptr || loaded == nullptr || scene->mesh.triangle_count == 0 || !over_mesh(x, y)) return;
   const auto found = scene->renderer.triangle_at(static_cast<int>(x), static_cast<int>(y));
-  if (found) hovered = facts(*found);
+  if (found && *found < scene->mesh.triangle_count) hovered = facts(*found);
 }
 
 void App::mark(const Selection& what) {
@@ -232,7 +232,7 @@ void App::mark(const Selection& what) {
 void App::select_at(double x, double y) {
   if (scene == nullptr || loaded == nullptr || scene->mesh.triangle_count == 0) return;
   const auto found = scene->renderer.triangle_at(static_cast<int>(x), static_cast<int>(y));
-  if (!found) {
+  if (!found || *found >= scene->mesh.triangle_count) {
     mark({});
     return;
   }
@@ -256,10 +256,11 @@ void App::pick_next() {
   if (scene == nullptr || loaded == nullptr || scene->mesh.triangle_count == 0) return;
   const int x = view.camera.width() / 2, y = view.camera.height() / 2;
   const auto middle = scene->renderer.triangle_at(x, y);
-  if (!selected || (middle && middle != tab_from_)) {
+  if (!middle) return;
+  if (!selected || middle != tab_from_) {
     tab_from_ = middle;
     tab_ = 0;
-    if (middle) select_at(x, y);
+    select_at(x, y);
     return;
   }
   // The middle has not changed: one neighbour of its triangle after the other.

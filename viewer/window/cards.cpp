@@ -64,18 +64,17 @@ void draw_message(App& app) {
 }
 
 void draw_search(App& app) {
-  static std::array<char, 64> text{};
   begin_card(app, "##search", 0.5f, 0.06f, 380);
   title("Go to");
-  ImGui::TextDisabled("12 or t 12: a triangle.  p 12: a point");
-  ImGui::SetNextItemWidth(-1);
-  if (ImGui::IsWindowAppearing()) {
-    text[0] = 0;
-    ImGui::SetKeyboardFocusHere();
-  }
-  const bool done = ImGui::InputText("##index", text.data(), text.size(), ImGuiInputTextFlags_EnterReturnsTrue);
+  ImGui::TextDisabled("12 or t 12: a triangle.  p 12: a point.  Enter goes there.");
+  // Keys come from the window (input.cpp): those that are pressed before a field would be ready are not lost.
+  const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight());
+  const ImGuiStyle& style = ImGui::GetStyle();
+  ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), style.FrameRounding);
+  ImGui::GetWindowDrawList()->AddText({at.x + style.FramePadding.x, at.y + style.FramePadding.y}, ImGui::GetColorU32(ImGuiCol_Text),
+                                      (app.search_text + "|").c_str());
+  ImGui::Dummy(size);
   end_card();
-  if (done) app.search(text.data());
 }
 
 void draw_help(App& app) {

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 namespace cadt::viewer {
 namespace {
@@ -28,15 +29,28 @@ Events events_for(App& app) {
   const auto drag = std::make_shared<Drag>();
   Events events;
   events.character = [&app](char32_t c) {
+    if (app.search_shown) {
+      if (c >= 32 && c < 127) app.search_text += static_cast<char>(c);
+      return;
+    }
     if (ImGui::GetIO().WantTextInput || (app.panel_focused && c == U' ')) return;
     if (const auto command = command_of(c)) app.guarded([&] { app.ask(*command); });
   };
   events.key = [&app](int key, int modifiers, bool) {
+    if (app.search_shown) {
+      if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER)
+        app.guarded([&] { app.search(app.search_text); });
+      else if (key == GLFW_KEY_BACKSPACE && !app.search_text.empty())
+        app.search_text.pop_back();
+      else if (key == GLFW_KEY_ESCAPE)
+        app.ask(Command::cancel);
+      return;
+    }
     const bool moves = key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT || key == GLFW_KEY_UP || key == GLFW_KEY_DOWN ||
                        key == GLFW_KEY_HOME || key == GLFW_KEY_TAB || key == GLFW_KEY_PAGE_UP || key == GLFW_KEY_PAGE_DOWN;
     if (moves && (ImGui::GetIO().WantTextInput || app.panel_focused)) return;
     // Esc in a field of the panel ends the input, and nothing else.
-    if (key == GLFW_KEY_ESCAPE && ImGui::GetIO().WantTextInput && !app.search_shown) return;
+    if (key == GLFW_KEY_ESCAPE && ImGui::GetIO().WantTextInput) return;
     if (const auto command = command_of(Key{key, modifiers & control})) app.guarded([&] { app.ask(*command); });
   };
   events.button = [&app, drag](int button, bool down, int, double x, double y) {

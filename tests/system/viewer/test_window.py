@@ -158,7 +158,7 @@ class Troubles(WindowTest):
         self.quit()
 
     def test_cancel(self):
-        self.view("--generate", "uniform", "-n", "20M", "--size", SIZE)
+        self.view("--generate", "uniform", "-n", "10M", "--size", SIZE)
         self.key("Escape")
         self.wait("message Cancelled")
         self.quit()

@@ -343,6 +343,10 @@ void App::frame() {
   panel_width = panel_shown ? std::min(width / 2, static_cast<int>(340 * view.scale)) : 0;
   view.resize(width - panel_width, height);
   if (scene != nullptr && loaded != nullptr) guarded([&] { draw_mesh(screenshot_.has_value()); });
+  if (hover_later_) {
+    const auto [x, y] = window->cursor();
+    guarded([&] { hover(x, y); });
+  }
   window->begin_frame();
   const auto shot = std::exchange(screenshot_, std::nullopt);
   draw_picture(*this);

@@ -187,7 +187,7 @@ class App {
   std::vector<double> drawn_;
   bool points_stale_ = false;  ///< loaded->points are not those that are drawn
   std::chrono::steady_clock::time_point last_frame_, edited_, changed_, toast_until_;
-  bool colour_chosen_ = false, settled_ = true, restart_asked_ = false;
+  bool colour_chosen_ = false, hover_later_ = false, settled_ = true, restart_asked_ = false;
   std::optional<Command> screenshot_;
   std::array<float, 4> look_{-1, -1, -1, -1};
   std::optional<std::size_t> tab_from_;  ///< the triangle whose neighbours Tab shows

@@ -213,6 +213,9 @@ TriangleFacts App::facts(std::size_t triangle) const {
 
 void App::hover(double x, double y) {
   hovered.reset();
+  // The picture tells which triangle it is: after a change it has to be drawn first.
+  hover_later_ = scene != nullptr && loaded != nullptr && drawn_ != signature(1) && drawn_ != signature(Style().samples);
+  if (hover_later_) return;
   if (!view.inspect || scene == nullptr || loaded == nullptr || scene->mesh.triangle_count == 0 || !over_mesh(x, y)) return;
   const auto found = scene->renderer.triangle_at(static_cast<int>(x), static_cast<int>(y));
   if (found && *found < scene->mesh.triangle_count) hovered = facts(*found);
@@ -231,6 +234,7 @@ void App::mark(const Selection& what) {
 
 void App::select_at(double x, double y) {
   if (scene == nullptr || loaded == nullptr || scene->mesh.triangle_count == 0) return;
+  draw_mesh(false);  // the wheel may have moved since the last picture
   const auto found = scene->renderer.triangle_at(static_cast<int>(x), static_cast<int>(y));
   if (!found || *found >= scene->mesh.triangle_count) {
     mark({});
@@ -255,6 +259,7 @@ void App::select_at(double x, double y) {
 void App::pick_next() {
   if (scene == nullptr || loaded == nullptr || scene->mesh.triangle_count == 0) return;
   const int x = view.camera.width() / 2, y = view.camera.height() / 2;
+  draw_mesh(false);
   const auto middle = scene->renderer.triangle_at(x, y);
   if (!middle) return;
   if (!selected || middle != tab_from_) {

@@ -21,7 +21,7 @@ Message explain(const std::exception_ptr& error) {
     std::rethrow_exception(error);
   } catch (const io::FileError& e) {
     std::string formats;
-    for (const std::string& format : io::point_read_formats()) formats += " " + format;
+    for (const std::string& format : io::point_read_formats()) formats.append(" ").append(format);
     return {"This file cannot be shown", e.what(),
             "Points are read from:" + formats + ". Check the file, then press R to read it again."};
   } catch (const InputError& e) {

@@ -8,6 +8,8 @@
 #include <cadt/io/errors.hpp>
 #include <cadt/triangle.hpp>
 
+#include "viewer/gl/errors.hpp"
+
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -71,6 +73,8 @@ int report_known_exception() {
                  "Split the input into tiles.");
   } catch (const BackendUnavailable& e) {
     return error(exit_device, e.what(), "See what there is with: cadt devices. `--backend auto` takes the best one.");
+  } catch (const viewer::DisplayError& e) {
+    return error(exit_device, e.what());
   } catch (const KernelBuildError& e) {
     return error(exit_device, e.what(), "Update the driver of this device, or use --backend host.");
   } catch (const DeviceError& e) {

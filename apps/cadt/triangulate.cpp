@@ -4,6 +4,7 @@
 #include "failure.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
+#include "large_picture.hpp"
 #include "outputs.hpp"
 #include "progress.hpp"
 #include "report.hpp"
@@ -139,7 +140,11 @@ void write_outputs(const TriangulateOptions& options, const std::vector<Output>&
     {
       const InPhase phase(writing_phase(output.path));
       line.step(fmt::format("writing {}", display_name(output.path, false)));
-      io::write_mesh(output.path, points, mesh, write);
+      if (output.format == "png" && is_large_picture(points, mesh)) {
+        write_large_picture(output.path, points, mesh, options.width);
+      } else {
+        io::write_mesh(output.path, points, mesh, write);
+      }
       if (output.path == "-") finish_stdout();
     }
     written.push_back(display_name(output.path, false));

@@ -6,7 +6,7 @@
 namespace cadt::io {
 
 std::vector<std::string> mesh_write_formats() {
-  return {"node", "ele", "neigh", "obj", "off", "ply", "vtu", "npz", "svg", "pdf", "png"};
+  return {"node", "ele", "neigh", "obj", "off", "ply", "vtu", "glb", "npz", "svg", "pdf", "png"};
 }
 
 std::vector<std::string> mesh_read_formats() { return {"ele", "obj", "off", "ply", "vtu", "npz"}; }
@@ -51,6 +51,8 @@ void write_mesh_parts(const std::string& path, const MeshParts& mesh, const Writ
     write_ply(out, mesh, options.ascii);
   } else if (format == "vtu") {
     write_vtu(out, mesh);
+  } else if (format == "glb") {
+    write_glb(out, path, mesh);
   } else if (format == "npz") {
     write_npz(out, mesh);
   } else {

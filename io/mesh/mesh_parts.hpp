@@ -35,6 +35,7 @@ void write_obj(AtomicFile& out, const MeshParts& mesh);
 void write_off(AtomicFile& out, const MeshParts& mesh);
 void write_ply(AtomicFile& out, const MeshParts& mesh, bool ascii);
 void write_vtu(AtomicFile& out, const MeshParts& mesh);
+void write_glb(AtomicFile& out, const std::string& path, const MeshParts& mesh);
 void write_npz(AtomicFile& out, const MeshParts& mesh);
 
 /// Checks indices as they are read and collects them.

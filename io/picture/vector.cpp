@@ -174,8 +174,9 @@ void draw(cairo_t* to, const Scene& scene, const Viewport& view, const PictureOp
   cairo_paint(to);
   if (scene.faces() != 0) {
     if (options.shade) draw_ground(to, scene, position, edge, pixels);
-    // In pixels, fine meshes get fainter lines, or the ground would drown.
-    const double alpha = pixels ? std::clamp(0.06 * static_cast<double>(edge), 0.12, 0.75) : 0.75;
+    // In pixels, fine meshes get fainter lines, above all over a relief, or the ground would drown.
+    const double strength = scene.height.empty() ? 0.06 : 0.02;
+    const double alpha = pixels ? std::clamp(strength * static_cast<double>(edge), 0.12, 0.75) : 0.75;
     cairo_set_line_width(to, stroke);
     if (pixels) {
       // Strokes go to a mask first: drawn one over the other with alpha, the joints would be darker than the edges.
@@ -196,7 +197,7 @@ void draw(cairo_t* to, const Scene& scene, const Viewport& view, const PictureOp
     draw_hull(to, scene, position);
   }
   // Dots where they stay apart, or where there is nothing else.
-  if (scene.faces() == 0 || edge > 12.0f) {
+  if (scene.faces() == 0 || (edge > 12.0f && scene.height.empty())) {
     set_colour(to, line_colour);
     draw_points(to, position, scene.faces() == 0 ? 5.0 : std::clamp(0.12 * static_cast<double>(edge), 1.5, 6.0));
   }
@@ -231,11 +232,16 @@ std::string file_of(const Scene& scene, const PictureOptions& options, Create cr
 }  // namespace
 
 std::string svg_bytes(const Scene& scene, const PictureOptions& options) {
-  return file_of(scene, options, [](auto... of) {
+  std::string svg = file_of(scene, options, [](auto... of) {
     cairo_surface_t* surface = cairo_svg_surface_create_for_stream(of...);
     cairo_svg_surface_set_document_unit(surface, CAIRO_SVG_UNIT_USER);
     return surface;
   });
+  // Cairo counts the surfaces of the process; the same mesh has the same bytes.
+  const std::string counted = "id=\"surface";
+  if (const auto at = svg.find(counted); at != std::string::npos)
+    svg.replace(at, svg.find('"', at + counted.size()) + 1 - at, "id=\"mesh\"");
+  return svg;
 }
 
 std::string pdf_bytes(const Scene& scene, const PictureOptions& options) {

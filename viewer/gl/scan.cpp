@@ -27,8 +27,8 @@ Scan::Scan() : program_("scan", shaders::scan) {}
 
 void Scan::exclusive(const Buffer& words, std::size_t count) {
   const GLuint zero = 0;
-  glClearNamedBufferSubData(words.id(), GL_R32UI, static_cast<GLintptr>(count * sizeof zero), sizeof zero, GL_RED_INTEGER,
-                            GL_UNSIGNED_INT, &zero);
+  glClearNamedBufferSubData(words.id(), GL_R32UI, static_cast<GLintptr>(count * sizeof zero), sizeof zero,
+                            GL_RED_INTEGER, GL_UNSIGNED_INT, &zero);
   wait_for_writes();
   program_.use();
   level(words, count + 1, 0);

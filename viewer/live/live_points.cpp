@@ -12,13 +12,25 @@
 namespace cadt::viewer {
 namespace {
 
-constexpr std::size_t items = 256;       // a group
+constexpr std::size_t items = 256;        // a group
 constexpr double share_of_spacing = 0.7;  // the diameter of particles
 enum Where { where_they_are, in_box, in_disc };
 enum Slot : GLuint { points, velocities, pushes, triangles, places = 2, new_points = 3, new_velocities = 4, best = 2 };
 enum Uniform : GLint {
-  u_count, u_low, u_limit, u_scale, u_seed, u_motion, u_dt, u_time, u_diameter,
-  u_first = 5, u_where = 6, u_centre = 7, u_radius = 8, u_round = 5
+  u_count,
+  u_low,
+  u_limit,
+  u_scale,
+  u_seed,
+  u_motion,
+  u_dt,
+  u_time,
+  u_diameter,
+  u_first = 5,
+  u_where = 6,
+  u_centre = 7,
+  u_radius = 8,
+  u_round = 5
 };
 
 constexpr std::size_t bytes_of_point = 2 * sizeof(double), bytes_of_velocity = 2 * sizeof(float),
@@ -55,7 +67,8 @@ LivePoints::LivePoints(MeshBuffers& mesh)
   const Box& box = mesh.box;
   const double width = box.high[0] - box.low[0], height = box.high[1] - box.low[1], longer = std::max(width, height);
   if (box.empty() || !std::isfinite(longer) || !(longer > 0))
-    throw InputError("points can move and be edited in a box that has a size and is no wider than the largest double", 0);
+    throw InputError("points can move and be edited in a box that has a size and is no wider than the largest double",
+                     0);
   frame_ = {{box.low[0], box.low[1]}, {width / longer, height / longer}, longer};
   spawn(0, mesh.point_count, where_they_are, 0, 0, 0);
 }
@@ -94,7 +107,8 @@ void LivePoints::step(double dt, Motion motion) {
   ++seed_;
   time_ += dt;
   const double area = frame_.limit[0] * frame_.limit[1];
-  const auto diameter = static_cast<float>(share_of_spacing * std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, n))));
+  const auto diameter =
+      static_cast<float>(share_of_spacing * std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, n))));
   if (motion == Motion::particles) {
     if (pushes_.bytes() < n * bytes_of_push) pushes_ = gl::Buffer(n * bytes_of_push);
     pushes_.fill(0, n * bytes_of_push);

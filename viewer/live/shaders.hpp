@@ -6,7 +6,7 @@
 
 namespace cadt::viewer::shaders {
 
-extern const std::string live;                                        // part of the others
+extern const std::string live;                                       // part of the others
 extern const std::string spawn, move, push, keep, compact, nearest;  // programs
 
 }  // namespace cadt::viewer::shaders

@@ -67,7 +67,8 @@ class Registered {
 /// last: that is what mapping and unmapping do.
 class Mapped {
  public:
-  Mapped(std::array<cudaGraphicsResource_t, 2> resources, cudaStream_t stream) : resources_(resources), stream_(stream) {
+  Mapped(std::array<cudaGraphicsResource_t, 2> resources, cudaStream_t stream)
+      : resources_(resources), stream_(stream) {
     check(cudaGraphicsMapResources(2, resources_.data(), stream_), "cudaGraphicsMapResources");
   }
   ~Mapped() {

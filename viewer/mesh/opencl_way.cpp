@@ -86,9 +86,12 @@ std::string text_of(cl_device_id device, cl_device_info what) {
 std::vector<cl_context_properties> sharing_properties(cl_platform_id platform) {
   std::vector<cl_context_properties> list;
   const auto share = [&](void* context, cl_context_properties kind, void* display) {
-    list = {CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(platform),
-            CL_GL_CONTEXT_KHR,   reinterpret_cast<cl_context_properties>(context),
-            kind,                reinterpret_cast<cl_context_properties>(display),
+    list = {CL_CONTEXT_PLATFORM,
+            reinterpret_cast<cl_context_properties>(platform),
+            CL_GL_CONTEXT_KHR,
+            reinterpret_cast<cl_context_properties>(context),
+            kind,
+            reinterpret_cast<cl_context_properties>(display),
             0};
   };
 #if !defined(_WIN32) && !defined(__APPLE__)
@@ -106,8 +109,8 @@ cl_device_id device_of_display(cl_platform_id platform, const std::vector<cl_con
   const auto query = reinterpret_cast<clGetGLContextInfoKHR_fn>(
       cl().clGetExtensionFunctionAddressForPlatform(platform, "clGetGLContextInfoKHR"));
   cl_device_id device = nullptr;
-  if (query == nullptr || query(properties.data(), CL_CURRENT_DEVICE_FOR_GL_CONTEXT_KHR, sizeof device, &device,
-                                nullptr) != CL_SUCCESS)
+  if (query == nullptr ||
+      query(properties.data(), CL_CURRENT_DEVICE_FOR_GL_CONTEXT_KHR, sizeof device, &device, nullptr) != CL_SUCCESS)
     return nullptr;
   return device;
 }
@@ -166,7 +169,8 @@ class Acquired {
  public:
   Acquired(std::vector<cl_mem> memory, cl_command_queue queue) : memory_(std::move(memory)), queue_(queue) {
     glFinish();  // what OpenGL was told before; without cl_khr_gl_event there is no other way
-    check(cl().clEnqueueAcquireGLObjects(queue_, static_cast<cl_uint>(memory_.size()), memory_.data(), 0, nullptr, nullptr),
+    check(cl().clEnqueueAcquireGLObjects(queue_, static_cast<cl_uint>(memory_.size()), memory_.data(), 0, nullptr,
+                                         nullptr),
           "clEnqueueAcquireGLObjects");
   }
   ~Acquired() {
@@ -178,8 +182,8 @@ class Acquired {
 
  private:
   cl_int give_back() {
-    const cl_int code =
-        cl().clEnqueueReleaseGLObjects(queue_, static_cast<cl_uint>(memory_.size()), memory_.data(), 0, nullptr, nullptr);
+    const cl_int code = cl().clEnqueueReleaseGLObjects(queue_, static_cast<cl_uint>(memory_.size()), memory_.data(), 0,
+                                                       nullptr, nullptr);
     memory_.clear();
     const cl_int finished = cl().clFinish(queue_);
     return code != CL_SUCCESS ? code : finished;
@@ -210,7 +214,8 @@ class OpenClWay final : public Way {
               "clEnqueueCopyBuffer");
       *statistics = result.statistics();
     } else {
-      count = triangulator_.triangulate(input, DeviceArray{triangles, mesh.triangles.bytes() / sizeof(std::int32_t)}, {});
+      count =
+          triangulator_.triangulate(input, DeviceArray{triangles, mesh.triangles.bytes() / sizeof(std::int32_t)}, {});
     }
     acquired.release();
     return count;
@@ -259,7 +264,8 @@ std::unique_ptr<Way> open_opencl(const Options& options, std::string& reason) {
     info.name = text_of(device, CL_DEVICE_NAME);
     info.platform = name;
     if (!is_named(info, options.device)) {
-      reason += (reason.empty() ? "" : ", ") + ("the display belongs to '" + info.name + "', not to '" + options.device + "'");
+      reason += (reason.empty() ? "" : ", ") +
+                ("the display belongs to '" + info.name + "', not to '" + options.device + "'");
       continue;
     }
     return std::make_unique<OpenClWay>(options, properties, device);

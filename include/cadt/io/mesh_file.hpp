@@ -13,7 +13,7 @@
 namespace cadt::io {
 
 struct WriteOptions {
-  std::string format;  ///< overrides the suffix: node ele neigh obj off ply vtu npz svg png
+  std::string format;  ///< overrides the suffix: node ele neigh obj off ply vtu glb npz svg pdf png
   int base = 0;        ///< first index in Triangle's .node .ele .neigh: 0 or 1
   bool ascii = false;  ///< text instead of binary where the format has both (ply)
   int width = 1600;    ///< pictures: pixels (png) or user units (svg)

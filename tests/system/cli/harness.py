@@ -51,10 +51,11 @@ class CliTest(unittest.TestCase):
     def names(self):
         return sorted(entry.name for entry in self.folder.iterdir())
 
-    def cadt(self, *arguments, stdin="", expect=0, stdout=subprocess.PIPE, before=default_signals, program=PROGRAM):
+    def cadt(self, *arguments, stdin="", expect=0, stdout=subprocess.PIPE, before=default_signals, program=PROGRAM,
+             environment=None):
         """Runs the program to its end and checks the exit code."""
         done = subprocess.run([program, *map(str, arguments)], input=stdin.encode(), stdout=stdout,
-                              stderr=subprocess.PIPE, cwd=self.folder, preexec_fn=before, timeout=SECONDS)
+                              stderr=subprocess.PIPE, cwd=self.folder, preexec_fn=before, timeout=SECONDS, env=environment)
         result = Result(done.returncode, (done.stdout or b"").decode(), done.stderr.decode())
         self.assertEqual(result.code, expect, f"cadt {' '.join(map(str, arguments))}\n{result.out}{result.err}")
         return result

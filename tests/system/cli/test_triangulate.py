@@ -6,7 +6,7 @@ import unittest
 
 from harness import PROGRAM, SOURCE, CliTest, integer_points, read_off, why_not_delaunay, xy_text
 
-MESH_FORMATS = ["node", "ele", "neigh", "obj", "off", "ply", "vtu", "npz", "svg", "png"]
+MESH_FORMATS = ["node", "ele", "neigh", "obj", "off", "ply", "vtu", "glb", "npz", "svg", "pdf", "png"]
 
 
 class Summary(CliTest):

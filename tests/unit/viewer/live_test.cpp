@@ -113,7 +113,8 @@ TEST_F(LiveTest, ThatBounceGoStraightOnBetweenTheWalls) {
     const bool far = std::ranges::all_of(a[i], [](double v) { return v > 0.05 && v < 0.95; });
     if (!far) continue;
     ++inner;
-    straight += std::abs(c[i][0] - 2 * b[i][0] + a[i][0]) < 1e-6 && std::abs(c[i][1] - 2 * b[i][1] + a[i][1]) < 1e-6 ? 1u : 0u;
+    straight +=
+        std::abs(c[i][0] - 2 * b[i][0] + a[i][0]) < 1e-6 && std::abs(c[i][1] - 2 * b[i][1] + a[i][1]) < 1e-6 ? 1u : 0u;
   }
   EXPECT_GT(inner, 700u);
   EXPECT_EQ(straight, inner);

@@ -108,8 +108,10 @@ TEST_F(MesherTest, SaysWhyAFasterWayIsNotPossible) {
   const Mesher mesher(options, Interop::automatic);
   EXPECT_EQ(mesher.interop(), Interop::copy);
   EXPECT_EQ(mesher.device().backend, Backend::host);
-  EXPECT_NE(mesher.reason().find("cuda: the mesh is computed by the back end 'host'"), std::string::npos) << mesher.reason();
-  EXPECT_NE(mesher.reason().find("opencl: the mesh is computed by the back end 'host'"), std::string::npos) << mesher.reason();
+  EXPECT_NE(mesher.reason().find("cuda: the mesh is computed by the back end 'host'"), std::string::npos)
+      << mesher.reason();
+  EXPECT_NE(mesher.reason().find("opencl: the mesh is computed by the back end 'host'"), std::string::npos)
+      << mesher.reason();
 }
 
 TEST_F(MesherTest, AWayThatIsNamedIsTakenOrRefused) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test with OpenGL, which ends without an OpenGL error. Skipped where there is no display, unless CADT_REQUIRE_DISPLAY
-// is set.
+// A test with OpenGL, which ends without an OpenGL error. Skipped where there is no display, unless
+// CADT_REQUIRE_DISPLAY is set.
 #pragma once
 
 #include "viewer/gl/context.hpp"

@@ -47,6 +47,7 @@ class Cadt(CMakePackage, CudaPackage):
             self.define("CADT_BUILD_BENCH", False),
             self.define("CADT_BUILD_EXAMPLES", False),
             self.define("CADT_BUILD_TESTS", False),
+            self.define("CADT_VIEWER", "OFF"),
         ]
         if self.spec.satisfies("+cuda") and not self.spec.satisfies("cuda_arch=none"):
             args.append(self.define("CADT_CUDA_ARCHITECTURES", self.spec.variants["cuda_arch"].value))

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""cadt render: pictures without a window."""
+import os
+import unittest
+
+from harness import CliTest
+from test_render_growth import png_rows, png_size
+
+PAPER = bytes.fromhex("fbfaf6")
+
+
+def colours(path):
+    return {row[i:i + 3] for row in png_rows(path) for i in range(0, len(row), 3)}
+
+
+class RenderTest(CliTest):
+    def test_png_of_a_file_and_of_a_generated_set(self):
+        self.cadt("generate", "terrain", "-n", 3000, "-o", "t.xyz")
+        result = self.cadt("render", "t.xyz", "-o", "t.png", "--size", 300)
+        self.assertIn("triangles of 3000 points drawn in", result.err)
+        self.assertEqual(png_size(self.path("t.png"))[0], 300)
+        result = self.cadt("render", "--generate", "uniform", "-n", 3000, "-o", "u.png", "--size", "200x100", "-q")
+        self.assertEqual((result.out, result.err), ("", ""))
+        self.assertEqual(png_size(self.path("u.png")), (200, 100))
+        self.assertEqual(png_rows(self.path("u.png"))[0][:3], PAPER)
+        self.assertGreater(len(colours(self.path("t.png"))), 500, "a relief")
+
+    def test_each_colour_and_style_is_a_picture_of_its_own(self):
+        seen = set()
+        for more in (["--colour", "angle"], ["--colour", "area"], ["--colour", "order"], ["--colour", "degree"], ["--colour", "nothing"],
+                     ["--style", "wireframe"], ["--style", "points"], [], ["--dark"], ["--camera", "0.5,0.5,4"], ["--samples", 4]):
+            self.cadt("render", "--generate", "uniform", "-n", 200, "-o", "a.png", "--size", 120, "-q", "--backend", "host", *more)
+            seen.add(self.path("a.png").read_bytes())
+        self.assertEqual(len(seen), 10, "area is the default of points without heights")
+
+    def test_camera_shows_the_place_in_the_middle(self):
+        self.write("p.xy", "0 0\n100 0\n0 100\n50 50.5\n51 50\n50 51\n")
+        self.cadt("render", "p.xy", "-o", "near.png", "--size", "101x101", "--camera", "90,90,30", "-q")
+        self.assertEqual(colours(self.path("near.png")), {PAPER}, "outside of the hull")
+        self.cadt("render", "p.xy", "-o", "near.png", "--size", "101x101", "--camera", "20,20,30", "-q", "--no-hull")
+        self.assertNotIn(PAPER, colours(self.path("near.png")))
+
+    def test_svg_and_pdf(self):
+        self.cadt("render", "--generate", "uniform", "-n", 300, "-o", "a.svg", "--size", 400)
+        self.assertIn("viewBox=\"0 0 400", self.path("a.svg").read_text())
+        self.cadt("render", "--generate", "uniform", "-n", 300, "-o", "a.pdf")
+        self.assertTrue(self.path("a.pdf").read_bytes().startswith(b"%PDF-"))
+        result = self.cadt("render", "--generate", "uniform", "-n", 300, "-o", "-", "-t", "svg", "-q")
+        self.assertIn("</svg>", result.out)
+
+    def test_no_triangles(self):
+        for name, text in (("one", "3 4\n"), ("line", "0 0\n1 1\n2 2\n")):
+            self.write(f"{name}.xy", text)
+            self.cadt("render", f"{name}.xy", "-o", f"{name}.png", "--size", "80x60")
+            self.assertNotEqual(colours(self.path(f"{name}.png")), {PAPER}, name)
+
+    def test_large_meshes_of_triangulate_are_drawn_too(self):
+        self.cadt("generate", "uniform", "-n", 120000, "-o", "p.f64")
+        self.cadt("triangulate", "p.f64", "--backend", "host", "-o", "p.png", "--width", 200, "-q")
+        self.assertEqual(png_size(self.path("p.png"))[0], 200)
+        self.fails(3, "render", "p.f64", "--backend", "host", "-o", "p.svg", says="too many")
+        self.assertEqual(self.names(), ["p.f64", "p.png"])
+
+
+class RenderErrorTest(CliTest):
+    def test_what_cannot_be_meant(self):
+        uniform = ["render", "--generate", "uniform", "-n", 100, "-o", "a.png"]
+        self.fails(2, "render", "-o", "a.png", says="--generate")
+        self.fails(2, "render", "in.xy", "--generate", "uniform", "-o", "a.png", says="not both")
+        self.fails(2, "render", "--generate", "nosuch", "-o", "a.png", says="generate --list")
+        for size in ("0", "99999", "20x", "x20", "1.5", "nan", "20x30x40"):
+            self.fails(2, *uniform, "--size", size, says="--size")
+        for camera in ("1,2", "1,2,0", "1,2,-3", "1,2,nan", "a,b,c", "1,2,3,4"):
+            self.fails(2, *uniform, "--camera", camera, says="--camera")
+        self.fails(2, *uniform, "--colour", "blue")
+        self.fails(2, *uniform, "--colour", "height", says="third column")
+        self.fails(2, *uniform, "--colour", "flips", says="grows")
+        self.fails(2, *uniform[:-1], "a.svg", "--dark", says=".svg")
+        self.fails(2, *uniform[:-1], "a.jpg", says="png, svg, pdf")
+        self.assertEqual(self.names(), [])
+
+    def test_a_point_that_is_none_and_a_file_that_is_none(self):
+        self.write("nan.xy", "0 0\n1 nan\n2 1\n")
+        self.fails(3, "render", "nan.xy", "-o", "a.png", says="nan.xy")
+        self.write("text.xy", "hello world\n")
+        self.fails(3, "render", "text.xy", "-o", "a.png", says="text.xy")
+        self.fails(3, "render", "nosuch.xy", "-o", "a.png", says="nosuch.xy")
+        self.fails(3, "render", "--generate", "uniform", "-n", 100, "-o", "nowhere/a.png", says="nowhere")
+
+    def test_without_opengl(self):
+        # No vendor's file, so that the loader finds no driver.
+        environment = {**os.environ, "__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null"}
+        self.fails(5, "render", "--generate", "uniform", "-n", 100, "-o", "a.png", environment=environment,
+                   says=("no OpenGL without a window", "libegl-mesa0"))
+        environment = {**os.environ, "MESA_GL_VERSION_OVERRIDE": "3.3"}
+        self.fails(5, "render", "--generate", "uniform", "-n", 100, "-o", "a.png", environment=environment, says="OpenGL 4.5")
+        self.assertEqual(self.names(), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

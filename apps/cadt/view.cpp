@@ -35,7 +35,8 @@ struct ViewCommand {
 std::array<int, 2> parse_size(const std::string& text) {
   int width = 0, height = 0;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 320 || height < 240 || width > 16384 || height > 16384)
+  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 320 || height < 240 ||
+      width > 16384 || height > 16384)
     throw Failure(exit_usage, fmt::format("--size {}: write width x height in pixels, for example 1280x800", text));
   return {width, height};
 }
@@ -69,11 +70,13 @@ int run(const ViewCommand& command) {
   if (options.sources.empty())
     throw Failure(exit_usage, "name a file with points, or a point set: cadt view --generate uniform -n 1M");
   options.compute = library_options(command.device);
-  for (const viewer::Interop interop : {viewer::Interop::automatic, viewer::Interop::cuda, viewer::Interop::opencl, viewer::Interop::copy})
+  for (const viewer::Interop interop :
+       {viewer::Interop::automatic, viewer::Interop::cuda, viewer::Interop::opencl, viewer::Interop::copy})
     if (to_string(interop) == command.interop) options.interop = interop;
   if (!command.colour.empty()) {
     const auto& names = viewer::names_of_colours();
-    options.colour = static_cast<viewer::ColourBy>(std::find(names.begin(), names.end(), command.colour) - names.begin());
+    options.colour =
+        static_cast<viewer::ColourBy>(std::find(names.begin(), names.end(), command.colour) - names.begin());
   }
   options.drawing = *viewer::drawing_from_string(command.style);
   const auto [width, height] = parse_size(command.size);
@@ -104,18 +107,20 @@ void add_view(CLI::App& app, Action& chosen) {
   command->add_option("-n", options->n, "number of its points, 250000, 2M or 1e6 (default: 100000)")->type_name("N");
   command->add_option("--seed", options->seed, "equal seeds give equal points (default: 1)")->type_name("S");
   command
-      ->add_option("--colour,--color", options->colour,
-                   "what decides the colour: nothing, angle, area, order, height or degree (default: height where there are "
-                   "heights, else area)")
+      ->add_option(
+          "--colour,--color", options->colour,
+          "what decides the colour: nothing, angle, area, order, height or degree (default: height where there are "
+          "heights, else area)")
       ->type_name("BY")
       ->check(CLI::IsMember({"nothing", "angle", "area", "order", "height", "degree"}).description(""));
   command->add_option("--style", options->style, "filled, wireframe or points (default: filled)")
       ->type_name("STYLE")
       ->check(CLI::IsMember({"filled", "wireframe", "points"}).description(""));
   command
-      ->add_option("--interop", options->interop,
-                   "how the mesh gets to the display: cuda or opencl, which write it there, or copy through the host's memory "
-                   "(default: auto, the first that is possible)")
+      ->add_option(
+          "--interop", options->interop,
+          "how the mesh gets to the display: cuda or opencl, which write it there, or copy through the host's memory "
+          "(default: auto, the first that is possible)")
       ->type_name("WAY")
       ->check(CLI::IsMember({"auto", "cuda", "opencl", "copy"}).description(""));
   command->add_option("--size", options->size, "of the window, in pixels (default: 1280x800)")->type_name("WxH");

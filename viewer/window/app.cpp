@@ -89,9 +89,11 @@ void App::session() {
   restart_asked_ = true;
   int frames = 2;  // ImGui needs a second one for what follows from the first
   while (!window->should_close()) {
-    const bool busy = loading.running() || asking.running() || !settled_ || points_stale_ || Clock::now() < toast_until_;
+    const bool busy =
+        loading.running() || asking.running() || !settled_ || points_stale_ || Clock::now() < toast_until_;
     if (window->wait(!window->visible() ? -1 : frames > 0 || animated() ? 0 : busy ? busy_wait : -1)) frames = 3;
-    if (window->lost() || (loaded != nullptr && std::exchange(options.lose_context, false))) throw ContextLost("the driver was reset");
+    if (window->lost() || (loaded != nullptr && std::exchange(options.lose_context, false)))
+      throw ContextLost("the driver was reset");
     guarded([&] {
       std::exception_ptr error;
       if (loading.finished(error)) finish_loading(error);
@@ -130,7 +132,8 @@ bool App::open_way() {
 }
 
 std::string App::way_text() const {
-  return std::string(to_string(scene != nullptr && scene->mesher != nullptr ? scene->mesher->interop() : Interop::copy));
+  return std::string(
+      to_string(scene != nullptr && scene->mesher != nullptr ? scene->mesher->interop() : Interop::copy));
 }
 
 void App::show_source(std::size_t which) {
@@ -188,7 +191,9 @@ void App::guarded(const std::function<void()>& action) noexcept {
   }
 }
 
-bool App::animated() const { return (growing && growing->playback.playing()) || (editing != nullptr && editing->moving); }
+bool App::animated() const {
+  return (growing && growing->playback.playing()) || (editing != nullptr && editing->moving);
+}
 
 void App::advance() {
   const auto now = Clock::now();
@@ -197,7 +202,8 @@ void App::advance() {
   if (growing) advance_growing(seconds);
   if (editing != nullptr) advance_editing(seconds);
   // After a pause what was edited comes to the host, if something there needs it.
-  if (editing != nullptr && points_stale_ && !editing->moving && !editing->held && now - edited_ > std::chrono::milliseconds(300))
+  if (editing != nullptr && points_stale_ && !editing->moving && !editing->held &&
+      now - edited_ > std::chrono::milliseconds(300))
     take_points_back();
 }
 
@@ -241,7 +247,8 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   voronoi_note.clear();
   if (!same) view.show(s.mesh.box, s.mesh.point_count, !loaded->heights.empty());
   view.colours = loaded->heights.empty() ? ViewState::usual_colours() : ViewState::colours_with_heights();
-  if (std::find(view.colours.begin(), view.colours.end(), view.colour) == view.colours.end()) view.colour = ColourBy::area;
+  if (std::find(view.colours.begin(), view.colours.end(), view.colour) == view.colours.end())
+    view.colour = ColourBy::area;
   if (!same && !colour_chosen_) view.colour = loaded->heights.empty() ? ColourBy::area : ColourBy::height;
   s.renderer.update(s.mesh);
   mark({});
@@ -250,8 +257,9 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   update_strokes();
   const std::string name = loaded->source.name();
   window->set_title(fmt::format("cadt: {}, {} points", name, number_text(s.mesh.point_count)));
-  say(fmt::format("loaded {} {} points {} triangles by {} in {:.0f} ms", name, s.mesh.point_count, s.mesh.triangle_count,
-                  way_text(), std::chrono::duration<double, std::milli>(Clock::now() - begin).count()));
+  say(fmt::format("loaded {} {} points {} triangles by {} in {:.0f} ms", name, s.mesh.point_count,
+                  s.mesh.triangle_count, way_text(),
+                  std::chrono::duration<double, std::milli>(Clock::now() - begin).count()));
 }
 
 void App::ask(Command command) {

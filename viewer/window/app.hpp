@@ -34,9 +34,9 @@ struct ViewOptions {
   std::optional<ColourBy> colour;  ///< empty: by height where there are heights, else by area
   bool dark = false;
   int width = 1280, height = 800;
-  double scale = 0;  ///< of text and lines; 0: the system's
-  bool log = false;  ///< says on standard output what has happened, for tests
-  bool lose_context = false;  ///< once, for tests: as if the driver had been reset
+  double scale = 0;                          ///< of text and lines; 0: the system's
+  bool log = false;                          ///< says on standard output what has happened, for tests
+  bool lose_context = false;                 ///< once, for tests: as if the driver had been reset
   std::function<std::size_t()> free_memory;  ///< bytes of the host; 0: not known
 };
 
@@ -59,7 +59,8 @@ struct Growing {
   Playback playback;
   double speed = 8;  ///< snapshots a second
   std::optional<std::size_t> shown;
-  std::vector<std::optional<std::uint64_t>> illegal_edges;  ///< of each snapshot; found when it is looked at for a while
+  std::vector<std::optional<std::uint64_t>>
+      illegal_edges;  ///< of each snapshot; found when it is looked at for a while
 };
 
 /// What the mouse does to points.
@@ -89,7 +90,7 @@ class App {
   void run();
 
   // ---- what panel and cards read ----
-  ViewOptions options;  ///< `compute` is what the next triangulation does
+  ViewOptions options;      ///< `compute` is what the next triangulation does
   std::size_t current = 0;  ///< of options.sources
   ViewState view;
   Selection selection;
@@ -181,9 +182,9 @@ class App {
   std::optional<ColourBy> ramp_of_growth_;
   Triangulators triangulators_;
   std::shared_ptr<const VoronoiDiagram> diagram_;
-  std::optional<ColourBy> values_of_;      ///< whose values and ends the renderer has
-  std::array<Stroke, 2> strokes_;          ///< hull, Voronoi cells
-  int version_ = 0;  ///< counts changes of mesh, values and strokes
+  std::optional<ColourBy> values_of_;  ///< whose values and ends the renderer has
+  std::array<Stroke, 2> strokes_;      ///< hull, Voronoi cells
+  int version_ = 0;                    ///< counts changes of mesh, values and strokes
   std::vector<double> drawn_;
   bool points_stale_ = false;  ///< loaded->points are not those that are drawn
   std::chrono::steady_clock::time_point last_frame_, edited_, changed_, toast_until_;

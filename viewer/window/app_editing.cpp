@@ -34,7 +34,8 @@ void App::start_editing() {
   next->last = Clock::now();
   editing = std::move(next);
   view.colours = {ColourBy::nothing, ColourBy::angle, ColourBy::area, ColourBy::order};
-  if (std::find(view.colours.begin(), view.colours.end(), view.colour) == view.colours.end()) view.colour = ColourBy::area;
+  if (std::find(view.colours.begin(), view.colours.end(), view.colour) == view.colours.end())
+    view.colour = ColourBy::area;
   say("editing");
 }
 

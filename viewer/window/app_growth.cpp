@@ -44,7 +44,8 @@ void App::finish_recording(const std::shared_ptr<const Recording>& recording) {
   hovered.reset();
   mark({});
   view.voronoi = false;
-  view.colours = {ColourBy::nothing, ColourBy::angle, ColourBy::area, ColourBy::order, ColourBy::level, ColourBy::flips, ColourBy::conflicts};
+  view.colours = {ColourBy::nothing, ColourBy::angle, ColourBy::area,     ColourBy::order,
+                  ColourBy::level,   ColourBy::flips, ColourBy::conflicts};
   before_growing_ = view.colour;
   ramp_of_growth_.reset();
   view.colour = ColourBy::level;
@@ -80,7 +81,8 @@ void App::upload_snapshot() {
   if (g.shown == frame) return;
   g.shown = frame;
   const std::span<const std::int32_t> triangles = g.recording->triangles(frame);
-  if (scene->mesh.triangles.bytes() < triangles.size_bytes()) scene->mesh.triangles = gl::Buffer(triangles.size_bytes());
+  if (scene->mesh.triangles.bytes() < triangles.size_bytes())
+    scene->mesh.triangles = gl::Buffer(triangles.size_bytes());
   scene->mesh.write_triangles(triangles);
   scene->renderer.update(scene->mesh);
   hovered.reset();
@@ -111,7 +113,8 @@ void App::advance_growing(double seconds) {
   const bool played = g.playback.playing();
   if (played) g.playback.advance(std::min(seconds, 0.25));
   upload_snapshot();
-  if (played && !g.playback.playing()) say(fmt::format("snapshot {} of {}", g.playback.frame() + 1, g.recording->size()));
+  if (played && !g.playback.playing())
+    say(fmt::format("snapshot {} of {}", g.playback.frame() + 1, g.recording->size()));
 }
 
 void App::show_snapshot(std::size_t which) {

@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t most_voronoi_lines = 150'000;  // more cannot be told apart
+constexpr std::size_t most_voronoi_lines = 150'000;     // more cannot be told apart
 constexpr std::size_t most_hull_by_itself = 4'000'000;  // triangles of a mesh on the device that are fetched for it
 constexpr double slow_picture = 25;                     // ms; above, one sample a pixel is drawn while things move
 constexpr std::uint32_t voronoi_colour = 0x3a7d5d, voronoi_colour_dark = 0x7fc7a2;
@@ -39,7 +39,9 @@ std::array<double, 2> ends_of(const std::vector<float>& heights) {
     if (std::isfinite(heights[i])) sample.push_back(heights[i]);
   if (sample.empty()) return {0, 1};
   std::sort(sample.begin(), sample.end());
-  const auto at = [&](double q) { return static_cast<double>(sample[static_cast<std::size_t>(q * static_cast<double>(sample.size() - 1) + 0.5)]); };
+  const auto at = [&](double q) {
+    return static_cast<double>(sample[static_cast<std::size_t>(q * static_cast<double>(sample.size() - 1) + 0.5)]);
+  };
   return {at(0.005), at(0.995)};
 }
 
@@ -126,6 +128,9 @@ void App::update_colour() {
     upload_snapshot();
     r.set_values(growth_values());
     r.fit_ramp(scene->mesh, view.colour);
+    // Most points come at the last levels: quantiles would leave out the first ones.
+    if (view.colour == ColourBy::level)
+      r.set_ramp_ends({1, static_cast<float>(growing->recording->counters(growing->recording->size() - 1).level)});
     ramp_of_growth_ = view.colour;
     growing->playback.seek(position);
     upload_snapshot();
@@ -154,9 +159,20 @@ void App::update_strokes() {
 
 std::vector<double> App::signature(int samples) const {
   const Axis x = view.camera.axis(0), y = view.camera.axis(1);
-  return {x.origin, x.first, x.second, y.origin, y.second, static_cast<double>(view.camera.width()),
-          static_cast<double>(view.camera.height()), static_cast<double>(view.colour), static_cast<double>(view.drawing),
-          view.dark ? 1.0 : 0.0, view.hull ? 1.0 : 0.0, view.voronoi ? 1.0 : 0.0, view.scale, static_cast<double>(version_),
+  return {x.origin,
+          x.first,
+          x.second,
+          y.origin,
+          y.second,
+          static_cast<double>(view.camera.width()),
+          static_cast<double>(view.camera.height()),
+          static_cast<double>(view.colour),
+          static_cast<double>(view.drawing),
+          view.dark ? 1.0 : 0.0,
+          view.hull ? 1.0 : 0.0,
+          view.voronoi ? 1.0 : 0.0,
+          view.scale,
+          static_cast<double>(version_),
           static_cast<double>(samples)};
 }
 
@@ -175,7 +191,8 @@ void App::draw_mesh(bool complete) {
   const bool moved = drawn_ != signature(1);
   if (moved) changed_ = Clock::now();
   // While things move the picture is drawn with one sample a pixel if all of them take too long.
-  if (!complete && picture_milliseconds > slow_picture && Clock::now() - changed_ < std::chrono::milliseconds(150)) style.samples = 1;
+  if (!complete && picture_milliseconds > slow_picture && Clock::now() - changed_ < std::chrono::milliseconds(150))
+    style.samples = 1;
   settled_ = style.samples == most;
   if (!moved && !settled_) return;
   strokes_[0].colour = palette(view.dark).hull;
@@ -184,8 +201,10 @@ void App::draw_mesh(bool complete) {
   voronoi_note.clear();
   if (view.voronoi && diagram_ != nullptr && !growing && !points_stale_) {
     VoronoiLines lines = voronoi_lines(loaded->points.xy, *diagram_, view.camera, most_voronoi_lines);
-    if (lines.segments.empty() && lines.in_view > 0) voronoi_note = fmt::format("{} edges in view: zoom in", number_text(lines.in_view));
-    strokes_[1] = {std::move(lines.segments), view.dark ? voronoi_colour_dark : voronoi_colour, static_cast<float>(1.2 * view.scale)};
+    if (lines.segments.empty() && lines.in_view > 0)
+      voronoi_note = fmt::format("{} edges in view: zoom in", number_text(lines.in_view));
+    strokes_[1] = {std::move(lines.segments), view.dark ? voronoi_colour_dark : voronoi_colour,
+                   static_cast<float>(1.2 * view.scale)};
   }
   const auto begin = Clock::now();
   scene->renderer.draw(scene->mesh, view.camera, style, strokes_);
@@ -214,9 +233,11 @@ TriangleFacts App::facts(std::size_t triangle) const {
 void App::hover(double x, double y) {
   hovered.reset();
   // The picture tells which triangle it is: after a change it has to be drawn first.
-  hover_later_ = scene != nullptr && loaded != nullptr && drawn_ != signature(1) && drawn_ != signature(Style().samples);
+  hover_later_ =
+      scene != nullptr && loaded != nullptr && drawn_ != signature(1) && drawn_ != signature(Style().samples);
   if (hover_later_) return;
-  if (!view.inspect || scene == nullptr || loaded == nullptr || scene->mesh.triangle_count == 0 || !over_mesh(x, y)) return;
+  if (!view.inspect || scene == nullptr || loaded == nullptr || scene->mesh.triangle_count == 0 || !over_mesh(x, y))
+    return;
   const auto found = scene->renderer.triangle_at(static_cast<int>(x), static_cast<int>(y));
   if (found && *found < scene->mesh.triangle_count) hovered = facts(*found);
 }
@@ -272,7 +293,8 @@ void App::pick_next() {
   const TriangleFacts from = facts(*tab_from_);
   if (!from.neighbours) return;
   for (int i = 0; i < 4; ++i, ++tab_) {
-    const std::int32_t t = tab_ % 4 == 3 ? static_cast<std::int32_t>(*tab_from_) : (*from.neighbours)[static_cast<std::size_t>(tab_ % 4)];
+    const std::int32_t t =
+        tab_ % 4 == 3 ? static_cast<std::int32_t>(*tab_from_) : (*from.neighbours)[static_cast<std::size_t>(tab_ % 4)];
     if (t < 0 || selection.triangle == static_cast<std::size_t>(t)) continue;
     mark({static_cast<std::size_t>(t), std::nullopt});
     say(fmt::format("picked triangle {}", t));
@@ -286,11 +308,12 @@ void App::search(const std::string& text) {
   const auto wanted = parse_search(text, scene->mesh.triangle_count == 0);
   const std::size_t count = wanted && wanted->point ? scene->mesh.point_count : scene->mesh.triangle_count;
   if (!wanted || wanted->index >= count) {
-    const std::string most = number_text(count == 0 ? 0 : count - 1);
     report({"Not found",
             wanted ? fmt::format("There is no {} {}.", wanted->point ? "point" : "triangle", wanted->index)
                    : fmt::format("'{}' is no index.", text),
-            fmt::format("Write 12 or t 12 for a triangle, p 12 for a point; indices go from 0 to {}.", most), false});
+            fmt::format("Write 12 or t 12 for a triangle, p 12 for a point. The last index is {}.",
+                        count == 0 ? 0 : count - 1),
+            false});
     return;
   }
   if (wanted->point) {
@@ -299,8 +322,9 @@ void App::search(const std::string& text) {
   } else {
     mark({wanted->index, std::nullopt});
     const auto& c = selected->corners;
-    const double across = std::max({std::fabs(c[0][0] - c[1][0]), std::fabs(c[1][0] - c[2][0]), std::fabs(c[2][0] - c[0][0]),
-                                    std::fabs(c[0][1] - c[1][1]), std::fabs(c[1][1] - c[2][1]), std::fabs(c[2][1] - c[0][1])});
+    const double across =
+        std::max({std::fabs(c[0][0] - c[1][0]), std::fabs(c[1][0] - c[2][0]), std::fabs(c[2][0] - c[0][0]),
+                  std::fabs(c[0][1] - c[1][1]), std::fabs(c[1][1] - c[2][1]), std::fabs(c[2][1] - c[0][1])});
     view.go_to((c[0][0] + c[1][0] + c[2][0]) / 3, (c[0][1] + c[1][1] + c[2][1]) / 3, across);
   }
   say(fmt::format("went to {} {}", wanted->point ? "point" : "triangle", wanted->index));

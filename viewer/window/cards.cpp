@@ -15,8 +15,9 @@
 namespace cadt::viewer {
 namespace {
 
-constexpr ImGuiWindowFlags card_flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
-                                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
+constexpr ImGuiWindowFlags card_flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                                        ImGuiWindowFlags_NoNav;
 
 void title(const std::string& text) {
   ImGui::PushFont(title_font());
@@ -37,7 +38,8 @@ void draw_progress(App& app, Work& work) {
   if (state.fraction >= 0)
     ImGui::ProgressBar(static_cast<float>(state.fraction), {-button - ImGui::GetStyle().ItemSpacing.x, 0}, "");
   else
-    ImGui::ProgressBar(static_cast<float>(state.seconds - std::floor(state.seconds)), {-button - ImGui::GetStyle().ItemSpacing.x, 0}, "");
+    ImGui::ProgressBar(static_cast<float>(state.seconds - std::floor(state.seconds)),
+                       {-button - ImGui::GetStyle().ItemSpacing.x, 0}, "");
   ImGui::SameLine();
   if (ImGui::Button("Cancel", {button, 0})) work.cancel();
   end_card();
@@ -70,45 +72,40 @@ void draw_search(App& app) {
   // Keys come from the window (input.cpp): those that are pressed before a field would be ready are not lost.
   const ImVec2 at = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight());
   const ImGuiStyle& style = ImGui::GetStyle();
-  ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg), style.FrameRounding);
-  ImGui::GetWindowDrawList()->AddText({at.x + style.FramePadding.x, at.y + style.FramePadding.y}, ImGui::GetColorU32(ImGuiCol_Text),
-                                      (app.search_text + "|").c_str());
+  ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + size.x, at.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg),
+                                            style.FrameRounding);
+  ImGui::GetWindowDrawList()->AddText({at.x + style.FramePadding.x, at.y + style.FramePadding.y},
+                                      ImGui::GetColorU32(ImGuiCol_Text), (app.search_text + "|").c_str());
   ImGui::Dummy(size);
   end_card();
 }
 
 void draw_help(App& app) {
+  const float scale = static_cast<float>(app.view.scale), keys = 88 * scale, gap = 30 * scale;
   begin_card(app, "##help", 0.5f, 0.5f, 0);
   title("Keys and mouse");
   std::string_view group;
-  const float scale = static_cast<float>(app.view.scale);
-  // Two columns of groups.
-  if (ImGui::BeginTable("##keys", 2, ImGuiTableFlags_SizingFixedFit)) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    int groups = 0;
-    bool open = false;
-    for (const Binding& b : bindings()) {
-      if (b.shown.empty()) continue;
-      if (b.group != group) {
-        if (open) ImGui::EndTable();
-        if (++groups == 4) ImGui::TableNextColumn();
-        group = b.group;
-        ImGui::Spacing();
-        ImGui::TextDisabled("%s", std::string(group).c_str());
-        open = ImGui::BeginTable(std::string(group).c_str(), 2, ImGuiTableFlags_SizingFixedFit);
-        if (!open) continue;
-        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 84 * scale);
+  int groups = 0;
+  float begin = ImGui::GetCursorPosX();
+  ImGui::BeginGroup();
+  for (const Binding& b : bindings()) {
+    if (b.shown.empty()) continue;
+    if (b.group != group) {
+      if (++groups == 4) {  // the second column
+        ImGui::EndGroup();
+        ImGui::SameLine(0, gap);
+        begin = ImGui::GetCursorPosX();
+        ImGui::BeginGroup();
       }
-      ImGui::TableNextRow();
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(b.shown.data(), b.shown.data() + b.shown.size());
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(b.what.data(), b.what.data() + b.what.size());
+      group = b.group;
+      ImGui::Spacing();
+      ImGui::TextDisabled("%s", std::string(group).c_str());
     }
-    if (open) ImGui::EndTable();
-    ImGui::EndTable();
+    ImGui::TextUnformatted(b.shown.data(), b.shown.data() + b.shown.size());
+    ImGui::SameLine(begin + keys);
+    ImGui::TextUnformatted(b.what.data(), b.what.data() + b.what.size());
   }
+  ImGui::EndGroup();
   ImGui::Spacing();
   ImGui::TextDisabled("? or Esc closes this");
   end_card();

@@ -37,10 +37,11 @@ TriangleFacts facts_of(std::size_t index, const std::array<std::int32_t, 3>& poi
   facts.points = points;
   facts.corners = corners;
   facts.circle = circumcircle(corners);
-  const Place ab = minus(corners[1], corners[0]), bc = minus(corners[2], corners[1]), ca = minus(corners[0], corners[2]);
+  const Place ab = minus(corners[1], corners[0]), bc = minus(corners[2], corners[1]),
+              ca = minus(corners[0], corners[2]);
   facts.area = 0.5 * std::fabs(cross(ab, ca));
-  facts.smallest_angle = std::min({angle_between(ab, {-ca[0], -ca[1]}), angle_between(bc, {-ab[0], -ab[1]}),
-                                   angle_between(ca, {-bc[0], -bc[1]})});
+  facts.smallest_angle = std::min(
+      {angle_between(ab, {-ca[0], -ca[1]}), angle_between(bc, {-ab[0], -ab[1]}), angle_between(ca, {-bc[0], -bc[1]})});
   return facts;
 }
 
@@ -60,8 +61,9 @@ std::vector<std::pair<std::string, std::string>> lines_of(const TriangleFacts& f
     }
   }
   lines.emplace_back("neighbours", neighbours);
-  lines.emplace_back("circumcentre", facts.circle ? fmt::format("{:.12g}\n{:.12g}", facts.circle->centre[0], facts.circle->centre[1])
-                                                  : "beyond the largest double");
+  lines.emplace_back("circumcentre",
+                     facts.circle ? fmt::format("{:.12g}\n{:.12g}", facts.circle->centre[0], facts.circle->centre[1])
+                                  : "beyond the largest double");
   if (facts.circle) lines.emplace_back("circumradius", fmt::format("{:.6g}", facts.circle->radius));
   lines.emplace_back("smallest angle", fmt::format("{:.2f} degrees", facts.smallest_angle));
   lines.emplace_back("area", fmt::format("{:.6g}", facts.area));
@@ -71,7 +73,8 @@ std::vector<std::pair<std::string, std::string>> lines_of(const TriangleFacts& f
 std::vector<std::array<float, 2>> visible_arc(const Circle& circle, const Camera& camera) {
   const Axis x = camera.axis(0), y = camera.axis(1);
   // Pixels of a unit along both axes; they differ in views of boxes that are longer than the camera allows.
-  const double sx = std::fabs(x.first * x.second * camera.before()), sy = std::fabs(y.first * y.second * camera.before());
+  const double sx = std::fabs(x.first * x.second * camera.before()),
+               sy = std::fabs(y.first * y.second * camera.before());
   const double rx = circle.radius * sx, ry = circle.radius * sy;
   const Place middle = camera.pixel(circle.centre[0], circle.centre[1]);
   const Place view{0.5 * camera.width(), 0.5 * camera.height()};

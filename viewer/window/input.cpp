@@ -47,7 +47,8 @@ Events events_for(App& app) {
       return;
     }
     const bool moves = key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT || key == GLFW_KEY_UP || key == GLFW_KEY_DOWN ||
-                       key == GLFW_KEY_HOME || key == GLFW_KEY_TAB || key == GLFW_KEY_PAGE_UP || key == GLFW_KEY_PAGE_DOWN;
+                       key == GLFW_KEY_HOME || key == GLFW_KEY_TAB || key == GLFW_KEY_PAGE_UP ||
+                       key == GLFW_KEY_PAGE_DOWN;
     if (moves && (ImGui::GetIO().WantTextInput || app.panel_focused)) return;
     // Esc in a field of the panel ends the input, and nothing else.
     if (key == GLFW_KEY_ESCAPE && ImGui::GetIO().WantTextInput) return;
@@ -92,7 +93,7 @@ Events events_for(App& app) {
       if ((modifiers & shift) != 0 && dx == 0) std::swap(dx, dy);
       app.view.camera.pan(dx * step * app.view.scale, dy * step * app.view.scale);
     } else {
-      app.view.wheel(dy, x, y);
+      app.view.wheel(dy, x + 0.5, y + 0.5);  // the middle of the pixel
     }
     app.guarded([&] { app.hover(x, y); });
   };

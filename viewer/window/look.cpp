@@ -67,8 +67,11 @@ void set_colours(bool dark, double scale) {
   dark ? ImGui::StyleColorsDark(&style) : ImGui::StyleColorsLight(&style);
   const std::uint32_t paper = dark ? 0x1d2128 : 0xffffff, ink = dark ? 0xe4e9ee : 0x1f2a37,
                       quiet = dark ? 0x939daa : 0x67717e, field = dark ? 0x2a303a : 0xeef1f3,
-                      over = dark ? 0x363e4a : 0xe2e8ec, accent = dark ? 0x5aa7c7 : 0x2b7596, rule = dark ? 0x333a45 : 0xdde2e6;
-  const auto set = [&](ImGuiCol which, std::uint32_t rgb, float alpha = 1) { style.Colors[which] = colour(rgb, alpha); };
+                      over = dark ? 0x363e4a : 0xe2e8ec, accent = dark ? 0x5aa7c7 : 0x2b7596,
+                      rule = dark ? 0x333a45 : 0xdde2e6;
+  const auto set = [&](ImGuiCol which, std::uint32_t rgb, float alpha = 1) {
+    style.Colors[which] = colour(rgb, alpha);
+  };
   set(ImGuiCol_WindowBg, paper, 0.97f);
   set(ImGuiCol_PopupBg, paper, 0.99f);
   set(ImGuiCol_Text, ink);

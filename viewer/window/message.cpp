@@ -34,9 +34,11 @@ Message explain(const std::exception_ptr& error) {
   } catch (const OptionError& e) {
     return {"A setting is out of range", e.what(), "Change it in the panel, then press R."};
   } catch (const BackendUnavailable& e) {
-    return {"The back end is not available", e.what(), "Choose another in the panel; `cadt devices` lists what there is."};
+    return {"The back end is not available", e.what(),
+            "Choose another in the panel; `cadt devices` lists what there is."};
   } catch (const KernelBuildError& e) {
-    return {"The driver cannot compile the kernels", e.what(), "Update the driver, or choose the back end host in the panel."};
+    return {"The driver cannot compile the kernels", e.what(),
+            "Update the driver, or choose the back end host in the panel."};
   } catch (const DeviceError& e) {
     return {"The device reported an error", e.what(), "Press R to try again, or choose another device in the panel."};
   } catch (const OutOfMemory& e) {

@@ -36,16 +36,20 @@ VoronoiLines voronoi_lines(std::span<const double> xy, const VoronoiDiagram& dia
   VoronoiLines lines;
   for (std::size_t e = 0; 2 * e < diagram.edge_vertices.size(); ++e) {
     const std::int32_t from = diagram.edge_vertices[2 * e], to = diagram.edge_vertices[2 * e + 1];
-    const auto vertex = [&](std::int32_t v, std::size_t k) { return diagram.vertices[2 * static_cast<std::size_t>(v) + k]; };
+    const auto vertex = [&](std::int32_t v, std::size_t k) {
+      return diagram.vertices[2 * static_cast<std::size_t>(v) + k];
+    };
     std::array<double, 4> s{vertex(from, 0), vertex(from, 1), 0, 0};
     if (to >= 0) {
       s[2] = vertex(to, 0);
       s[3] = vertex(to, 1);
     } else {  // a ray to the right of the line between its generators
-      const auto a = static_cast<std::size_t>(diagram.edge_points[2 * e]), b = static_cast<std::size_t>(diagram.edge_points[2 * e + 1]);
+      const auto a = static_cast<std::size_t>(diagram.edge_points[2 * e]),
+                 b = static_cast<std::size_t>(diagram.edge_points[2 * e + 1]);
       const double dx = xy[2 * b + 1] - xy[2 * a + 1], dy = xy[2 * a] - xy[2 * b];
       const double length = std::hypot(dx, dy);
-      const double far = sight.diagonal() + std::hypot(s[0] - 0.5 * (sight.low[0] + sight.high[0]), s[1] - 0.5 * (sight.low[1] + sight.high[1]));
+      const double far = sight.diagonal() + std::hypot(s[0] - 0.5 * (sight.low[0] + sight.high[0]),
+                                                       s[1] - 0.5 * (sight.low[1] + sight.high[1]));
       s[2] = s[0] + dx / length * far;
       s[3] = s[1] + dy / length * far;
     }

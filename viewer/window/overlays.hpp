@@ -18,7 +18,7 @@ struct VoronoiLines {
   std::size_t in_view = 0;  ///< edges in the picture; above `most` there are no segments
 };
 /// Edges of cells that can be seen; rays end outside of the picture.
-[[nodiscard]] VoronoiLines voronoi_lines(std::span<const double> xy, const VoronoiDiagram& diagram, const Camera& camera,
-                                         std::size_t most);
+[[nodiscard]] VoronoiLines voronoi_lines(std::span<const double> xy, const VoronoiDiagram& diagram,
+                                         const Camera& camera, std::size_t most);
 
 }  // namespace cadt::viewer

@@ -55,7 +55,8 @@ void draw_file(App& app) {
   }
   if (app.loaded == nullptr || app.scene == nullptr) return;
   const MeshBuffers& mesh = app.scene->mesh;
-  ImGui::Text("%s points, %s triangles", number_text(mesh.point_count).c_str(), number_text(mesh.triangle_count).c_str());
+  ImGui::Text("%s points, %s triangles", number_text(mesh.point_count).c_str(),
+              number_text(mesh.triangle_count).c_str());
 }
 
 void draw_generated(App& app) {
@@ -109,7 +110,8 @@ void draw_ramp(App& app) {
   const auto text = [&](float v) {
     if (app.view.colour == ColourBy::angle) return fmt::format("{:.0f} degrees", v);
     if (app.view.colour == ColourBy::height)
-      return fmt::format("{:.4g}", app.height_ends[0] + static_cast<double>(v) * (app.height_ends[1] - app.height_ends[0]));
+      return fmt::format("{:.4g}",
+                         app.height_ends[0] + static_cast<double>(v) * (app.height_ends[1] - app.height_ends[0]));
     if (app.view.colour != ColourBy::area) return fmt::format("{:.6g}", v);
     // The renderer knows areas in samples of a view of 1,000 pixels.
     const Camera reference(app.view.box(), 1000, 1000);
@@ -150,9 +152,9 @@ std::string words_for(ColourBy by) {
 void draw_drawing(App& app) {
   if (!section("Drawing", true)) return;
   ViewState& view = app.view;
-  for (const auto& [drawing, command, name] :
-       {std::tuple{Drawing::points, Command::points, "Points"}, std::tuple{Drawing::wireframe, Command::wireframe, "Wireframe"},
-        std::tuple{Drawing::filled, Command::filled, "Filled"}}) {
+  for (const auto& [drawing, command, name] : {std::tuple{Drawing::points, Command::points, "Points"},
+                                               std::tuple{Drawing::wireframe, Command::wireframe, "Wireframe"},
+                                               std::tuple{Drawing::filled, Command::filled, "Filled"}}) {
     if (drawing != Drawing::points) ImGui::SameLine();
     if (ImGui::RadioButton(name, view.drawing == drawing)) app.ask(command);
   }
@@ -202,7 +204,8 @@ void draw_device(App& app) {
       if (d.backend != o.backend || !d.usable || d.index < 0) continue;
       names.push_back(d.name);
       numbers.push_back(std::to_string(d.index));
-      if (o.device == numbers.back() || (!o.device.empty() && d.name.find(o.device) != std::string::npos)) chosen = names.size() - 1;
+      if (o.device == numbers.back() || (!o.device.empty() && d.name.find(o.device) != std::string::npos))
+        chosen = names.size() - 1;
     }
     if (choice(app, "device", chosen, names)) {
       o.device = numbers[chosen];
@@ -220,13 +223,15 @@ void draw_device(App& app) {
   auto mode = static_cast<std::size_t>(o.tuning.stabilize);
   if (choice(app, "stabilisation", mode, modes)) {
     o.tuning.stabilize = static_cast<Stabilize>(mode);
-    if (o.tuning.stabilize != Stabilize::off && o.tuning.strategy == Strategy::stars) o.tuning.strategy = Strategy::automatic;
+    if (o.tuning.stabilize != Stabilize::off && o.tuning.strategy == Strategy::stars)
+      o.tuning.strategy = Strategy::automatic;
     changed = true;
   }
   if (o.tuning.stabilize != Stabilize::off) {
     int flips = static_cast<int>(o.tuning.flip_threshold);
     begin_field(app, "R (flips)");
-    if (ImGui::InputInt("##R", &flips, 1, 10)) o.tuning.flip_threshold = static_cast<unsigned>(std::clamp(flips, 0, 1000));
+    if (ImGui::InputInt("##R", &flips, 1, 10))
+      o.tuning.flip_threshold = static_cast<unsigned>(std::clamp(flips, 0, 1000));
     changed = ImGui::IsItemDeactivatedAfterEdit() || changed;
   }
   if (o.tuning.stabilize == Stabilize::paper) {
@@ -297,7 +302,7 @@ void draw_facts(App& app) {
 bool begin_rows(const char* name, float scale) {
   if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingStretchProp)) return false;
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 112 * scale);
-  ImGui::TableSetupColumn("");
+  ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
   return true;
 }
 
@@ -332,8 +337,9 @@ void draw_panel(App& app) {
   else
     ImGui::GetIO().ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
   ImGui::Begin("panel", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus);
   static bool was_focused = false;
   if (app.panel_focused && !was_focused) ImGui::SetWindowFocus();
   was_focused = app.panel_focused;

@@ -19,8 +19,10 @@ struct Ink {
 };
 
 Ink ink_for(bool dark) {
-  return dark ? Ink{IM_COL32(255, 196, 92, 255), IM_COL32(255, 196, 92, 120), IM_COL32(12, 14, 18, 190), IM_COL32(255, 240, 214, 255)}
-              : Ink{IM_COL32(176, 52, 20, 255), IM_COL32(176, 52, 20, 110), IM_COL32(255, 255, 252, 205), IM_COL32(40, 24, 16, 255)};
+  return dark ? Ink{IM_COL32(255, 196, 92, 255), IM_COL32(255, 196, 92, 120), IM_COL32(12, 14, 18, 190),
+                    IM_COL32(255, 240, 214, 255)}
+              : Ink{IM_COL32(176, 52, 20, 255), IM_COL32(176, 52, 20, 110), IM_COL32(255, 255, 252, 205),
+                    IM_COL32(40, 24, 16, 255)};
 }
 
 ImVec2 at(const Camera& camera, const Place& place) {
@@ -31,20 +33,24 @@ ImVec2 at(const Camera& camera, const Place& place) {
 
 class Marks {
  public:
-  Marks(ImDrawList& list, const App& app) : list_(list), app_(app), ink_(ink_for(app.view.dark)), scale_(static_cast<float>(app.view.scale)) {}
+  Marks(ImDrawList& list, const App& app)
+      : list_(list), app_(app), ink_(ink_for(app.view.dark)), scale_(static_cast<float>(app.view.scale)) {}
 
   /// Size of a triangle on the screen.
   [[nodiscard]] float size_of(const TriangleFacts& t) const {
     const ImVec2 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
-    return std::max({a.x, b.x, c.x, a.y, b.y, c.y}) == 1e6f ? 1e6f
-           : std::max(std::max({a.x, b.x, c.x}) - std::min({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}) - std::min({a.y, b.y, c.y}));
+    return std::max({a.x, b.x, c.x, a.y, b.y, c.y}) == 1e6f
+               ? 1e6f
+               : std::max(std::max({a.x, b.x, c.x}) - std::min({a.x, b.x, c.x}),
+                          std::max({a.y, b.y, c.y}) - std::min({a.y, b.y, c.y}));
   }
 
   void triangle(const TriangleFacts& t, bool strong) {
     const ImVec2 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
     if (strong) list_.AddTriangleFilled(a, b, c, ink_.weak);
     list_.AddTriangle(a, b, c, ink_.strong, (strong ? 2.5f : 1.6f) * scale_);
-    if (size_of(t) < 5 * scale_) list_.AddCircle({(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3}, 9 * scale_, ink_.strong, 0, 2 * scale_);
+    if (size_of(t) < 5 * scale_)
+      list_.AddCircle({(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3}, 9 * scale_, ink_.strong, 0, 2 * scale_);
     if (t.circle && size_of(t) > 12 * scale_) circle(*t.circle, strong);
   }
 
@@ -90,7 +96,9 @@ class Marks {
   }
 
  private:
-  [[nodiscard]] ImVec2 corner(const TriangleFacts& t, std::size_t k) const { return at(app_.view.camera, t.corners[k]); }
+  [[nodiscard]] ImVec2 corner(const TriangleFacts& t, std::size_t k) const {
+    return at(app_.view.camera, t.corners[k]);
+  }
 
   void circle(const Circle& c, bool strong) {
     const auto arc = visible_arc(c, app_.view.camera);
@@ -123,7 +131,8 @@ void draw_picture(App& app) {
   if (app.scene == nullptr || app.loaded == nullptr) return;
   list.PushClipRect({0, 0}, size);
   if (app.scene->mesh.point_count != 0) {
-    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(app.scene->renderer.texture().id())), {0, 0}, size);
+    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(app.scene->renderer.texture().id())),
+                  {0, 0}, size);
     Marks marks(list, app);
     if (app.hovered && app.view.inspect && (!app.selected || app.hovered->index != app.selected->index)) {
       marks.neighbours(*app.hovered, false);
@@ -136,7 +145,8 @@ void draw_picture(App& app) {
     }
     const ImVec2 mouse = ImGui::GetMousePos();
     if (app.editing != nullptr && app.editing->tool != Tool::drag && app.over_mesh(mouse.x, mouse.y))
-      list.AddCircle(mouse, app.editing->brush * static_cast<float>(app.view.scale), ink_for(app.view.dark).strong, 0, 1.6f);
+      list.AddCircle(mouse, app.editing->brush * static_cast<float>(app.view.scale), ink_for(app.view.dark).strong, 0,
+                     1.6f);
     if (app.selected_place) marks.point(*app.selected_place, *app.selection.point);
   }
   list.PopClipRect();

@@ -47,7 +47,7 @@ Triangulator& Triangulators::open(const Options& options) {
 }
 
 std::size_t bytes_of_points(std::size_t points) noexcept {
-  return points * (2 * sizeof(double)) +                             // PointSet
+  return points * (2 * sizeof(double)) +                            // PointSet
          points * (2 * sizeof(double) + 6 * sizeof(std::int32_t));  // MeshBuffers
 }
 

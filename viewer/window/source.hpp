@@ -57,8 +57,8 @@ class Triangulators {
   Options of_;
 };
 
-/// What one has to know before any memory is taken. `available`: bytes of the host's memory that are free, 0: not known.
-/// \throws LimitError, OutOfMemory
+/// What one has to know before any memory is taken. `available`: bytes of the host's memory that are free, 0: not
+/// known. \throws LimitError, OutOfMemory
 void check_room(std::size_t points, std::size_t bytes_of_mesh, std::size_t available);
 
 /// Bytes of the host that so many points take before they are triangulated, and that OpenGL's buffers take beside.

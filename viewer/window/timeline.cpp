@@ -26,7 +26,8 @@ void draw_timeline(App& app) {
   const GrowthCounters& c = r.counters(frame);
   begin_card(app, "##timeline", 0.5f, 1.0f, 700);
   ImGui::PushFont(title_font());
-  ImGui::Text("%s of %s points, level %u", number_text(c.points).c_str(), number_text(app.scene->mesh.point_count).c_str(), c.level);
+  ImGui::Text("%s of %s points, level %u", number_text(c.points).c_str(),
+              number_text(app.scene->mesh.point_count).c_str(), c.level);
   ImGui::PopFont();
   ImGui::SameLine();
   ImGui::TextDisabled("%s", c.complete ? "complete" : "");
@@ -42,7 +43,8 @@ void draw_timeline(App& app) {
   }
   int shown = static_cast<int>(frame);
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::SliderInt("##snapshot", &shown, 0, static_cast<int>(r.size()) - 1, fmt::format("snapshot {} of {}", frame + 1, r.size()).c_str()))
+  if (ImGui::SliderInt("##snapshot", &shown, 0, static_cast<int>(r.size()) - 1,
+                       fmt::format("snapshot {} of {}", frame + 1, r.size()).c_str()))
     app.guarded([&] { app.show_snapshot(static_cast<std::size_t>(shown)); });
   const auto button = [&](const char* text, Command command) {
     if (ImGui::Button(text, {72 * scale, 0})) app.guarded([&] { app.ask(command); });

@@ -13,7 +13,8 @@ namespace {
 
 void draw_editing(App& app) {
   Editing& e = *app.editing;
-  for (const auto& [tool, name] : {std::pair{Tool::drag, "Drag"}, std::pair{Tool::paint, "Paint"}, std::pair{Tool::erase, "Erase"}}) {
+  for (const auto& [tool, name] :
+       {std::pair{Tool::drag, "Drag"}, std::pair{Tool::paint, "Paint"}, std::pair{Tool::erase, "Erase"}}) {
     if (tool != Tool::drag) ImGui::SameLine();
     if (ImGui::RadioButton(name, e.tool == tool)) app.choose_tool(tool);
   }
@@ -32,10 +33,12 @@ void draw_editing(App& app) {
   begin_field(app, "motion");
   if (ImGui::BeginCombo("##motion", std::string(to_string(e.motion)).c_str())) {
     for (std::size_t i = 0; i < names_of_motions().size(); ++i)
-      if (ImGui::Selectable(names_of_motions()[i].c_str(), static_cast<Motion>(i) == e.motion)) e.motion = static_cast<Motion>(i);
+      if (ImGui::Selectable(names_of_motions()[i].c_str(), static_cast<Motion>(i) == e.motion))
+        e.motion = static_cast<Motion>(i);
     ImGui::EndCombo();
   }
-  if (ImGui::Button(e.moving ? "Stop the points (M)" : "Let all points move (M)")) app.guarded([&] { app.ask(Command::move_points); });
+  if (ImGui::Button(e.moving ? "Stop the points (M)" : "Let all points move (M)"))
+    app.guarded([&] { app.ask(Command::move_points); });
   if (begin_rows("##live", static_cast<float>(app.view.scale))) {
     row("mesh", fmt::format("{:.1f} ms", e.mesh_milliseconds));
     row("picture", fmt::format("{:.1f} ms", app.picture_milliseconds));
@@ -50,7 +53,8 @@ void draw_editing(App& app) {
 void draw_tools(App& app) {
   if (app.loaded == nullptr || !section("Grow and edit", true)) return;
   const float wide = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-  if (ImGui::Button(app.growing ? "End of growth (G)" : "Watch it grow (G)", {wide, 0})) app.guarded([&] { app.ask(Command::grow); });
+  if (ImGui::Button(app.growing ? "End of growth (G)" : "Watch it grow (G)", {wide, 0}))
+    app.guarded([&] { app.ask(Command::grow); });
   ImGui::SameLine();
   if (ImGui::Button(app.editing != nullptr ? "End of editing (E)" : "Edit points (E)", {wide, 0}))
     app.guarded([&] { app.ask(Command::edit); });

@@ -105,7 +105,8 @@ void ViewState::go_to(double x, double y, double size) {
   const double wanted = std::min(camera.width(), camera.height()) / 3.0;
   const double now = std::fabs(size * camera.scale());
   if (!(now > 0) || !std::isfinite(now)) {
-    if (camera.magnification() < 8) camera.zoom(8 / camera.magnification(), 0.5 * camera.width(), 0.5 * camera.height());
+    if (camera.magnification() < 8)
+      camera.zoom(8 / camera.magnification(), 0.5 * camera.width(), 0.5 * camera.height());
     return;
   }
   camera.zoom(wanted / now, 0.5 * camera.width(), 0.5 * camera.height());
@@ -118,7 +119,8 @@ Style ViewState::style() const {
   style.points_alone = drawing == Drawing::points;
   style.line_width = static_cast<float>(scale);
   // Vertices are drawn where they are far apart: smaller triangles would be covered by them.
-  const double area = std::fabs((box_.high[0] - box_.low[0]) * camera.scale() * (box_.high[1] - box_.low[1]) * camera.scale());
+  const double area =
+      std::fabs((box_.high[0] - box_.low[0]) * camera.scale() * (box_.high[1] - box_.low[1]) * camera.scale());
   const double apart = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, points_)));
   const bool vertices = !(apart < 22 * scale);
   style.point_radius = static_cast<float>(drawing == Drawing::points ? 1.6 * scale : vertices ? 2.4 * scale : 0);

@@ -124,9 +124,10 @@ Window::Window(const std::string& title, int width, int height) : handles_(std::
     if (h.window != nullptr) break;
   }
   if (h.window == nullptr)
-    throw DisplayError("this display has no OpenGL 4.5 (" + last_error() +
-                       "): install or update the driver of its card (without a card: libgl1-mesa-dri); `cadt render` makes "
-                       "pictures without a display");
+    throw DisplayError(
+        "this display has no OpenGL 4.5 (" + last_error() +
+        "): install or update the driver of its card (without a card: libgl1-mesa-dri); `cadt render` makes "
+        "pictures without a display");
   glfwSetWindowSizeLimits(h.window, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwMakeContextCurrent(h.window);
   driver_ = gl::check_driver();

@@ -29,7 +29,7 @@ class Session(WindowTest):
                       f"{WIDTH - PANEL}x{HEIGHT}", "-o", "render.png")
             self.assertLess(difference(first, self.folder / "render.png"), 3.0)
         with self.subTest("the place under the cursor stays"):
-            x, y = MIDDLE[0] + 100, MIDDLE[1] - 60
+            x, y = MIDDLE[0] + 103, MIDDLE[1] - 57
             self.click(x, y)
             before = self.wait("picked")
             for _ in range(6):

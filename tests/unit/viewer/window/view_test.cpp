@@ -89,7 +89,8 @@ TEST(View, DrawsPointsWireframeAndFilled) {
   EXPECT_TRUE(view.style().fill);
   view.apply(Command::dark);
   EXPECT_TRUE(view.style().dark);
-  for (const Drawing d : {Drawing::points, Drawing::wireframe, Drawing::filled}) EXPECT_EQ(drawing_from_string(to_string(d)), d);
+  for (const Drawing d : {Drawing::points, Drawing::wireframe, Drawing::filled})
+    EXPECT_EQ(drawing_from_string(to_string(d)), d);
   EXPECT_FALSE(drawing_from_string("solid"));
 }
 
@@ -131,7 +132,8 @@ TEST(Search, UnderstandsIndices) {
   EXPECT_EQ(found("Point 7"), "p7");
   EXPECT_EQ(found("t7"), "t7");
   EXPECT_EQ(found("triangle 0"), "t0");
-  for (const char* wrong : {"", "p", "x 3", "3 4", "-1", "1.5", "99999999999999999999999"}) EXPECT_EQ(found(wrong), "none") << wrong;
+  for (const char* wrong : {"", "p", "x 3", "3 4", "-1", "1.5", "99999999999999999999999"})
+    EXPECT_EQ(found(wrong), "none") << wrong;
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is done on a thread, what can go wrong there, and how that is said.
+#include "viewer/window/work.hpp"
 #include "viewer/gl/errors.hpp"
 #include "viewer/window/message.hpp"
 #include "viewer/window/screenshot.hpp"
 #include "viewer/window/source.hpp"
-#include "viewer/window/work.hpp"
 
 #include <cadt/io/errors.hpp>
 
@@ -87,7 +87,8 @@ TEST(Load, ATriangulationIsCancelled) {
   Triangulators triangulators;
   Options options;
   options.backend = Backend::host;
-  work.start([&](Work::Desk& desk) { static_cast<void>(load(generated(3'000'000), options, &triangulators, 0, desk)); });
+  work.start(
+      [&](Work::Desk& desk) { static_cast<void>(load(generated(3'000'000), options, &triangulators, 0, desk)); });
   work.cancel();
   EXPECT_TRUE(is_a<Cancelled>(wait_for(work)));
 }
@@ -97,7 +98,8 @@ TEST(Load, RefusesBeforeAnyMemoryIsTaken) {
   Options options;
   options.backend = Backend::host;
   Work work([] {});
-  work.start([&](Work::Desk& desk) { static_cast<void>(load(generated(1'000'000'000), options, &triangulators, 0, desk)); });
+  work.start(
+      [&](Work::Desk& desk) { static_cast<void>(load(generated(1'000'000'000), options, &triangulators, 0, desk)); });
   EXPECT_TRUE(is_a<LimitError>(wait_for(work)));
   work.start([&](Work::Desk& desk) {
     static_cast<void>(load(generated(500'000'000), options, &triangulators, std::size_t{8} << 30, desk));
@@ -125,13 +127,18 @@ TEST(Load, AFileThatIsNoneIsExplained) {
 }
 
 TEST(Messages, SayWhatToDo) {
-  const std::vector<std::exception_ptr> all{
-      std::make_exception_ptr(InputError("NaN", 3)),       std::make_exception_ptr(LimitError("many", 2, 1)),
-      std::make_exception_ptr(OptionError("threads", "?")), std::make_exception_ptr(BackendUnavailable("cuda", "none")),
-      std::make_exception_ptr(KernelBuildError("d", "o", "l")), std::make_exception_ptr(DeviceError("c", 1, "d", "t")),
-      std::make_exception_ptr(OutOfMemory("m", 2, 1)),     std::make_exception_ptr(Cancelled()),
-      std::make_exception_ptr(std::bad_alloc()),           std::make_exception_ptr(std::runtime_error("x")),
-      std::make_exception_ptr(io::FileError("f", 1, "m")), std::make_exception_ptr(3)};
+  const std::vector<std::exception_ptr> all{std::make_exception_ptr(InputError("NaN", 3)),
+                                            std::make_exception_ptr(LimitError("many", 2, 1)),
+                                            std::make_exception_ptr(OptionError("threads", "?")),
+                                            std::make_exception_ptr(BackendUnavailable("cuda", "none")),
+                                            std::make_exception_ptr(KernelBuildError("d", "o", "l")),
+                                            std::make_exception_ptr(DeviceError("c", 1, "d", "t")),
+                                            std::make_exception_ptr(OutOfMemory("m", 2, 1)),
+                                            std::make_exception_ptr(Cancelled()),
+                                            std::make_exception_ptr(std::bad_alloc()),
+                                            std::make_exception_ptr(std::runtime_error("x")),
+                                            std::make_exception_ptr(io::FileError("f", 1, "m")),
+                                            std::make_exception_ptr(3)};
   for (const auto& error : all) {
     const Message message = explain(error);
     EXPECT_FALSE(message.title.empty());
@@ -152,7 +159,8 @@ TEST(Numbers, AreWrittenAndRead) {
   EXPECT_EQ(parse_number("250,000"), 250000u);
   EXPECT_EQ(parse_number("1.5M"), 1500000u);
   EXPECT_EQ(parse_number("1e6"), 1000000u);
-  for (const char* wrong : {"", "x", "1.5", "-3", "1 K K", "nan", "1e30"}) EXPECT_THROW(static_cast<void>(parse_number(wrong)), std::invalid_argument) << wrong;
+  for (const char* wrong : {"", "x", "1.5", "-3", "1 K K", "nan", "1e30"})
+    EXPECT_THROW(static_cast<void>(parse_number(wrong)), std::invalid_argument) << wrong;
 }
 
 TEST(Screenshots, NeverOverwrite) {

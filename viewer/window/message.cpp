@@ -75,7 +75,7 @@ std::string bytes_text(std::size_t bytes) {
 
 std::string number_text(std::size_t number) {
   std::string text = fmt::format("{}", number);
-  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
+  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, 1, ',');
   return text;
 }
 

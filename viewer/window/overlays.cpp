@@ -7,7 +7,7 @@
 namespace cadt::viewer {
 namespace {
 
-/// What is seen, and as much again on each side.
+/// What is seen.
 struct Sight {
   double low[2], high[2];
 
@@ -20,11 +20,20 @@ struct Sight {
   }
   [[nodiscard]] double diagonal() const { return std::hypot(high[0] - low[0], high[1] - low[1]); }
 
-  /// Whether the segment's box meets what is seen.
+  /// Whether some of the segment is seen.
   [[nodiscard]] bool meets(const std::array<double, 4>& s) const {
     for (std::size_t k = 0; k < 2; ++k)
       if (std::max(s[k], s[k + 2]) < low[k] || std::min(s[k], s[k + 2]) > high[k]) return false;
-    return true;
+    // Its line has corners on both sides.
+    bool left = false, right = false;
+    for (const double x : {low[0], high[0]}) {
+      for (const double y : {low[1], high[1]}) {
+        const double side = (s[2] - s[0]) * (y - s[1]) - (s[3] - s[1]) * (x - s[0]);
+        left = left || side >= 0;
+        right = right || side <= 0;
+      }
+    }
+    return left && right;
   }
 };
 

@@ -86,8 +86,9 @@ TEST(Voronoi, OfASquareWithItsMiddleHasFourEdgesAndFourRays) {
     const bool ends_outside = s[2] < -0.1 || s[2] > 1.1 || s[3] < -0.1 || s[3] > 1.1;
     rays += ends_outside ? 1 : 0;
     // Rays leave the square at right angles to its sides.
-    if (ends_outside) EXPECT_TRUE(s[0] == s[2] || s[1] == s[3]);
-    if (ends_outside) EXPECT_GT(std::hypot(s[2] - 0.5, s[3] - 0.5), std::hypot(s[0] - 0.5, s[1] - 0.5));
+    if (!ends_outside) continue;
+    EXPECT_TRUE(s[0] == s[2] || s[1] == s[3]);
+    EXPECT_GT(std::hypot(s[2] - 0.5, s[3] - 0.5), std::hypot(s[0] - 0.5, s[1] - 0.5));
   }
   EXPECT_EQ(rays, 4u);
 }

@@ -86,15 +86,14 @@ void draw_help(App& app) {
   title("Keys and mouse");
   std::string_view group;
   int groups = 0;
-  float begin = ImGui::GetCursorPosX();
+  const int in_first = static_cast<float>(app.view.camera.width()) > 800 * scale ? 3 : 100;
   ImGui::BeginGroup();
   for (const Binding& b : bindings()) {
     if (b.shown.empty()) continue;
     if (b.group != group) {
-      if (++groups == 4) {  // the second column
+      if (++groups == in_first + 1) {  // the second column
         ImGui::EndGroup();
         ImGui::SameLine(0, gap);
-        begin = ImGui::GetCursorPosX();
         ImGui::BeginGroup();
       }
       group = b.group;
@@ -102,7 +101,7 @@ void draw_help(App& app) {
       ImGui::TextDisabled("%s", std::string(group).c_str());
     }
     ImGui::TextUnformatted(b.shown.data(), b.shown.data() + b.shown.size());
-    ImGui::SameLine(begin + keys);
+    ImGui::SameLine(keys);
     ImGui::TextUnformatted(b.what.data(), b.what.data() + b.what.size());
   }
   ImGui::EndGroup();
@@ -139,7 +138,7 @@ void begin_card(const App& app, const char* name, float x, float y, float width,
   const float w = static_cast<float>(app.view.camera.width()), h = static_cast<float>(app.view.camera.height());
   ImGui::SetNextWindowPos({gap + x * (w - 2 * gap), gap + y * (h - 2 * gap)}, ImGuiCond_Always, {x, y});
   const float wide = std::min(width * scale, w - 2 * gap);
-  if (width > 0) ImGui::SetNextWindowSizeConstraints({wide, 0}, {wide, h - 2 * gap});
+  ImGui::SetNextWindowSizeConstraints({width > 0 ? wide : 0, 0}, {width > 0 ? wide : w - 2 * gap, h - 2 * gap});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 9 * scale);
   ImGui::Begin(name, nullptr, card_flags | (inputs ? ImGuiWindowFlags_None : ImGuiWindowFlags_NoInputs));
 }

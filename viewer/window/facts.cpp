@@ -52,7 +52,7 @@ std::vector<std::pair<std::string, std::string>> lines_of(const TriangleFacts& f
   lines.emplace_back("triangle", fmt::format("{}", facts.index));
   for (std::size_t k = 0; k < 3; ++k)
     lines.emplace_back(fmt::format("point {}", facts.points[k]), text_of(facts.corners[k]));
-  std::string neighbours = "not known yet";
+  std::string neighbours = "known of the finished mesh";
   if (facts.neighbours) {
     neighbours.clear();
     for (const std::int32_t t : *facts.neighbours) {

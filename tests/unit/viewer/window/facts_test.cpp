@@ -28,7 +28,7 @@ TEST(Facts, AreWrittenWithAllDigits) {
   EXPECT_EQ(lines[0].second, "5");
   EXPECT_EQ(lines[1], std::pair(std::string("point 7"), std::string("0.1\n0")));
   EXPECT_EQ(lines[2].second, "500000.123456789\n0");
-  EXPECT_EQ(lines[4], std::pair(std::string("neighbours"), std::string("not known yet")));
+  EXPECT_EQ(lines[4], std::pair(std::string("neighbours"), std::string("known of the finished mesh")));
   facts.neighbours = {1, -1, 3};
   EXPECT_EQ(lines_of(facts)[4].second, "1, none, 3");
 }

@@ -72,7 +72,10 @@ MemoryPlan plan_memory(const CallShape& call, bool stars, bool compact) noexcept
 MemoryPlan choose_memory_plan(Memory& memory, const Options& options, const DeviceInfo& device, const CallShape& call,
                               bool stars, const KnownSizes& known) {
   const std::size_t n = call.points;
-  const MemoryPlan fast = plan_memory(call, stars, false), compact = plan_memory(call, stars, true);
+  const MemoryPlan compact = plan_memory(call, stars, true);
+  MemoryPlan fast = plan_memory(call, stars, false);
+  // Lost locks of triangles (common/overlay/growth_snapshots.cpp).
+  if (options.tuning.watch && options.statistics == StatisticsDetail::timing) fast.bytes += 2 * n * word;
   require_buffer(options, device, fast.largest_buffer);
   const bool bounded = options.max_memory != 0;
   if (!stars) {

@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "common/driver/backend.hpp"
+#include "common/driver/gpu_bound.hpp"
 
 namespace cadt {
 namespace {
@@ -121,9 +122,12 @@ std::unique_ptr<Device> open_device(const Options& options) {
   return open_in(host_backend(), options);
 }
 
+bool is_free_to_choose(const Options& options) noexcept {
+  return options.backend == Backend::automatic && options.device.empty() && !options.queue;
+}
+
 bool takes_host(const Options& options, std::size_t points) noexcept {
-  return options.backend == Backend::automatic && options.device.empty() && !options.queue &&
-         points < fewest_points_for_gpu;
+  return is_free_to_choose(options) && points < gpu_bound().points();
 }
 
 std::unique_ptr<Device> open_device(const Options& options, std::size_t points) {

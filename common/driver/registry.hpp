@@ -13,9 +13,8 @@ namespace cadt {
 /// The same for one call of so many points: Backend::automatic takes a GPU only if they are enough.
 [[nodiscard]] std::unique_ptr<Device> open_device(const Options& options, std::size_t points);
 
-/// Fewest points of one call for which Backend::automatic opens a GPU: opening its context takes 200 milliseconds and
-/// more, and one core of the host triangulates so many points in 100.
-constexpr std::size_t fewest_points_for_gpu = 200'000;
+/// Whether the library chooses the back end and the device.
+[[nodiscard]] bool is_free_to_choose(const Options& options) noexcept;
 /// Whether Backend::automatic means the host for one call of so many points.
 [[nodiscard]] bool takes_host(const Options& options, std::size_t points) noexcept;
 

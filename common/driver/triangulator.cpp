@@ -12,6 +12,7 @@
 #include "common/driver/choose_strategy.hpp"
 #include "common/driver/context.hpp"
 #include "common/driver/device_triangulation.hpp"
+#include "common/driver/gpu_bound.hpp"
 #include "common/driver/registry.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/thread_state.hpp"
@@ -241,6 +242,16 @@ void Triangulator::reserve(std::size_t points) {
   known.insertion = std::max(known.insertion, n);
 }
 
+std::shared_ptr<void> Triangulator::allocate(std::size_t bytes) {
+  if (bytes == 0) return nullptr;
+  struct Held {
+    std::shared_ptr<State> state;  // first member: destroyed last, after the memory
+    Allocation memory;
+  };
+  const auto held = std::make_shared<Held>(state_, state_->memory.allocate(bytes));
+  return {held, state_->device->handle(*held->memory)};
+}
+
 void Triangulator::release_memory() {
   state_->memory.drop_cached();  // the next budget forgets the known sizes
   state_->device->trim();
@@ -249,7 +260,10 @@ void Triangulator::release_memory() {
 Triangulation triangulate(PointsView points, const Options& options) {
   require_size(points.size());
   const CallState state(options, points.size());
-  return to_host(*state, points);
+  Triangulation mesh = to_host(*state, points);
+  const DeviceInfo& device = (*state)->device->info();
+  if (device.gpu && is_free_to_choose(options)) measure_gpu_bound(device, options);
+  return mesh;
 }
 
 }  // namespace cadt

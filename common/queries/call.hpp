@@ -59,7 +59,7 @@ void require_bound(double max_edge);
 [[nodiscard]] Allocation array_of(Context& ctx, const DeviceArray& array, std::size_t element);
 
 template <class Points>
-[[nodiscard]] QueryBatch import_queries(Call& call, const MeshIndex& mesh, const Points& queries, std::size_t count) {
+[[nodiscard]] QueryBatch import_queries(Call& call, MeshIndex& mesh, const Points& queries, std::size_t count) {
   return prepare_queries(call.ctx, mesh, import_points(call.ctx, queries), count);
 }
 

@@ -17,7 +17,7 @@ Allocation interpolate_queries(Context& ctx, const MeshIndex& mesh, const QueryB
 void require_grid(const Grid& grid);
 
 /// One value of each cell to `cells`. \pre require_grid
-void rasterize_mesh(Context& ctx, const MeshIndex& mesh, const Grid& grid, const Allocation& values,
-                    Interpolation method, double max_edge, const Allocation& cells);
+void rasterize_mesh(Context& ctx, MeshIndex& mesh, const Grid& grid, const Allocation& values, Interpolation method,
+                    double max_edge, const Allocation& cells);
 
 }  // namespace cadt

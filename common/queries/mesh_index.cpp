@@ -75,7 +75,15 @@ void index_mesh(Context& ctx, MeshIndex& mesh) {
   ctx.device.fill(*mesh.lowest, 0, n * word, CADT_NONE);
   if (mesh.triangles == 0) return;
   launch.run<KernelId::cadt_lowest_triangles>(mesh.vertices, mesh.lowest, launch.grid(mesh.triangles));
-  ctx.check("index", 0.2);
+  ctx.check("index", 1);
+}
+
+namespace {
+
+/// The vertices along the curve.
+void index_curve(Context& ctx, MeshIndex& mesh) {
+  const std::size_t n = mesh.point_count;
+  Launcher& launch = ctx.launcher;
   mesh.grid = choose_grid(mesh.bounds, std::clamp(static_cast<int>(std::bit_width(n)) + 4, 4, most_key_bits));
   CurveOrder curve = sort_along_curve(ctx, mesh.points, n, mesh.grid);
   Allocation flags = ctx.memory.allocate((n + 1) * word);
@@ -87,18 +95,20 @@ void index_mesh(Context& ctx, MeshIndex& mesh) {
     curve = {};
     curve = sort_along_curve(ctx, mesh.points, n, mesh.grid);
   }
-  ctx.check("index", 0.7);
+  ctx.check("sort", 0.1);
   const LaunchGrid all = launch.grid(n);
   launch.run<KernelId::cadt_curve_flags>(curve.order, mesh.lowest, flags, all);
   launch.scan(flags, n + 1);
-  mesh.curve_size = launch.read_word(flags, n);
-  mesh.start = ctx.memory.allocate(mesh.curve_size * word);
-  mesh.curve_high = ctx.memory.allocate(mesh.curve_size * word);
-  if (curve.low) mesh.curve_low = ctx.memory.allocate(mesh.curve_size * word);
+  const std::size_t size = launch.read_word(flags, n);
+  mesh.start = ctx.memory.allocate(size * word);
+  mesh.curve_high = ctx.memory.allocate(size * word);
+  mesh.curve_low = curve.low ? ctx.memory.allocate(size * word) : Allocation();
   launch.run<KernelId::cadt_curve_pack>(curve.order, mesh.lowest, flags, curve.high, curve.low, mesh.start,
                                         mesh.curve_high, mesh.curve_low, all);
-  ctx.check("index", 1);
+  mesh.curve_size = size;  // last: a call that is stopped before leaves it to the next one
 }
+
+}  // namespace
 
 QueryScale scale_for(Context& ctx, const MeshIndex& mesh, const Bounds& queries) {
   const int low = std::min(mesh.bounds.low, queries.low), high = std::max(mesh.bounds.high, queries.high);
@@ -111,7 +121,7 @@ QueryScale scale_for(Context& ctx, const MeshIndex& mesh, const Bounds& queries)
   return by;
 }
 
-QueryBatch prepare_queries(Context& ctx, const MeshIndex& mesh, Allocation points, std::size_t count) {
+QueryBatch prepare_queries(Context& ctx, MeshIndex& mesh, Allocation points, std::size_t count) {
   QueryBatch batch;
   batch.points = std::move(points);
   batch.count = count;
@@ -124,6 +134,7 @@ QueryBatch prepare_queries(Context& ctx, const MeshIndex& mesh, Allocation point
                      error.index());
   }
   if (mesh.triangles == 0) return batch;
+  if (mesh.curve_size == 0) index_curve(ctx, mesh);
   batch.curve = sort_along_curve(ctx, batch.points, count, mesh.grid);
   batch.by = scale_for(ctx, mesh, bounds);
   ctx.check("sort", 0.3);

@@ -24,9 +24,10 @@ struct MeshIndex {
   std::size_t point_count = 0, triangles = 0;
   Allocation lowest;  ///< the lowest triangle of each point; CADT_NONE if it is no vertex
   Bounds bounds;
+  // The vertices along the curve, made for the first queries: rasters of triangles and Voronoi diagrams need none.
   KeyGrid grid;
   Allocation curve_high, curve_low, start;  ///< CADT_CURVE_PARAMETERS; `curve_low` is null for keys of one word
-  std::size_t curve_size = 0;
+  std::size_t curve_size = 0;               ///< 0: not made yet
 
   [[nodiscard]] DeviceMeshView view() const {
     const auto count = static_cast<std::uint32_t>(triangles);
@@ -68,8 +69,8 @@ void index_mesh(Context& ctx, MeshIndex& mesh);
 /// The scale for the mesh and for coordinates with these bounds, and the variant of the kernels from here on.
 [[nodiscard]] QueryScale scale_for(Context& ctx, const MeshIndex& mesh, const Bounds& queries);
 
-/// \throws InputError for the first query that is not finite
-[[nodiscard]] QueryBatch prepare_queries(Context& ctx, const MeshIndex& mesh, Allocation points, std::size_t count);
+/// Makes the index of the curve if it is not there. \throws InputError for the first query that is not finite
+[[nodiscard]] QueryBatch prepare_queries(Context& ctx, MeshIndex& mesh, Allocation points, std::size_t count);
 
 /// Where each query lies, as cadt_locate_queries says. Null results are left out. \throws InputError if a walk did not
 /// end

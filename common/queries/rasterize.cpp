@@ -84,7 +84,7 @@ void draw(Context& ctx, const MeshIndex& mesh, const Grid& grid, const Allocatio
 }
 
 /// Cell by cell.
-void query_cells(Context& ctx, const MeshIndex& mesh, const Grid& grid, const Allocation& values, Interpolation method,
+void query_cells(Context& ctx, MeshIndex& mesh, const Grid& grid, const Allocation& values, Interpolation method,
                  double max_edge, const Allocation& cells) {
   Launcher& launch = ctx.launcher;
   const std::size_t all = grid.cells();
@@ -118,8 +118,8 @@ void require_grid(const Grid& grid) {
     throw LimitError("a raster has fewer than 2^31 cells: take larger ones, or several rasters", grid.columns, most);
 }
 
-void rasterize_mesh(Context& ctx, const MeshIndex& mesh, const Grid& grid, const Allocation& values,
-                    Interpolation method, double max_edge, const Allocation& cells) {
+void rasterize_mesh(Context& ctx, MeshIndex& mesh, const Grid& grid, const Allocation& values, Interpolation method,
+                    double max_edge, const Allocation& cells) {
   if (method == Interpolation::linear || mesh.triangles == 0)
     ctx.launcher.run<KernelId::cadt_clear_raster>(cells, ctx.launcher.grid(grid.cells()));
   if (mesh.triangles == 0) return;

@@ -120,7 +120,7 @@ VoronoiPolygons clip_voronoi(Context& ctx, const MeshIndex& mesh, const Box& box
   return result;
 }
 
-std::vector<Circle> find_largest_circles(Context& ctx, const MeshIndex& mesh, std::size_t wanted) {
+std::vector<Circle> find_largest_circles(Context& ctx, MeshIndex& mesh, std::size_t wanted) {
   Launcher& launch = ctx.launcher;
   const std::size_t count = mesh.triangles, bytes = count * word;
   std::vector<Circle> found;

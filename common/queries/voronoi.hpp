@@ -22,7 +22,7 @@ void write_edges(Context& ctx, const MeshIndex& mesh, const Allocation& begin, c
 [[nodiscard]] VoronoiDiagram make_voronoi(Context& ctx, const MeshIndex& mesh);
 /// \throws InputError
 [[nodiscard]] VoronoiPolygons clip_voronoi(Context& ctx, const MeshIndex& mesh, const Box& box);
-[[nodiscard]] std::vector<Circle> find_largest_circles(Context& ctx, const MeshIndex& mesh, std::size_t wanted);
+[[nodiscard]] std::vector<Circle> find_largest_circles(Context& ctx, MeshIndex& mesh, std::size_t wanted);
 /// \throws OptionError
 [[nodiscard]] Outline make_outline(Context& ctx, const MeshIndex& mesh, double max_radius, double max_edge);
 

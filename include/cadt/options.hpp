@@ -19,7 +19,8 @@ namespace cadt {
 
 /// Where the triangulation is computed. `automatic` takes the fastest usable device: a GPU if there is one, else the
 /// host. The function triangulate() takes the host for fewer than 200,000 points, unless `Options::device` names a
-/// device: opening a GPU takes longer.
+/// device: opening a GPU takes longer. Once it has opened one in the process, it times a small set on both and from
+/// then on takes the GPU for the sizes for which the whole call is faster there.
 enum class Backend { automatic, host, opencl, cuda };
 
 /// "auto", "host", "opencl", "cuda".

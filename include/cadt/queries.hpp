@@ -100,8 +100,9 @@ struct DeviceVoronoi {
 /// Which triangle, vertex or cell an answer is about is exact: the same from every device, however many are asked at a
 /// time. Values and places are doubles and rounded. Points on an edge or vertex belong to the lowest of its triangles.
 ///
-/// Preparing costs O(n log n) for n points, about a tenth of the triangulation, and 12 bytes of device memory a point
-/// beside points and mesh. Not thread-safe: one thread at a time may use an object; different ones are independent.
+/// The first queries sort the vertices: O(n log n) for n points, about a tenth of the triangulation, and 12 bytes of
+/// device memory a point beside points and mesh. Linear rasters and Voronoi diagrams need 4 of them and no sort. Not
+/// thread-safe: one thread at a time may use an object; different ones are independent.
 /// Devices without double precision are refused (BackendUnavailable).
 ///
 ///     cadt::Triangulation mesh = cadt::triangulate(xy);

@@ -164,6 +164,10 @@ class CADT_API Triangulator {
   /// about 4 % of the vertices are residual. Over-full cells (more than 16 points in 2^-16 of the bounding box's width)
   /// need up to 32 bytes more for each of their points while they are sorted.
   [[nodiscard]] std::size_t memory_needed(std::size_t points) const noexcept;
+  /// Memory for results of queries, from where the triangulator's own comes (`Options::allocator`, else the library):
+  /// its handle, as for DevicePoints; null for 0 bytes. It is used in the order of the triangulator's stream or queue,
+  /// counts in `Options::max_memory`, and lives as a DeviceTriangulation does. \throws OutOfMemory
+  [[nodiscard]] std::shared_ptr<void> allocate(std::size_t bytes);
   /// Allocates the memory for calls with up to so many points now; with a caller's allocator it does nothing. Keeps no
   /// more than `Options::max_memory`. \throws LimitError, OutOfMemory
   void reserve(std::size_t points);

@@ -10,7 +10,7 @@ import numpy as np
 from cadt import _cadt, _devices
 from cadt._delaunay import Delaunay
 from cadt._errors import InputError
-from cadt._points import as_points
+from cadt._points import as_points, contiguous
 from cadt._progress import reporter
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def triangulate_batch(
         raise InputError("offsets must be integers of shape (sets + 1,)", 0)
     if begin.min() < 0:
         raise InputError("offsets must not be negative", int(np.argmin(begin)))
-    begin = np.ascontiguousarray(begin, dtype=np.int64)
+    begin = contiguous(begin, np.int64)
     options = _devices.make_options(backend, device, order, threads, max_memory, "counters")
     if options.backend == "auto":
         options = options.on_host() if len(p) < _devices.SMALL else options

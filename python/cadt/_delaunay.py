@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cadt import _cadt, _devices, _gpu, _show
+from cadt._arrays import array_on_device
 from cadt._points import as_indices, as_points
 from cadt._progress import reporter
 from cadt._queries import Queries
@@ -26,7 +27,7 @@ class Delaunay(Queries):
         float64 or float32, with any strides, and read where it lies; integers are converted. Lists, and objects with
         ``__array__``, ``__dlpack__`` or ``__cuda_array_interface__``: arrays of CuPy, PyTorch or JAX on a GPU stay there,
         in the producer's current stream, and all results are arrays of the same kind on that GPU; so are arrays of
-        PyOpenCL. Points that equal an earlier one are no vertices (`duplicate_of`). The points must not change while
+        PyOpenCL. (JAX has float32 in place of float64 unless ``jax_enable_x64`` is set.) Points that equal an earlier one are no vertices (`duplicate_of`). The points must not change while
         the mesh is used.
     backend : {"host", "opencl", "cuda"}, optional
         Where to compute. Default: where the points are; for points of the host a GPU if there is one and there are
@@ -88,7 +89,7 @@ class Delaunay(Queries):
         self._gpu: _gpu.Mesh | None = None
         self._cache: dict[str, Any] = {}
         arguments = (backend, device, order, threads, max_memory, statistics)
-        if (on_gpu := _gpu.array_on_device(points)) is not None:
+        if (on_gpu := array_on_device(points)) is not None:
             self._points: Any = points
             with reporter(progress) as report:
                 self._gpu = _gpu.Mesh(on_gpu, arguments, report)

@@ -25,8 +25,14 @@ def as_points(points: Any, what: str = "points", *, columns: str = "(n, 2)") -> 
     s0, s1 = a.strides
     size = a.dtype.itemsize
     if s0 < 0 or s0 % size or s1 % size or not a.flags.aligned:
-        a = np.ascontiguousarray(a)
+        a = contiguous(a)
     return a
+
+
+def contiguous(a: np.ndarray, dtype: Any = None) -> np.ndarray:
+    """In C's order, and aligned, which np.ascontiguousarray alone does not see to."""
+    a = np.ascontiguousarray(a, dtype=dtype)
+    return a if a.flags.aligned else a.copy()
 
 
 def to_array(points: Any, what: str) -> np.ndarray:
@@ -92,7 +98,7 @@ def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:
     if a.ndim == 0 or a.shape[0] != n:
         raise InputError(f"values must have shape ({n},) or ({n}, m): one row a point, not {a.shape}", 0)
     m = int(np.prod(a.shape[1:]))
-    return np.ascontiguousarray(a.reshape(n, m), dtype=np.float64), a.shape[1:]
+    return contiguous(a.reshape(n, m), np.float64), a.shape[1:]
 
 
 def as_indices(a: Any, what: str) -> np.ndarray:

@@ -9,13 +9,17 @@ namespace {
 using Shared = std::shared_ptr<SharedTriangulator>;
 using Mesh = std::shared_ptr<DeviceMesh>;
 
-/// An array of CUDA memory that keeps the mesh; for __dlpack__ of array libraries.
-nb::object cuda_array(const Mesh& mesh, void* memory) {
-  nb::capsule keep(new Mesh(mesh), [](void* p) noexcept { delete static_cast<Mesh*>(p); });
-  const std::array<std::size_t, 2> shape{mesh->mesh().number_of_triangles(), 3};
-  return nb::cast(nb::ndarray<nb::array_api, std::int32_t>(memory, 2, shape.data(), keep, nullptr,
-                                                           nb::dtype<std::int32_t>(), nb::device::cuda::value,
-                                                           mesh->shared().device().index));
+/// An array of CUDA memory that keeps the owner; for __dlpack__ of array libraries.
+template <class Owner>
+nb::object cuda_array(const std::shared_ptr<Owner>& owner, void* memory, const std::vector<std::size_t>& shape,
+                      nb::dlpack::dtype type) {
+  using Kept = std::shared_ptr<Owner>;
+  nb::capsule keep(new Kept(owner), [](void* p) noexcept { delete static_cast<Kept*>(p); });
+  return nb::cast(nb::ndarray<nb::array_api>(memory, shape.size(), shape.data(), keep, nullptr, type,
+                                             nb::device::cuda::value, owner->shared().device().index));
+}
+nb::object triangle_array(const Mesh& mesh, void* memory) {
+  return cuda_array(mesh, memory, {mesh->mesh().number_of_triangles(), 3}, nb::dtype<std::int32_t>());
 }
 
 }  // namespace
@@ -72,8 +76,17 @@ void bind_device(nb::module_& m) {
       .def("download", [](const DeviceMesh& d) {
         return d.shared().run(nb::none(), [&](cadt::Triangulator&) { return d.mesh().download(); });
       });
-  m.def("cuda_triangles", [](const Mesh& mesh) { return cuda_array(mesh, mesh->mesh().triangles()); });
-  m.def("cuda_neighbors", [](const Mesh& mesh) { return cuda_array(mesh, mesh->mesh().neighbors()); });
+  m.def("cuda_triangles", [](const Mesh& mesh) { return triangle_array(mesh, mesh->mesh().triangles()); });
+  m.def("cuda_neighbors", [](const Mesh& mesh) { return triangle_array(mesh, mesh->mesh().neighbors()); });
+
+  nb::class_<DeviceMemory>(m, "DeviceMemory")
+      .def(nb::init<Shared, std::vector<std::size_t>, bool>(), nb::arg("triangulator"), nb::arg("shape"),
+           nb::arg("float64"))
+      .def_prop_ro("address", [](const DeviceMemory& d) { return reinterpret_cast<std::uintptr_t>(d.get()); })
+      .def_prop_ro("shape", [](const DeviceMemory& d) { return nb::tuple(nb::cast(d.shape())); });
+  m.def("cuda_memory", [](const std::shared_ptr<DeviceMemory>& memory) {
+    return cuda_array(memory, memory->get(), memory->shape(), memory->type());
+  });
 }
 
 }  // namespace cadt_python

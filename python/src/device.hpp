@@ -129,6 +129,33 @@ class DeviceMesh {
   std::shared_ptr<cadt::DeviceTriangulation> mesh_;
 };
 
+/// Memory for the result of a query, of words or doubles; as a mesh it may outlive all other objects.
+class DeviceMemory {
+ public:
+  DeviceMemory(std::shared_ptr<SharedTriangulator> shared, std::vector<std::size_t> shape, bool float64)
+      : shared_(std::move(shared)), shape_(std::move(shape)), float64_(float64) {
+    std::size_t bytes = float64_ ? sizeof(double) : sizeof(std::int32_t);
+    for (const std::size_t n : shape_) bytes *= n;
+    memory_ = shared_->run(nb::none(), [&](cadt::Triangulator& own) { return own.allocate(bytes); });
+  }
+  ~DeviceMemory() {
+    if (memory_) shared_->retire(std::move(memory_));
+  }
+  DeviceMemory(const DeviceMemory&) = delete;
+  DeviceMemory& operator=(const DeviceMemory&) = delete;
+
+  [[nodiscard]] SharedTriangulator& shared() const noexcept { return *shared_; }
+  [[nodiscard]] void* get() const noexcept { return memory_.get(); }
+  [[nodiscard]] const std::vector<std::size_t>& shape() const noexcept { return shape_; }
+  [[nodiscard]] nb::dlpack::dtype type() const { return float64_ ? nb::dtype<double>() : nb::dtype<std::int32_t>(); }
+
+ private:
+  std::shared_ptr<SharedTriangulator> shared_;
+  std::vector<std::size_t> shape_;
+  bool float64_;
+  std::shared_ptr<void> memory_;
+};
+
 /// n x 2 coordinates in device memory, as numbers.
 struct DeviceCoordinates {
   std::uintptr_t x = 0;

@@ -14,4 +14,5 @@ NB_MODULE(_cadt, m) {
   bind_mesh(m);
   bind_device(m);
   bind_queries(m);
+  bind_scipy(m);
 }

@@ -10,6 +10,7 @@ import cadt
 import numpy as np
 import pytest
 from cadt import InputError, LimitError, OptionError
+from cadt._points import as_points, as_values, contiguous
 
 P = np.random.default_rng(0).random((50, 2))
 SQUARE = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1]])
@@ -63,6 +64,20 @@ def test_any_memory(name: str) -> None:
     assert cadt.Delaunay(SAME[name]).hash == cadt.Delaunay(P).hash
     mesh = cadt.Delaunay(P)
     assert (mesh.find_simplex(SAME[name]) == mesh.find_simplex(P)).all()
+
+
+def test_memory_that_is_not_aligned_is_copied() -> None:
+    """A processor may refuse to read it, or the compiler assume that it is not there."""
+    points = unaligned("f8")
+    assert points.flags.c_contiguous and not points.flags.aligned
+    offsets = np.zeros(25, dtype=np.uint8)[1:].view(np.int64)
+    offsets[:] = (0, 20, 50)
+    assert not offsets.flags.aligned
+    assert as_points(points).flags.aligned and as_points(unaligned("f4")).flags.aligned
+    assert as_values(points[:, 0], 50)[0].flags.aligned and as_values(points, 50)[0].flags.aligned
+    assert contiguous(offsets, np.int64).flags.aligned
+    assert cadt.triangulate_batch(points, offsets)[1].n_points == 30
+    assert np.allclose(cadt.Delaunay(P).interpolate(points, P), P)
 
 
 @pytest.mark.parametrize("dtype", ["f4", ">f4", "f2", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", ">i4"])

@@ -18,6 +18,10 @@ def has_cuda() -> str:
 pytestmark = pytest.mark.skipif(bool(has_cuda()), reason=f"no CUDA device: {has_cuda()}")
 
 
+def x64(jax, enabled: bool):
+    return (jax.enable_x64 if hasattr(jax, "enable_x64") else jax.experimental.enable_x64)(enabled)
+
+
 class Library:
     """One array library, in the test's words."""
 
@@ -29,8 +33,8 @@ class Library:
         if self.name == "torch":
             return self.xp.from_numpy(np.array(a)).cuda()
         if self.name == "jax":
-            self.xp.config.update("jax_enable_x64", True)
-            return self.xp.device_put(a, self.xp.devices("gpu")[0])
+            with x64(self.xp, True):
+                return self.xp.device_put(a, self.xp.devices("gpu")[0])
         return self.xp.asarray(a)
 
     def get(self, a) -> np.ndarray:
@@ -49,13 +53,13 @@ class Library:
 
 
 @pytest.fixture(params=MODULES)
-def library(request) -> Library:
-    return Library(request.param)
-
-
-@pytest.fixture(params=["cupy", "torch"])
-def writable(request) -> Library:
-    return Library(request.param)
+def library(request):
+    library = Library(request.param)
+    if request.param != "jax":
+        yield library
+        return
+    with x64(library.xp, True):
+        yield library
 
 
 def sets():
@@ -94,13 +98,13 @@ def test_nothing_through_the_host(library):
 
 
 @pytest.mark.parametrize("dtype", ["float64", "float32"])
-def test_queries_equal_host(writable, dtype):
+def test_queries_equal_host(library, dtype):
     rng = np.random.default_rng(3)
     points = rng.random((30_000, 2)).astype(dtype)
-    mesh, host = cadt.Delaunay(writable.put(points)), cadt.Delaunay(points, backend="host")
+    mesh, host = cadt.Delaunay(library.put(points)), cadt.Delaunay(points, backend="host")
     q = rng.random((50, 40, 2)) * 1.2 - 0.1
     z = np.stack([points[:, 0] ** 2, points.sum(axis=1)], axis=1)
-    put, get = writable.put, writable.get
+    put, get = library.put, library.get
     for xi in (put(q), q):  # queries of the host are copied there
         np.testing.assert_array_equal(get(mesh.find_simplex(xi)), host.find_simplex(q))
         np.testing.assert_array_equal(get(mesh.nearest_vertex(xi)), host.nearest_vertex(q))
@@ -116,6 +120,22 @@ def test_queries_equal_host(writable, dtype):
     image = mesh.rasterize(put(z[:, 0].copy()), shape=(60, 80), bounds=(0, 0, 1, 1))
     np.testing.assert_allclose(get(image), host.rasterize(z[:, 0], shape=(60, 80), bounds=(0, 0, 1, 1)), atol=1e-13)
     np.testing.assert_allclose(get(mesh.circumcenters()), host.circumcenters(), rtol=1e-12)
+    both = mesh.rasterize(put(z), shape=(6, 8), bounds=(0, 0, 1, 1))
+    np.testing.assert_allclose(get(both), host.rasterize(z, shape=(6, 8), bounds=(0, 0, 1, 1)), atol=1e-13)
+    assert tuple(mesh.find_simplex(put(np.empty((0, 2)))).shape) == (0,)
+    assert tuple(mesh.barycentric(put(np.empty((3, 0, 2))))[1].shape) == (3, 0, 3)
+
+
+@pytest.mark.parametrize("dtype", ["float64", "float32"])
+def test_bounds_are_taken_on_the_device(library, dtype, monkeypatch):
+    points = (np.random.default_rng(12).random((5_001, 2)) * [3, 2] - 1).astype(dtype)
+    mesh, host = cadt.Delaunay(library.put(points)), cadt.Delaunay(points, backend="host")
+    z = points[:, 0].astype(np.float64)
+    monkeypatch.setattr(type(mesh._gpu.array), "to_host", None)
+    image = mesh.rasterize(library.put(z), shape=(30, 40))
+    np.testing.assert_allclose(library.get(image), host.rasterize(z, shape=(30, 40)), atol=1e-12)
+    with pytest.raises(cadt.InputError, match="bounds"):
+        cadt.Delaunay(library.put(np.empty((0, 2)))).rasterize(z[:0], shape=(2, 2))
 
 
 def test_arrays_outlive_the_mesh(library):
@@ -129,44 +149,56 @@ def test_arrays_outlive_the_mesh(library):
 def test_current_stream_torch():
     torch = pytest.importorskip("torch")
     stream = torch.cuda.Stream()
-    points = np.random.default_rng(5).random((1_000_000, 2))
-    pinned = torch.from_numpy(points).pin_memory()
     with torch.cuda.stream(stream):
-        for _ in range(5):
-            torch.cuda._sleep(20_000_000)  # the copy waits in this stream; a call in another one would read zeros
-            given = torch.zeros(points.shape, dtype=torch.float64, device="cuda")
+        for seed in range(3):
+            points = np.random.default_rng(seed).random((100_000 + seed, 2))
+            pinned, given = (
+                torch.from_numpy(points).pin_memory(),
+                torch.zeros(points.shape, dtype=torch.float64, device="cuda"),
+            )
+            stream.synchronize()
+            torch.cuda._sleep(200_000_000)  # the copy waits in this stream; a call in another one reads zeros
             given.copy_(pinned, non_blocking=True)
-            simplices = cadt.Delaunay(given, order="fast").simplices
-            total = simplices.long().sum()
-    stream.synchronize()
-    assert int(total) == int(cadt.Delaunay(points).simplices.astype(np.int64).sum())
+            mesh = cadt.Delaunay(given)
+            assert mesh.hash == cadt.Delaunay(points, backend="host").hash
+            q = torch.zeros((1_000, 2), dtype=torch.float64, device="cuda")
+            stream.synchronize()
+            torch.cuda._sleep(200_000_000)
+            q.copy_(pinned[:1_000], non_blocking=True)
+            np.testing.assert_array_equal(mesh.nearest_vertex(q).cpu().numpy(), np.arange(1_000))
 
 
 def test_current_stream_cupy():
     cupy = pytest.importorskip("cupy")
     points = np.random.default_rng(6).random((100_000, 2))
+    wait = cupy.RawKernel(
+        'extern "C" __global__ void wait() { for (long long b = clock64(); clock64() - b < 200000000;) ; }', "wait"
+    )
+    there, given = cupy.asarray(points), cupy.zeros(points.shape)
+    cupy.cuda.Device().synchronize()
     with cupy.cuda.Stream(non_blocking=True):
-        given = cupy.asarray(points) * 1.0
+        wait((1,), (1,), ())  # a call in another stream reads zeros
+        given += there
         mesh = cadt.Delaunay(given)
-        np.testing.assert_array_equal(cupy.asnumpy(mesh.simplices), cadt.Delaunay(points).simplices)
+        np.testing.assert_array_equal(cupy.asnumpy(mesh.simplices), cadt.Delaunay(points, backend="host").simplices)
 
 
-def test_strides_and_dtypes(writable):
+def test_strides_and_dtypes(library):
     rng = np.random.default_rng(7)
     wide = rng.random((5_000, 5))
-    given = writable.put(wide)
+    given = library.put(wide)
     wanted = cadt.Delaunay(np.ascontiguousarray(wide[:, 1:3]), backend="host").hash
     assert cadt.Delaunay(given[:, 1:3]).hash == wanted
-    assert cadt.Delaunay(writable.put(np.asfortranarray(wide[:, 1:3]))).hash == wanted
-    integers = rng.integers(0, 10_000, (5_000, 2)).astype(np.int32)
-    assert cadt.Delaunay(writable.put(integers)).hash == cadt.Delaunay(integers, backend="host").hash
+    assert cadt.Delaunay(library.put(np.asfortranarray(wide[:, 1:3]))).hash == wanted
+    integers = (2**25 + rng.integers(0, 1_000, (5_000, 2))).astype(np.int32)  # which floats would round
+    assert cadt.Delaunay(library.put(integers)).hash == cadt.Delaunay(integers, backend="host").hash
     for dtype in (np.int64, np.complex128, np.bool_):
         with pytest.raises(TypeError):
-            cadt.Delaunay(writable.put(np.ones((4, 2), dtype)))
+            cadt.Delaunay(library.put(np.ones((4, 2), dtype)))
 
 
-def test_bad_input(writable):
-    put = writable.put
+def test_bad_input(library):
+    put = library.put
     with pytest.raises(cadt.InputError):
         cadt.Delaunay(put(np.ones((4, 3))))
     with pytest.raises(cadt.InputError) as e:
@@ -184,20 +216,51 @@ def test_bad_input(writable):
     assert line.dimension == 1 and tuple(line.simplices.shape) == (0, 3)
 
 
-def test_jax_queries_are_refused():
+def test_jax_without_doubles():
+    """JAX's default: its arrays are float32, but the library computes with the doubles that it was given."""
     library = Library("jax")
-    mesh = cadt.Delaunay(library.put(np.random.default_rng(9).random((100, 2))))
-    with pytest.raises(NotImplementedError):
-        mesh.find_simplex([[0.5, 0.5]])
+    points = np.random.default_rng(9).random((3_000, 2)).astype(np.float32)
+    host = cadt.Delaunay(points)
+    q = np.random.default_rng(10).random((500, 2))  # doubles, on no edge when they are not rounded
+    z = points[:, 0] * (1 + 1e-9)
+    with x64(library.xp, False):
+        mesh = cadt.Delaunay(library.put(points))
+        found, weights = mesh.barycentric(q)
+        assert (found.dtype, weights.dtype) == (np.int32, np.float32)
+        np.testing.assert_array_equal(library.get(found), host.find_simplex(q))
+        np.testing.assert_allclose(library.get(weights), host.barycentric(q)[1], atol=1e-7)
+        values = mesh.interpolate(z, q)
+        np.testing.assert_allclose(library.get(values), host.interpolate(z, q), rtol=1e-7)
+        assert values.dtype == mesh.interpolate(z, q[:0]).dtype == np.float32
+        assert library.get(mesh.rasterize(z, shape=(3, 4))).shape == (3, 4)
 
 
-def test_threads(writable):
+def test_jax_reads_a_result_before_its_memory_is_used_again(library):
+    """JAX returns memory that others own without waiting for its own stream."""
+    if library.name != "jax":
+        pytest.skip("of JAX alone")
+    jax, jnp = library.xp, library.xp.numpy
+
+    @jax.jit
+    def late(simplices, a):
+        for _ in range(60):
+            a = a @ a / 2000
+        _, simplices = jax.lax.optimization_barrier((a, simplices))  # not read before
+        return jnp.sum(simplices.astype(jnp.int64) * jnp.arange(simplices.size).reshape(simplices.shape))
+
+    a = library.put(np.ones((2_000, 2_000)))
+    sets = [library.put(np.random.default_rng(seed).random((30_000, 2))) for seed in range(6)]
+    wanted = [int(late(cadt.Delaunay(p).simplices, a)) for p in sets]
+    assert [int(total) for total in [late(cadt.Delaunay(p).simplices, a) for p in sets]] == wanted
+
+
+def test_threads(library):
     from concurrent.futures import ThreadPoolExecutor
 
     def work(seed: int) -> tuple[str, str]:
         points = np.random.default_rng(seed).random((20_000, 2))
-        mesh = cadt.Delaunay(writable.put(points))
-        found = writable.get(mesh.find_simplex(points[:100]))
+        mesh = cadt.Delaunay(library.put(points))
+        found = library.get(mesh.find_simplex(points[:100]))
         assert (found >= 0).all()
         return mesh.hash, cadt.Delaunay(points, backend="host").hash
 
@@ -206,12 +269,26 @@ def test_threads(writable):
             assert got == wanted
 
 
-def test_release_memory(writable):
-    mesh = cadt.Delaunay(writable.put(np.random.default_rng(10).random((10_000, 2))))
-    before = writable.get(mesh.simplices).copy()
+def test_options_of_each_call_on_an_open_device(library):
+    points = np.random.default_rng(13).random((20_000, 2))
+    wanted = cadt.Delaunay(points, backend="host").simplices
+    for given in (points, library.put(points)):
+        where = {"backend": "cuda"} if given is points else {}
+        for _ in range(2):
+            fast = cadt.Delaunay(given, order="fast", **where).simplices
+            assert not np.array_equal(fast if given is points else library.get(fast), wanted)
+            canonical = cadt.Delaunay(given, **where).simplices
+            assert np.array_equal(canonical if given is points else library.get(canonical), wanted)
+            with pytest.raises(cadt.OutOfMemory):
+                cadt.Delaunay(given, max_memory=10_000, **where)
+
+
+def test_release_memory(library):
+    mesh = cadt.Delaunay(library.put(np.random.default_rng(10).random((10_000, 2))))
+    before = library.get(mesh.simplices).copy()
     cadt.release_memory()
-    np.testing.assert_array_equal(writable.get(mesh.simplices), before)
-    assert writable.get(mesh.find_simplex([[0.5, 0.5]])) >= 0
+    np.testing.assert_array_equal(library.get(mesh.simplices), before)
+    assert library.get(mesh.find_simplex([[0.5, 0.5]])) >= 0
 
 
 def test_fork_is_refused():

@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+import os
+
 import cadt
 import numpy as np
 import pytest
 
 cl = pytest.importorskip("pyopencl")
 cl_array = pytest.importorskip("pyopencl.array")
+opencl = [d for d in cadt.devices() if d.backend == "opencl"]
+if not any(d.usable for d in opencl) and "opencl" not in os.environ.get("CADT_REQUIRE_BACKENDS", ""):
+    pytest.skip(f"no OpenCL device: {opencl[0].reason}", allow_module_level=True)
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +39,20 @@ def test_equals_host(queue, dtype):
     np.testing.assert_array_equal(mesh.find_simplex(cl_array.to_device(queue, q)).get(), host.find_simplex(q))
     z = points[:, 0].astype(np.float64)
     np.testing.assert_allclose(mesh.interpolate(z, q).get(), host.interpolate(z, q), rtol=1e-12)
+    both = np.stack([z, points[:, 1] ** 2], axis=1)
+    image = mesh.rasterize(both, bounds=(0, 0, 1, 1), shape=(9, 13))
+    assert isinstance(image, cl_array.Array)
+    np.testing.assert_allclose(image.get(), host.rasterize(both, bounds=(0, 0, 1, 1), shape=(9, 13)), rtol=1e-12)
+
+
+@pytest.mark.parametrize("n", [3, 100, 1_001])
+def test_bounds_are_taken_on_the_device(queue, n, monkeypatch):
+    points = np.random.default_rng(8).random((n, 2)) * [3, 2] - 1
+    mesh, host = cadt.Delaunay(cl_array.to_device(queue, points)), cadt.Delaunay(points, backend="host")
+    monkeypatch.setattr(type(mesh._gpu.array), "to_host", None)  # type: ignore[union-attr]
+    z = points[:, 0].copy()
+    image = mesh.rasterize(z, shape=(7, 5)).get()
+    np.testing.assert_allclose(image, host.rasterize(z, shape=(7, 5)), rtol=1e-12, atol=1e-12)
 
 
 def test_arrays_outlive_the_mesh(queue):
@@ -42,6 +61,29 @@ def test_arrays_outlive_the_mesh(queue):
     for seed in range(3):
         cadt.Delaunay(cl_array.to_device(queue, np.random.default_rng(seed).random((3_000, 2))))
     np.testing.assert_array_equal(simplices.get(), cadt.Delaunay(points).simplices)
+
+
+def test_each_queue_is_used_for_its_own_arrays(queue):
+    points = np.random.default_rng(9).random((2_000, 2))
+    other = cl.CommandQueue(cl.Context(queue.context.devices))
+    wanted = cadt.Delaunay(points)
+    for q in (queue, other, queue):
+        mesh = cadt.Delaunay(cl_array.to_device(q, points))
+        assert mesh.simplices.queue == mesh.find_simplex(points).queue == q
+        np.testing.assert_array_equal(mesh.simplices.get(), wanted.simplices)
+
+
+def test_options_of_each_call_on_an_open_device():
+    points = np.random.default_rng(10).random((4_000, 2))
+    wanted = cadt.Delaunay(points).simplices
+    for _ in range(2):
+        fast = cadt.Delaunay(points, backend="opencl", order="fast")
+        assert not np.array_equal(fast.simplices, wanted)
+        assert np.array_equal(cadt.Delaunay(points, backend="opencl").simplices, wanted)
+        with pytest.raises(cadt.OutOfMemory):
+            cadt.Delaunay(points, backend="opencl", max_memory=10_000)
+        assert cadt.Delaunay(points, backend="opencl", statistics="timing").statistics["milliseconds"]
+        assert not cadt.Delaunay(points, backend="opencl", statistics="none").statistics["milliseconds"]
 
 
 def test_parts_of_buffers(queue):

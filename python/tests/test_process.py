@@ -14,6 +14,8 @@ START = """
 import gc, os, signal, sys, threading, time, weakref
 import numpy as np, cadt
 rng = np.random.default_rng(0)
+def slow(points, **how):  # long enough for reports and signals, also where there is a GPU
+    return cadt.Delaunay(points, backend="host", threads=1, **how)
 def wait(pid, seconds):
     end = time.monotonic() + seconds
     while time.monotonic() < end:
@@ -112,9 +114,9 @@ def test_subinterpreters_are_refused(tmp_path: Path) -> None:
 
 def test_interrupt() -> None:
     run("""
-        p = rng.random((5_000_000, 2)); mesh = cadt.Delaunay(p[:200_000]); mesh.find_simplex(p[:1])
+        p = rng.random((5_000_000, 2)); mesh = slow(p[:200_000]); mesh.find_simplex(p[:1])
         begin = time.monotonic(); mesh.find_simplex(p); whole = time.monotonic() - begin
-        for call in (lambda: cadt.Delaunay(p), lambda: mesh.find_simplex(np.concatenate([p] * 4))):
+        for call in (lambda: slow(p), lambda: mesh.find_simplex(np.concatenate([p] * 4))):
             threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
             try: call()
             except KeyboardInterrupt: pass
@@ -131,11 +133,11 @@ def test_progress_that_raises() -> None:
         def stop(phase, fraction):
             calls.append(phase); raise Mine(phase)
         for progress, error in ((stop, Mine), (lambda: 0, TypeError), (lambda p, f: sys.exit(3), SystemExit)):
-            try: cadt.Delaunay(p, progress=progress)
+            try: slow(p, progress=progress)
             except error: pass
             else: raise AssertionError("did not end")
         assert len(calls) == 1, calls
-        inner = cadt.Delaunay(p, progress=lambda p_, f: cadt.Delaunay(p[:100]))
+        inner = slow(p, progress=lambda p_, f: cadt.Delaunay(p[:100]))
         assert inner.hash == cadt.Delaunay(p).hash
         print("done")
     """)
@@ -147,13 +149,13 @@ def test_points_that_go_during_the_call() -> None:
         def drop(phase, fraction):
             global p
             p = None; gc.collect(); seen.append(phase)
-        mesh = cadt.Delaunay(p, progress=drop)
+        mesh = slow(p, progress=drop)
         assert seen and mesh.hash == expected
         q = rng.random((400_000, 2)); refused = []
         def shrink(phase, fraction):
             try: q.resize((10, 2))
             except ValueError: refused.append(phase)
-        cadt.Delaunay(q, progress=shrink)
+        slow(q, progress=shrink)
         assert refused and len(q) == 400_000
         print("done")
     """)

@@ -4,11 +4,9 @@
 from __future__ import annotations
 
 import copy
-import importlib
 import itertools
 import pickle
 import warnings
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -125,21 +123,6 @@ def test_tolerance_outside(angle: float) -> None:
         assert (kind(tri, plane, fill_value=7)(outwards) == 7).all()
 
 
-def test_degenerate_set_of_scipy() -> None:
-    """What else SciPy's test_degenerate_barycentric_transforms asserts."""
-    folder = Path(importlib.import_module("scipy.spatial.tests").__path__[0])
-    with np.load(folder / "data" / "degenerate_pointset.npz") as f:
-        points = f["c"]
-    tri = ours.Delaunay(points)
-    assert tri.mesh is not None and tri.mesh.verify()
-    thin = np.isnan(tri.transform[:, 0, 0])
-    assert thin.sum() == 31
-    centers = points[tri.simplices].mean(axis=1)
-    c = np.einsum("ijk,ik->ij", tri.transform[:, :2], centers - tri.transform[:, 2])
-    assert (np.abs(c[~thin] * 3 - 1) < 0.1).all()
-    assert (tri.find_simplex(centers[~thin]) >= 0).all()
-
-
 def test_duplicates(rng: np.random.Generator) -> None:
     p = np.repeat(rng.random((10, 2)), 2, axis=0)
     tri = ours.Delaunay(p)
@@ -184,6 +167,14 @@ def test_what_is_left_to_scipy(rng: np.random.Generator) -> None:
     with pytest.raises(ValueError, match="incompatible"), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         ours.Delaunay(p2, incremental=True, qhull_options="Qbb")
+
+
+def test_points_that_are_not_aligned(general: np.ndarray) -> None:
+    memory = np.zeros(1 + general.nbytes, dtype=np.uint8)
+    points = memory[1:].view(np.float64).reshape(-1, 2)
+    points[:] = general
+    assert not points.flags.aligned and ours.Delaunay(points).points.flags.aligned
+    assert np.array_equal(ours.Delaunay(points).equations, ours.Delaunay(general).equations)
 
 
 def test_flat_points() -> None:

@@ -46,8 +46,8 @@ BACKENDS = ["host", "opencl", "cuda"]
 # Headers from outside -> folders that may use them.
 OUTSIDE = {
     r"CGAL/": ["tests", "bench"],
-    r"CL/": ["backends/opencl", "kernels_cl", "tests"],
-    r"cuda": ["backends/cuda", "kernels_cuda", "common/portable", "tests", "examples"],
+    r"CL/": ["backends/opencl", "kernels_cl", "viewer/mesh", "tests"],
+    r"cuda": ["backends/cuda", "kernels_cuda", "common/portable", "viewer/mesh", "tests", "examples"],
     r"cub/|thrust/": ["backends/cuda", "kernels_cuda"],
     r"cairo|png|zlib": ["io", "tests"],
     r"fast_float/": ["apps", "io"],

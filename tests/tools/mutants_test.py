@@ -87,6 +87,17 @@ class Outcomes(InAFolder):
         self.assertEqual(self.outcome("echo '[==========] 0 tests from 0 test suites ran.'; echo '[  PASSED  ] 0 tests.'")[0], "empty")
         self.assertEqual(self.outcome("echo '[  SKIPPED ] A.B'; echo '[  PASSED  ] 0 tests.'")[0], "skipped")
 
+    def test_pytest(self):
+        self.assertEqual(mutants.of_pytest(0, "===== 2 passed, 1 skipped in 0.1s =====").kind, "passed")
+        self.assertEqual(mutants.of_pytest(0, "===== 1 skipped in 0.1s =====").kind, "skipped")
+        self.assertEqual(mutants.of_pytest(4, "ERROR: not found: test_x.py::test_y").kind, "empty")
+        self.assertEqual(mutants.of_pytest(5, "no tests ran").kind, "empty")
+        failed = "FAILED ../python/tests/test_x.py::test_y[host] - AssertionError"
+        self.assertEqual(tuple(mutants.of_pytest(1, failed)), ("failed", "test_x.py::test_y[host]"))
+        self.assertEqual(tuple(mutants.of_pytest(-11, "")), ("failed", "signal 11"))
+        self.assertEqual(tuple(mutants.of_pytest(None, "")), ("failed", "hung"))
+        self.assertEqual(mutants.targets_of("pytest test_x.py"), ["cadt_python"])
+
     def test_ctest(self):
         self.assertEqual(mutants.of_ctest(0, "100% tests passed").kind, "passed")
         self.assertEqual(mutants.of_ctest(8, "No tests were found!!!").kind, "empty")

@@ -9,14 +9,16 @@ using io::picture::Rgb;
 const Ramp& ramp_for(ColourBy colour) {
   static const Ramp angle{{0.0f, 0xa8323e}, {0.3f, 0xe08e5b}, {0.55f, 0xf1e2b3}, {1.0f, 0x7fb3a6}};
   static const Ramp order{{0.0f, 0x3b3a7a}, {0.3f, 0x3f86a8}, {0.6f, 0x9ec97f}, {0.85f, 0xf0d36b}, {1.0f, 0xd9694a}};
+  static const Ramp level{{0.0f, 0xf4e6c4}, {0.3f, 0xe3e8c4}, {0.55f, 0xb4d8bd}, {0.8f, 0x74b7bf}, {1.0f, 0x4a8cb8}};
   static const Ramp heat{{0.0f, 0xeef0ea}, {0.25f, 0xf2d9a0}, {0.55f, 0xe68a4f}, {0.8f, 0xb83a3f}, {1.0f, 0x5a1744}};
   switch (colour) {
     case ColourBy::angle:
       return angle;
     case ColourBy::height:
       return io::picture::terrain_ramp();
-    case ColourBy::order:
     case ColourBy::level:
+      return level;
+    case ColourBy::order:
       return order;
     case ColourBy::degree:
     case ColourBy::conflicts:

@@ -33,7 +33,7 @@ struct Frame {
 static_assert(offsetof(Frame, samples) == 48 && offsetof(Frame, background) == 112 && sizeof(Frame) == 176);
 
 enum Flag { shade = 1, fill = 2, logarithm = 4, points_alone = 8, fade = 16 };
-enum By { by_nothing, by_angle, by_area, by_order, by_point, by_triangle };
+enum By { by_nothing, by_angle, by_area, by_order, by_point, by_triangle, by_mean };
 
 By by_of(ColourBy colour) {
   switch (colour) {
@@ -47,8 +47,9 @@ By by_of(ColourBy colour) {
       return by_order;
     case ColourBy::height:
     case ColourBy::degree:
-    case ColourBy::level:
       return by_point;
+    case ColourBy::level:
+      return by_mean;
     case ColourBy::conflicts:
     case ColourBy::flips:
       return by_triangle;
@@ -215,9 +216,9 @@ void Renderer::make_room(const Camera& camera, int side) {
   grow(owners_, pixels * each * sizeof(std::uint32_t));
   grow(sums_, pixels * 4 * sizeof(std::uint32_t));
   grow(overlay_, pixels * sizeof(std::uint32_t));
-  owners_.fill(0, pixels * each * sizeof(std::uint32_t));
-  sums_.fill(0, pixels * 4 * sizeof(std::uint32_t));
-  overlay_.fill(0, pixels * sizeof(std::uint32_t));
+  clear_(owners_, pixels * each, 0);
+  clear_(sums_, pixels * 4, 0);
+  clear_(overlay_, pixels, 0);
   if (picture_.width() != camera.width() || picture_.height() != camera.height())
     picture_ = gl::Texture(camera.width(), camera.height());
   side_ = side;

@@ -11,6 +11,7 @@
 #include "viewer/draw/camera.hpp"
 #include "viewer/draw/mesh_buffers.hpp"
 #include "viewer/draw/style.hpp"
+#include "viewer/gl/fill.hpp"
 #include "viewer/gl/objects.hpp"
 
 #include <array>
@@ -72,6 +73,7 @@ class Renderer {
   void choose_ramp(ColourBy colour);
 
   gl::Program bounds_, cull_, blocks_, large_, resolve_, strokes_, discs_, sample_;
+  gl::Fill clear_;
   gl::Buffer frame_, values_, outside_, boxes_, seen_, commands_, owners_, sums_, large_list_, overlay_, segments_;
   gl::Texture picture_;
   gl::Name<gl::delete_texture> ramp_;

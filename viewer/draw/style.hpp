@@ -17,7 +17,7 @@ enum class ColourBy {
   order,      ///< place in the array of triangles
   height,     ///< of the points, with light from the upper left
   degree,     ///< number of triangles around each vertex
-  level,      ///< level of insertion of the points
+  level,      ///< level of insertion of the points, their mean
   conflicts,  ///< lost locks of each triangle, while it grew
   flips       ///< of the edges of each triangle, while it grew
 };

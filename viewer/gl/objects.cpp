@@ -12,30 +12,76 @@ void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
 void delete_program(GLuint id) { glDeleteProgram(id); }
 void delete_framebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
 
-Buffer::Buffer(std::size_t bytes) : bytes_(bytes) {
+void delete_memory(GLuint id) { glDeleteMemoryObjectsEXT(1, &id); }
+
+namespace {
+
+std::uint64_t next_serial() {
   static std::atomic<std::uint64_t> made{0};
-  serial_ = ++made;
+  return ++made;
+}
+
+void forget_errors() {
+  while (glGetError() != GL_NO_ERROR) {
+  }
+}
+
+}  // namespace
+
+Buffer::Buffer(std::size_t bytes) : bytes_(bytes), serial_(next_serial()) {
   GLuint id = 0;
   glCreateBuffers(1, &id);
   name_ = Name<delete_buffer>(id);
-  while (glGetError() != GL_NO_ERROR) {
-  }
+  forget_errors();
   // A buffer without bytes cannot be bound.
-  glNamedBufferData(id, static_cast<GLsizeiptr>(bytes == 0 ? 16 : bytes), nullptr, GL_DYNAMIC_COPY);
+  glNamedBufferStorage(id, static_cast<GLsizeiptr>(bytes == 0 ? 16 : bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
   if (glGetError() == GL_OUT_OF_MEMORY)
     throw OutOfMemory("the display's device has no room for a buffer of " + std::to_string(bytes) +
                           " bytes: draw fewer points, or close other programs that use it",
                       bytes, 0);
 }
 
+Buffer::Buffer(std::size_t bytes, int file) : bytes_(bytes), serial_(next_serial()) {
+  forget_errors();
+  GLuint id = 0;
+  glCreateMemoryObjectsEXT(1, &id);
+  memory_ = Name<delete_memory>(id);
+  const GLint dedicated = GL_TRUE;
+  glMemoryObjectParameterivEXT(id, GL_DEDICATED_MEMORY_OBJECT_EXT, &dedicated);
+  glImportMemoryFdEXT(id, bytes, GL_HANDLE_TYPE_OPAQUE_FD_EXT, file);
+  GLuint buffer = 0;
+  glCreateBuffers(1, &buffer);
+  name_ = Name<delete_buffer>(buffer);
+  glNamedBufferStorageMemEXT(buffer, static_cast<GLsizeiptr>(bytes), id, 0);
+  if (const GLenum code = glGetError(); code != GL_NO_ERROR)
+    throw DisplayError("OpenGL cannot use memory of another interface (error " + std::to_string(code) +
+                       "): update the driver");
+}
+
 void Buffer::write(std::span<const std::byte> data, std::size_t offset) {
-  if (!data.empty())
-    glNamedBufferSubData(name_.id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(data.size()), data.data());
+  if (data.empty()) return;
+  const auto bytes = static_cast<GLsizeiptr>(data.size());
+  if (memory_.id() == 0) {
+    glNamedBufferSubData(name_.id(), static_cast<GLintptr>(offset), bytes, data.data());
+    return;
+  }
+  Buffer staging(data.size());  // memory of another interface takes copies alone
+  staging.write(data);
+  glCopyNamedBufferSubData(staging.id(), name_.id(), 0, static_cast<GLintptr>(offset), bytes);
 }
 
 void Buffer::read(std::span<std::byte> data, std::size_t offset) const {
   if (data.empty()) return;
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  // NVIDIA's driver moves a buffer that is read to the memory of the host; and of memory that others write, too, it
+  // would give what it read before.
+  if (memory_.id() != 0 || data.size() < bytes_) {
+    const Buffer staging(data.size());
+    glCopyNamedBufferSubData(name_.id(), staging.id(), static_cast<GLintptr>(offset), 0,
+                             static_cast<GLsizeiptr>(data.size()));
+    staging.read(data, 0);
+    return;
+  }
   glGetNamedBufferSubData(name_.id(), static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(data.size()), data.data());
 }
 

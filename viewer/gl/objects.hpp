@@ -37,6 +37,7 @@ void delete_buffer(GLuint id);
 void delete_texture(GLuint id);
 void delete_program(GLuint id);
 void delete_framebuffer(GLuint id);
+void delete_memory(GLuint id);
 
 /// A buffer in the memory of the display's device.
 class Buffer {
@@ -44,6 +45,9 @@ class Buffer {
   Buffer() = default;
   /// Of so many bytes, which are undefined. \throws OutOfMemory
   explicit Buffer(std::size_t bytes);
+  /// In memory of another interface to the same device, which `file` stands for (GL_EXT_memory_object_fd). Takes the
+  /// file over. \throws DisplayError if the driver cannot do that
+  Buffer(std::size_t bytes, int file);
 
   [[nodiscard]] GLuint id() const noexcept { return name_.id(); }
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
@@ -60,12 +64,13 @@ class Buffer {
     read(std::as_writable_bytes(std::span(values)), offset);
     return values;
   }
-  /// Fills the first `bytes` bytes with a word.
+  /// Fills the first `bytes` bytes with a word. For a few: Fill is faster for many.
   void fill(GLuint word, std::size_t bytes);
   void bind(GLuint slot) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, slot, name_.id()); }
 
  private:
   void read(std::span<std::byte> data, std::size_t offset) const;
+  Name<delete_memory> memory_;  // goes after the buffer
   Name<delete_buffer> name_;
   std::size_t bytes_ = 0;
   std::uint64_t serial_ = 0;

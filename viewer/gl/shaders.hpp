@@ -6,6 +6,6 @@
 
 namespace cadt::viewer::shaders {
 
-extern const std::string scan;
+extern const std::string fill, scan;
 
 }  // namespace cadt::viewer::shaders

@@ -111,7 +111,7 @@ void LivePoints::step(double dt, Motion motion) {
       static_cast<float>(share_of_spacing * std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, n))));
   if (motion == Motion::particles) {
     if (pushes_.bytes() < n * bytes_of_push) pushes_ = gl::Buffer(n * bytes_of_push);
-    pushes_.fill(0, n * bytes_of_push);
+    fill_(pushes_, 2 * n, 0);
     use(push_, mesh_.triangle_count);
     glUniform1f(u_diameter, diameter);
     pushes_.bind(pushes);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "viewer/draw/mesh_buffers.hpp"
+#include "viewer/gl/fill.hpp"
 #include "viewer/gl/objects.hpp"
 #include "viewer/gl/scan.hpp"
 
@@ -58,6 +59,7 @@ class LivePoints {
   MeshBuffers& mesh_;
   Frame frame_;
   gl::Program spawn_, move_, push_, keep_, compact_, nearest_;
+  gl::Fill fill_;
   gl::Scan scan_;
   gl::Buffer velocities_, pushes_, places_, best_;
   double time_ = 0;

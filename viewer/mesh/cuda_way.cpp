@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// CUDA reads and writes the buffers of OpenGL: each is registered once and mapped for a call.
+// CUDA reads and writes the buffers of OpenGL: each is registered once and mapped for a call. Large ones are moved once
+// to memory with large pages.
 #include "viewer/mesh/way.hpp"
 
 #include "viewer/gl/context.hpp"
+#include "viewer/gl/errors.hpp"
 
 #ifdef CADT_VIEWER_CUDA
+
+#include "viewer/mesh/large_pages.hpp"
 
 #include <epoxy/gl.h>
 
@@ -13,9 +17,9 @@
 #include <cuda_gl_interop.h>
 #include <cuda_runtime.h>
 
-#include <array>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace cadt::viewer {
 namespace {
@@ -36,61 +40,97 @@ std::optional<int> device_of_display() {
   return std::nullopt;
 }
 
-/// A buffer of OpenGL's that CUDA knows.
-class Registered {
- public:
-  explicit Registered(unsigned flags) : flags_(flags) {}
-  ~Registered() { forget(); }
-  Registered(const Registered&) = delete;
-  Registered& operator=(const Registered&) = delete;
+constexpr std::size_t large = 64u << 20;  // bytes; below, small pages are as good (docs/lab)
 
-  cudaGraphicsResource_t resource_of(const gl::Buffer& buffer) {
-    if (serial_ != buffer.serial()) {
-      forget();
-      check(cudaGraphicsGLRegisterBuffer(&resource_, buffer.id(), flags_), "cudaGraphicsGLRegisterBuffer");
-      serial_ = buffer.serial();
+/// A buffer of OpenGL's that CUDA knows.
+class Known {
+ public:
+  explicit Known(unsigned flags) : flags_(flags) {}
+  ~Known() { forget(); }
+  Known(const Known&) = delete;
+  Known& operator=(const Known&) = delete;
+
+  /// The first `used` bytes are kept. `note` becomes the reason if a large buffer has to stay in small pages.
+  void know(gl::Buffer& buffer, std::size_t used, int device, std::string& note) {
+    if (serial_ == buffer.serial()) return;
+    forget();
+    if (buffer.bytes() >= large && note.empty()) {
+      try {
+        move(buffer, used, device);
+      } catch (const Error& error) {
+        note = std::string("large buffers stay in small pages: ") + error.what();
+      }
     }
-    return resource_;
+    if (pages_.memory() == nullptr)
+      check(cudaGraphicsGLRegisterBuffer(&resource_, buffer.id(), flags_), "cudaGraphicsGLRegisterBuffer");
+    serial_ = buffer.serial();
+  }
+  /// Null for one in large pages: it needs no mapping.
+  [[nodiscard]] cudaGraphicsResource_t resource() const noexcept { return resource_; }
+  /// \pre mapped, if there is a resource
+  [[nodiscard]] void* memory() const {
+    if (resource_ == nullptr) return pages_.memory();
+    void* found = nullptr;
+    std::size_t bytes = 0;
+    check(cudaGraphicsResourceGetMappedPointer(&found, &bytes, resource_), "cudaGraphicsResourceGetMappedPointer");
+    return found;
   }
 
  private:
+  void move(gl::Buffer& buffer, std::size_t used, int device) {
+    if (!epoxy_has_gl_extension("GL_EXT_memory_object_fd"))
+      throw DisplayError("the driver has no GL_EXT_memory_object_fd");
+    LargePages pages(device, buffer.bytes());
+    gl::Buffer moved(pages.bytes(), pages.take_file());
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    if (used != 0) glCopyNamedBufferSubData(buffer.id(), moved.id(), 0, 0, static_cast<GLsizeiptr>(used));
+    glFinish();
+    buffer = std::move(moved);
+    pages_ = std::move(pages);
+  }
   void forget() {
     if (resource_ != nullptr) cudaGraphicsUnregisterResource(std::exchange(resource_, nullptr));
+    pages_ = LargePages();
     serial_ = 0;
   }
   cudaGraphicsResource_t resource_ = nullptr;
+  LargePages pages_;
   unsigned flags_;
   std::uint64_t serial_ = 0;
 };
 
 /// OpenGL must not use the buffers while this lives. What it was told before comes first, what it is told after comes
-/// last: that is what mapping and unmapping do.
+/// last: that is what mapping and unmapping do; for memory that is not mapped both sides wait.
 class Mapped {
  public:
-  Mapped(std::array<cudaGraphicsResource_t, 2> resources, cudaStream_t stream)
-      : resources_(resources), stream_(stream) {
-    check(cudaGraphicsMapResources(2, resources_.data(), stream_), "cudaGraphicsMapResources");
+  Mapped(const Known& a, const Known& b, cudaStream_t stream) : stream_(stream) {
+    for (const Known* known : {&a, &b})
+      if (known->resource() != nullptr) resources_.push_back(known->resource());
+    waits_ = resources_.size() < 2;
+    if (waits_) glFinish();
+    if (!resources_.empty())
+      check(cudaGraphicsMapResources(static_cast<int>(resources_.size()), resources_.data(), stream_),
+            "cudaGraphicsMapResources");
   }
   ~Mapped() {
-    if (open_) (void)cudaGraphicsUnmapResources(2, resources_.data(), stream_);
+    if (open_) (void)give_back();
   }
   Mapped(const Mapped&) = delete;
   Mapped& operator=(const Mapped&) = delete;
-  void unmap() {
-    open_ = false;
-    check(cudaGraphicsUnmapResources(2, resources_.data(), stream_), "cudaGraphicsUnmapResources");
-  }
-  [[nodiscard]] void* memory(std::size_t k) const {
-    void* found = nullptr;
-    std::size_t bytes = 0;
-    check(cudaGraphicsResourceGetMappedPointer(&found, &bytes, resources_[k]), "cudaGraphicsResourceGetMappedPointer");
-    return found;
-  }
+  void unmap() { check(give_back(), "cudaGraphicsUnmapResources"); }
 
  private:
-  std::array<cudaGraphicsResource_t, 2> resources_;
+  cudaError_t give_back() {
+    open_ = false;
+    cudaError_t code = cudaSuccess;
+    if (!resources_.empty())
+      code = cudaGraphicsUnmapResources(static_cast<int>(resources_.size()), resources_.data(), stream_);
+    if (code == cudaSuccess && waits_) code = cudaStreamSynchronize(stream_);
+    return code;
+  }
+  std::vector<cudaGraphicsResource_t> resources_;
   cudaStream_t stream_;
-  bool open_ = true;
+  bool open_ = true, waits_ = false;
 };
 
 struct Stream {
@@ -112,9 +152,11 @@ class CudaWay final : public Way {
 
   std::size_t triangulate(MeshBuffers& mesh, Statistics* statistics) override {
     check(cudaSetDevice(device_), "cudaSetDevice");
-    Mapped mapped({points_.resource_of(mesh.points), triangles_.resource_of(mesh.triangles)}, stream_.handle);
-    const DevicePoints points{.x = mapped.memory(0), .size = mesh.point_count};
-    const DeviceArray triangles{mapped.memory(1), mesh.triangles.bytes() / sizeof(std::int32_t)};
+    points_.know(mesh.points, mesh.point_count * 2 * sizeof(double), device_, note_);
+    triangles_.know(mesh.triangles, 0, device_, note_);
+    Mapped mapped(points_, triangles_, stream_.handle);
+    const DevicePoints points{.x = points_.memory(), .size = mesh.point_count};
+    const DeviceArray triangles{triangles_.memory(), mesh.triangles.bytes() / sizeof(std::int32_t)};
     const Detail detail(triangulator_.options(), statistics != nullptr);
     std::size_t count = 0;
     if (statistics != nullptr) {
@@ -131,6 +173,7 @@ class CudaWay final : public Way {
     mapped.unmap();
     return count;
   }
+  std::string note() const override { return note_; }
 
  private:
   static Options on_stream(Options options, cudaStream_t stream) {
@@ -143,7 +186,8 @@ class CudaWay final : public Way {
   int device_;
   Stream stream_;
   Triangulator triangulator_;
-  Registered points_{cudaGraphicsRegisterFlagsReadOnly}, triangles_{cudaGraphicsRegisterFlagsWriteDiscard};
+  Known points_{cudaGraphicsRegisterFlagsReadOnly}, triangles_{cudaGraphicsRegisterFlagsWriteDiscard};
+  std::string note_;
 };
 
 }  // namespace

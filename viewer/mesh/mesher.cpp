@@ -71,6 +71,10 @@ Mesher::Mesher(const Options& chosen, Interop interop) {
 
 Mesher::~Mesher() = default;
 const DeviceInfo& Mesher::device() const noexcept { return way_->triangulator().device(); }
+std::string Mesher::reason() const {
+  const std::string note = way_->note();
+  return reason_.empty() || note.empty() ? reason_ + note : reason_ + "; " + note;
+}
 Options& Mesher::options() noexcept { return way_->triangulator().options(); }
 
 void Mesher::triangulate(MeshBuffers& mesh, Statistics* statistics) {

@@ -31,14 +31,16 @@ class Mesher {
   Mesher(const Options& options, Interop interop);
   ~Mesher();
 
-  /// The way that was chosen, never Interop::automatic, and why the faster ones were not; empty if the fastest was.
+  /// The way that was chosen, never Interop::automatic, and why it is not faster, known after the first triangulation;
+  /// empty if there is nothing to say.
   [[nodiscard]] Interop interop() const noexcept { return interop_; }
-  [[nodiscard]] const std::string& reason() const noexcept { return reason_; }
+  [[nodiscard]] std::string reason() const;
   [[nodiscard]] const DeviceInfo& device() const noexcept;
 
   /// Triangulates the points of `mesh` into its triangles. `mesh.triangle_count` and `bytes_through_host` are updated;
-  /// the caller tells the Renderer. With `statistics` the library counts its work, which takes 2 to 3 % longer.
-  /// \pre room for two triangles a point \throws what Triangulator::triangulate throws
+  /// the caller tells the Renderer. Large buffers may be replaced by others with the same contents. With `statistics`
+  /// the library counts its work, which takes 2 to 3 % longer. \pre room for two triangles a point \throws what
+  /// Triangulator::triangulate throws
   void triangulate(MeshBuffers& mesh, Statistics* statistics = nullptr);
   /// Order::fast unless changed; `statistics` is set by triangulate().
   [[nodiscard]] Options& options() noexcept;

@@ -40,6 +40,7 @@ F find(const char* name) {
 struct Functions {
   CADT_CL(clGetPlatformIDs);
   CADT_CL(clGetPlatformInfo);
+  CADT_CL(clGetDeviceIDs);
   CADT_CL(clGetDeviceInfo);
   CADT_CL(clGetExtensionFunctionAddressForPlatform);
   CADT_CL(clCreateContext);
@@ -80,6 +81,19 @@ std::string text_of(cl_device_id device, cl_device_info what) {
   if (cl().clGetDeviceInfo(device, what, size, text.data(), nullptr) != CL_SUCCESS) return {};
   text.pop_back();
   return text;
+}
+
+/// By the platform, or by a device of it.
+bool has_sharing(cl_platform_id platform) {
+  constexpr char name[] = "cl_khr_gl_sharing";
+  if (text_of(platform, CL_PLATFORM_EXTENSIONS).find(name) != std::string::npos) return true;
+  cl_uint count = 0;
+  if (cl().clGetDeviceIDs(platform, CL_DEVICE_TYPE_GPU, 0, nullptr, &count) != CL_SUCCESS) return false;
+  std::vector<cl_device_id> devices(count);
+  if (cl().clGetDeviceIDs(platform, CL_DEVICE_TYPE_GPU, count, devices.data(), nullptr) != CL_SUCCESS) return false;
+  for (cl_device_id device : devices)
+    if (text_of(device, CL_DEVICE_EXTENSIONS).find(name) != std::string::npos) return true;
+  return false;
 }
 
 /// The properties of a context that shares with the one of OpenGL that is current; empty if it is of another kind.
@@ -250,7 +264,7 @@ std::unique_ptr<Way> open_opencl(const Options& options, std::string& reason) {
   check(cl().clGetPlatformIDs(count, platforms.data(), nullptr), "clGetPlatformIDs");
   for (cl_platform_id platform : platforms) {
     const std::string name = text_of(platform, CL_PLATFORM_NAME);
-    if (text_of(platform, CL_PLATFORM_EXTENSIONS).find("cl_khr_gl_sharing") == std::string::npos) {
+    if (!has_sharing(platform)) {
       reason += (reason.empty() ? "" : ", ") + ("'" + name + "' has no cl_khr_gl_sharing");
       continue;
     }

@@ -18,6 +18,8 @@ class Way {
   [[nodiscard]] virtual Triangulator& triangulator() noexcept = 0;
   /// Triangulates into `mesh.triangles`; returns the number of triangles. With `statistics` the work is counted.
   virtual std::size_t triangulate(MeshBuffers& mesh, Statistics* statistics) = 0;
+  /// What is slower than it could be, and why; empty if nothing.
+  [[nodiscard]] virtual std::string note() const { return {}; }
 };
 
 /// Each is null where the way is not possible; `reason` then says why, in half a sentence. Errors of an open device are

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import Delaunay as _Triangulation
 
-from cadt.scipy import _geometry
+from cadt import _cadt
 from cadt.scipy._hull import HullFinder
 from cadt.scipy._plane import Plane
 
@@ -45,7 +45,8 @@ class Delaunay(Plane, _Triangulation):
     paraboloid_scale, paraboloid_shift : float
         Of the third coordinate, as Qhull chooses them.
     transform : (nsimplex, 3, 2) float64
-        To barycentric coordinates; NaN where the triangle is too thin for them.
+        To barycentric coordinates, with a relative error of a few eps in each number. NaN where the triangle is nearly
+        degenerate: its reciprocal condition number is below 1000 eps, as in SciPy.
     vertex_to_simplex : (npoints,) int32
         The lowest triangle of each point; of a duplicate that of the point that it equals.
     convex_hull : (nfaces, 2) int32
@@ -90,7 +91,7 @@ class Delaunay(Plane, _Triangulation):
 
     @cached_property
     def _paraboloid(self) -> tuple[float, float]:
-        return _geometry.paraboloid(self._points, "Qbb" in self._options, "Qz" in self._options)
+        return _cadt.paraboloid(self._points, "Qbb" in self._options, "Qz" in self._options)
 
     @property
     def paraboloid_scale(self) -> float:
@@ -110,7 +111,7 @@ class Delaunay(Plane, _Triangulation):
 
     @cached_property
     def equations(self) -> np.ndarray:
-        return _geometry.equations(self._points, self._mesh.simplices, *self._paraboloid)
+        return _cadt.equations(self._points, self._mesh._host_mesh, *self._paraboloid)
 
     @cached_property
     def coplanar(self) -> np.ndarray:
@@ -131,7 +132,7 @@ class Delaunay(Plane, _Triangulation):
     @property
     def transform(self) -> np.ndarray:
         if self._transform is None and self.mesh is not None:
-            self._transform = _geometry.transforms(self._points, self.mesh.simplices)
+            self._transform = _cadt.transforms(self._points, self.mesh._host_mesh)
         return super().transform
 
     @property

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import QhullError
 
 from cadt._errors import Error
+from cadt._points import contiguous
 
 # Options that ask for what cadt does anyway, or for how Qhull scales and reports.
 _OURS = frozenset(("Qbb", "Qc", "Qz", "Q12", "Qt", "Qx", "Q11", "Pp", "QJ"))
@@ -55,7 +56,7 @@ def as_doubles(points: Any) -> np.ndarray:
         points = np.asarray(points)
         if points.dtype.kind == "c":
             raise TypeError("points must be real numbers, not complex ones")
-    points = np.ascontiguousarray(points, dtype=np.double)
+    points = contiguous(points, np.double)
     if points.ndim != 2:
         raise ValueError("Input points array must have 2 dimensions.")
     return points

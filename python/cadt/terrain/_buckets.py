@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import concurrent.futures
+import itertools
 import math
+import os
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,20 +15,29 @@ import cadt
 
 from .cloud import Cloud
 
-PER_BUCKET = 150  # points on average: a ring of buckets around a tile of 300,000 points is a tenth of it
-MOST_BUCKETS = 65_000  # their numbers are sorted as 16-bit words, which NumPy does by radix
-PIECE = 1 << 20
+PER_BUCKET = 40  # points on average: a ring of buckets around a tile of 300,000 points is a twentieth of it
+MOST_BUCKETS = 1 << 18
+MOST_OF_SKETCH = 50_000
+PIECE = 1 << 20  # points sorted at a time: they fit in a cache, and several threads have work
+MOST_PIECES = 32
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 
-class Buckets:
-    """A cloud in the order of its buckets, row by row from the lower left; within a bucket the order is as before."""
+def cores() -> int:
+    """Those that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
-    def __init__(self, cloud: Cloud, per_bucket: int = PER_BUCKET) -> None:
+
+class Buckets:
+    """A cloud in pieces, each in the order of the buckets, row by row from the lower left; within a bucket of a piece the
+    order is as before. The cloud's own arrays are sorted, so that the points are there once."""
+
+    def __init__(self, cloud: Cloud, per_bucket: int = PER_BUCKET, piece: int = PIECE, threads: int = 0) -> None:
         n = len(cloud)
-        self.x0, self.y0, x1, y1 = cloud.bounds
-        width, height = max(x1 - self.x0, 1e-300), max(y1 - self.y0, 1e-300)
+        self.xy, self.z = np.ascontiguousarray(cloud.xy), cloud.z
+        self.x0, self.y0, self.x1, self.y1 = cloud.bounds
+        width, height = max(self.x1 - self.x0, 1e-300), max(self.y1 - self.y0, 1e-300)
         count = min(max(n // per_bucket, 1), MOST_BUCKETS)
         self.side = max(math.sqrt(width * height / count), width / 4000, height / 4000)
         self.nx, self.ny = (max(1, math.ceil(length / self.side)) for length in (width, height))
@@ -35,36 +47,45 @@ class Buckets:
         # A bucket's points lie in its square but for the rounding of the division.
         self.slack = 1e-9 * self.side + 8 * float(np.spacing(max(map(abs, cloud.bounds))))
 
-        number = np.empty(n, np.uint16)
-        for i in range(0, n, PIECE):
-            column, row = self.place(cloud.xy[i : i + PIECE])
-            number[i : i + PIECE] = row * self.nx + column
-        order = np.argsort(number, kind="stable").astype(np.int32)
-        self.begin = np.concatenate(([0], np.cumsum(np.bincount(number, minlength=self.nx * self.ny))))
-        del number
-        # Old and new points stand side by side once; pieces, because NumPy makes 64-bit words of the order's.
-        pairs = np.ascontiguousarray(cloud.xy).view(np.complex128)[
-            :, 0
-        ]  # one number a point is gathered sooner than two
-        sorted_pairs, self.z = np.empty(n, np.complex128), np.empty(n)
-        for i in range(0, n, PIECE):
-            part = order[i : i + PIECE]
-            sorted_pairs[i : i + PIECE], self.z[i : i + PIECE] = pairs[part], cloud.z[part]
-        del order
-        self.xy = sorted_pairs.view(np.float64).reshape(-1, 2)
-        self.filled: Mask = (np.diff(self.begin) > 0).reshape(self.ny, self.nx)
+        size = max(piece, -(-n // MOST_PIECES))
+        # Where bucket k of piece i begins, and where it ends: begin[i, k] and begin[i, k + 1].
+        self.begin = np.empty((-(-n // size), self.nx * self.ny + 1), np.int32)
+        with concurrent.futures.ThreadPoolExecutor(threads or cores()) as pool:
+            list(pool.map(self._sort, range(0, n, size), itertools.repeat(size), self.begin))
+        counts = np.diff(self.begin)
+        in_bucket = counts.sum(axis=0)
+        self._most = int(in_bucket.max())
+        self.filled: Mask = (in_bucket > 0).reshape(self.ny, self.nx)
         # Points in the buckets left of and below a corner.
         self._sums = np.zeros((self.ny + 1, self.nx + 1), np.int64)
-        self._sums[1:, 1:] = np.diff(self.begin).reshape(self.ny, self.nx).cumsum(axis=0).cumsum(axis=1)
+        self._sums[1:, 1:] = in_bucket.reshape(self.ny, self.nx).cumsum(axis=0).cumsum(axis=1)
 
-        self.first_of_each = self.begin[:-1][self.filled.ravel()]
-        self.sketch = cadt.Delaunay(self.xy[self.first_of_each], backend="host", statistics="none")
+        full = np.flatnonzero(in_bucket)
+        full = full[:: -(-len(full) // MOST_OF_SKETCH)]
+        self.sketch_points = self.xy[self.begin[(counts[:, full] > 0).argmax(axis=0), full]]
+        self.sketch = cadt.Delaunay(self.sketch_points, backend="host", statistics="none")
         self.hull = self._hull()
+
+    def _sort(self, first: int, size: int, begin: NDArray[np.int32]) -> None:
+        xy, z = self.xy[first : first + size], self.z[first : first + size]
+        column, row = self.place(xy)
+        number = row * self.nx + column
+        begin[0] = first
+        np.cumsum(np.bincount(number, minlength=self.nx * self.ny), out=begin[1:])
+        begin[1:] += first
+        # Numbers of buckets with those of points below them: NumPy sorts words sooner than it sorts indices by words.
+        bits = size.bit_length()
+        number <<= bits
+        number += np.arange(len(z))
+        number.sort()
+        number &= (1 << bits) - 1
+        pairs = xy.view(np.complex128)[:, 0]  # one number a point is gathered sooner than two
+        pairs[:], z[:] = pairs[number], z[number]
 
     @property
     def useful(self) -> bool:
         """Whether tiles are smaller than the whole: not if nearly all points lie in a few buckets, as with an outlier."""
-        return self.sketch.n_triangles > 0 and 16 * int(np.diff(self.begin).max()) < len(self.z)
+        return self.sketch.n_triangles > 0 and 16 * self._most < len(self.z)
 
     def place(self, xy: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Column and row of each point's bucket; the nearest one for those outside."""
@@ -73,22 +94,16 @@ class Buckets:
         return column, row
 
     def _hull(self) -> NDArray[np.int64]:
-        """The vertices of the convex hull of all points. A bucket whose square lies in the hull of the sketch has none but
-        what the sketch has."""
-        rows, columns = np.nonzero(self.filled)
-        deep = np.ones(len(rows), bool)
-        if self.sketch.n_triangles == 0:
-            deep[:] = False
-        else:
-            for right in (0, 1):
-                for up in (0, 1):
-                    corner = np.empty((len(rows), 2))
-                    corner[:, 0] = self.x0 + (columns + right) * self.side + (2 * right - 1) * self.slack
-                    corner[:, 1] = self.y0 + (rows + up) * self.side + (2 * up - 1) * self.slack
-                    deep &= np.asarray(self.sketch.within_hull(corner), bool)
-        border = np.zeros((self.ny, self.nx), bool)
-        border[rows[~deep], columns[~deep]] = True
-        candidates = np.concatenate((self.of_mask(border), self.first_of_each))
+        """The vertices of the convex hull of all points. A bucket deep in the hull of the sketch has none."""
+        inside: Mask = np.zeros((self.ny + 1, self.nx + 1), bool)
+        if self.sketch.n_triangles:
+            x, y = self.x0 + np.arange(self.nx + 1) * self.side, self.y0 + np.arange(self.ny + 1) * self.side
+            corners = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+            inside = np.asarray(self.sketch.within_hull(corners), bool).reshape(inside.shape)
+        # With a ring of buckets around it, so that rounding is harmless.
+        deep = np.zeros_like(self.filled)
+        deep[1:-1, 1:-1] = inside[:-3, :-3] & inside[:-3, 3:] & inside[3:, :-3] & inside[3:, 3:]
+        candidates = self.of_mask(self.filled & ~deep)
         mesh = cadt.Delaunay(self.xy[candidates], backend="host", statistics="none")
         return np.unique(candidates[np.asarray(mesh.hull)]) if mesh.n_triangles else np.empty(0, np.int64)
 
@@ -100,11 +115,12 @@ class Buckets:
     def of_rectangle(self, x0: int, y0: int, x1: int, y1: int) -> tuple[Floats, Floats]:
         """Coordinates and values of the points in a rectangle of buckets, and of the hull's vertices, in their order."""
         rows = np.arange(y0, y1) * self.nx
-        ends = np.column_stack((self.begin[rows + x0], self.begin[rows + x1]))
+        ends = np.column_stack((self.begin[:, rows + x0].ravel(), self.begin[:, rows + x1].ravel()))
         run = np.searchsorted(ends[:, 0], self.hull, side="right") - 1
         others = self.hull[(run < 0) | (self.hull >= ends[run, 1])]
         ends = np.concatenate((ends, np.column_stack((others, others + 1))))
-        ends = ends[np.argsort(ends[:, 0], kind="stable")].tolist()
+        ends = ends[ends[:, 0] < ends[:, 1]]
+        ends = ends[np.argsort(ends[:, 0])].tolist()
         return np.concatenate([self.xy[a:b] for a, b in ends]), np.concatenate([self.z[a:b] for a, b in ends])
 
     def of_buckets(self, mask: Mask) -> NDArray[np.int64]:
@@ -114,9 +130,10 @@ class Buckets:
     def of_mask(self, mask: Mask) -> NDArray[np.int64]:
         """The points in the buckets of a mask, ascending."""
         numbers = np.flatnonzero(mask)
-        length = self.begin[numbers + 1] - self.begin[numbers]
-        offset = np.repeat(self.begin[numbers] - np.concatenate(([0], np.cumsum(length)[:-1])), length)
-        return np.arange(length.sum()) + offset
+        first = self.begin[:, numbers].ravel()
+        length = self.begin[:, numbers + 1].ravel() - first
+        offset = np.repeat(first - (length.cumsum() - length), length)
+        return np.arange(len(offset)) + offset
 
     def reached(self, center: Floats, radius: Floats, of: Mask) -> tuple[NDArray[np.int64], Mask]:
         """How many buckets of the mask `of` each disc reaches, and which buckets are reached at all."""
@@ -126,8 +143,8 @@ class Buckets:
         sums[:, 1:] = of.cumsum(axis=1)
         counts = np.zeros(len(radius), np.int64)
         change = np.zeros((self.ny, self.nx + 1), np.int64)
-        for i in range(0, len(radius), 4096):
-            c, r = center[i : i + 4096], radius[i : i + 4096]
+        for i in range(0, len(radius), 1024):
+            c, r = center[i : i + 1024], radius[i : i + 1024]
             below, above = edge[None, :-1] - c[:, 1:], c[:, 1:] - edge[None, 1:]
             near = np.maximum(np.maximum(below, above), 0)
             with np.errstate(invalid="ignore", over="ignore"):
@@ -139,7 +156,7 @@ class Buckets:
             k, row = np.nonzero(touched)
             a = np.clip(np.floor(left[k, row]), 0, self.nx - 1).astype(np.int64)
             b = np.clip(np.floor(right[k, row]), 0, self.nx - 1).astype(np.int64) + 1
-            counts[i : i + 4096] = np.bincount(k, sums[row, b] - sums[row, a], minlength=len(r)).astype(np.int64)
+            counts[i : i + 1024] = np.bincount(k, sums[row, b] - sums[row, a], minlength=len(r)).astype(np.int64)
             np.add.at(change, (row, a), 1)
             np.add.at(change, (row, b), -1)
         return counts, of & (change.cumsum(axis=1)[:, :-1] > 0)

@@ -13,7 +13,6 @@ from __future__ import annotations
 import concurrent.futures
 import dataclasses
 import math
-import os
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -21,18 +20,13 @@ from numpy.typing import NDArray
 
 import cadt
 
-from ._buckets import Buckets, Floats, Mask
+from ._buckets import Buckets, Floats, Mask, cores
 from ._mesh import rasterize
 from .grid import Grid
 
-PER_TILE = 300_000  # points: the mesh and its queries fit in the caches of one core
+PER_TILE = 150_000  # points: the mesh and its queries fit in the caches of one core
 MOST_CELLS = 1 << 21  # of a tile
 EPS = float(np.finfo(float).eps)
-
-
-def cores() -> int:
-    """Those that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @dataclasses.dataclass(frozen=True)
@@ -43,6 +37,19 @@ class _Rect:
     r1: int
     c0: int
     c1: int
+
+
+@dataclasses.dataclass
+class _Strip:
+    """Rows of cells from `first` on, and the jobs that fill them."""
+
+    first: int
+    cells: Floats
+    unsure: Mask = dataclasses.field(init=False)  # cells that a tile alone does not settle
+    work: list[concurrent.futures.Future[None]] = dataclasses.field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.unsure = np.zeros(self.cells.shape, bool)
 
 
 class TiledRaster:
@@ -67,30 +74,50 @@ class TiledRaster:
         self.order = "fast" if max_edge is None else "canonical"
 
     def rows(self) -> Iterator[Floats]:
-        side = (
-            math.sqrt(self.per_tile / max(len(self.points.z), 1) * self.points.nx * self.points.ny) * self.points.side
-        )
-        high = int(min(max(side / self.grid.dy, 1), self.grid.rows, max(MOST_CELLS / self.grid.columns, 512)))
         with concurrent.futures.ThreadPoolExecutor(self.threads) as pool:
-            for first in range(0, self.grid.rows, high):
-                last = min(first + high, self.grid.rows)
-                cells = np.full((last - first, self.grid.columns), np.nan)
-                unsure = np.zeros(cells.shape, bool)
-                tiles = list(self._split(_Rect(first, last, 0, self.grid.columns)))
-                work = [pool.submit(self._tile, tile, cells, unsure, first) for tile in tiles]
-                try:
-                    for done, job in enumerate(concurrent.futures.as_completed(work)):
-                        job.result()
-                        if self.progress is not None:
-                            self.progress((first + (last - first) * (done + 1) / len(work)) / self.grid.rows)
-                except BaseException:
-                    for job in work:
-                        job.cancel()
-                    raise
-                self._settle(cells, unsure, first)
-                if self.fill:
-                    self._fill(cells, first)
-                yield cells
+            ahead: _Strip | None = None  # so that all threads have work while a strip ends
+            try:
+                for strip in self._strips(pool):
+                    if ahead is not None:
+                        yield self._finished(ahead)
+                    ahead = strip
+                if ahead is not None:
+                    yield self._finished(ahead)
+            finally:
+                pool.shutdown(cancel_futures=True)
+
+    def _strips(self, pool: concurrent.futures.Executor) -> Iterator[_Strip]:
+        grid, points = self.grid, self.points
+        side = math.sqrt(self.per_tile / max(len(points.z), 1) * points.nx * points.ny) * points.side
+        high = int(min(max(side / grid.dy, 1), grid.rows, max(MOST_CELLS / grid.columns, 512)))
+        first = 0
+        while first < grid.rows:
+            last = min(first + high, grid.rows)
+            if last < grid.rows:
+                last = self._near_border(last, first, grid.rows, (grid.y1 - points.y0) / grid.dy, points.side / grid.dy)
+            strip = _Strip(first, np.full((last - first, grid.columns), np.nan))
+            for tile in self._split(_Rect(first, last, 0, grid.columns)):
+                strip.work.append(pool.submit(self._tile, tile, strip))
+            yield strip
+            first = last
+
+    def _finished(self, strip: _Strip) -> Floats:
+        rows = self.grid.rows
+        for done, job in enumerate(concurrent.futures.as_completed(strip.work)):
+            job.result()
+            if self.progress is not None:
+                self.progress((strip.first + len(strip.cells) * (done + 1) / len(strip.work)) / rows)
+        self._settle(strip)
+        if self.fill:
+            self._fill(strip.cells, strip.first)
+        return strip.cells
+
+    @staticmethod
+    def _near_border(cell: int, first: int, last: int, origin: float, side: float) -> int:
+        """Where cells from `first` to `last` are cut near `cell`: if there is one, at a border of buckets, so that both
+        sides need fewer of them. Borders are `side` cells apart; one is at `origin`."""
+        border = math.ceil(origin + round((cell - origin) / side) * side - 0.5)
+        return border if first < border < last and 2 * abs(border - cell) < cell - first else cell
 
     def _centers(self, row: NDArray[np.int64], column: NDArray[np.int64]) -> Floats:
         grid = self.grid
@@ -109,57 +136,70 @@ class TiledRaster:
         )
 
     def _split(self, tile: _Rect) -> Iterator[_Rect]:
+        grid, points = self.grid, self.points
         rows, columns = tile.r1 - tile.r0, tile.c1 - tile.c0
         small = self.points.count(*self._buckets_of(tile)) <= 2 * self.per_tile and rows * columns <= MOST_CELLS
         if small or rows * columns == 1:
             yield tile
-        elif columns * self.grid.dx >= rows * self.grid.dy and columns > 1 or rows == 1:
+        elif columns * grid.dx >= rows * grid.dy and columns > 1 or rows == 1:
             half = tile.c0 + columns // 2
+            half = self._near_border(half, tile.c0, tile.c1, (points.x0 - grid.x0) / grid.dx, points.side / grid.dx)
             yield from self._split(_Rect(tile.r0, tile.r1, tile.c0, half))
             yield from self._split(_Rect(tile.r0, tile.r1, half, tile.c1))
         else:
             half = tile.r0 + rows // 2
+            half = self._near_border(half, tile.r0, tile.r1, (grid.y1 - points.y0) / grid.dy, points.side / grid.dy)
             yield from self._split(_Rect(tile.r0, half, tile.c0, tile.c1))
             yield from self._split(_Rect(half, tile.r1, tile.c0, tile.c1))
 
     def _mesh(self, xy: Floats, order: str, threads: int) -> cadt.Delaunay:
         return cadt.Delaunay(xy, backend="host", threads=threads, statistics="none", order=order)
 
-    def _tile(self, tile: _Rect, cells: Floats, unsure: Mask, first: int) -> None:
+    def _tile(self, tile: _Rect, strip: _Strip) -> None:
         """Fills the cells of a tile, and marks those that points left out may concern."""
         points, grid = self.points, self.grid
         x0, y0, x1, y1 = self._buckets_of(tile)
         xy, z = points.of_rectangle(x0, y0, x1, y1)
         mesh = self._mesh(xy, self.order, 1)
-        place = np.s_[tile.r0 - first : tile.r1 - first, tile.c0 : tile.c1]
-        left, right = grid.x0 + tile.c0 * grid.dx, grid.x0 + tile.c1 * grid.dx
-        bottom, top = grid.y1 - tile.r1 * grid.dy, grid.y1 - tile.r0 * grid.dy
+        place = np.s_[tile.r0 - strip.first : tile.r1 - strip.first, tile.c0 : tile.c1]
+        left, top = grid.x0 + tile.c0 * grid.dx, grid.y1 - tile.r0 * grid.dy
         part = Grid(left, top, grid.dx, grid.dy, tile.c1 - tile.c0, tile.r1 - tile.r0)
-        cells[place] = rasterize(mesh, z, part, max_edge=self.max_edge)
-        # The disc of a triangle that reaches cells as well as points that were left out is at least as large as half of
-        # what lies between them.
+        strip.cells[place] = rasterize(mesh, z, part, max_edge=self.max_edge)
         taken = (
             -math.inf if x0 == 0 else points.x0 + x0 * points.side + points.slack,
             -math.inf if y0 == 0 else points.y0 + y0 * points.side + points.slack,
             math.inf if x1 == points.nx else points.x0 + x1 * points.side - points.slack,
             math.inf if y1 == points.ny else points.y0 + y1 * points.side - points.slack,
         )
-        dx, dy = grid.dx / 2, grid.dy / 2  # only the centres of cells count
-        gap = min(left + dx - taken[0], bottom + dy - taken[1], taken[2] - right + dx, taken[3] - top + dy) / 2
-        center = np.asarray(mesh.circumcenters())
-        corners = np.asarray(mesh.simplices)
-        off = (center.view(np.complex128) - xy.view(np.complex128)[corners[:, 0]])[:, 0]
-        square = np.square(off.real) + np.square(off.imag)
-        large = np.flatnonzero(~(square < (0.99 * gap) ** 2)) if gap > 0 else np.arange(len(corners))
-        c, r = discs(xy, corners[large])
+        # The triangles whose discs hold a point are connected, and the one that it lies in is among them; of a point that
+        # was left out, this one has a corner beyond what was taken.
+        corners, neighbors = np.asarray(mesh.simplices), np.asarray(mesh.neighbors)
+        x, y = xy[:, 0], xy[:, 1]
+        beyond = (x < taken[0]) | (y < taken[1]) | (x > taken[2]) | (y > taken[3])
+        front = np.unique(np.flatnonzero(beyond[corners.ravel()]) // 3)
+        seen = np.zeros(len(corners) + 1, bool)
+        seen[-1] = True  # -1: no neighbour
+        while len(front):
+            seen[front] = True
+            center, radius = discs(xy, corners[front])
+            reaches = self._reach(center, radius, taken)
+            self._mark(strip.unsure[place], tile, xy[corners[front[reaches]]], center[reaches], radius[reaches])
+            front = np.unique(neighbors[front[reaches]])
+            front = front[~seen[front]]
+
+    def _reach(self, center: Floats, radius: Floats, taken: tuple[float, float, float, float]) -> Mask:
+        """Which discs reach beyond what was taken, within the box of all points."""
+        points = self.points
+        x, y = center.T
         with np.errstate(invalid="ignore"):
-            within = (
-                (c[:, 0] - r >= taken[0])
-                & (c[:, 1] - r >= taken[1])
-                & (c[:, 0] + r <= taken[2])
-                & (c[:, 1] + r <= taken[3])
-            )
-        self._mark(unsure[place], tile, xy[corners[large[~within]]], c[~within], r[~within])
+            far_x = np.maximum(np.maximum(points.x0 - x, x - points.x1), 0)
+            far_y = np.maximum(np.maximum(points.y0 - y, y - points.y1), 0)
+            # Half of what the box leaves of a disc: the radius is large enough for the rounding here, too.
+            half_x = np.sqrt((radius - far_y) * (radius + far_y)) * (1 + 4 * EPS)
+            half_y = np.sqrt((radius - far_x) * (radius + far_x)) * (1 + 4 * EPS)
+            within = (x - half_x >= taken[0]) & (y - half_y >= taken[1])
+            within &= (x + half_x <= taken[2]) & (y + half_y <= taken[3])
+        return ~within
 
     def _mark(self, unsure: Mask, tile: _Rect, corner: Floats, center: Floats, radius: Floats) -> None:
         """Marks the cells whose centres are in the discs and in the boxes of their triangles."""
@@ -192,17 +232,17 @@ class TiledRaster:
         np.add.at(change, (row - tile.r0, b), -1)
         unsure |= change.cumsum(axis=1)[:, :-1] > 0
 
-    def _settle(self, cells: Floats, unsure: Mask, first: int) -> None:
+    def _settle(self, strip: _Strip) -> None:
         """Does the marked cells again, with more and more points."""
-        points = self.points
-        row, column = np.nonzero(unsure)
+        points, cells, first = self.points, strip.cells, strip.first
+        row, column = np.nonzero(strip.unsure)
         if len(row) == 0:
             return
         self.again += len(row)
         where = self._centers(row + first, column)
         known = np.zeros_like(points.filled)
-        for right in range(-2, 3):
-            for up in range(-2, 3):
+        for right in (-1, 0, 1):
+            for up in (-1, 0, 1):
                 known[tuple(reversed(points.place(where + [right * points.side, up * points.side])))] = True
         known &= points.filled
         while len(row):
@@ -231,7 +271,7 @@ class TiledRaster:
         for i in range(0, len(row), 1 << 18):
             r, c = row[i : i + (1 << 18)], column[i : i + (1 << 18)]
             where = self._centers(r + first, c)
-            near = points.xy[points.first_of_each[points.sketch.nearest_vertex(where)]]
+            near = points.sketch_points[points.sketch.nearest_vertex(where)]
             distance = np.hypot(*(where - near).T) * (1 + 8 * EPS)
             chosen = points.of_buckets(points.reached(where, distance, points.filled)[1])
             mesh = self._mesh(points.xy[chosen], "canonical", self.threads)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import pyproj
 
 BLOCK = 512  # side of a tile of the file
-CACHE = 64 << 20  # bytes of decoded tiles that GDAL keeps
+CACHE = 32 << 20  # bytes of decoded tiles that GDAL keeps
 
 
 def check_nodata(nodata: float, dtype: str) -> None:
@@ -105,8 +105,10 @@ def open_cog(
         "BIGTIFF": "IF_SAFER",
     }
     workers = threads or os.cpu_count() or 1
+    # Overviews are averaged by all threads, and are written without compression before the file is.
+    settings = {"GDAL_CACHEMAX": CACHE, "GDAL_NUM_THREADS": workers, "COG_TMP_COMPRESSION": "NONE"}
     try:
-        with complete_file(path) as target, rasterio.Env(GDAL_CACHEMAX=CACHE):
+        with complete_file(path) as target, rasterio.Env(**settings):
             plain = target + ".rows.tif"
             with rasterio.open(plain, "w", **profile) as raster:
                 rows = Rows(path, grid, raster, nodata)
@@ -118,6 +120,7 @@ def open_cog(
                 target,
                 driver="COG",
                 COMPRESS="DEFLATE",
+                LEVEL=1,  # 6 takes twice as long for files that are 1 to 3 % smaller
                 PREDICTOR="YES",  # of floating point: bytes of equal weight stand together
                 BLOCKSIZE=BLOCK,
                 BIGTIFF="IF_SAFER",

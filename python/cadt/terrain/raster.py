@@ -92,8 +92,8 @@ def raster_command(options: argparse.Namespace, line: ProgressLine) -> dict[str,
         options.output, grid, crs, nodata=options.nodata, dtype=options.dtype, threads=options.threads
     ) as rows:
         line.step("sorting")
-        points = Buckets(cloud)
-        del cloud  # it is there once more, in another order
+        points = Buckets(cloud, threads=options.threads)
+        del cloud  # its arrays are those of the buckets now
         device = "host, by tiles"
         if options.method == "linear" and points.useful and on_host(options, n):
             if len(points.hull) == 0:

@@ -166,7 +166,7 @@ def test_tiles_give_the_raster_of_the_whole(name, max_edge, fill):
         terrain.grid_of(cloud, size, (x0 - 20 * size, y0 + 5 * size, x0 + 60 * size, y1 + 9 * size)),
         Grid(x0, y1, 16.0, 8.0, 7, 5),
     ):
-        points = Buckets(cloud, per_bucket=9)
+        points = Buckets(cloud, per_bucket=9, piece=1000)
         mesh = cadt.Delaunay(points.xy)
         whole = rasterize(mesh, points.z, grid, max_edge=max_edge)
         if fill:
@@ -181,14 +181,18 @@ def test_tiles_give_the_raster_of_the_whole(name, max_edge, fill):
     assert name not in ("strips", "ring", "lake") or tiled.again > 0, "no cell needed points of other tiles"
 
 
-def test_buckets_keep_the_order_and_find_the_hull():
+@pytest.mark.parametrize("piece", [700, 1 << 20])
+def test_buckets_keep_the_order_and_find_the_hull(piece):
     xy = np.random.default_rng(1).normal(0, 10, (5000, 2)).round(2)
-    points = Buckets(terrain.Cloud(xy, np.arange(5000.0), None), per_bucket=20)
+    points = Buckets(terrain.Cloud(xy.copy(), np.arange(5000.0), None), per_bucket=20, piece=piece)
     assert np.array_equal(xy[points.z.astype(int)], points.xy)
-    for a, b in zip(points.begin[:-1], points.begin[1:], strict=True):
-        assert (np.diff(points.z[a:b]) > 0).all()
+    column, row = points.place(points.xy)
+    for k, (begin, end) in enumerate(zip(points.begin[:, :-1].T, points.begin[:, 1:].T, strict=True)):
+        for a, b in zip(begin, end, strict=True):
+            assert (np.diff(points.z[a:b]) > 0).all() and (row[a:b] * points.nx + column[a:b] == k).all()
+    assert len(points.begin) == -(-5000 // piece) and points.begin[0, 0] == 0 and points.begin[-1, -1] == 5000
     hull = set(map(tuple, xy[cadt.Delaunay(xy).hull]))
-    assert hull <= set(map(tuple, points.xy[points.hull]))
+    assert hull == set(map(tuple, points.xy[points.hull]))
     rows = np.zeros_like(points.filled)
     rows[2:5, 1:9] = True
     rectangle, z = points.of_rectangle(1, 2, 9, 5)

@@ -306,9 +306,10 @@ TEST_P(Snapshots, TellWhereLocksAreLost) {
     EXPECT_LE(sum(snapshot.lost_locks), snapshot.statistics.lock_failures);
     if (snapshot.complete) lost += sum(snapshot.lost_locks);
   };
+  EXPECT_TRUE(triangulate(Reals(xy), options).statistics().certified);  // PoCL compiles kernels
   // On a busy machine threads hardly ever meet.
   const auto start = std::chrono::steady_clock::now();
-  while (lost == 0 && std::chrono::steady_clock::now() - start < std::chrono::seconds(60))
+  while (lost == 0 && std::chrono::steady_clock::now() - start < std::chrono::seconds(40))
     EXPECT_TRUE(triangulate(Reals(xy), options).statistics().certified);
   EXPECT_GT(lost, 0u);
 }

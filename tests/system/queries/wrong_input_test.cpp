@@ -133,8 +133,11 @@ TEST_P(WrongInput, StopEndsACall) {
 
 TEST_P(WrongInput, LittleMemoryIsRefused) {
   Options options = GetParam().options();
-  options.max_memory = 1000;
+  options.max_memory = 4 * xy.size() / 2 - 1;  // a word of each point is needed at once
   EXPECT_THROW(MeshQueries(std::span<const double>(xy), mesh, options), OutOfMemory);
+  options.max_memory = 1000;  // the first queries need more
+  EXPECT_THROW(MeshQueries(std::span<const double>(xy), mesh, options).locate(std::span<const double>(xy)),
+               OutOfMemory);
 }
 
 CADT_ON_MAIN_BACKENDS(WrongInput);

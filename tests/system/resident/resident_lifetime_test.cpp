@@ -3,6 +3,7 @@
 #include "tests/support/portable.hpp"
 #include "tests/system/resident/resident.hpp"
 
+#include <numeric>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -33,6 +34,30 @@ TEST_P(LifetimeOnTheHost, ResultOutlivesATriangulatorWithoutQueue) {
     mesh = Triangulator(own).triangulate(upload(first.xy));
   }
   expect_same(*memory, mesh, first.mesh);
+}
+
+/// Of Triangulator::allocate, for results of queries.
+TEST_P(ResidentLifetime, MemoryOutlivesTheTriangulator) {
+  std::optional<Triangulator> triangulator(options());
+  EXPECT_EQ(triangulator->allocate(0), nullptr);
+  const DevicePoints points = upload(first.xy);
+  const DeviceTriangulation mesh = triangulator->triangulate(points);
+  const std::size_t words = first.size();
+  const std::shared_ptr<void> found = triangulator->allocate(4 * words), other = triangulator->allocate(4 * words);
+  EXPECT_NE(found.get(), other.get());
+  {
+    MeshQueries queries(*triangulator, points, mesh);
+    EXPECT_EQ(queries.nearest_vertices(points, 1, {found.get(), words}), words);
+    EXPECT_EQ(queries.nearest_vertices(points, 1, {other.get(), words}), words);
+  }
+  std::vector<std::int32_t> themselves(words);
+  std::iota(themselves.begin(), themselves.end(), 0);
+  EXPECT_EQ(memory->download<std::int32_t>(found.get(), words), themselves);
+  triangulator->options().max_memory = 1;
+  EXPECT_THROW(static_cast<void>(triangulator->triangulate(points)), OutOfMemory);
+  EXPECT_THROW(static_cast<void>(triangulator->allocate(4 * words)), OutOfMemory);
+  triangulator.reset();
+  EXPECT_EQ(memory->download<std::int32_t>(other.get(), words), themselves);
 }
 
 TEST_P(ResidentLifetime, TwoResultsAtATime) {

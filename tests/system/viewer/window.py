@@ -106,8 +106,9 @@ class WindowTest(unittest.TestCase):
 
     def view(self, *arguments):
         """Opens the window and gives it the keyboard."""
+        more = dict(setting.split("=", 1) for setting in os.environ.get("CADT_VIEW_ENVIRONMENT", "").split(";") if setting)
         self.process = subprocess.Popen([PROGRAM, "view", "--log", "--backend", "host", *map(str, arguments)], cwd=self.folder,
-                                        env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                        env={**self.environment, **more}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True)
         self.addCleanup(self.process.communicate)
         self.addCleanup(self.stop, self.process)

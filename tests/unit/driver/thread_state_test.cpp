@@ -9,6 +9,7 @@
 #include <memory>
 #include <thread>
 
+#include "common/driver/gpu_bound.hpp"
 #include "common/driver/registry.hpp"
 
 namespace cadt {
@@ -102,8 +103,8 @@ TEST(ThreadState, IsForPlainCallsOfFewPoints) {
 
 TEST(ThreadState, AutomaticTakesTheHostForFewPoints) {
   Options options;
-  EXPECT_TRUE(takes_host(options, fewest_points_for_gpu - 1));
-  EXPECT_FALSE(takes_host(options, fewest_points_for_gpu));
+  EXPECT_TRUE(takes_host(options, GpuBound::before_opening - 1));
+  EXPECT_FALSE(takes_host(options, GpuBound::before_opening));
   options.device = "0";
   EXPECT_FALSE(takes_host(options, 1)) << "a device was named";
   options.device.clear();
@@ -112,6 +113,34 @@ TEST(ThreadState, AutomaticTakesTheHostForFewPoints) {
   EXPECT_THROW((void)open_device(options, 1), BackendUnavailable);
   EXPECT_FALSE(takes_host(on_host(), 1)) << "it was named";
   EXPECT_EQ(open_device(Options{}, 1)->info().backend, Backend::host);
+}
+
+TEST(GpuBound, IsWhereTheLinesCross) {
+  EXPECT_EQ(GpuBound::crossing(8e-3, 2e-3), GpuBound::sample / 4);
+  EXPECT_EQ(GpuBound::crossing(2e-3, 8e-3), 4 * GpuBound::sample) << "a slow GPU";
+  EXPECT_EQ(GpuBound::crossing(1, 1e-9), 1000U);
+  EXPECT_EQ(GpuBound::crossing(1e-9, 1), 100'000'000U);
+  EXPECT_EQ(GpuBound::crossing(0, 1), 100'000'000U);
+}
+
+TEST(GpuBound, IsMeasuredOnceByTheSecondOfTwoCallsEach) {
+  GpuBound bound;
+  EXPECT_EQ(bound.points(), GpuBound::before_opening);
+  int host = 0, gpu = 0;
+  const auto on_host = [&] { return ++host == 2 ? 8e-3 : 1.0; };
+  const auto on_gpu = [&] { return ++gpu == 2 ? 1e-3 : 1.0; };
+  bound.measure(on_host, on_gpu);
+  EXPECT_EQ(bound.points(), GpuBound::sample / 8);
+  bound.measure(on_host, on_gpu);
+  EXPECT_EQ(host, 2);
+  EXPECT_EQ(gpu, 2);
+  EXPECT_EQ(bound.points(), GpuBound::sample / 8);
+}
+
+TEST(GpuBound, StaysIfACallFails) {
+  GpuBound bound;
+  bound.measure([] { return 1.0; }, []() -> double { throw OutOfMemory("full", 1, 0); });
+  EXPECT_EQ(bound.points(), GpuBound::before_opening);
 }
 
 }  // namespace

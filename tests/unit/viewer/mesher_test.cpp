@@ -148,5 +148,30 @@ TEST_F(MesherTest, WithoutTheHostNothingGoesThroughIt) {
   EXPECT_LT(statistics.bytes_to_device + statistics.bytes_from_device, 65'536u);
 }
 
+TEST_F(MesherTest, LargeBuffersAreMovedToLargePagesWithTheirContents) {
+  constexpr std::size_t n = 5'000'000;  // 80 MB
+  Mesher mesher(Options{}, Interop::automatic);
+  if (mesher.interop() != Interop::cuda) GTEST_SKIP() << mesher.reason();
+  const std::vector<double> xy = random_points(n, 6);
+  MeshBuffers mesh = MeshBuffers::with_room(n);
+  mesh.write_points(xy);
+  const std::uint64_t before = mesh.points.serial();
+  for (int call = 0; call < 2; ++call) {
+    mesher.triangulate(mesh);
+    EXPECT_EQ(mesher.reason(), "");
+    EXPECT_EQ(triangles_of(mesh), expected_for(xy));
+  }
+  EXPECT_NE(mesh.points.serial(), before);
+  EXPECT_EQ(mesh.points.read_values<double>(2 * n), xy);
+  const std::vector<double> fewer = random_points(n / 2, 9);
+  mesh.write_points(fewer);
+  mesher.triangulate(mesh);
+  EXPECT_EQ(triangles_of(mesh), expected_for(fewer)) << "the moved buffer can be written";
+  mesh = MeshBuffers::with_room(n);  // other buffers, perhaps with the same ids
+  mesh.write_points(fewer);
+  mesher.triangulate(mesh);
+  EXPECT_EQ(triangles_of(mesh), expected_for(fewer));
+}
+
 }  // namespace
 }  // namespace cadt::viewer

@@ -2,7 +2,7 @@
 layout(binding = 0) uniform sampler1D ramp;  // linear light
 
 // ColourBy of style.hpp.
-const int BY_NOTHING = 0, BY_ANGLE = 1, BY_AREA = 2, BY_ORDER = 3, BY_POINT = 4, BY_TRIANGLE = 5;
+const int BY_NOTHING = 0, BY_ANGLE = 1, BY_AREA = 2, BY_ORDER = 3, BY_POINT = 4, BY_TRIANGLE = 5, BY_MEAN = 6;
 
 struct Corners {
   dvec2 a, b, c;  // in samples
@@ -40,6 +40,8 @@ float raw_value(uint t, Corners p, vec3 at) {
       return dot(corner_values(t), at);
     case BY_TRIANGLE:
       return value_of[t];
+    case BY_MEAN:
+      return dot(corner_values(t), vec3(1.0 / 3.0));
   }
   return 0.0;
 }

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-from spack_repo.builtin.build_systems.cmake import CMakePackage, generator
-from spack_repo.builtin.build_systems.cuda import CudaPackage
-
 from spack.package import *
+
+try:
+    from spack_repo.builtin.build_systems.cmake import CMakePackage, generator
+    from spack_repo.builtin.build_systems.cuda import CudaPackage
+except ImportError:  # before Spack 1.0 they come with spack.package
+    pass
 
 
 class Cadt(CMakePackage, CudaPackage):

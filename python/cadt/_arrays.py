@@ -1,0 +1,337 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays that are on a GPU, of CuPy, PyTorch, JAX and PyOpenCL: each library in its own words."""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import Any
+
+import numpy as np
+
+from cadt import _cadt
+from cadt._errors import InputError
+
+_HOST = 1  # DLPack's kDLCPU
+
+
+def array_on_device(points: Any) -> Array | None:
+    """The adapter for an array on a GPU; None for everything on the host."""
+    if type(points) in (np.ndarray, list, tuple):
+        return None
+    package = type(points).__module__.partition(".")[0]
+    if package == "pyopencl" and hasattr(points, "queue"):
+        return OpenCl(points)
+    if package == "torch":
+        return Torch(points) if points.is_cuda else None
+    if package == "cupy":
+        return CuPy(points)
+    if package in ("jax", "jaxlib"):
+        return Jax(points) if next(iter(points.devices())).platform in ("gpu", "cuda") else None
+    if hasattr(points, "__cuda_array_interface__"):
+        return CudaInterface(points)
+    if hasattr(points, "__dlpack_device__") and int(points.__dlpack_device__()[0]) not in (_HOST, 3):
+        raise TypeError(
+            f"arrays of {package} on a device are not known to cadt: pass one with __cuda_array_interface__, "
+            "or of CuPy, PyTorch, JAX or PyOpenCL"
+        )
+    return None
+
+
+class Array:
+    """An array on a device and its library. `a` has shape (n, 2), float64 or float32, and is contiguous."""
+
+    backend = "cuda"
+    device: int | None = 0
+    queue: int | None = None
+    stream: Any = None  # the object that owns the queue
+    triangulator: Any = None  # the open device
+    xp: Any = None  # the library
+
+    def __init__(self, a: Any) -> None:
+        self.a = self.rows(a, "points")
+
+    def rows(self, a: Any, what: str) -> Any:
+        if len(a.shape) != 2 or a.shape[1] != 2:
+            raise InputError(f"{what} must have shape (n, 2), not {tuple(a.shape)}", 0)
+        name = str(a.dtype).rpartition(".")[2]
+        if name not in ("float32", "float64"):
+            if not (name.startswith(("int", "uint")) and name not in ("int64", "uint64")) and name != "float16":
+                raise TypeError(f"{what} must be float64 or float32, not {name}: convert them first")
+            a = self.convert(a, "float64")
+        return self.contiguous(a)
+
+    def coordinates(self, a: Any) -> _cadt.DevicePoints:
+        return _cadt.DevicePoints(self.address(a), a.shape[0], "float32" in str(a.dtype))
+
+    def memory(self, a: Any) -> tuple[int, int]:
+        return (self.address(a), math.prod(a.shape))
+
+    # What each library does in its own words.
+    def convert(self, a: Any, dtype: str) -> Any:
+        raise NotImplementedError
+
+    def contiguous(self, a: Any) -> Any:
+        raise NotImplementedError
+
+    def address(self, a: Any) -> int:
+        return a.__cuda_array_interface__["data"][0]
+
+    def to_host(self) -> np.ndarray:
+        raise NotImplementedError
+
+    def like(self, host: Any) -> Any:
+        """An array of the host (or several) on the device."""
+        if isinstance(host, tuple):
+            return tuple(self.like(h) for h in host)
+        return self.from_host(np.ascontiguousarray(host))
+
+    def from_host(self, host: np.ndarray) -> Any:
+        raise NotImplementedError
+
+    def is_here(self, a: Any) -> bool:
+        """Whether an argument is an array of this library already."""
+        return isinstance(a, type(self.a))
+
+    def take(self, a: Any, dtype: str) -> Any:
+        """An argument as a contiguous array of this library on the device."""
+        a = a if self.is_here(a) else self.from_host(np.ascontiguousarray(a))
+        return self.contiguous(a if str(a.dtype).rpartition(".")[2] == dtype else self.convert(a, dtype))
+
+    def begin(self) -> None:
+        """Before a call of the library, which works in `queue`."""
+
+    def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
+        """Memory for a result, of which `finished` makes an array."""
+        raise NotImplementedError
+
+    def finished(self, result: Any) -> Any:
+        return result
+
+    def column(self, a: Any, j: int) -> Any:
+        """Column j, contiguous."""
+        return self.contiguous(a[:, j])
+
+    def stack(self, rasters: list[Any]) -> Any:
+        return self.xp.stack(rasters, -1)
+
+    def bounds(self) -> tuple[float, float, float, float]:
+        (x0, y0), (x1, y1) = self.xp.amin(self.a, 0).tolist(), self.xp.amax(self.a, 0).tolist()
+        return (x0, y0, x1, y1)
+
+    def triangles(self, mesh: Any, which: str) -> Any:
+        """The arrays of a mesh, without a copy; they keep it."""
+        raise NotImplementedError
+
+
+class CuPy(Array):
+    def __init__(self, a: Any) -> None:
+        import cupy
+
+        self.xp = cupy
+        self.device = int(a.device.id)
+        with cupy.cuda.Device(self.device):
+            self.stream = cupy.cuda.get_current_stream()
+            self.queue = int(self.stream.ptr)
+            super().__init__(a)
+
+    def convert(self, a: Any, dtype: str) -> Any:
+        return a.astype(dtype)
+
+    def contiguous(self, a: Any) -> Any:
+        return self.xp.ascontiguousarray(a)
+
+    def address(self, a: Any) -> int:
+        return int(a.data.ptr)
+
+    def bounds(self) -> tuple[float, float, float, float]:
+        x, y = self.column(self.a, 0), self.column(self.a, 1)  # what is not contiguous takes 8 ms for ten million
+        return (float(x.min()), float(y.min()), float(x.max()), float(y.max()))
+
+    def to_host(self) -> np.ndarray:
+        return self.xp.asnumpy(self.a)
+
+    def from_host(self, host: np.ndarray) -> Any:
+        with self.xp.cuda.Device(self.device):
+            return self.xp.asarray(host)
+
+    def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
+        with self.xp.cuda.Device(self.device):
+            return self.xp.empty(shape, dtype)
+
+    def triangles(self, mesh: Any, which: str) -> Any:
+        if mesh.number_of_triangles == 0:
+            return self.empty((0, 3), "int32")
+        return self.xp.from_dlpack(getattr(_cadt, f"cuda_{which}")(mesh))
+
+
+class CudaInterface(CuPy):
+    """Any other object with ``__cuda_array_interface__``, such as Numba's: results are CuPy's."""
+
+    def __init__(self, a: Any) -> None:
+        try:
+            import cupy
+        except ImportError:
+            raise TypeError(
+                f"results for {type(a).__module__}.{type(a).__name__} on a GPU are CuPy's arrays: pip install cupy-cuda13x"
+            ) from None
+        super().__init__(cupy.asarray(a))
+
+
+class Torch(Array):
+    def __init__(self, a: Any) -> None:
+        self.xp = sys.modules["torch"]
+        self.where = a.device
+        self.device = a.device.index
+        self.stream = self.xp.cuda.current_stream(a.device)
+        self.queue = int(self.stream.cuda_stream)
+        super().__init__(a.detach())
+
+    def convert(self, a: Any, dtype: str) -> Any:
+        return a.to(getattr(self.xp, dtype))
+
+    def contiguous(self, a: Any) -> Any:
+        return a.contiguous()
+
+    def address(self, a: Any) -> int:
+        return int(a.data_ptr())
+
+    def to_host(self) -> np.ndarray:
+        return self.a.cpu().numpy()
+
+    def from_host(self, host: np.ndarray) -> Any:
+        return self.xp.from_numpy(np.array(host)).to(self.where)
+
+    def is_here(self, a: Any) -> bool:
+        return isinstance(a, self.xp.Tensor) and a.device == self.where
+
+    def take(self, a: Any, dtype: str) -> Any:
+        if isinstance(a, self.xp.Tensor):
+            a = a.detach().to(self.where)
+        return super().take(a, dtype)
+
+    def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
+        return self.xp.empty(shape, dtype=getattr(self.xp, dtype), device=self.where)
+
+    def triangles(self, mesh: Any, which: str) -> Any:
+        if mesh.number_of_triangles == 0:
+            return self.empty((0, 3), "int32")
+        return self.xp.from_dlpack(getattr(_cadt, f"cuda_{which}")(mesh))
+
+
+class Jax(Array):
+    """JAX has no arrays that others write to, and names no stream: results are in memory of the library's, and calls in a
+    stream of its own, in which all has ended when they return."""
+
+    def __init__(self, a: Any) -> None:
+        self.jax, self.xp = sys.modules["jax"], sys.modules["jax"].numpy
+        self.x64 = self.jax.enable_x64 if hasattr(self.jax, "enable_x64") else self.jax.experimental.enable_x64
+        self.where = next(iter(a.devices()))
+        self.device = int(self.where.local_hardware_id)
+        self.zero = self.jax.device_put(np.float32(0), self.where)
+        super().__init__(a)
+
+    def begin(self) -> None:
+        # JAX computes in one stream of a device, and does not wait for it when it returns memory that others own: after
+        # this, nobody still reads what the library will use again.
+        (self.zero + 1).block_until_ready()
+
+    def convert(self, a: Any, dtype: str) -> Any:
+        with self.x64(True):
+            return self.xp.asarray(a, dtype)
+
+    def contiguous(self, a: Any) -> Any:
+        return a
+
+    def address(self, a: Any) -> int:
+        return a.address if isinstance(a, _cadt.DeviceMemory) else int(a.block_until_ready().unsafe_buffer_pointer())
+
+    def to_host(self) -> np.ndarray:
+        return np.asarray(self.a)
+
+    def from_host(self, host: np.ndarray) -> Any:
+        with self.x64(True):
+            return self.jax.device_put(host, self.where)
+
+    def is_here(self, a: Any) -> bool:
+        return isinstance(a, self.jax.Array) and a.devices() == {self.where}
+
+    def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
+        return _cadt.DeviceMemory(self.triangulator, shape, dtype == "float64")
+
+    def finished(self, result: Any) -> Any:
+        """Without ``jax_enable_x64`` the numbers are float32, as all of JAX's."""
+        if result.address == 0:
+            return self.xp.zeros(result.shape, "float64" if self.jax.config.jax_enable_x64 else "float32")
+        return self.xp.from_dlpack(_cadt.cuda_memory(result))
+
+    def bounds(self) -> tuple[float, float, float, float]:
+        with self.x64(True):
+            return super().bounds()
+
+    def triangles(self, mesh: Any, which: str) -> Any:
+        if mesh.number_of_triangles == 0:
+            return self.from_host(np.empty((0, 3), np.int32))
+        return self.xp.from_dlpack(getattr(_cadt, f"cuda_{which}")(mesh))
+
+
+class OpenCl(Array):
+    backend = "opencl"
+    device = None
+
+    def __init__(self, a: Any) -> None:
+
+        self.cl = sys.modules["pyopencl"]
+        self.cl_queue = self.stream = a.queue
+        self.queue = int(a.queue.int_ptr)
+        super().__init__(a)
+
+    def convert(self, a: Any, dtype: str) -> Any:
+        return a.astype(dtype)
+
+    def contiguous(self, a: Any) -> Any:
+        return a if a.flags.c_contiguous and not a.offset else a.copy()  # parts of buffers begin anywhere
+
+    def address(self, a: Any) -> int:
+        return int(a.base_data.int_ptr)
+
+    # PyOpenCL neither copies columns nor reduces rows (without Mako, one of its extras).
+    def gather(self, a: Any, places: np.ndarray) -> Any:
+        at = self.cl.array.to_device(self.cl_queue, places.reshape(-1))
+        return self.cl.array.take(a.reshape(-1), at).reshape(places.shape)
+
+    def column(self, a: Any, j: int) -> Any:
+        return self.gather(a, np.arange(j, a.size, a.shape[1]))
+
+    def stack(self, rasters: list[Any]) -> Any:
+        all_of = self.cl.array.stack(rasters)
+        return self.gather(all_of, np.arange(all_of.size).reshape(all_of.shape).transpose(1, 2, 0))
+
+    def bounds(self) -> tuple[float, float, float, float]:
+        def fold(pick: Any) -> list[float]:
+            a = self.a
+            while len(a) > 1:  # the first half with the last one, which share a row if there is an odd number
+                half = (len(a) + 1) // 2
+                a = pick(a[:half], a[len(a) - half :])
+            return a.get()[0].tolist()
+
+        (x0, y0), (x1, y1) = fold(self.cl.array.minimum), fold(self.cl.array.maximum)
+        return (x0, y0, x1, y1)
+
+    def to_host(self) -> np.ndarray:
+        return self.a.get()
+
+    def from_host(self, host: np.ndarray) -> Any:
+        return self.cl.array.to_device(self.cl_queue, host)
+
+    def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
+        return self.cl.array.empty(self.cl_queue, shape, dtype)
+
+    def triangles(self, mesh: Any, which: str) -> Any:
+        handle = getattr(mesh, f"{which}_handle")
+        if not handle:
+            return self.cl.array.empty(self.cl_queue, (0, 3), np.int32)
+        buffer = self.cl.Buffer.from_int_ptr(handle)
+        result = self.cl.array.Array(self.cl_queue, (mesh.number_of_triangles, 3), np.int32, data=buffer)
+        result._cadt_mesh = mesh  # the memory is the mesh's
+        return result

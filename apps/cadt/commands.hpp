@@ -22,5 +22,6 @@ void add_devices(CLI::App& app, Action& chosen);
 void add_triangle(CLI::App& app, Action& chosen);
 void add_info(CLI::App& app, Action& chosen);
 void add_render(CLI::App& app, Action& chosen);
+void add_view(CLI::App& app, Action& chosen);
 
 }  // namespace cadt::cli

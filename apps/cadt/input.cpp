@@ -13,6 +13,10 @@ namespace cadt::cli {
 
 void add_input_options(CLI::App& command, InputOptions& options, const std::string& name, const std::string& text) {
   command.add_option(name, options.path, text + "; '-' is standard input (with -f)")->required();
+  add_read_options(command, options);
+}
+
+void add_read_options(CLI::App& command, InputOptions& options) {
   command
       .add_option("-f,--from", options.format,
                   "format of the points: " + join(io::point_read_formats(), " ") + "; default: from the suffix")

@@ -21,6 +21,9 @@ struct InputOptions {
 /// Adds the positional `name` and -f, --columns, --project.
 void add_input_options(CLI::App& command, InputOptions& options, const std::string& name, const std::string& text);
 
+/// Adds -f, --columns, --project.
+void add_read_options(CLI::App& command, InputOptions& options);
+
 /// Adds --floats.
 void add_floats_option(CLI::App& command, InputOptions& options);
 

@@ -70,6 +70,9 @@ int parse_and_run(int argc, char** argv) {
 #ifdef CADT_HAS_VIEWER
   add_render(app, action);
 #endif
+#ifdef CADT_HAS_WINDOW
+  add_view(app, action);
+#endif
   add_generate(app, action);
   add_devices(app, action);
   add_info(app, action);

@@ -53,6 +53,7 @@ OUTSIDE = {
     r"fast_float/": ["apps", "io"],
     r"CLI/": ["apps", "bench"],
     r"nlohmann/": ["apps", "bench", "tests"],
+    r"GLFW/|imgui|backends/imgui": ["viewer/window"],
     r"gtest/|gmock/": ["tests"],
 }
 SUFFIXES = {".hpp", ".cpp", ".h", ".c", ".cl", ".cu", ".cuh", ".inc"}

@@ -53,6 +53,9 @@ class Renderer {
   /// The values of the ramp's ends for `colour`, from a sample of the triangles. Call after update() and set_values().
   void fit_ramp(const MeshBuffers& mesh, ColourBy colour);
 
+  /// In place of those that fit_ramp() found.
+  void set_ramp_ends(std::array<float, 2> ends) noexcept { ends_ = ends; }
+
   /// The picture, in texture(). \pre update(mesh)
   void draw(const MeshBuffers& mesh, const Camera& camera, const Style& style, std::span<const Stroke> strokes = {});
   [[nodiscard]] const gl::Texture& texture() const noexcept { return picture_; }

@@ -1,0 +1,183 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""cadt view with real keys and a real mouse: open, zoom, pick, grow, edit, screenshots; and all that can go wrong."""
+import re
+import subprocess
+import unittest
+
+from window import PANEL, PROGRAM, WindowTest, blocks, difference
+
+WIDTH, HEIGHT = 1000, 700
+SIZE = f"{WIDTH}x{HEIGHT}"
+MIDDLE = ((WIDTH - PANEL) // 2, HEIGHT // 2)
+
+
+def numbers(line):
+    return list(map(int, re.findall(r"\d+", line)))
+
+
+class Session(WindowTest):
+    """What one does in a sitting."""
+
+    def test_open_zoom_pick_grow_edit(self):
+        self.view("--generate", "uniform", "-n", 3000, "--size", SIZE, "--colour", "area")
+        points, triangles = numbers(self.wait("loaded uniform"))[:2]
+        self.assertEqual(points, 3000)
+        with self.subTest("the picture is that of cadt render"):
+            first = self.screenshot()
+            self.cadt("render", "--generate", "uniform", "-n", 3000, "--colour", "area", "--size",
+                      f"{WIDTH - PANEL}x{HEIGHT}", "-o", "render.png")
+            self.assertLess(difference(first, self.folder / "render.png"), 3.0)
+        with self.subTest("the place under the cursor stays"):
+            x, y = MIDDLE[0] + 103, MIDDLE[1] - 57
+            self.click(x, y)
+            before = self.wait("picked")
+            for _ in range(6):
+                self.click(x, y, button=4)
+            self.click(x, y)
+            self.assertEqual(numbers(self.wait("picked"))[:4], numbers(before)[:4])
+            self.assertGreater(difference(first, self.screenshot()), 3.0, "nothing was zoomed")
+            self.key("Escape", "f")
+            self.assertLess(difference(first, self.screenshot()), 0.5, "F shows everything again")
+        with self.subTest("search"):
+            self.key("slash")
+            self.xdotool("type", "--delay", 20, "p 17")
+            self.key("Return")
+            self.wait("went to point 17")
+            self.click(*MIDDLE)
+            self.assertIn("point 17", self.wait("picked"), "it is in the middle now")
+            self.key("Tab", "Tab")
+            self.wait("picked")
+            self.key("Escape", "f")
+        with self.subTest("it grows"):
+            self.key("g")
+            snapshots = numbers(self.wait("recorded"))[0]
+            self.assertGreater(snapshots, 5)
+            for _ in range(4):
+                self.key("greater")
+            self.wait(f"snapshot {snapshots} of")  # played to its end
+            self.key("comma")
+            self.wait(f"snapshot {snapshots - 1} of")
+            self.key("period")
+            self.wait(f"snapshot {snapshots} of")
+            self.key("g")
+            self.wait("growth ended")
+        with self.subTest("points are dragged, painted and erased"):
+            self.key("e")
+            self.wait("editing")
+            self.drag([MIDDLE, (MIDDLE[0] + 30, MIDDLE[1]), (MIDDLE[0] + 60, MIDDLE[1] + 10)])
+            self.wait("holds point")
+            self.assertEqual(numbers(self.wait("edited"))[0], 3000)
+            self.key("t")
+            self.drag([MIDDLE, (MIDDLE[0] + 20, MIDDLE[1] + 20)])
+            painted, mesh = numbers(self.wait("edited"))
+            self.assertGreater(painted, 3000)
+            self.assertGreater(mesh, triangles)
+            self.key("t")
+            self.drag([MIDDLE, (MIDDLE[0] + 20, MIDDLE[1] + 20), (MIDDLE[0] + 40, MIDDLE[1])])
+            self.assertLess(numbers(self.wait("edited"))[0], painted)
+            still = self.screenshot()
+            self.key("m")
+            self.xdotool("sleep", 2)
+            self.key("m")
+            self.assertGreater(difference(still, self.screenshot()), 0.5, "the points have not moved")
+            self.key("e")
+            self.wait("edited")
+        with self.subTest("screenshots"):
+            name = self.screenshot("S").name
+            self.assertRegex(name, r"^uniform-3000-\d+\.png$")
+            self.assertEqual(len(list(self.folder.glob("uniform-3000-*.png"))), numbers(name)[1], "each has a number of its own")
+        self.quit()
+
+
+class Look(WindowTest):
+    """Dark and light, the panel, help, sizes of text."""
+
+    def test_dark_help_and_panel(self):
+        self.view("--generate", "uniform", "-n", 500, "--size", SIZE, "--scale", 1.5, "--dark")
+        self.wait("loaded")
+        dark = self.screenshot("S")
+        self.assertLess(sum(map(sum, blocks(dark)[-30:])) / 90, 60, "the panel is dark")
+        self.key("question")
+        helped = self.screenshot("S")
+        self.assertGreater(difference(dark, helped), 2.0, "help covers the mesh")
+        self.key("Escape")
+        self.assertLess(difference(dark, self.screenshot("S")), 1.0)
+        self.key("d")
+        self.assertGreater(sum(map(sum, blocks(self.screenshot("S"))[-30:])) / 90, 200, "the panel is light")
+        self.key("p", "v", "2")
+        self.wait("ready")
+        self.xdotool("search", "--name", "^cadt", "windowsize", "--sync", "%@", 700, 500)
+        self.xdotool("sleep", 1)
+        small = self.screenshot()
+        self.assertEqual(small.stat().st_size > 0 and len(blocks(small)), 35 * 25, "700 x 500 without a panel")
+        self.quit()
+
+    def test_lost_context(self):
+        self.view("--generate", "uniform", "-n", 500, "--size", SIZE, "--lose-context")
+        self.wait("loaded")
+        self.wait("window")
+        self.wait("loaded")
+        self.focus()
+        told = self.screenshot("S")
+        self.key("Escape")
+        self.assertGreater(difference(told, self.screenshot("S")), 1.0, "a message says what has happened")
+        self.quit()
+
+
+class Troubles(WindowTest):
+    """Files that are none, too many points, no display. The window stays."""
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+        return name
+
+    def test_files_in_turn(self):
+        files = [self.write("none.xy", "these are no numbers\n"), self.write("one.xy", "1 2\n"),
+                 self.write("line.xy", "0 0\n1 1\n2 2\n"), self.write("square.xy", "0 0\n1 0\n1 1\n0 1\n"), "absent.xy"]
+        self.view(*files, "--size", SIZE)
+        self.assertIn("none.xy", self.wait("message This file cannot be shown"))
+        self.key("Next")
+        self.assertIn("1 points 0 triangles", self.wait("loaded one.xy"))
+        self.key("Next")
+        self.assertIn("3 points 0 triangles", self.wait("loaded line.xy"))
+        self.key("Next")
+        self.assertIn("4 points 2 triangles", self.wait("loaded square.xy"))
+        self.click(MIDDLE[0] + 40, MIDDLE[1] + 5)
+        self.wait("picked triangle")
+        self.key("Next")
+        self.wait("message This file cannot be shown")
+        self.write("absent.xy", "0 0\n1 0\n0 1\n")
+        self.key("r")
+        self.assertIn("3 points 1 triangles", self.wait("loaded absent.xy"))
+        self.quit()
+
+    def test_a_thousand_million_points(self):
+        self.view("--generate", "uniform", "-n", "1G", "--size", SIZE)
+        self.assertIn("1,000,000,000 points, at most", self.wait("message Too many points"))
+        self.quit()
+
+    def test_cancel(self):
+        self.view("--generate", "uniform", "-n", "10M", "--size", SIZE)
+        self.key("Escape")
+        self.wait("message Cancelled")
+        self.quit()
+
+    def fails(self, changes, *says):
+        environment = {**self.environment, **changes}
+        done = subprocess.run([PROGRAM, "view", "--generate", "uniform"], env=environment, cwd=self.folder, capture_output=True,
+                              text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 5, done.stderr)
+        for text in says:
+            self.assertIn(text, done.stderr)
+
+    def test_no_display(self):
+        del self.environment["DISPLAY"]
+        self.fails({}, "no window can be opened", "cadt render", "ssh -X")
+
+    def test_opengl_that_is_too_old(self):
+        self.fails({"MESA_GL_VERSION_OVERRIDE": "3.3"}, "OpenGL", "4.5", "driver")
+
+
+if __name__ == "__main__":
+    unittest.main()

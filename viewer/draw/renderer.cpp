@@ -4,6 +4,8 @@
 #include "viewer/draw/palette.hpp"
 #include "viewer/draw/shaders.hpp"
 
+#include <cadt/errors.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -15,9 +17,10 @@ using io::picture::Rgb;
 
 constexpr std::size_t block = 4096;  // triangles; BLOCK of common.glsl
 constexpr std::size_t most_large =
-    4 << 20;                           // triangles that get a group of their own; the others are drawn by one item
-constexpr int most_groups = 32768;     // along x
-constexpr int reference_width = 1000;  // pixels of the view in which values are sampled
+    4 << 20;  // triangles that get a group of their own; the others are drawn by one item
+constexpr std::size_t most_bytes = std::size_t{1} << 32;  // of an array: programs have offsets of 32 bits
+constexpr int most_groups = 32768;                        // along x
+constexpr int reference_width = 1000;                     // pixels of the view in which values are sampled
 
 enum Slot : GLuint { points, triangles, values, boxes, seen, commands, owners, sums, large, overlay, outside };
 
@@ -120,6 +123,11 @@ void Renderer::bind(const MeshBuffers& mesh) const {
 }
 
 void Renderer::update(const MeshBuffers& mesh) {
+  constexpr std::size_t most = most_bytes / (3 * sizeof(std::int32_t)), most_points = most_bytes / (2 * sizeof(double));
+  if (mesh.triangle_count > most || mesh.point_count > most_points)
+    throw LimitError("a mesh of at most " + std::to_string(most) + " triangles and " + std::to_string(most_points) +
+                         " points can be drawn: take a part of the points, or every second one",
+                     mesh.triangle_count, most);
   const std::size_t count = (mesh.triangle_count + block - 1) / block;
   grow(boxes_, count * 4 * sizeof(double));
   grow(seen_, count * sizeof(std::uint32_t));

@@ -42,6 +42,7 @@ class Renderer {
   Renderer();
 
   /// To be called after the contents of a mesh have changed: finds the boxes of its blocks. O(triangles).
+  /// \throws LimitError for more than 357 million triangles
   void update(const MeshBuffers& mesh);
   /// Values that the colour depends on: one a point (height, degree, level) or one a triangle (conflicts). Empty: none.
   void set_values(std::span<const float> values);

@@ -5,7 +5,9 @@
 
 #include <cuda.h>
 #include <cuda_runtime.h>
+#ifndef _WIN32
 #include <unistd.h>
+#endif
 
 #include <utility>
 
@@ -106,7 +108,9 @@ LargePages& LargePages::operator=(LargePages&& other) noexcept {
 }
 
 LargePages::~LargePages() {
+#ifndef _WIN32  // which has no GL_EXT_memory_object_fd
   if (file_ >= 0) close(file_);
+#endif
   if (address_ == 0) return;
   driver().cuMemUnmap(address_, bytes_);
   driver().cuMemAddressFree(address_, bytes_);

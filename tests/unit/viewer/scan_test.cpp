@@ -2,6 +2,10 @@
 #include "viewer/gl/scan.hpp"
 
 #include "tests/unit/viewer/with_display.hpp"
+#include "viewer/draw/renderer.hpp"
+#include "viewer/gl/fill.hpp"
+
+#include <cadt/errors.hpp>
 
 #include <numeric>
 #include <random>
@@ -24,6 +28,26 @@ TEST_F(ScanTest, EqualsThatOfTheHostForSizesAroundThoseOfGroups) {
     std::exclusive_scan(words.begin(), words.end(), expected.begin(), 0u);
     EXPECT_EQ(buffer.read_values<std::uint32_t>(n + 1), expected) << n;
   }
+}
+
+TEST_F(ScanTest, FillReachesTheEndOfALargeBuffer) {
+  constexpr std::size_t n = 40'000'001;  // 160 MB
+  const gl::Fill fill;
+  const gl::Buffer buffer(n * sizeof(std::uint32_t));
+  fill(buffer, n, 7);
+  fill(buffer, n - 1, 9);
+  const auto word = [&](std::size_t i) { return buffer.read_values<std::uint32_t>(1, i * sizeof(std::uint32_t))[0]; };
+  EXPECT_EQ(word(0), 9u);
+  EXPECT_EQ(word(n / 2), 9u);
+  EXPECT_EQ(word(n - 2), 9u);
+  EXPECT_EQ(word(n - 1), 7u);
+}
+
+TEST_F(ScanTest, AMeshBeyondTheOffsetsOfProgramsIsRefused) {
+  MeshBuffers mesh = MeshBuffers::with_room(3);
+  mesh.triangle_count = 400'000'000;
+  Renderer renderer;
+  EXPECT_THROW(renderer.update(mesh), LimitError);
 }
 
 }  // namespace

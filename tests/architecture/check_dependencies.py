@@ -53,7 +53,8 @@ OUTSIDE = {
     r"fast_float/": ["apps", "io"],
     r"CLI/": ["apps", "bench"],
     r"nlohmann/": ["apps", "bench", "tests"],
-    r"GLFW/|imgui|backends/imgui": ["viewer/window"],
+    r"GLFW/": ["viewer/window", "examples"],
+    r"imgui|backends/imgui": ["viewer/window"],
     r"gtest/|gmock/": ["tests"],
 }
 SUFFIXES = {".hpp", ".cpp", ".h", ".c", ".cl", ".cu", ".cuh", ".inc"}

@@ -40,7 +40,9 @@ void write_glb(AtomicFile& out, const std::string& path, const MeshParts& mesh) 
   const std::uint64_t bytes_points = n * 12, bytes_faces = mesh.triangles.size_bytes();
   if (mesh.triangles.empty()) throw FileError(path, 0, "a .glb needs triangles, and the mesh has none: write a .ply");
   if (bytes_points + bytes_faces > std::numeric_limits<std::uint32_t>::max() - 4096)
-    throw FileError(path, 0, fmt::format("{} triangles are too many for a .glb, whose sizes have 32 bits: write a .ply", mesh.triangles.size() / 3));
+    throw FileError(path, 0,
+                    fmt::format("{} triangles are too many for a .glb, whose sizes have 32 bits: write a .ply",
+                                mesh.triangles.size() / 3));
   for (std::size_t k = 0; k < 3; ++k) {
     middle[k] = 0.5 * low[k] + 0.5 * high[k];
     if (!(high[k] - middle[k] <= static_cast<double>(std::numeric_limits<float>::max())))
@@ -59,7 +61,8 @@ void write_glb(AtomicFile& out, const std::string& path, const MeshParts& mesh) 
       R"({{"buffer":0,"byteOffset":{2},"byteLength":{3},"target":34963}}],)"
       R"("accessors":[{{"bufferView":0,"componentType":5126,"count":{4},"type":"VEC3","min":{5},"max":{6}}},)"
       R"({{"bufferView":1,"componentType":5125,"count":{7},"type":"SCALAR"}}]}})",
-      list(middle), bytes_points + bytes_faces, bytes_points, bytes_faces, n, list(low), list(high), mesh.triangles.size());
+      list(middle), bytes_points + bytes_faces, bytes_points, bytes_faces, n, list(low), list(high),
+      mesh.triangles.size());
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const std::uint64_t length = 12 + 8 + text.size() + 8 + bytes_points + bytes_faces;
   out.write("glTF", 4);

@@ -217,8 +217,9 @@ TEST(MeshWrite, Errors) {
   const Folder folder;
   const SquareMesh mesh;
   const std::string path = folder / "m.stl";
-  expect_file_error([&] { detail::write_mesh_parts(path, mesh.parts(), {}); }, path, 0,
-                    "'stl' is not a format that can be used here; known: node ele neigh obj off ply vtu glb npz svg pdf png");
+  expect_file_error(
+      [&] { detail::write_mesh_parts(path, mesh.parts(), {}); }, path, 0,
+      "'stl' is not a format that can be used here; known: node ele neigh obj off ply vtu glb npz svg pdf png");
   WriteOptions options;
   options.base = 2;
   const std::string ele = folder / "m.ele";

@@ -11,7 +11,7 @@ namespace {
 constexpr double margin_share = 0.015;
 
 /// Quarters of the largest doubles have a finite difference; small coordinates would lose bits by that.
-double factor_before(const Box& box) {
+double factor_before(const Extent& box) {
   double largest = 0;
   for (int k = 0; k < 2; ++k) largest = std::max({largest, std::fabs(box.low[k]), std::fabs(box.high[k])});
   return largest > 0.25 * std::numeric_limits<double>::max() ? 0.25 : 1.0;
@@ -25,9 +25,9 @@ double ratio(double a, double b) {
   return std::ldexp(ma / mb, std::clamp(ea - eb, -1000, 1000));
 }
 
-double span_of(const Box& box, int k, double before) { return box.high[k] * before - box.low[k] * before; }
+double span_of(const Extent& box, int k, double before) { return box.high[k] * before - box.low[k] * before; }
 
-double aspect_of(const Box& box) {
+double aspect_of(const Extent& box) {
   const double before = factor_before(box);
   return std::clamp(ratio(span_of(box, 1, before), span_of(box, 0, before)), 1.0 / Camera::longest_aspect,
                     Camera::longest_aspect);
@@ -48,9 +48,9 @@ void split_scale(double span, double pixels, double& first, double& second) {
 
 }  // namespace
 
-Box box_of(std::span<const double> xy) {
+Extent box_of(std::span<const double> xy) {
   constexpr double inf = std::numeric_limits<double>::infinity();
-  Box box{{inf, inf}, {-inf, -inf}};
+  Extent box{{inf, inf}, {-inf, -inf}};
   for (std::size_t i = 0; i + 1 < xy.size(); i += 2) {
     if (!std::isfinite(xy[i]) || !std::isfinite(xy[i + 1])) continue;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -58,16 +58,16 @@ Box box_of(std::span<const double> xy) {
       box.high[k] = std::max(box.high[k], xy[i + k]);
     }
   }
-  return box.empty() ? Box{{0, 0}, {0, 0}} : box;
+  return box.empty() ? Extent{{0, 0}, {0, 0}} : box;
 }
 
-int Camera::height_for(const Box& box, int width, int most) {
+int Camera::height_for(const Extent& box, int width, int most) {
   const double inner = width * (1 - 2 * margin_share);
   return std::clamp(static_cast<int>(std::lround(inner * aspect_of(box) + 2 * margin_share * width)), 8,
                     std::max(8, most));
 }
 
-Camera::Camera(const Box& box, int width, int height) : box_(box), before_(factor_before(box)) {
+Camera::Camera(const Extent& box, int width, int height) : box_(box), before_(factor_before(box)) {
   resize(width, height);
 }
 

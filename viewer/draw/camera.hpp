@@ -8,12 +8,12 @@
 namespace cadt::viewer {
 
 /// The box of the points. Empty: low > high.
-struct Box {
+struct Extent {
   std::array<double, 2> low{1, 1}, high{0, 0};
   [[nodiscard]] bool empty() const noexcept { return low[0] > high[0]; }
 };
 /// Of interleaved coordinates; those that are not finite are left out.
-[[nodiscard]] Box box_of(std::span<const double> xy);
+[[nodiscard]] Extent box_of(std::span<const double> xy);
 
 /// One axis: v -> ((v * before - origin) * first) * second, in pixels from the upper left. Two factors, because one may
 /// leave the range of double for spans near 1e-308 or 1e308; `before` keeps differences near the largest double finite.
@@ -29,9 +29,9 @@ class Camera {
 
   Camera() = default;
   /// The whole box in a picture of so many pixels, with a margin.
-  Camera(const Box& box, int width, int height);
+  Camera(const Extent& box, int width, int height);
   /// Height of a picture of this width that the box fills, between 8 and `most`.
-  [[nodiscard]] static int height_for(const Box& box, int width, int most);
+  [[nodiscard]] static int height_for(const Extent& box, int width, int most);
 
   void resize(int width, int height);
   /// Moves what is seen by so many pixels, x right and y down.
@@ -57,7 +57,7 @@ class Camera {
 
  private:
   void limit();
-  Box box_;
+  Extent box_;
   int width_ = 1, height_ = 1;
   double before_ = 1, magnification_ = 1;
   std::array<double, 2> middle_{0, 0};                ///< times before_

@@ -15,7 +15,7 @@ struct MeshBuffers {
   gl::Buffer points;     ///< two doubles a point
   gl::Buffer triangles;  ///< three int32 a triangle, counterclockwise
   std::size_t point_count = 0, triangle_count = 0;
-  Box box;
+  Extent box;
   std::size_t bytes_through_host = 0;  ///< of points and triangles since the buffers were made
 
   /// Room for so many points, and for twice as many triangles: there are no more. \throws OutOfMemory

@@ -64,7 +64,7 @@ LivePoints::LivePoints(MeshBuffers& mesh)
       nearest_(program("nearest", shaders::nearest)),
       velocities_(std::max<std::size_t>(1, mesh.point_count) * bytes_of_velocity),
       best_(2 * sizeof(std::uint32_t)) {
-  const Box& box = mesh.box;
+  const Extent& box = mesh.box;
   const double width = box.high[0] - box.low[0], height = box.high[1] - box.low[1], longer = std::max(width, height);
   if (box.empty() || !std::isfinite(longer) || !(longer > 0))
     throw InputError("points can move and be edited in a box that has a size and is no wider than the largest double",

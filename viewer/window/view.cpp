@@ -90,7 +90,7 @@ std::vector<ColourBy> ViewState::colours_with_heights() {
   return all;
 }
 
-void ViewState::show(const Box& box, std::size_t points, bool has_heights) {
+void ViewState::show(const Extent& box, std::size_t points, bool has_heights) {
   box_ = box;
   points_ = points;
   camera = Camera(box, camera.width(), camera.height());

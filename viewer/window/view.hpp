@@ -37,17 +37,17 @@ class ViewState {
   /// A step of the wheel to zoom in (positive) or out, at a pixel.
   void wheel(double steps, double x, double y);
   /// A new mesh: everything in view.
-  void show(const Box& box, std::size_t points, bool has_heights);
+  void show(const Extent& box, std::size_t points, bool has_heights);
   /// Another size of the picture; what is seen stays.
   void resize(int width, int height);
   /// A place to the middle, so large that `size` (a length of the plane) takes about a third of the picture; 0: only
   /// closer than now.
   void go_to(double x, double y, double size);
   [[nodiscard]] Style style() const;
-  [[nodiscard]] const Box& box() const noexcept { return box_; }
+  [[nodiscard]] const Extent& box() const noexcept { return box_; }
 
  private:
-  Box box_{{0, 0}, {1, 1}};
+  Extent box_{{0, 0}, {1, 1}};
   std::size_t points_ = 0;
 };
 

@@ -126,14 +126,14 @@ TEST(GpuBound, IsWhereTheLinesCross) {
 TEST(GpuBound, IsMeasuredOnceByTheSecondOfTwoCallsEach) {
   GpuBound bound;
   EXPECT_EQ(bound.points(), GpuBound::before_opening);
-  int host = 0, gpu = 0;
-  const auto on_host = [&] { return ++host == 2 ? 8e-3 : 1.0; };
-  const auto on_gpu = [&] { return ++gpu == 2 ? 1e-3 : 1.0; };
+  int host_calls = 0, gpu_calls = 0;
+  const auto on_host = [&] { return ++host_calls == 2 ? 8e-3 : 1.0; };
+  const auto on_gpu = [&] { return ++gpu_calls == 2 ? 1e-3 : 1.0; };
   bound.measure(on_host, on_gpu);
   EXPECT_EQ(bound.points(), GpuBound::sample / 8);
   bound.measure(on_host, on_gpu);
-  EXPECT_EQ(host, 2);
-  EXPECT_EQ(gpu, 2);
+  EXPECT_EQ(host_calls, 2);
+  EXPECT_EQ(gpu_calls, 2);
   EXPECT_EQ(bound.points(), GpuBound::sample / 8);
 }
 

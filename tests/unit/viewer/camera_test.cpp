@@ -12,19 +12,19 @@ namespace {
 using namespace cadt::viewer;
 
 TEST(Camera, FitsTheBoxWithAMargin) {
-  const Camera camera(Box{{10, 20}, {30, 30}}, 400, 400);
+  const Camera camera(Extent{{10, 20}, {30, 30}}, 400, 400);
   const auto low = camera.pixel(10, 20), high = camera.pixel(30, 30);
   EXPECT_NEAR(low[0], 6, 1e-9);  // 1.5 %
   EXPECT_NEAR(high[0], 394, 1e-9);
   EXPECT_NEAR(low[1], 200 + 97, 1e-9) << "y is up, the scale that of x";
   EXPECT_NEAR(high[1], 200 - 97, 1e-9);
-  EXPECT_EQ(Camera::height_for(Box{{10, 20}, {30, 30}}, 400, 4000), 206);
+  EXPECT_EQ(Camera::height_for(Extent{{10, 20}, {30, 30}}, 400, 4000), 206);
 }
 
 TEST(Camera, PlaceIsTheInverseOfPixel) {
-  for (const Box& box :
-       {Box{{0, 0}, {1, 1}}, Box{{-1e300, -1e300}, {1e300, 1e300}}, Box{{-1.7e308, 0}, {1.7e308, 1e308}},
-        Box{{0, 0}, {4e-320, 4e-320}}, Box{{500000, 4100000}, {500100, 4100050}}}) {
+  for (const Extent& box :
+       {Extent{{0, 0}, {1, 1}}, Extent{{-1e300, -1e300}, {1e300, 1e300}}, Extent{{-1.7e308, 0}, {1.7e308, 1e308}},
+        Extent{{0, 0}, {4e-320, 4e-320}}, Extent{{500000, 4100000}, {500100, 4100050}}}) {
     const Camera camera(box, 300, 200);
     for (const double s : {0.0, 0.25, 1.0}) {
       const double x = box.low[0] * (1 - s) + box.high[0] * s, y = box.low[1] * (1 - s) + box.high[1] * s;
@@ -37,7 +37,7 @@ TEST(Camera, PlaceIsTheInverseOfPixel) {
 }
 
 TEST(Camera, ZoomKeepsThePlaceUnderTheCursor) {
-  Camera camera(Box{{0, 0}, {1, 1}}, 300, 200);
+  Camera camera(Extent{{0, 0}, {1, 1}}, 300, 200);
   const auto before = camera.place(70, 150);
   for (const double factor : {2.0, 3.0, 10.0, 0.5}) {
     camera.zoom(factor, 70, 150);
@@ -49,7 +49,7 @@ TEST(Camera, ZoomKeepsThePlaceUnderTheCursor) {
 }
 
 TEST(Camera, PanMovesByPixels) {
-  Camera camera(Box{{0, 0}, {1, 1}}, 300, 200);
+  Camera camera(Extent{{0, 0}, {1, 1}}, 300, 200);
   const auto place = camera.place(100, 100);
   camera.pan(13, -7);
   const auto p = camera.pixel(place[0], place[1]);
@@ -60,7 +60,7 @@ TEST(Camera, PanMovesByPixels) {
 }
 
 TEST(Camera, ZoomEndsWhereCoordinatesEnd) {
-  Camera camera(Box{{500000, 4100000}, {500100, 4100100}}, 300, 300);
+  Camera camera(Extent{{500000, 4100000}, {500100, 4100100}}, 300, 300);
   for (int i = 0; i < 200; ++i) camera.zoom(2, 150, 150);
   const auto p = camera.pixel(std::nextafter(500050.0, 1e9), 4100050);
   EXPECT_LE(std::fabs(p[0] - camera.pixel(500050, 4100050)[0]), 0.11);
@@ -69,7 +69,7 @@ TEST(Camera, ZoomEndsWhereCoordinatesEnd) {
 }
 
 TEST(Camera, StretchesBoxesThatAreLinesOtherwise) {
-  const Camera camera(Box{{0, 0}, {1000, 1}}, 800, 800);
+  const Camera camera(Extent{{0, 0}, {1000, 1}}, 800, 800);
   const auto low = camera.pixel(0, 0), high = camera.pixel(1000, 1);
   EXPECT_NEAR((high[0] - low[0]) / (low[1] - high[1]), Camera::longest_aspect, 1e-9);
 }
@@ -77,11 +77,11 @@ TEST(Camera, StretchesBoxesThatAreLinesOtherwise) {
 TEST(Camera, BoxOfNothingAndOfWhatIsNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(box_of(std::vector<double>{}).low[0], 0);
-  const Box box = box_of(std::vector<double>{nan, 7, 1, 2, 3, -4});
+  const Extent box = box_of(std::vector<double>{nan, 7, 1, 2, 3, -4});
   EXPECT_EQ(box.low[0], 1);
   EXPECT_EQ(box.low[1], -4);
   EXPECT_EQ(box.high[0], 3);
-  const Camera point(Box{{5, 5}, {5, 5}}, 100, 80);
+  const Camera point(Extent{{5, 5}, {5, 5}}, 100, 80);
   EXPECT_NEAR(point.pixel(5, 5)[0], 50, 1e-9);
   EXPECT_NEAR(point.pixel(5, 5)[1], 40, 1e-9);
 }

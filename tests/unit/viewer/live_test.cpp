@@ -33,7 +33,7 @@ MeshBuffers mesh_of(std::span<const double> xy) {
   return mesh;
 }
 
-bool lies_in(const Box& box, Point p) {
+bool lies_in(const Extent& box, Point p) {
   return p[0] >= box.low[0] && p[1] >= box.low[1] && p[0] <= box.high[0] && p[1] <= box.high[1];
 }
 

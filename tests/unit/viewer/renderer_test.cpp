@@ -126,7 +126,7 @@ TEST(Renderer, EachSampleInTheHullBelongsToOneTriangle) {
   scene.mesh = triangulate(scene.points.view());
   Drawing drawing(scene, 64, 64, ColourBy::nothing);
   drawing.style.samples = 1;
-  drawing.camera = Camera(Box{{0, 0}, {64, 64}}, 64, 64);
+  drawing.camera = Camera(Extent{{0, 0}, {64, 64}}, 64, 64);
   drawing.camera.zoom(64.0 / 58.0, 32, 32);  // margins of three pixels
   (void)drawing.draw();
   std::vector<int> pixels(scene.mesh.number_of_triangles(), 0);

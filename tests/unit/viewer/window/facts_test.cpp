@@ -10,7 +10,7 @@
 namespace cadt::viewer {
 namespace {
 
-Camera unit_camera() { return {Box{{0, 0}, {1, 1}}, 800, 800}; }
+Camera unit_camera() { return {Extent{{0, 0}, {1, 1}}, 800, 800}; }
 
 TEST(Facts, OfARightTriangle) {
   const TriangleFacts facts = facts_of(5, {7, 8, 9}, {Place{0, 0}, Place{4, 0}, Place{0, 3}});

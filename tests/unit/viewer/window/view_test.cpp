@@ -14,7 +14,7 @@ namespace {
 ViewState shown() {
   ViewState view;
   view.resize(800, 600);
-  view.show(Box{{0, 0}, {1, 1}}, 1000, false);
+  view.show(Extent{{0, 0}, {1, 1}}, 1000, false);
   return view;
 }
 
@@ -71,10 +71,10 @@ TEST(View, ColoursFollowWhatThereIs) {
   }
   EXPECT_EQ(seen.size(), view.colours.size());
   EXPECT_FALSE(seen.contains(ColourBy::height));
-  view.show(Box{{0, 0}, {1, 1}}, 1000, true);
+  view.show(Extent{{0, 0}, {1, 1}}, 1000, true);
   EXPECT_EQ(view.colours.back(), ColourBy::height);
   view.colour = ColourBy::height;
-  view.show(Box{{0, 0}, {1, 1}}, 1000, false);
+  view.show(Extent{{0, 0}, {1, 1}}, 1000, false);
   EXPECT_EQ(view.colour, ColourBy::area) << "these points have no heights";
 }
 
@@ -96,7 +96,7 @@ TEST(View, DrawsPointsWireframeAndFilled) {
 
 TEST(View, VerticesAreDrawnWhereTheyAreFarApart) {
   ViewState view = shown();
-  view.show(Box{{0, 0}, {1, 1}}, 100'000, false);
+  view.show(Extent{{0, 0}, {1, 1}}, 100'000, false);
   EXPECT_EQ(view.style().point_radius, 0);
   view.wheel(20, 400, 300);
   EXPECT_GT(view.style().point_radius, 1);

@@ -7,7 +7,7 @@
 namespace cadt::viewer::gl {
 namespace {
 
-constexpr std::size_t words_of_group = 4096;  // GROUP of fill.glsl
+constexpr std::size_t words_filled_by_group = 4096;  // GROUP of fill.glsl
 
 }  // namespace
 
@@ -18,7 +18,7 @@ void Fill::operator()(const Buffer& buffer, std::size_t count, std::uint32_t wor
   buffer.bind(0);
   glUniform1ui(0, static_cast<GLuint>(count));
   glUniform1ui(1, word);
-  dispatch_for(count, words_of_group);
+  dispatch_for(count, words_filled_by_group);
   wait_for_writes();
 }
 

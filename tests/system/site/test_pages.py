@@ -84,7 +84,9 @@ class IndentedCommands(PageTest):
                 continue
             count += 1
             if command.startswith("cadt render"):  # smaller and shorter
-                command = re.sub(r" --size \S+", "", command).replace("--seconds 12", "--seconds 1 --fps 4") + " --size 200"
+                command = re.sub(r" --(size|fps|seconds) \S+", "", command) + " --size 200"
+                if re.search(r"\.mp4|frames/", command):
+                    command += " --seconds 1 --fps 4"
             self.shell(re.sub(r"(-n \w*1)M\b", r"\g<1>0000", command))
         return count
 

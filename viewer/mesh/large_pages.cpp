@@ -16,7 +16,7 @@ namespace {
 
 /// A function of the driver: it is not linked, so that the program starts without one.
 template <class F>
-F find(const char* name) {
+F find_function(const char* name) {
   void* found = nullptr;
   cudaDriverEntryPointQueryResult state{};
 #if CUDART_VERSION >= 12050
@@ -30,7 +30,7 @@ F find(const char* name) {
   }
   return reinterpret_cast<F>(found);
 }
-#define CADT_DRIVER(name) const decltype(&::name) name = find<decltype(&::name)>(#name)
+#define CADT_DRIVER(name) const decltype(&::name) name = find_function<decltype(&::name)>(#name)
 
 /// What is called of the driver.
 struct Driver {

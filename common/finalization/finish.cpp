@@ -205,7 +205,8 @@ void pass_side(Finished& finished, const Node& node, std::size_t row) {
                                       triangle_id(node.number, r.triangle), static_cast<std::uint32_t>(row)});
 }
 
-void add_sums(Finished& finished, const Node& node, std::size_t covered_hull_edges, std::uint64_t certified_links) {
+void add_sums(Call& call, Finished& finished, const Node& node, std::size_t covered_hull_edges,
+              std::uint64_t certified_links) {
   NodeSums& sums = finished.node.sums;
   sums.triangles = node.data->triangle_count;
   sums.dimension = node.mesh->dimension;
@@ -213,7 +214,11 @@ void add_sums(Finished& finished, const Node& node, std::size_t covered_hull_edg
   // Edges of two final triangles were examined with the node's mesh.
   const std::uint64_t outside = sums.hull_edges - covered_hull_edges;
   sums.certified_edges = (3 * sums.triangles - finished.rows.size() - outside) / 2 + certified_links;
-  finished.node.statistics = std::move(node.mesh->statistics);
+  call.ctx.finish();
+  Statistics& statistics = finished.node.statistics = std::move(node.mesh->statistics);
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  append(statistics.milliseconds, call.statistics.milliseconds);
+  append(statistics.kernels, call.ctx.launcher.kernel_times());
 }
 
 }  // namespace cadt::finalization

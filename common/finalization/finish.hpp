@@ -72,8 +72,9 @@ void triangulate_node(Node& node);
 [[nodiscard]] Finished take_final(Call& call, Node& node);
 /// The row is one of an edge between open vertices: passes it to the parent.
 void pass_side(Finished& finished, const Node& node, std::size_t row);
-/// Adds the sums of a node that are known when its part and messages are.
-void add_sums(Finished& finished, const Node& node, std::size_t covered_hull_edges, std::uint64_t certified_links);
+/// Waits for the device, and adds the sums of a node and its statistics.
+void add_sums(Call& call, Finished& finished, const Node& node, std::size_t covered_hull_edges,
+              std::uint64_t certified_links);
 
 }  // namespace finalization
 }  // namespace cadt

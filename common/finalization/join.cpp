@@ -272,8 +272,7 @@ FinishedNode finish_join(Triangulator& triangulator, std::span<const Open> child
   Finished finished = take_final(call, node);
   Settlement settlement(node, merged, finished);
   if (!flat) settlement.settle(match_sides(call.ctx, node, finished.places, merged.sides.size()));
-  add_sums(finished, node, settlement.outside(), settlement.certified());
-  call.ctx.device.finish();
+  add_sums(call, finished, node, settlement.outside(), settlement.certified());
   finished.node.part = DevicePart(std::move(node.data));
   return std::move(finished.node);
 }

@@ -77,7 +77,7 @@ FinishedNode finish(Node node, const Import& import) {
   result.links.resize(finished.rows.size());
   for (std::size_t row = 0; row < finished.rows.size(); ++row) pass_side(finished, node, row);
   result.duplicates = duplicate_ids(call.ctx, node);
-  add_sums(finished, node, 0, 0);
+  add_sums(call, finished, node, 0, 0);
   NodeSums& sums = result.sums;
   sums.points = n;
   sums.distinct = node.mesh->distinct;
@@ -85,7 +85,6 @@ FinishedNode finish(Node node, const Import& import) {
   for (const DuplicateId& d : result.duplicates)
     cadt_hash_add(&hash, CADT_HASH_DUPLICATE, d.point, d.representative, 0);
   sums.hash = {hash.high, hash.low};
-  call.ctx.device.finish();
   result.part = DevicePart(std::move(node.data));
   return std::move(result);
 }

@@ -23,8 +23,8 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }
 
 struct Run {
-  explicit Run(Triangulator& t, const UniformCells& c) : triangulator(t), cells(c) {}
-  Triangulator& triangulator;
+  Run(Triangulator& t, Triangulator& j, const UniformCells& c) : triangulator(t), joiner(j), cells(c) {}
+  Triangulator &triangulator, &joiner;
   const UniformCells& cells;
   NodeSums sums;
   std::uint32_t nodes = 0;
@@ -61,36 +61,48 @@ struct Run {
     return keep(std::move(node));
   }
 
-  Open build(unsigned depth, unsigned most, std::uint64_t index) {
-    if (depth == most) return leaf(depth, index);
-    std::vector<Open> children;
-    children.push_back(build(depth + 1, most, 2 * index));
-    children.push_back(build(depth + 1, most, 2 * index + 1));
+  /// The leaves of a part, or what joins of `levels` levels of halving leave of them.
+  void build(unsigned depth, unsigned most, std::uint64_t index, unsigned levels, std::vector<Open>& to) {
+    if (depth == most) return to.push_back(leaf(depth, index));
+    std::vector<Open> children, &into = depth % levels == 0 ? children : to;
+    build(depth + 1, most, 2 * index, levels, into);
+    build(depth + 1, most, 2 * index + 1, levels, into);
+    if (depth % levels == 0) to.push_back(join(children, cells.part(depth, index).box));
+  }
+
+  Open join(const std::vector<Open>& children, const TileBox& box) {
     const auto begin = std::chrono::steady_clock::now();
-    FinishedNode node = finish_join(triangulator, children, cells.part(depth, index).box, nodes++);
+    FinishedNode node = finish_join(joiner, children, box, nodes++);
     const double seconds = seconds_since(begin);
     join_seconds += seconds;
-    if (depth <= 1 || nodes < 6) std::printf("join of %zu: %.1f ms\n", node.part.number_of_points(), seconds * 1e3);
+    double device = 0;
+    for (const auto& [name, milliseconds] : node.statistics.milliseconds) device += milliseconds;
+    std::printf("join of %zu: %.1f ms, by phases %.1f ms\n", node.part.number_of_points(), seconds * 1e3, device);
     return keep(std::move(node));
   }
 };
 
-int run(const std::string& backend, std::uint64_t points, std::uint64_t tile_points, bool kernels) {
+int run(const std::string& backend, std::uint64_t points, std::uint64_t tile_points, unsigned levels, bool host_joins,
+        bool kernels) {
   Options options;
   options.backend = backend_from_string(backend);
   options.order = Order::fast;
   options.tuning.kernel_times = kernels;
   Triangulator triangulator(options);
+  Options on_host = options;
+  on_host.backend = Backend::host;
+  Triangulator host(on_host);
   const UniformCells cells(points);
   const auto depth = cells.depth_for(tile_points);
   if (!depth) return 2;
   {  // the first call builds kernels and takes memory
-    Run first(triangulator, cells);
+    Run first(triangulator, triangulator, cells);
     (void)first.leaf(*depth, 0);
   }
-  Run run(triangulator, cells);
+  Run run(triangulator, host_joins ? host : triangulator, cells);
   const auto begin = std::chrono::steady_clock::now();
-  (void)run.build(0, *depth, 0);
+  std::vector<Open> root;
+  run.build(0, *depth, 0, levels, root);
   const double all = seconds_since(begin);
   require_complete(run.sums);
   std::printf(
@@ -108,12 +120,13 @@ int run(const std::string& backend, std::uint64_t points, std::uint64_t tile_poi
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 4) {
-    std::fputs("usage: cadt-time-tiles BACKEND POINTS TILE_POINTS [--kernels]\n", stderr);
+  if (argc < 6) {
+    std::fputs("usage: cadt-time-tiles BACKEND POINTS TILE_POINTS LEVELS_OF_A_JOIN device|host [--kernels]\n", stderr);
     return 2;
   }
   try {
-    return run(argv[1], std::stoull(argv[2]), std::stoull(argv[3]), argc > 4);
+    return run(argv[1], std::stoull(argv[2]), std::stoull(argv[3]), static_cast<unsigned>(std::stoul(argv[4])),
+               argv[5] == std::string("host"), argc > 6);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

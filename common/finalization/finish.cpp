@@ -138,6 +138,17 @@ Node open_node(Triangulator& triangulator, std::size_t points, const TileBox& bo
   return node;
 }
 
+void require_ascending(Context& ctx, const Allocation& ids, std::size_t count) {
+  const Allocation first = ctx.memory.allocate(word);
+  ctx.device.fill(*first, 0, word, CADT_NONE);
+  ctx.launcher.run<KernelId::cadt_check_ids>(ids, ctx.launcher.grid(count), first);
+  const std::uint32_t wrong = ctx.launcher.read_word(first, 0);
+  if (wrong != CADT_NONE)
+    throw InputError("the id of point " + std::to_string(wrong) +
+                         " of the node is not above the one before it: sort the points by their ids, each once",
+                     wrong);
+}
+
 void triangulate_node(Node& node) {
   DevicePart::Data& data = *node.data;
   Device& device = *data.state->device;

@@ -21,18 +21,6 @@ namespace {
 
 constexpr std::size_t id_bytes = sizeof(std::uint64_t);
 
-void require_ascending(Context& ctx, const Allocation& ids, std::size_t count) {
-  const Allocation first = ctx.memory.allocate(word);
-  ctx.device.fill(*first, 0, word, CADT_NONE);
-  ctx.launcher.run<KernelId::cadt_check_ids>(ids, ctx.launcher.grid(count), first);
-  const std::uint32_t wrong = ctx.launcher.read_word(first, 0);
-  if (wrong != CADT_NONE)
-    throw InputError("the id of point " + std::to_string(wrong) +
-                         " of the tile is not above the one before it: sort "
-                         "the points by their ids",
-                     wrong);
-}
-
 void require_in_box(const Bounds& bounds, const TileBox& box) {
   if (box.contains(bounds.min_x, bounds.min_y) && box.contains(bounds.max_x, bounds.max_y)) return;
   const auto text = [](double a, double b) { return std::to_string(a) + " to " + std::to_string(b); };

@@ -6,7 +6,9 @@
 #include "tiles/tree.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,7 +45,11 @@ struct ShuffleOptions {
   std::uint64_t memory = 0;       ///< bytes that the points may take; more go to `scratch`. 0: no limit
   std::vector<bool> wanted = {};  ///< by node: leaves that will be taken; empty: all
   cadt::stop_token stop = {};
+  std::function<void(std::uint64_t)> progress = {};  ///< points so far
 };
+
+/// Whether the wanted points go to `scratch`. \throws OutOfMemory if they must and there is none
+[[nodiscard]] bool needs_scratch(const TileTree& tree, const ShuffleOptions& options);
 
 /// One pass over the source: reads ahead on a thread of its own. \throws io::FileError, InputError, Cancelled,
 /// OutOfMemory if the points take more than `memory` and there is no `scratch`
@@ -59,7 +65,8 @@ class BlockSorter {
 
  private:
   const TileTree& tree_;
-  std::vector<std::uint32_t> leaf_, order_;
+  std::vector<std::uint32_t> leaf_, order_, touched_;
+  std::vector<std::uint32_t> count_;  // of each node, between calls 0
   std::vector<double> xy_;
   std::vector<std::uint64_t> ids_;
 };

@@ -31,6 +31,8 @@ class PointSource {
   void read(std::uint64_t first, std::size_t count, double* xy) const;
   /// The file, or the generated set, that has the point, for messages.
   [[nodiscard]] virtual std::string name_of(std::uint64_t index) const = 0;
+  /// Its index in that file.
+  [[nodiscard]] virtual std::uint64_t index_in_part(std::uint64_t index) const { return index; }
   /// Names of all of it, for people.
   [[nodiscard]] virtual std::vector<std::string> names() const = 0;
   /// Bytes of memory that the source holds.
@@ -38,6 +40,8 @@ class PointSource {
 
  protected:
   virtual void read_raw(std::uint64_t first, std::size_t count, double* xy) const = 0;
+  /// read_raw of another one.
+  static void read_part(const PointSource& part, std::uint64_t first, std::size_t count, double* xy);
 };
 
 /// One file: .npy, .f64 and .f32 by range, which must not change meanwhile; the other formats in memory as a whole.
@@ -47,7 +51,7 @@ class PointSource {
 [[nodiscard]] std::unique_ptr<PointSource> concatenate(std::vector<std::unique_ptr<PointSource>> parts);
 [[nodiscard]] std::unique_ptr<PointSource> open_files(std::span<const std::string> paths,
                                                       const io::ReadOptions& options = {});
-/// A generated set: by range where its points are independent (io::generated_by_range), else in memory.
+/// A generated set: by range where its points are independent (io::Distribution::by_range), else in memory.
 /// \throws std::invalid_argument for an unknown name
 [[nodiscard]] std::unique_ptr<PointSource> generated(const std::string& name, const io::GenerateOptions& options);
 /// Points in memory, x0 y0 x1 y1 ...

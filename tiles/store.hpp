@@ -10,57 +10,14 @@
 // All but run.json are equal, byte by byte, for every back end and number of devices, threads and processes.
 #pragma once
 
+#include "tiles/manifest.hpp"
 #include "tiles/node.hpp"
-#include "tiles/tree.hpp"
 
-#include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace cadt::tiles {
-
-inline constexpr int format_version = 1;
-
-/// What makes a mesh what it is; known before any node is computed.
-struct Plan {
-  std::uint64_t tile_points = default_tile_points;
-  std::uint64_t first_id = 0;
-  Hash128 content;  ///< of the source: add_block_hash
-  TileTree tree;
-};
-
-struct FileRecord {
-  std::string name;
-  std::uint64_t bytes = 0;
-  std::string hash;  ///< XXH3-128, 32 hexadecimal digits
-  friend bool operator==(const FileRecord&, const FileRecord&) = default;
-};
-
-struct NodeRecord {
-  std::uint64_t points = 0, triangles = 0, links = 0, duplicates = 0, open = 0;
-  NodeSums sums;
-  std::vector<FileRecord> files;  ///< of the node's folder; links.npy in the complete manifest alone
-  friend bool operator==(const NodeRecord&, const NodeRecord&) = default;
-};
-
-struct Manifest {
-  Plan plan;
-  bool complete = false;
-  // Of a complete one:
-  std::vector<NodeRecord> nodes;
-  std::vector<std::uint64_t> base;  ///< dense number of each node's first triangle
-  NodeSums whole;
-  Hash128 hash;  ///< Triangulation::hash of the whole mesh
-};
-
-/// Another source, tile size or format version than that of the directory that is to be resumed, or a directory that
-/// is there already.
-class ResumeError : public Error {
- public:
-  using Error::Error;
-};
 
 /// Writes the directory. Several processes may write different nodes of one directory on a shared file system, if one
 /// of them begins (create) before the others open it, and one completes it after all have written.
@@ -96,6 +53,7 @@ class Store {
   void begin();
   [[nodiscard]] std::string node_folder(std::uint32_t node) const;
   [[nodiscard]] std::string unfinished_folder(std::uint32_t node) const;
+  void check_same_plan(const Manifest& found) const;
   void complete_links(std::vector<NodeRecord>& records) const;
 
   std::string path_;
@@ -103,10 +61,8 @@ class Store {
   bool complete_ = false;
 };
 
-/// "node-000017"
-[[nodiscard]] std::string node_name(std::uint32_t node);
-/// \throws io::FileError for a file that is none; ResumeError for another format version
-[[nodiscard]] Manifest read_manifest(const std::string& directory);
+/// Completes the links of a node from all messages to it. \throws InternalError if a row is told twice or never
+void apply_messages(std::uint32_t node, std::span<const Link> messages, std::span<TriangleId> links);
 /// Bytes that the directory of so many points takes at most, with what is there while it is written.
 [[nodiscard]] std::uint64_t directory_bytes(std::uint64_t points) noexcept;
 

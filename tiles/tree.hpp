@@ -100,7 +100,6 @@ class TreeBuilder {
     std::uint32_t draft = 0;
     std::uint64_t threshold = 0;  // of the hash of an index, for the sample
     bool whole = false;           // the sample is all points of the leaf
-    bool final = false;           // cannot be split
   };
   [[nodiscard]] std::uint32_t draft_of(double x, double y) const noexcept;
   void split_by_sample(std::uint32_t slot, std::span<double> sample, const double* bounds, std::uint64_t count);

@@ -155,6 +155,7 @@ std::vector<std::uint64_t> pack(const Open& open) {
 
 Open unpack_open(std::span<const std::uint64_t> words) {
   Reader reader(words);
+  if (words.size() < 2) Reader::fail();
   const std::uint64_t vertices = reader.next(), sides = reader.next();
   const std::uint64_t left = words.size() - 2;
   if (vertices > left / 3 || sides > left / 5 || 3 * vertices + 5 * sides != left) Reader::fail();

@@ -39,6 +39,9 @@ struct DeviceTriangulation::Data {
   }
 };
 
+/// Triangulates points on the device of `state` (Triangulator::triangulate).
+[[nodiscard]] std::unique_ptr<DeviceTriangulation::Data> triangulate_on_device(
+    const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points);
 /// Copies the hull to the host, and the arrays that it has not, to `arrays` where there are some.
 void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, Triangulation::Data& to, EarlyArrays& arrays);
 /// Reads lists of `count` words; they may be null if that is 0.

@@ -6,29 +6,11 @@
 #include <cstddef>
 #include <new>
 
+#include "common/driver/device_text.hpp"
 #include "common/driver/triangulation_data.hpp"
 
 namespace cadt {
 namespace {
-
-/// Mixes 64 bits so that every input bit affects every output bit: multiplications by odd constants between shifts.
-constexpr std::uint64_t mix(std::uint64_t x) noexcept {
-  x ^= x >> 32;
-  x *= 0xd6e8feb86659fd93U;
-  x ^= x >> 29;
-  x *= 0x9e3779b97f4a7c15U;
-  return x ^ (x >> 32);
-}
-
-/// One lane of the hash of up to three numbers; the sum over all items does not depend on their order.
-constexpr std::uint64_t lane(std::uint64_t seed, std::uint64_t a, std::uint64_t b, std::uint64_t c) noexcept {
-  return mix(mix(mix(seed + a) + b) + c);
-}
-
-void add(Hash128& hash, std::uint64_t kind, std::uint64_t a, std::uint64_t b, std::uint64_t c) noexcept {
-  hash.high += lane(0x243f6a8885a308d3U + kind, a, b, c);
-  hash.low += lane(0x13198a2e03707344U ^ (kind << 32), c, a, b);
-}
 
 /// The vertices of a triangle, the smallest index first.
 using Corners = std::array<std::int32_t, 3>;
@@ -165,19 +147,16 @@ std::vector<std::int32_t> Triangulation::vertex_triangle() const {
 }
 
 Hash128 Triangulation::hash() const {
-  Hash128 hash;
+  using namespace device_text;
+  cadt_hash hash = {0, 0};
+  const auto id = [](auto value) { return static_cast<std::uint64_t>(value); };
   const auto v = triangles();
-  for (std::size_t i = 0; i < v.size(); i += 3) {
-    const std::int32_t* t = &v[i];
-    const auto first = static_cast<std::size_t>(std::min_element(t, t + 3) - t);
-    add(hash, 1, static_cast<std::uint64_t>(t[first]), static_cast<std::uint64_t>(t[(first + 1) % 3]),
-        static_cast<std::uint64_t>(t[(first + 2) % 3]));
-  }
+  for (std::size_t i = 0; i < v.size(); i += 3) cadt_hash_add_triangle(&hash, id(v[i]), id(v[i + 1]), id(v[i + 2]));
   for (const Duplicate& d : data_->duplicates)
-    add(hash, 2, static_cast<std::uint64_t>(d.point), static_cast<std::uint64_t>(d.representative), 0);
-  add(hash, 3, data_->points, data_->triangle_count, data_->hull.size());
-  add(hash, 4, static_cast<std::uint64_t>(data_->dimension + 1), 0, 0);
-  return hash;
+    cadt_hash_add(&hash, CADT_HASH_DUPLICATE, id(d.point), id(d.representative), 0);
+  cadt_hash_add(&hash, CADT_HASH_COUNTS, data_->points, data_->triangle_count, data_->hull.size());
+  cadt_hash_add(&hash, CADT_HASH_DIMENSION, id(data_->dimension + 1), 0, 0);
+  return {hash.high, hash.low};
 }
 
 }  // namespace cadt

@@ -92,10 +92,7 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
 }
 
 DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points) {
-  require_size(points.size);
-  auto data = std::make_unique<DeviceTriangulation::Data>();
-  run_call(state, points, {points.size, false, true, scalar_bytes(points.scalar)}, nullptr, *data);
-  return DeviceTriangulation(std::move(data));
+  return DeviceTriangulation(triangulate_on_device(state, points));
 }
 
 /// \throws InputError if `triangles` do not fit in an array of `size` words
@@ -140,6 +137,14 @@ VerifyReport verify_copy(Device& device, const Allocation& input, const DeviceTr
 }
 
 }  // namespace
+
+std::unique_ptr<DeviceTriangulation::Data> triangulate_on_device(const std::shared_ptr<Triangulator::State>& state,
+                                                                 const DevicePoints& points) {
+  require_size(points.size);
+  auto data = std::make_unique<DeviceTriangulation::Data>();
+  run_call(state, points, {points.size, false, true, scalar_bytes(points.scalar)}, nullptr, *data);
+  return data;
+}
 
 Triangulator::Triangulator(const Options& options)
     : state_(std::make_shared<State>(options, open_device(options), true)) {}

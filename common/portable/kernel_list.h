@@ -172,6 +172,21 @@
   X(cadt_outline_counts)      /* voronoi.dev.h: their boundary */                            \
   X(cadt_outline_edges)       /* voronoi.dev.h */
 
+/* common/finalization: the final part of a tile's mesh */
+#define CADT_FINALIZATION_KERNELS(X)                                                \
+  X(cadt_mark_open)      /* certain.dev.h: vertices that may still change */        \
+  X(cadt_flag_final)     /* finish.dev.h: triangles that may not */                 \
+  X(cadt_list_rows)      /* finish.dev.h: their edges to what is not in the part */ \
+  X(cadt_pack_final)     /* finish.dev.h */                                         \
+  X(cadt_pack_rows)      /* finish.dev.h */                                         \
+  X(cadt_hash_triangles) /* finish.dev.h */                                         \
+  X(cadt_number_ids)     /* finish.dev.h: ids of 64 bits */                         \
+  X(cadt_check_ids)      /* finish.dev.h */                                         \
+  X(cadt_gather_ids)     /* finish.dev.h */                                         \
+  X(cadt_half_edges_of)  /* join.dev.h */                                           \
+  X(cadt_match_sides)    /* join.dev.h: what lies across the sides of children */   \
+  X(cadt_uniform_cells)  /* uniform_cells.dev.h: points by counter */
+
 #define CADT_KERNEL_LIST(X)  \
   CADT_SELF_TEST_KERNELS(X)  \
   CADT_PREDICATES_KERNELS(X) \
@@ -183,7 +198,8 @@
   CADT_CERTIFY_KERNELS(X)    \
   CADT_OUTPUT_KERNELS(X)     \
   CADT_VERIFY_KERNELS(X)     \
-  CADT_QUERIES_KERNELS(X)
+  CADT_QUERIES_KERNELS(X)    \
+  CADT_FINALIZATION_KERNELS(X)
 
 /* The same by stage: a back end may compile a program for each (CADT_PROGRAM of language.dev.h). */
 #define CADT_STAGE_LIST(S)               \
@@ -197,6 +213,7 @@
   S(certify, CADT_CERTIFY_KERNELS)       \
   S(output, CADT_OUTPUT_KERNELS)         \
   S(verify, CADT_VERIFY_KERNELS)         \
-  S(queries, CADT_QUERIES_KERNELS)
+  S(queries, CADT_QUERIES_KERNELS)       \
+  S(finalization, CADT_FINALIZATION_KERNELS)
 
 #endif

@@ -36,6 +36,10 @@
 #if !CADT_FLOAT
 #include "common/batch/batch.dev.h"
 #include "common/batch/batch_insertion.dev.h"
+#include "common/finalization/certain.dev.h"
+#include "common/finalization/finish.dev.h"
+#include "common/finalization/join.dev.h"
+#include "common/finalization/uniform_cells.dev.h"
 #include "common/queries/locate.dev.h"
 #include "common/queries/nearest.dev.h"
 #include "common/queries/rasterize.dev.h"

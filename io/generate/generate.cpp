@@ -22,8 +22,12 @@ struct Entry {
 namespace sets = generate_detail;
 
 constexpr std::array entries{
-    Entry{{"uniform", "independent uniform points of the unit square"}, sets::uniform},
-    Entry{{"gaussian", "one standard normal cloud"}, sets::gaussian},
+    Entry{{"uniform", "independent uniform points of the unit square", true}, sets::uniform},
+    Entry{{"cells",
+           "uniform in each of equal cells of the unit square, which have the same number of points: cadt tiles makes "
+           "them tile by tile on the device"},
+          sets::cells},
+    Entry{{"gaussian", "one standard normal cloud", true}, sets::gaussian},
     Entry{{"grid", "integer lattice, row by row, near-square: every four neighbours are cocircular"}, sets::grid},
     Entry{{"tilted", "integer lattice turned by 302.328 degrees and rounded: near ties everywhere"}, sets::tilted},
     Entry{{"hex", "triangular lattice with unit spacing"}, sets::hex},
@@ -34,8 +38,8 @@ constexpr std::array entries{
     Entry{{"concentric", "108 integer points on each of many concentric circles, exactly cocircular"},
           sets::concentric},
     Entry{{"ngon", "corners of one regular polygon on the unit circle, rounded: all nearly cocircular"}, sets::ngon},
-    Entry{{"kuzmin", "Kuzmin disk: dense centre, heavy tail, radius sqrt(1/(1-u)^2 - 1)"}, sets::kuzmin},
-    Entry{{"line", "singular along the line x = 0: x = b/(u - b u + b) with b = 0.001"}, sets::line},
+    Entry{{"kuzmin", "Kuzmin disk: dense centre, heavy tail, radius sqrt(1/(1-u)^2 - 1)", true}, sets::kuzmin},
+    Entry{{"line", "singular along the line x = 0: x = b/(u - b u + b) with b = 0.001", true}, sets::line},
     Entry{{"collinear", "integer points exactly on one line of slope 2/3, in shuffled order: no triangles"},
           sets::collinear},
     Entry{{"spiral", "points of a spiral with turns of equal distance"}, sets::spiral},
@@ -45,7 +49,7 @@ constexpr std::array entries{
           sets::skewed},
     Entry{{"two-clusters", "two unit squares 1e12 apart in x and in y"}, sets::two_clusters},
     Entry{{"duplicates", "uniform points of which every second one is a copy of an earlier one"}, sets::duplicates},
-    Entry{{"ring", "uniform in an annulus of radius 0.45 and width 0.001"}, sets::ring},
+    Entry{{"ring", "uniform in an annulus of radius 0.45 and width 0.001", true}, sets::ring},
     Entry{{"terrain", "uniform points of the unit square with the height of fractal mountains"}, sets::terrain},
     Entry{{"contours", "points along level lines of the same mountains, with heights"}, sets::contours},
 };
@@ -64,6 +68,8 @@ const std::vector<Distribution>& distributions() {
 PointSet generate(std::string_view distribution, const GenerateOptions& options) {
   for (const Entry& entry : entries) {
     if (entry.about.name != distribution) continue;
+    if (options.first != 0 && (!entry.about.by_range || options.first > options.n))
+      throw std::invalid_argument(fmt::format("a part of the set '{}' cannot be made", distribution));
     PointSet out;
     out.format = distribution;
     entry.make(options, out);

@@ -21,7 +21,9 @@ namespace cadt::io::generate_detail {
 
 class SplitMix64 {
  public:
-  explicit constexpr SplitMix64(std::uint64_t seed) noexcept : state_(seed) {}
+  /// The state after `draws` draws.
+  explicit constexpr SplitMix64(std::uint64_t seed, std::uint64_t draws = 0) noexcept
+      : state_(seed + draws * 0x9E3779B97F4A7C15ull) {}
 
   constexpr std::uint64_t next() noexcept { return mix64(state_ += 0x9E3779B97F4A7C15ull); }
   /// Uniform in [0, 1), a multiple of 2^-53.

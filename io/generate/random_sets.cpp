@@ -2,6 +2,8 @@
 #include "io/generate/random.hpp"
 #include "io/generate/sets.hpp"
 
+#include <cadt/uniform_cells.hpp>
+
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -22,16 +24,21 @@ void fill(PointSet& out, std::size_t n, Point point) {
 }  // namespace
 
 void uniform(const GenerateOptions& options, PointSet& out) {
-  SplitMix64 random(options.seed);
-  fill(out, options.n, [&](std::size_t, double& x, double& y) {
+  SplitMix64 random(options.seed, 2 * options.first);
+  fill(out, options.n - options.first, [&](std::size_t, double& x, double& y) {
     x = random.uniform();
     y = random.uniform();
   });
 }
 
+void cells(const GenerateOptions& options, PointSet& out) {
+  out.xy.resize(2 * options.n);
+  UniformCells(options.n, options.seed).generate(0, options.n, out.xy.data());
+}
+
 void gaussian(const GenerateOptions& options, PointSet& out) {
-  SplitMix64 random(options.seed);
-  fill(out, options.n, [&](std::size_t, double& x, double& y) {
+  SplitMix64 random(options.seed, 2 * options.first);
+  fill(out, options.n - options.first, [&](std::size_t, double& x, double& y) {
     // Both deviates of one Box-Muller pair: half the logarithms.
     const double radius = std::sqrt(-2.0 * std::log(1.0 - random.uniform()));
     const double angle = 2.0 * std::numbers::pi * random.uniform();
@@ -41,8 +48,8 @@ void gaussian(const GenerateOptions& options, PointSet& out) {
 }
 
 void kuzmin(const GenerateOptions& options, PointSet& out) {
-  SplitMix64 random(options.seed);
-  fill(out, options.n, [&](std::size_t, double& x, double& y) {
+  SplitMix64 random(options.seed, 2 * options.first);
+  fill(out, options.n - options.first, [&](std::size_t, double& x, double& y) {
     const double rest = 1.0 - random.uniform();
     const double radius = std::sqrt(1.0 / (rest * rest) - 1.0);
     const double angle = 2.0 * std::numbers::pi * random.uniform();
@@ -53,8 +60,8 @@ void kuzmin(const GenerateOptions& options, PointSet& out) {
 
 void line(const GenerateOptions& options, PointSet& out) {
   constexpr double b = 0.001;
-  SplitMix64 random(options.seed);
-  fill(out, options.n, [&](std::size_t, double& x, double& y) {
+  SplitMix64 random(options.seed, 2 * options.first);
+  fill(out, options.n - options.first, [&](std::size_t, double& x, double& y) {
     const double u = random.uniform();
     x = b / (u - b * u + b);
     y = random.uniform();
@@ -62,8 +69,8 @@ void line(const GenerateOptions& options, PointSet& out) {
 }
 
 void ring(const GenerateOptions& options, PointSet& out) {
-  SplitMix64 random(options.seed);
-  fill(out, options.n, [&](std::size_t, double& x, double& y) {
+  SplitMix64 random(options.seed, 2 * options.first);
+  fill(out, options.n - options.first, [&](std::size_t, double& x, double& y) {
     const double radius = 0.45 + 0.001 * random.uniform();
     const double angle = 2.0 * std::numbers::pi * random.uniform();
     x = 0.5 + radius * std::cos(angle);

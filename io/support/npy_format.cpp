@@ -119,9 +119,8 @@ std::optional<std::size_t> bytes_of(const NpyArray& array, std::size_t limit) {
   return bytes;
 }
 
-}  // namespace
-
-NpyArray parse_npy(const std::string& name, std::string_view bytes, std::size_t offset) {
+/// The header, and that the data behind it, up to byte `end` of the file, are what it says.
+NpyArray parse_header(const std::string& name, std::string_view bytes, std::size_t offset, std::size_t end) {
   ByteReader reader(name, bytes, offset, false);
   if (!bytes.starts_with(magic)) reader.fail("is not an array of NumPy");
   reader.take(magic.size(), "the header");
@@ -135,12 +134,23 @@ NpyArray parse_npy(const std::string& name, std::string_view bytes, std::size_t 
   NpyArray array;
   HeaderParser(name, header, start).parse(array);
   array.data_offset = reader.position();
-  const std::size_t left = reader.left();
+  const std::size_t left = end - array.data_offset;
   const auto needed = bytes_of(array, left);
-  if (!needed) fail_at_byte(name, offset + bytes.size(), "the file ends within the array that its header describes");
+  if (!needed) fail_at_byte(name, end, "the file ends within the array that its header describes");
   if (*needed != left) reader.fail(std::to_string(left - *needed) + " bytes after the array");
-  array.data = bytes.substr(bytes.size() - left);
   return array;
+}
+
+}  // namespace
+
+NpyArray parse_npy(const std::string& name, std::string_view bytes, std::size_t offset) {
+  NpyArray array = parse_header(name, bytes, offset, offset + bytes.size());
+  array.data = bytes.substr(array.data_offset - offset);
+  return array;
+}
+
+NpyArray parse_npy_header(const std::string& name, std::string_view bytes, std::size_t file_size) {
+  return parse_header(name, bytes, 0, file_size);
 }
 
 std::string npy_header(std::string_view descr, const std::vector<std::size_t>& shape) {

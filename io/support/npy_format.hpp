@@ -31,6 +31,11 @@ struct NpyArray {
 /// Parses `bytes`, which start at byte `offset` of the file `name`. Throws FileError.
 [[nodiscard]] NpyArray parse_npy(const std::string& name, std::string_view bytes, std::size_t offset);
 
+/// The same from the first bytes of a file of `file_size` bytes: the header, without data. They need not be more than
+/// npy_header_bytes.
+[[nodiscard]] NpyArray parse_npy_header(const std::string& name, std::string_view bytes, std::size_t file_size);
+inline constexpr std::size_t npy_header_bytes = std::size_t{1} << 16;
+
 /// Header for a C-ordered little-endian array, e.g. descr "<f8".
 [[nodiscard]] std::string npy_header(std::string_view descr, const std::vector<std::size_t>& shape);
 

@@ -75,8 +75,29 @@ int create(const std::string& path) {
 std::ptrdiff_t read(int descriptor, char* bytes, std::size_t size) noexcept {
   return ::_read(descriptor, bytes, static_cast<unsigned>(std::min(size, most_per_call)));
 }
+std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t size, std::uint64_t at) noexcept {
+  OVERLAPPED place{};
+  place.Offset = static_cast<DWORD>(at);
+  place.OffsetHigh = static_cast<DWORD>(at >> 32);
+  DWORD got = 0;
+  const auto file = reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor));
+  if (::ReadFile(file, bytes, static_cast<DWORD>(std::min(size, most_per_call)), &got, &place) != 0) return got;
+  if (::GetLastError() == ERROR_HANDLE_EOF) return 0;
+  errno = EIO;
+  return -1;
+}
 std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t size) noexcept {
   return ::_write(descriptor, bytes, static_cast<unsigned>(std::min(size, most_per_call)));
+}
+std::ptrdiff_t write_at(int descriptor, const char* bytes, std::size_t size, std::uint64_t at) noexcept {
+  OVERLAPPED place{};
+  place.Offset = static_cast<DWORD>(at);
+  place.OffsetHigh = static_cast<DWORD>(at >> 32);
+  DWORD put = 0;
+  const auto file = reinterpret_cast<HANDLE>(::_get_osfhandle(descriptor));
+  if (::WriteFile(file, bytes, static_cast<DWORD>(std::min(size, most_per_call)), &put, &place) != 0) return put;
+  errno = ::GetLastError() == ERROR_DISK_FULL ? ENOSPC : EIO;
+  return -1;
 }
 bool sync(int descriptor) noexcept { return ::_commit(descriptor) == 0 || errno == EBADF || errno == EINVAL; }
 bool close(int descriptor) noexcept { return ::_close(descriptor) == 0; }
@@ -123,9 +144,21 @@ std::ptrdiff_t read(int descriptor, char* bytes, std::size_t size) noexcept {
   while (got < 0 && errno == EINTR);
   return got;
 }
+std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t size, std::uint64_t at) noexcept {
+  ssize_t got = 0;
+  do got = ::pread(descriptor, bytes, std::min(size, most_per_call), static_cast<off_t>(at));
+  while (got < 0 && errno == EINTR);
+  return got;
+}
 std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t size) noexcept {
   ssize_t put = 0;
   do put = ::write(descriptor, bytes, std::min(size, most_per_call));
+  while (put < 0 && errno == EINTR);
+  return put;
+}
+std::ptrdiff_t write_at(int descriptor, const char* bytes, std::size_t size, std::uint64_t at) noexcept {
+  ssize_t put = 0;
+  do put = ::pwrite(descriptor, bytes, std::min(size, most_per_call), static_cast<off_t>(at));
   while (put < 0 && errno == EINTR);
   return put;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -27,7 +28,10 @@ constexpr std::string_view separators = "/";
 [[nodiscard]] int create(const std::string& path);
 /// At most 1 GiB at a time; 0 at the end. Calls that a signal interrupts are repeated.
 [[nodiscard]] std::ptrdiff_t read(int descriptor, char* bytes, std::size_t size) noexcept;
+/// Read and write from byte `at` on; from several threads at once.
+[[nodiscard]] std::ptrdiff_t read_at(int descriptor, char* bytes, std::size_t size, std::uint64_t at) noexcept;
 [[nodiscard]] std::ptrdiff_t write(int descriptor, const char* bytes, std::size_t size) noexcept;
+[[nodiscard]] std::ptrdiff_t write_at(int descriptor, const char* bytes, std::size_t size, std::uint64_t at) noexcept;
 /// On the disk. True as well where pipes and file systems do not know how.
 [[nodiscard]] bool sync(int descriptor) noexcept;
 bool close(int descriptor) noexcept;

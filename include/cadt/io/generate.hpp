@@ -18,18 +18,21 @@ struct GenerateOptions {
   int k = 8;              ///< circles: points on each circle (paper, Eq. 7, 8)
   double radius = 0.35;   ///< circles: in cells of the grid of centres
   double epsilon = 1e-4;  ///< circles: largest offset of a coordinate, in cells
+  /// The first point to be made: points first, ..., n - 1 of the set, for sets with `by_range` alone.
+  std::size_t first = 0;
 };
 
 struct Distribution {
   std::string_view name;
   std::string_view description;
+  bool by_range = false;  ///< each point is made by itself, so a part costs what it has (GenerateOptions::first)
 };
 
 /// All names that `generate` accepts, each with a one-line description.
 [[nodiscard]] const std::vector<Distribution>& distributions();
 
 /// Points of the named distribution, e.g. "uniform"; `terrain` has heights. O(n). \throws std::invalid_argument for an
-/// unknown name
+/// unknown name, or for GenerateOptions::first in a set that is not made by range
 [[nodiscard]] PointSet generate(std::string_view distribution, const GenerateOptions& options = {});
 
 }  // namespace cadt::io

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the public types of finalization do beside the work.
+#include <cadt/finalization.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/driver/device_text.hpp"
+#include "common/finalization/finish.hpp"
+
+namespace cadt {
+
+using namespace device_text;
+
+bool TileBox::is_plane() const noexcept { return *this == TileBox{}; }
+
+DevicePart::DevicePart() : data_(std::make_unique<Data>()) {}
+DevicePart::DevicePart(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+DevicePart::~DevicePart() = default;
+DevicePart::DevicePart(DevicePart&&) noexcept = default;
+DevicePart& DevicePart::operator=(DevicePart&&) noexcept = default;
+
+std::size_t DevicePart::number_of_points() const noexcept { return data_->point_count; }
+std::size_t DevicePart::number_of_triangles() const noexcept { return data_->triangle_count; }
+
+namespace {
+
+void* handle_of(const DevicePart::Data& data, const Allocation& memory) noexcept {
+  return memory ? data.state->device->handle(*memory) : nullptr;
+}
+
+}  // namespace
+
+void* DevicePart::triangles() const noexcept { return handle_of(*data_, data_->triangles); }
+void* DevicePart::neighbors() const noexcept { return handle_of(*data_, data_->neighbors); }
+void* DevicePart::points() const noexcept { return handle_of(*data_, data_->points); }
+void* DevicePart::ids() const noexcept { return handle_of(*data_, data_->ids); }
+
+Hash128 DevicePart::hash() const {
+  Hash128 sum;
+  const std::size_t count = data_->triangle_count;
+  if (count == 0) return sum;
+  Statistics statistics;
+  Context ctx(*data_->state->device, data_->state->memory, data_->state->options, statistics);
+  const LaunchGrid parts = ctx.launcher.parts(count);
+  const Allocation rows = ctx.memory.allocate(parts.items * sizeof(cadt_hash));
+  ctx.launcher.run<KernelId::cadt_hash_triangles>(data_->triangles, data_->ids, parts, parts.items, rows);
+  for (const cadt_hash& row : ctx.device.read_values<cadt_hash>(*rows, parts.items)) {
+    sum.high += row.high;
+    sum.low += row.low;
+  }
+  return sum;
+}
+
+Part DevicePart::download() const {
+  Part part;
+  if (data_->triangle_count == 0) return part;
+  Device& device = *data_->state->device;
+  part.triangles = device.read_values<std::int32_t>(*data_->triangles, 3 * data_->triangle_count);
+  part.neighbors = device.read_values<std::int32_t>(*data_->neighbors, 3 * data_->triangle_count);
+  return part;
+}
+
+NodeSums& NodeSums::operator+=(const NodeSums& other) noexcept {
+  points += other.points;
+  distinct += other.distinct;
+  triangles += other.triangles;
+  hull_edges += other.hull_edges;
+  certified_edges += other.certified_edges;
+  dimension = std::max(dimension, other.dimension);
+  hash.high += other.hash.high;
+  hash.low += other.hash.low;
+  return *this;
+}
+
+void require_complete(const NodeSums& whole) {
+  const std::uint64_t triangles = whole.dimension == 2 ? 2 * whole.distinct - 2 - whole.hull_edges : 0;
+  if (whole.triangles != triangles)
+    give_up("the nodes have ", whole.triangles, " triangles, and there should be ", triangles);
+  const std::uint64_t edges = (3 * triangles - whole.hull_edges) / 2;
+  if (whole.certified_edges != edges)
+    give_up("the nodes have examined ", whole.certified_edges, " edges, and there are ", edges);
+}
+
+Hash128 hash_of(const NodeSums& whole) noexcept {
+  cadt_hash hash = {whole.hash.high, whole.hash.low};
+  cadt_hash_add(&hash, CADT_HASH_COUNTS, whole.points, whole.triangles, whole.hull_edges);
+  cadt_hash_add(&hash, CADT_HASH_DIMENSION, static_cast<std::uint64_t>(whole.dimension + 1), 0, 0);
+  return {hash.high, hash.low};
+}
+
+}  // namespace cadt

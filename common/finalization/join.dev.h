@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * A join: the mesh of the open vertices of the children, and the sides of their final triangles. A side runs from a to
+ * b with its final triangle on the left. In the mesh of the open vertices the triangle on the left of a b is covered by
+ * it, and so is each component that the sides cut off there (common/stars/stitch.dev.h has the kernels: a side is an
+ * open triangle, of which two vertices are known).
+ *
+ *           b                   b
+ *    final /|                  /|\ o
+ *     (c) / |    is given     / | \          n, across the side, is kept: the neighbour of the final triangle, or it
+ *        /__|                /h | n\         becomes that later; or covered by a side as well: then two final triangles
+ *       x   a               y___a___z        of children are neighbours
+ */
+#ifndef CADT_FINALIZATION_JOIN_H
+#define CADT_FINALIZATION_JOIN_H
+
+#include "common/finalization/finish.dev.h"
+
+/* Half-edges of a finished mesh, in which triangles stand across. Outside of the hull is one triangle more, behind the
+ * others: its edge 0 is across all hull edges. */
+CADT_KERNEL(cadt_half_edges_of, CADT_MESH_VIEW_PARAMETERS, cadt_u32 grain, CADT_GLOBAL cadt_u32* half_edges) {
+  CADT_MESH_VIEW(mesh);
+  CADT_FOR(t, mesh.triangles, grain) {
+    for (cadt_u32 k = 0u; k < 3u; ++k) {
+      const cadt_u32 n = cadt_neighbor_of(&mesh, t, k);
+      cadt_u32 half_edge = CADT_HALF_EDGE(mesh.triangles, 0u);
+      if (n != CADT_NONE) {
+        const cadt_u32 to = cadt_vertex_of(&mesh, t, CADT_PREV(k));
+        cadt_u32 j = 0u;
+        while (j < 2u && cadt_vertex_of(&mesh, n, CADT_NEXT(j)) != to) ++j;
+        half_edge = CADT_HALF_EDGE(n, j);
+      }
+      half_edges[3u * t + k] = half_edge;
+    }
+  }
+}
+
+/* What lies across each side: words of CADT_MATCH_* that begin as CADT_NONE. */
+enum { CADT_MATCH_KIND, CADT_MATCH_WITH, CADT_MATCH_APEX, CADT_MATCH_WORDS };
+enum {
+  CADT_MATCHED_OUTSIDE, /* nothing: an edge of the hull of the open vertices */
+  CADT_MATCHED_SIDE,    /* CADT_MATCH_WITH: another side */
+  CADT_MATCHED_FINAL,   /* CADT_MATCH_WITH: a final triangle of this node; CADT_MATCH_APEX: its vertex opposite */
+  CADT_MATCHED_OPEN     /* a triangle that is not final yet */
+};
+CADT_KERNEL(cadt_match_sides, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u32* half_edges,
+            CADT_GLOBAL const cadt_u32* covers, CADT_GLOBAL const cadt_u32* places, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* matches) {
+  CADT_MESH_VIEW(mesh);
+  CADT_FOR(t, mesh.triangles, grain) {
+    for (cadt_u32 k = 0u; k < 3u; ++k) {
+      const cadt_u32 side = covers[3u * t + k];
+      if (side == CADT_NONE) continue;
+      const cadt_u32 half_edge = half_edges[3u * t + k], n = CADT_TRIANGLE_OF(half_edge), j = CADT_EDGE_OF(half_edge);
+      CADT_GLOBAL cadt_u32* match = matches + CADT_MATCH_WORDS * side;
+      if (n == mesh.triangles) {
+        match[CADT_MATCH_KIND] = CADT_MATCHED_OUTSIDE;
+      } else if (covers[3u * n + j] != CADT_NONE) {
+        match[CADT_MATCH_KIND] = CADT_MATCHED_SIDE;
+        match[CADT_MATCH_WITH] = covers[3u * n + j];
+      } else if (cadt_is_final(places, n)) {
+        match[CADT_MATCH_KIND] = CADT_MATCHED_FINAL;
+        match[CADT_MATCH_WITH] = places[n];
+        match[CADT_MATCH_APEX] = cadt_vertex_of(&mesh, n, j);
+      } else {
+        match[CADT_MATCH_KIND] = CADT_MATCHED_OPEN;
+      }
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tiles/files.hpp"
+
+#include <cadt/io/errors.hpp>
+
+#include "io/support/npy_format.hpp"
+#include "io/support/system_file.hpp"
+#include "tiles/hash.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <cerrno>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+namespace cadt::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+namespace system_file = io::detail::system_file;
+
+[[noreturn]] void fail(const std::string& path, const char* what, int code) {
+  throw io::FileError(path, 0, std::string(what) + ": " + std::generic_category().message(code));
+}
+
+/// A new file; without finish() it is removed.
+class NewFile {
+ public:
+  /// Messages name `shown`.
+  NewFile(std::string path, std::string shown) : path_(std::move(path)), shown_(std::move(shown)) {
+    descriptor_ = system_file::create(path_);
+    if (descriptor_ < 0) fail(shown_, "cannot be created", errno);
+  }
+  ~NewFile() {
+    if (descriptor_ < 0) return;
+    system_file::close(descriptor_);
+    system_file::remove(path_);
+  }
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+
+  void write(const void* from, std::size_t size) {
+    hash_.add(from, size);
+    bytes_ += size;
+    const auto* at = static_cast<const char*>(from);
+    while (size != 0) {
+      const std::ptrdiff_t put = system_file::write(descriptor_, at, size);
+      if (put < 0) fail(shown_, "cannot be written", errno);
+      at += put, size -= static_cast<std::size_t>(put);
+    }
+  }
+  FileRecord finish() {
+    const int descriptor = std::exchange(descriptor_, -1);
+    if (!system_file::close(descriptor)) {
+      const int code = errno;
+      system_file::remove(path_);
+      fail(shown_, "cannot be closed", code);
+    }
+    return {.name = {}, .bytes = bytes_, .hash = hash_.value().to_string()};
+  }
+
+ private:
+  std::string path_, shown_;
+  int descriptor_ = -1;
+  std::uint64_t bytes_ = 0;
+  HashStream hash_;
+};
+
+}  // namespace
+
+FileRecord write_array(const std::string& path, const ArrayView& array) {
+  NewFile file(path, path);
+  const std::string header = io::detail::npy_header(array.type, array.shape);
+  file.write(header.data(), header.size());
+  file.write(array.data, array.bytes);
+  return file.finish();
+}
+
+void write_text(const std::string& path, std::string_view text) {
+  NewFile file(path, path);
+  file.write(text.data(), text.size());
+  file.finish();
+}
+
+void sync_file(const std::string& path) {
+  const int file = system_file::open_to_read(path);
+  if (file < 0) fail(path, "cannot be opened", errno);
+  const bool synced = system_file::sync(file);
+  const int code = errno;
+  system_file::close(file);
+  if (!synced) fail(path, "cannot be synced", code);
+}
+
+void rename_file(const std::string& from, const std::string& to) {
+  std::error_code code;
+  fs::rename(from, to, code);
+  if (code) fail(to, "cannot be renamed from its temporary file", code.value());
+}
+
+void replace_text(const std::string& path, std::string_view text) {
+  // A fixed name, so that those of killed processes do not pile up.
+  const std::string temporary = path + ".tmp";
+  system_file::remove(temporary);
+  {
+    NewFile file(temporary, path);
+    file.write(text.data(), text.size());
+    file.finish();
+  }
+  sync_file(temporary);
+  rename_file(temporary, path);
+  sync_folder(system_file::folder_of(path));
+}
+
+std::string read_text(const std::string& path) {
+  const MappedFile file(path);
+  return std::string(file.bytes());
+}
+
+std::vector<std::uint64_t> read_words(const std::string& path) {
+  const MappedFile file(path);
+  const auto words = numbers_of<std::uint64_t>(file, path, "<u8", 1);
+  return {words.begin(), words.end()};
+}
+
+std::string difference(const std::string& path, const FileRecord& record) {
+  const system_file::Kind kind = system_file::kind_of(path);
+  if (!kind.regular) return "is not there";
+  if (kind.size != record.bytes)
+    return "has " + std::to_string(kind.size) + " bytes, and not " + std::to_string(record.bytes);
+  const int descriptor = system_file::open_to_read(path);
+  if (descriptor < 0) return "cannot be opened: " + std::generic_category().message(errno);
+  constexpr std::size_t piece = std::size_t{1} << 20;
+  const auto buffer = std::make_unique_for_overwrite<char[]>(piece);
+  HashStream hash;
+  std::ptrdiff_t got = 0;
+  while ((got = system_file::read(descriptor, buffer.get(), piece)) > 0)
+    hash.add(buffer.get(), static_cast<std::size_t>(got));
+  const int code = errno;
+  system_file::close(descriptor);
+  if (got < 0) return "cannot be read: " + std::generic_category().message(code);
+  if (hash.value().to_string() != record.hash) return "is not what was written: its hash differs";
+  return {};
+}
+
+void make_folder(const std::string& path) {
+  std::error_code code;
+  fs::create_directory(path, code);
+  if (code || !fs::is_directory(path)) fail(path, "the folder cannot be made", code ? code.value() : ENOTDIR);
+}
+
+void sync_folder(const std::string& path) {
+  const int folder = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) fail(path, "cannot be opened", errno);
+  const bool synced = system_file::sync(folder);
+  const int code = errno;
+  ::close(folder);
+  if (!synced) fail(path, "cannot be synced", code);
+}
+
+void rename_folder(const std::string& from, const std::string& to) {
+  sync_folder(from);
+  std::error_code code;
+  fs::rename(from, to, code);
+  if (code) fail(to, "cannot be renamed from its temporary folder", code.value());
+  sync_folder(system_file::folder_of(to));
+}
+
+void remove_folder(const std::string& path) {
+  std::error_code code;
+  fs::remove_all(path, code);
+  if (code) fail(path, "cannot be removed", code.value());
+}
+
+MappedFile::MappedFile(const std::string& path) {
+  const int descriptor = system_file::open_to_read(path);
+  if (descriptor < 0) fail(path, "cannot be opened", errno);
+  const system_file::Kind kind = system_file::kind_of(descriptor);
+  size_ = kind.size;
+  if (kind.regular && size_ != 0 && !is_small()) data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  if (kind.regular && is_small()) {
+    small_.resize(size_);
+    errno = EIO;
+    for (std::size_t at = 0; at < size_;) {
+      const std::ptrdiff_t got = system_file::read(descriptor, small_.data() + at, size_ - at);
+      if (got <= 0) {
+        const int code = errno;
+        ::close(descriptor);
+        fail(path, "cannot be read", code);
+      }
+      at += static_cast<std::size_t>(got);
+    }
+  }
+  const int code = errno;
+  ::close(descriptor);
+  if (!kind.regular) fail(path, "cannot be read", kind.folder ? EISDIR : EINVAL);
+  if (data_ == MAP_FAILED) {
+    data_ = nullptr;
+    fail(path, "cannot be mapped", code);
+  }
+}
+MappedFile::MappedFile(MappedFile&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)),
+      size_(std::exchange(other.size_, 0)),
+      small_(std::move(other.small_)) {}
+MappedFile::~MappedFile() {
+  if (data_ != nullptr) ::munmap(data_, size_);
+}
+
+template <class Number>
+std::span<const Number> numbers_of(const MappedFile& file, const std::string& path, std::string_view type,
+                                   std::size_t columns) {
+  const io::detail::NpyArray array = io::detail::parse_npy(path, file.bytes(), 0);
+  const bool fits = type.size() == 3 && type[1] == array.kind &&
+                    static_cast<std::size_t>(type[2] - '0') == array.item_size && array.item_size == sizeof(Number) &&
+                    !array.big_endian && !array.fortran_order && array.shape.size() == (columns == 1 ? 1U : 2U) &&
+                    (columns == 1 || array.shape[1] == columns) && array.data_offset % alignof(Number) == 0;
+  if (!fits) {
+    throw io::FileError(path, 0,
+                        "is not an array of type " + std::string(type) + " with " + std::to_string(columns) +
+                            (columns == 1 ? " column" : " columns"));
+  }
+  if (array.data.empty()) return {};
+  return {reinterpret_cast<const Number*>(array.data.data()), array.size()};
+}
+template std::span<const double> numbers_of(const MappedFile&, const std::string&, std::string_view, std::size_t);
+template std::span<const std::uint64_t> numbers_of(const MappedFile&, const std::string&, std::string_view,
+                                                   std::size_t);
+template std::span<const std::int32_t> numbers_of(const MappedFile&, const std::string&, std::string_view, std::size_t);
+
+}  // namespace cadt::tiles

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tiles/shuffle.hpp"
+
+#include <cadt/errors.hpp>
+#include <cadt/io/errors.hpp>
+
+#include "io/support/system_file.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace cadt::tiles {
+namespace {
+
+namespace fs = std::filesystem;
+namespace system_file = io::detail::system_file;
+
+class MemoryLeaves : public LeafStore {
+ public:
+  explicit MemoryLeaves(const TileTree& tree) : tree_(tree), leaves_(tree.size()) {}
+  void add(std::uint32_t leaf, std::span<const double> xy, std::span<const std::uint64_t> ids) override {
+    LeafPoints& to = leaves_[leaf];
+    if (to.ids.empty()) {
+      to.xy.reserve(2 * tree_.node(leaf).points);
+      to.ids.reserve(tree_.node(leaf).points);
+    }
+    to.xy.insert(to.xy.end(), xy.begin(), xy.end());
+    to.ids.insert(to.ids.end(), ids.begin(), ids.end());
+  }
+  void finish() override {}
+  [[nodiscard]] LeafPoints take(std::uint32_t leaf) override { return std::exchange(leaves_[leaf], {}); }
+
+ private:
+  const TileTree& tree_;
+  std::vector<LeafPoints> leaves_;
+};
+
+/// In the file of a leaf of n points are n x 16 bytes of coordinates, then n x 8 bytes of ids.
+class FileLeaves : public LeafStore {
+ public:
+  FileLeaves(const TileTree& tree, const std::string& scratch)
+      : tree_(tree), folder_(new_folder(scratch)), leaves_(tree.size()) {
+    constexpr std::size_t for_all = std::size_t{256} << 20, least = 512, most = std::size_t{1} << 18;
+    buffer_points_ = std::clamp(for_all / bytes_per_shuffled_point / tree.leaves().size(), least, most);
+  }
+  ~FileLeaves() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+
+  void add(std::uint32_t leaf, std::span<const double> xy, std::span<const std::uint64_t> ids) override {
+    Leaf& to = leaves_[leaf];
+    to.waiting.xy.insert(to.waiting.xy.end(), xy.begin(), xy.end());
+    to.waiting.ids.insert(to.waiting.ids.end(), ids.begin(), ids.end());
+    if (to.waiting.ids.size() >= buffer_points_) flush(leaf);
+  }
+  void finish() override {
+    for (const std::uint32_t leaf : tree_.leaves()) flush(leaf);
+  }
+
+  [[nodiscard]] LeafPoints take(std::uint32_t leaf) override {
+    LeafPoints points;
+    const std::uint64_t n = leaves_[leaf].written;
+    if (n == 0) return points;
+    const std::string path = path_of(leaf);
+    points.xy.resize(2 * n);
+    points.ids.resize(n);
+    const int file = system_file::open_to_read(path);
+    if (file < 0) fail(path, "cannot be opened");
+    const bool ok = read(file, points.xy.data(), 16 * n, 0) && read(file, points.ids.data(), 8 * n, 16 * total(leaf));
+    const int why = errno;
+    system_file::close(file);
+    errno = why;
+    if (!ok) fail(path, "cannot be read");
+    system_file::remove(path);
+    return points;
+  }
+
+ private:
+  struct Leaf {
+    LeafPoints waiting;
+    std::uint64_t written = 0;
+  };
+
+  static std::string new_folder(const std::string& scratch) {
+    static std::atomic<unsigned> serial{0};
+    std::error_code code;
+    for (int tries = 0; tries < 1000; ++tries) {
+      std::string folder = scratch + "/cadt-points-" + std::to_string(system_file::process_number()) + "-" +
+                           std::to_string(serial.fetch_add(1));
+      if (fs::create_directory(folder, code)) return folder;
+      if (code) break;
+    }
+    throw io::FileError(scratch, 0, "no folder can be made in it: " + code.message());
+  }
+  [[noreturn]] static void fail(const std::string& path, const char* what) {
+    const int code = errno;
+    throw io::FileError(path, 0, std::string(what) + ": " + std::generic_category().message(code == 0 ? EIO : code));
+  }
+  [[nodiscard]] std::string path_of(std::uint32_t leaf) const { return folder_ + "/leaf-" + std::to_string(leaf); }
+  [[nodiscard]] std::uint64_t total(std::uint32_t leaf) const noexcept { return tree_.node(leaf).points; }
+
+  static bool read(int file, void* to, std::uint64_t size, std::uint64_t at) {
+    auto* bytes = static_cast<char*>(to);
+    while (size != 0) {
+      errno = 0;
+      const std::ptrdiff_t got = system_file::read_at(file, bytes, size, at);
+      if (got <= 0) return false;
+      bytes += got, size -= static_cast<std::uint64_t>(got), at += static_cast<std::uint64_t>(got);
+    }
+    return true;
+  }
+  static bool write(int file, const void* from, std::uint64_t size, std::uint64_t at) {
+    const auto* bytes = static_cast<const char*>(from);
+    while (size != 0) {
+      const std::ptrdiff_t put = system_file::write_at(file, bytes, size, at);
+      if (put < 0) return false;
+      bytes += put, size -= static_cast<std::uint64_t>(put), at += static_cast<std::uint64_t>(put);
+    }
+    return true;
+  }
+  void flush(std::uint32_t leaf) {
+    Leaf& from = leaves_[leaf];
+    const std::uint64_t n = from.waiting.ids.size();
+    if (n == 0) return;
+    const std::string path = path_of(leaf);
+    const int file = from.written == 0 ? system_file::create(path) : system_file::open_to_write(path);
+    if (file < 0) fail(path, "cannot be created");
+    bool ok = write(file, from.waiting.xy.data(), 16 * n, 16 * from.written) &&
+              write(file, from.waiting.ids.data(), 8 * n, 16 * total(leaf) + 8 * from.written);
+    const int why = errno;
+    ok = system_file::close(file) && ok;
+    errno = why;
+    if (!ok) fail(path, "cannot be written");
+    from.written += n;
+    from.waiting.xy.clear();
+    from.waiting.ids.clear();
+  }
+
+  const TileTree& tree_;
+  std::string folder_;
+  std::vector<Leaf> leaves_;
+  std::size_t buffer_points_;
+};
+
+}  // namespace
+
+std::unique_ptr<LeafStore> leaves_in_memory(const TileTree& tree) { return std::make_unique<MemoryLeaves>(tree); }
+
+std::unique_ptr<LeafStore> leaves_in_files(const TileTree& tree, const std::string& scratch) {
+  return std::make_unique<FileLeaves>(tree, scratch);
+}
+
+BlockSorter::BlockSorter(const TileTree& tree) : tree_(tree), count_(tree.size()) {}
+
+void BlockSorter::sort(
+    std::uint64_t first_id, std::span<const double> xy,
+    const std::function<void(std::uint32_t, std::span<const double>, std::span<const std::uint64_t>)>& give) {
+  const std::size_t n = xy.size() / 2;
+  leaf_.resize(n), xy_.resize(2 * n), ids_.resize(n);
+  touched_.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    leaf_[i] = tree_.leaf_of(xy[2 * i], xy[2 * i + 1]);
+    if (count_[leaf_[i]]++ == 0) touched_.push_back(leaf_[i]);
+  }
+  std::sort(touched_.begin(), touched_.end());
+  std::uint32_t sum = 0;
+  for (const std::uint32_t leaf : touched_) sum += std::exchange(count_[leaf], sum);  // now where its points begin
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t to = count_[leaf_[i]]++;
+    xy_[2 * to] = xy[2 * i], xy_[2 * to + 1] = xy[2 * i + 1];
+    ids_[to] = first_id + i;
+  }
+  std::size_t begin = 0;
+  for (const std::uint32_t leaf : touched_) {
+    const std::size_t size = std::exchange(count_[leaf], 0) - begin;
+    give(leaf, std::span(xy_).subspan(2 * begin, 2 * size), std::span(ids_).subspan(begin, size));
+    begin += size;
+  }
+}
+
+bool needs_scratch(const TileTree& tree, const ShuffleOptions& options) {
+  std::uint64_t points = 0;
+  for (const std::uint32_t leaf : tree.leaves())
+    if (options.wanted.empty() || options.wanted[leaf]) points += tree.node(leaf).points;
+  const std::uint64_t needed = points * bytes_per_shuffled_point;
+  if (options.memory == 0 || needed <= options.memory) return false;
+  if (options.scratch.empty()) {
+    throw OutOfMemory(
+        "the points of all tiles do not fit into memory; name a folder for them with --scratch, or allow "
+        "more with --host-memory",
+        needed, options.memory);
+  }
+  return true;
+}
+
+std::unique_ptr<LeafStore> shuffle(const PointSource& source, const TileTree& tree, const ShuffleOptions& options) {
+  std::unique_ptr<LeafStore> leaves =
+      needs_scratch(tree, options) ? leaves_in_files(tree, options.scratch) : leaves_in_memory(tree);
+  BlockSorter sorter(tree);
+  for_each_block(source, 0, source.size(), options.stop, [&](std::uint64_t first, std::span<const double> xy) {
+    sorter.sort(options.first_id + first, xy,
+                [&](std::uint32_t leaf, std::span<const double> part, std::span<const std::uint64_t> ids) {
+                  if (options.wanted.empty() || options.wanted[leaf]) leaves->add(leaf, part, ids);
+                });
+    if (options.progress) options.progress(first + xy.size() / 2);
+  });
+  leaves->finish();
+  return leaves;
+}
+
+}  // namespace cadt::tiles

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points to the leaves of the tree, each with its input index; within a leaf the indices ascend.
+#pragma once
+
+#include "tiles/source.hpp"
+#include "tiles/tree.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace cadt::tiles {
+
+struct LeafPoints {
+  std::vector<double> xy;  ///< x0 y0 x1 y1 ...
+  std::vector<std::uint64_t> ids;
+  /// Instead of arrays: `count` points from `first` on of a set that is made on the device; input indices begin at
+  /// `first_id`.
+  const UniformCells* cells = nullptr;
+  std::uint64_t first = 0, count = 0, first_id = 0;
+};
+
+inline constexpr std::uint64_t bytes_per_shuffled_point = 24;
+
+/// Takes points in the order of their indices, and gives them back leaf by leaf.
+class LeafStore {
+ public:
+  LeafStore() = default;
+  LeafStore(const LeafStore&) = delete;
+  LeafStore& operator=(const LeafStore&) = delete;
+  virtual ~LeafStore() = default;
+  /// Points of one leaf, ids above all that the leaf has. Not thread-safe. \throws io::FileError
+  virtual void add(std::uint32_t leaf, std::span<const double> xy, std::span<const std::uint64_t> ids) = 0;
+  /// Nothing is added after this.
+  virtual void finish() = 0;
+  /// The points of a leaf, which are forgotten. Thread-safe for different leaves. \throws io::FileError
+  [[nodiscard]] virtual LeafPoints take(std::uint32_t leaf) = 0;
+};
+[[nodiscard]] std::unique_ptr<LeafStore> leaves_in_memory(const TileTree& tree);
+/// A file for each leaf in a new folder below `scratch`, which is removed in the end. \throws io::FileError
+[[nodiscard]] std::unique_ptr<LeafStore> leaves_in_files(const TileTree& tree, const std::string& scratch);
+
+struct ShuffleOptions {
+  std::string scratch;            ///< folder for bucket files; empty: none
+  std::uint64_t first_id = 0;     ///< input index of the first point
+  std::uint64_t memory = 0;       ///< bytes that the points may take; more go to `scratch`. 0: no limit
+  std::vector<bool> wanted = {};  ///< by node: leaves that will be taken; empty: all
+  cadt::stop_token stop = {};
+  std::function<void(std::uint64_t)> progress = {};  ///< points so far
+};
+
+/// Whether the wanted points go to `scratch`. \throws OutOfMemory if they must and there is none
+[[nodiscard]] bool needs_scratch(const TileTree& tree, const ShuffleOptions& options);
+
+/// One pass over the source: reads ahead on a thread of its own. \throws io::FileError, InputError, Cancelled,
+/// OutOfMemory if the points take more than `memory` and there is no `scratch`
+[[nodiscard]] std::unique_ptr<LeafStore> shuffle(const PointSource& source, const TileTree& tree,
+                                                 const ShuffleOptions& options);
+/// The part of it that several processes share: distributes one block by leaf, keeping the order.
+class BlockSorter {
+ public:
+  explicit BlockSorter(const TileTree& tree);
+  /// Calls give(leaf, xy, ids) for each leaf that has points of the block, leaves ascending.
+  void sort(std::uint64_t first_id, std::span<const double> xy,
+            const std::function<void(std::uint32_t, std::span<const double>, std::span<const std::uint64_t>)>& give);
+
+ private:
+  const TileTree& tree_;
+  std::vector<std::uint32_t> leaf_, order_, touched_;
+  std::vector<std::uint32_t> count_;  // of each node, between calls 0
+  std::vector<double> xy_;
+  std::vector<std::uint64_t> ids_;
+};
+
+}  // namespace cadt::tiles

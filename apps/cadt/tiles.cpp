@@ -9,6 +9,7 @@
 #include "text.hpp"
 #include "tile_errors.hpp"
 #include "tiles/files.hpp"
+#include "tiles/mesh_directory.hpp"
 #include "tiles/report.hpp"
 #include "tiles/run.hpp"
 
@@ -141,7 +142,13 @@ int run(const TilesCommand& c) {
     source = open_source(c);
     line.start(source->size());
     const InPhase in_phase(Phase::cooperative);
-    result = tiles::run(*source, options);
+    try {
+      result = tiles::run(*source, options);
+    } catch (const Cancelled&) {
+      line.clear();
+      if (tiles::is_mesh_directory(c.output)) say(fmt::format("cadt: {} can be continued with --resume\n", c.output));
+      throw;
+    }
   });
   line.clear();
   write_reports(c, *source, options, result);

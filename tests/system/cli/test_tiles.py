@@ -200,8 +200,15 @@ class TilesResumeTest(CliTest):
             while process.poll() is None and not self.path("mesh.cadt/unfinished/node-000002").exists():
                 pass
             process.send_signal(signal.SIGINT)
-            self.assertIn(process.wait(timeout=60), (130, 0))
+            self.assertEqual(process.wait(timeout=60), 130)
+            self.assertIn("mesh.cadt can be continued with --resume", process.stderr.read().decode())
         self.resume()
+
+    def test_progress_on_a_terminal(self):
+        # At most ten lines a second are drawn: enough tiles for some of them.
+        with self.on_terminal("tiles", "points.f64", "--tile-points", 50, "-o", "mesh.cadt") as (process, terminal):
+            self.assertRegex(terminal.wait_for(), r"(?s)tiles \d+/127 .*\rpoints")
+            self.assertEqual(process.wait(timeout=60), 0)
 
     def test_other_runs_are_refused(self):
         self.fails(3, *self.COMMAND, "whole.cadt", says=("whole.cadt", "--resume"))

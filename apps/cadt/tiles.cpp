@@ -151,6 +151,11 @@ int run(const TilesCommand& c) {
     }
   });
   line.clear();
+  if (result.whole.dimension < 2 && !c.quiet) {
+    say("cadt: warning: no triangles: all points lie on one line, or there are fewer than three; the mesh is empty. "
+        "Check "
+        "--columns and --project if you expected some.\n");
+  }
   write_reports(c, *source, options, result);
   const std::string text = summary(result);
   if (c.output.empty() && c.stats != "-") {

@@ -9,6 +9,7 @@
 #include "text.hpp"
 #include "tile_errors.hpp"
 #include "tiles/files.hpp"
+#include "tiles/mesh_directory.hpp"
 #include "tiles/report.hpp"
 #include "tiles/run.hpp"
 
@@ -138,9 +139,20 @@ int run(const TilesCommand& c) {
     source = open_source(c);
     line.start(source->size());
     const InPhase in_phase(Phase::cooperative);
-    result = tiles::run(*source, options);
+    try {
+      result = tiles::run(*source, options);
+    } catch (const Cancelled&) {
+      line.clear();
+      if (tiles::is_mesh_directory(c.output)) say(fmt::format("cadt: {} can be continued with --resume\n", c.output));
+      throw;
+    }
   });
   line.clear();
+  if (result.whole.dimension < 2 && !c.quiet) {
+    say("cadt: warning: no triangles: all points lie on one line, or there are fewer than three; the mesh is empty. "
+        "Check "
+        "--columns and --project if you expected some.\n");
+  }
   write_reports(c, *source, options, result);
   const std::string text = summary(result);
   if (c.output.empty() && c.stats != "-") {

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cadt import _cadt, _devices
+from cadt import _cadt
 from cadt._errors import OptionError
 from cadt.mpi._exchange import Group
 from cadt.tiles._nodes import (
@@ -21,6 +21,7 @@ from cadt.tiles._nodes import (
     apply_links,
     check_complete,
     mesh_hash,
+    share,
 )
 from cadt.tiles._tree import TILE_POINTS, Tree, build_tree, first_not_finite, new_builder, normalized, not_finite
 
@@ -314,14 +315,5 @@ def _share(group: Group, where: Where, tile_points: int) -> Where:
     together = sum(other == cores for other in local.allgather(cores))  # not where each is bound to its own
     local.Free()
 
-    def choose() -> Where:
-        backend, device, threads = where.backend, where.device, where.threads
-        cards: list[int] = []
-        if device is None and backend != "host" and (backend is not None or tile_points >= _devices.SMALL):
-            wanted = backend or "cuda"
-            cards = [d.index for d in _devices.devices() if d.backend == wanted and d.usable]
-        if cards:
-            backend, device = backend or "cuda", cards[number % len(cards)]
-        return Where(backend or "host", device, threads or max(1, len(cores) // together), where.max_memory)
-
-    return group.together(choose)
+    threads = where.threads or max(1, len(cores) // together)
+    return group.together(lambda: share(replace(where, threads=threads), tile_points, number))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -286,3 +286,21 @@ class Where:
         if options.backend == "auto" and _devices.prefers_host(n):
             options = options.on_host()
         return options, _devices.open_device(options, (options.backend, self.device, self.threads, None))
+
+
+def share(where: Where, tile_points: int, number: int) -> Where:
+    """The card of one of several processes of a machine, `number` of them before it; the host where there is none that
+    would be worth it."""
+    backend, device = where.backend, where.device
+    cards: list[int] = []
+    if device is None and backend != "host" and (backend is not None or tile_points >= _devices.SMALL):
+        wanted = backend or "cuda"
+        cards = [d.index for d in _known_devices() if d.backend == wanted and d.usable]
+    if cards:
+        backend, device = backend or "cuda", cards[number % len(cards)]
+    return replace(where, backend=backend or "host", device=device)
+
+
+@functools.cache
+def _known_devices() -> list[_devices.DeviceInfo]:
+    return _devices.devices()

@@ -72,13 +72,21 @@ void bind_sums(nb::module_& m) {
       .def_ro("certified_edges", &NodeSums::certified_edges, "Edges whose circles were examined, each once.")
       .def_ro("dimension", &NodeSums::dimension, "Dimension of all points so far: -1 (none) to 2.")
       .def_prop_ro(
-          "hash", [](const NodeSums& s) { return s.hash.to_string(); }, "Sum of the hashes of triangles and duplicates.")
+          "hash", [](const NodeSums& s) { return s.hash.to_string(); },
+          "Sum of the hashes of triangles and duplicates.")
       .def("__add__",
            [](NodeSums a, const NodeSums& b) {
              a += b;
              return a;
            })
-      .def("__eq__", [](const NodeSums& a, const NodeSums& b) { return a == b; })
+      .def(
+          "__eq__", [](const NodeSums& a, const NodeSums& b) { return a == b; }, nb::is_operator(),
+          nb::sig("def __eq__(self, arg: object, /) -> bool"))
+      .def("__repr__",
+           [](const NodeSums& s) {
+             return "<cadt.tiles.Sums: " + std::to_string(s.points) + " points, " + std::to_string(s.triangles) +
+                    " triangles, " + std::to_string(s.certified_edges) + " certified edges>";
+           })
       .def("__getstate__",
            [](const NodeSums& s) -> SumsState {
              return {s.points,          s.distinct,  s.triangles, s.hull_edges,
@@ -108,8 +116,9 @@ void bind_open(nb::module_& m) {
           "Edges between open vertices with a final triangle on one side alone.")
       .def("__len__", [](const cadt::Open& o) { return o.ids.size(); })
       .def("__getstate__", [](const cadt::Open& o) { return array_of(cadt::tiles::pack(o)); })
-      .def("__setstate__",
-           [](cadt::Open& self, const Words& words) { new (&self) cadt::Open(cadt::tiles::unpack_open(span_of(words))); });
+      .def("__setstate__", [](cadt::Open& self, const Words& words) {
+        new (&self) cadt::Open(cadt::tiles::unpack_open(span_of(words)));
+      });
 }
 
 }  // namespace
@@ -141,13 +150,14 @@ void bind_tile_nodes(nb::module_& m) {
             });
           },
           nb::rv_policy::automatic)
-      .def_prop_ro("links", [](const TileNode& n) { return array_of(std::vector(n.data.links)); },
-                   nb::rv_policy::automatic);
-  m.def("apply_links",
-        [](std::uint32_t node, const WordRows& messages, const LinkArray& links) {
-          cadt::tiles::apply_messages(node, links_of(messages), {links.data(), links.size()});
-        },
-        nb::arg("node"), nb::arg("messages"), nb::arg("links"));
+      .def_prop_ro(
+          "links", [](const TileNode& n) { return array_of(std::vector(n.data.links)); }, nb::rv_policy::automatic);
+  m.def(
+      "apply_links",
+      [](std::uint32_t node, const WordRows& messages, const LinkArray& links) {
+        cadt::tiles::apply_messages(node, links_of(messages), {links.data(), links.size()});
+      },
+      nb::arg("node"), nb::arg("messages"), nb::arg("links"));
   m.def("node_points", [=](const Node& n) { return view(n, n->data.xy, 2); });
   m.def("node_ids", [=](const Node& n) { return view(n, n->data.ids, 0); });
   m.def("node_triangles", [=](const Node& n) { return view(n, n->data.part.triangles, 3); });

@@ -21,8 +21,7 @@ using Hash = std::pair<std::uint64_t, std::uint64_t>;
 
 NumpyArray<double> boxes_of(const TileTree& tree) {
   std::vector<double> boxes;
-  for (const auto& n : tree.nodes())
-    boxes.insert(boxes.end(), {n.box.min_x, n.box.min_y, n.box.max_x, n.box.max_y});
+  for (const auto& n : tree.nodes()) boxes.insert(boxes.end(), {n.box.min_x, n.box.min_y, n.box.max_x, n.box.max_y});
   return array_of(std::move(boxes), 4);
 }
 
@@ -45,7 +44,8 @@ NumpyArray<std::uint64_t> counts_of(const TileTree& tree) {
 
 TileTree tree_of(const Boxes& boxes, const Children& children, const Words& counts) {
   const std::size_t n = boxes.shape(0);
-  if (children.shape(0) != n || counts.shape(0) != n) throw nb::value_error("arrays of a tree have a row for each node");
+  if (children.shape(0) != n || counts.shape(0) != n)
+    throw nb::value_error("arrays of a tree have a row for each node");
   std::vector<cadt::tiles::TreeNode> nodes(n);
   for (std::size_t i = 0; i < n; ++i) {
     const double* box = boxes.data() + 4 * i;
@@ -160,7 +160,9 @@ void bind_tile_tree(nb::module_& m) {
       .def_prop_ro("children", &children_of, nb::rv_policy::automatic)
       .def_prop_ro("counts", &counts_of, nb::rv_policy::automatic)
       .def("__len__", &TileTree::size)
-      .def("__eq__", [](const TileTree& a, const TileTree& b) { return a == b; })
+      .def(
+          "__eq__", [](const TileTree& a, const TileTree& b) { return a == b; }, nb::is_operator(),
+          nb::sig("def __eq__(self, arg: object, /) -> bool"))
       .def("leaf_of",
            [](const TileTree& tree, const Coordinates& points) {
              std::vector<std::int64_t> leaves(points.shape(0));
@@ -170,17 +172,19 @@ void bind_tile_tree(nb::module_& m) {
              });
              return array_of(std::move(leaves));
            })
-      .def("__getstate__",
-           [](const TileTree& t) { return nb::make_tuple(boxes_of(t), children_of(t), counts_of(t)); })
+      .def("__getstate__", [](const TileTree& t) { return nb::make_tuple(boxes_of(t), children_of(t), counts_of(t)); })
       .def("__setstate__", [](TileTree& self, const std::tuple<Boxes, Children, Words>& state) {
         new (&self) TileTree(std::apply(tree_of, state));
       });
 
   nb::class_<TreePass>(m, "TreePass")
-      .def("__iadd__", [](TreePass& a, const TreePass& b) -> TreePass& {
-        if (a.counts.size() != b.counts.size()) throw nb::value_error("the passes are not of the same builder");
-        return a += b;
-      }, nb::rv_policy::none)
+      .def(
+          "__iadd__",
+          [](TreePass& a, const TreePass& b) -> TreePass& {
+            if (a.counts.size() != b.counts.size()) throw nb::value_error("the passes are not of the same builder");
+            return a += b;
+          },
+          nb::rv_policy::none)
       .def("arrays", &arrays_of)
       .def_static("of_arrays", &pass_of)
       .def("__getstate__", &arrays_of)
@@ -191,10 +195,8 @@ void bind_tile_tree(nb::module_& m) {
       .def(nb::init<std::uint64_t, std::uint64_t>(), nb::arg("points"), nb::arg("tile_points"))
       .def_prop_ro("done", &Builder::done)
       .def("new_pass", &Builder::new_pass)
-      .def("look_at",
-           [](const Builder& b, TreePass& pass, std::uint64_t first, const Coordinates& xy) {
-             without_gil([&] { b.look_at(pass, first, span_of(xy)); });
-           })
+      .def("look_at", [](const Builder& b, TreePass& pass, std::uint64_t first,
+                         const Coordinates& xy) { without_gil([&] { b.look_at(pass, first, span_of(xy)); }); })
       .def("finish_pass", &Builder::finish)
       .def("take", &Builder::take)
       .def("__getstate__", &Builder::state)

@@ -153,13 +153,14 @@ def triangulate(
     pieces = cut(opened, PIECE_POINTS)
 
     builder = new_builder(sum(file.count for file in opened), tile_points)
-    looks, found = tasks.look(pieces, builder)
+    looks, first_pass = tasks.look(pieces, builder)
     bad = [look.bad for look in looks if look.bad is not None]
     if bad:
         raise min(bad, key=lambda error: error.index)
+    if not builder.done:
+        builder.finish_pass(first_pass)
     while not builder.done:
-        builder.finish_pass(found if found is not None else tasks.pass_of(pieces, builder))
-        found = None
+        builder.finish_pass(tasks.pass_of(pieces, builder))
     tree = Tree(builder.take())
 
     store = None if path is None else (path, _sum([look.content for look in looks]))

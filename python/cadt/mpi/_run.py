@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
@@ -246,10 +247,12 @@ class _Run:
             sums += part.sums
             return made.open
 
+        def make_all(level: list[int]) -> dict[int, Open]:
+            return {node: make(node) for node in level}
+
         for height in range(int(tree.heights.max()) + 1):
             level = np.flatnonzero((tree.heights == height) & (owners == group.rank)).tolist()
-            made = group.together(lambda level=level: {node: make(node) for node in level})
-            opens.update(self._pass_up(made))
+            opens.update(self._pass_up(group.together(functools.partial(make_all, level))))
         del take
         rows = _rows(told)
         receivers = owners[(rows[:, 0] >> np.uint64(LOCAL_BITS)).astype(np.int64)]

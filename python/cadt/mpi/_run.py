@@ -111,7 +111,7 @@ def triangulate(
     Notes
     -----
     An exception of one rank is raised on all, also one of the consumer; its attribute `rank` is that rank. Memory of a
-    rank: about 72 bytes for each of its points, and what its triangulations take. All ranks wait for each other after the
+    rank: 44 bytes for each of its points, 96 where parts are kept, and what its triangulations take. All ranks wait for each other after the
     leaves and each level of joins. Not for several threads of a rank at once.
     """
     private = comm.Dup()

@@ -3,18 +3,9 @@ from __future__ import annotations
 
 import pathlib
 
-import pytest
 from scale_needed import MISSING
 
 
 def pytest_ignore_collect(collection_path: pathlib.Path) -> bool | None:
     """Without the packages, test_scale_packages.py alone is left, and says so."""
     return (MISSING and collection_path.match("test_*.py") and collection_path.name != "test_scale_packages.py") or None
-
-
-@pytest.fixture(scope="session")
-def xy_of_directories():
-    """Points of the directories that must be equal: more than two blocks of hashes."""
-    from mpi_program import directory_points
-
-    return directory_points()

@@ -18,7 +18,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
 import cadt
 import cadt.mpi
 import numpy as np
-from cadt.mpi import _exchange
+from cadt.mpi import _exchange, _run
 from tile_meshes import families, require_same
 
 
@@ -57,6 +57,15 @@ def meshes(comm, folder: pathlib.Path) -> list[str]:
             assert mesh.tree == cadt.tiles.Tree.of(xy, tile_points), name
             require_same(xy, all_of(comm, mesh), mesh.bases, mesh.sums)
     return list(families())
+
+
+def tree_of_a_sample(comm, folder: pathlib.Path) -> int:
+    """Of so many points that not all are in the sample: their indices decide."""
+    xy = np.random.default_rng(8).random((1_200_000, 2))
+    tree = _run._Run(_exchange.Group(comm), share(comm, xy), 200_000).tree
+    if comm.rank == 0:
+        assert tree == cadt.tiles.Tree.of(xy, 200_000)
+    return len(tree)
 
 
 def work_is_shared(comm, folder: pathlib.Path) -> list[int]:
@@ -98,6 +107,7 @@ def directory(comm, folder: pathlib.Path) -> str:
     out = folder / "mesh.cadt"
     mesh = cadt.mpi.triangulate(comm, share(comm, xy), tile_points=25_000, out=out)
     assert mesh.hash == cadt.Delaunay(xy).hash and not mesh.parts
+    assert not any(np.signbit(np.load(file)).any() for file in out.glob("*/points.npy")), "-0 is read as 0"
     assert not (out / "unfinished").exists() and len(list(out.glob("node-*"))) == len(mesh.tree)
     manifest = json.loads((out / "manifest.json").read_text())
     assert manifest["complete"] and manifest["hash"] == mesh.hash
@@ -176,6 +186,7 @@ def main(folder: pathlib.Path) -> None:
     results = {}
     cases = (
         meshes,
+        tree_of_a_sample,
         work_is_shared,
         duplicates_across_ranks,
         small_messages,

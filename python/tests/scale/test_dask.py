@@ -14,6 +14,7 @@ import dask.distributed
 import laspy
 import numpy as np
 import pytest
+from cadt import _cadt
 from cadt.dask import _run, _sources
 from mpi_program import digest, directory_points
 from tile_meshes import families
@@ -122,6 +123,30 @@ def test_pieces_of_files(
     files = [tmp_path / "a.laz", save(tmp_path / "b.npy", xy[90_000:100_000]), save(tmp_path / "c.npy", xy[100_000:])]
     mesh = cadt.dask.triangulate(files, client, tile_points=30_000)
     require_mesh(mesh, np.concatenate([laz, xy[90_000:]]))
+
+
+def test_a_piece_that_ends_where_a_tile_begins(
+    client: dask.distributed.Client, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The median, 1, is the largest x of the first piece."""
+    monkeypatch.setattr(_run, "PIECE_POINTS", 1 << 16)
+    rng = np.random.default_rng(5)
+    x = np.concatenate([rng.random(65_526), np.ones(20), 1 + rng.random(65_526)])
+    xy = np.column_stack([x, rng.random(len(x)) / 4])
+    mesh = cadt.dask.triangulate([save(tmp_path / "xy.npy", xy)], client, tile_points=70_000)
+    assert mesh.tree.boxes[1, 0] == 1 == xy[: 1 << 16, 0].max()
+    require_mesh(mesh, xy)
+
+
+def test_a_sample_of_pieces(tmp_path: pathlib.Path) -> None:
+    """Of so many points that not all are in it: their indices decide."""
+    xy = np.random.default_rng(8).random((1_200_000, 2))
+    builder = _cadt.TreeBuilder(len(xy), 200_000)
+    pieces = _sources.cut([_sources.open_file(save(tmp_path / "xy.npy", xy))], 1 << 18)
+    total = _run._add_passes([_run._look_at(piece, builder)[1] for piece in pieces])
+    builder.finish_pass(total)
+    builder.finish_pass(_run._add_passes([_run._pass_of(piece, builder) for piece in pieces]))
+    assert cadt.tiles.Tree(builder.take()) == cadt.tiles.Tree.of(xy, 200_000)
 
 
 def test_cut() -> None:

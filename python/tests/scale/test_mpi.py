@@ -9,12 +9,15 @@ import pathlib
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+from mpi_program import digest, directory_points
 
 HERE = pathlib.Path(__file__).parent
 RANKS = (0, 1, 2, 3, 5)  # 0: one process, without mpirun
 CASES = (
     "meshes",
+    "tree_of_a_sample",
     "work_is_shared",
     "duplicates_across_ranks",
     "small_messages",
@@ -51,6 +54,16 @@ def test_case(results: dict[int, dict[str, dict]], ranks: int, case: str) -> Non
 
 def test_all_cases_are_run(results: dict[int, dict[str, dict]]) -> None:
     assert all(set(of) == set(CASES) for of in results.values())
+
+
+def test_the_program_writes_the_same(results: dict[int, dict[str, dict]], tmp_path: pathlib.Path) -> None:
+    program = os.environ.get("CADT_PROGRAM", "")
+    if not program:
+        pytest.skip("CADT_PROGRAM does not name the program cadt, whose directories are compared")
+    np.save(tmp_path / "xy.npy", directory_points())
+    command = [program, "tiles", tmp_path / "xy.npy", "-o", tmp_path / "mesh.cadt", "--tile-points", "25000"]
+    subprocess.run([*command, "--backend", "host"], check=True, capture_output=True, timeout=100)
+    assert digest(tmp_path / "mesh.cadt") == results[1]["directory"]["result"]
 
 
 def test_directories_are_equal_byte_by_byte(results: dict[int, dict[str, dict]]) -> None:

@@ -4,6 +4,7 @@
 #include <cadt/errors.hpp>
 #include <cadt/io/errors.hpp>
 
+#include "tiles/cells.hpp"
 #include "tiles/machine.hpp"
 #include "tiles/parallel.hpp"
 #include "tiles/schedule.hpp"
@@ -51,15 +52,21 @@ std::uint64_t shuffle_memory(const PointSource& source, const RunOptions& option
   return available > leaf ? std::max<std::uint64_t>((available - leaf) / 2, 1) : 1;
 }
 
-std::vector<Triangulator> open_devices(const RunOptions& options) {
-  std::vector<Triangulator> devices;
+std::vector<Workers> open_devices(const RunOptions& options) {
+  std::vector<Workers> devices;
   for (Options chosen : options.devices) {
-    chosen.order = Order::canonical;
+    // Without arrays on the host nobody sees the order.
+    chosen.order = options.output.empty() && !options.collect && !options.consumer ? Order::fast : Order::canonical;
     chosen.keep_points = KeepPoints::no;
     chosen.stop = options.stop;
-    devices.emplace_back(chosen);
+    devices.push_back({Triangulator(chosen), Triangulator(chosen)});
   }
   return devices;
+}
+
+/// Whether the leaves are ranges of a set that is made where it is needed.
+bool in_cells(const PointSource& source, const RunOptions& options) {
+  return source.cells() != nullptr && source.cells()->depth_for(options.tile_points);
 }
 
 LeafPoints all_points(const PointSource& source, std::uint64_t first_id) {
@@ -78,7 +85,7 @@ NodeReport report_of(const NodeData& data, unsigned device) {
   return {.times = data.times,
           .points = data.sums.points,
           .triangles = data.sums.triangles,
-          .open = data.open.ids.size(),
+          .open = data.open_vertices,
           .device = device,
           .resumed = false,
           .statistics = data.statistics};
@@ -90,7 +97,7 @@ class Run {
   Run(const PointSource& source, const RunOptions& options, RunResult& result)
       : source_(source), options_(options), result_(result), tree_(result.plan.tree) {}
 
-  void operator()(std::vector<Triangulator>& devices) {
+  void operator()(std::vector<Workers>& devices) {
     result_.nodes.resize(tree_.size());
     if (!options_.output.empty()) open_store();
     if (store_ && store_->complete()) {
@@ -141,7 +148,7 @@ class Run {
   }
 
   void shuffle_points() {
-    if (tree_.size() == 1) return;
+    if (tree_.size() == 1 || in_cells(source_, options_)) return;
     ShuffleOptions shuffling;
     shuffling.scratch = options_.scratch;
     shuffling.first_id = options_.first_id;
@@ -156,9 +163,30 @@ class Run {
     leaves_ = shuffle(source_, tree_, shuffling);
   }
 
-  void compute(std::vector<Triangulator>& devices) {
+  /// By node: the first point of each leaf, where they are ranges.
+  [[nodiscard]] std::vector<std::uint64_t> firsts_of_leaves() const {
+    std::vector<std::uint64_t> firsts(tree_.size());
+    std::uint64_t first = 0;
+    for (const std::uint32_t leaf : tree_.leaves()) {
+      firsts[leaf] = first;
+      first += tree_.node(leaf).points;
+    }
+    return firsts;
+  }
+
+  void compute(std::vector<Workers>& devices) {
     Job job(tree_, done_);
+    const std::vector<std::uint64_t> firsts =
+        in_cells(source_, options_) ? firsts_of_leaves() : std::vector<std::uint64_t>();
     job.read_leaf = [&](std::uint32_t leaf) {
+      if (!firsts.empty()) {
+        LeafPoints points;
+        points.cells = source_.cells();
+        points.first = firsts[leaf];
+        points.count = tree_.node(leaf).points;
+        points.first_id = options_.first_id + points.first;
+        return points;
+      }
       return leaves_ ? leaves_->take(leaf) : all_points(source_, options_.first_id);
     };
     job.read_open = [&](std::uint32_t node) { return store_.value().read_open(node); };
@@ -204,6 +232,12 @@ Plan make_plan(const PointSource& source, const RunOptions& options) {
   Plan plan;
   plan.tile_points = options.tile_points;
   plan.first_id = options.first_id;
+  if (const UniformCells* cells = source.cells())
+    if (std::optional<TileTree> tree = tree_of_cells(*cells, options.tile_points)) {
+      plan.content = content_of_cells(*cells);
+      plan.tree = std::move(*tree);
+      return plan;
+    }
   TreeBuilder builder(source.size(), options.tile_points);
   const std::uint64_t blocks = (source.size() + block_points - 1) / block_points;
   const unsigned threads = threads_for(blocks, options.devices.empty() ? 0 : options.devices.front().threads);
@@ -233,7 +267,8 @@ void preflight(const PointSource& source, const RunOptions& options) {
     throw LimitError("a tile takes at most as many points as one triangulation: make --tile-points smaller",
                      static_cast<std::size_t>(options.tile_points), max_points());
   // Memory: that of the leaves at work, and of the points of all leaves unless they go to scratch.
-  const std::uint64_t shuffled = points > options.tile_points ? points * bytes_per_shuffled_point : 0;
+  const bool shuffles = points > options.tile_points && !in_cells(source, options);
+  const std::uint64_t shuffled = shuffles ? points * bytes_per_shuffled_point : 0;
   const std::uint64_t available = available_memory(), leaf = leaf_memory(source, options);
   const bool in_memory = shuffled <= shuffle_memory(source, options);
   if (leaf > available) {
@@ -265,8 +300,9 @@ RunResult run(const PointSource& source, const RunOptions& options) {
   if (options.devices.empty()) throw std::invalid_argument("a run needs a device");
   preflight(source, options);
   if (!options.output.empty() && !options.resume) check_new_directory(options.output);
-  std::vector<Triangulator> devices = open_devices(options);
+  std::vector<Workers> devices = open_devices(options);
   RunResult result;
+  for (const Workers& device : devices) result.devices.push_back(device.leaves.device().name);
   Stopwatch watch;
   result.plan = make_plan(source, options);
   result.sample_seconds = watch.lap();

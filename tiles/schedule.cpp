@@ -19,7 +19,7 @@ namespace {
 
 class Schedule {
  public:
-  Schedule(std::vector<Triangulator>& devices, const Job& job) : devices_(devices), job_(job), done_(job.done) {
+  Schedule(std::vector<Workers>& devices, const Job& job) : devices_(devices), job_(job), done_(job.done) {
     opens_.resize(job.tree.size());
     for (std::uint32_t i = 0; i < job.tree.size(); ++i) {
       if (done_[i]) ++count_done_, points_done_ += job.tree.node(i).is_leaf() ? job.tree.node(i).points : 0;
@@ -32,9 +32,10 @@ class Schedule {
     guarded([&] {
       threads.emplace_back([this] { guarded([this] { read(); }); });
       threads.emplace_back([this] { guarded([this] { write(); }); });
-      for (unsigned d = 1; d < devices_.size(); ++d)
-        threads.emplace_back([this, d] { guarded([this, d] { compute(d); }); });
-      compute(0);
+      for (unsigned d = 0; d < devices_.size(); ++d) {
+        threads.emplace_back([this, d] { guarded([this, d] { compute_leaves(d); }); });
+        threads.emplace_back([this, d] { guarded([this, d] { compute_joins(d); }); });
+      }
     });
     for (std::thread& thread : threads) thread.join();
     if (error_) std::rethrow_exception(error_);
@@ -73,6 +74,9 @@ class Schedule {
       loaded_.emplace(leaf, std::move(loaded));
       changed_.notify_all();
     }
+    const std::scoped_lock guard(lock_);
+    leaves_taken_ = true;
+    changed_.notify_all();
   }
 
   /// Makes a join ready once its children are done. \pre locked
@@ -81,34 +85,38 @@ class Schedule {
     if (done_[job_.tree.node(node).left] && done_[job_.tree.node(node).right]) joins_.insert(node);
   }
 
-  void compute(unsigned device) {
+  void compute_leaves(unsigned device) {
     for (;;) {
       std::unique_lock guard(lock_);
-      changed_.wait(guard,
-                    [&] { return count_done_ == done_.size() || !joins_.empty() || !loaded_.empty() || error_; });
-      if (count_done_ == done_.size() || error_) return;
-      const bool join = !joins_.empty() && (loaded_.empty() || *joins_.begin() < loaded_.begin()->first);
-      const std::uint32_t node = join ? *joins_.begin() : loaded_.begin()->first;
-      const TreeNode& where = job_.tree.node(node);
-      NodeData data;
-      if (join) {
-        joins_.erase(node);
-        std::vector<std::optional<Open>> given;
-        for (const std::uint32_t child : {where.left, where.right}) given.push_back(std::exchange(opens_[child], {}));
-        guard.unlock();
-        std::vector<Open> children;
-        for (std::size_t i = 0; i < given.size(); ++i)
-          children.push_back(given[i] ? std::move(*given[i]) : job_.read_open(i == 0 ? where.left : where.right));
-        data = compute_join(devices_[device], children, where.box, node, job_.compute);
-      } else {
-        Loaded loaded = std::move(loaded_.begin()->second);
-        loaded_.erase(loaded_.begin());
-        changed_.notify_all();  // there is room for another
-        guard.unlock();
-        data = compute_leaf(devices_[device], std::move(loaded.points), where.box, node, job_.compute);
-        data.times.read = loaded.seconds;
-      }
+      changed_.wait(guard, [&] { return !loaded_.empty() || leaves_taken_ || error_; });
+      if (loaded_.empty() || error_) return;
+      const std::uint32_t node = loaded_.begin()->first;
+      Loaded loaded = std::move(loaded_.begin()->second);
+      loaded_.erase(loaded_.begin());
+      changed_.notify_all();  // there is room for another
+      guard.unlock();
+      NodeData data =
+          compute_leaf(devices_[device].leaves, std::move(loaded.points), job_.tree.node(node).box, node, job_.compute);
+      data.times.read = loaded.seconds;
       finish(device, std::move(data));
+    }
+  }
+
+  void compute_joins(unsigned device) {
+    for (;;) {
+      std::unique_lock guard(lock_);
+      changed_.wait(guard, [&] { return !joins_.empty() || count_done_ == done_.size() || error_; });
+      if (joins_.empty() || error_) return;
+      const std::uint32_t node = *joins_.begin();
+      joins_.erase(joins_.begin());
+      const TreeNode& where = job_.tree.node(node);
+      std::vector<std::optional<Open>> given;
+      for (const std::uint32_t child : {where.left, where.right}) given.push_back(std::exchange(opens_[child], {}));
+      guard.unlock();
+      std::vector<Open> children;
+      for (std::size_t i = 0; i < given.size(); ++i)
+        children.push_back(given[i] ? std::move(*given[i]) : job_.read_open(i == 0 ? where.left : where.right));
+      finish(device, compute_join(devices_[device].joins, children, where.box, node, job_.compute));
     }
   }
 
@@ -150,7 +158,7 @@ class Schedule {
     }
   }
 
-  std::vector<Triangulator>& devices_;
+  std::vector<Workers>& devices_;
   const Job& job_;
   std::mutex lock_;
   std::condition_variable changed_;
@@ -159,6 +167,7 @@ class Schedule {
   std::size_t count_done_ = 0;
   std::uint64_t points_done_ = 0;  // of the writer
   std::map<std::uint32_t, Loaded> loaded_;
+  bool leaves_taken_ = false;  // no more are read
   std::set<std::uint32_t> joins_;
   std::vector<std::optional<Open>> opens_;
   std::deque<std::pair<unsigned, NodeData>> finished_;
@@ -166,6 +175,6 @@ class Schedule {
 
 }  // namespace
 
-void run_nodes(std::vector<Triangulator>& devices, const Job& job) { Schedule(devices, job).run(); }
+void run_nodes(std::vector<Workers>& devices, const Job& job) { Schedule(devices, job).run(); }
 
 }  // namespace cadt::tiles

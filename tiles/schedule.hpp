@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes of a tree on the devices of one process: a thread reads leaves ahead, a thread for each device computes,
+// The nodes of a tree on the devices of one process: a thread reads leaves ahead, two threads for each device compute,
 // and a thread writes what is finished.
 #pragma once
 
@@ -15,6 +15,11 @@
 #include <vector>
 
 namespace cadt::tiles {
+
+/// What one device computes with at the same time: joins are small and would keep it waiting.
+struct Workers {
+  Triangulator leaves, joins;
+};
 
 struct Job {
   Job(const TileTree& tree_of_nodes, std::vector<bool> done_before)
@@ -32,9 +37,10 @@ struct Job {
   cadt::stop_token stop;
 };
 
-/// Returns when all nodes are done. On each device the ready node with the lowest number comes first, so what waits for
-/// its sibling is little. In memory are, for each device, a leaf that is computed and one that is written, and one leaf
-/// more than there are devices that have been read. \throws the first error of any thread, after all have ended
-void run_nodes(std::vector<Triangulator>& devices, const Job& job);
+/// Returns when all nodes are done. Each device has a thread for leaves and one for joins; the ready node with the
+/// lowest number comes first, so what waits for its sibling is little. In memory are, for each device, a leaf that is
+/// computed and one that is written, and one leaf more than there are devices that have been read. \throws the first
+/// error of any thread, after all have ended
+void run_nodes(std::vector<Workers>& devices, const Job& job);
 
 }  // namespace cadt::tiles

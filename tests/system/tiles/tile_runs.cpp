@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/system/tiles/tile_runs.hpp"
 
-#include <atomic>
 #include <unistd.h>
+#include <atomic>
 
 namespace cadt::test {
 
@@ -58,7 +58,8 @@ testing::AssertionResult same_in_tiles(const Points& xy, std::span<const std::ui
     const VerifyReport report = tiles::verify(nodes);
     if (report.ok) continue;
     for (const Check& check : report.checks)
-      if (!check.passed) return testing::AssertionFailure() << "tiles of " << size << ": " << check.name << ": " << check.what;
+      if (!check.passed)
+        return testing::AssertionFailure() << "tiles of " << size << ": " << check.name << ": " << check.what;
   }
   return testing::AssertionSuccess();
 }

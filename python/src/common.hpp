@@ -28,6 +28,7 @@ namespace nb = nanobind;
 
 /// Points of the host, n x 2 doubles or floats with strides that are not negative (cadt/_points.py sees to that).
 using Points = nb::ndarray<nb::ro, nb::ndim<2>, nb::device::cpu>;
+using Coordinates = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Values = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const std::int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
@@ -51,6 +52,12 @@ template <class T>
   nb::capsule keep(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
   const std::array<std::size_t, 2> shape{columns == 0 ? kept->size() : kept->size() / columns, columns};
   return NumpyArray<T>(kept->data(), columns == 0 ? 1 : 2, shape.data(), keep);
+}
+
+template <class Work>
+auto without_gil(Work&& work) {
+  nb::gil_scoped_release released;
+  return work();
 }
 
 /// A call of the library without the GIL. While it runs, Ctrl-C and what `progress(phase, fraction)` raises end it: the

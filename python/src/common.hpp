@@ -78,10 +78,7 @@ class Call {
   template <class Work>
   auto operator()(Work&& work) {
     try {
-      auto result = [&] {
-        nb::gil_scoped_release released;
-        return work();
-      }();
+      auto result = without_gil(std::forward<Work>(work));
       if (raised_) throw std::move(*raised_);
       return result;
     } catch (const cadt::Cancelled&) {

@@ -15,6 +15,12 @@ Hash128 hash_bytes(const void* bytes, std::size_t size, std::uint64_t seed) noex
   return {hash.high64, hash.low64};
 }
 
+void add_block_hash(Hash128& content, std::uint64_t first, std::span<const double> xy) {
+  const Hash128 block = hash_bytes(xy.data(), xy.size_bytes(), first);
+  content.high += block.high;
+  content.low += block.low;
+}
+
 struct HashStream::State {
   XXH3_state_t* xxh = XXH3_createState();
   ~State() { XXH3_freeState(xxh); }

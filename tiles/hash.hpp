@@ -7,11 +7,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace cadt::tiles {
 
 [[nodiscard]] Hash128 hash_bytes(const void* bytes, std::size_t size, std::uint64_t seed = 0) noexcept;
+
+/// Points that are read, and hashed, at a time: ranges of processes and threads begin at multiples of it.
+inline constexpr std::size_t block_points = std::size_t{1} << 16;
+
+/// Adds the hash of a block of points, x0 y0 x1 y1 ..., that begins with point `first`: those of all blocks in any
+/// order give that of the content, whatever its files.
+void add_block_hash(Hash128& content, std::uint64_t first, std::span<const double> xy);
 
 /// Of bytes that come in pieces.
 class HashStream {

@@ -207,10 +207,4 @@ std::unique_ptr<PointSource> generated(const std::string& name, const io::Genera
   return in_memory(io::generate(name, options).xy, "generated set " + name);
 }
 
-void add_block_hash(Hash128& content, std::uint64_t first, std::span<const double> xy) {
-  const Hash128 block = hash_bytes(xy.data(), xy.size_bytes(), first);
-  content.high += block.high;
-  content.low += block.low;
-}
-
 }  // namespace cadt::tiles

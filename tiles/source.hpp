@@ -2,6 +2,8 @@
 // Where the points of a large set come from: read by range, in the order of their indices.
 #pragma once
 
+#include "tiles/hash.hpp"
+
 #include <cadt/io/generate.hpp>
 #include <cadt/io/points_file.hpp>
 #include <cadt/triangulation.hpp>
@@ -60,15 +62,9 @@ class PointSource {
 /// Points in memory, x0 y0 x1 y1 ...
 [[nodiscard]] std::unique_ptr<PointSource> in_memory(std::vector<double> xy, std::string name = "points");
 
-/// Points that are read, and hashed, at a time: ranges of processes and threads begin at multiples of it.
-inline constexpr std::size_t block_points = std::size_t{1} << 16;
-
 /// Calls `look(first, xy)` for each block of [begin, end) in order, on this thread, while another reads the next one.
 /// `begin` is a multiple of block_points. \throws what `look` and reading throw, Cancelled
 void for_each_block(const PointSource& source, std::uint64_t begin, std::uint64_t end, const cadt::stop_token& stop,
                     const std::function<void(std::uint64_t, std::span<const double>)>& look);
-
-/// Adds the hash of a block: those of all blocks in any order give that of the content, whatever its files.
-void add_block_hash(Hash128& content, std::uint64_t first, std::span<const double> xy);
 
 }  // namespace cadt::tiles

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         Cancelled,
         DeviceError,
         Error,
+        FileError,
         InputError,
         InternalError,
         InvalidMesh,
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
         LimitError,
         OptionError,
         OutOfMemory,
+        ResumeError,
     )
     from cadt._results import Check, VerifyReport, Voronoi
     from cadt._verify import verify
@@ -63,6 +65,7 @@ __all__ = [
     "DeviceError",
     "DeviceInfo",
     "Error",
+    "FileError",
     "InputError",
     "InternalError",
     "InvalidMesh",
@@ -70,6 +73,7 @@ __all__ = [
     "LimitError",
     "OptionError",
     "OutOfMemory",
+    "ResumeError",
     "VerifyReport",
     "Voronoi",
     "__version__",
@@ -85,7 +89,7 @@ def __getattr__(name: str) -> Any:
         value = importlib.import_module("cadt._cadt").version
     elif name in __all__:
         value = getattr(importlib.import_module(f"cadt.{_MODULE_OF.get(name, '_errors')}"), name)
-    elif name in ("scipy", "cupy", "terrain"):
+    elif name in ("scipy", "cupy", "terrain", "tiles", "mpi", "dask"):
         return importlib.import_module(f"cadt.{name}")
     else:
         raise AttributeError(f"module 'cadt' has no attribute {name!r}")

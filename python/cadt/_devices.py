@@ -86,7 +86,8 @@ def make_options(
 
 def open_device(options: _cadt.Options, key: tuple, stream: Any = None) -> Any:
     """The triangulator for `key`, which stays open for the next call. The four used last are kept."""
-    _refuse_after_fork()
+    if options.backend != "host":
+        _refuse_after_fork()
     with _lock:
         triangulator = _open.get(key)
         if triangulator is not None:
@@ -100,11 +101,16 @@ def open_device(options: _cadt.Options, key: tuple, stream: Any = None) -> Any:
     return triangulator
 
 
+def prefers_host(n: int) -> bool:
+    """Whether n points of the host, without a back end that is named, are the host's."""
+    return bool(n < SMALL or _automatic_is_host or _in_child)
+
+
 def device_for(options: _cadt.Options, device: int | str | None, threads: int | None, n: int) -> Any:
     """The open device for points of the host, or None: the host's own call is the faster one, or asked for."""
     global _automatic_is_host
     backend = options.backend
-    if backend == "host" or (backend == "auto" and (n < SMALL or _automatic_is_host or _in_child)):
+    if backend == "host" or (backend == "auto" and prefers_host(n)):
         return None
     triangulator = open_device(options, (backend, device, threads, None))
     if triangulator.backend == "host":
@@ -135,7 +141,8 @@ def _after_fork() -> None:
     # A child has no context of the parent's devices: nothing of theirs may be called, not even a destructor.
     global _lock, _in_child
     _cadt.forked()
-    _in_child = _in_child or bool(_open)
+    # Threads of the host's triangulators are the parent's too, but new ones can be opened.
+    _in_child = _in_child or any(t.backend != "host" for t in _open.values())
     for triangulator in _open.values():
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(triangulator))
     _open.clear()

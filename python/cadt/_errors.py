@@ -121,6 +121,21 @@ class KernelBuildError(Error):
         return type(self), (str(self), self.device, self.options, self.log)
 
 
+class FileError(Error, OSError):
+    """A file that cannot be read, is malformed, or cannot be written; `path` is its name."""
+
+    def __init__(self, message: str, path: str = "") -> None:
+        super().__init__(message)
+        self.path = path
+
+    def __reduce__(self) -> tuple:
+        return type(self), (str(self), self.path)
+
+
+class ResumeError(Error):
+    """There is a mesh directory already, or one of other points, another tile size or format."""
+
+
 class Cancelled(Error):
     """The call was cancelled and has no result."""
 

@@ -3,6 +3,9 @@
 #include "common.hpp"
 
 #include <cadt/errors.hpp>
+#include <cadt/io/errors.hpp>
+
+#include "tiles/manifest.hpp"
 
 namespace cadt_python {
 
@@ -36,6 +39,10 @@ void translate(const std::exception_ptr& thrown, void* /*unused*/) {
     raise("KernelBuildError", e, e.device(), e.options(), e.log());
   } catch (const cadt::Cancelled& e) {
     raise("Cancelled", e);
+  } catch (const cadt::io::FileError& e) {
+    raise("FileError", e, e.path());
+  } catch (const cadt::tiles::ResumeError& e) {
+    raise("ResumeError", e);
   } catch (const cadt::InternalError& e) {
     raise("InternalError", e);
   } catch (const cadt::Error& e) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The extension module cadt._cadt: the C++ interface for the Python code of the package, which documents it.
 #include "common.hpp"
+#ifdef CADT_PYTHON_TILES
+#include "tiles.hpp"
+#endif
 
 NB_MODULE(_cadt, m) {
   using namespace cadt_python;
@@ -15,4 +18,9 @@ NB_MODULE(_cadt, m) {
   bind_device(m);
   bind_queries(m);
   bind_scipy(m);
+#ifdef CADT_PYTHON_TILES
+  bind_tile_nodes(m);
+  bind_tile_tree(m);
+  bind_tile_store(m);
+#endif
 }

@@ -13,6 +13,7 @@ from pathlib import Path
 import cadt
 import numpy as np
 import pytest
+from cadt import _cadt
 
 MODULES = sorted(m.name for m in pkgutil.walk_packages(cadt.__path__, "cadt.") if not m.name.startswith("cadt._cadt"))
 # What needs packages of its own and is tested beside them.
@@ -24,6 +25,13 @@ def test_examples(name: str) -> None:
     for prefix, package in EXTRA.items():
         if name.startswith(prefix):
             pytest.importorskip(package)
+    if name.startswith(("cadt.tiles", "cadt.mpi", "cadt.dask")) and not hasattr(_cadt, "TileTree"):
+        pytest.skip("this build of cadt has no tiles")
+    if name.startswith("cadt.mpi"):
+        try:
+            importlib.import_module("mpi4py.MPI")
+        except (ImportError, RuntimeError) as e:  # the package, or a library of MPI
+            pytest.skip(f"there is no MPI: {e}")
     if name.endswith("__main__"):
         pytest.skip("a program")
     names = {"cadt": cadt, "np": np, "Delaunay": cadt.Delaunay}

@@ -29,6 +29,8 @@ def has_gpu() -> bool:
 
 def prepare(namespace: dict[str, object]) -> None:
     namespace["no_gpu"] = not has_gpu()
+    for name, package in (("no_mpi", "mpi4py"), ("no_dask", "distributed")):
+        namespace[name] = importlib.util.find_spec(package) is None
 
 
 pytest_collect_file = Sybil(

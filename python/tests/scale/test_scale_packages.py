@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where something is missing, the other tests of this folder are left out, and this one says so."""
+
+import pytest
+from scale_needed import MISSING
+
+
+def test_packages_are_there() -> None:
+    if MISSING:
+        pytest.skip(
+            f"cadt.mpi and cadt.dask are not tested: {', '.join(MISSING)} not there: scripts/setup --tests; "
+            "scripts/python_env scale"
+        )

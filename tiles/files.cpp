@@ -173,7 +173,20 @@ MappedFile::MappedFile(const std::string& path) {
   if (descriptor < 0) fail(path, "cannot be opened", errno);
   const system_file::Kind kind = system_file::kind_of(descriptor);
   size_ = kind.size;
-  if (kind.regular && size_ != 0) data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  if (kind.regular && size_ != 0 && !is_small()) data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  if (kind.regular && is_small()) {
+    small_.resize(size_);
+    errno = EIO;
+    for (std::size_t at = 0; at < size_;) {
+      const std::ptrdiff_t got = system_file::read(descriptor, small_.data() + at, size_ - at);
+      if (got <= 0) {
+        const int code = errno;
+        ::close(descriptor);
+        fail(path, "cannot be read", code);
+      }
+      at += static_cast<std::size_t>(got);
+    }
+  }
   const int code = errno;
   ::close(descriptor);
   if (!kind.regular) fail(path, "cannot be read", kind.folder ? EISDIR : EINVAL);
@@ -183,7 +196,9 @@ MappedFile::MappedFile(const std::string& path) {
   }
 }
 MappedFile::MappedFile(MappedFile&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+    : data_(std::exchange(other.data_, nullptr)),
+      size_(std::exchange(other.size_, 0)),
+      small_(std::move(other.small_)) {}
 MappedFile::~MappedFile() {
   if (data_ != nullptr) ::munmap(data_, size_);
 }

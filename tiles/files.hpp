@@ -49,18 +49,23 @@ void rename_folder(const std::string& from, const std::string& to);
 /// With all that is in it; not an error if it is not there.
 void remove_folder(const std::string& path);
 
-/// A file in memory as its pages are read. Must not become shorter meanwhile.
+/// A file in memory as its pages are read. Must not become shorter meanwhile. Small ones are read at once: a process
+/// may have some ten thousand mappings alone.
 class MappedFile {
  public:
   explicit MappedFile(const std::string& path);
   ~MappedFile();
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&&) = delete;
-  [[nodiscard]] std::string_view bytes() const noexcept { return {static_cast<const char*>(data_), size_}; }
+  [[nodiscard]] std::string_view bytes() const noexcept {
+    return {is_small() ? small_.data() : static_cast<const char*>(data_), size_};
+  }
 
  private:
+  [[nodiscard]] bool is_small() const noexcept { return size_ < (std::size_t{1} << 16); }
   void* data_ = nullptr;
   std::size_t size_ = 0;
+  std::vector<char> small_;
 };
 
 /// The numbers of a mapped .npy file, which must be of this type and have `columns` columns (1: one dimension).

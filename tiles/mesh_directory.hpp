@@ -23,6 +23,9 @@ struct NodeArrays {
   std::span<const std::int32_t> triangles, neighbors;
   std::span<const TriangleId> links;
   std::span<const DuplicateId> duplicates;
+  std::shared_ptr<const void> owner;  ///< keeps the arrays of a directory mapped
+  [[nodiscard]] std::size_t number_of_points() const noexcept { return ids.size(); }
+  [[nodiscard]] std::size_t number_of_triangles() const noexcept { return triangles.size() / 3; }
 };
 
 /// A mesh in nodes. Thread-safe.
@@ -31,6 +34,7 @@ class NodeMesh {
   virtual ~NodeMesh() = default;
   [[nodiscard]] virtual const TileTree& tree() const noexcept = 0;
   [[nodiscard]] virtual std::uint64_t first_id() const noexcept = 0;
+  /// \throws io::FileError for files that are damaged, of a directory
   [[nodiscard]] virtual NodeArrays node(std::uint32_t i) const = 0;
 };
 

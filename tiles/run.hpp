@@ -17,7 +17,7 @@
 namespace cadt::tiles {
 
 struct RunProgress {
-  std::string_view phase;  ///< "sample", "shuffle", "tiles", "links"
+  std::string_view phase;  ///< "sample", "check", "shuffle", "tiles", "links"
   double fraction = 0;     ///< of the phase
   std::uint32_t nodes_done = 0, nodes = 0;
 };
@@ -51,7 +51,7 @@ struct RunResult {
   Hash128 hash;  ///< Triangulation::hash of a single run
   std::vector<NodeReport> nodes;
   double sample_seconds = 0, shuffle_seconds = 0, nodes_seconds = 0, links_seconds = 0;
-  std::uint64_t most_open = 0;  ///< vertices in one join
+  std::uint64_t most_open = 0;  ///< open vertices of one node
   bool scratch_used = false;
 };
 

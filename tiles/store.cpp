@@ -74,17 +74,10 @@ bool is_for_resuming(const FileRecord& file) { return file.name.starts_with("unf
 Store::Store(std::string path, const Plan& plan, Start start) : path_(std::move(path)), plan_(plan) {
   while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
   if (start == Start::join) return;
-  const bool exists = fs::exists(path_);
-  if (exists && !fs::is_directory(path_)) throw io::FileError(path_, 0, "is there already, and is no folder");
-  const bool begun = fs::exists(path_ + "/manifest.json");
-  if (!begun) {
-    if (exists && !is_empty_folder(path_))
-      throw ResumeError(path_ + ": the folder is there already and holds no mesh; give another name, or remove it");
+  if (start == Start::create || !fs::exists(path_ + "/manifest.json")) {
+    check_new_directory(path_);
     begin();
     return;
-  }
-  if (start == Start::create) {
-    throw ResumeError(path_ + ": there is a mesh already; --resume continues it if it is not complete, or remove it");
   }
   const Manifest found = read_manifest(path_);
   check_same_plan(found);
@@ -98,6 +91,15 @@ Store::Store(std::string path, const Plan& plan, Start start) : path_(std::move(
   } else {
     begin();  // what is for resuming is gone: all nodes are made again
   }
+}
+
+void check_new_directory(const std::string& path) {
+  if (fs::exists(path + "/manifest.json"))
+    throw ResumeError(path + ": there is a mesh already; --resume continues it if it is not complete, or remove it");
+  if (!fs::exists(path)) return;
+  if (!fs::is_directory(path)) throw io::FileError(path, 0, "is there already, and is no folder");
+  if (!is_empty_folder(path))
+    throw ResumeError(path + ": the folder is there already and holds no mesh; give another name, or remove it");
 }
 
 void Store::begin() {
@@ -185,26 +187,32 @@ void Store::write(const NodeData& node) const {
   unfinished.finish();
 }
 
-void Store::complete_links(std::vector<NodeRecord>& records) const {
+void Store::write_links(std::vector<NodeRecord>& records) const {
   std::vector<Link> messages;
   for (std::uint32_t i = 0; i < records.size(); ++i) {
-    const std::string path = unfinished_folder(i) + "/messages.npy";
-    const std::vector<Link> of_node = unpack_messages(read_words(path));
+    const std::vector<Link> of_node = unpack_messages(read_words(unfinished_folder(i) + "/messages.npy"));
     messages.insert(messages.end(), of_node.begin(), of_node.end());
   }
-  std::sort(messages.begin(), messages.end(), [](const Link& a, const Link& b) {
-    return std::tuple(node_of(a.triangle), a.row) < std::tuple(node_of(b.triangle), b.row);
-  });
-  auto next = messages.begin();
-  for (std::uint32_t i = 0; i < records.size(); ++i) {
+  complete_links(std::move(messages), plan_.tree.size(), [&](std::uint32_t i, std::span<const Link> of_node) {
     std::vector<std::uint64_t> links = read_words(unfinished_folder(i) + "/links.npy");
-    const auto end = std::find_if(next, messages.end(), [&](const Link& m) { return node_of(m.triangle) != i; });
-    apply_messages(i, {next, end}, links);
-    next = end;
+    apply_messages(i, of_node, links);
     FileRecord record = replace_array(node_folder(i) + "/links.npy", array_of(links));
     record.name = node_name(i) + "/links.npy";
     std::erase_if(records[i].files, is_for_resuming);
     records[i].files.push_back(std::move(record));
+  });
+}
+
+void complete_links(std::vector<Link> messages, std::uint32_t nodes,
+                    const std::function<void(std::uint32_t, std::span<const Link>)>& complete) {
+  std::sort(messages.begin(), messages.end(), [](const Link& a, const Link& b) {
+    return std::tuple(node_of(a.triangle), a.row) < std::tuple(node_of(b.triangle), b.row);
+  });
+  auto next = messages.begin();
+  for (std::uint32_t i = 0; i < nodes; ++i) {
+    const auto end = std::find_if(next, messages.end(), [&](const Link& m) { return node_of(m.triangle) != i; });
+    complete(i, {next, end});
+    next = end;
   }
   if (next != messages.end()) throw InternalError("a message is for a node that is not there");
 }
@@ -223,7 +231,7 @@ Manifest Store::finish() {
   }
   require_complete(manifest.whole);
   manifest.hash = hash_of(manifest.whole);
-  complete_links(manifest.nodes);
+  write_links(manifest.nodes);
   replace_text(path_ + "/manifest.json", to_json(manifest));
   remove_folder(path_ + "/unfinished");
   complete_ = true;

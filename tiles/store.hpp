@@ -14,6 +14,8 @@
 #include "tiles/node.hpp"
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -54,13 +56,18 @@ class Store {
   [[nodiscard]] std::string node_folder(std::uint32_t node) const;
   [[nodiscard]] std::string unfinished_folder(std::uint32_t node) const;
   void check_same_plan(const Manifest& found) const;
-  void complete_links(std::vector<NodeRecord>& records) const;
+  void write_links(std::vector<NodeRecord>& records) const;
 
   std::string path_;
   Plan plan_;
   bool complete_ = false;
 };
 
+/// What Store::Start::create will ask, before any work. \throws ResumeError, io::FileError
+void check_new_directory(const std::string& path);
+/// Calls complete(node, messages to it) for each node, ascending. \throws InternalError for a message to no node
+void complete_links(std::vector<Link> messages, std::uint32_t nodes,
+                    const std::function<void(std::uint32_t, std::span<const Link>)>& complete);
 /// Completes the links of a node from all messages to it. \throws InternalError if a row is told twice or never
 void apply_messages(std::uint32_t node, std::span<const Link> messages, std::span<TriangleId> links);
 /// Bytes that the directory of so many points takes at most, with what is there while it is written.

@@ -6,6 +6,7 @@ add_library(cadt_host_verifier OBJECT
   ${CMAKE_CURRENT_LIST_DIR}/hull.cpp
   ${CMAKE_CURRENT_LIST_DIR}/neighbors.cpp
   ${CMAKE_CURRENT_LIST_DIR}/own_result.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/predicates.cpp
   ${CMAKE_CURRENT_LIST_DIR}/report.cpp
   ${CMAKE_CURRENT_LIST_DIR}/structure.cpp
   ${CMAKE_CURRENT_LIST_DIR}/vertices.cpp)

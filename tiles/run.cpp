@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tiles/run.hpp"
+
+#include <cadt/errors.hpp>
+#include <cadt/io/errors.hpp>
+
+#include "tiles/machine.hpp"
+#include "tiles/parallel.hpp"
+#include "tiles/schedule.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace cadt::tiles {
+namespace {
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void tell(const RunOptions& options, std::string_view phase, std::uint64_t done, std::uint64_t all,
+          std::uint32_t nodes_done = 0, std::uint32_t nodes = 0) {
+  if (!options.progress) return;
+  const double fraction = all == 0 ? 1.0 : static_cast<double>(done) / static_cast<double>(all);
+  options.progress({.phase = phase, .fraction = fraction, .nodes_done = nodes_done, .nodes = nodes});
+}
+
+/// What a leaf takes on the host while it and its neighbours in time are read, computed and written.
+std::uint64_t leaf_memory(const PointSource& source, const RunOptions& options) {
+  constexpr std::uint64_t read = 24, written = 24 + 48;
+  const std::uint64_t points = std::min(source.size(), options.tile_points);
+  const bool arrays = !options.output.empty() || options.collect;
+  return points * options.devices.size() * (2 * read + (arrays ? 2 * written : 0));
+}
+
+std::uint64_t shuffle_memory(const PointSource& source, const RunOptions& options) {
+  if (options.host_memory != 0) return options.host_memory;
+  const std::uint64_t available = available_memory(), leaf = leaf_memory(source, options);
+  return available > leaf ? std::max<std::uint64_t>((available - leaf) / 2, 1) : 1;
+}
+
+std::vector<Triangulator> open_devices(const RunOptions& options) {
+  std::vector<Triangulator> devices;
+  for (Options chosen : options.devices) {
+    chosen.order = Order::canonical;
+    chosen.keep_points = KeepPoints::no;
+    chosen.stop = options.stop;
+    devices.emplace_back(chosen);
+  }
+  return devices;
+}
+
+LeafPoints all_points(const PointSource& source, std::uint64_t first_id) {
+  LeafPoints points;
+  points.xy.resize(2 * source.size());
+  for (std::uint64_t at = 0; at < source.size(); at += block_points) {
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(block_points, source.size() - at));
+    source.read(at, count, points.xy.data() + 2 * at);
+  }
+  points.ids.resize(source.size());
+  std::iota(points.ids.begin(), points.ids.end(), first_id);
+  return points;
+}
+
+NodeReport report_of(const NodeData& data, unsigned device) {
+  return {.times = data.times,
+          .points = data.sums.points,
+          .triangles = data.sums.triangles,
+          .open = data.open.ids.size(),
+          .device = device,
+          .resumed = false,
+          .statistics = data.statistics};
+}
+
+/// One run, after its plan is known.
+class Run {
+ public:
+  Run(const PointSource& source, const RunOptions& options, RunResult& result)
+      : source_(source), options_(options), result_(result), tree_(result.plan.tree) {}
+
+  void operator()(std::vector<Triangulator>& devices) {
+    result_.nodes.resize(tree_.size());
+    if (!options_.output.empty()) open_store();
+    if (store_ && store_->complete()) {
+      const Manifest manifest = store_->finish();
+      for (std::uint32_t i = 0; i < tree_.size(); ++i) resumed(i, manifest.nodes[i]);
+      return complete(manifest);
+    }
+    find_done();
+    Stopwatch watch;
+    shuffle_points();
+    result_.shuffle_seconds = watch.lap();
+    compute(devices);
+    result_.nodes_seconds = watch.lap();
+    tell(options_, "links", 0, 1);
+    if (store_) {
+      complete(store_->finish());
+    } else {
+      require_complete(result_.whole);
+      result_.hash = hash_of(result_.whole);
+    }
+    result_.links_seconds = watch.lap();
+  }
+
+ private:
+  void open_store() {
+    store_.emplace(options_.output, result_.plan, options_.resume ? Store::Start::resume : Store::Start::create);
+  }
+
+  void find_done() {
+    done_.assign(tree_.size(), false);
+    if (!store_ || !options_.resume) return;
+    for (std::uint32_t i = 0; i < tree_.size(); ++i) {
+      if (options_.stop.stop_requested()) throw Cancelled();
+      done_[i] = store_->is_valid(i);
+      if (done_[i]) resumed(i, store_->read_record(i));
+      tell(options_, "check", i + 1, tree_.size());
+    }
+  }
+
+  void resumed(std::uint32_t i, const NodeRecord& record) {
+    result_.nodes[i] = {.times = {},
+                        .points = record.sums.points,
+                        .triangles = record.triangles,
+                        .open = record.open,
+                        .device = 0,
+                        .resumed = true,
+                        .statistics = {}};
+  }
+
+  void shuffle_points() {
+    if (tree_.size() == 1) return;
+    ShuffleOptions shuffling;
+    shuffling.scratch = options_.scratch;
+    shuffling.first_id = options_.first_id;
+    shuffling.memory = shuffle_memory(source_, options_);
+    shuffling.wanted = done_;
+    shuffling.wanted.flip();
+    shuffling.stop = options_.stop;
+    shuffling.progress = [&](std::uint64_t points) { tell(options_, "shuffle", points, source_.size()); };
+    const auto leaves = tree_.leaves();
+    if (std::all_of(leaves.begin(), leaves.end(), [&](std::uint32_t leaf) { return done_[leaf]; })) return;
+    result_.scratch_used = needs_scratch(tree_, shuffling);
+    leaves_ = shuffle(source_, tree_, shuffling);
+  }
+
+  void compute(std::vector<Triangulator>& devices) {
+    Job job(tree_, done_);
+    job.read_leaf = [&](std::uint32_t leaf) {
+      return leaves_ ? leaves_->take(leaf) : all_points(source_, options_.first_id);
+    };
+    job.read_open = [&](std::uint32_t node) { return store_.value().read_open(node); };
+    job.compute.arrays = store_ || options_.collect;
+    job.compute.consumer = options_.consumer;
+    job.keep_open = job.compute.arrays;
+    job.finished = [&](unsigned device, NodeData&& data) {
+      NodeReport& report = result_.nodes[data.node];
+      report = report_of(data, device);
+      result_.whole += data.sums;
+      Stopwatch watch;
+      if (store_) store_->write(data);
+      report.times.write = watch.lap();
+      if (options_.collect) options_.collect(std::move(data));
+    };
+    const auto all = static_cast<std::uint32_t>(tree_.size());
+    const auto before = static_cast<std::uint32_t>(std::count(done_.begin(), done_.end(), true));
+    job.progress = [&, all, before](std::uint32_t nodes, std::uint64_t points) {
+      tell(options_, "tiles", points, source_.size(), before + nodes, all);
+    };
+    job.stop = options_.stop;
+    run_nodes(devices, job);
+    leaves_.reset();
+  }
+
+  void complete(const Manifest& manifest) {
+    result_.whole = manifest.whole;
+    result_.hash = manifest.hash;
+  }
+
+  const PointSource& source_;
+  const RunOptions& options_;
+  RunResult& result_;
+  const TileTree& tree_;
+  std::optional<Store> store_;
+  std::vector<bool> done_;
+  std::unique_ptr<LeafStore> leaves_;
+};
+
+}  // namespace
+
+Plan make_plan(const PointSource& source, const RunOptions& options) {
+  Plan plan;
+  plan.tile_points = options.tile_points;
+  plan.first_id = options.first_id;
+  TreeBuilder builder(source.size(), options.tile_points);
+  const std::uint64_t blocks = (source.size() + block_points - 1) / block_points;
+  const unsigned threads = threads_for(blocks, options.devices.empty() ? 0 : options.devices.front().threads);
+  for (bool first_pass = true; first_pass || !builder.done(); first_pass = false) {
+    std::vector<TreePass> passes(threads, builder.new_pass());
+    std::vector<Hash128> hashes(threads);
+    std::atomic<std::uint64_t> done{0};
+    each_block(source, 0, source.size(), threads, options.stop,
+               [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
+                 if (first_pass) add_block_hash(hashes[thread], first, xy);
+                 if (!builder.done()) builder.look_at(passes[thread], first, xy);
+                 done += xy.size() / 2;
+                 if (thread == 0) tell(options, "sample", done, source.size());
+               });
+    for (const Hash128& hash : hashes) plan.content.high += hash.high, plan.content.low += hash.low;
+    if (builder.done()) continue;
+    for (unsigned i = 1; i < threads; ++i) passes[0] += passes[i];
+    builder.finish_pass(std::move(passes[0]));
+  }
+  plan.tree = builder.take();
+  return plan;
+}
+
+void preflight(const PointSource& source, const RunOptions& options) {
+  const std::uint64_t points = source.size();
+  if (options.tile_points > max_points())
+    throw LimitError("a tile takes at most as many points as one triangulation: make --tile-points smaller",
+                     static_cast<std::size_t>(options.tile_points), max_points());
+  // Memory: that of the leaves at work, and of the points of all leaves unless they go to scratch.
+  const std::uint64_t shuffled = points > options.tile_points ? points * bytes_per_shuffled_point : 0;
+  const std::uint64_t available = available_memory(), leaf = leaf_memory(source, options);
+  const bool in_memory = shuffled <= shuffle_memory(source, options);
+  if (leaf > available) {
+    throw OutOfMemory("the tiles at work do not fit into memory; make them smaller with --tile-points", leaf,
+                      available);
+  }
+  if (!in_memory && options.scratch.empty()) {
+    throw OutOfMemory(
+        "the points of all tiles do not fit into memory; name a folder for them with --scratch, or allow "
+        "more with --host-memory",
+        shuffled, shuffle_memory(source, options));
+  }
+  const auto require = [](const std::string& path, std::uint64_t needed) {
+    const std::uint64_t free = available_disk(path);
+    if (needed <= free) return;
+    throw io::FileError(
+        path, 0,
+        "the disk is too small: about " + human_bytes(needed) + " are needed, and " + human_bytes(free) + " are free");
+  };
+  const std::uint64_t there = options.resume ? bytes_in_folder(options.output) : 0;
+  const std::uint64_t written = options.output.empty() ? 0 : directory_bytes(points);
+  const std::uint64_t output = written > there ? written - there : 0;
+  const bool one_disk = !in_memory && output != 0 && same_disk(options.output, options.scratch);
+  if (output != 0) require(options.output, output + (one_disk ? shuffled : 0));
+  if (!in_memory && !one_disk) require(options.scratch, shuffled);
+}
+
+RunResult run(const PointSource& source, const RunOptions& options) {
+  if (options.devices.empty()) throw std::invalid_argument("a run needs a device");
+  preflight(source, options);
+  if (!options.output.empty() && !options.resume) check_new_directory(options.output);
+  std::vector<Triangulator> devices = open_devices(options);
+  RunResult result;
+  Stopwatch watch;
+  result.plan = make_plan(source, options);
+  result.sample_seconds = watch.lap();
+  Run(source, options, result)(devices);
+  for (const NodeReport& node : result.nodes) result.most_open = std::max(result.most_open, node.open);
+  return result;
+}
+
+}  // namespace cadt::tiles

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tiles/schedule.hpp"
+
+#include <cadt/errors.hpp>
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <thread>
+#include <utility>
+
+namespace cadt::tiles {
+namespace {
+
+class Schedule {
+ public:
+  Schedule(std::vector<Triangulator>& devices, const Job& job) : devices_(devices), job_(job), done_(job.done) {
+    opens_.resize(job.tree.size());
+    for (std::uint32_t i = 0; i < job.tree.size(); ++i) {
+      if (done_[i]) ++count_done_, points_done_ += job.tree.node(i).is_leaf() ? job.tree.node(i).points : 0;
+    }
+    for (std::uint32_t i = 0; i < job.tree.size(); ++i) offer_join(i);
+  }
+
+  void run() {
+    std::vector<std::thread> threads;
+    guarded([&] {
+      threads.emplace_back([this] { guarded([this] { read(); }); });
+      threads.emplace_back([this] { guarded([this] { write(); }); });
+      for (unsigned d = 1; d < devices_.size(); ++d)
+        threads.emplace_back([this, d] { guarded([this, d] { compute(d); }); });
+      compute(0);
+    });
+    for (std::thread& thread : threads) thread.join();
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  struct Loaded {
+    LeafPoints points;
+    double seconds = 0;
+  };
+
+  template <class Work>
+  void guarded(const Work& work) {
+    try {
+      work();
+    } catch (...) {
+      const std::scoped_lock guard(lock_);
+      if (!error_) error_ = std::current_exception();
+      changed_.notify_all();
+    }
+  }
+
+  void read() {
+    for (const std::uint32_t leaf : job_.tree.leaves()) {
+      if (job_.done[leaf]) continue;
+      {
+        std::unique_lock guard(lock_);
+        changed_.wait(guard, [&] { return loaded_.size() <= devices_.size() || error_; });
+        if (error_) return;
+      }
+      if (job_.stop.stop_requested()) throw Cancelled();
+      const auto start = std::chrono::steady_clock::now();
+      Loaded loaded{.points = job_.read_leaf(leaf)};
+      loaded.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const std::scoped_lock guard(lock_);
+      loaded_.emplace(leaf, std::move(loaded));
+      changed_.notify_all();
+    }
+  }
+
+  /// Makes a join ready once its children are done. \pre locked
+  void offer_join(std::uint32_t node) {
+    if (node == no_node || done_[node] || job_.tree.node(node).is_leaf()) return;
+    if (done_[job_.tree.node(node).left] && done_[job_.tree.node(node).right]) joins_.insert(node);
+  }
+
+  void compute(unsigned device) {
+    for (;;) {
+      std::unique_lock guard(lock_);
+      changed_.wait(guard,
+                    [&] { return count_done_ == done_.size() || !joins_.empty() || !loaded_.empty() || error_; });
+      if (count_done_ == done_.size() || error_) return;
+      const bool join = !joins_.empty() && (loaded_.empty() || *joins_.begin() < loaded_.begin()->first);
+      const std::uint32_t node = join ? *joins_.begin() : loaded_.begin()->first;
+      const TreeNode& where = job_.tree.node(node);
+      NodeData data;
+      if (join) {
+        joins_.erase(node);
+        std::vector<std::optional<Open>> given;
+        for (const std::uint32_t child : {where.left, where.right}) given.push_back(std::exchange(opens_[child], {}));
+        guard.unlock();
+        std::vector<Open> children;
+        for (std::size_t i = 0; i < given.size(); ++i)
+          children.push_back(given[i] ? std::move(*given[i]) : job_.read_open(i == 0 ? where.left : where.right));
+        data = compute_join(devices_[device], children, where.box, node, job_.compute);
+      } else {
+        Loaded loaded = std::move(loaded_.begin()->second);
+        loaded_.erase(loaded_.begin());
+        changed_.notify_all();  // there is room for another
+        guard.unlock();
+        data = compute_leaf(devices_[device], std::move(loaded.points), where.box, node, job_.compute);
+        data.times.read = loaded.seconds;
+      }
+      finish(device, std::move(data));
+    }
+  }
+
+  void finish(unsigned device, NodeData&& data) {
+    const std::uint32_t node = data.node, parent = job_.tree.node(node).parent;
+    Open open;
+    if (parent != no_node && !done_parent(parent)) open = job_.keep_open ? data.open : std::move(data.open);
+    std::unique_lock guard(lock_);
+    changed_.wait(guard, [&] { return finished_.size() < devices_.size() || error_; });
+    if (error_) return;
+    finished_.emplace_back(device, std::move(data));
+    opens_[node] = std::move(open);
+    done_[node] = true;
+    ++count_done_;
+    offer_join(parent);
+    changed_.notify_all();
+  }
+
+  /// What was done before the run needs no open vertices of its children.
+  [[nodiscard]] bool done_parent(std::uint32_t parent) const { return job_.done[parent]; }
+
+  void write() {
+    std::uint32_t written = 0;
+    for (;;) {
+      std::pair<unsigned, NodeData> next;
+      {
+        std::unique_lock guard(lock_);
+        changed_.wait(guard, [&] { return !finished_.empty() || count_done_ == done_.size() || error_; });
+        if (error_ || finished_.empty()) return;
+        next = std::move(finished_.front());
+        finished_.pop_front();
+        changed_.notify_all();
+      }
+      const TreeNode& where = job_.tree.node(next.second.node);
+      job_.finished(next.first, std::move(next.second));
+      ++written;
+      if (where.is_leaf()) points_done_ += where.points;
+      if (job_.progress) job_.progress(written, points_done_);
+    }
+  }
+
+  std::vector<Triangulator>& devices_;
+  const Job& job_;
+  std::mutex lock_;
+  std::condition_variable changed_;
+  std::exception_ptr error_;
+  std::vector<bool> done_;
+  std::size_t count_done_ = 0;
+  std::uint64_t points_done_ = 0;  // of the writer
+  std::map<std::uint32_t, Loaded> loaded_;
+  std::set<std::uint32_t> joins_;
+  std::vector<std::optional<Open>> opens_;
+  std::deque<std::pair<unsigned, NodeData>> finished_;
+};
+
+}  // namespace
+
+void run_nodes(std::vector<Triangulator>& devices, const Job& job) { Schedule(devices, job).run(); }
+
+}  // namespace cadt::tiles

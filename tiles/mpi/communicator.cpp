@@ -64,6 +64,7 @@ struct Communicator::Data {
   int rank = 0, size = 1, local_rank = 0, local_size = 1;
   std::string host;
   std::size_t message_bytes = 0;
+  bool settled = false;
 
   struct Outgoing {
     Words words;
@@ -255,8 +256,16 @@ void Communicator::settle(const std::exception_ptr& error) {
     if (std::tie(all[2 * r], all[2 * r + 1]) < std::tie(all[2 * teller], all[2 * teller + 1])) teller = r;
   }
   if (all[2 * teller] == none) return;
+  data_->settled = true;
   if (static_cast<int>(teller) == data_->rank) std::rethrow_exception(error);
   throw OtherRankFailed(static_cast<int>(teller));
+}
+
+bool Communicator::has_settled() const noexcept { return data_->settled; }
+
+void Communicator::abort(int code) noexcept {
+  MPI_Abort(data_->world, code);
+  std::_Exit(code);
 }
 
 void Communicator::send(int to, Kind kind, std::uint64_t node, std::span<const std::uint64_t> words) {

@@ -91,6 +91,10 @@ class Communicator {
   /// on all: the error itself on the rank that tells, OtherRankFailed on the others. That with the smallest index of a
   /// point tells, then the lowest rank; Cancelled counts only where nothing else is wrong.
   void settle(const std::exception_ptr& error);
+  /// Whether settle() has thrown. An error that comes without is known to this rank alone, and abort() is the way out.
+  [[nodiscard]] bool has_settled() const noexcept;
+  /// Ends all ranks at once.
+  [[noreturn]] void abort(int code) noexcept;
   /// Does the step, and settles it. The step must not communicate.
   template <class Step>
   void agree(const Step& step) {

@@ -6,10 +6,10 @@
 
 #include "tiles/mpi/nodes.hpp"
 #include "tiles/mpi/plan.hpp"
+#include "tiles/mpi/reports.hpp"
 #include "tiles/mpi/schedule.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -30,43 +30,6 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-/// A report as words, without the statistics of the triangulation.
-constexpr std::size_t report_words = 11;
-
-void pack(const NodeReport& report, std::uint32_t node, Words& words) {
-  words.push_back(node);
-  const NodeTimes& t = report.times;
-  for (const double seconds : {t.read, t.compute, t.download, t.consume, t.write})
-    words.push_back(std::bit_cast<std::uint64_t>(seconds));
-  words.insert(words.end(), {report.points, report.triangles, report.open, report.device, report.resumed ? 1U : 0U});
-}
-
-void unpack(std::span<const std::uint64_t> words, std::vector<NodeReport>& reports) {
-  NodeReport& report = reports.at(words[0]);
-  double* const times[] = {&report.times.read, &report.times.compute, &report.times.download, &report.times.consume,
-                           &report.times.write};
-  for (std::size_t i = 0; i < std::size(times); ++i) *times[i] = std::bit_cast<double>(words[1 + i]);
-  report.points = words[6], report.triangles = words[7], report.open = words[8];
-  report.device = static_cast<unsigned>(words[9]);
-  report.resumed = words[10] != 0;
-}
-
-Words pack(const NodeSums& sums) {
-  return {sums.points,     sums.distinct,
-          sums.triangles,  sums.hull_edges,
-          sums.certified_edges, static_cast<std::uint64_t>(static_cast<std::int64_t>(sums.dimension)),
-          sums.hash.high,  sums.hash.low};
-}
-
-NodeSums unpack_sums(std::span<const std::uint64_t> words) {
-  NodeSums sums;
-  sums.points = words[0], sums.distinct = words[1], sums.triangles = words[2], sums.hull_edges = words[3];
-  sums.certified_edges = words[4];
-  sums.dimension = static_cast<int>(static_cast<std::int64_t>(words[5]));
-  sums.hash.high = words[6], sums.hash.low = words[7];
-  return sums;
-}
 
 /// One run of one rank.
 class Run {
@@ -139,14 +102,14 @@ class Run {
   }
 
   void add_resumed(std::uint32_t i, const NodeRecord& record) {
-    pack({.times = {},
+    append(reports_, i,
+         {.times = {},
           .points = record.sums.points,
           .triangles = record.triangles,
           .open = record.open,
           .device = 0,
           .resumed = true,
-          .statistics = {}},
-         i, reports_);
+          .statistics = {}});
   }
 
   void make(Stopwatch& watch) {
@@ -209,7 +172,7 @@ class Run {
       Stopwatch watch;
       if (store_) store_->write(data);
       report.times.write = watch.lap();
-      pack(report, data.node, reports_);
+      append(reports_, data.node, report);
       result_.nodes[data.node] = std::move(report);
       if (options_.collect) options_.collect(std::move(data));
     };
@@ -243,9 +206,7 @@ class Run {
     }
     ranks_.agree([&] { require_complete(result_.whole); });
     result_.hash = hash_of(result_.whole);
-    const Exchanged all = ranks_.all_gather(reports_);
-    for (std::size_t at = 0; at < all.words.size(); at += report_words)
-      unpack(std::span(all.words).subspan(at, report_words), result_.nodes);
+    read_reports(ranks_.all_gather(reports_).words, result_.nodes);
   }
 
   Communicator& ranks_;

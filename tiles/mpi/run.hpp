@@ -34,8 +34,7 @@ void require_same_program(Communicator& ranks, std::string_view task);
 /// same source, tile size, first index, output and resume; their one device, scratch and memory are their own. The output
 /// must be in a folder that all ranks see; `host_memory` is of a rank (0: its share of half of what its machine has
 /// available). `progress` is called on rank 0 alone, `consumer` and `collect` for the nodes that the rank makes.
-/// RunResult is complete on all ranks; NodeReport::device is the rank, and its statistics are those of the rank's own
-/// nodes alone.
+/// RunResult is complete on all ranks, but for counters of nodes that others made; NodeReport::device is the rank.
 ///
 /// If a rank fails, all stop: what settle() says is thrown, and the directory can be resumed. \throws as tiles::run, and
 /// OtherRankFailed

@@ -53,7 +53,6 @@ class NewFile {
     }
   }
   FileRecord finish() {
-    if (!system_file::sync(descriptor_)) fail(shown_, "cannot be synced", errno);
     const int descriptor = std::exchange(descriptor_, -1);
     if (!system_file::close(descriptor)) {
       const int code = errno;
@@ -70,42 +69,49 @@ class NewFile {
   HashStream hash_;
 };
 
-FileRecord write_array(const std::string& path, const std::string& shown, const ArrayView& array) {
-  NewFile file(path, shown);
+}  // namespace
+
+FileRecord write_array(const std::string& path, const ArrayView& array) {
+  NewFile file(path, path);
   const std::string header = io::detail::npy_header(array.type, array.shape);
   file.write(header.data(), header.size());
   file.write(array.data, array.bytes);
   return file.finish();
 }
 
-/// Through a temporary file of a fixed name, so that those of killed processes do not pile up.
-template <class Write>
-FileRecord replace(const std::string& path, const Write& write) {
-  const std::string temporary = path + ".tmp";
-  system_file::remove(temporary);
-  FileRecord record = write(temporary);
-  if (!system_file::replace(temporary, path)) {
-    const int code = errno;
-    system_file::remove(temporary);
-    fail(path, "cannot be renamed from its temporary file", code);
-  }
-  return record;
+void write_text(const std::string& path, std::string_view text) {
+  NewFile file(path, path);
+  file.write(text.data(), text.size());
+  file.finish();
 }
 
-}  // namespace
+void sync_file(const std::string& path) {
+  const int file = system_file::open_to_read(path);
+  if (file < 0) fail(path, "cannot be opened", errno);
+  const bool synced = system_file::sync(file);
+  const int code = errno;
+  system_file::close(file);
+  if (!synced) fail(path, "cannot be synced", code);
+}
 
-FileRecord write_array(const std::string& path, const ArrayView& array) { return write_array(path, path, array); }
-
-FileRecord replace_array(const std::string& path, const ArrayView& array) {
-  return replace(path, [&](const std::string& temporary) { return write_array(temporary, path, array); });
+void rename_file(const std::string& from, const std::string& to) {
+  std::error_code code;
+  fs::rename(from, to, code);
+  if (code) fail(to, "cannot be renamed from its temporary file", code.value());
 }
 
 void replace_text(const std::string& path, std::string_view text) {
-  replace(path, [&](const std::string& temporary) {
+  // A fixed name, so that those of killed processes do not pile up.
+  const std::string temporary = path + ".tmp";
+  system_file::remove(temporary);
+  {
     NewFile file(temporary, path);
     file.write(text.data(), text.size());
-    return file.finish();
-  });
+    file.finish();
+  }
+  sync_file(temporary);
+  rename_file(temporary, path);
+  sync_folder(system_file::folder_of(path));
 }
 
 std::string read_text(const std::string& path) {

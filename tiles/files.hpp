@@ -26,13 +26,14 @@ struct ArrayView {
   std::size_t bytes = 0;
 };
 
-/// All functions throw io::FileError that names the file. What is written is on the disk when they return; what could
-/// not be written is removed.
+/// All functions throw io::FileError that names the file. What could not be written is removed.
 
-/// A new .npy file. The record's name is left to the caller.
+/// A new .npy file, which is on the disk after sync_file: those of a node are synced together, which takes the time of
+/// one. The record's name is left to the caller.
 FileRecord write_array(const std::string& path, const ArrayView& array);
-/// The same, and what had the name before is replaced at once.
-FileRecord replace_array(const std::string& path, const ArrayView& array);
+void write_text(const std::string& path, std::string_view text);
+void sync_file(const std::string& path);
+/// A text under its name at once, in place of what was there, and on the disk.
 void replace_text(const std::string& path, std::string_view text);
 [[nodiscard]] std::string read_text(const std::string& path);
 /// The numbers of a one-dimensional .npy file of type <u8.
@@ -44,7 +45,9 @@ void replace_text(const std::string& path, std::string_view text);
 void make_folder(const std::string& path);
 /// Names in the folder are on the disk.
 void sync_folder(const std::string& path);
-/// A folder under its final name, at once: `to` must not exist.
+/// A file under another name, at once, in place of what was there.
+void rename_file(const std::string& from, const std::string& to);
+/// A folder under its final name, at once, and on the disk: `to` must not exist.
 void rename_folder(const std::string& from, const std::string& to);
 /// With all that is in it; not an error if it is not there.
 void remove_folder(const std::string& path);

@@ -89,7 +89,5 @@ struct MergedMesh {
 void export_pvtu(const NodeMesh& mesh, const std::string& folder);
 /// A .ply file for each node that has triangles. \throws io::FileError
 void export_ply(const NodeMesh& mesh, const std::string& folder);
-/// The boxes of the leaves with their points, and seconds where known, as SVG. \throws io::FileError
-void draw_tree(const TileTree& tree, std::span<const double> seconds, const std::string& path);
 
 }  // namespace cadt::tiles

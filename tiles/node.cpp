@@ -47,6 +47,7 @@ NodeData take_down(FinishedNode&& finished, LeafPoints&& points, const TileBox& 
   data.messages = std::move(finished.messages);
   data.duplicates = std::move(finished.duplicates);
   data.open = std::move(finished.open);
+  data.open_vertices = data.open.ids.size();
   data.sums = finished.sums;
   data.statistics = std::move(finished.statistics);
   return data;

@@ -42,7 +42,8 @@ struct NodeData {
   std::vector<Link> messages;
   std::vector<DuplicateId> duplicates;
   Open open;
-  NodeSums sums;  ///< with the hash of the part
+  std::size_t open_vertices = 0;  ///< also where `open` has been passed on
+  NodeSums sums;                  ///< with the hash of the part
   Statistics statistics;
   NodeTimes times;
 };

@@ -78,7 +78,7 @@ NodeReport report_of(const NodeData& data, unsigned device) {
   return {.times = data.times,
           .points = data.sums.points,
           .triangles = data.sums.triangles,
-          .open = data.open.ids.size(),
+          .open = data.open_vertices,
           .device = device,
           .resumed = false,
           .statistics = data.statistics};
@@ -267,6 +267,7 @@ RunResult run(const PointSource& source, const RunOptions& options) {
   if (!options.output.empty() && !options.resume) check_new_directory(options.output);
   std::vector<Triangulator> devices = open_devices(options);
   RunResult result;
+  for (const Triangulator& device : devices) result.devices.push_back(device.device().name);
   Stopwatch watch;
   result.plan = make_plan(source, options);
   result.sample_seconds = watch.lap();

@@ -50,6 +50,7 @@ struct RunResult {
   NodeSums whole;
   Hash128 hash;  ///< Triangulation::hash of a single run
   std::vector<NodeReport> nodes;
+  std::vector<std::string> devices;  ///< their names
   double sample_seconds = 0, shuffle_seconds = 0, nodes_seconds = 0, links_seconds = 0;
   std::uint64_t most_open = 0;  ///< open vertices of one node
   bool scratch_used = false;

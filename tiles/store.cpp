@@ -44,12 +44,20 @@ class NewFolder {
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
 
-  FileRecord add(const std::string& name, const ArrayView& array) const {
+  FileRecord add(const std::string& name, const ArrayView& array) {
+    names_.push_back(name);
     FileRecord record = write_array(temporary_ + "/" + name, array);
     record.name = prefix_ + name;
     return record;
   }
-  [[nodiscard]] const std::string& temporary() const noexcept { return temporary_; }
+  void add(const std::string& name, std::string_view text) {
+    names_.push_back(name);
+    write_text(temporary_ + "/" + name, text);
+  }
+  void sync() const {
+    for (const std::string& name : names_) sync_file(temporary_ + "/" + name);
+    sync_folder(temporary_);
+  }
   void finish() {
     rename_folder(temporary_, path_);
     done_ = true;
@@ -57,6 +65,7 @@ class NewFolder {
 
  private:
   std::string path_, temporary_, prefix_;
+  std::vector<std::string> names_;
   bool done_ = false;
 };
 
@@ -182,7 +191,9 @@ void Store::write(const NodeData& node) const {
     record.files.push_back(unfinished.add(file, array_of(words)));
     record.files.back().name.insert(0, "unfinished/");
   }
-  replace_text(unfinished.temporary() + "/node.json", to_json(record));
+  unfinished.add("node.json", to_json(record));
+  arrays.sync();
+  unfinished.sync();
   arrays.finish();
   unfinished.finish();
 }
@@ -196,11 +207,18 @@ void Store::write_links(std::vector<NodeRecord>& records) const {
   complete_links(std::move(messages), plan_.tree.size(), [&](std::uint32_t i, std::span<const Link> of_node) {
     std::vector<std::uint64_t> links = read_words(unfinished_folder(i) + "/links.npy");
     apply_messages(i, of_node, links);
-    FileRecord record = replace_array(node_folder(i) + "/links.npy", array_of(links));
+    const std::string temporary = node_folder(i) + "/links.npy.tmp";
+    io::detail::system_file::remove(temporary);  // of a process that was killed
+    FileRecord record = write_array(temporary, array_of(links));
     record.name = node_name(i) + "/links.npy";
     std::erase_if(records[i].files, is_for_resuming);
     records[i].files.push_back(std::move(record));
   });
+  for (std::uint32_t i = 0; i < records.size(); ++i) sync_file(node_folder(i) + "/links.npy.tmp");
+  for (std::uint32_t i = 0; i < records.size(); ++i) {
+    rename_file(node_folder(i) + "/links.npy.tmp", node_folder(i) + "/links.npy");
+    sync_folder(node_folder(i));
+  }
 }
 
 void complete_links(std::vector<Link> messages, std::uint32_t nodes,

@@ -20,6 +20,8 @@ void add_voronoi(CLI::App& app, Action& chosen);
 void add_generate(CLI::App& app, Action& chosen);
 void add_devices(CLI::App& app, Action& chosen);
 void add_triangle(CLI::App& app, Action& chosen);
+void add_tiles(CLI::App& app, Action& chosen);
+void add_merge(CLI::App& app, Action& chosen);
 void add_info(CLI::App& app, Action& chosen);
 void add_render(CLI::App& app, Action& chosen);
 void add_view(CLI::App& app, Action& chosen);

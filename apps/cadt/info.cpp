@@ -2,6 +2,7 @@
 #include "commands.hpp"
 #include "failure.hpp"
 #include "input.hpp"
+#include "mesh_directory.hpp"
 #include "text.hpp"
 
 #include <cadt/version.hpp>
@@ -109,7 +110,7 @@ struct InfoCommand {
 void add_info(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("info", "say what a point file holds");
   const auto options = std::make_shared<InfoCommand>();
-  add_input_options(*command, options->input, "FILE", "file with points");
+  add_input_options(*command, options->input, "FILE", "file with points, or directory of cadt tiles");
   command->add_flag("--json", options->json, "as JSON");
   command->footer(
       "Prints format, points, distinct points, duplicates, box, the exponents of the smallest and the largest "
@@ -119,9 +120,10 @@ void add_info(CLI::App& app, Action& chosen) {
       "  cadt info survey.csv --columns lon,lat,depth\n");
   command->callback([options, &chosen] {
     chosen = [options] {
+      if (is_mesh_directory(options->input.path)) return print_directory(options->input.path, options->json);
       const Info info = inspect(read_input(options->input));
       print(options->json ? info_json(info, options->input.path) : info_text(info));
-      return exit_done;
+      return int{exit_done};
     };
   });
 }

@@ -57,17 +57,21 @@ void round_to_floats(io::PointSet& points, const InputOptions& options, bool qui
   if (moved != 0 && !quiet) say(fmt::format("cadt: --floats moved {} of {} points\n", moved, points.size()));
 }
 
-io::PointSet read_input(const InputOptions& options) {
-  if (options.path == "-" && options.format.empty()) {
-    throw Failure(exit_usage, "standard input has no suffix; name its format, for example: -f xy");
-  }
+io::ReadOptions read_options(const InputOptions& options) {
   io::ReadOptions read;
   read.format = lower(options.format);
   read.columns = options.columns;
   read.projection = options.projection == "yz"   ? io::Projection::yz
                     : options.projection == "zx" ? io::Projection::zx
                                                  : io::Projection::xy;
-  return io::read_points(options.path, read);
+  return read;
+}
+
+io::PointSet read_input(const InputOptions& options) {
+  if (options.path == "-" && options.format.empty()) {
+    throw Failure(exit_usage, "standard input has no suffix; name its format, for example: -f xy");
+  }
+  return io::read_points(options.path, read_options(options));
 }
 
 std::string display_name(const std::string& path, bool input) {

@@ -30,6 +30,9 @@ void add_floats_option(CLI::App& command, InputOptions& options);
 /// With --floats: rounds the coordinates, and says how many points that has moved unless `quiet`.
 void round_to_floats(io::PointSet& points, const InputOptions& options, bool quiet);
 
+/// The options for the library.
+[[nodiscard]] io::ReadOptions read_options(const InputOptions& options);
+
 /// Checks the options, then reads. Wrong options throw Failure (usage), a wrong file io::FileError.
 [[nodiscard]] io::PointSet read_input(const InputOptions& options);
 

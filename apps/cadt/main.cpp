@@ -61,6 +61,10 @@ int parse_and_run(int argc, char** argv) {
   app.formatter(std::make_shared<HelpFormatter>());
   add_triangulate(app, action);
   add_triangle(app, action);
+#ifdef CADT_HAS_TILES
+  add_tiles(app, action);
+  add_merge(app, action);
+#endif
   add_verify(app, action);
   add_locate(app, action);
   add_interpolate(app, action);

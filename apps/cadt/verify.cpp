@@ -3,6 +3,7 @@
 #include "failure.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
+#include "mesh_directory.hpp"
 #include "text.hpp"
 
 #include <cadt/io/mesh_file.hpp>
@@ -25,15 +26,6 @@ struct VerifyCommand {
   [[nodiscard]] bool on_device() const { return !backend.empty() || !device.empty(); }
 };
 
-std::string check_line(const Check& check) {
-  if (check.passed) return fmt::format("pass  {}\n", check.name);
-  std::string text =
-      fmt::format("FAIL  {:<12} {} {}", check.name, check.failures, check.failures == 1 ? "failure" : "failures");
-  if (check.first >= 0) text += fmt::format(", first at {}", check.first);
-  if (!check.what.empty()) text += fmt::format(": {}", check.what);
-  return text + '\n';
-}
-
 VerifyReport verify_chosen(const VerifyCommand& command, const io::PointSet& points, const MeshView& mesh,
                            const VerifyOptions& options) {
   if (!command.on_device()) return verify(points.view(), mesh, options);
@@ -55,6 +47,13 @@ void check_standard_input(const VerifyCommand& command) {
 }
 
 int run(const VerifyCommand& command) {
+  if (is_mesh_directory(command.input.path)) {
+    if (!command.mesh.empty() || command.on_device())
+      throw Failure(exit_usage,
+                    "a mesh in tiles has its points with it, and is checked on the host: give its directory alone");
+    return verify_directory(command.input.path, command.threads, command.quiet);
+  }
+  if (command.mesh.empty()) throw Failure(exit_usage, "MESH is required: the file with the triangles of POINTS");
   check_standard_input(command);
   io::PointSet points = read_input(command.input);
   round_to_floats(points, command.input, command.quiet);
@@ -92,13 +91,11 @@ int run(const VerifyCommand& command) {
 void add_verify(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("verify", "check a mesh from any program against its points, exactly");
   const auto options = std::make_shared<VerifyCommand>();
-  add_input_options(*command, options->input, "POINTS", "file with the points");
+  add_input_options(*command, options->input, "POINTS", "file with the points; or the directory of cadt tiles, alone");
   add_floats_option(*command, options->input);
-  command
-      ->add_option("MESH", options->mesh,
-                   "file with the triangles, counterclockwise, as indices of the points; '-' is "
-                   "standard input (with -t)")
-      ->required();
+  command->add_option("MESH", options->mesh,
+                      "file with the triangles, counterclockwise, as indices of the points; '-' is "
+                      "standard input (with -t)");
   command
       ->add_option("-t,--to", options->format,
                    "format of the mesh: " + join(io::mesh_read_formats(), " ") + "; default: from the suffix")
@@ -133,7 +130,11 @@ void add_verify(CLI::App& app, Action& chosen) {
       "the few signs that a device cannot find, which it leaves to the host. Only the first is free of the device's "
       "compiler\n"
       "and driver: to check what a device has made by other means, use the host or another device.\n\n"
-      "Example:\n"
+      "A mesh in tiles is checked node by node: also that its files are what was written, that edges between nodes "
+      "are\n"
+      "legal, and that each input point is there once.\n\n"
+      "Examples:\n"
+      "  cadt verify mesh.cadt\n"
       "  triangle -en points.node && cadt verify points.1.node points.1.ele\n");
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

@@ -21,6 +21,7 @@ struct MeshParts {
   std::span<const double> height;  ///< empty or one a point
   std::span<const std::int32_t> triangles, neighbors, hull;
   std::span<const Duplicate> duplicates;
+  std::span<const std::uint64_t> global_ids = {};  ///< of the points, for pieces of a larger mesh: vtu alone
 };
 
 /// write_mesh for all formats but pictures.

@@ -42,6 +42,9 @@ std::string xml_header(const MeshParts& mesh) {
   if (!mesh.height.empty()) {
     xml += "<PointData Scalars=\"height\">\n" + appended.array("Float64", "height", 1, mesh.height.size_bytes()) +
            "</PointData>\n";
+  } else if (!mesh.global_ids.empty()) {
+    xml += "<PointData GlobalIds=\"GlobalNodeIds\">\n" +
+           appended.array("Int64", "GlobalNodeIds", 1, mesh.global_ids.size_bytes()) + "</PointData>\n";
   }
   // One statement an array: the offsets depend on the order of the calls, which a chain of + would leave unspecified.
   xml += "<Points>\n";
@@ -63,6 +66,9 @@ void write_vtu(AtomicFile& out, const MeshParts& mesh) {
   if (!mesh.height.empty()) {
     write_size(out, mesh.height.size_bytes());
     out.write(mesh.height.data(), mesh.height.size_bytes());
+  } else if (!mesh.global_ids.empty()) {
+    write_size(out, mesh.global_ids.size_bytes());
+    out.write(mesh.global_ids.data(), mesh.global_ids.size_bytes());
   }
   write_size(out, 3 * points * sizeof(double));
   for (std::size_t i = 0; i < points; ++i) {

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "commands.hpp"
+#include "failure.hpp"
+#include "interrupt.hpp"
+#include "outputs.hpp"
+#include "text.hpp"
+#include "tile_errors.hpp"
+#include "tiles/mesh_directory.hpp"
+
+#include <cadt/io/mesh_file.hpp>
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cadt::cli {
+namespace {
+
+struct MergeCommand {
+  std::string mesh, pvtu, ply;
+  std::vector<std::string> outputs, formats;
+  int base = 0;
+  bool ascii = false, quiet = false;
+};
+
+void write_merged(const MergeCommand& c, const tiles::MeshDirectory& directory, const std::vector<Output>& outputs) {
+  tiles::MergedMesh merged = tiles::merge(directory);
+  io::PointSet points;
+  points.xy = std::move(merged.xy);
+  const Triangulation mesh = Triangulation::adopt(points.view(), merged.triangles, merged.neighbors, Trust::geometry);
+  if (mesh.hash() != directory.manifest().hash)
+    throw Failure(exit_verify,
+                  fmt::format("{}: its triangles are not those of its manifest; see: cadt verify {}", c.mesh, c.mesh));
+  for (const Output& output : outputs) {
+    io::WriteOptions write;
+    write.format = output.format;
+    write.base = c.base;
+    write.ascii = c.ascii;
+    {
+      const InPhase phase(writing_phase(output.path));
+      io::write_mesh(output.path, points, mesh, write);
+      if (output.path == "-") finish_stdout();
+    }
+    check_interrupt();
+    if (!c.quiet)
+      say(fmt::format("{} points, {} triangles written to {}\n", points.size(), mesh.number_of_triangles(),
+                      output.path));
+  }
+}
+
+int run(const MergeCommand& c) {
+  const std::vector<Output> outputs = plan_outputs(c.outputs, c.formats, io::mesh_write_formats(), {});
+  if (outputs.empty() && c.pvtu.empty() && c.ply.empty())
+    throw Failure(exit_usage, "name what is to be written: -o for one mesh, --pvtu or --ply for pieces");
+  with_tile_errors([&] {
+    const tiles::MeshDirectory directory(c.mesh);
+    if (!c.pvtu.empty()) tiles::export_pvtu(directory, c.pvtu);
+    if (!c.ply.empty()) tiles::export_ply(directory, c.ply);
+    if (!outputs.empty()) write_merged(c, directory, outputs);
+  });
+  return exit_done;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, Action& chosen) {
+  CLI::App* command = app.add_subcommand("merge", "make one mesh, or pieces for other programs, of a mesh in tiles");
+  const auto options = std::make_shared<MergeCommand>();
+  command->add_option("MESH", options->mesh, "directory of cadt tiles")->required();
+  command
+      ->add_option(
+          "-o,--output", options->outputs,
+          "one mesh in canonical order, the same file as that of cadt triangulate; may be given several times; "
+          "'-' is standard output (with -t)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command
+      ->add_option("-t,--to", options->formats,
+                   "format of the outputs: " + join(io::mesh_write_formats(), " ") +
+                       "; default: from each suffix. Once for all outputs, or once for each")
+      ->type_name("FORMAT")
+      ->allow_extra_args(false);
+  command->add_option("--base", options->base, "first index in .node .ele .neigh files: 0 or 1 (default: 0)")
+      ->type_name("0|1")
+      ->check(CLI::IsMember({0, 1}).description(""));
+  command->add_flag("--ascii", options->ascii, "text instead of binary where the format has both (ply)");
+  command
+      ->add_option("--pvtu", options->pvtu,
+                   "folder for mesh.pvtu and a piece for each node, with the input indices as GlobalNodeIds: ParaView "
+                   "reads any size of it")
+      ->type_name("DIR");
+  command->add_option("--ply", options->ply, "folder for a .ply file of each node")->type_name("DIR");
+  command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");
+  command->footer(
+      "One mesh takes 32-bit indices: 536,870,910 points at most. Its memory is about 140 bytes a point.\n\n"
+      "Examples:\n"
+      "  cadt merge mesh.cadt -o mesh.ele -o mesh.npz\n"
+      "  cadt merge mesh.cadt --pvtu pieces\n");
+  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+}
+
+}  // namespace cadt::cli

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mesh in tiles is that of one call, array by array, whatever the tiles.
+#include "tests/support/backends.hpp"
+#include "tests/support/data_files.hpp"
+#include "tests/system/tiles/tile_runs.hpp"
+
+#include <cadt/io/generate.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace cadt::test {
+namespace {
+
+constexpr std::array<std::uint64_t, 3> small_tiles{3, 20, 150};
+
+class TilesTest : public BackendTest {};
+CADT_ON_MAIN_BACKENDS(TilesTest);
+
+TEST_P(TilesTest, GeneratedSets) {
+  for (const io::Distribution& about : io::distributions()) {
+    SCOPED_TRACE(about.name);
+    io::GenerateOptions options;
+    options.n = 700;
+    EXPECT_TRUE(same_in_tiles(io::generate(about.name, options).xy, small_tiles, GetParam().options()));
+  }
+}
+
+TEST_P(TilesTest, LargerGeneratedSets) {
+  for (const char* name : {"uniform", "grid", "clusters", "ring", "duplicates", "concentric", "parabola"}) {
+    SCOPED_TRACE(name);
+    io::GenerateOptions options;
+    options.n = 20'000;
+    constexpr std::array<std::uint64_t, 2> sizes{700, 5'000};
+    EXPECT_TRUE(same_in_tiles(io::generate(name, options).xy, sizes, GetParam().options()));
+  }
+}
+
+TEST_P(TilesTest, Families) {
+  for (const FamilyGroup& group : family_groups()) {
+    int n = 0;
+    for (const Family& family : group.families()) {
+      const Points xy = family.make();
+      if (xy.size() > 6'000 || ++n > 12) continue;
+      SCOPED_TRACE(family.name);
+      EXPECT_TRUE(same_in_tiles(xy, small_tiles, GetParam().options()));
+    }
+  }
+}
+
+TEST_P(TilesTest, RealSets) {
+  if (!data_folder()) GTEST_SKIP() << "CADT_DATA_DIR is not set";
+  for (const RealSet& set : real_sets()) {
+    if (set.points > 60'000) continue;
+    SCOPED_TRACE(set.name);
+    Points xy = read(set);
+    for (double& v : xy) v += 0.0;
+    const std::array<std::uint64_t, 2> sizes{xy.size() / 2 / 30 + 3, 5'000};
+    EXPECT_TRUE(same_in_tiles(xy, sizes, GetParam().options()));
+  }
+}
+
+TEST_P(TilesTest, FewPoints) {
+  EXPECT_TRUE(same_in_tiles({}, small_tiles, GetParam().options()));
+  EXPECT_TRUE(same_in_tiles({1, 2}, small_tiles, GetParam().options()));
+  EXPECT_TRUE(same_in_tiles(Points(60, 0.5), small_tiles, GetParam().options()));
+  EXPECT_TRUE(same_in_tiles({0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, small_tiles, GetParam().options()));
+}
+
+TEST_P(TilesTest, OrderOfInputIsThatOfIds) {
+  const Points xy = uniform_points(3'000, 5);
+  const std::vector<std::size_t> order = random_order(xy.size() / 2, 3);
+  EXPECT_TRUE(same_in_tiles(reordered(xy, order), small_tiles, GetParam().options()));
+}
+
+TEST_P(TilesTest, IdsAbove32Bits) {
+  const Points xy = uniform_points(2'000, 7);
+  tiles::RunOptions options = in_tiles(150, GetParam().options());
+  options.first_id = (std::uint64_t{1} << 33) + 12345;
+  const tiles::CollectedMesh nodes = run_in_memory(*tiles::in_memory(xy), options);
+  EXPECT_GT(nodes.node(0).ids.front(), std::uint64_t{1} << 33);
+  EXPECT_TRUE(same_arrays(tiles::merge(nodes), xy, triangulate(PointsView(std::span<const double>(xy)))));
+  EXPECT_TRUE(tiles::verify(nodes).ok);
+}
+
+TEST_P(TilesTest, SeveralDevices) {
+  const Points xy = uniform_points(10'000, 9);
+  tiles::RunOptions options = in_tiles(200, GetParam().options());
+  options.devices.assign(3, GetParam().options());
+  tiles::RunResult result;
+  const tiles::CollectedMesh nodes = run_in_memory(*tiles::in_memory(xy), options, &result);
+  const Triangulation mesh = triangulate(PointsView(std::span<const double>(xy)));
+  EXPECT_TRUE(same_arrays(tiles::merge(nodes), xy, mesh));
+  EXPECT_EQ(result.hash, mesh.hash());
+}
+
+}  // namespace
+}  // namespace cadt::test

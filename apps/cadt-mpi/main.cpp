@@ -4,6 +4,7 @@
 #include "apps/cadt/failure.hpp"
 #include "apps/cadt/help.hpp"
 #include "apps/cadt/interrupt.hpp"
+#include "apps/cadt/tile_errors.hpp"
 
 #include <cadt/version.hpp>
 
@@ -59,7 +60,7 @@ int parse_and_run(mpi::Communicator& ranks, int argc, char** argv) {
 int report(const mpi::Communicator& ranks) {
   int code = exit_internal;
   try {
-    throw;
+    with_tile_errors([] { throw; });
   } catch (const mpi::RankError& e) {
     say(fmt::format("cadt: error: {}\n", e.what()));
     code = exit_usage;

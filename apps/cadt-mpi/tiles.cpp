@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cadt-mpi/tiles.hpp"
 
-#include "apps/cadt/device_options.hpp"
 #include "apps/cadt/failure.hpp"
-#include "apps/cadt/input.hpp"
 #include "apps/cadt/interrupt.hpp"
-#include "apps/cadt/text.hpp"
+#include "apps/cadt/progress.hpp"
+#include "apps/cadt/system.hpp"
+#include "apps/cadt/tiles_command.hpp"
+
+#include <cadt/devices.hpp>
 
 #include "tiles/mpi/run.hpp"
 #include "tiles/mpi/share.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <string>
@@ -23,92 +25,77 @@ namespace {
 
 namespace mpi = tiles::mpi;
 
-struct MpiOptions {
-  std::vector<std::string> inputs;
-  InputOptions input;
-  std::string output, generate, count, tile_points, scratch, host_memory, stats;
-  std::uint64_t seed = 1;
-  std::vector<std::string> devices;
-  DeviceOptions device;
-  bool resume = false, quiet = false;
-};
-
-std::unique_ptr<tiles::PointSource> open_source(const MpiOptions& o) {
-  if (o.generate.empty() == o.inputs.empty())
-    throw Failure(exit_usage, "give files with points, or --generate NAME -n N, and not both");
-  if (!o.generate.empty()) {
-    io::GenerateOptions generate;
-    generate.n = parse_count(o.count);
-    generate.seed = o.seed;
-    return tiles::generated(o.generate, generate);
-  }
-  io::ReadOptions read;
-  read.format = lower(o.input.format);
-  read.columns = o.input.columns;
-  read.projection = o.input.projection == "yz"   ? io::Projection::yz
-                    : o.input.projection == "zx" ? io::Projection::zx
-                                                 : io::Projection::xy;
-  return tiles::open_files(o.inputs, read);
-}
-
-/// Lines on standard error, since what MPI starts has no terminal: one for each phase and each tenth of it.
-class ProgressLines {
+/// How far all ranks are: on a terminal one line, else, as in the log of a job, a line for each phase and each tenth.
+class RankProgress {
  public:
-  explicit ProgressLines(bool quiet) : quiet_(quiet) {}
+  explicit RankProgress(bool quiet) : lines_(!quiet && !errors_go_to_terminal()), line_(quiet) {}
+  void start(std::size_t points) { line_.start(points); }
+  void clear() { line_.clear(); }
   void operator()(const tiles::RunProgress& now) {
+    const std::string nodes = now.nodes == 0 ? "" : fmt::format(" {}/{}", now.nodes_done, now.nodes);
+    if (!lines_) {
+      phase_ = std::string(now.phase) + nodes;
+      line_.update({.phase = phase_, .fraction = now.fraction});
+      return;
+    }
     const int tenth = static_cast<int>(10 * now.fraction);
-    if (quiet_ || (phase_ == now.phase && tenth <= tenth_)) return;
+    if (phase_ == now.phase && tenth <= tenth_) return;
     phase_ = now.phase;
     tenth_ = tenth;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    std::string line = fmt::format("cadt-mpi: {:8.1f} s  {:<8} {:3} %", seconds, phase_, 10 * tenth);
-    if (now.nodes != 0) line += fmt::format("  {} of {} nodes", now.nodes_done, now.nodes);
-    say(line + '\n');
+    say(fmt::format("cadt-mpi: {:.1f} s: {} {} %{}\n", seconds, phase_, 10 * tenth, nodes));
   }
 
  private:
-  bool quiet_;
+  bool lines_;
+  ProgressLine line_;
   std::string phase_;
   int tenth_ = -1;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-tiles::RunOptions run_options(mpi::Communicator& ranks, const MpiOptions& o) {
+/// What must be equal on all ranks.
+std::string task(const TilesCommand& c) {
+  return fmt::format(
+      "{}", fmt::join(std::vector<std::string>{fmt::format("{}", fmt::join(c.inputs, "\n")), c.generate, c.n,
+                                               std::to_string(c.set.seed), c.read.format, c.read.columns,
+                                               c.read.projection, c.output, c.tile_points, c.resume ? "resume" : ""},
+                      "\n"));
+}
+
+tiles::RunOptions rank_options(mpi::Communicator& ranks, const TilesCommand& c) {
   tiles::RunOptions options;
-  const unsigned share = mpi::share_of_cores(ranks);
+  const unsigned cores = mpi::share_of_cores(ranks);
   ranks.agree([&] {
-    if (!o.tile_points.empty()) options.tile_points = parse_count(o.tile_points);
-    if (options.tile_points < tiles::least_tile_points)
-      throw Failure(exit_usage, fmt::format("--tile-points is at least {}", tiles::least_tile_points));
-    options.output = o.output;
-    options.resume = o.resume;
-    options.scratch = o.scratch;
-    if (!o.host_memory.empty()) options.host_memory = parse_bytes(o.host_memory);
-    options.stop = interrupt_token();
-    Options device = library_options(o.device);
-    if (device.threads == 0) device.threads = share;
-    const bool open = o.devices.empty() && device.device.empty() && device.backend != Backend::host;
-    options.devices = {mpi::share_of_devices(device, ranks.local_rank(), o.devices,
-                                             open ? list_devices() : std::vector<DeviceInfo>())};
+    check_tiles_options(c);
+    if (std::find(c.inputs.begin(), c.inputs.end(), "-") != c.inputs.end())
+      throw Failure(exit_usage, "standard input reaches one rank alone: give files that all of them can read");
+    options = run_options(c);
+    Options device = device_options(c);
+    if (device.threads == 0) device.threads = cores;
+    const std::vector<std::string> named = named_devices(c);
+    const bool choose = named.empty() && device.device.empty() && device.backend != Backend::host;
+    options.devices = {
+        mpi::share_of_devices(device, ranks.local_rank(), named, choose ? list_devices() : std::vector<DeviceInfo>())};
   });
   return options;
 }
 
-int run_tiles(mpi::Communicator& ranks, const MpiOptions& o) {
-  mpi::require_same_program(ranks, fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}", fmt::join(o.inputs, "|"), o.output,
-                                               o.generate, o.count, o.seed, o.tile_points, o.resume, o.input.format,
-                                               o.input.columns, o.input.projection));
-  tiles::RunOptions options = run_options(ranks, o);
+int run(mpi::Communicator& ranks, const TilesCommand& c) {
+  mpi::require_same_program(ranks, task(c));
+  tiles::RunOptions options = rank_options(ranks, c);
   std::unique_ptr<tiles::PointSource> source;
-  ranks.agree([&] { source = open_source(o); });
-  ProgressLines lines(o.quiet);
-  options.progress = [&](const tiles::RunProgress& now) { lines(now); };
+  ranks.agree([&] { source = open_source(c); });
+  RankProgress progress(c.quiet);
+  progress.start(source->size());
+  options.progress = [&progress](const tiles::RunProgress& now) { progress(now); };
   const tiles::RunResult result = mpi::run(ranks, *source, options);
   ranks.agree([&] {
     if (ranks.rank() != 0) return;
-    print(fmt::format("points      {}\nduplicates  {}\ntriangles   {}\nhull        {}\nnodes       {}\nhash        {}\n",
-                      result.whole.points, result.whole.points - result.whole.distinct, result.whole.triangles,
-                      result.whole.hull_edges, result.nodes.size(), result.hash.to_string()));
+    progress.clear();
+    write_tiles_reports(c, *source, options, result);
+    print_tiles_summary(c, result);
+    finish_stdout();
   });
   return exit_done;
 }
@@ -116,23 +103,25 @@ int run_tiles(mpi::Communicator& ranks, const MpiOptions& o) {
 }  // namespace
 
 void add_mpi_tiles(CLI::App& app, RankAction& chosen) {
-  CLI::App* command = app.add_subcommand("tiles", "triangulate points in tiles, by all ranks");
-  const auto o = std::make_shared<MpiOptions>();
-  command->add_option("IN", o->inputs, "files with points, one after the other")->type_name("IN");
-  add_read_options(*command, o->input);
-  command->add_option("-o,--output", o->output, "folder of the mesh, seen by all ranks")->type_name("DIR");
-  command->add_option("--generate", o->generate, "generated points (see: cadt generate --help)")->type_name("NAME");
-  command->add_option("-n", o->count, "number of generated points")->type_name("N");
-  command->add_option("--seed", o->seed, "of generated points")->type_name("S");
-  command->add_option("--tile-points", o->tile_points, "points of a tile at most")->type_name("N");
-  command->add_option("--devices", o->devices, "devices of a machine, which its ranks take in turn")->delimiter(',');
-  add_device_options(*command, o->device);
-  add_memory_option(*command, o->device);
-  command->add_option("--scratch", o->scratch, "folder for points that memory does not take")->type_name("DIR");
-  command->add_option("--host-memory", o->host_memory, "memory for the points of a rank")->type_name("SIZE");
-  command->add_flag("--resume", o->resume, "continue what is in the output folder");
-  command->add_flag("-q,--quiet", o->quiet, "nothing on standard error but errors");
-  command->callback([o, &chosen] { chosen = [o](mpi::Communicator& ranks) { return run_tiles(ranks, *o); }; });
+  CLI::App* command = app.add_subcommand("tiles", "as cadt tiles, to the same bytes, by all ranks together");
+  const auto options = std::make_shared<TilesCommand>();
+  add_tiles_options(*command, *options);
+  command->footer(
+      "Each rank makes some tiles on one device: of --devices, or of all GPUs, that of its number on the machine, or "
+      "the\n"
+      "processor. --threads (default: the cores that it may use, divided among the ranks there), --host-memory and\n"
+      "--max-memory are of a rank. The output folder is one that all ranks see; --scratch may be a disk of the "
+      "machine.\n\n"
+      "Examples:\n"
+      "  mpirun -n 8 cadt-mpi tiles country/*.npy -o country.cadt\n"
+      "      one rank for each GPU of a machine that has eight\n"
+      "  mpirun -n 4 --map-by ppr:1:node --bind-to none cadt-mpi tiles points.f64 -o mesh.cadt --backend host\n"
+      "      one rank on each machine, with all of its cores\n"
+      "  srun --ntasks-per-node=4 --gpus-per-node=4 cadt-mpi tiles country/*.npy -o country.cadt --resume\n"
+      "      goes on after an interruption, also with another number of ranks\n\n" +
+      std::string(exit_codes_help));
+  command->callback(
+      [options, &chosen] { chosen = [options](mpi::Communicator& ranks) { return run(ranks, *options); }; });
 }
 
 }  // namespace cadt::cli

@@ -75,7 +75,7 @@ struct Communicator::Data {
     std::size_t whole = 0;  // words of the whole message; 0: nothing has come
   };
   std::list<Outgoing> outgoing;
-  std::vector<Incoming> incoming;                    // by source
+  std::vector<Incoming> incoming;                           // by source
   std::vector<std::uint64_t> pieces_sent, pieces_received;  // by rank
 
   [[nodiscard]] std::size_t piece_words() const noexcept { return message_bytes / sizeof(std::uint64_t); }

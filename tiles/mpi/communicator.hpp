@@ -87,9 +87,9 @@ class Communicator {
   /// Words for each rank. Those of all ranks for one must be less than 2^31.
   [[nodiscard]] Exchanged exchange(const std::vector<Words>& to);
 
-  /// Ends a step that each rank does by itself: `error` is what this one has, or null. If any rank has one, it is thrown
-  /// on all: the error itself on the rank that tells, OtherRankFailed on the others. That with the smallest index of a
-  /// point tells, then the lowest rank; Cancelled counts only where nothing else is wrong.
+  /// Ends a step that each rank does by itself: `error` is what this one has, or null. If any rank has one, it is
+  /// thrown on all: the error itself on the rank that tells, OtherRankFailed on the others. That with the smallest
+  /// index of a point tells, then the lowest rank; Cancelled counts only where nothing else is wrong.
   void settle(const std::exception_ptr& error);
   /// Whether settle() has thrown. An error that comes without is known to this rank alone, and abort() is the way out.
   [[nodiscard]] bool has_settled() const noexcept;

@@ -125,7 +125,9 @@ class Speaker {
       case Kind::open:
         schedule_->deliver(static_cast<std::uint32_t>(message.node), unpack_open(message.words));
         break;
-      case Kind::done: note_done(); break;
+      case Kind::done:
+        note_done();
+        break;
       case Kind::failed:
         stopped_ = true;
         throw Cancelled();  // settle() finds what happened

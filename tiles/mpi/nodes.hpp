@@ -14,10 +14,10 @@
 namespace cadt::tiles::mpi {
 
 struct Nodes {
-  const std::vector<int>& owner;                               ///< of each node
-  const std::vector<bool>& valid;                              ///< by node: is there already
+  const std::vector<int>& owner;                                ///< of each node
+  const std::vector<bool>& valid;                               ///< by node: is there already
   std::function<void(std::uint32_t nodes_done)> progress = {};  ///< on rank 0: nodes of all ranks, without valid ones
-  cadt::stop_token interrupted = {};                           ///< ends all ranks
+  cadt::stop_token interrupted = {};                            ///< ends all ranks
   cadt::stop_source& stop;  ///< of this rank's devices: requested when any rank has failed
 };
 

@@ -19,8 +19,7 @@ void reduce(Communicator& ranks, TreePass& pass) {
   for (std::size_t i = 0; i < pass.bounds.size(); ++i) (i % 4 < 2 ? lower : upper).push_back(pass.bounds[i]);
   ranks.least(lower);
   ranks.most(upper);
-  for (std::size_t i = 0; i < pass.bounds.size(); ++i)
-    pass.bounds[i] = (i % 4 < 2 ? lower : upper)[i / 4 * 2 + i % 2];
+  for (std::size_t i = 0; i < pass.bounds.size(); ++i) pass.bounds[i] = (i % 4 < 2 ? lower : upper)[i / 4 * 2 + i % 2];
   Words words(pass.sample.size());
   std::memcpy(words.data(), pass.sample.data(), words.size() * sizeof words[0]);
   const Exchanged all = ranks.all_gather(words);
@@ -37,7 +36,8 @@ Plan make_plan(Communicator& ranks, const PointSource& source, const RunOptions&
   plan.first_id = options.first_id;
   TreeBuilder builder(source.size(), options.tile_points);
   const auto [begin, end] = slice(source.size(), block_points, ranks.rank(), ranks.size());
-  const unsigned threads = threads_for((end - begin + block_points - 1) / block_points, options.devices.front().threads);
+  const unsigned threads =
+      threads_for((end - begin + block_points - 1) / block_points, options.devices.front().threads);
   for (bool first_pass = true; first_pass || !builder.done(); first_pass = false) {
     std::vector<TreePass> passes(threads, builder.new_pass());
     std::vector<Hash128> hashes(threads);

@@ -34,9 +34,9 @@ Hash128 hash_of_program() {
 void require_disk(const std::string& path, std::uint64_t needed) {
   const std::uint64_t free = available_disk(path);
   if (needed <= free) return;
-  throw io::FileError(path, 0,
-                      "the disk is too small: about " + human_bytes(needed) + " are needed, and " + human_bytes(free) +
-                          " are free");
+  throw io::FileError(
+      path, 0,
+      "the disk is too small: about " + human_bytes(needed) + " are needed, and " + human_bytes(free) + " are free");
 }
 
 }  // namespace
@@ -52,8 +52,9 @@ void require_same_program(Communicator& ranks, std::string_view task) {
       throw RankError(ranks.rank(), who + " runs another build of the program (this is version " CADT_VERSION
                                           ") than rank 0: install the same on all machines");
     if (mine[2] != first[2] || mine[3] != first[3])
-      throw RankError(ranks.rank(), who + " was given other input, output, tiles or --resume than rank 0: give all "
-                                          "ranks the same; devices, threads, memory and scratch may differ");
+      throw RankError(ranks.rank(), who +
+                                        " was given other input, output, tiles or --resume than rank 0: give all "
+                                        "ranks the same; devices, threads, memory and scratch may differ");
   });
 }
 

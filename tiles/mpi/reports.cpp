@@ -69,8 +69,8 @@ void read_reports(std::span<const std::uint64_t> words, std::vector<NodeReport>&
 
 Words pack(const NodeSums& sums) {
   const auto dimension = static_cast<std::uint64_t>(static_cast<std::int64_t>(sums.dimension));
-  return {sums.points, sums.distinct, sums.triangles, sums.hull_edges, sums.certified_edges, dimension,
-          sums.hash.high, sums.hash.low};
+  return {sums.points,          sums.distinct, sums.triangles, sums.hull_edges,
+          sums.certified_edges, dimension,     sums.hash.high, sums.hash.low};
 }
 
 NodeSums unpack_sums(std::span<const std::uint64_t> words) {

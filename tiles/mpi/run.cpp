@@ -60,8 +60,10 @@ class Run {
 
   void tell(std::string_view phase, double fraction, std::uint32_t nodes_done = 0) const {
     if (is_first() && options_.progress)
-      options_.progress(
-          {.phase = phase, .fraction = fraction, .nodes_done = nodes_done, .nodes = nodes_done == 0 ? 0 : tree().size()});
+      options_.progress({.phase = phase,
+                         .fraction = fraction,
+                         .nodes_done = nodes_done,
+                         .nodes = nodes_done == 0 ? 0 : tree().size()});
   }
 
   void open_store() {
@@ -103,13 +105,13 @@ class Run {
 
   void add_resumed(std::uint32_t i, const NodeRecord& record) {
     append(reports_, i,
-         {.times = {},
-          .points = record.sums.points,
-          .triangles = record.triangles,
-          .open = record.open,
-          .device = 0,
-          .resumed = true,
-          .statistics = {}});
+           {.times = {},
+            .points = record.sums.points,
+            .triangles = record.triangles,
+            .open = record.open,
+            .device = 0,
+            .resumed = true,
+            .statistics = {}});
   }
 
   void make(Stopwatch& watch) {
@@ -122,6 +124,7 @@ class Run {
       chosen.stop = stop_.get_token();
       devices.emplace_back(chosen);
     });
+    result_.devices = gather_texts(ranks_, devices.front().device().name + " on " + ranks_.host());
     shuffle_points(owner);
     result_.shuffle_seconds = watch.lap();
     compute(devices, owner);
@@ -164,7 +167,7 @@ class Run {
       NodeReport report{.times = data.times,
                         .points = data.sums.points,
                         .triangles = data.sums.triangles,
-                        .open = data.open.ids.size(),
+                        .open = data.open_vertices,
                         .device = static_cast<unsigned>(ranks_.rank()),
                         .resumed = false,
                         .statistics = std::move(data.statistics)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One mesh by the ranks of MPI: each has a device, makes some of the leaves and the joins above them, and passes what is
-// open to the rank of the next join (docs/scale.md).
+// One mesh by the ranks of MPI: each has a device, makes some of the leaves and the joins above them, and passes what
+// is open to the rank of the next join (docs/scale.md).
 #pragma once
 
 #include "tiles/mpi/communicator.hpp"
@@ -26,18 +26,18 @@ class RankError : public Error {
 };
 
 /// Whether all ranks run the same program, by the hash of its file, and have the same `task`: a text of what must be
-/// equal. To be called first. Collective. \throws RankError on the first rank that differs from rank 0, OtherRankFailed on
-/// the others
+/// equal. To be called first. Collective. \throws RankError on the first rank that differs from rank 0, OtherRankFailed
+/// on the others
 void require_same_program(Communicator& ranks, std::string_view task);
 
 /// Makes the mesh: the same files, byte by byte, as tiles::run, for any number of ranks. Collective: all ranks give the
-/// same source, tile size, first index, output and resume; their one device, scratch and memory are their own. The output
-/// must be in a folder that all ranks see; `host_memory` is of a rank (0: its share of half of what its machine has
-/// available). `progress` is called on rank 0 alone, `consumer` and `collect` for the nodes that the rank makes.
+/// same source, tile size, first index, output and resume; their one device, scratch and memory are their own. The
+/// output must be in a folder that all ranks see; `host_memory` is of a rank (0: its share of half of what its machine
+/// has available). `progress` is called on rank 0 alone, `consumer` and `collect` for the nodes that the rank makes.
 /// RunResult is complete on all ranks, but for counters of nodes that others made; NodeReport::device is the rank.
 ///
-/// If a rank fails, all stop: what settle() says is thrown, and the directory can be resumed. \throws as tiles::run, and
-/// OtherRankFailed
+/// If a rank fails, all stop: what settle() says is thrown, and the directory can be resumed. \throws as tiles::run,
+/// and OtherRankFailed
 RunResult run(Communicator& ranks, const PointSource& source, const RunOptions& options);
 
 /// What tiles::preflight checks, for the ranks of a machine together. Collective. \throws as that, on all ranks

@@ -27,7 +27,9 @@ Words allowed_cores() {
   return words;
 }
 
-bool has(std::span<const std::uint64_t> cores, std::size_t core) { return (cores[core / bits] >> core % bits & 1) != 0; }
+bool has(std::span<const std::uint64_t> cores, std::size_t core) {
+  return (cores[core / bits] >> core % bits & 1) != 0;
+}
 
 }  // namespace
 

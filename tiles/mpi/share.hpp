@@ -13,8 +13,8 @@
 
 namespace cadt::tiles::mpi {
 
-/// This rank's threads: each core that the scheduler allows it (the binding of the MPI runtime), divided among the ranks
-/// that are allowed the same core; at least 1. Collective.
+/// This rank's threads: each core that the scheduler allows it (the binding of the MPI runtime), divided among the
+/// ranks that are allowed the same core; at least 1. Collective.
 [[nodiscard]] unsigned share_of_cores(Communicator& ranks);
 
 /// The back end and device of a rank where `options` leave them open: of the GPUs of the back end (automatic: of the

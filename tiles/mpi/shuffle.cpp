@@ -88,7 +88,8 @@ std::unique_ptr<LeafStore> shuffle(Communicator& ranks, const PointSource& sourc
     leaves = needs_scratch(tree, deal.options) ? leaves_in_files(tree, deal.options.scratch) : leaves_in_memory(tree);
   });
   const auto size = static_cast<std::uint64_t>(ranks.size());
-  // Even if all points of a round are for one rank, each in a run of its own, that rank receives message_bytes() at most.
+  // Even if all points of a round are for one rank, each in a run of its own, that rank receives message_bytes() at
+  // most.
   const std::uint64_t each = std::max<std::uint64_t>(
       1, ranks.message_bytes() / sizeof(std::uint64_t) / (words_per_point + words_per_run) / size);
   const std::uint64_t round = each * size, all = source.size();

@@ -34,7 +34,13 @@ class EqualTest(RankTest):
 class NumbersOfRanks(EqualTest):
     def test_any_number_of_ranks(self):
         name = self.generate("uniform", 20000)
-        self.compare([name], 1000, single=self.single_hash(name))
+        whole = self.compare([name], 1000, single=self.single_hash(name))
+        self.cadt("tiles", name, "-o", "one.cadt", "--tile-points", 1000, "--backend", "host")
+        self.assertEqual(digest(self.path("one.cadt")), whole, "cadt tiles makes another directory")
+        self.cadt("verify", "one.cadt")
+        self.cadt("merge", "one.cadt", "-o", "merged.ele")
+        self.cadt("triangulate", name, "-o", "single.ele")
+        self.assertEqual(self.path("merged.ele").read_bytes(), self.path("single.ele").read_bytes())
 
 
 class KindsOfPoints(EqualTest):

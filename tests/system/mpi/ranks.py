@@ -102,14 +102,18 @@ class RankTest(CliTest):
     """Each test has its own folder, in which the ranks run."""
 
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="cadt-mpi-", dir=folder_in_memory()))
-        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        place = pathlib.Path(tempfile.mkdtemp(prefix="cadt-mpi-", dir=folder_in_memory()))
+        self.addCleanup(shutil.rmtree, place, ignore_errors=True)
+        self.folder, self.shared_memory = place / "work", place / "shared"
+        self.folder.mkdir()
+        self.shared_memory.mkdir()
 
     def command(self, ranks, *arguments):
         return [MPIRUN, *ANYWHERE, "-n", str(ranks), MPI_PROGRAM, "tiles", *map(str, arguments)]
 
     def environment(self, more):
-        return {**os.environ, "OMPI_MCA_rmaps_base_oversubscribe": "1", **more}
+        # Open MPI leaves the memory that killed ranks have shared: it goes with the folder of the test.
+        return {**os.environ, "OMPI_MCA_btl_vader_backing_directory": str(self.shared_memory), **more}
 
     def tiles(self, ranks, *arguments, expect=0, environment=None, command=None):
         """Runs cadt-mpi tiles to its end; `command`: a whole one instead."""

@@ -4,6 +4,7 @@ import os
 import pathlib
 import random
 import shutil
+import struct
 import sys
 import unittest
 
@@ -105,6 +106,26 @@ class GeneratedThorough(EqualTest):
                 with self.subTest(kind=kind, tile=tile):
                     name = self.generate(kind, 200 if tile == 3 else 6000)
                     self.compare([name], tile, numbers=(1, 3, 7), single=self.single_hash(name))
+
+
+    def test_a_sample_of_one_place(self):
+        """The sample has nothing of the two points elsewhere, so the tree needs the bounds that all ranks have found."""
+        count, target = 4_000_000, 1 << 20
+
+        def is_sampled(index):  # as tiles/tree.cpp chooses
+            z, mask = index + 0x9E3779B97F4A7C15, (1 << 64) - 1
+            z = ((z ^ (z >> 30)) * 0xBF58476D1CE4E5B9) & mask
+            z = ((z ^ (z >> 27)) * 0x94D049BB133111EB) & mask
+            return (z ^ (z >> 31)) < mask // count * target
+
+        data = bytearray(struct.pack("<dd", 5, 5) * count)
+        for start, x in ((count // 2, 4), (count - 1000, 6)):
+            index = next(i for i in range(start, count) if not is_sampled(i))
+            data[16 * index:16 * index + 8] = struct.pack("<d", x)
+        self.path("place.f64").write_bytes(data)
+        whole = self.compare(["place.f64"], 1000, numbers=(1, 3), single=self.single_hash("place.f64"))
+        self.cadt("tiles", "place.f64", "-o", "one.cadt", "--tile-points", 1000, "--backend", "host")
+        self.assertEqual(digest(self.path("one.cadt")), whole)
 
 
 @unittest.skipUnless("CADT_DATA_DIR" in os.environ, "CADT_DATA_DIR is not set")

@@ -3,3 +3,4 @@
 #include "common/finalization/certain.dev.h"
 #include "common/finalization/finish.dev.h"
 #include "common/finalization/join.dev.h"
+#include "common/finalization/uniform_cells.dev.h"

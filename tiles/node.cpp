@@ -53,6 +53,24 @@ NodeData take_down(FinishedNode&& finished, LeafPoints&& points, const TileBox& 
   return data;
 }
 
+/// A leaf whose points are made on the device, and on the host if somebody wants them there.
+NodeData compute_cells(Triangulator& triangulator, LeafPoints&& points, const TileBox& box, std::uint32_t node,
+                       const ComputeOptions& options) {
+  Stopwatch watch;
+  const auto count = static_cast<std::size_t>(points.count);
+  const std::shared_ptr<void> xy = triangulator.allocate(2 * count * sizeof(double));
+  points.cells->generate(triangulator, points.first, count, {xy.get(), 2 * count});
+  FinishedNode finished =
+      finish_leaf(triangulator, DevicePoints{.x = xy.get(), .size = count}, {.first = points.first_id}, box, node);
+  if (options.arrays || options.consumer) {
+    points.xy.resize(2 * count);
+    points.cells->generate(points.first, count, points.xy.data());
+    points.ids.resize(count);
+    std::iota(points.ids.begin(), points.ids.end(), points.first_id);
+  }
+  return take_down(std::move(finished), std::move(points), box, node, true, options, watch);
+}
+
 /// The open vertices of all children by their ids: the points of a join.
 LeafPoints merge_points(std::span<const Open> children) {
   struct Vertex {
@@ -103,6 +121,7 @@ class Reader {
 
 NodeData compute_leaf(Triangulator& triangulator, LeafPoints&& points, const TileBox& box, std::uint32_t node,
                       const ComputeOptions& options) {
+  if (points.cells != nullptr) return compute_cells(triangulator, std::move(points), box, node, options);
   Stopwatch watch;
   FinishedNode finished;
   try {
@@ -136,6 +155,7 @@ std::vector<std::uint64_t> pack(const Open& open) {
 
 Open unpack_open(std::span<const std::uint64_t> words) {
   Reader reader(words);
+  if (words.size() < 2) Reader::fail();
   const std::uint64_t vertices = reader.next(), sides = reader.next();
   const std::uint64_t left = words.size() - 2;
   if (vertices > left / 3 || sides > left / 5 || 3 * vertices + 5 * sides != left) Reader::fail();

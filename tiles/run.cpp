@@ -4,6 +4,7 @@
 #include <cadt/errors.hpp>
 #include <cadt/io/errors.hpp>
 
+#include "tiles/cells.hpp"
 #include "tiles/machine.hpp"
 #include "tiles/parallel.hpp"
 #include "tiles/schedule.hpp"
@@ -51,13 +52,14 @@ std::uint64_t shuffle_memory(const PointSource& source, const RunOptions& option
   return available > leaf ? std::max<std::uint64_t>((available - leaf) / 2, 1) : 1;
 }
 
-std::vector<Triangulator> open_devices(const RunOptions& options) {
-  std::vector<Triangulator> devices;
+std::vector<Workers> open_devices(const RunOptions& options) {
+  std::vector<Workers> devices;
   for (Options chosen : options.devices) {
-    chosen.order = Order::canonical;
+    // Without arrays on the host nobody sees the order.
+    chosen.order = options.output.empty() && !options.collect && !options.consumer ? Order::fast : Order::canonical;
     chosen.keep_points = KeepPoints::no;
     chosen.stop = options.stop;
-    devices.emplace_back(chosen);
+    devices.push_back({Triangulator(chosen), Triangulator(chosen)});
   }
   return devices;
 }
@@ -90,7 +92,7 @@ class Run {
   Run(const PointSource& source, const RunOptions& options, RunResult& result)
       : source_(source), options_(options), result_(result), tree_(result.plan.tree) {}
 
-  void operator()(std::vector<Triangulator>& devices) {
+  void operator()(std::vector<Workers>& devices) {
     result_.nodes.resize(tree_.size());
     if (!options_.output.empty()) open_store();
     if (store_ && store_->complete()) {
@@ -141,7 +143,7 @@ class Run {
   }
 
   void shuffle_points() {
-    if (tree_.size() == 1) return;
+    if (tree_.size() == 1 || in_cells(source_, options_.tile_points)) return;
     ShuffleOptions shuffling;
     shuffling.scratch = options_.scratch;
     shuffling.first_id = options_.first_id;
@@ -156,11 +158,15 @@ class Run {
     leaves_ = shuffle(source_, tree_, shuffling);
   }
 
-  void compute(std::vector<Triangulator>& devices) {
+  void compute(std::vector<Workers>& devices) {
     Job job(tree_, done_);
-    job.read_leaf = [&](std::uint32_t leaf) {
-      return leaves_ ? leaves_->take(leaf) : all_points(source_, options_.first_id);
-    };
+    if (in_cells(source_, options_.tile_points)) {
+      job.read_leaf = cells_of_leaves(source_, tree_, options_.first_id);
+    } else {
+      job.read_leaf = [&](std::uint32_t leaf) {
+        return leaves_ ? leaves_->take(leaf) : all_points(source_, options_.first_id);
+      };
+    }
     job.read_open = [&](std::uint32_t node) { return store_.value().read_open(node); };
     job.compute.arrays = store_ || options_.collect;
     job.compute.consumer = options_.consumer;
@@ -204,6 +210,12 @@ Plan make_plan(const PointSource& source, const RunOptions& options) {
   Plan plan;
   plan.tile_points = options.tile_points;
   plan.first_id = options.first_id;
+  if (const UniformCells* cells = source.cells())
+    if (std::optional<TileTree> tree = tree_of_cells(*cells, options.tile_points)) {
+      plan.content = content_of_cells(*cells);
+      plan.tree = std::move(*tree);
+      return plan;
+    }
   TreeBuilder builder(source.size(), options.tile_points);
   const std::uint64_t blocks = (source.size() + block_points - 1) / block_points;
   const unsigned threads = threads_for(blocks, options.devices.empty() ? 0 : options.devices.front().threads);
@@ -233,7 +245,8 @@ void preflight(const PointSource& source, const RunOptions& options) {
     throw LimitError("a tile takes at most as many points as one triangulation: make --tile-points smaller",
                      static_cast<std::size_t>(options.tile_points), max_points());
   // Memory: that of the leaves at work, and of the points of all leaves unless they go to scratch.
-  const std::uint64_t shuffled = points > options.tile_points ? points * bytes_per_shuffled_point : 0;
+  const bool shuffles = points > options.tile_points && !in_cells(source, options.tile_points);
+  const std::uint64_t shuffled = shuffles ? points * bytes_per_shuffled_point : 0;
   const std::uint64_t available = available_memory(), leaf = leaf_memory(source, options);
   const bool in_memory = shuffled <= shuffle_memory(source, options);
   if (leaf > available) {
@@ -265,9 +278,9 @@ RunResult run(const PointSource& source, const RunOptions& options) {
   if (options.devices.empty()) throw std::invalid_argument("a run needs a device");
   preflight(source, options);
   if (!options.output.empty() && !options.resume) check_new_directory(options.output);
-  std::vector<Triangulator> devices = open_devices(options);
+  std::vector<Workers> devices = open_devices(options);
   RunResult result;
-  for (const Triangulator& device : devices) result.devices.push_back(device.device().name);
+  for (const Workers& device : devices) result.devices.push_back(device.leaves.device().name);
   Stopwatch watch;
   result.plan = make_plan(source, options);
   result.sample_seconds = watch.lap();

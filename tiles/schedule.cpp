@@ -18,7 +18,7 @@ namespace cadt::tiles {
 
 class Schedule::Work {
  public:
-  Work(std::vector<Triangulator>& devices, const Job& job) : devices_(devices), job_(job), done_(job.done) {
+  Work(std::vector<Workers>& devices, const Job& job) : devices_(devices), job_(job), done_(job.done) {
     opens_.resize(job.tree.size());
     for (std::uint32_t i = 0; i < job.tree.size(); ++i) {
       if (done_[i]) ++count_done_, points_done_ += job.tree.node(i).is_leaf() ? job.tree.node(i).points : 0;
@@ -31,9 +31,10 @@ class Schedule::Work {
     guarded([&] {
       threads.emplace_back([this] { guarded([this] { read(); }); });
       threads.emplace_back([this] { guarded([this] { write(); }); });
-      for (unsigned d = 1; d < devices_.size(); ++d)
-        threads.emplace_back([this, d] { guarded([this, d] { compute(d); }); });
-      compute(0);
+      for (unsigned d = 0; d < devices_.size(); ++d) {
+        threads.emplace_back([this, d] { guarded([this, d] { compute_leaves(d); }); });
+        threads.emplace_back([this, d] { guarded([this, d] { compute_joins(d); }); });
+      }
     });
     for (std::thread& thread : threads) thread.join();
     if (error_) std::rethrow_exception(error_);
@@ -55,10 +56,10 @@ class Schedule::Work {
     double seconds = 0;
   };
 
-  template <class Work>
-  void guarded(const Work& work) {
+  template <class Step>
+  void guarded(const Step& step) {
     try {
-      work();
+      step();
     } catch (...) {
       fail(std::current_exception());
     }
@@ -80,6 +81,9 @@ class Schedule::Work {
       loaded_.emplace(leaf, std::move(loaded));
       changed_.notify_all();
     }
+    const std::scoped_lock guard(lock_);
+    leaves_taken_ = true;
+    changed_.notify_all();
   }
 
   /// Makes a join ready once its children are done. \pre locked
@@ -88,34 +92,38 @@ class Schedule::Work {
     if (done_[job_.tree.node(node).left] && done_[job_.tree.node(node).right]) joins_.insert(node);
   }
 
-  void compute(unsigned device) {
+  void compute_leaves(unsigned device) {
     for (;;) {
       std::unique_lock guard(lock_);
-      changed_.wait(guard,
-                    [&] { return count_done_ == done_.size() || !joins_.empty() || !loaded_.empty() || error_; });
-      if (count_done_ == done_.size() || error_) return;
-      const bool join = !joins_.empty() && (loaded_.empty() || *joins_.begin() < loaded_.begin()->first);
-      const std::uint32_t node = join ? *joins_.begin() : loaded_.begin()->first;
-      const TreeNode& where = job_.tree.node(node);
-      NodeData data;
-      if (join) {
-        joins_.erase(node);
-        std::vector<std::optional<Open>> given;
-        for (const std::uint32_t child : {where.left, where.right}) given.push_back(std::exchange(opens_[child], {}));
-        guard.unlock();
-        std::vector<Open> children;
-        for (std::size_t i = 0; i < given.size(); ++i)
-          children.push_back(given[i] ? std::move(*given[i]) : job_.read_open(i == 0 ? where.left : where.right));
-        data = compute_join(devices_[device], children, where.box, node, job_.compute);
-      } else {
-        Loaded loaded = std::move(loaded_.begin()->second);
-        loaded_.erase(loaded_.begin());
-        changed_.notify_all();  // there is room for another
-        guard.unlock();
-        data = compute_leaf(devices_[device], std::move(loaded.points), where.box, node, job_.compute);
-        data.times.read = loaded.seconds;
-      }
+      changed_.wait(guard, [&] { return !loaded_.empty() || leaves_taken_ || error_; });
+      if (loaded_.empty() || error_) return;
+      const std::uint32_t node = loaded_.begin()->first;
+      Loaded loaded = std::move(loaded_.begin()->second);
+      loaded_.erase(loaded_.begin());
+      changed_.notify_all();  // there is room for another
+      guard.unlock();
+      NodeData data =
+          compute_leaf(devices_[device].leaves, std::move(loaded.points), job_.tree.node(node).box, node, job_.compute);
+      data.times.read = loaded.seconds;
       finish(device, std::move(data));
+    }
+  }
+
+  void compute_joins(unsigned device) {
+    for (;;) {
+      std::unique_lock guard(lock_);
+      changed_.wait(guard, [&] { return !joins_.empty() || count_done_ == done_.size() || error_; });
+      if (joins_.empty() || error_) return;
+      const std::uint32_t node = *joins_.begin();
+      joins_.erase(joins_.begin());
+      const TreeNode& where = job_.tree.node(node);
+      std::vector<std::optional<Open>> given;
+      for (const std::uint32_t child : {where.left, where.right}) given.push_back(std::exchange(opens_[child], {}));
+      guard.unlock();
+      std::vector<Open> children;
+      for (std::size_t i = 0; i < given.size(); ++i)
+        children.push_back(given[i] ? std::move(*given[i]) : job_.read_open(i == 0 ? where.left : where.right));
+      finish(device, compute_join(devices_[device].joins, children, where.box, node, job_.compute));
     }
   }
 
@@ -165,7 +173,7 @@ class Schedule::Work {
     }
   }
 
-  std::vector<Triangulator>& devices_;
+  std::vector<Workers>& devices_;
   const Job& job_;
   std::mutex lock_;
   std::condition_variable changed_;
@@ -174,17 +182,18 @@ class Schedule::Work {
   std::size_t count_done_ = 0;
   std::uint64_t points_done_ = 0;  // of the writer
   std::map<std::uint32_t, Loaded> loaded_;
+  bool leaves_taken_ = false;  // no more are read
   std::set<std::uint32_t> joins_;
   std::vector<std::optional<Open>> opens_;
   std::deque<std::pair<unsigned, NodeData>> finished_;
 };
 
-Schedule::Schedule(std::vector<Triangulator>& devices, const Job& job) : work_(std::make_unique<Work>(devices, job)) {}
+Schedule::Schedule(std::vector<Workers>& devices, const Job& job) : work_(std::make_unique<Work>(devices, job)) {}
 Schedule::~Schedule() = default;
 void Schedule::run() { work_->run(); }
 void Schedule::deliver(std::uint32_t node, Open&& open) { work_->deliver(node, std::move(open)); }
 void Schedule::fail(std::exception_ptr error) { work_->fail(std::move(error)); }
 
-void run_nodes(std::vector<Triangulator>& devices, const Job& job) { Schedule(devices, job).run(); }
+void run_nodes(std::vector<Workers>& devices, const Job& job) { Schedule(devices, job).run(); }
 
 }  // namespace cadt::tiles

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nodes of a tree on the devices of one process: a thread reads leaves ahead, a thread for each device computes,
+// The nodes of a tree on the devices of one process: a thread reads leaves ahead, two threads for each device compute,
 // and a thread writes what is finished.
 #pragma once
 
@@ -18,6 +18,11 @@
 
 namespace cadt::tiles {
 
+/// What one device computes with at the same time: joins are small and would keep it waiting.
+struct Workers {
+  Triangulator leaves, joins;
+};
+
 struct Job {
   Job(const TileTree& tree_of_nodes, std::vector<bool> done_before)
       : tree(tree_of_nodes), done(std::move(done_before)) {}
@@ -28,7 +33,7 @@ struct Job {
   std::function<LeafPoints(std::uint32_t)> read_leaf;  ///< on the reading thread, leaves ascending
   std::function<Open(std::uint32_t)> read_open;        ///< of nodes that are done; on any thread
   ComputeOptions compute;
-  bool keep_open = false;  ///< NodeData::open goes to `finished` too
+  bool keep_open = false;                              ///< NodeData::open goes to `finished` too
   std::function<void(const NodeData&)> computed = {};  ///< of each node, at once; on the threads of the devices
   /// On the writing thread, in the order in which nodes finish.
   std::function<void(unsigned device, NodeData&&)> finished;
@@ -38,7 +43,7 @@ struct Job {
 
 class Schedule {
  public:
-  Schedule(std::vector<Triangulator>& devices, const Job& job);
+  Schedule(std::vector<Workers>& devices, const Job& job);
   ~Schedule();
   Schedule(const Schedule&) = delete;
   Schedule& operator=(const Schedule&) = delete;
@@ -54,9 +59,10 @@ class Schedule {
   std::unique_ptr<Work> work_;
 };
 
-/// Returns when all nodes are done. On each device the ready node with the lowest number comes first, so what waits for
-/// its sibling is little. In memory are, for each device, a leaf that is computed and one that is written, and one leaf
-/// more than there are devices that have been read. \throws the first error of any thread, after all have ended
-void run_nodes(std::vector<Triangulator>& devices, const Job& job);
+/// Returns when all nodes are done. Each device has a thread for leaves and one for joins; the ready node with the
+/// lowest number comes first, so what waits for its sibling is little. In memory are, for each device, a leaf that is
+/// computed and one that is written, and one leaf more than there are devices that have been read. \throws the first
+/// error of any thread, after all have ended
+void run_nodes(std::vector<Workers>& devices, const Job& job);
 
 }  // namespace cadt::tiles

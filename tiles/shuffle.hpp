@@ -17,6 +17,10 @@ namespace cadt::tiles {
 struct LeafPoints {
   std::vector<double> xy;  ///< x0 y0 x1 y1 ...
   std::vector<std::uint64_t> ids;
+  /// Instead of arrays: `count` points from `first` on of a set that is made on the device; input indices begin at
+  /// `first_id`.
+  const UniformCells* cells = nullptr;
+  std::uint64_t first = 0, count = 0, first_id = 0;
 };
 
 inline constexpr std::uint64_t bytes_per_shuffled_point = 24;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tiles/source.hpp"
+#include "tiles/cells.hpp"
 
 #include "io/support/byte_reader.hpp"
 #include "io/support/input_file.hpp"
@@ -200,6 +201,7 @@ std::unique_ptr<PointSource> open_files(std::span<const std::string> paths, cons
 }
 
 std::unique_ptr<PointSource> generated(const std::string& name, const io::GenerateOptions& options) {
+  if (name == "cells") return uniform_cells(options.n, options.seed);
   for (const io::Distribution& about : io::distributions())
     if (about.name == name && about.by_range) return std::make_unique<Generated>(name, options);
   return in_memory(io::generate(name, options).xy, "generated set " + name);

@@ -5,6 +5,7 @@
 #include <cadt/io/generate.hpp>
 #include <cadt/io/points_file.hpp>
 #include <cadt/triangulation.hpp>
+#include <cadt/uniform_cells.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -35,6 +36,8 @@ class PointSource {
   [[nodiscard]] virtual std::uint64_t index_in_part(std::uint64_t index) const { return index; }
   /// Names of all of it, for people.
   [[nodiscard]] virtual std::vector<std::string> names() const = 0;
+  /// The set, if it is one that is made tile by tile; else null.
+  [[nodiscard]] virtual const UniformCells* cells() const noexcept { return nullptr; }
   /// Bytes of memory that the source holds.
   [[nodiscard]] virtual std::uint64_t memory() const noexcept { return 0; }
 

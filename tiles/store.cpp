@@ -69,10 +69,14 @@ class NewFolder {
   bool done_ = false;
 };
 
+/// Whether a folder holds nothing, or no more than what a process that was killed at once leaves.
 bool is_empty_folder(const std::string& path) {
   std::error_code code;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path, code))
-    if (entry.path().filename() != "manifest.json.tmp") return false;  // of a process that was killed
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, code)) {
+    const bool left = entry.path().filename() == "manifest.json.tmp" ||
+                      (entry.path().filename() == "unfinished" && fs::is_empty(entry.path(), code));
+    if (!left) return false;
+  }
   return !code;
 }
 

@@ -87,8 +87,8 @@ TreePass& TreePass::operator+=(const TreePass& other) {
   return *this;
 }
 
-TreeBuilder::TreeBuilder(std::uint64_t points, std::uint64_t tile_points)
-    : points_(points), tile_points_(tile_points), drafts_(1) {
+TreeBuilder::TreeBuilder(std::uint64_t points, std::uint64_t tile_points, std::uint32_t most)
+    : points_(points), tile_points_(tile_points), most_(most), drafts_(1) {
   if (tile_points < least_tile_points)
     throw std::invalid_argument("a tile has at least " + std::to_string(least_tile_points) + " points");
   drafts_[0].points = points;
@@ -174,10 +174,10 @@ void TreeBuilder::finish_pass(TreePass&& pass) {
 }
 
 void TreeBuilder::add_children(std::uint32_t draft, int axis, double at) {
-  if (drafts_.size() + 2 > most_nodes) {
+  if (drafts_.size() + 2 > most_) {
     throw LimitError("tiles of " + std::to_string(tile_points_) + " points make a tree of too many nodes for " +
                          std::to_string(points_) + " points; make the tiles larger (--tile-points)",
-                     drafts_.size() + 2, most_nodes);
+                     drafts_.size() + 2, most_);
   }
   const auto [left, right] = cut(drafts_[draft].box, axis, at);
   const auto first = static_cast<std::uint32_t>(drafts_.size());

@@ -78,13 +78,13 @@ struct TreePass {
 class TreeBuilder {
  public:
   /// \throws std::invalid_argument for fewer than least_tile_points
-  TreeBuilder(std::uint64_t points, std::uint64_t tile_points);
+  TreeBuilder(std::uint64_t points, std::uint64_t tile_points, std::uint32_t most = most_nodes);
 
   [[nodiscard]] bool done() const noexcept { return pending_.empty(); }
   [[nodiscard]] TreePass new_pass() const;
   /// Points first, first + 1, ... of the input, finite. O(points * depth).
   void look_at(TreePass& pass, std::uint64_t first, std::span<const double> xy) const;
-  /// \throws LimitError if the tree would have more than most_nodes nodes
+  /// \throws LimitError if the tree would have more nodes than `most`
   void finish_pass(TreePass&& pass);
   /// \pre done()
   [[nodiscard]] TileTree take();
@@ -107,6 +107,7 @@ class TreeBuilder {
   void choose_pending(std::vector<std::uint32_t> drafts);
 
   std::uint64_t points_, tile_points_;
+  std::uint32_t most_;
   bool sampling_ = true;
   std::vector<Draft> drafts_;
   std::vector<Pending> pending_;

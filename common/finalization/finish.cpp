@@ -138,6 +138,17 @@ Node open_node(Triangulator& triangulator, std::size_t points, const TileBox& bo
   return node;
 }
 
+void require_ascending(Context& ctx, const Allocation& ids, std::size_t count) {
+  const Allocation first = ctx.memory.allocate(word);
+  ctx.device.fill(*first, 0, word, CADT_NONE);
+  ctx.launcher.run<KernelId::cadt_check_ids>(ids, ctx.launcher.grid(count), first);
+  const std::uint32_t wrong = ctx.launcher.read_word(first, 0);
+  if (wrong != CADT_NONE)
+    throw InputError("the id of point " + std::to_string(wrong) +
+                         " of the node is not above the one before it: sort the points by their ids, each once",
+                     wrong);
+}
+
 void triangulate_node(Node& node) {
   DevicePart::Data& data = *node.data;
   Device& device = *data.state->device;
@@ -205,7 +216,8 @@ void pass_side(Finished& finished, const Node& node, std::size_t row) {
                                       triangle_id(node.number, r.triangle), static_cast<std::uint32_t>(row)});
 }
 
-void add_sums(Finished& finished, const Node& node, std::size_t covered_hull_edges, std::uint64_t certified_links) {
+void add_sums(Call& call, Finished& finished, const Node& node, std::size_t covered_hull_edges,
+              std::uint64_t certified_links) {
   NodeSums& sums = finished.node.sums;
   sums.triangles = node.data->triangle_count;
   sums.dimension = node.mesh->dimension;
@@ -213,7 +225,11 @@ void add_sums(Finished& finished, const Node& node, std::size_t covered_hull_edg
   // Edges of two final triangles were examined with the node's mesh.
   const std::uint64_t outside = sums.hull_edges - covered_hull_edges;
   sums.certified_edges = (3 * sums.triangles - finished.rows.size() - outside) / 2 + certified_links;
-  finished.node.statistics = std::move(node.mesh->statistics);
+  call.ctx.finish();
+  Statistics& statistics = finished.node.statistics = std::move(node.mesh->statistics);
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  append(statistics.milliseconds, call.statistics.milliseconds);
+  append(statistics.kernels, call.ctx.launcher.kernel_times());
 }
 
 }  // namespace cadt::finalization

@@ -16,8 +16,6 @@ namespace cadt {
 
 struct DevicePart::Data {
   std::shared_ptr<Triangulator::State> state;  // first member: destroyed last, after the memory
-  std::vector<double> xy;                      ///< of a join, which `points` may alias
-  std::vector<std::uint64_t> own_ids;          ///< the same of `ids`
   Allocation points, ids;
   std::size_t point_count = 0, triangle_count = 0;
   Allocation triangles, neighbors;  ///< null if there are no triangles
@@ -66,14 +64,17 @@ struct Call {
 
 /// \throws LimitError, BackendUnavailable
 [[nodiscard]] Node open_node(Triangulator& triangulator, std::size_t points, const TileBox& box, std::uint32_t number);
+/// \throws InputError if these ids of 64 bits do not ascend
+void require_ascending(Context& ctx, const Allocation& ids, std::size_t count);
 /// Triangulates the points of a node. \throws as finish_leaf
 void triangulate_node(Node& node);
 /// Takes the final triangles out of the mesh.
 [[nodiscard]] Finished take_final(Call& call, Node& node);
 /// The row is one of an edge between open vertices: passes it to the parent.
 void pass_side(Finished& finished, const Node& node, std::size_t row);
-/// Adds the sums of a node that are known when its part and messages are.
-void add_sums(Finished& finished, const Node& node, std::size_t covered_hull_edges, std::uint64_t certified_links);
+/// Waits for the device, and adds the sums of a node and its statistics.
+void add_sums(Call& call, Finished& finished, const Node& node, std::size_t covered_hull_edges,
+              std::uint64_t certified_links);
 
 }  // namespace finalization
 }  // namespace cadt

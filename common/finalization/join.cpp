@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "common/driver/device_text.hpp"
@@ -14,6 +14,7 @@
 #include "common/points/bounds.hpp"
 #include "common/queries/call.hpp"
 #include "common/verify/host/exact_sign.hpp"
+#include "common/verify/host/parallel.hpp"
 
 namespace cadt {
 
@@ -22,63 +23,90 @@ using namespace finalization;
 
 namespace {
 
-/// The open vertices of all children by id, and their sides by index of these.
-struct Merged {
+/// The open vertices of all children, one child after the other, and their sides.
+struct Gathered {
   std::vector<double> xy;
   std::vector<std::uint64_t> ids;
-  std::vector<OpenSide> sides;
+  std::vector<OpenSide> sides;       ///< ends are indices of the node's points once these are known
+  std::vector<std::uint32_t> order;  ///< of each of the node's points: which one here
+  [[nodiscard]] verifier::Point point(std::uint32_t v) const {
+    const std::size_t at = order[v];
+    return {xy[2 * at], xy[2 * at + 1]};
+  }
 };
 
-Merged merge(std::span<const Open> children) {
+/// \throws LimitError, InputError
+Gathered gather(std::span<const Open> children) {
   std::size_t count = 0, side_count = 0;
-  for (const Open& child : children) count += child.ids.size(), side_count += child.sides.size();
+  for (const Open& child : children) {
+    if (child.xy.size() != 2 * child.ids.size())
+      throw InputError("the open vertices of a child have not two coordinates each", child.ids.size());
+    count += child.ids.size();
+    side_count += child.sides.size();
+  }
   if (count > max_points())
-    throw LimitError(std::to_string(count) + " vertices are open in a join, more than " + std::to_string(max_points()) +
-                         ": most circles are larger than the tiles, as those of points on one circle; take fewer "
-                         "points",
-                     count, max_points());
-  std::vector<std::uint64_t> ids;
-  std::vector<double> xy;
-  ids.reserve(count);
-  xy.reserve(2 * count);
+    throw LimitError(
+        std::to_string(count) + " vertices are open in a join, more than " + std::to_string(max_points()) +
+            ": most circles are larger than the tiles, as those of points on one circle; take fewer points",
+        count, max_points());
+  Gathered all;
+  all.ids.reserve(count);
+  all.xy.reserve(2 * count);
+  all.sides.reserve(side_count);
   for (const Open& child : children) {
-    ids.insert(ids.end(), child.ids.begin(), child.ids.end());
-    xy.insert(xy.end(), child.xy.begin(), child.xy.end());
-  }
-  if (xy.size() != 2 * count) throw InputError("the open vertices of a child have not two coordinates each", 0);
-  std::vector<std::uint32_t> order(count), place(count);
-  std::iota(order.begin(), order.end(), 0U);
-  const auto by_id = [&](std::uint32_t a, std::uint32_t b) { return ids[a] < ids[b]; };
-  std::ptrdiff_t done = 0;
-  for (const Open& child : children) {
-    const auto size = static_cast<std::ptrdiff_t>(child.ids.size());
-    std::inplace_merge(order.begin(), order.begin() + done, order.begin() + done + size, by_id);
-    done += size;
-  }
-  Merged result;
-  result.ids.reserve(count);
-  result.xy.reserve(2 * count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const std::size_t from = order[i];
-    place[from] = i;
-    result.ids.push_back(ids[from]);
-    result.xy.insert(result.xy.end(), {xy[2 * from], xy[2 * from + 1]});
-    if (i != 0 && result.ids[i - 1] >= result.ids[i])
-      throw InputError("two children have an open vertex with the same id, or ids do not ascend", i);
-  }
-  result.sides.reserve(side_count);
-  std::size_t offset = 0;
-  for (const Open& child : children) {
+    const auto offset = static_cast<std::uint32_t>(all.ids.size());
     for (OpenSide side : child.sides) {
       if (side.from >= child.ids.size() || side.to >= child.ids.size() || side.from == side.to)
-        throw InputError("a side of a child is not one between two of its open vertices", result.sides.size());
-      side.from = place[offset + side.from];
-      side.to = place[offset + side.to];
-      result.sides.push_back(side);
+        throw InputError("a side of a child is not one between two of its open vertices", all.sides.size());
+      side.from += offset;
+      side.to += offset;
+      all.sides.push_back(side);
     }
-    offset += child.ids.size();
+    all.ids.insert(all.ids.end(), child.ids.begin(), child.ids.end());
+    all.xy.insert(all.xy.end(), child.xy.begin(), child.xy.end());
   }
-  return result;
+  return all;
+}
+
+/// The order of ids of 64 bits: two stable sorts by words of 32.
+Allocation sort_ids(Context& ctx, const std::vector<std::uint64_t>& ids) {
+  Launcher& launch = ctx.launcher;
+  const std::size_t n = ids.size(), bytes = n * word;
+  std::vector<std::uint32_t> low(n), high(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    low[i] = static_cast<std::uint32_t>(ids[i]);
+    high[i] = static_cast<std::uint32_t>(ids[i] >> 32);
+  }
+  Allocation keys = ctx.memory.allocate(bytes), order = ctx.memory.allocate(bytes), spare = ctx.memory.allocate(bytes),
+             spare_order = ctx.memory.allocate(bytes);
+  ctx.device.write(*keys, 0, low.data(), bytes);
+  launch.sort(keys, order, spare, spare_order, n, 32, true);
+  const Allocation high_words = ctx.memory.allocate(bytes);
+  ctx.device.write(*high_words, 0, high.data(), bytes);
+  launch.run<KernelId::cadt_gather_words>(high_words, order, keys, launch.grid(n));
+  launch.sort(keys, order, spare, spare_order, n, 32, false);
+  return order;
+}
+
+/// Gives the node its points, in the order of their ids.
+void take_points(Context& ctx, Node& node, Gathered& all) {
+  const std::size_t n = all.ids.size();
+  Launcher& launch = ctx.launcher;
+  const Allocation order = sort_ids(ctx, all.ids);
+  const Allocation points = ctx.memory.import(all.xy.data(), n * sizeof(cadt_point)),
+                   ids = ctx.memory.import(all.ids.data(), n * sizeof(std::uint64_t));
+  node.data->points = ctx.memory.allocate(n * sizeof(cadt_point));
+  node.data->ids = ctx.memory.allocate(n * sizeof(std::uint64_t));
+  launch.run<KernelId::cadt_gather_points>(points, order, node.data->points, launch.grid(n), 1.0, 1.0);
+  launch.run<KernelId::cadt_gather_ids>(ids, order, node.data->ids, launch.grid(n));
+  require_ascending(ctx, node.data->ids, n);
+  all.order = ctx.device.read_values(*order, n);
+  std::vector<std::uint32_t> place(n);
+  for (std::uint32_t i = 0; i < n; ++i) place[all.order[i]] = i;
+  for (OpenSide& side : all.sides) {
+    side.from = place[side.from];
+    side.to = place[side.to];
+  }
 }
 
 /// Which triangles the children cover (common/stars/stitch.dev.h).
@@ -87,22 +115,19 @@ Cover find_cover(Context& ctx, const Node& node, const std::vector<OpenSide>& si
   const std::size_t count = node.mesh->triangle_count;
   const LaunchGrid inner = launch.grid(count);
   // A side is an open triangle: its first vertex, which is closed, is not known here.
-  std::vector<std::uint32_t> corners, list(sides.size());
+  std::vector<std::uint32_t> corners;
   corners.reserve(3 * sides.size());
   for (const OpenSide& side : sides) corners.insert(corners.end(), {CADT_NONE, side.from, side.to});
-  std::iota(list.begin(), list.end(), 0U);
-  std::vector<std::uint32_t> positions(node.data->point_count);
-  std::iota(positions.begin(), positions.end(), 0U);
-  const auto upload = [&](const std::vector<std::uint32_t>& words) {
-    Allocation memory = ctx.memory.allocate(std::max<std::size_t>(words.size(), 1) * word);
-    if (!words.empty()) ctx.device.write(*memory, 0, words.data(), words.size() * word);
-    return memory;
-  };
-  const Allocation open_triangles = upload(corners), open_list = upload(list), identity = upload(positions);
+  const Allocation open_triangles = ctx.memory.allocate(std::max<std::size_t>(corners.size(), 1) * word);
+  if (!corners.empty()) ctx.device.write(*open_triangles, 0, corners.data(), corners.size() * word);
+  // Positions of vertices in the node, and the list of all sides.
+  const std::size_t n = std::max(node.data->point_count, sides.size());
+  const Allocation identity = ctx.memory.allocate(n * word);
+  launch.run<KernelId::cadt_identity>(identity, launch.grid(n));
   const std::size_t places = std::bit_ceil(2 * sides.size() + 2), mask = places - 1;
   const Allocation table = ctx.memory.allocate(places * word);
   ctx.device.fill(*table, 0, places * word, CADT_NONE);
-  launch.run<KernelId::cadt_stitch_enter>(open_triangles, open_list, launch.grid(sides.size()), table, mask);
+  launch.run<KernelId::cadt_stitch_enter>(open_triangles, identity, launch.grid(sides.size()), table, mask);
 
   Cover cover;
   cover.half_edges = ctx.memory.allocate(3 * count * word);
@@ -143,13 +168,35 @@ std::vector<Match> match_sides(Context& ctx, const Node& node, const Allocation&
   return ctx.device.read_values<Match>(*matches, count);
 }
 
+/// Edges between final triangles of two nodes.
+struct Edges {
+  verifier::Findings illegal, folded;
+  /// q: the vertex across from a side.
+  void examine(std::size_t i, const Gathered& all, const verifier::Point& q) {
+    const OpenSide& side = all.sides[i];
+    const verifier::Point apex{side.apex_x, side.apex_y}, a = all.point(side.from), b = all.point(side.to);
+    ++illegal.examined;
+    if (verifier::orientation(apex, a, b) <= 0 || verifier::orientation(q, b, a) <= 0) return folded.fail(i);
+    int inside = verifier::incircle(apex, a, b, q);
+    if (inside == 0) inside = verifier::incircle_perturbed(apex, a, b, q);
+    if (inside > 0) illegal.fail(i);
+  }
+  void merge(const Edges& other) {
+    illegal.merge(other.illegal);
+    folded.merge(other.folded);
+  }
+};
+
+constexpr std::size_t fewest_for_threads = std::size_t{1} << 15;  // below, a thread costs more than it saves
+
 /// What lies across the sides of the children, and the certificates of these edges.
 class Settlement {
  public:
-  Settlement(const Node& node, const Merged& merged, Finished& finished)
-      : node_(node), merged_(merged), finished_(finished) {}
+  Settlement(const Node& node, const Gathered& all, Finished& finished) : node_(node), all_(all), finished_(finished) {}
 
   void settle(const std::vector<Match>& matches) {
+    certify(matches);
+    finished_.node.messages.reserve(matches.size());
     for (std::size_t i = 0; i < matches.size(); ++i) settle(i, matches[i], matches);
     std::size_t covered_rows = 0;
     finished_.node.links.resize(finished_.rows.size());
@@ -159,7 +206,7 @@ class Settlement {
         if (node_.is_root) give_up("an edge of the root has nothing across");
         pass_side(finished_, node_, row);
       } else {
-        finished_.node.links[row] = merged_.sides[cover].triangle;
+        finished_.node.links[row] = all_.sides[cover].triangle;
         ++covered_rows;
       }
     }
@@ -172,21 +219,19 @@ class Settlement {
 
  private:
   void settle(std::size_t i, const Match& match, const std::vector<Match>& matches) {
-    const OpenSide& side = merged_.sides[i];
+    const OpenSide& side = all_.sides[i];
     switch (match.kind) {
       case CADT_MATCHED_OUTSIDE:
         if (!node_.is_root) return pass_up(side);
         ++outside_;
         return tell(side, outside_hull);
       case CADT_MATCHED_SIDE: {
-        const OpenSide& other = merged_.sides.at(match.with);
+        const OpenSide& other = all_.sides.at(match.with);
         if (matches[match.with].with != i) give_up("the sides ", i, " and ", match.with, " of children do not match");
-        if (i < match.with) certify(side, other.apex_x, other.apex_y);
         return tell(side, other.triangle);
       }
       case CADT_MATCHED_FINAL:
         ++met_;
-        certify(side, merged_.xy[2 * std::size_t{match.apex}], merged_.xy[2 * std::size_t{match.apex} + 1]);
         return tell(side, triangle_id(node_.number, match.with));
       case CADT_MATCHED_OPEN:
         if (!node_.is_root) return pass_up(side);
@@ -212,23 +257,27 @@ class Settlement {
     finished_.node.open.sides.push_back(side);
   }
 
-  /// The edge is legal: q, across from the side, is not in the circle of its triangle.
-  void certify(const OpenSide& side, double x, double y) {
-    const auto vertex = [&](std::uint32_t v) {
-      return verifier::Point{merged_.xy[2 * std::size_t{v}], merged_.xy[2 * std::size_t{v} + 1]};
-    };
-    const verifier::Point apex{side.apex_x, side.apex_y}, a = vertex(side.from), b = vertex(side.to), q{x, y};
-    ++certified_;
-    int inside = -1;
-    if (verifier::orientation(apex, a, b) <= 0 || verifier::orientation(q, b, a) <= 0)
-      give_up("two triangles of an edge of node ", node_.number, " are on the same side of it");
-    inside = verifier::incircle(apex, a, b, q);
-    if (inside == 0) inside = verifier::incircle_perturbed(apex, a, b, q);
-    if (inside > 0) give_up("an edge between two nodes, found by node ", node_.number, ", is illegal");
+  /// Examines the edges that have a final triangle on both sides, each once.
+  void certify(const std::vector<Match>& matches) {
+    const auto threads = matches.size() < fewest_for_threads ? 1 : std::max(1U, std::thread::hardware_concurrency());
+    const Edges edges = verifier::reduce_each<Edges>(matches.size(), threads, [&](std::size_t i, Edges& mine) {
+      const Match& match = matches[i];
+      if (match.kind == CADT_MATCHED_FINAL) {
+        mine.examine(i, all_, all_.point(match.apex));
+      } else if (match.kind == CADT_MATCHED_SIDE && i < match.with) {
+        const OpenSide& other = all_.sides.at(match.with);
+        mine.examine(i, all_, {other.apex_x, other.apex_y});
+      }
+    });
+    if (edges.folded.failures != 0)
+      give_up("two triangles of an edge that node ", node_.number, " closes are on the same side of it");
+    if (edges.illegal.failures != 0)
+      give_up(edges.illegal.failures, " edges between two nodes, closed by node ", node_.number, ", are illegal");
+    certified_ = edges.illegal.examined;
   }
 
   const Node& node_;
-  const Merged& merged_;
+  const Gathered& all_;
   Finished& finished_;
   std::size_t met_ = 0, outside_ = 0;
   std::uint64_t certified_ = 0;
@@ -249,31 +298,27 @@ Bounds bounds_of(const std::vector<double>& xy) {
 
 FinishedNode finish_join(Triangulator& triangulator, std::span<const Open> children, const TileBox& box,
                          std::uint32_t number) {
-  Merged merged = merge(children);
-  const std::size_t n = merged.ids.size();
+  Gathered all = gather(children);
+  const std::size_t n = all.ids.size();
   Node node = open_node(triangulator, n, box, number);
   Triangulator::State& state = *node.data->state;
-  node.data->xy = merged.xy;
-  node.data->own_ids = merged.ids;
   if (n != 0) {
     state.device->begin_call();
     Call call(state, n);
-    node.bounds = bounds_of(merged.xy);
-    node.data->points = call.ctx.memory.import(node.data->xy.data(), n * sizeof(cadt_point));
-    node.data->ids = call.ctx.memory.import(node.data->own_ids.data(), n * sizeof(std::uint64_t));
+    node.bounds = bounds_of(all.xy);
+    take_points(call.ctx, node, all);
   }
   triangulate_node(node);
   if (node.mesh->distinct != n)
     give_up(n - node.mesh->distinct, " open vertices of different tiles are equal: their boxes overlap");
   Call call(state, n);
   const bool flat = node.mesh->triangle_count == 0;
-  if (flat && !merged.sides.empty()) give_up("children of collinear open vertices have final triangles");
-  if (!flat) node.cover = find_cover(call.ctx, node, merged.sides);
+  if (flat && !all.sides.empty()) give_up("children of collinear open vertices have final triangles");
+  if (!flat) node.cover = find_cover(call.ctx, node, all.sides);
   Finished finished = take_final(call, node);
-  Settlement settlement(node, merged, finished);
-  if (!flat) settlement.settle(match_sides(call.ctx, node, finished.places, merged.sides.size()));
-  add_sums(finished, node, settlement.outside(), settlement.certified());
-  call.ctx.device.finish();
+  Settlement settlement(node, all, finished);
+  if (!flat) settlement.settle(match_sides(call.ctx, node, finished.places, all.sides.size()));
+  add_sums(call, finished, node, settlement.outside(), settlement.certified());
   finished.node.part = DevicePart(std::move(node.data));
   return std::move(finished.node);
 }

@@ -21,18 +21,6 @@ namespace {
 
 constexpr std::size_t id_bytes = sizeof(std::uint64_t);
 
-void require_ascending(Context& ctx, const Allocation& ids, std::size_t count) {
-  const Allocation first = ctx.memory.allocate(word);
-  ctx.device.fill(*first, 0, word, CADT_NONE);
-  ctx.launcher.run<KernelId::cadt_check_ids>(ids, ctx.launcher.grid(count), first);
-  const std::uint32_t wrong = ctx.launcher.read_word(first, 0);
-  if (wrong != CADT_NONE)
-    throw InputError("the id of point " + std::to_string(wrong) +
-                         " of the tile is not above the one before it: sort "
-                         "the points by their ids",
-                     wrong);
-}
-
 void require_in_box(const Bounds& bounds, const TileBox& box) {
   if (box.contains(bounds.min_x, bounds.min_y) && box.contains(bounds.max_x, bounds.max_y)) return;
   const auto text = [](double a, double b) { return std::to_string(a) + " to " + std::to_string(b); };
@@ -77,7 +65,7 @@ FinishedNode finish(Node node, const Import& import) {
   result.links.resize(finished.rows.size());
   for (std::size_t row = 0; row < finished.rows.size(); ++row) pass_side(finished, node, row);
   result.duplicates = duplicate_ids(call.ctx, node);
-  add_sums(finished, node, 0, 0);
+  add_sums(call, finished, node, 0, 0);
   NodeSums& sums = result.sums;
   sums.points = n;
   sums.distinct = node.mesh->distinct;
@@ -85,7 +73,6 @@ FinishedNode finish(Node node, const Import& import) {
   for (const DuplicateId& d : result.duplicates)
     cadt_hash_add(&hash, CADT_HASH_DUPLICATE, d.point, d.representative, 0);
   sums.hash = {hash.high, hash.low};
-  call.ctx.device.finish();
   result.part = DevicePart(std::move(node.data));
   return std::move(result);
 }

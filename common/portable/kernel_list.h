@@ -184,7 +184,8 @@
   X(cadt_check_ids)      /* finish.dev.h */                                         \
   X(cadt_gather_ids)     /* finish.dev.h */                                         \
   X(cadt_half_edges_of)  /* join.dev.h */                                           \
-  X(cadt_match_sides)    /* join.dev.h: what lies across the sides of children */
+  X(cadt_match_sides)    /* join.dev.h: what lies across the sides of children */   \
+  X(cadt_uniform_cells)  /* uniform_cells.dev.h: points by counter */
 
 #define CADT_KERNEL_LIST(X)  \
   CADT_SELF_TEST_KERNELS(X)  \

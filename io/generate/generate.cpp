@@ -23,6 +23,10 @@ namespace sets = generate_detail;
 
 constexpr std::array entries{
     Entry{{"uniform", "independent uniform points of the unit square", true}, sets::uniform},
+    Entry{{"cells",
+           "uniform in each of equal cells of the unit square, which have the same number of points: cadt tiles makes "
+           "them tile by tile on the device"},
+          sets::cells},
     Entry{{"gaussian", "one standard normal cloud", true}, sets::gaussian},
     Entry{{"grid", "integer lattice, row by row, near-square: every four neighbours are cocircular"}, sets::grid},
     Entry{{"tilted", "integer lattice turned by 302.328 degrees and rounded: near ties everywhere"}, sets::tilted},

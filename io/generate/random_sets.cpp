@@ -2,6 +2,8 @@
 #include "io/generate/random.hpp"
 #include "io/generate/sets.hpp"
 
+#include <cadt/uniform_cells.hpp>
+
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -27,6 +29,11 @@ void uniform(const GenerateOptions& options, PointSet& out) {
     x = random.uniform();
     y = random.uniform();
   });
+}
+
+void cells(const GenerateOptions& options, PointSet& out) {
+  out.xy.resize(2 * options.n);
+  UniformCells(options.n, options.seed).generate(0, options.n, out.xy.data());
 }
 
 void gaussian(const GenerateOptions& options, PointSet& out) {

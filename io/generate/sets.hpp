@@ -8,6 +8,7 @@ namespace cadt::io::generate_detail {
 
 // Random points.
 void uniform(const GenerateOptions& options, PointSet& out);
+void cells(const GenerateOptions& options, PointSet& out);
 void gaussian(const GenerateOptions& options, PointSet& out);
 void kuzmin(const GenerateOptions& options, PointSet& out);
 void line(const GenerateOptions& options, PointSet& out);

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks that includes point only one way:
 
-    apps -> viewer -> io -> include <- common <- backends -> kernels_cl, kernels_cuda -> device text of common
+    apps -> tiles, viewer -> io -> include <- common <- backends -> kernels_cl, kernels_cuda -> device text of common
 
 Device text is what ends in .dev.h: C99, OpenCL C and CUDA C++ at once. It includes device text alone. Headers of the
 driver (common/driver/*.hpp) are what all stages share, so they know no stage.
@@ -20,7 +20,8 @@ MAY_INCLUDE = {
     "include/cadt": ["include/cadt"],
     "include/cadt/io": ["include/cadt", "include/cadt/io"],
     "io": ["io", "include/cadt", "include/cadt/io"],
-    "apps": ["apps", "viewer", "include/cadt", "include/cadt/io"],
+    "apps": ["apps", "tiles", "viewer", "include/cadt", "include/cadt/io"],
+    "tiles": ["tiles", "io", "include/cadt", "include/cadt/io"],  # for programs: the library knows nothing of it
     "viewer": ["viewer", "io", "include/cadt", "include/cadt/io"],  # an application: nothing includes it but apps
     "viewer/growth": ["viewer", "include/cadt", "include/cadt/io"],
     "common": ["common", "include/cadt"],
@@ -52,7 +53,8 @@ OUTSIDE = {
     r"cairo|png|zlib": ["io", "tests"],
     r"fast_float/": ["apps", "io"],
     r"CLI/": ["apps", "bench"],
-    r"nlohmann/": ["apps", "bench", "tests"],
+    r"nlohmann/": ["apps", "tiles", "bench", "tests"],
+    r"xxhash": ["tiles"],
     r"GLFW/": ["viewer/window", "examples"],
     r"imgui|backends/imgui": ["viewer/window"],
     r"gtest/|gmock/": ["tests"],
@@ -141,6 +143,14 @@ def self_test():
         ("io/x.cpp", "#include <CLI/CLI.hpp>", False),
         ("apps/y.cpp", '#include "io/support/e.hpp"', False),
         ("apps/y.cpp", "#include <CGAL/Kernel.h>", False),
+        ("apps/y.cpp", '#include "tiles/t.hpp"', True),
+        ("tiles/t2.cpp", '#include "io/support/e.hpp"', True),
+        ("tiles/t2.cpp", "#include <xxhash.h>", True),
+        ("tiles/t2.cpp", '#include "common/driver/d.hpp"', False),
+        ("tiles/t2.cpp", '#include "apps/y.hpp"', False),
+        ("io/x.cpp", '#include "tiles/t.hpp"', False),
+        ("io/x.cpp", "#include <xxhash.h>", False),
+        ("common/driver/d2.cpp", '#include "tiles/t.hpp"', False),
         ("common/stars/s.cpp", '#include "backends/host/f.hpp"', False),
         ("common/stars/s.cpp", '#include "common/driver/d.hpp"', True),
         ("common/stars/s.cpp", "#include <cadt/io/c.hpp>", False),
@@ -163,7 +173,7 @@ def self_test():
         ("common/points/g2.dev.h", '#include "missing.h"', False),
         ("tests/t.cpp", '#include "common/driver/d.hpp"', True),
     ]
-    present = ["include/cadt/b.hpp", "include/cadt/io/c.hpp", "common/driver/d.hpp", "common/points/p.hpp", "io/support/e.hpp",
+    present = ["include/cadt/b.hpp", "include/cadt/io/c.hpp", "common/driver/d.hpp", "common/points/p.hpp", "io/support/e.hpp", "tiles/t.hpp", "apps/y.hpp",
                "backends/host/f.hpp", "common/points/g.dev.h", "common/portable/dialect.dev.h",
                "common/mesh/mesh_view.dev.h", "common/mesh/locked_mesh.dev.h"]
     failed = 0

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tiles/mpi/plan.hpp"
 
+#include "tiles/cells.hpp"
 #include "tiles/mpi/schedule.hpp"
 #include "tiles/parallel.hpp"
 
@@ -34,6 +35,13 @@ Plan make_plan(Communicator& ranks, const PointSource& source, const RunOptions&
   Plan plan;
   plan.tile_points = options.tile_points;
   plan.first_id = options.first_id;
+  if (in_cells(source, options.tile_points)) {
+    ranks.agree([&] {
+      plan.content = content_of_cells(*source.cells());
+      plan.tree = tree_of_cells(*source.cells(), options.tile_points).value();
+    });
+    return plan;
+  }
   TreeBuilder builder(source.size(), options.tile_points);
   const auto [begin, end] = slice(source.size(), block_points, ranks.rank(), ranks.size());
   const unsigned threads =

@@ -4,6 +4,7 @@
 #include <cadt/errors.hpp>
 #include <cadt/io/errors.hpp>
 
+#include "tiles/cells.hpp"
 #include "tiles/mpi/nodes.hpp"
 #include "tiles/mpi/plan.hpp"
 #include "tiles/mpi/reports.hpp"
@@ -116,15 +117,17 @@ class Run {
 
   void make(Stopwatch& watch) {
     const std::vector<int> owner = owners(tree(), valid_, ranks_.size());
-    std::vector<Triangulator> devices;
+    std::vector<Workers> devices;
     ranks_.agree([&] {
       Options chosen = options_.devices.front();
-      chosen.order = Order::canonical;
+      // Without arrays on the host nobody sees the order.
+      chosen.order =
+          options_.output.empty() && !options_.collect && !options_.consumer ? Order::fast : Order::canonical;
       chosen.keep_points = KeepPoints::no;
       chosen.stop = stop_.get_token();
-      devices.emplace_back(chosen);
+      devices.push_back({Triangulator(chosen), Triangulator(chosen)});
     });
-    result_.devices = gather_texts(ranks_, devices.front().device().name + " on " + ranks_.host());
+    result_.devices = gather_texts(ranks_, devices.front().leaves.device().name + " on " + ranks_.host());
     shuffle_points(owner);
     result_.shuffle_seconds = watch.lap();
     compute(devices, owner);
@@ -132,6 +135,7 @@ class Run {
   }
 
   void shuffle_points(const std::vector<int>& owner) {
+    if (in_cells(source_, options_.tile_points)) return;
     std::vector<bool> wanted = valid_;
     wanted.flip();
     ShuffleOptions mine;
@@ -156,9 +160,13 @@ class Run {
     leaves_ = shuffle(ranks_, source_, tree(), deal);
   }
 
-  void compute(std::vector<Triangulator>& devices, const std::vector<int>& owner) {
+  void compute(std::vector<Workers>& devices, const std::vector<int>& owner) {
     Job job(tree(), {});
-    job.read_leaf = [this](std::uint32_t leaf) { return leaves_->take(leaf); };
+    if (in_cells(source_, options_.tile_points)) {
+      job.read_leaf = cells_of_leaves(source_, tree(), options_.first_id);
+    } else {
+      job.read_leaf = [this](std::uint32_t leaf) { return leaves_->take(leaf); };
+    }
     job.read_open = [this](std::uint32_t node) { return store_.value().read_open(node); };
     job.compute.arrays = store_ || options_.collect;
     job.compute.consumer = options_.consumer;

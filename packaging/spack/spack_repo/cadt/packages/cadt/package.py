@@ -30,6 +30,7 @@ class Cadt(CMakePackage, CudaPackage):
         depends_on("pkgconfig", type="build")
         depends_on("cli11", type="build")
         depends_on("nlohmann-json", type="build")
+        depends_on("xxhash", type="build")
         depends_on("fast-float")
         depends_on("fmt")
         depends_on("cairo")

@@ -1,0 +1,304 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""cadt tiles and cadt merge: one mesh of many tiles, in a directory that can be resumed."""
+import hashlib
+import json
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from harness import CliTest
+
+
+def digest(directory):
+    """sha256 of all that is the mesh: names and contents, without run.json."""
+    total = hashlib.sha256()
+    for path in sorted(p for p in directory.rglob("*") if p.is_file() and p.name != "run.json"):
+        total.update(str(path.relative_to(directory)).encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest())
+    return total.hexdigest()
+
+
+def limit(what, size):
+    def apply():
+        resource.setrlimit(what, (size, size))
+    return apply
+
+
+class TilesTest(CliTest):
+    def points(self, name="points.f64", count=3000, seed=1):
+        return self.scattered(name, count, seed)
+
+    def tiles(self, *arguments, output="mesh.cadt", **more):
+        return self.cadt("tiles", *arguments, "-o", output, "--backend", "host", **more)
+
+    def test_one_mesh_after_merging(self):
+        self.points()
+        done = self.tiles("points.f64", "--tile-points", 300)
+        whole = self.cadt("triangulate", "points.f64").fields()
+        self.assertIn(whole["hash"], done.err)
+        for name in ("mesh.ele", "mesh.npz", "mesh.ply"):
+            self.cadt("merge", "mesh.cadt", "-o", name)
+            self.cadt("triangulate", "points.f64", "-o", "one-" + name)
+            self.assertEqual(self.path(name).read_bytes(), self.path("one-" + name).read_bytes(), name)
+        self.cadt("verify", "mesh.cadt")
+
+    def test_directory_does_not_depend_on_devices_and_threads(self):
+        self.points()
+        self.tiles("points.f64", "--tile-points", 400, output="a.cadt")
+        self.tiles("points.f64", "--tile-points", 400, "--devices", "0,0,0", "--threads", 1, output="b.cadt")
+        self.path("scratch").mkdir()
+        self.tiles("points.f64", "--tile-points", 400, "--scratch", "scratch", "--host-memory", "1K", output="c.cadt")
+        self.assertEqual(digest(self.path("a.cadt")), digest(self.path("b.cadt")))
+        self.assertEqual(digest(self.path("a.cadt")), digest(self.path("c.cadt")))
+        self.assertEqual(list(self.path("scratch").iterdir()), [], "bucket files are removed")
+
+    def test_files_are_one_set_however_split(self):
+        self.points()
+        data = self.path("points.f64").read_bytes()
+        for name, part in (("a.f64", data[:16 * 700]), ("b.f64", data[16 * 700:16 * 701]), ("c.f64", data[16 * 701:])):
+            self.path(name).write_bytes(part)
+        self.tiles("points.f64", "--tile-points", 300, output="whole.cadt")
+        self.tiles("a.f64", "b.f64", "c.f64", "--tile-points", 300, output="split.cadt")
+        self.assertEqual(digest(self.path("whole.cadt")), digest(self.path("split.cadt")))
+
+    def test_duplicates_in_different_files(self):
+        self.points()
+        self.write("again.xy", "5 5\n")
+        shutil.copy(self.path("points.f64"), self.path("copy.f64"))
+        self.tiles("points.f64", "again.xy", "copy.f64", "again.xy", "--tile-points", 200)
+        self.assertEqual(self.cadt("info", "mesh.cadt").fields()["duplicates"], "3001")
+        self.cadt("verify", "mesh.cadt")
+
+    def test_generated_set_is_that_of_generate(self):
+        for name in ("uniform", "ring", "grid"):
+            self.cadt("generate", name, "-n", "2000", "--seed", 3, "-o", "p.npy")
+            hashes = [re.search(r"hash +(\w+)", self.cadt(*command).out)[1] for command in (
+                ("tiles", "--generate", name, "-n", "2000", "--seed", 3, "--tile-points", 100), ("triangulate", "p.npy"))]
+            self.assertEqual(hashes[0], hashes[1], name)
+
+    def test_without_output_nothing_is_written(self):
+        self.points()
+        done = self.cadt("tiles", "points.f64", "--tile-points", 300)
+        self.assertEqual(done.fields()["hash"], self.cadt("triangulate", "points.f64").fields()["hash"])
+        self.assertEqual(self.names(), ["points.f64"])
+
+    def test_statistics_and_picture(self):
+        self.points()
+        self.tiles("points.f64", "--tile-points", 300, "--stats", "run.json", "--picture", "tree.svg")
+        report = json.loads(self.path("run.json").read_text())
+        self.assertEqual(report["mesh"]["points"], 3000)
+        self.assertEqual(len(report["nodes"]), report["tree"]["nodes"])
+        self.assertEqual(sum(node["triangles"] for node in report["nodes"]), report["mesh"]["triangles"])
+        self.assertEqual(report, json.loads(self.path("mesh.cadt/run.json").read_text()))
+        svg = self.path("tree.svg").read_text()
+        self.assertEqual(svg.count("<rect"), report["tree"]["leaves"])
+
+    def test_pieces(self):
+        self.points()
+        self.tiles("points.f64", "--tile-points", 300)
+        self.cadt("merge", "mesh.cadt", "--pvtu", "vtk", "--ply", "ply")
+        pieces = re.findall(r'<Piece Source="([^"]+)"', self.path("vtk/mesh.pvtu").read_text())
+        self.assertTrue(pieces)
+        cells = 0
+        for piece in pieces:
+            head = self.path("vtk/" + piece).read_bytes()[:2000].decode(errors="replace")
+            self.assertIn('GlobalIds="GlobalNodeIds"', head)
+            cells += int(re.search(r'NumberOfCells="(\d+)"', head)[1])
+        self.assertEqual(str(cells), self.cadt("info", "mesh.cadt").fields()["triangles"])
+        self.assertEqual(len(list(self.path("ply").iterdir())), len(pieces))
+
+    def test_info_as_json(self):
+        self.points()
+        self.tiles("points.f64", "--tile-points", 300)
+        manifest = json.loads(self.cadt("info", "mesh.cadt", "--json").out)
+        self.assertTrue(manifest["complete"])
+        self.assertEqual(manifest["nodes"][-1]["base"] + manifest["nodes"][-1]["triangles"], manifest["whole"]["triangles"])
+
+
+class TilesResumeTest(CliTest):
+    """Four leaves and three joins, since a disk takes some 50 ms for the files of a node."""
+    COMMAND = ("tiles", "points.f64", "--tile-points", 800, "--backend", "host", "--threads", 1, "-q", "-o")
+
+    def setUp(self):
+        super().setUp()
+        self.scattered("points.f64", 3000)
+        self.cadt(*self.COMMAND, "whole.cadt")
+        self.expected = digest(self.path("whole.cadt"))
+
+    def killed_when(self, condition):
+        """Whether the program was killed once the condition held, before it ended."""
+        shutil.rmtree(self.path("mesh.cadt"), ignore_errors=True)
+        with self.started(*self.COMMAND, "mesh.cadt") as process:
+            while process.poll() is None and not condition():
+                pass
+            process.kill()
+            return process.wait() == -signal.SIGKILL
+
+    def resume(self):
+        self.cadt(*self.COMMAND, "mesh.cadt", "--resume")
+        self.assertEqual(digest(self.path("mesh.cadt")), self.expected)
+        self.cadt("verify", "mesh.cadt", "-q")
+
+    def test_killed_in_each_phase(self):
+        mesh = self.path("mesh.cadt")
+        done = mesh / "unfinished"
+        phases = {
+            "sample": lambda: True,
+            "directory": mesh.exists,
+            "begun": (mesh / "manifest.json").exists,
+            "within a node": (mesh / "node-000000.tmp").exists,
+            "first node": (done / "node-000000").exists,
+            "first join": (done / "node-000002").exists,
+            "half": (done / "node-000003").exists,
+            "root": lambda: (done / "node-000006").exists() or (mesh / "node-000000/links.npy.tmp").exists(),
+            "links": (mesh / "node-000000/links.npy").exists,
+            "complete": lambda: b'"complete": true' in (mesh / "manifest.json").read_bytes() if (mesh / "manifest.json").exists() else False,
+        }
+        for name, condition in phases.items():
+            with self.subTest(name):
+                killed = any(self.killed_when(condition) for _ in range(20))
+                self.assertTrue(killed or name == "complete", "the program always ended too soon")
+                self.resume()
+
+    def test_nodes_that_are_there_are_not_made_again(self):
+        self.assertTrue(any(self.killed_when(self.path("mesh.cadt/unfinished/node-000004").exists) for _ in range(20)))
+        before = {p: p.stat().st_mtime_ns for p in self.path("mesh.cadt").glob("node-00000?/points.npy")}
+        self.assertGreater(len(before), 3)
+        self.resume()
+        self.assertEqual(before, {p: p.stat().st_mtime_ns for p in before})
+
+    def test_damaged_nodes_are_made_again(self):
+        for damage in ("node-000003/triangles.npy", "unfinished/node-000002/open.npy", "unfinished/node-000001/node.json"):
+            for how in ("cut", "changed", "gone"):
+                with self.subTest(f"{damage} {how}"):
+                    self.assertTrue(any(self.killed_when(self.path("mesh.cadt/unfinished/node-000004").exists) for _ in range(20)))
+                    path = self.path("mesh.cadt") / damage
+                    data = bytearray(path.read_bytes())
+                    if how == "cut":
+                        path.write_bytes(data[:-3])
+                    elif how == "changed":
+                        data[-5] ^= 1
+                        path.write_bytes(data)
+                    else:
+                        path.unlink()
+                    self.resume()
+
+    def test_complete_directory_is_left_alone_or_mended(self):
+        shutil.copytree(self.path("whole.cadt"), self.path("mesh.cadt"))
+        result = self.cadt(*[a for a in self.COMMAND if a != "-q"], "mesh.cadt", "--resume")
+        self.assertIn("7 of 7 nodes were there", result.err)
+        self.path("mesh.cadt/node-000004/links.npy").write_bytes(b"")
+        self.resume()
+
+    def test_interrupted(self):
+        with self.started(*self.COMMAND, "mesh.cadt") as process:
+            while process.poll() is None and not self.path("mesh.cadt/unfinished/node-000002").exists():
+                pass
+            process.send_signal(signal.SIGINT)
+            self.assertIn(process.wait(timeout=60), (130, 0))
+        self.resume()
+
+    def test_other_runs_are_refused(self):
+        self.fails(3, *self.COMMAND, "whole.cadt", says=("whole.cadt", "--resume"))
+        self.fails(3, *self.COMMAND[:3], 810, *self.COMMAND[4:], "whole.cadt", "--resume", says=("--tile-points 800", "810"))
+        self.scattered("points.f64", 3000, seed=2)
+        self.fails(3, *self.COMMAND, "whole.cadt", "--resume", says="other points")
+        self.scattered("points.f64", 2999)
+        self.fails(3, *self.COMMAND, "whole.cadt", "--resume", says=("3000", "2999"))
+        manifest = self.path("whole.cadt/manifest.json")
+        manifest.write_text(manifest.read_text().replace('"version": 1', '"version": 77', 1))
+        for command in ((*self.COMMAND, "whole.cadt", "--resume"), ("info", "whole.cadt"), ("verify", "whole.cadt")):
+            self.fails(3, *command, says="version 77")
+
+
+class TilesFailureTest(CliTest):
+    def test_file_that_cannot_grow(self):
+        self.scattered("points.f64", 3000)
+        command = ("tiles", "points.f64", "--tile-points", 1000, "--backend", "host", "-o")
+        self.fails(3, *command, "mesh.cadt", before=limit(resource.RLIMIT_FSIZE, 9000), says=("mesh.cadt/node-00000", "File too large"))
+        self.assertEqual([p.name for p in self.path("mesh.cadt").glob("node-*")], [], "nothing half-written has a name")
+        self.cadt(*command, "mesh.cadt", "--resume")
+        self.cadt(*command, "whole.cadt")
+        self.assertEqual(digest(self.path("mesh.cadt")), digest(self.path("whole.cadt")))
+
+    def test_scratch_file_that_cannot_grow(self):
+        self.scattered("points.f64", 3000)
+        self.path("scratch").mkdir()
+        self.fails(3, "tiles", "points.f64", "--tile-points", 1000, "--scratch", "scratch", "--host-memory", "1K",
+                   before=limit(resource.RLIMIT_FSIZE, 9000), says=("scratch/", "File too large"))
+        self.assertEqual(list(self.path("scratch").iterdir()), [])
+
+    def test_folders_that_cannot_be_used(self):
+        self.scattered("points.f64", 300)
+        self.write("file", "")
+        self.path("full").mkdir()
+        self.write("full/a", "")
+        self.fails(3, "tiles", "points.f64", "-o", "file", says="file: is there already")
+        self.fails(3, "tiles", "points.f64", "-o", "full", says="full: the folder is there already")
+        self.fails(3, "tiles", "points.f64", "-o", "no/mesh.cadt", says="no/mesh.cadt")
+        self.fails(3, "tiles", "points.f64", "--tile-points", 30, "--host-memory", "1K", "--scratch", "nowhere", says="nowhere")
+        self.fails(3, "verify", "full/mesh.cadt", "full/a", says="full/mesh.cadt")
+        self.fails(2, "verify", "points.f64", says="MESH")
+        self.fails(2, "tiles", says="--generate")
+        self.fails(2, "tiles", "points.f64", "--generate", "uniform", says="not both")
+        self.fails(2, "tiles", "points.f64", "--tile-points", 2, says="at least 3")
+        self.fails(2, "tiles", "points.f64", "--resume", says="-o")
+        self.fails(6, "tiles", "points.f64", "--tile-points", 30, "--host-memory", "1K", says=("--scratch", "7.0 KiB", "1.0 KiB"))
+        self.fails(3, "tiles", "points.f64", "--tile-points", "1G", says="536870910")
+
+    def test_disk_that_is_too_small(self):
+        self.path("disk").mkdir()
+        self.scattered("points.f64", 100_000)
+        script = ('mount -t tmpfs -o size=2m none disk || exit 77; "$0" tiles points.f64 -o disk/mesh.cadt --tile-points 9000; '
+                  'code=$?; ls disk; exit $code')
+        done = subprocess.run(["unshare", "-rm", "sh", "-c", script, os.environ.get("CADT_PROGRAM", "cadt")],
+                              cwd=self.folder, capture_output=True, text=True)
+        if done.returncode in (77, 127) or "unshare" in done.stderr:
+            self.skipTest("no tmpfs can be mounted here: " + done.stderr.strip())
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, r"disk/mesh.cadt: the disk is too small: about [\d.]+ MiB are needed, and 2.0 MiB are free")
+        self.assertEqual(done.stdout, "")
+
+    def test_point_that_is_not_finite(self):
+        self.scattered("a.f64", 70_000)
+        self.scattered("b.f64", 200_000)
+        with open(self.path("b.f64"), "r+b") as file:
+            for point in (150_001, 70_000, 199_999):
+                file.seek(16 * point + 8)
+                file.write(b"\0\0\0\0\0\0\xf8\x7f")
+        self.fails(3, "tiles", "a.f64", "b.f64", "--tile-points", 9000, "-o", "mesh.cadt",
+                   says=("b.f64: point 70000 ", "point 140000 of all", "NaN"))
+        self.assertFalse(self.path("mesh.cadt").exists())
+
+    def test_damaged_mesh_is_found(self):
+        self.scattered("points.f64", 2000)
+        self.cadt("tiles", "points.f64", "--tile-points", 200, "-o", "mesh.cadt", "-q")
+        path = self.path("mesh.cadt/node-000001/neighbors.npy")
+        data = bytearray(path.read_bytes())
+        data[-1] ^= 1
+        path.write_bytes(data)
+        result = self.cadt("verify", "mesh.cadt", expect=7)
+        self.assertIn("node-000001/neighbors.npy is not what was written", result.out)
+
+    def test_many_tiles_through_the_memory_of_one(self):
+        """200 tiles: less memory than the whole set takes, of the device and of the process."""
+        self.cadt("generate", "uniform", "-n", "2M", "-o", "points.npy", "-q")
+        self.path("scratch").mkdir()
+        whole = self.cadt("triangulate", "points.npy", "--backend", "host", "--threads", 2).fields()["hash"]
+        budget = ("--backend", "host", "--threads", 2, "--max-memory", "16M")
+        self.fails(6, "triangulate", "points.npy", *budget, says="max-memory")
+        address_space = limit(resource.RLIMIT_AS, 220 << 20)
+        self.fails(6, "triangulate", "points.npy", *budget[:4], before=address_space, says="out of memory")
+        done = self.cadt("tiles", "points.npy", "--tile-points", 16000, *budget, "--scratch", "scratch", "--host-memory", "8M",
+                         before=address_space)
+        self.assertEqual(done.fields()["hash"], whole)
+        self.assertGreaterEqual(int(done.fields()["tiles"].split()[0]), 200)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points by counter: each range of indices is a part of the plane, on every device the same.
+#include <cadt/uniform_cells.hpp>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/support/backends.hpp"
+#include "tests/system/resident/resident.hpp"
+
+namespace cadt::test {
+namespace {
+
+class Cells : public ResidentTest {};
+
+TEST_P(Cells, AreTheSameOnTheDevice) {
+  Triangulator triangulator(options());
+  const UniformCells cells((std::uint64_t{1} << 33) + 77, 5);
+  const std::uint64_t first = (std::uint64_t{1} << 32) - 500;
+  const std::size_t count = 1000;
+  std::vector<double> expected(2 * count);
+  cells.generate(first, count, expected.data());
+  const DeviceArray xy{memory->upload(std::span<const double>(std::vector<double>(2 * count))), 2 * count};
+  cells.generate(triangulator, first, count, xy);
+  EXPECT_EQ(memory->download<double>(xy.memory, 2 * count), expected);
+  EXPECT_THROW(cells.generate(triangulator, first, count + 1, xy), InputError);
+
+  // A leaf of points and ids in device memory is the one of the same points on the host.
+  std::vector<std::uint64_t> ids(count);
+  for (std::size_t i = 0; i < count; ++i) ids[i] = first + 7 * i;
+  const DevicePoints points{.x = xy.memory, .size = count};
+  const TileBox box{0, 0, 1, 1};
+  const FinishedNode there =
+      finish_leaf(triangulator, points, {.memory = memory->upload(std::span<const std::uint64_t>(ids))}, box, 4);
+  const FinishedNode here = finish_leaf(triangulator, std::span<const double>(expected), ids, box, 4);
+  const FinishedNode counted = finish_leaf(triangulator, points, {.first = first}, box, 4);
+  EXPECT_EQ(there.open.ids, here.open.ids);
+  EXPECT_EQ(there.open.xy, here.open.xy);
+  EXPECT_EQ(there.open.sides, here.open.sides);
+  EXPECT_EQ(there.part.hash(), here.part.hash());
+  EXPECT_NE(counted.part.hash(), here.part.hash());
+  EXPECT_EQ(counted.open.ids[0] - first, (here.open.ids[0] - first) / 7);
+  EXPECT_EQ(counted.open.sides, here.open.sides);
+}
+
+CADT_ON_MAIN_BACKENDS(Cells);
+
+TEST(UniformCellsOnHost, PartsHaveTheirPoints) {
+  for (std::uint64_t n : {1u, 63u, 64u, 1000u, 100003u}) {
+    const UniformCells cells(n, 9);
+    std::vector<double> xy(2 * n);
+    cells.generate(0, n, xy.data());
+    for (unsigned depth = 0; depth <= 2 * cells.level(); ++depth) {
+      std::uint64_t next = 0;
+      for (std::uint64_t p = 0; p < std::uint64_t{1} << depth; ++p) {
+        const UniformCells::Part part = cells.part(depth, p);
+        ASSERT_EQ(part.first, next);
+        next += part.count;
+        for (std::uint64_t i = part.first; i < next; ++i) ASSERT_TRUE(part.box.contains(xy[2 * i], xy[2 * i + 1])) << i;
+      }
+      ASSERT_EQ(next, n);
+    }
+    for (const double v : xy) ASSERT_TRUE(v >= 0 && v < 1);
+  }
+}
+
+TEST(UniformCellsOnHost, DepthIsTheLeast) {
+  const UniformCells cells(1'000'000);
+  for (std::uint64_t most : {1'000'000u, 999'999u, 300'000u, 1000u}) {
+    const auto depth = cells.depth_for(most);
+    ASSERT_TRUE(depth);
+    const auto largest = [&](unsigned d) {
+      std::uint64_t count = 0;
+      for (std::uint64_t p = 0; p < std::uint64_t{1} << d; ++p) count = std::max(count, cells.part(d, p).count);
+      return count;
+    };
+    EXPECT_LE(largest(*depth), most);
+    if (*depth > 0) {
+      EXPECT_GT(largest(*depth - 1) + 1, most);
+    }
+  }
+  EXPECT_FALSE(cells.depth_for(3));
+  EXPECT_THROW(UniformCells((std::uint64_t{1} << 40) + 1), LimitError);
+}
+
+TEST(UniformCellsOnHost, LookUniform) {
+  const std::size_t n = 1 << 18;
+  std::vector<double> xy(2 * n);
+  UniformCells(std::uint64_t{1} << 34, 3).generate(0, n, xy.data());  // 256 cells of 1,024 points
+  double low_x = 2, high_x = -1;
+  for (std::size_t i = 0; i < n; ++i) low_x = std::min(low_x, xy[2 * i]), high_x = std::max(high_x, xy[2 * i]);
+  EXPECT_GT(high_x, low_x);
+  std::vector<int> bins(64);
+  const UniformCells one(n, 3);
+  one.generate(0, n, xy.data());
+  for (std::size_t i = 0; i < n; ++i)
+    ++bins[static_cast<std::size_t>(std::fmod(xy[2 * i] * 4096, 1.0) * 8) * 8 +
+           static_cast<std::size_t>(std::fmod(xy[2 * i + 1] * 4096, 1.0) * 8)];
+  for (int count : bins) EXPECT_NEAR(count, static_cast<double>(n) / 64, 5 * std::sqrt(n / 64.0));
+}
+
+}  // namespace
+}  // namespace cadt::test

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tiles/shuffle.hpp"
+
+#include "tests/unit/tiles/tiles_support.hpp"
+
+#include <cadt/errors.hpp>
+#include <cadt/io/errors.hpp>
+
+#include <gtest/gtest.h>
+
+namespace cadt::tiles {
+namespace {
+
+/// Each leaf has its points, in the order of the input, with their ids.
+void expect_leaves_of(LeafStore& leaves, const TileTree& tree, const std::vector<double>& xy, std::uint64_t first_id) {
+  std::vector<LeafPoints> expected(tree.size());
+  for (std::size_t i = 0; i < xy.size() / 2; ++i) {
+    LeafPoints& leaf = expected[tree.leaf_of(xy[2 * i], xy[2 * i + 1])];
+    leaf.xy.insert(leaf.xy.end(), {xy[2 * i], xy[2 * i + 1]});
+    leaf.ids.push_back(first_id + i);
+  }
+  for (const std::uint32_t leaf : tree.leaves()) {
+    const LeafPoints got = leaves.take(leaf);
+    EXPECT_EQ(got.xy, expected[leaf].xy);
+    EXPECT_EQ(got.ids, expected[leaf].ids);
+  }
+}
+
+TEST(Shuffle, InMemoryAndInFiles) {
+  const Folder folder;
+  for (const auto& [n, tile] : {std::pair(1000, 10), std::pair(300'000, 200'000), std::pair(1'300'000, 700'000)}) {
+    const std::vector<double> xy = points_of("uniform", static_cast<std::size_t>(n));
+    const TileTree tree = tree_of(xy, static_cast<std::uint64_t>(tile));
+    ShuffleOptions options;
+    options.first_id = std::uint64_t{1} << 35;
+    const auto source = in_memory(xy);
+    expect_leaves_of(*shuffle(*source, tree, options), tree, xy, options.first_id);
+    options.memory = xy.size() * 4;
+    options.scratch = folder / "";
+    {
+      const auto leaves = shuffle(*source, tree, options);
+      EXPECT_FALSE(folder.empty());
+      expect_leaves_of(*leaves, tree, xy, options.first_id);
+    }
+    EXPECT_TRUE(folder.empty());
+  }
+}
+
+TEST(Shuffle, WantedLeavesAlone) {
+  const std::vector<double> xy = points_of("uniform", 1000);
+  const TileTree tree = tree_of(xy, 100);
+  ShuffleOptions options;
+  options.wanted.assign(tree.size(), false);
+  options.wanted[tree.leaves()[1]] = true;
+  options.memory = 24 * 100;  // that of one leaf
+  const auto leaves = shuffle(*in_memory(xy), tree, options);
+  EXPECT_EQ(leaves->take(tree.leaves()[0]).ids.size(), 0U);
+  EXPECT_EQ(leaves->take(tree.leaves()[1]).ids.size(), tree.node(tree.leaves()[1]).points);
+}
+
+TEST(Shuffle, TooLittleMemoryWithoutScratch) {
+  const std::vector<double> xy = points_of("uniform", 1000);
+  const TileTree tree = tree_of(xy, 100);
+  ShuffleOptions options;
+  options.memory = 23'999;
+  try {
+    (void)shuffle(*in_memory(xy), tree, options);
+    FAIL() << "no error";
+  } catch (const OutOfMemory& e) {
+    EXPECT_EQ(e.needed(), 24'000U);
+    EXPECT_EQ(e.available(), 23'999U);
+  }
+  options.memory = 24'000;
+  EXPECT_NO_THROW((void)shuffle(*in_memory(xy), tree, options));
+  options.memory = 1;
+  options.scratch = "/nowhere/at/all";
+  EXPECT_THROW((void)shuffle(*in_memory(xy), tree, options), io::FileError);
+}
+
+TEST(Messages, PackedAndUnpacked) {
+  Open open;
+  open.xy = {1, 2, 3, 4, 5, 6};
+  open.ids = {7, 8, std::uint64_t{1} << 63};
+  open.sides = {{2, 1, 0.5, -0.25, triangle_id(17, 4), 9}};
+  const std::vector<std::uint64_t> words = pack(open);
+  const Open again = unpack_open(words);
+  EXPECT_EQ(again.xy, open.xy);
+  EXPECT_EQ(again.ids, open.ids);
+  EXPECT_EQ(again.sides, open.sides);
+  const std::vector<Link> messages{{triangle_id(1, 2), 3, outside_hull}, {4, 5, 6}};
+  EXPECT_EQ(unpack_messages(pack(messages)), messages);
+  // Damaged words are an error, and nothing is read beyond them.
+  for (std::size_t n = 0; n < words.size(); ++n) EXPECT_THROW((void)unpack_open(std::span(words).first(n)), Error) << n;
+  for (std::uint64_t bad : {std::uint64_t{4}, ~std::uint64_t{0}, ~std::uint64_t{0} / 3 + 2}) {
+    std::vector<std::uint64_t> changed = words;
+    changed[0] = bad;
+    EXPECT_THROW((void)unpack_open(changed), Error);
+    changed = words;
+    changed[1] = bad;
+    EXPECT_THROW((void)unpack_open(changed), Error);
+    EXPECT_THROW((void)unpack_messages(std::vector<std::uint64_t>{bad, 1, 2, 3}), Error);
+  }
+  std::vector<std::uint64_t> changed = words;
+  changed[words.size() - 5] = 3;  // a side from a vertex that is not there
+  EXPECT_THROW((void)unpack_open(changed), Error);
+  EXPECT_THROW((void)unpack_open({}), Error);
+  EXPECT_THROW((void)unpack_messages({}), Error);
+}
+
+}  // namespace
+}  // namespace cadt::tiles

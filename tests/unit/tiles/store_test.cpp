@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tiles/store.hpp"
+
+#include "tests/unit/tiles/tiles_support.hpp"
+#include "tiles/files.hpp"
+
+#include <cadt/io/errors.hpp>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+
+namespace cadt::tiles {
+namespace {
+
+class StoreTest : public testing::Test {
+ protected:
+  std::vector<double> xy_ = points_of("duplicates", 600);
+  Nodes made_ = nodes_of(xy_, 100);
+  Folder folder_;
+  std::string path_ = folder_ / "mesh.cadt";
+
+  void write_all(const Store& store) const {
+    for (const NodeData& node : made_.nodes) store.write(node);
+  }
+  [[nodiscard]] std::map<std::string, std::string> contents() const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path_))
+      if (entry.is_regular_file()) all[entry.path().string()] = read_text(entry.path().string());
+    return all;
+  }
+};
+
+TEST_F(StoreTest, ReadsBackWhatWasWritten) {
+  Store store(path_, made_.plan, Store::Start::create);
+  write_all(store);
+  for (std::uint32_t i = 0; i < made_.plan.tree.size(); ++i) EXPECT_TRUE(store.is_valid(i));
+  for (const NodeData& node : made_.nodes) {
+    EXPECT_EQ(store.read_open(node.node).ids, node.open.ids);
+    EXPECT_EQ(store.read_open(node.node).sides, node.open.sides);
+    EXPECT_EQ(store.read_record(node.node).sums, node.sums);
+  }
+  EXPECT_THROW(MeshDirectory{path_}, io::FileError) << "not complete";
+  const Manifest manifest = store.finish();
+  EXPECT_TRUE(store.complete());
+  EXPECT_FALSE(std::filesystem::exists(path_ + "/unfinished"));
+  const MeshDirectory mesh(path_);
+  const CollectedMesh nodes(made_.plan.tree, made_.nodes);
+  std::uint64_t base = 0;
+  for (std::uint32_t i = 0; i < made_.plan.tree.size(); ++i) {
+    const NodeArrays a = mesh.node(i), b = nodes.node(i);
+    const auto same = [](const auto& x, const auto& y) { return std::equal(x.begin(), x.end(), y.begin(), y.end()); };
+    EXPECT_TRUE(same(a.xy, b.xy) && same(a.ids, b.ids) && same(a.triangles, b.triangles) &&
+                same(a.neighbors, b.neighbors) && same(a.links, b.links) && same(a.duplicates, b.duplicates));
+    EXPECT_EQ(manifest.base[i], base);
+    base += a.number_of_triangles();
+  }
+  EXPECT_EQ(manifest.hash, triangulate(PointsView(std::span<const double>(xy_))).hash());
+  EXPECT_TRUE(verify(mesh).ok);
+}
+
+TEST_F(StoreTest, OrderOfNodesAndWritersDoesNotMatter) {
+  Store store(path_, made_.plan, Store::Start::create);
+  write_all(store);
+  store.finish();
+  const auto expected = contents();
+  std::filesystem::remove_all(path_);
+  Store first(path_, made_.plan, Store::Start::create);
+  Store second(path_, made_.plan, Store::Start::join);
+  for (std::size_t i = made_.nodes.size(); i-- > 0;) (i % 2 == 0 ? first : second).write(made_.nodes[i]);
+  first.finish();
+  EXPECT_EQ(contents(), expected);
+}
+
+TEST_F(StoreTest, EachDamagedFileMakesItsNodeInvalid) {
+  const Store store(path_, made_.plan, Store::Start::create);
+  write_all(store);
+  const std::map<std::string, std::string> files = contents();
+  std::size_t damaged = 0;
+  for (const auto& [name, text] : files) {
+    if (name.find("node-000000") == std::string::npos) continue;
+    ++damaged;
+    std::string changed = text;
+    changed[changed.size() / 2] ^= 1;
+    for (const std::string& wrong : {changed, text.substr(0, text.size() - 2), text + "x", std::string()}) {
+      std::ofstream(name, std::ios::binary) << wrong;
+      EXPECT_FALSE(store.is_valid(0)) << name;
+    }
+    std::filesystem::remove(name);
+    EXPECT_FALSE(store.is_valid(0)) << name;
+    std::ofstream(name, std::ios::binary) << text;
+    EXPECT_TRUE(store.is_valid(0)) << name;
+  }
+  EXPECT_EQ(damaged, 9U);
+}
+
+TEST_F(StoreTest, MissingNodesAndOtherPlans) {
+  {
+    Store store(path_, made_.plan, Store::Start::create);
+    for (std::size_t i = 1; i < made_.nodes.size(); ++i) store.write(made_.nodes[i]);
+    EXPECT_THROW(store.finish(), io::FileError);
+  }
+  EXPECT_THROW(Store(path_, made_.plan, Store::Start::create), ResumeError);
+  Store again(path_, made_.plan, Store::Start::resume);
+  EXPECT_FALSE(again.is_valid(made_.nodes[0].node));
+  Plan other = made_.plan;
+  other.content.low ^= 1;
+  EXPECT_THROW(Store(path_, other, Store::Start::resume), ResumeError);
+  other = made_.plan;
+  other.first_id = 1;
+  EXPECT_THROW(Store(path_, other, Store::Start::resume), ResumeError);
+  other = made_.plan;
+  other.tree = tree_of(points_of("uniform", 600), 100);
+  EXPECT_THROW(Store(path_, other, Store::Start::resume), ResumeError);
+  std::ofstream(path_ + "/manifest.json") << "{";
+  EXPECT_THROW(Store(path_, made_.plan, Store::Start::resume), io::FileError);
+}
+
+TEST_F(StoreTest, SumsThatAreNotThoseOfAMeshAreRefused) {
+  made_.nodes[0].sums.certified_edges += 1;
+  Store store(path_, made_.plan, Store::Start::create);
+  write_all(store);
+  EXPECT_THROW(store.finish(), InternalError);
+}
+
+TEST(Links, EachRowIsToldOnce) {
+  std::vector<TriangleId> links{pending_triangle, 5, pending_triangle};
+  std::vector<Link> messages{{triangle_id(3, 0), 0, 7}, {triangle_id(3, 1), 2, 8}};
+  apply_messages(3, messages, links);
+  EXPECT_EQ(links, (std::vector<TriangleId>{7, 5, 8}));
+  EXPECT_THROW(apply_messages(3, messages, links), InternalError) << "twice";
+  links = {pending_triangle, pending_triangle, pending_triangle};
+  EXPECT_THROW(apply_messages(3, messages, links), InternalError) << "never";
+  messages[0].row = 3;
+  EXPECT_THROW(apply_messages(3, messages, links), InternalError) << "no such row";
+  const auto ignore = [](std::uint32_t, std::span<const Link>) {};
+  EXPECT_NO_THROW(complete_links(messages, 4, ignore));
+  EXPECT_THROW(complete_links(messages, 3, ignore), InternalError) << "no such node";
+}
+
+}  // namespace
+}  // namespace cadt::tiles

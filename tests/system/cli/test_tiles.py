@@ -12,7 +12,7 @@ import subprocess
 import time
 import unittest
 
-from harness import CliTest
+from harness import SOURCE, CliTest
 
 
 def digest(directory):
@@ -298,6 +298,32 @@ class TilesFailureTest(CliTest):
                          before=address_space)
         self.assertEqual(done.fields()["hash"], whole)
         self.assertGreaterEqual(int(done.fields()["tiles"].split()[0]), 200)
+
+
+class TilesHelpTest(CliTest):
+    COMMANDS = ("tiles", "merge")
+
+    def test_each_command_has_examples_and_fits(self):
+        for command in self.COMMANDS:
+            self.assertRegex(self.cadt("--help").out, rf"(?m)^  {command} ")
+            text = self.cadt(command, "--help").out
+            self.assertRegex(text, rf"Examples:\n(.*\n)*?.*cadt {command}")
+            for line in text.splitlines():
+                self.assertLessEqual(len(line), 120, line)
+
+    def test_every_option_and_key_is_documented(self):
+        text = (SOURCE / "docs" / "cli.md").read_text()
+        for command in self.COMMANDS:
+            section = text.split(f"\n## cadt {command}\n")[1].split("\n## ")[0]
+            options = set(re.findall(r"(?m)^  (?:-\w, )?(--[\w-]+)", self.cadt(command, "--help").out)) - {"--help"}
+            self.assertGreater(len(options), 5)
+            for option in options:
+                self.assertIn(option, section, command)
+        report = json.loads(self.cadt("tiles", "--generate", "uniform", "-n", 500, "--tile-points", 100, "--stats=-").out)
+        section = text.split("\n## cadt tiles\n")[1].split("\n## ")[0]
+        keys = {*report, *report["mesh"], *report["tree"], *report["seconds"], *report["nodes"][0], *report["nodes"][0]["seconds"]}
+        for key in keys:
+            self.assertIn(f"`{key}`", section)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <mutex>
+#include <vector>
 
 namespace cadt::test {
 namespace {
@@ -97,6 +100,68 @@ TEST_P(TilesTest, SeveralDevices) {
   const Triangulation mesh = triangulate(PointsView(std::span<const double>(xy)));
   EXPECT_TRUE(same_arrays(tiles::merge(nodes), xy, mesh));
   EXPECT_EQ(result.hash, mesh.hash());
+}
+
+TEST_P(TilesTest, ConsumerSeesEachNodeOnce) {
+  const Points xy = uniform_points(3'000, 11);
+  tiles::RunOptions options = in_tiles(300, GetParam().options());
+  options.devices.assign(2, GetParam().options());
+  std::mutex lock;
+  std::vector<std::uint32_t> seen;
+  std::uint64_t triangles = 0, points = 0;
+  options.consumer = [&](const tiles::NodeView& view) {
+    const Part part = view.finished.part.download();
+    const std::scoped_lock guard(lock);
+    seen.push_back(view.node);
+    triangles += part.triangles.size() / 3;
+    EXPECT_EQ(part.triangles.size() / 3, view.finished.sums.triangles);
+    EXPECT_EQ(view.xy.size(), 2 * view.ids.size());
+    if (view.leaf) points += view.ids.size();
+    for (const std::int32_t v : part.triangles) EXPECT_LT(static_cast<std::size_t>(v), view.ids.size());
+  };
+  const tiles::RunResult result = tiles::run(*tiles::in_memory(xy), options);
+  std::sort(seen.begin(), seen.end());
+  for (std::uint32_t i = 0; i < result.plan.tree.size(); ++i) EXPECT_EQ(seen.at(i), i);
+  EXPECT_EQ(seen.size(), result.plan.tree.size());
+  EXPECT_EQ(triangles, result.whole.triangles);
+  EXPECT_EQ(points, xy.size() / 2);
+}
+
+TEST_P(TilesTest, ErrorsOfCallbacksEndTheRun) {
+  const Points xy = uniform_points(3'000, 11);
+  const auto source = tiles::in_memory(xy);
+  struct Mine : std::exception {};
+  for (const std::uint32_t at : {0U, 5U, 30U}) {
+    tiles::RunOptions options = in_tiles(200, GetParam().options());
+    options.devices.assign(2, GetParam().options());
+    options.consumer = [at](const tiles::NodeView& view) {
+      if (view.node == at) throw Mine();
+    };
+    EXPECT_THROW(tiles::run(*source, options), Mine);
+    options.consumer = nullptr;
+    options.collect = [at](tiles::NodeData&& node) {
+      if (node.node == at) throw Mine();
+    };
+    EXPECT_THROW(tiles::run(*source, options), Mine);
+    stop_source stop;
+    options.stop = stop.get_token();
+    options.collect = [&stop, at](tiles::NodeData&& node) {
+      if (node.node == at) stop.request_stop();
+    };
+    if (at == 0) {
+      EXPECT_THROW(tiles::run(*source, options), Cancelled);
+    }
+  }
+}
+
+TEST_P(TilesTest, DeviceBudgetOfOneTile) {
+  const Points xy = uniform_points(400'000, 13);
+  Options budget = GetParam().options();
+  budget.max_memory = std::size_t{12} << 20;
+  const PointsView points{std::span<const double>(xy)};
+  EXPECT_THROW((void)triangulate(points, budget), OutOfMemory);
+  const tiles::RunResult result = tiles::run(*tiles::in_memory(xy), in_tiles(20'000, budget));
+  EXPECT_EQ(result.hash, triangulate(points, GetParam().options()).hash());
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ TEST(Source, GeneratedByRange) {
     options.n = 900;
     options.seed = 5;
     const auto source = generated(std::string(about.name), options);
-    EXPECT_EQ(source->memory() == 0, about.by_range);
+    EXPECT_EQ(source->memory() == 0, about.by_range || source->cells() != nullptr);
     std::vector<double> expected = io::generate(about.name, options).xy;
     for (double& v : expected) v += 0.0;
     EXPECT_EQ(all_of(*source, 70), expected);

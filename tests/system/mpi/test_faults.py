@@ -81,6 +81,16 @@ class RanksThatDiffer(FaultTest):
         command = self.together([MPI_PROGRAM], [MPI_PROGRAM]) + ["--resume"]
         self.fails(2, 2, command=command, says=["rank 1", "--resume than rank 0"])
 
+    def test_own_devices(self):
+        """What is a rank's own may differ: here its threads and memory, on clusters its device."""
+        tail = ["tiles", self.name, *map(str, self.options[:-2]), "-q"]
+        command = [MPIRUN, *ANYWHERE, "-n", "1", MPI_PROGRAM, *tail, "--threads", "2", ":", "-n", "2", MPI_PROGRAM, *tail,
+                   "--threads", "1", "--host-memory", "1G"]
+        self.tiles(3, command=command)
+        found = digest(self.path("mesh.cadt"))
+        shutil.rmtree(self.path("mesh.cadt"))
+        self.assertEqual(found, self.whole())
+
     def test_full_disk_on_one_rank(self):
         limited = ["sh", "-c", 'ulimit -f 4; exec "$@"', "sh", MPI_PROGRAM]
         tail = ["tiles", self.name, *map(str, self.options), "-q"]

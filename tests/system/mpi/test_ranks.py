@@ -61,6 +61,13 @@ class KindsOfPoints(EqualTest):
         self.compare(["copies.f64"], 100, numbers=(1, 3), environment={"CADT_MPI_MESSAGE_BYTES": "4096"},
                      single=self.single_hash("copies.f64"))
 
+    def test_cells(self):
+        """A set that each rank makes itself, tile by tile."""
+        cells = ["--generate", "cells", "-n", "300000"]
+        whole = self.compare(cells, 80000, numbers=(3,))
+        self.cadt("tiles", *cells, "-o", "one.cadt", "--tile-points", 80000, "--backend", "host")
+        self.assertEqual(digest(self.path("one.cadt")), whole)
+
     def test_lattice(self):
         self.points("lattice.f64", [(x, y) for x in range(40) for y in range(40)])
         self.compare(["lattice.f64"], 50, numbers=(1, 5), single=self.single_hash("lattice.f64"))

@@ -74,6 +74,7 @@ struct Communicator::Data {
     Words words;            // with the header
     std::size_t whole = 0;  // words of the whole message; 0: nothing has come
   };
+  Words exchanged;  // what exchange() sends
   std::list<Outgoing> outgoing;
   std::vector<Incoming> incoming;                           // by source
   std::vector<std::uint64_t> pieces_sent, pieces_received;  // by rank
@@ -212,7 +213,7 @@ void Communicator::broadcast(Words& words, int root) {
   }
 }
 
-Exchanged Communicator::exchange(const std::vector<Words>& to) {
+void Communicator::exchange(const std::vector<Words>& to, Exchanged& came) {
   const auto ranks = static_cast<std::size_t>(data_->size);
   Words sizes(ranks), coming(ranks);
   for (std::size_t r = 0; r < ranks; ++r) sizes[r] = to[r].size();
@@ -220,22 +221,21 @@ Exchanged Communicator::exchange(const std::vector<Words>& to) {
   MPI_Ialltoall(sizes.data(), 1, MPI_UINT64_T, coming.data(), 1, MPI_UINT64_T, data_->world, &request);
   finish(request);
   std::vector<int> send_counts, send_begins, counts, begins;
-  Words out;
-  Exchanged all;
-  all.begin.assign(1, 0);
+  Words& out = data_->exchanged;
+  out.clear();
+  came.begin.assign(1, 0);
   for (std::size_t r = 0; r < ranks; ++r) {
     send_counts.push_back(to_int(sizes[r]));
     send_begins.push_back(to_int(out.size()));
     out.insert(out.end(), to[r].begin(), to[r].end());
     counts.push_back(to_int(coming[r]));
-    begins.push_back(to_int(all.begin.back()));
-    all.begin.push_back(all.begin.back() + coming[r]);
+    begins.push_back(to_int(came.begin.back()));
+    came.begin.push_back(came.begin.back() + coming[r]);
   }
-  all.words.resize(all.begin.back());
-  MPI_Ialltoallv(out.data(), send_counts.data(), send_begins.data(), MPI_UINT64_T, all.words.data(), counts.data(),
+  came.words.resize(came.begin.back());
+  MPI_Ialltoallv(out.data(), send_counts.data(), send_begins.data(), MPI_UINT64_T, came.words.data(), counts.data(),
                  begins.data(), MPI_UINT64_T, data_->world, &request);
   finish(request);
-  return all;
 }
 
 void Communicator::settle(const std::exception_ptr& error) {

@@ -84,8 +84,8 @@ class Communicator {
   [[nodiscard]] Words local_gather(std::span<const std::uint64_t> words);
   /// Those of rank `root`.
   void broadcast(Words& words, int root);
-  /// Words for each rank. Those of all ranks for one must be less than 2^31.
-  [[nodiscard]] Exchanged exchange(const std::vector<Words>& to);
+  /// Words for each rank. Those of all ranks for one must be less than 2^31. `came`: its memory is used again.
+  void exchange(const std::vector<Words>& to, Exchanged& came);
 
   /// Ends a step that each rank does by itself: `error` is what this one has, or null. If any rank has one, it is
   /// thrown on all: the error itself on the rank that tells, OtherRankFailed on the others. That with the smallest

@@ -2,7 +2,6 @@
 #include <cadt/errors.hpp>
 
 #include "tiles/mpi/plan.hpp"
-#include "tiles/parallel.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -15,6 +14,10 @@ namespace {
 
 /// A message is a list of runs: leaf, number of points, their coordinates, their ids.
 constexpr std::size_t words_per_point = 3, words_per_run = 2;
+/// Of a rank in a round: its messages stay in the cache of a core.
+constexpr std::uint64_t most_points = std::uint64_t{1} << 17;
+/// Less for a thread is not worth to start it.
+constexpr std::size_t least_points = std::size_t{1} << 14;
 
 struct Part {
   std::uint64_t first = 0;
@@ -25,31 +28,34 @@ struct Part {
 class Dealer {
  public:
   Dealer(const TileTree& tree, const Deal& deal, std::size_t ranks)
-      : deal_(deal), ranks_(ranks), sorters_(std::max(1U, deal.threads), BlockSorter(tree)) {}
+      : deal_(deal),
+        ranks_(ranks),
+        sorters_(std::max(1U, deal.threads), BlockSorter(tree)),
+        sorted_(sorters_.size(), std::vector<Words>(ranks)) {}
 
-  /// Pieces of a part by several threads, put together in their order.
-  std::vector<Words> operator()(const Part& part) {
+  /// Pieces of a part by several threads, put together in their order. Valid until the next call.
+  const std::vector<Words>& operator()(const Part& part) {
     const std::size_t points = part.xy.size() / 2;
-    const std::size_t pieces = std::clamp<std::size_t>(points / block_points, 1, sorters_.size());
-    std::vector<std::vector<Words>> sorted(pieces, std::vector<Words>(ranks_));
+    const std::size_t pieces = std::clamp<std::size_t>(points / least_points, 1, sorters_.size());
     std::vector<std::future<void>> helpers;
     for (std::size_t p = 0; p < pieces; ++p) {
       const std::size_t begin = points * p / pieces, end = points * (p + 1) / pieces;
       helpers.push_back(std::async(p + 1 == pieces ? std::launch::deferred : std::launch::async, [&, p, begin, end] {
-        sort(sorters_[p], part.first + begin, std::span(part.xy).subspan(2 * begin, 2 * (end - begin)), sorted[p]);
+        sort(sorters_[p], part.first + begin, std::span(part.xy).subspan(2 * begin, 2 * (end - begin)), sorted_[p]);
       }));
     }
     for (auto& helper : helpers) helper.wait();
     for (auto& helper : helpers) helper.get();
     for (std::size_t p = 1; p < pieces; ++p) {
       for (std::size_t r = 0; r < ranks_; ++r)
-        sorted[0][r].insert(sorted[0][r].end(), sorted[p][r].begin(), sorted[p][r].end());
+        sorted_[0][r].insert(sorted_[0][r].end(), sorted_[p][r].begin(), sorted_[p][r].end());
     }
-    return std::move(sorted[0]);
+    return sorted_[0];
   }
 
  private:
   void sort(BlockSorter& sorter, std::uint64_t first, std::span<const double> xy, std::vector<Words>& to) const {
+    for (Words& words : to) words.clear();
     sorter.sort(deal_.options.first_id + first, xy,
                 [&](std::uint32_t leaf, std::span<const double> some, std::span<const std::uint64_t> ids) {
                   if (!deal_.wanted[leaf]) return;
@@ -65,6 +71,7 @@ class Dealer {
   const Deal& deal_;
   std::size_t ranks_;
   std::vector<BlockSorter> sorters_;
+  std::vector<std::vector<Words>> sorted_;  // of each thread, for each rank
 };
 
 void keep(LeafStore& leaves, std::span<const std::uint64_t> words) {
@@ -90,8 +97,8 @@ std::unique_ptr<LeafStore> shuffle(Communicator& ranks, const PointSource& sourc
   const auto size = static_cast<std::uint64_t>(ranks.size());
   // Even if all points of a round are for one rank, each in a run of its own, that rank receives message_bytes() at
   // most.
-  const std::uint64_t each = std::max<std::uint64_t>(
-      1, ranks.message_bytes() / sizeof(std::uint64_t) / (words_per_point + words_per_run) / size);
+  const std::uint64_t each = std::clamp<std::uint64_t>(
+      ranks.message_bytes() / sizeof(std::uint64_t) / (words_per_point + words_per_run) / size, 1, most_points);
   const std::uint64_t round = each * size, all = source.size();
   const auto read = [&](std::uint64_t start) {
     Part part{.first = std::min(all, start + each * static_cast<std::uint64_t>(ranks.rank())), .xy = {}};
@@ -101,15 +108,16 @@ std::unique_ptr<LeafStore> shuffle(Communicator& ranks, const PointSource& sourc
   };
   Dealer dealer(tree, deal, static_cast<std::size_t>(ranks.size()));
   std::future<Part> next = std::async(std::launch::async, read, std::uint64_t{0});
+  Exchanged came;
   for (std::uint64_t start = 0; start < all; start += round) {
-    std::vector<Words> to;
+    const std::vector<Words>* to = nullptr;
     ranks.agree([&] {
       if (deal.options.stop.stop_requested()) throw Cancelled();
       const Part part = next.get();
       next = std::async(std::launch::async, read, std::min(all, start + round));
-      to = dealer(part);
+      to = &dealer(part);
     });
-    const Exchanged came = ranks.exchange(to);
+    ranks.exchange(*to, came);
     ranks.agree([&] {
       for (int r = 0; r < ranks.size(); ++r) keep(*leaves, came.from(r));
     });

@@ -13,6 +13,7 @@
 namespace cadt::tiles {
 namespace {
 
+/// Its first vertex is the smallest, as in a node: ids ascend with the numbers of the node's points.
 struct Triangle {
   std::array<std::int32_t, 3> vertices, neighbors;
   std::int32_t number;  // before sorting
@@ -81,10 +82,6 @@ class Merge {
         triangle.vertices[k] = index(node.ids[v]);
         triangle.neighbors[k] = neighbor(i, node, node.neighbors[3 * t + k]);
       }
-      const auto least =
-          std::min_element(triangle.vertices.begin(), triangle.vertices.end()) - triangle.vertices.begin();
-      std::rotate(triangle.vertices.begin(), triangle.vertices.begin() + least, triangle.vertices.end());
-      std::rotate(triangle.neighbors.begin(), triangle.neighbors.begin() + least, triangle.neighbors.end());
       triangles_.push_back(triangle);
     }
   }

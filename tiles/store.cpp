@@ -117,6 +117,7 @@ void check_new_directory(const std::string& path) {
 
 void Store::begin() {
   make_folder(path_);
+  sync_folder(io::detail::system_file::folder_of(path_));
   make_folder(path_ + "/unfinished");
   Manifest manifest;
   manifest.plan = plan_;

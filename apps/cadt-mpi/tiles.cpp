@@ -89,7 +89,14 @@ int run(mpi::Communicator& ranks, const TilesCommand& c) {
   RankProgress progress(c.quiet);
   progress.start(source->size());
   options.progress = [&progress](const tiles::RunProgress& now) { progress(now); };
-  const tiles::RunResult result = mpi::run(ranks, *source, options);
+  tiles::RunResult result;
+  try {
+    result = mpi::run(ranks, *source, options);
+  } catch (const Cancelled&) {
+    progress.clear();
+    say_how_to_resume(c);
+    throw;
+  }
   ranks.agree([&] {
     if (ranks.rank() != 0) return;
     progress.clear();

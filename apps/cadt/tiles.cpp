@@ -6,6 +6,8 @@
 #include "tile_errors.hpp"
 #include "tiles_command.hpp"
 
+#include <cadt/errors.hpp>
+
 #include <fmt/format.h>
 
 #include <memory>
@@ -43,7 +45,13 @@ int run(const TilesCommand& c) {
     source = open_source(c);
     line.start(source->size());
     const InPhase in_phase(Phase::cooperative);
-    result = tiles::run(*source, options);
+    try {
+      result = tiles::run(*source, options);
+    } catch (const Cancelled&) {
+      line.clear();
+      say_how_to_resume(c);
+      throw;
+    }
   });
   line.clear();
   write_tiles_reports(c, *source, options, result);

@@ -6,6 +6,7 @@
 #include "outputs.hpp"
 #include "text.hpp"
 #include "tiles/files.hpp"
+#include "tiles/mesh_directory.hpp"
 #include "tiles/report.hpp"
 
 #include <fmt/format.h>
@@ -160,7 +161,15 @@ void write_tiles_reports(const TilesCommand& c, const tiles::PointSource& source
   write_text(c.picture, tiles::tree_svg(result.plan.tree, seconds));
 }
 
+void say_how_to_resume(const TilesCommand& c) {
+  if (tiles::is_mesh_directory(c.output)) say(fmt::format("cadt: {} can be continued with --resume\n", c.output));
+}
+
 void print_tiles_summary(const TilesCommand& c, const tiles::RunResult& result) {
+  if (result.whole.dimension < 2 && !c.quiet) {
+    say("cadt: warning: no triangles: all points lie on one line, or there are fewer than three; the mesh is empty. "
+        "Check --columns and --project if you expected some.\n");
+  }
   const std::string text = tiles_summary(result);
   if (c.output.empty() && c.stats != "-") {
     print(text);

@@ -45,7 +45,10 @@ void check_tiles_options(const TilesCommand& options);
 /// run.json in the directory, --stats and --picture. Throws io::FileError.
 void write_tiles_reports(const TilesCommand& options, const tiles::PointSource& source, const tiles::RunOptions& run,
                          const tiles::RunResult& result);
-/// The summary goes to standard output if nothing else is the result, else to standard error.
+/// For runs that were interrupted.
+void say_how_to_resume(const TilesCommand& options);
+/// The summary, with a warning if there are no triangles, goes to standard output if nothing else is the result, else
+/// to standard error.
 void print_tiles_summary(const TilesCommand& options, const tiles::RunResult& result);
 
 }  // namespace cadt::cli

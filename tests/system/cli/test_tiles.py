@@ -87,6 +87,16 @@ class TilesTest(CliTest):
         self.assertEqual(done.fields()["hash"], self.cadt("triangulate", "points.f64").fields()["hash"])
         self.assertEqual(self.names(), ["points.f64"])
 
+    def test_points_without_triangles(self):
+        for number, text in enumerate(("1 2\n", "3 3\n" * 9, "".join(f"{i} {2 * i}\n" for i in range(20)))):
+            self.write("in.xy", text)
+            done = self.tiles("in.xy", "--tile-points", 3, output=f"{number}.cadt")
+            self.assertIn("warning: no triangles", done.err)
+            self.cadt("verify", f"{number}.cadt", "-q")
+            self.cadt("merge", f"{number}.cadt", "-o", "m.off")
+            self.cadt("triangulate", "in.xy", "-o", "one.off")
+            self.assertEqual(self.path("m.off").read_bytes(), self.path("one.off").read_bytes())
+
     def test_statistics_and_picture(self):
         self.points()
         self.tiles("points.f64", "--tile-points", 300, "--stats", "run.json", "--picture", "tree.svg")
@@ -200,8 +210,15 @@ class TilesResumeTest(CliTest):
             while process.poll() is None and not self.path("mesh.cadt/unfinished/node-000002").exists():
                 pass
             process.send_signal(signal.SIGINT)
-            self.assertIn(process.wait(timeout=60), (130, 0))
+            self.assertEqual(process.wait(timeout=60), 130)
+            self.assertIn("mesh.cadt can be continued with --resume", process.stderr.read().decode())
         self.resume()
+
+    def test_progress_on_a_terminal(self):
+        # At most ten lines a second are drawn: enough tiles for some of them.
+        with self.on_terminal("tiles", "points.f64", "--tile-points", 50, "-o", "mesh.cadt") as (process, terminal):
+            self.assertRegex(terminal.wait_for(), r"(?s)tiles \d+/127 .*\rpoints")
+            self.assertEqual(process.wait(timeout=60), 0)
 
     def test_other_runs_are_refused(self):
         self.fails(3, *self.COMMAND, "whole.cadt", says=("whole.cadt", "--resume"))

@@ -148,7 +148,7 @@ class Killed(KillTest):
             os.kill(run.rank(1), signal.SIGTERM)
             code, text = run.end()
         self.assertEqual(code, 130, text)
-        self.assertIn("cadt: interrupted", text)
+        self.assertIn("mesh.cadt can be continued with --resume\ncadt: interrupted", text)
         self.assertEqual(self.resumed(), before)
 
 

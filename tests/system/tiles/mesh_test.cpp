@@ -68,6 +68,23 @@ TEST_P(TilesTest, RealSets) {
   }
 }
 
+TEST_P(TilesTest, HardSets) {
+  if (!data_folder()) GTEST_SKIP() << "CADT_DATA_DIR is not set";
+  const bool host = GetParam().backend == Backend::host;
+  const auto compare = [&](const ExactCounts& set, Points xy) {
+    SCOPED_TRACE(set.name);
+    for (double& v : xy) v += 0.0;
+    const std::array<std::uint64_t, 2> sizes{xy.size() / 2 / 12 + 3, xy.size() / 2 / 3 + 3};
+    EXPECT_TRUE(same_in_tiles(xy, sizes, GetParam().options()));
+  };
+  int n = 0;
+  for (const ExactCounts& set : expected_of_files())
+    if (!set.not_finite && (host || ++n <= 10)) compare(set, hard_file(set.name));
+  n = 0;
+  for (const ExactCounts& set : expected_of_catalogue())
+    if (!set.not_finite && set.points <= 2'000 && (host || ++n <= 10)) compare(set, catalogue_set(set.name));
+}
+
 TEST_P(TilesTest, FewPoints) {
   EXPECT_TRUE(same_in_tiles({}, small_tiles(), GetParam().options()));
   EXPECT_TRUE(same_in_tiles({1, 2}, small_tiles(), GetParam().options()));

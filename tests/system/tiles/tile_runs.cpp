@@ -56,6 +56,8 @@ testing::AssertionResult same_in_tiles(const Points& xy, std::span<const std::ui
     if (result.whole.dimension != mesh.dimension())
       return testing::AssertionFailure() << "tiles of " << size << ": the dimensions differ";
     const VerifyReport report = tiles::verify(nodes);
+    if (report.ok && report.edges_examined != (3 * mesh.number_of_triangles() - mesh.hull().size()) / 2)
+      return testing::AssertionFailure() << "tiles of " << size << ": some edges were not examined";
     if (report.ok) continue;
     for (const Check& check : report.checks)
       if (!check.passed)

@@ -77,6 +77,8 @@ class VerifyTiles : public testing::Test {
 
 TEST_F(VerifyTiles, PassesWhatIsRight) {
   EXPECT_EQ(failed(mesh_), "");
+  const VerifyReport report = verify(mesh_);
+  EXPECT_EQ(report.edges_examined, (3 * report.triangles_examined - report.hull_vertices) / 2) << "all inner edges";
   for (const char* name : {"grid", "duplicates", "collinear", "concentric", "parabola"})
     EXPECT_EQ(failed(mesh_of(points_of(name, 300), 40)), "") << name;
   EXPECT_EQ(failed(mesh_of({}, 3)), "");

@@ -7,7 +7,7 @@
 
 #include <array>
 #include <atomic>
-#include <cstring>
+#include <bit>
 #include <utility>
 
 namespace cadt::tiles::mpi {
@@ -21,11 +21,11 @@ void reduce(Communicator& ranks, TreePass& pass) {
   ranks.least(lower);
   ranks.most(upper);
   for (std::size_t i = 0; i < pass.bounds.size(); ++i) pass.bounds[i] = (i % 4 < 2 ? lower : upper)[i / 4 * 2 + i % 2];
-  Words words(pass.sample.size());
-  std::memcpy(words.data(), pass.sample.data(), words.size() * sizeof words[0]);
+  Words words;
+  for (const double v : pass.sample) words.push_back(std::bit_cast<std::uint64_t>(v));
   const Exchanged all = ranks.all_gather(words);
-  pass.sample.resize(all.words.size());
-  std::memcpy(pass.sample.data(), all.words.data(), all.words.size() * sizeof words[0]);
+  pass.sample.clear();
+  for (const std::uint64_t word : all.words) pass.sample.push_back(std::bit_cast<double>(word));
 }
 
 }  // namespace

@@ -19,6 +19,9 @@ endif()
 if(TARGET cadt_app)
   install(TARGETS cadt_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT cadt_program)
 endif()
+if(TARGET cadt_mpi_app)
+  install(TARGETS cadt_mpi_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT cadt_program)
+endif()
 
 configure_package_config_file(cmake/cadtConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/cadtConfig.cmake
   INSTALL_DESTINATION ${cadt_cmake_dir} NO_SET_AND_CHECK_MACRO)

@@ -62,6 +62,28 @@ std::optional<TileTree> tree_of_cells(const UniformCells& cells, std::uint64_t t
   return TileTree(std::move(nodes));
 }
 
+bool in_cells(const PointSource& source, std::uint64_t tile_points) {
+  return source.cells() != nullptr && source.cells()->depth_for(tile_points);
+}
+
+std::function<LeafPoints(std::uint32_t)> cells_of_leaves(const PointSource& source, const TileTree& tree,
+                                                         std::uint64_t first_id) {
+  std::vector<std::uint64_t> firsts(tree.size());
+  std::uint64_t first = 0;
+  for (const std::uint32_t leaf : tree.leaves()) {
+    firsts[leaf] = first;
+    first += tree.node(leaf).points;
+  }
+  return [&source, &tree, first_id, firsts = std::move(firsts)](std::uint32_t leaf) {
+    LeafPoints points;
+    points.cells = source.cells();
+    points.first = firsts[leaf];
+    points.count = tree.node(leaf).points;
+    points.first_id = first_id + points.first;
+    return points;
+  };
+}
+
 Hash128 content_of_cells(const UniformCells& cells) noexcept {
   const std::array<std::uint64_t, 2> words = {cells.size(), cells.seed()};
   return hash_bytes(words.data(), sizeof words, 1);

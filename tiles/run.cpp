@@ -64,11 +64,6 @@ std::vector<Workers> open_devices(const RunOptions& options) {
   return devices;
 }
 
-/// Whether the leaves are ranges of a set that is made where it is needed.
-bool in_cells(const PointSource& source, const RunOptions& options) {
-  return source.cells() != nullptr && source.cells()->depth_for(options.tile_points);
-}
-
 LeafPoints all_points(const PointSource& source, std::uint64_t first_id) {
   LeafPoints points;
   points.xy.resize(2 * source.size());
@@ -148,7 +143,7 @@ class Run {
   }
 
   void shuffle_points() {
-    if (tree_.size() == 1 || in_cells(source_, options_)) return;
+    if (tree_.size() == 1 || in_cells(source_, options_.tile_points)) return;
     ShuffleOptions shuffling;
     shuffling.scratch = options_.scratch;
     shuffling.first_id = options_.first_id;
@@ -163,32 +158,15 @@ class Run {
     leaves_ = shuffle(source_, tree_, shuffling);
   }
 
-  /// By node: the first point of each leaf, where they are ranges.
-  [[nodiscard]] std::vector<std::uint64_t> firsts_of_leaves() const {
-    std::vector<std::uint64_t> firsts(tree_.size());
-    std::uint64_t first = 0;
-    for (const std::uint32_t leaf : tree_.leaves()) {
-      firsts[leaf] = first;
-      first += tree_.node(leaf).points;
-    }
-    return firsts;
-  }
-
   void compute(std::vector<Workers>& devices) {
     Job job(tree_, done_);
-    const std::vector<std::uint64_t> firsts =
-        in_cells(source_, options_) ? firsts_of_leaves() : std::vector<std::uint64_t>();
-    job.read_leaf = [&](std::uint32_t leaf) {
-      if (!firsts.empty()) {
-        LeafPoints points;
-        points.cells = source_.cells();
-        points.first = firsts[leaf];
-        points.count = tree_.node(leaf).points;
-        points.first_id = options_.first_id + points.first;
-        return points;
-      }
-      return leaves_ ? leaves_->take(leaf) : all_points(source_, options_.first_id);
-    };
+    if (in_cells(source_, options_.tile_points)) {
+      job.read_leaf = cells_of_leaves(source_, tree_, options_.first_id);
+    } else {
+      job.read_leaf = [&](std::uint32_t leaf) {
+        return leaves_ ? leaves_->take(leaf) : all_points(source_, options_.first_id);
+      };
+    }
     job.read_open = [&](std::uint32_t node) { return store_.value().read_open(node); };
     job.compute.arrays = store_ || options_.collect;
     job.compute.consumer = options_.consumer;
@@ -267,7 +245,7 @@ void preflight(const PointSource& source, const RunOptions& options) {
     throw LimitError("a tile takes at most as many points as one triangulation: make --tile-points smaller",
                      static_cast<std::size_t>(options.tile_points), max_points());
   // Memory: that of the leaves at work, and of the points of all leaves unless they go to scratch.
-  const bool shuffles = points > options.tile_points && !in_cells(source, options);
+  const bool shuffles = points > options.tile_points && !in_cells(source, options.tile_points);
   const std::uint64_t shuffled = shuffles ? points * bytes_per_shuffled_point : 0;
   const std::uint64_t available = available_memory(), leaf = leaf_memory(source, options);
   const bool in_memory = shuffled <= shuffle_memory(source, options);

@@ -15,11 +15,10 @@
 #include <utility>
 
 namespace cadt::tiles {
-namespace {
 
-class Schedule {
+class Schedule::Work {
  public:
-  Schedule(std::vector<Workers>& devices, const Job& job) : devices_(devices), job_(job), done_(job.done) {
+  Work(std::vector<Workers>& devices, const Job& job) : devices_(devices), job_(job), done_(job.done) {
     opens_.resize(job.tree.size());
     for (std::uint32_t i = 0; i < job.tree.size(); ++i) {
       if (done_[i]) ++count_done_, points_done_ += job.tree.node(i).is_leaf() ? job.tree.node(i).points : 0;
@@ -41,26 +40,34 @@ class Schedule {
     if (error_) std::rethrow_exception(error_);
   }
 
+  void deliver(std::uint32_t node, Open&& open) {
+    const std::scoped_lock guard(lock_);
+    set_done(node, std::move(open));
+  }
+  void fail(std::exception_ptr error) {
+    const std::scoped_lock guard(lock_);
+    if (!error_) error_ = std::move(error);
+    changed_.notify_all();
+  }
+
  private:
   struct Loaded {
     LeafPoints points;
     double seconds = 0;
   };
 
-  template <class Work>
-  void guarded(const Work& work) {
+  template <class Step>
+  void guarded(const Step& step) {
     try {
-      work();
+      step();
     } catch (...) {
-      const std::scoped_lock guard(lock_);
-      if (!error_) error_ = std::current_exception();
-      changed_.notify_all();
+      fail(std::current_exception());
     }
   }
 
   void read() {
     for (const std::uint32_t leaf : job_.tree.leaves()) {
-      if (job_.done[leaf]) continue;
+      if (job_.done[leaf] || is_awaited(leaf)) continue;
       {
         std::unique_lock guard(lock_);
         changed_.wait(guard, [&] { return loaded_.size() <= devices_.size() || error_; });
@@ -81,7 +88,7 @@ class Schedule {
 
   /// Makes a join ready once its children are done. \pre locked
   void offer_join(std::uint32_t node) {
-    if (node == no_node || done_[node] || job_.tree.node(node).is_leaf()) return;
+    if (node == no_node || done_[node] || is_awaited(node) || job_.tree.node(node).is_leaf()) return;
     if (done_[job_.tree.node(node).left] && done_[job_.tree.node(node).right]) joins_.insert(node);
   }
 
@@ -120,7 +127,19 @@ class Schedule {
     }
   }
 
+  [[nodiscard]] bool is_awaited(std::uint32_t node) const { return !job_.awaited.empty() && job_.awaited[node]; }
+
+  /// \pre locked
+  void set_done(std::uint32_t node, Open&& open) {
+    opens_[node] = std::move(open);
+    done_[node] = true;
+    ++count_done_;
+    offer_join(job_.tree.node(node).parent);
+    changed_.notify_all();
+  }
+
   void finish(unsigned device, NodeData&& data) {
+    if (job_.computed) job_.computed(data);
     const std::uint32_t node = data.node, parent = job_.tree.node(node).parent;
     Open open;
     if (parent != no_node && !done_parent(parent)) open = job_.keep_open ? data.open : std::move(data.open);
@@ -128,11 +147,7 @@ class Schedule {
     changed_.wait(guard, [&] { return finished_.size() < devices_.size() || error_; });
     if (error_) return;
     finished_.emplace_back(device, std::move(data));
-    opens_[node] = std::move(open);
-    done_[node] = true;
-    ++count_done_;
-    offer_join(parent);
-    changed_.notify_all();
+    set_done(node, std::move(open));
   }
 
   /// What was done before the run needs no open vertices of its children.
@@ -173,7 +188,11 @@ class Schedule {
   std::deque<std::pair<unsigned, NodeData>> finished_;
 };
 
-}  // namespace
+Schedule::Schedule(std::vector<Workers>& devices, const Job& job) : work_(std::make_unique<Work>(devices, job)) {}
+Schedule::~Schedule() = default;
+void Schedule::run() { work_->run(); }
+void Schedule::deliver(std::uint32_t node, Open&& open) { work_->deliver(node, std::move(open)); }
+void Schedule::fail(std::exception_ptr error) { work_->fail(std::move(error)); }
 
 void run_nodes(std::vector<Workers>& devices, const Job& job) { Schedule(devices, job).run(); }
 

@@ -10,7 +10,9 @@
 #include <cadt/triangulator.hpp>
 
 #include <cstdint>
+#include <exception>
 #include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -27,14 +29,34 @@ struct Job {
 
   const TileTree& tree;
   std::vector<bool> done;                              ///< by node: nothing to be done
+  std::vector<bool> awaited = {};                      ///< by node: made elsewhere, and delivered; empty: none
   std::function<LeafPoints(std::uint32_t)> read_leaf;  ///< on the reading thread, leaves ascending
   std::function<Open(std::uint32_t)> read_open;        ///< of nodes that are done; on any thread
   ComputeOptions compute;
-  bool keep_open = false;  ///< NodeData::open goes to `finished` too
+  bool keep_open = false;                              ///< NodeData::open goes to `finished` too
+  std::function<void(const NodeData&)> computed = {};  ///< of each node, at once; on the threads of the devices
   /// On the writing thread, in the order in which nodes finish.
   std::function<void(unsigned device, NodeData&&)> finished;
   std::function<void(std::uint32_t nodes_done, std::uint64_t points_done)> progress;
   cadt::stop_token stop;
+};
+
+class Schedule {
+ public:
+  Schedule(std::vector<Workers>& devices, const Job& job);
+  ~Schedule();
+  Schedule(const Schedule&) = delete;
+  Schedule& operator=(const Schedule&) = delete;
+  /// As run_nodes, and returns when what is awaited was delivered, too.
+  void run();
+  /// What is open of a node that was awaited. Thread-safe.
+  void deliver(std::uint32_t node, Open&& open);
+  /// Ends run() with this error unless it has one. Thread-safe.
+  void fail(std::exception_ptr error);
+
+ private:
+  class Work;
+  std::unique_ptr<Work> work_;
 };
 
 /// Returns when all nodes are done. Each device has a thread for leaves and one for joins; the ready node with the

@@ -225,11 +225,6 @@ class Settlement {
         if (!node_.is_root) return pass_up(side);
         ++outside_;
         return tell(side, outside_hull);
-      case CADT_MATCHED_SIDE: {
-        const OpenSide& other = all_.sides.at(match.with);
-        if (matches[match.with].with != i) give_up("the sides ", i, " and ", match.with, " of children do not match");
-        return tell(side, other.triangle);
-      }
       case CADT_MATCHED_FINAL:
         ++met_;
         return tell(side, triangle_id(node_.number, match.with));
@@ -262,12 +257,7 @@ class Settlement {
     const auto threads = matches.size() < fewest_for_threads ? 1 : std::max(1U, std::thread::hardware_concurrency());
     const Edges edges = verifier::reduce_each<Edges>(matches.size(), threads, [&](std::size_t i, Edges& mine) {
       const Match& match = matches[i];
-      if (match.kind == CADT_MATCHED_FINAL) {
-        mine.examine(i, all_, all_.point(match.apex));
-      } else if (match.kind == CADT_MATCHED_SIDE && i < match.with) {
-        const OpenSide& other = all_.sides.at(match.with);
-        mine.examine(i, all_, {other.apex_x, other.apex_y});
-      }
+      if (match.kind == CADT_MATCHED_FINAL) mine.examine(i, all_, all_.point(match.apex));
     });
     if (edges.folded.failures != 0)
       give_up("two triangles of an edge that node ", node_.number, " closes are on the same side of it");

@@ -39,7 +39,6 @@ CADT_KERNEL(cadt_half_edges_of, CADT_MESH_VIEW_PARAMETERS, cadt_u32 grain, CADT_
 enum { CADT_MATCH_KIND, CADT_MATCH_WITH, CADT_MATCH_APEX, CADT_MATCH_WORDS };
 enum {
   CADT_MATCHED_OUTSIDE, /* nothing: an edge of the hull of the open vertices */
-  CADT_MATCHED_SIDE,    /* CADT_MATCH_WITH: another side */
   CADT_MATCHED_FINAL,   /* CADT_MATCH_WITH: a final triangle of this node; CADT_MATCH_APEX: its vertex opposite */
   CADT_MATCHED_OPEN     /* a triangle that is not final yet */
 };
@@ -56,8 +55,8 @@ CADT_KERNEL(cadt_match_sides, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_
       if (n == mesh.triangles) {
         match[CADT_MATCH_KIND] = CADT_MATCHED_OUTSIDE;
       } else if (covers[3u * n + j] != CADT_NONE) {
-        match[CADT_MATCH_KIND] = CADT_MATCHED_SIDE;
-        match[CADT_MATCH_WITH] = covers[3u * n + j];
+        continue; /* no two sides meet: both ends of an edge are points of one child, and that would have matched them
+                   */
       } else if (cadt_is_final(places, n)) {
         match[CADT_MATCH_KIND] = CADT_MATCHED_FINAL;
         match[CADT_MATCH_WITH] = places[n];

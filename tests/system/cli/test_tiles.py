@@ -304,12 +304,13 @@ class TilesFailureTest(CliTest):
 
     def test_many_tiles_through_the_memory_of_one(self):
         """200 tiles: less memory than the whole set takes, of the device and of the process."""
-        self.cadt("generate", "uniform", "-n", "2M", "-o", "points.npy", "-q")
+        self.cadt("generate", "uniform", "-n", "3M", "-o", "points.npy", "-q")
         self.path("scratch").mkdir()
         whole = self.cadt("triangulate", "points.npy", "--backend", "host", "--threads", 2).fields()["hash"]
         budget = ("--backend", "host", "--threads", 2, "--max-memory", "16M")
         self.fails(6, "triangulate", "points.npy", *budget, says="max-memory")
-        address_space = limit(resource.RLIMIT_AS, 220 << 20)
+        # The whole set takes 480 MB of address space, and tiles 280 MB: each thread reserves some for its allocations.
+        address_space = limit(resource.RLIMIT_AS, 380 << 20)
         self.fails(6, "triangulate", "points.npy", *budget[:4], before=address_space, says="out of memory")
         done = self.cadt("tiles", "points.npy", "--tile-points", 16000, *budget, "--scratch", "scratch", "--host-memory", "8M",
                          before=address_space)

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""All ranks stop together, with one message, and nothing that was finished is lost."""
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import struct
+import sys
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from ranks import ANYWHERE, MPI_PROGRAM, MPIRUN, RankTest, digest  # noqa: E402
+
+
+class FaultTest(RankTest):
+    def setUp(self):
+        super().setUp()
+        self.name = self.generate("uniform", 20000)
+        self.options = ["-o", "mesh.cadt", "--tile-points", 400, "--backend", "host", "--threads", 1]
+
+    undisturbed = {}
+
+    def whole(self):
+        """sha256 of the mesh that nothing has disturbed."""
+        if self.name not in self.undisturbed:
+            self.tiles(1, self.name, *self.options, "-q")
+            self.undisturbed[self.name] = digest(self.path("mesh.cadt"))
+            shutil.rmtree(self.path("mesh.cadt"))
+        return self.undisturbed[self.name]
+
+    def resumed(self, ranks=3, more=()):
+        self.tiles(ranks, self.name, *self.options, "--resume", "-q", *more)
+        return digest(self.path("mesh.cadt"))
+
+
+class WrongInput(FaultTest):
+    def test_smallest_index_of_all_ranks(self):
+        """NaN on two ranks: the same message for any number of them."""
+        data = bytearray(self.path(self.generate("uniform", 200000, "large.f64")).read_bytes())
+        for index in (190000, 70000):
+            data[16 * index:16 * index + 8] = struct.pack("<d", float("nan"))
+        self.path("nan.f64").write_bytes(data)
+        for ranks in (1, 4):
+            self.fails(3, ranks, "nan.f64", *self.options, "-q", says=["point 70000", "nan.f64", "NaN"])
+        self.assertNotIn("mesh.cadt", self.names())
+
+    def test_command_line(self):
+        self.fails(2, 2, self.name, "--nonsense", says=["--nonsense", "cadt-mpi tiles --help"])
+        self.fails(2, 2, "-o", "mesh.cadt", says="name files")
+        self.fails(2, 3, self.name, "--tile-points", 2, says="at least 3")
+        self.fails(3, 2, "missing.f64", *self.options, says="missing.f64")
+
+    def test_directory_is_there(self):
+        self.tiles(2, self.name, *self.options, "-q")
+        before = digest(self.path("mesh.cadt"))
+        self.fails(3, 2, self.name, *self.options, "-q", says=["mesh.cadt", "--resume"])
+        self.assertEqual(self.resumed(), before)  # which is complete
+        self.fails(3, 2, self.name, "-o", "mesh.cadt", "--tile-points", 500, "--resume", "-q",
+                   says=["--tile-points 400", "500"])
+
+    def test_points_do_not_fit_into_memory(self):
+        self.fails(6, 3, self.name, *self.options, "--host-memory", "1K", "-q", says=["--scratch", "--host-memory"])
+
+
+class RanksThatDiffer(FaultTest):
+    def together(self, first, second):
+        tail = ["tiles", self.name, *map(str, self.options), "-q"]
+        return [MPIRUN, *ANYWHERE, "-n", "1", *first, *tail, ":", "-n", "1", *second, *tail]
+
+    def test_another_build(self):
+        other = self.path("other")
+        shutil.copy(MPI_PROGRAM, other)
+        with open(other, "ab") as file:
+            file.write(b"\0")
+        self.fails(2, 2, command=self.together([MPI_PROGRAM], [str(other)]), says=["rank 1", "another build"])
+        self.assertNotIn("mesh.cadt", self.names())
+
+    def test_other_arguments(self):
+        command = self.together([MPI_PROGRAM], [MPI_PROGRAM]) + ["--resume"]
+        self.fails(2, 2, command=command, says=["rank 1", "--resume than rank 0"])
+
+    def test_own_devices(self):
+        """What is a rank's own may differ: here its threads and memory, on clusters its device."""
+        tail = ["tiles", self.name, *map(str, self.options[:-2]), "-q"]
+        command = [MPIRUN, *ANYWHERE, "-n", "1", MPI_PROGRAM, *tail, "--threads", "2", ":", "-n", "2", MPI_PROGRAM, *tail,
+                   "--threads", "1", "--host-memory", "1G"]
+        self.tiles(3, command=command)
+        found = digest(self.path("mesh.cadt"))
+        shutil.rmtree(self.path("mesh.cadt"))
+        self.assertEqual(found, self.whole())
+
+    def test_full_disk_on_one_rank(self):
+        self.name = self.generate("uniform", 300000, "large.f64")
+        self.options[3] = 50000
+        before = self.whole()
+        with self.running(3, self.name, *self.options) as run:
+            limited = run.rank(2)
+            run.wait_for("sample 0 %")  # MPI has made files of its own by then
+            resource.prlimit(limited, resource.RLIMIT_FSIZE, (4096, 4096))
+            code, text = run.end()
+        self.assertEqual(code, 3, text)
+        self.assertEqual(text.count("cadt: error:"), 1, text)
+        self.assertRegex(text, r"mesh\.cadt/node-.*\.npy: cannot be written")
+        self.assertIn("rank 2 of 3", text)
+        self.assertEqual([path for path in self.path("mesh.cadt").rglob("*.tmp")], [])
+        self.assertEqual(self.resumed(), before)
+
+
+class KillTest(FaultTest):
+    # Whatever the others do when a rank is killed, what was finished is there, and --resume makes the rest.
+    def kill(self, marker, rank, ranks=3, more=()):
+        with self.running(ranks, self.name, *self.options, *more) as run:
+            run.wait_for(marker)
+            os.kill(run.rank(rank), signal.SIGKILL)
+            code, text = run.end()
+        self.assertNotEqual(code, 0, text)
+        complete = self.path("mesh.cadt/manifest.json")
+        self.assertFalse(complete.exists() and '"complete": true' in complete.read_text(), "it was over before")
+
+
+class Killed(KillTest):
+    def finished(self):
+        """Files of nodes that are there as a whole, and which file it is."""
+        nodes = [path.parent.name for path in self.path("mesh.cadt/unfinished").glob("node-*/node.json")]
+        names = [f"mesh.cadt/{node}/triangles.npy" for node in nodes if not node.endswith(".tmp")]
+        return {name: self.path(name).stat().st_ino for name in names}
+
+    def test_then_resume(self):
+        before = self.whole()
+        for marker, rank in (("tiles 20 %", 1), ("tiles 60 %", 0)):
+            with self.subTest(marker):
+                self.kill(marker, rank)
+                left = self.finished()
+                self.assertGreater(len(left), 0)
+                _, text = self.tiles(4, self.name, *self.options, "--resume")
+                self.assertRegex(text, r"resumed +[1-9]", "all was made again")
+                self.assertEqual(digest(self.path("mesh.cadt")), before)
+                kept = {name: self.path(name).stat().st_ino for name in left}
+                self.assertEqual(kept, left, "what was finished was made again")
+                shutil.rmtree(self.path("mesh.cadt"))
+
+    def test_interrupted(self):
+        before = self.whole()
+        with self.running(3, self.name, *self.options) as run:
+            run.wait_for("tiles 20 %")
+            os.kill(run.rank(1), signal.SIGTERM)
+            code, text = run.end()
+        self.assertEqual(code, 130, text)
+        self.assertIn("mesh.cadt can be continued with --resume\ncadt: interrupted", text)
+        self.assertEqual(self.resumed(), before)
+
+
+class KilledThorough(KillTest):
+    def test_each_phase(self):
+        self.name = self.generate("uniform", 2000000, "large.f64")
+        self.options[3] = 20000
+        before = self.whole()
+        for marker, more in (("sample", ()), ("shuffle", ()), ("tiles 0 %", ()), ("tiles 50 %", ()), ("links", ())):
+            for rank in (0, 2):
+                with self.subTest(marker=marker, rank=rank):
+                    self.kill(marker, rank if marker != "links" else 0, more=more)
+                    self.assertEqual(self.resumed(), before)
+                    shutil.rmtree(self.path("mesh.cadt"))
+
+
+class Slow(FaultTest):
+    def test_a_rank_that_sleeps(self):
+        before = self.whole()
+        with self.running(3, self.name, *self.options) as run:
+            run.wait_for("tiles 10 %")
+            sleeping = run.rank(1)
+            os.kill(sleeping, signal.SIGSTOP)
+            time.sleep(2)
+            self.assertIsNone(run.process.poll())
+            os.kill(sleeping, signal.SIGCONT)
+            code, text = run.end()
+        self.assertEqual(code, 0, text)
+        self.assertEqual(digest(self.path("mesh.cadt")), before)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cadt/errors.hpp>
+
+#include "tiles/mpi/plan.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <future>
+#include <thread>
+#include <utility>
+
+namespace cadt::tiles::mpi {
+namespace {
+
+/// A message is a list of runs: leaf, number of points, their coordinates, their ids.
+constexpr std::size_t words_per_point = 3, words_per_run = 2;
+/// Of a rank in a round: its messages stay in the cache of a core.
+constexpr std::uint64_t most_points = std::uint64_t{1} << 17;
+/// Less for a thread is not worth to start it.
+constexpr std::size_t least_points = std::size_t{1} << 14;
+
+struct Part {
+  std::uint64_t first = 0;
+  std::vector<double> xy;
+};
+
+/// Sorts parts of the input into a message for each rank.
+class Dealer {
+ public:
+  Dealer(const TileTree& tree, const Deal& deal, std::size_t ranks)
+      : deal_(deal),
+        ranks_(ranks),
+        sorters_(std::max(1U, deal.threads), BlockSorter(tree)),
+        sorted_(sorters_.size(), std::vector<Words>(ranks)) {}
+
+  /// Pieces of a part by several threads, put together in their order. Valid until the next call.
+  const std::vector<Words>& operator()(const Part& part) {
+    const std::size_t points = part.xy.size() / 2;
+    const std::size_t pieces = std::clamp<std::size_t>(points / least_points, 1, sorters_.size());
+    std::vector<std::future<void>> helpers;
+    for (std::size_t p = 0; p < pieces; ++p) {
+      const std::size_t begin = points * p / pieces, end = points * (p + 1) / pieces;
+      helpers.push_back(std::async(p + 1 == pieces ? std::launch::deferred : std::launch::async, [&, p, begin, end] {
+        sort(sorters_[p], part.first + begin, std::span(part.xy).subspan(2 * begin, 2 * (end - begin)), sorted_[p]);
+      }));
+    }
+    for (auto& helper : helpers) helper.wait();
+    for (auto& helper : helpers) helper.get();
+    for (std::size_t p = 1; p < pieces; ++p) {
+      for (std::size_t r = 0; r < ranks_; ++r)
+        sorted_[0][r].insert(sorted_[0][r].end(), sorted_[p][r].begin(), sorted_[p][r].end());
+    }
+    return sorted_[0];
+  }
+
+ private:
+  void sort(BlockSorter& sorter, std::uint64_t first, std::span<const double> xy, std::vector<Words>& to) const {
+    for (Words& words : to) words.clear();
+    sorter.sort(deal_.options.first_id + first, xy,
+                [&](std::uint32_t leaf, std::span<const double> some, std::span<const std::uint64_t> ids) {
+                  if (!deal_.wanted[leaf]) return;
+                  Words& words = to[static_cast<std::size_t>(deal_.owner[leaf])];
+                  words.insert(words.end(), {leaf, ids.size()});
+                  const std::size_t at = words.size();
+                  words.resize(at + some.size());
+                  std::memcpy(words.data() + at, some.data(), some.size_bytes());
+                  words.insert(words.end(), ids.begin(), ids.end());
+                });
+  }
+
+  const Deal& deal_;
+  std::size_t ranks_;
+  std::vector<BlockSorter> sorters_;
+  std::vector<std::vector<Words>> sorted_;  // of each thread, for each rank
+};
+
+void keep(LeafStore& leaves, std::span<const std::uint64_t> words) {
+  std::vector<double> xy;
+  while (!words.empty()) {
+    const auto leaf = static_cast<std::uint32_t>(words[0]);
+    const auto n = static_cast<std::size_t>(words[1]);
+    xy.resize(2 * n);
+    std::memcpy(xy.data(), words.data() + words_per_run, xy.size() * sizeof xy[0]);
+    leaves.add(leaf, xy, words.subspan(words_per_run + 2 * n, n));
+    words = words.subspan(words_per_run + words_per_point * n);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<LeafStore> shuffle(Communicator& ranks, const PointSource& source, const TileTree& tree,
+                                   const Deal& deal) {
+  std::unique_ptr<LeafStore> leaves;
+  ranks.agree([&] {
+    leaves = needs_scratch(tree, deal.options) ? leaves_in_files(tree, deal.options.scratch) : leaves_in_memory(tree);
+  });
+  const auto size = static_cast<std::uint64_t>(ranks.size());
+  // Even if all points of a round are for one rank, each in a run of its own, that rank receives message_bytes() at
+  // most.
+  const std::uint64_t each = std::clamp<std::uint64_t>(
+      ranks.message_bytes() / sizeof(std::uint64_t) / (words_per_point + words_per_run) / size, 1, most_points);
+  const std::uint64_t round = each * size, all = source.size();
+  const auto read = [&](std::uint64_t start) {
+    Part part{.first = std::min(all, start + each * static_cast<std::uint64_t>(ranks.rank())), .xy = {}};
+    part.xy.resize(2 * std::min(each, all - part.first));
+    source.read(part.first, part.xy.size() / 2, part.xy.data());
+    return part;
+  };
+  Dealer dealer(tree, deal, static_cast<std::size_t>(ranks.size()));
+  std::future<Part> next = std::async(std::launch::async, read, std::uint64_t{0});
+  Exchanged came;
+  for (std::uint64_t start = 0; start < all; start += round) {
+    const std::vector<Words>* to = nullptr;
+    ranks.agree([&] {
+      if (deal.options.stop.stop_requested()) throw Cancelled();
+      const Part part = next.get();
+      next = std::async(std::launch::async, read, std::min(all, start + round));
+      to = &dealer(part);
+    });
+    ranks.exchange(*to, came);
+    ranks.agree([&] {
+      for (int r = 0; r < ranks.size(); ++r) keep(*leaves, came.from(r));
+    });
+    if (deal.options.progress) deal.options.progress(std::min(all, start + round));
+  }
+  ranks.agree([&] { leaves->finish(); });
+  return leaves;
+}
+
+}  // namespace cadt::tiles::mpi

@@ -197,7 +197,7 @@ class Settlement {
   void settle(const std::vector<Match>& matches) {
     certify(matches);
     finished_.node.messages.reserve(matches.size());
-    for (std::size_t i = 0; i < matches.size(); ++i) settle(i, matches[i], matches);
+    for (std::size_t i = 0; i < matches.size(); ++i) settle(i, matches[i]);
     std::size_t covered_rows = 0;
     finished_.node.links.resize(finished_.rows.size());
     for (std::size_t row = 0; row < finished_.rows.size(); ++row) {
@@ -218,7 +218,7 @@ class Settlement {
   [[nodiscard]] std::uint64_t certified() const noexcept { return certified_; }
 
  private:
-  void settle(std::size_t i, const Match& match, const std::vector<Match>& matches) {
+  void settle(std::size_t i, const Match& match) {
     const OpenSide& side = all_.sides[i];
     switch (match.kind) {
       case CADT_MATCHED_OUTSIDE:

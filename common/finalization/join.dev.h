@@ -7,9 +7,9 @@
  *
  *           b                   b
  *    final /|                  /|\ o
- *     (c) / |    is given     / | \          n, across the side, is kept: the neighbour of the final triangle, or it
- *        /__|                /h | n\         becomes that later; or covered by a side as well: then two final triangles
- *       x   a               y___a___z        of children are neighbours
+ *     (c) / |    is given     / | \          h is covered. n, across the side, is kept: it is the neighbour of the
+ *        /__|                /h | n\         final triangle now, or becomes that at a later node
+ *       x   a               y___a___z
  */
 #ifndef CADT_FINALIZATION_JOIN_H
 #define CADT_FINALIZATION_JOIN_H

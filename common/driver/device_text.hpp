@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The device text as host C++: the driver uses its layouts and constants, and the parameters of its kernels check every
-// launch (kernel_signature.hpp). None of its functions is called here.
+// launch (kernel_signature.hpp). Of its functions only those that hash and
+// generate are called outside of kernels.
 #pragma once
 
 #include <atomic>

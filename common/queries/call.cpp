@@ -15,7 +15,7 @@ void require_doubles(const Device& device) {
   const DeviceInfo& info = device.info();
   throw BackendUnavailable(
       std::string(to_string(info.backend)),
-      "'" + info.name + "' has no double precision, which queries need: name another device, or the host");
+      "'" + info.name + "' has no double precision, which this needs: name another device, or the host");
 }
 
 void require_mesh_of(std::size_t points, std::size_t of) {

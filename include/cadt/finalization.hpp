@@ -158,8 +158,9 @@ struct DeviceIds {
 /// Points of equal coordinates must be in one leaf.
 ///
 /// `ids`: input indices of the points, ascending; `node`: number of the node, below 2^24. Cost: that of the
-/// triangulation and about a tenth. Uses the triangulator as a call of its own would (thread-safety, options, device,
-/// memory: about 12 bytes a point more). \throws as Triangulator::triangulate (InputError::index is the index within
+/// triangulation and about a tenth. Uses the triangulator as a call of its own would (thread-safety, options, device),
+/// and about 135 bytes of device memory a point in all; on the host points and ids are not copied, and must outlive the
+/// part. \throws as Triangulator::triangulate (InputError::index is the index within
 /// `points`), InputError for ids that do not ascend or a point outside of the box, BackendUnavailable for a device
 /// without double precision
 [[nodiscard]] CADT_API FinishedNode finish_leaf(Triangulator& triangulator, PointsView points,

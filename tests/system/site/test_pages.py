@@ -73,6 +73,8 @@ class IndentedCommands(PageTest):
         self.write("points.xy", text)
         self.path("points.txt.gz").write_bytes(gzip.compress(text.encode()))
         self.shell("cadt generate terrain -n 2000 -q -o terrain.xyz")
+        for scan in ("scan_1.npy", "scan_2.npy"):
+            self.shell(f"cadt generate uniform -n 500 -q -o {scan}")
 
     def run_lines(self, path):
         count = 0

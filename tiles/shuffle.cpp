@@ -44,10 +44,10 @@ class MemoryLeaves : public LeafStore {
 /// In the file of a leaf of n points are n x 16 bytes of coordinates, then n x 8 bytes of ids.
 class FileLeaves : public LeafStore {
  public:
-  FileLeaves(const TileTree& tree, const std::string& scratch)
+  FileLeaves(const TileTree& tree, const std::string& scratch, std::uint64_t memory)
       : tree_(tree), folder_(new_folder(scratch)), leaves_(tree.size()) {
-    constexpr std::size_t for_all = std::size_t{256} << 20, least = 512, most = std::size_t{1} << 18;
-    buffer_points_ = std::clamp(for_all / bytes_per_shuffled_point / tree.leaves().size(), least, most);
+    constexpr std::uint64_t least = 512, most = std::uint64_t{1} << 18;
+    buffer_points_ = std::clamp(memory / bytes_per_shuffled_point / tree.leaves().size(), least, most);
   }
   ~FileLeaves() override {
     std::error_code ignored;
@@ -55,13 +55,20 @@ class FileLeaves : public LeafStore {
   }
 
   void add(std::uint32_t leaf, std::span<const double> xy, std::span<const std::uint64_t> ids) override {
-    Leaf& to = leaves_[leaf];
-    to.waiting.xy.insert(to.waiting.xy.end(), xy.begin(), xy.end());
-    to.waiting.ids.insert(to.waiting.ids.end(), ids.begin(), ids.end());
-    if (to.waiting.ids.size() >= buffer_points_) flush(leaf);
+    LeafPoints& to = leaves_[leaf].waiting;
+    while (!ids.empty()) {
+      const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(ids.size(), buffer_points_ - to.ids.size()));
+      to.xy.insert(to.xy.end(), xy.begin(), xy.begin() + static_cast<std::ptrdiff_t>(2 * n));
+      to.ids.insert(to.ids.end(), ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(n));
+      if (to.ids.size() == buffer_points_) flush(leaf);
+      xy = xy.subspan(2 * n), ids = ids.subspan(n);
+    }
   }
   void finish() override {
-    for (const std::uint32_t leaf : tree_.leaves()) flush(leaf);
+    for (const std::uint32_t leaf : tree_.leaves()) {
+      flush(leaf);
+      leaves_[leaf].waiting = {};
+    }
   }
 
   [[nodiscard]] LeafPoints take(std::uint32_t leaf) override {
@@ -146,15 +153,15 @@ class FileLeaves : public LeafStore {
   const TileTree& tree_;
   std::string folder_;
   std::vector<Leaf> leaves_;
-  std::size_t buffer_points_;
+  std::uint64_t buffer_points_;
 };
 
 }  // namespace
 
 std::unique_ptr<LeafStore> leaves_in_memory(const TileTree& tree) { return std::make_unique<MemoryLeaves>(tree); }
 
-std::unique_ptr<LeafStore> leaves_in_files(const TileTree& tree, const std::string& scratch) {
-  return std::make_unique<FileLeaves>(tree, scratch);
+std::unique_ptr<LeafStore> leaves_in_files(const TileTree& tree, const std::string& scratch, std::uint64_t memory) {
+  return std::make_unique<FileLeaves>(tree, scratch, memory);
 }
 
 BlockSorter::BlockSorter(const TileTree& tree) : tree_(tree), count_(tree.size()) {}
@@ -201,8 +208,9 @@ bool needs_scratch(const TileTree& tree, const ShuffleOptions& options) {
 }
 
 std::unique_ptr<LeafStore> shuffle(const PointSource& source, const TileTree& tree, const ShuffleOptions& options) {
-  std::unique_ptr<LeafStore> leaves =
-      needs_scratch(tree, options) ? leaves_in_files(tree, options.scratch) : leaves_in_memory(tree);
+  std::unique_ptr<LeafStore> leaves = needs_scratch(tree, options)
+                                          ? leaves_in_files(tree, options.scratch, options.memory / 2)
+                                          : leaves_in_memory(tree);
   BlockSorter sorter(tree);
   for_each_block(source, 0, source.size(), options.stop, [&](std::uint64_t first, std::span<const double> xy) {
     sorter.sort(options.first_id + first, xy,

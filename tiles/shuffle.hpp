@@ -40,8 +40,10 @@ class LeafStore {
   [[nodiscard]] virtual LeafPoints take(std::uint32_t leaf) = 0;
 };
 [[nodiscard]] std::unique_ptr<LeafStore> leaves_in_memory(const TileTree& tree);
-/// A file for each leaf in a new folder below `scratch`, which is removed in the end. \throws io::FileError
-[[nodiscard]] std::unique_ptr<LeafStore> leaves_in_files(const TileTree& tree, const std::string& scratch);
+/// A file for each leaf in a new folder below `scratch`, which is removed in the end. Buffers take at most `memory`
+/// bytes, but 12 KiB a leaf at least. \throws io::FileError
+[[nodiscard]] std::unique_ptr<LeafStore> leaves_in_files(const TileTree& tree, const std::string& scratch,
+                                                         std::uint64_t memory = std::uint64_t{256} << 20);
 
 struct ShuffleOptions {
   std::string scratch;            ///< folder for bucket files; empty: none

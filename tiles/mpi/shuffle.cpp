@@ -92,7 +92,8 @@ std::unique_ptr<LeafStore> shuffle(Communicator& ranks, const PointSource& sourc
                                    const Deal& deal) {
   std::unique_ptr<LeafStore> leaves;
   ranks.agree([&] {
-    leaves = needs_scratch(tree, deal.options) ? leaves_in_files(tree, deal.options.scratch) : leaves_in_memory(tree);
+    leaves = needs_scratch(tree, deal.options) ? leaves_in_files(tree, deal.options.scratch, deal.options.memory / 2)
+                                               : leaves_in_memory(tree);
   });
   const auto size = static_cast<std::uint64_t>(ranks.size());
   // Even if all points of a round are for one rank, each in a run of its own, that rank receives message_bytes() at

@@ -309,7 +309,7 @@ class TilesFailureTest(CliTest):
         whole = self.cadt("triangulate", "points.npy", "--backend", "host", "--threads", 2).fields()["hash"]
         budget = ("--backend", "host", "--threads", 2, "--max-memory", "16M")
         self.fails(6, "triangulate", "points.npy", *budget, says="max-memory")
-        # The whole set takes 480 MB of address space, and tiles 280 MB: each thread reserves some for its allocations.
+        # The whole set takes 480 MB of address space, and tiles 180 MB: each thread reserves some for its allocations.
         address_space = limit(resource.RLIMIT_AS, 380 << 20)
         self.fails(6, "triangulate", "points.npy", *budget[:4], before=address_space, says="out of memory")
         done = self.cadt("tiles", "points.npy", "--tile-points", 16000, *budget, "--scratch", "scratch", "--host-memory", "8M",

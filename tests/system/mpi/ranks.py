@@ -20,7 +20,8 @@ from harness import CliTest, PROGRAM, SECONDS, default_signals  # noqa: E402
 MPI_PROGRAM = os.environ.get("CADT_MPI_PROGRAM", "cadt-mpi")
 MPIRUN = os.environ.get("CADT_MPIRUN", "mpirun")
 # Open MPI refuses root, more ranks than cores, and binds each rank to a core.
-OPEN_MPI = "Open MPI" in subprocess.run([MPIRUN, "--version"], capture_output=True, text=True, check=False).stdout
+VERSION = subprocess.run([MPIRUN, "--version"], capture_output=True, text=True, check=False).stdout
+OPEN_MPI = "Open MPI" in VERSION or "OpenRTE" in VERSION  # mpirun, mpiexec
 ANYWHERE = ["--oversubscribe", "--allow-run-as-root", "--bind-to", "none"] if OPEN_MPI else []
 
 

@@ -53,6 +53,8 @@ class PartRaster {
     for (std::size_t i = triangles_.size(); i-- > 0;)
       if (corner[i] >= 0 && static_cast<std::size_t>(corner[i]) < lowest_.size())
         lowest_[static_cast<std::size_t>(corner[i])] = static_cast<std::int32_t>(i / 3);
+    for (std::size_t side = 0; side < across_.size(); ++side)
+      if (across_[side] < 0) open_sides_.push_back(side);
     // It looks at all indices.
     queries_ = std::make_unique<cadt::MeshQueries>(
         cadt::PointsView(std::span(points_.data(), points_.size())),
@@ -106,8 +108,7 @@ class PartRaster {
     Rim found;
     {
       nb::gil_scoped_release released;
-      for (std::size_t side = 0; side < across_.size(); ++side)
-        if (across_[side] < 0) add_cells(x, y, side, found);
+      for (const std::size_t side : open_sides_) add_cells(x, y, side, found);
     }
     return nb::make_tuple(array_of(std::move(found.cells)), array_of(std::move(found.triangles)),
                           array_of(std::move(found.edges), 2));
@@ -157,6 +158,7 @@ class PartRaster {
   Vertices points_;
   Indices triangles_;
   std::vector<std::int32_t> across_, lowest_;
+  std::vector<std::size_t> open_sides_;  // 3 t + k: edge k of triangle t has nothing across
   cadt::Options options_;
   std::unique_ptr<cadt::MeshQueries> queries_;
 };

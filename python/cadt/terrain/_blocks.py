@@ -15,12 +15,13 @@ from ._store import ArrayFile
 from .cog import BLOCK
 from .grid import Grid
 
-LEAST_SIDE, MOST_SIDE = 64, 1024  # cells
+LEAST_SIDE, MOST_SIDE = 64, 2048  # cells
 
 
 def side_for(cells: float) -> int:
-    """Of blocks for regions of so many cells: a region meets some, and not much more than itself lies in them."""
-    side = 1 << max(round(math.log2(max(math.sqrt(cells) / 2, 1))), 0)
+    """Of blocks for regions of so many cells: as large as a region, which then meets four. Each costs a pass over the
+    triangles of the region, and each of its cells much less than that of a triangle."""
+    side = 1 << round(math.log2(max(math.sqrt(cells), 1)))
     return min(max(side, LEAST_SIDE), MOST_SIDE)
 
 
@@ -64,13 +65,10 @@ class Blocks:
     def read(self, block: Block) -> Floats:
         return self._whole(block.number)[: block.grid.rows, : block.grid.columns]
 
-    def write(self, block: Block, cells: Floats, where: NDArray[np.bool_], over: bool = True) -> None:
-        """Some of a block's cells; with `over` also those that have a value."""
+    def write(self, block: Block, cells: Floats, where: NDArray[np.bool_]) -> None:
+        """Some of a block's cells."""
         whole = self._whole(block.number)
-        own = whole[: block.grid.rows, : block.grid.columns]
-        if not over:
-            where = where & np.isnan(own)
-        own[where] = cells[where]
+        whole[: block.grid.rows, : block.grid.columns][where] = cells[where]
         self._file.write(block.number, whole)
         self._written[block.number] = True
 

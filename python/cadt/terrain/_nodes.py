@@ -3,7 +3,7 @@
 
 Every triangle of the one mesh of all points is final in one node of the tree, so that each cell belongs to one node, unless
 its centre lies exactly on an edge or a vertex that triangles of several nodes have. Without a longest edge all of them give
-it the same value but for rounding, and the lowest node that has it writes it. With one, the lowest triangle decides whether
+it the same value but for rounding, and the last node that has it writes it. With one, the lowest triangle decides whether
 it has a value, as in a mesh of all points: the rim of a node remembers such cells until no later node can have them.
 """
 
@@ -108,10 +108,7 @@ class NodeRaster:
         end = self._begin[:-1].copy()
         for first, xy, z in self.cloud.pieces():
             order = squares.order(squares.number(xy))
-            counts, xy, ids = _cadt.distribute(self.tree._tree, first, xy[order])
-            points = np.empty(len(z), LEAF_POINT)
-            points["xy"], points["id"] = xy, ids
-            points["z"] = z[order][(ids - np.uint64(first)).astype(np.int64)]
+            counts, points = self._by_leaf(first, xy[order], z[order])
             at = 0
             for leaf in np.flatnonzero(counts).tolist():
                 count = int(counts[leaf])
@@ -120,6 +117,14 @@ class NodeRaster:
                 at += count
             self.progress("sorting", 0.5 + first / len(self.cloud) / 2)
         self.cloud.file.remove()
+
+    def _by_leaf(self, first: int, xy: Floats, z: Floats) -> tuple[Words, NDArray[np.void]]:
+        counts, xy, ids = _cadt.distribute(self.tree._tree, first, xy)
+        points = np.empty(len(z), LEAF_POINT)
+        points["xy"], points["id"] = xy, ids
+        ids -= np.uint64(first)
+        points["z"] = z[ids.view(np.int64)]
+        return counts, points
 
     def draw(self) -> tiles.Sums:
         """Finishes all nodes; the sums of the whole mesh.
@@ -177,7 +182,7 @@ class NodeRaster:
                 write[row - block.first_row, column - block.first_column] = ~beaten
                 rims.append(rim)
             if write.any():
-                self.blocks.write(block, cells, write, over=self.max_edge < math.inf)
+                self.blocks.write(block, cells, write)
         return Rim.of(rims)
 
     def _rim(self, drawn: _cadt.PartRaster, part: tiles.Part, block: Block) -> Rim:

@@ -111,8 +111,11 @@ class StoredCloud:
     def pieces(self, size: int = PIECE) -> Iterator[tuple[int, Floats, Floats]]:
         """The index of the first point, coordinates and values of so many points at a time."""
         for first in range(0, self.count, size):
-            points = self.file.read(first, min(size, self.count - first))
-            yield first, np.ascontiguousarray(points[:, :2]), np.ascontiguousarray(points[:, 2])
+            yield first, *self._piece(first, min(size, self.count - first))
+
+    def _piece(self, first: int, count: int) -> tuple[Floats, Floats]:
+        points = self.file.read(first, count)
+        return np.ascontiguousarray(points[:, :2]), np.ascontiguousarray(points[:, 2])
 
 
 def bytes_for(points: int) -> int:

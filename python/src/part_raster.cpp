@@ -65,11 +65,11 @@ class PartRaster {
                                double max_edge) {
     const cadt::Grid cells{grid[0], grid[1], grid[2], grid[3], columns, rows};
     const nb::object none = nb::none();
-    return array_of(Call(queries_->options(), none)([&] {
-                      return queries_->rasterize(cells, {values.data(), values.size()}, cadt::Interpolation::linear,
-                                                 max_edge);
-                    }),
-                    columns);
+    return array_of(
+        Call(queries_->options(), none)([&] {
+          return queries_->rasterize(cells, {values.data(), values.size()}, cadt::Interpolation::linear, max_edge);
+        }),
+        columns);
   }
 
   /// Which blocks of `side` x `side` cells the boxes of triangles meet: 1 or 0, row by row.
@@ -151,7 +151,8 @@ class PartRaster {
     const std::int32_t from = vertex(t, k + 1), to = vertex(t, k + 2);
     const std::int32_t first = p == b ? to : from, second = p == a ? from : to;
     found.cells.push_back(j * x.count + i);
-    found.triangles.push_back(first == second ? lowest_[static_cast<std::size_t>(first)] : static_cast<std::int32_t>(t));
+    found.triangles.push_back(first == second ? lowest_[static_cast<std::size_t>(first)]
+                                              : static_cast<std::int32_t>(t));
     found.edges.insert(found.edges.end(), {first, second});
   }
 

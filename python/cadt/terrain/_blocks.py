@@ -73,7 +73,7 @@ class Blocks:
         self._written[block.number] = True
 
     def rows(self) -> Iterator[Floats]:
-        """From the top, some at a time: whole tiles of the output."""
+        """From the top, some at a time: whole tiles of the output. Removes the file in the end."""
         high = max(BLOCK, self.side)
         for first in range(0, self.grid.rows, high):
             cells = np.empty((min(high, self.grid.rows - first), self.grid.columns), self._type)
@@ -81,9 +81,12 @@ class Blocks:
                 for column in range(self.nx):
                     block = self.block(row * self.nx + column)
                     at = block.first_row - first
-                    place = np.s_[at : at + block.grid.rows, block.first_column : block.first_column + block.grid.columns]
+                    place = np.s_[
+                        at : at + block.grid.rows, block.first_column : block.first_column + block.grid.columns
+                    ]
                     cells[place] = self.read(block)
             yield cells
+        self._file.remove()
 
     def _whole(self, number: int) -> Floats:
         if self._written[number]:

@@ -127,7 +127,7 @@ class NodeRaster:
         return counts, points
 
     def draw(self) -> tiles.Sums:
-        """Finishes all nodes; the sums of the whole mesh.
+        """Finishes all nodes, and removes the file of their points; the sums of the whole mesh.
 
         Raises
         ------
@@ -160,6 +160,7 @@ class NodeRaster:
             sums += part.sums
             self.progress("filling", done / len(self.cloud))
         tiles.check_complete(sums)
+        self._leaves.remove()
         return sums
 
     def _draw(self, part: tiles.Part, z: Floats, earlier: Rim) -> Rim:

@@ -34,13 +34,13 @@ class ArrayFile:
     def __init__(self, path: str, dtype: DTypeLike) -> None:
         self.path, self.dtype = path, np.dtype(dtype)
         try:
-            self._file = open(path, "x+b", buffering=0)
+            self._file = open(path, "x+b", buffering=0)  # noqa: SIM115  remove() closes it
         except OSError as error:
             raise FileError(path, f"cannot be written: {why(error)}") from error
 
     def write(self, first: int, items: NDArray[Any]) -> None:
         """Items `first` and following ones, in C's order."""
-        rest = memoryview(np.ascontiguousarray(items)).cast("B") if items.size else memoryview(b"")
+        rest = _bytes_of(np.ascontiguousarray(items))
         try:
             self._file.seek(first * self.dtype.itemsize)
             while rest:
@@ -50,7 +50,7 @@ class ArrayFile:
 
     def read(self, first: int, count: int) -> NDArray[Any]:
         items = np.empty(count, self.dtype)
-        rest = memoryview(items.view(np.uint8).reshape(-1)) if count else memoryview(b"")
+        rest = _bytes_of(items)
         try:
             self._file.seek(first * self.dtype.itemsize)
             while rest:
@@ -67,6 +67,10 @@ class ArrayFile:
     def remove(self) -> None:
         self._file.close()
         os.unlink(self.path)
+
+
+def _bytes_of(items: NDArray[Any]) -> memoryview:
+    return items.view(np.uint8).reshape(-1).data
 
 
 @contextlib.contextmanager

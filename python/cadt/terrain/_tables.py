@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from ._files import Room, why
 from .errors import FileError, UsageError
 
-
 CHUNK = 1 << 20  # rows copied at a time
 
 
@@ -45,7 +44,9 @@ class TableSource:
                 bad = np.flatnonzero(~np.isfinite(out))
                 if len(bad):
                     row = first + int(bad[0])
-                    raise FileError(self.path, f"row {row} (counted from 0) has no finite number in column {column + 1}")
+                    raise FileError(
+                        self.path, f"row {row} (counted from 0) has no finite number in column {column + 1}"
+                    )
             step(first + len(rows))
 
 

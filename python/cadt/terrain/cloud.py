@@ -115,7 +115,9 @@ def read_cloud(
         nonlocal kept
         kept += n
         if kept > MOST_POINTS:
-            what = f"at most {MOST_POINTS} fit in one mesh; split them into tiles, or make a linear raster with --scratch"
+            what = (
+                f"at most {MOST_POINTS} fit in one mesh; split them into tiles, or make a linear raster with --scratch"
+            )
             raise FileError(", ".join(names), f"too many points: {what}")
         return xy[kept - n : kept], z[kept - n : kept]
 

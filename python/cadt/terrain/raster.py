@@ -135,7 +135,9 @@ def raster_command(options: argparse.Namespace, line: ProgressLine) -> dict[str,
     with contextlib.ExitStack() as stack:
         way: Any = InMemory(options, line)
         if options.scratch is not None:
-            way = with_scratch().InScratch(options, line, stack.enter_context(with_scratch().folder_in(options.scratch)))
+            way = with_scratch().InScratch(
+                options, line, stack.enter_context(with_scratch().folder_in(options.scratch))
+            )
         cloud = way.read()
         require_crs(cloud, options.crs, options.output)
         n, grid = len(cloud), choose_grid(cloud, options)

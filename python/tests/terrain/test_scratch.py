@@ -25,12 +25,14 @@ from cadt.terrain.grid import Grid
 from clouds import PACKAGES, hills, lattice, many
 
 pytest.importorskip("cadt.tiles", reason="this build has no tiles")
-from cadt.terrain import _scratch as scratch  # noqa: E402
-from cadt.terrain import _store  # noqa: E402
-from cadt.terrain._blocks import Blocks  # noqa: E402
+from cadt.terrain import _scratch as scratch
+from cadt.terrain import _store
+from cadt.terrain._blocks import Blocks
 
 
-def stored(folder: pathlib.Path, xyz: np.ndarray, grid: Grid, tile_points: int, max_edge: float | None = None) -> np.ndarray:
+def stored(
+    folder: pathlib.Path, xyz: np.ndarray, grid: Grid, tile_points: int, max_edge: float | None = None
+) -> np.ndarray:
     """The raster through files of a folder."""
     np.save(folder / "points.npy", xyz)
     options = argparse.Namespace(
@@ -90,16 +92,23 @@ def test_centres_on_vertices_and_edges(tmp_path, tile_points, seed):
             check(tmp_path, xyz, grid, tile_points, max_edge)
 
 
-REAL = ("ahn_small.xy", "autzen_trim.f64", "baja_bathymetry.xy", "cdt_sweden_with_duplicate_points.xy", "delaunator_grid.xy")
+REAL = (
+    "ahn_small.xy",
+    "autzen_trim.f64",
+    "baja_bathymetry.xy",
+    "cdt_sweden_with_duplicate_points.xy",
+    "delaunator_grid.xy",
+)
 
 
 @pytest.mark.parametrize("name", REAL)
 def test_real_sets(tmp_path, data, name):
     path = data(f"real/{name}")
     xy = np.fromfile(path).reshape(-1, 2) if name.endswith(".f64") else np.loadtxt(path)
-    os.unlink(path)
-    check(tmp_path, with_heights(xy), whole_cells(xy), max(len(xy) // 30, 50))
-    check(tmp_path, with_heights(xy), whole_cells(xy), max(len(xy) // 30, 50), np.ptp(xy[:, 0]) / 40)
+    folder = tmp_path / "scratch"  # the set may be unpacked beside it
+    folder.mkdir()
+    check(folder, with_heights(xy), whole_cells(xy), max(len(xy) // 30, 50))
+    check(folder, with_heights(xy), whole_cells(xy), max(len(xy) // 30, 50), np.ptp(xy[:, 0]) / 40)
 
 
 def test_an_equal_point_that_comes_first_gives_the_value(tmp_path):
@@ -131,8 +140,6 @@ def test_a_block_is_read_as_it_was_written(tmp_path):
 
 
 def of_command(cadt_terrain, *words) -> tuple[np.ndarray, dict, str]:
-    with rasterio.open("one.tif", "w", driver="GTiff", width=1, height=1, count=1, dtype="uint8"):
-        pass  # so that a failure to write is noticed
     said = cadt_terrain("raster", *words, "-o", "one.tif").err
     with rasterio.open("one.tif") as raster:
         return raster.read(1), {**raster.profile, "overviews": raster.overviews(1)}, said
@@ -154,7 +161,7 @@ def test_the_file_is_that_without_scratch(las, tmp_path, cadt_terrain, options):
     cadt_terrain("raster", "a.laz", "grid.tif", "--res", "3", "--bounds", "499990.25,5400005.5,500100,5400200")
     whole, about, said = of_command(cadt_terrain, "a.laz", "b.las", *options)
     cells, same, told = of_command(cadt_terrain, "a.laz", "b.las", *options, "--scratch", ".", "--tile-points", "700")
-    assert about == same
+    assert repr(about) == repr(same)  # nan is not nan
     blank = np.isnan(whole) if np.isnan(about["nodata"]) else whole == about["nodata"]
     assert np.array_equal(np.isnan(cells) if np.isnan(about["nodata"]) else cells == about["nodata"], blank)
     assert 0 < blank.sum() < blank.size
@@ -172,7 +179,11 @@ def test_the_file_is_that_without_scratch(las, tmp_path, cadt_terrain, options):
         (["--tile-points", "100"], 2, "--tile-points is for --scratch"),
         (["--scratch", ".", "--tile-points", "2"], 2, "--tile-points 2: at least 3"),
         (["--scratch", ".", "--tile-points", "many"], 2, "--tile-points"),
-        (["--scratch", ".", "--method", "natural"], 2, "--method natural: with --scratch a tile is drawn and forgotten"),
+        (
+            ["--scratch", ".", "--method", "natural"],
+            2,
+            "--method natural: with --scratch a tile is drawn and forgotten",
+        ),
         (["--scratch", ".", "--method", "nearest"], 2, "use --method linear, or leave out --scratch"),
         (["--scratch", ".", "--fill", "nearest"], 2, "--fill nearest: the nearest point of a cell may be in any tile"),
         (["--scratch", ".", "--class", "9"], 3, "a.laz: no point is of class 9"),
@@ -189,7 +200,9 @@ def test_what_is_refused_leaves_nothing(las, cadt_terrain, options, code, says):
 def test_points_that_are_refused(las, tmp_path, cadt_terrain):
     words = ["dem.tif", "--res", "1", "--scratch", "."]
     las("line.laz", [(500_000 + k, 5_400_000 + k, 1) for k in range(50)])
-    cadt_terrain("raster", "line.laz", *words, "--tile-points", "8", code=3, says="line.laz: no triangles: the 50 points")
+    cadt_terrain(
+        "raster", "line.laz", *words, "--tile-points", "8", code=3, says="line.laz: no triangles: the 50 points"
+    )
     las("two.laz", hills(2))
     cadt_terrain("raster", "two.laz", *words, code=3, says="two.laz: no triangles: the 2 points")
     whole = bytearray(pathlib.Path(las("a.las", hills(900))).read_bytes())
@@ -205,10 +218,11 @@ def test_points_that_are_refused(las, tmp_path, cadt_terrain):
 def test_a_disk_without_room_is_told_before_any_work(las, cadt_terrain, monkeypatch):
     las("a.laz", hills(900))
     free = 900 * 56
-    monkeypatch.setattr(_store.shutil, "disk_usage", lambda path: argparse.Namespace(free=free, total=free, used=0))
+    room = lambda path: argparse.Namespace(total=1 << 40, free=free if "cadt-raster-" in path else 1 << 40)
+    monkeypatch.setattr(_store.shutil, "disk_usage", room)
     words = ["raster", "a.laz", "dem.tif", "--scratch", "."]
     asks = "may need 0.0 GiB in the scratch folder, its disk has 0.0 GiB: name a folder of another one"
-    cadt_terrain(*words, "--res", "0.1", code=3, says=f"900 points and 1000 x 1000 cells {asks}")
+    cadt_terrain(*words, "--res", "0.1", code=3, says=f"900 points and 998 x 1000 cells {asks}")
     free -= 1
     cadt_terrain(*words, "--res", "50", code=3, says=f"900 points {asks}")
 
@@ -284,7 +298,8 @@ def test_a_part_with_two_fans_at_a_vertex():
     assert set(found.tolist()) == set(np.flatnonzero(rim))
     centre = found == 4 * 9 + 4
     assert centre.sum() == 4 and (lowest[centre] == 0).all() and (edges[centre] == 0).all()
-    assert (lowest[~centre] == (found[~centre] > 4 * 9 + 4)).mean() > 0.7  # of the lower one: row 4 is the upper one's, too
+    first = (x >= 0) & (y >= 0)  # quadrant
+    assert np.array_equal(lowest == 0, first.ravel()[found])
     assert part.blocks(corner, 9, 9, 3).tolist() == [[0, 1, 1], [1, 1, 1], [1, 1, 0]]
     dropped = part.rasterize(corner, 9, 9, np.ones(5), 4.0)
     assert np.isnan(dropped).all(), "the longest edges are longer"
@@ -292,7 +307,11 @@ def test_a_part_with_two_fans_at_a_vertex():
 
 def test_indices_of_a_part_are_checked():
     xy = np.zeros((3, 2))
-    for triangles, neighbors in (([[0, 1, 3]], [[-1, -1, -1]]), ([[0, 1, -1]], [[-1, -1, -1]]), ([[0, 1, 2]], [[1, -1, -1]])):
+    for triangles, neighbors in (
+        ([[0, 1, 3]], [[-1, -1, -1]]),
+        ([[0, 1, -1]], [[-1, -1, -1]]),
+        ([[0, 1, 2]], [[1, -1, -1]]),
+    ):
         with pytest.raises(cadt.InputError, match="triangle 0 has an index out of range"):
             _cadt.PartRaster(xy, np.array(triangles, np.int32), np.array(neighbors, np.int32), host())
 

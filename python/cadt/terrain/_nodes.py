@@ -49,7 +49,7 @@ class Rim:
 
     def within(self, ids: Words) -> Rim:
         """Cells on edges between these vertices (ascending)."""
-        kept = np.isin(self.edges, ids, assume_unique=False).all(axis=1)
+        kept = np.isin(self.edges, ids).all(axis=1)
         return Rim(self.cells[kept], self.triangles[kept], self.edges[kept])
 
     def beaten_by(self, earlier: Rim) -> NDArray[np.bool_]:

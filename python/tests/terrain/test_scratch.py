@@ -111,6 +111,16 @@ def test_real_sets(tmp_path, data, name):
     check(folder, with_heights(xy), whole_cells(xy), max(len(xy) // 30, 50), np.ptp(xy[:, 0]) / 40)
 
 
+def test_on_a_device(las, cadt_terrain):
+    if not any(device.backend == "opencl" and device.usable for device in cadt.devices()):
+        pytest.skip("no OpenCL device")
+    las("a.laz", hills(3000))
+    words = ["a.laz", "--res", "1", "--max-edge", "9", "--scratch", ".", "--tile-points", "900"]
+    cells, _, said = of_command(cadt_terrain, *words, "--backend", "opencl")
+    assert "back end    opencl, 4 tiles" in said
+    assert np.allclose(cells, of_command(cadt_terrain, *words, "--backend", "host")[0], atol=1e-9, rtol=0)
+
+
 def test_an_equal_point_that_comes_first_gives_the_value(tmp_path):
     """Of equal points with different values, wherever they are in the files."""
     xy = np.random.default_rng(4).integers(0, 12, (3000, 2)).astype(float)

@@ -112,5 +112,6 @@ void bind_mesh(nb::module_& m);
 void bind_device(nb::module_& m);
 void bind_queries(nb::module_& m);
 void bind_scipy(nb::module_& m);
+void bind_part_raster(nb::module_& m);
 
 }  // namespace cadt_python

@@ -18,6 +18,7 @@ NB_MODULE(_cadt, m) {
   bind_device(m);
   bind_queries(m);
   bind_scipy(m);
+  bind_part_raster(m);
 #ifdef CADT_PYTHON_TILES
   bind_tile_nodes(m);
   bind_tile_tree(m);

@@ -3,6 +3,7 @@
 #include "tiles.hpp"
 
 #include "tiles/hash.hpp"
+#include "tiles/machine.hpp"
 #include "tiles/store.hpp"
 
 #include <cstring>
@@ -204,6 +205,7 @@ void bind_tile_tree(nb::module_& m) {
 
   m.def("distribute", &distribute, nb::arg("tree"), nb::arg("first_id"), nb::arg("xy"));
   m.def("blocks_hash", &blocks_hash, nb::arg("first"), nb::arg("xy"));
+  m.def("available_memory", &cadt::tiles::available_memory);
   m.attr("block_points") = cadt::tiles::block_points;
   m.attr("default_tile_points") = cadt::tiles::default_tile_points;
   m.attr("least_tile_points") = cadt::tiles::least_tile_points;

@@ -27,7 +27,10 @@ def _explain(error: BaseException) -> int:
         print("cadt: interrupted", file=sys.stderr)
         return errors.EXIT_INTERRUPTED
     elif isinstance(error, MemoryError):
-        code, advice = errors.EXIT_MEMORY, "Use fewer points, a larger --res, or close other programs."
+        code, advice = (
+            errors.EXIT_MEMORY,
+            "Use fewer points, a larger --res, or close other programs; cadt raster needs less with --scratch.",
+        )
     elif (known := errors.code_of(error)) is not None:
         code, advice = known
     text = str(error) or type(error).__name__

@@ -29,14 +29,11 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-class Buckets:
-    """A cloud in pieces, each in the order of the buckets, row by row from the lower left; within a bucket of a piece the
-    order is as before. The cloud's own arrays are sorted, so that the points are there once."""
+class Squares:
+    """The buckets of so many points in a box."""
 
-    def __init__(self, cloud: Cloud, per_bucket: int = PER_BUCKET, piece: int = PIECE, threads: int = 0) -> None:
-        n = len(cloud)
-        self.xy, self.z = np.ascontiguousarray(cloud.xy), cloud.z
-        self.x0, self.y0, self.x1, self.y1 = cloud.bounds
+    def __init__(self, bounds: tuple[float, float, float, float], n: int, per_bucket: int = PER_BUCKET) -> None:
+        self.x0, self.y0, self.x1, self.y1 = bounds
         width, height = max(self.x1 - self.x0, 1e-300), max(self.y1 - self.y0, 1e-300)
         count = min(max(n // per_bucket, 1), MOST_BUCKETS)
         self.side = max(math.sqrt(width * height / count), width / 4000, height / 4000)
@@ -45,8 +42,39 @@ class Buckets:
             self.side *= 1.1
             self.nx, self.ny = (max(1, math.ceil(length / self.side)) for length in (width, height))
         # A bucket's points lie in its square but for the rounding of the division.
-        self.slack = 1e-9 * self.side + 8 * float(np.spacing(max(map(abs, cloud.bounds))))
+        self.slack = 1e-9 * self.side + 8 * float(np.spacing(max(map(abs, bounds))))
 
+    def place(self, xy: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Column and row of each point's bucket; the nearest one for those outside."""
+        column = np.clip((xy[:, 0] - self.x0) / self.side, 0, self.nx - 1).astype(np.int64)
+        row = np.clip((xy[:, 1] - self.y0) / self.side, 0, self.ny - 1).astype(np.int64)
+        return column, row
+
+    def number(self, xy: Floats) -> NDArray[np.int64]:
+        """That of each point's bucket, row by row."""
+        column, row = self.place(xy)
+        return row * self.nx + column
+
+    @staticmethod
+    def order(number: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Indices of points by bucket, and as before within one. Overwrites the numbers."""
+        # With the indices below them: NumPy sorts words sooner than it sorts indices by words.
+        bits = len(number).bit_length()
+        number <<= bits
+        number += np.arange(len(number))
+        number.sort()
+        number &= (1 << bits) - 1
+        return number
+
+
+class Buckets(Squares):
+    """A cloud in pieces, each in the order of the buckets, row by row from the lower left; within a bucket of a piece the
+    order is as before. The cloud's own arrays are sorted, so that the points are there once."""
+
+    def __init__(self, cloud: Cloud, per_bucket: int = PER_BUCKET, piece: int = PIECE, threads: int = 0) -> None:
+        n = len(cloud)
+        super().__init__(cloud.bounds, n, per_bucket)
+        self.xy, self.z = np.ascontiguousarray(cloud.xy), cloud.z
         size = max(piece, -(-n // MOST_PIECES))
         # Where bucket k of piece i begins, and where it ends: begin[i, k] and begin[i, k + 1].
         self.begin = np.empty((-(-n // size), self.nx * self.ny + 1), np.int32)
@@ -68,30 +96,18 @@ class Buckets:
 
     def _sort(self, first: int, size: int, begin: NDArray[np.int32]) -> None:
         xy, z = self.xy[first : first + size], self.z[first : first + size]
-        column, row = self.place(xy)
-        number = row * self.nx + column
+        number = self.number(xy)
         begin[0] = first
         np.cumsum(np.bincount(number, minlength=self.nx * self.ny), out=begin[1:])
         begin[1:] += first
-        # Numbers of buckets with those of points below them: NumPy sorts words sooner than it sorts indices by words.
-        bits = size.bit_length()
-        number <<= bits
-        number += np.arange(len(z))
-        number.sort()
-        number &= (1 << bits) - 1
         pairs = xy.view(np.complex128)[:, 0]  # one number a point is gathered sooner than two
-        pairs[:], z[:] = pairs[number], z[number]
+        order = self.order(number)
+        pairs[:], z[:] = pairs[order], z[order]
 
     @property
     def useful(self) -> bool:
         """Whether tiles are smaller than the whole: not if nearly all points lie in a few buckets, as with an outlier."""
         return self.sketch.n_triangles > 0 and 16 * self._most < len(self.z)
-
-    def place(self, xy: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Column and row of each point's bucket; the nearest one for those outside."""
-        column = np.clip((xy[:, 0] - self.x0) / self.side, 0, self.nx - 1).astype(np.int64)
-        row = np.clip((xy[:, 1] - self.y0) / self.side, 0, self.ny - 1).astype(np.int64)
-        return column, row
 
     def _hull(self) -> NDArray[np.int64]:
         """The vertices of the convex hull of all points. A bucket deep in the hull of the sketch has none."""

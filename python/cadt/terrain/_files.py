@@ -6,9 +6,15 @@ from __future__ import annotations
 import contextlib
 import os
 import pathlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 from .errors import FileError, UsageError
+
+# Arrays for the next n points of a source, (n, 2) and (n,), to be filled before it asks again.
+Room = Callable[[int], tuple[NDArray[np.float64], NDArray[np.float64]]]
 
 
 def suffix_of(path: str) -> str:

@@ -7,9 +7,8 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ._files import why
+from ._files import Room, why
 from .errors import CrsError, FileError, TerrainError, Unavailable, UsageError
 
 if TYPE_CHECKING:
@@ -72,9 +71,9 @@ class LasSource:
                 self.path, f"its reference system is not understood: {why(error)}; name it with --crs"
             ) from error
 
-    def read(self, xy: NDArray[np.float64], z: NDArray[np.float64], step: Callable[[int], None]) -> int:
-        """Fills the heads of both arrays with the points that are kept; returns how many these are."""
-        kept = seen = 0
+    def read(self, room: Room, step: Callable[[int], None]) -> None:
+        """Fills the arrays of `room` with the points that are kept."""
+        seen = 0
         try:
             with self._open() as reader:
                 header = reader.header
@@ -83,17 +82,14 @@ class LasSource:
                     which: Any = slice(None)
                     if self._classes is not None:
                         which = np.flatnonzero(np.isin(np.asarray(points.classification), self._classes))
-                    end = kept + (len(points) if isinstance(which, slice) else len(which))
+                    xy, z = room(len(points) if isinstance(which, slice) else len(which))
                     # A coordinate is a whole number of steps from an offset: one product and one sum, both rounded.
-                    for k, (name, out) in enumerate(
-                        (("X", xy[kept:end, 0]), ("Y", xy[kept:end, 1]), ("Z", z[kept:end]))
-                    ):
+                    for k, (name, out) in enumerate((("X", xy[:, 0]), ("Y", xy[:, 1]), ("Z", z))):
                         if k == 2 and self._values != "z":
                             out[:] = np.asarray(points[self._values])[which]
                             continue
                         np.multiply(np.asarray(points[name])[which], header.scales[k], out=out)
                         out += header.offsets[k]
-                    kept = end
                     step(seen)
         except TerrainError:
             raise
@@ -103,4 +99,3 @@ class LasSource:
             raise FileError(self.path, f"damaged after {seen} of {self.count} points: {why(error)}") from error
         if seen != self.count:
             raise FileError(self.path, f"truncated: {seen} points of the {self.count} that its header promises")
-        return kept

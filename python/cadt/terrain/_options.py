@@ -33,6 +33,8 @@ Examples:
       the very cells of another raster, to subtract them, without gaps
   cadt raster depths.gpkg sea.tif --res 10 --values depth --method natural
       points with an attribute; smooth, by natural neighbours
+  cadt raster tiles/*.laz country.tif --res 0.5 --class 2 --max-edge 100 --scratch /mnt/fast
+      more points than memory takes: they go through a fast disk
 
 A cell has the value at its centre, exactly that of the Delaunay triangulation of all points. The file is a
 cloud-optimised GeoTIFF: tiles, overviews, compressed.
@@ -170,6 +172,17 @@ def _raster(parser: argparse.ArgumentParser) -> None:
         choices=("float64", "float32"),
         default="float64",
         help="numbers of the file: float64 (default), or float32 for half the size",
+    )
+    parser.add_argument(
+        "--scratch",
+        metavar="DIR",
+        help="for more points than memory takes: keep them in a temporary folder of DIR, 56 bytes each; --method linear alone",
+    )
+    parser.add_argument(
+        "--tile-points",
+        type=int,
+        metavar="N",
+        help="with --scratch: triangulate at most N points at a time (default: what a quarter of the free memory takes)",
     )
     _work(parser)
 

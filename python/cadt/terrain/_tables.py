@@ -8,8 +8,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from ._files import why
+from ._files import Room, why
 from .errors import FileError, UsageError
+
+CHUNK = 1 << 20  # rows copied at a time
 
 
 class TableSource:
@@ -33,17 +35,19 @@ class TableSource:
         self._columns = _choose(path, columns or "1,2,3", names, table.shape[1])
         self.count = len(table)
 
-    def read(self, xy: NDArray[np.float64], z: NDArray[np.float64], step: Callable[[int], None]) -> int:
-        n = self.count
-        for out, column in zip((xy[:n, 0], xy[:n, 1], z[:n]), self._columns):
-            out[:] = self._table[:, column]
-            bad = np.flatnonzero(~np.isfinite(out))
-            if len(bad):
-                raise FileError(
-                    self.path, f"row {int(bad[0])} (counted from 0) has no finite number in column {column + 1}"
-                )
-        step(n)
-        return n
+    def read(self, room: Room, step: Callable[[int], None]) -> None:
+        for first in range(0, self.count, CHUNK):
+            rows = self._table[first : first + CHUNK]
+            xy, z = room(len(rows))
+            for out, column in zip((xy[:, 0], xy[:, 1], z), self._columns):
+                out[:] = rows[:, column]
+                bad = np.flatnonzero(~np.isfinite(out))
+                if len(bad):
+                    row = first + int(bad[0])
+                    raise FileError(
+                        self.path, f"row {row} (counted from 0) has no finite number in column {column + 1}"
+                    )
+            step(first + len(rows))
 
 
 def _read_text(path: str) -> tuple[NDArray[np.float64], list[str]]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._files import complete_file, why
+from ._files import Room, complete_file, why
 from .errors import CrsError, FileError, Unavailable, UsageError
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class OgrSource:
         if values != "z" and values not in fields:
             raise UsageError(f"--values {values}: {path} has no such attribute; it has: {', '.join(fields) or 'none'}")
 
-    def read(self, xy: NDArray[np.float64], z: NDArray[np.float64], step: Callable[[int], None]) -> int:
+    def read(self, room: Room, step: Callable[[int], None]) -> None:
         columns = [] if self._values == "z" else [self._values]
         done = 0
         while done < self.count:
@@ -98,13 +98,12 @@ class OgrSource:
             if len(geometry) == 0:
                 break
             points = _coordinates(self.path, geometry, done)
-            end = done + len(points)
-            xy[done:end] = points[:, :2]
-            z[done:end] = fields[0] if columns else points[:, 2]
-            check_values(self.path, z[done:end], self._values, done)
-            done = end
+            xy, z = room(len(points))
+            xy[:] = points[:, :2]
+            z[:] = fields[0] if columns else points[:, 2]
+            check_values(self.path, z, self._values, done)
+            done += len(points)
             step(done)
-        return done
 
 
 class ParquetSource:
@@ -132,13 +131,13 @@ class ParquetSource:
         self._geometry = np.asarray(shapely.to_wkb(frame.geometry.values, byte_order=1), dtype=object)
         self._column = None if values == "z" else np.asarray(frame[values], dtype=float)
 
-    def read(self, xy: NDArray[np.float64], z: NDArray[np.float64], step: Callable[[int], None]) -> int:
+    def read(self, room: Room, step: Callable[[int], None]) -> None:
         points = _coordinates(self.path, self._geometry, 0)
-        xy[: self.count] = points[:, :2]
-        z[: self.count] = points[:, 2] if self._column is None else self._column
-        check_values(self.path, z[: self.count], self._values, 0)
+        xy, z = room(self.count)
+        xy[:] = points[:, :2]
+        z[:] = points[:, 2] if self._column is None else self._column
+        check_values(self.path, z, self._values, 0)
         step(self.count)
-        return self.count
 
 
 def check_values(path: str, z: NDArray[np.float64], name: str, first: int) -> None:

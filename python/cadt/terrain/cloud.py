@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ._files import check_input, suffix_of
+from ._files import Room, check_input, suffix_of
 from ._las import LasSource
 from ._tables import TableSource
 from ._vector import OgrSource, ParquetSource, parse_crs
@@ -51,14 +51,26 @@ class Cloud:
         return float(x0), float(y0), float(x1), float(y1)
 
 
-class _Source(Protocol):
+class Extent(Protocol):
+    """Of points in memory or in a file: their box and reference system, and where they come from."""
+
+    @property
+    def crs(self) -> pyproj.CRS | None: ...
+    @property
+    def sources(self) -> tuple[str, ...]: ...
+    @property
+    def bounds(self) -> tuple[float, float, float, float]: ...
+    def __len__(self) -> int: ...
+
+
+class Source(Protocol):
     path: str
     count: int  # of points, at most
 
     @property
     def crs(self) -> pyproj.CRS | None: ...
 
-    def read(self, xy: NDArray[np.float64], z: NDArray[np.float64], step: Callable[[int], None]) -> int: ...
+    def read(self, room: Room, step: Callable[[int], None]) -> None: ...
 
 
 def read_cloud(
@@ -93,19 +105,46 @@ def read_cloud(
     FileError
         A file cannot be read, is damaged or truncated, or no point is left. CrsError: the systems differ.
     """
-    paths = [str(path) for path in paths]
-    sources: list[_Source] = []
-    for path in paths:
-        check_input(path)
-        sources.append(_open(path, classes, values, columns, crs is None))
-    system = _common_crs(sources, crs)
+    sources, system = open_sources(paths, classes, values, columns, crs)
     most = sum(source.count for source in sources)
-    if most == 0:
-        raise FileError(paths[0] if len(paths) == 1 else ", ".join(paths), "has no points")
-
     xy = np.empty((most, 2))  # pages that no point reaches cost nothing
     z = np.empty(most)
     kept = 0
+
+    def room(n: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        nonlocal kept
+        kept += n
+        if kept > MOST_POINTS:
+            what = (
+                f"at most {MOST_POINTS} fit in one mesh; split them into tiles, or make a linear raster with --scratch"
+            )
+            raise FileError(", ".join(names), f"too many points: {what}")
+        return xy[kept - n : kept], z[kept - n : kept]
+
+    names = tuple(source.path for source in sources)
+    read_all(sources, room, progress)
+    if kept == 0:
+        raise no_points(names, classes)
+    return Cloud(xy[:kept], z[:kept], system, names)
+
+
+def open_sources(
+    paths: Sequence[str], classes: Sequence[int] | None, values: str, columns: str, crs: str | None
+) -> tuple[list[Source], pyproj.CRS | None]:
+    """The files of `read_cloud`, and their reference system."""
+    names = [str(path) for path in paths]
+    sources: list[Source] = []
+    for name in names:
+        check_input(name)
+        sources.append(_open(name, classes, values, columns, crs is None))
+    system = _common_crs(sources, crs)
+    if sum(source.count for source in sources) == 0:
+        raise FileError(names[0] if len(names) == 1 else ", ".join(names), "has no points")
+    return sources, system
+
+
+def read_all(sources: Sequence[Source], room: Room, progress: Callable[[str, float], None] | None) -> None:
+    """Points of all files, one after another."""
     for source in sources:
         whole = max(source.count, 1)
 
@@ -113,18 +152,15 @@ def read_cloud(
             if progress is not None:
                 progress(f"reading {path}", done / whole)
 
-        kept += source.read(xy[kept:], z[kept:], step)
-        if kept > MOST_POINTS:
-            raise FileError(
-                source.path, f"too many points: at most {MOST_POINTS} fit in one mesh; split them into tiles"
-            )
-    if kept == 0:
-        names = ", ".join(map(str, classes or ()))
-        raise FileError(", ".join(paths), f"no point is of class {names}; without --class all points are taken")
-    return Cloud(xy[:kept], z[:kept], system, tuple(paths))
+        source.read(room, step)
 
 
-def _open(path: str, classes: Sequence[int] | None, values: str, columns: str, with_crs: bool) -> _Source:
+def no_points(paths: Sequence[str], classes: Sequence[int] | None) -> FileError:
+    names = ", ".join(map(str, classes or ()))
+    return FileError(", ".join(paths), f"no point is of class {names}; without --class all points are taken")
+
+
+def _open(path: str, classes: Sequence[int] | None, values: str, columns: str, with_crs: bool) -> Source:
     suffix = suffix_of(path)
     if suffix not in READ_FORMATS:
         raise UsageError(f"{path}: points are read from files that end in one of: {', '.join(READ_FORMATS)}")
@@ -139,7 +175,7 @@ def _open(path: str, classes: Sequence[int] | None, values: str, columns: str, w
     return ParquetSource(path, values, with_crs) if suffix == "parquet" else OgrSource(path, values, with_crs)
 
 
-def _common_crs(sources: Sequence[_Source], asked: str | None) -> pyproj.CRS | None:
+def _common_crs(sources: Sequence[Source], asked: str | None) -> pyproj.CRS | None:
     if asked is not None:
         return None if asked.lower() == "none" else parse_crs(f"--crs {asked}", asked)
     known = [source for source in sources if source.crs is not None]
@@ -175,7 +211,7 @@ def name_of(crs: pyproj.CRS | None) -> str:
     return f"{crs.name} (EPSG:{code})" if code else str(crs.name)
 
 
-def require_crs(cloud: Cloud, asked: str | None, output: str) -> None:
+def require_crs(cloud: Extent, asked: str | None, output: str) -> None:
     """A map without a reference system is not found in the right place again, so that it has to be asked for."""
     if cloud.crs is None and asked is None:
         raise CrsError(

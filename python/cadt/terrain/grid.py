@@ -8,7 +8,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ._files import check_input, why
-from .cloud import Cloud, name_of, same_crs
+from .cloud import Extent, name_of, same_crs
 from .errors import CrsError, FileError, Unavailable, UsageError
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def check_resolution(resolution: float) -> None:
         raise UsageError(f"--res {resolution:g}: a cell needs a finite size above 0")
 
 
-def grid_of(cloud: Cloud, resolution: float, bounds: Box | None) -> Grid:
+def grid_of(cloud: Extent, resolution: float, bounds: Box | None) -> Grid:
     """Cells of one size, the lower left corner of one of them on that of `bounds`, or of the box of the points."""
     check_resolution(resolution)
     x0, y0, x1, y1 = bounds if bounds is not None else cloud.bounds

@@ -4,8 +4,11 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import time
 from collections.abc import Iterator
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +20,7 @@ from ._files import check_output
 from ._mesh import check_max_edge, no_triangles, rasterize, read, triangulate
 from ._progress import ProgressLine
 from ._tiles import TiledRaster
-from .cloud import Cloud, require_crs
+from .cloud import Cloud, Extent, require_crs
 from .cog import BLOCK, check_nodata, open_cog
 from .errors import UsageError
 from .grid import Grid, check_resolution, grid_of, grid_of_file, parse_bounds
@@ -26,7 +29,7 @@ WRITE_FORMATS = ("tif", "tiff")
 SMALL = 200_000  # points: the host has them done before a graphics card is opened
 
 
-def choose_grid(cloud: Cloud, options: argparse.Namespace) -> Grid:
+def choose_grid(cloud: Extent, options: argparse.Namespace) -> Grid:
     bounds = parse_bounds(options.bounds)
     if options.align is not None:
         return grid_of_file(options.align, cloud.crs, bounds)
@@ -71,8 +74,7 @@ def on_host(options: argparse.Namespace, points: int) -> bool:
     return points < SMALL or not any(device.usable and device.gpu for device in cadt.devices())
 
 
-def raster_command(options: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
-    start = time.monotonic()
+def check_options(options: argparse.Namespace) -> None:
     if (options.res is None) == (options.align is None):
         raise UsageError("say the cells either with --res R or with --align GRID.tif")
     if options.res is not None:
@@ -80,40 +82,77 @@ def raster_command(options: argparse.Namespace, line: ProgressLine) -> dict[str,
     check_max_edge(options.max_edge)
     check_nodata(options.nodata, options.dtype)
     parse_bounds(options.bounds)
+    if options.scratch is not None:
+        with_scratch().check_options(options)
+    elif options.tile_points is not None:
+        raise UsageError("--tile-points is for --scratch, which is missing")
     others = [options.align] if options.align is not None else []
     check_output(options.output, WRITE_FORMATS, options.inputs + others)
 
-    cloud = read(options, line)
-    require_crs(cloud, options.crs, options.output)
-    name, n, crs = ", ".join(cloud.sources), len(cloud), cloud.crs
-    grid = choose_grid(cloud, options)
-    read_at = time.monotonic()
-    with open_cog(
-        options.output, grid, crs, nodata=options.nodata, dtype=options.dtype, threads=options.threads
-    ) as rows:
-        line.step("sorting")
+
+def with_scratch() -> ModuleType:
+    """What --scratch needs of a build of cadt."""
+    try:
+        from . import _scratch
+    except ImportError as error:
+        raise UsageError(f"--scratch: {error}") from error
+    return _scratch
+
+
+class InMemory:
+    """All points at a time."""
+
+    def __init__(self, options: argparse.Namespace, line: ProgressLine) -> None:
+        self.options, self.line = options, line
+
+    def read(self) -> Cloud:
+        return read(self.options, self.line)
+
+    def rows(self, cloud: Cloud, grid: Grid) -> tuple[Iterator[Floats], str]:
+        """The rows of the raster, and what computes them. The cloud's arrays are sorted."""
+        name, n, options = ", ".join(cloud.sources), len(cloud), self.options
+        self.line.step("sorting")
         points = Buckets(cloud, threads=options.threads)
-        del cloud  # its arrays are those of the buckets now
-        device = "host, by tiles"
         if options.method == "linear" and points.useful and on_host(options, n):
             if len(points.hull) == 0:
                 raise no_triangles(name, n)
-            made = TiledRaster(
+            tiled = TiledRaster(
                 points,
                 grid,
                 max_edge=options.max_edge,
                 fill=options.fill == "nearest",
                 threads=options.threads,
-                progress=lambda fraction: line.update("filling", fraction),
-            ).rows()
-        else:
-            mesh = triangulate(points.xy, name, options, line)
-            device = mesh.device
-            made = by_whole(mesh, points.z, grid, options)
+                progress=lambda fraction: self.line.update("filling", fraction),
+            )
+            return tiled.rows(), "host, by tiles"
+        mesh = triangulate(points.xy, name, options, self.line)
+        return by_whole(mesh, points.z, grid, options), mesh.device
+
+
+def raster_command(options: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
+    start = time.monotonic()
+    check_options(options)
+    with contextlib.ExitStack() as stack:
+        way: Any = InMemory(options, line)
+        if options.scratch is not None:
+            way = with_scratch().InScratch(
+                options, line, stack.enter_context(with_scratch().folder_in(options.scratch))
+            )
+        cloud = way.read()
+        require_crs(cloud, options.crs, options.output)
+        n, grid = len(cloud), choose_grid(cloud, options)
+        read_at = time.monotonic()
+        rows = stack.enter_context(
+            open_cog(
+                options.output, grid, cloud.crs, nodata=options.nodata, dtype=options.dtype, threads=options.threads
+            )
+        )
+        made, device = way.rows(cloud, grid)
+        del cloud
         for cells in made:
             rows.write(cells)
             line.update("filling", rows.next / grid.rows)
-        del made, points
+        del made
         line.step(f"compressing {options.output}")
     return {
         "points": n,

@@ -39,3 +39,25 @@ def hills(n: int, size: float = 100.0, seed: int = 1, at: tuple[float, float] = 
     xy = np.random.default_rng(seed).uniform(0, size, (n, 2))
     z = 300 + 20 * np.sin(xy[:, 0] / size * 7) * np.cos(xy[:, 1] / size * 5)
     return np.round(np.column_stack((xy[:, 0] + at[0], xy[:, 1] + at[1], z)), 3)
+
+
+def lattice(columns: int, rows: int) -> np.ndarray:
+    return np.stack(np.meshgrid(np.arange(float(columns)), np.arange(float(rows))), axis=-1).reshape(-1, 2)
+
+
+def many() -> dict[str, np.ndarray]:
+    """Points of many kinds, about 100 across."""
+    random = np.random.default_rng(5)
+    strips = random.uniform(0, 100, (4000, 2)) * [1, 0.04] + [0, 1] * (25.0 * random.integers(0, 5, (4000, 1)))
+    ring = 50 + 40 * np.column_stack([f(np.linspace(0, 6.28, 900)) for f in (np.cos, np.sin)])
+    return {
+        "scattered": random.uniform(0, 100, (6000, 2)),
+        "lattice": lattice(40, 30),
+        "strips": strips,
+        "ring": ring,
+        "lake": (p := random.uniform(0, 100, (6000, 2)))[np.hypot(*(p - 50).T) > 30],
+        "dense corner": random.uniform(0, 1, (6000, 2)) ** 4 * 100,
+        "twice": np.repeat(random.uniform(0, 100, (1500, 2)), 2, axis=0),
+        "far point": np.concatenate((random.uniform(0, 100, (3000, 2)), [[4000.0, 3000.0]])),
+        "thin": random.uniform(0, 1, (3000, 2)) * [1000, 0.1],
+    }

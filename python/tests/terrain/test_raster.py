@@ -15,7 +15,7 @@ from cadt.terrain._buckets import Buckets
 from cadt.terrain._mesh import rasterize
 from cadt.terrain._tiles import TiledRaster, discs
 from cadt.terrain.grid import Grid
-from clouds import hills
+from clouds import hills, many
 from rasterio.crs import CRS
 
 NODATA = -9999.0
@@ -130,33 +130,15 @@ def test_the_cells_of_another_raster(las, tmp_path, cadt_terrain):
     cadt_terrain("raster", "a.laz", "y.tif", "--align", "a.laz", code=3, says="a.laz: is no raster")
 
 
-def clouds():
-    random = np.random.default_rng(5)
-    lattice = np.stack(np.meshgrid(np.arange(40.0), np.arange(30.0)), axis=-1).reshape(-1, 2)
-    strips = random.uniform(0, 100, (4000, 2)) * [1, 0.04] + [0, 1] * (25.0 * random.integers(0, 5, (4000, 1)))
-    ring = 50 + 40 * np.column_stack([f(np.linspace(0, 6.28, 900)) for f in (np.cos, np.sin)])
-    return {
-        "scattered": random.uniform(0, 100, (6000, 2)),
-        "lattice": lattice,
-        "strips": strips,
-        "ring": ring,
-        "lake": (p := random.uniform(0, 100, (6000, 2)))[np.hypot(*(p - 50).T) > 30],
-        "dense corner": random.uniform(0, 1, (6000, 2)) ** 4 * 100,
-        "twice": np.repeat(random.uniform(0, 100, (1500, 2)), 2, axis=0),
-        "far point": np.concatenate((random.uniform(0, 100, (3000, 2)), [[4000.0, 3000.0]])),
-        "thin": random.uniform(0, 1, (3000, 2)) * [1000, 0.1],
-    }
-
-
 SLOW = ("dense corner", "far point")  # many buckets are asked again
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.thorough) if n in SLOW else n for n in clouds()])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.thorough) if n in SLOW else n for n in many()])
 @pytest.mark.parametrize("max_edge", [None, 3.0])
 @pytest.mark.parametrize("fill", [False, True])
 def test_tiles_give_the_raster_of_the_whole(name, max_edge, fill):
     """Whatever the tiles are, the cells are those of the one triangulation."""
-    xy = np.round(clouds()[name], 3) + [500_000, 5_400_000]
+    xy = np.round(many()[name], 3) + [500_000, 5_400_000]
     cloud = terrain.Cloud(xy, np.random.default_rng(2).uniform(0, 10, len(xy)), None)
     # Sizes and corners that doubles have, so that a centre is the same from each tile's corner.
     x0, y0, x1, y1 = np.array(cloud.bounds).round().tolist()

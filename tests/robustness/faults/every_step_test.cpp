@@ -2,10 +2,10 @@
 // Every allocation, launch, copy, fill and wait of every kind of call fails once, on every back end: a typed error,
 // nothing stays allocated, and the same triangulator goes on. Then the device is lost at each of them.
 #include "tests/robustness/faults/faulty_device.hpp"
+#include "tests/system/finalization/tile_mesh.hpp"
 #include "tests/system/resident/resident.hpp"
 
 #include <cadt/batch.hpp>
-#include <cadt/finalization.hpp>
 #include <cadt/uniform_cells.hpp>
 
 #include "common/driver/registry.hpp"
@@ -243,36 +243,16 @@ TEST_P(EveryStep, Queries) {
   });
 }
 
-/// Two leaves, one from the host and one made on the device, and their join.
 TEST_P(EveryStep, LeavesAndJoins) {
-  const UniformCells cells(300, 3);  // of four cells
-  const UniformCells::Part left = cells.part(1, 0), right = cells.part(1, 1);
-  Points xy(2 * left.count);
-  cells.generate(left.first, left.count, xy.data());
-  xy[0] = xy[2], xy[1] = xy[3];  // a duplicate
-  std::vector<std::uint64_t> ids(left.count);
-  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = i;
+  const Points xy = some_points();
+  TileOptions tiles;
+  tiles.tile_points = 200;
+  const UniformCells cells(300, 3);
   fail_each(options(), [&](Triangulator& t) {
-    const std::shared_ptr<void> memory_of_points = t.allocate(right.count * 2 * sizeof(double));
-    cells.generate(t, right.first, right.count, {memory_of_points.get(), 2 * right.count});
-    FinishedNode nodes[3];
-    nodes[0] = finish_leaf(t, Reals(xy), ids, left.box, 0);
-    nodes[1] = finish_leaf(t, DevicePoints{.x = memory_of_points.get(), .size = right.count}, {.first = right.first},
-                           right.box, 1);
-    const Open open[] = {nodes[0].open, nodes[1].open};
-    nodes[2] = finish_join(t, open, {}, 2);
-    NodeSums whole;
-    std::size_t triangles = 0;
-    for (const FinishedNode& node : nodes) {
-      NodeSums sums = node.sums;
-      const Hash128 hash = node.part.hash();
-      sums.hash.high += hash.high;
-      sums.hash.low += hash.low;
-      whole += sums;
-      triangles += node.part.download().triangles.size() / 3;
-    }
-    require_complete(whole);
-    return Outcome{hash_of(whole).to_string() + std::to_string(triangles), 0};
+    const auto made = t.allocate(600 * sizeof(double));
+    cells.generate(t, 0, 300, {made.get(), 600});
+    const FinishedNode whole = finish_leaf(t, DevicePoints{.x = made.get(), .size = 300}, {.first = 7}, {}, 0);
+    return Outcome{hash_of(triangulate_by_tiles(t, xy, tiles).sums).to_string() + whole.part.hash().to_string(), 0};
   });
 }
 

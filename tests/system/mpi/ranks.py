@@ -114,7 +114,9 @@ class RankTest(CliTest):
 
     def environment(self, more):
         # Open MPI leaves the memory that killed ranks have shared: it goes with the folder of the test.
-        return {**os.environ, "OMPI_MCA_btl_vader_backing_directory": str(self.shared_memory), **more}
+        # When one rank has ended with an error it waits a second for the others, which end as well.
+        return {**os.environ, "OMPI_MCA_btl_vader_backing_directory": str(self.shared_memory),
+                "OMPI_MCA_odls_base_sigkill_timeout": "0", **more}
 
     def tiles(self, ranks, *arguments, expect=0, environment=None, command=None):
         """Runs cadt-mpi tiles to its end; `command`: a whole one instead."""

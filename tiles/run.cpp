@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -52,15 +53,22 @@ std::uint64_t shuffle_memory(const PointSource& source, const RunOptions& option
   return available > leaf ? std::max<std::uint64_t>((available - leaf) / 2, 1) : 1;
 }
 
-std::vector<Workers> open_devices(const RunOptions& options) {
-  std::vector<Workers> devices;
-  for (Options chosen : options.devices) {
+/// Opens all devices at the same time. GPUs take the memory of their tiles now: the first call would wait for it.
+std::vector<Workers> open_devices(const RunOptions& options, std::uint64_t points) {
+  const auto open = [&](Options chosen) {
     // Without arrays on the host nobody sees the order.
     chosen.order = options.output.empty() && !options.collect && !options.consumer ? Order::fast : Order::canonical;
     chosen.keep_points = KeepPoints::no;
     chosen.stop = options.stop;
-    devices.push_back({Triangulator(chosen), Triangulator(chosen)});
-  }
+    Workers workers{Triangulator(chosen), Triangulator(chosen)};
+    if (workers.leaves.device().gpu)
+      workers.leaves.reserve(static_cast<std::size_t>(std::min(points, options.tile_points)));
+    return workers;
+  };
+  std::vector<std::future<Workers>> opening;
+  for (const Options& chosen : options.devices) opening.push_back(std::async(std::launch::async, open, chosen));
+  std::vector<Workers> devices;
+  for (std::future<Workers>& device : opening) devices.push_back(device.get());
   return devices;
 }
 
@@ -278,7 +286,7 @@ RunResult run(const PointSource& source, const RunOptions& options) {
   if (options.devices.empty()) throw std::invalid_argument("a run needs a device");
   preflight(source, options);
   if (!options.output.empty() && !options.resume) check_new_directory(options.output);
-  std::vector<Workers> devices = open_devices(options);
+  std::vector<Workers> devices = open_devices(options, source.size());
   RunResult result;
   for (const Workers& device : devices) result.devices.push_back(device.leaves.device().name);
   Stopwatch watch;

@@ -3,25 +3,15 @@
 
 #include <cadt/errors.hpp>
 
+#include "tiles/stopwatch.hpp"
+
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <numeric>
 #include <utility>
 
 namespace cadt::tiles {
 namespace {
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// From a node on the device to one on the host.
 NodeData take_down(FinishedNode&& finished, LeafPoints&& points, const TileBox& box, std::uint32_t node, bool leaf,

@@ -8,10 +8,10 @@
 #include "tiles/machine.hpp"
 #include "tiles/parallel.hpp"
 #include "tiles/schedule.hpp"
+#include "tiles/stopwatch.hpp"
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <future>
 #include <memory>
 #include <numeric>
@@ -20,17 +20,6 @@
 
 namespace cadt::tiles {
 namespace {
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 void tell(const RunOptions& options, std::string_view phase, std::uint64_t done, std::uint64_t all,
           std::uint32_t nodes_done = 0, std::uint32_t nodes = 0) {

@@ -9,9 +9,9 @@
 #include "tiles/mpi/plan.hpp"
 #include "tiles/mpi/reports.hpp"
 #include "tiles/mpi/schedule.hpp"
+#include "tiles/stopwatch.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -20,17 +20,6 @@
 
 namespace cadt::tiles::mpi {
 namespace {
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// One run of one rank.
 class Run {

@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -36,11 +35,8 @@ int run(const GenerateCommand& command) {
     print(list_text());
     return exit_done;
   }
-  const auto& all = io::distributions();
   if (command.name.empty()) throw Failure(exit_usage, "name a point set (see: cadt generate --list)");
-  if (std::none_of(all.begin(), all.end(), [&](const auto& entry) { return entry.name == command.name; })) {
-    throw Failure(exit_usage, fmt::format("there is no point set '{}' (see: cadt generate --list)", command.name));
-  }
+  require_point_set(command.name);
   if (command.output.empty()) throw Failure(exit_usage, "name the output with -o; -o - -t xy is standard output");
   io::GenerateOptions options = command.options;
   options.n = parse_count(command.n);

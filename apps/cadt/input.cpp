@@ -4,6 +4,8 @@
 #include "failure.hpp"
 #include "text.hpp"
 
+#include <cadt/io/generate.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +59,16 @@ void round_to_floats(io::PointSet& points, const InputOptions& options, bool qui
   if (moved != 0 && !quiet) say(fmt::format("cadt: --floats moved {} of {} points\n", moved, points.size()));
 }
 
+void require_point_set(const std::string& name) {
+  const auto& all = io::distributions();
+  if (std::none_of(all.begin(), all.end(), [&](const auto& entry) { return entry.name == name; }))
+    throw Failure(exit_usage, fmt::format("there is no point set '{}' (see: cadt generate --list)", name));
+}
+
 io::ReadOptions read_options(const InputOptions& options) {
+  if (options.path == "-" && options.format.empty()) {
+    throw Failure(exit_usage, "standard input has no suffix; name its format, for example: -f xy");
+  }
   io::ReadOptions read;
   read.format = lower(options.format);
   read.columns = options.columns;
@@ -67,12 +78,7 @@ io::ReadOptions read_options(const InputOptions& options) {
   return read;
 }
 
-io::PointSet read_input(const InputOptions& options) {
-  if (options.path == "-" && options.format.empty()) {
-    throw Failure(exit_usage, "standard input has no suffix; name its format, for example: -f xy");
-  }
-  return io::read_points(options.path, read_options(options));
-}
+io::PointSet read_input(const InputOptions& options) { return io::read_points(options.path, read_options(options)); }
 
 std::string display_name(const std::string& path, bool input) {
   if (path != "-") return path;

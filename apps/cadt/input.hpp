@@ -30,11 +30,14 @@ void add_floats_option(CLI::App& command, InputOptions& options);
 /// With --floats: rounds the coordinates, and says how many points that has moved unless `quiet`.
 void round_to_floats(io::PointSet& points, const InputOptions& options, bool quiet);
 
-/// The options for the library.
+/// What the reader is told. Throws Failure (usage) for standard input without a format.
 [[nodiscard]] io::ReadOptions read_options(const InputOptions& options);
 
 /// Checks the options, then reads. Wrong options throw Failure (usage), a wrong file io::FileError.
 [[nodiscard]] io::PointSet read_input(const InputOptions& options);
+
+/// Throws Failure (usage) for a name that is none of `cadt generate --list`.
+void require_point_set(const std::string& name);
 
 /// "in.xy", or "standard input" for "-".
 [[nodiscard]] std::string display_name(const std::string& path, bool input);

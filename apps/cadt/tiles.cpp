@@ -51,15 +51,12 @@ void check(const TilesCommand& c) {
 std::unique_ptr<tiles::PointSource> open_source(const TilesCommand& c) {
   if (c.generate.empty()) {
     InputOptions input = c.read;
-    if (input.format.empty() && std::find(c.inputs.begin(), c.inputs.end(), "-") != c.inputs.end())
-      throw Failure(exit_usage, "standard input has no suffix; name its format, for example: -f xy");
+    if (std::find(c.inputs.begin(), c.inputs.end(), "-") != c.inputs.end()) input.path = "-";
     return tiles::open_files(c.inputs, read_options(input));
   }
   io::GenerateOptions options = c.set;
   options.n = parse_count(c.n);
-  const auto& all = io::distributions();
-  if (std::none_of(all.begin(), all.end(), [&](const auto& about) { return about.name == c.generate; }))
-    throw Failure(exit_usage, fmt::format("there is no point set '{}' (see: cadt generate --list)", c.generate));
+  require_point_set(c.generate);
   return tiles::generated(c.generate, options);
 }
 

@@ -6,16 +6,13 @@
 #include "input.hpp"
 #include "system.hpp"
 #include "text.hpp"
-
-#include <cadt/io/generate.hpp>
+#include "viewer_options.hpp"
 
 #include "viewer/window/app.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -32,19 +29,8 @@ struct ViewCommand {
   bool dark = false, log = false, lose_context = false;
 };
 
-std::array<int, 2> parse_size(const std::string& text) {
-  int width = 0, height = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 320 || height < 240 ||
-      width > 16384 || height > 16384)
-    throw Failure(exit_usage, fmt::format("--size {}: write width x height in pixels, for example 1280x800", text));
-  return {width, height};
-}
-
 viewer::Source generated(const ViewCommand& command) {
-  const auto& all = io::distributions();
-  if (std::none_of(all.begin(), all.end(), [&](const auto& d) { return d.name == command.generate; }))
-    throw Failure(exit_usage, fmt::format("there is no point set '{}' (see: cadt generate --list)", command.generate));
+  require_point_set(command.generate);
   viewer::Source source;
   source.distribution = command.generate;
   source.generate.n = parse_count(command.n);
@@ -55,15 +41,11 @@ viewer::Source generated(const ViewCommand& command) {
 int run(const ViewCommand& command) {
   viewer::ViewOptions options;
   for (const std::string& file : command.files) {
-    if (file == "-" && command.input.format.empty())
-      throw Failure(exit_usage, "standard input has no suffix; name its format, for example: -f xy");
+    InputOptions input = command.input;
+    input.path = file;
     viewer::Source source;
     source.path = file;
-    source.read.format = lower(command.input.format);
-    source.read.columns = command.input.columns;
-    source.read.projection = command.input.projection == "yz"   ? io::Projection::yz
-                             : command.input.projection == "zx" ? io::Projection::zx
-                                                                : io::Projection::xy;
+    source.read = read_options(input);
     options.sources.push_back(std::move(source));
   }
   if (!command.generate.empty()) options.sources.push_back(generated(command));
@@ -79,19 +61,16 @@ int run(const ViewCommand& command) {
         static_cast<viewer::ColourBy>(std::find(names.begin(), names.end(), command.colour) - names.begin());
   }
   options.drawing = *viewer::drawing_from_string(command.style);
-  const auto [width, height] = parse_size(command.size);
-  options.width = width;
-  options.height = height;
+  parse_size(command.size, options.width, options.height);
+  if (options.width < 320 || options.height < 240)
+    throw Failure(exit_usage,
+                  fmt::format("--size {}: a window has at least 320x240 pixels, for example 1280x800", command.size));
   options.scale = command.scale;
   options.dark = command.dark;
   options.log = command.log;
   options.lose_context = command.lose_context;
   options.free_memory = [] { return static_cast<std::size_t>(free_memory().value_or(0)); };
-  try {
-    viewer::App(std::move(options)).run();
-  } catch (const viewer::DisplayError& e) {
-    throw Failure(exit_device, e.what());
-  }
+  viewer::App(std::move(options)).run();
   return exit_done;
 }
 

@@ -46,9 +46,7 @@ io::PointSet read_subject(const SubjectOptions& options, ProgressLine& line) {
     line.step(fmt::format("reading {}", name_of(options)));
     return read_input(options.input);
   }
-  const auto& all = io::distributions();
-  if (std::none_of(all.begin(), all.end(), [&](const auto& entry) { return entry.name == options.generate; }))
-    throw Failure(exit_usage, fmt::format("there is no point set '{}' (see: cadt generate --list)", options.generate));
+  require_point_set(options.generate);
   io::GenerateOptions generator = options.generator;
   generator.n = parse_count(options.n);
   if (generator.n > max_points())

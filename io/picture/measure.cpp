@@ -41,7 +41,7 @@ float quantile(std::vector<float>& values, double q) {
   return values[static_cast<std::size_t>(k)];
 }
 
-std::vector<float> relative_heights(const Scene& scene) {
+std::optional<HeightEnds> height_ends(const Scene& scene) {
   if (scene.height.size() != scene.points() || scene.height.empty()) return {};
   std::vector<double> sample;
   for (std::size_t i = 0; i < scene.height.size(); i += step_for(scene.height.size())) {
@@ -52,16 +52,20 @@ std::vector<float> relative_heights(const Scene& scene) {
   const auto at = [&](double q) {
     return sample[static_cast<std::size_t>(q * static_cast<double>(sample.size() - 1) + 0.5)];
   };
-  double low = at(0.005);
-  double high = at(0.995);
-  if (!(low < high)) low = sample.front(), high = sample.back();  // nearly all at one level
-  if (!(low < high)) return {};
+  HeightEnds ends{at(0.005), at(0.995)};
+  if (!(ends.low < ends.high)) ends = {sample.front(), sample.back()};  // nearly all at one level
   // Halves, because high - low may exceed the largest double.
-  const double span = 0.5 * high - 0.5 * low;
-  if (!(span > 0.0)) return {};
+  if (!(0.5 * ends.high - 0.5 * ends.low > 0.0)) return {};
+  return ends;
+}
+
+std::vector<float> relative_heights(const Scene& scene) {
+  const std::optional<HeightEnds> ends = height_ends(scene);
+  if (!ends) return {};
+  const double span = 0.5 * ends->high - 0.5 * ends->low;
   std::vector<float> out(scene.height.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const double h = (0.5 * scene.height[i] - 0.5 * low) / span;
+    const double h = (0.5 * scene.height[i] - 0.5 * ends->low) / span;
     out[i] = std::isfinite(h) ? static_cast<float>(std::clamp(h, -1.0, 2.0)) : 0.0f;
   }
   return out;

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,7 +16,14 @@ namespace cadt::io::picture {
 /// The q-quantile (0 to 1) of the values, 0 if there are none. Reorders them.
 [[nodiscard]] float quantile(std::vector<float>& values, double q);
 
-/// Heights mapped so that the 0.5 % and 99.5 % quantiles become 0 and 1. Empty if there is no height or all are equal.
+/// Where the colours of heights begin and end: the 0.5 % and 99.5 % quantiles. Not set if there is no height or all are
+/// equal.
+struct HeightEnds {
+  double low, high;
+};
+[[nodiscard]] std::optional<HeightEnds> height_ends(const Scene& scene);
+
+/// Heights mapped so that those ends become 0 and 1. Empty if there are none.
 [[nodiscard]] std::vector<float> relative_heights(const Scene& scene);
 
 /// Edges in pixels, estimated from samples; zeros without triangles.

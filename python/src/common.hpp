@@ -28,6 +28,7 @@ namespace nb = nanobind;
 
 /// Points of the host, n x 2 doubles or floats with strides that are not negative (cadt/_points.py sees to that).
 using Points = nb::ndarray<nb::ro, nb::ndim<2>, nb::device::cpu>;
+using Coordinates = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Values = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const std::int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
@@ -53,6 +54,12 @@ template <class T>
   return NumpyArray<T>(kept->data(), columns == 0 ? 1 : 2, shape.data(), keep);
 }
 
+template <class Work>
+auto without_gil(Work&& work) {
+  nb::gil_scoped_release released;
+  return work();
+}
+
 /// A call of the library without the GIL. While it runs, Ctrl-C and what `progress(phase, fraction)` raises end it: the
 /// exception is raised again here.
 class Call {
@@ -71,10 +78,7 @@ class Call {
   template <class Work>
   auto operator()(Work&& work) {
     try {
-      auto result = [&] {
-        nb::gil_scoped_release released;
-        return work();
-      }();
+      auto result = without_gil(std::forward<Work>(work));
       if (raised_) throw std::move(*raised_);
       return result;
     } catch (const cadt::Cancelled&) {

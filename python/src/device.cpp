@@ -6,7 +6,6 @@ namespace cadt_python {
 
 namespace {
 
-using Shared = std::shared_ptr<SharedTriangulator>;
 using Mesh = std::shared_ptr<DeviceMesh>;
 
 /// An array of CUDA memory that keeps the owner; for __dlpack__ of array libraries.

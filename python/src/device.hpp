@@ -110,6 +110,8 @@ class SharedTriangulator {
   unsigned forks_ = forks();
 };
 
+using Shared = std::shared_ptr<SharedTriangulator>;
+
 /// A mesh in device memory; it may outlive all other objects of Python.
 class DeviceMesh {
  public:

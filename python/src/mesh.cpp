@@ -19,12 +19,6 @@ nb::tuple rows(cadt::CompressedRows&& r) {
   return nb::make_tuple(array_of(std::move(begin)), array_of(std::move(r.indices)));
 }
 
-template <class Work>
-auto without_gil(Work&& work) {
-  nb::gil_scoped_release released;
-  return work();
-}
-
 nb::dict report_of(const cadt::VerifyReport& r) {
   nb::list checks;
   for (const cadt::Check& c : r.checks) checks.append(nb::make_tuple(c.name, c.passed, c.failures, c.first, c.what));

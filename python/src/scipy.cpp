@@ -10,8 +10,6 @@ namespace cadt_python {
 
 namespace {
 
-using Coordinates = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
-
 struct Vector {
   double x, y;
 };

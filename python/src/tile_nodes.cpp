@@ -10,7 +10,6 @@ namespace cadt_python {
 namespace {
 
 using cadt::NodeSums;
-using Shared = std::shared_ptr<SharedTriangulator>;
 using Node = std::shared_ptr<TileNode>;
 using Box = std::array<double, 4>;
 using LinkArray = nb::ndarray<std::uint64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;

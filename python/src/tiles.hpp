@@ -12,17 +12,10 @@ namespace cadt_python {
 
 using Words = nb::ndarray<const std::uint64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using WordRows = nb::ndarray<const std::uint64_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Coordinates = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 
 template <class Array>
 [[nodiscard]] auto span_of(const Array& array) {
   return std::span(array.data(), array.size());
-}
-
-template <class Work>
-auto without_gil(Work&& work) {
-  nb::gil_scoped_release released;
-  return work();
 }
 
 /// A node in the memory of the host. Arrays that Python has of it keep it.

@@ -134,7 +134,7 @@ def test_bad_joins() -> None:
     _, above = cadt.tiles.finish_leaf([[0, 0], [1, 0], [0, 1]], None, (-1, -1, 2, 2))
     with pytest.raises(TypeError, match="finish_leaf"):
         cadt.tiles.finish_join([above, 3])  # type: ignore[list-item]
-    with pytest.raises(cadt.InputError, match="same id"):
+    with pytest.raises(cadt.InputError, match="not above"):
         cadt.tiles.finish_join([above, above])
     with pytest.raises(cadt.Error):
         _cadt.open_of_words(np.array([2, 0, 1], np.uint64))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewer/draw/renderer.hpp"
 
+#include "io/picture/measure.hpp"
 #include "viewer/draw/palette.hpp"
 #include "viewer/draw/shaders.hpp"
 
@@ -13,13 +14,15 @@
 namespace cadt::viewer {
 namespace {
 
+using gl::dispatch_for;
+using gl::wait_for_writes;
+using io::picture::quantile;
 using io::picture::Rgb;
 
 constexpr std::size_t block = 4096;  // triangles; BLOCK of common.glsl
 constexpr std::size_t most_large =
     4 << 20;  // triangles that get a group of their own; the others are drawn by one item
 constexpr std::size_t most_bytes = std::size_t{1} << 32;  // of an array: programs have offsets of 32 bits
-constexpr int most_groups = 32768;                        // along x
 constexpr int reference_width = 1000;                     // pixels of the view in which values are sampled
 
 enum Slot : GLuint { points, triangles, values, boxes, seen, commands, owners, sums, large, overlay, outside };
@@ -70,23 +73,6 @@ void place_camera(Frame& frame, const Camera& camera, int side) {
   frame.side = side;
 }
 
-void dispatch(std::size_t groups) {
-  if (groups == 0) return;
-  const auto x = static_cast<GLuint>(std::min<std::size_t>(groups, most_groups));
-  glDispatchCompute(x, static_cast<GLuint>((groups + most_groups - 1) / most_groups), 1);
-}
-
-void wait_for_writes() {
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-}
-
-float quantile(std::vector<float>& values, double q) {
-  if (values.empty()) return 0;
-  const auto k = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
-}
-
 void grow(gl::Buffer& buffer, std::size_t bytes) {
   if (buffer.bytes() < bytes || buffer.id() == 0) buffer = gl::Buffer(bytes);
 }
@@ -127,7 +113,7 @@ void Renderer::update(const MeshBuffers& mesh) {
   if (mesh.triangle_count > most || mesh.point_count > most_points)
     throw LimitError("a mesh of at most " + std::to_string(most) + " triangles and " + std::to_string(most_points) +
                          " points can be drawn: take a part of the points, or every second one",
-                     mesh.triangle_count, most);
+                     std::max(mesh.triangle_count, mesh.point_count), mesh.triangle_count > most ? most : most_points);
   const std::size_t count = (mesh.triangle_count + block - 1) / block;
   grow(boxes_, count * 4 * sizeof(double));
   grow(seen_, count * sizeof(std::uint32_t));
@@ -138,7 +124,7 @@ void Renderer::update(const MeshBuffers& mesh) {
   frame_.write_values(std::span<const Frame>(&frame, 1));
   bind(mesh);
   bounds_.use();
-  dispatch(count);
+  dispatch_for(count, 1);
   wait_for_writes();
 }
 
@@ -175,12 +161,23 @@ void Renderer::choose_ramp(ColourBy colour) {
   ramp_of_ = colour;
 }
 
+bool Renderer::has_values(const MeshBuffers& mesh, ColourBy colour) const noexcept {
+  const By by = by_of(colour);
+  return by < by_point || value_count_ >= (by == by_triangle ? mesh.triangle_count : mesh.point_count);
+}
+
+double Renderer::area_of_unit() const noexcept {
+  const Axis x = reference_.axis(0), y = reference_.axis(1);
+  return std::fabs(x.first * x.second * y.first * y.second) * reference_.before() * reference_.before();
+}
+
 void Renderer::fit_ramp(const MeshBuffers& mesh, ColourBy colour) {
   ends_ = {0, 1};
   relief_ = 0;
   choose_ramp(colour);
   if (colour == ColourBy::order) ends_ = {0, static_cast<float>(mesh.triangle_count)};
-  if (by_of(colour) == by_nothing || colour == ColourBy::order || mesh.triangle_count == 0) return;
+  if (by_of(colour) == by_nothing || colour == ColourBy::order || mesh.triangle_count == 0 || !has_values(mesh, colour))
+    return;
   reference_ = Camera(mesh.box, reference_width, reference_width);
   constexpr std::size_t most = 60'000;
   // Odd, so that it does not resonate with the rows of a lattice.
@@ -197,7 +194,7 @@ void Renderer::fit_ramp(const MeshBuffers& mesh, ColourBy colour) {
   sample_.use();
   glUniform1ui(0, static_cast<GLuint>(step));
   glUniform1ui(1, static_cast<GLuint>(count));
-  glDispatchCompute(static_cast<GLuint>((count + 63) / 64), 1, 1);
+  dispatch_for(count, 64);
   wait_for_writes();
   const std::vector<float> found = result.read_values<float>(3 * count);
   std::vector<float> value, slope;
@@ -237,7 +234,7 @@ void Renderer::draw_triangles(const MeshBuffers& mesh) {
   commands_.write_values(std::span<const std::uint32_t>(none));
   const std::size_t count = (mesh.triangle_count + block - 1) / block;
   cull_.use();
-  glDispatchCompute(static_cast<GLuint>((count + 255) / 256), 1, 1);
+  dispatch_for(count, 256);
   wait_for_writes();
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, commands_.id());
   blocks_.use();
@@ -254,11 +251,10 @@ void Renderer::draw_strokes(std::span<const Stroke> strokes) {
     segments_.write_values(std::span<const std::array<double, 4>>(stroke.segments));
     segments_.bind(boxes);
     strokes_.use();
-    glUniform1ui(0, 0);
-    glUniform1ui(1, static_cast<GLuint>(stroke.segments.size()));
-    glUniform1ui(2, stroke.colour);
-    glUniform1f(3, stroke.width);
-    dispatch(stroke.segments.size());
+    glUniform1ui(0, static_cast<GLuint>(stroke.segments.size()));
+    glUniform1ui(1, stroke.colour);
+    glUniform1f(2, stroke.width);
+    dispatch_for(stroke.segments.size(), 1);
     wait_for_writes();
   }
 }
@@ -276,10 +272,11 @@ void Renderer::draw(const MeshBuffers& mesh, const Camera& camera, const Style& 
   frame.point_count = static_cast<std::uint32_t>(mesh.point_count);
   frame.block_count = static_cast<std::uint32_t>((mesh.triangle_count + block - 1) / block);
   frame.large_capacity = static_cast<std::uint32_t>(std::min(mesh.triangle_count, most_large));
-  frame.colour_by = value_count_ == 0 && by_of(style.colour) >= by_point ? by_nothing : by_of(style.colour);
+  frame.colour_by = has_values(mesh, style.colour) ? by_of(style.colour) : by_nothing;
+  const bool heights = style.colour == ColourBy::height && frame.colour_by == by_point;
   frame.flags = (style.fill ? fill : 0) | (style.colour == ColourBy::area || alone ? logarithm : 0) |
-                (alone ? points_alone : 0) | (relief_ > 0 && style.colour == ColourBy::height ? shade : 0) |
-                (fade_begin_ > 0 && style.colour == ColourBy::height ? fade : 0);
+                (alone ? points_alone : 0) | (heights && relief_ > 0 ? shade : 0) |
+                (heights && fade_begin_ > 0 ? fade : 0);
   frame.fade_begin = static_cast<float>(fade_begin_ * camera.scale() * side);
   frame.low = ends_[0];
   frame.high = ends_[1];
@@ -308,7 +305,7 @@ void Renderer::draw(const MeshBuffers& mesh, const Camera& camera, const Style& 
   if (alone) {
     discs_.use();
     glUniform1f(0, std::max(0.7f, style.point_radius));
-    dispatch((mesh.point_count + 255) / 256);
+    dispatch_for(mesh.point_count, 256);
   } else {
     draw_triangles(mesh);
   }

@@ -44,7 +44,8 @@ class Renderer {
   /// To be called after the contents of a mesh have changed: finds the boxes of its blocks. O(triangles).
   /// \throws LimitError for more than 357 million triangles
   void update(const MeshBuffers& mesh);
-  /// Values that the colour depends on: one a point (height, degree, level) or one a triangle (conflicts). Empty: none.
+  /// Values that the colour depends on: one a point (height, degree, level) or one a triangle (conflicts, flips). With
+  /// too few for the mesh all triangles have one colour.
   void set_values(std::span<const float> values);
   /// Points of triangles that fill bays of the outline, where nothing was measured; the larger such a triangle, the
   /// fainter it is drawn when the colour is that of the height. `begin` is the length from which on, in the unit of
@@ -63,8 +64,10 @@ class Renderer {
   [[nodiscard]] Image read() const;
   /// The triangle at a pixel of the last picture.
   [[nodiscard]] std::optional<std::size_t> triangle_at(int x, int y) const;
-  /// Ends of the ramp: of the values, or of log2 of them for an area.
+  /// Ends of the ramp: of the values, or for ColourBy::area log2 of areas, of which a unit of the plane has
+  /// area_of_unit().
   [[nodiscard]] std::array<float, 2> ramp_ends() const noexcept { return ends_; }
+  [[nodiscard]] double area_of_unit() const noexcept;
 
  private:
   void make_room(const Camera& camera, int side);
@@ -72,6 +75,8 @@ class Renderer {
   void draw_triangles(const MeshBuffers& mesh);
   void draw_strokes(std::span<const Stroke> strokes);
   void choose_ramp(ColourBy colour);
+  /// Whether there are as many values as the colour reads.
+  [[nodiscard]] bool has_values(const MeshBuffers& mesh, ColourBy colour) const noexcept;
 
   gl::Program bounds_, cull_, blocks_, large_, resolve_, strokes_, discs_, sample_;
   gl::Fill clear_;

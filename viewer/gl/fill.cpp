@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewer/gl/fill.hpp"
 
-#include "viewer/gl/scan.hpp"
 #include "viewer/gl/shaders.hpp"
 
 namespace cadt::viewer::gl {

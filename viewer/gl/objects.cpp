@@ -3,6 +3,7 @@
 
 #include "viewer/gl/errors.hpp"
 
+#include <algorithm>
 #include <atomic>
 
 namespace cadt::viewer::gl {
@@ -10,7 +11,6 @@ namespace cadt::viewer::gl {
 void delete_buffer(GLuint id) { glDeleteBuffers(1, &id); }
 void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
 void delete_program(GLuint id) { glDeleteProgram(id); }
-void delete_framebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
 
 void delete_memory(GLuint id) { glDeleteMemoryObjectsEXT(1, &id); }
 
@@ -105,6 +105,18 @@ Program::Program(const std::string& name, const std::string& text) {
   glGetProgramInfoLog(id, size, nullptr, log.data());
   throw DisplayError("the OpenGL driver cannot compile '" + name +
                      "': update the driver, or report this with its log:\n" + log);
+}
+
+void dispatch_for(std::size_t elements, std::size_t size) {
+  constexpr std::size_t most_groups = 32768;
+  const std::size_t groups = (elements + size - 1) / size;
+  if (groups == 0) return;
+  glDispatchCompute(static_cast<GLuint>(std::min(groups, most_groups)),
+                    static_cast<GLuint>((groups + most_groups - 1) / most_groups), 1);
+}
+
+void wait_for_writes() {
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
 }
 
 Texture::Texture(int width, int height) : width_(width), height_(height) {

@@ -36,7 +36,6 @@ class Name {
 void delete_buffer(GLuint id);
 void delete_texture(GLuint id);
 void delete_program(GLuint id);
-void delete_framebuffer(GLuint id);
 void delete_memory(GLuint id);
 
 /// A buffer in the memory of the display's device.
@@ -87,6 +86,12 @@ class Program {
  private:
   Name<delete_program> name_;
 };
+
+/// Runs the program in use: one group of work-items for each `size` elements. Along x at most 32,768, the others along
+/// y: programs number them gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x.
+void dispatch_for(std::size_t elements, std::size_t size);
+/// What programs have written is there for programs, copies, and numbers of groups.
+void wait_for_writes();
 
 /// An image of 8 bits a channel, sRGB bytes as they are shown, that a compute program writes.
 class Texture {

@@ -3,25 +3,13 @@
 
 #include "viewer/gl/shaders.hpp"
 
-#include <algorithm>
-
 namespace cadt::viewer::gl {
 namespace {
 
-constexpr std::size_t most_groups = 32768;
 constexpr std::size_t words_of_group = 2048;  // GROUP of scan.glsl
 enum Pass : GLuint { scan_groups, add_sums };
 
 }  // namespace
-
-void dispatch_for(std::size_t elements, std::size_t size) {
-  const std::size_t groups = (elements + size - 1) / size;
-  if (groups == 0) return;
-  glDispatchCompute(static_cast<GLuint>(std::min(groups, most_groups)),
-                    static_cast<GLuint>((groups + most_groups - 1) / most_groups), 1);
-}
-
-void wait_for_writes() { glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT); }
 
 Scan::Scan() : program_("scan", shaders::scan) {}
 

@@ -9,12 +9,6 @@
 
 namespace cadt::viewer::gl {
 
-/// One group of work-items for each `size` elements. Along x at most 32,768, the others along y: shaders number them
-/// gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x.
-void dispatch_for(std::size_t elements, std::size_t size);
-/// What shaders wrote before is seen by shaders, copies and reads after.
-void wait_for_writes();
-
 class Scan {
  public:
   /// \throws DisplayError

@@ -37,9 +37,8 @@ class Playback {
   [[nodiscard]] double speed() const noexcept { return speed_; }
   [[nodiscard]] double position() const noexcept { return position_; }
   [[nodiscard]] double last() const noexcept { return last_; }
-  /// The snapshot that is shown, and how far the next one is: what is new in it fades with that.
+  /// The snapshot that is shown.
   [[nodiscard]] std::size_t frame() const noexcept { return static_cast<std::size_t>(position_); }
-  [[nodiscard]] double fraction() const noexcept { return position_ - std::floor(position_); }
 
  private:
   double last_ = 0, position_ = 0, speed_ = 0;

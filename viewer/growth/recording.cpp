@@ -5,10 +5,8 @@
 #include <cadt/verify.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <unordered_set>
 #include <utility>
 
 namespace cadt::viewer {
@@ -22,8 +20,8 @@ std::vector<std::uint16_t> narrowed(std::span<const std::uint32_t> counts) {
   return result;
 }
 
-/// Bytes of a snapshot of all points: two triangles a point of three vertices and three counts.
-constexpr std::size_t bytes_a_point = 2 * (3 * sizeof(std::int32_t) + 3 * sizeof(std::uint16_t));
+/// Bytes of a snapshot of all points: two triangles a point of three vertices and two counts.
+constexpr std::size_t bytes_a_point = 2 * (3 * sizeof(std::int32_t) + 2 * sizeof(std::uint16_t));
 
 /// Points a launch for so many steps, if they have room; 0: levels alone.
 std::size_t points_of_step(std::size_t points, const RecordingLimits& limits) {
@@ -35,27 +33,10 @@ std::size_t points_of_step(std::size_t points, const RecordingLimits& limits) {
   return steps == 0 ? 0 : std::max<std::size_t>(1, points / steps);
 }
 
-/// Three indices of at most 31 bits, the smallest first, as one value.
-struct Triangle {
-  std::array<std::int32_t, 3> v;
-  explicit Triangle(std::span<const std::int32_t> t) : v{t[0], t[1], t[2]} {
-    std::rotate(v.begin(), std::ranges::min_element(v), v.end());
-  }
-  bool operator==(const Triangle&) const = default;
-};
-struct HashOfTriangle {
-  std::size_t operator()(const Triangle& t) const noexcept {
-    std::uint64_t h = 0;
-    for (const std::int32_t v : t.v) h = (h ^ static_cast<std::uint32_t>(v)) * 0x9E3779B97F4A7C15u;
-    return h ^ h >> 32;
-  }
-};
-
 }  // namespace
 
 std::size_t Recording::Frame::bytes() const noexcept {
-  return triangles.size() * sizeof(std::int32_t) +
-         (flips.size() + changes.size() + lost_locks.size()) * sizeof(std::uint16_t);
+  return triangles.size() * sizeof(std::int32_t) + (flips.size() + lost_locks.size()) * sizeof(std::uint16_t);
 }
 
 Recording::Recording(std::span<const double> xy, Options options, const RecordingLimits& limits)
@@ -95,7 +76,6 @@ void Recording::keep(const Snapshot& snapshot) {
   c.complete = snapshot.complete;
   frame.triangles.assign(snapshot.triangles.begin(), snapshot.triangles.end());
   frame.flips = narrowed(snapshot.flips);
-  frame.changes = narrowed(snapshot.changes);
   frame.lost_locks = narrowed(snapshot.lost_locks);
   const std::size_t bytes = frame.bytes();
   // The latest is the largest: without it there is most room for others.
@@ -110,30 +90,8 @@ void Recording::keep(const Snapshot& snapshot) {
 
 std::vector<float> Recording::values(std::size_t frame, GrowthValue value) const {
   const Frame& of = frames_[frame];
-  const auto floats = [](const std::vector<std::uint16_t>& counts) {
-    return std::vector<float>(counts.begin(), counts.end());
-  };
-  switch (value) {
-    case GrowthValue::flips:
-      return floats(of.flips);
-    case GrowthValue::changes:
-      return floats(of.changes);
-    case GrowthValue::lost_locks:
-      return floats(of.lost_locks);
-    case GrowthValue::fresh:
-      break;
-  }
-  std::unordered_set<Triangle, HashOfTriangle> before;
-  if (frame != 0) {
-    const std::span<const std::int32_t> known = triangles(frame - 1);
-    before.reserve(known.size() / 3);
-    for (std::size_t t = 0; t < known.size(); t += 3) before.emplace(known.subspan(t, 3));
-  }
-  std::vector<float> fresh;
-  fresh.reserve(of.triangles.size() / 3);
-  for (std::size_t t = 0; t < of.triangles.size(); t += 3)
-    fresh.push_back(before.contains(Triangle(std::span(of.triangles).subspan(t, 3))) ? 0.0f : 1.0f);
-  return fresh;
+  const std::vector<std::uint16_t>& counts = value == GrowthValue::flips ? of.flips : of.lost_locks;
+  return {counts.begin(), counts.end()};
 }
 
 std::uint64_t Recording::illegal_edges(std::size_t frame) const {

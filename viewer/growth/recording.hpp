@@ -29,10 +29,8 @@ struct GrowthCounters {
 
 /// What a triangle can be coloured by while the mesh grows.
 enum class GrowthValue {
-  flips,       ///< of its three edges so far
-  changes,     ///< how often it was locked and changed
-  lost_locks,  ///< attempts to lock it that failed (timed kernels alone)
-  fresh        ///< 1: it was not there in the snapshot before, else 0
+  flips,      ///< of its three edges so far
+  lost_locks  ///< attempts to lock it that failed (timed kernels alone)
 };
 
 /// All snapshots of one triangulation by insertion with locks.
@@ -71,7 +69,7 @@ class Recording {
   struct Frame {
     GrowthCounters counters;
     std::vector<std::int32_t> triangles;
-    std::vector<std::uint16_t> flips, changes, lost_locks;
+    std::vector<std::uint16_t> flips, lost_locks;
     [[nodiscard]] std::size_t bytes() const noexcept;
   };
 

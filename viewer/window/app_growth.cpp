@@ -44,8 +44,10 @@ void App::finish_recording(const std::shared_ptr<const Recording>& recording) {
   hovered.reset();
   mark({});
   view.voronoi = false;
-  view.colours = {ColourBy::nothing, ColourBy::angle, ColourBy::area,     ColourBy::order,
-                  ColourBy::level,   ColourBy::flips, ColourBy::conflicts};
+  view.colours = {ColourBy::nothing, ColourBy::angle, ColourBy::area,
+                  ColourBy::order,   ColourBy::level, ColourBy::flips};
+  if (!recording->values(recording->size() - 1, GrowthValue::lost_locks).empty())
+    view.colours.push_back(ColourBy::conflicts);
   before_growing_ = view.colour;
   ramp_of_growth_.reset();
   view.colour = ColourBy::level;
@@ -99,10 +101,8 @@ std::vector<float> App::growth_values() const {
       return {r.levels().begin(), r.levels().end()};
     case ColourBy::flips:
       return r.values(frame, GrowthValue::flips);
-    case ColourBy::conflicts: {
-      auto lost = r.values(frame, GrowthValue::lost_locks);
-      return lost.empty() ? r.values(frame, GrowthValue::changes) : lost;
-    }
+    case ColourBy::conflicts:
+      return r.values(frame, GrowthValue::lost_locks);
     default:
       return {};
   }

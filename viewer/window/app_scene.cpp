@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The viewer's picture: when it is drawn anew, what lies over it, and what has to be computed for that.
+#include "io/picture/measure.hpp"
 #include "viewer/draw/image_file.hpp"
 #include "viewer/draw/palette.hpp"
 #include "viewer/still/scene_values.hpp"
@@ -29,20 +30,6 @@ constexpr std::uint32_t voronoi_colour = 0x3a7d5d, voronoi_colour_dark = 0x7fc7a
 bool needs_mesh_of_host(const App& app) {
   return app.view.voronoi || app.view.colour == ColourBy::degree || app.selection.triangle ||
          (app.view.hull && app.scene->mesh.triangle_count <= most_hull_by_itself);
-}
-
-/// Heights that have the values 0 and 1 of relative_heights: quantiles of a sample.
-std::array<double, 2> ends_of(const std::vector<float>& heights) {
-  std::vector<float> sample;
-  const std::size_t step = std::max<std::size_t>(1, heights.size() / 100'000);
-  for (std::size_t i = 0; i < heights.size(); i += step)
-    if (std::isfinite(heights[i])) sample.push_back(heights[i]);
-  if (sample.empty()) return {0, 1};
-  std::sort(sample.begin(), sample.end());
-  const auto at = [&](double q) {
-    return static_cast<double>(sample[static_cast<std::size_t>(q * static_cast<double>(sample.size() - 1) + 0.5)]);
-  };
-  return {at(0.005), at(0.995)};
 }
 
 }  // namespace
@@ -139,7 +126,8 @@ void App::update_colour() {
     r.set_values(growth_values());
   } else if (loaded->mesh && !points_stale_) {
     prepare_colour(r, scene->mesh, loaded->points, *loaded->mesh, view.colour);
-    height_ends = ends_of(loaded->heights);
+    const auto ends = io::picture::height_ends({loaded->points.xy, loaded->points.height, {}, {}});
+    height_ends = ends ? std::array{ends->low, ends->high} : std::array{0.0, 1.0};
   } else {
     height_ends = {0, 1};
     r.set_outside({}, 0);

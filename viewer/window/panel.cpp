@@ -113,11 +113,7 @@ void draw_ramp(App& app) {
       return fmt::format("{:.4g}",
                          app.height_ends[0] + static_cast<double>(v) * (app.height_ends[1] - app.height_ends[0]));
     if (app.view.colour != ColourBy::area) return fmt::format("{:.6g}", v);
-    // The renderer knows areas in samples of a view of 1,000 pixels.
-    const Camera reference(app.view.box(), 1000, 1000);
-    const Axis x = reference.axis(0), y = reference.axis(1);
-    const double unit = std::fabs(x.first * x.second * y.first * y.second) * reference.before() * reference.before();
-    return fmt::format("{:.3g}", std::exp2(static_cast<double>(v)) / unit);
+    return fmt::format("{:.3g}", std::exp2(static_cast<double>(v)) / app.scene->renderer.area_of_unit());
   };
   const std::string low = text(ends[0]), high_text = text(ends[1]);
   ImGui::TextDisabled("%s", low.c_str());

@@ -15,7 +15,7 @@ import cadt
 
 from .cloud import Cloud
 
-PER_BUCKET = 40  # points on average: a ring of buckets around a tile of 300,000 points is a twentieth of it
+PER_BUCKET = 40  # points on average: a ring of buckets around a tile of 150,000 points is a fifteenth of it
 MOST_BUCKETS = 1 << 18
 MOST_OF_SKETCH = 50_000
 PIECE = 1 << 20  # points sorted at a time: they fit in a cache, and several threads have work

@@ -50,7 +50,7 @@ def all_of(comm, mesh: cadt.mpi.Mesh) -> list[cadt.tiles.Part]:
 
 def meshes(comm, folder: pathlib.Path) -> list[str]:
     for name, xy in families().items():
-        for tile_points in (5, 60):
+        for tile_points in (10, 60):
             mesh = cadt.mpi.triangulate(comm, share(comm, xy), tile_points=tile_points)
             assert mesh.first_id == sum(comm.allgather(len(share(comm, xy)))[: comm.rank])
             assert set(mesh.parts) == set(np.flatnonzero(mesh.owners == comm.rank).tolist()), name

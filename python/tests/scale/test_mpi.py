@@ -36,6 +36,7 @@ def run(ranks: int, folder: pathlib.Path) -> dict[str, dict]:
         command = ["mpirun", *options, "-n", str(ranks), *command]
     # A process that has started MPI itself tells its children so.
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI_"))}
+    environment["OMPI_MCA_mpi_yield_when_idle"] = "1"  # ranks that wait leave the processors to the others
     done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=100, env=environment)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
     return json.loads((folder / "results.json").read_text())

@@ -106,7 +106,7 @@ def test_interruption_leaves_nothing(las, tmp_path, number):
         time.sleep(0.01)
     process.send_signal(number)
     said = process.communicate(timeout=60)[1]
-    assert process.returncode == 130 and said == "cadt: interrupted\n"
+    assert (process.returncode, said) == (130, "cadt: interrupted\n")
     assert [p.name for p in tmp_path.iterdir()] == ["a.las"]
 
 

@@ -5,6 +5,8 @@
 #include "tests/system/resident/resident.hpp"
 
 #include <cadt/batch.hpp>
+#include <cadt/finalization.hpp>
+#include <cadt/uniform_cells.hpp>
 
 #include "common/driver/registry.hpp"
 #include "common/self_test/self_test.hpp"
@@ -238,6 +240,39 @@ TEST_P(EveryStep, Queries) {
     add(asked.outline(0.2).edges);
     for (const Circle& circle : asked.largest_empty_circles(3)) add(std::vector{circle.triangle});
     return all;
+  });
+}
+
+/// Two leaves, one from the host and one made on the device, and their join.
+TEST_P(EveryStep, LeavesAndJoins) {
+  const UniformCells cells(300, 3);  // of four cells
+  const UniformCells::Part left = cells.part(1, 0), right = cells.part(1, 1);
+  Points xy(2 * left.count);
+  cells.generate(left.first, left.count, xy.data());
+  xy[0] = xy[2], xy[1] = xy[3];  // a duplicate
+  std::vector<std::uint64_t> ids(left.count);
+  for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = i;
+  fail_each(options(), [&](Triangulator& t) {
+    const std::shared_ptr<void> memory_of_points = t.allocate(right.count * 2 * sizeof(double));
+    cells.generate(t, right.first, right.count, {memory_of_points.get(), 2 * right.count});
+    FinishedNode nodes[3];
+    nodes[0] = finish_leaf(t, Reals(xy), ids, left.box, 0);
+    nodes[1] = finish_leaf(t, DevicePoints{.x = memory_of_points.get(), .size = right.count}, {.first = right.first},
+                           right.box, 1);
+    const Open open[] = {nodes[0].open, nodes[1].open};
+    nodes[2] = finish_join(t, open, {}, 2);
+    NodeSums whole;
+    std::size_t triangles = 0;
+    for (const FinishedNode& node : nodes) {
+      NodeSums sums = node.sums;
+      const Hash128 hash = node.part.hash();
+      sums.hash.high += hash.high;
+      sums.hash.low += hash.low;
+      whole += sums;
+      triangles += node.part.download().triangles.size() / 3;
+    }
+    require_complete(whole);
+    return Outcome{hash_of(whole).to_string() + std::to_string(triangles), 0};
   });
 }
 

@@ -3,35 +3,24 @@
 import os
 import pathlib
 import shutil
-import struct
+import sys
 import unittest
-import zlib
 
-from harness import CliTest
+from harness import SOURCE, CliTest
+
+sys.path.insert(0, str(SOURCE / "docs" / "site" / "tools"))
+import pictures
 
 
 def png_size(path):
-    return struct.unpack(">II", path.read_bytes()[16:24])
+    return pictures.pixels(path)[:2]
 
 
 def png_rows(path):
-    """The rows of an 8-bit RGB picture, each a bytes object."""
-    data, at, body = path.read_bytes(), 8, b""
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        body += data[at + 8:at + 8 + length] if kind == b"IDAT" else b""
-        at += 12 + length
-    width, height = png_size(path)
-    raw, rows, above = zlib.decompress(body), [], bytes(3 * width)
-    for y in range(height):
-        kind, line = raw[y * (3 * width + 1)], bytearray(raw[y * (3 * width + 1) + 1:(y + 1) * (3 * width + 1)])
-        for i in range(3 * width):
-            left, up, corner = (line[i - 3] if i > 2 else 0), above[i], (above[i - 3] if i > 2 else 0)
-            guess = min((abs(up - corner), 0, left), (abs(left - corner), 1, up), (abs(left + up - 2 * corner), 2, corner))[2]
-            line[i] = (line[i] + (0, left, up, (left + up) // 2, guess)[kind]) & 255
-        above = bytes(line)
-        rows.append(above)
-    return rows
+    """The rows of a picture, three bytes a pixel."""
+    width, height, channels, image = pictures.pixels(path)
+    assert channels == 3, channels
+    return [bytes(image[3 * y * width:3 * (y + 1) * width]) for y in range(height)]
 
 
 class GrowthSheetTest(CliTest):

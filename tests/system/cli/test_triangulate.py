@@ -67,6 +67,9 @@ class Outputs(CliTest):
         self.assertTrue(self.path("m.png").read_bytes().startswith(b"\x89PNG"))
         self.assertTrue(self.path("m.npz").read_bytes().startswith(b"PK"))
         self.assertIn("<svg", self.path("m.svg").read_text())
+        glb = self.path("m.glb").read_bytes()
+        described = json.loads(glb[20:20 + int.from_bytes(glb[12:16], "little")])
+        self.assertEqual(described["accessors"][0]["count"], len(self.points))
 
     def test_option_overrides_the_suffix(self):
         self.cadt("triangulate", "in.xy", "-o", "mesh.dat", "-t", "off")

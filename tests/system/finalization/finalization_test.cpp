@@ -177,6 +177,45 @@ TEST_P(Finalization, JoinsFindWhatChildrenGetWrong) {
   EXPECT_TRUE(found([](FinishedNode& node) { node.sums.certified_edges -= 1; }));
 }
 
+/// A side whose triangle is not Delaunay: the join that closes its edge says so.
+TEST_P(Finalization, JoinsExamineEdges) {
+  Triangulator triangulator(GetParam().options());
+  const Points xy = uniform_points(900, 12);
+  for (const bool wrong : {false, true}) {
+    std::size_t calls = 0;
+    TileOptions options;
+    options.tile_points = 450;
+    options.tamper = [&](FinishedNode& node) {
+      if (++calls != 1) return;
+      // The apex comes near the edge: the disc of the triangle grows over the vertex across.
+      OpenSide& side = node.open.sides[node.open.sides.size() / 2];
+      const double* a = &node.open.xy[2 * std::size_t{side.from}];
+      const double* b = &node.open.xy[2 * std::size_t{side.to}];
+      const double x = (a[0] + b[0]) / 2, y = (a[1] + b[1]) / 2, part = wrong ? 1e-3 : 1;
+      side.apex_x = x + part * (side.apex_x - x);
+      side.apex_y = y + part * (side.apex_y - y);
+    };
+    if (wrong) {
+      EXPECT_THROW((void)triangulate_by_tiles(triangulator, xy, options), InternalError);
+    } else {
+      EXPECT_NO_THROW((void)triangulate_by_tiles(triangulator, xy, options));
+    }
+  }
+}
+
+TEST(FinalizationOfPoints, SumsThatAreWrong) {
+  NodeSums square{
+      .points = 4, .distinct = 4, .triangles = 2, .hull_edges = 4, .certified_edges = 1, .dimension = 2, .hash = {}};
+  EXPECT_NO_THROW(require_complete(square));
+  NodeSums more = square, unexamined = square;
+  more.triangles = 3;
+  unexamined.certified_edges = 0;
+  EXPECT_THROW(require_complete(more), InternalError);
+  EXPECT_THROW(require_complete(unexamined), InternalError);
+  NodeSums nothing;
+  EXPECT_NO_THROW(require_complete(nothing));
+}
+
 TEST(FinalizationOfPoints, FloatsAndSeparateArrays) {
   Options options;
   options.backend = Backend::host;

@@ -4,13 +4,15 @@ import os
 import pathlib
 import queue
 import shutil
-import struct
 import subprocess
+import sys
 import tempfile
 import threading
 import time
 import unittest
-import zlib
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[3] / "docs" / "site" / "tools"))
+import pictures
 
 PROGRAM = os.environ.get("CADT_PROGRAM", "cadt")
 SECONDS = 240  # for one answer: llvmpipe compiles, and machines are shared
@@ -25,49 +27,14 @@ def missing():
     return None
 
 
-def read_png(path):
-    """Width, height and rows of bytes (RGB) of an 8-bit RGB picture."""
-    data = pathlib.Path(path).read_bytes()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    at, packed, width, height = 8, b"", 0, 0
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        if kind == b"IHDR":
-            width, height, depth, colour = struct.unpack(">IIBB", data[at + 8:at + 18])
-            assert (depth, colour) == (8, 2), (depth, colour)
-        if kind == b"IDAT":
-            packed += data[at + 8:at + 8 + length]
-        at += 12 + length
-    raw, size = zlib.decompress(packed), 3 * width
-    rows, before = [], bytearray(size)
-    for y in range(height):
-        how, row = raw[y * (size + 1)], bytearray(raw[y * (size + 1) + 1:(y + 1) * (size + 1)])
-        if how == 1:
-            for i in range(3, size):
-                row[i] = (row[i] + row[i - 3]) & 255
-        elif how == 2:
-            row = bytearray((a + b) & 255 for a, b in zip(row, before))
-        elif how == 3:
-            for i in range(size):
-                row[i] = (row[i] + ((row[i - 3] if i >= 3 else 0) + before[i]) // 2) & 255
-        elif how == 4:
-            for i in range(size):
-                a, b, c = (row[i - 3] if i >= 3 else 0), before[i], (before[i - 3] if i >= 3 else 0)
-                p = a + b - c
-                pa, pb, pc = abs(p - a), abs(p - b), abs(p - c)
-                row[i] = (row[i] + (a if pa <= pb and pa <= pc else b if pb <= pc else c)) & 255
-        rows.append(bytes(row))
-        before = row
-    return width, height, rows
-
-
 def blocks(path, side=20):
     """Mean colour of each square of a picture."""
-    width, height, rows = read_png(path)
+    width, height, channels, image = pictures.pixels(pathlib.Path(path))
+    assert channels == 3, channels
     means = []
     for top in range(0, height - side + 1, side):
         for left in range(0, width - side + 1, side):
-            cut = b"".join(rows[y][3 * left:3 * (left + side)] for y in range(top, top + side))
+            cut = b"".join(image[3 * (y * width + left):3 * (y * width + left + side)] for y in range(top, top + side))
             means.append(tuple(sum(cut[k::3]) / (side * side) for k in range(3)))
     return means
 

@@ -48,7 +48,7 @@ void add(uint t, Corners p, float area) {
 }
 
 void draw(uint t) {
-  const Corners p = Corners(place(corner[3u * t]), place(corner[3u * t + 1u]), place(corner[3u * t + 2u]));
+  const Corners p = corners_of(t);
   const dvec2 lo = min(p.a, min(p.b, p.c)), hi = max(p.a, max(p.b, p.c));
   if (!(hi.x >= 0.0LF && hi.y >= 0.0LF && lo.x <= double(samples.x) && lo.y <= double(samples.y))) return;
   const dvec2 extent = hi - lo;

@@ -2,7 +2,7 @@
 layout(local_size_x = 256) in;
 layout(std430, binding = 3) readonly buffer Boxes { dvec4 box[]; };
 layout(std430, binding = 4) buffer Seen { uint seen[]; };
-layout(std430, binding = 5) buffer Commands { uint command[]; };  // groups of raster.glsl (3 words) and large.glsl (3)
+layout(std430, binding = 5) buffer Commands { uint command[]; };  // groups of blocks.glsl (3 words) and large.glsl (3)
 
 void main() {
   const uint block = gl_GlobalInvocationID.x;

@@ -6,7 +6,7 @@ void main() {
   const uint slot = gl_WorkGroupID.x + gl_WorkGroupID.y * 32768u;
   if (slot >= min(command[7], large_capacity)) return;
   const uint word = large[slot], t = (word & ~SUMMED) - 1u;
-  const Corners p = Corners(place(corner[3u * t]), place(corner[3u * t + 1u]), place(corner[3u * t + 2u]));
+  const Corners p = corners_of(t);
   const Rows rows = rows_of(p);
   for (int row = rows.low + int(gl_WorkGroupID.z * 8u + gl_LocalInvocationID.y); row < rows.high; row += 128) {
     const Rows columns = columns_of(p, row);

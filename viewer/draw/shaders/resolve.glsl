@@ -22,8 +22,7 @@ float distance_to(vec2 a, vec2 b) {
 vec3 veil(float strength) { return mix(background.rgb, line_colour.rgb, 0.5 * strength); }
 
 /// Colour of one sample of a triangle, with its edges and vertices.
-vec3 sample_colour(uint t, dvec2 at) {
-  const Corners p = Corners(place(corner[3u * t]), place(corner[3u * t + 1u]), place(corner[3u * t + 2u]));
+vec3 sample_colour(uint t, Corners p, dvec2 at) {
   const vec2 a = vec2(p.a - at), b = vec2(p.b - at), c = vec2(p.c - at);
   vec3 w = abs(vec3(b.x * c.y - b.y * c.x, c.x * a.y - c.y * a.x, a.x * b.y - a.y * b.x));
   const float whole = w.x + w.y + w.z;
@@ -54,7 +53,8 @@ vec3 mesh_colour(ivec2 pixel, uint at) {
   const float share = 1.0 / float(side * side);
   vec3 colour = vec3(0.0);
   float weight = 0.0, covered = 0.0;
-  uint some = 0u;
+  uint some = 0u, placed = 0u;
+  Corners p;  // of the triangle `placed` - 1: mostly that of the next sample, too
   for (int j = 0; j < side; ++j) {
     for (int i = 0; i < side; ++i) {
       const ivec2 spot = pixel * side + ivec2(i, j);
@@ -63,7 +63,9 @@ vec3 mesh_colour(ivec2 pixel, uint at) {
       covered += share;
       some = word;
       if ((word & SUMMED) != 0u) continue;
-      colour += share * sample_colour(word - 1u, dvec2(spot) + 0.5LF);
+      if (word != placed) p = corners_of(word - 1u);
+      placed = word;
+      colour += share * sample_colour(word - 1u, p, dvec2(spot) + 0.5LF);
       weight += share;
     }
   }
@@ -75,7 +77,7 @@ vec3 mesh_colour(ivec2 pixel, uint at) {
     colour /= weight;
   } else if (some != 0u) {
     const uint t = (some & ~SUMMED) - 1u;
-    colour = sample_colour(t, dvec2(pixel * side) + 0.5LF * double(side));
+    colour = sample_colour(t, corners_of(t), dvec2(pixel * side) + 0.5LF * double(side));
   }
   return mix(background.rgb, colour, covered);
 }

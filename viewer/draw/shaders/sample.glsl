@@ -8,7 +8,7 @@ void main() {
   const uint i = gl_GlobalInvocationID.x;
   if (i >= count) return;
   const uint t = i * step_;
-  const Corners p = Corners(place(corner[3u * t]), place(corner[3u * t + 1u]), place(corner[3u * t + 2u]));
+  const Corners p = corners_of(t);
   const vec2 e = vec2(p.b - p.a), f = vec2(p.c - p.a);
   result[3u * i] = raw_value(t, p, vec3(1.0 / 3.0));
   const vec3 h = colour_by == BY_POINT ? corner_values(t) : vec3(0.0);

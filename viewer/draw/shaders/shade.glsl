@@ -8,6 +8,10 @@ struct Corners {
   dvec2 a, b, c;  // in samples
 };
 
+Corners corners_of(uint t) {
+  return Corners(place(corner[3u * t]), place(corner[3u * t + 1u]), place(corner[3u * t + 2u]));
+}
+
 float smallest_angle(Corners t) {
   const vec2 ab = vec2(t.b - t.a), bc = vec2(t.c - t.b), ca = vec2(t.a - t.c);
   const float la = dot(bc, bc), lb = dot(ca, ca), lc = dot(ab, ab);

@@ -2,15 +2,14 @@
 layout(local_size_x = 32) in;
 layout(std430, binding = 3) readonly buffer Segments { dvec4 segment[]; };
 layout(std430, binding = 9) buffer Overlay { uint over[]; };
-layout(location = 0) uniform uint first_segment;
-layout(location = 1) uniform uint segment_count;
-layout(location = 2) uniform uint ink;  // 0xRRGGBB
-layout(location = 3) uniform float width;  // pixels
+layout(location = 0) uniform uint segment_count;
+layout(location = 1) uniform uint ink;  // 0xRRGGBB
+layout(location = 2) uniform float width;  // pixels
 
 void main() {
   const uint mine = gl_WorkGroupID.x + gl_WorkGroupID.y * 32768u;
   if (mine >= segment_count) return;
-  const dvec4 s = segment[first_segment + mine];
+  const dvec4 s = segment[mine];
   const ivec2 size = samples / side;
   dvec2 p = place_point(s.xy) / double(side), q = place_point(s.zw) / double(side);
   // Along the longer axis, one column (or row) of pixels after the other.

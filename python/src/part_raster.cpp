@@ -29,7 +29,9 @@ struct Axis {
   std::int64_t count;
   [[nodiscard]] double center(std::int64_t i) const { return origin + (static_cast<double>(i) + 0.5) * step; }
   [[nodiscard]] std::int64_t cell(double x) const {
-    return static_cast<std::int64_t>(std::floor(std::clamp((x - origin) / step, -2.0, static_cast<double>(count) + 2)));
+    const double at = (x - origin) / step;
+    if (!(at > -2)) return -2;  // or not a number
+    return at < static_cast<double>(count) + 2 ? static_cast<std::int64_t>(std::floor(at)) : count + 2;
   }
   /// The first and one past the last of the cells whose centres may lie between two places: one more on each side, so
   /// that rounding is harmless.
@@ -126,8 +128,8 @@ class PartRaster {
     const Point a = corner(t, k + 1), b = corner(t, k + 2);
     const auto [i0, i1] = x.between(a[0], b[0]);
     const auto [j0, j1] = y.between(a[1], b[1]);
-    // Along the axis with more cells; across it the two or three nearest ones.
-    if (i1 - i0 > j1 - j0) {
+    // Along the axis with more cells (of the edge, not of its part in this grid); across it the nearest ones.
+    if (std::abs((b[0] - a[0]) / x.step) > std::abs((b[1] - a[1]) / y.step)) {
       for (std::int64_t i = i0; i < i1; ++i) {
         const double at = a[1] + (b[1] - a[1]) * ((x.center(i) - a[0]) / (b[0] - a[0]));
         for (std::int64_t j = std::max(j0, y.cell(at) - 1); j < std::min(j1, y.cell(at) + 2); ++j)
@@ -135,7 +137,7 @@ class PartRaster {
       }
     } else {
       for (std::int64_t j = j0; j < j1; ++j) {
-        const double at = a[1] == b[1] ? a[0] : a[0] + (b[0] - a[0]) * ((y.center(j) - a[1]) / (b[1] - a[1]));
+        const double at = a[0] + (b[0] - a[0]) * ((y.center(j) - a[1]) / (b[1] - a[1]));
         for (std::int64_t i = std::max(i0, x.cell(at) - 1); i < std::min(i1, x.cell(at) + 2); ++i)
           add_cell(x, y, i, j, t, k, found);
       }

@@ -20,7 +20,7 @@ from .grid import Grid
 
 __all__ = ["InScratch", "check_options", "folder_in"]
 
-LEAST_TILE, MOST_TILE = 1 << 16, 1 << 24  # points, unless others are asked for: larger tiles are not faster
+LEAST_TILE, MOST_TILE = 1 << 16, 1 << 22  # points, unless others are asked for: on the host larger tiles are not faster
 BYTES_A_POINT = 300  # of memory while a tile is triangulated and drawn on the host
 
 

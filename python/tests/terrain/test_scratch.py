@@ -86,7 +86,7 @@ def test_centres_on_vertices_and_edges(tmp_path, tile_points, seed):
     random = np.random.default_rng(seed)
     xy = lattice(30, 25)[random.random(750) < 0.6]
     xyz = with_heights(xy[random.permutation(len(xy))])
-    for size in (1.0, 0.5):
+    for size in (1.0, 0.25):  # in one block, and in four
         grid = Grid(-1 - size / 2, 26 + size / 2, size, size, int(32 / size), int(28 / size))
         for max_edge in (None, 1.5, 2.0):
             check(tmp_path, xyz, grid, tile_points, max_edge)
@@ -313,6 +313,25 @@ def test_a_part_with_two_fans_at_a_vertex():
     assert part.blocks(corner, 9, 9, 3).tolist() == [[0, 1, 1], [1, 1, 1], [1, 1, 0]]
     dropped = part.rasterize(corner, 9, 9, np.ones(5), 4.0)
     assert np.isnan(dropped).all(), "the longest edges are longer"
+
+
+@pytest.mark.parametrize(
+    "triangle", [[(0, 0), (10, 0), (0, 10)], [(1, 1), (11, 6), (6, 11)], [(0, 3), (9, 0), (12, 12)]]
+)
+def test_a_rim_is_that_of_each_window(triangle):
+    """Cells on edges that reach far beyond a grid, which is a small part of them."""
+    xy = np.array(triangle, float)
+    part = _cadt.PartRaster(xy, np.array([[0, 1, 2]], np.int32), np.full((1, 3), -1, np.int32), host())
+    on = np.zeros((13, 13), bool)  # row y, column x
+    for (ax, ay), (bx, by) in zip(triangle, triangle[1:] + triangle[:1], strict=True):
+        for y, x in np.ndindex(on.shape):
+            level = (bx - ax) * (y - ay) == (by - ay) * (x - ax)
+            on[y, x] |= level and min(ax, bx) <= x <= max(ax, bx) and min(ay, by) <= y <= max(ay, by)
+    assert on.sum() >= 6
+    for side in (1, 3, 13):
+        for y, x in np.ndindex(14 - side, 14 - side):
+            cells, triangles, _ = part.rim((x - 0.5, y - 0.5, 1.0, 1.0), side, side)
+            assert set(cells.tolist()) == set(np.flatnonzero(on[y : y + side, x : x + side])) and not triangles.any()
 
 
 def test_indices_of_a_part_are_checked():

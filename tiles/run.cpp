@@ -50,8 +50,12 @@ std::vector<Workers> open_devices(const RunOptions& options, std::uint64_t point
     chosen.keep_points = KeepPoints::no;
     chosen.stop = options.stop;
     Workers workers{Triangulator(chosen), Triangulator(chosen)};
-    if (workers.leaves.device().gpu)
-      workers.leaves.reserve(static_cast<std::size_t>(std::min(points, options.tile_points)));
+    if (workers.leaves.device().gpu) {
+      try {
+        workers.leaves.reserve(static_cast<std::size_t>(std::min(points, options.tile_points)));
+      } catch (const OutOfMemory&) {  // NOLINT: it is an upper bound; leaves may need less, or say what they need
+      }
+    }
     return workers;
   };
   std::vector<std::future<Workers>> opening;

@@ -20,8 +20,6 @@ using namespace device_text;
 
 namespace {
 
-constexpr std::size_t id_bytes = sizeof(std::uint64_t);
-
 /// CADT_TILE_BOX_PARAMETERS
 struct ScaledBox {
   const TileBox& box;

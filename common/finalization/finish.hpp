@@ -23,6 +23,8 @@ struct DevicePart::Data {
 
 namespace finalization {
 
+inline constexpr std::size_t id_bytes = sizeof(std::uint64_t);
+
 /// What the children of a join cover (common/finalization/join.dev.h). All null for a leaf.
 struct Cover {
   Allocation half_edges, covers, kept;

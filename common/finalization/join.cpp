@@ -94,9 +94,9 @@ void take_points(Context& ctx, Node& node, Gathered& all) {
   Launcher& launch = ctx.launcher;
   const Allocation order = sort_ids(ctx, all.ids);
   const Allocation points = ctx.memory.import(all.xy.data(), n * sizeof(cadt_point)),
-                   ids = ctx.memory.import(all.ids.data(), n * sizeof(std::uint64_t));
+                   ids = ctx.memory.import(all.ids.data(), n * id_bytes);
   node.data->points = ctx.memory.allocate(n * sizeof(cadt_point));
-  node.data->ids = ctx.memory.allocate(n * sizeof(std::uint64_t));
+  node.data->ids = ctx.memory.allocate(n * id_bytes);
   launch.run<KernelId::cadt_gather_points>(points, order, node.data->points, launch.grid(n), 1.0, 1.0);
   launch.run<KernelId::cadt_gather_ids>(ids, order, node.data->ids, launch.grid(n));
   require_ascending(ctx, node.data->ids, n);

@@ -19,8 +19,6 @@ using namespace finalization;
 
 namespace {
 
-constexpr std::size_t id_bytes = sizeof(std::uint64_t);
-
 void require_in_box(const Bounds& bounds, const TileBox& box) {
   if (box.contains(bounds.min_x, bounds.min_y) && box.contains(bounds.max_x, bounds.max_y)) return;
   const auto text = [](double a, double b) { return std::to_string(a) + " to " + std::to_string(b); };

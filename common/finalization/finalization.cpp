@@ -3,7 +3,6 @@
 #include <cadt/finalization.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "common/driver/device_text.hpp"

@@ -254,7 +254,11 @@ class Settlement {
 
   /// Examines the edges that have a final triangle on both sides, each once.
   void certify(const std::vector<Match>& matches) {
-    const auto threads = matches.size() < fewest_for_threads ? 1 : std::max(1U, std::thread::hardware_concurrency());
+    unsigned threads = 1;
+    if (matches.size() >= fewest_for_threads) {
+      threads = node_.data->state->options.threads;  // as the host's own work: 0 means all cores
+      if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
+    }
     const Edges edges = verifier::reduce_each<Edges>(matches.size(), threads, [&](std::size_t i, Edges& mine) {
       const Match& match = matches[i];
       if (match.kind == CADT_MATCHED_FINAL) mine.examine(i, all_, all_.point(match.apex));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cadt/uniform_cells.hpp>
 
-#include <bit>
 #include <cmath>
 #include <string>
 #include <tuple>

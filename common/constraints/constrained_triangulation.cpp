@@ -10,6 +10,8 @@
 #include "common/driver/device_text.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/thread_state.hpp"
+#include "common/points/device_points.hpp"
+#include "common/points/import.hpp"
 
 namespace cadt {
 namespace {
@@ -33,14 +35,14 @@ void chain_on_line(PointsView points, std::span<const Segment> segments, Data& d
     if (representative(data.mesh, i) == i) order.push_back(i);
   std::ranges::sort(order, {}, at);
   std::vector<std::int32_t> rank(points.size());
-  for (std::size_t r = 0; r < order.size(); ++r) rank[static_cast<std::size_t>(order[r])] = static_cast<std::int32_t>(r);
+  for (std::size_t r = 0; r < order.size(); ++r)
+    rank[static_cast<std::size_t>(order[r])] = static_cast<std::int32_t>(r);
   for (std::size_t s = 0; s < segments.size(); ++s) {
     std::array<std::int32_t, 2> ends{};
     for (std::size_t e = 0; e < 2; ++e) {
       if (segments[s][e] < 0 || segments[s][e] >= n)
-        throw InputError("segment " + std::to_string(s) + " has an end that is none of the " + std::to_string(n) +
-                             " points",
-                         s);
+        throw InputError(
+            "segment " + std::to_string(s) + " has an end that is none of the " + std::to_string(n) + " points", s);
       ends[e] = rank[static_cast<std::size_t>(representative(data.mesh, segments[s][e]))];
     }
     const std::int32_t step = ends[0] < ends[1] ? 1 : -1;
@@ -55,7 +57,8 @@ void chain_on_line(PointsView points, std::span<const Segment> segments, Data& d
 [[noreturn]] void refuse_crossings(PointsView points, std::span<const Segment> segments, unsigned threads) {
   std::vector<std::array<std::int32_t, 2>> pairs = find_crossings(points, segments, threads);
   if (pairs.empty()) throw InternalError("segments were found to cross, but no pair of them does");
-  std::string message = std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair of segments crosses: " : " pairs of segments cross: ");
+  std::string message =
+      std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair of segments crosses: " : " pairs of segments cross: ");
   const std::size_t shown = std::min<std::size_t>(pairs.size(), 3);
   for (std::size_t i = 0; i < shown; ++i)
     message += (i == 0 ? "" : ", ") + std::to_string(pairs[i][0]) + " and " + std::to_string(pairs[i][1]);
@@ -63,19 +66,16 @@ void chain_on_line(PointsView points, std::span<const Segment> segments, Data& d
   throw CrossingError(message + "; repair them, or take Crossing::exact or Crossing::grid", std::move(pairs));
 }
 
-std::shared_ptr<Data> constrain_uncrossed(PointsView points, std::span<const Segment> segments,
-                                          const Options& options) {
-  require_size(points.size());
-  require_segments(segments.size());
+std::shared_ptr<Data> constrain_uncrossed(const std::shared_ptr<Triangulator::State>& state, PointsView points,
+                                          std::span<const Segment> segments) {
   auto data = std::make_shared<Data>();
-  const CallState state(options, points.size());
   SegmentJob job;
   job.on_host = segments;
   job.count = segments.size();
   job.wants_chains = true;
   SegmentResults results;
-  data->mesh = triangulate_with_segments(*state, points, job, results);
-  if (job.crossed) refuse_crossings(points, segments, options.threads);
+  data->mesh = triangulate_with_segments(state, points, job, results);
+  if (job.crossed) refuse_crossings(points, segments, state->options.threads);
   if (data->mesh.number_of_triangles() == 0) {
     chain_on_line(points, segments, *data);
   } else {
@@ -84,9 +84,14 @@ std::shared_ptr<Data> constrain_uncrossed(PointsView points, std::span<const Seg
     data->chain_vertices.assign(results.chains.begin(), results.chains.end());
   }
   for (std::size_t s = 0; s < segments.size(); ++s)
-    if (data->chain_offsets[s] == data->chain_offsets[s + 1])
-      data->degenerate.push_back(static_cast<std::int32_t>(s));
+    if (data->chain_offsets[s] == data->chain_offsets[s + 1]) data->degenerate.push_back(static_cast<std::int32_t>(s));
   return data;
+}
+
+ConstrainedTriangulation constrain_on(const std::shared_ptr<Triangulator::State>& state, PointsView points,
+                                      std::span<const Segment> segments, const ConstraintOptions& constraints) {
+  (void)constraints;
+  return ConstrainedTriangulation(constrain_uncrossed(state, points, segments));
 }
 
 }  // namespace
@@ -94,7 +99,8 @@ std::shared_ptr<Data> constrain_uncrossed(PointsView points, std::span<const Seg
 void require_segments(std::size_t count) {
   constexpr std::size_t most = (std::size_t{1} << 30) - 1;
   if (count > most)
-    throw LimitError("there are " + std::to_string(count) + " segments, more than " + std::to_string(most), count, most);
+    throw LimitError("there are " + std::to_string(count) + " segments, more than " + std::to_string(most), count,
+                     most);
 }
 
 ConstrainedEdges edges_of_chains(std::span<const std::int64_t> offsets, std::span<const std::int32_t> vertices) {
@@ -130,8 +136,48 @@ const ConstrainedEdges& Data::edges() const {
 
 ConstrainedTriangulation triangulate_constrained(PointsView points, std::span<const Segment> segments,
                                                  const ConstraintOptions& constraints, const Options& options) {
-  (void)constraints;
-  return ConstrainedTriangulation(constrain_uncrossed(points, segments, options));
+  require_size(points.size());
+  require_segments(segments.size());
+  const CallState state(options, points.size());
+  return constrain_on(*state, points, segments, constraints);
+}
+
+ConstrainedTriangulation Triangulator::triangulate_constrained(PointsView points, std::span<const Segment> segments,
+                                                               const ConstraintOptions& constraints) {
+  require_size(points.size());
+  require_segments(segments.size());
+  return constrain_on(state_, points, segments, constraints);
+}
+
+DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& points, const DeviceArray& segments,
+                                                          const ConstraintOptions& constraints) {
+  require_segments(segments.size / 2);
+  if (segments.size % 2 != 0)
+    throw InputError("an array of segments has two words each, this one has " + std::to_string(segments.size),
+                     segments.size / 2);
+  if (segments.size != 0 && segments.memory == nullptr)
+    throw InputError("the array of segments has no memory: DeviceArray::memory is null", 0);
+  if (constraints.crossing != Crossing::error)
+    throw OptionError("crossing", "segments on the device must not cross; copy them to the host for exact or grid");
+  SegmentJob job;
+  job.count = segments.size / 2;
+  if (job.count != 0) job.segments = state_->memory.wrap(segments.memory, segments.size * sizeof(std::int32_t));
+  std::unique_ptr<DeviceTriangulation::Data> data = triangulate_on_device(state_, points, &job);
+  if (!job.crossed) return DeviceTriangulation(std::move(data));
+  Statistics statistics;
+  Context ctx(*state_->device, state_->memory, state_->options, statistics);
+  const Allocation imported = import_points(ctx, points);
+  std::vector<double> xy;
+  if (takes_floats_only(ctx.device)) {
+    const std::vector<float> floats = ctx.device.read_values<float>(*imported, 2 * points.size);
+    xy.assign(floats.begin(), floats.end());
+  } else {
+    xy = ctx.device.read_values<double>(*imported, 2 * points.size);
+  }
+  std::vector<Segment> copied(job.count);
+  ctx.device.read(*job.segments, 0, copied.data(), job.count * sizeof(Segment));
+  ctx.device.finish();
+  refuse_crossings(xy, copied, state_->options.threads);
 }
 
 ConstrainedTriangulation::ConstrainedTriangulation() : data_(std::make_shared<Data>()) {}
@@ -185,8 +231,8 @@ Hash128 ConstrainedTriangulation::hash() const {
   const Hash128 mesh = data_->mesh.hash();
   cadt_hash hash = {mesh.high, mesh.low};
   for (const Segment& edge : constrained_edges())
-    cadt_hash_add(&hash, CADT_HASH_CONSTRAINED, static_cast<std::uint64_t>(edge[0]), static_cast<std::uint64_t>(edge[1]),
-                  0);
+    cadt_hash_add(&hash, CADT_HASH_CONSTRAINED, static_cast<std::uint64_t>(edge[0]),
+                  static_cast<std::uint64_t>(edge[1]), 0);
   return {hash.high, hash.low};
 }
 

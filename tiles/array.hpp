@@ -14,8 +14,8 @@ namespace cadt::tiles {
 [[nodiscard]] void* allocate_array(std::size_t bytes);
 void free_array(void* memory) noexcept;
 
-/// Leaves numbers as they are when a vector grows: nobody writes zeros first, and the pages are made by the threads that
-/// fill them, at the same time.
+/// Leaves numbers as they are when a vector grows: nobody writes zeros first, and the pages are made by the threads
+/// that fill them, at the same time.
 template <class T>
 struct Uninitialized {
   using value_type = T;

@@ -122,6 +122,22 @@ TEST(UniformCellsOnHost, JoinsOfManySidesOnThreads) {
     EXPECT_EQ(node.sums, expected.sums);
     EXPECT_EQ(node.part.hash(), expected.part.hash());
   }
+  // One child with the sides of all.
+  Open whole;
+  for (const Open& leaf : leaves) {
+    const auto first = static_cast<std::uint32_t>(whole.ids.size());
+    whole.ids.insert(whole.ids.end(), leaf.ids.begin(), leaf.ids.end());
+    whole.xy.insert(whole.xy.end(), leaf.xy.begin(), leaf.xy.end());
+    for (OpenSide side : leaf.sides) {
+      side.from += first, side.to += first;
+      whole.sides.push_back(side);
+    }
+  }
+  const FinishedNode alone = finish_join(one, std::span(&whole, 1), half, 4000);
+  EXPECT_EQ(alone.messages, expected.messages);
+  EXPECT_EQ(alone.open.sides, expected.open.sides);
+  EXPECT_EQ(alone.links, expected.links);
+  EXPECT_EQ(alone.sums, expected.sums);
   std::uint64_t certified = 0;
   Hash128 hash;
   level = leaves;

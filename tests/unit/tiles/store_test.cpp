@@ -55,6 +55,24 @@ TEST_F(StoreTest, LargeNodesOnThreads) {
   }
 }
 
+TEST_F(StoreTest, RunsWithSeveralWriters) {
+  const auto source = in_memory(points_of("uniform", 60'000));
+  std::map<unsigned, std::map<std::string, std::string>> all;
+  for (const unsigned threads : {1U, 3U, 16U}) {  // a writer for each four
+    path_ = folder_ / ("run-" + std::to_string(threads) + ".cadt");
+    RunOptions options;
+    options.tile_points = 3'000;
+    options.devices.front().backend = Backend::host;
+    options.devices.front().threads = threads;
+    options.output = path_;
+    const RunResult result = run(*source, options);
+    EXPECT_EQ(result.nodes.size(), result.plan.tree.size());
+    for (auto& [name, text] : contents()) all[threads][name.substr(path_.size())] = std::move(text);
+    EXPECT_EQ(all[threads], all[1]);
+    EXPECT_TRUE(verify(MeshDirectory(path_)).ok);
+  }
+}
+
 TEST_F(StoreTest, ReadsBackWhatWasWritten) {
   Store store(path_, made_.plan, Store::Start::create);
   write_all(store);

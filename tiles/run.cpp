@@ -49,7 +49,8 @@ unsigned writers(const PointSource& source, const RunOptions& options) {
 /// What leaves take on the host while they and their neighbours in time are read, computed and written.
 std::uint64_t leaf_memory(const PointSource& source, const RunOptions& options) {
   const std::uint64_t points = std::min(source.size(), options.tile_points), devices = options.devices.size();
-  const std::uint64_t written = takes_arrays(options) ? devices + writers(source, options) : 0;
+  const std::uint64_t written =
+      takes_arrays(options) ? devices + std::max<std::uint64_t>(devices, writers(source, options)) : 0;
   return points * (devices * 2 * read_bytes + written * written_bytes);
 }
 

@@ -183,6 +183,7 @@
   X(cadt_number_ids)     /* finish.dev.h: ids of 64 bits */                         \
   X(cadt_check_ids)      /* finish.dev.h */                                         \
   X(cadt_gather_ids)     /* finish.dev.h */                                         \
+  X(cadt_id_words)       /* finish.dev.h: keys for the sort */                      \
   X(cadt_half_edges_of)  /* join.dev.h */                                           \
   X(cadt_match_sides)    /* join.dev.h: what lies across the sides of children */   \
   X(cadt_uniform_cells)  /* uniform_cells.dev.h: points by counter */

@@ -118,6 +118,12 @@ TEST(ImplicitPoints, HalvesGoToTheEvenDouble) {
 }
 
 TEST(ImplicitPoints, FloorOfQuotients) {
+  for (const double whole : {-3.0, -1.0, 0.0, 1.0, 4096.0, -0x1p40}) {
+    exact::Arena arena;
+    const exact::Arithmetic of(arena);
+    EXPECT_EQ(exact::floor_quotient(of.number(whole * 0.75), of.number(0.75), arena), whole);
+    EXPECT_EQ(exact::floor_quotient(of.number(whole * 0.75), of.number(-0.75), arena), -whole);
+  }
   std::mt19937_64 random(3);
   for (int i = 0; i < 20000; ++i) {
     exact::Arena arena;

@@ -133,6 +133,7 @@ TEST(SnapRounding, EqualsAllPairsOfSegmentsAndPixels) {
       const SnappedSegments snapped = snap_segments(set.xy, set.segments, static_cast<double>(width), 1);
       ASSERT_EQ(chains(snapped), chains_by_brute_force(set, width)) << set.name << ", width " << width;
       expect_planar(snapped, set.name);
+      ASSERT_TRUE(std::is_sorted(snapped.parents.begin(), snapped.parents.end())) << set.name;
       passed += snapped.vertices.size();
     }
   EXPECT_GT(passed, 50000U);

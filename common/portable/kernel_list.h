@@ -187,33 +187,44 @@
   X(cadt_match_sides)    /* join.dev.h: what lies across the sides of children */   \
   X(cadt_uniform_cells)  /* uniform_cells.dev.h: points by counter */
 
-#define CADT_KERNEL_LIST(X)  \
-  CADT_SELF_TEST_KERNELS(X)  \
-  CADT_PREDICATES_KERNELS(X) \
-  CADT_PORTABLE_KERNELS(X)   \
-  CADT_POINTS_KERNELS(X)     \
-  CADT_INSERTION_KERNELS(X)  \
-  CADT_STARS_KERNELS(X)      \
-  CADT_BATCH_KERNELS(X)      \
-  CADT_CERTIFY_KERNELS(X)    \
-  CADT_OUTPUT_KERNELS(X)     \
-  CADT_VERIFY_KERNELS(X)     \
-  CADT_QUERIES_KERNELS(X)    \
-  CADT_FINALIZATION_KERNELS(X)
+/* common/constraints: segments become edges */
+#define CADT_CONSTRAINTS_KERNELS(X)                                                        \
+  X(cadt_domain_unite)   /* domains.dev.h: triangles that no constrained edge separates */ \
+  X(cadt_domain_roots)   /* domains.dev.h */                                               \
+  X(cadt_domain_regions) /* domains.dev.h */                                               \
+  X(cadt_domain_links)   /* domains.dev.h: which regions meet at constrained edges */      \
+  X(cadt_domain_flags)   /* domains.dev.h: triangles inside */                             \
+  X(cadt_domain_pack)    /* domains.dev.h */
+
+#define CADT_KERNEL_LIST(X)    \
+  CADT_SELF_TEST_KERNELS(X)    \
+  CADT_PREDICATES_KERNELS(X)   \
+  CADT_PORTABLE_KERNELS(X)     \
+  CADT_POINTS_KERNELS(X)       \
+  CADT_INSERTION_KERNELS(X)    \
+  CADT_STARS_KERNELS(X)        \
+  CADT_BATCH_KERNELS(X)        \
+  CADT_CERTIFY_KERNELS(X)      \
+  CADT_OUTPUT_KERNELS(X)       \
+  CADT_VERIFY_KERNELS(X)       \
+  CADT_QUERIES_KERNELS(X)      \
+  CADT_FINALIZATION_KERNELS(X) \
+  CADT_CONSTRAINTS_KERNELS(X)
 
 /* The same by stage: a back end may compile a program for each (CADT_PROGRAM of language.dev.h). */
-#define CADT_STAGE_LIST(S)               \
-  S(self_test, CADT_SELF_TEST_KERNELS)   \
-  S(predicates, CADT_PREDICATES_KERNELS) \
-  S(portable, CADT_PORTABLE_KERNELS)     \
-  S(points, CADT_POINTS_KERNELS)         \
-  S(insertion, CADT_INSERTION_KERNELS)   \
-  S(stars, CADT_STARS_KERNELS)           \
-  S(batch, CADT_BATCH_KERNELS)           \
-  S(certify, CADT_CERTIFY_KERNELS)       \
-  S(output, CADT_OUTPUT_KERNELS)         \
-  S(verify, CADT_VERIFY_KERNELS)         \
-  S(queries, CADT_QUERIES_KERNELS)       \
-  S(finalization, CADT_FINALIZATION_KERNELS)
+#define CADT_STAGE_LIST(S)                   \
+  S(self_test, CADT_SELF_TEST_KERNELS)       \
+  S(predicates, CADT_PREDICATES_KERNELS)     \
+  S(portable, CADT_PORTABLE_KERNELS)         \
+  S(points, CADT_POINTS_KERNELS)             \
+  S(insertion, CADT_INSERTION_KERNELS)       \
+  S(stars, CADT_STARS_KERNELS)               \
+  S(batch, CADT_BATCH_KERNELS)               \
+  S(certify, CADT_CERTIFY_KERNELS)           \
+  S(output, CADT_OUTPUT_KERNELS)             \
+  S(verify, CADT_VERIFY_KERNELS)             \
+  S(queries, CADT_QUERIES_KERNELS)           \
+  S(finalization, CADT_FINALIZATION_KERNELS) \
+  S(constraints, CADT_CONSTRAINTS_KERNELS)
 
 #endif

@@ -16,25 +16,16 @@ namespace {
 
 constexpr std::int32_t unknown = std::numeric_limits<std::int32_t>::min();
 
-/// How much each edge counts: how often it was given (even_odd), or upwards minus downwards (nonzero). Empty: all 1.
-std::vector<std::int32_t> edge_weights(const EdgeSources& edges, Domain domain) {
-  if (domain == Domain::even_odd && edges.sources.size() == edges.edges.size()) return {};
-  std::vector<std::int32_t> weights(edges.edges.size());
-  for (std::size_t e = 0; e < weights.size(); ++e)
-    for (std::int64_t i = edges.offsets[e]; i < edges.offsets[e + 1]; ++i)
-      weights[e] += domain == Domain::nonzero && edges.sources[static_cast<std::size_t>(i)] < 0 ? -1 : 1;
-  return weights;
-}
-
-/// There is a value for each region if and only if as many segments come to each vertex as leave it, counted modulo 2
+/// There is a value for each region if and only if as many segments end at each vertex as begin there, counted modulo 2
 /// for even_odd.
-void require_closed(const EdgeSources& edges, std::span<const std::int32_t> weights, Domain domain,
-                    std::size_t points) {
+void require_closed(const SegmentChains& chains, Domain domain, std::size_t points) {
   std::vector<std::int32_t> balance(points);
-  for (std::size_t e = 0; e < edges.edges.size(); ++e) {
-    const std::int32_t weight = weights.empty() ? 1 : weights[e];
-    balance[static_cast<std::size_t>(edges.edges[e][0])] += weight;
-    balance[static_cast<std::size_t>(edges.edges[e][1])] -= weight;
+  for (std::size_t s = 0; s + 1 < chains.offsets.size(); ++s) {
+    const auto first = static_cast<std::size_t>(chains.offsets[s]),
+               end = static_cast<std::size_t>(chains.offsets[s + 1]);
+    if (first == end) continue;
+    ++balance[static_cast<std::size_t>(chains.vertices[first])];
+    --balance[static_cast<std::size_t>(chains.vertices[end - 1])];
   }
   const bool parity = domain == Domain::even_odd;
   const auto open = std::ranges::find_if(balance, [&](std::int32_t b) { return (parity ? b & 1 : b) != 0; });
@@ -49,30 +40,66 @@ void require_closed(const EdgeSources& edges, std::span<const std::int32_t> weig
                     vertex);
 }
 
-/// The device's table of weights (cadt_edge_weights); null arrays if all are 1.
+/// How much each edge counts: how often it is in a chain (even_odd), or that upwards minus downwards (nonzero).
+struct EdgeWeights {
+  std::vector<std::uint32_t> begins, uppers;  ///< of the edges with each lower vertex
+  std::vector<std::int32_t> weights;
+  bool all_one = true;
+
+  EdgeWeights(const SegmentChains& chains, Domain domain, std::size_t points) {
+    const auto each_edge = [&](const auto& use) {
+      for (std::size_t s = 0; s + 1 < chains.offsets.size(); ++s)
+        for (auto i = static_cast<std::size_t>(chains.offsets[s]);
+             i + 1 < static_cast<std::size_t>(chains.offsets[s + 1]); ++i)
+          use(static_cast<std::uint32_t>(chains.vertices[i]), static_cast<std::uint32_t>(chains.vertices[i + 1]));
+    };
+    std::vector<std::uint32_t> ends(points + 1);  // counts, then where the next edge of a vertex goes
+    each_edge([&](std::uint32_t from, std::uint32_t to) { ++ends[std::min(from, to) + 1]; });
+    for (std::size_t v = 0; v < points; ++v) ends[v + 1] += ends[v];
+    std::vector<std::pair<std::uint32_t, std::int32_t>> parts(ends[points]);
+    std::vector<std::uint32_t> first = ends;
+    const bool directed = domain == Domain::nonzero;
+    each_edge([&](std::uint32_t from, std::uint32_t to) {
+      parts[ends[std::min(from, to)]++] = {std::max(from, to), directed && from > to ? -1 : 1};
+    });
+    begins.reserve(points + 1);
+    uppers.reserve(parts.size());
+    weights.reserve(parts.size());
+    for (std::size_t v = 0; v < points; ++v) {
+      begins.push_back(static_cast<std::uint32_t>(uppers.size()));
+      std::ranges::sort(std::span(parts).subspan(first[v], first[v + 1] - first[v]));
+      for (std::size_t i = first[v]; i < first[v + 1]; ++i) {
+        if (i != first[v] && parts[i].first == uppers.back()) {
+          weights.back() += parts[i].second;
+          continue;
+        }
+        uppers.push_back(parts[i].first);
+        weights.push_back(parts[i].second);
+      }
+    }
+    begins.push_back(static_cast<std::uint32_t>(uppers.size()));
+    all_one = !directed && uppers.size() == parts.size();
+  }
+};
+
+/// The same on the device (cadt_edge_weights); null arrays if all are 1.
 struct WeightTable {
   Allocation begins, uppers, weights;
-  WeightTable(Context& ctx, const EdgeSources& edges, std::span<const std::int32_t> all, std::size_t points) {
-    if (all.empty()) return;
-    std::vector<std::uint32_t> first(points + 1), upper;
-    upper.reserve(edges.edges.size());
-    for (const Segment& edge : edges.edges) {
-      ++first[static_cast<std::size_t>(edge[0]) + 1];
-      upper.push_back(static_cast<std::uint32_t>(edge[1]));
-    }
-    for (std::size_t v = 0; v < points; ++v) first[v + 1] += first[v];
-    const auto upload = [&]<class T>(const std::vector<T>& values) { return copy(ctx, values.data(), values.size()); };
-    begins = upload(first);
-    uppers = upload(upper);
-    weights = copy(ctx, all.data(), all.size());
+  WeightTable(Context& ctx, const EdgeWeights& host) {
+    if (host.all_one) return;
+    begins = copy(ctx, host.begins);
+    uppers = copy(ctx, host.uppers);
+    weights = copy(ctx, host.weights);
   }
+  WeightTable() = default;
   [[nodiscard]] auto arguments() const { return std::tie(begins, uppers, weights); }
 
  private:
   template <class T>
-  static Allocation copy(Context& ctx, const T* values, std::size_t count) {
-    Allocation to = ctx.memory.allocate(count * word);
-    ctx.device.write(*to, 0, values, count * word);
+  static Allocation copy(Context& ctx, const std::vector<T>& values) {
+    static_assert(sizeof(T) == word);
+    Allocation to = ctx.memory.allocate(values.size() * word);
+    if (!values.empty()) ctx.device.write(*to, 0, values.data(), values.size() * word);
     return to;
   }
 };
@@ -143,18 +170,17 @@ class RegionGraph {
 
 /// Values by crossing constrained edges from the outside.
 std::vector<std::int32_t> values_by_crossing(Context& ctx, const DomainMesh& mesh, std::size_t points,
-                                             const EdgeSources& edges, Domain domain, const Domains& domains,
+                                             const SegmentChains& chains, Domain domain, const Allocation& region,
                                              std::size_t regions, std::size_t outside) {
   const bool layers = domain == Domain::layers;
-  std::vector<std::int32_t> weights;
+  WeightTable table;
   if (!layers) {
-    weights = edge_weights(edges, domain);
-    require_closed(edges, weights, domain, points);
+    require_closed(chains, domain, points);
+    table = WeightTable(ctx, EdgeWeights(chains, domain, points));
   }
   const std::size_t nodes = std::max(regions, outside + 1);  // with the outside, if it has no triangle
-  const WeightTable table(ctx, edges, weights, points);
   const std::vector<Link> links =
-      read_links(ctx, mesh, domains.region, table, !layers, nodes, layers ? edges.edges.size() : nodes - 1);
+      read_links(ctx, mesh, region, table, !layers, nodes, layers ? chains.vertices.size() : nodes - 1);
   std::vector<std::int32_t> values =
       RegionGraph(nodes, links).values(outside, [&](std::int32_t value, std::int32_t weight) {
         return layers ? value + 1 : domain == Domain::even_odd ? (value + weight) & 1 : value + weight;
@@ -169,7 +195,7 @@ bool is_inside(Domain domain, std::int32_t value) {
 
 }  // namespace
 
-Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points, const EdgeSources& edges,
+Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points, const SegmentChains& chains,
                      const DomainSeeds& seeds, const ConstraintOptions& options) {
   Domains domains;
   if (mesh.triangles == 0) return domains;
@@ -186,8 +212,8 @@ Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points, c
   const std::size_t regions = launch.read_word(numbers, count), outside = launch.read_word(domains.region, count);
 
   domains.attribute.assign(regions, 0);
-  if (uses_edges(options.domain)) {
-    domains.value = values_by_crossing(ctx, mesh, points, edges, options.domain, domains, regions, outside);
+  if (options.domain == Domain::even_odd || options.domain == Domain::nonzero || options.domain == Domain::layers) {
+    domains.value = values_by_crossing(ctx, mesh, points, chains, options.domain, domains.region, regions, outside);
   } else {
     domains.value.assign(regions, 1);
     const bool hull = options.domain == Domain::hull;
@@ -225,7 +251,7 @@ InsideMesh pack_inside(Context& ctx, const DomainMesh& mesh, const Domains& doma
   return packed;
 }
 
-HostDomains find_domains(Context& ctx, const HostDomainMesh& mesh, const EdgeSources& edges,
+HostDomains find_domains(Context& ctx, const HostDomainMesh& mesh, const SegmentChains& chains,
                          const ConstraintOptions& options) {
   HostDomains host;
   const std::size_t count = mesh.edge_flags.size();
@@ -235,7 +261,7 @@ HostDomains find_domains(Context& ctx, const HostDomainMesh& mesh, const EdgeSou
                    neighbors = ctx.memory.import(mesh.neighbors.data(), 3 * count * word),
                    flags = ctx.memory.import(mesh.edge_flags.data(), count * word);
   Domains domains = find_domains(ctx, {vertices, neighbors, flags, count}, mesh.points.size() + mesh.added.size() / 2,
-                                 edges, seeds, options);
+                                 chains, seeds, options);
   host.region = ctx.device.read_values<std::int32_t>(*domains.region, count);
   host.region_value = std::move(domains.value);
   host.region_attribute = std::move(domains.attribute);

@@ -23,17 +23,11 @@ struct DomainMesh {
   [[nodiscard]] auto arguments() const { return std::tie(vertices, neighbors, edge_flags); }
 };
 
-/// Constrained edges, the lower vertex first, ascending, and what they are part of, in CSR: i for segment i in the
-/// direction of the edge, -1 - i against it, as often as it was given.
-struct EdgeSources {
-  std::span<const Segment> edges;
+/// The vertices along segment s are those from offsets[s] to offsets[s + 1] - 1, as ConstrainedTriangulation has them.
+struct SegmentChains {
   std::span<const std::int64_t> offsets;
-  std::span<const std::int32_t> sources;
+  std::span<const std::int32_t> vertices;
 };
-/// Whether find_domains looks at the edges.
-[[nodiscard]] constexpr bool uses_edges(Domain domain) noexcept {
-  return domain == Domain::even_odd || domain == Domain::nonzero || domain == Domain::layers;
-}
 
 /// The triangles of ConstraintOptions::holes and regions, -1 outside of the hull.
 struct DomainSeeds {
@@ -52,11 +46,11 @@ struct Domains {
   std::vector<std::uint32_t> inside;  ///< 1 or 0 a region
   std::vector<double> attribute;
 };
-/// `edges`: with uses_edges(options.domain), else empty. O(triangles + edges + points), the graph of the regions on the
-/// host. Without triangles there are no regions, and no errors. \throws DomainError with the lowest vertex at which the
-/// segments do not close
-[[nodiscard]] Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points, const EdgeSources& edges,
-                                   const DomainSeeds& seeds, const ConstraintOptions& options);
+/// O(triangles + edges + points), the graph of the regions on the host. Without triangles there are no regions, and no
+/// errors. \throws DomainError with the lowest vertex at which the segments do not close
+[[nodiscard]] Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points,
+                                   const SegmentChains& chains, const DomainSeeds& seeds,
+                                   const ConstraintOptions& options);
 
 /// Triangles inside, in the order of the mesh; a neighbour that is not inside is CADT_NONE.
 struct InsideMesh {
@@ -78,7 +72,7 @@ struct HostDomainMesh {
   PointsView points;
   std::span<const double> added;  ///< further points, x0 y0 x1 y1 ...
 };
-[[nodiscard]] HostDomains find_domains(Context& ctx, const HostDomainMesh& mesh, const EdgeSources& edges,
+[[nodiscard]] HostDomains find_domains(Context& ctx, const HostDomainMesh& mesh, const SegmentChains& chains,
                                        const ConstraintOptions& options);
 
 }  // namespace cadt

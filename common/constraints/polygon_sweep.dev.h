@@ -1,21 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * The inside of one small polygon in triangles, by one work-item: a line sweeps over its vertices from left to right and
- * keeps the edges that it cuts in their order from bottom to top. Between two of them lies a gap. One inside the polygon
- * (an odd number of edges is below it) has a chain: the vertices on the border of what has triangles already, from the
- * left end of the edge below to that of the edge above.
+ * The inside of one small polygon in triangles, by one work-item: a line sweeps over its vertices from left to right
+ * and keeps the edges that it cuts in their order from bottom to top. Between two of them lies a gap. One inside the
+ * polygon (an odd number of edges is below it) has a chain: the vertices on the border of what has triangles already,
+ * from the left end of the edge below to that of the edge above.
  *
- *            _ 2 _______ edge          At the next vertex p of the gap all triangles are made that p sees beyond edges of
- *           / done |                   the chain. What is left of a chain therefore bends towards the line at each
- *          1 ______| 3       p         vertex, or is straight: it is seen from p as from an end of it inwards, or, where
- *           \ done |                   p lies on none of the edges, from its rightmost vertex (3) both ways.
- *            ` 4 _______ edge
+ *            _ 2 _______ edge          At the next vertex p of the gap all triangles are made that p sees beyond edges
+ * of / done |                   the chain. What is left of a chain therefore bends towards the line at each 1 ______| 3
+ * p         vertex, or is straight: it is seen from p as from an end of it inwards, or, where \ done | p lies on none
+ * of the edges, from its rightmost vertex (3) both ways. ` 4 _______ edge
  *
- * Several edges may meet in a vertex, vertices may lie on edges, which they divide, and edges may cover one another; the
- * shorter one then stands for both. What must not be are crossings. There are none if and only if each vertex, when the
- * line comes to it, lies above the edge that is next below it in the order and below the next one above: two edges that
- * are neighbours in the order while the line passes are in this order where they become neighbours and where they cease
- * to be, and so between.
+ * Several edges may meet in a vertex, vertices may lie on edges, which they divide, and edges may cover one another;
+ * the shorter one then stands for both. What must not be are crossings. There are none if and only if each vertex, when
+ * the line comes to it, lies above the edge that is next below it in the order and below the next one above: two edges
+ * that are neighbours in the order while the line passes are in this order where they become neighbours and where they
+ * cease to be, and so between.
  *
  * Vertices are numbered by their rank from left to right, those of equal x from bottom to top.
  */
@@ -34,8 +33,8 @@ typedef struct {
   cadt_u32 bottom, top, newest; /* of its chain: the ends, and the rightmost vertex */
 } cadt_sweep_edge;
 
-/* A vertex of a chain. `side`: what lies beyond the edge to the vertex above: a half-edge, a bridge, or CADT_NONE for an
- * edge of the polygon. */
+/* A vertex of a chain. `side`: what lies beyond the edge to the vertex above: a half-edge, a bridge, or CADT_NONE for
+ * an edge of the polygon. */
 typedef struct {
   cadt_u32 vertex, up, down, side;
 } cadt_chain_node;
@@ -46,7 +45,7 @@ typedef struct {
 
 /* Memory for one polygon of n points; sizes in CADT_SWEEP_WORDS. */
 typedef struct {
-  CADT_GLOBAL cadt_point* points;    /* n: of the vertices, by rank */
+  CADT_GLOBAL cadt_point* points;     /* n: of the vertices, by rank */
   CADT_GLOBAL cadt_sweep_edge* edges; /* n, and one more for a part of a chain */
   CADT_GLOBAL cadt_chain_node* nodes; /* 6 n: three a vertex, and one for each edge between two of them */
   CADT_GLOBAL cadt_u32* vertices;     /* 8 n: by half-edge, the vertex opposite of it; below 2 n triangles */
@@ -57,7 +56,7 @@ typedef struct {
   CADT_GLOBAL cadt_u32* places;       /* n: of these edges */
   CADT_GLOBAL cadt_u32* bridges;      /* n */
   cadt_u32 spare;                     /* that edge */
-  cadt_u32 room; /* n */
+  cadt_u32 room;                      /* n */
   cadt_u32 cut_count, node_count, bridge_count, triangle_count;
 } cadt_sweep;
 
@@ -80,7 +79,8 @@ CADT_FN void cadt_sweep_link(cadt_sweep* s, cadt_u32 half_edge, cadt_u32 side) {
   if (other != CADT_NONE) s->across[other] = half_edge;
 }
 
-/* The counterclockwise triangle a b c with what lies across the edges opposite of a and b. The half-edge opposite of c */
+/* The counterclockwise triangle a b c with what lies across the edges opposite of a and b. The half-edge opposite of c
+ */
 CADT_FN cadt_u32 cadt_sweep_triangle(cadt_sweep* s, cadt_u32 a, cadt_u32 b, cadt_u32 c, cadt_u32 side_a,
                                      cadt_u32 side_b) {
   /* More than there can be: edges cross, and it has not come out yet. */
@@ -102,7 +102,8 @@ CADT_FN cadt_u32 cadt_new_node(cadt_sweep* s, cadt_u32 vertex, cadt_u32 up, cadt
   return node;
 }
 
-/* Vertex p becomes the upper end of a chain, after the triangles that it sees. `side`: of the edge to the end before. */
+/* Vertex p becomes the upper end of a chain, after the triangles that it sees. `side`: of the edge to the end before.
+ */
 CADT_FN cadt_u32 cadt_add_on_top(cadt_sweep* s, CADT_GLOBAL cadt_sweep_edge* gap, cadt_u32 p, cadt_u32 side) {
   cadt_u32 at = gap->top;
   for (;;) {
@@ -183,8 +184,8 @@ CADT_FN void cadt_put_edge(cadt_sweep* s, cadt_u32 place, cadt_u32 edge) {
 }
 
 /* Puts the edges that begin at p in their order, at `place` and after; how many there are. What follows moves up by as
- * many places as it takes more than the `room` there. Of edges in one direction the longer ones begin where the shortest
- * ends. */
+ * many places as it takes more than the `room` there. Of edges in one direction the longer ones begin where the
+ * shortest ends. */
 CADT_FN cadt_u32 cadt_insert_edges(cadt_sweep* s, cadt_u32 p, cadt_u32 place, cadt_u32 room) {
   cadt_u32 count = 0u, edge = s->first_edge[p];
   while (edge != CADT_NONE) {
@@ -337,8 +338,8 @@ CADT_FN void cadt_flip_in_polygon(cadt_sweep* s, cadt_u32 h, cadt_u32 other) {
   cadt_join_in_polygon(s, u + 2u, beyond_b);
 }
 
-/* Flips edges until all that are not of the polygon are legal (C. L. Lawson, 1977). `list` has `room` for half-edges that
- * may have become illegal. */
+/* Flips edges until all that are not of the polygon are legal (C. L. Lawson, 1977). `list` has `room` for half-edges
+ * that may have become illegal. */
 CADT_FN void cadt_legalize_polygon(cadt_sweep* s, CADT_GLOBAL cadt_u32* list, cadt_u32 room) {
   CADT_DECLARE_COUNTERS(counters);
   cadt_u32 again = 1u;

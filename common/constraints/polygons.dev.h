@@ -55,18 +55,25 @@ CADT_FN cadt_sweep cadt_sweep_in(CADT_GLOBAL cadt_u32* memory, cadt_polygon* pol
 }
 
 /* ---- points ---- */
-/* All of them within the range of the narrow arithmetic: multiples of 2^-180 below 2^60. */
-CADT_FN cadt_u32 cadt_check_points(const cadt_polygon* polygon, cadt_u32* at) {
-  cadt_u32 state = CADT_POLYGON_OK;
+/* Whether the narrow arithmetic serves: it takes multiples of 2^-180 below 2^60. They are so with 2^*shift times the
+ * coordinates, unless the smallest is too far from the largest. */
+CADT_FN cadt_u32 cadt_check_points(const cadt_polygon* polygon, cadt_i32* shift, cadt_u32* at) {
+  cadt_real most = 0.0, least = CADT_INFINITY;
   for (cadt_u32 i = 0u; i < polygon->count; ++i) {
     const cadt_point p = cadt_load_point(polygon->points + polygon->first + i);
     const cadt_real x = cadt_fabs(p.x), y = cadt_fabs(p.y);
-    if (x < 0x1p60 && y < 0x1p60 && (x >= 0x1p-127 || x == 0.0) && (y >= 0x1p-127 || y == 0.0)) continue;
+    if (x > most) most = x;
+    if (y > most) most = y;
+    if (x < least && x != 0.0) least = x;
+    if (y < least && y != 0.0) least = y;
+    if (x < CADT_INFINITY && y < CADT_INFINITY) continue;
     *at = i;
-    if (!(x < CADT_INFINITY && y < CADT_INFINITY)) return CADT_POLYGON_NOT_FINITE;
-    state = CADT_POLYGON_WIDE;
+    return CADT_POLYGON_NOT_FINITE;
   }
-  return state;
+  *shift = 0;
+  if (most < 0x1p60 && least >= 0x1p-127) return CADT_POLYGON_OK;
+  *shift = 59 + CADT_EXPONENT_BIAS - CADT_CAST(cadt_i32, cadt_bits_of_real(most) >> CADT_MANTISSA_BITS);
+  return cadt_ldexp(least, *shift) >= 0x1p-127 ? CADT_POLYGON_OK : CADT_POLYGON_WIDE;
 }
 
 /* Sorts the points; `ids` and `spare` have room for all of them, the result is in either. Insertion, then merging. */
@@ -88,9 +95,8 @@ CADT_FN CADT_GLOBAL cadt_u32* cadt_sort_polygon(const cadt_polygon* polygon, CAD
       const cadt_u32 middle = cadt_min_u32(begin + run, n), end = cadt_min_u32(middle + run, n);
       cadt_u32 left = begin, right = middle;
       for (cadt_u32 to = begin; to < end; ++to) {
-        const cadt_u32 take_right =
-            left == middle ||
-            (right < end && cadt_before(cadt_load_point(points + ids[right]), cadt_load_point(points + ids[left])));
+        const cadt_u32 take_right = left == middle || (right < end && cadt_before(cadt_load_point(points + ids[right]),
+                                                                                  cadt_load_point(points + ids[left])));
         spare[to] = ids[take_right ? right++ : left++];
       }
     }
@@ -101,14 +107,18 @@ CADT_FN CADT_GLOBAL cadt_u32* cadt_sort_polygon(const cadt_polygon* polygon, CAD
   return ids;
 }
 
-/* Vertices: the different points by rank. */
-CADT_FN cadt_u32 cadt_rank_points(cadt_sweep* s, cadt_polygon* polygon) {
+/* Vertices: the different points by rank, 2^shift times as large. */
+CADT_FN cadt_u32 cadt_rank_points(cadt_sweep* s, cadt_polygon* polygon, cadt_i32 shift) {
   CADT_GLOBAL const cadt_point* points = polygon->points + polygon->first;
   CADT_GLOBAL cadt_u32* order = cadt_sort_polygon(polygon, polygon->ids, s->cut);
   cadt_u32 vertices = 0u;
   for (cadt_u32 i = 0u; i < polygon->count; ++i) {
     const cadt_u32 id = order[i];
-    const cadt_point p = cadt_load_point(points + id);
+    cadt_point p = cadt_load_point(points + id);
+    if (shift) {
+      p.x = cadt_ldexp(p.x, shift);
+      p.y = cadt_ldexp(p.y, shift);
+    }
     if (i == 0u || cadt_before(s->points[vertices - 1u], p)) {
       s->points[vertices] = p;
       s->first_edge[vertices] = s->cut_at[vertices] = CADT_NONE;
@@ -137,11 +147,10 @@ CADT_FN cadt_u32 cadt_add_ring(cadt_sweep* s, const cadt_polygon* polygon, cadt_
 }
 
 /* ---- crossings ---- */
-/* Whether the edges that begin at points i and j cross: they have a point in common within both, and it is none of the
+/* Whether the edges a b and c d cross: they have a point in common within both, and it is none of the
  * polygon's. */
-CADT_FN cadt_u32 cadt_edges_cross(const cadt_sweep* s, const cadt_polygon* polygon, cadt_u32 vertices, cadt_u32 a,
-                                  cadt_u32 b, cadt_u32 c, cadt_u32 d) {
-  (void)polygon;
+CADT_FN cadt_u32 cadt_edges_cross(const cadt_sweep* s, cadt_u32 vertices, cadt_u32 a, cadt_u32 b, cadt_u32 c,
+                                  cadt_u32 d) {
   if (cadt_turn(s, a, b, c) * cadt_turn(s, a, b, d) >= 0) return 0u;
   if (cadt_turn(s, c, d, a) * cadt_turn(s, c, d, b) >= 0) return 0u;
   for (cadt_u32 v = 0u; v < vertices; ++v)
@@ -150,10 +159,11 @@ CADT_FN cadt_u32 cadt_edges_cross(const cadt_sweep* s, const cadt_polygon* polyg
 }
 
 /* The lowest pair of edges that cross, and whether they are of one ring. */
-CADT_FN cadt_u32 cadt_find_crossing(const cadt_sweep* s, const cadt_polygon* polygon, cadt_u32 vertices, cadt_u32* first,
-                                    cadt_u32* second) {
+CADT_FN cadt_u32 cadt_find_crossing(const cadt_sweep* s, const cadt_polygon* polygon, cadt_u32 vertices,
+                                    cadt_u32* first, cadt_u32* second) {
   for (cadt_u32 r = polygon->first_ring; r < polygon->end_ring; ++r) {
-    const cadt_u32 begin = polygon->ring_begins[r] - polygon->first, end = polygon->ring_begins[r + 1u] - polygon->first;
+    const cadt_u32 begin = polygon->ring_begins[r] - polygon->first,
+                   end = polygon->ring_begins[r + 1u] - polygon->first;
     for (cadt_u32 i = begin; i < end; ++i) {
       const cadt_u32 a = polygon->ranks[i], b = polygon->ranks[i + 1u == end ? begin : i + 1u];
       for (cadt_u32 q = r; q < polygon->end_ring; ++q) {
@@ -161,7 +171,7 @@ CADT_FN cadt_u32 cadt_find_crossing(const cadt_sweep* s, const cadt_polygon* pol
                        other_end = polygon->ring_begins[q + 1u] - polygon->first;
         for (cadt_u32 j = q == r ? i + 1u : other; j < other_end; ++j) {
           const cadt_u32 c = polygon->ranks[j], d = polygon->ranks[j + 1u == other_end ? other : j + 1u];
-          if (!cadt_edges_cross(s, polygon, vertices, a, b, c, d)) continue;
+          if (!cadt_edges_cross(s, vertices, a, b, c, d)) continue;
           *first = i;
           *second = j;
           return q == r ? CADT_POLYGON_SELF_CROSSING : CADT_POLYGON_RING_CROSSING;
@@ -174,13 +184,15 @@ CADT_FN cadt_u32 cadt_find_crossing(const cadt_sweep* s, const cadt_polygon* pol
 
 /* Triangles of the polygon in `s`. What becomes of it, and two points that show why. */
 CADT_FN cadt_u32 cadt_triangulate_polygon(cadt_sweep* s, cadt_polygon* polygon, cadt_u32* first, cadt_u32* second) {
-  const cadt_u32 state = cadt_check_points(polygon, first);
+  cadt_i32 shift;
+  const cadt_u32 state = cadt_check_points(polygon, &shift, first);
   *second = *first;
   if (state != CADT_POLYGON_OK) return state;
-  const cadt_u32 vertices = cadt_rank_points(s, polygon);
+  const cadt_u32 vertices = cadt_rank_points(s, polygon, shift);
   if (polygon->first_ring == polygon->end_ring) return CADT_POLYGON_TOO_FEW_POINTS;
   for (cadt_u32 r = polygon->first_ring; r < polygon->end_ring; ++r) {
-    const cadt_u32 begin = polygon->ring_begins[r] - polygon->first, end = polygon->ring_begins[r + 1u] - polygon->first;
+    const cadt_u32 begin = polygon->ring_begins[r] - polygon->first,
+                   end = polygon->ring_begins[r + 1u] - polygon->first;
     if (cadt_add_ring(s, polygon, begin, end)) continue;
     *first = *second = begin;
     return CADT_POLYGON_TOO_FEW_POINTS;
@@ -213,9 +225,9 @@ CADT_KERNEL(cadt_triangulate_polygons, CADT_GLOBAL const cadt_point* points, CAD
 #if CADT_CONTIGUOUS
     cadt_sweep sweep = cadt_sweep_in(memory + cadt_item * item_words, &polygon);
 #else
-    cadt_sweep sweep = cadt_sweep_in(memory + CADT_CAST(cadt_u32, CADT_POLYGON_WORDS) * polygon.first +
-                                         CADT_CAST(cadt_u32, CADT_POLYGON_SPARE) * i,
-                                     &polygon);
+    cadt_sweep sweep = cadt_sweep_in(
+        memory + CADT_CAST(cadt_u32, CADT_POLYGON_WORDS) * polygon.first + CADT_CAST(cadt_u32, CADT_POLYGON_SPARE) * i,
+        &polygon);
     (void)item_words;
 #endif
     cadt_u32 first = 0u, second = 0u;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -24,8 +23,8 @@ struct Marked {
   std::vector<double> xy;
   Triangulation mesh;
   std::vector<std::uint32_t> flags;
-  std::map<Segment, std::vector<std::int32_t>> sources;  ///< of edges, lower vertex first
-  std::int32_t segments = 0;
+  std::vector<std::int64_t> offsets = {0};
+  std::vector<std::int32_t> chains;
 
   explicit Marked(std::vector<double> points) : xy(std::move(points)) {
     Options options;
@@ -44,8 +43,8 @@ struct Marked {
   void add(std::size_t t, std::size_t k, bool left = true) {
     std::int32_t from = vertex(t, k + 1), to = vertex(t, k + 2);
     if (!left) std::swap(from, to);
-    sources[{std::min(from, to), std::max(from, to)}].push_back(from < to ? segments : -1 - segments);
-    ++segments;
+    chains.insert(chains.end(), {from, to});
+    offsets.push_back(static_cast<std::int64_t>(chains.size()));
     flags[t] |= 1U << k;
     const std::int32_t n = across(t, k);
     for (std::size_t j = 0; n >= 0 && j < 3; ++j)
@@ -74,17 +73,10 @@ class Found {
         device_(open_device(options_)),
         memory_(*device_, true),
         ctx_(*device_, memory_, options_, statistics_) {
-    offsets_ = {0};
-    for (const auto& [edge, list] : marked.sources) {
-      edges_.push_back(edge);
-      sources_.insert(sources_.end(), list.begin(), list.end());
-      offsets_.push_back(static_cast<std::int64_t>(sources_.size()));
-    }
-    EdgeSources edges;
-    if (uses_edges(constraints.domain)) edges = {edges_, offsets_, sources_};
+    const SegmentChains chains = {marked.offsets, marked.chains};
     result = find_domains(ctx_, {marked.mesh.triangles(), marked.mesh.neighbors(), marked.flags, marked.xy, {}}, edges,
                           constraints);
-    pack(marked, edges, constraints);
+    pack(marked, chains, constraints);
   }
 
   HostDomains result;
@@ -92,7 +84,7 @@ class Found {
   std::vector<std::uint32_t> flags;
 
  private:
-  void pack(const Marked& marked, const EdgeSources& edges, const ConstraintOptions& constraints) {
+  void pack(const Marked& marked, const SegmentChains& chains, const ConstraintOptions& constraints) {
     const std::size_t count = marked.size();
     if (count == 0) return;
     const Allocation vertices = memory_.import(marked.mesh.triangles().data(), 12 * count),
@@ -100,7 +92,7 @@ class Found {
                      edge_flags = memory_.import(marked.flags.data(), 4 * count);
     const DomainMesh mesh = {vertices, across, edge_flags, count};
     const DomainSeeds seeds = locate_seeds(marked.mesh.triangles(), marked.xy, {}, constraints);
-    const Domains domains = find_domains(ctx_, mesh, marked.xy.size() / 2, edges, seeds, constraints);
+    const Domains domains = find_domains(ctx_, mesh, marked.xy.size() / 2, chains, seeds, constraints);
     const InsideMesh packed = pack_inside(ctx_, mesh, domains);
     if (packed.triangles == 0) return;
     triangles = device_->read_values<std::int32_t>(*packed.vertices, 3 * packed.triangles);
@@ -113,9 +105,6 @@ class Found {
   Memory memory_;
   Statistics statistics_;
   Context ctx_;
-  std::vector<Segment> edges_;
-  std::vector<std::int64_t> offsets_;
-  std::vector<std::int32_t> sources_;
 };
 
 /// Regions, triangle by triangle, and the fewest constrained edges to the outside.

@@ -52,6 +52,9 @@ struct DuplicateLists {
 void constrain(Context& ctx, Mesh& mesh, std::size_t points, std::size_t distinct, const DuplicateLists& duplicates,
                SegmentJob& job);
 
+/// As Triangulator::triangulate.
+[[nodiscard]] Triangulation triangulate_on_host(const std::shared_ptr<Triangulator::State>& state, PointsView points);
+
 /// The mesh of a call with segments, on the host; without triangles if `job.crossed`. The job's device memory is that
 /// of the call: only `segments` stays.
 [[nodiscard]] Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state,

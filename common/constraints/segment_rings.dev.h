@@ -3,13 +3,13 @@
  * A piece of a segment that is no edge becomes one: the triangles that it crosses, its cavity, are replaced by those of
  * the two polygons on its sides, at once. Their vertices lie in a ring, counterclockwise from a:
  *
- *          1 ----- 2 ----- 3                  place 0: a, 1 2 3: the upper chain, 4: b, 5 6: the lower chain, 7: a again
- *         / \     / \     / \                 edge x of the ring is that from place x to x + 1
+ *          1 ----- 2 ----- 3                  place 0: a, 1 2 3: the upper chain, 4: b, 5 6: the lower chain, 7: a
+ * again / \     / \     / \                 edge x of the ring is that from place x to x + 1
  *        /   \   /   \   /   \
  *       a . . . . . . . . . . b               k crossed triangles have k vertices beside a and b (a vertex counts as
  *        \   /   \   /   \   /                often as the ring comes by: dangling edges are walked along twice), and
- *         \ /     \ /     \ /                 the two polygons take k triangles: each vertex brings one, so no memory is
- *          6 ----- - ----- 5                  allocated. The triangle of a vertex is written where a crossed one was.
+ *         \ /     \ /     \ /                 the two polygons take k triangles: each vertex brings one, so no memory
+ * is 6 ----- - ----- 5                  allocated. The triangle of a vertex is written where a crossed one was.
  *
  * Conflicts. Each launch claims the crossed triangles of all pieces: the lowest key stays. A piece goes on if it holds
  * all of its triangles, and none beyond its ring is held by a lower key; pieces that only share a neighbour write
@@ -30,11 +30,10 @@ typedef struct {
   CADT_GLOBAL cadt_u32* piece;
   cadt_u32 room;
 } cadt_rings;
-#define CADT_RINGS_PARAMETERS                                                                                \
+#define CADT_RINGS_PARAMETERS                                                                              \
   CADT_GLOBAL cadt_u32 *ring_vertex, CADT_GLOBAL cadt_u32 *ring_triangle, CADT_GLOBAL cadt_u32 *ring_edge, \
       CADT_GLOBAL cadt_u32 *ring_outer, CADT_GLOBAL cadt_u32 *ring_piece, cadt_u32 room
-#define CADT_RINGS(rings) \
-  const cadt_rings rings = {ring_vertex, ring_triangle, ring_edge, ring_outer, ring_piece, room}
+#define CADT_RINGS(rings) const cadt_rings rings = {ring_vertex, ring_triangle, ring_edge, ring_outer, ring_piece, room}
 
 #define CADT_RING_NONE 0x3FFFFFFFu    /* also the mask of the triangle */
 #define CADT_RING_FLAGGED 0x80000000u /* the edge is constrained */
@@ -60,7 +59,8 @@ CADT_KERNEL(cadt_places_of_pieces, CADT_PIECES_PARAMETERS, cadt_u32 taken, cadt_
 
 /* A walk that writes a ring and claims the triangles that it enters. */
 typedef struct {
-  cadt_u32 high, low, waiting; /* the last places on the left and on the right; the one that the next triangle goes to */
+  cadt_u32 high, low,
+      waiting; /* the last places on the left and on the right; the one that the next triangle goes to */
 } cadt_ring_writer;
 
 CADT_FN void cadt_put_vertex(const cadt_rings* rings, cadt_u32 place, cadt_u32 vertex, cadt_u32 piece) {
@@ -174,8 +174,8 @@ CADT_KERNEL(cadt_decide_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_RINGS_PARAM
       const cadt_u32 outer = cadt_across_of(&mesh, edge), holder = claims[CADT_TRIANGLE_OF(outer)];
       if (holder < key) lost = 1u;
       rings.outer[x] = outer;
-      rings.triangle[x] = t | (holder == key ? CADT_RING_DANGLES : 0u) |
-                          (cadt_is_flagged(&mesh, edge) ? CADT_RING_FLAGGED : 0u);
+      rings.triangle[x] =
+          t | (holder == key ? CADT_RING_DANGLES : 0u) | (cadt_is_flagged(&mesh, edge) ? CADT_RING_FLAGGED : 0u);
     }
     if (lost) cadt_store_relaxed(wins + s, 0u);
   }
@@ -184,8 +184,8 @@ CADT_KERNEL(cadt_decide_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_RINGS_PARAM
 /* The rings of the other pieces lose their edges. Of those that go on nobody asks any more who holds a triangle: its
  * claim becomes the place of its edge in the ring. (The first and the last triangle have two, but no other edge of the
  * ring is on their other side.) */
-CADT_KERNEL(cadt_settle_cavities, CADT_RINGS_PARAMETERS, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* claims, CADT_GLOBAL const cadt_u32* wins) {
+CADT_KERNEL(cadt_settle_cavities, CADT_RINGS_PARAMETERS, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* claims,
+            CADT_GLOBAL const cadt_u32* wins) {
   CADT_RINGS(rings);
   CADT_FOR(x, count, grain) {
     if (rings.edge[x] == CADT_NONE) continue;
@@ -197,8 +197,8 @@ CADT_KERNEL(cadt_settle_cavities, CADT_RINGS_PARAMETERS, cadt_u32 count, cadt_u3
 }
 
 /* The ends of pieces that have to wait go to `pairs`. */
-CADT_KERNEL(cadt_keep_pieces, CADT_PIECES_PARAMETERS, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL const cadt_u32* wins, CADT_GLOBAL cadt_u32* pairs, CADT_GLOBAL cadt_u32* words) {
+CADT_KERNEL(cadt_keep_pieces, CADT_PIECES_PARAMETERS, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL const cadt_u32* wins,
+            CADT_GLOBAL cadt_u32* pairs, CADT_GLOBAL cadt_u32* words) {
   CADT_PIECES(pieces);
   CADT_FOR(s, count, grain) {
     if (wins[s] || !pieces.sizes[s]) continue;

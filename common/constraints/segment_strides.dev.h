@@ -2,8 +2,8 @@
  *
  * Long pieces, which one work-item would follow for too long, are walked along in strides, all at the same time:
  *
- *     a . . . . . o . . . . . . . o . . . . . . o . . . . . . . b      o: a triangle found by a probe: point location of
- *       stride 0     stride 1        stride 2      stride 3               a place on the piece, in floating point
+ *     a . . . . . o . . . . . . . o . . . . . . o . . . . . . . b      o: a triangle found by a probe: point location
+ * of stride 0     stride 1        stride 2      stride 3               a place on the piece, in floating point
  *
  * Each stride walks until it enters the first triangle of the next one. A probe need not find what it looks for, only
  * some triangle that the piece crosses: that is decided exactly. Where strides do not fit together, which rounding may
@@ -21,7 +21,7 @@ typedef struct {
   CADT_GLOBAL cadt_u32* steps; /* triangles that it enters; behind, those of the strides before */
   CADT_GLOBAL cadt_u32* left;  /* of their apexes, those on the left; the same */
 } cadt_strides;
-#define CADT_STRIDES_PARAMETERS                                                                                  \
+#define CADT_STRIDES_PARAMETERS                                                                               \
   CADT_GLOBAL cadt_u32 *stride_piece, CADT_GLOBAL cadt_u32 *stride_start, CADT_GLOBAL cadt_u32 *stride_steps, \
       CADT_GLOBAL cadt_u32 *stride_left
 #define CADT_STRIDES(strides) const cadt_strides strides = {stride_piece, stride_start, stride_steps, stride_left}
@@ -49,8 +49,8 @@ CADT_FN cadt_u32 cadt_triangle_near(const cadt_segment_mesh* m, cadt_u32 vertex_
   cadt_u32 nearest = 0u;
   cadt_real least = CADT_INFINITY;
   for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_PROBE_SAMPLES); ++i) {
-    const cadt_u32 v = CADT_CAST(
-        cadt_u32, CADT_CAST(cadt_u64, i) * vertex_count / CADT_CAST(cadt_u64, CADT_PROBE_SAMPLES));
+    const cadt_u32 v =
+        CADT_CAST(cadt_u32, CADT_CAST(cadt_u64, i) * vertex_count / CADT_CAST(cadt_u64, CADT_PROBE_SAMPLES));
     const cadt_point p = cadt_load_point(m->points + v);
     const cadt_real away = cadt_fabs(p.x - q.x) + cadt_fabs(p.y - q.y);
     if (away < least) {

@@ -158,6 +158,10 @@ std::unique_ptr<DeviceTriangulation::Data> triangulate_on_device(const std::shar
   return data;
 }
 
+Triangulation triangulate_on_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
+  return to_host(state, points);
+}
+
 Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state, PointsView points,
                                         SegmentJob& job, SegmentResults& segments) {
   return to_host(state, points, &job, &segments);

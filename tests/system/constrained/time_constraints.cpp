@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What segments cost: resident calls with and without them, in turn, and how many pieces were inserted. One line a case.
+// What segments cost: resident calls with and without them, in turn, and how many pieces were inserted. One line a
+// case.
 //   cadt-time-constraints BACKEND CASE [POINTS]
 // CASE: edges (as many segments as points, a tenth of them no edges), one (across all points), long (1,000 across all
 // points)
@@ -41,7 +42,8 @@ Input edges(std::size_t n, const Options& options) {
   const Triangulation mesh = triangulate(input.xy, options);
   const auto t = mesh.triangles(), across = mesh.neighbors();
   const auto at = [&](std::int32_t v) {
-    return std::array<double, 2>{input.xy[2 * static_cast<std::size_t>(v)], input.xy[2 * static_cast<std::size_t>(v) + 1]};
+    return std::array<double, 2>{input.xy[2 * static_cast<std::size_t>(v)],
+                                 input.xy[2 * static_cast<std::size_t>(v) + 1]};
   };
   std::vector<bool> used(mesh.number_of_triangles());
   std::vector<Segment> plain;
@@ -126,12 +128,15 @@ int main(int argc, char** argv) {
       memory->wait();
     }));
   }
-  std::printf("%s %s: %zu points, %zu segments: %.3f ms, without segments %.3f ms; %llu inserted, %llu retries, %llu launches\n",
-              argv[1], which.c_str(), points.size, input.segments.size(), median(constrained), median(plain),
-              static_cast<unsigned long long>(statistics.inserted_segments),
-              static_cast<unsigned long long>(statistics.segment_retries),
-              static_cast<unsigned long long>(statistics.launches));
+  std::printf(
+      "%s %s: %zu points, %zu segments: %.3f ms, without segments %.3f ms; %llu inserted, %llu retries, %llu "
+      "launches\n",
+      argv[1], which.c_str(), points.size, input.segments.size(), median(constrained), median(plain),
+      static_cast<unsigned long long>(statistics.inserted_segments),
+      static_cast<unsigned long long>(statistics.segment_retries),
+      static_cast<unsigned long long>(statistics.launches));
   for (const KernelTime& k : statistics.kernels)
-    std::printf("  %-28s %5llu %10.3f ms\n", k.name.c_str(), static_cast<unsigned long long>(k.launches), k.milliseconds);
+    std::printf("  %-28s %5llu %10.3f ms\n", k.name.c_str(), static_cast<unsigned long long>(k.launches),
+                k.milliseconds);
   return 0;
 }

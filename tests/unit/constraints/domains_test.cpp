@@ -74,7 +74,7 @@ class Found {
         memory_(*device_, true),
         ctx_(*device_, memory_, options_, statistics_) {
     const SegmentChains chains = {marked.offsets, marked.chains};
-    result = find_domains(ctx_, {marked.mesh.triangles(), marked.mesh.neighbors(), marked.flags, marked.xy, {}}, edges,
+    result = find_domains(ctx_, {marked.mesh.triangles(), marked.mesh.neighbors(), marked.flags, marked.xy, {}}, chains,
                           constraints);
     pack(marked, chains, constraints);
   }

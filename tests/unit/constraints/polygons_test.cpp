@@ -318,7 +318,10 @@ TEST_P(Polygons, FixturesOfEarcut) {
                                                         {"empty-square", PolygonStatus::zero_area},
                                                         {"issue107", PolygonStatus::too_few_points},
                                                         {"issue83", PolygonStatus::too_few_points},
-                                                        {"simplified-us-border", PolygonStatus::self_crossing}};
+                                                        {"water-huge", PolygonStatus::too_few_points},
+                                                        {"water-huge2", PolygonStatus::too_few_points},
+                                                        {"simplified-us-border", PolygonStatus::self_crossing},
+                                                        {"water", PolygonStatus::self_crossing}};
   PolygonSet set;
   std::vector<std::string> names;
   std::vector<double> areas;

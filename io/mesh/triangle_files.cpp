@@ -17,14 +17,6 @@ struct EleHeader {
 /// "0 0 0 0\n" is the shortest line; the last one may lack its end.
 constexpr std::size_t shortest_line = 8;
 
-/// The same file name with another suffix.
-std::string sibling(const std::string& path, const char* suffix) {
-  const std::size_t dot = path.find_last_of('.');
-  const std::size_t slash = path.find_last_of(system_file::separators);
-  const bool has_suffix = dot != std::string::npos && (slash == std::string::npos || dot > slash);
-  return (has_suffix ? path.substr(0, dot) : path) + suffix;
-}
-
 /// First index of the .node file beside the .ele; nothing if there is none.
 std::optional<std::int64_t> base_of_node_file(const std::string& path) {
   const std::string node = sibling(path, ".node");

@@ -82,8 +82,7 @@ LabelSegments label_segments(std::span<const std::int32_t> labels, std::size_t w
 }
 
 std::vector<std::int32_t> triangle_labels(std::span<const double> xy, std::span<const std::int32_t> triangles,
-                                          std::span<const std::int32_t> labels, std::size_t width,
-                                          std::size_t height) {
+                                          std::span<const std::int32_t> labels, std::size_t width, std::size_t height) {
   const Pixels pixels(labels, width, height);
   require_labels(labels);
   // A centroid on the border, or beyond it by rounding, belongs to the next pixel.

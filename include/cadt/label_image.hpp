@@ -36,11 +36,11 @@ struct LabelSegments {
 ///     const auto label = cadt::triangle_labels(boundary.xy, mesh.mesh().triangles(), labels, width, height);
 ///
 /// Boundaries have the steps of the pixels. To smooth them, join segments to polylines that end where other than two
-/// meet, simplify each of these (such as by Douglas and Peucker's method) without moving its ends, and use the result in
-/// place of `segments`; `sides` still holds for each polyline. find_crossings shows polylines that were simplified too
-/// far. `labels`: row by row from the top. O(pixels) time, O(width + segments) memory. Thread-safe. \throws InputError
-/// if there are not width x height labels or none, or with the index of a pixel that has outside_label; LimitError for
-/// 2^31 corners or more
+/// meet, simplify each of these (such as by Douglas and Peucker's method) without moving its ends, and use the result
+/// in place of `segments`; `sides` still holds for each polyline. find_crossings shows polylines that were simplified
+/// too far. `labels`: row by row from the top. O(pixels) time, O(width + segments) memory. Thread-safe. \throws
+/// InputError if there are not width x height labels or none, or with the index of a pixel that has outside_label;
+/// LimitError for 2^31 corners or more
 [[nodiscard]] CADT_API LabelSegments label_segments(std::span<const std::int32_t> labels, std::size_t width,
                                                     std::size_t height);
 
@@ -49,7 +49,7 @@ struct LabelSegments {
 /// Thread-safe. \throws InputError as label_segments, or for an index that is out of range
 [[nodiscard]] CADT_API std::vector<std::int32_t> triangle_labels(std::span<const double> xy,
                                                                  std::span<const std::int32_t> triangles,
-                                                                 std::span<const std::int32_t> labels, std::size_t width,
-                                                                 std::size_t height);
+                                                                 std::span<const std::int32_t> labels,
+                                                                 std::size_t width, std::size_t height);
 
 }  // namespace cadt

@@ -91,7 +91,8 @@ LabelImage read_label_image(const std::string& path) {
   const std::size_t channels = png_get_channels(reader.png, reader.info);
   const std::size_t bytes_per_channel = png_get_bit_depth(reader.png, reader.info) == 16 ? 2 : 1;
   constexpr std::size_t most_per_byte = 1032;  // what a byte of Deflate can stand for
-  if (row_bytes > most_per_byte * file.bytes().size() / image.height) fail("the image is larger than its file can hold");
+  if (row_bytes > most_per_byte * file.bytes().size() / image.height)
+    fail("the image is larger than its file can hold");
   if (channels >= 3 && bytes_per_channel == 2) fail("has colours of 16 bits; convert it to 8 bits, or to grey values");
 
   std::vector<png_byte> pixels(row_bytes * image.height);

@@ -104,8 +104,8 @@ void write_place(AtomicFile& out, std::int64_t number, double x, double y) {
 }
 
 void write_poly(AtomicFile& out, const SegmentsFile& graph, int base) {
-  write_node_section(out, {graph.xy, graph.attributes, graph.attributes_per_point, graph.markers, !graph.markers.empty()},
-                     base);
+  write_node_section(
+      out, {graph.xy, graph.attributes, graph.attributes_per_point, graph.markers, !graph.markers.empty()}, base);
   write_rows(out, graph, base);
   out.write(std::to_string(graph.holes.size()) + "\n");
   std::int64_t number = base;

@@ -21,7 +21,8 @@ void SegmentCollector::close_ring(std::size_t first) {
 std::int32_t read_index(TextScanner& scanner, std::size_t points, std::int64_t base) {
   const std::int64_t given = scanner.integer("the index of a point");
   const std::int64_t index = given - base;
-  if (index < 0 || static_cast<std::uint64_t>(index) >= points || static_cast<std::uint64_t>(index) >= most_indexed_points) {
+  if (index < 0 || static_cast<std::uint64_t>(index) >= points ||
+      static_cast<std::uint64_t>(index) >= most_indexed_points) {
     scanner.fail("index " + std::to_string(given) + " is out of range: the " + std::to_string(points) +
                  " points count from " + std::to_string(base));
   }

@@ -19,8 +19,8 @@ struct LabelImage {
 
 /// Reads a .png: the label of a pixel is its value where the image is grey (1 to 16 bits), its index where it has a
 /// palette, else its colour as 0xRRGGBB. Anti-aliased images have labels of their own where colours mix: they need a
-/// threshold first. "-" is standard input. Memory is bounded by a multiple of the file's size, whatever its header claims.
-/// \throws FileError, also for colours of 16 bits and for transparent pixels
+/// threshold first. "-" is standard input. Memory is bounded by a multiple of the file's size, whatever its header
+/// claims. \throws FileError, also for colours of 16 bits and for transparent pixels
 [[nodiscard]] LabelImage read_label_image(const std::string& path);
 
 }  // namespace cadt::io

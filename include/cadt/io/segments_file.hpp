@@ -15,8 +15,8 @@
 
 namespace cadt::io {
 
-/// Points with segments between them, as read. All indices are 0-based, whatever they are in the file. The view is valid
-/// as long as `xy` is unchanged.
+/// Points with segments between them, as read. All indices are 0-based, whatever they are in the file. The view is
+/// valid as long as `xy` is unchanged.
 struct SegmentsFile {
   std::vector<double> xy;          ///< n x 2
   std::vector<double> attributes;  ///< n x attributes_per_point; the third coordinate where a format has one
@@ -40,7 +40,8 @@ struct SegmentsFile {
 ///   geojson json  all geometries, also of features and collections; or a bare array of rings, as earcut takes it. The
 ///            last position of a ring, which repeats the first, is left out. A third coordinate becomes the attribute
 ///            if all positions have one
-///   txt      CDT (points, edges: a first line of two numbers) or detria (points, polylines, edges: of three); polylines
+///   txt      CDT (points, edges: a first line of two numbers) or detria (points, polylines, edges: of three);
+///   polylines
 ///            are closed. CDT's edges count from 1 if they use the number of points and not 0
 ///   dat      poly2tri: an outline, rings behind HOLE, points behind STEINER
 /// "-" is standard input, for which `format` is required. Numbers do not depend on the C locale. Memory is bounded by
@@ -52,9 +53,9 @@ struct SegmentsFile {
 /// Names of the formats that segments can be read from.
 [[nodiscard]] std::vector<std::string> segment_read_formats();
 
-/// Polygons with holes, in the layout of GeoArrow: polygon p has the rings polygon_offsets[p] to polygon_offsets[p + 1] -
-/// 1, the outer one first; ring r has the points ring_offsets[r] to ring_offsets[r + 1] - 1 of xy. No ring repeats its
-/// first point at its end.
+/// Polygons with holes, in the layout of GeoArrow: polygon p has the rings polygon_offsets[p] to polygon_offsets[p + 1]
+/// - 1, the outer one first; ring r has the points ring_offsets[r] to ring_offsets[r + 1] - 1 of xy. No ring repeats
+/// its first point at its end.
 struct PolygonsFile {
   std::vector<double> xy;
   std::vector<std::int64_t> ring_offsets{0};

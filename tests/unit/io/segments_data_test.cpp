@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files with segments of other projects: the numbers of vertices, segments and holes that were counted apart from cadt. They
-// are not part of this repository: CADT_DATA_DIR says where they are.
+// Files with segments of other projects: the numbers of vertices, segments and holes that were counted apart from cadt.
+// They are not part of this repository: CADT_DATA_DIR says where they are.
 #include <cadt/io/segments_file.hpp>
 
 #include <algorithm>
@@ -32,7 +32,8 @@ std::vector<Counted> counted_files() {
   for (std::string line; std::getline(in, line);) {
     std::smatch match;
     if (!std::regex_match(line, match, form)) continue;
-    files.push_back({match[1], std::stoul(match[2]), std::stoul(match[3]), match[4].matched ? std::stoul(match[4]) : 0});
+    files.push_back(
+        {match[1], std::stoul(match[2]), std::stoul(match[3]), match[4].matched ? std::stoul(match[4]) : 0});
   }
   return files;
 }

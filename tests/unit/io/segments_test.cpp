@@ -33,8 +33,7 @@ const std::string feature = R"({"type":"Feature","properties":{"coordinates":[7]
 INSTANTIATE_TEST_SUITE_P(
     Files, SegmentReads,
     ::testing::Values(
-        GoodGraph{
-            "poly_base_1", "poly", "2 2 0 0\n1 5 6\n2 7 8\n1 0\n1 2 1\n0\n", {5, 6, 7, 8}, {{1, 0}}},
+        GoodGraph{"poly_base_1", "poly", "2 2 0 0\n1 5 6\n2 7 8\n1 0\n1 2 1\n0\n", {5, 6, 7, 8}, {{1, 0}}},
         GoodGraph{"poly_base_0_comments",
                   "poly",
                   "# c\n2 2 0 0 # c\n0 5 6\n\n1 7 8\n# c\n1\n77 0 1 # c\n0\n# end\n",
@@ -61,32 +60,44 @@ INSTANTIATE_TEST_SUITE_P(
                   "0 0\n9 0\n0 9\nHOLE\n1 1\n2 1\n1 2\nSTEINER\n3 3\n4 4\n",
                   {0, 0, 9, 0, 0, 9, 1, 1, 2, 1, 1, 2, 3, 3, 4, 4},
                   {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}}},
-        GoodGraph{"geojson_line", "geojson", R"({"type":"LineString","coordinates":[[1,2],[3,4],[1,2]]})",
-                  {1, 2, 3, 4, 1, 2}, {{0, 1}, {1, 2}}},
-        GoodGraph{"geojson_type_last", "json", R"({"coordinates":[[1,2],[3,4]],"type":"LineString"})",
-                  {1, 2, 3, 4}, {{0, 1}}},
-        GoodGraph{"geojson_lines", "geojson",
+        GoodGraph{"geojson_line",
+                  "geojson",
+                  R"({"type":"LineString","coordinates":[[1,2],[3,4],[1,2]]})",
+                  {1, 2, 3, 4, 1, 2},
+                  {{0, 1}, {1, 2}}},
+        GoodGraph{"geojson_type_last",
+                  "json",
+                  R"({"coordinates":[[1,2],[3,4]],"type":"LineString"})",
+                  {1, 2, 3, 4},
+                  {{0, 1}}},
+        GoodGraph{"geojson_lines",
+                  "geojson",
                   R"({"type":"MultiLineString","coordinates":[[[1,2],[3,4]],[],[[5,6],[7,8]]]})",
-                  {1, 2, 3, 4, 5, 6, 7, 8}, {{0, 1}, {2, 3}}},
-        GoodGraph{"geojson_polygon", "geojson",
+                  {1, 2, 3, 4, 5, 6, 7, 8},
+                  {{0, 1}, {2, 3}}},
+        GoodGraph{"geojson_polygon",
+                  "geojson",
                   R"({"type":"Polygon","coordinates":[[[0,0],[9,0],[0,9],[0,0]],[[1,1],[2,1],[1,2]]]})",
-                  {0, 0, 9, 0, 0, 9, 1, 1, 2, 1, 1, 2}, {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}}},
-        GoodGraph{"geojson_collection", "geojson",
+                  {0, 0, 9, 0, 0, 9, 1, 1, 2, 1, 1, 2},
+                  {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}}},
+        GoodGraph{"geojson_collection",
+                  "geojson",
                   R"({"type":"FeatureCollection","bbox":[1,2,3],"features":[)" + feature +
                       R"({"type":"Point","coordinates":[1,2]}},)" + feature + R"(null},)" + feature +
                       R"({"type":"GeometryCollection","geometries":[{"type":"MultiPoint","coordinates":[[3,4]]},)"
                       R"({"type":"LineString","coordinates":[[5,6],[7,8]]}]}}]})",
-                  {1, 2, 3, 4, 5, 6, 7, 8}, {{2, 3}}},
-        GoodGraph{"rings", "json", "[[[0,0],[9,0],[0,9]],[[1,1]]]", {0, 0, 9, 0, 0, 9, 1, 1},
-                  {{0, 1}, {1, 2}, {2, 0}}},
+                  {1, 2, 3, 4, 5, 6, 7, 8},
+                  {{2, 3}}},
+        GoodGraph{"rings", "json", "[[[0,0],[9,0],[0,9]],[[1,1]]]", {0, 0, 9, 0, 0, 9, 1, 1}, {{0, 1}, {1, 2}, {2, 0}}},
         GoodGraph{"ring_of_one_place", "json", "[[[3,3],[3,3]]]", {3, 3}, {}}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(PolyFile, HasMarkersAttributesHolesAndRegions) {
   const Folder folder;
   const SegmentsFile graph = read_segments(
-      folder.file("a.poly", "2 2 2 1\n1 5 6 10 11 3\n2 7 8 12 13 -4\n1 1\n1 1 2 9\n2\n1 0.5 0.25\n2 1 2\n2\n1 3 4 8\n"
-                            "2 5 6 7 0.1\n"));
+      folder.file("a.poly",
+                  "2 2 2 1\n1 5 6 10 11 3\n2 7 8 12 13 -4\n1 1\n1 1 2 9\n2\n1 0.5 0.25\n2 1 2\n2\n1 3 4 8\n"
+                  "2 5 6 7 0.1\n"));
   EXPECT_EQ(graph.attributes, (Values{10, 11, 12, 13}));
   EXPECT_EQ(graph.attributes_per_point, 2U);
   EXPECT_EQ(graph.markers, (std::vector<std::int32_t>{3, -4}));
@@ -127,10 +138,11 @@ TEST(ThirdCoordinates, BecomeTheAttribute) {
 TEST(Polygons, HaveOffsetsAndFeatures) {
   const Folder folder;
   const std::string square = "[[0,0],[4,0],[4,4],[0,4],[0,0]]", hole = "[[1,1],[1,2],[2,2],[1,1]]";
-  const PolygonsFile file = read_polygons(folder.file(
-      "a.geojson", R"({"type":"FeatureCollection","features":[)" + feature + R"({"type":"Point","coordinates":[1,2]}},)" +
-                       feature + R"({"type":"MultiPolygon","coordinates":[[)" + square + "," + hole + "],[" + hole +
-                       "]]}}," + feature + R"({"type":"Polygon","coordinates":[)" + square + "]}}]}"));
+  const PolygonsFile file = read_polygons(
+      folder.file("a.geojson", R"({"type":"FeatureCollection","features":[)" + feature +
+                                   R"({"type":"Point","coordinates":[1,2]}},)" + feature +
+                                   R"({"type":"MultiPolygon","coordinates":[[)" + square + "," + hole + "],[" + hole +
+                                   "]]}}," + feature + R"({"type":"Polygon","coordinates":[)" + square + "]}}]}"));
   EXPECT_EQ(file.ring_offsets, (std::vector<std::int64_t>{0, 4, 7, 10, 14}));
   EXPECT_EQ(file.polygon_offsets, (std::vector<std::int64_t>{0, 2, 3, 4}));
   EXPECT_EQ(file.features, (std::vector<std::int32_t>{1, 1, 2}));
@@ -162,13 +174,13 @@ TEST_P(SegmentErrors, NameTheLine) {
 INSTANTIATE_TEST_SUITE_P(
     Files, SegmentErrors,
     ::testing::Values(
-        BadGraph{"empty", "poly", "", 0, "is empty"},
-        BadGraph{"format", "svg", "x", 0, "known: poly edge edg"},
+        BadGraph{"empty", "poly", "", 0, "is empty"}, BadGraph{"format", "svg", "x", 0, "known: poly edge edg"},
         BadGraph{"poly_index", "poly", "2 2 0 0\n1 5 6\n2 7 8\n1 0\n1 0 2\n0\n", 5,
                  "index 0 is out of range: the 2 points count from 1"},
         BadGraph{"poly_index_behind", "poly", "2 2 0 0\n0 5 6\n1 7 8\n1 0\n1 0 2\n0\n", 5,
                  "index 2 is out of range: the 2 points count from 0"},
-        BadGraph{"poly_too_many_segments", "poly", "1 2 0 0\n1 5 6\n99 0\n1 1 1\n0\n", 3, "more than the file has room"},
+        BadGraph{"poly_too_many_segments", "poly", "1 2 0 0\n1 5 6\n99 0\n1 1 1\n0\n", 3,
+                 "more than the file has room"},
         BadGraph{"poly_marker_missing", "poly", "1 2 0 0\n1 5 6\n1 1\n1 1 1\n0\n", 4, "the marker should be"},
         BadGraph{"poly_marker_extra", "poly", "1 2 0 0\n1 5 6\n1 0\n1 1 1 4\n0\n", 4, "unexpected '4'"},
         BadGraph{"poly_no_holes", "poly", "1 2 0 0\n1 5 6\n1 0\n1 1 1\n", 4, "the number of holes should be"},
@@ -189,7 +201,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadGraph{"obj_alone", "obj", "v 1 2 3\nl 1\n", 2, "a line needs two vertices"},
         BadGraph{"obj_keyword", "obj", "v 1 2 3\nx\n", 2, "is not a keyword of OBJ"},
         BadGraph{"txt_header", "txt", "1 2 3 4\n", 1, "CDT's files have two numbers"},
-        BadGraph{"cdt_index", "txt", "2 2\n0 0\n1 0\n0 1\n1 2\n", 5, "index 2 is out of range: the 2 points count from 0"},
+        BadGraph{"cdt_index", "txt", "2 2\n0 0\n1 0\n0 1\n1 2\n", 5,
+                 "index 2 is out of range: the 2 points count from 0"},
         BadGraph{"cdt_index_negative", "txt", "2 1\n0 0\n1 0\n-1 1\n", 4, "index -1 is out of range"},
         BadGraph{"cdt_end", "txt", "2 1\n0 0\n1 0\n", 3, "the file ends where an edge should be"},
         BadGraph{"detria_type", "txt", "3 1 0\n3\n3\n0 0\n1 0\n0 1\n0\n1\n2\n", 3, "more than the file has room"},
@@ -217,8 +230,9 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(WrittenSegments, ReadBack) {
   const Folder folder;
   const std::string first =
-      folder.file("a.poly", "3 2 1 1\n0 0.1 0 10 3\n1 1 0 12 -4\n2 0 1 5 0\n2 1\n0 0 1 9\n1 2 1 0\n1\n0 0.5 0.25\n1\n0 "
-                            "0.125 4 8\n");
+      folder.file("a.poly",
+                  "3 2 1 1\n0 0.1 0 10 3\n1 1 0 12 -4\n2 0 1 5 0\n2 1\n0 0 1 9\n1 2 1 0\n1\n0 0.5 0.25\n1\n0 "
+                  "0.125 4 8\n");
   const SegmentsFile graph = read_segments(first);
   for (const int base : {0, 1}) {
     WriteSegmentsOptions options;

@@ -43,7 +43,8 @@ inline std::string why_wrong(std::span<const std::int32_t> labels, std::size_t w
   }
   std::vector<std::vector<std::array<double, 2>>> directions(found.xy.size() / 2);
   for (std::size_t s = 0; s < found.segments.size(); ++s) {
-    const auto from = static_cast<std::size_t>(found.segments[s][0]), to = static_cast<std::size_t>(found.segments[s][1]);
+    const auto from = static_cast<std::size_t>(found.segments[s][0]),
+               to = static_cast<std::size_t>(found.segments[s][1]);
     if (from >= found.xy.size() / 2 || to >= found.xy.size() / 2) return "an end out of range";
     const double dx = found.xy[2 * to] - found.xy[2 * from], dy = found.xy[2 * to + 1] - found.xy[2 * from + 1];
     if (!((dx > 0 && dy == 0) || (dx == 0 && dy < 0))) return "a segment neither rightwards nor downwards";

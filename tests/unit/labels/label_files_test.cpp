@@ -99,9 +99,9 @@ TEST(LabelImagesOfOthers, HaveEverySideOfTheirPixelsOnce) {
   const char* chosen = std::getenv("CADT_DATA_DIR");
   const fs::path data = fs::path(chosen != nullptr ? chosen : CADT_DEFAULT_DATA_DIR) / "pslg";
   if (!fs::exists(data)) GTEST_SKIP() << "no " << data;
-  for (const Known& known : {Known{"nanomesh_segmented_image.png", 200, 200, 2}, Known{"oof2_composition.png", 100, 100, 6},
-                             Known{"oof2_ellipses.png", 288, 288, 363}, Known{"oof2_small.png", 150, 150, 8},
-                             Known{"stardist_mask2d.png", 512, 512, 126}}) {
+  for (const Known& known : {Known{"nanomesh_segmented_image.png", 200, 200, 2},
+                             Known{"oof2_composition.png", 100, 100, 6}, Known{"oof2_ellipses.png", 288, 288, 363},
+                             Known{"oof2_small.png", 150, 150, 8}, Known{"stardist_mask2d.png", 512, 512, 126}}) {
     SCOPED_TRACE(known.name);
     const LabelImage image = read_label_image((data / known.name).string());
     EXPECT_EQ(image.width, known.width);

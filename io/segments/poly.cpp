@@ -107,23 +107,28 @@ void write_poly(AtomicFile& out, const SegmentsFile& graph, int base) {
   write_node_section(
       out, {graph.xy, graph.attributes, graph.attributes_per_point, graph.markers, !graph.markers.empty()}, base);
   write_rows(out, graph, base);
-  out.write(std::to_string(graph.holes.size()) + "\n");
+  write_places(out, graph.holes, graph.regions, base);
+}
+
+}  // namespace
+
+void write_places(AtomicFile& out, std::span<const std::array<double, 2>> holes, std::span<const Region> regions,
+                  int base) {
+  out.write(std::to_string(holes.size()) + "\n");
   std::int64_t number = base;
-  for (const auto& [x, y] : graph.holes) {
+  for (const auto& [x, y] : holes) {
     write_place(out, number++, x, y);
     out.write("\n");
   }
-  if (!graph.regions.empty()) out.write(std::to_string(graph.regions.size()) + "\n");
+  if (!regions.empty()) out.write(std::to_string(regions.size()) + "\n");
   number = base;
-  for (const Region& region : graph.regions) {
+  for (const Region& region : regions) {
     write_place(out, number++, region.x, region.y);
     char* at = put(put(out.room(2 * number_room), "  "), region.attribute);
     *at++ = '\n';
     out.advance(at);
   }
 }
-
-}  // namespace
 
 SegmentsFile read_poly(const InputFile& file, const std::string& path) {
   TextScanner scanner(file.name(), file.bytes());

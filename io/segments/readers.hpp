@@ -58,6 +58,10 @@ class SegmentCollector {
 [[nodiscard]] SegmentsFile read_counted(const InputFile& file);
 [[nodiscard]] SegmentsFile read_poly2tri(const InputFile& file);
 
+/// The last sections of a .poly file: holes, and regions if there are any.
+void write_places(AtomicFile& out, std::span<const std::array<double, 2>> holes, std::span<const Region> regions,
+                  int base);
+
 /// What a GeoJSON file holds, in its order. Coordinates are interleaved x y; z has one value a position, or is empty.
 class GeoJsonSink {
  public:

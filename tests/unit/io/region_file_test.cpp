@@ -76,7 +76,8 @@ TEST(RegionFile, MeshesHaveRegionsOfTriangles) {
   from_one.base = 1;
   write_region_mesh(folder / "a.ele", square.mesh(), from_one);
   EXPECT_EQ(read_mesh(folder / "a.ele", 5).triangles, square.triangles);
-  EXPECT_TRUE(std::regex_search(content_of(folder / "a.ele"), std::regex("2  3  1\\s+1 +1 +2 +3 +7\\s+2 +1 +3 +4 +-2\\s")));
+  EXPECT_TRUE(
+      std::regex_search(content_of(folder / "a.ele"), std::regex("2  3  1\\s+1 +1 +2 +3 +7\\s+2 +1 +3 +4 +-2\\s")));
   for (const char* format : {"obj", "off", "glb", "node"}) {
     write_region_mesh(folder / (std::string("a.") + format), square.mesh());
     EXPECT_NE(content_of(folder / (std::string("a.") + format)), "");

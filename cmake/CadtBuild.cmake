@@ -65,7 +65,7 @@ function(cadt_shorten_build)
   set(groups "backends/opencl" "backends/cuda")
   if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
     list(APPEND groups "common/driver" "common/points" "common/insertion" "common/stars" "common/batch" "common/queries"
-      "common/c_interface" "common/finalization")
+      "common/c_interface" "common/finalization" "common/constraints")
   endif()
   foreach(group IN LISTS groups)
     set(files ${sources})

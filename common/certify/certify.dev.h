@@ -15,7 +15,8 @@
  *
  *   words[row]        edges examined
  *   words[row + 1]    illegal edges that are not constrained
- *   words[row + 2]    edges whose sides do not fit together, and ghost triangles among the others
+ *   words[row + 2]    edges whose sides do not fit together, ghost triangles among the others, and, where edges are
+ *                     constrained, triangles that are not counterclockwise: legal edges alone do not rule them out
  *   words[row + 3]    edges to the ghost at which the boundary turns back
  *
  * If `triangle_count` is CADT_NONE, the number of triangles without a ghost is words[row + CADT_CERTIFY_REAL]; 0: there
@@ -37,6 +38,10 @@ CADT_KERNEL(cadt_certify, CADT_MESH_VIEW_PARAMETERS, cadt_u32 begin, cadt_u32 co
     for (cadt_u32 k = 0u; k < 3u; ++k) half_edge[k] = mesh.across[3u * t + k];
     const cadt_u32 ghost = v[0] == CADT_GHOST || v[1] == CADT_GHOST || v[2] == CADT_GHOST ? 1u : 0u;
     if (ghost != (t >= real ? 1u : 0u)) ++wrong;
+    if (mesh.edge_flags && !ghost &&
+        cadt_orientation(cadt_point_of(&locked, v[0]), cadt_point_of(&locked, v[1]), cadt_point_of(&locked, v[2]),
+                         &counters) <= 0)
+      ++wrong;
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 u = CADT_TRIANGLE_OF(half_edge[k]), j = CADT_EDGE_OF(half_edge[k]);
       if (u < t) continue; /* examined from the other side */

@@ -7,7 +7,8 @@
 
 namespace cadt {
 
-/// The certified mesh of sorted points. `input` is where they came from, for memory plans that read them again.
-[[nodiscard]] Mesh build(Context& ctx, SortedPoints points, const InputPoints& input);
+/// The certified mesh of sorted points. `input` is where they came from, for memory plans that read them again. One
+/// whose edges are to be constrained has its points, and is certified after that.
+[[nodiscard]] Mesh build(Context& ctx, SortedPoints points, const InputPoints& input, MeshUse use = MeshUse::whole);
 
 }  // namespace cadt

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/constraints/constraints.hpp"
 #include "common/driver/build.hpp"
 #include "common/driver/choose_strategy.hpp"
 #include "common/driver/context.hpp"
@@ -28,10 +29,10 @@ namespace {
 
 using device_text::word;
 
-/// Sorts the points, builds their mesh and writes the result; what is written straight to memory of the host goes to
-/// `host`.
+/// Sorts the points, builds their mesh, with segments as edges if there is a `job`, and writes the result; what is
+/// written straight to memory of the host goes to `host`.
 void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Data* host, EarlyArrays& arrays,
-                      DeviceTriangulation::Data& data) {
+                      DeviceTriangulation::Data& data, SegmentJob* job) {
   ctx.result_on_host = host != nullptr;
   const std::size_t n = input.size();
   ctx.check("sort", 0);
@@ -44,11 +45,17 @@ void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Dat
   data.duplicate_points = std::move(points.duplicates);
   data.representatives = std::move(points.representatives);
   if (host != nullptr && ctx.device.info().gpu) arrays.begin(6 * points.distinct, ctx.options.threads);
-  Mesh mesh = build(ctx, std::move(points), input);
+  Mesh mesh = build(ctx, std::move(points), input, job != nullptr ? MeshUse::constrained : MeshUse::whole);
   data.dimension = mesh.flat ? (data.distinct >= 2 ? 1 : 0) : 2;
   if (mesh.flat) return;
+  if (job != nullptr) {
+    constrain(ctx, mesh, n, data.distinct, {data.duplicate_points, data.representatives, data.duplicate_count}, *job);
+    if (job->crossed) return;
+    mesh.points.release();
+  }
   ctx.check("output", 0.9);
   write_result(ctx, mesh, n);
+  if (job != nullptr) job->edge_flags = std::move(mesh.edge_flags);
   data.triangle_count = mesh.triangles;
   data.triangles = std::move(mesh.vertices.device);
   data.neighbors = std::move(mesh.across.device);
@@ -59,7 +66,8 @@ void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Dat
 
 /// A whole call; `host` is null if the result stays on the device.
 void run_call(const std::shared_ptr<Triangulator::State>& state, const InputPoints& points, const CallShape& shape,
-              Triangulation::Data* host, DeviceTriangulation::Data& data) {
+              Triangulation::Data* host, DeviceTriangulation::Data& data, SegmentJob* job = nullptr,
+              SegmentResults* segments = nullptr) {
   data.state = state;
   data.points = shape.points;
   begin_call(*state, shape.points, data.statistics);
@@ -67,10 +75,11 @@ void run_call(const std::shared_ptr<Triangulator::State>& state, const InputPoin
   const MemoryPlan plan = plan_call(*state, shape);
   Context ctx(*state->device, state->memory, state->options, data.statistics, plan);
   EarlyArrays arrays;
-  triangulate_into(ctx, points, host, arrays, data);
+  triangulate_into(ctx, points, host, arrays, data, job);
   ctx.end_phase("output");
   if (host != nullptr) {
-    if (data.dimension == 2) read_mesh(ctx, data, *host, arrays);
+    if (data.triangle_count != 0) read_mesh(ctx, data, *host, arrays);
+    if (segments != nullptr) *segments = read_results(ctx, *job, data.triangle_count);
     host->duplicates = read_duplicates(data);
     ctx.end_phase("copy");
   }
@@ -78,11 +87,13 @@ void run_call(const std::shared_ptr<Triangulator::State>& state, const InputPoin
   end_call(*state, ctx, host == nullptr);
 }
 
-Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
+Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points, SegmentJob* job = nullptr,
+                      SegmentResults* segments = nullptr) {
   require_size(points.size());
   auto result = std::make_unique<Triangulation::Data>();
   DeviceTriangulation::Data data;  // after the result, which it may alias
-  run_call(state, points, {points.size(), is_host(*state->device), false, points.scalar_size()}, result.get(), data);
+  run_call(state, points, {points.size(), is_host(*state->device), false, points.scalar_size()}, result.get(), data,
+           job, segments);
   result->points = data.points;
   result->triangle_count = data.triangle_count;
   result->dimension = data.dimension;
@@ -144,6 +155,11 @@ std::unique_ptr<DeviceTriangulation::Data> triangulate_on_device(const std::shar
   auto data = std::make_unique<DeviceTriangulation::Data>();
   run_call(state, points, {points.size, false, true, scalar_bytes(points.scalar)}, nullptr, *data);
   return data;
+}
+
+Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state, PointsView points,
+                                        SegmentJob& job, SegmentResults& segments) {
+  return to_host(state, points, &job, &segments);
 }
 
 Triangulator::Triangulator(const Options& options)

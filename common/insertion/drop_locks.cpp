@@ -14,7 +14,7 @@ using namespace device_text;
 /// Triangles without a ghost before each slot, and their number behind the last.
 Allocation rank_triangles(Context& ctx, const LockedTriangles& locked, MeshUse use) {
   Allocation ranks = ctx.memory.allocate((locked.slots + 1) * word);
-  const FlipHistogram flips(ctx, use == MeshUse::whole);
+  const FlipHistogram flips(ctx, use != MeshUse::part);
   ctx.launcher.run<KernelId::cadt_flag_triangles>(locked.triangles, ranks, ctx.launcher.grid_strided(locked.slots),
                                                   flips);
   ctx.launcher.scan(ranks, locked.slots + 1);

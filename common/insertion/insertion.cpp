@@ -59,8 +59,10 @@ class IncrementalInsertion {
     if (!inserts_serially(traits_of(ctx_.device), ctx_.options, n_) || !insert_serially()) insert_in_parallel();
     ctx_.end_phase("insert");
     LockedTriangles locked = finish(3 * std::uint64_t{n_} - 3);
-    own_->points.release();
-    return drop_locks(ctx_, std::move(locked), 2 * mesh_.third, std::move(own_->input_ids), use);
+    if (use != MeshUse::constrained) own_->points.release();
+    Mesh mesh = drop_locks(ctx_, std::move(locked), 2 * mesh_.third, std::move(own_->input_ids), use);
+    mesh.points = std::move(own_->points);
+    return mesh;
   }
 
   /// No point is located in a complete mesh: vertex_to_triangle is written by repairs only, and the seed triangle is

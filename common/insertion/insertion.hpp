@@ -11,7 +11,8 @@
 
 namespace cadt {
 
-/// Inserts all points level by level, certifies by legality sweeps and drops the locks. Mesh::points is null.
+/// Inserts all points level by level, certifies by legality sweeps and drops the locks. Mesh::points is null
+/// unless edges are to be constrained.
 [[nodiscard]] Mesh insert_incrementally(Context& ctx, SortedPoints points, MeshUse use = MeshUse::whole);
 
 /// Legality sweeps over a mesh made otherwise, of two locked triangles a point; `edges`: how many it has, those to the

@@ -28,15 +28,16 @@ struct MeshArray {
 
 /// What becomes of a mesh.
 enum class MeshUse {
-  whole,  ///< its arrays may become those of the result, so they lie where that goes
-  part    ///< a part of another mesh
+  whole,        ///< its arrays may become those of the result, so they lie where that goes
+  constrained,  ///< the same, but segments become edges first: it keeps points, ghosts and half-edges
+  part          ///< a part of another mesh
 };
 
 /// \throws OutOfMemory
 [[nodiscard]] inline MeshArray make_mesh_array(Context& ctx, std::size_t triangles, MeshUse use) {
   const std::size_t bytes = 3 * triangles * device_text::word;
   MeshArray array;
-  if (use == MeshUse::whole && ctx.result_on_host) {
+  if (use != MeshUse::part && ctx.result_on_host) {
     array.host = make_words(3 * triangles);
     array.device = ctx.memory.export_to(array.host.get(), bytes);
     if (array.device) return array;

@@ -148,6 +148,9 @@ struct cadt_atomic {
   cadt_u32 fetch_add(cadt_u32 value, std::memory_order order) const {
     return __atomic_fetch_add(cell, value, CADT_CAST(int, order));
   }
+  cadt_u32 fetch_or(cadt_u32 bits, std::memory_order order) const {
+    return __atomic_fetch_or(cell, bits, CADT_CAST(int, order));
+  }
   bool compare_exchange_strong(cadt_u32& expected, cadt_u32 desired, std::memory_order success,
                                std::memory_order failure = std::memory_order_relaxed) const {
     return __atomic_compare_exchange_n(cell, &expected, desired, false, CADT_CAST(int, success),
@@ -179,6 +182,9 @@ CADT_FN cadt_u32 cadt_cas_relaxed(cadt_u32* p, cadt_u32 expected, cadt_u32 desir
 }
 CADT_FN cadt_u32 cadt_add_relaxed(cadt_u32* p, cadt_u32 value) {
   return cadt_atomic(*p).fetch_add(value, std::memory_order_relaxed);
+}
+CADT_FN cadt_u32 cadt_or_relaxed(cadt_u32* p, cadt_u32 bits) {
+  return cadt_atomic(*p).fetch_or(bits, std::memory_order_relaxed);
 }
 CADT_FN void cadt_min_relaxed(cadt_u32* p, cadt_u32 value) {
   cadt_atomic cell(*p);

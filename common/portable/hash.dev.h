@@ -12,7 +12,13 @@ typedef struct {
 } cadt_hash;
 
 /* What is hashed, so that no two kinds are mistaken for each other. */
-enum { CADT_HASH_TRIANGLE = 1, CADT_HASH_DUPLICATE = 2, CADT_HASH_COUNTS = 3, CADT_HASH_DIMENSION = 4 };
+enum {
+  CADT_HASH_TRIANGLE = 1,
+  CADT_HASH_DUPLICATE = 2,
+  CADT_HASH_COUNTS = 3,
+  CADT_HASH_DIMENSION = 4,
+  CADT_HASH_CONSTRAINED = 5
+};
 
 #define CADT_LONG(high, low) (CADT_CAST(cadt_u64, high) << 32 | CADT_CAST(cadt_u64, low))
 

@@ -187,33 +187,51 @@
   X(cadt_match_sides)    /* join.dev.h: what lies across the sides of children */   \
   X(cadt_uniform_cells)  /* uniform_cells.dev.h: points by counter */
 
-#define CADT_KERNEL_LIST(X)  \
-  CADT_SELF_TEST_KERNELS(X)  \
-  CADT_PREDICATES_KERNELS(X) \
-  CADT_PORTABLE_KERNELS(X)   \
-  CADT_POINTS_KERNELS(X)     \
-  CADT_INSERTION_KERNELS(X)  \
-  CADT_STARS_KERNELS(X)      \
-  CADT_BATCH_KERNELS(X)      \
-  CADT_CERTIFY_KERNELS(X)    \
-  CADT_OUTPUT_KERNELS(X)     \
-  CADT_VERIFY_KERNELS(X)     \
-  CADT_QUERIES_KERNELS(X)    \
-  CADT_FINALIZATION_KERNELS(X)
+/* common/constraints: segments become edges */
+#define CADT_CONSTRAINTS_KERNELS(X)                                                             \
+  X(cadt_vertex_triangles)       /* find_segments.dev.h: a triangle of each vertex */           \
+  X(cadt_vertices_of_points)     /* find_segments.dev.h */                                      \
+  X(cadt_vertices_of_duplicates) /* find_segments.dev.h */                                      \
+  X(cadt_vertices_of_segments)   /* find_segments.dev.h: ends of segments as vertices */        \
+  X(cadt_find_segments)          /* find_segments.dev.h: which pieces are no edges */           \
+  X(cadt_trace_segments)         /* find_segments.dev.h: their chains, when all are edges */    \
+  X(cadt_walk_segments)          /* segment_cavity.dev.h: how many triangles a piece crosses */ \
+  X(cadt_claim_cavities)         /* segment_cavity.dev.h */                                     \
+  X(cadt_decide_cavities)        /* segment_cavity.dev.h: which claims hold */                  \
+  X(cadt_fill_cavities)          /* segment_cavity.dev.h: polygons on both sides */             \
+  X(cadt_fill_chains)            /* segment_cavity.dev.h: parts of long ones */                 \
+  X(cadt_link_cavities)          /* segment_cavity.dev.h */                                     \
+  X(cadt_release_cavities)       /* segment_cavity.dev.h */
+
+#define CADT_KERNEL_LIST(X)    \
+  CADT_SELF_TEST_KERNELS(X)    \
+  CADT_PREDICATES_KERNELS(X)   \
+  CADT_PORTABLE_KERNELS(X)     \
+  CADT_POINTS_KERNELS(X)       \
+  CADT_INSERTION_KERNELS(X)    \
+  CADT_STARS_KERNELS(X)        \
+  CADT_BATCH_KERNELS(X)        \
+  CADT_CERTIFY_KERNELS(X)      \
+  CADT_OUTPUT_KERNELS(X)       \
+  CADT_VERIFY_KERNELS(X)       \
+  CADT_QUERIES_KERNELS(X)      \
+  CADT_FINALIZATION_KERNELS(X) \
+  CADT_CONSTRAINTS_KERNELS(X)
 
 /* The same by stage: a back end may compile a program for each (CADT_PROGRAM of language.dev.h). */
-#define CADT_STAGE_LIST(S)               \
-  S(self_test, CADT_SELF_TEST_KERNELS)   \
-  S(predicates, CADT_PREDICATES_KERNELS) \
-  S(portable, CADT_PORTABLE_KERNELS)     \
-  S(points, CADT_POINTS_KERNELS)         \
-  S(insertion, CADT_INSERTION_KERNELS)   \
-  S(stars, CADT_STARS_KERNELS)           \
-  S(batch, CADT_BATCH_KERNELS)           \
-  S(certify, CADT_CERTIFY_KERNELS)       \
-  S(output, CADT_OUTPUT_KERNELS)         \
-  S(verify, CADT_VERIFY_KERNELS)         \
-  S(queries, CADT_QUERIES_KERNELS)       \
-  S(finalization, CADT_FINALIZATION_KERNELS)
+#define CADT_STAGE_LIST(S)                   \
+  S(self_test, CADT_SELF_TEST_KERNELS)       \
+  S(predicates, CADT_PREDICATES_KERNELS)     \
+  S(portable, CADT_PORTABLE_KERNELS)         \
+  S(points, CADT_POINTS_KERNELS)             \
+  S(insertion, CADT_INSERTION_KERNELS)       \
+  S(stars, CADT_STARS_KERNELS)               \
+  S(batch, CADT_BATCH_KERNELS)               \
+  S(certify, CADT_CERTIFY_KERNELS)           \
+  S(output, CADT_OUTPUT_KERNELS)             \
+  S(verify, CADT_VERIFY_KERNELS)             \
+  S(queries, CADT_QUERIES_KERNELS)           \
+  S(finalization, CADT_FINALIZATION_KERNELS) \
+  S(constraints, CADT_CONSTRAINTS_KERNELS)
 
 #endif

@@ -9,6 +9,7 @@
 #define CADT_PORTABLE_KERNELS_H
 
 #include "common/certify/certify.dev.h"
+#include "common/constraints/segment_cavity.dev.h"
 #include "common/insertion/cavity.dev.h"
 #include "common/insertion/drop_locks.dev.h"
 #include "common/insertion/insert.dev.h"

@@ -28,8 +28,8 @@ constexpr std::uint32_t waves = 4;
 
 class StarStage {
  public:
-  StarStage(Context& ctx, SortedPoints points, const InputPoints& input, const BuildStrategy& how)
-      : ctx_(ctx), order_(std::move(points)), input_(input), how_(how) {
+  StarStage(Context& ctx, SortedPoints points, const InputPoints& input, const BuildStrategy& how, MeshUse use)
+      : ctx_(ctx), order_(std::move(points)), input_(input), how_(how), use_(use) {
     order_.grid = grid_for_stars(order_.grid);
   }
 
@@ -37,7 +37,7 @@ class StarStage {
     if (!make_stars() || !count_triangles()) {
       release_stars();
       ranks_.release();
-      return wrap_or_insert(ctx_, std::move(order_), how_);
+      return wrap_or_insert(ctx_, std::move(order_), how_, use_);
     }
     // stars that contradict each other would have more
     if (proven_triangles_ > 2 * n_ - 2)
@@ -175,7 +175,7 @@ class StarStage {
     const Memory::TransientScope transient(ctx_.memory, !ctx_.plan.compact);
     const std::uint64_t certified = ctx_.statistics.certified_edges;
     // Without legality sweeps where they are of no use: the whole mesh is certified later.
-    const Mesh smaller = wrap_or_insert(ctx_, std::move(residual), how_, n_);
+    const Mesh smaller = wrap_or_insert(ctx_, std::move(residual), how_, MeshUse::part, n_);
     ctx_.statistics.certified_edges = certified;  // only those of the whole mesh count
     // Vertices on the hull have no proven star, so not all of these are on a line.
     if (smaller.flat) give_up("the unproven vertices are on a line");
@@ -211,6 +211,7 @@ class StarStage {
   SortedPoints order_;
   const InputPoints& input_;
   const BuildStrategy& how_;
+  const MeshUse use_;
   std::size_t n_ = order_.distinct;
   Stars stars_;
   Allocation proven_, marks_, bases_, ranks_, totals_, open_;
@@ -220,17 +221,18 @@ class StarStage {
 
 }  // namespace
 
-Mesh mesh_from_stars(Context& ctx, SortedPoints points, const InputPoints& input, const BuildStrategy& how) {
-  return StarStage(ctx, std::move(points), input, how).build();
+Mesh mesh_from_stars(Context& ctx, SortedPoints points, const InputPoints& input, const BuildStrategy& how,
+                     MeshUse use) {
+  return StarStage(ctx, std::move(points), input, how, use).build();
 }
 
-Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how, std::size_t all) {
-  const MeshUse use = all == 0 ? MeshUse::whole : MeshUse::part;
+Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how, MeshUse use, std::size_t all) {
+  const bool part = use == MeshUse::part;
   points.keys.release();
-  if (points.distinct <= (use == MeshUse::whole ? how.most_wrapped : how.most_residual_wrapped)) {
-    const std::size_t of = use == MeshUse::whole ? points.distinct : all;
-    if (std::optional<Mesh> wrapped = wrap_mesh(ctx, points.points, points.distinct, of, use)) {
-      if (use == MeshUse::whole) wrapped->points = std::move(points.points);
+  if (points.distinct <= (part ? how.most_residual_wrapped : how.most_wrapped)) {
+    const std::size_t of = part ? all : points.distinct;
+    if (std::optional<Mesh> wrapped = wrap_mesh(ctx, points.points, points.distinct, of, part ? use : MeshUse::whole)) {
+      if (!part) wrapped->points = std::move(points.points);
       wrapped->input_ids = std::move(points.input_ids);
       return std::move(*wrapped);
     }

@@ -11,10 +11,11 @@ namespace cadt {
 /// The certified mesh by the star stage: local stars without locks, gift wrapping or insertion of the residual
 /// vertices, and the stitch of both parts. If too few stars are proven, all points are wrapped or inserted.
 [[nodiscard]] Mesh mesh_from_stars(Context& ctx, SortedPoints points, const InputPoints& input,
-                                   const BuildStrategy& how);
+                                   const BuildStrategy& how, MeshUse use = MeshUse::whole);
 
 /// The certified mesh by gift wrapping of all points, if they are few enough and it does not take too long; else by
-/// insertion. `all`: if not 0, they are part of a mesh of so many points, which is certified later.
-[[nodiscard]] Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how, std::size_t all = 0);
+/// insertion. `all`: of a part, how many points the mesh has, which is certified later.
+[[nodiscard]] Mesh wrap_or_insert(Context& ctx, SortedPoints points, const BuildStrategy& how, MeshUse use,
+                                  std::size_t all = 0);
 
 }  // namespace cadt

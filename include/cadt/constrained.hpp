@@ -89,9 +89,9 @@ class CADT_API DomainError : public Error {
   std::int32_t vertex_;
 };
 
-/// The unique triangulation of the points that has all segments as chains of edges and whose other edges are legal under
-/// the symbolic perturbation of Triangulation; CGAL's Constrained_Delaunay_triangulation_2 has the same triangles. It
-/// does not depend on the order or the direction of segments. (Its proof: docs/constrained.md.)
+/// The unique triangulation of the points that has all segments as chains of edges and whose other edges are legal
+/// under the symbolic perturbation of Triangulation; CGAL's Constrained_Delaunay_triangulation_2 has the same
+/// triangles. It does not depend on the order or the direction of segments. (Its proof: docs/constrained.md.)
 ///
 /// Special cases: ends at equal points are those of the representative; a segment between equal points is dropped
 /// (degenerate_segments); segments may repeat and overlap; a point on a segment divides it, exactly, without tolerance;
@@ -116,17 +116,18 @@ class CADT_API ConstrainedTriangulation {
   [[nodiscard]] std::span<const std::uint32_t> edge_flags() const noexcept;
   [[nodiscard]] bool is_constrained(std::size_t triangle, std::size_t k) const;
 
-  /// The vertices along segment s, from its first end to its second one, are chain_vertices() from chain_offsets()[s] to
-  /// chain_offsets()[s + 1] - 1; none for a degenerate segment. Made when first asked for.
+  /// The vertices along segment s, from its first end to its second one, are chain_vertices() from chain_offsets()[s]
+  /// to chain_offsets()[s + 1] - 1; none for a degenerate segment.
   [[nodiscard]] std::span<const std::int64_t> chain_offsets() const noexcept;
   [[nodiscard]] std::span<const std::int32_t> chain_vertices() const noexcept;
 
-  /// The constrained edges, the lower vertex first, ascending.
-  [[nodiscard]] std::span<const Segment> constrained_edges() const noexcept;
+  /// The constrained edges, the lower vertex first, ascending. These three are made when first asked for, in O(n log
+  /// n).
+  [[nodiscard]] std::span<const Segment> constrained_edges() const;
   /// The segments that edge e is part of are edge_sources() from source_offsets()[e] to source_offsets()[e + 1] - 1:
   /// i for segment i in the direction of the edge, -1 - i against it. A segment appears as often as it was given.
-  [[nodiscard]] std::span<const std::int64_t> source_offsets() const noexcept;
-  [[nodiscard]] std::span<const std::int32_t> edge_sources() const noexcept;
+  [[nodiscard]] std::span<const std::int64_t> source_offsets() const;
+  [[nodiscard]] std::span<const std::int32_t> edge_sources() const;
 
   /// Segments whose ends are equal points, ascending.
   [[nodiscard]] std::span<const std::int32_t> degenerate_segments() const noexcept;
@@ -167,8 +168,8 @@ class CADT_API ConstrainedTriangulation {
 };
 
 /// Triangulates points with segments between them. Points and segments are read only and need to live until the call
-/// returns. Expected O(n log n + crossed triangles log) work. Thread-safe. \throws CrossingError, DomainError, InputError
-/// (a bad index: InputError::index() is that of the segment), OptionError, and what `triangulate` throws
+/// returns. Expected O(n log n + crossed triangles log) work. Thread-safe. \throws CrossingError, DomainError,
+/// InputError (a bad index: InputError::index() is that of the segment), OptionError, and what `triangulate` throws
 [[nodiscard]] CADT_API ConstrainedTriangulation triangulate_constrained(PointsView points,
                                                                         std::span<const Segment> segments,
                                                                         const ConstraintOptions& constraints = {},
@@ -177,11 +178,12 @@ class CADT_API ConstrainedTriangulation {
 /// All pairs of segments that cross (Crossing), each once with the lower index first, ascending. Exact.
 /// O(n log n + pairs) expected. Thread-safe. `threads`: 0 for all cores. \throws InputError
 [[nodiscard]] CADT_API std::vector<std::array<std::int32_t, 2>> find_crossings(PointsView points,
-                                                                              std::span<const Segment> segments,
-                                                                              unsigned threads = 0);
+                                                                               std::span<const Segment> segments,
+                                                                               unsigned threads = 0);
 
-/// The checks of `verify`, with constrained edges exempt from that of circles, and "constraints": the flags of edges are
-/// those of the segments, "regions": no region crosses a segment, and what is inside fits the rule. \throws as `verify`
+/// The checks of `verify`, with constrained edges exempt from that of circles, and "constraints": the flags of edges
+/// are those of the segments, "regions": no region crosses a segment, and what is inside fits the rule. \throws as
+/// `verify`
 [[nodiscard]] CADT_API VerifyReport verify(PointsView points, std::span<const Segment> segments,
                                            const ConstrainedTriangulation& mesh,
                                            const ConstraintOptions& constraints = {},

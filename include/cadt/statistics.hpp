@@ -69,6 +69,8 @@ struct Statistics {
   std::uint64_t sets = 0;              ///< point sets, in a batch (Triangulator::triangulate_batch)
   std::uint64_t batched_sets = 0;      ///< of these, sets that were triangulated batched, not individually
   std::uint64_t refined_points = 0;    ///< points in over-full cells, whose sort keys were refined
+  std::uint64_t inserted_segments = 0;  ///< pieces of segments that were no edges of the Delaunay triangulation
+  std::uint64_t segment_retries = 0;    ///< tries to insert one that met another, which went first
   std::uint64_t bytes_device_peak = 0;  ///< peak of the bytes held on the device
   /// Bytes copied between host and device: points and meshes of the host, and the words that steer the call (some
   /// kilobytes). 0 on the host, and for memory that a device uses in place.

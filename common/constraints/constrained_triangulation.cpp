@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "common/constraints/constrained_data.hpp"
+#include "common/constraints/constraints.hpp"
+#include "common/driver/device_text.hpp"
+#include "common/driver/session.hpp"
+#include "common/driver/thread_state.hpp"
+
+namespace cadt {
+namespace {
+
+using Data = ConstrainedTriangulation::Data;
+
+std::int32_t representative(const Triangulation& mesh, std::int32_t point) {
+  const std::int32_t other = mesh.duplicate_of(static_cast<std::size_t>(point));
+  return other < 0 ? point : other;
+}
+
+/// Chains of segments between points on a line, where there are no triangles.
+void chain_on_line(PointsView points, std::span<const Segment> segments, Data& data) {
+  const auto n = static_cast<std::int32_t>(points.size());
+  const auto at = [&](std::int32_t i) {
+    const auto k = static_cast<std::size_t>(i);
+    return std::pair(points.x(k), points.y(k));
+  };
+  std::vector<std::int32_t> order;
+  for (std::int32_t i = 0; i < n; ++i)
+    if (representative(data.mesh, i) == i) order.push_back(i);
+  std::ranges::sort(order, {}, at);
+  std::vector<std::int32_t> rank(points.size());
+  for (std::size_t r = 0; r < order.size(); ++r) rank[static_cast<std::size_t>(order[r])] = static_cast<std::int32_t>(r);
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    std::array<std::int32_t, 2> ends{};
+    for (std::size_t e = 0; e < 2; ++e) {
+      if (segments[s][e] < 0 || segments[s][e] >= n)
+        throw InputError("segment " + std::to_string(s) + " has an end that is none of the " + std::to_string(n) +
+                             " points",
+                         s);
+      ends[e] = rank[static_cast<std::size_t>(representative(data.mesh, segments[s][e]))];
+    }
+    const std::int32_t step = ends[0] < ends[1] ? 1 : -1;
+    for (std::int32_t r = ends[0]; ends[0] != ends[1]; r += step) {
+      data.chain_vertices.push_back(order[static_cast<std::size_t>(r)]);
+      if (r == ends[1]) break;
+    }
+    data.chain_offsets.push_back(static_cast<std::int64_t>(data.chain_vertices.size()));
+  }
+}
+
+[[noreturn]] void refuse_crossings(PointsView points, std::span<const Segment> segments, unsigned threads) {
+  std::vector<std::array<std::int32_t, 2>> pairs = find_crossings(points, segments, threads);
+  if (pairs.empty()) throw InternalError("segments were found to cross, but no pair of them does");
+  std::string message = std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair of segments crosses: " : " pairs of segments cross: ");
+  const std::size_t shown = std::min<std::size_t>(pairs.size(), 3);
+  for (std::size_t i = 0; i < shown; ++i)
+    message += (i == 0 ? "" : ", ") + std::to_string(pairs[i][0]) + " and " + std::to_string(pairs[i][1]);
+  if (shown < pairs.size()) message += ", ...";
+  throw CrossingError(message + "; repair them, or take Crossing::exact or Crossing::grid", std::move(pairs));
+}
+
+std::shared_ptr<Data> constrain_uncrossed(PointsView points, std::span<const Segment> segments,
+                                          const Options& options) {
+  require_size(points.size());
+  require_segments(segments.size());
+  auto data = std::make_shared<Data>();
+  const CallState state(options, points.size());
+  SegmentJob job;
+  job.on_host = segments;
+  job.count = segments.size();
+  job.wants_chains = true;
+  SegmentResults results;
+  data->mesh = triangulate_with_segments(*state, points, job, results);
+  if (job.crossed) refuse_crossings(points, segments, options.threads);
+  if (data->mesh.number_of_triangles() == 0) {
+    chain_on_line(points, segments, *data);
+  } else {
+    data->edge_flags = std::move(results.edge_flags);
+    data->chain_offsets.assign(results.chain_offsets.begin(), results.chain_offsets.end());
+    data->chain_vertices.assign(results.chains.begin(), results.chains.end());
+  }
+  for (std::size_t s = 0; s < segments.size(); ++s)
+    if (data->chain_offsets[s] == data->chain_offsets[s + 1])
+      data->degenerate.push_back(static_cast<std::int32_t>(s));
+  return data;
+}
+
+}  // namespace
+
+void require_segments(std::size_t count) {
+  constexpr std::size_t most = (std::size_t{1} << 30) - 1;
+  if (count > most)
+    throw LimitError("there are " + std::to_string(count) + " segments, more than " + std::to_string(most), count, most);
+}
+
+ConstrainedEdges edges_of_chains(std::span<const std::int64_t> offsets, std::span<const std::int32_t> vertices) {
+  struct Part {
+    Segment edge;
+    std::int32_t source;
+  };
+  std::vector<Part> parts;
+  parts.reserve(vertices.size());
+  for (std::size_t s = 0; s + 1 < offsets.size(); ++s) {
+    for (auto i = static_cast<std::size_t>(offsets[s]); i + 1 < static_cast<std::size_t>(offsets[s + 1]); ++i) {
+      const std::int32_t from = vertices[i], to = vertices[i + 1], source = static_cast<std::int32_t>(s);
+      parts.push_back(from < to ? Part{{from, to}, source} : Part{{to, from}, -1 - source});
+    }
+  }
+  std::ranges::sort(parts, {}, [](const Part& p) { return std::tuple(p.edge[0], p.edge[1], p.source); });
+  ConstrainedEdges result;
+  for (const Part& part : parts) {
+    if (result.edges.empty() || result.edges.back() != part.edge) {
+      result.edges.push_back(part.edge);
+      result.offsets.push_back(static_cast<std::int64_t>(result.sources.size()));
+    }
+    result.sources.push_back(part.source);
+  }
+  result.offsets.push_back(static_cast<std::int64_t>(result.sources.size()));
+  return result;
+}
+
+const ConstrainedEdges& Data::edges() const {
+  std::call_once(made_, [&] { edges_ = edges_of_chains(chain_offsets, chain_vertices); });
+  return edges_;
+}
+
+ConstrainedTriangulation triangulate_constrained(PointsView points, std::span<const Segment> segments,
+                                                 const ConstraintOptions& constraints, const Options& options) {
+  (void)constraints;
+  return ConstrainedTriangulation(constrain_uncrossed(points, segments, options));
+}
+
+ConstrainedTriangulation::ConstrainedTriangulation() : data_(std::make_shared<Data>()) {}
+ConstrainedTriangulation::~ConstrainedTriangulation() = default;
+ConstrainedTriangulation::ConstrainedTriangulation(const ConstrainedTriangulation&) noexcept = default;
+ConstrainedTriangulation& ConstrainedTriangulation::operator=(const ConstrainedTriangulation&) noexcept = default;
+ConstrainedTriangulation::ConstrainedTriangulation(ConstrainedTriangulation&&) noexcept = default;
+ConstrainedTriangulation& ConstrainedTriangulation::operator=(ConstrainedTriangulation&&) noexcept = default;
+ConstrainedTriangulation::ConstrainedTriangulation(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+const Triangulation& ConstrainedTriangulation::mesh() const noexcept { return data_->mesh; }
+std::span<const std::uint32_t> ConstrainedTriangulation::edge_flags() const noexcept { return data_->edge_flags; }
+bool ConstrainedTriangulation::is_constrained(std::size_t triangle, std::size_t k) const {
+  (void)data_->mesh.neighbor(triangle, k);  // refuses what is not there
+  return (data_->edge_flags[triangle] >> k & 1U) != 0;
+}
+std::span<const std::int64_t> ConstrainedTriangulation::chain_offsets() const noexcept { return data_->chain_offsets; }
+std::span<const std::int32_t> ConstrainedTriangulation::chain_vertices() const noexcept {
+  return data_->chain_vertices;
+}
+std::span<const Segment> ConstrainedTriangulation::constrained_edges() const { return data_->edges().edges; }
+std::span<const std::int64_t> ConstrainedTriangulation::source_offsets() const { return data_->edges().offsets; }
+std::span<const std::int32_t> ConstrainedTriangulation::edge_sources() const { return data_->edges().sources; }
+std::span<const std::int32_t> ConstrainedTriangulation::degenerate_segments() const noexcept {
+  return data_->degenerate;
+}
+std::span<const std::uint8_t> ConstrainedTriangulation::inside() const noexcept { return data_->inside; }
+std::size_t ConstrainedTriangulation::number_inside() const noexcept { return data_->number_inside; }
+std::span<const std::int32_t> ConstrainedTriangulation::region() const noexcept { return data_->region; }
+std::size_t ConstrainedTriangulation::number_of_regions() const noexcept { return data_->region_value.size(); }
+std::span<const std::int32_t> ConstrainedTriangulation::region_value() const noexcept { return data_->region_value; }
+std::span<const double> ConstrainedTriangulation::region_attribute() const noexcept { return data_->region_attribute; }
+std::vector<std::int32_t> ConstrainedTriangulation::triangles_inside() const {
+  std::vector<std::int32_t> result;
+  result.reserve(3 * data_->number_inside);
+  const auto all = data_->mesh.triangles();
+  for (std::size_t t = 0; t < data_->inside.size(); ++t)
+    if (data_->inside[t] != 0) result.insert(result.end(), {all[3 * t], all[3 * t + 1], all[3 * t + 2]});
+  return result;
+}
+std::span<const double> ConstrainedTriangulation::added_points() const noexcept { return data_->added; }
+std::span<const std::array<std::int32_t, 2>> ConstrainedTriangulation::added_parents() const noexcept {
+  return data_->parents;
+}
+bool ConstrainedTriangulation::rounded_valid() const noexcept { return data_->rounded_valid; }
+std::span<const double> ConstrainedTriangulation::moved_points() const noexcept { return data_->moved; }
+const Statistics& ConstrainedTriangulation::statistics() const noexcept { return data_->mesh.statistics(); }
+
+Hash128 ConstrainedTriangulation::hash() const {
+  using namespace device_text;
+  const Hash128 mesh = data_->mesh.hash();
+  cadt_hash hash = {mesh.high, mesh.low};
+  for (const Segment& edge : constrained_edges())
+    cadt_hash_add(&hash, CADT_HASH_CONSTRAINED, static_cast<std::uint64_t>(edge[0]), static_cast<std::uint64_t>(edge[1]),
+                  0);
+  return {hash.high, hash.low};
+}
+
+}  // namespace cadt

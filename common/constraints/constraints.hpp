@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the Delaunay mesh to the constrained one: segments are found in it, those that are no edges are inserted, all are
+// traced, and the mesh is certified.
+#pragma once
+
+#include <cadt/constrained.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/driver/context.hpp"
+#include "common/driver/device_triangulation.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace cadt {
+
+/// What a call is told of its segments and tells of them.
+struct SegmentJob {
+  std::span<const Segment> on_host;  ///< pairs of input points, or
+  Allocation segments;               ///< the same on the device
+  std::size_t count = 0;             ///< of segments, below 2^30
+  bool wants_chains = false;
+
+  bool crossed = false;      ///< segments cross: there is no mesh
+  Allocation edge_flags;     ///< a word a triangle of the result; null if dimension < 2
+  Allocation chain_offsets;  ///< count + 1 words, if wanted
+  Allocation chains;         ///< input points along each segment
+  std::size_t chain_length = 0;
+};
+
+/// The results of a job, copied to the host.
+struct SegmentResults {
+  std::vector<std::uint32_t> edge_flags;
+  std::vector<std::uint32_t> chain_offsets, chains;
+};
+[[nodiscard]] SegmentResults read_results(Context& ctx, const SegmentJob& job, std::size_t triangles);
+
+/// \throws LimitError
+void require_segments(std::size_t count);
+
+/// Duplicates of input points and what they equal; null if there are none.
+struct DuplicateLists {
+  const Allocation &points, &representatives;
+  std::size_t count;
+};
+
+/// Makes the segments edges of the Delaunay mesh of `points` input points, of which `distinct` are vertices. If segments
+/// cross, only `job.crossed` is set. \pre the mesh is unfinished and has triangles, ghosts and points (MeshUse::
+/// constrained) \throws InputError for the first segment with an end that is no point, InternalError
+void constrain(Context& ctx, Mesh& mesh, std::size_t points, std::size_t distinct, const DuplicateLists& duplicates,
+               SegmentJob& job);
+
+/// The mesh of a call with segments, on the host; without triangles if `job.crossed`. The job's device memory is that of
+/// the call: only `segments` stays.
+[[nodiscard]] Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state,
+                                                      PointsView points, SegmentJob& job, SegmentResults& segments);
+
+}  // namespace cadt

@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: Apache-2.0
+ *
+ * Segments in the Delaunay mesh, before it changes. Most of them are edges already. A vertex on a segment divides it;
+ * the pieces that are no edges are listed, as pairs of vertices with none between them.
+ */
+#ifndef CADT_CONSTRAINTS_FIND_SEGMENTS_H
+#define CADT_CONSTRAINTS_FIND_SEGMENTS_H
+
+#include "common/constraints/segment_walk.dev.h"
+
+/* Words that are counted for all segments. */
+enum {
+  CADT_SEGMENTS_MISSING,    /* pieces that are no edges */
+  CADT_SEGMENTS_BROKEN,     /* at which the mesh was found to be wrong */
+  CADT_SEGMENTS_CROSSED,    /* pieces that cross a constrained edge */
+  CADT_SEGMENTS_QUEUED,     /* ranges of long chains that are left to another launch */
+  CADT_SEGMENTS_BAD_INDEX,  /* the first segment with an end that is no point; CADT_NONE: none */
+  CADT_SEGMENTS_WORDS
+};
+
+/* A triangle of each vertex. */
+CADT_KERNEL(cadt_vertex_triangles, CADT_GLOBAL const cadt_u32* vertices, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* vertex_triangle) {
+  CADT_FOR(t, count, grain) {
+    for (cadt_u32 k = 0u; k < 3u; ++k)
+      if (vertices[3u * t + k] != CADT_GHOST) cadt_store_relaxed(vertex_triangle + vertices[3u * t + k], t);
+  }
+}
+
+/* The vertex of each input point: of those that are vertices, and of duplicates, which have the vertex of another. */
+CADT_KERNEL(cadt_vertices_of_points, CADT_GLOBAL const cadt_u32* input_ids, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* vertex_of) {
+  CADT_FOR(v, count, grain) { vertex_of[input_ids ? input_ids[v] : v] = v; }
+}
+CADT_KERNEL(cadt_vertices_of_duplicates, CADT_GLOBAL const cadt_u32* duplicates,
+            CADT_GLOBAL const cadt_u32* representatives, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* vertex_of) {
+  CADT_FOR(i, count, grain) { vertex_of[duplicates[i]] = vertex_of[representatives[i]]; }
+}
+
+/* Segments between vertices instead of points; both ends CADT_NONE for a segment of no length, or a bad one. */
+CADT_KERNEL(cadt_vertices_of_segments, CADT_GLOBAL const cadt_u32* segments, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL const cadt_u32* vertex_of, cadt_u32 point_count, CADT_GLOBAL cadt_u32* ends,
+            CADT_GLOBAL cadt_u32* words) {
+  CADT_FOR(s, count, grain) {
+    const cadt_u32 i = segments[2u * s], j = segments[2u * s + 1u];
+    const cadt_u32 good = i < point_count && j < point_count ? 1u : 0u;
+    if (!good) cadt_min_relaxed(words + CADT_SEGMENTS_BAD_INDEX, s);
+    cadt_u32 a = good ? vertex_of[i] : CADT_NONE, b = good ? vertex_of[j] : CADT_NONE;
+    if (a == b) a = b = CADT_NONE;
+    ends[2u * s] = a;
+    ends[2u * s + 1u] = b;
+  }
+}
+
+/* Flags the edges of segments and lists their other pieces, as far as there is `room`; counts all of them. */
+CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* ends, cadt_u32 count,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* missing, cadt_u32 room, CADT_GLOBAL cadt_u32* words) {
+  CADT_SEGMENT_MESH(mesh);
+  CADT_DECLARE_COUNTERS(counters);
+  CADT_FOR(s, count, grain) {
+    cadt_u32 a = ends[2u * s], b = ends[2u * s + 1u];
+    while (a != b) {
+      const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
+      const cadt_u32 from = step.from_b ? b : a, to = step.from_b ? a : b;
+      cadt_u32 reached = step.vertex;
+      if (step.kind == CADT_STEP_NOWHERE) {
+        cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
+        break;
+      }
+      if (step.kind == CADT_STEP_EDGE) {
+        cadt_flag_edge(&mesh, step.half_edge);
+      } else {
+        const cadt_point p = cadt_load_point(mesh.points + from), q = cadt_load_point(mesh.points + to);
+        cadt_crossed at = {step.half_edge, CADT_NONE, CADT_NONE, 1};
+        do cadt_cross(&mesh, &at, p, to, q, &counters);
+        while (at.side != 0);
+        reached = at.apex;
+        const cadt_u32 place = cadt_add_relaxed(words + CADT_SEGMENTS_MISSING, 1u);
+        if (place < room) {
+          missing[2u * place] = from;
+          missing[2u * place + 1u] = reached;
+        }
+      }
+      if (step.from_b)
+        b = reached;
+      else
+        a = reached;
+    }
+  }
+}
+
+/* Segments in the mesh that has all of them. Flags their edges; counts[s]: how many vertices its chain has. With
+ * `begins`, the scan of the counts, writes the chains as well, in input ids. \pre no flag is set */
+CADT_KERNEL(cadt_trace_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* ends, cadt_u32 count,
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* counts, CADT_GLOBAL const cadt_u32* begins,
+            CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL cadt_u32* chains, CADT_GLOBAL cadt_u32* words) {
+  CADT_SEGMENT_MESH(mesh);
+  CADT_DECLARE_COUNTERS(counters);
+  if (cadt_item == 0u && !begins) counts[count] = 0u;
+  CADT_FOR(s, count, grain) {
+    cadt_u32 a = ends[2u * s], b = ends[2u * s + 1u];
+    cadt_u32 length = 0u, low = begins ? begins[s] : 0u, high = begins ? begins[s + 1u] : 0u;
+    const cadt_u32 none = a == b ? 1u : 0u;
+    while (a != b) {
+      const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
+      if (step.kind != CADT_STEP_EDGE) {
+        cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
+        break;
+      }
+      if (begins) {
+        const cadt_u32 v = step.from_b ? b : a, place = step.from_b ? --high : low++;
+        chains[place] = input_ids ? input_ids[v] : v;
+      } else {
+        cadt_flag_edge(&mesh, step.half_edge);
+      }
+      if (step.from_b)
+        b = step.vertex;
+      else
+        a = step.vertex;
+      ++length;
+    }
+    if (begins && low < high) chains[low] = input_ids ? input_ids[a] : a;
+    if (!begins) counts[s] = none ? 0u : length + 1u;
+  }
+}
+
+#endif

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Verification of constrained edges: each segment is a chain of edges along it, and no other edge is constrained.
+#include <algorithm>
+#include <string>
+
+#include "common/constraints/constrained_data.hpp"
+
+namespace cadt {
+namespace {
+
+using Place = std::array<double, 2>;
+
+/// Points of the input, and those behind them that crossings have made.
+struct Places {
+  PointsView points;
+  std::span<const double> added;
+  [[nodiscard]] Place at(std::int32_t i) const {
+    const auto k = static_cast<std::size_t>(i);
+    if (k < points.size()) return {points.x(k), points.y(k)};
+    return {added[2 * (k - points.size())], added[2 * (k - points.size()) + 1]};
+  }
+  [[nodiscard]] std::size_t size() const { return points.size() + added.size() / 2; }
+};
+
+class SegmentCheck {
+ public:
+  SegmentCheck(PointsView points, std::span<const Segment> segments, const ConstrainedTriangulation& mesh)
+      : places_{points, mesh.added_points()}, segments_(segments), mesh_(mesh), check_{"constraints", false, 0, -1, {}} {}
+
+  Check run() {
+    const auto offsets = mesh_.chain_offsets();
+    if (offsets.size() != segments_.size() + 1) {
+      fail(-1, "there are chains of " + std::to_string(offsets.size() - 1) + " segments, not of " +
+                   std::to_string(segments_.size()));
+    } else {
+      for (std::size_t s = 0; s < segments_.size(); ++s) check_chain(s);
+      check_flags();
+    }
+    check_.passed = check_.failures == 0;
+    return check_;
+  }
+
+ private:
+  void fail(std::int64_t first, const std::string& what) {
+    if (check_.failures++ != 0) return;
+    check_.first = first;
+    check_.what = what;
+  }
+
+  [[nodiscard]] std::span<const std::int32_t> chain(std::size_t s) const {
+    const auto offsets = mesh_.chain_offsets();
+    return mesh_.chain_vertices().subspan(static_cast<std::size_t>(offsets[s]),
+                                          static_cast<std::size_t>(offsets[s + 1] - offsets[s]));
+  }
+
+  /// From end to end, straight on. What lies between two vertices of it is seen by check_flags: an edge of the mesh.
+  void check_chain(std::size_t s) {
+    const auto number = static_cast<std::int64_t>(s);
+    const std::string name = "segment " + std::to_string(s);
+    for (const std::int32_t end : segments_[s])
+      if (end < 0 || static_cast<std::size_t>(end) >= places_.points.size()) return fail(number, name + " has no ends");
+    const Place a = places_.at(segments_[s][0]), b = places_.at(segments_[s][1]);
+    const auto vertices = chain(s);
+    if (a == b) {
+      if (!vertices.empty()) fail(number, name + " has no length, but a chain");
+      return;
+    }
+    if (vertices.size() < 2) return fail(number, name + " has no chain");
+    for (const std::int32_t v : vertices)
+      if (v < 0 || static_cast<std::size_t>(v) >= places_.size()) return fail(number, name + " has a vertex that is none");
+    if (places_.at(vertices.front()) != a || places_.at(vertices.back()) != b)
+      return fail(number, "the chain of " + name + " has other ends");
+    for (std::size_t i = 1; i < vertices.size(); ++i) {
+      const Place p = places_.at(vertices[i - 1]), q = places_.at(vertices[i]);
+      const bool added = static_cast<std::size_t>(vertices[i]) >= places_.points.size();
+      if ((p < q) != (a < b) || (!added && exact_orientation(a, b, q) != 0))
+        return fail(number, "the chain of " + name + " does not lie on it at vertex " + std::to_string(vertices[i]));
+    }
+  }
+
+  void check_flags() {
+    const auto expected = mesh_.constrained_edges();
+    const auto triangles = mesh_.mesh().triangles();
+    const auto flags = mesh_.edge_flags();
+    std::vector<Segment> flagged;
+    for (std::size_t t = 0; t < flags.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if ((flags[t] >> k & 1U) == 0) continue;
+        const auto [low, high] = std::minmax(triangles[3 * t + (k + 1) % 3], triangles[3 * t + (k + 2) % 3]);
+        flagged.push_back({low, high});
+      }
+    }
+    std::ranges::sort(flagged);
+    const auto repeated = std::ranges::unique(flagged);
+    flagged.erase(repeated.begin(), repeated.end());
+    if (triangles.empty() || std::ranges::equal(flagged, expected)) return;
+    const auto [a, b] = std::ranges::mismatch(flagged, expected);
+    const bool more = b == expected.end() || (a != flagged.end() && *a < *b);
+    const Segment edge = more ? *a : *b;
+    fail(-1, "the edge from " + std::to_string(edge[0]) + " to " + std::to_string(edge[1]) +
+                 (more ? " is constrained, but part of no segment" : " is part of a segment, but not a constrained edge"));
+  }
+
+  const Places places_;
+  const std::span<const Segment> segments_;
+  const ConstrainedTriangulation& mesh_;
+  Check check_;
+};
+
+}  // namespace
+
+VerifyReport verify(PointsView points, std::span<const Segment> segments, const ConstrainedTriangulation& mesh,
+                    const ConstraintOptions& constraints, const VerifyOptions& options) {
+  (void)constraints;
+  const Triangulation& of = mesh.mesh();
+  MeshView view;
+  view.triangles = of.triangles();
+  view.neighbors = of.neighbors();
+  view.hull = of.hull();
+  view.duplicates = of.duplicates();
+  view.has_duplicates = true;
+  view.edge_flags = mesh.edge_flags();
+  VerifyReport report = verify(points, view, options);
+  report.checks.push_back(SegmentCheck(points, segments, mesh).run());
+  report.ok = report.ok && report.checks.back().passed;
+  return report;
+}
+
+}  // namespace cadt

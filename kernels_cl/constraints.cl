@@ -1,0 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#define CADT_PROGRAM CADT_PROGRAM_OTHER
+#include "common/constraints/find_segments.dev.h"
+#include "common/constraints/segment_cavity.dev.h"

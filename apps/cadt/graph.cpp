@@ -18,9 +18,9 @@
 namespace cadt::cli {
 namespace {
 
-constexpr std::pair<const char*, Domain> domains[] = {{"hull", Domain::hull},       {"outer", Domain::outer},
+constexpr std::pair<const char*, Domain> domains[] = {{"hull", Domain::hull},         {"outer", Domain::outer},
                                                       {"even_odd", Domain::even_odd}, {"nonzero", Domain::nonzero},
-                                                      {"layers", Domain::layers},   {"seeds", Domain::seeds}};
+                                                      {"layers", Domain::layers},     {"seeds", Domain::seeds}};
 
 bool contains(const std::vector<std::string>& list, const std::string& word) {
   return std::find(list.begin(), list.end(), word) != list.end();
@@ -38,7 +38,8 @@ double grid_of(const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [stop, code] = fast_float::from_chars(text.data() + std::string_view("grid=").size(), end, width);
   if (code != std::errc() || stop != end || !(width > 0) || !std::isfinite(width)) {
-    throw Failure(exit_usage, fmt::format("--crossing {}: the width of a grid is above 0, for example grid=0.001", text));
+    throw Failure(exit_usage,
+                  fmt::format("--crossing {}: the width of a grid is above 0, for example grid=0.001", text));
   }
   return width;
 }
@@ -111,8 +112,8 @@ ConstraintOptions constraint_options(const SegmentOptions& options) {
     result.crossing = Crossing::grid;
     result.grid = grid_of(options.crossing);
   } else if (!options.crossing.empty() && options.crossing != "error") {
-    throw Failure(exit_usage,
-                  fmt::format("--crossing {}: there are error, exact and grid=G, for example grid=0.001", options.crossing));
+    throw Failure(exit_usage, fmt::format("--crossing {}: there are error, exact and grid=G, for example grid=0.001",
+                                          options.crossing));
   }
   return result;
 }
@@ -132,8 +133,9 @@ Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool 
   Graph graph;
   if (is_graph(input)) {
     if (!options.file.empty()) {
-      throw Failure(exit_usage, fmt::format("{} has segments of its own: leave --segments out, or give the points alone",
-                                            display_name(input.path, true)));
+      throw Failure(exit_usage,
+                    fmt::format("{} has segments of its own: leave --segments out, or give the points alone",
+                                display_name(input.path, true)));
     }
     if (!input.columns.empty() || input.projection != "xy") {
       throw Failure(exit_usage, "--columns and --project are for files of points: leave them out");
@@ -160,7 +162,8 @@ std::string explain_graph_error(PointsView points, std::span<const Segment> segm
     throw;
   } catch (const CrossingError& e) {
     const auto& pairs = e.pairs();
-    std::string text = fmt::format("{} of segments cross:", pairs.size() == 1 ? "1 pair" : fmt::format("{} pairs", pairs.size()));
+    std::string text =
+        fmt::format("{} of segments cross:", pairs.size() == 1 ? "1 pair" : fmt::format("{} pairs", pairs.size()));
     constexpr std::size_t most_shown = 5;
     for (std::size_t i = 0; i < std::min(pairs.size(), most_shown); ++i) {
       const auto describe = [&](std::int32_t s) {
@@ -183,8 +186,9 @@ std::string explain_graph_error(PointsView points, std::span<const Segment> segm
   }
 }
 
-ConstrainedTriangulation triangulate_graph(PointsView points, std::span<const Segment> segments, const std::string& name,
-                                           const ConstraintOptions& constraints, const Options& options) {
+ConstrainedTriangulation triangulate_graph(PointsView points, std::span<const Segment> segments,
+                                           const std::string& name, const ConstraintOptions& constraints,
+                                           const Options& options) {
   try {
     const InPhase phase(Phase::cooperative);
     return triangulate_constrained(points, segments, constraints, options);
@@ -208,8 +212,8 @@ io::PointSet points_of(const Graph& graph, const ConstrainedTriangulation& mesh)
       return std::hypot(added[2 * i] - result.xy[2 * v], added[2 * i + 1] - result.xy[2 * v + 1]);
     };
     const double share = distance(from) / (distance(from) + distance(to));
-    result.height.push_back(graph.points.height[from] +
-                            (std::isfinite(share) ? share : 0.5) * (graph.points.height[to] - graph.points.height[from]));
+    result.height.push_back(graph.points.height[from] + (std::isfinite(share) ? share : 0.5) *
+                                                            (graph.points.height[to] - graph.points.height[from]));
   }
   return result;
 }

@@ -51,9 +51,9 @@ int run(const LabelsCommand& command) {
 
   const std::set<std::int32_t> labels(image.labels.begin(), image.labels.end());
   const std::string summary = fmt::format(
-      "pixels      {} x {}\nlabels      {}\nregions     {}\npoints      {}\nsegments    {}\ntriangles   {}\n", image.width,
-      image.height, labels.size(), mesh.number_of_regions(), boundary.xy.size() / 2, boundary.segments.size(),
-      mesh.mesh().number_of_triangles());
+      "pixels      {} x {}\nlabels      {}\nregions     {}\npoints      {}\nsegments    {}\ntriangles   {}\n",
+      image.width, image.height, labels.size(), mesh.number_of_regions(), boundary.xy.size() / 2,
+      boundary.segments.size(), mesh.mesh().number_of_triangles());
   if (outputs.empty()) {
     print(summary);
   } else if (!command.quiet) {
@@ -72,8 +72,10 @@ void add_labels(CLI::App& app, Action& chosen) {
   add_device_options(*command, options->device);
   command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");
   command->footer(
-      "The label of a pixel is its grey value, its index in the palette, or its colour as 0xRRGGBB. The boundaries between\n"
-      "labels become edges, and each triangle gets the label of the pixels that it lies in: as attribute 'label' in .ply,\n"
+      "The label of a pixel is its grey value, its index in the palette, or its colour as 0xRRGGBB. The boundaries "
+      "between\n"
+      "labels become edges, and each triangle gets the label of the pixels that it lies in: as attribute 'label' in "
+      ".ply,\n"
       ".vtu and .geojson, as column in .ele. Coordinates are in pixels, with y up from the lower left corner.\n\n"
       "Example:\n"
       "  cadt labels grains.png -o grains.vtu -o mesh.svg\n");

@@ -133,9 +133,12 @@ void add_polygons(CLI::App& app, Action& chosen) {
   add_device_options(*command, options->device);
   command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");
   command->footer(
-      "Inside is what is behind an odd number of rings, so holes are left out. Polygons do not know of each other: where\n"
-      "they share a border, its points are there twice. Each triangle has the number of its feature, from 0: as attribute\n"
-      "'feature' in .ply, .vtu and .geojson, as column in .ele. If a polygon has no inside, such as one that crosses itself,\n"
+      "Inside is what is behind an odd number of rings, so holes are left out. Polygons do not know of each other: "
+      "where\n"
+      "they share a border, its points are there twice. Each triangle has the number of its feature, from 0: as "
+      "attribute\n"
+      "'feature' in .ply, .vtu and .geojson, as column in .ele. If a polygon has no inside, such as one that crosses "
+      "itself,\n"
       "each of them is named, and nothing is written; with --crossing exact they have one.\n\n"
       "Examples:\n"
       "  cadt polygons countries.geojson -o countries.png -o triangles.geojson\n"

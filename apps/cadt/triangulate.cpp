@@ -38,9 +38,10 @@ void check_segment_options(const TriangulateOptions& options) {
 }
 
 std::vector<Output> check_outputs(const TriangulateOptions& options) {
-  auto outputs =
-      plan_outputs(options.outputs, options.formats,
-                   has_segments(options) ? io::region_write_formats() : io::mesh_write_formats(), options.input.path);
+  const auto formats = has_segments(options) ? io::region_write_formats() : io::mesh_write_formats();
+  auto outputs = plan_outputs(options.outputs, options.formats, formats, options.input.path);
+  // Nor may the other input be lost.
+  static_cast<void>(plan_outputs(options.outputs, options.formats, formats, options.segments.file));
   check_segment_options(options);
   if (options.timing && options.stats.empty())
     throw Failure(exit_usage, "--timing belongs to --stats: add it, or leave --timing out");

@@ -215,6 +215,7 @@ class SegmentErrors(CliTest):
         self.fails(2, "triangulate", "plate.poly", "-o", "m.npz", says="unknown suffix '.npz'")
         self.fails(2, "triangulate", "p.xy", "-o", "m.geojson", says="unknown suffix '.geojson'")
         self.fails(2, "triangulate", "plate.poly", "-o", "plate.poly", says="this is the input")
+        self.fails(2, "triangulate", "p.xy", "--segments", "plate.poly", "-o", "plate.poly", says="this is the input")
         self.fails(3, "triangulate", "p.xy", "--segments", "absent.poly", says="absent.poly: ")
         self.fails(3, "triangulate", "p.xy", "--segments", "p.xy", says="known: poly edge")
         self.assertEqual(self.names(), ["p.xy", "plate.poly"])

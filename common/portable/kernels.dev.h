@@ -9,6 +9,7 @@
 #define CADT_PORTABLE_KERNELS_H
 
 #include "common/certify/certify.dev.h"
+#include "common/constraints/domains.dev.h"
 #include "common/constraints/segment_cavity.dev.h"
 #include "common/insertion/cavity.dev.h"
 #include "common/insertion/drop_locks.dev.h"
@@ -37,6 +38,7 @@
 #if !CADT_FLOAT
 #include "common/batch/batch.dev.h"
 #include "common/batch/batch_insertion.dev.h"
+#include "common/constraints/polygons.dev.h"
 #include "common/finalization/certain.dev.h"
 #include "common/finalization/finish.dev.h"
 #include "common/finalization/join.dev.h"

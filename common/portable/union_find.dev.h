@@ -18,14 +18,16 @@ CADT_FN cadt_u32 cadt_find_root(CADT_GLOBAL cadt_u32* roots, cadt_u32 r) {
   }
 }
 
-CADT_FN void cadt_unite(CADT_GLOBAL cadt_u32* roots, cadt_u32 r, cadt_u32 other) {
+/* Whether this call joined two trees: then `r` and `other` are an edge of a spanning forest. */
+CADT_FN cadt_u32 cadt_unite(CADT_GLOBAL cadt_u32* roots, cadt_u32 r, cadt_u32 other) {
   cadt_u32 a = cadt_find_root(roots, r), b = cadt_find_root(roots, other);
   while (a != b) {
     const cadt_u32 high = a > b ? a : b, low = a > b ? b : a;
-    if (cadt_cas_relaxed(roots + high, high, low)) break;
+    if (cadt_cas_relaxed(roots + high, high, low)) return 1u;
     a = cadt_find_root(roots, high);
     b = cadt_find_root(roots, low);
   }
+  return 0u;
 }
 
 #endif

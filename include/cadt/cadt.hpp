@@ -7,6 +7,7 @@
 #include <cadt/errors.hpp>
 #include <cadt/options.hpp>
 #include <cadt/points.hpp>
+#include <cadt/polygons.hpp>
 #include <cadt/queries.hpp>
 #include <cadt/statistics.hpp>
 #include <cadt/topology.hpp>

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pairs of segments that cross: cadt::find_crossings.
+#pragma once
+
+#include "common/constraints/arrangement.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace cadt::constraints {
+
+/// All pairs of input segments that cross, ascending.
+[[nodiscard]] std::vector<std::array<std::int32_t, 2>> crossing_pairs(const Arrangement& arrangement);
+
+}  // namespace cadt::constraints

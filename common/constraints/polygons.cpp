@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+// Many polygons in one call: small ones in rounds, by one work-item each; large ones one by one.
+#include <cadt/constrained.hpp>
+#include <cadt/polygons.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/driver/context.hpp"
+#include "common/driver/device_text.hpp"
+#include "common/driver/session.hpp"
+#include "common/driver/thread_state.hpp"
+#include "common/points/import.hpp"
+#include "common/queries/call.hpp"
+
+namespace cadt {
+
+using namespace device_text;
+
+struct PolygonsResult::Data {
+  Words triangles;
+  std::vector<std::int64_t> offsets = {0};
+  std::vector<PolygonStatus> status;
+  std::vector<PolygonProblem> problems;
+  Statistics statistics;
+};
+
+namespace {
+
+/// A work-item takes about half a microsecond a point on a CPU and some on a GPU, where the last polygon should not
+/// keep all others waiting.
+constexpr std::size_t most_swept = 512;
+/// Points of a round. On CPUs its arrays stay in the cache; on GPUs there are more polygons than lanes, and memory for
+/// a million points takes 250 MB.
+constexpr std::size_t points_of_cpu_thread = std::size_t{1} << 14, points_of_gpu = std::size_t{1} << 20;
+/// Most triangles of n points.
+constexpr std::size_t most_triangles(std::size_t points) noexcept { return 2 * points; }
+
+static_assert(static_cast<int>(PolygonStatus::too_few_points) == CADT_POLYGON_TOO_FEW_POINTS &&
+              static_cast<int>(PolygonStatus::not_finite) == CADT_POLYGON_NOT_FINITE &&
+              static_cast<int>(PolygonStatus::self_crossing) == CADT_POLYGON_SELF_CROSSING &&
+              static_cast<int>(PolygonStatus::ring_crossing) == CADT_POLYGON_RING_CROSSING &&
+              static_cast<int>(PolygonStatus::zero_area) == CADT_POLYGON_ZERO_AREA);
+
+void require_offsets(std::span<const std::int64_t> offsets, std::size_t most, const char* of, const char* what) {
+  const std::string name = std::string("the offsets of ") + of;
+  if (offsets.empty()) throw InputError(name + " are empty: give one number more than there are " + of, 0);
+  if (offsets[0] < 0) throw InputError(name + " begin with a negative number", 0);
+  for (std::size_t i = 1; i < offsets.size(); ++i)
+    if (offsets[i] < offsets[i - 1])
+      throw InputError("offset " + std::to_string(i) + " of " + of + " is " + std::to_string(offsets[i]) +
+                           ", below the one before: they must not descend",
+                       i);
+  if (static_cast<std::uint64_t>(offsets.back()) > most)
+    throw InputError(name + " end with " + std::to_string(offsets.back()) + ", but there are only " +
+                         std::to_string(most) + " " + what,
+                     offsets.size() - 1);
+}
+
+/// Polygons and their rings, of the caller.
+struct Polygons {
+  PointsView points;
+  std::span<const std::int64_t> rings, polygons;
+
+  [[nodiscard]] std::size_t size() const noexcept { return polygons.size() - 1; }
+  [[nodiscard]] std::size_t first_ring(std::size_t p) const { return static_cast<std::size_t>(polygons[p]); }
+  [[nodiscard]] std::size_t ring(std::size_t r) const { return static_cast<std::size_t>(rings[r]); }
+  /// Of polygons [p, end).
+  [[nodiscard]] std::size_t first_point(std::size_t p) const { return ring(first_ring(p)); }
+  [[nodiscard]] std::size_t points_of(std::size_t p, std::size_t end) const {
+    return first_point(end) - first_point(p);
+  }
+};
+
+class PolygonsCall {
+ public:
+  PolygonsCall(Context& ctx, const Polygons& input, PolygonsResult::Data& result)
+      : ctx_(ctx), in_(input), result_(result) {}
+
+  void run() {
+    const std::size_t count = in_.size(), points = in_.points_of(0, count);
+    const LaunchShape shape = ctx_.device.shape();
+    most_ = shape.contiguous ? points_of_cpu_thread * std::max(1U, shape.parallelism) : points_of_gpu;
+    result_.triangles = make_words(3 * most_triangles(points));
+    result_.status.reserve(count);
+    result_.offsets.reserve(count + 1);
+    prepare(std::min(points, most_));
+    for (std::size_t first = 0, end = 0; first < count; first = end) {
+      end = first + 1;
+      const bool large = in_.points_of(first, end) > most_swept;
+      while (!large && end < count && in_.points_of(end, end + 1) <= most_swept &&
+             in_.points_of(first, end + 1) <= most_ && end - first < most_)
+        ++end;
+      ctx_.check("polygons", static_cast<double>(first) / static_cast<double>(count));
+      large ? add_alone(first) : add_round(first, end);
+    }
+    result_.triangles = cut_words(std::move(result_.triangles), 3 * most_triangles(points), 3 * total());
+  }
+
+ private:
+  [[nodiscard]] std::size_t total() const noexcept { return static_cast<std::size_t>(result_.offsets.back()); }
+
+  /// Memory for a round of so many points.
+  void prepare(std::size_t points) {
+    if (points == 0) return;
+    Memory& memory = ctx_.memory;
+    triangles_ = memory.allocate(3 * most_triangles(points) * word);
+    packed_ = memory.export_to(result_.triangles.get(), 3 * most_triangles(in_.points_of(0, in_.size())) * word);
+    direct_ = static_cast<bool>(packed_);
+    if (!direct_) packed_ = memory.allocate(3 * most_triangles(points) * word);
+  }
+
+  /// Work-items, and the words of memory that one of them needs on a CPU.
+  [[nodiscard]] LaunchGrid grid(std::size_t polygons) const {
+    return ctx_.device.shape().contiguous ? ctx_.launcher.grid_spread(polygons) : ctx_.launcher.grid(polygons);
+  }
+
+  void add_round(std::size_t first, std::size_t end) {
+    const std::size_t polygons = end - first, points = in_.points_of(first, end), begin = in_.first_point(first);
+    if (points == 0) {
+      for (std::size_t p = first; p < end; ++p)
+        add(p, PolygonStatus::too_few_points, static_cast<std::int32_t>(begin), static_cast<std::int32_t>(begin), 0);
+      return;
+    }
+    std::vector<std::uint32_t> rings, of_polygons;
+    std::size_t largest = 0;
+    for (std::size_t p = first; p <= end; ++p) {
+      of_polygons.push_back(static_cast<std::uint32_t>(in_.first_ring(p) - in_.first_ring(first)));
+      if (p < end) largest = std::max(largest, in_.points_of(p, p + 1));
+    }
+    for (std::size_t r = in_.first_ring(first); r <= in_.first_ring(end); ++r)
+      rings.push_back(static_cast<std::uint32_t>(in_.ring(r) - begin));
+
+    Memory& memory = ctx_.memory;
+    const LaunchGrid all = grid(polygons);
+    const Allocation input = import_points(ctx_, in_.points.subview(begin, points)),
+                     ring_begins = memory.import(rings.data(), rings.size() * word),
+                     polygon_rings = memory.import(of_polygons.data(), of_polygons.size() * word),
+                     places = memory.allocate((polygons + 1) * word),
+                     results = memory.allocate(polygons * CADT_POLYGON_RESULT_WORDS * word);
+    const std::size_t item_words = CADT_POLYGON_WORDS * largest + CADT_POLYGON_SPARE;
+    const std::size_t words = ctx_.device.shape().contiguous
+                                  ? all.items * item_words
+                                  : CADT_POLYGON_WORDS * points + CADT_POLYGON_SPARE * polygons;
+    if (words > scratch_words_) {
+      scratch_.release();
+      scratch_ = memory.allocate(words * word);
+      scratch_words_ = words;
+    }
+    Launcher& launch = ctx_.launcher;
+    launch.run<KernelId::cadt_triangulate_polygons>(input, ring_begins, polygon_rings, all, scratch_, item_words, begin,
+                                                    triangles_, places, results);
+    const auto found = ctx_.device.read_values(*results, polygons * CADT_POLYGON_RESULT_WORDS);
+    if (split_at_wide(first, end, found)) return;
+    launch.scan(places, polygons + 1);
+    const std::size_t before = direct_ ? total() : 0;
+    launch.run<KernelId::cadt_pack_polygons>(triangles_, ring_begins, polygon_rings, all, places, packed_, before);
+    const auto ends = ctx_.device.read_values(*places, polygons + 1);
+    if (!direct_ && ends.back() != 0)
+      ctx_.device.read(*packed_, 0, result_.triangles.get() + 3 * total(), 3 * std::size_t{ends.back()} * word);
+    for (std::size_t p = 0; p < polygons; ++p) {
+      const std::uint32_t* words_of = &found[p * CADT_POLYGON_RESULT_WORDS];
+      if (words_of[CADT_POLYGON_STATE] == CADT_POLYGON_BROKEN)
+        give_up("the edges of polygon ", first + p, " were found to cross, but no two of them do");
+      add(first + p, static_cast<PolygonStatus>(words_of[CADT_POLYGON_STATE]),
+          static_cast<std::int32_t>(words_of[CADT_POLYGON_FIRST]),
+          static_cast<std::int32_t>(words_of[CADT_POLYGON_SECOND]), ends[p + 1] - ends[p]);
+    }
+  }
+
+  /// Polygons with coordinates too far apart for the narrow arithmetic are done alone, those between in rounds again.
+  bool split_at_wide(std::size_t first, std::size_t end, std::span<const std::uint32_t> found) {
+    std::vector<std::size_t> wide;
+    for (std::size_t p = first; p < end; ++p)
+      if (found[(p - first) * CADT_POLYGON_RESULT_WORDS] == CADT_POLYGON_WIDE) wide.push_back(p);
+    if (wide.empty()) return false;
+    std::size_t next = first;
+    for (const std::size_t p : wide) {
+      if (next < p) add_round(next, p);
+      add_alone(p);
+      next = p + 1;
+    }
+    if (next < end) add_round(next, end);
+    return true;
+  }
+
+  void add(std::size_t polygon, PolygonStatus status, std::int32_t first, std::int32_t second, std::size_t triangles) {
+    result_.status.push_back(status);
+    result_.offsets.push_back(result_.offsets.back() + static_cast<std::int64_t>(triangles));
+    if (status != PolygonStatus::ok) result_.problems.push_back({polygon, status, first, second});
+  }
+
+  /// What can be said without a mesh.
+  bool refuse(std::size_t p) {
+    const auto report = [&](PolygonStatus status, std::size_t at) {
+      add(p, status, static_cast<std::int32_t>(at), static_cast<std::int32_t>(at), 0);
+      return true;
+    };
+    for (std::size_t i = in_.first_point(p); i < in_.first_point(p + 1); ++i)
+      if (!std::isfinite(in_.points.x(i)) || !std::isfinite(in_.points.y(i)))
+        return report(PolygonStatus::not_finite, i);
+    const auto same = [&](std::size_t i, std::size_t j) {
+      return in_.points.x(i) == in_.points.x(j) && in_.points.y(i) == in_.points.y(j);
+    };
+    for (std::size_t r = in_.first_ring(p); r < in_.first_ring(p + 1); ++r) {
+      const std::size_t begin = in_.ring(r), end = in_.ring(r + 1);
+      std::size_t second = begin, third = begin;
+      while (second < end && same(begin, second)) ++second;
+      for (third = second; third < end && (same(begin, third) || same(second, third));) ++third;
+      if (third >= end) return report(PolygonStatus::too_few_points, begin);
+    }
+    return false;
+  }
+
+  void add_alone(std::size_t p) {
+    if (refuse(p)) return;
+    const std::size_t begin = in_.first_point(p), count = in_.points_of(p, p + 1);
+    std::vector<std::int64_t> rings;
+    for (std::size_t r = in_.first_ring(p); r <= in_.first_ring(p + 1); ++r)
+      rings.push_back(in_.rings[r] - static_cast<std::int64_t>(begin));
+    const std::vector<Segment> segments = ring_segments(rings);
+    ConstraintOptions constraints;
+    constraints.domain = Domain::even_odd;
+    Options options = ctx_.options;
+    options.keep_points = KeepPoints::no;
+    options.progress = nullptr;
+    try {
+      const std::vector<std::int32_t> inside =
+          triangulate_constrained(in_.points.subview(begin, count), segments, constraints, options).triangles_inside();
+      std::int32_t* to = result_.triangles.get() + 3 * total();
+      for (const std::int32_t v : inside) *to++ = v + static_cast<std::int32_t>(begin);
+      const auto at = static_cast<std::int32_t>(begin);
+      add(p, inside.empty() ? PolygonStatus::zero_area : PolygonStatus::ok, at, at, inside.size() / 3);
+    } catch (const CrossingError& error) {
+      const auto [i, j] = error.pairs().front();
+      const auto ring_of = [&](std::int32_t edge) { return std::ranges::upper_bound(rings, std::int64_t{edge}); };
+      add(p, ring_of(i) == ring_of(j) ? PolygonStatus::self_crossing : PolygonStatus::ring_crossing,
+          i + static_cast<std::int32_t>(begin), j + static_cast<std::int32_t>(begin), 0);
+    }
+  }
+
+  Context& ctx_;
+  const Polygons& in_;
+  PolygonsResult::Data& result_;
+  std::size_t most_ = 0, scratch_words_ = 0;
+  Allocation triangles_, packed_, scratch_;
+  bool direct_ = false;  ///< kernels write to the result
+};
+
+}  // namespace
+
+std::string_view to_string(PolygonStatus status) noexcept {
+  constexpr std::string_view names[] = {
+      "ok", "too few points", "not finite", "self-crossing", "ring crosses ring", "zero area"};
+  return names[static_cast<std::size_t>(status)];
+}
+
+PolygonsResult::PolygonsResult() : data_(std::make_unique<Data>()) {}
+PolygonsResult::PolygonsResult(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+PolygonsResult::~PolygonsResult() = default;
+PolygonsResult::PolygonsResult(PolygonsResult&&) noexcept = default;
+PolygonsResult& PolygonsResult::operator=(PolygonsResult&&) noexcept = default;
+
+std::size_t PolygonsResult::size() const noexcept { return data_->status.size(); }
+std::span<const std::int64_t> PolygonsResult::triangle_offsets() const noexcept { return data_->offsets; }
+std::span<const std::int32_t> PolygonsResult::triangles() const noexcept {
+  return {data_->triangles.get(), 3 * static_cast<std::size_t>(data_->offsets.back())};
+}
+std::span<const std::int32_t> PolygonsResult::triangles(std::size_t polygon) const {
+  if (polygon >= size())
+    throw InputError("there is no polygon " + std::to_string(polygon) + ", only " + std::to_string(size()), polygon);
+  const auto begin = static_cast<std::size_t>(data_->offsets[polygon]),
+             end = static_cast<std::size_t>(data_->offsets[polygon + 1]);
+  return triangles().subspan(3 * begin, 3 * (end - begin));
+}
+std::span<const PolygonStatus> PolygonsResult::status() const noexcept { return data_->status; }
+std::span<const PolygonProblem> PolygonsResult::problems() const noexcept { return data_->problems; }
+const Statistics& PolygonsResult::statistics() const noexcept { return data_->statistics; }
+
+PolygonsResult triangulate_polygons(PointsView ring_points, std::span<const std::int64_t> ring_offsets,
+                                    std::span<const std::int64_t> polygon_offsets, const Options& options) {
+  require_size(ring_points.size());
+  require_offsets(ring_offsets, ring_points.size(), "rings", "points");
+  require_offsets(polygon_offsets, ring_offsets.size() - 1, "polygons", "rings");
+  auto result = std::make_unique<PolygonsResult::Data>();
+  const CallState state(options, ring_points.size());
+  query::require_doubles(*(**state).device);
+  begin_call(**state, ring_points.size(), result->statistics);
+  Context ctx(*(**state).device, (**state).memory, (**state).options, result->statistics);
+  PolygonsCall(ctx, {ring_points, ring_offsets, polygon_offsets}, *result).run();
+  ctx.end_phase("polygons");
+  end_call(**state, ctx, false);
+  return PolygonsResult(std::move(result));
+}
+
+}  // namespace cadt

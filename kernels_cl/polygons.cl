@@ -1,0 +1,3 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#define CADT_PROGRAM CADT_PROGRAM_OTHER
+#include "common/constraints/polygons.dev.h"

@@ -10,6 +10,7 @@
 #include "text.hpp"
 
 #include <cadt/io/segments_file.hpp>
+#include <cadt/polygons.hpp>
 
 #include <fmt/format.h>
 
@@ -24,53 +25,108 @@ struct PolygonsCommand {
   SegmentOptions segments;
   RegionOutputOptions output;
   DeviceOptions device;
-  bool quiet = false;
+  bool strict = false, quiet = false;
 };
 
-/// The points and the rings of polygon p.
-struct Polygon {
-  std::span<const double> xy;
-  std::vector<Segment> segments;
-};
-
-Polygon polygon_of(const io::PolygonsFile& file, std::size_t p) {
-  const auto first = static_cast<std::size_t>(file.polygon_offsets[p]);
-  const auto last = static_cast<std::size_t>(file.polygon_offsets[p + 1]);
-  const std::int64_t begin = file.ring_offsets[first], end = file.ring_offsets[last];
-  std::vector<std::int64_t> offsets(file.ring_offsets.begin() + static_cast<std::ptrdiff_t>(first),
-                                    file.ring_offsets.begin() + static_cast<std::ptrdiff_t>(last) + 1);
-  for (std::int64_t& offset : offsets) offset -= begin;
-  return {std::span(file.xy).subspan(2 * static_cast<std::size_t>(begin), 2 * static_cast<std::size_t>(end - begin)),
-          ring_segments(offsets)};
+std::string describe(const io::PolygonsFile& file, const PolygonProblem& problem) {
+  const auto place = [&](std::int32_t v) {
+    const auto at = 2 * static_cast<std::size_t>(v);
+    return fmt::format("({}, {})", file.xy[at], file.xy[at + 1]);
+  };
+  std::string text = fmt::format("polygon {} of feature {}: {}", problem.polygon, file.features[problem.polygon],
+                                 to_string(problem.status));
+  const bool pair = problem.first != problem.second;
+  text += pair ? ", the edges from " : " at ";
+  text += place(problem.first);
+  if (pair) text += " and " + place(problem.second);
+  return text;
 }
 
-/// What is wrong with polygons, one by one.
-class Refusals {
- public:
-  explicit Refusals(const std::string& name) : name_(name) {}
-  void add(std::size_t polygon, std::int32_t feature, const std::string& why) {
-    constexpr std::size_t most_shown = 10;
-    if (++count_ <= most_shown) text_ += fmt::format("\n  polygon {} of feature {}: {}", polygon, feature, why);
-    if (count_ == most_shown + 1) text_ += "\n  ...";
-  }
-  void raise() const {
-    if (count_ == 0) return;
-    throw Failure(exit_file, fmt::format("{}: {} {} no inside; nothing was written:{}", name_, count_,
-                                         count_ == 1 ? "polygon has" : "polygons have", text_));
-  }
+bool crosses(PolygonStatus status) {
+  return status == PolygonStatus::self_crossing || status == PolygonStatus::ring_crossing;
+}
 
- private:
-  std::string name_, text_;
-  std::size_t count_ = 0;
-};
+/// Points and rings of polygon p, alone.
+Graph graph_of(const io::PolygonsFile& file, std::size_t p) {
+  const auto first = static_cast<std::ptrdiff_t>(file.polygon_offsets[p]);
+  const auto last = static_cast<std::ptrdiff_t>(file.polygon_offsets[p + 1]);
+  std::vector<std::int64_t> offsets(file.ring_offsets.begin() + first, file.ring_offsets.begin() + last + 1);
+  const std::int64_t begin = offsets.front();
+  for (std::int64_t& offset : offsets) offset -= begin;
+  Graph graph;
+  graph.points.xy.assign(file.xy.begin() + 2 * begin, file.xy.begin() + 2 * (begin + offsets.back()));
+  graph.segments = ring_segments(offsets);
+  return graph;
+}
+
+/// What is inside of polygons whose edges cross; their points come once more, behind all others.
+void append_crossed(RegionResult& result, const io::PolygonsFile& file, std::size_t p, const std::string& name,
+                    const ConstraintOptions& constraints, const Options& options, bool quiet) {
+  const Graph graph = graph_of(file, p);
+  const ConstrainedTriangulation mesh = triangulate_graph(graph.points.view(), graph.segments, name, constraints, options);
+  note_rounding(mesh, fmt::format("{}, polygon {}", name, p), quiet);
+  append_inside(result, mesh, static_cast<std::int32_t>(result.points.size()));
+  result.region.resize(result.triangles.size() / 3);
+  std::fill(result.region.end() - static_cast<std::ptrdiff_t>(mesh.number_inside()), result.region.end(),
+            file.features[p]);
+  const io::PointSet points = points_of(graph, mesh);
+  result.points.xy.insert(result.points.xy.end(), points.xy.begin(), points.xy.end());
+}
+
+/// Those that cross, with a rule for that, and the others with a defect, which are named.
+std::size_t handle_problems(const PolygonsCommand& command, RegionResult& result, const io::PolygonsFile& file,
+                            const PolygonsResult& polygons, const Options& options) {
+  const std::string name = display_name(command.input, true);
+  ConstraintOptions constraints = constraint_options(command.segments);
+  constraints.domain = Domain::even_odd;
+  std::string text;
+  std::size_t count = 0;
+  for (const PolygonProblem& problem : polygons.problems()) {
+    check_interrupt();
+    if (crosses(problem.status) && constraints.crossing != Crossing::error) {
+      append_crossed(result, file, problem.polygon, name, constraints, options, command.quiet);
+      continue;
+    }
+    constexpr std::size_t most_shown = 10;
+    if (++count <= most_shown) text += "\n  " + describe(file, problem);
+    if (count == most_shown + 1) text += "\n  ...";
+  }
+  if (count == 0) return 0;
+  text = fmt::format("{}: {} of {} polygons {} no inside:{}", name, count, file.size(), count == 1 ? "has" : "have", text);
+  if (command.strict) throw Failure(exit_file, text + "\n  Nothing was written. Without --strict they are left out.");
+  if (!command.quiet) {
+    say(fmt::format("cadt: warning: {}\n  They are left out; --crossing exact takes rings that cross, --strict makes this "
+                    "an error.\n",
+                    text));
+  }
+  return count;
+}
+
+/// The triangles of all polygons, each with its feature, and the rings of those that have some.
+RegionResult result_of(const io::PolygonsFile& file, const PolygonsResult& polygons) {
+  RegionResult result;
+  result.region_name = "feature";
+  result.points.xy = file.xy;
+  result.triangles.assign(polygons.triangles().begin(), polygons.triangles().end());
+  const auto offsets = polygons.triangle_offsets();
+  for (std::size_t p = 0; p < file.size(); ++p) {
+    result.region.resize(static_cast<std::size_t>(offsets[p + 1]), file.features[p]);
+    if (polygons.status()[p] != PolygonStatus::ok) continue;
+    const auto rings = std::span(file.ring_offsets)
+                           .subspan(static_cast<std::size_t>(file.polygon_offsets[p]),
+                                    static_cast<std::size_t>(file.polygon_offsets[p + 1] - file.polygon_offsets[p]) + 1);
+    const std::vector<Segment> edges = ring_segments(rings);
+    result.segments.insert(result.segments.end(), edges.begin(), edges.end());
+  }
+  return result;
+}
 
 int run(const PolygonsCommand& command) {
   if (command.input == "-" && command.format.empty())
     throw Failure(exit_usage, "standard input has no suffix; name its format: -f geojson");
   const auto outputs =
       plan_outputs(command.output.outputs, command.output.formats, io::region_write_formats(), command.input);
-  ConstraintOptions constraints = constraint_options(command.segments);
-  constraints.domain = Domain::even_odd;
+  static_cast<void>(constraint_options(command.segments));  // which may be wrong
   ProgressLine line(command.quiet);
   const std::string name = display_name(command.input, true);
   line.step(fmt::format("reading {}", name));
@@ -79,37 +135,21 @@ int run(const PolygonsCommand& command) {
   Options options = library_options(command.device);
   options.statistics = StatisticsDetail::none;
   options.stop = interrupt_token();
-  RegionResult result;
-  result.region_name = "feature";
-  Refusals refusals(name);
-  for (std::size_t p = 0; p < file.size(); ++p) {
-    if (p % 1024 == 0) line.step(fmt::format("polygon {} of {}", p, file.size()));
-    check_interrupt();
-    const Polygon polygon = polygon_of(file, p);
-    Graph graph;
-    graph.points.xy.assign(polygon.xy.begin(), polygon.xy.end());
-    try {
-      const ConstrainedTriangulation mesh =
-          triangulate_constrained(graph.points.view(), polygon.segments, constraints, options);
-      const auto first = static_cast<std::int32_t>(result.points.size());
-      append_inside(result, mesh, first);
-      result.region.resize(result.triangles.size() / 3);
-      std::fill(result.region.end() - static_cast<std::ptrdiff_t>(mesh.number_inside()), result.region.end(),
-                file.features[p]);
-      const io::PointSet points = points_of(graph, mesh);
-      result.points.xy.insert(result.points.xy.end(), points.xy.begin(), points.xy.end());
-      note_rounding(mesh, fmt::format("{}, polygon {}", name, p), command.quiet);
-    } catch (const Error&) {
-      refusals.add(p, file.features[p], explain_graph_error(graph.points.view(), polygon.segments));
-    }
-  }
+  line.step(fmt::format("triangulating {} polygons", file.size()));
+  const PolygonsResult polygons = [&] {
+    const InPhase phase(Phase::cooperative);
+    return triangulate_polygons(PointsView(std::span<const double>(file.xy)), file.ring_offsets, file.polygon_offsets,
+                                options);
+  }();
   line.clear();
-  refusals.raise();
+  RegionResult result = result_of(file, polygons);
+  const std::size_t left_out = handle_problems(command, result, file, polygons, options);
   write_regions(outputs, command.output, result, line);
 
   std::string summary = fmt::format("features    {}\npolygons    {}\nrings       {}\npoints      {}\ntriangles   {}\n",
                                     file.number_of_features, file.size(), file.ring_offsets.size() - 1,
                                     result.points.size(), result.triangles.size() / 3);
+  if (left_out != 0) summary += fmt::format("no inside   {} polygons\n", left_out);
   if (file.other_geometries != 0) summary += fmt::format("left out    {} points and lines\n", file.other_geometries);
   if (outputs.empty()) {
     print(summary);
@@ -131,15 +171,13 @@ void add_polygons(CLI::App& app, Action& chosen) {
   add_region_output_options(*command, options->output);
   add_crossing_option(*command, options->segments);
   add_device_options(*command, options->device);
+  command->add_flag("--strict", options->strict, "exit 3 if a polygon has no inside");
   command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");
   command->footer(
-      "Inside is what is behind an odd number of rings, so holes are left out. Polygons do not know of each other: "
-      "where\n"
-      "they share a border, its points are there twice. Each triangle has the number of its feature, from 0: as "
-      "attribute\n"
-      "'feature' in .ply, .vtu and .geojson, as column in .ele. If a polygon has no inside, such as one that crosses "
-      "itself,\n"
-      "each of them is named, and nothing is written; with --crossing exact they have one.\n\n"
+      "Inside is what is behind an odd number of rings, so holes are left out. Polygons do not know of each other: where\n"
+      "they share a border, its points are there twice. Each triangle has the number of its feature, from 0: as attribute\n"
+      "'feature' in .ply, .vtu and .geojson, as column in .ele. Polygons that have no inside, such as those that cross\n"
+      "themselves, are named and left out; with --crossing exact rings may cross.\n\n"
       "Examples:\n"
       "  cadt polygons countries.geojson -o countries.png -o triangles.geojson\n"
       "  cadt polygons parcels.json --crossing exact -o parcels.ply\n");

@@ -117,6 +117,9 @@ class Segments(CliTest):
         self.write("lines.obj", "v 2 2 7\nv 5 6 8\nl 1 2\n")
         self.cadt("triangulate", "p.xyz", "--segments", "lines.obj", "-o", "m.off")
         self.assertEqual([z for _, _, z in read_off(self.path("m.off").read_text())[0]], ["1", "2", "3", "4", "7", "8"])
+        self.write("same.obj", "v 0 0 7\nv 9 0 7\nv 9 9 7\nv 0 9 7\nl 1 3\n")
+        self.cadt("triangulate", "p.xyz", "--segments", "same.obj", "-o", "m.off")
+        self.assertEqual([z for _, _, z in read_off(self.path("m.off").read_text())[0]], ["1", "2", "3", "4"])
         self.write("flat.edg", "1\n2 2 5 6\n")
         err = self.cadt("triangulate", "p.xyz", "--segments", "flat.edg", "-o", "m.off").err
         self.assertIn("cadt: heights are left out: flat.edg has none", err)
@@ -268,19 +271,30 @@ class Polygons(CliTest):
 
     def test_those_that_cross_themselves_are_named(self):
         self.write("a.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE), polygon(HOLE), polygon(BOW_TIE[::-1])))
-        self.fails(3, "polygons", "a.geojson", "-o", "m.off",
-                   says=["a.geojson: 2 polygons have no inside; nothing was written", "polygon 1 of feature 1: 1 pair",
-                         "polygon 3 of feature 3: 1 pair", "--crossing exact"])
+        named = ["a.geojson: 2 of 4 polygons have no inside", "polygon 1 of feature 1: self-crossing, the edges from (",
+                 "polygon 3 of feature 3: self-crossing"]
+        self.fails(3, "polygons", "a.geojson", "-o", "m.off", "--strict", says=named + ["Nothing was written"])
         self.assertEqual(self.names(), ["a.geojson"])
+        err = self.cadt("polygons", "a.geojson", "-o", "m.off").err
+        for text in named + ["cadt: warning: ", "--crossing exact", "--strict", "no inside   2 polygons"]:
+            self.assertIn(text, err)
+        self.assertEqual(area_of(*self.off("m.off")) / 2, 16 + 1)
+        self.assertEqual(self.cadt("polygons", "a.geojson", "-o", "m.off", "-q").err, "")
 
     def test_crossings_can_become_vertices(self):
         self.write("a.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE)))
         self.cadt("polygons", "a.geojson", "--crossing", "exact", "-o", "m.off")
         points, triangles = self.off("m.off")
         self.assertEqual(area_of(points, triangles) / 2, 16 + 8)
-        self.assertEqual(points[8:], [(2, 2)])
+        self.assertEqual(points[12:], [(2, 2)])
+        flat = [[0, 0], [1, 1], [2, 2], [0, 0]]
+        self.write("b.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE), polygon(flat), polygon(SQUARE, flat[:2])))
+        err = self.cadt("polygons", "b.geojson", "--crossing", "exact", "-o", "m.off").err
+        self.assertIn("polygon 2 of feature 2: zero area at (0, 0)", err)
+        self.assertIn("polygon 3 of feature 3: too few points at (0, 0)", err)
 
     def test_errors(self):
+        self.fails(2, "polygons", "a.json", "--crossing", "round", says="--crossing round:")
         self.write("a.json", json.dumps({"type": "LineString", "coordinates": [[0, 0], [1, 1]]}))
         self.fails(3, "polygons", "a.json", says="has no polygons")
         self.fails(2, "polygons", "-", says="-f geojson")

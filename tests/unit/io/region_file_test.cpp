@@ -39,6 +39,7 @@ TEST(RegionFile, GeoJsonHasAPolygonATriangle) {
   EXPECT_EQ(file.number_of_features, 2U);
   const std::string text = content_of(folder / "a.geojson");
   EXPECT_LT(text.find("\"label\":7"), text.find("\"label\":-2"));
+  EXPECT_NE(text.find("\"label\":-2"), std::string::npos);
   EXPECT_NE(text.find("[[[0,0],[4,0],[4,4],[0,0]]]"), std::string::npos) << text;
 
   RegionMesh high = square.mesh();

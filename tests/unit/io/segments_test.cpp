@@ -133,6 +133,11 @@ TEST(ThirdCoordinates, BecomeTheAttribute) {
       read_segments(folder.file("b.json", R"({"type":"LineString","coordinates":[[1,2,3],[4,5]]})"));
   EXPECT_EQ(mixed.attributes, Values());
   EXPECT_EQ(mixed.attributes_per_point, 0U);
+  const SegmentsFile apart = read_segments(
+      folder.file("c.json", R"({"type":"GeometryCollection","geometries":[{"type":"Point","coordinates":[1,2,3]},)"
+                            R"({"type":"Point","coordinates":[4,5]}]})"));
+  EXPECT_EQ(apart.attributes, Values());
+  EXPECT_EQ(apart.attributes_per_point, 0U);
 }
 
 TEST(Polygons, HaveOffsetsAndFeatures) {

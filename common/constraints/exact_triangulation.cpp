@@ -46,7 +46,8 @@ Triangulation triangulation_of(const Triangulation& delaunay, const constraints:
       data->neighbors[3 * i + k] = across < 0 ? -1 : place[static_cast<std::size_t>(across)];
       edge_flags[i] |= (mesh.edge_flags[t] >> from & 1U) << k;
       if (across < 0)
-        boundary.push_back({static_cast<std::uint32_t>(corner(t, from + 1)), static_cast<std::uint32_t>(corner(t, from + 2))});
+        boundary.push_back(
+            {static_cast<std::uint32_t>(corner(t, from + 1)), static_cast<std::uint32_t>(corner(t, from + 2))});
     }
   }
   data->hull = chain_loop(std::move(boundary), data->points);

@@ -218,6 +218,11 @@
   X(cadt_domain_flags)           /* domains.dev.h: triangles inside */                             \
   X(cadt_domain_pack)            /* domains.dev.h */
 
+/* common/constraints: many small polygons */
+#define CADT_POLYGONS_KERNELS(X)                    \
+  X(cadt_triangulate_polygons) /* polygons.dev.h */ \
+  X(cadt_pack_polygons)        /* polygons.dev.h */
+
 #define CADT_KERNEL_LIST(X)    \
   CADT_SELF_TEST_KERNELS(X)    \
   CADT_PREDICATES_KERNELS(X)   \

@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <memory>
@@ -43,13 +44,18 @@ class NewFile {
   NewFile& operator=(const NewFile&) = delete;
 
   void write(const void* from, std::size_t size) {
-    hash_.add(from, size);
-    bytes_ += size;
     const auto* at = static_cast<const char*>(from);
     while (size != 0) {
-      const std::ptrdiff_t put = system_file::write(descriptor_, at, size);
-      if (put < 0) fail(shown_, "cannot be written", errno);
-      at += put, size -= static_cast<std::size_t>(put);
+      const std::size_t piece =
+          std::min(size, std::size_t{1} << 20);  // what was hashed is in the cache when it is copied
+      hash_.add(at, piece);
+      bytes_ += piece;
+      for (std::size_t done = 0; done != piece;) {
+        const std::ptrdiff_t put = system_file::write(descriptor_, at + done, piece - done);
+        if (put < 0) fail(shown_, "cannot be written", errno);
+        done += static_cast<std::size_t>(put);
+      }
+      at += piece, size -= piece;
     }
   }
   FileRecord finish() {

@@ -88,8 +88,8 @@ NodeArrays CollectedMesh::node(std::uint32_t i) const {
   const NodeData& node = nodes_[i];
   return {.xy = node.xy,
           .ids = node.ids,
-          .triangles = node.part.triangles,
-          .neighbors = node.part.neighbors,
+          .triangles = node.triangles,
+          .neighbors = node.neighbors,
           .links = node.links,
           .duplicates = node.duplicates,
           .owner = {}};

@@ -28,7 +28,9 @@ NodeData take_down(FinishedNode&& finished, LeafPoints&& points, const TileBox& 
     data.times.consume = watch.lap();
   }
   if (options.arrays) {
-    data.part = finished.part.download();
+    data.triangles.resize(3 * finished.part.number_of_triangles());
+    data.neighbors.resize(3 * finished.part.number_of_triangles());
+    finished.part.download(data.triangles, data.neighbors);
     data.xy = std::move(points.xy);
     data.ids = std::move(points.ids);
     data.times.download = watch.lap();

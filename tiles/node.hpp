@@ -35,9 +35,9 @@ struct NodeTimes {
 /// Everything of a node, on the host. Arrays as in cadt/finalization.hpp.
 struct NodeData {
   std::uint32_t node = 0;
-  std::vector<double> xy;
-  std::vector<std::uint64_t> ids;
-  Part part;
+  Array<double> xy;
+  Array<std::uint64_t> ids;
+  Array<std::int32_t> triangles, neighbors;  ///< as of a Part
   std::vector<TriangleId> links;
   std::vector<Link> messages;
   std::vector<DuplicateId> duplicates;
@@ -49,7 +49,7 @@ struct NodeData {
 };
 
 struct ComputeOptions {
-  bool arrays = true;     ///< NodeData::part, xy and ids are wanted
+  bool arrays = true;     ///< triangles, neighbors, xy and ids of NodeData are wanted
   NodeConsumer consumer;  ///< may be empty
 };
 /// Triangulates a leaf; takes its points. \throws as finish_leaf, with input indices in InputError

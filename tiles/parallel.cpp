@@ -39,6 +39,44 @@ class FirstError {
   std::exception_ptr error_;
 };
 
+/// Lets blocks pass one after the other.
+class Turns {
+ public:
+  /// False if the turn will not come: a block before it has failed.
+  [[nodiscard]] bool wait_for(std::uint64_t block) {
+    std::unique_lock guard(lock_);
+    changed_.wait(guard, [&] { return turn_ == block || ended_; });
+    return !ended_;
+  }
+  void pass_on() {
+    const std::scoped_lock guard(lock_);
+    ++turn_;
+    changed_.notify_all();
+  }
+  void end() {
+    const std::scoped_lock guard(lock_);
+    ended_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex lock_;
+  std::condition_variable changed_;
+  std::uint64_t turn_ = 0;
+  bool ended_ = false;
+};
+
+/// Calls work(thread) on so many threads, of which this is number 0. If some cannot be started, the others do the work.
+void on_threads(unsigned threads, const std::function<void(unsigned)>& work) {
+  std::vector<std::thread> helpers;
+  try {
+    for (unsigned i = 1; i < threads; ++i) helpers.emplace_back(work, i);
+  } catch (const std::system_error&) {  // NOLINT: those that did start do the work
+  }
+  work(0);
+  for (std::thread& helper : helpers) helper.join();
+}
+
 void check(const cadt::stop_token& stop) {
   if (stop.stop_requested()) throw Cancelled();
 }
@@ -51,12 +89,12 @@ unsigned threads_for(std::uint64_t blocks, unsigned threads) noexcept {
 }
 
 void each_block(const PointSource& source, std::uint64_t begin, std::uint64_t end, unsigned threads,
-                const cadt::stop_token& stop,
-                const std::function<void(unsigned, std::uint64_t, std::span<const double>)>& look) {
+                const cadt::stop_token& stop, const BlockWork& work) {
   const std::uint64_t blocks = (end - begin + block_points - 1) / block_points;
   std::atomic<std::uint64_t> next{0};  // blocks are begun in order, so all before one that fails are looked at
   FirstError error;
-  const auto work = [&](unsigned thread) {
+  Turns turns;
+  on_threads(threads_for(blocks, threads), [&](unsigned thread) {
     try {
       std::vector<double> xy;
       for (std::uint64_t b; (b = next.fetch_add(1)) < blocks;) {
@@ -65,89 +103,37 @@ void each_block(const PointSource& source, std::uint64_t begin, std::uint64_t en
         const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(block_points, end - first));
         xy.resize(2 * count);
         source.read(first, count, xy.data());
-        look(thread, first, xy);
+        work.look(thread, first, xy);
+        if (work.in_turn) {
+          if (!turns.wait_for(b)) return;
+          work.in_turn(thread);
+          turns.pass_on();
+        }
+        if (work.then) work.then(thread);
       }
     } catch (...) {
       next.store(blocks);
       error.keep(std::current_exception());
+      turns.end();
     }
-  };
-  std::vector<std::thread> helpers;
-  const unsigned wanted = threads_for(blocks, threads);
-  try {
-    for (unsigned i = 1; i < wanted; ++i) helpers.emplace_back(work, i);
-  } catch (const std::system_error&) {  // NOLINT: those that did start do the work
-  }
-  work(0);
-  for (std::thread& helper : helpers) helper.join();
+  });
   error.rethrow();
 }
 
-void for_each_block(const PointSource& source, std::uint64_t begin, std::uint64_t end, const cadt::stop_token& stop,
-                    const std::function<void(std::uint64_t, std::span<const double>)>& look) {
-  struct Slot {
-    std::vector<double> xy;
-    std::uint64_t first = 0;
-    bool full = false;
-  };
-  constexpr std::size_t ahead = 4;
-  std::vector<Slot> slots(ahead);
-  std::mutex lock;
-  std::condition_variable changed;
-  bool over = false;  // nobody looks any more
-  std::exception_ptr error;
-  const std::uint64_t blocks = (end - begin + block_points - 1) / block_points;
-
-  std::thread reader([&] {
-    try {
-      for (std::uint64_t b = 0; b < blocks; ++b) {
-        Slot& slot = slots[b % ahead];
-        {
-          std::unique_lock guard(lock);
-          changed.wait(guard, [&] { return !slot.full || over; });
-          if (over) return;
-        }
-        slot.first = begin + b * block_points;
-        const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(block_points, end - slot.first));
-        slot.xy.resize(2 * count);
-        source.read(slot.first, count, slot.xy.data());
-        const std::scoped_lock guard(lock);
-        slot.full = true;
-        changed.notify_all();
+void run_tasks(std::span<const std::function<void()>> tasks, unsigned threads) {
+  std::vector<std::exception_ptr> errors(tasks.size());
+  std::atomic<std::size_t> next{0};
+  on_threads(std::clamp(threads, 1U, static_cast<unsigned>(std::max<std::size_t>(tasks.size(), 1))), [&](unsigned) {
+    for (std::size_t i; (i = next.fetch_add(1)) < tasks.size();) {
+      try {
+        tasks[i]();
+      } catch (...) {
+        errors[i] = std::current_exception();
       }
-    } catch (...) {
-      const std::scoped_lock guard(lock);
-      error = std::current_exception();
-      changed.notify_all();
     }
   });
-  struct Join {
-    std::thread& thread;
-    std::mutex& lock;
-    std::condition_variable& changed;
-    bool& over;
-    ~Join() {
-      {
-        const std::scoped_lock guard(lock);
-        over = true;
-        changed.notify_all();
-      }
-      thread.join();
-    }
-  } const join{reader, lock, changed, over};
-  for (std::uint64_t b = 0; b < blocks; ++b) {
-    check(stop);
-    Slot& slot = slots[b % ahead];
-    {
-      std::unique_lock guard(lock);
-      changed.wait(guard, [&] { return slot.full || error; });
-      if (!slot.full) std::rethrow_exception(error);
-    }
-    look(slot.first, slot.xy);
-    const std::scoped_lock guard(lock);
-    slot.full = false;
-    changed.notify_all();
-  }
+  for (const std::exception_ptr& error : errors)
+    if (error) std::rethrow_exception(error);
 }
 
 }  // namespace cadt::tiles

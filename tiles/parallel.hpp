@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Passes over the blocks of a source, by several threads.
+// Work of several threads: passes over the blocks of a source, and tasks.
 #pragma once
 
 #include "tiles/source.hpp"
@@ -13,10 +13,22 @@ namespace cadt::tiles {
 /// Threads for `blocks` blocks; 0: one for each core.
 [[nodiscard]] unsigned threads_for(std::uint64_t blocks, unsigned threads) noexcept;
 
-/// Calls look(thread, first, xy) for each block of [begin, end), in any order, on up to `threads` threads (0: all
-/// cores), each of which reads its own blocks. If several throw InputError, that with the smallest index is thrown.
+/// What is done with a block, on the thread that has read it.
+struct BlockWork {
+  std::function<void(unsigned thread, std::uint64_t first, std::span<const double> xy)> look;  ///< in any order
+  /// After it, in the order of the blocks, one call at a time. May be empty.
+  std::function<void(unsigned thread)> in_turn = {};
+  std::function<void(unsigned thread)> then = {};  ///< after that, in any order. May be empty
+};
+
+/// Does this with each block of [begin, end) on up to `threads` threads (0: all cores), each of which reads its own
+/// blocks. If several throw InputError, that with the smallest index is thrown. \throws what the work and reading
+/// throw, Cancelled
 void each_block(const PointSource& source, std::uint64_t begin, std::uint64_t end, unsigned threads,
-                const cadt::stop_token& stop,
-                const std::function<void(unsigned, std::uint64_t, std::span<const double>)>& look);
+                const cadt::stop_token& stop, const BlockWork& work);
+
+/// Runs tasks that do not depend on each other, the first ones first, on up to `threads` threads. All have ended when
+/// it returns. \throws what the first task throws that fails
+void run_tasks(std::span<const std::function<void()>> tasks, unsigned threads);
 
 }  // namespace cadt::tiles

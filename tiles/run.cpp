@@ -28,12 +28,30 @@ void tell(const RunOptions& options, std::string_view phase, std::uint64_t done,
   options.progress({.phase = phase, .fraction = fraction, .nodes_done = nodes_done, .nodes = nodes});
 }
 
-/// What a leaf takes on the host while it and its neighbours in time are read, computed and written.
+/// As Options::threads.
+unsigned threads_of(const RunOptions& options) { return options.devices.empty() ? 0 : options.devices.front().threads; }
+
+constexpr std::uint64_t read_bytes = 24, written_bytes = 24 + 48;  // of a point
+constexpr unsigned large_files = 4;                                // of a node
+
+bool takes_arrays(const RunOptions& options) { return !options.output.empty() || options.collect; }
+
+/// Nodes that are written at the same time. A file takes one thread, since the system lets one at a time write to it;
+/// so a node takes a few, and as many nodes as there are threads for, while a quarter of the memory holds them.
+unsigned writers(const PointSource& source, const RunOptions& options) {
+  if (options.output.empty()) return 1;
+  const std::uint64_t node = std::min(source.size(), options.tile_points) * written_bytes;
+  const unsigned most = std::max(1U, threads_for(~std::uint64_t{0}, threads_of(options)) / large_files);
+  return static_cast<unsigned>(
+      std::clamp<std::uint64_t>(available_memory() / 4 / std::max<std::uint64_t>(node, 1), 1, most));
+}
+
+/// What leaves take on the host while they and their neighbours in time are read, computed and written.
 std::uint64_t leaf_memory(const PointSource& source, const RunOptions& options) {
-  constexpr std::uint64_t read = 24, written = 24 + 48;
-  const std::uint64_t points = std::min(source.size(), options.tile_points);
-  const bool arrays = !options.output.empty() || options.collect;
-  return points * options.devices.size() * (2 * read + (arrays ? 2 * written : 0));
+  const std::uint64_t points = std::min(source.size(), options.tile_points), devices = options.devices.size();
+  const std::uint64_t written =
+      takes_arrays(options) ? devices + std::max<std::uint64_t>(devices, writers(source, options)) : 0;
+  return points * (devices * 2 * read_bytes + written * written_bytes);
 }
 
 std::uint64_t shuffle_memory(const PointSource& source, const RunOptions& options) {
@@ -65,15 +83,17 @@ std::vector<Workers> open_devices(const RunOptions& options, std::uint64_t point
   return devices;
 }
 
-LeafPoints all_points(const PointSource& source, std::uint64_t first_id) {
+LeafPoints all_points(const PointSource& source, const RunOptions& options) {
   LeafPoints points;
   points.xy.resize(2 * source.size());
-  for (std::uint64_t at = 0; at < source.size(); at += block_points) {
-    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(block_points, source.size() - at));
-    source.read(at, count, points.xy.data() + 2 * at);
-  }
   points.ids.resize(source.size());
-  std::iota(points.ids.begin(), points.ids.end(), first_id);
+  BlockWork work;
+  work.look = [&](unsigned, std::uint64_t first, std::span<const double> xy) {
+    std::copy(xy.begin(), xy.end(), points.xy.begin() + static_cast<std::ptrdiff_t>(2 * first));
+    const auto ids = std::span(points.ids).subspan(first, xy.size() / 2);
+    std::iota(ids.begin(), ids.end(), options.first_id + first);
+  };
+  each_block(source, 0, source.size(), threads_of(options), options.stop, work);
   return points;
 }
 
@@ -151,6 +171,7 @@ class Run {
     shuffling.memory = shuffle_memory(source_, options_);
     shuffling.wanted = done_;
     shuffling.wanted.flip();
+    shuffling.threads = threads_of(options_);
     shuffling.stop = options_.stop;
     shuffling.progress = [&](std::uint64_t points) { tell(options_, "shuffle", points, source_.size()); };
     const auto leaves = tree_.leaves();
@@ -164,21 +185,21 @@ class Run {
     if (in_cells(source_, options_.tile_points)) {
       job.read_leaf = cells_of_leaves(source_, tree_, options_.first_id);
     } else {
-      job.read_leaf = [&](std::uint32_t leaf) {
-        return leaves_ ? leaves_->take(leaf) : all_points(source_, options_.first_id);
-      };
+      job.read_leaf = [&](std::uint32_t leaf) { return leaves_ ? leaves_->take(leaf) : all_points(source_, options_); };
     }
     job.read_open = [&](std::uint32_t node) { return store_.value().read_open(node); };
-    job.compute.arrays = store_ || options_.collect;
+    job.compute.arrays = takes_arrays(options_);
     job.compute.consumer = options_.consumer;
     job.keep_open = job.compute.arrays;
-    job.finished = [&](unsigned device, NodeData&& data) {
-      NodeReport& report = result_.nodes[data.node];
-      report = report_of(data, device);
-      result_.whole += data.sums;
+    job.writers = writers(source_, options_);
+    job.write = [&](NodeData& data) {
       Stopwatch watch;
-      if (store_) store_->write(data);
-      report.times.write = watch.lap();
+      if (store_) store_->write(data, threads_for(large_files, threads_of(options_)));
+      data.times.write = watch.lap();
+    };
+    job.finished = [&](unsigned device, NodeData&& data) {
+      result_.nodes[data.node] = report_of(data, device);
+      result_.whole += data.sums;
       if (options_.collect) options_.collect(std::move(data));
     };
     const auto all = static_cast<std::uint32_t>(tree_.size());
@@ -219,18 +240,19 @@ Plan make_plan(const PointSource& source, const RunOptions& options) {
     }
   TreeBuilder builder(source.size(), options.tile_points);
   const std::uint64_t blocks = (source.size() + block_points - 1) / block_points;
-  const unsigned threads = threads_for(blocks, options.devices.empty() ? 0 : options.devices.front().threads);
+  const unsigned threads = threads_for(blocks, threads_of(options));
   for (bool first_pass = true; first_pass || !builder.done(); first_pass = false) {
     std::vector<TreePass> passes(threads, builder.new_pass());
     std::vector<Hash128> hashes(threads);
     std::atomic<std::uint64_t> done{0};
-    each_block(source, 0, source.size(), threads, options.stop,
-               [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
-                 if (first_pass) add_block_hash(hashes[thread], first, xy);
-                 if (!builder.done()) builder.look_at(passes[thread], first, xy);
-                 done += xy.size() / 2;
-                 if (thread == 0) tell(options, "sample", done, source.size());
-               });
+    BlockWork work;
+    work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
+      if (first_pass) add_block_hash(hashes[thread], first, xy);
+      if (!builder.done()) builder.look_at(passes[thread], first, xy);
+      done += xy.size() / 2;
+      if (thread == 0) tell(options, "sample", done, source.size());
+    };
+    each_block(source, 0, source.size(), threads, options.stop, work);
     for (const Hash128& hash : hashes) plan.content.high += hash.high, plan.content.low += hash.low;
     if (builder.done()) continue;
     for (unsigned i = 1; i < threads; ++i) passes[0] += passes[i];

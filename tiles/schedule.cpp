@@ -30,7 +30,7 @@ class Schedule::Work {
     std::vector<std::thread> threads;
     guarded([&] {
       threads.emplace_back([this] { guarded([this] { read(); }); });
-      threads.emplace_back([this] { guarded([this] { write(); }); });
+      for (unsigned w = 0; w < job_.writers; ++w) threads.emplace_back([this] { guarded([this] { write(); }); });
       for (unsigned d = 0; d < devices_.size(); ++d) {
         threads.emplace_back([this, d] { guarded([this, d] { compute_leaves(d); }); });
         threads.emplace_back([this, d] { guarded([this, d] { compute_joins(d); }); });
@@ -154,7 +154,6 @@ class Schedule::Work {
   [[nodiscard]] bool done_parent(std::uint32_t parent) const { return job_.done[parent]; }
 
   void write() {
-    std::uint32_t written = 0;
     for (;;) {
       std::pair<unsigned, NodeData> next;
       {
@@ -166,10 +165,12 @@ class Schedule::Work {
         changed_.notify_all();
       }
       const TreeNode& where = job_.tree.node(next.second.node);
+      if (job_.write) job_.write(next.second);
+      const std::scoped_lock one(finishing_);
       job_.finished(next.first, std::move(next.second));
-      ++written;
+      ++written_;
       if (where.is_leaf()) points_done_ += where.points;
-      if (job_.progress) job_.progress(written, points_done_);
+      if (job_.progress) job_.progress(written_, points_done_);
     }
   }
 
@@ -180,7 +181,9 @@ class Schedule::Work {
   std::exception_ptr error_;
   std::vector<bool> done_;
   std::size_t count_done_ = 0;
-  std::uint64_t points_done_ = 0;  // of the writer
+  std::mutex finishing_;  // of the writers; with it:
+  std::uint32_t written_ = 0;
+  std::uint64_t points_done_ = 0;
   std::map<std::uint32_t, Loaded> loaded_;
   bool leaves_taken_ = false;  // no more are read
   std::set<std::uint32_t> joins_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nodes of a tree on the devices of one process: a thread reads leaves ahead, two threads for each device compute,
-// and a thread writes what is finished.
+// and others write what is finished.
 #pragma once
 
 #include "tiles/node.hpp"
@@ -35,7 +35,10 @@ struct Job {
   ComputeOptions compute;
   bool keep_open = false;                              ///< NodeData::open goes to `finished` too
   std::function<void(const NodeData&)> computed = {};  ///< of each node, at once; on the threads of the devices
-  /// On the writing thread, in the order in which nodes finish.
+  /// Of each node that was computed, on one of the writing threads; different nodes at the same time. May be empty.
+  std::function<void(NodeData&)> write = {};
+  unsigned writers = 1;
+  /// After it, one call at a time.
   std::function<void(unsigned device, NodeData&&)> finished;
   std::function<void(std::uint32_t nodes_done, std::uint64_t points_done)> progress;
   cadt::stop_token stop;
@@ -61,7 +64,8 @@ class Schedule {
 
 /// Returns when all nodes are done. Each device has a thread for leaves and one for joins; the ready node with the
 /// lowest number comes first, so what waits for its sibling is little. In memory are, for each device, a leaf that is
-/// computed and one that is written, and one leaf more than there are devices that have been read. \throws the first
+/// computed and one that waits for a writer, one that each writer writes, and one leaf more than there are devices that
+/// have been read. \throws the first
 /// error of any thread, after all have ended
 void run_nodes(std::vector<Workers>& devices, const Job& job);
 

@@ -5,6 +5,7 @@
 #include <cadt/io/errors.hpp>
 
 #include "io/support/system_file.hpp"
+#include "tiles/parallel.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -25,13 +26,21 @@ class MemoryLeaves : public LeafStore {
  public:
   explicit MemoryLeaves(const TileTree& tree) : tree_(tree), leaves_(tree.size()) {}
   void add(std::uint32_t leaf, std::span<const double> xy, std::span<const std::uint64_t> ids) override {
+    const Room room = add_room(leaf, ids.size());
+    std::copy(xy.begin(), xy.end(), room.xy);
+    std::copy(ids.begin(), ids.end(), room.ids);
+  }
+  [[nodiscard]] Room add_room(std::uint32_t leaf, std::size_t count) override {
     LeafPoints& to = leaves_[leaf];
-    if (to.ids.empty()) {
+    const std::size_t at = to.ids.size();
+    if (at == 0) {  // nothing moves later
       to.xy.reserve(2 * tree_.node(leaf).points);
       to.ids.reserve(tree_.node(leaf).points);
     }
-    to.xy.insert(to.xy.end(), xy.begin(), xy.end());
-    to.ids.insert(to.ids.end(), ids.begin(), ids.end());
+    if (at + count > tree_.node(leaf).points) throw InternalError("a leaf gets more points than the tree says");
+    to.xy.resize(2 * (at + count));
+    to.ids.resize(at + count);
+    return {to.xy.data() + 2 * at, to.ids.data() + at};
   }
   void finish() override {}
   [[nodiscard]] LeafPoints take(std::uint32_t leaf) override { return std::exchange(leaves_[leaf], {}); }
@@ -64,6 +73,7 @@ class FileLeaves : public LeafStore {
       xy = xy.subspan(2 * n), ids = ids.subspan(n);
     }
   }
+  [[nodiscard]] Room add_room(std::uint32_t /*leaf*/, std::size_t /*count*/) override { return {}; }
   void finish() override {
     for (const std::uint32_t leaf : tree_.leaves()) {
       flush(leaf);
@@ -166,9 +176,7 @@ std::unique_ptr<LeafStore> leaves_in_files(const TileTree& tree, const std::stri
 
 BlockSorter::BlockSorter(const TileTree& tree) : tree_(tree), count_(tree.size()) {}
 
-void BlockSorter::sort(
-    std::uint64_t first_id, std::span<const double> xy,
-    const std::function<void(std::uint32_t, std::span<const double>, std::span<const std::uint64_t>)>& give) {
+std::span<const LeafRun> BlockSorter::sort(std::uint64_t first_id, std::span<const double> xy) {
   const std::size_t n = xy.size() / 2;
   leaf_.resize(n), xy_.resize(2 * n), ids_.resize(n);
   touched_.clear();
@@ -184,12 +192,14 @@ void BlockSorter::sort(
     xy_[2 * to] = xy[2 * i], xy_[2 * to + 1] = xy[2 * i + 1];
     ids_[to] = first_id + i;
   }
+  runs_.clear();
   std::size_t begin = 0;
   for (const std::uint32_t leaf : touched_) {
     const std::size_t size = std::exchange(count_[leaf], 0) - begin;
-    give(leaf, std::span(xy_).subspan(2 * begin, 2 * size), std::span(ids_).subspan(begin, size));
+    runs_.push_back({leaf, std::span(xy_).subspan(2 * begin, 2 * size), std::span(ids_).subspan(begin, size)});
     begin += size;
   }
+  return runs_;
 }
 
 bool needs_scratch(const TileTree& tree, const ShuffleOptions& options) {
@@ -207,18 +217,50 @@ bool needs_scratch(const TileTree& tree, const ShuffleOptions& options) {
   return true;
 }
 
+namespace {
+
+/// A thread of the shuffle: the runs of its block, and where they go.
+struct Worker {
+  explicit Worker(const TileTree& tree) : sorter(tree) {}
+  BlockSorter sorter;
+  std::span<const LeafRun> runs;
+  std::vector<Room> rooms;
+};
+
+}  // namespace
+
 std::unique_ptr<LeafStore> shuffle(const PointSource& source, const TileTree& tree, const ShuffleOptions& options) {
   std::unique_ptr<LeafStore> leaves = needs_scratch(tree, options)
                                           ? leaves_in_files(tree, options.scratch, options.memory / 2)
                                           : leaves_in_memory(tree);
-  BlockSorter sorter(tree);
-  for_each_block(source, 0, source.size(), options.stop, [&](std::uint64_t first, std::span<const double> xy) {
-    sorter.sort(options.first_id + first, xy,
-                [&](std::uint32_t leaf, std::span<const double> part, std::span<const std::uint64_t> ids) {
-                  if (options.wanted.empty() || options.wanted[leaf]) leaves->add(leaf, part, ids);
-                });
-    if (options.progress) options.progress(first + xy.size() / 2);
-  });
+  const std::uint64_t blocks = (source.size() + block_points - 1) / block_points;
+  std::vector<Worker> workers(threads_for(blocks, options.threads), Worker(tree));
+  std::uint64_t done = 0;
+  BlockWork work;
+  work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
+    workers[thread].runs = workers[thread].sorter.sort(options.first_id + first, xy);
+  };
+  work.in_turn = [&](unsigned thread) {
+    Worker& mine = workers[thread];
+    mine.rooms.assign(mine.runs.size(), {});
+    for (std::size_t i = 0; i < mine.runs.size(); ++i) {
+      const LeafRun& run = mine.runs[i];
+      done += run.ids.size();
+      if (!options.wanted.empty() && !options.wanted[run.leaf]) continue;
+      mine.rooms[i] = leaves->add_room(run.leaf, run.ids.size());
+      if (mine.rooms[i].ids == nullptr) leaves->add(run.leaf, run.xy, run.ids);
+    }
+    if (options.progress) options.progress(done);
+  };
+  work.then = [&](unsigned thread) {
+    const Worker& mine = workers[thread];
+    for (std::size_t i = 0; i < mine.runs.size(); ++i) {
+      if (mine.rooms[i].ids == nullptr) continue;
+      std::copy(mine.runs[i].xy.begin(), mine.runs[i].xy.end(), mine.rooms[i].xy);
+      std::copy(mine.runs[i].ids.begin(), mine.runs[i].ids.end(), mine.rooms[i].ids);
+    }
+  };
+  each_block(source, 0, source.size(), options.threads, options.stop, work);
   leaves->finish();
   return leaves;
 }

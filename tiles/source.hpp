@@ -11,7 +11,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -61,10 +60,5 @@ class PointSource {
 [[nodiscard]] std::unique_ptr<PointSource> generated(const std::string& name, const io::GenerateOptions& options);
 /// Points in memory, x0 y0 x1 y1 ...
 [[nodiscard]] std::unique_ptr<PointSource> in_memory(std::vector<double> xy, std::string name = "points");
-
-/// Calls `look(first, xy)` for each block of [begin, end) in order, on this thread, while another reads the next one.
-/// `begin` is a multiple of block_points. \throws what `look` and reading throw, Cancelled
-void for_each_block(const PointSource& source, std::uint64_t begin, std::uint64_t end, const cadt::stop_token& stop,
-                    const std::function<void(std::uint64_t, std::span<const double>)>& look);
 
 }  // namespace cadt::tiles

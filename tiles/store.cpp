@@ -4,9 +4,11 @@
 #include <cadt/io/errors.hpp>
 
 #include "io/support/system_file.hpp"
+#include "tiles/parallel.hpp"
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <system_error>
 #include <tuple>
@@ -46,9 +48,18 @@ class NewFolder {
 
   FileRecord add(const std::string& name, const ArrayView& array) {
     names_.push_back(name);
-    FileRecord record = write_array(temporary_ + "/" + name, array);
-    record.name = prefix_ + name;
-    return record;
+    return write(name, array);
+  }
+  /// Several at the same time.
+  std::vector<FileRecord> add(std::span<const std::pair<std::string, ArrayView>> arrays, unsigned threads) {
+    std::vector<FileRecord> records(arrays.size());
+    std::vector<std::function<void()>> tasks;
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+      names_.push_back(arrays[i].first);
+      tasks.emplace_back([&, i] { records[i] = write(arrays[i].first, arrays[i].second); });
+    }
+    run_tasks(tasks, threads);
+    return records;
   }
   void add(const std::string& name, std::string_view text) {
     names_.push_back(name);
@@ -64,6 +75,11 @@ class NewFolder {
   }
 
  private:
+  [[nodiscard]] FileRecord write(const std::string& name, const ArrayView& array) const {
+    FileRecord record = write_array(temporary_ + "/" + name, array);
+    record.name = prefix_ + name;
+    return record;
+  }
   std::string path_, temporary_, prefix_;
   std::vector<std::string> names_;
   bool done_ = false;
@@ -171,9 +187,9 @@ Open Store::read_open(std::uint32_t node) const {
   }
 }
 
-void Store::write(const NodeData& node) const {
+void Store::write(const NodeData& node, unsigned threads) const {
   NodeRecord record{.points = node.ids.size(),
-                    .triangles = node.part.triangles.size() / 3,
+                    .triangles = node.triangles.size() / 3,
                     .links = node.links.size(),
                     .duplicates = node.duplicates.size(),
                     .open = node.open.ids.size(),
@@ -185,11 +201,15 @@ void Store::write(const NodeData& node) const {
   for (const DuplicateId& d : node.duplicates) duplicates.insert(duplicates.end(), {d.point, d.representative});
 
   NewFolder arrays(path_, name);
-  record.files.push_back(arrays.add("points.npy", array_of("<f8", 2, std::span<const double>(node.xy))));
-  record.files.push_back(arrays.add("ids.npy", array_of(node.ids)));
-  record.files.push_back(arrays.add("triangles.npy", array_of("<i4", 3, std::span(node.part.triangles))));
-  record.files.push_back(arrays.add("neighbors.npy", array_of("<i4", 3, std::span(node.part.neighbors))));
-  record.files.push_back(arrays.add("duplicates.npy", array_of("<u8", 2, std::span<const std::uint64_t>(duplicates))));
+  const std::vector<std::pair<std::string, ArrayView>> all = {
+      {"points.npy", array_of("<f8", 2, std::span<const double>(node.xy))},
+      {"ids.npy", array_of("<u8", 1, std::span<const std::uint64_t>(node.ids))},
+      {"triangles.npy", array_of("<i4", 3, std::span<const std::int32_t>(node.triangles))},
+      {"neighbors.npy", array_of("<i4", 3, std::span<const std::int32_t>(node.neighbors))},
+      {"duplicates.npy", array_of("<u8", 2, std::span<const std::uint64_t>(duplicates))}};
+  constexpr std::size_t worth_a_thread = std::size_t{1} << 20;
+  const bool large = node.triangles.size() * sizeof node.triangles[0] >= worth_a_thread;
+  record.files = arrays.add(all, large ? threads : 1);
   NewFolder unfinished(path_ + "/unfinished", name);
   for (const auto& [file, words] : {std::pair("links.npy", node.links), std::pair("open.npy", pack(node.open)),
                                     std::pair("messages.npy", pack(node.messages))}) {

@@ -43,9 +43,9 @@ class Store {
   [[nodiscard]] Open read_open(std::uint32_t node) const;
   [[nodiscard]] NodeRecord read_record(std::uint32_t node) const;
 
-  /// A node is there as a whole or not at all: temporary folder, sync, rename. Thread-safe for different nodes.
-  /// \throws io::FileError, also for a full disk
-  void write(const NodeData& node) const;
+  /// A node is there as a whole or not at all: temporary folder, sync, rename. Large arrays are written at the same
+  /// time by up to `threads` threads. Thread-safe for different nodes. \throws io::FileError, also for a full disk
+  void write(const NodeData& node, unsigned threads = 1) const;
 
   /// All nodes are there: completes the links from the messages, adds up, checks (require_complete), writes the
   /// manifest and removes what was for resuming. O(open vertices of all nodes). \throws io::FileError, InternalError

@@ -50,9 +50,9 @@ double halving_number(std::vector<double>& values) {
 
 }  // namespace
 
-TileTree::TileTree(std::uint64_t points) : nodes_(1), leaves_{0} { nodes_[0].points = points; }
+TileTree::TileTree(std::uint64_t points) : nodes_(1), leaves_{0}, steps_(1) { nodes_[0].points = points; }
 
-TileTree::TileTree(std::vector<TreeNode> nodes) : nodes_(std::move(nodes)) {
+TileTree::TileTree(std::vector<TreeNode> nodes) : nodes_(std::move(nodes)), steps_(nodes_.size()) {
   need(!nodes_.empty() && nodes_.size() <= most_nodes, "the number of nodes");
   need(nodes_.back().box.is_plane() && nodes_.back().parent == no_node, "the last node is the plane");
   std::vector<std::uint32_t> open;  // subtrees without a parent yet
@@ -68,8 +68,9 @@ TileTree::TileTree(std::vector<TreeNode> nodes) : nodes_(std::move(nodes)) {
       need(l.parent == i && r.parent == i, "children know their parents");
       need(l.points + r.points == n.points, "the points of children add up");
       const int axis = l.box.max_x == n.box.max_x ? 1 : 0;
-      need(cut(n.box, axis, axis == 0 ? l.box.max_x : l.box.max_y) == std::pair(l.box, r.box),
-           "the boxes of children are halves of that of their parent");
+      const double at = axis == 0 ? l.box.max_x : l.box.max_y;
+      need(cut(n.box, axis, at) == std::pair(l.box, r.box), "the boxes of children are halves of that of their parent");
+      steps_[i] = {at, static_cast<std::uint32_t>(axis), {n.left, n.right}};
       open.resize(open.size() - 2);
     }
     open.push_back(i);
@@ -119,9 +120,10 @@ TreePass TreeBuilder::new_pass() const {
 }
 
 std::uint32_t TreeBuilder::draft_of(double x, double y) const noexcept {
+  const double point[2] = {x, y};
   std::uint32_t at = 0;
-  while (drafts_[at].left != no_node)
-    at = drafts_[drafts_[at].left].box.contains(x, y) ? drafts_[at].left : drafts_[at].right;
+  for (const Draft* draft = &drafts_[at]; draft->left != no_node; draft = &drafts_[at])
+    at = draft->left + (point[draft->axis] < draft->at ? 0 : 1);  // children are neighbours
   return at;
 }
 
@@ -183,6 +185,8 @@ void TreeBuilder::add_children(std::uint32_t draft, int axis, double at) {
   const auto first = static_cast<std::uint32_t>(drafts_.size());
   drafts_[draft].left = first;
   drafts_[draft].right = first + 1;
+  drafts_[draft].axis = axis;
+  drafts_[draft].at = at;
   drafts_.push_back({.box = left, .parent = draft});
   drafts_.push_back({.box = right, .parent = draft});
 }

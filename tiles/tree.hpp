@@ -46,15 +46,22 @@ class TileTree {
   [[nodiscard]] std::span<const std::uint32_t> leaves() const noexcept { return leaves_; }
   /// The leaf whose box has the point. O(depth).
   [[nodiscard]] std::uint32_t leaf_of(double x, double y) const noexcept {
+    const double point[2] = {x, y};
     std::uint32_t at = root();
-    while (!nodes_[at].is_leaf()) at = nodes_[nodes_[at].left].box.contains(x, y) ? nodes_[at].left : nodes_[at].right;
+    for (const Step* step = &steps_[at]; step->children[0] != no_node; step = &steps_[at])
+      at = step->children[point[step->axis] < step->at ? 0 : 1];
     return at;
   }
   friend bool operator==(const TileTree& a, const TileTree& b) { return a.nodes_ == b.nodes_; }
 
  private:
+  struct Step {  // of the way down: the left child has what is below `at`
+    double at = 0;
+    std::uint32_t axis = 0, children[2] = {no_node, no_node};
+  };
   std::vector<TreeNode> nodes_;
   std::vector<std::uint32_t> leaves_;
+  std::vector<Step> steps_;  // of each node
 };
 
 /// What one pass over a part of the input finds; those of several parts are added.
@@ -95,6 +102,8 @@ class TreeBuilder {
     std::uint32_t left = no_node, right = no_node, parent = no_node;
     std::uint64_t points = 0;
     std::uint32_t slot = no_node;  // of the pass
+    int axis = 0;
+    double at = 0;  // where it is cut: what is below belongs to the left child
   };
   struct Pending {
     std::uint32_t draft = 0;

@@ -8,9 +8,14 @@
 #include "common/constraints/constrained_data.hpp"
 #include "common/constraints/constraints.hpp"
 #include "common/constraints/domains.hpp"
+#include "common/constraints/exact_crossings.hpp"
+#include "common/constraints/exact_triangulation.hpp"
+#include "common/constraints/snap_rounding.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/thread_state.hpp"
+#include "common/points/device_points.hpp"
+#include "common/points/import.hpp"
 
 namespace cadt {
 namespace {
@@ -65,9 +70,80 @@ void chain_on_line(PointsView points, std::span<const Segment> segments, Data& d
   throw CrossingError(message + "; repair them, or take Crossing::exact or Crossing::grid", std::move(pairs));
 }
 
-void add_domains(Triangulator::State& state, PointsView points, const ConstraintOptions& constraints, Data& data) {
+using State = std::shared_ptr<Triangulator::State>;
+
+void take_chains(Data& data, std::vector<std::int64_t> offsets, std::vector<std::int32_t> vertices) {
+  data.chain_offsets = std::move(offsets);
+  data.chain_vertices = std::move(vertices);
+  for (std::size_t s = 0; s + 1 < data.chain_offsets.size(); ++s)
+    if (data.chain_offsets[s] == data.chain_offsets[s + 1]) data.degenerate.push_back(static_cast<std::int32_t>(s));
+}
+
+/// False if segments cross: then the data has no mesh.
+bool constrain_uncrossed(const State& state, PointsView points, std::span<const Segment> segments, Data& data) {
+  SegmentJob job;
+  job.on_host = segments;
+  job.count = segments.size();
+  job.wants_chains = true;
+  SegmentResults results;
+  data.mesh = triangulate_with_segments(state, points, job, results);
+  if (job.crossed) return false;
+  if (data.mesh.number_of_triangles() == 0) {
+    chain_on_line(points, segments, data);
+    take_chains(data, std::move(data.chain_offsets), std::move(data.chain_vertices));
+  } else {
+    data.edge_flags = std::move(results.edge_flags);
+    take_chains(data, {results.chain_offsets.begin(), results.chain_offsets.end()},
+                {results.chains.begin(), results.chains.end()});
+  }
+  return true;
+}
+
+void constrain_exactly(const State& state, PointsView points, std::span<const Segment> segments, Data& data) {
+  const Triangulation delaunay = triangulate_on_host(state, points);
+  constraints::ExactMesh exact =
+      constraints::triangulate_with_crossings(points, segments, delaunay, state->options.threads);
+  data.mesh = triangulation_of(delaunay, exact, data.edge_flags);
+  data.added = std::move(exact.added_xy);
+  data.parents = std::move(exact.parents);
+  data.rounded_valid = exact.rounded_valid;
+  take_chains(data, std::move(exact.offsets), std::move(exact.vertices));
+}
+
+void constrain_on_grid(const State& state, PointsView points, std::span<const Segment> segments, double grid,
+                       Data& data) {
+  const constraints::SnappedSegments snapped =
+      constraints::snap_segments(points, segments, grid, state->options.threads);
+  const std::vector<Segment> pieces = polyline_segments(snapped.offsets, snapped.vertices);
+  Data divided;
+  if (!constrain_uncrossed(state, snapped.xy, pieces, divided))
+    throw InternalError("segments still cross after snap rounding");
+  data.mesh = std::move(divided.mesh);
+  data.edge_flags = std::move(divided.edge_flags);
+  data.parents = snapped.parents;
+  const auto moved = snapped.xy.begin() + static_cast<std::ptrdiff_t>(2 * points.size());
+  data.moved.assign(snapped.xy.begin(), moved);
+  data.added.assign(moved, snapped.xy.end());
+  // The chain of a segment: those of its pieces, which end where the next one begins.
+  std::vector<std::int64_t> offsets = {0};
+  std::vector<std::int32_t> vertices;
+  std::size_t piece = 0;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    for (std::int64_t i = snapped.offsets[s] + 1; i < snapped.offsets[s + 1]; ++i, ++piece) {
+      for (auto at = static_cast<std::size_t>(divided.chain_offsets[piece]);
+           at < static_cast<std::size_t>(divided.chain_offsets[piece + 1]); ++at) {
+        const std::int32_t v = divided.chain_vertices[at];
+        if (static_cast<std::int64_t>(vertices.size()) == offsets.back() || vertices.back() != v) vertices.push_back(v);
+      }
+    }
+    offsets.push_back(static_cast<std::int64_t>(vertices.size()));
+  }
+  take_chains(data, std::move(offsets), std::move(vertices));
+}
+
+void add_domains(const State& state, PointsView points, const ConstraintOptions& constraints, Data& data) {
   Statistics none;
-  Context ctx(*state.device, state.memory, state.options, none);
+  Context ctx(*state->device, state->memory, state->options, none);
   HostDomains found =
       find_domains(ctx, {data.mesh.triangles(), data.mesh.neighbors(), data.edge_flags, points, data.added},
                    {data.chain_offsets, data.chain_vertices}, constraints);
@@ -78,30 +154,20 @@ void add_domains(Triangulator::State& state, PointsView points, const Constraint
   data.region_attribute = std::move(found.region_attribute);
 }
 
-std::shared_ptr<Data> constrain_uncrossed(PointsView points, std::span<const Segment> segments,
-                                          const ConstraintOptions& constraints, const Options& options) {
+ConstrainedTriangulation constrain_on(const State& state, PointsView points, std::span<const Segment> segments,
+                                      const ConstraintOptions& constraints) {
   require_size(points.size());
   require_segments(segments.size());
   auto data = std::make_shared<Data>();
-  const CallState state(options, points.size());
-  SegmentJob job;
-  job.on_host = segments;
-  job.count = segments.size();
-  job.wants_chains = true;
-  SegmentResults results;
-  data->mesh = triangulate_with_segments(*state, points, job, results);
-  if (job.crossed) refuse_crossings(points, segments, options.threads);
-  if (data->mesh.number_of_triangles() == 0) {
-    chain_on_line(points, segments, *data);
-  } else {
-    data->edge_flags = std::move(results.edge_flags);
-    data->chain_offsets.assign(results.chain_offsets.begin(), results.chain_offsets.end());
-    data->chain_vertices.assign(results.chains.begin(), results.chains.end());
+  if (constraints.crossing == Crossing::grid) {
+    constrain_on_grid(state, points, segments, constraints.grid, *data);
+    points = data->moved;
+  } else if (!constrain_uncrossed(state, points, segments, *data)) {
+    if (constraints.crossing == Crossing::error) refuse_crossings(points, segments, state->options.threads);
+    constrain_exactly(state, points, segments, *data);
   }
-  for (std::size_t s = 0; s < segments.size(); ++s)
-    if (data->chain_offsets[s] == data->chain_offsets[s + 1]) data->degenerate.push_back(static_cast<std::int32_t>(s));
-  add_domains(**state, points, constraints, *data);
-  return data;
+  add_domains(state, points, constraints, *data);
+  return ConstrainedTriangulation(std::move(data));
 }
 
 }  // namespace
@@ -146,7 +212,44 @@ const ConstrainedEdges& Data::edges() const {
 
 ConstrainedTriangulation triangulate_constrained(PointsView points, std::span<const Segment> segments,
                                                  const ConstraintOptions& constraints, const Options& options) {
-  return ConstrainedTriangulation(constrain_uncrossed(points, segments, constraints, options));
+  const CallState state(options, points.size());
+  return constrain_on(*state, points, segments, constraints);
+}
+
+ConstrainedTriangulation Triangulator::triangulate_constrained(PointsView points, std::span<const Segment> segments,
+                                                               const ConstraintOptions& constraints) {
+  return constrain_on(state_, points, segments, constraints);
+}
+
+DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& points, const DeviceArray& segments,
+                                                          const ConstraintOptions& constraints) {
+  require_segments(segments.size / 2);
+  if (segments.size % 2 != 0)
+    throw InputError("an array of segments has two words each, this one has " + std::to_string(segments.size),
+                     segments.size / 2);
+  if (segments.size != 0 && segments.memory == nullptr)
+    throw InputError("the array of segments has no memory: DeviceArray::memory is null", 0);
+  if (constraints.crossing != Crossing::error)
+    throw OptionError("crossing", "segments on the device must not cross; copy them to the host for exact or grid");
+  SegmentJob job;
+  job.count = segments.size / 2;
+  if (job.count != 0) job.segments = state_->memory.wrap(segments.memory, segments.size * sizeof(std::int32_t));
+  std::unique_ptr<DeviceTriangulation::Data> data = triangulate_on_device(state_, points, &job);
+  if (!job.crossed) return DeviceTriangulation(std::move(data));
+  Statistics statistics;
+  Context ctx(*state_->device, state_->memory, state_->options, statistics);
+  const Allocation imported = import_points(ctx, points);
+  std::vector<double> xy;
+  if (takes_floats_only(ctx.device)) {
+    const std::vector<float> floats = ctx.device.read_values<float>(*imported, 2 * points.size);
+    xy.assign(floats.begin(), floats.end());
+  } else {
+    xy = ctx.device.read_values<double>(*imported, 2 * points.size);
+  }
+  std::vector<Segment> copied(job.count);
+  ctx.device.read(*job.segments, 0, copied.data(), job.count * sizeof(Segment));
+  ctx.device.finish();
+  refuse_crossings(xy, copied, state_->options.threads);
 }
 
 ConstrainedTriangulation::ConstrainedTriangulation() : data_(std::make_shared<Data>()) {}

@@ -2,7 +2,9 @@
 #include "common/constraints/constraints.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <limits>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -41,22 +43,33 @@ class Constrainer {
     launch_.run<KernelId::cadt_vertices_of_segments>(job_.segments, launch_.grid(job_.count), vertex_of, points, ends_,
                                                      words_);
     if (const std::uint32_t bad = launch_.read_word(words_, CADT_SEGMENTS_BAD_INDEX); bad != CADT_NONE)
-      throw InputError("segment " + std::to_string(bad) + " has an end that is none of the " + std::to_string(points) +
-                           " points",
-                       bad);
+      throw InputError(
+          "segment " + std::to_string(bad) + " has an end that is none of the " + std::to_string(points) + " points",
+          bad);
+    ctx_.device.fill(*words_, 0, CADT_SEGMENTS_WORDS * word, 0);
+    vertices_ = distinct;
     vertex_triangle_ = ctx_.memory.allocate(distinct * word);
     launch_.run<KernelId::cadt_vertex_triangles>(mesh_.vertices, launch_.grid(mesh_.all), vertex_triangle_);
     mesh_.edge_flags = ctx_.memory.allocate_zeros(mesh_.all * word);
   }
 
   [[nodiscard]] Outcome insert() {
-    find();
-    while (missing_ != 0) {
-      const std::size_t before = missing_;
-      if (!insert_some()) return Outcome::crossed;
+    std::size_t count = job_.count, tried = most_tried;
+    const Allocation* pairs = &ends_;
+    Allocation left;
+    for (int launch = 0; count != 0; ++launch) {
+      Pieces pieces = find(*pairs, count, launch == 0);
+      if (launch == 0) ctx_.statistics.inserted_segments = pieces.count;
+      if (pieces.count == 0) break;
+      tried = std::min(tried, pieces.count);
+      left = ctx_.memory.allocate(4 * pieces.count * word);
+      const std::optional<std::size_t> waiting = insert(pieces, tried, left);
+      if (!waiting) return Outcome::crossed;
       // If none had room, fewer are tried: one alone always has.
-      taken_ = missing_ < before ? std::numeric_limits<std::size_t>::max() : std::max<std::size_t>(tried_ / 4, 1);
-      ctx_.statistics.segment_retries += missing_;
+      tried = *waiting < pieces.count ? most_tried : std::max<std::size_t>(tried / 4, 1);
+      count = *waiting;
+      pairs = &left;
+      ctx_.statistics.segment_retries += count;
       ctx_.check("constrain", 0.75);
     }
     return Outcome::done;
@@ -73,7 +86,7 @@ class Constrainer {
                                                  job_.chains, words_);
     };
     if (job_.count != 0) run(none);
-    require_sound();
+    require_sound(launch_.read_word(words_, CADT_SEGMENTS_BROKEN));
     if (!job_.wants_chains) return;
     if (job_.count == 0) ctx_.device.fill(*offsets, 0, word, 0);
     launch_.scan(offsets, job_.count + 1);
@@ -87,19 +100,24 @@ class Constrainer {
   [[nodiscard]] MeshArguments segment_mesh() const { return {*this}; }
   /// CADT_PIECES_PARAMETERS
   struct Pieces {
-    Allocation ends, entry, sizes, begins, upper;
-    [[nodiscard]] auto arguments() const { return std::tie(ends, entry, sizes, begins, upper); }
+    Allocation ends, entry, sizes, begins, upper, strides;
+    std::size_t room = 0, count = 0, stride_count = 0;
+    [[nodiscard]] auto arguments() const { return std::tie(ends, entry, sizes, begins, upper, strides, room); }
+  };
+  /// CADT_STRIDES_PARAMETERS
+  struct Strides {
+    Allocation piece, start, steps, left;
+    [[nodiscard]] auto arguments() const { return std::tie(piece, start, steps, left); }
   };
   /// CADT_RINGS_PARAMETERS
   struct Rings {
-    Allocation vertex, triangle, edge, outer;
+    Allocation vertex, triangle, edge, outer, piece;
     std::size_t room = 0;
-    [[nodiscard]] auto arguments() const { return std::tie(vertex, triangle, edge, outer, room); }
+    [[nodiscard]] auto arguments() const { return std::tie(vertex, triangle, edge, outer, piece, room); }
   };
 
-  void require_sound() {
-    if (const std::uint32_t broken = launch_.read_word(words_, CADT_SEGMENTS_BROKEN); broken != 0)
-      give_up("the mesh is wrong at ", broken, " segments");
+  static void require_sound(std::uint32_t broken) {
+    if (broken != 0) give_up("the mesh is wrong at ", broken, " segments");
   }
 
   [[nodiscard]] std::uint32_t take(std::uint32_t which) {
@@ -108,87 +126,102 @@ class Constrainer {
     return count;
   }
 
-  void find() {
-    if (job_.count == 0) return;
-    Allocation missing = ctx_.memory.allocate(2 * std::size_t{few_} * word);
-    const LaunchGrid grid = launch_.grid(job_.count);
-    const auto run = [&](std::size_t room) {
-      launch_.run<KernelId::cadt_find_segments>(segment_mesh(), ends_, grid, missing, room, words_);
-      missing_ = take(CADT_SEGMENTS_MISSING);
-    };
-    run(few_);
-    require_sound();
-    if (missing_ > few_) {  // flags are set already, and are set again
-      const std::size_t all = missing_;
-      missing = ctx_.memory.allocate(2 * all * word);
-      run(all);
+  /// The pieces of segments between pairs of vertices that are no edges. `first`: of whole segments, most of which are.
+  [[nodiscard]] Pieces find(const Allocation& pairs, std::size_t count, bool first) {
+    Pieces pieces;
+    pieces.room = first ? count / 8 + 4096 : count + 64;
+    for (;;) {
+      make(pieces.room + 1, {&pieces.entry, &pieces.sizes, &pieces.begins, &pieces.upper, &pieces.strides});
+      make(2 * pieces.room, {&pieces.ends});
+      launch_.run<KernelId::cadt_find_segments>(segment_mesh(), pairs, launch_.grid(count), pieces, words_);
+      const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
+      pieces.count = found[CADT_SEGMENTS_PIECES];
+      pieces.stride_count = found[CADT_SEGMENTS_STRIDES];
+      require_sound(found[CADT_SEGMENTS_BROKEN]);
+      ctx_.device.fill(*words_, 0, CADT_SEGMENTS_WORDS * word, 0);
+      if (pieces.count <= pieces.room) return pieces;
+      pieces.room = pieces.count;  // flags are set already, and are set again
     }
-    next_ = std::move(missing);
-    ctx_.statistics.inserted_segments = missing_;
   }
 
-  /// False if a piece crosses a constrained edge.
-  bool insert_some() {
-    const std::size_t count = missing_;
-    const std::size_t most_taken = std::size_t{1} << 20;
-    tried_ = std::min({count, taken_, most_taken});
-    const std::size_t most = std::numeric_limits<std::uint32_t>::max() / tried_;
-    Pieces pieces;
-    pieces.ends = std::move(next_);
-    for (Allocation* array : {&pieces.entry, &pieces.sizes, &pieces.begins, &pieces.upper})
-      *array = ctx_.memory.allocate((count + 1) * word);
-    const LaunchGrid each = launch_.grid(count);
-    launch_.run<KernelId::cadt_walk_segments>(segment_mesh(), pieces, tried_, most, each, words_);
-    launch_.scan(pieces.begins, count + 1);
-    require_sound();
-    const std::size_t total = launch_.read_word(pieces.begins, count);
-    const Rings rings = make_rings(total);
+  /// Inserts what does not meet a piece that goes first. How many pairs are left, in `left`; nothing if a piece crosses
+  /// a constrained edge.
+  std::optional<std::size_t> insert(Pieces& pieces, std::size_t tried, const Allocation& left) {
+    const std::size_t most = std::numeric_limits<std::uint32_t>::max() / tried;
+    const LaunchGrid each = launch_.grid(pieces.count);
+    const Strides strides = walk_strides(pieces, each, left);
+    launch_.run<KernelId::cadt_places_of_pieces>(pieces, tried, most, each);
+    launch_.scan(pieces.begins, pieces.count + 1);
+    Rings rings;
+    const std::size_t total = launch_.read_word(pieces.begins, pieces.count);
+    rings.room = std::min(total, 2 * mesh_.all);  // one piece alone always has room
+    make(std::max<std::size_t>(rings.room, 1),
+         {&rings.vertex, &rings.triangle, &rings.edge, &rings.outer, &rings.piece});
     if (!claims_) {
       claims_ = ctx_.memory.allocate(mesh_.all * word);
       ctx_.device.fill(*claims_, 0, mesh_.all * word, CADT_NONE);
     }
-    const Allocation wins = ctx_.memory.allocate(count * word), bases = ctx_.memory.transient(count * word);
-    next_ = ctx_.memory.allocate(2 * count * word);
-    ctx_.device.fill(*bases, 0, count * word, CADT_NONE);
-    launch_.run<KernelId::cadt_claim_cavities>(segment_mesh(), pieces, rings, each, claims_, words_);
-    launch_.run<KernelId::cadt_decide_cavities>(segment_mesh(), pieces, rings, each, claims_, wins, next_, words_);
-    if (launch_.read_word(words_, CADT_SEGMENTS_CROSSED) != 0) return false;
-    missing_ = take(CADT_SEGMENTS_MISSING);
-    if (rings.room != 0) {
-      fill(pieces, rings, wins, bases, each);
-      const LaunchGrid places = launch_.grid(std::min(total, rings.room));
-      launch_.run<KernelId::cadt_link_cavities>(segment_mesh(), rings, places, claims_);
-      launch_.run<KernelId::cadt_release_cavities>(rings.triangle, places, claims_);
-    }
-    require_sound();
-    return true;
+    const Allocation wins = ctx_.memory.allocate(pieces.count * word),
+                     bases = ctx_.memory.allocate(pieces.count * word);
+    ctx_.device.fill(*bases, 0, pieces.count * word, CADT_NONE);
+    const LaunchGrid places = launch_.grid(rings.room);
+    launch_.run<KernelId::cadt_claim_cavities>(segment_mesh(), pieces, rings, each, claims_, wins, words_);
+    launch_.run<KernelId::cadt_claim_strides>(segment_mesh(), pieces, rings, strides, launch_.grid(pieces.stride_count),
+                                              claims_, words_);
+    launch_.run<KernelId::cadt_decide_cavities>(segment_mesh(), rings, places, claims_, wins);
+    launch_.run<KernelId::cadt_settle_cavities>(rings, places, claims_, wins);
+    launch_.run<KernelId::cadt_keep_pieces>(pieces, each, wins, left, words_);
+    fill(pieces, rings, wins, bases, each);
+    launch_.run<KernelId::cadt_link_cavities>(segment_mesh(), rings, places, claims_);
+    launch_.run<KernelId::cadt_release_cavities>(rings.triangle, places, claims_);
+    const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
+    if (found[CADT_SEGMENTS_CROSSED] != 0) return std::nullopt;
+    require_sound(found[CADT_SEGMENTS_BROKEN]);
+    ctx_.device.fill(*words_, 0, CADT_SEGMENTS_WORDS * word, 0);
+    return found[CADT_SEGMENTS_LEFT];
   }
 
-  [[nodiscard]] Rings make_rings(std::size_t total) {
-    Rings rings;
-    rings.room = std::min(total, 2 * mesh_.all);  // one piece alone always has room
-    for (Allocation* array : {&rings.vertex, &rings.triangle, &rings.edge, &rings.outer})
-      *array = ctx_.memory.allocate(std::max<std::size_t>(rings.room, 1) * word);
-    return rings;
+  /// Walks along long pieces; those with a vertex on them go to `left`.
+  [[nodiscard]] Strides walk_strides(const Pieces& pieces, const LaunchGrid& each, const Allocation& left) {
+    Strides strides;
+    if (pieces.stride_count == 0) return strides;
+    const std::size_t n = pieces.stride_count;
+    make(n, {&strides.piece, &strides.start, &strides.steps, &strides.left});
+    const LaunchGrid grid = launch_.grid(n);
+    launch_.run<KernelId::cadt_divide_pieces>(pieces, each, strides, words_);
+    launch_.run<KernelId::cadt_probe_pieces>(segment_mesh(), pieces, strides, grid, vertices_);
+    launch_.run<KernelId::cadt_walk_strides>(segment_mesh(), pieces, strides, grid);
+    launch_.run<KernelId::cadt_sum_strides>(segment_mesh(), pieces, each, strides, n, left, words_);
+    return strides;
   }
 
   void fill(const Pieces& pieces, const Rings& rings, const Allocation& wins, const Allocation& bases,
             const LaunchGrid& each) {
-    // Chains in the queue share no place and are longer than CADT_CHAIN_LONG.
-    const std::size_t room = rings.room / std::size_t{CADT_CHAIN_LONG} + 2;
-    Allocation queue = ctx_.memory.allocate(room * sizeof(cadt_chain)), chains;
-    launch_.run<KernelId::cadt_fill_cavities>(segment_mesh(), pieces, rings, each, claims_, wins, bases, queue, words_);
-    if (ctx_.device.shape().contiguous) return;
-    while (const std::uint32_t waiting = take(CADT_SEGMENTS_QUEUED)) {
-      std::swap(queue, chains);
-      if (!queue) queue = ctx_.memory.allocate(room * sizeof(cadt_chain));
-      launch_.run<KernelId::cadt_fill_chains>(segment_mesh(), rings, chains, launch_.grid_spread(waiting), bases, queue,
-                                              words_);
-      require_sound();
+    // Chains in a queue share no place.
+    const bool queues = !ctx_.device.shape().contiguous;
+    const std::size_t most_long = queues ? rings.room / std::size_t{CADT_CHAIN_LONG} + 1 : 1;
+    const std::size_t most_others = queues ? rings.room / std::size_t{CADT_CHAIN_SHORT} + 1 : 1;
+    Allocation longer = ctx_.memory.allocate(most_long * sizeof(cadt_chain)), chains;
+    const Allocation others = ctx_.memory.allocate(most_others * sizeof(cadt_chain));
+    launch_.run<KernelId::cadt_fill_cavities>(segment_mesh(), pieces, rings, each, wins, bases, longer, others, words_);
+    if (!queues) return;
+    while (const std::uint32_t waiting = take(CADT_SEGMENTS_LONG_CHAINS)) {
+      std::swap(longer, chains);
+      if (!longer) longer = ctx_.memory.allocate(most_long * sizeof(cadt_chain));
+      const LaunchGrid teams = launch_.grid_of_teams(waiting, CADT_CHAIN_LANES);
+      launch_.run_in_groups<KernelId::cadt_divide_chains>(teams.items, CADT_CHAIN_LANES, segment_mesh(), rings, chains,
+                                                          teams, bases, longer, others, words_);
     }
+    if (const std::uint32_t waiting = take(CADT_SEGMENTS_CHAINS))
+      launch_.run<KernelId::cadt_fill_chains>(segment_mesh(), rings, others, launch_.grid_spread(waiting), bases,
+                                              words_);
   }
 
-  static constexpr std::size_t few_ = std::size_t{1} << 16;
+  void make(std::size_t words, std::initializer_list<Allocation*> arrays) {
+    for (Allocation* array : arrays) *array = ctx_.memory.allocate(words * word);
+  }
+
+  static constexpr std::size_t most_tried = std::size_t{1} << 20;
 
   Context& ctx_;
   Launcher& launch_ = ctx_.launcher;
@@ -196,8 +229,7 @@ class Constrainer {
   SegmentJob& job_;
   Allocation words_ = launch_.zeros(CADT_SEGMENTS_WORDS);
   Allocation ends_, vertex_triangle_, claims_;
-  Allocation next_;  ///< ends of the pieces that are missing
-  std::size_t missing_ = 0, tried_ = 0, taken_ = std::numeric_limits<std::size_t>::max();
+  std::size_t vertices_ = 0;
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the Delaunay mesh to the constrained one: segments are found in it, those that are no edges are inserted, all are
-// traced, and the mesh is certified.
+// From the Delaunay mesh to the constrained one: segments are found in it, those that are no edges are inserted, all
+// are traced, and the mesh is certified.
 #pragma once
 
 #include <cadt/constrained.hpp>
@@ -46,14 +46,17 @@ struct DuplicateLists {
   std::size_t count;
 };
 
-/// Makes the segments edges of the Delaunay mesh of `points` input points, of which `distinct` are vertices. If segments
-/// cross, only `job.crossed` is set. \pre the mesh is unfinished and has triangles, ghosts and points (MeshUse::
-/// constrained) \throws InputError for the first segment with an end that is no point, InternalError
+/// Makes the segments edges of the Delaunay mesh of `points` input points, of which `distinct` are vertices. If
+/// segments cross, only `job.crossed` is set. \pre the mesh is unfinished and has triangles, ghosts and points
+/// (MeshUse:: constrained) \throws InputError for the first segment with an end that is no point, InternalError
 void constrain(Context& ctx, Mesh& mesh, std::size_t points, std::size_t distinct, const DuplicateLists& duplicates,
                SegmentJob& job);
 
-/// The mesh of a call with segments, on the host; without triangles if `job.crossed`. The job's device memory is that of
-/// the call: only `segments` stays.
+/// As Triangulator::triangulate.
+[[nodiscard]] Triangulation triangulate_on_host(const std::shared_ptr<Triangulator::State>& state, PointsView points);
+
+/// The mesh of a call with segments, on the host; without triangles if `job.crossed`. The job's device memory is that
+/// of the call: only `segments` stays.
 [[nodiscard]] Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state,
                                                       PointsView points, SegmentJob& job, SegmentResults& segments);
 

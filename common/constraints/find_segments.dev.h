@@ -10,13 +10,31 @@
 
 /* Words that are counted for all segments. */
 enum {
-  CADT_SEGMENTS_MISSING,    /* pieces that are no edges */
-  CADT_SEGMENTS_BROKEN,     /* at which the mesh was found to be wrong */
-  CADT_SEGMENTS_CROSSED,    /* pieces that cross a constrained edge */
-  CADT_SEGMENTS_QUEUED,     /* ranges of long chains that are left to another launch */
-  CADT_SEGMENTS_BAD_INDEX,  /* the first segment with an end that is no point; CADT_NONE: none */
+  CADT_SEGMENTS_PIECES,      /* that are no edges */
+  CADT_SEGMENTS_LEFT,        /* of these, pieces that wait for another launch */
+  CADT_SEGMENTS_STRIDES,     /* of long pieces */
+  CADT_SEGMENTS_BROKEN,      /* at which the mesh was found to be wrong */
+  CADT_SEGMENTS_CROSSED,     /* pieces that cross a constrained edge */
+  CADT_SEGMENTS_LONG_CHAINS, /* that are left to another launch, */
+  CADT_SEGMENTS_CHAINS,      /* and others */
+  CADT_SEGMENTS_BAD_INDEX,   /* the first segment with an end that is no point; CADT_NONE: none */
   CADT_SEGMENTS_WORDS
 };
+
+/* What is known of the pieces of a launch, an element each. */
+typedef struct {
+  CADT_GLOBAL cadt_u32* ends;    /* two: the vertices a and b, the piece entered from a */
+  CADT_GLOBAL cadt_u32* entry;   /* the half-edge by which it leaves the first triangle */
+  CADT_GLOBAL cadt_u32* sizes;   /* places of its ring (segment_rings.dev.h); CADT_NONE: unknown, or it waits */
+  CADT_GLOBAL cadt_u32* begins;  /* the scan of the sizes: where its places begin */
+  CADT_GLOBAL cadt_u32* upper;   /* vertices on its left */
+  CADT_GLOBAL cadt_u32* strides; /* of a long piece: the first one; else CADT_NONE */
+  cadt_u32 room;                 /* pieces that there is memory for */
+} cadt_pieces;
+#define CADT_PIECES_PARAMETERS                                                                                        \
+  CADT_GLOBAL cadt_u32 *ends, CADT_GLOBAL cadt_u32 *entry, CADT_GLOBAL cadt_u32 *sizes, CADT_GLOBAL cadt_u32 *begins, \
+      CADT_GLOBAL cadt_u32 *upper, CADT_GLOBAL cadt_u32 *piece_strides, cadt_u32 piece_room
+#define CADT_PIECES(pieces) const cadt_pieces pieces = {ends, entry, sizes, begins, upper, piece_strides, piece_room}
 
 /* A triangle of each vertex. */
 CADT_KERNEL(cadt_vertex_triangles, CADT_GLOBAL const cadt_u32* vertices, cadt_u32 count, cadt_u32 grain,
@@ -53,13 +71,42 @@ CADT_KERNEL(cadt_vertices_of_segments, CADT_GLOBAL const cadt_u32* segments, cad
   }
 }
 
-/* Flags the edges of segments and lists their other pieces, as far as there is `room`; counts all of them. */
-CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* ends, cadt_u32 count,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* missing, cadt_u32 room, CADT_GLOBAL cadt_u32* words) {
+/* On GPUs, the triangles that one work-item walks through before a piece counts as long, and those of a stride. */
+enum { CADT_PIECE_LONG = 96, CADT_STRIDE = 48, CADT_MOST_STRIDES = 1024 };
+
+/* Walks along a piece from `at->half_edge` on. Returns whether it has come to a vertex, within the limit. */
+CADT_FN cadt_u32 cadt_walk_piece(const cadt_segment_mesh* m, cadt_crossed* at, cadt_point p, cadt_u32 to, cadt_point q,
+                                 cadt_u32* triangles, cadt_u32* left, cadt_counters* counters) {
+  for (;;) {
+    cadt_cross(m, at, p, to, q, counters);
+    ++*triangles;
+    if (at->side > 0) ++*left;
+    if (at->side == 0) return 1u;
+#if !CADT_CONTIGUOUS
+    if (*triangles > CADT_CAST(cadt_u32, CADT_PIECE_LONG)) return 0u;
+#endif
+  }
+}
+
+/* Into how many strides a long piece is divided: by how far the first triangles have come. */
+CADT_FN cadt_u32 cadt_strides_for(cadt_point p, cadt_point q, cadt_point reached) {
+  const cadt_real all = cadt_fabs(q.x - p.x) + cadt_fabs(q.y - p.y);
+  const cadt_real part = cadt_fabs(reached.x - p.x) + cadt_fabs(reached.y - p.y);
+  const cadt_real most = CADT_CAST(cadt_real, CADT_MOST_STRIDES);
+  cadt_real wanted = CADT_CAST(cadt_real, CADT_PIECE_LONG / CADT_STRIDE) * (all / part);
+  if (!(wanted < most)) wanted = most;
+  return 2u + CADT_CAST(cadt_u32, wanted);
+}
+
+/* Flags the edges of segments between the vertices of `pairs` and lists their other pieces, as far as there is room;
+ * counts all of them. */
+CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 count,
+            cadt_u32 grain, CADT_PIECES_PARAMETERS, CADT_GLOBAL cadt_u32* words) {
   CADT_SEGMENT_MESH(mesh);
+  CADT_PIECES(pieces);
   CADT_DECLARE_COUNTERS(counters);
   CADT_FOR(s, count, grain) {
-    cadt_u32 a = ends[2u * s], b = ends[2u * s + 1u];
+    cadt_u32 a = pairs[2u * s], b = pairs[2u * s + 1u];
     while (a != b) {
       const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
       const cadt_u32 from = step.from_b ? b : a, to = step.from_b ? a : b;
@@ -73,13 +120,22 @@ CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const 
       } else {
         const cadt_point p = cadt_load_point(mesh.points + from), q = cadt_load_point(mesh.points + to);
         cadt_crossed at = {step.half_edge, CADT_NONE, CADT_NONE, 1};
-        do cadt_cross(&mesh, &at, p, to, q, &counters);
-        while (at.side != 0);
-        reached = at.apex;
-        const cadt_u32 place = cadt_add_relaxed(words + CADT_SEGMENTS_MISSING, 1u);
-        if (place < room) {
-          missing[2u * place] = from;
-          missing[2u * place + 1u] = reached;
+        cadt_u32 triangles = 1u, left = 1u;
+        const cadt_u32 whole = cadt_walk_piece(&mesh, &at, p, to, q, &triangles, &left, &counters);
+        const cadt_u32 place = cadt_add_relaxed(words + CADT_SEGMENTS_PIECES, 1u);
+        reached = whole ? at.apex : to;
+        if (place < pieces.room) {
+          pieces.ends[2u * place] = from;
+          pieces.ends[2u * place + 1u] = reached;
+          pieces.entry[place] = step.half_edge;
+          pieces.upper[place] = whole ? left : CADT_NONE;
+          pieces.sizes[place] = whole ? triangles + 3u : CADT_NONE;
+          pieces.strides[place] = CADT_NONE;
+          if (!whole) { /* their number for now */
+            const cadt_u32 strides = cadt_strides_for(p, q, cadt_load_point(mesh.points + at.apex));
+            cadt_add_relaxed(words + CADT_SEGMENTS_STRIDES, strides);
+            pieces.strides[place] = strides;
+          }
         }
       }
       if (step.from_b)

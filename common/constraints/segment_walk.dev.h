@@ -27,8 +27,8 @@ typedef struct {
   CADT_GLOBAL cadt_u32* vertex_triangle; /* of each vertex, a triangle that has it */
 } cadt_segment_mesh;
 
-#define CADT_SEGMENT_MESH_PARAMETERS                                                                        \
-  CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *vertices, CADT_GLOBAL cadt_u32 *across,       \
+#define CADT_SEGMENT_MESH_PARAMETERS                                                                  \
+  CADT_GLOBAL const cadt_point *points, CADT_GLOBAL cadt_u32 *vertices, CADT_GLOBAL cadt_u32 *across, \
       CADT_GLOBAL cadt_u32 *edge_flags, CADT_GLOBAL cadt_u32 *vertex_triangle
 #define CADT_SEGMENT_MESH(mesh) const cadt_segment_mesh mesh = {points, vertices, across, edge_flags, vertex_triangle}
 
@@ -113,8 +113,27 @@ CADT_FN cadt_u32 cadt_turn_once(const cadt_segment_mesh* m, cadt_turning* turn, 
   return 0u;
 }
 
+enum { CADT_EDGE_SEARCH = 12 /* triangles around an end in which an edge is looked for without coordinates */ };
+
+/* The half-edge of the edge from a to b, seen from the triangle on its left; CADT_NONE if it is not among the first
+ * triangles around a. */
+CADT_FN cadt_u32 cadt_find_edge(const cadt_segment_mesh* m, cadt_u32 a, cadt_u32 b) {
+  const cadt_u32 first = m->vertex_triangle[a];
+  cadt_u32 t = first, k = cadt_corner_of(m, t, 0u) == a ? 0u : (cadt_corner_of(m, t, 1u) == a ? 1u : 2u);
+  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_EDGE_SEARCH); ++i) {
+    if (cadt_corner_of(m, t, CADT_NEXT(k)) == b) return CADT_HALF_EDGE(t, CADT_PREV(k));
+    const cadt_u32 next = cadt_across_of(m, CADT_HALF_EDGE(t, CADT_NEXT(k)));
+    t = CADT_TRIANGLE_OF(next);
+    k = CADT_NEXT(CADT_EDGE_OF(next));
+    if (t == first) break;
+  }
+  return CADT_NONE;
+}
+
 /* The next step of the segment between vertices a and b, from one of them. */
 CADT_FN cadt_segment_step cadt_next_step(const cadt_segment_mesh* m, cadt_u32 a, cadt_u32 b, cadt_counters* counters) {
+  const cadt_segment_step along = {CADT_STEP_EDGE, 0u, cadt_find_edge(m, a, b), b};
+  if (along.half_edge != CADT_NONE) return along;
   const cadt_point p = cadt_load_point(m->points + a), q = cadt_load_point(m->points + b);
   cadt_turning at_a = cadt_begin_turning(m, a, p, b, q, counters), at_b = cadt_begin_turning(m, b, q, a, p, counters);
   cadt_segment_step step;

@@ -25,7 +25,10 @@ struct Places {
 class SegmentCheck {
  public:
   SegmentCheck(PointsView points, std::span<const Segment> segments, const ConstrainedTriangulation& mesh)
-      : places_{points, mesh.added_points()}, segments_(segments), mesh_(mesh), check_{"constraints", false, 0, -1, {}} {}
+      : places_{points, mesh.added_points()},
+        segments_(segments),
+        mesh_(mesh),
+        check_{"constraints", false, 0, -1, {}} {}
 
   Check run() {
     const auto offsets = mesh_.chain_offsets();
@@ -67,7 +70,8 @@ class SegmentCheck {
     }
     if (vertices.size() < 2) return fail(number, name + " has no chain");
     for (const std::int32_t v : vertices)
-      if (v < 0 || static_cast<std::size_t>(v) >= places_.size()) return fail(number, name + " has a vertex that is none");
+      if (v < 0 || static_cast<std::size_t>(v) >= places_.size())
+        return fail(number, name + " has a vertex that is none");
     if (places_.at(vertices.front()) != a || places_.at(vertices.back()) != b)
       return fail(number, "the chain of " + name + " has other ends");
     for (std::size_t i = 1; i < vertices.size(); ++i) {
@@ -97,8 +101,9 @@ class SegmentCheck {
     const auto [a, b] = std::ranges::mismatch(flagged, expected);
     const bool more = b == expected.end() || (a != flagged.end() && *a < *b);
     const Segment edge = more ? *a : *b;
-    fail(-1, "the edge from " + std::to_string(edge[0]) + " to " + std::to_string(edge[1]) +
-                 (more ? " is constrained, but part of no segment" : " is part of a segment, but not a constrained edge"));
+    fail(-1,
+         "the edge from " + std::to_string(edge[0]) + " to " + std::to_string(edge[1]) +
+             (more ? " is constrained, but part of no segment" : " is part of a segment, but not a constrained edge"));
   }
 
   const Places places_;

@@ -53,6 +53,7 @@ const Statistics& DeviceTriangulation::statistics() const noexcept { return data
 
 void* DeviceTriangulation::triangles() const noexcept { return handle_of(*data_, data_->triangles); }
 void* DeviceTriangulation::neighbors() const noexcept { return handle_of(*data_, data_->neighbors); }
+void* DeviceTriangulation::edge_flags() const noexcept { return handle_of(*data_, data_->edge_flags); }
 void* DeviceTriangulation::duplicate_points() const noexcept { return handle_of(*data_, data_->duplicate_points); }
 void* DeviceTriangulation::representatives() const noexcept { return handle_of(*data_, data_->representatives); }
 

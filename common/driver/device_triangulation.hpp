@@ -16,6 +16,8 @@
 
 namespace cadt {
 
+struct SegmentJob;
+
 struct Triangulator::State {
   State(const Options& o, std::unique_ptr<Device> d, bool cache)
       : options(o), device(std::move(d)), memory(*device, cache) {}
@@ -30,6 +32,7 @@ struct DeviceTriangulation::Data {
   std::shared_ptr<Triangulator::State> state;  // first member: destroyed last, after the memory
   std::size_t points = 0, distinct = 0, triangle_count = 0, duplicate_count = 0;
   Allocation triangles, neighbors;               ///< 3 words a triangle each
+  Allocation edge_flags;                         ///< a word a triangle; null without segments
   Allocation duplicate_points, representatives;  ///< null if there are none
   int dimension = -1;
   Statistics statistics;
@@ -41,7 +44,7 @@ struct DeviceTriangulation::Data {
 
 /// Triangulates points on the device of `state` (Triangulator::triangulate).
 [[nodiscard]] std::unique_ptr<DeviceTriangulation::Data> triangulate_on_device(
-    const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points);
+    const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points, SegmentJob* job = nullptr);
 /// Copies the hull to the host, and the arrays that it has not, to `arrays` where there are some.
 void read_mesh(Context& ctx, const DeviceTriangulation::Data& from, Triangulation::Data& to, EarlyArrays& arrays);
 /// Reads lists of `count` words; they may be null if that is 0.

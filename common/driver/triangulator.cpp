@@ -150,11 +150,16 @@ VerifyReport verify_copy(Device& device, const Allocation& input, const DeviceTr
 }  // namespace
 
 std::unique_ptr<DeviceTriangulation::Data> triangulate_on_device(const std::shared_ptr<Triangulator::State>& state,
-                                                                 const DevicePoints& points) {
+                                                                 const DevicePoints& points, SegmentJob* job) {
   require_size(points.size);
   auto data = std::make_unique<DeviceTriangulation::Data>();
-  run_call(state, points, {points.size, false, true, scalar_bytes(points.scalar)}, nullptr, *data);
+  run_call(state, points, {points.size, false, true, scalar_bytes(points.scalar)}, nullptr, *data, job);
+  if (job != nullptr) data->edge_flags = std::move(job->edge_flags);
   return data;
+}
+
+Triangulation triangulate_on_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
+  return to_host(state, points);
 }
 
 Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state, PointsView points,

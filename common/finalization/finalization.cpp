@@ -3,6 +3,8 @@
 #include <cadt/finalization.hpp>
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "common/driver/device_text.hpp"
@@ -54,11 +56,22 @@ Hash128 DevicePart::hash() const {
 
 Part DevicePart::download() const {
   Part part;
-  if (data_->triangle_count == 0) return part;
-  Device& device = *data_->state->device;
-  part.triangles = device.read_values<std::int32_t>(*data_->triangles, 3 * data_->triangle_count);
-  part.neighbors = device.read_values<std::int32_t>(*data_->neighbors, 3 * data_->triangle_count);
+  part.triangles.resize(3 * data_->triangle_count);
+  part.neighbors.resize(3 * data_->triangle_count);
+  download(part.triangles, part.neighbors);
   return part;
+}
+
+void DevicePart::download(std::span<std::int32_t> triangles, std::span<std::int32_t> neighbors) const {
+  const std::size_t count = 3 * data_->triangle_count;
+  if (triangles.size() != count || neighbors.size() != count) {
+    throw std::invalid_argument("a part of " + std::to_string(data_->triangle_count) +
+                                " triangles needs two arrays of " + std::to_string(count) + " numbers");
+  }
+  if (count == 0) return;
+  Device& device = *data_->state->device;
+  device.read(*data_->triangles, 0, triangles.data(), triangles.size_bytes());
+  device.read(*data_->neighbors, 0, neighbors.data(), neighbors.size_bytes());
 }
 
 NodeSums& NodeSums::operator+=(const NodeSums& other) noexcept {

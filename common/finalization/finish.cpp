@@ -57,11 +57,11 @@ void read_open(Context& ctx, const Node& node, const Allocation& list, const All
 }
 
 void leave_all_open(Context& ctx, const Node& node, Finished& finished) {
-  finished.open = distinct_points(node);
-  const std::size_t count = finished.open.size();
+  const std::vector<std::uint32_t> all = distinct_points(node);
+  const std::size_t count = all.size();
   if (count == 0) return;
   const Allocation list = ctx.memory.allocate(count * word);
-  ctx.device.write(*list, 0, finished.open.data(), count * word);
+  ctx.device.write(*list, 0, all.data(), count * word);
   const Allocation points = ctx.memory.allocate(count * point_bytes(ctx.device));
   ctx.launcher.run<KernelId::cadt_gather_points>(node.data->points, list, points, ctx.launcher.grid(count), 1.0, 1.0);
   read_open(ctx, node, list, points, count, finished);
@@ -101,7 +101,7 @@ void read_rows(Context& ctx, const Node& node, const Allocation& places, const A
   launch.run<KernelId::cadt_pack_rows>(all.items, node.view(), places, ranks, node.cover.half_edges, node.cover.covers,
                                        rows, all.count, all.grain, words, apexes);
   finished.rows = ctx.device.read_values<Row>(*words, count);
-  finished.apexes = ctx.device.read_values<double>(*apexes, 2 * count);
+  if (!node.is_root) finished.apexes = ctx.device.read_values<double>(*apexes, 2 * count);
 }
 
 }  // namespace
@@ -167,7 +167,7 @@ Finished take_final(Call& call, Node& node) {
     return finished;
   }
   const LaunchGrid all = launch.grid(count);
-  Allocation ranks;
+  Allocation& ranks = finished.ranks;
   if (!node.is_root) {
     ranks = ctx.memory.allocate_zeros((n + 1) * word);
     launch.run<KernelId::cadt_mark_open>(all.items, node.view(), node.cover.kept, scaled(node.box, node.bounds),
@@ -184,7 +184,6 @@ Finished take_final(Call& call, Node& node) {
     const Allocation list = ctx.memory.allocate(open * word),
                      points = ctx.memory.allocate(open * point_bytes(ctx.device));
     launch.run<KernelId::cadt_pack_residual>(ranks, data.points, points, list, launch.grid(n));
-    finished.open = ctx.device.read_values(*list, open);
     read_open(ctx, node, list, points, open, finished);
   }
   if (data.triangle_count == 0) return finished;
@@ -204,13 +203,16 @@ Finished take_final(Call& call, Node& node) {
   return finished;
 }
 
-void pass_side(Finished& finished, const Node& node, std::size_t row) {
+OpenSide side_of(const Finished& finished, const Node& node, std::size_t row) {
   const Row& r = finished.rows[row];
   if (r.from == CADT_NONE || r.to == CADT_NONE)
     give_up("an edge of a final triangle, of node ", node.number, ", has a closed end and nothing final across");
-  finished.node.links[row] = pending_triangle;
-  finished.node.open.sides.push_back({r.from, r.to, finished.apexes[2 * row], finished.apexes[2 * row + 1],
-                                      triangle_id(node.number, r.triangle), static_cast<std::uint32_t>(row)});
+  return {r.from,
+          r.to,
+          finished.apexes[2 * row],
+          finished.apexes[2 * row + 1],
+          triangle_id(node.number, r.triangle),
+          static_cast<std::uint32_t>(row)};
 }
 
 void add_sums(Call& call, Finished& finished, const Node& node, std::size_t covered_hull_edges,

@@ -76,6 +76,12 @@ CADT_KERNEL(cadt_pack_final, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u
   }
 }
 
+/* The number of an open vertex among those that go up, which `ranks` is the scan of; else, and without ranks at the
+ * root, CADT_NONE. */
+CADT_FN cadt_u32 cadt_open_rank(CADT_GLOBAL const cadt_u32* ranks, cadt_u32 v) {
+  return ranks && ranks[v + 1u] != ranks[v] ? ranks[v] : CADT_NONE;
+}
+
 /* What the host is told of a row: the words of CADT_ROW_*, and the apex of the triangle. `ranks`: the scan of `open`,
  * or null at the root. `half_edges` and `covers`: of a join (join.dev.h), else null. */
 enum { CADT_ROW_FROM, CADT_ROW_TO, CADT_ROW_TRIANGLE, CADT_ROW_COVER, CADT_ROW_WORDS };
@@ -88,8 +94,8 @@ CADT_KERNEL(cadt_pack_rows, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u3
     const cadt_u32 t = rows[i] / 3u, k = rows[i] % 3u;
     const cadt_u32 from = cadt_vertex_of(&mesh, t, CADT_NEXT(k)), to = cadt_vertex_of(&mesh, t, CADT_PREV(k));
     CADT_GLOBAL cadt_u32* out = words + CADT_ROW_WORDS * i;
-    out[CADT_ROW_FROM] = ranks && ranks[from + 1u] != ranks[from] ? ranks[from] : CADT_NONE;
-    out[CADT_ROW_TO] = ranks && ranks[to + 1u] != ranks[to] ? ranks[to] : CADT_NONE;
+    out[CADT_ROW_FROM] = cadt_open_rank(ranks, from);
+    out[CADT_ROW_TO] = cadt_open_rank(ranks, to);
     out[CADT_ROW_TRIANGLE] = places[t];
     out[CADT_ROW_COVER] = CADT_NONE;
     if (covers) {
@@ -124,6 +130,12 @@ CADT_KERNEL(cadt_check_ids, CADT_GLOBAL const cadt_u64* ids, cadt_u32 count, cad
   CADT_FOR(i, count, grain) {
     if (i != 0u && ids[i] <= ids[i - 1u]) cadt_min_relaxed(first, i);
   }
+}
+
+/* Words of ids: out[i] is that of ids[order[i]], or of ids[i] without an order, from bit `shift` on. */
+CADT_KERNEL(cadt_id_words, CADT_GLOBAL const cadt_u64* ids, CADT_GLOBAL const cadt_u32* order, cadt_u32 shift,
+            CADT_GLOBAL cadt_u32* out, cadt_u32 count, cadt_u32 grain) {
+  CADT_FOR(i, count, grain) { out[i] = CADT_CAST(cadt_u32, ids[order ? order[i] : i] >> shift); }
 }
 
 /* open_ids[rank] = ids[v] for open vertices. */

@@ -46,15 +46,16 @@ struct Node {
 /// An edge of a final triangle with a row of links, in the order of rows (CADT_ROW_WORDS).
 struct Row {
   std::uint32_t from, to, triangle, cover;
+  Row() noexcept {}  // NOLINT: many are read from the device, and not zeroed before
 };
 
 /// The final part of a node, with what is known of it without its children.
 struct Finished {
-  FinishedNode node;                ///< its open vertices, no sides yet
-  std::vector<std::uint32_t> open;  ///< the open vertices as indices of the node's points, ascending
+  FinishedNode node;  ///< its open vertices, no sides yet
   std::vector<Row> rows;
-  std::vector<double> apexes;  ///< of the rows: x0 y0 x1 y1 ...
+  std::vector<double> apexes;  ///< of the rows: x0 y0 x1 y1 ...; none at the root, where nothing goes up
   Allocation places;           ///< numbers of final triangles: the scan of 1 for each; null without triangles
+  Allocation ranks;            ///< numbers of open vertices, as a scan; null at the root and without triangles
 };
 
 /// One call: its options, statistics and context.
@@ -72,8 +73,8 @@ void require_ascending(Context& ctx, const Allocation& ids, std::size_t count);
 void triangulate_node(Node& node);
 /// Takes the final triangles out of the mesh.
 [[nodiscard]] Finished take_final(Call& call, Node& node);
-/// The row is one of an edge between open vertices: passes it to the parent.
-void pass_side(Finished& finished, const Node& node, std::size_t row);
+/// What goes to the parent of a row that is one of an edge between open vertices. \throws InternalError if it is not
+[[nodiscard]] OpenSide side_of(const Finished& finished, const Node& node, std::size_t row);
 /// Waits for the device, and adds the sums of a node and its statistics.
 void add_sums(Call& call, Finished& finished, const Node& node, std::size_t covered_hull_edges,
               std::uint64_t certified_links);

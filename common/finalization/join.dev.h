@@ -36,15 +36,18 @@ CADT_KERNEL(cadt_half_edges_of, CADT_MESH_VIEW_PARAMETERS, cadt_u32 grain, CADT_
 }
 
 /* What lies across each side: words of CADT_MATCH_* that begin as CADT_NONE. */
-enum { CADT_MATCH_KIND, CADT_MATCH_WITH, CADT_MATCH_APEX, CADT_MATCH_WORDS };
+enum { CADT_MATCH_KIND, CADT_MATCH_FIRST, CADT_MATCH_SECOND, CADT_MATCH_WORDS };
 enum {
   CADT_MATCHED_OUTSIDE, /* nothing: an edge of the hull of the open vertices */
-  CADT_MATCHED_FINAL,   /* CADT_MATCH_WITH: a final triangle of this node; CADT_MATCH_APEX: its vertex opposite */
+  CADT_MATCHED_FINAL,   /* a final triangle of this node, which is the first word; the second is its vertex opposite, by
+                           its number among those of the children */
   CADT_MATCHED_OPEN     /* a triangle that is not final yet */
 };
+/* `order`: of each vertex of the node, its number among those of the children. The two words of a side that is not
+ * matched by a final triangle are the ranks of its ends. */
 CADT_KERNEL(cadt_match_sides, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u32* half_edges,
-            CADT_GLOBAL const cadt_u32* covers, CADT_GLOBAL const cadt_u32* places, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* matches) {
+            CADT_GLOBAL const cadt_u32* covers, CADT_GLOBAL const cadt_u32* places, CADT_GLOBAL const cadt_u32* ranks,
+            CADT_GLOBAL const cadt_u32* order, cadt_u32 grain, CADT_GLOBAL cadt_u32* matches) {
   CADT_MESH_VIEW(mesh);
   CADT_FOR(t, mesh.triangles, grain) {
     for (cadt_u32 k = 0u; k < 3u; ++k) {
@@ -52,18 +55,19 @@ CADT_KERNEL(cadt_match_sides, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_
       if (side == CADT_NONE) continue;
       const cadt_u32 half_edge = half_edges[3u * t + k], n = CADT_TRIANGLE_OF(half_edge), j = CADT_EDGE_OF(half_edge);
       CADT_GLOBAL cadt_u32* match = matches + CADT_MATCH_WORDS * side;
-      if (n == mesh.triangles) {
-        match[CADT_MATCH_KIND] = CADT_MATCHED_OUTSIDE;
-      } else if (covers[3u * n + j] != CADT_NONE) {
-        continue; /* no two sides meet: both ends of an edge are points of one child, and that would have matched them
-                   */
-      } else if (cadt_is_final(places, n)) {
-        match[CADT_MATCH_KIND] = CADT_MATCHED_FINAL;
-        match[CADT_MATCH_WITH] = places[n];
-        match[CADT_MATCH_APEX] = cadt_vertex_of(&mesh, n, j);
-      } else {
-        match[CADT_MATCH_KIND] = CADT_MATCHED_OPEN;
+      if (n != mesh.triangles) {
+        /* no two sides meet: both ends of an edge are points of one child, and that would have matched them */
+        if (covers[3u * n + j] != CADT_NONE) continue;
+        if (cadt_is_final(places, n)) {
+          match[CADT_MATCH_KIND] = CADT_MATCHED_FINAL;
+          match[CADT_MATCH_FIRST] = places[n];
+          match[CADT_MATCH_SECOND] = order[cadt_vertex_of(&mesh, n, j)];
+          continue;
+        }
       }
+      match[CADT_MATCH_KIND] = n == mesh.triangles ? CADT_MATCHED_OUTSIDE : CADT_MATCHED_OPEN;
+      match[CADT_MATCH_FIRST] = cadt_open_rank(ranks, cadt_vertex_of(&mesh, t, CADT_NEXT(k)));
+      match[CADT_MATCH_SECOND] = cadt_open_rank(ranks, cadt_vertex_of(&mesh, t, CADT_PREV(k)));
     }
   }
 }

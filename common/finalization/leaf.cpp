@@ -60,8 +60,10 @@ FinishedNode finish(Node node, const Import& import) {
   Call call(state, n);
   Finished finished = take_final(call, node);
   FinishedNode& result = finished.node;
-  result.links.resize(finished.rows.size());
-  for (std::size_t row = 0; row < finished.rows.size(); ++row) pass_side(finished, node, row);
+  result.links.assign(finished.rows.size(), pending_triangle);
+  result.open.sides.reserve(finished.rows.size());
+  for (std::size_t row = 0; row < finished.rows.size(); ++row)
+    result.open.sides.push_back(side_of(finished, node, row));
   result.duplicates = duplicate_ids(call.ctx, node);
   add_sums(call, finished, node, 0, 0);
   NodeSums& sums = result.sums;

@@ -183,6 +183,7 @@
   X(cadt_number_ids)     /* finish.dev.h: ids of 64 bits */                         \
   X(cadt_check_ids)      /* finish.dev.h */                                         \
   X(cadt_gather_ids)     /* finish.dev.h */                                         \
+  X(cadt_id_words)       /* finish.dev.h: keys for the sort */                      \
   X(cadt_half_edges_of)  /* join.dev.h */                                           \
   X(cadt_match_sides)    /* join.dev.h: what lies across the sides of children */   \
   X(cadt_uniform_cells)  /* uniform_cells.dev.h: points by counter */
@@ -195,11 +196,19 @@
   X(cadt_vertices_of_segments)   /* find_segments.dev.h: ends of segments as vertices */           \
   X(cadt_find_segments)          /* find_segments.dev.h: which pieces are no edges */              \
   X(cadt_trace_segments)         /* find_segments.dev.h: their chains, when all are edges */       \
-  X(cadt_walk_segments)          /* segment_cavity.dev.h: how many triangles a piece crosses */    \
-  X(cadt_claim_cavities)         /* segment_cavity.dev.h */                                        \
-  X(cadt_decide_cavities)        /* segment_cavity.dev.h: which claims hold */                     \
+  X(cadt_divide_pieces)          /* segment_strides.dev.h: long pieces */                          \
+  X(cadt_probe_pieces)           /* segment_strides.dev.h: where their strides start */            \
+  X(cadt_walk_strides)           /* segment_strides.dev.h */                                       \
+  X(cadt_sum_strides)            /* segment_strides.dev.h */                                       \
+  X(cadt_places_of_pieces)       /* segment_rings.dev.h */                                         \
+  X(cadt_claim_cavities)         /* segment_rings.dev.h: rings, and who holds triangles */         \
+  X(cadt_claim_strides)          /* segment_rings.dev.h: the same for long pieces */               \
+  X(cadt_decide_cavities)        /* segment_rings.dev.h: which claims hold */                      \
+  X(cadt_settle_cavities)        /* segment_rings.dev.h */                                         \
+  X(cadt_keep_pieces)            /* segment_rings.dev.h: those that wait */                        \
   X(cadt_fill_cavities)          /* segment_cavity.dev.h: polygons on both sides */                \
-  X(cadt_fill_chains)            /* segment_cavity.dev.h: parts of long ones */                    \
+  X(cadt_divide_chains)          /* segment_cavity.dev.h: long ones by teams */                    \
+  X(cadt_fill_chains)            /* segment_cavity.dev.h */                                        \
   X(cadt_link_cavities)          /* segment_cavity.dev.h */                                        \
   X(cadt_release_cavities)       /* segment_cavity.dev.h */                                        \
   X(cadt_domain_unite)           /* domains.dev.h: triangles that no constrained edge separates */ \

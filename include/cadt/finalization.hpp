@@ -108,6 +108,9 @@ class CADT_API DevicePart {
   [[nodiscard]] Hash128 hash() const;
   /// Waits for the device. O(triangles). \throws DeviceError
   [[nodiscard]] Part download() const;
+  /// The same into the caller's memory, number_of_triangles() x 3 each. \throws std::invalid_argument for other sizes,
+  /// DeviceError
+  void download(std::span<std::int32_t> triangles, std::span<std::int32_t> neighbors) const;
 
   struct Data;  // internal
   explicit DevicePart(std::unique_ptr<Data> data);

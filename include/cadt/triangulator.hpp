@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cadt/batch.hpp>
+#include <cadt/constrained.hpp>
 #include <cadt/devices.hpp>
 #include <cadt/export.hpp>
 #include <cadt/points.hpp>
@@ -64,6 +65,8 @@ class CADT_API DeviceTriangulation {
   /// Handle of the neighbours: number_of_triangles() x 3 words; the k-th is opposite vertex k, -1 outside; null if
   /// there are no triangles.
   [[nodiscard]] void* neighbors() const noexcept;
+  /// Handle of the constrained edges, a word a triangle: bit k for the edge opposite vertex k; null without segments.
+  [[nodiscard]] void* edge_flags() const noexcept;
   /// Number of points that equal an earlier one.
   [[nodiscard]] std::size_t number_of_duplicates() const noexcept;
   /// Handles of number_of_duplicates() words each: the points, ascending, and the representative of each; null if there
@@ -122,6 +125,15 @@ class CADT_API Triangulator {
   /// that queue: its last kernels may still be pending. \throws as cadt::triangulate, and InputError for a null handle.
   /// After an error the triangulator can be used again.
   [[nodiscard]] DeviceTriangulation triangulate(const DevicePoints& points);
+
+  /// Triangulates points with segments between them, as cadt::triangulate_constrained. \throws as that
+  [[nodiscard]] ConstrainedTriangulation triangulate_constrained(PointsView points, std::span<const Segment> segments,
+                                                                 const ConstraintOptions& constraints = {});
+  /// The same with points and segments on the device, where the mesh stays: `segments` are pairs of indices, two words
+  /// a segment. Crossing::error alone; where segments cross, points and segments are copied to the host to find all
+  /// pairs. \throws as cadt::triangulate_constrained, and OptionError for another Crossing
+  [[nodiscard]] DeviceTriangulation triangulate_constrained(const DevicePoints& points, const DeviceArray& segments,
+                                                            const ConstraintOptions& constraints = {});
 
   /// The mesh in arrays of the caller's, three words a triangle: on the host, or on the device, e.g. in buffers that a
   /// graphics library has mapped. There are at most 2 triangles a point; an array that is empty is left out. Returns

@@ -125,8 +125,8 @@ void bind_open(nb::module_& m) {
 void bind_tile_nodes(nb::module_& m) {
   bind_sums(m);
   bind_open(m);
-  const auto view = []<class T>(const Node& n, const std::vector<T>& values, std::size_t columns) {
-    return array_of(std::span<const T>(values), columns, n);
+  const auto view = [](const Node& n, const auto& values, std::size_t columns) {
+    return array_of(std::span(values), columns, n);
   };
   nb::class_<TileNode>(m, "TileNode")
       .def_prop_ro("node", [](const TileNode& n) { return n.data.node; })
@@ -159,8 +159,8 @@ void bind_tile_nodes(nb::module_& m) {
       nb::arg("node"), nb::arg("messages"), nb::arg("links"));
   m.def("node_points", [=](const Node& n) { return view(n, n->data.xy, 2); });
   m.def("node_ids", [=](const Node& n) { return view(n, n->data.ids, 0); });
-  m.def("node_triangles", [=](const Node& n) { return view(n, n->data.part.triangles, 3); });
-  m.def("node_neighbors", [=](const Node& n) { return view(n, n->data.part.neighbors, 3); });
+  m.def("node_triangles", [=](const Node& n) { return view(n, n->data.triangles, 3); });
+  m.def("node_neighbors", [=](const Node& n) { return view(n, n->data.neighbors, 3); });
   m.def("finish_leaf", &leaf, nb::arg("triangulator"), nb::arg("xy"), nb::arg("ids"), nb::arg("box"), nb::arg("node"),
         nb::arg("options"), nb::arg("progress") = nb::none());
   m.def("finish_join", &join, nb::arg("triangulator"), nb::arg("opens"), nb::arg("box"), nb::arg("node"),

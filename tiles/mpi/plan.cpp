@@ -51,14 +51,14 @@ Plan make_plan(Communicator& ranks, const PointSource& source, const RunOptions&
     std::vector<Hash128> hashes(threads);
     ranks.agree([&, begin = begin, end = end] {
       std::atomic<std::uint64_t> done{0};
-      each_block(source, begin, end, threads, stop,
-                 [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
-                   if (first_pass) add_block_hash(hashes[thread], first, xy);
-                   if (!builder.done()) builder.look_at(passes[thread], first, xy);
-                   done += xy.size() / 2;
-                   if (thread == 0 && progress)
-                     progress(static_cast<double>(done.load()) / static_cast<double>(end - begin));
-                 });
+      BlockWork work;
+      work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
+        if (first_pass) add_block_hash(hashes[thread], first, xy);
+        if (!builder.done()) builder.look_at(passes[thread], first, xy);
+        done += xy.size() / 2;
+        if (thread == 0 && progress) progress(static_cast<double>(done.load()) / static_cast<double>(end - begin));
+      };
+      each_block(source, begin, end, threads, stop, work);
     });
     std::array<std::uint64_t, 2> content{};
     for (const Hash128& hash : hashes) content[0] += hash.high, content[1] += hash.low;

@@ -56,16 +56,15 @@ class Dealer {
  private:
   void sort(BlockSorter& sorter, std::uint64_t first, std::span<const double> xy, std::vector<Words>& to) const {
     for (Words& words : to) words.clear();
-    sorter.sort(deal_.options.first_id + first, xy,
-                [&](std::uint32_t leaf, std::span<const double> some, std::span<const std::uint64_t> ids) {
-                  if (!deal_.wanted[leaf]) return;
-                  Words& words = to[static_cast<std::size_t>(deal_.owner[leaf])];
-                  words.insert(words.end(), {leaf, ids.size()});
-                  const std::size_t at = words.size();
-                  words.resize(at + some.size());
-                  std::memcpy(words.data() + at, some.data(), some.size_bytes());
-                  words.insert(words.end(), ids.begin(), ids.end());
-                });
+    for (const LeafRun& run : sorter.sort(deal_.options.first_id + first, xy)) {
+      if (!deal_.wanted[run.leaf]) continue;
+      Words& words = to[static_cast<std::size_t>(deal_.owner[run.leaf])];
+      words.insert(words.end(), {run.leaf, run.ids.size()});
+      const std::size_t at = words.size();
+      words.resize(at + run.xy.size());
+      std::memcpy(words.data() + at, run.xy.data(), run.xy.size_bytes());
+      words.insert(words.end(), run.ids.begin(), run.ids.end());
+    }
   }
 
   const Deal& deal_;

@@ -31,11 +31,11 @@ struct Findings {
   }
 };
 
-/// Calls body(i, result) for each i in [0, count) and merges the results of all threads. If a thread cannot be started,
-/// the others do its work. Rethrows an exception of a body once all threads have ended.
+/// Calls body(i, result) for each i in [0, count) and merges the results of all threads, which take `block` of them at
+/// a time. If a thread cannot be started, the others do its work. Rethrows an exception of a body once all threads have
+/// ended.
 template <class Result, class Body>
-Result reduce_each(std::size_t count, unsigned threads, const Body& body) {
-  constexpr std::size_t block = std::size_t{1} << 13;
+Result reduce_each(std::size_t count, unsigned threads, const Body& body, std::size_t block = std::size_t{1} << 13) {
   const std::size_t blocks = (count + block - 1) / block;
   std::atomic<std::size_t> next{0};
   std::mutex lock;

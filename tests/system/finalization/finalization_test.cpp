@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
 
 #include "tests/support/backends.hpp"
 #include "tests/support/data_files.hpp"
@@ -229,6 +230,13 @@ TEST(FinalizationOfPoints, FloatsAndSeparateArrays) {
   EXPECT_EQ(node.part.number_of_triangles(), mesh.number_of_triangles());
   EXPECT_TRUE(std::ranges::equal(node.part.download().triangles, mesh.triangles()));
   EXPECT_TRUE(std::ranges::equal(node.part.download().neighbors, mesh.neighbors()));
+  std::vector<std::int32_t> triangles(3 * mesh.number_of_triangles(), 77), neighbors(triangles),
+      few(triangles.size() - 1);
+  node.part.download(triangles, neighbors);
+  EXPECT_TRUE(std::ranges::equal(triangles, mesh.triangles()));
+  EXPECT_TRUE(std::ranges::equal(neighbors, mesh.neighbors()));
+  EXPECT_THROW(node.part.download(triangles, few), std::invalid_argument);
+  EXPECT_THROW(node.part.download(few, neighbors), std::invalid_argument);
   EXPECT_TRUE(node.open.ids.empty());
 }
 

@@ -3,6 +3,8 @@
 #include <cadt/uniform_cells.hpp>
 
 #include <cmath>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "tests/support/backends.hpp"
@@ -81,6 +83,81 @@ TEST(UniformCellsOnHost, DepthIsTheLeast) {
   }
   EXPECT_FALSE(cells.depth_for(3));
   EXPECT_THROW(UniformCells((std::uint64_t{1} << 40) + 1), LimitError);
+}
+
+/// Joins of many sides divide them among threads: nothing depends on how many there are, and what stays open is what a
+/// tree of small joins leaves open.
+TEST(UniformCellsOnHost, JoinsOfManySidesOnThreads) {
+  const UniformCells cells(300'000);
+  constexpr unsigned depth = 11;  // of 2,048 leaves, those of the left half
+  constexpr std::uint64_t first_id = (std::uint64_t{1} << 33) - 70'000;
+  const auto triangulator = [](unsigned threads) {
+    Options options;
+    options.backend = Backend::host;
+    options.threads = threads;
+    return Triangulator(options);
+  };
+  Triangulator one = triangulator(1);
+  std::vector<Open> leaves, level;
+  for (std::uint64_t p = 0; p < std::uint64_t{1} << (depth - 1); ++p) {
+    const UniformCells::Part part = cells.part(depth, p);
+    std::vector<double> xy(2 * part.count);
+    cells.generate(part.first, part.count, xy.data());
+    std::vector<std::uint64_t> ids(part.count);
+    for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = first_id + part.first + i;
+    leaves.push_back(finish_leaf(one, std::span<const double>(xy), ids, part.box, static_cast<std::uint32_t>(p)).open);
+  }
+  const TileBox half = cells.part(1, 0).box;
+  const auto children = std::span(leaves);
+  const FinishedNode expected = finish_join(one, children, half, 4000);
+  EXPECT_GT(expected.messages.size(), 35'000u);
+  for (const unsigned threads : {2u, 3u, 7u}) {
+    Triangulator several = triangulator(threads);
+    const FinishedNode node = finish_join(several, children, half, 4000);
+    EXPECT_EQ(node.messages, expected.messages);
+    EXPECT_EQ(node.open.ids, expected.open.ids);
+    EXPECT_EQ(node.open.xy, expected.open.xy);
+    EXPECT_EQ(node.open.sides, expected.open.sides);
+    EXPECT_EQ(node.links, expected.links);
+    EXPECT_EQ(node.sums, expected.sums);
+    EXPECT_EQ(node.part.hash(), expected.part.hash());
+  }
+  // One child with the sides of all.
+  Open whole;
+  for (const Open& leaf : leaves) {
+    const auto first = static_cast<std::uint32_t>(whole.ids.size());
+    whole.ids.insert(whole.ids.end(), leaf.ids.begin(), leaf.ids.end());
+    whole.xy.insert(whole.xy.end(), leaf.xy.begin(), leaf.xy.end());
+    for (OpenSide side : leaf.sides) {
+      side.from += first, side.to += first;
+      whole.sides.push_back(side);
+    }
+  }
+  const FinishedNode alone = finish_join(one, std::span(&whole, 1), half, 4000);
+  EXPECT_EQ(alone.messages, expected.messages);
+  EXPECT_EQ(alone.open.sides, expected.open.sides);
+  EXPECT_EQ(alone.links, expected.links);
+  EXPECT_EQ(alone.sums, expected.sums);
+  std::uint64_t certified = 0;
+  Hash128 hash;
+  level = leaves;
+  for (unsigned d = depth - 1; d > 0; --d) {
+    std::vector<Open> parents;
+    for (std::uint64_t p = 0; p < std::uint64_t{1} << (d - 1); ++p) {
+      FinishedNode node = finish_join(one, std::span(level).subspan(2 * p, 2), cells.part(d, p).box, 5000);
+      certified += node.sums.certified_edges;
+      const Hash128 part = node.part.hash();
+      hash.high += part.high, hash.low += part.low;
+      parents.push_back(std::move(node.open));
+    }
+    level = std::move(parents);
+  }
+  ASSERT_EQ(level.size(), 1u);
+  EXPECT_EQ(level[0].ids, expected.open.ids);
+  EXPECT_EQ(level[0].xy, expected.open.xy);
+  EXPECT_EQ(level[0].sides.size(), expected.open.sides.size());
+  EXPECT_EQ(certified, expected.sums.certified_edges);
+  EXPECT_EQ(hash, expected.part.hash());
 }
 
 TEST(UniformCellsOnHost, LookUniform) {

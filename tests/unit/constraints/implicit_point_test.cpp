@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Implicit points and their predicates against GMP's fractions.
 #include "common/constraints/arrangement.hpp"
+#include "common/constraints/pixel_grid.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 #include <gmpxx.h>
@@ -118,6 +119,12 @@ TEST(ImplicitPoints, HalvesGoToTheEvenDouble) {
 }
 
 TEST(ImplicitPoints, FloorOfQuotients) {
+  for (const double whole : {-3.0, -1.0, 0.0, 1.0, 4096.0, -0x1p40}) {
+    exact::Arena arena;
+    const exact::Arithmetic of(arena);
+    EXPECT_EQ(exact::floor_quotient(of.number(whole * 0.75), of.number(0.75), arena), whole);
+    EXPECT_EQ(exact::floor_quotient(of.number(whole * 0.75), of.number(-0.75), arena), -whole);
+  }
   std::mt19937_64 random(3);
   for (int i = 0; i < 20000; ++i) {
     exact::Arena arena;
@@ -174,6 +181,32 @@ TEST(ImplicitPoints, PredicatesEqualThoseOfFractions) {
   EXPECT_GT(filtered[0], 5000U);
   EXPECT_GT(filtered[1], 5000U);
   EXPECT_GT(equal, 100U);
+}
+
+/// Widths that put a side of a pixel next to a crossing.
+TEST(ImplicitPoints, PixelsOfCrossingsNextToTheirSides) {
+  const auto expect = [](double width, const mpq_class& v, std::int64_t pixel, const std::string& name) {
+    const mpq_class place = v / mpq_class(width) + mpq_class(0.5);
+    mpz_class floor;
+    mpz_fdiv_q(floor.get_mpz_t(), place.get_num_mpz_t(), place.get_den_mpz_t());
+    ASSERT_EQ(pixel, floor.get_si()) << name << ", width " << width;
+  };
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const SegmentSet set = random_segments(seed, 60, 0.6);
+    const Places places = places_of(set);
+    const ImplicitPoints points(places.lines);
+    for (const Place& p : places.all) {
+      const Fraction f = fraction(places.lines, p);
+      for (const double k : {0.5, 1.5, 2.5, 6.5, 100.5})
+        for (const double v : {p.x, p.y}) {
+          const double width = std::abs(v) / k;
+          if (!(width > 1e-10)) continue;
+          const constraints::Pixel pixel = constraints::PixelGrid(width).pixel_of(p, points);
+          expect(width, f.x, pixel.x, set.name);
+          expect(width, f.y, pixel.y, set.name);
+        }
+    }
+  }
 }
 
 /// Places that differ by less than their rounded coordinates show: filters must not decide.

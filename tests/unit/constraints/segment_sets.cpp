@@ -36,9 +36,9 @@ SegmentSet ends_of_range(std::uint64_t seed) {
   const std::vector<double> values = {0.0, -0.0, least, -least, 3 * least, 0x1p-1022,
                                       1.0, -1.0, 1e-30, most,   -most,     most / 2};
   Random random(seed);
-  for (int i = 0; i < 40; ++i)
+  for (int i = 0; i < 20; ++i)
     for (int k = 0; k < 2; ++k) set.xy.push_back(values[static_cast<std::size_t>(random.below(12))]);
-  join(set, random, 60);
+  join(set, random, 20);
   return set;
 }
 

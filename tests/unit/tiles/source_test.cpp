@@ -8,10 +8,14 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
+#include <thread>
 
 namespace cadt::tiles {
 namespace {
@@ -25,10 +29,11 @@ std::vector<double> all_of(const PointSource& source, std::size_t step = 1000) {
 
 Hash128 content_of(const PointSource& source, unsigned threads) {
   std::vector<Hash128> hashes(64);
-  each_block(source, 0, source.size(), threads, {},
-             [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
-               add_block_hash(hashes[thread], first, xy);
-             });
+  BlockWork work;
+  work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
+    add_block_hash(hashes[thread], first, xy);
+  };
+  each_block(source, 0, source.size(), threads, {}, work);
   Hash128 sum;
   for (const Hash128& h : hashes) sum.high += h.high, sum.low += h.low;
   return sum;
@@ -168,19 +173,67 @@ TEST(Source, HashOfContent) {
   EXPECT_NE(content_of(*in_memory(other), 1), hash) << "the order counts";
 }
 
-TEST(Source, BlocksComeInOrderAndErrorsOut) {
-  const std::vector<double> xy = points_of("uniform", 6 * block_points + 3);
-  std::vector<double> seen;
-  for_each_block(*in_memory(xy), 0, xy.size() / 2, {}, [&](std::uint64_t first, std::span<const double> block) {
-    EXPECT_EQ(2 * first, seen.size());
-    seen.insert(seen.end(), block.begin(), block.end());
-  });
-  EXPECT_EQ(seen, xy);
-  EXPECT_THROW(for_each_block(*in_memory(xy), 0, xy.size() / 2, {}, [](auto, auto) { throw std::logic_error("x"); }),
-               std::logic_error);
-  cadt::stop_source stop;
-  stop.request_stop();
-  EXPECT_THROW(for_each_block(*in_memory(xy), 0, xy.size() / 2, stop.get_token(), [](auto, auto) {}), Cancelled);
+TEST(Source, TurnsComeInOrderAndErrorsOut) {
+  const std::vector<double> xy = points_of("uniform", 9 * block_points + 3);
+  for (const unsigned threads : {1U, 2U, 5U, 20U}) {
+    SCOPED_TRACE(threads);
+    std::vector<double> seen(xy.size());
+    std::vector<std::span<const double>> block(32);
+    std::vector<std::uint64_t> first(32), order;
+    BlockWork work;
+    work.look = [&](unsigned thread, std::uint64_t at, std::span<const double> points) {
+      if (at % (3 * block_points) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      block[thread] = points, first[thread] = at;
+    };
+    work.in_turn = [&](unsigned thread) { order.push_back(first[thread]); };
+    work.then = [&](unsigned thread) {
+      std::copy(block[thread].begin(), block[thread].end(),
+                seen.begin() + static_cast<std::ptrdiff_t>(2 * first[thread]));
+    };
+    each_block(*in_memory(xy), 0, xy.size() / 2, threads, {}, work);
+    EXPECT_EQ(seen, xy);
+    ASSERT_EQ(order.size(), 10U);
+    for (std::size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], i * block_points);
+    // An error ends all, whoever waits for its turn.
+    order.clear();
+    const auto failing = [&](std::uint64_t at) {
+      if (at == 4 * block_points) throw std::logic_error("x");
+    };
+    BlockWork bad = work;
+    bad.look = [&](unsigned thread, std::uint64_t at, std::span<const double> points) {
+      work.look(thread, at, points);
+      failing(at);
+    };
+    EXPECT_THROW(each_block(*in_memory(xy), 0, xy.size() / 2, threads, {}, bad), std::logic_error);
+    EXPECT_LE(order.size(), 4U);
+    bad = work;
+    bad.in_turn = [&](unsigned thread) { failing(first[thread]); };
+    EXPECT_THROW(each_block(*in_memory(xy), 0, xy.size() / 2, threads, {}, bad), std::logic_error);
+    cadt::stop_source stop;
+    stop.request_stop();
+    EXPECT_THROW(each_block(*in_memory(xy), 0, xy.size() / 2, threads, stop.get_token(), work), Cancelled);
+  }
+}
+
+TEST(Tasks, AllAreRunAndTheFirstErrorIsThrown) {
+  for (const unsigned threads : {1U, 3U, 50U}) {
+    std::vector<int> runs(20);
+    std::vector<std::function<void()>> tasks;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      tasks.emplace_back([&runs, i] {
+        ++runs[i];
+        if (i == 7 || i == 13) throw InputError("x", i);
+      });
+    }
+    try {
+      run_tasks(tasks, threads);
+      FAIL() << "no error";
+    } catch (const InputError& e) {
+      EXPECT_EQ(e.index(), 7U);
+    }
+    EXPECT_EQ(runs, std::vector<int>(20, 1));
+    EXPECT_NO_THROW(run_tasks({}, threads));
+  }
 }
 
 }  // namespace

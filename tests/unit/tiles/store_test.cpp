@@ -32,6 +32,47 @@ class StoreTest : public testing::Test {
   }
 };
 
+TEST_F(StoreTest, LargeNodesOnThreads) {
+  const Nodes large = nodes_of(points_of("uniform", 200'000), 120'000);
+  ASSERT_GT(large.nodes.front().triangles.size() * sizeof(std::int32_t), std::size_t{2} << 20);
+  std::map<unsigned, std::map<std::string, std::string>> all;
+  for (const unsigned threads : {1U, 2U, 4U, 9U}) {
+    path_ = folder_ / ("mesh-" + std::to_string(threads) + ".cadt");
+    Store store(path_, large.plan, Store::Start::create);
+    for (const NodeData& node : large.nodes) store.write(node, threads);
+    for (std::uint32_t i = 0; i < large.plan.tree.size(); ++i) EXPECT_TRUE(store.is_valid(i));
+    (void)store.finish();
+    for (auto& [name, text] : contents()) all[threads][name.substr(path_.size())] = std::move(text);
+    EXPECT_EQ(all[threads], all[1]);
+    const MeshDirectory mesh(path_);
+    for (const NodeData& node : large.nodes) {
+      const NodeArrays arrays = mesh.node(node.node);
+      EXPECT_TRUE(std::ranges::equal(arrays.triangles, node.triangles));
+      EXPECT_TRUE(std::ranges::equal(arrays.neighbors, node.neighbors));
+      EXPECT_TRUE(std::ranges::equal(arrays.xy, node.xy));
+      EXPECT_TRUE(std::ranges::equal(arrays.ids, node.ids));
+    }
+  }
+}
+
+TEST_F(StoreTest, RunsWithSeveralWriters) {
+  const auto source = in_memory(points_of("uniform", 60'000));
+  std::map<unsigned, std::map<std::string, std::string>> all;
+  for (const unsigned threads : {1U, 3U, 16U}) {  // a writer for each four
+    path_ = folder_ / ("run-" + std::to_string(threads) + ".cadt");
+    RunOptions options;
+    options.tile_points = 3'000;
+    options.devices.front().backend = Backend::host;
+    options.devices.front().threads = threads;
+    options.output = path_;
+    const RunResult result = run(*source, options);
+    EXPECT_EQ(result.nodes.size(), result.plan.tree.size());
+    for (auto& [name, text] : contents()) all[threads][name.substr(path_.size())] = std::move(text);
+    EXPECT_EQ(all[threads], all[1]);
+    EXPECT_TRUE(verify(MeshDirectory(path_)).ok);
+  }
+}
+
 TEST_F(StoreTest, ReadsBackWhatWasWritten) {
   Store store(path_, made_.plan, Store::Start::create);
   write_all(store);

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// The triangulation with exact crossings against CGAL over an exact kernel.
+#include "common/constraints/exact_crossings.hpp"
+#include "common/constraints/arrangement.hpp"
+#include "common/verify/host/exact_sign.hpp"
+#include "tests/support/oracle_constrained.hpp"
+#include "tests/unit/constraints/segment_sets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+
+namespace cadt::test {
+namespace {
+
+using constraints::ExactMesh;
+using Edges = std::vector<std::array<std::int32_t, 2>>;
+
+ExactMesh mesh_of(const SegmentSet& set, unsigned threads = 1) {
+  return constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), threads);
+}
+
+std::vector<Triangle> triangles(const ExactMesh& mesh) {
+  std::vector<Triangle> all;
+  for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
+    all.push_back({mesh.triangles[i], mesh.triangles[i + 1], mesh.triangles[i + 2]});
+  make_canonical(all);
+  return all;
+}
+
+/// The edges with a flag, which both triangles must have.
+Edges constrained(const ExactMesh& mesh) {
+  std::map<std::array<std::int32_t, 2>, std::pair<int, int>> count;  // of triangles, and of flags
+  for (std::size_t t = 0; t < mesh.edge_flags.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t a = mesh.triangles[3 * t + (k + 1) % 3], b = mesh.triangles[3 * t + (k + 2) % 3];
+      auto& [sides, flags] = count[{std::min(a, b), std::max(a, b)}];
+      ++sides;
+      flags += static_cast<int>(mesh.edge_flags[t] >> k & 1);
+    }
+  Edges all;
+  for (const auto& [edge, sides] : count) {
+    EXPECT_TRUE(sides.second == 0 || sides.second == sides.first);
+    if (sides.second != 0) all.push_back(edge);
+  }
+  return all;
+}
+
+/// Neighbours share an edge and know each other.
+void expect_connected(const ExactMesh& mesh, const std::string& name) {
+  for (std::size_t i = 0; i < mesh.neighbors.size(); ++i) {
+    const std::int32_t other = mesh.neighbors[i];
+    if (other < 0) continue;
+    const std::size_t t = i / 3, k = i % 3;
+    const std::int32_t a = mesh.triangles[3 * t + (k + 1) % 3], b = mesh.triangles[3 * t + (k + 2) % 3];
+    bool shared = false;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t u = 3 * static_cast<std::size_t>(other);
+      shared |= mesh.neighbors[u + j] == static_cast<std::int32_t>(t) && mesh.triangles[u + (j + 1) % 3] == b &&
+                mesh.triangles[u + (j + 2) % 3] == a;
+    }
+    ASSERT_TRUE(shared) << name << " triangle " << t;
+  }
+}
+
+/// The edges of the chains.
+Edges edges_of_chains(const ExactMesh& mesh) {
+  std::set<std::array<std::int32_t, 2>> all;
+  for (std::size_t s = 0; s + 1 < mesh.offsets.size(); ++s)
+    for (auto i = static_cast<std::size_t>(mesh.offsets[s]); i + 1 < static_cast<std::size_t>(mesh.offsets[s + 1]); ++i)
+      all.insert({std::min(mesh.vertices[i], mesh.vertices[i + 1]), std::max(mesh.vertices[i], mesh.vertices[i + 1])});
+  return {all.begin(), all.end()};
+}
+
+void expect_as_cgal(const SegmentSet& set) {
+  const ExactMesh mesh = mesh_of(set);
+  const ConstrainedOracleMesh expected = cgal_constrained_plus(set.xy, set.segments, mesh.parents);
+  ASSERT_EQ(expected.unknown, 0U) << set.name;
+  ASSERT_EQ(mesh.added_xy, expected.added_xy) << set.name;
+  ASSERT_EQ(triangles(mesh), expected.triangles) << set.name;
+  if (!mesh.triangles.empty()) {
+    ASSERT_EQ(constrained(mesh), expected.constrained) << set.name;
+    ASSERT_EQ(edges_of_chains(mesh), expected.constrained) << set.name;
+  }
+  expect_connected(mesh, set.name);
+}
+
+/// CGAL's intervals lose what underflows: there it finds other crossings. SmallSetsAreCertified has these sets, too.
+bool suits_cgal(const SegmentSet& set) {
+  return std::all_of(set.xy.begin(), set.xy.end(),
+                     [](double v) { return v == 0 || (std::abs(v) > 1e-40 && std::abs(v) < 1e40); });
+}
+
+TEST(ExactCrossings, SmallSetsEqualCgal) {
+  std::size_t compared = 0;
+  for (const SegmentSet& set : small_segment_sets()) {
+    if (!suits_cgal(set)) continue;
+    expect_as_cgal(set);
+    ++compared;
+  }
+  EXPECT_GT(compared, 100U);
+}
+
+TEST(ExactCrossings, RandomSetsEqualCgal) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    expect_as_cgal(random_segments(seed, 500, 0.1));
+    expect_as_cgal(random_segments(seed, 60, 2.0));
+    expect_as_cgal(lattice_segments(seed, 20, 40, 1, 1));
+    expect_as_cgal(lattice_segments(seed, 8, 60, 1, 0.1));
+  }
+}
+
+/// A square of lines: each unit cell has four vertices on a circle, and they are crossings.
+TEST(ExactCrossings, CrossingsOnCirclesEqualCgal) {
+  for (const double unit : {1.0, 0.1, 1.0 / 3}) {
+    SegmentSet set{"grid of lines", {}, {}};
+    for (std::int32_t i = 0; i < 12; ++i) {
+      const double k = unit * i, most = unit * 20;
+      set.xy.insert(set.xy.end(), {-most, k, most, k, k, -most, k, most});
+      set.segments.push_back({4 * i, 4 * i + 1});
+      set.segments.push_back({4 * i + 3, 4 * i + 2});
+    }
+    expect_as_cgal(set);
+    for (std::int32_t i = 0; i < 12; ++i) {  // and turned, so that places are no doubles
+      for (std::size_t k = 0; k < 4; ++k) {
+        double &x = set.xy[8 * static_cast<std::size_t>(i) + 2 * k],
+               &y = set.xy[8 * static_cast<std::size_t>(i) + 2 * k + 1];
+        const double turned = x - 3 * y;
+        y = 3 * x + y;
+        x = turned;
+      }
+    }
+    expect_as_cgal(set);
+  }
+}
+
+TEST(ExactCrossings, ByHand) {
+  const std::vector<double> xy = {0, 0, 2, 2, 0, 2, 2, 0};
+  const std::vector<Segment> segments = {{0, 1}, {3, 2}, {1, 1}};
+  const ExactMesh mesh = constraints::triangulate_with_crossings(xy, segments, triangulate(xy), 1);
+  EXPECT_EQ(triangles(mesh), (std::vector<Triangle>{{0, 3, 4}, {0, 4, 2}, {1, 2, 4}, {1, 4, 3}}));
+  EXPECT_EQ(mesh.added_xy, (std::vector<double>{1, 1}));
+  EXPECT_EQ(mesh.parents, (Edges{{0, 1}}));
+  EXPECT_EQ(mesh.offsets, (std::vector<std::int64_t>{0, 3, 6, 6}));
+  EXPECT_EQ(mesh.vertices, (std::vector<std::int32_t>{0, 4, 1, 3, 4, 2}));
+  EXPECT_TRUE(mesh.rounded_valid);
+}
+
+/// Crossings within less than a last place of one another: the exact mesh is right, the rounded one cannot be.
+TEST(ExactCrossings, SayWhenRoundingTurnsTriangles) {
+  SegmentSet set{"three segments almost through one place", {}, {}};
+  set.xy = {0, 0, 1, 1, 0, 1, 1, 0, 0, 0.5, 1, 0.5 + 0x1p-52, 0.25, 0, 0.75, 1};
+  set.segments = {{0, 1}, {2, 3}, {4, 5}, {6, 7}};
+  const ExactMesh mesh = mesh_of(set);
+  EXPECT_FALSE(mesh.rounded_valid);
+  expect_as_cgal(set);
+  const SegmentSet easy = random_segments(3, 50, 0.5);
+  const ExactMesh valid = mesh_of(easy);
+  EXPECT_TRUE(valid.rounded_valid);
+  EXPECT_GT(valid.parents.size(), 20U);
+}
+
+TEST(ExactCrossings, OrderDirectionAndThreadsDoNotMatter) {
+  std::mt19937_64 random(13);
+  for (const SegmentSet& set : {random_segments(8, 300, 0.2), lattice_segments(9, 12, 40, 1, 1)}) {
+    const ExactMesh first = mesh_of(set);
+    std::vector<std::size_t> order(set.segments.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::shuffle(order.begin(), order.end(), random);
+    SegmentSet moved = set;
+    for (std::size_t s = 0; s < order.size(); ++s) {
+      moved.segments[s] = set.segments[order[s]];
+      if (s % 2 != 0) std::swap(moved.segments[s][0], moved.segments[s][1]);
+    }
+    const ExactMesh second = mesh_of(moved, 3);
+    // the same places in another order
+    const auto n = static_cast<std::int32_t>(set.xy.size() / 2);
+    ASSERT_EQ(first.parents.size(), second.parents.size());
+    std::map<std::array<double, 2>, std::int32_t> places;
+    for (std::size_t i = 0; i < first.parents.size(); ++i)
+      places[{first.added_xy[2 * i], first.added_xy[2 * i + 1]}] = n + static_cast<std::int32_t>(i);
+    ASSERT_EQ(places.size(), first.parents.size());
+    const auto number = [&](std::int32_t v) {
+      if (v < n) return v;
+      const auto i = 2 * static_cast<std::size_t>(v - n);
+      return places.at({second.added_xy[i], second.added_xy[i + 1]});
+    };
+    std::vector<Triangle> found;
+    for (const Triangle& t : triangles(second)) found.push_back({number(t[0]), number(t[1]), number(t[2])});
+    make_canonical(found);
+    EXPECT_EQ(found, triangles(first));
+    for (std::size_t s = 0; s < order.size(); ++s) {
+      std::vector<std::int32_t> chain(second.vertices.begin() + second.offsets[s],
+                                      second.vertices.begin() + second.offsets[s + 1]);
+      for (std::int32_t& v : chain) v = number(v);
+      if (s % 2 != 0) std::reverse(chain.begin(), chain.end());
+      const std::vector<std::int32_t> expected(first.vertices.begin() + first.offsets[order[s]],
+                                               first.vertices.begin() + first.offsets[order[s] + 1]);
+      ASSERT_EQ(chain, expected);
+    }
+  }
+}
+
+TEST(ExactCrossings, PointsOnALineHaveChainsAlone) {
+  const std::vector<double> xy = {0, 0, 1, 1, 2, 2, 3, 3};
+  const ExactMesh mesh = constraints::triangulate_with_crossings(xy, std::vector<Segment>{{3, 0}}, triangulate(xy), 1);
+  EXPECT_TRUE(mesh.triangles.empty());
+  EXPECT_EQ(mesh.vertices, (std::vector<std::int32_t>{3, 2, 1, 0}));
+}
+
+/// A hub, and segments that pass it: no more than the edges at the other ends are looked at.
+TEST(ExactCrossingsOfAdversaries, AHubThatSegmentsPass) {
+  SegmentSet set{"", {0, 0}, {}};
+  for (std::int32_t i = 0; i < 100000; ++i) {
+    set.xy.insert(set.xy.end(), {-1e5, 1.0 * i - 3e4, 1e5, 3e4 - 1.0 * i});
+    set.segments.push_back({2 * i + 1, 2 * i + 2});
+  }
+  const ExactMesh mesh = mesh_of(set);
+  EXPECT_EQ(constrained(mesh).size(), 200000U);
+}
+
+}  // namespace
+}  // namespace cadt::test

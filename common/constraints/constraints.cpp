@@ -205,12 +205,15 @@ class Constrainer {
     const Allocation others = ctx_.memory.allocate(most_others * sizeof(cadt_chain));
     launch_.run<KernelId::cadt_fill_cavities>(segment_mesh(), pieces, rings, each, wins, bases, longer, others, words_);
     if (!queues) return;
-    while (const std::uint32_t waiting = take(CADT_SEGMENTS_LONG_CHAINS)) {
+    for (int launch = 1;; ++launch) {
+      const std::uint32_t waiting = take(CADT_SEGMENTS_LONG_CHAINS);
+      if (waiting == 0) break;
       std::swap(longer, chains);
       if (!longer) longer = ctx_.memory.allocate(most_long * sizeof(cadt_chain));
       const LaunchGrid teams = launch_.grid_of_teams(waiting, CADT_CHAIN_LANES);
-      launch_.run_in_groups<KernelId::cadt_divide_chains>(teams.items, CADT_CHAIN_LANES, segment_mesh(), rings, chains,
-                                                          teams, bases, longer, others, words_);
+      launch_.run_in_groups<KernelId::cadt_divide_chains>(
+          teams.items, CADT_CHAIN_LANES, segment_mesh(), rings, chains, teams,
+          launch < CADT_CHAIN_LAUNCHES ? std::uint32_t{CADT_CHAIN_LONG} : CADT_NONE, bases, longer, others, words_);
     }
     if (const std::uint32_t waiting = take(CADT_SEGMENTS_CHAINS))
       launch_.run<KernelId::cadt_fill_chains>(segment_mesh(), rings, others, launch_.grid_spread(waiting), bases,

@@ -142,15 +142,17 @@ std::vector<RealSet> real_sets() {
   return result;
 }
 
+fs::path unpacked(const fs::path& file, const std::string& kind) {
+  if (file.extension() != ".xz") return file;
+  const std::string python =
+      "python3 -c 'import lzma, shutil, sys; shutil.copyfileobj(lzma.open(sys.argv[1]), sys.stdout.buffer)' ";
+  const std::string unpack =
+      "{ if command -v xz > /dev/null; then xz -dkc " + quoted(file) + "; else " + python + quoted(file) + "; fi; }";
+  return made_by(unpack, file, kind + "/" + file.stem().string());
+}
+
 Points read(const RealSet& set) {
-  fs::path file = set.file;
-  if (file.extension() == ".xz") {
-    const std::string python =
-        "python3 -c 'import lzma, shutil, sys; shutil.copyfileobj(lzma.open(sys.argv[1]), sys.stdout.buffer)' ";
-    const std::string unpack =
-        "{ if command -v xz > /dev/null; then xz -dkc " + quoted(file) + "; else " + python + quoted(file) + "; fi; }";
-    file = made_by(unpack, file, "real/" + file.stem().string());
-  }
+  const fs::path file = unpacked(set.file, "real");
   const std::string bytes = contents(file);
   return file.extension() == ".f64" ? parse_doubles(bytes) : parse_text(bytes);
 }

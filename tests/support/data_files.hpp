@@ -39,4 +39,8 @@ struct RealSet {
 [[nodiscard]] std::vector<RealSet> real_sets();
 [[nodiscard]] Points read(const RealSet& set);
 
+/// The file itself, or what it is once unpacked if it ends in .xz, with the name that it then has, kept in the build
+/// folder under `kind`. `file`: of the data folder
+[[nodiscard]] std::filesystem::path unpacked(const std::filesystem::path& file, const std::string& kind);
+
 }  // namespace cadt::test

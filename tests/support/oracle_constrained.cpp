@@ -44,7 +44,7 @@ double nearest(const Kernel::FT& number) {
 
 }  // namespace
 
-ConstrainedOracleMesh cgal_constrained_plus(std::span<const double> xy,
+CrossedOracleMesh cgal_constrained_plus(std::span<const double> xy,
                                             std::span<const std::array<std::int32_t, 2>> segments,
                                             std::span<const std::array<std::int32_t, 2>> pairs) {
   const auto point = [&](std::int32_t i) {
@@ -54,7 +54,7 @@ ConstrainedOracleMesh cgal_constrained_plus(std::span<const double> xy,
   const auto n = static_cast<std::int32_t>(xy.size() / 2);
   std::map<Point, std::int32_t> numbers;
   for (std::int32_t i = 0; i < n; ++i) numbers.emplace(point(i), i);
-  ConstrainedOracleMesh mesh;
+  CrossedOracleMesh mesh;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const auto line = [&](std::size_t k) {
       const auto& s = segments[static_cast<std::size_t>(pairs[p][k])];

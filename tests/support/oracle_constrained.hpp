@@ -11,7 +11,7 @@
 
 namespace cadt::test {
 
-struct ConstrainedOracleMesh {
+struct CrossedOracleMesh {
   std::vector<Triangle> triangles;                       ///< canonical (make_canonical)
   std::vector<std::array<std::int32_t, 2>> constrained;  ///< edges, the lower vertex first, ascending
   std::vector<double> added_xy;                          ///< the places of `pairs`, to nearest, ties to even
@@ -22,7 +22,7 @@ struct ConstrainedOracleMesh {
 /// Exact_predicates_exact_constructions_kernel with Exact_intersections_tag: segments that cross are divided there.
 /// Vertices are the lowest indices of points; a vertex that is none is the number of points plus the index of the first
 /// of `pairs` whose segments cross there.
-[[nodiscard]] ConstrainedOracleMesh cgal_constrained_plus(std::span<const double> xy,
+[[nodiscard]] CrossedOracleMesh cgal_constrained_plus(std::span<const double> xy,
                                                           std::span<const std::array<std::int32_t, 2>> segments,
                                                           std::span<const std::array<std::int32_t, 2>> pairs);
 

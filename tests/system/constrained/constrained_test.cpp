@@ -3,9 +3,8 @@
 // order and the direction of segments.
 #include <cadt/constrained.hpp>
 
-#include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
-#include "tests/support/oracle_cdt.hpp"
+#include "tests/system/constrained/constrained_check.hpp"
 #include "tests/system/constrained/legal_segments.hpp"
 
 #include <gtest/gtest.h>
@@ -17,26 +16,7 @@
 namespace cadt::test {
 namespace {
 
-class Constrained : public BackendTest {
- protected:
-  /// The mesh, verified, and compared with CGAL's where that is installed.
-  ConstrainedTriangulation check(const Points& xy, const std::vector<Segment>& segments) {
-    const ConstrainedTriangulation mesh = triangulate_constrained(xy, segments, {}, GetParam().options());
-    const VerifyReport report = verify(xy, segments, mesh);
-    EXPECT_TRUE(report.ok) << report.summary();
-#if CADT_TEST_CGAL
-    const ConstrainedOracleMesh expected = cgal_constrained(xy, segments);
-    std::vector<Triangle> triangles;
-    for (std::size_t t = 0; t < mesh.mesh().number_of_triangles(); ++t) triangles.push_back(mesh.mesh().triangle(t));
-    make_canonical(triangles);
-    EXPECT_EQ(mesh.mesh().dimension(), expected.mesh.dimension);
-    EXPECT_TRUE(triangles == expected.mesh.triangles)
-        << triangles.size() << " triangles, CGAL has " << expected.mesh.triangles.size();
-    EXPECT_TRUE(std::ranges::equal(mesh.constrained_edges(), expected.edges));
-#endif
-    return mesh;
-  }
-};
+using Constrained = ConstrainedTest;
 
 TEST_P(Constrained, RandomPoints) {
   std::size_t inserted = 0;
@@ -76,7 +56,7 @@ TEST_P(Constrained, OrderAndDirectionDoNotMatter) {
     for (std::size_t i = segments.size(); i > 1; --i) std::swap(segments[i - 1], segments[random.below(i)]);
     for (Segment& s : segments)
       if (random.below(2) != 0) std::swap(s[0], s[1]);
-    EXPECT_EQ(triangulate_constrained(xy, segments, {}, GetParam().options()).hash(), expected);
+    EXPECT_EQ(triangulated(xy, segments).hash(), expected);
   }
 }
 

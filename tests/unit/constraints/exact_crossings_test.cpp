@@ -79,7 +79,7 @@ Edges edges_of_chains(const ExactMesh& mesh) {
 
 void expect_as_cgal(const SegmentSet& set) {
   const ExactMesh mesh = mesh_of(set);
-  const ConstrainedOracleMesh expected = cgal_constrained_plus(set.xy, set.segments, mesh.parents);
+  const CrossedOracleMesh expected = cgal_constrained_plus(set.xy, set.segments, mesh.parents);
   ASSERT_EQ(expected.unknown, 0U) << set.name;
   ASSERT_EQ(mesh.added_xy, expected.added_xy) << set.name;
   ASSERT_EQ(triangles(mesh), expected.triangles) << set.name;

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// What makes other algorithms slow, or wrong: the mesh of CGAL for small sets, and for large ones bounds of launches,
+// memory and time that quadratic ones do not keep.
+#include "tests/system/constrained/adversaries.hpp"
+#include "tests/system/constrained/legal_segments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+namespace cadt::test {
+namespace {
+
+class Adversaries : public ConstrainedTest {
+ protected:
+  struct Cost {
+    double seconds = 0;
+    Statistics statistics;
+    std::size_t chains = 0;
+  };
+  [[nodiscard]] Cost cost(const Drawing& d) const {
+    const auto begin = std::chrono::steady_clock::now();
+    const ConstrainedTriangulation mesh = triangulated(d.xy, d.segments);
+    Cost cost;
+    cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    cost.statistics = mesh.statistics();
+    cost.chains = mesh.chain_vertices().size();
+    const VerifyReport report = verify(d.xy, d.segments, mesh);
+    EXPECT_TRUE(report.ok) << report.summary();
+    return cost;
+  }
+};
+
+TEST_P(Adversaries, Small) {
+  for (const Adversary& adversary : adversaries()) {
+    for (const int n : {12, 40, 300, 1000}) {
+      SCOPED_TRACE(adversary.name + " of " + std::to_string(n));
+      const Drawing d = adversary.make(n);
+      check(d.xy, d.segments);
+    }
+  }
+}
+
+TEST_P(Adversaries, LargeOnesTakeNoQuadraticTime) {
+  const int n = GetParam().backend == Backend::opencl ? 20000 : 50000;
+  for (const Adversary& adversary : adversaries()) {
+    SCOPED_TRACE(adversary.name);
+    const Cost small = cost(adversary.make(n / 10));
+    const Drawing d = adversary.make(n);
+    const Cost large = cost(d);
+    // Quadratic: 100 times. (What takes less than 2 s is not measured well.)
+    EXPECT_TRUE(large.seconds < 2 || large.seconds < 40 * small.seconds)
+        << large.seconds << " s, a tenth of it " << small.seconds << " s";
+    EXPECT_LT(large.statistics.launches, 150 + 60 * std::log2(n));
+    EXPECT_LT(large.statistics.segment_retries, 8 * d.segments.size());
+    EXPECT_LT(large.statistics.bytes_device_peak, 1000 * (d.points() + d.segments.size()) + 16 * large.chains);
+  }
+}
+
+TEST_P(Adversaries, UlpsAroundASegment) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(seed);
+    const Drawing d = ulps_around_segment(seed);
+    check(d.xy, d.segments);
+  }
+}
+
+TEST_P(Adversaries, SubnormalAndLargestCoordinates) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    for (const int range : {1, 2, 3}) {
+      SCOPED_TRACE(std::to_string(seed) + " in range " + std::to_string(range));
+      const Drawing d = extreme_points(seed, (range & 1) != 0, (range & 2) != 0);
+      const std::vector<Segment> segments = legal_segments(d.xy, 60, seed);
+      const ConstrainedTriangulation mesh = triangulated(d.xy, segments);
+      const VerifyReport report = verify(d.xy, segments, mesh);
+      EXPECT_TRUE(report.ok) << report.summary();
+      std::vector<Segment> turned = segments;
+      std::ranges::reverse(turned);
+      for (Segment& s : turned) std::swap(s[0], s[1]);
+      EXPECT_EQ(triangulated(d.xy, turned).hash(), mesh.hash());
+    }
+  }
+}
+
+CADT_ON_MAIN_BACKENDS(Adversaries);
+
+}  // namespace
+}  // namespace cadt::test

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// The special cases that ConstrainedTriangulation promises, one by one.
+#include <cadt/cadt.hpp>
+#include <cadt/constrained.hpp>
+
+#include "tests/system/constrained/constrained_check.hpp"
+#include "tests/system/constrained/legal_segments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace cadt::test {
+namespace {
+
+using Chain = std::vector<std::int32_t>;
+
+Chain chain(const ConstrainedTriangulation& mesh, std::size_t s) {
+  const auto offsets = mesh.chain_offsets();
+  const auto vertices = mesh.chain_vertices();
+  return {vertices.begin() + offsets[s], vertices.begin() + offsets[s + 1]};
+}
+
+std::vector<std::int32_t> sources(const ConstrainedTriangulation& mesh, Segment edge) {
+  const auto edges = mesh.constrained_edges();
+  const auto at = std::ranges::find(edges, edge);
+  if (at == edges.end()) return {};
+  const auto e = static_cast<std::size_t>(at - edges.begin());
+  const auto all = mesh.edge_sources();
+  return {all.begin() + mesh.source_offsets()[e], all.begin() + mesh.source_offsets()[e + 1]};
+}
+
+using SpecialCases = ConstrainedTest;
+
+/// A square of 4 with its corners, two points inside, and a duplicate of the first corner.
+const Points square = {0, 0, 4, 0, 4, 4, 0, 4, 1, 2, 3, 1, 0, 0};
+
+TEST_P(SpecialCases, NoPointsOneAndTwo) {
+  const ConstrainedTriangulation none = triangulated({}, {});
+  EXPECT_EQ(none.mesh().number_of_triangles(), 0U);
+  EXPECT_EQ(none.chain_offsets().size(), 1U);
+  EXPECT_TRUE(none.constrained_edges().empty());
+  EXPECT_EQ(none.number_inside(), 0U);
+  const ConstrainedTriangulation one = triangulated({5, 5}, {{0, 0}});
+  EXPECT_EQ(chain(one, 0), Chain());
+  EXPECT_TRUE(std::ranges::equal(one.degenerate_segments(), Chain{0}));
+  const ConstrainedTriangulation two = triangulated({5, 5, 6, 5}, {{1, 0}, {1, 1}, {0, 1}});
+  EXPECT_EQ(two.mesh().dimension(), 1);
+  EXPECT_EQ(chain(two, 0), (Chain{1, 0}));
+  EXPECT_EQ(chain(two, 2), (Chain{0, 1}));
+  EXPECT_TRUE(std::ranges::equal(two.degenerate_segments(), Chain{1}));
+  EXPECT_EQ(sources(two, {0, 1}), (Chain{-1, 2}));
+  const ConstrainedTriangulation same = triangulated({5, 5, 5, 5}, {{0, 1}, {1, 0}});
+  EXPECT_TRUE(std::ranges::equal(same.degenerate_segments(), (Chain{0, 1})));
+}
+
+TEST_P(SpecialCases, BadIndex) {
+  const std::vector<Points> sets = {{}, {0, 0}, {0, 0, 1, 1, 2, 2}, square};
+  for (const Points& xy : sets) {
+    const auto n = static_cast<std::int32_t>(xy.size() / 2);
+    for (const std::int32_t bad :
+         {n, n + 1, -1, -n - 1, std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}) {
+      for (const bool first : {false, true}) {
+        SCOPED_TRACE(std::to_string(bad) + " of " + std::to_string(n) + (first ? ", the first end" : ""));
+        const std::int32_t good = 0;
+        std::vector<Segment> segments;
+        if (n > 0) segments = {{0, n - 1}, {n - 1, 0}};
+        const std::size_t expected = segments.size();
+        segments.push_back(first ? Segment{bad, good} : Segment{n > 0 ? good : bad, bad});
+        segments.push_back({bad, bad});
+        try {
+          static_cast<void>(triangulated(xy, segments));
+          ADD_FAILURE() << "no error";
+        } catch (const InputError& error) {
+          EXPECT_EQ(error.index(), expected) << error.what();
+        }
+      }
+    }
+  }
+}
+
+TEST_P(SpecialCases, WithoutSegmentsTheMeshIsThatOfTriangulate) {
+  const std::vector<Points> sets = {square, uniform_points(500), grid_points(9, 9), {0, 0, 1, 1, 2, 2}, {3, 3}};
+  for (const Points& xy : sets) {
+    const Triangulation plain = triangulate(std::span<const double>(xy), GetParam().options());
+    const ConstrainedTriangulation mesh = check(xy, {});
+    EXPECT_EQ(mesh.mesh().hash(), plain.hash());
+    EXPECT_EQ(mesh.hash(), plain.hash());
+    EXPECT_TRUE(std::ranges::equal(mesh.mesh().triangles(), plain.triangles()));
+    EXPECT_TRUE(std::ranges::all_of(mesh.edge_flags(), [](std::uint32_t flags) { return flags == 0; }));
+    // Segments of no length are none, too.
+    const ConstrainedTriangulation other = check(xy, {{0, 0}});
+    EXPECT_EQ(other.hash(), plain.hash());
+    EXPECT_TRUE(std::ranges::equal(other.degenerate_segments(), Chain{0}));
+  }
+}
+
+TEST_P(SpecialCases, EndsAtEqualPointsAreThoseOfTheRepresentative) {
+  const ConstrainedTriangulation mesh = check(square, {{6, 2}, {0, 2}, {2, 6}, {0, 6}});
+  EXPECT_EQ(mesh.hash(), check(square, {{0, 2}}).hash());
+  EXPECT_EQ(chain(mesh, 0), (Chain{0, 2}));
+  EXPECT_EQ(chain(mesh, 2), (Chain{2, 0}));
+  EXPECT_TRUE(std::ranges::equal(mesh.degenerate_segments(), Chain{3}));
+  EXPECT_EQ(sources(mesh, {0, 2}), (Chain{-3, 0, 1}));
+}
+
+TEST_P(SpecialCases, ZeroMinusZeroIsAPoint) {
+  const Points xy = {0.0, 0.0, -0.0, 0.0, 2, 1, 1, -3, 0.0, -0.0};
+  const ConstrainedTriangulation mesh = check(xy, {{1, 2}, {0, 4}, {4, 3}});
+  EXPECT_EQ(chain(mesh, 0), (Chain{0, 2}));
+  EXPECT_EQ(chain(mesh, 1), Chain());
+}
+
+TEST_P(SpecialCases, RepeatedAndOverlapping) {
+  Drawing drawing;
+  for (int i = 0; i <= 10; ++i) drawing.add(i, 3 * i);  // on a line
+  for (int i = 0; i < 10; ++i) drawing.add(i + 0.5, 3 * i + (i % 2 == 0 ? 4 : -1));
+  drawing.segments = {{0, 6}, {4, 10}, {10, 0}, {3, 5}, {5, 3}, {3, 5}};
+  const ConstrainedTriangulation mesh = check(drawing.xy, drawing.segments);
+  EXPECT_EQ(chain(mesh, 0), (Chain{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(chain(mesh, 2), (Chain{10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0}));
+  EXPECT_EQ(sources(mesh, {4, 5}), (Chain{-5, -3, 0, 1, 3, 5}));
+  EXPECT_EQ(sources(mesh, {6, 7}), (Chain{-3, 1}));
+}
+
+TEST_P(SpecialCases, PointsOnASegmentDivideIt) {
+  Drawing drawing;
+  drawing.add(0, 0);
+  drawing.add(7, 7);
+  for (int i = 1; i < 7; ++i) drawing.add(i % 2 == 0 ? i : i + 0.25, i);  // every second lies on it
+  drawing.join(0, 1);
+  const ConstrainedTriangulation mesh = check(drawing.xy, drawing.segments);
+  EXPECT_EQ(chain(mesh, 0), (Chain{0, 3, 5, 7, 1}));
+  EXPECT_EQ(mesh.constrained_edges().size(), 4U);
+}
+
+TEST_P(SpecialCases, DanglingIsolatedAndHull) {
+  Drawing drawing;
+  drawing.xy = uniform_points(200, 3);
+  const std::int32_t n = 200;
+  drawing.xy.insert(drawing.xy.end(),
+                    {-1, -1, 2, -1, 2, 2, -1, 2, -0.5, -0.5, 1.5, -0.4, 0.25, 0.5, 0.75, 0.5, 0.5, -1});
+  drawing.segments = {{n, n + 1}, {n + 1, n + 2}, {n + 2, n + 3}, {n + 3, n}};  // the hull, its lower side with a point
+  drawing.segments.push_back({n + 4, n + 5});                                   // apart from all others
+  drawing.segments.push_back({n + 6, n + 7});                                   // loose, inside
+  drawing.segments.push_back({n + 6, n + 4});                                   // a branch
+  const ConstrainedTriangulation mesh = check(drawing.xy, drawing.segments);
+  EXPECT_EQ(chain(mesh, 0), (Chain{n, n + 8, n + 1}));
+  EXPECT_EQ(mesh.number_of_regions(), 1U);
+}
+
+TEST_P(SpecialCases, AllPointsOnALine) {
+  const std::vector<Points> lines = {
+      {3, 0, 1, 0, 2, 0, 0, 0, 2, 0}, {0, 3, 0, 1, 0, 2, 0, 0, 0, 2}, {3, -9, 1, -3, 2, -6, 0, 0, 2, -6}};
+  for (const Points& xy : lines) {
+    const std::vector<Segment> segments = {{0, 3}, {3, 4}, {2, 2}, {4, 2}, {1, 0}};
+    const ConstrainedTriangulation mesh = check(xy, segments);
+    EXPECT_EQ(mesh.mesh().dimension(), 1);
+    EXPECT_EQ(chain(mesh, 0), (Chain{0, 2, 1, 3}));
+    EXPECT_EQ(chain(mesh, 1), (Chain{3, 1, 2}));
+    EXPECT_EQ(chain(mesh, 4), (Chain{1, 2, 0}));
+    EXPECT_TRUE(std::ranges::equal(mesh.degenerate_segments(), (Chain{2, 3})));
+    EXPECT_EQ(mesh.constrained_edges().size(), 3U);
+    EXPECT_TRUE(mesh.edge_flags().empty());
+    EXPECT_EQ(mesh.number_inside(), 0U);
+    EXPECT_EQ(mesh.number_of_regions(), 0U);
+  }
+}
+
+TEST_P(SpecialCases, CrossingAtAPointIsNone) {
+  check({0, 0, 2, 2, 0, 2, 2, 0, 1, 1}, {{0, 1}, {2, 3}});
+  try {
+    static_cast<void>(triangulated({0, 0, 2, 2, 0, 2, 2, 0, 1, 1.0000000000000002}, {{0, 1}, {2, 3}, {1, 0}, {1, 1}}));
+    ADD_FAILURE() << "no error";
+  } catch (const CrossingError& error) {
+    EXPECT_EQ(error.pairs(), (std::vector<std::array<std::int32_t, 2>>{{0, 1}, {1, 2}}));
+  }
+}
+
+/// Pieces that cross none of the constrained edges of the Delaunay mesh, but one another.
+TEST_P(SpecialCases, CrossingOfInsertedSegments) {
+  const Points xy = uniform_points(400, 5);
+  Random random(9);
+  int refused = 0;
+  for (int round = 0; round < 30; ++round) {
+    std::vector<Segment> segments;
+    for (int i = 0; i < 2 + round / 3; ++i)
+      segments.push_back({static_cast<std::int32_t>(random.below(400)), static_cast<std::int32_t>(random.below(400))});
+    std::vector<std::array<std::int32_t, 2>> expected;
+    for (std::size_t i = 0; i < segments.size(); ++i)
+      for (std::size_t j = i + 1; j < segments.size(); ++j)
+        if (crosses(xy, segments[i], segments[j]))
+          expected.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(j)});
+    if (expected.empty()) {
+      check(xy, segments);
+      continue;
+    }
+    ++refused;
+    try {
+      static_cast<void>(triangulated(xy, segments));
+      ADD_FAILURE() << "no error";
+    } catch (const CrossingError& error) {
+      EXPECT_EQ(error.pairs(), expected);
+    }
+  }
+  EXPECT_GT(refused, 10);
+}
+
+CADT_ON_MAIN_BACKENDS(SpecialCases);
+
+}  // namespace
+}  // namespace cadt::test

@@ -2,33 +2,19 @@
 // Verification of constrained edges: each segment is a chain of edges along it, and no other edge is constrained.
 #include <algorithm>
 #include <string>
+#include <vector>
 
-#include "common/constraints/constrained_data.hpp"
+#include "common/constraints/verify_checks.hpp"
 
 namespace cadt {
 namespace {
 
-using Place = std::array<double, 2>;
-
-/// Points of the input, and those behind them that crossings have made.
-struct Places {
-  PointsView points;
-  std::span<const double> added;
-  [[nodiscard]] Place at(std::int32_t i) const {
-    const auto k = static_cast<std::size_t>(i);
-    if (k < points.size()) return {points.x(k), points.y(k)};
-    return {added[2 * (k - points.size())], added[2 * (k - points.size()) + 1]};
-  }
-  [[nodiscard]] std::size_t size() const { return points.size() + added.size() / 2; }
-};
+using Place = MeshPlaces::Place;
 
 class SegmentCheck {
  public:
-  SegmentCheck(PointsView points, std::span<const Segment> segments, const ConstrainedTriangulation& mesh)
-      : places_{points, mesh.added_points()},
-        segments_(segments),
-        mesh_(mesh),
-        check_{"constraints", false, 0, -1, {}} {}
+  SegmentCheck(const MeshPlaces& places, std::span<const Segment> segments, const ConstrainedTriangulation& mesh)
+      : places_(places), segments_(segments), mesh_(mesh), check_{"constraints", false, 0, -1, {}} {}
 
   Check run() {
     const auto offsets = mesh_.chain_offsets();
@@ -61,7 +47,7 @@ class SegmentCheck {
     const auto number = static_cast<std::int64_t>(s);
     const std::string name = "segment " + std::to_string(s);
     for (const std::int32_t end : segments_[s])
-      if (end < 0 || static_cast<std::size_t>(end) >= places_.points.size()) return fail(number, name + " has no ends");
+      if (end < 0 || static_cast<std::size_t>(end) >= places_.given()) return fail(number, name + " has no ends");
     const Place a = places_.at(segments_[s][0]), b = places_.at(segments_[s][1]);
     const auto vertices = chain(s);
     if (a == b) {
@@ -76,8 +62,8 @@ class SegmentCheck {
       return fail(number, "the chain of " + name + " has other ends");
     for (std::size_t i = 1; i < vertices.size(); ++i) {
       const Place p = places_.at(vertices[i - 1]), q = places_.at(vertices[i]);
-      const bool added = static_cast<std::size_t>(vertices[i]) >= places_.points.size();
-      if ((p < q) != (a < b) || (!added && exact_orientation(a, b, q) != 0))
+      if (places_.moved()) continue;  // from pixel to pixel
+      if (p == q || (p < q) != (a < b) || (!places_.is_added(vertices[i]) && exact_orientation(a, b, q) != 0))
         return fail(number, "the chain of " + name + " does not lie on it at vertex " + std::to_string(vertices[i]));
     }
   }
@@ -106,28 +92,67 @@ class SegmentCheck {
              (more ? " is constrained, but part of no segment" : " is part of a segment, but not a constrained edge"));
   }
 
-  const Places places_;
+  const MeshPlaces& places_;
   const std::span<const Segment> segments_;
   const ConstrainedTriangulation& mesh_;
   Check check_;
 };
 
+/// Rounded, the crossings beside an edge say nothing of its circles: it is exempt as constrained edges are.
+std::vector<std::uint32_t> exempt_edges(const MeshPlaces& places, const ConstrainedTriangulation& mesh) {
+  const auto flags = mesh.edge_flags();
+  std::vector<std::uint32_t> exempt(flags.begin(), flags.end());
+  const Triangulation& of = mesh.mesh();
+  for (std::size_t t = 0; t < exempt.size(); ++t) {
+    const auto has_added = [&](std::size_t u) {
+      return std::ranges::any_of(of.triangle(u), [&](std::int32_t v) { return places.is_added(v); });
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t other = of.neighbors()[3 * t + k];
+      if (other < 0 || static_cast<std::size_t>(other) >= exempt.size()) continue;
+      if (has_added(t) || has_added(static_cast<std::size_t>(other))) exempt[t] |= 1U << k;
+    }
+  }
+  return exempt;
+}
+
 }  // namespace
+
+Check check_segments(const MeshPlaces& places, std::span<const Segment> segments,
+                     const ConstrainedTriangulation& mesh) {
+  return SegmentCheck(places, segments, mesh).run();
+}
 
 VerifyReport verify(PointsView points, std::span<const Segment> segments, const ConstrainedTriangulation& mesh,
                     const ConstraintOptions& constraints, const VerifyOptions& options) {
-  (void)constraints;
   const Triangulation& of = mesh.mesh();
+  const MeshPlaces places(points, mesh);
+  if (places.given() != points.size())
+    throw InputError(
+        "the mesh has " + std::to_string(places.given()) + " moved points, not " + std::to_string(points.size()),
+        points.size());
+  std::vector<double> all;
+  if (places.size() != points.size() || places.moved())
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const Place place = places.at(static_cast<std::int32_t>(i));
+      all.insert(all.end(), place.begin(), place.end());
+    }
+  const bool rounded = !places.moved() && places.size() != points.size();
+  const std::vector<std::uint32_t> exempt = rounded ? exempt_edges(places, mesh) : std::vector<std::uint32_t>();
   MeshView view;
   view.triangles = of.triangles();
   view.neighbors = of.neighbors();
   view.hull = of.hull();
   view.duplicates = of.duplicates();
   view.has_duplicates = true;
-  view.edge_flags = mesh.edge_flags();
-  VerifyReport report = verify(points, view, options);
-  report.checks.push_back(SegmentCheck(points, segments, mesh).run());
+  view.edge_flags = rounded ? std::span<const std::uint32_t>(exempt) : mesh.edge_flags();
+  VerifyReport report = verify(all.empty() ? points : PointsView(all), view, options);
+  report.checks.push_back(check_segments(places, segments, mesh));
   report.ok = report.ok && report.checks.back().passed;
+  if (report.ok) {  // else there is no mesh to walk through
+    report.checks.push_back(check_regions(places, mesh, constraints));
+    report.ok = report.checks.back().passed;
+  }
   return report;
 }
 

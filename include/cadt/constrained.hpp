@@ -182,8 +182,9 @@ class CADT_API ConstrainedTriangulation {
                                                                                unsigned threads = 0);
 
 /// The checks of `verify`, with constrained edges exempt from that of circles, and "constraints": the flags of edges
-/// are those of the segments, "regions": no region crosses a segment, and what is inside fits the rule. \throws as
-/// `verify`
+/// are those of the segments, and, if all else has passed, "regions": no region crosses a segment, and what is inside
+/// fits the rule of `constraints`. Points made for crossings are where they were rounded to: triangles are examined
+/// there (rounded_valid), but no circles that they take part in. \throws as `verify`, InputError
 [[nodiscard]] CADT_API VerifyReport verify(PointsView points, std::span<const Segment> segments,
                                            const ConstrainedTriangulation& mesh,
                                            const ConstraintOptions& constraints = {},

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The checks of a constrained mesh that `verify` adds to those of its triangles. They share nothing with what made it.
+#pragma once
+
+#include <cadt/constrained.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace cadt {
+
+/// Points of a mesh: those of the input, where they are now, and those behind them that crossings have made.
+class MeshPlaces {
+ public:
+  using Place = std::array<double, 2>;
+  MeshPlaces(PointsView points, const ConstrainedTriangulation& mesh)
+      : points_(mesh.moved_points().empty() ? points : PointsView(mesh.moved_points())),
+        added_(mesh.added_points()),
+        moved_(!mesh.moved_points().empty()) {}
+  [[nodiscard]] Place at(std::int32_t i) const {
+    const auto k = static_cast<std::size_t>(i);
+    if (k < points_.size()) return {points_.x(k), points_.y(k)};
+    return {added_[2 * (k - points_.size())], added_[2 * (k - points_.size()) + 1]};
+  }
+  [[nodiscard]] std::size_t size() const { return points_.size() + added_.size() / 2; }
+  [[nodiscard]] std::size_t given() const { return points_.size(); }
+  [[nodiscard]] bool moved() const { return moved_; }
+  [[nodiscard]] bool is_added(std::int32_t i) const { return static_cast<std::size_t>(i) >= points_.size(); }
+
+ private:
+  PointsView points_;
+  std::span<const double> added_;
+  bool moved_;
+};
+
+/// "constraints": each segment is a chain of edges along it, and no other edge is constrained.
+[[nodiscard]] Check check_segments(const MeshPlaces& places, std::span<const Segment> segments,
+                                   const ConstrainedTriangulation& mesh);
+/// "regions": regions are what constrained edges separate, numbered in order, and their values, what is inside and the
+/// attributes are those of the rule. By a search from triangle to triangle. \pre the mesh has passed all other checks
+[[nodiscard]] Check check_regions(const MeshPlaces& places, const ConstrainedTriangulation& mesh,
+                                  const ConstraintOptions& constraints);
+
+}  // namespace cadt

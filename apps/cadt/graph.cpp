@@ -162,8 +162,8 @@ std::string explain_graph_error(PointsView points, std::span<const Segment> segm
     throw;
   } catch (const CrossingError& e) {
     const auto& pairs = e.pairs();
-    std::string text =
-        fmt::format("{} of segments cross:", pairs.size() == 1 ? "1 pair" : fmt::format("{} pairs", pairs.size()));
+    std::string text = pairs.size() == 1 ? std::string("1 pair of segments crosses:")
+                                         : fmt::format("{} pairs of segments cross:", pairs.size());
     constexpr std::size_t most_shown = 5;
     for (std::size_t i = 0; i < std::min(pairs.size(), most_shown); ++i) {
       const auto describe = [&](std::int32_t s) {

@@ -12,6 +12,8 @@ namespace cadt::cli {
 using Action = std::function<int()>;
 
 void add_triangulate(CLI::App& app, Action& chosen);
+void add_polygons(CLI::App& app, Action& chosen);
+void add_labels(CLI::App& app, Action& chosen);
 void add_verify(CLI::App& app, Action& chosen);
 void add_locate(CLI::App& app, Action& chosen);
 void add_interpolate(CLI::App& app, Action& chosen);

@@ -4,6 +4,7 @@
 #include "system.hpp"
 #include "text.hpp"
 
+#include <cadt/constrained.hpp>
 #include <cadt/errors.hpp>
 #include <cadt/io/errors.hpp>
 #include <cadt/triangle.hpp>
@@ -64,6 +65,11 @@ int report_known_exception() {
     return error(exit_file, e.what());
   } catch (const InputError& e) {
     return error(exit_file, fmt::format("point {} (counted from 0): {}", e.index(), e.what()));
+  } catch (const CrossingError& e) {
+    return error(exit_file, e.what(), "--crossing exact makes a vertex of each crossing.");
+  } catch (const DomainError& e) {
+    return error(exit_file, fmt::format("point {} (counted from 0): {}", e.vertex(), e.what()),
+                 "--domain layers and --domain outer take segments with loose ends.");
   } catch (const SwitchError& e) {
     return error(exit_switch, e.what(), "cadt triangle --help lists the switches that it takes.");
   } catch (const OptionError& e) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands.hpp"
 #include "failure.hpp"
+#include "graph.hpp"
 #include "input.hpp"
 #include "mesh_directory.hpp"
 #include "text.hpp"
@@ -83,20 +84,48 @@ std::string info_text(const Info& info) {
   return text;
 }
 
-std::string info_json(const Info& info, const std::string& path) {
+/// What a file has beside its points.
+struct GraphInfo {
+  std::size_t segments = 0, zero_length = 0, holes = 0, regions = 0;
+};
+
+GraphInfo inspect_graph(const Graph& graph) {
+  GraphInfo info{graph.segments.size(), 0, graph.holes.size(), graph.regions.size()};
+  const auto& xy = graph.points.xy;
+  for (const Segment& s : graph.segments) {
+    const auto a = 2 * static_cast<std::size_t>(s[0]), b = 2 * static_cast<std::size_t>(s[1]);
+    info.zero_length += xy[a] == xy[b] && xy[a + 1] == xy[b + 1] ? 1 : 0;
+  }
+  return info;
+}
+
+std::string graph_text(const GraphInfo& info) {
+  std::string segments = std::to_string(info.segments);
+  if (info.zero_length != 0) segments += fmt::format(", {} of them of zero length", info.zero_length);
+  return line("segments", segments) + line("holes", std::to_string(info.holes)) +
+         line("regions", std::to_string(info.regions));
+}
+
+std::string info_json(const Info& info, const GraphInfo* graph, const std::string& path) {
   using Json = nlohmann::ordered_json;
   const auto range = [](const Range& r, bool there) { return there ? Json{r.low, r.high} : Json(nullptr); };
-  const Json json{{"schema", 1},
-                  {"cadt", CADT_VERSION},
-                  {"file", path},
-                  {"format", info.format},
-                  {"points", info.points},
-                  {"distinct", info.distinct},
-                  {"duplicates", info.points - info.distinct},
-                  {"x", range(info.x, info.points > 0)},
-                  {"y", range(info.y, info.points > 0)},
-                  {"exponents", info.exponents ? Json{info.exponents->first, info.exponents->second} : Json(nullptr)},
-                  {"heights", range(info.height, info.heights)}};
+  Json json{{"schema", 1},
+            {"cadt", CADT_VERSION},
+            {"file", path},
+            {"format", info.format},
+            {"points", info.points},
+            {"distinct", info.distinct},
+            {"duplicates", info.points - info.distinct},
+            {"x", range(info.x, info.points > 0)},
+            {"y", range(info.y, info.points > 0)},
+            {"exponents", info.exponents ? Json{info.exponents->first, info.exponents->second} : Json(nullptr)},
+            {"heights", range(info.height, info.heights)}};
+  if (graph != nullptr) {
+    json["segments"] = graph->segments;
+    json["zero_length"] = graph->zero_length;
+    json["holes"] = graph->holes;
+    json["regions"] = graph->regions;
+  }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
@@ -105,25 +134,39 @@ struct InfoCommand {
   bool json = false;
 };
 
+int print_info(const InfoCommand& command) {
+  const bool segments = is_graph(command.input);
+  const Graph graph = segments ? read_graph(command.input, {.file = {}, .domain = "seeds", .crossing = {}}, true)
+                               : Graph{read_input(command.input), {}, {}, {}};
+  const Info info = inspect(graph.points);
+  const GraphInfo more = inspect_graph(graph);
+  if (command.json) {
+    print(info_json(info, segments ? &more : nullptr, command.input.path));
+  } else {
+    print(info_text(info) + (segments ? graph_text(more) : std::string()));
+  }
+  return exit_done;
+}
+
 }  // namespace
 
 void add_info(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("info", "say what a point file holds");
   const auto options = std::make_shared<InfoCommand>();
-  add_input_options(*command, options->input, "FILE", "file with points, or directory of cadt tiles");
+  add_input_options(*command, options->input, "FILE", "file with points or segments, or directory of cadt tiles", true);
   command->add_flag("--json", options->json, "as JSON");
   command->footer(
       "Prints format, points, distinct points, duplicates, box, the exponents of the smallest and the largest "
       "coordinate\n"
-      "(powers of two; a wide range costs time), and whether there are heights.\n\n"
+      "(powers of two; a wide range costs time), and whether there are heights; of a file with segments the numbers "
+      "of\n"
+      "segments, holes and regions, too.\n\n"
       "Example:\n"
       "  cadt info survey.csv --columns lon,lat,depth\n");
   command->callback([options, &chosen] {
     chosen = [options] {
       if (is_mesh_directory(options->input.path)) return print_directory(options->input.path, options->json);
-      const Info info = inspect(read_input(options->input));
-      print(options->json ? info_json(info, options->input.path) : info_text(info));
-      return int{exit_done};
+      return print_info(*options);
     };
   });
 }

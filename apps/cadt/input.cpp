@@ -5,6 +5,7 @@
 #include "text.hpp"
 
 #include <cadt/io/generate.hpp>
+#include <cadt/io/segments_file.hpp>
 
 #include <fmt/format.h>
 
@@ -13,17 +14,24 @@
 
 namespace cadt::cli {
 
-void add_input_options(CLI::App& command, InputOptions& options, const std::string& name, const std::string& text) {
+void add_input_options(CLI::App& command, InputOptions& options, const std::string& name, const std::string& text,
+                       bool segments) {
   command.add_option(name, options.path, text + "; '-' is standard input (with -f)")->required();
-  add_read_options(command, options);
+  add_read_options(command, options, segments);
 }
 
-void add_read_options(CLI::App& command, InputOptions& options) {
+void add_read_options(CLI::App& command, InputOptions& options, bool segments) {
+  std::vector<std::string> formats = io::point_read_formats();
+  if (segments) {  // those that are no formats of points
+    for (const std::string& format : io::segment_read_formats()) {
+      if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
+    }
+  }
   command
       .add_option("-f,--from", options.format,
-                  "format of the points: " + join(io::point_read_formats(), " ") + "; default: from the suffix")
+                  "format of the points: " + join(formats, " ") + "; default: from the suffix")
       ->type_name("FORMAT")
-      ->check(CLI::IsMember(io::point_read_formats(), CLI::ignore_case).description(""));
+      ->check(CLI::IsMember(formats, CLI::ignore_case).description(""));
   command
       .add_option("--columns", options.columns,
                   "columns of a table, counted from 1 or by their header names: 3,4 or lon,lat,depth")

@@ -18,11 +18,12 @@ struct InputOptions {
   bool floats = false;
 };
 
-/// Adds the positional `name` and -f, --columns, --project.
-void add_input_options(CLI::App& command, InputOptions& options, const std::string& name, const std::string& text);
+/// Adds the positional `name` and -f, --columns, --project. `segments`: -f may name a format of segments.
+void add_input_options(CLI::App& command, InputOptions& options, const std::string& name, const std::string& text,
+                       bool segments = false);
 
 /// Adds -f, --columns, --project.
-void add_read_options(CLI::App& command, InputOptions& options);
+void add_read_options(CLI::App& command, InputOptions& options, bool segments = false);
 
 /// Adds --floats.
 void add_floats_option(CLI::App& command, InputOptions& options);

@@ -60,6 +60,8 @@ int parse_and_run(int argc, char** argv) {
   app.set_help_flag("-h,--help", "print this help and exit");
   app.formatter(std::make_shared<HelpFormatter>());
   add_triangulate(app, action);
+  add_polygons(app, action);
+  add_labels(app, action);
   add_triangle(app, action);
 #ifdef CADT_HAS_TILES
   add_tiles(app, action);

@@ -110,6 +110,30 @@ Json verification_json(const VerifyReport& report) {
               {"checks", std::move(checks)}};
 }
 
+std::string constraints_text(const RunReport& r) {
+  const ConstrainedTriangulation& mesh = *r.constrained;
+  std::string segments = fmt::format("{}, which are {} edges", r.segments, mesh.constrained_edges().size());
+  if (const std::size_t added = mesh.added_points().size() / 2; added != 0) {
+    segments += fmt::format(", with {} points added where they cross", added);
+  }
+  std::string text = line("segments", segments);
+  if (r.domain != "hull") text += line("inside", fmt::format("{} triangles ({})", mesh.number_inside(), r.domain));
+  return text + line("regions", std::to_string(mesh.number_of_regions()));
+}
+
+Json constraints_json(const RunReport& r) {
+  const ConstrainedTriangulation& mesh = *r.constrained;
+  return Json{{"segments", r.segments},
+              {"degenerate", mesh.degenerate_segments().size()},
+              {"edges", mesh.constrained_edges().size()},
+              {"added_points", mesh.added_points().size() / 2},
+              {"rounded_valid", mesh.rounded_valid()},
+              {"crossing", r.crossing},
+              {"domain", r.domain},
+              {"inside", mesh.number_inside()},
+              {"regions", mesh.number_of_regions()}};
+}
+
 }  // namespace
 
 std::string summary_text(const RunReport& r) {
@@ -120,6 +144,7 @@ std::string summary_text(const RunReport& r) {
   text += line("duplicates", std::to_string(mesh.duplicates().size()));
   text += line("triangles", std::to_string(mesh.number_of_triangles()));
   text += line("hull", std::to_string(mesh.hull().size()));
+  if (r.constrained != nullptr) text += constraints_text(r);
   std::string parts = fmt::format("read {:.3f}, triangulate {:.3f}", r.read_seconds, seconds);
   if (r.verification) parts += fmt::format(", verify {:.3f}", r.verify_seconds);
   if (!r.outputs.empty()) parts += fmt::format(", write {:.3f}", r.write_seconds);
@@ -185,6 +210,7 @@ std::string statistics_json(const RunReport& r) {
                   {"hull", mesh.hull().size()},
                   {"dimension", mesh.dimension()},
                   {"hash", r.hash}};
+  json["constraints"] = r.constrained != nullptr ? constraints_json(r) : Json(nullptr);
   json["backend"] = s.backend;
   json["device"] = s.device;
   json["threads"] = s.threads;

@@ -5,6 +5,7 @@
 
 #include "outputs.hpp"
 
+#include <cadt/constrained.hpp>
 #include <cadt/triangulation.hpp>
 #include <cadt/verify.hpp>
 
@@ -20,6 +21,9 @@ struct RunReport {
   std::string input_format;
   bool heights = false;
   const Triangulation* mesh = nullptr;
+  const ConstrainedTriangulation* constrained = nullptr;  ///< where there are segments, that of `mesh`
+  std::size_t segments = 0;
+  std::string domain, crossing;
   std::string hash;
   std::optional<VerifyReport> verification;
   std::string stabilize;  ///< off, defer, paper

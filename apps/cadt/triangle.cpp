@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// cadt triangle: the command line of Jonathan Shewchuk's Triangle, for point sets.
+// cadt triangle: the command line of Jonathan Shewchuk's Triangle, for points and segments.
 #include "commands.hpp"
 #include "device_options.hpp"
 #include "failure.hpp"
@@ -10,10 +10,12 @@
 #include "text.hpp"
 
 #include <cadt/cadt.hpp>
+#include <cadt/io/segments_file.hpp>
 #include <cadt/io/triangle_files.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,6 +41,8 @@ Request parse_words(const std::vector<std::string>& switches, const std::vector<
       throw Failure(exit_usage, fmt::format("there is no option '{}'; see: cadt triangle --help", word));
     letters += word;
   }
+  const bool poly = std::any_of(files.begin(), files.end(), [](const auto& file) { return file.ends_with(".poly"); });
+  if (poly) letters += 'p';  // which Triangle takes it for
   Request request;
   request.switches = parse_triangle_switches(letters);
   if (request.switches.help) throw CLI::CallForHelp();
@@ -49,26 +53,74 @@ Request parse_words(const std::vector<std::string>& switches, const std::vector<
   return request;
 }
 
-std::string summary(const Triangulation& mesh, const TriangleOutput& result, const std::vector<std::string>& files) {
-  std::string text;
-  for (const std::string& file : files) text += fmt::format("cadt: wrote {}\n", file);
-  return text + fmt::format("points      {}\nduplicates  {}\ntriangles   {}\nedges       {}\nhull        {}\n",
-                            mesh.number_of_points(), mesh.duplicates().size(), mesh.number_of_triangles(),
-                            result.number_of_edges, mesh.hull().size());
+/// Points, segments and what is made of them.
+struct Work {
+  io::SegmentsFile input;
+  Triangulation mesh;
+  ConstrainedTriangulation constrained;  ///< with switch p, and `mesh` is its mesh
+  TriangleOutput result;
+  [[nodiscard]] TriangleInput points() const {
+    return {input.xy, input.attributes, input.attributes_per_point, input.markers};
+  }
+  [[nodiscard]] TriangleSegments segments() const {
+    return {input.segments, input.segment_markers, input.holes, input.regions};
+  }
+};
+
+void read(Work& work, const std::string& file, bool segments) {
+  if (segments) {
+    work.input = io::read_segments(file, "poly");
+    return;
+  }
+  io::NodeFile nodes = io::read_node_file(file);
+  work.input.xy = std::move(nodes.xy);
+  work.input.attributes = std::move(nodes.attributes);
+  work.input.attributes_per_point = nodes.attributes_per_point;
+  work.input.markers = std::move(nodes.markers);
+  work.input.base = nodes.base;
 }
 
-void warn(const TriangleSwitches& switches, const Triangulation& mesh, const std::string& name) {
+void triangulate(Work& work, const std::string& file, const TriangleSwitches& switches, const Options& options) {
+  const InPhase phase(Phase::cooperative);
+  if (!switches.segments) {
+    work.mesh = cadt::triangulate(work.input.xy, options);
+    return;
+  }
+  try {
+    work.constrained = triangulate_as_triangle(work.points(), work.segments(), switches, options);
+  } catch (const CrossingError& e) {
+    throw Failure(exit_file, fmt::format("{}: {}", file, e.what()));
+  }
+  work.mesh = work.constrained.mesh();
+}
+
+std::string summary(const Work& work, bool segments, const std::vector<std::string>& files) {
+  const Triangulation& mesh = work.mesh;
+  std::string text;
+  for (const std::string& file : files) text += fmt::format("cadt: wrote {}\n", file);
+  text += fmt::format("points      {}\nduplicates  {}\ntriangles   {}\nedges       {}\n", mesh.number_of_points(),
+                      mesh.duplicates().size(), work.result.triangles.size() / 3, work.result.number_of_edges);
+  if (!segments) return text + fmt::format("hull        {}\n", mesh.hull().size());
+  return text + fmt::format("segments    {}, which are {} edges\n", work.input.segments.size(),
+                            work.result.segments.size() / 2);
+}
+
+void warn(const TriangleSwitches& switches, const Work& work, const std::string& name) {
   for (const char letter : switches.without_effect) {
     say(fmt::format("cadt: -{} has no effect: it {}\n", letter, why_without_effect(letter)));
   }
-  if (mesh.dimension() < 2) {
+  if (work.mesh.dimension() < 2) {
     say(fmt::format("cadt: warning: {}: no triangles: the points are fewer than three, or all on one line\n", name));
+  } else if (work.result.triangles.empty()) {
+    say(fmt::format(
+        "cadt: warning: {}: no triangles: the segments enclose nothing that no hole reaches; -c keeps the whole hull\n",
+        name));
   }
 }
 
 int run(const TriangleCommand& command, const Request& request) {
   const TriangleSwitches& switches = request.switches;
-  const io::TriangleNames names = io::triangle_names(request.file, switches.no_iteration);
+  const io::TriangleNames names = io::triangle_names(request.file, switches.no_iteration, switches.segments);
   const std::vector<std::string> files = io::triangle_output_files(names.output, switches);
   for (const std::string& file : files) require_writable(file);
 
@@ -78,20 +130,18 @@ int run(const TriangleCommand& command, const Request& request) {
   options.stop = interrupt_token();
   options.progress = [&line](const Progress& progress) { line.update(progress); };
 
+  Work work;
   line.step(fmt::format("reading {}", names.input));
-  const io::NodeFile nodes = io::read_node_file(names.input);
-  line.start(nodes.xy.size() / 2);
-  const Triangulation mesh = [&] {
-    const InPhase phase(Phase::cooperative);
-    return triangulate(nodes.xy, options);
-  }();
+  read(work, names.input, switches.segments);
+  line.start(work.input.size());
+  triangulate(work, names.input, switches, options);
   check_interrupt();
   line.step("writing");
-  const TriangleOutput result =
-      triangle_output({nodes.xy, nodes.attributes, nodes.attributes_per_point, nodes.markers}, mesh, switches);
+  work.result = switches.segments ? triangle_output(work.points(), work.segments(), work.constrained, switches)
+                                  : triangle_output(work.points(), work.mesh, switches);
   {
     const InPhase phase(Phase::writing);
-    io::write_triangle_files(names.output, result, switches, nodes.base);
+    io::write_triangle_files(names.output, work.result, switches, work.input.base);
   }
   line.clear();
   try {
@@ -101,11 +151,11 @@ int run(const TriangleCommand& command, const Request& request) {
     throw;
   }
   if (switches.quiet) return exit_done;
-  warn(switches, mesh, names.input);
-  print(summary(mesh, result, files));
+  warn(switches, work, names.input);
+  print(summary(work, switches.segments, files));
   if (switches.verbose) {
     RunReport report;
-    report.mesh = &mesh;
+    report.mesh = &work.mesh;
     print("\n" + statistics_text(report));
   }
   return exit_done;
@@ -114,20 +164,23 @@ int run(const TriangleCommand& command, const Request& request) {
 }  // namespace
 
 void add_triangle(CLI::App& app, Action& chosen) {
-  CLI::App* command =
-      app.add_subcommand("triangle", "as Jonathan Shewchuk's Triangle, for points: its switches, its files");
+  CLI::App* command = app.add_subcommand("triangle", "as Jonathan Shewchuk's Triangle: its switches, its files");
   const auto options = std::make_shared<TriangleCommand>();
   command->allow_extras();
   command->add_option("FILE", options->files,
-                      "file with points, in Triangle's .node format; its suffix may be left out");
+                      "file with points (.node), or with points and segments (.poly, -p), in Triangle's formats; the "
+                      "suffix may be left out");
   add_device_options(*command, options->device);
   command->footer(
-      "Reads FILE.node and writes FILE.1.node and FILE.1.ele, from FILE.1.node FILE.2.node and so on.\n\n"
+      "Reads FILE.node, with -p FILE.poly, and writes FILE.1.node and FILE.1.ele, from FILE.1.node FILE.2.node and so "
+      "on.\n\n"
       "Switches, as in Triangle, alone or together:\n"
+      "  -p  segments, holes and regions (.poly)      -A  regions of triangles, with -p (.ele)\n"
+      "  -O  holes are ignored, with -p\n"
       "  -n  neighbours of triangles (.neigh)         -B  no boundary markers\n"
       "  -e  edges (.edge)                            -N  no .node\n"
       "  -v  Voronoi diagram (.v.node, .v.edge)       -E  no .ele\n"
-      "  -c  the edges of the hull (.poly)            -P  no .poly\n"
+      "  -c  the hull as segments (.poly)             -P  no .poly\n"
       "  -g  the mesh for Geomview (.off)             -I  no iteration number, no .node, no .poly\n"
       "  -j  points that are no vertices left out     -Q  nothing on standard output and error but errors\n"
       "  -z  count from 0; the file's first index     -V  statistics too\n"
@@ -135,7 +188,8 @@ void add_triangle(CLI::App& app, Action& chosen) {
       "  -i -F -l -s  accepted; they change nothing here\n"
       "All others are refused with the reason, exit code 8. docs/triangle.md has the differences.\n\n"
       "Example:\n"
-      "  cadt triangle -nev dots\n");
+      "  cadt triangle -nev dots\n"
+      "  cadt triangle -pA plate.poly\n");
   command->callback([options, command, &chosen] {
     const Request request = parse_words(command->remaining(), options->files);
     chosen = [options, request] { return run(*options, request); };

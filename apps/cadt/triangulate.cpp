@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "triangulate.hpp"
+
 #include "commands.hpp"
-#include "device_options.hpp"
 #include "failure.hpp"
-#include "input.hpp"
 #include "interrupt.hpp"
 #include "large_picture.hpp"
-#include "outputs.hpp"
-#include "progress.hpp"
-#include "report.hpp"
 #include "text.hpp"
 
 #include <cadt/cadt.hpp>
 #include <cadt/io/mesh_file.hpp>
+#include <cadt/io/region_file.hpp>
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
 #include <new>
 #include <optional>
@@ -25,38 +22,27 @@
 namespace cadt::cli {
 namespace {
 
-struct TriangulateOptions {
-  InputOptions input;
-  std::vector<std::string> outputs, formats;
-  DeviceOptions device;
-  std::string order = "canonical", stats;
-  std::string strategy = "auto";
-  std::string stabilize = "off";
-  std::optional<unsigned> flip_threshold;
-  std::optional<double> epsilon;
-  int base = 0, width = 1600;
-  bool ascii = false, strict = false, verify = false, timing = false, kernel_times = false, quiet = false;
+bool has_segments(const TriangulateOptions& options) {
+  return is_graph(options.input) || !options.segments.file.empty();
+}
 
-  // A bare --stats is the table for people.
-  [[nodiscard]] bool stats_table() const { return stats == "table"; }
-  [[nodiscard]] bool stats_file() const { return !stats.empty() && !stats_table(); }
-};
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - start_).count();
-    start_ = now;
-    return seconds;
+void check_segment_options(const TriangulateOptions& options) {
+  const bool segments = has_segments(options);
+  if (!segments && (!options.segments.domain.empty() || !options.segments.crossing.empty())) {
+    throw Failure(exit_usage, fmt::format("{} is about segments, and there are none: name a file with --segments",
+                                          options.segments.domain.empty() ? "--crossing" : "--domain"));
   }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
+  if (segments && options.stabilize != "off") {
+    throw Failure(exit_usage, "--stabilize is for points without segments: leave it out");
+  }
+}
 
 std::vector<Output> check_outputs(const TriangulateOptions& options) {
-  auto outputs = plan_outputs(options.outputs, options.formats, io::mesh_write_formats(), options.input.path);
+  const auto formats = has_segments(options) ? io::region_write_formats() : io::mesh_write_formats();
+  auto outputs = plan_outputs(options.outputs, options.formats, formats, options.input.path);
+  // Nor may the other input be lost.
+  static_cast<void>(plan_outputs(options.outputs, options.formats, formats, options.segments.file));
+  check_segment_options(options);
   if (options.timing && options.stats.empty())
     throw Failure(exit_usage, "--timing belongs to --stats: add it, or leave --timing out");
   if (options.kernel_times && options.stats.empty())
@@ -82,25 +68,6 @@ std::vector<Output> check_outputs(const TriangulateOptions& options) {
   }
   if (options.stats != "-") require_writable(options.stats);
   return outputs;
-}
-
-Options library_options(const TriangulateOptions& options, ProgressLine& line) {
-  Options result = library_options(options.device);
-  result.order = options.order == "fast" ? Order::fast : Order::canonical;
-  result.tuning.strategy = options.strategy == "locks"   ? Strategy::locks
-                           : options.strategy == "stars" ? Strategy::stars
-                                                         : Strategy::automatic;
-  result.tuning.stabilize = options.stabilize == "paper"   ? Stabilize::paper
-                            : options.stabilize == "defer" ? Stabilize::defer
-                                                           : Stabilize::off;
-  result.tuning.flip_threshold = options.flip_threshold.value_or(result.tuning.flip_threshold);
-  result.tuning.quality_epsilon = options.epsilon.value_or(result.tuning.quality_epsilon);
-  if (options.stats.empty()) result.statistics = StatisticsDetail::none;  // nobody will see them
-  if (options.timing) result.statistics = StatisticsDetail::timing;
-  result.tuning.kernel_times = options.kernel_times;
-  result.stop = interrupt_token();
-  result.progress = [&line](const Progress& progress) { line.update(progress); };
-  return result;
 }
 
 // The library names a point by its index only; here the file is known.
@@ -158,44 +125,10 @@ void write_outputs(const TriangulateOptions& options, const std::vector<Output>&
   }
 }
 
-// Points that span no triangle are an answer, not an error, unless the caller says otherwise.
-void judge_dimension(const Triangulation& mesh, const std::string& name, const TriangulateOptions& options) {
-  if (mesh.dimension() >= 2) return;
-  const std::size_t distinct = mesh.number_of_points() - mesh.duplicates().size();
-  const std::string why = distinct < 3 ? fmt::format("{} distinct {}, at least three are needed", distinct,
-                                                     distinct == 1 ? "point" : "points")
-                                       : fmt::format("all {} distinct points lie on one line", distinct);
-  if (options.strict) {
-    throw Failure(exit_degenerate,
-                  fmt::format("{}: no triangles: {}; check --columns and --project, or leave out --strict "
-                              "to get an empty mesh",
-                              name, why));
-  }
-  if (!options.quiet) {
-    say(fmt::format(
-        "cadt: warning: {}: no triangles: {}; the mesh is empty. Check --columns and --project if you expected "
-        "some; --strict makes this an error.\n",
-        name, why));
-  }
-}
-
-void print_reports(const TriangulateOptions& options, const RunReport& report) {
-  if (options.stats_file()) {
-    const InPhase phase(writing_phase(options.stats));
-    write_text(options.stats, statistics_json(report));
-  }
-  const std::string summary = summary_text(report);
-  if (report.outputs.empty() && options.stats != "-") {
-    print(summary);
-  } else if (!options.quiet) {
-    say(summary);
-  }
-  if (options.stats_table()) say("\n" + statistics_text(report));
-}
-
 int run(const TriangulateOptions& options) {
   RunReport report;
   report.outputs = check_outputs(options);
+  if (has_segments(options)) return run_graph(options, std::move(report.outputs));
   ProgressLine line(options.quiet);
   const Options chosen = library_options(options, line);
   const std::string name = display_name(options.input.path, true);
@@ -235,12 +168,7 @@ int run(const TriangulateOptions& options) {
     report.verification = verify(points.view(), mesh, verify_options);
     report.verify_seconds = watch.lap();
     line.clear();
-    if (!report.verification->ok) {
-      throw Failure(exit_verify,
-                    fmt::format("the mesh is wrong: {}; no output was written. This is a defect of cadt: please "
-                                "report it with the command line and the input",
-                                report.verification->summary()));
-    }
+    require_verified(*report.verification);
   }
 
   watch.lap();
@@ -261,7 +189,8 @@ void add_output_options(CLI::App& command, TriangulateOptions& o) {
   command
       .add_option("-t,--to", o.formats,
                   "format of the outputs: " + join(io::mesh_write_formats(), " ") +
-                      "; default: from each suffix. Once for all outputs, or once for each (auto: "
+                      ", with segments poly edge geojson, too; default: from each suffix. Once for all outputs, or "
+                      "once for each (auto: "
                       "from the suffix)")
       ->type_name("FORMAT")
       ->allow_extra_args(false);
@@ -320,11 +249,74 @@ void add_work_options(CLI::App& command, TriangulateOptions& o) {
 
 }  // namespace
 
+Options library_options(const TriangulateOptions& options, ProgressLine& line) {
+  Options result = library_options(options.device);
+  result.order = options.order == "fast" ? Order::fast : Order::canonical;
+  result.tuning.strategy = options.strategy == "locks"   ? Strategy::locks
+                           : options.strategy == "stars" ? Strategy::stars
+                                                         : Strategy::automatic;
+  result.tuning.stabilize = options.stabilize == "paper"   ? Stabilize::paper
+                            : options.stabilize == "defer" ? Stabilize::defer
+                                                           : Stabilize::off;
+  result.tuning.flip_threshold = options.flip_threshold.value_or(result.tuning.flip_threshold);
+  result.tuning.quality_epsilon = options.epsilon.value_or(result.tuning.quality_epsilon);
+  if (options.stats.empty()) result.statistics = StatisticsDetail::none;  // nobody will see them
+  if (options.timing) result.statistics = StatisticsDetail::timing;
+  result.tuning.kernel_times = options.kernel_times;
+  result.stop = interrupt_token();
+  result.progress = [&line](const Progress& progress) { line.update(progress); };
+  return result;
+}
+
+void judge_dimension(const Triangulation& mesh, const std::string& name, const TriangulateOptions& options) {
+  if (mesh.dimension() >= 2) return;
+  const std::size_t distinct = mesh.number_of_points() - mesh.duplicates().size();
+  const std::string why = distinct < 3 ? fmt::format("{} distinct {}, at least three are needed", distinct,
+                                                     distinct == 1 ? "point" : "points")
+                                       : fmt::format("all {} distinct points lie on one line", distinct);
+  if (options.strict) {
+    throw Failure(exit_degenerate,
+                  fmt::format("{}: no triangles: {}; check --columns and --project, or leave out --strict "
+                              "to get an empty mesh",
+                              name, why));
+  }
+  if (!options.quiet) {
+    say(fmt::format(
+        "cadt: warning: {}: no triangles: {}; the mesh is empty. Check --columns and --project if you expected "
+        "some; --strict makes this an error.\n",
+        name, why));
+  }
+}
+
+void require_verified(const VerifyReport& report) {
+  if (report.ok) return;
+  throw Failure(exit_verify,
+                fmt::format("the mesh is wrong: {}; no output was written. This is a defect of cadt: please "
+                            "report it with the command line and the input",
+                            report.summary()));
+}
+
+void print_reports(const TriangulateOptions& options, const RunReport& report) {
+  if (options.stats_file()) {
+    const InPhase phase(writing_phase(options.stats));
+    write_text(options.stats, statistics_json(report));
+  }
+  const std::string summary = summary_text(report);
+  if (report.outputs.empty() && options.stats != "-") {
+    print(summary);
+  } else if (!options.quiet) {
+    say(summary);
+  }
+  if (options.stats_table()) say("\n" + statistics_text(report));
+}
+
 void add_triangulate(CLI::App& app, Action& chosen) {
-  CLI::App* command = app.add_subcommand("triangulate", "triangulate points; write meshes and pictures");
+  CLI::App* command =
+      app.add_subcommand("triangulate", "triangulate points, with segments if there are; write meshes and pictures");
   const auto options = std::make_shared<TriangulateOptions>();
-  add_input_options(*command, options->input, "IN", "file with points");
+  add_input_options(*command, options->input, "IN", "file with points, or with points and segments", true);
   add_floats_option(*command, options->input);
+  add_segment_options(*command, options->segments);
   add_output_options(*command, *options);
   add_work_options(*command, *options);
   command->footer(
@@ -335,7 +327,11 @@ void add_triangulate(CLI::App& app, Action& chosen) {
       "  cadt triangulate survey.csv --columns lon,lat,depth -o sea.ply --verify\n"
       "      a table with a header; the mesh is checked before it is written\n"
       "  zcat points.txt.gz | cadt triangulate - -f txt -o - -t off > mesh.off\n"
-      "      from a pipe to standard output\n\n" +
+      "      from a pipe to standard output\n"
+      "  cadt triangulate land.geojson --domain even_odd -o land.png -o land.ply\n"
+      "      what the polygons enclose\n"
+      "  cadt triangulate terrain.xyz --segments breaklines.obj -o terrain.vtu\n"
+      "      a terrain with breaklines as edges\n\n" +
       std::string(exit_codes_help));
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }

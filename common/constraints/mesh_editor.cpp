@@ -62,29 +62,23 @@ std::int32_t MeshEditor::add_triangle() {
   return t;
 }
 
+// A vertex on an edge makes a triangle without area. The point beyond that edge is in its circle, which is a
+// half-plane, so the edge is flipped.
 void MeshEditor::insert_vertex(std::int32_t v) {
   const Place p = in_.place(v);
   std::int32_t t = last_, from = -1;
-  for (bool moved = true; moved;) {
-    moved = false;
-    Edge on{-1, -1};
-    for (std::int32_t k = 0; k < 3; ++k) {
-      if (neighbor(t, k) == from && from >= 0) continue;  // it came through that edge
-      const int side = exact_.orientation(in_.place(vertex(t, next(k))), in_.place(vertex(t, previous(k))), p);
-      if (side == 0) on = {t, k};
-      if (side >= 0) continue;
-      from = t;
-      t = neighbor(t, k);
-      if (t < 0) throw InternalError("triangles with crossings of segments: a crossing is outside of the hull");
-      moved = true;
-      break;
+  for (std::int32_t k = 0; k < 3;) {
+    const bool came = from >= 0 && neighbor(t, k) == from;
+    if (came || exact_.orientation(in_.place(vertex(t, next(k))), in_.place(vertex(t, previous(k))), p) >= 0) {
+      ++k;
+      continue;
     }
-    if (moved) continue;
-    if (on.triangle >= 0)
-      divide_edge(on, v);
-    else
-      divide_triangle(t, v);
+    from = t;
+    t = neighbor(t, k);
+    k = 0;
+    if (t < 0) throw InternalError("triangles with crossings of segments: a crossing is outside of the hull");
   }
+  divide_triangle(t, v);
   legalize();
   last_ = triangle_of_[static_cast<std::size_t>(v)];
 }
@@ -99,23 +93,6 @@ void MeshEditor::divide_triangle(std::int32_t t, std::int32_t p) {
   replace_neighbor(nb, t, t1);
   replace_neighbor(nc, t, t2);
   suspects_.insert(suspects_.end(), {t, t1, t2});
-}
-
-void MeshEditor::divide_edge(Edge edge, std::int32_t p) {
-  const std::int32_t t = edge.triangle, k = edge.k, u = neighbor(t, k);
-  if (u < 0) throw InternalError("triangles with crossings of segments: a crossing is on the hull");
-  const std::int32_t j = index_of_neighbor(u, t);
-  const std::int32_t a = vertex(t, k), b = vertex(t, next(k)), c = vertex(t, previous(k)), d = vertex(u, j);
-  const std::int32_t ca = neighbor(t, next(k)), ab = neighbor(t, previous(k));
-  const std::int32_t bd = neighbor(u, next(j)), dc = neighbor(u, previous(j));  // u is d, c, b
-  const std::int32_t t1 = add_triangle(), u1 = add_triangle();
-  set(t, {p, a, b}, {ab, u1, t1});
-  set(t1, {p, c, a}, {ca, t, u});
-  set(u, {p, d, c}, {dc, t1, u1});
-  set(u1, {p, b, d}, {bd, u, t});
-  replace_neighbor(ca, t, t1);
-  replace_neighbor(bd, u, u1);
-  suspects_.insert(suspects_.end(), {t, t1, u, u1});
 }
 
 /// Flips the edge opposite vertex 0.

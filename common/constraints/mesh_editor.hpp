@@ -19,9 +19,9 @@ class MeshEditor {
   /// object.
   MeshEditor(const Arrangement& arrangement, std::vector<std::int32_t> triangles, std::vector<std::int32_t> neighbors);
 
-  /// Inserts a vertex into the Delaunay triangulation: the triangle or edge that it is on is divided, then edges are
-  /// flipped (C. L. Lawson, "Software for C1 surface interpolation", 1977). The search begins where the last one ended.
-  /// \pre the vertex is strictly inside the hull and no constrained edge is there. \throws InternalError
+  /// Inserts a vertex into the Delaunay triangulation: the triangle that it is in is divided, then edges are flipped
+  /// (C. L. Lawson, "Software for C1 surface interpolation", 1977). The search begins where the last one ended. \pre
+  /// the vertex is strictly inside the hull, and no edge is constrained yet. \throws InternalError
   void insert_vertex(std::int32_t vertex);
 
   /// Makes the edges between consecutive vertices of a wall's chain constrained ones, and the rest Delaunay again: the
@@ -67,7 +67,6 @@ class MeshEditor {
   [[nodiscard]] std::int32_t add_triangle();
 
   void divide_triangle(std::int32_t t, std::int32_t v);
-  void divide_edge(Edge edge, std::int32_t v);
   void flip(std::int32_t t);
   void legalize();
 

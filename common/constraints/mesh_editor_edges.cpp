@@ -125,7 +125,9 @@ void MeshEditor::clear_cavity(Edge first, std::int32_t u, std::int32_t w) {
 
 /// Triangulates what is left of the edge from the first vertex of the chain to the last, up to the chain. Returns the
 /// triangle at that edge, which is its edge 2. All vertices of a part of the chain are left of the edge between its
-/// ends: each had an edge that crossed the new one, and these do not cross each other.
+/// ends: each had an edge that crossed the new one, and these do not cross each other. A vertex from which a slit hangs
+/// comes twice; what hangs there is between its edges that crossed, so inside its circle, and it is not chosen before
+/// that.
 std::int32_t MeshEditor::fill(const Side& side) {
   const auto at = [&](std::int32_t i) { return side.chain[static_cast<std::size_t>(i)]; };
   std::int32_t top = -1;
@@ -147,8 +149,6 @@ std::int32_t MeshEditor::fill(const Side& side) {
     }
     std::int32_t best = low + 1;  // the one whose circle with the ends has no other inside
     for (std::int32_t i = low + 2; i < high; ++i) {
-      // a vertex with a slit comes twice
-      if (at(i) == at(best) || at(i) == at(low) || at(i) == at(high)) continue;
       if (exact_.incircle_perturbed(in_.place(at(low)), in_.place(at(high)), in_.place(at(best)), in_.place(at(i))) > 0)
         best = i;
     }

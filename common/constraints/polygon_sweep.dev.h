@@ -338,21 +338,29 @@ CADT_FN void cadt_flip_in_polygon(cadt_sweep* s, cadt_u32 h, cadt_u32 other) {
   cadt_join_in_polygon(s, u + 2u, beyond_b);
 }
 
-/* Flips edges until all that are not of the polygon are legal (C. L. Lawson, 1977). `list` has `room` for half-edges
- * that may have become illegal. */
+/* A half-edge may be illegal. Triangles from `end` on are not looked at yet, and there is none beyond an edge of the
+ * polygon. */
+CADT_FN cadt_u32 cadt_list_half_edge(const cadt_sweep* s, CADT_GLOBAL cadt_u32* list, cadt_u32 count, cadt_u32 h,
+                                     cadt_u32 end) {
+  list[count] = h;
+  return s->across[h] < end ? count + 1u : count;
+}
+
+/* Flips edges until all that are not of the polygon are legal (C. L. Lawson, 1977). `list` has `room` for half-edges.
+ */
 CADT_FN void cadt_legalize_polygon(cadt_sweep* s, CADT_GLOBAL cadt_u32* list, cadt_u32 room) {
   CADT_DECLARE_COUNTERS(counters);
   cadt_u32 again = 1u;
   while (again) { /* once, if there is room enough */
     again = 0u;
     for (cadt_u32 t = 0u; t < s->triangle_count; ++t) {
-      const cadt_u32 end = CADT_HALF_EDGE(t + 1u, 0u); /* triangles behind are not looked at yet */
+      const cadt_u32 end = CADT_HALF_EDGE(t + 1u, 0u);
       cadt_u32 count = 0u;
-      for (cadt_u32 k = 0u; k < 3u; ++k) list[count++] = CADT_HALF_EDGE(t, k);
+      for (cadt_u32 k = 0u; k < 3u; ++k) count = cadt_list_half_edge(s, list, count, CADT_HALF_EDGE(t, k), end);
       while (count) {
-        const cadt_u32 h = list[--count], other = s->across[h];
-        if (other >= end) continue;
-        const cadt_u32 first = h & ~3u, k = CADT_EDGE_OF(h), second = other & ~3u;
+        const cadt_u32 h = list[--count], other = s->across[h], first = h & ~3u, second = other & ~3u;
+        const cadt_u32 k = CADT_EDGE_OF(h);
+        if (other >= end) continue; /* another edge since then */
         const cadt_point a = cadt_load_point(s->points + s->vertices[h]),
                          b = cadt_load_point(s->points + s->vertices[first + CADT_NEXT(k)]),
                          c = cadt_load_point(s->points + s->vertices[first + CADT_PREV(k)]),
@@ -363,10 +371,10 @@ CADT_FN void cadt_legalize_polygon(cadt_sweep* s, CADT_GLOBAL cadt_u32* list, ca
           again = 1u;
           continue;
         }
-        list[count++] = first;
-        list[count++] = first + 2u;
-        list[count++] = second;
-        list[count++] = second + 2u;
+        count = cadt_list_half_edge(s, list, count, first, end);
+        count = cadt_list_half_edge(s, list, count, first + 2u, end);
+        count = cadt_list_half_edge(s, list, count, second, end);
+        count = cadt_list_half_edge(s, list, count, second + 2u, end);
       }
     }
   }

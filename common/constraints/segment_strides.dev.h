@@ -40,7 +40,7 @@ CADT_KERNEL(cadt_divide_pieces, CADT_PIECES_PARAMETERS, cadt_u32 count, cadt_u32
   }
 }
 
-enum { CADT_PROBE_SAMPLES = 128 };
+enum { CADT_PROBE_SAMPLES = 2048 };
 
 /* A triangle that contains the place q as far as floating point can tell, from the nearest vertex of a sample on, by a
  * walk with a random order of edges; CADT_NONE if it does not end soon (O. Devillers, S. Pion, M. Teillaud, "Walking in
@@ -59,9 +59,9 @@ CADT_FN cadt_u32 cadt_triangle_near(const cadt_segment_mesh* m, cadt_u32 vertex_
     }
   }
   cadt_u32 t = m->vertex_triangle[nearest], entry = 3u, random = nearest;
-  /* a few times as many as triangles lie on a line from one vertex of the sample to the next */
+  /* several times as many as triangles lie on a line from one vertex of the sample to the next */
   const cadt_u32 most =
-      64u + 4u * CADT_CAST(cadt_u32, cadt_sqrt(CADT_CAST(cadt_real, vertex_count / CADT_PROBE_SAMPLES)));
+      64u + 8u * CADT_CAST(cadt_u32, cadt_sqrt(CADT_CAST(cadt_real, vertex_count / CADT_PROBE_SAMPLES)));
   for (cadt_u32 i = 0u; i < most; ++i) {
     random = random * 1664525u + 1013904223u;
     cadt_u32 k = (random >> 16) % 3u, leave = 3u;

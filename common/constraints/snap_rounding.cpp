@@ -30,6 +30,14 @@ std::string text(double v) {
   return out.str();
 }
 
+// Why edges of chains do not run through other centres. Let a segment s pass the pixels of centres a and b one after
+// the other, in places a + p and b + q with p, q in the pixel P around 0. In between it is at s(t) = e(t) + d(t), where
+// e runs from a to b and d from p to q, all evenly; d is in P, which is convex. If a hot centre c is on the edge e, or
+// the edge passes over it as s moves there, then c = s(t) - m d(t) for an m in [0, 1], so s(t) - c = m d(t) is in P, as
+// 0 is: s passes the pixel of c, and c is in the chain. This needs the same P for all, so sides belong to the pixels
+// right of and above them, without exception. And two segments whose edges crossed would have crossed in a hot pixel
+// before.
+//
 // Multiples k g are rounded. If k g is a double for each k up to the largest one, K, nothing moves. Else a centre moves
 // by up to K g 2^-53, while a centre beside an edge is g / (3 K) away from it, as it is no less than 1 / length in
 // units of g, and the length is below 3 K. As long as 6 K^2 < 2^53, so with K < 2^25, no centre can move across an

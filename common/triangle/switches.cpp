@@ -13,14 +13,15 @@ struct Taken {
   bool TriangleSwitches::*member;
 };
 constexpr Taken taken[] = {
-    {'n', &TriangleSwitches::neighbors},   {'e', &TriangleSwitches::edges},
-    {'v', &TriangleSwitches::voronoi},     {'c', &TriangleSwitches::hull_segments},
-    {'g', &TriangleSwitches::off},         {'j', &TriangleSwitches::jettison},
-    {'z', &TriangleSwitches::zero_based},  {'B', &TriangleSwitches::no_markers},
-    {'P', &TriangleSwitches::no_poly},     {'N', &TriangleSwitches::no_nodes},
-    {'E', &TriangleSwitches::no_elements}, {'I', &TriangleSwitches::no_iteration},
-    {'Q', &TriangleSwitches::quiet},       {'V', &TriangleSwitches::verbose},
-    {'h', &TriangleSwitches::help},
+    {'p', &TriangleSwitches::segments},      {'A', &TriangleSwitches::region_attributes},
+    {'O', &TriangleSwitches::ignore_holes},  {'n', &TriangleSwitches::neighbors},
+    {'e', &TriangleSwitches::edges},         {'v', &TriangleSwitches::voronoi},
+    {'c', &TriangleSwitches::hull_segments}, {'g', &TriangleSwitches::off},
+    {'j', &TriangleSwitches::jettison},      {'z', &TriangleSwitches::zero_based},
+    {'B', &TriangleSwitches::no_markers},    {'P', &TriangleSwitches::no_poly},
+    {'N', &TriangleSwitches::no_nodes},      {'E', &TriangleSwitches::no_elements},
+    {'I', &TriangleSwitches::no_iteration},  {'Q', &TriangleSwitches::quiet},
+    {'V', &TriangleSwitches::verbose},       {'h', &TriangleSwitches::help},
 };
 
 struct Reason {
@@ -37,19 +38,25 @@ constexpr Reason harmless[] = {
 
 constexpr std::string_view refinement = "adds points until angles or areas are as asked; cadt adds no points";
 constexpr Reason refused[] = {
-    {'p', "reads segments and holes (.poly); cadt triangulates points only"},
     {'r', "refines a mesh; cadt starts from points"},
     {'q', refinement},
     {'a', refinement},
     {'u', refinement},
     {'D', refinement},
-    {'A', "numbers regions between segments; a set of points has none"},
     {'Y', "limits points that refinement adds; cadt adds none"},
     {'S', "limits points that refinement adds; cadt adds none"},
-    {'O', "ignores the holes of a .poly file, which cadt does not read"},
     {'X', "asks for inexact arithmetic; cadt is always exact: leave it out"},
     {'o', "asks for triangles of six nodes; those of cadt have three"},
     {'C', "checks the mesh as it is written; use: cadt verify"},
+};
+
+/// Why letters are refused together with p, or without it.
+constexpr Reason refused_with_p[] = {
+    {'s', "splits segments at new points; cadt adds no points: leave it out, and segments are chains of edges"},
+};
+constexpr Reason refused_without_p[] = {
+    {'A', "is about regions between segments: add p"},
+    {'O', "is about the holes that p reads: add p"},
 };
 
 template <std::size_t n>
@@ -75,18 +82,20 @@ std::string_view why_without_effect(char letter) noexcept { return reason_in(har
 TriangleSwitches parse_triangle_switches(std::string_view text) {
   TriangleSwitches switches;
   std::string bad, message;
+  const bool with_p = text.find('p') != std::string_view::npos;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char letter = text[i];
     if (letter == '-' || letter == ' ') continue;
+    const std::string_view conflict = with_p ? reason_in(refused_with_p, letter) : reason_in(refused_without_p, letter);
     const auto known =
         std::find_if(std::begin(taken), std::end(taken), [&](const Taken& t) { return t.letter == letter; });
-    if (known != std::end(taken)) {
+    if (conflict.empty() && known != std::end(taken)) {
       switches.*known->member = true;
-    } else if (!why_without_effect(letter).empty()) {
+    } else if (conflict.empty() && !why_without_effect(letter).empty()) {
       if (switches.without_effect.find(letter) == std::string::npos) switches.without_effect += letter;
     } else if (bad.find(letter) == std::string::npos) {
       bad += letter;
-      const std::string_view why = reason_in(refused, letter);
+      const std::string_view why = conflict.empty() ? reason_in(refused, letter) : conflict;
       message += (message.empty() ? "-" : "; -") + printable(letter) + " ";
       message += why.empty() ? "is no switch of Triangle" : why;
     }

@@ -76,6 +76,50 @@ TriangleInput checked_input(const Struct& in) {
   return input;
 }
 
+/// Segments, holes and regions, in arrays of their own.
+struct Constraints {
+  std::vector<Segment> segments;
+  std::span<const int> markers;
+  std::vector<std::array<double, 2>> holes;
+  std::vector<Region> regions;
+  [[nodiscard]] TriangleSegments view() const { return {segments, markers, holes, regions}; }
+};
+
+Constraints checked_constraints(const Struct& in, std::int32_t base) {
+  const auto require = [](bool holds, const char* text) {
+    if (!holds) throw InputError(text, 0);
+  };
+  require(in.numberofsegments >= 0, "numberofsegments is negative");
+  require(in.numberofholes >= 0, "numberofholes is negative");
+  require(in.numberofregions >= 0, "numberofregions is negative");
+  require(in.numberofsegments == 0 || in.segmentlist != nullptr, "segmentlist is NULL");
+  require(in.numberofholes == 0 || in.holelist != nullptr, "holelist is NULL");
+  require(in.numberofregions == 0 || in.regionlist != nullptr, "regionlist is NULL");
+  Constraints result;
+  for (std::ptrdiff_t i = 0; i < in.numberofsegments; ++i) {
+    Segment segment{in.segmentlist[2 * i], in.segmentlist[2 * i + 1]};
+    for (std::int32_t& v : segment) {
+      if (v < base || v - base >= in.numberofpoints) {
+        throw InputError(
+            "segmentlist, segment " + std::to_string(i) + " counted from 0: there is no point " + std::to_string(v),
+            static_cast<std::size_t>(i));
+      }
+      v -= base;
+    }
+    result.segments.push_back(segment);
+  }
+  if (in.segmentmarkerlist != nullptr) {
+    result.markers = {in.segmentmarkerlist, static_cast<std::size_t>(in.numberofsegments)};
+  }
+  for (std::ptrdiff_t i = 0; i < in.numberofholes; ++i)
+    result.holes.push_back({in.holelist[2 * i], in.holelist[2 * i + 1]});
+  for (std::ptrdiff_t i = 0; i < in.numberofregions; ++i) {
+    const double* region = in.regionlist + 4 * i;
+    result.regions.push_back({region[0], region[1], region[2]});
+  }
+  return result;
+}
+
 /// The counts fit: 2^29 points have less than 2^31 edges.
 int count(std::size_t values, std::size_t each) { return static_cast<int>(values / each); }
 
@@ -97,36 +141,34 @@ void set_voronoi(const TriangleOutput& result, std::int32_t base, Struct& vorout
 
 void set_outputs(const TriangleSwitches& use, const TriangleOutput& result, Struct& out, Struct* vorout) {
   const std::int32_t base = use.zero_based ? 0 : 1;
-  const bool segments_wanted = use.hull_segments && !use.no_poly;
-  std::vector<int> ones(segments_wanted ? result.segments.size() / 2 : 0, 1), on_hull;
-  if (use.edges && !use.no_markers) {
-    for (std::size_t e = 1; e < result.edge_triangles.size(); e += 2) {
-      on_hull.push_back(result.edge_triangles[e] < 0 ? 1 : 0);
-    }
-  }
+  const bool segments_wanted = (use.hull_segments || use.segments) && !use.no_poly;
   Array<double> points(out.pointlist, !use.no_nodes, result.xy.size());
   Array<double> attributes(out.pointattributelist, !use.no_nodes && result.attributes_per_point != 0,
                            result.attributes.size());
   Array<int> markers(out.pointmarkerlist, !use.no_nodes && !use.no_markers, result.markers.size());
   Array<int> triangles(out.trianglelist, !use.no_elements, result.triangles.size());
+  const bool attributed = use.region_attributes && !use.no_elements;
+  Array<double> triangle_attributes(out.triangleattributelist, attributed, result.triangle_attributes.size());
   Array<int> neighbors(out.neighborlist, use.neighbors, result.neighbors.size());
   Array<int> segments(out.segmentlist, segments_wanted, result.segments.size());
-  Array<int> segment_markers(out.segmentmarkerlist, segments_wanted && !use.no_markers, ones.size());
+  Array<int> segment_markers(out.segmentmarkerlist, segments_wanted && !use.no_markers, result.segment_markers.size());
   Array<int> edges(out.edgelist, use.edges, result.edges.size());
-  Array<int> edge_markers(out.edgemarkerlist, use.edges && !use.no_markers, on_hull.size());
+  Array<int> edge_markers(out.edgemarkerlist, use.edges && !use.no_markers, result.edge_markers.size());
   if (use.voronoi) set_voronoi(result, base, *vorout);  // the last that can fail
 
   points.fill(result.xy), attributes.fill(result.attributes), markers.fill(result.markers);
   triangles.fill(result.triangles, base), neighbors.fill(result.neighbors, base);
-  segments.fill(result.segments, base), segment_markers.fill(ones);
-  edges.fill(result.edges, base), edge_markers.fill(on_hull);
+  segments.fill(result.segments, base), segment_markers.fill(std::span<const int>(result.segment_markers));
+  triangle_attributes.fill(result.triangle_attributes);
+  edges.fill(result.edges, base), edge_markers.fill(std::span<const int>(result.edge_markers));
   points.store(), attributes.store(), markers.store(), triangles.store(), neighbors.store();
   segments.store(), segment_markers.store(), edges.store(), edge_markers.store();
+  triangle_attributes.store();
   out.numberofpoints = count(result.xy.size(), 2);
   out.numberofpointattributes = static_cast<int>(result.attributes_per_point);
   out.numberoftriangles = count(result.triangles.size(), 3);
   out.numberofcorners = 3;
-  out.numberoftriangleattributes = 0;
+  out.numberoftriangleattributes = use.region_attributes ? 1 : 0;
   out.numberofsegments = count(result.segments.size(), 2);
   out.numberofedges = static_cast<int>(result.number_of_edges);
 }
@@ -138,13 +180,28 @@ void run(const char* text, const Struct* in, Struct* out, Struct* vorout) {
   const TriangleInput input = checked_input(*in);
   Options options;
   options.statistics = StatisticsDetail::none;
+  const Constraints constraints = use.segments ? checked_constraints(*in, use.zero_based ? 0 : 1) : Constraints();
   Triangulation mesh;
+  ConstrainedTriangulation constrained;
   try {
-    mesh = triangulate(input.xy, options);
+    if (use.segments) {
+      constrained = triangulate_as_triangle(input, constraints.view(), use, options);
+    } else {
+      mesh = triangulate(input.xy, options);
+    }
   } catch (const InputError& e) {
     throw InputError("pointlist, point " + std::to_string(e.index()) + " counted from 0: " + e.what(), e.index());
   }
-  set_outputs(use, triangle_output(input, mesh, use), *out, vorout);
+  set_outputs(
+      use,
+      use.segments ? triangle_output(input, constraints.view(), constrained, use) : triangle_output(input, mesh, use),
+      *out, vorout);
+  if (!use.segments) return;
+  // As in Triangle, these are the arrays of the input.
+  out->numberofholes = in->numberofholes;
+  out->holelist = in->holelist;
+  out->numberofregions = in->numberofregions;
+  out->regionlist = in->regionlist;
 }
 
 /// To be called in a catch block.
@@ -155,6 +212,8 @@ int status_of_exception() noexcept {
   } catch (const SwitchError& e) {
     return finished(CADT_TRIANGLE_SWITCHES, e.what());
   } catch (const InputError& e) {
+    return finished(CADT_TRIANGLE_INPUT, e.what());
+  } catch (const CrossingError& e) {
     return finished(CADT_TRIANGLE_INPUT, e.what());
   } catch (const LimitError& e) {
     return finished(CADT_TRIANGLE_INPUT, e.what());

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cadt/batch.hpp>
+#include <cadt/constrained.hpp>
 #include <cadt/devices.hpp>
 #include <cadt/errors.hpp>
+#include <cadt/label_image.hpp>
 #include <cadt/options.hpp>
 #include <cadt/points.hpp>
 #include <cadt/polygons.hpp>

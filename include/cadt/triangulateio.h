@@ -26,25 +26,26 @@ struct cadt_triangulateio {
   int numberofpointattributes;
 
   int* trianglelist;              /* out: numberoftriangles x 3, counterclockwise */
-  double* triangleattributelist;  /* not used */
+  double* triangleattributelist;  /* out, with A: numberoftriangles */
   double* trianglearealist;       /* not used */
   int* neighborlist;              /* out: numberoftriangles x 3; the k-th is opposite corner k, -1 outside */
   int numberoftriangles;          /* out */
   int numberofcorners;            /* out: 3 */
-  int numberoftriangleattributes; /* out: 0 */
+  int numberoftriangleattributes; /* out: 0, with A 1 */
 
-  int* segmentlist;       /* out, with c: numberofsegments x 2, the hull counterclockwise */
-  int* segmentmarkerlist; /* out, with c: 1 each */
-  int numberofsegments;   /* out: edges of the hull */
+  int* segmentlist; /* in, with p. out, with c or p: numberofsegments x 2; with c alone the hull counterclockwise */
+  int* segmentmarkerlist; /* in, with p (NULL: all 0). out: one a segment */
+  int numberofsegments;   /* in, with p. out */
 
-  double* holelist; /* not used */
-  int numberofholes;
+  double* holelist;  /* in, with p: numberofholes x 2. out, with p: that of in, as in Triangle */
+  int numberofholes; /* the same */
 
-  double* regionlist; /* not used */
-  int numberofregions;
+  double*
+      regionlist; /* in, with p: numberofregions x 4: x y attribute, and an area that is not used. out: as holelist */
+  int numberofregions; /* the same */
 
   int* edgelist;       /* out: numberofedges x 2. vorout: numbers of two points of vorout; -1: a ray from the first */
-  int* edgemarkerlist; /* out: 1 on the hull, else 0. vorout: not used */
+  int* edgemarkerlist; /* out: that of the segment there, else 1 on the boundary, else 0. vorout: not used */
   double* normlist;    /* vorout: numberofedges x 2, the direction of a ray; 0 0 for other edges */
   int numberofedges;   /* out, vorout */
 };
@@ -53,17 +54,19 @@ struct cadt_triangulateio {
 enum cadt_triangle_status {
   CADT_TRIANGLE_DONE = 0,
   CADT_TRIANGLE_INTERNAL = 1, /* a defect of cadt: please report it */
-  CADT_TRIANGLE_INPUT = 3,    /* NaN, infinity, a missing array, too many points */
-  CADT_TRIANGLE_DEVICE = 5,   /* the device failed */
+  CADT_TRIANGLE_INPUT = 3,  /* NaN, infinity, a missing array, too many points, an end of a segment that is no point */
+  CADT_TRIANGLE_DEVICE = 5, /* the device failed */
   CADT_TRIANGLE_MEMORY = 6,
   CADT_TRIANGLE_SWITCHES = 8 /* a switch that cadt does not take */
 };
 
-/* Triangulates in->pointlist. `switches` are Triangle's ("zneQ"): n fills neighborlist, e edgelist and edgemarkerlist,
-   c segmentlist and segmentmarkerlist, v vorout, which may be NULL without it; B leaves markers out, N points, E
-   triangles, P segments. An array of `out` or `vorout` that is to be filled is allocated with malloc if its member is
-   NULL, and is to be freed with cadt_trifree; else it is written to the caller's memory, which must be large enough. It
-   may be that of `in`. All counts are set. Nothing is printed, and g, I, Q, V, h have no effect.
+/* Triangulates in->pointlist, and with p the segments between them, without holes and what is outside. `switches` are
+   Triangle's ("zneQ"): n fills neighborlist, e edgelist and edgemarkerlist,
+   c and p segmentlist and segmentmarkerlist, A triangleattributelist, v vorout, which may be NULL without it; B leaves
+   markers out, N points, E triangles, P segments. An array of `out` or `vorout` that is to be filled is allocated with
+   malloc if its member is NULL, and is to be freed with cadt_trifree; else it is written to the caller's memory, which
+   must be large enough. It may be that of `in`. All counts are set. Nothing is printed, and g, I, Q, V, h have no
+   effect.
 
    Returns 0, or a status after which nothing of `out` and `vorout` has changed. Points on one line give no triangles
    and no error. Computes on the fastest usable device. Thread-safe for different structs. Cost: that of

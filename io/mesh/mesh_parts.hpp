@@ -22,6 +22,8 @@ struct MeshParts {
   std::span<const std::int32_t> triangles, neighbors, hull;
   std::span<const Duplicate> duplicates;
   std::span<const std::uint64_t> global_ids = {};  ///< of the points, for pieces of a larger mesh: vtu alone
+  std::span<const std::int32_t> region = {};       ///< one a triangle: ele, ply, vtu
+  std::string region_name = {};                    ///< what ply and vtu call it
 };
 
 /// write_mesh for all formats but pictures.
@@ -30,7 +32,9 @@ void write_mesh_parts(const std::string& path, const MeshParts& mesh, const Writ
 /// The format in which a mesh is written: WriteOptions::format or the suffix. Throws FileError.
 [[nodiscard]] std::string mesh_write_format(const std::string& path, const WriteOptions& options);
 
-void write_ele(AtomicFile& out, std::span<const std::int32_t> triangles, int base);
+/// `attributes`: one a triangle, or none.
+void write_ele(AtomicFile& out, std::span<const std::int32_t> triangles, int base,
+               std::span<const double> attributes = {});
 void write_neigh(AtomicFile& out, std::span<const std::int32_t> neighbors, int base);
 void write_obj(AtomicFile& out, const MeshParts& mesh);
 void write_off(AtomicFile& out, const MeshParts& mesh);

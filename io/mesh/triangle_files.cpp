@@ -17,14 +17,6 @@ struct EleHeader {
 /// "0 0 0 0\n" is the shortest line; the last one may lack its end.
 constexpr std::size_t shortest_line = 8;
 
-/// The same file name with another suffix.
-std::string sibling(const std::string& path, const char* suffix) {
-  const std::size_t dot = path.find_last_of('.');
-  const std::size_t slash = path.find_last_of(system_file::separators);
-  const bool has_suffix = dot != std::string::npos && (slash == std::string::npos || dot > slash);
-  return (has_suffix ? path.substr(0, dot) : path) + suffix;
-}
-
 /// First index of the .node file beside the .ele; nothing if there is none.
 std::optional<std::int64_t> base_of_node_file(const std::string& path) {
   const std::string node = sibling(path, ".node");
@@ -126,16 +118,18 @@ std::vector<std::int32_t> read_neigh_beside(const std::string& path, std::size_t
   return neighbors;
 }
 
-/// Rows "number a b c"; -1 stays -1 in either base.
-void write_rows(AtomicFile& out, std::span<const std::int32_t> values, int base, bool aligned) {
+/// Rows "number a b c [attribute]"; -1 stays -1 in either base.
+void write_rows(AtomicFile& out, std::span<const std::int32_t> values, int base, bool aligned,
+                std::span<const double> attributes = {}) {
   for (std::size_t i = 0; i + 2 < values.size(); i += 3) {
-    char* at = put_aligned(out.room(6 * number_room), static_cast<std::int64_t>(i / 3) + base);
+    char* at = put_aligned(out.room(8 * number_room), static_cast<std::int64_t>(i / 3) + base);
     at = put(at, "    ");
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int64_t value = values[i + k] < 0 ? values[i + k] : values[i + k] + std::int64_t{base};
       if (k != 0) at = put(at, "  ");
       at = aligned ? put_aligned(at, value) : put(at, value);
     }
+    if (!attributes.empty()) at = put(put(at, "    "), attributes[i / 3]);
     *at++ = '\n';
     out.advance(at);
   }
@@ -144,9 +138,9 @@ void write_rows(AtomicFile& out, std::span<const std::int32_t> values, int base,
 
 }  // namespace
 
-void write_ele(AtomicFile& out, std::span<const std::int32_t> triangles, int base) {
-  out.write(std::to_string(triangles.size() / 3) + "  3  0\n");
-  write_rows(out, triangles, base, true);
+void write_ele(AtomicFile& out, std::span<const std::int32_t> triangles, int base, std::span<const double> attributes) {
+  out.write(std::to_string(triangles.size() / 3) + (attributes.empty() ? "  3  0\n" : "  3  1\n"));
+  write_rows(out, triangles, base, true, attributes);
 }
 
 void write_neigh(AtomicFile& out, std::span<const std::int32_t> neighbors, int base) {

@@ -53,7 +53,13 @@ std::string xml_header(const MeshParts& mesh) {
   xml += appended.array("Int32", "connectivity", 1, mesh.triangles.size_bytes());
   xml += appended.array("Int64", "offsets", 1, triangles * sizeof(std::int64_t));
   xml += appended.array("UInt8", "types", 1, triangles);
-  xml += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+  xml += "</Cells>\n";
+  if (!mesh.region.empty()) {
+    xml += "<CellData Scalars=\"" + mesh.region_name + "\">\n";
+    xml += appended.array("Int32", mesh.region_name.c_str(), 1, mesh.region.size_bytes());
+    xml += "</CellData>\n";
+  }
+  xml += "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
   return xml;
 }
 
@@ -84,6 +90,10 @@ void write_vtu(AtomicFile& out, const MeshParts& mesh) {
   }
   write_size(out, triangles);
   for (std::size_t i = 0; i < triangles; ++i) out.write(&vtk_triangle, 1);
+  if (!mesh.region.empty()) {
+    write_size(out, mesh.region.size_bytes());
+    out.write(mesh.region.data(), mesh.region.size_bytes());
+  }
   out.write("\n</AppendedData>\n</VTKFile>\n");
 }
 

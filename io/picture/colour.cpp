@@ -65,6 +65,14 @@ std::uint32_t to_srgb(Rgb colour) { return (encode(colour.r) << 16) | (encode(co
 
 Rgb mix(Rgb a, Rgb b, float t) { return {a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b)}; }
 
+Rgb region_colour(std::size_t n) {
+  // Hues by the golden angle; lightness and chroma in turn, so that near hues differ in them.
+  constexpr float golden_angle = 2.39996323f, first = 0.9f;
+  constexpr float lightness[] = {0.80f, 0.70f, 0.87f}, chroma[] = {0.09f, 0.11f, 0.06f};
+  const float hue = first + golden_angle * static_cast<float>(n % 1024);
+  return from_lab({lightness[n % 3], chroma[n % 3] * std::cos(hue), chroma[n % 3] * std::sin(hue)});
+}
+
 Ramp::Ramp(std::initializer_list<Stop> stops) {
   const std::vector<Stop> list(stops);
   std::size_t k = 0;

@@ -37,6 +37,9 @@ class Ramp {
 [[nodiscard]] const Ramp& size_ramp();     ///< small triangles blue, large ones almost paper
 [[nodiscard]] const Ramp& ink_ramp();      ///< few edges almost paper, many dark
 
+/// Colours that can be told apart, for the n-th of several regions; far apart for those that follow each other.
+[[nodiscard]] Rgb region_colour(std::size_t n);
+
 inline constexpr std::uint32_t paper = 0xfbfaf6;
 inline constexpr std::uint32_t line_colour = 0x27364a;
 inline constexpr std::uint32_t hull_colour = 0xb3472f;

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace cadt::io {
 
 namespace {
@@ -29,6 +31,22 @@ void write_file(const std::string& path, const std::string& bytes) {
 }
 
 }  // namespace
+
+void picture::write_scene(const std::string& path, const std::string& format, const Scene& scene,
+                          const PictureOptions& options) {
+  const std::size_t most = format == "png" ? 10 * most_drawn_triangles : most_drawn_triangles;
+  const std::size_t count = std::max({scene.faces(), scene.points(), scene.segments.size()});
+  if (count > most) {
+    throw FileError(
+        path, 0,
+        fmt::format("{} triangles, {} points and {} segments are too many to be drawn one by one (at most "
+                    "{}): draw a part of them{}",
+                    scene.faces(), scene.points(), scene.segments.size(), most, format == "png" ? "" : ", or a .png"));
+  }
+  write_file(path, format == "svg"   ? svg_bytes(scene, options)
+                   : format == "pdf" ? pdf_bytes(scene, options)
+                                     : png_bytes(scene, options));
+}
 
 void write_svg(const std::string& path, const PointSet& points, const Triangulation& mesh,
                const PictureOptions& options) {

@@ -2,6 +2,7 @@
 // The content of a picture, as plain arrays: pictures do not depend on how the mesh was computed.
 #pragma once
 
+#include <cadt/constrained.hpp>
 #include <cadt/io/picture.hpp>
 
 #include <cstddef>
@@ -14,10 +15,12 @@ namespace cadt::io::picture {
 /// Views of the caller's arrays. Points with a coordinate that is not finite, and triangles that use them, are left
 /// out.
 struct Scene {
-  std::span<const double> xy;               ///< interleaved
-  std::span<const double> height;           ///< one a point, or empty
-  std::span<const std::int32_t> triangles;  ///< n x 3, counterclockwise
-  std::span<const std::int32_t> hull;       ///< counterclockwise loop, or empty
+  std::span<const double> xy;                 ///< interleaved
+  std::span<const double> height;             ///< one a point, or empty
+  std::span<const std::int32_t> triangles;    ///< n x 3, counterclockwise
+  std::span<const std::int32_t> hull;         ///< counterclockwise loop, or empty
+  std::span<const std::int32_t> region = {};  ///< one a triangle, or empty: equal ones have a colour of their own
+  std::span<const Segment> segments = {};     ///< drawn thick
 
   [[nodiscard]] std::size_t points() const noexcept { return xy.size() / 2; }
   [[nodiscard]] std::size_t faces() const noexcept { return triangles.size() / 3; }
@@ -40,6 +43,9 @@ void for_each_edge(const Scene& scene, Edge edge) {
     if (u > v) edge(static_cast<std::size_t>(u), static_cast<std::size_t>(v));
   }
 }
+
+/// Writes the picture; format: svg, pdf or png. \throws FileError for too many triangles, too
+void write_scene(const std::string& path, const std::string& format, const Scene& scene, const PictureOptions& options);
 
 /// The whole file. \pre scene.faces() <= most_drawn_triangles, and as many points
 [[nodiscard]] std::string svg_bytes(const Scene& scene, const PictureOptions& options);

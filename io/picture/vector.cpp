@@ -83,6 +83,16 @@ std::vector<Facet> facets(const Scene& scene, const std::vector<Point2f>& positi
   return out;
 }
 
+/// The n-th lowest of the different regions has number n; nothing if there are less than two.
+std::map<std::int32_t, std::size_t> region_numbers(const Scene& scene) {
+  std::map<std::int32_t, std::size_t> numbers;
+  for (const std::int32_t region : scene.region) numbers.emplace(region, 0);
+  if (numbers.size() < 2) return {};
+  std::size_t n = 0;
+  for (auto& [region, number] : numbers) number = n++;
+  return numbers;
+}
+
 /// Triangles by colour. The arguments of the ramps are rounded, not the bytes: those steps would change the hue.
 std::map<std::uint32_t, std::vector<Facet>> by_colour(const Scene& scene, const std::vector<Point2f>& position,
                                                       float edge) {
@@ -99,9 +109,12 @@ std::map<std::uint32_t, std::vector<Facet>> by_colour(const Scene& scene, const 
 
   const auto rounded = [](float v, float steps) { return std::round(v * steps) / steps; };
   std::map<std::uint32_t, std::vector<Facet>> result;
+  const auto regions = region_numbers(scene);
   for (const Facet& f : all) {
     Rgb colour;
-    if (relief.empty()) {
+    if (!regions.empty()) {
+      colour = region_colour(regions.at(scene.region[f.face]));
+    } else if (relief.empty()) {
       colour = size_ramp()(rounded(area(f.p[0], f.p[1], f.p[2]), 48.0f));
     } else {
       colour = terrain_ramp()(rounded(f.mean, 48.0f));
@@ -143,6 +156,19 @@ void draw_edges(cairo_t* to, const Scene& scene, const std::vector<Point2f>& pos
     line_to(to, position[v]);
     if (pixels && ++pending % batch == 0) cairo_stroke(to);
   });
+  cairo_stroke(to);
+}
+
+void draw_segments(cairo_t* to, const Scene& scene, const std::vector<Point2f>& position, bool pixels) {
+  std::size_t pending = 0;
+  for (const Segment& segment : scene.segments) {
+    const Point2f from = position[static_cast<std::size_t>(segment[0])];
+    const Point2f end = position[static_cast<std::size_t>(segment[1])];
+    if (!drawable(from) || !drawable(end)) continue;
+    move_to(to, from);
+    line_to(to, end);
+    if (pixels && ++pending % batch == 0) cairo_stroke(to);
+  }
   cairo_stroke(to);
 }
 
@@ -195,6 +221,11 @@ void draw(cairo_t* to, const Scene& scene, const Viewport& view, const PictureOp
     set_colour(to, hull_colour);
     cairo_set_line_width(to, std::max(1.0, 1.8 * stroke));
     draw_hull(to, scene, position);
+  }
+  if (!scene.segments.empty()) {
+    set_colour(to, line_colour);
+    cairo_set_line_width(to, std::clamp(3.0 * stroke, pixels ? 0.9 : 0.3, 3.5));
+    draw_segments(to, scene, position, pixels);
   }
   // Dots where they stay apart, or where there is nothing else.
   if (scene.faces() == 0 || (edge > 12.0f && scene.height.empty())) {

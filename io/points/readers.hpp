@@ -4,10 +4,13 @@
 
 #include "io/support/atomic_file.hpp"
 #include "io/support/input_file.hpp"
+#include "io/support/text_scanner.hpp"
 
 #include <cadt/io/points_file.hpp>
+#include <cadt/io/triangle_files.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -59,6 +62,11 @@ class PointCollector {
 /// Interleaved little-endian floats of `bytes` (4 or 8) each.
 [[nodiscard]] PointSet read_raw(const InputFile& file, const ReadOptions& options, std::size_t bytes);
 
+/// The header and the points of a .node or .poly file, of which there may be none.
+[[nodiscard]] NodeFile read_node_section(TextScanner& scanner);
+/// The next word as a boundary marker.
+[[nodiscard]] std::int32_t read_marker(TextScanner& scanner);
+
 /// The columns of a .node file but the index.
 struct NodeColumns {
   std::span<const double> xy, attributes;
@@ -74,6 +82,8 @@ struct NodeColumns {
 /// Writers take coordinates as spans so that meshes can share them; `height` is empty or has one value a point.
 void write_table(AtomicFile& out, std::span<const double> xy, std::span<const double> height,
                  const std::string& format);
+/// The header and the points of a .node or .poly file.
+void write_node_section(AtomicFile& out, const NodeColumns& nodes, int base);
 void write_node(AtomicFile& out, const NodeColumns& nodes, int base);
 void write_ply_points(AtomicFile& out, std::span<const double> xy, std::span<const double> height);
 void write_npy(AtomicFile& out, std::span<const double> xy, std::span<const double> height);

@@ -78,6 +78,13 @@ std::string suffix_of(const std::string& path) {
   return suffix;
 }
 
+std::string sibling(const std::string& path, const char* suffix) {
+  const std::size_t dot = path.find_last_of('.');
+  const std::size_t slash = path.find_last_of(system_file::separators);
+  const bool has_suffix = dot != std::string::npos && (slash == std::string::npos || dot > slash);
+  return (has_suffix ? path.substr(0, dot) : path) + suffix;
+}
+
 std::string choose_format(const std::string& path, const std::string& asked, const std::vector<std::string>& known) {
   const std::string format = asked.empty() ? suffix_of(path) : asked;
   if (std::find(known.begin(), known.end(), format) != known.end()) return format;

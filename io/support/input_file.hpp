@@ -33,6 +33,9 @@ class InputFile {
 /// Lower-case suffix of the file name without the dot; empty if there is none.
 [[nodiscard]] std::string suffix_of(const std::string& path);
 
+/// The same file name with another suffix (with its dot), or with one if it has none.
+[[nodiscard]] std::string sibling(const std::string& path, const char* suffix);
+
 /// The format asked for, or else that of the suffix. Throws FileError that lists `known` when it is not among them.
 [[nodiscard]] std::string choose_format(const std::string& path, const std::string& asked,
                                         const std::vector<std::string>& known);

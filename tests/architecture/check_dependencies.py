@@ -53,7 +53,7 @@ OUTSIDE = {
     r"cairo|png|zlib": ["io", "tests"],
     r"fast_float/": ["apps", "io"],
     r"CLI/": ["apps", "bench"],
-    r"nlohmann/": ["apps", "tiles", "bench", "tests"],
+    r"nlohmann/": ["apps", "io/segments", "tiles", "bench", "tests"],
     r"xxhash": ["tiles"],
     r"mpi": ["tiles/mpi"],
     r"GLFW/": ["viewer/window", "examples"],

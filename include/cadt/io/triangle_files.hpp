@@ -24,14 +24,15 @@ struct NodeFile {
 [[nodiscard]] NodeFile read_node_file(const std::string& path);
 
 /// What Triangle makes of a file's name: "dots", "dots.node" and "dots.1" are read from dots.node and dots.1.node, and
-/// written to dots.1.node, dots.2.ele ...; without iteration number to dots.ele, dots.1.ele ...
+/// written to dots.1.node, dots.2.ele ...; without iteration number to dots.ele, dots.1.ele ... With switch p, or for
+/// "dots.poly", dots.poly is read.
 struct TriangleNames {
-  std::string input;   ///< the .node file
+  std::string input;   ///< the .node or .poly file
   std::string output;  ///< of the files written, without suffix
 };
-/// \throws SwitchError for .poly, .ele and .area files, which stand for switches that are refused; FileError for an
+/// \throws SwitchError for .ele and .area files, which stand for switches that are refused; FileError for an
 /// empty name or an iteration number that cannot be counted up
-[[nodiscard]] TriangleNames triangle_names(const std::string& file, bool no_iteration);
+[[nodiscard]] TriangleNames triangle_names(const std::string& file, bool no_iteration, bool segments = false);
 
 /// The files that `write_triangle_files` writes, in its order.
 [[nodiscard]] std::vector<std::string> triangle_output_files(const std::string& output,

@@ -4,9 +4,11 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <cadt/io/label_image_file.hpp>
 #include <cadt/io/mesh_file.hpp>
 #include <cadt/io/points_file.hpp>
 #include <cadt/io/query_files.hpp>
+#include <cadt/io/segments_file.hpp>
 #include <cmath>
 #include <new>
 #include <string>
@@ -21,6 +23,8 @@ std::vector<std::string> formats() {
   for (const std::string& f : cadt::io::point_read_formats()) all.push_back("points:" + f);
   for (const std::string& f : cadt::io::mesh_read_formats()) all.push_back("mesh:" + f);
   for (const std::string& f : cadt::io::value_read_formats()) all.push_back("values:" + f);
+  for (const std::string& f : cadt::io::segment_read_formats()) all.push_back("segments:" + f);
+  for (const char* f : {"polygons:json", "labels:png"}) all.push_back(f);
   return all;
 }
 
@@ -65,6 +69,42 @@ void check_mesh(const cadt::io::MeshFile& mesh, std::size_t points) {
     if (v < 0 || static_cast<std::size_t>(v) >= points) cadt::fuzz::fail("a vertex out of range");
 }
 
+void check_segments(const cadt::io::SegmentsFile& graph) {
+  if (graph.xy.size() % 2 != 0 || graph.xy.empty()) cadt::fuzz::fail("half a point, or none");
+  if (graph.attributes.size() != graph.size() * graph.attributes_per_point) cadt::fuzz::fail("attributes are missing");
+  if (!graph.markers.empty() && graph.markers.size() != graph.size()) cadt::fuzz::fail("markers are missing");
+  if (!graph.segment_markers.empty() && graph.segment_markers.size() != graph.segments.size())
+    cadt::fuzz::fail("markers of segments are missing");
+  for (const auto& values : {graph.xy, graph.attributes})
+    for (const double v : values)
+      if (!std::isfinite(v)) cadt::fuzz::fail("a number that is not finite");
+  for (const auto& segment : graph.segments)
+    for (const std::int32_t v : segment)
+      if (v < 0 || static_cast<std::size_t>(v) >= graph.size()) cadt::fuzz::fail("an end out of range");
+}
+
+void check_polygons(const cadt::io::PolygonsFile& file) {
+  const auto check = [](const std::vector<std::int64_t>& offsets, std::size_t size, std::int64_t end) {
+    if (offsets.empty() || offsets.front() != 0 || offsets.back() != end)
+      cadt::fuzz::fail("offsets without their ends");
+    if (size != 0 && offsets.size() != size + 1) cadt::fuzz::fail("offsets are missing");
+    for (std::size_t i = 1; i < offsets.size(); ++i)
+      if (offsets[i - 1] >= offsets[i]) cadt::fuzz::fail("an empty ring or polygon");
+  };
+  check(file.ring_offsets, 0, static_cast<std::int64_t>(file.xy.size() / 2));
+  check(file.polygon_offsets, file.size(), static_cast<std::int64_t>(file.ring_offsets.size()) - 1);
+  for (const std::int32_t feature : file.features)
+    if (feature < 0 || static_cast<std::size_t>(feature) >= file.number_of_features)
+      cadt::fuzz::fail("a feature out of range");
+}
+
+void check_labels(const cadt::io::LabelImage& image) {
+  if (image.width == 0 || image.height == 0 || image.labels.size() != image.width * image.height)
+    cadt::fuzz::fail("labels are missing");
+  for (const std::int32_t label : image.labels)
+    if (label < 0 || label > 0xffffff) cadt::fuzz::fail("a label that no pixel has");
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -87,6 +127,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       check_points(cadt::io::read_points(file.path(), options));
     } else if (kind == "values") {
       check_values(cadt::io::read_values(file.path(), name));
+    } else if (kind == "segments") {
+      check_segments(cadt::io::read_segments(file.path(), name));
+    } else if (kind == "polygons") {
+      check_polygons(cadt::io::read_polygons(file.path(), name));
+    } else if (kind == "labels") {
+      check_labels(cadt::io::read_label_image(file.path()));
     } else {
       const std::size_t points = 8 + size % 2;  // of the nine that the corpus has: an index may be one too high
       check_mesh(cadt::io::read_mesh(file.path(), points, name), points);

@@ -76,10 +76,11 @@ class TriangleCommand(CliTest):
 
     def test_others_are_refused(self):
         self.write("dots.node", FOUR)
-        for switches in ["p", "r", "q", "q30", "a.1", "u", "A", "D", "Y", "X", "o2", "C", "O", "S5", "T", "w"]:
+        for switches in ["r", "q", "q30", "a.1", "u", "A", "D", "Y", "X", "o2", "C", "O", "S5", "T", "w"]:
             self.fails(8, "triangle", "-ne" + switches, "dots", says=[f"-{switches[0]} ", "cadt triangle --help"])
-        self.fails(8, "triangle", "-pq", "dots", says=["-p reads", "-q adds"])
-        for file, switch in [("dots.poly", "-p"), ("dots.1.ele", "-r"), ("dots.area", "-ra")]:
+        self.fails(8, "triangle", "-rq", "dots", says=["-r refines", "-q adds"])
+        self.fails(8, "triangle", "-ps", "dots", says="-s splits segments")
+        for file, switch in [("dots.1.ele", "-r"), ("dots.area", "-ra")]:
             self.fails(8, "triangle", file, says=[file, f"stands for {switch}:"])
         self.assertEqual(self.names(), ["dots.node"])
 
@@ -125,6 +126,63 @@ class TriangleCommand(CliTest):
         text = (SOURCE / "docs" / "triangle.md").read_text()
         for letter in "nevcgjzBPNEIQVhiFlsprqauDAYSOXoC":
             self.assertRegex(text, rf"`-[A-Za-z]*{letter}[A-Za-z0-9]*`|`-{letter}", letter)
+
+
+BOX = ("# a box with a hole, of the examples of Triangle\n8 2 0 1\n1 0 0 0\n2 0 3 0\n3 3 0 0\n4 3 3 33\n5 1 1 0\n6 1 2 0\n7 2 1 0\n"
+       "8 2 2 0\n5 1\n1 1 2 5\n2 5 7 0\n3 7 8 0\n4 8 6 10\n5 6 5 0\n1\n1 1.5 1.5\n")
+
+
+class TriangleSegments(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("box.poly", BOX)
+
+    def test_hull_and_hole(self):
+        result = self.cadt("triangle", "-pce", "box")
+        self.assertEqual(self.names(), ["box.1.edge", "box.1.ele", "box.1.node", "box.1.poly", "box.poly"])
+        self.assertEqual(len(rows(self.path("box.1.ele"))), 8)
+        self.assertEqual([row[-1] for row in rows(self.path("box.1.node"))], ["5", "5", "1", "33", "1", "10", "1", "10"])
+        markers = {tuple(row[1:3]): row[3] for row in rows(self.path("box.1.poly"))[1:-2]}
+        self.assertEqual(markers, {("1", "2"): "5", ("1", "3"): "1", ("2", "4"): "1", ("3", "4"): "1", ("5", "6"): "1",
+                                   ("5", "7"): "1", ("6", "8"): "10", ("7", "8"): "1"})
+        self.assertEqual(rows(self.path("box.1.poly"))[-2:], [["1"], ["1", "1.5", "1.5"]])
+        self.assertIn("segments    5, which are 8 edges\n", result.out)
+
+    def test_the_suffix_stands_for_the_switch(self):
+        self.cadt("triangle", "-Qc", "box.poly")
+        text = self.path("box.1.ele").read_text()
+        self.cadt("triangle", "-Q", "-p", "-c", "box")
+        self.assertEqual(self.path("box.1.ele").read_text(), text)
+        self.cadt("triangle", "-AQ", "box.poly")
+        self.cadt("triangle", "-pQc", "box.1")
+        self.assertTrue(self.path("box.2.poly").exists())
+
+    def test_what_is_outside_is_eaten(self):
+        err = self.cadt("triangle", "-p", "box").err
+        self.assertIn("no triangles: the segments enclose nothing", err)
+        self.assertEqual(rows(self.path("box.1.ele")), [])
+        self.cadt("triangle", "-pcO", "box")
+        self.assertEqual(len(rows(self.path("box.1.ele"))), 10)
+
+    def test_regions_are_attributes(self):
+        self.write("two.poly", "6 2 0 0\n0 0 0\n1 2 0\n2 4 0\n3 4 2\n4 2 2\n5 0 2\n7 0\n0 0 1\n1 1 2\n2 2 3\n3 3 4\n4 4 5\n5 5 0\n"
+                               "6 1 4\n0\n1\n0 3 1 2.5 0.1\n")
+        self.cadt("triangle", "-pAQ", "two")
+        self.assertEqual(sorted(row[4] for row in rows(self.path("two.1.ele"))), ["0", "0", "2.5", "2.5"])
+        self.assertEqual(len(rows(self.path("two.1.poly"))), 1 + 7 + 1 + 2)
+
+    def test_segments_that_cross_get_a_vertex(self):
+        self.write("x.poly", "4 2 1 0\n1 0 0 1\n2 4 0 2\n3 4 4 3\n4 0 4 4\n2 1\n1 1 3 7\n2 2 4 8\n0\n")
+        self.cadt("triangle", "-pcQ", "x")
+        self.assertEqual(rows(self.path("x.1.node"))[4], ["5", "2", "2", "2", "7"])
+        self.assertEqual(len(rows(self.path("x.1.ele"))), 4)
+
+    def test_errors(self):
+        self.write("bad.poly", BOX.replace("8 6 10", "8 9 10"))
+        self.fails(3, "triangle", "-p", "bad", says="bad.poly:15: index 9 is out of range")
+        self.fails(3, "triangle", "-p", "absent", says="absent.poly: ")
+        self.fails(8, "triangle", "-A", "box", says="-A is about regions")
+        self.assertEqual(self.names(), ["bad.poly", "box.poly"])
 
 
 def sorted_triangles(triangles):

@@ -216,12 +216,12 @@ TEST(ExactCrossings, PointsOnALineHaveChainsAlone) {
 /// A hub, and segments that pass it: no more than the edges at the other ends are looked at.
 TEST(ExactCrossingsOfAdversaries, AHubThatSegmentsPass) {
   SegmentSet set{"", {0, 0}, {}};
-  for (std::int32_t i = 0; i < 20000; ++i) {
-    set.xy.insert(set.xy.end(), {-1e5, 1.0 * i - 1e4, 1e5, 1e4 - 1.0 * i});
+  for (std::int32_t i = 0; i < 100000; ++i) {
+    set.xy.insert(set.xy.end(), {-1e5, 1.0 * i - 3e4, 1e5, 3e4 - 1.0 * i});
     set.segments.push_back({2 * i + 1, 2 * i + 2});
   }
   const ExactMesh mesh = mesh_of(set);
-  EXPECT_EQ(constrained(mesh).size(), 40000U);
+  EXPECT_EQ(constrained(mesh).size(), 200000U);
 }
 
 }  // namespace

@@ -13,7 +13,10 @@ namespace {
 /// The letters of the members that are true.
 std::string letters(const TriangleSwitches& s) {
   std::string text;
-  for (const auto& [set, letter] : {std::pair{s.neighbors, 'n'},
+  for (const auto& [set, letter] : {std::pair{s.segments, 'p'},
+                                    {s.region_attributes, 'A'},
+                                    {s.ignore_holes, 'O'},
+                                    {s.neighbors, 'n'},
                                     {s.edges, 'e'},
                                     {s.voronoi, 'v'},
                                     {s.hull_segments, 'c'},
@@ -34,7 +37,7 @@ std::string letters(const TriangleSwitches& s) {
 }
 
 TEST(Switches, EachSetsItsMemberAlone) {
-  for (const char letter : std::string("nevcgjzBPNEIQVh")) {
+  for (const char letter : std::string("pnevcgjzBPNEIQVh")) {
     const TriangleSwitches found = parse_triangle_switches(std::string(1, letter));
     EXPECT_EQ(letters(found), std::string(1, letter));
     EXPECT_EQ(found.without_effect, "");
@@ -56,6 +59,9 @@ TEST(Switches, WordsAreReadAsTriangleReadsThem) {
            {"zQz", "zQ", ""},
            {"-iFls", "", "iFls"},
            {"-iniei", "ne", "i"},
+           {"-pAO", "pAO", ""},
+           {"AOnp", "pAOn", ""},
+           {"-pil", "p", "il"},
        }) {
     const TriangleSwitches found = parse_triangle_switches(row.text);
     EXPECT_EQ(letters(found), row.set) << row.text;
@@ -78,23 +84,24 @@ struct Refusal {
 
 TEST(Switches, OthersAreRefusedAllAtOnceAndWithTheReason) {
   for (const Refusal& row : std::vector<Refusal>{
-           {"p", "p", {"-p reads segments and holes"}},
+           {"ps", "s", {"-s splits segments"}},
+           {"sp", "s", {"-s splits segments"}},
            {"r", "r", {"-r refines a mesh"}},
            {"q", "q", {"-q adds points"}},
            {"a", "a", {"-a adds points"}},
            {"u", "u", {"-u adds points"}},
            {"D", "D", {"-D adds points"}},
-           {"A", "A", {"-A numbers regions"}},
+           {"A", "A", {"-A is about regions between segments: add p"}},
            {"Y", "Y", {"-Y limits points"}},
            {"S", "S", {"-S limits points"}},
-           {"O", "O", {"-O ignores the holes"}},
+           {"O", "O", {"-O is about the holes that p reads: add p"}},
            {"X", "X", {"-X asks for inexact arithmetic"}},
            {"o2", "o", {"-o asks for triangles of six nodes"}},
            {"C", "C", {"-C checks", "cadt verify"}},
            {"T", "T", {"-T is no switch of Triangle"}},
            {"-n\x01", "\x01", {"-\\x01 is no switch of Triangle"}},
            {"n\xc3\xa4", "\xc3\xa4", {"-\\xc3 is no", "-\\xa4 is no"}},
-           {"-pq31.5a.1n", "pqa", {"-p reads", "-q adds", "-a adds"}},
+           {"-pq31.5a.1n", "qa", {"-q adds", "-a adds"}},
            {"-YY", "Y", {"-Y limits"}},
            {"-q20q30e", "q", {"-q adds"}},
            {"3n", "3", {"-3 is no switch"}},
@@ -112,7 +119,7 @@ TEST(Switches, OthersAreRefusedAllAtOnceAndWithTheReason) {
 }
 
 TEST(Switches, EveryCharacterIsTakenOrRefused) {
-  const std::string taken = "nevcgjzBPNEIQVhiFls- ";
+  const std::string taken = "pnevcgjzBPNEIQVhiFls- ";
   for (int c = 1; c < 256; ++c) {
     const std::string text(1, static_cast<char>(c));
     if (taken.find(text) != std::string::npos) {

@@ -3,6 +3,7 @@
 #include "tests/unit/io/io_test_support.hpp"
 
 #include <cadt/cadt.hpp>
+#include <cadt/io/segments_file.hpp>
 #include <cadt/io/triangle_files.hpp>
 
 #include <algorithm>
@@ -193,6 +194,36 @@ TEST(TriangleFiles, AreThoseThatTheSwitchesAskFor) {
   EXPECT_EQ(names("cP"), (Names{"a.node", "a.ele"}));
 }
 
+TEST(TriangleFiles, OfSegmentsHolesAndRegions) {
+  const Folder folder;
+  const SegmentsFile graph = read_segments(
+      folder.file("in.poly",
+                  "7 2 0 0\n1 0 0\n2 4 0\n3 4 4\n4 0 4\n5 1 1\n6 2 1\n7 1 2\n7 1\n1 1 2 9\n2 2 3 0\n3 3 4 0\n4 4 1 0\n"
+                  "5 5 6 0\n6 6 7 0\n7 7 5 0\n1\n1 1.25 1.25\n1\n1 3 3 0.5 8\n"));
+  const TriangleSwitches switches = parse_triangle_switches("pA");
+  const TriangleInput input{graph.xy, {}, 0, {}};
+  const TriangleSegments segments{graph.segments, graph.segment_markers, graph.holes, graph.regions};
+  Options options;
+  options.backend = Backend::host;
+  const ConstrainedTriangulation mesh = triangulate_as_triangle(input, segments, switches, options);
+  write_triangle_files(folder / "out", triangle_output(input, segments, mesh, switches), switches, 1);
+  EXPECT_EQ(folder.entries(), 4U);
+  EXPECT_EQ(content_of(folder / "out.poly"), rows("0  2  0  1\n7  1\n"
+                                                  "   1  1  2  9\n"
+                                                  "   2  1  4  1\n"
+                                                  "   3  2  3  1\n"
+                                                  "   4  3  4  1\n"
+                                                  "   5  5  6  1\n"
+                                                  "   6  5  7  1\n"
+                                                  "   7  6  7  1\n"
+                                                  "1\n   1  1.25  1.25\n1\n   1  3  3  0.5\n"));
+  EXPECT_EQ(content_of(folder / "out.ele").substr(0, 8), "7  3  1\n");
+  EXPECT_NE(content_of(folder / "out.ele").find("    0.5\n"), std::string::npos);
+  EXPECT_NE(content_of(folder / "out.node").find("   2    4  0    9\n"), std::string::npos);
+  EXPECT_EQ(read_segments(folder / "out.poly").xy, graph.xy);
+  EXPECT_EQ(read_mesh(folder / "out.ele", 7).triangles.size(), 21U);
+}
+
 TEST(TriangleFiles, HaveIterationNumbers) {
   struct Row {
     const char *file, *input, *output, *without;
@@ -207,6 +238,8 @@ TEST(TriangleFiles, HaveIterationNumbers) {
            {"a.7/dots", "a.7/dots.node", "a.7/dots.1", "a.7/dots"},
            {"../x.y.3", "../x.y.3.node", "../x.y.4", "../x.y.3"},
            {"dots.", "dots..node", "dots..1", "dots."},
+           {"dots.poly", "dots.poly", "dots.1", "dots"},
+           {"dots.1.poly", "dots.1.poly", "dots.2", "dots.1"},
            {"dots.1a", "dots.1a.node", "dots.1a.1", "dots.1a"},
            {"dots.-1", "dots.-1.node", "dots.-1.1", "dots.-1"},
        }) {
@@ -215,10 +248,13 @@ TEST(TriangleFiles, HaveIterationNumbers) {
     EXPECT_EQ(triangle_names(row.file, true).input, row.input);
     EXPECT_EQ(triangle_names(row.file, true).output, row.without);
   }
-  for (const char* name : {"", ".node", "a/", "a/.node", "dots.9223372036854775807", "dots.99999999999999999999"}) {
+  EXPECT_EQ(triangle_names("dots.1", false, true).input, "dots.1.poly");
+  EXPECT_EQ(triangle_names("dots.1", false, true).output, "dots.2");
+  for (const char* name :
+       {"", ".node", ".poly", "a/", "a/.node", "dots.9223372036854775807", "dots.99999999999999999999"}) {
     EXPECT_THROW(static_cast<void>(triangle_names(name, false)), FileError) << name;
   }
-  for (const auto& [name, switches] : {std::pair{"a.poly", "p"}, {"a.ele", "r"}, {"a.1.area", "ra"}}) {
+  for (const auto& [name, switches] : {std::pair{"a.ele", "r"}, {"a.1.area", "ra"}}) {
     try {
       static_cast<void>(triangle_names(name, false));
       ADD_FAILURE() << name;

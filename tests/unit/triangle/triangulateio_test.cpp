@@ -180,6 +180,43 @@ TEST_F(TriangulateIo, TakesFewPointsAndLines) {
   EXPECT_EQ(line.numberofpoints, 3);
 }
 
+/// Two squares, one in the other, with a hole in the inner one.
+TEST_F(TriangulateIo, TakesSegmentsHolesAndRegions) {
+  Values corners = {0, 0, 6, 0, 6, 6, 0, 6, 2, 2, 4, 2, 4, 4, 2, 4, 5, 5};
+  Values holes = {3, 3}, regions = {1, 1, 8.5, 0};
+  Ints segments = {1, 2, 2, 3, 3, 4, 4, 1, 5, 6, 6, 7, 7, 8, 8, 5};
+  Ints segment_markers = {3, 0, 0, 0, 0, 0, 0, 4};
+  in.pointlist = corners.data();
+  in.numberofpoints = 9;
+  in.segmentlist = segments.data();
+  in.segmentmarkerlist = segment_markers.data();
+  in.numberofsegments = 8;
+  in.holelist = holes.data();
+  in.numberofholes = 1;
+  in.regionlist = regions.data();
+  in.numberofregions = 1;
+  ASSERT_EQ(cadt_triangle("pAe", &in, &out, nullptr), CADT_TRIANGLE_DONE) << cadt_triangle_message();
+  EXPECT_EQ(out.numberoftriangles, 10);
+  EXPECT_EQ(out.numberoftriangleattributes, 1);
+  EXPECT_EQ(doubles(out.triangleattributelist, 10), Values(10, 8.5));
+  EXPECT_EQ(out.numberofsegments, 8);
+  EXPECT_EQ(ints(out.segmentlist, 16), (Ints{1, 2, 1, 4, 2, 3, 3, 4, 5, 6, 5, 8, 6, 7, 7, 8}));
+  EXPECT_EQ(ints(out.segmentmarkerlist, 8), (Ints{3, 1, 1, 1, 1, 4, 1, 1}));
+  EXPECT_EQ(ints(out.pointmarkerlist, 9), (Ints{3, 3, 1, 1, 4, 1, 1, 4, 0}));
+  EXPECT_EQ(out.holelist, holes.data());
+  EXPECT_EQ(out.numberofholes, 1);
+  EXPECT_EQ(out.regionlist, regions.data());
+  EXPECT_EQ(out.numberofregions, 1);
+  cadt_trifree(out.triangleattributelist);
+  Output all;
+  for (int& v : segments) --v;
+  ASSERT_EQ(cadt_triangle("zpOBP", &in, &all, nullptr), CADT_TRIANGLE_DONE) << cadt_triangle_message();
+  EXPECT_EQ(all.numberoftriangles, 12);
+  EXPECT_EQ(all.segmentlist, nullptr);
+  EXPECT_EQ(all.triangleattributelist, nullptr);
+  EXPECT_EQ(all.numberofsegments, 8);
+}
+
 struct Wrong {
   const char* name;
   void (*spoil)(Struct& in);
@@ -189,9 +226,10 @@ struct Wrong {
 };
 
 TEST_F(TriangulateIo, RefusesAndChangesNothing) {
+  static Ints ends = {0, 1, 4, 5};
   static Values infinite = {0, 0, 1, 0, 0, std::numeric_limits<double>::infinity(), 3, 3, 4, 4};
   for (const Wrong& wrong : std::vector<Wrong>{
-           {"switch", [](Struct&) {}, "zpq", CADT_TRIANGLE_SWITCHES, "-p reads segments"},
+           {"switch", [](Struct&) {}, "zpq", CADT_TRIANGLE_SWITCHES, "-q adds points"},
            {"points", [](Struct& s) { s.pointlist = nullptr; }, "z", CADT_TRIANGLE_INPUT, "pointlist is NULL"},
            {"count", [](Struct& s) { s.numberofpoints = -1; }, "z", CADT_TRIANGLE_INPUT, "numberofpoints is neg"},
            {"attributes", [](Struct& s) { s.numberofpointattributes = 2; }, "z", CADT_TRIANGLE_INPUT,
@@ -200,6 +238,18 @@ TEST_F(TriangulateIo, RefusesAndChangesNothing) {
             "numberofpointattributes is neg"},
            {"infinity", [](Struct& s) { s.pointlist = infinite.data(); }, "z", CADT_TRIANGLE_INPUT,
             "pointlist, point 2"},
+           {"segments", [](Struct& s) { s.numberofsegments = 1; }, "zp", CADT_TRIANGLE_INPUT, "segmentlist is NULL"},
+           {"segment count", [](Struct& s) { s.numberofsegments = -1; }, "zp", CADT_TRIANGLE_INPUT,
+            "numberofsegments is neg"},
+           {"segment", [](Struct& s) { s.numberofsegments = 2, s.segmentlist = ends.data(); }, "zp",
+            CADT_TRIANGLE_INPUT, "segment 1 counted from 0: there is no point 5"},
+           {"first segment", [](Struct& s) { s.numberofsegments = 2, s.segmentlist = ends.data(); }, "p",
+            CADT_TRIANGLE_INPUT, "segment 0 counted from 0: there is no point 0"},
+           {"holes", [](Struct& s) { s.numberofholes = 1; }, "zp", CADT_TRIANGLE_INPUT, "holelist is NULL"},
+           {"regions", [](Struct& s) { s.numberofregions = 1; }, "zp", CADT_TRIANGLE_INPUT, "regionlist is NULL"},
+           {"region count", [](Struct& s) { s.numberofregions = -1; }, "zp", CADT_TRIANGLE_INPUT,
+            "numberofregions is neg"},
+           {"hole count", [](Struct& s) { s.numberofholes = -1; }, "zp", CADT_TRIANGLE_INPUT, "numberofholes is neg"},
            {"voronoi", [](Struct&) {}, "v", CADT_TRIANGLE_INPUT, "vorout"},
            {"no switches", [](Struct&) {}, nullptr, CADT_TRIANGLE_INPUT, "is NULL"},
        }) {
@@ -218,12 +268,12 @@ TEST_F(TriangulateIo, RefusesAndChangesNothing) {
 }
 
 TEST_F(TriangulateIo, MessagesBelongToTheThread) {
-  EXPECT_EQ(cadt_triangle("p", &in, &out, nullptr), CADT_TRIANGLE_SWITCHES);
+  EXPECT_EQ(cadt_triangle("q", &in, &out, nullptr), CADT_TRIANGLE_SWITCHES);
   std::thread([] {
     EXPECT_STREQ(cadt_triangle_message(), "");
     EXPECT_EQ(cadt_triangle(nullptr, nullptr, nullptr, nullptr), CADT_TRIANGLE_INPUT);
   }).join();
-  EXPECT_NE(std::string(cadt_triangle_message()).find("-p"), std::string::npos);
+  EXPECT_NE(std::string(cadt_triangle_message()).find("-q"), std::string::npos);
 }
 
 TEST_F(TriangulateIo, LongMessagesAreCut) {

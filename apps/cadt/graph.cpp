@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "graph.hpp"
+
+#include "failure.hpp"
+#include "interrupt.hpp"
+#include "text.hpp"
+
+#include <fast_float/fast_float.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+namespace cadt::cli {
+namespace {
+
+constexpr std::pair<const char*, Domain> domains[] = {{"hull", Domain::hull},         {"outer", Domain::outer},
+                                                      {"even_odd", Domain::even_odd}, {"nonzero", Domain::nonzero},
+                                                      {"layers", Domain::layers},     {"seeds", Domain::seeds}};
+
+bool contains(const std::vector<std::string>& list, const std::string& word) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+std::string format_of(const std::string& path, const std::string& asked) {
+  if (!asked.empty()) return lower(asked);
+  const std::string suffix = lower(std::filesystem::path(path).extension().string());
+  return suffix.empty() ? suffix : suffix.substr(1);
+}
+
+/// The width of "grid=0.25".
+double grid_of(const std::string& text) {
+  double width = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, code] = fast_float::from_chars(text.data() + std::string_view("grid=").size(), end, width);
+  if (code != std::errc() || stop != end || !(width > 0) || !std::isfinite(width)) {
+    throw Failure(exit_usage,
+                  fmt::format("--crossing {}: the width of a grid is above 0, for example grid=0.001", text));
+  }
+  return width;
+}
+
+void append(Graph& graph, Graph&& more, bool same_file, const std::string& name, bool quiet) {
+  graph.holes = std::move(more.holes);
+  graph.regions = std::move(more.regions);
+  graph.segments = std::move(more.segments);
+  if (same_file || graph.points.xy == more.points.xy) {
+    if (same_file) graph.points = std::move(more.points);
+    return;
+  }
+  constexpr std::size_t most = 0x7fffffff;
+  const std::size_t before = graph.points.size();
+  if (before + more.points.size() > most) throw LimitError("too many points", before + more.points.size(), most);
+  for (Segment& segment : graph.segments) {
+    for (std::int32_t& v : segment) v += static_cast<std::int32_t>(before);
+  }
+  auto& height = graph.points.height;
+  if (height.empty() != more.points.height.empty()) {
+    if (!quiet) say(fmt::format("cadt: heights are left out: {} has none\n", height.empty() ? "the input" : name));
+    height.clear();
+  } else {
+    height.insert(height.end(), more.points.height.begin(), more.points.height.end());
+  }
+  graph.points.xy.insert(graph.points.xy.end(), more.points.xy.begin(), more.points.xy.end());
+}
+
+}  // namespace
+
+void add_crossing_option(CLI::App& command, SegmentOptions& o) {
+  command
+      .add_option("--crossing", o.crossing,
+                  "segments that cross: error (default: they are named), exact (a vertex where they cross; only its "
+                  "coordinates are rounded) or grid=G (all points move to a grid of that width)")
+      ->type_name("RULE");
+}
+
+void add_segment_options(CLI::App& command, SegmentOptions& o) {
+  command
+      .add_option("--segments", o.file,
+                  "segments that have to be edges, such as breaklines, with their points: " +
+                      join(io::segment_read_formats(), " "))
+      ->type_name("FILE");
+  std::vector<std::string> names;
+  for (const auto& [name, domain] : domains) names.emplace_back(name);
+  command
+      .add_option("--domain", o.domain,
+                  "with segments, which triangles are written: hull (default: all), outer (what segments enclose), "
+                  "even_odd, nonzero (as in pictures), layers (odd depth; loose ends do no harm) or seeds (all but "
+                  "holes, as Triangle)")
+      ->type_name("RULE")
+      ->check(CLI::IsMember(names).description(""));
+  add_crossing_option(command, o);
+}
+
+bool is_graph(const InputOptions& input) {
+  const std::string format = format_of(input.path, input.format);
+  return contains(io::segment_read_formats(), format) && !contains(io::point_read_formats(), format);
+}
+
+ConstraintOptions constraint_options(const SegmentOptions& options) {
+  ConstraintOptions result;
+  for (const auto& [name, domain] : domains) {
+    if (options.domain == name) result.domain = domain;
+  }
+  if (options.crossing == "exact") {
+    result.crossing = Crossing::exact;
+  } else if (options.crossing.starts_with("grid=")) {
+    result.crossing = Crossing::grid;
+    result.grid = grid_of(options.crossing);
+  } else if (!options.crossing.empty() && options.crossing != "error") {
+    throw Failure(exit_usage, fmt::format("--crossing {}: there are error, exact and grid=G, for example grid=0.001",
+                                          options.crossing));
+  }
+  return result;
+}
+
+Graph graph_of(io::SegmentsFile file) {
+  Graph graph;
+  graph.points.xy = std::move(file.xy);
+  if (file.attributes_per_point == 1) graph.points.height = std::move(file.attributes);
+  graph.points.format = file.format;
+  graph.segments = std::move(file.segments);
+  graph.holes = std::move(file.holes);
+  graph.regions = std::move(file.regions);
+  return graph;
+}
+
+Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool quiet) {
+  Graph graph;
+  if (is_graph(input)) {
+    if (!options.file.empty()) {
+      throw Failure(exit_usage,
+                    fmt::format("{} has segments of its own: leave --segments out, or give the points alone",
+                                display_name(input.path, true)));
+    }
+    if (!input.columns.empty() || input.projection != "xy") {
+      throw Failure(exit_usage, "--columns and --project are for files of points: leave them out");
+    }
+    graph = graph_of(io::read_segments(input.path, lower(input.format)));
+  } else {
+    std::error_code code;
+    const bool same_file = input.path != "-" && std::filesystem::equivalent(input.path, options.file, code);
+    if (!same_file) graph.points = read_input(input);
+    append(graph, graph_of(io::read_segments(options.file)), same_file, options.file, quiet);
+  }
+  if (!graph.holes.empty() && options.domain != "seeds" && !quiet) {
+    say(fmt::format("cadt: the file has holes, {}: --domain seeds uses them\n", graph.holes.size()));
+  }
+  return graph;
+}
+
+std::string explain_graph_error(PointsView points, std::span<const Segment> segments) {
+  const auto place = [&](std::int32_t v) {
+    const auto at = static_cast<std::size_t>(v);
+    return fmt::format("({}, {})", points.x(at), points.y(at));
+  };
+  try {
+    throw;
+  } catch (const CrossingError& e) {
+    const auto& pairs = e.pairs();
+    std::string text =
+        fmt::format("{} of segments cross:", pairs.size() == 1 ? "1 pair" : fmt::format("{} pairs", pairs.size()));
+    constexpr std::size_t most_shown = 5;
+    for (std::size_t i = 0; i < std::min(pairs.size(), most_shown); ++i) {
+      const auto describe = [&](std::int32_t s) {
+        const Segment& ends = segments[static_cast<std::size_t>(s)];
+        return fmt::format("{} {} - {}", s, place(ends[0]), place(ends[1]));
+      };
+      text += fmt::format("\n    {}  and  {}", describe(pairs[i][0]), describe(pairs[i][1]));
+    }
+    if (pairs.size() > most_shown) text += "\n    ...";
+    return text +
+           "\n  (segments count from 0) --crossing exact makes a vertex of each crossing, --crossing grid=G moves all "
+           "points to a grid";
+  } catch (const DomainError& e) {
+    return fmt::format(
+        "the segments do not close at point {} {}, counted from 0: {}; --domain layers and --domain outer take "
+        "segments with loose ends",
+        e.vertex(), place(e.vertex()), e.what());
+  } catch (const InputError& e) {
+    return fmt::format("point {} (counted from 0): {}", e.index(), e.what());
+  }
+}
+
+ConstrainedTriangulation triangulate_graph(PointsView points, std::span<const Segment> segments,
+                                           const std::string& name, const ConstraintOptions& constraints,
+                                           const Options& options) {
+  try {
+    const InPhase phase(Phase::cooperative);
+    return triangulate_constrained(points, segments, constraints, options);
+  } catch (const Error&) {
+    throw Failure(exit_file, fmt::format("{}: {}", name, explain_graph_error(points, segments)));
+  }
+}
+
+io::PointSet points_of(const Graph& graph, const ConstrainedTriangulation& mesh) {
+  io::PointSet result;
+  const auto moved = mesh.moved_points(), added = mesh.added_points();
+  result.xy.assign(graph.points.xy.begin(), graph.points.xy.end());
+  if (!moved.empty()) result.xy.assign(moved.begin(), moved.end());
+  result.xy.insert(result.xy.end(), added.begin(), added.end());
+  if (graph.points.height.empty()) return result;
+  result.height = graph.points.height;
+  for (std::size_t i = 0; 2 * i < added.size(); ++i) {
+    const Segment& parent = graph.segments[static_cast<std::size_t>(mesh.added_parents()[i][0])];
+    const auto from = static_cast<std::size_t>(parent[0]), to = static_cast<std::size_t>(parent[1]);
+    const auto distance = [&](std::size_t v) {
+      return std::hypot(added[2 * i] - result.xy[2 * v], added[2 * i + 1] - result.xy[2 * v + 1]);
+    };
+    const double share = distance(from) / (distance(from) + distance(to));
+    result.height.push_back(graph.points.height[from] + (std::isfinite(share) ? share : 0.5) *
+                                                            (graph.points.height[to] - graph.points.height[from]));
+  }
+  return result;
+}
+
+void note_rounding(const ConstrainedTriangulation& mesh, const std::string& name, bool quiet) {
+  if (mesh.rounded_valid() || quiet) return;
+  say(fmt::format(
+      "cadt: warning: {}: crossings are too close to others for rounded coordinates, so that some triangles are turned "
+      "over or flat in the output; --crossing grid=G keeps them apart\n",
+      name));
+}
+
+}  // namespace cadt::cli

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points with segments between them as the program reads them, and the options that say what is made of them.
+#pragma once
+
+#include "input.hpp"
+
+#include <cadt/constrained.hpp>
+#include <cadt/io/points_file.hpp>
+#include <cadt/io/segments_file.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace cadt::cli {
+
+struct SegmentOptions {
+  std::string file, domain, crossing;
+};
+
+/// Adds --crossing.
+void add_crossing_option(CLI::App& command, SegmentOptions& options);
+/// Adds --segments, --domain and --crossing.
+void add_segment_options(CLI::App& command, SegmentOptions& options);
+
+/// Whether the input has segments, by its format (-f or the suffix): the formats of segments that none of points has.
+[[nodiscard]] bool is_graph(const InputOptions& input);
+
+/// What the library is told. Throws Failure (usage).
+[[nodiscard]] ConstraintOptions constraint_options(const SegmentOptions& options);
+
+struct Graph {
+  io::PointSet points;
+  std::vector<Segment> segments;
+  std::vector<std::array<double, 2>> holes;
+  std::vector<Region> regions;
+};
+
+/// The points of a file with its segments.
+[[nodiscard]] Graph graph_of(io::SegmentsFile file);
+
+/// Reads the input, and the file of --segments, whose points come behind those of the input unless they are the same.
+/// Notes go to standard error unless `quiet`.
+[[nodiscard]] Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool quiet);
+
+/// Triangulates. Segments that cross, or bound no domain, are a Failure that names the file, them and what can be done.
+[[nodiscard]] ConstrainedTriangulation triangulate_graph(PointsView points, std::span<const Segment> segments,
+                                                         const std::string& name, const ConstraintOptions& constraints,
+                                                         const Options& options);
+
+/// The same for errors that are caught: CrossingError, DomainError and InputError; others are thrown on.
+[[nodiscard]] std::string explain_graph_error(PointsView points, std::span<const Segment> segments);
+
+/// All points of the mesh: as they are in the file or where they have moved, and those that were added.
+/// `height`: empty or one a point; added points are given those along the first of their segments.
+[[nodiscard]] io::PointSet points_of(const Graph& graph, const ConstrainedTriangulation& mesh);
+
+/// A note if rounding the added points has turned triangles over.
+void note_rounding(const ConstrainedTriangulation& mesh, const std::string& name, bool quiet);
+
+}  // namespace cadt::cli

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes of regions as outputs: the options and the work that cadt triangulate, polygons and labels share.
+#pragma once
+
+#include "outputs.hpp"
+#include "progress.hpp"
+
+#include <cadt/constrained.hpp>
+#include <cadt/io/points_file.hpp>
+#include <cadt/io/region_file.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cadt::cli {
+
+struct RegionOutputOptions {
+  std::vector<std::string> outputs, formats;
+  int base = 0, width = 1600;
+  bool ascii = false;
+};
+
+/// Adds -o, -t, --base, --ascii, --width.
+void add_region_output_options(CLI::App& command, RegionOutputOptions& options);
+
+/// What is written, in arrays of its own.
+struct RegionResult {
+  io::PointSet points;
+  std::vector<std::int32_t> triangles, region, hull;
+  std::vector<Segment> segments;
+  std::string region_name = "region";
+};
+
+/// Appends the triangles inside, with their regions, and the constrained edges; points count from `first_point`.
+void append_inside(RegionResult& result, const ConstrainedTriangulation& mesh, std::int32_t first_point = 0);
+
+/// Writes all outputs; an interruption between two of them names those that are complete.
+void write_regions(const std::vector<Output>& outputs, const RegionOutputOptions& options, const RegionResult& result,
+                   ProgressLine& line);
+
+}  // namespace cadt::cli

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// cadt triangulate, where there are segments.
+#include "triangulate.hpp"
+
+#include "failure.hpp"
+#include "graph.hpp"
+#include "interrupt.hpp"
+#include "region_output.hpp"
+#include "text.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace cadt::cli {
+
+int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
+  ConstraintOptions constraints = constraint_options(options.segments);
+  ProgressLine line(options.quiet);
+  const Options chosen = library_options(options, line);
+  const std::string name = display_name(options.input.path, true);
+  RunReport report;
+  report.outputs = std::move(outputs);
+  report.domain = options.segments.domain.empty() ? "hull" : options.segments.domain;
+  report.crossing = options.segments.crossing.empty() ? "error" : options.segments.crossing;
+  report.stabilize = options.stabilize;
+  report.flip_threshold = chosen.tuning.flip_threshold;
+  report.epsilon = chosen.tuning.quality_epsilon;
+
+  Stopwatch watch;
+  line.step(fmt::format("reading {}", name));
+  Graph graph = read_graph(options.input, options.segments, options.quiet);
+  round_to_floats(graph.points, options.input, options.quiet);
+  constraints.holes = graph.holes;
+  constraints.regions = graph.regions;
+  report.input = options.input.path;
+  report.input_format = graph.points.format;
+  report.heights = !graph.points.height.empty();
+  report.segments = graph.segments.size();
+  report.read_seconds = watch.lap();
+
+  line.start(graph.points.size());
+  const ConstrainedTriangulation mesh =
+      triangulate_graph(graph.points.view(), graph.segments, name, constraints, chosen);
+  check_interrupt();
+  report.mesh = &mesh.mesh();
+  report.constrained = &mesh;
+  report.triangulate_seconds = watch.lap();
+  line.clear();
+  judge_dimension(mesh.mesh(), name, options);
+  note_rounding(mesh, name, options.quiet);
+  report.hash = mesh.hash().to_string();
+
+  watch.lap();
+  if (options.verify) {
+    line.step("verifying");
+    VerifyOptions verify_options;
+    verify_options.threads = options.device.threads;
+    report.verification = verify(graph.points.view(), graph.segments, mesh, constraints, verify_options);
+    report.verify_seconds = watch.lap();
+    line.clear();
+    require_verified(*report.verification);
+  }
+
+  watch.lap();
+  if (!report.outputs.empty()) {
+    RegionResult result;
+    result.points = points_of(graph, mesh);
+    append_inside(result, mesh);
+    if (constraints.domain == Domain::hull) {
+      const auto hull = mesh.mesh().hull();
+      result.hull.assign(hull.begin(), hull.end());
+    }
+    write_regions(report.outputs, {{}, {}, options.base, options.width, options.ascii}, result, line);
+    report.write_seconds = watch.lap();
+  }
+  print_reports(options, report);
+  return exit_done;
+}
+
+}  // namespace cadt::cli

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// What Triangle makes of points and segments: switch p.
+#include <cadt/triangle.hpp>
+
+#include "common/triangle/arrange.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace cadt {
+namespace {
+
+/// The edges of the hull as segments, which switch c asks for.
+void add_hull(const TriangleInput& input, const Options& options, std::vector<Segment>& segments) {
+  const Triangulation mesh = triangulate(input.xy, options);
+  const auto hull = mesh.hull();
+  for (std::size_t i = 0; i < hull.size(); ++i) segments.push_back({hull[i], hull[i + 1 == hull.size() ? 0 : i + 1]});
+}
+
+/// The share of the way from the first to the second end of a segment at which an added point lies.
+double share_of(std::span<const double> xy, const Segment& ends, double x, double y) {
+  const auto distance = [&](std::int32_t v) {
+    return std::hypot(x - xy[2 * static_cast<std::size_t>(v)], y - xy[2 * static_cast<std::size_t>(v) + 1]);
+  };
+  const double share = distance(ends[0]) / (distance(ends[0]) + distance(ends[1]));
+  return std::isfinite(share) ? share : 0.5;
+}
+
+/// The points of the input, and behind them those that were added.
+void set_points(TriangleOutput& out, const TriangleInput& input, const TriangleSegments& segments,
+                const ConstrainedTriangulation& mesh) {
+  const auto added = mesh.added_points();
+  const std::size_t n = input.attributes_per_point;
+  out.attributes_per_point = n;
+  out.markers.assign(input.markers.begin(), input.markers.end());
+  out.markers.resize((input.xy.size() + added.size()) / 2, 0);
+  if (added.empty()) {
+    out.xy = input.xy;
+    out.attributes = input.attributes;
+    return;
+  }
+  out.kept_xy.assign(input.xy.begin(), input.xy.end());
+  out.kept_xy.insert(out.kept_xy.end(), added.begin(), added.end());
+  out.kept_attributes.assign(input.attributes.begin(), input.attributes.end());
+  for (std::size_t i = 0; 2 * i < added.size(); ++i) {
+    // Edges of the hull cross nothing, so both parents are segments of the input.
+    const Segment& ends = segments.segments[static_cast<std::size_t>(mesh.added_parents()[i][0])];
+    const double share = share_of(input.xy, ends, added[2 * i], added[2 * i + 1]);
+    for (std::size_t j = 0; j < n; ++j) {
+      const auto value = [&](std::int32_t v) { return input.attributes[static_cast<std::size_t>(v) * n + j]; };
+      out.kept_attributes.push_back(value(ends[0]) + share * (value(ends[1]) - value(ends[0])));
+    }
+  }
+  out.xy = out.kept_xy;
+  out.attributes = out.kept_attributes;
+}
+
+/// The triangles inside, and how they meet.
+void set_triangles(TriangleOutput& out, const ConstrainedTriangulation& mesh, bool attributes) {
+  const auto triangles = mesh.mesh().triangles(), neighbors = mesh.mesh().neighbors();
+  const auto inside = mesh.inside();
+  std::vector<std::int32_t> number(inside.size(), -1);
+  std::int32_t kept = 0;
+  for (std::size_t t = 0; t < inside.size(); ++t) number[t] = inside[t] != 0 ? kept++ : -1;
+  for (std::size_t t = 0; t < inside.size(); ++t) {
+    if (number[t] < 0) continue;
+    for (std::size_t k = 3 * t; k < 3 * t + 3; ++k) {
+      out.kept_triangles.push_back(triangles[k]);
+      out.kept_neighbors.push_back(neighbors[k] < 0 ? -1 : number[static_cast<std::size_t>(neighbors[k])]);
+    }
+    if (attributes) {
+      out.triangle_attributes.push_back(mesh.region_attribute()[static_cast<std::size_t>(mesh.region()[t])]);
+    }
+  }
+  out.triangles = out.kept_triangles;
+  out.neighbors = out.kept_neighbors;
+}
+
+/// The number of the edge between two corners of a triangle among the constrained ones, which ascend; -1 if it is none.
+std::ptrdiff_t constrained_edge(std::span<const Segment> edges, std::int32_t a, std::int32_t b) {
+  const Segment edge{std::min(a, b), std::max(a, b)};
+  const auto found = std::lower_bound(edges.begin(), edges.end(), edge);
+  return found != edges.end() && *found == edge ? found - edges.begin() : -1;
+}
+
+/// The marker of the first given segment along constrained edge e that has one; hull edges of switch c have none.
+int marker_of(const ConstrainedTriangulation& mesh, std::span<const int> markers, std::size_t e) {
+  std::size_t first = markers.size();
+  for (std::int64_t i = mesh.source_offsets()[e]; i < mesh.source_offsets()[e + 1]; ++i) {
+    const std::int32_t source = mesh.edge_sources()[static_cast<std::size_t>(i)];
+    const auto segment = static_cast<std::size_t>(source < 0 ? -1 - source : source);
+    if (segment < first && markers[segment] != 0) first = segment;
+  }
+  return first < markers.size() ? markers[first] : 0;
+}
+
+/// The constrained edges that a triangle has, and the markers of these, of points and of edges.
+void set_segments(TriangleOutput& out, const ConstrainedTriangulation& mesh, const TriangleSegments& segments) {
+  const auto edges = mesh.constrained_edges();
+  enum class Where : std::uint8_t { outside, between_triangles, on_boundary };
+  std::vector<Where> where(edges.size(), Where::outside);
+  std::vector<std::int32_t> boundary;  // points
+  for (std::size_t i = 0; i < out.triangles.size(); ++i) {
+    const std::size_t k = i % 3, first = i - k;
+    const std::int32_t a = out.triangles[first + (k + 1) % 3], b = out.triangles[first + (k + 2) % 3];
+    if (out.neighbors[i] < 0) boundary.insert(boundary.end(), {a, b});
+    if (const std::ptrdiff_t e = constrained_edge(edges, a, b); e >= 0) {
+      where[static_cast<std::size_t>(e)] = out.neighbors[i] < 0 ? Where::on_boundary : Where::between_triangles;
+    }
+  }
+  const auto mark = [&](std::int32_t v, int marker) {
+    int& own = out.markers[static_cast<std::size_t>(v)];
+    if (own == 0) own = marker;
+  };
+  std::vector<int> markers(edges.size());
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (where[e] == Where::outside) continue;
+    const int given = marker_of(mesh, segments.markers, e);
+    markers[e] = given != 0 ? given : where[e] == Where::on_boundary ? 1 : 0;
+    out.segments.insert(out.segments.end(), edges[e].begin(), edges[e].end());
+    out.segment_markers.push_back(markers[e]);
+    for (const std::int32_t v : edges[e]) mark(v, given);
+  }
+  for (const std::int32_t v : boundary) mark(v, 1);
+  for (std::size_t i = 0; i < out.edge_markers.size(); ++i) {
+    const std::ptrdiff_t e = constrained_edge(edges, out.edges[2 * i], out.edges[2 * i + 1]);
+    if (e >= 0) out.edge_markers[i] = markers[static_cast<std::size_t>(e)];
+  }
+}
+
+}  // namespace
+
+ConstrainedTriangulation triangulate_as_triangle(const TriangleInput& input, const TriangleSegments& segments,
+                                                 const TriangleSwitches& switches, const Options& options) {
+  if (!segments.markers.empty() && segments.markers.size() != segments.segments.size()) {
+    throw InputError("there are " + std::to_string(segments.markers.size()) + " markers for " +
+                         std::to_string(segments.segments.size()) + " segments",
+                     segments.segments.size());
+  }
+  ConstraintOptions constraints;
+  constraints.crossing = Crossing::exact;
+  constraints.domain = Domain::seeds;
+  if (!switches.ignore_holes) constraints.holes.assign(segments.holes.begin(), segments.holes.end());
+  constraints.regions.assign(segments.regions.begin(), segments.regions.end());
+  std::vector<Segment> all(segments.segments.begin(), segments.segments.end());
+  if (switches.hull_segments) add_hull(input, options, all);
+  ConstrainedTriangulation mesh = triangulate_constrained(input.xy, all, constraints, options);
+  if (!mesh.rounded_valid()) {
+    throw CrossingError(
+        "segments cross so close to others that rounding the crossings turns triangles over: move them apart",
+        {mesh.added_parents().begin(), mesh.added_parents().end()});
+  }
+  return mesh;
+}
+
+TriangleOutput triangle_output(const TriangleInput& input, const TriangleSegments& segments,
+                               const ConstrainedTriangulation& mesh, const TriangleSwitches& switches) {
+  triangle_detail::require_sizes(input, mesh.mesh().number_of_points() - mesh.added_points().size() / 2);
+  TriangleOutput out;
+  set_points(out, input, segments, mesh);
+  set_triangles(out, mesh, switches.region_attributes);
+  const auto boundary = static_cast<std::size_t>(std::count(out.neighbors.begin(), out.neighbors.end(), -1));
+  out.number_of_edges = (out.triangles.size() + boundary) / 2;
+  if (switches.edges || switches.voronoi) triangle_detail::set_edges(out);
+  set_segments(out, mesh, segments);
+  out.holes = segments.holes;
+  out.regions = segments.regions;
+  if (switches.voronoi) triangle_detail::set_voronoi(out);
+  if (switches.jettison) {
+    std::vector<bool> gone(out.xy.size() / 2, true);
+    for (const std::int32_t v : out.triangles) gone[static_cast<std::size_t>(v)] = false;
+    triangle_detail::jettison(out, gone);
+  }
+  return out;
+}
+
+}  // namespace cadt

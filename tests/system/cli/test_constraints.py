@@ -1,0 +1,370 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Segments, polygons and label images: cadt triangulate, cadt polygons, cadt labels, cadt info."""
+import json
+import struct
+import unittest
+import zlib
+
+from harness import SOURCE, CliTest, read_off, twice_area
+
+# An outer square of 6 with a hole of 2, a loose point, and a segment that hangs loose outside.
+PLATE = ("10 2 0 0\n0 0 0\n1 6 0\n2 6 6\n3 0 6\n4 2 2\n5 4 2\n6 4 4\n7 2 4\n8 5 5\n9 8 8\n"
+         "8 0\n0 0 1\n1 1 2\n2 2 3\n3 3 0\n4 4 5\n5 5 6\n6 6 7\n7 7 4\n1\n0 3 3\n")
+SQUARE = [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]]
+HOLE = [[1, 1], [1, 2], [2, 2], [2, 1], [1, 1]]
+BOW_TIE = [[0, 0], [4, 4], [4, 0], [0, 4], [0, 0]]
+
+
+def geojson(*geometries):
+    return json.dumps({"type": "FeatureCollection", "features": [
+        {"type": "Feature", "properties": {"name": str(i)}, "geometry": geometry} for i, geometry in enumerate(geometries)]})
+
+
+def polygon(*rings):
+    return {"type": "Polygon", "coordinates": rings}
+
+
+def png(rows, bits=8, kind=0):
+    """A grey image of 8 bits, or the bytes of the rows as they are."""
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    data = b"".join(b"\0" + bytes(row) for row in rows)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(rows[0]), len(rows), bits, kind, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
+
+
+def area_of(points, triangles):
+    """Twice the area; every triangle must be counterclockwise."""
+    areas = [twice_area(*(points[i] for i in triangle)) for triangle in triangles]
+    assert all(area > 0 for area in areas), areas
+    return sum(areas)
+
+
+class ConstraintTest(CliTest):
+    def off(self, name):
+        vertices, triangles = read_off(self.path(name).read_text())
+        return [(float(x), float(y)) for x, y, _ in vertices], triangles
+
+    def edges(self, triangles):
+        return {tuple(sorted(pair)) for a, b, c in triangles for pair in ((a, b), (b, c), (c, a))}
+
+
+class Segments(CliTest):
+    off, edges = ConstraintTest.off, ConstraintTest.edges
+
+    def setUp(self):
+        super().setUp()
+        self.write("plate.poly", PLATE)
+
+    def test_are_edges_of_the_mesh(self):
+        points = [(0, 0), (10, 0), (5, 1), (5, -1), (2, 5), (8, 5)]
+        self.write("points.xy", "".join(f"{x} {y}\n" for x, y in points))
+        self.cadt("triangulate", "points.xy", "-o", "plain.off")
+        self.assertNotIn((0, 1), self.edges(self.off("plain.off")[1]))
+        self.write("line.edg", "1\n0 0 10 0\n")
+        err = self.cadt("triangulate", "points.xy", "--segments", "line.edg", "-o", "m.off", "--verify").err
+        found, triangles = self.off("m.off")
+        self.assertEqual(found, points + [(0, 0), (10, 0)])
+        self.assertIn((0, 1), self.edges(triangles))
+        self.assertRegex(err, r"(?m)^segments    1, which are 1 edges$")
+        self.assertRegex(err, r"(?m)^duplicates  2$")
+
+    def test_domains_leave_triangles_out(self):
+        areas = {}
+        for domain in ("hull", "outer", "even_odd", "layers", "seeds"):
+            self.cadt("triangulate", "plate.poly", "--domain", domain, "-o", "m.off")
+            points, triangles = self.off("m.off")
+            self.assertEqual(len(points), 10)
+            areas[domain] = area_of(points, triangles) / 2
+        hull = areas.pop("hull")
+        self.assertGreater(hull, 36)
+        self.assertEqual(areas, {"outer": 36, "even_odd": 32, "layers": 32, "seeds": 32})
+        self.cadt("triangulate", "plate.poly", "-o", "m.off")
+        self.assertEqual(area_of(*self.off("m.off")) / 2, hull)
+
+    def test_winding_numbers(self):
+        # Two squares one in the other, both counterclockwise, and a third one clockwise.
+        ring = lambda low, high: [[low, low], [high, low], [high, high], [low, high]]
+        self.write("a.json", json.dumps([ring(0, 9), ring(1, 8), ring(2, 3)[::-1]]))
+        self.write("b.json", json.dumps([ring(0, 9), ring(1, 8)[::-1], ring(2, 3)[::-1]]))
+        for file, domain, area in (("a.json", "nonzero", 81), ("a.json", "even_odd", 81 - 49 + 1),
+                                   ("b.json", "nonzero", 81 - 49 + 1)):
+            self.cadt("triangulate", file, "--domain", domain, "-o", "m.off")
+            self.assertEqual(area_of(*self.off("m.off")) / 2, area, (file, domain))
+
+    def test_all_formats_at_once(self):
+        suffixes = ["node", "ele", "obj", "off", "ply", "vtu", "glb", "poly", "edge", "geojson", "svg", "pdf", "png"]
+        files = [f"m.{suffix}" for suffix in suffixes]
+        self.cadt("triangulate", *[word for file in files for word in ("-o", file)], "plate.poly", "--domain", "seeds")
+        self.assertEqual(self.names(), sorted(files + ["plate.poly"]))
+        features = json.loads(self.path("m.geojson").read_text())["features"]
+        self.assertEqual(len(features), len(read_off(self.path("m.off").read_text())[1]))
+        for feature in features:
+            ring = feature["geometry"]["coordinates"][0]
+            self.assertEqual((len(ring), ring[0]), (4, ring[3]))
+            self.assertIsInstance(feature["properties"]["region"], int)
+        self.assertTrue(self.path("m.png").read_bytes().startswith(b"\x89PNG"))
+        self.assertIn("<svg", self.path("m.svg").read_text())
+        # What is written is read again, and means the same.
+        self.cadt("triangulate", "m.poly", "--domain", "even_odd", "-o", "again.off")
+        self.assertEqual(self.path("again.off").read_text(), self.path("m.off").read_text())
+        self.cadt("triangulate", "m.edge", "--domain", "even_odd", "-o", "again.off")
+        self.assertEqual(self.path("again.off").read_text(), self.path("m.off").read_text())
+        self.cadt("verify", "m.node", "m.ele", expect=7)  # not a mesh of all points
+
+    def test_heights_are_kept_where_all_have_some(self):
+        self.write("p.xyz", "0 0 1\n9 0 2\n9 9 3\n0 9 4\n")
+        self.write("lines.obj", "v 2 2 7\nv 5 6 8\nl 1 2\n")
+        self.cadt("triangulate", "p.xyz", "--segments", "lines.obj", "-o", "m.off")
+        self.assertEqual([z for _, _, z in read_off(self.path("m.off").read_text())[0]], ["1", "2", "3", "4", "7", "8"])
+        self.write("same.obj", "v 0 0 7\nv 9 0 7\nv 9 9 7\nv 0 9 7\nl 1 3\n")
+        self.cadt("triangulate", "p.xyz", "--segments", "same.obj", "-o", "m.off")
+        self.assertEqual([z for _, _, z in read_off(self.path("m.off").read_text())[0]], ["1", "2", "3", "4"])
+        self.write("flat.edg", "1\n2 2 5 6\n")
+        err = self.cadt("triangulate", "p.xyz", "--segments", "flat.edg", "-o", "m.off").err
+        self.assertIn("cadt: heights are left out: flat.edg has none", err)
+        self.assertEqual({z for _, _, z in read_off(self.path("m.off").read_text())[0]}, {"0"})
+
+    def test_points_that_are_the_same_are_taken_once(self):
+        self.write("lines.obj", "v 0 0 0\nv 9 0 0\nv 9 9 0\nv 1 5 0\nl 1 3\n")
+        fields = self.cadt("triangulate", "lines.obj", "--segments", "lines.obj").fields()
+        self.assertEqual((fields["points"], fields["duplicates"]), ("4", "0"))
+        self.write("p.xy", "0 0\n9 0\n9 9\n1 5\n")
+        self.assertEqual(self.cadt("triangulate", "p.xy", "--segments", "lines.obj").fields()["points"], "4")
+        self.write("c.txt", "4 1\n0 0\n9 0\n9 9\n1 5\n0 2\n")
+        self.assertEqual(self.cadt("triangulate", "c.txt", "--segments", "c.txt").fields()["points"], "4")
+
+    def test_hash_does_not_depend_on_order_and_direction(self):
+        rows = PLATE.splitlines()
+        segments = [row.split() for row in rows[12:20]]
+        turned = [f"{i} {b} {a}" for i, (_, a, b) in enumerate(reversed(segments))]
+        self.write("other.poly", "\n".join(rows[:12] + turned + rows[20:]) + "\n")
+        hashes = {self.cadt("triangulate", file, "--backend", "host", "--threads", threads).fields()["hash"]
+                  for file in ("plate.poly", "other.poly") for threads in (1, 2)}
+        self.assertEqual(len(hashes), 1)
+        self.write("fewer.poly", "\n".join(rows[:11] + ["7 0"] + rows[12:19] + rows[20:]) + "\n")
+        self.assertNotIn(self.cadt("triangulate", "fewer.poly").fields()["hash"], hashes)
+
+    def test_statistics_have_the_constraints(self):
+        self.cadt("triangulate", "plate.poly", "--domain", "seeds", "--stats=s.json", "-o", "m.off")
+        found = json.loads(self.path("s.json").read_text())["constraints"]
+        self.assertEqual((found["segments"], found["edges"], found["domain"], found["crossing"], found["regions"]),
+                         (8, 8, "seeds", "error", 3))
+        self.write("p.xy", "0 0\n1 0\n0 1\n")
+        self.cadt("triangulate", "p.xy", "--stats=s.json", "-o", "m.off")
+        self.assertIsNone(json.loads(self.path("s.json").read_text())["constraints"])
+
+    def test_notes_and_empty_meshes(self):
+        self.assertIn("--domain seeds uses them", self.cadt("triangulate", "plate.poly").err)
+        self.assertEqual(self.cadt("triangulate", "plate.poly", "-q").err, "")
+        self.write("line.edg", "2\n0 0 1 1\n1 1 3 3\n")
+        result = self.cadt("triangulate", "line.edg")
+        self.assertIn("no triangles: all 3 distinct points lie on one line", result.err)
+        self.fails(4, "triangulate", "line.edg", "--strict", says="no triangles")
+
+
+class Crossings(CliTest):
+    off = ConstraintTest.off
+
+    def setUp(self):
+        super().setUp()
+        self.write("x.edg", "3\n0 0 4 4\n0 4 4 0\n9 0 9 1\n")
+
+    def test_are_errors_that_name_the_segments(self):
+        self.fails(3, "triangulate", "x.edg", "-o", "m.off",
+                   says=["x.edg: 1 pair of segments cross", "0 (0, 0) - (4, 4)  and  1 (0, 4) - (4, 0)",
+                         "--crossing exact", "--crossing grid=G"])
+        self.write("many.edg", "6\n0 5 9 5\n" + "".join(f"{x} 0 {x} 9\n" for x in range(1, 6)))
+        self.write("more.edg", "7\n0 5 9 5\n" + "".join(f"{x} 0 {x} 9\n" for x in range(1, 7)))
+        self.assertNotIn("...", self.fails(3, "triangulate", "many.edg", says="5 pairs").err)
+        self.assertIn("...", self.fails(3, "triangulate", "more.edg", says="6 pairs").err)
+        self.assertEqual(self.names(), ["many.edg", "more.edg", "x.edg"])
+
+    def test_can_become_vertices(self):
+        err = self.cadt("triangulate", "x.edg", "--crossing", "exact", "-o", "m.off", "--verify").err
+        points, triangles = self.off("m.off")
+        self.assertEqual(points[6:], [(2, 2)])
+        self.assertEqual(sum(6 in triangle for triangle in triangles), 4)
+        self.assertRegex(err, r"segments    3, which are 5 edges, with 1 points added where they cross")
+        self.write("heights.obj", "v 0 0 1\nv 4 4 5\nv 0 4 9\nv 4 0 9\nl 1 2\nl 3 4\n")
+        self.cadt("triangulate", "heights.obj", "--segments", "heights.obj", "--crossing", "exact", "-o", "m.off")
+        self.assertEqual(read_off(self.path("m.off").read_text())[0][4], ("2", "2", "3"))
+
+    def test_can_move_to_a_grid(self):
+        self.write("y.edg", "2\n0 0 4.1 4.1\n0 4 4 0.2\n")
+        self.cadt("triangulate", "y.edg", "--crossing", "grid=1", "-o", "m.off", "--verify")
+        points = self.off("m.off")[0]
+        self.assertTrue(all(x == int(x) and y == int(y) for x, y in points), points)
+        self.assertEqual(points[:4], [(0, 0), (4, 4), (0, 4), (4, 0)])
+
+    def test_wrong_rules(self):
+        for rule in ("grid", "grid=", "grid=0", "grid=-1", "grid=x", "grid=1x", "grid=inf", "grid=nan", "round"):
+            self.fails(2, "triangulate", "x.edg", "--crossing", rule, says=f"--crossing {rule}:")
+
+
+class SegmentErrors(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("plate.poly", PLATE)
+        self.write("p.xy", "0 0\n1 0\n0 1\n")
+
+    def test_command_lines(self):
+        self.fails(2, "triangulate", "p.xy", "--domain", "outer", says="--domain is about segments")
+        self.fails(2, "triangulate", "p.xy", "--crossing", "exact", says="--crossing is about segments")
+        self.fails(2, "triangulate", "plate.poly", "--domain", "inside", says="--domain")
+        self.fails(2, "triangulate", "plate.poly", "--segments", "plate.poly", says="has segments of its own")
+        self.fails(2, "triangulate", "plate.poly", "--stabilize", "defer", says="--stabilize is for points")
+        self.fails(2, "triangulate", "plate.poly", "--columns", "1,2", says="--columns and --project")
+        self.fails(2, "triangulate", "plate.poly", "-o", "m.npz", says="unknown suffix '.npz'")
+        self.fails(2, "triangulate", "p.xy", "-o", "m.geojson", says="unknown suffix '.geojson'")
+        self.fails(2, "triangulate", "plate.poly", "-o", "plate.poly", says="this is the input")
+        self.fails(2, "triangulate", "p.xy", "--segments", "plate.poly", "-o", "plate.poly", says="this is the input")
+        self.fails(3, "triangulate", "p.xy", "--segments", "absent.poly", says="absent.poly: ")
+        self.fails(3, "triangulate", "p.xy", "--segments", "p.xy", says="known: poly edge")
+        self.assertEqual(self.names(), ["p.xy", "plate.poly"])
+
+    def test_files(self):
+        self.write("bad.poly", PLATE.replace("7 7 4\n", "7 7 10\n"))
+        self.fails(3, "triangulate", "bad.poly", says="bad.poly:20: index 10 is out of range")
+        self.fails(3, "info", "bad.poly", says="bad.poly:20: ")
+        self.write("bad.geojson", '{"type": "Polygon",\n"coordinates": [[[0, 0], [1, 1], [2]]]}')
+        self.fails(3, "triangulate", "bad.geojson", says="bad.geojson:2: a position needs two numbers")
+
+    def test_loose_ends_bound_no_domain(self):
+        self.write("open.edg", "3\n0 0 4 0\n4 0 4 4\n4 4 1 3\n")
+        self.fails(3, "triangulate", "open.edg", "--domain", "even_odd",
+                   says=["open.edg: the segments do not close at point", "--domain layers"])
+        self.cadt("triangulate", "open.edg", "--domain", "layers")
+
+    def test_pipes(self):
+        out = self.cadt("triangulate", "-", "-f", "poly", "-o", "-", "-t", "off", "--domain", "seeds", stdin=PLATE).out
+        self.assertEqual(len(read_off(out)[1]), 10)
+        self.fails(3, "triangulate", "-", "-f", "poly", stdin="0 2 0 0\n0\n0\n", says="<stdin>:1: the points are in a .node")
+
+
+class Polygons(CliTest):
+    off = ConstraintTest.off
+
+    def test_each_is_triangulated_inside(self):
+        shifted = [[[x + 10, y] for x, y in ring] for ring in (SQUARE, HOLE)]
+        self.write("a.geojson", geojson({"type": "Point", "coordinates": [1, 2]}, polygon(SQUARE, HOLE),
+                                        {"type": "MultiPolygon", "coordinates": [[HOLE], shifted]}))
+        err = self.cadt("polygons", "a.geojson", "-o", "m.off", "-o", "m.geojson", "-o", "m.svg", "-o", "m.png").err
+        points, triangles = self.off("m.off")
+        self.assertEqual(area_of(points, triangles) / 2, 15 + 1 + 15)
+        for line in ("features    3", "polygons    3", "rings       5", "points      20", "triangles   18",
+                     "left out    1 points and lines"):
+            self.assertIn(line + "\n", err)
+        features = json.loads(self.path("m.geojson").read_text())["features"]
+        areas = {}
+        for feature in features:
+            a, b, c, _ = feature["geometry"]["coordinates"][0]
+            number = feature["properties"]["feature"]
+            areas[number] = areas.get(number, 0) + twice_area(a, b, c) / 2
+        self.assertEqual(areas, {1: 15, 2: 16})
+
+    def test_summary_goes_to_stdout_without_output(self):
+        self.write("a.json", json.dumps([SQUARE, HOLE]))
+        self.assertEqual(self.cadt("polygons", "a.json").fields()["triangles"], "8")
+        self.assertEqual(self.cadt("polygons", "a.json", "-o", "m.off", "-q").err, "")
+        self.assertEqual(self.cadt("polygons", "-", "-f", "json", stdin=self.path("a.json").read_text()).fields()["rings"], "2")
+
+    def test_those_that_cross_themselves_are_named(self):
+        self.write("a.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE), polygon(HOLE), polygon(BOW_TIE[::-1])))
+        named = ["a.geojson: 2 of 4 polygons have no inside", "polygon 1 of feature 1: self-crossing, the edges from (",
+                 "polygon 3 of feature 3: self-crossing"]
+        self.fails(3, "polygons", "a.geojson", "-o", "m.off", "--strict", says=named + ["Nothing was written"])
+        self.assertEqual(self.names(), ["a.geojson"])
+        err = self.cadt("polygons", "a.geojson", "-o", "m.off").err
+        for text in named + ["cadt: warning: ", "--crossing exact", "--strict", "no inside   2 polygons"]:
+            self.assertIn(text, err)
+        self.assertEqual(area_of(*self.off("m.off")) / 2, 16 + 1)
+        self.assertEqual(self.cadt("polygons", "a.geojson", "-o", "m.off", "-q").err, "")
+
+    def test_crossings_can_become_vertices(self):
+        self.write("a.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE)))
+        self.cadt("polygons", "a.geojson", "--crossing", "exact", "-o", "m.off")
+        points, triangles = self.off("m.off")
+        self.assertEqual(area_of(points, triangles) / 2, 16 + 8)
+        self.assertEqual(points[12:], [(2, 2)])
+        flat = [[0, 0], [1, 1], [2, 2], [0, 0]]
+        self.write("b.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE), polygon(flat), polygon(SQUARE, flat[:2])))
+        err = self.cadt("polygons", "b.geojson", "--crossing", "exact", "-o", "m.off").err
+        self.assertIn("polygon 2 of feature 2: zero area at (0, 0)", err)
+        self.assertIn("polygon 3 of feature 3: too few points at (0, 0)", err)
+
+    def test_errors(self):
+        self.fails(2, "polygons", "a.json", "--crossing", "round", says="--crossing round:")
+        self.write("a.json", json.dumps({"type": "LineString", "coordinates": [[0, 0], [1, 1]]}))
+        self.fails(3, "polygons", "a.json", says="has no polygons")
+        self.fails(2, "polygons", "-", says="-f geojson")
+        self.fails(2, "polygons", "a.json", "-o", "m.stl", says="unknown suffix")
+        self.fails(2, "polygons", "a.json", "-o", "a.json", "-t", "geojson", says="this is the input")
+        self.fails(3, "polygons", "a.shp", says="known: geojson json")
+
+
+class Labels(CliTest):
+    off = ConstraintTest.off
+
+    def setUp(self):
+        super().setUp()
+        self.rows = [[1, 1, 2, 2], [1, 3, 3, 2], [1, 1, 3, 0]]
+        self.path("a.png").write_bytes(png(self.rows))
+
+    def test_triangles_have_the_labels_of_their_pixels(self):
+        err = self.cadt("labels", "a.png", "-o", "m.off", "-o", "m.geojson", "-o", "m.svg", "-o", "p.png", "-o", "m.vtu").err
+        points, triangles = self.off("m.off")
+        self.assertEqual(area_of(points, triangles) / 2, 12)
+        areas = {}
+        for feature in json.loads(self.path("m.geojson").read_text())["features"]:
+            a, b, c, _ = feature["geometry"]["coordinates"][0]
+            label = feature["properties"]["label"]
+            areas[label] = areas.get(label, 0) + twice_area(a, b, c) / 2
+            x, y = (int((p + q + r) / 3) for p, q, r in zip(a, b, c))
+            self.assertEqual(label, self.rows[2 - y][x])
+        self.assertEqual(areas, {1: 5, 2: 3, 3: 3, 0: 1})
+        for line in ("pixels      4 x 3", "labels      4", "regions     4"):
+            self.assertIn(line + "\n", err)
+        self.assertIn("Name=\"label\"", self.path("m.vtu").read_bytes().decode(errors="replace"))
+
+    def test_one_label_and_quiet(self):
+        self.path("one.png").write_bytes(png([[7] * 5] * 4))
+        self.assertEqual(self.cadt("labels", "one.png").fields()["triangles"], "2")
+        self.assertEqual(self.cadt("labels", "one.png", "-o", "m.ply", "-q").err, "")
+
+    def test_errors(self):
+        self.write("no.png", "P5\n")
+        self.fails(3, "labels", "no.png", says="no.png: is no PNG")
+        self.path("cut.png").write_bytes(self.path("a.png").read_bytes()[:-20])
+        self.fails(3, "labels", "cut.png", says="cut.png: is malformed")
+        self.fails(2, "labels", "a.png", "-o", "a.png", says="this is the input")
+        self.fails(2, "labels", "a.png", "-o", "m.npz", says="unknown suffix")
+        self.fails(3, "labels", "absent.png", says="absent.png")
+
+
+class GraphInfo(CliTest):
+    def test_text_and_json(self):
+        self.write("plate.poly", PLATE.replace("8 0\n0 0 1", "9 0\n8 8 8\n0 0 1"))
+        fields = self.cadt("info", "plate.poly").fields()
+        self.assertEqual((fields["points"], fields["segments"], fields["holes"], fields["regions"]),
+                         ("10", "9, 1 of them of zero length", "1", "0"))
+        found = json.loads(self.cadt("info", "plate.poly", "--json").out)
+        self.assertEqual((found["segments"], found["zero_length"], found["holes"], found["regions"]), (9, 1, 1, 0))
+        self.write("p.xy", "0 0\n1 0\n")
+        self.assertNotIn("segments", self.cadt("info", "p.xy").out)
+        self.assertNotIn("segments", self.cadt("info", "p.xy", "--json").out)
+        self.write("a.geojson", geojson(polygon(SQUARE, HOLE)))
+        self.assertEqual(self.cadt("info", "a.geojson").fields()["segments"], "8")
+
+
+class ConstraintDocumentation(CliTest):
+    def test_every_option_is_described(self):
+        text = (SOURCE / "docs" / "cli.md").read_text()
+        for word in ("--segments FILE", "--domain RULE", "--crossing RULE", "cadt polygons", "cadt labels"):
+            self.assertIn(word, text)
+        for command in ("triangulate", "polygons", "labels"):
+            self.assertIn("-o", self.cadt(command, "--help").out)
+
+
+if __name__ == "__main__":
+    unittest.main()

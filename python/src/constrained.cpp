@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Constrained triangulations, and polygons.
+// Constrained triangulations, polygons, label images.
 #include "device.hpp"
 
 #include <nanobind/stl/array.h>
@@ -140,6 +140,21 @@ void bind_polygons(nb::module_& m) {
       nb::arg("progress") = nb::none());
 }
 
+void bind_labels(nb::module_& m) {
+  using Image = nb::ndarray<const std::int32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+  m.def("label_segments", [](const Image& labels) {
+    cadt::LabelSegments found =
+        without_gil([&] { return cadt::label_segments(span_of(labels), labels.shape(1), labels.shape(0)); });
+    return nb::make_tuple(array_of(std::move(found.xy), 2), array_of_pairs(found.segments),
+                          array_of_pairs(found.sides));
+  });
+  m.def("triangle_labels", [](const Coordinates& xy, const Indices& triangles, const Image& labels) {
+    return array_of(without_gil([&] {
+      return cadt::triangle_labels(span_of(xy), span_of(triangles), span_of(labels), labels.shape(1), labels.shape(0));
+    }));
+  });
+}
+
 }  // namespace
 
 void bind_constrained(nb::module_& m) {
@@ -184,6 +199,7 @@ void bind_constrained(nb::module_& m) {
     return array_of_pairs(without_gil([&] { return cadt::find_crossings(view, segments_of(segments), threads); }));
   });
   bind_polygons(m);
+  bind_labels(m);
 }
 
 }  // namespace cadt_python

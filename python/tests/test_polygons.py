@@ -97,7 +97,7 @@ def test_shapely() -> None:
 def test_geoseries() -> None:
     geopandas = pytest.importorskip("geopandas")
     series = geopandas.GeoSeries(geometries(), index=["a", "b", "c", "d"], crs=25832)
-    frame = geopandas.GeoDataFrame({"name": range(4)}, geometry=series)
+    frame = geopandas.GeoDataFrame({"name": range(4)}, index=series.index, geometry=series)
     for given in (series, frame):
         triangles = cadt.polygons(given).to_geoseries()
         assert triangles.crs == series.crs

@@ -86,7 +86,7 @@ def test_lines_without_heights_get_them_from_the_points(las, tmp_path, cadt_terr
 
 def test_what_is_refused(las, tmp_path, cadt_terrain):
     las("scan.laz", scattered())
-    across = shapely.LineString([AT + [50, 20], AT + [50, 80]])
+    across = shapely.LineString([AT + [37, 20], AT + [37, 80]])
     name = write(tmp_path / "cross.gpkg", [bank(40), bank(60), across])
     base = ("raster", "scan.laz", "dem.tif", "--res", "1", "--breaklines")
     cadt_terrain(*base, name, code=3, says="lines of the features 0 and 2 (counted from 0) cross near")

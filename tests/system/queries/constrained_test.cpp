@@ -178,7 +178,7 @@ TEST_P(ConstrainedQueries, TrianglesThatAreTurnedOverAreRefused) {
     for (std::int32_t i = 0; i < 12; ++i) {  // almost one line each
       for (const double side : {-1.0, 1.0}) {
         const double x = 1 + random.uniform();
-        xy.insert(xy.end(), {side * x, 1e-16 * random.uniform()});
+        xy.insert(xy.end(), {side * x, 1 + std::ldexp(static_cast<double>(random.below(8)), -52)});
       }
       segments.push_back({2 * i, 2 * i + 1});
     }

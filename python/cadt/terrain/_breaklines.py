@@ -120,14 +120,16 @@ def add_breaklines(cloud: Cloud, lines: Breaklines, options: argparse.Namespace,
 
 
 def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:
-    """Segment i begins at the i-th point that is not the last one of its line."""
-    counts = np.maximum(np.diff(lines.offsets) - 1, 0)
-    line = np.repeat(np.arange(len(counts)), counts)
-    first = np.cumsum(counts) - counts
-    of, (a, b) = lines.feature[line], (int(s) for s in pairs[0])
-    x, y = lines.xyz[lines.offsets[line[a]] + a - first[line[a]], :2]
-    more = f", and {len(pairs) - 1} more pairs of segments do" if len(pairs) > 1 else ""
+    # Segments begin at all points that are not the last one of their line.
+    ends = np.zeros(len(lines.xyz), bool)
+    ends[lines.offsets[1:][np.diff(lines.offsets) > 0] - 1] = True
+    begin = np.flatnonzero(~ends)[list(pairs[0])]
+    of = lines.feature[np.searchsorted(lines.offsets, begin, side="right") - 1]
+    (a, c), (b, d) = lines.xyz[begin, :2], lines.xyz[begin + 1, :2]
+    (ux, uy), (vx, vy), (wx, wy) = b - a, d - c, c - a
+    x, y = a + (b - a) * (wx * vy - wy * vx) / (ux * vy - uy * vx)
+    more = f", and so do {len(pairs) - 1} more pairs of segments" if len(pairs) > 1 else ""
     return (
-        f"lines of the features {of[a]} and {of[b]} (counted from 0) cross near {x:g} {y:g}{more}; "
+        f"lines of the features {of[0]} and {of[1]} (counted from 0) cross at {x:.12g} {y:.12g}{more}; "
         "breaklines may touch, but have one height at each place: divide or remove them"
     )

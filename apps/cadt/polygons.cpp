@@ -63,7 +63,8 @@ Graph graph_of(const io::PolygonsFile& file, std::size_t p) {
 void append_crossed(RegionResult& result, const io::PolygonsFile& file, std::size_t p, const std::string& name,
                     const ConstraintOptions& constraints, const Options& options, bool quiet) {
   const Graph graph = graph_of(file, p);
-  const ConstrainedTriangulation mesh = triangulate_graph(graph.points.view(), graph.segments, name, constraints, options);
+  const ConstrainedTriangulation mesh =
+      triangulate_graph(graph.points.view(), graph.segments, name, constraints, options);
   note_rounding(mesh, fmt::format("{}, polygon {}", name, p), quiet);
   append_inside(result, mesh, static_cast<std::int32_t>(result.points.size()));
   result.region.resize(result.triangles.size() / 3);
@@ -92,12 +93,14 @@ std::size_t handle_problems(const PolygonsCommand& command, RegionResult& result
     if (count == most_shown + 1) text += "\n  ...";
   }
   if (count == 0) return 0;
-  text = fmt::format("{}: {} of {} polygons {} no inside:{}", name, count, file.size(), count == 1 ? "has" : "have", text);
+  text =
+      fmt::format("{}: {} of {} polygons {} no inside:{}", name, count, file.size(), count == 1 ? "has" : "have", text);
   if (command.strict) throw Failure(exit_file, text + "\n  Nothing was written. Without --strict they are left out.");
   if (!command.quiet) {
-    say(fmt::format("cadt: warning: {}\n  They are left out; --crossing exact takes rings that cross, --strict makes this "
-                    "an error.\n",
-                    text));
+    say(fmt::format(
+        "cadt: warning: {}\n  They are left out; --crossing exact takes rings that cross, --strict makes this "
+        "an error.\n",
+        text));
   }
   return count;
 }
@@ -112,9 +115,10 @@ RegionResult result_of(const io::PolygonsFile& file, const PolygonsResult& polyg
   for (std::size_t p = 0; p < file.size(); ++p) {
     result.region.resize(static_cast<std::size_t>(offsets[p + 1]), file.features[p]);
     if (polygons.status()[p] != PolygonStatus::ok) continue;
-    const auto rings = std::span(file.ring_offsets)
-                           .subspan(static_cast<std::size_t>(file.polygon_offsets[p]),
-                                    static_cast<std::size_t>(file.polygon_offsets[p + 1] - file.polygon_offsets[p]) + 1);
+    const auto rings =
+        std::span(file.ring_offsets)
+            .subspan(static_cast<std::size_t>(file.polygon_offsets[p]),
+                     static_cast<std::size_t>(file.polygon_offsets[p + 1] - file.polygon_offsets[p]) + 1);
     const std::vector<Segment> edges = ring_segments(rings);
     result.segments.insert(result.segments.end(), edges.begin(), edges.end());
   }
@@ -174,9 +178,12 @@ void add_polygons(CLI::App& app, Action& chosen) {
   command->add_flag("--strict", options->strict, "exit 3 if a polygon has no inside");
   command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");
   command->footer(
-      "Inside is what is behind an odd number of rings, so holes are left out. Polygons do not know of each other: where\n"
-      "they share a border, its points are there twice. Each triangle has the number of its feature, from 0: as attribute\n"
-      "'feature' in .ply, .vtu and .geojson, as column in .ele. Polygons that have no inside, such as those that cross\n"
+      "Inside is what is behind an odd number of rings, so holes are left out. Polygons do not know of each other: "
+      "where\n"
+      "they share a border, its points are there twice. Each triangle has the number of its feature, from 0: as "
+      "attribute\n"
+      "'feature' in .ply, .vtu and .geojson, as column in .ele. Polygons that have no inside, such as those that "
+      "cross\n"
       "themselves, are named and left out; with --crossing exact rings may cross.\n\n"
       "Examples:\n"
       "  cadt polygons countries.geojson -o countries.png -o triangles.geojson\n"

@@ -12,6 +12,14 @@ namespace {
 /// A bound on how far the exact coordinate is from the rounded one: half a unit in the last place.
 double error_of(double rounded, int rest) { return rest == 0 ? 0 : std::abs(rounded) * 0x1p-53 + 0x1p-1074; }
 
+/// The order of two coordinates, or unsure: rounding is monotone, so the rounded ones are in the order of the exact
+/// ones.
+int compare_rounded(double a, int rest_a, double b, int rest_b) {
+  if (a != b) return a < b ? -1 : 1;
+  if (rest_a != rest_b) return rest_a < rest_b ? -1 : 1;
+  return rest_a == 0 ? 0 : stage::unsure;
+}
+
 /// The vector from one point to another times the product of their w, and that product.
 struct Vector {
   Number x, y, w;
@@ -54,22 +62,17 @@ Place ImplicitPoints::crossing(std::int32_t first, std::int32_t second) const {
           .rest_y = static_cast<std::int8_t>(y.rest)};
 }
 
-// Rounding is monotone, so different rounded coordinates are in the order of the exact ones.
 int ImplicitPoints::compare(const Place& a, const Place& b) const {
-  if (a.x != b.x) return a.x < b.x ? -1 : 1;
-  if (a.rest_x != b.rest_x) return a.rest_x < b.rest_x ? -1 : 1;
-  const bool same_y = a.y == b.y && a.rest_y == b.rest_y;
-  if (a.first == b.first && a.second == b.second && a.first >= 0) return 0;
-  if (a.rest_x == 0 && (!same_y || a.rest_y == 0)) {
-    if (a.y != b.y) return a.y < b.y ? -1 : 1;
-    return (a.rest_y > b.rest_y) - (a.rest_y < b.rest_y);
-  }
+  if (a.first >= 0 && a.first == b.first && a.second == b.second) return 0;
+  const int x = compare_rounded(a.x, a.rest_x, b.x, b.rest_x), y = compare_rounded(a.y, a.rest_y, b.y, b.rest_y);
+  if (x != 0 && x != stage::unsure) return x;
+  if (x == 0 && y != stage::unsure) return y;
   Arena arena;
   const Arithmetic of(arena);
   const Homogeneous p = homogeneous(a, arena), q = homogeneous(b, arena);
-  if (a.rest_x != 0)
+  if (x == stage::unsure)
     if (const int order = exact::compare(of.multiply(p.x, q.w), of.multiply(q.x, p.w)); order != 0) return order;
-  return exact::compare(of.multiply(p.y, q.w), of.multiply(q.y, p.w));
+  return y != stage::unsure ? y : exact::compare(of.multiply(p.y, q.w), of.multiply(q.y, p.w));
 }
 
 int ImplicitPoints::orientation(const Place& a, const Place& b, const Place& c) const {

@@ -226,6 +226,7 @@ class PolygonsCall {
     constraints.domain = Domain::even_odd;
     Options options = ctx_.options;
     options.keep_points = KeepPoints::no;
+    options.order = Order::canonical;
     options.progress = nullptr;
     try {
       const std::vector<std::int32_t> inside =

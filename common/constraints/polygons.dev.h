@@ -151,6 +151,7 @@ CADT_FN cadt_u32 cadt_add_ring(cadt_sweep* s, const cadt_polygon* polygon, cadt_
  * polygon's. */
 CADT_FN cadt_u32 cadt_edges_cross(const cadt_sweep* s, cadt_u32 vertices, cadt_u32 a, cadt_u32 b, cadt_u32 c,
                                   cadt_u32 d) {
+  if ((a > b ? a : b) <= cadt_min_u32(c, d) || (c > d ? c : d) <= cadt_min_u32(a, b)) return 0u; /* side by side */
   if (cadt_turn(s, a, b, c) * cadt_turn(s, a, b, d) >= 0) return 0u;
   if (cadt_turn(s, c, d, a) * cadt_turn(s, c, d, b) >= 0) return 0u;
   for (cadt_u32 v = 0u; v < vertices; ++v)

@@ -59,9 +59,10 @@ CADT_FN cadt_u32 cadt_triangle_near(const cadt_segment_mesh* m, cadt_u32 vertex_
     }
   }
   cadt_u32 t = m->vertex_triangle[nearest], entry = 3u, random = nearest;
-  /* several times as many as triangles lie on a line from one vertex of the sample to the next */
+  /* Many times as many as triangles lie on a line from one vertex of the sample to the next: beside a long edge lie
+   * long triangles, with all sizes down to those of others around. */
   const cadt_u32 most =
-      64u + 8u * CADT_CAST(cadt_u32, cadt_sqrt(CADT_CAST(cadt_real, vertex_count / CADT_PROBE_SAMPLES)));
+      64u + 32u * CADT_CAST(cadt_u32, cadt_sqrt(CADT_CAST(cadt_real, vertex_count / CADT_PROBE_SAMPLES)));
   for (cadt_u32 i = 0u; i < most; ++i) {
     random = random * 1664525u + 1013904223u;
     cadt_u32 k = (random >> 16) % 3u, leave = 3u;

@@ -183,7 +183,7 @@ SegmentSet short_lattice_segments(std::int32_t side) {
 }
 
 TEST(Crossings, ThreadsDoNotMatter) {
-  for (const SegmentSet& set : {random_segments(1, 20000, 0.01), short_lattice_segments(150)}) {
+  for (const SegmentSet& set : {random_segments(1, 6000, 0.02), short_lattice_segments(95)}) {
     const auto one = constraints::arrange(set.xy, set.segments, 1);
     for (const unsigned threads : {2U, 5U}) {
       const auto more = constraints::arrange(set.xy, set.segments, threads);

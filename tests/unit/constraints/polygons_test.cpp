@@ -161,8 +161,10 @@ TEST_P(Polygons, LargePolygonsAmongSmallOnes) {
     if (n == 513) set.add({Ring(600, {1, 1})});
     if (n == 513) polygon[1][300][0] = std::numeric_limits<double>::infinity();
     set.add(polygon);
+    set.add({star(random, n, 0, 0, 5e8, 1e9), star(random, 3 + n / 100, 7e8, 0, 1e8, 5e8)});
   }
   const auto counts = expect_equal(set);
+  EXPECT_GE(counts.at(PolygonStatus::ring_crossing), 4U);
   EXPECT_GE(counts.at(PolygonStatus::self_crossing), 4U);
   EXPECT_EQ(counts.at(PolygonStatus::not_finite), 1U);
   EXPECT_EQ(counts.at(PolygonStatus::too_few_points), 1U);
@@ -204,6 +206,9 @@ TEST_P(Polygons, DefectsAreReportedOneByOne) {
       {{square, {{8, 1}, {10, 1}, {10, 2}}}, PolygonStatus::ring_crossing},
       {{{{0, 0}, {1, 1}, {3, 3}}}, PolygonStatus::zero_area},
       {{square, square}, PolygonStatus::zero_area},
+      {{{{5, 2}, {5, 0}, {5, 2}, {3, 4}, {1, 2}, {3, 4}, {1, 4}}}, PolygonStatus::self_crossing},  // of two slits
+      {{{{4, 0}, {4, 1}, {0, 3}, {4, 1}}, {{1, 1}, {2, 1}, {0, 0}, {2, 1}}, {{2, 2}, {4, 3}, {1, 0}, {4, 3}}},
+       PolygonStatus::ring_crossing},
       {{square, {{1, 1}, {1, 1}, {2, 1}, {2, 2}, {2, 2}}}, PolygonStatus::ok},
   };
   PolygonSet set;

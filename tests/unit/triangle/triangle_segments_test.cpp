@@ -13,13 +13,14 @@ namespace {
 using Indices = std::vector<std::int32_t>;
 using Ints = std::vector<int>;
 
-/// A square of width 4 with a square hole of width 2 and a point in it; a wall from the outer to the inner square; and a
-/// dangling segment outside of all.
+/// A square of width 4 with a square hole of width 2 and a point in it; a wall from the outer to the inner square; and
+/// a dangling segment outside of all.
 struct Plate {
   std::vector<double> xy{0, 0, 4, 0, 4, 4, 0, 4, 1, 1, 3, 1, 3, 3, 1, 3, 2, 2, 6, 0, 6, 1};
   std::vector<double> attributes{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
   Ints point_markers{0, 0, -3, 0, 0, 0, 0, 0, 0, 0, 0};
-  std::vector<Segment> segments{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {2, 6}, {9, 10}, {5, 4}};
+  std::vector<Segment> segments{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5},  {5, 6},
+                                {6, 7}, {7, 4}, {0, 4}, {2, 6}, {9, 10}, {5, 4}};
   Ints segment_markers{7, 0, 0, 0, 0, 0, 0, 0, 0, 5, 8, 6};
   std::vector<std::array<double, 2>> holes{{2.0, 2.5}};
   std::vector<Region> regions{{3.5, 0.5, 11}, {0.5, 3.5, 22}};

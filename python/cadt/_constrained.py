@@ -67,6 +67,10 @@ class ConstrainedDelaunay(Mesh):
     device and equal to CGAL's. Expected O(n log n) work, and O(log) a triangle that segments cross. The GIL is released;
     Ctrl-C ends a call. Meshes never change, and threads may share them.
 
+    Interpolation and rasters take values of the points that were given (`at_crossings` says what crossings get) or of all
+    `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a Delaunay mesh: unless all
+    segments happen to be Delaunay edges they raise `NotDelaunay`; ask ``Delaunay(mesh.points)``.
+
     Examples
     --------
     A square with a square hole:

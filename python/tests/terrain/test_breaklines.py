@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -105,15 +104,25 @@ def test_what_is_refused(las, tmp_path, cadt_terrain):
     cadt_terrain(*base, "bad.gpkg", code=3, says="cannot be read")
 
 
-def test_a_lake_of_a_scan(data, tmp_path, cadt_terrain, monkeypatch):
+def test_a_lake_of_a_scan(data, tmp_path, cadt_terrain):
+    """The largest lake, by its water points: ground and its shore make it flat, ground alone does not."""
     scan = data("pslg/lidr_Topography.laz")
-    lake = Path(data("pslg/lidr_lake_polygons_UTM17.shp"))
-    shutil.copy(lake, tmp_path / "lake.shp")  # of which there is the .shp alone
-    monkeypatch.setenv("SHAPE_RESTORE_SHX", "YES")
-    result = cadt_terrain(
-        "raster", scan, "dem.tif", "--res", "1", "--class", "2,9", "--breaklines", "lake.shp", "--crs", "EPSG:26917"
-    )
-    assert "heights of the points" in result.err
-    with rasterio.open(tmp_path / "dem.tif") as raster:
-        cells = raster.read(1)
-    assert 700 < cells[cells > -9999].min() < cells.max() < 900
+    water = read_cloud([scan], classes=[9])
+    _, edges = cadt.Delaunay(water.xy).alpha_shape(12)
+    parts = shapely.get_parts(shapely.polygonize([shapely.LineString(water.xy[e]) for e in edges]))
+    shore = max(parts, key=lambda part: part.area).exterior
+    level = float(np.median(water.z))
+    lake = shapely.Polygon([(x, y, level) for x, y in shore.coords])
+    name = write(tmp_path / "lake.gpkg", [lake], water.crs)
+    base = ("raster", scan, "--res", "1", "--class", "2")
+    cadt_terrain(*base, "-o", "plain.tif")
+    cadt_terrain(*base, "-o", "dem.tif", "--breaklines", name)
+    inside = {}
+    for file in ("plain.tif", "dem.tif"):
+        with rasterio.open(tmp_path / file) as raster:
+            z, t = raster.read(1), raster.transform
+        x, y = np.meshgrid(t.c + (np.arange(z.shape[1]) + 0.5) * t.a, t.f + (np.arange(z.shape[0]) + 0.5) * t.e)
+        inside[file] = z[shapely.contains_xy(shapely.Polygon(lake), x, y)]
+    assert len(inside["dem.tif"]) > 3000
+    assert np.mean(np.abs(inside["dem.tif"] - level) < 1e-9) > 0.99
+    assert np.mean(np.abs(inside["plain.tif"] - level) < 1e-9) < 0.01

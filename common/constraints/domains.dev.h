@@ -77,7 +77,6 @@ CADT_FN cadt_u32 cadt_weight_of_edge(const cadt_edge_weights* w, cadt_u32 from, 
   return from < to ? w->weights[low] : 0u - w->weights[low];
 }
 
-/* A link: what lies left of the edge, what lies right of it, and the weight of the edge. */
 /* Adds the number of constrained edges. */
 CADT_KERNEL(cadt_domain_edges, CADT_DOMAIN_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL cadt_u32* counter) {
@@ -93,6 +92,7 @@ CADT_KERNEL(cadt_domain_edges, CADT_DOMAIN_MESH_PARAMETERS, cadt_u32 count, cadt
   if (found) cadt_add_relaxed(counter, found);
 }
 
+/* A link: what lies left of the edge, what lies right of it, and the weight of the edge. */
 enum { CADT_LINK_WORDS = 3 };
 
 /* Lists links as far as there is `room`, in any order, and counts them: one for each constrained edge between two

@@ -158,6 +158,11 @@ CADT_KERNEL(cadt_trace_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const
     cadt_u32 a = ends[2u * s], b = ends[2u * s + 1u];
     cadt_u32 length = 0u, low = begins ? begins[s] : 0u, high = begins ? begins[s + 1u] : 0u;
     const cadt_u32 none = a == b ? 1u : 0u;
+    if (begins && high - low == 2u) { /* one edge, as most segments are */
+      chains[low] = input_ids ? input_ids[a] : a;
+      chains[low + 1u] = input_ids ? input_ids[b] : b;
+      continue;
+    }
     while (a != b) {
       const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
       if (step.kind != CADT_STEP_EDGE) {

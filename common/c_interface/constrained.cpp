@@ -108,6 +108,35 @@ cadt_status cadt_triangulator_triangulate_constrained(cadt_triangulator* triangu
 
 void cadt_constrained_free(cadt_constrained* mesh) { delete mesh; }
 
+cadt_status cadt_triangulator_triangulate_constrained_device(cadt_triangulator* triangulator,
+                                                             const cadt_device_points* points,
+                                                             const cadt_device_array* segments,
+                                                             const cadt_constraint_options* constraints,
+                                                             cadt_device_triangulation** mesh) {
+  return guarded([&] {
+    auto& result = required(mesh, "mesh");
+    cadt_triangulator& t = required(triangulator, "triangulator");
+    const cadt::DevicePoints given = points_of(points);
+    const cadt_device_array& between = required(segments, "segments");
+    const cadt::ConstraintOptions how = constraints_of(constraints);
+    result = new cadt_device_triangulation{
+        t.begin_call().triangulate_constrained(given, cadt::DeviceArray{between.memory, between.size}, how)};
+  });
+}
+
+cadt_status cadt_device_triangulation_constraints(const cadt_device_triangulation* mesh, void** edge_flags,
+                                                  void** regions, void** triangles_inside, size_t* number_inside) {
+  return guarded([&] {
+    const cadt::DeviceTriangulation& m = required(mesh, "mesh").mesh;
+    auto &flags = required(edge_flags, "edge_flags"), &of = required(regions, "regions"),
+         &inside = required(triangles_inside, "triangles_inside");
+    required(number_inside, "number_inside") = m.number_inside();
+    flags = m.edge_flags();
+    of = m.regions();
+    inside = m.triangles_inside();
+  });
+}
+
 cadt_status cadt_constrained_mesh(const cadt_constrained* mesh, cadt_triangulation** triangles) {
   return guarded([&] {
     auto& result = required(triangles, "triangles");

@@ -52,6 +52,17 @@ CADT_API cadt_status cadt_triangulator_triangulate_constrained(cadt_triangulator
                                                                const cadt_constraint_options* constraints,
                                                                cadt_constrained** mesh);
 CADT_API void cadt_constrained_free(cadt_constrained* mesh);
+/* From device memory to device memory; `segments`: two int32 words each. CADT_CROSSING_ERROR alone. */
+CADT_API cadt_status cadt_triangulator_triangulate_constrained_device(cadt_triangulator* triangulator,
+                                                                      const cadt_device_points* points,
+                                                                      const cadt_device_array* segments,
+                                                                      const cadt_constraint_options* constraints,
+                                                                      cadt_device_triangulation** mesh);
+/* Handles of device memory: the flags of edges and the region of each triangle, and the vertices of the triangles
+ * inside, 3 words each; NULL where there are none (DeviceTriangulation). */
+CADT_API cadt_status cadt_device_triangulation_constraints(const cadt_device_triangulation* mesh, void** edge_flags,
+                                                           void** regions, void** triangles_inside,
+                                                           size_t* number_inside);
 
 /* Its triangles, neighbours, hull, duplicates, statistics, as a handle of its own: O(1). Its points are those of the
  * input and, behind them, the added ones. */

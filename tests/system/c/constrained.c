@@ -175,6 +175,40 @@ static void test_nothing(const cadt_constrained* mesh) {
   cadt_constrained_free(NULL);
 }
 
+/* The host's memory is device memory of the host back end. */
+static void test_on_device(cadt_triangulator* triangulator) {
+  cadt_device_points points = {0};
+  cadt_device_array segments = {0};
+  cadt_constraint_options how = {0};
+  cadt_device_triangulation* mesh = NULL;
+  void *flags = NULL, *regions = NULL, *inside = NULL;
+  size_t count = 0, triangles = 0, t, bits = 0;
+
+  points.x = square;
+  points.count = n;
+  segments.memory = (void*)rings;
+  segments.size = 2 * m;
+  how.size = sizeof how;
+  how.domain = CADT_DOMAIN_EVEN_ODD;
+  CHECK_OK(cadt_triangulator_triangulate_constrained_device(triangulator, &points, &segments, &how, &mesh));
+  CHECK_OK(cadt_device_triangulation_size(mesh, &count, &triangles, &count));
+  CHECK_OK(cadt_device_triangulation_constraints(mesh, &flags, &regions, &inside, &count));
+  CHECK(triangles == 10 && count == 8 && ((const int32_t*)inside)[0] == 0 && ((const int32_t*)regions)[0] == 0);
+  for (t = 0; t < triangles; ++t)
+    bits += (((const uint32_t*)flags)[t] & 1) + (((const uint32_t*)flags)[t] >> 1 & 1) +
+            (((const uint32_t*)flags)[t] >> 2 & 1);
+  CHECK(bits == 4 + 2 * 4);
+  CHECK_NULL(cadt_device_triangulation_constraints(mesh, NULL, &regions, &inside, &count), "edge_flags");
+  CHECK_NULL(cadt_device_triangulation_constraints(NULL, &flags, &regions, &inside, &count), "mesh");
+  cadt_device_triangulation_free(mesh);
+  mesh = NULL;
+  CHECK_NULL(cadt_triangulator_triangulate_constrained_device(triangulator, &points, NULL, &how, &mesh), "segments");
+  how.crossing = CADT_CROSSING_EXACT;
+  CHECK_STATUS(CADT_OPTION_ERROR,
+               cadt_triangulator_triangulate_constrained_device(triangulator, &points, &segments, &how, &mesh));
+  CHECK(mesh == NULL);
+}
+
 void test_constrained(void) {
   const cadt_points points = points_of(square, n);
   const cadt_options options = on_host();
@@ -211,6 +245,7 @@ void test_constrained(void) {
   how.region_count = 1;
   CHECK_OK(cadt_triangulator_open(&options, &triangulator));
   CHECK_OK(cadt_triangulator_triangulate_constrained(triangulator, &points, rings, m, &how, &same));
+  test_on_device(triangulator);
   cadt_triangulator_free(triangulator);
   CHECK_OK(cadt_constrained_hash(mesh, &high, &low));
   CHECK_OK(cadt_constrained_hash(same, &other_high, &other_low));

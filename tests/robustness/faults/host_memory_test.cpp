@@ -259,11 +259,11 @@ TEST(HostMemory, CInterface) {
     const std::unique_ptr<cadt_polygon_triangles, decltype(&cadt_polygon_triangles_free)> owned(
         triangles, &cadt_polygon_triangles_free);
     require_ok(status);
-    const std::int64_t* offsets = nullptr;
+    const std::int64_t* triangle_offsets = nullptr;
     const std::int32_t* vertices = nullptr;
     std::size_t count = 0;
-    require_ok(cadt_polygon_triangles_get(triangles, &offsets, &count, &vertices));
-    return std::to_string(offsets[count]);
+    require_ok(cadt_polygon_triangles_get(triangles, &triangle_offsets, &count, &vertices));
+    return std::to_string(triangle_offsets[count]);
   });
   // A message that finds no memory: the status tells all the same.
   until_refusal = 0;

@@ -40,7 +40,7 @@ def area_of(points, triangles):
     return sum(areas)
 
 
-class ConstraintTest(CliTest):
+class ConstraintTest:
     def off(self, name):
         vertices, triangles = read_off(self.path(name).read_text())
         return [(float(x), float(y)) for x, y, _ in vertices], triangles

@@ -2,6 +2,7 @@
 #include "common/constraints/constraints.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <initializer_list>
 #include <limits>
 #include <optional>
@@ -53,23 +54,33 @@ class Constrainer {
     mesh_.edge_flags = ctx_.memory.allocate_zeros(mesh_.all * word);
   }
 
+  /// The first launch inserts short pieces, all that do not meet. The others are taken in a random order, so that those
+  /// of many that cross one triangle part the rest, a few times as many as the launch before has inserted: what is
+  /// walked along in vain is in proportion to what is not.
   [[nodiscard]] Outcome insert() {
-    std::size_t count = job_.count, tried = most_tried;
+    const bool gpu = !ctx_.device.shape().contiguous;
+    const std::size_t least = gpu ? 1024 : 64;
+    std::size_t count = job_.count, taken = count;
     const Allocation* pairs = &ends_;
     Allocation left;
     for (int launch = 0; count != 0; ++launch) {
-      Pieces pieces = find(*pairs, count, launch == 0);
+      const std::size_t first = count - taken;
+      Pieces pieces = find(*pairs, first, taken, launch == 0);
       if (launch == 0) ctx_.statistics.inserted_segments = pieces.count;
-      if (pieces.count == 0) break;
-      tried = std::min(tried, pieces.count);
-      left = ctx_.memory.allocate(4 * pieces.count * word);
-      const std::optional<std::size_t> waiting = insert(pieces, tried, left);
-      if (!waiting) return Outcome::crossed;
-      // If none had room, fewer are tried: one alone always has.
-      tried = *waiting < pieces.count ? most_tried : std::max<std::size_t>(tried / 4, 1);
-      count = *waiting;
+      Allocation others = ctx_.memory.allocate((2 * first + 4 * pieces.count) * word);
+      if (first != 0) launch_.run<KernelId::cadt_copy_pairs>(*pairs, launch_.grid(2 * first), others);
+      const std::uint32_t begin = static_cast<std::uint32_t>(first);
+      ctx_.device.write(*words_, CADT_SEGMENTS_LEFT * word, &begin, word);
+      const std::optional<std::size_t> all = pieces.count == 0 ? first : insert(pieces, others);
+      if (!all) return Outcome::crossed;
+      const std::size_t waiting = *all - first;
+      count = *all;
+      left = launch == 0 ? shuffled(others, count) : std::move(others);
       pairs = &left;
-      ctx_.statistics.segment_retries += count;
+      const std::size_t won = taken > waiting ? taken - waiting : 0;
+      // If none had room, fewer are tried: one alone always has.
+      taken = std::min(count, launch == 0 || won != 0 ? std::max(4 * won, least) : std::max<std::size_t>(taken / 4, 1));
+      ctx_.statistics.segment_retries += waiting;
       ctx_.check("constrain", 0.75);
     }
     return Outcome::done;
@@ -89,6 +100,7 @@ class Constrainer {
     require_sound(launch_.read_word(words_, CADT_SEGMENTS_BROKEN));
     if (!job_.wants_chains) return;
     if (job_.count == 0) ctx_.device.fill(*offsets, 0, word, 0);
+    require_countable();
     launch_.scan(offsets, job_.count + 1);
     job_.chain_length = launch_.read_word(offsets, job_.count);
     job_.chains = ctx_.memory.allocate(std::max<std::size_t>(job_.chain_length, 1) * word);
@@ -116,6 +128,18 @@ class Constrainer {
     [[nodiscard]] auto arguments() const { return std::tie(vertex, triangle, edge, outer, piece, room); }
   };
 
+  /// \throws LimitError if a word cannot hold the number of all vertices of chains
+  void require_countable() {
+    const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
+    const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    const std::uint64_t all =
+        2 * job_.count + (std::uint64_t{found[CADT_SEGMENTS_MORE_HIGH]} << 32) + found[CADT_SEGMENTS_MORE_LOW];
+    if (all > most)
+      throw LimitError("the chains of all segments have " + std::to_string(all) + " vertices, more than " +
+                           std::to_string(most) + ": many segments overlap; leave out those that repeat others",
+                       all, most);
+  }
+
   static void require_sound(std::uint32_t broken) {
     if (broken != 0) give_up("the mesh is wrong at ", broken, " segments");
   }
@@ -126,27 +150,47 @@ class Constrainer {
     return count;
   }
 
-  /// The pieces of segments between pairs of vertices that are no edges. `first`: of whole segments, most of which are.
-  [[nodiscard]] Pieces find(const Allocation& pairs, std::size_t count, bool first) {
+  [[nodiscard]] Allocation shuffled(const Allocation& pairs, std::size_t count) {
+    Allocation result = ctx_.memory.allocate(std::max<std::size_t>(2 * count, 1) * word);
+    launch_.run<KernelId::cadt_shuffle_pairs>(pairs, launch_.grid(count), std::bit_width(count), result);
+    return result;
+  }
+
+  /// The pieces of segments between pairs of vertices that are no edges. `whole`: of whole segments, most of which are.
+  [[nodiscard]] Pieces find(const Allocation& pairs, std::size_t first, std::size_t count, bool whole) {
     Pieces pieces;
-    pieces.room = first ? count / 8 + 4096 : count + 64;
-    for (;;) {
+    pieces.room = whole ? count / 8 + 4096 : count + 64;
+    const bool limited = whole || !ctx_.device.shape().contiguous;
+    const std::uint32_t limit = limited ? std::uint32_t{CADT_PIECE_LONG} : CADT_NONE;
+    const Allocation none;
+    for (bool again = false;; again = true) {
       make(pieces.room + 1, {&pieces.entry, &pieces.sizes, &pieces.begins, &pieces.upper, &pieces.strides});
       make(2 * pieces.room, {&pieces.ends});
-      launch_.run<KernelId::cadt_find_segments>(segment_mesh(), pairs, launch_.grid(count), pieces, words_);
+      launch_.run<KernelId::cadt_find_segments>(segment_mesh(), pairs, first, launch_.grid(count), limit,
+                                                std::uint32_t{!whole}, pieces, again ? claims_ : none, words_);
       const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
       pieces.count = found[CADT_SEGMENTS_PIECES];
       pieces.stride_count = found[CADT_SEGMENTS_STRIDES];
       require_sound(found[CADT_SEGMENTS_BROKEN]);
       ctx_.device.fill(*words_, 0, CADT_SEGMENTS_WORDS * word, 0);
-      if (pieces.count <= pieces.room) return pieces;
-      pieces.room = pieces.count;  // flags are set already, and are set again
+      const bool fits = pieces.count <= pieces.room;
+      if (fits && !again) return pieces;
+      free_claims();
+      if (fits) return pieces;
+      // Flags are set already, and are set again. Pieces that several segments share are now listed once.
+      pieces.room = again ? pieces.count : std::min(pieces.count, 6 * vertices_ + count);
     }
   }
 
-  /// Inserts what does not meet a piece that goes first. How many pairs are left, in `left`; nothing if a piece crosses
-  /// a constrained edge.
-  std::optional<std::size_t> insert(Pieces& pieces, std::size_t tried, const Allocation& left) {
+  void free_claims() {
+    if (!claims_) claims_ = ctx_.memory.allocate(mesh_.all * word);
+    ctx_.device.fill(*claims_, 0, mesh_.all * word, CADT_NONE);
+  }
+
+  /// Inserts what does not meet a piece that goes first. How many pairs are left, in `left`, where words_ says that
+  /// they begin; nothing if a piece crosses a constrained edge.
+  std::optional<std::size_t> insert(Pieces& pieces, const Allocation& left) {
+    const std::size_t tried = std::min(pieces.count, most_tried);
     const std::size_t most = std::numeric_limits<std::uint32_t>::max() / tried;
     const LaunchGrid each = launch_.grid(pieces.count);
     const Strides strides = walk_strides(pieces, each, left);
@@ -157,10 +201,7 @@ class Constrainer {
     rings.room = std::min(total, 2 * mesh_.all);  // one piece alone always has room
     make(std::max<std::size_t>(rings.room, 1),
          {&rings.vertex, &rings.triangle, &rings.edge, &rings.outer, &rings.piece});
-    if (!claims_) {
-      claims_ = ctx_.memory.allocate(mesh_.all * word);
-      ctx_.device.fill(*claims_, 0, mesh_.all * word, CADT_NONE);
-    }
+    if (!claims_) free_claims();
     const Allocation wins = ctx_.memory.allocate(pieces.count * word),
                      bases = ctx_.memory.allocate(pieces.count * word);
     ctx_.device.fill(*bases, 0, pieces.count * word, CADT_NONE);
@@ -205,12 +246,15 @@ class Constrainer {
     const Allocation others = ctx_.memory.allocate(most_others * sizeof(cadt_chain));
     launch_.run<KernelId::cadt_fill_cavities>(segment_mesh(), pieces, rings, each, wins, bases, longer, others, words_);
     if (!queues) return;
-    while (const std::uint32_t waiting = take(CADT_SEGMENTS_LONG_CHAINS)) {
+    for (int launch = 1;; ++launch) {
+      const std::uint32_t waiting = take(CADT_SEGMENTS_LONG_CHAINS);
+      if (waiting == 0) break;
       std::swap(longer, chains);
       if (!longer) longer = ctx_.memory.allocate(most_long * sizeof(cadt_chain));
       const LaunchGrid teams = launch_.grid_of_teams(waiting, CADT_CHAIN_LANES);
-      launch_.run_in_groups<KernelId::cadt_divide_chains>(teams.items, CADT_CHAIN_LANES, segment_mesh(), rings, chains,
-                                                          teams, bases, longer, others, words_);
+      launch_.run_in_groups<KernelId::cadt_divide_chains>(
+          teams.items, CADT_CHAIN_LANES, segment_mesh(), rings, chains, teams,
+          launch < CADT_CHAIN_LAUNCHES ? std::uint32_t{CADT_CHAIN_LONG} : CADT_NONE, bases, longer, others, words_);
     }
     if (const std::uint32_t waiting = take(CADT_SEGMENTS_CHAINS))
       launch_.run<KernelId::cadt_fill_chains>(segment_mesh(), rings, others, launch_.grid_spread(waiting), bases,

@@ -18,6 +18,8 @@ enum {
   CADT_SEGMENTS_LONG_CHAINS, /* that are left to another launch, */
   CADT_SEGMENTS_CHAINS,      /* and others */
   CADT_SEGMENTS_BAD_INDEX,   /* the first segment with an end that is no point; CADT_NONE: none */
+  CADT_SEGMENTS_MORE_LOW,    /* vertices of chains, but for two a segment, */
+  CADT_SEGMENTS_MORE_HIGH,   /* in two words */
   CADT_SEGMENTS_WORDS
 };
 
@@ -71,20 +73,19 @@ CADT_KERNEL(cadt_vertices_of_segments, CADT_GLOBAL const cadt_u32* segments, cad
   }
 }
 
-/* On GPUs, the triangles that one work-item walks through before a piece counts as long, and those of a stride. */
+/* The triangles that one work-item walks through before a piece counts as long, on GPUs and in the first launch, and
+ * those of a stride. */
 enum { CADT_PIECE_LONG = 96, CADT_STRIDE = 48, CADT_MOST_STRIDES = 1024 };
 
 /* Walks along a piece from `at->half_edge` on. Returns whether it has come to a vertex, within the limit. */
 CADT_FN cadt_u32 cadt_walk_piece(const cadt_segment_mesh* m, cadt_crossed* at, cadt_point p, cadt_u32 to, cadt_point q,
-                                 cadt_u32* triangles, cadt_u32* left, cadt_counters* counters) {
+                                 cadt_u32 limit, cadt_u32* triangles, cadt_u32* left, cadt_counters* counters) {
   for (;;) {
     cadt_cross(m, at, p, to, q, counters);
     ++*triangles;
     if (at->side > 0) ++*left;
     if (at->side == 0) return 1u;
-#if !CADT_CONTIGUOUS
-    if (*triangles > CADT_CAST(cadt_u32, CADT_PIECE_LONG)) return 0u;
-#endif
+    if (*triangles > limit) return 0u;
   }
 }
 
@@ -98,15 +99,28 @@ CADT_FN cadt_u32 cadt_strides_for(cadt_point p, cadt_point q, cadt_point reached
   return 2u + CADT_CAST(cadt_u32, wanted);
 }
 
-/* Flags the edges of segments between the vertices of `pairs` and lists their other pieces, as far as there is room;
- * counts all of them. */
-CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 count,
-            cadt_u32 grain, CADT_PIECES_PARAMETERS, CADT_GLOBAL cadt_u32* words) {
+/* Of pieces with the same first triangle and the same end, which many segments on one line have, whether this one is
+ * not the first. No others have both in common: they would cross in that triangle. `seen`: null: it does not matter */
+CADT_FN cadt_u32 cadt_is_seen(CADT_GLOBAL cadt_u32* seen, cadt_u32 entry, cadt_u32 end) {
+  if (!seen || cadt_cas_relaxed(seen + CADT_TRIANGLE_OF(entry), CADT_NONE, end)) return 0u;
+  return cadt_load_relaxed(seen + CADT_TRIANGLE_OF(entry)) == end ? 1u : 0u;
+}
+/* Counts a piece; its place, or CADT_NONE if there are too many to be counted. */
+CADT_FN cadt_u32 cadt_place_of_piece(CADT_GLOBAL cadt_u32* words) {
+  if (cadt_load_relaxed(words + CADT_SEGMENTS_PIECES) >= 0x80000000u) return CADT_NONE;
+  return cadt_add_relaxed(words + CADT_SEGMENTS_PIECES, 1u);
+}
+
+/* Flags the edges of segments between the vertices of pairs from `first` on and lists their other pieces, as far as
+ * there is room; counts all of them. Those of more triangles than `limit` have strides if `divides`, else they wait. */
+CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 first,
+            cadt_u32 count, cadt_u32 grain, cadt_u32 limit, cadt_u32 divides, CADT_PIECES_PARAMETERS,
+            CADT_GLOBAL cadt_u32* seen, CADT_GLOBAL cadt_u32* words) {
   CADT_SEGMENT_MESH(mesh);
   CADT_PIECES(pieces);
   CADT_DECLARE_COUNTERS(counters);
   CADT_FOR(s, count, grain) {
-    cadt_u32 a = pairs[2u * s], b = pairs[2u * s + 1u];
+    cadt_u32 a = pairs[2u * (first + s)], b = pairs[2u * (first + s) + 1u];
     while (a != b) {
       const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
       const cadt_u32 from = step.from_b ? b : a, to = step.from_b ? a : b;
@@ -121,9 +135,9 @@ CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const 
         const cadt_point p = cadt_load_point(mesh.points + from), q = cadt_load_point(mesh.points + to);
         cadt_crossed at = {step.half_edge, CADT_NONE, CADT_NONE, 1};
         cadt_u32 triangles = 1u, left = 1u;
-        const cadt_u32 whole = cadt_walk_piece(&mesh, &at, p, to, q, &triangles, &left, &counters);
-        const cadt_u32 place = cadt_add_relaxed(words + CADT_SEGMENTS_PIECES, 1u);
+        const cadt_u32 whole = cadt_walk_piece(&mesh, &at, p, to, q, limit, &triangles, &left, &counters);
         reached = whole ? at.apex : to;
+        const cadt_u32 place = cadt_is_seen(seen, step.half_edge, reached) ? CADT_NONE : cadt_place_of_piece(words);
         if (place < pieces.room) {
           pieces.ends[2u * place] = from;
           pieces.ends[2u * place + 1u] = reached;
@@ -131,7 +145,7 @@ CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const 
           pieces.upper[place] = whole ? left : CADT_NONE;
           pieces.sizes[place] = whole ? triangles + 3u : CADT_NONE;
           pieces.strides[place] = CADT_NONE;
-          if (!whole) { /* their number for now */
+          if (!whole && divides) { /* their number for now */
             const cadt_u32 strides = cadt_strides_for(p, q, cadt_load_point(mesh.points + at.apex));
             cadt_add_relaxed(words + CADT_SEGMENTS_STRIDES, strides);
             pieces.strides[place] = strides;
@@ -144,6 +158,31 @@ CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const 
         a = reached;
     }
   }
+}
+
+/* Pairs at other places, at random: `bits` hold any place, by which each leads to another one, and that to the next one
+ * until it is below `count`. */
+CADT_FN cadt_u32 cadt_shuffled_place(cadt_u32 place, cadt_u32 bits, cadt_u32 count) {
+  const cadt_u32 mask = (1u << bits) - 1u, half = (bits + 1u) / 2u;
+  do {
+    place = (place + 0x1E3779B9u) * 0x7FEB352Du & mask;
+    place = (place ^ place >> half) * 0x846CA68Bu & mask;
+    place ^= place >> half;
+  } while (place >= count);
+  return place;
+}
+CADT_KERNEL(cadt_shuffle_pairs, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 count, cadt_u32 grain, cadt_u32 bits,
+            CADT_GLOBAL cadt_u32* shuffled) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 place = cadt_shuffled_place(i, bits, count);
+    shuffled[2u * place] = pairs[2u * i];
+    shuffled[2u * place + 1u] = pairs[2u * i + 1u];
+  }
+}
+/* `count`: words of pairs. */
+CADT_KERNEL(cadt_copy_pairs, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* copies) {
+  CADT_FOR(i, count, grain) { copies[i] = pairs[i]; }
 }
 
 /* Segments in the mesh that has all of them. Flags their edges; counts[s]: how many vertices its chain has. With
@@ -183,6 +222,8 @@ CADT_KERNEL(cadt_trace_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const
     }
     if (begins && low < high) chains[low] = input_ids ? input_ids[a] : a;
     if (!begins) counts[s] = none ? 0u : length + 1u;
+    if (!begins && length > 1u && cadt_add_relaxed(words + CADT_SEGMENTS_MORE_LOW, length - 1u) > 0u - length)
+      cadt_add_relaxed(words + CADT_SEGMENTS_MORE_HIGH, 1u);
   }
 }
 

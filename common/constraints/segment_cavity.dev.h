@@ -15,17 +15,10 @@
 #ifndef CADT_CONSTRAINTS_SEGMENT_CAVITY_H
 #define CADT_CONSTRAINTS_SEGMENT_CAVITY_H
 
-#include "common/constraints/segment_rings.dev.h"
+#include "common/constraints/segment_mountain.dev.h"
 #include "common/portable/teams.dev.h"
 
 /* ---- the two polygons ---- */
-/* A part of a ring: the polygon with the base from place `low` to place `high` and the chain between. */
-typedef struct {
-  cadt_u32 low, high;
-  cadt_u32 parent; /* the half-edge on the other side of the base; CADT_NONE: the other polygon */
-  cadt_u32 piece;
-} cadt_chain;
-
 /* The better of two places as apex over p q. */
 CADT_FN cadt_u32 cadt_better_apex(const cadt_segment_mesh* m, const cadt_rings* rings, cadt_point p, cadt_point q,
                                   cadt_u32 x, cadt_u32 y, cadt_counters* counters) {
@@ -82,8 +75,20 @@ CADT_FN cadt_u32 cadt_apex_of_chain(const cadt_segment_mesh* m, const cadt_rings
 CADT_FN void cadt_link_base(const cadt_segment_mesh* m, CADT_GLOBAL cadt_u32* base, cadt_u32 half_edge) {
   if (cadt_cas_relaxed(base, CADT_NONE, half_edge)) return;
   const cadt_u32 other = cadt_load_relaxed(base);
-  m->across[3u * CADT_TRIANGLE_OF(half_edge) + 2u] = other;
-  m->across[3u * CADT_TRIANGLE_OF(other) + 2u] = half_edge;
+  m->across[3u * CADT_TRIANGLE_OF(half_edge) + CADT_EDGE_OF(half_edge)] = other;
+  m->across[3u * CADT_TRIANGLE_OF(other) + CADT_EDGE_OF(other)] = half_edge;
+}
+
+/* Links the half-edge of a chain's base with what is on its other side. */
+CADT_FN void cadt_close_base(const cadt_segment_mesh* m, const cadt_chain* c, cadt_u32 base,
+                             CADT_GLOBAL cadt_u32* bases) {
+  m->edge_flags[CADT_TRIANGLE_OF(base)] = c->parent == CADT_NONE ? 1u << CADT_EDGE_OF(base) : 0u;
+  if (c->parent == CADT_NONE) {
+    cadt_link_base(m, bases + c->piece, base);
+  } else {
+    m->across[3u * CADT_TRIANGLE_OF(base) + CADT_EDGE_OF(base)] = c->parent;
+    m->across[3u * CADT_TRIANGLE_OF(c->parent) + CADT_EDGE_OF(c->parent)] = base;
+  }
 }
 
 /* Writes the triangle at the base of a chain. The chains on its sides are `sides`, [0] on the left; one without
@@ -96,15 +101,7 @@ CADT_FN void cadt_write_base(const cadt_segment_mesh* m, const cadt_rings* rings
   corners[1] = rings->vertex[c->high];
   corners[2] = rings->vertex[apex];
   for (cadt_u32 k = 0u; k < 3u; ++k) cadt_store_relaxed(m->vertex_triangle + corners[k], t);
-  const cadt_u32 base = CADT_HALF_EDGE(t, 2u);
-  if (c->parent == CADT_NONE) {
-    m->edge_flags[t] = 4u;
-    cadt_link_base(m, bases + c->piece, base);
-  } else {
-    m->edge_flags[t] = 0u;
-    m->across[3u * t + 2u] = c->parent;
-    m->across[3u * CADT_TRIANGLE_OF(c->parent) + CADT_EDGE_OF(c->parent)] = base;
-  }
+  cadt_close_base(m, c, CADT_HALF_EDGE(t, 2u), bases);
   const cadt_chain left = {c->low, apex, CADT_HALF_EDGE(t, 1u), c->piece},
                    right = {apex, c->high, CADT_HALF_EDGE(t, 0u), c->piece};
   sides[0] = left;
@@ -115,12 +112,31 @@ CADT_FN void cadt_write_base(const cadt_segment_mesh* m, const cadt_rings* rings
 
 enum { CADT_CHAIN_STACK = 32 /* the longer side of each triangle waits: each next one is at most half as long */ };
 
+/* A chain that divides well takes a few times its length and its logarithm to be filled. Mountains above
+ * CADT_MOUNTAIN_SMALL that are left when the work of so many times the length is done are filled by
+ * cadt_fill_mountain, whose triangles take as long as about so many places. */
+enum { CADT_CHAIN_WORK = CADT_CONTIGUOUS ? 40 : 8, CADT_MOUNTAIN_SMALL = 64 };
+
 /* All triangles of a chain. */
 CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings, cadt_chain c,
                              CADT_GLOBAL cadt_u32* bases, CADT_GLOBAL cadt_u32* words, cadt_counters* counters) {
   cadt_chain stack[CADT_CHAIN_STACK], sides[2];
   cadt_u32 waiting = 0u;
+  cadt_u64 work = CADT_CAST(cadt_u64, c.high - c.low) * CADT_CAST(cadt_u64, CADT_CHAIN_WORK);
   for (;;) {
+    const cadt_u32 size = c.high - c.low;
+    if (work < size && size > CADT_CAST(cadt_u32, CADT_MOUNTAIN_SMALL) && cadt_is_mountain(m, rings, &c)) {
+      const cadt_u32 base = cadt_fill_mountain(m, rings, &c, counters);
+      if (base == CADT_NONE) {
+        cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
+        return;
+      }
+      cadt_close_base(m, &c, base, bases);
+      if (!waiting) return;
+      c = stack[--waiting];
+      continue;
+    }
+    work = work < size ? 0u : work - size;
     const cadt_u32 apex = cadt_apex_of_chain(m, rings, &c, 0, 0u, 1u, counters);
     if (apex == CADT_NONE) {
       cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
@@ -139,8 +155,8 @@ CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings
 }
 
 /* On GPUs, chains longer than CADT_CHAIN_LONG are divided by teams, a triangle a launch, those above CADT_CHAIN_SHORT
- * filled by work-items of their own afterwards. */
-enum { CADT_CHAIN_SHORT = 8, CADT_CHAIN_LONG = 32, CADT_CHAIN_LANES = 128 };
+ * filled by work-items of their own afterwards; so is what does not divide well and is long after so many launches. */
+enum { CADT_CHAIN_SHORT = 8, CADT_CHAIN_LONG = 32, CADT_CHAIN_LANES = 128, CADT_CHAIN_LAUNCHES = 64 };
 
 /* Chains that are left to another launch. */
 typedef struct {
@@ -148,12 +164,12 @@ typedef struct {
   CADT_GLOBAL cadt_chain* others;
 } cadt_chain_queues;
 
-/* Fills a chain, or leaves it to another launch. */
+/* Fills a chain, or leaves it to another launch; one of more than `longest` places to a team. */
 CADT_FN void cadt_fill_or_queue(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c,
                                 CADT_GLOBAL cadt_u32* bases, const cadt_chain_queues* queues, cadt_u32 shortest,
-                                CADT_GLOBAL cadt_u32* words, cadt_counters* counters) {
+                                cadt_u32 longest, CADT_GLOBAL cadt_u32* words, cadt_counters* counters) {
   const cadt_u32 size = c->high - c->low;
-  if (size > CADT_CAST(cadt_u32, CADT_CHAIN_LONG) && !CADT_CONTIGUOUS)
+  if (size > longest && !CADT_CONTIGUOUS)
     queues->longer[cadt_add_relaxed(words + CADT_SEGMENTS_LONG_CHAINS, 1u)] = *c;
   else if (size > shortest && !CADT_CONTIGUOUS)
     queues->others[cadt_add_relaxed(words + CADT_SEGMENTS_CHAINS, 1u)] = *c;
@@ -174,15 +190,17 @@ CADT_KERNEL(cadt_fill_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAME
     if (!wins[s]) continue;
     const cadt_u32 begin = pieces.begins[s], end = begin + pieces.sizes[s] - 1u, b = begin + pieces.upper[s] + 1u;
     const cadt_chain above = {begin, b, CADT_NONE, s}, below = {b, end, CADT_NONE, s};
-    cadt_fill_or_queue(&mesh, &rings, &above, bases, &queues, CADT_CHAIN_LONG, words, &counters);
-    cadt_fill_or_queue(&mesh, &rings, &below, bases, &queues, CADT_CHAIN_LONG, words, &counters);
+    cadt_fill_or_queue(&mesh, &rings, &above, bases, &queues, CADT_CHAIN_LONG, CADT_CHAIN_LONG, words, &counters);
+    cadt_fill_or_queue(&mesh, &rings, &below, bases, &queues, CADT_CHAIN_LONG, CADT_CHAIN_LONG, words, &counters);
   }
 }
 
-/* A triangle of each long chain of the launch before, by a team. */
+/* A triangle of each long chain of the launch before, by a team. What is longer than `longest` is left to teams again.
+ */
 CADT_TEAM_KERNEL(CADT_CHAIN_LANES, 8, cadt_divide_chains, CADT_SEGMENT_MESH_PARAMETERS, CADT_RINGS_PARAMETERS,
-                 CADT_GLOBAL const cadt_chain* chains, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* bases,
-                 CADT_GLOBAL cadt_chain* longer, CADT_GLOBAL cadt_chain* others, CADT_GLOBAL cadt_u32* words) {
+                 CADT_GLOBAL const cadt_chain* chains, cadt_u32 count, cadt_u32 grain, cadt_u32 longest,
+                 CADT_GLOBAL cadt_u32* bases, CADT_GLOBAL cadt_chain* longer, CADT_GLOBAL cadt_chain* others,
+                 CADT_GLOBAL cadt_u32* words) {
   CADT_SEGMENT_MESH(mesh);
   CADT_RINGS(rings);
   CADT_DECLARE_COUNTERS(counters);
@@ -200,7 +218,7 @@ CADT_TEAM_KERNEL(CADT_CHAIN_LANES, 8, cadt_divide_chains, CADT_SEGMENT_MESH_PARA
     cadt_chain sides[2];
     cadt_write_base(&mesh, &rings, &c, apex, bases, sides);
     for (cadt_u32 k = 0u; k < 2u; ++k)
-      cadt_fill_or_queue(&mesh, &rings, sides + k, bases, &queues, CADT_CHAIN_SHORT, words, &counters);
+      cadt_fill_or_queue(&mesh, &rings, sides + k, bases, &queues, CADT_CHAIN_SHORT, longest, words, &counters);
   }
 }
 

@@ -39,7 +39,15 @@ typedef struct {
 #define CADT_RING_FLAGGED 0x80000000u /* the edge is constrained */
 #define CADT_RING_DANGLES 0x40000000u /* the edge is in the ring once more, from the other side */
 
-CADT_FN cadt_u32 cadt_key_of_piece(cadt_u32 s) { return s * 2654435761u & 0x7FFFFFFFu; }
+/* Another key for each piece, at random: where many cross one triangle, the one that goes on is then somewhere in their
+ * middle and parts the others, so that n of them take about log n launches. Keys that grow with s, even in part, take
+ * the pieces from one side to the other, in n launches. (The steps are one to one on 31 bits.) */
+CADT_FN cadt_u32 cadt_key_of_piece(cadt_u32 s) {
+  cadt_u32 key = (s + 0x1E3779B9u) & 0x7FFFFFFFu;
+  key = (key ^ key >> 16) * 0x7FEB352Du & 0x7FFFFFFFu;
+  key = (key ^ key >> 15) * 0x846CA68Bu & 0x7FFFFFFFu;
+  return key ^ key >> 16;
+}
 CADT_FN cadt_u32 cadt_has_ring(const cadt_pieces* all, const cadt_rings* rings, cadt_u32 s) {
   const cadt_u32 places = all->sizes[s];
   return places && places != CADT_NONE && all->begins[s] + places <= rings->room ? 1u : 0u;

@@ -78,7 +78,7 @@ CADT_FN cadt_i32 cadt_side_or_ghost(const cadt_segment_mesh* m, cadt_point p, ca
 CADT_FN cadt_turning cadt_begin_turning(const cadt_segment_mesh* m, cadt_u32 from, cadt_point p, cadt_u32 to,
                                         cadt_point q, cadt_counters* counters) {
   cadt_turning turn;
-  const cadt_u32 t = m->vertex_triangle[from];
+  const cadt_u32 t = cadt_load_relaxed(m->vertex_triangle + from);
   const cadt_u32 k = cadt_corner_of(m, t, 0u) == from ? 0u : (cadt_corner_of(m, t, 1u) == from ? 1u : 2u);
   turn.vertex = from;
   turn.half_edge = turn.first = CADT_HALF_EDGE(t, k);
@@ -118,7 +118,7 @@ enum { CADT_EDGE_SEARCH = 12 /* triangles around an end in which an edge is look
 /* The half-edge of the edge from a to b, seen from the triangle on its left; CADT_NONE if it is not among the first
  * triangles around a. */
 CADT_FN cadt_u32 cadt_find_edge(const cadt_segment_mesh* m, cadt_u32 a, cadt_u32 b) {
-  const cadt_u32 first = m->vertex_triangle[a];
+  const cadt_u32 first = cadt_load_relaxed(m->vertex_triangle + a);
   cadt_u32 t = first, k = cadt_corner_of(m, t, 0u) == a ? 0u : (cadt_corner_of(m, t, 1u) == a ? 1u : 2u);
   for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_EDGE_SEARCH); ++i) {
     if (cadt_corner_of(m, t, CADT_NEXT(k)) == b) return CADT_HALF_EDGE(t, CADT_PREV(k));
@@ -130,6 +130,12 @@ CADT_FN cadt_u32 cadt_find_edge(const cadt_segment_mesh* m, cadt_u32 a, cadt_u32
   return CADT_NONE;
 }
 
+/* The step is known. An edge that was looked for is where the next one begins to look: it may be asked for again. */
+CADT_FN cadt_segment_step cadt_take_step(const cadt_segment_mesh* m, cadt_u32 from, cadt_segment_step step) {
+  if (step.kind == CADT_STEP_EDGE) cadt_store_relaxed(m->vertex_triangle + from, CADT_TRIANGLE_OF(step.half_edge));
+  return step;
+}
+
 /* The next step of the segment between vertices a and b, from one of them. */
 CADT_FN cadt_segment_step cadt_next_step(const cadt_segment_mesh* m, cadt_u32 a, cadt_u32 b, cadt_counters* counters) {
   const cadt_segment_step along = {CADT_STEP_EDGE, 0u, cadt_find_edge(m, a, b), b};
@@ -139,9 +145,9 @@ CADT_FN cadt_segment_step cadt_next_step(const cadt_segment_mesh* m, cadt_u32 a,
   cadt_segment_step step;
   for (;;) {
     step.from_b = 0u;
-    if (cadt_turn_once(m, &at_a, p, b, q, &step, counters)) return step;
+    if (cadt_turn_once(m, &at_a, p, b, q, &step, counters)) return cadt_take_step(m, a, step);
     step.from_b = 1u;
-    if (cadt_turn_once(m, &at_b, q, a, p, &step, counters)) return step;
+    if (cadt_turn_once(m, &at_b, q, a, p, &step, counters)) return cadt_take_step(m, b, step);
     if (at_a.half_edge == at_a.first || at_b.half_edge == at_b.first) break;
   }
   step.kind = CADT_STEP_NOWHERE;

@@ -11,6 +11,7 @@
 #include "common/certify/certify.dev.h"
 #include "common/constraints/domains.dev.h"
 #include "common/constraints/segment_cavity.dev.h"
+#include "common/constraints/segment_mountain.dev.h"
 #include "common/insertion/cavity.dev.h"
 #include "common/insertion/drop_locks.dev.h"
 #include "common/insertion/insert.dev.h"

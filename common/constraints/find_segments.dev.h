@@ -179,12 +179,6 @@ CADT_KERNEL(cadt_shuffle_pairs, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 coun
     shuffled[2u * place + 1u] = pairs[2u * i + 1u];
   }
 }
-/* `count`: words of pairs. */
-CADT_KERNEL(cadt_copy_pairs, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* copies) {
-  CADT_FOR(i, count, grain) { copies[i] = pairs[i]; }
-}
-
 /* Segments in the mesh that has all of them. Flags their edges; counts[s]: how many vertices its chain has. With
  * `begins`, the scan of the counts, writes the chains as well, in input ids. \pre no flag is set */
 CADT_KERNEL(cadt_trace_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* ends, cadt_u32 count,

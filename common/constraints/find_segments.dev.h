@@ -163,11 +163,11 @@ CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const 
 /* Pairs at other places, at random: `bits` hold any place, by which each leads to another one, and that to the next one
  * until it is below `count`. */
 CADT_FN cadt_u32 cadt_shuffled_place(cadt_u32 place, cadt_u32 bits, cadt_u32 count) {
-  const cadt_u32 mask = (1u << bits) - 1u, half = (bits + 1u) / 2u;
+  const cadt_u32 mask = (1u << bits) - 1u, shift = (bits + 1u) / 2u;
   do {
     place = (place + 0x1E3779B9u) * 0x7FEB352Du & mask;
-    place = (place ^ place >> half) * 0x846CA68Bu & mask;
-    place ^= place >> half;
+    place = (place ^ place >> shift) * 0x846CA68Bu & mask;
+    place ^= place >> shift;
   } while (place >= count);
   return place;
 }

@@ -162,8 +162,8 @@ std::string explain_graph_error(PointsView points, std::span<const Segment> segm
     throw;
   } catch (const CrossingError& e) {
     const auto& pairs = e.pairs();
-    std::string text =
-        fmt::format("{} of segments cross:", pairs.size() == 1 ? "1 pair" : fmt::format("{} pairs", pairs.size()));
+    std::string text = pairs.size() == 1 ? std::string("1 pair of segments crosses:")
+                                         : fmt::format("{} pairs of segments cross:", pairs.size());
     constexpr std::size_t most_shown = 5;
     for (std::size_t i = 0; i < std::min(pairs.size(), most_shown); ++i) {
       const auto describe = [&](std::int32_t s) {
@@ -208,10 +208,9 @@ io::PointSet points_of(const Graph& graph, const ConstrainedTriangulation& mesh)
   for (std::size_t i = 0; 2 * i < added.size(); ++i) {
     const Segment& parent = graph.segments[static_cast<std::size_t>(mesh.added_parents()[i][0])];
     const auto from = static_cast<std::size_t>(parent[0]), to = static_cast<std::size_t>(parent[1]);
-    const auto distance = [&](std::size_t v) {
-      return std::hypot(added[2 * i] - result.xy[2 * v], added[2 * i + 1] - result.xy[2 * v + 1]);
-    };
-    const double share = distance(from) / (distance(from) + distance(to));
+    const double dx = result.xy[2 * to] - result.xy[2 * from], dy = result.xy[2 * to + 1] - result.xy[2 * from + 1];
+    const double share = std::abs(dx) >= std::abs(dy) ? (added[2 * i] - result.xy[2 * from]) / dx
+                                                      : (added[2 * i + 1] - result.xy[2 * from + 1]) / dy;
     result.height.push_back(graph.points.height[from] + (std::isfinite(share) ? share : 0.5) *
                                                             (graph.points.height[to] - graph.points.height[from]));
   }

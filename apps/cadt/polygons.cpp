@@ -42,8 +42,10 @@ std::string describe(const io::PolygonsFile& file, const PolygonProblem& problem
   return text;
 }
 
-bool crosses(PolygonStatus status) {
-  return status == PolygonStatus::self_crossing || status == PolygonStatus::ring_crossing;
+/// Whether the polygon can have an inside if its rings may cross; then rings of one or two points bound nothing.
+bool may_have_inside(PolygonStatus status) {
+  return status == PolygonStatus::self_crossing || status == PolygonStatus::ring_crossing ||
+         status == PolygonStatus::too_few_points;
 }
 
 /// Points and rings of polygon p, alone.
@@ -59,12 +61,14 @@ Graph graph_of(const io::PolygonsFile& file, std::size_t p) {
   return graph;
 }
 
-/// What is inside of polygons whose edges cross; their points come once more, behind all others.
-void append_crossed(RegionResult& result, const io::PolygonsFile& file, std::size_t p, const std::string& name,
+/// What is inside of a polygon whose rings may cross, and whether something is. Its points come once more, behind all
+/// others.
+bool append_crossed(RegionResult& result, const io::PolygonsFile& file, std::size_t p, const std::string& name,
                     const ConstraintOptions& constraints, const Options& options, bool quiet) {
   const Graph graph = graph_of(file, p);
   const ConstrainedTriangulation mesh =
       triangulate_graph(graph.points.view(), graph.segments, name, constraints, options);
+  if (mesh.number_inside() == 0) return false;
   note_rounding(mesh, fmt::format("{}, polygon {}", name, p), quiet);
   append_inside(result, mesh, static_cast<std::int32_t>(result.points.size()));
   result.region.resize(result.triangles.size() / 3);
@@ -72,6 +76,7 @@ void append_crossed(RegionResult& result, const io::PolygonsFile& file, std::siz
             file.features[p]);
   const io::PointSet points = points_of(graph, mesh);
   result.points.xy.insert(result.points.xy.end(), points.xy.begin(), points.xy.end());
+  return true;
 }
 
 /// Those that cross, with a rule for that, and the others with a defect, which are named.
@@ -84,8 +89,8 @@ std::size_t handle_problems(const PolygonsCommand& command, RegionResult& result
   std::size_t count = 0;
   for (const PolygonProblem& problem : polygons.problems()) {
     check_interrupt();
-    if (crosses(problem.status) && constraints.crossing != Crossing::error) {
-      append_crossed(result, file, problem.polygon, name, constraints, options, command.quiet);
+    if (constraints.crossing != Crossing::error && may_have_inside(problem.status) &&
+        append_crossed(result, file, problem.polygon, name, constraints, options, command.quiet)) {
       continue;
     }
     constexpr std::size_t most_shown = 10;
@@ -98,8 +103,8 @@ std::size_t handle_problems(const PolygonsCommand& command, RegionResult& result
   if (command.strict) throw Failure(exit_file, text + "\n  Nothing was written. Without --strict they are left out.");
   if (!command.quiet) {
     say(fmt::format(
-        "cadt: warning: {}\n  They are left out; --crossing exact takes rings that cross, --strict makes this "
-        "an error.\n",
+        "cadt: warning: {}\n  They are left out; --crossing exact takes rings that cross, and rings of too few "
+        "points; --strict makes this an error.\n",
         text));
   }
   return count;
@@ -184,7 +189,7 @@ void add_polygons(CLI::App& app, Action& chosen) {
       "attribute\n"
       "'feature' in .ply, .vtu and .geojson, as column in .ele. Polygons that have no inside, such as those that "
       "cross\n"
-      "themselves, are named and left out; with --crossing exact rings may cross.\n\n"
+      "themselves, are named and left out; with --crossing exact rings may cross or have too few points.\n\n"
       "Examples:\n"
       "  cadt polygons countries.geojson -o countries.png -o triangles.geojson\n"
       "  cadt polygons parcels.json --crossing exact -o parcels.ply\n");

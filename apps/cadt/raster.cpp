@@ -126,7 +126,7 @@ void add_raster(CLI::App& app, Action& chosen) {
       "LAS, LAZ, GIS files and GeoTIFF, with pip install \"cadt[terrain]\":\n"
       "  cadt raster scan.laz dem.tif --res 1 --class 2 --max-edge 50\n"
       "  cadt raster scan.laz dem.tif --help\n"
-      "      its options: several files, --class, --align, --fill, --crs ...\n");
+      "      its options: several files, --class, --align, --breaklines, --fill ...\n");
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

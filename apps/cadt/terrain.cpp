@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::array terrain_commands{"contour", "tin"};
 constexpr std::array terrain_suffixes{".las", ".laz", ".gpkg", ".geojson", ".fgb", ".parquet", ".tif", ".tiff"};
-constexpr std::array terrain_options{"--align", "--class", "--crs", "--dtype", "--fill"};
+constexpr std::array terrain_options{"--align", "--breaklines", "--class", "--crs", "--dtype", "--fill"};
 
 template <class List>
 bool contains(const List& list, std::string_view word) {

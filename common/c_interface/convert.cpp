@@ -7,14 +7,6 @@
 namespace cadt::c_interface {
 namespace {
 
-/// \throws InvalidArgument if there is no constant of this number
-template <class Enum>
-Enum constant(std::int32_t number, std::int32_t most, const char* name) {
-  if (number < 0 || number > most)
-    throw InvalidArgument(name, "there is no constant of the number " + std::to_string(number));
-  return static_cast<Enum>(number);
-}
-
 static_assert(static_cast<int>(Backend::automatic) == CADT_BACKEND_AUTO &&
               static_cast<int>(Backend::host) == CADT_BACKEND_HOST);
 static_assert(static_cast<int>(Backend::opencl) == CADT_BACKEND_OPENCL &&

@@ -10,6 +10,14 @@
 
 namespace cadt::c_interface {
 
+/// \throws InvalidArgument if there is no constant of this number
+template <class Enum>
+[[nodiscard]] Enum constant(std::int32_t number, std::int32_t most, const char* name) {
+  if (number < 0 || number > most)
+    throw InvalidArgument(name, "there is no constant of the number " + std::to_string(number));
+  return static_cast<Enum>(number);
+}
+
 /// The caller's options, and the callbacks that are asked during a call.
 class CallOptions {
  public:
@@ -59,6 +67,17 @@ struct cadt_device_batch {
 };
 struct cadt_device_list {
   std::vector<cadt::DeviceInfo> devices;
+};
+struct cadt_queries {
+  /// Its callbacks are asked from here on; what was cancelled before is forgotten.
+  cadt::MeshQueries& begin_call() {
+    cadt::Options now = options.begin_call();
+    queries.options().stop = std::move(now.stop);
+    queries.options().progress = std::move(now.progress);
+    return queries;
+  }
+  cadt::c_interface::CallOptions options;
+  cadt::MeshQueries queries;
 };
 struct cadt_report {
   explicit cadt_report(cadt::VerifyReport found) : report(std::move(found)), summary(report.summary()) {}

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cadt/constrained.hpp>
+#include <cadt/queries.hpp>
+
 #include <array>
 #include <new>
 #include <utility>
@@ -83,6 +86,16 @@ void keep_known() {
   } catch (const InvalidMesh& e) {
     begin(CADT_INVALID_MESH).index = e.first();
     keep_text(e.what(), e.check());
+  } catch (const CrossingError& e) {
+    begin(CADT_SEGMENTS_CROSS).index = e.pairs().front()[0];
+    keep_sizes(e.pairs().size(), 0);
+    keep_text(e.what());
+  } catch (const DomainError& e) {
+    begin(CADT_OPEN_BOUNDARY).index = e.vertex();
+    keep_text(e.what());
+  } catch (const NotDelaunay& e) {
+    begin(CADT_NOT_DELAUNAY).index = e.edge();
+    keep_text(e.what());
   } catch (const InternalError& e) {
     begin(CADT_INTERNAL_ERROR);
     keep_text(e.what());
@@ -132,8 +145,11 @@ const char* cadt_status_name(cadt_status status) {
                                 "CADT_INVALID_MESH",
                                 "CADT_INTERNAL_ERROR",
                                 "CADT_BUFFER_TOO_SMALL",
-                                "CADT_ERROR"};
-  static_assert(names.size() == CADT_ERROR + 1);
+                                "CADT_ERROR",
+                                "CADT_SEGMENTS_CROSS",
+                                "CADT_OPEN_BOUNDARY",
+                                "CADT_NOT_DELAUNAY"};
+  static_assert(names.size() == CADT_NOT_DELAUNAY + 1);
   return status < 0 || static_cast<std::size_t>(status) >= names.size() ? "unknown status"
                                                                         : names[static_cast<std::size_t>(status)];
 }

@@ -4,17 +4,6 @@
 
 using namespace cadt::c_interface;
 
-struct cadt_queries {
-  /// Its callbacks are asked from here on; what was cancelled before is forgotten.
-  cadt::MeshQueries& begin_call() {
-    cadt::Options now = options.begin_call();
-    queries.options().stop = std::move(now.stop);
-    queries.options().progress = std::move(now.progress);
-    return queries;
-  }
-  CallOptions options;
-  cadt::MeshQueries queries;
-};
 struct cadt_voronoi {
   cadt::VoronoiDiagram diagram;
 };

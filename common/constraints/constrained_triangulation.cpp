@@ -154,6 +154,21 @@ void add_domains(const State& state, PointsView points, const ConstraintOptions&
   data.region_attribute = std::move(found.region_attribute);
 }
 
+/// The same for a mesh that stays on the device.
+void add_domains(Context& ctx, const ConstraintOptions& constraints, const SegmentJob& job,
+                 DeviceTriangulation::Data& data) {
+  const std::vector<std::uint32_t> counts = ctx.device.read_values(*job.chain_offsets, job.count + 1);
+  const std::vector<std::int32_t> chains = ctx.device.read_values<std::int32_t>(*job.chains, job.chain_length);
+  const std::vector<std::int64_t> offsets(counts.begin(), counts.end());
+  const DomainMesh mesh = {data.triangles, data.neighbors, data.edge_flags, data.triangle_count};
+  Domains domains = find_domains(ctx, mesh, data.points, {offsets, chains}, {}, constraints);
+  InsideMesh inside = pack_inside(ctx, mesh, domains);
+  data.regions = std::move(domains.region);
+  data.number_inside = inside.triangles;
+  data.triangles_inside = std::move(inside.vertices);
+  data.neighbors_inside = std::move(inside.neighbors);
+}
+
 ConstrainedTriangulation constrain_on(const State& state, PointsView points, std::span<const Segment> segments,
                                       const ConstraintOptions& constraints) {
   require_size(points.size());
@@ -231,13 +246,19 @@ DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& po
     throw InputError("the array of segments has no memory: DeviceArray::memory is null", 0);
   if (constraints.crossing != Crossing::error)
     throw OptionError("crossing", "segments on the device must not cross; copy them to the host for exact or grid");
+  if (constraints.domain == Domain::seeds)
+    throw OptionError("domain", "seeds are located on the host; copy points and segments there");
   SegmentJob job;
   job.count = segments.size / 2;
   if (job.count != 0) job.segments = state_->memory.wrap(segments.memory, segments.size * sizeof(std::int32_t));
+  job.wants_chains = constraints.domain != Domain::hull;
   std::unique_ptr<DeviceTriangulation::Data> data = triangulate_on_device(state_, points, &job);
-  if (!job.crossed) return DeviceTriangulation(std::move(data));
   Statistics statistics;
   Context ctx(*state_->device, state_->memory, state_->options, statistics);
+  if (!job.crossed) {
+    if (job.wants_chains && data->triangle_count != 0) add_domains(ctx, constraints, job, *data);
+    return DeviceTriangulation(std::move(data));
+  }
   const Allocation imported = import_points(ctx, points);
   std::vector<double> xy;
   if (takes_floats_only(ctx.device)) {

@@ -68,7 +68,7 @@ class Constrainer {
       Pieces pieces = find(*pairs, first, taken, launch == 0);
       if (launch == 0) ctx_.statistics.inserted_segments = pieces.count;
       Allocation others = ctx_.memory.allocate((2 * first + 4 * pieces.count) * word);
-      if (first != 0) launch_.run<KernelId::cadt_copy_pairs>(*pairs, launch_.grid(2 * first), others);
+      if (first != 0) launch_.run<KernelId::cadt_copy_words>(*pairs, others, 0U, launch_.grid(2 * first));
       const std::uint32_t begin = static_cast<std::uint32_t>(first);
       ctx_.device.write(*words_, CADT_SEGMENTS_LEFT * word, &begin, word);
       const std::optional<std::size_t> all = pieces.count == 0 ? first : insert(pieces, others);
@@ -152,7 +152,8 @@ class Constrainer {
 
   [[nodiscard]] Allocation shuffled(const Allocation& pairs, std::size_t count) {
     Allocation result = ctx_.memory.allocate(std::max<std::size_t>(2 * count, 1) * word);
-    launch_.run<KernelId::cadt_shuffle_pairs>(pairs, launch_.grid(count), std::bit_width(count), result);
+    launch_.run<KernelId::cadt_shuffle_pairs>(pairs, launch_.grid(count),
+                                              static_cast<std::uint32_t>(std::bit_width(count)), result);
     return result;
   }
 

@@ -168,6 +168,16 @@ class RegionGraph {
   std::vector<std::size_t> ends_;
 };
 
+/// Whether each constrained edge is in one chain, once: then chains have as many edges as there are.
+bool counts_once(Context& ctx, const DomainMesh& mesh, const SegmentChains& chains) {
+  std::size_t in_chains = 0;
+  for (std::size_t s = 0; s + 1 < chains.offsets.size(); ++s)
+    in_chains += static_cast<std::size_t>(std::max<std::int64_t>(chains.offsets[s + 1] - chains.offsets[s], 1)) - 1;
+  const Allocation counter = ctx.launcher.zeros(1);
+  ctx.launcher.run<KernelId::cadt_domain_edges>(mesh, ctx.launcher.grid_strided(mesh.triangles), counter);
+  return ctx.launcher.read_word(counter, 0) == in_chains;
+}
+
 /// Values by crossing constrained edges from the outside.
 std::vector<std::int32_t> values_by_crossing(Context& ctx, const DomainMesh& mesh, std::size_t points,
                                              const SegmentChains& chains, Domain domain, const Allocation& region,
@@ -176,7 +186,8 @@ std::vector<std::int32_t> values_by_crossing(Context& ctx, const DomainMesh& mes
   WeightTable table;
   if (!layers) {
     require_closed(chains, domain, points);
-    table = WeightTable(ctx, EdgeWeights(chains, domain, points));
+    if (domain != Domain::even_odd || !counts_once(ctx, mesh, chains))
+      table = WeightTable(ctx, EdgeWeights(chains, domain, points));
   }
   const std::size_t nodes = std::max(regions, outside + 1);  // with the outside, if it has no triangle
   const std::vector<Link> links =

@@ -77,6 +77,21 @@ CADT_FN cadt_u32 cadt_weight_of_edge(const cadt_edge_weights* w, cadt_u32 from, 
   return from < to ? w->weights[low] : 0u - w->weights[low];
 }
 
+/* Adds the number of constrained edges. */
+CADT_KERNEL(cadt_domain_edges, CADT_DOMAIN_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* counter) {
+  CADT_DOMAIN_MESH(mesh);
+  cadt_u32 found = 0u;
+  CADT_FOR(t, count, grain) {
+    const cadt_u32 flags = mesh.edge_flags[t];
+    for (cadt_u32 k = 0u; k < 3u; ++k) {
+      const cadt_u32 n = mesh.neighbors[3u * t + k];
+      if ((flags >> k & 1u) && (n == CADT_NONE || n < t)) ++found;
+    }
+  }
+  if (found) cadt_add_relaxed(counter, found);
+}
+
 /* A link: what lies left of the edge, what lies right of it, and the weight of the edge. */
 enum { CADT_LINK_WORDS = 3 };
 

@@ -163,11 +163,11 @@ CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const 
 /* Pairs at other places, at random: `bits` hold any place, by which each leads to another one, and that to the next one
  * until it is below `count`. */
 CADT_FN cadt_u32 cadt_shuffled_place(cadt_u32 place, cadt_u32 bits, cadt_u32 count) {
-  const cadt_u32 mask = (1u << bits) - 1u, half = (bits + 1u) / 2u;
+  const cadt_u32 mask = (1u << bits) - 1u, shift = (bits + 1u) / 2u;
   do {
     place = (place + 0x1E3779B9u) * 0x7FEB352Du & mask;
-    place = (place ^ place >> half) * 0x846CA68Bu & mask;
-    place ^= place >> half;
+    place = (place ^ place >> shift) * 0x846CA68Bu & mask;
+    place ^= place >> shift;
   } while (place >= count);
   return place;
 }
@@ -179,12 +179,6 @@ CADT_KERNEL(cadt_shuffle_pairs, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 coun
     shuffled[2u * place + 1u] = pairs[2u * i + 1u];
   }
 }
-/* `count`: words of pairs. */
-CADT_KERNEL(cadt_copy_pairs, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* copies) {
-  CADT_FOR(i, count, grain) { copies[i] = pairs[i]; }
-}
-
 /* Segments in the mesh that has all of them. Flags their edges; counts[s]: how many vertices its chain has. With
  * `begins`, the scan of the counts, writes the chains as well, in input ids. \pre no flag is set */
 CADT_KERNEL(cadt_trace_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* ends, cadt_u32 count,
@@ -197,6 +191,11 @@ CADT_KERNEL(cadt_trace_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const
     cadt_u32 a = ends[2u * s], b = ends[2u * s + 1u];
     cadt_u32 length = 0u, low = begins ? begins[s] : 0u, high = begins ? begins[s + 1u] : 0u;
     const cadt_u32 none = a == b ? 1u : 0u;
+    if (begins && high - low == 2u) { /* one edge, as most segments are */
+      chains[low] = input_ids ? input_ids[a] : a;
+      chains[low + 1u] = input_ids ? input_ids[b] : b;
+      continue;
+    }
     while (a != b) {
       const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
       if (step.kind != CADT_STEP_EDGE) {

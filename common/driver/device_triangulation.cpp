@@ -54,6 +54,10 @@ const Statistics& DeviceTriangulation::statistics() const noexcept { return data
 void* DeviceTriangulation::triangles() const noexcept { return handle_of(*data_, data_->triangles); }
 void* DeviceTriangulation::neighbors() const noexcept { return handle_of(*data_, data_->neighbors); }
 void* DeviceTriangulation::edge_flags() const noexcept { return handle_of(*data_, data_->edge_flags); }
+void* DeviceTriangulation::regions() const noexcept { return handle_of(*data_, data_->regions); }
+void* DeviceTriangulation::triangles_inside() const noexcept { return handle_of(*data_, data_->triangles_inside); }
+void* DeviceTriangulation::neighbors_inside() const noexcept { return handle_of(*data_, data_->neighbors_inside); }
+std::size_t DeviceTriangulation::number_inside() const noexcept { return data_->number_inside; }
 void* DeviceTriangulation::duplicate_points() const noexcept { return handle_of(*data_, data_->duplicate_points); }
 void* DeviceTriangulation::representatives() const noexcept { return handle_of(*data_, data_->representatives); }
 

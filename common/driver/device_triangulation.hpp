@@ -31,8 +31,11 @@ struct Triangulator::State {
 struct DeviceTriangulation::Data {
   std::shared_ptr<Triangulator::State> state;  // first member: destroyed last, after the memory
   std::size_t points = 0, distinct = 0, triangle_count = 0, duplicate_count = 0;
-  Allocation triangles, neighbors;               ///< 3 words a triangle each
-  Allocation edge_flags;                         ///< a word a triangle; null without segments
+  Allocation triangles, neighbors;  ///< 3 words a triangle each
+  Allocation edge_flags;            ///< a word a triangle; null without segments
+  Allocation regions;               ///< a word a triangle; null without a domain
+  Allocation triangles_inside, neighbors_inside;
+  std::size_t number_inside = 0;
   Allocation duplicate_points, representatives;  ///< null if there are none
   int dimension = -1;
   Statistics statistics;

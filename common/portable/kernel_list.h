@@ -196,7 +196,6 @@
   X(cadt_vertices_of_segments)   /* find_segments.dev.h: ends of segments as vertices */           \
   X(cadt_find_segments)          /* find_segments.dev.h: which pieces are no edges */              \
   X(cadt_shuffle_pairs)          /* find_segments.dev.h: pieces that wait, in a random order */    \
-  X(cadt_copy_pairs)             /* find_segments.dev.h */                                         \
   X(cadt_trace_segments)         /* find_segments.dev.h: their chains, when all are edges */       \
   X(cadt_divide_pieces)          /* segment_strides.dev.h: long pieces */                          \
   X(cadt_probe_pieces)           /* segment_strides.dev.h: where their strides start */            \
@@ -216,6 +215,7 @@
   X(cadt_domain_unite)           /* domains.dev.h: triangles that no constrained edge separates */ \
   X(cadt_domain_roots)           /* domains.dev.h */                                               \
   X(cadt_domain_regions)         /* domains.dev.h */                                               \
+  X(cadt_domain_edges)           /* domains.dev.h: how many edges are constrained */               \
   X(cadt_domain_links)           /* domains.dev.h: which regions meet at constrained edges */      \
   X(cadt_domain_flags)           /* domains.dev.h: triangles inside */                             \
   X(cadt_domain_pack)            /* domains.dev.h */

@@ -2,7 +2,9 @@
 #include "common/queries/call.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <vector>
 
 #include "common/points/device_points.hpp"
 
@@ -31,6 +33,46 @@ void require_room(const DeviceArray& array, std::size_t needed, const char* what
                      array.size);
   if (needed != 0 && array.memory == nullptr)
     throw InputError(std::string("the array for ") + what + " has no memory: DeviceArray::memory is null", 0);
+}
+
+namespace {
+
+/// 3 * triangle + k of the first constrained edge whose circles are not empty, or -1. It examines each edge from one
+/// side.
+std::int64_t first_not_delaunay(Context& ctx, const MeshIndex& mesh) {
+  Device& device = ctx.device;
+  const std::vector<std::uint32_t> flags = device.read_values(*mesh.edge_flags, mesh.triangles),
+                                   vertices = device.read_values(*mesh.vertices, 3 * mesh.triangles),
+                                   across = device.read_values(*mesh.across, 3 * mesh.triangles);
+  const auto xy = device.read_values<double>(*mesh.points, 2 * mesh.point_count);
+  const auto corner = [&](std::size_t half_edge) {
+    const std::size_t v = vertices[half_edge];
+    return std::array{xy[2 * v], xy[2 * v + 1]};
+  };
+  for (std::size_t t = 0; t < mesh.triangles; ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t n = across[3 * t + k];
+      if ((flags[t] >> k & 1U) == 0 || n == CADT_NONE || n < t) continue;
+      const std::size_t beyond = std::size_t{3} * n + (across[3 * n] == t ? 0U : across[3 * n + 1] == t ? 1U : 2U);
+      if (exact_in_circle(corner(3 * t), corner(3 * t + 1), corner(3 * t + 2), corner(beyond)) > 0)
+        return static_cast<std::int64_t>(3 * t + k);
+    }
+  }
+  return -1;
+}
+
+}  // namespace
+
+void require_delaunay(Call& call, MeshQueries::State& state) {
+  if (!state.mesh.edge_flags) return;
+  if (!state.not_delaunay) state.not_delaunay = first_not_delaunay(call.ctx, state.mesh);
+  if (*state.not_delaunay < 0) return;
+  throw NotDelaunay("edge " + std::to_string(*state.not_delaunay % 3) + " of triangle " +
+                        std::to_string(*state.not_delaunay / 3) +
+                        " is constrained and not Delaunay, but nearest vertices, natural neighbours, Voronoi diagrams "
+                        "and empty circles take a Delaunay mesh: triangulate the same vertices without segments for "
+                        "them",
+                    *state.not_delaunay);
 }
 
 Allocation array_of(Context& ctx, const DeviceArray& array, std::size_t element) {

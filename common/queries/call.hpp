@@ -18,8 +18,11 @@ namespace cadt {
 struct MeshQueries::State {
   std::shared_ptr<Triangulator::State> device;  // first member: destroyed last, after the memory
   std::optional<Triangulation> of;              ///< what `mesh` may alias
+  std::optional<ConstrainedTriangulation> constrained;
+  std::vector<double> vertices;  ///< of a constrained mesh that has added or moved points
   Options options;
   MeshIndex mesh;
+  std::optional<std::int64_t> not_delaunay;  ///< NotDelaunay::edge(), or -1; once examined
 };
 
 namespace query {
@@ -52,6 +55,11 @@ void require_results(std::size_t queries, std::size_t each);
 void require_neighbors(std::size_t queries, std::size_t k);
 /// \throws OptionError
 void require_bound(double max_edge);
+/// For what takes a Delaunay mesh. \throws NotDelaunay
+void require_delaunay(Call& call, MeshQueries::State& state);
+inline void require_delaunay(Call& call, MeshQueries::State& state, Interpolation method, Outside outside) {
+  if (method != Interpolation::linear || outside == Outside::nearest) require_delaunay(call, state);
+}
 /// The number of values a point. \throws InputError
 [[nodiscard]] std::size_t values_a_point(std::size_t values, std::size_t points);
 

@@ -35,6 +35,7 @@ std::size_t MeshQueries::nearest_vertices(const DevicePoints& queries, std::size
   require_room(vertices, k * queries.size, "vertices");
   if (queries.size == 0) return 0;
   Call call(*state_);
+  require_delaunay(call, *state_);
   const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size);
   nearest_into(call, state_->mesh, batch, k, array_of(call.ctx, vertices, word));
   call.end();
@@ -50,6 +51,7 @@ std::size_t MeshQueries::interpolate(const DeviceArray& values, const DevicePoin
   require_room(results, each * queries.size, "results");
   if (queries.size == 0) return 0;
   Call call(*state_);
+  require_delaunay(call, *state_, method, outside);
   const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size);
   interpolate_queries(call.ctx, state_->mesh, batch, array_of(call.ctx, values, sizeof(double)), each, method, outside,
                       array_of(call.ctx, results, sizeof(double)));
@@ -66,6 +68,7 @@ std::size_t MeshQueries::rasterize(const Grid& grid, const DeviceArray& values, 
   require_room(cells, grid.cells(), "cells");
   if (grid.cells() == 0) return 0;
   Call call(*state_);
+  require_delaunay(call, *state_, method, Outside::nan);
   rasterize_mesh(call.ctx, state_->mesh, grid, array_of(call.ctx, values, sizeof(double)), method, max_edge,
                  array_of(call.ctx, cells, sizeof(double)));
   call.end();
@@ -91,6 +94,7 @@ std::size_t MeshQueries::voronoi(const DeviceVoronoi& to) {
   require(to.cells, 3 * triangles, "cells");
   if (to.cells.memory != nullptr || to.cell_begin.memory != nullptr) require_room(to.cell_begin, n + 1, "cell_begin");
   Call call(*state_);
+  require_delaunay(call, *state_);
   Context& ctx = call.ctx;
   Allocation begin;
   std::size_t count = 0;

@@ -21,6 +21,7 @@ struct CurveOrder {
 /// The mesh of the caller: points as they are, triangles across, and what is needed to find a triangle near a query.
 struct MeshIndex {
   Allocation points, vertices, across;
+  Allocation edge_flags;  ///< a word a triangle, of constrained edges; null without segments
   std::size_t point_count = 0, triangles = 0;
   Allocation lowest;  ///< the lowest triangle of each point; CADT_NONE if it is no vertex
   Bounds bounds;
@@ -31,11 +32,8 @@ struct MeshIndex {
 
   [[nodiscard]] DeviceMeshView view() const {
     const auto count = static_cast<std::uint32_t>(triangles);
-    return {points, vertices, across, no_flags_, count, count, 0};
+    return {points, vertices, across, edge_flags, count, count, 0};
   }
-
- private:
-  Allocation no_flags_;
 };
 
 /// The factors by which a call scales points and queries, and the kernels that take them.

@@ -35,7 +35,7 @@ std::unique_ptr<MeshQueries::State> open(const Options& options) {
 }
 
 void index(MeshQueries::State& state, PointsView points, std::span<const std::int32_t> triangles,
-           std::span<const std::int32_t> neighbors, bool trusted) {
+           std::span<const std::int32_t> neighbors, bool trusted, std::span<const std::uint32_t> edge_flags = {}) {
   require_size(points.size());
   Call call(state);
   MeshIndex& mesh = state.mesh;
@@ -45,10 +45,25 @@ void index(MeshQueries::State& state, PointsView points, std::span<const std::in
   if (mesh.triangles != 0) {
     mesh.vertices = call.ctx.memory.import(triangles.data(), triangles.size_bytes());
     mesh.across = call.ctx.memory.import(neighbors.data(), neighbors.size_bytes());
+    if (!edge_flags.empty()) mesh.edge_flags = call.ctx.memory.import(edge_flags.data(), edge_flags.size_bytes());
   }
   if (!trusted) check_mesh(call.ctx, mesh);
   index_mesh(call.ctx, mesh);
   call.ctx.device.finish();
+}
+
+/// \throws InvalidMesh
+void require_counterclockwise(PointsView points, std::span<const std::int32_t> triangles) {
+  for (std::size_t t = 0; 3 * t < triangles.size(); ++t) {
+    const auto corner = [&](std::size_t k) {
+      const auto v = static_cast<std::size_t>(triangles[3 * t + k]);
+      return std::array{points.x(v), points.y(v)};
+    };
+    if (exact_orientation(corner(0), corner(1), corner(2)) <= 0)
+      throw InvalidMesh("orientation", static_cast<std::int64_t>(t),
+                        "triangle " + std::to_string(t) +
+                            " is turned over by the rounding of crossings: take Crossing::grid instead of exact");
+  }
 }
 
 }  // namespace
@@ -71,13 +86,35 @@ MeshQueries::MeshQueries(const Triangulation& mesh, const Options& options) : st
   index(*state_, state_->of->points(), mesh.triangles(), mesh.neighbors(), true);
 }
 
+MeshQueries::MeshQueries(PointsView points, const ConstrainedTriangulation& mesh, const Options& options)
+    : state_(open(options)) {
+  const std::size_t added = mesh.added_points().size() / 2, all = mesh.mesh().number_of_points();
+  if (points.size() + added != all) require_mesh_of(points.size(), all - added);
+  state_->constrained = mesh;
+  const Triangulation& of = state_->constrained->mesh();
+  if (const auto moved = mesh.moved_points(); added != 0 || !moved.empty()) {
+    std::vector<double>& vertices = state_->vertices;
+    vertices.assign(moved.begin(), moved.end());
+    for (std::size_t i = moved.size() / 2; i < points.size(); ++i)
+      vertices.insert(vertices.end(), {points.x(i), points.y(i)});
+    vertices.insert(vertices.end(), mesh.added_points().begin(), mesh.added_points().end());
+    points = vertices;
+  }
+  if (!mesh.rounded_valid()) require_counterclockwise(points, of.triangles());
+  index(*state_, points, of.triangles(), of.neighbors(), true, mesh.edge_flags());
+}
+
 MeshQueries::MeshQueries(PointsView points, const MeshView& mesh, const Options& options) : state_(open(options)) {
   if (mesh.triangles.size() % 3 != 0 || mesh.neighbors.size() != mesh.triangles.size())
     throw InputError("a mesh has three vertices and three neighbours a triangle, not " +
                          std::to_string(mesh.triangles.size()) + " and " + std::to_string(mesh.neighbors.size()) +
                          " in all (adopt() derives neighbours)",
                      std::min(mesh.triangles.size(), mesh.neighbors.size()) / 3);
-  index(*state_, points, mesh.triangles, mesh.neighbors, false);
+  if (!mesh.edge_flags.empty() && 3 * mesh.edge_flags.size() != mesh.triangles.size())
+    throw InputError("a mesh has no or one word of edge flags a triangle, not " +
+                         std::to_string(mesh.edge_flags.size()) + " for " + std::to_string(mesh.triangles.size() / 3),
+                     std::min(mesh.edge_flags.size(), mesh.triangles.size() / 3));
+  index(*state_, points, mesh.triangles, mesh.neighbors, false, mesh.edge_flags);
 }
 
 MeshQueries::MeshQueries(Triangulator& triangulator, const DevicePoints& points, const DeviceTriangulation& mesh)
@@ -97,6 +134,8 @@ MeshQueries::MeshQueries(Triangulator& triangulator, const DevicePoints& points,
     const std::size_t bytes = 3 * data.triangle_count * word;
     index.vertices = call.ctx.memory.wrap(mesh.triangles(), bytes);
     index.across = call.ctx.memory.wrap(mesh.neighbors(), bytes);
+    if (mesh.edge_flags() != nullptr)
+      index.edge_flags = call.ctx.memory.wrap(mesh.edge_flags(), data.triangle_count * word);
   }
   index_mesh(call.ctx, index);
 }
@@ -147,6 +186,7 @@ std::vector<std::int32_t> MeshQueries::nearest_vertices(PointsView queries, std:
   require_neighbors(queries.size(), k);
   if (queries.size() == 0) return {};
   Call call(*state_);
+  require_delaunay(call, *state_);
   const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size());
   return to_vector<std::int32_t>(call.ctx, k * batch.count,
                                  [&](const Allocation& to) { nearest_into(call, state_->mesh, batch, k, to); });
@@ -159,6 +199,7 @@ std::vector<double> MeshQueries::interpolate(std::span<const double> values, Poi
   require_results(queries.size(), each);
   if (queries.size() == 0) return {};
   Call call(*state_);
+  require_delaunay(call, *state_, method, outside);
   const Allocation from = values.empty() ? Allocation() : call.ctx.memory.import(values.data(), values.size_bytes());
   const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size());
   return to_vector<double>(call.ctx, each * batch.count, [&](const Allocation& to) {
@@ -173,6 +214,7 @@ std::vector<double> MeshQueries::rasterize(const Grid& grid, std::span<const dou
   require_mesh_of(values.size(), state_->mesh.point_count);
   if (grid.cells() == 0) return {};
   Call call(*state_);
+  require_delaunay(call, *state_, method, Outside::nan);
   const Allocation from = values.empty() ? Allocation() : call.ctx.memory.import(values.data(), values.size_bytes());
   return to_vector<double>(call.ctx, grid.cells(), [&](const Allocation& to) {
     rasterize_mesh(call.ctx, state_->mesh, grid, from, method, max_edge, to);
@@ -187,16 +229,19 @@ std::vector<double> MeshQueries::circumcenters() {
 
 VoronoiDiagram MeshQueries::voronoi() {
   Call call(*state_);
+  require_delaunay(call, *state_);
   return make_voronoi(call.ctx, state_->mesh);
 }
 
 VoronoiPolygons MeshQueries::voronoi_polygons(const Box& box) {
   Call call(*state_);
+  require_delaunay(call, *state_);
   return clip_voronoi(call.ctx, state_->mesh, box);
 }
 
 std::vector<Circle> MeshQueries::largest_empty_circles(std::size_t k) {
   Call call(*state_);
+  require_delaunay(call, *state_);
   return find_largest_circles(call.ctx, state_->mesh, k);
 }
 

@@ -21,10 +21,9 @@ void add_hull(const TriangleInput& input, const Options& options, std::vector<Se
 
 /// The share of the way from the first to the second end of a segment at which an added point lies.
 double share_of(std::span<const double> xy, const Segment& ends, double x, double y) {
-  const auto distance = [&](std::int32_t v) {
-    return std::hypot(x - xy[2 * static_cast<std::size_t>(v)], y - xy[2 * static_cast<std::size_t>(v) + 1]);
-  };
-  const double share = distance(ends[0]) / (distance(ends[0]) + distance(ends[1]));
+  const auto from = 2 * static_cast<std::size_t>(ends[0]), to = 2 * static_cast<std::size_t>(ends[1]);
+  const double dx = xy[to] - xy[from], dy = xy[to + 1] - xy[from + 1];
+  const double share = std::abs(dx) >= std::abs(dy) ? (x - xy[from]) / dx : (y - xy[from + 1]) / dy;
   return std::isfinite(share) ? share : 0.5;
 }
 

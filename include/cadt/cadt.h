@@ -50,7 +50,10 @@ enum {
   CADT_INVALID_MESH = 10,       /* cadt_triangulation_adopt: name of the check, index of what failed */
   CADT_INTERNAL_ERROR = 11,     /* an error of the library: please report it */
   CADT_BUFFER_TOO_SMALL = 12,   /* needed, available: elements */
-  CADT_ERROR = 13               /* any other */
+  CADT_ERROR = 13,              /* any other */
+  CADT_SEGMENTS_CROSS = 14,     /* index: a segment that crosses another; needed: the number of pairs */
+  CADT_OPEN_BOUNDARY = 15,      /* segments bound no domain; index: a point at which they do not close */
+  CADT_NOT_DELAUNAY = 16        /* a question that only a Delaunay mesh answers; index: an edge that is not */
 };
 /* "CADT_OK", "CADT_INPUT_ERROR", ...; "unknown status" for other numbers. */
 CADT_API const char* cadt_status_name(cadt_status status);
@@ -62,8 +65,8 @@ typedef struct cadt_error {
   const char* message; /* what went wrong, and what to do */
   const char* name;    /* an option, back end, call, check or argument; "" if none */
   const char* detail;  /* "" if none */
-  int64_t index;       /* of a point, triangle or edge (3 * triangle + k); -1 if none */
-  uint64_t needed;     /* bytes, points or elements, by the status */
+  int64_t index;       /* of a point, segment, triangle or edge (3 * triangle + k); -1 if none */
+  uint64_t needed;     /* bytes, points, elements or pairs, by the status */
   uint64_t available;
 } cadt_error;
 /* The last failure in this thread; status CADT_OK if there was none. Its strings are valid until its next one. */
@@ -327,6 +330,7 @@ CADT_API void cadt_device_list_free(cadt_device_list* list);
 }
 #endif
 
+#include <cadt/constrained.h>
 #include <cadt/queries.h>
 
 #endif

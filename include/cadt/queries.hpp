@@ -3,7 +3,9 @@
 // diagram, holes and outlines. On the host or on a device, in batches.
 #pragma once
 
+#include <cadt/constrained.hpp>
 #include <cadt/devices.hpp>
+#include <cadt/errors.hpp>
 #include <cadt/export.hpp>
 #include <cadt/points.hpp>
 #include <cadt/triangulation.hpp>
@@ -17,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace cadt {
@@ -96,6 +99,18 @@ struct DeviceVoronoi {
   DeviceArray vertices, cell_begin, cells, edge_points, edge_vertices;
 };
 
+/// A question that only a Delaunay mesh answers right, and a mesh of which a constrained edge is none of the Delaunay
+/// triangulation: ask that of the same vertices, triangulate(), instead.
+class CADT_API NotDelaunay : public Error {
+ public:
+  NotDelaunay(const std::string& message, std::int64_t edge) : Error(message), edge_(edge) {}
+  /// The first such edge: 3 * triangle + k, opposite vertex k.
+  [[nodiscard]] std::int64_t edge() const noexcept { return edge_; }
+
+ private:
+  std::int64_t edge_;
+};
+
 /// A mesh prepared for queries on a device: the vertices are sorted along Hilbert's curve, so a query starts near.
 /// Which triangle, vertex or cell an answer is about is exact: the same from every device, however many are asked at a
 /// time. Values and places are doubles and rounded. Points on an edge or vertex belong to the lowest of its triangles.
@@ -109,6 +124,11 @@ struct DeviceVoronoi {
 ///     cadt::MeshQueries queries(xy, mesh);
 ///     std::vector<std::int32_t> triangles = queries.locate(where);
 ///     std::vector<double> heights = queries.interpolate(z, where);
+///
+/// Constrained meshes answer where queries lie, linear interpolation and rasters (breaklines), circumcentres and
+/// outlines. Nearest vertices (Outside::nearest is such a question), natural neighbours, Voronoi diagrams and empty
+/// circles are right as long as all constrained edges happen to be Delaunay, which the first such question examines in
+/// O(triangles); else it is refused: NotDelaunay.
 class CADT_API MeshQueries {
  public:
   /// A mesh of the host, and its points, which are not copied where the device can read them: they must live as long as
@@ -118,6 +138,11 @@ class CADT_API MeshQueries {
   MeshQueries(PointsView points, const Triangulation& mesh, const Options& options = {});
   /// The same with the points that the mesh has kept (Options::keep_points). \throws InputError if it has kept none
   explicit MeshQueries(const Triangulation& mesh, const Options& options = {});
+  /// A constrained mesh of the host, and the points that it was made of. Those that it has added stand behind them, so
+  /// values are given for number_of_points() of them all; those that it has moved are where it has moved them. \throws
+  /// InvalidMesh if triangles are not counterclockwise with rounded coordinates
+  /// (ConstrainedTriangulation::rounded_valid), with the first one, and as the others
+  MeshQueries(PointsView points, const ConstrainedTriangulation& mesh, const Options& options = {});
   /// The mesh of another program, with neighbours; its arrays are checked. Like the points, they must outlive this
   /// object. Nearest vertices, natural neighbours and the Voronoi diagram take a Delaunay mesh, the rest any
   /// triangulation of the convex hull. \throws InputError if an index is out of range, or an edge is not the same from
@@ -130,6 +155,7 @@ class CADT_API MeshQueries {
   MeshQueries(MeshQueries&&) noexcept;
   MeshQueries& operator=(MeshQueries&&) noexcept;
 
+  /// With those that a constrained mesh has added.
   [[nodiscard]] std::size_t number_of_points() const noexcept;
   [[nodiscard]] std::size_t number_of_triangles() const noexcept;
   [[nodiscard]] const DeviceInfo& device() const noexcept;

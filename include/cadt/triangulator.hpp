@@ -67,6 +67,13 @@ class CADT_API DeviceTriangulation {
   [[nodiscard]] void* neighbors() const noexcept;
   /// Handle of the constrained edges, a word a triangle: bit k for the edge opposite vertex k; null without segments.
   [[nodiscard]] void* edge_flags() const noexcept;
+  /// With ConstraintOptions::domain: handle of the region of each triangle, numbered by their lowest triangles from 0,
+  /// and of the triangles inside alone, 3 words each, in the same order, with their neighbours, -1 for one that is not
+  /// inside. Null with Domain::hull, or if there are none.
+  [[nodiscard]] void* regions() const noexcept;
+  [[nodiscard]] void* triangles_inside() const noexcept;
+  [[nodiscard]] void* neighbors_inside() const noexcept;
+  [[nodiscard]] std::size_t number_inside() const noexcept;
   /// Number of points that equal an earlier one.
   [[nodiscard]] std::size_t number_of_duplicates() const noexcept;
   /// Handles of number_of_duplicates() words each: the points, ascending, and the representative of each; null if there

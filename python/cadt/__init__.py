@@ -9,8 +9,9 @@ array([[0, 1, 2],
 >>> mesh.find_simplex([[0.2, 0.2], [5, 5]])
 array([ 0, -1], dtype=int32)
 
-``cadt.Delaunay`` is the mesh and what it can be asked; ``cadt.scipy`` has SciPy's classes and ``cadt.cupy`` CuPy's, with
-their names and shapes. NumPy is imported by the first call, not by ``import cadt``.
+``cadt.Delaunay`` is the mesh and what it can be asked, ``cadt.ConstrainedDelaunay`` one with segments that must be edges,
+and ``cadt.polygons`` triangulates many polygons; ``cadt.scipy`` has SciPy's classes and ``cadt.cupy`` CuPy's, with their
+names and shapes. NumPy is imported by the first call, not by ``import cadt``.
 """
 
 from __future__ import annotations
@@ -22,12 +23,15 @@ if TYPE_CHECKING:
     from typing import Any
 
     from cadt._batch import Batch, triangulate_batch
+    from cadt._constrained import ConstrainedDelaunay, find_crossings
     from cadt._delaunay import Delaunay
     from cadt._devices import DeviceInfo, devices, release_memory
     from cadt._errors import (
         BackendUnavailable,
         Cancelled,
+        CrossingError,
         DeviceError,
+        DomainError,
         Error,
         FileError,
         InputError,
@@ -35,10 +39,13 @@ if TYPE_CHECKING:
         InvalidMesh,
         KernelBuildError,
         LimitError,
+        NotDelaunay,
         OptionError,
         OutOfMemory,
         ResumeError,
     )
+    from cadt._labels import LabelSegments, label_segments, triangle_labels
+    from cadt._polygons import PolygonProblem, Polygons, polygons
     from cadt._results import Check, VerifyReport, Voronoi
     from cadt._verify import verify
 
@@ -46,12 +53,20 @@ if TYPE_CHECKING:
 _MODULE_OF = {
     "Batch": "_batch",
     "Check": "_results",
+    "ConstrainedDelaunay": "_constrained",
     "Delaunay": "_delaunay",
     "DeviceInfo": "_devices",
+    "LabelSegments": "_labels",
+    "PolygonProblem": "_polygons",
+    "Polygons": "_polygons",
     "VerifyReport": "_results",
     "Voronoi": "_results",
     "devices": "_devices",
+    "find_crossings": "_constrained",
+    "label_segments": "_labels",
+    "polygons": "_polygons",
     "release_memory": "_devices",
+    "triangle_labels": "_labels",
     "triangulate_batch": "_batch",
     "verify": "_verify",
 }
@@ -61,24 +76,35 @@ __all__ = [
     "Batch",
     "Cancelled",
     "Check",
+    "ConstrainedDelaunay",
+    "CrossingError",
     "Delaunay",
     "DeviceError",
     "DeviceInfo",
+    "DomainError",
     "Error",
     "FileError",
     "InputError",
     "InternalError",
     "InvalidMesh",
     "KernelBuildError",
+    "LabelSegments",
     "LimitError",
+    "NotDelaunay",
     "OptionError",
     "OutOfMemory",
+    "PolygonProblem",
+    "Polygons",
     "ResumeError",
     "VerifyReport",
     "Voronoi",
     "__version__",
     "devices",
+    "find_crossings",
+    "label_segments",
+    "polygons",
     "release_memory",
+    "triangle_labels",
     "triangulate_batch",
     "verify",
 ]

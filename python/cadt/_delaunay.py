@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Delaunay triangulation. What it can be asked is in _queries.py."""
+"""The Delaunay triangulation. Its arrays are in _mesh.py, what it can be asked in _queries.py."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cadt import _cadt, _devices, _gpu, _show
+from cadt import _cadt, _devices, _gpu
 from cadt._arrays import array_on_device
+from cadt._mesh import Mesh
 from cadt._points import as_indices, as_points
 from cadt._progress import reporter
-from cadt._queries import Queries
 from cadt._results import VerifyReport, report_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 
-class Delaunay(Queries):
+class Delaunay(Mesh):
     """The Delaunay triangulation of points in the plane.
 
     Parameters
@@ -150,139 +150,14 @@ class Delaunay(Queries):
         self._options = options or _devices.make_options("host", None, "canonical", None, None, "counters")
         return self
 
-    # The mesh
-
-    @property
-    def points(self) -> Any:
-        """The points, as they were given where they are an array, else as one of shape (n, 2)."""
-        return self._points
-
-    @property
-    def simplices(self) -> Any:
-        """Triangles: (t, 3) int32 indices of points, counterclockwise. t = 2 v - 2 - h for v vertices, h on the hull."""
-        return self._cached("simplices", lambda m: m.triangles, lambda g: g.simplices)
-
-    @property
-    def neighbors(self) -> Any:
-        """(t, 3) int32: the triangle opposite each vertex, -1 outside the hull."""
-        return self._cached("neighbors", lambda m: m.neighbors, lambda g: g.neighbors)
-
-    @property
-    def hull(self) -> Any:
-        """The convex hull: (h,) int32, a counterclockwise loop of points, those on its edges included."""
-        return self._cached("hull", lambda m: m.hull)
-
-    @property
-    def convex_hull(self) -> Any:
-        """The edges of the convex hull: (h, 2) int32, a counterclockwise loop."""
-
-        def edges(mesh: _cadt.Triangulation) -> np.ndarray:
-            return np.stack([mesh.hull, np.roll(mesh.hull, -1)], axis=1)
-
-        return self._cached("convex_hull", edges)
-
-    @property
-    def edges(self) -> Any:
-        """The edges, each once: (e, 2) int32, the lower index first, ascending. O(n)."""
-        return self._cached("edges", lambda m: m.edges())
-
-    @property
-    def vertex_neighbors(self) -> tuple[Any, Any]:
-        """The neighbours of each point: ``indptr`` (n + 1,) int64 and ``indices`` int32.
-
-        Those of point p are ``indices[indptr[p]:indptr[p + 1]]``, counterclockwise.
-
-        >>> indptr, indices = Delaunay([[0, 0], [1, 0], [0, 1], [1, 1]]).vertex_neighbors
-        >>> indices[indptr[0]:indptr[1]]
-        array([1, 2], dtype=int32)
-        """
-        return self._cached("vertex_neighbors", lambda m: m.vertex_neighbors())
-
-    @property
-    def incident_triangles(self) -> tuple[Any, Any]:
-        """The triangles at each point, as `vertex_neighbors`."""
-        return self._cached("incident_triangles", lambda m: m.incident_triangles())
-
-    @property
-    def half_edges(self) -> Any:
-        """The opposite of each half-edge, as in delaunator: (3 t,) int64, -1 on the hull."""
-        return self._cached("half_edges", lambda m: m.half_edges())
-
-    @property
-    def vertex_to_simplex(self) -> Any:
-        """The lowest triangle of each point: (n,) int32, -1 without triangles. A duplicate has that of what it equals."""
-        return self._cached("vertex_to_simplex", lambda m: m.vertex_triangle())
-
-    @property
-    def duplicate_of(self) -> Any:
-        """(n,) int32: the lowest point that each point equals, if that is another one; else -1."""
-
-        def of(mesh: _cadt.Triangulation) -> np.ndarray:
-            result = np.full(mesh.number_of_points, -1, dtype=np.int32)
-            result[mesh.duplicates[:, 0]] = mesh.duplicates[:, 1]
-            return result
-
-        return self._cached("duplicate_of", of)
-
-    @property
-    def n_points(self) -> int:
-        return self._any.number_of_points
-
-    @property
-    def n_triangles(self) -> int:
-        return self._any.number_of_triangles
-
-    @property
-    def dimension(self) -> int:
-        """Of the points: -1 none, 0 one place, 1 a line, 2 the plane. Below 2 there are no triangles."""
-        return self._any.dimension
-
     @property
     def hash(self) -> str:
         """32 hexadecimal digits that depend on the set of triangles alone: the same from every device and order."""
         return self._host("hash", lambda m: m.hash())
 
-    @property
-    def statistics(self) -> dict[str, Any]:
-        """Work, conflicts, memory and times of the call, by name."""
-        return self._any.statistics
-
-    @property
-    def device(self) -> str:
-        """Where the mesh was computed."""
-        s = self._any.statistics
-        return "host" if s["backend"] in ("host", "") else f"{s['backend']}: {s['device']}"
-
     def verify(self) -> VerifyReport:
         """Checks the whole mesh exactly, with predicates that share no code with those that made it. O(n)."""
         return report_of(self._host_mesh.verify(self._host_points))
-
-    # To other libraries
-
-    def plot(self, ax: Any = None, **how: Any) -> Any:
-        """Draws the triangles with matplotlib (``triplot``) and returns the axes."""
-        return _show.plot(self, ax, how)
-
-    def to_matplotlib(self) -> Any:
-        """A ``matplotlib.tri.Triangulation`` of the same arrays."""
-        return _show.to_matplotlib(self)
-
-    def to_pyvista(self, z: Any = None) -> Any:
-        """A ``pyvista.PolyData``; `z`: heights of the points, else 0."""
-        return _show.to_pyvista(self, z)
-
-    def to_meshio(self, z: Any = None) -> Any:
-        """A ``meshio.Mesh``; `z`: heights of the points, else the mesh is plane."""
-        return _show.to_meshio(self, z)
-
-    def save(self, path: Any, z: Any = None) -> None:
-        """Writes ``.npz`` (points, simplices, neighbors), or with meshio what the suffix says (``.ply .vtk .obj .stl``).
-
-        The file appears whole or not at all.
-        """
-        _show.save(self, path, z)
-
-    # Plumbing
 
     def __repr__(self) -> str:
         return f"<cadt.Delaunay: {self.n_points:,} points, {self.n_triangles:,} triangles, {self.device}>"
@@ -290,36 +165,6 @@ class Delaunay(Queries):
     def __reduce__(self) -> tuple:
         mesh = self._host_mesh
         return _restore, (type(self), self._host_points, mesh.triangles, mesh.neighbors)
-
-    @property
-    def _any(self) -> Any:
-        return self._mesh if self._gpu is None else self._gpu.mesh
-
-    @property
-    def _host_mesh(self) -> _cadt.Triangulation:
-        if self._mesh is None:
-            self._mesh = self._gpu.mesh.download()  # type: ignore[union-attr]
-        return self._mesh
-
-    @property
-    def _host_points(self) -> np.ndarray:
-        return self._points if self._gpu is None else as_points(self._gpu.array.to_host())
-
-    def _cached(self, name: str, of_host: Callable, of_gpu: Callable | None = None) -> Any:
-        """An array of the host's mesh, of the kind of array that the points are."""
-        if name not in self._cache:
-            if self._gpu is None:
-                self._cache[name] = of_host(self._mesh)
-            elif of_gpu is not None:
-                self._cache[name] = of_gpu(self._gpu)
-            else:
-                self._cache[name] = self._gpu.array.like(of_host(self._host_mesh))
-        return self._cache[name]
-
-    def _host(self, name: str, of: Callable) -> Any:
-        if name not in self._cache:
-            self._cache[name] = of(self._host_mesh)
-        return self._cache[name]
 
 
 def _restore(cls: type[Delaunay], points: np.ndarray, simplices: np.ndarray, neighbors: np.ndarray) -> Delaunay:

@@ -6,6 +6,10 @@ A dtype that cannot be taken is a TypeError.
 
 from __future__ import annotations
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 
 class Error(RuntimeError):
     """Base of all exceptions that cadt raises on purpose."""
@@ -134,6 +138,41 @@ class FileError(Error, OSError):
 
 class ResumeError(Error):
     """There is a mesh directory already, or one of other points, another tile size or format."""
+
+
+class CrossingError(Error, ValueError):
+    """Segments cross; `pairs`: all pairs of them, (p, 2) int32, each once with the lower index first, ascending."""
+
+    def __init__(self, message: str, pairs: Any = ()) -> None:
+        super().__init__(message)
+        self.pairs = pairs
+
+    def __reduce__(self) -> tuple:
+        return type(self), (str(self), self.pairs)
+
+
+class DomainError(Error, ValueError):
+    """Segments bound no domain: they do not close at the point `vertex`."""
+
+    def __init__(self, message: str, vertex: int = -1) -> None:
+        super().__init__(message)
+        self.vertex = vertex
+
+    def __reduce__(self) -> tuple:
+        return type(self), (str(self), self.vertex)
+
+
+class NotDelaunay(Error):
+    """A question that only a Delaunay mesh answers right (nearest vertices, natural neighbours, Voronoi diagrams, empty
+    circles), and a mesh with an edge that is not: `edge` is 3 * triangle + k, opposite vertex k. Ask `Delaunay` of the
+    same points."""
+
+    def __init__(self, message: str, edge: int = -1) -> None:
+        super().__init__(message)
+        self.edge = edge
+
+    def __reduce__(self) -> tuple:
+        return type(self), (str(self), self.edge)
 
 
 class Cancelled(Error):

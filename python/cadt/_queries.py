@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a mesh can be asked: the part of `Delaunay` that other points, values and grids come to."""
+"""What a mesh can be asked: the part of `Mesh` that other points, values and grids come to."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _METHODS = ("linear", "nearest", "natural")
 
 
 class Queries:
-    """Base of `Delaunay`. A mesh without triangles answers as one that all queries are outside of."""
+    """Base of `Mesh`. A mesh without triangles answers as one that all queries are outside of."""
 
     _gpu: _gpu.Mesh | None
     _cache: dict[str, Any]
@@ -112,7 +112,7 @@ class Queries:
         _one_of(outside, ("nan", "nearest"), "outside")
         if self._gpu is not None:
             return self._gpu.interpolate(values, xi, method, outside)
-        v, one = as_values(values, self.n_points)
+        v, one = self._values(values)
         q, shape = as_queries(xi)
         if v.shape[1] == 0:
             return np.empty((*shape, *one))
@@ -171,7 +171,7 @@ class Queries:
         """`rasterize` on a grid by its corner and the size of its cells (cadt::Grid)."""
         if self._gpu is not None:
             return self._gpu.rasterize(values, grid, rows, columns, method, max_edge)
-        v, one = as_values(values, self.n_points)
+        v, one = self._values(values)
         if v.shape[1] == 0:
             return np.empty((rows, columns, *one))
         # The library makes a raster of one value a point.
@@ -218,6 +218,9 @@ class Queries:
         Kirkpatrick, Seidel, 1983).
         """
         return self._queries().outline(_length(radius, "radius"), _length(max_edge, "max_edge"))
+
+    def _values(self, values: Any) -> tuple[np.ndarray, tuple[int, ...]]:
+        return as_values(values, self.n_points)
 
     def _queries(self) -> _cadt.Queries:
         if "queries" not in self._cache:

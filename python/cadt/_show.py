@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from cadt._delaunay import Delaunay
+    from cadt._constrained import ConstrainedDelaunay
+    from cadt._mesh import Mesh
 
 
 def _need(module: str, extra: str) -> Any:
@@ -23,7 +24,7 @@ def _need(module: str, extra: str) -> Any:
         raise ImportError(f"this needs {extra}: pip install {extra}") from None
 
 
-def _heights(mesh: Delaunay, z: Any) -> np.ndarray:
+def _heights(mesh: Mesh, z: Any) -> np.ndarray:
     xyz = np.zeros((mesh.n_points, 3))
     xyz[:, :2] = mesh._host_points
     if z is not None:
@@ -31,7 +32,7 @@ def _heights(mesh: Delaunay, z: Any) -> np.ndarray:
     return xyz
 
 
-def to_matplotlib(mesh: Delaunay) -> Any:
+def to_matplotlib(mesh: Mesh) -> Any:
     tri = _need("matplotlib.tri", "matplotlib")
     xy = mesh._host_points
     result = tri.Triangulation(xy[:, 0], xy[:, 1], mesh._host_mesh.triangles)
@@ -44,7 +45,7 @@ def to_matplotlib(mesh: Delaunay) -> Any:
     return result
 
 
-def plot(mesh: Delaunay, ax: Any, how: dict[str, Any]) -> Any:
+def plot(mesh: Mesh, ax: Any, how: dict[str, Any]) -> Any:
     if ax is None:
         ax = _need("matplotlib.pyplot", "matplotlib").gca()
     if "lw" not in how:
@@ -54,19 +55,35 @@ def plot(mesh: Delaunay, ax: Any, how: dict[str, Any]) -> Any:
     return ax
 
 
-def to_pyvista(mesh: Delaunay, z: Any) -> Any:
+def plot_constrained(mesh: ConstrainedDelaunay, ax: Any, inside: bool, how: dict[str, Any]) -> Any:
+    if ax is None:
+        ax = _need("matplotlib.pyplot", "matplotlib").gca()
+    collections = _need("matplotlib.collections", "matplotlib")
+    xy = mesh._host_points
+    triangles = mesh.triangles_inside if inside else mesh.simplices
+    if "lw" not in how:
+        how.setdefault("linewidth", 0.6)
+    if len(triangles):
+        ax.triplot(xy[:, 0], xy[:, 1], triangles, **how)
+    ax.add_collection(collections.LineCollection(xy[mesh.constrained_edges], colors="black", linewidths=1.4, zorder=3))
+    ax.autoscale_view()
+    ax.set_aspect("equal")
+    return ax
+
+
+def to_pyvista(mesh: Mesh, z: Any) -> Any:
     pyvista = _need("pyvista", "pyvista")
     faces = np.insert(mesh._host_mesh.triangles, 0, 3, axis=1)
     return pyvista.PolyData(_heights(mesh, z), faces.ravel())
 
 
-def to_meshio(mesh: Delaunay, z: Any) -> Any:
+def to_meshio(mesh: Mesh, z: Any) -> Any:
     meshio = _need("meshio", "meshio")
     xyz = _heights(mesh, z)
     return meshio.Mesh(xyz if z is not None else xyz[:, :2], [("triangle", mesh._host_mesh.triangles)])
 
 
-def save(mesh: Delaunay, path: Any, z: Any) -> None:
+def save(mesh: Mesh, path: Any, z: Any) -> None:
     path = Path(path)
     if path.suffix not in (".npz",):
         _need("meshio", "meshio")

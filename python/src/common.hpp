@@ -106,9 +106,13 @@ void forked() noexcept;
 
 [[nodiscard]] nb::dict to_dict(const cadt::Statistics& statistics);
 
+/// What cadt/_results.py makes a VerifyReport of.
+[[nodiscard]] nb::dict report_of(const cadt::VerifyReport& report);
+
 void bind_errors();
 void bind_options(nb::module_& m);
 void bind_mesh(nb::module_& m);
+void bind_constrained(nb::module_& m);
 void bind_device(nb::module_& m);
 void bind_queries(nb::module_& m);
 void bind_scipy(nb::module_& m);

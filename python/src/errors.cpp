@@ -2,8 +2,10 @@
 // The library's exceptions as those of cadt/_errors.py, with their data.
 #include "common.hpp"
 
+#include <cadt/constrained.hpp>
 #include <cadt/errors.hpp>
 #include <cadt/io/errors.hpp>
+#include <cadt/queries.hpp>
 
 #include "tiles/manifest.hpp"
 
@@ -37,6 +39,14 @@ void translate(const std::exception_ptr& thrown, void* /*unused*/) {
     raise("DeviceError", e, e.call(), e.device(), e.code());
   } catch (const cadt::KernelBuildError& e) {
     raise("KernelBuildError", e, e.device(), e.options(), e.log());
+  } catch (const cadt::CrossingError& e) {
+    std::vector<std::int32_t> pairs;
+    for (const auto& pair : e.pairs()) pairs.insert(pairs.end(), pair.begin(), pair.end());
+    raise("CrossingError", e, array_of(std::move(pairs), 2));
+  } catch (const cadt::DomainError& e) {
+    raise("DomainError", e, e.vertex());
+  } catch (const cadt::NotDelaunay& e) {
+    raise("NotDelaunay", e, e.edge());
   } catch (const cadt::Cancelled& e) {
     raise("Cancelled", e);
   } catch (const cadt::io::FileError& e) {

@@ -19,6 +19,8 @@ nb::tuple rows(cadt::CompressedRows&& r) {
   return nb::make_tuple(array_of(std::move(begin)), array_of(std::move(r.indices)));
 }
 
+}  // namespace
+
 nb::dict report_of(const cadt::VerifyReport& r) {
   nb::list checks;
   for (const cadt::Check& c : r.checks) checks.append(nb::make_tuple(c.name, c.passed, c.failures, c.first, c.what));
@@ -31,8 +33,6 @@ nb::dict report_of(const cadt::VerifyReport& r) {
   d["ties"] = r.ties;
   return d;
 }
-
-}  // namespace
 
 void bind_mesh(nb::module_& m) {
   m.def("max_points", &cadt::max_points);

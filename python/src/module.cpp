@@ -16,6 +16,7 @@ NB_MODULE(_cadt, m) {
   bind_options(m);
   bind_mesh(m);
   bind_device(m);
+  bind_constrained(m);
   bind_queries(m);
   bind_scipy(m);
   bind_part_raster(m);

@@ -4,6 +4,8 @@
 
 #include <nanobind/stl/array.h>
 
+#include <functional>
+
 namespace cadt_python {
 
 namespace {
@@ -22,8 +24,9 @@ using Corners = std::array<double, 4>;
 /// Queries of a mesh of the host; it keeps mesh and points. One thread at a time asks.
 class HostQueries {
  public:
-  HostQueries(const Points& points, const cadt::Triangulation& mesh, const cadt::Options& options)
-      : points_(points), mesh_(mesh), options_(options), state_(open()) {}
+  template <class Mesh>
+  HostQueries(const Points& points, const Mesh& mesh, const cadt::Options& options)
+      : make_([points, mesh, options] { return cadt::MeshQueries(view_of(points), mesh, options); }), state_(open()) {}
   ~HostQueries() {
     if (state_->forks != forks()) static_cast<void>(state_.release());
   }
@@ -52,13 +55,9 @@ class HostQueries {
     unsigned forks;
     std::mutex busy;
   };
-  [[nodiscard]] std::unique_ptr<State> open() {
-    return std::unique_ptr<State>(new State{{view_of(points_), mesh_, options_}, forks(), {}});
-  }
+  [[nodiscard]] std::unique_ptr<State> open() { return std::unique_ptr<State>(new State{make_(), forks(), {}}); }
 
-  Points points_;
-  cadt::Triangulation mesh_;
-  cadt::Options options_;
+  std::function<cadt::MeshQueries()> make_;  ///< keeps points and mesh
   std::unique_ptr<State> state_;
   nb::object none_ = nb::none();
 };
@@ -138,6 +137,7 @@ void bind_device_queries(nb::module_& m) {
 void bind_queries(nb::module_& m) {
   nb::class_<HostQueries>(m, "Queries")
       .def(nb::init<const Points&, const cadt::Triangulation&, const cadt::Options&>())
+      .def(nb::init<const Points&, const cadt::ConstrainedTriangulation&, const cadt::Options&>())
       .def("locate",
            [](HostQueries& q, const Points& p) {
              return array_of(q.run([&, view = view_of(p)](cadt::MeshQueries& own) { return own.locate(view); }));

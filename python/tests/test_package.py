@@ -50,10 +50,10 @@ def test_there_are_examples() -> None:
     finder = doctest.DocTestFinder()
     with_examples = sum(
         bool(t.examples)
-        for n in ("cadt._delaunay", "cadt._queries", "cadt.scipy._interpolate")
+        for n in ("cadt._constrained", "cadt._delaunay", "cadt._mesh", "cadt._queries", "cadt.scipy._interpolate")
         for t in finder.find(importlib.import_module(n))
     )
-    assert with_examples >= 10
+    assert with_examples >= 13
 
 
 def test_types() -> None:

@@ -56,7 +56,11 @@ def no_triangles(name: str, points: int) -> FileError:
 
 
 def rasterize(
-    mesh: cadt.Delaunay, z: NDArray[np.float64], grid: Grid, method: str = "linear", max_edge: float | None = None
+    mesh: cadt.Delaunay | cadt.ConstrainedDelaunay,
+    z: NDArray[np.float64],
+    grid: Grid,
+    method: str = "linear",
+    max_edge: float | None = None,
 ) -> NDArray[np.float64]:
     """The cells of a grid, with its very cell size: `Delaunay.rasterize` derives that from the bounds."""
     longest = math.inf if max_edge is None else float(max_edge)

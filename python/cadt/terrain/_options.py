@@ -33,6 +33,8 @@ Examples:
       the very cells of another raster, to subtract them, without gaps
   cadt raster depths.gpkg sea.tif --res 10 --values depth --method natural
       points with an attribute; smooth, by natural neighbours
+  cadt raster scan.laz dem.tif --res 1 --class 2,9 --breaklines lakes.gpkg
+      triangles end at the shores, and at banks and ridges
   cadt raster tiles/*.laz country.tif --res 0.5 --class 2 --max-edge 100 --scratch /mnt/fast
       more points than memory takes: they go through a fast disk
 
@@ -153,6 +155,12 @@ def _raster(parser: argparse.ArgumentParser) -> None:
         choices=("linear", "nearest", "natural"),
         default="linear",
         help="between the points: linear (in the triangle; default), nearest (the nearest point's) or natural (natural neighbours: smooth)",
+    )
+    parser.add_argument(
+        "--breaklines",
+        metavar="FILE",
+        help="lines and outlines of polygons that triangles do not cross (.gpkg .geojson .fgb .shp): banks, ridges, lakes; "
+        "heights are the file's, or where it has none those between the points; --method linear alone",
     )
     parser.add_argument(
         "--fill",

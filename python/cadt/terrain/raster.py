@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import cadt
 
+from . import _breaklines
 from ._buckets import Buckets, Floats
 from ._files import check_output
 from ._mesh import check_max_edge, no_triangles, rasterize, read, triangulate
@@ -43,7 +44,7 @@ def rows_at_a_time(grid: Grid, points: int) -> int:
 
 
 def fill_nearest(
-    mesh: cadt.Delaunay, z: NDArray[np.float64], cells: NDArray[np.float64], grid: Grid, first: int
+    mesh: cadt.Delaunay | cadt.ConstrainedDelaunay, z: NDArray[np.float64], cells: NDArray[np.float64], grid: Grid, first: int
 ) -> None:
     """Puts the nearest point's value where there is none."""
     for row in range(len(cells)):
@@ -55,15 +56,21 @@ def fill_nearest(
             cells[row, columns] = z[mesh.nearest_vertex(where)]
 
 
-def by_whole(mesh: cadt.Delaunay, z: NDArray[np.float64], grid: Grid, options: argparse.Namespace) -> Iterator[Floats]:
-    """The rows from a mesh of all points, some at a time."""
+def by_whole(
+    mesh: cadt.Delaunay | cadt.ConstrainedDelaunay,
+    z: NDArray[np.float64],
+    grid: Grid,
+    options: argparse.Namespace,
+    nearest: cadt.Delaunay | None = None,
+) -> Iterator[Floats]:
+    """The rows from a mesh of all points, some at a time. `nearest`: the mesh that finds nearest points, if another."""
     step = rows_at_a_time(grid, len(z))
     for first in range(0, grid.rows, step):
         last = min(first + step, grid.rows)
         part = Grid(grid.x0, grid.y1 - first * grid.dy, grid.dx, grid.dy, grid.columns, last - first)
         cells = rasterize(mesh, z, part, options.method, options.max_edge)
         if options.fill == "nearest":
-            fill_nearest(mesh, z, cells, grid, first)
+            fill_nearest(nearest or mesh, z, cells, grid, first)
         yield cells
 
 
@@ -82,11 +89,13 @@ def check_options(options: argparse.Namespace) -> None:
     check_max_edge(options.max_edge)
     check_nodata(options.nodata, options.dtype)
     parse_bounds(options.bounds)
+    if options.breaklines is not None:
+        _breaklines.check_options(options)
     if options.scratch is not None:
         with_scratch().check_options(options)
     elif options.tile_points is not None:
         raise UsageError("--tile-points is for --scratch, which is missing")
-    others = [options.align] if options.align is not None else []
+    others = [name for name in (options.align, options.breaklines) if name is not None]
     check_output(options.output, WRITE_FORMATS, options.inputs + others)
 
 
@@ -104,6 +113,7 @@ class InMemory:
 
     def __init__(self, options: argparse.Namespace, line: ProgressLine) -> None:
         self.options, self.line = options, line
+        self.said: dict[str, object] = {}  # for the summary
 
     def read(self) -> Cloud:
         return read(self.options, self.line)
@@ -111,6 +121,8 @@ class InMemory:
     def rows(self, cloud: Cloud, grid: Grid) -> tuple[Iterator[Floats], str]:
         """The rows of the raster, and what computes them. The cloud's arrays are sorted."""
         name, n, options = ", ".join(cloud.sources), len(cloud), self.options
+        if options.breaklines is not None:
+            return self._rows_with_breaklines(cloud, grid)
         self.line.step("sorting")
         points = Buckets(cloud, threads=options.threads)
         if options.method == "linear" and points.useful and on_host(options, n):
@@ -127,6 +139,19 @@ class InMemory:
             return tiled.rows(), "host, by tiles"
         mesh = triangulate(points.xy, name, options, self.line)
         return by_whole(mesh, points.z, grid, options), mesh.device
+
+    def _rows_with_breaklines(self, cloud: Cloud, grid: Grid) -> tuple[Iterator[Floats], str]:
+        options = self.options
+        lines = _breaklines.read_breaklines(options.breaklines, cloud, options.crs)
+        broken = _breaklines.add_breaklines(cloud, lines, options, self.line)
+        self.said["breaklines"] = f"{len(lines.offsets) - 1}, with {len(lines.xyz)} points; heights of {broken.heights}"
+        mesh = broken.mesh
+        if mesh.n_triangles == 0:
+            raise no_triangles(", ".join(cloud.sources), len(cloud))
+        nearest = None
+        if options.fill == "nearest":
+            nearest = triangulate(np.asarray(mesh.points), ", ".join(cloud.sources), options, self.line)
+        return by_whole(mesh, broken.z, grid, options, nearest), mesh.device
 
 
 def raster_command(options: argparse.Namespace, line: ProgressLine) -> dict[str, object]:
@@ -148,6 +173,7 @@ def raster_command(options: argparse.Namespace, line: ProgressLine) -> dict[str,
             )
         )
         made, device = way.rows(cloud, grid)
+        said = way.said if options.breaklines is not None else {}
         del cloud
         for cells in made:
             rows.write(cells)
@@ -156,6 +182,7 @@ def raster_command(options: argparse.Namespace, line: ProgressLine) -> dict[str,
         line.step(f"compressing {options.output}")
     return {
         "points": n,
+        **said,
         "cells": f"{grid.columns} x {grid.rows}",
         "no data": rows.blank,
         "time": f"{time.monotonic() - start:.3f} s (read {read_at - start:.3f})",

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <functional>
+#include <memory>
 #include <new>
 #include <string>
 #include <vector>
@@ -223,6 +224,46 @@ TEST(HostMemory, CInterface) {
                                         CADT_KEEP_COPY, &h.mesh));
     require_ok(cadt_triangulation_verify(h.mesh, &points, nullptr, &h.report));
     return h.report->summary;
+  });
+  const std::int32_t segments[] = {0, 1, 2, 3, 4, 5};
+  cadt_constraint_options how{};
+  how.size = sizeof how;
+  how.crossing = CADT_CROSSING_EXACT;
+  how.domain = CADT_DOMAIN_LAYERS;
+  refuse_each([&] {
+    struct Constrained {
+      ~Constrained() {
+        cadt_queries_free(queries);
+        cadt_constrained_free(mesh);
+        cadt_report_free(report);
+      }
+      cadt_constrained* mesh = nullptr;
+      cadt_queries* queries = nullptr;
+      cadt_report* report = nullptr;
+    } h;
+    require_ok(cadt_triangulate_constrained(&points, segments, 3, &how, &options, &h.mesh));
+    require_ok(cadt_queries_open_constrained(&points, h.mesh, &options, &h.queries));
+    const double where[] = {0.5, 0.5};
+    const cadt_points asked{where, nullptr, 1, 0, CADT_FLOAT64};
+    std::int32_t triangle = -1;
+    std::size_t count = 0;
+    const std::int32_t* edges = nullptr;
+    require_ok(cadt_queries_locate(h.queries, &asked, &triangle, 1, &count));
+    require_ok(cadt_constrained_edges(h.mesh, &edges, &count));
+    return std::to_string(triangle) + " " + std::to_string(count);
+  });
+  const std::int64_t rings[] = {0, 4, 9}, polygons[] = {0, 1, 2};
+  refuse_each([&] {
+    cadt_polygon_triangles* triangles = nullptr;
+    const cadt_status status = cadt_triangulate_polygons(&points, rings, 2, polygons, 2, &options, &triangles);
+    const std::unique_ptr<cadt_polygon_triangles, decltype(&cadt_polygon_triangles_free)> owned(
+        triangles, &cadt_polygon_triangles_free);
+    require_ok(status);
+    const std::int64_t* triangle_offsets = nullptr;
+    const std::int32_t* vertices = nullptr;
+    std::size_t count = 0;
+    require_ok(cadt_polygon_triangles_get(triangles, &triangle_offsets, &count, &vertices));
+    return std::to_string(triangle_offsets[count]);
   });
   // A message that finds no memory: the status tells all the same.
   until_refusal = 0;

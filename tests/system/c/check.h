@@ -41,5 +41,7 @@ void test_triangulator(void);
 void test_callbacks(void);
 void test_batches(void);
 void test_queries(void);
+void test_constrained(void);
+void test_polygons(void);
 
 #endif

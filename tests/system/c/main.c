@@ -43,6 +43,8 @@ int main(void) {
   test_callbacks();
   test_batches();
   test_queries();
+  test_constrained();
+  test_polygons();
   if (failures == 0) printf("the C interface does what it says\n");
   return failures == 0 ? 0 : 1;
 }

@@ -83,6 +83,16 @@ def main():
     library.cadt_report_free(report)
     library.cadt_triangulation_free(mesh)
 
+    constrained, flags = c_void_p(), POINTER(c_uint32)()
+    segment = (c_int32 * 2)(0, n - 1)
+    check(library.cadt_triangulate_constrained(byref(points), segment, c_size_t(1), None, None, byref(constrained)))
+    edge_list, edge_count = POINTER(c_int32)(), c_size_t()
+    check(library.cadt_constrained_edges(constrained, byref(edge_list), byref(edge_count)))
+    assert edge_list[:2 * edge_count.value] == [0, n - 1]
+    check(library.cadt_constrained_edge_flags(constrained, byref(flags)))
+    assert sum(bin(word).count("1") for word in flags[:triangles_count.value]) == 2
+    library.cadt_constrained_free(constrained)
+
     chosen = options()
     chosen.cancelled = CANCELLED(lambda user: 1)
     assert library.cadt_triangulate(byref(points), byref(chosen), byref(mesh)) == CANCELLED_BY_CALLER
@@ -93,7 +103,7 @@ def main():
 
 
 # 64-bit handles are passed as such.
-for name in ("cadt_triangulation_free", "cadt_report_free"):
+for name in ("cadt_triangulation_free", "cadt_report_free", "cadt_constrained_free"):
     getattr(library, name).argtypes = [c_void_p]
     getattr(library, name).restype = None
 main()

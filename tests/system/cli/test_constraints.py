@@ -40,7 +40,7 @@ def area_of(points, triangles):
     return sum(areas)
 
 
-class ConstraintTest(CliTest):
+class ConstraintTest:
     def off(self, name):
         vertices, triangles = read_off(self.path(name).read_text())
         return [(float(x), float(y)) for x, y, _ in vertices], triangles
@@ -116,7 +116,11 @@ class Segments(CliTest):
         self.write("p.xyz", "0 0 1\n9 0 2\n9 9 3\n0 9 4\n")
         self.write("lines.obj", "v 2 2 7\nv 5 6 8\nl 1 2\n")
         self.cadt("triangulate", "p.xyz", "--segments", "lines.obj", "-o", "m.off")
-        self.assertEqual([z for _, _, z in read_off(self.path("m.off").read_text())[0]], ["1", "2", "3", "4", "7", "8"])
+        vertices, triangles = read_off(self.path("m.off").read_text())
+        self.assertEqual([z for _, _, z in vertices], ["1", "2", "3", "4", "7", "8"])
+        self.cadt("triangulate", "p.xyz", "--segments", "lines.obj", "-o", "m.edge", "-o", "m.node")
+        self.assertEqual([line.split() for line in self.path("m.edge").read_text().splitlines()[:2]],
+                         [["1", "0"], ["0", "4", "5"]])
         self.write("same.obj", "v 0 0 7\nv 9 0 7\nv 9 9 7\nv 0 9 7\nl 1 3\n")
         self.cadt("triangulate", "p.xyz", "--segments", "same.obj", "-o", "m.off")
         self.assertEqual([z for _, _, z in read_off(self.path("m.off").read_text())[0]], ["1", "2", "3", "4"])
@@ -186,9 +190,9 @@ class Crossings(CliTest):
         self.assertEqual(points[6:], [(2, 2)])
         self.assertEqual(sum(6 in triangle for triangle in triangles), 4)
         self.assertRegex(err, r"segments    3, which are 5 edges, with 1 points added where they cross")
-        self.write("heights.obj", "v 0 0 1\nv 4 4 5\nv 0 4 9\nv 4 0 9\nl 1 2\nl 3 4\n")
+        self.write("heights.obj", "v 0 0 1\nv 8 0 5\nv 2 3 9\nv 2 -3 9\nl 1 2\nl 3 4\n")
         self.cadt("triangulate", "heights.obj", "--segments", "heights.obj", "--crossing", "exact", "-o", "m.off")
-        self.assertEqual(read_off(self.path("m.off").read_text())[0][4], ("2", "2", "3"))
+        self.assertEqual(read_off(self.path("m.off").read_text())[0][4], ("2", "0", "2"))
 
     def test_can_move_to_a_grid(self):
         self.write("y.edg", "2\n0 0 4.1 4.1\n0 4 4 0.2\n")
@@ -291,7 +295,11 @@ class Polygons(CliTest):
         self.write("b.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE), polygon(flat), polygon(SQUARE, flat[:2])))
         err = self.cadt("polygons", "b.geojson", "--crossing", "exact", "-o", "m.off").err
         self.assertIn("polygon 2 of feature 2: zero area at (0, 0)", err)
+        self.assertNotIn("polygon 3", err)
+        self.assertEqual(area_of(*self.off("m.off")) / 2, 16 + 8 + 16)
+        err = self.cadt("polygons", "b.geojson", "-o", "m.off").err
         self.assertIn("polygon 3 of feature 3: too few points at (0, 0)", err)
+        self.assertEqual(area_of(*self.off("m.off")) / 2, 16)
 
     def test_errors(self):
         self.fails(2, "polygons", "a.json", "--crossing", "round", says="--crossing round:")

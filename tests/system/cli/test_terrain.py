@@ -47,6 +47,7 @@ class TerrainHandOver(CliTest):
                       ["raster", "p.xyz", "--output=x.tif", "--res=1"], ["raster", "p.xyz", "-ox.tif"],
                       ["raster", "--res", "1", "in.LAZ", "-o", "d.asc"], ["raster", "x.parquet"], ["raster", "x.fgb"],
                       ["raster", "x.geojson"], ["raster", "x.gpkg"], ["raster", "p.xyz", "d.asc", "--align=g.asc"],
+                      ["raster", "p.xyz", "d.asc", "--breaklines", "g.shp"],
                       ["raster", "in.laz", "", "-q"]):
             self.assertEqual(self.handed(*words)["words"], words)
 

@@ -3,7 +3,7 @@
 // case.
 //   cadt-time-constraints BACKEND CASE [POINTS]
 // CASE: edges (as many segments as points, a tenth of them no edges), one (across all points), long (1,000 across all
-// points)
+// points), or NAME of NAME.f64 with points and NAME.i32 with segments: then with Domain::even_odd
 #include <cadt/cadt.hpp>
 #include <cadt/constrained.hpp>
 
@@ -12,8 +12,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <fstream>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -86,6 +87,16 @@ Input across_all(std::size_t n, std::size_t count) {
   return input;
 }
 
+template <class T>
+std::vector<T> read_all(const std::string& name) {
+  std::ifstream file(name, std::ios::binary | std::ios::ate);
+  if (!file) throw std::runtime_error(name + " cannot be opened");
+  std::vector<T> values(static_cast<std::size_t>(file.tellg()) / sizeof(T));
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(T)));
+  return values;
+}
+
 template <class Call>
 double milliseconds(const Call& call) {
   const auto begin = std::chrono::steady_clock::now();
@@ -110,7 +121,16 @@ int main(int argc, char** argv) {
   options.order = Order::fast;
   options.tuning.kernel_times = std::getenv("CADT_KERNELS") != nullptr;
   options.statistics = StatisticsDetail::none;
-  const Input input = which == "edges" ? edges(n, options) : across_all(n, which == "one" ? 1 : 1000);
+  ConstraintOptions constraints;
+  Input input;
+  if (which == "edges") {
+    input = edges(n, options);
+  } else if (which == "one" || which == "long") {
+    input = across_all(n, which == "one" ? 1 : 1000);
+  } else {
+    input = {read_all<double>(which + ".f64"), read_all<Segment>(which + ".i32")};
+    constraints.domain = Domain::even_odd;
+  }
   const auto memory = test::device_memory(options.backend, 0);
   if (memory->queue() != nullptr) options.queue = memory->queue();
   Triangulator triangulator(options);
@@ -124,7 +144,8 @@ int main(int argc, char** argv) {
       memory->wait();
     }));
     constrained.push_back(milliseconds([&] {
-      statistics = triangulator.triangulate_constrained(points, {segments, 2 * input.segments.size()}).statistics();
+      statistics =
+          triangulator.triangulate_constrained(points, {segments, 2 * input.segments.size()}, constraints).statistics();
       memory->wait();
     }));
   }

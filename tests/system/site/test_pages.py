@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every command and every program in C++ on the pages of the site does what is shown beside it."""
 import gzip
+import json
 import pathlib
 import re
+import struct
 import subprocess
 import sys
 import unittest
+import zlib
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "cli"))
 from documentation import DocumentationTest
@@ -73,8 +76,27 @@ class IndentedCommands(PageTest):
         self.write("points.xy", text)
         self.path("points.txt.gz").write_bytes(gzip.compress(text.encode()))
         self.shell("cadt generate terrain -n 2000 -q -o terrain.xyz")
+        self.write_segments()
         for scan in ("scan_1.npy", "scan_2.npy"):
             self.shell(f"cadt generate uniform -n 500 -q -o {scan}")
+
+    def write_segments(self):
+        """A plate with a hole, two countries, breaklines of the terrain, and an image of two grains."""
+        corners = [(0, 0), (4, 0), (4, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2)]
+        sides = [(1, 2), (2, 3), (3, 4), (4, 1), (5, 6), (6, 7), (7, 8), (8, 5)]
+        self.write("plate.poly", "8 2 0 0\n" + "".join(f"{i + 1} {x} {y}\n" for i, (x, y) in enumerate(corners)) +
+                   "8 0\n" + "".join(f"{i + 1} {a} {b}\n" for i, (a, b) in enumerate(sides)) + "1\n1 1.5 1.5\n")
+        square = lambda x: [[[x, 0], [x + 1, 0], [x + 1, 1], [x, 1], [x, 0]]]
+        for name in ("land.geojson", "countries.geojson"):
+            self.write(name, json.dumps({"type": "FeatureCollection", "features": [
+                {"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates": square(x)}}
+                for x in (0, 3)]}))
+        self.write("breaklines.obj", "v 0.1 0.2 1\nv 0.5 0.6 1\nv 0.9 0.6 2\nl 1 2 3\n")
+        rows = b"".join(b"\0" + bytes(1 + (i + j > 12) for i in range(12)) for j in range(10))
+        chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        self.path("grains.png").write_bytes(
+            b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 12, 10, 8, 0, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 
     def run_lines(self, path):
         count = 0
@@ -97,6 +119,9 @@ class IndentedCommands(PageTest):
 
     def test_the_programs_page(self):
         self.assertGreaterEqual(self.run_lines(SOURCE / "docs" / "cli.md"), 8)
+
+    def test_the_page_on_segments(self):
+        self.assertGreaterEqual(self.run_lines(SOURCE / "docs" / "constrained.md"), 3)
 
 
 class FirstBlocks(PageTest):

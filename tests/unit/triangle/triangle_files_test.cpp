@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 
 namespace cadt::io::test {
@@ -222,6 +223,40 @@ TEST(TriangleFiles, OfSegmentsHolesAndRegions) {
   EXPECT_NE(content_of(folder / "out.node").find("   2    4  0    9\n"), std::string::npos);
   EXPECT_EQ(read_segments(folder / "out.poly").xy, graph.xy);
   EXPECT_EQ(read_mesh(folder / "out.ele", 7).triangles.size(), 21U);
+}
+
+/// Shewchuk's A.poly, and what his program makes of it; not part of this repository (CADT_DATA_DIR).
+TEST(TriangleFiles, OfALetterAreTrianglesOwn) {
+  const char* chosen = std::getenv("CADT_DATA_DIR");
+  const std::filesystem::path data = std::filesystem::path(chosen != nullptr ? chosen : CADT_DEFAULT_DATA_DIR) / "pslg";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no " << data;
+  const SegmentsFile graph = read_segments((data / "triangle_A.poly").string());
+  const TriangleSwitches switches = parse_triangle_switches("p");
+  const TriangleInput input{graph.xy, graph.attributes, graph.attributes_per_point, graph.markers};
+  const TriangleSegments segments{graph.segments, graph.segment_markers, graph.holes, graph.regions};
+  const ConstrainedTriangulation mesh = triangulate_as_triangle(input, segments, switches);
+  const TriangleOutput found = triangle_output(input, segments, mesh, switches);
+  const auto sorted = [](std::span<const std::int32_t> triangles) {
+    std::vector<std::array<std::int32_t, 3>> result;
+    for (std::size_t t = 0; t < triangles.size(); t += 3) {
+      result.push_back({triangles[t], triangles[t + 1], triangles[t + 2]});
+      std::sort(result.back().begin(), result.back().end());
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+  };
+  EXPECT_EQ(sorted(found.triangles), sorted(read_mesh((data / "triangle_A.1.ele").string(), 29).triangles));
+  const SegmentsFile theirs = read_segments((data / "triangle_A.1.poly").string());
+  EXPECT_EQ(found.markers, theirs.markers);
+  std::map<Segment, int> markers, expected;
+  for (std::size_t s = 0; s < found.segment_markers.size(); ++s) {
+    markers[{found.segments[2 * s], found.segments[2 * s + 1]}] = found.segment_markers[s];
+  }
+  for (std::size_t s = 0; s < theirs.segments.size(); ++s) {
+    const auto [a, b] = theirs.segments[s];
+    expected[{std::min(a, b), std::max(a, b)}] = theirs.segment_markers[s];
+  }
+  EXPECT_EQ(markers, expected);
 }
 
 TEST(TriangleFiles, HaveIterationNumbers) {

@@ -162,22 +162,25 @@ TEST(TriangleSegments, RefuseWrongNumbersOfMarkers) {
 
 TEST(TriangleSegments, GetAVertexWhereTheyCross) {
   Plate plate;
-  plate.xy = {0, 0, 4, 0, 4, 4, 0, 4};
-  plate.attributes = {0, 10, 20, 50};
+  plate.xy = {0, 0, 4, 0, 4, 4, 0, 4, 2, 0, 0, 2};
+  plate.attributes = {0, 10, 20, 50, 7, 7};
   plate.point_markers = {};
-  plate.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 2}, {1, 3}};
+  plate.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 2}, {4, 5}};
   plate.segment_markers = {0, 0, 0, 0, 4, 9};
   plate.holes = {};
   plate.regions = {};
   const TriangleOutput out = plate.run("p");
-  ASSERT_EQ(out.xy.size(), 10U);
-  EXPECT_EQ(out.xy[8], 2);
-  EXPECT_EQ(out.xy[9], 2);
-  EXPECT_EQ(out.attributes[4], 10) << "on the first of the two segments";
-  EXPECT_EQ(out.triangles.size(), 12U);
+  ASSERT_EQ(out.xy.size(), 14U);
+  EXPECT_EQ(out.xy[12], 1);
+  EXPECT_EQ(out.xy[13], 1);
+  EXPECT_EQ(out.attributes[6], 5) << "on the first of the two segments";
+  EXPECT_EQ(out.triangles.size() / 3, 6U);
   EXPECT_EQ(area(out), 16);
-  EXPECT_EQ(out.markers, (Ints{4, 9, 4, 9, 4}));
-  EXPECT_EQ(by_ends(out.segments, out.segment_markers)[(Segment{0, 4})], 4);
+  EXPECT_EQ(out.markers, (Ints{4, 1, 4, 1, 9, 9, 4}));
+  const std::map<Segment, int> segments = by_ends(out.segments, out.segment_markers);
+  EXPECT_EQ(segments.size(), 10U);
+  EXPECT_EQ(segments.at({0, 6}), 4);
+  EXPECT_EQ(segments.at({5, 6}), 9);
 }
 
 }  // namespace

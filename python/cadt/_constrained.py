@@ -1,0 +1,384 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The constrained Delaunay triangulation. Its arrays are in _mesh.py, what it can be asked in _queries.py."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cadt import _cadt, _devices, _show
+from cadt._arrays import array_on_device
+from cadt._errors import InputError, OptionError
+from cadt._mesh import Mesh
+from cadt._points import as_points, as_values, contiguous
+from cadt._progress import reporter
+from cadt._results import VerifyReport, report_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_CROSSINGS = ("error", "exact")
+_DOMAINS = ("hull", "outer", "even_odd", "nonzero", "layers", "seeds")
+
+
+class ConstrainedDelaunay(Mesh):
+    """The triangulation of points that has given segments as edges, and is Delaunay but for them.
+
+    Segments are given as pairs of points, as polylines, as rings, or as several of these; they are numbered in this
+    order. It has the arrays of `Delaunay` and answers what that is asked, as far as that holds for a mesh with segments.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 2)
+        As for `Delaunay`, on the host.
+    segments : array_like of int, shape (m, 2), optional
+        The two points of each. They may repeat, overlap, lie on the hull and end anywhere; points on them divide them.
+    polylines, rings : array_like of int, shape (k + 1,), or a pair of arrays, optional
+        Offsets as in GeoArrow: polyline i has the points ``offsets[i]`` to ``offsets[i + 1] - 1``. A pair
+        ``(offsets, vertices)``: offsets count in this list of points. The last point of a ring is joined with its first.
+    crossing : {"error", "exact"} or ("grid", width)
+        What becomes of segments that cross. Error: `CrossingError` with all pairs. Exact: crossings become vertices
+        (`added_points`), and all decisions are made with their exact places. Grid: all points move to the nearest
+        multiples of the width, and segments with them (snap rounding).
+    domain : {"hull", "outer", "even_odd", "nonzero", "layers", "seeds"}
+        Which triangles are `inside`: all; those enclosed by segments; those an odd number of segments from the outside;
+        those with a winding number other than 0; those at an odd depth; those that no hole reaches.
+    holes : array_like, shape (h, 2), optional
+        With ``domain="seeds"``: places from which holes spread to the next segment, as they do from the outside.
+    regions : array_like, shape (r, 3), optional
+        With ``domain="seeds"``: x, y and the attribute of the region there (`region_attribute`).
+    backend, device, threads, max_memory, statistics, progress
+        As for `Delaunay`.
+
+    Raises
+    ------
+    CrossingError
+        Segments cross (``crossing="error"``); `pairs` has all pairs.
+    DomainError
+        Segments do not close at the point `vertex`, and the domain is "even_odd" or "nonzero".
+    InputError
+        As for `Delaunay`; or a segment has an end that is no point: `index` is the segment.
+
+    Notes
+    -----
+    The result is unique: it depends neither on the order nor on the direction of segments, and is the same from every
+    device and equal to CGAL's. Expected O(n log n) work, and O(log) a triangle that segments cross. The GIL is released;
+    Ctrl-C ends a call. Meshes never change, and threads may share them.
+
+    Interpolation and rasters take values of the points that were given (`at_crossings` says what crossings get) or of all
+    `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a Delaunay mesh: unless all
+    segments happen to be Delaunay edges they raise `NotDelaunay`; ask ``Delaunay(mesh.points)``.
+
+    Examples
+    --------
+    A square with a square hole:
+
+    >>> xy = [[0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [1, 2]]
+    >>> mesh = cadt.ConstrainedDelaunay(xy, rings=[0, 4, 8], domain="even_odd")
+    >>> mesh
+    <cadt.ConstrainedDelaunay: 8 points, 8 segments, 10 triangles, 8 inside, host>
+    >>> mesh.triangles_inside.shape, bool(mesh.inside[mesh.find_simplex([1.5, 1.5])])
+    ((8, 3), False)
+
+    Two segments that cross:
+
+    >>> xy = [[0, 0], [2, 2], [0, 2], [2, 0]]
+    >>> cadt.ConstrainedDelaunay(xy, [[0, 1], [2, 3]])
+    Traceback (most recent call last):
+    cadt._errors.CrossingError: 1 pair of segments crosses: 0 and 1; ...
+    >>> mesh = cadt.ConstrainedDelaunay(xy, [[0, 1], [2, 3]], crossing="exact")
+    >>> mesh.added_points, mesh.n_triangles
+    (array([[1., 1.]]), 4)
+    """
+
+    def __init__(
+        self,
+        points: Any,
+        segments: Any = None,
+        *,
+        polylines: Any = None,
+        rings: Any = None,
+        crossing: str | tuple[str, float] = "error",
+        domain: str = "hull",
+        holes: Any = None,
+        regions: Any = None,
+        backend: str | None = None,
+        device: int | str | None = None,
+        threads: int | None = None,
+        max_memory: int | None = None,
+        statistics: str = "counters",
+        progress: bool | Callable[[str, float], object] | None = None,
+    ) -> None:
+        if array_on_device(points) is not None:
+            raise InputError("points are arrays of the host here; backend= says where to compute", 0)
+        self._gpu = None
+        self._cache: dict[str, Any] = {}
+        self._input = as_points(points)
+        parts = [as_pairs(() if segments is None else segments, "segments")]
+        parts += [_of_lines(_cadt.polyline_segments, polylines, "polylines", len(self._input))]
+        parts += [_of_lines(_cadt.ring_segments, rings, "rings", len(self._input))]
+        self._segments = contiguous(np.concatenate(parts))
+        self._constraints = _constraints(crossing, domain, holes, regions)
+        self._again = {"crossing": crossing, "domain": domain, "holes": holes, "regions": regions}
+        self._options = _devices.make_options(backend, device, "canonical", threads, max_memory, statistics)
+        arguments = (self._input, self._segments, self._constraints)
+        open_device = _devices.device_for(self._options, device, threads, len(self._input))
+        with reporter(progress) as report:
+            if open_device is not None:
+                self._c = _cadt.triangulate_constrained_by(open_device, *arguments, self._options, report)
+            else:
+                if self._options.backend == "auto":
+                    self._options = self._options.on_host()
+                self._c = _cadt.triangulate_constrained(*arguments, self._options, report)
+        self._mesh = self._c.mesh
+        first: Any = self._c.moved_points if len(self._c.moved_points) else self._input
+        self._points: Any = np.concatenate([first, self._c.added_points]) if len(self._c.added_points) else first
+
+    # Segments
+
+    @property
+    def segments(self) -> np.ndarray:
+        """(m, 2) int32: all segments, as they are numbered."""
+        return self._segments
+
+    @property
+    def edge_flags(self) -> np.ndarray:
+        """(t,) uint32: bit k is set if the edge opposite vertex k is part of a segment."""
+        return self._of("edge_flags", lambda c: c.edge_flags)
+
+    @property
+    def constrained_edges(self) -> np.ndarray:
+        """(e, 2) int32: the edges that are part of segments, the lower point first, ascending."""
+        return self._of("constrained_edges", lambda c: c.edges)
+
+    @property
+    def edge_sources(self) -> tuple[np.ndarray, np.ndarray]:
+        """The segments that each of `constrained_edges` is part of: ``indptr`` (e + 1,) and ``indices``.
+
+        i for segment i in the direction of the edge, -1 - i against it.
+        """
+        return self._of("edge_sources", lambda c: c.sources)
+
+    @property
+    def chains(self) -> tuple[np.ndarray, np.ndarray]:
+        """The points along each segment: ``indptr`` (m + 1,) int64 and ``indices`` int32.
+
+        Those of segment s are ``indices[indptr[s]:indptr[s + 1]]``, from its first end to its second; none if its ends
+        are equal points.
+        """
+        return self._of("chains", lambda c: c.chains)
+
+    @property
+    def degenerate_segments(self) -> np.ndarray:
+        """The segments whose ends are equal points, ascending: int32."""
+        return self._of("degenerate_segments", lambda c: c.degenerate_segments)
+
+    # Domains
+
+    @property
+    def inside(self) -> np.ndarray:
+        """(t,) bool: whether each triangle is inside (the parameter `domain`)."""
+        return self._of("inside", lambda c: c.inside.view(bool))
+
+    @property
+    def triangles_inside(self) -> np.ndarray:
+        """Those of `simplices` that are inside: (i, 3) int32."""
+        return self._of("triangles_inside", lambda c: c.triangles_inside())
+
+    @property
+    def region(self) -> np.ndarray:
+        """(t,) int32: the region of each triangle. No segment separates the triangles of a region."""
+        return self._of("region", lambda c: c.region)
+
+    @property
+    def n_regions(self) -> int:
+        return len(self.region_value)
+
+    @property
+    def region_value(self) -> np.ndarray:
+        """(r,) int32: depth of each region ("layers"), winding number ("nonzero"), segments crossed modulo 2
+        ("even_odd"), else 1 inside and 0 outside."""
+        return self._of("region_value", lambda c: c.region_value)
+
+    @property
+    def region_attribute(self) -> np.ndarray:
+        """(r,) float64: what the parameter `regions` says of each region, else 0."""
+        return self._of("region_attribute", lambda c: c.region_attribute)
+
+    # Crossings
+
+    @property
+    def points(self) -> Any:
+        """The vertices: the points that were given, with ``("grid", width)`` where they have moved, and behind them
+        `added_points`."""
+        return self._points
+
+    @property
+    def added_points(self) -> np.ndarray:
+        """(a, 2) float64: the vertices made for crossings, rounded to the nearest doubles."""
+        return self._of("added_points", lambda c: c.added_points)
+
+    @property
+    def added_parents(self) -> np.ndarray:
+        """(a, 2) int32: for each of them, the lowest pair of segments that cross there."""
+        return self._of("added_parents", lambda c: c.added_parents)
+
+    @property
+    def rounded_valid(self) -> bool:
+        """Whether triangles are still counterclockwise with rounded coordinates. True without added points."""
+        return self._c.rounded_valid
+
+    def at_crossings(self, values: Any) -> np.ndarray:
+        """Values of the points that were given, shape (n, ...), with those of `added_points` behind them.
+
+        They are linear along the first of their two segments (`added_parents`) from the given point before to the one
+        behind.
+
+        >>> mesh = cadt.ConstrainedDelaunay([[0, 0], [2, 2], [0, 2], [2, 0]], [[0, 1], [2, 3]], crossing="exact")
+        >>> mesh.at_crossings([0, 10, 7, 7])
+        array([ 0., 10.,  7.,  7.,  5.])
+        """
+        n = len(self._input)
+        v, one = as_values(values, n)
+        if not len(self.added_points):
+            return v.reshape(n, *one)
+        indptr, chain = self.chains
+        of = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))  # the segment of each place in the chains
+        place = np.arange(len(chain))
+        given = chain < n
+        # The given points before and behind each place: chains begin and end with given ones.
+        before = np.maximum.accumulate(np.where(given, place, 0))
+        behind = np.minimum.accumulate(np.where(given, place, len(chain))[::-1])[::-1]
+        # Each added point on the first of its segments.
+        on = place[~given]
+        on = on[of[on] == self.added_parents[chain[on] - n, 0]]
+        a, b, p = (self._points[chain[at]] for at in (before[on], behind[on], on))
+        along = b - a
+        square = (along * along).sum(axis=1)
+        part = np.clip(((p - a) * along).sum(axis=1) / np.where(square > 0, square, 1), 0, 1)[:, None]
+        result = np.concatenate([v, np.full((len(self.added_points), v.shape[1]), np.nan)])
+        result[chain[on]] = (1 - part) * v[chain[before[on]]] + part * v[chain[behind[on]]]
+        return result.reshape(len(result), *one)
+
+    # Checks and pictures
+
+    @property
+    def hash(self) -> str:
+        """32 hexadecimal digits of triangles and constrained edges: the same from every device, order and direction."""
+        return self._of("hash", lambda c: c.hash())
+
+    def verify(self) -> VerifyReport:
+        """Checks the whole mesh exactly: triangles, segments, regions, by code that did not make them. O(n)."""
+        return report_of(self._c.verify(self._input, self._segments, self._constraints))
+
+    def plot(self, ax: Any = None, *, inside: bool = True, **how: Any) -> Any:
+        """Draws triangles (those inside, unless ``inside=False``) and, thicker, segments with matplotlib; returns the axes.
+
+        `how` is passed to ``triplot``.
+        """
+        return _show.plot_constrained(self, ax, inside, how)
+
+    # Plumbing
+
+    def _of(self, name: str, of: Callable) -> Any:
+        if name not in self._cache:
+            self._cache[name] = of(self._c)
+        return self._cache[name]
+
+    def _values(self, values: Any) -> tuple[np.ndarray, tuple[int, ...]]:
+        if self.n_points != len(self._input) and np.shape(values)[:1] == (len(self._input),):
+            values = self.at_crossings(values)
+        return as_values(values, self.n_points)
+
+    def _queries(self) -> _cadt.Queries:
+        if "queries" not in self._cache:
+            self._cache["queries"] = _cadt.Queries(self._input, self._c, self._options)
+        return self._cache["queries"]
+
+    def __repr__(self) -> str:
+        return (
+            f"<cadt.ConstrainedDelaunay: {self.n_points:,} points, {len(self._segments):,} segments, "
+            f"{self.n_triangles:,} triangles, {int(np.count_nonzero(self.inside)):,} inside, {self.device}>"
+        )
+
+    def __reduce__(self) -> tuple:
+        return _restore, (type(self), self._input, self._segments, self._again)
+
+
+def _restore(cls: type[ConstrainedDelaunay], points: np.ndarray, segments: np.ndarray, how: dict) -> Any:
+    return cls(points, segments, backend="host", **how)
+
+
+def find_crossings(points: Any, segments: Any, *, threads: int = 0) -> np.ndarray:
+    """All pairs of segments that cross: (p, 2) int32, the lower index first, ascending. Exact.
+
+    Segments cross that have one common point, inside both, at which no point lies. O(n log n + pairs) expected.
+
+    >>> cadt.find_crossings([[0, 0], [2, 2], [0, 2], [2, 0]], [[0, 1], [2, 3]])
+    array([[0, 1]], dtype=int32)
+    """
+    return _cadt.find_crossings(as_points(points), as_pairs(segments, "segments"), threads)
+
+
+def as_pairs(segments: Any, what: str) -> np.ndarray:
+    """Integers of shape (m, 2) as int32."""
+    a = np.asarray(segments)
+    if a.size == 0 and a.ndim <= 2:
+        return np.empty((0, 2), dtype=np.int32)
+    if a.ndim != 2 or a.shape[1] != 2 or a.dtype.kind not in "iu":
+        raise InputError(f"{what} must be integers of shape (m, 2), not {a.dtype} of {a.shape}", 0)
+    wrong = (a < 0) | (a > np.iinfo(np.int32).max)
+    if wrong.any():
+        first = int(np.argmax(wrong.any(axis=1)))
+        raise InputError(f"segment {first} has an end that is no point: {a[first].tolist()}", first)
+    return contiguous(a, np.int32)
+
+
+def as_offsets(offsets: Any, what: str) -> np.ndarray:
+    """Integers of one dimension as int64."""
+    a = np.asarray(offsets)
+    if a.ndim != 1 or a.size == 0 or a.dtype.kind not in "iu":
+        raise InputError(f"{what} must be offsets: integers of shape (k + 1,), not {a.dtype} of {a.shape}", 0)
+    return contiguous(a, np.int64)
+
+
+def _of_lines(segments_of: Callable, lines: Any, what: str, n: int) -> np.ndarray:
+    if lines is None:
+        return np.empty((0, 2), dtype=np.int32)
+    vertices: Any = None
+    if isinstance(lines, tuple) and len(lines) == 2 and np.ndim(lines[0]) == 1:
+        lines, vertices = lines
+    offsets = as_offsets(lines, what)
+    if vertices is None:
+        if offsets[-1] > n:
+            raise InputError(f"the offsets of {what} reach to {offsets[-1]}, but there are {n} points", len(offsets) - 1)
+        return segments_of(offsets, np.empty(0, dtype=np.int32))
+    v = np.asarray(vertices)
+    if v.ndim != 1 or (v.size and v.dtype.kind not in "iu"):
+        raise InputError(f"the vertices of {what} must be integers of one dimension, not {v.dtype} of {v.shape}", 0)
+    return segments_of(offsets, contiguous(v, np.int32))
+
+
+def _constraints(crossing: Any, domain: str, holes: Any, regions: Any) -> _cadt.ConstraintOptions:
+    width = 0.0
+    if isinstance(crossing, (tuple, list)) and len(crossing) == 2 and crossing[0] == "grid":
+        crossing, width = "grid", float(crossing[1])
+        if not (width > 0 and math.isfinite(width)):
+            raise OptionError(f"the width of the grid must be above 0, not {width}", "grid")
+    elif crossing not in _CROSSINGS:
+        raise OptionError(f"crossing must be 'error', 'exact' or ('grid', width), not {crossing!r}", "crossing")
+    if domain not in _DOMAINS:
+        raise OptionError(f"domain must be one of {', '.join(map(repr, _DOMAINS))}, not {domain!r}", "domain")
+    places = []
+    for name, given, columns in (("holes", holes, 2), ("regions", regions, 3)):
+        a = np.asarray(() if given is None else given, dtype=np.float64)
+        if a.size == 0:
+            a = np.empty((0, columns))
+        elif domain != "seeds":
+            raise OptionError(f"{name} are for domain='seeds'", name)
+        if a.ndim != 2 or a.shape[1] != columns:
+            raise InputError(f"{name} must have shape (k, {columns}), not {a.shape}", 0)
+        places.append(contiguous(a))
+    return _cadt.ConstraintOptions(crossing, width, domain, *places)

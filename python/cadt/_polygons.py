@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Triangles inside many polygons with holes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from cadt import _cadt, _devices, _show
+from cadt._constrained import as_offsets
+from cadt._errors import InputError
+from cadt._points import as_points
+from cadt._progress import reporter
+from cadt._wkb import MULTIPOLYGON, POLYGON, lines_of_wkb, offsets_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+class PolygonProblem(NamedTuple):
+    """A polygon without triangles: its number, the reason, and the ring points where it is.
+
+    The reason is "too few points", "not finite", "self-crossing", "ring crosses ring" or "zero area". Of edges that
+    cross, `first` and `second` are the points where they begin.
+    """
+
+    polygon: int
+    reason: str
+    first: int
+    second: int
+
+
+class Polygons:
+    """The triangles of many polygons: ``result[p]`` are those of polygon p, (k, 3) int32.
+
+    Attributes
+    ----------
+    points : (n, 2)
+        The points of all rings.
+    triangles : (t, 3) int32
+        Of all polygons, one after another, counterclockwise; indices of `points`.
+    triangle_offsets : (p + 1,) int64
+        Polygon p has the triangles ``triangle_offsets[p]`` to ``triangle_offsets[p + 1] - 1``.
+    problems : tuple of PolygonProblem
+        The polygons that have none, ascending.
+    statistics : dict
+    """
+
+    def __init__(self, points: np.ndarray, found: Any, index: Any, crs: Any) -> None:
+        self.points = points
+        self.triangles: np.ndarray = found.triangles
+        self.triangle_offsets: np.ndarray = found.triangle_offsets
+        self.problems = tuple(PolygonProblem(*p) for p in found.problems)
+        self.statistics: dict[str, Any] = found.statistics
+        self._index, self._crs = index, crs
+
+    def __len__(self) -> int:
+        return len(self.triangle_offsets) - 1
+
+    def __getitem__(self, p: int) -> np.ndarray:
+        p = range(len(self))[p]
+        return self.triangles[self.triangle_offsets[p] : self.triangle_offsets[p + 1]]
+
+    @property
+    def polygon_of(self) -> np.ndarray:
+        """(t,) int64: the polygon of each triangle."""
+        return np.repeat(np.arange(len(self)), np.diff(self.triangle_offsets))
+
+    def to_geoseries(self) -> Any:
+        """The triangles as a ``geopandas.GeoSeries`` of polygons; each has the index of the row that it is of."""
+        geopandas, shapely = _show._need("geopandas", "geopandas"), _show._need("shapely", "shapely")
+        of = self.polygon_of
+        index = of if self._index is None else self._index.take(of)
+        return geopandas.GeoSeries(shapely.polygons(self.points[self.triangles]), index=index, crs=self._crs)
+
+    def plot(self, ax: Any = None, values: Any = None, **how: Any) -> Any:
+        """Draws the triangles with matplotlib (``tripcolor``), coloured by polygon or by `values`, one a polygon; returns
+        the axes."""
+        if ax is None:
+            ax = _show._need("matplotlib.pyplot", "matplotlib").gca()
+        color = np.arange(len(self)) % 12 if values is None else np.asarray(values, dtype=np.float64)
+        how.setdefault("cmap", "Paired" if values is None else "viridis")
+        if len(self.triangles):
+            ax.tripcolor(*self.points.T, self.triangles, facecolors=color[self.polygon_of].astype(float), **how)
+        ax.set_aspect("equal")
+        return ax
+
+    def __repr__(self) -> str:
+        bad = f", {len(self.problems):,} without" if self.problems else ""
+        return f"<cadt.Polygons: {len(self):,} polygons, {len(self.triangles):,} triangles{bad}>"
+
+
+def polygons(
+    geometry: Any,
+    ring_offsets: Any = None,
+    polygon_offsets: Any = None,
+    *,
+    backend: str | None = None,
+    device: int | str | None = None,
+    threads: int | None = None,
+    max_memory: int | None = None,
+    progress: bool | Callable[[str, float], object] | None = None,
+) -> Polygons:
+    """Triangulates polygons with holes, each by the constrained Delaunay triangulation of its own points and edges.
+
+    Parameters
+    ----------
+    geometry : array_like, shape (n, 2); or polygons
+        Points of rings, with offsets. Or a ``geopandas.GeoSeries`` or ``GeoDataFrame``, an array or list of shapely's
+        polygons and multipolygons, or a list of them in WKB (bytes). Each row is one polygon; heights are left out.
+    ring_offsets : array_like of int, shape (r + 1,), optional
+        Ring r has the points ``ring_offsets[r]`` to ``ring_offsets[r + 1] - 1``. It may repeat its first point.
+    polygon_offsets : array_like of int, shape (p + 1,), optional
+        Polygon p has the rings ``polygon_offsets[p]`` to ``polygon_offsets[p + 1] - 1``. Default: each ring is a polygon.
+
+    Notes
+    -----
+    Inside is what an odd number of rings goes around; their directions do not matter. A polygon with a defect has no
+    triangles and is listed in `problems`, the others do not suffer. The other parameters are as for `Delaunay`.
+
+    Examples
+    --------
+    A square with a hole, and a bow-tie:
+
+    >>> xy = [[0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [0, 0], [1, 1], [1, 0], [0, 1]]
+    >>> result = cadt.polygons(xy, [0, 4, 7, 11], [0, 2, 3])
+    >>> result
+    <cadt.Polygons: 2 polygons, 7 triangles, 1 without>
+    >>> result.problems
+    (PolygonProblem(polygon=1, reason='self-crossing', first=7, second=9),)
+    """
+    index = crs = None
+    if ring_offsets is None:
+        if polygon_offsets is not None:
+            raise InputError("polygon_offsets need ring_offsets", 0)
+        points, rings, of_rings, index, crs = _of_geometries(geometry)
+    else:
+        points, rings = as_points(geometry), as_offsets(ring_offsets, "ring_offsets")
+        of_rings = np.arange(len(rings)) if polygon_offsets is None else as_offsets(polygon_offsets, "polygon_offsets")
+    options = _devices.make_options(backend, device, "canonical", threads, max_memory, "counters")
+    if options.backend == "auto" and _devices.prefers_host(len(points)):
+        options = options.on_host()
+    with reporter(progress) as report:
+        return Polygons(points, _cadt.triangulate_polygons(points, rings, of_rings, options, report), index, crs)
+
+
+def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, Any, Any]:
+    """Ring points, offsets of rings and polygons, and a GeoSeries' index and reference system."""
+    geometry = getattr(geometry, "geometry", geometry) if hasattr(geometry, "crs") else geometry
+    index, crs = getattr(geometry, "index", None), getattr(geometry, "crs", None)
+    if isinstance(geometry, (list, tuple)):
+        index = None
+        if all(isinstance(g, (bytes, bytearray, memoryview)) for g in geometry):
+            points, rings, polygons_ = lines_of_wkb(geometry, (POLYGON, MULTIPOLYGON))
+            return np.ascontiguousarray(points[:, :2]), rings, polygons_, None, None
+    shapely = _show._need("shapely", "shapely")
+    rows = np.atleast_1d(np.asarray(geometry, dtype=object))
+    if rows.ndim != 1 or not (shapely.is_geometry(rows) | shapely.is_missing(rows)).all():
+        raise InputError(
+            "polygons are points with ring_offsets=, a GeoSeries, shapely's geometries, or a list of WKB bytes", 0
+        )
+    wrong = ~np.isin(shapely.get_type_id(rows), (-1, 3, 6))
+    if wrong.any():
+        first = int(np.argmax(wrong))
+        raise InputError(f"geometry {first} is a {rows[first].geom_type}: pass polygons and multipolygons", first)
+    parts, row = shapely.get_parts(rows, return_index=True)
+    rings, part = shapely.get_rings(parts, return_index=True)
+    xy, ring = shapely.get_coordinates(rings, return_index=True)
+    ring_offsets = offsets_of(np.bincount(ring, minlength=len(rings)))
+    polygon_offsets = offsets_of(np.bincount(row[part], minlength=len(rows)))
+    return xy, ring_offsets, polygon_offsets, index, crs

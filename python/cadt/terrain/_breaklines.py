@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Breaklines: lines that triangles must not cross, such as banks, ridges, kerbs and the outlines of lakes."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+import cadt
+from cadt._wkb import LINE, MULTILINE, MULTIPOLYGON, POLYGON, lines_of_wkb
+
+from ._files import check_input, suffix_of, why
+from ._mesh import triangulate
+from ._progress import ProgressLine
+from ._vector import _pyogrio, parse_crs
+from .cloud import Cloud, name_of, same_crs
+from .errors import CrsError, FileError, UsageError
+
+READ_FORMATS = ("gpkg", "geojson", "fgb", "shp")
+
+
+@dataclasses.dataclass(frozen=True)
+class Breaklines:
+    """Line i has the points `xyz[offsets[i]]` to `xyz[offsets[i + 1] - 1]` and is of feature `feature[i]`; z is NaN where
+    the file has none."""
+
+    path: str
+    xyz: NDArray[np.float64]
+    offsets: NDArray[np.int64]
+    feature: NDArray[np.int64]
+
+
+def check_options(options: argparse.Namespace) -> None:
+    if options.method != "linear":
+        raise UsageError(f"--breaklines: --method {options.method} takes no notice of lines; leave it out")
+    if options.scratch is not None:
+        raise UsageError("--breaklines: with --scratch there are none; use fewer points, or leave one of both out")
+    if suffix_of(options.breaklines) not in READ_FORMATS:
+        raise UsageError(
+            f"--breaklines {options.breaklines}: lines are read from files that end in: {', '.join(READ_FORMATS)}"
+        )
+    check_input(options.breaklines)
+
+
+def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
+    """Lines and the outlines of polygons of one file, in the reference system of the points; `asked`: --crs."""
+    ogr = _pyogrio(f"reading {path}")
+    try:
+        layers = ogr.list_layers(path)
+        if len(layers) > 1:
+            names = ", ".join(str(name) for name in layers[:, 0])
+            raise FileError(path, f"has several layers ({names}); export one of them to a file of its own")
+        about, _, geometry, _ = ogr.raw.read(path, columns=[])
+    except (ogr.errors.DataSourceError, ogr.errors.FeatureError, ogr.errors.DataLayerError) as error:
+        raise FileError(path, f"cannot be read: {why(error)}") from error
+    if asked is None:
+        crs = parse_crs(path, about["crs"])
+        if not same_crs(crs, cloud.crs):
+            raise CrsError(
+                path,
+                f"its reference system is {name_of(crs)}, that of the points is {name_of(cloud.crs)}; transform one of "
+                "them, or name the one that is right with --crs",
+            )
+    empty = [k for k, data in enumerate(geometry) if data is None]
+    if empty:
+        raise FileError(path, f"feature {empty[0]} (counted from 0) has no geometry")
+    try:
+        xyz, offsets, of_features = lines_of_wkb(geometry, (LINE, POLYGON, MULTILINE, MULTIPOLYGON))
+    except cadt.InputError as error:
+        raise FileError(path, f"feature {error.index} (counted from 0) is neither lines nor polygons") from error
+    feature = np.repeat(np.arange(len(geometry)), np.diff(of_features))
+    lost = np.flatnonzero(~np.isfinite(xyz[:, :2]).all(axis=1))
+    if len(lost):
+        line = int(np.searchsorted(offsets, lost[0], side="right")) - 1
+        raise FileError(path, f"feature {feature[line]} (counted from 0) has no finite coordinates")
+    return Breaklines(path, xyz, offsets, feature)
+
+
+@dataclasses.dataclass(frozen=True)
+class Broken:
+    """Points and breaklines as one mesh; the vertices of the lines come first, so that their heights count where a point
+    of the cloud is at the same place."""
+
+    mesh: cadt.ConstrainedDelaunay
+    z: NDArray[np.float64]
+    heights: str  # where those of the lines come from
+
+
+def add_breaklines(cloud: Cloud, lines: Breaklines, options: argparse.Namespace, line: ProgressLine) -> Broken:
+    """Raises FileError if lines cross."""
+    z = lines.xyz[:, 2].copy()
+    missing = np.flatnonzero(np.isnan(z))
+    if len(missing):
+        surface = triangulate(cloud.xy, ", ".join(cloud.sources), options, line)
+        z[missing] = surface.interpolate(cloud.z, lines.xyz[missing, :2], outside="nearest")
+        del surface
+    line.step("triangulating")
+    xy = np.concatenate([lines.xyz[:, :2], cloud.xy])
+    try:
+        mesh = cadt.ConstrainedDelaunay(
+            xy,
+            polylines=lines.offsets,
+            backend=options.backend,
+            device=options.device,
+            threads=options.threads,
+            statistics="none",
+            progress=line.update,
+        )
+    except cadt.CrossingError as error:
+        raise FileError(lines.path, _crossing(lines, error.pairs)) from error
+    line.clear()
+    heights = "the points" if len(missing) == len(z) else "the file"
+    if 0 < len(missing) < len(z):
+        heights = f"the file, but {len(missing)} from the points"
+    return Broken(mesh, np.concatenate([z, cloud.z]), heights)
+
+
+def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:
+    # Segments begin at all points that are not the last one of their line.
+    ends = np.zeros(len(lines.xyz), bool)
+    ends[lines.offsets[1:][np.diff(lines.offsets) > 0] - 1] = True
+    begin = np.flatnonzero(~ends)[list(pairs[0])]
+    of = lines.feature[np.searchsorted(lines.offsets, begin, side="right") - 1]
+    (a, c), (b, d) = lines.xyz[begin, :2], lines.xyz[begin + 1, :2]
+    (ux, uy), (vx, vy), (wx, wy) = b - a, d - c, c - a
+    x, y = a + (b - a) * (wx * vy - wy * vx) / (ux * vy - uy * vx)
+    more = f", and so do {len(pairs) - 1} more pairs of segments" if len(pairs) > 1 else ""
+    return (
+        f"lines of the features {of[0]} and {of[1]} (counted from 0) cross at {x:.12g} {y:.12g}{more}; "
+        "breaklines may touch, but have one height at each place: divide or remove them"
+    )

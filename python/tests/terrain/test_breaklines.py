@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""cadt raster --breaklines: lines with and without heights, what is refused, and a lake of a LiDAR scan."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import cadt
+import geopandas
+import numpy as np
+import pytest
+import rasterio
+import shapely
+from cadt.terrain import read_cloud
+
+AT = np.array([500_000.0, 5_400_000.0])
+
+
+def ditch(y: np.ndarray) -> np.ndarray:
+    """Heights across a ditch whose banks are at 40 and 60."""
+    return 300 - np.clip(10 - np.abs(y - 50), 0, None)
+
+
+def scattered(seed: int = 4) -> np.ndarray:
+    """Points beside the ditch, and few in it."""
+    rng = np.random.default_rng(seed)
+    xy = rng.uniform(0, 100, (400, 2))
+    xy = xy[(np.abs(xy[:, 1] - 50) > 11) | (rng.random(len(xy)) < 0.03)]
+    xy = np.round(np.concatenate([xy, [[0, 0], [100, 0], [0, 100], [100, 100]]]), 3)
+    return np.column_stack([xy + AT, ditch(xy[:, 1])])
+
+
+def write(path: Path, geometry: Any, crs: str | None = "EPSG:25832") -> str:
+    geopandas.GeoDataFrame(geometry=list(geometry), crs=crs).to_file(path)
+    return path.name
+
+
+def bank(y: float, z: bool = True) -> shapely.LineString:
+    x = np.linspace(0, 100, 3)
+    row = np.column_stack([x + AT[0], np.full(3, y + AT[1]), np.full(3, ditch(np.array(y)))])
+    return shapely.LineString(row if z else row[:, :2])
+
+
+def error(path: Path) -> float:
+    """The largest difference from the ditch in its inner 80 %."""
+    with rasterio.open(path) as raster:
+        cells = raster.read(1)
+        y = raster.transform.f + (np.arange(raster.height) + 0.5) * raster.transform.e - AT[1]
+        return float(np.abs(cells - ditch(y)[:, None])[:, 10:90].max())
+
+
+@pytest.mark.parametrize("suffix", ["gpkg", "geojson", "fgb", "shp"])
+def test_lines_with_heights_shape_the_terrain(las, tmp_path, cadt_terrain, suffix):
+    las("scan.laz", scattered())
+    crs = "EPSG:25832"
+    name = write(tmp_path / f"banks.{suffix}", [bank(40), shapely.MultiLineString([bank(50), bank(60)])], crs)
+    cadt_terrain("raster", "scan.laz", "plain.tif", "--res", "1")
+    result = cadt_terrain("raster", "scan.laz", "dem.tif", "--res", "1", "--breaklines", name)
+    assert "breaklines  3, with 9 points; heights of the file" in result.err
+    assert error(tmp_path / "plain.tif") > 3
+    assert error(tmp_path / "dem.tif") < 1e-3  # the file's digits
+    # by the library
+    cloud = read_cloud([str(tmp_path / "scan.laz")])
+    xyz = np.concatenate([shapely.get_coordinates(bank(y), include_z=True) for y in (40, 50, 60)])
+    mesh = cadt.ConstrainedDelaunay(np.concatenate([xyz[:, :2], cloud.xy]), polylines=[0, 3, 6, 9])
+    with rasterio.open(tmp_path / "dem.tif") as raster:
+        cells, t = raster.read(1), raster.transform
+        x, y = np.meshgrid(t.c + (np.arange(raster.width) + 0.5) * t.a, t.f + (np.arange(raster.height) + 0.5) * t.e)
+    expected = mesh.interpolate(np.concatenate([xyz[:, 2], cloud.z]), (x, y))
+    assert np.nanmax(np.abs(expected - cells)[np.isfinite(expected)]) < 1e-9
+
+
+def test_lines_without_heights_get_them_from_the_points(las, tmp_path, cadt_terrain):
+    points = scattered()
+    las("scan.laz", points)
+    outline = shapely.Polygon([(AT + p).tolist() for p in ([20, 5], [80, 5], [80, 30], [20, 30])])
+    name = write(tmp_path / "plain.gpkg", [outline, bank(40)])
+    result = cadt_terrain("raster", "scan.laz", "dem.tif", "--res", "1", "--breaklines", name)
+    assert "breaklines  2, with 8 points; heights of the file, but 5 from the points" in result.err
+    name = write(tmp_path / "flat.gpkg", [bank(40, z=False)])
+    result = cadt_terrain("raster", "scan.laz", "flat.tif", "--res", "1", "--breaklines", name, "--fill", "nearest")
+    assert "heights of the points" in result.err and "no data     0" in result.err
+
+
+def test_what_is_refused(las, tmp_path, cadt_terrain):
+    las("scan.laz", scattered())
+    across = shapely.LineString([AT + [37, 20], AT + [37, 80]])
+    name = write(tmp_path / "cross.gpkg", [bank(40), bank(60), across])
+    base = ("raster", "scan.laz", "dem.tif", "--res", "1", "--breaklines")
+    cadt_terrain(*base, name, code=3, says="features 0 and 2 (counted from 0) cross at 500037 5400040, and so do 1 more")
+    name = write(tmp_path / "point.gpkg", [bank(40), shapely.Point(AT)])
+    cadt_terrain(*base, name, code=3, says="feature 1 (counted from 0) is neither lines nor polygons")
+    name = write(tmp_path / "utm33.gpkg", [bank(40)], "EPSG:25833")
+    cadt_terrain(*base, name, code=3, says="its reference system is ETRS89 / UTM zone 33N")
+    cadt_terrain(*base, name, "--crs", "EPSG:25832")
+    name = write(tmp_path / "none.shp", [bank(40)], None)
+    cadt_terrain(*base, name, code=3, says="its reference system is none")
+    cadt_terrain(*base, name, "--method", "natural", code=2, says="--method natural")
+    cadt_terrain(*base, name, "--scratch", ".", code=2, says="--scratch")
+    cadt_terrain(*base, "banks.dxf", code=2, says="gpkg")
+    cadt_terrain(*base, "missing.shp", code=3, says="cannot be opened")
+    (tmp_path / "bad.gpkg").write_bytes(b"no database")
+    cadt_terrain(*base, "bad.gpkg", code=3, says="cannot be read")
+
+
+def test_a_lake_of_a_scan(data, tmp_path, cadt_terrain):
+    """The largest lake, by its water points: ground and its shore make it flat, ground alone does not."""
+    scan = data("pslg/lidr_Topography.laz")
+    water = read_cloud([scan], classes=[9])
+    _, edges = cadt.Delaunay(water.xy).alpha_shape(12)
+    parts = shapely.get_parts(shapely.polygonize([shapely.LineString(water.xy[e]) for e in edges]))
+    shore = max(parts, key=lambda part: part.area).exterior
+    level = float(np.median(water.z))
+    lake = shapely.Polygon([(x, y, level) for x, y in shore.coords])
+    name = write(tmp_path / "lake.gpkg", [lake], water.crs)
+    base = ("raster", scan, "--res", "1", "--class", "2")
+    cadt_terrain(*base, "-o", "plain.tif")
+    cadt_terrain(*base, "-o", "dem.tif", "--breaklines", name)
+    inside = {}
+    for file in ("plain.tif", "dem.tif"):
+        with rasterio.open(tmp_path / file) as raster:
+            z, t = raster.read(1), raster.transform
+        x, y = np.meshgrid(t.c + (np.arange(z.shape[1]) + 0.5) * t.a, t.f + (np.arange(z.shape[0]) + 0.5) * t.e)
+        inside[file] = z[shapely.contains_xy(shapely.Polygon(lake), x, y)]
+    assert len(inside["dem.tif"]) > 3000
+    assert np.mean(np.abs(inside["dem.tif"] - level) < 1e-9) > 0.99
+    assert np.mean(np.abs(inside["plain.tif"] - level) < 1e-9) < 0.01

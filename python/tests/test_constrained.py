@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: Apache-2.0
+"""cadt.ConstrainedDelaunay: its arrays against each other, what it is asked, and what is refused."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import cadt
+import numpy as np
+import pytest
+
+SQUARES = [[0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [1, 2]]
+CROSS = [[0, 0], [2, 2], [0, 2], [2, 0]]
+
+
+def random_mesh(seed: int = 3, n: int = 200) -> tuple[np.ndarray, np.ndarray]:
+    """Points, and segments that do not cross: paths along a few rows of a shaken lattice."""
+    rng = np.random.default_rng(seed)
+    xy = rng.random((n, 2))
+    order = np.argsort(xy[:, 0])
+    low, high = order[xy[order, 1] < 0.5], order[xy[order, 1] >= 0.5]
+    return xy, np.concatenate([np.stack([part[:-1:1], part[1:]], axis=1) for part in (low, high)])
+
+
+def test_arrays_fit_together() -> None:
+    xy, segments = random_mesh()
+    mesh = cadt.ConstrainedDelaunay(xy, segments, domain="layers")
+    assert mesh.verify()
+    assert mesh.n_points == 200 and np.shares_memory(mesh.points, xy)
+    edges = {tuple(e) for e in np.sort(segments, axis=1).tolist()}
+    assert {tuple(e) for e in mesh.constrained_edges.tolist()} == edges
+    flagged = set()
+    for k in range(3):
+        of = mesh.simplices[(mesh.edge_flags >> k & 1).astype(bool)]
+        flagged |= {tuple(sorted((t[(k + 1) % 3], t[(k + 2) % 3]))) for t in of.tolist()}
+    assert flagged == edges
+    indptr, chain = mesh.chains
+    assert np.array_equal(chain.reshape(-1, 2), segments) and np.array_equal(indptr, 2 * np.arange(len(segments) + 1))
+    begin, sources = mesh.edge_sources
+    for e, (a, b) in enumerate(mesh.constrained_edges.tolist()):
+        for s in sources[begin[e] : begin[e + 1]].tolist():
+            assert segments[s].tolist() == [a, b] if s >= 0 else segments[-1 - s].tolist() == [b, a]
+    assert mesh.region.max() == mesh.n_regions - 1
+    assert len(mesh.region_value) == len(mesh.region_attribute) == mesh.n_regions
+    assert len(mesh.degenerate_segments) == 0
+    # the same mesh in another order and direction, and pickled
+    other = cadt.ConstrainedDelaunay(xy, segments[::-1, ::-1], domain="layers")
+    assert other.hash == mesh.hash == pickle.loads(pickle.dumps(mesh)).hash
+    assert mesh.hash != cadt.Delaunay(xy).hash
+    for name in ("simplices", "edge_flags", "constrained_edges", "inside", "region"):
+        with pytest.raises(ValueError):
+            getattr(mesh, name)[0] = 0
+
+
+def test_without_segments_it_is_delaunay() -> None:
+    xy, _ = random_mesh()
+    mesh, plain = cadt.ConstrainedDelaunay(xy), cadt.Delaunay(xy)
+    assert np.array_equal(mesh.simplices, plain.simplices) and mesh.inside.all()
+    assert mesh.nearest_vertex(xy[:5]).tolist() == [0, 1, 2, 3, 4]
+
+
+@pytest.mark.parametrize("domain,inside", [("hull", 10), ("outer", 10), ("even_odd", 8), ("nonzero", 10), ("layers", 8)])
+def test_domains(domain: str, inside: int) -> None:
+    mesh = cadt.ConstrainedDelaunay(SQUARES, rings=[0, 4, 8], domain=domain)
+    assert np.count_nonzero(mesh.inside) == inside == len(mesh.triangles_inside)
+    assert np.array_equal(mesh.simplices[mesh.inside], mesh.triangles_inside)
+    x, y = mesh.points[mesh.triangles_inside].transpose(2, 1, 0)
+    area = ((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])).sum() / 2
+    assert area == (8 if inside == 8 else 9)
+    assert mesh.verify()
+
+
+def test_holes_and_regions() -> None:
+    mesh = cadt.ConstrainedDelaunay(
+        SQUARES, rings=[0, 4, 8], domain="seeds", holes=[[1.5, 1.5]], regions=[[0.1, 0.1, 5.0]]
+    )
+    assert len(mesh.triangles_inside) == 8
+    assert mesh.region_attribute[mesh.region[mesh.inside]].tolist() == [5.0] * 8
+    for how in ({"holes": [[1, 1]]}, {"regions": [[1, 1, 1]]}):
+        with pytest.raises(cadt.OptionError):
+            cadt.ConstrainedDelaunay(SQUARES, rings=[0, 4, 8], **how)
+
+
+def test_lines_and_rings_with_vertices() -> None:
+    given = cadt.ConstrainedDelaunay(
+        SQUARES, [[0, 4]], polylines=([0, 3], [1, 5, 6]), rings=(np.array([0, 4]), [4, 5, 6, 7])
+    )
+    assert given.segments.tolist() == [[0, 4], [1, 5], [5, 6], [4, 5], [5, 6], [6, 7], [7, 4]]
+    assert given.verify()
+    for wrong in ([0, 9], [0, 3, 2], (([0, 2], [1.5, 2])), [[0, 4]]):
+        with pytest.raises(cadt.InputError):
+            cadt.ConstrainedDelaunay(SQUARES, polylines=wrong)
+    closed = cadt.ConstrainedDelaunay([*SQUARES[:4], SQUARES[0]], rings=[0, 5])
+    assert closed.degenerate_segments.tolist() == [4]
+    assert np.diff(closed.chains[0]).tolist() == [2, 2, 2, 2, 0]
+
+
+def test_crossings() -> None:
+    segments = [[0, 1], [2, 3], [0, 2]]
+    assert cadt.find_crossings(CROSS, segments).tolist() == [[0, 1]]
+    with pytest.raises(cadt.CrossingError) as caught:
+        cadt.ConstrainedDelaunay(CROSS, segments)
+    error = pickle.loads(pickle.dumps(caught.value))
+    assert error.pairs.tolist() == [[0, 1]] and isinstance(error, ValueError) and "0 and 1" in str(error)
+    exact = cadt.ConstrainedDelaunay(CROSS, segments, crossing="exact")
+    assert exact.points.tolist() == [*CROSS, [1, 1]] and exact.added_parents.tolist() == [[0, 1]]
+    assert exact.rounded_valid
+    snapped = cadt.ConstrainedDelaunay([[0.2, 0], [2, 2], [0, 2], [2, 0]], segments, crossing=("grid", 1.0))
+    assert snapped.points.tolist() == [*CROSS, [1, 1]]
+    again = pickle.loads(pickle.dumps(snapped))
+    assert again.hash == snapped.hash and np.array_equal(again.points, snapped.points)
+    for wrong in ("grid", ("grid", 0), "round", ("exact", 1), 3):
+        with pytest.raises(cadt.OptionError):
+            cadt.ConstrainedDelaunay(CROSS, segments, crossing=wrong)
+
+
+def test_values_at_crossings() -> None:
+    """A segment that others cross twice, with a given point on it in between."""
+    xy = [[0, 0], [8, 0], [4, 0], [2, -1], [2, 1], [6, -1], [6, 1], [9, 9]]
+    segments = [[7, 7], [0, 1], [3, 4], [5, 6]]
+    mesh = cadt.ConstrainedDelaunay(xy, segments, crossing="exact")
+    assert mesh.added_points.tolist() == [[2, 0], [6, 0]]
+    z = np.array([0, 0, 4, 9, 9, 9, 9, 9.0])
+    assert mesh.at_crossings(z)[8:].tolist() == [2, 2]
+    assert mesh.at_crossings(np.stack([z, 2 * z], axis=1))[8:].tolist() == [[2, 4], [2, 4]]
+    assert mesh.interpolate(z, [[2, 0], [3, 0], [6, 0]]).tolist() == [2, 3, 2]
+    own = np.concatenate([z, [7, 7]])
+    assert mesh.interpolate(own, [[2, 0]]).tolist() == [7]
+    assert mesh.rasterize(z, bounds=(1.5, -0.5, 2.5, 0.5), shape=(1, 1)).item() == 2
+    for wrong in (z[:-1], np.zeros(9)):
+        with pytest.raises(cadt.InputError):
+            mesh.interpolate(wrong, [[2, 0]])
+
+
+def test_questions() -> None:
+    xy, segments = [[0, 0], [4, 0], [2, 0.5], [2, -0.5]], [[0, 1]]
+    mesh = cadt.ConstrainedDelaunay(xy, segments)
+    assert mesh.find_simplex([[2, 0.1], [2, -0.1], [9, 9]]).tolist() == [0, 1, -1]
+    assert mesh.interpolate([0, 0, 1, -1], [2, 0.25]) == 0.5
+    assert mesh.interpolate([0, 0, 1, 1], [2, 0]) == 0  # along the segment, not across
+    assert cadt.Delaunay(xy).interpolate([0, 0, 1, 1], [2, 0]) == 1
+    assert mesh.circumcenters().shape == (2, 2)
+    for question in (
+        lambda: mesh.nearest_vertex([0, 0]),
+        lambda: mesh.interpolate([0, 0, 1, -1], [2, 0], "natural"),
+        lambda: mesh.interpolate([0, 0, 1, -1], [2, 0], outside="nearest"),
+        mesh.voronoi,
+        mesh.largest_empty_circles,
+    ):
+        with pytest.raises(cadt.NotDelaunay) as caught:
+            question()
+        t, k = divmod(pickle.loads(pickle.dumps(caught.value)).edge, 3)
+        assert mesh.edge_flags[t] >> k & 1
+
+
+def test_bad_input() -> None:
+    for segments in ([[0, 8]], [[0, 1], [0, -1]], [[0, 1], [2**40, 1]]):
+        with pytest.raises(cadt.InputError) as caught:
+            cadt.ConstrainedDelaunay(SQUARES, segments)
+        assert caught.value.index == len(segments) - 1
+    for wrong in ([[0.0, 1.0]], [0, 1], [[0, 1, 2]]):
+        with pytest.raises(cadt.InputError):
+            cadt.ConstrainedDelaunay(SQUARES, wrong)
+    with pytest.raises(cadt.InputError) as caught:
+        cadt.ConstrainedDelaunay([[0, 0], [np.nan, 1], [1, 0]], [[0, 1]])
+    assert caught.value.index == 1
+    with pytest.raises(cadt.OptionError):
+        cadt.ConstrainedDelaunay(SQUARES, domain="inside")
+    with pytest.raises(cadt.DomainError) as open_end:
+        cadt.ConstrainedDelaunay(SQUARES, [[0, 4]], domain="even_odd")
+    assert pickle.loads(pickle.dumps(open_end.value)).vertex in (0, 4)
+    with pytest.raises(cadt.InputError):
+        cadt.ConstrainedDelaunay(SQUARES, rings=[0, 4, 8], domain="seeds", holes=[1, 1])
+
+
+def test_degenerate() -> None:
+    none = cadt.ConstrainedDelaunay(np.empty((0, 2)))
+    assert none.n_triangles == 0 and none.hash and none.n_regions == 0 and len(none.chains[1]) == 0
+    line = cadt.ConstrainedDelaunay([[0, 0], [2, 2], [1, 1]], [[0, 1]])
+    assert line.chains[1].tolist() == [0, 2, 1] and line.constrained_edges.tolist() == [[0, 2], [1, 2]]
+    assert line.find_simplex([1, 1]) == -1 and line.verify()
+
+
+def test_progress_and_backends() -> None:
+    xy, segments = random_mesh(5, 3000)
+    host = cadt.ConstrainedDelaunay(xy, segments, backend="host", threads=2)
+    assert host.device == "host" and host.statistics["points"] == 3000
+    for info in cadt.devices():
+        if info.usable and info.backend != "host":
+            other = cadt.ConstrainedDelaunay(xy, segments, backend=info.backend, device=info.index)
+            assert other.hash == host.hash and other.device != "host"
+    with pytest.raises(cadt.BackendUnavailable):
+        cadt.ConstrainedDelaunay(xy, segments, backend="opencl", device="no such device")
+
+
+def test_plot(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib").use("agg")
+    import matplotlib.pyplot as plt
+
+    mesh = cadt.ConstrainedDelaunay(SQUARES, rings=[0, 4, 8], domain="even_odd")
+    ax = mesh.plot(plt.figure().add_subplot())
+    segments = [c for c in ax.collections if hasattr(c, "get_segments")]
+    assert sum(len(c.get_segments()) for c in segments) == 8
+    mesh.save(tmp_path / "mesh.npz")
+    assert np.load(tmp_path / "mesh.npz")["simplices"].shape == (10, 3)

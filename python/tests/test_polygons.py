@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""cadt.polygons from arrays, WKB and GeoSeries; cadt.label_segments."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+import cadt
+import numpy as np
+import pytest
+
+SQUARE, HOLE = [[0, 0], [3, 0], [3, 3], [0, 3], [0, 0]], [[1, 1], [1, 2], [2, 2], [2, 1], [1, 1]]
+BOW_TIE = [[0, 0], [1, 1], [1, 0], [0, 1]]
+
+
+def areas(result: cadt.Polygons) -> np.ndarray:
+    a, b, c = result.points[result.triangles].transpose(1, 2, 0)
+    doubled = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
+    assert (doubled > 0).all()
+    return np.bincount(result.polygon_of, doubled / 2, len(result))
+
+
+def test_arrays() -> None:
+    xy = np.array([*SQUARE, *HOLE, *BOW_TIE, *(np.array(SQUARE) + 10)], dtype=float)
+    result = cadt.polygons(xy, [0, 5, 10, 14, 19], [0, 2, 3, 3, 4], backend="host")
+    assert len(result) == 4 and areas(result).tolist() == [8, 0, 0, 9]
+    assert [(p.polygon, p.reason) for p in result.problems] == [(1, "self-crossing"), (2, "too few points")]
+    assert len(result[0]) == 8 and len(result[-1]) == 2 and result[3].min() >= 14
+    assert cadt.polygons(xy[:5], [0, 5]).triangles.tolist() == [[0, 1, 2], [0, 2, 3]] or len(result[3]) == 2
+    with pytest.raises(IndexError):
+        result[4]
+    with pytest.raises(cadt.InputError) as caught:
+        cadt.polygons(xy, [0, 5, 20], [0, 2])
+    assert caught.value.index == 2
+    with pytest.raises(cadt.InputError):
+        cadt.polygons(xy, None, [0, 1])
+    with pytest.raises(cadt.InputError):
+        cadt.polygons(xy, [0.5, 5])
+
+
+def wkb(rings: list, order: str = "<", kind: int = 3, extra: int = 0) -> bytes:
+    data = struct.pack(order + "BII", order == "<", kind, len(rings))
+    for ring in rings:
+        data += struct.pack(order + "I", len(ring))
+        data += b"".join(struct.pack(f"{order}{2 + extra}d", *p, *[7] * extra) for p in ring)
+    return data
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("kind,extra", [(3, 0), (1003, 1), (2003, 1), (3003, 2), (3 | 1 << 31, 1), (3 | 3 << 30, 2)])
+def test_wkb(order: str, kind: int, extra: int) -> None:
+    polygon = wkb([SQUARE, HOLE], order, kind, extra)
+    both = struct.pack(order + "BII", order == "<", kind - 3 + 6, 2) + polygon + wkb([np.add(SQUARE, 9)], order, 3)
+    result = cadt.polygons([polygon, bytearray(both), wkb([], order)])
+    assert areas(result).tolist() == [8, 17, 0]
+    for length in range(len(both)):
+        with pytest.raises(cadt.InputError):
+            cadt.polygons([both[:length]])
+
+
+def test_wkb_of_others_is_refused() -> None:
+    with_srid = struct.pack("<BIII", 1, 3 | 1 << 29, 4326, 1) + wkb([SQUARE])[9:]
+    assert areas(cadt.polygons([with_srid])).tolist() == [9]
+    for wrong in (struct.pack("<BIdd", 1, 1, 0, 0), b"\x02" + wkb([SQUARE])[1:], b""):
+        with pytest.raises(cadt.InputError) as caught:
+            cadt.polygons([wkb([SQUARE]), wrong])
+        assert caught.value.index == 1
+    huge = struct.pack("<BIII", 1, 3, 1, 2**32 - 1)
+    with pytest.raises(cadt.InputError):
+        cadt.polygons([huge])
+
+
+def geometries() -> Any:
+    shapely = pytest.importorskip("shapely")
+    square = shapely.Polygon(SQUARE, [HOLE])
+    return [square, shapely.MultiPolygon([square, shapely.box(9, 9, 10, 10)]), None, shapely.Polygon(BOW_TIE)]
+
+
+def test_shapely() -> None:
+    shapely = pytest.importorskip("shapely")
+    rows = geometries()
+    for given in (rows, np.array(rows, dtype=object), tuple(rows)):
+        result = cadt.polygons(given)
+        assert areas(result).tolist() == [8, 9, 0, 0]
+        assert [p.reason for p in result.problems] == ["too few points", "self-crossing"]
+    assert areas(cadt.polygons(shapely.box(0, 0, 1, 2))).tolist() == [2]
+    assert len(cadt.polygons([shapely.Polygon()])) == 1
+    with pytest.raises(cadt.InputError) as caught:
+        cadt.polygons([rows[0], shapely.Point(0, 0)])
+    assert caught.value.index == 1
+    for wrong in ("a square", [[0, 0], [1, 1]], 3):
+        with pytest.raises(cadt.InputError):
+            cadt.polygons(wrong)
+
+
+def test_geoseries() -> None:
+    geopandas = pytest.importorskip("geopandas")
+    series = geopandas.GeoSeries(geometries(), index=["a", "b", "c", "d"], crs=25832)
+    frame = geopandas.GeoDataFrame({"name": range(4)}, index=series.index, geometry=series)
+    for given in (series, frame):
+        triangles = cadt.polygons(given).to_geoseries()
+        assert triangles.crs == series.crs
+        assert triangles.area.groupby(level=0).sum().to_dict() == {"a": 8, "b": 9}
+        assert set(triangles.geom_type) == {"Polygon"}
+    assert len(cadt.polygons(series.iloc[2:]).to_geoseries()) == 0
+
+
+def test_plot() -> None:
+    pytest.importorskip("matplotlib").use("agg")
+    import matplotlib.pyplot as plt
+
+    result = cadt.polygons([wkb([SQUARE, HOLE]), wkb([np.add(SQUARE, 9)])])
+    ax = result.plot(plt.figure().add_subplot(), values=[3, 4])
+    assert sorted(set(ax.collections[0].get_array().tolist())) == [3, 4]
+
+
+def test_labels() -> None:
+    image = np.zeros((30, 40), dtype=np.int64)
+    image[5:20, 10:30] = 7
+    image[8:12, 15:20] = -3
+    boundary = cadt.label_segments(image)
+    mesh = cadt.ConstrainedDelaunay(boundary.points, boundary.segments)
+    assert mesh.n_regions == 3 and mesh.verify()
+    label = cadt.triangle_labels(boundary.points, mesh.simplices, image)
+    x, y = np.meshgrid(np.arange(40) + 0.5, 29.5 - np.arange(30))
+    assert np.array_equal(label[mesh.find_simplex((x, y))], image)
+    assert set(boundary.sides.ravel().tolist()) == {0, 7, -3, -(2**31)}
+    for wrong in (image[0], image.astype(float), np.full((2, 2), 2**31), np.full((2, 2), -(2**31)), np.empty((0, 3), int)):
+        with pytest.raises(cadt.InputError):
+            cadt.label_segments(wrong)

@@ -2,6 +2,7 @@
 // The host's own memory gives out: every request of the calling thread is refused in turn. Only on the host's back end:
 // runtimes of devices, and the compilers in them, are not made for it.
 #include <cadt/cadt.hpp>
+#include <cadt/constrained.hpp>
 
 #include <gtest/gtest.h>
 
@@ -143,6 +144,30 @@ TEST(HostMemory, Triangulator) {
   });
   triangulator.options().tuning.strategy = Strategy::stars;
   refuse_each([&] { return triangulator.triangulate(Reals(xy)).hash().to_string(); });
+}
+
+TEST(HostMemory, Segments) {
+  const Points xy = some_points();
+  const std::vector<Segment> segments = {{0, 7}, {400, 480}, {408, 440}, {408, 440}};
+  Triangulator triangulator(on_host());
+  ConstraintOptions constraints;
+  for (const Domain domain : {Domain::hull, Domain::layers, Domain::seeds}) {
+    constraints.domain = domain;
+    refuse_each([&] {
+      const ConstrainedTriangulation mesh = triangulator.triangulate_constrained(Reals(xy), segments, constraints);
+      return mesh.hash().to_string() + std::to_string(mesh.constrained_edges().size());
+    });
+  }
+  const ConstrainedTriangulation mesh = triangulator.triangulate_constrained(Reals(xy), segments, constraints);
+  VerifyOptions alone;
+  alone.threads = 1;
+  refuse_each([&] { return verify(Reals(xy), segments, mesh, constraints, alone).summary(); });
+  constraints.crossing = Crossing::exact;
+  std::vector<Segment> crossed = segments;
+  crossed.push_back({1, 2});
+  crossed.push_back({3, 4});
+  crossed.push_back({5, 6});
+  refuse_each([&] { return triangulator.triangulate_constrained(Reals(xy), crossed, constraints).hash().to_string(); });
 }
 
 TEST(HostMemory, SeveralSets) {

@@ -4,6 +4,8 @@
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 
+#include <cadt/constrained.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -163,6 +165,37 @@ TEST_P(ReportedProgress, RepeatedPasses) {
     return statistics;
   };
   expect_reports(options(Strategy::locks), call, reports, with(insertion_phases, {"copy"}));
+}
+
+/// A stop that is requested in a launch with segments takes effect before the next one.
+TEST_P(ReportedProgress, SegmentsCanBeStopped) {
+  Points xy = uniform_points(2000, 7);
+  std::vector<Segment> segments;
+  for (int i = 0; i < 30; ++i) {
+    const auto v = static_cast<std::int32_t>(xy.size() / 2);
+    xy.insert(xy.end(), {-1, i / 30.0, 2, i / 30.0 + 0.01});
+    segments.push_back({v, v + 1});
+  }
+  Triangulator triangulator(options(Strategy::locks));
+  int launches = 0;
+  faults->change_launch = [&](KernelId kernel, std::vector<Arg>&) {
+    launches += kernel == KernelId::cadt_find_segments ? 1 : 0;
+  };
+  const Hash128 expected = triangulator.triangulate_constrained(Reals(xy), segments).hash();
+  const int all = launches;
+  EXPECT_GT(all, 2);
+  for (int stop_at = 1; stop_at < all; ++stop_at) {
+    cadt::stop_source source;
+    launches = 0;
+    faults->change_launch = [&](KernelId kernel, std::vector<Arg>&) {
+      if (kernel == KernelId::cadt_find_segments && ++launches == stop_at) source.request_stop();
+    };
+    triangulator.options().stop = source.get_token();
+    (void)thrown<Cancelled>([&] { (void)triangulator.triangulate_constrained(Reals(xy), segments); });
+    EXPECT_EQ(launches, stop_at);
+    triangulator.options().stop = {};
+    EXPECT_EQ(triangulator.triangulate_constrained(Reals(xy), segments).hash(), expected);
+  }
 }
 
 CADT_ON_MAIN_BACKENDS(ReportedProgress);

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Steps that fail while segments become edges.
+#include "tests/robustness/faults/every_step.hpp"
+
+#include <cadt/constrained.hpp>
+
+namespace cadt::test {
+namespace {
+
+/// Segments across all points, side by side, and one along points on a line: pieces wait, and there are long chains.
+struct Walls {
+  Points xy = some_points();
+  std::vector<Segment> segments;
+  Walls() {
+    for (int i = 0; i < 6; ++i) {
+      const auto v = static_cast<std::int32_t>(xy.size() / 2);
+      xy.insert(xy.end(), {-9, 0.1 + 0.13 * i, 9, 0.11 + 0.13 * i});
+      segments.push_back({v, v + 1});
+    }
+    segments.push_back({200, 256});
+  }
+};
+
+Outcome outcome_of(const ConstrainedTriangulation& mesh) {
+  return {mesh.hash().to_string(), static_cast<std::size_t>(mesh.statistics().bytes_device_peak)};
+}
+
+TEST_P(EveryStep, SegmentsOfTheHost) {
+  const Walls walls;
+  ConstraintOptions constraints;
+  constraints.domain = Domain::layers;
+  const Call call = [&](Triangulator& t) {
+    const ConstrainedTriangulation mesh = t.triangulate_constrained(Reals(walls.xy), walls.segments, constraints);
+    EXPECT_GE(mesh.statistics().inserted_segments, 6U);
+    return outcome_of(mesh);
+  };
+  for (const bool warm : {false, true}) fail_each(options(), call, warm);
+}
+
+TEST_P(EveryStep, SegmentsOfTheDevice) {
+  const Walls walls;
+  const DevicePoints points = upload(walls.xy);
+  const DeviceArray segments{memory->upload(std::span<const Segment>(walls.segments)), 2 * walls.segments.size()};
+  fail_each(options(),
+            [&](Triangulator& t) { return test::outcome_of(t.triangulate_constrained(points, segments).download()); });
+}
+
+/// What crosses is found in vain, and then once more on the host.
+TEST_P(EveryStep, SegmentsThatCross) {
+  Walls walls;
+  walls.segments.push_back({static_cast<std::int32_t>(walls.xy.size() / 2) - 1, 200});
+  for (const Crossing crossing : {Crossing::error, Crossing::exact, Crossing::grid}) {
+    ConstraintOptions constraints;
+    constraints.crossing = crossing;
+    constraints.grid = 0.01;
+    fail_each(options(), [&](Triangulator& t) {
+      try {
+        return outcome_of(t.triangulate_constrained(Reals(walls.xy), walls.segments, constraints));
+      } catch (const CrossingError& error) {
+        return Outcome{std::to_string(error.pairs().size()) + " pairs", 0};
+      }
+    });
+  }
+}
+
+}  // namespace
+}  // namespace cadt::test

@@ -60,11 +60,14 @@ class SegmentCheck {
         return fail(number, name + " has a vertex that is none");
     if (places_.at(vertices.front()) != a || places_.at(vertices.back()) != b)
       return fail(number, "the chain of " + name + " has other ends");
+    if (places_.moved()) return;  // from pixel to pixel
+    Place before = a;
     for (std::size_t i = 1; i < vertices.size(); ++i) {
-      const Place p = places_.at(vertices[i - 1]), q = places_.at(vertices[i]);
-      if (places_.moved()) continue;  // from pixel to pixel
-      if (p == q || (p < q) != (a < b) || (!places_.is_added(vertices[i]) && exact_orientation(a, b, q) != 0))
+      if (places_.is_added(vertices[i])) continue;  // rounded, somewhere beside it
+      const Place here = places_.at(vertices[i]);
+      if (before == here || (before < here) != (a < b) || exact_orientation(a, b, here) != 0)
         return fail(number, "the chain of " + name + " does not lie on it at vertex " + std::to_string(vertices[i]));
+      before = here;
     }
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/constraints/verify_checks.hpp"
@@ -44,16 +45,32 @@ class RegionCheck {
   [[nodiscard]] std::int32_t across(std::size_t t, std::size_t k) const { return mesh_.mesh().neighbors()[3 * t + k]; }
   [[nodiscard]] bool constrained(std::size_t t, std::size_t k) const { return (mesh_.edge_flags()[t] >> k & 1U) != 0; }
 
+  /// Triangles beside an edge of the hull that is not constrained: they meet outside.
+  [[nodiscard]] std::vector<std::size_t> open_to_outside() const {
+    std::vector<std::size_t> open;
+    for (std::size_t t = 0; t < count_; ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (across(t, k) < 0 && !constrained(t, k)) open.push_back(t);
+    return open;
+  }
+
   /// All triangles that can be reached from those in `found` without crossing a constrained edge get its value.
   void spread(std::vector<std::size_t>& found, std::vector<std::int32_t>& values) const {
+    bool outside = false;
     while (!found.empty()) {
       const std::size_t t = found.back();
       found.pop_back();
+      const auto reach = [&](std::size_t other) {
+        if (values[other] != not_reached) return;
+        values[other] = values[t];
+        found.push_back(other);
+      };
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::int32_t other = across(t, k);
-        if (other < 0 || constrained(t, k) || values[static_cast<std::size_t>(other)] != not_reached) continue;
-        values[static_cast<std::size_t>(other)] = values[t];
-        found.push_back(static_cast<std::size_t>(other));
+        if (constrained(t, k)) continue;
+        if (const std::int32_t other = across(t, k); other >= 0)
+          reach(static_cast<std::size_t>(other));
+        else if (!std::exchange(outside, true))
+          std::ranges::for_each(open_to_outside(), reach);
       }
     }
   }
@@ -167,10 +184,7 @@ class RegionCheck {
       if (values[t] == not_reached) found.push_back(t);
       values[t] = 0;
     };
-    if (constraints_.domain != Domain::hull)
-      for (std::size_t t = 0; t < count_; ++t)
-        for (std::size_t k = 0; k < 3; ++k)
-          if (across(t, k) < 0 && !constrained(t, k)) add(t);
+    if (constraints_.domain != Domain::hull) std::ranges::for_each(open_to_outside(), add);
     if (constraints_.domain == Domain::seeds)
       for (const std::int32_t t : located(constraints_.holes))
         if (t >= 0) add(static_cast<std::size_t>(t));

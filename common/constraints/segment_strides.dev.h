@@ -40,24 +40,32 @@ CADT_KERNEL(cadt_divide_pieces, CADT_PIECES_PARAMETERS, cadt_u32 count, cadt_u32
   }
 }
 
-enum { CADT_PROBE_SAMPLES = 2048 };
+enum { CADT_PROBE_SAMPLES = 1024, CADT_PROBE_NEIGHBORS = 256 };
 
-/* A triangle that contains the place q as far as floating point can tell, from the nearest vertex of a sample on, by a
- * walk with a random order of edges; CADT_NONE if it does not end soon (O. Devillers, S. Pion, M. Teillaud, "Walking in
- * a triangulation", 2001). */
-CADT_FN cadt_u32 cadt_triangle_near(const cadt_segment_mesh* m, cadt_u32 vertex_count, cadt_point q) {
-  cadt_u32 nearest = 0u;
-  cadt_real least = CADT_INFINITY;
-  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_PROBE_SAMPLES); ++i) {
-    const cadt_u32 v =
-        CADT_CAST(cadt_u32, CADT_CAST(cadt_u64, i) * vertex_count / CADT_CAST(cadt_u64, CADT_PROBE_SAMPLES));
+/* The nearest to q of `samples` vertices from `first` on, among `count`, or `nearest`, which is `least` away. */
+CADT_FN cadt_u32 cadt_nearest_of(const cadt_segment_mesh* m, cadt_u32 first, cadt_u32 count, cadt_u32 samples,
+                                 cadt_point q, cadt_u32 nearest, cadt_real* least) {
+  for (cadt_u32 i = 0u; i < samples; ++i) {
+    const cadt_u32 v = first + CADT_CAST(cadt_u32, CADT_CAST(cadt_u64, i) * count / CADT_CAST(cadt_u64, samples));
     const cadt_point p = cadt_load_point(m->points + v);
     const cadt_real away = cadt_fabs(p.x - q.x) + cadt_fabs(p.y - q.y);
-    if (away < least) {
-      least = away;
+    if (away < *least) {
+      *least = away;
       nearest = v;
     }
   }
+  return nearest;
+}
+
+/* A triangle that contains the place q as far as floating point can tell, by a walk with a random order of edges from
+ * the nearest vertex of a sample, and of another one around it, as vertices mostly are in the order of Hilbert's curve;
+ * CADT_NONE if it does not end soon (O. Devillers, S. Pion, M. Teillaud, "Walking in a triangulation", 2001). */
+CADT_FN cadt_u32 cadt_triangle_near(const cadt_segment_mesh* m, cadt_u32 vertex_count, cadt_point q) {
+  const cadt_u32 apart = vertex_count / CADT_PROBE_SAMPLES + 1u;
+  cadt_real least = CADT_INFINITY;
+  cadt_u32 nearest = cadt_nearest_of(m, 0u, vertex_count, CADT_PROBE_SAMPLES, q, 0u, &least);
+  const cadt_u32 begin = nearest > apart ? nearest - apart : 0u, end = cadt_min_u32(nearest + apart, vertex_count);
+  nearest = cadt_nearest_of(m, begin, end - begin, CADT_PROBE_NEIGHBORS, q, nearest, &least);
   cadt_u32 t = m->vertex_triangle[nearest], entry = 3u, random = nearest;
   /* Many times as many as triangles lie on a line from one vertex of the sample to the next: beside a long edge lie
    * long triangles, with all sizes down to those of others around. */

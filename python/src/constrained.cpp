@@ -11,7 +11,7 @@ namespace {
 using Mesh = cadt::ConstrainedTriangulation;
 using Pairs = nb::ndarray<const std::int32_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Offsets = nb::ndarray<const std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Words = nb::ndarray<const std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using IndexArray = nb::ndarray<const std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 template <class Array>
 auto span_of(const Array& a) {
@@ -188,10 +188,10 @@ void bind_constrained(nb::module_& m) {
       },
       nb::arg("triangulator"), nb::arg("points"), nb::arg("segments"), nb::arg("constraints"), nb::arg("options"),
       nb::arg("progress") = nb::none());
-  m.def("polyline_segments", [](const Offsets& offsets, const Words& vertices) {
+  m.def("polyline_segments", [](const Offsets& offsets, const IndexArray& vertices) {
     return array_of_pairs(cadt::polyline_segments(span_of(offsets), span_of(vertices)));
   });
-  m.def("ring_segments", [](const Offsets& offsets, const Words& vertices) {
+  m.def("ring_segments", [](const Offsets& offsets, const IndexArray& vertices) {
     return array_of_pairs(cadt::ring_segments(span_of(offsets), span_of(vertices)));
   });
   m.def("find_crossings", [](const Points& points, const Pairs& segments, unsigned threads) {

@@ -39,36 +39,53 @@ CADT_FN cadt_u32 cadt_comes_after_left(const cadt_segment_mesh* m, const cadt_ri
              : 0u;
 }
 
-/* The place of the apex; the lanes of a team share the work, `shared` has a word for each and two more. */
-CADT_FN cadt_u32 cadt_apex_of_chain(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c,
-                                    CADT_TEAM_PTR cadt_u32* shared, cadt_u32 lane, cadt_u32 lanes,
-                                    cadt_counters* counters) {
+/* The best of every `lanes`-th place from the lane's on; CADT_NONE: none is left. */
+CADT_FN cadt_u32 cadt_best_apex(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c, cadt_u32 lane,
+                                cadt_u32 lanes, cadt_counters* counters) {
   const cadt_u32 v = rings->vertex[c->low], w = rings->vertex[c->high];
   const cadt_point p = cadt_load_point(m->points + v), q = cadt_load_point(m->points + w);
   cadt_u32 best = CADT_NONE;
   for (cadt_u32 x = c->low + 1u + lane; x < c->high; x += lanes)
     if (rings->vertex[x] != v && rings->vertex[x] != w) best = cadt_better_apex(m, rings, p, q, best, x, counters);
-  if (lanes > 1u) {
-    shared[lane] = best;
-    shared[lanes] = CADT_NONE;
-    for (cadt_u32 step = lanes / 2u; step != 0u; step /= 2u) {
-      CADT_TEAM_SYNC();
-      if (lane < step) shared[lane] = cadt_better_apex(m, rings, p, q, shared[lane], shared[lane + step], counters);
-    }
-    CADT_TEAM_SYNC();
-    best = shared[0];
-  }
-  if (best == CADT_NONE) return best;
-  cadt_u32 last = best;
+  return best;
+}
+
+/* The last one of these at which the chain comes to the apex, first at place `best`, after all on its left side. */
+CADT_FN cadt_u32 cadt_last_place(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c,
+                                 cadt_u32 best, cadt_u32 lane, cadt_u32 lanes, cadt_counters* counters) {
+  const cadt_point p = cadt_load_point(m->points + rings->vertex[c->low]);
   const cadt_u32 apex = rings->vertex[best];
+  cadt_u32 last = best;
   for (cadt_u32 x = best + 1u + lane; x < c->high; x += lanes)
     if (cadt_comes_after_left(m, rings, p, apex, x, counters)) last = x;
-  if (lanes > 1u) {
-    cadt_team_min(shared + lanes, ~last);
-    CADT_TEAM_SYNC();
-    last = ~shared[lanes];
-  }
   return last;
+}
+
+/* The place of the apex. */
+CADT_FN cadt_u32 cadt_apex_of_chain(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c,
+                                    cadt_counters* counters) {
+  const cadt_u32 best = cadt_best_apex(m, rings, c, 0u, 1u, counters);
+  return best == CADT_NONE ? best : cadt_last_place(m, rings, c, best, 0u, 1u, counters);
+}
+
+/* The same by the lanes of a team. `shared`: a word for each of them and one more. Apart from what single work-items
+ * call: no barrier may be in their way, even if they never come to it. */
+CADT_FN cadt_u32 cadt_apex_by_team(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c,
+                                   CADT_TEAM_PTR cadt_u32* shared, cadt_u32 lane, cadt_u32 lanes,
+                                   cadt_counters* counters) {
+  const cadt_point p = cadt_load_point(m->points + rings->vertex[c->low]),
+                   q = cadt_load_point(m->points + rings->vertex[c->high]);
+  shared[lane] = cadt_best_apex(m, rings, c, lane, lanes, counters);
+  shared[lanes] = CADT_NONE;
+  for (cadt_u32 step = lanes / 2u; step != 0u; step /= 2u) {
+    CADT_TEAM_SYNC();
+    if (lane < step) shared[lane] = cadt_better_apex(m, rings, p, q, shared[lane], shared[lane + step], counters);
+  }
+  CADT_TEAM_SYNC();
+  const cadt_u32 best = shared[0];
+  if (best != CADT_NONE) cadt_team_min(shared + lanes, ~cadt_last_place(m, rings, c, best, lane, lanes, counters));
+  CADT_TEAM_SYNC();
+  return best == CADT_NONE ? best : ~shared[lanes];
 }
 
 /* The first of the two root triangles leaves its half-edge in `bases`, the second one links both. */
@@ -137,7 +154,7 @@ CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings
       continue;
     }
     work = work < size ? 0u : work - size;
-    const cadt_u32 apex = cadt_apex_of_chain(m, rings, &c, 0, 0u, 1u, counters);
+    const cadt_u32 apex = cadt_apex_of_chain(m, rings, &c, counters);
     if (apex == CADT_NONE) {
       cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
       return;
@@ -215,7 +232,7 @@ CADT_TEAM_KERNEL(CADT_CHAIN_LANES, 8, cadt_divide_chains, CADT_SEGMENT_MESH_PARA
   CADT_TEAM_MEMORY cadt_u32 shared[CADT_CHAIN_LANES + 1];
   CADT_FOR_TEAMS(i, count, grain) {
     const cadt_chain c = chains[i];
-    const cadt_u32 apex = cadt_apex_of_chain(&mesh, &rings, &c, shared, cadt_team_lane, cadt_team_lanes, &counters);
+    const cadt_u32 apex = cadt_apex_by_team(&mesh, &rings, &c, shared, cadt_team_lane, cadt_team_lanes, &counters);
     CADT_TEAM_SYNC();
     if (cadt_team_lane != 0u) continue;
     if (apex == CADT_NONE) {

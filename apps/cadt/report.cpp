@@ -53,6 +53,8 @@ constexpr std::array counters = {
     Counter{"proven_stars", &Statistics::proven_stars},
     Counter{"wrapped_stars", &Statistics::wrapped_stars},
     Counter{"refined_points", &Statistics::refined_points},
+    Counter{"inserted_segments", &Statistics::inserted_segments},
+    Counter{"segment_retries", &Statistics::segment_retries},
 };
 
 double total_seconds(const RunReport& r) {

@@ -122,7 +122,7 @@ CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const 
   CADT_FOR(s, count, grain) {
     cadt_u32 a = pairs[2u * (first + s)], b = pairs[2u * (first + s) + 1u];
     while (a != b) {
-      const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
+      const cadt_segment_step step = cadt_next_step(&mesh, a, b, divides ? 0u : 1u, &counters);
       const cadt_u32 from = step.from_b ? b : a, to = step.from_b ? a : b;
       cadt_u32 reached = step.vertex;
       if (step.kind == CADT_STEP_NOWHERE) {
@@ -197,7 +197,7 @@ CADT_KERNEL(cadt_trace_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const
       continue;
     }
     while (a != b) {
-      const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
+      const cadt_segment_step step = cadt_next_step(&mesh, a, b, 1u, &counters);
       if (step.kind != CADT_STEP_EDGE) {
         cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
         break;

@@ -186,12 +186,19 @@ CADT_FN void cadt_fill_or_queue(const cadt_segment_mesh* m, const cadt_rings* ri
                                 CADT_GLOBAL cadt_u32* bases, const cadt_chain_queues* queues, cadt_u32 shortest,
                                 cadt_u32 longest, CADT_GLOBAL cadt_u32* words, cadt_counters* counters) {
   const cadt_u32 size = c->high - c->low;
-  if (size > longest && !CADT_CONTIGUOUS)
+#if CADT_CONTIGUOUS
+  (void)queues, (void)shortest, (void)longest;
+#else
+  if (size > longest) {
     queues->longer[cadt_add_relaxed(words + CADT_SEGMENTS_LONG_CHAINS, 1u)] = *c;
-  else if (size > shortest && !CADT_CONTIGUOUS)
+    return;
+  }
+  if (size > shortest) {
     queues->others[cadt_add_relaxed(words + CADT_SEGMENTS_CHAINS, 1u)] = *c;
-  else if (size > 1u)
-    cadt_fill_chain(m, rings, *c, bases, words, counters);
+    return;
+  }
+#endif
+  if (size > 1u) cadt_fill_chain(m, rings, *c, bases, words, counters);
 }
 
 /* Both polygons of the pieces that go on. \pre bases are CADT_NONE */

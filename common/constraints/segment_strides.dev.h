@@ -40,42 +40,55 @@ CADT_KERNEL(cadt_divide_pieces, CADT_PIECES_PARAMETERS, cadt_u32 count, cadt_u32
   }
 }
 
-enum { CADT_PROBE_SAMPLES = 2048 };
+enum { CADT_PROBE_SAMPLES = 1024, CADT_PROBE_NEIGHBORS = 256, CADT_PROBE_STAR = 64, CADT_PROBE_STEPS = 1024 };
 
-/* A triangle that contains the place q as far as floating point can tell, from the nearest vertex of a sample on, by a
- * walk with a random order of edges; CADT_NONE if it does not end soon (O. Devillers, S. Pion, M. Teillaud, "Walking in
- * a triangulation", 2001). */
-CADT_FN cadt_u32 cadt_triangle_near(const cadt_segment_mesh* m, cadt_u32 vertex_count, cadt_point q) {
-  cadt_u32 nearest = 0u;
-  cadt_real least = CADT_INFINITY;
-  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_PROBE_SAMPLES); ++i) {
-    const cadt_u32 v =
-        CADT_CAST(cadt_u32, CADT_CAST(cadt_u64, i) * vertex_count / CADT_CAST(cadt_u64, CADT_PROBE_SAMPLES));
+/* The nearest to q of `samples` vertices from `first` on, among `count`, or `nearest`, which is `least` away. */
+CADT_FN cadt_u32 cadt_nearest_of(const cadt_segment_mesh* m, cadt_u32 first, cadt_u32 count, cadt_u32 samples,
+                                 cadt_point q, cadt_u32 nearest, cadt_real* least) {
+  for (cadt_u32 i = 0u; i < samples; ++i) {
+    const cadt_u32 v = first + CADT_CAST(cadt_u32, CADT_CAST(cadt_u64, i) * count / CADT_CAST(cadt_u64, samples));
     const cadt_point p = cadt_load_point(m->points + v);
     const cadt_real away = cadt_fabs(p.x - q.x) + cadt_fabs(p.y - q.y);
-    if (away < least) {
-      least = away;
+    if (away < *least) {
+      *least = away;
       nearest = v;
     }
   }
-  cadt_u32 t = m->vertex_triangle[nearest], entry = 3u, random = nearest;
-  /* Many times as many as triangles lie on a line from one vertex of the sample to the next: beside a long edge lie
-   * long triangles, with all sizes down to those of others around. */
-  const cadt_u32 most =
-      64u + 32u * CADT_CAST(cadt_u32, cadt_sqrt(CADT_CAST(cadt_real, vertex_count / CADT_PROBE_SAMPLES)));
-  for (cadt_u32 i = 0u; i < most; ++i) {
-    random = random * 1664525u + 1013904223u;
-    cadt_u32 k = (random >> 16) % 3u, leave = 3u;
-    for (cadt_u32 j = 0u; j < 3u && leave == 3u; ++j, k = CADT_NEXT(k)) {
-      const cadt_u32 v = cadt_corner_of(m, t, CADT_NEXT(k)), w = cadt_corner_of(m, t, CADT_PREV(k));
-      if (v == CADT_GHOST || w == CADT_GHOST || cadt_corner_of(m, t, k) == CADT_GHOST) return CADT_NONE;
-      if (k == entry) continue;
-      if (cadt_orientation_filter(cadt_load_point(m->points + v), cadt_load_point(m->points + w), q) == -1) leave = k;
-    }
-    if (leave == 3u) return t;
-    const cadt_u32 across = cadt_across_of(m, CADT_HALF_EDGE(t, leave));
-    t = CADT_TRIANGLE_OF(across);
-    entry = CADT_EDGE_OF(across);
+  return nearest;
+}
+
+/* A triangle that contains the place q as far as floating point can tell: straight on from the nearest vertex of a
+ * sample, and of another one around it, as vertices mostly are in the order of Hilbert's curve. (A walk that only turns
+ * towards q may take for ever where long edges have made long triangles.) CADT_NONE if it meets a vertex or takes long.
+ */
+CADT_FN cadt_u32 cadt_triangle_near(const cadt_segment_mesh* m, cadt_u32 vertex_count, cadt_point q) {
+  const cadt_u32 apart = vertex_count / CADT_PROBE_SAMPLES + 1u;
+  cadt_real least = CADT_INFINITY;
+  cadt_u32 nearest = cadt_nearest_of(m, 0u, vertex_count, CADT_PROBE_SAMPLES, q, 0u, &least);
+  const cadt_u32 begin = nearest > apart ? nearest - apart : 0u, end = cadt_min_u32(nearest + apart, vertex_count);
+  nearest = cadt_nearest_of(m, begin, end - begin, CADT_PROBE_NEIGHBORS, q, nearest, &least);
+  const cadt_point p = cadt_load_point(m->points + nearest);
+  cadt_u32 t = m->vertex_triangle[nearest];
+  cadt_u32 k = cadt_corner_of(m, t, 0u) == nearest ? 0u : (cadt_corner_of(m, t, 1u) == nearest ? 1u : 2u), found = 0u;
+  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_PROBE_STAR) && !found; ++i) { /* the triangle towards q */
+    const cadt_u32 v = cadt_corner_of(m, t, CADT_NEXT(k)), w = cadt_corner_of(m, t, CADT_PREV(k));
+    found = v != CADT_GHOST && w != CADT_GHOST && cadt_orientation_filter(p, q, cadt_load_point(m->points + v)) == -1 &&
+                    cadt_orientation_filter(p, q, cadt_load_point(m->points + w)) == 1
+                ? 1u
+                : 0u;
+    if (found) break;
+    const cadt_u32 next = cadt_across_of(m, CADT_HALF_EDGE(t, CADT_NEXT(k)));
+    t = CADT_TRIANGLE_OF(next);
+    k = CADT_NEXT(CADT_EDGE_OF(next));
+  }
+  for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_PROBE_STEPS) && found; ++i) { /* it is left by edge k */
+    const cadt_u32 v = cadt_corner_of(m, t, CADT_NEXT(k)), w = cadt_corner_of(m, t, CADT_PREV(k));
+    if (cadt_orientation_filter(cadt_load_point(m->points + v), cadt_load_point(m->points + w), q) != -1) return t;
+    const cadt_u32 entry = cadt_across_of(m, CADT_HALF_EDGE(t, k)), j = CADT_EDGE_OF(entry);
+    t = CADT_TRIANGLE_OF(entry);
+    const cadt_u32 apex = cadt_corner_of(m, t, j);
+    if (apex == CADT_GHOST) return CADT_NONE;
+    k = cadt_orientation_filter(p, q, cadt_load_point(m->points + apex)) == 1 ? CADT_NEXT(j) : CADT_PREV(j);
   }
   return CADT_NONE;
 }

@@ -8,13 +8,13 @@ namespace cadt_python {
 
 namespace {
 
-using Mesh = cadt::ConstrainedTriangulation;
+using ConstrainedMesh = cadt::ConstrainedTriangulation;
 using Pairs = nb::ndarray<const std::int32_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 using Offsets = nb::ndarray<const std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Words = nb::ndarray<const std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using IndexArray = nb::ndarray<const std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 template <class Array>
-auto span_of(const Array& a) {
+auto elements_of(const Array& a) {
   return std::span(a.data(), a.size());
 }
 std::span<const cadt::Segment> segments_of(const Pairs& pairs) {
@@ -53,58 +53,62 @@ cadt::ConstraintOptions constraints_of(const std::string& crossing, double grid,
 }
 
 void bind_constrained_mesh(nb::module_& m) {
-  nb::class_<Mesh>(m, "ConstrainedTriangulation")
-      .def_prop_ro("mesh", [](const Mesh& c) { return c.mesh(); })
+  nb::class_<ConstrainedMesh>(m, "ConstrainedTriangulation")
+      .def_prop_ro("mesh", [](const ConstrainedMesh& c) { return c.mesh(); })
       .def_prop_ro(
-          "edge_flags", [](const Mesh& c) { return array_of(c.edge_flags(), 0, c); }, nb::rv_policy::automatic)
+          "edge_flags", [](const ConstrainedMesh& c) { return array_of(c.edge_flags(), 0, c); },
+          nb::rv_policy::automatic)
       .def_prop_ro(
           "chains",
-          [](const Mesh& c) {
+          [](const ConstrainedMesh& c) {
             return nb::make_tuple(array_of(c.chain_offsets(), 0, c), array_of(c.chain_vertices(), 0, c));
           },
           nb::rv_policy::automatic)
       .def_prop_ro(
           "edges",
-          [](const Mesh& c) {
+          [](const ConstrainedMesh& c) {
             const auto edges = without_gil([&] { return c.constrained_edges(); });
             return array_of(words_of(edges), 2, c);
           },
           nb::rv_policy::automatic)
       .def_prop_ro(
           "sources",
-          [](const Mesh& c) {
+          [](const ConstrainedMesh& c) {
             const auto offsets = without_gil([&] { return c.source_offsets(); });
             return nb::make_tuple(array_of(offsets, 0, c), array_of(c.edge_sources(), 0, c));
           },
           nb::rv_policy::automatic)
       .def_prop_ro(
-          "degenerate_segments", [](const Mesh& c) { return array_of(c.degenerate_segments(), 0, c); },
+          "degenerate_segments", [](const ConstrainedMesh& c) { return array_of(c.degenerate_segments(), 0, c); },
           nb::rv_policy::automatic)
       .def_prop_ro(
-          "inside", [](const Mesh& c) { return array_of(c.inside(), 0, c); }, nb::rv_policy::automatic)
+          "inside", [](const ConstrainedMesh& c) { return array_of(c.inside(), 0, c); }, nb::rv_policy::automatic)
       .def_prop_ro(
-          "region", [](const Mesh& c) { return array_of(c.region(), 0, c); }, nb::rv_policy::automatic)
+          "region", [](const ConstrainedMesh& c) { return array_of(c.region(), 0, c); }, nb::rv_policy::automatic)
       .def_prop_ro(
-          "region_value", [](const Mesh& c) { return array_of(c.region_value(), 0, c); }, nb::rv_policy::automatic)
+          "region_value", [](const ConstrainedMesh& c) { return array_of(c.region_value(), 0, c); },
+          nb::rv_policy::automatic)
       .def_prop_ro(
-          "region_attribute", [](const Mesh& c) { return array_of(c.region_attribute(), 0, c); },
+          "region_attribute", [](const ConstrainedMesh& c) { return array_of(c.region_attribute(), 0, c); },
           nb::rv_policy::automatic)
       .def("triangles_inside",
-           [](const Mesh& c) { return array_of(without_gil([&] { return c.triangles_inside(); }), 3); })
+           [](const ConstrainedMesh& c) { return array_of(without_gil([&] { return c.triangles_inside(); }), 3); })
       .def_prop_ro(
-          "added_points", [](const Mesh& c) { return array_of(c.added_points(), 2, c); }, nb::rv_policy::automatic)
-      .def_prop_ro(
-          "added_parents", [](const Mesh& c) { return array_of(words_of(c.added_parents()), 2, c); },
+          "added_points", [](const ConstrainedMesh& c) { return array_of(c.added_points(), 2, c); },
           nb::rv_policy::automatic)
       .def_prop_ro(
-          "moved_points", [](const Mesh& c) { return array_of(c.moved_points(), 2, c); }, nb::rv_policy::automatic)
-      .def_prop_ro("rounded_valid", &Mesh::rounded_valid)
-      .def("hash", [](const Mesh& c) { return without_gil([&] { return c.hash().to_string(); }); })
-      .def("verify",
-           [](const Mesh& c, const Points& points, const Pairs& segments, const cadt::ConstraintOptions& constraints) {
-             const cadt::PointsView view = view_of(points);
-             return report_of(without_gil([&] { return cadt::verify(view, segments_of(segments), c, constraints); }));
-           });
+          "added_parents", [](const ConstrainedMesh& c) { return array_of(words_of(c.added_parents()), 2, c); },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "moved_points", [](const ConstrainedMesh& c) { return array_of(c.moved_points(), 2, c); },
+          nb::rv_policy::automatic)
+      .def_prop_ro("rounded_valid", &ConstrainedMesh::rounded_valid)
+      .def("hash", [](const ConstrainedMesh& c) { return without_gil([&] { return c.hash().to_string(); }); })
+      .def("verify", [](const ConstrainedMesh& c, const Points& points, const Pairs& segments,
+                        const cadt::ConstraintOptions& constraints) {
+        const cadt::PointsView view = view_of(points);
+        return report_of(without_gil([&] { return cadt::verify(view, segments_of(segments), c, constraints); }));
+      });
 }
 
 void bind_polygons(nb::module_& m) {
@@ -134,7 +138,7 @@ void bind_polygons(nb::module_& m) {
          const nb::object& progress) {
         const cadt::PointsView view = view_of(points);
         return PolygonsOf{std::make_shared<cadt::PolygonsResult>(Call(options, progress)(
-            [&] { return cadt::triangulate_polygons(view, span_of(rings), span_of(polygons), options); }))};
+            [&] { return cadt::triangulate_polygons(view, elements_of(rings), elements_of(polygons), options); }))};
       },
       nb::arg("points"), nb::arg("ring_offsets"), nb::arg("polygon_offsets"), nb::arg("options"),
       nb::arg("progress") = nb::none());
@@ -144,13 +148,14 @@ void bind_labels(nb::module_& m) {
   using Image = nb::ndarray<const std::int32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
   m.def("label_segments", [](const Image& labels) {
     cadt::LabelSegments found =
-        without_gil([&] { return cadt::label_segments(span_of(labels), labels.shape(1), labels.shape(0)); });
+        without_gil([&] { return cadt::label_segments(elements_of(labels), labels.shape(1), labels.shape(0)); });
     return nb::make_tuple(array_of(std::move(found.xy), 2), array_of_pairs(found.segments),
                           array_of_pairs(found.sides));
   });
   m.def("triangle_labels", [](const Coordinates& xy, const Indices& triangles, const Image& labels) {
     return array_of(without_gil([&] {
-      return cadt::triangle_labels(span_of(xy), span_of(triangles), span_of(labels), labels.shape(1), labels.shape(0));
+      return cadt::triangle_labels(elements_of(xy), elements_of(triangles), elements_of(labels), labels.shape(1),
+                                   labels.shape(0));
     }));
   });
 }
@@ -188,11 +193,11 @@ void bind_constrained(nb::module_& m) {
       },
       nb::arg("triangulator"), nb::arg("points"), nb::arg("segments"), nb::arg("constraints"), nb::arg("options"),
       nb::arg("progress") = nb::none());
-  m.def("polyline_segments", [](const Offsets& offsets, const Words& vertices) {
-    return array_of_pairs(cadt::polyline_segments(span_of(offsets), span_of(vertices)));
+  m.def("polyline_segments", [](const Offsets& offsets, const IndexArray& vertices) {
+    return array_of_pairs(cadt::polyline_segments(elements_of(offsets), elements_of(vertices)));
   });
-  m.def("ring_segments", [](const Offsets& offsets, const Words& vertices) {
-    return array_of_pairs(cadt::ring_segments(span_of(offsets), span_of(vertices)));
+  m.def("ring_segments", [](const Offsets& offsets, const IndexArray& vertices) {
+    return array_of_pairs(cadt::ring_segments(elements_of(offsets), elements_of(vertices)));
   });
   m.def("find_crossings", [](const Points& points, const Pairs& segments, unsigned threads) {
     const cadt::PointsView view = view_of(points);

@@ -73,6 +73,8 @@ nb::dict to_dict(const cadt::Statistics& s) {
       {"sets", s.sets},
       {"batched_sets", s.batched_sets},
       {"refined_points", s.refined_points},
+      {"inserted_segments", s.inserted_segments},
+      {"segment_retries", s.segment_retries},
       {"bytes_device_peak", s.bytes_device_peak},
       {"bytes_to_device", s.bytes_to_device},
       {"bytes_from_device", s.bytes_from_device},

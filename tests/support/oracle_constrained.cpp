@@ -45,8 +45,8 @@ double nearest(const Kernel::FT& number) {
 }  // namespace
 
 CrossedOracleMesh cgal_constrained_plus(std::span<const double> xy,
-                                            std::span<const std::array<std::int32_t, 2>> segments,
-                                            std::span<const std::array<std::int32_t, 2>> pairs) {
+                                        std::span<const std::array<std::int32_t, 2>> segments,
+                                        std::span<const std::array<std::int32_t, 2>> pairs) {
   const auto point = [&](std::int32_t i) {
     const auto k = 2 * static_cast<std::size_t>(i);
     return Point(xy[k], xy[k + 1]);

@@ -23,7 +23,7 @@ struct CrossedOracleMesh {
 /// Vertices are the lowest indices of points; a vertex that is none is the number of points plus the index of the first
 /// of `pairs` whose segments cross there.
 [[nodiscard]] CrossedOracleMesh cgal_constrained_plus(std::span<const double> xy,
-                                                          std::span<const std::array<std::int32_t, 2>> segments,
-                                                          std::span<const std::array<std::int32_t, 2>> pairs);
+                                                      std::span<const std::array<std::int32_t, 2>> segments,
+                                                      std::span<const std::array<std::int32_t, 2>> pairs);
 
 }  // namespace cadt::test

@@ -38,6 +38,7 @@ struct Reference {
   T load(std::memory_order order) const { return words::load(word, order); }
   void store(T value, std::memory_order order) const { words::store(word, value, order); }
   T fetch_add(T value, std::memory_order order) const { return words::fetch_add(word, value, order); }
+  T fetch_or(T value, std::memory_order order) const { return words::fetch_or(word, value, order); }
   bool compare_exchange_strong(T& expected, T desired, std::memory_order order,
                                std::memory_order = std::memory_order_relaxed) const {
     return compare_exchange(word, expected, desired, order);
@@ -56,10 +57,7 @@ using cadt_model_reference = words::Reference<T>;
 namespace {
 inline void cadt_assert_owned(std::uint32_t owned) { words::assert_owned(owned != 0); }
 #if !CADT_CONTIGUOUS
-// The host has neither; as GPUs have them.
-inline std::uint32_t cadt_or_relaxed(std::uint32_t* p, std::uint32_t bits) {
-  return words::fetch_or(p, bits, std::memory_order_relaxed);
-}
+// The host has none; as GPUs have it.
 inline void cadt_fence_acq_rel() { words::fence(std::memory_order_acq_rel); }
 #endif
 
@@ -133,7 +131,7 @@ std::uint32_t fetch_add(std::uint32_t* word, std::uint32_t value, std::memory_or
   *word += value;
   return *word - value;
 }
-[[maybe_unused]] std::uint32_t fetch_or(std::uint32_t* word, std::uint32_t value, std::memory_order order) {
+std::uint32_t fetch_or(std::uint32_t* word, std::uint32_t value, std::memory_order order) {
   if (cells != nullptr) return cells[place(word)].fetch_or(value, order_of(order), RL_INFO);
   const std::uint32_t old = *word;
   *word |= value;

@@ -69,15 +69,17 @@ class Constrainer {
       if (launch == 0) ctx_.statistics.inserted_segments = pieces.count;
       Allocation others = ctx_.memory.allocate((2 * first + 4 * pieces.count) * word);
       if (first != 0) launch_.run<KernelId::cadt_copy_words>(*pairs, others, 0U, launch_.grid(2 * first));
-      const std::uint32_t begin = static_cast<std::uint32_t>(first);
-      ctx_.device.write(*words_, CADT_SEGMENTS_LEFT * word, &begin, word);
+      ctx_.device.fill(*words_, CADT_SEGMENTS_LEFT * word, word, static_cast<std::uint32_t>(first));
       const std::optional<std::size_t> all = pieces.count == 0 ? first : insert(pieces, others);
       if (!all) return Outcome::crossed;
       const std::size_t waiting = *all - first;
       count = *all;
       left = launch == 0 ? shuffled(others, count) : std::move(others);
       pairs = &left;
-      const std::size_t won = taken > waiting ? taken - waiting : 0;
+      // Of the first launch, which takes whole segments, pieces alone.
+      const std::size_t tried = launch == 0 ? pieces.count : taken, won = tried > waiting ? tried - waiting : 0;
+      if (tried == 1 && waiting == 1 && launch != 0)
+        give_up("a piece of a segment that meets no other is not inserted");
       // If none had room, fewer are tried: one alone always has.
       taken = std::min(count, launch == 0 || won != 0 ? std::max(4 * won, least) : std::max<std::size_t>(taken / 4, 1));
       ctx_.statistics.segment_retries += waiting;

@@ -77,7 +77,7 @@ Drawing repeated_between_hubs(int n) {
   return d;
 }
 
-/// Side by side from left to right across one long edge.
+/// Side by side from left to right across one long edge; as many beside them are edges already.
 Drawing across_one_edge(int n) {
   Drawing d;
   Random random(5);
@@ -87,6 +87,7 @@ Drawing across_one_edge(int n) {
     const double x = i - n / 2.0, y = 1.5e6 + x * x * 1e-9;
     const std::int32_t above = d.add(x, y + 1e-3 * random.uniform());
     d.join(above, d.add(x + 0.3 * random.uniform(), -y - 1e-3 * random.uniform()));
+    if (i != 0) d.join(above - 2, above);
   }
   return d;
 }

@@ -21,7 +21,7 @@ struct Walls {
   }
 };
 
-Outcome outcome_of(const ConstrainedTriangulation& mesh) {
+Outcome constrained_outcome(const ConstrainedTriangulation& mesh) {
   return {mesh.hash().to_string(), static_cast<std::size_t>(mesh.statistics().bytes_device_peak)};
 }
 
@@ -32,7 +32,7 @@ TEST_P(EveryStep, SegmentsOfTheHost) {
   const Call call = [&](Triangulator& t) {
     const ConstrainedTriangulation mesh = t.triangulate_constrained(Reals(walls.xy), walls.segments, constraints);
     EXPECT_GE(mesh.statistics().inserted_segments, 6U);
-    return outcome_of(mesh);
+    return constrained_outcome(mesh);
   };
   for (const bool warm : {false, true}) fail_each(options(), call, warm);
 }
@@ -55,7 +55,7 @@ TEST_P(EveryStep, SegmentsThatCross) {
     constraints.grid = 0.01;
     fail_each(options(), [&](Triangulator& t) {
       try {
-        return outcome_of(t.triangulate_constrained(Reals(walls.xy), walls.segments, constraints));
+        return constrained_outcome(t.triangulate_constrained(Reals(walls.xy), walls.segments, constraints));
       } catch (const CrossingError& error) {
         return Outcome{std::to_string(error.pairs().size()) + " pairs", 0};
       }

@@ -56,7 +56,7 @@ class Constrainer {
 
   /// The first launch inserts short pieces, all that do not meet. The others are taken in a random order, so that those
   /// of many that cross one triangle part the rest, a few times as many as the launch before has inserted: what is
-  /// walked along in vain is in proportion to what is not.
+  /// walked along without result is in proportion to what is inserted.
   [[nodiscard]] Outcome insert() {
     const bool gpu = !ctx_.device.shape().contiguous;
     const std::size_t least = gpu ? 1024 : 64;

@@ -45,7 +45,7 @@ TEST_P(EveryStep, SegmentsOfTheDevice) {
             [&](Triangulator& t) { return test::outcome_of(t.triangulate_constrained(points, segments).download()); });
 }
 
-/// What crosses is found in vain, and then once more on the host.
+/// What crosses is found on the device, and then all pairs on the host.
 TEST_P(EveryStep, SegmentsThatCross) {
   Walls walls;
   walls.segments.push_back({static_cast<std::int32_t>(walls.xy.size() / 2) - 1, 200});

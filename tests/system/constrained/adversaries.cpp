@@ -161,12 +161,13 @@ Drawing touching_rings(int n) {
   return d;
 }
 
-/// The chord of an arc of points, which is a little bent or much, with a mirrored one below.
-Drawing arc(int n, double bend) {
+/// The chord of an arc of points, which is a little bent or much, with a mirrored one below. `teeth`: how far every
+/// second point is beside the arc.
+Drawing arc(int n, double bend, double teeth) {
   Drawing d;
   const std::int32_t left = d.add(0, 0), right = d.add(n, 0);
   for (int i = 1; i < n; ++i) {
-    d.add(i, bend * i * (n - i) / n + 1e-3);
+    d.add(i, bend * i * (n - i) / n + 1e-3 + (i % 2 == 0 ? teeth : 0));
     d.add(i - 0.5, -bend * (i - 0.5) * (n - i + 0.5) / n - 1e-3);
   }
   d.join(left, right);
@@ -217,8 +218,9 @@ const std::vector<Adversary>& adversaries() {
                                              {"spiral", spiral},
                                              {"nested_rings", nested_rings},
                                              {"touching_rings", touching_rings},
-                                             {"slight_arc", [](int n) { return arc(n / 2, 1e-4); }},
-                                             {"arc", [](int n) { return arc(n / 2, 0.1); }},
+                                             {"slight_arc", [](int n) { return arc(n / 2, 1e-4, 0); }},
+                                             {"arc", [](int n) { return arc(n / 2, 0.1, 0); }},
+                                             {"jagged_arc", [](int n) { return arc(n / 2, 1e-4, 0.1); }},
                                              {"parabola", [](int n) { return parabola_beside(n / 2); }},
                                              {"loose_ends", [](int n) { return loose_ends(n / 2); }}};
   return all;

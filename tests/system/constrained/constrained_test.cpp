@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,36 @@ TEST_P(Constrained, Lattices) {
     SCOPED_TRACE(std::to_string(columns) + " columns");
     const Points xy = grid_points(columns, 12);
     check(xy, legal_segments(xy, 150, static_cast<std::uint64_t>(columns)));
+  }
+}
+
+/// Loose ends of short segments in the cavity of a long one, alone and in bushes, also at its ends: chains that come to
+/// a vertex several times, at the apex and at the base.
+TEST_P(Constrained, SpikesInACavity) {
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    Points xy = {0, 0, 40, 0, 20, -200, 20, 200};
+    for (int i = 1; i < 40; i += 3) xy.insert(xy.end(), {i + random.uniform(0, 2), random.uniform(-3, -0.5)});
+    std::vector<Segment> segments = {{0, 1}};
+    const auto add = [&](std::int32_t from, double x, double y) {
+      const auto tip = static_cast<std::int32_t>(xy.size() / 2);
+      xy.insert(xy.end(), {x, y});
+      const Segment spike = {from, tip};
+      if (std::ranges::none_of(segments, [&](const Segment& s) { return crosses(xy, spike, s); }))
+        segments.push_back(spike);
+    };
+    for (std::size_t bushes = 1 + seed % 5; bushes > 0; --bushes) {
+      std::int32_t root = static_cast<std::int32_t>(random.below(2));
+      if (random.below(3) != 0) {
+        root = static_cast<std::int32_t>(xy.size() / 2);
+        xy.insert(xy.end(), {random.uniform(1, 39), random.uniform(1, 9)});
+      }
+      const double x = xy[2 * static_cast<std::size_t>(root)], y = xy[2 * static_cast<std::size_t>(root) + 1];
+      for (std::size_t spikes = 1 + random.below(4); spikes > 0; --spikes)
+        add(root, x + random.uniform(-8, 8), std::abs(y + random.uniform(-2, 2)) + 0.01);
+    }
+    check(xy, segments);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -207,6 +208,44 @@ TEST_P(SpecialCases, CrossingOfInsertedSegments) {
     }
   }
   EXPECT_GT(refused, 10);
+}
+
+/// A long segment crosses a constrained edge at the side of a cavity that is filled in the launch before: the flag of
+/// the edge goes along.
+TEST_P(SpecialCases, CrossingOfAnEdgeBesideACavity) {
+  Points xy = uniform_points(8000, 6);
+  xy.insert(xy.end(), {-0.1, 0.5, 1.1, 0.51});
+  const Segment across = {8000, 8001};
+  const Triangulation plain = triangulate(std::span<const double>(xy), GetParam().options());
+  const auto place = [&](std::int32_t v) {
+    const auto i = 2 * static_cast<std::size_t>(v);
+    return std::array<double, 2>{xy[i], xy[i + 1]};
+  };
+  int tried = 0;
+  for (std::size_t t = 0; t < plain.number_of_triangles() && tried < 40; ++t) {
+    const std::array<std::int32_t, 3> v = plain.triangle(t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      // The edge between the other two corners, and the diagonal from one of them across the next edge.
+      const std::int32_t next = plain.neighbor(t, (k + 1) % 3);
+      const Segment edge = {v[(k + 1) % 3], v[(k + 2) % 3]};
+      if (next < 0 || !crosses(xy, across, edge)) continue;
+      for (const std::int32_t w : plain.triangle(static_cast<std::size_t>(next))) {
+        const Segment diagonal = {edge[0], w};
+        if (std::ranges::find(v, w) != v.end() || crosses(xy, across, diagonal)) continue;
+        if (exact_orientation(place(edge[0]), place(edge[1]), place(w)) <= 0 ||
+            exact_orientation(place(edge[0]), place(w), place(v[k])) <= 0)
+          continue;
+        ++tried;
+        try {
+          static_cast<void>(triangulated(xy, {across, edge, diagonal}));
+          ADD_FAILURE() << "no error";
+        } catch (const CrossingError& error) {
+          EXPECT_EQ(error.pairs(), (std::vector<std::array<std::int32_t, 2>>{{0, 1}}));
+        }
+      }
+    }
+  }
+  EXPECT_GT(tried, 20);
 }
 
 CADT_ON_MAIN_BACKENDS(SpecialCases);

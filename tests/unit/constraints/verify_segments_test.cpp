@@ -22,7 +22,8 @@ SegmentSet squares() {
   SegmentSet set{"squares", {0, 0, 12, 0, 12, 12, 0, 12, 4, 4, 8, 4, 8, 8, 4, 8}, {}};
   const std::vector<double> others = {2, 1, 6, 0, 1, 6, 5, 6, 7, 5, 10, 3, 10, 9, 3, 10, 14, 6, -2, 5, 6, 14, 4, 0};
   set.xy.insert(set.xy.end(), others.begin(), others.end());
-  set.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {0, 4}};
+  set.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7},
+                  {7, 4}, {0, 4}, {0, 4}, {4, 6}, {4, 6}, {4, 5}};
   return set;
 }
 
@@ -223,6 +224,50 @@ TEST(VerifySegments, Chains) {
   Parts fewer;
   fewer.data->chain_offsets.pop_back();
   EXPECT_EQ(fewer.failures(), "constraints");
+}
+
+/// From the right end to the right end along constrained edges, each of which is part of another segment as well.
+TEST(VerifySegments, ChainOnAnotherWay) {
+  const auto replace = [](Parts& parts, std::size_t s, const std::vector<std::int32_t>& chain) {
+    auto& offsets = parts.data->chain_offsets;
+    auto& vertices = parts.data->chain_vertices;
+    const auto begin = vertices.begin() + offsets[s];
+    vertices.erase(begin, vertices.begin() + offsets[s + 1]);
+    vertices.insert(vertices.begin() + offsets[s], chain.begin(), chain.end());
+    const std::int64_t more = static_cast<std::int64_t>(chain.size()) - (offsets[s + 1] - offsets[s]);
+    for (std::size_t i = s + 1; i < offsets.size(); ++i) offsets[i] += more;
+  };
+  const auto chain_of = [](const Parts& parts, std::size_t s) {
+    const auto begin = parts.data->chain_vertices.begin();
+    return std::vector<std::int32_t>(begin + parts.data->chain_offsets[s], begin + parts.data->chain_offsets[s + 1]);
+  };
+  Parts around(Domain::layers);
+  std::vector<std::int32_t> way;  // the other three sides of the inner square, for the segment that repeats the first
+  for (const std::size_t s : {7U, 6U, 5U}) {
+    std::vector<std::int32_t> side = chain_of(around, s);
+    std::ranges::reverse(side);
+    if (!way.empty()) side.erase(side.begin());
+    way.insert(way.end(), side.begin(), side.end());
+  }
+  ASSERT_EQ(around.set.segments.back(), around.set.segments[4]);
+  replace(around, around.set.segments.size() - 1, way);
+  EXPECT_EQ(around.failures(), "constraints");
+
+  Parts ascending(Domain::layers);  // by another corner, in the same direction: for the second of two diagonals
+  std::vector<std::int32_t> corner = chain_of(ascending, 6);
+  const std::vector<std::int32_t> side = chain_of(ascending, 7);
+  std::ranges::reverse(corner);
+  corner.insert(corner.begin(), side.rbegin(), side.rend() - 1);
+  ASSERT_EQ(ascending.set.segments[11], ascending.set.segments[10]);
+  replace(ascending, 11, corner);
+  EXPECT_EQ(ascending.failures(), "constraints");
+
+  Parts back(Domain::layers);
+  std::vector<std::int32_t> steps = chain_of(back, 0);
+  ASSERT_GT(steps.size(), 2U);
+  steps.insert(steps.begin() + 2, {steps[0], steps[1]});  // back, and once more
+  replace(back, 0, steps);
+  EXPECT_EQ(back.failures(), "constraints");
 }
 
 TEST(VerifySegments, WrongRegion) {

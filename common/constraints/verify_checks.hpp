@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checks of a constrained mesh that `verify` adds to those of its triangles. They share nothing with what made it.
+// The checks of a constrained mesh that `verify` adds to those of its triangles. Of what made it they share
+// the exact orientation alone, which exact crossings and seeds take from the verifier.
 #pragma once
 
 #include <cadt/constrained.hpp>
@@ -8,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace cadt {
 
@@ -34,6 +36,13 @@ class MeshPlaces {
   std::span<const double> added_;
   bool moved_;
 };
+
+/// Adds a failure to a check, which keeps the first one.
+inline void add_failure(Check& check, std::int64_t first, const std::string& what) {
+  if (check.failures++ != 0) return;
+  check.first = first;
+  check.what = what;
+}
 
 /// "constraints": each segment is a chain of edges along it, and no other edge is constrained.
 [[nodiscard]] Check check_segments(const MeshPlaces& places, std::span<const Segment> segments,

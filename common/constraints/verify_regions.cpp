@@ -33,11 +33,7 @@ class RegionCheck {
   }
 
  private:
-  void fail(std::int64_t first, const std::string& what) {
-    if (check_.failures++ != 0) return;
-    check_.first = first;
-    check_.what = what;
-  }
+  void fail(std::int64_t first, const std::string& what) { add_failure(check_, first, what); }
   void fail_at(std::size_t t, const std::string& what) {
     fail(static_cast<std::int64_t>(t), "triangle " + std::to_string(t) + " " + what);
   }

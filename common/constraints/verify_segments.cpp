@@ -30,11 +30,7 @@ class SegmentCheck {
   }
 
  private:
-  void fail(std::int64_t first, const std::string& what) {
-    if (check_.failures++ != 0) return;
-    check_.first = first;
-    check_.what = what;
-  }
+  void fail(std::int64_t first, const std::string& what) { add_failure(check_, first, what); }
 
   [[nodiscard]] std::span<const std::int32_t> chain(std::size_t s) const {
     const auto offsets = mesh_.chain_offsets();

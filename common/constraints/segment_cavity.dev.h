@@ -9,8 +9,10 @@
  *    .    /     \    .              incremental algorithm for constructing restricted Delaunay triangulations", 1997).
  *    p =========== q
  *
- * Where the chain comes to the apex more than once, the triangle takes the time after all that hangs on its left side
- * and before what hangs on its right side.
+ * The chain comes to an apex only once, although it may touch itself. Each time that it comes to a vertex X, a crossed
+ * edge of X meets the base; a vertex Y in between is visible from the base between two of these edges, so it lies in
+ * the triangle of them and the base, in that of X and the base as well, and in the circle of X: X is not the apex. For
+ * the same reason the chain does not come to the ends of its base again, which have been apexes, or are a and b.
  */
 #ifndef CADT_CONSTRAINTS_SEGMENT_CAVITY_H
 #define CADT_CONSTRAINTS_SEGMENT_CAVITY_H
@@ -28,64 +30,31 @@ CADT_FN cadt_u32 cadt_better_apex(const cadt_segment_mesh* m, const cadt_rings* 
   return cadt_incircle(p, q, cadt_load_point(m->points + u), cadt_load_point(m->points + v), counters) > 0 ? y : x;
 }
 
-/* Whether the chain comes to vertex `apex`, at r, at place x again, after all that hangs on the left side of its
- * triangle: the vertex before hangs there. */
-CADT_FN cadt_u32 cadt_comes_after_left(const cadt_segment_mesh* m, const cadt_rings* rings, cadt_point p, cadt_u32 apex,
-                                       cadt_u32 x, cadt_counters* counters) {
-  if (rings->vertex[x] != apex) return 0u;
-  return cadt_orientation(p, cadt_load_point(m->points + apex), cadt_load_point(m->points + rings->vertex[x - 1u]),
-                          counters) > 0
-             ? 1u
-             : 0u;
-}
-
-/* The best of every `lanes`-th place from the lane's on; CADT_NONE: none is left. */
-CADT_FN cadt_u32 cadt_best_apex(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c, cadt_u32 lane,
-                                cadt_u32 lanes, cadt_counters* counters) {
-  const cadt_u32 v = rings->vertex[c->low], w = rings->vertex[c->high];
-  const cadt_point p = cadt_load_point(m->points + v), q = cadt_load_point(m->points + w);
+/* The place of the apex among every `lanes`-th place from the lane's on; CADT_NONE: there is none. */
+CADT_FN cadt_u32 cadt_apex_of_chain(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c,
+                                    cadt_u32 lane, cadt_u32 lanes, cadt_counters* counters) {
+  const cadt_point p = cadt_load_point(m->points + rings->vertex[c->low]),
+                   q = cadt_load_point(m->points + rings->vertex[c->high]);
   cadt_u32 best = CADT_NONE;
   for (cadt_u32 x = c->low + 1u + lane; x < c->high; x += lanes)
-    if (rings->vertex[x] != v && rings->vertex[x] != w) best = cadt_better_apex(m, rings, p, q, best, x, counters);
+    best = cadt_better_apex(m, rings, p, q, best, x, counters);
   return best;
 }
 
-/* The last one of these at which the chain comes to the apex, first at place `best`, after all on its left side. */
-CADT_FN cadt_u32 cadt_last_place(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c,
-                                 cadt_u32 best, cadt_u32 lane, cadt_u32 lanes, cadt_counters* counters) {
-  const cadt_point p = cadt_load_point(m->points + rings->vertex[c->low]);
-  const cadt_u32 apex = rings->vertex[best];
-  cadt_u32 last = best;
-  for (cadt_u32 x = best + 1u + lane; x < c->high; x += lanes)
-    if (cadt_comes_after_left(m, rings, p, apex, x, counters)) last = x;
-  return last;
-}
-
-/* The place of the apex. */
-CADT_FN cadt_u32 cadt_apex_of_chain(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c,
-                                    cadt_counters* counters) {
-  const cadt_u32 best = cadt_best_apex(m, rings, c, 0u, 1u, counters);
-  return best == CADT_NONE ? best : cadt_last_place(m, rings, c, best, 0u, 1u, counters);
-}
-
-/* The same by the lanes of a team. `shared`: a word for each of them and one more. Apart from what single work-items
+/* The place of the apex, by the lanes of a team. `shared`: a word for each of them. Apart from what single work-items
  * call: no barrier may be in their way, even if they never come to it. */
 CADT_FN cadt_u32 cadt_apex_by_team(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c,
                                    CADT_TEAM_PTR cadt_u32* shared, cadt_u32 lane, cadt_u32 lanes,
                                    cadt_counters* counters) {
   const cadt_point p = cadt_load_point(m->points + rings->vertex[c->low]),
                    q = cadt_load_point(m->points + rings->vertex[c->high]);
-  shared[lane] = cadt_best_apex(m, rings, c, lane, lanes, counters);
-  shared[lanes] = CADT_NONE;
+  shared[lane] = cadt_apex_of_chain(m, rings, c, lane, lanes, counters);
   for (cadt_u32 step = lanes / 2u; step != 0u; step /= 2u) {
     CADT_TEAM_SYNC();
     if (lane < step) shared[lane] = cadt_better_apex(m, rings, p, q, shared[lane], shared[lane + step], counters);
   }
   CADT_TEAM_SYNC();
-  const cadt_u32 best = shared[0];
-  if (best != CADT_NONE) cadt_team_min(shared + lanes, ~cadt_last_place(m, rings, c, best, lane, lanes, counters));
-  CADT_TEAM_SYNC();
-  return best == CADT_NONE ? best : ~shared[lanes];
+  return shared[0];
 }
 
 /* The first of the two root triangles leaves its half-edge in `bases`, the second one links both. */
@@ -154,7 +123,7 @@ CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings
       continue;
     }
     work = work < size ? 0u : work - size;
-    const cadt_u32 apex = cadt_apex_of_chain(m, rings, &c, counters);
+    const cadt_u32 apex = cadt_apex_of_chain(m, rings, &c, 0u, 1u, counters);
     if (apex == CADT_NONE) {
       cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
       return;
@@ -229,7 +198,7 @@ CADT_TEAM_KERNEL(CADT_CHAIN_LANES, 8, cadt_divide_chains, CADT_SEGMENT_MESH_PARA
   CADT_RINGS(rings);
   CADT_DECLARE_COUNTERS(counters);
   const cadt_chain_queues queues = {longer, others};
-  CADT_TEAM_MEMORY cadt_u32 shared[CADT_CHAIN_LANES + 1];
+  CADT_TEAM_MEMORY cadt_u32 shared[CADT_CHAIN_LANES];
   CADT_FOR_TEAMS(i, count, grain) {
     const cadt_chain c = chains[i];
     const cadt_u32 apex = cadt_apex_by_team(&mesh, &rings, &c, shared, cadt_team_lane, cadt_team_lanes, &counters);

@@ -221,8 +221,7 @@ CADT_FN cadt_u32 cadt_triangulate_polygon(cadt_polygon* polygon, CADT_GLOBAL cad
   *state = cadt_sweep_polygon(&sweep, polygon, shift, first, second);
   if (*state != CADT_POLYGON_OK) return 0u;
   for (cadt_u32 t = 0u; t < sweep.triangle_count; ++t)
-    for (cadt_u32 k = 0u; k < 3u; ++k)
-      out[3u * t + k] = base + polygon->ids[sweep.vertices[CADT_HALF_EDGE(t, k)]];
+    for (cadt_u32 k = 0u; k < 3u; ++k) out[3u * t + k] = base + polygon->ids[sweep.vertices[CADT_HALF_EDGE(t, k)]];
   return sweep.triangle_count;
 }
 
@@ -246,8 +245,8 @@ CADT_KERNEL(cadt_triangulate_polygons, CADT_GLOBAL const cadt_point* points, CAD
 #if CADT_CONTIGUOUS
     CADT_GLOBAL cadt_u32* own = memory + cadt_item * item_words;
 #else
-    CADT_GLOBAL cadt_u32* own = memory + CADT_CAST(cadt_u32, CADT_POLYGON_WORDS) * polygon.first +
-                                CADT_CAST(cadt_u32, CADT_POLYGON_SPARE) * i;
+    CADT_GLOBAL cadt_u32* own =
+        memory + CADT_CAST(cadt_u32, CADT_POLYGON_WORDS) * polygon.first + CADT_CAST(cadt_u32, CADT_POLYGON_SPARE) * i;
     (void)item_words;
 #endif
     cadt_u32 state, first = 0u, second = 0u;

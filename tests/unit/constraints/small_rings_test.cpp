@@ -97,14 +97,29 @@ Ring any_ring(Random& random) {
   const std::uint64_t size = random() % 2 != 0 ? 12 : 1000000;
   Ring ring;
   switch (random() % 8) {
-    case 0: ring = random_ring(random, std::min<std::size_t>(n, 7), 3 + random() % 5); break;
-    case 1: ring = star(random, n, 0, 0, 3e8, 1e9); break;
-    case 2: ring = star(random, n, 0, 0, 2, 8); break;
-    case 3: ring = round_ring(random, n); break;
-    case 4: ring = comb(random, n); break;
-    case 5: ring = spiral(random, n); break;
-    case 6: ring = flat_ring(random, n); break;
-    default: ring = untangled_ring(random, n, size);
+    case 0:
+      ring = random_ring(random, std::min<std::size_t>(n, 7), 3 + random() % 5);
+      break;
+    case 1:
+      ring = star(random, n, 0, 0, 3e8, 1e9);
+      break;
+    case 2:
+      ring = star(random, n, 0, 0, 2, 8);
+      break;
+    case 3:
+      ring = round_ring(random, n);
+      break;
+    case 4:
+      ring = comb(random, n);
+      break;
+    case 5:
+      ring = spiral(random, n);
+      break;
+    case 6:
+      ring = flat_ring(random, n);
+      break;
+    default:
+      ring = untangled_ring(random, n, size);
   }
   if (random() % 8 == 0) ring.insert(ring.begin() + static_cast<std::ptrdiff_t>(random() % ring.size()), ring.back());
   if (random() % 8 == 0) ring[random() % ring.size()] = ring[random() % ring.size()];

@@ -157,8 +157,11 @@ CADT_FN_SLOW cadt_u32 cadt_ring_apex_exact(const cadt_small_ring* r, cadt_u32 lo
   return apex;
 }
 
-/* The apex over a base among the vertices beyond it, but for those in `tried`: the cotangent of its angle is the
- * smallest one. By floats, numerator and denominator have an error of CADT_RING_UNSURE. */
+/* The apex over a base among the vertices beyond it: the cotangent of its angle is the smallest one.
+ *
+ * By floats, its numerator and denominator have errors of d = CADT_RING_UNSURE each. Where the denominator s is above
+ * 4 d, the cotangent c has one below 4 d (1 + |c|) / (3 s), and `error` has three times that, for all rounding. Several
+ * candidates are left to exact comparisons. */
 CADT_FN cadt_u32 cadt_ring_apex(const cadt_small_ring* r, cadt_u32 low, cadt_u32 high) {
   const cadt_u32 n = high - low - 1u, first = low + 1u, padded = cadt_whole_lanes(n);
   const float unsure = 4.0f * CADT_RING_UNSURE;
@@ -225,11 +228,11 @@ CADT_FN cadt_u32 cadt_triangulate_ring(CADT_GLOBAL const cadt_point* points, cad
   for (cadt_u32 i = 0u; i < end; ++i) {
     const cadt_u32 low = others[i] >> 8, high = others[i] & 255u;
     cadt_u32 tried = 0u, apex = cadt_ring_apex(&ring, low, high);
-    while (!cadt_triangle_is_inside(&ring, low, apex, high, tried)) {
+    while (apex != CADT_NONE && !cadt_triangle_is_inside(&ring, low, apex, high, tried)) {
       tried |= 1u << apex;
       apex = cadt_ring_apex_exact(&ring, low, high, (ring.bit[high] - 2u * ring.bit[low]) & ~tried);
-      if (apex == CADT_NONE) return 0u;
     }
+    if (apex == CADT_NONE) return 0u; /* there always is one */
     cadt_write_ring_triangle(&ring, low, apex, high, base, out + 3u * triangles++);
     for (cadt_u32 k = 0u; k < 2u; ++k) {
       const cadt_u32 from = k ? low : apex, to = k ? apex : high;

@@ -32,6 +32,12 @@ std::string format_of(const std::string& path, const std::string& asked) {
   return suffix.empty() ? suffix : suffix.substr(1);
 }
 
+/// Whether the input has segments of its own: its format is one of segments, and none of points.
+bool is_graph(const InputOptions& input) {
+  const std::string format = format_of(input.path, input.format);
+  return contains(io::segment_read_formats(), format) && !contains(io::point_read_formats(), format);
+}
+
 /// The width of "grid=0.25".
 double grid_of(const std::string& text) {
   double width = 0;
@@ -96,13 +102,27 @@ void add_segment_options(CLI::App& command, SegmentOptions& o) {
   add_crossing_option(command, o);
 }
 
-bool is_graph(const InputOptions& input) {
-  const std::string format = format_of(input.path, input.format);
-  return contains(io::segment_read_formats(), format) && !contains(io::point_read_formats(), format);
+bool has_segments(const InputOptions& input, const SegmentOptions& options) {
+  const bool own = is_graph(input);
+  if (own && !options.file.empty()) {
+    throw Failure(exit_usage, fmt::format("{} has segments of its own: leave --segments out, or give the points alone",
+                                          display_name(input.path, true)));
+  }
+  if (own && (!input.columns.empty() || input.projection != "xy"))
+    throw Failure(exit_usage, "--columns and --project are for files of points: leave them out");
+  const bool any = own || !options.file.empty();
+  if (!any && (!options.domain.empty() || !options.crossing.empty())) {
+    throw Failure(exit_usage, fmt::format("{} is about segments, and there are none: name a file with --segments",
+                                          options.domain.empty() ? "--crossing" : "--domain"));
+  }
+  static_cast<void>(constraint_options(options));
+  return any;
 }
 
-ConstraintOptions constraint_options(const SegmentOptions& options) {
+ConstraintOptions constraint_options(const SegmentOptions& options, const Graph& graph) {
   ConstraintOptions result;
+  result.holes = graph.holes;
+  result.regions = graph.regions;
   for (const auto& [name, domain] : domains) {
     if (options.domain == name) result.domain = domain;
   }
@@ -132,14 +152,6 @@ Graph graph_of(io::SegmentsFile file) {
 Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool quiet) {
   Graph graph;
   if (is_graph(input)) {
-    if (!options.file.empty()) {
-      throw Failure(exit_usage,
-                    fmt::format("{} has segments of its own: leave --segments out, or give the points alone",
-                                display_name(input.path, true)));
-    }
-    if (!input.columns.empty() || input.projection != "xy") {
-      throw Failure(exit_usage, "--columns and --project are for files of points: leave them out");
-    }
     graph = graph_of(io::read_segments(input.path, lower(input.format)));
   } else {
     std::error_code code;

@@ -24,11 +24,9 @@ void add_crossing_option(CLI::App& command, SegmentOptions& options);
 /// Adds --segments, --domain and --crossing.
 void add_segment_options(CLI::App& command, SegmentOptions& options);
 
-/// Whether the input has segments, by its format (-f or the suffix): the formats of segments that none of points has.
-[[nodiscard]] bool is_graph(const InputOptions& input);
-
-/// What the library is told. Throws Failure (usage).
-[[nodiscard]] ConstraintOptions constraint_options(const SegmentOptions& options);
+/// Whether there are segments: by the format of the input (-f or the suffix), or of --segments. Throws Failure (usage)
+/// for options that do not fit together.
+[[nodiscard]] bool has_segments(const InputOptions& input, const SegmentOptions& options);
 
 struct Graph {
   io::PointSet points;
@@ -37,11 +35,14 @@ struct Graph {
   std::vector<Region> regions;
 };
 
+/// What the library is told, with what the file says of seeds. Throws Failure (usage).
+[[nodiscard]] ConstraintOptions constraint_options(const SegmentOptions& options, const Graph& graph = {});
+
 /// The points of a file with its segments.
 [[nodiscard]] Graph graph_of(io::SegmentsFile file);
 
 /// Reads the input, and the file of --segments, whose points come behind those of the input unless they are the same.
-/// Notes go to standard error unless `quiet`.
+/// Notes go to standard error unless `quiet`. \pre has_segments()
 [[nodiscard]] Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool quiet);
 
 /// Triangulates. Segments that cross, or bound no domain, are a Failure that names the file, them and what can be done.

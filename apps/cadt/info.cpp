@@ -135,7 +135,7 @@ struct InfoCommand {
 };
 
 int print_info(const InfoCommand& command) {
-  const bool segments = is_graph(command.input);
+  const bool segments = has_segments(command.input, {});
   const Graph graph = segments ? read_graph(command.input, {.file = {}, .domain = "seeds", .crossing = {}}, true)
                                : Graph{read_input(command.input), {}, {}, {}};
   const Info info = inspect(graph.points);

@@ -31,6 +31,10 @@ void add_region_output_options(CLI::App& command, RegionOutputOptions& o) {
       ->check(CLI::Range(16, 32768).description(""));
 }
 
+io::RegionMesh RegionResult::view() const {
+  return {points.xy, points.height, triangles, region, region_name, segments, hull};
+}
+
 void append_inside(RegionResult& result, const ConstrainedTriangulation& mesh, std::int32_t first_point) {
   const auto triangles = mesh.mesh().triangles();
   const auto inside = mesh.inside();
@@ -45,16 +49,18 @@ void append_inside(RegionResult& result, const ConstrainedTriangulation& mesh, s
   }
 }
 
+RegionResult region_result(const Graph& graph, const ConstrainedTriangulation& mesh, Domain domain) {
+  RegionResult result;
+  result.points = points_of(graph, mesh);
+  append_inside(result, mesh);
+  const auto hull = mesh.mesh().hull();
+  if (domain == Domain::hull) result.hull.assign(hull.begin(), hull.end());
+  return result;
+}
+
 void write_regions(const std::vector<Output>& outputs, const RegionOutputOptions& options, const RegionResult& result,
                    ProgressLine& line) {
-  io::RegionMesh mesh;
-  mesh.xy = result.points.xy;
-  mesh.height = result.points.height;
-  mesh.triangles = result.triangles;
-  mesh.region = result.region;
-  mesh.region_name = result.region_name;
-  mesh.segments = result.segments;
-  mesh.hull = result.hull;
+  const io::RegionMesh mesh = result.view();
   io::WriteOptions write;
   write.base = options.base;
   write.ascii = options.ascii;

@@ -2,6 +2,7 @@
 // Meshes of regions as outputs: the options and the work that cadt triangulate, polygons and labels share.
 #pragma once
 
+#include "graph.hpp"
 #include "outputs.hpp"
 #include "progress.hpp"
 
@@ -32,10 +33,15 @@ struct RegionResult {
   std::vector<std::int32_t> triangles, region, hull;
   std::vector<Segment> segments;
   std::string region_name = "region";
+
+  [[nodiscard]] io::RegionMesh view() const;
 };
 
 /// Appends the triangles inside, with their regions, and the constrained edges; points count from `first_point`.
 void append_inside(RegionResult& result, const ConstrainedTriangulation& mesh, std::int32_t first_point = 0);
+
+/// What is written of a mesh with segments; of all triangles also their hull.
+[[nodiscard]] RegionResult region_result(const Graph& graph, const ConstrainedTriangulation& mesh, Domain domain);
 
 /// Writes all outputs; an interruption between two of them names those that are complete.
 void write_regions(const std::vector<Output>& outputs, const RegionOutputOptions& options, const RegionResult& result,

@@ -3,15 +3,17 @@
 #include "commands.hpp"
 #include "device_options.hpp"
 #include "failure.hpp"
+#include "graph.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "progress.hpp"
+#include "region_output.hpp"
 #include "render_growth.hpp"
 #include "text.hpp"
 #include "viewer_options.hpp"
 
-#include <cadt/io/picture.hpp>
+#include <cadt/io/region_file.hpp>
 #include <cadt/triangulation.hpp>
 
 #include "viewer/draw/image_file.hpp"
@@ -55,6 +57,10 @@ int run_growth(const RenderCommand& command) {
   if (!command.format.empty())
     throw Failure(exit_usage,
                   "-t: a picture of growth is named by its output: FILE.png, .mp4, .webm, .gif, or a folder");
+  if (has_segments(command.subject))
+    throw Failure(exit_usage,
+                  "a mesh with segments is not shown as it grows: leave --growth, --fps and --seconds out and write a "
+                  "picture, or give the points alone");
   check_growth(command.growth, command.output);
   GrowthView view;
   parse_size(command.size, view.width, view.height);
@@ -69,7 +75,7 @@ int run_growth(const RenderCommand& command) {
   }
   ProgressLine line(command.quiet);
   const io::PointSet points = read_subject(command.subject, line);
-  view.style.colour = command.style.colour.empty() ? viewer::ColourBy::level : colour_of(command.style, points, {});
+  view.style.colour = colour_of(command.style, points, MeshKind::growing).value_or(viewer::ColourBy::level);
   const viewer::gl::HeadlessContext context;
   int code = exit_done;
   try {
@@ -83,13 +89,51 @@ int run_growth(const RenderCommand& command) {
   return code;
 }
 
+/// The file that is written. It may be none of those that are read.
+Output plan_picture(const RenderCommand& command) {
+  Output output;
+  for (const std::string& input : {command.subject.input.path, command.subject.segments.file}) {
+    output = plan_outputs({command.output},
+                          command.format.empty() ? std::vector<std::string>{} : std::vector{command.format},
+                          {"png", "svg", "pdf"}, input)
+                 .front();
+  }
+  if (output.format != "png") check_vector_options(command, output.format);
+  return output;
+}
+
+int draw(const RenderCommand& command, const Output& output, const io::RegionMesh& mesh,
+         const viewer::StillOptions& still, ProgressLine& line) {
+  check_interrupt();
+  line.step("drawing");
+  const auto start = std::chrono::steady_clock::now();
+  {
+    const InPhase phase(writing_phase(output.path));
+    if (output.format == "png") {
+      viewer::write_png(output.path, viewer::draw_still(mesh, still));
+    } else {
+      io::WriteOptions write;
+      write.format = output.format;
+      write.width = still.width;
+      if (still.height != 0) write.max_height = still.height;
+      io::write_region_mesh(output.path, mesh, write);
+    }
+    if (output.path == "-") finish_stdout();
+  }
+  check_interrupt();
+  line.clear();
+  if (!command.quiet) {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    say(fmt::format("{} triangles of {} points drawn in {:.2f} s: {}\n", mesh.triangles.size() / 3, mesh.xy.size() / 2,
+                    seconds.count(), display_name(output.path, false)));
+  }
+  return exit_done;
+}
+
 int run(const RenderCommand& command) {
   if (shows_growth(command.growth, command.output) || command.growth.timed) return run_growth(command);
-  const Output output =
-      plan_outputs({command.output}, command.format.empty() ? std::vector<std::string>{} : std::vector{command.format},
-                   {"png", "svg", "pdf"}, command.subject.input.path)
-          .front();
-  if (output.format != "png") check_vector_options(command, output.format);
+  const bool segments = has_segments(command.subject);
+  const Output output = plan_picture(command);
   viewer::StillOptions still;
   parse_size(command.size, still.width, still.height);
   still.view = parse_camera(command.camera);
@@ -102,33 +146,23 @@ int run(const RenderCommand& command) {
 
   ProgressLine line(command.quiet);
   options.progress = [&line](const Progress& progress) { line.update(progress); };
+  if (segments) {
+    const std::string name = name_of(command.subject);
+    line.step(fmt::format("reading {}", name));
+    const Graph graph = read_graph(command.subject.input, command.subject.segments, command.quiet);
+    still.colour = colour_of(command.style, graph.points, MeshKind::segments);
+    const ConstraintOptions constraints = constraint_options(command.subject.segments, graph);
+    line.start(graph.points.size());
+    const ConstrainedTriangulation mesh =
+        triangulate_graph(graph.points.view(), graph.segments, name, constraints, options);
+    note_rounding(mesh, name, command.quiet);
+    return draw(command, output, region_result(graph, mesh, constraints.domain).view(), still, line);
+  }
   const io::PointSet points = read_subject(command.subject, line);
-  still.colour = colour_of(command.style, points, {"level", "conflicts", "flips"});
+  still.colour = colour_of(command.style, points, MeshKind::points);
   line.start(points.size());
   const Triangulation mesh = triangulate_subject(command.subject, points, options);
-  check_interrupt();
-  line.step("drawing");
-  const auto start = std::chrono::steady_clock::now();
-  {
-    const InPhase phase(writing_phase(output.path));
-    if (output.format == "png") {
-      viewer::write_png(output.path, viewer::draw_still(points, mesh, still));
-    } else {
-      io::PictureOptions picture;
-      picture.width = still.width;
-      if (still.height != 0) picture.max_height = still.height;
-      (output.format == "svg" ? io::write_svg : io::write_pdf)(output.path, points, mesh, picture);
-    }
-    if (output.path == "-") finish_stdout();
-  }
-  check_interrupt();
-  line.clear();
-  if (!command.quiet) {
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    say(fmt::format("{} triangles of {} points drawn in {:.2f} s: {}\n", mesh.number_of_triangles(), points.size(),
-                    seconds.count(), display_name(output.path, false)));
-  }
-  return exit_done;
+  return draw(command, output, {points.xy, points.height, mesh.triangles(), {}, {}, {}, mesh.hull()}, still, line);
 }
 
 }  // namespace
@@ -172,6 +206,8 @@ void add_render(CLI::App& app, Action& chosen) {
       "  cadt render terrain.xyz -o terrain.png --size 3840x2160\n"
       "  cadt render points.xy -o angles.png --colour angle --camera 0.5,0.5,40\n"
       "  cadt render --generate clusters -n 1M -o clusters.png --dark\n"
+      "  cadt render land.geojson --domain even_odd -o land.png\n"
+      "      what the polygons enclose, with their outlines\n"
       "  cadt render points.xy --growth 4 -o growth.png\n"
       "      four snapshots of the mesh as it grows\n"
       "  cadt render points.xy -o growth.mp4 --seconds 12\n");

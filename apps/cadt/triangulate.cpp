@@ -22,27 +22,14 @@
 namespace cadt::cli {
 namespace {
 
-bool has_segments(const TriangulateOptions& options) {
-  return is_graph(options.input) || !options.segments.file.empty();
-}
-
-void check_segment_options(const TriangulateOptions& options) {
-  const bool segments = has_segments(options);
-  if (!segments && (!options.segments.domain.empty() || !options.segments.crossing.empty())) {
-    throw Failure(exit_usage, fmt::format("{} is about segments, and there are none: name a file with --segments",
-                                          options.segments.domain.empty() ? "--crossing" : "--domain"));
-  }
-  if (segments && options.stabilize != "off") {
-    throw Failure(exit_usage, "--stabilize is for points without segments: leave it out");
-  }
-}
-
 std::vector<Output> check_outputs(const TriangulateOptions& options) {
-  const auto formats = has_segments(options) ? io::region_write_formats() : io::mesh_write_formats();
+  const bool segments = has_segments(options.input, options.segments);
+  const auto formats = segments ? io::region_write_formats() : io::mesh_write_formats();
   auto outputs = plan_outputs(options.outputs, options.formats, formats, options.input.path);
   // Nor may the other input be lost.
   static_cast<void>(plan_outputs(options.outputs, options.formats, formats, options.segments.file));
-  check_segment_options(options);
+  if (segments && options.stabilize != "off")
+    throw Failure(exit_usage, "--stabilize is for points without segments: leave it out");
   if (options.timing && options.stats.empty())
     throw Failure(exit_usage, "--timing belongs to --stats: add it, or leave --timing out");
   if (options.kernel_times && options.stats.empty())
@@ -128,7 +115,7 @@ void write_outputs(const TriangulateOptions& options, const std::vector<Output>&
 int run(const TriangulateOptions& options) {
   RunReport report;
   report.outputs = check_outputs(options);
-  if (has_segments(options)) return run_graph(options, std::move(report.outputs));
+  if (has_segments(options.input, options.segments)) return run_graph(options, std::move(report.outputs));
   ProgressLine line(options.quiet);
   const Options chosen = library_options(options, line);
   const std::string name = display_name(options.input.path, true);

@@ -15,7 +15,6 @@
 namespace cadt::cli {
 
 int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
-  ConstraintOptions constraints = constraint_options(options.segments);
   ProgressLine line(options.quiet);
   const Options chosen = library_options(options, line);
   const std::string name = display_name(options.input.path, true);
@@ -31,8 +30,7 @@ int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
   line.step(fmt::format("reading {}", name));
   Graph graph = read_graph(options.input, options.segments, options.quiet);
   round_to_floats(graph.points, options.input, options.quiet);
-  constraints.holes = graph.holes;
-  constraints.regions = graph.regions;
+  const ConstraintOptions constraints = constraint_options(options.segments, graph);
   report.input = options.input.path;
   report.input_format = graph.points.format;
   report.heights = !graph.points.height.empty();
@@ -64,13 +62,7 @@ int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
 
   watch.lap();
   if (!report.outputs.empty()) {
-    RegionResult result;
-    result.points = points_of(graph, mesh);
-    append_inside(result, mesh);
-    if (constraints.domain == Domain::hull) {
-      const auto hull = mesh.mesh().hull();
-      result.hull.assign(hull.begin(), hull.end());
-    }
+    const RegionResult result = region_result(graph, mesh, constraints.domain);
     write_regions(report.outputs, {{}, {}, options.base, options.width, options.ascii}, result, line);
     report.write_seconds = watch.lap();
   }

@@ -3,16 +3,18 @@
 #include "commands.hpp"
 #include "device_options.hpp"
 #include "failure.hpp"
+#include "graph.hpp"
 #include "input.hpp"
 #include "system.hpp"
 #include "text.hpp"
 #include "viewer_options.hpp"
 
+#include <cadt/io/errors.hpp>
+
 #include "viewer/window/app.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -22,6 +24,7 @@ namespace {
 struct ViewCommand {
   std::vector<std::string> files;
   InputOptions input;
+  SegmentOptions segments;
   std::string generate, n = "100000", colour, style = "filled", interop = "auto", size = "1280x800";
   std::uint64_t seed = 1;
   DeviceOptions device;
@@ -38,28 +41,49 @@ viewer::Source generated(const ViewCommand& command) {
   return source;
 }
 
+viewer::Constrained read_and_constrain(const InputOptions& input, const SegmentOptions& segments,
+                                       const Options& options) {
+  const Graph graph = read_graph(input, segments, true);
+  try {
+    ConstrainedTriangulation mesh =
+        triangulate_constrained(graph.points.view(), graph.segments, constraint_options(segments, graph), options);
+    io::PointSet points = points_of(graph, mesh);
+    return {std::move(points), std::move(mesh)};
+  } catch (const Error&) {
+    throw io::FileError(input.path, 0, explain_graph_error(graph.points.view(), graph.segments));
+  }
+}
+
+viewer::Source source_of(const ViewCommand& command, const std::string& file) {
+  InputOptions input = command.input;
+  input.path = file;
+  viewer::Source source;
+  source.path = file;
+  source.read = read_options(input);
+  if (has_segments(input, command.segments)) {
+    source.constrain = [input, segments = command.segments](const Options& options) {
+      return read_and_constrain(input, segments, options);
+    };
+  }
+  return source;
+}
+
 int run(const ViewCommand& command) {
   viewer::ViewOptions options;
-  for (const std::string& file : command.files) {
-    InputOptions input = command.input;
-    input.path = file;
-    viewer::Source source;
-    source.path = file;
-    source.read = read_options(input);
-    options.sources.push_back(std::move(source));
+  for (const std::string& file : command.files) options.sources.push_back(source_of(command, file));
+  if (!command.generate.empty()) {
+    if (const SegmentOptions& s = command.segments; !(s.file + s.domain + s.crossing).empty())
+      throw Failure(exit_usage,
+                    "--segments, --domain and --crossing are for files, not for --generate: leave them out");
+    options.sources.push_back(generated(command));
   }
-  if (!command.generate.empty()) options.sources.push_back(generated(command));
   if (options.sources.empty())
     throw Failure(exit_usage, "name a file with points, or a point set: cadt view --generate uniform -n 1M");
   options.compute = library_options(command.device);
   for (const viewer::Interop interop :
        {viewer::Interop::automatic, viewer::Interop::cuda, viewer::Interop::opencl, viewer::Interop::copy})
     if (to_string(interop) == command.interop) options.interop = interop;
-  if (!command.colour.empty()) {
-    const auto& names = viewer::names_of_colours();
-    options.colour =
-        static_cast<viewer::ColourBy>(std::find(names.begin(), names.end(), command.colour) - names.begin());
-  }
+  options.colour = viewer::colour_from_string(command.colour);
   options.drawing = *viewer::drawing_from_string(command.style);
   parse_size(command.size, options.width, options.height);
   if (options.width < 320 || options.height < 240)
@@ -79,8 +103,10 @@ int run(const ViewCommand& command) {
 void add_view(CLI::App& app, Action& chosen) {
   CLI::App* command = app.add_subcommand("view", "look at meshes in a window; ? shows its keys");
   const auto options = std::make_shared<ViewCommand>();
-  command->add_option("FILE", options->files, "files with points; PgUp and PgDn go from one to the next");
-  add_read_options(*command, options->input);
+  command->add_option("FILE", options->files,
+                      "files with points, or with points and segments; PgUp and PgDn go from one to the next");
+  add_read_options(*command, options->input, true);
+  add_segment_options(*command, options->segments);
   command->add_option("--generate", options->generate, "a point set in place of a file (see: cadt generate --list)")
       ->type_name("NAME");
   command->add_option("-n", options->n, "number of its points, 250000, 2M or 1e6 (default: 100000)")->type_name("N");
@@ -88,10 +114,10 @@ void add_view(CLI::App& app, Action& chosen) {
   command
       ->add_option(
           "--colour,--color", options->colour,
-          "what decides the colour: nothing, angle, area, order, height or degree (default: height where there are "
-          "heights, else area)")
+          "what decides the colour: nothing, angle, area, order, height, degree or region (default: region where "
+          "segments separate some, else height where there are heights, else area)")
       ->type_name("BY")
-      ->check(CLI::IsMember({"nothing", "angle", "area", "order", "height", "degree"}).description(""));
+      ->check(CLI::IsMember({"nothing", "angle", "area", "order", "height", "degree", "region"}).description(""));
   command->add_option("--style", options->style, "filled, wireframe or points (default: filled)")
       ->type_name("STYLE")
       ->check(CLI::IsMember({"filled", "wireframe", "points"}).description(""));

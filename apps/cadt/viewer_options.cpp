@@ -25,7 +25,7 @@ bool parse_number(std::string_view text, double& value) {
 }  // namespace
 
 void add_subject_options(CLI::App& command, SubjectOptions& options) {
-  add_input_options(command, options.input, "IN", "file with points");
+  add_input_options(command, options.input, "IN", "file with points, or with points and segments", true);
   command.get_option("IN")->required(false);
   command.add_option("--generate", options.generate, "a point set of 'cadt generate' in place of a file")
       ->type_name("NAME");
@@ -33,15 +33,23 @@ void add_subject_options(CLI::App& command, SubjectOptions& options) {
       ->type_name("N");
   command.add_option("--seed", options.generator.seed, "of --generate: equal seeds give equal points (default: 1)")
       ->type_name("S");
+  add_segment_options(command, options.segments);
 }
 
 std::string name_of(const SubjectOptions& options) {
   return options.generate.empty() ? display_name(options.input.path, true) : options.generate;
 }
 
-io::PointSet read_subject(const SubjectOptions& options, ProgressLine& line) {
+bool has_segments(const SubjectOptions& options) {
   if (options.generate.empty() == options.input.path.empty())
     throw Failure(exit_usage, "name a file with points, or a point set with --generate, and not both");
+  const bool segments = has_segments(options.input, options.segments);
+  if (segments && !options.generate.empty())
+    throw Failure(exit_usage, "--segments is for a file of points, not for --generate: leave one of them out");
+  return segments;
+}
+
+io::PointSet read_subject(const SubjectOptions& options, ProgressLine& line) {
   if (options.generate.empty()) {
     line.step(fmt::format("reading {}", name_of(options)));
     return read_input(options.input);
@@ -72,7 +80,7 @@ void add_style_options(CLI::App& command, StyleOptions& options) {
   command
       .add_option("--colour,--color", options.colour,
                   "what decides the colour of a triangle: " + join(viewer::names_of_colours(), " ") +
-                      " (default: height if the points have one, else area)")
+                      " (default: region if segments separate some, else height if the points have one, else area)")
       ->type_name("BY")
       ->check(CLI::IsMember(viewer::names_of_colours()).description(""));
   command.add_option("--style", options.style, "filled (default), wireframe, or points without triangles")
@@ -91,15 +99,15 @@ viewer::Style style_of(const StyleOptions& options) {
   return style;
 }
 
-viewer::ColourBy colour_of(const StyleOptions& options, const io::PointSet& points,
-                           const std::vector<std::string>& refused) {
-  const auto& names = viewer::names_of_colours();
-  const auto found = std::find(names.begin(), names.end(), options.colour);
-  if (found == names.end()) return points.height.empty() ? viewer::ColourBy::area : viewer::ColourBy::height;
-  if (std::find(refused.begin(), refused.end(), options.colour) != refused.end())
+std::optional<viewer::ColourBy> colour_of(const StyleOptions& options, const io::PointSet& points, MeshKind kind) {
+  const auto colour = viewer::colour_from_string(options.colour);
+  if (!colour) return std::nullopt;
+  using enum viewer::ColourBy;
+  if ((colour == level || colour == conflicts || colour == flips) && kind != MeshKind::growing)
     throw Failure(exit_usage, fmt::format("--colour {} is known of a mesh that grows only", options.colour));
-  const auto colour = static_cast<viewer::ColourBy>(found - names.begin());
-  if (colour == viewer::ColourBy::height && points.height.empty())
+  if (colour == region && kind != MeshKind::segments)
+    throw Failure(exit_usage, "--colour region is known of a mesh with segments only");
+  if (colour == height && points.height.empty())
     throw Failure(exit_usage,
                   "--colour height: the points have no third column; take another colour, or name it with --columns");
   return colour;

@@ -2,6 +2,7 @@
 // What the commands that draw share: whose mesh, and how it looks.
 #pragma once
 
+#include "graph.hpp"
 #include "input.hpp"
 #include "progress.hpp"
 
@@ -19,15 +20,19 @@
 
 namespace cadt::cli {
 
-/// A file with points, or a point set of cadt generate.
+/// A file with points, and with segments or not, or a point set of cadt generate.
 struct SubjectOptions {
   InputOptions input;
+  SegmentOptions segments;
   std::string generate, n = "10000";
   io::GenerateOptions generator;
 };
-/// Adds the positional IN with its options, --generate, -n and --seed.
+/// Adds the positional IN with its options, --generate, -n and --seed, --segments, --domain and --crossing.
 void add_subject_options(CLI::App& command, SubjectOptions& options);
-/// Throws Failure (usage) unless there is one of both.
+/// Whether there are segments. Throws Failure (usage) unless there is one of file and point set, and for options that
+/// do not fit together.
+[[nodiscard]] bool has_segments(const SubjectOptions& options);
+/// \pre not has_segments()
 [[nodiscard]] io::PointSet read_subject(const SubjectOptions& options, ProgressLine& line);
 /// A point that the library refuses is an error of the file.
 [[nodiscard]] Triangulation triangulate_subject(const SubjectOptions& subject, const io::PointSet& points,
@@ -45,9 +50,10 @@ struct StyleOptions {
 void add_style_options(CLI::App& command, StyleOptions& options);
 /// All but the colour.
 [[nodiscard]] viewer::Style style_of(const StyleOptions& options);
-/// Throws Failure (usage) for a colour that the points do not have, or that is in `refused`.
-[[nodiscard]] viewer::ColourBy colour_of(const StyleOptions& options, const io::PointSet& points,
-                                         const std::vector<std::string>& refused);
+/// Not set without --colour. Throws Failure (usage) for a colour that such a mesh does not have.
+enum class MeshKind { points, segments, growing };
+[[nodiscard]] std::optional<viewer::ColourBy> colour_of(const StyleOptions& options, const io::PointSet& points,
+                                                        MeshKind kind);
 
 /// "1600" or "3840x2160". Throws Failure (usage).
 void parse_size(const std::string& text, int& width, int& height);

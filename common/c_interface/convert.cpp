@@ -139,6 +139,8 @@ void give_statistics(const Statistics& from, cadt_statistics* to) {
   s.certified = from.certified ? 1 : 0;
   s.bytes_to_device = from.bytes_to_device;
   s.bytes_from_device = from.bytes_from_device;
+  s.inserted_segments = from.inserted_segments;
+  s.segment_retries = from.segment_retries;
   give(to, s, "statistics");
 }
 

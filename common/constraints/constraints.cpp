@@ -58,9 +58,11 @@ class Constrainer {
   /// of many that cross one triangle part the rest, a few times as many as the launch before has inserted: what is
   /// walked along without result is in proportion to what is inserted.
   [[nodiscard]] Outcome insert() {
+    ctx_.begin_share(0.6, 0.2);
+    ctx_.check("constrain", 0);
     const bool gpu = !ctx_.device.shape().contiguous;
     const std::size_t least = gpu ? 1024 : 64;
-    std::size_t count = job_.count, taken = count;
+    std::size_t count = job_.count, taken = count, most = 0;
     const Allocation* pairs = &ends_;
     Allocation left;
     for (int launch = 0; count != 0; ++launch) {
@@ -83,7 +85,8 @@ class Constrainer {
       // If none had room, fewer are tried: one alone always has.
       taken = std::min(count, launch == 0 || won != 0 ? std::max(4 * won, least) : std::max<std::size_t>(taken / 4, 1));
       ctx_.statistics.segment_retries += waiting;
-      ctx_.check("constrain", 0.75);
+      if (launch == 0) most = count;
+      ctx_.check("constrain", 1 - static_cast<double>(count) / static_cast<double>(std::max(most, count) + 1));
     }
     return Outcome::done;
   }
@@ -301,6 +304,7 @@ void constrain(Context& ctx, Mesh& mesh, std::size_t points, std::size_t distinc
   }
   constrainer.trace();
   ctx.end_phase("constrain");
+  ctx.begin_share(0, 1);
   certify(ctx, mesh, distinct);
 }
 

@@ -150,6 +150,7 @@ typedef struct cadt_statistics {
   double milliseconds; /* of all phases; 0 with CADT_STATISTICS_NONE */
   int32_t certified;
   uint64_t bytes_to_device, bytes_from_device;
+  uint64_t inserted_segments, segment_retries; /* constrained.h */
 } cadt_statistics;
 
 /* Opens the device, triangulates, and closes it. `options` may be NULL: the defaults. */

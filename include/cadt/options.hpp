@@ -66,7 +66,7 @@ enum class Stabilize {
 
 /// Progress of a running triangulation, for `Options::progress`.
 struct Progress {
-  std::string_view phase;  ///< "sort", "insert", "certify", "output"
+  std::string_view phase;  ///< "sort", "insert", "constrain", "certify", "output"
   double fraction;         ///< of the whole work, 0 to 1, never decreasing
 };
 

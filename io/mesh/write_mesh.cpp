@@ -18,6 +18,7 @@ void write_mesh(const std::string& path, const PointSet& points, const Triangula
   if (format == "svg" || format == "pdf" || format == "png") {
     PictureOptions picture;
     picture.width = options.width;
+    picture.max_height = options.max_height;
     const auto write = format == "svg" ? write_svg : format == "pdf" ? write_pdf : write_png;
     write(path, points, mesh, picture);
     return;

@@ -43,6 +43,7 @@ class Ramp {
 inline constexpr std::uint32_t paper = 0xfbfaf6;
 inline constexpr std::uint32_t line_colour = 0x27364a;
 inline constexpr std::uint32_t hull_colour = 0xb3472f;
+inline constexpr std::uint32_t segment_colour = 0x6b1f8a;
 
 /// Light from the upper left for a surface with the gradient (gx, gy), y down in the picture: factor of the colour,
 /// 1 for level ground.

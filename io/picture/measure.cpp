@@ -41,6 +41,20 @@ float quantile(std::vector<float>& values, double q) {
   return values[static_cast<std::size_t>(k)];
 }
 
+std::vector<std::uint32_t> region_numbers(const Scene& scene) {
+  std::vector<std::int32_t> different(scene.region.begin(), scene.region.end());
+  std::sort(different.begin(), different.end());
+  different.erase(std::unique(different.begin(), different.end()), different.end());
+  if (different.size() < 2) return {};
+  std::vector<std::uint32_t> numbers;
+  numbers.reserve(scene.region.size());
+  for (const std::int32_t region : scene.region) {
+    const auto found = std::lower_bound(different.begin(), different.end(), region);
+    numbers.push_back(static_cast<std::uint32_t>(found - different.begin()));
+  }
+  return numbers;
+}
+
 std::optional<HeightEnds> height_ends(const Scene& scene) {
   if (scene.height.size() != scene.points() || scene.height.empty()) return {};
   std::vector<double> sample;

@@ -26,6 +26,9 @@ struct HeightEnds {
 /// Heights mapped so that those ends become 0 and 1. Empty if there are none.
 [[nodiscard]] std::vector<float> relative_heights(const Scene& scene);
 
+/// The number of each triangle's region among the different ones, ascending. Empty if they are less than two.
+[[nodiscard]] std::vector<std::uint32_t> region_numbers(const Scene& scene);
+
 /// Edges in pixels, estimated from samples; zeros without triangles.
 struct EdgeLengths {
   float median = 0.0f;

@@ -12,8 +12,8 @@ namespace cadt::io {
 
 namespace {
 
-picture::Scene scene_of(const std::string& path, const PointSet& points, const Triangulation& mesh) {
-  const picture::Scene scene{points.xy, points.height, mesh.triangles(), mesh.hull()};
+picture::Scene small_scene(const std::string& path, const PointSet& points, const Triangulation& mesh) {
+  const picture::Scene scene = picture::scene_of(points, mesh);
   if (scene.faces() > most_drawn_triangles || scene.points() > most_drawn_triangles) {
     throw FileError(
         path, 0,
@@ -50,17 +50,17 @@ void picture::write_scene(const std::string& path, const std::string& format, co
 
 void write_svg(const std::string& path, const PointSet& points, const Triangulation& mesh,
                const PictureOptions& options) {
-  write_file(path, picture::svg_bytes(scene_of(path, points, mesh), options));
+  write_file(path, picture::svg_bytes(small_scene(path, points, mesh), options));
 }
 
 void write_pdf(const std::string& path, const PointSet& points, const Triangulation& mesh,
                const PictureOptions& options) {
-  write_file(path, picture::pdf_bytes(scene_of(path, points, mesh), options));
+  write_file(path, picture::pdf_bytes(small_scene(path, points, mesh), options));
 }
 
 void write_png(const std::string& path, const PointSet& points, const Triangulation& mesh,
                const PictureOptions& options) {
-  write_file(path, picture::png_bytes(scene_of(path, points, mesh), options));
+  write_file(path, picture::png_bytes(small_scene(path, points, mesh), options));
 }
 
 }  // namespace cadt::io

@@ -4,6 +4,7 @@
 
 #include <cadt/constrained.hpp>
 #include <cadt/io/picture.hpp>
+#include <cadt/io/region_file.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -25,6 +26,13 @@ struct Scene {
   [[nodiscard]] std::size_t points() const noexcept { return xy.size() / 2; }
   [[nodiscard]] std::size_t faces() const noexcept { return triangles.size() / 3; }
 };
+
+[[nodiscard]] inline Scene scene_of(const PointSet& points, const Triangulation& mesh) {
+  return {points.xy, points.height, mesh.triangles(), mesh.hull()};
+}
+[[nodiscard]] inline Scene scene_of(const RegionMesh& mesh) {
+  return {mesh.xy, mesh.height, mesh.triangles, mesh.hull, mesh.region, mesh.segments};
+}
 
 /// Calls `edge(u, v)` for every edge once. Counterclockwise triangles pass an interior edge once in each direction, so
 /// u < v takes each of them once; edges of the hull are passed in one direction only.

@@ -83,16 +83,6 @@ std::vector<Facet> facets(const Scene& scene, const std::vector<Point2f>& positi
   return out;
 }
 
-/// The n-th lowest of the different regions has number n; nothing if there are less than two.
-std::map<std::int32_t, std::size_t> region_numbers(const Scene& scene) {
-  std::map<std::int32_t, std::size_t> numbers;
-  for (const std::int32_t region : scene.region) numbers.emplace(region, 0);
-  if (numbers.size() < 2) return {};
-  std::size_t n = 0;
-  for (auto& [region, number] : numbers) number = n++;
-  return numbers;
-}
-
 /// Triangles by colour. The arguments of the ramps are rounded, not the bytes: those steps would change the hue.
 std::map<std::uint32_t, std::vector<Facet>> by_colour(const Scene& scene, const std::vector<Point2f>& position,
                                                       float edge) {
@@ -109,11 +99,11 @@ std::map<std::uint32_t, std::vector<Facet>> by_colour(const Scene& scene, const 
 
   const auto rounded = [](float v, float steps) { return std::round(v * steps) / steps; };
   std::map<std::uint32_t, std::vector<Facet>> result;
-  const auto regions = region_numbers(scene);
+  const std::vector<std::uint32_t> regions = region_numbers(scene);
   for (const Facet& f : all) {
     Rgb colour;
     if (!regions.empty()) {
-      colour = region_colour(regions.at(scene.region[f.face]));
+      colour = region_colour(regions[f.face]);
     } else if (relief.empty()) {
       colour = size_ramp()(rounded(area(f.p[0], f.p[1], f.p[2]), 48.0f));
     } else {
@@ -223,7 +213,7 @@ void draw(cairo_t* to, const Scene& scene, const Viewport& view, const PictureOp
     draw_hull(to, scene, position);
   }
   if (!scene.segments.empty()) {
-    set_colour(to, line_colour);
+    set_colour(to, segment_colour);
     cairo_set_line_width(to, std::clamp(3.0 * stroke, pixels ? 0.9 : 0.3, 3.5));
     draw_segments(to, scene, position, pixels);
   }

@@ -85,12 +85,10 @@ void write_region_mesh(const std::string& path, const RegionMesh& mesh, const Wr
     return out.commit();
   }
   if (format == "svg" || format == "pdf" || format == "png") {
-    picture::Scene scene{mesh.xy, mesh.height, mesh.triangles, mesh.hull};
-    scene.region = mesh.region;
-    scene.segments = mesh.segments;
     PictureOptions picture;
     picture.width = options.width;
-    return picture::write_scene(path, format, scene, picture);
+    picture.max_height = options.max_height;
+    return picture::write_scene(path, format, picture::scene_of(mesh), picture);
   }
   detail::MeshParts parts;
   parts.xy = mesh.xy;

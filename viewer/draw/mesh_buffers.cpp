@@ -32,4 +32,10 @@ void MeshBuffers::write_triangles(std::span<const std::int32_t> all) {
   bytes_through_host += all.size_bytes();
 }
 
+void MeshBuffers::write_edges(std::span<const Segment> all) {
+  if (edges.bytes() < all.size_bytes()) edges = gl::Buffer(all.size_bytes());
+  edge_count = all.size();
+  edges.write_values(all);
+}
+
 }  // namespace cadt::viewer

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "viewer/draw/palette.hpp"
 
+#include <algorithm>
+
 namespace cadt::viewer {
 
 using io::picture::Ramp;
@@ -26,6 +28,7 @@ const Ramp& ramp_for(ColourBy colour) {
       return heat;
     case ColourBy::nothing:
     case ColourBy::area:
+    case ColourBy::region:
       break;
   }
   return io::picture::size_ramp();
@@ -37,16 +40,23 @@ std::array<float, 4> linear(std::uint32_t srgb, float alpha) {
 }
 
 const Palette& palette(bool dark) {
-  static const Palette light{io::picture::paper, 0xe6ecee, io::picture::line_colour, 0x1d2a3a,
-                             io::picture::hull_colour};
-  static const Palette night{0x15181d, 0x2a313b, 0xc9d6e2, 0xf0f4f8, 0xe8866a};
+  static const Palette light{io::picture::paper,       0xe6ecee,
+                             io::picture::line_colour, 0x1d2a3a,
+                             io::picture::hull_colour, io::picture::segment_colour};
+  static const Palette night{0x15181d, 0x2a313b, 0xc9d6e2, 0xf0f4f8, 0xe8866a, 0xd9a2f2};
   return dark ? night : light;
 }
 
 const std::vector<std::string>& names_of_colours() {
   static const std::vector<std::string> names{"nothing", "angle", "area",      "order", "height",
-                                              "degree",  "level", "conflicts", "flips"};
+                                              "degree",  "level", "conflicts", "flips", "region"};
   return names;
+}
+
+std::optional<ColourBy> colour_from_string(std::string_view name) noexcept {
+  const auto found = std::ranges::find(names_of_colours(), name);
+  if (found == names_of_colours().end()) return std::nullopt;
+  return static_cast<ColourBy>(found - names_of_colours().begin());
 }
 
 std::string_view to_string(ColourBy by) noexcept { return names_of_colours()[static_cast<std::size_t>(by)]; }

@@ -15,7 +15,7 @@ namespace cadt::viewer {
 [[nodiscard]] std::array<float, 4> linear(std::uint32_t srgb, float alpha = 1);
 
 struct Palette {
-  std::uint32_t background, fill, line, point, hull;  ///< 0xRRGGBB
+  std::uint32_t background, fill, line, point, hull, edge;  ///< 0xRRGGBB
 };
 [[nodiscard]] const Palette& palette(bool dark);
 

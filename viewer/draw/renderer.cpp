@@ -24,6 +24,7 @@ constexpr std::size_t most_large =
     4 << 20;  // triangles that get a group of their own; the others are drawn by one item
 constexpr std::size_t most_bytes = std::size_t{1} << 32;  // of an array: programs have offsets of 32 bits
 constexpr int reference_width = 1000;                     // pixels of the view in which values are sampled
+static_assert(colours_of_ramp == 512);                    // shade.glsl
 
 enum Slot : GLuint { points, triangles, values, boxes, seen, commands, owners, sums, large, overlay, outside };
 
@@ -58,6 +59,7 @@ By by_of(ColourBy colour) {
       return by_mean;
     case ColourBy::conflicts:
     case ColourBy::flips:
+    case ColourBy::region:
       return by_triangle;
   }
   return by_nothing;
@@ -145,16 +147,18 @@ void Renderer::set_outside(std::span<const std::uint8_t> all, double begin) {
 
 void Renderer::choose_ramp(ColourBy colour) {
   if (ramp_of_ == colour) return;
-  std::vector<std::array<float, 3>> table(512);
+  std::vector<std::array<float, 3>> table(colours_of_ramp);
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const Rgb c = ramp_for(colour)(static_cast<float>(i) / 511.0f);
+    const Rgb c = colour == ColourBy::region
+                      ? io::picture::region_colour(i)
+                      : ramp_for(colour)(static_cast<float>(i) / static_cast<float>(colours_of_ramp - 1));
     table[i] = {c.r, c.g, c.b};
   }
   GLuint id = 0;
   glCreateTextures(GL_TEXTURE_1D, 1, &id);
   ramp_ = gl::Name<gl::delete_texture>(id);
-  glTextureStorage1D(id, 1, GL_RGB32F, 512);
-  glTextureSubImage1D(id, 0, 0, 512, GL_RGB, GL_FLOAT, table.data());
+  glTextureStorage1D(id, 1, GL_RGB32F, colours_of_ramp);
+  glTextureSubImage1D(id, 0, 0, colours_of_ramp, GL_RGB, GL_FLOAT, table.data());
   glTextureParameteri(id, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTextureParameteri(id, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTextureParameteri(id, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
@@ -176,8 +180,9 @@ void Renderer::fit_ramp(const MeshBuffers& mesh, ColourBy colour) {
   relief_ = 0;
   choose_ramp(colour);
   if (colour == ColourBy::order) ends_ = {0, static_cast<float>(mesh.triangle_count)};
-  if (by_of(colour) == by_nothing || colour == ColourBy::order || mesh.triangle_count == 0 || !has_values(mesh, colour))
-    return;
+  if (colour == ColourBy::region) ends_ = {0, colours_of_ramp - 1};
+  const bool fitted = by_of(colour) != by_nothing && colour != ColourBy::order && colour != ColourBy::region;
+  if (!fitted || mesh.triangle_count == 0 || !has_values(mesh, colour)) return;
   reference_ = Camera(mesh.box, reference_width, reference_width);
   constexpr std::size_t most = 60'000;
   // Odd, so that it does not resonate with the rows of a lattice.
@@ -244,18 +249,23 @@ void Renderer::draw_triangles(const MeshBuffers& mesh) {
   glDispatchComputeIndirect(3 * sizeof(std::uint32_t));
 }
 
+void Renderer::draw_lines(Lines lines, std::size_t count, std::uint32_t colour, float width) {
+  if (count == 0) return;
+  strokes_.use();
+  glUniform1ui(0, static_cast<GLuint>(count));
+  glUniform1ui(1, colour);
+  glUniform1f(2, width);
+  glUniform1i(3, lines == Lines::edges ? 1 : 0);
+  dispatch_for(count, 1);
+  wait_for_writes();
+}
+
 void Renderer::draw_strokes(std::span<const Stroke> strokes) {
   for (const Stroke& stroke : strokes) {
-    if (stroke.segments.empty()) continue;
     grow(segments_, stroke.segments.size() * sizeof(stroke.segments[0]));
     segments_.write_values(std::span<const std::array<double, 4>>(stroke.segments));
     segments_.bind(boxes);
-    strokes_.use();
-    glUniform1ui(0, static_cast<GLuint>(stroke.segments.size()));
-    glUniform1ui(1, stroke.colour);
-    glUniform1f(2, stroke.width);
-    dispatch_for(stroke.segments.size(), 1);
-    wait_for_writes();
+    draw_lines(Lines::strokes, stroke.segments.size(), stroke.colour, stroke.width);
   }
 }
 
@@ -310,6 +320,10 @@ void Renderer::draw(const MeshBuffers& mesh, const Camera& camera, const Style& 
     draw_triangles(mesh);
   }
   wait_for_writes();
+  if (!style.points_alone && mesh.edge_count != 0) {
+    mesh.edges.bind(seen);
+    draw_lines(Lines::edges, mesh.edge_count, colours.edge, style.edge_width);
+  }
   draw_strokes(strokes);
   bind(mesh);
   glBindImageTexture(0, picture_.id(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA8);

@@ -22,6 +22,9 @@
 
 namespace cadt::viewer {
 
+/// With ColourBy::region the values are numbers of colours, below this.
+inline constexpr int colours_of_ramp = 512;
+
 /// Rows of pixels from the top, four bytes each: red, green, blue, 255.
 struct Image {
   int width = 0, height = 0;
@@ -44,8 +47,8 @@ class Renderer {
   /// To be called after the contents of a mesh have changed: finds the boxes of its blocks. O(triangles).
   /// \throws LimitError for more than 357 million triangles
   void update(const MeshBuffers& mesh);
-  /// Values that the colour depends on: one a point (height, degree, level) or one a triangle (conflicts, flips). With
-  /// too few for the mesh all triangles have one colour.
+  /// Values that the colour depends on: one a point (height, degree, level) or one a triangle (conflicts, flips,
+  /// region). With too few for the mesh all triangles have one colour.
   void set_values(std::span<const float> values);
   /// Points of triangles that fill bays of the outline, where nothing was measured; the larger such a triangle, the
   /// fainter it is drawn when the colour is that of the height. `begin` is the length from which on, in the unit of
@@ -57,7 +60,7 @@ class Renderer {
   /// In place of those that fit_ramp() found.
   void set_ramp_ends(std::array<float, 2> ends) noexcept { ends_ = ends; }
 
-  /// The picture, in texture(). \pre update(mesh)
+  /// The picture, in texture(). Constrained edges lie over the triangles and do not fade. \pre update(mesh)
   void draw(const MeshBuffers& mesh, const Camera& camera, const Style& style, std::span<const Stroke> strokes = {});
   [[nodiscard]] const gl::Texture& texture() const noexcept { return picture_; }
   /// Waits for the device.
@@ -73,6 +76,8 @@ class Renderer {
   void make_room(const Camera& camera, int side);
   void bind(const MeshBuffers& mesh) const;
   void draw_triangles(const MeshBuffers& mesh);
+  enum class Lines { strokes, edges };
+  void draw_lines(Lines lines, std::size_t count, std::uint32_t colour, float width);
   void draw_strokes(std::span<const Stroke> strokes);
   void choose_ramp(ColourBy colour);
   /// Whether there are as many values as the colour reads.

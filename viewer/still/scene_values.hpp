@@ -2,18 +2,20 @@
 // What the colours of a finished mesh depend on.
 #pragma once
 
-#include <cadt/io/points_file.hpp>
-#include <cadt/triangulation.hpp>
-
+#include "io/picture/scene.hpp"
 #include "viewer/draw/renderer.hpp"
 
 namespace cadt::viewer {
 
-/// Sets the renderer's values and ramp for the mesh, which is in `buffers`. O(points + triangles).
-void prepare_colour(Renderer& renderer, const MeshBuffers& buffers, const io::PointSet& points,
-                    const Triangulation& mesh, ColourBy colour);
+/// By regions if there are several, by height if there are heights, else by area.
+[[nodiscard]] ColourBy usual_colour(const io::picture::Scene& scene);
 
-/// The hull as lines. O(hull).
-[[nodiscard]] Stroke hull_stroke(const io::PointSet& points, const Triangulation& mesh, bool dark);
+/// Sets the renderer's values and ramp for the mesh, which is in `buffers`. O(points + triangles), for regions O(n log
+/// n).
+void prepare_colour(Renderer& renderer, const MeshBuffers& buffers, const io::picture::Scene& scene, ColourBy colour);
+
+/// The hull as lines, without the segments that lie on it: those are drawn as such. O(hull +
+/// segments log hull).
+[[nodiscard]] Stroke hull_stroke(const io::picture::Scene& scene, bool dark);
 
 }  // namespace cadt::viewer

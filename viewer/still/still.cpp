@@ -7,11 +7,13 @@
 
 namespace cadt::viewer {
 
-Image draw_still(const io::PointSet& points, const Triangulation& mesh, const StillOptions& options) {
+Image draw_still(const io::RegionMesh& mesh, const StillOptions& options) {
   constexpr int most_height = 4000;
   const gl::HeadlessContext context;
   Renderer renderer;
-  const MeshBuffers buffers = MeshBuffers::copy(points.xy, mesh.triangles());
+  const io::picture::Scene scene = io::picture::scene_of(mesh);
+  MeshBuffers buffers = MeshBuffers::copy(scene.xy, scene.triangles);
+  buffers.write_edges(scene.segments);
   const int height = options.height != 0 ? options.height : Camera::height_for(buffers.box, options.width, most_height);
   Camera camera(buffers.box, options.width, height);
   if (options.view) {
@@ -19,10 +21,10 @@ Image draw_still(const io::PointSet& points, const Triangulation& mesh, const St
     camera.zoom(options.view->magnification, 0.5 * camera.width(), 0.5 * camera.height());
   }
   Style style = options.style;
-  style.colour = options.colour.value_or(points.height.empty() ? ColourBy::area : ColourBy::height);
+  style.colour = options.colour ? *options.colour : usual_colour(scene);
   renderer.update(buffers);
-  prepare_colour(renderer, buffers, points, mesh, style.colour);
-  const Stroke hull = hull_stroke(points, mesh, style.dark);
+  prepare_colour(renderer, buffers, scene, style.colour);
+  const Stroke hull = hull_stroke(scene, style.dark);
   renderer.draw(buffers, camera, style, std::span<const Stroke>(&hull, style.hull ? 1 : 0));
   Image image = renderer.read();
   if (const int errors = gl::errors_seen(); errors != 0) {

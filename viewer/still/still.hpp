@@ -2,8 +2,7 @@
 // A picture without a window.
 #pragma once
 
-#include <cadt/io/points_file.hpp>
-#include <cadt/triangulation.hpp>
+#include <cadt/io/region_file.hpp>
 
 #include "viewer/draw/renderer.hpp"
 
@@ -19,13 +18,23 @@ struct View {
 struct StillOptions {
   int width = 1600;
   int height = 0;                  ///< 0: as the box of the points needs, at most 4000
-  std::optional<ColourBy> colour;  ///< not set: the height if the points have one, else the area
+  std::optional<ColourBy> colour;  ///< not set: regions if there are several, heights if there are any, else the area
   std::optional<View> view;        ///< not set: the whole mesh
   Style style;                     ///< its colour is not used
 };
 
 /// Draws on a context of its own, on a GPU if there is one for OpenGL without a window, else on the CPU. O(triangles +
 /// pixels). \throws DisplayError, OutOfMemory
-[[nodiscard]] Image draw_still(const io::PointSet& points, const Triangulation& mesh, const StillOptions& options = {});
+[[nodiscard]] Image draw_still(const io::RegionMesh& mesh, const StillOptions& options = {});
+[[nodiscard]] inline Image draw_still(const io::PointSet& points, const Triangulation& mesh,
+                                      const StillOptions& options = {}) {
+  return draw_still({.xy = points.xy,
+                     .height = points.height,
+                     .triangles = mesh.triangles(),
+                     .region = {},
+                     .segments = {},
+                     .hull = mesh.hull()},
+                    options);
+}
 
 }  // namespace cadt::viewer

@@ -3,6 +3,7 @@
 
 #include "viewer/draw/palette.hpp"
 #include "viewer/gl/errors.hpp"
+#include "viewer/still/scene_values.hpp"
 #include "viewer/window/cards.hpp"
 #include "viewer/window/input.hpp"
 #include "viewer/window/panel.hpp"
@@ -20,6 +21,12 @@ namespace cadt::viewer {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// What there is for points alone.
+bool needs_delaunay_mesh(Command command) {
+  return command == Command::voronoi || command == Command::grow || command == Command::edit ||
+         command == Command::next_tool || command == Command::move_points;
+}
 
 /// Waits for events: at most so long while something moves by itself.
 constexpr double busy_wait = 0.1;
@@ -114,7 +121,10 @@ bool App::open_way() {
   scene->mesher.reset();
   try {
     const bool forced = options.interop == Interop::cuda || options.interop == Interop::opencl;
-    if (options.interop == Interop::copy) {
+    if (options.sources[current].constrain) {
+      if (forced) throw DisplayError("a mesh with segments comes through the host: leave --interop out");
+      interop_reason = "the mesh has segments";
+    } else if (options.interop == Interop::copy) {
       interop_reason = "--interop copy";
     } else if (!forced && (options.compute.backend == Backend::host || !has_gpu(options.compute))) {
       interop_reason = "no GPU computes";
@@ -228,7 +238,8 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   if (next->mesh) {
     s.mesh = MeshBuffers::with_room(next->points.size());  // also for points that are edited
     s.mesh.write_points(next->points.xy);
-    s.mesh.write_triangles(next->mesh->triangles());
+    s.mesh.write_triangles(next->triangles());
+    if (next->inside) s.mesh.write_edges(next->inside->edges);
     triangulate_milliseconds = next->mesh_milliseconds;
   } else {
     s.mesh = MeshBuffers::with_room(next->points.size());
@@ -246,10 +257,15 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   diagram_.reset();
   voronoi_note.clear();
   if (!same) view.show(s.mesh.box, s.mesh.point_count, !loaded->heights.empty());
-  view.colours = loaded->heights.empty() ? ViewState::usual_colours() : ViewState::colours_with_heights();
+  offer_colours();
+  if (loaded->inside) view.voronoi = false;
   if (std::find(view.colours.begin(), view.colours.end(), view.colour) == view.colours.end())
     view.colour = ColourBy::area;
-  if (!same && !colour_chosen_) view.colour = loaded->heights.empty() ? ColourBy::area : ColourBy::height;
+  if (!same && !colour_chosen_) {
+    view.colour = loaded->inside            ? usual_colour(loaded->scene())
+                  : loaded->heights.empty() ? ColourBy::area
+                                            : ColourBy::height;
+  }
   s.renderer.update(s.mesh);
   mark({});
   values_of_.reset();
@@ -257,12 +273,17 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   update_strokes();
   const std::string name = loaded->source.name();
   window->set_title(fmt::format("cadt: {}, {} points", name, number_text(s.mesh.point_count)));
-  say(fmt::format("loaded {} {} points {} triangles by {} in {:.0f} ms", name, s.mesh.point_count,
-                  s.mesh.triangle_count, way_text(),
+  say(fmt::format("loaded {} {} points {} triangles {} constrained edges by {} in {:.0f} ms", name, s.mesh.point_count,
+                  s.mesh.triangle_count, s.mesh.edge_count, way_text(),
                   std::chrono::duration<double, std::milli>(Clock::now() - begin).count()));
 }
 
 void App::ask(Command command) {
+  if (loaded != nullptr && loaded->inside && needs_delaunay_mesh(command)) {
+    report({"This mesh has segments", "Voronoi cells, growth and editing are there for points without segments.",
+            "Show the points alone for that.", false});
+    return;
+  }
   if (view.apply(command)) {
     if (command == Command::next_colour) colour_chosen_ = true;
     if (command == Command::hull || command == Command::voronoi) update_strokes();

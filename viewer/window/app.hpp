@@ -146,6 +146,7 @@ class App {
   void show(const std::shared_ptr<Loaded>& next);
   void ask_next();
   void finish_asking(const std::exception_ptr& error);
+  void offer_colours();
   void update_colour();
   void update_strokes();
   /// `complete`: with all samples at once.

@@ -45,7 +45,7 @@ void App::stop_editing() {
   if (editing->changed) advance_editing(0);
   editing.reset();
   take_points_back();
-  view.colours = loaded->heights.empty() ? ViewState::usual_colours() : ViewState::colours_with_heights();
+  offer_colours();
   say(fmt::format("edited: {} points {} triangles", scene->mesh.point_count, scene->mesh.triangle_count));
 }
 

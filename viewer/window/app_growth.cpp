@@ -61,7 +61,7 @@ void App::stop_growing() {
   const auto recording = growing->recording;
   const std::span<const std::int32_t> last = recording->triangles(recording->size() - 1);
   growing.reset();
-  view.colours = loaded->heights.empty() ? ViewState::usual_colours() : ViewState::colours_with_heights();
+  offer_colours();
   view.colour = before_growing_;
   if (loaded->mesh)
     scene->mesh.write_triangles(loaded->mesh->triangles());

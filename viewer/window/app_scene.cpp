@@ -105,6 +105,12 @@ void App::finish_asking(const std::exception_ptr& error) {
   say("ready");
 }
 
+/// Those that there are values for.
+void App::offer_colours() {
+  view.colours = loaded->heights.empty() ? ViewState::usual_colours() : ViewState::colours_with_heights();
+  if (loaded->inside) view.colours.push_back(ColourBy::region);
+}
+
 void App::update_colour() {
   if (values_of_ == view.colour) return;
   Renderer& r = scene->renderer;
@@ -125,8 +131,8 @@ void App::update_colour() {
   if (growing) {
     r.set_values(growth_values());
   } else if (loaded->mesh && !points_stale_) {
-    prepare_colour(r, scene->mesh, loaded->points, *loaded->mesh, view.colour);
-    const auto ends = io::picture::height_ends({loaded->points.xy, loaded->points.height, {}, {}});
+    prepare_colour(r, scene->mesh, loaded->scene(), view.colour);
+    const auto ends = io::picture::height_ends(loaded->scene());
     height_ends = ends ? std::array{ends->low, ends->high} : std::array{0.0, 1.0};
   } else {
     height_ends = {0, 1};
@@ -142,7 +148,7 @@ void App::update_strokes() {
   for (Stroke& stroke : strokes_) stroke.segments.clear();
   ++version_;
   if (loaded == nullptr || !loaded->mesh || points_stale_) return;
-  if (view.hull) strokes_[0] = hull_stroke(loaded->points, *loaded->mesh, view.dark);
+  if (view.hull) strokes_[0] = hull_stroke(loaded->scene(), view.dark);
 }
 
 std::vector<double> App::signature(int samples) const {
@@ -212,8 +218,9 @@ TriangleFacts App::facts(std::size_t triangle) const {
   }
   TriangleFacts facts = facts_of(triangle, {corners[0], corners[1], corners[2]}, places);
   if (loaded->mesh && !growing && !points_stale_) {
-    const auto all = loaded->mesh->neighbors();
+    const auto all = loaded->neighbors();
     facts.neighbours = {all[3 * triangle], all[3 * triangle + 1], all[3 * triangle + 2]};
+    if (loaded->inside) facts.region = loaded->inside->region[triangle];
   }
   return facts;
 }

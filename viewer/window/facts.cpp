@@ -61,6 +61,7 @@ std::vector<std::pair<std::string, std::string>> lines_of(const TriangleFacts& f
     }
   }
   lines.emplace_back("neighbours", neighbours);
+  if (facts.region) lines.emplace_back("region", fmt::format("{}", *facts.region));
   lines.emplace_back("circumcentre",
                      facts.circle ? fmt::format("{:.12g}\n{:.12g}", facts.circle->centre[0], facts.circle->centre[1])
                                   : "beyond the largest double");

@@ -29,6 +29,7 @@ struct TriangleFacts {
   std::array<std::int32_t, 3> points{};
   std::array<Place, 3> corners{};
   std::optional<std::array<std::int32_t, 3>> neighbours;  ///< the k-th opposite point k, -1 outside; empty: not known
+  std::optional<std::int32_t> region;                     ///< of a mesh with segments
   std::optional<Circle> circle;
   double area = 0, smallest_angle = 0;  ///< degrees
 };

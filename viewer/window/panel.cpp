@@ -57,6 +57,7 @@ void draw_file(App& app) {
   const MeshBuffers& mesh = app.scene->mesh;
   ImGui::Text("%s points, %s triangles", number_text(mesh.point_count).c_str(),
               number_text(mesh.triangle_count).c_str());
+  if (mesh.edge_count != 0) ImGui::Text("%s constrained edges", number_text(mesh.edge_count).c_str());
 }
 
 void draw_generated(App& app) {
@@ -94,7 +95,8 @@ void draw_generated(App& app) {
 
 /// The ramp with the values of its ends.
 void draw_ramp(App& app) {
-  if (app.scene == nullptr || app.view.colour == ColourBy::nothing || app.scene->mesh.triangle_count == 0) return;
+  if (app.view.colour == ColourBy::nothing || app.view.colour == ColourBy::region) return;
+  if (app.scene == nullptr || app.scene->mesh.triangle_count == 0) return;
   const io::picture::Ramp& ramp = ramp_for(app.view.colour);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float wide = ImGui::GetContentRegionAvail().x, high = 10 * scale_of(app);
@@ -141,6 +143,8 @@ std::string words_for(ColourBy by) {
       return "lost locks";
     case ColourBy::flips:
       return "flips";
+    case ColourBy::region:
+      return "region";
   }
   return "";
 }
@@ -265,6 +269,7 @@ void draw_statistics(App& app) {
     row("deferred points", number_text(s.deferred_points));
     row("deferred edges", number_text(s.deferred_edges));
     row("illegal edges", number_text(s.illegal_edges));
+    row("segments inserted", number_text(s.inserted_segments));
     row("stars, no locks", number_text(s.proven_stars + s.wrapped_stars));
     row("exact predicates", number_text(s.exact_orientations + s.exact_incircles));
     row("ties", number_text(s.ties));

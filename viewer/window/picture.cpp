@@ -59,7 +59,7 @@ class Marks {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::int32_t n = (*t.neighbours)[k];
       if (n < 0) continue;
-      const auto all = app_.loaded->mesh->triangles();
+      const auto all = app_.loaded->triangles();
       std::array<ImVec2, 3> p;
       for (std::size_t j = 0; j < 3; ++j) {
         const auto v = static_cast<std::size_t>(all[3 * static_cast<std::size_t>(n) + j]);

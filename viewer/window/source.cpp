@@ -26,6 +26,37 @@ bool same_device(const Options& a, const Options& b) {
 
 }  // namespace
 
+Inside inside_of(const ConstrainedTriangulation& mesh) {
+  const auto kept = mesh.inside();
+  std::vector<std::int32_t> number(kept.size(), -1);
+  std::int32_t next = 0;
+  for (std::size_t t = 0; t < kept.size(); ++t)
+    if (kept[t] != 0) number[t] = next++;
+  Inside inside;
+  inside.triangles = mesh.triangles_inside();
+  for (std::size_t t = 0; t < kept.size(); ++t) {
+    if (kept[t] == 0) continue;
+    for (const std::int32_t other : mesh.mesh().neighbors().subspan(3 * t, 3))
+      inside.neighbors.push_back(other < 0 ? -1 : number[static_cast<std::size_t>(other)]);
+    inside.region.push_back(mesh.region()[t]);
+  }
+  inside.edges.assign(mesh.constrained_edges().begin(), mesh.constrained_edges().end());
+  return inside;
+}
+
+std::span<const std::int32_t> Loaded::triangles() const { return inside ? inside->triangles : mesh->triangles(); }
+std::span<const std::int32_t> Loaded::neighbors() const { return inside ? inside->neighbors : mesh->neighbors(); }
+
+io::picture::Scene Loaded::scene() const {
+  io::picture::Scene scene = io::picture::scene_of(points, *mesh);
+  if (!inside) return scene;
+  if (inside->triangles.size() != scene.triangles.size()) scene.hull = {};
+  scene.triangles = inside->triangles;
+  scene.region = inside->region;
+  scene.segments = inside->edges;
+  return scene;
+}
+
 std::string Source::name() const {
   return is_file() ? (path == "-" ? "standard input" : std::filesystem::path(path).filename().string()) : distribution;
 }
@@ -68,6 +99,18 @@ std::shared_ptr<Loaded> load(const Source& source, const Options& given, Triangu
   Options options = given;
   options.stop = desk.stop();
   options.progress = [&desk](const Progress& p) { desk.report(p.phase, p.fraction); };
+  if (source.constrain) {
+    desk.report("reading " + source.name(), -1);
+    const auto begin = Clock::now();
+    Constrained constrained = source.constrain(options);
+    result->mesh_milliseconds = milliseconds_since(begin);
+    result->points = std::move(constrained.points);
+    result->heights.assign(result->points.height.begin(), result->points.height.end());
+    result->mesh = constrained.mesh.mesh();
+    result->inside = inside_of(constrained.mesh);
+    result->statistics = result->mesh->statistics();
+    return result;
+  }
   Triangulator* triangulator = nullptr;
   if (triangulators != nullptr) {
     desk.report("opening the device", -1);

@@ -124,6 +124,7 @@ Style ViewState::style() const {
   const double apart = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, points_)));
   const bool vertices = !(apart < 22 * scale);
   style.point_radius = static_cast<float>(drawing == Drawing::points ? 1.6 * scale : vertices ? 2.4 * scale : 0);
+  style.edge_width = static_cast<float>(2.0 * scale);
   style.hull = hull;
   style.dark = dark;
   return style;

@@ -13,10 +13,11 @@
 namespace cadt::io {
 
 struct WriteOptions {
-  std::string format;  ///< overrides the suffix: node ele neigh obj off ply vtu glb npz svg pdf png
-  int base = 0;        ///< first index in Triangle's .node .ele .neigh: 0 or 1
-  bool ascii = false;  ///< text instead of binary where the format has both (ply)
-  int width = 1600;    ///< pictures: pixels (png) or user units (svg)
+  std::string format;     ///< overrides the suffix: node ele neigh obj off ply vtu glb npz svg pdf png
+  int base = 0;           ///< first index in Triangle's .node .ele .neigh: 0 or 1
+  bool ascii = false;     ///< text instead of binary where the format has both (ply)
+  int width = 1600;       ///< pictures: pixels (png) or user units (svg)
+  int max_height = 4000;  ///< of pictures, which get narrower then
 };
 
 /// Writes a mesh or a picture of it. Formats with three coordinates take `PointSet::height`, else 0. All input points

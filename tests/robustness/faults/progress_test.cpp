@@ -167,6 +167,19 @@ TEST_P(ReportedProgress, RepeatedPasses) {
   expect_reports(options(Strategy::locks), call, reports, with(insertion_phases, {"copy"}));
 }
 
+/// Reports before the segments are 0.7 of those without.
+TEST_P(ReportedProgress, Segments) {
+  const Points xy = uniform_points(20000, 7);
+  const std::vector<Segment> segments = {{0, 1}};
+  const Counted call = [&](Triangulator& t) {
+    return t.triangulate_constrained(Reals(xy), segments).mesh().statistics();
+  };
+  expect_reports(
+      options(Strategy::locks), call,
+      {"sort 0", "sort 0.007", "insert", "constrain 0.6", "constrain 0.8", "certify 0.9", "output 0.95", "output 1"},
+      with(insertion_phases, {"constrain", "copy"}));
+}
+
 /// A stop that is requested in a launch with segments takes effect before the next one.
 TEST_P(ReportedProgress, SegmentsCanBeStopped) {
   Points xy = uniform_points(2000, 7);

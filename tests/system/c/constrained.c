@@ -123,11 +123,18 @@ static void test_not_delaunay(void) {
   const int32_t segments[] = {0, 1};
   const cadt_points points = points_of(xy, 4), asked = points_of(where, 1);
   cadt_constrained* mesh = NULL;
+  cadt_triangulation* triangles = NULL;
+  cadt_statistics statistics = {0};
   cadt_queries* queries = NULL;
   int32_t nearest = -1;
   size_t count = 0;
 
   CHECK_OK(cadt_triangulate_constrained(&points, segments, 1, NULL, NULL, &mesh));
+  CHECK_OK(cadt_constrained_mesh(mesh, &triangles));
+  statistics.size = sizeof statistics;
+  CHECK_OK(cadt_triangulation_statistics(triangles, &statistics));
+  CHECK(statistics.inserted_segments == 1 && statistics.segment_retries == 0);
+  cadt_triangulation_free(triangles);
   CHECK_OK(cadt_queries_open_constrained(&points, mesh, NULL, &queries));
   CHECK_STATUS(CADT_NOT_DELAUNAY, cadt_queries_nearest_vertices(queries, &asked, 1, &nearest, 1, &count));
   CHECK(last_error().index >= 0 && nearest == -1);

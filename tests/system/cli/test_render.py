@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """cadt render: pictures without a window."""
+import json
 import os
 import unittest
 
@@ -60,6 +61,94 @@ class RenderTest(CliTest):
         self.assertEqual(png_size(self.path("p.png"))[0], 200)
         self.fails(3, "render", "p.f64", "--backend", "host", "-o", "p.svg", says="too many")
         self.assertEqual(self.names(), ["p.f64", "p.png"])
+
+
+EDGE = bytes.fromhex("6b1f8a")
+# A square of 10 with a square hole of 4.
+PLATE = json.dumps({"type": "MultiPolygon", "coordinates": [[[[0, 0], [10, 0], [10, 10], [0, 10]], [[3, 3], [3, 7], [7, 7], [7, 3]]]]})
+
+
+class RenderSegmentsTest(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("plate.geojson", PLATE)
+
+    def picture(self, *arguments, name="p.png", size="101x101"):
+        """The rows of the picture."""
+        self.cadt("render", *arguments, "-o", name, "--size", size, "-q", "--backend", "host")
+        return png_rows(self.path(name))
+
+    def middle(self, *arguments):
+        return self.picture(*arguments)[50][150:153]
+
+    def near(self, colour, other):
+        return all(abs(a - b) <= 2 for a, b in zip(colour, other))
+
+    def test_what_is_outside_of_the_domain_is_not_drawn(self):
+        result = self.cadt("render", "plate.geojson", "--domain", "even_odd", "-o", "p.png", "--size", 200)
+        self.assertIn("8 triangles of 8 points drawn", result.err)
+        self.picture("plate.geojson", "--domain", "even_odd", "--camera", "5,5,5")
+        self.assertEqual(colours(self.path("p.png")), {PAPER}, "the hole")
+        for domain in ([], ["--domain", "outer"]):
+            self.picture("plate.geojson", *domain, "--camera", "5,5,5")
+            self.assertNotIn(PAPER, colours(self.path("p.png")))
+        self.picture("plate.geojson", "--domain", "even_odd", "--camera", "1.5,5,20")
+        self.assertNotIn(PAPER, colours(self.path("p.png")), "the square around it")
+
+    def test_constrained_edges_have_a_colour_of_their_own_at_each_magnification(self):
+        for camera in ("10,5,0.25", "10,5,1", "10,5,1000", "3,5,1", "3,5,1e6"):
+            self.assertTrue(self.near(self.middle("plate.geojson", "--domain", "even_odd", "--camera", camera), EDGE), camera)
+        self.picture("plate.geojson", "--domain", "even_odd", "--camera", "1.5,5,20")
+        self.assertFalse(any(self.near(colour, EDGE) for colour in colours(self.path("p.png"))), "edges inside are others")
+        self.assertFalse(self.near(self.middle("plate.geojson", "--camera", "10,5,9", "--dark"), EDGE))
+
+    def test_breaklines_over_points_with_heights(self):
+        self.cadt("generate", "terrain", "-n", 20000, "-o", "t.xyz")
+        self.write("lines.obj", "v 0.2 0.5 0\nv 0.8 0.5 0\nl 1 2\n")
+        box = ["--camera", "0.43,0.5,1"]
+        self.assertTrue(self.near(self.middle("t.xyz", "--segments", "lines.obj", *box), EDGE))
+        self.assertGreater(len(colours(self.path("p.png"))), 200, "a relief")
+        self.assertFalse(self.near(self.middle("t.xyz", *box), EDGE))
+
+    def test_regions(self):
+        usual = self.picture("plate.geojson")
+        self.assertEqual(self.picture("plate.geojson", "--colour", "region"), usual, "there are two")
+        self.assertNotEqual(self.picture("plate.geojson", "--colour", "area"), usual)
+        hole, square = (self.middle("plate.geojson", "--camera", f"{x},5.5,30") for x in (4.2, 1.2))
+        self.assertNotEqual(hole, square)
+        one = self.picture("plate.geojson", "--domain", "even_odd")
+        self.assertEqual(self.picture("plate.geojson", "--domain", "even_odd", "--colour", "area"), one, "one alone has no colour")
+
+    def test_crossings(self):
+        self.write("bow.json", "[[[0, 0], [4, 4], [4, 0], [0, 4]]]")
+        self.fails(3, "render", "bow.json", "-o", "p.png", says=("(0, 0) - (4, 4)", "--crossing exact"))
+        result = self.cadt("render", "bow.json", "-o", "p.png", "--size", 90, "--crossing", "exact", "--domain", "even_odd")
+        self.assertIn("2 triangles of 5 points drawn", result.err)
+        self.assertTrue(self.near(self.middle("bow.json", "--crossing", "exact", "--camera", "2,2,30"), EDGE))
+        self.assertTrue(self.near(self.middle("bow.json", "--crossing", "grid=1", "--camera", "1,1,30"), EDGE))
+
+    def test_files_of_shapes_are_those_of_triangulate(self):
+        for suffix in ("svg", "pdf"):
+            self.cadt("render", "plate.geojson", "--domain", "even_odd", "-o", f"r.{suffix}", "--size", 300)
+            self.cadt("triangulate", "plate.geojson", "--domain", "even_odd", "-o", f"t.{suffix}", "--width", 300, "--order", "fast")
+            self.assertEqual(self.path(f"r.{suffix}").read_bytes(), self.path(f"t.{suffix}").read_bytes())
+        self.cadt("render", "plate.geojson", "-o", "r.svg", "--size", "300x100")
+        self.assertIn("height=\"100\"", self.path("r.svg").read_text())
+
+    def test_what_does_not_fit(self):
+        self.write("p.xy", "0 0\n1 0\n0 1\n")
+        plate = ["render", "plate.geojson", "-o", "p.png"]
+        self.fails(2, "render", "p.xy", "-o", "p.png", "--domain", "outer", says="--domain is about segments")
+        self.fails(2, "render", "p.xy", "-o", "p.png", "--colour", "region", says="with segments only")
+        self.fails(2, "render", "--generate", "uniform", "-o", "p.png", "--segments", "plate.geojson", says="--generate")
+        self.fails(2, *plate, "--segments", "plate.geojson", says="segments of its own")
+        self.fails(2, *plate, "--crossing", "grid=0", says="grid=0.001")
+        self.fails(2, *plate, "--colour", "level", says="grows only")
+        self.fails(2, *plate, "--colour", "height", says="third column")
+        self.fails(2, *plate, "--growth", 4, says="not shown as it grows")
+        self.fails(2, "render", "plate.geojson", "-o", "film.mp4", says="not shown as it grows")
+        self.fails(2, "render", "p.xy", "--segments", "lines.png", "-o", "lines.png", says="this is the input")
+        self.assertEqual(self.names(), ["p.xy", "plate.geojson"])
 
 
 class RenderErrorTest(CliTest):

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """cadt view with real keys and a real mouse: open, zoom, pick, grow, edit, screenshots; and all that can go wrong."""
+import json
 import re
 import subprocess
 import unittest
@@ -122,6 +123,43 @@ class Look(WindowTest):
         told = self.screenshot("S")
         self.key("Escape")
         self.assertGreater(difference(told, self.screenshot("S")), 1.0, "a message says what has happened")
+        self.quit()
+
+
+class Segments(WindowTest):
+    """Meshes with segments: what is drawn of them, and what there is for points alone."""
+
+    def test_a_polygon_with_a_hole(self):
+        rings = [[[0, 0], [10, 0], [10, 10], [0, 10]], [[3, 3], [3, 7], [7, 7], [7, 3]]]
+        (self.folder / "plate.json").write_text(json.dumps(rings))
+        (self.folder / "bow.json").write_text("[[[0, 0], [4, 4], [4, 0], [0, 4]]]")
+        self.view("plate.json", "bow.json", "--domain", "even_odd", "--size", SIZE)
+        self.assertIn("8 points 8 triangles 8 constrained edges by copy", self.wait("loaded plate.json"))
+        with self.subTest("the picture is that of cadt render"):
+            shot = self.screenshot()
+            self.cadt("render", "plate.json", "--domain", "even_odd", "--size", f"{WIDTH - PANEL}x{HEIGHT}", "-o", "render.png")
+            self.assertLess(difference(shot, self.folder / "render.png"), 3.0)
+        with self.subTest("the hole has no triangles"):
+            self.click(*MIDDLE)
+            self.click(MIDDLE[0], MIDDLE[1] + 260)
+            self.wait("picked triangle")
+            self.assertEqual(sum(line.startswith("picked") for line in self.seen), 1)
+            self.key("Tab")
+            self.key("Escape")
+        with self.subTest("what there is for points alone"):
+            for key in "vgemt":
+                self.key(key)
+                self.assertIn("This mesh has segments", self.wait("message"))
+        with self.subTest("segments that cross"):
+            self.key("Next")
+            message = self.wait("message This file cannot be shown")
+            self.assertIn("1 pair of segments crosses", message)
+        self.quit()
+
+    def test_interop_cannot_be_forced(self):
+        (self.folder / "line.edg").write_text("1\n0 0 1 1\n")
+        self.view("line.edg", "--size", SIZE, "--interop", "opencl")
+        self.assertIn("leave --interop out", self.wait("message The display cannot show this"))
         self.quit()
 
 

@@ -56,7 +56,7 @@ struct Drawing {
     style.colour = colour;
     style.line_width = 0;
     renderer.update(buffers);
-    prepare_colour(renderer, buffers, scene.points, scene.mesh, colour);
+    prepare_colour(renderer, buffers, io::picture::scene_of(scene.points, scene.mesh), colour);
   }
   Image draw(std::span<const Stroke> strokes = {}) {
     renderer.draw(buffers, camera, style, strokes);

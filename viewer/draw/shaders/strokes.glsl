@@ -1,17 +1,19 @@
-// Line segments of one colour and width over the mesh: the hull, Voronoi cells, what is selected. 32 items a segment.
+// Line segments of one colour and width over the mesh: the hull, Voronoi cells, constrained edges. 32 items a segment.
 layout(local_size_x = 32) in;
 layout(std430, binding = 3) readonly buffer Segments { dvec4 segment[]; };
+layout(std430, binding = 4) readonly buffer Edges { ivec2 edge[]; };  // between points of the mesh
 layout(std430, binding = 9) buffer Overlay { uint over[]; };
 layout(location = 0) uniform uint segment_count;
 layout(location = 1) uniform uint ink;  // 0xRRGGBB
 layout(location = 2) uniform float width;  // pixels
+layout(location = 3) uniform bool edges;   // these, and not the segments
 
 void main() {
   const uint mine = gl_WorkGroupID.x + gl_WorkGroupID.y * 32768u;
   if (mine >= segment_count) return;
-  const dvec4 s = segment[mine];
   const ivec2 size = samples / side;
-  dvec2 p = place_point(s.xy) / double(side), q = place_point(s.zw) / double(side);
+  dvec2 p = (edges ? place(edge[mine].x) : place_point(segment[mine].xy)) / double(side);
+  dvec2 q = (edges ? place(edge[mine].y) : place_point(segment[mine].zw)) / double(side);
   // Along the longer axis, one column (or row) of pixels after the other.
   const dvec2 d = q - p;
   const bool steep = abs(d.y) > abs(d.x);

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <fstream>
@@ -80,6 +81,46 @@ TEST(Load, TriangulatesAGeneratedSet) {
   ASSERT_TRUE(loaded->mesh);
   EXPECT_EQ(loaded->mesh->hash(), triangulate(loaded->points.view(), options).hash());
   EXPECT_EQ(loaded->device.backend, Backend::host);
+}
+
+TEST(Load, TriangulatesPointsWithSegments) {
+  // A square with a square hole: the triangles around it, in a ring.
+  const std::vector<double> xy{0, 0, 3, 0, 3, 3, 0, 3, 1, 1, 2, 1, 2, 2, 1, 2};
+  const std::vector<Segment> rings{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}};
+  Source source;
+  source.path = "plate.poly";
+  ConstraintOptions constraints;
+  constraints.domain = Domain::even_odd;
+  source.constrain = [&](const Options& options) {
+    return Constrained{{.xy = xy, .height = std::vector<double>(8, 1.0), .format = {}},
+                       triangulate_constrained(std::span<const double>(xy), rings, constraints, options)};
+  };
+  std::shared_ptr<Loaded> loaded;
+  Work work([] {});
+  work.start([&](Work::Desk& desk) { loaded = load(source, {}, nullptr, 0, desk); });
+  ASSERT_FALSE(wait_for(work));
+  ASSERT_TRUE(loaded->mesh && loaded->inside);
+  EXPECT_EQ(loaded->heights.size(), 8u);
+  const auto triangles = loaded->triangles(), neighbours = loaded->neighbors();
+  ASSERT_EQ(triangles.size(), 24u);
+  ASSERT_EQ(neighbours.size(), 24u);
+  for (std::size_t t = 0; t < 8; ++t) {
+    int known = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t other = neighbours[3 * t + k];
+      if (other < 0) continue;
+      ++known;
+      for (const std::size_t j : {(k + 1) % 3, (k + 2) % 3}) {  // both ends of the edge between them
+        const auto corners = triangles.subspan(3 * static_cast<std::size_t>(other), 3);
+        EXPECT_NE(std::ranges::find(corners, triangles[3 * t + j]), corners.end()) << t << ' ' << other;
+      }
+    }
+    EXPECT_EQ(known, 2) << t;
+  }
+  const io::picture::Scene scene = loaded->scene();
+  EXPECT_EQ(scene.segments.size(), 8u);
+  EXPECT_EQ(scene.region.size(), 8u);
+  EXPECT_TRUE(scene.hull.empty());
 }
 
 TEST(Load, ATriangulationIsCancelled) {

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes of regions as outputs: the options and the work that cadt triangulate, polygons and labels share.
+// Meshes of regions as outputs, of cadt triangulate, polygons and labels.
 #pragma once
 
-#include "outputs.hpp"
-#include "progress.hpp"
+#include "output_options.hpp"
 
 #include <cadt/constrained.hpp>
 #include <cadt/io/points_file.hpp>
 #include <cadt/io/region_file.hpp>
-
-#include <CLI/CLI.hpp>
 
 #include <cstdint>
 #include <string>
@@ -17,14 +14,8 @@
 
 namespace cadt::cli {
 
-struct RegionOutputOptions {
-  std::vector<std::string> outputs, formats;
-  int base = 0, width = 1600;
-  bool ascii = false;
-};
-
-/// Adds -o, -t, --base, --ascii, --width.
-void add_region_output_options(CLI::App& command, RegionOutputOptions& options);
+/// add_output_options() for formats of regions.
+void add_region_output_options(CLI::App& command, OutputOptions& options);
 
 /// What is written, in arrays of its own.
 struct RegionResult {
@@ -37,8 +28,8 @@ struct RegionResult {
 /// Appends the triangles inside, with their regions, and the constrained edges; points count from `first_point`.
 void append_inside(RegionResult& result, const ConstrainedTriangulation& mesh, std::int32_t first_point = 0);
 
-/// Writes all outputs; an interruption between two of them names those that are complete.
-void write_regions(const std::vector<Output>& outputs, const RegionOutputOptions& options, const RegionResult& result,
+/// As write_outputs().
+void write_regions(const std::vector<Output>& outputs, const OutputOptions& options, const RegionResult& result,
                    ProgressLine& line);
 
 }  // namespace cadt::cli

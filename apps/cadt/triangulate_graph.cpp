@@ -71,7 +71,7 @@ int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
       const auto hull = mesh.mesh().hull();
       result.hull.assign(hull.begin(), hull.end());
     }
-    write_regions(report.outputs, {{}, {}, options.base, options.width, options.ascii}, result, line);
+    write_regions(report.outputs, options.output, result, line);
     report.write_seconds = watch.lap();
   }
   print_reports(options, report);

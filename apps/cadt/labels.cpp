@@ -21,7 +21,7 @@ namespace {
 
 struct LabelsCommand {
   std::string image;
-  RegionOutputOptions output;
+  OutputOptions output;
   DeviceOptions device;
   bool quiet = false;
 };
@@ -54,11 +54,7 @@ int run(const LabelsCommand& command) {
       "pixels      {} x {}\nlabels      {}\nregions     {}\npoints      {}\nsegments    {}\ntriangles   {}\n",
       image.width, image.height, labels.size(), mesh.number_of_regions(), boundary.xy.size() / 2,
       boundary.segments.size(), mesh.mesh().number_of_triangles());
-  if (outputs.empty()) {
-    print(summary);
-  } else if (!command.quiet) {
-    say(summary);
-  }
+  print_summary(summary, outputs.empty(), command.quiet);
   return exit_done;
 }
 

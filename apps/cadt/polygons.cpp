@@ -23,7 +23,7 @@ namespace {
 struct PolygonsCommand {
   std::string input, format;
   SegmentOptions segments;
-  RegionOutputOptions output;
+  OutputOptions output;
   DeviceOptions device;
   bool strict = false, quiet = false;
 };
@@ -160,11 +160,7 @@ int run(const PolygonsCommand& command) {
                                     result.points.size(), result.triangles.size() / 3);
   if (left_out != 0) summary += fmt::format("no inside   {} polygons\n", left_out);
   if (file.other_geometries != 0) summary += fmt::format("left out    {} points and lines\n", file.other_geometries);
-  if (outputs.empty()) {
-    print(summary);
-  } else if (!command.quiet) {
-    say(summary);
-  }
+  print_summary(summary, outputs.empty(), command.quiet);
   return exit_done;
 }
 

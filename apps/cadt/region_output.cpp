@@ -1,34 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "region_output.hpp"
 
-#include "failure.hpp"
-#include "input.hpp"
-#include "interrupt.hpp"
 #include "text.hpp"
-
-#include <fmt/format.h>
 
 namespace cadt::cli {
 
-void add_region_output_options(CLI::App& command, RegionOutputOptions& o) {
-  command
-      .add_option("-o,--output", o.outputs,
-                  "write the mesh or a picture of it; may be given several times; '-' is standard output (with -t)")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  command
-      .add_option("-t,--to", o.formats,
-                  "format of the outputs: " + join(io::region_write_formats(), " ") +
-                      "; default: from each suffix. Once for all outputs, or once for each (auto: from the suffix)")
-      ->type_name("FORMAT")
-      ->allow_extra_args(false);
-  command.add_option("--base", o.base, "first index in .node .ele .poly .edge files: 0 or 1 (default: 0)")
-      ->type_name("0|1")
-      ->check(CLI::IsMember({0, 1}).description(""));
-  command.add_flag("--ascii", o.ascii, "text instead of binary where the format has both (ply)");
-  command.add_option("--width", o.width, "width of pictures (default: 1600)")
-      ->type_name("PIXELS")
-      ->check(CLI::Range(16, 32768).description(""));
+void add_region_output_options(CLI::App& command, OutputOptions& o) {
+  add_output_options(command, o, join(io::region_write_formats(), " "), ".node .ele .poly .edge");
 }
 
 io::RegionMesh RegionResult::view() const {
@@ -58,32 +36,12 @@ RegionResult region_result(const Graph& graph, const ConstrainedTriangulation& m
   return result;
 }
 
-void write_regions(const std::vector<Output>& outputs, const RegionOutputOptions& options, const RegionResult& result,
+void write_regions(const std::vector<Output>& outputs, const OutputOptions& options, const RegionResult& result,
                    ProgressLine& line) {
   const io::RegionMesh mesh = result.view();
-  io::WriteOptions write;
-  write.base = options.base;
-  write.ascii = options.ascii;
-  write.width = options.width;
-  std::vector<std::string> written;
-  for (const Output& output : outputs) {
-    {
-      const InPhase phase(writing_phase(output.path));
-      line.step(fmt::format("writing {}", display_name(output.path, false)));
-      write.format = output.format;
-      io::write_region_mesh(output.path, mesh, write);
-      if (output.path == "-") finish_stdout();
-    }
-    written.push_back(display_name(output.path, false));
-    try {
-      check_interrupt();
-    } catch (const Cancelled&) {
-      line.clear();
-      say(fmt::format("cadt: complete before the interruption: {}\n", join(written)));
-      throw;
-    }
-  }
-  line.clear();
+  write_outputs(outputs, options, line, [&](const std::string& path, const io::WriteOptions& how) {
+    io::write_region_mesh(path, mesh, how);
+  });
 }
 
 }  // namespace cadt::cli

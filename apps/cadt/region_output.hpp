@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes of regions as outputs: the options and the work that cadt triangulate, polygons and labels share.
+// Meshes of regions as outputs, of cadt triangulate, polygons and labels.
 #pragma once
 
 #include "graph.hpp"
-#include "outputs.hpp"
-#include "progress.hpp"
+#include "output_options.hpp"
 
 #include <cadt/constrained.hpp>
 #include <cadt/io/points_file.hpp>
 #include <cadt/io/region_file.hpp>
-
-#include <CLI/CLI.hpp>
 
 #include <cstdint>
 #include <string>
@@ -18,14 +15,8 @@
 
 namespace cadt::cli {
 
-struct RegionOutputOptions {
-  std::vector<std::string> outputs, formats;
-  int base = 0, width = 1600;
-  bool ascii = false;
-};
-
-/// Adds -o, -t, --base, --ascii, --width.
-void add_region_output_options(CLI::App& command, RegionOutputOptions& options);
+/// add_output_options() for formats of regions.
+void add_region_output_options(CLI::App& command, OutputOptions& options);
 
 /// What is written, in arrays of its own.
 struct RegionResult {
@@ -43,8 +34,8 @@ void append_inside(RegionResult& result, const ConstrainedTriangulation& mesh, s
 /// What is written of a mesh with segments; of all triangles also their hull.
 [[nodiscard]] RegionResult region_result(const Graph& graph, const ConstrainedTriangulation& mesh, Domain domain);
 
-/// Writes all outputs; an interruption between two of them names those that are complete.
-void write_regions(const std::vector<Output>& outputs, const RegionOutputOptions& options, const RegionResult& result,
+/// As write_outputs().
+void write_regions(const std::vector<Output>& outputs, const OutputOptions& options, const RegionResult& result,
                    ProgressLine& line);
 
 }  // namespace cadt::cli

@@ -25,9 +25,9 @@ namespace {
 std::vector<Output> check_outputs(const TriangulateOptions& options) {
   const bool segments = has_segments(options.input, options.segments);
   const auto formats = segments ? io::region_write_formats() : io::mesh_write_formats();
-  auto outputs = plan_outputs(options.outputs, options.formats, formats, options.input.path);
+  auto outputs = plan_outputs(options.output.outputs, options.output.formats, formats, options.input.path);
   // Nor may the other input be lost.
-  static_cast<void>(plan_outputs(options.outputs, options.formats, formats, options.segments.file));
+  static_cast<void>(plan_outputs(options.output.outputs, options.output.formats, formats, options.segments.file));
   if (segments && options.stabilize != "off")
     throw Failure(exit_usage, "--stabilize is for points without segments: leave it out");
   if (options.timing && options.stats.empty())
@@ -82,36 +82,6 @@ std::size_t differing_triangles(const io::PointSet& points, const std::string& n
   return count_differing(mesh, triangulate_file(points, name, as_floats, options));
 }
 
-void write_outputs(const TriangulateOptions& options, const std::vector<Output>& outputs, const io::PointSet& points,
-                   const Triangulation& mesh, ProgressLine& line) {
-  std::vector<std::string> written;
-  for (const Output& output : outputs) {
-    io::WriteOptions write;
-    write.format = output.format;
-    write.base = options.base;
-    write.ascii = options.ascii;
-    write.width = options.width;
-    {
-      const InPhase phase(writing_phase(output.path));
-      line.step(fmt::format("writing {}", display_name(output.path, false)));
-      if (output.format == "png" && is_large_picture(points, mesh)) {
-        write_large_picture(output.path, points, mesh, options.width);
-      } else {
-        io::write_mesh(output.path, points, mesh, write);
-      }
-      if (output.path == "-") finish_stdout();
-    }
-    written.push_back(display_name(output.path, false));
-    try {
-      check_interrupt();
-    } catch (const Cancelled&) {
-      line.clear();
-      say(fmt::format("cadt: complete before the interruption: {}\n", join(written)));
-      throw;
-    }
-  }
-}
-
 int run(const TriangulateOptions& options) {
   RunReport report;
   report.outputs = check_outputs(options);
@@ -159,35 +129,21 @@ int run(const TriangulateOptions& options) {
   }
 
   watch.lap();
-  write_outputs(options, report.outputs, points, mesh, line);
+  write_outputs(report.outputs, options.output, line, [&](const std::string& path, const io::WriteOptions& how) {
+    if (how.format == "png" && is_large_picture(points, mesh)) {
+      write_large_picture(path, points, mesh, how.width);
+    } else {
+      io::write_mesh(path, points, mesh, how);
+    }
+  });
   report.write_seconds = report.outputs.empty() ? 0 : watch.lap();
-  line.clear();
   print_reports(options, report);
   return exit_done;
 }
 
-void add_output_options(CLI::App& command, TriangulateOptions& o) {
-  command
-      .add_option("-o,--output", o.outputs,
-                  "write the mesh or a picture of it; may be given several times; '-' is "
-                  "standard output (with -t)")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  command
-      .add_option("-t,--to", o.formats,
-                  "format of the outputs: " + join(io::mesh_write_formats(), " ") +
-                      ", with segments poly edge geojson, too; default: from each suffix. Once for all outputs, or "
-                      "once for each (auto: "
-                      "from the suffix)")
-      ->type_name("FORMAT")
-      ->allow_extra_args(false);
-  command.add_option("--base", o.base, "first index in .node .ele .neigh files: 0 or 1 (default: 0)")
-      ->type_name("0|1")
-      ->check(CLI::IsMember({0, 1}).description(""));
-  command.add_flag("--ascii", o.ascii, "text instead of binary where the format has both (ply)");
-  command.add_option("--width", o.width, "width of pictures (default: 1600)")
-      ->type_name("PIXELS")
-      ->check(CLI::Range(16, 32768).description(""));
+void add_mesh_options(CLI::App& command, TriangulateOptions& o) {
+  add_output_options(command, o.output, join(io::mesh_write_formats(), " ") + ", with segments poly edge geojson, too",
+                     ".node .ele .neigh");
   command
       .add_option("--order", o.order,
                   "order of the triangles: canonical (equal files from every device and run) or fast")
@@ -288,12 +244,7 @@ void print_reports(const TriangulateOptions& options, const RunReport& report) {
     const InPhase phase(writing_phase(options.stats));
     write_text(options.stats, statistics_json(report));
   }
-  const std::string summary = summary_text(report);
-  if (report.outputs.empty() && options.stats != "-") {
-    print(summary);
-  } else if (!options.quiet) {
-    say(summary);
-  }
+  print_summary(summary_text(report), report.outputs.empty() && options.stats != "-", options.quiet);
   if (options.stats_table()) say("\n" + statistics_text(report));
 }
 
@@ -304,7 +255,7 @@ void add_triangulate(CLI::App& app, Action& chosen) {
   add_input_options(*command, options->input, "IN", "file with points, or with points and segments", true);
   add_floats_option(*command, options->input);
   add_segment_options(*command, options->segments);
-  add_output_options(*command, *options);
+  add_mesh_options(*command, *options);
   add_work_options(*command, *options);
   command->footer(
       "Without -o the summary goes to standard output, with -o to standard error.\n\n"

@@ -5,8 +5,7 @@
 #include "device_options.hpp"
 #include "graph.hpp"
 #include "input.hpp"
-#include "outputs.hpp"
-#include "progress.hpp"
+#include "output_options.hpp"
 #include "report.hpp"
 
 #include <cadt/triangulation.hpp>
@@ -21,15 +20,14 @@ namespace cadt::cli {
 struct TriangulateOptions {
   InputOptions input;
   SegmentOptions segments;
-  std::vector<std::string> outputs, formats;
+  OutputOptions output;
   DeviceOptions device;
   std::string order = "canonical", stats;
   std::string strategy = "auto";
   std::string stabilize = "off";
   std::optional<unsigned> flip_threshold;
   std::optional<double> epsilon;
-  int base = 0, width = 1600;
-  bool ascii = false, strict = false, verify = false, timing = false, kernel_times = false, quiet = false;
+  bool strict = false, verify = false, timing = false, kernel_times = false, quiet = false;
 
   // A bare --stats is the table for people.
   [[nodiscard]] bool stats_table() const { return stats == "table"; }

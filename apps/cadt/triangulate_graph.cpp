@@ -63,7 +63,7 @@ int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
   watch.lap();
   if (!report.outputs.empty()) {
     const RegionResult result = region_result(graph, mesh, constraints.domain);
-    write_regions(report.outputs, {{}, {}, options.base, options.width, options.ascii}, result, line);
+    write_regions(report.outputs, options.output, result, line);
     report.write_seconds = watch.lap();
   }
   print_reports(options, report);

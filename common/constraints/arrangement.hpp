@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cadt/constrained.hpp>
+#include <cadt/stop_token.hpp>
 
 #include "common/constraints/implicit_point.hpp"
 
@@ -58,7 +59,8 @@ struct Arrangement {
 [[nodiscard]] Arrangement sort_segments(PointsView points, std::span<const Segment> segments);
 
 /// The whole. It does not depend on the number of threads, nor on the order and direction of the input but for its
-/// numbers. O((n + length of chains) log n). \throws as sort_segments
-[[nodiscard]] Arrangement arrange(PointsView points, std::span<const Segment> segments, unsigned threads);
+/// numbers. O((n + length of chains) log n). \throws as sort_segments, and Cancelled
+[[nodiscard]] Arrangement arrange(PointsView points, std::span<const Segment> segments, unsigned threads,
+                                  const stop_token& stop = {});
 
 }  // namespace cadt::constraints

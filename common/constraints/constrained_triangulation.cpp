@@ -7,6 +7,7 @@
 
 #include "common/constraints/constrained_data.hpp"
 #include "common/constraints/constraints.hpp"
+#include "common/constraints/crossings.hpp"
 #include "common/constraints/domains.hpp"
 #include "common/constraints/exact_crossings.hpp"
 #include "common/constraints/exact_triangulation.hpp"
@@ -58,8 +59,9 @@ void chain_on_line(PointsView points, std::span<const Segment> segments, Data& d
   }
 }
 
-[[noreturn]] void refuse_crossings(PointsView points, std::span<const Segment> segments, unsigned threads) {
-  std::vector<std::array<std::int32_t, 2>> pairs = find_crossings(points, segments, threads);
+[[noreturn]] void refuse_crossings(PointsView points, std::span<const Segment> segments, const Options& options) {
+  std::vector<std::array<std::int32_t, 2>> pairs =
+      constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, options.stop), options.stop);
   if (pairs.empty()) throw InternalError("segments were found to cross, but no pair of them does");
   std::string message =
       std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair of segments crosses: " : " pairs of segments cross: ");
@@ -102,7 +104,7 @@ bool constrain_uncrossed(const State& state, PointsView points, std::span<const 
 void constrain_exactly(const State& state, PointsView points, std::span<const Segment> segments, Data& data) {
   const Triangulation delaunay = triangulate_on_host(state, points);
   constraints::ExactMesh exact =
-      constraints::triangulate_with_crossings(points, segments, delaunay, state->options.threads);
+      constraints::triangulate_with_crossings(points, segments, delaunay, state->options.threads, state->options.stop);
   data.mesh = triangulation_of(delaunay, exact, data.edge_flags);
   data.added = std::move(exact.added_xy);
   data.parents = std::move(exact.parents);
@@ -113,7 +115,7 @@ void constrain_exactly(const State& state, PointsView points, std::span<const Se
 void constrain_on_grid(const State& state, PointsView points, std::span<const Segment> segments, double grid,
                        Data& data) {
   const constraints::SnappedSegments snapped =
-      constraints::snap_segments(points, segments, grid, state->options.threads);
+      constraints::snap_segments(points, segments, grid, state->options.threads, state->options.stop);
   const std::vector<Segment> pieces = polyline_segments(snapped.offsets, snapped.vertices);
   Data divided;
   if (!constrain_uncrossed(state, snapped.xy, pieces, divided))
@@ -178,7 +180,7 @@ ConstrainedTriangulation constrain_on(const State& state, PointsView points, std
     constrain_on_grid(state, points, segments, constraints.grid, *data);
     points = data->moved;
   } else if (!constrain_uncrossed(state, points, segments, *data)) {
-    if (constraints.crossing == Crossing::error) refuse_crossings(points, segments, state->options.threads);
+    if (constraints.crossing == Crossing::error) refuse_crossings(points, segments, state->options);
     constrain_exactly(state, points, segments, *data);
   }
   add_domains(state, points, constraints, *data);
@@ -270,7 +272,7 @@ DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& po
   std::vector<Segment> copied(job.count);
   ctx.device.read(*job.segments, 0, copied.data(), job.count * sizeof(Segment));
   ctx.device.finish();
-  refuse_crossings(xy, copied, state_->options.threads);
+  refuse_crossings(xy, copied, state_->options);
 }
 
 ConstrainedTriangulation::ConstrainedTriangulation() : data_(std::make_shared<Data>()) {}

@@ -10,7 +10,8 @@
 
 namespace cadt::constraints {
 
-/// All pairs of input segments that cross, ascending.
-[[nodiscard]] std::vector<std::array<std::int32_t, 2>> crossing_pairs(const Arrangement& arrangement);
+/// All pairs of input segments that cross, ascending. \throws Cancelled
+[[nodiscard]] std::vector<std::array<std::int32_t, 2>> crossing_pairs(const Arrangement& arrangement,
+                                                                      const stop_token& stop = {});
 
 }  // namespace cadt::constraints

@@ -59,15 +59,19 @@ MeshEditor edit(const Arrangement& in, const Triangulation& delaunay) {
 }  // namespace
 
 ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment> segments,
-                                     const Triangulation& delaunay, unsigned threads) {
-  const Arrangement in = arrange(points, segments, threads);
+                                     const Triangulation& delaunay, unsigned threads, const stop_token& stop) {
+  const Arrangement in = arrange(points, segments, threads, stop);
   const std::size_t ranks = in.points.size(), crossings = in.crossings.size();
   MeshEditor mesh = edit(in, delaunay);
-  for (const std::int32_t c : insertion_order(in)) mesh.insert_vertex(static_cast<std::int32_t>(ranks) + c);
-  if (!mesh.triangles().empty())
-    for (std::size_t wall = 0; wall + 1 < in.chain_offsets.size(); ++wall)
-      mesh.insert_chain(std::span(in.chain_vertices.data() + in.chain_offsets[wall],
-                                  in.chain_vertices.data() + in.chain_offsets[wall + 1]));
+  for (const std::int32_t c : insertion_order(in)) {
+    check(stop);
+    mesh.insert_vertex(static_cast<std::int32_t>(ranks) + c);
+  }
+  for (std::size_t wall = 0; wall + 1 < in.chain_offsets.size() && !mesh.triangles().empty(); ++wall) {
+    check(stop);
+    mesh.insert_chain(std::span(in.chain_vertices.data() + in.chain_offsets[wall],
+                                in.chain_vertices.data() + in.chain_offsets[wall + 1]));
+  }
 
   ExactMesh out;
   // Added vertices in the order of their pairs

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cadt/constrained.hpp>
+#include <cadt/stop_token.hpp>
 
 #include <array>
 #include <cstdint>
@@ -30,8 +31,9 @@ struct ExactMesh {
 /// overlap; several that cross at one place make one vertex. Triangles are in no particular order.
 ///
 /// O((n + length of chains) log n) expected for well-spread input; vertices and edges are inserted by one thread. Takes
-/// about 100 bytes a vertex more than the result. \throws InputError as find_crossings, LimitError
+/// about 100 bytes a vertex more than the result. \throws InputError as find_crossings, LimitError, Cancelled
 [[nodiscard]] ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment> segments,
-                                                   const Triangulation& delaunay, unsigned threads);
+                                                   const Triangulation& delaunay, unsigned threads,
+                                                   const stop_token& stop = {});
 
 }  // namespace cadt::constraints

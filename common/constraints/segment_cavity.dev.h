@@ -245,7 +245,7 @@ CADT_KERNEL(cadt_release_cavities, CADT_GLOBAL const cadt_u32* ring_triangle, ca
             CADT_GLOBAL cadt_u32* claims) {
   CADT_FOR(x, count, grain) {
     const cadt_u32 t = ring_triangle[x] & CADT_RING_NONE;
-    if (t != CADT_RING_NONE) claims[t] = CADT_NONE;
+    if (t != CADT_RING_NONE) cadt_store_relaxed(claims + t, CADT_NONE); /* several had claimed it */
   }
 }
 

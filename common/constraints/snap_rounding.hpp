@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cadt/constrained.hpp>
+#include <cadt/stop_token.hpp>
 
 #include <array>
 #include <cstdint>
@@ -30,8 +31,8 @@ struct SnappedSegments {
 /// O((n + length of chains) log n + sum of the tree's boxes along segments), some square root of n for each that is
 /// long. The result does not depend on threads, nor on order and direction but for numbers. \throws InputError as
 /// find_crossings; OptionError unless 0 < grid < infinity and multiples of the grid are doubles up to the largest
-/// coordinate, or there are less than 2^25 of them, where their rounding does no harm
+/// coordinate, or there are less than 2^25 of them, where their rounding does no harm; Cancelled
 [[nodiscard]] SnappedSegments snap_segments(PointsView points, std::span<const Segment> segments, double grid,
-                                            unsigned threads);
+                                            unsigned threads, const stop_token& stop = {});
 
 }  // namespace cadt::constraints

@@ -2,6 +2,7 @@
 #include "common/constraints/sweep.hpp"
 
 #include "common/constraints/sweep_status.hpp"
+#include "common/constraints/tasks.hpp"
 
 #include <algorithm>
 #include <queue>
@@ -19,8 +20,8 @@ using exact::Point;
 // no two walls are on the same line where the sweep line is.
 class Sweep {
  public:
-  Sweep(const Arrangement& arrangement, const std::vector<std::int32_t>& starts)
-      : in_(arrangement), starts_(starts), exact_(arrangement.lines), queue_(Later{exact_}) {
+  Sweep(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, const stop_token& stop)
+      : in_(arrangement), starts_(starts), stop_(stop), exact_(arrangement.lines), queue_(Later{exact_}) {
     node_of_.assign(in_.segments.size(), SweepStatus::none);
     wall_of_.assign(in_.segments.size(), none);
     reach_.assign(in_.segments.size(), none);
@@ -36,8 +37,10 @@ class Sweep {
         do queue_.pop();
         while (!queue_.empty() && exact_.compare(queue_.top(), crossing) == 0);
         if (order < 0) pass_crossing(crossing);
+        check(stop_);
       }
       pass_point(r);
+      check(stop_);
     }
     return std::move(out_);
   }
@@ -222,6 +225,7 @@ class Sweep {
 
   const Arrangement& in_;
   const std::vector<std::int32_t>& starts_;
+  const stop_token& stop_;
   exact::ImplicitPoints exact_;
   SweepStatus status_;
   std::vector<std::int32_t> node_of_;  // of walls in the status
@@ -235,8 +239,8 @@ class Sweep {
 }  // namespace
 
 SlabFindings sweep_slab(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, std::int32_t first,
-                        std::int32_t last) {
-  return Sweep(arrangement, starts).run(first, last);
+                        std::int32_t last, const stop_token& stop) {
+  return Sweep(arrangement, starts, stop).run(first, last);
 }
 
 }  // namespace cadt::constraints

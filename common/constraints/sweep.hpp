@@ -30,7 +30,8 @@ struct SlabFindings {
 /// "Algorithms for reporting and counting geometric intersections" (IEEE Trans. Computers 28, 1979), for any input: all
 /// segments through a vertex are handled at once, as in M. de Berg et al., "Computational Geometry", chapter 2.
 /// O((n + contacts) log n). Reads the arrangement's points, segments and lines only. \pre first < last
+/// \throws Cancelled
 [[nodiscard]] SlabFindings sweep_slab(const Arrangement& arrangement, const std::vector<std::int32_t>& starts,
-                                      std::int32_t first, std::int32_t last);
+                                      std::int32_t first, std::int32_t last, const stop_token& stop = {});
 
 }  // namespace cadt::constraints

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A few independent tasks of different size on threads.
+// A few independent tasks of different size on threads, and how they end early.
 #pragma once
+
+#include <cadt/errors.hpp>
+#include <cadt/stop_token.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -13,6 +16,11 @@ namespace cadt::constraints {
 /// The number of threads that 0 stands for is that of the cores.
 [[nodiscard]] inline unsigned threads_or_all(unsigned threads) {
   return threads != 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
+}
+
+/// \throws Cancelled if a stop was requested
+inline void check(const stop_token& stop) {
+  if (stop.stop_requested()) throw Cancelled();
 }
 
 /// Calls body(i) for each i in [0, count), each once, on up to `threads` threads. As reduce_each, without a result.

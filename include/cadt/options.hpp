@@ -145,8 +145,8 @@ struct Options {
   /// Source of device memory. Null: the library allocates it.
   std::shared_ptr<DeviceAllocator> allocator;
   StatisticsDetail statistics = StatisticsDetail::counters;
-  /// Checked between launches; once triggered, the call throws Cancelled. std::stop_token where the standard library
-  /// has it.
+  /// Checked between launches, and while crossings of segments are found; once triggered, the call throws Cancelled.
+  /// std::stop_token where the standard library has it.
   cadt::stop_token stop;
   /// Called on the calling thread between launches. Must not throw.
   std::function<void(const Progress&)> progress;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls each step of which fails once: a typed error, nothing stays allocated, and the same triangulator goes on.
+// Calls each step of which fails once, or which are stopped: a typed error, nothing stays allocated, and the same
+// triangulator goes on.
 #pragma once
 
 #include <functional>
@@ -90,6 +91,45 @@ class EveryStep : public ResidentTest {
     }
     EXPECT_EQ(faults->live_buffers(), 0U);
     EXPECT_EQ(faults->live_bytes(), 0U);
+  }
+
+  /// The caller stops `call` at each place where it tells its progress: nothing stays allocated, and the next call is as
+  /// ever.
+  static void cancel_each(const Options& with, const Call& call) {
+    const auto faults = std::make_shared<Faults>();
+    {
+      const Injection injection(faults);
+      Triangulator triangulator(with);
+      std::size_t calls = 0;
+      triangulator.options().progress = [&](const Progress&) { ++calls; };
+      const Outcome expected = call(triangulator);
+      const std::size_t all = calls;
+      EXPECT_GT(all, 3U);
+      for (std::size_t k = 0; k < all; ++k) {
+        SCOPED_TRACE(k);
+        cadt::stop_source source;
+        triangulator.options().stop = source.get_token();
+        calls = 0;
+        triangulator.options().progress = [&](const Progress&) {
+          if (calls++ == k) source.request_stop();
+        };
+        bool stopped = false;
+        try {
+          (void)call(triangulator);
+        } catch (const Cancelled&) {
+          stopped = true;
+        }
+        EXPECT_EQ(stopped, calls > k);
+        triangulator.options().stop = {};
+        triangulator.options().progress = nullptr;
+        triangulator.release_memory();
+        EXPECT_EQ(faults->live_bytes(), 0U);
+        const Outcome next = call(triangulator);
+        EXPECT_EQ(next.hash, expected.hash);
+        EXPECT_LE(next.peak, expected.peak);
+      }
+    }
+    EXPECT_EQ(faults->live_buffers(), 0U);
   }
 
   static void expect_typed(Triangulator& triangulator, const Call& call, const Faults& faults, Step step,

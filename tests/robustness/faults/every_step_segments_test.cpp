@@ -46,21 +46,33 @@ TEST_P(EveryStep, SegmentsOfTheDevice) {
 }
 
 /// What crosses is found on the device, and then all pairs on the host.
-TEST_P(EveryStep, SegmentsThatCross) {
+Call crossing_call(Crossing crossing) {
   Walls walls;
   walls.segments.push_back({static_cast<std::int32_t>(walls.xy.size() / 2) - 1, 200});
-  for (const Crossing crossing : {Crossing::error, Crossing::exact, Crossing::grid}) {
-    ConstraintOptions constraints;
-    constraints.crossing = crossing;
-    constraints.grid = 0.01;
-    fail_each(options(), [&](Triangulator& t) {
-      try {
-        return constrained_outcome(t.triangulate_constrained(Reals(walls.xy), walls.segments, constraints));
-      } catch (const CrossingError& error) {
-        return Outcome{std::to_string(error.pairs().size()) + " pairs", 0};
-      }
-    });
-  }
+  ConstraintOptions constraints;
+  constraints.crossing = crossing;
+  constraints.grid = 0.01;
+  return [walls, constraints](Triangulator& t) {
+    try {
+      return constrained_outcome(t.triangulate_constrained(Reals(walls.xy), walls.segments, constraints));
+    } catch (const CrossingError& error) {
+      return Outcome{std::to_string(error.pairs().size()) + " pairs", 0};
+    }
+  };
+}
+
+TEST_P(EveryStep, SegmentsThatCross) {
+  for (const Crossing crossing : {Crossing::error, Crossing::exact, Crossing::grid})
+    fail_each(options(), crossing_call(crossing));
+}
+
+TEST_P(EveryStep, SegmentsCancelled) {
+  const Walls walls;
+  cancel_each(options(), [&](Triangulator& t) {
+    return constrained_outcome(t.triangulate_constrained(Reals(walls.xy), walls.segments));
+  });
+  for (const Crossing crossing : {Crossing::error, Crossing::exact, Crossing::grid})
+    cancel_each(options(), crossing_call(crossing));
 }
 
 }  // namespace

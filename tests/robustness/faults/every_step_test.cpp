@@ -254,47 +254,13 @@ TEST_P(EveryStep, DeviceIsLost) {
   EXPECT_EQ(faults->live_buffers(), 0U);
 }
 
-/// The caller stops the call at each place where it can: nothing stays allocated, and the next call is as ever.
 TEST_P(EveryStep, Cancelled) {
   const Points xy = some_points();
-  const auto faults = std::make_shared<Faults>();
-  {
-    const Injection injection(faults);
-    for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
-      Options with = options();
-      with.tuning.strategy = strategy;
-      Triangulator triangulator(with);
-      std::size_t calls = 0;
-      triangulator.options().progress = [&](const Progress&) { ++calls; };
-      const Outcome expected = outcome_of(triangulator.triangulate(Reals(xy)));
-      const std::size_t all = calls;
-      EXPECT_GT(all, 5U);
-      for (std::size_t k = 0; k < all; ++k) {
-        SCOPED_TRACE(k);
-        cadt::stop_source source;
-        triangulator.options().stop = source.get_token();
-        calls = 0;
-        triangulator.options().progress = [&](const Progress&) {
-          if (calls++ == k) source.request_stop();
-        };
-        bool stopped = false;
-        try {
-          (void)triangulator.triangulate(Reals(xy));
-        } catch (const cadt::Cancelled&) {
-          stopped = true;
-        }
-        EXPECT_EQ(stopped, calls > k);
-        triangulator.options().stop = {};
-        triangulator.options().progress = nullptr;
-        triangulator.release_memory();
-        EXPECT_EQ(faults->live_bytes(), 0U);
-        const Outcome next = outcome_of(triangulator.triangulate(Reals(xy)));
-        EXPECT_EQ(next.hash, expected.hash);
-        EXPECT_LE(next.peak, expected.peak);
-      }
-    }
+  for (const Strategy strategy : {Strategy::locks, Strategy::stars}) {
+    Options with = options();
+    with.tuning.strategy = strategy;
+    cancel_each(with, [&](Triangulator& t) { return outcome_of(t.triangulate(Reals(xy))); });
   }
-  EXPECT_EQ(faults->live_buffers(), 0U);
 }
 
 CADT_ON_MAIN_BACKENDS(EveryStep);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The host's own memory gives out: every request of the calling thread is refused in turn. Only on the host's back end:
-// runtimes of devices, and the compilers in them, are not made for it.
+// runtimes of devices, and the compilers in them, are not made for it. Requests are also the moments at which a call is
+// stopped while no device works.
 #include <cadt/cadt.hpp>
 #include <cadt/constrained.hpp>
 
@@ -22,6 +23,8 @@ namespace {
 constexpr std::size_t never = ~std::size_t{0};
 thread_local std::size_t until_refusal = never;
 thread_local std::size_t asked = 0, refused = 0;
+thread_local std::size_t until_stop = never;
+thread_local cadt::stop_source* to_stop = nullptr;
 std::atomic<long> live{0};
 
 void* give(std::size_t size, std::size_t alignment) {
@@ -30,6 +33,10 @@ void* give(std::size_t size, std::size_t alignment) {
     until_refusal = never;
     ++refused;
     throw std::bad_alloc();
+  }
+  if (until_stop != never && until_stop-- == 0) {
+    until_stop = never;
+    to_stop->request_stop();
   }
   void* memory = alignment <= alignof(std::max_align_t)
                      ? std::malloc(size == 0 ? 1 : size)
@@ -168,6 +175,48 @@ TEST(HostMemory, Segments) {
   crossed.push_back({3, 4});
   crossed.push_back({5, 6});
   refuse_each([&] { return triangulator.triangulate_constrained(Reals(xy), crossed, constraints).hash().to_string(); });
+}
+
+/// The caller stops the call while segments that cross are handled on the host: it ends soon.
+TEST(HostMemory, StoppedWhereSegmentsCross) {
+  const Points xy = uniform_points(400, 3);
+  std::vector<Segment> segments;
+  for (std::int32_t i = 0; i + 1 < 400; i += 2) segments.push_back({i, i + 1});
+  Triangulator triangulator(on_host());
+  ConstraintOptions constraints;
+  constraints.grid = 0x1p-10;
+  for (const Crossing crossing : {Crossing::error, Crossing::exact, Crossing::grid}) {
+    SCOPED_TRACE(static_cast<int>(crossing));
+    constraints.crossing = crossing;
+    const auto call = [&] {
+      try {
+        (void)triangulator.triangulate_constrained(Reals(xy), segments, constraints);
+      } catch (const CrossingError&) {
+      }
+    };
+    call();
+    asked = 0;
+    call();
+    const std::size_t all = asked;
+    std::size_t stops = 0, stopped = 0, most_later = 0;
+    for (std::size_t k = 0; k < all; k += 1 + all / 40, ++stops) {
+      stop_source source;
+      to_stop = &source;
+      triangulator.options().stop = source.get_token();
+      asked = 0;
+      until_stop = k;
+      try {
+        call();
+      } catch (const Cancelled&) {
+        ++stopped;
+        most_later = std::max(most_later, asked - k);
+      }
+      until_stop = never;
+    }
+    triangulator.options().stop = {};
+    EXPECT_GE(10 * stopped, 9 * stops) << stops;
+    EXPECT_LT(most_later, all / 2);
+  }
 }
 
 TEST(HostMemory, SeveralSets) {

@@ -4,6 +4,8 @@
 #include "tests/robustness/faults/faulty_device.hpp"
 #include "tests/system/resident/resident.hpp"
 
+#include <cadt/constrained.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -315,6 +317,49 @@ TEST_P(WrongMesh, LockedTrianglesWhoseBoundaryTurnsBack) {
   const std::string text = refused(triangulator, row);
   EXPECT_NE(text.find("turns back at 2 points"), std::string::npos) << text;
   expect_right(triangulator, row);
+}
+
+/// With segments the mesh is certified when they are edges; what is constrained need not be legal, but fit.
+TEST_P(WrongMesh, WithSegments) {
+  const Points xy = uniform_points(300, 7);
+  const std::vector<Segment> segments = {{0, 200}, {200, 100}};
+  Triangulator triangulator(options(Strategy::stars));
+  const auto call = [&] { return triangulator.triangulate_constrained(Reals(xy), segments); };
+  const ConstrainedTriangulation expected = call();
+  EXPECT_GT(expected.statistics().inserted_segments, 1U);
+  for (const Change change : {lose_an_edge, flip_an_edge, unlink_an_edge}) {
+    change_arrays(change);
+    const auto error = thrown<InternalError>([&] { (void)call(); });
+    ASSERT_NE(error, nullptr);
+    const auto found = counts_of(error->what());
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->edges, change == lose_an_edge ? 896U : 897U);
+    EXPECT_EQ(found->unfitting, change == unlink_an_edge ? 1U : 0U);
+    EXPECT_EQ(found->illegal != 0, change == flip_an_edge);
+    faults->before_launch = nullptr;
+    EXPECT_EQ(call().hash(), expected.hash());
+  }
+}
+
+/// A segment is no edge when its chain is traced.
+TEST_P(WrongMesh, WithoutASegment) {
+  const Points xy = uniform_points(300, 7);
+  const std::vector<Segment> segments = {{0, 200}};
+  Triangulator triangulator(options(Strategy::stars));
+  const auto call = [&] { return triangulator.triangulate_constrained(Reals(xy), segments); };
+  const ConstrainedTriangulation expected = call();
+  faults->before_launch = [&](KernelId kernel, std::span<const Arg> args, Device& device) {
+    if (kernel != KernelId::cadt_trace_segments) return;
+    std::array<Word, 2> ends{};  // of the segment
+    device.read(*args[5].buffer(), 0, ends.data(), sizeof ends);
+    ends[1] = (ends[1] + 1) % 300;
+    device.write(*args[5].buffer(), 0, ends.data(), sizeof ends);
+  };
+  const auto error = thrown<InternalError>([&] { (void)call(); });
+  ASSERT_NE(error, nullptr);
+  EXPECT_NE(std::string(error->what()).find("the mesh is wrong at 1 segments"), std::string::npos) << error->what();
+  faults->before_launch = nullptr;
+  EXPECT_EQ(call().hash(), expected.hash());
 }
 
 CADT_ON_MAIN_BACKENDS(WrongMesh);

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "output_options.hpp"
+
+#include "failure.hpp"
+#include "input.hpp"
+#include "interrupt.hpp"
+#include "text.hpp"
+
+#include <fmt/format.h>
+
+namespace cadt::cli {
+
+void add_output_options(CLI::App& command, OutputOptions& o, const std::string& formats, const std::string& indexed) {
+  command
+      .add_option("-o,--output", o.outputs,
+                  "write the mesh or a picture of it; may be given several times; '-' is standard output (with -t)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command
+      .add_option("-t,--to", o.formats,
+                  "format of the outputs: " + formats +
+                      "; default: from each suffix. Once for all outputs, or once for each (auto: from the suffix)")
+      ->type_name("FORMAT")
+      ->allow_extra_args(false);
+  command.add_option("--base", o.base, "first index in " + indexed + " files: 0 or 1 (default: 0)")
+      ->type_name("0|1")
+      ->check(CLI::IsMember({0, 1}).description(""));
+  command.add_flag("--ascii", o.ascii, "text instead of binary where the format has both (ply)");
+  command.add_option("--width", o.width, "width of pictures (default: 1600)")
+      ->type_name("PIXELS")
+      ->check(CLI::Range(16, 32768).description(""));
+}
+
+void write_outputs(const std::vector<Output>& outputs, const OutputOptions& options, ProgressLine& line,
+                   const std::function<void(const std::string& path, const io::WriteOptions&)>& write) {
+  io::WriteOptions how;
+  how.base = options.base;
+  how.ascii = options.ascii;
+  how.width = options.width;
+  std::vector<std::string> written;
+  for (const Output& output : outputs) {
+    {
+      const InPhase phase(writing_phase(output.path));
+      line.step(fmt::format("writing {}", display_name(output.path, false)));
+      how.format = output.format;
+      write(output.path, how);
+      if (output.path == "-") finish_stdout();
+    }
+    written.push_back(display_name(output.path, false));
+    try {
+      check_interrupt();
+    } catch (const Cancelled&) {
+      line.clear();
+      say(fmt::format("cadt: complete before the interruption: {}\n", join(written)));
+      throw;
+    }
+  }
+  line.clear();
+}
+
+void print_summary(const std::string& summary, bool alone, bool quiet) {
+  if (alone) {
+    print(summary);
+  } else if (!quiet) {
+    say(summary);
+  }
+}
+
+}  // namespace cadt::cli

@@ -39,9 +39,8 @@ RegionResult region_result(const Graph& graph, const ConstrainedTriangulation& m
 void write_regions(const std::vector<Output>& outputs, const OutputOptions& options, const RegionResult& result,
                    ProgressLine& line) {
   const io::RegionMesh mesh = result.view();
-  write_outputs(outputs, options, line, [&](const std::string& path, const io::WriteOptions& how) {
-    io::write_region_mesh(path, mesh, how);
-  });
+  write_outputs(outputs, options, line,
+                [&](const std::string& path, const io::WriteOptions& how) { io::write_region_mesh(path, mesh, how); });
 }
 
 }  // namespace cadt::cli

@@ -93,8 +93,8 @@ class EveryStep : public ResidentTest {
     EXPECT_EQ(faults->live_bytes(), 0U);
   }
 
-  /// The caller stops `call` at each place where it tells its progress: nothing stays allocated, and the next call is as
-  /// ever.
+  /// The caller stops `call` at each place where it tells its progress: nothing stays allocated, and the next call is
+  /// as ever.
   static void cancel_each(const Options& with, const Call& call) {
     const auto faults = std::make_shared<Faults>();
     {

@@ -140,7 +140,7 @@ int run(const RenderCommand& command) {
   still.style = style_of(command.style);
   still.style.samples = command.samples;
   Options options = library_options(command.device);
-  options.order = Order::fast;
+  options.order = segments ? Order::canonical : Order::fast;  // regions are numbered in the order of triangles
   options.statistics = StatisticsDetail::none;
   options.stop = interrupt_token();
 

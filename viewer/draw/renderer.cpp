@@ -256,7 +256,7 @@ void Renderer::draw_lines(Lines lines, std::size_t count, std::uint32_t colour, 
   glUniform1ui(1, colour);
   glUniform1f(2, width);
   glUniform1i(3, lines == Lines::edges ? 1 : 0);
-  dispatch_for(count, 1);
+  dispatch_for(count, 32);
   wait_for_writes();
 }
 

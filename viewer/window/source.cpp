@@ -101,6 +101,7 @@ std::shared_ptr<Loaded> load(const Source& source, const Options& given, Triangu
   options.progress = [&desk](const Progress& p) { desk.report(p.phase, p.fraction); };
   if (source.constrain) {
     desk.report("reading " + source.name(), -1);
+    options.order = Order::canonical;  // regions are numbered in it, and so have the same colours each time
     const auto begin = Clock::now();
     Constrained constrained = source.constrain(options);
     result->mesh_milliseconds = milliseconds_since(begin);

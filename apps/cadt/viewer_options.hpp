@@ -50,8 +50,8 @@ struct StyleOptions {
 void add_style_options(CLI::App& command, StyleOptions& options);
 /// All but the colour.
 [[nodiscard]] viewer::Style style_of(const StyleOptions& options);
-/// Not set without --colour. Throws Failure (usage) for a colour that such a mesh does not have.
 enum class MeshKind { points, segments, growing };
+/// Not set without --colour. Throws Failure (usage) for a colour that such a mesh does not have.
 [[nodiscard]] std::optional<viewer::ColourBy> colour_of(const StyleOptions& options, const io::PointSet& points,
                                                         MeshKind kind);
 

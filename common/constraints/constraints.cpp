@@ -58,7 +58,7 @@ class Constrainer {
   /// of many that cross one triangle part the rest, a few times as many as the launch before has inserted: what is
   /// walked along without result is in proportion to what is inserted.
   [[nodiscard]] Outcome insert() {
-    ctx_.begin_share(0.6, 0.2);
+    ctx_.begin_share(0.6, 0.2);  // the points have reported up to 0.56, and certification begins at 0.9
     ctx_.check("constrain", 0);
     const bool gpu = !ctx_.device.shape().contiguous;
     const std::size_t least = gpu ? 1024 : 64;

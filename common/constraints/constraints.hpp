@@ -48,7 +48,7 @@ struct DuplicateLists {
 
 /// Makes the segments edges of the Delaunay mesh of `points` input points, of which `distinct` are vertices. If
 /// segments cross, only `job.crossed` is set. \pre the mesh is unfinished and has triangles, ghosts and points
-/// (MeshUse:: constrained) \throws InputError for the first segment with an end that is no point, InternalError
+/// (MeshUse::constrained) \throws InputError for the first segment with an end that is no point, InternalError
 void constrain(Context& ctx, Mesh& mesh, std::size_t points, std::size_t distinct, const DuplicateLists& duplicates,
                SegmentJob& job);
 

@@ -67,7 +67,8 @@ enum class Stabilize {
 /// Progress of a running triangulation, for `Options::progress`.
 struct Progress {
   std::string_view phase;  ///< "sort", "insert", "constrain", "certify", "output"
-  double fraction;         ///< of the whole work, 0 to 1, never decreasing
+  /// Of the whole work, 0 to 1, never decreasing; but where segments cross, Crossing::exact begins anew.
+  double fraction;
 };
 
 /// The mesh between two launches of a running triangulation. The spans are valid during the call only.

@@ -10,12 +10,11 @@ namespace cadt::viewer {
 /// By regions if there are several, by height if there are heights, else by area.
 [[nodiscard]] ColourBy usual_colour(const io::picture::Scene& scene);
 
-/// Sets the renderer's values and ramp for the mesh, which is in `buffers`. O(points + triangles), for regions O(n log
-/// n).
+/// Sets the renderer's values and ramp for the mesh, which is in `buffers`. O(points + triangles), for regions
+/// O(triangles log triangles).
 void prepare_colour(Renderer& renderer, const MeshBuffers& buffers, const io::picture::Scene& scene, ColourBy colour);
 
-/// The hull as lines, without the segments that lie on it: those are drawn as such. O(hull +
-/// segments log hull).
+/// The hull as lines, without the segments that lie on it: those are drawn as such. O((hull + segments) log hull).
 [[nodiscard]] Stroke hull_stroke(const io::picture::Scene& scene, bool dark);
 
 }  // namespace cadt::viewer

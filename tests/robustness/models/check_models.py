@@ -74,6 +74,8 @@ def main():
             print(f"skipped: {program} is not there")
             return SKIP
     asked = [word for word in sys.argv[1:] if word != "--large"]
+    if unknown := set(asked) - set(LARGE):
+        sys.exit(f"no model {' '.join(sorted(unknown))}: there are {' '.join(LARGE)}")
     wrong = 0
     with tempfile.TemporaryDirectory() as folder:
         for model, cases in (("requeue", REQUEUE), ("claims", CLAIMS)):

@@ -50,12 +50,12 @@ class ReportedProgress : public ResidentTest {
 
   /// `reports`: as text_of() has them, those of insertion once. `phases`: of Statistics::milliseconds.
   void expect_reports(const Options& with, const Counted& call, const Names& reports, const Names& phases) {
-    // A sweep that repairs something, which depends on the schedule, has a report of its own, and the output then
+    // A sweep that repairs something, which depends on the schedule, has a report of its own, and what follows then
     // begins no later.
-    const bool sweeps = std::ranges::find(reports, "certify 0.9") != reports.end();
     const auto report_of = [&](const Progress& progress) {
       const std::string text = text_of(progress);
-      return text == "certify 0.9" && !sweeps ? std::string("output 0.9") : text;
+      if (progress.phase != "certify" || std::ranges::find(reports, text) != reports.end()) return text;
+      return std::string(progress.fraction < 0.9 ? "constrain" : "output 0.9");
     };
     Triangulator triangulator(with);
     Names told;

@@ -158,7 +158,8 @@ void add_domains(const State& state, PointsView points, const ConstraintOptions&
 void add_domains(Context& ctx, const ConstraintOptions& constraints, const SegmentJob& job,
                  DeviceTriangulation::Data& data) {
   const DomainMesh mesh = {data.triangles, data.neighbors, data.edge_flags, data.triangle_count};
-  Domains domains = find_domains(ctx, mesh, data.points, {job.chain_offsets, job.chains, job.count, job.chain_length}, {}, constraints);
+  Domains domains = find_domains(ctx, mesh, data.points, {job.chain_offsets, job.chains, job.count, job.chain_length},
+                                 {}, constraints);
   InsideMesh inside = pack_inside(ctx, mesh, domains);
   data.regions = std::move(domains.region);
   data.number_inside = inside.triangles;

@@ -93,8 +93,8 @@ CADT_FN cadt_u32 cadt_weight_of_edge(const cadt_edge_weights* w, cadt_u32 from, 
   return from < to ? w->weights[low] : 0u - w->weights[low];
 }
 
-/* Each chain begins at a vertex, which gains by it, and ends at another, which loses. Where the next chain begins at the
- * end of this one, as in outlines, neither is written. \pre balance is 0 */
+/* Each chain begins at a vertex, which gains by it, and ends at another, which loses. Where the next chain begins at
+ * the end of this one, as in outlines, neither is written. \pre balance is 0 */
 CADT_KERNEL(cadt_domain_ends, CADT_GLOBAL const cadt_u32* chain_offsets, CADT_GLOBAL const cadt_u32* chains,
             cadt_u32 length, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* balance,
             CADT_GLOBAL cadt_u32* words) {

@@ -51,11 +51,11 @@ struct Domains {
   std::vector<std::uint32_t> inside;  ///< 1 or 0 a region
   std::vector<double> attribute;
 };
-/// `points`: more than any vertex. O(triangles + edges + points), the graph of the regions on the host. Without triangles there are no regions, and no
-/// errors. \throws DomainError with the lowest vertex at which the segments do not close
-[[nodiscard]] Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points,
-                                   const DeviceChains& chains, const DomainSeeds& seeds,
-                                   const ConstraintOptions& options);
+/// `points`: more than any vertex. O(triangles + edges + points), the graph of the regions on the host. Without
+/// triangles there are no regions, and no errors. \throws DomainError with the lowest vertex at which the segments do
+/// not close
+[[nodiscard]] Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points, const DeviceChains& chains,
+                                   const DomainSeeds& seeds, const ConstraintOptions& options);
 
 /// Triangles inside, in the order of the mesh; a neighbour that is not inside is CADT_NONE.
 struct InsideMesh {

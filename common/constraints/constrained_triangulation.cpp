@@ -159,11 +159,9 @@ void add_domains(const State& state, PointsView points, const ConstraintOptions&
 /// The same for a mesh that stays on the device.
 void add_domains(Context& ctx, const ConstraintOptions& constraints, const SegmentJob& job,
                  DeviceTriangulation::Data& data) {
-  const std::vector<std::uint32_t> counts = ctx.device.read_values(*job.chain_offsets, job.count + 1);
-  const std::vector<std::int32_t> chains = ctx.device.read_values<std::int32_t>(*job.chains, job.chain_length);
-  const std::vector<std::int64_t> offsets(counts.begin(), counts.end());
   const DomainMesh mesh = {data.triangles, data.neighbors, data.edge_flags, data.triangle_count};
-  Domains domains = find_domains(ctx, mesh, data.points, {offsets, chains}, {}, constraints);
+  Domains domains = find_domains(ctx, mesh, data.points, {job.chain_offsets, job.chains, job.count, job.chain_length},
+                                 {}, constraints);
   InsideMesh inside = pack_inside(ctx, mesh, domains);
   data.regions = std::move(domains.region);
   data.number_inside = inside.triangles;

@@ -16,28 +16,15 @@ namespace {
 
 constexpr std::int32_t unknown = std::numeric_limits<std::int32_t>::min();
 
-/// There is a value for each region if and only if as many segments end at each vertex as begin there, counted modulo 2
-/// for even_odd.
-void require_closed(const SegmentChains& chains, Domain domain, std::size_t points) {
-  std::vector<std::int32_t> balance(points);
-  for (std::size_t s = 0; s + 1 < chains.offsets.size(); ++s) {
-    const auto first = static_cast<std::size_t>(chains.offsets[s]),
-               end = static_cast<std::size_t>(chains.offsets[s + 1]);
-    if (first == end) continue;
-    ++balance[static_cast<std::size_t>(chains.vertices[first])];
-    --balance[static_cast<std::size_t>(chains.vertices[end - 1])];
-  }
+[[noreturn]] void refuse_open(Domain domain, std::uint32_t vertex) {
   const bool parity = domain == Domain::even_odd;
-  const auto open = std::ranges::find_if(balance, [&](std::int32_t b) { return (parity ? b & 1 : b) != 0; });
-  if (open == balance.end()) return;
-  const auto vertex = static_cast<std::int32_t>(open - balance.begin());
   const std::string at = "point " + std::to_string(vertex), counted = ", counted as often as they were given";
   throw DomainError("the segments do not bound a domain: " +
                         (parity ? "an odd number of them ends at " + at + counted + "; close the outlines"
                                 : "not as many of them end at " + at + " as begin there" + counted +
                                       "; close the outlines, and give all of one the same direction") +
                         ", or take Domain::layers or outer",
-                    vertex);
+                    static_cast<std::int32_t>(vertex));
 }
 
 /// How much each edge counts: how often it is in a chain (even_odd), or that upwards minus downwards (nonzero).
@@ -46,12 +33,11 @@ struct EdgeWeights {
   std::vector<std::int32_t> weights;
   bool all_one = true;
 
-  EdgeWeights(const SegmentChains& chains, Domain domain, std::size_t points) {
+  EdgeWeights(std::span<const std::uint32_t> offsets, std::span<const std::uint32_t> vertices, Domain domain,
+              std::size_t points) {
     const auto each_edge = [&](const auto& use) {
-      for (std::size_t s = 0; s + 1 < chains.offsets.size(); ++s)
-        for (auto i = static_cast<std::size_t>(chains.offsets[s]);
-             i + 1 < static_cast<std::size_t>(chains.offsets[s + 1]); ++i)
-          use(static_cast<std::uint32_t>(chains.vertices[i]), static_cast<std::uint32_t>(chains.vertices[i + 1]));
+      for (std::size_t s = 0; s + 1 < offsets.size(); ++s)
+        for (std::size_t i = offsets[s]; i + 1 < offsets[s + 1]; ++i) use(vertices[i], vertices[i + 1]);
     };
     std::vector<std::uint32_t> ends(points + 1);  // counts, then where the next edge of a vertex goes
     each_edge([&](std::uint32_t from, std::uint32_t to) { ++ends[std::min(from, to) + 1]; });
@@ -168,35 +154,65 @@ class RegionGraph {
   std::vector<std::size_t> ends_;
 };
 
-/// Whether each constrained edge is in one chain, once: then chains have as many edges as there are.
-bool counts_once(Context& ctx, const DomainMesh& mesh, const SegmentChains& chains) {
-  std::size_t in_chains = 0;
-  for (std::size_t s = 0; s + 1 < chains.offsets.size(); ++s)
-    in_chains += static_cast<std::size_t>(std::max<std::int64_t>(chains.offsets[s + 1] - chains.offsets[s], 1)) - 1;
-  const Allocation counter = ctx.launcher.zeros(1);
-  ctx.launcher.run<KernelId::cadt_domain_edges>(mesh, ctx.launcher.grid_strided(mesh.triangles), counter);
-  return ctx.launcher.read_word(counter, 0) == in_chains;
+/// What kernels tell of the mesh and its chains.
+struct Found {
+  std::size_t regions, outside;  ///< outside: its region, which may have no triangle
+  std::uint32_t edges, chains, open;
+};
+
+/// Regions of all triangles and, for rules that need it, whether segments close.
+Found find_regions(Context& ctx, const DomainMesh& mesh, std::size_t points, const DeviceChains& chains, Domain domain,
+                   Domains& domains) {
+  Launcher& launch = ctx.launcher;
+  const std::size_t count = mesh.triangles;
+  const LaunchGrid all = launch.grid(count);
+  const Allocation words = launch.zeros(CADT_DOMAIN_WORDS), roots = ctx.memory.allocate((count + 1) * word),
+                   numbers = ctx.memory.allocate((count + 1) * word);
+  ctx.device.fill(*words, CADT_DOMAIN_OPEN * word, word, CADT_NONE);
+  domains.region = ctx.memory.allocate((count + 1) * word);
+  launch.run<KernelId::cadt_identity>(roots, launch.grid(count + 1));
+  launch.run<KernelId::cadt_domain_unite>(mesh, all, roots, words);
+  launch.run<KernelId::cadt_domain_roots>(roots, all, numbers);
+  launch.scan(numbers, count + 1);
+  launch.run<KernelId::cadt_domain_regions>(roots, numbers, all, domains.region, words);
+  if (chains.count != 0 && (domain == Domain::even_odd || domain == Domain::nonzero)) {
+    const Allocation balance = ctx.memory.allocate_zeros(points * word);
+    launch.run<KernelId::cadt_domain_ends>(chains.offsets, chains.vertices, chains.length, launch.grid(chains.count),
+                                           balance, words);
+    launch.run<KernelId::cadt_domain_open>(balance, domain == Domain::even_odd ? 1U : CADT_NONE, launch.grid(points),
+                                           words);
+  }
+  const auto found = ctx.device.read_values(*words, CADT_DOMAIN_WORDS);
+  return {found[CADT_DOMAIN_REGIONS], found[CADT_DOMAIN_OUTSIDE], found[CADT_DOMAIN_EDGES], found[CADT_DOMAIN_CHAINS],
+          found[CADT_DOMAIN_OPEN]};
+}
+
+WeightTable weights_of(Context& ctx, const DeviceChains& chains, Domain domain, std::size_t points) {
+  const auto offsets = ctx.device.read_values(*chains.offsets, chains.count + 1),
+             vertices = ctx.device.read_values(*chains.vertices, chains.length);
+  return WeightTable(ctx, EdgeWeights(offsets, vertices, domain, points));
 }
 
 /// Values by crossing constrained edges from the outside.
 std::vector<std::int32_t> values_by_crossing(Context& ctx, const DomainMesh& mesh, std::size_t points,
-                                             const SegmentChains& chains, Domain domain, const Allocation& region,
-                                             std::size_t regions, std::size_t outside) {
+                                             const DeviceChains& chains, Domain domain, const Allocation& region,
+                                             const Found& found) {
   const bool layers = domain == Domain::layers;
   WeightTable table;
-  if (!layers) {
-    require_closed(chains, domain, points);
-    if (domain != Domain::even_odd || !counts_once(ctx, mesh, chains))
-      table = WeightTable(ctx, EdgeWeights(chains, domain, points));
+  if (!layers && chains.length != 0) {
+    if (found.open != CADT_NONE) refuse_open(domain, found.open);
+    // Chains that have as many edges as there are have each of them once.
+    const bool once = found.edges == chains.length - found.chains;
+    if (domain != Domain::even_odd || !once) table = weights_of(ctx, chains, domain, points);
   }
-  const std::size_t nodes = std::max(regions, outside + 1);  // with the outside, if it has no triangle
+  const std::size_t nodes = std::max(found.regions, found.outside + 1);  // with the outside, if it has no triangle
   const std::vector<Link> links =
-      read_links(ctx, mesh, region, table, !layers, nodes, layers ? chains.vertices.size() : nodes - 1);
+      read_links(ctx, mesh, region, table, !layers, nodes, layers ? chains.length : nodes - 1);
   std::vector<std::int32_t> values =
-      RegionGraph(nodes, links).values(outside, [&](std::int32_t value, std::int32_t weight) {
+      RegionGraph(nodes, links).values(found.outside, [&](std::int32_t value, std::int32_t weight) {
         return layers ? value + 1 : domain == Domain::even_odd ? (value + weight) & 1 : value + weight;
       });
-  values.resize(regions);
+  values.resize(found.regions);
   return values;
 }
 
@@ -206,25 +222,17 @@ bool is_inside(Domain domain, std::int32_t value) {
 
 }  // namespace
 
-Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points, const SegmentChains& chains,
+Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points, const DeviceChains& chains,
                      const DomainSeeds& seeds, const ConstraintOptions& options) {
   Domains domains;
   if (mesh.triangles == 0) return domains;
-  Launcher& launch = ctx.launcher;
   const std::size_t count = mesh.triangles;
-  const LaunchGrid all = launch.grid(count);
-  const Allocation roots = ctx.memory.allocate((count + 1) * word), numbers = ctx.memory.allocate((count + 1) * word);
-  domains.region = ctx.memory.allocate((count + 1) * word);
-  launch.run<KernelId::cadt_identity>(roots, launch.grid(count + 1));
-  launch.run<KernelId::cadt_domain_unite>(mesh, all, roots);
-  launch.run<KernelId::cadt_domain_roots>(roots, all, numbers);
-  launch.scan(numbers, count + 1);
-  launch.run<KernelId::cadt_domain_regions>(roots, numbers, all, domains.region);
-  const std::size_t regions = launch.read_word(numbers, count), outside = launch.read_word(domains.region, count);
+  const Found found = find_regions(ctx, mesh, points, chains, options.domain, domains);
+  const std::size_t regions = found.regions, outside = found.outside;
 
   domains.attribute.assign(regions, 0);
   if (options.domain == Domain::even_odd || options.domain == Domain::nonzero || options.domain == Domain::layers) {
-    domains.value = values_by_crossing(ctx, mesh, points, chains, options.domain, domains.region, regions, outside);
+    domains.value = values_by_crossing(ctx, mesh, points, chains, options.domain, domains.region, found);
   } else {
     domains.value.assign(regions, 1);
     const bool hull = options.domain == Domain::hull;
@@ -271,8 +279,17 @@ HostDomains find_domains(Context& ctx, const HostDomainMesh& mesh, const Segment
   const Allocation vertices = ctx.memory.import(mesh.triangles.data(), 3 * count * word),
                    neighbors = ctx.memory.import(mesh.neighbors.data(), 3 * count * word),
                    flags = ctx.memory.import(mesh.edge_flags.data(), count * word);
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  if (chains.vertices.size() > most)
+    throw LimitError("the chains of all segments have " + std::to_string(chains.vertices.size()) +
+                         " vertices, more than " + std::to_string(most) + ": many segments overlap",
+                     chains.vertices.size(), most);
+  const std::vector<std::uint32_t> offsets(chains.offsets.begin(), chains.offsets.end());
+  const Allocation begins = ctx.memory.import(offsets.data(), offsets.size() * word);
+  Allocation along;
+  if (!chains.vertices.empty()) along = ctx.memory.import(chains.vertices.data(), chains.vertices.size() * word);
   Domains domains = find_domains(ctx, {vertices, neighbors, flags, count}, mesh.points.size() + mesh.added.size() / 2,
-                                 chains, seeds, options);
+                                 {begins, along, chains.offsets.size() - 1, chains.vertices.size()}, seeds, options);
   host.region = ctx.device.read_values<std::int32_t>(*domains.region, count);
   host.region_value = std::move(domains.value);
   host.region_attribute = std::move(domains.attribute);

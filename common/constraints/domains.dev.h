@@ -29,21 +29,33 @@ typedef struct {
   CADT_GLOBAL const cadt_u32 *vertices, CADT_GLOBAL const cadt_u32 *neighbors, CADT_GLOBAL const cadt_u32 *edge_flags
 #define CADT_DOMAIN_MESH(mesh) const cadt_domain_mesh mesh = {vertices, neighbors, edge_flags}
 
-/* \pre roots[t] = t, up to the one outside, which is `count` */
-CADT_KERNEL(cadt_domain_unite, CADT_DOMAIN_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* roots) {
+/* Words for the driver. */
+enum {
+  CADT_DOMAIN_REGIONS, /* regions of triangles */
+  CADT_DOMAIN_OUTSIDE, /* the region of the outside */
+  CADT_DOMAIN_EDGES,   /* constrained edges */
+  CADT_DOMAIN_CHAINS,  /* chains that are not empty */
+  CADT_DOMAIN_OPEN,    /* the lowest vertex at which segments do not close; CADT_NONE: they do */
+  CADT_DOMAIN_WORDS
+};
+
+/* Counts constrained edges as well. \pre roots[t] = t, up to the one outside, which is `count` */
+CADT_KERNEL(cadt_domain_unite, CADT_DOMAIN_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* roots,
+            CADT_GLOBAL cadt_u32* words) {
   CADT_DOMAIN_MESH(mesh);
+  cadt_u32 edges = 0u;
   CADT_FOR(t, count, grain) {
     const cadt_u32 flags = mesh.edge_flags[t];
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 n = mesh.neighbors[3u * t + k];
-      if (flags >> k & 1u) continue;
-      if (n == CADT_NONE)
-        cadt_unite(roots, t, count);
-      else if (n < t)
-        cadt_unite(roots, t, n);
+      if (n != CADT_NONE && n > t) continue;
+      if (flags >> k & 1u)
+        ++edges;
+      else
+        cadt_unite(roots, t, n == CADT_NONE ? count : n);
     }
   }
+  if (edges) cadt_add_relaxed(words + CADT_DOMAIN_EDGES, edges);
 }
 
 /* 1 for each root; their scan numbers the regions. That of the outside is a region only if it has a triangle. */
@@ -56,8 +68,12 @@ CADT_KERNEL(cadt_domain_roots, CADT_GLOBAL cadt_u32* roots, cadt_u32 count, cadt
 /* The region of each triangle, and behind them that of the outside, which is the number of regions if no triangle has
  * it. `numbers`: the scan of the flags */
 CADT_KERNEL(cadt_domain_regions, CADT_GLOBAL cadt_u32* roots, CADT_GLOBAL const cadt_u32* numbers, cadt_u32 count,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* region) {
-  if (cadt_item == 0u) region[count] = numbers[cadt_find_root(roots, count)];
+            cadt_u32 grain, CADT_GLOBAL cadt_u32* region, CADT_GLOBAL cadt_u32* words) {
+  if (cadt_item == 0u) {
+    region[count] = numbers[cadt_find_root(roots, count)];
+    words[CADT_DOMAIN_REGIONS] = numbers[count];
+    words[CADT_DOMAIN_OUTSIDE] = region[count];
+  }
   CADT_FOR(t, count, grain) { region[t] = numbers[cadt_find_root(roots, t)]; }
 }
 
@@ -77,19 +93,30 @@ CADT_FN cadt_u32 cadt_weight_of_edge(const cadt_edge_weights* w, cadt_u32 from, 
   return from < to ? w->weights[low] : 0u - w->weights[low];
 }
 
-/* Adds the number of constrained edges. */
-CADT_KERNEL(cadt_domain_edges, CADT_DOMAIN_MESH_PARAMETERS, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL cadt_u32* counter) {
-  CADT_DOMAIN_MESH(mesh);
+/* Each chain begins at a vertex, which gains by it, and ends at another, which loses. Where the next chain begins at
+ * the end of this one, as in outlines, neither is written. \pre balance is 0 */
+CADT_KERNEL(cadt_domain_ends, CADT_GLOBAL const cadt_u32* chain_offsets, CADT_GLOBAL const cadt_u32* chains,
+            cadt_u32 length, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* balance,
+            CADT_GLOBAL cadt_u32* words) {
   cadt_u32 found = 0u;
-  CADT_FOR(t, count, grain) {
-    const cadt_u32 flags = mesh.edge_flags[t];
-    for (cadt_u32 k = 0u; k < 3u; ++k) {
-      const cadt_u32 n = mesh.neighbors[3u * t + k];
-      if ((flags >> k & 1u) && (n == CADT_NONE || n < t)) ++found;
-    }
+  CADT_FOR(s, count, grain) {
+    const cadt_u32 first = chain_offsets[s], end = chain_offsets[s + 1u];
+    if (first == end) continue;
+    ++found;
+    const cadt_u32 from = chains[first], to = chains[end - 1u];
+    if (first == 0u || chains[first - 1u] != from) cadt_add_relaxed(balance + from, 1u);
+    if (end == length || chains[end] != to) cadt_add_relaxed(balance + to, 0u - 1u);
   }
-  if (found) cadt_add_relaxed(counter, found);
+  if (found) cadt_add_relaxed(words + CADT_DOMAIN_CHAINS, found);
+}
+/* Finds the lowest of `count` vertices with bits of `mask` in its balance. */
+CADT_KERNEL(cadt_domain_open, CADT_GLOBAL const cadt_u32* balance, cadt_u32 mask, cadt_u32 count, cadt_u32 grain,
+            CADT_GLOBAL cadt_u32* words) {
+  cadt_u32 lowest = CADT_NONE;
+  CADT_FOR(v, count, grain) {
+    if ((balance[v] & mask) != 0u) lowest = cadt_min_u32(lowest, v);
+  }
+  if (lowest != CADT_NONE) cadt_min_relaxed(words + CADT_DOMAIN_OPEN, lowest);
 }
 
 /* A link: what lies left of the edge, what lies right of it, and the weight of the edge. */

@@ -23,7 +23,12 @@ struct DomainMesh {
   [[nodiscard]] auto arguments() const { return std::tie(vertices, neighbors, edge_flags); }
 };
 
-/// The vertices along segment s are those from offsets[s] to offsets[s + 1] - 1, as ConstrainedTriangulation has them.
+/// The vertices along segment s of `count` are those from offsets[s] to offsets[s + 1] - 1; words.
+struct DeviceChains {
+  const Allocation &offsets, &vertices;
+  std::size_t count, length;  ///< length: of the vertices
+};
+/// The same as ConstrainedTriangulation has them.
 struct SegmentChains {
   std::span<const std::int64_t> offsets;
   std::span<const std::int32_t> vertices;
@@ -46,11 +51,11 @@ struct Domains {
   std::vector<std::uint32_t> inside;  ///< 1 or 0 a region
   std::vector<double> attribute;
 };
-/// O(triangles + edges + points), the graph of the regions on the host. Without triangles there are no regions, and no
-/// errors. \throws DomainError with the lowest vertex at which the segments do not close
-[[nodiscard]] Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points,
-                                   const SegmentChains& chains, const DomainSeeds& seeds,
-                                   const ConstraintOptions& options);
+/// `points`: more than any vertex. O(triangles + edges + points), the graph of the regions on the host. Without
+/// triangles there are no regions, and no errors. \throws DomainError with the lowest vertex at which the segments do
+/// not close
+[[nodiscard]] Domains find_domains(Context& ctx, const DomainMesh& mesh, std::size_t points, const DeviceChains& chains,
+                                   const DomainSeeds& seeds, const ConstraintOptions& options);
 
 /// Triangles inside, in the order of the mesh; a neighbour that is not inside is CADT_NONE.
 struct InsideMesh {

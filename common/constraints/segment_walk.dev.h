@@ -115,13 +115,17 @@ CADT_FN cadt_u32 cadt_turn_once(const cadt_segment_mesh* m, cadt_turning* turn, 
 
 enum { CADT_EDGE_SEARCH = 12 /* triangles around an end in which an edge is looked for without coordinates */ };
 
-/* The half-edge of the edge from a to b, seen from the triangle on its left; CADT_NONE if it is not among the first
- * triangles around a. */
+/* A half-edge of the edge between a and b, in a triangle at a; CADT_NONE if it is not among the first triangles around
+ * a. The search begins where the last one from a has ended: most edges are looked for twice. */
 CADT_FN cadt_u32 cadt_find_edge(const cadt_segment_mesh* m, cadt_u32 a, cadt_u32 b) {
   const cadt_u32 first = cadt_load_relaxed(m->vertex_triangle + a);
   cadt_u32 t = first, k = cadt_corner_of(m, t, 0u) == a ? 0u : (cadt_corner_of(m, t, 1u) == a ? 1u : 2u);
   for (cadt_u32 i = 0u; i < CADT_CAST(cadt_u32, CADT_EDGE_SEARCH); ++i) {
-    if (cadt_corner_of(m, t, CADT_NEXT(k)) == b) return CADT_HALF_EDGE(t, CADT_PREV(k));
+    const cadt_u32 before = cadt_corner_of(m, t, CADT_NEXT(k)) == b ? 1u : 0u;
+    if (before || cadt_corner_of(m, t, CADT_PREV(k)) == b) {
+      if (t != first) cadt_store_relaxed(m->vertex_triangle + a, t);
+      return CADT_HALF_EDGE(t, before ? CADT_PREV(k) : CADT_NEXT(k));
+    }
     const cadt_u32 next = cadt_across_of(m, CADT_HALF_EDGE(t, CADT_NEXT(k)));
     t = CADT_TRIANGLE_OF(next);
     k = CADT_NEXT(CADT_EDGE_OF(next));

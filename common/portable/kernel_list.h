@@ -215,7 +215,8 @@
   X(cadt_domain_unite)           /* domains.dev.h: triangles that no constrained edge separates */ \
   X(cadt_domain_roots)           /* domains.dev.h */                                               \
   X(cadt_domain_regions)         /* domains.dev.h */                                               \
-  X(cadt_domain_edges)           /* domains.dev.h: how many edges are constrained */               \
+  X(cadt_domain_ends)            /* domains.dev.h: how often segments begin and end at vertices */ \
+  X(cadt_domain_open)            /* domains.dev.h: where they do not close */                      \
   X(cadt_domain_links)           /* domains.dev.h: which regions meet at constrained edges */      \
   X(cadt_domain_flags)           /* domains.dev.h: triangles inside */                             \
   X(cadt_domain_pack)            /* domains.dev.h */

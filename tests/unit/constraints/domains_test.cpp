@@ -179,6 +179,15 @@ TEST_P(Domains, LooseEndIsNamed) {
   EXPECT_EQ(find(m, with(Domain::layers)).result.region_value.size(), 3U);
 }
 
+TEST_P(Domains, OutlinesGivenTwiceBoundNothing) {
+  Marked m = nested_squares({true, true});
+  for (std::int32_t k = 0; k < 8; ++k) m.add_edge(k, k % 4 == 3 ? k - 3 : k + 1);
+  const Found even_odd = find(m, with(Domain::even_odd)), nonzero = find(m, with(Domain::nonzero));
+  expect_consistent(m, even_odd);
+  EXPECT_EQ(even_odd.result.region_value, (std::vector<std::int32_t>{0, 0, 0}));
+  EXPECT_EQ(std::ranges::max(nonzero.result.region_value), 4);
+}
+
 TEST_P(Domains, OutlineOfTwoDirectionsHasNoWindingNumber) {
   Marked m({0, 0, 4, 0, 4, 4, 0, 4, -9, 2, 2, -9, 13, 2, 2, 13});
   m.add_edge(0, 1);

@@ -72,10 +72,9 @@ class Found {
         device_(open_device(options_)),
         memory_(*device_, true),
         ctx_(*device_, memory_, options_, statistics_) {
-    const SegmentChains chains = {marked.offsets, marked.chains};
-    result = find_domains(ctx_, {marked.mesh.triangles(), marked.mesh.neighbors(), marked.flags, marked.xy, {}}, chains,
-                          constraints);
-    pack(marked, chains, constraints);
+    result = find_domains(ctx_, {marked.mesh.triangles(), marked.mesh.neighbors(), marked.flags, marked.xy, {}},
+                          {marked.offsets, marked.chains}, constraints);
+    pack(marked, constraints);
   }
 
   HostDomains result;
@@ -83,7 +82,7 @@ class Found {
   std::vector<std::uint32_t> flags;
 
  private:
-  void pack(const Marked& marked, const SegmentChains& chains, const ConstraintOptions& constraints) {
+  void pack(const Marked& marked, const ConstraintOptions& constraints) {
     const std::size_t count = marked.size();
     if (count == 0) return;
     const Allocation vertices = memory_.import(marked.mesh.triangles().data(), 12 * count),
@@ -91,7 +90,12 @@ class Found {
                      edge_flags = memory_.import(marked.flags.data(), 4 * count);
     const DomainMesh mesh = {vertices, across, edge_flags, count};
     const DomainSeeds seeds = locate_seeds(marked.mesh.triangles(), marked.xy, {}, constraints);
-    const Domains domains = find_domains(ctx_, mesh, marked.xy.size() / 2, chains, seeds, constraints);
+    const std::vector<std::uint32_t> begins(marked.offsets.begin(), marked.offsets.end());
+    const Allocation offsets = memory_.import(begins.data(), 4 * begins.size());
+    Allocation along;
+    if (!marked.chains.empty()) along = memory_.import(marked.chains.data(), 4 * marked.chains.size());
+    const Domains domains = find_domains(ctx_, mesh, marked.xy.size() / 2,
+                                         {offsets, along, begins.size() - 1, marked.chains.size()}, seeds, constraints);
     const InsideMesh packed = pack_inside(ctx_, mesh, domains);
     if (packed.triangles == 0) return;
     triangles = device_->read_values<std::int32_t>(*packed.vertices, 3 * packed.triangles);

@@ -31,7 +31,8 @@ class Constrainer {
   };
 
  public:
-  Constrainer(Context& ctx, Mesh& mesh, SegmentJob& job) : ctx_(ctx), mesh_(mesh), job_(job) {}
+  Constrainer(Context& ctx, Mesh& mesh, const KeyGrid& grid, SegmentJob& job)
+      : ctx_(ctx), mesh_(mesh), grid_(grid), job_(job) {}
 
   void map_segments(std::size_t points, std::size_t distinct, const DuplicateLists& duplicates) {
     ctx_.device.fill(*words_, CADT_SEGMENTS_BAD_INDEX * word, word, CADT_NONE);
@@ -55,13 +56,11 @@ class Constrainer {
   }
 
   /// The first launch inserts short pieces, all that do not meet. The others are taken in a random order, so that those
-  /// of many that cross one triangle part the rest, a few times as many as the launch before has inserted: what is
-  /// walked along without result is in proportion to what is inserted.
+  /// of many that cross one triangle part the rest: as many as the launch before has inserted, or twice as many if
+  /// nearly all were. What is walked along without result is in proportion to what is inserted.
   [[nodiscard]] Outcome insert() {
     ctx_.begin_share(0.6, 0.2);  // the points have reported up to 0.56, and certification begins at 0.9
     ctx_.check("constrain", 0);
-    const bool gpu = !ctx_.device.shape().contiguous;
-    const std::size_t least = gpu ? 1024 : 64;
     std::size_t count = job_.count, taken = count, most = 0;
     const Allocation* pairs = &ends_;
     Allocation left;
@@ -79,11 +78,10 @@ class Constrainer {
       left = launch == 0 ? shuffled(others, count) : std::move(others);
       pairs = &left;
       // Of the first launch, which takes whole segments, pieces alone.
-      const std::size_t tried = launch == 0 ? pieces.count : taken, won = tried > waiting ? tried - waiting : 0;
+      const std::size_t tried = launch == 0 ? pieces.count : taken;
       if (tried == 1 && waiting == 1 && launch != 0)
         give_up("a piece of a segment that meets no other is not inserted");
-      // If none had room, fewer are tried: one alone always has.
-      taken = std::min(count, launch == 0 || won != 0 ? std::max(4 * won, least) : std::max<std::size_t>(taken / 4, 1));
+      taken = std::min(count, next_tries(tried, waiting, launch == 0));
       ctx_.statistics.segment_retries += waiting;
       if (launch == 0) most = count;
       ctx_.check("constrain", 1 - static_cast<double>(count) / static_cast<double>(std::max(most, count) + 1));
@@ -133,6 +131,16 @@ class Constrainer {
     [[nodiscard]] auto arguments() const { return std::tie(vertex, triangle, edge, outer, piece, room); }
   };
 
+  /// How many pieces a launch takes, after one of which so many have to wait.
+  [[nodiscard]] std::size_t next_tries(std::size_t tried, std::size_t waiting, bool first) const {
+    const LaunchShape shape = ctx_.device.shape();
+    const std::size_t won = tried > waiting ? tried - waiting : 0, least = shape.contiguous ? shape.parallelism : 512;
+    if (won == 0 && !first) return std::max<std::size_t>(tried / 4, 1);  // one alone always has room
+    // More long pieces at a time would not stay in the caches of CPUs.
+    const bool more = !shape.contiguous || places_ <= std::size_t{shape.parallelism} * 512;
+    return std::max(more && 4 * waiting <= tried ? 2 * won : won, least);
+  }
+
   /// \throws LimitError if a word cannot hold the number of all vertices of chains
   void require_countable() {
     const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
@@ -172,7 +180,8 @@ class Constrainer {
     for (bool again = false;; again = true) {
       make(pieces.room + 1, {&pieces.entry, &pieces.sizes, &pieces.begins, &pieces.upper, &pieces.strides});
       make(2 * pieces.room, {&pieces.ends});
-      launch_.run<KernelId::cadt_find_segments>(segment_mesh(), pairs, first, launch_.grid(count), limit,
+      launch_.run<KernelId::cadt_find_segments>(segment_mesh(), pairs, first,
+                                                whole ? launch_.grid(count) : launch_.grid_of_long(count), limit,
                                                 std::uint32_t{!whole}, pieces, again ? claims_ : none, words_);
       const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
       pieces.count = found[CADT_SEGMENTS_PIECES];
@@ -198,13 +207,13 @@ class Constrainer {
   std::optional<std::size_t> insert(Pieces& pieces, const Allocation& left) {
     const std::size_t tried = std::min(pieces.count, most_tried);
     const std::size_t most = std::numeric_limits<std::uint32_t>::max() / tried;
-    const LaunchGrid each = launch_.grid(pieces.count);
+    const LaunchGrid each = launch_.grid_of_long(pieces.count);
     const Strides strides = walk_strides(pieces, each, left);
     launch_.run<KernelId::cadt_places_of_pieces>(pieces, tried, most, each);
     launch_.scan(pieces.begins, pieces.count + 1);
     Rings rings;
     const std::size_t total = launch_.read_word(pieces.begins, pieces.count);
-    rings.room = std::min(total, 2 * mesh_.all);  // one piece alone always has room
+    rings.room = places_ = std::min(total, 2 * mesh_.all);  // one piece alone always has room
     make(std::max<std::size_t>(rings.room, 1),
          {&rings.vertex, &rings.triangle, &rings.edge, &rings.outer, &rings.piece});
     if (!claims_) free_claims();
@@ -236,7 +245,7 @@ class Constrainer {
     make(n, {&strides.piece, &strides.start, &strides.steps, &strides.left});
     const LaunchGrid grid = launch_.grid(n);
     launch_.run<KernelId::cadt_divide_pieces>(pieces, each, strides, words_);
-    launch_.run<KernelId::cadt_probe_pieces>(segment_mesh(), pieces, strides, grid, vertices_);
+    launch_.run<KernelId::cadt_probe_pieces>(segment_mesh(), pieces, strides, grid_, grid, vertices_);
     launch_.run<KernelId::cadt_walk_strides>(segment_mesh(), pieces, strides, grid);
     launch_.run<KernelId::cadt_sum_strides>(segment_mesh(), pieces, each, strides, n, left, words_);
     return strides;
@@ -276,10 +285,11 @@ class Constrainer {
   Context& ctx_;
   Launcher& launch_ = ctx_.launcher;
   Mesh& mesh_;
+  const KeyGrid& grid_;
   SegmentJob& job_;
   Allocation words_ = launch_.zeros(CADT_SEGMENTS_WORDS);
   Allocation ends_, vertex_triangle_, claims_;
-  std::size_t vertices_ = 0;
+  std::size_t vertices_ = 0, places_ = 0;  ///< places of the rings of the last launch
 };
 
 }  // namespace
@@ -292,11 +302,11 @@ SegmentResults read_results(Context& ctx, const SegmentJob& job, std::size_t tri
   return results;
 }
 
-void constrain(Context& ctx, Mesh& mesh, std::size_t points, std::size_t distinct, const DuplicateLists& duplicates,
-               SegmentJob& job) {
+void constrain(Context& ctx, Mesh& mesh, const KeyGrid& grid, std::size_t points, std::size_t distinct,
+               const DuplicateLists& duplicates, SegmentJob& job) {
   if (!job.segments && job.count != 0)
     job.segments = ctx.memory.import(job.on_host.data(), job.count * sizeof(Segment));
-  Constrainer constrainer(ctx, mesh, job);
+  Constrainer constrainer(ctx, mesh, grid, job);
   constrainer.map_segments(points, distinct, duplicates);
   if (constrainer.insert() == Outcome::crossed) {
     job.crossed = true;

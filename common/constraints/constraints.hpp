@@ -13,6 +13,7 @@
 #include "common/driver/context.hpp"
 #include "common/driver/device_triangulation.hpp"
 #include "common/mesh/mesh.hpp"
+#include "common/points/key_grid.hpp"
 
 namespace cadt {
 
@@ -49,8 +50,8 @@ struct DuplicateLists {
 /// Makes the segments edges of the Delaunay mesh of `points` input points, of which `distinct` are vertices. If
 /// segments cross, only `job.crossed` is set. \pre the mesh is unfinished and has triangles, ghosts and points
 /// (MeshUse::constrained) \throws InputError for the first segment with an end that is no point, InternalError
-void constrain(Context& ctx, Mesh& mesh, std::size_t points, std::size_t distinct, const DuplicateLists& duplicates,
-               SegmentJob& job);
+void constrain(Context& ctx, Mesh& mesh, const KeyGrid& grid, std::size_t points, std::size_t distinct,
+               const DuplicateLists& duplicates, SegmentJob& job);
 
 /// As Triangulator::triangulate.
 [[nodiscard]] Triangulation triangulate_on_host(const std::shared_ptr<Triangulator::State>& state, PointsView points);

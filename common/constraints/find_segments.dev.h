@@ -75,7 +75,7 @@ CADT_KERNEL(cadt_vertices_of_segments, CADT_GLOBAL const cadt_u32* segments, cad
 
 /* The triangles that one work-item walks through before a piece counts as long, on GPUs and in the first launch, and
  * those of a stride. */
-enum { CADT_PIECE_LONG = 96, CADT_STRIDE = 48, CADT_MOST_STRIDES = 1024 };
+enum { CADT_PIECE_LONG = 48, CADT_STRIDE = 24, CADT_MOST_STRIDES = 1024 };
 
 /* Walks along a piece from `at->half_edge` on. Returns whether it has come to a vertex, within the limit. */
 CADT_FN cadt_u32 cadt_walk_piece(const cadt_segment_mesh* m, cadt_crossed* at, cadt_point p, cadt_u32 to, cadt_point q,

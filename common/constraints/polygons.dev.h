@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Many small polygons with holes, each by one work-item: sort, sweep, legalise. Rings may be given in either direction;
- * what is inside is decided by the even-odd rule.
+ * Many small polygons with holes, each by one work-item: sort, sweep, legalise; single rings of few points without.
+ * Rings may be given in either direction; what is inside is decided by the even-odd rule.
  */
 #ifndef CADT_CONSTRAINTS_POLYGONS_H
 #define CADT_CONSTRAINTS_POLYGONS_H
 
 #include "common/constraints/polygon_sweep.dev.h"
+#include "common/constraints/small_ring.dev.h"
 
 /* What becomes of a polygon. */
 enum {
@@ -184,11 +185,8 @@ CADT_FN cadt_u32 cadt_find_crossing(const cadt_sweep* s, const cadt_polygon* pol
 }
 
 /* Triangles of the polygon in `s`. What becomes of it, and two points that show why. */
-CADT_FN cadt_u32 cadt_triangulate_polygon(cadt_sweep* s, cadt_polygon* polygon, cadt_u32* first, cadt_u32* second) {
-  cadt_i32 shift;
-  const cadt_u32 state = cadt_check_points(polygon, &shift, first);
-  *second = *first;
-  if (state != CADT_POLYGON_OK) return state;
+CADT_FN cadt_u32 cadt_sweep_polygon(cadt_sweep* s, cadt_polygon* polygon, cadt_i32 shift, cadt_u32* first,
+                                    cadt_u32* second) {
   const cadt_u32 vertices = cadt_rank_points(s, polygon, shift);
   if (polygon->first_ring == polygon->end_ring) return CADT_POLYGON_TOO_FEW_POINTS;
   for (cadt_u32 r = polygon->first_ring; r < polygon->end_ring; ++r) {
@@ -204,6 +202,27 @@ CADT_FN cadt_u32 cadt_triangulate_polygon(cadt_sweep* s, cadt_polygon* polygon, 
   if (!s->triangle_count) return CADT_POLYGON_ZERO_AREA;
   cadt_legalize_polygon(s, (CADT_GLOBAL cadt_u32*)s->nodes, 24u * s->room); /* nobody needs the nodes any more */
   return CADT_POLYGON_OK;
+}
+
+/* Writes the triangles of a polygon to `out`, as numbers of points, which are counted from `base`. How many; and what
+ * becomes of the polygon, and two points that show why. */
+CADT_FN cadt_u32 cadt_triangulate_polygon(cadt_polygon* polygon, CADT_GLOBAL cadt_u32* memory, cadt_u32 base,
+                                          CADT_GLOBAL cadt_u32* out, cadt_u32* state, cadt_u32* first,
+                                          cadt_u32* second) {
+  cadt_i32 shift;
+  *state = cadt_check_points(polygon, &shift, first);
+  *second = *first;
+  if (*state != CADT_POLYGON_OK) return 0u;
+  if (polygon->first_ring + 1u == polygon->end_ring && shift == 0) {
+    const cadt_u32 count = cadt_triangulate_ring(polygon->points + polygon->first, polygon->count, base, out);
+    if (count) return count;
+  }
+  cadt_sweep sweep = cadt_sweep_in(memory, polygon);
+  *state = cadt_sweep_polygon(&sweep, polygon, shift, first, second);
+  if (*state != CADT_POLYGON_OK) return 0u;
+  for (cadt_u32 t = 0u; t < sweep.triangle_count; ++t)
+    for (cadt_u32 k = 0u; k < 3u; ++k) out[3u * t + k] = base + polygon->ids[sweep.vertices[CADT_HALF_EDGE(t, k)]];
+  return sweep.triangle_count;
 }
 
 /* Triangulates polygons, whose points are those from polygon_begins[p] and rings from polygon_rings[p] on, to those of
@@ -224,20 +243,15 @@ CADT_KERNEL(cadt_triangulate_polygons, CADT_GLOBAL const cadt_point* points, CAD
     polygon.first = ring_begins[polygon.first_ring];
     polygon.count = ring_begins[polygon.end_ring] - polygon.first;
 #if CADT_CONTIGUOUS
-    cadt_sweep sweep = cadt_sweep_in(memory + cadt_item * item_words, &polygon);
+    CADT_GLOBAL cadt_u32* own = memory + cadt_item * item_words;
 #else
-    cadt_sweep sweep = cadt_sweep_in(
-        memory + CADT_CAST(cadt_u32, CADT_POLYGON_WORDS) * polygon.first + CADT_CAST(cadt_u32, CADT_POLYGON_SPARE) * i,
-        &polygon);
+    CADT_GLOBAL cadt_u32* own =
+        memory + CADT_CAST(cadt_u32, CADT_POLYGON_WORDS) * polygon.first + CADT_CAST(cadt_u32, CADT_POLYGON_SPARE) * i;
     (void)item_words;
 #endif
-    cadt_u32 first = 0u, second = 0u;
-    const cadt_u32 state = cadt_triangulate_polygon(&sweep, &polygon, &first, &second);
-    CADT_GLOBAL cadt_u32* out = triangles + 6u * polygon.first;
-    counts[i] = state == CADT_POLYGON_OK ? sweep.triangle_count : 0u;
-    for (cadt_u32 t = 0u; t < counts[i]; ++t)
-      for (cadt_u32 k = 0u; k < 3u; ++k)
-        out[3u * t + k] = base + polygon.first + polygon.ids[sweep.vertices[CADT_HALF_EDGE(t, k)]];
+    cadt_u32 state, first = 0u, second = 0u;
+    counts[i] = cadt_triangulate_polygon(&polygon, own, base + polygon.first, triangles + 6u * polygon.first, &state,
+                                         &first, &second);
     CADT_GLOBAL cadt_u32* result = results + CADT_CAST(cadt_u32, CADT_POLYGON_RESULT_WORDS) * i;
     result[CADT_POLYGON_STATE] = state;
     result[CADT_POLYGON_FIRST] = base + polygon.first + first;

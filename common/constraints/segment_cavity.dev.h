@@ -77,10 +77,20 @@ CADT_FN void cadt_close_base(const cadt_segment_mesh* m, const cadt_chain* c, ca
   }
 }
 
-/* Writes the triangle at the base of a chain. The chains on its sides are `sides`, [0] on the left; one without
- * vertices is an edge of the ring, and has low + 1 = high. */
+/* The chains on the sides of the triangle at the base of a chain: sides[0] on the left. One without vertices is an edge
+ * of the ring, and has low + 1 = high. Returns which one is longer. */
+CADT_FN cadt_u32 cadt_divide_chain(const cadt_rings* rings, const cadt_chain* c, cadt_u32 apex, cadt_chain* sides) {
+  const cadt_u32 t = rings->triangle[apex] & CADT_RING_NONE;
+  const cadt_chain left = {c->low, apex, CADT_HALF_EDGE(t, 1u), c->piece},
+                   right = {apex, c->high, CADT_HALF_EDGE(t, 0u), c->piece};
+  sides[0] = left;
+  sides[1] = right;
+  return apex - c->low > c->high - apex ? 0u : 1u;
+}
+
+/* Writes that triangle. */
 CADT_FN void cadt_write_base(const cadt_segment_mesh* m, const cadt_rings* rings, const cadt_chain* c, cadt_u32 apex,
-                             CADT_GLOBAL cadt_u32* bases, cadt_chain* sides) {
+                             CADT_GLOBAL cadt_u32* bases, const cadt_chain* sides) {
   const cadt_u32 t = rings->triangle[apex] & CADT_RING_NONE;
   CADT_GLOBAL cadt_u32* corners = m->vertices + 3u * t;
   corners[0] = rings->vertex[c->low];
@@ -88,10 +98,6 @@ CADT_FN void cadt_write_base(const cadt_segment_mesh* m, const cadt_rings* rings
   corners[2] = rings->vertex[apex];
   for (cadt_u32 k = 0u; k < 3u; ++k) cadt_store_relaxed(m->vertex_triangle + corners[k], t);
   cadt_close_base(m, c, CADT_HALF_EDGE(t, 2u), bases);
-  const cadt_chain left = {c->low, apex, CADT_HALF_EDGE(t, 1u), c->piece},
-                   right = {apex, c->high, CADT_HALF_EDGE(t, 0u), c->piece};
-  sides[0] = left;
-  sides[1] = right;
   for (cadt_u32 i = 0u; i < 2u; ++i)
     if (sides[i].low + 1u == sides[i].high) rings->edge[sides[i].low] = sides[i].parent;
 }
@@ -128,8 +134,8 @@ CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings
       cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
       return;
     }
+    const cadt_u32 longer = cadt_divide_chain(rings, &c, apex, sides);
     cadt_write_base(m, rings, &c, apex, bases, sides);
-    const cadt_u32 longer = sides[0].high - sides[0].low > sides[1].high - sides[1].low ? 0u : 1u;
     if (sides[longer].high > sides[longer].low + 1u) stack[waiting++] = sides[longer];
     if (sides[1u - longer].high > sides[1u - longer].low + 1u)
       c = sides[1u - longer];
@@ -140,9 +146,17 @@ CADT_FN void cadt_fill_chain(const cadt_segment_mesh* m, const cadt_rings* rings
   }
 }
 
-/* On GPUs, chains longer than CADT_CHAIN_LONG are divided by teams, a triangle a launch, those above CADT_CHAIN_SHORT
- * filled by work-items of their own afterwards; so is what does not divide well and is long after so many launches. */
-enum { CADT_CHAIN_SHORT = 8, CADT_CHAIN_LONG = 32, CADT_CHAIN_LANES = 128, CADT_CHAIN_LAUNCHES = 64 };
+/* On GPUs, chains longer than CADT_CHAIN_LONG are divided by teams, those above CADT_CHAIN_SHORT filled by work-items
+ * of their own afterwards. A team goes on with the longer side of each triangle, up to so many triangles a launch, and
+ * leaves the other one, which is at most half as long, to another team. What is long after so many launches, a
+ * work-item fills. */
+enum {
+  CADT_CHAIN_SHORT = 8,
+  CADT_CHAIN_LONG = 24,
+  CADT_CHAIN_LANES = 256,
+  CADT_CHAIN_TURNS = 4096,
+  CADT_CHAIN_LAUNCHES = 64
+};
 
 /* Chains that are left to another launch. */
 typedef struct {
@@ -188,9 +202,8 @@ CADT_KERNEL(cadt_fill_cavities, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAME
   }
 }
 
-/* A triangle of each long chain of the launch before, by a team. What is longer than `longest` is left to teams again.
- */
-CADT_TEAM_KERNEL(CADT_CHAIN_LANES, 8, cadt_divide_chains, CADT_SEGMENT_MESH_PARAMETERS, CADT_RINGS_PARAMETERS,
+/* Divides the long chains of the launch before, a team each. What is longer than `longest` is left to teams again. */
+CADT_TEAM_KERNEL(CADT_CHAIN_LANES, 4, cadt_divide_chains, CADT_SEGMENT_MESH_PARAMETERS, CADT_RINGS_PARAMETERS,
                  CADT_GLOBAL const cadt_chain* chains, cadt_u32 count, cadt_u32 grain, cadt_u32 longest,
                  CADT_GLOBAL cadt_u32* bases, CADT_GLOBAL cadt_chain* longer, CADT_GLOBAL cadt_chain* others,
                  CADT_GLOBAL cadt_u32* words) {
@@ -200,18 +213,29 @@ CADT_TEAM_KERNEL(CADT_CHAIN_LANES, 8, cadt_divide_chains, CADT_SEGMENT_MESH_PARA
   const cadt_chain_queues queues = {longer, others};
   CADT_TEAM_MEMORY cadt_u32 shared[CADT_CHAIN_LANES];
   CADT_FOR_TEAMS(i, count, grain) {
-    const cadt_chain c = chains[i];
-    const cadt_u32 apex = cadt_apex_by_team(&mesh, &rings, &c, shared, cadt_team_lane, cadt_team_lanes, &counters);
-    CADT_TEAM_SYNC();
-    if (cadt_team_lane != 0u) continue;
-    if (apex == CADT_NONE) {
-      cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
-      continue;
+    cadt_chain c = chains[i];
+    for (cadt_u32 turn = 1u;; ++turn) { /* all lanes take the same way */
+      const cadt_u32 apex = cadt_apex_by_team(&mesh, &rings, &c, shared, cadt_team_lane, cadt_team_lanes, &counters);
+      CADT_TEAM_SYNC();
+      if (apex == CADT_NONE) {
+        if (cadt_team_lane == 0u) cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
+        break;
+      }
+      cadt_chain sides[2];
+      const cadt_u32 further = cadt_divide_chain(&rings, &c, apex, sides);
+      const cadt_u32 ends = sides[further].high - sides[further].low <= CADT_CAST(cadt_u32, CADT_CHAIN_LONG) ||
+                                    turn == CADT_CAST(cadt_u32, CADT_CHAIN_TURNS)
+                                ? 1u
+                                : 0u;
+      if (cadt_team_lane == 0u) {
+        cadt_write_base(&mesh, &rings, &c, apex, bases, sides);
+        for (cadt_u32 k = 0u; k < 2u; ++k)
+          if (k != further || ends)
+            cadt_fill_or_queue(&mesh, &rings, sides + k, bases, &queues, CADT_CHAIN_SHORT, longest, words, &counters);
+      }
+      if (ends) break;
+      c = sides[further];
     }
-    cadt_chain sides[2];
-    cadt_write_base(&mesh, &rings, &c, apex, bases, sides);
-    for (cadt_u32 k = 0u; k < 2u; ++k)
-      cadt_fill_or_queue(&mesh, &rings, sides + k, bases, &queues, CADT_CHAIN_SHORT, longest, words, &counters);
   }
 }
 

@@ -13,6 +13,7 @@
 #define CADT_CONSTRAINTS_SEGMENT_STRIDES_H
 
 #include "common/constraints/find_segments.dev.h"
+#include "common/points/hilbert_keys.dev.h"
 
 /* An element each. */
 typedef struct {
@@ -40,33 +41,35 @@ CADT_KERNEL(cadt_divide_pieces, CADT_PIECES_PARAMETERS, cadt_u32 count, cadt_u32
   }
 }
 
-enum { CADT_PROBE_SAMPLES = 1024, CADT_PROBE_NEIGHBORS = 256, CADT_PROBE_STAR = 64, CADT_PROBE_STEPS = 1024 };
+enum { CADT_PROBE_NEIGHBORS = 16, CADT_PROBE_STAR = 64, CADT_PROBE_STEPS = 1024 };
 
-/* The nearest to q of `samples` vertices from `first` on, among `count`, or `nearest`, which is `least` away. */
-CADT_FN cadt_u32 cadt_nearest_of(const cadt_segment_mesh* m, cadt_u32 first, cadt_u32 count, cadt_u32 samples,
-                                 cadt_point q, cadt_u32 nearest, cadt_real* least) {
-  for (cadt_u32 i = 0u; i < samples; ++i) {
-    const cadt_u32 v = first + CADT_CAST(cadt_u32, CADT_CAST(cadt_u64, i) * count / CADT_CAST(cadt_u64, samples));
+/* The vertex nearest to q among those beside its place along Hilbert's curve, in the order of which vertices are. */
+CADT_FN cadt_u32 cadt_vertex_near(const cadt_segment_mesh* m, cadt_u32 vertex_count, const cadt_key_grid* grid,
+                                  cadt_point q) {
+  const cadt_u64 key = cadt_key_of_place(grid, q);
+  cadt_u32 low = 0u, high = vertex_count;
+  CADT_FIND_FIRST(low, high, middle, cadt_key_of_place(grid, cadt_load_point(m->points + middle)) < key)
+  const cadt_u32 each = CADT_CAST(cadt_u32, CADT_PROBE_NEIGHBORS) / 2u;
+  const cadt_u32 begin = low > each ? low - each : 0u, end = cadt_min_u32(low + each, vertex_count);
+  cadt_u32 nearest = begin;
+  cadt_real least = CADT_INFINITY;
+  for (cadt_u32 v = begin; v < end; ++v) {
     const cadt_point p = cadt_load_point(m->points + v);
     const cadt_real away = cadt_fabs(p.x - q.x) + cadt_fabs(p.y - q.y);
-    if (away < *least) {
-      *least = away;
+    if (away < least) {
+      least = away;
       nearest = v;
     }
   }
   return nearest;
 }
 
-/* A triangle that contains the place q as far as floating point can tell: straight on from the nearest vertex of a
- * sample, and of another one around it, as vertices mostly are in the order of Hilbert's curve. (A walk that only turns
- * towards q may take for ever where long edges have made long triangles.) CADT_NONE if it meets a vertex or takes long.
- */
-CADT_FN cadt_u32 cadt_triangle_near(const cadt_segment_mesh* m, cadt_u32 vertex_count, cadt_point q) {
-  const cadt_u32 apart = vertex_count / CADT_PROBE_SAMPLES + 1u;
-  cadt_real least = CADT_INFINITY;
-  cadt_u32 nearest = cadt_nearest_of(m, 0u, vertex_count, CADT_PROBE_SAMPLES, q, 0u, &least);
-  const cadt_u32 begin = nearest > apart ? nearest - apart : 0u, end = cadt_min_u32(nearest + apart, vertex_count);
-  nearest = cadt_nearest_of(m, begin, end - begin, CADT_PROBE_NEIGHBORS, q, nearest, &least);
+/* A triangle that contains the place q as far as floating point can tell: straight on from a vertex near it. (A walk
+ * that only turns towards q may take for ever where long edges have made long triangles.) CADT_NONE if it meets a
+ * vertex or takes long. */
+CADT_FN cadt_u32 cadt_triangle_near(const cadt_segment_mesh* m, cadt_u32 vertex_count, const cadt_key_grid* grid,
+                                    cadt_point q) {
+  const cadt_u32 nearest = cadt_vertex_near(m, vertex_count, grid, q);
   const cadt_point p = cadt_load_point(m->points + nearest);
   cadt_u32 t = m->vertex_triangle[nearest];
   cadt_u32 k = cadt_corner_of(m, t, 0u) == nearest ? 0u : (cadt_corner_of(m, t, 1u) == nearest ? 1u : 2u), found = 0u;
@@ -95,8 +98,9 @@ CADT_FN cadt_u32 cadt_triangle_near(const cadt_segment_mesh* m, cadt_u32 vertex_
 
 /* Where strides start. */
 CADT_KERNEL(cadt_probe_pieces, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAMETERS, CADT_STRIDES_PARAMETERS,
-            cadt_u32 count, cadt_u32 grain, cadt_u32 vertex_count) {
+            CADT_GRID_PARAMETERS, cadt_u32 count, cadt_u32 grain, cadt_u32 vertex_count) {
   CADT_SEGMENT_MESH(mesh);
+  CADT_GRID_VIEW(grid);
   CADT_PIECES(pieces);
   CADT_STRIDES(strides);
   CADT_DECLARE_COUNTERS(counters);
@@ -113,7 +117,7 @@ CADT_KERNEL(cadt_probe_pieces, CADT_SEGMENT_MESH_PARAMETERS, CADT_PIECES_PARAMET
                      q = cadt_load_point(mesh.points + pieces.ends[2u * s + 1u]);
     const cadt_real part = CADT_CAST(cadt_real, number) / CADT_CAST(cadt_real, end - pieces.strides[s]);
     const cadt_point place = {p.x + part * (q.x - p.x), p.y + part * (q.y - p.y)};
-    const cadt_u32 t = cadt_triangle_near(&mesh, vertex_count, place);
+    const cadt_u32 t = cadt_triangle_near(&mesh, vertex_count, &grid, place);
     if (t == CADT_NONE) continue;
     cadt_i32 side[3];
     for (cadt_u32 k = 0u; k < 3u; ++k) side[k] = cadt_side_of(&mesh, p, q, cadt_corner_of(&mesh, t, k), &counters);

@@ -41,6 +41,10 @@ LaunchGrid Launcher::grid(std::size_t count) const noexcept {
   return grid_of_grains(count, count <= most_serial ? most_serial : usual_grain);
 }
 
+LaunchGrid Launcher::grid_of_long(std::size_t count) const noexcept {
+  return device_.shape().contiguous ? grid_balanced(count, 1) : grid(count);
+}
+
 LaunchGrid Launcher::grid_spread(std::size_t count) const noexcept {
   const LaunchShape shape = device_.shape();
   if (shape.contiguous) return grid_balanced(count, smallest_spread);

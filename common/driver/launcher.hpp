@@ -45,6 +45,8 @@ class Launcher {
 
   /// For kernels over `count` independent elements.
   [[nodiscard]] LaunchGrid grid(std::size_t count) const noexcept;
+  /// The same if each takes long: on CPUs few of them share a work-item.
+  [[nodiscard]] LaunchGrid grid_of_long(std::size_t count) const noexcept;
   /// For kernels with CADT_FOR_SPREAD: on GPUs, if elements are few, each gets several work-items.
   [[nodiscard]] LaunchGrid grid_spread(std::size_t count) const noexcept;
   /// For kernels whose work-items add to sums: on GPUs few work-items with many elements each.

@@ -49,11 +49,13 @@ void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Dat
   data.duplicate_points = std::move(points.duplicates);
   data.representatives = std::move(points.representatives);
   if (host != nullptr && ctx.device.info().gpu) arrays.begin(6 * points.distinct, ctx.options.threads);
+  const KeyGrid grid = points.grid;
   Mesh mesh = build(ctx, std::move(points), input, job != nullptr ? MeshUse::constrained : MeshUse::whole);
   data.dimension = mesh.flat ? (data.distinct >= 2 ? 1 : 0) : 2;
   if (mesh.flat) return;
   if (job != nullptr) {
-    constrain(ctx, mesh, n, data.distinct, {data.duplicate_points, data.representatives, data.duplicate_count}, *job);
+    constrain(ctx, mesh, grid, n, data.distinct, {data.duplicate_points, data.representatives, data.duplicate_count},
+              *job);
     if (job->crossed) return;
     mesh.points.release();
   }

@@ -112,6 +112,12 @@ CADT_FN cadt_u64 cadt_fine_key(const cadt_key_grid* grid, cadt_u32 x, cadt_u32 y
   return (CADT_CAST(cadt_u64, (along >> level) + grid->set) << (2u * level)) | (high << (2u * fine)) | low;
 }
 
+/* The key of the cell of the grid that has a point, or of the nearest one. */
+CADT_FN cadt_u64 cadt_key_of_place(const cadt_key_grid* grid, cadt_point p) {
+  const cadt_point f = cadt_clamp_to_grid(grid, cadt_to_grid(grid, p));
+  return cadt_fine_key(grid, CADT_CAST(cadt_u32, f.x), CADT_CAST(cadt_u32, f.y), cadt_grid_levels(grid));
+}
+
 /* Sort keys of one word, or of two where one-word cells would be over-full: `low_bits` of each key are in the low word.
  */
 typedef struct {

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from cadt import _cadt, _points
+from cadt import _cadt
 from cadt._errors import InputError
+from cadt._points import as_pairs
 
 _HOST = 1  # DLPack's kDLCPU
 
@@ -18,7 +19,7 @@ _HOST = 1  # DLPack's kDLCPU
 def array_on_device(points: Any) -> Array | None:
     """The adapter for an array on a GPU; None for everything on the host."""
     adapter = adapter_of(points)
-    return adapter and adapter(points)
+    return None if adapter is None else adapter(points)
 
 
 def adapter_of(points: Any) -> type[Array] | None:
@@ -136,7 +137,7 @@ class Array:
             raise InputError(f"{what} must be int32 or int64 of shape (m, 2), not {name} of {tuple(a.shape)}", 0)
         if name == "int64":
             if a.shape[0] and not self.fits_int32(a):
-                _points.as_pairs(self.host_of(a), what)  # says which
+                as_pairs(self.host_of(a), what)  # says which
             a = self.convert(a, "int32")
         return self.contiguous(a)
 
@@ -309,7 +310,7 @@ class OpenCl(Array):
         return a if a.flags.c_contiguous and not a.offset else a.copy()  # parts of buffers begin anywhere
 
     def address(self, a: Any) -> int:
-        return int(a.base_data.int_ptr)
+        return int(a.base_data.int_ptr) if a.size else 0  # nothing has no buffer
 
     # PyOpenCL neither copies columns nor reduces rows (without Mako, one of its extras).
     def gather(self, a: Any, places: np.ndarray) -> Any:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,14 +14,10 @@ from cadt._mesh import Mesh
 from cadt._points import as_pairs, as_points, as_values, contiguous
 from cadt._progress import reporter
 from cadt._results import VerifyReport, report_of
+from cadt._segments import constraints_of, segments_of, segments_there
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from cadt._arrays import Array
-
-_CROSSINGS = ("error", "exact")
-_DOMAINS = ("hull", "outer", "even_odd", "nonzero", "layers", "seeds")
 
 
 class ConstrainedDelaunay(Mesh):
@@ -122,11 +117,11 @@ class ConstrainedDelaunay(Mesh):
     ) -> None:
         self._gpu: _gpu.ConstrainedMesh | None = None
         self._cache: dict[str, Any] = {}
-        self._constraints = _constraints(crossing, domain, holes, regions)
+        self._constraints = constraints_of(crossing, domain, holes, regions)
         self._again = {"crossing": crossing, "domain": domain, "holes": holes, "regions": regions}
         if (on_gpu := array_on_device(points)) is not None:
             self._mesh, self._points = None, points
-            self._segments = _segments_there(on_gpu, segments, polylines, rings)
+            self._segments = segments_there(on_gpu, segments, polylines, rings)
             how = (backend, device, "canonical", threads, max_memory, statistics)
             with reporter(progress) as report:
                 self._gpu = _gpu.ConstrainedMesh(on_gpu, self._segments, self._constraints, domain, how, report)
@@ -135,7 +130,7 @@ class ConstrainedDelaunay(Mesh):
         if adapter_of(segments) is not None:
             raise InputError("segments on a device need points there: pass points on it, or segments of the host", 0)
         self._input = as_points(points)
-        self._segments = _segments_of(segments, polylines, rings, len(self._input))
+        self._segments = segments_of(segments, polylines, rings, len(self._input))
         self._options = _devices.make_options(backend, device, "canonical", threads, max_memory, statistics)
         arguments = (self._input, self._segments, self._constraints)
         open_device = _devices.device_for(self._options, device, threads, len(self._input))
@@ -326,7 +321,8 @@ class ConstrainedDelaunay(Mesh):
         options = _devices.make_options("host", None, "canonical", None, None, "counters")
         made = _cadt.triangulate_constrained(*self._host_input(), self._constraints, options)
         there, host_of = self._host_mesh, self._gpu.array.host_of
-        pairs = [(there.triangles, made.mesh.triangles), (there.neighbors, made.mesh.neighbors)]
+        pairs: list[tuple[Any, Any]] = [(there.triangles, made.mesh.triangles)]
+        pairs.append((there.neighbors, made.mesh.neighbors))
         if self.n_triangles:
             pairs.append((host_of(self.edge_flags), made.edge_flags))
             pairs.append((host_of(self.triangles_inside), made.triangles_inside()))
@@ -376,74 +372,6 @@ def find_crossings(points: Any, segments: Any, *, threads: int = 0) -> np.ndarra
 
 def _not_there(name: str) -> OptionError:
     return OptionError(
-        f"{name} is not for meshes with segments in device memory: pass points of the host (backend= says where to compute)",
+        f"{name} is not for meshes with segments in device memory: pass points of the host (backend= computes anywhere)",
         "points",
     )
-
-
-def _segments_of(segments: Any, polylines: Any, rings: Any, n: int) -> np.ndarray:
-    """All segments, of arrays of the host."""
-    for lines, what in ((polylines, "polylines"), (rings, "rings")):
-        if any(adapter_of(a) is not None for a in (lines if isinstance(lines, tuple) else (lines,))):
-            raise InputError(f"{what} are read on the host: pass copies there", 0)
-    parts = [as_pairs(() if segments is None else segments, "segments")]
-    parts += [_of_lines(_cadt.polyline_segments, polylines, "polylines", n)]
-    parts += [_of_lines(_cadt.ring_segments, rings, "rings", n)]
-    return contiguous(np.concatenate(parts))
-
-
-def _segments_there(array: Array, segments: Any, polylines: Any, rings: Any) -> Any:
-    """All segments, as an array on the device of the points."""
-    if adapter_of(segments) is None:
-        return array.from_host(_segments_of(segments, polylines, rings, int(array.a.shape[0])))
-    if polylines is not None or rings is not None:
-        raise InputError("segments on a device stand alone: with polylines or rings, pass segments of the host", 0)
-    return array.pairs(segments, "segments")
-
-
-def as_offsets(offsets: Any, what: str) -> np.ndarray:
-    """Integers of one dimension as int64."""
-    a = np.asarray(offsets)
-    if a.ndim != 1 or a.size == 0 or a.dtype.kind not in "iu":
-        raise InputError(f"{what} must be offsets: integers of shape (k + 1,), not {a.dtype} of {a.shape}", 0)
-    return contiguous(a, np.int64)
-
-
-def _of_lines(segments_of: Callable, lines: Any, what: str, n: int) -> np.ndarray:
-    if lines is None:
-        return np.empty((0, 2), dtype=np.int32)
-    vertices: Any = None
-    if isinstance(lines, tuple) and len(lines) == 2 and np.ndim(lines[0]) == 1:
-        lines, vertices = lines
-    offsets = as_offsets(lines, what)
-    if vertices is None:
-        if offsets[-1] > n:
-            raise InputError(f"the offsets of {what} reach to {offsets[-1]}, but there are {n} points", len(offsets) - 1)
-        return segments_of(offsets, np.empty(0, dtype=np.int32))
-    v = np.asarray(vertices)
-    if v.ndim != 1 or (v.size and v.dtype.kind not in "iu"):
-        raise InputError(f"the vertices of {what} must be integers of one dimension, not {v.dtype} of {v.shape}", 0)
-    return segments_of(offsets, contiguous(v, np.int32))
-
-
-def _constraints(crossing: Any, domain: str, holes: Any, regions: Any) -> _cadt.ConstraintOptions:
-    width = 0.0
-    if isinstance(crossing, (tuple, list)) and len(crossing) == 2 and crossing[0] == "grid":
-        crossing, width = "grid", float(crossing[1])
-        if not (width > 0 and math.isfinite(width)):
-            raise OptionError(f"the width of the grid must be above 0, not {width}", "grid")
-    elif crossing not in _CROSSINGS:
-        raise OptionError(f"crossing must be 'error', 'exact' or ('grid', width), not {crossing!r}", "crossing")
-    if domain not in _DOMAINS:
-        raise OptionError(f"domain must be one of {', '.join(map(repr, _DOMAINS))}, not {domain!r}", "domain")
-    places = []
-    for name, given, columns in (("holes", holes, 2), ("regions", regions, 3)):
-        a = np.asarray(() if given is None else given, dtype=np.float64)
-        if a.size == 0:
-            a = np.empty((0, columns))
-        elif domain != "seeds":
-            raise OptionError(f"{name} are for domain='seeds'", name)
-        if a.ndim != 2 or a.shape[1] != columns:
-            raise InputError(f"{name} must have shape (k, {columns}), not {a.shape}", 0)
-        places.append(contiguous(a))
-    return _cadt.ConstraintOptions(crossing, width, domain, *places)

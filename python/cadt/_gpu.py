@@ -127,7 +127,9 @@ class Mesh:
 class ConstrainedMesh(Mesh):
     """A mesh with segments in device memory."""
 
-    def __init__(self, array: Array, segments: Any, constraints: Any, domain: str, arguments: tuple, report: Any) -> None:
+    def __init__(
+        self, array: Array, segments: Any, constraints: Any, domain: str, arguments: tuple, report: Any
+    ) -> None:
         self.segments, self._constraints, self._hull = segments, constraints, domain == "hull"
         super().__init__(array, arguments, report)
 

@@ -109,8 +109,7 @@ def breaklines(n):
 
 @pytest.mark.parametrize("dtype", [np.int32, np.int64])
 def test_segments_equal_host(library, dtype):
-    n = 200_000
-    xy, segments = breaklines(n)
+    xy, segments = breaklines(20_000)
     put, get = library.put, library.get
     mesh = cadt.ConstrainedDelaunay(put(xy), put(segments.astype(dtype)), domain="outer")
     host = cadt.ConstrainedDelaunay(xy, segments, domain="outer", backend="host")

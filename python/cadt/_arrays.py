@@ -11,25 +11,31 @@ import numpy as np
 
 from cadt import _cadt
 from cadt._errors import InputError
+from cadt._points import as_pairs
 
 _HOST = 1  # DLPack's kDLCPU
 
 
 def array_on_device(points: Any) -> Array | None:
     """The adapter for an array on a GPU; None for everything on the host."""
+    adapter = adapter_of(points)
+    return None if adapter is None else adapter(points)
+
+
+def adapter_of(points: Any) -> type[Array] | None:
     if type(points) in (np.ndarray, list, tuple):
         return None
     package = type(points).__module__.partition(".")[0]
     if package == "pyopencl" and hasattr(points, "queue"):
-        return OpenCl(points)
+        return OpenCl
     if package == "torch":
-        return Torch(points) if points.is_cuda else None
+        return Torch if points.is_cuda else None
     if package == "cupy":
-        return CuPy(points)
+        return CuPy
     if package in ("jax", "jaxlib"):
-        return Jax(points) if next(iter(points.devices())).platform in ("gpu", "cuda") else None
+        return Jax if next(iter(points.devices())).platform in ("gpu", "cuda") else None
     if hasattr(points, "__cuda_array_interface__"):
-        return CudaInterface(points)
+        return CudaInterface
     if hasattr(points, "__dlpack_device__") and int(points.__dlpack_device__()[0]) not in (_HOST, 3):
         raise TypeError(
             f"arrays of {package} on a device are not known to cadt: pass one with __cuda_array_interface__, "
@@ -78,6 +84,9 @@ class Array:
         return a.__cuda_array_interface__["data"][0]
 
     def to_host(self) -> np.ndarray:
+        return self.host_of(self.a)
+
+    def host_of(self, a: Any) -> np.ndarray:
         raise NotImplementedError
 
     def like(self, host: Any) -> Any:
@@ -119,9 +128,29 @@ class Array:
         (x0, y0), (x1, y1) = self.xp.amin(self.a, 0).tolist(), self.xp.amax(self.a, 0).tolist()
         return (x0, y0, x1, y1)
 
-    def triangles(self, mesh: Any, which: str) -> Any:
-        """The arrays of a mesh, without a copy; they keep it."""
-        raise NotImplementedError
+    def pairs(self, a: Any, what: str) -> Any:
+        """Indices of shape (m, 2) on the device, as contiguous int32."""
+        if not self.is_here(a):
+            raise InputError(f"{what} must be arrays of the host, or of the points' library and device", 0)
+        name = str(a.dtype).rpartition(".")[2]
+        if len(a.shape) != 2 or a.shape[1] != 2 or name not in ("int32", "int64"):
+            raise InputError(f"{what} must be int32 or int64 of shape (m, 2), not {name} of {tuple(a.shape)}", 0)
+        if name == "int64":
+            if a.shape[0] and not self.fits_int32(a):
+                as_pairs(self.host_of(a), what)  # says which
+            a = self.convert(a, "int32")
+        return self.contiguous(a)
+
+    def fits_int32(self, a: Any) -> bool:
+        return bool(a.min() >= 0) and bool(a.max() < 2**31)
+
+    def words(self, mesh: Any, which: str, shape: tuple[int, ...]) -> Any:
+        """An array of a mesh, without a copy; it keeps the mesh. Zeros where the mesh has none."""
+        handle = getattr(mesh, f"{which}_handle")
+        return self.of_handle(mesh, handle, shape) if handle else self.from_host(np.zeros(shape, np.int32))
+
+    def of_handle(self, mesh: Any, handle: int, shape: tuple[int, ...]) -> Any:
+        return self.xp.from_dlpack(_cadt.cuda_words(mesh, handle, shape))
 
 
 class CuPy(Array):
@@ -148,8 +177,8 @@ class CuPy(Array):
         x, y = self.column(self.a, 0), self.column(self.a, 1)  # what is not contiguous takes 8 ms for ten million
         return (float(x.min()), float(y.min()), float(x.max()), float(y.max()))
 
-    def to_host(self) -> np.ndarray:
-        return self.xp.asnumpy(self.a)
+    def host_of(self, a: Any) -> np.ndarray:
+        return self.xp.asnumpy(a)
 
     def from_host(self, host: np.ndarray) -> Any:
         with self.xp.cuda.Device(self.device):
@@ -158,11 +187,6 @@ class CuPy(Array):
     def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
         with self.xp.cuda.Device(self.device):
             return self.xp.empty(shape, dtype)
-
-    def triangles(self, mesh: Any, which: str) -> Any:
-        if mesh.number_of_triangles == 0:
-            return self.empty((0, 3), "int32")
-        return self.xp.from_dlpack(getattr(_cadt, f"cuda_{which}")(mesh))
 
 
 class CudaInterface(CuPy):
@@ -176,6 +200,9 @@ class CudaInterface(CuPy):
                 f"results for {type(a).__module__}.{type(a).__name__} on a GPU are CuPy's arrays: pip install cupy-cuda13x"
             ) from None
         super().__init__(cupy.asarray(a))
+
+    def pairs(self, a: Any, what: str) -> Any:
+        return super().pairs(self.xp.asarray(a), what)
 
 
 class Torch(Array):
@@ -196,8 +223,8 @@ class Torch(Array):
     def address(self, a: Any) -> int:
         return int(a.data_ptr())
 
-    def to_host(self) -> np.ndarray:
-        return self.a.cpu().numpy()
+    def host_of(self, a: Any) -> np.ndarray:
+        return a.cpu().numpy()
 
     def from_host(self, host: np.ndarray) -> Any:
         return self.xp.from_numpy(np.array(host)).to(self.where)
@@ -212,11 +239,6 @@ class Torch(Array):
 
     def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
         return self.xp.empty(shape, dtype=getattr(self.xp, dtype), device=self.where)
-
-    def triangles(self, mesh: Any, which: str) -> Any:
-        if mesh.number_of_triangles == 0:
-            return self.empty((0, 3), "int32")
-        return self.xp.from_dlpack(getattr(_cadt, f"cuda_{which}")(mesh))
 
 
 class Jax(Array):
@@ -246,8 +268,8 @@ class Jax(Array):
     def address(self, a: Any) -> int:
         return a.address if isinstance(a, _cadt.DeviceMemory) else int(a.block_until_ready().unsafe_buffer_pointer())
 
-    def to_host(self) -> np.ndarray:
-        return np.asarray(self.a)
+    def host_of(self, a: Any) -> np.ndarray:
+        return np.asarray(a)
 
     def from_host(self, host: np.ndarray) -> Any:
         with self.x64(True):
@@ -269,11 +291,6 @@ class Jax(Array):
         with self.x64(True):
             return super().bounds()
 
-    def triangles(self, mesh: Any, which: str) -> Any:
-        if mesh.number_of_triangles == 0:
-            return self.from_host(np.empty((0, 3), np.int32))
-        return self.xp.from_dlpack(getattr(_cadt, f"cuda_{which}")(mesh))
-
 
 class OpenCl(Array):
     backend = "opencl"
@@ -293,7 +310,7 @@ class OpenCl(Array):
         return a if a.flags.c_contiguous and not a.offset else a.copy()  # parts of buffers begin anywhere
 
     def address(self, a: Any) -> int:
-        return int(a.base_data.int_ptr)
+        return int(a.base_data.int_ptr) if a.size else 0  # nothing has no buffer
 
     # PyOpenCL neither copies columns nor reduces rows (without Mako, one of its extras).
     def gather(self, a: Any, places: np.ndarray) -> Any:
@@ -307,19 +324,22 @@ class OpenCl(Array):
         all_of = self.cl.array.stack(rasters)
         return self.gather(all_of, np.arange(all_of.size).reshape(all_of.shape).transpose(1, 2, 0))
 
-    def bounds(self) -> tuple[float, float, float, float]:
-        def fold(pick: Any) -> list[float]:
-            a = self.a
-            while len(a) > 1:  # the first half with the last one, which share a row if there is an odd number
-                half = (len(a) + 1) // 2
-                a = pick(a[:half], a[len(a) - half :])
-            return a.get()[0].tolist()
+    def fold(self, a: Any, pick: Any) -> list[Any]:
+        while len(a) > 1:  # the first half with the last one, which share a row if there is an odd number
+            half = (len(a) + 1) // 2
+            a = pick(a[:half], a[len(a) - half :])
+        return a.get()[0].tolist()
 
-        (x0, y0), (x1, y1) = fold(self.cl.array.minimum), fold(self.cl.array.maximum)
+    def bounds(self) -> tuple[float, float, float, float]:
+        (x0, y0), (x1, y1) = self.fold(self.a, self.cl.array.minimum), self.fold(self.a, self.cl.array.maximum)
         return (x0, y0, x1, y1)
 
-    def to_host(self) -> np.ndarray:
-        return self.a.get()
+    def fits_int32(self, a: Any) -> bool:
+        low, high = self.fold(a, self.cl.array.minimum), self.fold(a, self.cl.array.maximum)
+        return min(low) >= 0 and max(high) < 2**31
+
+    def host_of(self, a: Any) -> np.ndarray:
+        return a.get()
 
     def from_host(self, host: np.ndarray) -> Any:
         return self.cl.array.to_device(self.cl_queue, host)
@@ -327,11 +347,8 @@ class OpenCl(Array):
     def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
         return self.cl.array.empty(self.cl_queue, shape, dtype)
 
-    def triangles(self, mesh: Any, which: str) -> Any:
-        handle = getattr(mesh, f"{which}_handle")
-        if not handle:
-            return self.cl.array.empty(self.cl_queue, (0, 3), np.int32)
+    def of_handle(self, mesh: Any, handle: int, shape: tuple[int, ...]) -> Any:
         buffer = self.cl.Buffer.from_int_ptr(handle)
-        result = self.cl.array.Array(self.cl_queue, (mesh.number_of_triangles, 3), np.int32, data=buffer)
+        result = self.cl.array.Array(self.cl_queue, shape, np.int32, data=buffer)
         result._cadt_mesh = mesh  # the memory is the mesh's
         return result

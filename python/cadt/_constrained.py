@@ -3,24 +3,21 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cadt import _cadt, _devices, _show
-from cadt._arrays import array_on_device
-from cadt._errors import InputError, OptionError
+from cadt import _cadt, _devices, _gpu, _show
+from cadt._arrays import adapter_of, array_on_device
+from cadt._errors import InputError, InternalError, OptionError
 from cadt._mesh import Mesh
-from cadt._points import as_points, as_values, contiguous
+from cadt._points import as_pairs, as_points, as_values, contiguous
 from cadt._progress import reporter
 from cadt._results import VerifyReport, report_of
+from cadt._segments import constraints_of, segments_of, segments_there
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-_CROSSINGS = ("error", "exact")
-_DOMAINS = ("hull", "outer", "even_odd", "nonzero", "layers", "seeds")
 
 
 class ConstrainedDelaunay(Mesh):
@@ -32,7 +29,7 @@ class ConstrainedDelaunay(Mesh):
     Parameters
     ----------
     points : array_like, shape (n, 2)
-        As for `Delaunay`, on the host.
+        As for `Delaunay`. Points on a GPU stay there, and so does the mesh (see the notes).
     segments : array_like of int, shape (m, 2), optional
         The two points of each. They may repeat, overlap, lie on the hull and end anywhere; points on them divide them.
     polylines, rings : array_like of int, shape (k + 1,), or a pair of arrays, optional
@@ -66,6 +63,13 @@ class ConstrainedDelaunay(Mesh):
     The result is unique: it depends neither on the order nor on the direction of segments, and is the same from every
     device and equal to CGAL's. Expected O(n log n) work, and O(log) a triangle that segments cross. The GIL is released;
     Ctrl-C ends a call. Meshes never change, and threads may share them.
+
+    Points on a GPU: segments are int32 or int64 of the same library there, or of the host, as polylines and rings are;
+    these are uploaded, being indices. `simplices`, `neighbors`, `edge_flags`, `triangles_inside` and, but with
+    ``domain="hull"``, `region` are arrays on the device, without a copy, and queries are answered there. Crossings are
+    errors, and seeds are refused. `hash` and `verify` make the mesh again on the host and compare. The rest (`chains`,
+    `constrained_edges`, `inside`, ...) is not kept there and raises `OptionError`: pass points of the host for it;
+    ``backend="cuda"`` computes them on the GPU as well.
 
     Interpolation and rasters take values of the points that were given (`at_crossings` says what crossings get) or of all
     `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a Delaunay mesh: unless all
@@ -111,42 +115,48 @@ class ConstrainedDelaunay(Mesh):
         statistics: str = "counters",
         progress: bool | Callable[[str, float], object] | None = None,
     ) -> None:
-        if array_on_device(points) is not None:
-            raise InputError("points are arrays of the host here; backend= says where to compute", 0)
-        self._gpu = None
+        self._gpu: _gpu.ConstrainedMesh | None = None
         self._cache: dict[str, Any] = {}
-        self._input = as_points(points)
-        parts = [as_pairs(() if segments is None else segments, "segments")]
-        parts += [_of_lines(_cadt.polyline_segments, polylines, "polylines", len(self._input))]
-        parts += [_of_lines(_cadt.ring_segments, rings, "rings", len(self._input))]
-        self._segments = contiguous(np.concatenate(parts))
-        self._constraints = _constraints(crossing, domain, holes, regions)
+        self._constraints = constraints_of(crossing, domain, holes, regions)
         self._again = {"crossing": crossing, "domain": domain, "holes": holes, "regions": regions}
+        if (on_gpu := array_on_device(points)) is not None:
+            self._mesh, self._points = None, points
+            self._segments = segments_there(on_gpu, segments, polylines, rings)
+            how = (backend, device, "canonical", threads, max_memory, statistics)
+            with reporter(progress) as report:
+                self._gpu = _gpu.ConstrainedMesh(on_gpu, self._segments, self._constraints, domain, how, report)
+            self._options = self._gpu.options
+            return
+        if adapter_of(segments) is not None:
+            raise InputError("segments on a device need points there: pass points on it, or segments of the host", 0)
+        self._input = as_points(points)
+        self._segments = segments_of(segments, polylines, rings, len(self._input))
         self._options = _devices.make_options(backend, device, "canonical", threads, max_memory, statistics)
         arguments = (self._input, self._segments, self._constraints)
         open_device = _devices.device_for(self._options, device, threads, len(self._input))
         with reporter(progress) as report:
             if open_device is not None:
-                self._c = _cadt.triangulate_constrained_by(open_device, *arguments, self._options, report)
+                self._made = _cadt.triangulate_constrained_by(open_device, *arguments, self._options, report)
             else:
                 if self._options.backend == "auto":
                     self._options = self._options.on_host()
-                self._c = _cadt.triangulate_constrained(*arguments, self._options, report)
-        self._mesh = self._c.mesh
-        first: Any = self._c.moved_points if len(self._c.moved_points) else self._input
-        self._points: Any = np.concatenate([first, self._c.added_points]) if len(self._c.added_points) else first
+                self._made = _cadt.triangulate_constrained(*arguments, self._options, report)
+        made = self._made
+        self._mesh = made.mesh
+        first: Any = made.moved_points if len(made.moved_points) else self._input
+        self._points = np.concatenate([first, made.added_points]) if len(made.added_points) else first
 
     # Segments
 
     @property
-    def segments(self) -> np.ndarray:
+    def segments(self) -> Any:
         """(m, 2) int32: all segments, as they are numbered."""
         return self._segments
 
     @property
-    def edge_flags(self) -> np.ndarray:
-        """(t,) uint32: bit k is set if the edge opposite vertex k is part of a segment."""
-        return self._of("edge_flags", lambda c: c.edge_flags)
+    def edge_flags(self) -> Any:
+        """(t,) uint32, on a GPU int32: bit k is set if the edge opposite vertex k is part of a segment."""
+        return self._of("edge_flags", lambda c: c.edge_flags, lambda g: g.edge_flags)
 
     @property
     def constrained_edges(self) -> np.ndarray:
@@ -183,14 +193,14 @@ class ConstrainedDelaunay(Mesh):
         return self._of("inside", lambda c: c.inside.view(bool))
 
     @property
-    def triangles_inside(self) -> np.ndarray:
+    def triangles_inside(self) -> Any:
         """Those of `simplices` that are inside: (i, 3) int32."""
-        return self._of("triangles_inside", lambda c: c.triangles_inside())
+        return self._of("triangles_inside", lambda c: c.triangles_inside(), lambda g: g.triangles_inside)
 
     @property
-    def region(self) -> np.ndarray:
+    def region(self) -> Any:
         """(t,) int32: the region of each triangle. No segment separates the triangles of a region."""
-        return self._of("region", lambda c: c.region)
+        return self._of("region", lambda c: c.region, lambda g: g.region)
 
     @property
     def n_regions(self) -> int:
@@ -228,7 +238,7 @@ class ConstrainedDelaunay(Mesh):
     @property
     def rounded_valid(self) -> bool:
         """Whether triangles are still counterclockwise with rounded coordinates. True without added points."""
-        return self._c.rounded_valid
+        return self._gpu is not None or self._made.rounded_valid
 
     def at_crossings(self, values: Any) -> np.ndarray:
         """Values of the points that were given, shape (n, ...), with those of `added_points` behind them.
@@ -240,6 +250,8 @@ class ConstrainedDelaunay(Mesh):
         >>> mesh.at_crossings([0, 10, 7, 7])
         array([ 0., 10.,  7.,  7.,  5.])
         """
+        if self._gpu is not None:
+            raise _not_there("at_crossings")
         n = len(self._input)
         v, one = as_values(values, n)
         if not len(self.added_points):
@@ -267,25 +279,58 @@ class ConstrainedDelaunay(Mesh):
     @property
     def hash(self) -> str:
         """32 hexadecimal digits of triangles and constrained edges: the same from every device, order and direction."""
-        return self._of("hash", lambda c: c.hash())
+        if "hash" not in self._cache:
+            self._cache["hash"] = self._host_made().hash()
+        return self._cache["hash"]
 
     def verify(self) -> VerifyReport:
         """Checks the whole mesh exactly: triangles, segments, regions, by code that did not make them. O(n)."""
-        return report_of(self._c.verify(self._input, self._segments, self._constraints))
+        return report_of(self._host_made().verify(*self._host_input(), self._constraints))
 
     def plot(self, ax: Any = None, *, inside: bool = True, **how: Any) -> Any:
         """Draws triangles (those inside, unless ``inside=False``) and, thicker, segments with matplotlib; returns the axes.
 
         `how` is passed to ``triplot``.
         """
+        if self._gpu is not None:
+            raise _not_there("plot")
         return _show.plot_constrained(self, ax, inside, how)
 
     # Plumbing
 
-    def _of(self, name: str, of: Callable) -> Any:
+    def _of(self, name: str, of: Callable, of_gpu: Callable | None = None) -> Any:
         if name not in self._cache:
-            self._cache[name] = of(self._c)
+            if self._gpu is None:
+                self._cache[name] = of(self._made)
+            elif of_gpu is None:
+                raise _not_there(name)
+            else:
+                self._cache[name] = of_gpu(self._gpu)
         return self._cache[name]
+
+    def _host_input(self) -> tuple[np.ndarray, np.ndarray]:
+        """Points and segments, copied to the host where they are on a device."""
+        if self._gpu is None:
+            return self._input, self._segments
+        return self._host_points, contiguous(self._gpu.array.host_of(self._segments), np.int32)
+
+    def _host_made(self) -> _cadt.ConstrainedTriangulation:
+        """The mesh with its segments on the host. That of a device is made again there, and must be equal."""
+        if self._gpu is None:
+            return self._made
+        options = _devices.make_options("host", None, "canonical", None, None, "counters")
+        made = _cadt.triangulate_constrained(*self._host_input(), self._constraints, options)
+        there, host_of = self._host_mesh, self._gpu.array.host_of
+        pairs: list[tuple[Any, Any]] = [(there.triangles, made.mesh.triangles)]
+        pairs.append((there.neighbors, made.mesh.neighbors))
+        if self.n_triangles:
+            pairs.append((host_of(self.edge_flags), made.edge_flags))
+            pairs.append((host_of(self.triangles_inside), made.triangles_inside()))
+            if self._again["domain"] != "hull":
+                pairs.append((host_of(self.region), made.region))
+        if not all(np.array_equal(a, b) for a, b in pairs):
+            raise InternalError("the mesh on the device is not the one that the host makes of the same input")
+        return made
 
     def _values(self, values: Any) -> tuple[np.ndarray, tuple[int, ...]]:
         if self.n_points != len(self._input) and np.shape(values)[:1] == (len(self._input),):
@@ -293,18 +338,21 @@ class ConstrainedDelaunay(Mesh):
         return as_values(values, self.n_points)
 
     def _queries(self) -> _cadt.Queries:
+        if self._gpu is not None:
+            raise _not_there("this")
         if "queries" not in self._cache:
-            self._cache["queries"] = _cadt.Queries(self._input, self._c, self._options)
+            self._cache["queries"] = _cadt.Queries(self._input, self._made, self._options)
         return self._cache["queries"]
 
     def __repr__(self) -> str:
+        inside = int(np.count_nonzero(self.inside)) if self._gpu is None else self._gpu.number_inside
         return (
-            f"<cadt.ConstrainedDelaunay: {self.n_points:,} points, {len(self._segments):,} segments, "
-            f"{self.n_triangles:,} triangles, {int(np.count_nonzero(self.inside)):,} inside, {self.device}>"
+            f"<cadt.ConstrainedDelaunay: {self.n_points:,} points, {self._segments.shape[0]:,} segments, "
+            f"{self.n_triangles:,} triangles, {inside:,} inside, {self.device}>"
         )
 
     def __reduce__(self) -> tuple:
-        return _restore, (type(self), self._input, self._segments, self._again)
+        return _restore, (type(self), *self._host_input(), self._again)
 
 
 def _restore(cls: type[ConstrainedDelaunay], points: np.ndarray, segments: np.ndarray, how: dict) -> Any:
@@ -322,63 +370,8 @@ def find_crossings(points: Any, segments: Any, *, threads: int = 0) -> np.ndarra
     return _cadt.find_crossings(as_points(points), as_pairs(segments, "segments"), threads)
 
 
-def as_pairs(segments: Any, what: str) -> np.ndarray:
-    """Integers of shape (m, 2) as int32."""
-    a = np.asarray(segments)
-    if a.size == 0 and a.ndim <= 2:
-        return np.empty((0, 2), dtype=np.int32)
-    if a.ndim != 2 or a.shape[1] != 2 or a.dtype.kind not in "iu":
-        raise InputError(f"{what} must be integers of shape (m, 2), not {a.dtype} of {a.shape}", 0)
-    wrong = (a < 0) | (a > np.iinfo(np.int32).max)
-    if wrong.any():
-        first = int(np.argmax(wrong.any(axis=1)))
-        raise InputError(f"segment {first} has an end that is no point: {a[first].tolist()}", first)
-    return contiguous(a, np.int32)
-
-
-def as_offsets(offsets: Any, what: str) -> np.ndarray:
-    """Integers of one dimension as int64."""
-    a = np.asarray(offsets)
-    if a.ndim != 1 or a.size == 0 or a.dtype.kind not in "iu":
-        raise InputError(f"{what} must be offsets: integers of shape (k + 1,), not {a.dtype} of {a.shape}", 0)
-    return contiguous(a, np.int64)
-
-
-def _of_lines(segments_of: Callable, lines: Any, what: str, n: int) -> np.ndarray:
-    if lines is None:
-        return np.empty((0, 2), dtype=np.int32)
-    vertices: Any = None
-    if isinstance(lines, tuple) and len(lines) == 2 and np.ndim(lines[0]) == 1:
-        lines, vertices = lines
-    offsets = as_offsets(lines, what)
-    if vertices is None:
-        if offsets[-1] > n:
-            raise InputError(f"the offsets of {what} reach to {offsets[-1]}, but there are {n} points", len(offsets) - 1)
-        return segments_of(offsets, np.empty(0, dtype=np.int32))
-    v = np.asarray(vertices)
-    if v.ndim != 1 or (v.size and v.dtype.kind not in "iu"):
-        raise InputError(f"the vertices of {what} must be integers of one dimension, not {v.dtype} of {v.shape}", 0)
-    return segments_of(offsets, contiguous(v, np.int32))
-
-
-def _constraints(crossing: Any, domain: str, holes: Any, regions: Any) -> _cadt.ConstraintOptions:
-    width = 0.0
-    if isinstance(crossing, (tuple, list)) and len(crossing) == 2 and crossing[0] == "grid":
-        crossing, width = "grid", float(crossing[1])
-        if not (width > 0 and math.isfinite(width)):
-            raise OptionError(f"the width of the grid must be above 0, not {width}", "grid")
-    elif crossing not in _CROSSINGS:
-        raise OptionError(f"crossing must be 'error', 'exact' or ('grid', width), not {crossing!r}", "crossing")
-    if domain not in _DOMAINS:
-        raise OptionError(f"domain must be one of {', '.join(map(repr, _DOMAINS))}, not {domain!r}", "domain")
-    places = []
-    for name, given, columns in (("holes", holes, 2), ("regions", regions, 3)):
-        a = np.asarray(() if given is None else given, dtype=np.float64)
-        if a.size == 0:
-            a = np.empty((0, columns))
-        elif domain != "seeds":
-            raise OptionError(f"{name} are for domain='seeds'", name)
-        if a.ndim != 2 or a.shape[1] != columns:
-            raise InputError(f"{name} must have shape (k, {columns}), not {a.shape}", 0)
-        places.append(contiguous(a))
-    return _cadt.ConstraintOptions(crossing, width, domain, *places)
+def _not_there(name: str) -> OptionError:
+    return OptionError(
+        f"{name} is not for meshes with segments in device memory: pass points of the host (backend= computes anywhere)",
+        "points",
+    )

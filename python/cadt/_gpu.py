@@ -37,16 +37,19 @@ class Mesh:
             raise BackendUnavailable("the device of the points cannot be used", array.backend, "")
         self.points = array.coordinates(array.a)
         array.begin()
-        self.mesh = _cadt.triangulate_on_device(self.triangulator, self.points, self.options, report)
+        self.mesh = self._triangulate(report)
         self._queries: Any = None
+
+    def _triangulate(self, report: Any) -> Any:
+        return _cadt.triangulate_on_device(self.triangulator, self.points, self.options, report)
 
     @property
     def simplices(self) -> Any:
-        return self.array.triangles(self.mesh, "triangles")
+        return self.array.words(self.mesh, "triangles", (self.mesh.number_of_triangles, 3))
 
     @property
     def neighbors(self) -> Any:
-        return self.array.triangles(self.mesh, "neighbors")
+        return self.array.words(self.mesh, "neighbors", (self.mesh.number_of_triangles, 3))
 
     def bounds(self) -> tuple[float, float, float, float]:
         if self.mesh.number_of_points == 0:
@@ -119,3 +122,37 @@ class Mesh:
         result = self.array.empty((self.mesh.number_of_triangles, 2), "float64")
         self._ask().circumcenters(self.array.memory(result))
         return self.array.finished(result)
+
+
+class ConstrainedMesh(Mesh):
+    """A mesh with segments in device memory."""
+
+    def __init__(
+        self, array: Array, segments: Any, constraints: Any, domain: str, arguments: tuple, report: Any
+    ) -> None:
+        self.segments, self._constraints, self._hull = segments, constraints, domain == "hull"
+        super().__init__(array, arguments, report)
+
+    def _triangulate(self, report: Any) -> Any:
+        arguments = (self.points, self.array.memory(self.segments), self._constraints, self.options, report)
+        return _cadt.triangulate_constrained_on_device(self.triangulator, *arguments)
+
+    @property
+    def number_inside(self) -> int:
+        return self.mesh.number_of_triangles if self._hull else self.mesh.number_inside
+
+    @property
+    def edge_flags(self) -> Any:
+        return self.array.words(self.mesh, "edge_flags", (self.mesh.number_of_triangles,))
+
+    @property
+    def region(self) -> Any:
+        if self._hull:
+            raise OptionError("regions on a device need a domain: domain='outer' makes them", "domain")
+        return self.array.words(self.mesh, "regions", (self.mesh.number_of_triangles,))
+
+    @property
+    def triangles_inside(self) -> Any:
+        if self._hull:
+            return self.simplices
+        return self.array.words(self.mesh, "triangles_inside", (self.mesh.number_inside, 3))

@@ -109,3 +109,17 @@ def as_indices(a: Any, what: str) -> np.ndarray:
     if a.size and (a.max() > np.iinfo(np.int32).max or a.min() < -1):
         raise InputError(f"{what} must lie between -1 and 2**31 - 1", 0)
     return np.array(a, dtype=np.int32, order="C")
+
+
+def as_pairs(segments: Any, what: str) -> np.ndarray:
+    """Integers of shape (m, 2) as int32."""
+    a = np.asarray(segments)
+    if a.size == 0 and a.ndim <= 2:
+        return np.empty((0, 2), dtype=np.int32)
+    if a.ndim != 2 or a.shape[1] != 2 or a.dtype.kind not in "iu":
+        raise InputError(f"{what} must be integers of shape (m, 2), not {a.dtype} of {a.shape}", 0)
+    wrong = (a < 0) | (a > np.iinfo(np.int32).max)
+    if wrong.any():
+        first = int(np.argmax(wrong.any(axis=1)))
+        raise InputError(f"segment {first} has an end that is no point: {a[first].tolist()}", first)
+    return contiguous(a, np.int32)

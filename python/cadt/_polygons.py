@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cadt import _cadt, _devices, _show
-from cadt._constrained import as_offsets
 from cadt._errors import InputError
 from cadt._points import as_points
 from cadt._progress import reporter
+from cadt._segments import as_offsets
 from cadt._wkb import MULTIPOLYGON, POLYGON, lines_of_wkb, offsets_of
 
 if TYPE_CHECKING:

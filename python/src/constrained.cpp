@@ -193,6 +193,17 @@ void bind_constrained(nb::module_& m) {
       },
       nb::arg("triangulator"), nb::arg("points"), nb::arg("segments"), nb::arg("constraints"), nb::arg("options"),
       nb::arg("progress") = nb::none());
+  m.def(
+      "triangulate_constrained_on_device",
+      [](const Shared& shared, const DeviceCoordinates& points, const std::pair<std::uintptr_t, std::size_t>& segments,
+         const cadt::ConstraintOptions& constraints, const cadt::Options& options, const nb::object& progress) {
+        const cadt::DeviceArray pairs = {reinterpret_cast<void*>(segments.first), segments.second};
+        return std::make_shared<DeviceMesh>(shared, shared->run(options, progress, [&](cadt::Triangulator& own) {
+          return own.triangulate_constrained(points.points(), pairs, constraints);
+        }));
+      },
+      nb::arg("triangulator"), nb::arg("points"), nb::arg("segments"), nb::arg("constraints"), nb::arg("options"),
+      nb::arg("progress") = nb::none());
   m.def("polyline_segments", [](const Offsets& offsets, const IndexArray& vertices) {
     return array_of_pairs(cadt::polyline_segments(elements_of(offsets), elements_of(vertices)));
   });

@@ -17,9 +17,7 @@ nb::object cuda_array(const std::shared_ptr<Owner>& owner, void* memory, const s
   return nb::cast(nb::ndarray<nb::array_api>(memory, shape.size(), shape.data(), keep, nullptr, type,
                                              nb::device::cuda::value, owner->shared().device().index));
 }
-nb::object triangle_array(const Mesh& mesh, void* memory) {
-  return cuda_array(mesh, memory, {mesh->mesh().number_of_triangles(), 3}, nb::dtype<std::int32_t>());
-}
+std::uintptr_t number_of(void* handle) { return reinterpret_cast<std::uintptr_t>(handle); }
 
 }  // namespace
 
@@ -68,15 +66,19 @@ void bind_device(nb::module_& m) {
       .def_prop_ro("number_of_triangles", [](const DeviceMesh& d) { return d.mesh().number_of_triangles(); })
       .def_prop_ro("dimension", [](const DeviceMesh& d) { return d.mesh().dimension(); })
       .def_prop_ro("statistics", [](const DeviceMesh& d) { return to_dict(d.mesh().statistics()); })
-      .def_prop_ro("triangles_handle",
-                   [](const DeviceMesh& d) { return reinterpret_cast<std::uintptr_t>(d.mesh().triangles()); })
-      .def_prop_ro("neighbors_handle",
-                   [](const DeviceMesh& d) { return reinterpret_cast<std::uintptr_t>(d.mesh().neighbors()); })
+      .def_prop_ro("number_inside", [](const DeviceMesh& d) { return d.mesh().number_inside(); })
+      .def_prop_ro("triangles_handle", [](const DeviceMesh& d) { return number_of(d.mesh().triangles()); })
+      .def_prop_ro("neighbors_handle", [](const DeviceMesh& d) { return number_of(d.mesh().neighbors()); })
+      .def_prop_ro("edge_flags_handle", [](const DeviceMesh& d) { return number_of(d.mesh().edge_flags()); })
+      .def_prop_ro("regions_handle", [](const DeviceMesh& d) { return number_of(d.mesh().regions()); })
+      .def_prop_ro("triangles_inside_handle",
+                   [](const DeviceMesh& d) { return number_of(d.mesh().triangles_inside()); })
       .def("download", [](const DeviceMesh& d) {
         return d.shared().run(nb::none(), [&](cadt::Triangulator&) { return d.mesh().download(); });
       });
-  m.def("cuda_triangles", [](const Mesh& mesh) { return triangle_array(mesh, mesh->mesh().triangles()); });
-  m.def("cuda_neighbors", [](const Mesh& mesh) { return triangle_array(mesh, mesh->mesh().neighbors()); });
+  m.def("cuda_words", [](const Mesh& mesh, std::uintptr_t handle, const std::vector<std::size_t>& shape) {
+    return cuda_array(mesh, reinterpret_cast<void*>(handle), shape, nb::dtype<std::int32_t>());
+  });
 
   nb::class_<DeviceMemory>(m, "DeviceMemory")
       .def(nb::init<Shared, std::vector<std::size_t>, bool>(), nb::arg("triangulator"), nb::arg("shape"),

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import cadt
 import numpy as np
 import pytest
@@ -95,6 +97,64 @@ def test_nothing_through_the_host(library):
     through_host = cadt.Delaunay(np.random.default_rng(2).random((n, 2)), backend="cuda").statistics
     assert through_host["bytes_to_device"] >= 16 * n
     assert through_host["bytes_from_device"] >= 24 * (2 * n - 100)
+
+
+def breaklines(n):
+    """Points, and paths along two halves of them: no crossings."""
+    xy = np.random.default_rng(14).random((n, 2))
+    order = np.argsort(xy[:, 0])
+    parts = [order[xy[order, 1] < 0.5], order[xy[order, 1] >= 0.5]]
+    return xy, np.concatenate([np.stack([p[:-1], p[1:]], axis=1) for p in parts])
+
+
+@pytest.mark.parametrize("dtype", [np.int32, np.int64])
+def test_segments_equal_host(library, dtype):
+    xy, segments = breaklines(20_000)
+    put, get = library.put, library.get
+    mesh = cadt.ConstrainedDelaunay(put(xy), put(segments.astype(dtype)), domain="outer")
+    host = cadt.ConstrainedDelaunay(xy, segments, domain="outer", backend="host")
+    assert mesh.device.startswith("cuda") and repr(mesh).split(" inside")[0] == repr(host).split(" inside")[0]
+    moved = mesh.statistics["bytes_to_device"] + mesh.statistics["bytes_from_device"]
+    assert moved < 64 * 1024, "words that steer the call, and no array"
+    for member in ("simplices", "neighbors", "edge_flags", "region", "triangles_inside", "segments", "hull"):
+        np.testing.assert_array_equal(get(getattr(mesh, member)), getattr(host, member), member)
+    assert mesh.verify() and mesh.hash == host.hash == pickle.loads(pickle.dumps(mesh)).hash
+    q = np.random.default_rng(15).random((500, 2))
+    z = xy[:, 0] ** 2
+    np.testing.assert_array_equal(get(mesh.find_simplex(put(q))), host.find_simplex(q))
+    np.testing.assert_allclose(get(mesh.interpolate(put(z), put(q))), host.interpolate(z, q), rtol=1e-12)
+    image = mesh.rasterize(put(z), bounds=(0, 0, 1, 1), shape=(9, 13))
+    np.testing.assert_allclose(get(image), host.rasterize(z, bounds=(0, 0, 1, 1), shape=(9, 13)), rtol=1e-12)
+    with pytest.raises(cadt.NotDelaunay):
+        mesh.nearest_vertex(put(q))
+
+
+@pytest.mark.parametrize("domain", ["hull", "outer", "even_odd", "nonzero", "layers"])
+def test_rings_of_the_host_and_domains(library, domain):
+    xy = np.array([[0.0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [1, 2], [0.5, 0.25]])
+    mesh = cadt.ConstrainedDelaunay(library.put(xy), rings=[0, 4, 8], domain=domain)
+    host = cadt.ConstrainedDelaunay(xy, rings=[0, 4, 8], domain=domain)
+    np.testing.assert_array_equal(library.get(mesh.triangles_inside), host.triangles_inside)
+    assert mesh.verify()
+
+
+def test_segments_that_are_refused(library):
+    put = library.put
+    xy = np.array([[0.0, 0], [2, 2], [0, 2], [2, 0]])
+    with pytest.raises(cadt.CrossingError) as caught:
+        cadt.ConstrainedDelaunay(put(xy), put(np.array([[0, 1], [2, 3]])))
+    assert caught.value.pairs.tolist() == [[0, 1]]
+    with pytest.raises(cadt.InputError, match="need points there"):
+        cadt.ConstrainedDelaunay(xy, put(np.array([[0, 1]])))
+    for wrong in ([[0, 1], [2, 4]], [[0, 1], [-1, 2]], [[0, 1], [0, 2**32 + 1]]):
+        with pytest.raises(cadt.InputError) as refused:
+            cadt.ConstrainedDelaunay(put(xy), put(np.array(wrong)))
+        assert refused.value.index == 1
+    with pytest.raises(cadt.OptionError):
+        cadt.ConstrainedDelaunay(put(xy), [[0, 1]], crossing="exact")
+    empty = cadt.ConstrainedDelaunay(put(xy), domain="outer")
+    for member in ("edge_flags", "region"):
+        assert not library.get(getattr(empty, member)).any()
 
 
 @pytest.mark.parametrize("dtype", ["float64", "float32"])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 
 import cadt
 import numpy as np
@@ -116,3 +117,94 @@ def test_a_query_reports_to_its_own_call(queue):
     for _ in range(3):
         assert (mesh.find_simplex(q).get() >= -1).all()
         np.testing.assert_array_equal(mesh.circumcenters().get(), cadt.Delaunay(points).circumcenters())
+
+
+def breaklines(n=3_000):
+    """Points, and paths along two halves of them: no crossings."""
+    xy = np.random.default_rng(11).random((n, 2))
+    order = np.argsort(xy[:, 0])
+    parts = [order[xy[order, 1] < 0.5], order[xy[order, 1] >= 0.5]]
+    return xy, np.concatenate([np.stack([p[:-1], p[1:]], axis=1) for p in parts])
+
+
+RINGS = np.array([[0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [1, 2], [0.5, 0.25]])
+
+
+@pytest.mark.parametrize("dtype", [np.int32, np.int64])
+def test_segments_equal_host(queue, dtype):
+    xy, segments = breaklines()
+    given, of = cl_array.to_device(queue, xy), cl_array.to_device(queue, segments.astype(dtype))
+    mesh = cadt.ConstrainedDelaunay(given, of, domain="outer")
+    host = cadt.ConstrainedDelaunay(xy, segments, domain="outer", backend="host")
+    assert mesh.device.startswith("opencl") and mesh.points is given
+    moved = mesh.statistics["bytes_to_device"] + mesh.statistics["bytes_from_device"]
+    assert moved < 8 * len(xy), "words that steer the call, and no array"
+    for member in ("simplices", "neighbors", "edge_flags", "region", "triangles_inside", "segments", "hull", "edges"):
+        got = getattr(mesh, member)
+        assert isinstance(got, cl_array.Array), member
+        np.testing.assert_array_equal(got.get(), getattr(host, member), member)
+    assert mesh.verify() and mesh.hash == host.hash == pickle.loads(pickle.dumps(mesh)).hash
+    assert repr(mesh).partition(" inside")[0] == repr(host).partition(" inside")[0]
+    q = np.random.default_rng(2).random((500, 2))
+    np.testing.assert_array_equal(mesh.find_simplex(q).get(), host.find_simplex(q))
+    z = xy[:, 0] ** 2
+    np.testing.assert_allclose(mesh.interpolate(z, q).get(), host.interpolate(z, q), rtol=1e-12)
+    image = mesh.rasterize(z, bounds=(0, 0, 1, 1), shape=(9, 13))
+    np.testing.assert_allclose(image.get(), host.rasterize(z, bounds=(0, 0, 1, 1), shape=(9, 13)), rtol=1e-12)
+    with pytest.raises(cadt.NotDelaunay):
+        mesh.nearest_vertex(q)
+
+
+@pytest.mark.parametrize("domain", ["hull", "outer", "even_odd", "nonzero", "layers"])
+@pytest.mark.parametrize("dtype", ["float64", "float32"])
+def test_rings_of_the_host_and_domains(queue, domain, dtype):
+    xy = RINGS.astype(dtype)
+    mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, xy), rings=[0, 4, 8], domain=domain)
+    host = cadt.ConstrainedDelaunay(xy, rings=[0, 4, 8], domain=domain)
+    np.testing.assert_array_equal(mesh.triangles_inside.get(), host.triangles_inside)
+    assert f"{len(host.triangles_inside)} inside, opencl" in repr(mesh) and mesh.verify()
+    if domain != "hull":
+        np.testing.assert_array_equal(mesh.region.get(), host.region)
+
+
+def test_segments_that_are_refused(queue):
+    def put(a):
+        return cl_array.to_device(queue, np.asarray(a))
+
+    xy = np.array([[0.0, 0], [2, 2], [0, 2], [2, 0]])
+    there = put(xy)
+    with pytest.raises(cadt.CrossingError) as caught:
+        cadt.ConstrainedDelaunay(there, put([[0, 1], [2, 3]]))
+    assert caught.value.pairs.tolist() == [[0, 1]]
+    with pytest.raises(cadt.InputError, match="need points there"):
+        cadt.ConstrainedDelaunay(xy, put([[0, 1]]))
+    with pytest.raises(cadt.InputError, match="stand alone"):
+        cadt.ConstrainedDelaunay(there, put([[0, 1]]), rings=[0, 3])
+    with pytest.raises(cadt.InputError, match="read on the host"):
+        cadt.ConstrainedDelaunay(there, rings=put([0, 3]))
+    for wrong in ([[0, 1], [2, 4]], [[0, 1], [-1, 2]], [[0, 1], [0, 2**32 + 1]]):
+        with pytest.raises(cadt.InputError) as refused:
+            cadt.ConstrainedDelaunay(there, put(wrong))
+        assert refused.value.index == 1
+    for wrong in (put([[0.0, 1.0]]), put([0, 1]), put([[0, 1, 2]])):
+        with pytest.raises(cadt.InputError):
+            cadt.ConstrainedDelaunay(there, wrong)
+    for how in ({"crossing": "exact"}, {"crossing": ("grid", 1.0)}, {"domain": "seeds"}):
+        with pytest.raises(cadt.OptionError):
+            cadt.ConstrainedDelaunay(there, [[0, 1]], **how)
+    mesh = cadt.ConstrainedDelaunay(there, [[0, 1]])
+    for name in ("chains", "constrained_edges", "edge_sources", "inside", "region", "region_value", "added_points"):
+        with pytest.raises(cadt.OptionError):
+            getattr(mesh, name)
+    with pytest.raises(cadt.OptionError):
+        mesh.voronoi()
+
+
+def test_few_points_and_no_segments(queue):
+    for xy in (np.empty((0, 2)), np.array([[0.0, 0], [1, 1], [2, 2]]), RINGS):
+        segments = np.empty((0, 2), np.int32) if len(xy) != 3 else np.array([[0, 2]], np.int32)
+        mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, xy), segments, domain="outer")
+        host = cadt.ConstrainedDelaunay(xy, segments, domain="outer")
+        for member in ("simplices", "neighbors", "edge_flags", "region", "triangles_inside"):
+            np.testing.assert_array_equal(getattr(mesh, member).get(), getattr(host, member), member)
+        assert mesh.verify()

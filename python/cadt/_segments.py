@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Segments from pairs of points, polylines and rings, on the host and on a device, and what is to become of them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cadt import _cadt
+from cadt._arrays import adapter_of
+from cadt._errors import InputError, OptionError
+from cadt._points import as_pairs, contiguous
+
+if TYPE_CHECKING:
+    from cadt._arrays import Array
+
+_CROSSINGS = ("error", "exact")
+_DOMAINS = ("hull", "outer", "even_odd", "nonzero", "layers", "seeds")
+
+
+def segments_of(segments: Any, polylines: Any, rings: Any, n: int) -> np.ndarray:
+    """All segments, of arrays of the host."""
+    for lines, what in ((polylines, "polylines"), (rings, "rings")):
+        if any(adapter_of(a) is not None for a in (lines if isinstance(lines, tuple) else (lines,))):
+            raise InputError(f"{what} are read on the host: pass copies there", 0)
+    parts = [as_pairs(() if segments is None else segments, "segments")]
+    parts += [_of_lines(_cadt.polyline_segments, polylines, "polylines", n)]
+    parts += [_of_lines(_cadt.ring_segments, rings, "rings", n)]
+    return contiguous(np.concatenate(parts))
+
+
+def segments_there(array: Array, segments: Any, polylines: Any, rings: Any) -> Any:
+    """All segments, as an array on the device of the points."""
+    if adapter_of(segments) is None:
+        return array.from_host(segments_of(segments, polylines, rings, int(array.a.shape[0])))
+    if polylines is not None or rings is not None:
+        raise InputError("segments on a device stand alone: with polylines or rings, pass segments of the host", 0)
+    return array.pairs(segments, "segments")
+
+
+def as_offsets(offsets: Any, what: str) -> np.ndarray:
+    """Integers of one dimension as int64."""
+    a = np.asarray(offsets)
+    if a.ndim != 1 or a.size == 0 or a.dtype.kind not in "iu":
+        raise InputError(f"{what} must be offsets: integers of shape (k + 1,), not {a.dtype} of {a.shape}", 0)
+    return contiguous(a, np.int64)
+
+
+def _of_lines(make: Any, lines: Any, what: str, n: int) -> np.ndarray:
+    if lines is None:
+        return np.empty((0, 2), dtype=np.int32)
+    vertices: Any = None
+    if isinstance(lines, tuple) and len(lines) == 2 and np.ndim(lines[0]) == 1:
+        lines, vertices = lines
+    offsets = as_offsets(lines, what)
+    if vertices is None:
+        if offsets[-1] > n:
+            raise InputError(f"the offsets of {what} reach to {offsets[-1]}, but there are {n} points", len(offsets) - 1)
+        return make(offsets, np.empty(0, dtype=np.int32))
+    v = np.asarray(vertices)
+    if v.ndim != 1 or (v.size and v.dtype.kind not in "iu"):
+        raise InputError(f"the vertices of {what} must be integers of one dimension, not {v.dtype} of {v.shape}", 0)
+    return make(offsets, contiguous(v, np.int32))
+
+
+def constraints_of(crossing: Any, domain: str, holes: Any, regions: Any) -> _cadt.ConstraintOptions:
+    width = 0.0
+    if isinstance(crossing, (tuple, list)) and len(crossing) == 2 and crossing[0] == "grid":
+        crossing, width = "grid", float(crossing[1])
+        if not (width > 0 and math.isfinite(width)):
+            raise OptionError(f"the width of the grid must be above 0, not {width}", "grid")
+    elif crossing not in _CROSSINGS:
+        raise OptionError(f"crossing must be 'error', 'exact' or ('grid', width), not {crossing!r}", "crossing")
+    if domain not in _DOMAINS:
+        raise OptionError(f"domain must be one of {', '.join(map(repr, _DOMAINS))}, not {domain!r}", "domain")
+    places = []
+    for name, given, columns in (("holes", holes, 2), ("regions", regions, 3)):
+        a = np.asarray(() if given is None else given, dtype=np.float64)
+        if a.size == 0:
+            a = np.empty((0, columns))
+        elif domain != "seeds":
+            raise OptionError(f"{name} are for domain='seeds'", name)
+        if a.ndim != 2 or a.shape[1] != columns:
+            raise InputError(f"{name} must have shape (k, {columns}), not {a.shape}", 0)
+        places.append(contiguous(a))
+    return _cadt.ConstraintOptions(crossing, width, domain, *places)

@@ -81,7 +81,8 @@ class EveryStep : public ResidentTest {
           EXPECT_EQ(faults->live_buffers(), buffers);
           const Outcome next = call(triangulator);
           EXPECT_EQ(next.hash, expected.hash);
-          EXPECT_LE(next.peak, expected.peak) << "memory is counted that nobody holds";
+          EXPECT_LE(next.peak, expected.peak + (peak_varies ? expected.peak / 16 : 0))
+              << "memory is counted that nobody holds";
         }
         if (HasFailure()) return;
         // Conflicts between threads change the number of launches, and of what goes with them.
@@ -92,6 +93,9 @@ class EveryStep : public ResidentTest {
     EXPECT_EQ(faults->live_buffers(), 0U);
     EXPECT_EQ(faults->live_bytes(), 0U);
   }
+
+  /// Threads decide which pieces of segments wait, and so how large the rings of a launch are.
+  bool peak_varies = false;
 
   /// The caller stops `call` at each place where it tells its progress: nothing stays allocated, and the next call is
   /// as ever.

@@ -26,6 +26,7 @@ Outcome constrained_outcome(const ConstrainedTriangulation& mesh) {
 }
 
 TEST_P(EveryStep, SegmentsOfTheHost) {
+  peak_varies = true;
   const Walls walls;
   ConstraintOptions constraints;
   constraints.domain = Domain::layers;
@@ -38,6 +39,7 @@ TEST_P(EveryStep, SegmentsOfTheHost) {
 }
 
 TEST_P(EveryStep, SegmentsOfTheDevice) {
+  peak_varies = true;
   const Walls walls;
   const DevicePoints points = upload(walls.xy);
   const DeviceArray segments{memory->upload(std::span<const Segment>(walls.segments)), 2 * walls.segments.size()};
@@ -62,6 +64,7 @@ Call crossing_call(Crossing crossing) {
 }
 
 TEST_P(EveryStep, SegmentsThatCross) {
+  peak_varies = true;
   for (const Crossing crossing : {Crossing::error, Crossing::exact, Crossing::grid})
     fail_each(options(), crossing_call(crossing));
 }

@@ -47,8 +47,9 @@ struct DuplicateLists {
   std::size_t count;
 };
 
-/// Makes the segments edges of the Delaunay mesh of `points` input points, of which `distinct` are vertices. If
-/// segments cross, only `job.crossed` is set. \pre the mesh is unfinished and has triangles, ghosts and points
+/// Makes the segments edges of the Delaunay mesh of `points` input points, of which `distinct` are vertices, in the
+/// order of the keys of `grid`: any other order is right as well, but slow for long segments on GPUs. If segments
+/// cross, only `job.crossed` is set. \pre the mesh is unfinished and has triangles, ghosts and points
 /// (MeshUse::constrained) \throws InputError for the first segment with an end that is no point, InternalError
 void constrain(Context& ctx, Mesh& mesh, const KeyGrid& grid, std::size_t points, std::size_t distinct,
                const DuplicateLists& duplicates, SegmentJob& job);

@@ -43,7 +43,7 @@ CADT_KERNEL(cadt_divide_pieces, CADT_PIECES_PARAMETERS, cadt_u32 count, cadt_u32
 
 enum { CADT_PROBE_NEIGHBORS = 16, CADT_PROBE_STAR = 64, CADT_PROBE_STEPS = 1024 };
 
-/* The vertex nearest to q among those beside its place along Hilbert's curve, in the order of which vertices are. */
+/* The vertex nearest to q among those beside its place along Hilbert's curve: vertices are in that order. */
 CADT_FN cadt_u32 cadt_vertex_near(const cadt_segment_mesh* m, cadt_u32 vertex_count, const cadt_key_grid* grid,
                                   cadt_point q) {
   const cadt_u64 key = cadt_key_of_place(grid, q);

@@ -191,10 +191,8 @@ CADT_KERNEL(cadt_hilbert_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL
 CADT_KERNEL(cadt_fine_hilbert_keys, CADT_GLOBAL const cadt_point* points, CADT_GLOBAL cadt_u32* high,
             CADT_GLOBAL cadt_u32* low, cadt_u32 low_bits, cadt_u32 count, cadt_u32 grain, CADT_GRID_PARAMETERS) {
   CADT_GRID_VIEW(grid);
-  const cadt_u32 levels = cadt_grid_levels(&grid);
   CADT_FOR(i, count, grain) {
-    const cadt_point f = cadt_clamp_to_grid(&grid, cadt_to_grid(&grid, points[i]));
-    const cadt_u64 key = cadt_fine_key(&grid, CADT_CAST(cadt_u32, f.x), CADT_CAST(cadt_u32, f.y), levels);
+    const cadt_u64 key = cadt_key_of_place(&grid, points[i]);
     high[i] = CADT_CAST(cadt_u32, key >> low_bits);
     low[i] = CADT_CAST(cadt_u32, key) & ((1u << low_bits) - 1u);
   }

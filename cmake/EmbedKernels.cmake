@@ -26,7 +26,7 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
   # these files generates it again. PREFIX: a file that each text begins with.
   function(cadt_embed_kernels out_variable root)
     set(entries self_test predicates portable points insertion stars batch certify output verify queries
-        finalization constraints polygons)
+        finalization constraints crossings polygons)
     list(TRANSFORM entries REPLACE "(.+)" "${root}/kernels_cl/\\1.cl")
     cadt_embed(output kernel_source ${root} "${ARGN}" ${entries})
     set(${out_variable} ${output} PARENT_SCOPE)

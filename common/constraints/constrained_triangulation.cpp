@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "common/constraints/certified_crossings.hpp"
 #include "common/constraints/constrained_data.hpp"
 #include "common/constraints/constraints.hpp"
 #include "common/constraints/crossings.hpp"
@@ -59,9 +60,16 @@ void chain_on_line(PointsView points, std::span<const Segment> segments, Data& d
   }
 }
 
-[[noreturn]] void refuse_crossings(PointsView points, std::span<const Segment> segments, const Options& options) {
-  std::vector<std::array<std::int32_t, 2>> pairs =
-      constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, options.stop), options.stop);
+using State = std::shared_ptr<Triangulator::State>;
+
+/// `found`: what the device has found, or nothing.
+[[noreturn]] void refuse_crossings(const State& state, PointsView points, std::span<const Segment> segments,
+                                   const std::optional<FoundCrossings>& found) {
+  const Options& options = state->options;
+  std::vector<Segment> pairs =
+      found ? read_pairs(*state->device, *found)
+            : constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, options.stop),
+                                          options.stop);
   if (pairs.empty()) throw InternalError("segments were found to cross, but no pair of them does");
   std::string message =
       std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair of segments crosses: " : " pairs of segments cross: ");
@@ -72,18 +80,9 @@ void chain_on_line(PointsView points, std::span<const Segment> segments, Data& d
   throw CrossingError(message + "; repair them, or take Crossing::exact or Crossing::grid", std::move(pairs));
 }
 
-using State = std::shared_ptr<Triangulator::State>;
-
-void take_chains(Data& data, std::vector<std::int64_t> offsets, std::vector<std::int32_t> vertices) {
-  data.chain_offsets = std::move(offsets);
-  data.chain_vertices = std::move(vertices);
-  for (std::size_t s = 0; s + 1 < data.chain_offsets.size(); ++s)
-    if (data.chain_offsets[s] == data.chain_offsets[s + 1]) data.degenerate.push_back(static_cast<std::int32_t>(s));
-}
-
 /// False if segments cross: then the data has no mesh.
-bool constrain_uncrossed(const State& state, PointsView points, std::span<const Segment> segments, Data& data) {
-  SegmentJob job;
+bool constrain_uncrossed(const State& state, PointsView points, std::span<const Segment> segments, SegmentJob& job,
+                         Data& data) {
   job.on_host = segments;
   job.count = segments.size();
   job.wants_chains = true;
@@ -101,7 +100,9 @@ bool constrain_uncrossed(const State& state, PointsView points, std::span<const 
   return true;
 }
 
-void constrain_exactly(const State& state, PointsView points, std::span<const Segment> segments, Data& data) {
+void constrain_exactly(const State& state, PointsView points, std::span<const Segment> segments,
+                       std::optional<FoundCrossings> found, Data& data) {
+  if (found && found->places && constrain_rounded(state, points, segments, std::move(*found), data)) return;
   const Triangulation delaunay = triangulate_on_host(state, points);
   constraints::ExactMesh exact =
       constraints::triangulate_with_crossings(points, segments, delaunay, state->options.threads, state->options.stop);
@@ -118,7 +119,8 @@ void constrain_on_grid(const State& state, PointsView points, std::span<const Se
       constraints::snap_segments(points, segments, grid, state->options.threads, state->options.stop);
   const std::vector<Segment> pieces = polyline_segments(snapped.offsets, snapped.vertices);
   Data divided;
-  if (!constrain_uncrossed(state, snapped.xy, pieces, divided))
+  SegmentJob job;
+  if (!constrain_uncrossed(state, snapped.xy, pieces, job, divided))
     throw InternalError("segments still cross after snap rounding");
   data.mesh = std::move(divided.mesh);
   data.edge_flags = std::move(divided.edge_flags);
@@ -174,12 +176,14 @@ ConstrainedTriangulation constrain_on(const State& state, PointsView points, std
   require_size(points.size());
   require_segments(segments.size());
   auto data = std::make_shared<Data>();
+  SegmentJob job;
+  job.wants_crossings = constraints.crossing == Crossing::exact ? FindCrossings::places : FindCrossings::pairs;
   if (constraints.crossing == Crossing::grid) {
     constrain_on_grid(state, points, segments, constraints.grid, *data);
     points = data->moved;
-  } else if (!constrain_uncrossed(state, points, segments, *data)) {
-    if (constraints.crossing == Crossing::error) refuse_crossings(points, segments, state->options);
-    constrain_exactly(state, points, segments, *data);
+  } else if (!constrain_uncrossed(state, points, segments, job, *data)) {
+    if (constraints.crossing == Crossing::error) refuse_crossings(state, points, segments, job.crossings);
+    constrain_exactly(state, points, segments, std::move(job.crossings), *data);
   }
   add_domains(state, points, constraints, *data);
   return ConstrainedTriangulation(std::move(data));
@@ -252,6 +256,7 @@ DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& po
   job.count = segments.size / 2;
   if (job.count != 0) job.segments = state_->memory.wrap(segments.memory, segments.size * sizeof(std::int32_t));
   job.wants_chains = constraints.domain != Domain::hull;
+  job.wants_crossings = FindCrossings::pairs;
   std::unique_ptr<DeviceTriangulation::Data> data = triangulate_on_device(state_, points, &job);
   Statistics statistics;
   Context ctx(*state_->device, state_->memory, state_->options, statistics);
@@ -270,7 +275,7 @@ DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& po
   std::vector<Segment> copied(job.count);
   ctx.device.read(*job.segments, 0, copied.data(), job.count * sizeof(Segment));
   ctx.device.finish();
-  refuse_crossings(xy, copied, state_->options);
+  refuse_crossings(state_, xy, copied, job.crossings);
 }
 
 ConstrainedTriangulation::ConstrainedTriangulation() : data_(std::make_shared<Data>()) {}

@@ -36,20 +36,22 @@ class Constrainer {
 
   void map_segments(std::size_t points, std::size_t distinct, const DuplicateLists& duplicates) {
     ctx_.device.fill(*words_, CADT_SEGMENTS_BAD_INDEX * word, word, CADT_NONE);
-    Allocation vertex_of = ctx_.memory.allocate(points * word);
-    launch_.run<KernelId::cadt_vertices_of_points>(mesh_.input_ids, launch_.grid(distinct), vertex_of);
+    vertex_of_ = ctx_.memory.allocate(points * word);
+    launch_.run<KernelId::cadt_vertices_of_points>(mesh_.input_ids, launch_.grid(distinct), vertex_of_);
     if (duplicates.count != 0)
       launch_.run<KernelId::cadt_vertices_of_duplicates>(duplicates.points, duplicates.representatives,
-                                                         launch_.grid(duplicates.count), vertex_of);
+                                                         launch_.grid(duplicates.count), vertex_of_);
     ends_ = ctx_.memory.allocate(std::max<std::size_t>(2 * job_.count, 1) * word);
-    launch_.run<KernelId::cadt_vertices_of_segments>(job_.segments, launch_.grid(job_.count), vertex_of, points, ends_,
+    launch_.run<KernelId::cadt_vertices_of_segments>(job_.segments, launch_.grid(job_.count), vertex_of_, points, ends_,
                                                      words_);
     if (const std::uint32_t bad = launch_.read_word(words_, CADT_SEGMENTS_BAD_INDEX); bad != CADT_NONE)
       throw InputError(
           "segment " + std::to_string(bad) + " has an end that is none of the " + std::to_string(points) + " points",
           bad);
     ctx_.device.fill(*words_, 0, CADT_SEGMENTS_WORDS * word, 0);
+    points_ = points;
     vertices_ = distinct;
+    if (job_.wants_crossings == FindCrossings::no) vertex_of_.release();
     vertex_triangle_ = ctx_.memory.allocate(distinct * word);
     launch_.run<KernelId::cadt_vertex_triangles>(mesh_.vertices, launch_.grid(mesh_.all), vertex_triangle_);
     mesh_.edge_flags = ctx_.memory.allocate_zeros(mesh_.all * word);
@@ -89,6 +91,16 @@ class Constrainer {
     return Outcome::done;
   }
 
+  /// What crosses, as far as that is wanted: the mesh is one of all vertices, whatever was inserted.
+  void find_crossings() {
+    claims_.release();
+    job_.crossed = true;
+    if (job_.wants_crossings == FindCrossings::no) return;
+    job_.crossings = cadt::find_crossings(
+        ctx_, {mesh_, ends_, vertex_triangle_, job_.segments, vertex_of_, job_.count, vertices_, points_},
+        job_.wants_crossings == FindCrossings::places);
+  }
+
   /// Flags are those of the segments and no others; chains if they are wanted.
   void trace() {
     ctx_.device.fill(*mesh_.edge_flags, 0, mesh_.all * word, 0);
@@ -100,7 +112,9 @@ class Constrainer {
                                                  job_.chains, words_);
     };
     if (job_.count != 0) run(none);
-    require_sound(launch_.read_word(words_, CADT_SEGMENTS_BROKEN));
+    const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
+    require_sound(found[CADT_SEGMENTS_BROKEN]);
+    job_.divided = found[CADT_SEGMENTS_MORE_LOW] != 0 || found[CADT_SEGMENTS_MORE_HIGH] != 0;
     if (!job_.wants_chains) return;
     if (job_.count == 0) ctx_.device.fill(*offsets, 0, word, 0);
     require_countable();
@@ -288,8 +302,8 @@ class Constrainer {
   const KeyGrid& grid_;
   SegmentJob& job_;
   Allocation words_ = launch_.zeros(CADT_SEGMENTS_WORDS);
-  Allocation ends_, vertex_triangle_, claims_;
-  std::size_t vertices_ = 0, places_ = 0;  ///< places of the rings of the last launch
+  Allocation ends_, vertex_of_, vertex_triangle_, claims_;
+  std::size_t points_ = 0, vertices_ = 0, places_ = 0;  ///< places of the rings of the last launch
 };
 
 }  // namespace
@@ -308,10 +322,7 @@ void constrain(Context& ctx, Mesh& mesh, const KeyGrid& grid, std::size_t points
     job.segments = ctx.memory.import(job.on_host.data(), job.count * sizeof(Segment));
   Constrainer constrainer(ctx, mesh, grid, job);
   constrainer.map_segments(points, distinct, duplicates);
-  if (constrainer.insert() == Outcome::crossed) {
-    job.crossed = true;
-    return;
-  }
+  if (constrainer.insert() == Outcome::crossed) return constrainer.find_crossings();
   constrainer.trace();
   ctx.end_phase("constrain");
   ctx.begin_share(0, 1);

@@ -50,10 +50,13 @@ void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Dat
   data.representatives = std::move(points.representatives);
   if (host != nullptr && ctx.device.info().gpu) arrays.begin(6 * points.distinct, ctx.options.threads);
   const KeyGrid grid = points.grid;
+  const double scale = points.scale, scale_again = points.scale_again;
   Mesh mesh = build(ctx, std::move(points), input, job != nullptr ? MeshUse::constrained : MeshUse::whole);
   data.dimension = mesh.flat ? (data.distinct >= 2 ? 1 : 0) : 2;
   if (mesh.flat) return;
   if (job != nullptr) {
+    mesh.scale = scale;
+    mesh.scale_again = scale_again;
     constrain(ctx, mesh, grid, n, data.distinct, {data.duplicate_points, data.representatives, data.duplicate_count},
               *job);
     if (job->crossed) return;
@@ -61,6 +64,8 @@ void triangulate_into(Context& ctx, const InputPoints& input, Triangulation::Dat
   }
   ctx.check("output", 0.9);
   write_result(ctx, mesh, n);
+  if (job != nullptr && job->rounded_places != nullptr)
+    job->suspects = certify_places(ctx, mesh, *job->rounded_places, job->exact_points);
   if (job != nullptr) job->edge_flags = std::move(mesh.edge_flags);
   data.triangle_count = mesh.triangles;
   data.triangles = std::move(mesh.vertices.device);
@@ -93,17 +98,25 @@ void run_call(const std::shared_ptr<Triangulator::State>& state, const InputPoin
   end_call(*state, ctx, host == nullptr);
 }
 
-Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points, SegmentJob* job = nullptr,
-                      SegmentResults* segments = nullptr) {
-  require_size(points.size());
+/// A call whose result is wanted on the host.
+std::unique_ptr<Triangulation::Data> run_to_host(const std::shared_ptr<Triangulator::State>& state,
+                                                 const InputPoints& points, const CallShape& shape,
+                                                 SegmentJob* job = nullptr, SegmentResults* segments = nullptr) {
+  require_size(shape.points);
   auto result = std::make_unique<Triangulation::Data>();
   DeviceTriangulation::Data data;  // after the result, which it may alias
-  run_call(state, points, {points.size(), is_host(*state->device), false, points.scalar_size()}, result.get(), data,
-           job, segments);
+  run_call(state, points, shape, result.get(), data, job, segments);
   result->points = data.points;
   result->triangle_count = data.triangle_count;
   result->dimension = data.dimension;
   result->statistics = std::move(data.statistics);
+  return result;
+}
+
+Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points, SegmentJob* job = nullptr,
+                      SegmentResults* segments = nullptr) {
+  auto result =
+      run_to_host(state, points, {points.size(), is_host(*state->device), false, points.scalar_size()}, job, segments);
   result->keep(points, state->options.keep_points);
   return Triangulation(std::move(result));
 }
@@ -171,6 +184,12 @@ Triangulation triangulate_on_host(const std::shared_ptr<Triangulator::State>& st
 Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state, PointsView points,
                                         SegmentJob& job, SegmentResults& segments) {
   return to_host(state, points, &job, &segments);
+}
+
+Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points,
+                                        SegmentJob& job, SegmentResults& segments) {
+  return Triangulation(run_to_host(
+      state, points, {points.size, is_host(*state->device), true, scalar_bytes(points.scalar)}, &job, &segments));
 }
 
 Triangulator::Triangulator(const Options& options)

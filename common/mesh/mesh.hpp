@@ -50,15 +50,16 @@ enum class MeshUse {
 /// A mesh in arrays (common/mesh/mesh_view.dev.h), which may be longer than needed. After certification only
 /// renumbering changes it.
 struct Mesh {
-  Allocation points;           ///< of the vertices; null if nobody needs them any more
-  Allocation input_ids;        ///< of the vertices; null if these are input ids
-  MeshArray vertices, across;  ///< of `all` triangles
-  Allocation edge_flags;       ///< of `all` triangles; null if no edge is constrained
-  std::size_t triangles = 0;   ///< the first so many have no ghost vertex
-  std::size_t all = 0;         ///< with ghost triangles
-  bool finished = false;       ///< vertices are input ids, triangles stand across; else positions and half-edges
-  bool flat = false;           ///< no triangles: all vertices are collinear, or there are fewer than three
-  bool certified = false;      ///< a pass has examined all edges already
+  Allocation points;                  ///< of the vertices; null if nobody needs them any more
+  double scale = 1, scale_again = 1;  ///< they are the input's times both factors
+  Allocation input_ids;               ///< of the vertices; null if these are input ids
+  MeshArray vertices, across;         ///< of `all` triangles
+  Allocation edge_flags;              ///< of `all` triangles; null if no edge is constrained
+  std::size_t triangles = 0;          ///< the first so many have no ghost vertex
+  std::size_t all = 0;                ///< with ghost triangles
+  bool finished = false;              ///< vertices are input ids, triangles stand across; else positions and half-edges
+  bool flat = false;                  ///< no triangles: all vertices are collinear, or there are fewer than three
+  bool certified = false;             ///< a pass has examined all edges already
 
   [[nodiscard]] static Mesh without_triangles(Allocation input_ids) {
     Mesh mesh;

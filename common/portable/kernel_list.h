@@ -226,6 +226,19 @@
   X(cadt_triangulate_polygons) /* polygons.dev.h */ \
   X(cadt_pack_polygons)        /* polygons.dev.h */
 
+/* common/constraints: segments that cross */
+#define CADT_CROSSINGS_KERNELS(X)                                                               \
+  X(cadt_divide_segments) /* segment_pairs.dev.h: pieces, and the triangles they run through */ \
+  X(cadt_count_pairs)     /* segment_pairs.dev.h: pairs of pieces in the same triangle */       \
+  X(cadt_find_pairs)      /* segment_pairs.dev.h: those that cross */                           \
+  X(cadt_list_partners)   /* segment_pairs.dev.h: what each segment crosses */                  \
+  X(cadt_sort_partners)   /* segment_pairs.dev.h */                                             \
+  X(cadt_order_pairs)     /* segment_pairs.dev.h */                                             \
+  X(cadt_place_crossings) /* exact_places.dev.h: rounded coordinates */                         \
+  X(cadt_count_chains)    /* exact_places.dev.h */                                              \
+  X(cadt_write_chains)    /* exact_places.dev.h: vertices along segments */                     \
+  X(cadt_certify_places)  /* exact_places.dev.h: what is not certainly right */
+
 #define CADT_KERNEL_LIST(X)    \
   CADT_SELF_TEST_KERNELS(X)    \
   CADT_PREDICATES_KERNELS(X)   \
@@ -240,6 +253,7 @@
   CADT_QUERIES_KERNELS(X)      \
   CADT_FINALIZATION_KERNELS(X) \
   CADT_CONSTRAINTS_KERNELS(X)  \
+  CADT_CROSSINGS_KERNELS(X)    \
   CADT_POLYGONS_KERNELS(X)
 
 /* The same by stage: a back end may compile a program for each (CADT_PROGRAM of language.dev.h). */
@@ -257,6 +271,7 @@
   S(queries, CADT_QUERIES_KERNELS)           \
   S(finalization, CADT_FINALIZATION_KERNELS) \
   S(constraints, CADT_CONSTRAINTS_KERNELS)   \
+  S(crossings, CADT_CROSSINGS_KERNELS)       \
   S(polygons, CADT_POLYGONS_KERNELS)
 
 #endif

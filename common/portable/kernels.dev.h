@@ -39,7 +39,9 @@
 #if !CADT_FLOAT
 #include "common/batch/batch.dev.h"
 #include "common/batch/batch_insertion.dev.h"
+#include "common/constraints/exact_places.dev.h"
 #include "common/constraints/polygons.dev.h"
+#include "common/constraints/segment_pairs.dev.h"
 #include "common/finalization/certain.dev.h"
 #include "common/finalization/finish.dev.h"
 #include "common/finalization/join.dev.h"

@@ -31,7 +31,7 @@ def clang_of_this_machine():
 
 def opencl(root):
     programs = sorted(entry for entry in (root / "kernels_cl").glob("*.cl") if entry.name != "primitives.cl")
-    for_doubles = ("batch", "stars", "verify")
+    for_doubles = ("batch", "crossings", "stars", "verify")
     clang = clang_of_this_machine()
     if clang is None:
         return skip("no clang")

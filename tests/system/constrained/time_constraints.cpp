@@ -3,7 +3,8 @@
 // case.
 //   cadt-time-constraints BACKEND CASE [POINTS]
 // CASE: edges (as many segments as points, a tenth of them no edges), one (across all points), long (1,000 across all
-// points), or NAME of NAME.f64 with points and NAME.i32 with segments: then with Domain::even_odd
+// points), crossings (POINTS segments with about as many crossings, Crossing::exact, from and to the host), or NAME of
+// NAME.f64 with points and NAME.i32 with segments: then with Domain::even_odd
 #include <cadt/cadt.hpp>
 #include <cadt/constrained.hpp>
 
@@ -87,6 +88,21 @@ Input across_all(std::size_t n, std::size_t count) {
   return input;
 }
 
+/// Segments of one length in random directions, with about as many crossings.
+Input crossings(std::size_t n) {
+  Input input;
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> place(0, 1);
+  constexpr double pi = 3.14159265358979323846;
+  const double length = std::sqrt(pi / static_cast<double>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = place(random), y = place(random), angle = 2 * pi * place(random);
+    input.xy.insert(input.xy.end(), {x, y, x + length * std::cos(angle), y + length * std::sin(angle)});
+    input.segments.push_back({static_cast<std::int32_t>(2 * i), static_cast<std::int32_t>(2 * i + 1)});
+  }
+  return input;
+}
+
 template <class T>
 std::vector<T> read_all(const std::string& name) {
   std::ifstream file(name, std::ios::binary | std::ios::ate);
@@ -125,6 +141,9 @@ int main(int argc, char** argv) {
   Input input;
   if (which == "edges") {
     input = edges(n, options);
+  } else if (which == "crossings") {
+    input = crossings(n);
+    constraints.crossing = Crossing::exact;
   } else if (which == "one" || which == "long") {
     input = across_all(n, which == "one" ? 1 : 1000);
   } else {
@@ -138,12 +157,23 @@ int main(int argc, char** argv) {
   const DevicePoints points{.x = memory->upload(std::span<const double>(input.xy)), .size = input.xy.size() / 2};
   std::vector<double> plain, constrained;
   Statistics statistics;
+  const bool on_host = constraints.crossing == Crossing::exact;
+  std::size_t added = 0;
   for (int round = 0; round < 9; ++round) {
     plain.push_back(milliseconds([&] {
-      (void)triangulator.triangulate(points);
+      if (on_host)
+        (void)triangulator.triangulate(input.xy);
+      else
+        (void)triangulator.triangulate(points);
       memory->wait();
     }));
     constrained.push_back(milliseconds([&] {
+      if (on_host) {
+        const auto mesh = triangulator.triangulate_constrained(input.xy, input.segments, constraints);
+        statistics = mesh.mesh().statistics();
+        added = mesh.added_parents().size();
+        return;
+      }
       statistics =
           triangulator.triangulate_constrained(points, {segments, 2 * input.segments.size()}, constraints).statistics();
       memory->wait();
@@ -156,6 +186,7 @@ int main(int argc, char** argv) {
       static_cast<unsigned long long>(statistics.inserted_segments),
       static_cast<unsigned long long>(statistics.segment_retries),
       static_cast<unsigned long long>(statistics.launches));
+  if (on_host) std::printf("  %zu crossings\n", added);
   for (const KernelTime& k : statistics.kernels)
     std::printf("  %-28s %5llu %10.3f ms\n", k.name.c_str(), static_cast<unsigned long long>(k.launches),
                 k.milliseconds);

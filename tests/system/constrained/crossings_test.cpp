@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Segments that cross, on every back end: the pairs of brute force, and the exact mesh of the host's own way, by
+// implicit points and one vertex after the other, that is compared with CGAL's elsewhere (exact_crossings_test.cpp).
+#include <cadt/constrained.hpp>
+#include <cadt/errors.hpp>
+
+#include "common/constraints/exact_crossings.hpp"
+#include "common/constraints/exact_triangulation.hpp"
+#include "tests/support/backends.hpp"
+#include "tests/support/families.hpp"
+#include "tests/unit/constraints/segment_sets.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace cadt::test {
+namespace {
+
+class Crossings : public BackendTest {
+ protected:
+  [[nodiscard]] static bool has_doubles() { return Triangulator(GetParam().options()).device().fp64; }
+
+  /// Whether the mesh was made with rounded crossings, and certified.
+  bool check(const SegmentSet& set) const {
+    SCOPED_TRACE(set.name);
+    ConstraintOptions constraints;
+    constraints.crossing = Crossing::exact;
+    Options options = GetParam().options();
+    options.tuning.kernel_times = true;
+    const ConstrainedTriangulation mesh = triangulate_constrained(set.xy, set.segments, constraints, options);
+    const auto& kernels = mesh.mesh().statistics().kernels;
+    const bool certified = std::ranges::find(kernels, "cadt_certify_places", &KernelTime::name) != kernels.end();
+    if (mesh.mesh().dimension() < 2) return certified;
+
+    const Triangulation delaunay = triangulate(set.xy);
+    const constraints::ExactMesh exact =
+        constraints::triangulate_with_crossings(set.xy, set.segments, delaunay, 1);
+    std::vector<std::uint32_t> flags;
+    const Triangulation expected = triangulation_of(delaunay, exact, flags);
+    EXPECT_TRUE(std::ranges::equal(mesh.mesh().triangles(), expected.triangles()));
+    EXPECT_TRUE(std::ranges::equal(mesh.mesh().neighbors(), expected.neighbors()));
+    EXPECT_TRUE(std::ranges::equal(mesh.mesh().hull(), expected.hull()));
+    EXPECT_TRUE(std::ranges::equal(mesh.mesh().duplicates(), expected.duplicates()));
+    EXPECT_TRUE(std::ranges::equal(mesh.edge_flags(), flags));
+    EXPECT_TRUE(std::ranges::equal(mesh.chain_offsets(), exact.offsets));
+    EXPECT_TRUE(std::ranges::equal(mesh.chain_vertices(), exact.vertices));
+    EXPECT_TRUE(std::ranges::equal(mesh.added_points(), exact.added_xy));
+    EXPECT_TRUE(std::ranges::equal(mesh.added_parents(), exact.parents));
+    EXPECT_EQ(mesh.rounded_valid(), exact.rounded_valid);
+    EXPECT_EQ(mesh.mesh().number_of_points(), expected.number_of_points());
+    return certified;
+  }
+
+  void expect_pairs(const SegmentSet& set) const {
+    SCOPED_TRACE(set.name);
+    std::vector<Segment> found;
+    try {
+      (void)triangulate_constrained(set.xy, set.segments, {}, GetParam().options());
+    } catch (const CrossingError& e) {
+      found.assign(e.pairs().begin(), e.pairs().end());
+    }
+    EXPECT_EQ(found, crossings_by_brute_force(set));
+  }
+};
+
+TEST_P(Crossings, PairsOfSmallSets) {
+  for (const SegmentSet& set : small_segment_sets()) expect_pairs(set);
+}
+
+TEST_P(Crossings, ExactMeshesOfSmallSets) {
+  int certified = 0, others = 0;
+  for (const SegmentSet& set : small_segment_sets()) check(set) ? ++certified : ++others;
+  // Several segments through one place, and places that rounding moves to one, are left to the host.
+  EXPECT_GT(others, 20);
+  EXPECT_GT(certified, has_doubles() ? 20 : -1);
+}
+
+TEST_P(Crossings, RandomSegments) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const SegmentSet set = random_segments(seed, 40 * seed, 0.4);
+    expect_pairs(set);
+    EXPECT_EQ(check(set), has_doubles());
+  }
+}
+
+/// Crossings on the axes have a coordinate of 0, which no bound on a rounding error is small enough for.
+TEST_P(Crossings, CoordinatesThatOnlyWholeNumbersFind) {
+  SegmentSet set{"stars around the origin", {}, {}};
+  for (int i = 1; i <= 40; ++i) {
+    const double x = i + 1.0 / 3, y = std::cos(i) * 7;
+    const auto v = static_cast<std::int32_t>(set.xy.size() / 2);
+    set.xy.insert(set.xy.end(), {-x, y, x, -y, -x, 9.0 + i, x, 9.0 + i});
+    set.segments.push_back({v, v + 1});  // all through the origin
+    set.segments.push_back({v + 2, v + 3});
+  }
+  set.xy.insert(set.xy.end(), {0.0, -60.0, 0.0, 60.0});
+  set.segments.push_back({static_cast<std::int32_t>(set.xy.size() / 2 - 2),
+                          static_cast<std::int32_t>(set.xy.size() / 2 - 1)});
+  check(set);
+  std::erase_if(set.segments, [](const Segment& s) { return s[0] % 4 == 0 && s[1] == s[0] + 1 && s[0] < 160; });
+  EXPECT_EQ(check(set), has_doubles());
+}
+
+/// So many segments through the same triangles that a sweep finds them.
+TEST_P(Crossings, BundleThroughTheSameTriangles) {
+  SegmentSet set{"bundle", {}, {}};
+  Random random(4);
+  const int count = 900;
+  for (int i = 0; i < count; ++i) {
+    const auto v = static_cast<std::int32_t>(set.xy.size() / 2);
+    set.xy.insert(set.xy.end(), {0.0, i * 1e-6 + random.uniform(0, 1) * 1e-7, 1.0, i * 1e-6 + random.uniform(0, 1) * 1e-5});
+    set.segments.push_back({v, v + 1});
+  }
+  for (int i = 0; i < 2000; ++i) set.xy.insert(set.xy.end(), {random.uniform(0, 1), random.uniform(0, 1) - 0.5});
+  expect_pairs(set);
+}
+
+CADT_ON_MAIN_BACKENDS(Crossings);
+
+}  // namespace
+}  // namespace cadt::test

@@ -5,19 +5,14 @@
 #include <tuple>
 #include <utility>
 
-#include "common/constraints/certified_crossings.hpp"
 #include "common/constraints/constrained_data.hpp"
 #include "common/constraints/constraints.hpp"
-#include "common/constraints/crossings.hpp"
+#include "common/constraints/crossed_segments.hpp"
 #include "common/constraints/domains.hpp"
-#include "common/constraints/exact_crossings.hpp"
-#include "common/constraints/exact_triangulation.hpp"
 #include "common/constraints/snap_rounding.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/thread_state.hpp"
-#include "common/points/device_points.hpp"
-#include "common/points/import.hpp"
 
 namespace cadt {
 namespace {
@@ -62,24 +57,6 @@ void chain_on_line(PointsView points, std::span<const Segment> segments, Data& d
 
 using State = std::shared_ptr<Triangulator::State>;
 
-/// `found`: what the device has found, or nothing.
-[[noreturn]] void refuse_crossings(const State& state, PointsView points, std::span<const Segment> segments,
-                                   const std::optional<FoundCrossings>& found) {
-  const Options& options = state->options;
-  std::vector<Segment> pairs =
-      found ? read_pairs(*state->device, *found)
-            : constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, options.stop),
-                                          options.stop);
-  if (pairs.empty()) throw InternalError("segments were found to cross, but no pair of them does");
-  std::string message =
-      std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair of segments crosses: " : " pairs of segments cross: ");
-  const std::size_t shown = std::min<std::size_t>(pairs.size(), 3);
-  for (std::size_t i = 0; i < shown; ++i)
-    message += (i == 0 ? "" : ", ") + std::to_string(pairs[i][0]) + " and " + std::to_string(pairs[i][1]);
-  if (shown < pairs.size()) message += ", ...";
-  throw CrossingError(message + "; repair them, or take Crossing::exact or Crossing::grid", std::move(pairs));
-}
-
 /// False if segments cross: then the data has no mesh.
 bool constrain_uncrossed(const State& state, PointsView points, std::span<const Segment> segments, SegmentJob& job,
                          Data& data) {
@@ -98,19 +75,6 @@ bool constrain_uncrossed(const State& state, PointsView points, std::span<const 
                 {results.chains.begin(), results.chains.end()});
   }
   return true;
-}
-
-void constrain_exactly(const State& state, PointsView points, std::span<const Segment> segments,
-                       std::optional<FoundCrossings> found, Data& data) {
-  if (found && found->places && constrain_rounded(state, points, segments, std::move(*found), data)) return;
-  const Triangulation delaunay = triangulate_on_host(state, points);
-  constraints::ExactMesh exact =
-      constraints::triangulate_with_crossings(points, segments, delaunay, state->options.threads, state->options.stop);
-  data.mesh = triangulation_of(delaunay, exact, data.edge_flags);
-  data.added = std::move(exact.added_xy);
-  data.parents = std::move(exact.parents);
-  data.rounded_valid = exact.rounded_valid;
-  take_chains(data, std::move(exact.offsets), std::move(exact.vertices));
 }
 
 void constrain_on_grid(const State& state, PointsView points, std::span<const Segment> segments, double grid,
@@ -156,19 +120,6 @@ void add_domains(const State& state, PointsView points, const ConstraintOptions&
   data.region = std::move(found.region);
   data.region_value = std::move(found.region_value);
   data.region_attribute = std::move(found.region_attribute);
-}
-
-/// The same for a mesh that stays on the device.
-void add_domains(Context& ctx, const ConstraintOptions& constraints, const SegmentJob& job,
-                 DeviceTriangulation::Data& data) {
-  const DomainMesh mesh = {data.triangles, data.neighbors, data.edge_flags, data.triangle_count};
-  Domains domains = find_domains(ctx, mesh, data.points, {job.chain_offsets, job.chains, job.count, job.chain_length},
-                                 {}, constraints);
-  InsideMesh inside = pack_inside(ctx, mesh, domains);
-  data.regions = std::move(domains.region);
-  data.number_inside = inside.triangles;
-  data.triangles_inside = std::move(inside.vertices);
-  data.neighbors_inside = std::move(inside.neighbors);
 }
 
 ConstrainedTriangulation constrain_on(const State& state, PointsView points, std::span<const Segment> segments,
@@ -238,44 +189,6 @@ ConstrainedTriangulation triangulate_constrained(PointsView points, std::span<co
 ConstrainedTriangulation Triangulator::triangulate_constrained(PointsView points, std::span<const Segment> segments,
                                                                const ConstraintOptions& constraints) {
   return constrain_on(state_, points, segments, constraints);
-}
-
-DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& points, const DeviceArray& segments,
-                                                          const ConstraintOptions& constraints) {
-  require_segments(segments.size / 2);
-  if (segments.size % 2 != 0)
-    throw InputError("an array of segments has two words each, this one has " + std::to_string(segments.size),
-                     segments.size / 2);
-  if (segments.size != 0 && segments.memory == nullptr)
-    throw InputError("the array of segments has no memory: DeviceArray::memory is null", 0);
-  if (constraints.crossing != Crossing::error)
-    throw OptionError("crossing", "segments on the device must not cross; copy them to the host for exact or grid");
-  if (constraints.domain == Domain::seeds)
-    throw OptionError("domain", "seeds are located on the host; copy points and segments there");
-  SegmentJob job;
-  job.count = segments.size / 2;
-  if (job.count != 0) job.segments = state_->memory.wrap(segments.memory, segments.size * sizeof(std::int32_t));
-  job.wants_chains = constraints.domain != Domain::hull;
-  job.wants_crossings = FindCrossings::pairs;
-  std::unique_ptr<DeviceTriangulation::Data> data = triangulate_on_device(state_, points, &job);
-  Statistics statistics;
-  Context ctx(*state_->device, state_->memory, state_->options, statistics);
-  if (!job.crossed) {
-    if (job.wants_chains && data->triangle_count != 0) add_domains(ctx, constraints, job, *data);
-    return DeviceTriangulation(std::move(data));
-  }
-  const Allocation imported = import_points(ctx, points);
-  std::vector<double> xy;
-  if (takes_floats_only(ctx.device)) {
-    const std::vector<float> floats = ctx.device.read_values<float>(*imported, 2 * points.size);
-    xy.assign(floats.begin(), floats.end());
-  } else {
-    xy = ctx.device.read_values<double>(*imported, 2 * points.size);
-  }
-  std::vector<Segment> copied(job.count);
-  ctx.device.read(*job.segments, 0, copied.data(), job.count * sizeof(Segment));
-  ctx.device.finish();
-  refuse_crossings(state_, xy, copied, job.crossings);
 }
 
 ConstrainedTriangulation::ConstrainedTriangulation() : data_(std::make_shared<Data>()) {}

@@ -65,8 +65,8 @@ class CrossingFinder {
     Allocation places = ctx_.memory.allocate((n + found_.count) * point_bytes(ctx_.device));
     launch_.run<KernelId::cadt_gather_points>(in_.mesh.points, in_.vertex_of, places, launch_.grid(n), first, second);
     const Allocation unsure = words_for(found_.count);
-    launch_.run<KernelId::cadt_place_crossings>(in_.segments, found_.pairs, launch_.grid(found_.count), n, places, unsure,
-                                                words_);
+    launch_.run<KernelId::cadt_place_crossings>(in_.segments, found_.pairs, launch_.grid(found_.count), n, places,
+                                                unsure, words_);
     if (const std::size_t count = launch_.read_word(words_, CADT_PAIRS_UNSURE); count != 0)
       place_exactly(ctx_.device.read_values(*unsure, count), places);
     if (!write_chains(places)) return;
@@ -97,7 +97,8 @@ class CrossingFinder {
     launch_.run<KernelId::cadt_count_pairs>(lists.ends, launch_.grid_strided(all), words_);
     const auto found = ctx_.device.read_values(*words_, CADT_PAIRS_WORDS);
     if (found[CADT_PAIRS_BROKEN] != 0) give_up("the mesh is wrong at ", found[CADT_PAIRS_BROKEN], " segments");
-    const std::uint64_t listed = wide_word(found, CADT_PAIRS_LISTED_LOW), tests = wide_word(found, CADT_PAIRS_TESTS_LOW);
+    const std::uint64_t listed = wide_word(found, CADT_PAIRS_LISTED_LOW),
+                        tests = wide_word(found, CADT_PAIRS_TESTS_LOW);
     if (listed > most_listed * (in_.vertices + in_.count) || tests > most_tests * (listed + few) || tests >> 30 != 0)
       return false;
     listed_ = static_cast<std::size_t>(listed);
@@ -179,8 +180,8 @@ class CrossingFinder {
     return true;
   }
 
-  /// Places of pieces in triangles for each vertex and segment, pairs in the same triangle for each of those places, and
-  /// what is always little enough.
+  /// Places of pieces in triangles for each vertex and segment, pairs in the same triangle for each of those places,
+  /// and what is always little enough.
   static constexpr std::uint64_t most_listed = 16, most_tests = 16, few = 1 << 16;
 
   Context& ctx_;

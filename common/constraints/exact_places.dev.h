@@ -3,7 +3,8 @@
  * Crossings as vertices: where they are, rounded, and which vertices each segment passes in which order; and whether a
  * mesh that was made with the rounded places is right for the exact ones.
  *
- *      a ---- v ---- x ---- y ---- b      the chain of the segment a b: a vertex v lies on it, and it crosses others at x, y
+ *      a ---- v ---- x ---- y ---- b      the chain of the segment a b: a vertex v lies on it, and it crosses others at
+ * x, y
  *
  * Vertices are input points, n of them, and from n on crossings, in the order of their pairs.
  */
@@ -60,8 +61,7 @@ CADT_FN cadt_u32 cadt_round_along(double from, cadt_double2 u, cadt_double2 q, d
   const cadt_double2 start = {from, 0.0};
   const cadt_double2 way = cadt_multiply2(u, q), at = cadt_add2(start, way);
   /* Products that underflow are off by less than the last term. */
-  const double bound =
-      2.0 * (cadt_fabs(u.high) * error) + (cadt_fabs(from) + cadt_fabs(way.high)) * 1.6e-29 + 1e-320;
+  const double bound = 2.0 * (cadt_fabs(u.high) * error) + (cadt_fabs(from) + cadt_fabs(way.high)) * 1.6e-29 + 1e-320;
   const double most = at.high + (at.low + bound), least = at.high + (at.low - bound);
   *rounded = most;
   return most == least ? 1u : 0u;
@@ -126,7 +126,7 @@ typedef struct {
   CADT_GLOBAL const cadt_u32* counts;
   CADT_GLOBAL const cadt_u32* owned; /* scanned */
 } cadt_partner_lists;
-#define CADT_PARTNER_PARAMETERS \
+#define CADT_PARTNER_PARAMETERS                                                   \
   CADT_GLOBAL const cadt_u32 *partner_ends, CADT_GLOBAL const cadt_u32 *partners, \
       CADT_GLOBAL const cadt_u32 *partner_counts, CADT_GLOBAL const cadt_u32 *owned
 #define CADT_PARTNERS(lists) const cadt_partner_lists lists = {partner_ends, partners, partner_counts, owned}
@@ -230,16 +230,17 @@ CADT_FN cadt_i32 cadt_incircle_about(cadt_rounded a, cadt_rounded b, cadt_rounde
   if (!(E < 9e-7 * X && F < 9e-7 * Y)) return 0;
   const double det = (ax * ax + ay * ay) * (bx * cy - cx * by) + (bx * bx + by * by) * (cx * ay - ax * cy) +
                      (cx * cx + cy * cy) * (ax * by - bx * ay);
-  const double bound = 1.5e-14 * (X * Y * (X * X + Y * Y)) +
-                       12.0 * (3.0 * (X * Y) * (X * E + Y * F) + X * X * X * F + Y * Y * Y * E);
+  const double bound =
+      1.5e-14 * (X * Y * (X * X + Y * Y)) + 12.0 * (3.0 * (X * Y) * (X * E + Y * F) + X * X * X * F + Y * Y * Y * E);
   return det > bound ? 1 : (det < -bound ? -1 : 0);
 }
 
 /* What is to be examined: CADT_SUSPECT(t, k), edge k of triangle t, or the triangle itself if k is 3. */
 #define CADT_SUSPECT(t, k) (4u * (t) + (k))
 
-/* Lists what is not certainly right of a mesh that is right for the rounded places: triangles that are counterclockwise,
- * and edges that are legal or constrained, where a crossing is concerned. Counts all; the first `room` are listed. */
+/* Lists what is not certainly right of a mesh that is right for the rounded places: triangles that are
+ * counterclockwise, and edges that are legal or constrained, where a crossing is concerned. Counts all; the first
+ * `room` are listed. */
 CADT_KERNEL(cadt_certify_places, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOBAL const cadt_u32* neighbors,
             CADT_GLOBAL const cadt_u32* edge_flags, CADT_GLOBAL const cadt_point* places, cadt_u32 count,
             cadt_u32 grain, cadt_u32 point_count, CADT_GLOBAL cadt_u32* suspects, cadt_u32 room,
@@ -264,8 +265,7 @@ CADT_KERNEL(cadt_certify_places, CADT_GLOBAL const cadt_u32* vertices, CADT_GLOB
       for (cadt_u32 j = 0u; j < 3u; ++j)
         if (neighbors[3u * u + j] == t) q = vertices[3u * u + j];
       if (!moved && q < point_count) continue;
-      if (q == CADT_NONE ||
-          cadt_incircle_about(at[0], at[1], at[2], cadt_rounded_of(places, q, point_count)) != -1)
+      if (q == CADT_NONE || cadt_incircle_about(at[0], at[1], at[2], cadt_rounded_of(places, q, point_count)) != -1)
         wrong |= 1u << k;
     }
     for (cadt_u32 k = 0u; wrong != 0u && k < 4u; ++k) {

@@ -24,9 +24,9 @@ enum {
   CADT_PAIRS_LISTED_LOW,  /* places of pieces in triangles, */
   CADT_PAIRS_LISTED_HIGH, /* in two words */
   CADT_PAIRS_BROKEN,      /* segments at which the mesh was found to be wrong */
-  CADT_PAIRS_TIED,        /* segments with the same rounded place at two vertices of their chains (exact_chains.dev.h) */
-  CADT_PAIRS_UNSURE,      /* crossings whose rounded coordinates are not known */
-  CADT_PAIRS_SUSPECTS,    /* triangles and edges that are not certainly right */
+  CADT_PAIRS_TIED,     /* segments with the same rounded place at two vertices of their chains (exact_chains.dev.h) */
+  CADT_PAIRS_UNSURE,   /* crossings whose rounded coordinates are not known */
+  CADT_PAIRS_SUSPECTS, /* triangles and edges that are not certainly right */
   CADT_PAIRS_WORDS
 };
 
@@ -231,8 +231,8 @@ CADT_KERNEL(cadt_sort_partners, CADT_GLOBAL const cadt_u32* partner_ends, cadt_u
 
 /* The pairs in ascending order, the lower segment first: two words each. `owned` is scanned. */
 CADT_KERNEL(cadt_order_pairs, CADT_GLOBAL const cadt_u32* partner_ends, cadt_u32 count, cadt_u32 grain,
-            CADT_GLOBAL const cadt_u32* partners, CADT_GLOBAL const cadt_u32* counts,
-            CADT_GLOBAL const cadt_u32* owned, CADT_GLOBAL cadt_u32* ordered) {
+            CADT_GLOBAL const cadt_u32* partners, CADT_GLOBAL const cadt_u32* counts, CADT_GLOBAL const cadt_u32* owned,
+            CADT_GLOBAL cadt_u32* ordered) {
   CADT_FOR(s, count, grain) {
     const cadt_u32 begin = s == 0u ? 0u : partner_ends[s - 1u], first = owned[s], size = owned[s + 1u] - first;
     for (cadt_u32 i = 0u; i < size; ++i) {

@@ -58,6 +58,10 @@ void* DeviceTriangulation::regions() const noexcept { return handle_of(*data_, d
 void* DeviceTriangulation::triangles_inside() const noexcept { return handle_of(*data_, data_->triangles_inside); }
 void* DeviceTriangulation::neighbors_inside() const noexcept { return handle_of(*data_, data_->neighbors_inside); }
 std::size_t DeviceTriangulation::number_inside() const noexcept { return data_->number_inside; }
+std::size_t DeviceTriangulation::number_added() const noexcept { return data_->added; }
+void* DeviceTriangulation::all_points() const noexcept { return handle_of(*data_, data_->places); }
+void* DeviceTriangulation::added_parents() const noexcept { return handle_of(*data_, data_->added_parents); }
+bool DeviceTriangulation::rounded_valid() const noexcept { return data_->rounded_valid; }
 void* DeviceTriangulation::duplicate_points() const noexcept { return handle_of(*data_, data_->duplicate_points); }
 void* DeviceTriangulation::representatives() const noexcept { return handle_of(*data_, data_->representatives); }
 

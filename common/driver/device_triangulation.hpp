@@ -36,6 +36,9 @@ struct DeviceTriangulation::Data {
   Allocation regions;               ///< a word a triangle; null without a domain
   Allocation triangles_inside, neighbors_inside;
   std::size_t number_inside = 0;
+  Allocation places, added_parents;  ///< of all points; of the last `added` ones, crossings. Null without crossings
+  std::size_t added = 0;
+  bool rounded_valid = true;
   Allocation duplicate_points, representatives;  ///< null if there are none
   int dimension = -1;
   Statistics statistics;

@@ -74,6 +74,14 @@ class CADT_API DeviceTriangulation {
   [[nodiscard]] void* triangles_inside() const noexcept;
   [[nodiscard]] void* neighbors_inside() const noexcept;
   [[nodiscard]] std::size_t number_inside() const noexcept;
+  /// With Crossing::exact, of segments that cross: how many crossings are vertices, numbered behind the input's points
+  /// and counted by number_of_points(). Handles of the coordinates of all of these, two doubles each, crossings rounded
+  /// to the nearest, and of the lowest pair of segments that cross at each crossing, two words; null without crossings.
+  [[nodiscard]] std::size_t number_added() const noexcept;
+  [[nodiscard]] void* all_points() const noexcept;
+  [[nodiscard]] void* added_parents() const noexcept;
+  /// Whether the triangles are still counterclockwise with the rounded coordinates. True without crossings.
+  [[nodiscard]] bool rounded_valid() const noexcept;
   /// Number of points that equal an earlier one.
   [[nodiscard]] std::size_t number_of_duplicates() const noexcept;
   /// Handles of number_of_duplicates() words each: the points, ascending, and the representative of each; null if there
@@ -137,8 +145,9 @@ class CADT_API Triangulator {
   [[nodiscard]] ConstrainedTriangulation triangulate_constrained(PointsView points, std::span<const Segment> segments,
                                                                  const ConstraintOptions& constraints = {});
   /// The same with points and segments on the device, where the mesh stays: `segments` are pairs of indices, two words
-  /// a segment. Crossing::error alone; where segments cross, points and segments are copied to the host to find all
-  /// pairs. \throws as cadt::triangulate_constrained, and OptionError for another Crossing
+  /// a segment. Crossing::error or exact. Where the device cannot find what crosses (several segments through one
+  /// place, very many through the same triangles), points and segments are copied to the host, and the exact mesh back.
+  /// \throws as cadt::triangulate_constrained, and OptionError for Crossing::grid and Domain::seeds
   [[nodiscard]] DeviceTriangulation triangulate_constrained(const DevicePoints& points, const DeviceArray& segments,
                                                             const ConstraintOptions& constraints = {});
 

@@ -8,6 +8,7 @@
 #include "common/constraints/exact_triangulation.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
+#include "tests/system/resident/device_memory.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 #include <gtest/gtest.h>
@@ -37,8 +38,7 @@ class Crossings : public BackendTest {
     if (mesh.mesh().dimension() < 2) return certified;
 
     const Triangulation delaunay = triangulate(set.xy);
-    const constraints::ExactMesh exact =
-        constraints::triangulate_with_crossings(set.xy, set.segments, delaunay, 1);
+    const constraints::ExactMesh exact = constraints::triangulate_with_crossings(set.xy, set.segments, delaunay, 1);
     std::vector<std::uint32_t> flags;
     const Triangulation expected = triangulation_of(delaunay, exact, flags);
     EXPECT_TRUE(std::ranges::equal(mesh.mesh().triangles(), expected.triangles()));
@@ -52,7 +52,44 @@ class Crossings : public BackendTest {
     EXPECT_TRUE(std::ranges::equal(mesh.added_parents(), exact.parents));
     EXPECT_EQ(mesh.rounded_valid(), exact.rounded_valid);
     EXPECT_EQ(mesh.mesh().number_of_points(), expected.number_of_points());
+    check_resident(set, mesh);
     return certified;
+  }
+
+  /// The same in device memory, with the triangles inside.
+  void check_resident(const SegmentSet& set, const ConstrainedTriangulation& expected) const {
+    Options options = GetParam().options();
+    const auto memory = device_memory(options.backend, Triangulator(options).device().index);
+    if (memory->queue() != nullptr) options.queue = memory->queue();
+    Triangulator triangulator(options);
+    if (!triangulator.device().fp64) return;  // takes no doubles
+    ConstraintOptions constraints;
+    constraints.crossing = Crossing::exact;
+    constraints.domain = Domain::layers;
+    void* segments = memory->upload(std::span<const Segment>(set.segments));
+    const DevicePoints points{.x = memory->upload(std::span<const double>(set.xy)), .size = set.xy.size() / 2};
+    const DeviceTriangulation mesh =
+        triangulator.triangulate_constrained(points, {segments, 2 * set.segments.size()}, constraints);
+    const std::size_t count = mesh.number_of_triangles(), added = mesh.number_added();
+    ASSERT_EQ(count, expected.mesh().number_of_triangles());
+    ASSERT_EQ(added, expected.added_parents().size());
+    ASSERT_EQ(mesh.number_of_points(), expected.mesh().number_of_points());
+    const Triangulation copy = mesh.download();
+    EXPECT_TRUE(std::ranges::equal(copy.triangles(), expected.mesh().triangles()));
+    EXPECT_TRUE(std::ranges::equal(copy.neighbors(), expected.mesh().neighbors()));
+    EXPECT_TRUE(std::ranges::equal(copy.hull(), expected.mesh().hull()));
+    EXPECT_TRUE(std::ranges::equal(copy.duplicates(), expected.mesh().duplicates()));
+    EXPECT_EQ(mesh.rounded_valid(), expected.rounded_valid());
+    EXPECT_TRUE(std::ranges::equal(memory->download<std::uint32_t>(mesh.edge_flags(), count), expected.edge_flags()));
+    EXPECT_TRUE(std::ranges::equal(memory->download<Segment>(mesh.added_parents(), added), expected.added_parents()));
+    const auto all = memory->download<double>(mesh.all_points(), 2 * mesh.number_of_points());
+    if (added != 0) {
+      EXPECT_TRUE(std::ranges::equal(std::span(all).first(set.xy.size()), set.xy));
+      EXPECT_TRUE(std::ranges::equal(std::span(all).subspan(set.xy.size()), expected.added_points()));
+    }
+    const ConstrainedTriangulation layers = triangulate_constrained(set.xy, set.segments, constraints, options);
+    EXPECT_EQ(mesh.number_inside(), layers.number_inside());
+    EXPECT_TRUE(std::ranges::equal(memory->download<std::int32_t>(mesh.regions(), count), layers.region()));
   }
 
   void expect_pairs(const SegmentSet& set) const {
@@ -99,8 +136,8 @@ TEST_P(Crossings, CoordinatesThatOnlyWholeNumbersFind) {
     set.segments.push_back({v + 2, v + 3});
   }
   set.xy.insert(set.xy.end(), {0.0, -60.0, 0.0, 60.0});
-  set.segments.push_back({static_cast<std::int32_t>(set.xy.size() / 2 - 2),
-                          static_cast<std::int32_t>(set.xy.size() / 2 - 1)});
+  set.segments.push_back(
+      {static_cast<std::int32_t>(set.xy.size() / 2 - 2), static_cast<std::int32_t>(set.xy.size() / 2 - 1)});
   check(set);
   std::erase_if(set.segments, [](const Segment& s) { return s[0] % 4 == 0 && s[1] == s[0] + 1 && s[0] < 160; });
   EXPECT_EQ(check(set), has_doubles());
@@ -113,7 +150,8 @@ TEST_P(Crossings, BundleThroughTheSameTriangles) {
   const int count = 900;
   for (int i = 0; i < count; ++i) {
     const auto v = static_cast<std::int32_t>(set.xy.size() / 2);
-    set.xy.insert(set.xy.end(), {0.0, i * 1e-6 + random.uniform(0, 1) * 1e-7, 1.0, i * 1e-6 + random.uniform(0, 1) * 1e-5});
+    set.xy.insert(set.xy.end(),
+                  {0.0, i * 1e-6 + random.uniform(0, 1) * 1e-7, 1.0, i * 1e-6 + random.uniform(0, 1) * 1e-5});
     set.segments.push_back({v, v + 1});
   }
   for (int i = 0; i < 2000; ++i) set.xy.insert(set.xy.end(), {random.uniform(0, 1), random.uniform(0, 1) - 0.5});

@@ -3,7 +3,7 @@
 // case.
 //   cadt-time-constraints BACKEND CASE [POINTS]
 // CASE: edges (as many segments as points, a tenth of them no edges), one (across all points), long (1,000 across all
-// points), crossings (POINTS segments with about as many crossings, Crossing::exact, from and to the host), or NAME of
+// points), crossings (POINTS segments with about as many crossings, Crossing::exact), or NAME of
 // NAME.f64 with points and NAME.i32 with segments: then with Domain::even_odd
 #include <cadt/cadt.hpp>
 #include <cadt/constrained.hpp>
@@ -157,25 +157,17 @@ int main(int argc, char** argv) {
   const DevicePoints points{.x = memory->upload(std::span<const double>(input.xy)), .size = input.xy.size() / 2};
   std::vector<double> plain, constrained;
   Statistics statistics;
-  const bool on_host = constraints.crossing == Crossing::exact;
   std::size_t added = 0;
   for (int round = 0; round < 9; ++round) {
     plain.push_back(milliseconds([&] {
-      if (on_host)
-        (void)triangulator.triangulate(input.xy);
-      else
-        (void)triangulator.triangulate(points);
+      (void)triangulator.triangulate(points);
       memory->wait();
     }));
     constrained.push_back(milliseconds([&] {
-      if (on_host) {
-        const auto mesh = triangulator.triangulate_constrained(input.xy, input.segments, constraints);
-        statistics = mesh.mesh().statistics();
-        added = mesh.added_parents().size();
-        return;
-      }
-      statistics =
-          triangulator.triangulate_constrained(points, {segments, 2 * input.segments.size()}, constraints).statistics();
+      const DeviceTriangulation mesh =
+          triangulator.triangulate_constrained(points, {segments, 2 * input.segments.size()}, constraints);
+      statistics = mesh.statistics();
+      added = mesh.number_added();
       memory->wait();
     }));
   }
@@ -186,7 +178,7 @@ int main(int argc, char** argv) {
       static_cast<unsigned long long>(statistics.inserted_segments),
       static_cast<unsigned long long>(statistics.segment_retries),
       static_cast<unsigned long long>(statistics.launches));
-  if (on_host) std::printf("  %zu crossings\n", added);
+  if (added != 0) std::printf("  %zu crossings\n", added);
   for (const KernelTime& k : statistics.kernels)
     std::printf("  %-28s %5llu %10.3f ms\n", k.name.c_str(), static_cast<unsigned long long>(k.launches),
                 k.milliseconds);

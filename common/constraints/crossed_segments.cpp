@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/constraints/crossed_segments.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <string>
+#include <utility>
+
+#include "common/constraints/crossings.hpp"
+#include "common/constraints/exact_crossings.hpp"
+#include "common/constraints/exact_triangulation.hpp"
+#include "common/constraints/implicit_point.hpp"
+#include "common/constraints/tasks.hpp"
+#include "common/driver/device_text.hpp"
+#include "common/points/device_points.hpp"
+#include "common/points/import.hpp"
+
+namespace cadt {
+namespace {
+
+using device_text::word;
+using State = std::shared_ptr<Triangulator::State>;
+using Data = ConstrainedTriangulation::Data;
+
+std::vector<Segment> read_pairs(Device& device, const FoundCrossings& found) {
+  return device.read_values<Segment>(*found.pairs, found.count);
+}
+
+/// Input points and crossings as exact places, and a mesh of them.
+struct ExactPlaces {
+  PointsView points;
+  std::span<const Segment> segments, pairs;
+  std::span<const std::int32_t> triangles, neighbors;
+
+  /// Whether a suspect (CADT_SUSPECT) is right: counterclockwise, or a legal edge.
+  [[nodiscard]] bool is_right(std::uint32_t suspect) const {
+    const std::size_t t = suspect / 4, k = suspect % 4;
+    std::array<std::int32_t, 4> v{};
+    for (std::size_t i = 0; i < 3; ++i) v[i] = triangles[3 * t + i];
+    std::size_t count = 3;
+    if (k < 3) {
+      const std::int32_t u = neighbors[3 * t + k];
+      if (u < 0) return false;  // a crossing on the hull
+      for (std::size_t j = 0; j < 3; ++j) {
+        const std::size_t at = 3 * static_cast<std::size_t>(u) + j;
+        if (neighbors[at] == static_cast<std::int32_t>(t)) v[3] = triangles[at], count = 4;
+      }
+      if (count != 4) return false;
+    }
+    std::array<exact::Line, 8> lines;
+    const exact::ImplicitPoints exact(lines);
+    std::array<exact::Place, 4> at;
+    for (std::size_t i = 0; i < count; ++i) at[i] = place(static_cast<std::size_t>(v[i]), 2 * i, lines, exact);
+    if (count == 3) return exact.orientation(at[0], at[1], at[2]) > 0;
+    return exact.incircle_perturbed(at[0], at[1], at[2], at[3]) < 0;
+  }
+
+  [[nodiscard]] bool are_right(std::span<const std::uint32_t> suspects, unsigned threads) const {
+    std::atomic<bool> right{true};
+    constraints::for_each_block(suspects.size(), constraints::threads_or_all(threads),
+                                [&](std::size_t first, std::size_t last) {
+                                  for (std::size_t i = first; i < last && right.load(std::memory_order_relaxed); ++i)
+                                    if (!is_right(suspects[i])) right.store(false, std::memory_order_relaxed);
+                                });
+    return right.load();
+  }
+
+ private:
+  [[nodiscard]] exact::Point point(std::int32_t i) const {
+    return {points.x(static_cast<std::size_t>(i)), points.y(static_cast<std::size_t>(i))};
+  }
+  [[nodiscard]] exact::Place place(std::size_t v, std::size_t first, std::array<exact::Line, 8>& lines,
+                                   const exact::ImplicitPoints& exact) const {
+    if (v < points.size()) return exact::explicit_place(point(static_cast<std::int32_t>(v)));
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Segment& s = segments[static_cast<std::size_t>(pairs[v - points.size()][i])];
+      lines[first + i] = {point(s[0]), point(s[1])};
+    }
+    return exact.crossing(static_cast<std::int32_t>(first), static_cast<std::int32_t>(first + 1));
+  }
+};
+
+/// The second call: points and rounded crossings, and the edges of chains. If the mesh is that of the exact places as
+/// well - all triangles counterclockwise, all other edges legal -, it is the only one (docs/constrained.md).
+class RoundedCall {
+ public:
+  RoundedCall(Device& device, std::size_t points, FoundCrossings& found) : points_(points) {
+    job.segments = std::move(found.chain_edges);
+    job.count = found.chain_length;
+    job.rounded_places = &found.places;
+    job.exact_points = points;
+    places = {.x = device.handle(*found.places), .size = points + found.count};
+  }
+  /// False if rounded pieces cross, run through a vertex, or two crossings have the same rounded place. Duplicates are
+  /// ascending.
+  [[nodiscard]] bool fits(std::int32_t last_duplicate) const {
+    return !job.crossed && !job.divided && job.suspects && last_duplicate < static_cast<std::int32_t>(points_);
+  }
+
+  SegmentJob job;
+  DevicePoints places;
+
+ private:
+  std::size_t points_;
+};
+
+/// False if that is not the mesh: then `data` is as before.
+bool constrain_rounded(const State& state, PointsView points, std::span<const Segment> segments, FoundCrossings found,
+                       Data& data) {
+  Device& device = *state->device;
+  const std::size_t n = points.size();
+  RoundedCall call(device, n, found);
+  SegmentResults results;
+  Triangulation mesh = triangulate_with_segments(state, call.places, call.job, results);
+  if (!call.fits(mesh.duplicates().empty() ? -1 : mesh.duplicates().back().point)) return false;
+  std::vector<Segment> pairs = read_pairs(device, found);
+  const ExactPlaces exact{points, segments, pairs, mesh.triangles(), mesh.neighbors()};
+  if (!exact.are_right(*call.job.suspects, state->options.threads)) return false;
+
+  data.mesh = std::move(mesh);
+  data.edge_flags = std::move(results.edge_flags);
+  data.added = device.read_values<double>(*found.places, 2 * found.count, 2 * n);
+  data.parents = std::move(pairs);
+  const auto offsets = device.read_values(*found.chain_offsets, segments.size() + 1);
+  take_chains(data, {offsets.begin(), offsets.end()},
+              device.read_values<std::int32_t>(*found.chains, found.chain_length));
+  return true;
+}
+
+/// The same on the device; null if that is not the mesh.
+std::unique_ptr<DeviceTriangulation::Data> constrain_rounded(const State& state, std::size_t n, const SegmentJob& first,
+                                                             FoundCrossings& found) {
+  Device& device = *state->device;
+  RoundedCall call(device, n, found);
+  auto data = triangulate_on_device(state, call.places, &call.job);
+  const std::size_t duplicates = data->duplicate_count;
+  if (!call.fits(
+          duplicates == 0 ? -1 : device.read_values<std::int32_t>(*data->duplicate_points, 1, duplicates - 1).front()))
+    return nullptr;
+  if (!call.job.suspects->empty()) {
+    const auto xy = device.read_values<double>(*found.places, 2 * n);
+    const auto segments = device.read_values<Segment>(*first.segments, first.count), pairs = read_pairs(device, found);
+    const auto triangles = device.read_values<std::int32_t>(*data->triangles, 3 * data->triangle_count),
+               neighbors = device.read_values<std::int32_t>(*data->neighbors, 3 * data->triangle_count);
+    const ExactPlaces exact{xy, segments, pairs, triangles, neighbors};
+    if (!exact.are_right(*call.job.suspects, state->options.threads)) return nullptr;
+  }
+  data->added = found.count;
+  data->places = std::move(found.places);
+  data->added_parents = std::move(found.pairs);
+  return data;
+}
+
+template <class Values>
+Allocation upload(Context& ctx, const Values& values) {
+  const std::size_t bytes = values.size() * sizeof(values[0]);
+  Allocation to = ctx.memory.allocate(std::max(bytes, word));
+  if (bytes != 0) ctx.device.write(*to, 0, values.data(), bytes);
+  return to;
+}
+
+/// A mesh that was made on the host.
+CrossedMesh upload_mesh(Context& ctx, const State& state, std::vector<double> xy, const Data& from) {
+  const Triangulation& mesh = from.mesh;
+  CrossedMesh out{std::make_unique<DeviceTriangulation::Data>(), {}, {}, from.chain_vertices.size()};
+  DeviceTriangulation::Data& to = *out.data;
+  to.state = state;
+  to.points = mesh.number_of_points();
+  to.duplicate_count = mesh.duplicates().size();
+  to.distinct = to.points - to.duplicate_count;
+  to.triangle_count = mesh.number_of_triangles();
+  to.dimension = mesh.dimension();
+  to.statistics = mesh.statistics();
+  to.triangles = upload(ctx, mesh.triangles());
+  to.neighbors = upload(ctx, mesh.neighbors());
+  to.edge_flags = upload(ctx, from.edge_flags);
+  if (to.duplicate_count != 0) {
+    std::vector<std::int32_t> points, representatives;
+    for (const Duplicate& d : mesh.duplicates()) {
+      points.push_back(d.point);
+      representatives.push_back(d.representative);
+    }
+    to.duplicate_points = upload(ctx, points);
+    to.representatives = upload(ctx, representatives);
+  }
+  xy.insert(xy.end(), from.added.begin(), from.added.end());
+  to.added = from.parents.size();
+  to.rounded_valid = from.rounded_valid;
+  to.places = upload(ctx, xy);
+  to.added_parents = upload(ctx, from.parents);
+  out.chain_offsets = upload(ctx, std::vector<std::uint32_t>(from.chain_offsets.begin(), from.chain_offsets.end()));
+  out.chains = upload(ctx, from.chain_vertices);
+  return out;
+}
+
+}  // namespace
+
+void take_chains(Data& data, std::vector<std::int64_t> offsets, std::vector<std::int32_t> vertices) {
+  data.chain_offsets = std::move(offsets);
+  data.chain_vertices = std::move(vertices);
+  for (std::size_t s = 0; s + 1 < data.chain_offsets.size(); ++s)
+    if (data.chain_offsets[s] == data.chain_offsets[s + 1]) data.degenerate.push_back(static_cast<std::int32_t>(s));
+}
+
+void refuse_crossings(const State& state, PointsView points, std::span<const Segment> segments,
+                      const std::optional<FoundCrossings>& found) {
+  const Options& options = state->options;
+  std::vector<Segment> pairs =
+      found ? read_pairs(*state->device, *found)
+            : constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, options.stop),
+                                          options.stop);
+  if (pairs.empty()) throw InternalError("segments were found to cross, but no pair of them does");
+  std::string message =
+      std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair of segments crosses: " : " pairs of segments cross: ");
+  const std::size_t shown = std::min<std::size_t>(pairs.size(), 3);
+  for (std::size_t i = 0; i < shown; ++i)
+    message += (i == 0 ? "" : ", ") + std::to_string(pairs[i][0]) + " and " + std::to_string(pairs[i][1]);
+  if (shown < pairs.size()) message += ", ...";
+  throw CrossingError(message + "; repair them, or take Crossing::exact or Crossing::grid", std::move(pairs));
+}
+
+void constrain_exactly(const State& state, PointsView points, std::span<const Segment> segments,
+                       std::optional<FoundCrossings> found, Data& data) {
+  if (found && found->places && constrain_rounded(state, points, segments, std::move(*found), data)) return;
+  const Triangulation delaunay = triangulate_on_host(state, points);
+  constraints::ExactMesh exact =
+      constraints::triangulate_with_crossings(points, segments, delaunay, state->options.threads, state->options.stop);
+  data.mesh = triangulation_of(delaunay, exact, data.edge_flags);
+  data.added = std::move(exact.added_xy);
+  data.parents = std::move(exact.parents);
+  data.rounded_valid = exact.rounded_valid;
+  take_chains(data, std::move(exact.offsets), std::move(exact.vertices));
+}
+
+CrossedMesh constrain_exactly(const State& state, const DevicePoints& points, SegmentJob job) {
+  if (job.crossings && job.crossings->places) {
+    FoundCrossings found = std::move(*job.crossings);
+    if (auto data = constrain_rounded(state, points.size, job, found))
+      return {std::move(data), std::move(found.chain_offsets), std::move(found.chains), found.chain_length};
+  }
+  CopiedSegments copied = copy_segments(state, points, job);
+  Data mesh;
+  constrain_exactly(state, copied.xy, copied.segments, std::nullopt, mesh);
+  Statistics statistics;
+  Context ctx(*state->device, state->memory, state->options, statistics);
+  return upload_mesh(ctx, state, std::move(copied.xy), mesh);
+}
+
+CopiedSegments copy_segments(const State& state, const DevicePoints& points, const SegmentJob& job) {
+  Statistics statistics;
+  Context ctx(*state->device, state->memory, state->options, statistics);
+  const Allocation imported = import_points(ctx, points);
+  CopiedSegments copied;
+  if (takes_floats_only(ctx.device)) {
+    const std::vector<float> floats = ctx.device.read_values<float>(*imported, 2 * points.size);
+    copied.xy.assign(floats.begin(), floats.end());
+  } else {
+    copied.xy = ctx.device.read_values<double>(*imported, 2 * points.size);
+  }
+  copied.segments = ctx.device.read_values<Segment>(*job.segments, job.count);
+  ctx.device.finish();
+  return copied;
+}
+
+}  // namespace cadt

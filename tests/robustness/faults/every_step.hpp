@@ -81,12 +81,12 @@ class EveryStep : public ResidentTest {
           EXPECT_EQ(faults->live_buffers(), buffers);
           const Outcome next = call(triangulator);
           EXPECT_EQ(next.hash, expected.hash);
-          EXPECT_LE(next.peak, expected.peak + (peak_varies ? expected.peak / 16 : 0))
-              << "memory is counted that nobody holds";
+          EXPECT_LE(next.peak, most_after(expected.peak)) << "memory is counted that nobody holds";
         }
         if (HasFailure()) return;
-        // Conflicts between threads change the number of launches, and of what goes with them.
-        EXPECT_GE(4 * reached + 12, 3 * counts[s]) << to_string(static_cast<Step>(s));
+        // Conflicts between threads change the number of launches, and of what goes with them; where they change sizes,
+        // what was cached may be too small once.
+        EXPECT_GE(4 * reached + (peak_varies ? 30 : 12), 3 * counts[s]) << to_string(static_cast<Step>(s));
         RecordProperty(to_string(static_cast<Step>(s)), std::to_string(reached));
       }
     }
@@ -96,10 +96,11 @@ class EveryStep : public ResidentTest {
 
   /// Threads decide which pieces of segments wait, and so how large the rings of a launch are.
   bool peak_varies = false;
+  [[nodiscard]] std::size_t most_after(std::size_t peak) const { return peak + (peak_varies ? peak / 16 : 0); }
 
   /// The caller stops `call` at each place where it tells its progress: nothing stays allocated, and the next call is
   /// as ever.
-  static void cancel_each(const Options& with, const Call& call) {
+  void cancel_each(const Options& with, const Call& call) {
     const auto faults = std::make_shared<Faults>();
     {
       const Injection injection(faults);
@@ -130,7 +131,7 @@ class EveryStep : public ResidentTest {
         EXPECT_EQ(faults->live_bytes(), 0U);
         const Outcome next = call(triangulator);
         EXPECT_EQ(next.hash, expected.hash);
-        EXPECT_LE(next.peak, expected.peak);
+        EXPECT_LE(next.peak, most_after(expected.peak));
       }
     }
     EXPECT_EQ(faults->live_buffers(), 0U);

@@ -47,10 +47,14 @@ TEST_P(EveryStep, SegmentsOfTheDevice) {
             [&](Triangulator& t) { return test::outcome_of(t.triangulate_constrained(points, segments).download()); });
 }
 
-/// What crosses is found on the device, and then all pairs on the host.
-Call crossing_call(Crossing crossing) {
+/// With a segment across some of the others.
+Walls crossed_walls() {
   Walls walls;
   walls.segments.push_back({static_cast<std::int32_t>(walls.xy.size() / 2) - 1, 200});
+  return walls;
+}
+Call crossing_call(Crossing crossing) {
+  const Walls walls = crossed_walls();
   ConstraintOptions constraints;
   constraints.crossing = crossing;
   constraints.grid = 0.01;
@@ -69,7 +73,23 @@ TEST_P(EveryStep, SegmentsThatCross) {
     fail_each(options(), crossing_call(crossing));
 }
 
+TEST_P(EveryStep, SegmentsThatCrossOnTheDevice) {
+  peak_varies = true;
+  const Walls walls = crossed_walls();
+  const DevicePoints points = upload(walls.xy);
+  const DeviceArray segments{memory->upload(std::span<const Segment>(walls.segments)), 2 * walls.segments.size()};
+  ConstraintOptions constraints;
+  constraints.crossing = Crossing::exact;
+  constraints.domain = Domain::layers;
+  fail_each(options(), [&](Triangulator& t) {
+    const DeviceTriangulation mesh = t.triangulate_constrained(points, segments, constraints);
+    EXPECT_GT(mesh.number_added(), 0U);
+    return test::outcome_of(mesh.download());
+  });
+}
+
 TEST_P(EveryStep, SegmentsCancelled) {
+  peak_varies = true;
   const Walls walls;
   cancel_each(options(), [&](Triangulator& t) {
     return constrained_outcome(t.triangulate_constrained(Reals(walls.xy), walls.segments));

@@ -14,9 +14,9 @@ using verifier::orientation;
 using verifier::Point;
 
 /// The bits of a generator alone, as distributions differ between standard libraries.
-class Random {
+class SetRandom {
  public:
-  explicit Random(std::uint64_t seed) : bits_(seed) {}
+  explicit SetRandom(std::uint64_t seed) : bits_(seed) {}
   [[nodiscard]] double unit() { return static_cast<double>(bits_() >> 11) * 0x1p-53; }
   [[nodiscard]] int below(int n) { return static_cast<int>(bits_() % static_cast<std::uint64_t>(n)); }
 
@@ -25,7 +25,7 @@ class Random {
 };
 
 /// Segments between any of the points.
-void join(SegmentSet& set, Random& random, std::size_t count) {
+void join(SegmentSet& set, SetRandom& random, std::size_t count) {
   const int n = static_cast<int>(set.xy.size() / 2);
   for (std::size_t i = 0; i < count; ++i) set.segments.push_back({random.below(n), random.below(n)});
 }
@@ -35,7 +35,7 @@ SegmentSet ends_of_range(std::uint64_t seed) {
   const double most = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
   const std::vector<double> values = {0.0, -0.0, least, -least, 3 * least, 0x1p-1022,
                                       1.0, -1.0, 1e-30, most,   -most,     most / 2};
-  Random random(seed);
+  SetRandom random(seed);
   for (int i = 0; i < 20; ++i)
     for (int k = 0; k < 2; ++k) set.xy.push_back(values[static_cast<std::size_t>(random.below(12))]);
   join(set, random, 20);
@@ -45,7 +45,7 @@ SegmentSet ends_of_range(std::uint64_t seed) {
 /// Segments that differ from one another by a few last places.
 SegmentSet almost_parallel(std::uint64_t seed) {
   SegmentSet set{"almost parallel", {}, {}};
-  Random random(seed);
+  SetRandom random(seed);
   for (int i = 0; i < 40; ++i) {
     const double ends[4] = {0.1, 0.3, 1.7, 2.9};
     for (const double end : ends) {
@@ -61,7 +61,7 @@ SegmentSet almost_parallel(std::uint64_t seed) {
 /// Segments through one place, which is a point or not; some are on the same line.
 SegmentSet concurrent(std::uint64_t seed, bool point) {
   SegmentSet set{point ? "concurrent at a point" : "concurrent", {}, {}};
-  Random random(seed);
+  SetRandom random(seed);
   if (point) set.xy = {0.0, 0.0};
   for (int i = 0; i < 30; ++i) {
     const int x = random.below(7) - 3, y = random.below(7) - 3, a = 1 + random.below(3), b = 1 + random.below(3);
@@ -75,7 +75,7 @@ SegmentSet concurrent(std::uint64_t seed, bool point) {
 
 SegmentSet on_one_line(std::uint64_t seed) {
   SegmentSet set{"on one line", {}, {}};
-  Random random(seed);
+  SetRandom random(seed);
   for (int i = 0; i < 30; ++i) {
     const int k = random.below(100);
     set.xy.insert(set.xy.end(), {1.0 * k, 3.0 * k});
@@ -89,7 +89,7 @@ SegmentSet on_one_line(std::uint64_t seed) {
 
 SegmentSet lattice_segments(std::uint64_t seed, int side, std::size_t count, double x_unit, double y_unit) {
   SegmentSet set{"lattice of " + std::to_string(side) + ", seed " + std::to_string(seed), {}, {}};
-  Random random(seed);
+  SetRandom random(seed);
   const std::size_t points = count + count / 2;
   for (std::size_t i = 0; i < points; ++i) {
     set.xy.push_back(random.below(side) * x_unit);
@@ -101,7 +101,7 @@ SegmentSet lattice_segments(std::uint64_t seed, int side, std::size_t count, dou
 
 SegmentSet random_segments(std::uint64_t seed, std::size_t count, double length) {
   SegmentSet set{"random, length " + std::to_string(length), {}, {}};
-  Random random(seed);
+  SetRandom random(seed);
   for (std::size_t i = 0; i < count; ++i) {
     const double x = random.unit(), y = random.unit();
     set.xy.insert(set.xy.end(), {x, y, x + length * (2 * random.unit() - 1), y + length * (2 * random.unit() - 1)});

@@ -69,12 +69,14 @@ Call crossing_call(Crossing crossing) {
 
 TEST_P(EveryStep, SegmentsThatCross) {
   peak_varies = true;
+  if (GetParam().backend == Backend::opencl) each = 4;
   for (const Crossing crossing : {Crossing::error, Crossing::exact, Crossing::grid})
     fail_each(options(), crossing_call(crossing));
 }
 
 TEST_P(EveryStep, SegmentsThatCrossOnTheDevice) {
   peak_varies = true;
+  if (GetParam().backend == Backend::opencl) each = 4;
   const Walls walls = crossed_walls();
   const DevicePoints points = upload(walls.xy);
   const DeviceArray segments{memory->upload(std::span<const Segment>(walls.segments)), 2 * walls.segments.size()};

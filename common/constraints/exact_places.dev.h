@@ -205,7 +205,7 @@ CADT_FN double cadt_max(double a, double b) { return a < b ? b : a; }
 /* The signs of determinants of places that are off by their errors: 1 or -1 if it is certain, else 0. With X, Y the
  * greatest computed differences and E, F bounds on the errors of exact differences in x and y, a product of a
  * difference in x and one in y is off by X F + Y E + E F, and there are two. Twice that makes up for its own roundings;
- * the first term of the bound is the rounding of the determinant (exactness.md). */
+ * the first term of the bound is the rounding of the determinant (as the verifier's filters, exact_sign.hpp). */
 CADT_FN cadt_i32 cadt_orientation_about(cadt_rounded a, cadt_rounded b, cadt_rounded c) {
   const double ax = a.at.x - c.at.x, ay = a.at.y - c.at.y, bx = b.at.x - c.at.x, by = b.at.y - c.at.y;
   const double X = cadt_max(cadt_fabs(ax), cadt_fabs(bx)), Y = cadt_max(cadt_fabs(ay), cadt_fabs(by));

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/driver/device_text.hpp"
+
 namespace cadt::exact {
 namespace {
 
@@ -107,41 +109,22 @@ int ImplicitPoints::incircle_perturbed(const Place& a, const Place& b, const Pla
 
 namespace stage {
 
-// The verifier's filters (common/verify/host/exact_sign.hpp), for coordinates that are off by up to e each. With X, Y
-// the greatest computed differences and E, F bounds on the errors of exact differences in x and y, a product of a
-// difference in x and one in y is off by X F + Y E + E F, and there are two. Twice that makes up for its own roundings.
+namespace {
+
+/// As the filters of the device take it (exact_places.dev.h).
+device_text::cadt_rounded rounded_of(const Place& p) {
+  return {{p.x, p.y}, error_of(p.x, p.rest_x), error_of(p.y, p.rest_y)};
+}
+int sign_or_unsure(int sign) { return sign != 0 ? sign : unsure; }
+
+}  // namespace
+
 int orientation_filter(const Place& a, const Place& b, const Place& c) {
-  const double ax = a.x - c.x, ay = a.y - c.y, bx = b.x - c.x, by = b.y - c.y;
-  const double X = std::max(std::abs(ax), std::abs(bx)), Y = std::max(std::abs(ay), std::abs(by));
-  if (!(X > 0x1p-480 && Y > 0x1p-480 && X < 0x1p510 && Y < 0x1p510)) return unsure;
-  const double E = std::max(error_of(a.x, a.rest_x), error_of(b.x, b.rest_x)) + error_of(c.x, c.rest_x);
-  const double F = std::max(error_of(a.y, a.rest_y), error_of(b.y, b.rest_y)) + error_of(c.y, c.rest_y);
-  const double det = ax * by - ay * bx;
-  const double bound = 0x1p-49 * (X * Y) + 4 * (X * F + Y * E + E * F);
-  if (det > bound) return 1;
-  if (det < -bound) return -1;
-  return unsure;
+  return sign_or_unsure(device_text::cadt_orientation_about(rounded_of(a), rounded_of(b), rounded_of(c)));
 }
 
-// In-circle is a sum of six monomials x^3 y and six x y^3 of differences, each off by 3 X^2 Y E + X^3 F or the same
-// with x and y exchanged, as long as E and F are that small that their squares do not matter. Twice that, as above.
 int incircle_filter(const Place& a, const Place& b, const Place& c, const Place& d) {
-  const double ax = a.x - d.x, ay = a.y - d.y, bx = b.x - d.x, by = b.y - d.y, cx = c.x - d.x, cy = c.y - d.y;
-  const double X = std::max({std::abs(ax), std::abs(bx), std::abs(cx)});
-  const double Y = std::max({std::abs(ay), std::abs(by), std::abs(cy)});
-  if (!(X > 0x1p-220 && Y > 0x1p-220 && X < 0x1p250 && Y < 0x1p250)) return unsure;
-  const double E =
-      std::max({error_of(a.x, a.rest_x), error_of(b.x, b.rest_x), error_of(c.x, c.rest_x)}) + error_of(d.x, d.rest_x);
-  const double F =
-      std::max({error_of(a.y, a.rest_y), error_of(b.y, b.rest_y), error_of(c.y, c.rest_y)}) + error_of(d.y, d.rest_y);
-  if (!(E < 0x1p-20 * X && F < 0x1p-20 * Y)) return unsure;
-  const double det = (ax * ax + ay * ay) * (bx * cy - cx * by) + (bx * bx + by * by) * (cx * ay - ax * cy) +
-                     (cx * cx + cy * cy) * (ax * by - bx * ay);
-  const double bound =
-      0x1p-46 * (X * Y * (X * X + Y * Y)) + 12 * (3 * X * Y * (X * E + Y * F) + X * X * X * F + Y * Y * Y * E);
-  if (det > bound) return 1;
-  if (det < -bound) return -1;
-  return unsure;
+  return sign_or_unsure(device_text::cadt_incircle_about(rounded_of(a), rounded_of(b), rounded_of(c), rounded_of(d)));
 }
 
 int orientation_exact(const ImplicitPoints& points, const Place& a, const Place& b, const Place& c) {

@@ -4,7 +4,7 @@
  * in a triangle that both run through, or on an edge.
  *
  *          /\             Vertices divide each segment into pieces. A piece is listed in each triangle that it runs
- *      s  /  \  t         through, or, if it is an edge, in the first of the two at that edge: whatever crosses the
+ *      s  /  \  t         through, or, if it is an edge, in the lower of the two at that edge: whatever crosses the
  *       ./.  .\.          edge runs through both. The pairs in each triangle are tested with exact predicates; those
  *       /  .x.  \         that share several triangles are found several times.
  *      /_________\
@@ -87,15 +87,14 @@ CADT_KERNEL(cadt_divide_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL cons
       }
       const cadt_u32 from = step.from_b ? b : a, to = step.from_b ? a : b;
       const cadt_u32 piece = step.from_b ? --high : low++;
-      cadt_u32 reached = step.vertex, t = CADT_TRIANGLE_OF(step.half_edge);
-      if (step.kind == CADT_STEP_EDGE) {
+      const cadt_u32 t = CADT_TRIANGLE_OF(step.half_edge);
+      cadt_u32 reached = step.vertex;
+      if (step.kind == CADT_STEP_EDGE) { /* the lower one: where it is counted it is also written */
         cadt_list_piece(&lists, cadt_min_u32(t, CADT_TRIANGLE_OF(cadt_across_of(&mesh, step.half_edge))), piece);
-        ++listed;
       } else {
         const cadt_point p = cadt_load_point(mesh.points + from), q = cadt_load_point(mesh.points + to);
         cadt_crossed at = {step.half_edge, CADT_NONE, CADT_NONE, 1};
         cadt_list_piece(&lists, t, piece);
-        ++listed;
         while (at.side != 0) {
           cadt_cross(&mesh, &at, p, to, q, &counters);
           cadt_list_piece(&lists, CADT_TRIANGLE_OF(at.entry), piece);
@@ -112,6 +111,7 @@ CADT_KERNEL(cadt_divide_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL cons
         b = reached;
       else
         a = reached;
+      ++listed;
       ++pieces;
     }
     if (!divided.ends) divided.begins[s] = pieces;

@@ -143,6 +143,25 @@ TEST_P(Crossings, CoordinatesThatOnlyWholeNumbersFind) {
   EXPECT_EQ(check(set), has_doubles());
 }
 
+/// Flat segments above an edge of the hull, whose crossing is so near to it that it may be rounded to the outside.
+TEST_P(Crossings, AtTheHull) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SegmentSet set{"seed " + std::to_string(seed), {}, {}};
+    Random random(seed);
+    const double x = random.uniform(1, 3), y = random.uniform(0.1, 1), up = random.uniform(1, 4);
+    const double t = random.uniform(0.6, 0.9);
+    // Doubles above the line from (0, 0) to (x, y), by one or two units in the last place.
+    const auto above = [&](double part) {
+      double v = y * part;
+      for (int i = 0; i < 2 + static_cast<int>(seed % 3); ++i) v = std::nextafter(v, 9.0);
+      return v;
+    };
+    set.xy = {0.0, 0.0, x, y, x * t, above(t), x * (1 - t), above(1 - t), x / 2, up};
+    set.segments = {{0, 2}, {1, 3}};
+    check(set);
+  }
+}
+
 /// So many segments through the same triangles that a sweep finds them.
 TEST_P(Crossings, BundleThroughTheSameTriangles) {
   SegmentSet set{"bundle", {}, {}};

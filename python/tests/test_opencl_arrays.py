@@ -9,6 +9,7 @@ import pickle
 import cadt
 import numpy as np
 import pytest
+from crossed_segments import chords, compare, compare_without_crossings, sets as crossed_sets
 
 cl = pytest.importorskip("pyopencl")
 cl_array = pytest.importorskip("pyopencl.array")
@@ -62,6 +63,14 @@ def test_arrays_outlive_the_mesh(queue):
     for seed in range(3):
         cadt.Delaunay(cl_array.to_device(queue, np.random.default_rng(seed).random((3_000, 2))))
     np.testing.assert_array_equal(simplices.get(), cadt.Delaunay(points).simplices)
+
+
+def test_parts_of_arrays_outlive_the_mesh(queue):
+    points = np.random.default_rng(3).random((3_000, 2))
+    part = cadt.Delaunay(cl_array.to_device(queue, points)).simplices[100:].reshape(-1)
+    for seed in range(3):
+        cadt.Delaunay(cl_array.to_device(queue, np.random.default_rng(seed).random((3_000, 2))))
+    np.testing.assert_array_equal(part.get(), cadt.Delaunay(points).simplices[100:].reshape(-1))
 
 
 def test_each_queue_is_used_for_its_own_arrays(queue):
@@ -190,15 +199,62 @@ def test_segments_that_are_refused(queue):
     for wrong in (put([[0.0, 1.0]]), put([0, 1]), put([[0, 1, 2]])):
         with pytest.raises(cadt.InputError):
             cadt.ConstrainedDelaunay(there, wrong)
-    for how in ({"crossing": "exact"}, {"crossing": ("grid", 1.0)}, {"domain": "seeds"}):
+    for how in ({"crossing": ("grid", 1.0)}, {"domain": "seeds"}):
         with pytest.raises(cadt.OptionError):
             cadt.ConstrainedDelaunay(there, [[0, 1]], **how)
     mesh = cadt.ConstrainedDelaunay(there, [[0, 1]])
-    for name in ("chains", "constrained_edges", "edge_sources", "inside", "region", "region_value", "added_points"):
+    for name in ("chains", "constrained_edges", "edge_sources", "inside", "region", "region_value"):
         with pytest.raises(cadt.OptionError):
             getattr(mesh, name)
     with pytest.raises(cadt.OptionError):
         mesh.voronoi()
+
+
+def put_and_get(queue):
+    def get(a):
+        assert isinstance(a, cl_array.Array) and a.queue == queue
+        return a.get()
+
+    return (lambda a: cl_array.to_device(queue, np.asarray(a))), get
+
+
+@pytest.mark.parametrize("name", list(crossed_sets()))
+def test_crossings_equal_host(queue, name, tmp_path):
+    xy, segments = crossed_sets()[name]
+    mesh = compare(xy, segments, *put_and_get(queue))
+    assert mesh.rounded_valid == (name != "almost one place")
+    mesh.save(tmp_path / "mesh.npz")
+    np.testing.assert_array_equal(np.load(tmp_path / "mesh.npz")["points"], mesh.points.get())
+
+
+def test_crossings_that_are_none(queue):
+    compare_without_crossings(*put_and_get(queue))
+
+
+def test_crossings_stay_on_the_device(queue, monkeypatch):
+    xy, segments = chords(4_000, 60)
+    given = cl_array.to_device(queue, xy)
+    mesh = cadt.ConstrainedDelaunay(given, segments, crossing="exact")
+    moved = mesh.statistics["bytes_to_device"] + mesh.statistics["bytes_from_device"]
+    assert moved < 8 * len(xy), "words that steer the call, and no array"
+    monkeypatch.setattr(type(mesh._gpu.array), "host_of", None)  # type: ignore[union-attr]
+    added = mesh.added_points
+    assert len(added) == len(mesh.added_parents) > 100
+    assert mesh.points.base_data.int_ptr == added.base_data.int_ptr == mesh._gpu.mesh.all_points_handle
+    assert len(mesh.interpolate(cl_array.to_device(queue, np.ones(mesh.n_points)), added)) == len(added)
+
+
+def test_crossings_outlive_the_mesh(queue):
+    xy, segments = chords(2_000, 100)
+    mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, xy), segments, crossing="exact")
+    arrays = mesh.points, mesh.added_points, mesh.added_parents
+    del mesh
+    for seed in range(3):
+        other = cl_array.to_device(queue, np.random.default_rng(seed).random((2_000, 2)))
+        cadt.ConstrainedDelaunay(other, segments, crossing="exact")
+    host = cadt.ConstrainedDelaunay(xy, segments, crossing="exact", backend="host")
+    for got, wanted in zip(arrays, (host.points, host.added_points, host.added_parents)):
+        np.testing.assert_array_equal(got.get(), wanted)
 
 
 def test_few_points_and_no_segments(queue):

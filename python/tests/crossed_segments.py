@@ -70,11 +70,12 @@ def compare(xy: np.ndarray, segments: np.ndarray, put: Callable, get: Callable) 
     np.testing.assert_allclose(image, host.rasterize(z, shape=(9, 13)), rtol=1e-12)
     with pytest.raises(cadt.NotDelaunay):
         mesh.nearest_vertex(put(q))
-    for refused in (lambda: mesh.at_crossings(z[: len(xy)]), lambda: mesh.interpolate(put(z[: len(xy)].copy()), q)):
+    of_given = put(z[: len(xy)].copy())
+    for ask in (lambda: mesh.interpolate(of_given, q), *(lambda v=v: mesh.at_crossings(v) for v in (of_given, z))):
         with pytest.raises(cadt.OptionError, match="at_crossings"):
-            refused()
+            ask()
     with pytest.raises(cadt.InputError):
-        mesh.interpolate(put(z[:-1].copy()), q)
+        mesh.interpolate(put(z[:5].copy()), q)
     return mesh
 
 

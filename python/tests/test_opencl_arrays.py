@@ -65,14 +65,6 @@ def test_arrays_outlive_the_mesh(queue):
     np.testing.assert_array_equal(simplices.get(), cadt.Delaunay(points).simplices)
 
 
-def test_parts_of_arrays_outlive_the_mesh(queue):
-    points = np.random.default_rng(3).random((3_000, 2))
-    part = cadt.Delaunay(cl_array.to_device(queue, points)).simplices[100:].reshape(-1)
-    for seed in range(3):
-        cadt.Delaunay(cl_array.to_device(queue, np.random.default_rng(seed).random((3_000, 2))))
-    np.testing.assert_array_equal(part.get(), cadt.Delaunay(points).simplices[100:].reshape(-1))
-
-
 def test_each_queue_is_used_for_its_own_arrays(queue):
     points = np.random.default_rng(9).random((2_000, 2))
     other = cl.CommandQueue(cl.Context(queue.context.devices))
@@ -137,6 +129,7 @@ def breaklines(n=3_000):
     return xy, np.concatenate([np.stack([p[:-1], p[1:]], axis=1) for p in parts])
 
 
+CROSS = np.array([[0.0, 0], [2, 2], [0, 2], [2, 0]])
 RINGS = np.array([[0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [1, 2], [0.5, 0.25]])
 
 
@@ -181,7 +174,7 @@ def test_segments_that_are_refused(queue):
     def put(a):
         return cl_array.to_device(queue, np.asarray(a))
 
-    xy = np.array([[0.0, 0], [2, 2], [0, 2], [2, 0]])
+    xy = CROSS
     there = put(xy)
     with pytest.raises(cadt.CrossingError) as caught:
         cadt.ConstrainedDelaunay(there, put([[0, 1], [2, 3]]))
@@ -247,7 +240,7 @@ def test_crossings_stay_on_the_device(queue, monkeypatch):
 def test_crossings_outlive_the_mesh(queue):
     xy, segments = chords(2_000, 100)
     mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, xy), segments, crossing="exact")
-    arrays = mesh.points, mesh.added_points, mesh.added_parents
+    arrays = mesh.points[:], mesh.added_points, mesh.added_parents[:]  # parts keep the mesh as well
     del mesh
     for seed in range(3):
         other = cl_array.to_device(queue, np.random.default_rng(seed).random((2_000, 2)))
@@ -255,6 +248,15 @@ def test_crossings_outlive_the_mesh(queue):
     host = cadt.ConstrainedDelaunay(xy, segments, crossing="exact", backend="host")
     for got, wanted in zip(arrays, (host.points, host.added_points, host.added_parents)):
         np.testing.assert_array_equal(got.get(), wanted)
+
+
+@pytest.mark.parametrize("member", ["points", "added_points", "added_parents", "edge_flags"])
+def test_a_mesh_that_is_not_the_hosts_is_noticed(queue, member):
+    mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, CROSS), [[0, 1], [2, 3]], crossing="exact")
+    assert mesh.verify()
+    getattr(mesh, member)[-1] = 3
+    with pytest.raises(cadt.InternalError):
+        mesh.verify()
 
 
 def test_few_points_and_no_segments(queue):

@@ -130,6 +130,11 @@ MeshQueries::MeshQueries(Triangulator& triangulator, const DevicePoints& points,
   index.point_count = data.points;
   index.triangles = data.triangle_count;
   if (data.points != 0) index.points = import_points(call.ctx, points);
+  if (!data.rounded_valid) {
+    Device& device = call.ctx.device;
+    const auto xy = device.read_values<double>(*index.points, 2 * data.points);
+    require_counterclockwise(xy, device.read_values<std::int32_t>(*data.triangles, 3 * data.triangle_count));
+  }
   if (data.triangle_count != 0) {
     const std::size_t bytes = 3 * data.triangle_count * word;
     index.vertices = call.ctx.memory.wrap(mesh.triangles(), bytes);

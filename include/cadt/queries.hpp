@@ -148,8 +148,9 @@ class CADT_API MeshQueries {
   /// triangulation of the convex hull. \throws InputError if an index is out of range, or an edge is not the same from
   /// both sides, with the first such triangle as index
   MeshQueries(PointsView points, const MeshView& mesh, const Options& options = {});
-  /// A mesh on the device of `triangulator`, which it shares. Both must live as long as this object. \throws InputError
-  /// for a mesh of another triangulator or of other points
+  /// A mesh on the device of `triangulator`, which it shares. Both must live as long as this object. The points of a
+  /// mesh with crossings are DeviceTriangulation::all_points(). \throws InputError for a mesh of another triangulator
+  /// or of other points, InvalidMesh as for a constrained mesh of the host
   MeshQueries(Triangulator& triangulator, const DevicePoints& points, const DeviceTriangulation& mesh);
   ~MeshQueries();
   MeshQueries(MeshQueries&&) noexcept;

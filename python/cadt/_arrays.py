@@ -149,8 +149,15 @@ class Array:
         handle = getattr(mesh, f"{which}_handle")
         return self.of_handle(mesh, handle, shape) if handle else self.from_host(np.zeros(shape, np.int32))
 
-    def of_handle(self, mesh: Any, handle: int, shape: tuple[int, ...]) -> Any:
-        return self.xp.from_dlpack(_cadt.cuda_words(mesh, handle, shape))
+    def doubles(self, mesh: Any, which: str, shape: tuple[int, ...]) -> Any:
+        """The same of doubles, which the mesh must have."""
+        return self.of_handle(mesh, getattr(mesh, f"{which}_handle"), shape, "float64")
+
+    def doubles_on_host(self, mesh: Any, which: str, shape: tuple[int, ...]) -> np.ndarray:
+        return self.host_of(self.doubles(mesh, which, shape))
+
+    def of_handle(self, mesh: Any, handle: int, shape: tuple[int, ...], dtype: str = "int32") -> Any:
+        return self.xp.from_dlpack(_cadt.cuda_array(mesh, handle, shape, dtype == "float64"))
 
 
 class CuPy(Array):
@@ -291,6 +298,10 @@ class Jax(Array):
         with self.x64(True):
             return super().bounds()
 
+    def doubles_on_host(self, mesh: Any, which: str, shape: tuple[int, ...]) -> np.ndarray:
+        with self.x64(True):
+            return super().doubles_on_host(mesh, which, shape)
+
 
 class OpenCl(Array):
     backend = "opencl"
@@ -347,8 +358,7 @@ class OpenCl(Array):
     def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
         return self.cl.array.empty(self.cl_queue, shape, dtype)
 
-    def of_handle(self, mesh: Any, handle: int, shape: tuple[int, ...]) -> Any:
+    def of_handle(self, mesh: Any, handle: int, shape: tuple[int, ...], dtype: str = "int32") -> Any:
         buffer = self.cl.Buffer.from_int_ptr(handle)
-        result = self.cl.array.Array(self.cl_queue, shape, np.int32, data=buffer)
-        result._cadt_mesh = mesh  # the memory is the mesh's
-        return result
+        buffer._cadt_mesh = mesh  # the memory is the mesh's; parts of the array share the buffer
+        return self.cl.array.Array(self.cl_queue, shape, np.dtype(dtype), data=buffer)

@@ -9,7 +9,7 @@ import numpy as np
 
 from cadt import _cadt, _devices, _gpu, _show
 from cadt._arrays import adapter_of, array_on_device
-from cadt._errors import InputError, InternalError, OptionError
+from cadt._errors import InputError, InternalError
 from cadt._mesh import Mesh
 from cadt._points import as_pairs, as_points, as_values, contiguous
 from cadt._progress import reporter
@@ -66,13 +66,16 @@ class ConstrainedDelaunay(Mesh):
 
     Points on a GPU: segments are int32 or int64 of the same library there, or of the host, as polylines and rings are;
     these are uploaded, being indices. `simplices`, `neighbors`, `edge_flags`, `triangles_inside` and, but with
-    ``domain="hull"``, `region` are arrays on the device, without a copy, and queries are answered there. Crossings are
-    errors, and seeds are refused. `hash` and `verify` make the mesh again on the host and compare. The rest (`chains`,
-    `constrained_edges`, `inside`, ...) is not kept there and raises `OptionError`: pass points of the host for it;
-    ``backend="cuda"`` computes them on the GPU as well.
+    ``domain="hull"``, `region` are arrays on the device, without a copy, and queries are answered there. So are `points`,
+    `added_points` and `added_parents` with ``crossing="exact"``. (JAX rounds `points` to float32 unless
+    ``jax_enable_x64`` is set; queries take the doubles.) Where the device cannot find what crosses - several segments
+    through one place, or very many through the same triangles - points and segments are copied to the host, and the mesh
+    back. Grids and seeds are refused. `hash` and `verify` make the mesh again on the host and compare. The rest (`chains`,
+    `constrained_edges`, `inside`, `at_crossings` of a mesh with crossings, ...) is not kept there and raises
+    `OptionError`: pass points of the host for it; ``backend="cuda"`` computes them on the GPU as well.
 
     Interpolation and rasters take values of the points that were given (`at_crossings` says what crossings get) or of all
-    `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a Delaunay mesh: unless all
+    `points`; on a GPU, of all `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a Delaunay mesh: unless all
     segments happen to be Delaunay edges they raise `NotDelaunay`; ask ``Delaunay(mesh.points)``.
 
     Examples
@@ -126,6 +129,8 @@ class ConstrainedDelaunay(Mesh):
             with reporter(progress) as report:
                 self._gpu = _gpu.ConstrainedMesh(on_gpu, self._segments, self._constraints, domain, how, report)
             self._options = self._gpu.options
+            if self._gpu.all_points is not None:
+                self._points = self._gpu.all_points
             return
         if adapter_of(segments) is not None:
             raise InputError("segments on a device need points there: pass points on it, or segments of the host", 0)
@@ -226,32 +231,32 @@ class ConstrainedDelaunay(Mesh):
         return self._points
 
     @property
-    def added_points(self) -> np.ndarray:
+    def added_points(self) -> Any:
         """(a, 2) float64: the vertices made for crossings, rounded to the nearest doubles."""
-        return self._of("added_points", lambda c: c.added_points)
+        return self._of("added_points", lambda c: c.added_points, lambda g: g.added_points)
 
     @property
-    def added_parents(self) -> np.ndarray:
+    def added_parents(self) -> Any:
         """(a, 2) int32: for each of them, the lowest pair of segments that cross there."""
-        return self._of("added_parents", lambda c: c.added_parents)
+        return self._of("added_parents", lambda c: c.added_parents, lambda g: g.added_parents)
 
     @property
     def rounded_valid(self) -> bool:
         """Whether triangles are still counterclockwise with rounded coordinates. True without added points."""
-        return self._gpu is not None or self._made.rounded_valid
+        return (self._made if self._gpu is None else self._gpu.mesh).rounded_valid
 
-    def at_crossings(self, values: Any) -> np.ndarray:
+    def at_crossings(self, values: Any) -> Any:
         """Values of the points that were given, shape (n, ...), with those of `added_points` behind them.
 
         They are linear along the first of their two segments (`added_parents`) from the given point before to the one
-        behind.
+        behind. On a GPU, where no chains are kept, a mesh with crossings raises `OptionError`.
 
         >>> mesh = cadt.ConstrainedDelaunay([[0, 0], [2, 2], [0, 2], [2, 0]], [[0, 1], [2, 3]], crossing="exact")
         >>> mesh.at_crossings([0, 10, 7, 7])
         array([ 0., 10.,  7.,  7.,  5.])
         """
         if self._gpu is not None:
-            raise _not_there("at_crossings")
+            return self._gpu.at_crossings(values)
         n = len(self._input)
         v, one = as_values(values, n)
         if not len(self.added_points):
@@ -293,7 +298,7 @@ class ConstrainedDelaunay(Mesh):
         `how` is passed to ``triplot``.
         """
         if self._gpu is not None:
-            raise _not_there("plot")
+            raise _gpu.not_there("plot")
         return _show.plot_constrained(self, ax, inside, how)
 
     # Plumbing
@@ -303,7 +308,7 @@ class ConstrainedDelaunay(Mesh):
             if self._gpu is None:
                 self._cache[name] = of(self._made)
             elif of_gpu is None:
-                raise _not_there(name)
+                raise _gpu.not_there(name)
             else:
                 self._cache[name] = of_gpu(self._gpu)
         return self._cache[name]
@@ -312,17 +317,22 @@ class ConstrainedDelaunay(Mesh):
         """Points and segments, copied to the host where they are on a device."""
         if self._gpu is None:
             return self._input, self._segments
-        return self._host_points, contiguous(self._gpu.array.host_of(self._segments), np.int32)
+        array = self._gpu.array
+        return as_points(array.to_host()), contiguous(array.host_of(self._segments), np.int32)
 
     def _host_made(self) -> _cadt.ConstrainedTriangulation:
         """The mesh with its segments on the host. That of a device is made again there, and must be equal."""
         if self._gpu is None:
             return self._made
         options = _devices.make_options("host", None, "canonical", None, None, "counters")
-        made = _cadt.triangulate_constrained(*self._host_input(), self._constraints, options)
+        points, segments = self._host_input()
+        made = _cadt.triangulate_constrained(points, segments, self._constraints, options)
         there, host_of = self._host_mesh, self._gpu.array.host_of
         pairs: list[tuple[Any, Any]] = [(there.triangles, made.mesh.triangles)]
         pairs.append((there.neighbors, made.mesh.neighbors))
+        pairs.append((self._host_points[len(points) :], made.added_points))
+        pairs.append((host_of(self.added_parents), made.added_parents))
+        pairs.append((self.rounded_valid, made.rounded_valid))
         if self.n_triangles:
             pairs.append((host_of(self.edge_flags), made.edge_flags))
             pairs.append((host_of(self.triangles_inside), made.triangles_inside()))
@@ -339,7 +349,7 @@ class ConstrainedDelaunay(Mesh):
 
     def _queries(self) -> _cadt.Queries:
         if self._gpu is not None:
-            raise _not_there("this")
+            raise _gpu.not_there("this")
         if "queries" not in self._cache:
             self._cache["queries"] = _cadt.Queries(self._input, self._made, self._options)
         return self._cache["queries"]
@@ -368,10 +378,3 @@ def find_crossings(points: Any, segments: Any, *, threads: int = 0) -> np.ndarra
     array([[0, 1]], dtype=int32)
     """
     return _cadt.find_crossings(as_points(points), as_pairs(segments, "segments"), threads)
-
-
-def _not_there(name: str) -> OptionError:
-    return OptionError(
-        f"{name} is not for meshes with segments in device memory: pass points of the host (backend= computes anywhere)",
-        "points",
-    )

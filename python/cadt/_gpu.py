@@ -11,6 +11,7 @@ import numpy as np
 from cadt import _cadt, _devices
 from cadt._arrays import Array
 from cadt._errors import BackendUnavailable, InputError, OptionError
+from cadt._points import as_points
 
 
 class Mesh:
@@ -50,6 +51,9 @@ class Mesh:
     @property
     def neighbors(self) -> Any:
         return self.array.words(self.mesh, "neighbors", (self.mesh.number_of_triangles, 3))
+
+    def points_on_host(self) -> np.ndarray:
+        return as_points(self.array.to_host())
 
     def bounds(self) -> tuple[float, float, float, float]:
         if self.mesh.number_of_points == 0:
@@ -132,10 +136,45 @@ class ConstrainedMesh(Mesh):
     ) -> None:
         self.segments, self._constraints, self._hull = segments, constraints, domain == "hull"
         super().__init__(array, arguments, report)
+        mesh = self.mesh
+        self._given, self._shape = int(array.a.shape[0]), (mesh.number_of_points, 2)
+        self.all_points: Any = None  # with crossings
+        if mesh.number_added:
+            self.all_points = array.doubles(mesh, "all_points", self._shape)
+            self.points = _cadt.DevicePoints(mesh.all_points_handle, mesh.number_of_points, False)
 
     def _triangulate(self, report: Any) -> Any:
         arguments = (self.points, self.array.memory(self.segments), self._constraints, self.options, report)
         return _cadt.triangulate_constrained_on_device(self.triangulator, *arguments)
+
+    def points_on_host(self) -> np.ndarray:
+        if self.all_points is None:
+            return super().points_on_host()
+        return self.array.doubles_on_host(self.mesh, "all_points", self._shape)
+
+    @property
+    def added_points(self) -> Any:
+        if self.all_points is None:
+            return self.array.finished(self.array.empty((0, 2), "float64"))
+        return self.all_points[self._given :]
+
+    @property
+    def added_parents(self) -> Any:
+        return self.array.words(self.mesh, "added_parents", (self.mesh.number_added, 2))
+
+    def at_crossings(self, values: Any) -> Any:
+        if self.all_points is not None:
+            raise not_there("at_crossings")
+        return self._values(values)[0]
+
+    def _values(self, values: Any) -> tuple[Any, tuple[int, ...]]:
+        if self.all_points is not None and np.shape(values)[:1] == (self._given,):
+            raise OptionError(
+                "values of the points that were given need at_crossings, which is not for meshes in device memory: pass "
+                "values of all `points`, or points of the host (backend= computes anywhere)",
+                "values",
+            )
+        return super()._values(values)
 
     @property
     def number_inside(self) -> int:
@@ -156,3 +195,10 @@ class ConstrainedMesh(Mesh):
         if self._hull:
             return self.simplices
         return self.array.words(self.mesh, "triangles_inside", (self.mesh.number_inside, 3))
+
+
+def not_there(name: str) -> OptionError:
+    return OptionError(
+        f"{name} is not for meshes with segments in device memory: pass points of the host (backend= computes anywhere)",
+        "points",
+    )

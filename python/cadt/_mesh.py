@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cadt import _cadt, _gpu, _show
-from cadt._points import as_points
 from cadt._queries import Queries
 
 if TYPE_CHECKING:
@@ -157,7 +156,7 @@ class Mesh(Queries):
 
     @property
     def _host_points(self) -> np.ndarray:
-        return self._points if self._gpu is None else as_points(self._gpu.array.to_host())
+        return self._points if self._gpu is None else self._gpu.points_on_host()
 
     def _cached(self, name: str, of_host: Callable, of_gpu: Callable | None = None) -> Any:
         """An array of the host's mesh, of the kind of array that the points are."""

@@ -73,12 +73,20 @@ void bind_device(nb::module_& m) {
       .def_prop_ro("regions_handle", [](const DeviceMesh& d) { return number_of(d.mesh().regions()); })
       .def_prop_ro("triangles_inside_handle",
                    [](const DeviceMesh& d) { return number_of(d.mesh().triangles_inside()); })
+      .def_prop_ro("number_added", [](const DeviceMesh& d) { return d.mesh().number_added(); })
+      .def_prop_ro("rounded_valid", [](const DeviceMesh& d) { return d.mesh().rounded_valid(); })
+      .def_prop_ro("all_points_handle", [](const DeviceMesh& d) { return number_of(d.mesh().all_points()); })
+      .def_prop_ro("added_parents_handle", [](const DeviceMesh& d) { return number_of(d.mesh().added_parents()); })
       .def("download", [](const DeviceMesh& d) {
         return d.shared().run(nb::none(), [&](cadt::Triangulator&) { return d.mesh().download(); });
       });
-  m.def("cuda_words", [](const Mesh& mesh, std::uintptr_t handle, const std::vector<std::size_t>& shape) {
-    return cuda_array(mesh, reinterpret_cast<void*>(handle), shape, nb::dtype<std::int32_t>());
-  });
+  m.def(
+      "cuda_array",
+      [](const Mesh& mesh, std::uintptr_t handle, const std::vector<std::size_t>& shape, bool float64) {
+        const nb::dlpack::dtype type = float64 ? nb::dtype<double>() : nb::dtype<std::int32_t>();
+        return cuda_array(mesh, reinterpret_cast<void*>(handle), shape, type);
+      },
+      nb::arg("mesh"), nb::arg("handle"), nb::arg("shape"), nb::arg("float64"));
 
   nb::class_<DeviceMemory>(m, "DeviceMemory")
       .def(nb::init<Shared, std::vector<std::size_t>, bool>(), nb::arg("triangulator"), nb::arg("shape"),

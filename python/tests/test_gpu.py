@@ -8,6 +8,7 @@ import pickle
 import cadt
 import numpy as np
 import pytest
+from crossed_segments import chords, compare, compare_without_crossings, sets as crossed_sets
 
 MODULES = ["cupy", "torch", "jax"]
 
@@ -151,10 +152,62 @@ def test_segments_that_are_refused(library):
             cadt.ConstrainedDelaunay(put(xy), put(np.array(wrong)))
         assert refused.value.index == 1
     with pytest.raises(cadt.OptionError):
-        cadt.ConstrainedDelaunay(put(xy), [[0, 1]], crossing="exact")
+        cadt.ConstrainedDelaunay(put(xy), [[0, 1]], crossing=("grid", 1.0))
     empty = cadt.ConstrainedDelaunay(put(xy), domain="outer")
     for member in ("edge_flags", "region"):
         assert not library.get(getattr(empty, member)).any()
+
+
+@pytest.mark.parametrize("name", list(crossed_sets()))
+def test_crossings_equal_host(library, name):
+    xy, segments = crossed_sets()[name]
+    mesh = compare(xy, segments, library.put, library.get)
+    assert mesh.rounded_valid == (name != "almost one place")
+
+
+def test_crossings_that_are_none(library):
+    compare_without_crossings(library.put, library.get)
+
+
+def test_crossings_stay_on_the_device(library, monkeypatch):
+    n = 200_000
+    xy, segments = chords(n, 200)
+    mesh = cadt.ConstrainedDelaunay(library.put(xy), library.put(segments), crossing="exact")
+    added = len(mesh.added_parents)
+    moved = mesh.statistics["bytes_to_device"] + mesh.statistics["bytes_from_device"]
+    assert added > 100 and moved < 8 * n, "no array"
+    monkeypatch.setattr(type(mesh._gpu.array), "host_of", None)
+    library.check(mesh.points)
+    library.check(mesh.added_points)
+    library.check(mesh.added_parents)
+    library.check(mesh.interpolate(library.put(np.ones(n + added)), mesh.added_points))
+
+
+def test_crossings_outlive_the_mesh(library):
+    xy, segments = chords(4_000, 400)
+    mesh = cadt.ConstrainedDelaunay(library.put(xy), library.put(segments), crossing="exact")
+    arrays = mesh.points, mesh.added_points, mesh.added_parents
+    del mesh
+    for seed in range(5):  # memory that was returned would be used again
+        cadt.ConstrainedDelaunay(library.put(np.random.default_rng(seed).random((4_000, 2))), segments, crossing="exact")
+    host = cadt.ConstrainedDelaunay(xy, segments, crossing="exact", backend="host")
+    for got, wanted in zip(arrays, (host.points, host.added_points, host.added_parents)):
+        np.testing.assert_array_equal(library.get(got), wanted)
+
+
+def test_crossings_in_jax_without_doubles():
+    library = Library("jax")
+    xy, segments = crossed_sets()["float32"]
+    host = cadt.ConstrainedDelaunay(xy, segments, crossing="exact", backend="host")
+    q = np.random.default_rng(24).random((500, 2))
+    with x64(library.xp, False):
+        mesh = cadt.ConstrainedDelaunay(library.put(xy), segments, crossing="exact")
+        for member in ("points", "added_points"):
+            got = getattr(mesh, member)
+            assert got.dtype == np.float32
+            np.testing.assert_array_equal(library.get(got), getattr(host, member).astype(np.float32))
+        np.testing.assert_array_equal(library.get(mesh.find_simplex(q)), host.find_simplex(q))
+        assert mesh.verify() and mesh.hash == host.hash
 
 
 @pytest.mark.parametrize("dtype", ["float64", "float32"])

@@ -9,6 +9,7 @@ import pickle
 import cadt
 import numpy as np
 import pytest
+from crossed_segments import chords, compare, compare_without_crossings, sets as crossed_sets
 
 cl = pytest.importorskip("pyopencl")
 cl_array = pytest.importorskip("pyopencl.array")
@@ -128,6 +129,7 @@ def breaklines(n=3_000):
     return xy, np.concatenate([np.stack([p[:-1], p[1:]], axis=1) for p in parts])
 
 
+CROSS = np.array([[0.0, 0], [2, 2], [0, 2], [2, 0]])
 RINGS = np.array([[0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [1, 2], [0.5, 0.25]])
 
 
@@ -172,7 +174,7 @@ def test_segments_that_are_refused(queue):
     def put(a):
         return cl_array.to_device(queue, np.asarray(a))
 
-    xy = np.array([[0.0, 0], [2, 2], [0, 2], [2, 0]])
+    xy = CROSS
     there = put(xy)
     with pytest.raises(cadt.CrossingError) as caught:
         cadt.ConstrainedDelaunay(there, put([[0, 1], [2, 3]]))
@@ -190,15 +192,71 @@ def test_segments_that_are_refused(queue):
     for wrong in (put([[0.0, 1.0]]), put([0, 1]), put([[0, 1, 2]])):
         with pytest.raises(cadt.InputError):
             cadt.ConstrainedDelaunay(there, wrong)
-    for how in ({"crossing": "exact"}, {"crossing": ("grid", 1.0)}, {"domain": "seeds"}):
+    for how in ({"crossing": ("grid", 1.0)}, {"domain": "seeds"}):
         with pytest.raises(cadt.OptionError):
             cadt.ConstrainedDelaunay(there, [[0, 1]], **how)
     mesh = cadt.ConstrainedDelaunay(there, [[0, 1]])
-    for name in ("chains", "constrained_edges", "edge_sources", "inside", "region", "region_value", "added_points"):
+    for name in ("chains", "constrained_edges", "edge_sources", "inside", "region", "region_value"):
         with pytest.raises(cadt.OptionError):
             getattr(mesh, name)
     with pytest.raises(cadt.OptionError):
         mesh.voronoi()
+
+
+def put_and_get(queue):
+    def get(a):
+        assert isinstance(a, cl_array.Array) and a.queue == queue
+        return a.get()
+
+    return (lambda a: cl_array.to_device(queue, np.asarray(a))), get
+
+
+@pytest.mark.parametrize("name", list(crossed_sets()))
+def test_crossings_equal_host(queue, name, tmp_path):
+    xy, segments = crossed_sets()[name]
+    mesh = compare(xy, segments, *put_and_get(queue))
+    assert mesh.rounded_valid == (name != "almost one place")
+    mesh.save(tmp_path / "mesh.npz")
+    np.testing.assert_array_equal(np.load(tmp_path / "mesh.npz")["points"], mesh.points.get())
+
+
+def test_crossings_that_are_none(queue):
+    compare_without_crossings(*put_and_get(queue))
+
+
+def test_crossings_stay_on_the_device(queue, monkeypatch):
+    xy, segments = chords(4_000, 60)
+    given = cl_array.to_device(queue, xy)
+    mesh = cadt.ConstrainedDelaunay(given, segments, crossing="exact")
+    moved = mesh.statistics["bytes_to_device"] + mesh.statistics["bytes_from_device"]
+    assert moved < 8 * len(xy), "words that steer the call, and no array"
+    monkeypatch.setattr(type(mesh._gpu.array), "host_of", None)  # type: ignore[union-attr]
+    added = mesh.added_points
+    assert len(added) == len(mesh.added_parents) > 100
+    assert mesh.points.base_data.int_ptr == added.base_data.int_ptr == mesh._gpu.mesh.all_points_handle
+    assert len(mesh.interpolate(cl_array.to_device(queue, np.ones(mesh.n_points)), added)) == len(added)
+
+
+def test_crossings_outlive_the_mesh(queue):
+    xy, segments = chords(2_000, 100)
+    mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, xy), segments, crossing="exact")
+    arrays = mesh.points[:], mesh.added_points, mesh.added_parents[:]  # parts keep the mesh as well
+    del mesh
+    for seed in range(3):
+        other = cl_array.to_device(queue, np.random.default_rng(seed).random((2_000, 2)))
+        cadt.ConstrainedDelaunay(other, segments, crossing="exact")
+    host = cadt.ConstrainedDelaunay(xy, segments, crossing="exact", backend="host")
+    for got, wanted in zip(arrays, (host.points, host.added_points, host.added_parents)):
+        np.testing.assert_array_equal(got.get(), wanted)
+
+
+@pytest.mark.parametrize("member", ["points", "added_points", "added_parents", "edge_flags"])
+def test_a_mesh_that_is_not_the_hosts_is_noticed(queue, member):
+    mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, CROSS), [[0, 1], [2, 3]], crossing="exact")
+    assert mesh.verify()
+    getattr(mesh, member)[-1] = 3
+    with pytest.raises(cadt.InternalError):
+        mesh.verify()
 
 
 def test_few_points_and_no_segments(queue):

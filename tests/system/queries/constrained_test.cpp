@@ -166,22 +166,29 @@ TEST_P(ConstrainedQueries, CrossingsHaveValuesOfTheirOwn) {
   EXPECT_GE(moved.locate(Points{0.05, 0.01}).front(), 0);
 }
 
-/// Crossings so close to each other that doubles cannot hold their order.
-TEST_P(ConstrainedQueries, TrianglesThatAreTurnedOverAreRefused) {
-  ConstraintOptions how;
-  how.crossing = Crossing::exact;
-  std::size_t invalid = 0;
-  for (std::uint64_t seed = 1; seed <= 40 && invalid == 0; ++seed) {
+/// Segments almost on one line each, whose crossings are so close to each other that doubles cannot hold their order.
+struct Bundle {
+  Points xy;
+  std::vector<Segment> segments;
+
+  explicit Bundle(std::uint64_t seed) {
     Random random(seed);
-    Points xy;
-    std::vector<Segment> segments;
-    for (std::int32_t i = 0; i < 12; ++i) {  // almost one line each
+    for (std::int32_t i = 0; i < 12; ++i) {
       for (const double side : {-1.0, 1.0}) {
         const double x = 1 + random.uniform();
         xy.insert(xy.end(), {side * x, 1 + std::ldexp(static_cast<double>(random.below(8)), -52)});
       }
       segments.push_back({2 * i, 2 * i + 1});
     }
+  }
+};
+
+TEST_P(ConstrainedQueries, TrianglesThatAreTurnedOverAreRefused) {
+  ConstraintOptions how;
+  how.crossing = Crossing::exact;
+  std::size_t invalid = 0;
+  for (std::uint64_t seed = 1; seed <= 40 && invalid == 0; ++seed) {
+    const auto [xy, segments] = Bundle(seed);
     const auto mesh = triangulate_constrained(xy, segments, how, options());
     if (mesh.rounded_valid()) continue;
     ++invalid;
@@ -215,6 +222,39 @@ TEST_P(ConstrainedOnDevice, IsAskedThere) {
   EXPECT_NEAR(found[1], 0.001, 1e-12);
   EXPECT_THROW((void)queries.interpolate(z, upload(where), results, Interpolation::nearest), NotDelaunay);
   EXPECT_THROW((void)queries.voronoi(DeviceVoronoi{}), NotDelaunay);
+}
+
+TEST_P(ConstrainedOnDevice, CrossingsAreVertices) {
+  ConstraintOptions how;
+  how.crossing = Crossing::exact;
+  Triangulator triangulator(options());
+  const auto make = [&](const DevicePoints& points, const std::vector<Segment>& segments) {
+    const std::span<const std::int32_t> words(segments.front().data(), 2 * segments.size());
+    return triangulator.triangulate_constrained(points, {memory->upload(words), words.size()}, how);
+  };
+  const Points xy = {0, 0, 2, 2, 0, 2, 2, 0}, where = {1, 0.5};
+  const DevicePoints points = upload(xy);
+  const DeviceTriangulation mesh = make(points, {{0, 1}, {2, 3}});
+  EXPECT_THROW(MeshQueries(triangulator, points, mesh), InputError);
+  MeshQueries queries(triangulator, {.x = mesh.all_points(), .size = mesh.number_of_points()}, mesh);
+  const std::vector<double> heights = {0, 0, 0, 0, 1}, none(1);
+  const DeviceArray z{memory->upload(std::span<const double>(heights)), 5};
+  const DeviceArray results{memory->upload(std::span<const double>(none)), 1};
+  (void)queries.interpolate(z, upload(where), results);
+  EXPECT_DOUBLE_EQ(memory->download<double>(results.memory, 1).front(), 0.5);
+
+  std::size_t invalid = 0;
+  for (std::uint64_t seed = 1; seed <= 40 && invalid == 0; ++seed) {
+    const Bundle bundle(seed);
+    const DeviceTriangulation turned = make(upload(bundle.xy), bundle.segments);
+    if (turned.rounded_valid()) continue;
+    ++invalid;
+    const DevicePoints all{.x = turned.all_points(), .size = turned.number_of_points()};
+    const auto error = thrown<InvalidMesh>([&] { MeshQueries(triangulator, all, turned); });
+    ASSERT_NE(error, nullptr);
+    EXPECT_EQ(error->check(), "orientation");
+  }
+  EXPECT_GT(invalid, 0U);
 }
 
 CADT_ON_MAIN_BACKENDS(ConstrainedOnDevice);

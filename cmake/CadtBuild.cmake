@@ -60,14 +60,6 @@ endfunction()
 # compiler cache, which cannot look into it.
 function(cadt_shorten_build)
   get_target_property(sources cadt SOURCES)
-  # What the address and undefined-behaviour sanitizers add to a driver takes the optimiser three times as long as all else
-  # of the compiler (GCC 12: 168 instead of 64 s of a processor for common/constraints). The kernels are where time is spent.
-  if(CADT_SANITIZE MATCHES "address" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    target_compile_options(cadt PRIVATE -O0)
-    set(kernels ${sources})
-    list(FILTER kernels INCLUDE REGEX "backends/host/kernels_")
-    set_property(SOURCE ${kernels} TARGET_DIRECTORY cadt APPEND PROPERTY COMPILE_OPTIONS -O1)
-  endif()
   # Short files behind the same long headers: one unit for the compiler, which takes a third or half of the time.
   set_target_properties(cadt PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   set(groups "backends/opencl" "backends/cuda")

@@ -33,6 +33,7 @@ def test_matplotlib(tmp_path: Path) -> None:
     run("matplotlib_suite", tmp_path)
 
 
+@pytest.mark.thorough
 def test_a_suite_that_does_not_use_cadt_fails(tmp_path: Path) -> None:
     """What a runner must notice: that it tested SciPy's own classes."""
     script = "import scipy_suite as s; s.REPLACED = {}; raise SystemExit(s.main(['--quick', '-k', 'TestGriddata and linear']))"

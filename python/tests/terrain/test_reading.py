@@ -221,6 +221,7 @@ def test_tables(tmp_path):
         terrain.read_cloud([str(tmp_path / "b.xyz")])
 
 
+@pytest.mark.thorough
 def test_reading_holds_what_is_kept_and_one_piece(las):
     """3 million points, a tenth of them ground: 24 bytes a kept point, and the piece that is decoded."""
     n = 3_000_000

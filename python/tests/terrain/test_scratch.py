@@ -79,7 +79,7 @@ def test_the_raster_is_that_of_one_mesh(tmp_path, name, max_edge):
 
 
 @pytest.mark.parametrize("tile_points", [3, 50, 700])
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.thorough) for k in (1, 2, 3))])
 def test_centres_on_vertices_and_edges(tmp_path, tile_points, seed):
     """Integer points with gaps, and centres at integers and halves: most lie on vertices or edges, many between tiles, and
     edges of length 2 and more are left out beside others that are kept."""
@@ -258,6 +258,7 @@ def run_limited(folder: pathlib.Path, before: str, words: list[str], **how) -> s
     )  # fmt: skip
 
 
+@pytest.mark.thorough
 def test_memory_is_that_of_a_tile(las, tmp_path):
     """288 MB of points in 250 MB."""
     las("a.las", hills(3_000_000, size=1000.0))
@@ -274,7 +275,7 @@ def test_memory_is_that_of_a_tile(las, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.las", "o.tif"]
 
 
-@pytest.mark.parametrize("phase", ["points", "leaves", "cells"])
+@pytest.mark.parametrize("phase", ["points", pytest.param("leaves", marks=pytest.mark.thorough), "cells"])
 def test_interruption_removes_the_folder(las, tmp_path, phase):
     las("a.las", hills(1_200_000, size=1000.0))
     process = subprocess.Popen(

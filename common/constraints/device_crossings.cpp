@@ -99,15 +99,16 @@ class CrossingFinder {
     if (found[CADT_PAIRS_BROKEN] != 0) give_up("the mesh is wrong at ", found[CADT_PAIRS_BROKEN], " segments");
     const std::uint64_t listed = wide_word(found, CADT_PAIRS_LISTED_LOW),
                         tests = wide_word(found, CADT_PAIRS_TESTS_LOW);
-    if (listed > most_listed * (in_.vertices + in_.count) || tests > most_tests * (listed + few) || tests >> 30 != 0)
+    if (listed > most_listed * (in_.vertices + in_.count) || tests > most_tests * (listed + few) ||
+        std::max(listed, tests) >= most_of_all)
       return false;
     listed_ = static_cast<std::size_t>(listed);
     tests_ = static_cast<std::size_t>(tests);
     launch_.scan(divided_.begins, in_.count + 1);
     launch_.scan(lists.ends, all);
-    const std::size_t pieces = launch_.read_word(divided_.begins, in_.count);
-    divided_.ends = words_for(2 * pieces);
-    divided_.segments = words_for(pieces);
+    pieces_ = launch_.read_word(divided_.begins, in_.count);
+    divided_.ends = words_for(2 * pieces_);
+    divided_.segments = words_for(pieces_);
     lists.pieces = words_for(listed_);
     lists.triangles = words_for(listed_);
     run();
@@ -164,6 +165,7 @@ class CrossingFinder {
   }
 
   bool write_chains(const Allocation& places) {
+    if (pieces_ + in_.count + 2 * found_.count >= most_of_all) return false;
     const LaunchGrid each = launch_.grid(in_.count);
     Allocation offsets = words_for(in_.count + 1);
     launch_.run<KernelId::cadt_count_chains>(divided_.begins, partners_.counts, each, offsets);
@@ -183,6 +185,8 @@ class CrossingFinder {
   /// Places of pieces in triangles for each vertex and segment, pairs in the same triangle for each of those places,
   /// and what is always little enough.
   static constexpr std::uint64_t most_listed = 16, most_tests = 16, few = 1 << 16;
+  /// Of what is numbered by words, two of them each.
+  static constexpr std::uint64_t most_of_all = std::uint64_t{1} << 30;
 
   Context& ctx_;
   Launcher& launch_ = ctx_.launcher;
@@ -190,7 +194,7 @@ class CrossingFinder {
   Allocation words_ = launch_.zeros(CADT_PAIRS_WORDS);
   Divided divided_;
   Partners partners_;
-  std::size_t listed_ = 0, tests_ = 0;
+  std::size_t pieces_ = 0, listed_ = 0, tests_ = 0;
   FoundCrossings found_;
 };
 

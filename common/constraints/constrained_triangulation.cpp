@@ -137,6 +137,7 @@ ConstrainedTriangulation constrain_on(const State& state, PointsView points, std
     constrain_exactly(state, points, segments, std::move(job.crossings), *data);
   }
   add_domains(state, points, constraints, *data);
+  if (state->options.stop.stop_requested()) throw Cancelled();
   return ConstrainedTriangulation(std::move(data));
 }
 

@@ -113,10 +113,12 @@ bool constrain_rounded(const State& state, PointsView points, std::span<const Se
   RoundedCall call(device, n, found);
   SegmentResults results;
   Triangulation mesh = triangulate_with_segments(state, call.places, call.job, results);
+  constraints::check(state->options.stop);
   if (!call.fits(mesh.duplicates().empty() ? -1 : mesh.duplicates().back().point)) return false;
   std::vector<Segment> pairs = read_pairs(device, found);
   const ExactPlaces exact{points, segments, pairs, mesh.triangles(), mesh.neighbors()};
   if (!exact.are_right(*call.job.suspects, state->options.threads)) return false;
+  constraints::check(state->options.stop);
 
   data.mesh = std::move(mesh);
   data.edge_flags = std::move(results.edge_flags);
@@ -125,6 +127,7 @@ bool constrain_rounded(const State& state, PointsView points, std::span<const Se
   const auto offsets = device.read_values(*found.chain_offsets, segments.size() + 1);
   take_chains(data, {offsets.begin(), offsets.end()},
               device.read_values<std::int32_t>(*found.chains, found.chain_length));
+  constraints::check(state->options.stop);
   return true;
 }
 
@@ -210,6 +213,7 @@ void refuse_crossings(const State& state, PointsView points, std::span<const Seg
       found ? read_pairs(*state->device, *found)
             : constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, options.stop),
                                           options.stop);
+  constraints::check(options.stop);
   if (pairs.empty()) throw InternalError("segments were found to cross, but no pair of them does");
   std::string message =
       std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair of segments crosses: " : " pairs of segments cross: ");
@@ -217,6 +221,7 @@ void refuse_crossings(const State& state, PointsView points, std::span<const Seg
   for (std::size_t i = 0; i < shown; ++i)
     message += (i == 0 ? "" : ", ") + std::to_string(pairs[i][0]) + " and " + std::to_string(pairs[i][1]);
   if (shown < pairs.size()) message += ", ...";
+  constraints::check(options.stop);
   throw CrossingError(message + "; repair them, or take Crossing::exact or Crossing::grid", std::move(pairs));
 }
 

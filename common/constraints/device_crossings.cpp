@@ -49,7 +49,9 @@ class CrossingFinder {
   [[nodiscard]] bool find_pairs() {
     Listed lists;
     if (!divide(lists)) return false;
+    check();
     list_partners(test(lists));
+    check();
     lists = {};
     const LaunchGrid each = launch_.grid(in_.count);
     found_.pairs = words_for(2 * found_.count);
@@ -69,6 +71,7 @@ class CrossingFinder {
                                                 unsure, words_);
     if (const std::size_t count = launch_.read_word(words_, CADT_PAIRS_UNSURE); count != 0)
       place_exactly(ctx_.device.read_values(*unsure, count), places);
+    check();
     if (!write_chains(places)) return;
     found_.places = std::move(places);
   }
@@ -77,6 +80,8 @@ class CrossingFinder {
 
  private:
   [[nodiscard]] MeshArguments mesh() const { return {in_}; }
+  /// Whether the caller stops the call: pieces have reported their progress.
+  void check() { ctx_.check("constrain", 1); }
   [[nodiscard]] Allocation words_for(std::size_t count) {
     return ctx_.memory.allocate(std::max<std::size_t>(count, 1) * word);
   }

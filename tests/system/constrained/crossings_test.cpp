@@ -25,6 +25,9 @@ class Crossings : public BackendTest {
  protected:
   [[nodiscard]] static bool has_doubles() { return Triangulator(GetParam().options()).device().fp64; }
 
+  /// Sets are taken one of so many: launches take long on OpenCL devices that are processors.
+  [[nodiscard]] static std::size_t every() { return GetParam().backend == Backend::opencl ? 7 : 1; }
+
   /// Whether the mesh was made with rounded crossings, and certified.
   bool check(const SegmentSet& set) const {
     SCOPED_TRACE(set.name);
@@ -105,19 +108,22 @@ class Crossings : public BackendTest {
 };
 
 TEST_P(Crossings, PairsOfSmallSets) {
-  for (const SegmentSet& set : small_segment_sets()) expect_pairs(set);
+  const std::vector<SegmentSet> sets = small_segment_sets();
+  for (std::size_t i = 0; i < sets.size(); i += every()) expect_pairs(sets[i]);
 }
 
 TEST_P(Crossings, ExactMeshesOfSmallSets) {
   int certified = 0, others = 0;
-  for (const SegmentSet& set : small_segment_sets()) check(set) ? ++certified : ++others;
+  const std::vector<SegmentSet> sets = small_segment_sets();
+  for (std::size_t i = 0; i < sets.size(); i += every()) check(sets[i]) ? ++certified : ++others;
   // Several segments through one place, and places that rounding moves to one, are left to the host.
-  EXPECT_GT(others, 20);
-  EXPECT_GT(certified, has_doubles() ? 20 : -1);
+  const int few = 20 / static_cast<int>(every());
+  EXPECT_GT(others, few);
+  EXPECT_GT(certified, has_doubles() ? few : -1);
 }
 
 TEST_P(Crossings, RandomSegments) {
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 12; seed += every()) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const SegmentSet set = random_segments(seed, 40 * seed, 0.4);
     expect_pairs(set);
@@ -145,7 +151,7 @@ TEST_P(Crossings, CoordinatesThatOnlyWholeNumbersFind) {
 
 /// Flat segments above an edge of the hull, whose crossing is so near to it that it may be rounded to the outside.
 TEST_P(Crossings, AtTheHull) {
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 60; seed += every()) {
     SegmentSet set{"seed " + std::to_string(seed), {}, {}};
     Random random(seed);
     const double x = random.uniform(1, 3), y = random.uniform(0.1, 1), up = random.uniform(1, 4);

@@ -137,6 +137,17 @@ cadt_status cadt_device_triangulation_constraints(const cadt_device_triangulatio
   });
 }
 
+cadt_status cadt_device_triangulation_crossings(const cadt_device_triangulation* mesh, void** all_points,
+                                                void** added_parents, size_t* count) {
+  return guarded([&] {
+    const cadt::DeviceTriangulation& m = required(mesh, "mesh").mesh;
+    auto &points = required(all_points, "all_points"), &parents = required(added_parents, "added_parents");
+    required(count, "count") = m.number_added();
+    points = m.all_points();
+    parents = m.added_parents();
+  });
+}
+
 cadt_status cadt_constrained_mesh(const cadt_constrained* mesh, cadt_triangulation** triangles) {
   return guarded([&] {
     auto& result = required(triangles, "triangles");

@@ -188,7 +188,9 @@ static void test_on_device(cadt_triangulator* triangulator) {
   cadt_device_array segments = {0};
   cadt_constraint_options how = {0};
   cadt_device_triangulation* mesh = NULL;
-  void *flags = NULL, *regions = NULL, *inside = NULL;
+  void *flags = NULL, *regions = NULL, *inside = NULL, *all = NULL, *parents = NULL;
+  const double cross[] = {0, 0, 2, 2, 0, 2, 2, 0};
+  const int32_t diagonals[] = {0, 1, 2, 3};
   size_t count = 0, triangles = 0, t, bits = 0;
 
   points.x = square;
@@ -210,10 +212,25 @@ static void test_on_device(cadt_triangulator* triangulator) {
   cadt_device_triangulation_free(mesh);
   mesh = NULL;
   CHECK_NULL(cadt_triangulator_triangulate_constrained_device(triangulator, &points, NULL, &how, &mesh), "segments");
-  how.crossing = CADT_CROSSING_EXACT;
+  how.crossing = CADT_CROSSING_GRID;
+  how.grid = 1;
   CHECK_STATUS(CADT_OPTION_ERROR,
                cadt_triangulator_triangulate_constrained_device(triangulator, &points, &segments, &how, &mesh));
   CHECK(mesh == NULL);
+
+  how.crossing = CADT_CROSSING_EXACT;
+  how.domain = CADT_DOMAIN_HULL;
+  points.x = cross;
+  points.count = 4;
+  segments.memory = (void*)diagonals;
+  segments.size = 4;
+  CHECK_OK(cadt_triangulator_triangulate_constrained_device(triangulator, &points, &segments, &how, &mesh));
+  CHECK_OK(cadt_device_triangulation_crossings(mesh, &all, &parents, &count));
+  CHECK(count == 1 && ((const double*)all)[8] == 1 && ((const double*)all)[9] == 1);
+  CHECK(((const int32_t*)parents)[0] == 0 && ((const int32_t*)parents)[1] == 1);
+  CHECK_NULL(cadt_device_triangulation_crossings(mesh, NULL, &parents, &count), "all_points");
+  CHECK_NULL(cadt_device_triangulation_crossings(NULL, &all, &parents, &count), "mesh");
+  cadt_device_triangulation_free(mesh);
 }
 
 void test_constrained(void) {

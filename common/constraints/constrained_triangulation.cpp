@@ -10,6 +10,7 @@
 #include "common/constraints/crossed_segments.hpp"
 #include "common/constraints/domains.hpp"
 #include "common/constraints/snap_rounding.hpp"
+#include "common/constraints/tasks.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/thread_state.hpp"
@@ -137,7 +138,7 @@ ConstrainedTriangulation constrain_on(const State& state, PointsView points, std
     constrain_exactly(state, points, segments, std::move(job.crossings), *data);
   }
   add_domains(state, points, constraints, *data);
-  if (state->options.stop.stop_requested()) throw Cancelled();
+  constraints::check(state->options.stop);
   return ConstrainedTriangulation(std::move(data));
 }
 

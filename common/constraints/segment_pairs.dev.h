@@ -24,7 +24,7 @@ enum {
   CADT_PAIRS_LISTED_LOW,  /* places of pieces in triangles, */
   CADT_PAIRS_LISTED_HIGH, /* in two words */
   CADT_PAIRS_BROKEN,      /* segments at which the mesh was found to be wrong */
-  CADT_PAIRS_TIED,     /* segments with the same rounded place at two vertices of their chains (exact_chains.dev.h) */
+  CADT_PAIRS_TIED,     /* segments with the same rounded place at two vertices of their chains (exact_places.dev.h) */
   CADT_PAIRS_UNSURE,   /* crossings whose rounded coordinates are not known */
   CADT_PAIRS_SUSPECTS, /* triangles and edges that are not certainly right */
   CADT_PAIRS_WORDS

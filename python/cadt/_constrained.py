@@ -75,8 +75,8 @@ class ConstrainedDelaunay(Mesh):
     `OptionError`: pass points of the host for it; ``backend="cuda"`` computes them on the GPU as well.
 
     Interpolation and rasters take values of the points that were given (`at_crossings` says what crossings get) or of all
-    `points`; on a GPU, of all `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a Delaunay mesh: unless all
-    segments happen to be Delaunay edges they raise `NotDelaunay`; ask ``Delaunay(mesh.points)``.
+    `points`; on a GPU, of all `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a
+    Delaunay mesh: unless all segments happen to be Delaunay edges they raise `NotDelaunay`; ask ``Delaunay(mesh.points)``.
 
     Examples
     --------

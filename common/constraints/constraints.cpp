@@ -42,8 +42,15 @@ class Constrainer {
       launch_.run<KernelId::cadt_vertices_of_duplicates>(duplicates.points, duplicates.representatives,
                                                          launch_.grid(duplicates.count), vertex_of_);
     ends_ = ctx_.memory.allocate(std::max<std::size_t>(2 * job_.count, 1) * word);
+    // In the order of patches what is read of the mesh is soon read again.
+    const auto width = static_cast<unsigned>(std::bit_width(distinct));
+    const unsigned bits = width > unsigned{CADT_PATCH_BITS} ? width - unsigned{CADT_PATCH_BITS} : 0;
+    const bool sorted = bits != 0 && job_.count > distinct / 64;
+    Allocation patches, spare, spare_order;
+    if (sorted) make(job_.count, {&patches, &spare, &order_, &spare_order});
     launch_.run<KernelId::cadt_vertices_of_segments>(job_.segments, launch_.grid(job_.count), vertex_of_, points, ends_,
-                                                     words_);
+                                                     patches, words_);
+    if (sorted) launch_.sort(patches, order_, spare, spare_order, job_.count, bits, true);
     if (const std::uint32_t bad = launch_.read_word(words_, CADT_SEGMENTS_BAD_INDEX); bad != CADT_NONE)
       throw InputError(
           "segment " + std::to_string(bad) + " has an end that is none of the " + std::to_string(points) + " points",
@@ -104,29 +111,37 @@ class Constrainer {
   /// Flags are those of the segments and no others; chains if they are wanted.
   void trace() {
     ctx_.device.fill(*mesh_.edge_flags, 0, mesh_.all * word, 0);
-    Allocation offsets = ctx_.memory.allocate((job_.count + 1) * word);
+    Allocation offsets;
+    if (job_.wants_chains) {
+      make(job_.count + 1, {&offsets});
+      ctx_.device.fill(*offsets, job_.count * word, word, 0);
+    }
     const Allocation none;
-    const LaunchGrid grid = launch_.grid(job_.count);
-    const auto run = [&](const Allocation& begins) {
-      launch_.run<KernelId::cadt_trace_segments>(segment_mesh(), ends_, grid, offsets, begins, mesh_.input_ids,
-                                                 job_.chains, words_);
+    const auto run = [&](const Allocation& which, std::size_t count, const Allocation& begins) {
+      launch_.run<KernelId::cadt_trace_segments>(segment_mesh(), ends_, which, launch_.grid(count), offsets, begins,
+                                                 mesh_.input_ids, job_.chains, words_);
     };
-    if (job_.count != 0) run(none);
+    const Others others = flag_edges(offsets);
+    run(others.which, others.count, none);
     const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
     require_sound(found[CADT_SEGMENTS_BROKEN]);
     job_.divided = found[CADT_SEGMENTS_MORE_LOW] != 0 || found[CADT_SEGMENTS_MORE_HIGH] != 0;
     if (!job_.wants_chains) return;
-    if (job_.count == 0) ctx_.device.fill(*offsets, 0, word, 0);
     require_countable();
     launch_.scan(offsets, job_.count + 1);
     job_.chain_length = launch_.read_word(offsets, job_.count);
     job_.chains = ctx_.memory.allocate(std::max<std::size_t>(job_.chain_length, 1) * word);
-    if (job_.count != 0) run(offsets);
+    run(none, job_.count, offsets);
     job_.chain_offsets = std::move(offsets);
   }
 
  private:
   [[nodiscard]] MeshArguments segment_mesh() const { return {*this}; }
+  /// Segments that are not found as edges at once.
+  struct Others {
+    Allocation which;
+    std::size_t count = 0;
+  };
   /// CADT_PIECES_PARAMETERS
   struct Pieces {
     Allocation ends, entry, sizes, begins, upper, strides;
@@ -184,17 +199,28 @@ class Constrainer {
     return result;
   }
 
-  /// The pieces of segments between pairs of vertices that are no edges. `whole`: of whole segments, most of which are.
+  /// Flags segments that are edges. `counts`: see cadt_flag_segments
+  [[nodiscard]] Others flag_edges(const Allocation& counts) {
+    Others others{ctx_.memory.allocate(std::max<std::size_t>(job_.count, 1) * word)};
+    launch_.run<KernelId::cadt_flag_segments>(segment_mesh(), ends_, order_, launch_.grid(job_.count), counts,
+                                              others.which, words_);
+    others.count = take(CADT_SEGMENTS_OTHERS);
+    return others;
+  }
+
+  /// The pieces of segments between pairs of vertices that are no edges. `whole`: of the segments; all are taken.
   [[nodiscard]] Pieces find(const Allocation& pairs, std::size_t first, std::size_t count, bool whole) {
     Pieces pieces;
-    pieces.room = whole ? count / 8 + 4096 : count + 64;
+    const Allocation none;
+    const Others others = whole ? flag_edges(none) : Others{};
+    if (whole) count = others.count;
+    pieces.room = count + 64;
     const bool limited = whole || !ctx_.device.shape().contiguous;
     const std::uint32_t limit = limited ? std::uint32_t{CADT_PIECE_LONG} : CADT_NONE;
-    const Allocation none;
     for (bool again = false;; again = true) {
       make(pieces.room + 1, {&pieces.entry, &pieces.sizes, &pieces.begins, &pieces.upper, &pieces.strides});
       make(2 * pieces.room, {&pieces.ends});
-      launch_.run<KernelId::cadt_find_segments>(segment_mesh(), pairs, first,
+      launch_.run<KernelId::cadt_find_segments>(segment_mesh(), pairs, others.which, first,
                                                 whole ? launch_.grid(count) : launch_.grid_of_long(count), limit,
                                                 std::uint32_t{!whole}, pieces, again ? claims_ : none, words_);
       const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
@@ -275,19 +301,24 @@ class Constrainer {
     const Allocation others = ctx_.memory.allocate(most_others * sizeof(cadt_chain));
     launch_.run<KernelId::cadt_fill_cavities>(segment_mesh(), pieces, rings, each, wins, bases, longer, others, words_);
     if (!queues) return;
+    std::uint32_t short_chains = 0;
     for (int launch = 1;; ++launch) {
-      const std::uint32_t waiting = take(CADT_SEGMENTS_LONG_CHAINS);
+      const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
+      const std::uint32_t waiting = found[CADT_SEGMENTS_LONG_CHAINS];
+      short_chains = found[CADT_SEGMENTS_CHAINS];
       if (waiting == 0) break;
+      ctx_.device.fill(*words_, CADT_SEGMENTS_LONG_CHAINS * word, word, 0);
       std::swap(longer, chains);
       if (!longer) longer = ctx_.memory.allocate(most_long * sizeof(cadt_chain));
-      const LaunchGrid teams = launch_.grid_of_teams(waiting, CADT_CHAIN_LANES);
+      std::uint32_t lanes = CADT_CHAIN_LANES;  // fewer for many chains, as all of them run at a time
+      while (lanes > 64 && std::size_t{waiting} * lanes > ctx_.device.shape().resident) lanes /= 2;
+      const LaunchGrid teams = launch_.grid_of_teams(waiting, lanes);
       launch_.run_in_groups<KernelId::cadt_divide_chains>(
-          teams.items, CADT_CHAIN_LANES, segment_mesh(), rings, chains, teams,
+          teams.items, lanes, segment_mesh(), rings, chains, teams,
           launch < CADT_CHAIN_LAUNCHES ? std::uint32_t{CADT_CHAIN_LONG} : CADT_NONE, bases, longer, others, words_);
     }
-    if (const std::uint32_t waiting = take(CADT_SEGMENTS_CHAINS))
-      launch_.run<KernelId::cadt_fill_chains>(segment_mesh(), rings, others, launch_.grid_spread(waiting), bases,
-                                              words_);
+    launch_.run<KernelId::cadt_fill_chains>(segment_mesh(), rings, others, launch_.grid_spread(short_chains), bases,
+                                            words_);
   }
 
   void make(std::size_t words, std::initializer_list<Allocation*> arrays) {
@@ -302,8 +333,8 @@ class Constrainer {
   const KeyGrid& grid_;
   SegmentJob& job_;
   Allocation words_ = launch_.zeros(CADT_SEGMENTS_WORDS);
-  Allocation ends_, vertex_of_, vertex_triangle_, claims_;
-  std::size_t points_ = 0, vertices_ = 0, places_ = 0;  ///< places of the rings of the last launch
+  Allocation ends_, order_, vertex_of_, vertex_triangle_, claims_;  ///< order_: of segments, by where they are
+  std::size_t points_ = 0, vertices_ = 0, places_ = 0;              ///< places of the rings of the last launch
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 /* Words that are counted for all segments. */
 enum {
+  CADT_SEGMENTS_OTHERS,      /* segments that are not found as edges at once */
   CADT_SEGMENTS_PIECES,      /* that are no edges */
   CADT_SEGMENTS_LEFT,        /* of these, pieces that wait for another launch */
   CADT_SEGMENTS_STRIDES,     /* of long pieces */
@@ -58,10 +59,14 @@ CADT_KERNEL(cadt_vertices_of_duplicates, CADT_GLOBAL const cadt_u32* duplicates,
   CADT_FOR(i, count, grain) { vertex_of[duplicates[i]] = vertex_of[representatives[i]]; }
 }
 
-/* Segments between vertices instead of points; both ends CADT_NONE for a segment of no length, or a bad one. */
+/* Vertices that lie together, and so do the triangles around them: each 2^16 of them. */
+enum { CADT_PATCH_BITS = 16 };
+
+/* Segments between vertices instead of points; both ends CADT_NONE for a segment of no length, or a bad one. `patches`:
+ * null, or where the segments begin, for those of no length anything. */
 CADT_KERNEL(cadt_vertices_of_segments, CADT_GLOBAL const cadt_u32* segments, cadt_u32 count, cadt_u32 grain,
             CADT_GLOBAL const cadt_u32* vertex_of, cadt_u32 point_count, CADT_GLOBAL cadt_u32* ends,
-            CADT_GLOBAL cadt_u32* words) {
+            CADT_GLOBAL cadt_u32* patches, CADT_GLOBAL cadt_u32* words) {
   CADT_FOR(s, count, grain) {
     const cadt_u32 i = segments[2u * s], j = segments[2u * s + 1u];
     const cadt_u32 good = i < point_count && j < point_count ? 1u : 0u;
@@ -70,6 +75,25 @@ CADT_KERNEL(cadt_vertices_of_segments, CADT_GLOBAL const cadt_u32* segments, cad
     if (a == b) a = b = CADT_NONE;
     ends[2u * s] = a;
     ends[2u * s + 1u] = b;
+    if (patches) patches[s] = a >> CADT_PATCH_BITS;
+  }
+}
+
+/* Flags the segments that are found to be edges without coordinates, as most are, and lists the others. `order`: null,
+ * or in which order. `counts`: null, or how many vertices the chain of each of them has. */
+CADT_KERNEL(cadt_flag_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* ends,
+            CADT_GLOBAL const cadt_u32* order, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* counts,
+            CADT_GLOBAL cadt_u32* others, CADT_GLOBAL cadt_u32* words) {
+  CADT_SEGMENT_MESH(mesh);
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 s = order ? order[i] : i;
+    const cadt_u32 a = ends[2u * s], b = ends[2u * s + 1u];
+    const cadt_u32 half_edge = a == b ? CADT_NONE : cadt_find_edge(&mesh, a, b);
+    if (half_edge != CADT_NONE) cadt_flag_edge(&mesh, half_edge);
+    if (a != b && half_edge == CADT_NONE)
+      others[cadt_add_relaxed(words + CADT_SEGMENTS_OTHERS, 1u)] = s;
+    else if (counts)
+      counts[s] = a == b ? 0u : 2u;
   }
 }
 
@@ -111,18 +135,20 @@ CADT_FN cadt_u32 cadt_place_of_piece(CADT_GLOBAL cadt_u32* words) {
   return cadt_add_relaxed(words + CADT_SEGMENTS_PIECES, 1u);
 }
 
-/* Flags the edges of segments between the vertices of pairs from `first` on and lists their other pieces, as far as
- * there is room; counts all of them. Those of more triangles than `limit` have strides if `divides`, else they wait. */
-CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 first,
-            cadt_u32 count, cadt_u32 grain, cadt_u32 limit, cadt_u32 divides, CADT_PIECES_PARAMETERS,
-            CADT_GLOBAL cadt_u32* seen, CADT_GLOBAL cadt_u32* words) {
+/* Flags the edges of segments between the vertices of pairs, those of `which` or all from `first` on, and lists their
+ * other pieces, as far as there is room; counts all of them. Those of more triangles than `limit` have strides if
+ * `divides`, else they wait. */
+CADT_KERNEL(cadt_find_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* pairs,
+            CADT_GLOBAL const cadt_u32* which, cadt_u32 first, cadt_u32 count, cadt_u32 grain, cadt_u32 limit,
+            cadt_u32 divides, CADT_PIECES_PARAMETERS, CADT_GLOBAL cadt_u32* seen, CADT_GLOBAL cadt_u32* words) {
   CADT_SEGMENT_MESH(mesh);
   CADT_PIECES(pieces);
   CADT_DECLARE_COUNTERS(counters);
   CADT_FOR(s, count, grain) {
-    cadt_u32 a = pairs[2u * (first + s)], b = pairs[2u * (first + s) + 1u];
+    const cadt_u32 pair = which ? which[s] : first + s;
+    cadt_u32 a = pairs[2u * pair], b = pairs[2u * pair + 1u];
     while (a != b) {
-      const cadt_segment_step step = cadt_next_step(&mesh, a, b, divides ? 0u : 1u, &counters);
+      const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
       const cadt_u32 from = step.from_b ? b : a, to = step.from_b ? a : b;
       cadt_u32 reached = step.vertex;
       if (step.kind == CADT_STEP_NOWHERE) {
@@ -179,25 +205,26 @@ CADT_KERNEL(cadt_shuffle_pairs, CADT_GLOBAL const cadt_u32* pairs, cadt_u32 coun
     shuffled[2u * place + 1u] = pairs[2u * i + 1u];
   }
 }
-/* Segments in the mesh that has all of them. Flags their edges; counts[s]: how many vertices its chain has. With
- * `begins`, the scan of the counts, writes the chains as well, in input ids. \pre no flag is set */
-CADT_KERNEL(cadt_trace_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* ends, cadt_u32 count,
-            cadt_u32 grain, CADT_GLOBAL cadt_u32* counts, CADT_GLOBAL const cadt_u32* begins,
-            CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL cadt_u32* chains, CADT_GLOBAL cadt_u32* words) {
+/* The chains of segments, those of `which` or all, in the mesh that has all their edges. Without `begins` flags the
+ * edges and counts vertices, also in `counts` if it is not null; with `begins`, the scan of the counts, writes them, in
+ * input ids. */
+CADT_KERNEL(cadt_trace_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* ends,
+            CADT_GLOBAL const cadt_u32* which, cadt_u32 count, cadt_u32 grain, CADT_GLOBAL cadt_u32* counts,
+            CADT_GLOBAL const cadt_u32* begins, CADT_GLOBAL const cadt_u32* input_ids, CADT_GLOBAL cadt_u32* chains,
+            CADT_GLOBAL cadt_u32* words) {
   CADT_SEGMENT_MESH(mesh);
   CADT_DECLARE_COUNTERS(counters);
-  if (cadt_item == 0u && !begins) counts[count] = 0u;
-  CADT_FOR(s, count, grain) {
+  CADT_FOR(i, count, grain) {
+    const cadt_u32 s = which ? which[i] : i;
     cadt_u32 a = ends[2u * s], b = ends[2u * s + 1u];
     cadt_u32 length = 0u, low = begins ? begins[s] : 0u, high = begins ? begins[s + 1u] : 0u;
-    const cadt_u32 none = a == b ? 1u : 0u;
     if (begins && high - low == 2u) { /* one edge, as most segments are */
       chains[low] = input_ids ? input_ids[a] : a;
       chains[low + 1u] = input_ids ? input_ids[b] : b;
       continue;
     }
     while (a != b) {
-      const cadt_segment_step step = cadt_next_step(&mesh, a, b, 1u, &counters);
+      const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
       if (step.kind != CADT_STEP_EDGE) {
         cadt_add_relaxed(words + CADT_SEGMENTS_BROKEN, 1u);
         break;
@@ -215,7 +242,7 @@ CADT_KERNEL(cadt_trace_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL const
       ++length;
     }
     if (begins && low < high) chains[low] = input_ids ? input_ids[a] : a;
-    if (!begins) counts[s] = none ? 0u : length + 1u;
+    if (counts && !begins) counts[s] = length + 1u;
     if (!begins && length > 1u && cadt_add_relaxed(words + CADT_SEGMENTS_MORE_LOW, length - 1u) > 0u - length)
       cadt_add_relaxed(words + CADT_SEGMENTS_MORE_HIGH, 1u);
   }

@@ -80,7 +80,7 @@ CADT_KERNEL(cadt_divide_segments, CADT_SEGMENT_MESH_PARAMETERS, CADT_GLOBAL cons
     cadt_u32 low = divided.ends ? divided.begins[s] : 0u, high = divided.ends ? divided.begins[s + 1u] : 0u;
     cadt_u32 pieces = 0u;
     while (a != b) {
-      const cadt_segment_step step = cadt_next_step(&mesh, a, b, 1u, &counters);
+      const cadt_segment_step step = cadt_next_step(&mesh, a, b, &counters);
       if (step.kind == CADT_STEP_NOWHERE) {
         cadt_add_relaxed(words + CADT_PAIRS_BROKEN, 1u);
         break;

@@ -140,12 +140,8 @@ CADT_FN cadt_segment_step cadt_take_step(const cadt_segment_mesh* m, cadt_u32 fr
   return step;
 }
 
-/* The next step of the segment between vertices a and b, from one of them. `is_edge`: it is likely that they have one.
- */
-CADT_FN cadt_segment_step cadt_next_step(const cadt_segment_mesh* m, cadt_u32 a, cadt_u32 b, cadt_u32 is_edge,
-                                         cadt_counters* counters) {
-  const cadt_segment_step along = {CADT_STEP_EDGE, 0u, is_edge ? cadt_find_edge(m, a, b) : CADT_NONE, b};
-  if (along.half_edge != CADT_NONE) return along;
+/* The next step of the segment between vertices a and b, from one of them. */
+CADT_FN cadt_segment_step cadt_next_step(const cadt_segment_mesh* m, cadt_u32 a, cadt_u32 b, cadt_counters* counters) {
   const cadt_point p = cadt_load_point(m->points + a), q = cadt_load_point(m->points + b);
   cadt_turning at_a = cadt_begin_turning(m, a, p, b, q, counters), at_b = cadt_begin_turning(m, b, q, a, p, counters);
   cadt_segment_step step;

@@ -194,6 +194,7 @@
   X(cadt_vertices_of_points)     /* find_segments.dev.h */                                         \
   X(cadt_vertices_of_duplicates) /* find_segments.dev.h */                                         \
   X(cadt_vertices_of_segments)   /* find_segments.dev.h: ends of segments as vertices */           \
+  X(cadt_flag_segments)          /* find_segments.dev.h: segments that are edges */                \
   X(cadt_find_segments)          /* find_segments.dev.h: which pieces are no edges */              \
   X(cadt_shuffle_pairs)          /* find_segments.dev.h: pieces that wait, in a random order */    \
   X(cadt_trace_segments)         /* find_segments.dev.h: their chains, when all are edges */       \

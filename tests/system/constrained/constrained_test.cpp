@@ -91,6 +91,29 @@ TEST_P(Constrained, OrderAndDirectionDoNotMatter) {
   }
 }
 
+/// More vertices than a patch has (find_segments.dev.h): segments are sorted. In each quadrilateral of a lattice, whose
+/// points are moved a little, a side and a diagonal, and some of them again or of no length.
+TEST_P(Constrained, SegmentsInSeveralPatches) {
+  constexpr std::int32_t side = 265;
+  Random random(13);
+  Points xy;
+  std::vector<Segment> segments;
+  for (std::int32_t y = 0; y < side; ++y) {
+    for (std::int32_t x = 0; x < side; ++x) {
+      xy.insert(xy.end(), {x + random.uniform(-0.2, 0.2), y + random.uniform(-0.2, 0.2)});
+      const std::int32_t v = y * side + x;
+      if (x + 1 == side || y + 1 == side) continue;
+      segments.push_back({v, v + 1});
+      segments.push_back(random.below(2) != 0 ? Segment{v, v + side + 1} : Segment{v + 1, v + side});
+      if (random.below(50) == 0) segments.push_back(segments.back());
+      if (random.below(50) == 0) segments.push_back({v, v});
+    }
+  }
+  for (std::size_t i = segments.size(); i > 1; --i) std::swap(segments[i - 1], segments[random.below(i)]);
+  const ConstrainedTriangulation mesh = check(xy, segments);
+  EXPECT_GT(mesh.statistics().inserted_segments, segments.size() / 10);
+}
+
 CADT_ON_MAIN_BACKENDS(Constrained);
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points and segments: a lattice, or any doubles near one another. A mesh must pass the verifier, whose mesh is the
-// only one, and be the same for several threads and other orders; segments that cross must be those that do, pair by
-// pair, and make vertices on request. Aborts otherwise.
+// Points and segments: a lattice, or any doubles near one another. A mesh must pass the verifier, have the triangles
+// and constrained edges of CGAL, where that is installed, and be the same for several threads and other orders;
+// segments that cross must be those that do, pair by pair, and make vertices on request, as CGAL's. Aborts otherwise.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +11,8 @@
 #include <cadt/constrained.hpp>
 
 #include "tests/robustness/fuzz/fuzz.hpp"
+#include "tests/support/oracle_cdt.hpp"
+#include "tests/support/oracle_constrained.hpp"
 
 namespace {
 
@@ -61,6 +63,34 @@ void must_pass(const Input& input, const cadt::ConstrainedTriangulation& mesh,
   if (!report.ok && mesh.rounded_valid()) fail(report.summary());
 }
 
+[[maybe_unused]] std::vector<cadt::test::Triangle> triangles(const cadt::ConstrainedTriangulation& mesh) {
+  std::vector<cadt::test::Triangle> all;
+  for (std::size_t t = 0; t < mesh.mesh().number_of_triangles(); ++t) all.push_back(mesh.mesh().triangle(t));
+  cadt::test::make_canonical(all);
+  return all;
+}
+
+void must_be_cgals([[maybe_unused]] const Input& input, [[maybe_unused]] const cadt::ConstrainedTriangulation& mesh) {
+#if CADT_TEST_CGAL
+  const cadt::test::ConstrainedOracleMesh expected = cadt::test::cgal_constrained(input.xy, input.segments);
+  if (mesh.mesh().dimension() != expected.mesh.dimension) fail("CGAL's has another dimension");
+  if (triangles(mesh) != expected.mesh.triangles) fail("CGAL has other triangles");
+  if (!std::ranges::equal(mesh.constrained_edges(), expected.edges)) fail("CGAL has other constrained edges");
+#endif
+}
+
+void must_be_cgals_with_crossings([[maybe_unused]] const Input& input,
+                                  [[maybe_unused]] const cadt::ConstrainedTriangulation& mesh) {
+#if CADT_TEST_CGAL
+  const cadt::test::CrossedOracleMesh expected =
+      cadt::test::cgal_constrained_plus(input.xy, input.segments, mesh.added_parents());
+  if (expected.unknown != 0) fail("CGAL has other crossings");
+  if (!std::ranges::equal(mesh.added_points(), expected.added_xy)) fail("CGAL has crossings at other places");
+  if (triangles(mesh) != expected.triangles) fail("CGAL has other triangles with crossings");
+  if (!std::ranges::equal(mesh.constrained_edges(), expected.constrained)) fail("CGAL has other pieces of segments");
+#endif
+}
+
 void check(const Input& input, bool with_threads) {
   cadt::ConstraintOptions constraints;
   constraints.domain = cadt::Domain::layers;
@@ -73,6 +103,7 @@ void check(const Input& input, bool with_threads) {
     const auto mesh = triangulator(1).triangulate_constrained(input.xy, input.segments, constraints);
     if (!expected.empty()) fail("segments that cross are taken");
     must_pass(input, mesh, constraints);
+    must_be_cgals(input, mesh);
     Input turned = input;
     std::reverse(turned.segments.begin(), turned.segments.end());
     for (std::size_t i = 0; i < turned.segments.size(); i += 2) std::swap(turned.segments[i][0], turned.segments[i][1]);
@@ -82,7 +113,9 @@ void check(const Input& input, bool with_threads) {
   } catch (const cadt::CrossingError& error) {
     if (error.pairs() != expected) fail("other pairs cross");
     constraints.crossing = cadt::Crossing::exact;
-    must_pass(input, triangulator(1).triangulate_constrained(input.xy, input.segments, constraints), constraints);
+    const auto mesh = triangulator(1).triangulate_constrained(input.xy, input.segments, constraints);
+    must_pass(input, mesh, constraints);
+    must_be_cgals_with_crossings(input, mesh);
   }
 }
 

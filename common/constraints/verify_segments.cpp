@@ -80,8 +80,7 @@ class SegmentCheck {
       }
     }
     std::ranges::sort(flagged);
-    const auto repeated = std::ranges::unique(flagged);
-    flagged.erase(repeated.begin(), repeated.end());
+    flagged.erase(std::unique(flagged.begin(), flagged.end()), flagged.end());
     if (triangles.empty() || std::ranges::equal(flagged, expected)) return;
     const auto [a, b] = std::ranges::mismatch(flagged, expected);
     const bool more = b == expected.end() || (a != flagged.end() && *a < *b);

@@ -299,7 +299,7 @@ std::shared_ptr<void> Triangulator::allocate(std::size_t bytes) {
     std::shared_ptr<State> state;  // first member: destroyed last, after the memory
     Allocation memory;
   };
-  const auto held = std::make_shared<Held>(state_, state_->memory.allocate(bytes));
+  const auto held = std::make_shared<Held>(Held{state_, state_->memory.allocate(bytes)});
   return {held, state_->device->handle(*held->memory)};
 }
 

@@ -87,7 +87,7 @@ TEST_P(KnownSizes, ReleasedMemoryIsForgotten) {
         triangulator.release_memory();
         faults->clear();
         faults->device_bytes = 20 * xy.size();
-        const auto error = thrown<OutOfMemory>([&] { call(triangulator); });
+        const auto error = thrown<OutOfMemory>([&, &call = call] { call(triangulator); });
         ASSERT_NE(error, nullptr);
         EXPECT_GT(error->needed(), faults->device_bytes);
         EXPECT_EQ(error->available(), faults->device_bytes - faults->live_bytes());

@@ -133,7 +133,7 @@ cadt::Triangulation small_mesh(const std::vector<cadt_point>& points) {
 
 using Face = std::array<std::uint32_t, 3>;
 Face rotated(Face f) {
-  std::ranges::rotate(f, std::ranges::min_element(f));
+  std::rotate(f.begin(), std::min_element(f.begin(), f.end()), f.end());
   return f;
 }
 

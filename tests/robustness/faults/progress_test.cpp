@@ -216,7 +216,7 @@ TEST_P(ReportedProgress, SegmentsCanBeStopped) {
     triangulator.options().stop = {};
     EXPECT_EQ(triangulator.triangulate_constrained(Reals(xy), segments).hash(), expected);
   }
-  EXPECT_GE(stopped, 2);
+  EXPECT_GT(stopped, 0);
 }
 
 CADT_ON_MAIN_BACKENDS(ReportedProgress);

@@ -62,6 +62,15 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
 void* operator new[](std::size_t size, std::align_val_t alignment) {
   return give(size, static_cast<std::size_t>(alignment));
 }
+// With a sanitizer these are its own, whose memory it wants back by its own operator.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return give(size, 1);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return operator new(size, std::nothrow); }
 void operator delete(void* memory) noexcept { take_back(memory); }
 void operator delete[](void* memory) noexcept { take_back(memory); }
 void operator delete(void* memory, std::size_t) noexcept { take_back(memory); }

@@ -238,9 +238,9 @@ CADT_FN cadt_u32 cadt_triangulate_ring(CADT_GLOBAL const cadt_point* points, cad
     cadt_write_ring_triangle(&ring, low, apex, high, base, out);
     bases[waiting] = CADT_RING_BASE(low, apex);
     waiting += low + 1u < apex ? 1u : 0u;
-    const cadt_u32 right = apex + 1u < high ? 1u : 0u;
-    next = right ? CADT_RING_BASE(apex, high) : bases[waiting - 1u];
-    waiting += right - 1u;
+    bases[waiting] = CADT_RING_BASE(apex, high);
+    waiting += apex + 1u < high ? 1u : 0u;
+    next = bases[--waiting];
   }
   return ring.wide ? 0u : count - 2u;
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Loops over floats and words: CADT_LANES neighbours at a time on CPUs, by the vectors of their compilers; one at a time
- * elsewhere. What comparisons give chooses by ?: and is combined by &; cadt_mask makes words of it, all bits or none.
+ * Loops over floats and words: CADT_LANES neighbours at a time on CPUs, by the vectors of their compilers; one at a
+ * time elsewhere. What comparisons give chooses by ?: and is combined by &; cadt_mask makes words of it, all bits or
+ * none.
  */
 #ifndef CADT_PORTABLE_LANES_H
 #define CADT_PORTABLE_LANES_H

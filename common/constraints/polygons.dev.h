@@ -209,14 +209,15 @@ CADT_FN cadt_u32 cadt_sweep_polygon(cadt_sweep* s, cadt_polygon* polygon, cadt_i
 CADT_FN cadt_u32 cadt_triangulate_polygon(cadt_polygon* polygon, CADT_GLOBAL cadt_u32* memory, cadt_u32 base,
                                           CADT_GLOBAL cadt_u32* out, cadt_u32* state, cadt_u32* first,
                                           cadt_u32* second) {
+  *state = CADT_POLYGON_OK;
+  if (polygon->first_ring + 1u == polygon->end_ring) {
+    const cadt_u32 count = cadt_triangulate_ring(polygon->points + polygon->first, polygon->count, base, out);
+    if (count) return count;
+  }
   cadt_i32 shift;
   *state = cadt_check_points(polygon, &shift, first);
   *second = *first;
   if (*state != CADT_POLYGON_OK) return 0u;
-  if (polygon->first_ring + 1u == polygon->end_ring && shift == 0) {
-    const cadt_u32 count = cadt_triangulate_ring(polygon->points + polygon->first, polygon->count, base, out);
-    if (count) return count;
-  }
   cadt_sweep sweep = cadt_sweep_in(memory, polygon);
   *state = cadt_sweep_polygon(&sweep, polygon, shift, first, second);
   if (*state != CADT_POLYGON_OK) return 0u;

@@ -19,39 +19,40 @@
 #ifndef CADT_CONSTRAINTS_SMALL_RING_H
 #define CADT_CONSTRAINTS_SMALL_RING_H
 
+#include "common/portable/lanes.dev.h"
 #include "common/predicates/filtered_predicates.dev.h"
 
-enum {
-  CADT_SMALL_RING = 32, /* vertices at most: each is a bit of a word */
-  CADT_RING_LANES = 4,  /* loops go on to a multiple, for compilers that vectorise them */
-  CADT_RING_ROOM = CADT_SMALL_RING + CADT_RING_LANES
-};
+#define CADT_SMALL_RING 32u /* vertices at most: each is a bit of a word */
+#define CADT_RING_ROOM (CADT_SMALL_RING + CADT_LANES)
 #define CADT_HIGHEST_BIT(word) (63u - cadt_clz64(word))
 /* All bits if the condition, 0 or 1, holds: a branch would be mispredicted half of the time. */
 #define CADT_MASK_IF(condition) (0u - CADT_CAST(cadt_u32, condition))
 
 typedef struct {
   CADT_GLOBAL const cadt_point* points;
-  cadt_u32 count, clockwise;
+  cadt_u32 count, clockwise, wide; /* wide: an exact comparison has met coordinates for the wide arithmetic */
   float x[CADT_RING_ROOM], y[CADT_RING_ROOM]; /* from the first point on; the extent is 1; if clockwise, -x */
-  cadt_u32 bit[CADT_RING_ROOM];               /* 1 << i, or 0 behind the last vertex */
   cadt_u32 left[CADT_RING_ROOM];              /* of a vertex: the edges that have it on their left or end there */
 } cadt_small_ring;
 
-CADT_FN cadt_u32 cadt_whole_lanes(cadt_u32 count) {
-  return (count + CADT_CAST(cadt_u32, CADT_RING_LANES) - 1u) & ~(CADT_CAST(cadt_u32, CADT_RING_LANES) - 1u);
+CADT_FN cadt_u32 cadt_is_narrow(cadt_point p) {
+  return (p.x == 0.0 || cadt_fabs(p.x) >= 0x1p-127) && (p.y == 0.0 || cadt_fabs(p.y) >= 0x1p-127) ? 1u : 0u;
 }
 
-/* 1: c lies on the left of the line from a to b, seen along a counterclockwise ring; 0: on it; -1: on the right */
-CADT_FN_SLOW cadt_i32 cadt_turn_in_ring(const cadt_small_ring* r, cadt_u32 a, cadt_u32 b, cadt_u32 c) {
+/* 1: c lies on the left of the line from a to b, seen along a counterclockwise ring; 0: on it, or the ring is wide; -1:
+ * on the right */
+CADT_FN_SLOW cadt_i32 cadt_turn_in_ring(cadt_small_ring* r, cadt_u32 a, cadt_u32 b, cadt_u32 c) {
   const cadt_point p = cadt_load_point(r->points + a), q = cadt_load_point(r->points + b),
                    s = cadt_load_point(r->points + c);
+  if (!cadt_is_narrow(p) || !cadt_is_narrow(q) || !cadt_is_narrow(s)) r->wide = 1u;
+  if (r->wide) return 0;
   const cadt_i32 rounded = cadt_orientation_filter(p, q, s),
                  sign = rounded != CADT_UNSURE ? rounded : cadt_orientation_exact(p, q, s);
   return r->clockwise ? -sign : sign;
 }
 
-/* 0: the area is so small that rounding might decide its sign. \pre r has points and count */
+/* 0: the area is so small that rounding might decide its sign, or a coordinate is not finite or too large for the
+ * narrow arithmetic. \pre r has points and count */
 CADT_FN cadt_u32 cadt_measure_ring(cadt_small_ring* r) {
   const cadt_u32 n = r->count;
   const cadt_point origin = cadt_load_point(r->points);
@@ -67,19 +68,17 @@ CADT_FN cadt_u32 cadt_measure_ring(cadt_small_ring* r) {
   }
   const cadt_real extent = most_x > most_y ? most_x : most_y;
   /* Of 30 terms below 2 extent^2, each rounded three times as often as u = 2^-53, their sum 30 times: below 2^12 u. */
-  if (!(cadt_fabs(area) > 0x1p-40 * (extent * extent))) return 0u;
+  if (!(cadt_fabs(area) > 0x1p-40 * (extent * extent)) || extent < 0x1p-126) return 0u;
+  if (!(cadt_fabs(origin.x) + extent < 0x1p60) || !(cadt_fabs(origin.y) + extent < 0x1p60)) return 0u;
   r->clockwise = area < 0.0 ? 1u : 0u;
+  r->wide = 0u;
   const cadt_real unit_y = 1.0 / extent, unit_x = r->clockwise ? -unit_y : unit_y;
   for (cadt_u32 i = 0u; i < n; ++i) {
     const cadt_point p = cadt_load_point(r->points + i);
     r->x[i] = CADT_CAST(float, (p.x - origin.x) * unit_x);
     r->y[i] = CADT_CAST(float, (p.y - origin.y) * unit_y);
-    r->bit[i] = 1u << i;
   }
-  for (cadt_u32 i = n; i < n + CADT_CAST(cadt_u32, CADT_RING_LANES); ++i) {
-    r->x[i] = r->y[i] = 0.0f; /* as vertex 0 */
-    r->bit[i] = 0u;
-  }
+  for (cadt_u32 i = 0u; i < CADT_LANES; ++i) r->x[n + i] = r->y[n + i] = 0.0f; /* as vertex 0 */
   return 1u;
 }
 
@@ -89,30 +88,39 @@ CADT_FN cadt_u32 cadt_measure_ring(cadt_small_ring* r) {
  * at most 2 and has 2 u, a product of the two 4 u, and the sum of four of them, at most 8, has 16 u + 10 u. */
 #define CADT_RING_UNSURE 0x1p-19f /* 32 u */
 CADT_FN cadt_u32 cadt_find_sides(cadt_small_ring* r) {
-  const cadt_u32 n = r->count, padded = cadt_whole_lanes(n), all = 0xFFFFFFFFu >> (32u - n);
-  float edge_x[CADT_SMALL_RING], edge_y[CADT_SMALL_RING], offset[CADT_SMALL_RING];
-  for (cadt_u32 e = 0u; e < padded; ++e) {
-    const float x = r->x[e + 1u] - r->x[e], y = r->y[e + 1u] - r->y[e];
-    edge_x[e] = x;
-    edge_y[e] = y;
-    offset[e] = y * r->x[e] - x * r->y[e];
+  const cadt_u32 n = r->count, all = 0xFFFFFFFFu >> (32u - n);
+  const cadt_lanes unsure_side = cadt_all_lanes(CADT_RING_UNSURE);
+  cadt_lanes edge_x[CADT_SMALL_RING / CADT_LANES], edge_y[CADT_SMALL_RING / CADT_LANES],
+      offset[CADT_SMALL_RING / CADT_LANES];
+  cadt_u32 sides[CADT_SMALL_RING]; /* of an edge: the vertices on its left, without its ends */
+  for (cadt_u32 e = 0u, i = 0u; e < n; e += CADT_LANES, ++i) {
+    const cadt_lanes ax = cadt_load_lanes(r->x + e), ay = cadt_load_lanes(r->y + e);
+    edge_x[i] = cadt_load_lanes(r->x + e + 1u) - ax;
+    edge_y[i] = cadt_load_lanes(r->y + e + 1u) - ay;
+    offset[i] = edge_y[i] * ax - edge_x[i] * ay;
+    cadt_store_words(sides + e, cadt_all_words(0u));
   }
   cadt_u32 own = 1u | 1u << (n - 1u); /* the edges that end at v */
   for (cadt_u32 v = 0u; v < n; ++v) {
-    const float x = r->x[v], y = r->y[v];
-    cadt_u32 left = 0u, right = 0u;
-    for (cadt_u32 e = 0u; e < padded; ++e) {
-      const float side = offset[e] + edge_x[e] * y - edge_y[e] * x;
-      left |= CADT_MASK_IF(side > CADT_RING_UNSURE) & r->bit[e];
-      right |= CADT_MASK_IF(side < -CADT_RING_UNSURE) & r->bit[e];
+    const cadt_lanes x = cadt_all_lanes(r->x[v]), y = cadt_all_lanes(r->y[v]);
+    const cadt_words bit = cadt_all_words(1u << v);
+    cadt_u32 left = own, right = 0u;
+    for (cadt_u32 e = 0u, i = 0u; e < n; e += CADT_LANES, ++i) {
+      const cadt_lanes side = offset[i] + edge_x[i] * y - edge_y[i] * x;
+      const cadt_words is_left = cadt_mask(side > unsure_side);
+      left |= cadt_bits_of_lanes(is_left) << e;
+      right |= cadt_bits_of_lanes(cadt_mask(side < -unsure_side)) << e;
+      cadt_store_words(sides + e, cadt_load_words(sides + e) | (is_left & bit));
     }
-    left |= own;
     for (cadt_u32 unsure = all & ~(left | right); unsure;) {
       const cadt_u32 e = CADT_HIGHEST_BIT(unsure), next = e + 1u == n ? 0u : e + 1u;
       const cadt_i32 side = cadt_turn_in_ring(r, e, next, v);
       const cadt_point p = cadt_load_point(r->points + v), a = cadt_load_point(r->points + e),
                        b = cadt_load_point(r->points + next);
-      if (side > 0) left |= 1u << e;
+      if (side > 0) {
+        left |= 1u << e;
+        sides[e] |= 1u << v;
+      }
       if (side == 0 && !(cadt_before(p, a) && cadt_before(p, b)) && !(cadt_before(a, p) && cadt_before(b, p)))
         return 0u;
       unsure ^= 1u << e;
@@ -120,29 +128,21 @@ CADT_FN cadt_u32 cadt_find_sides(cadt_small_ring* r) {
     r->left[v] = left;
     own = 3u << v;
   }
-  return 1u;
-}
-
-/* Whether two edges cross. A vertex on the line of an edge, but not on the edge, may count for either side. */
-CADT_FN cadt_u32 cadt_ring_crosses(cadt_small_ring* r) {
-  const cadt_u32 n = r->count, padded = cadt_whole_lanes(n);
-  cadt_u32 parted[CADT_SMALL_RING]; /* of an edge: those whose lines part its ends, but for its neighbours */
-  for (cadt_u32 i = n; i < n + CADT_CAST(cadt_u32, CADT_RING_LANES); ++i) r->left[i] = r->left[0];
-  for (cadt_u32 e = 0u; e < padded; ++e)
-    parted[e] = (r->left[e] ^ r->left[e + 1u]) & ~(r->bit[e] | r->bit[e] << 1u | r->bit[e] >> 1u);
-  parted[n - 1u] &= ~1u;
-  cadt_u32 crossing = 0u;
-  for (cadt_u32 e = 1u; e < n; ++e) {
-    const cadt_u32 some = cadt_whole_lanes(e);
-    cadt_u32 parts = 0u; /* edges before it whose ends its line parts */
-    for (cadt_u32 f = 0u; f < some; ++f) parts |= CADT_MASK_IF(parted[f] >> e & 1u) & r->bit[f];
-    crossing |= parts & parted[e];
+  for (cadt_u32 i = 0u; i < CADT_LANES; ++i) r->left[n + i] = r->left[0];
+  /* Edges cross if the line of each parts the ends of the other. A vertex on the line of an edge, but not on the edge,
+   * may count for either side. Neighbours seem not to: their common end is on the left of both in `left`, and on the
+   * right in `sides`. */
+  cadt_words crossing = cadt_all_words(0u);
+  for (cadt_u32 e = 0u; e < n; e += CADT_LANES) {
+    const cadt_words side = cadt_load_words(sides + e);
+    crossing |=
+        (cadt_load_words(r->left + e) ^ cadt_load_words(r->left + e + 1u)) & (side ^ (side >> 1 | side << (n - 1u)));
   }
-  return crossing;
+  return cadt_any_word(crossing) ? 0u : 1u;
 }
 
 /* The apex over a base among candidates, by an exact comparison each. */
-CADT_FN_SLOW cadt_u32 cadt_ring_apex_exact(const cadt_small_ring* r, cadt_u32 low, cadt_u32 high, cadt_u32 candidates) {
+CADT_FN_SLOW cadt_u32 cadt_ring_apex_exact(cadt_small_ring* r, cadt_u32 low, cadt_u32 high, cadt_u32 candidates) {
   CADT_DECLARE_COUNTERS(counters);
   const cadt_point p = cadt_load_point(r->points + (r->clockwise ? high : low)),
                    q = cadt_load_point(r->points + (r->clockwise ? low : high));
@@ -162,39 +162,40 @@ CADT_FN_SLOW cadt_u32 cadt_ring_apex_exact(const cadt_small_ring* r, cadt_u32 lo
  * By floats, its numerator and denominator have errors of d = CADT_RING_UNSURE each. Where the denominator s is above
  * 4 d, the cotangent c has one below 4 d (1 + |c|) / (3 s), and `error` has three times that, for all rounding. Several
  * candidates are left to exact comparisons. */
-CADT_FN cadt_u32 cadt_ring_apex(const cadt_small_ring* r, cadt_u32 low, cadt_u32 high) {
-  const cadt_u32 n = high - low - 1u, first = low + 1u, padded = cadt_whole_lanes(n);
-  const float unsure = 4.0f * CADT_RING_UNSURE;
-  const float px = r->x[low], py = r->y[low], qx = r->x[high], qy = r->y[high], base_x = qx - px, base_y = qy - py;
-  float least[CADT_RING_ROOM], most[CADT_RING_ROOM];
+CADT_FN cadt_u32 cadt_ring_apex(cadt_small_ring* r, cadt_u32 low, cadt_u32 high) {
+  const cadt_lanes unsure = cadt_all_lanes(4.0f * CADT_RING_UNSURE), none = cadt_all_lanes(2e38f);
+  const cadt_lanes px = cadt_all_lanes(r->x[low]), py = cadt_all_lanes(r->y[low]), qx = cadt_all_lanes(r->x[high]),
+                   qy = cadt_all_lanes(r->y[high]), base_x = qx - px, base_y = qy - py;
+  cadt_lanes least[CADT_SMALL_RING / CADT_LANES], most = cadt_all_lanes(1e38f);
   cadt_u32 candidates = 0u;
-  for (cadt_u32 i = 0u; i < padded; ++i) {
-    const float x = r->x[first + i], y = r->y[first + i];
-    const float sine = (x - px) * base_y - (y - py) * base_x, cosine = (x - px) * (x - qx) + (y - py) * (y - qy);
-    const float no = sine > unsure ? 0.0f : 2e38f, inverse = 1.0f / (cadt_fabsf(sine) + 0x1p-60f);
-    const float cotangent = cosine * inverse, error = unsure * inverse * (1.0f + cadt_fabsf(cotangent));
-    least[i] = cotangent - error + no;
-    most[i] = cotangent + error + no;
-    candidates |= CADT_MASK_IF(cadt_fabsf(sine) <= unsure) & r->bit[i];
+  for (cadt_u32 v = low + 1u, i = 0u; v < high; v += CADT_LANES, ++i) {
+    const cadt_lanes x = cadt_load_lanes(r->x + v), y = cadt_load_lanes(r->y + v);
+    const cadt_lanes sine = (x - px) * base_y - (y - py) * base_x, cosine = (x - px) * (x - qx) + (y - py) * (y - qy);
+    const cadt_lanes size = cadt_abs_lanes(sine), inverse = 1.0f / (size + 0x1p-60f);
+    const cadt_lanes cotangent = cosine * inverse, error = unsure * inverse * (1.0f + cadt_abs_lanes(cotangent));
+    least[i] = sine > unsure ? cotangent - error : none;
+    most = cadt_min_lanes(most, (sine > unsure) & cadt_lanes_below(high - v) ? cotangent + error : none);
+    candidates |= cadt_bits_of_lanes(cadt_mask(size <= unsure)) << v;
   }
-  float bound = 1e38f;
-  for (cadt_u32 i = 0u; i < n; ++i) bound = cadt_minf(bound, most[i]);
-  for (cadt_u32 i = 0u; i < padded; ++i) candidates |= CADT_MASK_IF(least[i] <= bound) & r->bit[i];
-  candidates = candidates << first & (r->bit[high] - 1u);
+  const float bound = cadt_least_lane(most);
+  for (cadt_u32 v = low + 1u, i = 0u; v < high; v += CADT_LANES, ++i)
+    candidates |= cadt_bits_of_lanes(cadt_mask(least[i] <= cadt_all_lanes(bound))) << v;
+  candidates &= (1u << high) - 1u;
   if (!(candidates & (candidates - 1u)) && bound < 1e38f) return CADT_HIGHEST_BIT(candidates);
   return cadt_ring_apex_exact(r, low, high, candidates);
 }
 
 /* Whether the triangle over a base lies inside, after candidates before it do not. */
-CADT_FN cadt_u32 cadt_triangle_is_inside(const cadt_small_ring* r, cadt_u32 low, cadt_u32 apex, cadt_u32 high,
+CADT_FN cadt_u32 cadt_triangle_is_inside(cadt_small_ring* r, cadt_u32 low, cadt_u32 apex, cadt_u32 high,
                                          cadt_u32 tried) {
   for (; tried; tried ^= 1u << CADT_HIGHEST_BIT(tried)) {
     const cadt_u32 v = CADT_HIGHEST_BIT(tried);
     if (cadt_turn_in_ring(r, low, apex, v) >= 0 && cadt_turn_in_ring(r, apex, high, v) >= 0) return 0u;
   }
   /* The first edge from the base to an apex that it hides has them on its left and on its right. */
-  cadt_u32 edges = r->left[low] & r->left[high] & ~r->left[apex] & (r->bit[high] - r->bit[low]);
-  if (low + 1u == apex || apex + 1u == high) edges = 0u; /* an edge that obstructs it would cross that edge */
+  cadt_u32 edges = r->left[low] & r->left[high] & ~r->left[apex] & ((1u << high) - (1u << low));
+  /* an edge that obstructs one with an edge of the ring would cross that edge */
+  edges &= CADT_MASK_IF((low + 1u != apex) & (apex + 1u != high));
   for (; edges; edges ^= 1u << CADT_HIGHEST_BIT(edges)) {
     const cadt_u32 e = CADT_HIGHEST_BIT(edges), end = e == low ? high : low;
     if (cadt_turn_in_ring(r, end, apex, e) * cadt_turn_in_ring(r, end, apex, e + 1u) < 0) return 0u;
@@ -211,33 +212,37 @@ CADT_FN void cadt_write_ring_triangle(const cadt_small_ring* r, cadt_u32 low, ca
 
 #define CADT_RING_BASE(low, high) ((low) << 8 | (high))
 /* The triangles inside a ring of `count` points, to `out`, as numbers of points from `base` on. How many; 0: the ring
- * is left to others. \pre no coordinate needs more than the narrow arithmetic */
+ * is left to others. Any doubles may be given. */
 CADT_FN cadt_u32 cadt_triangulate_ring(CADT_GLOBAL const cadt_point* points, cadt_u32 count, cadt_u32 base,
                                        CADT_GLOBAL cadt_u32* out) {
   cadt_small_ring ring;
   if (count > 1u && points[0].x == points[count - 1u].x && points[0].y == points[count - 1u].y) --count;
-  if (count < 3u || count > CADT_CAST(cadt_u32, CADT_SMALL_RING)) return 0u;
+  if (count < 3u || count > CADT_SMALL_RING) return 0u;
   ring.points = points;
   ring.count = count;
-  if (!cadt_measure_ring(&ring) || !cadt_find_sides(&ring) || cadt_ring_crosses(&ring)) return 0u;
-  cadt_u32 bases[CADT_SMALL_RING], waiting = 1u, triangles = 0u;
-  bases[0] = CADT_RING_BASE(0u, count - 1u);
-  while (waiting) {
-    const cadt_u32 low = bases[--waiting] >> 8, high = bases[waiting] & 255u;
-    const cadt_u32 several = low + 2u < high ? 1u : 0u;
-    cadt_u32 tried = 0u, apex = several ? cadt_ring_apex(&ring, low, high) : low + 1u;
-    while (several && apex != CADT_NONE && !cadt_triangle_is_inside(&ring, low, apex, high, tried)) {
-      tried |= 1u << apex;
-      apex = cadt_ring_apex_exact(&ring, low, high, (ring.bit[high] - 2u * ring.bit[low]) & ~tried);
+  if (!cadt_measure_ring(&ring) || !cadt_find_sides(&ring)) return 0u;
+  cadt_u32 bases[CADT_SMALL_RING], waiting = 1u;
+  bases[0] = 0u; /* the end */
+  for (cadt_u32 next = CADT_RING_BASE(0u, count - 1u); next; out += 3) {
+    const cadt_u32 low = next >> 8, high = next & 255u;
+    cadt_u32 apex = low + 1u;
+    if (low + 2u < high) {
+      cadt_u32 tried = 0u;
+      apex = cadt_ring_apex(&ring, low, high);
+      while (apex != CADT_NONE && !cadt_triangle_is_inside(&ring, low, apex, high, tried)) {
+        tried |= 1u << apex;
+        apex = cadt_ring_apex_exact(&ring, low, high, ((1u << high) - (2u << low)) & ~tried);
+      }
+      if (apex == CADT_NONE) return 0u; /* there always is one */
     }
-    if (apex == CADT_NONE) return 0u; /* there always is one */
-    cadt_write_ring_triangle(&ring, low, apex, high, base, out + 3u * triangles++);
+    cadt_write_ring_triangle(&ring, low, apex, high, base, out);
     bases[waiting] = CADT_RING_BASE(low, apex);
     waiting += low + 1u < apex ? 1u : 0u;
     bases[waiting] = CADT_RING_BASE(apex, high);
     waiting += apex + 1u < high ? 1u : 0u;
+    next = bases[--waiting];
   }
-  return triangles;
+  return ring.wide ? 0u : count - 2u;
 }
 
 #endif

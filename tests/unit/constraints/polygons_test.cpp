@@ -188,6 +188,13 @@ TEST_P(Polygons, AnyDoubles) {
   set.add({{{-largest, -largest}, {largest, -largest}, {largest, largest}, {-largest, largest}}});
   set.add({{{-least, -least}, {least, -least}, {least, least}, {-least, least}}});
   set.add({{{-largest, 0}, {largest, -least}, {largest, least}}});
+  for (const double tiny : {least, std::ldexp(1.0, -200)})  // moves a corner of a square off the circle of the others
+    for (const double moved : {tiny, -tiny})
+      for (const auto& [corner, axis] : {std::pair{0, 0}, {0, 1}, {1, 1}, {3, 0}}) {
+        Ring ring = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+        ring[static_cast<std::size_t>(corner)][static_cast<std::size_t>(axis)] = moved;
+        set.add({ring});
+      }
   expect_equal(set);
 }
 

@@ -143,7 +143,7 @@ class SmallRings : public BackendTest {};
 /// With a second ring far away, which only adds a triangle, a polygon is swept.
 TEST_P(SmallRings, EqualTheSweep) {
   Random random(6);
-  const std::size_t count = GetParam().backend == Backend::opencl ? 10000 : 100000;
+  const std::size_t count = GetParam().backend == Backend::opencl ? 10000 : 40000;
   PolygonSet alone, with_other;
   for (std::size_t i = 0; i < count; ++i) {
     const Ring ring = any_ring(random);

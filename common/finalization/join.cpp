@@ -59,7 +59,7 @@ Allocation take_points(Context& ctx, Node& node, const Children& children) {
 
 /// Threads that work with so many sides.
 unsigned threads_for(const Node& node, std::size_t sides) {
-  constexpr std::size_t of_thread = std::size_t{1} << 13;  // with fewer, a thread costs more than it saves
+  constexpr std::size_t of_thread = std::size_t{1} << 13;    // with fewer, a thread costs more than it saves
   const unsigned asked = node.data->state->options.threads;  // as the host's own work: 0 means all cores
   const std::size_t most = asked != 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
   return static_cast<unsigned>(std::clamp<std::size_t>(sides / of_thread, 1, most));

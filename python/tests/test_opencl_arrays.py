@@ -75,6 +75,7 @@ def test_each_queue_is_used_for_its_own_arrays(queue):
         np.testing.assert_array_equal(mesh.simplices.get(), wanted.simplices)
 
 
+@pytest.mark.thorough  # PoCL compiles anew for the options
 def test_options_of_each_call_on_an_open_device():
     points = np.random.default_rng(10).random((4_000, 2))
     wanted = cadt.Delaunay(points).simplices

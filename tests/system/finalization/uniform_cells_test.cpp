@@ -2,6 +2,7 @@
 // Points by counter: each range of indices is a part of the plane, on every device the same.
 #include <cadt/uniform_cells.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -111,6 +112,14 @@ TEST(UniformCellsOnHost, JoinsOfManySidesOnThreads) {
   const auto children = std::span(leaves);
   const FinishedNode expected = finish_join(one, children, half, 4000);
   EXPECT_GT(expected.messages.size(), 35'000u);
+  // What is told to a side of a child leads back to it.
+  std::vector<TriangleId> told, linked;
+  for (const Link& message : expected.messages) told.push_back(message.triangle);
+  for (const TriangleId across : expected.links)
+    if (across != pending_triangle) linked.push_back(across);
+  std::ranges::sort(told);
+  std::ranges::sort(linked);
+  EXPECT_TRUE(told == linked);
   for (const unsigned threads : {2u, 3u, 7u}) {
     Triangulator several = triangulator(threads);
     const FinishedNode node = finish_join(several, children, half, 4000);

@@ -168,10 +168,8 @@ class Settlement {
       for (std::size_t i = children_.first_side(s); i < children_.end_side(s); ++i)
         ++(is_told(matches[i]) ? end.messages : end.sides);
     }
-    // Behind the sides that go on up come those of final triangles of this node.
-    const std::vector<std::size_t> rows = open_rows(end.sides);
     finished_.node.messages.resize(end.messages);
-    finished_.node.open.sides.resize(rows.back());
+    finished_.node.open.sides.resize(end.sides);
     const Sum sum = verifier::reduce_each<Sum>(
         children_.stretches(), threads_for(node_, matches.size()),
         [&](std::size_t s, Sum& mine) {
@@ -182,10 +180,7 @@ class Settlement {
     require_legal(sum.edges);
     certified_ = sum.edges.illegal.examined;
     outside_ = sum.outside;
-    link_rows(rows);
-    const std::size_t covered = finished_.rows.size() - (rows.back() - end.sides);
-    if (covered != certified_)
-      give_up(certified_, " sides of children meet final triangles of node ", node_.number, ", which meet ", covered);
+    link_rows(certified_);
   }
 
   [[nodiscard]] std::size_t outside() const noexcept { return outside_; }
@@ -239,38 +234,26 @@ class Settlement {
       give_up(edges.illegal.failures, " edges between two nodes, closed by node ", node_.number, ", are illegal");
   }
 
-  /// For each stretch of rows the place, from `first` on, of its first one that nothing covers; at the end the place
-  /// behind the last.
-  [[nodiscard]] std::vector<std::size_t> open_rows(std::size_t first) const {
-    std::vector<std::size_t> places{first};
-    for (std::size_t row = 0; row < finished_.rows.size(); ++row) {
-      if (row % rows_of_stretch == 0) places.push_back(places.back());
-      if (finished_.rows[row].cover == CADT_NONE) ++places.back();
-    }
-    return places;
-  }
-
-  /// What lies across the rows: a triangle of a child, or nothing yet. `open_rows`: as that function gives it.
-  void link_rows(const std::vector<std::size_t>& open_rows) {
+  /// `met`: sides of the children that meet a final triangle of this node.
+  void link_rows(std::uint64_t met) {
     const std::size_t rows = finished_.rows.size();
-    if (node_.is_root && open_rows.front() != open_rows.back()) give_up("an edge of the root has nothing across");
     std::vector<TriangleId>& links = finished_.node.links;
     links.resize(rows);
-    verifier::reduce_each<Nothing>(
-        open_rows.size() - 1, threads_for(node_, rows),
-        [&](std::size_t stretch, Nothing&) {
-          std::size_t at = open_rows[stretch];
-          const std::size_t begin = stretch * rows_of_stretch;
-          for (std::size_t row = begin; row < std::min(rows, begin + rows_of_stretch); ++row) {
-            const std::uint32_t cover = finished_.rows[row].cover;
-            links[row] = cover == CADT_NONE ? pending_triangle : children_.triangle(cover);
-            if (cover == CADT_NONE) finished_.node.open.sides[at++] = side_of(finished_, node_, row);
-          }
-        },
-        1);
+    verifier::reduce_each<Nothing>(rows, threads_for(node_, rows), [&](std::size_t row, Nothing&) {
+      const std::uint32_t cover = finished_.rows[row].cover;
+      links[row] = cover == CADT_NONE ? pending_triangle : children_.triangle(cover);
+    });
+    std::size_t covered = rows;
+    for (std::size_t row = 0; row < rows; ++row) {
+      if (finished_.rows[row].cover != CADT_NONE) continue;
+      --covered;
+      if (node_.is_root) give_up("an edge of the root has nothing across");
+      finished_.node.open.sides.push_back(side_of(finished_, node_, row));
+    }
+    if (covered != met)
+      give_up(met, " sides of children meet final triangles of node ", node_.number, ", which meet ", covered);
   }
 
-  static constexpr std::size_t rows_of_stretch = std::size_t{1} << 12;
   const Node& node_;
   const Children& children_;
   Finished& finished_;

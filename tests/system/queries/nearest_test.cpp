@@ -10,7 +10,7 @@ namespace {
 class Nearest : public BackendTest {};
 
 TEST_P(Nearest, OneEqualsBruteForceInExactArithmetic) {
-  for_each_set(800, [&](const Asked& set) {
+  for_each_set(1500, [&](const Asked& set) {
     if (set.mesh.number_of_triangles() == 0) return;
     SCOPED_TRACE(set.name);
     MeshQueries queries(std::span<const double>(set.xy), set.mesh, GetParam().options());

@@ -91,10 +91,15 @@ CADT_FN void cadt_draw_row(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32*
   }
 }
 
+/* One after another, which compilers make without branches. */
 CADT_FN cadt_real cadt_least(cadt_real a, cadt_real b, cadt_real c) {
-  return a < b ? (a < c ? a : c) : (b < c ? b : c);
+  const cadt_real ab = a < b ? a : b;
+  return ab < c ? ab : c;
 }
-CADT_FN cadt_real cadt_most(cadt_real a, cadt_real b, cadt_real c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
+CADT_FN cadt_real cadt_most(cadt_real a, cadt_real b, cadt_real c) {
+  const cadt_real ab = a > b ? a : b;
+  return ab > c ? ab : c;
+}
 
 /* `values`: of the points, or null if none are needed. */
 CADT_FN cadt_drawn cadt_drawn_of(const cadt_query_mesh* m, cadt_u32 t, CADT_GLOBAL const cadt_real* values) {

@@ -117,5 +117,6 @@ void bind_device(nb::module_& m);
 void bind_queries(nb::module_& m);
 void bind_scipy(nb::module_& m);
 void bind_part_raster(nb::module_& m);
+void bind_squares(nb::module_& m);
 
 }  // namespace cadt_python

@@ -20,6 +20,7 @@ NB_MODULE(_cadt, m) {
   bind_queries(m);
   bind_scipy(m);
   bind_part_raster(m);
+  bind_squares(m);
 #ifdef CADT_PYTHON_TILES
   bind_tile_nodes(m);
   bind_tile_tree(m);

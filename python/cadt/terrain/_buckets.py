@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import cadt
+from cadt import _cadt
 
 from .cloud import Cloud
 
@@ -50,21 +51,10 @@ class Squares:
         row = np.clip((xy[:, 1] - self.y0) / self.side, 0, self.ny - 1).astype(np.int64)
         return column, row
 
-    def number(self, xy: Floats) -> NDArray[np.int64]:
-        """That of each point's bucket, row by row."""
-        column, row = self.place(xy)
-        return row * self.nx + column
-
-    @staticmethod
-    def order(number: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Indices of points by bucket, and as before within one. Overwrites the numbers."""
-        # With the indices below them: NumPy sorts words sooner than it sorts indices by words.
-        bits = len(number).bit_length()
-        number <<= bits
-        number += np.arange(len(number))
-        number.sort()
-        number &= (1 << bits) - 1
-        return number
+    def sort(self, xy: Floats, z: Floats) -> NDArray[np.int32]:
+        """Brings points and their values to the order of the buckets, row by row, in place; within a bucket they stay as
+        they were. Where each bucket begins, and the end of the last one."""
+        return _cadt.sort_by_square(xy, z, self.x0, self.y0, self.side, self.nx, self.ny)
 
 
 class Buckets(Squares):
@@ -95,14 +85,8 @@ class Buckets(Squares):
         self.hull = self._hull()
 
     def _sort(self, first: int, size: int, begin: NDArray[np.int32]) -> None:
-        xy, z = self.xy[first : first + size], self.z[first : first + size]
-        number = self.number(xy)
-        begin[0] = first
-        np.cumsum(np.bincount(number, minlength=self.nx * self.ny), out=begin[1:])
-        begin[1:] += first
-        pairs = xy.view(np.complex128)[:, 0]  # one number a point is gathered sooner than two
-        order = self.order(number)
-        pairs[:], z[:] = pairs[order], z[order]
+        begin[:] = self.sort(self.xy[first : first + size], self.z[first : first + size])
+        begin += first
 
     @property
     def useful(self) -> bool:

@@ -107,8 +107,8 @@ class NodeRaster:
         squares = Squares(self.cloud.bounds, len(self.cloud))
         end = self._begin[:-1].copy()
         for first, xy, z in self.cloud.pieces():
-            order = squares.order(squares.number(xy))
-            counts, points = self._by_leaf(first, xy[order], z[order])
+            squares.sort(xy, z)
+            counts, points = self._by_leaf(first, xy, z)
             at = 0
             for leaf in np.flatnonzero(counts).tolist():
                 count = int(counts[leaf])

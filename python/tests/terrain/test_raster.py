@@ -182,6 +182,23 @@ def test_buckets_keep_the_order_and_find_the_hull(piece):
     assert np.array_equal(z, points.z[points.of_buckets(rows)])
 
 
+def test_points_are_sorted_in_place_or_not_at_all():
+    """Points outside of the squares, and those that are no numbers, belong to the nearest ones. Nothing is copied."""
+    from cadt import _cadt
+
+    xy = np.array([[9.5, 9.5], [np.nan, 0.5], [-5, 1.5], [2.5, -1], [0.5, 1.5], [1, 1], [1, 0]], float)
+    z = np.arange(7.0)
+    begin = _cadt.sort_by_square(xy, z, 0.0, 0.0, 1.0, 3, 2)
+    assert z.tolist() == [1, 6, 3, 2, 4, 5, 0] and begin.tolist() == [0, 1, 2, 3, 5, 6, 7]
+    assert np.array_equal(xy[1:], [[1, 0], [2.5, -1], [-5, 1.5], [0.5, 1.5], [1, 1], [9.5, 9.5]])
+    for wrong_xy, wrong_z in ((np.zeros((4, 3))[:, :2], z[:4]), (xy, np.zeros(14)[::2]), (xy.astype("f4"), z)):
+        with pytest.raises(TypeError):
+            _cadt.sort_by_square(wrong_xy, wrong_z, 0.0, 0.0, 1.0, 3, 2)
+    for arguments in ((z[:6], 0.0, 0.0, 1.0, 3, 2), (z, 0.0, 0.0, 0.0, 3, 2), (z, 0.0, 0.0, 1.0, 0, 2)):
+        with pytest.raises(ValueError, match="needed"):
+            _cadt.sort_by_square(xy, *arguments)
+
+
 def test_discs_hold_the_circumscribed_ones():
     """Against rational arithmetic: no corner is outside, and no fourth point that is inside is missed."""
     from fractions import Fraction

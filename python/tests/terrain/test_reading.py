@@ -8,6 +8,7 @@ import pathlib
 import subprocess
 import sys
 
+import cadt.terrain._las
 import laspy
 import numpy as np
 import pytest
@@ -16,7 +17,9 @@ from clouds import hills
 
 
 @pytest.mark.parametrize("suffix", ["las", "laz"])
-def test_coordinates_are_steps_times_scale_plus_offset(las, suffix):
+@pytest.mark.parametrize("chunk", [700, 1000, 1 << 19])
+def test_coordinates_are_steps_times_scale_plus_offset(las, suffix, chunk, monkeypatch):
+    monkeypatch.setattr(cadt.terrain._las, "CHUNK", chunk)
     steps = np.random.default_rng(1).integers(-(2**31), 2**31, (3000, 3))
     offset = np.array([4321.5, -87654.25, 12.125])
     name = las(f"a.{suffix}", steps * 0.01 + offset, scale=0.01, offset=tuple(offset))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tests of SciPy and matplotlib, with cadt in place of Qhull."""
+"""The tests of SciPy, of matplotlib and of packages that build on them, with cadt in place of Qhull."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import packages_suite
 import pytest
 
 HERE = Path(__file__).parent
 
 
 def run(name: str, folder: Path, *arguments: str) -> str:
-    pytest.importorskip(name.partition("_")[0])
     command = [sys.executable, str(HERE / f"{name}.py"), *arguments]
     done = subprocess.run(command, check=False, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-8000:] + done.stderr[-2000:]
@@ -21,16 +21,27 @@ def run(name: str, folder: Path, *arguments: str) -> str:
 
 
 def test_scipy(tmp_path: Path) -> None:
+    pytest.importorskip("scipy")
     assert "5 xfailed" in run("scipy_suite", tmp_path, "--quick")
 
 
 @pytest.mark.thorough
 def test_scipy_in_all_dimensions(tmp_path: Path) -> None:
+    pytest.importorskip("scipy")
     assert "5 xfailed" in run("scipy_suite", tmp_path)
 
 
 def test_matplotlib(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
     run("matplotlib_suite", tmp_path)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("package", sorted(packages_suite.TESTS))
+def test_packages_that_build_on_scipy(tmp_path: Path, package: str) -> None:
+    """scripts/python_env packages installs them."""
+    pytest.importorskip(package)
+    run("packages_suite", tmp_path, package)
 
 
 @pytest.mark.thorough

@@ -18,9 +18,7 @@ struct Squares {
   double x0, y0, side;
   std::uint32_t nx, ny;
   /// That of the point's square, row by row; of the nearest one for points outside. As Squares.place in Python.
-  [[nodiscard]] std::uint32_t number(Point p) const {
-    return at(p[1], y0, ny) * nx + at(p[0], x0, nx);
-  }
+  [[nodiscard]] std::uint32_t number(Point p) const { return at(p[1], y0, ny) * nx + at(p[0], x0, nx); }
 
  private:
   [[nodiscard]] std::uint32_t at(double coordinate, double origin, std::uint32_t count) const {

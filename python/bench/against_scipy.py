@@ -73,7 +73,7 @@ def main() -> None:
     z = np.hypot(*points.T)
     x = (np.arange(a.cells) + 0.5) / a.cells
     grid = np.meshgrid(x, x)
-    ours = timed(lambda: cadt.scipy.griddata(points, z, tuple(grid)))
+    ours = timed(lambda: cadt.scipy.griddata(points, z, tuple(grid)), 3)
     rows = max(1, a.cells // 10)
     linear = scipy.interpolate.LinearNDInterpolator(other, z)
     part = timed(lambda: linear(grid[0][:rows], grid[1][:rows]))

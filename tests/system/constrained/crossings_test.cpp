@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -151,21 +152,104 @@ TEST_P(Crossings, CoordinatesThatOnlyWholeNumbersFind) {
 
 /// Flat segments above an edge of the hull, whose crossing is so near to it that it may be rounded to the outside.
 TEST_P(Crossings, AtTheHull) {
+  int certified = 0, others = 0;
   for (std::uint64_t seed = 1; seed <= 60; seed += every()) {
     SegmentSet set{"seed " + std::to_string(seed), {}, {}};
     Random random(seed);
     const double x = random.uniform(1, 3), y = random.uniform(0.1, 1), up = random.uniform(1, 4);
     const double t = random.uniform(0.6, 0.9);
-    // Doubles above the line from (0, 0) to (x, y), by one or two units in the last place.
+    // The lowest doubles above the line from (0, 0) to (x, y), or one or two higher.
     const auto above = [&](double part) {
-      double v = y * part;
-      for (int i = 0; i < 2 + static_cast<int>(seed % 3); ++i) v = std::nextafter(v, 9.0);
+      double v = y * part * (1 - 1e-15);
+      while (exact_orientation({0, 0}, {x, y}, {x * part, v}) <= 0) v = std::nextafter(v, 9.0);
+      for (int i = 0; i < static_cast<int>(seed % 3); ++i) v = std::nextafter(v, 9.0);
       return v;
     };
     set.xy = {0.0, 0.0, x, y, x * t, above(t), x * (1 - t), above(1 - t), x / 2, up};
     set.segments = {{0, 2}, {1, 3}};
-    check(set);
+    check(set) ? ++certified : ++others;
   }
+  EXPECT_GT(others, 0);
+  EXPECT_GT(certified, has_doubles() ? 0 : -1);
+}
+
+/// Two segments, and where they cross, rounded: the end of the first piece of either.
+struct RoundedCross {
+  SegmentSet set;
+  double x, y;
+};
+RoundedCross random_cross(std::uint64_t seed) {
+  RoundedCross cross{{"seed " + std::to_string(seed), {}, {{0, 1}, {2, 3}}}, 0, 0};
+  Random random(seed);
+  const double turn = random.uniform(0, 6);
+  for (int i = 0; i < 4; ++i) {  // ends of the first, then of the second
+    const double angle = turn + (i % 2 == 0 ? 0 : 3.14159) + (i < 2 ? 0 : 1.5708) + random.uniform(-0.2, 0.2);
+    const double length = random.uniform(0.9, 1.1);
+    cross.set.xy.insert(cross.set.xy.end(), {length * std::cos(angle) + 3, length * std::sin(angle) + 2});
+  }
+  const std::array<Segment, 1> pairs = {Segment{0, 1}};
+  const Triangulation delaunay = triangulate(cross.set.xy);
+  const constraints::ExactMesh exact =
+      constraints::triangulate_with_crossings(cross.set.xy, cross.set.segments, delaunay, 1);
+  EXPECT_TRUE(std::ranges::equal(exact.parents, pairs));
+  cross.x = exact.added_xy.at(0);
+  cross.y = exact.added_xy.at(1);
+  return cross;
+}
+
+/// A vertex so near to the circle of a crossing and two ends that an edge is legal with the rounded place and illegal
+/// with the exact one, or the other way round.
+TEST_P(Crossings, CircleThroughACrossing) {
+  int certified = 0, others = 0;
+  for (std::uint64_t seed = 1; seed <= 80; seed += every()) {
+    auto [set, x, y] = random_cross(seed);
+    const double ax = set.xy[0] - x, ay = set.xy[1] - y, bx = set.xy[4] - x, by = set.xy[5] - y;
+    const double a = ax * ax + ay * ay, b = bx * bx + by * by, area = 2 * (ax * by - ay * bx);
+    // Opposite of the crossing.
+    const double px = x + 2 * (by * a - ay * b) / area, py = y + 2 * (ax * b - bx * a) / area;
+    set.xy.insert(set.xy.end(), {px, py});
+    check(set) ? ++certified : ++others;
+  }
+  EXPECT_GT(others, 0);
+  EXPECT_GT(certified, has_doubles() ? 0 : -1);
+}
+
+/// A vertex at the rounded place of a crossing: it is not the crossing.
+TEST_P(Crossings, VertexAtARoundedCrossing) {
+  for (std::uint64_t seed = 1; seed <= 10; seed += every()) {
+    auto [set, x, y] = random_cross(seed);
+    set.xy.insert(set.xy.end(), {x, y});
+    EXPECT_FALSE(check(set));
+  }
+}
+
+/// The first segment runs above the line x = y, and is on it if it ends at the rounded place of the crossing.
+TEST_P(Crossings, VertexOnARoundedPiece) {
+  SegmentSet set{"a vertex below a segment",
+                 {1.0, 1.0, 3.0, std::nextafter(3.0, 4.0), 1.25, 0.5, 1.25, 2.0, 1.125, 1.125, 1.5, 3.0},
+                 {{0, 1}, {2, 3}}};
+  EXPECT_FALSE(check(set));
+}
+
+/// Vertices between exact and rounded pieces, with segments of their own that the rounded ones may cross.
+TEST_P(Crossings, VerticesBesideRoundedPieces) {
+  int certified = 0, others = 0;
+  for (std::uint64_t seed = 1; seed <= 40; seed += every()) {
+    auto [set, x, y] = random_cross(seed);
+    Random random(seed);
+    const double side = random.uniform(-1, 1);
+    for (int i = 0; i < 3; ++i) {
+      const double t = random.uniform(0.1, 0.9), vx = x + t * (set.xy[0] - x), vy = y + t * (set.xy[1] - y);
+      const auto v = static_cast<std::int32_t>(set.xy.size() / 2);
+      set.xy.insert(set.xy.end(), {vx, vy});
+      if (seed % 2 == 0) continue;
+      set.xy.insert(set.xy.end(), {vx - 0.05 * side * (set.xy[1] - y), vy + 0.05 * side * (set.xy[0] - x)});
+      set.segments.push_back({v, v + 1});
+    }
+    check(set) ? ++certified : ++others;
+  }
+  EXPECT_GT(others, 0);
+  EXPECT_GT(certified, has_doubles() ? 0 : -1);
 }
 
 /// So many segments through the same triangles that a sweep finds them.

@@ -132,6 +132,19 @@ TEST_P(Crossings, RandomSegments) {
   }
 }
 
+/// Crossings with the same x come in the order of y, upwards or downwards.
+TEST_P(Crossings, OnVerticalSegments) {
+  for (const double down : {-1.0, 1.0}) {
+    SegmentSet set{"vertical", {1.0, -9.0 * down, 1.0, 9.0 * down}, {{0, 1}}};
+    for (const double y : {-3.0, 5.0, 1.0, -6.5}) {
+      const auto v = static_cast<std::int32_t>(set.xy.size() / 2);
+      set.xy.insert(set.xy.end(), {0.0, y, 2.5, y + 0.3});
+      set.segments.push_back({v, v + 1});
+    }
+    EXPECT_EQ(check(set), has_doubles());
+  }
+}
+
 /// Crossings on the axes have a coordinate of 0, which no bound on a rounding error is small enough for.
 TEST_P(Crossings, CoordinatesThatOnlyWholeNumbersFind) {
   SegmentSet set{"stars around the origin", {}, {}};

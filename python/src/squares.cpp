@@ -2,7 +2,6 @@
 // Points in the order of square buckets (cadt.terrain).
 #include "common.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace cadt_python {

@@ -195,10 +195,11 @@ RoundedCross random_cross(std::uint64_t seed) {
   RoundedCross cross{{"seed " + std::to_string(seed), {}, {{0, 1}, {2, 3}}}, 0, 0};
   Random random(seed);
   const double turn = random.uniform(0, 6);
-  for (int i = 0; i < 4; ++i) {  // ends of the first, then of the second
+  const double far = seed % 2 == 0 ? 0 : 400000;  // rounding moves a crossing by more there
+  for (int i = 0; i < 4; ++i) {                   // ends of the first, then of the second
     const double angle = turn + (i % 2 == 0 ? 0 : 3.14159) + (i < 2 ? 0 : 1.5708) + random.uniform(-0.2, 0.2);
     const double length = random.uniform(0.9, 1.1);
-    cross.set.xy.insert(cross.set.xy.end(), {length * std::cos(angle) + 3, length * std::sin(angle) + 2});
+    cross.set.xy.insert(cross.set.xy.end(), {length * std::cos(angle) + 3 + far, length * std::sin(angle) + 2 + far});
   }
   const std::array<Segment, 1> pairs = {Segment{0, 1}};
   const Triangulation delaunay = triangulate(cross.set.xy);

@@ -115,6 +115,22 @@ TEST(ExactCrossings, RandomSetsEqualCgal) {
   }
 }
 
+/// Coordinates of maps, and segments of a few thousand last places: what is rounded is far from what is exact, and the
+/// error bounds of filters are of the size of the values.
+TEST(ExactCrossings, FarFromTheOriginEqualCgal) {
+  for (const double side : {1000.0, 1e-3, 0x1p-18}) {
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      SegmentSet set = random_segments(seed, 120, 0.7);
+      set.name += ", far from the origin";
+      for (std::size_t i = 0; i < set.xy.size(); i += 2) {
+        set.xy[i] = 400000 + side * set.xy[i];
+        set.xy[i + 1] = 5600000 + side * set.xy[i + 1];
+      }
+      expect_as_cgal(set);
+    }
+  }
+}
+
 /// A square of lines: each unit cell has four vertices on a circle, and they are crossings.
 TEST(ExactCrossings, CrossingsOnCirclesEqualCgal) {
   for (const double unit : {1.0, 0.1, 1.0 / 3}) {

@@ -66,11 +66,14 @@ class Constrainer {
 
   /// The first launch inserts short pieces, all that do not meet. The others are taken in a random order, so that those
   /// of many that cross one triangle part the rest: as many as the launch before has inserted, or twice as many if
-  /// nearly all were. What is walked along without result is in proportion to what is inserted.
+  /// nearly all were. What is walked along without result is in proportion to what is inserted. CPUs, whose launches are
+  /// small, insert all that they have tried before they take others, and first what had to wait: a long piece that meets
+  /// many short ones would lose against one of them in launch after launch, and be walked along each time.
   [[nodiscard]] Outcome insert() {
     ctx_.begin_share(0.6, 0.2);  // the points have reported up to 0.56, and certification begins at 0.9
     ctx_.check("constrain", 0);
-    std::size_t count = job_.count, taken = count, most = 0;
+    std::size_t count = job_.count, taken = count, most = 0, untried = 0, usual = 0;
+    bool fresh = true;
     const Allocation* pairs = &ends_;
     Allocation left;
     for (int launch = 0; count != 0; ++launch) {
@@ -90,7 +93,11 @@ class Constrainer {
       const std::size_t tried = launch == 0 ? pieces.count : taken;
       if (tried == 1 && waiting == 1 && launch != 0)
         give_up("a piece of a segment that meets no other is not inserted");
-      taken = std::min(count, next_tries(tried, waiting, launch == 0));
+      const std::size_t next = next_tries(tried, waiting, launch == 0);
+      if (fresh) usual = next;
+      fresh = launch == 0 || count == untried || !ctx_.device.shape().contiguous;
+      taken = fresh ? std::min(count, usual) : std::min({count - untried, next, waiting != 0 ? waiting : next});
+      if (fresh) untried = count - taken;
       ctx_.statistics.segment_retries += waiting;
       if (launch == 0) most = count;
       ctx_.check("constrain", 1 - static_cast<double>(count) / static_cast<double>(std::max(most, count) + 1));

@@ -66,9 +66,9 @@ class Constrainer {
 
   /// The first launch inserts short pieces, all that do not meet. The others are taken in a random order, so that those
   /// of many that cross one triangle part the rest: as many as the launch before has inserted, or twice as many if
-  /// nearly all were. What is walked along without result is in proportion to what is inserted. CPUs, whose launches are
-  /// small, insert all that they have tried before they take others, and first what had to wait: a long piece that meets
-  /// many short ones would lose against one of them in launch after launch, and be walked along each time.
+  /// nearly all were. What is walked along without result is in proportion to what is inserted. CPUs, whose launches
+  /// are small, insert all that they have tried before they take others, and first what had to wait: a long piece that
+  /// meets many short ones would lose against one of them in launch after launch, and be walked along each time.
   [[nodiscard]] Outcome insert() {
     ctx_.begin_share(0.6, 0.2);  // the points have reported up to 0.56, and certification begins at 0.9
     ctx_.check("constrain", 0);

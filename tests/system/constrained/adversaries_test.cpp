@@ -64,6 +64,25 @@ TEST_P(Adversaries, LargeOnesTakeNoQuadraticTime) {
   }
 }
 
+/// One thread takes the pieces in the same order each time: here the long one meets another in thousands of launches if
+/// it is tried along with others again.
+TEST(AdversariesOnOneThread, ALongPieceThatMeetsShortOnes) {
+  Options options;
+  options.backend = Backend::host;
+  options.threads = 1;
+  for (const Adversary& adversary : adversaries()) {
+    if (adversary.name != "comb") continue;
+    for (const int n : {50000, 100000}) {
+      const Drawing d = adversary.make(n);
+      EXPECT_LT(
+          triangulate_constrained(PointsView(std::span<const double>(d.xy)), d.segments, ConstraintOptions{}, options)
+              .statistics()
+              .launches,
+          3000U);
+    }
+  }
+}
+
 TEST_P(Adversaries, UlpsAroundASegment) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(seed);

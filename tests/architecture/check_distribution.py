@@ -54,7 +54,7 @@ def check_workflows(root):
             for needed in [needs] if isinstance(needs, str) else needs:
                 if needed not in jobs:
                     yield f"{where} needs {needed}, which is no job"
-            if "timeout-minutes" not in job and any(re.search("scripts/|cibuildwheel", str(step)) for step in job["steps"]):
+            if "timeout-minutes" not in job and any(re.search(r"scripts/|\.ci/run|cibuildwheel", str(step)) for step in job["steps"]):
                 yield f"{where} builds and has no timeout"
             for step in job["steps"]:
                 commands = str(step.get("run", ""))

@@ -68,12 +68,14 @@ class Constrainer {
   /// of many that cross one triangle part the rest: as many as the launch before has inserted, or twice as many if
   /// nearly all were. What is walked along without result is in proportion to what is inserted. CPUs, whose launches
   /// are small, insert all that they have tried before they take others, and first what had to wait: a long piece that
-  /// meets many short ones would lose against one of them in launch after launch, and be walked along each time.
+  /// meets many short ones would otherwise lose against one of them in each launch, and be walked along each time.
   [[nodiscard]] Outcome insert() {
     ctx_.begin_share(0.6, 0.2);  // the points have reported up to 0.56, and certification begins at 0.9
     ctx_.check("constrain", 0);
-    std::size_t count = job_.count, taken = count, most = 0, untried = 0, usual = 0;
-    bool fresh = true;
+    std::size_t count = job_.count, taken = count, most = 0;
+    std::size_t untried = 0;     // pairs, the first ones, that no launch has taken
+    std::size_t fresh_size = 0;  // how many of them a launch takes
+    bool fresh = true;           // whether it took some
     const Allocation* pairs = &ends_;
     Allocation left;
     for (int launch = 0; count != 0; ++launch) {
@@ -94,9 +96,9 @@ class Constrainer {
       if (tried == 1 && waiting == 1 && launch != 0)
         give_up("a piece of a segment that meets no other is not inserted");
       const std::size_t next = next_tries(tried, waiting, launch == 0);
-      if (fresh) usual = next;
+      if (fresh) fresh_size = next;
       fresh = launch == 0 || count == untried || !ctx_.device.shape().contiguous;
-      taken = fresh ? std::min(count, usual) : std::min({count - untried, next, waiting != 0 ? waiting : next});
+      taken = fresh ? std::min(count, fresh_size) : std::min({count - untried, next, waiting != 0 ? waiting : next});
       if (fresh) untried = count - taken;
       ctx_.statistics.segment_retries += waiting;
       if (launch == 0) most = count;

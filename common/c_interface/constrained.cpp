@@ -137,6 +137,38 @@ cadt_status cadt_device_triangulation_constraints(const cadt_device_triangulatio
   });
 }
 
+cadt_status cadt_device_triangulation_regions(const cadt_device_triangulation* mesh, void** inside, void** values,
+                                              void** attributes, size_t* count) {
+  return guarded([&] {
+    const cadt::DeviceTriangulation& m = required(mesh, "mesh").mesh;
+    auto &flags = required(inside, "inside"), &value = required(values, "values"),
+         &attribute = required(attributes, "attributes");
+    required(count, "count") = m.number_of_regions();
+    flags = m.inside();
+    value = m.region_values();
+    attribute = m.region_attributes();
+  });
+}
+
+cadt_status cadt_device_triangulation_chains(const cadt_device_triangulation* mesh, void** offsets, void** vertices,
+                                             size_t* length) {
+  return guarded([&] {
+    const cadt::DeviceTriangulation& m = required(mesh, "mesh").mesh;
+    auto &begins = required(offsets, "offsets"), &along = required(vertices, "vertices");
+    required(length, "length") = m.chain_length();
+    begins = m.chain_offsets();
+    along = m.chain_vertices();
+  });
+}
+
+cadt_status cadt_device_triangulation_download_constrained(const cadt_device_triangulation* mesh,
+                                                           cadt_constrained** copy) {
+  return guarded([&] {
+    auto& result = required(copy, "copy");
+    result = new cadt_constrained{required(mesh, "mesh").mesh.download_constrained()};
+  });
+}
+
 cadt_status cadt_device_triangulation_crossings(const cadt_device_triangulation* mesh, void** all_points,
                                                 void** added_parents, size_t* count) {
   return guarded([&] {

@@ -37,8 +37,4 @@ struct ConstrainedTriangulation::Data {
   mutable ConstrainedEdges edges_;
 };
 
-/// The edges of chains. O(n log n).
-[[nodiscard]] ConstrainedEdges edges_of_chains(std::span<const std::int64_t> offsets,
-                                               std::span<const std::int32_t> vertices);
-
 }  // namespace cadt

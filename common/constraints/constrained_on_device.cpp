@@ -3,22 +3,75 @@
 #include <string>
 #include <utility>
 
+#include "common/constraints/chains.hpp"
 #include "common/constraints/constraints.hpp"
 #include "common/constraints/crossed_segments.hpp"
 #include "common/constraints/domains.hpp"
+#include "common/constraints/mesh_copies.hpp"
 
 namespace cadt {
 namespace {
 
-void add_domains(Context& ctx, const ConstraintOptions& constraints, const DeviceChains& chains,
+using State = std::shared_ptr<Triangulator::State>;
+
+/// Seeds are few, and located on the host.
+DomainSeeds locate_on_host(const State& state, const DevicePoints& points, const ConstraintOptions& constraints,
+                           const DeviceTriangulation::Data& data) {
+  if (constraints.domain != Domain::seeds) return {};
+  Device& device = *state->device;
+  const auto triangles = device.read_values<std::int32_t>(*data.triangles, 3 * data.triangle_count);
+  const std::vector<double> xy =
+      data.places ? device.read_values<double>(*data.places, 2 * data.points) : copy_segments(state, points, {}).xy;
+  return locate_seeds(triangles, xy, {}, constraints);
+}
+
+void add_domains(const State& state, const DevicePoints& points, const ConstraintOptions& constraints,
                  DeviceTriangulation::Data& data) {
+  const DomainSeeds seeds = locate_on_host(state, points, constraints, data);
+  Statistics statistics;
+  Context ctx(*state->device, state->memory, state->options, statistics);
   const DomainMesh mesh = {data.triangles, data.neighbors, data.edge_flags, data.triangle_count};
-  Domains domains = find_domains(ctx, mesh, data.points, chains, {}, constraints);
+  const DeviceChains chains = {data.chain_offsets, data.chains, data.segments, data.chain_length};
+  Domains domains = find_domains(ctx, mesh, data.points, chains, seeds, constraints);
   InsideMesh inside = pack_inside(ctx, mesh, domains);
+  data.region_count = domains.value.size();
   data.regions = std::move(domains.region);
+  data.region_values = state->memory.upload(std::span(std::as_const(domains.value)));
+  data.region_attributes = state->memory.upload(std::span(std::as_const(domains.attribute)));
+  data.inside = std::move(inside.inside);
   data.number_inside = inside.triangles;
   data.triangles_inside = std::move(inside.vertices);
   data.neighbors_inside = std::move(inside.neighbors);
+}
+
+/// As constrain_on_grid, on the host.
+DeviceMesh snap(const State& state, const DevicePoints& points, const SegmentJob& job, double grid) {
+  const CopiedSegments copied = copy_segments(state, points, job);
+  ConstrainedTriangulation::Data mesh;
+  constrain_on_grid(state, copied.xy, copied.segments, grid, mesh);
+  return upload_mesh(state, mesh.moved, mesh);
+}
+
+DeviceMesh constrain(const State& state, const DevicePoints& points, SegmentJob job, bool exact) {
+  job.wants_crossings = exact ? FindCrossings::places : FindCrossings::pairs;
+  DeviceMesh mesh = triangulate_on_device(state, points, &job);
+  if (job.crossed && exact) return constrain_exactly(state, points, std::move(job));
+  if (job.crossed && job.crossings) refuse_crossings(state, PointsView(), {}, job.crossings);
+  if (job.count == 0) return mesh;
+  if (!job.crossed && mesh->triangle_count != 0) {
+    mesh->segments = job.count;
+    mesh->chain_offsets = std::move(job.chain_offsets);
+    mesh->chains = std::move(job.chains);
+    mesh->chain_length = job.chain_length;
+  } else {
+    const CopiedSegments copied = copy_segments(state, points, job);
+    if (job.crossed) refuse_crossings(state, copied.xy, copied.segments, std::nullopt);
+    ConstrainedTriangulation::Data on_line;
+    on_line.mesh = DeviceTriangulation(std::move(mesh)).download();
+    chain_on_line(copied.xy, copied.segments, on_line);
+    mesh = upload_mesh(state, {}, on_line);
+  }
+  return mesh;
 }
 
 }  // namespace
@@ -31,37 +84,15 @@ DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& po
                      segments.size / 2);
   if (segments.size != 0 && segments.memory == nullptr)
     throw InputError("the array of segments has no memory: DeviceArray::memory is null", 0);
-  if (constraints.crossing == Crossing::grid)
-    throw OptionError("crossing", "a grid moves points, which are not changed on the device; copy them to the host");
-  if (constraints.domain == Domain::seeds)
-    throw OptionError("domain", "seeds are located on the host; copy points and segments there");
-  const bool exact = constraints.crossing == Crossing::exact, has_domain = constraints.domain != Domain::hull;
   SegmentJob job;
   job.count = segments.size / 2;
   if (job.count != 0) job.segments = state_->memory.wrap(segments.memory, segments.size * sizeof(std::int32_t));
-  job.wants_chains = has_domain;
-  job.wants_crossings = exact ? FindCrossings::places : FindCrossings::pairs;
-  CrossedMesh mesh;
-  mesh.data = triangulate_on_device(state_, points, &job);
-  const std::size_t count = job.count;
-  if (!job.crossed) {
-    mesh.chain_offsets = std::move(job.chain_offsets);
-    mesh.chains = std::move(job.chains);
-    mesh.chain_length = job.chain_length;
-  } else if (exact) {
-    mesh = constrain_exactly(state_, points, std::move(job));
-  } else if (job.crossings) {
-    refuse_crossings(state_, PointsView(), {}, job.crossings);
-  } else {
-    const CopiedSegments copied = copy_segments(state_, points, job);
-    refuse_crossings(state_, copied.xy, copied.segments, std::nullopt);
-  }
-  if (has_domain && mesh.data->triangle_count != 0) {
-    Statistics statistics;
-    Context ctx(*state_->device, state_->memory, state_->options, statistics);
-    add_domains(ctx, constraints, {mesh.chain_offsets, mesh.chains, count, mesh.chain_length}, *mesh.data);
-  }
-  return DeviceTriangulation(std::move(mesh.data));
+  job.wants_chains = true;
+  DeviceMesh mesh = constraints.crossing == Crossing::grid
+                        ? snap(state_, points, job, constraints.grid)
+                        : constrain(state_, points, std::move(job), constraints.crossing == Crossing::exact);
+  if (constraints.domain != Domain::hull && mesh->triangle_count != 0) add_domains(state_, points, constraints, *mesh);
+  return DeviceTriangulation(std::move(mesh));
 }
 
 }  // namespace cadt

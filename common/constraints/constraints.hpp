@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,8 @@
 #include "common/points/key_grid.hpp"
 
 namespace cadt {
+
+using DeviceMesh = std::unique_ptr<DeviceTriangulation::Data>;
 
 /// What is wanted of segments that cross.
 enum class FindCrossings { no, pairs, places };

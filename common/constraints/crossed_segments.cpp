@@ -7,19 +7,16 @@
 #include <string>
 #include <utility>
 
+#include "common/constraints/chains.hpp"
 #include "common/constraints/crossings.hpp"
 #include "common/constraints/exact_crossings.hpp"
 #include "common/constraints/exact_triangulation.hpp"
 #include "common/constraints/implicit_point.hpp"
 #include "common/constraints/tasks.hpp"
-#include "common/driver/device_text.hpp"
-#include "common/points/device_points.hpp"
-#include "common/points/import.hpp"
 
 namespace cadt {
 namespace {
 
-using device_text::word;
 using State = std::shared_ptr<Triangulator::State>;
 using Data = ConstrainedTriangulation::Data;
 
@@ -132,8 +129,7 @@ bool constrain_rounded(const State& state, PointsView points, std::span<const Se
 }
 
 /// The same on the device; null if that is not the mesh.
-std::unique_ptr<DeviceTriangulation::Data> constrain_rounded(const State& state, std::size_t n, const SegmentJob& first,
-                                                             FoundCrossings& found) {
+DeviceMesh constrain_rounded(const State& state, std::size_t n, const SegmentJob& first, FoundCrossings& found) {
   Device& device = *state->device;
   RoundedCall call(device, n, found);
   auto data = triangulate_on_device(state, call.places, &call.job);
@@ -152,59 +148,14 @@ std::unique_ptr<DeviceTriangulation::Data> constrain_rounded(const State& state,
   data->added = found.count;
   data->places = std::move(found.places);
   data->added_parents = std::move(found.pairs);
+  data->segments = first.count;
+  data->chain_offsets = std::move(found.chain_offsets);
+  data->chains = std::move(found.chains);
+  data->chain_length = found.chain_length;
   return data;
 }
 
-template <class Values>
-Allocation upload(Context& ctx, const Values& values) {
-  const std::size_t bytes = values.size() * sizeof(values[0]);
-  Allocation to = ctx.memory.allocate(std::max(bytes, word));
-  if (bytes != 0) ctx.device.write(*to, 0, values.data(), bytes);
-  return to;
-}
-
-/// A mesh that was made on the host.
-CrossedMesh upload_mesh(Context& ctx, const State& state, std::vector<double> xy, const Data& from) {
-  const Triangulation& mesh = from.mesh;
-  CrossedMesh out{std::make_unique<DeviceTriangulation::Data>(), {}, {}, from.chain_vertices.size()};
-  DeviceTriangulation::Data& to = *out.data;
-  to.state = state;
-  to.points = mesh.number_of_points();
-  to.duplicate_count = mesh.duplicates().size();
-  to.distinct = to.points - to.duplicate_count;
-  to.triangle_count = mesh.number_of_triangles();
-  to.dimension = mesh.dimension();
-  to.statistics = mesh.statistics();
-  to.triangles = upload(ctx, mesh.triangles());
-  to.neighbors = upload(ctx, mesh.neighbors());
-  to.edge_flags = upload(ctx, from.edge_flags);
-  if (to.duplicate_count != 0) {
-    std::vector<std::int32_t> points, representatives;
-    for (const Duplicate& d : mesh.duplicates()) {
-      points.push_back(d.point);
-      representatives.push_back(d.representative);
-    }
-    to.duplicate_points = upload(ctx, points);
-    to.representatives = upload(ctx, representatives);
-  }
-  xy.insert(xy.end(), from.added.begin(), from.added.end());
-  to.added = from.parents.size();
-  to.rounded_valid = from.rounded_valid;
-  to.places = upload(ctx, xy);
-  to.added_parents = upload(ctx, from.parents);
-  out.chain_offsets = upload(ctx, std::vector<std::uint32_t>(from.chain_offsets.begin(), from.chain_offsets.end()));
-  out.chains = upload(ctx, from.chain_vertices);
-  return out;
-}
-
 }  // namespace
-
-void take_chains(Data& data, std::vector<std::int64_t> offsets, std::vector<std::int32_t> vertices) {
-  data.chain_offsets = std::move(offsets);
-  data.chain_vertices = std::move(vertices);
-  for (std::size_t s = 0; s + 1 < data.chain_offsets.size(); ++s)
-    if (data.chain_offsets[s] == data.chain_offsets[s + 1]) data.degenerate.push_back(static_cast<std::int32_t>(s));
-}
 
 void refuse_crossings(const State& state, PointsView points, std::span<const Segment> segments,
                       const std::optional<FoundCrossings>& found) {
@@ -238,34 +189,15 @@ void constrain_exactly(const State& state, PointsView points, std::span<const Se
   take_chains(data, std::move(exact.offsets), std::move(exact.vertices));
 }
 
-CrossedMesh constrain_exactly(const State& state, const DevicePoints& points, SegmentJob job) {
+DeviceMesh constrain_exactly(const State& state, const DevicePoints& points, SegmentJob job) {
   if (job.crossings && job.crossings->places) {
     FoundCrossings found = std::move(*job.crossings);
-    if (auto data = constrain_rounded(state, points.size, job, found))
-      return {std::move(data), std::move(found.chain_offsets), std::move(found.chains), found.chain_length};
+    if (DeviceMesh mesh = constrain_rounded(state, points.size, job, found)) return mesh;
   }
-  CopiedSegments copied = copy_segments(state, points, job);
+  const CopiedSegments copied = copy_segments(state, points, job);
   Data mesh;
   constrain_exactly(state, copied.xy, copied.segments, std::nullopt, mesh);
-  Statistics statistics;
-  Context ctx(*state->device, state->memory, state->options, statistics);
-  return upload_mesh(ctx, state, std::move(copied.xy), mesh);
-}
-
-CopiedSegments copy_segments(const State& state, const DevicePoints& points, const SegmentJob& job) {
-  Statistics statistics;
-  Context ctx(*state->device, state->memory, state->options, statistics);
-  const Allocation imported = import_points(ctx, points);
-  CopiedSegments copied;
-  if (takes_floats_only(ctx.device)) {
-    const std::vector<float> floats = ctx.device.read_values<float>(*imported, 2 * points.size);
-    copied.xy.assign(floats.begin(), floats.end());
-  } else {
-    copied.xy = ctx.device.read_values<double>(*imported, 2 * points.size);
-  }
-  copied.segments = ctx.device.read_values<Segment>(*job.segments, job.count);
-  ctx.device.finish();
-  return copied;
+  return upload_mesh(state, copied.xy, mesh);
 }
 
 }  // namespace cadt

@@ -256,10 +256,12 @@ InsideMesh pack_inside(Context& ctx, const DomainMesh& mesh, const Domains& doma
   Launcher& launch = ctx.launcher;
   const LaunchGrid all = launch.grid(mesh.triangles);
   const std::size_t regions = domains.inside.size();
-  const Allocation inside = ctx.memory.allocate(regions * word),
+  const Allocation of_regions = ctx.memory.allocate(regions * word),
                    places = ctx.memory.allocate((mesh.triangles + 1) * word);
-  ctx.device.write(*inside, 0, domains.inside.data(), regions * word);
-  launch.run<KernelId::cadt_domain_flags>(domains.region, inside, all, places);
+  packed.inside = ctx.memory.allocate((mesh.triangles + 1) * word);
+  ctx.device.write(*of_regions, 0, domains.inside.data(), regions * word);
+  launch.run<KernelId::cadt_domain_flags>(domains.region, of_regions, all, packed.inside);
+  launch.run<KernelId::cadt_domain_flags>(domains.region, of_regions, all, places);
   launch.scan(places, mesh.triangles + 1);
   packed.triangles = launch.read_word(places, mesh.triangles);
   if (packed.triangles == 0) return packed;

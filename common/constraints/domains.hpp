@@ -59,6 +59,7 @@ struct Domains {
 
 /// Triangles inside, in the order of the mesh; a neighbour that is not inside is CADT_NONE.
 struct InsideMesh {
+  Allocation inside;                           ///< a word a triangle of the mesh, 1 or 0, and one more
   Allocation vertices, neighbors, edge_flags;  ///< null if there are none
   std::size_t triangles = 0;
 };

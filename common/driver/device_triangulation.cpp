@@ -54,7 +54,14 @@ const Statistics& DeviceTriangulation::statistics() const noexcept { return data
 void* DeviceTriangulation::triangles() const noexcept { return handle_of(*data_, data_->triangles); }
 void* DeviceTriangulation::neighbors() const noexcept { return handle_of(*data_, data_->neighbors); }
 void* DeviceTriangulation::edge_flags() const noexcept { return handle_of(*data_, data_->edge_flags); }
+void* DeviceTriangulation::chain_offsets() const noexcept { return handle_of(*data_, data_->chain_offsets); }
+void* DeviceTriangulation::chain_vertices() const noexcept { return handle_of(*data_, data_->chains); }
+std::size_t DeviceTriangulation::chain_length() const noexcept { return data_->chain_length; }
 void* DeviceTriangulation::regions() const noexcept { return handle_of(*data_, data_->regions); }
+void* DeviceTriangulation::inside() const noexcept { return handle_of(*data_, data_->inside); }
+std::size_t DeviceTriangulation::number_of_regions() const noexcept { return data_->region_count; }
+void* DeviceTriangulation::region_values() const noexcept { return handle_of(*data_, data_->region_values); }
+void* DeviceTriangulation::region_attributes() const noexcept { return handle_of(*data_, data_->region_attributes); }
 void* DeviceTriangulation::triangles_inside() const noexcept { return handle_of(*data_, data_->triangles_inside); }
 void* DeviceTriangulation::neighbors_inside() const noexcept { return handle_of(*data_, data_->neighbors_inside); }
 std::size_t DeviceTriangulation::number_inside() const noexcept { return data_->number_inside; }

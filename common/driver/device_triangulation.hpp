@@ -31,14 +31,20 @@ struct Triangulator::State {
 struct DeviceTriangulation::Data {
   std::shared_ptr<Triangulator::State> state;  // first member: destroyed last, after the memory
   std::size_t points = 0, distinct = 0, triangle_count = 0, duplicate_count = 0;
-  Allocation triangles, neighbors;  ///< 3 words a triangle each
-  Allocation edge_flags;            ///< a word a triangle; null without segments
-  Allocation regions;               ///< a word a triangle; null without a domain
+  Allocation triangles, neighbors;   ///< 3 words a triangle each
+  Allocation edge_flags;             ///< a word a triangle; null without segments
+  Allocation chain_offsets, chains;  ///< vertices along each of `segments` segments; null without segments
+  std::size_t segments = 0, chain_length = 0;
+  Allocation regions, inside;                   ///< a word a triangle; null without a domain, as the rest of it
+  Allocation region_values, region_attributes;  ///< a word, a double a region
+  std::size_t region_count = 0;
   Allocation triangles_inside, neighbors_inside;
   std::size_t number_inside = 0;
-  Allocation places, added_parents;  ///< of all points; of the last `added` ones, crossings. Null without crossings
+  /// Of all points, where they are not those of the input: crossings are added, or a grid has moved them.
+  Allocation places;
+  Allocation added_parents;  ///< of the last `added` points, crossings
   std::size_t added = 0;
-  bool rounded_valid = true;
+  bool moved = false, rounded_valid = true;
   Allocation duplicate_points, representatives;  ///< null if there are none
   int dimension = -1;
   Statistics statistics;

@@ -89,4 +89,10 @@ Allocation Memory::import(const void* data, std::size_t bytes) {
   return copy;
 }
 
+Allocation Memory::upload(const void* data, std::size_t bytes) {
+  Allocation copy = allocate(bytes);
+  device_.write(*copy, 0, data, bytes);
+  return copy;
+}
+
 }  // namespace cadt

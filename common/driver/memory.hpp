@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "common/driver/buffer_cache.hpp"
@@ -76,6 +77,11 @@ class Memory {
   [[nodiscard]] bool pools(std::size_t bytes) const noexcept { return caches() && cache_->pools(bytes); }
   /// The caller's data: aliased if the device can, else copied.
   [[nodiscard]] Allocation import(const void* data, std::size_t bytes);
+  /// A copy of the host's values; null if there are none.
+  template <class T>
+  [[nodiscard]] Allocation upload(std::span<const T> values) {
+    return values.empty() ? Allocation() : upload(values.data(), values.size_bytes());
+  }
   /// The caller's device memory.
   [[nodiscard]] Allocation wrap(void* handle, std::size_t bytes) { return Allocation(device_.wrap(handle, bytes)); }
   /// The caller's memory, for kernels to write to, if the device can; else null.
@@ -107,6 +113,7 @@ class Memory {
 
  private:
   friend class Allocation;
+  [[nodiscard]] Allocation upload(const void* data, std::size_t bytes);
   [[nodiscard]] Allocation serve(std::size_t bytes, Lifetime lifetime, bool zeros);
   /// A new buffer; if the device has too little, it is asked once more after the cached buffers are freed.
   [[nodiscard]] std::unique_ptr<Buffer> ask(std::size_t bytes, bool zeros);

@@ -52,7 +52,7 @@ CADT_API cadt_status cadt_triangulator_triangulate_constrained(cadt_triangulator
                                                                const cadt_constraint_options* constraints,
                                                                cadt_constrained** mesh);
 CADT_API void cadt_constrained_free(cadt_constrained* mesh);
-/* From device memory to device memory; `segments`: two int32 words each. CADT_CROSSING_ERROR or EXACT. */
+/* From device memory to device memory; `segments`: two int32 words each. */
 CADT_API cadt_status cadt_triangulator_triangulate_constrained_device(cadt_triangulator* triangulator,
                                                                       const cadt_device_points* points,
                                                                       const cadt_device_array* segments,
@@ -63,11 +63,22 @@ CADT_API cadt_status cadt_triangulator_triangulate_constrained_device(cadt_trian
 CADT_API cadt_status cadt_device_triangulation_constraints(const cadt_device_triangulation* mesh, void** edge_flags,
                                                            void** regions, void** triangles_inside,
                                                            size_t* number_inside);
-/* With CADT_CROSSING_EXACT, of segments that cross: how many crossings are vertices, behind the points that were given,
- * and handles of the coordinates of all of these, two doubles each, and of the pair of segments of each crossing, two
- * words; NULL without crossings (DeviceTriangulation). */
+/* More of them: 1 or 0 for each triangle, whether it is inside, a word; of `count` regions the value of each, a word,
+ * and the attribute, a double. */
+CADT_API cadt_status cadt_device_triangulation_regions(const cadt_device_triangulation* mesh, void** inside,
+                                                       void** values, void** attributes, size_t* count);
+/* Handles of the vertices along segment s: words from that with the number in word s of the offsets to that before the
+ * one in word s + 1; `length`: of the vertices. NULL without segments. */
+CADT_API cadt_status cadt_device_triangulation_chains(const cadt_device_triangulation* mesh, void** offsets,
+                                                      void** vertices, size_t* length);
+/* Of segments that cross: how many crossings are vertices, behind the points that were given, and handles of the
+ * coordinates of all of these, two doubles each, and of the pair of segments of each crossing, two words; NULL without
+ * crossings, but with CADT_CROSSING_GRID the coordinates are always there (DeviceTriangulation). */
 CADT_API cadt_status cadt_device_triangulation_crossings(const cadt_device_triangulation* mesh, void** all_points,
                                                          void** added_parents, size_t* count);
+/* A copy on the host, with all of the segments. */
+CADT_API cadt_status cadt_device_triangulation_download_constrained(const cadt_device_triangulation* mesh,
+                                                                    cadt_constrained** copy);
 
 /* Its triangles, neighbours, hull, duplicates, statistics, as a handle of its own: O(1). Its points are those of the
  * input and, behind them, the added ones. */

@@ -67,16 +67,28 @@ class CADT_API DeviceTriangulation {
   [[nodiscard]] void* neighbors() const noexcept;
   /// Handle of the constrained edges, a word a triangle: bit k for the edge opposite vertex k; null without segments.
   [[nodiscard]] void* edge_flags() const noexcept;
-  /// With ConstraintOptions::domain: handle of the region of each triangle, numbered by their lowest triangles from 0,
-  /// and of the triangles inside alone, 3 words each, in the same order, with their neighbours, -1 for one that is not
-  /// inside. Null with Domain::hull, or if there are none.
+  /// Handles of the vertices along the segments, as ConstrainedTriangulation::chain_vertices(): segment s has those
+  /// from word s of the offsets to that before word s + 1. Null without segments, or if all are degenerate.
+  [[nodiscard]] void* chain_offsets() const noexcept;
+  [[nodiscard]] void* chain_vertices() const noexcept;
+  [[nodiscard]] std::size_t chain_length() const noexcept;
+  /// With a ConstraintOptions::domain other than hull: handles of the region of each triangle, numbered by their lowest
+  /// triangles from 0, and of whether it is inside, a word each: 1 or 0; of the value of each region, a word, and its
+  /// attribute, a double (ConstrainedTriangulation::region_value, region_attribute). Null if there are none.
   [[nodiscard]] void* regions() const noexcept;
+  [[nodiscard]] void* inside() const noexcept;
+  [[nodiscard]] std::size_t number_of_regions() const noexcept;
+  [[nodiscard]] void* region_values() const noexcept;
+  [[nodiscard]] void* region_attributes() const noexcept;
+  /// The triangles inside alone, 3 words each, in the same order, and their neighbours, -1 for one that is not inside.
+  /// Null with Domain::hull, or if there are none.
   [[nodiscard]] void* triangles_inside() const noexcept;
   [[nodiscard]] void* neighbors_inside() const noexcept;
   [[nodiscard]] std::size_t number_inside() const noexcept;
-  /// With Crossing::exact, of segments that cross: how many crossings are vertices, numbered behind the input's points
-  /// and counted by number_of_points(). Handles of the coordinates of all of these, two doubles each, crossings rounded
-  /// to the nearest, and of the lowest pair of segments that cross at each crossing, two words; null without crossings.
+  /// Of segments that cross: how many crossings are vertices, numbered behind the input's points and counted by
+  /// number_of_points(). Handles of the coordinates of all of these, two doubles each, crossings rounded to the
+  /// nearest, and of the lowest pair of segments that cross at each crossing, two words; null without crossings. With
+  /// Crossing::grid coordinates are always there: where all points have moved.
   [[nodiscard]] std::size_t number_added() const noexcept;
   [[nodiscard]] void* all_points() const noexcept;
   [[nodiscard]] void* added_parents() const noexcept;
@@ -94,6 +106,8 @@ class CADT_API DeviceTriangulation {
 
   /// A copy on the host, with the hull; waits for the device. O(triangles). \throws DeviceError, OutOfMemory
   [[nodiscard]] Triangulation download() const;
+  /// The same with all of the segments. O(triangles + segments). \throws DeviceError, OutOfMemory
+  [[nodiscard]] ConstrainedTriangulation download_constrained() const;
 
   struct Data;  // internal
   explicit DeviceTriangulation(std::unique_ptr<Data> data);
@@ -145,9 +159,9 @@ class CADT_API Triangulator {
   [[nodiscard]] ConstrainedTriangulation triangulate_constrained(PointsView points, std::span<const Segment> segments,
                                                                  const ConstraintOptions& constraints = {});
   /// The same with points and segments on the device, where the mesh stays: `segments` are pairs of indices, two words
-  /// a segment. Crossing::error or exact. Where the device cannot find what crosses (several segments through one
-  /// place, very many through the same triangles), points and segments are copied to the host, and the exact mesh back.
-  /// \throws as cadt::triangulate_constrained, and OptionError for Crossing::grid and Domain::seeds
+  /// a segment. Points and segments are copied to the host, and the mesh back, with Crossing::grid and where the device
+  /// cannot find what crosses (several segments through one place, very many through the same triangles); with
+  /// Domain::seeds, points and triangles are copied there. \throws as cadt::triangulate_constrained
   [[nodiscard]] DeviceTriangulation triangulate_constrained(const DevicePoints& points, const DeviceArray& segments,
                                                             const ConstraintOptions& constraints = {});
 

@@ -149,6 +149,10 @@ class Array:
         handle = getattr(mesh, f"{which}_handle")
         return self.of_handle(mesh, handle, shape) if handle else self.from_host(np.zeros(shape, np.int32))
 
+    def flags(self, words: Any) -> Any:
+        """Words, each 0 or not, as bool."""
+        return words != 0
+
     def doubles(self, mesh: Any, which: str, shape: tuple[int, ...]) -> Any:
         """The same of doubles, which the mesh must have."""
         return self.of_handle(mesh, getattr(mesh, f"{which}_handle"), shape, "float64")
@@ -357,6 +361,9 @@ class OpenCl(Array):
 
     def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
         return self.cl.array.empty(self.cl_queue, shape, dtype)
+
+    def flags(self, words: Any) -> Any:
+        return (words != 0).view(np.bool_)  # of the same size as what PyOpenCL makes
 
     def of_handle(self, mesh: Any, handle: int, shape: tuple[int, ...], dtype: str = "int32") -> Any:
         buffer = self.cl.Buffer.from_int_ptr(handle)

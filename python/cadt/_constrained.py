@@ -20,6 +20,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
+# Of a mesh on a device, what has to be as on the host.
+_COMPARED = (
+    *("edge_flags", "inside", "region", "region_value", "region_attribute"),
+    *("added_points", "added_parents", "moved_points", "rounded_valid"),
+)
+
+
 class ConstrainedDelaunay(Mesh):
     """The triangulation of points that has given segments as edges, and is Delaunay but for them.
 
@@ -65,18 +72,17 @@ class ConstrainedDelaunay(Mesh):
     Ctrl-C ends a call. Meshes never change, and threads may share them.
 
     Points on a GPU: segments are int32 or int64 of the same library there, or of the host, as polylines and rings are;
-    these are uploaded, being indices. `simplices`, `neighbors`, `edge_flags`, `triangles_inside` and, but with
-    ``domain="hull"``, `region` are arrays on the device, without a copy, and queries are answered there. So are `points`,
-    `added_points` and `added_parents` with ``crossing="exact"``. (JAX rounds `points` to float32 unless
-    ``jax_enable_x64`` is set; queries take the doubles.) Where the device cannot find what crosses - several segments
-    through one place, or very many through the same triangles - points and segments are copied to the host, and the mesh
-    back. Grids and seeds are refused. `hash` and `verify` make the mesh again on the host and compare. The rest (`chains`,
-    `constrained_edges`, `inside`, `at_crossings` of a mesh with crossings, ...) is not kept there and raises
-    `OptionError`: pass points of the host for it; ``backend="cuda"`` computes them on the GPU as well.
+    these are uploaded, being indices. All arrays are of the points' library. `simplices`, `neighbors`, `edge_flags`,
+    `chains`, `triangles_inside`, `added_points`, `added_parents`, the `points` of a mesh with crossings and, but with
+    ``domain="hull"``, `inside` and what is told of regions are those of the device, without a copy; all others are made on
+    the host and uploaded. Queries are answered there. (JAX rounds doubles to float32 unless ``jax_enable_x64`` is set;
+    queries take the doubles.) Points and segments are copied to the host, and the mesh back, with a grid, and where the
+    device cannot find what crosses: several segments through one place, or very many through the same triangles. For
+    seeds, points and triangles are copied there. `hash` and `verify` make the mesh again on the host and compare.
 
     Interpolation and rasters take values of the points that were given (`at_crossings` says what crossings get) or of all
-    `points`; on a GPU, of all `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a
-    Delaunay mesh: unless all segments happen to be Delaunay edges they raise `NotDelaunay`; ask ``Delaunay(mesh.points)``.
+    `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a Delaunay mesh: unless all
+    segments happen to be Delaunay edges they raise `NotDelaunay`; ask ``Delaunay(mesh.points)``.
 
     Examples
     --------
@@ -123,11 +129,11 @@ class ConstrainedDelaunay(Mesh):
         self._constraints = constraints_of(crossing, domain, holes, regions)
         self._again = {"crossing": crossing, "domain": domain, "holes": holes, "regions": regions}
         if (on_gpu := array_on_device(points)) is not None:
-            self._mesh, self._points = None, points
+            self._mesh, self._points, self._given = None, points, int(on_gpu.a.shape[0])
             self._segments = segments_there(on_gpu, segments, polylines, rings)
             how = (backend, device, "canonical", threads, max_memory, statistics)
             with reporter(progress) as report:
-                self._gpu = _gpu.ConstrainedMesh(on_gpu, self._segments, self._constraints, domain, how, report)
+                self._gpu = _gpu.ConstrainedMesh(on_gpu, self._segments, self._constraints, domain != "hull", how, report)
             self._options = self._gpu.options
             if self._gpu.all_points is not None:
                 self._points = self._gpu.all_points
@@ -135,6 +141,7 @@ class ConstrainedDelaunay(Mesh):
         if adapter_of(segments) is not None:
             raise InputError("segments on a device need points there: pass points on it, or segments of the host", 0)
         self._input = as_points(points)
+        self._given = len(self._input)
         self._segments = segments_of(segments, polylines, rings, len(self._input))
         self._options = _devices.make_options(backend, device, "canonical", threads, max_memory, statistics)
         arguments = (self._input, self._segments, self._constraints)
@@ -183,7 +190,7 @@ class ConstrainedDelaunay(Mesh):
         Those of segment s are ``indices[indptr[s]:indptr[s + 1]]``, from its first end to its second; none if its ends
         are equal points.
         """
-        return self._of("chains", lambda c: c.chains)
+        return self._of("chains", lambda c: c.chains, lambda g: g.chains)
 
     @property
     def degenerate_segments(self) -> np.ndarray:
@@ -195,7 +202,7 @@ class ConstrainedDelaunay(Mesh):
     @property
     def inside(self) -> np.ndarray:
         """(t,) bool: whether each triangle is inside (the parameter `domain`)."""
-        return self._of("inside", lambda c: c.inside.view(bool))
+        return self._of("inside", lambda c: c.inside.view(bool), lambda g: g.inside)
 
     @property
     def triangles_inside(self) -> Any:
@@ -209,18 +216,18 @@ class ConstrainedDelaunay(Mesh):
 
     @property
     def n_regions(self) -> int:
-        return len(self.region_value)
+        return self.region_value.shape[0]
 
     @property
     def region_value(self) -> np.ndarray:
         """(r,) int32: depth of each region ("layers"), winding number ("nonzero"), segments crossed modulo 2
         ("even_odd"), else 1 inside and 0 outside."""
-        return self._of("region_value", lambda c: c.region_value)
+        return self._of("region_value", lambda c: c.region_value, lambda g: g.region_value)
 
     @property
     def region_attribute(self) -> np.ndarray:
         """(r,) float64: what the parameter `regions` says of each region, else 0."""
-        return self._of("region_attribute", lambda c: c.region_attribute)
+        return self._of("region_attribute", lambda c: c.region_attribute, lambda g: g.region_attribute)
 
     # Crossings
 
@@ -249,19 +256,19 @@ class ConstrainedDelaunay(Mesh):
         """Values of the points that were given, shape (n, ...), with those of `added_points` behind them.
 
         They are linear along the first of their two segments (`added_parents`) from the given point before to the one
-        behind. On a GPU, where no chains are kept, a mesh with crossings raises `OptionError`.
+        behind. Those of points on a GPU are computed on the host.
 
         >>> mesh = cadt.ConstrainedDelaunay([[0, 0], [2, 2], [0, 2], [2, 0]], [[0, 1], [2, 3]], crossing="exact")
         >>> mesh.at_crossings([0, 10, 7, 7])
         array([ 0., 10.,  7.,  7.,  5.])
         """
-        if self._gpu is not None:
-            return self._gpu.at_crossings(values)
-        n = len(self._input)
-        v, one = as_values(values, n)
-        if not len(self.added_points):
+        n, array = self._given, None if self._gpu is None else self._gpu.array
+        if self._gpu is not None and n == self.n_points:
+            return self._gpu._values(values)[0]
+        v, one = as_values(array.host_of(values) if array is not None and array.is_here(values) else values, n)
+        if n == self.n_points:
             return v.reshape(n, *one)
-        indptr, chain = self.chains
+        points, parents, (indptr, chain) = self._host_points, self._on_host.added_parents, self._on_host.chains
         of = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))  # the segment of each place in the chains
         place = np.arange(len(chain))
         given = chain < n
@@ -270,14 +277,15 @@ class ConstrainedDelaunay(Mesh):
         behind = np.minimum.accumulate(np.where(given, place, len(chain))[::-1])[::-1]
         # Each added point on the first of its segments.
         on = place[~given]
-        on = on[of[on] == self.added_parents[chain[on] - n, 0]]
-        a, b, p = (self._points[chain[at]] for at in (before[on], behind[on], on))
+        on = on[of[on] == parents[chain[on] - n, 0]]
+        a, b, p = (points[chain[at]] for at in (before[on], behind[on], on))
         along = b - a
         square = (along * along).sum(axis=1)
         part = np.clip(((p - a) * along).sum(axis=1) / np.where(square > 0, square, 1), 0, 1)[:, None]
-        result = np.concatenate([v, np.full((len(self.added_points), v.shape[1]), np.nan)])
+        result = np.concatenate([v, np.full((len(parents), v.shape[1]), np.nan)])
         result[chain[on]] = (1 - part) * v[chain[before[on]]] + part * v[chain[behind[on]]]
-        return result.reshape(len(result), *one)
+        result = result.reshape(len(result), *one)
+        return result if array is None else array.like(result)
 
     # Checks and pictures
 
@@ -297,21 +305,30 @@ class ConstrainedDelaunay(Mesh):
 
         `how` is passed to ``triplot``.
         """
-        if self._gpu is not None:
-            raise _gpu.not_there("plot")
         return _show.plot_constrained(self, ax, inside, how)
 
     # Plumbing
 
     def _of(self, name: str, of: Callable, of_gpu: Callable | None = None) -> Any:
         if name not in self._cache:
-            if self._gpu is None:
-                self._cache[name] = of(self._made)
-            elif of_gpu is None:
-                raise _gpu.not_there(name)
-            else:
-                self._cache[name] = of_gpu(self._gpu)
+            there = None if self._gpu is None or of_gpu is None else of_gpu(self._gpu)
+            if there is None:
+                there = of(self._on_host) if self._gpu is None else self._gpu.array.like(of(self._on_host))
+            self._cache[name] = there
         return self._cache[name]
+
+    @property
+    def _on_host(self) -> _cadt.ConstrainedTriangulation:
+        """The mesh with its segments on the host; of a device, a copy."""
+        if self._gpu is None:
+            return self._made
+        if "on_host" not in self._cache:
+            self._cache["on_host"] = self._gpu.mesh.download_constrained()
+        return self._cache["on_host"]
+
+    @property
+    def _host_mesh(self) -> _cadt.Triangulation:
+        return self._on_host.mesh
 
     def _host_input(self) -> tuple[np.ndarray, np.ndarray]:
         """Points and segments, copied to the host where they are on a device."""
@@ -321,37 +338,28 @@ class ConstrainedDelaunay(Mesh):
         return as_points(array.to_host()), contiguous(array.host_of(self._segments), np.int32)
 
     def _host_made(self) -> _cadt.ConstrainedTriangulation:
-        """The mesh with its segments on the host. That of a device is made again there, and must be equal."""
+        """As `_on_host`. That of a device is made again on the host, and must be equal."""
         if self._gpu is None:
             return self._made
         options = _devices.make_options("host", None, "canonical", None, None, "counters")
         points, segments = self._host_input()
         made = _cadt.triangulate_constrained(points, segments, self._constraints, options)
-        there, host_of = self._host_mesh, self._gpu.array.host_of
-        pairs: list[tuple[Any, Any]] = [(there.triangles, made.mesh.triangles)]
-        pairs.append((there.neighbors, made.mesh.neighbors))
-        pairs.append((self._host_points[len(points) :], made.added_points))
-        pairs.append((host_of(self.added_parents), made.added_parents))
-        pairs.append((self.rounded_valid, made.rounded_valid))
-        if self.n_triangles:
-            pairs.append((host_of(self.edge_flags), made.edge_flags))
-            pairs.append((host_of(self.triangles_inside), made.triangles_inside()))
-            if self._again["domain"] != "hull":
-                pairs.append((host_of(self.region), made.region))
-        if not all(np.array_equal(a, b) for a, b in pairs):
+        there = self._gpu.mesh.download_constrained()
+        pairs = [(of.mesh.triangles, of.mesh.neighbors, *of.chains) for of in (there, made)]
+        for name in _COMPARED:
+            pairs[0] += (getattr(there, name),)
+            pairs[1] += (getattr(made, name),)
+        if not all(np.array_equal(a, b) for a, b in zip(*pairs)):
             raise InternalError("the mesh on the device is not the one that the host makes of the same input")
         return made
 
-    def _values(self, values: Any) -> tuple[np.ndarray, tuple[int, ...]]:
-        if self.n_points != len(self._input) and np.shape(values)[:1] == (len(self._input),):
-            values = self.at_crossings(values)
-        return as_values(values, self.n_points)
+    def _complete(self, values: Any) -> Any:
+        of_given = self._given != self.n_points and np.shape(values)[:1] == (self._given,)
+        return self.at_crossings(values) if of_given else values
 
     def _queries(self) -> _cadt.Queries:
-        if self._gpu is not None:
-            raise _gpu.not_there("this")
         if "queries" not in self._cache:
-            self._cache["queries"] = _cadt.Queries(self._input, self._made, self._options)
+            self._cache["queries"] = _cadt.Queries(self._host_input()[0], self._on_host, self._options)
         return self._cache["queries"]
 
     def __repr__(self) -> str:

@@ -132,14 +132,14 @@ class ConstrainedMesh(Mesh):
     """A mesh with segments in device memory."""
 
     def __init__(
-        self, array: Array, segments: Any, constraints: Any, domain: str, arguments: tuple, report: Any
+        self, array: Array, segments: Any, constraints: Any, has_domain: bool, arguments: tuple, report: Any
     ) -> None:
-        self.segments, self._constraints, self._hull = segments, constraints, domain == "hull"
+        self.segments, self._constraints, self._has_domain = segments, constraints, has_domain
         super().__init__(array, arguments, report)
         mesh = self.mesh
         self._given, self._shape = int(array.a.shape[0]), (mesh.number_of_points, 2)
-        self.all_points: Any = None  # with crossings
-        if mesh.number_added:
+        self.all_points: Any = None  # where they are not the points that were given
+        if mesh.all_points_handle:
             self.all_points = array.doubles(mesh, "all_points", self._shape)
             self.points = _cadt.DevicePoints(mesh.all_points_handle, mesh.number_of_points, False)
 
@@ -152,6 +152,13 @@ class ConstrainedMesh(Mesh):
             return super().points_on_host()
         return self.array.doubles_on_host(self.mesh, "all_points", self._shape)
 
+    def bounds(self) -> tuple[float, float, float, float]:
+        if self.all_points is None:
+            return super().bounds()
+        xy = self.points_on_host()
+        (x0, y0), (x1, y1) = xy.min(axis=0).tolist(), xy.max(axis=0).tolist()
+        return (x0, y0, x1, y1)
+
     @property
     def added_points(self) -> Any:
         if self.all_points is None:
@@ -162,43 +169,46 @@ class ConstrainedMesh(Mesh):
     def added_parents(self) -> Any:
         return self.array.words(self.mesh, "added_parents", (self.mesh.number_added, 2))
 
-    def at_crossings(self, values: Any) -> Any:
-        if self.all_points is not None:
-            raise not_there("at_crossings")
-        return self._values(values)[0]
+    @property
+    def edge_flags(self) -> Any:
+        return self._of_triangles("edge_flags")
 
-    def _values(self, values: Any) -> tuple[Any, tuple[int, ...]]:
-        if self.all_points is not None and np.shape(values)[:1] == (self._given,):
-            raise OptionError(
-                "values of the points that were given need at_crossings, which is not for meshes in device memory: pass "
-                "values of all `points`, or points of the host (backend= computes anywhere)",
-                "values",
-            )
-        return super()._values(values)
+    @property
+    def chains(self) -> tuple[Any, Any]:
+        offsets = self.array.words(self.mesh, "chain_offsets", (self.segments.shape[0] + 1,))
+        return offsets, self.array.words(self.mesh, "chain_vertices", (self.mesh.chain_length,))
+
+    # Domains: none of these without one, but for the triangles inside.
 
     @property
     def number_inside(self) -> int:
-        return self.mesh.number_of_triangles if self._hull else self.mesh.number_inside
-
-    @property
-    def edge_flags(self) -> Any:
-        return self.array.words(self.mesh, "edge_flags", (self.mesh.number_of_triangles,))
-
-    @property
-    def region(self) -> Any:
-        if self._hull:
-            raise OptionError("regions on a device need a domain: domain='outer' makes them", "domain")
-        return self.array.words(self.mesh, "regions", (self.mesh.number_of_triangles,))
+        return self.mesh.number_inside if self._has_domain else self.mesh.number_of_triangles
 
     @property
     def triangles_inside(self) -> Any:
-        if self._hull:
+        if not self._has_domain:
             return self.simplices
         return self.array.words(self.mesh, "triangles_inside", (self.mesh.number_inside, 3))
 
+    @property
+    def inside(self) -> Any:
+        return self.array.flags(self._of_triangles("inside")) if self._has_domain else None
 
-def not_there(name: str) -> OptionError:
-    return OptionError(
-        f"{name} is not for meshes with segments in device memory: pass points of the host (backend= computes anywhere)",
-        "points",
-    )
+    @property
+    def region(self) -> Any:
+        return self._of_triangles("regions") if self._has_domain else None
+
+    @property
+    def region_value(self) -> Any:
+        if not self._has_domain:
+            return None
+        return self.array.words(self.mesh, "region_values", (self.mesh.number_of_regions,))
+
+    @property
+    def region_attribute(self) -> Any:
+        if not self._has_domain or self.mesh.number_of_regions == 0:
+            return None
+        return self.array.doubles(self.mesh, "region_attributes", (self.mesh.number_of_regions,))
+
+    def _of_triangles(self, which: str) -> Any:
+        return self.array.words(self.mesh, which, (self.mesh.number_of_triangles,))

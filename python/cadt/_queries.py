@@ -111,7 +111,7 @@ class Queries:
         _one_of(method, _METHODS, "method")
         _one_of(outside, ("nan", "nearest"), "outside")
         if self._gpu is not None:
-            return self._gpu.interpolate(values, xi, method, outside)
+            return self._gpu.interpolate(self._complete(values), xi, method, outside)
         v, one = self._values(values)
         q, shape = as_queries(xi)
         if v.shape[1] == 0:
@@ -170,7 +170,7 @@ class Queries:
     ) -> Any:
         """`rasterize` on a grid by its corner and the size of its cells (cadt::Grid)."""
         if self._gpu is not None:
-            return self._gpu.rasterize(values, grid, rows, columns, method, max_edge)
+            return self._gpu.rasterize(self._complete(values), grid, rows, columns, method, max_edge)
         v, one = self._values(values)
         if v.shape[1] == 0:
             return np.empty((rows, columns, *one))
@@ -220,7 +220,11 @@ class Queries:
         return self._queries().outline(_length(radius, "radius"), _length(max_edge, "max_edge"))
 
     def _values(self, values: Any) -> tuple[np.ndarray, tuple[int, ...]]:
-        return as_values(values, self.n_points)
+        return as_values(self._complete(values), self.n_points)
+
+    def _complete(self, values: Any) -> Any:
+        """Values of the points that were given, as those of all points."""
+        return values
 
     def _queries(self) -> _cadt.Queries:
         if "queries" not in self._cache:

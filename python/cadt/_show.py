@@ -59,13 +59,13 @@ def plot_constrained(mesh: ConstrainedDelaunay, ax: Any, inside: bool, how: dict
     if ax is None:
         ax = _need("matplotlib.pyplot", "matplotlib").gca()
     collections = _need("matplotlib.collections", "matplotlib")
-    xy = mesh._host_points
-    triangles = mesh.triangles_inside if inside else mesh.simplices
+    xy, on_host = mesh._host_points, mesh._on_host
+    triangles = on_host.triangles_inside() if inside else on_host.mesh.triangles
     if "lw" not in how:
         how.setdefault("linewidth", 0.6)
     if len(triangles):
         ax.triplot(xy[:, 0], xy[:, 1], triangles, **how)
-    ax.add_collection(collections.LineCollection(xy[mesh.constrained_edges], colors="black", linewidths=1.4, zorder=3))
+    ax.add_collection(collections.LineCollection(xy[on_host.edges], colors="black", linewidths=1.4, zorder=3))
     ax.autoscale_view()
     ax.set_aspect("equal")
     return ax

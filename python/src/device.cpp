@@ -70,15 +70,27 @@ void bind_device(nb::module_& m) {
       .def_prop_ro("triangles_handle", [](const DeviceMesh& d) { return number_of(d.mesh().triangles()); })
       .def_prop_ro("neighbors_handle", [](const DeviceMesh& d) { return number_of(d.mesh().neighbors()); })
       .def_prop_ro("edge_flags_handle", [](const DeviceMesh& d) { return number_of(d.mesh().edge_flags()); })
+      .def_prop_ro("chain_offsets_handle", [](const DeviceMesh& d) { return number_of(d.mesh().chain_offsets()); })
+      .def_prop_ro("chain_vertices_handle", [](const DeviceMesh& d) { return number_of(d.mesh().chain_vertices()); })
+      .def_prop_ro("chain_length", [](const DeviceMesh& d) { return d.mesh().chain_length(); })
       .def_prop_ro("regions_handle", [](const DeviceMesh& d) { return number_of(d.mesh().regions()); })
+      .def_prop_ro("inside_handle", [](const DeviceMesh& d) { return number_of(d.mesh().inside()); })
+      .def_prop_ro("number_of_regions", [](const DeviceMesh& d) { return d.mesh().number_of_regions(); })
+      .def_prop_ro("region_values_handle", [](const DeviceMesh& d) { return number_of(d.mesh().region_values()); })
+      .def_prop_ro("region_attributes_handle",
+                   [](const DeviceMesh& d) { return number_of(d.mesh().region_attributes()); })
       .def_prop_ro("triangles_inside_handle",
                    [](const DeviceMesh& d) { return number_of(d.mesh().triangles_inside()); })
       .def_prop_ro("number_added", [](const DeviceMesh& d) { return d.mesh().number_added(); })
       .def_prop_ro("rounded_valid", [](const DeviceMesh& d) { return d.mesh().rounded_valid(); })
       .def_prop_ro("all_points_handle", [](const DeviceMesh& d) { return number_of(d.mesh().all_points()); })
       .def_prop_ro("added_parents_handle", [](const DeviceMesh& d) { return number_of(d.mesh().added_parents()); })
-      .def("download", [](const DeviceMesh& d) {
-        return d.shared().run(nb::none(), [&](cadt::Triangulator&) { return d.mesh().download(); });
+      .def("download",
+           [](const DeviceMesh& d) {
+             return d.shared().run(nb::none(), [&](cadt::Triangulator&) { return d.mesh().download(); });
+           })
+      .def("download_constrained", [](const DeviceMesh& d) {
+        return d.shared().run(nb::none(), [&](cadt::Triangulator&) { return d.mesh().download_constrained(); });
       });
   m.def(
       "cuda_array",

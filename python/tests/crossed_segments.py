@@ -41,19 +41,17 @@ def compare(xy: np.ndarray, segments: np.ndarray, put: Callable, get: Callable) 
     host = cadt.ConstrainedDelaunay(xy, segments, backend="host", **how)
     added = len(host.added_points)
     assert added and mesh.n_points == host.n_points == len(xy) + added
-    for member in ("simplices", "neighbors", "edge_flags", "region", "triangles_inside", "hull", "duplicate_of"):
-        np.testing.assert_array_equal(get(getattr(mesh, member)), getattr(host, member), member)
+    compare_arrays(mesh, host, get)
     for member in ("points", "added_points", "added_parents"):
         got, wanted = get(getattr(mesh, member)), getattr(host, member)
         assert got.dtype == wanted.dtype, member
         np.testing.assert_array_equal(got, wanted, member)
     assert mesh.rounded_valid == host.rounded_valid
-    assert repr(mesh).rpartition(", ")[0] == repr(host).rpartition(", ")[0]
     assert mesh.hash == host.hash == pickle.loads(pickle.dumps(mesh)).hash
     assert bool(mesh.verify()) == bool(host.verify())
-    for name in ("chains", "constrained_edges", "edge_sources", "inside", "region_value"):
-        with pytest.raises(cadt.OptionError):
-            getattr(mesh, name)
+    of_given = np.arange(len(xy)) * 0.5
+    for values in (put(of_given), of_given):
+        np.testing.assert_array_equal(get(mesh.at_crossings(values)), host.at_crossings(of_given))
 
     z = (host.points * [2, 3]).sum(axis=1)
     q = np.random.default_rng(22).random((300, 2)) * np.ptp(xy, axis=0) + xy.min(axis=0)
@@ -70,13 +68,52 @@ def compare(xy: np.ndarray, segments: np.ndarray, put: Callable, get: Callable) 
     np.testing.assert_allclose(image, host.rasterize(z, shape=(9, 13)), rtol=1e-12)
     with pytest.raises(cadt.NotDelaunay):
         mesh.nearest_vertex(put(q))
-    of_given = put(z[: len(xy)].copy())
-    for ask in (lambda: mesh.interpolate(of_given, q), *(lambda v=v: mesh.at_crossings(v) for v in (of_given, z))):
-        with pytest.raises(cadt.OptionError, match="at_crossings"):
-            ask()
+    np.testing.assert_allclose(get(mesh.interpolate(put(of_given), put(q))), host.interpolate(of_given, q), rtol=1e-9)
+    with pytest.raises(cadt.InputError):
+        mesh.at_crossings(put(z))
     with pytest.raises(cadt.InputError):
         mesh.interpolate(put(z[:5].copy()), q)
     return mesh
+
+
+def compare_arrays(mesh: cadt.ConstrainedDelaunay, host: cadt.ConstrainedDelaunay, get: Callable) -> None:
+    """All that a mesh tells of its triangles, segments and regions."""
+    for member in ("simplices", "neighbors", "hull", "duplicate_of", "edge_flags", "constrained_edges", "inside"):
+        np.testing.assert_array_equal(get(getattr(mesh, member)), getattr(host, member), member)
+    for member in ("degenerate_segments", "triangles_inside", "region", "region_value", "region_attribute"):
+        np.testing.assert_array_equal(get(getattr(mesh, member)), getattr(host, member), member)
+    for member in ("chains", "edge_sources"):
+        for own, wanted in zip(getattr(mesh, member), getattr(host, member)):
+            np.testing.assert_array_equal(get(own), wanted, member)
+    assert mesh.n_regions == host.n_regions and "bool" in str(mesh.inside.dtype)
+    assert repr(mesh).rpartition(", ")[0] == repr(host).rpartition(", ")[0]
+
+
+def compare_grid_and_seeds(put: Callable, get: Callable) -> None:
+    """What is made on the host: meshes on a grid, and places of seeds; and segments on a line."""
+    xy, segments = chords(300, 40)
+    how = {"crossing": ("grid", 2.0**-6), "domain": "seeds", "holes": [[0.5, 0.5]], "regions": [[0.2, 0.3, 7.5]]}
+    mesh = cadt.ConstrainedDelaunay(put(xy), put(segments), **how)
+    host = cadt.ConstrainedDelaunay(xy, segments, backend="host", **how)
+    compare_arrays(mesh, host, get)
+    for member in ("points", "added_points", "added_parents"):
+        np.testing.assert_array_equal(get(getattr(mesh, member)), getattr(host, member), member)
+    assert mesh.hash == host.hash == pickle.loads(pickle.dumps(mesh)).hash and mesh.verify()
+    z = (xy * [2, 3]).sum(axis=1)
+    image = get(mesh.rasterize(put(z), shape=(9, 13)))  # within the bounds of where points have moved
+    np.testing.assert_allclose(image, host.rasterize(z, shape=(9, 13)), rtol=1e-9)
+
+    xy = np.array([[0.0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [1, 2]])
+    how = {"rings": [0, 4, 8], "domain": "seeds", "holes": [[1.5, 1.5]], "regions": [[0.5, 0.5, 7]]}
+    mesh, host = cadt.ConstrainedDelaunay(put(xy), **how), cadt.ConstrainedDelaunay(xy, backend="host", **how)
+    compare_arrays(mesh, host, get)
+    assert len(host.triangles_inside) == 8 and sorted(get(mesh.region_attribute)) == [0, 7]
+    with pytest.raises(cadt.OptionError):
+        cadt.ConstrainedDelaunay(put(xy), **(how | {"holes": [[np.nan, 0]]}))
+
+    xy, on_line = np.array([[3.0, 0], [1, 0], [2, 0], [0, 0], [2, 0]]), np.array([[0, 3], [3, 4], [2, 2], [4, 2]])
+    mesh, host = cadt.ConstrainedDelaunay(put(xy), put(on_line)), cadt.ConstrainedDelaunay(xy, on_line, backend="host")
+    compare_arrays(mesh, host, get)
 
 
 def compare_without_crossings(put: Callable, get: Callable) -> None:

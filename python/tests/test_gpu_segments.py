@@ -7,7 +7,8 @@ import pickle
 import cadt
 import numpy as np
 import pytest
-from crossed_segments import chords, compare, compare_without_crossings, sets as crossed_sets
+from crossed_segments import chords, compare, compare_arrays, compare_grid_and_seeds, compare_without_crossings
+from crossed_segments import sets as crossed_sets
 from gpu_library import Library, library, needs_cuda, x64  # noqa: F401 (library is a fixture)
 
 pytestmark = needs_cuda
@@ -48,7 +49,7 @@ def test_rings_of_the_host_and_domains(library, domain):
     xy = np.array([[0.0, 0], [3, 0], [3, 3], [0, 3], [1, 1], [2, 1], [2, 2], [1, 2], [0.5, 0.25]])
     mesh = cadt.ConstrainedDelaunay(library.put(xy), rings=[0, 4, 8], domain=domain)
     host = cadt.ConstrainedDelaunay(xy, rings=[0, 4, 8], domain=domain)
-    np.testing.assert_array_equal(library.get(mesh.triangles_inside), host.triangles_inside)
+    compare_arrays(mesh, host, library.get)
     assert mesh.verify()
 
 
@@ -64,8 +65,6 @@ def test_segments_that_are_refused(library):
         with pytest.raises(cadt.InputError) as refused:
             cadt.ConstrainedDelaunay(put(xy), put(np.array(wrong)))
         assert refused.value.index == 1
-    with pytest.raises(cadt.OptionError):
-        cadt.ConstrainedDelaunay(put(xy), [[0, 1]], crossing=("grid", 1.0))
     empty = cadt.ConstrainedDelaunay(put(xy), domain="outer")
     for member in ("edge_flags", "region"):
         assert not library.get(getattr(empty, member)).any()
@@ -82,6 +81,10 @@ def test_crossings_that_are_none(library):
     compare_without_crossings(library.put, library.get)
 
 
+def test_grids_and_seeds_equal_host(library):
+    compare_grid_and_seeds(library.put, library.get)
+
+
 def test_crossings_stay_on_the_device(library, monkeypatch):
     n = 200_000
     xy, segments = chords(n, 200)
@@ -93,6 +96,8 @@ def test_crossings_stay_on_the_device(library, monkeypatch):
     library.check(mesh.points)
     library.check(mesh.added_points)
     library.check(mesh.added_parents)
+    for array in mesh.chains:
+        library.check(array)
     library.check(mesh.interpolate(library.put(np.ones(n + added)), mesh.added_points))
 
 

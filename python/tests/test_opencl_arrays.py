@@ -9,7 +9,8 @@ import pickle
 import cadt
 import numpy as np
 import pytest
-from crossed_segments import chords, compare, compare_without_crossings, sets as crossed_sets
+from crossed_segments import chords, compare, compare_arrays, compare_grid_and_seeds, compare_without_crossings
+from crossed_segments import sets as crossed_sets
 
 cl = pytest.importorskip("pyopencl")
 cl_array = pytest.importorskip("pyopencl.array")
@@ -165,10 +166,8 @@ def test_rings_of_the_host_and_domains(queue, domain, dtype):
     xy = RINGS.astype(dtype)
     mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, xy), rings=[0, 4, 8], domain=domain)
     host = cadt.ConstrainedDelaunay(xy, rings=[0, 4, 8], domain=domain)
-    np.testing.assert_array_equal(mesh.triangles_inside.get(), host.triangles_inside)
+    compare_arrays(mesh, host, lambda a: a.get())
     assert f"{len(host.triangles_inside)} inside, opencl" in repr(mesh) and mesh.verify()
-    if domain != "hull":
-        np.testing.assert_array_equal(mesh.region.get(), host.region)
 
 
 def test_segments_that_are_refused(queue):
@@ -193,15 +192,30 @@ def test_segments_that_are_refused(queue):
     for wrong in (put([[0.0, 1.0]]), put([0, 1]), put([[0, 1, 2]])):
         with pytest.raises(cadt.InputError):
             cadt.ConstrainedDelaunay(there, wrong)
-    for how in ({"crossing": ("grid", 1.0)}, {"domain": "seeds"}):
-        with pytest.raises(cadt.OptionError):
-            cadt.ConstrainedDelaunay(there, [[0, 1]], **how)
-    mesh = cadt.ConstrainedDelaunay(there, [[0, 1]])
-    for name in ("chains", "constrained_edges", "edge_sources", "inside", "region", "region_value"):
-        with pytest.raises(cadt.OptionError):
-            getattr(mesh, name)
-    with pytest.raises(cadt.OptionError):
-        mesh.voronoi()
+
+def test_what_is_asked_on_the_host(queue):
+    xy = np.random.default_rng(3).random((50, 2))
+    edges = cadt.Delaunay(xy).edges[:9]  # Delaunay edges, so that there is a Voronoi diagram
+    mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, xy), edges)
+    host = cadt.ConstrainedDelaunay(xy, edges)
+    for own, wanted in zip(mesh.voronoi().__dict__.values(), host.voronoi().__dict__.values()):
+        np.testing.assert_array_equal(own, wanted)
+    pytest.importorskip("matplotlib")
+    import matplotlib
+
+    matplotlib.use("agg")
+    import matplotlib.pyplot as plt
+
+    drawn = []
+    for of in (mesh, host):
+        axes = of.plot(plt.figure().gca())
+        drawn.append((len(axes.lines[0].get_xdata()), len(axes.collections[0].get_segments())))
+        plt.close()
+    assert drawn[0] == drawn[1] and drawn[0][1] == 9
+
+
+def test_grids_and_seeds_equal_host(queue):
+    compare_grid_and_seeds(*put_and_get(queue))
 
 
 def put_and_get(queue):

@@ -188,6 +188,7 @@ static void test_on_device(cadt_triangulator* triangulator) {
   cadt_device_array segments = {0};
   cadt_constraint_options how = {0};
   cadt_device_triangulation* mesh = NULL;
+  cadt_constrained* copy = NULL;
   void *flags = NULL, *regions = NULL, *inside = NULL, *all = NULL, *parents = NULL;
   const double cross[] = {0, 0, 2, 2, 0, 2, 2, 0};
   const int32_t diagonals[] = {0, 1, 2, 3};
@@ -209,14 +210,35 @@ static void test_on_device(cadt_triangulator* triangulator) {
   CHECK(bits == 4 + 2 * 4);
   CHECK_NULL(cadt_device_triangulation_constraints(mesh, NULL, &regions, &inside, &count), "edge_flags");
   CHECK_NULL(cadt_device_triangulation_constraints(NULL, &flags, &regions, &inside, &count), "mesh");
+  CHECK_OK(cadt_device_triangulation_regions(mesh, &inside, &regions, &all, &count));
+  CHECK(count == 2 && ((const int32_t*)regions)[0] == 1 && ((const int32_t*)regions)[1] == 0);
+  CHECK(((const double*)all)[0] == 0 && ((const double*)all)[1] == 0);
+  for (t = 0, count = 0; t < triangles; ++t) count += ((const uint32_t*)inside)[t];
+  CHECK(count == 8);
+  CHECK_NULL(cadt_device_triangulation_regions(mesh, &inside, &regions, NULL, &count), "attributes");
+  CHECK_NULL(cadt_device_triangulation_regions(NULL, &inside, &regions, &all, &count), "mesh");
+  CHECK_OK(cadt_device_triangulation_chains(mesh, &regions, &inside, &count));
+  CHECK(count == 2 * m && ((const uint32_t*)regions)[m] == 2 * m && ((const int32_t*)inside)[1] == 1);
+  CHECK_NULL(cadt_device_triangulation_chains(mesh, &regions, NULL, &count), "vertices");
+  CHECK_NULL(cadt_device_triangulation_chains(NULL, &regions, &inside, &count), "mesh");
+  CHECK_OK(cadt_device_triangulation_download_constrained(mesh, &copy));
+  test_arrays(copy);
+  cadt_constrained_free(copy);
+  CHECK_NULL(cadt_device_triangulation_download_constrained(mesh, NULL), "copy");
+  CHECK_NULL(cadt_device_triangulation_download_constrained(NULL, &copy), "mesh");
   cadt_device_triangulation_free(mesh);
   mesh = NULL;
   CHECK_NULL(cadt_triangulator_triangulate_constrained_device(triangulator, &points, NULL, &how, &mesh), "segments");
   how.crossing = CADT_CROSSING_GRID;
-  how.grid = 1;
   CHECK_STATUS(CADT_OPTION_ERROR,
                cadt_triangulator_triangulate_constrained_device(triangulator, &points, &segments, &how, &mesh));
   CHECK(mesh == NULL);
+  how.grid = 2; /* halves go upwards: 1 and 2 to 2, 3 to 4 */
+  CHECK_OK(cadt_triangulator_triangulate_constrained_device(triangulator, &points, &segments, &how, &mesh));
+  CHECK_OK(cadt_device_triangulation_crossings(mesh, &all, &parents, &count));
+  CHECK(count == 0 && parents == NULL && ((const double*)all)[2] == 4 && ((const double*)all)[8] == 2);
+  cadt_device_triangulation_free(mesh);
+  mesh = NULL;
 
   how.crossing = CADT_CROSSING_EXACT;
   how.domain = CADT_DOMAIN_HULL;

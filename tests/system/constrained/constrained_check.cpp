@@ -2,12 +2,28 @@
 #include "tests/system/constrained/constrained_check.hpp"
 
 #include "tests/support/oracle_cdt.hpp"
+#include "tests/system/constrained/resident_check.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 namespace cadt::test {
+namespace {
+
+constexpr std::size_t most_in_device_memory = 5000;
+
+/// Each set is asked for one of the domains.
+ConstraintOptions domain_of(std::size_t segments) {
+  ConstraintOptions constraints;
+  constraints.domain = static_cast<Domain>(segments % 6);
+  if (constraints.domain != Domain::seeds) return constraints;
+  constraints.holes = {{0.5, 0.5}, {9, 9}};
+  constraints.regions = {{0.25, 0.25, 7}, {1, 2, 8}, {0.25, 0.25, 9}};
+  return constraints;
+}
+
+}  // namespace
 
 ConstrainedTriangulation ConstrainedTest::triangulated(const Points& xy, const std::vector<Segment>& segments,
                                                        const ConstraintOptions& constraints) const {
@@ -19,6 +35,8 @@ ConstrainedTriangulation ConstrainedTest::check(const Points& xy, const std::vec
   const ConstrainedTriangulation mesh = triangulated(xy, segments);
   const VerifyReport report = verify(xy, segments, mesh);
   EXPECT_TRUE(report.ok) << report.summary();
+  if (xy.size() / 2 <= most_in_device_memory)
+    expect_same_in_device_memory(GetParam().options(), xy, segments, domain_of(segments.size()));
 #if CADT_TEST_CGAL
   if (xy.size() / 2 > most_for_cgal) return mesh;
   const ConstrainedOracleMesh expected = cgal_constrained(xy, segments);

@@ -8,7 +8,7 @@
 #include "common/constraints/exact_triangulation.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
-#include "tests/system/resident/device_memory.hpp"
+#include "tests/system/constrained/resident_check.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 #include <gtest/gtest.h>
@@ -56,44 +56,10 @@ class Crossings : public BackendTest {
     EXPECT_TRUE(std::ranges::equal(mesh.added_parents(), exact.parents));
     EXPECT_EQ(mesh.rounded_valid(), exact.rounded_valid);
     EXPECT_EQ(mesh.mesh().number_of_points(), expected.number_of_points());
-    check_resident(set, mesh);
+    constraints.domain = set.segments.size() % 2 == 0 ? Domain::layers : Domain::seeds;
+    if (constraints.domain == Domain::seeds) constraints.holes = {{0.5, 0.5}};
+    expect_same_in_device_memory(GetParam().options(), set.xy, set.segments, constraints);
     return certified;
-  }
-
-  /// The same in device memory, with the triangles inside.
-  void check_resident(const SegmentSet& set, const ConstrainedTriangulation& expected) const {
-    Options options = GetParam().options();
-    const auto memory = device_memory(options.backend, Triangulator(options).device().index);
-    if (memory->queue() != nullptr) options.queue = memory->queue();
-    Triangulator triangulator(options);
-    if (!triangulator.device().fp64) return;  // takes no doubles
-    ConstraintOptions constraints;
-    constraints.crossing = Crossing::exact;
-    constraints.domain = Domain::layers;
-    void* segments = memory->upload(std::span<const Segment>(set.segments));
-    const DevicePoints points{.x = memory->upload(std::span<const double>(set.xy)), .size = set.xy.size() / 2};
-    const DeviceTriangulation mesh =
-        triangulator.triangulate_constrained(points, {segments, 2 * set.segments.size()}, constraints);
-    const std::size_t count = mesh.number_of_triangles(), added = mesh.number_added();
-    ASSERT_EQ(count, expected.mesh().number_of_triangles());
-    ASSERT_EQ(added, expected.added_parents().size());
-    ASSERT_EQ(mesh.number_of_points(), expected.mesh().number_of_points());
-    const Triangulation copy = mesh.download();
-    EXPECT_TRUE(std::ranges::equal(copy.triangles(), expected.mesh().triangles()));
-    EXPECT_TRUE(std::ranges::equal(copy.neighbors(), expected.mesh().neighbors()));
-    EXPECT_TRUE(std::ranges::equal(copy.hull(), expected.mesh().hull()));
-    EXPECT_TRUE(std::ranges::equal(copy.duplicates(), expected.mesh().duplicates()));
-    EXPECT_EQ(mesh.rounded_valid(), expected.rounded_valid());
-    EXPECT_TRUE(std::ranges::equal(memory->download<std::uint32_t>(mesh.edge_flags(), count), expected.edge_flags()));
-    EXPECT_TRUE(std::ranges::equal(memory->download<Segment>(mesh.added_parents(), added), expected.added_parents()));
-    const auto all = memory->download<double>(mesh.all_points(), 2 * mesh.number_of_points());
-    if (added != 0) {
-      EXPECT_TRUE(std::ranges::equal(std::span(all).first(set.xy.size()), set.xy));
-      EXPECT_TRUE(std::ranges::equal(std::span(all).subspan(set.xy.size()), expected.added_points()));
-    }
-    const ConstrainedTriangulation layers = triangulate_constrained(set.xy, set.segments, constraints, options);
-    EXPECT_EQ(mesh.number_inside(), layers.number_inside());
-    EXPECT_TRUE(std::ranges::equal(memory->download<std::int32_t>(mesh.regions(), count), layers.region()));
   }
 
   void expect_pairs(const SegmentSet& set) const {
@@ -121,6 +87,18 @@ TEST_P(Crossings, ExactMeshesOfSmallSets) {
   const int few = 20 / static_cast<int>(every());
   EXPECT_GT(others, few);
   EXPECT_GT(certified, has_doubles() ? few : -1);
+}
+
+TEST_P(Crossings, OnAGridInDeviceMemory) {
+  ConstraintOptions constraints;
+  constraints.crossing = Crossing::grid;
+  const std::vector<SegmentSet> sets = small_segment_sets();
+  for (std::size_t i = 0; i < sets.size(); i += every()) {
+    SCOPED_TRACE(sets[i].name);
+    constraints.grid = i % 2 == 0 ? 0.25 : 1;
+    constraints.domain = i % 3 == 0 ? Domain::hull : Domain::layers;
+    expect_same_in_device_memory(GetParam().options(), sets[i].xy, sets[i].segments, constraints);
+  }
 }
 
 TEST_P(Crossings, RandomSegments) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -24,6 +25,14 @@ void take_chains(Data& data, std::vector<std::int64_t> offsets, std::vector<std:
   data.chain_vertices = std::move(vertices);
   for (std::size_t s = 0; s + 1 < data.chain_offsets.size(); ++s)
     if (data.chain_offsets[s] == data.chain_offsets[s + 1]) data.degenerate.push_back(static_cast<std::int32_t>(s));
+}
+
+void require_chain_length(std::size_t length) {
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  if (length > most)
+    throw LimitError("the chains of all segments have " + std::to_string(length) + " vertices, more than " +
+                         std::to_string(most) + ": many segments overlap; leave out those that repeat others",
+                     length, most);
 }
 
 void chain_on_line(PointsView points, std::span<const Segment> segments, Data& data) {

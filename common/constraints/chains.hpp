@@ -2,6 +2,7 @@
 // The vertices along each segment, and the edges between them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,6 +14,9 @@ namespace cadt {
 /// The chains of a result. Those of segments of no length are empty.
 void take_chains(ConstrainedTriangulation::Data& data, std::vector<std::int64_t> offsets,
                  std::vector<std::int32_t> vertices);
+
+/// Devices count the vertices of all chains in a word. \throws LimitError
+void require_chain_length(std::size_t length);
 
 /// Chains of segments between points on a line, where `data.mesh` has no triangles. \throws InputError for the first
 /// segment with an end that is no point

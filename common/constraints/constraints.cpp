@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/certify/certify.hpp"
+#include "common/constraints/chains.hpp"
 #include "common/driver/device_text.hpp"
 
 namespace cadt {
@@ -182,13 +183,8 @@ class Constrainer {
   /// \throws LimitError if a word cannot hold the number of all vertices of chains
   void require_countable() {
     const auto found = ctx_.device.read_values(*words_, CADT_SEGMENTS_WORDS);
-    const std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-    const std::uint64_t all =
-        2 * job_.count + (std::uint64_t{found[CADT_SEGMENTS_MORE_HIGH]} << 32) + found[CADT_SEGMENTS_MORE_LOW];
-    if (all > most)
-      throw LimitError("the chains of all segments have " + std::to_string(all) + " vertices, more than " +
-                           std::to_string(most) + ": many segments overlap; leave out those that repeat others",
-                       all, most);
+    require_chain_length(2 * job_.count + (std::uint64_t{found[CADT_SEGMENTS_MORE_HIGH]} << 32) +
+                         found[CADT_SEGMENTS_MORE_LOW]);
   }
 
   static void require_sound(std::uint32_t broken) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "common/constraints/chains.hpp"
 #include "common/driver/device_text.hpp"
 
 namespace cadt {
@@ -281,11 +282,7 @@ HostDomains find_domains(Context& ctx, const HostDomainMesh& mesh, const Segment
   const Allocation vertices = ctx.memory.import(mesh.triangles.data(), 3 * count * word),
                    neighbors = ctx.memory.import(mesh.neighbors.data(), 3 * count * word),
                    flags = ctx.memory.import(mesh.edge_flags.data(), count * word);
-  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
-  if (chains.vertices.size() > most)
-    throw LimitError("the chains of all segments have " + std::to_string(chains.vertices.size()) +
-                         " vertices, more than " + std::to_string(most) + ": many segments overlap",
-                     chains.vertices.size(), most);
+  require_chain_length(chains.vertices.size());
   const std::vector<std::uint32_t> offsets(chains.offsets.begin(), chains.offsets.end());
   const Allocation begins = ctx.memory.import(offsets.data(), offsets.size() * word);
   Allocation along;

@@ -59,6 +59,7 @@ void upload_chains(const State& state, const Data& from, DeviceTriangulation::Da
   to.segments = from.chain_offsets.size() - 1;
   to.chain_length = from.chain_vertices.size();
   if (to.segments == 0) return;
+  require_chain_length(to.chain_length);
   const std::vector<std::uint32_t> offsets(from.chain_offsets.begin(), from.chain_offsets.end());
   to.chain_offsets = state->memory.upload(std::span(offsets));
   to.chains = state->memory.upload(std::span(from.chain_vertices));

@@ -17,17 +17,18 @@ using State = std::shared_ptr<Triangulator::State>;
 /// Seeds are few, and located on the host.
 DomainSeeds locate_on_host(const State& state, const DevicePoints& points, const ConstraintOptions& constraints,
                            const DeviceTriangulation::Data& data) {
-  if (constraints.domain != Domain::seeds) return {};
+  if (constraints.domain != Domain::seeds || data.triangle_count == 0) return locate_seeds({}, {}, {}, constraints);
   Device& device = *state->device;
   const auto triangles = device.read_values<std::int32_t>(*data.triangles, 3 * data.triangle_count);
-  const std::vector<double> xy =
-      data.places ? device.read_values<double>(*data.places, 2 * data.points) : copy_segments(state, points, {}).xy;
+  const std::vector<double> xy = data.places ? device.read_values<double>(*data.places, 2 * data.points)
+                                             : copy_segments(state, points, {}).doubles();
   return locate_seeds(triangles, xy, {}, constraints);
 }
 
 void add_domains(const State& state, const DevicePoints& points, const ConstraintOptions& constraints,
                  DeviceTriangulation::Data& data) {
   const DomainSeeds seeds = locate_on_host(state, points, constraints, data);
+  if (data.triangle_count == 0) return;
   Statistics statistics;
   Context ctx(*state->device, state->memory, state->options, statistics);
   const DomainMesh mesh = {data.triangles, data.neighbors, data.edge_flags, data.triangle_count};
@@ -48,13 +49,14 @@ void add_domains(const State& state, const DevicePoints& points, const Constrain
 DeviceMesh snap(const State& state, const DevicePoints& points, const SegmentJob& job, double grid) {
   const CopiedSegments copied = copy_segments(state, points, job);
   ConstrainedTriangulation::Data mesh;
-  constrain_on_grid(state, copied.xy, copied.segments, grid, mesh);
+  constrain_on_grid(state, copied.points(), copied.segments, grid, mesh);
   return upload_mesh(state, mesh.moved, mesh);
 }
 
 DeviceMesh constrain(const State& state, const DevicePoints& points, SegmentJob job, bool exact) {
   job.wants_crossings = exact ? FindCrossings::places : FindCrossings::pairs;
   DeviceMesh mesh = triangulate_on_device(state, points, &job);
+  if (job.crossed) mesh.reset();
   if (job.crossed && exact) return constrain_exactly(state, points, std::move(job));
   if (job.crossed && job.crossings) refuse_crossings(state, PointsView(), {}, job.crossings);
   if (job.count == 0) return mesh;
@@ -65,10 +67,10 @@ DeviceMesh constrain(const State& state, const DevicePoints& points, SegmentJob 
     mesh->chain_length = job.chain_length;
   } else {
     const CopiedSegments copied = copy_segments(state, points, job);
-    if (job.crossed) refuse_crossings(state, copied.xy, copied.segments, std::nullopt);
+    if (job.crossed) refuse_crossings(state, copied.points(), copied.segments, std::nullopt);
     ConstrainedTriangulation::Data on_line;
     on_line.mesh = DeviceTriangulation(std::move(mesh)).download();
-    chain_on_line(copied.xy, copied.segments, on_line);
+    chain_on_line(copied.points(), copied.segments, on_line);
     mesh = upload_mesh(state, {}, on_line);
   }
   return mesh;
@@ -91,7 +93,7 @@ DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& po
   DeviceMesh mesh = constraints.crossing == Crossing::grid
                         ? snap(state_, points, job, constraints.grid)
                         : constrain(state_, points, std::move(job), constraints.crossing == Crossing::exact);
-  if (constraints.domain != Domain::hull && mesh->triangle_count != 0) add_domains(state_, points, constraints, *mesh);
+  if (constraints.domain != Domain::hull) add_domains(state_, points, constraints, *mesh);
   return DeviceTriangulation(std::move(mesh));
 }
 

@@ -13,6 +13,7 @@
 #include "common/driver/device_text.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/thread_state.hpp"
+#include "common/points/device_points.hpp"
 
 namespace cadt {
 namespace {
@@ -75,6 +76,10 @@ ConstrainedTriangulation constrain_on(const State& state, PointsView points, std
 
 void constrain_on_grid(const State& state, PointsView points, std::span<const Segment> segments, double grid,
                        Data& data) {
+  if (takes_floats_only(*state->device))
+    throw OptionError("crossing",
+                      "a grid has places that are no floats, and this device takes no doubles: choose another "
+                      "device, or the back end host");
   const constraints::SnappedSegments snapped =
       constraints::snap_segments(points, segments, grid, state->options.threads, state->options.stop);
   const std::vector<Segment> pieces = polyline_segments(snapped.offsets, snapped.vertices);

@@ -196,8 +196,8 @@ DeviceMesh constrain_exactly(const State& state, const DevicePoints& points, Seg
   }
   const CopiedSegments copied = copy_segments(state, points, job);
   Data mesh;
-  constrain_exactly(state, copied.xy, copied.segments, std::nullopt, mesh);
-  return upload_mesh(state, copied.xy, mesh);
+  constrain_exactly(state, copied.points(), copied.segments, std::nullopt, mesh);
+  return upload_mesh(state, copied.doubles(), mesh);
 }
 
 }  // namespace cadt

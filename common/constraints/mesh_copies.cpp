@@ -43,12 +43,10 @@ CopiedSegments copy_segments(const State& state, const DevicePoints& points, con
   CopiedSegments copied;
   if (points.size != 0) {
     const Allocation imported = import_points(ctx, points);
-    if (takes_floats_only(ctx.device)) {
-      const std::vector<float> floats = read<float>(ctx.device, imported, 2 * points.size);
-      copied.xy.assign(floats.begin(), floats.end());
-    } else {
+    if (takes_floats_only(ctx.device))
+      copied.floats = read<float>(ctx.device, imported, 2 * points.size);
+    else
       copied.xy = read<double>(ctx.device, imported, 2 * points.size);
-    }
   }
   copied.segments = read<Segment>(ctx.device, job.segments, job.count);
   ctx.device.finish();

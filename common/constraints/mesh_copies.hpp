@@ -12,10 +12,16 @@
 
 namespace cadt {
 
-/// Coordinates and segments of the device.
+/// Coordinates and segments of the device: floats where it takes no doubles.
 struct CopiedSegments {
   std::vector<double> xy;
+  std::vector<float> floats;
   std::vector<Segment> segments;
+
+  [[nodiscard]] PointsView points() const { return floats.empty() ? PointsView(xy) : PointsView(floats); }
+  [[nodiscard]] std::vector<double> doubles() const {
+    return floats.empty() ? xy : std::vector<double>(floats.begin(), floats.end());
+  }
 };
 [[nodiscard]] CopiedSegments copy_segments(const std::shared_ptr<Triangulator::State>& state,
                                            const DevicePoints& points, const SegmentJob& job);

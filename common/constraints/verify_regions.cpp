@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Verification of domains, by searches from triangle to triangle.
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <string>
 #include <utility>
@@ -217,7 +218,8 @@ class RegionCheck {
         attributes[static_cast<std::size_t>(mesh_.region()[static_cast<std::size_t>(found[i])])] =
             constraints_.regions[i].attribute;
     for (std::size_t r = 0; r < attributes.size(); ++r)
-      if (mesh_.region_attribute()[r] != attributes[r])
+      if (const double found_there = mesh_.region_attribute()[r];
+          found_there != attributes[r] && !(std::isnan(found_there) && std::isnan(attributes[r])))
         fail(-1, "region " + std::to_string(r) + " has another attribute than its seed");
   }
 

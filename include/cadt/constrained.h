@@ -73,7 +73,7 @@ CADT_API cadt_status cadt_device_triangulation_chains(const cadt_device_triangul
                                                       void** vertices, size_t* length);
 /* Of segments that cross: how many crossings are vertices, behind the points that were given, and handles of the
  * coordinates of all of these, two doubles each, and of the pair of segments of each crossing, two words; NULL without
- * crossings, but with CADT_CROSSING_GRID the coordinates are always there (DeviceTriangulation). */
+ * crossings, but with CADT_CROSSING_GRID the coordinates are there of any points (DeviceTriangulation). */
 CADT_API cadt_status cadt_device_triangulation_crossings(const cadt_device_triangulation* mesh, void** all_points,
                                                          void** added_parents, size_t* count);
 /* A copy on the host, with all of the segments. */

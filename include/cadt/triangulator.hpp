@@ -65,10 +65,12 @@ class CADT_API DeviceTriangulation {
   /// Handle of the neighbours: number_of_triangles() x 3 words; the k-th is opposite vertex k, -1 outside; null if
   /// there are no triangles.
   [[nodiscard]] void* neighbors() const noexcept;
-  /// Handle of the constrained edges, a word a triangle: bit k for the edge opposite vertex k; null without segments.
+  /// Of triangulate_constrained: handle of the constrained edges, a word a triangle: bit k for the edge opposite vertex
+  /// k. Null if there are no triangles, or of triangulate.
   [[nodiscard]] void* edge_flags() const noexcept;
   /// Handles of the vertices along the segments, as ConstrainedTriangulation::chain_vertices(): segment s has those
-  /// from word s of the offsets to that before word s + 1. Null without segments, or if all are degenerate.
+  /// from word s of the offsets to that before word s + 1. The offsets are null without segments; chain_length() is 0
+  /// if all are degenerate.
   [[nodiscard]] void* chain_offsets() const noexcept;
   [[nodiscard]] void* chain_vertices() const noexcept;
   [[nodiscard]] std::size_t chain_length() const noexcept;
@@ -88,7 +90,7 @@ class CADT_API DeviceTriangulation {
   /// Of segments that cross: how many crossings are vertices, numbered behind the input's points and counted by
   /// number_of_points(). Handles of the coordinates of all of these, two doubles each, crossings rounded to the
   /// nearest, and of the lowest pair of segments that cross at each crossing, two words; null without crossings. With
-  /// Crossing::grid coordinates are always there: where all points have moved.
+  /// Crossing::grid coordinates are there of any points: where all have moved.
   [[nodiscard]] std::size_t number_added() const noexcept;
   [[nodiscard]] void* all_points() const noexcept;
   [[nodiscard]] void* added_parents() const noexcept;

@@ -64,7 +64,7 @@ class Array:
         if name not in ("float32", "float64"):
             if not (name.startswith(("int", "uint")) and name not in ("int64", "uint64")) and name != "float16":
                 raise TypeError(f"{what} must be float64 or float32, not {name}: convert them first")
-            a = self.convert(a, "float64")
+            a = self.convert(self.contiguous(a), "float64")
         return self.contiguous(a)
 
     def coordinates(self, a: Any) -> _cadt.DevicePoints:
@@ -103,9 +103,12 @@ class Array:
         return isinstance(a, type(self.a))
 
     def take(self, a: Any, dtype: str) -> Any:
-        """An argument as a contiguous array of this library on the device."""
+        """Numbers as a contiguous array of this library on the device."""
+        if (name := str(getattr(a, "dtype", "")).rpartition(".")[2]).startswith(("bool", "complex")):
+            raise TypeError(f"values must be real numbers, not {name}")
         a = a if self.is_here(a) else self.from_host(np.ascontiguousarray(a))
-        return self.contiguous(a if str(a.dtype).rpartition(".")[2] == dtype else self.convert(a, dtype))
+        a = self.contiguous(a)
+        return a if str(a.dtype).rpartition(".")[2] == dtype else self.convert(a, dtype)
 
     def begin(self) -> None:
         """Before a call of the library, which works in `queue`."""
@@ -135,11 +138,12 @@ class Array:
         name = str(a.dtype).rpartition(".")[2]
         if len(a.shape) != 2 or a.shape[1] != 2 or name not in ("int32", "int64"):
             raise InputError(f"{what} must be int32 or int64 of shape (m, 2), not {name} of {tuple(a.shape)}", 0)
+        a = self.contiguous(a)
         if name == "int64":
             if a.shape[0] and not self.fits_int32(a):
                 as_pairs(self.host_of(a), what)  # says which
             a = self.convert(a, "int32")
-        return self.contiguous(a)
+        return a
 
     def fits_int32(self, a: Any) -> bool:
         return bool(a.min() >= 0) and bool(a.max() < 2**31)
@@ -322,22 +326,36 @@ class OpenCl(Array):
         return a.astype(dtype)
 
     def contiguous(self, a: Any) -> Any:
-        return a if a.flags.c_contiguous and not a.offset else a.copy()  # parts of buffers begin anywhere
+        self.finish(a)
+        if a.flags.c_contiguous and not a.offset:  # parts of buffers begin anywhere
+            return a
+        if a.flags.c_contiguous:
+            return a.copy()
+        places = sum(np.arange(n).reshape(-1, *[1] * (a.ndim - 1 - k)) * s for k, (n, s) in enumerate(zip(a.shape, a.strides)))
+        places = (np.broadcast_to(np.asarray(places), a.shape) + a.offset) // a.dtype.itemsize
+        flat = self.cl.array.Array(self.cl_queue, (a.base_data.size // a.dtype.itemsize,), a.dtype, data=a.base_data)
+        return self.gather(flat, places)
 
     def address(self, a: Any) -> int:
+        self.finish(a)
         return int(a.base_data.int_ptr) if a.size else 0  # nothing has no buffer
 
-    # PyOpenCL neither copies columns nor reduces rows (without Mako, one of its extras).
+    def finish(self, a: Any) -> None:
+        """Waits for what others do to the array in queues of their own."""
+        if a.queue is not None and a.queue != self.cl_queue:
+            a.queue.finish()
+
+    # PyOpenCL neither copies columns, nor in another order, nor reduces rows (without Mako, one of its extras).
     def gather(self, a: Any, places: np.ndarray) -> Any:
-        at = self.cl.array.to_device(self.cl_queue, places.reshape(-1))
-        return self.cl.array.take(a.reshape(-1), at).reshape(places.shape)
+        at = self.cl.array.to_device(self.cl_queue, np.ascontiguousarray(places.reshape(-1)))
+        return self.cl.array.take(a.reshape(-1), at, queue=self.cl_queue).reshape(places.shape)
 
     def column(self, a: Any, j: int) -> Any:
         return self.gather(a, np.arange(j, a.size, a.shape[1]))
 
     def stack(self, rasters: list[Any]) -> Any:
         all_of = self.cl.array.stack(rasters)
-        return self.gather(all_of, np.arange(all_of.size).reshape(all_of.shape).transpose(1, 2, 0))
+        return self.gather(all_of, np.moveaxis(np.arange(all_of.size).reshape(all_of.shape), 0, -1))
 
     def fold(self, a: Any, pick: Any) -> list[Any]:
         while len(a) > 1:  # the first half with the last one, which share a row if there is an odd number
@@ -354,16 +372,16 @@ class OpenCl(Array):
         return min(low) >= 0 and max(high) < 2**31
 
     def host_of(self, a: Any) -> np.ndarray:
-        return a.get()
+        return self.contiguous(a).get()
 
     def from_host(self, host: np.ndarray) -> Any:
-        return self.cl.array.to_device(self.cl_queue, host)
+        return self.cl.array.to_device(self.cl_queue, host.view(np.int8) if host.dtype == bool else host)
 
     def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
         return self.cl.array.empty(self.cl_queue, shape, dtype)
 
     def flags(self, words: Any) -> Any:
-        return (words != 0).view(np.bool_)  # of the same size as what PyOpenCL makes
+        return words != 0  # int8: PyOpenCL computes nothing with bool
 
     def of_handle(self, mesh: Any, handle: int, shape: tuple[int, ...], dtype: str = "int32") -> Any:
         buffer = self.cl.Buffer.from_int_ptr(handle)

@@ -72,13 +72,18 @@ class ConstrainedDelaunay(Mesh):
     Ctrl-C ends a call. Meshes never change, and threads may share them.
 
     Points on a GPU: segments are int32 or int64 of the same library there, or of the host, as polylines and rings are;
-    these are uploaded, being indices. All arrays are of the points' library. `simplices`, `neighbors`, `edge_flags`,
-    `chains`, `triangles_inside`, `added_points`, `added_parents`, the `points` of a mesh with crossings and, but with
-    ``domain="hull"``, `inside` and what is told of regions are those of the device, without a copy; all others are made on
-    the host and uploaded. Queries are answered there. (JAX rounds doubles to float32 unless ``jax_enable_x64`` is set;
-    queries take the doubles.) Points and segments are copied to the host, and the mesh back, with a grid, and where the
-    device cannot find what crosses: several segments through one place, or very many through the same triangles. For
-    seeds, points and triangles are copied there. `hash` and `verify` make the mesh again on the host and compare.
+    these are uploaded, being indices. All arrays are of the points' library, and queries are answered on the device.
+
+    - Without a copy, those of the device: `simplices`, `neighbors`, `edge_flags`, `chains`, `triangles_inside`,
+      `added_points`, `added_parents`, and, but with ``domain="hull"``, `region`, `region_value`, `region_attribute`;
+      so are the `points` of a mesh with crossings or on a grid. `inside` is made of flags there.
+    - Made on the host when they are first asked for, and uploaded: all others.
+    - Made on the host by the call: a mesh on a grid, and one where the device cannot find what crosses (several segments
+      through one place, or very many through the same triangles); the triangles of seeds.
+
+    JAX rounds doubles to float32 unless ``jax_enable_x64`` is set; queries take the doubles. `hash` and `verify` make the
+    mesh again on the host, which takes as long as ``backend="host"``, and compare the two: until then the arrays that were
+    given must not change.
 
     Interpolation and rasters take values of the points that were given (`at_crossings` says what crossings get) or of all
     `points`. Nearest points, natural neighbours, Voronoi diagrams and empty circles take a Delaunay mesh: unless all
@@ -185,7 +190,7 @@ class ConstrainedDelaunay(Mesh):
 
     @property
     def chains(self) -> tuple[np.ndarray, np.ndarray]:
-        """The points along each segment: ``indptr`` (m + 1,) int64 and ``indices`` int32.
+        """The points along each segment: ``indptr`` (m + 1,) int64, on a GPU int32, and ``indices`` int32.
 
         Those of segment s are ``indices[indptr[s]:indptr[s + 1]]``, from its first end to its second; none if its ends
         are equal points.
@@ -201,7 +206,7 @@ class ConstrainedDelaunay(Mesh):
 
     @property
     def inside(self) -> np.ndarray:
-        """(t,) bool: whether each triangle is inside (the parameter `domain`)."""
+        """(t,) bool, with PyOpenCL int8: whether each triangle is inside (the parameter `domain`)."""
         return self._of("inside", lambda c: c.inside.view(bool), lambda g: g.inside)
 
     @property
@@ -349,7 +354,7 @@ class ConstrainedDelaunay(Mesh):
         for name in _COMPARED:
             pairs[0] += (getattr(there, name),)
             pairs[1] += (getattr(made, name),)
-        if not all(np.array_equal(a, b) for a, b in zip(*pairs)):
+        if not all(np.array_equal(a, b, equal_nan=True) for a, b in zip(*pairs)):
             raise InternalError("the mesh on the device is not the one that the host makes of the same input")
         return made
 

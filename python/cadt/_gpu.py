@@ -21,7 +21,7 @@ class Mesh:
         backend, device, order, threads, max_memory, statistics = arguments
         if backend not in (None, array.backend):
             raise OptionError(
-                f"the points are in the memory of a {array.backend} device: leave backend out, or pass points of the host",
+                f"the points are in the memory of a device ({array.backend}): leave backend out, or pass points of the host",
                 "backend",
             )
         if device is not None:
@@ -62,33 +62,58 @@ class Mesh:
 
     def _ask(self) -> Any:
         self.array.begin()
-        if self.mesh.number_of_triangles == 0:
-            raise InputError("a mesh without triangles on a device cannot be asked: pass points of the host", 0)
         if self._queries is None:
             self._queries = _cadt.DeviceQueries(self.mesh, self.points)
         return self._queries
 
+    @property
+    def _is_empty(self) -> bool:
+        """Without triangles there is nothing on the device to ask: all queries are outside."""
+        return self.mesh.number_of_triangles == 0
+
+    def _filled(self, shape: tuple[int, ...], value: float) -> Any:
+        return self.array.like(np.full(shape, value))
+
+    def _nowhere(self, shape: tuple[int, ...]) -> Any:
+        return self.array.like(np.full(shape, -1, dtype=np.int32))
+
     def _rows(self, xi: Any) -> tuple[Any, tuple[int, ...]]:
+        if isinstance(xi, tuple) and len(xi) == 2 and not np.isscalar(xi[0]):
+            x, y = xi
+            here = self.array.is_here(x) and self.array.is_here(y) and tuple(x.shape) == tuple(y.shape)
+            xi = self.array.stack([x, y]) if here else np.stack(np.broadcast_arrays(*map(self._as_host, xi)), axis=-1)
         xi = xi if self.array.is_here(xi) else self.array.like(np.asarray(xi, dtype=np.float64))
         if len(xi.shape) == 0 or xi.shape[-1] != 2:
             raise InputError(f"queries must have shape (..., 2), not {tuple(xi.shape)}", 0)
         shape = tuple(xi.shape[:-1])
         return self.array.rows(xi.reshape(math.prod(shape), 2), "queries"), shape
 
+    def _as_host(self, a: Any) -> Any:
+        return self.array.host_of(a) if self.array.is_here(a) else a
+
+    def within_hull(self, xi: Any) -> Any:
+        return self.array.flags(self.find_simplex(xi) + 1)
+
     def find_simplex(self, xi: Any) -> Any:
         q, shape = self._rows(xi)
+        if self._is_empty:
+            return self._nowhere(shape)
         result = self.array.empty(shape, "int32")
         self._ask().locate(self.array.coordinates(q), self.array.memory(result))
         return self.array.finished(result)
 
     def barycentric(self, xi: Any) -> tuple[Any, Any]:
         q, shape = self._rows(xi)
+        if self._is_empty:
+            return self._nowhere(shape), self._filled((*shape, 3), np.nan)
         triangles, weights = self.array.empty(shape, "int32"), self.array.empty((*shape, 3), "float64")
         self._ask().barycentric(self.array.coordinates(q), self.array.memory(triangles), self.array.memory(weights))
         return self.array.finished(triangles), self.array.finished(weights)
 
     def nearest_vertex(self, xi: Any, k: int) -> Any:
         q, shape = self._rows(xi)
+        if self._is_empty:
+            return self._nowhere(shape if k == 1 else (*shape, k))
         result = self.array.empty(shape if k == 1 else (*shape, k), "int32")
         self._ask().nearest(self.array.coordinates(q), k, self.array.memory(result))
         return self.array.finished(result)
@@ -102,6 +127,8 @@ class Mesh:
     def interpolate(self, values: Any, xi: Any, method: str, outside: str) -> Any:
         v, one = self._values(values)
         q, shape = self._rows(xi)
+        if self._is_empty or math.prod(one) == 0:
+            return self._filled((*shape, *one), np.nan)
         result = self.array.empty((*shape, *one), "float64")
         memory = self.array.memory
         self._ask().interpolate(memory(v), self.array.coordinates(q), memory(result), method, outside)
@@ -110,8 +137,8 @@ class Mesh:
     def rasterize(self, values: Any, grid: tuple, rows: int, columns: int, method: str, max_edge: float) -> Any:
         v, one = self._values(values)
         m = math.prod(one)
-        if m == 0:
-            raise InputError("values without a number a point make no raster on a device", 0)
+        if self._is_empty or m == 0:
+            return self._filled((rows, columns, *one), np.nan)
         # The library makes a raster of one value a point.
         rasters = []
         of = v.reshape(v.shape[0], m)
@@ -123,6 +150,8 @@ class Mesh:
         return rasters[0] if not one else self.array.stack(rasters).reshape(rows, columns, *one)
 
     def circumcenters(self) -> Any:
+        if self._is_empty:
+            return self._filled((0, 2), np.nan)
         result = self.array.empty((self.mesh.number_of_triangles, 2), "float64")
         self._ask().circumcenters(self.array.memory(result))
         return self.array.finished(result)
@@ -174,7 +203,9 @@ class ConstrainedMesh(Mesh):
         return self._of_triangles("edge_flags")
 
     @property
-    def chains(self) -> tuple[Any, Any]:
+    def chains(self) -> tuple[Any, Any] | None:
+        if self.mesh.chain_length >= 2**31:  # no int32
+            return None
         offsets = self.array.words(self.mesh, "chain_offsets", (self.segments.shape[0] + 1,))
         return offsets, self.array.words(self.mesh, "chain_vertices", (self.mesh.chain_length,))
 

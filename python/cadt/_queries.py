@@ -66,7 +66,7 @@ class Queries:
     def within_hull(self, xi: Any) -> Any:
         """Whether each query lies in the convex hull, its boundary included. Exact."""
         if self._gpu is not None:
-            return self._gpu.find_simplex(xi) >= 0
+            return self._gpu.within_hull(xi)
         q, shape = as_queries(xi)
         return self._queries().within_hull(q).view(bool).reshape(shape)
 

@@ -77,6 +77,8 @@ def constraints_of(crossing: Any, domain: str, holes: Any, regions: Any) -> _cad
         raise OptionError(f"domain must be one of {', '.join(map(repr, _DOMAINS))}, not {domain!r}", "domain")
     places = []
     for name, given, columns in (("holes", holes, 2), ("regions", regions, 3)):
+        if adapter_of(given) is not None:
+            raise InputError(f"{name} are read on the host: pass a copy there", 0)
         a = np.asarray(() if given is None else given, dtype=np.float64)
         if a.size == 0:
             a = np.empty((0, columns))

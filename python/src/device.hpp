@@ -53,8 +53,8 @@ class SharedTriangulator {
     const Use use(*this);
     cadt::Options& own = triangulator_->options();
     own.order = options.order;
-    own.max_memory = options.max_memory;
     own.statistics = options.statistics;
+    const LimitOfCall limit(*triangulator_, options.max_memory);
     return Call(own, progress)([&] { return work(*triangulator_); });
   }
 
@@ -87,6 +87,25 @@ class SharedTriangulator {
    private:
     SharedTriangulator& shared_;
     std::unique_lock<std::mutex> lock_;
+  };
+
+  /// `Options::max_memory` for one call: it is not that of the meshes that others have made, and of their queries.
+  class LimitOfCall {
+   public:
+    LimitOfCall(cadt::Triangulator& of, std::size_t bytes) : of_(of) { of_.options().max_memory = bytes; }
+    ~LimitOfCall() {
+      if (std::exchange(of_.options().max_memory, 0) == 0) return;
+      try {
+        of_.reserve(0);  // begins a new budget
+      } catch (const std::exception&) {
+        return;  // the next call does
+      }
+    }
+    LimitOfCall(const LimitOfCall&) = delete;
+    LimitOfCall& operator=(const LimitOfCall&) = delete;
+
+   private:
+    cadt::Triangulator& of_;
   };
 
   void require_usable() const {

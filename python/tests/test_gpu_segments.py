@@ -7,8 +7,8 @@ import pickle
 import cadt
 import numpy as np
 import pytest
-from crossed_segments import chords, compare, compare_arrays, compare_grid_and_seeds, compare_without_crossings
-from crossed_segments import sets as crossed_sets
+from crossed_segments import chords, compare, compare_arrays, compare_grid_and_seeds
+from crossed_segments import compare_rare_questions, compare_without_crossings, sets as crossed_sets
 from gpu_library import Library, library, needs_cuda, x64  # noqa: F401 (library is a fixture)
 
 pytestmark = needs_cuda
@@ -83,6 +83,10 @@ def test_crossings_that_are_none(library):
 
 def test_grids_and_seeds_equal_host(library):
     compare_grid_and_seeds(library.put, library.get)
+
+
+def test_rare_questions_as_on_the_host(library):
+    compare_rare_questions(library.put, library.get)
 
 
 def test_crossings_stay_on_the_device(library, monkeypatch):

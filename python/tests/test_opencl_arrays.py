@@ -9,8 +9,8 @@ import pickle
 import cadt
 import numpy as np
 import pytest
-from crossed_segments import chords, compare, compare_arrays, compare_grid_and_seeds, compare_without_crossings
-from crossed_segments import sets as crossed_sets
+from crossed_segments import chords, compare, compare_arrays, compare_grid_and_seeds
+from crossed_segments import compare_rare_questions, compare_without_crossings, sets as crossed_sets
 
 cl = pytest.importorskip("pyopencl")
 cl_array = pytest.importorskip("pyopencl.array")
@@ -212,6 +212,57 @@ def test_what_is_asked_on_the_host(queue):
         drawn.append((len(axes.lines[0].get_xdata()), len(axes.collections[0].get_segments())))
         plt.close()
     assert drawn[0] == drawn[1] and drawn[0][1] == 9
+
+
+def test_rare_questions_as_on_the_host(queue):
+    compare_rare_questions(*put_and_get(queue))
+
+
+def test_arrays_in_any_order(queue):
+    """Columns first, every second row, backwards, parts of wider arrays."""
+    put, get = put_and_get(queue)
+    xy, segments = chords(200, 30)
+    host = cadt.ConstrainedDelaunay(xy, segments, crossing="exact", backend="host")
+    z = np.stack([xy[:, 0], xy[:, 1], xy.sum(axis=1)], axis=1)
+    wide = np.concatenate([xy, z], axis=1)
+
+    def ways(a):
+        turned = put(np.asfortranarray(a))
+        assert not turned.flags.c_contiguous
+        yield turned
+        yield put(np.repeat(a, 2, axis=0))[::2]
+        yield put(a[::-1].copy())[::-1]
+        yield put(np.concatenate([a, a], axis=1))[:, : a.shape[1]]
+        yield put(np.concatenate([a[:3], a]))[3:]
+
+    for points, pairs in zip(ways(xy), ways(segments)):
+        mesh = cadt.ConstrainedDelaunay(points, pairs, crossing="exact")
+        compare_arrays(mesh, host, get)
+    np.testing.assert_array_equal(cadt.Delaunay(put(wide)[:, :2]).simplices.get(), cadt.Delaunay(xy).simplices)
+    for pairs in ways(segments.astype(np.int64)):
+        np.testing.assert_array_equal(get(cadt.ConstrainedDelaunay(put(xy), pairs, crossing="exact").simplices), host.simplices)
+    q = np.random.default_rng(4).random((50, 2))
+    for values, asked in zip(ways(z), ways(q)):
+        np.testing.assert_array_equal(get(mesh.find_simplex(asked)), host.find_simplex(q))
+        np.testing.assert_allclose(get(mesh.interpolate(values, asked)), host.interpolate(z, q), rtol=1e-12)
+
+
+def test_arrays_of_another_queue(queue):
+    """What is pending there is waited for."""
+    xy, segments = chords(400, 30)
+    other = cl.CommandQueue(queue.context)
+    program = cl.Program(
+        queue.context,
+        """kernel void late(global int* to, global const int* from, int n) {
+             float x = 1; for (int i = 0; i < 30000000; ++i) x = x * 1.0000001f + 1e-9f;
+             for (int i = 0; i < n; ++i) to[i] = from[i] + (x < 0); }""",
+    ).build()
+    source, late = cl_array.to_device(other, segments), cl_array.zeros(other, segments.shape, np.int32)
+    other.finish()
+    program.late(other, (1,), None, late.base_data, source.base_data, np.int32(segments.size))
+    mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, xy), late, crossing="exact")
+    host = cadt.ConstrainedDelaunay(xy, segments, crossing="exact", backend="host")
+    np.testing.assert_array_equal(mesh.simplices.get(), host.simplices)
 
 
 def test_grids_and_seeds_equal_host(queue):

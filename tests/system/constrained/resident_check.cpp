@@ -138,17 +138,20 @@ void expect_same_in_device_memory(const Options& given, const Points& xy, const 
                                   const ConstraintOptions& constraints) {
   SCOPED_TRACE("in device memory, domain " + std::to_string(static_cast<int>(constraints.domain)));
   Resident& device = resident(given);
-  if (!device.triangulator.device().fp64) return;
-  const Uploaded there(*device.memory, std::as_bytes(std::span(xy))),
+  const bool doubles = device.triangulator.device().fp64;
+  const std::vector<float> floats(xy.begin(), xy.end());
+  const PointsView view = doubles ? PointsView(xy) : PointsView(floats);
+  const Uploaded there(*device.memory, doubles ? std::as_bytes(std::span(xy)) : std::as_bytes(std::span(floats))),
       pairs_there(*device.memory, std::as_bytes(std::span(segments)));
   const DeviceArray pairs = {pairs_there.handle, 2 * segments.size()};
-  const DevicePoints points = {.x = there.handle, .size = xy.size() / 2};
+  const DevicePoints points = {
+      .x = there.handle, .size = xy.size() / 2, .scalar = doubles ? Scalar::float64 : Scalar::float32};
   ConstrainedTriangulation expected;
   DeviceTriangulation mesh;
-  const std::string refused = refusal([&] { expected = triangulate_constrained(xy, segments, constraints, given); });
+  const std::string refused = refusal([&] { expected = triangulate_constrained(view, segments, constraints, given); });
   EXPECT_EQ(refusal([&] { mesh = device.triangulator.triangulate_constrained(points, pairs, constraints); }), refused);
   if (!refused.empty()) return;
-  expect_handles(mesh, *device.memory, expected, constraints, xy);
+  expect_handles(mesh, *device.memory, expected, constraints, doubles ? xy : Points(floats.begin(), floats.end()));
   expect_same(mesh.download_constrained(), expected);
 }
 

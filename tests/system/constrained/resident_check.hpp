@@ -12,8 +12,8 @@
 
 namespace cadt::test {
 
-/// Compares all arrays, those in device memory and those that are downloaded, or the errors. Devices that take no
-/// doubles are left out.
+/// Compares all arrays, those in device memory and those that are downloaded, or the errors; on devices that take no
+/// doubles, of the nearest floats.
 void expect_same_in_device_memory(const Options& options, const Points& xy, const std::vector<Segment>& segments,
                                   const ConstraintOptions& constraints);
 

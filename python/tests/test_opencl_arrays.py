@@ -250,17 +250,19 @@ def test_arrays_in_any_order(queue):
 def test_arrays_of_another_queue(queue):
     """What is pending there is waited for."""
     xy, segments = chords(400, 30)
+    there = cl_array.to_device(queue, xy)
+    cadt.ConstrainedDelaunay(there, segments, crossing="exact")  # opens the device and builds the kernels
     other = cl.CommandQueue(queue.context)
     program = cl.Program(
         queue.context,
         """kernel void late(global int* to, global const int* from, int n) {
-             float x = 1; for (int i = 0; i < 30000000; ++i) x = x * 1.0000001f + 1e-9f;
+             float x = 1; for (int i = 0; i < 200000000; ++i) x = x * 1.0000001f + 1e-9f;
              for (int i = 0; i < n; ++i) to[i] = from[i] + (x < 0); }""",
     ).build()
     source, late = cl_array.to_device(other, segments), cl_array.zeros(other, segments.shape, np.int32)
     other.finish()
     program.late(other, (1,), None, late.base_data, source.base_data, np.int32(segments.size))
-    mesh = cadt.ConstrainedDelaunay(cl_array.to_device(queue, xy), late, crossing="exact")
+    mesh = cadt.ConstrainedDelaunay(there, late, crossing="exact")
     host = cadt.ConstrainedDelaunay(xy, segments, crossing="exact", backend="host")
     np.testing.assert_array_equal(mesh.simplices.get(), host.simplices)
 

@@ -10,7 +10,7 @@ import numpy as np
 from cadt import _cadt, _devices
 from cadt._delaunay import Delaunay
 from cadt._errors import InputError
-from cadt._points import as_points, contiguous
+from cadt._points import as_points, index_of
 from cadt._progress import reporter
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Batch:
         return self._batch.size
 
     def __getitem__(self, s: int) -> Delaunay:
-        s = range(len(self))[s]
+        s = index_of(s, len(self), "set")
         points = self._points[self._offsets[s] : self._offsets[s + 1]]
         return Delaunay._of_mesh(points, self._batch.triangulation(s), self._options.on_host())
 
@@ -88,7 +88,7 @@ def triangulate_batch(
         raise InputError("offsets must be integers of shape (sets + 1,)", 0)
     if begin.min() < 0:
         raise InputError("offsets must not be negative", int(np.argmin(begin)))
-    begin = contiguous(begin, np.int64)
+    begin = np.array(begin, dtype=np.int64)  # a copy: the caller may change what was given
     options = _devices.make_options(backend, device, order, threads, max_memory, "counters")
     if options.backend == "auto":
         options = options.on_host() if len(p) < _devices.SMALL else options

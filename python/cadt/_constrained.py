@@ -9,7 +9,7 @@ import numpy as np
 
 from cadt import _cadt, _devices, _gpu, _show
 from cadt._arrays import adapter_of, array_on_device
-from cadt._errors import InputError, InternalError
+from cadt._errors import InputError, InternalError, OptionError
 from cadt._mesh import Mesh
 from cadt._points import as_pairs, as_points, as_values, contiguous
 from cadt._progress import reporter
@@ -382,7 +382,7 @@ def _restore(cls: type[ConstrainedDelaunay], points: np.ndarray, segments: np.nd
     return cls(points, segments, backend="host", **how)
 
 
-def find_crossings(points: Any, segments: Any, *, threads: int = 0) -> np.ndarray:
+def find_crossings(points: Any, segments: Any, *, threads: int | None = None) -> np.ndarray:
     """All pairs of segments that cross: (p, 2) int32, the lower index first, ascending. Exact.
 
     Segments cross that have one common point, inside both, at which no point lies. O(n log n + pairs) expected.
@@ -390,4 +390,6 @@ def find_crossings(points: Any, segments: Any, *, threads: int = 0) -> np.ndarra
     >>> cadt.find_crossings([[0, 0], [2, 2], [0, 2], [2, 0]], [[0, 1], [2, 3]])
     array([[0, 1]], dtype=int32)
     """
-    return _cadt.find_crossings(as_points(points), as_pairs(segments, "segments"), threads)
+    if threads is not None and threads < 0:
+        raise OptionError(f"threads must not be negative, but it is {threads}", "threads")
+    return _cadt.find_crossings(as_points(points), as_pairs(segments, "segments"), threads or 0)

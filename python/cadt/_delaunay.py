@@ -135,9 +135,7 @@ class Delaunay(Mesh):
         triangles = as_indices(simplices, "simplices")
         of = None if neighbors is None else as_indices(neighbors, "neighbors")
         if len(triangles) and triangles.min() >= 0 and triangles.max() < len(p):
-            corners = p.astype(np.float64, copy=False)[triangles]
-            ab, ac = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-            turn = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0] < 0
+            turn = _cadt.clockwise(p, triangles).view(bool)
             triangles[turn] = triangles[turn][:, [0, 2, 1]]
             if of is not None and of.shape == triangles.shape:
                 of[turn] = of[turn][:, [0, 2, 1]]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import operator
 from typing import Any
 
 import numpy as np
@@ -74,6 +75,14 @@ def to_float(a: np.ndarray, what: str) -> np.ndarray:
         kind = "objects" if a.dtype == object else str(a.dtype)
         raise TypeError(f"{what} must be float64 or float32 (or integers), not {kind}")
     raise TypeError(f"{what} must be float64 or float32 (or integers), not {a.dtype}: convert them first")
+
+
+def index_of(i: Any, n: int, what: str) -> int:
+    """An index, also from the end, of one of n."""
+    k = operator.index(i)
+    if not -n <= k < n:
+        raise IndexError(f"there is no {what} {k}: there are {n}")
+    return k + n if k < 0 else k
 
 
 def as_queries(xi: Any) -> tuple[np.ndarray, tuple[int, ...]]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from cadt import _cadt, _devices, _show
 from cadt._errors import InputError
-from cadt._points import as_points
+from cadt._points import as_points, index_of
 from cadt._progress import reporter
 from cadt._segments import as_offsets
 from cadt._wkb import MULTIPOLYGON, POLYGON, lines_of_wkb, offsets_of
@@ -59,7 +59,7 @@ class Polygons:
         return len(self.triangle_offsets) - 1
 
     def __getitem__(self, p: int) -> np.ndarray:
-        p = range(len(self))[p]
+        p = index_of(p, len(self), "polygon")
         return self.triangles[self.triangle_offsets[p] : self.triangle_offsets[p + 1]]
 
     @property
@@ -108,7 +108,8 @@ def polygons(
     ----------
     geometry : array_like, shape (n, 2); or polygons
         Points of rings, with offsets. Or a ``geopandas.GeoSeries`` or ``GeoDataFrame``, an array or list of shapely's
-        polygons and multipolygons, or a list of them in WKB (bytes). Each row is one polygon; heights are left out.
+        polygons and multipolygons, or a list, array or Series of them in WKB (bytes). Each row is one polygon; heights
+        are left out. An empty one has too few points.
     ring_offsets : array_like of int, shape (r + 1,), optional
         Ring r has the points ``ring_offsets[r]`` to ``ring_offsets[r + 1] - 1``. It may repeat its first point.
     polygon_offsets : array_like of int, shape (p + 1,), optional
@@ -151,14 +152,20 @@ def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, A
     index, crs = getattr(geometry, "index", None), getattr(geometry, "crs", None)
     if isinstance(geometry, (list, tuple)):
         index = None
-        if all(isinstance(g, (bytes, bytearray, memoryview)) for g in geometry):
-            points, rings, polygons_ = lines_of_wkb(geometry, (POLYGON, MULTIPOLYGON))
-            return np.ascontiguousarray(points[:, :2]), rings, polygons_, None, None
+    elif getattr(geometry, "dtype", None) == object:
+        geometry = np.asarray(geometry).ravel()
+    if isinstance(geometry, (list, tuple, np.ndarray)) and all(
+        isinstance(g, (bytes, bytearray, memoryview)) for g in geometry
+    ):
+        points, rings, polygons_ = lines_of_wkb(geometry, (POLYGON, MULTIPOLYGON))
+        return np.ascontiguousarray(points[:, :2]), rings, polygons_, index, None
     shapely = _show._need("shapely", "shapely")
     rows = np.atleast_1d(np.asarray(geometry, dtype=object))
     if rows.ndim != 1 or not (shapely.is_geometry(rows) | shapely.is_missing(rows)).all():
         raise InputError(
-            "polygons are points with ring_offsets=, a GeoSeries, shapely's geometries, or a list of WKB bytes", 0
+            "polygons are points with ring_offsets=, a GeoSeries, shapely's geometries, or WKB bytes of all polygons in a "
+            "list, an array or a Series",
+            0,
         )
     wrong = ~np.isin(shapely.get_type_id(rows), (-1, 3, 6))
     if wrong.any():

@@ -87,6 +87,20 @@ void bind_mesh(nb::module_& m) {
         return report_of(without_gil([&] { return cadt::verify(view, mesh, {.canonical_ties = canonical_ties}); }));
       },
       nb::arg("points"), nb::arg("triangles"), nb::arg("neighbors") = nb::none(), nb::arg("canonical_ties") = false);
+  m.def("clockwise", [](const Points& points, const Indices& triangles) {
+    const cadt::PointsView view = view_of(points);
+    const auto place = [&](std::int32_t v) {
+      return std::array<double, 2>{view.x(static_cast<std::size_t>(v)), view.y(static_cast<std::size_t>(v))};
+    };
+    return array_of(without_gil([&] {
+      std::vector<std::uint8_t> flags(triangles.shape(0));
+      for (std::size_t t = 0; t < flags.size(); ++t) {
+        const std::int32_t* v = triangles.data() + 3 * t;
+        flags[t] = cadt::exact_orientation(place(v[0]), place(v[1]), place(v[2])) < 0 ? 1 : 0;
+      }
+      return flags;
+    }));
+  });
   m.def(
       "adopt",
       [](const Points& points, const Indices& triangles, std::optional<Indices> neighbors, bool verify) {

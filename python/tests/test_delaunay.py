@@ -27,6 +27,39 @@ def queries(points: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return np.concatenate([low + size * (1.4 * rng.random((60, 2)) - 0.2), p[:20], (p[:20] + p[1:21]) / 2])
 
 
+def test_nearly_flat_triangles_of_others_are_turned_exactly():
+    """Where the determinant of doubles has the wrong sign, or is 0."""
+    rng = np.random.default_rng(1)
+    made = 0
+    for _ in range(600):
+        a, b, t = rng.random(2) * 9, rng.random(2) * 9, rng.random()
+        p = np.array([a, b, a + t * (b - a)])
+        mesh = cadt.Delaunay(p)
+        made += mesh.n_triangles
+        for turned in (mesh.simplices, mesh.simplices[:, [0, 2, 1]]):
+            for verify in (True, False):
+                same = cadt.Delaunay.from_simplices(p, turned, verify=verify)
+                np.testing.assert_array_equal(same.simplices, mesh.simplices)
+    assert made > 200
+    square = np.array([[0, 0], [1, 0], [0, 1], [1, 1.0]])
+    for scale in (1e-200, 1e-310, 1e300):
+        mesh = cadt.Delaunay(square * scale)
+        assert cadt.Delaunay.from_simplices(square * scale, mesh.simplices[:, [0, 2, 1]]).hash == mesh.hash
+
+
+def test_batches_copy_their_offsets_and_refuse_other_indices():
+    offsets = np.array([0, 3, 7])
+    batch = cadt.triangulate_batch(np.random.default_rng(2).random((7, 2)), offsets)
+    offsets[1] = 5
+    assert [len(of.points) for of in batch] == [3, 4] and len(batch[-1].points) == 4
+    for wrong, error in ((2, "there is no set 2: there are 2"), (-3, "no set -3")):
+        with pytest.raises(IndexError, match=error):
+            batch[wrong]
+    for wrong in (slice(0, 1), "a", 1.0):
+        with pytest.raises(TypeError):
+            batch[wrong]
+
+
 def test_triangles_are_delaunay(mesh: cadt.Delaunay) -> None:
     p = exact(mesh.points)
     unique = [i for i in range(mesh.n_points) if mesh.duplicate_of[i] < 0]

@@ -59,6 +59,19 @@ def test_wkb(order: str, kind: int, extra: int) -> None:
             cadt.polygons([both[:length]])
 
 
+def test_wkb_in_arrays_and_series() -> None:
+    rows = [wkb([SQUARE]), wkb([np.add(SQUARE, 9)])]
+    expected = cadt.polygons(rows).triangles
+    np.testing.assert_array_equal(cadt.polygons(np.array(rows, dtype=object)).triangles, expected)
+    pandas = pytest.importorskip("pandas")
+    series = pandas.Series(rows, index=["a", "b"])
+    np.testing.assert_array_equal(cadt.polygons(series).triangles, expected)
+    with pytest.raises(IndexError, match="no polygon 2"):
+        cadt.polygons(rows)[2]
+    pytest.importorskip("geopandas")
+    assert list(cadt.polygons(series).to_geoseries().index) == ["a"] * 2 + ["b"] * 2
+
+
 def test_wkb_of_others_is_refused() -> None:
     with_srid = struct.pack("<BIII", 1, 3 | 1 << 29, 4326, 1) + wkb([SQUARE])[9:]
     assert areas(cadt.polygons([with_srid])).tolist() == [9]

@@ -286,6 +286,29 @@ def test_interpolators(general: np.ndarray, rng: np.random.Generator) -> None:
 
 
 @pytest.mark.parametrize("rescale", [False, True])
+@pytest.mark.parametrize("values", [np.float64, np.complex128])
+def test_no_queries(values, rescale):
+    p = np.random.default_rng(5).random((30, 2))
+    for z in (p[:, 0].astype(values), np.zeros((30, 3), values), np.zeros((30, 0), values)):
+        for q in (np.empty((0, 2)), np.empty((3, 0, 2))):
+            got = ours.LinearNDInterpolator(p, z, rescale=rescale)(q)
+            assert got.shape == (*q.shape[:-1], *z.shape[1:]) and got.dtype == values
+    if values is np.float64 and not rescale:
+        for method in ("linear", "natural", "nearest"):
+            assert ours.griddata(p, p[:, 0], np.empty((0, 2)), method=method).shape == (0,)
+        with pytest.raises(ValueError):
+            ours.Delaunay(p).plane_distance(np.float64(0.5))
+
+
+def test_grids_far_from_the_origin_are_as_one_by_one():
+    p = np.random.default_rng(7).random((300, 2))
+    z, at = np.sin(7 * p[:, 0]) + p[:, 1], 1e9
+    x, y = np.meshgrid(at + np.linspace(-0.1, 1.1, 150), at + np.linspace(-0.1, 1.1, 101))
+    ip = ours.LinearNDInterpolator(p + at, z, rescale=True)
+    np.testing.assert_array_equal(ip(x, y).ravel(), ip(np.stack([x.ravel(), y.ravel()], axis=1)))
+
+
+@pytest.mark.parametrize("rescale", [False, True])
 def test_regular_grids(general: np.ndarray, rescale: bool) -> None:
     """Large grids are rasterized: the values are those of the same places one by one."""
     z = np.sin(general[:, 0])

@@ -182,7 +182,10 @@ class Delaunay(Plane, _Triangulation):
 
     def plane_distance(self, xi: Any) -> np.ndarray:
         """Distances on the paraboloid between each query and the plane of each triangle: (..., nsimplex) float64."""
-        return super().plane_distance(np.asarray(xi))
+        xi = np.asarray(xi)
+        if xi.ndim == 0 or xi.shape[-1] != 2:  # SciPy reads beyond the end of others
+            raise ValueError(f"xi must have shape (..., 2), not {xi.shape}")
+        return super().plane_distance(xi)
 
     def lift_points(self, x: Any) -> np.ndarray:
         """Points (..., 2) on Qhull's paraboloid: (..., 3)."""

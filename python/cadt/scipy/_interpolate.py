@@ -99,9 +99,7 @@ class _OnMesh:
             result = np.full((len(x), values.shape[1]), np.nan)
             result[finite] = tri.mesh.interpolate(values, x[finite], self._method)
         # NaN: outside, or values that are NaN.
-        unknown = np.flatnonzero(
-            np.isnan(result[:, 0] if result.shape[1] == 1 else result).reshape(len(x), -1).any(axis=1)
-        )
+        unknown = np.flatnonzero(np.isnan(result[:, 0]) if result.shape[1] == 1 else np.isnan(result).any(axis=1))
         if unknown.size:
             unknown = unknown[locate(tri.mesh, x[unknown]) < 0]
             finite = unknown[np.isfinite(x[unknown]).all(axis=1)]
@@ -124,13 +122,15 @@ class _OnMesh:
     def _raster(self, x: np.ndarray, y: np.ndarray, rows_are_x: bool) -> np.ndarray | None:
         """Values at all (x, y), which is quicker than one by one; None if x or y are not equidistant.
 
-        Cells are where the library computes them, which is where they were given but for rounding.
+        Cells are where the library computes them: not further from where they were given than rounding is, and than
+        1e-11 of the grid's extent.
         """
         if self.values.dtype.kind == "c":
             return None
         for a in (x, y):
             exact = a[0] + (a[-1] - a[0]) / (len(a) - 1) * np.arange(len(a))
-            if not (a[0] != a[-1] and np.abs(exact - a).max() <= 4 * np.finfo(np.double).eps * np.abs(a).max()):
+            rounding = 4 * np.finfo(np.double).eps * np.abs(a).max()
+            if not (np.abs(exact - a).max() <= rounding <= 1e-11 * abs(a[-1] - a[0])):
                 return None
         axes = [x, y]
         if self.scale is not None:
@@ -162,6 +162,7 @@ class LinearNDInterpolator(_OnMesh, _Linear):
         Whether the points are scaled to the unit square first.
 
     The result has the shape of the queries and that of one point's values. All queries are computed at once, in threads.
+    Those of large regular grids are as a raster's: at places that rounding moves, by 1e-11 of the grid's extent at most.
 
     >>> ip = LinearNDInterpolator([[0, 0], [1, 0], [0, 1]], [0, 10, 20])
     >>> ip(0.25, 0.25), ip([[0.5, 0.5], [2, 2]])

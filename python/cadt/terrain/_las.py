@@ -47,6 +47,8 @@ class LasSource:
             if header.are_points_compressed and not _laspy().LazBackend.detect_available():
                 raise Unavailable("reading LAZ", "lazrs")
             self.count = int(header.point_count)
+            if not np.isfinite([*header.scales, *header.offsets]).all():
+                raise FileError(path, "is no LAS or LAZ file: a scale or offset in its header is no finite number")
             names = set(header.point_format.dimension_names)
             self.crs = self._crs(header) if with_crs else None
         if classes is not None and "classification" not in names:

@@ -100,6 +100,8 @@ class OgrSource:
             points = _coordinates(self.path, geometry, done)
             xy, z = room(len(points))
             xy[:] = points[:, :2]
+            if columns and fields[0].dtype.kind not in "iuf":
+                raise FileError(self.path, f"the attribute {columns[0]} is no number: --values names one that is")
             z[:] = fields[0] if columns else points[:, 2]
             check_values(self.path, z, self._values, done)
             done += len(points)

@@ -43,7 +43,10 @@ class Rows:
         """The next rows; NaN: no data."""
         from rasterio.windows import Window
 
-        values = np.asarray(rows).astype(self._dtype, copy=True)
+        with np.errstate(over="ignore"):
+            values = np.asarray(rows).astype(self._dtype, copy=True)
+        if np.isinf(values).any():
+            raise FileError(self._path, f"a cell has a value that is no {self._dtype}: take --dtype float64")
         nan = np.isnan(values)
         if not math.isnan(self._nodata):
             if (values == self._nodata).any():

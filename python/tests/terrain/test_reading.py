@@ -216,12 +216,75 @@ def test_tables(tmp_path):
     (tmp_path / "b.xyz").write_text("1 2 3\n1 nan 3\n")
     with pytest.raises(terrain.FileError, match=r"row 1 .* no finite number in column 2"):
         terrain.read_cloud([str(tmp_path / "b.xyz")])
+    with pytest.raises(terrain.FileError, match=r"row 0 .* no finite number in column 4"):
+        (tmp_path / "c.csv").write_text("id,x,y,z\n1,2,3,inf\n")
+        terrain.read_cloud([str(tmp_path / "c.csv")])
     (tmp_path / "b.xyz").write_text("1 2 3\n1 2\n")
     with pytest.raises(terrain.FileError, match=r"b\.xyz: cannot be read"):
         terrain.read_cloud([str(tmp_path / "b.xyz")])
     (tmp_path / "b.xyz").write_text("\n")
     with pytest.raises(terrain.FileError, match="is empty"):
         terrain.read_cloud([str(tmp_path / "b.xyz")])
+
+
+THREE = [[0, 0, 1], [1, 0, 2], [0, 1, 3]]
+
+
+@pytest.mark.parametrize(
+    ("text", "columns"),
+    [
+        ("\ufeff0 0 1\r\n1 0 2\r\n0 1 3\r\n", ""),
+        ("\ufeffx,y,z\r\n0,0,1\r\n1,0,2\r\n0,1,3\r\n", "x,y,z"),
+        ("id,x,y,z\n7,0,0,1\n8,1,0,2\n9,0,1,3\n", ""),
+        ("z,y,x\n1,0,0\n2,0,1\n3,1,0\n", ""),
+        ("Z,Lat,LON,name\n1,0,0,a\n2,0,1,b\n3,1,0,c\n", ""),
+        ("X,Y,Z,name\n0,0,1,a\n1,0,2,b\n0,1,3,c\n", "x,y,z"),
+        ('  # made\n"east";"north";"elev"\n"0";"0";"1"\n"1";"0";"2"\n"0";"1";"3"\n', ""),
+        ("a,b,c\n0,0,1\n1,0,2\n0,1,3\n", ""),
+    ],
+)
+def test_headers_are_read_as_the_program_reads_them(tmp_path, text, columns):
+    (tmp_path / "t.csv").write_bytes(text.encode())
+    cloud = terrain.read_cloud([str(tmp_path / "t.csv")], columns=columns)
+    assert np.array_equal(np.column_stack((cloud.xy, cloud.z)), THREE)
+
+
+@pytest.mark.parametrize("row", ["0,0,n/a", "0,0,", "0,0,nodata"])
+def test_a_first_row_that_is_bad_is_no_header(tmp_path, row):
+    (tmp_path / "t.csv").write_text(f"{row}\n1,0,2\n0,1,3\n1,1,4\n")
+    with pytest.raises(terrain.FileError, match="cannot be read"):
+        terrain.read_cloud([str(tmp_path / "t.csv")])
+
+
+def test_tables_without_what_is_needed(tmp_path):
+    (tmp_path / "t.csv").write_text("x,y,z\n")
+    with pytest.raises(terrain.FileError, match="only a header line"):
+        terrain.read_cloud([str(tmp_path / "t.csv")])
+    (tmp_path / "t.csv").write_text("lat,lon,name\n1,2,a\n")
+    with pytest.raises(terrain.UsageError, match="no column of heights"):
+        terrain.read_cloud([str(tmp_path / "t.csv")])
+
+
+def test_attributes_that_are_no_numbers(tmp_path):
+    pytest.importorskip("pyogrio")
+    for value in ("x", "2020-01-01", True):
+        features = [
+            {"type": "Feature", "properties": {"h": value}, "geometry": {"type": "Point", "coordinates": [k, k * k]}}
+            for k in range(4)
+        ]
+        (tmp_path / "p.geojson").write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+        with pytest.raises(terrain.FileError, match="the attribute h is no number"):
+            terrain.read_cloud([str(tmp_path / "p.geojson")], values="h")
+
+
+@pytest.mark.parametrize("byte", [131, 155])
+def test_a_scale_or_offset_that_is_no_number(las, byte):
+    name = las("nan.las", hills(50))
+    data = bytearray(open(name, "rb").read())
+    data[byte : byte + 8] = np.float64(np.nan).tobytes()
+    open(name, "wb").write(data)
+    with pytest.raises(terrain.FileError, match="no finite number"):
+        terrain.read_cloud([name])
 
 
 @pytest.mark.thorough

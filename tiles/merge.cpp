@@ -20,7 +20,7 @@ struct Triangle {
 };
 
 [[noreturn]] void contradiction(const std::string& what) {
-  throw Error("the mesh contradicts itself: " + what + "; see: cadt verify");
+  throw InvalidMesh("neighbors", -1, what + "; see: cadt verify");
 }
 
 class Merge {

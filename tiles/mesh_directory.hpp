@@ -76,7 +76,7 @@ struct MergedMesh {
   std::vector<std::int32_t> triangles, neighbors, hull;
   std::vector<Duplicate> duplicates;
 };
-/// \throws LimitError if there are more points than 32-bit indices take; Error for a mesh that contradicts itself
+/// \throws LimitError if there are more points than 32-bit indices take; InvalidMesh for a mesh that contradicts itself
 [[nodiscard]] MergedMesh merge(const NodeMesh& mesh);
 
 /// Checks everything again, exactly and without believing the builder: hashes of the files, structure, orientation,

@@ -26,13 +26,18 @@ struct MergeCommand {
 };
 
 void write_merged(const MergeCommand& c, const tiles::MeshDirectory& directory, const std::vector<Output>& outputs) {
-  tiles::MergedMesh merged = tiles::merge(directory);
+  const Failure damaged(
+      exit_verify, fmt::format("{}: its triangles are not those of its manifest; see: cadt verify {}", c.mesh, c.mesh));
   io::PointSet points;
-  points.xy = std::move(merged.xy);
-  const Triangulation mesh = Triangulation::adopt(points.view(), merged.triangles, merged.neighbors, Trust::geometry);
-  if (mesh.hash() != directory.manifest().hash)
-    throw Failure(exit_verify,
-                  fmt::format("{}: its triangles are not those of its manifest; see: cadt verify {}", c.mesh, c.mesh));
+  Triangulation mesh;
+  try {
+    tiles::MergedMesh merged = tiles::merge(directory);
+    points.xy = std::move(merged.xy);
+    mesh = Triangulation::adopt(points.view(), merged.triangles, merged.neighbors, Trust::geometry);
+  } catch (const InvalidMesh&) {
+    throw damaged;
+  }
+  if (mesh.hash() != directory.manifest().hash) throw damaged;
   for (const Output& output : outputs) {
     io::WriteOptions write;
     write.format = output.format;
@@ -94,7 +99,8 @@ void add_merge(CLI::App& app, Action& chosen) {
   command->add_option("--ply", options->ply, "folder for a .ply file of each node")->type_name("DIR");
   command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");
   command->footer(
-      "One mesh takes 32-bit indices: 536,870,910 points at most. Its memory is about 140 bytes a point.\n\n"
+      "One mesh takes 32-bit indices: 536,870,910 points at most. Its memory is about 140 bytes a point.\n"
+      "Triangles are compared with the manifest; cadt verify examines coordinates as well.\n\n"
       "Examples:\n"
       "  cadt merge mesh.cadt -o mesh.ele -o mesh.npz\n"
       "  cadt merge mesh.cadt --pvtu pieces\n");

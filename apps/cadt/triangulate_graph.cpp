@@ -57,6 +57,10 @@ int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
     report.verification = verify(graph.points.view(), graph.segments, mesh, constraints, verify_options);
     report.verify_seconds = watch.lap();
     line.clear();
+    if (!report.verification->ok && !mesh.rounded_valid())
+      throw Failure(exit_verify, name + ": crossings are too close to others for rounded coordinates: " +
+                                     report.verification->summary() +
+                                     "; no output was written. --crossing grid=G keeps them apart");
     require_verified(*report.verification);
   }
 

@@ -194,6 +194,18 @@ class Crossings(CliTest):
         self.cadt("triangulate", "heights.obj", "--segments", "heights.obj", "--crossing", "exact", "-o", "m.off")
         self.assertEqual(read_off(self.path("m.off").read_text())[0][4], ("2", "0", "2"))
 
+    def test_crossings_too_close_for_doubles_are_explained(self):
+        ends = [(0, 0), (1, 1), (0, 1), (1, 0), (0, 0.5), (1, 0.5 + 2**-52), (0.25, 0), (0.75, 1)]
+        self.write("near.poly", "8 2 0 0\n" + "".join(f"{i} {x!r} {y!r}\n" for i, (x, y) in enumerate(ends)) +
+                   "4 0\n" + "".join(f"{i} {2 * i} {2 * i + 1}\n" for i in range(4)) + "0\n")
+        err = self.cadt("triangulate", "near.poly", "--crossing", "exact", "-o", "m.off").err
+        self.assertIn("turned over or flat", err)
+        err = self.cadt("triangulate", "near.poly", "--crossing", "exact", "-q", "--verify", "-o", "n.off", expect=7).err
+        self.assertIn("--crossing grid=G", err)
+        self.assertNotIn("defect of cadt", err)
+        self.assertNotIn("n.off", self.names())
+        self.cadt("triangulate", "near.poly", "--crossing", "grid=0.001", "--verify", "-o", "n.off")
+
     def test_can_move_to_a_grid(self):
         self.write("y.edg", "2\n0 0 4.1 4.1\n0 4 4 0.2\n")
         self.cadt("triangulate", "y.edg", "--crossing", "grid=1", "-o", "m.off")

@@ -97,6 +97,20 @@ class TilesTest(CliTest):
             self.cadt("triangulate", "in.xy", "-o", "one.off")
             self.assertEqual(self.path("m.off").read_bytes(), self.path("one.off").read_bytes())
 
+    def test_merge_refuses_triangles_of_others(self):
+        self.cadt("tiles", "--generate", "uniform", "-n", "600", "--tile-points", "200", "-o", "mesh.cadt", "-q")
+        path = next(path for path in sorted(self.path("mesh.cadt").glob("node-*/triangles.npy")))
+        whole = path.read_bytes()
+        for byte in (-4, -1):  # another vertex, and one that there is not
+            damaged = bytearray(whole)
+            damaged[byte] ^= 1
+            path.write_bytes(damaged)
+            err = self.cadt("merge", "mesh.cadt", "-o", "m.off", expect=7).err
+            self.assertNotIn("defect of cadt", err)
+            self.assertNotIn("m.off", self.names())
+        path.write_bytes(whole)
+        self.cadt("merge", "mesh.cadt", "-o", "m.off")
+
     def test_statistics_and_picture(self):
         self.points()
         self.tiles("points.f64", "--tile-points", 300, "--stats", "run.json", "--picture", "tree.svg")

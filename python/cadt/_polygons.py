@@ -157,7 +157,7 @@ def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, A
     if isinstance(geometry, (list, tuple, np.ndarray)) and all(
         isinstance(g, (bytes, bytearray, memoryview)) for g in geometry
     ):
-        points, rings, polygons_ = lines_of_wkb(geometry, (POLYGON, MULTIPOLYGON))
+        points, rings, polygons_ = lines_of_wkb(list(geometry), (POLYGON, MULTIPOLYGON))
         return np.ascontiguousarray(points[:, :2]), rings, polygons_, index, None
     shapely = _show._need("shapely", "shapely")
     rows = np.atleast_1d(np.asarray(geometry, dtype=object))

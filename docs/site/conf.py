@@ -31,6 +31,7 @@ source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 exclude_patterns = ["site/tools", "site/gallery"]
 nitpicky = True
 nitpick_ignore_regex = [  # of other libraries, and what the interface names without showing it
+    ("py:class", r"cadt\._cadt\..*"),
     ("c:identifier", r"u?int\d+_t|size_t"),
     ("cpp:identifier", r"std(::.*)?|u?int\d+_t|size_t|.*Data|.*State|cadt|detail(::.*)?"),
 ]

@@ -20,23 +20,28 @@ from doxygen_xml import complete
 HEADERS = {
     "cpp": {
         "The mesh": ["triangulator", "points", "options", "triangulation", "errors", "version"],
+        "Segments and polygons": ["constrained", "polygons", "label_image"],
         "Asking it": ["queries", "topology", "verify"],
-        "Further": ["batch", "devices", "statistics", "triangle", "cadt"],
+        "Further": ["batch", "finalization", "uniform_cells", "devices", "statistics", "stop_token", "triangle", "cadt"],
         "Files and pictures (component io)": [
             "io/points_file",
             "io/mesh_file",
             "io/query_files",
             "io/triangle_files",
+            "io/segments_file",
+            "io/region_file",
+            "io/label_image_file",
             "io/picture",
             "io/generate",
             "io/errors",
         ],
     },
-    "c": {"": ["cadt", "queries", "triangulateio"]},
+    "c": {"": ["cadt", "constrained", "queries", "triangulateio"]},
 }
 SUFFIX = {"cpp": ".hpp", "c": ".h"}
 COMPLETED = {f"docs/site/reference/{name}.md" for name in ("cpp", "c", "cli")}  # here, with what is made
 NOT_SHOWN = {"export.hpp"}  # macros alone
+TERRAIN = {("contour",), ("tin",)}
 
 
 def write(path: pathlib.Path, text: str) -> pathlib.Path:
@@ -112,7 +117,9 @@ def header_pages(root: pathlib.Path, build: pathlib.Path, language: str, made: s
 
 
 def help_of(program: str, *arguments: str) -> str:
-    done = subprocess.run([program, *arguments, "--help"], capture_output=True, text=True, check=True)
+    terrain = arguments[:1] in TERRAIN  # commands of Python's part, which is not installed here
+    command = [sys.executable, "-m", "cadt.terrain"] if terrain else [program]
+    done = subprocess.run([*command, *arguments, "--help"], capture_output=True, text=True, check=True)
     return done.stdout.rstrip("\n")
 
 

@@ -21,7 +21,7 @@ std::vector<T> read(Device& device, const Allocation& from, std::size_t count) {
   return from && count != 0 ? device.read_values<T>(*from, count) : std::vector<T>{};
 }
 
-/// Regions of a mesh all of which is inside, which a mesh on a device has not.
+/// With Domain::hull no regions are kept on a device: finds them for the copy.
 void find_regions_of_hull(Context& ctx, const DeviceTriangulation::Data& from, Data& to) {
   Allocation none;
   if (!from.edge_flags) none = ctx.memory.allocate_zeros(from.triangle_count * word);
@@ -33,6 +33,16 @@ void find_regions_of_hull(Context& ctx, const DeviceTriangulation::Data& from, D
   to.number_inside = from.triangle_count;
   to.region_value = std::move(domains.value);
   to.region_attribute = std::move(domains.attribute);
+}
+
+void upload_chains(const State& state, const Data& from, DeviceTriangulation::Data& to) {
+  to.segments = from.chain_offsets.size() - 1;
+  to.chain_length = from.chain_vertices.size();
+  if (to.segments == 0) return;
+  require_chain_length(to.chain_length);
+  const std::vector<std::uint32_t> offsets(from.chain_offsets.begin(), from.chain_offsets.end());
+  to.chain_offsets = state->memory.upload(std::span(offsets));
+  to.chains = state->memory.upload(std::span(from.chain_vertices));
 }
 
 }  // namespace
@@ -51,16 +61,6 @@ CopiedSegments copy_segments(const State& state, const DevicePoints& points, con
   copied.segments = read<Segment>(ctx.device, job.segments, job.count);
   ctx.device.finish();
   return copied;
-}
-
-void upload_chains(const State& state, const Data& from, DeviceTriangulation::Data& to) {
-  to.segments = from.chain_offsets.size() - 1;
-  to.chain_length = from.chain_vertices.size();
-  if (to.segments == 0) return;
-  require_chain_length(to.chain_length);
-  const std::vector<std::uint32_t> offsets(from.chain_offsets.begin(), from.chain_offsets.end());
-  to.chain_offsets = state->memory.upload(std::span(offsets));
-  to.chains = state->memory.upload(std::span(from.chain_vertices));
 }
 
 DeviceMesh upload_mesh(const State& state, std::span<const double> xy, const Data& from) {

@@ -29,7 +29,5 @@ struct CopiedSegments {
 /// A mesh that was made on the host, without its domains. `xy`: of the points that were given.
 [[nodiscard]] DeviceMesh upload_mesh(const std::shared_ptr<Triangulator::State>& state, std::span<const double> xy,
                                      const ConstrainedTriangulation::Data& from);
-void upload_chains(const std::shared_ptr<Triangulator::State>& state, const ConstrainedTriangulation::Data& from,
-                   DeviceTriangulation::Data& to);
 
 }  // namespace cadt

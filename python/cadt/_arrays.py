@@ -154,7 +154,7 @@ class Array:
         return self.of_handle(mesh, handle, shape) if handle else self.from_host(np.zeros(shape, np.int32))
 
     def flags(self, words: Any) -> Any:
-        """Words, each 0 or not, as bool."""
+        """Words, each 0 or not, as bool; with PyOpenCL, which computes nothing with bool, as int8."""
         return words != 0
 
     def doubles(self, mesh: Any, which: str, shape: tuple[int, ...]) -> Any:
@@ -331,8 +331,8 @@ class OpenCl(Array):
             return a
         if a.flags.c_contiguous:
             return a.copy()
-        places = sum(np.arange(n).reshape(-1, *[1] * (a.ndim - 1 - k)) * s for k, (n, s) in enumerate(zip(a.shape, a.strides)))
-        places = (np.broadcast_to(np.asarray(places), a.shape) + a.offset) // a.dtype.itemsize
+        along = np.ogrid[tuple(slice(n) for n in a.shape)]
+        places = sum((i * stride for i, stride in zip(along, a.strides)), np.int64(a.offset)) // a.dtype.itemsize
         flat = self.cl.array.Array(self.cl_queue, (a.base_data.size // a.dtype.itemsize,), a.dtype, data=a.base_data)
         return self.gather(flat, places)
 
@@ -379,9 +379,6 @@ class OpenCl(Array):
 
     def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
         return self.cl.array.empty(self.cl_queue, shape, dtype)
-
-    def flags(self, words: Any) -> Any:
-        return words != 0  # int8: PyOpenCL computes nothing with bool
 
     def of_handle(self, mesh: Any, handle: int, shape: tuple[int, ...], dtype: str = "int32") -> Any:
         buffer = self.cl.Buffer.from_int_ptr(handle)

@@ -267,10 +267,10 @@ class ConstrainedDelaunay(Mesh):
         >>> mesh.at_crossings([0, 10, 7, 7])
         array([ 0., 10.,  7.,  7.,  5.])
         """
-        n, array = self._given, None if self._gpu is None else self._gpu.array
+        n = self._given
         if self._gpu is not None and n == self.n_points:
             return self._gpu._values(values)[0]
-        v, one = as_values(array.host_of(values) if array is not None and array.is_here(values) else values, n)
+        v, one = as_values(values if self._gpu is None else self._gpu._as_host(values), n)
         if n == self.n_points:
             return v.reshape(n, *one)
         points, parents, (indptr, chain) = self._host_points, self._on_host.added_parents, self._on_host.chains
@@ -290,7 +290,7 @@ class ConstrainedDelaunay(Mesh):
         result = np.concatenate([v, np.full((len(parents), v.shape[1]), np.nan)])
         result[chain[on]] = (1 - part) * v[chain[before[on]]] + part * v[chain[behind[on]]]
         result = result.reshape(len(result), *one)
-        return result if array is None else array.like(result)
+        return result if self._gpu is None else self._gpu.array.like(result)
 
     # Checks and pictures
 

@@ -153,7 +153,7 @@ def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, A
     if isinstance(geometry, (list, tuple)):
         index = None
     elif getattr(geometry, "dtype", None) == object:
-        geometry = np.asarray(geometry).ravel()
+        geometry = np.atleast_1d(np.asarray(geometry))
     if isinstance(geometry, (list, tuple, np.ndarray)) and all(
         isinstance(g, (bytes, bytearray, memoryview)) for g in geometry
     ):

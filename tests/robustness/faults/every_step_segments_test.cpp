@@ -80,30 +80,20 @@ TEST_P(EveryStep, SegmentsThatCrossOnTheDevice) {
   const Walls walls = crossed_walls();
   const DevicePoints points = upload(walls.xy);
   const DeviceArray segments{memory->upload(std::span<const Segment>(walls.segments)), 2 * walls.segments.size()};
-  ConstraintOptions constraints;
-  constraints.crossing = Crossing::exact;
-  constraints.domain = Domain::layers;
-  fail_each(options(), [&](Triangulator& t) {
-    const DeviceTriangulation mesh = t.triangulate_constrained(points, segments, constraints);
-    EXPECT_GT(mesh.number_added(), 0U);
-    return constrained_outcome(mesh.download_constrained());
-  });
-}
-
-TEST_P(EveryStep, SegmentsOnAGridOfTheDevice) {
-  peak_varies = true;
-  if (GetParam().backend == Backend::opencl) each = 4;
-  const Walls walls = crossed_walls();
-  const DevicePoints points = upload(walls.xy);
-  const DeviceArray segments{memory->upload(std::span<const Segment>(walls.segments)), 2 * walls.segments.size()};
-  ConstraintOptions constraints;
-  constraints.crossing = Crossing::grid;
-  constraints.grid = 0.01;
-  constraints.domain = Domain::seeds;
-  constraints.holes = {{0.5, 0.5}};
-  fail_each(options(), [&](Triangulator& t) {
-    return constrained_outcome(t.triangulate_constrained(points, segments, constraints).download_constrained());
-  });
+  ConstraintOptions exact, grid;
+  exact.crossing = Crossing::exact;
+  exact.domain = Domain::layers;
+  grid.crossing = Crossing::grid;
+  grid.grid = 0.01;
+  grid.domain = Domain::seeds;
+  grid.holes = {{0.5, 0.5}};
+  for (const ConstraintOptions& constraints : {exact, grid}) {
+    fail_each(options(), [&](Triangulator& t) {
+      const DeviceTriangulation mesh = t.triangulate_constrained(points, segments, constraints);
+      EXPECT_GT(mesh.number_added(), 0U);
+      return constrained_outcome(mesh.download_constrained());
+    });
+  }
 }
 
 TEST_P(EveryStep, SegmentsCancelled) {

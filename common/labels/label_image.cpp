@@ -3,6 +3,7 @@
 #include <cadt/label_image.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace cadt {
@@ -103,6 +104,7 @@ std::vector<std::int32_t> triangle_labels(std::span<const double> xy, std::span<
       x += xy[2 * vertex];
       y += xy[2 * vertex + 1];
     }
+    if (!std::isfinite(x) || !std::isfinite(y)) throw InputError("a triangle has a corner that is not finite", t / 3);
     result.push_back(pixels.at(pixel(x / 3, width), pixel(static_cast<double>(height) - y / 3, height)));
   }
   return result;

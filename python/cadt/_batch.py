@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -30,26 +30,51 @@ class Batch:
         Of the whole call.
     """
 
-    def __init__(self, points: np.ndarray, offsets: np.ndarray, batch: Any, options: _cadt.Options) -> None:
-        self._points, self._offsets, self._batch, self._options = points, offsets, batch, options
+    def __init__(self, points: np.ndarray, offsets: np.ndarray, batch: Any, options: _cadt.Options | None) -> None:
+        self._points, self._offsets, self._options = points, offsets, options
+        self._of_set: Callable[[int], _cadt.Triangulation] = batch.triangulation
         self.simplices: np.ndarray = batch.triangles
         self.neighbors: np.ndarray = batch.neighbors
         self.triangle_offsets: np.ndarray = batch.triangle_offsets
         self.statistics: dict[str, Any] = batch.statistics
 
     def __len__(self) -> int:
-        return self._batch.size
+        return len(self.triangle_offsets) - 1
 
     def __getitem__(self, s: int) -> Delaunay:
         s = index_of(s, len(self), "set")
         points = self._points[self._offsets[s] : self._offsets[s + 1]]
-        return Delaunay._of_mesh(points, self._batch.triangulation(s), self._options.on_host())
+        return Delaunay._of_mesh(points, self._of_set(s), self._options and self._options.on_host())
 
     def __iter__(self) -> Iterator[Delaunay]:
         return (self[s] for s in range(len(self)))
 
+    def __reduce__(self) -> tuple:
+        arrays = (self.simplices, self.neighbors, self.triangle_offsets, self.statistics)
+        return _restore, (self._points, self._offsets, *arrays)
+
     def __repr__(self) -> str:
         return f"<cadt.Batch: {len(self):,} sets, {len(self._points):,} points, {len(self.simplices):,} triangles>"
+
+
+class _Arrays(NamedTuple):
+    """The arrays of a batch that was pickled, in place of the library's."""
+
+    points: np.ndarray
+    offsets: np.ndarray
+    triangles: np.ndarray
+    neighbors: np.ndarray
+    triangle_offsets: np.ndarray
+    statistics: dict[str, Any]
+
+    def triangulation(self, s: int) -> _cadt.Triangulation:
+        points = self.points[self.offsets[s] : self.offsets[s + 1]]
+        own = slice(self.triangle_offsets[s], self.triangle_offsets[s + 1])
+        return _cadt.adopt(points, self.triangles[own], self.neighbors[own], False)
+
+
+def _restore(points: np.ndarray, offsets: np.ndarray, *arrays: Any) -> Batch:
+    return Batch(points, offsets, _Arrays(points, offsets, *arrays), None)
 
 
 def triangulate_batch(

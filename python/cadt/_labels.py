@@ -59,7 +59,8 @@ def label_segments(labels: Any) -> LabelSegments:
 def triangle_labels(points: Any, simplices: Any, labels: Any) -> np.ndarray:
     """The label of the pixel in which the centroid of each triangle lies: (t,) int32.
 
-    It is the label of all of the triangle where triangles have the segments of `label_segments` as edges.
+    It is the label of all of the triangle where triangles have the segments of `label_segments` as edges. A centroid
+    outside of the image has the label of the nearest pixel.
     """
     xy = contiguous(as_points(points), np.float64)
     return _cadt.triangle_labels(xy, as_indices(simplices, "simplices"), _as_labels(labels))

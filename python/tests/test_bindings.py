@@ -163,6 +163,18 @@ def test_pickles_are_the_same_mesh(order: str) -> None:
         assert np.array_equal(getattr(again, name), getattr(mesh, name)), name
 
 
+@pytest.mark.parametrize("order", ["canonical", "fast"])
+def test_pickles_are_the_same_batch(order: str) -> None:
+    batch = cadt.triangulate_batch(P[:300], [0, 3, 3, 60, 60, 300], order=order)
+    again = pickle.loads(pickle.dumps(batch))
+    assert (len(again), repr(again), again.statistics) == (5, repr(batch), batch.statistics)
+    for name in ("simplices", "neighbors", "triangle_offsets"):
+        assert np.array_equal(getattr(again, name), getattr(batch, name)), name
+    for a, b in zip(again, batch):
+        assert np.array_equal(a.simplices, b.simplices) and np.array_equal(a.points, b.points) and a.verify()
+        assert a.hash == b.hash and np.array_equal(a.hull, b.hull)
+
+
 def test_batches_of_any_memory() -> None:
     wide = np.repeat(P[:300].astype(np.float32), 2, axis=0)[::2]
     offsets = np.array([0, 9, 100, 9, 300, 9], dtype=np.uint16)[::2]

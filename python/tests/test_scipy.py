@@ -308,6 +308,20 @@ def test_grids_far_from_the_origin_are_as_one_by_one():
     np.testing.assert_array_equal(ip(x, y).ravel(), ip(np.stack([x.ravel(), y.ravel()], axis=1)))
 
 
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_meshes_of_cadt(general: np.ndarray, dtype: type) -> None:
+    p = general.astype(dtype)
+    mesh, z, q = cadt.Delaunay(p), np.sin(p[:, 0]), np.array([[11.0, 11.0], [12.5, 10.5], [0, 0]])
+    tri = ours.Delaunay(mesh, incremental=True)
+    assert tri.mesh is mesh and tri.points.dtype == np.float64
+    tri.add_points([[0, 0]])
+    assert (tri.npoints, mesh.n_points) == (301, 300)
+    assert np.array_equal(ours.Voronoi(mesh).vertices, ours.Voronoi(p).vertices)
+    kinds = ("LinearND", "NaturalNeighbor", "NearestND", "CloughTocher2D")
+    for make in (getattr(ours, kind + "Interpolator") for kind in kinds):
+        assert np.array_equal(make(mesh, z)(q), make(p, z)(q), equal_nan=True), make
+
+
 @pytest.mark.parametrize("rescale", [False, True])
 def test_regular_grids(general: np.ndarray, rescale: bool) -> None:
     """Large grids are rasterized: the values are those of the same places one by one."""

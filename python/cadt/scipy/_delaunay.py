@@ -22,7 +22,7 @@ class Delaunay(Plane, _Triangulation):
 
     Parameters
     ----------
-    points : array_like, shape (npoints, 2)
+    points : array_like, shape (npoints, 2), or cadt.Delaunay
         Copied only to make contiguous doubles of them. They must not change while this is used. With another number of
         columns this is SciPy's triangulation.
     furthest_site : bool

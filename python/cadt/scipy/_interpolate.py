@@ -60,6 +60,11 @@ def regular_grid(args: Sequence[Any]) -> tuple[np.ndarray, np.ndarray, bool] | N
     return None
 
 
+def as_triangulation(points: Any) -> Any:
+    """A mesh of cadt's as the triangulation that SciPy's interpolators know; else what was given."""
+    return Delaunay(points) if isinstance(points, cadt.Delaunay) else points
+
+
 class _OnMesh:
     """What the interpolators share: their triangulation is cadt's if the points are in the plane."""
 
@@ -67,6 +72,9 @@ class _OnMesh:
     values: np.ndarray
     scale: Any
     _method = "linear"
+
+    def __init__(self, points: Any, *args: Any, **how: Any) -> None:
+        super().__init__(as_triangulation(points), *args, **how)  # type: ignore[call-arg]  # SciPy's class
 
     def _calculate_triangulation(self, points: np.ndarray) -> None:
         self.tri = Delaunay(points)
@@ -153,7 +161,7 @@ class LinearNDInterpolator(_OnMesh, _Linear):
 
     Parameters
     ----------
-    points : array_like, shape (npoints, 2), or Delaunay
+    points : array_like, shape (npoints, 2), or Delaunay (cadt's or cadt.scipy's)
         With more columns, or SciPy's triangulation, this is SciPy's interpolator.
     values : array_like of real or complex, shape (npoints, ...)
     fill_value : float
@@ -214,7 +222,7 @@ class NearestNDInterpolator(_OnMesh, _Nearest):
 
     def __init__(self, x: Any, y: Any, rescale: bool = False, tree_options: dict[str, Any] | None = None) -> None:
         # SciPy's constructor would make the k-d tree: that of its base does the rest.
-        super(_Nearest, self).__init__(x, y, rescale=rescale, need_contiguous=False, need_values=False)
+        super(_Nearest, self).__init__(as_triangulation(x), y, rescale=rescale, need_contiguous=False, need_values=False)
         self.values = np.asarray(y)
         self._tree_options = tree_options
         if self.points.ndim != 2 or self.points.shape[1] != 2:

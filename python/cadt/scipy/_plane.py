@@ -35,7 +35,8 @@ class Plane:
         threads: int | None = None,
         progress: bool | Callable[[str, float], object] | None = None,
     ) -> None:
-        points = as_doubles(points)
+        mesh = points if isinstance(points, cadt.Delaunay) else None
+        points = as_doubles(points if mesh is None else mesh.points)
         options, reason = options_of(qhull_options, incremental, self._default_options)
         if points.shape[1] != 2:
             reason = f"{type(self).__name__} in {points.shape[1]} dimensions"
@@ -48,14 +49,15 @@ class Plane:
         self._options, self._qhull_options = options, qhull_options
         self._incremental = incremental
         self.furthest_site = False
-        self._take(points.copy() if incremental else points)
+        self._take(points.copy() if incremental else points, mesh)
 
     def _leave_to_scipy(self, reason: str, *arguments: Any) -> None:
         say(reason, 5)
         super().__init__(*arguments)
 
-    def _take(self, points: np.ndarray) -> None:
-        mesh = cadt.Delaunay(points, **self._how)
+    def _take(self, points: np.ndarray, mesh: cadt.Delaunay | None = None) -> None:
+        if mesh is None:
+            mesh = cadt.Delaunay(points, **self._how)
         if mesh.n_triangles == 0:
             if len(points) == 0:
                 raise ValueError("No points given")

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import concurrent.futures
+import os
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +50,10 @@ class LasSource:
             self.count = int(header.point_count)
             if not np.isfinite([*header.scales, *header.offsets]).all():
                 raise FileError(path, "is no LAS or LAZ file: a scale or offset in its header is no finite number")
+            if not header.are_points_compressed:
+                held = (os.path.getsize(path) - header.offset_to_point_data) // header.point_format.size
+                if held < self.count:
+                    raise self._truncated(max(held, 0))
             names = set(header.point_format.dimension_names)
             self.crs = self._crs(header) if with_crs else None
         if classes is not None and "classification" not in names:
@@ -110,4 +115,7 @@ class LasSource:
         except Exception as error:
             raise FileError(self.path, f"damaged after {seen} of {self.count} points: {why(error)}") from error
         if seen != self.count:
-            raise FileError(self.path, f"truncated: {seen} points of the {self.count} that its header promises")
+            raise self._truncated(seen)
+
+    def _truncated(self, points: int) -> FileError:
+        return FileError(self.path, f"truncated: {points} points of the {self.count} that its header promises")

@@ -40,6 +40,14 @@ def parse_crs(path: str, text: object) -> pyproj.CRS | None:
         raise CrsError(path, f"its reference system is not understood: {why(error)}; name it with --crs") from error
 
 
+def named_crs(name: str) -> pyproj.CRS | None:
+    """What ``--crs NAME`` means; None for 'none'."""
+    try:
+        return None if name.lower() == "none" else parse_crs("--crs", name)
+    except CrsError as error:
+        raise UsageError(f"--crs {name}: no such reference system; say it such as EPSG:25832, or none") from error
+
+
 def _coordinates(path: str, geometry: NDArray[np.object_], first: int) -> NDArray[np.float64]:
     """x, y, z of points in well-known binary; z is NaN where there is none."""
     result = np.full((len(geometry), 3), np.nan)

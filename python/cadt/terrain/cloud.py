@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ._files import Room, check_input, suffix_of
 from ._las import LasSource
 from ._tables import TableSource
-from ._vector import OgrSource, ParquetSource, parse_crs
+from ._vector import OgrSource, ParquetSource, named_crs
 from .errors import CrsError, FileError, UsageError
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ def _open(path: str, classes: Sequence[int] | None, values: str, columns: str, w
 
 def _common_crs(sources: Sequence[Source], asked: str | None) -> pyproj.CRS | None:
     if asked is not None:
-        return None if asked.lower() == "none" else parse_crs(f"--crs {asked}", asked)
+        return named_crs(asked)
     known = [source for source in sources if source.crs is not None]
     for other in known[1:]:
         if not same_crs(known[0].crs, other.crs):

@@ -57,6 +57,8 @@ def contour_lines(
     # The level of a vertex: the highest line at or below it. A triangle has the lines above its lowest level, up to its
     # highest.
     level = np.floor((z - base) / interval)
+    if not np.abs(level).max() < 1 << 50:
+        raise UsageError(f"--base {base:g} is too many steps of {interval:g} from the heights for lines to differ")
     low, high = level[corners].min(axis=1), level[corners].max(axis=1)
     count = (high - low).astype(np.int64)
     kept = kept_triangles(mesh, max_edge)

@@ -64,6 +64,8 @@ def test_cells_are_those_of_griddata(las, tmp_path, cadt_terrain, options):
     assert np.nanmax(np.abs(np.where(cells == NODATA, np.nan, cells) - expected)) < 1e-9
     assert f"points      {len(used)}\n" in result.err and "written     dem.tif" in result.err
     assert f"no data     {np.isnan(expected).sum()}\n" in result.err
+    elsewhere = cadt_terrain("raster", "a.laz", "nothing.tif", "--res", "1", "--bounds=-900,-900,-890,-890")
+    assert "no data     every cell: see --bounds and --max-edge\n" in elsewhere.err
 
 
 def test_the_file_is_a_cog(las, tmp_path, cadt_terrain):
@@ -240,7 +242,7 @@ def test_discs_hold_the_circumscribed_ones():
         (["--res", "1", "--class", "256"], 2, "from 0 to 255"),
         (["--res", "1", "--class", "9"], 3, "a.laz: no point is of class 9"),
         (["--res", "1", "--nodata", "1e300", "--dtype", "float32"], 2, "is no float32"),
-        (["--res", "1", "--crs", "EPSG:0"], 3, "--crs EPSG:0"),
+        (["--res", "1", "--crs", "EPSG:0"], 2, "--crs EPSG:0: "),
         (["--res", "1", "--backend", "cuda", "--device", "99"], 5, "cadt: error"),
         (["--res", "1", "--backend", "vulkan"], 2, "--backend"),
         (["--res", "1", "--threads", "-1"], 2, "--threads"),

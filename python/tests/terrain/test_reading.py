@@ -90,7 +90,7 @@ def test_reference_systems_must_agree(las):
     with pytest.raises(terrain.CrsError, match=r"a\.laz: its reference system is not understood"):
         terrain.read_cloud([a])
     assert len(terrain.read_cloud([a], crs="EPSG:25832")) == 10  # then nobody asks the file
-    with pytest.raises(terrain.CrsError, match="--crs nonsense"):
+    with pytest.raises(terrain.UsageError, match="--crs nonsense: no such"):
         terrain.read_cloud([a], crs="nonsense")
 
 
@@ -103,6 +103,16 @@ def test_files_without_points(las):
     assert len(terrain.read_cloud([empty, some])) == 10
     with pytest.raises(terrain.UsageError, match="no such dimension; it has: .*intensity"):
         terrain.read_cloud([some], values="depth")
+
+
+def test_headers_that_promise_more(las, tmp_path):
+    """Memory is asked for only when the file can hold the points."""
+    damaged = bytearray(pathlib.Path(las("a.las", hills(100))).read_bytes())
+    for at, size in ((107, 4), (247, 8)):  # the numbers of points of LAS 1.2 and of 1.4
+        damaged[at : at + size] = (10**12 if size == 8 else 2**32 - 1).to_bytes(size, "little")
+    (tmp_path / "more.las").write_bytes(damaged)
+    with pytest.raises(terrain.FileError, match=r"more\.las: truncated: 100 points of the \d{10,} that"):
+        terrain.read_cloud([str(tmp_path / "more.las")])
 
 
 @pytest.mark.parametrize("suffix", ["las", "laz"])

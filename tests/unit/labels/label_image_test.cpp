@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <random>
 #include <set>
@@ -73,6 +74,10 @@ TEST(TriangleLabels, AreThoseOfThePixelsBelow) {
   const std::vector<double> far{-9, -9, 99, 99, -9, 99};
   const std::vector<std::int32_t> one{0, 1, 2};
   EXPECT_EQ(triangle_labels(far, one, labels, 2, 2), (std::vector<std::int32_t>{2}));
+  for (const double wrong_place : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const std::vector<double> not_finite{0, 0, 1, 0, 0, wrong_place};
+    EXPECT_THROW(static_cast<void>(triangle_labels(not_finite, one, labels, 2, 2)), InputError);
+  }
 }
 
 }  // namespace

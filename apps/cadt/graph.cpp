@@ -54,6 +54,7 @@ void append(Graph& graph, Graph&& more, bool same_file, const std::string& name,
   graph.holes = std::move(more.holes);
   graph.regions = std::move(more.regions);
   graph.segments = std::move(more.segments);
+  graph.crs = std::move(more.crs);
   if (same_file || graph.points.xy == more.points.xy) {
     if (same_file) graph.points = std::move(more.points);
     return;
@@ -146,6 +147,7 @@ Graph graph_of(io::SegmentsFile file) {
   graph.segments = std::move(file.segments);
   graph.holes = std::move(file.holes);
   graph.regions = std::move(file.regions);
+  graph.crs = std::move(file.crs);
   return graph;
 }
 

@@ -57,6 +57,9 @@ Graph graph_of(const io::PolygonsFile& file, std::size_t p) {
   for (std::int64_t& offset : offsets) offset -= begin;
   Graph graph;
   graph.points.xy.assign(file.xy.begin() + 2 * begin, file.xy.begin() + 2 * (begin + offsets.back()));
+  if (!file.height.empty()) {
+    graph.points.height.assign(file.height.begin() + begin, file.height.begin() + begin + offsets.back());
+  }
   graph.segments = ring_segments(offsets);
   return graph;
 }
@@ -76,6 +79,7 @@ bool append_crossed(RegionResult& result, const io::PolygonsFile& file, std::siz
             file.features[p]);
   const io::PointSet points = points_of(graph, mesh);
   result.points.xy.insert(result.points.xy.end(), points.xy.begin(), points.xy.end());
+  result.points.height.insert(result.points.height.end(), points.height.begin(), points.height.end());
   return true;
 }
 
@@ -115,6 +119,8 @@ RegionResult result_of(const io::PolygonsFile& file, const PolygonsResult& polyg
   RegionResult result;
   result.region_name = "feature";
   result.points.xy = file.xy;
+  result.points.height = file.height;
+  result.crs = file.crs;
   result.triangles.assign(polygons.triangles().begin(), polygons.triangles().end());
   const auto offsets = polygons.triangle_offsets();
   for (std::size_t p = 0; p < file.size(); ++p) {

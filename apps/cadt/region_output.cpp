@@ -10,7 +10,7 @@ void add_region_output_options(CLI::App& command, OutputOptions& o) {
 }
 
 io::RegionMesh RegionResult::view() const {
-  return {points.xy, points.height, triangles, region, region_name, segments, hull};
+  return {points.xy, points.height, triangles, region, region_name, segments, hull, crs};
 }
 
 void append_inside(RegionResult& result, const ConstrainedTriangulation& mesh, std::int32_t first_point) {
@@ -30,6 +30,7 @@ void append_inside(RegionResult& result, const ConstrainedTriangulation& mesh, s
 RegionResult region_result(const Graph& graph, const ConstrainedTriangulation& mesh, Domain domain) {
   RegionResult result;
   result.points = points_of(graph, mesh);
+  result.crs = graph.crs;
   append_inside(result, mesh);
   const auto hull = mesh.mesh().hull();
   if (domain == Domain::hull) result.hull.assign(hull.begin(), hull.end());

@@ -23,7 +23,7 @@ struct RegionResult {
   io::PointSet points;
   std::vector<std::int32_t> triangles, region, hull;
   std::vector<Segment> segments;
-  std::string region_name = "region";
+  std::string region_name = "region", crs;
 
   [[nodiscard]] io::RegionMesh view() const;
 };

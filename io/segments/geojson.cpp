@@ -22,8 +22,9 @@ class ToSegments : public GeoJsonSink {
     add(positions);
     graph_.close_ring(first);
   }
-  [[nodiscard]] SegmentsFile take() {
+  [[nodiscard]] SegmentsFile take(std::string crs) {
     SegmentsFile& file = graph_.file();
+    file.crs = std::move(crs);
     if (heights_.size() == graph_.points() && !heights_.empty()) {
       file.attributes = std::move(heights_);
       file.attributes_per_point = 1;
@@ -54,6 +55,7 @@ class ToPolygons : public GeoJsonSink {
     }
     ++file.polygon_offsets.back();
     file.xy.insert(file.xy.end(), positions.xy.begin(), positions.xy.end());
+    file.height.insert(file.height.end(), positions.z.begin(), positions.z.end());
     file.ring_offsets.push_back(static_cast<std::int64_t>(file.xy.size() / 2));
   }
 
@@ -64,8 +66,8 @@ class ToPolygons : public GeoJsonSink {
 
 SegmentsFile read_geojson(const InputFile& file) {
   ToSegments sink(file.name());
-  static_cast<void>(scan_geojson(file.name(), file.bytes(), sink));
-  return sink.take();
+  GeoJsonSummary summary = scan_geojson(file.name(), file.bytes(), sink);
+  return sink.take(std::move(summary.crs));
 }
 
 }  // namespace detail
@@ -75,7 +77,10 @@ PolygonsFile read_polygons(const std::string& path, const std::string& format) {
   const detail::InputFile file(path);
   if (file.bytes().empty()) throw FileError(file.name(), 0, "is empty");
   detail::ToPolygons sink;
-  sink.file.number_of_features = detail::scan_geojson(file.name(), file.bytes(), sink);
+  detail::GeoJsonSummary summary = detail::scan_geojson(file.name(), file.bytes(), sink);
+  sink.file.number_of_features = summary.features;
+  sink.file.crs = std::move(summary.crs);
+  if (2 * sink.file.height.size() != sink.file.xy.size()) sink.file.height.clear();  // some positions have none
   if (sink.file.size() == 0) throw FileError(file.name(), 0, "has no polygons");
   return std::move(sink.file);
 }

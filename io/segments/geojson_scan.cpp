@@ -83,7 +83,7 @@ class Scanner {
     const char* const end = text_.data() + text_.size();
     nlohmann::json::sax_parse(TrackedText(text_.data(), &reached_), TrackedText(end, &reached_), this);
   }
-  [[nodiscard]] std::size_t features() const noexcept { return std::max<std::size_t>(features_, 1); }
+  [[nodiscard]] GeoJsonSummary summary() const { return {std::max<std::size_t>(features_, 1), crs_}; }
 
   bool null() { return value(nullptr); }
   bool boolean(bool) { return value("a truth value"); }
@@ -96,10 +96,13 @@ class Scanner {
       objects_.back().type = text;
       return true;
     }
+    // "crs": {"type": "name", "properties": {"name": "..."}}
+    const bool names_crs = skipped_ == 2 && objects_.size() == 1 && objects_.back().key == "crs";
+    if (names_crs && skipped_key_ == "name") crs_ = text;
     return value("text");
   }
   bool key(std::string& text) {
-    if (skipped_ == 0) objects_.back().key = text;
+    (skipped_ == 0 ? objects_.back().key : skipped_key_) = text;
     return true;
   }
   bool start_object(std::size_t) {
@@ -249,15 +252,16 @@ class Scanner {
   std::size_t depth_ = 0;         ///< arrays around within coordinates
   std::vector<double> position_;  ///< the numbers of the array that is being read
   std::size_t features_ = 0;
+  std::string skipped_key_, crs_;
   bool bare_ = false;
 };
 
 }  // namespace
 
-std::size_t scan_geojson(const std::string& name, std::string_view text, GeoJsonSink& sink) {
+GeoJsonSummary scan_geojson(const std::string& name, std::string_view text, GeoJsonSink& sink) {
   Scanner scanner(name, text, sink);
   scanner.scan();
-  return scanner.features();
+  return scanner.summary();
 }
 
 }  // namespace cadt::io::detail

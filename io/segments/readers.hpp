@@ -74,7 +74,11 @@ class GeoJsonSink {
   /// A ring without the repetition of its first position; `outer`: the first of a polygon.
   virtual void ring(Positions positions, bool outer, std::size_t feature) = 0;
 };
-/// Returns the number of features; a geometry without one counts as one. \throws FileError with the line
-std::size_t scan_geojson(const std::string& name, std::string_view text, GeoJsonSink& sink);
+struct GeoJsonSummary {
+  std::size_t features;  ///< a geometry without one counts as one
+  std::string crs;       ///< what the member "crs" of the whole names, as GeoJSON had it before RFC 7946; or empty
+};
+/// \throws FileError with the line
+GeoJsonSummary scan_geojson(const std::string& name, std::string_view text, GeoJsonSink& sink);
 
 }  // namespace cadt::io::detail

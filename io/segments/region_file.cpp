@@ -7,6 +7,8 @@
 #include "io/segments/readers.hpp"
 #include "io/support/number_format.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 
 namespace cadt::io {
@@ -28,7 +30,11 @@ void require_fitting(const std::string& path, const RegionMesh& mesh) {
 }
 
 void write_triangles_as_geojson(AtomicFile& out, const RegionMesh& mesh) {
-  out.write("{\"type\":\"FeatureCollection\",\"features\":[");
+  out.write("{\"type\":\"FeatureCollection\",");
+  if (!mesh.crs.empty()) {
+    out.write(R"("crs":{"type":"name","properties":{"name":)" + nlohmann::json(mesh.crs).dump() + "}},");
+  }
+  out.write("\"features\":[");
   const std::string property = "\"" + mesh.region_name + "\":";
   for (std::size_t t = 0; 3 * t < mesh.triangles.size(); ++t) {
     out.write(t == 0 ? "\n" : ",\n");

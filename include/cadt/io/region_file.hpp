@@ -22,6 +22,7 @@ struct RegionMesh {
   std::string region_name = "region";       ///< what files call that
   std::span<const Segment> segments;        ///< those to be written or drawn, such as constrained edges
   std::span<const std::int32_t> hull;       ///< counterclockwise loop to be drawn, or empty
+  std::string crs;                          ///< reference system that a GeoJSON file is to name; empty: none
 };
 
 /// Writes a mesh, its segments or a picture; the format comes from the suffix unless given:

@@ -27,7 +27,8 @@ struct SegmentsFile {
   std::vector<std::array<double, 2>> holes;
   std::vector<Region> regions;  ///< the largest area of a region, which is about refinement, is not kept
   int base = 0;                 ///< the first index in the file: 0 or 1
-  std::string format;           ///< the format that was read
+  std::string crs;     ///< reference system that a GeoJSON file names in "crs", as RFC 7946 no longer does; or empty
+  std::string format;  ///< the format that was read
   [[nodiscard]] std::size_t size() const noexcept { return xy.size() / 2; }
   [[nodiscard]] PointsView view() const { return PointsView(std::span<const double>(xy)); }
 };
@@ -58,11 +59,13 @@ struct SegmentsFile {
 /// its first point at its end.
 struct PolygonsFile {
   std::vector<double> xy;
+  std::vector<double> height;  ///< one a point, if all positions have a third coordinate; or empty
   std::vector<std::int64_t> ring_offsets{0};
   std::vector<std::int64_t> polygon_offsets{0};
   std::vector<std::int32_t> features;  ///< one a polygon: the number of its feature in the file, from 0
   std::size_t number_of_features = 0;
   std::size_t other_geometries = 0;  ///< points and lines, which are not read
+  std::string crs;                   ///< as of a SegmentsFile
   [[nodiscard]] std::size_t size() const noexcept { return features.size(); }
 };
 

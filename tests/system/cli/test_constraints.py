@@ -279,6 +279,21 @@ class Polygons(CliTest):
             areas[number] = areas.get(number, 0) + twice_area(a, b, c) / 2
         self.assertEqual(areas, {1: 15, 2: 16})
 
+    def test_heights_and_the_reference_system_stay(self):
+        crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25832"}}
+        high = [[[x, y, x + 10 * y] for x, y in ring] for ring in (SQUARE, BOW_TIE)]
+        self.write("a.geojson", json.dumps(
+            {"crs": crs, **json.loads(geojson(polygon(high[0]), polygon([[x + 9, y, x + 9 + 10 * y] for x, y, _ in high[1]])))}))
+        for command in (["polygons", "a.geojson", "--crossing", "exact"],
+                        ["triangulate", "a.geojson", "--crossing", "exact", "--domain", "even_odd"]):
+            self.cadt(*command, "-o", "m.geojson")
+            mesh = json.loads(self.path("m.geojson").read_text())
+            self.assertEqual(mesh["crs"], crs)
+            self.assertEqual(len(mesh["features"]), 4)
+            for feature in mesh["features"]:
+                for x, y, z in feature["geometry"]["coordinates"][0]:
+                    self.assertAlmostEqual(z, x + 10 * y, 12)
+
     def test_summary_goes_to_stdout_without_output(self):
         self.write("a.json", json.dumps([SQUARE, HOLE]))
         self.assertEqual(self.cadt("polygons", "a.json").fields()["triangles"], "8")

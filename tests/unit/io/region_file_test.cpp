@@ -41,6 +41,14 @@ TEST(RegionFile, GeoJsonHasAPolygonATriangle) {
   EXPECT_LT(text.find("\"label\":7"), text.find("\"label\":-2"));
   EXPECT_NE(text.find("\"label\":-2"), std::string::npos);
   EXPECT_NE(text.find("[[[0,0],[4,0],[4,4],[0,0]]]"), std::string::npos) << text;
+  EXPECT_EQ(file.crs, "");
+  EXPECT_EQ(text.find("crs"), std::string::npos);
+
+  RegionMesh named = square.mesh();
+  named.crs = "urn:ogc:def:crs:EPSG::25832 \"quoted\\";
+  write_region_mesh(folder / "b.geojson", named);
+  EXPECT_EQ(read_polygons(folder / "b.geojson").crs, named.crs);
+  EXPECT_EQ(read_segments(folder / "b.geojson").crs, named.crs);
 
   RegionMesh high = square.mesh();
   high.height = square.height;

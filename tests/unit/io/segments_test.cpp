@@ -156,8 +156,32 @@ TEST(Polygons, HaveOffsetsAndFeatures) {
   EXPECT_EQ(file.xy.size(), 28U);
   EXPECT_EQ(read_polygons(folder.file("b.json", "[" + square + "," + hole + "]")).polygon_offsets,
             (std::vector<std::int64_t>{0, 2}));
+  EXPECT_EQ(file.height, Values());
+  EXPECT_EQ(file.crs, "");
   const std::string line = folder.file("c.json", R"({"type":"LineString","coordinates":[[1,2],[3,4]]})");
   expect_file_error([&] { static_cast<void>(read_polygons(line)); }, line, 0, "has no polygons");
+}
+
+TEST(Polygons, HaveHeightsAndTheReferenceSystem) {
+  const Folder folder;
+  const std::string ring = R"({"type":"Polygon","coordinates":[[[0,0,5],[4,0,6],[4,4,7],[0,0,5]]]})";
+  const std::string flat = R"({"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,0]]]})";
+  const std::string crs = R"("crs":{"type":"name","properties":{"name":"EPSG:2056","of":"x"}})";
+  const auto read = [&](const std::string& members, const std::string& geometries) {
+    return read_polygons(
+        folder.file("a.json", R"({"type":"GeometryCollection",)" + members + R"("geometries":[)" + geometries + "]}"));
+  };
+  EXPECT_EQ(read("", ring).height, (Values{5, 6, 7}));
+  EXPECT_EQ(read("", ring + "," + ring).height, (Values{5, 6, 7, 5, 6, 7}));
+  EXPECT_EQ(read("", ring + "," + flat).height, Values());
+  EXPECT_EQ(read(crs + ",", ring).crs, "EPSG:2056");
+  // names of other things, and of a part
+  for (const char* other :
+       {R"("name":"a",)", R"("crs":null,)", R"("crs":{"name":"a"},)", R"("crs":{"properties":{"href":"a"}},)",
+        R"("also":{"properties":{"name":"a"}},)", R"("crs":{"properties":{"a":{"name":"a"}}},)"}) {
+    EXPECT_EQ(read(other, ring).crs, "") << other;
+  }
+  EXPECT_EQ(read("", R"({"type":"Feature",)" + crs + R"(,"geometry":)" + ring + "}").crs, "");
 }
 
 struct BadGraph {

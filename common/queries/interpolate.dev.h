@@ -37,6 +37,11 @@ CADT_FN_SLOW cadt_weights cadt_along_longest(cadt_point a, cadt_point b, cadt_po
   cadt_real square = -1.0;
   q[0] = a, q[1] = b, q[2] = c;
   for (cadt_u32 k = 0u; k < 3u; ++k) {
+    if (q[k].x != 0.0 || q[k].y != 0.0) continue;
+    w.at[k] = 1.0; /* at a vertex */
+    return w;
+  }
+  for (cadt_u32 k = 0u; k < 3u; ++k) {
     const cadt_real dx = q[CADT_NEXT(k)].x - q[k].x, dy = q[CADT_NEXT(k)].y - q[k].y;
     if (dx * dx + dy * dy > square) square = dx * dx + dy * dy, longest = k;
   }

@@ -15,8 +15,9 @@
  *      v-----------u
  *
  * The sum of weight * (vertex - p) is 0; what rounding leaves of it is corrected with the slope of the triangle that
- * contains p, so linear functions are reproduced. On the hull, where a circumcentre is infinite, and in thin triangles,
- * of which there are some along it, the function is linear.
+ * contains p, so linear functions are reproduced. On the hull, where a circumcentre is infinite, in thin triangles, of
+ * which there are some along it, and where that correction is more than a little, as beside vertices 10^10 times as far
+ * away as others, the function is linear.
  */
 #ifndef CADT_QUERIES_NATURAL_NEIGHBOR_H
 #define CADT_QUERIES_NATURAL_NEIGHBOR_H
@@ -38,18 +39,58 @@ CADT_FN cadt_point cadt_center_with_origin(cadt_point u, cadt_point v) {
   const cadt_point c = {(v.y * uu - u.y * vv) / d, (u.x * vv - v.x * uu) / d};
   return c;
 }
-/* The circumcentre of triangle t, seen from p. */
-CADT_FN cadt_point cadt_center_seen_from(const cadt_query_mesh* m, cadt_u32 t, cadt_point p) {
-  const cadt_point a = cadt_corner(m, t, 0u), b = cadt_corner(m, t, 1u), c = cadt_corner(m, t, 2u);
-  const cadt_point u = {b.x - a.x, b.y - a.y}, v = {c.x - a.x, c.y - a.y};
-  cadt_point center = cadt_center_with_origin(u, v);
-  center.x += a.x - p.x;
-  center.y += a.y - p.y;
-  return center;
-}
 CADT_FN cadt_point cadt_seen_from(cadt_point a, cadt_point p) {
   const cadt_point d = {a.x - p.x, a.y - p.y};
   return d;
+}
+CADT_FN cadt_real cadt_dot(cadt_point u, cadt_point v) { return u.x * v.x + u.y * v.y; }
+
+/* The circumcentre of a triangle, seen from the corner opposite its longest edge: of the two edges there, one at least
+ * is short, so a corner that is far from the others does not take the digits of their places. */
+typedef struct {
+  cadt_point corner, arm;
+  cadt_u32 inside; /* 1: the centre is in the triangle, or within rounding of it */
+} cadt_center;
+
+CADT_FN cadt_center cadt_center_of(cadt_point a, cadt_point b, cadt_point c) {
+  cadt_point ab = cadt_seen_from(b, a), bc = cadt_seen_from(c, b), ca = cadt_seen_from(a, c);
+#if CADT_WIDE /* the longest becomes about 1 */
+  cadt_i32 e = cadt_exponent_of_largest(ab.x, ab.y, bc.x, bc.y);
+  const cadt_i32 other = cadt_exponent_of_largest(ca.x, ca.y, 0.0, 0.0);
+  e = other > e ? other : e;
+  if (e == 5000) { /* a difference has overflowed: halve first */
+    e = 1024;
+    ab.x = cadt_ldexp(b.x, -e) - cadt_ldexp(a.x, -e), ab.y = cadt_ldexp(b.y, -e) - cadt_ldexp(a.y, -e);
+    bc.x = cadt_ldexp(c.x, -e) - cadt_ldexp(b.x, -e), bc.y = cadt_ldexp(c.y, -e) - cadt_ldexp(b.y, -e);
+    ca.x = cadt_ldexp(a.x, -e) - cadt_ldexp(c.x, -e), ca.y = cadt_ldexp(a.y, -e) - cadt_ldexp(c.y, -e);
+  } else {
+    ab.x = cadt_ldexp(ab.x, -e), ab.y = cadt_ldexp(ab.y, -e);
+    bc.x = cadt_ldexp(bc.x, -e), bc.y = cadt_ldexp(bc.y, -e);
+    ca.x = cadt_ldexp(ca.x, -e), ca.y = cadt_ldexp(ca.y, -e);
+  }
+#endif
+  /* The square of an edge is the sum of the products at its ends, but for the sign: that at the corner opposite the
+   * longest edge is the largest. */
+  const cadt_real at_a = cadt_dot(ab, ca), at_b = cadt_dot(ab, bc), at_c = cadt_dot(bc, ca);
+  cadt_center center = {a, ab, 0u};
+  cadt_point u = ab, v = ca;
+  cadt_real most = at_a;
+  if (at_b > most) center.corner = b, u = bc, v = ab, most = at_b;
+  if (at_c > most) center.corner = c, u = ca, v = bc, most = at_c;
+  center.inside = most <= 4.0 * CADT_ORIENTATION_BOUND * (cadt_fabs(u.x * v.x) + cadt_fabs(u.y * v.y)) ? 1u : 0u;
+  v.x = -v.x, v.y = -v.y;
+  center.arm = cadt_center_with_origin(u, v);
+#if CADT_WIDE
+  center.arm.x = cadt_ldexp(center.arm.x, e), center.arm.y = cadt_ldexp(center.arm.y, e);
+#endif
+  return center;
+}
+CADT_FN cadt_center cadt_center_of_triangle(const cadt_query_mesh* m, cadt_u32 t) {
+  return cadt_center_of(cadt_corner(m, t, 0u), cadt_corner(m, t, 1u), cadt_corner(m, t, 2u));
+}
+CADT_FN cadt_point cadt_center_seen_from(cadt_center center, cadt_point p) {
+  const cadt_point seen = {center.arm.x + (center.corner.x - p.x), center.arm.y + (center.corner.y - p.y)};
+  return seen;
 }
 
 /* An edge of the cavity's boundary: edge k of a triangle of the cavity. */
@@ -57,29 +98,30 @@ typedef struct {
   cadt_u32 triangle, k;
 } cadt_cavity_edge;
 
-/* From boundary edge e, u -> v, around v to the next one, v -> w. Returns twice the area of the piece of v. */
-CADT_FN cadt_real cadt_next_piece(const cadt_query_mesh* m, cadt_point p, cadt_cavity_edge* e, cadt_point u,
-                                  cadt_point v, cadt_point* w, cadt_u32* steps) {
-  const cadt_point first = cadt_center_with_origin(u, v);
+/* From boundary edge e, u -> v, around v to the next one, v -> w. Returns twice the area of the piece of v. `center`:
+ * of p, u, v; then of p, v, w. Centres are seen from p. */
+CADT_FN cadt_real cadt_next_piece(const cadt_query_mesh* m, cadt_point p, cadt_cavity_edge* e, cadt_point v,
+                                  cadt_point* w, cadt_point* center, cadt_u32* steps) {
+  const cadt_point first = *center;
   cadt_point before = first;
   cadt_real area = 0.0;
   cadt_u32 t = e->triangle, k = e->k; /* v is the vertex after next of edge k: k + 2 */
   for (;; ++*steps) {
-    const cadt_point center = cadt_center_seen_from(m, t, p);
-    area += cadt_cross(before.x - first.x, before.y - first.y, center.x - first.x, center.y - first.y);
-    before = center;
+    const cadt_point next_center = cadt_center_seen_from(cadt_center_of_triangle(m, t), p);
+    area += cadt_cross(before.x - first.x, before.y - first.y, next_center.x - first.x, next_center.y - first.y);
+    before = next_center;
     const cadt_u32 across = CADT_NEXT(k), next = cadt_neighbor_of(&m->view, t, across); /* the edge that leaves v */
     if (next == CADT_NONE || !cadt_in_circle(m, next, p)) {
       e->triangle = t;
       e->k = across;
-      *w = cadt_seen_from(cadt_corner(m, t, k), p);
+      *w = cadt_corner(m, t, k);
       break;
     }
     k = cadt_edge_towards(m, next, t);
     t = next;
   }
-  const cadt_point last = cadt_center_with_origin(v, *w);
-  area += cadt_cross(before.x - first.x, before.y - first.y, last.x - first.x, last.y - first.y);
+  *center = cadt_center_seen_from(cadt_center_of(p, v, *w), p);
+  area += cadt_cross(before.x - first.x, before.y - first.y, center->x - first.x, center->y - first.y);
   return cadt_fabs(area);
 }
 
@@ -113,26 +155,26 @@ CADT_FN cadt_real cadt_rise_along(const cadt_query_mesh* m, cadt_u32 t, cadt_rea
 }
 
 /* Value `of` at p in triangle t, strictly inside of the hull, by the boundary of its cavity from edge `begin` on.
- * Infinite or NaN where a circumcentre has overflowed. */
+ * Infinite or NaN where a circumcentre has overflowed, or rounding has changed the weights. */
 CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cadt_u32 t, cadt_cavity_edge begin,
                                      CADT_GLOBAL const cadt_real* values, cadt_u32 per_point, cadt_u32 of,
                                      cadt_u32* open) {
   cadt_cavity_edge e = begin;
-  cadt_point u = cadt_seen_from(cadt_corner(m, e.triangle, CADT_NEXT(e.k)), p),
-             v = cadt_seen_from(cadt_corner(m, e.triangle, CADT_PREV(e.k)), p), mean = {0.0, 0.0};
+  cadt_point v = cadt_corner(m, e.triangle, CADT_PREV(e.k)), mean = {0.0, 0.0};
+  cadt_point center = cadt_center_seen_from(cadt_center_of(p, cadt_corner(m, e.triangle, CADT_NEXT(e.k)), v), p);
   cadt_real all = 0.0, sum = 0.0;
   cadt_u32 steps = 0u;
   do {
     const cadt_u64 id = cadt_vertex_of(&m->view, e.triangle, CADT_PREV(e.k));
     cadt_point w = v;
-    const cadt_real weight = cadt_next_piece(m, p, &e, u, v, &w, &steps);
+    const cadt_real weight = cadt_next_piece(m, p, &e, v, &w, &center, &steps);
     if (weight != 0.0) {
+      const cadt_point arm = cadt_seen_from(v, p);
       all += weight;
       sum += weight * values[id * per_point + of];
-      mean.x += weight * v.x;
-      mean.y += weight * v.y;
+      mean.x += weight * arm.x;
+      mean.y += weight * arm.y;
     }
-    u = v;
     v = w;
     if (++steps > 3u * m->view.triangles) {
       *open = 1u;
@@ -143,8 +185,9 @@ CADT_FN cadt_real cadt_natural_value(const cadt_query_mesh* m, cadt_point p, cad
   mean.y /= all;
   const cadt_u64 a = cadt_vertex_of(&m->view, t, 0u), b = cadt_vertex_of(&m->view, t, 1u),
                  c = cadt_vertex_of(&m->view, t, 2u);
-  return sum / all - cadt_rise_along(m, t, values[a * per_point + of], values[b * per_point + of],
-                                     values[c * per_point + of], mean);
+  const cadt_real fa = values[a * per_point + of], fb = values[b * per_point + of], fc = values[c * per_point + of];
+  const cadt_real correction = cadt_rise_along(m, t, fa, fb, fc, mean), rise = cadt_fabs(fb - fa) + cadt_fabs(fc - fa);
+  return cadt_fabs(correction) <= CADT_ROUNDED * rise ? sum / all - correction : CADT_NAN;
 }
 
 /* `per_point` values a query, as in cadt_interpolate_linear. `failed`: how many boundaries did not close, which cannot

@@ -40,6 +40,19 @@ CADT_FN cadt_i32 cadt_side(cadt_point a, cadt_point b, cadt_point p) {
   return sign == CADT_UNSURE ? cadt_orientation_exact(a, b, p) : sign;
 }
 
+/* Whether a and b are further apart than `most` (scaled); exactly that far they are not. */
+CADT_FN cadt_u32 cadt_is_longer(cadt_point a, cadt_point b, cadt_real most) {
+  cadt_real x = a.x - b.x, y = a.y - b.y;
+#if CADT_WIDE
+  const cadt_i32 e = cadt_exponent_of_largest(x, y, most, 0.0);
+  if (e == 5000) return most < CADT_INFINITY ? 1u : 0u;
+  x = cadt_ldexp(x, -e);
+  y = cadt_ldexp(y, -e);
+  most = cadt_ldexp(most, -e);
+#endif
+  return x * x + y * y > most * most ? 1u : 0u;
+}
+
 /* The edge of triangle n behind which triangle t lies. */
 CADT_FN cadt_u32 cadt_edge_towards(const cadt_query_mesh* m, cadt_u32 n, cadt_u32 t) {
   return cadt_neighbor_of(&m->view, n, 0u) == t ? 0u : (cadt_neighbor_of(&m->view, n, 1u) == t ? 1u : 2u);

@@ -52,8 +52,13 @@ CADT_FN cadt_cells cadt_cells_between(cadt_real origin, cadt_real step, cadt_u32
 #else
   const cadt_real inverse = 1.0 / step, start = origin * inverse, a = low * inverse - start, b = high * inverse - start;
 #endif
+  const cadt_cells all = {0u, count};
+  if (a - a != 0.0 || b - b != 0.0) return all; /* has overflowed: anywhere */
   const cadt_real from = a < b ? a : b, to = a < b ? b : a;
-  const cadt_real slack = 1e-14 * (cadt_fabs(start) + CADT_CAST(cadt_real, count));
+  cadt_real slack = 1e-14 * (cadt_fabs(start) + CADT_CAST(cadt_real, count));
+#if CADT_WIDE /* a centre that is a subnormal number is rounded by half a step at most */
+  slack += 1.0;
+#endif
   const cadt_cells cells = {cadt_clamped_cell(from + 0.5 - slack, count), cadt_clamped_cell(to + 0.5 + slack, count)};
   return cells;
 }
@@ -115,10 +120,6 @@ CADT_FN cadt_drawn cadt_drawn_of(const cadt_query_mesh* m, cadt_u32 t, CADT_GLOB
   return d;
 }
 /* Whether one of the triangle's edges is longer than `most` (scaled). */
-CADT_FN cadt_u32 cadt_is_longer(cadt_point a, cadt_point b, cadt_real most) {
-  const cadt_real x = (a.x - b.x) / most, y = (a.y - b.y) / most;
-  return x * x + y * y > 1.0 ? 1u : 0u;
-}
 CADT_FN cadt_u32 cadt_longer_than(const cadt_drawn* d, cadt_real most) {
   return cadt_is_longer(d->a, d->b, most) || cadt_is_longer(d->b, d->c, most) || cadt_is_longer(d->c, d->a, most) ? 1u
                                                                                                                   : 0u;
@@ -174,8 +175,9 @@ CADT_FN void cadt_meet_edge(cadt_point a, cadt_point b, cadt_real low_y, cadt_re
     cadt_real along = above > below ? ((side ? high_y : low_y) - a.y) / (b.y - a.y) : (side ? 1.0 : 0.0);
     along = along > 0.0 ? (along < 1.0 ? along : 1.0) : 0.0;
     const cadt_real x = along < 1.0 ? a.x + along * (b.x - a.x) : b.x;
-    *low = x < *low ? x : *low;
-    *high = x > *high ? x : *high;
+    const cadt_real rounding = 1e-15 * (cadt_fabs(a.x) + cadt_fabs(b.x)); /* of it, where cells are as small */
+    *low = x - rounding < *low ? x - rounding : *low;
+    *high = x + rounding > *high ? x + rounding : *high;
   }
 }
 CADT_FN cadt_cells cadt_span_of_row(const cadt_raster* r, const cadt_drawn* d, cadt_u32 j) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -29,6 +30,17 @@ std::size_t end_of_equal_keys(Context& ctx, const Allocation& keys, std::size_t 
 }
 
 QueryMesh in_own_scale(Context& ctx, const MeshIndex& mesh) { return {mesh.view(), scale_for(ctx, mesh, mesh.bounds)}; }
+
+/// Exponents, as those of points.
+Bounds bounds_of_sides(const Box& box) {
+  Bounds bounds;
+  for (const double side : {box.min_x, box.min_y, box.max_x, box.max_y}) {
+    if (side == 0) continue;
+    bounds.high = std::max(bounds.high, std::ilogb(side) + 1);
+    bounds.low = std::min(bounds.low, std::ilogb(side) - std::numeric_limits<double>::digits);
+  }
+  return bounds;
+}
 
 }  // namespace
 
@@ -106,16 +118,17 @@ VoronoiPolygons clip_voronoi(Context& ctx, const MeshIndex& mesh, const Box& box
   write_cells(ctx, mesh, begin, none);
   const Allocation rows = ctx.memory.allocate((3 * mesh.triangles + 5 * n) * sizeof(cadt_point));
   const Allocation sizes = ctx.memory.allocate((n + 1) * word);
-  launch.run<KernelId::cadt_clip_cells>(in_own_scale(ctx, mesh), mesh.lowest, begin, box.min_x, box.min_y, box.max_x,
-                                        box.max_y, rows, sizes, launch.grid(n));
+  QueryMesh in{mesh.view(), scale_for(ctx, mesh, bounds_of_sides(box))};
+  if (in.by.wide) in.by.scale = 0.25;  // so that no difference overflows
+  const auto scaled = [&](double side) { return side * in.by.scale * in.by.scale_again; };
+  launch.run<KernelId::cadt_clip_cells>(in, mesh.lowest, begin, scaled(box.min_x), scaled(box.min_y), scaled(box.max_x),
+                                        scaled(box.max_y), rows, sizes, launch.grid(n));
   launch.scan(sizes, n + 1);
   result.begin = ctx.device.read_values(*sizes, n + 1);
   ctx.check("voronoi", 0.7);
   result.xy = to_vector<double>(ctx, 2 * std::size_t{result.begin.back()}, [&](const Allocation& to) {
     launch.run<KernelId::cadt_pack_cells>(rows, begin, sizes, to, launch.grid(n));
   });
-  if (!std::ranges::all_of(result.xy, [](double v) { return std::isfinite(v); }))
-    throw InputError("the box is so large that corners exceed the largest double: take a smaller one", 0);
   ctx.check("voronoi", 1);
   return result;
 }
@@ -143,28 +156,29 @@ std::vector<Circle> find_largest_circles(Context& ctx, MeshIndex& mesh, std::siz
     ctx.device.write(*list, 0, triangles.data(), size * word);
     launch.run<KernelId::cadt_circles_of>(in_own_scale(ctx, mesh), list, circles, launch.grid(size));
     const auto circle = ctx.device.read_values<cadt_circle>(*circles, size);
-    std::vector<Circle> finite;
+    std::vector<Circle> kept, elsewhere;
     std::vector<double> centers;
     for (std::size_t i = 0; i < size; ++i) {
-      if (!std::isfinite(circle[i].x) || !std::isfinite(circle[i].y) || !std::isfinite(circle[i].radius)) continue;
-      finite.push_back({circle[i].x, circle[i].y, circle[i].radius, static_cast<std::int32_t>(triangles[i])});
-      centers.insert(centers.end(), {circle[i].x, circle[i].y});
+      const auto& [x, y, radius, inside] = circle[i];
+      if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(radius)) continue;
+      // A centre in its triangle is in the hull, even if it is on the hull and rounding has put it outside.
+      (inside != 0 ? kept : elsewhere).push_back({x, y, radius, static_cast<std::int32_t>(triangles[i])});
+      if (inside == 0) centers.insert(centers.end(), {x, y});
     }
-    if (!finite.empty()) {
+    if (!elsewhere.empty()) {
       Allocation points = ctx.memory.allocate(centers.size() * sizeof(double));
       ctx.device.write(*points, 0, centers.data(), centers.size() * sizeof(double));
-      const QueryBatch queries = prepare_queries(ctx, mesh, std::move(points), finite.size());
-      const Allocation located = ctx.memory.allocate(finite.size() * word), none;
+      const QueryBatch queries = prepare_queries(ctx, mesh, std::move(points), elsewhere.size());
+      const Allocation located = ctx.memory.allocate(elsewhere.size() * word), none;
       locate_queries(ctx, mesh, queries, located, none);
-      const auto inside = ctx.device.read_values(*located, finite.size());
-      std::vector<Circle> kept;
-      for (std::size_t i = 0; i < finite.size(); ++i)
-        if (inside[i] != CADT_NONE) kept.push_back(finite[i]);
-      std::ranges::sort(kept, [](const Circle& a, const Circle& b) {
-        return std::tuple(-a.radius, a.triangle) < std::tuple(-b.radius, b.triangle);
-      });
-      found.insert(found.end(), kept.begin(), kept.end());
+      const auto found_in = ctx.device.read_values(*located, elsewhere.size());
+      for (std::size_t i = 0; i < elsewhere.size(); ++i)
+        if (found_in[i] != CADT_NONE) kept.push_back(elsewhere[i]);
     }
+    std::ranges::sort(kept, [](const Circle& a, const Circle& b) {
+      return std::tuple(-a.radius, a.triangle) < std::tuple(-b.radius, b.triangle);
+    });
+    found.insert(found.end(), kept.begin(), kept.end());
     from = end;
   }
   if (found.size() > wanted) found.resize(wanted);
@@ -180,7 +194,9 @@ Outline make_outline(Context& ctx, const MeshIndex& mesh, double max_radius, dou
   if (count == 0) return result;
   const LaunchGrid all = launch.grid(count);
   const Allocation places = ctx.memory.allocate((count + 1) * word);
-  launch.run<KernelId::cadt_flag_compact>(all.items, in_own_scale(ctx, mesh), max_edge, max_radius, places, all.grain);
+  const QueryMesh in = in_own_scale(ctx, mesh);
+  launch.run<KernelId::cadt_flag_compact>(all.items, in, max_edge * in.by.scale * in.by.scale_again, max_radius, places,
+                                          all.grain);
   launch.scan(places, count + 1);
   result.triangles = to_vector<std::int32_t>(ctx, launch.read_word(places, count), [&](const Allocation& to) {
     launch.run<KernelId::cadt_pack_kept>(places, to, all);

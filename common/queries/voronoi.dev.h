@@ -9,15 +9,28 @@
 #include "common/queries/natural_neighbor.dev.h"
 
 typedef struct {
-  cadt_real x, y, radius;
+  cadt_real x, y, radius, inside; /* inside: 1 if the centre is in the triangle, or within rounding of it; else 0 */
 } cadt_circle;
 
-/* The circumcircle of triangle t, in the caller's units. */
+CADT_FN cadt_real cadt_length(cadt_point d) {
+#if CADT_WIDE
+  const cadt_i32 e = cadt_exponent_of_largest(d.x, d.y, 0.0, 0.0);
+  if (e == 5000) return CADT_INFINITY;
+  d.x = cadt_ldexp(d.x, -e);
+  d.y = cadt_ldexp(d.y, -e);
+  return cadt_ldexp(cadt_sqrt(cadt_dot(d, d)), e);
+#else
+  return cadt_sqrt(cadt_dot(d, d));
+#endif
+}
+
+/* The circumcircle of triangle t, in the caller's units; infinite if rounding leaves the triangle no area. */
 CADT_FN cadt_circle cadt_circumcircle(const cadt_query_mesh* m, cadt_u32 t) {
-  const cadt_point a = cadt_corner(m, t, 0u), b = cadt_corner(m, t, 1u), c = cadt_corner(m, t, 2u);
-  const cadt_point arm = cadt_center_with_origin(cadt_seen_from(b, a), cadt_seen_from(c, a));
-  const cadt_circle circle = {(a.x + arm.x) / m->scale / m->scale_again, (a.y + arm.y) / m->scale / m->scale_again,
-                              cadt_sqrt(arm.x * arm.x + arm.y * arm.y) / m->scale / m->scale_again};
+  const cadt_center center = cadt_center_of_triangle(m, t);
+  cadt_circle circle = {(center.corner.x + center.arm.x) / m->scale / m->scale_again,
+                        (center.corner.y + center.arm.y) / m->scale / m->scale_again,
+                        cadt_length(center.arm) / m->scale / m->scale_again, center.inside ? 1.0 : 0.0};
+  if (circle.x != circle.x || circle.y != circle.y) circle.x = circle.y = circle.radius = CADT_INFINITY;
   return circle;
 }
 
@@ -107,7 +120,14 @@ CADT_KERNEL(cadt_list_edges, CADT_MESH_VIEW_PARAMETERS, CADT_GLOBAL const cadt_u
  * written.
  */
 CADT_FN cadt_u32 cadt_cut_cell(CADT_GLOBAL cadt_point* row, cadt_u32 size, cadt_point arm) {
-  const cadt_real limit = 0.5 * (arm.x * arm.x + arm.y * arm.y);
+#if CADT_WIDE
+  const cadt_i32 e = cadt_exponent_of_largest(arm.x, arm.y, 0.0, 0.0);
+  arm.x = cadt_ldexp(arm.x, -e);
+  arm.y = cadt_ldexp(arm.y, -e);
+  const cadt_real limit = cadt_ldexp(0.5 * cadt_dot(arm, arm), e);
+#else
+  const cadt_real limit = 0.5 * cadt_dot(arm, arm);
+#endif
   cadt_u32 written = 0u, entered = 0u;
   if (size == 0u) return 0u;
   cadt_point before = row[size - 1u], at = row[0];
@@ -132,7 +152,7 @@ CADT_FN cadt_u32 cadt_cut_cell(CADT_GLOBAL cadt_point* row, cadt_u32 size, cadt_
   return written;
 }
 
-/* The cell of each vertex within the box (in the caller's units), in a row of its triangles + 5 points from
+/* The cell of each vertex within the box (scaled like the points), in a row of its triangles + 5 points from
  * begin[v] + 5 v on; `sizes`: the points of each, and sizes[count] is 0. A point that is no vertex has none. */
 CADT_KERNEL(cadt_clip_cells, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* lowest,
             CADT_GLOBAL const cadt_u32* begin, cadt_real min_x, cadt_real min_y, cadt_real max_x, cadt_real max_y,
@@ -143,7 +163,7 @@ CADT_KERNEL(cadt_clip_cells, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
     sizes[v] = 0u;
     const cadt_u32 t = lowest[v];
     if (t == CADT_NONE) continue;
-    const cadt_point center = mesh.view.points[v];
+    const cadt_point center = cadt_mesh_point(&mesh, v);
     CADT_GLOBAL cadt_point* row = rows + CADT_CAST(cadt_u64, begin[v]) + 5u * CADT_CAST(cadt_u64, v);
     const cadt_real left = min_x - center.x, right = max_x - center.x, low = min_y - center.y, high = max_y - center.y;
     row[0].x = row[3].x = left;
@@ -154,20 +174,17 @@ CADT_KERNEL(cadt_clip_cells, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
     cadt_spoke s = {t, cadt_index_in(&mesh, t, v)};
     s = cadt_first_spoke(&mesh, s);
     for (; turns > 0u; --turns) {
-      size = cadt_cut_cell(
-          row, size, cadt_seen_from(mesh.view.points[cadt_vertex_of(&mesh.view, s.triangle, CADT_NEXT(s.k))], center));
+      size = cadt_cut_cell(row, size, cadt_seen_from(cadt_corner(&mesh, s.triangle, CADT_NEXT(s.k)), center));
       const cadt_spoke next = cadt_turn(&mesh, s, 0u);
       if (next.triangle == CADT_NONE) {
-        size = cadt_cut_cell(
-            row, size,
-            cadt_seen_from(mesh.view.points[cadt_vertex_of(&mesh.view, s.triangle, CADT_PREV(s.k))], center));
+        size = cadt_cut_cell(row, size, cadt_seen_from(cadt_corner(&mesh, s.triangle, CADT_PREV(s.k)), center));
         break;
       }
       s = next;
     }
     for (cadt_u32 i = 0u; i < size; ++i) {
-      row[i].x += center.x;
-      row[i].y += center.y;
+      row[i].x = (row[i].x + center.x) / mesh.scale / mesh.scale_again;
+      row[i].y = (row[i].y + center.y) / mesh.scale / mesh.scale_again;
     }
     sizes[v] = size;
   }
@@ -187,9 +204,7 @@ CADT_KERNEL(cadt_pack_cells, CADT_GLOBAL const cadt_point* rows, CADT_GLOBAL con
 CADT_KERNEL(cadt_radius_keys, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL cadt_u32* keys, cadt_u32 grain) {
   CADT_QUERY_MESH(mesh);
   CADT_FOR(t, mesh.view.triangles, grain) {
-    const cadt_point a = cadt_corner(&mesh, t, 0u), b = cadt_corner(&mesh, t, 1u), c = cadt_corner(&mesh, t, 2u);
-    const cadt_point arm = cadt_center_with_origin(cadt_seen_from(b, a), cadt_seen_from(c, a));
-    const float radius = CADT_CAST(float, cadt_sqrt(arm.x * arm.x + arm.y * arm.y));
+    const float radius = CADT_CAST(float, cadt_length(cadt_center_of_triangle(&mesh, t).arm));
     keys[t] = radius == radius ? ~cadt_bits_of_float(radius) : CADT_NONE;
   }
 }
@@ -200,7 +215,7 @@ CADT_KERNEL(cadt_circles_of, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
   CADT_FOR(i, count, grain) { circles[i] = cadt_circumcircle(&mesh, list[i]); }
 }
 
-/* 1 for triangles without an edge longer than `max_edge` whose circumradius is at most `max_radius` (both in the
+/* 1 for triangles without an edge longer than `max_edge` (scaled) whose circumradius is at most `max_radius` (in the
  * caller's units); flags[count] is 0. */
 CADT_KERNEL(cadt_flag_compact, CADT_QUERY_MESH_PARAMETERS, cadt_real max_edge, cadt_real max_radius,
             CADT_GLOBAL cadt_u32* flags, cadt_u32 grain) {
@@ -208,10 +223,7 @@ CADT_KERNEL(cadt_flag_compact, CADT_QUERY_MESH_PARAMETERS, cadt_real max_edge, c
   CADT_FOR(t, mesh.view.triangles, grain) {
     cadt_u32 kept = cadt_circumcircle(&mesh, t).radius <= max_radius ? 1u : 0u;
     for (cadt_u32 k = 0u; k < 3u; ++k) {
-      const cadt_point arm = cadt_seen_from(cadt_corner(&mesh, t, k), cadt_corner(&mesh, t, CADT_NEXT(k)));
-      const cadt_real x = arm.x / mesh.scale / mesh.scale_again / max_edge,
-                      y = arm.y / mesh.scale / mesh.scale_again / max_edge;
-      if (x * x + y * y > 1.0) kept = 0u;
+      if (cadt_is_longer(cadt_corner(&mesh, t, k), cadt_corner(&mesh, t, CADT_NEXT(k)), max_edge)) kept = 0u;
     }
     flags[t] = kept;
     if (t == 0u) flags[mesh.view.triangles] = 0u;

@@ -66,7 +66,6 @@ TEST_P(WrongInput, Grids) {
   EXPECT_TRUE(queries.rasterize({0, 0, 1, 1, 0, 2}, values).empty());
   EXPECT_THROW((void)queries.voronoi_polygons({0, 0, 0, 1}), InputError);
   EXPECT_THROW((void)queries.voronoi_polygons({0, 0, inf, 1}), InputError);
-  EXPECT_THROW((void)queries.voronoi_polygons({-1.7e308, -1.7e308, 1.7e308, 1.7e308}), InputError);
   EXPECT_THROW((void)queries.outline(std::nan("")), OptionError);
   EXPECT_THROW((void)queries.outline(1, -1), OptionError);
 }

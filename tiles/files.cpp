@@ -154,7 +154,8 @@ std::string difference(const std::string& path, const FileRecord& record) {
 void make_folder(const std::string& path) {
   std::error_code code;
   fs::create_directory(path, code);
-  if (code || !fs::is_directory(path)) fail(path, "the folder cannot be made", code ? code.value() : ENOTDIR);
+  std::error_code ignored;
+  if (code || !fs::is_directory(path, ignored)) fail(path, "the folder cannot be made", code ? code.value() : ENOTDIR);
 }
 
 void sync_folder(const std::string& path) {

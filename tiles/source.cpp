@@ -167,8 +167,9 @@ std::unique_ptr<PointSource> in_memory(std::vector<double> xy, std::string name)
 std::unique_ptr<PointSource> open_file(const std::string& path, const io::ReadOptions& options) {
   const std::string format =
       detail::choose_format(path == "-" ? "<stdin>" : path, options.format, io::point_read_formats());
-  // A pipe cannot be read by range.
-  const bool by_range = std::filesystem::is_regular_file(path) && options.columns.empty() &&
+  // A pipe cannot be read by range; what is no file at all, the reader of whole files explains.
+  std::error_code code;
+  const bool by_range = std::filesystem::is_regular_file(path, code) && options.columns.empty() &&
                         (format == "npy" || format == "f64" || format == "f32");
   if (by_range) {
     auto file = std::make_unique<detail::RandomAccessFile>(path);

@@ -103,14 +103,18 @@ bool is_for_resuming(const FileRecord& file) { return file.name.starts_with("unf
 Store::Store(std::string path, const Plan& plan, Start start) : path_(std::move(path)), plan_(plan) {
   while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
   if (start == Start::join) return;
-  if (start == Start::create || !fs::exists(path_ + "/manifest.json")) {
+  std::error_code code;
+  if (start == Start::create || !fs::exists(path_ + "/manifest.json", code)) {
     check_new_directory(path_);
     begin();
     return;
   }
   const Manifest found = read_manifest(path_);
   check_same_plan(found);
-  if (!found.complete) return;
+  if (!found.complete) {
+    make_folder(path_ + "/unfinished");  // a copy may have left out an empty folder
+    return;
+  }
   const auto is_intact = [&](const FileRecord& file) { return difference(path_ + "/" + file.name, file).empty(); };
   complete_ = std::all_of(found.nodes.begin(), found.nodes.end(), [&](const NodeRecord& node) {
     return std::all_of(node.files.begin(), node.files.end(), is_intact);
@@ -123,10 +127,11 @@ Store::Store(std::string path, const Plan& plan, Start start) : path_(std::move(
 }
 
 void check_new_directory(const std::string& path) {
-  if (fs::exists(path + "/manifest.json"))
+  std::error_code code;  // what cannot be looked at cannot be made: make_folder() says why
+  if (fs::exists(path + "/manifest.json", code))
     throw ResumeError(path + ": there is a mesh already; --resume continues it if it is not complete, or remove it");
-  if (!fs::exists(path)) return;
-  if (!fs::is_directory(path)) throw io::FileError(path, 0, "is there already, and is no folder");
+  if (!fs::exists(path, code)) return;
+  if (!fs::is_directory(path, code)) throw io::FileError(path, 0, "is there already, and is no folder");
   if (!is_empty_folder(path))
     throw ResumeError(path + ": the folder is there already and holds no mesh; give another name, or remove it");
 }

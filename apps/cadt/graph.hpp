@@ -33,7 +33,7 @@ struct Graph {
   std::vector<Segment> segments;
   std::vector<std::array<double, 2>> holes;
   std::vector<Region> regions;
-  std::string crs;  ///< reference system of a GeoJSON file
+  std::string crs = {};  ///< reference system of a GeoJSON file
 };
 
 /// What the library is told, with what the file says of seeds. Throws Failure (usage).

@@ -93,8 +93,19 @@ void install_interrupt_handlers() {
 
 #else
 
+/// Standard streams that are closed fail when they are used. If their numbers were free, the next files would get them:
+/// a pipe or an output would be read or written in their place.
+void keep_standard_streams() {
+  for (int stream = 0; stream < 3; ++stream) {
+    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) {
+      [[maybe_unused]] const int same = open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY);
+    }
+  }
+}
+
 void install_interrupt_handlers() {
   state();
+  keep_standard_streams();
   if (pipe(pipe_ends) != 0) return;  // then the signals keep their default effect
   for (const int end : pipe_ends) fcntl(end, F_SETFD, FD_CLOEXEC);
   // The thread that waits must not be the one that a signal interrupts in a read of standard input.

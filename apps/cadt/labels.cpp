@@ -28,7 +28,7 @@ struct LabelsCommand {
 
 int run(const LabelsCommand& command) {
   const auto outputs =
-      plan_outputs(command.output.outputs, command.output.formats, io::region_write_formats(), command.image);
+      plan_outputs(command.output.outputs, command.output.formats, io::region_write_formats(), {command.image});
   ProgressLine line(command.quiet);
   const std::string name = display_name(command.image, true);
   line.step(fmt::format("reading {}", name));

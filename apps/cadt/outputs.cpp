@@ -7,6 +7,8 @@
 
 #include <cadt/io/errors.hpp>
 
+#include <cadt/io/segments_file.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,7 +62,7 @@ bool is_device(const std::string& path) {
 }  // namespace
 
 std::vector<Output> plan_outputs(const std::vector<std::string>& paths, const std::vector<std::string>& formats,
-                                 const std::vector<std::string>& known, const std::string& input) {
+                                 const std::vector<std::string>& known, const std::vector<std::string>& inputs) {
   if (formats.size() > 1 && formats.size() != paths.size()) {
     throw Failure(exit_usage,
                   fmt::format("-t is given {} times for {} outputs; give it once for all of them, or once for "
@@ -77,20 +79,34 @@ std::vector<Output> plan_outputs(const std::vector<std::string>& paths, const st
   }
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const bool twice =
-        std::any_of(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), [&](const auto& other) {
-          return paths[i] == other ||
-                 (paths[i] != "-" && other != "-" && !is_device(other) && same_file(paths[i], other));
-        });
+        std::any_of(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i),
+                    [&](const auto& other) { return paths[i] == other || same_output(paths[i], other); });
     if (twice)
       throw Failure(exit_usage, fmt::format("{} is named twice as output; give each -o its own name", paths[i]));
     if (paths[i] == "-") continue;
-    if (!input.empty() && input != "-" && !is_device(input) && same_file(paths[i], input)) {
-      throw Failure(exit_usage,
-                    fmt::format("{}: this is the input, which would be lost; give the output another name", paths[i]));
-    }
+    require_no_input(paths[i], inputs);
     require_writable(paths[i]);
   }
   return outputs;
+}
+
+bool same_output(const std::string& a, const std::string& b) {
+  return !a.empty() && !b.empty() && a != "-" && b != "-" && !is_device(a) && !is_device(b) && same_file(a, b);
+}
+
+void require_no_input(const std::string& path, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    if (same_output(path, input)) {
+      throw Failure(exit_usage,
+                    fmt::format("{}: this is the input, which would be lost; give the output another name", path));
+    }
+    const std::string nodes = io::node_file_of(input);
+    if (same_output(path, nodes)) {
+      throw Failure(exit_usage, fmt::format("{}: this has the points of {}, which would be lost; give the output "
+                                            "another name",
+                                            path, input));
+    }
+  }
 }
 
 void require_writable(const std::string& path) {

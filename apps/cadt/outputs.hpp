@@ -15,11 +15,19 @@ struct Output {
 };
 
 /// Pairs the paths of -o with the formats of -t: none (from the suffixes), one for all, or one each ("auto": from the
-/// suffix). Throws Failure (usage) for an unknown suffix or format, a missing -t for "-", one name given twice, or the
-/// name of `input`; io::FileError for a folder that does not exist or is not writable.
+/// suffix). Throws Failure (usage) for an unknown suffix or format, a missing -t for "-", one name given twice, or as
+/// require_no_input(); io::FileError for a folder that does not exist or is not writable.
 [[nodiscard]] std::vector<Output> plan_outputs(const std::vector<std::string>& paths,
                                                const std::vector<std::string>& formats,
-                                               const std::vector<std::string>& known, const std::string& input);
+                                               const std::vector<std::string>& known,
+                                               const std::vector<std::string>& inputs);
+
+/// Throws Failure (usage) if `path` is one of the files that are read, or the .node file beside one of them that has
+/// its points. Names that are empty or "-" are no files.
+void require_no_input(const std::string& path, const std::vector<std::string>& inputs);
+
+/// Whether both names are those of one file; "-" and devices are none.
+[[nodiscard]] bool same_output(const std::string& a, const std::string& b);
 
 /// Throws io::FileError if `path` cannot become a file: its folder does not exist or is not writable, or it is a folder
 /// itself.

@@ -140,7 +140,7 @@ int run(const PolygonsCommand& command) {
   if (command.input == "-" && command.format.empty())
     throw Failure(exit_usage, "standard input has no suffix; name its format: -f geojson");
   const auto outputs =
-      plan_outputs(command.output.outputs, command.output.formats, io::region_write_formats(), command.input);
+      plan_outputs(command.output.outputs, command.output.formats, io::region_write_formats(), {command.input});
   static_cast<void>(constraint_options(command.segments));  // which may be wrong
   ProgressLine line(command.quiet);
   const std::string name = display_name(command.input, true);

@@ -61,11 +61,8 @@ Output plan_query_output(const QueryOptions& o, const std::vector<std::string>& 
     throw Failure(exit_usage, "only one of POINTS and QUERIES can be standard input");
   }
   if (o.values == "-") throw Failure(exit_usage, "--values takes z or a file, not standard input");
-  Output output;
-  for (const std::string& input : {o.input.path, o.queries, o.values == "z" ? std::string() : o.values}) {
-    output = plan_outputs({o.output}, format, formats, input).front();
-  }
-  return output;
+  const std::string values = o.values == "z" ? std::string() : o.values;
+  return plan_outputs({o.output}, format, formats, {o.input.path, o.queries, values}).front();
 }
 
 Interpolation method_of(const QueryOptions& o) {

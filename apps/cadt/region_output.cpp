@@ -10,7 +10,7 @@ void add_region_output_options(CLI::App& command, OutputOptions& o) {
 }
 
 io::RegionMesh RegionResult::view() const {
-  return {points.xy, points.height, triangles, region, region_name, segments, hull, crs};
+  return {points.xy, points.height, triangles, region, region_name, segments, hull, holes, regions, crs};
 }
 
 void append_inside(RegionResult& result, const ConstrainedTriangulation& mesh, std::int32_t first_point) {
@@ -31,6 +31,8 @@ RegionResult region_result(const Graph& graph, const ConstrainedTriangulation& m
   RegionResult result;
   result.points = points_of(graph, mesh);
   result.crs = graph.crs;
+  result.holes = graph.holes;
+  result.regions = graph.regions;
   append_inside(result, mesh);
   const auto hull = mesh.mesh().hull();
   if (domain == Domain::hull) result.hull.assign(hull.begin(), hull.end());

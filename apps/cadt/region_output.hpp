@@ -9,6 +9,7 @@
 #include <cadt/io/points_file.hpp>
 #include <cadt/io/region_file.hpp>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ struct RegionResult {
   io::PointSet points;
   std::vector<std::int32_t> triangles, region, hull;
   std::vector<Segment> segments;
+  std::vector<std::array<double, 2>> holes;
+  std::vector<Region> regions;
   std::string region_name = "region", crs;
 
   [[nodiscard]] io::RegionMesh view() const;

@@ -91,13 +91,10 @@ int run_growth(const RenderCommand& command) {
 
 /// The file that is written. It may be none of those that are read.
 Output plan_picture(const RenderCommand& command) {
-  Output output;
-  for (const std::string& input : {command.subject.input.path, command.subject.segments.file}) {
-    output = plan_outputs({command.output},
-                          command.format.empty() ? std::vector<std::string>{} : std::vector{command.format},
-                          {"png", "svg", "pdf"}, input)
-                 .front();
-  }
+  const Output output =
+      plan_outputs({command.output}, command.format.empty() ? std::vector<std::string>{} : std::vector{command.format},
+                   {"png", "svg", "pdf"}, {command.subject.input.path, command.subject.segments.file})
+          .front();
   if (output.format != "png") check_vector_options(command, output.format);
   return output;
 }

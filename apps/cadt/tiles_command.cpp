@@ -79,8 +79,14 @@ void check_tiles_options(const TilesCommand& c) {
   if (c.resume && c.output.empty()) throw Failure(exit_usage, "--resume needs the directory: add -o mesh.cadt");
   if (!c.devices.empty() && !c.device.device.empty())
     throw Failure(exit_usage, "--devices names all devices: leave --device out");
-  for (const std::string& file : {c.picture, c.stats})
-    if (!file.empty() && file != "-") require_writable(file);
+  for (const std::string& file : {c.picture, c.stats}) {
+    if (file.empty() || file == "-") continue;
+    require_no_input(file, c.inputs);
+    require_writable(file);
+  }
+  if (same_output(c.picture, c.stats))
+    throw Failure(exit_usage,
+                  fmt::format("--picture and --stats both go to {}; give one of them another name", c.stats));
 }
 
 std::unique_ptr<tiles::PointSource> open_source(const TilesCommand& c) {

@@ -25,9 +25,8 @@ namespace {
 std::vector<Output> check_outputs(const TriangulateOptions& options) {
   const bool segments = has_segments(options.input, options.segments);
   const auto formats = segments ? io::region_write_formats() : io::mesh_write_formats();
-  auto outputs = plan_outputs(options.output.outputs, options.output.formats, formats, options.input.path);
-  // Nor may the other input be lost.
-  static_cast<void>(plan_outputs(options.output.outputs, options.output.formats, formats, options.segments.file));
+  const std::vector<std::string> inputs{options.input.path, options.segments.file};
+  auto outputs = plan_outputs(options.output.outputs, options.output.formats, formats, inputs);
   if (segments && options.stabilize != "off")
     throw Failure(exit_usage, "--stabilize is for points without segments: leave it out");
   if (options.timing && options.stats.empty())
@@ -48,12 +47,15 @@ std::vector<Output> check_outputs(const TriangulateOptions& options) {
   }
   if (!options.stats_file()) return outputs;
   for (const Output& output : outputs) {
-    if (output.path == options.stats) {
+    if (output.path == options.stats || same_output(output.path, options.stats)) {
       throw Failure(exit_usage, fmt::format("--stats and -o both go to {}; give one of them another name",
                                             display_name(output.path, false)));
     }
   }
-  if (options.stats != "-") require_writable(options.stats);
+  if (options.stats != "-") {
+    require_no_input(options.stats, inputs);
+    require_writable(options.stats);
+  }
   return outputs;
 }
 

@@ -2,6 +2,7 @@
 #include "backends/opencl/platform.hpp"
 
 #include <cstdlib>
+#include <mutex>
 #include <string_view>
 
 namespace cadt::opencl {
@@ -112,6 +113,10 @@ std::vector<cl::Device> devices_of(const cl::Platform& platform, std::string& wh
 }  // namespace
 
 Found find_devices() {
+  // Loaders and drivers make their platforms and devices at the first question, which is one at a time: PoCL lets
+  // another thread see devices that are not ready.
+  static std::mutex first_question;
+  const std::lock_guard lock(first_question);
   Found result;
   result.none = loader_failure();
   if (!result.none.empty()) return result;

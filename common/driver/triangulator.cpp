@@ -153,16 +153,19 @@ VerifyReport verify_copy(Device& device, const Allocation& input, const DeviceTr
                          std::span<const Duplicate> duplicates, const VerifyOptions& options) {
   std::vector<Real> xy;
   std::vector<std::int32_t> triangles, neighbors;
+  std::vector<std::uint32_t> flags;
   if (input) xy = device.read_values<Real>(*input, 2 * data.points);
   if (const std::size_t values = 3 * data.triangle_count; values != 0) {
     triangles = device.read_values<std::int32_t>(*data.triangles, values);
     neighbors = device.read_values<std::int32_t>(*data.neighbors, values);
+    if (data.edge_flags) flags = device.read_values<std::uint32_t>(*data.edge_flags, data.triangle_count);
   }
   MeshView view;
   view.triangles = triangles;
   view.neighbors = neighbors;
   view.duplicates = duplicates;
   view.has_duplicates = true;
+  view.edge_flags = flags;
   return cadt::verify(std::span<const Real>(xy), view, options);
 }
 
@@ -251,6 +254,9 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
   if (points.size != data.points)
     throw InputError("the mesh is one of " + std::to_string(data.points) + " points",
                      std::min(points.size, data.points));
+  if (data.moved || data.added != 0)
+    throw InputError(
+        "crossings of segments have moved or added points: verify download_constrained() with the segments", 0);
   Device& device = *state_->device;
   begin_budget(*state_, data.points);
   Statistics statistics;
@@ -261,9 +267,8 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
   if (takes_floats_only(device)) return verify_copy<float>(device, input, data, duplicates, options);
   if (data.triangle_count == 0) return verify_copy<double>(device, input, data, duplicates, options);
   const auto count = static_cast<std::uint32_t>(data.triangle_count);
-  const Allocation no_flags;
   const VerifyInput what{
-      {input, data.triangles, data.neighbors, no_flags, count, count, 0}, data.points, {}, duplicates, true};
+      {input, data.triangles, data.neighbors, data.edge_flags, count, count, 0}, data.points, {}, duplicates, true};
   return verify_on_device(ctx, what, options);
 }
 

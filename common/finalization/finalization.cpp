@@ -102,4 +102,13 @@ Hash128 hash_of(const NodeSums& whole) noexcept {
   return {hash.high, hash.low};
 }
 
+Hash128 hash_of(std::span<const std::uint64_t> ids, std::span<const std::int32_t> triangles,
+                std::span<const DuplicateId> duplicates) noexcept {
+  cadt_hash hash = {0, 0};
+  const auto id = [&](std::size_t i) { return ids[static_cast<std::size_t>(triangles[i])]; };
+  for (std::size_t i = 0; i < triangles.size(); i += 3) cadt_hash_add_triangle(&hash, id(i), id(i + 1), id(i + 2));
+  for (const DuplicateId& d : duplicates) cadt_hash_add(&hash, CADT_HASH_DUPLICATE, d.point, d.representative, 0);
+  return {hash.high, hash.low};
+}
+
 }  // namespace cadt

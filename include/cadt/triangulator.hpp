@@ -195,8 +195,9 @@ class CADT_API Triangulator {
 
   /// Verifies a mesh on the device (verify.hpp: verify_on_device) without copying it to the host, except for the
   /// boundary and what the device cannot decide. A mesh without triangles is checked on the host, and so is any mesh of
-  /// a device without double precision. \throws as cadt::verify_on_device, and InputError for a mesh of another
-  /// triangulator
+  /// a device without double precision. Of constrained edges the circle is not asked; whether each segment is there,
+  /// cadt::verify of download_constrained() tells. \throws as cadt::verify_on_device, and InputError for a mesh of
+  /// another triangulator, or in which crossings have moved or added points
   [[nodiscard]] VerifyReport verify(const DevicePoints& points, const DeviceTriangulation& mesh,
                                     const VerifyOptions& options = {});
 

@@ -66,6 +66,32 @@ struct PngReader {
   }
 };
 
+/// Colours that the file makes transparent by a list (tRNS).
+class TransparentColours {
+ public:
+  TransparentColours(png_structp png, png_infop info)
+      : palette_(png_get_color_type(png, info) == PNG_COLOR_TYPE_PALETTE) {
+    png_bytep alpha = nullptr;
+    int size = 0;
+    png_color_16p colour = nullptr;
+    if (png_get_tRNS(png, info, &alpha, &size, &colour) == 0) return;
+    if (palette_ && alpha != nullptr) alpha_.assign(alpha, alpha + size);
+    if (!palette_ && colour != nullptr) {
+      const bool grey = png_get_channels(png, info) < 3;
+      label_ = grey ? colour->gray : (colour->red & 0xff) << 16 | (colour->green & 0xff) << 8 | (colour->blue & 0xff);
+    }
+  }
+  [[nodiscard]] bool has(std::int32_t label) const {
+    const auto i = static_cast<std::size_t>(label);
+    return palette_ ? i < alpha_.size() && alpha_[i] != 0xff : label == label_;
+  }
+
+ private:
+  bool palette_;
+  std::vector<png_byte> alpha_;  // of each entry of the palette
+  std::int32_t label_ = -1;
+};
+
 std::int32_t label_of(const png_byte* pixel, std::size_t channels, std::size_t bytes_per_channel) {
   if (channels >= 3) return pixel[0] << 16 | pixel[1] << 8 | pixel[2];
   return bytes_per_channel == 2 ? pixel[0] << 8 | pixel[1] : pixel[0];
@@ -100,19 +126,22 @@ LabelImage read_label_image(const std::string& path) {
   for (std::size_t y = 0; y < image.height; ++y) rows[y] = pixels.data() + y * row_bytes;
   if (!reader.read_rows(rows.data())) fail(std::string("is malformed: ") + reader.message);
 
+  const picture::TransparentColours transparent(reader.png, reader.info);
   image.labels.reserve(image.width * image.height);
   const std::size_t pixel_bytes = channels * bytes_per_channel;
   const bool alpha = channels == 2 || channels == 4;
   for (std::size_t y = 0; y < image.height; ++y) {
     for (std::size_t x = 0; x < image.width; ++x) {
       const png_byte* pixel = rows[y] + x * pixel_bytes;
-      for (std::size_t b = pixel_bytes - bytes_per_channel; alpha && b < pixel_bytes; ++b) {
-        if (pixel[b] != 0xff) {
-          fail("pixel " + std::to_string(x) + ", " + std::to_string(y) +
-               " is transparent; put the image on a background first");
-        }
+      const std::int32_t label = picture::label_of(pixel, channels, bytes_per_channel);
+      bool clear = transparent.has(label);
+      for (std::size_t b = pixel_bytes - bytes_per_channel; alpha && b < pixel_bytes; ++b)
+        clear = clear || pixel[b] != 0xff;
+      if (clear) {
+        fail("pixel " + std::to_string(x) + ", " + std::to_string(y) +
+             " is transparent; put the image on a background first");
       }
-      image.labels.push_back(picture::label_of(pixel, channels, bytes_per_channel));
+      image.labels.push_back(label);
     }
   }
   return image;

@@ -70,6 +70,8 @@ void write_graph(const std::string& path, const RegionMesh& mesh, const std::str
   graph.attributes.assign(mesh.height.begin(), mesh.height.end());
   graph.attributes_per_point = mesh.height.empty() ? 0 : 1;
   graph.segments.assign(mesh.segments.begin(), mesh.segments.end());
+  graph.holes.assign(mesh.holes.begin(), mesh.holes.end());
+  graph.regions.assign(mesh.regions.begin(), mesh.regions.end());
   write_segments(path, graph, {format, base});
 }
 

@@ -48,6 +48,21 @@ std::vector<std::string> segment_read_formats() {
   return {"poly", "edge", "edg", "cin", "obj", "geojson", "json", "txt", "dat"};
 }
 
+std::string node_file_of(const std::string& path, const std::string& asked) {
+  try {
+    if (path.empty() || path == "-") return {};
+    const std::string format = asked.empty() ? detail::suffix_of(path) : asked;
+    if (format == "edge") return detail::sibling(path, ".node");
+    if (format != "poly") return {};
+    const detail::InputFile file(path);
+    detail::TextScanner scanner(file.name(), file.bytes());
+    const bool has_points = scanner.next_content_line() && scanner.integer("the number of points") != 0;
+    return has_points ? std::string() : detail::sibling(path, ".node");
+  } catch (const FileError&) {  // which reading it will explain
+    return {};
+  }
+}
+
 SegmentsFile read_segments(const std::string& path, const std::string& asked) {
   const std::string format = detail::choose_format(path == "-" ? "<stdin>" : path, asked, segment_read_formats());
   const detail::InputFile file(path);

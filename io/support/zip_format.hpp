@@ -23,6 +23,7 @@ inline constexpr std::uint16_t stored = 0, deflated = 8;
 
 /// CRC-32 of one block after another, starting from 0.
 [[nodiscard]] inline std::uint32_t checksum(std::uint32_t crc, std::string_view bytes) {
+  if (bytes.empty()) return crc;  // zlib starts anew for a null pointer
   return static_cast<std::uint32_t>(::crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 

@@ -6,6 +6,7 @@
 #include <cadt/io/errors.hpp>
 #include <cadt/io/mesh_file.hpp>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -15,19 +16,21 @@ namespace cadt::io {
 
 /// Views of the caller's arrays. Indices are 0-based.
 struct RegionMesh {
-  std::span<const double> xy;               ///< n x 2
-  std::span<const double> height;           ///< one a point, or empty
-  std::span<const std::int32_t> triangles;  ///< t x 3, counterclockwise
-  std::span<const std::int32_t> region;     ///< one a triangle, or empty: a region, a feature, a label
-  std::string region_name = "region";       ///< what files call that
-  std::span<const Segment> segments;        ///< those to be written or drawn, such as constrained edges
-  std::span<const std::int32_t> hull;       ///< counterclockwise loop to be drawn, or empty
-  std::string crs;                          ///< reference system that a GeoJSON file is to name; empty: none
+  std::span<const double> xy;                         ///< n x 2
+  std::span<const double> height;                     ///< one a point, or empty
+  std::span<const std::int32_t> triangles;            ///< t x 3, counterclockwise
+  std::span<const std::int32_t> region;               ///< one a triangle, or empty: a region, a feature, a label
+  std::string region_name = "region";                 ///< what files call that
+  std::span<const Segment> segments;                  ///< those to be written or drawn, such as constrained edges
+  std::span<const std::int32_t> hull;                 ///< counterclockwise loop to be drawn, or empty
+  std::span<const std::array<double, 2>> holes = {};  ///< seeds, for poly alone
+  std::span<const Region> regions = {};               ///< the same
+  std::string crs = {};                               ///< reference system that a GeoJSON file is to name; empty: none
 };
 
 /// Writes a mesh, its segments or a picture; the format comes from the suffix unless given:
 ///   node ele obj off ply vtu glb  points and triangles; ele, ply and vtu have the regions as an attribute of triangles
-///   poly edge                     points and segments; segments
+///   poly edge                     points, segments, holes and regions; segments
 ///   geojson                       a polygon a triangle, with its region as a property
 ///   svg pdf png                   a picture: segments thick, a colour a region, or by size where there is only one
 /// All points are written, in their order. The file appears under its name only when complete; "-" is standard output.

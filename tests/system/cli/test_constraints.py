@@ -33,6 +33,12 @@ def png(rows, bits=8, kind=0):
             chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
 
 
+def in_colour(image):
+    """The image with a third of the width: its rows have three bytes a pixel."""
+    header = image[12:16] + struct.pack(">I", int.from_bytes(image[16:20], "big") // 3) + image[20:29]
+    return image[:12] + header + struct.pack(">I", zlib.crc32(header)) + image[33:]
+
+
 def area_of(points, triangles):
     """Twice the area; every triangle must be counterclockwise."""
     areas = [twice_area(*(points[i] for i in triangle)) for triangle in triangles]
@@ -258,6 +264,35 @@ class SegmentErrors(CliTest):
         self.fails(3, "triangulate", "-", "-f", "poly", stdin="0 2 0 0\n0\n0\n", says="<stdin>:1: the points are in a .node")
 
 
+class NodeFiles(CliTest):
+    NODES = "4 2 1 0\n0 0 0 1\n1 4 0 2\n2 4 4 3\n3 0 4 4\n"
+    RINGS = "4 0\n0 0 1\n1 1 2\n2 2 3\n3 3 0\n"
+
+    def test_points_beside_a_poly_are_not_lost(self):
+        self.write("a.node", self.NODES)
+        self.write("a.poly", "0 2 0 0\n" + self.RINGS + "0\n")
+        self.write("a.edge", self.RINGS)
+        self.write("in.xy", "1 1\n")
+        for command in (["triangulate", "a.poly"], ["triangulate", "a.edge"], ["triangulate", "in.xy", "--segments", "a.poly"]):
+            self.fails(2, *command, "-o", "a.node", says="a.node: this has the points of a.")
+            self.fails(2, *command, "--stats=./a.node", says="this has the points of a.")
+        self.assertEqual(self.path("a.node").read_text(), self.NODES)
+        self.write("b.node", "old")
+        self.write("b.poly", self.NODES + self.RINGS + "0\n")  # which has its points itself
+        self.cadt("triangulate", "b.poly", "-o", "b.node")
+        self.assertTrue(self.path("b.node").read_text().startswith("4"))
+
+    def test_holes_and_regions_stay(self):
+        self.write("plate.poly", PLATE)
+        mesh = self.cadt("triangulate", "plate.poly", "--domain", "seeds", "-o", "again.poly", "-o", "m.off")
+        again = self.cadt("triangulate", "again.poly", "--domain", "seeds", "-o", "n.off")
+        self.assertIn("inside", mesh.err)
+        line = next(line for line in mesh.err.splitlines() if line.startswith("inside"))
+        self.assertIn(line, again.err)
+        tail = self.path("again.poly").read_text().splitlines()
+        self.assertGreater(len(tail), 10)
+
+
 class Polygons(CliTest):
     off = ConstraintTest.off
 
@@ -375,6 +410,30 @@ class Labels(CliTest):
         self.fails(2, "labels", "a.png", "-o", "a.png", says="this is the input")
         self.fails(2, "labels", "a.png", "-o", "m.npz", says="unknown suffix")
         self.fails(3, "labels", "absent.png", says="absent.png")
+
+    def test_transparent_colours(self):
+        def chunk(name, data):
+            return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+        def image(rows, kind, *chunks):
+            whole = png(rows, kind=kind)
+            return whole[:33] + b"".join(chunk(*c) for c in chunks) + whole[33:]
+
+        palette = (b"PLTE", bytes(range(9)))
+        rgb = [[1, 2, 3, 4, 5, 6], [1, 2, 3, 7, 8, 9]]
+        for name, data, right in (
+                ("palette", image([[0, 1], [1, 0]], 3, palette, (b"tRNS", b"\xff\x80")), False),
+                ("opaque palette", image([[0, 1], [1, 0]], 3, palette, (b"tRNS", b"\xff\xff\x00")), True),
+                ("grey", image([[0, 1], [1, 0]], 0, (b"tRNS", struct.pack(">H", 1))), False),
+                ("other grey", image([[0, 1], [1, 0]], 0, (b"tRNS", struct.pack(">H", 2))), True),
+                ("colour", in_colour(image(rgb, 2, (b"tRNS", struct.pack(">HHH", 4, 5, 6)))), False),
+                ("other colour", in_colour(image(rgb, 2, (b"tRNS", struct.pack(">HHH", 4, 5, 7)))), True)):
+            with self.subTest(name):
+                self.path("t.png").write_bytes(data)
+                if right:
+                    self.cadt("labels", "t.png")
+                else:
+                    self.fails(3, "labels", "t.png", says="is transparent")
 
 
 class GraphInfo(CliTest):

@@ -214,6 +214,26 @@ class Resources(CliTest):
         self.assertEqual(self.names(), [])
 
 
+class ClosedStreams(CliTest):
+    """Their numbers must not become those of other files."""
+
+    @staticmethod
+    def without(*streams):
+        def close():
+            default_signals()
+            for stream in streams:
+                os.close(stream)
+        return close
+
+    def test_reading_and_writing_fail(self):
+        self.write("in.xy", "0 0\n1 0\n0 1\n")
+        self.fails(3, "triangulate", "-", "-f", "xy", before=self.without(0), says="<stdin>")
+        for closed in ((1,), (0, 1)):
+            self.fails(3, "triangulate", "in.xy", "-o", "-", "-t", "off", before=self.without(*closed), says="<stdout>")
+        self.cadt("triangulate", "in.xy", "-o", "m.off", "-q", before=self.without(0, 1, 2))
+        self.assertTrue(self.path("m.off").read_text().startswith("OFF"))
+
+
 class Interrupt(CliTest):
     def large(self):
         self.scattered("in.f64", 2000000)

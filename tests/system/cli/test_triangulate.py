@@ -3,6 +3,7 @@
 import json
 import subprocess
 import unittest
+import zipfile
 
 from harness import PROGRAM, SOURCE, CliTest, integer_points, read_off, why_not_delaunay, xy_text
 
@@ -70,6 +71,17 @@ class Outputs(CliTest):
         glb = self.path("m.glb").read_bytes()
         described = json.loads(glb[20:20 + int.from_bytes(glb[12:16], "little")])
         self.assertEqual(described["accessors"][0]["count"], len(self.points))
+
+    def test_archives_of_empty_arrays(self):
+        self.write("line.xy", "0 0\n1 1\n2 2\n")
+        self.write("one.xy", "0 0\n")
+        for points in ("in.xy", "line.xy", "one.xy"):  # none has duplicates
+            self.cadt("triangulate", points, "-o", "m.npz")
+            self.cadt("voronoi", points, "-o", "v.npz")
+            for archive in ("m.npz", "v.npz"):
+                with zipfile.ZipFile(self.path(archive)) as members:
+                    self.assertIsNone(members.testzip(), f"{points} {archive}")
+            self.cadt("verify", points, "m.npz")
 
     def test_option_overrides_the_suffix(self):
         self.cadt("triangulate", "in.xy", "-o", "mesh.dat", "-t", "off")
@@ -218,6 +230,14 @@ class Statistics(CliTest):
     def test_unwritable_file_is_found_before_the_work(self):
         self.fails(3, "triangulate", "in.xy", "--stats=none/s.json", "-o", "m.off", says="none/s.json")
         self.assertEqual(self.names(), ["in.xy"])
+
+    def test_the_input_is_not_lost(self):
+        self.write("in.xy", "0 0\n1 0\n0 1\n")
+        self.write("a.geojson", '{"type":"LineString","coordinates":[[0,0],[1,0]]}')
+        for stats, more in (("in.xy", ()), ("./in.xy", ()), ("a.geojson", ("--segments", "a.geojson"))):
+            self.fails(2, "triangulate", "in.xy", *more, f"--stats={stats}", says="this is the input")
+        self.fails(2, "triangulate", "in.xy", "-o", "m.off", "--stats=./m.off", says="--stats and -o")
+        self.assertEqual(self.path("in.xy").read_text(), "0 0\n1 0\n0 1\n")
 
     def test_two_things_for_one_place(self):
         self.fails(2, "triangulate", "in.xy", "--stats=-", "-o", "-", "-t", "off", says="standard output")

@@ -10,7 +10,7 @@ import numpy as np
 from cadt import _cadt, _devices
 from cadt._delaunay import Delaunay
 from cadt._errors import InputError
-from cadt._points import as_points, index_of
+from cadt._points import as_points, index_of, unmasked
 from cadt._progress import reporter
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def triangulate_batch(
     (2, [[0, 1, 2]])
     """
     p = as_points(points)
-    begin = np.asarray(offsets)
+    begin = np.asarray(unmasked(offsets, "offsets"))
     if begin.ndim != 1 or begin.dtype.kind not in "iu" or begin.size == 0:
         raise InputError("offsets must be integers of shape (sets + 1,)", 0)
     if begin.min() < 0:

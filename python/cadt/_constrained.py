@@ -14,7 +14,7 @@ from cadt._mesh import Mesh
 from cadt._points import as_pairs, as_points, as_values, contiguous
 from cadt._progress import reporter
 from cadt._results import VerifyReport, report_of
-from cadt._segments import constraints_of, segments_of, segments_there
+from cadt._segments import constraints_of, parts_along, segments_of, segments_there
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -283,10 +283,7 @@ class ConstrainedDelaunay(Mesh):
         # Each added point on the first of its segments.
         on = place[~given]
         on = on[of[on] == parents[chain[on] - n, 0]]
-        a, b, p = (points[chain[at]] for at in (before[on], behind[on], on))
-        along = b - a
-        square = (along * along).sum(axis=1)
-        part = np.clip(((p - a) * along).sum(axis=1) / np.where(square > 0, square, 1), 0, 1)[:, None]
+        part = parts_along(*(points[chain[at]] for at in (before[on], behind[on], on)))[:, None]
         result = np.concatenate([v, np.full((len(parents), v.shape[1]), np.nan)])
         result[chain[on]] = (1 - part) * v[chain[before[on]]] + part * v[chain[behind[on]]]
         result = result.reshape(len(result), *one)

@@ -11,7 +11,7 @@ import numpy as np
 from cadt import _cadt, _devices
 from cadt._arrays import Array
 from cadt._errors import BackendUnavailable, InputError, OptionError
-from cadt._points import as_points
+from cadt._points import FILL, as_points, as_queries, is_x_and_y, unmasked
 
 
 class Mesh:
@@ -78,11 +78,13 @@ class Mesh:
         return self.array.like(np.full(shape, -1, dtype=np.int32))
 
     def _rows(self, xi: Any) -> tuple[Any, tuple[int, ...]]:
-        if isinstance(xi, tuple) and len(xi) == 2 and not np.isscalar(xi[0]):
+        if is_x_and_y(xi):
             x, y = xi
             here = self.array.is_here(x) and self.array.is_here(y) and tuple(x.shape) == tuple(y.shape)
-            xi = self.array.stack([x, y]) if here else np.stack(np.broadcast_arrays(*map(self._as_host, xi)), axis=-1)
-        xi = xi if self.array.is_here(xi) else self.array.like(np.asarray(xi, dtype=np.float64))
+            xi = self.array.stack([x, y]) if here else tuple(map(self._as_host, xi))
+        if not self.array.is_here(xi):
+            q, shape = as_queries(xi)
+            xi = self.array.like(q.astype(np.float64).reshape(*shape, 2))
         if len(xi.shape) == 0 or xi.shape[-1] != 2:
             raise InputError(f"queries must have shape (..., 2), not {tuple(xi.shape)}", 0)
         shape = tuple(xi.shape[:-1])
@@ -119,7 +121,7 @@ class Mesh:
         return self.array.finished(result)
 
     def _values(self, values: Any) -> tuple[Any, tuple[int, ...]]:
-        v = self.array.take(values, "float64")
+        v = self.array.take(unmasked(values, "values", FILL), "float64")
         if len(v.shape) == 0 or v.shape[0] != self.mesh.number_of_points:
             raise InputError(f"values must have shape ({self.mesh.number_of_points},) or one row a point", 0)
         return v, tuple(v.shape[1:])

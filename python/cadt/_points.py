@@ -11,6 +11,7 @@ import numpy as np
 from cadt._errors import InputError
 
 _FLOATS = (np.dtype(np.float64), np.dtype(np.float32))
+FILL = "fill them (NaN is a value), or leave out the points"  # what can be done about masked values
 
 
 def as_points(points: Any, what: str = "points", *, columns: str = "(n, 2)") -> np.ndarray:
@@ -36,12 +37,18 @@ def contiguous(a: np.ndarray, dtype: Any = None) -> np.ndarray:
     return a if a.flags.aligned else a.copy()
 
 
+def unmasked(a: Any, what: str, advice: str = "") -> Any:
+    """`a`, of which nothing may be masked: np.asarray would take what is below the mask."""
+    if not isinstance(a, np.ma.MaskedArray):
+        return a
+    if np.ma.is_masked(a):
+        raise InputError(f"{what} are masked: {advice or f'pass {what} without a mask'}", 0)
+    return a.data
+
+
 def to_array(points: Any, what: str) -> np.ndarray:
     """Lists, anything with ``__array__`` or, on the host, ``__dlpack__``."""
-    if isinstance(points, np.ma.MaskedArray):
-        if np.ma.is_masked(points):
-            raise InputError(f"{what} are masked: pass {what}.compressed() or the rows without a mask", 0)
-        points = points.data
+    points = unmasked(points, what, f"pass {what}.compressed() or the rows without a mask")
     if isinstance(points, (list, tuple)) or hasattr(points, "__array__"):
         try:
             return np.asarray(points)
@@ -85,11 +92,26 @@ def index_of(i: Any, n: int, what: str) -> int:
     return k + n if k < 0 else k
 
 
+def is_x_and_y(xi: Any) -> bool:
+    """Whether queries are given as a tuple of arrays x and y. Raises InputError where it could as well be two points."""
+    if not (isinstance(xi, tuple) and len(xi) == 2) or np.isscalar(xi[0]):
+        return False
+    if all(isinstance(a, (list, tuple)) and len(a) == 2 for a in xi):
+        raise InputError(
+            "queries: a tuple of two pairs may be two points, or x and y: pass an array of shape (n, 2), or two arrays x and y",
+            0,
+        )
+    return True
+
+
 def as_queries(xi: Any) -> tuple[np.ndarray, tuple[int, ...]]:
     """Queries of shape (..., 2) as rows, and the shape of the answers."""
-    if isinstance(xi, tuple) and len(xi) == 2 and not np.isscalar(xi[0]):
-        x, y = np.broadcast_arrays(*xi)
-        xi = np.stack([x, y], axis=-1)
+    if is_x_and_y(xi):
+        x, y = (unmasked(a, "queries") for a in xi)
+        try:
+            xi = np.stack(np.broadcast_arrays(x, y), axis=-1)
+        except ValueError as e:
+            raise InputError(f"x and y of queries do not fit together: {e}", 0) from None
     a = xi if type(xi) is np.ndarray else to_array(xi, "queries")
     if a.ndim == 0 or a.shape[-1] != 2:
         raise InputError(f"queries must have shape (..., 2), not {a.shape}", 0)
@@ -99,9 +121,7 @@ def as_queries(xi: Any) -> tuple[np.ndarray, tuple[int, ...]]:
 
 def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:
     """Values of shape (n, ...) as a contiguous (n, m) array of float64, and the shape of one point's."""
-    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
-        raise InputError("values are masked: fill them (NaN is a value), or leave out the points", 0)
-    a = np.asarray(values)
+    a = np.asarray(unmasked(values, "values", FILL))
     if a.dtype.kind not in "iuf":
         raise TypeError(f"values must be real numbers, not {a.dtype}")
     if a.ndim == 0 or a.shape[0] != n:
@@ -112,7 +132,7 @@ def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:
 
 def as_indices(a: Any, what: str) -> np.ndarray:
     """A copy of integers of shape (t, 3) as int32."""
-    a = np.asarray(a)
+    a = np.asarray(unmasked(a, what))
     if a.ndim != 2 or a.shape[1] != 3 or a.dtype.kind not in "iu":
         raise InputError(f"{what} must be integers of shape (t, 3), not {a.dtype} of {a.shape}", 0)
     if a.size and (a.max() > np.iinfo(np.int32).max or a.min() < -1):
@@ -122,7 +142,7 @@ def as_indices(a: Any, what: str) -> np.ndarray:
 
 def as_pairs(segments: Any, what: str) -> np.ndarray:
     """Integers of shape (m, 2) as int32."""
-    a = np.asarray(segments)
+    a = np.asarray(unmasked(segments, what))
     if a.size == 0 and a.ndim <= 2:
         return np.empty((0, 2), dtype=np.int32)
     if a.ndim != 2 or a.shape[1] != 2 or a.dtype.kind not in "iu":

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import operator
+import sys
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +24,10 @@ _METHODS = ("linear", "nearest", "natural")
 
 
 class Queries:
-    """Base of `Mesh`. A mesh without triangles answers as one that all queries are outside of."""
+    """Base of `Mesh`. A mesh without triangles answers as one that all queries are outside of.
+
+    Queries `xi` are an array of shape (..., 2), or a tuple of two arrays: x and y.
+    """
 
     _gpu: _gpu.Mesh | None
     _cache: dict[str, Any]
@@ -33,6 +37,8 @@ class Queries:
 
         @property
         def n_points(self) -> int: ...
+        @property
+        def n_triangles(self) -> int: ...
         @property
         def _host_mesh(self) -> _cadt.Triangulation: ...
         @property
@@ -46,6 +52,7 @@ class Queries:
         Parameters
         ----------
         xi : array_like, shape (..., 2)
+            A tuple of two arrays is x and y.
 
         >>> Delaunay([[0, 0], [1, 0], [0, 1]]).find_simplex([[0.5, 0.5], [0.6, 0.6]])
         array([ 0, -1], dtype=int32)
@@ -56,7 +63,10 @@ class Queries:
         return self._queries().locate(q).reshape(shape)
 
     def barycentric(self, xi: Any) -> tuple[Any, Any]:
-        """`find_simplex`, and barycentric coordinates there: (...) int32 and (..., 3) float64, NaN outside."""
+        """`find_simplex`, and barycentric coordinates there: (...) int32 and (..., 3) float64, NaN outside.
+
+        A tuple of two arrays is x and y, as in all queries.
+        """
         if self._gpu is not None:
             return self._gpu.barycentric(xi)
         q, shape = as_queries(xi)
@@ -64,7 +74,7 @@ class Queries:
         return triangles.reshape(shape), weights.reshape(*shape, 3)
 
     def within_hull(self, xi: Any) -> Any:
-        """Whether each query lies in the convex hull, its boundary included. Exact."""
+        """Whether each query lies in the convex hull, its boundary included. Exact. A tuple of two arrays is x and y."""
         if self._gpu is not None:
             return self._gpu.within_hull(xi)
         q, shape = as_queries(xi)
@@ -73,7 +83,7 @@ class Queries:
     def nearest_vertex(self, xi: Any, k: int = 1) -> Any:
         """The k nearest points of each query: (...) int32, or (..., k) for k > 1; -1 where there are no more.
 
-        Exact; of equally near ones the lowest.
+        Exact; of equally near ones the lowest. A tuple of two arrays is x and y.
 
         >>> Delaunay([[0, 0], [1, 0], [0, 1]]).nearest_vertex([0.9, 0.2])
         array(1, dtype=int32)
@@ -99,6 +109,7 @@ class Queries:
         ----------
         values : array_like, shape (n,) or (n, m)
         xi : array_like, shape (..., 2)
+            A tuple of two arrays is x and y.
         method : {"linear", "nearest", "natural"}
             Natural neighbours (Sibson, 1981) are smooth but at the points.
         outside : {"nan", "nearest"}
@@ -157,6 +168,8 @@ class Queries:
             else:
                 low, high = points.min(axis=0), points.max(axis=0)
                 bounds = (float(low[0]), float(low[1]), float(high[0]), float(high[1]))
+            if shape is not None and (bounds[0] == bounds[2] or bounds[1] == bounds[3]):
+                raise InputError("all points have one x or one y, so that cells would have no area: pass bounds=", 0)
         return self._raster(values, *grid_of(bounds, shape, resolution, origin), method, longest)
 
     def _raster(
@@ -209,7 +222,7 @@ class Queries:
         k = operator.index(k)
         if k < 0:
             raise OptionError(f"k must not be negative, but it is {k}", "k")
-        return self._queries().largest_empty_circles(k)
+        return self._queries().largest_empty_circles(min(k, self.n_triangles))  # there are no more
 
     def alpha_shape(self, radius: float, *, max_edge: float | None = None) -> tuple[np.ndarray, np.ndarray]:
         """The triangles with a circumradius of at most `radius` and no edge longer than `max_edge`, and their boundary.
@@ -249,10 +262,12 @@ def grid_of(
     if not (math.isfinite(x1 - x0) and math.isfinite(y1 - y0)) or x1 < x0 or y1 < y0:
         raise InputError(f"bounds must be finite, xmin <= xmax and ymin <= ymax, not {tuple(bounds)}", 0)
     if resolution is not None:
-        dx, dy = (float(r) for r in (resolution if isinstance(resolution, (tuple, list)) else (resolution, resolution)))
+        dx, dy = _two_numbers(resolution)
         if not (dx > 0 and dy > 0 and math.isfinite(dx) and math.isfinite(dy)):
             raise OptionError(f"resolution must be positive, not {resolution}", "resolution")
-        columns, rows = (max(1, math.ceil((b - a) / d - 1e-9)) for a, b, d in ((x0, x1, dx), (y0, y1, dy)))
+        # There may be more than the largest double, which are too many as well.
+        most = sys.float_info.max
+        columns, rows = (max(1, math.ceil(min((b - a) / d - 1e-9, most))) for a, b, d in ((x0, x1, dx), (y0, y1, dy)))
     else:
         try:
             rows, columns = (operator.index(s) for s in shape)  # type: ignore[union-attr]
@@ -260,14 +275,29 @@ def grid_of(
             raise OptionError(f"shape must be two whole numbers (rows, columns), not {shape!r}", "shape") from None
         if rows < 1 or columns < 1:
             raise OptionError(f"shape must be (rows, columns), 1 or more, not {shape}", "shape")
-        dx, dy = (x1 - x0) / columns, (y1 - y0) / rows
     if rows * columns >= 2**31:
         raise LimitError(
-            f"a raster has fewer than 2**31 cells, not {rows:,} x {columns:,}: take larger cells, or several rasters",
+            f"a raster has fewer than 2**31 cells, not {_short(rows)} x {_short(columns)}: take larger cells, or several rasters",
             rows * columns,
             2**31 - 1,
         )
+    if resolution is None:
+        dx, dy = (x1 - x0) / columns, (y1 - y0) / rows
     return ((x0, y1, dx, -dy) if origin == "upper" else (x0, y0, dx, dy)), rows, columns
+
+
+def _two_numbers(resolution: Any) -> tuple[float, float]:
+    try:
+        sizes = np.asarray(resolution, dtype=np.float64)
+        if sizes.shape not in ((), (2,)):
+            raise ValueError
+    except (TypeError, ValueError):
+        raise InputError(f"resolution is one number or two, (dx, dy), not {resolution!r}", 0) from None
+    return float(sizes.flat[0]), float(sizes.flat[-1])
+
+
+def _short(n: int) -> str:
+    return f"{n:,}" if n < 2**40 else f"2**{n.bit_length() - 1} or more"
 
 
 def _one_of(value: str, names: Sequence[str], option: str) -> None:

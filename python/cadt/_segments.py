@@ -11,7 +11,7 @@ import numpy as np
 from cadt import _cadt
 from cadt._arrays import adapter_of
 from cadt._errors import InputError, OptionError
-from cadt._points import as_pairs, contiguous
+from cadt._points import as_pairs, contiguous, unmasked
 
 if TYPE_CHECKING:
     from cadt._arrays import Array
@@ -42,7 +42,7 @@ def segments_there(array: Array, segments: Any, polylines: Any, rings: Any) -> A
 
 def as_offsets(offsets: Any, what: str) -> np.ndarray:
     """Integers of one dimension as int64."""
-    a = np.asarray(offsets)
+    a = np.asarray(unmasked(offsets, what))
     if a.ndim != 1 or a.size == 0 or a.dtype.kind not in "iu":
         raise InputError(f"{what} must be offsets: integers of shape (k + 1,), not {a.dtype} of {a.shape}", 0)
     return contiguous(a, np.int64)
@@ -59,10 +59,27 @@ def _of_lines(make: Any, lines: Any, what: str, n: int) -> np.ndarray:
         if offsets[-1] > n:
             raise InputError(f"the offsets of {what} reach to {offsets[-1]}, but there are {n} points", len(offsets) - 1)
         return make(offsets, np.empty(0, dtype=np.int32))
-    v = np.asarray(vertices)
+    v = np.asarray(unmasked(vertices, what))
     if v.ndim != 1 or (v.size and v.dtype.kind not in "iu"):
         raise InputError(f"the vertices of {what} must be integers of one dimension, not {v.dtype} of {v.shape}", 0)
+    wrong = (v < 0) | (v > np.iinfo(np.int32).max)
+    if wrong.any():
+        first = int(np.argmax(wrong))
+        raise InputError(f"vertex {first} of {what} is no point: {v[first]}", first)
     return make(offsets, contiguous(v, np.int32))
+
+
+def parts_along(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """How far each point p is along the segment from a to b: 0 at a, 1 at b."""
+    # Powers of two change no digit: half of what is very large, so that differences do not overflow, and the longer side
+    # of the box of each segment between 1/2 and 1, so that squares do not either, nor vanish.
+    large = np.maximum(np.abs(a), np.abs(b)).max(axis=1, keepdims=True) > 2.0**1000
+    a, b, p = (np.where(large, xy / 2, xy) for xy in (a, b, p))
+    along, off = b - a, p - a
+    _, exponents = np.frexp(np.abs(along).max(axis=1, keepdims=True))
+    along, off = np.ldexp(along, -exponents), np.ldexp(off, -exponents)
+    square = (along * along).sum(axis=1)
+    return np.clip((off * along).sum(axis=1) / np.where(square > 0, square, 1), 0, 1)
 
 
 def constraints_of(crossing: Any, domain: str, holes: Any, regions: Any) -> _cadt.ConstraintOptions:
@@ -79,7 +96,7 @@ def constraints_of(crossing: Any, domain: str, holes: Any, regions: Any) -> _cad
     for name, given, columns in (("holes", holes, 2), ("regions", regions, 3)):
         if adapter_of(given) is not None:
             raise InputError(f"{name} are read on the host: pass a copy there", 0)
-        a = np.asarray(() if given is None else given, dtype=np.float64)
+        a = np.asarray(() if given is None else unmasked(given, name), dtype=np.float64)
         if a.size == 0:
             a = np.empty((0, columns))
         elif domain != "seeds":

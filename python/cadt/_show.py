@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cadt._errors import FileError, InputError
+from cadt._points import as_values
+
 if TYPE_CHECKING:
     from cadt._constrained import ConstrainedDelaunay
     from cadt._mesh import Mesh
@@ -25,16 +28,27 @@ def _need(module: str, extra: str) -> Any:
 
 
 def _heights(mesh: Mesh, z: Any) -> np.ndarray:
+    """One a point; crossings get theirs as in `ConstrainedDelaunay.at_crossings`."""
+    z = mesh._complete(z)
+    values, one = as_values(z if mesh._gpu is None else mesh._gpu._as_host(z), mesh.n_points)
+    if one:
+        raise InputError(f"heights must have shape ({mesh.n_points},), not {(mesh.n_points, *one)}", 0)
+    return values[:, 0]
+
+
+def _in_space(mesh: Mesh, z: Any) -> np.ndarray:
     xyz = np.zeros((mesh.n_points, 3))
     xyz[:, :2] = mesh._host_points
     if z is not None:
-        xyz[:, 2] = np.asarray(z)
+        xyz[:, 2] = _heights(mesh, z)
     return xyz
 
 
 def to_matplotlib(mesh: Mesh) -> Any:
     tri = _need("matplotlib.tri", "matplotlib")
     xy = mesh._host_points
+    if mesh.n_triangles == 0:
+        raise InputError("the mesh has no triangles, without which matplotlib makes no Triangulation", 0)
     result = tri.Triangulation(xy[:, 0], xy[:, 1], mesh._host_mesh.triangles)
     # Its own object in C++ must be made first: with neighbours it takes none (matplotlib 3.11).
     result.get_cpp_triangulation()
@@ -74,37 +88,52 @@ def plot_constrained(mesh: ConstrainedDelaunay, ax: Any, inside: bool, how: dict
 def to_pyvista(mesh: Mesh, z: Any) -> Any:
     pyvista = _need("pyvista", "pyvista")
     faces = np.insert(mesh._host_mesh.triangles, 0, 3, axis=1)
-    return pyvista.PolyData(_heights(mesh, z), faces.ravel())
+    return pyvista.PolyData(_in_space(mesh, z), faces.ravel())
 
 
 def to_meshio(mesh: Mesh, z: Any) -> Any:
     meshio = _need("meshio", "meshio")
-    xyz = _heights(mesh, z)
+    xyz = _in_space(mesh, z)
     return meshio.Mesh(xyz if z is not None else xyz[:, :2], [("triangle", mesh._host_mesh.triangles)])
 
 
 def save(mesh: Mesh, path: Any, z: Any) -> None:
     path = Path(path)
-    if path.suffix not in (".npz",):
-        _need("meshio", "meshio")
-    handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+    suffix = path.suffix.lower()
+    if not suffix:
+        raise FileError(f"{path}: a suffix says the format: .npz, or with meshio .ply .vtk .obj .stl ...", str(path))
+    if suffix != ".npz" and suffix not in (known := _need("meshio", "meshio").extension_to_filetypes):
+        raise FileError(f"{path}: meshes are written to files that end in one of: .npz, {', '.join(known)}", str(path))
+    heights = None if z is None else _heights(mesh, z)
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=suffix, dir=path.parent)
+    except OSError as e:
+        raise _not_written(path, e) from None
     os.close(handle)
     try:
-        if path.suffix == ".npz":
+        if suffix == ".npz":
             host = mesh._host_mesh
             # As the program's, whose readers take it.
             arrays = {"points": mesh._host_points, "simplices": host.triangles, "neighbors": host.neighbors}
             arrays["convex_hull"] = np.stack([host.hull, np.roll(host.hull, -1)], axis=1)
-            if z is not None:
-                arrays["height"] = np.asarray(z)
+            if heights is not None:
+                arrays["height"] = heights
             np.savez(name, **arrays)  # type: ignore[arg-type]
         else:
             # A plane mesh gets a third coordinate: most formats have no other.
-            to_meshio(mesh, np.zeros(mesh.n_points) if z is None else z).write(name)
+            to_meshio(mesh, np.zeros(mesh.n_points) if heights is None else heights).write(name)
         mask = os.umask(0)
         os.umask(mask)
         os.chmod(name, 0o666 & ~mask)
         os.replace(name, path)
+    except OSError as e:
+        os.unlink(name)
+        raise _not_written(path, e) from None
     except BaseException:
         os.unlink(name)
         raise
+
+
+def _not_written(path: Path, error: OSError) -> FileError:
+    """Under the name that was given: that of the temporary file says nothing."""
+    return FileError(f"{path}: cannot be written: {error.strerror or error}", str(path))

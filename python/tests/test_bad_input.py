@@ -162,6 +162,69 @@ def test_masked(masked: Any) -> None:
         cadt.Delaunay(P).interpolate(np.ma.array(P[:, 0], mask=P[:, 0] > 0.5), P)
 
 
+def test_masked_indices() -> None:
+    two = [[0, 1, 2], [1, 3, 2]]
+    masked = np.ma.array(two, mask=[[False] * 3, [True] * 3])
+    for call in (cadt.Delaunay.from_simplices, cadt.verify):
+        with pytest.raises(InputError, match="simplices are masked"):
+            call(SQUARE, masked)
+        with pytest.raises(InputError, match="neighbors are masked"):
+            call(SQUARE, two, np.ma.array([[1, -1, -1], [-1, 0, -1]], mask=True))
+        assert call(SQUARE, np.ma.array(two))
+    with pytest.raises(InputError, match="labels are masked"):
+        cadt.label_segments(np.ma.array([[1, 2]], mask=[[False, True]]))
+    assert len(cadt.label_segments(np.ma.array([[1, 2]])).segments) == 7
+    with pytest.raises(InputError, match="offsets are masked"):
+        cadt.triangulate_batch(P, np.ma.array([0, 20, 50], mask=[False, True, False]))
+
+
+def test_queries_as_x_and_y() -> None:
+    x, y = P[:2].T
+    for xi in ((x, y), (x, y.tolist()), (x.tolist(), y)):
+        assert (MESH.find_simplex(xi) == MESH.find_simplex(P[:2])).all()
+    assert MESH.find_simplex(tuple(map(tuple, P[:3].T))).shape == (3,) and MESH.find_simplex((0.5, 0.5)).shape == ()
+    assert MESH.find_simplex((x[:, None], y)).shape == (2, 2)
+    for xi in (((0.1, 0.2), (5, 5)), ([0.1, 0.2], [5, 5]), ((0.1, 0.2), [5, 5]), ([x, x], [y, y])):
+        for ask in (MESH.find_simplex, MESH.within_hull, MESH.nearest_vertex, lambda xi: MESH.interpolate(Z, xi)):
+            with pytest.raises(InputError, match=r"pass an array of shape \(n, 2\), or two arrays x and y"):
+                ask(xi)
+    with pytest.raises(InputError, match="do not fit together"):
+        MESH.find_simplex((P[:3, 0], y))
+    with pytest.raises(InputError, match="masked"):
+        MESH.find_simplex((np.ma.array(x, mask=[True, False]), y))
+
+
+def test_sizes_of_cells() -> None:
+    for size in (1e-320, 1e-300, (1e-320, 1)):
+        with pytest.raises(LimitError) as caught:
+            MESH.rasterize(Z, resolution=size)  # type: ignore[arg-type]
+        assert len(str(caught.value)) < 150
+    with pytest.raises(LimitError) as caught:
+        MESH.rasterize(Z, shape=(10**5000, 1))
+    assert len(str(caught.value)) < 150
+    half = MESH.rasterize(Z, resolution=(0.5, 0.25))
+    for same in (np.array([0.5, 0.25]), [0.5, 0.25], np.array([0.5, 0.25], np.float32)):
+        assert np.array_equal(MESH.rasterize(Z, resolution=same), half, equal_nan=True)  # type: ignore[arg-type]
+    assert MESH.rasterize(Z, resolution=np.float32(0.5)).shape == (2, 2)
+    for wrong in ((1, 2, 3), [1], np.ones((2, 2)), "a", 1j):
+        with pytest.raises(InputError, match="one number or two"):
+            MESH.rasterize(Z, resolution=wrong)  # type: ignore[arg-type]
+    for points in (P[:1], [[0, 0], [0, 1], [0, 2]]):
+        with pytest.raises(InputError, match="pass bounds="):
+            cadt.Delaunay(points).rasterize(np.zeros(len(points)), shape=(2, 2))
+
+
+def test_more_circles_than_there_are() -> None:
+    assert all(map(np.array_equal, MESH.largest_empty_circles(2**70), MESH.largest_empty_circles(MESH.n_triangles)))
+    assert 0 < len(MESH.largest_empty_circles(2**70)[1]) <= MESH.n_triangles
+
+
+def test_matplotlib_without_triangles() -> None:
+    pytest.importorskip("matplotlib")
+    with pytest.raises(InputError, match="no triangles"):
+        cadt.Delaunay(P[:2]).to_matplotlib()
+
+
 FLAT = {
     "none": np.empty((0, 2)),
     "one": P[:1],

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import pickle
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import cadt
 import numpy as np
@@ -192,6 +194,52 @@ def test_progress_and_backends() -> None:
             assert other.hash == host.hash and other.device != "host"
     with pytest.raises(cadt.BackendUnavailable):
         cadt.ConstrainedDelaunay(xy, segments, backend="opencl", device="no such device")
+
+
+@pytest.mark.parametrize("scale", [5e-324, 1e-310, 1e-170, 1.0, 1e170, 1e300, 8e307])
+@pytest.mark.parametrize("crossing", ["exact", "grid"])
+def test_values_at_crossings_of_any_size(scale: float, crossing: str) -> None:
+    """Neither squares nor differences overflow or vanish, also beside points of another size."""
+    xy = np.array([[-1.0, -1], [1, 1], [-1, 1], [1, -1]]) * scale
+    if (crossing, scale) == ("grid", 8e307):
+        pytest.skip("the next place of such a grid is no double")
+    how = ("grid", scale) if crossing == "grid" else "exact"
+    for points in (xy, xy - xy[0], np.concatenate([xy, [[0, 2 * scale]]])):
+        mesh = cadt.ConstrainedDelaunay(points, [[0, 1], [2, 3]], crossing=how)
+        assert mesh.at_crossings([0, 10, 7, 7, 9][: len(points)])[-1] == 5
+    if crossing == "exact":
+        mesh = cadt.ConstrainedDelaunay(np.concatenate([xy, [[1, 5]]]), [[0, 1], [2, 3]], crossing=how)
+        assert mesh.at_crossings([0, 10, 7, 7, 9])[-1] == 5
+
+
+@pytest.mark.parametrize("lines", ["polylines", "rings"])
+def test_vertices_that_are_no_points(lines: str) -> None:
+    """2**32 + 2 is not 2."""
+    for wrong in (2**32 + 2, 2**31, -1, -(2**32)):
+        with pytest.raises(cadt.InputError, match=f"vertex 1 of {lines} is no point: {wrong}") as caught:
+            cadt.ConstrainedDelaunay(SQUARES, **{lines: ([0, 2], [0, wrong])})
+        assert caught.value.index == 1
+
+
+def test_masked_segments() -> None:
+    pairs, line = [[0, 1], [1, 2]], [0, 2]
+    given: list[tuple[str, list, Callable[[Any], Any]]] = [
+        ("segments", pairs, lambda a: a),
+        ("polylines", line, lambda a: a),
+        ("rings", line, lambda a: a),
+        ("rings", line, lambda a: ([0, 2], a)),
+    ]
+    for name, numbers, of in given:
+        one = np.ma.array(numbers, mask=np.arange(np.size(numbers)).reshape(np.shape(numbers)) == 1)
+        with pytest.raises(cadt.InputError, match=f"{name} are masked"):
+            cadt.ConstrainedDelaunay(SQUARES, **{name: of(one)})
+        none = cadt.ConstrainedDelaunay(SQUARES, **{name: of(np.ma.array(numbers))})
+        assert np.array_equal(none.segments, cadt.ConstrainedDelaunay(SQUARES, **{name: of(numbers)}).segments)
+    with pytest.raises(cadt.InputError, match="segments are masked"):
+        cadt.find_crossings(SQUARES, np.ma.array(pairs, mask=True))
+    for name in ("holes", "regions"):
+        with pytest.raises(cadt.InputError, match=f"{name} are masked"):
+            cadt.ConstrainedDelaunay(SQUARES, domain="seeds", **{name: np.ma.array([[1.5, 1.5, 1]], mask=True)})
 
 
 def test_plot(tmp_path: Path) -> None:

@@ -48,6 +48,20 @@ def test_equals_host(queue, dtype):
     np.testing.assert_allclose(image.get(), host.rasterize(both, bounds=(0, 0, 1, 1), shape=(9, 13)), rtol=1e-12)
 
 
+def test_queries_of_the_host_are_read_as_on_the_host(queue):
+    points = np.random.default_rng(1).random((1_000, 2))
+    mesh, host = cadt.Delaunay(cl_array.to_device(queue, points)), cadt.Delaunay(points, backend="host")
+    x, y = np.random.default_rng(2).random((2, 5))
+    np.testing.assert_array_equal(mesh.find_simplex((x, y.tolist())).get(), host.find_simplex((x, y)))
+    np.testing.assert_array_equal(mesh.find_simplex((x[:, None], y)).get(), host.find_simplex((x[:, None], y)))
+    with pytest.raises(cadt.InputError, match="two arrays x and y"):
+        mesh.find_simplex(((0.1, 0.2), (5, 5)))
+    with pytest.raises(cadt.InputError, match="queries are masked"):
+        mesh.find_simplex(np.ma.array([x, y], mask=True).T)
+    with pytest.raises(cadt.InputError, match="values are masked"):
+        mesh.interpolate(np.ma.array(points[:, 0], mask=points[:, 0] > 0.5), [[0.5, 0.5]])
+
+
 @pytest.mark.parametrize("n", [3, 100, 1_001])
 def test_bounds_are_taken_on_the_device(queue, n, monkeypatch):
     points = np.random.default_rng(8).random((n, 2)) * [3, 2] - 1

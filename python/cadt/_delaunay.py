@@ -87,6 +87,7 @@ class Delaunay(Mesh):
     ) -> None:
         self._mesh: _cadt.Triangulation | None = None
         self._gpu: _gpu.Mesh | None = None
+        self._adopted = False
         self._cache: dict[str, Any] = {}
         arguments = (backend, device, order, threads, max_memory, statistics)
         if (on_gpu := array_on_device(points)) is not None:
@@ -139,12 +140,19 @@ class Delaunay(Mesh):
             triangles[turn] = triangles[turn][:, [0, 2, 1]]
             if of is not None and of.shape == triangles.shape:
                 of[turn] = of[turn][:, [0, 2, 1]]
-        return cls._of_mesh(p, _cadt.adopt(p, triangles, of, verify))
+        return cls._of_mesh(p, _cadt.adopt(p, triangles, of, verify), adopted=True)
 
     @classmethod
-    def _of_mesh(cls, points: np.ndarray, mesh: _cadt.Triangulation, options: _cadt.Options | None = None) -> Delaunay:
+    def _of_mesh(
+        cls,
+        points: np.ndarray,
+        mesh: _cadt.Triangulation,
+        options: _cadt.Options | None = None,
+        *,
+        adopted: bool = False,
+    ) -> Delaunay:
         self = cls.__new__(cls)
-        self._points, self._mesh, self._gpu, self._cache = points, mesh, None, {}
+        self._points, self._mesh, self._gpu, self._cache, self._adopted = points, mesh, None, {}, adopted
         self._options = options or _devices.make_options("host", None, "canonical", None, None, "counters")
         return self
 
@@ -154,7 +162,13 @@ class Delaunay(Mesh):
         return self._host("hash", lambda m: m.hash())
 
     def verify(self) -> VerifyReport:
-        """Checks the whole mesh exactly, with predicates that share no code with those that made it. O(n)."""
+        """Checks the whole mesh exactly, with predicates that share no code with those that made it. O(n).
+
+        Another program's (`from_simplices`) may break ties and choose among equal points as it likes, as for `cadt.verify`.
+        """
+        if self._adopted:
+            mesh = self._host_mesh
+            return report_of(_cadt.verify(self._host_points, mesh.triangles, mesh.neighbors))
         return report_of(self._host_mesh.verify(self._host_points))
 
     def __repr__(self) -> str:
@@ -162,8 +176,10 @@ class Delaunay(Mesh):
 
     def __reduce__(self) -> tuple:
         mesh = self._host_mesh
-        return _restore, (type(self), self._host_points, mesh.triangles, mesh.neighbors)
+        return _restore, (type(self), self._host_points, mesh.triangles, mesh.neighbors, self._adopted)
 
 
-def _restore(cls: type[Delaunay], points: np.ndarray, simplices: np.ndarray, neighbors: np.ndarray) -> Delaunay:
-    return cls._of_mesh(points, _cadt.adopt(points, simplices, neighbors, False))
+def _restore(
+    cls: type[Delaunay], points: np.ndarray, simplices: np.ndarray, neighbors: np.ndarray, adopted: bool = False
+) -> Delaunay:
+    return cls._of_mesh(points, _cadt.adopt(points, simplices, neighbors, False), adopted=adopted)

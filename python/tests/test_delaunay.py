@@ -309,6 +309,28 @@ def test_heights_of_crossings_are_written(tmp_path: Path) -> None:
     assert np.load(tmp_path / "mesh.npz")["height"].tolist() == [0, 10, 7, 7, 5]
 
 
+@pytest.mark.parametrize(
+    ("points", "simplices"),
+    [
+        ([[0, 0], [1, 0], [1, 1], [0, 1]], [[0, 1, 2], [0, 2, 3]]),  # the other diagonal of a square
+        ([[0, 0], [4, 0], [0, 4], [0, 0]], [[3, 1, 2]]),  # the second of two equal points
+        ([[0, 0], [1, 1]], np.empty((0, 3), int)),
+    ],
+)
+def test_meshes_of_others_are_verified_as_such(points: list, simplices: list) -> None:
+    adopted = cadt.Delaunay.from_simplices(points, simplices)
+    assert adopted.simplices.tolist() == np.asarray(simplices).tolist()
+    for mesh in (adopted, copy.copy(adopted), pickle.loads(pickle.dumps(adopted))):
+        assert mesh.verify(), mesh.verify()
+    assert cadt.verify(points, simplices)
+
+
+def test_meshes_of_others_that_are_wrong() -> None:
+    wrong = cadt.Delaunay.from_simplices([[0, 0], [4, 0], [4, 1], [0, 3]], [[0, 1, 3], [1, 2, 3]], verify=False)
+    for mesh in (wrong, pickle.loads(pickle.dumps(wrong))):
+        assert not mesh.verify() and "delaunay failed" in str(mesh.verify())
+
+
 def test_matplotlib(mesh: cadt.Delaunay) -> None:
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("agg")

@@ -172,7 +172,6 @@ def write_features(
     file appears when it is complete."""
     ogr = _pyogrio(f"writing {path}")
     suffix = path.rsplit(".", 1)[-1].lower()
-    options: dict[str, Any] = {} if suffix == "geojson" else {"layer": layer}
     try:
         with complete_file(path) as name:
             ogr.raw.write(
@@ -183,7 +182,7 @@ def write_features(
                 geometry_type=kind,
                 driver=DRIVERS[suffix],
                 crs=None if crs is None else crs.to_wkt(),
-                **options,
+                layer=layer,  # in GeoJSON, too, whose default is the name of the temporary file
             )
     except (ogr.errors.DataSourceError, ogr.errors.FeatureError) as error:
         raise FileError(path, f"cannot be written: {why(error)}") from error

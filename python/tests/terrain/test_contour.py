@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 
 import cadt
 import numpy as np
@@ -119,6 +120,15 @@ def test_chains():
             expected.append(part[at:] + part[:at])
         expected.sort(key=lambda line: (key[line[0]], line[0]))
         assert got == expected
+
+
+def test_equal_runs_write_equal_files(las, tmp_path, cadt_terrain):
+    """The name of the temporary file is not in them: as in a GeoPackage, the layer is named contour."""
+    las("c.laz", hills(500))
+    for name in ("a.geojson", "b.geojson"):
+        cadt_terrain("contour", "c.laz", name, "--interval", "5")
+    text = (tmp_path / "a.geojson").read_text()
+    assert text == (tmp_path / "b.geojson").read_text() and json.loads(text)["name"] == "contour"
 
 
 @pytest.mark.parametrize("suffix", ["gpkg", "fgb", "geojson"])

@@ -104,8 +104,10 @@ def triangulate(
     Parameters
     ----------
     files : sequence of paths
-        .las, .laz (with laspy and lazrs), .npy, .csv, .xyz, .txt: x and y are the first two columns. The input indices are
-        those of the points of all files one after another. All workers must see them under these names.
+        .las, .laz (with laspy and lazrs), .npy of shape (n, 2) or (n, 3), .csv, .xyz, .xy, .txt: x and y are the first two
+        columns, or in tables of text those that the header names (x, y; lon, lat; easting, northing), as for ``cadt tiles``.
+        The input indices are those of the points of all files one after another. All workers must see them under these
+        names.
     client : dask.distributed.Client, optional
         Default: the current one; without one, threads of this process do the work, once each.
     consumer : callable, optional

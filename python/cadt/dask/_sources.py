@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Points of files by range: LAS and LAZ through laspy, .npy without loading, tables of text as a whole."""
+"""Points of files by range: LAS and LAZ through laspy, .npy without loading, tables of text as a whole, and as the program cadt reads them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from cadt._errors import FileError
+from cadt._errors import FileError, InputError
+from cadt._points import to_float
+from cadt._tables import TableError, plain_layout, read_table
 
 LAS = (".las", ".laz")
 TEXT = (".csv", ".xyz", ".xy", ".txt")
@@ -55,6 +57,11 @@ def read(file: File, first: int, count: int) -> np.ndarray:
             "been changed meanwhile",
             file.path,
         )
+    try:
+        rows = to_float(rows, "points")
+    except InputError as error:
+        where = f"row {first + error.index} (counted from 0)"
+        raise FileError(f"{file.path}: {where} has an integer beyond 2**53, which is no double", file.path) from error
     return np.add(rows, 0.0, dtype=np.float64, order="C")
 
 
@@ -89,33 +96,22 @@ def _read_las(path: str, first: int, count: int) -> np.ndarray:
 
 
 def _table(path: str) -> np.ndarray:
-    """Rows of numbers, of which the first two are x and y."""
+    """x and y of each row, and perhaps more columns."""
     try:
-        if path.lower().endswith(".npy"):
-            table = np.load(path, mmap_mode="r", allow_pickle=False)
-        else:
-            table = _read_text(path)
+        if not path.lower().endswith(".npy"):
+            return read_table(path, plain_layout)
+        table = np.load(path, mmap_mode="r", allow_pickle=False)
+    except TableError as error:
+        raise FileError(f"{path}: {error}", path) from error
     except (OSError, ValueError, EOFError) as error:
         raise FileError(f"{path}: cannot be read: {error}", path) from error
-    if table.ndim != 2 or table.shape[1] < 2 or table.dtype.kind not in "iuf" or table.dtype.itemsize > 8:
-        raise FileError(f"{path}: is no table of numbers with two columns: {table.dtype} of {table.shape}", path)
+    if table.ndim != 2 or table.shape[1] not in (2, 3) or table.dtype.kind not in "iuf" or table.dtype.itemsize > 8:
+        raise FileError(
+            f"{path}: must hold numbers of shape (n, 2) or (n, 3), not {table.dtype} of {table.shape}", path
+        )
+    if len(table) == 0:
+        raise FileError(f"{path}: has no points", path)
     return table
-
-
-def _read_text(path: str) -> np.ndarray:
-    """Numbers separated by commas, semicolons or spaces, perhaps below a line of names."""
-    with open(path, encoding="utf-8") as file:
-        lines = (line for line in file if line.strip() and not line.startswith("#"))
-        first = next(lines, "")
-        if not first:
-            return np.empty((0, 2))
-        mark = "," if "," in first else ";" if ";" in first else None
-        try:
-            rows = np.array([[float(word) for word in first.split(mark)]])
-        except ValueError:  # names
-            rows = np.empty((0, len(first.split(mark))))
-        rest = np.loadtxt(lines, delimiter=mark, ndmin=2)
-        return np.concatenate([rows, rest.reshape(-1, rows.shape[1])])
 
 
 @dataclass(frozen=True)

@@ -65,7 +65,12 @@ def area(part: cadt.tiles.Part) -> float:
 @pytest.mark.parametrize("name", families())
 def test_families(client: dask.distributed.Client, tmp_path: pathlib.Path, name: str) -> None:
     xy = families()[name]
-    mesh = cadt.dask.triangulate([save(tmp_path / "xy.npy", xy)], client, tile_points=120)
+    file = save(tmp_path / "xy.npy", xy)
+    if len(xy) == 0:
+        with pytest.raises(cadt.FileError, match="has no points"):
+            cadt.dask.triangulate([file], client)
+        return
+    mesh = cadt.dask.triangulate([file], client, tile_points=120)
     require_mesh(mesh, xy)
     assert mesh.tree == cadt.tiles.Tree.of(xy, 120)
 
@@ -90,8 +95,8 @@ def test_files_of_all_formats(client: dask.distributed.Client, tmp_path: pathlib
     (tmp_path / "d.csv").write_text(f"# stations\nx,y,z\n{rows}\n")
     xyz = rng.random((20, 2))
     (tmp_path / "e.xyz").write_text("".join(f"{float(x)!r} {float(y)!r} 1\n" for x, y in xyz))
-    (tmp_path / "f.txt").write_text("")
-    files = [tmp_path / name for name in ("a.las", "b.laz", "c.npy", "d.csv", "e.xyz", "f.txt")]
+    write_las(tmp_path / "f.las", np.empty((0, 2)))
+    files = [tmp_path / name for name in ("a.las", "b.laz", "c.npy", "d.csv", "e.xyz", "f.las")]
     mesh = cadt.dask.triangulate(files, client, tile_points=100)
     xy = np.concatenate([las, laz, npy, csv, xyz])
     require_mesh(mesh, xy)
@@ -258,7 +263,8 @@ def test_not_finite(
         ("a.laz", b"no laz file at all", "no LAS or LAZ"),
         ("a.npy", b"no npy file at all", "cannot be read"),
         ("a.csv", b"x,y\n1,2\n3,four\n", "cannot be read"),
-        ("a.csv", b"x\n1\n", "two columns"),
+        ("a.csv", b"x\n1\n", "column 2 is expected"),
+        ("a.txt", b"", "is empty"),
         ("missing.csv", None, "cannot be read"),
     ],
 )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import pathlib
 import subprocess
@@ -224,17 +225,21 @@ def test_tables(tmp_path):
     with pytest.raises(terrain.UsageError, match="has no column width; it has: id, east"):
         terrain.read_cloud([str(tmp_path / "a.csv")], columns="east,north,width")
     (tmp_path / "b.xyz").write_text("1 2 3\n1 nan 3\n")
-    with pytest.raises(terrain.FileError, match=r"row 1 .* no finite number in column 2"):
+    with pytest.raises(terrain.FileError, match=r"line 2: column 2: 'nan' is not a finite number"):
         terrain.read_cloud([str(tmp_path / "b.xyz")])
-    with pytest.raises(terrain.FileError, match=r"row 0 .* no finite number in column 4"):
-        (tmp_path / "c.csv").write_text("id,x,y,z\n1,2,3,inf\n")
+    with pytest.raises(terrain.FileError, match=r"line 4: column 4: 'inf' is not a finite number"):
+        (tmp_path / "c.csv").write_text("# made by hand\nid,x,y,z\n\n1,2,3,inf\n")
         terrain.read_cloud([str(tmp_path / "c.csv")])
     (tmp_path / "b.xyz").write_text("1 2 3\n1 2\n")
     with pytest.raises(terrain.FileError, match=r"b\.xyz: cannot be read"):
         terrain.read_cloud([str(tmp_path / "b.xyz")])
-    (tmp_path / "b.xyz").write_text("\n")
-    with pytest.raises(terrain.FileError, match="is empty"):
-        terrain.read_cloud([str(tmp_path / "b.xyz")])
+    for text, says in (("", "is empty"), ("\n", "has no points"), ("# none\n", "has no points")):
+        (tmp_path / "b.xyz").write_text(text)
+        with pytest.raises(terrain.FileError, match=says):
+            terrain.read_cloud([str(tmp_path / "b.xyz")])
+    np.save(tmp_path / "n.npy", [[0, 0, 1], [1, np.nan, 1]])
+    with pytest.raises(terrain.FileError, match=r"row 1 .* no finite number in column 2"):
+        terrain.read_cloud([str(tmp_path / "n.npy")])
 
 
 THREE = [[0, 0, 1], [1, 0, 2], [0, 1, 3]]
@@ -251,6 +256,11 @@ THREE = [[0, 0, 1], [1, 0, 2], [0, 1, 3]]
         ("X,Y,Z,name\n0,0,1,a\n1,0,2,b\n0,1,3,c\n", "x,y,z"),
         ('  # made\n"east";"north";"elev"\n"0";"0";"1"\n"1";"0";"2"\n"0";"1";"3"\n', ""),
         ("a,b,c\n0,0,1\n1,0,2\n0,1,3\n", ""),
+        ("x,street,y,z\n0,#1 DRIVE,0,1\n1,2 //A,0,2\n0,>3,1,3\n", ""),
+        ("0 0 1 # first\n> segment\n// note\n1 0 2\n0 1 3\n", ""),
+        ("name\tx\ty\tz\na b\t0\t0\t1\n\t1\t0\t2\nc\t0\t1\t3\n", ""),
+        ('a;b;c;d\n0;0;1;"x;\n7;7"\n1;0;2;""\n0;1;3;\n', ""),
+        ("0,0,1,\n1,0,2,\n0,1,3,\n", ""),
     ],
 )
 def test_headers_are_read_as_the_program_reads_them(tmp_path, text, columns):
@@ -263,6 +273,34 @@ def test_headers_are_read_as_the_program_reads_them(tmp_path, text, columns):
 def test_a_first_row_that_is_bad_is_no_header(tmp_path, row):
     (tmp_path / "t.csv").write_text(f"{row}\n1,0,2\n0,1,3\n1,1,4\n")
     with pytest.raises(terrain.FileError, match="cannot be read"):
+        terrain.read_cloud([str(tmp_path / "t.csv")])
+
+
+def test_fields_that_begin_as_comments(data):
+    """Streets such as "#1 MEMORIAL DRIVE"."""
+    path = data("real/orig/walmart_stores.csv")
+    cloud = terrain.read_cloud([path], columns="LON,LAT,YEAR")
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(cloud) == len(rows) and any(row["STREETADDR"].startswith("#") for row in rows)
+    assert np.array_equal(cloud.xy, [[float(row["LON"]), float(row["LAT"])] for row in rows])
+    assert np.array_equal(cloud.z, [float(row["YEAR"]) for row in rows])
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("1,2", "line 99999: the line has 2 fields, column 3 is expected"),
+        ("1,2,three", "line 99999: column 3: 'three' is not a decimal number"),
+        ("1,2,1_0", "line 99999: column 3: '1_0' is not a decimal number"),
+        ("1,,3", "line 99999: column 2 is empty"),
+        ("1,2,1e999", "line 99999: column 3: '1e999' is too large"),
+        ('1,2,3,"', "line 99999: a quoted field is not closed"),
+    ],
+)
+def test_errors_name_the_line_of_the_file(tmp_path, line, says):
+    (tmp_path / "t.csv").write_text("# a\n\nx,y,z\n" + "1,2,3\n" * 99_995 + line + "\n1,2,3\n")
+    with pytest.raises(terrain.FileError, match=says):
         terrain.read_cloud([str(tmp_path / "t.csv")])
 
 

@@ -289,6 +289,12 @@ class TilesFailureTest(CliTest):
             self.fails(3, "tiles", name, "-f", "f64", says=name)
             self.fails(3, "tiles", "points.f64", "-o", name, says=name)
 
+    def test_devices_that_are_not_there(self):
+        """Two threads open devices at the same time, which is the first question of both to the drivers."""
+        self.scattered("points.f64", 300)
+        for _ in range(8):
+            self.fails(5, "tiles", "points.f64", "--backend", "opencl", "--devices", "0,7", says="7")
+
     def test_manifests_that_claim_something_else(self):
         self.scattered("points.f64", 300)
         self.cadt("tiles", "points.f64", "--tile-points", 30, "-o", "m.cadt", "--backend", "host")

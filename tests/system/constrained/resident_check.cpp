@@ -2,6 +2,7 @@
 #include "tests/system/constrained/resident_check.hpp"
 
 #include <cadt/triangulator.hpp>
+#include <cadt/verify.hpp>
 
 #include "tests/system/resident/device_memory.hpp"
 
@@ -153,6 +154,13 @@ void expect_same_in_device_memory(const Options& given, const Points& xy, const 
   if (!refused.empty()) return;
   expect_handles(mesh, *device.memory, expected, constraints, doubles ? xy : Points(floats.begin(), floats.end()));
   expect_same(mesh.download_constrained(), expected);
+  const bool as_given = mesh.all_points() == nullptr;
+  VerifyReport report;
+  const std::string unverified = refusal([&] { report = device.triangulator.verify(points, mesh); });
+  EXPECT_EQ(unverified.empty(), as_given) << unverified;
+  if (as_given) {
+    EXPECT_TRUE(report.ok) << report.summary();
+  }
 }
 
 }  // namespace cadt::test

@@ -10,9 +10,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
 #include <memory>
 #include <string>
+#include <string_view>
 
 namespace {
 
@@ -105,6 +107,13 @@ int parse_and_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   int code = exit_done;
+  char help_option[] = "--help";
+  char* help[] = {argc > 0 ? argv[0] : nullptr, help_option, nullptr, nullptr};
+  if (argc > 1 && std::string_view(argv[1]) == "help") {  // cadt help COMMAND: cadt COMMAND --help
+    if (argc > 2) help[1] = argv[2], help[2] = help_option;
+    argc = std::min(argc, 3);
+    argv = help;
+  }
 #if defined(SIGXFSZ)
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows over its limit is an error of the write, with the file's name
 #endif

@@ -100,8 +100,7 @@ void require_no_input(const std::string& path, const std::vector<std::string>& i
       throw Failure(exit_usage,
                     fmt::format("{}: this is the input, which would be lost; give the output another name", path));
     }
-    const std::string nodes = io::node_file_of(input);
-    if (same_output(path, nodes)) {
+    if (path.ends_with(".node") && same_output(path, io::node_file_of(input))) {
       throw Failure(exit_usage, fmt::format("{}: this has the points of {}, which would be lost; give the output "
                                             "another name",
                                             path, input));

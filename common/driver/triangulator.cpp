@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -273,6 +274,7 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
 }
 
 std::size_t Triangulator::memory_needed(std::size_t points) const noexcept {
+  if (points > max_points()) return std::numeric_limits<std::size_t>::max();
   return most_bytes(state_->memory, points, may_use_stars(traits_of(*state_->device), state_->options));
 }
 

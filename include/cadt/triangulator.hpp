@@ -207,7 +207,8 @@ class CADT_API Triangulator {
   /// `Options::max_memory` 124 are enough, on the host 97 for a mesh on the host; with local stars 71, or 83 for points
   /// on the host (below 85 and 101 a call takes about 5 % more time, 45 % in the canonical order), unless more than
   /// about 4 % of the vertices are residual. Over-full cells (more than 16 points in 2^-16 of the bounding box's width)
-  /// need up to 32 bytes more for each of their points while they are sorted.
+  /// need up to 32 bytes more for each of their points while they are sorted. Of more than max_points() points: the
+  /// largest number.
   [[nodiscard]] std::size_t memory_needed(std::size_t points) const noexcept;
   /// Memory for results of queries, from where the triangulator's own comes (`Options::allocator`, else the library):
   /// its handle, as for DevicePoints; null for 0 bytes. It is used in the order of the triangulator's stream or queue,

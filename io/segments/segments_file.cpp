@@ -2,7 +2,9 @@
 // Choice of the reader and writer of segments.
 #include "io/segments/readers.hpp"
 
+#include <filesystem>
 #include <numeric>
+#include <system_error>
 
 namespace cadt::io {
 namespace detail {
@@ -50,7 +52,8 @@ std::vector<std::string> segment_read_formats() {
 
 std::string node_file_of(const std::string& path, const std::string& asked) {
   try {
-    if (path.empty() || path == "-") return {};
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(path, code)) return {};  // a pipe can be read once
     const std::string format = asked.empty() ? detail::suffix_of(path) : asked;
     if (format == "edge") return detail::sibling(path, ".node");
     if (format != "poly") return {};

@@ -51,8 +51,8 @@ struct SegmentsFile {
 /// truncated files, wrong counts, and files without points
 [[nodiscard]] SegmentsFile read_segments(const std::string& path, const std::string& format = {});
 
-/// The .node file that read_segments() would read the points from; empty if they are in the file itself, or if it
-/// cannot be read.
+/// The .node file that read_segments() would read the points from; empty if they are in the file itself, or if it is no
+/// regular file that can be read.
 [[nodiscard]] std::string node_file_of(const std::string& path, const std::string& format = {});
 
 /// Names of the formats that segments can be read from.

@@ -46,6 +46,8 @@ void test_triangulator(void) {
   CHECK_OK(cadt_triangulator_open(&options, &triangulator));
   CHECK_OK(cadt_triangulator_device(triangulator, &info));
   CHECK(info.backend == CADT_BACKEND_HOST && info.fp64 == 1 && info.gpu == 0);
+  CHECK_OK(cadt_triangulator_memory_needed(triangulator, SIZE_MAX, &bytes));
+  CHECK(bytes == SIZE_MAX);
   CHECK_OK(cadt_triangulator_memory_needed(triangulator, n, &bytes));
   CHECK(bytes > 24 * n);
   CHECK_OK(cadt_triangulator_reserve(triangulator, n));

@@ -198,8 +198,9 @@ void test_queries(void) {
   CHECK_OK(cadt_triangulation_size(mesh, &size, &arrays.triangle_count));
   CHECK_OK(cadt_triangulation_triangles(mesh, &triangles));
   CHECK_OK(cadt_triangulation_neighbors(mesh, &neighbors));
+  CHECK_NULL(cadt_queries_open_arrays(&points, &arrays, &options, &queries), "mesh->triangles");
   arrays.triangles = triangles;
-  CHECK_NULL(cadt_queries_open_arrays(&points, &arrays, &options, &queries), "mesh");
+  CHECK_NULL(cadt_queries_open_arrays(&points, &arrays, &options, &queries), "mesh->neighbors");
   arrays.neighbors = neighbors;
   CHECK_OK(cadt_queries_open_arrays(&points, &arrays, &options, &queries));
   test_answers(queries);

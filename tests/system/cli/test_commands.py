@@ -218,6 +218,9 @@ class Help(CliTest):
             self.assertRegex(text, rf"(?m)^ +{code}  [\w-]")
         self.assertGreaterEqual(text.count("\n\n  cadt ") + text.count("Examples:\n  cadt "), 3)
         self.assertEqual(self.cadt("-h").out, text)
+        self.assertEqual(self.cadt("help").out, text)
+        self.assertEqual(self.cadt("help", "raster").out, self.cadt("raster", "--help").out)
+        self.fails(2, "help", "me", says="there is no command 'me'")
 
     def test_each_command_has_an_example(self):
         for command in self.COMMANDS:

@@ -13,7 +13,7 @@ constexpr double margin_share = 0.015;
 /// Quarters of the largest doubles have a finite difference; small coordinates would lose bits by that.
 double factor_before(const Extent& box) {
   double largest = 0;
-  for (int k = 0; k < 2; ++k) largest = std::max({largest, std::fabs(box.low[k]), std::fabs(box.high[k])});
+  for (std::size_t k = 0; k < 2; ++k) largest = std::max({largest, std::fabs(box.low[k]), std::fabs(box.high[k])});
   return largest > 0.25 * std::numeric_limits<double>::max() ? 0.25 : 1.0;
 }
 
@@ -25,7 +25,7 @@ double ratio(double a, double b) {
   return std::ldexp(ma / mb, std::clamp(ea - eb, -1000, 1000));
 }
 
-double span_of(const Extent& box, int k, double before) { return box.high[k] * before - box.low[k] * before; }
+double span_of(const Extent& box, std::size_t k, double before) { return box.high[k] * before - box.low[k] * before; }
 
 double aspect_of(const Extent& box) {
   const double before = factor_before(box);

@@ -4,8 +4,11 @@
 #include <cadt/errors.hpp>
 
 namespace cadt::viewer {
+namespace {
 
 using Clock = std::chrono::steady_clock;
+
+}  // namespace
 
 void Work::Desk::check() const {
   if (stop_.stop_requested()) throw Cancelled();

@@ -252,12 +252,12 @@ VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriang
                                   const VerifyOptions& options) {
   const DeviceTriangulation::Data& data = mesh.data();
   if (data.state != state_) throw InputError("the mesh is one of another triangulator", 0);
-  if (points.size != data.points)
-    throw InputError("the mesh is one of " + std::to_string(data.points) + " points",
-                     std::min(points.size, data.points));
   if (data.moved || data.added != 0)
     throw InputError(
         "crossings of segments have moved or added points: verify download_constrained() with the segments", 0);
+  if (points.size != data.points)
+    throw InputError("the mesh is one of " + std::to_string(data.points) + " points",
+                     std::min(points.size, data.points));
   Device& device = *state_->device;
   begin_budget(*state_, data.points);
   Statistics statistics;

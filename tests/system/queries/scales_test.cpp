@@ -116,10 +116,12 @@ TEST_P(Scales, CellsOfAnySize) {
   std::ranges::sort(wanted);
   ASSERT_EQ(found.size(), wanted.size());
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-14);
-  const auto all = mesh_of({-1.7e308, 0, 1.7e308, 0, 0, 1.7e308, 0, 0})
-                       .queries.voronoi_polygons({-1.7e308, -1.7e308, 1.7e308, 1.7e308});
-  EXPECT_GE(all.begin.back(), 16U);
-  EXPECT_TRUE(std::ranges::all_of(all.xy, [](double v) { return std::abs(v) <= 1.7e308; }));
+  for (const double least : {0.0, 1e-300}) {
+    const auto all = mesh_of({-1.7e308, 0, 1.7e308, 0, 0, 1.7e308, 0, least})
+                         .queries.voronoi_polygons({-1.7e308, -1.7e308, 1.7e308, 1.7e308});
+    for (std::size_t v = 0; v < 4; ++v) EXPECT_GE(all.begin[v + 1] - all.begin[v], 4U) << v << " " << least;
+    EXPECT_TRUE(std::ranges::all_of(all.xy, [](double v) { return std::abs(v) <= 1.7e308; }));
+  }
 }
 
 TEST_P(Scales, AnEdgeAsLongAsTheBoundIsKept) {
@@ -150,7 +152,8 @@ TEST_P(Scales, CentresOnTheHullAreInIt) {
   for (int i = 1; i < 20; ++i)
     for (int j = 1; j < 20; ++j) {
       const double a = i / 10.0, b = j / 10.0;
-      for (const Points& xy : {Points{0, 0, a, 0, 0, b}, Points{7, 9, 7 - a, 9, 7, 9 - b}}) {
+      for (const Points& xy : {Points{0, 0, a, 0, 0, b}, Points{7, 9, 7 - a, 9, 7, 9 - b},
+                               Points{0, 0, 0.6 * a, 0.8 * a, -0.8 * b, 0.6 * b}}) {
         const auto circles = mesh_of(xy).queries.largest_empty_circles(3);
         ASSERT_EQ(circles.size(), 1U) << a << " " << b;
         EXPECT_NEAR(circles[0].radius, std::hypot(a, b) / 2, 1e-12);

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the program and looks at meshes. Standard library only."""
 import contextlib
+import hashlib
 import os
 import pathlib
 import pty
@@ -103,6 +104,14 @@ class CliTest(unittest.TestCase):
         with open(self.path(name), "wb") as file:
             file.write(data)
         return name
+
+
+def digest(directory):
+    """sha256 of all that is the mesh: names and contents, without run.json."""
+    total = hashlib.sha256()
+    for path in sorted(p for p in directory.rglob("*") if p.is_file() and p.name != "run.json"):
+        total.update(str(path.relative_to(directory)).encode() + b"\0" + hashlib.sha256(path.read_bytes()).digest())
+    return total.hexdigest()
 
 
 class Terminal:

@@ -6,12 +6,38 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace cadt::tiles {
 
 /// Threads for `blocks` blocks; 0: one for each core.
 [[nodiscard]] unsigned threads_for(std::uint64_t blocks, unsigned threads) noexcept;
+
+/// A T for each thread, which makes its own when it first asks for it. So what two threads write is not in one cache
+/// line, as it would be if one thread made all.
+template <class T>
+class PerThread {
+ public:
+  template <class Make>
+  PerThread(unsigned threads, Make make) : make_(std::move(make)), made_(threads) {}
+  [[nodiscard]] T& of(unsigned thread) {
+    if (!made_[thread]) made_[thread] = std::make_unique<T>(make_());
+    return *made_[thread];
+  }
+  /// Calls body(T&) for those that were made, in the order of the threads.
+  template <class Body>
+  void each(const Body& body) {
+    for (const auto& made : made_)
+      if (made) body(*made);
+  }
+
+ private:
+  std::function<T()> make_;
+  std::vector<std::unique_ptr<T>> made_;
+};
 
 /// What is done with a block, on the thread that has read it.
 struct BlockWork {

@@ -242,21 +242,22 @@ Plan make_plan(const PointSource& source, const RunOptions& options) {
   const std::uint64_t blocks = (source.size() + block_points - 1) / block_points;
   const unsigned threads = threads_for(blocks, threads_of(options));
   for (bool first_pass = true; first_pass || !builder.done(); first_pass = false) {
-    std::vector<TreePass> passes(threads, builder.new_pass());
+    PerThread<TreePass> passes(threads, [&] { return builder.new_pass(); });
     std::vector<Hash128> hashes(threads);
     std::atomic<std::uint64_t> done{0};
     BlockWork work;
     work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
       if (first_pass) add_block_hash(hashes[thread], first, xy);
-      if (!builder.done()) builder.look_at(passes[thread], first, xy);
+      if (!builder.done()) builder.look_at(passes.of(thread), first, xy);
       done += xy.size() / 2;
       if (thread == 0) tell(options, "sample", done, source.size());
     };
     each_block(source, 0, source.size(), threads, options.stop, work);
     for (const Hash128& hash : hashes) plan.content.high += hash.high, plan.content.low += hash.low;
     if (builder.done()) continue;
-    for (unsigned i = 1; i < threads; ++i) passes[0] += passes[i];
-    builder.finish_pass(std::move(passes[0]));
+    TreePass sum = builder.new_pass();
+    passes.each([&](const TreePass& pass) { sum += pass; });
+    builder.finish_pass(std::move(sum));
   }
   plan.tree = builder.take();
   return plan;

@@ -234,14 +234,15 @@ std::unique_ptr<LeafStore> shuffle(const PointSource& source, const TileTree& tr
                                           ? leaves_in_files(tree, options.scratch, options.memory / 2)
                                           : leaves_in_memory(tree);
   const std::uint64_t blocks = (source.size() + block_points - 1) / block_points;
-  std::vector<Worker> workers(threads_for(blocks, options.threads), Worker(tree));
+  PerThread<Worker> workers(threads_for(blocks, options.threads), [&] { return Worker(tree); });
   std::uint64_t done = 0;
   BlockWork work;
   work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
-    workers[thread].runs = workers[thread].sorter.sort(options.first_id + first, xy);
+    Worker& mine = workers.of(thread);
+    mine.runs = mine.sorter.sort(options.first_id + first, xy);
   };
   work.in_turn = [&](unsigned thread) {
-    Worker& mine = workers[thread];
+    Worker& mine = workers.of(thread);
     mine.rooms.assign(mine.runs.size(), {});
     for (std::size_t i = 0; i < mine.runs.size(); ++i) {
       const LeafRun& run = mine.runs[i];
@@ -253,7 +254,7 @@ std::unique_ptr<LeafStore> shuffle(const PointSource& source, const TileTree& tr
     if (options.progress) options.progress(done);
   };
   work.then = [&](unsigned thread) {
-    const Worker& mine = workers[thread];
+    const Worker& mine = workers.of(thread);
     for (std::size_t i = 0; i < mine.runs.size(); ++i) {
       if (mine.rooms[i].ids == nullptr) continue;
       std::copy(mine.runs[i].xy.begin(), mine.runs[i].xy.end(), mine.rooms[i].xy);

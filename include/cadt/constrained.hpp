@@ -62,8 +62,8 @@ struct ConstraintOptions {
   Crossing crossing = Crossing::error;
   double grid = 0;  ///< with Crossing::grid: the width of its cells, above 0
   Domain domain = Domain::hull;
-  std::vector<std::array<double, 2>> holes;  ///< with Domain::seeds
-  std::vector<Region> regions;               ///< with Domain::seeds: their attributes go to region_attribute()
+  std::vector<std::array<double, 2>> holes = {};  ///< with Domain::seeds
+  std::vector<Region> regions = {};               ///< with Domain::seeds: their attributes go to region_attribute()
 };
 
 /// Segments that cross, with Crossing::error.

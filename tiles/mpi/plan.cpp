@@ -47,14 +47,14 @@ Plan make_plan(Communicator& ranks, const PointSource& source, const RunOptions&
   const unsigned threads =
       threads_for((end - begin + block_points - 1) / block_points, options.devices.front().threads);
   for (bool first_pass = true; first_pass || !builder.done(); first_pass = false) {
-    std::vector<TreePass> passes(threads, builder.new_pass());
+    PerThread<TreePass> passes(threads, [&] { return builder.new_pass(); });
     std::vector<Hash128> hashes(threads);
     ranks.agree([&, begin = begin, end = end] {
       std::atomic<std::uint64_t> done{0};
       BlockWork work;
       work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
         if (first_pass) add_block_hash(hashes[thread], first, xy);
-        if (!builder.done()) builder.look_at(passes[thread], first, xy);
+        if (!builder.done()) builder.look_at(passes.of(thread), first, xy);
         done += xy.size() / 2;
         if (thread == 0 && progress) progress(static_cast<double>(done.load()) / static_cast<double>(end - begin));
       };
@@ -65,9 +65,10 @@ Plan make_plan(Communicator& ranks, const PointSource& source, const RunOptions&
     ranks.sum(content);
     plan.content.high += content[0], plan.content.low += content[1];
     if (builder.done()) continue;
-    for (unsigned i = 1; i < threads; ++i) passes[0] += passes[i];
-    reduce(ranks, passes[0]);
-    ranks.agree([&] { builder.finish_pass(std::move(passes[0])); });
+    TreePass sum = builder.new_pass();
+    passes.each([&](const TreePass& pass) { sum += pass; });
+    reduce(ranks, sum);
+    ranks.agree([&] { builder.finish_pass(std::move(sum)); });
   }
   plan.tree = builder.take();
   return plan;

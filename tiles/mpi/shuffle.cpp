@@ -30,18 +30,20 @@ class Dealer {
   Dealer(const TileTree& tree, const Deal& deal, std::size_t ranks)
       : deal_(deal),
         ranks_(ranks),
-        sorters_(std::max(1U, deal.threads), BlockSorter(tree)),
-        sorted_(sorters_.size(), std::vector<Words>(ranks)) {}
+        threads_(std::max(1U, deal.threads)),
+        sorters_(threads_, [&tree] { return BlockSorter(tree); }),
+        sorted_(threads_, std::vector<Words>(ranks)) {}
 
   /// Pieces of a part by several threads, put together in their order. Valid until the next call.
   const std::vector<Words>& operator()(const Part& part) {
     const std::size_t points = part.xy.size() / 2;
-    const std::size_t pieces = std::clamp<std::size_t>(points / least_points, 1, sorters_.size());
+    const std::size_t pieces = std::clamp<std::size_t>(points / least_points, 1, threads_);
     std::vector<std::future<void>> helpers;
     for (std::size_t p = 0; p < pieces; ++p) {
       const std::size_t begin = points * p / pieces, end = points * (p + 1) / pieces;
       helpers.push_back(std::async(p + 1 == pieces ? std::launch::deferred : std::launch::async, [&, p, begin, end] {
-        sort(sorters_[p], part.first + begin, std::span(part.xy).subspan(2 * begin, 2 * (end - begin)), sorted_[p]);
+        sort(sorters_.of(static_cast<unsigned>(p)), part.first + begin,
+             std::span(part.xy).subspan(2 * begin, 2 * (end - begin)), sorted_[p]);
       }));
     }
     for (auto& helper : helpers) helper.wait();
@@ -69,7 +71,8 @@ class Dealer {
 
   const Deal& deal_;
   std::size_t ranks_;
-  std::vector<BlockSorter> sorters_;
+  unsigned threads_;
+  PerThread<BlockSorter> sorters_;
   std::vector<std::vector<Words>> sorted_;  // of each thread, for each rank
 };
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 
 namespace cadt::test {
@@ -51,9 +52,12 @@ TEST_P(Adversaries, LargeOnesTakeNoQuadraticTime) {
     const Cost small = cost(adversary.make(n / 10));
     const Drawing d = adversary.make(n);
     const Cost large = cost(d);
-    // Quadratic: 100 times. (What takes less than 2 s is not measured well.)
-    EXPECT_TRUE(large.seconds < 2 || large.seconds < 40 * small.seconds)
-        << large.seconds << " s, a tenth of it " << small.seconds << " s";
+    // Quadratic: 100 times. (What takes less than 2 s is not measured well, nor is a processor that stands for a GPU:
+    // it is the lanes of its groups one after the other, of which small sets need few.)
+    if (std::getenv("CADT_OPENCL_AS_GPU") == nullptr) {
+      EXPECT_TRUE(large.seconds < 2 || large.seconds < 40 * small.seconds)
+          << large.seconds << " s, a tenth of it " << small.seconds << " s";
+    }
     // Beside those of the Delaunay mesh. Each time that what is left halves takes some 20 launches, and on GPUs up to
     // 64 more for long chains. CPUs take few long pieces at a time.
     const std::uint64_t few_at_a_time = GetParam().backend == Backend::cuda ? 0 : d.segments.size() / 8;

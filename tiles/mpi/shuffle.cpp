@@ -2,6 +2,7 @@
 #include <cadt/errors.hpp>
 
 #include "tiles/mpi/plan.hpp"
+#include "tiles/parallel.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -165,10 +165,17 @@ void locate_queries(Context& ctx, const MeshIndex& mesh, const QueryBatch& queri
 void find_nearest(Context& ctx, const MeshIndex& mesh, const QueryBatch& queries, const Allocation& reached,
                   std::size_t wanted, const Allocation& nearest) {
   if (mesh.triangles == 0) return ctx.device.fill(*nearest, 0, queries.count * wanted * word, CADT_NONE);
-  ctx.launcher.run<KernelId::cadt_nearest_vertices>(QueryMesh{mesh.view(), queries.by}, mesh.lowest, mesh.point_count,
-                                                    queries.points, queries.curve.order, reached, wanted, nearest,
-                                                    ctx.launcher.grid(queries.count));
-  ctx.check("nearest", 0.9);
+  // A launch cannot be stopped: each vertex after the first looks at all before it.
+  constexpr std::size_t pairs_per_launch = std::size_t{1} << 26;
+  const std::size_t step =
+      std::max<std::size_t>({pairs_per_launch / wanted / wanted, ctx.device.shape().parallelism, 1});
+  for (std::size_t first = 0; first < queries.count; first += step) {
+    const std::size_t count = std::min(step, queries.count - first);
+    ctx.launcher.run<KernelId::cadt_nearest_vertices>(QueryMesh{mesh.view(), queries.by}, mesh.lowest, mesh.point_count,
+                                                      queries.points, queries.curve.order, reached, wanted, nearest,
+                                                      first, ctx.launcher.grid(count));
+    ctx.check("nearest", 0.8 + 0.1 * static_cast<double>(first + count) / static_cast<double>(queries.count));
+  }
 }
 
 }  // namespace cadt

@@ -22,6 +22,7 @@
 #ifndef CADT_QUERIES_NATURAL_NEIGHBOR_H
 #define CADT_QUERIES_NATURAL_NEIGHBOR_H
 
+#include "common/queries/circumcenter.dev.h"
 #include "common/queries/interpolate.dev.h"
 
 /* Whether p lies strictly inside the circle of triangle t. Ties need no decision: the piece that they add has no area.
@@ -31,66 +32,6 @@ CADT_FN cadt_u32 cadt_in_circle(const cadt_query_mesh* m, cadt_u32 t, cadt_point
   cadt_real max_det;
   const cadt_i32 sign = cadt_incircle_filter(a, b, c, p, &max_det);
   return (sign != 0 ? sign : cadt_incircle_exact(a, b, c, p, max_det)) > 0 ? 1u : 0u;
-}
-
-/* The circumcentre of the origin, u and v. */
-CADT_FN cadt_point cadt_center_with_origin(cadt_point u, cadt_point v) {
-  const cadt_real d = 2.0 * cadt_cross(u.x, u.y, v.x, v.y), uu = u.x * u.x + u.y * u.y, vv = v.x * v.x + v.y * v.y;
-  const cadt_point c = {(v.y * uu - u.y * vv) / d, (u.x * vv - v.x * uu) / d};
-  return c;
-}
-CADT_FN cadt_point cadt_seen_from(cadt_point a, cadt_point p) {
-  const cadt_point d = {a.x - p.x, a.y - p.y};
-  return d;
-}
-CADT_FN cadt_real cadt_dot(cadt_point u, cadt_point v) { return u.x * v.x + u.y * v.y; }
-
-/* The circumcentre of a triangle, seen from the corner opposite its longest edge: of the two edges there, one at least
- * is short, so a corner that is far from the others does not take the digits of their places. */
-typedef struct {
-  cadt_point corner, arm;
-  cadt_u32 inside; /* 1: the centre is in the triangle, or within rounding of it */
-} cadt_center;
-
-CADT_FN cadt_center cadt_center_of(cadt_point a, cadt_point b, cadt_point c) {
-  cadt_point ab = cadt_seen_from(b, a), bc = cadt_seen_from(c, b), ca = cadt_seen_from(a, c);
-#if CADT_WIDE /* the longest becomes about 1 */
-  cadt_i32 e = cadt_exponent_of_largest(ab.x, ab.y, bc.x, bc.y);
-  const cadt_i32 other = cadt_exponent_of_largest(ca.x, ca.y, 0.0, 0.0);
-  e = other > e ? other : e;
-  if (e == 5000) { /* a difference has overflowed: halve first */
-    e = 1024;
-    ab.x = cadt_ldexp(b.x, -e) - cadt_ldexp(a.x, -e), ab.y = cadt_ldexp(b.y, -e) - cadt_ldexp(a.y, -e);
-    bc.x = cadt_ldexp(c.x, -e) - cadt_ldexp(b.x, -e), bc.y = cadt_ldexp(c.y, -e) - cadt_ldexp(b.y, -e);
-    ca.x = cadt_ldexp(a.x, -e) - cadt_ldexp(c.x, -e), ca.y = cadt_ldexp(a.y, -e) - cadt_ldexp(c.y, -e);
-  } else {
-    ab.x = cadt_ldexp(ab.x, -e), ab.y = cadt_ldexp(ab.y, -e);
-    bc.x = cadt_ldexp(bc.x, -e), bc.y = cadt_ldexp(bc.y, -e);
-    ca.x = cadt_ldexp(ca.x, -e), ca.y = cadt_ldexp(ca.y, -e);
-  }
-#endif
-  /* The square of an edge is the sum of the products at its ends, but for the sign: that at the corner opposite the
-   * longest edge is the largest. */
-  const cadt_real at_a = cadt_dot(ab, ca), at_b = cadt_dot(ab, bc), at_c = cadt_dot(bc, ca);
-  cadt_center center = {a, ab, 0u};
-  cadt_point u = ab, v = ca;
-  cadt_real most = at_a;
-  if (at_b > most) center.corner = b, u = bc, v = ab, most = at_b;
-  if (at_c > most) center.corner = c, u = ca, v = bc, most = at_c;
-  center.inside = most <= 4.0 * CADT_ORIENTATION_BOUND * (cadt_fabs(u.x * v.x) + cadt_fabs(u.y * v.y)) ? 1u : 0u;
-  v.x = -v.x, v.y = -v.y;
-  center.arm = cadt_center_with_origin(u, v);
-#if CADT_WIDE
-  center.arm.x = cadt_ldexp(center.arm.x, e), center.arm.y = cadt_ldexp(center.arm.y, e);
-#endif
-  return center;
-}
-CADT_FN cadt_center cadt_center_of_triangle(const cadt_query_mesh* m, cadt_u32 t) {
-  return cadt_center_of(cadt_corner(m, t, 0u), cadt_corner(m, t, 1u), cadt_corner(m, t, 2u));
-}
-CADT_FN cadt_point cadt_center_seen_from(cadt_center center, cadt_point p) {
-  const cadt_point seen = {center.arm.x + (center.corner.x - p.x), center.arm.y + (center.corner.y - p.y)};
-  return seen;
 }
 
 /* An edge of the cavity's boundary: edge k of a triangle of the cavity. */

@@ -155,38 +155,53 @@ CADT_FN cadt_u32 cadt_nearest_vertex(const cadt_query_mesh* m, CADT_GLOBAL const
   return tied ? cadt_lowest_of_nearest(m, lowest, p, best, points) : best;
 }
 
-/* The `wanted` nearest vertices of each query, nearest first, as rows of `nearest`; CADT_NONE where there are no more.
- * `reached`: a triangle near each query. */
+/* The nearest vertex to p behind those of `row`, the `found` nearest: a neighbour of one of them. CADT_NONE if there is
+ * none. */
+CADT_FN_SLOW cadt_u32 cadt_next_nearest(const cadt_query_mesh* m, CADT_GLOBAL const cadt_u32* lowest, cadt_point p,
+                                        CADT_GLOBAL const cadt_u32* row, cadt_u32 found) {
+  const cadt_u32 last = row[found - 1u];
+  const cadt_point from = cadt_mesh_point(m, last);
+  cadt_u32 best = CADT_NONE;
+  cadt_point at = p;
+  for (cadt_u32 j = 0u; j < found; ++j) {
+    const cadt_u32 t = lowest[row[j]];
+    const cadt_star_of star = cadt_star_at(m, t, cadt_index_in(m, t, row[j]));
+    cadt_spoke s = star.spoke;
+    cadt_u32 state = 0u;
+    for (;;) {
+      const cadt_u32 w = cadt_next_neighbor(m, &star, &s, &state);
+      if (w == CADT_NONE) break;
+      if (w == best || w == last) continue;
+      const cadt_point b = cadt_mesh_point(m, w);
+      cadt_u32 tied = 0u;
+      if (best != CADT_NONE && !cadt_is_nearer(p, w, b, best, at, &tied)) continue;
+      const cadt_i32 order = cadt_compare_distances(p, from, b); /* what is nearer than the last is in the row */
+      cadt_u32 known = order > 0 ? 1u : 0u;
+      for (cadt_u32 l = 0u; l < found && order == 0 && !known; ++l) known = row[l] == w ? 1u : 0u;
+      if (!known) best = w, at = b;
+    }
+  }
+  return best;
+}
+
+/* The `wanted` nearest vertices of the queries `first` and on, nearest first, as rows of `nearest`; CADT_NONE where
+ * there are no more. `reached`: a triangle near each query. */
 CADT_KERNEL(cadt_nearest_vertices, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_u32* lowest, cadt_u32 point_count,
             CADT_GLOBAL const cadt_point* queries, CADT_GLOBAL const cadt_u32* order,
-            CADT_GLOBAL const cadt_u32* reached, cadt_u32 wanted, CADT_GLOBAL cadt_u32* nearest, cadt_u32 count,
-            cadt_u32 grain) {
+            CADT_GLOBAL const cadt_u32* reached, cadt_u32 wanted, CADT_GLOBAL cadt_u32* nearest, cadt_u32 first,
+            cadt_u32 count, cadt_u32 grain) {
   CADT_QUERY_MESH(mesh);
   CADT_FOR(i, count, grain) {
-    const cadt_u32 q = order ? order[i] : i;
+    const cadt_u32 q = order ? order[first + i] : first + i;
     const cadt_point p = cadt_scaled_point(&mesh, queries + q);
     CADT_GLOBAL cadt_u32* row = nearest + CADT_CAST(cadt_u64, q) * wanted;
     row[0] = cadt_nearest_vertex(&mesh, lowest, p, reached[q] >> 2, point_count);
-    for (cadt_u32 found = 1u; found < wanted; ++found) {
-      cadt_u32 best = CADT_NONE;
-      cadt_point at = p;
-      for (cadt_u32 j = 0u; j < found && row[j] != CADT_NONE; ++j) {
-        const cadt_u32 t = lowest[row[j]];
-        const cadt_star_of star = cadt_star_at(&mesh, t, cadt_index_in(&mesh, t, row[j]));
-        cadt_spoke s = star.spoke;
-        cadt_u32 state = 0u;
-        for (;;) {
-          const cadt_u32 w = cadt_next_neighbor(&mesh, &star, &s, &state);
-          if (w == CADT_NONE) break;
-          cadt_u32 known = w == best ? 1u : 0u, tied = 0u;
-          for (cadt_u32 l = 0u; l < found && !known; ++l) known = row[l] == w ? 1u : 0u;
-          if (known) continue;
-          const cadt_point b = cadt_mesh_point(&mesh, w);
-          if (best == CADT_NONE || cadt_is_nearer(p, w, b, best, at, &tied)) best = w, at = b;
-        }
-      }
-      row[found] = best;
+    cadt_u32 found = 1u;
+    for (; found < wanted; ++found) {
+      row[found] = cadt_next_nearest(&mesh, lowest, p, row, found);
+      if (row[found] == CADT_NONE) break;
     }
+    for (; found < wanted; ++found) row[found] = CADT_NONE; /* there are no more */
   }
 }
 

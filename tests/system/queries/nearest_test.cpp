@@ -55,6 +55,46 @@ TEST_P(Nearest, SeveralAreAsNearAsBruteForceFindsThem) {
   });
 }
 
+TEST_P(Nearest, AllVerticesAndNoMore) {
+  for_each_set(120, [&](const Asked& set) {
+    if (set.mesh.number_of_triangles() == 0) return;
+    SCOPED_TRACE(set.name);
+    MeshQueries queries(std::span<const double>(set.xy), set.mesh, GetParam().options());
+    const std::size_t vertices = set.xy.size() / 2 - set.mesh.duplicates().size(), k = 3 * vertices;
+    const Points where = near_queries(set);
+    for (std::size_t q = 0; q < 3; ++q) {
+      auto row = queries.nearest_vertices(Points{where[2 * q], where[2 * q + 1]}, k);
+      ASSERT_EQ(row.size(), k);
+      ASSERT_TRUE(std::all_of(row.begin() + static_cast<std::ptrdiff_t>(vertices), row.end(),
+                              [](std::int32_t v) { return v == -1; }));
+      row.resize(vertices);
+      for (std::size_t i = 1; i < vertices; ++i)
+        ASSERT_LE(compare_distances(set, where[2 * q], where[2 * q + 1], row[i - 1], row[i]), 0) << "place " << i;
+      std::ranges::sort(row);
+      ASSERT_EQ(std::ranges::adjacent_find(row), row.end()) << "a vertex twice";
+      ASSERT_GE(row.front(), 0);
+    }
+  });
+}
+
+/// A launch cannot be stopped, so many vertices of many queries take several.
+TEST_P(Nearest, IsCancelledBetweenLaunches) {
+  if (GetParam().backend != Backend::host) GTEST_SKIP() << "a GPU takes all of these at once";
+  Points xy;
+  for (int i = 0; i < 4000; ++i) xy.insert(xy.end(), {i % 61 + 1e-3 * (i % 7), i % 67 + 1e-3 * (i % 5)});
+  Options options = GetParam().options();
+  std::size_t told = 0;
+  stop_source source;
+  options.stop = source.get_token();
+  options.progress = [&](const Progress& progress) {
+    if (progress.phase == "nearest" && ++told == 3) source.request_stop();
+  };
+  MeshQueries queries(std::span<const double>(xy), triangulate(std::span<const double>(xy), GetParam().options()),
+                      options);
+  EXPECT_THROW((void)queries.nearest_vertices(xy, 1000), Cancelled);
+  EXPECT_EQ(told, 3U);
+}
+
 TEST_P(Nearest, OfManyOnACircleAroundTheQueryTheLowest) {
   for (const int n : {3, 4, 5, 12, 64, 300}) {
     // integer points on circles with many: 5^2 13^2 17^2 = 1105^2

@@ -71,6 +71,41 @@ TEST_P(Scales, FarPointsChangeNoNaturalNeighbours) {
   }
 }
 
+/// Two corners on a line through the third but for their last digits, of which rounding takes some from the edges.
+TEST_P(Scales, CircumcentresOfThinTrianglesAreRight) {
+  std::mt19937_64 engine(9);
+  const auto number = [&](int bits) { return static_cast<std::int64_t>(engine() >> (64 - bits)); };
+  std::size_t thin = 0;
+  for (int round = 0; round < 200; ++round) {
+    const std::int64_t along[2] = {number(20) + 1, number(20) + 1}, third[2] = {number(3), number(3)};
+    const std::int64_t steps[2] = {number(36) + 1, -number(36) - 1};
+    std::int64_t far[2][2], edges[2][2];  // 57 digits, of which the last four are 0
+    for (int i : {0, 1})
+      for (int k : {0, 1}) far[i][k] = along[k] * steps[i] / 16 * 16, edges[i][k] = far[i][k] - third[k];
+    const auto& [u, v] = edges;
+    const __int128 cross = static_cast<__int128>(u[0]) * v[1] - static_cast<__int128>(u[1]) * v[0];
+    if (cross == 0) continue;
+    const auto square = [](const std::int64_t* e) {
+      return static_cast<long double>(e[0]) * e[0] + static_cast<long double>(e[1]) * e[1];
+    };
+    const long double d = 2 * static_cast<long double>(cross), x = (v[1] * square(u) - u[1] * square(v)) / d + third[0],
+                      y = (u[0] * square(v) - v[0] * square(u)) / d + third[1];
+    for (const int exponent : {0, -530, 500}) {  // the latter two take the wide variant
+      SCOPED_TRACE(testing::Message() << "round " << round << " by 2^" << exponent);
+      Points xy;
+      for (const std::int64_t* corner : std::initializer_list<const std::int64_t*>{far[0], far[1], third})
+        xy.insert(xy.end(), {static_cast<double>(corner[0]), static_cast<double>(corner[1])});
+      const Doubles center = mesh_of(times(xy, std::ldexp(1.0, exponent))).queries.circumcenters();
+      ASSERT_EQ(center.size(), 2U);
+      const long double bound = std::hypot(x, y) * 1e-12L;
+      ASSERT_NEAR(std::ldexp(static_cast<long double>(center[0]), -exponent), x, bound);
+      ASSERT_NEAR(std::ldexp(static_cast<long double>(center[1]), -exponent), y, bound);
+    }
+    ++thin;
+  }
+  EXPECT_GT(thin, 150U);
+}
+
 TEST_P(Scales, CircumcentresDoNotDependOnTheCornerThatIsFirst) {
   const Points near{0.31, 0.93, 0.22, 0.19, 0.69, 0.78, 0.84, 0.17};
   const Points far{1e16, 0.3, -0.6e16, 0.2e16};

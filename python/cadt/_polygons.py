@@ -9,7 +9,7 @@ import numpy as np
 
 from cadt import _cadt, _devices, _show
 from cadt._errors import InputError
-from cadt._points import as_points, index_of
+from cadt._points import as_points, index_of, unmasked
 from cadt._progress import reporter
 from cadt._segments import as_offsets
 from cadt._wkb import MULTIPOLYGON, POLYGON, lines_of_wkb, offsets_of
@@ -150,15 +150,15 @@ def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, A
     """Ring points, offsets of rings and polygons, and a GeoSeries' index and reference system."""
     geometry = getattr(geometry, "geometry", geometry) if hasattr(geometry, "crs") else geometry
     index, crs = getattr(geometry, "index", None), getattr(geometry, "crs", None)
-    if isinstance(geometry, (list, tuple)):
+    if callable(index):  # the method of lists
         index = None
-    elif getattr(geometry, "dtype", None) == object:
-        geometry = np.atleast_1d(np.asarray(geometry))
+    if hasattr(geometry, "__array__"):
+        geometry = _as_objects(geometry)
     if isinstance(geometry, (list, tuple, np.ndarray)) and all(
         isinstance(g, (bytes, bytearray, memoryview)) for g in geometry
     ):
         points, rings, polygons_ = lines_of_wkb(list(geometry), (POLYGON, MULTIPOLYGON))
-        return np.ascontiguousarray(points[:, :2]), rings, polygons_, index, None
+        return np.ascontiguousarray(points[:, :2]), rings, polygons_, index, crs
     shapely = _show._need("shapely", "shapely")
     rows = np.atleast_1d(np.asarray(geometry, dtype=object))
     if rows.ndim != 1 or not (shapely.is_geometry(rows) | shapely.is_missing(rows)).all():
@@ -177,3 +177,13 @@ def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, A
     ring_offsets = offsets_of(np.bincount(ring, minlength=len(rings)))
     polygon_offsets = offsets_of(np.bincount(row[part], minlength=len(rows)))
     return xy, ring_offsets, polygon_offsets, index, crs
+
+
+def _as_objects(rows: Any) -> np.ndarray:
+    """An array or Series of any dtype, such as pandas' of Arrow's bytes, as an array of objects."""
+    rows = unmasked(rows, "polygons")
+    if getattr(getattr(rows, "dtype", None), "kind", "") != "S":
+        return np.atleast_1d(np.asarray(rows, dtype=object))
+    # numpy makes S93 of bytes, and drops zeros at their ends, such as of coordinates.
+    a = np.atleast_1d(np.asarray(rows))
+    return np.array([g.ljust(a.itemsize, b"\0") for g in a.flat], dtype=object).reshape(a.shape)

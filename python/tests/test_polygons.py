@@ -72,6 +72,55 @@ def test_wkb_in_arrays_and_series() -> None:
     assert list(cadt.polygons(series).to_geoseries().index) == ["a"] * 2 + ["b"] * 2
 
 
+class Rows:
+    """A Series of another library, with a dtype of its own."""
+
+    dtype = "binary[pyarrow]"
+
+    def __init__(self, rows: list) -> None:
+        self.rows = rows
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray:
+        assert dtype == object, "numpy would drop zeros at the ends of bytes"
+        return np.array(self.rows, dtype=dtype)
+
+
+def test_wkb_in_arrays_of_any_dtype() -> None:
+    """The last coordinate of each polygon ends with zeros, which numpy drops from S; one polygon is shorter."""
+    rows = [wkb([SQUARE]), wkb([np.add(SQUARE, [9, -3])[:4]])]
+    assert all(row.endswith(b"\0") for row in rows) and len(rows[1]) < len(rows[0])
+    expected = cadt.polygons(rows)
+    assert areas(expected).tolist() == [9, 9]
+    joined = np.array(rows)
+    assert joined.dtype.kind == "S" and len(joined[0]) < len(rows[0])
+    for given in (Rows(rows), joined, joined[::-1][::-1], np.ma.array(joined), joined.astype(f"V{joined.itemsize}")):
+        result = cadt.polygons(given)
+        np.testing.assert_array_equal(result.points, expected.points)
+        np.testing.assert_array_equal(result.triangles, expected.triangles)
+    assert areas(cadt.polygons(joined[1:])).tolist() == [9]
+    with pytest.raises(cadt.InputError, match="polygons are masked"):
+        cadt.polygons(np.ma.array(joined, mask=[False, True]))
+    for wrong in (joined[:, None], np.zeros(3), np.array(["POLYGON EMPTY"]), Rows([rows[0], 3])):
+        with pytest.raises(cadt.InputError, match="WKB bytes of all polygons in a list, an array or a Series"):
+            cadt.polygons(wrong)
+
+
+@pytest.mark.parametrize("kind", ["binary", "large_binary"])
+def test_wkb_of_arrow(kind: str) -> None:
+    pyarrow, pandas = pytest.importorskip("pyarrow"), pytest.importorskip("pandas")
+    rows, of = [wkb([SQUARE]), wkb([np.add(SQUARE, 9)])], getattr(pyarrow, kind)()
+    expected = cadt.polygons(rows).triangles
+    series = pandas.Series(rows, index=["a", "b"], dtype=pandas.ArrowDtype(of))
+    array = pyarrow.array(rows, of)
+    for given in (series, array, pyarrow.chunked_array([array[:1], array[1:]])):
+        np.testing.assert_array_equal(cadt.polygons(given).triangles, expected)
+    with pytest.raises(cadt.InputError, match="WKB bytes of all polygons"):
+        cadt.polygons(pandas.Series([rows[0], None], dtype=series.dtype))
+    pytest.importorskip("geopandas")
+    assert list(cadt.polygons(series).to_geoseries().index) == ["a"] * 2 + ["b"] * 2
+    assert list(cadt.polygons(array).to_geoseries().index) == [0] * 2 + [1] * 2
+
+
 def test_wkb_of_others_is_refused() -> None:
     with_srid = struct.pack("<BIII", 1, 3 | 1 << 29, 4326, 1) + wkb([SQUARE])[9:]
     assert areas(cadt.polygons([with_srid])).tolist() == [9]
@@ -117,6 +166,7 @@ def test_geoseries() -> None:
         assert triangles.area.groupby(level=0).sum().to_dict() == {"a": 8, "b": 9}
         assert set(triangles.geom_type) == {"Polygon"}
     assert len(cadt.polygons(series.iloc[2:]).to_geoseries()) == 0
+    assert cadt.polygons(series.iloc[:0]).to_geoseries().crs == series.crs
 
 
 def test_plot() -> None:

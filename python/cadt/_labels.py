@@ -9,7 +9,7 @@ import numpy as np
 
 from cadt import _cadt
 from cadt._errors import InputError
-from cadt._points import as_indices, as_points, contiguous, unmasked
+from cadt._points import as_array, as_indices, as_points, contiguous
 
 _OUTSIDE = np.iinfo(np.int32).min
 
@@ -67,9 +67,10 @@ def triangle_labels(points: Any, simplices: Any, labels: Any) -> np.ndarray:
 
 
 def _as_labels(labels: Any) -> np.ndarray:
-    a = np.asarray(unmasked(labels, "labels", "fill them: a label of its own says that there is none"))
+    form = "integers of shape (rows, columns)"
+    a = as_array(labels, "labels", form, "fill them: a label of its own says that there is none")
     if a.ndim != 2 or a.dtype.kind not in "iub":
-        raise InputError(f"labels must be integers of shape (rows, columns), not {a.dtype} of {a.shape}", 0)
+        raise InputError(f"labels must be {form}, not {a.dtype} of {a.shape}", 0)
     if a.dtype.itemsize > 4 or a.dtype == np.uint32:
         wrong = (a > np.iinfo(np.int32).max) | (a < _OUTSIDE if a.dtype.kind == "i" else False)
         if wrong.any():

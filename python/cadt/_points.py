@@ -46,6 +46,15 @@ def unmasked(a: Any, what: str, advice: str = "") -> Any:
     return a.data
 
 
+def as_array(a: Any, what: str, form: str, advice: str = "") -> np.ndarray:
+    """An array without a mask. Raises InputError, which says what `form` is expected, for rows of several lengths."""
+    a = unmasked(a, what, advice)
+    try:
+        return np.asarray(a)
+    except ValueError as e:
+        raise InputError(f"{what} must be {form}: {e}", 0) from None
+
+
 def to_array(points: Any, what: str) -> np.ndarray:
     """Lists, anything with ``__array__`` or, on the host, ``__dlpack__``."""
     points = unmasked(points, what, f"pass {what}.compressed() or the rows without a mask")
@@ -121,7 +130,7 @@ def as_queries(xi: Any) -> tuple[np.ndarray, tuple[int, ...]]:
 
 def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:
     """Values of shape (n, ...) as a contiguous (n, m) array of float64, and the shape of one point's."""
-    a = np.asarray(unmasked(values, "values", FILL))
+    a = as_array(values, "values", f"real numbers of shape ({n},) or ({n}, m)", FILL)
     if a.dtype.kind not in "iuf":
         raise TypeError(f"values must be real numbers, not {a.dtype}")
     if a.ndim == 0 or a.shape[0] != n:
@@ -132,7 +141,7 @@ def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:
 
 def as_indices(a: Any, what: str) -> np.ndarray:
     """A copy of integers of shape (t, 3) as int32."""
-    a = np.asarray(unmasked(a, what))
+    a = as_array(a, what, "integers of shape (t, 3)")
     if a.ndim != 2 or a.shape[1] != 3 or a.dtype.kind not in "iu":
         raise InputError(f"{what} must be integers of shape (t, 3), not {a.dtype} of {a.shape}", 0)
     if a.size and (a.max() > np.iinfo(np.int32).max or a.min() < -1):
@@ -142,7 +151,7 @@ def as_indices(a: Any, what: str) -> np.ndarray:
 
 def as_pairs(segments: Any, what: str) -> np.ndarray:
     """Integers of shape (m, 2) as int32."""
-    a = np.asarray(unmasked(segments, what))
+    a = as_array(segments, what, "integers of shape (m, 2)")
     if a.size == 0 and a.ndim <= 2:
         return np.empty((0, 2), dtype=np.int32)
     if a.ndim != 2 or a.shape[1] != 2 or a.dtype.kind not in "iu":

@@ -11,7 +11,7 @@ import numpy as np
 from cadt import _cadt
 from cadt._arrays import adapter_of
 from cadt._errors import InputError, OptionError
-from cadt._points import as_pairs, contiguous, unmasked
+from cadt._points import as_array, as_pairs, contiguous
 
 if TYPE_CHECKING:
     from cadt._arrays import Array
@@ -40,11 +40,11 @@ def segments_there(array: Array, segments: Any, polylines: Any, rings: Any) -> A
     return array.pairs(segments, "segments")
 
 
-def as_offsets(offsets: Any, what: str) -> np.ndarray:
-    """Integers of one dimension as int64."""
-    a = np.asarray(unmasked(offsets, what))
+def as_offsets(offsets: Any, what: str, form: str = "offsets, integers of shape (k + 1,)") -> np.ndarray:
+    """Integers of one dimension as int64; `form` is what an InputError says that they must be."""
+    a = as_array(offsets, what, form)
     if a.ndim != 1 or a.size == 0 or a.dtype.kind not in "iu":
-        raise InputError(f"{what} must be offsets: integers of shape (k + 1,), not {a.dtype} of {a.shape}", 0)
+        raise InputError(f"{what} must be {form}, not {a.dtype} of {a.shape}", 0)
     return contiguous(a, np.int64)
 
 
@@ -52,16 +52,17 @@ def _of_lines(make: Any, lines: Any, what: str, n: int) -> np.ndarray:
     if lines is None:
         return np.empty((0, 2), dtype=np.int32)
     vertices: Any = None
-    if isinstance(lines, tuple) and len(lines) == 2 and np.ndim(lines[0]) == 1:
+    if isinstance(lines, tuple) and len(lines) == 2 and (isinstance(lines[0], (list, tuple)) or np.ndim(lines[0])):
         lines, vertices = lines
-    offsets = as_offsets(lines, what)
+    offsets = as_offsets(lines, what, "offsets, integers of shape (k + 1,), or a tuple (offsets, vertices)")
     if vertices is None:
         if offsets[-1] > n:
             raise InputError(f"the offsets of {what} reach to {offsets[-1]}, but there are {n} points", len(offsets) - 1)
         return make(offsets, np.empty(0, dtype=np.int32))
-    v = np.asarray(unmasked(vertices, what))
+    form = "integers of one dimension"
+    v = as_array(vertices, f"the vertices of {what}", form)
     if v.ndim != 1 or (v.size and v.dtype.kind not in "iu"):
-        raise InputError(f"the vertices of {what} must be integers of one dimension, not {v.dtype} of {v.shape}", 0)
+        raise InputError(f"the vertices of {what} must be {form}, not {v.dtype} of {v.shape}", 0)
     wrong = (v < 0) | (v > np.iinfo(np.int32).max)
     if wrong.any():
         first = int(np.argmax(wrong))
@@ -82,26 +83,45 @@ def parts_along(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
     return np.clip((off * along).sum(axis=1) / np.where(square > 0, square, 1), 0, 1)
 
 
-def constraints_of(crossing: Any, domain: str, holes: Any, regions: Any) -> _cadt.ConstraintOptions:
+def constraints_of(crossing: Any, domain: Any, holes: Any, regions: Any) -> _cadt.ConstraintOptions:
+    """Raises OptionError for what is no crossing or domain, InputError for places that are no numbers."""
     width = 0.0
-    if isinstance(crossing, (tuple, list)) and len(crossing) == 2 and crossing[0] == "grid":
-        crossing, width = "grid", float(crossing[1])
-        if not (width > 0 and math.isfinite(width)):
-            raise OptionError(f"the width of the grid must be above 0, not {width}", "grid")
-    elif crossing not in _CROSSINGS:
+    if isinstance(crossing, (tuple, list)) and len(crossing) == 2 and _is_one_of(crossing[0], ("grid",)):
+        crossing, width = "grid", _width_of(crossing[1])
+    elif not _is_one_of(crossing, _CROSSINGS):
         raise OptionError(f"crossing must be 'error', 'exact' or ('grid', width), not {crossing!r}", "crossing")
-    if domain not in _DOMAINS:
+    if not _is_one_of(domain, _DOMAINS):
         raise OptionError(f"domain must be one of {', '.join(map(repr, _DOMAINS))}, not {domain!r}", "domain")
     places = []
     for name, given, columns in (("holes", holes, 2), ("regions", regions, 3)):
         if adapter_of(given) is not None:
             raise InputError(f"{name} are read on the host: pass a copy there", 0)
-        a = np.asarray(() if given is None else unmasked(given, name), dtype=np.float64)
-        if a.size == 0:
-            a = np.empty((0, columns))
-        elif domain != "seeds":
+        a = as_array(() if given is None else given, name, f"numbers of shape (k, {columns})")
+        if a.size and domain != "seeds":
             raise OptionError(f"{name} are for domain='seeds'", name)
-        if a.ndim != 2 or a.shape[1] != columns:
-            raise InputError(f"{name} must have shape (k, {columns}), not {a.shape}", 0)
-        places.append(contiguous(a))
+        places.append(_as_places(a, name, columns) if a.size else np.empty((0, columns)))
     return _cadt.ConstraintOptions(crossing, width, domain, *places)
+
+
+def _is_one_of(given: Any, names: tuple[str, ...]) -> bool:
+    return isinstance(given, str) and given in names  # an array is neither equal nor not
+
+
+def _width_of(given: Any) -> float:
+    try:
+        width = float(given)
+    except (TypeError, ValueError, OverflowError):
+        width = math.nan
+    if not (width > 0 and math.isfinite(width)):
+        raise OptionError(f"the width of the grid must be a number above 0, not {given!r}", "grid")
+    return width
+
+
+def _as_places(a: np.ndarray, what: str, columns: int) -> np.ndarray:
+    """Numbers of shape (k, columns) as float64."""
+    if a.ndim == 2 and a.shape[1] == columns and a.dtype.kind in "biufO":
+        try:
+            return contiguous(a, np.float64)
+        except (TypeError, ValueError, OverflowError):  # of objects
+            pass
+    raise InputError(f"{what} must be numbers of shape (k, {columns}), not {a.dtype} of {a.shape}", 0)

@@ -176,6 +176,46 @@ def test_bad_input() -> None:
         cadt.ConstrainedDelaunay(SQUARES, rings=[0, 4, 8], domain="seeds", holes=[1, 1])
 
 
+@pytest.mark.parametrize(
+    "given,says",
+    [
+        ({"rings": [[0, 4], [0, 1, 2, 3]]}, r"rings must be offsets, .* or a tuple \(offsets, vertices\): "),
+        ({"rings": [[0, 4], [0, 1]]}, r"rings must be offsets, .* or a tuple .*, not int64 of \(2, 2\)"),
+        ({"polylines": ([[0, 4]], [0, 1, 2, 3])}, r"polylines must be offsets, .* not int64 of \(1, 2\)"),
+        ({"polylines": ([[0], [1, 2]], [0, 1])}, r"polylines must be offsets, .* or a tuple"),
+        ({"polylines": ([0, 2], [0, [1]])}, "the vertices of polylines must be integers of one dimension: "),
+        ({"segments": [[0, 1], [2]]}, r"segments must be integers of shape \(m, 2\): "),
+        ({"holes": [["a", 1]]}, r"holes must be numbers of shape \(k, 2\), not <U21 of \(1, 2\)"),
+        ({"holes": [[1, 1], [1]]}, r"holes must be numbers of shape \(k, 2\): "),
+        ({"holes": [[1j, 1]]}, "holes must be numbers of shape .*, not complex128"),
+        ({"holes": [[10**400, 1]]}, "holes must be numbers of shape .*, not object"),
+        ({"regions": [[1, 1]]}, r"regions must be numbers of shape \(k, 3\), not int64 of \(1, 2\)"),
+        ({"regions": [[1, 1, {}]]}, "regions must be numbers of shape .*, not object"),
+    ],
+)
+def test_what_is_no_array_of_numbers(given: dict, says: str) -> None:
+    with pytest.raises(cadt.InputError, match=says):
+        cadt.ConstrainedDelaunay(SQUARES, domain="seeds", **given)
+
+
+LARGE = pytest.param(10**400, id="large")
+
+
+@pytest.mark.parametrize("width", ["a", None, [1], 1j, np.array([1.0, 2.0]), LARGE, np.nan, np.inf, -1])
+def test_widths_that_are_no_numbers(width: Any) -> None:
+    with pytest.raises(cadt.OptionError, match="the width of the grid must be a number above 0, not ") as caught:
+        cadt.ConstrainedDelaunay(SQUARES, crossing=("grid", width))
+    assert caught.value.option == "grid"
+
+
+@pytest.mark.parametrize("option", ["crossing", "domain"])
+@pytest.mark.parametrize("given", [np.array([1, 2]), np.array(["hull", "exact"]), np.array("exact"), (np.arange(2), 1)])
+def test_options_that_are_no_strings(option: str, given: Any) -> None:
+    with pytest.raises(cadt.OptionError, match=f"{option} must be .*, not ") as caught:
+        cadt.ConstrainedDelaunay(SQUARES, **{option: given})
+    assert caught.value.option == option
+
+
 def test_degenerate() -> None:
     none = cadt.ConstrainedDelaunay(np.empty((0, 2)))
     assert none.n_triangles == 0 and none.hash and none.n_regions == 0 and len(none.chains[1]) == 0

@@ -189,6 +189,7 @@ def test_labels() -> None:
     x, y = np.meshgrid(np.arange(40) + 0.5, 29.5 - np.arange(30))
     assert np.array_equal(label[mesh.find_simplex((x, y))], image)
     assert set(boundary.sides.ravel().tolist()) == {0, 7, -3, -(2**31)}
-    for wrong in (image[0], image.astype(float), np.full((2, 2), 2**31), np.full((2, 2), -(2**31)), np.empty((0, 3), int)):
+    wide = (np.full((2, 2), 2**31), np.full((2, 2), -(2**31)))
+    for wrong in (image[0], image.astype(float), *wide, np.empty((0, 3), int), [[1], [1, 2]]):
         with pytest.raises(cadt.InputError):
             cadt.label_segments(wrong)

@@ -14,10 +14,19 @@ namespace cadt_python {
 namespace {
 
 template <class... Data>
-void raise(const char* type, const std::exception& error, Data&&... data) {
-  const nb::object exception =
-      nb::module_::import_("cadt._errors").attr(type)(error.what(), std::forward<Data>(data)...);
+void raise(const char* type, const char* message, Data&&... data) {
+  const nb::object exception = nb::module_::import_("cadt._errors").attr(type)(message, std::forward<Data>(data)...);
   PyErr_SetObject(exception.type().ptr(), exception.ptr());
+}
+template <class... Data>
+void raise(const char* type, const std::exception& error, Data&&... data) {
+  raise(type, error.what(), std::forward<Data>(data)...);
+}
+
+/// Without the name of the C++ struct: in Python, options are arguments.
+std::string message_of(const cadt::OptionError& error) {
+  const std::string message = error.what(), prefix = "Options::";
+  return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
 }
 
 void translate(const std::exception_ptr& thrown, void* /*unused*/) {
@@ -30,7 +39,7 @@ void translate(const std::exception_ptr& thrown, void* /*unused*/) {
   } catch (const cadt::LimitError& e) {
     raise("LimitError", e, e.count(), e.limit());
   } catch (const cadt::OptionError& e) {
-    raise("OptionError", e, e.option());
+    raise("OptionError", message_of(e).c_str(), e.option());
   } catch (const cadt::BackendUnavailable& e) {
     raise("BackendUnavailable", e, e.backend(), e.reason());
   } catch (const cadt::OutOfMemory& e) {

@@ -216,6 +216,16 @@ def test_options_that_are_no_strings(option: str, given: Any) -> None:
     assert caught.value.option == option
 
 
+def test_messages_name_arguments_of_python() -> None:
+    for name, places in (("holes", [[1, 1], [np.nan, 1]]), ("regions", [[1, 1, 1], [1, np.inf, 1]])):
+        with pytest.raises(cadt.OptionError, match=f"^{name}: place 1 is not finite") as caught:
+            cadt.ConstrainedDelaunay(SQUARES, rings=[0, 4, 8], domain="seeds", **{name: places})
+        assert caught.value.option == name
+        assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+    with pytest.raises(cadt.OptionError, match="^grid: "):
+        cadt.ConstrainedDelaunay(SQUARES, crossing=("grid", 1e-300))
+
+
 def test_degenerate() -> None:
     none = cadt.ConstrainedDelaunay(np.empty((0, 2)))
     assert none.n_triangles == 0 and none.hash and none.n_regions == 0 and len(none.chains[1]) == 0

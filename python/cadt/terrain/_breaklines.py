@@ -82,8 +82,8 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
 
 @dataclasses.dataclass(frozen=True)
 class Broken:
-    """Points and breaklines as one mesh; the vertices of the lines come first, so that their heights count where a point
-    of the cloud is at the same place."""
+    """Points and breaklines as one mesh; the vertices of the lines come first, in the order of the file: the first height
+    at a place counts, and where a point of the cloud is there too, that of the line."""
 
     mesh: cadt.ConstrainedDelaunay
     z: NDArray[np.float64]
@@ -91,7 +91,7 @@ class Broken:
 
 
 def add_breaklines(cloud: Cloud, lines: Breaklines, options: argparse.Namespace, line: ProgressLine) -> Broken:
-    """Raises FileError if lines cross."""
+    """Raises FileError if lines cross; warns if they have several heights at a place."""
     z = lines.xyz[:, 2].copy()
     missing = np.flatnonzero(np.isnan(z))
     if len(missing):
@@ -113,10 +113,33 @@ def add_breaklines(cloud: Cloud, lines: Breaklines, options: argparse.Namespace,
     except cadt.CrossingError as error:
         raise FileError(lines.path, _crossing(lines, error.pairs)) from error
     line.clear()
+    if said := _several_heights(lines, z, mesh.duplicate_of):
+        line.warn(f"{lines.path}: {said}")
     heights = "the points" if len(missing) == len(z) else "the file"
     if 0 < len(missing) < len(z):
         heights = f"the file, but {len(missing)} from the points"
     return Broken(mesh, np.concatenate([z, cloud.z]), heights)
+
+
+def _feature_of(lines: Breaklines, points: NDArray[np.integer]) -> NDArray[np.int64]:
+    return lines.feature[np.searchsorted(lines.offsets, points, side="right") - 1]
+
+
+def _several_heights(lines: Breaklines, z: NDArray[np.float64], first_of: NDArray[np.integer]) -> str:
+    """Of points of lines at the same place those whose heights differ, in words; `first_of`: the first one, or -1."""
+    second = np.flatnonzero(first_of[: len(z)] >= 0)
+    first = first_of[second]
+    # Two that the file does not give differ by rounding at most.
+    given = np.isfinite(lines.xyz[first, 2]) | np.isfinite(lines.xyz[second, 2])
+    differ = np.flatnonzero(given & (np.abs(z[first] - z[second]) > 0))
+    if len(differ) == 0:
+        return ""
+    pair = np.array([first[differ[0]], second[differ[0]]])
+    a, b = _feature_of(lines, pair)
+    who = f"feature {a} (counted from 0) has" if a == b else f"the features {a} and {b} (counted from 0) have"
+    (x, y), (one, other) = lines.xyz[pair[0], :2], z[pair]
+    more = f", and so it is with {len(differ) - 1} more points" if len(differ) > 1 else ""
+    return f"{who} the heights {one:.12g} and {other:.12g} at {x:.12g} {y:.12g}{more}; the first in the file counts"
 
 
 def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:
@@ -124,7 +147,7 @@ def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:
     ends = np.zeros(len(lines.xyz), bool)
     ends[lines.offsets[1:][np.diff(lines.offsets) > 0] - 1] = True
     begin = np.flatnonzero(~ends)[list(pairs[0])]
-    of = lines.feature[np.searchsorted(lines.offsets, begin, side="right") - 1]
+    of = _feature_of(lines, begin)
     (a, c), (b, d) = lines.xyz[begin, :2], lines.xyz[begin + 1, :2]
     (ux, uy), (vx, vy), (wx, wy) = b - a, d - c, c - a
     x, y = a + (b - a) * (wx * vy - wy * vx) / (ux * vy - uy * vx)

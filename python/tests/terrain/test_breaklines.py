@@ -83,6 +83,37 @@ def test_lines_without_heights_get_them_from_the_points(las, tmp_path, cadt_terr
     assert "heights of the points" in result.err and "no data     0" in result.err
 
 
+def test_several_heights_at_a_place(las, tmp_path, cadt_terrain):
+    """Two lakes that share the corners (60, 20) and (60, 40), and the cells between these, in either order."""
+    las("scan.laz", np.array([[*AT, 0], *([x, y, 0] for x, y in AT + [[100, 0], [0, 100], [100, 100]])]))
+
+    def lake(x: float, height: float | None) -> shapely.Polygon:
+        corners = AT + [[x, 20], [x + 20, 20], [x + 20, 40], [x, 40]]
+        return shapely.Polygon(corners if height is None else [(*corner, height) for corner in corners])
+
+    def run(*lakes: shapely.Geometry) -> tuple[str, float]:
+        name = write(tmp_path / "lakes.geojson", lakes)
+        err = cadt_terrain("raster", "scan.laz", "dem.tif", "--res", "1", "--breaklines", name).err
+        with rasterio.open(tmp_path / "dem.tif") as raster:
+            return err, float(raster.read(1)[raster.index(*(AT + [59.5, 30.5]))])
+
+    west, east = lake(40, 5), lake(60, 7)
+    at = "500060 5400020"
+    err, height = run(west, east)
+    assert f"warning: lakes.geojson: the features 0 and 1 (counted from 0) have the heights 5 and 7 at {at}" in err
+    assert "and so it is with 2 more points; the first in the file counts" in err  # a ring ends where it began
+    assert height == 5
+    err, height = run(east, west)
+    assert "have the heights 7 and 5 at" in err and height > 6.9
+    for same in ((west, lake(60, 5)), (lake(40, None), lake(60, None)), (west,), (lake(40, None),)):
+        assert "warning" not in run(*same)[0]
+    err, height = run(lake(40, None), east)
+    assert "have the heights 0 and 7 at" in err and height == 0
+    corners = AT + [[9, 9], [9, 5], [5, 5], [9, 9]]
+    err, _ = run(shapely.LineString(np.column_stack([corners, [1, 1, 1, 2]])))
+    assert "feature 0 (counted from 0) has the heights 1 and 2 at 500009 5400009; the first in the file counts" in err
+
+
 def test_what_is_refused(las, tmp_path, cadt_terrain):
     las("scan.laz", scattered())
     across = shapely.LineString([AT + [37, 20], AT + [37, 80]])

@@ -63,7 +63,11 @@ class ConstrainedDelaunay(Mesh):
     DomainError
         Segments do not close at the point `vertex`, and the domain is "even_odd" or "nonzero".
     InputError
-        As for `Delaunay`; or a segment has an end that is no point: `index` is the segment.
+        As for `Delaunay`; a segment has an end that is no point: `index` is the segment; or what must be integers or numbers
+        of some shape are not.
+    OptionError
+        `crossing` or `domain` is no value above; a place of `holes` or `regions` is not finite, or they come without
+        ``domain="seeds"``.
 
     Notes
     -----

@@ -115,6 +115,11 @@ def polygons(
     polygon_offsets : array_like of int, shape (p + 1,), optional
         Polygon p has the rings ``polygon_offsets[p]`` to ``polygon_offsets[p + 1] - 1``. Default: each ring is a polygon.
 
+    Raises
+    ------
+    InputError
+        Offsets do not fit; or a row is no polygon, damaged WKB or masked: `index` is the row, where it is known.
+
     Notes
     -----
     Inside is what an odd number of rings goes around; their directions do not matter. A polygon with a defect has no

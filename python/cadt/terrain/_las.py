@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._files import Room, why
+from ._vector import check_values
 from .errors import CrsError, FileError, TerrainError, Unavailable, UsageError
 
 if TYPE_CHECKING:
@@ -89,13 +90,19 @@ class LasSource:
             ) from error
 
     def read(self, room: Room, step: Callable[[int], None]) -> None:
-        """Fills the arrays of `room` with the points that are kept."""
+        """Fills the arrays of `room` with the points that are kept.
+
+        Raises
+        ------
+        FileError
+            The file is damaged or truncated, or a point that is kept has no finite value.
+        """
         seen = 0
         try:
             with self._open() as reader:
                 header = reader.header
                 for points in _ahead(reader.chunk_iterator(CHUNK)):
-                    seen += len(points)
+                    before, seen = seen, seen + len(points)
                     which: Any = slice(None)
                     if self._classes is not None:
                         which = np.flatnonzero(np.isin(np.asarray(points.classification), self._classes))
@@ -107,6 +114,7 @@ class LasSource:
                             continue
                         np.multiply(np.asarray(points[name])[which], header.scales[k], out=out)
                         out += header.offsets[k]
+                    check_values(self.path, z, self._values, before, None if self._classes is None else which)
                     step(seen)
         except TerrainError:
             raise

@@ -150,14 +150,14 @@ class ParquetSource:
         step(self.count)
 
 
-def check_values(path: str, z: NDArray[np.float64], name: str, first: int) -> None:
-    """Raises FileError if a point has no value: 2D points, or an empty attribute."""
+def check_values(path: str, z: NDArray[np.float64], name: str, first: int, rows: Any = None) -> None:
+    """Raises FileError if a point has no value: 2D points, an empty attribute, or what is not finite. `first` is the number
+    of the first point, or where only some are kept of point 0 of `rows`, their numbers."""
     bad = np.flatnonzero(~np.isfinite(z))
     if len(bad):
+        number = first + int(bad[0] if rows is None else rows[bad[0]])
         what = "no height" if name == "z" else f"no number as '{name}'"
-        raise FileError(
-            path, f"point {first + int(bad[0])} (counted from 0) has {what}; name an attribute with --values"
-        )
+        raise FileError(path, f"point {number} (counted from 0) has {what}; name an attribute with --values")
 
 
 def write_features(

@@ -335,6 +335,26 @@ def test_a_scale_or_offset_that_is_no_number(las, byte):
         terrain.read_cloud([name])
 
 
+@pytest.mark.parametrize("suffix", ["las", "laz"])
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_dimensions_with_values_that_are_not_finite(las, cadt_terrain, suffix, value, monkeypatch):
+    monkeypatch.setattr(cadt.terrain._las, "CHUNK", 700)
+    name = las(f"a.{suffix}", hills(2000), classes=np.where(np.arange(2000) % 3 == 0, 2, 5))
+    stored = laspy.read(name)
+    stored.add_extra_dim(laspy.ExtraBytesParams("depth", np.float32))
+    depth = np.arange(2000.0)
+    depth[1500] = value
+    stored["depth"] = depth
+    stored.write(name)
+    for classes in (None, [2]):
+        with pytest.raises(terrain.FileError, match=r"point 1500 \(counted from 0\) has no number as 'depth'"):
+            terrain.read_cloud([name], values="depth", classes=classes)
+    assert np.array_equal(terrain.read_cloud([name], values="depth", classes=[5]).z, depth[np.arange(2000) % 3 != 0])
+    assert len(terrain.read_cloud([name])) == 2000  # nobody asks for them
+    for words in (("raster", "o.tif", "--res", "5"), ("tin", "o.glb"), ("contour", "o.gpkg", "--interval", "5")):
+        cadt_terrain(words[0], name, *words[1:], "--values", "depth", code=3, says="no number as 'depth'")
+
+
 @pytest.mark.thorough
 def test_reading_holds_what_is_kept_and_one_piece(las):
     """3 million points, a tenth of them ground: 24 bytes a kept point, and the piece that is decoded."""

@@ -77,13 +77,14 @@ class CadtAlgorithm(QgsProcessingAlgorithm):
         feedback.pushCommandInfo(subprocess.list2cmdline(words))
         # QGIS's Python settings are not those of the program's.
         environment = {k: v for k, v in os.environ.items() if k not in ("PYTHONHOME", "PYTHONPATH")}
-        process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True, env=environment)
+        process = subprocess.Popen(words, stderr=subprocess.PIPE, encoding="utf-8", errors="replace", env=environment)
         ended = threading.Event()
 
         def stop_if_canceled():
             while not ended.wait(0.2):
                 if feedback.isCanceled():
-                    process.terminate()
+                    process.terminate()  # once: a second signal would end the program before it has cleaned up
+                    return
 
         threading.Thread(target=stop_if_canceled, daemon=True).start()
         said = process.communicate()[1]

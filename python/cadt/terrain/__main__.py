@@ -7,12 +7,16 @@ import logging
 import os
 import signal
 import sys
+import time
 import warnings
 from collections.abc import Sequence
 from types import FrameType
 
 from . import errors
 from ._progress import ProgressLine
+
+TOGETHER = 0.5  # seconds after a signal in which others say the same
+_stopped: float | None = None  # when the first signal came
 
 
 def _explain(error: BaseException) -> int:
@@ -44,8 +48,16 @@ def _explain(error: BaseException) -> int:
 
 
 def _stop(number: int, frame: FrameType | None) -> None:
-    signal.signal(number, signal.SIG_DFL)  # a second one ends the process at once
-    raise KeyboardInterrupt
+    """The first signal stops the work, which cleans up; a later one ends the process at once. Those that come with the
+    first are the same wish: timeout signals its child, and then the group."""
+    global _stopped  # noqa: PLW0603
+    now = time.monotonic()
+    if _stopped is None:
+        _stopped = now
+        raise KeyboardInterrupt
+    if now - _stopped >= TOGETHER:
+        signal.signal(number, signal.SIG_DFL)
+        signal.raise_signal(number)
 
 
 def run(command: str, words: Sequence[str]) -> int:

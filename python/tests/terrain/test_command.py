@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import locale
 import os
 import pathlib
 import pty
@@ -11,6 +13,7 @@ import signal
 import subprocess
 import sys
 import time
+import types
 
 import numpy as np
 import pytest
@@ -110,6 +113,41 @@ def test_interruption_leaves_nothing(las, tmp_path, number):
     assert [p.name for p in tmp_path.iterdir()] == ["a.las"]
 
 
+CLEANING = """
+import signal, sys, time
+from cadt.terrain import __main__ as program
+for number in (signal.SIGINT, signal.SIGTERM):
+    signal.signal(number, program._stop)
+try:
+    print("ready", flush=True)
+    time.sleep(60)
+except KeyboardInterrupt:
+    print("cleaning", flush=True)
+    time.sleep(float(sys.argv[1]))
+    print("clean", flush=True)
+"""
+
+
+@pytest.mark.parametrize(("wait", "clean"), [(0.0, True), (0.7, False)])
+@pytest.mark.parametrize("second", [signal.SIGINT, signal.SIGTERM])
+def test_a_second_signal(wait, clean, second):
+    """With the first it changes nothing; later it ends the process at once."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", CLEANING, "1" if clean else "60"],
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": PACKAGES},
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509
+    )
+    assert process.stdout.readline() == "ready\n"
+    process.send_signal(signal.SIGTERM)
+    assert process.stdout.readline() == "cleaning\n"
+    time.sleep(wait)
+    process.send_signal(second)
+    said = process.communicate(timeout=30)[0]
+    assert (process.returncode, said) == ((0, "clean\n") if clean else (-second, ""))
+
+
 @pytest.mark.parametrize(
     ("package", "words", "install"),
     [
@@ -193,6 +231,65 @@ def test_one_program(las, tmp_path, installed):
 
     with rasterio.open(tmp_path / "x.tif") as raster:
         assert np.allclose(raster.read(1), np.load(tmp_path / "o.npy"), atol=1e-9, rtol=0, equal_nan=True)
+
+
+class Anything(type):
+    """A class that has every name."""
+
+    def __getattr__(cls, name):
+        return Anything(name, (), {"__init__": lambda self, *words, **more: None})
+
+
+@pytest.fixture
+def provider(monkeypatch):
+    """The plugin, without QGIS."""
+    for name in ("processing", "processing.core", "processing.core.ProcessingConfig", "qgis", "qgis.core"):
+        module = types.ModuleType(name)
+        module.__getattr__ = lambda name: Anything(name, (Exception,) if name.endswith("Exception") else (), {})
+        monkeypatch.setitem(sys.modules, name, module)
+    spec = importlib.util.spec_from_file_location("cadt_provider", ROOT / "python" / "cadt_qgis" / "provider.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def run_algorithm(provider, monkeypatch, tmp_path, text, canceled=lambda: False):
+    """An algorithm that runs a program of Python's; what QGIS is told."""
+    script = tmp_path / "program"
+    script.write_text(f"#!{sys.executable}\n{text}")
+    script.chmod(0o755)
+    monkeypatch.setattr(provider, "program", lambda: str(script))
+    told = []
+    algorithm = provider.Tin()
+    algorithm.parameterAsFile = algorithm.parameterAsFileOutput = lambda *_: "a"
+    algorithm.parameterAsString = lambda *_: ""
+    feedback = types.SimpleNamespace(isCanceled=canceled, pushCommandInfo=lambda _: None, pushConsoleInfo=told.append)
+    algorithm.processAlgorithm({}, None, feedback)
+    return "".join(told)
+
+
+def test_qgis_stops_the_program_once(provider, monkeypatch, tmp_path):
+    """One signal, and time to clean up."""
+    text = """
+import pathlib, signal, sys, time
+signals = []
+signal.signal(signal.SIGTERM, lambda number, frame: signals.append(number))
+pathlib.Path(__file__).with_name("ready").touch()
+while not signals:
+    time.sleep(0.01)
+time.sleep(1)
+print(len(signals), file=sys.stderr)
+sys.exit(130)
+"""
+    said = run_algorithm(provider, monkeypatch, tmp_path, text, canceled=(tmp_path / "ready").exists)
+    assert said == "1\n"
+
+
+def test_qgis_reads_what_is_no_text_of_the_locale(provider, monkeypatch, tmp_path):
+    monkeypatch.setattr(locale, "getpreferredencoding", lambda *_: "ascii")
+    monkeypatch.setattr(locale, "getencoding", lambda: "ascii", raising=False)
+    text = "import sys\nsys.stderr.buffer.write('Höhe '.encode() + bytes([255]))\n"
+    assert run_algorithm(provider, monkeypatch, tmp_path, text) == "Höhe \ufffd"
 
 
 def test_qgis(las, tmp_path, installed, monkeypatch):

@@ -352,6 +352,21 @@ def test_regular_grids(general: np.ndarray, rescale: bool) -> None:
     assert not np.isnan(border).any()
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("rescale", [False, True])
+@pytest.mark.parametrize("at", [0.0, 1.0, np.inf, np.nan, 5e-324])
+def test_grids_without_an_area(rescale: bool, at: float) -> None:
+    """All of x or of y at one place, or at none."""
+    p = np.random.default_rng(5).uniform(-1, 1, (300, 2))
+    along, across = np.linspace(-0.4, 0.4, 5000), np.array([0.0, at])
+    for queries in (np.meshgrid(across, along), np.meshgrid(along, across), np.meshgrid(across[::-1], along)):
+        assert np.isnan(at) or _interpolate.regular_grid(queries) is not None
+        found = ours.griddata(p, p[:, 0], tuple(queries), rescale=rescale)
+        expected = scipy.interpolate.griddata(p, p[:, 0], tuple(queries), rescale=rescale)
+        assert np.allclose(found, expected, rtol=0, atol=1e-12, equal_nan=True)
+    assert np.isnan(ours.griddata(p, p[:, 0], tuple(np.meshgrid([-1.7e308, 1.7e308], along)))).all()
+
+
 def test_nearest_without_triangles() -> None:
     line = np.stack([np.arange(5.0), np.arange(5.0)], axis=1)
     assert ours.NearestNDInterpolator(line, np.arange(5))([[3.2, 3]]) == [3]

@@ -128,7 +128,7 @@ class _OnMesh:
         return result.reshape(shape + self.values_shape)  # type: ignore[attr-defined]
 
     def _raster(self, x: np.ndarray, y: np.ndarray, rows_are_x: bool) -> np.ndarray | None:
-        """Values at all (x, y), which is quicker than one by one; None if x or y are not equidistant.
+        """Values at all (x, y), which is quicker than one by one; None if x or y are not equidistant, finite and distinct.
 
         Cells are where the library computes them: not further from where they were given than rounding is, and than
         1e-11 of the grid's extent.
@@ -136,6 +136,8 @@ class _OnMesh:
         if self.values.dtype.kind == "c":
             return None
         for a in (x, y):
+            if a[0] == a[-1] or not np.isfinite(a).all() or not np.isfinite(float(a[-1]) - float(a[0])):
+                return None
             exact = a[0] + (a[-1] - a[0]) / (len(a) - 1) * np.arange(len(a))
             rounding = 4 * np.finfo(np.double).eps * np.abs(a).max()
             if not (np.abs(exact - a).max() <= rounding <= 1e-11 * abs(a[-1] - a[0])):
@@ -144,6 +146,8 @@ class _OnMesh:
         if self.scale is not None:
             axes = [(a - self.offset[k]) / self.scale[k] for k, a in enumerate(axes)]  # type: ignore[attr-defined]
         steps = [(a[-1] - a[0]) / (len(a) - 1) for a in axes]
+        if not all(steps):  # so small that nothing is left of them
+            return None
         corner = [a[0] - step / 2 for a, step in zip(axes, steps)]
         raster = self.tri.mesh._raster(self.values[:, 0], (*corner, *steps), len(y), len(x))
         if rows_are_x:

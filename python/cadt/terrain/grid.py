@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import sys
 from typing import TYPE_CHECKING
 
 from ._files import check_input, why
@@ -79,7 +80,15 @@ def check_size(columns: float, rows: float, about: str) -> None:
 
 
 def grid_of_file(path: str, crs: pyproj.CRS | None, bounds: Box | None) -> Grid:
-    """The grid of a raster file; with `bounds` the cells of that grid that cover them."""
+    """The grid of a raster file; with `bounds` the cells of that grid that cover them.
+
+    Raises
+    ------
+    FileError
+        The file is no raster, or turned. CrsError: its reference system is another one.
+    UsageError
+        `bounds` are too many cells, or none.
+    """
     try:
         import rasterio
     except ImportError as error:
@@ -104,10 +113,25 @@ def grid_of_file(path: str, crs: pyproj.CRS | None, bounds: Box | None) -> Grid:
     if bounds is None:
         return whole
     x0, y0, x1, y1 = bounds
-    left, right = math.floor((x0 - whole.x0) / whole.dx), math.ceil((x1 - whole.x0) / whole.dx)
-    top, bottom = math.floor((whole.y1 - y1) / whole.dy), math.ceil((whole.y1 - y0) / whole.dy)
-    check_size(right - left, bottom - top, f"--align {path}")
-    return Grid(whole.x0 + left * whole.dx, whole.y1 - top * whole.dy, whole.dx, whole.dy, right - left, bottom - top)
+    left, right = _floor(x0, whole.x0, whole.dx), -_floor(-x1, -whole.x0, whole.dx)
+    top, bottom = _floor(-y1, -whole.y1, whole.dy), -_floor(y0, whole.y1, whole.dy)
+    columns, rows = right - left, bottom - top
+    check_size(columns, rows, f"--align {path}")
+    if not (columns >= 1 and rows >= 1):
+        raise UsageError(f"--bounds: they are {columns:.0f} x {rows:.0f} cells of {path}: take larger ones")
+    x0, y1 = whole.x0 + left * whole.dx, whole.y1 - top * whole.dy
+    return Grid(x0, y1, whole.dx, whole.dy, int(columns), int(rows))
+
+
+def _floor(place: float, origin: float, cell: float) -> float:
+    """Whole cells from the origin up to a place. What is whole but for the rounding of decimals is whole."""
+    exact = (place - origin) / cell
+    if not math.isfinite(exact):
+        return exact
+    near = float(round(exact))
+    # That of the number of cells, as in `cells_along`, and that of places far from 0.
+    rounding = 1e-9 * max(1.0, abs(near)) + 4 * sys.float_info.epsilon * max(abs(place), abs(origin)) / cell
+    return near if abs(exact - near) <= min(rounding, 1e-3) else float(math.floor(exact))
 
 
 def _horizontal(crs: pyproj.CRS) -> pyproj.CRS:

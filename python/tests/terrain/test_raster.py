@@ -14,7 +14,7 @@ from cadt import terrain
 from cadt.terrain._buckets import Buckets
 from cadt.terrain._mesh import rasterize
 from cadt.terrain._tiles import TiledRaster, discs
-from cadt.terrain.grid import Grid
+from cadt.terrain.grid import Grid, grid_of_file, parse_bounds
 from clouds import hills, many
 from rasterio.crs import CRS
 
@@ -130,6 +130,32 @@ def test_the_cells_of_another_raster(las, tmp_path, cadt_terrain):
     las("heights.laz", hills(100), crs="EPSG:25832+5783")  # with heights: the same in the plane
     cadt_terrain("raster", "heights.laz", "x.tif", "--align", "one.tif")
     cadt_terrain("raster", "a.laz", "y.tif", "--align", "a.laz", code=3, says="a.laz: is no raster")
+
+
+@pytest.mark.parametrize("at", [(0.0, 0.0), (500_000.0, 5_400_000.0), (-500_000.0, -5_400_000.0)])
+def test_bounds_on_the_cells_of_another_raster(las, tmp_path, cadt_terrain, at):
+    """Decimals are no doubles: 0.3 / 0.1 is less than 3."""
+    las("a.las", hills(2000, size=10.0, at=at), offset=(*at, 0.0))
+
+    def bounds(*corners):
+        return "--bounds=" + ",".join(f"{at[k % 2] + c:.10g}" for k, c in enumerate(corners))
+
+    cadt_terrain("raster", "a.las", "one.tif", "--res", "0.1", bounds(0, 0, 10, 10))
+    _, one = read(tmp_path / "one.tif")
+    for k in range(1, 95):
+        box = parse_bounds(bounds(k / 10, k / 10, k / 10 + 0.3, k / 10 + 0.3).partition("=")[2])
+        part = grid_of_file(str(tmp_path / "one.tif"), None, box)
+        assert (part.columns, part.rows) == (3, 3)
+        assert np.allclose((part.x0, part.y1), (at[0] + k / 10, at[1] + k / 10 + 0.3), rtol=0, atol=1e-6)
+    cadt_terrain("raster", "a.las", "two.tif", "--align", "one.tif", bounds(0.3, 0.3, 0.6, 0.6))
+    two, about = read(tmp_path / "two.tif")
+    assert two.shape == (3, 3) and about["transform"].a == one["transform"].a
+    cadt_terrain("raster", "a.las", "three.tif", "--align", "one.tif", bounds(0.301, 0.3, 0.6, 0.599))
+    assert read(tmp_path / "three.tif")[0].shape == (3, 3)
+    cadt_terrain("raster", "a.las", "four.tif", "--align", "one.tif", bounds(0.299, 0.3, 0.6, 0.601))
+    assert read(tmp_path / "four.tif")[0].shape == (4, 4)
+    far = "--bounds=-1e308,-1e308,1e308,1e308"
+    cadt_terrain("raster", "a.las", "x.tif", "--align", "one.tif", far, code=2, says="cells, at most")
 
 
 SLOW = ("dense corner", "far point")  # many buckets are asked again

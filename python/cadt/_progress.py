@@ -20,6 +20,8 @@ def reporter(progress: Any) -> Iterator[Callable[[str, float], object] | None]:
         yield progress
     elif progress is not True:
         raise TypeError("progress must be True, False or a callable(phase, fraction)")
+    elif sys.stderr is None:  # nobody would see it
+        yield None
     else:
         try:
             from tqdm.auto import tqdm
@@ -39,8 +41,13 @@ def _line() -> Iterator[Callable[[str, float], object] | None]:
     if not sys.stderr.isatty():
         yield None
         return
+
+    def write(text: str) -> None:
+        with contextlib.suppress(OSError):  # of a terminal that is gone
+            sys.stderr.write(text)
+            sys.stderr.flush()
+
     try:
-        yield lambda phase, fraction: sys.stderr.write(f"\r\033[Kcadt: {phase} {fraction:4.0%}") and sys.stderr.flush()
+        yield lambda phase, fraction: write(f"\r\033[Kcadt: {phase} {fraction:4.0%}")
     finally:
-        sys.stderr.write("\r\033[K")
-        sys.stderr.flush()
+        write("\r\033[K")

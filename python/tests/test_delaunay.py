@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import itertools
 import pickle
+import sys
 from pathlib import Path
 
 import cadt
@@ -355,6 +356,26 @@ def test_options(points: np.ndarray) -> None:
     # On a GPU, or many processors, it would have ended before the first report.
     cadt.Delaunay(many, backend="host", threads=1, progress=lambda phase, fraction: seen.append((phase, fraction)))
     assert seen and all(0 <= f <= 1 for _, f in seen)
+
+
+@pytest.mark.parametrize("tqdm", [False, True])
+def test_progress_without_a_standard_error(monkeypatch: pytest.MonkeyPatch, tqdm: bool) -> None:
+    """As under pythonw, or with 2>&-; a terminal may go away, too."""
+
+    class Gone:
+        def isatty(self) -> bool:
+            return True
+
+        def write(self, text: str) -> int:
+            raise OSError(5, "Input/output error")
+
+        flush = write
+
+    if not tqdm:
+        monkeypatch.setitem(sys.modules, "tqdm.auto", None)  # type: ignore[arg-type]
+    for stream in (None, Gone()) if not tqdm else (None,):
+        monkeypatch.setattr(sys, "stderr", stream)
+        assert cadt.Delaunay([[0, 0], [1, 0], [0, 1]], progress=True).n_triangles == 1
 
 
 def test_batch(rng: np.random.Generator) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from types import FrameType
 
 from . import errors
-from ._progress import ProgressLine
+from ._progress import ProgressLine, tell, write_out
 
 TOGETHER = 0.5  # seconds after a signal in which others say the same
 _stopped: float | None = None  # when the first signal came
@@ -28,7 +28,7 @@ def _explain(error: BaseException) -> int:
     if isinstance(error, errors.TerrainError):
         code, advice = error.code, ""
     elif isinstance(error, (KeyboardInterrupt, errors.Cancelled)):
-        print("cadt: interrupted", file=sys.stderr)
+        tell("cadt: interrupted")
         return errors.EXIT_INTERRUPTED
     elif isinstance(error, MemoryError):
         code, advice = (
@@ -38,12 +38,9 @@ def _explain(error: BaseException) -> int:
     elif (known := errors.code_of(error)) is not None:
         code, advice = known
     text = str(error) or type(error).__name__
-    print(
-        f"cadt: error: {text if code != errors.EXIT_INTERNAL else f'internal: {type(error).__name__}: {text}'}",
-        file=sys.stderr,
-    )
+    tell(f"cadt: error: {text if code != errors.EXIT_INTERNAL else f'internal: {type(error).__name__}: {text}'}")
     if advice:
-        print(f"  {advice}", file=sys.stderr)
+        tell(f"  {advice}")
     return code
 
 
@@ -79,8 +76,27 @@ def run(command: str, words: Sequence[str]) -> int:
         line.clear()
     if not options.quiet:
         for key, value in summary.items():
-            print(f"{key:<12}{value}", file=sys.stderr)
+            tell(f"{key:<12}{value}")
     return errors.EXIT_DONE
+
+
+def _open_standard_streams() -> None:
+    """Those that the caller has closed: else the next file would get the number of one, and what is written there."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+
+
+def _forget_what_cannot_be_written() -> None:
+    """Python would try it again when it ends, and change the exit code."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            if stream is not None:
+                stream.flush()
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def command(words: Sequence[str]) -> int:
@@ -89,7 +105,7 @@ def command(words: Sequence[str]) -> int:
         from . import _options
 
         if not words or words[0] in ("-h", "--help"):
-            print(_options.main_help(), end="")
+            write_out(_options.main_help())
             return errors.EXIT_DONE if words else errors.EXIT_USAGE
         if words[0] not in _options.SUMMARIES:
             raise errors.UsageError(f"there is no command '{words[0]}'; there are: {', '.join(_options.SUMMARIES)}")
@@ -101,13 +117,16 @@ def command(words: Sequence[str]) -> int:
 
 
 def main() -> int:
+    _open_standard_streams()
     for number in (signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGTERM)):
         if signal.getsignal(number) is not signal.SIG_IGN:  # nohup stays nohup
             signal.signal(number, _stop)
     # What libraries have to say about a file becomes one error of ours, or nothing.
     logging.getLogger("laspy").addHandler(logging.NullHandler())
     warnings.simplefilter("ignore")
-    return command(sys.argv[1:])
+    code = command(sys.argv[1:])
+    _forget_what_cannot_be_written()
+    return code
 
 
 if __name__ == "__main__":

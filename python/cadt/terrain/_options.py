@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
+from ._progress import write_out
 from .cloud import READ_FORMATS
 from .errors import UsageError
 
@@ -66,6 +67,9 @@ Examples:
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message}; see: {self.prog} --help")
+
+    def print_help(self, file: Any = None) -> None:
+        write_out(self.format_help())
 
 
 def _classes(text: str) -> list[int]:

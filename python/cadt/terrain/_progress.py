@@ -1,11 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One line on a terminal; nothing in a pipe, and nothing with --quiet."""
+"""What is said: one line of progress on a terminal; none in a pipe, and none with --quiet."""
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 import sys
 import time
+
+from ._files import why
+from .errors import FileError
+
+
+def tell(text: str, end: str = "\n") -> None:
+    """Text on standard error, if there is one and it takes it: no work fails for what cannot be said."""
+    if sys.stderr is not None:
+        with contextlib.suppress(OSError):
+            print(text, end=end, file=sys.stderr, flush=True)
+
+
+def write_out(text: str) -> None:
+    """Text on standard output. Raises FileError if it cannot be written."""
+    try:
+        print(text, end="", flush=True)
+    except OSError as error:
+        raise FileError("standard output", f"cannot be written: {why(error)}") from error
 
 
 class ProgressLine:
@@ -13,7 +32,7 @@ class ProgressLine:
 
     def __init__(self, quiet: bool = False) -> None:
         self.quiet = quiet
-        self._shown = not quiet and sys.stderr.isatty()
+        self._shown = not quiet and sys.stderr is not None and sys.stderr.isatty()
         self._length = 0
         self._last = 0.0
 
@@ -21,8 +40,7 @@ class ProgressLine:
         if not self._shown:
             return
         cut = text[: max(shutil.get_terminal_size().columns - 1, 10)]
-        sys.stderr.write("\r" + cut.ljust(self._length))
-        sys.stderr.flush()
+        tell("\r" + cut.ljust(self._length), end="")
         self._length = max(self._length, len(cut))
         self._last = time.monotonic()
 
@@ -33,15 +51,14 @@ class ProgressLine:
 
     def clear(self) -> None:
         if self._length:
-            sys.stderr.write("\r" + " " * self._length + "\r")
-            sys.stderr.flush()
+            tell("\r" + " " * self._length + "\r", end="")
             self._length = 0
 
     def say(self, text: str) -> None:
         """A line that stays; not with --quiet."""
         self.clear()
         if not self.quiet:
-            print(text, file=sys.stderr)
+            tell(text)
 
     def warn(self, text: str) -> None:
         self.say(f"cadt: warning: {text}")

@@ -113,6 +113,41 @@ def test_interruption_leaves_nothing(las, tmp_path, number):
     assert [p.name for p in tmp_path.iterdir()] == ["a.las"]
 
 
+@pytest.mark.parametrize("closed", ["2>&-", "2>/dev/full", ">&- 2>&-", "<&- >&- 2>&-"])
+def test_without_a_standard_error(las, tmp_path, closed):
+    las("a.las", hills(500))
+    expected = None
+    for where in ("", closed):
+        command = f'"{sys.executable}" -m cadt.terrain raster a.las {{}} --res 5 {where}'
+        for words, code in (("o.tif", 0), ("o.xyz", 2)):
+            done = subprocess.run(
+                ["sh", "-c", command.format(words)],
+                cwd=tmp_path,
+                capture_output=True,
+                check=False,
+                env={**os.environ, "PYTHONPATH": PACKAGES},
+            )
+            assert (done.returncode, done.stdout) == (code, b"")
+        found = (tmp_path / "o.tif").read_bytes()
+        expected = expected or found
+        assert found == expected
+    assert done.stderr == b""
+
+
+@pytest.mark.parametrize(("words", "code"), [("--help", 3), ("raster --help", 3), ("", 3), ("rasters", 2)])
+def test_a_standard_output_that_cannot_be_written(words, code):
+    done = subprocess.run(
+        ["sh", "-c", f'"{sys.executable}" -m cadt.terrain {words} > /dev/full'],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": PACKAGES},
+    )
+    assert done.returncode == code
+    if code == 3:
+        assert done.stderr == "cadt: error: standard output: cannot be written: No space left on device\n"
+
+
 CLEANING = """
 import signal, sys, time
 from cadt.terrain import __main__ as program

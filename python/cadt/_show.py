@@ -105,8 +105,9 @@ def save(mesh: Mesh, path: Any, z: Any) -> None:
     if suffix != ".npz" and suffix not in (known := _need("meshio", "meshio").extension_to_filetypes):
         raise FileError(f"{path}: meshes are written to files that end in one of: .npz, {', '.join(known)}", str(path))
     heights = None if z is None else _heights(mesh, z)
+    target = Path(os.path.realpath(path))  # a link is followed: the link stays
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=suffix, dir=path.parent)
+        handle, name = tempfile.mkstemp(prefix=f".{target.stem}-", suffix=suffix, dir=target.parent)
     except OSError as e:
         raise _not_written(path, e) from None
     os.close(handle)
@@ -125,7 +126,7 @@ def save(mesh: Mesh, path: Any, z: Any) -> None:
         mask = os.umask(0)
         os.umask(mask)
         os.chmod(name, 0o666 & ~mask)
-        os.replace(name, path)
+        os.replace(name, target)
     except OSError as e:
         os.unlink(name)
         raise _not_written(path, e) from None

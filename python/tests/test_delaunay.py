@@ -290,6 +290,22 @@ def test_names_of_files(tmp_path: Path) -> None:
         assert np.array_equal(f["simplices"], mesh.simplices) and f["height"].tolist() == list(range(10))
 
 
+def test_files_through_links(tmp_path: Path) -> None:
+    """They stay, also one to a file that is not there yet."""
+    mesh = cadt.Delaunay(np.random.default_rng(0).random((10, 2)))
+    (tmp_path / "there").mkdir()
+    (tmp_path / "link.npz").symlink_to(Path("there") / "mesh.npz")
+    (tmp_path / "lost.npz").symlink_to(Path("no") / "mesh.npz")
+    for _ in range(2):
+        mesh.save(tmp_path / "link.npz")
+        assert (tmp_path / "link.npz").is_symlink() and not (tmp_path / "there" / "mesh.npz").is_symlink()
+    with np.load(tmp_path / "there" / "mesh.npz") as f:
+        assert np.array_equal(f["simplices"], mesh.simplices)
+    with pytest.raises(cadt.FileError, match=r"lost\.npz: cannot be written"):
+        mesh.save(tmp_path / "lost.npz")
+    assert sorted(f.name for f in tmp_path.rglob("*")) == ["link.npz", "lost.npz", "mesh.npz", "there"]
+
+
 def test_meshio(tmp_path: Path) -> None:
     meshio = pytest.importorskip("meshio")
     mesh = cadt.Delaunay(np.random.default_rng(0).random((10, 2)))

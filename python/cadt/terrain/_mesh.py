@@ -68,8 +68,17 @@ def rasterize(
     return np.asarray(mesh._raster(z, corner, grid.rows, grid.columns, method, longest))
 
 
-def kept_triangles(mesh: cadt.Delaunay, max_edge: float | None) -> NDArray[np.int64] | None:
-    """Triangles without an edge longer than `max_edge`; None: all of them."""
+def kept_triangles(mesh: cadt.Delaunay, max_edge: float | None, name: str | None = None) -> NDArray[np.int64] | None:
+    """Triangles without an edge longer than `max_edge`; None: all of them.
+
+    Raises
+    ------
+    FileError
+        There are none; `name` is that of the points. Without a name none are an answer.
+    """
     if max_edge is None or math.isinf(max_edge):
         return None
-    return np.asarray(mesh.alpha_shape(math.inf, max_edge=max_edge)[0], dtype=np.int64)
+    kept = np.asarray(mesh.alpha_shape(math.inf, max_edge=max_edge)[0], dtype=np.int64)
+    if len(kept) == 0 and name is not None:
+        raise FileError(name, f"every triangle has an edge longer than --max-edge {max_edge:g}; take a larger one")
+    return kept

@@ -172,13 +172,15 @@ def contour_command(options: argparse.Namespace, line: ProgressLine) -> dict[str
     check_output(options.output, WRITE_FORMATS, options.inputs)
     cloud = read(options, line)
     require_crs(cloud, options.crs, options.output)
-    mesh = triangulate(cloud.xy, ", ".join(cloud.sources), options, line)
+    name = ", ".join(cloud.sources)
+    mesh = triangulate(cloud.xy, name, options, line)
     line.step("following the lines")
     xy, begin, level = contour_lines(mesh, cloud.z, options.interval, options.base, options.max_edge)
     if len(level) == 0:
+        kept_triangles(mesh, options.max_edge, name)  # says so, if there are none
         low, high = float(cloud.z.min()), float(cloud.z.max())
         raise FileError(
-            ", ".join(cloud.sources),
+            name,
             f"no line at {options.base:g} + k {options.interval:g}: the heights are {low:g} to {high:g}; take a smaller --interval",
         )
     line.step(f"writing {options.output}")

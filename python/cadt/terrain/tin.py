@@ -47,6 +47,8 @@ def write_ply(file: IO[bytes], cloud: Cloud, corners: NDArray[np.int32]) -> None
 def write_glb(file: IO[bytes], path: str, cloud: Cloud, corners: NDArray[np.int32]) -> None:
     """glTF 2.0: y is up and numbers are floats, so that positions are relative to the middle of the points, and the place
     of the middle is the node's translation."""
+    if len(corners) == 0:
+        raise UsageError(f"{path}: there are no triangles, without which there is no .glb; write a .ply")
     x0, y0, x1, y1 = cloud.bounds
     middle = ((x0 + x1) / 2, (y0 + y1) / 2, (float(cloud.z.min()) + float(cloud.z.max())) / 2)
     n, bytes_points, bytes_faces = len(cloud), 12 * len(cloud), 12 * len(corners)
@@ -96,7 +98,15 @@ def write_glb(file: IO[bytes], path: str, cloud: Cloud, corners: NDArray[np.int3
 
 def write_tin(path: str, cloud: Cloud, corners: NDArray[np.int32]) -> None:
     """Writes triangles (t, 3) over the points of a cloud; the format is that of the suffix. The file appears when it is
-    complete."""
+    complete.
+
+    Raises
+    ------
+    UsageError
+        There is no such format, or the file would be too large, or a .glb without triangles, which glTF does not have.
+    FileError
+        It cannot be written.
+    """
     suffix = check_output(path, WRITE_FORMATS, ())
     if suffix in FEATURES:
         if len(corners) > MOST_POLYGONS:
@@ -119,9 +129,10 @@ def tin_command(options: argparse.Namespace, line: ProgressLine) -> dict[str, ob
     cloud = read(options, line)
     if suffix in FEATURES:
         require_crs(cloud, options.crs, options.output)
-    mesh = triangulate(cloud.xy, ", ".join(cloud.sources), options, line)
+    name = ", ".join(cloud.sources)
+    mesh = triangulate(cloud.xy, name, options, line)
     corners = np.asarray(mesh.simplices)
-    kept = kept_triangles(mesh, options.max_edge)
+    kept = kept_triangles(mesh, options.max_edge, name)
     if kept is not None:
         corners = corners[kept]
     line.step(f"writing {options.output}")

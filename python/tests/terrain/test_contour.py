@@ -160,6 +160,7 @@ def test_the_file(las, tmp_path, cadt_terrain, suffix):
         (["no/o.gpkg", "--interval", "5"], 3, "there is no folder 'no'"),
         (["/proc/o.gpkg", "--interval", "5"], 3, "/proc/o.gpkg: cannot be written"),
         (["o.gpkg", "--interval", "5", "--max-edge", "-1"], 2, "--max-edge -1"),
+        (["o.gpkg", "--interval", "5", "--max-edge", "0.001"], 3, "every triangle has an edge longer than --max-edge 0.001"),
     ],
 )
 def test_what_is_refused(las, cadt_terrain, words, code, says):

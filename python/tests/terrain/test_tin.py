@@ -85,6 +85,11 @@ def test_polygons(las, tmp_path, cadt_terrain, suffix):
 
 def test_what_is_refused(las, tmp_path, cadt_terrain):
     las("a.laz", hills(100))
+    for suffix in ("glb", "ply", "gpkg"):
+        short = "a.laz: every triangle has an edge longer than --max-edge 0.001; take a larger one"
+        cadt_terrain("tin", "a.laz", f"o.{suffix}", "--max-edge", "0.001", code=3, says=short)
+    with pytest.raises(terrain.UsageError, match="there are no triangles"):
+        terrain.write_tin("o.glb", terrain.read_cloud(["a.laz"]), np.empty((0, 3), np.int32))
     las("none.laz", hills(100), crs=None)
     cadt_terrain(
         "tin", "a.laz", "o.stl", code=2, says="unknown suffix '.stl'; end the output's name in one of: ply, glb"

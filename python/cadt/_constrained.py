@@ -388,9 +388,15 @@ def find_crossings(points: Any, segments: Any, *, threads: int | None = None) ->
 
     Segments cross that have one common point, inside both, at which no point lies. O(n log n + pairs) expected.
 
+    Raises
+    ------
+    InputError
+        As for `ConstrainedDelaunay`.
+    OptionError
+        `threads` is no whole number, or negative.
+
     >>> cadt.find_crossings([[0, 0], [2, 2], [0, 2], [2, 0]], [[0, 1], [2, 3]])
     array([[0, 1]], dtype=int32)
     """
-    if threads is not None and threads < 0:
-        raise OptionError(f"threads must not be negative, but it is {threads}", "threads")
-    return _cadt.find_crossings(as_points(points), as_pairs(segments, "segments"), threads or 0)
+    most = _devices.whole(threads, "threads", 31)
+    return _cadt.find_crossings(as_points(points), as_pairs(segments, "segments"), most)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import atexit
 import ctypes
+import operator
 import os
 import threading
 from collections import OrderedDict
@@ -52,6 +53,20 @@ def devices() -> list[DeviceInfo]:
     return [DeviceInfo(**d) for d in _cadt.devices()]
 
 
+def whole(value: Any, option: str, bits: int) -> int:
+    """A whole number below 2**bits, 0 for None. Raises OptionError for all else."""
+    if value is None:
+        return 0
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise OptionError(f"{option} must be a whole number, not {value!r}", option) from None
+    if not 0 <= number < 1 << bits:
+        said = number if abs(number) < 1 << 100 else "one of so many digits"
+        raise OptionError(f"{option} must be a whole number from 0 to 2**{bits} - 1, not {said}", option)
+    return number
+
+
 def make_options(
     backend: str | None,
     device: int | str | None,
@@ -65,10 +80,7 @@ def make_options(
         raise OptionError(f"order must be 'canonical' or 'fast', not {order!r}", "order")
     if statistics not in ("none", "counters", "timing"):
         raise OptionError(f"statistics must be 'none', 'counters' or 'timing', not {statistics!r}", "statistics")
-    if threads is not None and not 0 <= threads < 2**31:
-        raise OptionError(f"threads must be a small number that is not negative, not {threads}", "threads")
-    if max_memory is not None and max_memory < 0:
-        raise OptionError(f"max_memory must not be negative, but it is {max_memory}", "max_memory")
+    threads, max_memory = whole(threads, "threads", 31), whole(max_memory, "max_memory", 63)
     if device is not None and backend is None:
         raise OptionError("device needs backend=: 'host', 'opencl' or 'cuda'", "device")
     if backend is not None and not isinstance(backend, str):
@@ -76,9 +88,9 @@ def make_options(
     return _cadt.Options(
         backend or "auto",
         "" if device is None else str(device),
-        threads or 0,
+        threads,
         order == "canonical",
-        max_memory or 0,
+        max_memory,
         statistics,
         queue,
     )

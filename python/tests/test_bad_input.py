@@ -305,6 +305,12 @@ REFUSED: list[tuple[type[Exception], Callable[[], object]]] = [
     (OptionError, lambda: cadt.Delaunay(P, threads=-1)),
     (OptionError, lambda: cadt.Delaunay(P, threads=2**40)),
     (OptionError, lambda: cadt.Delaunay(P, max_memory=-1)),
+    *[(OptionError, lambda n=n: cadt.Delaunay(P, max_memory=n)) for n in (1e9, 2**70, 2**63, "2", np.zeros(2), 10**5000)],
+    *[(OptionError, lambda n=n: cadt.Delaunay(P, threads=n)) for n in (1.5, "2", 2**31, [2])],
+    (OptionError, lambda: cadt.triangulate_batch(P, [0, 50], threads=2.0)),  # type: ignore[arg-type]
+    (OptionError, lambda: cadt.ConstrainedDelaunay(P, [[0, 1]], max_memory=1e9)),  # type: ignore[arg-type]
+    (OptionError, lambda: cadt.find_crossings(P, [[0, 1]], threads=2.0)),  # type: ignore[arg-type]
+    (OptionError, lambda: cadt.find_crossings(P, [[0, 1]], threads=-1)),
     (OptionError, lambda: cadt.Delaunay(P, statistics="all")),
     (TypeError, lambda: cadt.Delaunay(P, progress=3)),  # type: ignore[arg-type]
     (InputError, lambda: cadt.triangulate_batch(P, [0, 60])),
@@ -334,6 +340,15 @@ def test_arguments_that_are_refused(k: int, monkeypatch: pytest.MonkeyPatch) -> 
     with pytest.raises(error) as caught:
         call()
     assert str(caught.value) and "incompatible function arguments" not in str(caught.value)
+
+
+def test_numbers_of_options() -> None:
+    for name in ("threads", "max_memory"):
+        with pytest.raises(OptionError, match=f"{name} must be a whole number, not 1.5") as caught:
+            cadt.Delaunay(P, **{name: 1.5})
+        assert caught.value.option == name
+    same = cadt.Delaunay(P, threads=np.int64(2), max_memory=np.uint64(2**62)).hash  # type: ignore[arg-type]
+    assert same == cadt.Delaunay(P).hash
 
 
 def test_no_queries_and_no_values() -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import numbers
 import operator
 from typing import Any
 
@@ -60,7 +61,9 @@ def to_array(points: Any, what: str) -> np.ndarray:
     points = unmasked(points, what, f"pass {what}.compressed() or the rows without a mask")
     if isinstance(points, (list, tuple)) or hasattr(points, "__array__"):
         try:
-            return np.asarray(points)
+            return _of_columns(points, np.asarray(points), what)
+        except InputError:
+            raise
         except ValueError as e:
             raise InputError(f"{what} must have shape (n, 2): {e}", 0) from None
     if hasattr(points, "__dlpack__"):
@@ -76,14 +79,7 @@ def to_float(a: np.ndarray, what: str) -> np.ndarray:
     if a.dtype.kind in "iu":
         f = a.astype(np.float64)
         if a.dtype.itemsize >= 8 and a.size:
-            beyond = (a > 2**53) | (a < -(2**53)) if a.dtype.kind == "i" else a > 2**53
-            changed = beyond.any(axis=-1) if a.ndim > 1 else beyond
-            if changed.any():
-                first = int(np.argmax(changed))
-                raise InputError(
-                    f"{what}: the integers of row {first} exceed 2**53 and have no float64; subtract an offset first",
-                    first,
-                )
+            _check_unchanged(a, f, what)
         return f
     if a.dtype.kind == "f" and a.dtype.itemsize <= 8:
         return a.astype(np.float64 if a.dtype.itemsize != 4 else np.float32)
@@ -91,6 +87,39 @@ def to_float(a: np.ndarray, what: str) -> np.ndarray:
         kind = "objects" if a.dtype == object else str(a.dtype)
         raise TypeError(f"{what} must be float64 or float32 (or integers), not {kind}")
     raise TypeError(f"{what} must be float64 or float32 (or integers), not {a.dtype}: convert them first")
+
+
+def _check_unchanged(a: np.ndarray, f: np.ndarray, what: str) -> None:
+    """Raises InputError for the first integer of 64 bits that is another number as float64."""
+    if not ((a > 2**53) | (a < -(2**53)) if a.dtype.kind == "i" else a > 2**53).any():
+        return
+    fits = f < (2.0**63 if a.dtype.kind == "i" else 2.0**64)  # what does not was rounded up
+    _refuse_rows(~fits | (np.where(fits, f, 0).astype(a.dtype) != a), what)
+
+
+def _refuse_rows(changed: np.ndarray, what: str) -> None:
+    rows = changed.any(axis=-1) if changed.ndim > 1 else changed
+    if rows.any():
+        first = int(np.argmax(rows))
+        raise InputError(
+            f"{what}: the integers of row {first} exceed 2**53 and have no float64; subtract an offset first",
+            first,
+        )
+
+
+def _of_columns(table: Any, a: np.ndarray, what: str) -> np.ndarray:
+    """`a`, or its numbers where it has the objects of pandas' columns that can have gaps (Float64, Int64, Arrow's)."""
+    dtypes: Any = getattr(table, "dtypes", None)
+    kinds = {getattr(d, "kind", "O") for d in (dtypes if hasattr(dtypes, "__iter__") else (dtypes,))}
+    if a.dtype != object or not kinds <= set("iuf"):
+        return a
+    gaps = np.frompyfunc(lambda v: not isinstance(v, numbers.Real), 1, 1)(a).astype(bool)
+    if gaps.any():
+        first = int(np.argmax(gaps.any(axis=-1) if gaps.ndim > 1 else gaps))
+        raise InputError(f"{what}: row {first} has a missing value (NA): drop such rows", first)
+    f = a.astype(np.float64)
+    _refuse_rows((a != f).astype(bool) & ~np.isnan(f), what)
+    return f
 
 
 def index_of(i: Any, n: int, what: str) -> int:
@@ -102,8 +131,9 @@ def index_of(i: Any, n: int, what: str) -> int:
 
 
 def is_x_and_y(xi: Any) -> bool:
-    """Whether queries are given as a tuple of arrays x and y. Raises InputError where it could as well be two points."""
-    if not (isinstance(xi, tuple) and len(xi) == 2) or np.isscalar(xi[0]):
+    """Whether queries are given as a tuple of arrays x and y, of which one may be a number. Raises InputError where it
+    could as well be two points."""
+    if not (isinstance(xi, tuple) and len(xi) == 2) or (np.isscalar(xi[0]) and np.isscalar(xi[1])):
         return False
     if all(isinstance(a, (list, tuple)) and len(a) == 2 for a in xi):
         raise InputError(
@@ -130,7 +160,7 @@ def as_queries(xi: Any) -> tuple[np.ndarray, tuple[int, ...]]:
 
 def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:
     """Values of shape (n, ...) as a contiguous (n, m) array of float64, and the shape of one point's."""
-    a = as_array(values, "values", f"real numbers of shape ({n},) or ({n}, m)", FILL)
+    a = _of_columns(values, as_array(values, "values", f"real numbers of shape ({n},) or ({n}, m)", FILL), "values")
     if a.dtype.kind not in "iuf":
         raise TypeError(f"values must be real numbers, not {a.dtype}")
     if a.ndim == 0 or a.shape[0] != n:
@@ -140,8 +170,10 @@ def as_values(values: Any, n: int) -> tuple[np.ndarray, tuple[int, ...]]:
 
 
 def as_indices(a: Any, what: str) -> np.ndarray:
-    """A copy of integers of shape (t, 3) as int32."""
+    """A copy of integers of shape (t, 3) as int32; nothing, such as an empty list, is of shape (0, 3)."""
     a = as_array(a, what, "integers of shape (t, 3)")
+    if a.shape in ((0,), (0, 3)):
+        return np.empty((0, 3), dtype=np.int32)
     if a.ndim != 2 or a.shape[1] != 3 or a.dtype.kind not in "iu":
         raise InputError(f"{what} must be integers of shape (t, 3), not {a.dtype} of {a.shape}", 0)
     if a.size and (a.max() > np.iinfo(np.int32).max or a.min() < -1):

@@ -26,7 +26,7 @@ _METHODS = ("linear", "nearest", "natural")
 class Queries:
     """Base of `Mesh`. A mesh without triangles answers as one that all queries are outside of.
 
-    Queries `xi` are an array of shape (..., 2), or a tuple of two arrays: x and y.
+    Queries `xi` are an array of shape (..., 2), or a tuple of two arrays: x and y, of which one may be a number.
     """
 
     _gpu: _gpu.Mesh | None

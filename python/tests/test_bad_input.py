@@ -135,14 +135,64 @@ def test_coordinates_that_are_not_finite(bad: float, dtype: type) -> None:
         cadt.triangulate_batch(p, [0, 20, 50])
 
 
-@pytest.mark.parametrize("huge", [2**53 + 1, 2**60, 2**63 - 1, -(2**63)])
+@pytest.mark.parametrize("huge", [2**53 + 1, -(2**53) - 1, 2**60 + 1, 2**63 - 1, 2**63 - 512, -(2**63) + 1])
 def test_integers_without_a_double(huge: int) -> None:
     with pytest.raises(InputError, match="2\\*\\*53") as caught:
         cadt.Delaunay(np.array([[0, 0], [1, 0], [0, huge]]))
     assert caught.value.index == 2
-    with pytest.raises(InputError):
-        cadt.Delaunay(np.array([[0, 2**63]], dtype=np.uint64))
-    assert cadt.Delaunay([[0, 0], [2**53, 0], [0, -(2**53)]]).n_triangles == 1
+    for unsigned in (2**64 - 1, 2**64 - 1024, 2**63 + 1):
+        with pytest.raises(InputError):
+            cadt.Delaunay(np.array([[0, unsigned]], dtype=np.uint64))
+
+
+@pytest.mark.parametrize("huge", [2**53, -(2**53), 2**53 + 2, 2**54, 2**62, 2**63 - 1024, -(2**63)])
+@pytest.mark.parametrize("dtype", ["i8", ">i8"])
+def test_large_integers_with_a_double(huge: int, dtype: str) -> None:
+    p = np.array([[0, 0], [1, 0], [0, huge]], dtype=dtype)
+    assert as_points(p).tolist() == p.tolist()
+    assert cadt.Delaunay(p).n_triangles == 1
+    unsigned = np.array([[2**63, 2**64 - 2048]], dtype=np.uint64)
+    assert [list(map(int, row)) for row in as_points(unsigned)] == unsigned.tolist()
+
+
+@pytest.mark.parametrize("kind", ["Float64", "Float32", "Int64", "UInt8", "float64[pyarrow]", "int64[pyarrow]"])
+def test_columns_that_can_have_gaps(kind: str) -> None:
+    pandas = pytest.importorskip("pandas")
+    if "pyarrow" in kind:
+        pytest.importorskip("pyarrow")
+    plain = pandas.DataFrame(np.round(P * 200), columns=["x", "y"])
+    table = plain.astype(kind)
+    mesh = cadt.Delaunay(table)
+    assert mesh.hash == cadt.Delaunay(plain).hash and (mesh.find_simplex(table) == mesh.find_simplex(plain)).all()
+    for values, same in ((table, plain), (table["x"], plain["x"])):
+        assert np.array_equal(mesh.interpolate(values, plain), same.to_numpy())
+    if "nt64" in kind:
+        table.iloc[7, 1] = 2**53 + 1
+        with pytest.raises(InputError, match="row 7 exceed") as caught:
+            cadt.Delaunay(table)
+        assert caught.value.index == 7
+    table.iloc[5, 0] = pandas.NA
+    for call in (cadt.Delaunay, MESH.find_simplex):
+        with pytest.raises(InputError, match=r"row 5 has a missing value \(NA\)") as caught:
+            call(table)
+        assert caught.value.index == 5
+    with pytest.raises(TypeError):
+        cadt.Delaunay(plain.astype(object))
+    with pytest.raises(TypeError):
+        cadt.Delaunay(plain.astype("string"))
+
+
+def test_no_simplices() -> None:
+    for points in ([], P[:1], P[:2], [[0, 0], [1, 1], [2, 2]]):
+        for none in ([], (), np.empty((0, 3)), np.empty((0, 3), np.int64)):
+            mesh = cadt.Delaunay.from_simplices(points, none)
+            assert mesh.n_triangles == 0 and mesh.hash == cadt.Delaunay(points).hash
+            assert cadt.verify(points, none) and cadt.verify(points, none, none)
+    with pytest.raises(cadt.InvalidMesh):
+        cadt.Delaunay.from_simplices(SQUARE, [])
+    for wrong in ([[]], np.empty((0, 2))):
+        with pytest.raises(InputError, match="shape"):
+            cadt.Delaunay.from_simplices(P[:2], wrong)
 
 
 def test_extreme_doubles() -> None:
@@ -184,6 +234,9 @@ def test_queries_as_x_and_y() -> None:
         assert (MESH.find_simplex(xi) == MESH.find_simplex(P[:2])).all()
     assert MESH.find_simplex(tuple(map(tuple, P[:3].T))).shape == (3,) and MESH.find_simplex((0.5, 0.5)).shape == ()
     assert MESH.find_simplex((x[:, None], y)).shape == (2, 2)
+    for number in (0.5, 1, np.float32(0.5), np.array(0.5)):  # all of x, or of y, at one place
+        for xi, rows in (((number, y), [(number, v) for v in y]), ((x, number), [(v, number) for v in x])):
+            assert (MESH.nearest_vertex(xi) == MESH.nearest_vertex(np.array(rows, float))).all()
     for xi in (((0.1, 0.2), (5, 5)), ([0.1, 0.2], [5, 5]), ((0.1, 0.2), [5, 5]), ([x, x], [y, y])):
         for ask in (MESH.find_simplex, MESH.within_hull, MESH.nearest_vertex, lambda xi: MESH.interpolate(Z, xi)):
             with pytest.raises(InputError, match=r"pass an array of shape \(n, 2\), or two arrays x and y"):

@@ -54,6 +54,10 @@ def test_queries_of_the_host_are_read_as_on_the_host(queue):
     x, y = np.random.default_rng(2).random((2, 5))
     np.testing.assert_array_equal(mesh.find_simplex((x, y.tolist())).get(), host.find_simplex((x, y)))
     np.testing.assert_array_equal(mesh.find_simplex((x[:, None], y)).get(), host.find_simplex((x[:, None], y)))
+    np.testing.assert_array_equal(mesh.find_simplex((0.5, y)).get(), host.find_simplex((0.5, y)))
+    np.testing.assert_array_equal(
+        mesh.find_simplex((0.5, cl_array.to_device(queue, y))).get(), host.find_simplex((0.5, y))
+    )
     with pytest.raises(cadt.InputError, match="two arrays x and y"):
         mesh.find_simplex(((0.1, 0.2), (5, 5)))
     with pytest.raises(cadt.InputError, match="queries are masked"):

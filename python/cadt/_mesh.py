@@ -120,11 +120,11 @@ class Mesh(Queries):
     # To other libraries
 
     def plot(self, ax: Any = None, **how: Any) -> Any:
-        """Draws the triangles with matplotlib (``triplot``) and returns the axes."""
+        """Draws the triangles, if there are any, with matplotlib (``triplot``) and returns the axes."""
         return _show.plot(self, ax, how)
 
     def to_matplotlib(self) -> Any:
-        """A ``matplotlib.tri.Triangulation`` of the same arrays."""
+        """A ``matplotlib.tri.Triangulation`` of the same arrays. Raises InputError without triangles."""
         return _show.to_matplotlib(self)
 
     def to_pyvista(self, z: Any = None) -> Any:
@@ -138,7 +138,14 @@ class Mesh(Queries):
     def save(self, path: Any, z: Any = None) -> None:
         """Writes ``.npz`` (points, simplices, neighbors), or with meshio what the suffix says (``.ply .vtk .obj .stl``).
 
-        The file appears whole or not at all.
+        The file appears whole or not at all, and behind a symbolic link, if `path` is one.
+
+        Raises
+        ------
+        FileError
+            The suffix says no format, or the file cannot be written.
+        ImportError
+            The suffix needs meshio, which is not installed.
         """
         _show.save(self, path, z)
 

@@ -50,11 +50,10 @@ def to_matplotlib(mesh: Mesh) -> Any:
     if mesh.n_triangles == 0:
         raise InputError("the mesh has no triangles, without which matplotlib makes no Triangulation", 0)
     result = tri.Triangulation(xy[:, 0], xy[:, 1], mesh._host_mesh.triangles)
+    result.is_delaunay = True
     # Its own object in C++ must be made first: with neighbours it takes none (matplotlib 3.11).
     result.get_cpp_triangulation()
     # matplotlib's neighbour k is across the edge from vertex k to the next, ours is opposite vertex k.
-    result.is_delaunay = True
-    result.get_cpp_triangulation()  # before there are neighbours: matplotlib 3.11 refuses any
     result._neighbors = np.ascontiguousarray(np.roll(mesh._host_mesh.neighbors, 1, axis=1))
     return result
 
@@ -64,7 +63,8 @@ def plot(mesh: Mesh, ax: Any, how: dict[str, Any]) -> Any:
         ax = _need("matplotlib.pyplot", "matplotlib").gca()
     if "lw" not in how:
         how.setdefault("linewidth", 0.6)
-    ax.triplot(to_matplotlib(mesh), **how)
+    if mesh.n_triangles:
+        ax.triplot(to_matplotlib(mesh), **how)
     ax.set_aspect("equal")
     return ax
 
@@ -102,8 +102,14 @@ def save(mesh: Mesh, path: Any, z: Any) -> None:
     suffix = path.suffix.lower()
     if not suffix:
         raise FileError(f"{path}: a suffix says the format: .npz, or with meshio .ply .vtk .obj .stl ...", str(path))
-    if suffix != ".npz" and suffix not in (known := _need("meshio", "meshio").extension_to_filetypes):
-        raise FileError(f"{path}: meshes are written to files that end in one of: .npz, {', '.join(known)}", str(path))
+    if suffix != ".npz":
+        try:
+            known = _need("meshio", "meshio").extension_to_filetypes
+        except ImportError as e:
+            said = f"{path}: without meshio, which writes .ply .vtk .obj .stl ..., meshes are written to .npz alone"
+            raise ImportError(f"{said}: pip install meshio") from e
+        if suffix not in known:
+            raise FileError(f"{path}: meshes are written to files that end in one of: .npz, {', '.join(known)}", str(path))
     heights = None if z is None else _heights(mesh, z)
     target = Path(os.path.realpath(path))  # a link is followed: the link stays
     try:

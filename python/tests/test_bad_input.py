@@ -272,8 +272,19 @@ def test_more_circles_than_there_are() -> None:
     assert 0 < len(MESH.largest_empty_circles(2**70)[1]) <= MESH.n_triangles
 
 
+def test_suffixes_without_meshio(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "meshio", None)
+    for name in ("mesh.ply", "mesh.foo"):
+        with pytest.raises(ImportError, match=rf"{name}: .*\.ply \.vtk .* \.npz alone: pip install meshio"):
+            MESH.save(name)
+
+
 def test_matplotlib_without_triangles() -> None:
-    pytest.importorskip("matplotlib")
+    pytest.importorskip("matplotlib").use("agg")
+    for points in ([], P[:2], P[:3]):
+        for made in (cadt.Delaunay(points), cadt.ConstrainedDelaunay(points)):
+            axes = __import__("matplotlib.figure").figure.Figure().add_subplot()
+            assert made.plot(axes) is axes and len(axes.lines) == (2 if len(points) == 3 else 0)
     with pytest.raises(InputError, match="no triangles"):
         cadt.Delaunay(P[:2]).to_matplotlib()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import operator
+import reprlib
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -85,12 +86,17 @@ class Queries:
 
         Exact; of equally near ones the lowest. A tuple of two arrays is x and y.
 
+        Raises
+        ------
+        OptionError
+            `k` is below 1, or 2**31 and more.
+
         >>> Delaunay([[0, 0], [1, 0], [0, 1]]).nearest_vertex([0.9, 0.2])
         array(1, dtype=int32)
         """
         k = operator.index(k)
-        if k < 1:
-            raise OptionError(f"k must be 1 or more, not {k}", "k")
+        if not 1 <= k < 2**31:
+            raise OptionError(f"k must be 1 or more, and below 2**31, not {_short(k)}", "k")
         if self._gpu is not None:
             return self._gpu.nearest_vertex(xi, k)
         q, shape = as_queries(xi)
@@ -156,6 +162,15 @@ class Queries:
             Cells in triangles with a longer edge are NaN.
         origin : {"upper", "lower"}
             Whether the first row is the top one, as in images and GIS, or the bottom one.
+
+        Raises
+        ------
+        InputError
+            `values` are not one row a point, or `bounds` or `resolution` are not so many finite numbers in order.
+        OptionError
+            Another argument is none of the above; neither or both of `shape` and `resolution` are given.
+        LimitError
+            There are 2**31 cells or more.
         """
         _one_of(method, _METHODS, "method")
         longest = _length(max_edge, "max_edge")
@@ -208,11 +223,9 @@ class Queries:
     def voronoi_polygons(self, box: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
         """The Voronoi cells within a box (xmin, ymin, xmax, ymax): ``indptr`` (n + 1,) and ``xy`` (k, 2).
 
-        That of point p is ``xy[indptr[p]:indptr[p + 1]]``, counterclockwise.
+        That of point p is ``xy[indptr[p]:indptr[p + 1]]``, counterclockwise. Raises InputError for what is no box.
         """
-        if len(box) != 4:
-            raise InputError("the box is (xmin, ymin, xmax, ymax)", 0)
-        return self._queries().voronoi_polygons(tuple(float(b) for b in box))
+        return self._queries().voronoi_polygons(_box(box, "the box is"))
 
     def largest_empty_circles(self, k: int = 1) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The k largest circles without a point inside and with the centre in the hull, largest first.
@@ -228,7 +241,7 @@ class Queries:
         """The triangles with a circumradius of at most `radius` and no edge longer than `max_edge`, and their boundary.
 
         Returns the indices of the triangles, ascending, and edges (e, 2) with the triangles on the left (Edelsbrunner,
-        Kirkpatrick, Seidel, 1983).
+        Kirkpatrick, Seidel, 1983). Raises OptionError for what is no length.
         """
         return self._queries().outline(_length(radius, "radius"), _length(max_edge, "max_edge"))
 
@@ -254,9 +267,7 @@ def grid_of(
     """Corner and cell size of a grid (cadt::Grid), rows and columns."""
     if origin not in ("upper", "lower"):
         raise OptionError(f"origin must be 'upper' or 'lower', not {origin!r}", "origin")
-    if len(bounds) != 4:
-        raise InputError("bounds are (xmin, ymin, xmax, ymax)", 0)
-    x0, y0, x1, y1 = (float(b) for b in bounds)
+    x0, y0, x1, y1 = _box(bounds, "bounds are")
     if (shape is None) == (resolution is None):
         raise OptionError("pass either shape=(rows, columns) or resolution=", "shape")
     if not (math.isfinite(x1 - x0) and math.isfinite(y1 - y0)) or x1 < x0 or y1 < y0:
@@ -286,6 +297,14 @@ def grid_of(
     return ((x0, y1, dx, -dy) if origin == "upper" else (x0, y0, dx, dy)), rows, columns
 
 
+def _box(given: Any, what: str) -> tuple[float, float, float, float]:
+    try:
+        x0, y0, x1, y1 = (float(b) for b in given)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(f"{what} four numbers (xmin, ymin, xmax, ymax), not {reprlib.repr(given)}", 0) from None
+    return x0, y0, x1, y1
+
+
 def _two_numbers(resolution: Any) -> tuple[float, float]:
     try:
         sizes = np.asarray(resolution, dtype=np.float64)
@@ -297,7 +316,9 @@ def _two_numbers(resolution: Any) -> tuple[float, float]:
 
 
 def _short(n: int) -> str:
-    return f"{n:,}" if n < 2**40 else f"2**{n.bit_length() - 1} or more"
+    if -(2**40) < n < 2**40:
+        return f"{n:,}"
+    return f"-2**{n.bit_length() - 1} or less" if n < 0 else f"2**{n.bit_length() - 1} or more"
 
 
 def _one_of(value: str, names: Sequence[str], option: str) -> None:
@@ -306,7 +327,12 @@ def _one_of(value: str, names: Sequence[str], option: str) -> None:
 
 
 def _length(value: float | None, option: str) -> float:
-    result = math.inf if value is None else float(value)
+    try:
+        result = math.inf if value is None else float(value)
+    except (TypeError, ValueError):
+        result = math.nan
+    except OverflowError:  # a whole number beyond all doubles
+        result = math.inf if value > 0 else math.nan  # type: ignore[operator]
     if not result >= 0:
-        raise OptionError(f"{option} must be a number and not negative, not {value}", option)
+        raise OptionError(f"{option} must be a number and not negative, not {reprlib.repr(value)}", option)
     return result

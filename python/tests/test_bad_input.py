@@ -267,6 +267,10 @@ def test_sizes_of_cells() -> None:
             cadt.Delaunay(points).rasterize(np.zeros(len(points)), shape=(2, 2))
 
 
+def test_lengths_beyond_all_doubles() -> None:
+    assert all(map(np.array_equal, MESH.alpha_shape(10**400), MESH.alpha_shape(np.inf)))
+
+
 def test_more_circles_than_there_are() -> None:
     assert all(map(np.array_equal, MESH.largest_empty_circles(2**70), MESH.largest_empty_circles(MESH.n_triangles)))
     assert 0 < len(MESH.largest_empty_circles(2**70)[1]) <= MESH.n_triangles
@@ -331,6 +335,7 @@ REFUSED: list[tuple[type[Exception], Callable[[], object]]] = [
     (TypeError, lambda: MESH.find_simplex(None)),
     (OptionError, lambda: MESH.nearest_vertex(P, 0)),
     (OptionError, lambda: MESH.nearest_vertex(P, -1)),
+    *[(OptionError, lambda k=k: MESH.nearest_vertex(P, k)) for k in (2**31, 10**20, 10**5000, -(10**5000))],
     (TypeError, lambda: MESH.nearest_vertex(P, 1.5)),  # type: ignore[arg-type]
     (InputError, lambda: MESH.interpolate(np.zeros(49), P)),
     (InputError, lambda: MESH.interpolate(3, P)),
@@ -352,6 +357,9 @@ REFUSED: list[tuple[type[Exception], Callable[[], object]]] = [
     (InputError, lambda: MESH.rasterize(Z, shape=(2, 2), bounds=(0, 0, 1))),
     (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), max_edge=-1)),
     (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), max_edge=np.nan)),
+    *[(OptionError, lambda e=e: MESH.rasterize(Z, shape=(2, 2), max_edge=e)) for e in ("a", [1, 2], 1j)],
+    *[(InputError, lambda b=b: MESH.rasterize(Z, shape=(2, 2), bounds=b)) for b in ("abcd", 3, (0, 0, 10**400, 1), [[0, 1]] * 4)],
+    *[(InputError, lambda b=b: MESH.voronoi_polygons(b)) for b in ("abcd", 3, (0, 0, 10**400, 1))],
     (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), method="cubic")),
     (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), origin="left")),
     (InputError, lambda: MESH.voronoi_polygons((0, 0, 0, 0))),
@@ -361,6 +369,8 @@ REFUSED: list[tuple[type[Exception], Callable[[], object]]] = [
     (TypeError, lambda: MESH.largest_empty_circles(1.5)),  # type: ignore[arg-type]
     (OptionError, lambda: MESH.alpha_shape(-1)),
     (OptionError, lambda: MESH.alpha_shape(np.nan)),
+    *[(OptionError, lambda r=r: MESH.alpha_shape(r)) for r in ("a", P, {}, -(10**400))],
+    (OptionError, lambda: MESH.alpha_shape(1, max_edge="a")),  # type: ignore[arg-type]
     (cadt.BackendUnavailable, lambda: cadt.Delaunay(P, backend="opencl", device="no such device")),
     (cadt.BackendUnavailable, lambda: cadt.Delaunay(P, backend="metal")),
     (TypeError, lambda: cadt.Delaunay(P, backend=3)),  # type: ignore[arg-type]
@@ -404,6 +414,8 @@ def test_arguments_that_are_refused(k: int, monkeypatch: pytest.MonkeyPatch) -> 
     with pytest.raises(error) as caught:
         call()
     assert str(caught.value) and "incompatible function arguments" not in str(caught.value)
+    if error in (InputError, OptionError):
+        assert "could not convert" not in str(caught.value)
 
 
 def test_numbers_of_options() -> None:

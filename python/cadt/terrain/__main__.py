@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""cadt-terrain: what the program cadt hands LAS, LAZ, GIS files and GeoTIFF to. Every outcome is an exit code."""
+"""cadt-terrain: what the program cadt hands LAS, LAZ, GIS files and GeoTIFF to. Every outcome is an exit code.
+
+NumPy and all that takes long to import come after `main` has seen to signals.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from collections.abc import Sequence
 from types import FrameType
 
 from . import errors
-from ._progress import ProgressLine, tell, write_out
+from ._say import tell, write_out
 
 TOGETHER = 0.5  # seconds after a signal in which others say the same
 _stopped: float | None = None  # when the first signal came
@@ -25,11 +28,12 @@ def _explain(error: BaseException) -> int:
         errors.EXIT_INTERNAL,
         "This is a defect of cadt: please report it with the command line and the input.",
     )
-    if isinstance(error, errors.TerrainError):
-        code, advice = error.code, ""
-    elif isinstance(error, (KeyboardInterrupt, errors.Cancelled)):
+    # Whatever a library makes of a signal.
+    if _stopped is not None or isinstance(error, (KeyboardInterrupt, errors.Cancelled)):
         tell("cadt: interrupted")
         return errors.EXIT_INTERRUPTED
+    if isinstance(error, errors.TerrainError):
+        code, advice = error.code, ""
     elif isinstance(error, MemoryError):
         code, advice = (
             errors.EXIT_MEMORY,
@@ -59,6 +63,7 @@ def _stop(number: int, frame: FrameType | None) -> None:
 
 def run(command: str, words: Sequence[str]) -> int:
     from . import _options
+    from ._progress import ProgressLine
 
     options = _options.parse(command, words)
     if options.threads:

@@ -7,7 +7,7 @@ import argparse
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
-from ._progress import write_out
+from ._say import write_out
 from .cloud import READ_FORMATS
 from .errors import UsageError
 

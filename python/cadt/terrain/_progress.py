@@ -1,30 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is said: one line of progress on a terminal; none in a pipe, and none with --quiet."""
+"""One line on a terminal; nothing in a pipe, and nothing with --quiet."""
 
 from __future__ import annotations
 
-import contextlib
 import shutil
 import sys
 import time
 
-from ._files import why
-from .errors import FileError
-
-
-def tell(text: str, end: str = "\n") -> None:
-    """Text on standard error, if there is one and it takes it: no work fails for what cannot be said."""
-    if sys.stderr is not None:
-        with contextlib.suppress(OSError):
-            print(text, end=end, file=sys.stderr, flush=True)
-
-
-def write_out(text: str) -> None:
-    """Text on standard output. Raises FileError if it cannot be written."""
-    try:
-        print(text, end="", flush=True)
-    except OSError as error:
-        raise FileError("standard output", f"cannot be written: {why(error)}") from error
+from ._say import tell
 
 
 class ProgressLine:

@@ -163,6 +163,41 @@ except KeyboardInterrupt:
 """
 
 
+IMPORTING = """
+import sys, time
+class Slow:
+    def find_spec(self, name, path=None, target=None):
+        if name == "numpy":
+            print("importing", flush=True)
+            try:
+                time.sleep(60)
+            except KeyboardInterrupt:
+                if "%s" == "lost":
+                    raise ImportError("numpy is broken")
+                raise
+sys.meta_path.insert(0, Slow())
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("what", ["raised", "lost"])
+def test_interruption_of_imports(tmp_path, number, what):
+    """The first half second, in which a library may say what it likes."""
+    (tmp_path / "sitecustomize.py").write_text(IMPORTING % what)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "cadt.terrain", "raster", "a.las", "o.tif", "--res", "1"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": f"{tmp_path}{os.pathsep}{PACKAGES}"},
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),  # noqa: PLW1509
+    )
+    assert process.stdout.readline() == "importing\n"
+    process.send_signal(number)
+    said = process.communicate(timeout=60)[1]
+    assert (process.returncode, said) == (130, "cadt: interrupted\n")
+
+
 @pytest.mark.parametrize(("wait", "clean"), [(0.0, True), (0.7, False)])
 @pytest.mark.parametrize("second", [signal.SIGINT, signal.SIGTERM])
 def test_a_second_signal(wait, clean, second):

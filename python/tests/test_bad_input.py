@@ -358,7 +358,10 @@ REFUSED: list[tuple[type[Exception], Callable[[], object]]] = [
     (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), max_edge=-1)),
     (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), max_edge=np.nan)),
     *[(OptionError, lambda e=e: MESH.rasterize(Z, shape=(2, 2), max_edge=e)) for e in ("a", [1, 2], 1j)],
-    *[(InputError, lambda b=b: MESH.rasterize(Z, shape=(2, 2), bounds=b)) for b in ("abcd", 3, (0, 0, 10**400, 1), [[0, 1]] * 4)],
+    *[
+        (InputError, lambda b=b: MESH.rasterize(Z, shape=(2, 2), bounds=b))
+        for b in ("abcd", 3, (0, 0, 10**400, 1), [[0, 1]] * 4)
+    ],
     *[(InputError, lambda b=b: MESH.voronoi_polygons(b)) for b in ("abcd", 3, (0, 0, 10**400, 1))],
     (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), method="cubic")),
     (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), origin="left")),
@@ -379,7 +382,10 @@ REFUSED: list[tuple[type[Exception], Callable[[], object]]] = [
     (OptionError, lambda: cadt.Delaunay(P, threads=-1)),
     (OptionError, lambda: cadt.Delaunay(P, threads=2**40)),
     (OptionError, lambda: cadt.Delaunay(P, max_memory=-1)),
-    *[(OptionError, lambda n=n: cadt.Delaunay(P, max_memory=n)) for n in (1e9, 2**70, 2**63, "2", np.zeros(2), 10**5000)],
+    *[
+        (OptionError, lambda n=n: cadt.Delaunay(P, max_memory=n))
+        for n in (1e9, 2**70, 2**63, "2", np.zeros(2), 10**5000)
+    ],
     *[(OptionError, lambda n=n: cadt.Delaunay(P, threads=n)) for n in (1.5, "2", 2**31, [2])],
     (OptionError, lambda: cadt.triangulate_batch(P, [0, 50], threads=2.0)),  # type: ignore[arg-type]
     (OptionError, lambda: cadt.ConstrainedDelaunay(P, [[0, 1]], max_memory=1e9)),  # type: ignore[arg-type]

@@ -59,6 +59,8 @@ int run(const MergeCommand& c) {
   const std::vector<Output> outputs = plan_outputs(c.outputs, c.formats, io::mesh_write_formats(), {});
   if (outputs.empty() && c.pvtu.empty() && c.ply.empty())
     throw Failure(exit_usage, "name what is to be written: -o for one mesh, --pvtu or --ply for pieces");
+  for (const Output& output : outputs) require_outside(output.path, c.mesh);
+  for (const std::string& folder : {c.pvtu, c.ply}) require_outside(folder, c.mesh);
   with_tile_errors([&] {
     const tiles::MeshDirectory directory(c.mesh);
     if (!c.pvtu.empty()) tiles::export_pvtu(directory, c.pvtu);

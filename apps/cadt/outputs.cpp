@@ -108,6 +108,21 @@ void require_no_input(const std::string& path, const std::vector<std::string>& i
   }
 }
 
+void require_outside(const std::string& path, const std::string& folder) {
+  if (path.empty() || path == "-" || is_device(path)) return;
+  std::error_code code;
+  fs::path at = fs::weakly_canonical(path, code);
+  if (code) at = fs::absolute(path, code).lexically_normal();
+  for (; !at.empty(); at = at.parent_path()) {
+    if (fs::equivalent(at, folder, code)) {
+      throw Failure(exit_usage, fmt::format("{}: this is in {}, the input, which would be lost; name an output outside "
+                                            "of it",
+                                            path, folder));
+    }
+    if (at == at.parent_path()) return;
+  }
+}
+
 void require_writable(const std::string& path) {
   if (path.empty()) throw Failure(exit_usage, "an output has an empty name");
   std::error_code code;

@@ -26,6 +26,10 @@ struct Output {
 /// its points. Names that are empty or "-" are no files.
 void require_no_input(const std::string& path, const std::vector<std::string>& inputs);
 
+/// Throws Failure (usage) if `path` lies within `folder`, which is read, whatever links lead there. "-" and devices do
+/// not.
+void require_outside(const std::string& path, const std::string& folder);
+
 /// Whether both names are those of one file; "-" and devices are none.
 [[nodiscard]] bool same_output(const std::string& a, const std::string& b);
 

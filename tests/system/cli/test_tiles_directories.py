@@ -33,6 +33,24 @@ class TilesDirectoryTest(CliTest):
         self.write("m.cadt/manifest.json", json.dumps(right))
         self.cadt("verify", "m.cadt")
 
+    def test_merge_writes_nothing_into_its_input(self):
+        self.scattered("points.f64", 300)
+        self.cadt("tiles", "points.f64", "--tile-points", 30, "-o", "m.cadt", "--backend", "host")
+        self.path("link.cadt").symlink_to("m.cadt")
+        self.path("file.off").symlink_to("m.cadt/manifest.json")
+        self.path("beside").mkdir()
+        before = digest(self.path("m.cadt"))
+        for name in ("m.cadt/manifest.json", "./m.cadt/manifest.json", "beside/../m.cadt/new.off", "link.cadt/run.json",
+                     self.path("m.cadt/a.off"), "file.off"):
+            for mesh in ("m.cadt", "link.cadt/", "./beside/../m.cadt"):
+                self.fails(2, "merge", mesh, "-o", name, "-t", "off", says=("the input, which would be lost", str(name)))
+        for option in ("--pvtu", "--ply"):
+            for name in ("m.cadt", "m.cadt/pieces", "link.cadt/pieces/more"):
+                self.fails(2, "merge", "m.cadt", option, name, says="the input, which would be lost")
+        self.assertEqual(digest(self.path("m.cadt")), before)
+        self.cadt("merge", "m.cadt", "-o", "m.cadt/../m.off", "-o", "beside/m.off", "-q")
+        self.assertEqual(self.names(), ["beside", "file.off", "link.cadt", "m.cadt", "m.off", "points.f64"])
+
     def test_a_copy_without_empty_folders(self):
         self.scattered("points.f64", 300)
         command = ("tiles", "points.f64", "--tile-points", 30, "--backend", "host", "-o")

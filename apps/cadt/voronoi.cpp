@@ -73,12 +73,8 @@ int run(const VoronoiCommand& command) {
     summary.emplace_back("edges", std::to_string(diagram.edge_points.size() / 2));
   }
   if (polygons) {
-    std::size_t cells = 0;
-    for (std::size_t p = 0; p + 1 < polygons->begin.size(); ++p) {
-      cells += polygons->begin[p] != polygons->begin[p + 1] ? 1 : 0;
-    }
-    summary.emplace_back("cells",
-                         fmt::format("{} within {},{},{},{}", cells, box->min_x, box->min_y, box->max_x, box->max_y));
+    summary.emplace_back("cells", fmt::format("{} within {},{},{},{}", io::number_of_cells(*polygons), box->min_x,
+                                              box->min_y, box->max_x, box->max_y));
   }
   const auto write = [&] {
     if (arrays) {

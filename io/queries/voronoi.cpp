@@ -14,17 +14,53 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <vector>
 
 namespace cadt::io {
 namespace detail {
 namespace {
 
-/// Calls `cell(p, corners)` for each point that has a polygon.
+/// The corners without those that equal the one before, around the polygon.
+void take_different(std::span<const double> corners, std::vector<double>& different) {
+  different.clear();
+  for (std::size_t i = 0; i < corners.size(); i += 2) {
+    const std::size_t before = (i == 0 ? corners.size() : i) - 2;
+    if (corners[i] == corners[before] && corners[i + 1] == corners[before + 1]) continue;
+    different.push_back(corners[i]);
+    different.push_back(corners[i + 1]);
+  }
+}
+
+/// Whether the polygon is more than a point or a line. In units of its own box, so that no product underflows or
+/// overflows.
+bool has_area(std::span<const double> c) {
+  if (c.size() < 6) return false;
+  std::array<double, 2> low{c[0], c[1]}, high = low;
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    low[i % 2] = std::min(low[i % 2], c[i]);
+    high[i % 2] = std::max(high[i % 2], c[i]);
+  }
+  if (low[0] == high[0] || low[1] == high[1]) return false;
+  const auto part = [&](std::size_t i) {
+    const double scale = std::isfinite(high[i % 2] - low[i % 2]) ? 1 : 0.25;
+    return (c[i] * scale - low[i % 2] * scale) / (high[i % 2] * scale - low[i % 2] * scale);
+  };
+  double twice = 0;
+  for (std::size_t i = 2; i + 3 < c.size(); i += 2) {
+    twice += (part(i) - part(0)) * (part(i + 3) - part(1)) - (part(i + 2) - part(0)) * (part(i + 1) - part(1));
+  }
+  return twice > 0;
+}
+
+/// Calls `cell(p, corners)` for each point whose polygon has an area. A box along the sides of cells leaves a line or a
+/// point of those outside, and corners twice.
 template <class Cell>
 void for_each_cell(const VoronoiPolygons& polygons, Cell cell) {
+  std::vector<double> corners;
   for (std::size_t p = 0; p + 1 < polygons.begin.size(); ++p) {
     const std::size_t from = polygons.begin[p], to = polygons.begin[p + 1];
-    if (from != to) cell(p, std::span(polygons.xy).subspan(2 * from, 2 * (to - from)));
+    take_different(std::span(polygons.xy).subspan(2 * from, 2 * (to - from)), corners);
+    if (has_area(corners)) cell(p, std::span<const double>(corners));
   }
 }
 
@@ -106,6 +142,12 @@ void write_svg(AtomicFile& out, const std::string& path, std::span<const double>
 
 }  // namespace
 }  // namespace detail
+
+std::size_t number_of_cells(const VoronoiPolygons& polygons) {
+  std::size_t count = 0;
+  detail::for_each_cell(polygons, [&](std::size_t, std::span<const double>) { ++count; });
+  return count;
+}
 
 void write_voronoi(const std::string& path, std::span<const double> xy, const VoronoiPolygons& polygons, const Box& box,
                    const std::string& asked) {

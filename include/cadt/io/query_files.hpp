@@ -54,8 +54,12 @@ void write_raster(const std::string& path, const Grid& grid, std::span<const dou
 /// Names of the formats that rasters can be written to.
 [[nodiscard]] std::vector<std::string> raster_write_formats();
 
-/// Writes the polygons of Voronoi cells. geojson: a feature a cell, with the property "point"; svg: a picture of the
-/// cells and of the points within `box`. \throws FileError
+/// Cells whose polygon has an area. Where the box runs along the side of a cell, others may touch it in a line or
+/// point.
+[[nodiscard]] std::size_t number_of_cells(const VoronoiPolygons& polygons);
+
+/// Writes the polygons of Voronoi cells that have an area. geojson: a feature a cell, with the property "point"; svg: a
+/// picture of the cells and of the points within `box`. \throws FileError
 void write_voronoi(const std::string& path, std::span<const double> xy, const VoronoiPolygons& polygons, const Box& box,
                    const std::string& format = {});
 

@@ -131,6 +131,30 @@ class VoronoiCommand(CliTest):
         corners = list(zip(xy[::2], xy[1::2]))
         self.check(points, [corners[begin[p]:begin[p + 1]] for p in range(len(points))])
 
+    def test_a_box_along_the_sides_of_cells(self):
+        """Cells that only touch the box are lines and points: no polygons."""
+        self.write("g.xy", xy_text((x, y) for x in range(3) for y in range(2)))
+        for box, inside in (("0.5,0,1.5,1", [2, 3]), ("0.5,0,1.5,0.5", [2]), ("0,0,2,1", range(6))):
+            err = self.cadt("voronoi", "g.xy", "--box", box, "-o", "g.geojson").err
+            self.assertRegex(err, rf"(?m)^cells       {len(inside)} within {box}$")
+            features = json.loads(self.path("g.geojson").read_text())["features"]
+            self.assertEqual([f["properties"]["point"] for f in features], list(inside))
+            for feature in features:
+                ring = [tuple(corner) for corner in feature["geometry"]["coordinates"][0]]
+                self.assertEqual(len(set(ring)), len(ring) - 1, "the first corner closes the ring, no other is twice")
+                self.assertGreater(area(ring[:-1]), 0)
+            self.cadt("voronoi", "g.xy", "--box", box, "-o", "g.svg", "-q")
+            self.assertIn(f"<title>{len(inside)} Voronoi cells</title>", self.path("g.svg").read_text())
+            self.assertRegex(self.cadt("voronoi", "g.xy", "--box", box, "-o", "g.npz").err, f"cells       {len(inside)} ")
+
+    def test_cells_of_any_size(self):
+        """Products of coordinates near the ends of double are zero or infinite; these cells have an area."""
+        for size in ("1e-200", "1e-300", "1e200", "8e307"):
+            points = [(0, 0), (size, 0), (0, size), (size, size)]
+            self.write("e.xy", xy_text(points))
+            err = self.cadt("voronoi", "e.xy", "--box", f"-{size},-{size},{size},{size}", "-o", "e.geojson").err
+            self.assertRegex(err, "(?m)^cells       4 within", size)
+
     def test_picture(self):
         points = self.points()
         result = self.cadt("voronoi", "p.xy", "-o", "v.svg")

@@ -53,10 +53,9 @@ int run(const GenerateCommand& command) {
     io::write_points(output.path, points, output.format);
     if (output.path == "-") finish_stdout();
   }
-  check_interrupt();
-  if (!command.quiet) {
-    say(fmt::format("{} points ({}) written to {}\n", points.size(), command.name, display_name(output.path, false)));
-  }
+  const std::string name = display_name(output.path, false);
+  check_interrupt_after({name});
+  if (!command.quiet) say(fmt::format("{} points ({}) written to {}\n", points.size(), command.name, name));
   return exit_done;
 }
 

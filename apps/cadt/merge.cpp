@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands.hpp"
 #include "failure.hpp"
+#include "input.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "text.hpp"
@@ -25,7 +26,9 @@ struct MergeCommand {
   bool ascii = false, quiet = false;
 };
 
-void write_merged(const MergeCommand& c, const tiles::MeshDirectory& directory, const std::vector<Output>& outputs) {
+/// `written`: what is complete before.
+void write_merged(const MergeCommand& c, const tiles::MeshDirectory& directory, const std::vector<Output>& outputs,
+                  std::vector<std::string> written) {
   const Failure damaged(
       exit_verify, fmt::format("{}: its triangles are not those of its manifest; see: cadt verify {}", c.mesh, c.mesh));
   io::PointSet points;
@@ -48,10 +51,11 @@ void write_merged(const MergeCommand& c, const tiles::MeshDirectory& directory, 
       io::write_mesh(output.path, points, mesh, write);
       if (output.path == "-") finish_stdout();
     }
-    check_interrupt();
+    written.push_back(display_name(output.path, false));
+    check_interrupt_after(written);
     if (!c.quiet)
       say(fmt::format("{} points, {} triangles written to {}\n", points.size(), mesh.number_of_triangles(),
-                      output.path));
+                      written.back()));
   }
 }
 
@@ -65,7 +69,10 @@ int run(const MergeCommand& c) {
     const tiles::MeshDirectory directory(c.mesh);
     if (!c.pvtu.empty()) tiles::export_pvtu(directory, c.pvtu);
     if (!c.ply.empty()) tiles::export_ply(directory, c.ply);
-    if (!outputs.empty()) write_merged(c, directory, outputs);
+    std::vector<std::string> written;
+    for (const std::string& folder : {c.pvtu, c.ply})
+      if (!folder.empty()) written.push_back(folder);
+    if (!outputs.empty()) write_merged(c, directory, outputs, std::move(written));
   });
   return exit_done;
 }

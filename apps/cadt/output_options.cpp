@@ -47,13 +47,7 @@ void write_outputs(const std::vector<Output>& outputs, const OutputOptions& opti
       if (output.path == "-") finish_stdout();
     }
     written.push_back(display_name(output.path, false));
-    try {
-      check_interrupt();
-    } catch (const Cancelled&) {
-      line.clear();
-      say(fmt::format("cadt: complete before the interruption: {}\n", join(written)));
-      throw;
-    }
+    check_interrupt_after(written, &line);
   }
   line.clear();
 }

@@ -141,6 +141,16 @@ void require_writable(const std::string& path) {
 
 Phase writing_phase(const std::string& path) { return path == "-" || is_device(path) ? Phase::free : Phase::writing; }
 
+void check_interrupt_after(const std::vector<std::string>& complete, ProgressLine* line) {
+  try {
+    check_interrupt();
+  } catch (const Cancelled&) {
+    if (line != nullptr) line->clear();
+    say(fmt::format("cadt: complete before the interruption: {}\n", join(complete)));
+    throw;
+  }
+}
+
 void write_text(const std::string& path, const std::string& text) {
   if (path == "-") {
     print(text);

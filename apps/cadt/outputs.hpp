@@ -3,6 +3,7 @@
 #pragma once
 
 #include "interrupt.hpp"
+#include "progress.hpp"
 
 #include <string>
 #include <vector>
@@ -39,6 +40,9 @@ void require_writable(const std::string& path);
 
 /// The phase while `path` is written: a file gets its name before the process ends, a pipe may block for ever.
 [[nodiscard]] Phase writing_phase(const std::string& path);
+
+/// check_interrupt() after a file was written: the message names those that are complete.
+void check_interrupt_after(const std::vector<std::string>& complete, ProgressLine* line = nullptr);
 
 /// Text to a file that appears only when complete; "-" is standard output. Throws io::FileError.
 void write_text(const std::string& path, const std::string& text);

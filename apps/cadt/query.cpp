@@ -138,7 +138,7 @@ void QueryRun::write(const Output& output, const std::function<void()>& writer,
     if (output.path == "-") finish_stdout();
   }
   line.clear();
-  check_interrupt();
+  check_interrupt_after({name});
   if (options_.quiet || output.path == "-") return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   std::string text =

@@ -117,8 +117,8 @@ int draw(const RenderCommand& command, const Output& output, const io::RegionMes
     }
     if (output.path == "-") finish_stdout();
   }
-  check_interrupt();
   line.clear();
+  check_interrupt_after({display_name(output.path, false)});
   if (!command.quiet) {
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     say(fmt::format("{} triangles of {} points drawn in {:.2f} s: {}\n", mesh.triangles.size() / 3, mesh.xy.size() / 2,

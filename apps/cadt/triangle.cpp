@@ -144,12 +144,7 @@ int run(const TriangleCommand& command, const Request& request) {
     io::write_triangle_files(names.output, work.result, switches, work.input.base);
   }
   line.clear();
-  try {
-    check_interrupt();
-  } catch (const Cancelled&) {
-    say(fmt::format("cadt: complete before the interruption: {}\n", join(files)));
-    throw;
-  }
+  check_interrupt_after(files);
   if (switches.quiet) return exit_done;
   warn(switches, work, names.input);
   print(summary(work, switches.segments, files));

@@ -291,6 +291,29 @@ class Interrupt(CliTest):
         self.assertIn("complete before the interruption: a.off", terminal.text)
         self.assertEqual(len(read_off(self.path("a.off").read_text())[0]), 2000000)
 
+    def test_every_command_names_what_is_complete(self):
+        if os.environ.get("CADT_SANITIZE"):
+            self.skipTest("the sanitizers' library has to be the first one")
+        self.write("t.xyz", "0 0 1\n1 0 2\n0 1 3\n1 1 5\n")
+        self.write("q.xy", "0.2 0.2\n")
+        commands = [("voronoi", "t.xyz", "-o", "a.geojson"), ("locate", "t.xyz", "q.xy", "-o", "a.csv"),
+                    ("interpolate", "t.xyz", "q.xy", "-o", "a.xyz"), ("raster", "t.xyz", "--res", "0.5", "-o", "a.asc"),
+                    ("generate", "uniform", "-n", "50", "-o", "a.xy"), ("triangulate", "t.xyz", "-o", "a.off", "-o", "b.off")]
+        there = self.cadt("--help").out
+        if "  merge " in there:
+            self.cadt("tiles", "t.xyz", "-o", "m.cadt", "--backend", "host", "-q")
+            commands.append(("merge", "m.cadt", "-o", "a.off", "-o", "b.off"))
+        if "  render " in there:
+            commands.append(("render", "t.xyz", "-o", "a.svg"))
+        before = self.names()
+        for command in commands:
+            output = command[command.index("-o") + 1]
+            at = {"LD_PRELOAD": os.environ["CADT_SIGNAL_AT"], "CADT_TEST_SIGNAL_AT": f"rename {output} 1 {signal.SIGTERM.value}"}
+            err = self.cadt(*command, "-q", expect=130, environment={**os.environ, **at}).err
+            self.assertEqual(err, f"cadt: complete before the interruption: {output}\ncadt: interrupted\n", command)
+            self.assertEqual(self.names(), sorted(before + [output]))
+            self.path(output).unlink()
+
     def test_killed_during_the_writing_the_old_file_stays(self):
         self.large()
         self.write("a.off", "old")

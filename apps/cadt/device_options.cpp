@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device_options.hpp"
 
+#include "numbers.hpp"
 #include "text.hpp"
 
 namespace cadt::cli {
@@ -16,7 +17,7 @@ void add_device_options(CLI::App& command, DeviceOptions& o) {
       ->type_name("DEVICE");
   command.add_option("--threads", o.threads, "host threads; 0 takes all cores (default: 0)")
       ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
+      ->transform(whole_number(0, 4096));
 }
 
 void add_memory_option(CLI::App& command, DeviceOptions& o) {

@@ -3,6 +3,7 @@
 #include "failure.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
+#include "numbers.hpp"
 #include "outputs.hpp"
 #include "text.hpp"
 
@@ -68,7 +69,9 @@ void add_generate(CLI::App& app, Action& chosen) {
   command->add_flag("--list", options->list, "print all names, each with what it is");
   command->add_option("-n", options->n, "number of points, 250000, 2M or 1e6 (default: 10000); some sets round it")
       ->type_name("N");
-  command->add_option("--seed", options->options.seed, "equal seeds give equal points (default: 1)")->type_name("S");
+  command->add_option("--seed", options->options.seed, "equal seeds give equal points (default: 1)")
+      ->type_name("S")
+      ->transform(whole_number());
   command->add_option("-o,--output", options->output, "file for the points; '-' is standard output (with -t)")
       ->type_name("FILE");
   command
@@ -77,22 +80,27 @@ void add_generate(CLI::App& app, Action& chosen) {
       ->type_name("FORMAT");
   command->add_option("--k", options->options.k, "circles: points on each circle (default: 8)")
       ->type_name("K")
-      ->check(CLI::Range(3, 1000000).description(""));
+      ->transform(whole_number(3, 1000000));
   command->add_option("--radius", options->options.radius, "circles: in cells of the grid of centres (default: 0.35)")
       ->type_name("R")
-      ->check(CLI::Range(0.0, 1e6).description(""));
+      ->check(number_within(0, 1e6));
   command
       ->add_option("--epsilon", options->options.epsilon,
                    "circles: largest offset of a coordinate, in cells; 0 keeps them cocircular (default: 1e-4)")
       ->type_name("E")
-      ->check(CLI::Range(0.0, 1e6).description(""));
+      ->check(number_within(0, 1e6));
   command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");
   command->footer(
       "Examples:\n"
       "  cadt generate uniform -n 1M --seed 7 -o points.npy\n"
       "  cadt generate circles -n 20000 --k 12 --epsilon 0 -o circles.xy\n"
       "  cadt generate terrain -n 50000 -o - -t xyz | cadt triangulate - -f xyz -o terrain.png\n");
-  command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
+  command->callback([options, command, &chosen] {
+    for (const char* const option : {"--k", "--radius", "--epsilon"})
+      if (command->count(option) != 0 && options->name != "circles")
+        throw Failure(exit_usage, fmt::format("{} belongs to the set circles: leave it out", option));
+    chosen = [options] { return run(*options); };
+  });
 }
 
 }  // namespace cadt::cli

@@ -2,6 +2,7 @@
 // cadt locate: the triangle that contains a point, or its nearest points.
 #include "commands.hpp"
 #include "failure.hpp"
+#include "numbers.hpp"
 #include "query.hpp"
 
 #include <fmt/format.h>
@@ -83,7 +84,7 @@ void add_locate(CLI::App& app, Action& chosen) {
   command->add_flag("--nearest", options->nearest, "the index of the nearest point instead of the triangle");
   command->add_option("-k", options->k, "with --nearest: so many points, nearest first (default: 1)")
       ->type_name("K")
-      ->check(CLI::Range(1, 1000000).description(""));
+      ->transform(whole_number(1, 1000000));
   add_query_output(*command, options->query, io::array_write_formats(),
                    "file for the answers, a row a query; default: text on standard output");
   add_query_work(*command, options->query);

@@ -6,6 +6,7 @@
 #include "graph.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
+#include "numbers.hpp"
 #include "outputs.hpp"
 #include "progress.hpp"
 #include "region_output.hpp"
@@ -191,7 +192,7 @@ void add_render(CLI::App& app, Action& chosen) {
       ->add_option("--samples", options->samples,
                    "samples along the side of a pixel, 1 to 4 (default: 2): 4 is smoother")
       ->type_name("S")
-      ->check(CLI::Range(1, 4).description(""));
+      ->transform(whole_number(1, 4));
   add_growth_options(*command, options->growth);
   add_device_options(*command, options->device);
   command->add_flag("-q,--quiet", options->quiet, "nothing on standard error but errors");

@@ -3,6 +3,7 @@
 
 #include "failure.hpp"
 #include "interrupt.hpp"
+#include "numbers.hpp"
 #include "outputs.hpp"
 #include "text.hpp"
 
@@ -180,7 +181,7 @@ void add_growth_options(CLI::App& command, GrowthOptions& options) {
       .add_option("--growth", options.panels,
                   "so many snapshots of the growing mesh side by side, up to the complete one")
       ->type_name("N")
-      ->check(CLI::Range(1, 100));
+      ->transform(whole_number(1, 100));
   const auto timed = [&options](double& value) {
     return [&options, &value](const double& given) {
       value = given;
@@ -189,11 +190,11 @@ void add_growth_options(CLI::App& command, GrowthOptions& options) {
   };
   command.add_option_function<double>("--fps", timed(options.fps), "film or frames: pictures a second (default: 30)")
       ->type_name("F")
-      ->check(CLI::Range(1.0, 240.0));
+      ->check(number_within(1, 240));
   command
       .add_option_function<double>("--seconds", timed(options.seconds), "film or frames: how long it is (default: 8)")
       ->type_name("S")
-      ->check(CLI::Range(0.1, 3600.0));
+      ->check(number_within(0.1, 3600));
 }
 
 bool shows_growth(const GrowthOptions& options, const std::string& output) {

@@ -5,6 +5,7 @@
 #include "failure.hpp"
 #include "interrupt.hpp"
 #include "large_picture.hpp"
+#include "numbers.hpp"
 #include "text.hpp"
 
 #include <cadt/cadt.hpp>
@@ -172,13 +173,13 @@ void add_work_options(CLI::App& command, TriangulateOptions& o) {
       ->check(CLI::IsMember({"off", "defer", "paper"}).description(""));
   command.add_option("--flip-threshold", o.flip_threshold, "flips of an edge before --stabilize applies (default: 3)")
       ->type_name("R")
-      ->check(CLI::Range(0, 1000).description(""));
+      ->transform(whole_number(0, 1000));
   command
       .add_option("--epsilon", o.epsilon,
                   "improvement that --stabilize paper requires: degrees of the smallest angle, or relative "
                   "incircle determinant (default: 1e-4)")
       ->type_name("E")
-      ->check(CLI::NonNegativeNumber.description(""));
+      ->check(number_within(0));
   command.add_flag("--strict", o.strict,
                    "exit 4 if there are no triangles (fewer than three points, or all on one line)");
   command.add_flag("--verify", o.verify, "check the mesh exactly before anything is written; exit 7 if it fails");

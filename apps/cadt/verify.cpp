@@ -4,6 +4,7 @@
 #include "input.hpp"
 #include "interrupt.hpp"
 #include "mesh_directory.hpp"
+#include "numbers.hpp"
 #include "text.hpp"
 
 #include <cadt/io/mesh_file.hpp>
@@ -108,7 +109,7 @@ void add_verify(CLI::App& app, Action& chosen) {
                     "cocircular points must be decided as cadt and CGAL decide them");
   command->add_option("--threads", options->threads, "threads; 0 takes all cores (default: 0)")
       ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
+      ->transform(whole_number(0, 4096));
   command
       ->add_option(
           "--backend", options->backend,

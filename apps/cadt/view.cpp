@@ -5,6 +5,7 @@
 #include "failure.hpp"
 #include "graph.hpp"
 #include "input.hpp"
+#include "numbers.hpp"
 #include "system.hpp"
 #include "text.hpp"
 #include "viewer_options.hpp"
@@ -107,10 +108,16 @@ void add_view(CLI::App& app, Action& chosen) {
                       "files with points, or with points and segments; PgUp and PgDn go from one to the next");
   add_read_options(*command, options->input, true);
   add_segment_options(*command, options->segments);
-  command->add_option("--generate", options->generate, "a point set in place of a file (see: cadt generate --list)")
-      ->type_name("NAME");
-  command->add_option("-n", options->n, "number of its points, 250000, 2M or 1e6 (default: 100000)")->type_name("N");
-  command->add_option("--seed", options->seed, "equal seeds give equal points (default: 1)")->type_name("S");
+  CLI::Option* const set =
+      command->add_option("--generate", options->generate, "a point set in place of a file (see: cadt generate --list)")
+          ->type_name("NAME");
+  command->add_option("-n", options->n, "number of its points, 250000, 2M or 1e6 (default: 100000)")
+      ->type_name("N")
+      ->needs(set);
+  command->add_option("--seed", options->seed, "equal seeds give equal points (default: 1)")
+      ->type_name("S")
+      ->transform(whole_number())
+      ->needs(set);
   command
       ->add_option(
           "--colour,--color", options->colour,
@@ -131,7 +138,7 @@ void add_view(CLI::App& app, Action& chosen) {
   command->add_option("--size", options->size, "of the window, in pixels (default: 1280x800)")->type_name("WxH");
   command->add_option("--scale", options->scale, "size of text and lines (default: the system's)")
       ->type_name("FACTOR")
-      ->check(CLI::Range(0.5, 8.0).description(""));
+      ->check(number_within(0.5, 8));
   command->add_flag("--dark", options->dark, "light on dark");
   add_device_options(*command, options->device);
   add_memory_option(*command, options->device);

@@ -53,9 +53,36 @@ class Usage(CliTest):
                 (["generate", "uniform", "-n", "1e18", "-o", "x.xy"], "1e18"),
                 (["generate", "uniform", "-o", "-"], "-t"),
                 (["info"], "FILE"),
+                (["triangulate", "in.xy", "--threads", "abc"], "--threads: a whole number from 0 to 4096 is expected"),
+                (["triangulate", "in.xy", "--threads", "4097"], "--threads"),
+                (["verify", "in.xy", "in.off", "--threads", "-1"], "--threads"),
+                (["triangulate", "in.xy", "--stabilize", "paper", "--epsilon", "nan"], "--epsilon: a number of at least 0"),
+                (["triangulate", "in.xy", "--stabilize", "paper", "--epsilon", "-1"], "--epsilon"),
+                (["triangulate", "in.xy", "--stabilize", "defer", "--flip-threshold", "1.5"], "--flip-threshold"),
+                (["generate", "circles", "--radius", "nan", "-o", "x.xy"],
+                 "--radius: a number from 0 to 1000000 is expected, not 'nan'"),
+                (["generate", "circles", "--radius", "2e6", "-o", "x.xy"], "--radius"),
+                (["generate", "circles", "--epsilon", "-nan", "-o", "x.xy"], "--epsilon"),
+                (["generate", "circles", "--k", "2", "-o", "x.xy"], "--k: a whole number from 3"),
+                (["generate", "uniform", "--k", "3", "-o", "x.xy"], "--k belongs to the set circles"),
+                (["generate", "uniform", "--radius", "0.2", "-o", "x.xy"], "--radius belongs to the set circles"),
+                (["generate", "uniform", "--epsilon", "0", "-o", "x.xy"], "--epsilon belongs to the set circles"),
+                (["generate", "uniform", "--seed", "-1", "-o", "x.xy"], "--seed: a whole number from 0 to 18446744073709551615"),
+                (["generate", "uniform", "--seed", "18446744073709551616", "-o", "x.xy"], "not '18446744073709551616'"),
+                (["generate", "uniform", "--seed", "+1", "-o", "x.xy"], "--seed"),
+                (["generate", "uniform", "--seed", "0x10", "-o", "x.xy"], "--seed"),
                 (["devices", "all"], "all")]:
             with self.subTest(arguments=arguments):
                 self.fails(2, *arguments, says=says)
+
+    def test_zeros_in_front_are_decimal(self):
+        for name, seed in (("a.xy", "010"), ("b.xy", "10"), ("c.xy", "8")):
+            self.cadt("generate", "uniform", "-n", "20", "--seed", seed, "-o", name, "-q")
+        a, b, c = (self.path(name).read_text() for name in ("a.xy", "b.xy", "c.xy"))
+        self.assertEqual(a, b)
+        self.assertNotEqual(a, c)
+        self.cadt("generate", "uniform", "-n", "20", "--seed", 2**64 - 1, "-o", "d.xy", "-q")
+        self.assertEqual(len(self.cadt("locate", "in.xy", "in.xy", "--nearest", "-k", "010").out.split("\n")[0].split()), 10)
 
     def test_outputs_that_cannot_be_are_found_before_the_work(self):
         # The input does not exist: whoever looks at it first says 3.

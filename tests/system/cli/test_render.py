@@ -148,6 +148,13 @@ class RenderSegmentsTest(CliTest):
         self.fails(2, *plate, "--segments", "plate.geojson", says="segments of its own")
         self.fails(2, *plate, "--crossing", "grid=0", says="grid=0.001")
         self.fails(2, *plate, "--colour", "level", says="grows only")
+        for option in ("-n", "--seed"):
+            self.fails(2, *plate, option, "10", says=f"{option} requires --generate")
+        self.fails(2, *plate, "--samples", "2.0", says="--samples: a whole number from 1 to 4")
+        if " view " in self.cadt("--help").out:
+            for option, value in (("--scale", "nan"), ("--seed", "-1"), ("--scale", "9")):
+                self.fails(2, "view", "--generate", "uniform", option, value, says=f"{option}: a ")
+            self.fails(2, "view", "p.xy", "-n", "10", says="-n requires --generate")
         self.fails(2, *plate, "--colour", "height", says="third column")
         self.fails(2, *plate, "--growth", 4, says="not shown as it grows")
         self.fails(2, "render", "plate.geojson", "-o", "film.mp4", says="not shown as it grows")

@@ -61,6 +61,9 @@ class GrowthSheetTest(CliTest):
         self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--growth", 4, "--seconds", 3, says="frames/")
         self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--growth", 0)
         self.fails(2, "render", "--generate", "uniform", "-o", "a.gif", "--fps", 240, "--seconds", 3600, says="864000 pictures")
+        for option, value in (("--fps", "nan"), ("--seconds", "nan"), ("--fps", "0.5"), ("--seconds", "inf")):
+            self.fails(2, "render", "--generate", "uniform", "-o", "a.gif", option, value, says=f"{option}: a number from ")
+        self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--growth", "1e1", says="--growth: a whole number")
         self.fails(3, "render", "--generate", "uniform", "-o", "nowhere/a.png", "--growth", 4, says="nowhere")
         self.assertEqual(self.names(), [])
 

@@ -271,6 +271,8 @@ class TilesFailureTest(CliTest):
         for option in ("--stats", "--picture"):
             self.fails(2, "tiles", "points.f64", f"{option}=./points.f64", says="this is the input")
         self.fails(2, "tiles", "points.f64", "--stats=a", "--picture=a", says="--picture and --stats both go to a")
+        for option, value in (("-n", "10"), ("--seed", "3")):
+            self.fails(2, "tiles", "points.f64", option, value, says=(option, "requires --generate"))
 
     def test_devices_that_are_not_there(self):
         """Two threads open devices at the same time, which is the first question of both to the drivers."""

@@ -4,11 +4,15 @@
 #include "failure.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
+#include "numbers.hpp"
 #include "text.hpp"
 
 #include <fmt/format.h>
 
 namespace cadt::cli {
+namespace {
+constexpr int most_width = 32000;  // of what io draws, and its height at most
+}  // namespace
 
 void add_output_options(CLI::App& command, OutputOptions& o, const std::string& formats, const std::string& indexed) {
   command
@@ -26,9 +30,13 @@ void add_output_options(CLI::App& command, OutputOptions& o, const std::string& 
       ->type_name("0|1")
       ->check(CLI::IsMember({0, 1}).description(""));
   command.add_flag("--ascii", o.ascii, "text instead of binary where the format has both (ply)");
-  command.add_option("--width", o.width, "width of pictures (default: 1600)")
+  command
+      .add_option("--width", o.width,
+                  fmt::format("width of pictures, 16 to {} (default: 1600, or less where the height would "
+                              "be above 4000); above 200,000 triangles 16384 at most",
+                              most_width))
       ->type_name("PIXELS")
-      ->check(CLI::Range(16, 32768).description(""));
+      ->transform(whole_number(16, most_width));
 }
 
 void write_outputs(const std::vector<Output>& outputs, const OutputOptions& options, ProgressLine& line,
@@ -36,7 +44,10 @@ void write_outputs(const std::vector<Output>& outputs, const OutputOptions& opti
   io::WriteOptions how;
   how.base = options.base;
   how.ascii = options.ascii;
-  how.width = options.width;
+  if (options.width) {  // what is asked for is not made narrower because the points are high
+    how.width = *options.width;
+    how.max_height = most_width;
+  }
   std::vector<std::string> written;
   for (const Output& output : outputs) {
     {

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace cadt::cli {
 
 struct OutputOptions {
   std::vector<std::string> outputs, formats;
-  int base = 0, width = 1600;
+  int base = 0;
+  std::optional<int> width;  ///< 1600 if not given, or less where the height would be above 4000
   bool ascii = false;
 };
 

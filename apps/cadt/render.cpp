@@ -33,7 +33,7 @@ namespace {
 struct RenderCommand {
   SubjectOptions subject;
   StyleOptions style;
-  std::string output, format, size = "1600", camera;
+  std::string output, format, size, camera;
   DeviceOptions device;
   GrowthOptions growth;
   int samples = 2;
@@ -64,7 +64,7 @@ int run_growth(const RenderCommand& command) {
                   "picture, or give the points alone");
   check_growth(command.growth, command.output);
   GrowthView view;
-  parse_size(command.size, view.width, view.height);
+  parse_size(command.size, view.width, view.height, view.most_height);
   view.quiet = command.quiet;
   view.style = style_of(command.style);
   view.style.samples = command.samples;
@@ -113,7 +113,8 @@ int draw(const RenderCommand& command, const Output& output, const io::RegionMes
       io::WriteOptions write;
       write.format = output.format;
       write.width = still.width;
-      if (still.height != 0) write.max_height = still.height;
+      write.height = still.height;
+      write.max_height = still.most_height;
       io::write_region_mesh(output.path, mesh, write);
     }
     if (output.path == "-") finish_stdout();
@@ -133,7 +134,7 @@ int run(const RenderCommand& command) {
   const bool segments = has_segments(command.subject);
   const Output output = plan_picture(command);
   viewer::StillOptions still;
-  parse_size(command.size, still.width, still.height);
+  parse_size(command.size, still.width, still.height, still.most_height);
   still.view = parse_camera(command.camera);
   still.style = style_of(command.style);
   still.style.samples = command.samples;
@@ -178,9 +179,9 @@ void add_render(CLI::App& app, Action& chosen) {
       ->required();
   command->add_option("-t,--to", options->format, "format: png svg pdf; default: from the suffix")->type_name("FORMAT");
   command
-      ->add_option(
-          "--size", options->size,
-          "pixels: the width, the height follows from the points; or width and height, 3840x2160 (default: 1600)")
+      ->add_option("--size", options->size,
+                   "pixels, 16 to 16384: the width, the height follows from the points; or width and height, 3840x2160 "
+                   "(default: 1600, and a height of 4000 at most)")
       ->type_name("W[xH]");
   add_style_options(*command, options->style);
   command

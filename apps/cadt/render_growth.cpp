@@ -128,8 +128,8 @@ void write_sheet(const io::PointSet& points, const Recording& recording, const s
   const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(panels))));
   const int rows = (panels + columns - 1) / columns, gap = std::max(2, view.width / 100);
   const int width = (view.width - gap * (columns - 1)) / columns;
-  const int height =
-      view.height == 0 ? Camera::height_for(box_of(points.xy), width, 4000) : (view.height - gap * (rows - 1)) / rows;
+  const int height = view.height == 0 ? Camera::height_for(box_of(points.xy), width, view.most_height)
+                                      : (view.height - gap * (rows - 1)) / rows;
   if (width < 1 || height < 1)
     throw Failure(exit_usage, fmt::format("--size: there is no room for {} pictures", panels));
   Image sheet{columns * width + gap * (columns - 1), rows * height + gap * (rows - 1), {}};
@@ -261,8 +261,8 @@ int render_growth(const io::PointSet& points, const Options& options, const std:
     return exit_done;
   }
   const int width = std::max(2, view.width & ~1);  // most films need even sizes
-  const int height =
-      std::max(2, (view.height == 0 ? Camera::height_for(box_of(points.xy), width, 4000) : view.height) & ~1);
+  const int height = std::max(
+      2, (view.height == 0 ? Camera::height_for(box_of(points.xy), width, view.most_height) : view.height) & ~1);
   GrowthPainter painter(points, recording, view, width, height);
   if (!is_video(output)) {
     each_picture(recording, growth, painter, line, [&](std::size_t i, const Image& picture) {

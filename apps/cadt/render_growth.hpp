@@ -25,6 +25,7 @@ struct GrowthOptions {
 
 struct GrowthView {
   int width = 1600, height = 0;  ///< of the whole picture; height 0: as the points are
+  int most_height = 4000;        ///< where the points say it
   viewer::Style style;
   std::function<void(viewer::Camera&)> aim = {};  ///< what of the plane is seen; null: all
   bool quiet = false;

@@ -134,7 +134,7 @@ int run(const TriangulateOptions& options) {
   watch.lap();
   write_outputs(report.outputs, options.output, line, [&](const std::string& path, const io::WriteOptions& how) {
     if (how.format == "png" && is_large_picture(points, mesh)) {
-      write_large_picture(path, points, mesh, how.width);
+      write_large_picture(path, points, mesh, how);
     } else {
       io::write_mesh(path, points, mesh, how);
     }

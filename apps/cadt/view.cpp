@@ -86,7 +86,8 @@ int run(const ViewCommand& command) {
     if (to_string(interop) == command.interop) options.interop = interop;
   options.colour = viewer::colour_from_string(command.colour);
   options.drawing = *viewer::drawing_from_string(command.style);
-  parse_size(command.size, options.width, options.height);
+  int most_height = 0;
+  parse_size(command.size, options.width, options.height, most_height);
   if (options.width < 320 || options.height < 240)
     throw Failure(exit_usage,
                   fmt::format("--size {}: a window has at least 320x240 pixels, for example 1280x800", command.size));

@@ -118,7 +118,8 @@ std::optional<viewer::ColourBy> colour_of(const StyleOptions& options, const io:
   return colour;
 }
 
-void parse_size(const std::string& text, int& width, int& height) {
+void parse_size(const std::string& text, int& width, int& height, int& most_height) {
+  if (text.empty()) return;
   const std::size_t x = text.find('x');
   double w = 0, h = 0;
   const bool both = x != std::string::npos;
@@ -130,6 +131,7 @@ void parse_size(const std::string& text, int& width, int& height) {
   }
   width = static_cast<int>(w);
   height = static_cast<int>(h);
+  most_height = largest_side;
 }
 
 std::optional<viewer::View> parse_camera(const std::string& text) {

@@ -55,8 +55,9 @@ enum class MeshKind { points, segments, growing };
 [[nodiscard]] std::optional<viewer::ColourBy> colour_of(const StyleOptions& options, const io::PointSet& points,
                                                         MeshKind kind);
 
-/// "1600" or "3840x2160". Throws Failure (usage).
-void parse_size(const std::string& text, int& width, int& height);
+/// "1600" or "3840x2160"; nothing changes if empty. A width that is given is not limited by the usual `most_height`.
+/// Throws Failure (usage).
+void parse_size(const std::string& text, int& width, int& height, int& most_height);
 /// "x,y,magnification"; not set if empty. Throws Failure (usage).
 [[nodiscard]] std::optional<viewer::View> parse_camera(const std::string& text);
 

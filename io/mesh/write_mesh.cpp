@@ -19,6 +19,7 @@ void write_mesh(const std::string& path, const PointSet& points, const Triangula
     PictureOptions picture;
     picture.width = options.width;
     picture.max_height = options.max_height;
+    picture.height = options.height;
     const auto write = format == "svg" ? write_svg : format == "pdf" ? write_pdf : write_png;
     write(path, points, mesh, picture);
     return;

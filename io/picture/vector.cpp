@@ -236,7 +236,7 @@ cairo_status_t append(void* closure, const unsigned char* data, unsigned size) {
 
 template <class Create>
 std::string file_of(const Scene& scene, const PictureOptions& options, Create create) {
-  const Viewport view(scene.xy, options.width, options.max_height);
+  const Viewport view(scene.xy, options.width, options.max_height, options.height);
   std::string bytes;
   {
     const Surface surface(
@@ -275,7 +275,7 @@ std::string pdf_bytes(const Scene& scene, const PictureOptions& options) {
 }
 
 std::string png_bytes(const Scene& scene, const PictureOptions& options) {
-  const Viewport view(scene.xy, options.width, options.max_height);
+  const Viewport view(scene.xy, options.width, options.max_height, options.height);
   Pixels pixels(view.width(), view.height(), paper);
   {
     const Surface surface(cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(pixels.row(0)),

@@ -48,7 +48,7 @@ Viewport::Axis Viewport::make_axis(double low, double pre, double span, double p
   return axis;
 }
 
-Viewport::Viewport(std::span<const double> xy, int width, int max_height) {
+Viewport::Viewport(std::span<const double> xy, int width, int max_height, int height) {
   Range x;
   Range y;
   for (std::size_t i = 0; i + 1 < xy.size(); i += 2) {
@@ -70,9 +70,18 @@ Viewport::Viewport(std::span<const double> xy, int width, int max_height) {
   const double height_to_width = ratio(span_y, span_x) * (pre_x / pre_y);
   const double aspect = std::clamp(height_to_width, 1.0 / max_aspect, max_aspect);
 
-  width_ = std::clamp(width, 16, 32'000);
-  max_height = std::clamp(max_height, 16, 32'000);
+  width_ = std::clamp(width, 16, most_side);
+  max_height = std::clamp(max_height, 16, most_side);
   margin_ = std::max(3.0, 0.015 * width_);
+  if (height != 0) {
+    height_ = std::clamp(height, 16, most_side);
+    margin_ = std::min(margin_, 0.1 * std::min(width_, height_));
+    const double room_x = width_ - 2.0 * margin_, room_y = height_ - 2.0 * margin_;
+    const double inner_x = std::min(room_x, room_y / aspect), inner_y = inner_x * aspect;
+    x_ = make_axis(x.low, pre_x, span_x, inner_x, 0.5 * (width_ - inner_x), false);
+    y_ = make_axis(y.low, pre_y, span_y, inner_y, 0.5 * (height_ + inner_y), true);
+    return;
+  }
   double inner_x = width_ - 2.0 * margin_;
   double inner_y = inner_x * aspect;
   if (inner_y + 2.0 * margin_ > max_height) {

@@ -18,8 +18,11 @@ class Viewport {
  public:
   static constexpr double max_aspect = 8.0;
 
-  /// Width as given, unless the height would exceed `max_height`: then the picture gets narrower.
-  Viewport(std::span<const double> xy, int width, int max_height);
+  static constexpr int most_side = 32'000;  ///< of what Cairo draws (32767) and coordinates in single precision hold
+
+  /// Width as given, unless the height would exceed `max_height`: then the picture gets narrower. With a `height` other
+  /// than 0 the picture has just that width and height, and the box is in the middle.
+  Viewport(std::span<const double> xy, int width, int max_height, int height = 0);
 
   [[nodiscard]] int width() const noexcept { return width_; }
   [[nodiscard]] int height() const noexcept { return height_; }

@@ -96,6 +96,7 @@ void write_region_mesh(const std::string& path, const RegionMesh& mesh, const Wr
     PictureOptions picture;
     picture.width = options.width;
     picture.max_height = options.max_height;
+    picture.height = options.height;
     return picture::write_scene(path, format, picture::scene_of(mesh), picture);
   }
   detail::MeshParts parts;

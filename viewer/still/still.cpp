@@ -8,13 +8,13 @@
 namespace cadt::viewer {
 
 Image draw_still(const io::RegionMesh& mesh, const StillOptions& options) {
-  constexpr int most_height = 4000;
   const gl::HeadlessContext context;
   Renderer renderer;
   const io::picture::Scene scene = io::picture::scene_of(mesh);
   MeshBuffers buffers = MeshBuffers::copy(scene.xy, scene.triangles);
   buffers.write_edges(scene.segments);
-  const int height = options.height != 0 ? options.height : Camera::height_for(buffers.box, options.width, most_height);
+  const int height =
+      options.height != 0 ? options.height : Camera::height_for(buffers.box, options.width, options.most_height);
   Camera camera(buffers.box, options.width, height);
   if (options.view) {
     camera.look_at(options.view->x, options.view->y);

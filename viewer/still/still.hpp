@@ -17,7 +17,8 @@ struct View {
 
 struct StillOptions {
   int width = 1600;
-  int height = 0;                  ///< 0: as the box of the points needs, at most 4000
+  int height = 0;                  ///< 0: as the box of the points needs, at most `most_height`
+  int most_height = 4000;          ///< where it would be more, the mesh does not fill the width
   std::optional<ColourBy> colour;  ///< not set: regions if there are several, heights if there are any, else the area
   std::optional<View> view;        ///< not set: the whole mesh
   Style style;                     ///< its colour is not used

@@ -17,7 +17,8 @@ struct WriteOptions {
   int base = 0;           ///< first index in Triangle's .node .ele .neigh: 0 or 1
   bool ascii = false;     ///< text instead of binary where the format has both (ply)
   int width = 1600;       ///< pictures: pixels (png) or user units (svg)
-  int max_height = 4000;  ///< of pictures, which get narrower then
+  int max_height = 4000;  ///< of pictures, which get narrower then; 32000 lets the width be as it is
+  int height = 0;         ///< pictures: width and height exactly, the mesh in the middle; 0: as the points need
 };
 
 /// Writes a mesh or a picture of it. Formats with three coordinates take `PointSet::height`, else 0. All input points

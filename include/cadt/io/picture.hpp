@@ -12,10 +12,11 @@
 namespace cadt::io {
 
 struct PictureOptions {
-  int width = 1600;  ///< pixels, user units of an SVG, or points of a PDF; the height follows from the bounding box of
-                     ///< the points
-  int max_height = 4000;
-  bool shade = true;  ///< fill triangles by height (if given) or by size
+  int width = 1600;  ///< pixels, user units of an SVG, or points of a PDF, at most 32000; the height follows from the
+                     ///< bounding box of the points
+  int max_height = 4000;  ///< where it would be more, the picture gets narrower; 32000 lets the width be as it is
+  bool shade = true;      ///< fill triangles by height (if given) or by size
+  int height = 0;         ///< not 0: width and height exactly, the mesh in the middle
 };
 
 /// Triangles and points that a picture takes. More are drawn by the program: cadt render.

@@ -53,6 +53,7 @@ class Usage(CliTest):
                 (["generate", "uniform", "-n", "1e18", "-o", "x.xy"], "1e18"),
                 (["generate", "uniform", "-o", "-"], "-t"),
                 (["info"], "FILE"),
+                (["triangulate", "in.xy", "--width", "1e3"], "--width: a whole number from 16 to 32000 is expected, not '1e3'"),
                 (["triangulate", "in.xy", "--threads", "abc"], "--threads: a whole number from 0 to 4096 is expected"),
                 (["triangulate", "in.xy", "--threads", "4097"], "--threads"),
                 (["verify", "in.xy", "in.off", "--threads", "-1"], "--threads"),

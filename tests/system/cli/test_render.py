@@ -2,6 +2,7 @@
 """cadt render: pictures without a window."""
 import json
 import os
+import re
 import unittest
 
 from harness import CliTest
@@ -48,6 +49,45 @@ class RenderTest(CliTest):
         self.assertTrue(self.path("a.pdf").read_bytes().startswith(b"%PDF-"))
         result = self.cadt("render", "--generate", "uniform", "-n", 300, "-o", "-", "-t", "svg", "-q")
         self.assertIn("</svg>", result.out)
+
+    def svg_size(self, name):
+        return [int(n) for n in re.search(r'viewBox="0 0 (\d+) (\d+)"', self.path(name).read_text()).groups()]
+
+    def test_svg_and_pdf_have_the_size_that_is_asked_for(self):
+        self.write("square.xy", "0 0\n1 0\n0 1\n1 1\n")
+        for size in ("300x100", "100x300", "64x64"):
+            width, height = map(int, size.split("x"))
+            self.cadt("render", "square.xy", "-o", "a.svg", "--size", size)
+            self.assertEqual(self.svg_size("a.svg"), [width, height])
+            corners = re.findall(r"[ML] ([\d.]+) ([\d.]+)", self.path("a.svg").read_text())
+            for k, side in ((0, width), (1, height)):
+                along = [float(corner[k]) for corner in corners if float(corner[k]) not in (0, side)]
+                self.assertAlmostEqual(min(along) + max(along), side, delta=1, msg="the mesh is in the middle")
+                self.assertAlmostEqual(max(along) - min(along), min(width, height), delta=0.2 * min(width, height))
+            self.cadt("render", "square.xy", "-o", "a.pdf", "--size", size)
+            self.assertRegex(self.path("a.pdf").read_bytes(), rb"/MediaBox \[ 0 0 %d %d \]" % (width, height))
+
+    def test_a_width_that_is_asked_for_is_had(self):
+        self.write("square.xy", "0 0\n1 0\n0 1\n1 1\n")
+        self.write("high.xy", "0 0\n1 0\n0 6\n1 6\n")
+        for width in (4100, 16000):
+            self.cadt("render", "square.xy", "-o", "a.svg", "--size", width)
+            self.assertEqual(self.svg_size("a.svg"), [width, width])
+            self.cadt("triangulate", "square.xy", "-o", "a.svg", "--width", 2 * width)
+            self.assertEqual(self.svg_size("a.svg"), [2 * width, 2 * width])
+        for command, option in (("render", "--size"), ("triangulate", "--width")):
+            self.cadt(command, "high.xy", "-o", "a.svg")
+            self.assertEqual(self.svg_size("a.svg")[1], 4000, "without a width")
+            self.cadt(command, "high.xy", "-o", "a.svg", option, 1000)
+            self.assertEqual(self.svg_size("a.svg")[0], 1000)
+            self.assertGreater(self.svg_size("a.svg")[1], 5500)
+        self.cadt("triangulate", "square.xy", "-o", "a.png", "--width", 4100)
+        self.assertEqual(png_size(self.path("a.png")), (4100, 4100))
+        self.cadt("render", "high.xy", "-o", "a.png", "--size", 800, "--samples", 1)
+        width, height = png_size(self.path("a.png"))
+        self.assertEqual(width, 800)
+        self.assertGreater(height, 4500)
+        self.fails(2, "triangulate", "square.xy", "-o", "a.svg", "--width", 32001, says="--width")
 
     def test_no_triangles(self):
         for name, text in (("one", "3 4\n"), ("line", "0 0\n1 1\n2 2\n")):
@@ -137,7 +177,7 @@ class RenderSegmentsTest(CliTest):
                 self.cadt("triangulate", file, "--domain", "even_odd", "-o", f"t.{suffix}", "--width", 300)
                 self.assertEqual(self.path(f"r.{suffix}").read_bytes(), self.path(f"t.{suffix}").read_bytes(), file)
         self.cadt("render", "plate.geojson", "-o", "r.svg", "--size", "300x100")
-        self.assertIn("height=\"100\"", self.path("r.svg").read_text())
+        self.assertIn('width="300" height="100"', self.path("r.svg").read_text())
 
     def test_what_does_not_fit(self):
         self.write("p.xy", "0 0\n1 0\n0 1\n")

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -42,6 +44,21 @@ TEST(Viewport, TallBoxKeepsToTheLargestHeight) {
   const Viewport view(xy, 1600, 1000);
   EXPECT_EQ(view.height(), 1000);
   EXPECT_NEAR(view.width(), 1000.0 / 5.0, 60.0);
+}
+
+TEST(Viewport, WidthAndHeightExactlyWithTheBoxInTheMiddle) {
+  const std::vector<double> xy{10, 10, 14, 12};  // twice as wide as high
+  for (const auto& [width, height] : {std::pair{900, 100}, std::pair{100, 900}, std::pair{16, 16}}) {
+    const Viewport view(xy, width, 4000, height);
+    EXPECT_EQ(view.width(), width);
+    EXPECT_EQ(view.height(), height);
+    const auto low = view.map(10, 10), high = view.map(14, 12);
+    EXPECT_NEAR(low.x + high.x, width, 1e-9 * width);
+    EXPECT_NEAR(low.y + high.y, height, 1e-9 * height);
+    EXPECT_NEAR(high.x - low.x, 2 * (low.y - high.y), 1e-9 * width);
+    EXPECT_GT(std::min(low.x, high.y), 0);
+    EXPECT_LT(std::min(low.x, high.y), 0.1 * std::min(width, height) + 1e-9);
+  }
 }
 
 struct Box {

@@ -2,9 +2,11 @@
 #include "render_growth.hpp"
 
 #include "failure.hpp"
+#include "input.hpp"
 #include "interrupt.hpp"
 #include "numbers.hpp"
 #include "outputs.hpp"
+#include "system.hpp"
 #include "text.hpp"
 
 #include <cadt/io/errors.hpp>
@@ -18,8 +20,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 namespace cadt::cli {
@@ -41,6 +46,51 @@ bool is_frame(const fs::path& file) {
   return file.extension() == ".png" && !stem.empty() &&
          std::ranges::all_of(stem, [](char c) { return c >= '0' && c <= '9'; });
 }
+
+/// The folder, or the one in which it will be made.
+fs::path existing(fs::path folder) {
+  std::error_code ignored;
+  while (!folder.empty() && !fs::exists(folder, ignored)) folder = folder.parent_path();
+  return folder.empty() ? fs::path(".") : folder;
+}
+
+/// What has been written into a folder, and the folder if it is new: removed again unless all of it is complete.
+class FrameFolder {
+ public:
+  explicit FrameFolder(fs::path folder) : folder_(std::move(folder)) {
+    std::error_code code;
+    for (fs::path at = folder_; !at.empty() && !fs::exists(at, code); at = at.parent_path())
+      if (at.has_filename()) made_.push_back(at);
+    fs::create_directories(folder_, code);
+    if (code) {
+      remove();
+      throw io::FileError(folder_.string(), 0, "cannot be made: " + code.message());
+    }
+  }
+  ~FrameFolder() {
+    if (!complete_) remove();
+  }
+  FrameFolder(const FrameFolder&) = delete;
+  FrameFolder& operator=(const FrameFolder&) = delete;
+
+  void write(std::size_t i, const Image& picture) {
+    const fs::path file = folder_ / fmt::format("{:04}.png", i + 1);
+    write_png(file.string(), picture);
+    frames_.push_back(file);
+  }
+  void complete() noexcept { complete_ = true; }
+
+ private:
+  void remove() noexcept {
+    std::error_code ignored;
+    for (const fs::path& file : frames_) fs::remove(file, ignored);
+    for (const fs::path& folder : made_) fs::remove(folder, ignored);  // if it is empty
+  }
+
+  fs::path folder_;
+  std::vector<fs::path> made_, frames_;  ///< the innermost folder first
+  bool complete_ = false;
+};
 
 std::size_t pictures_of(const GrowthOptions& growth) {
   return static_cast<std::size_t>(std::max(1.0, std::round(growth.fps * growth.seconds)));
@@ -124,7 +174,7 @@ std::vector<std::string> row_of(const Recording& recording, std::size_t frame) {
 
 /// One picture of several snapshots, in rows, and their counters on standard output.
 void write_sheet(const io::PointSet& points, const Recording& recording, const std::string& output, int panels,
-                 const GrowthView& view) {
+                 const GrowthView& view, ProgressLine& line) {
   const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(panels))));
   const int rows = (panels + columns - 1) / columns, gap = std::max(2, view.width / 100);
   const int width = (view.width - gap * (columns - 1)) / columns;
@@ -147,11 +197,12 @@ void write_sheet(const io::PointSet& points, const Recording& recording, const s
     const double share = (k + 1.0) / panels;
     const std::size_t frame = k + 1 == panels ? recording.size() - 1 : recording.frame_with_points(share * share * all);
     paste(sheet, painter.draw(frame), (width + gap) * (k % columns), (height + gap) * (k / columns));
-    std::vector<std::string> line = row_of(recording, frame);
-    line.insert(line.begin(), std::to_string(k + 1));
-    lines.push_back(std::move(line));
+    std::vector<std::string> row = row_of(recording, frame);
+    row.insert(row.begin(), std::to_string(k + 1));
+    lines.push_back(std::move(row));
   }
   write_png(output, sheet);
+  check_interrupt_after({display_name(output, false)}, &line);
   if (!view.quiet) print(table(lines));
 }
 
@@ -227,8 +278,12 @@ void check_growth(const GrowthOptions& options, const std::string& output) {
     return;
   }
   std::error_code code;
-  fs::create_directories(output, code);
-  if (code) throw io::FileError(output, 0, "cannot be made: " + code.message());
+  const fs::path place = existing(output);
+  if (!fs::is_directory(place, code))
+    throw io::FileError(output, 0, "cannot be made: " + place.string() + " is a file");
+  if (!may_write(place.string()))
+    throw io::FileError(output, 0, "cannot be written: " + std::generic_category().message(errno));
+  if (!fs::is_directory(output, code)) return;
   for (const fs::directory_entry& entry : fs::directory_iterator(output))
     if (is_frame(entry.path()))
       throw io::FileError(output, 0,
@@ -257,7 +312,7 @@ int render_growth(const io::PointSet& points, const Options& options, const std:
                     human_bytes(limits.most_bytes)));
   line.step("drawing");
   if (growth.panels != 0) {
-    write_sheet(points, recording, output, growth.panels, view);
+    write_sheet(points, recording, output, growth.panels, view, line);
     return exit_done;
   }
   const int width = std::max(2, view.width & ~1);  // most films need even sizes
@@ -265,14 +320,17 @@ int render_growth(const io::PointSet& points, const Options& options, const std:
       2, (view.height == 0 ? Camera::height_for(box_of(points.xy), width, view.most_height) : view.height) & ~1);
   GrowthPainter painter(points, recording, view, width, height);
   if (!is_video(output)) {
-    each_picture(recording, growth, painter, line, [&](std::size_t i, const Image& picture) {
-      write_png((fs::path(output) / fmt::format("{:04}.png", i + 1)).string(), picture);
-    });
+    FrameFolder folder(output);
+    each_picture(recording, growth, painter, line,
+                 [&](std::size_t i, const Image& picture) { folder.write(i, picture); });
+    check_interrupt();
+    folder.complete();
     return exit_done;
   }
   Video video(output, width, height, growth.fps);
   each_picture(recording, growth, painter, line, [&](std::size_t, const Image& picture) { video.write(picture); });
   video.finish();
+  check_interrupt_after({display_name(output, false)}, &line);
   return exit_done;
 }
 

@@ -4,9 +4,10 @@ import os
 import pathlib
 import shutil
 import sys
+import time
 import unittest
 
-from harness import SOURCE, CliTest
+from harness import SECONDS, SOURCE, CliTest
 
 sys.path.insert(0, str(SOURCE / "docs" / "site" / "tools"))
 import pictures
@@ -83,6 +84,36 @@ class GrowthFilmTest(CliTest):
         self.assertGreater(len(set(pictures)), 5, "it does not move")
         self.assertEqual(pictures[-1], pictures[-2], "the end stands still")
         self.fails(3, "render", "--generate", "uniform", "-n", 300, "-o", "frames", says="has frames already")
+
+    def interrupted(self, folder):
+        """Begins ten minutes of frames, and ends it when there are some."""
+        with self.started("render", "--generate", "uniform", "-n", 300, "-o", folder, "--size", "64x48", "--fps", 10,
+                          "--seconds", 600) as process:
+            end = time.monotonic() + SECONDS
+            while not self.path(folder).is_dir() or not any(f.suffix == ".png" for f in self.path(folder).iterdir()):
+                self.assertLess(time.monotonic(), end, "no frame came")
+                self.assertIsNone(process.poll(), "it ended")
+                time.sleep(0.01)
+            process.terminate()
+            err = process.communicate(timeout=SECONDS)[1]
+        self.assertEqual((process.returncode, err), (130, b"cadt: interrupted\n"))
+
+    def test_interrupted_frames_leave_nothing(self):
+        for folder in ("frames/", "new", "one/in/another/"):
+            if not folder.endswith("/"):
+                self.path(folder).mkdir()
+                self.write(f"{folder}/note.txt", "stays")
+            self.interrupted(folder)
+        self.assertEqual(self.names(), ["new"], "the folder was there before")
+        self.assertEqual([f.name for f in self.path("new").iterdir()], ["note.txt"])
+        self.cadt("render", "--generate", "uniform", "-n", 300, "-o", "new", "--size", "64x48", "--fps", 5, "--seconds", 1, "-q")
+
+    def test_a_failed_run_makes_no_folder(self):
+        self.fails(3, "render", "missing.xy", "-o", "frames/", says="missing.xy")
+        self.write("line.xy", "0 0\n1 1\n2 2\n")
+        self.fails(4, "render", "line.xy", "-o", "deep/frames/", says="on one line")
+        self.fails(3, "render", "--generate", "uniform", "-n", 300, "-o", "line.xy/", says="line.xy")
+        self.assertEqual(self.names(), ["line.xy"])
 
     def test_films(self):
         if shutil.which("ffmpeg") is None:

@@ -65,6 +65,8 @@ class QueryErrors(CliTest):
         self.before.sort()
         self.fails(2, "raster", "line.xyz", "--res", "1", "-o", "a.asc", says=["no cells", "--bounds"])
         self.fails(2, "raster", "p.xyz", "--res", "1e-6", "-o", "a.asc", says=["1000000 x 1000000 cells", "larger --res"])
+        self.fails(2, "raster", "p.xyz", "--res", "1", "--bounds", "0,0,46341,46341", "-o", "a.asc",
+                   says=["46341 x 46341 cells, at most 2147483647", "larger --res"])
         self.fails(2, "raster", "p.xyz", "--res", "1e-320", "-o", "a.asc", says="larger --res")
         self.fails(3, "raster", "p.xyz", "--res", "1e-5", "--bounds", "0,0,1,1e-5", "-o", "a.png", says="too many for a picture")
 

@@ -214,6 +214,11 @@ class Scanner {
     const Coordinates& all = object.coordinates;
     if (!all.given) fail("the " + object.type + " has no coordinates");
     if (all.positions() == 0) return;
+    if (all.position_depth != type->depth && bare_) {
+      fail("a bare array is taken for the rings of one polygon, [[[x, y], ...], ...], and here positions are in " +
+           std::to_string(all.position_depth) + (all.position_depth == 1 ? " array" : " arrays") +
+           ": give GeoJSON, as {\"type\": \"MultiPoint\", \"coordinates\": ...}, or a table of points");
+    }
     if (all.position_depth != type->depth) {
       fail("the coordinates of the " + object.type + " are in " + std::to_string(all.position_depth) +
            " arrays instead of " + std::to_string(type->depth));

@@ -205,6 +205,13 @@ class SegmentErrors(CliTest):
         self.write("bad.poly", PLATE.replace("7 7 4\n", "7 7 10\n"))
         self.fails(3, "triangulate", "bad.poly", says="bad.poly:20: index 10 is out of range")
         self.fails(3, "info", "bad.poly", says="bad.poly:20: ")
+        for name, text, says in (("a.json", "[[0, 0], [1, 0], [0, 1]]", "positions are in 2 arrays"),
+                                 ("b.json", "[0, 0]", "positions are in 1 array"),
+                                 ("c.json", "[[[[0, 0], [1, 0], [0, 1]]]]", "positions are in 4 arrays")):
+            self.write(name, text)
+            err = self.fails(3, "triangulate", name, says=(says, "a bare array is taken for the rings of one polygon",
+                                                           "GeoJSON", "table of points")).err
+            self.assertNotIn("the Polygon", err)
         self.write("bad.geojson", '{"type": "Polygon",\n"coordinates": [[[0, 0], [1, 1], [2]]]}')
         self.fails(3, "triangulate", "bad.geojson", says="bad.geojson:2: a position needs two numbers")
 

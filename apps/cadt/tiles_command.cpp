@@ -93,6 +93,8 @@ void check_tiles_options(const TilesCommand& c) {
   if (same_output(c.picture, c.stats))
     throw Failure(exit_usage,
                   fmt::format("--picture and --stats both go to {}; give one of them another name", c.stats));
+  if (!c.picture.empty() && c.picture != "-" && !lower(c.picture).ends_with(".svg"))
+    throw Failure(exit_usage, fmt::format("--picture {}: it is an SVG; end the file's name in .svg", c.picture));
 }
 
 std::unique_ptr<tiles::PointSource> open_source(const TilesCommand& c) {

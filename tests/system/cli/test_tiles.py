@@ -271,6 +271,8 @@ class TilesFailureTest(CliTest):
         for option in ("--stats", "--picture"):
             self.fails(2, "tiles", "points.f64", f"{option}=./points.f64", says="this is the input")
         self.fails(2, "tiles", "points.f64", "--stats=a", "--picture=a", says="--picture and --stats both go to a")
+        for name in ("x.png", "x", "svg"):
+            self.fails(2, "tiles", "points.f64", "--picture", name, says=("--picture", ".svg"))
         for option, value in (("-n", "10"), ("--seed", "3")):
             self.fails(2, "tiles", "points.f64", option, value, says=(option, "requires --generate"))
 

@@ -4,6 +4,7 @@
 #include "failure.hpp"
 #include "text.hpp"
 
+#include <cadt/io/errors.hpp>
 #include <cadt/io/generate.hpp>
 #include <cadt/io/segments_file.hpp>
 
@@ -11,8 +12,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 namespace cadt::cli {
+namespace {
+
+std::vector<std::string> formats_of(const InputOptions& options) {
+  std::vector<std::string> formats = io::point_read_formats();
+  if (!options.segments) return formats;
+  for (const std::string& format : io::segment_read_formats()) {  // those that are no formats of points
+    if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
+  }
+  return formats;
+}
+
+}  // namespace
 
 void add_input_options(CLI::App& command, InputOptions& options, const std::string& name, const std::string& text,
                        bool segments) {
@@ -21,12 +36,8 @@ void add_input_options(CLI::App& command, InputOptions& options, const std::stri
 }
 
 void add_read_options(CLI::App& command, InputOptions& options, bool segments) {
-  std::vector<std::string> formats = io::point_read_formats();
-  if (segments) {  // those that are no formats of points
-    for (const std::string& format : io::segment_read_formats()) {
-      if (std::find(formats.begin(), formats.end(), format) == formats.end()) formats.push_back(format);
-    }
-  }
+  options.segments = segments;
+  const std::vector<std::string> formats = formats_of(options);
   command
       .add_option("-f,--from", options.format,
                   "format of the points: " + join(formats, " ") + "; default: from the suffix")
@@ -73,10 +84,47 @@ void require_point_set(const std::string& name) {
     throw Failure(exit_usage, fmt::format("there is no point set '{}' (see: cadt generate --list)", name));
 }
 
+void require_format(const std::string& path, const std::string& asked, const std::vector<std::string>& known,
+                    const std::string& option) {
+  namespace fs = std::filesystem;
+  if (path.empty() || path == "-") return;
+  std::error_code code;
+  if (fs::is_directory(path, code))
+    throw io::FileError(path, 0,
+                        "is a folder, and a file is needed; the folders of cadt tiles are for cadt merge, cadt verify "
+                        "and cadt info");
+  if (!asked.empty()) return;
+  const std::string suffix = lower(fs::path(path).extension().string());
+  if (suffix == ".cadt" && !fs::exists(path, code)) throw io::FileError(path, 0, "there is no such folder");
+  if (!suffix.empty() && std::find(known.begin(), known.end(), suffix.substr(1)) != known.end()) return;
+  throw Failure(exit_usage, fmt::format("{}: {}; name the format with {}, one of: {}", path,
+                                        suffix.empty() ? "no suffix" : "unknown suffix '" + suffix + "'", option,
+                                        join(known, " ")));
+}
+
+void require_columns(const std::string& columns, const std::string& option) {
+  if (columns.empty()) return;
+  const auto refuse = [&](const std::string& why) {
+    throw Failure(exit_usage,
+                  fmt::format("{} {}: {}; write for example {} 1,2 or {} x,y,z", option, columns, why, option, option));
+  };
+  std::size_t count = 0;
+  for (std::size_t at = 0; at <= columns.size(); ++count) {
+    const std::size_t end = std::min(columns.find(',', at), columns.size());
+    const std::string name = columns.substr(at, end - at);
+    if (name.find_first_not_of(" \t") == std::string::npos) refuse("a column is missing");
+    if (name.find_first_not_of(" \t0") == std::string::npos) refuse("columns are counted from 1");
+    at = end + 1;
+  }
+  if (count != 2 && count != 3) refuse("two or three columns are needed");
+}
+
 io::ReadOptions read_options(const InputOptions& options) {
   if (options.path == "-" && options.format.empty()) {
     throw Failure(exit_usage, "standard input has no suffix; name its format, for example: -f xy");
   }
+  require_format(options.path, options.format, formats_of(options), "-f");
+  require_columns(options.columns, "--columns");
   io::ReadOptions read;
   read.format = lower(options.format);
   read.columns = options.columns;

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <string>
+#include <vector>
 
 namespace cadt::cli {
 
@@ -16,6 +17,7 @@ struct InputOptions {
   std::string columns;
   std::string projection = "xy";
   bool floats = false;
+  bool segments = false;  ///< the command takes formats of segments, too
 };
 
 /// Adds the positional `name` and -f, --columns, --project. `segments`: -f may name a format of segments.
@@ -30,6 +32,14 @@ void add_floats_option(CLI::App& command, InputOptions& options);
 
 /// With --floats: rounds the coordinates, and says how many points that has moved unless `quiet`.
 void round_to_floats(io::PointSet& points, const InputOptions& options, bool quiet);
+
+/// Throws Failure (usage) for a suffix that is none of `known`, where no format is `asked` for by `option`;
+/// io::FileError for a folder.
+void require_format(const std::string& path, const std::string& asked, const std::vector<std::string>& known,
+                    const std::string& option);
+
+/// Throws Failure (usage) for columns that no table has: two or three numbers from 1, or names.
+void require_columns(const std::string& columns, const std::string& option);
 
 /// What the reader is told. Throws Failure (usage) for standard input without a format.
 [[nodiscard]] io::ReadOptions read_options(const InputOptions& options);

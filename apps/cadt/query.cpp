@@ -61,6 +61,7 @@ Output plan_query_output(const QueryOptions& o, const std::vector<std::string>& 
     throw Failure(exit_usage, "only one of POINTS and QUERIES can be standard input");
   }
   if (o.values == "-") throw Failure(exit_usage, "--values takes z or a file, not standard input");
+  require_columns(o.query_columns, "--query-columns");
   const std::string values = o.values == "z" ? std::string() : o.values;
   return plan_outputs({o.output}, format, formats, {o.input.path, o.queries, values}).front();
 }
@@ -116,6 +117,7 @@ io::Values QueryRun::read_values() const {
 
 io::PointSet QueryRun::read_queries() {
   line.step(fmt::format("reading {}", display_name(options_.queries, true)));
+  require_format(options_.queries, options_.query_format, io::point_read_formats(), "--query-format");
   io::ReadOptions read;
   read.format = options_.queries == "-" && options_.query_format.empty() ? "txt" : lower(options_.query_format);
   read.columns = options_.query_columns;

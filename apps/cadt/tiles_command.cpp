@@ -101,6 +101,7 @@ std::unique_ptr<tiles::PointSource> open_source(const TilesCommand& c) {
   if (c.generate.empty()) {
     InputOptions input = c.read;
     if (std::find(c.inputs.begin(), c.inputs.end(), "-") != c.inputs.end()) input.path = "-";
+    for (const std::string& file : c.inputs) require_format(file, input.format, io::point_read_formats(), "-f");
     return tiles::open_files(c.inputs, read_options(input));
   }
   io::GenerateOptions options = c.set;

@@ -56,6 +56,8 @@ int run(const VerifyCommand& command) {
   }
   if (command.mesh.empty()) throw Failure(exit_usage, "MESH is required: the file with the triangles of POINTS");
   check_standard_input(command);
+  static_cast<void>(read_options(command.input));  // what is wrong with POINTS comes first
+  require_format(command.mesh, command.format, io::mesh_read_formats(), "-t");
   io::PointSet points = read_input(command.input);
   round_to_floats(points, command.input, command.quiet);
   const io::MeshFile mesh = io::read_mesh(command.mesh, points.size(), lower(command.format), command.base);

@@ -45,7 +45,7 @@ PointSet read_table(const InputFile& file, const ReadOptions& options) {
   do {
     const std::size_t found = rows.fields().size();
     if (found < needed || (strict && found != 2)) {
-      const std::string wanted = strict ? "2 are" : "column " + std::to_string(needed) + " is";
+      const std::string wanted = strict && needed <= 2 ? "2 are" : "column " + std::to_string(needed) + " is";
       rows.fail("the line has " + std::to_string(found) + (found == 1 ? " field, " : " fields, ") + wanted +
                 " expected");
     }

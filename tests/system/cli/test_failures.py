@@ -72,6 +72,16 @@ class Usage(CliTest):
                 (["generate", "uniform", "--seed", "18446744073709551616", "-o", "x.xy"], "not '18446744073709551616'"),
                 (["generate", "uniform", "--seed", "+1", "-o", "x.xy"], "--seed"),
                 (["generate", "uniform", "--seed", "0x10", "-o", "x.xy"], "--seed"),
+                (["triangulate", "foo.stl"], "foo.stl: unknown suffix '.stl'; name the format with -f, one of: xy txt csv"),
+                (["triangulate", "foo.stl"], "geojson"),
+                (["triangulate", "foo"], "foo: no suffix"),
+                (["locate", "in.xy", "foo.stl"], "name the format with --query-format"),
+                (["verify", "in.xy", "foo.stl"], "name the format with -t, one of: ele obj off"),
+                (["triangulate", "in.xy", "--columns", "1"], "cadt: error: --columns 1: two or three columns are needed"),
+                (["triangulate", "in.xy", "--columns", "1,2,3,4"], "cadt: error: --columns 1,2,3,4: two or three"),
+                (["triangulate", "in.xy", "--columns", "0,1"], "cadt: error: --columns 0,1: columns are counted from 1"),
+                (["triangulate", "in.xy", "--columns", "1,"], "cadt: error: --columns 1,: a column is missing"),
+                (["locate", "in.xy", "in.xy", "--query-columns", "1"], "--query-columns 1: two or three"),
                 (["devices", "all"], "all")]:
             with self.subTest(arguments=arguments):
                 self.fails(2, *arguments, says=says)
@@ -84,6 +94,19 @@ class Usage(CliTest):
         self.assertNotEqual(a, c)
         self.cadt("generate", "uniform", "-n", "20", "--seed", 2**64 - 1, "-o", "d.xy", "-q")
         self.assertEqual(len(self.cadt("locate", "in.xy", "in.xy", "--nearest", "-k", "010").out.split("\n")[0].split()), 10)
+
+    def test_folders_are_no_files_of_points(self):
+        for name in ("folder", "folder.xy"):
+            self.path(name).mkdir()
+            for arguments in (["triangulate", name], ["info", name], ["locate", "in.xy", name], ["verify", "in.xy", name]):
+                self.fails(3, *arguments, says=(f"cadt: error: {name}: is a folder", "cadt merge", "cadt verify"))
+
+    def test_columns_of_a_table_of_two(self):
+        self.fails(3, "triangulate", "in.xy", "--columns", "1,3",
+                   says="in.xy:1: the line has 2 fields, column 3 is expected")
+        self.write("in.xy", "0 0\n1 1\n1 1 1\n")
+        self.fails(3, "triangulate", "in.xy", says="in.xy:3: the line has 3 fields, 2 are expected")
+        self.fails(3, "triangulate", "in.xy", "--columns", "1,2", says="in.xy:3: the line has 3 fields, 2 are expected")
 
     def test_outputs_that_cannot_be_are_found_before_the_work(self):
         # The input does not exist: whoever looks at it first says 3.
@@ -358,7 +381,7 @@ class Interrupt(CliTest):
         self.assertEqual(len(left), 1)
         self.assertRegex(left[0], r"^\.cadt-\d+-\d+\.tmp$")
         # What is left has a name that no format has, and as a mesh it is refused.
-        self.fails(3, "verify", "in.f64", left[0], says=left[0])
+        self.fails(2, "verify", "in.f64", left[0], says=left[0])
         self.fails(3, "verify", "in.f64", left[0], "-t", "off", says=left[0])
         self.cadt("triangulate", "in.f64", "-o", "a.off", "--backend", "host")
         self.assertEqual(self.path("a.off").read_text().split(None, 2)[:2], ["OFF", "2000000"])

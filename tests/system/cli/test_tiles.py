@@ -275,6 +275,11 @@ class TilesFailureTest(CliTest):
             self.fails(2, "tiles", "points.f64", "--picture", name, says=("--picture", ".svg"))
         for option, value in (("-n", "10"), ("--seed", "3")):
             self.fails(2, "tiles", "points.f64", option, value, says=(option, "requires --generate"))
+        self.fails(2, "tiles", "points.stl", says=("points.stl: unknown suffix '.stl'", "-f"))
+        self.fails(2, "tiles", "points.f64", "--columns", "1", says="--columns 1: two or three")
+        self.path("some").mkdir()
+        self.fails(3, "tiles", "some", says="some: is a folder")
+        self.path("some").rmdir()
 
     def test_devices_that_are_not_there(self):
         """Two threads open devices at the same time, which is the first question of both to the drivers."""

@@ -14,20 +14,29 @@ namespace {
 
 using State = std::shared_ptr<Triangulator::State>;
 
-/// Seeds are few, and located on the host.
-DomainSeeds locate_on_host(const State& state, const DevicePoints& points, const ConstraintOptions& constraints,
-                           const DeviceTriangulation::Data& data) {
+/// Seeds are few, and located on the host. `job`: the segments that were given.
+DomainSeeds locate_on_host(const State& state, const DevicePoints& points, const SegmentJob& job,
+                           const ConstraintOptions& constraints, const DeviceTriangulation::Data& data) {
   if (constraints.domain != Domain::seeds || data.triangle_count == 0) return locate_seeds({}, {}, {}, constraints);
   Device& device = *state->device;
   const auto triangles = device.read_values<std::int32_t>(*data.triangles, 3 * data.triangle_count);
-  const std::vector<double> xy = data.places ? device.read_values<double>(*data.places, 2 * data.points)
-                                             : copy_segments(state, points, {}).doubles();
-  return locate_seeds(triangles, xy, {}, constraints);
+  if (!data.places) return locate_seeds(triangles, copy_segments(state, points, {}).doubles(), {}, constraints);
+  const auto xy = device.read_values<double>(*data.places, 2 * data.points);
+  const std::size_t given = 2 * (data.points - data.added);
+  const std::span<const double> all(xy);
+  AddedPlaces added{all.subspan(given), {}, {}};
+  std::vector<Segment> segments, pairs;
+  if (data.added != 0 && !data.moved) {
+    segments = device.read_values<Segment>(*job.segments, job.count);
+    pairs = device.read_values<Segment>(*data.added_parents, data.added);
+    added.segments = segments, added.pairs = pairs;
+  }
+  return locate_seeds(triangles, PointsView(all.first(given)), added, constraints);
 }
 
-void add_domains(const State& state, const DevicePoints& points, const ConstraintOptions& constraints,
-                 DeviceTriangulation::Data& data) {
-  const DomainSeeds seeds = locate_on_host(state, points, constraints, data);
+void add_domains(const State& state, const DevicePoints& points, const SegmentJob& job,
+                 const ConstraintOptions& constraints, DeviceTriangulation::Data& data) {
+  const DomainSeeds seeds = locate_on_host(state, points, job, constraints, data);
   if (data.triangle_count == 0) return;
   Statistics statistics;
   Context ctx(*state->device, state->memory, state->options, statistics);
@@ -86,14 +95,18 @@ DeviceTriangulation Triangulator::triangulate_constrained(const DevicePoints& po
                      segments.size / 2);
   if (segments.size != 0 && segments.memory == nullptr)
     throw InputError("the array of segments has no memory: DeviceArray::memory is null", 0);
-  SegmentJob job;
-  job.count = segments.size / 2;
-  if (job.count != 0) job.segments = state_->memory.wrap(segments.memory, segments.size * sizeof(std::int32_t));
-  job.wants_chains = true;
+  const auto job_of_segments = [&] {
+    SegmentJob job;
+    job.count = segments.size / 2;
+    if (job.count != 0) job.segments = state_->memory.wrap(segments.memory, segments.size * sizeof(std::int32_t));
+    job.wants_chains = true;
+    return job;
+  };
+  const SegmentJob job = job_of_segments();
   DeviceMesh mesh = constraints.crossing == Crossing::grid
                         ? snap(state_, points, job, constraints.grid)
-                        : constrain(state_, points, std::move(job), constraints.crossing == Crossing::exact);
-  if (constraints.domain != Domain::hull) add_domains(state_, points, constraints, *mesh);
+                        : constrain(state_, points, job_of_segments(), constraints.crossing == Crossing::exact);
+  if (constraints.domain != Domain::hull) add_domains(state_, points, job, constraints, *mesh);
   return DeviceTriangulation(std::move(mesh));
 }
 

@@ -40,12 +40,14 @@ bool constrain_uncrossed(const State& state, PointsView points, std::span<const 
   return true;
 }
 
-void add_domains(const State& state, PointsView points, const ConstraintOptions& constraints, Data& data) {
+void add_domains(const State& state, PointsView points, std::span<const Segment> segments,
+                 const ConstraintOptions& constraints, Data& data) {
   Statistics none;
   Context ctx(*state->device, state->memory, state->options, none);
-  HostDomains found =
-      find_domains(ctx, {data.mesh.triangles(), data.mesh.neighbors(), data.edge_flags, points, data.added},
-                   {data.chain_offsets, data.chain_vertices}, constraints);
+  AddedPlaces added{data.added, segments, data.parents};
+  if (constraints.crossing == Crossing::grid) added.pairs = {};  // these are on the grid
+  HostDomains found = find_domains(ctx, {data.mesh.triangles(), data.mesh.neighbors(), data.edge_flags, points, added},
+                                   {data.chain_offsets, data.chain_vertices}, constraints);
   data.inside = std::move(found.inside);
   data.number_inside = found.number_inside;
   data.region = std::move(found.region);
@@ -67,7 +69,7 @@ ConstrainedTriangulation constrain_on(const State& state, PointsView points, std
     if (constraints.crossing == Crossing::error) refuse_crossings(state, points, segments, job.crossings);
     constrain_exactly(state, points, segments, std::move(job.crossings), *data);
   }
-  add_domains(state, points, constraints, *data);
+  add_domains(state, points, segments, constraints, *data);
   constraints::check(state->options.stop);
   return ConstrainedTriangulation(std::move(data));
 }

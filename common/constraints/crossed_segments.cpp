@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "common/constraints/chains.hpp"
+#include "common/constraints/crossing_places.hpp"
 #include "common/constraints/crossings.hpp"
 #include "common/constraints/exact_crossings.hpp"
 #include "common/constraints/exact_triangulation.hpp"
-#include "common/constraints/implicit_point.hpp"
 #include "common/constraints/tasks.hpp"
 
 namespace cadt {
@@ -26,8 +26,7 @@ std::vector<Segment> read_pairs(Device& device, const FoundCrossings& found) {
 
 /// Input points and crossings as exact places, and a mesh of them.
 struct ExactPlaces {
-  PointsView points;
-  std::span<const Segment> segments, pairs;
+  constraints::CrossingPlaces vertices;
   std::span<const std::int32_t> triangles, neighbors;
 
   /// Whether a suspect (CADT_SUSPECT) is right: counterclockwise, or a legal edge.
@@ -48,7 +47,7 @@ struct ExactPlaces {
     std::array<exact::Line, 8> lines;
     const exact::ImplicitPoints exact(lines);
     std::array<exact::Place, 4> at;
-    for (std::size_t i = 0; i < count; ++i) at[i] = place(static_cast<std::size_t>(v[i]), 2 * i, lines, exact);
+    for (std::size_t i = 0; i < count; ++i) at[i] = vertices.place(static_cast<std::size_t>(v[i]), 2 * i, lines, exact);
     if (count == 3) return exact.orientation(at[0], at[1], at[2]) > 0;
     return exact.incircle_perturbed(at[0], at[1], at[2], at[3]) < 0;
   }
@@ -61,20 +60,6 @@ struct ExactPlaces {
                                     if (!is_right(suspects[i])) right.store(false, std::memory_order_relaxed);
                                 });
     return right.load();
-  }
-
- private:
-  [[nodiscard]] exact::Point point(std::int32_t i) const {
-    return {points.x(static_cast<std::size_t>(i)), points.y(static_cast<std::size_t>(i))};
-  }
-  [[nodiscard]] exact::Place place(std::size_t v, std::size_t first, std::array<exact::Line, 8>& lines,
-                                   const exact::ImplicitPoints& exact) const {
-    if (v < points.size()) return exact::explicit_place(point(static_cast<std::int32_t>(v)));
-    for (std::size_t i = 0; i < 2; ++i) {
-      const Segment& s = segments[static_cast<std::size_t>(pairs[v - points.size()][i])];
-      lines[first + i] = {point(s[0]), point(s[1])};
-    }
-    return exact.crossing(static_cast<std::int32_t>(first), static_cast<std::int32_t>(first + 1));
   }
 };
 
@@ -113,7 +98,7 @@ bool constrain_rounded(const State& state, PointsView points, std::span<const Se
   constraints::check(state->options.stop);
   if (!call.fits(mesh.duplicates().empty() ? -1 : mesh.duplicates().back().point)) return false;
   std::vector<Segment> pairs = read_pairs(device, found);
-  const ExactPlaces exact{points, segments, pairs, mesh.triangles(), mesh.neighbors()};
+  const ExactPlaces exact{{points, segments, pairs}, mesh.triangles(), mesh.neighbors()};
   if (!exact.are_right(*call.job.suspects, state->options.threads)) return false;
   constraints::check(state->options.stop);
 
@@ -142,7 +127,7 @@ DeviceMesh constrain_rounded(const State& state, std::size_t n, const SegmentJob
     const auto segments = device.read_values<Segment>(*first.segments, first.count), pairs = read_pairs(device, found);
     const auto triangles = device.read_values<std::int32_t>(*data->triangles, 3 * data->triangle_count),
                neighbors = device.read_values<std::int32_t>(*data->neighbors, 3 * data->triangle_count);
-    const ExactPlaces exact{xy, segments, pairs, triangles, neighbors};
+    const ExactPlaces exact{{xy, segments, pairs}, triangles, neighbors};
     if (!exact.are_right(*call.job.suspects, state->options.threads)) return nullptr;
   }
   data->added = found.count;

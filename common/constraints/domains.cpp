@@ -287,8 +287,9 @@ HostDomains find_domains(Context& ctx, const HostDomainMesh& mesh, const Segment
   const Allocation begins = ctx.memory.import(offsets.data(), offsets.size() * word);
   Allocation along;
   if (!chains.vertices.empty()) along = ctx.memory.import(chains.vertices.data(), chains.vertices.size() * word);
-  Domains domains = find_domains(ctx, {vertices, neighbors, flags, count}, mesh.points.size() + mesh.added.size() / 2,
-                                 {begins, along, chains.offsets.size() - 1, chains.vertices.size()}, seeds, options);
+  Domains domains =
+      find_domains(ctx, {vertices, neighbors, flags, count}, mesh.points.size() + mesh.added.xy.size() / 2,
+                   {begins, along, chains.offsets.size() - 1, chains.vertices.size()}, seeds, options);
   host.region = ctx.device.read_values<std::int32_t>(*domains.region, count);
   host.region_value = std::move(domains.value);
   host.region_attribute = std::move(domains.attribute);

@@ -38,11 +38,16 @@ struct SegmentChains {
 struct DomainSeeds {
   std::vector<std::int32_t> holes, regions;
 };
+/// Of what added vertices of a mesh are the crossings; without pairs they are where their coordinates say.
+struct AddedPlaces {
+  std::span<const double> xy;  ///< rounded, x0 y0 x1 y1 ...
+  std::span<const Segment> segments, pairs;
+};
 /// Exact. A seed on an edge or a vertex is in the lowest triangle there. Vertices from points.size() on are those of
 /// `added`. O(triangles log seeds + boxes of triangles that have a seed). Nothing to do but with Domain::seeds.
 /// \throws OptionError for a seed that is not finite
 [[nodiscard]] DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsView& points,
-                                       std::span<const double> added, const ConstraintOptions& options);
+                                       const AddedPlaces& added, const ConstraintOptions& options);
 
 /// Regions are numbered by their lowest triangles, from 0.
 struct Domains {
@@ -76,7 +81,7 @@ struct HostDomainMesh {
   std::span<const std::int32_t> triangles, neighbors;
   std::span<const std::uint32_t> edge_flags;
   PointsView points;
-  std::span<const double> added;  ///< further points, x0 y0 x1 y1 ...
+  AddedPlaces added;
 };
 [[nodiscard]] HostDomains find_domains(Context& ctx, const HostDomainMesh& mesh, const SegmentChains& chains,
                                        const ConstraintOptions& options);

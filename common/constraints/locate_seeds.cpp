@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "common/constraints/crossing_places.hpp"
 #include "common/constraints/domains.hpp"
 #include "common/verify/host/exact_sign.hpp"
 
@@ -22,10 +23,21 @@ void add_seed(std::vector<Seed>& seeds, const char* option, std::size_t i, doubl
   seeds.push_back({{x, y}, &triangle});
 }
 
+bool contains_exactly(const constraints::CrossingPlaces& vertices, std::span<const std::int32_t> triangle,
+                      const verifier::Point& q) {
+  std::array<exact::Line, 6> lines;
+  const exact::ImplicitPoints exact(lines);
+  std::array<exact::Place, 3> p;
+  for (std::size_t k = 0; k < 3; ++k) p[k] = vertices.place(static_cast<std::size_t>(triangle[k]), 2 * k, lines, exact);
+  const exact::Place seed = exact::explicit_place(q);
+  return exact.orientation(p[0], p[1], seed) >= 0 && exact.orientation(p[1], p[2], seed) >= 0 &&
+         exact.orientation(p[2], p[0], seed) >= 0;
+}
+
 }  // namespace
 
-DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsView& points,
-                         std::span<const double> added, const ConstraintOptions& options) {
+DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsView& points, const AddedPlaces& added,
+                         const ConstraintOptions& options) {
   DomainSeeds found;
   if (options.domain != Domain::seeds) return found;
   found.holes.assign(options.holes.size(), -1);
@@ -38,11 +50,14 @@ DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsVi
   std::ranges::sort(seeds, {}, [](const Seed& seed) { return seed.at.x; });
   if (seeds.empty()) return found;
 
+  const auto is_added = [&](std::int32_t v) { return static_cast<std::size_t>(v) >= points.size(); };
   const auto point = [&](std::int32_t v) -> verifier::Point {
     const auto i = static_cast<std::size_t>(v);
     if (i < points.size()) return {points.x(i), points.y(i)};
-    return {added[2 * (i - points.size())], added[2 * (i - points.size()) + 1]};
+    return {added.xy[2 * (i - points.size())], added.xy[2 * (i - points.size()) + 1]};
   };
+  const constraints::CrossingPlaces crossings{points, added.segments, added.pairs};
+  // Rounding keeps the order, so what is in the box of exact corners is in that of the rounded ones.
   for (std::size_t t = 0; t < triangles.size() / 3; ++t) {
     const std::array<verifier::Point, 3> p = {point(triangles[3 * t]), point(triangles[3 * t + 1]),
                                               point(triangles[3 * t + 2])};
@@ -52,8 +67,10 @@ DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsVi
          seed != seeds.end() && seed->at.x <= max_x; ++seed) {
       const verifier::Point q = seed->at;
       if (*seed->triangle >= 0 || q.y < min_y || q.y > max_y) continue;
-      if (verifier::orientation(p[0], p[1], q) >= 0 && verifier::orientation(p[1], p[2], q) >= 0 &&
-          verifier::orientation(p[2], p[0], q) >= 0)
+      const bool has_crossing = !added.pairs.empty() && std::ranges::any_of(triangles.subspan(3 * t, 3), is_added);
+      if (has_crossing ? contains_exactly(crossings, triangles.subspan(3 * t, 3), q)
+                       : verifier::orientation(p[0], p[1], q) >= 0 && verifier::orientation(p[1], p[2], q) >= 0 &&
+                             verifier::orientation(p[2], p[0], q) >= 0)
         *seed->triangle = static_cast<std::int32_t>(t);
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The checks of a constrained mesh that `verify` adds to those of its triangles. Of what made it they share
-// the exact orientation alone, which exact crossings and seeds take from the verifier.
+// the exact orientation alone, which exact crossings and seeds take from the verifier, and whole numbers of any size.
 #pragma once
 
 #include <cadt/constrained.hpp>
@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace cadt {
 
@@ -47,9 +48,29 @@ inline void add_failure(Check& check, std::int64_t first, const std::string& wha
 /// "constraints": each segment is a chain of edges along it, and no other edge is constrained.
 [[nodiscard]] Check check_segments(const MeshPlaces& places, std::span<const Segment> segments,
                                    const ConstrainedTriangulation& mesh);
+/// Where a mesh on a grid has its points, and the cells of its chains: failures are those of "constraints". Exact.
+/// \pre `check` has passed
+void check_grid(PointsView points, const MeshPlaces& places, std::span<const Segment> segments,
+                const ConstrainedTriangulation& mesh, const ConstraintOptions& constraints, Check& check);
+
+/// The triangles that seeds lie in. Exact: vertices made for crossings are where their segments cross.
+class SeedTriangles {
+ public:
+  SeedTriangles(const MeshPlaces& places, std::span<const Segment> segments, const ConstrainedTriangulation& mesh);
+  /// The lowest one of each; -1: none.
+  [[nodiscard]] std::vector<std::int32_t> of(std::span<const MeshPlaces::Place> seeds) const;
+
+ private:
+  [[nodiscard]] bool contains(std::size_t t, const MeshPlaces::Place& seed) const;
+  const MeshPlaces& places_;
+  const std::span<const Segment> segments_;
+  const ConstrainedTriangulation& mesh_;
+  bool exact_;
+};
+
 /// "regions": regions are what constrained edges separate, numbered in order, and their values, what is inside and the
 /// attributes are those of the rule. By a search from triangle to triangle. \pre the mesh has passed all other checks
-[[nodiscard]] Check check_regions(const MeshPlaces& places, const ConstrainedTriangulation& mesh,
-                                  const ConstraintOptions& constraints);
+[[nodiscard]] Check check_regions(const MeshPlaces& places, std::span<const Segment> segments,
+                                  const ConstrainedTriangulation& mesh, const ConstraintOptions& constraints);
 
 }  // namespace cadt

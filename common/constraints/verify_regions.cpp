@@ -16,8 +16,12 @@ constexpr std::int32_t not_reached = -1;
 
 class RegionCheck {
  public:
-  RegionCheck(const MeshPlaces& places, const ConstrainedTriangulation& mesh, const ConstraintOptions& constraints)
-      : places_(places), mesh_(mesh), constraints_(constraints), count_(mesh.mesh().number_of_triangles()) {}
+  RegionCheck(const MeshPlaces& places, std::span<const Segment> segments, const ConstrainedTriangulation& mesh,
+              const ConstraintOptions& constraints)
+      : located_(places, segments, mesh),
+        mesh_(mesh),
+        constraints_(constraints),
+        count_(mesh.mesh().number_of_triangles()) {}
 
   Check run() {
     const std::size_t regions = mesh_.number_of_regions();
@@ -151,28 +155,6 @@ class RegionCheck {
     return values;
   }
 
-  /// The lowest triangle that each place lies in; -1: none.
-  [[nodiscard]] std::vector<std::int32_t> located(const std::vector<MeshPlaces::Place>& wanted) const {
-    std::vector<std::int32_t> found(wanted.size(), -1);
-    std::vector<std::size_t> order(wanted.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::ranges::sort(order, {}, [&](std::size_t i) { return wanted[i][0]; });
-    const auto triangles = mesh_.mesh().triangles();
-    for (std::size_t t = 0; t < count_; ++t) {
-      const MeshPlaces::Place a = places_.at(triangles[3 * t]), b = places_.at(triangles[3 * t + 1]),
-                              c = places_.at(triangles[3 * t + 2]);
-      const auto [low, high] = std::minmax({a[0], b[0], c[0]});
-      const auto x_of = [&](std::size_t i) { return wanted[i][0]; };
-      for (auto i = std::ranges::lower_bound(order, low, {}, x_of); i != order.end() && x_of(*i) <= high; ++i) {
-        const MeshPlaces::Place& p = wanted[*i];
-        if (found[*i] < 0 && exact_orientation(a, b, p) >= 0 && exact_orientation(b, c, p) >= 0 &&
-            exact_orientation(c, a, p) >= 0)
-          found[*i] = static_cast<std::int32_t>(t);
-      }
-    }
-    return found;
-  }
-
   /// 1, but 0 for what is reached from outside, or from holes.
   [[nodiscard]] std::vector<std::int32_t> values_by_reach() const {
     std::vector<std::int32_t> values(count_, not_reached);
@@ -183,7 +165,7 @@ class RegionCheck {
     };
     if (constraints_.domain != Domain::hull) std::ranges::for_each(open_to_outside(), add);
     if (constraints_.domain == Domain::seeds)
-      for (const std::int32_t t : located(constraints_.holes))
+      for (const std::int32_t t : located_.of(constraints_.holes))
         if (t >= 0) add(static_cast<std::size_t>(t));
     spread(found, values);
     std::ranges::replace(values, not_reached, 1);
@@ -211,7 +193,7 @@ class RegionCheck {
   void check_attributes() {
     std::vector<MeshPlaces::Place> wanted;
     for (const Region& region : constraints_.regions) wanted.push_back({region.x, region.y});
-    const std::vector<std::int32_t> found = located(wanted);
+    const std::vector<std::int32_t> found = located_.of(wanted);
     std::vector<double> attributes(mesh_.number_of_regions());
     for (std::size_t i = found.size(); i-- > 0;)  // the first that lies in a region has the last word
       if (found[i] >= 0)
@@ -223,7 +205,7 @@ class RegionCheck {
         fail(-1, "region " + std::to_string(r) + " has another attribute than its seed");
   }
 
-  const MeshPlaces& places_;
+  const SeedTriangles located_;
   const ConstrainedTriangulation& mesh_;
   const ConstraintOptions& constraints_;
   const std::size_t count_;
@@ -232,9 +214,9 @@ class RegionCheck {
 
 }  // namespace
 
-Check check_regions(const MeshPlaces& places, const ConstrainedTriangulation& mesh,
+Check check_regions(const MeshPlaces& places, std::span<const Segment> segments, const ConstrainedTriangulation& mesh,
                     const ConstraintOptions& constraints) {
-  return RegionCheck(places, mesh, constraints).run();
+  return RegionCheck(places, segments, mesh, constraints).run();
 }
 
 }  // namespace cadt

@@ -2,6 +2,7 @@
 // Verification of constrained edges: each segment is a chain of edges along it, and no other edge is constrained.
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/constraints/verify_checks.hpp"
@@ -56,7 +57,7 @@ class SegmentCheck {
         return fail(number, name + " has a vertex that is none");
     if (places_.at(vertices.front()) != a || places_.at(vertices.back()) != b)
       return fail(number, "the chain of " + name + " has other ends");
-    if (places_.moved()) return;  // from pixel to pixel
+    if (places_.moved()) return;  // from cell to cell: check_grid
     Place before = a;
     for (std::size_t i = 1; i < vertices.size(); ++i) {
       if (places_.is_added(vertices[i])) continue;  // rounded, somewhere beside it
@@ -145,10 +146,13 @@ VerifyReport verify(PointsView points, std::span<const Segment> segments, const 
   view.has_duplicates = true;
   view.edge_flags = rounded ? std::span<const std::uint32_t>(exempt) : mesh.edge_flags();
   VerifyReport report = verify(all.empty() ? points : PointsView(all), view, options);
-  report.checks.push_back(check_segments(places, segments, mesh));
-  report.ok = report.ok && report.checks.back().passed;
+  Check chains = check_segments(places, segments, mesh);
+  if (chains.passed) check_grid(points, places, segments, mesh, constraints, chains);
+  chains.passed = chains.failures == 0;
+  report.ok = report.ok && chains.passed;
+  report.checks.push_back(std::move(chains));
   if (report.ok) {  // else there is no mesh to walk through
-    report.checks.push_back(check_regions(places, mesh, constraints));
+    report.checks.push_back(check_regions(places, segments, mesh, constraints));
     report.ok = report.checks.back().passed;
   }
   return report;

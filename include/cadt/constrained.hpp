@@ -49,7 +49,7 @@ enum class Domain {
   nonzero,   ///< those with a winding number other than 0: segments that run upwards count against those downwards
   layers,    ///< those at an odd depth: the fewest segments to be crossed to the outside; dangling segments are no harm
   seeds      ///< those that no hole reaches: holes spread from their points, and from outside of the hull, up to the
-             ///< next segment, as Triangle's do
+             ///< next segment, as Triangle's do. Crossings count where they are exactly
 };
 
 /// A place in a region and what the region is called, as in Triangle's files.

@@ -164,6 +164,26 @@ TEST_P(Crossings, AtTheHull) {
   EXPECT_GT(certified, has_doubles() ? 0 : -1);
 }
 
+/// A hole between a piece of a segment and the same piece with its crossing rounded, on the side of the exact one.
+TEST_P(Crossings, SeedBesideARoundedPiece) {
+  const SegmentSet set{
+      "", {0, 0, 10, 0, 10, 10, 0, 10, 0, 8, 10, 5, 5, 0, 8, 10}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {6, 7}}};
+  ConstraintOptions constraints;
+  constraints.crossing = Crossing::exact;
+  constraints.domain = Domain::seeds;
+  constraints.holes = {{5.940366972477064, 6.217889908256881}};
+  constraints.regions = {{5.940366972477064, 6.217889908256881, 3}};
+  const ConstrainedTriangulation mesh =
+      triangulate_constrained(set.xy, set.segments, constraints, GetParam().options());
+  for (std::size_t t = 0; t < mesh.inside().size(); ++t) {
+    const auto corners = mesh.mesh().triangle(t);
+    const bool above = std::ranges::find(corners, 3) != corners.end();  // with the point at (0, 10)
+    EXPECT_EQ(mesh.inside()[t], above ? 0 : 1) << t;
+  }
+  EXPECT_EQ(mesh.number_inside() + 2, mesh.inside().size());
+  expect_same_in_device_memory(GetParam().options(), set.xy, set.segments, constraints);
+}
+
 /// Two segments, and where they cross, rounded: the end of the first piece of either.
 struct RoundedCross {
   SegmentSet set;

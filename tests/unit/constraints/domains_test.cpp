@@ -246,7 +246,7 @@ TEST_P(Domains, SeedsAmongAddedPoints) {
   const std::vector<double> xy = {0, 0, 1, 0, 1, 1, 0, 1}, added = {0.5, 0.5};
   ConstraintOptions options = with(Domain::seeds);
   options.holes = {{0.5, 0.75}, {0.75, 0.5}};
-  EXPECT_EQ(locate_seeds(triangles, xy, added, options).holes, (std::vector<std::int32_t>{2, 1}));
+  EXPECT_EQ(locate_seeds(triangles, xy, {added, {}, {}}, options).holes, (std::vector<std::int32_t>{2, 1}));
 }
 CADT_ON_MAIN_BACKENDS(Domains);
 

@@ -218,16 +218,7 @@ io::PointSet points_of(const Graph& graph, const ConstrainedTriangulation& mesh)
   if (!moved.empty()) result.xy.assign(moved.begin(), moved.end());
   result.xy.insert(result.xy.end(), added.begin(), added.end());
   if (graph.points.height.empty()) return result;
-  result.height = graph.points.height;
-  for (std::size_t i = 0; 2 * i < added.size(); ++i) {
-    const Segment& parent = graph.segments[static_cast<std::size_t>(mesh.added_parents()[i][0])];
-    const auto from = static_cast<std::size_t>(parent[0]), to = static_cast<std::size_t>(parent[1]);
-    const double dx = result.xy[2 * to] - result.xy[2 * from], dy = result.xy[2 * to + 1] - result.xy[2 * from + 1];
-    const double share = std::abs(dx) >= std::abs(dy) ? (added[2 * i] - result.xy[2 * from]) / dx
-                                                      : (added[2 * i + 1] - result.xy[2 * from + 1]) / dy;
-    result.height.push_back(graph.points.height[from] + (std::isfinite(share) ? share : 0.5) *
-                                                            (graph.points.height[to] - graph.points.height[from]));
-  }
+  result.height = values_at_crossings(graph.points.view(), graph.points.height, 1, mesh);
   return result;
 }
 

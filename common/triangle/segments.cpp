@@ -19,17 +19,8 @@ void add_hull(const TriangleInput& input, const Options& options, std::vector<Se
   for (std::size_t i = 0; i < hull.size(); ++i) segments.push_back({hull[i], hull[i + 1 == hull.size() ? 0 : i + 1]});
 }
 
-/// The share of the way from the first to the second end of a segment at which an added point lies.
-double share_of(std::span<const double> xy, const Segment& ends, double x, double y) {
-  const auto from = 2 * static_cast<std::size_t>(ends[0]), to = 2 * static_cast<std::size_t>(ends[1]);
-  const double dx = xy[to] - xy[from], dy = xy[to + 1] - xy[from + 1];
-  const double share = std::abs(dx) >= std::abs(dy) ? (x - xy[from]) / dx : (y - xy[from + 1]) / dy;
-  return std::isfinite(share) ? share : 0.5;
-}
-
 /// The points of the input, and behind them those that were added.
-void set_points(TriangleOutput& out, const TriangleInput& input, const TriangleSegments& segments,
-                const ConstrainedTriangulation& mesh) {
+void set_points(TriangleOutput& out, const TriangleInput& input, const ConstrainedTriangulation& mesh) {
   const auto added = mesh.added_points();
   const std::size_t n = input.attributes_per_point;
   out.attributes_per_point = n;
@@ -42,16 +33,7 @@ void set_points(TriangleOutput& out, const TriangleInput& input, const TriangleS
   }
   out.kept_xy.assign(input.xy.begin(), input.xy.end());
   out.kept_xy.insert(out.kept_xy.end(), added.begin(), added.end());
-  out.kept_attributes.assign(input.attributes.begin(), input.attributes.end());
-  for (std::size_t i = 0; 2 * i < added.size(); ++i) {
-    // Edges of the hull cross nothing, so both parents are segments of the input.
-    const Segment& ends = segments.segments[static_cast<std::size_t>(mesh.added_parents()[i][0])];
-    const double share = share_of(input.xy, ends, added[2 * i], added[2 * i + 1]);
-    for (std::size_t j = 0; j < n; ++j) {
-      const auto value = [&](std::int32_t v) { return input.attributes[static_cast<std::size_t>(v) * n + j]; };
-      out.kept_attributes.push_back(value(ends[0]) + share * (value(ends[1]) - value(ends[0])));
-    }
-  }
+  out.kept_attributes = values_at_crossings(input.xy, input.attributes, n, mesh);
   out.xy = out.kept_xy;
   out.attributes = out.kept_attributes;
 }
@@ -158,7 +140,7 @@ TriangleOutput triangle_output(const TriangleInput& input, const TriangleSegment
                                const ConstrainedTriangulation& mesh, const TriangleSwitches& switches) {
   triangle_detail::require_sizes(input, mesh.mesh().number_of_points() - mesh.added_points().size() / 2);
   TriangleOutput out;
-  set_points(out, input, segments, mesh);
+  set_points(out, input, mesh);
   set_triangles(out, mesh, switches.region_attributes);
   const auto boundary = static_cast<std::size_t>(std::count(out.neighbors.begin(), out.neighbors.end(), -1));
   out.number_of_edges = (out.triangles.size() + boundary) / 2;

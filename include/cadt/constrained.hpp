@@ -181,6 +181,13 @@ class CADT_API ConstrainedTriangulation {
                                                                                std::span<const Segment> segments,
                                                                                unsigned threads = 0);
 
+/// Values of the input points, `columns` of them a point, and behind them those of added_points(): linear along the
+/// first of their two segments (added_parents) from the nearest input point before them to the nearest one behind.
+/// O(values + length of chains). \throws InputError if there are not `columns` values for each of the points
+[[nodiscard]] CADT_API std::vector<double> values_at_crossings(PointsView points, std::span<const double> values,
+                                                               std::size_t columns,
+                                                               const ConstrainedTriangulation& mesh);
+
 /// The checks of `verify`, with constrained edges exempt from that of circles, and "constraints": the flags of edges
 /// are those of the segments, and, if all else has passed, "regions": no region crosses a segment, and what is inside
 /// fits the rule of `constraints`. Points made for crossings are where they were rounded to: triangles are examined

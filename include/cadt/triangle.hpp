@@ -133,7 +133,7 @@ struct TriangleOutput {
                                                                         const Options& options = {});
 
 /// Arranges a mesh of `triangulate_as_triangle` as Triangle does: triangles inside alone. Added points come behind
-/// those of the input, with attributes as on their segment. As above
+/// those of the input, with attributes as on their segment (values_at_crossings). As above
 [[nodiscard]] CADT_API TriangleOutput triangle_output(const TriangleInput& input, const TriangleSegments& segments,
                                                       const ConstrainedTriangulation& mesh,
                                                       const TriangleSwitches& switches);

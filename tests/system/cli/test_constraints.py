@@ -155,6 +155,13 @@ class Crossings(CliTest):
         self.write("heights.obj", "v 0 0 1\nv 8 0 5\nv 2 3 9\nv 2 -3 9\nl 1 2\nl 3 4\n")
         self.cadt("triangulate", "heights.obj", "--segments", "heights.obj", "--crossing", "exact", "-o", "m.off")
         self.assertEqual(read_off(self.path("m.off").read_text())[0][4], ("2", "0", "2"))
+        # A point on the segment is nearer than its end.
+        for scale in ("", "e307"):
+            rows = [(0, 0, 0), (10, 0, 0), (5, 0, 100), (6, -1, 7), (6, 1, 7)]
+            self.write("h.poly", "5 2 1 0\n" + "".join(f"{i} {x}{scale} {y}{scale} {z}\n" for i, (x, y, z) in
+                                                      enumerate(rows)) + "2 0\n0 0 1\n1 3 4\n0\n")
+            self.cadt("triangulate", "h.poly", "--crossing", "exact", "-o", "m.off")
+            self.assertAlmostEqual(float(read_off(self.path("m.off").read_text())[0][5][2]), 80)
 
     def test_crossings_too_close_for_doubles_are_explained(self):
         ends = [(0, 0), (1, 1), (0, 1), (1, 0), (0, 0.5), (1, 0.5 + 2**-52), (0.25, 0), (0.75, 1)]

@@ -183,5 +183,31 @@ TEST(TriangleSegments, GetAVertexWhereTheyCross) {
   EXPECT_EQ(segments.at({5, 6}), 9);
 }
 
+/// Between two points of the first segment, not between its ends.
+TEST(TriangleSegments, HaveAttributesOfTheNearestPointsWhereTheyCross) {
+  for (const double unit : {1.0, 1e307, 0x1p-1070}) {
+    Plate plate;
+    plate.xy = {-10, 0, 10, 0, 9, 0, 9.5, -1, 9.5, 1, -0.5, -1, -0.5, 1};
+    for (double& v : plate.xy) v *= unit;
+    plate.attributes = {0, 4, 0, 10, 100, 0, 7, 1, 7, 1, 7, 1, 7, 1};
+    plate.point_markers = {};
+    plate.segments = {{1, 0}, {3, 4}, {5, 6}};
+    plate.segment_markers = {};
+    plate.holes = {};
+    plate.regions = {};
+    const TriangleInput input{plate.xy, plate.attributes, 2, {}};
+    const TriangleSwitches switches = parse_triangle_switches("pc");
+    const TriangleOutput out = triangle_output(input, plate.constraints(),
+                                               triangulate_as_triangle(input, plate.constraints(), switches), switches);
+    ASSERT_EQ(out.xy.size(), 18U);
+    EXPECT_EQ(out.xy[14], 9.5 * unit);
+    EXPECT_NEAR(out.attributes[14], 50, 1e-9);
+    EXPECT_NEAR(out.attributes[15], 5, 1e-9);
+    EXPECT_EQ(out.xy[16], -0.5 * unit);
+    EXPECT_NEAR(out.attributes[16], 50, 1e-9);
+    EXPECT_NEAR(out.attributes[17], 2, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace cadt

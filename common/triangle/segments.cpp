@@ -97,12 +97,12 @@ void set_segments(TriangleOutput& out, const ConstrainedTriangulation& mesh, con
   };
   std::vector<int> markers(edges.size());
   for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (where[e] == Where::outside) continue;
     const int given = marker_of(mesh, segments.markers, e);
+    for (const std::int32_t v : edges[e]) mark(v, given);
+    if (where[e] == Where::outside) continue;
     markers[e] = given != 0 ? given : where[e] == Where::on_boundary ? 1 : 0;
     out.segments.insert(out.segments.end(), edges[e].begin(), edges[e].end());
     out.segment_markers.push_back(markers[e]);
-    for (const std::int32_t v : edges[e]) mark(v, given);
   }
   for (const std::int32_t v : boundary) mark(v, 1);
   for (std::size_t i = 0; i < out.edge_markers.size(); ++i) {

@@ -100,7 +100,7 @@ TEST(TriangleSegments, HaveTheMarkersOfTheInput) {
     const auto segment = segments.find(ends);
     EXPECT_EQ(marker, segment == segments.end() ? 0 : segment->second) << ends[0] << " " << ends[1];
   }
-  EXPECT_EQ(out.markers, (Ints{7, 7, -3, 1, 6, 6, 5, 1, 0, 0, 0}));
+  EXPECT_EQ(out.markers, (Ints{7, 7, -3, 1, 6, 6, 5, 1, 0, 8, 8}));
 }
 
 TEST(TriangleSegments, RegionsHaveAttributes) {

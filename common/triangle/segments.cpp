@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace cadt {
@@ -111,6 +112,15 @@ void set_segments(TriangleOutput& out, const ConstrainedTriangulation& mesh, con
   }
 }
 
+/// Of two places in a region the first one names it; in Triangle the last one does.
+std::vector<Region> regions_last_first(std::span<const Region> regions) {
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (!std::isfinite(regions[i].x) || !std::isfinite(regions[i].y))
+      throw OptionError("regions", "place " + std::to_string(i) + " is not finite: give two numbers");
+  }
+  return {regions.rbegin(), regions.rend()};
+}
+
 }  // namespace
 
 ConstrainedTriangulation triangulate_as_triangle(const TriangleInput& input, const TriangleSegments& segments,
@@ -124,7 +134,7 @@ ConstrainedTriangulation triangulate_as_triangle(const TriangleInput& input, con
   constraints.crossing = Crossing::exact;
   constraints.domain = Domain::seeds;
   if (!switches.ignore_holes) constraints.holes.assign(segments.holes.begin(), segments.holes.end());
-  constraints.regions.assign(segments.regions.begin(), segments.regions.end());
+  constraints.regions = regions_last_first(segments.regions);
   std::vector<Segment> all(segments.segments.begin(), segments.segments.end());
   if (switches.hull_segments) add_hull(input, options, all);
   ConstrainedTriangulation mesh = triangulate_constrained(input.xy, all, constraints, options);

@@ -85,8 +85,8 @@ struct TriangleOutput {
   /// All points, duplicates too, in the order of the input; with -j the vertices alone.
   std::span<const double> xy, attributes;
   std::size_t attributes_per_point = 0;
-  /// One a point: that of the input unless it is 0; then that of a segment through the point unless it is 0; then 1 on
-  /// the boundary, else 0.
+  /// One a point: that of the input unless it is 0; then that of a segment through the point, also of one that is
+  /// eaten, unless it is 0; then 1 on the boundary, else 0.
   std::vector<int> markers;
   std::span<const std::int32_t> triangles;  ///< n x 3, counterclockwise
   std::span<const std::int32_t> neighbors;  ///< n x 3; the k-th is opposite vertex k, -1 outside
@@ -96,7 +96,7 @@ struct TriangleOutput {
   /// One a segment: 1; with p that of the first given segment there whose marker is not 0; then 1 on the boundary, else
   /// 0.
   std::vector<int> segment_markers;
-  /// With A: one a triangle.
+  /// With A: one a triangle, that of the last place in its region.
   std::vector<double> triangle_attributes;
   std::span<const std::array<double, 2>> holes;  ///< those of the input, as the regions
   std::span<const Region> regions;

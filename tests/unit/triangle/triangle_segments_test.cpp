@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
+#include <string>
 
 namespace cadt {
 namespace {
@@ -118,6 +120,36 @@ TEST(TriangleSegments, RegionsHaveAttributes) {
   EXPECT_TRUE(plate.run("p").triangle_attributes.empty());
   EXPECT_EQ(out.holes.size(), 1U);
   EXPECT_EQ(out.regions.size(), 2U);
+}
+
+TEST(TriangleSegments, TheLastRegionThereCounts) {
+  Plate plate;
+  plate.regions = {{3.5, 0.5, 11}, {0.5, 3.5, 22}, {3.5, 3, 33}};
+  const TriangleOutput out = plate.run("pA");
+  EXPECT_EQ(std::set<double>(out.triangle_attributes.begin(), out.triangle_attributes.end()),
+            (std::set<double>{22, 33}));
+  EXPECT_EQ(out.regions[0].attribute, 11);
+  plate.regions[1].y = std::numeric_limits<double>::infinity();
+  try {
+    static_cast<void>(plate.run("pA"));
+    FAIL() << "a region at infinity";
+  } catch (const OptionError& e) {
+    EXPECT_NE(std::string(e.what()).find("place 1 is not finite"), std::string::npos) << e.what();
+  }
+}
+
+TEST(TriangleSegments, MarkThePointsOfThoseThatAreEaten) {
+  Plate plate;
+  plate.xy = {0, 0, 4, 0, 4, 4, 0, 4, 9, 9};
+  plate.attributes = {0, 0, 0, 0, 0};
+  plate.point_markers = {0, 0, 0, 0, 0};
+  plate.segments = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {2, 4}};
+  plate.segment_markers = {0, 0, 0, 0, 7};
+  plate.holes = {};
+  plate.regions = {};
+  const TriangleOutput out = plate.run("p");
+  EXPECT_EQ(out.markers, (Ints{1, 1, 7, 1, 7}));
+  EXPECT_EQ(out.segment_markers, (Ints{1, 1, 1, 1}));
 }
 
 TEST(TriangleSegments, HolesCanBeIgnored) {

@@ -4,9 +4,11 @@
 #include <cadt/triangle.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <new>
+#include <string>
 #include <system_error>
 
 namespace cadt {
@@ -85,7 +87,15 @@ struct Constraints {
   [[nodiscard]] TriangleSegments view() const { return {segments, markers, holes, regions}; }
 };
 
-Constraints checked_constraints(const Struct& in, std::int32_t base) {
+void require_finite(const char* list, const char* of, std::ptrdiff_t i, const double* place) {
+  if (std::isfinite(place[0]) && std::isfinite(place[1])) return;
+  throw InputError(std::string(list) + ", " + of + " " + std::to_string(i) +
+                       " counted from 0: its place is not finite: give two numbers",
+                   static_cast<std::size_t>(i));
+}
+
+Constraints checked_constraints(const Struct& in, const TriangleSwitches& use) {
+  const int base = use.zero_based ? 0 : 1;
   const auto require = [](bool holds, const char* text) {
     if (!holds) throw InputError(text, 0);
   };
@@ -111,10 +121,13 @@ Constraints checked_constraints(const Struct& in, std::int32_t base) {
   if (in.segmentmarkerlist != nullptr) {
     result.markers = {in.segmentmarkerlist, static_cast<std::size_t>(in.numberofsegments)};
   }
-  for (std::ptrdiff_t i = 0; i < in.numberofholes; ++i)
+  for (std::ptrdiff_t i = 0; i < in.numberofholes; ++i) {
+    if (!use.ignore_holes) require_finite("holelist", "hole", i, in.holelist + 2 * i);
     result.holes.push_back({in.holelist[2 * i], in.holelist[2 * i + 1]});
+  }
   for (std::ptrdiff_t i = 0; i < in.numberofregions; ++i) {
     const double* region = in.regionlist + 4 * i;
+    require_finite("regionlist", "region", i, region);
     result.regions.push_back({region[0], region[1], region[2]});
   }
   return result;
@@ -180,7 +193,7 @@ void run(const char* text, const Struct* in, Struct* out, Struct* vorout) {
   const TriangleInput input = checked_input(*in);
   Options options;
   options.statistics = StatisticsDetail::none;
-  const Constraints constraints = use.segments ? checked_constraints(*in, use.zero_based ? 0 : 1) : Constraints();
+  const Constraints constraints = use.segments ? checked_constraints(*in, use) : Constraints();
   Triangulation mesh;
   ConstrainedTriangulation constrained;
   try {

@@ -228,6 +228,7 @@ struct Wrong {
 TEST_F(TriangulateIo, RefusesAndChangesNothing) {
   static Ints ends = {0, 1, 4, 5};
   static Values infinite = {0, 0, 1, 0, 0, std::numeric_limits<double>::infinity(), 3, 3, 4, 4};
+  static Values regions = {0, 0, 1, 0, std::numeric_limits<double>::quiet_NaN(), 0, 1, 0};
   for (const Wrong& wrong : std::vector<Wrong>{
            {"switch", [](Struct&) {}, "zpq", CADT_TRIANGLE_SWITCHES, "-q adds points"},
            {"points", [](Struct& s) { s.pointlist = nullptr; }, "z", CADT_TRIANGLE_INPUT, "pointlist is NULL"},
@@ -247,6 +248,10 @@ TEST_F(TriangulateIo, RefusesAndChangesNothing) {
             CADT_TRIANGLE_INPUT, "segment 0 counted from 0: there is no point 0"},
            {"holes", [](Struct& s) { s.numberofholes = 1; }, "zp", CADT_TRIANGLE_INPUT, "holelist is NULL"},
            {"regions", [](Struct& s) { s.numberofregions = 1; }, "zp", CADT_TRIANGLE_INPUT, "regionlist is NULL"},
+           {"a hole at infinity", [](Struct& s) { s.numberofholes = 3, s.holelist = infinite.data(); }, "zp",
+            CADT_TRIANGLE_INPUT, "holelist, hole 2 counted from 0: its place is not finite"},
+           {"a region nowhere", [](Struct& s) { s.numberofregions = 2, s.regionlist = regions.data(); }, "zp",
+            CADT_TRIANGLE_INPUT, "regionlist, region 1 counted from 0: its place is not finite"},
            {"region count", [](Struct& s) { s.numberofregions = -1; }, "zp", CADT_TRIANGLE_INPUT,
             "numberofregions is neg"},
            {"hole count", [](Struct& s) { s.numberofholes = -1; }, "zp", CADT_TRIANGLE_INPUT, "numberofholes is neg"},

@@ -55,8 +55,17 @@ void append(Graph& graph, Graph&& more, bool same_file, const std::string& name,
   graph.regions = std::move(more.regions);
   graph.segments = std::move(more.segments);
   graph.crs = std::move(more.crs);
-  if (same_file || graph.points.xy == more.points.xy) {
-    if (same_file) graph.points = std::move(more.points);
+  if (same_file) {
+    graph.points = std::move(more.points);
+    return;
+  }
+  if (graph.points.xy == more.points.xy) {
+    auto& own = graph.points.height;
+    if (own.empty()) {
+      own = std::move(more.points.height);
+    } else if (!more.points.height.empty() && own != more.points.height && !quiet) {
+      say(fmt::format("cadt: warning: {} has other heights at the same points: those of the input are taken\n", name));
+    }
     return;
   }
   constexpr std::size_t most = 0x7fffffff;

@@ -86,6 +86,14 @@ class Segments(CliTest):
         self.write("same.obj", "v 0 0 7\nv 9 0 7\nv 9 9 7\nv 0 9 7\nl 1 3\n")
         self.cadt("triangulate", "p.xyz", "--segments", "same.obj", "-o", "m.off")
         self.assertEqual([z for _, _, z in read_off(self.path("m.off").read_text())[0]], ["1", "2", "3", "4"])
+        self.assertIn("warning: same.obj has other heights at the same points: those of the input are taken",
+                      self.cadt("triangulate", "p.xyz", "--segments", "same.obj", "-o", "m.off").err)
+        self.assertEqual(self.cadt("triangulate", "p.xyz", "--segments", "same.obj", "-o", "m.off", "-q").err, "")
+        self.write("equal.obj", "v 0 0 1\nv 9 0 2\nv 9 9 3\nv 0 9 4\nl 1 3\n")
+        self.assertNotIn("heights", self.cadt("triangulate", "p.xyz", "--segments", "equal.obj", "-o", "m.off").err)
+        self.write("p.xy", "0 0\n9 0\n9 9\n0 9\n")
+        self.assertNotIn("heights", self.cadt("triangulate", "p.xy", "--segments", "same.obj", "-o", "m.off").err)
+        self.assertEqual([z for _, _, z in read_off(self.path("m.off").read_text())[0]], ["7"] * 4)
         self.write("flat.edg", "1\n2 2 5 6\n")
         err = self.cadt("triangulate", "p.xyz", "--segments", "flat.edg", "-o", "m.off").err
         self.assertIn("cadt: heights are left out: flat.edg has none", err)

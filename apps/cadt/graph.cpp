@@ -204,6 +204,10 @@ std::string explain_graph_error(PointsView points, std::span<const Segment> segm
         "the segments do not close at point {} {}, counted from 0: {}; --domain layers and --domain outer take "
         "segments with loose ends",
         e.vertex(), place(e.vertex()), e.what());
+  } catch (const OptionError& e) {
+    if (e.option() != "grid") throw;
+    throw Failure(exit_usage,
+                  fmt::format("--crossing grid: {}", e.what() + std::string_view("Options::grid: ").size()));
   } catch (const InputError& e) {
     return fmt::format("point {} (counted from 0): {}", e.index(), e.what());
   }

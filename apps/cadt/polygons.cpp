@@ -106,10 +106,10 @@ std::size_t handle_problems(const PolygonsCommand& command, RegionResult& result
       fmt::format("{}: {} of {} polygons {} no inside:{}", name, count, file.size(), count == 1 ? "has" : "have", text);
   if (command.strict) throw Failure(exit_file, text + "\n  Nothing was written. Without --strict they are left out.");
   if (!command.quiet) {
-    say(fmt::format(
-        "cadt: warning: {}\n  They are left out; --crossing exact takes rings that cross, and rings of too few "
-        "points; --strict makes this an error.\n",
-        text));
+    say(fmt::format("cadt: warning: {}\n  They are left out; {}--strict makes this an error.\n", text,
+                    constraints.crossing == Crossing::error
+                        ? "--crossing exact takes rings that cross, and rings of too few points; "
+                        : ""));
   }
   return count;
 }

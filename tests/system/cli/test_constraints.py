@@ -193,6 +193,8 @@ class Crossings(CliTest):
     def test_wrong_rules(self):
         for rule in ("grid", "grid=", "grid=0", "grid=-1", "grid=x", "grid=1x", "grid=inf", "grid=nan", "round"):
             self.fails(2, "triangulate", "x.edg", "--crossing", rule, says=f"--crossing {rule}:")
+        err = self.fails(2, "triangulate", "x.edg", "--crossing", "grid=1e-300", says="--crossing grid: coordinates").err
+        self.assertNotIn("Options::", err)
 
 
 class SegmentErrors(CliTest):

@@ -83,6 +83,7 @@ class Polygons(CliTest):
         self.write("b.geojson", geojson(polygon(SQUARE), polygon(BOW_TIE), polygon(flat), polygon(SQUARE, flat[:2])))
         err = self.cadt("polygons", "b.geojson", "--crossing", "exact", "-o", "m.off").err
         self.assertIn("polygon 2 of feature 2: zero area at (0, 0)", err)
+        self.assertIn("They are left out; --strict makes this an error.", err)
         self.assertNotIn("polygon 3", err)
         self.assertEqual(area_of(*self.off("m.off")) / 2, 16 + 8 + 16)
         err = self.cadt("polygons", "b.geojson", "-o", "m.off").err

@@ -112,6 +112,7 @@ CADT_API cadt_status cadt_constrained_added_points(const cadt_constrained* mesh,
 CADT_API cadt_status cadt_constrained_rounded_valid(const cadt_constrained* mesh, int32_t* valid);
 /* With CADT_CROSSING_GRID: where each input point has moved; else `count` is 0. */
 CADT_API cadt_status cadt_constrained_moved_points(const cadt_constrained* mesh, const double** xy, size_t* count);
+/* The vertices that were added are numbered in the order of segments, which shows in the hash. */
 CADT_API cadt_status cadt_constrained_hash(const cadt_constrained* mesh, uint64_t* high, uint64_t* low);
 /* By the verifier of the host, for the same points, segments and constraints. */
 CADT_API cadt_status cadt_constrained_verify(const cadt_constrained* mesh, const cadt_points* points,

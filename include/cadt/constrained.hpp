@@ -91,7 +91,8 @@ class CADT_API DomainError : public Error {
 
 /// The unique triangulation of the points that has all segments as chains of edges and whose other edges are legal
 /// under the symbolic perturbation of Triangulation; CGAL's Constrained_Delaunay_triangulation_2 has the same
-/// triangles. It does not depend on the order or the direction of segments. (Its proof: docs/constrained.md.)
+/// triangles. It does not depend on the order or the direction of segments; added points alone have their numbers from
+/// the order of segments, as others have theirs from the order of points. (Its proof: docs/constrained.md.)
 ///
 /// Special cases: ends at equal points are those of the representative; a segment between equal points is dropped
 /// (degenerate_segments); segments may repeat and overlap; a point on a segment divides it, exactly, without tolerance;
@@ -156,7 +157,8 @@ class CADT_API ConstrainedTriangulation {
   /// With Crossing::grid: where each input point has moved, x0 y0 x1 y1 ...; else empty.
   [[nodiscard]] std::span<const double> moved_points() const noexcept;
 
-  /// Hash of triangles and constrained edges; the same for each device, order and direction of segments.
+  /// Hash of triangles and constrained edges, by the numbers of their vertices; the same for each device and direction
+  /// of segments and, without added points, for each order of them.
   [[nodiscard]] Hash128 hash() const;
   [[nodiscard]] const Statistics& statistics() const noexcept;
 
@@ -191,7 +193,9 @@ class CADT_API ConstrainedTriangulation {
 /// The checks of `verify`, with constrained edges exempt from that of circles, and "constraints": the flags of edges
 /// are those of the segments, and, if all else has passed, "regions": no region crosses a segment, and what is inside
 /// fits the rule of `constraints`. Points made for crossings are where they were rounded to: triangles are examined
-/// there (rounded_valid), but no circles that they take part in. \throws as `verify`, InputError
+/// there (rounded_valid), but no circles that they take part in. With Crossing::grid "constraints" asks where points
+/// have moved, to the centres of their cells, and that each segment meets the cells of its chain; with another rule or
+/// width in `constraints` such a mesh fails. \throws as `verify`, InputError
 [[nodiscard]] CADT_API VerifyReport verify(PointsView points, std::span<const Segment> segments,
                                            const ConstrainedTriangulation& mesh,
                                            const ConstraintOptions& constraints = {},

@@ -72,7 +72,8 @@ class ConstrainedDelaunay(Mesh):
     Notes
     -----
     The result is unique: it depends neither on the order nor on the direction of segments, and is the same from every
-    device and equal to CGAL's. Expected O(n log n) work, and O(log) a triangle that segments cross. The GIL is released;
+    device and equal to CGAL's. With crossings that holds for triangles as places: `added_points` are numbered in the
+    order of segments, as points are by theirs. Expected O(n log n) work, and O(log) a triangle that segments cross. The GIL is released;
     Ctrl-C ends a call. Meshes never change, and threads may share them.
 
     Points on a GPU: segments are int32 or int64 of the same library there, or of the host, as polylines and rings are;
@@ -297,13 +298,19 @@ class ConstrainedDelaunay(Mesh):
 
     @property
     def hash(self) -> str:
-        """32 hexadecimal digits of triangles and constrained edges: the same from every device, order and direction."""
+        """32 hexadecimal digits of triangles and constrained edges, by the numbers of their vertices.
+
+        The same from every device and for each direction of segments and, without `added_points`, for each order.
+        """
         if "hash" not in self._cache:
             self._cache["hash"] = self._host_made().hash()
         return self._cache["hash"]
 
     def verify(self) -> VerifyReport:
-        """Checks the whole mesh exactly: triangles, segments, regions, by code that did not make them. O(n)."""
+        """Checks the whole mesh exactly: triangles, segments, regions, by code that did not make them. O(n).
+
+        On a grid, that points have moved to the centres of their cells as well, and that segments meet those of `chains`.
+        """
         return report_of(self._host_made().verify(*self._host_input(), self._constraints))
 
     def plot(self, ax: Any = None, *, inside: bool = True, **how: Any) -> Any:

@@ -89,8 +89,10 @@ TEST(VerifyGrid, AnotherRuleOrWidth) {
   ConstraintOptions exact;
   exact.crossing = Crossing::exact;
   for (const ConstraintOptions& other : {ConstraintOptions(), exact})
-    EXPECT_EQ(failures(set, mesh, other), "constraints: points have moved to a grid, and the rule of crossings is another");
-  EXPECT_EQ(failures(set, made(set, exact), on_grid(0x1p-8)), "constraints: the rule is a grid, and no point has moved");
+    EXPECT_EQ(failures(set, mesh, other),
+              "constraints: points have moved to a grid, and the rule of crossings is another");
+  EXPECT_EQ(failures(set, made(set, exact), on_grid(0x1p-8)),
+            "constraints: the rule is a grid, and no point has moved");
 }
 
 TEST(VerifyGrid, OtherPoints) {
@@ -128,7 +130,28 @@ TEST(VerifyGrid, PointsOnTheSidesOfCells) {
   }
 }
 
-/// A segment past a corner of a cell, and another way from end to end through the vertex of that cell.
+/// A segment past a corner of the cell of point 2, whose last copy goes from end to end by that vertex, or back and
+/// forth.
+void expect_other_ways_refused(const std::vector<double>& xy, const Segment& copy, bool meets) {
+  const SegmentSet set{"", xy, {{0, 1}, {0, 2}, {2, 1}, copy}};
+  const ConstrainedTriangulation mesh = made(set, on_grid(1));
+  EXPECT_EQ(failures(set, mesh, on_grid(1)), "");
+  const auto begin = static_cast<std::size_t>(mesh.chain_offsets()[3]);
+  const auto chain = mesh.chain_vertices().subspan(begin);
+  EXPECT_EQ(std::ranges::find(chain, 2) != chain.end(), meets);
+  if (meets) return;
+  const auto with = [&](const std::vector<std::int32_t>& way) {
+    auto data = copy_of(mesh);
+    data->chain_vertices.resize(begin);
+    data->chain_vertices.insert(data->chain_vertices.end(), way.begin(), way.end());
+    data->chain_offsets[4] = static_cast<std::int64_t>(data->chain_vertices.size());
+    return failures(set, ConstrainedTriangulation(std::move(data)), on_grid(1));
+  };
+  EXPECT_EQ(with({copy[0], 2, copy[1]}),
+            "constraints: the chain of segment 3 at vertex 2 is in a cell that the segment does not meet");
+  EXPECT_NE(with({copy[0], copy[1], copy[0], copy[1]}).find("has another direction"), std::string::npos);
+}
+
 TEST(VerifyGrid, ChainsThroughOtherCells) {
   struct Case {
     const char* corner;
@@ -139,36 +162,16 @@ TEST(VerifyGrid, ChainsThroughOtherCells) {
                         Case{"upper right", 1, 5, 10, -4, false}, Case{"lower left", 0, 4, 9, -5, true},
                         Case{"none", 0, -6, 9, 9, false}}) {
     SCOPED_TRACE(c.corner);
-    const SegmentSet set{c.corner, {c.ax, c.ay, c.bx, c.by, 5, 0}, {{0, 1}, {0, 2}, {2, 1}, {1, 0}}};
-    const ConstrainedTriangulation mesh = made(set, on_grid(1));
-    EXPECT_EQ(failures(set, mesh, on_grid(1)), "");
-    const auto chain = mesh.chain_vertices().first(static_cast<std::size_t>(mesh.chain_offsets()[1]));
-    EXPECT_EQ(std::ranges::find(chain, 2) != chain.end(), c.meets);
-    if (c.meets) continue;
-    auto data = copy_of(mesh);  // the last segment is the first one once more
-    const auto last = data->chain_offsets[3];
-    data->chain_vertices.resize(static_cast<std::size_t>(last));
-    data->chain_vertices.insert(data->chain_vertices.end(), {1, 2, 0});
-    data->chain_offsets[4] = last + 3;
-    EXPECT_EQ(failures(set, ConstrainedTriangulation(std::move(data)), on_grid(1)),
-              "constraints: the chain of segment 3 at vertex 2 is in a cell that the segment does not meet");
-    data = copy_of(mesh);
-    std::vector<std::int32_t> turning(chain.begin(), chain.end());
-    turning.insert(turning.end(), chain.rbegin() + 1, chain.rend());
-    turning.insert(turning.end(), chain.begin() + 1, chain.end());
-    std::ranges::reverse(turning);
-    data->chain_vertices.resize(static_cast<std::size_t>(last));
-    data->chain_vertices.insert(data->chain_vertices.end(), turning.begin(), turning.end());
-    data->chain_offsets[4] = static_cast<std::int64_t>(data->chain_vertices.size());
-    EXPECT_NE(failures(set, ConstrainedTriangulation(std::move(data)), on_grid(1)).find("has another direction"),
-              std::string::npos);
+    for (const Segment& copy : {Segment{0, 1}, Segment{1, 0}})
+      expect_other_ways_refused({c.ax, c.ay, c.bx, c.by, 5, 0}, copy, c.meets);
   }
 }
 
 /// Between a piece of a segment and the same piece with its crossing rounded.
 TEST(VerifySeeds, BesideACrossing) {
   const double x = 5.940366972477064, y = 6.217889908256881;
-  const SegmentSet set{"", {0, 0, 10, 0, 10, 10, 0, 10, 0, 8, 10, 5, 5, 0, 8, 10}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {6, 7}}};
+  const SegmentSet set{
+      "", {0, 0, 10, 0, 10, 10, 0, 10, 0, 8, 10, 5, 5, 0, 8, 10}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {6, 7}}};
   ASSERT_EQ(exact_orientation({0, 8}, {10, 5}, {x, y}), 1);
   ConstraintOptions options;
   options.crossing = Crossing::exact;
@@ -182,7 +185,8 @@ TEST(VerifySeeds, BesideACrossing) {
   std::size_t eaten = 0;
   for (std::size_t t = 0; t < mesh.inside().size(); ++t) {
     const auto corners = mesh.mesh().triangle(t);
-    const bool above_left = std::ranges::all_of(corners, [](std::int32_t v) { return v == 3 || v == 4 || v == 7 || v == 8; });
+    const bool above_left =
+        std::ranges::all_of(corners, [](std::int32_t v) { return v == 3 || v == 4 || v == 7 || v == 8; });
     EXPECT_EQ(mesh.inside()[t], above_left ? 0 : 1) << t;
     EXPECT_EQ(mesh.region_attribute()[static_cast<std::size_t>(mesh.region()[t])], above_left ? 7 : 0);
     eaten += above_left ? 1 : 0;

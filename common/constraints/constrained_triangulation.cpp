@@ -23,12 +23,12 @@ using State = std::shared_ptr<Triangulator::State>;
 
 /// False if segments cross: then the data has no mesh.
 bool constrain_uncrossed(const State& state, PointsView points, std::span<const Segment> segments, SegmentJob& job,
-                         Data& data) {
+                         KeepPoints keep, Data& data) {
   job.on_host = segments;
   job.count = segments.size();
   job.wants_chains = true;
   SegmentResults results;
-  data.mesh = triangulate_with_segments(state, points, job, results);
+  data.mesh = triangulate_with_segments(state, points, job, results, keep);
   if (job.crossed) return false;
   if (data.mesh.number_of_triangles() == 0) {
     chain_on_line(points, segments, data);
@@ -65,7 +65,7 @@ ConstrainedTriangulation constrain_on(const State& state, PointsView points, std
   if (constraints.crossing == Crossing::grid) {
     constrain_on_grid(state, points, segments, constraints.grid, *data);
     points = data->moved;
-  } else if (!constrain_uncrossed(state, points, segments, job, *data)) {
+  } else if (!constrain_uncrossed(state, points, segments, job, state->options.keep_points, *data)) {
     if (constraints.crossing == Crossing::error) refuse_crossings(state, points, segments, job.crossings);
     constrain_exactly(state, points, segments, std::move(job.crossings), *data);
   }
@@ -87,7 +87,10 @@ void constrain_on_grid(const State& state, PointsView points, std::span<const Se
   const std::vector<Segment> pieces = polyline_segments(snapped.offsets, snapped.vertices);
   Data divided;
   SegmentJob job;
-  if (!constrain_uncrossed(state, snapped.xy, pieces, job, divided))
+  const KeepPoints kept = state->options.keep_points;
+  // A view would be one of `snapped`.
+  const KeepPoints keep = kept == KeepPoints::view ? KeepPoints::copy : kept;
+  if (!constrain_uncrossed(state, snapped.xy, pieces, job, keep, divided))
     throw InternalError("segments still cross after snap rounding");
   data.mesh = std::move(divided.mesh);
   data.edge_flags = std::move(divided.edge_flags);

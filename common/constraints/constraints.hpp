@@ -75,9 +75,11 @@ void constrain(Context& ctx, Mesh& mesh, const KeyGrid& grid, std::size_t points
 
 /// The mesh of a call with segments, on the host; without triangles if `job.crossed`.
 [[nodiscard]] Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state,
-                                                      PointsView points, SegmentJob& job, SegmentResults& segments);
-[[nodiscard]] Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state,
-                                                      const DevicePoints& points, SegmentJob& job,
-                                                      SegmentResults& segments);
+                                                      PointsView points, SegmentJob& job, SegmentResults& segments,
+                                                      KeepPoints keep);
+/// Of points that only this call has in device memory: it keeps none.
+[[nodiscard]] std::unique_ptr<Triangulation::Data> triangulate_with_segments(
+    const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points, SegmentJob& job,
+    SegmentResults& segments);
 
 }  // namespace cadt

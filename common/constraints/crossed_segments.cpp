@@ -13,6 +13,7 @@
 #include "common/constraints/exact_crossings.hpp"
 #include "common/constraints/exact_triangulation.hpp"
 #include "common/constraints/tasks.hpp"
+#include "common/driver/triangulation_data.hpp"
 
 namespace cadt {
 namespace {
@@ -94,17 +95,20 @@ bool constrain_rounded(const State& state, PointsView points, std::span<const Se
   const std::size_t n = points.size();
   RoundedCall call(device, n, found);
   SegmentResults results;
-  Triangulation mesh = triangulate_with_segments(state, call.places, call.job, results);
+  std::unique_ptr<Triangulation::Data> mesh = triangulate_with_segments(state, call.places, call.job, results);
   constraints::check(state->options.stop);
-  if (!call.fits(mesh.duplicates().empty() ? -1 : mesh.duplicates().back().point)) return false;
+  if (!call.fits(mesh->duplicates.empty() ? -1 : mesh->duplicates.back().point)) return false;
   std::vector<Segment> pairs = read_pairs(device, found);
-  const ExactPlaces exact{{points, segments, pairs}, mesh.triangles(), mesh.neighbors()};
+  const std::size_t indices = 3 * mesh->triangle_count;
+  const ExactPlaces exact{
+      {points, segments, pairs}, {mesh->triangles.get(), indices}, {mesh->neighbors.get(), indices}};
   if (!exact.are_right(*call.job.suspects, state->options.threads)) return false;
   constraints::check(state->options.stop);
 
-  data.mesh = std::move(mesh);
   data.edge_flags = std::move(results.edge_flags);
   data.added = device.read_values<double>(*found.places, 2 * found.count, 2 * n);
+  mesh->keep(points, state->options.keep_points, data.added);
+  data.mesh = Triangulation(std::move(mesh));
   data.parents = std::move(pairs);
   const auto offsets = device.read_values(*found.chain_offsets, segments.size() + 1);
   take_chains(data, {offsets.begin(), offsets.end()},

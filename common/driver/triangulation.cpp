@@ -85,15 +85,16 @@ std::string Hash128::to_string() const {
   return text;
 }
 
-void Triangulation::Data::keep(const PointsView& points_to_keep, KeepPoints how) {
+void Triangulation::Data::keep(const PointsView& points_to_keep, KeepPoints how, std::span<const double> added) {
   if (how == KeepPoints::no) return;
   view = points_to_keep;
-  if (how == KeepPoints::view) return;
-  coordinates.resize(2 * view.size());
+  if (how == KeepPoints::view && added.empty()) return;
+  coordinates.resize(2 * view.size() + added.size());
   for (std::size_t i = 0; i < view.size(); ++i) {
     coordinates[2 * i] = view.x(i);
     coordinates[2 * i + 1] = view.y(i);
   }
+  std::ranges::copy(added, coordinates.end() - static_cast<std::ptrdiff_t>(added.size()));
   view = coordinates;
 }
 

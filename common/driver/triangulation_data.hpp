@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "common/platform/pages.hpp"
@@ -35,7 +36,8 @@ struct Triangulation::Data {
   PointsView view;  ///< of the points that are kept: the caller's, or of `coordinates`
   std::vector<double> coordinates;
 
-  void keep(const PointsView& points_to_keep, KeepPoints how);
+  /// `added`: x0 y0 x1 y1 ... of the points behind them, which no view has: with some, a view becomes a copy.
+  void keep(const PointsView& points_to_keep, KeepPoints how, std::span<const double> added = {});
 };
 
 }  // namespace cadt

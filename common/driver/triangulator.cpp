@@ -114,12 +114,16 @@ std::unique_ptr<Triangulation::Data> run_to_host(const std::shared_ptr<Triangula
   return result;
 }
 
-Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points, SegmentJob* job = nullptr,
-                      SegmentResults* segments = nullptr) {
+Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points, KeepPoints keep,
+                      SegmentJob* job = nullptr, SegmentResults* segments = nullptr) {
   auto result =
       run_to_host(state, points, {points.size(), is_host(*state->device), false, points.scalar_size()}, job, segments);
-  result->keep(points, state->options.keep_points);
+  result->keep(points, keep);
   return Triangulation(std::move(result));
+}
+
+Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsView points) {
+  return to_host(state, points, state->options.keep_points);
 }
 
 DeviceTriangulation to_device(const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points) {
@@ -186,14 +190,15 @@ Triangulation triangulate_on_host(const std::shared_ptr<Triangulator::State>& st
 }
 
 Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state, PointsView points,
-                                        SegmentJob& job, SegmentResults& segments) {
-  return to_host(state, points, &job, &segments);
+                                        SegmentJob& job, SegmentResults& segments, KeepPoints keep) {
+  return to_host(state, points, keep, &job, &segments);
 }
 
-Triangulation triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state, const DevicePoints& points,
-                                        SegmentJob& job, SegmentResults& segments) {
-  return Triangulation(run_to_host(
-      state, points, {points.size, is_host(*state->device), true, scalar_bytes(points.scalar)}, &job, &segments));
+std::unique_ptr<Triangulation::Data> triangulate_with_segments(const std::shared_ptr<Triangulator::State>& state,
+                                                               const DevicePoints& points, SegmentJob& job,
+                                                               SegmentResults& segments) {
+  return run_to_host(state, points, {points.size, is_host(*state->device), true, scalar_bytes(points.scalar)}, &job,
+                     &segments);
 }
 
 Triangulator::Triangulator(const Options& options)

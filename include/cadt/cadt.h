@@ -78,6 +78,7 @@ CADT_API const char* cadt_last_error_message(void);
 
 enum { CADT_BACKEND_AUTO = 0, CADT_BACKEND_HOST = 1, CADT_BACKEND_OPENCL = 2, CADT_BACKEND_CUDA = 3 };
 enum { CADT_ORDER_CANONICAL = 0, CADT_ORDER_FAST = 1 };
+/* Where crossings of segments have added or moved points (constrained.h), a view becomes a copy of all of them. */
 enum { CADT_KEEP_NO_POINTS = 0, CADT_KEEP_COPY = 1, CADT_KEEP_VIEW = 2 };
 enum { CADT_STATISTICS_NONE = 0, CADT_STATISTICS_COUNTERS = 1, CADT_STATISTICS_TIMING = 2 };
 enum { CADT_STRATEGY_AUTO = 0, CADT_STRATEGY_LOCKS = 1, CADT_STRATEGY_STARS = 2 };

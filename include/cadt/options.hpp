@@ -42,7 +42,8 @@ enum class KeepPoints {
   no,
   copy,  ///< the mesh has a copy, as doubles: 16 bytes a point
   view   ///< the mesh has the caller's view: the coordinates must stay where they are and what they are as long as the
-         ///< mesh or a copy of it lives
+         ///< mesh or a copy of it lives. Where crossings of segments have added or moved points (Crossing), the mesh
+         ///< has a copy of all of them
 };
 
 /// How the mesh is computed. The result does not depend on it.

@@ -79,7 +79,8 @@ class CADT_API Triangulation {
   /// The triangle beyond the edge opposite vertex k of triangle t; -1 outside. \throws InputError if there is no
   /// triangle t, or k is above 2
   [[nodiscard]] std::int32_t neighbor(std::size_t t, std::size_t k) const;
-  /// The input points, with Options::keep_points; else an empty view.
+  /// The input points, with Options::keep_points; else an empty view. Of a constrained mesh also its added points,
+  /// behind them, and with Crossing::grid all where they have moved.
   [[nodiscard]] PointsView points() const noexcept;
   /// The hull: input indices as one counterclockwise loop that starts with the smallest, including points on hull
   /// edges. Empty if dimension() < 2.

@@ -60,6 +60,23 @@ static void test_arrays(const cadt_constrained* mesh) {
   CHECK(high != 0 && low != 0);
 }
 
+/* On a grid a view would be one of points that have moved. */
+static void test_kept_points(const cadt_points* points, const int32_t* segments, const cadt_constraint_options* how) {
+  cadt_options options = {0};
+  cadt_constrained* mesh = NULL;
+  cadt_triangulation* triangles = NULL;
+  cadt_points kept = {0};
+
+  CHECK_OK(cadt_options_init(&options, sizeof options));
+  options.keep_points = CADT_KEEP_VIEW;
+  CHECK_OK(cadt_triangulate_constrained(points, segments, 2, how, &options, &mesh));
+  CHECK_OK(cadt_constrained_mesh(mesh, &triangles));
+  cadt_constrained_free(mesh);
+  CHECK_OK(cadt_triangulation_points(triangles, &kept));
+  CHECK(kept.x != points->x && kept.count >= 4 && ((const double*)kept.x)[2] == 4);
+  cadt_triangulation_free(triangles);
+}
+
 static void test_crossings(void) {
   const double xy[] = {0, 0, 2, 2, 0, 2, 2, 0}, where[] = {1, 0.5}, heights[] = {0, 0, 0, 0, 1};
   const int32_t segments[] = {0, 1, 2, 3, 1, 1};
@@ -104,6 +121,7 @@ static void test_crossings(void) {
   CHECK_OK(cadt_constrained_moved_points(mesh, &added, &count));
   CHECK(count == 4 && added[2] == 4);
   cadt_constrained_free(mesh);
+  test_kept_points(&points, segments, &how);
   how.crossing = 3;
   CHECK_NULL(cadt_triangulate_constrained(&points, segments, 2, &how, NULL, &mesh), "constraints->crossing");
   how.crossing = 0;

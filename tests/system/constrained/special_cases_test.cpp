@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,14 @@ std::vector<std::int32_t> sources(const ConstrainedTriangulation& mesh, Segment 
   const auto e = static_cast<std::size_t>(at - edges.begin());
   const auto all = mesh.edge_sources();
   return {all.begin() + mesh.source_offsets()[e], all.begin() + mesh.source_offsets()[e + 1]};
+}
+
+void expect_points(const PointsView& points, const Points& expected) {
+  ASSERT_EQ(2 * points.size(), expected.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(points.x(i), expected[2 * i]);
+    EXPECT_EQ(points.y(i), expected[2 * i + 1]);
+  }
 }
 
 using SpecialCases = ConstrainedTest;
@@ -178,6 +187,57 @@ TEST_P(SpecialCases, CrossingAtAPointIsNone) {
     ADD_FAILURE() << "no error";
   } catch (const CrossingError& error) {
     EXPECT_EQ(error.pairs(), (std::vector<std::array<std::int32_t, 2>>{{0, 1}, {1, 2}}));
+  }
+}
+
+/// The points that a mesh keeps are its vertices: with crossings those of the input and the added ones, on a grid those
+/// that have moved.
+TEST_P(SpecialCases, PointsAreKeptWhereTheyAreVertices) {
+  const Points cross = {0, 0, 10, 0, 10, 10, 0, 10, 3.25, 3.75};
+  for (const KeepPoints how : {KeepPoints::no, KeepPoints::copy, KeepPoints::view}) {
+    for (const Crossing crossing : {Crossing::error, Crossing::exact, Crossing::grid}) {
+      SCOPED_TRACE(std::to_string(static_cast<int>(how)) + ", " + std::to_string(static_cast<int>(crossing)));
+      Triangulator triangulator(GetParam().options());
+      if (crossing == Crossing::grid && !triangulator.device().fp64) continue;
+      triangulator.options().keep_points = how;
+      ConstraintOptions constraints;
+      constraints.crossing = crossing;
+      constraints.grid = 1;
+      const std::vector<Segment> segments = {{0, 2}, {1, 3}};
+      std::vector<double> xy = cross;
+      const std::size_t count = crossing == Crossing::error ? 1 : 2;
+      const ConstrainedTriangulation mesh =
+          triangulator.triangulate_constrained(xy, std::span(segments).first(count), constraints);
+      const PointsView kept = mesh.mesh().points();
+      if (how == KeepPoints::no) {
+        EXPECT_EQ(kept.size(), 0U);
+        continue;
+      }
+      Points expected = cross;
+      if (crossing == Crossing::exact) expected.insert(expected.end(), {5, 5});
+      if (crossing == Crossing::grid) expected = {0, 0, 10, 0, 10, 10, 0, 10, 3, 4, 5, 5};
+      EXPECT_EQ(kept.x_data() == xy.data(), how == KeepPoints::view && crossing == Crossing::error);
+      if (crossing != Crossing::error) xy.assign(xy.size(), 7);
+      expect_points(kept, expected);
+    }
+  }
+}
+
+/// Crossings that are equal once they are rounded are made one by one, on the host.
+TEST_P(SpecialCases, PointsAreKeptWithCrossingsThatRoundToOnePlace) {
+  const Points xy = {0, 0, 3, 3, 0, 3, 3, 0, 0, std::nextafter(1.5, 0), 3, 1.5};
+  const std::vector<Segment> segments = {{0, 1}, {2, 3}, {4, 5}};
+  ConstraintOptions constraints;
+  constraints.crossing = Crossing::exact;
+  Triangulator triangulator(GetParam().options());
+  if (!triangulator.device().fp64) GTEST_SKIP() << "takes no doubles";
+  for (const KeepPoints how : {KeepPoints::copy, KeepPoints::view}) {
+    triangulator.options().keep_points = how;
+    const ConstrainedTriangulation mesh = triangulator.triangulate_constrained(xy, segments, constraints);
+    Points expected = xy;
+    expected.insert(expected.end(), mesh.added_points().begin(), mesh.added_points().end());
+    EXPECT_EQ(expected.size(), 18U);
+    expect_points(mesh.mesh().points(), expected);
   }
 }
 

@@ -80,7 +80,8 @@ cadt_status cadt_queries_open_arrays(const cadt_points* points, const cadt_mesh_
     const auto of = take(mesh, "mesh");
     const std::size_t indices = indices_of(of.triangle_count);
     if (indices != 0) require(of.triangles, "mesh->triangles"), require(of.neighbors, "mesh->neighbors");
-    const cadt::MeshView arrays{{of.triangles, indices}, {of.neighbors, indices}, {}, {}};
+    cadt::MeshView arrays{{of.triangles, indices}, {of.neighbors, indices}, {}, {}};
+    if (of.edge_flags != nullptr) arrays.edge_flags = {of.edge_flags, of.triangle_count};
     const CallOptions given(options);
     result = new cadt_queries{given, cadt::MeshQueries(view, arrays, given.begin_call())};
   });

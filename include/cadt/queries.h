@@ -36,7 +36,8 @@ typedef struct cadt_device_array {
  * they must live as long as the handle. */
 CADT_API cadt_status cadt_queries_open(const cadt_points* points, const cadt_triangulation* mesh,
                                        const cadt_options* options, cadt_queries** queries);
-/* The mesh of another program, with neighbours; points and arrays must live as long as the handle. */
+/* The mesh of another program, with neighbours, and the flags of edges if it has segments; points and arrays must live
+ * as long as the handle. */
 CADT_API cadt_status cadt_queries_open_arrays(const cadt_points* points, const cadt_mesh_view* mesh,
                                               const cadt_options* options, cadt_queries** queries);
 /* A mesh in the memory of the triangulator's device; all three must live as long as the handle. */

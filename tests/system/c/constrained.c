@@ -143,6 +143,7 @@ static void test_not_delaunay(void) {
   cadt_constrained* mesh = NULL;
   cadt_triangulation* triangles = NULL;
   cadt_statistics statistics = {0};
+  cadt_mesh_view arrays = {0};
   cadt_queries* queries = NULL;
   int32_t nearest = -1;
   size_t count = 0;
@@ -152,13 +153,23 @@ static void test_not_delaunay(void) {
   statistics.size = sizeof statistics;
   CHECK_OK(cadt_triangulation_statistics(triangles, &statistics));
   CHECK(statistics.inserted_segments == 1 && statistics.segment_retries == 0);
-  cadt_triangulation_free(triangles);
   CHECK_OK(cadt_queries_open_constrained(&points, mesh, NULL, &queries));
   CHECK_STATUS(CADT_NOT_DELAUNAY, cadt_queries_nearest_vertices(queries, &asked, 1, &nearest, 1, &count));
   CHECK(last_error().index >= 0 && nearest == -1);
   CHECK_OK(cadt_queries_locate(queries, &asked, &nearest, 1, &count));
   CHECK(nearest == 0);
   cadt_queries_free(queries);
+
+  /* The same arrays from the caller: with the flags of edges they are no Delaunay mesh, either. */
+  arrays.size = sizeof arrays;
+  arrays.triangle_count = 2;
+  CHECK_OK(cadt_triangulation_triangles(triangles, &arrays.triangles));
+  CHECK_OK(cadt_triangulation_neighbors(triangles, &arrays.neighbors));
+  CHECK_OK(cadt_constrained_edge_flags(mesh, &arrays.edge_flags));
+  CHECK_OK(cadt_queries_open_arrays(&points, &arrays, NULL, &queries));
+  CHECK_STATUS(CADT_NOT_DELAUNAY, cadt_queries_nearest_vertices(queries, &asked, 1, &nearest, 1, &count));
+  cadt_queries_free(queries);
+  cadt_triangulation_free(triangles);
   cadt_constrained_free(mesh);
 }
 

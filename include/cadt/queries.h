@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The part of cadt.h that asks a mesh, and gives meshes in arrays of the caller's; docs/queries.md and queries.hpp
  * explain each function. The rules of cadt.h hold here. */
+#include <cadt/cadt.h> /* before the guard: it includes this header */
+
 #ifndef CADT_QUERIES_C_H
 #define CADT_QUERIES_C_H
-
-#include <cadt/cadt.h>
 
 #ifdef __cplusplus
 extern "C" {

@@ -2,6 +2,7 @@
 #include "common/driver/memory.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 namespace cadt {
@@ -63,6 +64,9 @@ std::unique_ptr<Buffer> Memory::ask(std::size_t bytes, bool zeros) {
 }
 
 Allocation Memory::serve(std::size_t bytes, Lifetime lifetime, bool zeros) {
+  // Sizes are rounded up and added: those that nothing has must not wrap.
+  if (bytes > std::numeric_limits<std::size_t>::max() / 2)
+    throw OutOfMemory("this needs " + std::to_string(bytes) + " bytes, more than there are addresses", bytes, 0);
   if (transient_all_ && lifetime == Lifetime::kept) lifetime = Lifetime::transient;
   if (!pools(bytes)) lifetime = Lifetime::kept;
   if (auto buffer = caches() ? cache_->take(bytes, lifetime) : nullptr) {

@@ -113,7 +113,12 @@ std::size_t plan_batch(Memory& memory, const Options& options, const DeviceInfo&
 }
 
 std::size_t most_bytes(const Memory& memory, std::size_t n, bool stars) {
-  if (!memory.caches()) return plan_memory({n, false, false, sizeof(double)}, false, false).bytes;
+  if (!memory.caches()) {
+    const CallShape call{n, false, false, sizeof(double)};
+    const std::size_t insertion = plan_memory(call, false, false).bytes;
+    // Of few points the stars need more: they have twice as much that does not grow with the points.
+    return stars ? std::max(insertion, plan_memory(call, true, false).bytes) : insertion;
+  }
   const std::vector<std::size_t> words = reserved_words(memory, n, stars);
   const std::size_t small = memory.pools(n * word) ? 1 : 0;  // buffers that are too small for the pool
   return 4 * fixed + n * word * std::accumulate(words.begin(), words.end(), small);

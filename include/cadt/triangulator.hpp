@@ -203,7 +203,7 @@ class CADT_API Triangulator {
 
   /// Upper bound of the device memory for a first call with so many points, in bytes: with its result and the memory
   /// cached for the next call, without the caller's points on the device. 124 a point where the device or
-  /// `Options::allocator` pools memory, else 176, and 228 with local stars (Tuning::strategy). With
+  /// `Options::allocator` pools memory, else 176, and 228 with local stars (Tuning::strategy); and up to 256 KiB. With
   /// `Options::max_memory` 124 are enough, on the host 97 for a mesh on the host; with local stars 71, or 83 for points
   /// on the host (below 85 and 101 a call takes about 5 % more time, 45 % in the canonical order), unless more than
   /// about 4 % of the vertices are residual. Over-full cells (more than 16 points in 2^-16 of the bounding box's width)

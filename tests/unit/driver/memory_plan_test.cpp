@@ -37,6 +37,17 @@ TEST(MemoryPlan, NoCompactWayWithoutStars) {
   EXPECT_TRUE(plan_memory(call(10, false, false), true, true).compact);
 }
 
+/// Without a cache the public figure is what a call asks for before any work, whichever plan it has.
+TEST(MemoryPlan, NoCallAsksForMoreThanThePublicFigure) {
+  const std::unique_ptr<Device> device = open_device({});
+  const Memory memory(*device, false);
+  for (const std::size_t n : {0UL, 1UL, 1000UL, 2849UL, 2850UL, 1000000UL}) {
+    for (const bool stars : {false, true})
+      EXPECT_GE(most_bytes(memory, n, stars), plan_memory(call(n, false, false), stars, false).bytes) << n;
+    EXPECT_EQ(most_bytes(memory, n, false), fixed + 124 * n);
+  }
+}
+
 /// A device of the host with a limit of memory.
 class Chosen : public ::testing::Test {
  protected:

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cadt/errors.hpp>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -44,6 +45,18 @@ TEST_F(Budget, LimitToTheByte) {
   EXPECT_EQ(memory.peak(), 3 * size);
   expect_refused([&] { (void)memory.allocate(1); }, 3 * size + 64, 3 * size);
   EXPECT_EQ(device.usage->requests, 2U);
+}
+
+TEST_F(Budget, SizesThatWouldWrapAreRefused) {
+  constexpr std::size_t most = std::numeric_limits<std::size_t>::max();
+  memory.begin(0, 0);
+  const Allocation held = memory.allocate(size);
+  for (const std::size_t limit : {std::size_t{0}, 3 * size}) {
+    memory.begin(limit, 0);
+    for (const std::size_t bytes : {most, most - 63, most - size, most / 2 + 1})
+      expect_refused([&] { (void)memory.allocate(bytes); }, bytes, 0);
+  }
+  EXPECT_EQ(device.usage->requests, 1U);
 }
 
 TEST_F(Budget, CachedBytesCount) {

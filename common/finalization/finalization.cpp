@@ -103,7 +103,10 @@ Hash128 hash_of(const NodeSums& whole) noexcept {
 }
 
 Hash128 hash_of(std::span<const std::uint64_t> ids, std::span<const std::int32_t> triangles,
-                std::span<const DuplicateId> duplicates) noexcept {
+                std::span<const DuplicateId> duplicates) {
+  if (triangles.size() % 3 != 0)
+    throw std::invalid_argument("triangles have three points each, these have " + std::to_string(triangles.size()) +
+                                " in all");
   cadt_hash hash = {0, 0};
   const auto id = [&](std::size_t i) { return ids[static_cast<std::size_t>(triangles[i])]; };
   for (std::size_t i = 0; i < triangles.size(); i += 3) cadt_hash_add_triangle(&hash, id(i), id(i + 1), id(i + 2));

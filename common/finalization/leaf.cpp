@@ -3,6 +3,9 @@
 #include <cadt/finalization.hpp>
 
 #include <algorithm>
+#include <limits>
+#include <locale>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -21,11 +24,13 @@ namespace {
 
 void require_in_box(const Bounds& bounds, const TileBox& box) {
   if (box.contains(bounds.min_x, bounds.min_y) && box.contains(bounds.max_x, bounds.max_y)) return;
-  const auto text = [](double a, double b) { return std::to_string(a) + " to " + std::to_string(b); };
-  throw InputError("the points of the tile, x " + text(bounds.min_x, bounds.max_x) + " and y " +
-                       text(bounds.min_y, bounds.max_y) + ", leave its box, x " + text(box.min_x, box.max_x) +
-                       " and y " + text(box.min_y, box.max_y) + ": give each point to the tile that contains it",
-                   0);
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(std::numeric_limits<double>::max_digits10);
+  text << "the points of the tile, x " << bounds.min_x << " to " << bounds.max_x << " and y " << bounds.min_y << " to "
+       << bounds.max_y << ", leave its box, x from " << box.min_x << " to below " << box.max_x << " and y from "
+       << box.min_y << " to below " << box.max_y << ": give each point to the tile that contains it";
+  throw InputError(text.str(), 0);
 }
 
 std::vector<DuplicateId> duplicate_ids(Context& ctx, const Node& node) {

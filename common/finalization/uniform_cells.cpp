@@ -76,6 +76,10 @@ void UniformCells::generate(Triangulator& triangulator, std::uint64_t first, std
                             const DeviceArray& xy) const {
   Triangulator::State& state = *triangulator.state();
   query::require_doubles(*state.device);
+  if (count > xy.size / 2)  // 2 * count may be no size
+    throw InputError("the array for points has " + std::to_string(xy.size) + " elements, 2 x " + std::to_string(count) +
+                         " are needed",
+                     xy.size);
   query::require_room(xy, 2 * count, "points");
   if (count == 0) return;
   Statistics statistics;

@@ -3,7 +3,9 @@
 #include <cadt/label_image.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 namespace cadt {
@@ -39,6 +41,11 @@ void require_labels(std::span<const std::int32_t> labels) {
   throw InputError("a pixel has the label " + std::to_string(outside_label) +
                        ", which stands for the outside of the image: give it another one",
                    static_cast<std::size_t>(bad - labels.begin()));
+}
+
+double mean(const std::array<double, 3>& of) {
+  const double sum = of[0] + of[1] + of[2];
+  return std::isfinite(sum) ? sum / 3 : of[0] / 3 + of[1] / 3 + of[2] / 3;  // the sum may be larger than any double
 }
 
 }  // namespace
@@ -84,6 +91,12 @@ LabelSegments label_segments(std::span<const std::int32_t> labels, std::size_t w
 
 std::vector<std::int32_t> triangle_labels(std::span<const double> xy, std::span<const std::int32_t> triangles,
                                           std::span<const std::int32_t> labels, std::size_t width, std::size_t height) {
+  if (xy.size() % 2 != 0)
+    throw std::invalid_argument("points have two coordinates each, these have " + std::to_string(xy.size()) +
+                                " in all");
+  if (triangles.size() % 3 != 0)
+    throw std::invalid_argument("triangles have three points each, these have " + std::to_string(triangles.size()) +
+                                " in all");
   const Pixels pixels(labels, width, height);
   require_labels(labels);
   // A centroid on the border, or beyond it by rounding, belongs to the next pixel.
@@ -92,20 +105,22 @@ std::vector<std::int32_t> triangle_labels(std::span<const double> xy, std::span<
   };
   std::vector<std::int32_t> result;
   result.reserve(triangles.size() / 3);
-  for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
-    double x = 0, y = 0;
-    for (std::size_t k = t; k < t + 3; ++k) {
-      const auto vertex = static_cast<std::size_t>(triangles[k]);
-      if (triangles[k] < 0 || vertex >= xy.size() / 2) {
-        throw InputError("a triangle has the corner " + std::to_string(triangles[k]) + ", and there are " +
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    std::array<double, 3> x{}, y{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t corner = triangles[t + k];
+      const auto vertex = static_cast<std::size_t>(corner);
+      if (corner < 0 || vertex >= xy.size() / 2) {
+        throw InputError("a triangle has the corner " + std::to_string(corner) + ", and there are " +
                              std::to_string(xy.size() / 2) + " points",
                          t / 3);
       }
-      x += xy[2 * vertex];
-      y += xy[2 * vertex + 1];
+      x[k] = xy[2 * vertex];
+      y[k] = xy[2 * vertex + 1];
+      if (!std::isfinite(x[k]) || !std::isfinite(y[k]))
+        throw InputError("a triangle has a corner that is not finite", t / 3);
     }
-    if (!std::isfinite(x) || !std::isfinite(y)) throw InputError("a triangle has a corner that is not finite", t / 3);
-    result.push_back(pixels.at(pixel(x / 3, width), pixel(static_cast<double>(height) - y / 3, height)));
+    result.push_back(pixels.at(pixel(mean(x), width), pixel(static_cast<double>(height) - mean(y), height)));
   }
   return result;
 }

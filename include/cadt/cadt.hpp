@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All of the library's public interface but the file formats (cadt/io).
+// The library's public interface but for meshes by tiles (finalization.hpp, uniform_cells.hpp) and the file formats
+// (cadt/io).
 #pragma once
 
 #include <cadt/batch.hpp>

@@ -137,8 +137,9 @@ CADT_API void require_complete(const NodeSums& whole);
 /// Triangulation::hash of the mesh of all points in one call, from the sums over all nodes.
 [[nodiscard]] CADT_API Hash128 hash_of(const NodeSums& whole) noexcept;
 /// NodeSums::hash of a node, from its arrays: input indices of its points, triangles as in Part, and duplicates. O(n).
+/// \throws std::invalid_argument if the triangles have not three points each
 [[nodiscard]] CADT_API Hash128 hash_of(std::span<const std::uint64_t> ids, std::span<const std::int32_t> triangles,
-                                       std::span<const DuplicateId> duplicates) noexcept;
+                                       std::span<const DuplicateId> duplicates);
 
 /// What a node of the tree gives.
 struct CADT_API FinishedNode {

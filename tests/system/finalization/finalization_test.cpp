@@ -115,6 +115,13 @@ TEST_P(Finalization, RefusesWhatCannotBe) {
     EXPECT_EQ(error.index(), 2u);
   }
   EXPECT_THROW((void)leaf(xy, ids, {0, 0, 1, 2}), InputError) << "boxes are half-open";
+  try {
+    (void)leaf(xy, ids, {1e-9, 0, 1, 2});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("e-09 to below 1 and y from 0 to below 2"), std::string::npos)
+        << error.what();
+  }
   EXPECT_NO_THROW((void)leaf(xy, ids, {0, 0, 1.5, 1.5}));
   const Points bad = {0, 0, 1, std::numeric_limits<double>::quiet_NaN(), 0, 1};
   try {
@@ -124,6 +131,8 @@ TEST_P(Finalization, RefusesWhatCannotBe) {
     EXPECT_EQ(error.index(), 1u);
   }
   EXPECT_THROW((void)finish_leaf(triangulator, std::span<const double>(xy), ids, box, 1u << 24), LimitError);
+  const std::vector<std::int32_t> part = {0, 1};
+  EXPECT_THROW((void)hash_of(ids, part, {}), std::invalid_argument);
 }
 
 /// A join that is told something wrong finds it.

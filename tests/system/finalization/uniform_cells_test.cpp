@@ -27,6 +27,9 @@ TEST_P(Cells, AreTheSameOnTheDevice) {
   cells.generate(triangulator, first, count, xy);
   EXPECT_EQ(memory->download<double>(xy.memory, 2 * count), expected);
   EXPECT_THROW(cells.generate(triangulator, first, count + 1, xy), InputError);
+  // Twice as many are no size.
+  EXPECT_THROW(cells.generate(triangulator, first, std::size_t{1} << 63, xy), InputError);
+  EXPECT_THROW(cells.generate(triangulator, first, (std::size_t{1} << 63) + 1, xy), InputError);
 
   // A leaf of points and ids in device memory is the one of the same points on the host.
   std::vector<std::uint64_t> ids(count);

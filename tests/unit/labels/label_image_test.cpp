@@ -8,6 +8,7 @@
 #include <map>
 #include <random>
 #include <set>
+#include <stdexcept>
 #include <vector>
 
 #include "tests/unit/labels/label_checks.hpp"
@@ -74,6 +75,13 @@ TEST(TriangleLabels, AreThoseOfThePixelsBelow) {
   const std::vector<double> far{-9, -9, 99, 99, -9, 99};
   const std::vector<std::int32_t> one{0, 1, 2};
   EXPECT_EQ(triangle_labels(far, one, labels, 2, 2), (std::vector<std::int32_t>{2}));
+  constexpr double most = std::numeric_limits<double>::max();
+  const std::vector<double> large{most, most, most, most, most, -most};  // their sum is no double, their mean is one
+  EXPECT_EQ(triangle_labels(large, one, labels, 2, 2), (std::vector<std::int32_t>{2}));
+  const std::vector<double> odd{0, 0, 1, 0, 0, 1, 5};
+  const std::vector<std::int32_t> part{0, 1, 2, 0};
+  EXPECT_THROW(static_cast<void>(triangle_labels(odd, one, labels, 2, 2)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(triangle_labels(xy, part, labels, 2, 2)), std::invalid_argument);
   for (const double wrong_place : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     const std::vector<double> not_finite{0, 0, 1, 0, 0, wrong_place};
     EXPECT_THROW(static_cast<void>(triangle_labels(not_finite, one, labels, 2, 2)), InputError);

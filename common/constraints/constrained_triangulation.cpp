@@ -81,7 +81,8 @@ void constrain_on_grid(const State& state, PointsView points, std::span<const Se
   if (takes_floats_only(*state->device))
     throw OptionError("crossing",
                       "a grid has places that are no floats, and this device takes no doubles: choose another "
-                      "device, or the back end host");
+                      "device, or the back end host",
+                      "ConstraintOptions::");
   const constraints::SnappedSegments snapped =
       constraints::snap_segments(points, segments, grid, state->options.threads, state->options.stop);
   const std::vector<Segment> pieces = polyline_segments(snapped.offsets, snapped.vertices);

@@ -19,7 +19,7 @@ struct Seed {
 
 void add_seed(std::vector<Seed>& seeds, const char* option, std::size_t i, double x, double y, std::int32_t& triangle) {
   if (!std::isfinite(x) || !std::isfinite(y))
-    throw OptionError(option, "place " + std::to_string(i) + " is not finite: give two numbers");
+    throw OptionError(option, "place " + std::to_string(i) + " is not finite: give two numbers", "ConstraintOptions::");
   seeds.push_back({{x, y}, &triangle});
 }
 

@@ -30,6 +30,8 @@ std::string text(double v) {
   return out.str();
 }
 
+[[noreturn]] void refuse(const std::string& message) { throw OptionError("grid", message, "ConstraintOptions::"); }
+
 // Why edges of chains do not run through other centres. Let a segment s pass the pixels of centres a and b one after
 // the other, in places a + p and b + q with p, q in the pixel P around 0. In between it is at s(t) = e(t) + d(t), where
 // e runs from a to b and d from p to q, all evenly; d is in P, which is convex. If a hot centre c is on the edge e, or
@@ -44,22 +46,19 @@ std::string text(double v) {
 // edge.
 void check_grid(PointsView points, double grid) {
   if (!(grid > 0) || !std::isfinite(grid))
-    throw OptionError("grid", "the width of the grid is " + text(grid) + "; it must be above 0 and finite");
+    refuse("the width of the grid is " + text(grid) + "; it must be above 0 and finite");
   double most = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double x = std::abs(points.x(i)), y = std::abs(points.y(i));
     if (std::isfinite(x) && std::isfinite(y)) most = std::max({most, x, y});  // others are errors of the input
   }
   const double multiples = std::ceil(most / grid) + 1;
-  if (!(multiples < 0x1p52))
-    throw OptionError("grid", "coordinates are 2^52 times the width of the grid or more; take a larger one");
+  if (!(multiples < 0x1p52)) refuse("coordinates are 2^52 times the width of the grid or more; take a larger one");
   if (!std::isfinite(multiples * grid))
-    throw OptionError("grid",
-                      "the grid point next to the largest coordinate is no finite number; take a smaller width");
+    refuse("the grid point next to the largest coordinate is no finite number; take a smaller width");
   if (multiples >= 0x1p25 && multiples * static_cast<double>(odd_part(grid)) > 0x1p53)
-    throw OptionError(
-        "grid", "multiples of the width up to the largest coordinate are no doubles; take a power of two, such as " +
-                    text(std::exp2(std::ceil(std::log2(grid)))) + ", or a width above " + text(most * 0x1p-24));
+    refuse("multiples of the width up to the largest coordinate are no doubles; take a power of two, such as " +
+           text(std::exp2(std::ceil(std::log2(grid)))) + ", or a width above " + text(most * 0x1p-24));
 }
 
 /// A hot pixel and what makes it hot: an input point, or the pair of a crossing.

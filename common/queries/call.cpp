@@ -111,12 +111,12 @@ void nearest_into(Call& call, const MeshIndex& mesh, const QueryBatch& queries, 
 }
 
 void require_neighbors(std::size_t queries, std::size_t k) {
-  if (k == 0) throw OptionError("k", "must be at least 1");
+  if (k == 0) throw OptionError("k", "must be at least 1", "");
   require_results(queries, k);
 }
 
 void require_bound(double max_edge) {
-  if (!(max_edge >= 0)) throw OptionError("max_edge", "must be a number and not negative");
+  if (!(max_edge >= 0)) throw OptionError("max_edge", "must be a number and not negative", "");
 }
 
 }  // namespace cadt::query

@@ -187,7 +187,7 @@ std::vector<Circle> find_largest_circles(Context& ctx, MeshIndex& mesh, std::siz
 
 Outline make_outline(Context& ctx, const MeshIndex& mesh, double max_radius, double max_edge) {
   for (const auto& [name, value] : {std::pair("max_radius", max_radius), std::pair("max_edge", max_edge)})
-    if (!(value >= 0)) throw OptionError(name, "must be a number and not negative");
+    if (!(value >= 0)) throw OptionError(name, "must be a number and not negative", "");
   Launcher& launch = ctx.launcher;
   Outline result;
   const std::size_t count = mesh.triangles;

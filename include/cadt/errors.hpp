@@ -55,11 +55,12 @@ class CADT_API LimitError : public Error {
   std::size_t count_, limit_;
 };
 
-/// A member of Options that is out of range, or excluded by another.
+/// A member of Options or ConstraintOptions that is out of range, or excluded by another; or an argument such as k.
 class CADT_API OptionError : public Error {
  public:
-  OptionError(std::string option, const std::string& message)
-      : Error("Options::" + option + ": " + message), option_(std::move(option)) {}
+  /// `of`: what it is a member of, for the message; an argument is none.
+  OptionError(std::string option, const std::string& message, const char* of = "Options::")
+      : Error(of + option + ": " + message), option_(std::move(option)) {}
   /// Name of the member, e.g. "queue" or "tuning.flip_threshold".
   [[nodiscard]] const std::string& option() const noexcept { return option_; }
 

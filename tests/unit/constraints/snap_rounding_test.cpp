@@ -224,7 +224,7 @@ TEST(SnapRounding, RefusesGrids) {
     try {
       (void)snap_segments(xy, {}, grid, 1);
     } catch (const OptionError& error) {
-      return error.option() == "grid";
+      return error.option() == "grid" && std::string(error.what()).starts_with("ConstraintOptions::grid: ");
     }
     return false;
   };

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Verification of constrained edges: each segment is a chain of edges along it, and no other edge is constrained.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/constraints/verify_checks.hpp"
+#include "common/constraints/verify_crossings.hpp"
+#include "common/verify/host/mesh.hpp"
 
 namespace cadt {
 namespace {
@@ -115,6 +118,12 @@ std::vector<std::uint32_t> exempt_edges(const MeshPlaces& places, const Constrai
   return exempt;
 }
 
+void require_finite(PointsView points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!std::isfinite(points.x(i)) || !std::isfinite(points.y(i)))
+      verifier::refuse_point(static_cast<std::int64_t>(i));
+}
+
 }  // namespace
 
 Check check_segments(const MeshPlaces& places, std::span<const Segment> segments,
@@ -130,6 +139,7 @@ VerifyReport verify(PointsView points, std::span<const Segment> segments, const 
     throw InputError(
         "the mesh has " + std::to_string(places.given()) + " moved points, not " + std::to_string(points.size()),
         points.size());
+  require_finite(points);  // below they are those that have moved
   std::vector<double> all;
   if (places.size() != points.size() || places.moved())
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -149,6 +159,7 @@ VerifyReport verify(PointsView points, std::span<const Segment> segments, const 
   Check chains = check_segments(places, segments, mesh);
   if (chains.passed) check_grid(points, places, segments, mesh, constraints, chains);
   chains.passed = chains.failures == 0;
+  if (rounded && chains.passed) check_crossings(places, segments, mesh, chains);
   report.ok = report.ok && chains.passed;
   report.checks.push_back(std::move(chains));
   if (report.ok) {  // else there is no mesh to walk through

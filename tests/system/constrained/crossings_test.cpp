@@ -56,6 +56,10 @@ class Crossings : public BackendTest {
     EXPECT_TRUE(std::ranges::equal(mesh.added_parents(), exact.parents));
     EXPECT_EQ(mesh.rounded_valid(), exact.rounded_valid);
     EXPECT_EQ(mesh.mesh().number_of_points(), expected.number_of_points());
+    for (const Check& found : verify(set.xy, set.segments, mesh, constraints, {.threads = 1}).checks)
+      if (found.name == "constraints" || mesh.rounded_valid()) {
+        EXPECT_TRUE(found.passed) << found.name << ": " << found.what;
+      }
     constraints.domain = set.segments.size() % 2 == 0 ? Domain::layers : Domain::seeds;
     if (constraints.domain == Domain::seeds) constraints.holes = {{0.5, 0.5}};
     expect_same_in_device_memory(GetParam().options(), set.xy, set.segments, constraints);

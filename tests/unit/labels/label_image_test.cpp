@@ -76,7 +76,7 @@ TEST(TriangleLabels, AreThoseOfThePixelsBelow) {
   const std::vector<std::int32_t> one{0, 1, 2};
   EXPECT_EQ(triangle_labels(far, one, labels, 2, 2), (std::vector<std::int32_t>{2}));
   constexpr double most = std::numeric_limits<double>::max();
-  const std::vector<double> large{most, most, most, most, most, -most};  // their sum is no double, their mean is one
+  const std::vector<double> large{most, most, most, most, most, -most};  // their sum is no double
   EXPECT_EQ(triangle_labels(large, one, labels, 2, 2), (std::vector<std::int32_t>{2}));
   const std::vector<double> odd{0, 0, 1, 0, 0, 1, 5};
   const std::vector<std::int32_t> part{0, 1, 2, 0};

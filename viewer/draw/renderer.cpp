@@ -4,6 +4,7 @@
 #include "io/picture/measure.hpp"
 #include "viewer/draw/palette.hpp"
 #include "viewer/draw/shaders.hpp"
+#include "viewer/gl/errors.hpp"
 
 #include <cadt/errors.hpp>
 
@@ -23,8 +24,10 @@ constexpr std::size_t block = 4096;  // triangles; BLOCK of common.glsl
 constexpr std::size_t most_large =
     4 << 20;  // triangles that get a group of their own; the others are drawn by one item
 constexpr std::size_t most_bytes = std::size_t{1} << 32;  // of an array: programs have offsets of 32 bits
-constexpr int reference_width = 1000;                     // pixels of the view in which values are sampled
-static_assert(colours_of_ramp == 512);                    // shade.glsl
+constexpr std::size_t most_bytes_of_picture =
+    (std::size_t{1} << 31) - 1;         // a storage block of NVIDIA; Mesa ends beyond
+constexpr int reference_width = 1000;   // pixels of the view in which values are sampled
+static_assert(colours_of_ramp == 512);  // shade.glsl
 
 enum Slot : GLuint { points, triangles, values, boxes, seen, commands, owners, sums, large, overlay, outside };
 
@@ -223,6 +226,11 @@ void Renderer::fit_ramp(const MeshBuffers& mesh, ColourBy colour) {
 void Renderer::make_room(const Camera& camera, int side) {
   const auto pixels = static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height());
   const auto each = static_cast<std::size_t>(side * side);
+  if (pixels * std::max<std::size_t>(each, 4) * sizeof(std::uint32_t) > most_bytes_of_picture)
+    throw DisplayError("a picture of " + std::to_string(camera.width()) + " x " + std::to_string(camera.height()) +
+                       " pixels with " + std::to_string(each) +
+                       " samples each takes more than the 2 GiB that OpenGL has "
+                       "for an array: take a smaller one, or fewer samples");
   grow(owners_, pixels * each * sizeof(std::uint32_t));
   grow(sums_, pixels * 4 * sizeof(std::uint32_t));
   grow(overlay_, pixels * sizeof(std::uint32_t));

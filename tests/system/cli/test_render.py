@@ -89,6 +89,12 @@ class RenderTest(CliTest):
         self.assertGreater(height, 4500)
         self.fails(2, "triangulate", "square.xy", "-o", "a.svg", "--width", 32001, says="--width")
 
+    def test_more_pixels_than_opengl_has_room_for(self):
+        self.write("square.xy", "0 0\n1 0\n0 1\n1 1\n")
+        for size, samples in (("11586x11586", 2), ("16384", 1), ("5793x5793", 4)):
+            self.fails(5, "render", "square.xy", "-o", "a.png", "--size", size, "--samples", samples, says=("2 GiB", "samples"))
+        self.assertEqual(self.names(), ["square.xy"])
+
     def test_no_triangles(self):
         for name, text in (("one", "3 4\n"), ("line", "0 0\n1 1\n2 2\n")):
             self.write(f"{name}.xy", text)

@@ -206,8 +206,8 @@ std::string explain_graph_error(PointsView points, std::span<const Segment> segm
         e.vertex(), place(e.vertex()), e.what());
   } catch (const OptionError& e) {
     if (e.option() != "grid") throw;
-    throw Failure(exit_usage,
-                  fmt::format("--crossing grid: {}", e.what() + std::string_view("Options::grid: ").size()));
+    const std::string_view what = e.what();  // "ConstraintOptions::grid: ..."
+    throw Failure(exit_usage, fmt::format("--crossing {}", what.substr(what.find(e.option()))));
   } catch (const InputError& e) {
     return fmt::format("point {} (counted from 0): {}", e.index(), e.what());
   }

@@ -38,7 +38,7 @@ CLI::Validator number_within(double low, double high) {
     const auto [stop, code] = fast_float::from_chars(text.data(), end, value);
     if (code != std::errc() || stop != end || !(value >= low && value <= high))
       return expected(high == std::numeric_limits<double>::max() ? fmt::format("a number of at least {}", low)
-                                       : fmt::format("a number from {} to {}", low, high),
+                                                                 : fmt::format("a number from {} to {}", low, high),
                       text);
     return {};
   };

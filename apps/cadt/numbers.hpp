@@ -9,8 +9,8 @@
 
 namespace cadt::cli {
 
-/// Decimal digits alone, from `low` to `high`. For transform(), which hands the number on without zeros in front; check()
-/// lets CLI11 take it for octal.
+/// Decimal digits alone, from `low` to `high`. For transform(), which hands the number on without zeros in front;
+/// check() lets CLI11 take it for octal.
 [[nodiscard]] CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 
 /// For options that take any number that 64 bits hold, such as --seed.

@@ -52,8 +52,8 @@ class Parameters {
   [[nodiscard]] bool is_empty() const {
     for (const Bound& low : lower_)
       for (const Bound& high : upper_) {
-        const int order = exact::compare(of_.multiply(low.dividend, high.divisor),
-                                         of_.multiply(high.dividend, low.divisor));
+        const int order =
+            exact::compare(of_.multiply(low.dividend, high.divisor), of_.multiply(high.dividend, low.divisor));
         if (order > 0 || (order == 0 && !(low.inclusive && high.inclusive))) return true;
       }
     return none_;
@@ -85,8 +85,8 @@ class GridCheck {
       const Place centre = places_.at(static_cast<std::int32_t>(i)), cell = cell_of(centre, width_);
       if (std::isnan(cell[0]) || std::isnan(cell[1])) {
         fail(i, "point " + std::to_string(i) + " is not on the grid");
-      } else if (i < points_.size() && (!is_in(points_.x(i), centre[0], cell[0]) ||
-                                        !is_in(points_.y(i), centre[1], cell[1]))) {
+      } else if (i < points_.size() &&
+                 (!is_in(points_.x(i), centre[0], cell[0]) || !is_in(points_.y(i), centre[1], cell[1]))) {
         fail(i, "point " + std::to_string(i) + " has not moved to the centre of its cell");
       }
     }
@@ -140,8 +140,9 @@ void check_grid(PointsView points, const MeshPlaces& places, std::span<const Seg
   const bool on_grid = constraints.crossing == Crossing::grid;
   if (on_grid != places.moved()) {
     if (points.size() != 0)
-      add_failure(check, -1, on_grid ? "the rule is a grid, and no point has moved"
-                                     : "points have moved to a grid, and the rule of crossings is another");
+      add_failure(check, -1,
+                  on_grid ? "the rule is a grid, and no point has moved"
+                          : "points have moved to a grid, and the rule of crossings is another");
     return;
   }
   if (!on_grid) return;

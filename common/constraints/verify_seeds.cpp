@@ -23,8 +23,8 @@ struct Corner {
 Corner crossing_of(const Place& p, const Place& q, const Place& r, const Place& s, const Arithmetic& of) {
   const auto area = [&](const Place& at) {
     const Number x = of.number(r[0]), y = of.number(r[1]);
-    return of.minor(of.subtract(of.number(s[0]), x), of.subtract(of.number(at[1]), y),
-                    of.subtract(of.number(s[1]), y), of.subtract(of.number(at[0]), x));
+    return of.minor(of.subtract(of.number(s[0]), x), of.subtract(of.number(at[1]), y), of.subtract(of.number(s[1]), y),
+                    of.subtract(of.number(at[0]), x));
   };
   const Number a = area(p), b = area(q);
   Corner corner = {of.minor(of.number(p[0]), b, of.number(q[0]), a), of.minor(of.number(p[1]), b, of.number(q[1]), a),

@@ -194,9 +194,9 @@ class CADT_API ConstrainedTriangulation {
 /// are those of the segments, and, if all else has passed, "regions": no region crosses a segment, and what is inside
 /// fits the rule of `constraints`. Points made for crossings are where they were rounded to: triangles are examined
 /// there (rounded_valid), but no circles that they take part in; that each is the crossing of its added_parents(),
-/// rounded to nearest, and on the chains of both, belongs to "constraints". With Crossing::grid "constraints" asks where
-/// points have moved, to the centres of their cells, and that each segment meets the cells of its chain; with another
-/// rule or width in `constraints` such a mesh fails. \throws as `verify`, InputError
+/// rounded to nearest, and on the chains of both, belongs to "constraints". With Crossing::grid "constraints" asks
+/// where points have moved, to the centres of their cells, and that each segment meets the cells of its chain; with
+/// another rule or width in `constraints` such a mesh fails. \throws as `verify`, InputError
 [[nodiscard]] CADT_API VerifyReport verify(PointsView points, std::span<const Segment> segments,
                                            const ConstrainedTriangulation& mesh,
                                            const ConstraintOptions& constraints = {},

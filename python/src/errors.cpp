@@ -25,8 +25,8 @@ void raise(const char* type, const std::exception& error, Data&&... data) {
 
 /// Without the name of the C++ struct: in Python, options are arguments.
 std::string message_of(const cadt::OptionError& error) {
-  const std::string message = error.what(), prefix = "Options::";
-  return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+  const std::string message = error.what();
+  return message.substr(message.find(error.option()));
 }
 
 void translate(const std::exception_ptr& thrown, void* /*unused*/) {

@@ -159,7 +159,7 @@ void find_lowest(Arrangement& out, unsigned threads) {
 
 }  // namespace
 
-Arrangement arrange(PointsView points, std::span<const Segment> segments, unsigned threads, const stop_token& stop) {
+Arrangement arrange(PointsView points, std::span<const Segment> segments, unsigned threads, const Watch& watch) {
   Arrangement out = sort_segments(points, segments);
   const std::vector<std::int32_t> starts = first_at(out);
   threads = threads_or_all(threads);
@@ -171,7 +171,7 @@ Arrangement arrange(PointsView points, std::span<const Segment> segments, unsign
   if (!out.segments.empty())
     for_each_task(slabs, threads, [&](std::size_t i) {
       found[i] = sweep_slab(out, starts, static_cast<std::int32_t>(n * i / slabs),
-                            static_cast<std::int32_t>(n * (i + 1) / slabs), stop);
+                            static_cast<std::int32_t>(n * (i + 1) / slabs), watch);
     });
   make_walls(out, found);
   make_chains(out, found);

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cadt/constrained.hpp>
-#include <cadt/stop_token.hpp>
 
 #include "common/constraints/implicit_point.hpp"
+#include "common/constraints/tasks.hpp"
 
 #include <array>
 #include <cstdint>
@@ -61,6 +61,6 @@ struct Arrangement {
 /// The whole. It does not depend on the number of threads, nor on the order and direction of the input but for its
 /// numbers. O((n + length of chains) log n). \throws as sort_segments, and Cancelled
 [[nodiscard]] Arrangement arrange(PointsView points, std::span<const Segment> segments, unsigned threads,
-                                  const stop_token& stop = {});
+                                  const Watch& watch = {});
 
 }  // namespace cadt::constraints

@@ -84,7 +84,7 @@ void constrain_on_grid(const State& state, PointsView points, std::span<const Se
                       "device, or the back end host",
                       "ConstraintOptions::");
   const constraints::SnappedSegments snapped =
-      constraints::snap_segments(points, segments, grid, state->options.threads, state->options.stop);
+      constraints::snap_segments(points, segments, grid, state->options.threads, constraints::Watch(state->options, 0));
   const std::vector<Segment> pieces = polyline_segments(snapped.offsets, snapped.vertices);
   Data divided;
   SegmentJob job;

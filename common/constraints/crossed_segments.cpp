@@ -149,10 +149,10 @@ DeviceMesh constrain_rounded(const State& state, std::size_t n, const SegmentJob
 void refuse_crossings(const State& state, PointsView points, std::span<const Segment> segments,
                       const std::optional<FoundCrossings>& found) {
   const Options& options = state->options;
+  const constraints::Watch watch(options, 1);
   std::vector<Segment> pairs =
       found ? read_pairs(*state->device, *found)
-            : constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, options.stop),
-                                          options.stop);
+            : constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, watch), watch);
   constraints::check(options.stop);
   if (pairs.empty()) throw InternalError("segments were found to cross, but no pair of them does");
   std::string message =
@@ -169,8 +169,8 @@ void constrain_exactly(const State& state, PointsView points, std::span<const Se
                        std::optional<FoundCrossings> found, Data& data) {
   if (found && found->places && constrain_rounded(state, points, segments, std::move(*found), data)) return;
   const Triangulation delaunay = triangulate_on_host(state, points);
-  constraints::ExactMesh exact =
-      constraints::triangulate_with_crossings(points, segments, delaunay, state->options.threads, state->options.stop);
+  constraints::ExactMesh exact = constraints::triangulate_with_crossings(
+      points, segments, delaunay, state->options.threads, constraints::Watch(state->options, 1));
   data.mesh = triangulation_of(delaunay, exact, data.edge_flags);
   data.added = std::move(exact.added_xy);
   data.parents = std::move(exact.parents);

@@ -59,16 +59,16 @@ MeshEditor edit(const Arrangement& in, const Triangulation& delaunay) {
 }  // namespace
 
 ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment> segments,
-                                     const Triangulation& delaunay, unsigned threads, const stop_token& stop) {
-  const Arrangement in = arrange(points, segments, threads, stop);
+                                     const Triangulation& delaunay, unsigned threads, const Watch& watch) {
+  const Arrangement in = arrange(points, segments, threads, watch);
   const std::size_t ranks = in.points.size(), crossings = in.crossings.size();
   MeshEditor mesh = edit(in, delaunay);
   for (const std::int32_t c : insertion_order(in)) {
-    check(stop);
+    watch();
     mesh.insert_vertex(static_cast<std::int32_t>(ranks) + c);
   }
   for (std::size_t wall = 0; wall + 1 < in.chain_offsets.size() && !mesh.triangles().empty(); ++wall) {
-    check(stop);
+    watch();
     mesh.insert_chain(std::span(in.chain_vertices.data() + in.chain_offsets[wall],
                                 in.chain_vertices.data() + in.chain_offsets[wall + 1]));
   }

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cadt/constrained.hpp>
-#include <cadt/stop_token.hpp>
+
+#include "common/constraints/tasks.hpp"
 
 #include <array>
 #include <cstdint>
@@ -34,6 +35,6 @@ struct ExactMesh {
 /// about 100 bytes a vertex more than the result. \throws InputError as find_crossings, LimitError, Cancelled
 [[nodiscard]] ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment> segments,
                                                    const Triangulation& delaunay, unsigned threads,
-                                                   const stop_token& stop = {});
+                                                   const Watch& watch = {});
 
 }  // namespace cadt::constraints

@@ -92,10 +92,10 @@ std::vector<Hot> hot_pixels(const Arrangement& in, const PixelGrid& grid, unsign
 }  // namespace
 
 SnappedSegments snap_segments(PointsView points, std::span<const Segment> segments, double width, unsigned threads,
-                              const stop_token& stop) {
+                              const Watch& watch) {
   check_grid(points, width);
   threads = threads_or_all(threads);
-  const Arrangement in = arrange(points, segments, threads, stop);
+  const Arrangement in = arrange(points, segments, threads, watch);
   const PixelGrid grid(width);
   std::vector<Hot> hot = hot_pixels(in, grid, threads);
   const auto put = [&](std::vector<double>& xy, std::size_t vertex, const Pixel& pixel) {
@@ -130,7 +130,7 @@ SnappedSegments snap_segments(PointsView points, std::span<const Segment> segmen
   std::vector<std::vector<std::int32_t>> chains(in.segments.size());
   for_each_block(chains.size(), threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t s = first; s < last; ++s) {
-      check(stop);
+      watch();
       tree.find(in.lines[s], chains[s]);
       for (std::int32_t& i : chains[s]) i = hot[static_cast<std::size_t>(i)].point;
       if (chains[s].size() == 1) chains[s].clear();

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cadt/constrained.hpp>
-#include <cadt/stop_token.hpp>
+
+#include "common/constraints/tasks.hpp"
 
 #include <array>
 #include <cstdint>
@@ -33,6 +34,6 @@ struct SnappedSegments {
 /// find_crossings; OptionError unless 0 < grid < infinity and multiples of the grid are doubles up to the largest
 /// coordinate, or there are less than 2^25 of them, where their rounding does no harm; Cancelled
 [[nodiscard]] SnappedSegments snap_segments(PointsView points, std::span<const Segment> segments, double grid,
-                                            unsigned threads, const stop_token& stop = {});
+                                            unsigned threads, const Watch& watch = {});
 
 }  // namespace cadt::constraints

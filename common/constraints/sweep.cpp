@@ -20,8 +20,8 @@ using exact::Point;
 // no two walls are on the same line where the sweep line is.
 class Sweep {
  public:
-  Sweep(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, const stop_token& stop)
-      : in_(arrangement), starts_(starts), stop_(stop), exact_(arrangement.lines), queue_(Later{exact_}) {
+  Sweep(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, const Watch& watch)
+      : in_(arrangement), starts_(starts), watch_(watch), exact_(arrangement.lines), queue_(Later{exact_}) {
     node_of_.assign(in_.segments.size(), SweepStatus::none);
     wall_of_.assign(in_.segments.size(), none);
     reach_.assign(in_.segments.size(), none);
@@ -37,10 +37,10 @@ class Sweep {
         do queue_.pop();
         while (!queue_.empty() && exact_.compare(queue_.top(), crossing) == 0);
         if (order < 0) pass_crossing(crossing);
-        check(stop_);
+        watch_();
       }
       pass_point(r);
-      check(stop_);
+      watch_();
     }
     return std::move(out_);
   }
@@ -225,7 +225,7 @@ class Sweep {
 
   const Arrangement& in_;
   const std::vector<std::int32_t>& starts_;
-  const stop_token& stop_;
+  const Watch& watch_;
   exact::ImplicitPoints exact_;
   SweepStatus status_;
   std::vector<std::int32_t> node_of_;  // of walls in the status
@@ -239,8 +239,8 @@ class Sweep {
 }  // namespace
 
 SlabFindings sweep_slab(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, std::int32_t first,
-                        std::int32_t last, const stop_token& stop) {
-  return Sweep(arrangement, starts, stop).run(first, last);
+                        std::int32_t last, const Watch& watch) {
+  return Sweep(arrangement, starts, watch).run(first, last);
 }
 
 }  // namespace cadt::constraints

@@ -67,7 +67,7 @@ enum class Stabilize {
 
 /// Progress of a running triangulation, for `Options::progress`.
 struct Progress {
-  std::string_view phase;  ///< "sort", "insert", "constrain", "certify", "output"
+  std::string_view phase;  ///< "sort", "insert", "constrain", "cross", "certify", "output"
   /// Of the whole work, 0 to 1, never decreasing; but where segments cross, Crossing::exact begins anew.
   double fraction;
 };

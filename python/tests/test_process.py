@@ -126,6 +126,21 @@ def test_interrupt() -> None:
     """)
 
 
+def test_interrupt_while_segments_cross() -> None:
+    run("""
+        p = rng.random((3000, 2)); s = np.arange(3000).reshape(-1, 2)
+        begin = time.monotonic(); cadt.ConstrainedDelaunay(p, s, crossing="exact", backend="host")
+        whole = time.monotonic() - begin; begin = time.monotonic()
+        threading.Timer(whole / 8, os.kill, (os.getpid(), signal.SIGINT)).start()
+        try: cadt.ConstrainedDelaunay(p, s, crossing="exact", backend="host")
+        except KeyboardInterrupt: pass
+        else: raise AssertionError("not interrupted")
+        took = time.monotonic() - begin
+        assert took < whole / 2, (took, whole)
+        print("done")
+    """)
+
+
 def test_progress_that_raises() -> None:
     run("""
         p = rng.random((400_000, 2)); calls = []

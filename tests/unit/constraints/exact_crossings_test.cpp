@@ -240,5 +240,25 @@ TEST(ExactCrossingsOfAdversaries, AHubThatSegmentsPass) {
   EXPECT_EQ(constrained(mesh).size(), 200000U);
 }
 
+TEST(ExactCrossings, AreStoppedByTheCallerWhoHearsOfThem) {
+  const SegmentSet set = random_segments(7, 300, 0.5);
+  for (const unsigned threads : {1U, 3U}) {
+    Options options;
+    cadt::stop_source source;
+    std::size_t told = 0;
+    options.stop = source.get_token();
+    options.progress = [&](const Progress& progress) {
+      EXPECT_EQ(progress.phase, "cross");
+      EXPECT_EQ(progress.fraction, 0.5);
+      ++told;
+      source.request_stop();
+    };
+    EXPECT_THROW((void)constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), threads,
+                                                               constraints::Watch(options, 0.5)),
+                 Cancelled);
+    EXPECT_EQ(told, 1U);
+  }
+}
+
 }  // namespace
 }  // namespace cadt::test

@@ -189,7 +189,10 @@ void App::finish_loading(const std::exception_ptr& error) {
   const auto recorded = std::exchange(recorded_, nullptr);
   if (restart_asked_) return;  // by something newer
   if (error) std::rethrow_exception(error);
-  if (coming != nullptr) show(*coming);
+  if (coming != nullptr) {
+    shown = current;
+    show(*coming);
+  }
   if (recorded != nullptr) finish_recording(*recorded);
 }
 

@@ -92,6 +92,7 @@ class App {
   // ---- what panel and cards read ----
   ViewOptions options;      ///< `compute` is what the next triangulation does
   std::size_t current = 0;  ///< of options.sources
+  std::size_t shown = 0;    ///< of them, the one in the picture: another while `current` is loaded, or cannot be
   ViewState view;
   Selection selection;
   std::optional<TriangleFacts> hovered, selected;

@@ -327,7 +327,7 @@ void App::search(const std::string& text) {
 
 void App::save_screenshot(int width, int height) {
   try {
-    const std::string name = free_picture_name(options.sources[current].stem());
+    const std::string name = free_picture_name(options.sources[shown].stem());
     write_png(name, read_window(width, height));
     show_toast("saved " + name);
   } catch (...) {

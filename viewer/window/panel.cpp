@@ -54,6 +54,8 @@ void draw_file(App& app) {
     if (choice(app, "show", which, names)) app.show_source(which);
   }
   if (app.loaded == nullptr || app.scene == nullptr) return;
+  if (app.shown != app.current)
+    ImGui::TextDisabled("the picture shows %s", app.options.sources[app.shown].name().c_str());
   const MeshBuffers& mesh = app.scene->mesh;
   ImGui::Text("%s points, %s triangles", number_text(mesh.point_count).c_str(),
               number_text(mesh.triangle_count).c_str());

@@ -185,6 +185,8 @@ class Troubles(WindowTest):
         self.wait("picked triangle")
         self.key("Next")
         self.wait("message This file cannot be shown")
+        self.key("Escape")
+        self.assertEqual(self.screenshot().name, "square-1.png", "what the picture shows")
         self.write("absent.xy", "0 0\n1 0\n0 1\n")
         self.key("r")
         self.assertIn("3 points 1 triangles", self.wait("loaded absent.xy"))

@@ -217,10 +217,10 @@ TEST(TriangleSegments, GetAVertexWhereTheyCross) {
 
 /// Between two points of the first segment, not between its ends.
 TEST(TriangleSegments, HaveAttributesOfTheNearestPointsWhereTheyCross) {
-  for (const double unit : {1.0, 1e307, 0x1p-1070}) {
+  for (const double scale : {1.0, 1e307, 0x1p-1070}) {
     Plate plate;
     plate.xy = {-10, 0, 10, 0, 9, 0, 9.5, -1, 9.5, 1, -0.5, -1, -0.5, 1};
-    for (double& v : plate.xy) v *= unit;
+    for (double& v : plate.xy) v *= scale;
     plate.attributes = {0, 4, 0, 10, 100, 0, 7, 1, 7, 1, 7, 1, 7, 1};
     plate.point_markers = {};
     plate.segments = {{1, 0}, {3, 4}, {5, 6}};
@@ -232,10 +232,10 @@ TEST(TriangleSegments, HaveAttributesOfTheNearestPointsWhereTheyCross) {
     const TriangleOutput out = triangle_output(input, plate.constraints(),
                                                triangulate_as_triangle(input, plate.constraints(), switches), switches);
     ASSERT_EQ(out.xy.size(), 18U);
-    EXPECT_EQ(out.xy[14], 9.5 * unit);
+    EXPECT_EQ(out.xy[14], 9.5 * scale);
     EXPECT_NEAR(out.attributes[14], 50, 1e-9);
     EXPECT_NEAR(out.attributes[15], 5, 1e-9);
-    EXPECT_EQ(out.xy[16], -0.5 * unit);
+    EXPECT_EQ(out.xy[16], -0.5 * scale);
     EXPECT_NEAR(out.attributes[16], 50, 1e-9);
     EXPECT_NEAR(out.attributes[17], 2, 1e-9);
   }

@@ -162,7 +162,8 @@ Rounded round_quotient(const Number& dividend, const Number& divisor, Arena& are
   if (dividend.size == 0) return {};
   const Quotient q = divide(dividend, divisor, arena);
   // 53 bits, or down to 2^-1074, stay; what they count is 2^(drop - shift)
-  const std::int64_t drop = std::max<std::int64_t>(std::bit_width(q.digits) - 53, q.shift - 1074);
+  const std::int64_t drop =
+      std::max<std::int64_t>(static_cast<std::int64_t>(std::bit_width(q.digits)) - 53, q.shift - 1074);
   std::uint64_t kept = drop < 64 ? q.digits >> drop : 0;
   const std::uint64_t below = drop < 64 ? q.digits & ((std::uint64_t{1} << drop) - 1) : q.digits;
   int rest = below != 0 || q.rest ? 1 : 0;

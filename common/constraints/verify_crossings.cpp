@@ -118,9 +118,11 @@ class CrossingCheck {
     Arena arena;
     const Arithmetic of(arena);
     const Fractions p = exact_place(of, v);
-    const auto [a, b] = ends(s);
-    const auto from_a = [&](std::size_t axis) { return of.subtract(p.at[axis], of.multiply(of.number(a[axis]), p.w)); };
-    const auto along = [&](std::size_t axis) { return of.subtract(of.number(b[axis]), of.number(a[axis])); };
+    const auto ab = ends(s);
+    const auto from_a = [&](std::size_t axis) {
+      return of.subtract(p.at[axis], of.multiply(of.number(ab[0][axis]), p.w));
+    };
+    const auto along = [&](std::size_t axis) { return of.subtract(of.number(ab[1][axis]), of.number(ab[0][axis])); };
     return of.minor(along(0), from_a(1), along(1), from_a(0)).sign() == 0;
   }
 

@@ -87,6 +87,7 @@ class Rows:
 
 def test_wkb_in_arrays_of_any_dtype() -> None:
     """The last coordinate of each polygon ends with zeros, which numpy drops from S; one polygon is shorter."""
+    pytest.importorskip("shapely")
     rows = [wkb([SQUARE]), wkb([np.add(SQUARE, [9, -3])[:4]])]
     assert all(row.endswith(b"\0") for row in rows) and len(rows[1]) < len(rows[0])
     expected = cadt.polygons(rows)
@@ -108,6 +109,7 @@ def test_wkb_in_arrays_of_any_dtype() -> None:
 @pytest.mark.parametrize("kind", ["binary", "large_binary"])
 def test_wkb_of_arrow(kind: str) -> None:
     pyarrow, pandas = pytest.importorskip("pyarrow"), pytest.importorskip("pandas")
+    pytest.importorskip("shapely")
     rows, of = [wkb([SQUARE]), wkb([np.add(SQUARE, 9)])], getattr(pyarrow, kind)()
     expected = cadt.polygons(rows).triangles
     series = pandas.Series(rows, index=["a", "b"], dtype=pandas.ArrowDtype(of))

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/constraints/constrained_data.hpp"
+#include "tests/unit/constraints/mesh_copy.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 namespace cadt::test {
@@ -32,19 +32,7 @@ class Crossed : public ::testing::Test {
 
   /// What "constraints" says once the arrays are changed, or "".
   std::string after(const std::function<void(Data&)>& change) {
-    const auto data = std::make_shared<Data>();
-    data->mesh = mesh.mesh();
-    data->edge_flags.assign(mesh.edge_flags().begin(), mesh.edge_flags().end());
-    data->chain_offsets.assign(mesh.chain_offsets().begin(), mesh.chain_offsets().end());
-    data->chain_vertices.assign(mesh.chain_vertices().begin(), mesh.chain_vertices().end());
-    data->inside.assign(mesh.inside().begin(), mesh.inside().end());
-    data->number_inside = mesh.number_inside();
-    data->region.assign(mesh.region().begin(), mesh.region().end());
-    data->region_value.assign(mesh.region_value().begin(), mesh.region_value().end());
-    data->region_attribute.assign(mesh.region_attribute().begin(), mesh.region_attribute().end());
-    data->added.assign(mesh.added_points().begin(), mesh.added_points().end());
-    data->parents.assign(mesh.added_parents().begin(), mesh.added_parents().end());
-    data->rounded_valid = mesh.rounded_valid();
+    const std::shared_ptr<Data> data = copy_of(mesh);
     change(*data);
     const VerifyReport report = verify(set.xy, set.segments, ConstrainedTriangulation(data), options);
     for (const Check& check : report.checks)
@@ -126,13 +114,7 @@ TEST(VerifyCrossings, ChainOnAnotherWay) {
   const ConstrainedTriangulation mesh = triangulate_constrained(xy, segments, options);
   ASSERT_EQ(mesh.added_parents().size(), 3U);
   ASSERT_TRUE(verify(xy, segments, mesh, options).ok);
-  const auto data = std::make_shared<Data>();
-  data->mesh = mesh.mesh();
-  data->edge_flags.assign(mesh.edge_flags().begin(), mesh.edge_flags().end());
-  data->chain_offsets.assign(mesh.chain_offsets().begin(), mesh.chain_offsets().end());
-  data->chain_vertices.assign(mesh.chain_vertices().begin(), mesh.chain_vertices().end());
-  data->added.assign(mesh.added_points().begin(), mesh.added_points().end());
-  data->parents.assign(mesh.added_parents().begin(), mesh.added_parents().end());
+  const std::shared_ptr<Data> data = copy_of(mesh);
   // Crossings 6 and 7 with the first segment, 8 of the other two: 6, 8, 7 instead of 6, 7.
   const auto of_last = data->chain_vertices.end() - 4;
   ASSERT_EQ(std::vector<std::int32_t>(of_last, data->chain_vertices.end()), (std::vector<std::int32_t>{0, 6, 7, 1}));

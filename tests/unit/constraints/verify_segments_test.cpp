@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/constraints/constrained_data.hpp"
+#include "tests/unit/constraints/mesh_copy.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 namespace cadt::test {
@@ -32,7 +32,7 @@ struct Parts {
   SegmentSet set = squares();
   ConstraintOptions options;
   std::vector<std::int32_t> triangles, neighbors;
-  std::unique_ptr<Data> data = std::make_unique<Data>();
+  std::unique_ptr<Data> data;
 
   explicit Parts(Domain domain = Domain::even_odd) {
     options.domain = domain;
@@ -47,15 +47,7 @@ struct Parts {
     const ConstrainedTriangulation mesh = triangulate_constrained(set.xy, set.segments, options, host);
     triangles.assign(mesh.mesh().triangles().begin(), mesh.mesh().triangles().end());
     neighbors.assign(mesh.mesh().neighbors().begin(), mesh.mesh().neighbors().end());
-    data->mesh = mesh.mesh();
-    data->edge_flags.assign(mesh.edge_flags().begin(), mesh.edge_flags().end());
-    data->chain_offsets.assign(mesh.chain_offsets().begin(), mesh.chain_offsets().end());
-    data->chain_vertices.assign(mesh.chain_vertices().begin(), mesh.chain_vertices().end());
-    data->inside.assign(mesh.inside().begin(), mesh.inside().end());
-    data->number_inside = mesh.number_inside();
-    data->region.assign(mesh.region().begin(), mesh.region().end());
-    data->region_value.assign(mesh.region_value().begin(), mesh.region_value().end());
-    data->region_attribute.assign(mesh.region_attribute().begin(), mesh.region_attribute().end());
+    data = copy_of(mesh);
   }
 
   [[nodiscard]] std::size_t across(std::size_t t, std::size_t k) const {

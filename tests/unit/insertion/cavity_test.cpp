@@ -67,7 +67,7 @@ class RandomMesh {
              rest...);
     };
     std::uint32_t size = 0;
-    run(cadt_cavity_sizes, slots(), slots(), ends.data(), &w, 1, &size);
+    run(cadt_cavity_sizes, slots(), slots(), ends.data(), &w, 1U, &size);
     run(cadt_cavity_conflicts, slots(), slots(), ends.data(), w, list.data(), capacity, found.data());
     EXPECT_EQ(found[CADT_CAVITY_LISTED], size);
     const std::uint32_t conflicts = std::min(found[CADT_CAVITY_LISTED], capacity);

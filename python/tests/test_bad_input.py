@@ -3,17 +3,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import cadt
 import numpy as np
 import pytest
-from cadt import InputError, LimitError, OptionError
+from cadt import InputError, LimitError
 from cadt._points import as_points, as_values, contiguous
 
 P = np.random.default_rng(0).random((50, 2))
 SQUARE = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1]])
+MESH = cadt.Delaunay(P)
+Z = P[:, 0]
 
 
 def unaligned(dtype: str) -> np.ndarray:
@@ -323,114 +324,6 @@ def test_without_triangles(name: str) -> None:
             f([[0, 0], [np.nan, 0]])
     with pytest.raises(InputError):
         mesh.interpolate(z, [[np.inf, 0]])
-
-
-MESH = cadt.Delaunay(P)
-Z = P[:, 0]
-REFUSED: list[tuple[type[Exception], Callable[[], object]]] = [
-    (InputError, lambda: MESH.find_simplex([[1, 2, 3]])),
-    (InputError, lambda: MESH.find_simplex(3)),
-    (InputError, lambda: MESH.find_simplex([[0, np.nan]])),
-    (TypeError, lambda: MESH.find_simplex(P.astype(complex))),
-    (TypeError, lambda: MESH.find_simplex(None)),
-    (OptionError, lambda: MESH.nearest_vertex(P, 0)),
-    (OptionError, lambda: MESH.nearest_vertex(P, -1)),
-    *[(OptionError, lambda k=k: MESH.nearest_vertex(P, k)) for k in (2**31, 10**20, 10**5000, -(10**5000))],
-    (TypeError, lambda: MESH.nearest_vertex(P, 1.5)),  # type: ignore[arg-type]
-    (InputError, lambda: MESH.interpolate(np.zeros(49), P)),
-    (InputError, lambda: MESH.interpolate(3, P)),
-    (TypeError, lambda: MESH.interpolate(Z + 1j, P)),
-    (TypeError, lambda: MESH.interpolate(["a"] * 50, P)),
-    (OptionError, lambda: MESH.interpolate(Z, P, "cubic")),
-    (OptionError, lambda: MESH.interpolate(Z, P, outside="zero")),
-    (OptionError, lambda: MESH.rasterize(Z)),
-    (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), resolution=1)),
-    (OptionError, lambda: MESH.rasterize(Z, shape=(0, 2))),
-    (OptionError, lambda: MESH.rasterize(Z, shape=(2.5, 2))),  # type: ignore[arg-type]
-    (OptionError, lambda: MESH.rasterize(Z, shape=5)),  # type: ignore[arg-type]
-    (LimitError, lambda: MESH.rasterize(Z, shape=(2**20, 2**20))),
-    (LimitError, lambda: MESH.rasterize(Z, resolution=1e-300)),
-    (OptionError, lambda: MESH.rasterize(Z, resolution=0)),
-    (OptionError, lambda: MESH.rasterize(Z, resolution=np.nan)),
-    (InputError, lambda: MESH.rasterize(Z, shape=(2, 2), bounds=(0, 0, np.nan, 1))),
-    (InputError, lambda: MESH.rasterize(Z, shape=(2, 2), bounds=(1, 1, 0, 0))),
-    (InputError, lambda: MESH.rasterize(Z, shape=(2, 2), bounds=(0, 0, 1))),
-    (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), max_edge=-1)),
-    (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), max_edge=np.nan)),
-    *[(OptionError, lambda e=e: MESH.rasterize(Z, shape=(2, 2), max_edge=e)) for e in ("a", [1, 2], 1j)],
-    *[
-        (InputError, lambda b=b: MESH.rasterize(Z, shape=(2, 2), bounds=b))
-        for b in ("abcd", 3, (0, 0, 10**400, 1), [[0, 1]] * 4)
-    ],
-    *[(InputError, lambda b=b: MESH.voronoi_polygons(b)) for b in ("abcd", 3, (0, 0, 10**400, 1))],
-    (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), method="cubic")),
-    (OptionError, lambda: MESH.rasterize(Z, shape=(2, 2), origin="left")),
-    (InputError, lambda: MESH.voronoi_polygons((0, 0, 0, 0))),
-    (InputError, lambda: MESH.voronoi_polygons((0, 0, np.nan, 1))),
-    (InputError, lambda: MESH.voronoi_polygons((0, 0, 1))),
-    (OptionError, lambda: MESH.largest_empty_circles(-1)),
-    (TypeError, lambda: MESH.largest_empty_circles(1.5)),  # type: ignore[arg-type]
-    (OptionError, lambda: MESH.alpha_shape(-1)),
-    (OptionError, lambda: MESH.alpha_shape(np.nan)),
-    *[(OptionError, lambda r=r: MESH.alpha_shape(r)) for r in ("a", P, {}, -(10**400))],
-    (OptionError, lambda: MESH.alpha_shape(1, max_edge="a")),  # type: ignore[arg-type]
-    (cadt.BackendUnavailable, lambda: cadt.Delaunay(P, backend="opencl", device="no such device")),
-    (cadt.BackendUnavailable, lambda: cadt.Delaunay(P, backend="metal")),
-    (TypeError, lambda: cadt.Delaunay(P, backend=3)),  # type: ignore[arg-type]
-    (OptionError, lambda: cadt.Delaunay(P, device=0)),
-    (OptionError, lambda: cadt.Delaunay(P, order="random")),
-    (OptionError, lambda: cadt.Delaunay(P, threads=-1)),
-    (OptionError, lambda: cadt.Delaunay(P, threads=2**40)),
-    (OptionError, lambda: cadt.Delaunay(P, max_memory=-1)),
-    *[
-        (OptionError, lambda n=n: cadt.Delaunay(P, max_memory=n))
-        for n in (1e9, 2**70, 2**63, "2", np.zeros(2), 10**5000)
-    ],
-    *[(OptionError, lambda n=n: cadt.Delaunay(P, threads=n)) for n in (1.5, "2", 2**31, [2])],
-    (OptionError, lambda: cadt.triangulate_batch(P, [0, 50], threads=2.0)),  # type: ignore[arg-type]
-    (OptionError, lambda: cadt.ConstrainedDelaunay(P, [[0, 1]], max_memory=1e9)),  # type: ignore[arg-type]
-    (OptionError, lambda: cadt.find_crossings(P, [[0, 1]], threads=2.0)),  # type: ignore[arg-type]
-    (OptionError, lambda: cadt.find_crossings(P, [[0, 1]], threads=-1)),
-    (OptionError, lambda: cadt.Delaunay(P, statistics="all")),
-    (TypeError, lambda: cadt.Delaunay(P, progress=3)),  # type: ignore[arg-type]
-    (InputError, lambda: cadt.triangulate_batch(P, [0, 60])),
-    (InputError, lambda: cadt.triangulate_batch(P, [5, 50])),
-    (InputError, lambda: cadt.triangulate_batch(P, [0, 30, 20, 50])),
-    (InputError, lambda: cadt.triangulate_batch(P, [-1, 50])),
-    (InputError, lambda: cadt.triangulate_batch(P, [])),
-    (InputError, lambda: cadt.triangulate_batch(P, [0.0, 50.0])),
-    (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1, 99]])),
-    (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1, -1]])),
-    (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1]])),
-    (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1, 2**40]])),
-    (ValueError, lambda: cadt.Delaunay.from_simplices(SQUARE, [[0, 1, 2], [0, 1, 2]], verify=False)),
-    (
-        ValueError,
-        lambda: cadt.Delaunay.from_simplices(SQUARE, MESH.simplices[:2], [[7, 7, 7], [9, 9, 9]], verify=False),
-    ),
-    (ImportError, lambda: cadt.Delaunay(P).save("mesh.no_such_format")),
-    (AttributeError, lambda: cadt.no_such_name),
-]
-
-
-@pytest.mark.parametrize("k", range(len(REFUSED)))
-def test_arguments_that_are_refused(k: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "meshio", None)
-    error, call = REFUSED[k]
-    with pytest.raises(error) as caught:
-        call()
-    assert str(caught.value) and "incompatible function arguments" not in str(caught.value)
-    if error in (InputError, OptionError):
-        assert "could not convert" not in str(caught.value)
-
-
-def test_numbers_of_options() -> None:
-    for name in ("threads", "max_memory"):
-        with pytest.raises(OptionError, match=f"{name} must be a whole number, not 1.5") as caught:
-            cadt.Delaunay(P, **{name: 1.5})
-        assert caught.value.option == name
-    same = cadt.Delaunay(P, threads=np.int64(2), max_memory=np.uint64(2**62)).hash  # type: ignore[arg-type]
-    assert same == cadt.Delaunay(P).hash
 
 
 def test_no_queries_and_no_values() -> None:

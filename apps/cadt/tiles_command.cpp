@@ -2,8 +2,8 @@
 #include "tiles_command.hpp"
 
 #include "failure.hpp"
+#include "generated_set.hpp"
 #include "interrupt.hpp"
-#include "numbers.hpp"
 #include "outputs.hpp"
 #include "text.hpp"
 #include "tiles/files.hpp"
@@ -23,16 +23,7 @@ void add_inputs(CLI::App& command, TilesCommand& c) {
   command.add_option("IN", c.inputs,
                      "files with points, one set in the order given; .npy, .f64 and .f32 are read by range");
   add_read_options(command, c.read);
-  CLI::Option* const set =
-      command.add_option("--generate", c.generate, "instead of files: a point set (see: cadt generate --list)")
-          ->type_name("SET");
-  command.add_option("-n", c.n, "with --generate: number of points, 250000, 2M or 10G (default: 1M)")
-      ->type_name("N")
-      ->needs(set);
-  command.add_option("--seed", c.set.seed, "with --generate: equal seeds give equal points (default: 1)")
-      ->type_name("S")
-      ->transform(whole_number())
-      ->needs(set);
+  add_generated_set(command, c.generate, c.n, c.set.seed);
 }
 
 void add_outputs(CLI::App& command, TilesCommand& c) {

@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "device_options.hpp"
 #include "failure.hpp"
+#include "generated_set.hpp"
 #include "graph.hpp"
 #include "input.hpp"
 #include "numbers.hpp"
@@ -109,16 +110,7 @@ void add_view(CLI::App& app, Action& chosen) {
                       "files with points, or with points and segments; PgUp and PgDn go from one to the next");
   add_read_options(*command, options->input, true);
   add_segment_options(*command, options->segments);
-  CLI::Option* const set =
-      command->add_option("--generate", options->generate, "a point set in place of a file (see: cadt generate --list)")
-          ->type_name("NAME");
-  command->add_option("-n", options->n, "number of its points, 250000, 2M or 1e6 (default: 100000)")
-      ->type_name("N")
-      ->needs(set);
-  command->add_option("--seed", options->seed, "equal seeds give equal points (default: 1)")
-      ->type_name("S")
-      ->transform(whole_number())
-      ->needs(set);
+  add_generated_set(*command, options->generate, options->n, options->seed);
   command
       ->add_option(
           "--colour,--color", options->colour,

@@ -2,8 +2,8 @@
 #include "viewer_options.hpp"
 
 #include "failure.hpp"
+#include "generated_set.hpp"
 #include "interrupt.hpp"
-#include "numbers.hpp"
 #include "text.hpp"
 
 #include <fast_float/fast_float.h>
@@ -28,16 +28,7 @@ bool parse_number(std::string_view text, double& value) {
 void add_subject_options(CLI::App& command, SubjectOptions& options) {
   add_input_options(command, options.input, "IN", "file with points, or with points and segments", true);
   command.get_option("IN")->required(false);
-  CLI::Option* const set =
-      command.add_option("--generate", options.generate, "a point set of 'cadt generate' in place of a file")
-          ->type_name("NAME");
-  command.add_option("-n", options.n, "number of points of --generate, 250000, 2M or 1e6 (default: 10000)")
-      ->type_name("N")
-      ->needs(set);
-  command.add_option("--seed", options.generator.seed, "of --generate: equal seeds give equal points (default: 1)")
-      ->type_name("S")
-      ->transform(whole_number())
-      ->needs(set);
+  add_generated_set(command, options.generate, options.n, options.generator.seed);
   add_segment_options(command, options.segments);
 }
 

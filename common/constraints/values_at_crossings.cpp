@@ -13,7 +13,7 @@ namespace {
 
 using Place = std::array<double, 2>;
 
-/// How far p is along the segment from a to b: 0 at a, 1 at b. Python's parts_along.
+/// How far p is along the segment from a to b: 0 at a, 1 at b.
 double part_along(Place a, Place b, Place p) {
   // Powers of two change no digit: half of what is very large, so that differences do not overflow, and the longer side
   // of the box between 1/2 and 1, so that squares do not either, nor vanish.

@@ -14,7 +14,7 @@ from cadt._mesh import Mesh
 from cadt._points import as_pairs, as_points, as_values, contiguous
 from cadt._progress import reporter
 from cadt._results import VerifyReport, report_of
-from cadt._segments import constraints_of, parts_along, segments_of, segments_there
+from cadt._segments import constraints_of, segments_of, segments_there
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -278,20 +278,7 @@ class ConstrainedDelaunay(Mesh):
         v, one = as_values(values if self._gpu is None else self._gpu._as_host(values), n)
         if n == self.n_points:
             return v.reshape(n, *one)
-        points, parents, (indptr, chain) = self._host_points, self._on_host.added_parents, self._on_host.chains
-        of = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))  # the segment of each place in the chains
-        place = np.arange(len(chain))
-        given = chain < n
-        # The given points before and behind each place: chains begin and end with given ones.
-        before = np.maximum.accumulate(np.where(given, place, 0))
-        behind = np.minimum.accumulate(np.where(given, place, len(chain))[::-1])[::-1]
-        # Each added point on the first of its segments.
-        on = place[~given]
-        on = on[of[on] == parents[chain[on] - n, 0]]
-        part = parts_along(*(points[chain[at]] for at in (before[on], behind[on], on)))[:, None]
-        result = np.concatenate([v, np.full((len(parents), v.shape[1]), np.nan)])
-        result[chain[on]] = (1 - part) * v[chain[before[on]]] + part * v[chain[behind[on]]]
-        result = result.reshape(len(result), *one)
+        result = self._on_host.values_at_crossings(self._host_input()[0], v).reshape(self.n_points, *one)
         return result if self._gpu is None else self._gpu.array.like(result)
 
     # Checks and pictures

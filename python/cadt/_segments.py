@@ -70,19 +70,6 @@ def _of_lines(make: Any, lines: Any, what: str, n: int) -> np.ndarray:
     return make(offsets, contiguous(v, np.int32))
 
 
-def parts_along(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """How far each point p is along the segment from a to b: 0 at a, 1 at b."""
-    # Powers of two change no digit: half of what is very large, so that differences do not overflow, and the longer side
-    # of the box of each segment between 1/2 and 1, so that squares do not either, nor vanish.
-    large = np.maximum(np.abs(a), np.abs(b)).max(axis=1, keepdims=True) > 2.0**1000
-    a, b, p = (np.where(large, xy / 2, xy) for xy in (a, b, p))
-    along, off = b - a, p - a
-    _, exponents = np.frexp(np.abs(along).max(axis=1, keepdims=True))
-    along, off = np.ldexp(along, -exponents), np.ldexp(off, -exponents)
-    square = (along * along).sum(axis=1)
-    return np.clip((off * along).sum(axis=1) / np.where(square > 0, square, 1), 0, 1)
-
-
 def constraints_of(crossing: Any, domain: Any, holes: Any, regions: Any) -> _cadt.ConstraintOptions:
     """Raises OptionError for what is no crossing or domain, InputError for places that are no numbers."""
     width = 0.0

@@ -103,6 +103,12 @@ void bind_constrained_mesh(nb::module_& m) {
           "moved_points", [](const ConstrainedMesh& c) { return array_of(c.moved_points(), 2, c); },
           nb::rv_policy::automatic)
       .def_prop_ro("rounded_valid", &ConstrainedMesh::rounded_valid)
+      .def("values_at_crossings",
+           [](const ConstrainedMesh& c, const Points& points, const Values& values) {
+             const cadt::PointsView view = view_of(points);
+             return array_of(
+                 without_gil([&] { return cadt::values_at_crossings(view, elements_of(values), values.shape(1), c); }));
+           })
       .def("hash", [](const ConstrainedMesh& c) { return without_gil([&] { return c.hash().to_string(); }); })
       .def("verify", [](const ConstrainedMesh& c, const Points& points, const Pairs& segments,
                         const cadt::ConstraintOptions& constraints) {

@@ -38,3 +38,9 @@ def points(request: pytest.FixtureRequest) -> np.ndarray:
 @pytest.fixture
 def rng() -> np.random.Generator:
     return np.random.default_rng(1)
+
+
+@pytest.fixture
+def general(rng: np.random.Generator) -> np.ndarray:
+    """Points in general position, which have one triangulation."""
+    return rng.random((300, 2)) * [3, 2] + 10

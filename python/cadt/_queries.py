@@ -254,7 +254,7 @@ class Queries:
 
     def _queries(self) -> _cadt.Queries:
         if "queries" not in self._cache:
-            self._cache["queries"] = _cadt.Queries(self._host_points, self._host_mesh, self._options)
+            self._cache.setdefault("queries", _cadt.Queries(self._host_points, self._host_mesh, self._options))
         return self._cache["queries"]
 
 

@@ -27,7 +27,10 @@ class SharedTriangulator {
         }()) {}
 
   ~SharedTriangulator() {
-    if (forks_ != forks()) static_cast<void>(triangulator_.release());
+    if (forks_ == forks()) return;
+    // A driver does not survive a fork: for ever, with what waited for the next call.
+    static_cast<void>(triangulator_.release());
+    static_cast<void>(new auto(std::move(retired_)));
   }
   SharedTriangulator(const SharedTriangulator&) = delete;
   SharedTriangulator& operator=(const SharedTriangulator&) = delete;

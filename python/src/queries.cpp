@@ -21,12 +21,13 @@ cadt::Outside outside_of(const std::string& name) {
 }
 using Corners = std::array<double, 4>;
 
-/// Queries of a mesh of the host; it keeps mesh and points. One thread at a time asks.
+/// Queries of a mesh of the host; it keeps mesh and points. One thread at a time asks; the first one opens them, and the
+/// first one after a fork opens them again.
 class HostQueries {
  public:
   template <class Mesh>
   HostQueries(const Points& points, const Mesh& mesh, const cadt::Options& options)
-      : make_([points, mesh, options] { return cadt::MeshQueries(view_of(points), mesh, options); }), state_(open()) {}
+      : open_([points, view = view_of(points), mesh, options] { return cadt::MeshQueries(view, mesh, options); }) {}
   ~HostQueries() {
     if (state_->forks != forks()) static_cast<void>(state_.release());
   }
@@ -37,28 +38,27 @@ class HostQueries {
   auto run(Work&& work) {
     if (state_->forks != forks()) {  // with the GIL: once
       static_cast<void>(state_.release());
-      state_ = open();
+      state_ = std::make_unique<State>();
     }
     State& state = *state_;
     std::unique_lock lock(state.busy, std::defer_lock);
     {
       nb::gil_scoped_release released;
       lock.lock();
+      if (!state.queries) state.queries.emplace(open_());
     }
-    return Call(state.queries.options(), none_)([&] { return work(state.queries); });
+    return Call(state.queries->options(), none_)([&] { return work(*state.queries); });
   }
-  [[nodiscard]] std::size_t number_of_points() const noexcept { return state_->queries.number_of_points(); }
 
  private:
   struct State {
-    cadt::MeshQueries queries;
-    unsigned forks;
+    std::optional<cadt::MeshQueries> queries;
+    unsigned forks = cadt_python::forks();
     std::mutex busy;
   };
-  [[nodiscard]] std::unique_ptr<State> open() { return std::unique_ptr<State>(new State{make_(), forks(), {}}); }
 
-  std::function<cadt::MeshQueries()> make_;  ///< keeps points and mesh
-  std::unique_ptr<State> state_;
+  std::function<cadt::MeshQueries()> open_;  ///< keeps points and mesh
+  std::unique_ptr<State> state_ = std::make_unique<State>();
   nb::object none_ = nb::none();
 };
 

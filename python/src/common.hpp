@@ -16,6 +16,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,13 +46,20 @@ template <class T, class Owner>
   return NumpyArray<const T>(values.data(), columns == 0 ? 1 : 2, shape.data(), keep);
 }
 
-/// An array of a vector, which it takes over. `columns` 0: one dimension.
+/// An array of the numbers in a vector, which it takes over.
+template <class T, class Item>
+[[nodiscard]] NumpyArray<T> array_of_shape(std::initializer_list<std::size_t> shape, std::vector<Item>&& values) {
+  auto* kept = new std::vector<Item>(std::move(values));
+  nb::capsule keep(kept, [](void* p) noexcept { delete static_cast<std::vector<Item>*>(p); });
+  return NumpyArray<T>(reinterpret_cast<T*>(kept->data()), shape, keep);
+}
+
+/// The same with so many columns; 0: of one dimension.
 template <class T>
 [[nodiscard]] NumpyArray<T> array_of(std::vector<T>&& values, std::size_t columns = 0) {
-  auto* kept = new std::vector<T>(std::move(values));
-  nb::capsule keep(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-  const std::array<std::size_t, 2> shape{columns == 0 ? kept->size() : kept->size() / columns, columns};
-  return NumpyArray<T>(kept->data(), columns == 0 ? 1 : 2, shape.data(), keep);
+  const std::size_t size = values.size();
+  if (columns == 0) return array_of_shape<T>({size}, std::move(values));
+  return array_of_shape<T>({size / columns, columns}, std::move(values));
 }
 
 template <class Work>

@@ -61,10 +61,9 @@ void bind_mesh(nb::module_& m) {
       .def("hash", [](const Triangulation& t) { return without_gil([&] { return t.hash().to_string(); }); })
       .def("edges",
            [](const Triangulation& t) {
-             auto* edges = new std::vector<std::array<std::int32_t, 2>>(without_gil([&] { return cadt::edges(t); }));
-             nb::capsule keep(
-                 edges, [](void* p) noexcept { delete static_cast<std::vector<std::array<std::int32_t, 2>>*>(p); });
-             return NumpyArray<std::int32_t>(reinterpret_cast<std::int32_t*>(edges->data()), {edges->size(), 2}, keep);
+             auto edges = without_gil([&] { return cadt::edges(t); });
+             const std::size_t count = edges.size();
+             return array_of_shape<std::int32_t>({count, 2}, std::move(edges));
            })
       .def("vertex_neighbors",
            [](const Triangulation& t) { return rows(without_gil([&] { return cadt::vertex_neighbors(t); })); })

@@ -21,8 +21,8 @@ cadt::Outside outside_of(const std::string& name) {
 }
 using Corners = std::array<double, 4>;
 
-/// Queries of a mesh of the host; it keeps mesh and points. One thread at a time asks; the first one opens them, and the
-/// first one after a fork opens them again.
+/// Queries of a mesh of the host; it keeps mesh and points. One thread at a time asks; the first one opens them, and
+/// the first one after a fork opens them again.
 class HostQueries {
  public:
   template <class Mesh>

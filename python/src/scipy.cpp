@@ -133,9 +133,7 @@ void bind_scipy(nb::module_& m) {
   m.def(
       "transforms",
       [](const Coordinates& points, const cadt::Triangulation& mesh) {
-        auto* kept = new std::vector<double>(rows(points, mesh, 6, transform));
-        nb::capsule keep(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-        return NumpyArray<double>(kept->data(), {kept->size() / 6, 3, 2}, keep);
+        return array_of_shape<double>({mesh.number_of_triangles(), 3, 2}, rows(points, mesh, 6, transform));
       },
       nb::arg("points"), nb::arg("mesh"));
 }

@@ -59,29 +59,6 @@ def test_threads_share_a_mesh() -> None:
     """)
 
 
-def test_the_first_query_lets_other_threads_run() -> None:
-    run("""
-        def longest_wait(points, work):  # of a thread that does next to nothing, as a part of the whole
-            longest = [0.0]; stop = []
-            def watch():
-                last = time.monotonic()
-                while not stop:
-                    time.sleep(0.001)
-                    now = time.monotonic(); longest[0] = max(longest[0], now - last); last = now
-            watcher = threading.Thread(target=watch); watcher.start()
-            begin = time.monotonic(); work(points); whole = time.monotonic() - begin
-            stop.append(1); watcher.join()
-            return longest[0] / whole
-        p = rng.random((1_000_000, 2)); best = 1.0
-        for _ in range(5):
-            mesh = slow(p)
-            best = min(best, longest_wait(p[:1], mesh.find_simplex))
-            if best < 0.2: break
-        assert best < 0.2, best
-        print("done")
-    """)
-
-
 @pytest.mark.skipif(not hasattr(__import__("os"), "fork"), reason="no fork here")
 def test_threads_that_ask_first_after_a_fork() -> None:
     run("""

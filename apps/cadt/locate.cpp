@@ -57,11 +57,10 @@ int run(const LocateCommand& command) {
   }
   QueryRun run(command.query);
   const io::PointSet queries = run.read_queries();
-  constexpr std::size_t most_results = std::size_t{1} << 31;
-  if (command.k > most_results / queries.size()) {
+  if (command.k > max_results() / queries.size()) {
     throw Failure(exit_usage, fmt::format("-k {}: {} results for {} queries, at most {}: take a smaller -k or fewer "
                                           "queries at a time",
-                                          command.k, command.k * queries.size(), queries.size(), most_results));
+                                          command.k, command.k * queries.size(), queries.size(), max_results()));
   }
   run.make_mesh();
   if (command.nearest) {

@@ -40,7 +40,7 @@ Grid make_grid(const RasterCommand& command, const Box& box) {
                                           "--bounds x0,y0,x1,y1",
                                           box.max_x - box.min_x, box.max_y - box.min_y, cell));
   }
-  constexpr double most_cells = 2147483647.0;  // which MeshQueries::rasterize takes
+  constexpr auto most_cells = static_cast<double>(max_results());
   if (!(columns * rows <= most_cells)) {
     throw Failure(exit_usage, fmt::format("--res {}: {} x {} cells, at most {:.0f} in all: take a larger --res, "
                                           "or tiles with --bounds",

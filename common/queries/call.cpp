@@ -89,9 +89,8 @@ std::size_t values_a_point(std::size_t values, std::size_t points) {
 }
 
 void require_results(std::size_t queries, std::size_t each) {
-  constexpr std::size_t most = std::size_t{1} << 31;
-  if (queries != 0 && each > (most - 1) / queries)
-    throw LimitError("one call has fewer than 2^31 results: ask in several calls", each, (most - 1) / queries);
+  if (queries != 0 && each > max_results() / queries)
+    throw LimitError("one call has fewer than 2^31 results: ask in several calls", each, max_results() / queries);
 }
 
 void locate_into(Call& call, const MeshIndex& mesh, const QueryBatch& queries, const Allocation& triangles,

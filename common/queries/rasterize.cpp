@@ -108,16 +108,16 @@ void query_cells(Context& ctx, MeshIndex& mesh, const Grid& grid, const Allocati
 }  // namespace
 
 void require_grid(const Grid& grid) {
-  constexpr std::size_t most = std::size_t{1} << 31;
+  constexpr std::size_t most = max_results();
   const double right = grid.x0 + (static_cast<double>(grid.columns) + 1) * grid.dx;
   const double top = grid.y0 + (static_cast<double>(grid.rows) + 1) * grid.dy;
   for (const double value : {grid.x0, grid.y0, grid.dx, grid.dy, right, top})
     if (!std::isfinite(value)) throw InputError("the grid has a corner or a cell that is not finite", 0);
   if (grid.dx == 0 || grid.dy == 0) throw InputError("the cells of the grid have no size: dx and dy must not be 0", 0);
-  if (grid.columns >= most || grid.rows >= most || (grid.columns != 0 && grid.rows > (most - 1) / grid.columns)) {
+  if (grid.columns > most || grid.rows > most || (grid.columns != 0 && grid.rows > most / grid.columns)) {
     constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
     const std::size_t count = grid.rows > all / std::max<std::size_t>(grid.columns, 1) ? all : grid.columns * grid.rows;
-    throw LimitError("a raster has fewer than 2^31 cells: take larger ones, or several rasters", count, most - 1);
+    throw LimitError("a raster has fewer than 2^31 cells: take larger ones, or several rasters", count, most);
   }
 }
 

@@ -24,6 +24,9 @@
 
 namespace cadt {
 
+/// Most results of one call: neighbours, values and cells of all its queries, which have 32-bit indices.
+[[nodiscard]] constexpr std::size_t max_results() noexcept { return (std::size_t{1} << 31) - 1; }
+
 /// How values at the points become values between them.
 enum class Interpolation {
   linear,   ///< in the triangle that contains the query: continuous, cheapest
@@ -175,7 +178,7 @@ class CADT_API MeshQueries {
   [[nodiscard]] std::vector<std::int32_t> nearest_vertex(PointsView queries);
   /// The k nearest vertices of each query: n x k, nearest first, equally near ones by index (but of those at the very
   /// smallest distance only the first is certain to be the lowest); -1 where there are no more. Along the mesh: O(k^2)
-  /// each. \throws OptionError for k = 0, LimitError for more than 2^31 results
+  /// each. \throws OptionError for k = 0, LimitError for more than max_results()
   [[nodiscard]] std::vector<std::int32_t> nearest_vertices(PointsView queries, std::size_t k);
 
   /// `values`: m for each point, point by point. Returns m for each query. Values are the device's doubles: equal on
@@ -187,7 +190,8 @@ class CADT_API MeshQueries {
                                                 Outside outside = Outside::nan);
   /// The same at the centre of each cell. A cell belongs to the triangle that `locate` finds for its centre; NaN
   /// outside of the hull, and in triangles with an edge longer than `max_edge`. Linear: O(triangles + cells). \throws
-  /// InputError for a grid that is not finite, or whose cells have no size; LimitError for 2^32 cells or more
+  /// InputError for a grid that is not finite, or whose cells have no size; LimitError for more than
+  /// max_results() cells
   [[nodiscard]] std::vector<double> rasterize(const Grid& grid, std::span<const double> values,
                                               Interpolation method = Interpolation::linear,
                                               double max_edge = std::numeric_limits<double>::infinity());

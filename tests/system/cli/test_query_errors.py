@@ -44,6 +44,8 @@ class QueryErrors(CliTest):
         self.write("many.xy", "0.2 0.2\n" * 3000)
         self.before = sorted(self.before + ["many.xy"])
         self.fails(2, "locate", "p.xy", "many.xy", "--nearest", "-k", "1000000", says="3000000000 results")
+        self.write("many.xy", "0.2 0.2\n" * 4096)  # 2^31 results, one too many
+        self.fails(2, "locate", "p.xy", "many.xy", "--nearest", "-k", "524288", says=["2147483648 results", "at most 2147483647"])
         self.fails(2, "locate", "p.xy", "q.xy", "--nearest", "--barycentric", says="leave one of them out")
         self.fails(2, "interpolate", "p.xyz", "q.xy", "--method", "cubic", says="--method")
         self.fails(2, "interpolate", "p.xyz", "q.xy", "--values", "-", says="not standard input")

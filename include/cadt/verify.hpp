@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Independent verification of a mesh against its points. It shares no predicate with the builder.
+// Independent verification of a mesh against its points. It shares no predicate with what triangulates points, and
+// segments that do not cross. docs/constrained.md says what it shares with exact crossings, grids and seeds.
 #pragma once
 
 #include <cadt/export.hpp>
@@ -80,7 +81,8 @@ struct VerifyOptions {
                                                      const Options& device, const VerifyOptions& options = {});
 
 /// The predicates of the verifier of the host, exact for all finite doubles, for those who check more than `verify`
-/// does. They share no code with what triangulates. Thread-safe; a filter decides most in some nanoseconds.
+/// does. They share no code with what triangulates points, and segments that do not cross. Thread-safe; a filter
+/// decides most in some nanoseconds.
 ///
 /// Sign of the area of the triangle abc: 1 if counterclockwise, 0 if the points are on a line, else -1.
 [[nodiscard]] CADT_API int exact_orientation(const std::array<double, 2>& a, const std::array<double, 2>& b,

@@ -51,7 +51,8 @@ class Check(NamedTuple):
 
 @dataclass(frozen=True)
 class VerifyReport:
-    """Outcome of an exact check of a mesh, which shares no predicate with what computed it. True if all is well."""
+    """Outcome of an exact check of a mesh, which shares no predicate with what triangulates points, and segments that do
+    not cross. True if all is well."""
 
     ok: bool
     summary: str

@@ -42,6 +42,17 @@ ONLY = [
     # What all stages share knows no stage, but for the text of the kernels, of which it takes layouts and parameters.
     (r"common/driver/(?!triangulat|device_triangulation|choose_strategy|build|session).*\.hpp$", r"common/driver/|include/|common/portable/"),
 ]
+# What the verifier of the host is to check must not be made with it: nobody else includes it but the tests, and these.
+VERIFIER, ITS_USERS = "common/verify/host/", r"common/verify/|tests/"
+EXCEPTIONS = {  # file -> headers of the verifier; docs/constrained.md and docs/scale.md say what for
+    "common/constraints/implicit_point.hpp": ["exact_sign.hpp"],  # crossings: where all points are doubles
+    "common/constraints/locate_seeds.cpp": ["exact_sign.hpp"],  # holes and regions
+    "common/constraints/tasks.hpp": ["parallel.hpp"],  # threads alone
+    "common/constraints/verify_segments.cpp": ["mesh.hpp"],  # the verifier of segments
+    "common/driver/adopt.cpp": ["mesh.hpp"],  # the mesh of another program is verified
+    "common/finalization/children.hpp": ["exact_sign.hpp"],  # certificates of edges between nodes
+    "common/finalization/join.cpp": ["exact_sign.hpp", "parallel.hpp"],
+}
 # One back end knows nothing of another.
 BACKENDS = ["host", "opencl", "cuda"]
 # Headers from outside -> folders that may use them.
@@ -89,6 +100,9 @@ def may_include(source, target):
     for files, targets in ONLY:
         if re.match(files, source) and not re.match(targets, target):
             return False
+    if target.startswith(VERIFIER) and not re.match(ITS_USERS, source) and \
+            target.removeprefix(VERIFIER) not in EXCEPTIONS.get(source, []):
+        return False
     allowed = MAY_INCLUDE[rule]
     target_rule = folder_rule(target)
     # "include/cadt" allows the core headers, not those of io below it.
@@ -162,6 +176,11 @@ def self_test():
         ("common/driver/d2.cpp", '#include "common/points/p.hpp"', True),
         ("common/verify/host/v.cpp", '#include "common/points/g.dev.h"', False),
         ("common/verify/device/v.cpp", '#include "common/driver/d.hpp"', True),
+        ("common/verify/device/v.cpp", '#include "common/verify/host/exact_sign.hpp"', True),
+        ("tests/t.cpp", '#include "common/verify/host/exact_sign.hpp"', True),
+        ("common/stars/s.cpp", '#include "common/verify/host/exact_sign.hpp"', False),
+        ("common/constraints/locate_seeds.cpp", '#include "common/verify/host/exact_sign.hpp"', True),
+        ("common/constraints/tasks.hpp", '#include "common/verify/host/exact_sign.hpp"', False),
         ("backends/host/f2.cpp", '#include "common/driver/d.hpp"', True),
         ("backends/opencl/f3.cpp", '#include "backends/host/f.hpp"', False),
         ("backends/host/f2.cpp", "#include <CL/opencl.hpp>", False),
@@ -179,7 +198,7 @@ def self_test():
     ]
     present = ["include/cadt/b.hpp", "include/cadt/io/c.hpp", "common/driver/d.hpp", "common/points/p.hpp", "io/support/e.hpp", "tiles/t.hpp", "apps/y.hpp",
                "backends/host/f.hpp", "common/points/g.dev.h", "common/portable/dialect.dev.h",
-               "common/mesh/mesh_view.dev.h", "common/mesh/locked_mesh.dev.h"]
+               "common/mesh/mesh_view.dev.h", "common/mesh/locked_mesh.dev.h", "common/verify/host/exact_sign.hpp"]
     failed = 0
     for source, line, allowed in cases:
         with tempfile.TemporaryDirectory() as folder:

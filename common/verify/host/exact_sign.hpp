@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verifier's own predicates, exact for all finite doubles. They share no code with the builder and, after the first
-// filter, no method, so that no single error can both produce a wrong mesh and accept it.
+// The verifier's own predicates, exact for all finite doubles. They share no code with what triangulates points, and
+// segments that do not cross, and, after the first filter, no method, so that no single error can both produce a wrong
+// mesh and accept it. docs/constrained.md says who else uses them.
 #pragma once
 
 #include <algorithm>

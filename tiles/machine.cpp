@@ -3,12 +3,12 @@
 
 #include <cadt/io/errors.hpp>
 
+#include "tiles/system_memory.hpp"
+
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
@@ -19,17 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t unknown = ~std::uint64_t{0};
-
-std::uint64_t available_in_system() noexcept {
-  std::ifstream info("/proc/meminfo");
-  std::string key;
-  std::uint64_t kib = 0;
-  while (info >> key >> kib) {
-    if (key == "MemAvailable:") return kib << 10;
-    info.ignore(1000, '\n');
-  }
-  return unknown;
-}
 
 std::uint64_t available_in_address_space() noexcept {
   struct rlimit limit {};
@@ -53,7 +42,7 @@ fs::path existing(const std::string& path) {
 
 std::uint64_t available_memory() noexcept {
   try {
-    return std::min(available_in_system(), available_in_address_space());
+    return std::min(memory_of_system().value_or(unknown), available_in_address_space());
   } catch (...) {
     return unknown;
   }
@@ -87,16 +76,6 @@ bool same_disk(const std::string& a, const std::string& b) noexcept {
   } catch (...) {
     return false;
   }
-}
-
-std::string human_bytes(std::uint64_t bytes) {
-  constexpr std::array<const char*, 5> units = {"bytes", "KiB", "MiB", "GiB", "TiB"};
-  double value = static_cast<double>(bytes);
-  std::size_t unit = 0;
-  while (value >= 1024 && unit + 1 < units.size()) value /= 1024, ++unit;
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), unit == 0 ? "%.0f %s" : "%.1f %s", value, units[unit]);
-  return text.data();
 }
 
 }  // namespace cadt::tiles

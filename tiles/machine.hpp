@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "io/support/human_bytes.hpp"
+
 namespace cadt::tiles {
 
 /// Bytes of memory that this process can still get: what the system has available and what the limit of the address
@@ -19,7 +21,6 @@ namespace cadt::tiles {
 /// Whether both are on one file system.
 [[nodiscard]] bool same_disk(const std::string& a, const std::string& b) noexcept;
 
-/// "4.0 GiB"
-[[nodiscard]] std::string human_bytes(std::uint64_t bytes);
+using io::detail::human_bytes;
 
 }  // namespace cadt::tiles

@@ -8,9 +8,7 @@
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#if defined(__linux__)
-#include <sys/sysinfo.h>
-#endif
+#include "tiles/system_memory.hpp"
 #endif
 
 namespace cadt::cli {
@@ -48,13 +46,7 @@ std::size_t terminal_width() noexcept {
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : usual_width;
 }
 
-std::optional<std::uint64_t> free_memory() noexcept {
-#if defined(__linux__)
-  struct sysinfo system {};
-  if (::sysinfo(&system) == 0) return std::uint64_t{system.freeram} * system.mem_unit;
-#endif
-  return std::nullopt;
-}
+std::optional<std::uint64_t> free_memory() noexcept { return tiles::memory_of_system(); }
 
 bool may_write(const std::string& path) noexcept {
   struct stat status {};

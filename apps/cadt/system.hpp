@@ -13,7 +13,7 @@ namespace cadt::cli {
 [[nodiscard]] bool errors_go_to_terminal() noexcept;
 [[nodiscard]] std::size_t terminal_width() noexcept;
 
-/// Memory that is free, in bytes, without allocating any.
+/// Memory that the system can give, in bytes, without allocating any.
 [[nodiscard]] std::optional<std::uint64_t> free_memory() noexcept;
 
 /// Whether this process may write there; else errno says why. A folder: whether it may make files in it.

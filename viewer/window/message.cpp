@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <new>
 #include <stdexcept>
@@ -43,8 +42,8 @@ Message explain(const std::exception_ptr& error) {
     return {"The device reported an error", e.what(), "Press R to try again, or choose another device in the panel."};
   } catch (const OutOfMemory& e) {
     Message message{"Not enough memory",
-                    fmt::format("{}\nNeeded: {}. Available: {}.", e.what(), bytes_text(e.needed()),
-                                e.available() == 0 ? "not known" : bytes_text(e.available())),
+                    fmt::format("{}\nNeeded: {}. Available: {}.", e.what(), human_bytes(e.needed()),
+                                e.available() == 0 ? "not known" : human_bytes(e.available())),
                     "Show fewer points, close other programs, or choose another device in the panel."};
     message.memory = true;
     return message;
@@ -62,15 +61,6 @@ Message explain(const std::exception_ptr& error) {
   } catch (...) {
     return {"A defect of cadt", "unknown exception", "Please report it, with the file and what you did."};
   }
-}
-
-std::string bytes_text(std::size_t bytes) {
-  if (bytes < 1024) return fmt::format("{} bytes", bytes);
-  constexpr std::array units{"KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
-  double value = static_cast<double>(bytes) / 1024;
-  std::size_t unit = 0;
-  for (; value >= 1023.95 && unit + 1 < units.size(); ++unit) value /= 1024;
-  return fmt::format("{:.1f} {}", value, units[unit]);
 }
 
 std::string number_text(std::size_t number) {

@@ -5,6 +5,8 @@
 #include <exception>
 #include <string>
 
+#include "io/support/human_bytes.hpp"
+
 namespace cadt::viewer {
 
 struct Message {
@@ -16,8 +18,7 @@ struct Message {
 /// Of any exception.
 [[nodiscard]] Message explain(const std::exception_ptr& error);
 
-/// "512 bytes", "4.0 GiB".
-[[nodiscard]] std::string bytes_text(std::size_t bytes);
+using io::detail::human_bytes;
 /// "1,234,567".
 [[nodiscard]] std::string number_text(std::size_t number);
 /// A number of points: "250000", "2M", "1e6", "1,000"; K M G count 1000. Throws std::invalid_argument.

@@ -247,7 +247,7 @@ void draw_device(App& app) {
     row("computed by", app.loaded->device.name.empty() ? app.loaded->statistics.device : app.loaded->device.name);
     row("display", app.window->driver().renderer);
     row("mesh came by", app.way_text() + (app.interop_reason.empty() ? "" : ": " + app.interop_reason));
-    row("through the host", bytes_text(app.scene->mesh.bytes_through_host));
+    row("through the host", human_bytes(app.scene->mesh.bytes_through_host));
     row("picture", fmt::format("{:.1f} ms", app.picture_milliseconds));
     ImGui::EndTable();
   }
@@ -276,8 +276,8 @@ void draw_statistics(App& app) {
     row("exact predicates", number_text(s.exact_orientations + s.exact_incircles));
     row("ties", number_text(s.ties));
     row("certified", s.certified ? "yes" : "no");
-    row("peak memory", bytes_text(s.bytes_device_peak));
-    row("to, from device", bytes_text(s.bytes_to_device) + ", " + bytes_text(s.bytes_from_device));
+    row("peak memory", human_bytes(s.bytes_device_peak));
+    row("to, from device", human_bytes(s.bytes_to_device) + ", " + human_bytes(s.bytes_from_device));
     ImGui::EndTable();
   }
 }

@@ -86,8 +86,8 @@ void check_room(std::size_t points, std::size_t bytes_of_mesh, std::size_t avail
   if (points > max_points()) throw LimitError("one triangulation cannot hold them", points, max_points());
   const std::size_t needed = bytes_of_points(points) + bytes_of_mesh;
   if (available != 0 && needed > available) {
-    throw OutOfMemory(number_text(points) + " points do not fit: " + bytes_text(bytes_of_points(points)) +
-                          " for points and drawing, " + bytes_text(bytes_of_mesh) + " to triangulate them",
+    throw OutOfMemory(number_text(points) + " points do not fit: " + human_bytes(bytes_of_points(points)) +
+                          " for points and drawing, " + human_bytes(bytes_of_mesh) + " to triangulate them",
                       needed, available);
   }
 }

@@ -259,7 +259,14 @@ class Resources(CliTest):
         def little_memory():
             default_signals()
             resource.setrlimit(resource.RLIMIT_AS, (1 << 29, 1 << 29))
-        self.fails(6, "generate", "uniform", "-n", "200M", "-o", "x.f64", before=little_memory, says="out of memory")
+        def available():
+            lines = pathlib.Path("/proc/meminfo").read_text().splitlines()
+            return int(next(line for line in lines if line.startswith("MemAvailable:")).split()[1]) / (1 << 20)
+        before = available()
+        err = self.fails(6, "generate", "uniform", "-n", "200M", "-o", "x.f64", before=little_memory, says="out of memory").err
+        bounds = sorted([before, available()])
+        free = float(err.partition("free: ")[2].split()[0])
+        self.assertTrue(0.9 * bounds[0] - 0.1 <= free <= 1.1 * bounds[1] + 0.1, f"{free} GiB, of {bounds} with the page cache")
         self.assertEqual(self.names(), [])
 
 

@@ -5,6 +5,7 @@
 #include "tiles/node.hpp"
 #include "tiles/store.hpp"
 
+#include <cadt/stop_token.hpp>
 #include <cadt/triangulation.hpp>
 #include <cadt/verify.hpp>
 
@@ -85,9 +86,10 @@ struct MergedMesh {
 [[nodiscard]] VerifyReport verify(const MeshDirectory& mesh, const VerifyOptions& options = {});
 [[nodiscard]] VerifyReport verify(const NodeMesh& mesh, const VerifyOptions& options = {});
 
-/// Pieces of a node each, with GlobalNodeIds, and mesh.pvtu, in a new folder. \throws io::FileError
-void export_pvtu(const NodeMesh& mesh, const std::string& folder);
-/// A .ply file for each node that has triangles. \throws io::FileError
-void export_ply(const NodeMesh& mesh, const std::string& folder);
+/// Pieces of a node each, with GlobalNodeIds, and mesh.pvtu, in a new folder. \throws io::FileError, Cancelled between
+/// two pieces
+void export_pvtu(const NodeMesh& mesh, const std::string& folder, const cadt::stop_token& stop = {});
+/// A .ply file for each node that has triangles. \throws io::FileError, Cancelled between two files
+void export_ply(const NodeMesh& mesh, const std::string& folder, const cadt::stop_token& stop = {});
 
 }  // namespace cadt::tiles

@@ -67,11 +67,18 @@ int run(const MergeCommand& c) {
   for (const std::string& folder : {c.pvtu, c.ply}) require_outside(folder, c.mesh);
   with_tile_errors([&] {
     const tiles::MeshDirectory directory(c.mesh);
-    if (!c.pvtu.empty()) tiles::export_pvtu(directory, c.pvtu);
-    if (!c.ply.empty()) tiles::export_ply(directory, c.ply);
     std::vector<std::string> written;
-    for (const std::string& folder : {c.pvtu, c.ply})
-      if (!folder.empty()) written.push_back(folder);
+    const auto write_pieces = [&](const std::string& folder, const auto& write) {
+      if (folder.empty()) return;
+      {
+        const InPhase phase(Phase::cooperative);
+        write(directory, folder, interrupt_token());
+      }
+      written.push_back(folder);
+      check_interrupt_after(written);
+    };
+    write_pieces(c.pvtu, tiles::export_pvtu);
+    write_pieces(c.ply, tiles::export_ply);
     if (!outputs.empty()) write_merged(c, directory, outputs, std::move(written));
   });
   return exit_done;

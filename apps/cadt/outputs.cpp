@@ -6,17 +6,15 @@
 #include "text.hpp"
 
 #include <cadt/io/errors.hpp>
-
 #include <cadt/io/segments_file.hpp>
+#include <cadt/io/text_file.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 
 namespace cadt::cli {
 namespace fs = std::filesystem;
@@ -152,30 +150,9 @@ void check_interrupt_after(const std::vector<std::string>& complete, ProgressLin
 }
 
 void write_text(const std::string& path, const std::string& text) {
-  if (path == "-") {
-    print(text);
-    return;
-  }
-  // A link is followed, so that the file it points to is replaced and the link stays.
-  std::error_code code;
-  const fs::path resolved = fs::weakly_canonical(path, code);
-  const std::string target = code ? path : resolved.string();
-  const bool in_place = is_device(target);
-  const std::string name = in_place ? target : fmt::format("{}.{}.tmp", target, process_number());
-  const auto fail = [&](int why) {
-    if (!in_place) std::remove(name.c_str());
-    refuse(path, why == 0 ? EIO : why);
-  };
-  errno = 0;
-  std::FILE* file = std::fopen(name.c_str(), "wb");
-  if (file == nullptr) refuse(path, errno);
-  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
-  const int why = errno;
-  const bool closed = std::fclose(file) == 0;
-  if (!written || !closed) fail(written ? errno : why);
-  if (in_place) return;
-  fs::rename(name, target, code);  // std::rename() refuses on Windows if the file exists
-  if (code) fail(code.default_error_condition().value());
+  if (path == "-") return print(text);
+  const InPhase phase(writing_phase(path));
+  io::write_text(path, text);
 }
 
 }  // namespace cadt::cli

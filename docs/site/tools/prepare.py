@@ -33,6 +33,7 @@ HEADERS = {
             "io/label_image_file",
             "io/picture",
             "io/generate",
+            "io/text_file",
             "io/errors",
         ],
     },

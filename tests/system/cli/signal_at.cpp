@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // rename and mkdir for LD_PRELOAD that send the process a signal once a certain call has succeeded: the only way to end
 // it at that place in every run. CADT_TEST_SIGNAL_AT="CALL END TIME SIGNAL", as in "rename unfinished/node-000004 1 9":
-// the first call whose (new) path ends so.
+// the first call whose (new) path ends so. "before-rename": when it is about to be made.
 #include <dlfcn.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -28,6 +28,7 @@ void signal_if_at(const char* call, const std::string& path) noexcept {
 
 extern "C" int rename(const char* from, const char* to) noexcept {
   static const auto real = reinterpret_cast<int (*)(const char*, const char*)>(dlsym(RTLD_NEXT, "rename"));
+  signal_if_at("before-rename", to);
   const int result = real(from, to);
   if (result == 0) signal_if_at("rename", to);
   return result;

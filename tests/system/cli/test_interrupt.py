@@ -90,6 +90,29 @@ class Interrupt(CliTest):
             self.assertEqual(self.names(), sorted(before + [output]))
             self.path(output).unlink()
 
+    def test_reports_and_pieces_leave_no_temporary_file(self):
+        if os.environ.get("CADT_SANITIZE"):
+            self.skipTest("the sanitizers' library has to be the first one")
+        if "  merge " not in self.cadt("--help").out:
+            self.skipTest("this program has no meshes in tiles")
+        self.scattered("in.f64", 3000)
+        tiles = ("tiles", "in.f64", "--tile-points", "1000", "--backend", "host", "-q")
+        self.cadt(*tiles, "-o", "m.cadt")
+        for command, there, complete in (
+                ((*tiles, "--stats", "s.json"), "s.json", ["s.json"]), ((*tiles, "--picture", "t.svg"), "t.svg", ["t.svg"]),
+                (("triangulate", "in.f64", "--stats=s.json", "-q"), "s.json", ["s.json"]),
+                (("merge", "m.cadt", "--ply", "pieces"), "node-000001.ply", ["pieces/node-000000.ply", "pieces/node-000001.ply"]),
+                (("merge", "m.cadt", "--pvtu", "pieces"), "node-000000.vtu", ["pieces/node-000000.vtu"])):
+            at = {"LD_PRELOAD": os.environ["CADT_SIGNAL_AT"],
+                  "CADT_TEST_SIGNAL_AT": f"before-rename {there} 1 {signal.SIGTERM.value}"}
+            self.cadt(*command, expect=130 if command[0] == "merge" else 0, environment={**os.environ, **at})
+            folder = self.path("pieces")
+            left = [f"pieces/{name.name}" for name in folder.iterdir()] if folder.exists() else []
+            left += [name for name in self.names() if name not in ("in.f64", "m.cadt", "pieces")]
+            self.assertEqual(sorted(left), complete, command)
+            for name in left:
+                self.path(name).unlink()
+
     def test_killed_during_the_writing_the_old_file_stays(self):
         self.large()
         self.write("a.off", "old")

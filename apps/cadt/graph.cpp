@@ -5,12 +5,10 @@
 #include "interrupt.hpp"
 #include "text.hpp"
 
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -40,10 +38,8 @@ bool is_graph(const InputOptions& input) {
 
 /// The width of "grid=0.25".
 double grid_of(const std::string& text) {
-  double width = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, code] = fast_float::from_chars(text.data() + std::string_view("grid=").size(), end, width);
-  if (code != std::errc() || stop != end || !(width > 0) || !std::isfinite(width)) {
+  const double width = parse_number(std::string_view(text).substr(std::string_view("grid=").size())).value_or(0);
+  if (!(width > 0)) {
     throw Failure(exit_usage,
                   fmt::format("--crossing {}: the width of a grid is above 0, for example grid=0.001", text));
   }

@@ -66,21 +66,20 @@ Info inspect(const io::PointSet& points) {
   return info;
 }
 
-std::string line(std::string_view key, std::string_view value) { return fmt::format("{:<12}{}\n", key, value); }
-
 std::string info_text(const Info& info) {
-  std::string text = line("format", info.format);
-  text += line("points", std::to_string(info.points));
-  text += line("distinct", std::to_string(info.distinct));
-  text += line("duplicates", std::to_string(info.points - info.distinct));
+  std::string text = key_line("format", info.format);
+  text += key_line("points", std::to_string(info.points));
+  text += key_line("distinct", std::to_string(info.distinct));
+  text += key_line("duplicates", std::to_string(info.points - info.distinct));
   if (info.points > 0) {
-    text += line("x", fmt::format("{} to {}", info.x.low, info.x.high));
-    text += line("y", fmt::format("{} to {}", info.y.low, info.y.high));
+    text += key_line("x", fmt::format("{} to {}", info.x.low, info.x.high));
+    text += key_line("y", fmt::format("{} to {}", info.y.low, info.y.high));
   }
-  text += line("exponents", info.exponents ? fmt::format("2^{} to 2^{}", info.exponents->first, info.exponents->second)
-                                           : std::string("none, all coordinates are zero"));
   text +=
-      line("heights", info.heights ? fmt::format("{} to {}", info.height.low, info.height.high) : std::string("none"));
+      key_line("exponents", info.exponents ? fmt::format("2^{} to 2^{}", info.exponents->first, info.exponents->second)
+                                           : std::string("none, all coordinates are zero"));
+  text += key_line("heights",
+                   info.heights ? fmt::format("{} to {}", info.height.low, info.height.high) : std::string("none"));
   return text;
 }
 
@@ -102,8 +101,8 @@ GraphInfo inspect_graph(const Graph& graph) {
 std::string graph_text(const GraphInfo& info) {
   std::string segments = std::to_string(info.segments);
   if (info.zero_length != 0) segments += fmt::format(", {} of them of zero length", info.zero_length);
-  return line("segments", segments) + line("holes", std::to_string(info.holes)) +
-         line("regions", std::to_string(info.regions));
+  return key_line("segments", segments) + key_line("holes", std::to_string(info.holes)) +
+         key_line("regions", std::to_string(info.regions));
 }
 
 std::string info_json(const Info& info, const GraphInfo* graph, const std::string& path) {

@@ -30,28 +30,23 @@ std::string check_line(const Check& check) {
 
 namespace {
 
-std::string directory_line(std::string_view key, std::string_view value) {
-  return fmt::format("{:<12}{}\n", key, value);
-}
-
 std::string directory_text(const tiles::Manifest& manifest, const std::string& path) {
   const tiles::TileTree& tree = manifest.plan.tree;
-  std::string text = directory_line("format", "mesh in tiles");
-  text += directory_line("points", std::to_string(tree.number_of_points()));
+  std::string text = key_line("format", "mesh in tiles");
+  text += key_line("points", std::to_string(tree.number_of_points()));
   if (manifest.complete) {
-    text += directory_line("distinct", std::to_string(manifest.whole.distinct));
-    text += directory_line("duplicates", std::to_string(manifest.whole.points - manifest.whole.distinct));
-    text += directory_line("triangles", std::to_string(manifest.whole.triangles));
-    text += directory_line("hull", std::to_string(manifest.whole.hull_edges));
+    text += key_line("distinct", std::to_string(manifest.whole.distinct));
+    text += key_line("duplicates", std::to_string(manifest.whole.points - manifest.whole.distinct));
+    text += key_line("triangles", std::to_string(manifest.whole.triangles));
+    text += key_line("hull", std::to_string(manifest.whole.hull_edges));
   }
   std::uint64_t largest = 0;
   for (const std::uint32_t leaf : tree.leaves()) largest = std::max(largest, tree.node(leaf).points);
-  text +=
-      directory_line("tiles", fmt::format("{} of at most {} points, the largest has {}; {} joins", tree.leaves().size(),
-                                          manifest.plan.tile_points, largest, tree.size() - tree.leaves().size()));
-  text += directory_line("size", human_bytes(tiles::bytes_in_folder(path)));
-  text += directory_line("complete", manifest.complete ? "yes" : "no; continue it with: cadt tiles --resume");
-  if (manifest.complete) text += directory_line("hash", manifest.hash.to_string());
+  text += key_line("tiles", fmt::format("{} of at most {} points, the largest has {}; {} joins", tree.leaves().size(),
+                                        manifest.plan.tile_points, largest, tree.size() - tree.leaves().size()));
+  text += key_line("size", human_bytes(tiles::bytes_in_folder(path)));
+  text += key_line("complete", manifest.complete ? "yes" : "no; continue it with: cadt tiles --resume");
+  if (manifest.complete) text += key_line("hash", manifest.hash.to_string());
   return text;
 }
 

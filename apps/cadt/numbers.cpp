@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "numbers.hpp"
 
-#include <fast_float/fast_float.h>  // std::from_chars takes no double in libc++ before version 20
+#include "text.hpp"
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -33,10 +34,8 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
 
 CLI::Validator number_within(double low, double high) {
   const auto check = [low, high](std::string& text) -> std::string {
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [stop, code] = fast_float::from_chars(text.data(), end, value);
-    if (code != std::errc() || stop != end || !(value >= low && value <= high))
+    const auto value = parse_number(text);
+    if (!value || *value < low || *value > high)
       return expected(high == std::numeric_limits<double>::max() ? fmt::format("a number of at least {}", low)
                                                                  : fmt::format("a number from {} to {}", low, high),
                       text);

@@ -143,12 +143,13 @@ void QueryRun::write(const Output& output, const std::function<void()>& writer,
   check_interrupt_after({name});
   if (options_.quiet || output.path == "-") return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  std::string text =
-      fmt::format("{:<12}{}\n{:<12}{}\n", "points", points.size(), "triangles", mesh.number_of_triangles());
-  for (const auto& [key, value] : summary) text += fmt::format("{:<12}{}\n", key, value);
-  say(text + fmt::format("{:<12}{:.3f} s\n{:<12}{}\n{:<12}{}\n", "time", seconds, "back end",
-                         fmt::format("{}, {}", to_string(queries_->device().backend), queries_->device().name),
-                         "written", name));
+  const DeviceInfo& device = queries_->device();
+  std::string text = key_line("points", std::to_string(points.size()));
+  text += key_line("triangles", std::to_string(mesh.number_of_triangles()));
+  for (const auto& [key, value] : summary) text += key_line(key, value);
+  text += key_line("time", fmt::format("{:.3f} s", seconds));
+  text += key_line("back end", fmt::format("{}, {}", to_string(device.backend), device.name));
+  say(text + key_line("written", name));
 }
 
 }  // namespace cadt::cli

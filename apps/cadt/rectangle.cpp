@@ -2,32 +2,22 @@
 #include "rectangle.hpp"
 
 #include "failure.hpp"
+#include "text.hpp"
 
-#include <fast_float/fast_float.h>  // std::from_chars takes no double in libc++ before version 20
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <limits>
 
 namespace cadt::cli {
 
 std::optional<Box> parse_rectangle(const std::string& option, const std::string& text) {
   if (text.empty()) return {};
-  Box box;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  bool good = true;
-  for (double* value : {&box.min_x, &box.min_y, &box.max_x, &box.max_y}) {
-    if (value != &box.min_x) good = good && at != end && *at++ == ',';
-    const auto [stop, code] = fast_float::from_chars(at, end, *value);
-    good = good && code == std::errc() && std::isfinite(*value);
-    if (!good) break;
-    at = stop;
-  }
-  if (!good || at != end) {
+  std::array<double, 4> sides{};
+  if (!parse_numbers(text, sides))
     throw Failure(exit_usage, fmt::format("{} {}: four numbers with commas are needed: x0,y0,x1,y1", option, text));
-  }
+  const Box box{sides[0], sides[1], sides[2], sides[3]};
   if (!(box.min_x < box.max_x && box.min_y < box.max_y)) {
     throw Failure(exit_usage, fmt::format("{} {}: it is empty; the lower left corner comes first: x0 < x1 and y0 < y1",
                                           option, text));

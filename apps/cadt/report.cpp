@@ -68,8 +68,6 @@ std::string back_end(const Statistics& s) {
   return text;
 }
 
-std::string line(std::string_view key, std::string_view value) { return fmt::format("{:<12}{}\n", key, value); }
-
 double total_milliseconds(const std::vector<KernelTime>& kernels) {
   double sum = 0;
   for (const KernelTime& kernel : kernels) sum += kernel.milliseconds;
@@ -118,9 +116,9 @@ std::string constraints_text(const RunReport& r) {
   if (const std::size_t added = mesh.added_points().size() / 2; added != 0) {
     segments += fmt::format(", with {} points added where they cross", added);
   }
-  std::string text = line("segments", segments);
-  if (r.domain != "hull") text += line("inside", fmt::format("{} triangles ({})", mesh.number_inside(), r.domain));
-  return text + line("regions", std::to_string(mesh.number_of_regions()));
+  std::string text = key_line("segments", segments);
+  if (r.domain != "hull") text += key_line("inside", fmt::format("{} triangles ({})", mesh.number_inside(), r.domain));
+  return text + key_line("regions", std::to_string(mesh.number_of_regions()));
 }
 
 Json constraints_json(const RunReport& r) {
@@ -142,24 +140,25 @@ std::string summary_text(const RunReport& r) {
   const Triangulation& mesh = *r.mesh;
   const double seconds = r.triangulate_seconds;
   std::string text;
-  text += line("points", std::to_string(mesh.number_of_points()));
-  text += line("duplicates", std::to_string(mesh.duplicates().size()));
-  text += line("triangles", std::to_string(mesh.number_of_triangles()));
-  text += line("hull", std::to_string(mesh.hull().size()));
+  text += key_line("points", std::to_string(mesh.number_of_points()));
+  text += key_line("duplicates", std::to_string(mesh.duplicates().size()));
+  text += key_line("triangles", std::to_string(mesh.number_of_triangles()));
+  text += key_line("hull", std::to_string(mesh.hull().size()));
   if (r.constrained != nullptr) text += constraints_text(r);
   std::string parts = fmt::format("read {:.3f}, triangulate {:.3f}", r.read_seconds, seconds);
   if (r.verification) parts += fmt::format(", verify {:.3f}", r.verify_seconds);
   if (!r.outputs.empty()) parts += fmt::format(", write {:.3f}", r.write_seconds);
-  text += line("time", fmt::format("{:.3f} s ({})", total_seconds(r), parts));
-  text += line("back end", back_end(mesh.statistics()));
-  text += line("hash", r.hash);
+  text += key_line("time", fmt::format("{:.3f} s ({})", total_seconds(r), parts));
+  text += key_line("back end", back_end(mesh.statistics()));
+  text += key_line("hash", r.hash);
   if (r.differing) {
     const double percent = 100.0 * static_cast<double>(*r.differing) /
                            static_cast<double>(std::max<std::size_t>(mesh.number_of_triangles(), 1));
-    text += line("not exact", fmt::format("{} edges left illegal, {} triangles ({:.4f} %) differ from the exact mesh",
+    text +=
+        key_line("not exact", fmt::format("{} edges left illegal, {} triangles ({:.4f} %) differ from the exact mesh",
                                           mesh.statistics().illegal_edges, *r.differing, percent));
   }
-  if (r.verification) text += line("verified", r.verification->summary());
+  if (r.verification) text += key_line("verified", r.verification->summary());
   return text;
 }
 

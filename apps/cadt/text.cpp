@@ -2,6 +2,7 @@
 #include "text.hpp"
 
 #include "failure.hpp"
+#include "tiles/machine.hpp"
 
 #include <fast_float/fast_float.h>  // std::from_chars takes no double in libc++ before version 20
 #include <fmt/format.h>
@@ -14,14 +15,21 @@
 namespace cadt::cli {
 namespace {
 
-// A number and the word after it; nullopt unless the number is finite and not negative.
-std::optional<std::pair<double, std::string>> number_and_unit(std::string_view text) {
+// A finite number at the beginning, and the length of its text.
+std::optional<std::pair<double, std::size_t>> number_in_front(std::string_view text) {
   double value = 0;
   const auto [end, code] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
-  if (code != std::errc() || !std::isfinite(value) || value < 0) return std::nullopt;
-  std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  if (code != std::errc() || !std::isfinite(value)) return std::nullopt;
+  return std::pair(value, static_cast<std::size_t>(end - text.data()));
+}
+
+// A number and the word after it; nullopt unless the number is finite and not negative.
+std::optional<std::pair<double, std::string>> number_and_unit(std::string_view text) {
+  const auto parsed = number_in_front(text);
+  if (!parsed || parsed->first < 0) return std::nullopt;
+  std::string_view unit = text.substr(parsed->second);
   while (!unit.empty() && unit.front() == ' ') unit.remove_prefix(1);
-  return std::pair(value, lower(unit));
+  return std::pair(parsed->first, lower(unit));
 }
 
 // 2^53: doubles beyond would round a count.
@@ -32,13 +40,24 @@ std::optional<std::uint64_t> whole(double value) {
 
 }  // namespace
 
-std::string human_bytes(std::uint64_t bytes) {
-  static constexpr std::array<const char*, 5> units = {"bytes", "KiB", "MiB", "GiB", "TiB"};
-  if (bytes < 1024) return fmt::format("{} bytes", bytes);
-  double value = static_cast<double>(bytes);
-  std::size_t unit = 0;
-  while (value >= 1024 && unit + 1 < units.size()) value /= 1024, ++unit;
-  return fmt::format("{:.1f} {}", value, units[unit]);
+std::string human_bytes(std::uint64_t bytes) { return tiles::human_bytes(bytes); }
+
+std::optional<double> parse_number(std::string_view text) {
+  const auto parsed = number_in_front(text);
+  if (!parsed || parsed->second != text.size()) return std::nullopt;
+  return parsed->first;
+}
+
+bool parse_numbers(std::string_view text, std::span<double> numbers) {
+  for (double& number : numbers) {
+    const bool last = &number == &numbers.back();
+    const std::size_t length = last ? text.size() : text.find(',');
+    const auto parsed = parse_number(text.substr(0, length));
+    if (!parsed || length == text.npos) return false;
+    number = *parsed;
+    if (!last) text.remove_prefix(length + 1);
+  }
+  return true;
 }
 
 std::uint64_t parse_bytes(std::string_view text) {
@@ -76,6 +95,8 @@ std::size_t parse_count(std::string_view text) {
 std::string join(const std::vector<std::string>& words, std::string_view separator) {
   return fmt::format("{}", fmt::join(words, separator));
 }
+
+std::string key_line(std::string_view key, std::string_view value) { return fmt::format("{:<12}{}\n", key, value); }
 
 std::string table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +14,11 @@ namespace cadt::cli {
 
 /// "4.0 GiB"; below 1024 "512 bytes".
 [[nodiscard]] std::string human_bytes(std::uint64_t bytes);
+
+/// The whole text as a number that is finite.
+[[nodiscard]] std::optional<double> parse_number(std::string_view text);
+/// As many as `numbers` has, with commas between them. Whether they were there.
+[[nodiscard]] bool parse_numbers(std::string_view text, std::span<double> numbers);
 
 /// Inverse, for --max-memory: "4G", "4GiB", "1.5 MB", "1048576". K M G T and KiB ... count 1024, KB ... count 1000, as
 /// in the GNU tools. Throws Failure (usage).
@@ -22,6 +29,9 @@ namespace cadt::cli {
 
 /// "a, b, c".
 [[nodiscard]] std::string join(const std::vector<std::string>& words, std::string_view separator = ", ");
+
+/// A line of a summary: the key, and the value in its column.
+[[nodiscard]] std::string key_line(std::string_view key, std::string_view value);
 
 /// Rows of equal size as lines with aligned columns; the first row is the header.
 [[nodiscard]] std::string table(const std::vector<std::vector<std::string>>& rows);

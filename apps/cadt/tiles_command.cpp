@@ -17,8 +17,6 @@
 namespace cadt::cli {
 namespace {
 
-std::string line_of(std::string_view key, std::string_view value) { return fmt::format("{:<12}{}\n", key, value); }
-
 void add_inputs(CLI::App& command, TilesCommand& c) {
   command.add_option("IN", c.inputs,
                      "files with points, one set in the order given; .npy, .f64 and .f32 are read by range");
@@ -137,26 +135,29 @@ tiles::RunOptions run_options(const TilesCommand& c) {
 
 std::string tiles_summary(const tiles::RunResult& r) {
   const auto resumed = std::count_if(r.nodes.begin(), r.nodes.end(), [](const auto& node) { return node.resumed; });
-  std::string text = line_of("points", std::to_string(r.whole.points));
-  text += line_of("duplicates", std::to_string(r.whole.points - r.whole.distinct));
-  text += line_of("triangles", std::to_string(r.whole.triangles));
-  text += line_of("hull", std::to_string(r.whole.hull_edges));
-  text += line_of(
+  std::string text = key_line("points", std::to_string(r.whole.points));
+  text += key_line("duplicates", std::to_string(r.whole.points - r.whole.distinct));
+  text += key_line("triangles", std::to_string(r.whole.triangles));
+  text += key_line("hull", std::to_string(r.whole.hull_edges));
+  text += key_line(
       "tiles", fmt::format("{} of at most {} points, {} joins, {} open vertices at most", r.plan.tree.leaves().size(),
                            r.plan.tile_points, r.nodes.size() - r.plan.tree.leaves().size(), r.most_open));
-  if (resumed != 0) text += line_of("resumed", fmt::format("{} of {} nodes were there", resumed, r.nodes.size()));
-  text += line_of("time", fmt::format("{:.3f} s (sample {:.3f}, shuffle {:.3f}, tiles {:.3f}, links {:.3f})",
-                                      r.sample_seconds + r.shuffle_seconds + r.nodes_seconds + r.links_seconds,
-                                      r.sample_seconds, r.shuffle_seconds, r.nodes_seconds, r.links_seconds));
-  text += line_of("devices", join(r.devices));
-  text += line_of("hash", r.hash.to_string());
+  if (resumed != 0) text += key_line("resumed", fmt::format("{} of {} nodes were there", resumed, r.nodes.size()));
+  text += key_line("time", fmt::format("{:.3f} s (sample {:.3f}, shuffle {:.3f}, tiles {:.3f}, links {:.3f})",
+                                       r.sample_seconds + r.shuffle_seconds + r.nodes_seconds + r.links_seconds,
+                                       r.sample_seconds, r.shuffle_seconds, r.nodes_seconds, r.links_seconds));
+  text += key_line("devices", join(r.devices));
+  text += key_line("hash", r.hash.to_string());
   return text;
 }
 
 void write_tiles_reports(const TilesCommand& c, const tiles::PointSource& source, const tiles::RunOptions& options,
                          const tiles::RunResult& result) {
   const std::string report = tiles::report_json(result, options, source.names());
-  if (!c.output.empty()) tiles::replace_text(c.output + "/run.json", report);
+  if (!c.output.empty()) {
+    const InPhase phase(Phase::writing);
+    tiles::replace_text(c.output + "/run.json", report);
+  }
   if (!c.stats.empty()) write_text(c.stats, report);
   if (c.picture.empty()) return;
   std::vector<double> seconds;

@@ -93,7 +93,7 @@ int run(const TriangulateOptions& options) {
   const Options chosen = library_options(options, line);
   const std::string name = display_name(options.input.path, true);
 
-  Stopwatch watch;
+  tiles::Stopwatch watch;
   line.step(fmt::format("reading {}", name));
   io::PointSet points = read_input(options.input);
   round_to_floats(points, options.input, options.quiet);
@@ -243,10 +243,7 @@ void require_verified(const VerifyReport& report) {
 }
 
 void print_reports(const TriangulateOptions& options, const RunReport& report) {
-  if (options.stats_file()) {
-    const InPhase phase(writing_phase(options.stats));
-    write_text(options.stats, statistics_json(report));
-  }
+  if (options.stats_file()) write_text(options.stats, statistics_json(report));
   print_summary(summary_text(report), report.outputs.empty() && options.stats != "-", options.quiet);
   if (options.stats_table()) say("\n" + statistics_text(report));
 }

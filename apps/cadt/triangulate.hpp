@@ -7,10 +7,10 @@
 #include "input.hpp"
 #include "output_options.hpp"
 #include "report.hpp"
+#include "tiles/stopwatch.hpp"
 
 #include <cadt/triangulation.hpp>
 
-#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,19 +32,6 @@ struct TriangulateOptions {
   // A bare --stats is the table for people.
   [[nodiscard]] bool stats_table() const { return stats == "table"; }
   [[nodiscard]] bool stats_file() const { return !stats.empty() && !stats_table(); }
-};
-
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - start_).count();
-    start_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// The library's options with these set; `line` shows the progress.

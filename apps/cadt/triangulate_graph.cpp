@@ -26,7 +26,7 @@ int run_graph(const TriangulateOptions& options, std::vector<Output> outputs) {
   report.flip_threshold = chosen.tuning.flip_threshold;
   report.epsilon = chosen.tuning.quality_epsilon;
 
-  Stopwatch watch;
+  tiles::Stopwatch watch;
   line.step(fmt::format("reading {}", name));
   Graph graph = read_graph(options.input, options.segments, options.quiet);
   round_to_floats(graph.points, options.input, options.quiet);

@@ -6,10 +6,8 @@
 #include "interrupt.hpp"
 #include "text.hpp"
 
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -17,11 +15,6 @@ namespace cadt::cli {
 namespace {
 
 constexpr int largest_side = 16384;
-
-bool parse_number(std::string_view text, double& value) {
-  const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() && std::isfinite(value);
-}
 
 }  // namespace
 
@@ -112,31 +105,28 @@ std::optional<viewer::ColourBy> colour_of(const StyleOptions& options, const io:
 void parse_size(const std::string& text, int& width, int& height, int& most_height) {
   if (text.empty()) return;
   const std::size_t x = text.find('x');
-  double w = 0, h = 0;
+  const auto side_of = [](std::string_view of) {
+    const double side = parse_number(of).value_or(0);
+    return side == std::floor(side) && side >= 16 && side <= largest_side ? static_cast<int>(side) : 0;
+  };
   const bool both = x != std::string::npos;
-  const auto fits = [](double v) { return v == std::floor(v) && v >= 16 && v <= largest_side; };
-  if (!parse_number(std::string_view(text).substr(0, x), w) || !fits(w) ||
-      (both && (!parse_number(std::string_view(text).substr(x + 1), h) || !fits(h)))) {
+  const int w = side_of(std::string_view(text).substr(0, x)),
+            h = both ? side_of(std::string_view(text).substr(x + 1)) : 0;
+  if (w == 0 || (both && h == 0)) {
     throw Failure(exit_usage, fmt::format("--size {}: a width, or width and height as 1920x1080, of 16 to {} pixels",
                                           text, largest_side));
   }
-  width = static_cast<int>(w);
-  height = static_cast<int>(h);
+  width = w;
+  height = h;
   most_height = largest_side;
 }
 
 std::optional<viewer::View> parse_camera(const std::string& text) {
   if (text.empty()) return std::nullopt;
   std::array<double, 3> number{0, 0, 0};
-  std::string_view rest = text;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t comma = i < 2 ? rest.find(',') : rest.size();
-    if (comma == std::string_view::npos || !parse_number(rest.substr(0, comma), number[i]) ||
-        (i == 2 && !(number[i] > 0)))
-      throw Failure(exit_usage,
-                    fmt::format("--camera {}: three numbers are needed, x,y,magnification, the last above 0", text));
-    rest.remove_prefix(std::min(rest.size(), comma + 1));
-  }
+  if (!parse_numbers(text, number) || !(number[2] > 0))
+    throw Failure(exit_usage,
+                  fmt::format("--camera {}: three numbers are needed, x,y,magnification, the last above 0", text));
   return viewer::View{number[0], number[1], number[2]};
 }
 

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace cadt::cli {
 namespace {
 
@@ -59,9 +61,22 @@ TEST(Text, HumanBytes) {
                                                           {std::uint64_t{1} << 20, "1.0 MiB"},
                                                           {std::uint64_t{5} << 30, "5.0 GiB"},
                                                           {std::uint64_t{1} << 40, "1.0 TiB"},
-                                                          {std::uint64_t{1} << 51, "2048.0 TiB"}}) {
+                                                          {(std::uint64_t{1} << 20) - 1, "1.0 MiB"},
+                                                          {(std::uint64_t{1} << 20) - 52, "1.0 MiB"},
+                                                          {(std::uint64_t{1} << 20) - 60, "1023.9 KiB"},
+                                                          {std::uint64_t{1} << 51, "2.0 PiB"}}) {
     EXPECT_EQ(human_bytes(bytes), text);
   }
+}
+
+TEST(Text, Numbers) {
+  EXPECT_EQ(parse_number("-1.5e3"), -1500.0);
+  for (const char* text : {"", " 1", "1 ", "1,2", "nan", "inf", "1e999", "x"}) EXPECT_FALSE(parse_number(text)) << text;
+  std::array<double, 3> numbers{};
+  EXPECT_TRUE(parse_numbers("1,-2,3.5", numbers));
+  EXPECT_EQ(numbers, (std::array<double, 3>{1, -2, 3.5}));
+  for (const char* text : {"", "1,2", "1,2,", "1,,3", "1,2,3,4", "1,2,3,", "1;2;3", "1,nan,3"})
+    EXPECT_FALSE(parse_numbers(text, numbers)) << text;
 }
 
 TEST(Text, Tables) {

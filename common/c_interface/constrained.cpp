@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "common/c_interface/convert.hpp"
+#include "common/constraints/constraints.hpp"
 
 using namespace cadt::c_interface;
 
@@ -36,8 +37,7 @@ static_assert(static_cast<int>(PolygonStatus::ok) == CADT_POLYGON_OK &&
               static_cast<int>(PolygonStatus::zero_area) == CADT_POLYGON_ZERO_AREA);
 
 std::span<const cadt::Segment> segments_of(const std::int32_t* segments, std::size_t count) {
-  constexpr std::size_t most = (std::size_t{1} << 30) - 1;
-  if (count > most) throw cadt::LimitError("at most " + std::to_string(most) + " segments in one call", count, most);
+  cadt::require_segments(count);
   if (count != 0) require(segments, "segments");
   return {reinterpret_cast<const cadt::Segment*>(segments), count};
 }

@@ -41,7 +41,6 @@ struct BuildStrategy {
   std::size_t most_residual_wrapped = 0;  ///< most residual vertices that are wrapped
   std::size_t least_points_of_tile = 0;   ///< with fewer on average there is no star stage; 0: no bound
   bool cautious = false;                  ///< the star stage stops early if it proves too few stars
-  friend bool operator==(const BuildStrategy&, const BuildStrategy&) = default;
 };
 
 /// Whether device and options allow the star stage: if so, the sort keeps its keys and memory is planned for it.

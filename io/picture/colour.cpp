@@ -103,11 +103,6 @@ const Ramp& size_ramp() {
   return ramp;
 }
 
-const Ramp& ink_ramp() {
-  static const Ramp ramp{{0.0f, 0xf1f3ee}, {0.3f, 0xb5d3da}, {0.6f, 0x5b93b8}, {0.85f, 0x2c4f86}, {1.0f, 0x1a1f4b}};
-  return ramp;
-}
-
 float hill_shade(float gx, float gy) {
   // Towards the light: left, up (negative y of the picture), out of the paper.
   constexpr float lx = -0.50f, ly = -0.50f, lz = 0.7071f;

@@ -35,7 +35,6 @@ class Ramp {
 
 [[nodiscard]] const Ramp& terrain_ramp();  ///< valley green, sand, rock, snow
 [[nodiscard]] const Ramp& size_ramp();     ///< small triangles blue, large ones almost paper
-[[nodiscard]] const Ramp& ink_ramp();      ///< few edges almost paper, many dark
 
 /// Colours that can be told apart, for the n-th of several regions; far apart for those that follow each other.
 [[nodiscard]] Rgb region_colour(std::size_t n);

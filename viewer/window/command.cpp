@@ -97,8 +97,4 @@ std::optional<Command> command_of(Key key) {
   return std::nullopt;
 }
 
-const Binding& binding_of(Command command) {
-  return *std::find_if(bindings().begin(), bindings().end(), [&](const Binding& b) { return b.command == command; });
-}
-
 }  // namespace cadt::viewer

@@ -78,6 +78,5 @@ struct Binding {
 [[nodiscard]] const std::vector<Binding>& bindings();
 [[nodiscard]] std::optional<Command> command_of(char32_t character);
 [[nodiscard]] std::optional<Command> command_of(Key key);
-[[nodiscard]] const Binding& binding_of(Command command);
 
 }  // namespace cadt::viewer

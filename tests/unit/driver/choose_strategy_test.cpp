@@ -103,12 +103,6 @@ TEST(ChooseStrategy, IsATable) {
   }
 }
 
-TEST(ChooseStrategy, SameAnswerForTheSameValues) {
-  for (const Row& row : rows())
-    EXPECT_EQ(choose_strategy(row.device, row.options, row.profile),
-              choose_strategy(row.device, row.options, row.profile));
-}
-
 TEST(ChooseStrategy, MemoryIsPlannedForStarsFromTheFirstPointsThatMayHaveThem) {
   EXPECT_EQ(fewest_for_stars(options_of(Strategy::automatic)), 20001U);
   EXPECT_EQ(fewest_for_stars(options_of(Strategy::stars)), 0U);

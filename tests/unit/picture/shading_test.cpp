@@ -23,14 +23,14 @@ TEST(Colour, EveryGreySurvivesLinearLight) {
   }
 }
 
-TEST(Colour, RampsHitTheirEndsAndDensityGetsDarker) {
-  EXPECT_EQ(to_srgb(ink_ramp()(0.0f)), 0xf1f3eeu);
-  EXPECT_EQ(to_srgb(ink_ramp()(1.0f)), 0x1a1f4bu);
-  float before = 2.0f;
+TEST(Colour, RampsHitTheirEndsAndLargeTrianglesAreLighter) {
+  EXPECT_EQ(to_srgb(size_ramp()(0.0f)), 0x6f9fc0u);
+  EXPECT_EQ(to_srgb(size_ramp()(1.0f)), 0xf6f1e1u);
+  float before = 0.0f;
   for (int i = 0; i <= 100; ++i) {
-    const Rgb c = ink_ramp()(static_cast<float>(i) / 100.0f);
+    const Rgb c = size_ramp()(static_cast<float>(i) / 100.0f);
     const float light = 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b;
-    EXPECT_LE(light, before);
+    EXPECT_GE(light, before);
     before = light;
   }
   const Rgb clamped = terrain_ramp()(std::nanf(""));

@@ -43,7 +43,8 @@ TEST(Viewport, TallBoxKeepsToTheLargestHeight) {
   const std::vector<double> xy{0, 0, 1, 5};
   const Viewport view(xy, 1600, 1000);
   EXPECT_EQ(view.height(), 1000);
-  EXPECT_NEAR(view.width(), 1000.0 / 5.0, 60.0);
+  EXPECT_DOUBLE_EQ(view.margin(), 0.015 * 1600);
+  EXPECT_EQ(view.width(), 238);  // (1000 - 2 * 24) / 5 + 2 * 24 = 238.4
 }
 
 TEST(Viewport, WidthAndHeightExactlyWithTheBoxInTheMiddle) {

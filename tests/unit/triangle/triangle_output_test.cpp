@@ -134,6 +134,7 @@ TEST(TriangleOutput, RaysOfTheLargestNumbersAreFinite) {
   voronoi.voronoi = true;
   const Triangulation mesh = mesh_of(xy);
   const TriangleOutput out = triangle_output(input_of(xy), mesh, voronoi);
+  ASSERT_FALSE(out.edges.empty());
   for (std::size_t e = 0; e < out.edges.size(); e += 2) {
     EXPECT_TRUE(std::isfinite(out.rays[e]) && std::isfinite(out.rays[e + 1]));
     EXPECT_EQ(out.rays[e] != 0 || out.rays[e + 1] != 0, out.edge_triangles[e + 1] < 0);

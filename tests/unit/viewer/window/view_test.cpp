@@ -34,7 +34,6 @@ TEST(Commands, AreAllInTheTable) {
   std::set<Command> all;
   for (const Binding& b : bindings()) EXPECT_TRUE(all.insert(b.command).second) << b.name;
   EXPECT_EQ(all.size(), static_cast<std::size_t>(Command::quit) + 1);
-  EXPECT_EQ(binding_of(Command::fit).name, "fit");
   EXPECT_FALSE(command_of(U'\u00e4'));
   EXPECT_FALSE(command_of(Key{12345, 0}));
 }

@@ -62,8 +62,8 @@ TEST(Text, HumanBytes) {
                                                           {std::uint64_t{5} << 30, "5.0 GiB"},
                                                           {std::uint64_t{1} << 40, "1.0 TiB"},
                                                           {(std::uint64_t{1} << 20) - 1, "1.0 MiB"},
-                                                          {(std::uint64_t{1} << 20) - 52, "1.0 MiB"},
-                                                          {(std::uint64_t{1} << 20) - 60, "1023.9 KiB"},
+                                                          {(std::uint64_t{1} << 20) - 51, "1.0 MiB"},
+                                                          {(std::uint64_t{1} << 20) - 52, "1023.9 KiB"},
                                                           {std::uint64_t{1} << 51, "2.0 PiB"}}) {
     EXPECT_EQ(human_bytes(bytes), text);
   }

@@ -35,7 +35,7 @@ void parse(int argc, char** argv, bool print_help, RankAction& action) {
   app.set_help_flag("-h,--help", "print this help and exit");
   app.formatter(std::make_shared<MpiHelp>());
   add_mpi_tiles(app, action);
-  app.footer(std::string(exit_codes_help));
+  app.footer(std::string(exit_codes_of_tiles));
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

@@ -113,12 +113,15 @@ void add_mpi_tiles(CLI::App& app, RankAction& chosen) {
   CLI::App* command = app.add_subcommand("tiles", "as cadt tiles, to the same bytes, by all ranks together");
   const auto options = std::make_shared<TilesCommand>();
   add_tiles_options(*command, *options);
+  command->get_option("--threads")
+      ->description(
+          "host threads of each rank; 0: the cores that it may use, divided among the ranks there (default: 0)");
   command->footer(
       "Each rank makes some tiles on one device: of --devices, or of all GPUs, that of its number on the machine, or "
       "the\n"
-      "processor. --threads (default: the cores that it may use, divided among the ranks there), --host-memory and\n"
-      "--max-memory are of a rank. The output folder is one that all ranks see; --scratch may be a disk of the "
-      "machine.\n\n"
+      "processor. --threads, --host-memory and --max-memory are of a rank. The output folder is one that all ranks "
+      "see;\n"
+      "--scratch may be a disk of the machine.\n\n"
       "Examples:\n"
       "  mpirun -n 8 cadt-mpi tiles country/*.npy -o country.cadt\n"
       "      one rank for each GPU of a machine that has eight\n"
@@ -126,7 +129,7 @@ void add_mpi_tiles(CLI::App& app, RankAction& chosen) {
       "      one rank on each machine, with all of its cores\n"
       "  srun --ntasks-per-node=4 --gpus-per-node=4 cadt-mpi tiles country/*.npy -o country.cadt --resume\n"
       "      goes on after an interruption, also with another number of ranks\n\n" +
-      std::string(exit_codes_help));
+      std::string(exit_codes_of_tiles));
   command->callback(
       [options, &chosen] { chosen = [options](mpi::Communicator& ranks) { return run(ranks, *options); }; });
 }

@@ -21,18 +21,27 @@ enum ExitCode : int {
   exit_interrupted = 130  // 128 + SIGINT, as shells have it
 };
 
-/// The exit codes as text, for the help.
+/// The exit codes as text, for the help: of all commands, and of those that make tiles.
 inline constexpr std::string_view exit_codes_help =
     "Exit codes:\n"
     "    0  done\n"
     "    1  internal error: please report it\n"
     "    2  the command line is wrong\n"
-    "    3  a file cannot be read, is malformed, or cannot be written\n"
-    "    4  --strict: no triangles, the points are fewer than three or on one line\n"
+    "    3  a file cannot be read, is malformed, or cannot be written; segments cross, or bound no domain\n"
+    "    4  cadt triangulate --strict: no triangles, the points are fewer than three or on one line\n"
     "    5  the back end or device is not available\n"
     "    6  out of memory\n"
     "    7  the mesh failed the verification\n"
     "    8  cadt triangle: a switch of Triangle that cadt does not take\n"
+    "  130  interrupted (SIGINT, SIGTERM or SIGHUP)\n";
+inline constexpr std::string_view exit_codes_of_tiles =
+    "Exit codes:\n"
+    "    0  done\n"
+    "    1  internal error: please report it\n"
+    "    2  the command line is wrong\n"
+    "    3  a file cannot be read, is malformed, or cannot be written\n"
+    "    5  the back end or device is not available\n"
+    "    6  out of memory\n"
     "  130  interrupted (SIGINT, SIGTERM or SIGHUP)\n";
 
 /// An error detected by the program, not the library, with its exit code.

@@ -79,7 +79,7 @@ void add_tiles(CLI::App& app, Action& chosen) {
       "      two devices share the tiles; points that memory does not take go to a disk\n"
       "  cadt tiles --generate uniform -n 10M --tile-points 1M\n"
       "      makes, certifies, hashes and drops the mesh: is this machine up to it?\n\n" +
-      std::string(exit_codes_help));
+      std::string(exit_codes_of_tiles));
   command->callback([options, &chosen] { chosen = [options] { return run(*options); }; });
 }
 

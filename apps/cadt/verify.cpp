@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -45,6 +46,14 @@ void check_standard_input(const VerifyCommand& command) {
   if (command.format.empty()) {
     throw Failure(exit_usage, "standard input has no suffix; name the format of the mesh, for example: -t off");
   }
+}
+
+const char* advice(const VerifyReport& report) {
+  const bool delaunay_alone =
+      std::ranges::all_of(report.checks, [](const Check& check) { return check.passed == (check.name != "delaunay"); });
+  return delaunay_alone ? "a mesh with segments is not Delaunay at them: check it with `cadt triangulate IN --verify`"
+                        : "if many checks fail, see whether both files belong together, and --base, --columns and "
+                          "--project";
 }
 
 int run(const VerifyCommand& command) {
@@ -83,10 +92,8 @@ int run(const VerifyCommand& command) {
     print(text + '\n');
   }
   if (report.ok) return exit_done;
-  throw Failure(exit_verify,
-                fmt::format("{}: not the Delaunay triangulation of {}: {}; if many checks fail, see whether both "
-                            "files belong together, and --base, --columns and --project",
-                            command.mesh, display_name(command.input.path, true), report.summary()));
+  throw Failure(exit_verify, fmt::format("{}: not the Delaunay triangulation of {}: {}; {}", command.mesh,
+                                         display_name(command.input.path, true), report.summary(), advice(report)));
 }
 
 }  // namespace
@@ -134,6 +141,7 @@ void add_verify(CLI::App& app, Action& chosen) {
       "Only the first is free of the device's compiler and driver: to check what a device has made by other means, use "
       "the\n"
       "host or another device.\n\n"
+      "A mesh with segments is not Delaunay at them: check it with `cadt triangulate IN --verify`.\n\n"
       "A mesh in tiles is checked node by node: also that its files are what was written, that edges between nodes "
       "are\n"
       "legal, and that each input point is there once.\n\n"

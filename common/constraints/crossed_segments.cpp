@@ -162,7 +162,7 @@ void refuse_crossings(const State& state, PointsView points, std::span<const Seg
     message += (i == 0 ? "" : ", ") + std::to_string(pairs[i][0]) + " and " + std::to_string(pairs[i][1]);
   if (shown < pairs.size()) message += ", ...";
   constraints::check(options.stop);
-  throw CrossingError(message + "; repair them, or take Crossing::exact or Crossing::grid", std::move(pairs));
+  throw CrossingError(message, std::move(pairs));
 }
 
 void constrain_exactly(const State& state, PointsView points, std::span<const Segment> segments,

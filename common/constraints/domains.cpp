@@ -23,8 +23,7 @@ constexpr std::int32_t unknown = std::numeric_limits<std::int32_t>::min();
   throw DomainError("the segments do not bound a domain: " +
                         (parity ? "an odd number of them ends at " + at + counted + "; close the outlines"
                                 : "not as many of them end at " + at + " as begin there" + counted +
-                                      "; close the outlines, and give all of one the same direction") +
-                        ", or take Domain::layers or outer",
+                                      "; close the outlines, and give all of one the same direction"),
                     static_cast<std::int32_t>(vertex));
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 
 namespace cadt {
@@ -90,11 +89,11 @@ LabelSegments label_segments(std::span<const std::int32_t> labels, std::size_t w
 std::vector<std::int32_t> triangle_labels(std::span<const double> xy, std::span<const std::int32_t> triangles,
                                           std::span<const std::int32_t> labels, std::size_t width, std::size_t height) {
   if (xy.size() % 2 != 0)
-    throw std::invalid_argument("points have two coordinates each, these have " + std::to_string(xy.size()) +
-                                " in all");
+    throw InputError("points have two coordinates each, these have " + std::to_string(xy.size()) + " in all",
+                     xy.size() / 2);
   if (triangles.size() % 3 != 0)
-    throw std::invalid_argument("triangles have three points each, these have " + std::to_string(triangles.size()) +
-                                " in all");
+    throw InputError("triangles have three points each, these have " + std::to_string(triangles.size()) + " in all",
+                     triangles.size() / 3);
   const Pixels pixels(labels, width, height);
   require_labels(labels);
   // A centroid on the border, or beyond it by rounding, belongs to the next pixel.

@@ -62,7 +62,7 @@ void require_counterclockwise(PointsView points, std::span<const std::int32_t> t
     if (exact_orientation(corner(0), corner(1), corner(2)) <= 0)
       throw InvalidMesh("orientation", static_cast<std::int64_t>(t),
                         "triangle " + std::to_string(t) +
-                            " is turned over by the rounding of crossings: take Crossing::grid instead of exact");
+                            " is turned over by the rounding of crossings: make them on a grid, not exact");
   }
 }
 

@@ -51,7 +51,8 @@ enum {
   CADT_INTERNAL_ERROR = 11,     /* an error of the library: please report it */
   CADT_BUFFER_TOO_SMALL = 12,   /* needed, available: elements */
   CADT_ERROR = 13,              /* any other */
-  CADT_SEGMENTS_CROSS = 14,     /* index: a segment that crosses another; needed: the number of pairs */
+  CADT_SEGMENTS_CROSS = 14,     /* index: a segment that crosses another; needed: the number of pairs.
+                                 * CADT_CROSSING_EXACT and CADT_CROSSING_GRID take them */
   CADT_OPEN_BOUNDARY = 15,      /* segments bound no domain; index: a point at which they do not close */
   CADT_NOT_DELAUNAY = 16        /* a question that only a Delaunay mesh answers; index: an edge that is not */
 };

@@ -66,7 +66,7 @@ struct ConstraintOptions {
   std::vector<Region> regions = {};               ///< with Domain::seeds: their attributes go to region_attribute()
 };
 
-/// Segments that cross, with Crossing::error.
+/// Segments that cross, with Crossing::error: repair them, or take Crossing::exact or Crossing::grid.
 class CADT_API CrossingError : public Error {
  public:
   CrossingError(const std::string& message, std::vector<std::array<std::int32_t, 2>> pairs)
@@ -79,6 +79,7 @@ class CADT_API CrossingError : public Error {
 };
 
 /// The segments do not bound a domain: an end of a segment hangs loose, and the rule (even_odd, nonzero) has no answer.
+/// Close the outlines, or take Domain::layers or outer.
 class CADT_API DomainError : public Error {
  public:
   DomainError(const std::string& message, std::int32_t vertex) : Error(message), vertex_(vertex) {}
@@ -96,7 +97,8 @@ class CADT_API DomainError : public Error {
 ///
 /// Special cases: ends at equal points are those of the representative; a segment between equal points is dropped
 /// (degenerate_segments); segments may repeat and overlap; a point on a segment divides it, exactly, without tolerance;
-/// loose ends, points apart and segments on the hull are allowed; collinear points have no triangles but chains.
+/// loose ends, points on no segment and segments on the hull are allowed; collinear points have no triangles but
+/// chains.
 ///
 /// Never changes; copies share everything. Indices are 0-based; triangles are counterclockwise. const functions may run
 /// concurrently.
@@ -136,8 +138,9 @@ class CADT_API ConstrainedTriangulation {
   /// Whether each triangle is inside (ConstraintOptions::domain): 1 or 0 a triangle.
   [[nodiscard]] std::span<const std::uint8_t> inside() const noexcept;
   [[nodiscard]] std::size_t number_inside() const noexcept;
-  /// The region of each triangle: triangles that no segment separates have the same one. Regions are numbered by their
-  /// lowest triangles, from 0.
+  /// The region of each triangle: that of all triangles that can be reached without crossing a segment. Ways around
+  /// outside of the hull count, so a single segment across it leaves one region. Regions are numbered by their lowest
+  /// triangles, from 0.
   [[nodiscard]] std::span<const std::int32_t> region() const noexcept;
   [[nodiscard]] std::size_t number_of_regions() const noexcept;
   /// A number a region: its depth with Domain::layers, its winding number with nonzero, the number of crossed segments

@@ -11,7 +11,8 @@
 
 namespace cadt {
 
-/// Base of all exceptions that the library throws on purpose.
+/// Base of all exceptions that the library throws on purpose, but for std::invalid_argument where a function names it:
+/// a mistake in the calling program.
 class CADT_API Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,7 +22,7 @@ class CADT_API Error : public std::runtime_error {
 class CADT_API InputError : public Error {
  public:
   InputError(const std::string& message, std::size_t index) : Error(message), index_(index) {}
-  /// Index of the first offending point (0-based).
+  /// Index of the first offending point, or of what the message names: a segment, query, offset or pixel (0-based).
   [[nodiscard]] std::size_t index() const noexcept { return index_; }
 
  private:

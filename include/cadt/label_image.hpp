@@ -47,8 +47,8 @@ struct LabelSegments {
 /// One a triangle: the label of the pixel in which its centroid lies. Where triangles have the segments of
 /// label_segments as edges, all of a triangle has this label. A centroid outside of the image has the label of the
 /// nearest pixel. `triangles`: n x 3 indices of points of `xy`. O(n). Thread-safe. \throws InputError as
-/// label_segments, or with the index of a triangle that has an index out of range or coordinates that are not finite;
-/// std::invalid_argument if `xy` has an odd number of values, or triangles have not three points each
+/// label_segments, with the index of a triangle that has an index out of range or coordinates that are not finite, or
+/// if `xy` has an odd number of values, or triangles have not three points each
 [[nodiscard]] CADT_API std::vector<std::int32_t> triangle_labels(std::span<const double> xy,
                                                                  std::span<const std::int32_t> triangles,
                                                                  std::span<const std::int32_t> labels,

@@ -53,8 +53,8 @@ enum class Strategy {
   stars  ///< local stars, proven without locks, where possible; the residual vertices by gift wrapping and insertion
 };
 
-/// What happens to an edge that is flipped again and again (paper, section 4.4.4, Algorithm 4). Hull edges are always
-/// flipped.
+/// What happens to an edge that is flipped again and again (Algorithm 4 of the paper, cuDT, section 4.4.4;
+/// docs/evaluation.md). Hull edges are always flipped.
 enum class Stabilize {
   off,    ///< nothing: with exact predicates flips terminate
   defer,  ///< after more than `Tuning::flip_threshold` flips it is left to the legality sweep. The same mesh
@@ -67,8 +67,8 @@ enum class Stabilize {
 
 /// Progress of a running triangulation, for `Options::progress`.
 struct Progress {
-  std::string_view phase;  ///< "sort", "insert", "constrain", "cross", "certify", "output"
-  /// Of the whole work, 0 to 1, never decreasing; but where segments cross, Crossing::exact begins anew.
+  std::string_view phase;  ///< what is done now, such as "sort", "stars", "insert", "constrain" or "output"
+  /// Of the whole work, 0 to 1, never decreasing, except that Crossing::exact begins anew where segments cross.
   double fraction;
 };
 

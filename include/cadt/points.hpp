@@ -58,10 +58,10 @@ concept PointInMemory = HasXY<P> || HasFirstSecond<P> || HasElements<P>;
 /// Points of the plane in the caller's memory: doubles or floats, in any arrays whose elements have the same distance.
 /// Made implicitly from
 ///
-///     std::vector<double>, std::span<const float>, double xy[2 * n]        x0 y0 x1 y1 ...
-///     std::vector<P>, double xy[n][2], ...   P with two members x and y, std::pair, std::array or C array of two or
-///     more {xs, ys}                               separate arrays {0.0, 0.0, 1.0, 0.0}, {{0.0, 0.0}, {1.0, 0.0}}
-///     lists, for the call that they are passed to
+///     std::vector<double>, std::span<const float>, double xy[2 * n]    x0 y0 x1 y1 ...
+///     std::vector<P>, double xy[n][2], ...                             P: x and y, std::pair, an array of two or more
+///     {xs, ys}                                                         separate arrays
+///     {0.0, 0.0, 1.0, 0.0}, {{0.0, 0.0}, {1.0, 0.0}}                   lists, for the call that they are passed to
 ///
 /// For points whose coordinates have other names see the constructor with members; for points that have only getters,
 /// copy_points. The view is two pointers and a stride; the coordinates must outlive it. Floats convert to double

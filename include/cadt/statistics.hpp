@@ -15,7 +15,7 @@ namespace cadt {
 /// What is counted and timed.
 enum class StatisticsDetail {
   none,  ///< sizes, launches and legality sweeps only, which are known anyway; no waiting for the device between phases
-  counters,  ///< also work, conflicts, flips per edge and time per phase; costs 2 to 3 % on a GPU (docs/evaluation.md)
+  counters,  ///< also work, conflicts, flips per edge and time per phase; costs up to 2 % on a GPU (docs/evaluation.md)
   timing     ///< also the shares of the threads' time (`thread_time`), by kernels with timers: slower
 };
 /// "none", "counters", "timing".
@@ -34,7 +34,8 @@ struct KernelTime {
 struct Statistics {
   std::string backend;   ///< "host", "opencl", "cuda"
   std::string device;    ///< device name as its driver gives it
-  unsigned threads = 0;  ///< host threads, or compute units of the device; 1 where the calling thread worked alone
+  unsigned threads = 0;  ///< of the host as it was opened, by triangulate() with 1 for small sets; or compute units of
+                         ///< the device
 
   std::uint64_t points = 0;         ///< input points
   std::uint64_t distinct = 0;       ///< distinct points, all of them vertices unless dimension < 2

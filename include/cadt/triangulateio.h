@@ -40,8 +40,7 @@ struct cadt_triangulateio {
   double* holelist;  /* in, with p: numberofholes x 2. out, with p: that of in, as in Triangle */
   int numberofholes; /* the same */
 
-  double*
-      regionlist; /* in, with p: numberofregions x 4: x y attribute, and an area that is not used. out: as holelist */
+  double* regionlist;  /* in, with p: numberofregions x 4: x y attribute, area (not used). out: as holelist */
   int numberofregions; /* the same */
 
   int* edgelist;       /* out: numberofedges x 2. vorout: numbers of two points of vorout; -1: a ray from the first */

@@ -181,10 +181,11 @@ class CADT_API Triangulator {
   [[nodiscard]] std::future<Triangulation> triangulate_async(PointsView points);
   [[nodiscard]] std::future<DeviceTriangulation> triangulate_async(const DevicePoints& points);
 
-  /// Many point sets, as cadt::triangulate_batch. Sets of up to 32,768 points (CPUs: 2,048) are triangulated batched,
-  /// some 16 million points at a time: with common launches, and without locks. Larger sets, those with a vertex of
-  /// more than 39 neighbours, and all sets if `Tuning::strategy` or `stabilize` ask for insertion or the device has no
-  /// double precision, are triangulated individually within the same call. \throws OptionError for `Tuning::watch`
+  /// Many point sets, as cadt::triangulate_batch. Sets of up to 32,768 points (CPUs: 8,192) are triangulated batched,
+  /// some 16 million points at a time: with common launches, and without locks. Larger sets, on graphics cards those
+  /// with a vertex of more than 39 neighbours and all sets with Strategy::locks, and everywhere all sets with
+  /// `Tuning::stabilize` or on a device without double precision, are triangulated individually within the same call.
+  /// \throws OptionError for `Tuning::watch`
   [[nodiscard]] TriangulationBatch triangulate_batch(PointsView points, std::span<const std::size_t> offsets);
   [[nodiscard]] DeviceTriangulationBatch triangulate_batch(const DevicePoints& points,
                                                            std::span<const std::size_t> offsets);

@@ -221,7 +221,10 @@ class ConstrainedDelaunay(Mesh):
 
     @property
     def region(self) -> Any:
-        """(t,) int32: the region of each triangle. No segment separates the triangles of a region."""
+        """(t,) int32: the region of each triangle: those that can be reached without crossing a segment have the same.
+
+        Ways around outside of the hull count, so a single segment across it leaves one region.
+        """
         return self._of("region", lambda c: c.region, lambda g: g.region)
 
     @property

@@ -51,9 +51,11 @@ void translate(const std::exception_ptr& thrown, void* /*unused*/) {
   } catch (const cadt::CrossingError& e) {
     std::vector<std::int32_t> pairs;
     for (const auto& pair : e.pairs()) pairs.insert(pairs.end(), pair.begin(), pair.end());
-    raise("CrossingError", e, array_of(std::move(pairs), 2));
+    const std::string advice = "; repair them, or take crossing=\"exact\" or crossing=(\"grid\", width)";
+    raise("CrossingError", (e.what() + advice).c_str(), array_of(std::move(pairs), 2));
   } catch (const cadt::DomainError& e) {
-    raise("DomainError", e, e.vertex());
+    const std::string advice = ", or take domain=\"layers\" or domain=\"outer\"";
+    raise("DomainError", (e.what() + advice).c_str(), e.vertex());
   } catch (const cadt::NotDelaunay& e) {
     raise("NotDelaunay", e, e.edge());
   } catch (const cadt::Cancelled& e) {

@@ -105,6 +105,7 @@ def test_crossings() -> None:
         cadt.ConstrainedDelaunay(CROSS, segments)
     error = pickle.loads(pickle.dumps(caught.value))
     assert error.pairs.tolist() == [[0, 1]] and isinstance(error, ValueError) and "0 and 1" in str(error)
+    assert 'crossing="exact"' in str(error) and "::" not in str(error)
     exact = cadt.ConstrainedDelaunay(CROSS, segments, crossing="exact")
     assert exact.points.tolist() == [*CROSS, [1, 1]] and exact.added_parents.tolist() == [[0, 1]]
     assert exact.rounded_valid
@@ -172,6 +173,7 @@ def test_bad_input() -> None:
     with pytest.raises(cadt.DomainError) as open_end:
         cadt.ConstrainedDelaunay(SQUARES, [[0, 4]], domain="even_odd")
     assert pickle.loads(pickle.dumps(open_end.value)).vertex in (0, 4)
+    assert 'domain="layers"' in str(open_end.value) and "::" not in str(open_end.value)
     with pytest.raises(cadt.InputError):
         cadt.ConstrainedDelaunay(SQUARES, rings=[0, 4, 8], domain="seeds", holes=[1, 1])
 

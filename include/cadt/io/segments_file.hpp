@@ -38,12 +38,12 @@ struct SegmentsFile {
 ///   edge     Triangle: segments between the points of the .node file beside it
 ///   edg cin  CGAL: a number of segments, then x1 y1 x2 y2 each; or sites, lines "p x y" and "s x1 y1 x2 y2"
 ///   obj      Wavefront: vertices and lines (l); z becomes the attribute, faces are not read
-///   geojson json  all geometries, also of features and collections; or a bare array of rings, as earcut takes it. The
+///   geojson json
+///            all geometries, also of features and collections; or a bare array of rings, as earcut takes it. The
 ///            last position of a ring, which repeats the first, is left out. A third coordinate becomes the attribute
 ///            if all positions have one
-///   txt      CDT (points, edges: a first line of two numbers) or detria (points, polylines, edges: of three);
-///   polylines
-///            are closed. CDT's edges count from 1 if they use the number of points and not 0
+///   txt      CDT (points, edges: a first line of two numbers) or detria (points, polylines, edges: of three).
+///            Polylines are closed. CDT's edges count from 1 if they use the number of points and not 0
 ///   dat      poly2tri: an outline, rings behind HOLE, points behind STEINER
 /// "-" is standard input, for which `format` is required. Numbers do not depend on the C locale. Memory is bounded by
 /// the size of the file, whatever its header claims. Points that are equal stay apart: each end of a segment of edg and

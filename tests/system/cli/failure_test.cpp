@@ -102,7 +102,7 @@ TEST(ExitCodes, AreThoseOfTheHelp) {
                                                           {exit_internal, "\n    1  internal"},
                                                           {exit_usage, "\n    2  the command line"},
                                                           {exit_file, "\n    3  a file cannot"},
-                                                          {exit_degenerate, "\n    4  --strict"},
+                                                          {exit_degenerate, "\n    4  cadt triangulate --strict"},
                                                           {exit_device, "\n    5  the back end"},
                                                           {exit_memory, "\n    6  out of memory"},
                                                           {exit_verify, "\n    7  the mesh failed"},

@@ -55,6 +55,16 @@ class Verify(CliTest):
         self.assertRegex(result.out, r"(?m)^pass  orientation$")
         self.assertRegex(result.err, r"(?m)^cadt: error: bad.off: ")
 
+    def test_says_how_a_mesh_with_segments_is_checked(self):
+        hint = "check it with `cadt triangulate IN --verify`"
+        self.assertIn(hint, self.cadt("verify", "--help").out)
+        self.write("in.poly", "4 2 0 0\n0 0 0\n1 4 -1\n2 8 0\n3 4 1\n1 0\n0 0 2\n0\n")
+        self.cadt("triangulate", "in.poly", "-o", "s.off", "-q", "--verify")
+        self.write("in.xy", "0 0\n4 -1\n8 0\n4 1\n")
+        self.assertIn(hint, self.cadt("verify", "in.xy", "s.off", expect=7).err)
+        self.write("bad.off", off_text([(0, 0), (4, -1), (8, 0), (4, 1)], [(0, 1, 2)]))
+        self.assertNotIn(hint, self.cadt("verify", "in.xy", "bad.off", expect=7).err)
+
     def test_ties_count_only_when_asked_for(self):
         self.points = [(x, y) for x in range(4) for y in range(4)]
         self.write("in.xy", xy_text(self.points))

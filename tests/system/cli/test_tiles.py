@@ -350,6 +350,8 @@ class TilesHelpTest(CliTest):
             self.assertRegex(text, rf"Examples:\n(.*\n)*?.*cadt {command}")
             for line in text.splitlines():
                 self.assertLessEqual(len(line), 120, line)
+        for code in (4, 7, 8):  # of options that are not here
+            self.assertNotRegex(self.cadt("tiles", "--help").out, rf"(?m)^ +{code}  ")
 
     def test_every_option_and_key_is_documented(self):
         text = (SOURCE / "docs" / "cli.md").read_text()

@@ -51,6 +51,10 @@ class WrongInput(FaultTest):
         self.fails(2, 2, "-o", "mesh.cadt", says="name files")
         self.fails(2, 3, self.name, "--tile-points", 2, says="at least 3")
         self.fails(3, 2, "missing.f64", *self.options, says="missing.f64")
+        text = " ".join(self.tiles(1, "--help")[0].split())
+        self.assertIn("0: the cores that it may use, divided among the ranks there", text)
+        for other in ("0 takes all cores", "--strict", "--verify", "Triangle"):
+            self.assertNotIn(other, text)
 
     def test_directory_is_there(self):
         self.tiles(2, self.name, *self.options, "-q")

@@ -177,8 +177,8 @@ class CADT_API MeshQueries {
   /// The nearest vertex of each query; of equally near ones the lowest. -1 without triangles. \throws as locate
   [[nodiscard]] std::vector<std::int32_t> nearest_vertex(PointsView queries);
   /// The k nearest vertices of each query: n x k, nearest first, equally near ones by index (but of those at the very
-  /// smallest distance only the first is certain to be the lowest); -1 where there are no more. Along the mesh: O(k^2)
-  /// each. \throws OptionError for k = 0, LimitError for more than max_results()
+  /// smallest distance only the first is certain to be the lowest, and the others may be any of them); -1 where there
+  /// are no more. Along the mesh: O(k^2) each. \throws OptionError for k = 0, LimitError for more than max_results()
   [[nodiscard]] std::vector<std::int32_t> nearest_vertices(PointsView queries, std::size_t k);
 
   /// `values`: m for each point, point by point. Returns m for each query. Values are the device's doubles: equal on

@@ -158,7 +158,8 @@ class Delaunay(Mesh):
 
     @property
     def hash(self) -> str:
-        """32 hexadecimal digits that depend on the set of triangles alone: the same from every device and order."""
+        """32 hexadecimal digits: a hash of the set of triangles, of duplicates, and of the numbers of points and of hull
+        vertices. The same from every device and order."""
         return self._host("hash", lambda m: m.hash())
 
     def verify(self) -> VerifyReport:

@@ -15,7 +15,7 @@ from typing import Any
 from cadt import _cadt
 from cadt._errors import BackendUnavailable, OptionError
 
-# Below this, opening a GPU takes longer than the host's whole work (docs/backends.md).
+# Below this, opening a GPU takes longer than the host's whole work (docs/performance.md).
 SMALL = 200_000
 _KEPT = 4  # open devices at most, of which memory is kept
 

@@ -21,7 +21,7 @@ class InputError(Error, ValueError):
     Attributes
     ----------
     index : int
-        The first offending point.
+        The first offending point, or what the message names: a segment, query, offset or pixel.
     """
 
     def __init__(self, message: str, index: int = 0) -> None:

@@ -84,7 +84,8 @@ class Queries:
     def nearest_vertex(self, xi: Any, k: int = 1) -> Any:
         """The k nearest points of each query: (...) int32, or (..., k) for k > 1; -1 where there are no more.
 
-        Exact; of equally near ones the lowest. A tuple of two arrays is x and y.
+        Exact, nearest first, equally near ones by index; but of those at the very smallest distance only the first is
+        certain to be the lowest, and the others may be any of them. A tuple of two arrays is x and y.
 
         Raises
         ------
@@ -117,7 +118,7 @@ class Queries:
         xi : array_like, shape (..., 2)
             A tuple of two arrays is x and y.
         method : {"linear", "nearest", "natural"}
-            Natural neighbours (Sibson, 1981) are smooth but at the points.
+            Natural neighbours (Sibson, 1981) are smooth except at the points.
         outside : {"nan", "nearest"}
             What queries outside the convex hull get.
 

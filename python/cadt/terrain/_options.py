@@ -19,7 +19,8 @@ SUMMARIES = {
 
 EXIT_CODES = """\
 Exit codes: 0 done, 1 internal error, 2 the command line is wrong, 3 a file cannot be read, is damaged, holds nothing of
-use, or cannot be written, 5 a back end, a device or a Python package is not available, 6 out of memory, 130 interrupted.
+use, or cannot be written, or breaklines cross, 5 a back end, a device or a Python package is not available, 6 out of
+memory, 130 interrupted.
 Nothing is left behind by a run that fails.
 """
 

@@ -229,8 +229,7 @@ void each_picture(const Recording& recording, const GrowthOptions& growth, Growt
 
 void add_growth_options(CLI::App& command, GrowthOptions& options) {
   command
-      .add_option("--growth", options.panels,
-                  "so many snapshots of the growing mesh side by side, up to the complete one")
+      .add_option("--growth", options.panels, "N snapshots of the growing mesh side by side, up to the complete one")
       ->type_name("N")
       ->transform(whole_number(1, 100));
   const auto timed = [&options](double& value) {

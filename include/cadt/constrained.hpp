@@ -97,8 +97,8 @@ class CADT_API DomainError : public Error {
 ///
 /// Special cases: ends at equal points are those of the representative; a segment between equal points is dropped
 /// (degenerate_segments); segments may repeat and overlap; a point on a segment divides it, exactly, without tolerance;
-/// loose ends, points on no segment and segments on the hull are allowed; collinear points have no triangles but
-/// chains.
+/// loose ends, points on no segment and segments on the hull are allowed; collinear points have chains and no
+/// triangles.
 ///
 /// Never changes; copies share everything. Indices are 0-based; triangles are counterclockwise. const functions may run
 /// concurrently.

@@ -76,7 +76,7 @@ struct Progress {
 struct Snapshot {
   std::size_t points = 0;                        ///< number of points inserted so far
   std::span<const std::int32_t> triangles = {};  ///< n x 3 input indices, counterclockwise; not yet all Delaunay
-  /// Of insertion, from 1 on: each level has as many points as all before it together, but for the first and the last.
+  /// Of insertion, from 1 on: each level has as many points as all before it together, except the first and the last.
   /// A large one takes several launches.
   unsigned level = 0;
   /// The last snapshot: the legality sweep is over, and these are the triangles of the result.
@@ -120,7 +120,7 @@ struct Tuning {
   /// once more when the mesh is complete. Never for points without triangles. Costs a copy of the whole mesh each time.
   /// Must not throw.
   std::function<void(const Snapshot&)> watch;
-  /// With `watch`: a launch inserts at most so many points, so a level is seen in several steps, along the curve.
+  /// With `watch`: a launch inserts at most this many points, so a level is seen in several steps, along the curve.
   /// 0: the library chooses.
   std::size_t watch_points = 0;
 };

@@ -31,7 +31,7 @@ namespace cadt {
 enum class Interpolation {
   linear,   ///< in the triangle that contains the query: continuous, cheapest
   nearest,  ///< the value of the nearest vertex
-  natural   ///< natural neighbours (Sibson, 1981): smooth but at the points; reproduces linear functions
+  natural   ///< natural neighbours (Sibson, 1981): smooth except at the points; reproduces linear functions
 };
 /// "linear", "nearest", "natural".
 [[nodiscard]] CADT_API std::string_view to_string(Interpolation method) noexcept;
@@ -136,7 +136,7 @@ class CADT_API MeshQueries {
  public:
   /// A mesh of the host, and its points, which are not copied where the device can read them: they must live as long as
   /// this object, and must not change. `options` says where: backend, device, threads, queue, allocator, max_memory,
-  /// stop and progress are as for triangulate(). \throws InputError if the mesh is not one of so many points, and as
+  /// stop and progress are as for triangulate(). \throws InputError if the mesh has another number of points, and as
   /// triangulate()
   MeshQueries(PointsView points, const Triangulation& mesh, const Options& options = {});
   /// The same with the points that the mesh has kept (Options::keep_points). \throws InputError if it has kept none

@@ -202,7 +202,7 @@ class CADT_API Triangulator {
   [[nodiscard]] VerifyReport verify(const DevicePoints& points, const DeviceTriangulation& mesh,
                                     const VerifyOptions& options = {});
 
-  /// Upper bound of the device memory for a first call with so many points, in bytes: with its result and the memory
+  /// Upper bound of the device memory for a first call with `points` points, in bytes: with its result and the memory
   /// cached for the next call, without the caller's points on the device. 124 a point where the device or
   /// `Options::allocator` pools memory, else 176, and 228 with local stars (Tuning::strategy); and up to 256 KiB. With
   /// `Options::max_memory` 124 are enough, on the host 97 for a mesh on the host; with local stars 71, or 83 for points
@@ -215,7 +215,7 @@ class CADT_API Triangulator {
   /// its handle, as for DevicePoints; null for 0 bytes. It is used in the order of the triangulator's stream or queue,
   /// counts in `Options::max_memory`, and lives as a DeviceTriangulation does. \throws OutOfMemory
   [[nodiscard]] std::shared_ptr<void> allocate(std::size_t bytes);
-  /// Allocates the memory for calls with up to so many points now; with a caller's allocator it does nothing. Keeps no
+  /// Allocates the memory for calls with up to `points` points now; with a caller's allocator it does nothing. Keeps no
   /// more than `Options::max_memory`. \throws LimitError, OutOfMemory
   void reserve(std::size_t points);
   /// Releases all memory that no result holds.

@@ -32,7 +32,7 @@ class CADT_API UniformCells {
   };
   /// \pre depth <= 2 * level(), index < 2^depth
   [[nodiscard]] Part part(unsigned depth, std::uint64_t index) const noexcept;
-  /// The least depth at which parts have at most so many points; none if cells have more.
+  /// The least depth at which parts have at most `points` points; none if cells have more.
   [[nodiscard]] std::optional<unsigned> depth_for(std::uint64_t points) const noexcept;
 
   /// Points first, ..., first + count - 1: x0 y0 x1 y1 ... O(count). Thread-safe.

@@ -80,7 +80,7 @@ class ConstrainedDelaunay(Mesh):
     these are uploaded, being indices. All arrays are of the points' library, and queries are answered on the device.
 
     - Without a copy, those of the device: `simplices`, `neighbors`, `edge_flags`, `chains`, `triangles_inside`,
-      `added_points`, `added_parents`, and, but with ``domain="hull"``, `region`, `region_value`, `region_attribute`;
+      `added_points`, `added_parents`, and, except with ``domain="hull"``, `region`, `region_value`, `region_attribute`;
       so are the `points` of a mesh with crossings or on a grid. `inside` is made of flags there.
     - Made on the host when they are first asked for, and uploaded: all others.
     - Made on the host by the call: a mesh on a grid, and one where the device cannot find what crosses (several segments

@@ -4,8 +4,8 @@ Natural neighbours against linear
 =================================
 
 Three ways from values at points to values between them. ``linear`` bends at the edges of the
-triangles, ``nearest`` jumps, and ``natural`` (Sibson's natural neighbours) is smooth but at the
-points themselves. All three have the points' values at the points.
+triangles, ``nearest`` jumps, and ``natural`` (Sibson's natural neighbours) is smooth except at the
+points. All three have the points' values at the points.
 """
 
 import cadt

@@ -188,7 +188,7 @@ class LinearNDInterpolator(_OnMesh, _Linear):
 
 
 class NaturalNeighborInterpolator(_OnMesh, _Linear):
-    """Natural neighbour interpolation (Sibson, 1981): smooth but at the points, and exact for linear functions.
+    """Natural neighbour interpolation (Sibson, 1981): smooth except at the points, and exact for linear functions.
 
     Parameters as for `LinearNDInterpolator`, in the plane alone.
 
@@ -291,7 +291,7 @@ def griddata(
     method : {"linear", "nearest", "cubic", "natural"}
         Natural neighbours are cadt's addition.
     fill_value : float
-        Outside of the convex hull, but with "nearest".
+        Outside of the convex hull, except with "nearest".
     rescale : bool
         Whether the points are scaled to the unit square first.
 

@@ -11,17 +11,6 @@
 namespace cadt::c_interface {
 namespace {
 
-/// The strings are in `text`, or, if there was no memory for them, constants.
-struct LastError {
-  cadt_error error{};
-  std::array<std::string, 3> text;
-};
-
-LastError& last() noexcept {
-  thread_local LastError error;
-  return error;
-}
-
 cadt_error without_data(cadt_status status) noexcept {
   cadt_error error{};
   error.size = sizeof error;
@@ -31,19 +20,37 @@ cadt_error without_data(cadt_status status) noexcept {
   return error;
 }
 
-cadt_error& begin(cadt_status status) noexcept { return last().error = without_data(status); }
+/// Of this thread. Without a destructor, so that it is there until the thread is gone.
+thread_local cadt_error last{};
+
+/// Whether the strings of this thread are destroyed already: a destructor that runs later may call the library.
+thread_local bool ended = false;
+
+struct Texts {
+  std::array<std::string, 3> of_last;
+  ~Texts() {
+    ended = true;
+    last = without_data(last.status);
+  }
+};
+
+cadt_error& begin(cadt_status status) noexcept { return last = without_data(status); }
 
 void keep_text(std::string message, std::string name = {}, std::string detail = {}) noexcept {
-  LastError& kept = last();
-  kept.text = {std::move(message), std::move(name), std::move(detail)};
-  kept.error.message = kept.text[0].c_str();
-  kept.error.name = kept.text[1].c_str();
-  kept.error.detail = kept.text[2].c_str();
+  thread_local Texts texts;
+  if (ended) {
+    last.message = "the thread is ending, and keeps no messages";
+    return;
+  }
+  texts.of_last = {std::move(message), std::move(name), std::move(detail)};
+  last.message = texts.of_last[0].c_str();
+  last.name = texts.of_last[1].c_str();
+  last.detail = texts.of_last[2].c_str();
 }
 
 void keep_sizes(std::size_t needed, std::size_t available) noexcept {
-  last().error.needed = needed;
-  last().error.available = available;
+  last.needed = needed;
+  last.available = available;
 }
 
 /// Rethrows the exception that is being handled. May run out of memory itself.
@@ -116,9 +123,9 @@ cadt_status keep_exception() noexcept {
     keep_known();
   } catch (...) {
     // There was no memory for the message: the status, which was kept first, says what happened.
-    last().error.message = "there was too little memory for the message";
+    last.message = "there was too little memory for the message";
   }
-  return last().error.status;
+  return last.status;
 }
 
 }  // namespace cadt::c_interface
@@ -157,12 +164,12 @@ const char* cadt_status_name(cadt_status status) {
 cadt_status cadt_last_error(cadt_error* error) {
   // A failure of this function leaves the last error as it is.
   if (error == nullptr || error->size < sizeof(cadt_error)) return CADT_INVALID_ARGUMENT;
-  give(error, last().error.message != nullptr ? last().error : without_data(CADT_OK), "error");
+  give(error, last.message != nullptr ? last : without_data(CADT_OK), "error");
   return CADT_OK;
 }
 
 const char* cadt_last_error_message(void) {
-  const char* message = last().error.message;
+  const char* message = last.message;
   return message != nullptr ? message : "";
 }
 }

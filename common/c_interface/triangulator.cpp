@@ -30,7 +30,11 @@ cadt_status cadt_triangulator_open(const cadt_options* options, cadt_triangulato
 void cadt_triangulator_free(cadt_triangulator* triangulator) { delete triangulator; }
 
 cadt_status cadt_triangulator_set_options(cadt_triangulator* triangulator, const cadt_options* options) {
-  return guarded([&] { required(triangulator, "triangulator").options = CallOptions(options); });
+  return guarded([&] {
+    cadt_triangulator& t = required(triangulator, "triangulator");
+    t.options = CallOptions(options);
+    t.begin_call();  // for memory_needed, which is const
+  });
 }
 
 cadt_status cadt_triangulator_triangulate(cadt_triangulator* triangulator, const cadt_points* points,

@@ -50,6 +50,12 @@ void test_triangulator(void) {
   CHECK(bytes == SIZE_MAX);
   CHECK_OK(cadt_triangulator_memory_needed(triangulator, n, &bytes));
   CHECK(bytes > 24 * n);
+  options.strategy = CADT_STRATEGY_STARS;
+  CHECK_OK(cadt_triangulator_set_options(triangulator, &options));
+  CHECK_OK(cadt_triangulator_memory_needed(triangulator, n, &size));
+  CHECK(size > bytes);
+  options.strategy = CADT_STRATEGY_AUTO;
+  CHECK_OK(cadt_triangulator_set_options(triangulator, &options));
   CHECK_OK(cadt_triangulator_reserve(triangulator, n));
   CHECK_OK(cadt_triangulator_triangulate(triangulator, &points, &mesh));
   CHECK_OK(cadt_triangulation_triangles(mesh, &vertices));

@@ -111,9 +111,10 @@ class CudaEntry final : public BackendEntry {
 
 }  // namespace
 
+/// Never destroyed: destructors of the program may still call the library.
 BackendEntry& cuda_backend() {
-  static CudaEntry entry;
-  return entry;
+  static auto* const entry = new CudaEntry;
+  return *entry;
 }
 
 }  // namespace cadt

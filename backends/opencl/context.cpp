@@ -58,6 +58,7 @@ std::shared_ptr<SharedContext> context_of_queue(const OpenRequest& request) {
   }
   const std::lock_guard lock(*mutex);
   // The pointer identifies this context as long as the entry lives, for the entry holds the context.
+  std::erase_if(*contexts, [](const auto& known) { return known.second.expired(); });
   auto& entry = (*contexts)[{context, request.index}];
   std::shared_ptr<SharedContext> shared = entry.lock();
   if (shared == nullptr || shared->lost) entry = shared = std::make_shared<SharedContext>(request);

@@ -70,8 +70,9 @@ class Turns {
 void on_threads(unsigned threads, const std::function<void(unsigned)>& work) {
   std::vector<std::thread> helpers;
   try {
+    helpers.reserve(threads);
     for (unsigned i = 1; i < threads; ++i) helpers.emplace_back(work, i);
-  } catch (const std::system_error&) {  // NOLINT: those that did start do the work
+  } catch (const std::exception&) {  // NOLINT: those that did start do the work
   }
   work(0);
   for (std::thread& helper : helpers) helper.join();

@@ -37,6 +37,7 @@ class Schedule::Work {
       }
     });
     for (std::thread& thread : threads) thread.join();
+    const std::scoped_lock guard(lock_);  // fail() may still be called
     if (error_) std::rethrow_exception(error_);
   }
 

@@ -6,12 +6,13 @@
 
 #include <cadt/verify.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -63,27 +64,20 @@ class Bits {
 };
 
 /// Calls body(i, result) for each i below `count`, on threads where there is enough to do, and adds the results up.
+/// \throws what a body throws
 template <class Result, class Body>
 Result reduce(std::size_t count, unsigned threads, const Body& body) {
   constexpr std::size_t block = std::size_t{1} << 14;
   const std::size_t blocks = (count + block - 1) / block;
   std::vector<Result> results(threads_for(blocks, threads));
   std::atomic<std::size_t> next{0};
-  const auto work = [&](Result& mine) {
-    for (std::size_t b; (b = next.fetch_add(1)) < blocks;)
-      for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i) body(i, mine);
-  };
-  {
-    std::vector<std::thread> helpers;
-    struct Join {
-      std::vector<std::thread>& all;
-      ~Join() {
-        for (std::thread& one : all) one.join();
-      }
-    } const join{helpers};
-    for (std::size_t i = 1; i < results.size(); ++i) helpers.emplace_back([&work, &mine = results[i]] { work(mine); });
-    work(results[0]);
-  }
+  std::vector<std::function<void()>> tasks;
+  for (Result& mine : results)
+    tasks.emplace_back([&body, &mine, &next, blocks, count] {
+      for (std::size_t b; (b = next.fetch_add(1)) < blocks;)
+        for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i) body(i, mine);
+    });
+  run_tasks(tasks, static_cast<unsigned>(tasks.size()));
   for (std::size_t i = 1; i < results.size(); ++i) results[0].merge(std::move(results[i]));
   return std::move(results[0]);
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each mistake in a mesh of nodes is found by the check that is for it.
 #include "tests/unit/tiles/tiles_support.hpp"
+#include "tiles/verify_parts.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <new>
 
 namespace cadt::tiles {
 namespace {
@@ -74,6 +76,16 @@ class VerifyTiles : public testing::Test {
   TamperedMesh::Node& leaf_ = mesh_.nodes[0];
   TamperedMesh::Node& root_ = mesh_.nodes.back();
 };
+
+struct Nothing {
+  void merge(const Nothing& /*other*/) {}
+};
+
+TEST(ReduceTiles, FailuresOfHelpers) {
+  // Two blocks: neither thread gets through both of them.
+  const auto fail = [](std::size_t /*i*/, Nothing& /*mine*/) { throw std::bad_alloc(); };
+  EXPECT_THROW((void)verification::reduce<Nothing>(std::size_t{1} << 15, 2, fail), std::bad_alloc);
+}
 
 TEST_F(VerifyTiles, PassesWhatIsRight) {
   EXPECT_EQ(failed(mesh_), "");

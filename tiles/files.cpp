@@ -31,14 +31,12 @@ namespace system_file = io::detail::system_file;
 class NewFile {
  public:
   /// Messages name `shown`.
-  NewFile(std::string path, std::string shown) : path_(std::move(path)), shown_(std::move(shown)) {
-    descriptor_ = system_file::create(path_);
-    if (descriptor_ < 0) fail(shown_, "cannot be created", errno);
+  NewFile(std::string path, std::string shown)
+      : path_(std::move(path)), shown_(std::move(shown)), file_(system_file::create(path_)) {
+    if (!file_.is_open()) fail(shown_, "cannot be created", errno);
   }
   ~NewFile() {
-    if (descriptor_ < 0) return;
-    system_file::close(descriptor_);
-    system_file::remove(path_);
+    if (file_.is_open()) system_file::remove(path_);
   }
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
@@ -51,7 +49,7 @@ class NewFile {
       hash_.add(at, piece);
       bytes_ += piece;
       for (std::size_t done = 0; done != piece;) {
-        const std::ptrdiff_t put = system_file::write(descriptor_, at + done, piece - done);
+        const std::ptrdiff_t put = system_file::write(file_.get(), at + done, piece - done);
         if (put < 0) fail(shown_, "cannot be written", errno);
         done += static_cast<std::size_t>(put);
       }
@@ -59,8 +57,7 @@ class NewFile {
     }
   }
   FileRecord finish() {
-    const int descriptor = std::exchange(descriptor_, -1);
-    if (!system_file::close(descriptor)) {
+    if (!file_.close()) {
       const int code = errno;
       system_file::remove(path_);
       fail(shown_, "cannot be closed", code);
@@ -70,7 +67,7 @@ class NewFile {
 
  private:
   std::string path_, shown_;
-  int descriptor_ = -1;
+  system_file::Descriptor file_;
   std::uint64_t bytes_ = 0;
   HashStream hash_;
 };
@@ -92,12 +89,9 @@ void write_text(const std::string& path, std::string_view text) {
 }
 
 void sync_file(const std::string& path) {
-  const int file = system_file::open_to_read(path);
-  if (file < 0) fail(path, "cannot be opened", errno);
-  const bool synced = system_file::sync(file);
-  const int code = errno;
-  system_file::close(file);
-  if (!synced) fail(path, "cannot be synced", code);
+  const system_file::Descriptor file(system_file::open_to_read(path));
+  if (!file.is_open()) fail(path, "cannot be opened", errno);
+  if (!system_file::sync(file.get())) fail(path, "cannot be synced", errno);
 }
 
 void rename_file(const std::string& from, const std::string& to) {
@@ -136,17 +130,15 @@ std::string difference(const std::string& path, const FileRecord& record) {
   if (!kind.regular) return "is not there";
   if (kind.size != record.bytes)
     return "has " + std::to_string(kind.size) + " bytes, and not " + std::to_string(record.bytes);
-  const int descriptor = system_file::open_to_read(path);
-  if (descriptor < 0) return "cannot be opened: " + std::generic_category().message(errno);
+  const system_file::Descriptor file(system_file::open_to_read(path));
+  if (!file.is_open()) return "cannot be opened: " + std::generic_category().message(errno);
   constexpr std::size_t piece = std::size_t{1} << 20;
   const auto buffer = std::make_unique_for_overwrite<char[]>(piece);
   HashStream hash;
   std::ptrdiff_t got = 0;
-  while ((got = system_file::read(descriptor, buffer.get(), piece)) > 0)
+  while ((got = system_file::read(file.get(), buffer.get(), piece)) > 0)
     hash.add(buffer.get(), static_cast<std::size_t>(got));
-  const int code = errno;
-  system_file::close(descriptor);
-  if (got < 0) return "cannot be read: " + std::generic_category().message(code);
+  if (got < 0) return "cannot be read: " + std::generic_category().message(errno);
   if (hash.value().to_string() != record.hash) return "is not what was written: its hash differs";
   return {};
 }
@@ -159,12 +151,9 @@ void make_folder(const std::string& path) {
 }
 
 void sync_folder(const std::string& path) {
-  const int folder = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) fail(path, "cannot be opened", errno);
-  const bool synced = system_file::sync(folder);
-  const int code = errno;
-  ::close(folder);
-  if (!synced) fail(path, "cannot be synced", code);
+  const system_file::Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!folder.is_open()) fail(path, "cannot be opened", errno);
+  if (!system_file::sync(folder.get())) fail(path, "cannot be synced", errno);
 }
 
 void rename_folder(const std::string& from, const std::string& to) {
@@ -182,30 +171,22 @@ void remove_folder(const std::string& path) {
 }
 
 MappedFile::MappedFile(const std::string& path) {
-  const int descriptor = system_file::open_to_read(path);
-  if (descriptor < 0) fail(path, "cannot be opened", errno);
-  const system_file::Kind kind = system_file::kind_of(descriptor);
-  size_ = kind.size;
-  if (kind.regular && size_ != 0 && !is_small()) data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
-  if (kind.regular && is_small()) {
-    small_.resize(size_);
-    errno = EIO;
-    for (std::size_t at = 0; at < size_;) {
-      const std::ptrdiff_t got = system_file::read(descriptor, small_.data() + at, size_ - at);
-      if (got <= 0) {
-        const int code = errno;
-        ::close(descriptor);
-        fail(path, "cannot be read", code);
-      }
-      at += static_cast<std::size_t>(got);
-    }
-  }
-  const int code = errno;
-  ::close(descriptor);
+  const system_file::Descriptor file(system_file::open_to_read(path));
+  if (!file.is_open()) fail(path, "cannot be opened", errno);
+  const system_file::Kind kind = system_file::kind_of(file.get());
   if (!kind.regular) fail(path, "cannot be read", kind.folder ? EISDIR : EINVAL);
-  if (data_ == MAP_FAILED) {
-    data_ = nullptr;
-    fail(path, "cannot be mapped", code);
+  size_ = kind.size;
+  if (!is_small()) {
+    data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.get(), 0);
+    if (data_ == MAP_FAILED) fail(path, "cannot be mapped", errno);
+    return;
+  }
+  small_.resize(size_);
+  errno = EIO;
+  for (std::size_t at = 0; at < size_;) {
+    const std::ptrdiff_t got = system_file::read(file.get(), small_.data() + at, size_ - at);
+    if (got <= 0) fail(path, "cannot be read", errno);
+    at += static_cast<std::size_t>(got);
   }
 }
 MappedFile::MappedFile(MappedFile&& other) noexcept

@@ -88,13 +88,10 @@ class FileLeaves : public LeafStore {
     const std::string path = path_of(leaf);
     points.xy.resize(2 * n);
     points.ids.resize(n);
-    const int file = system_file::open_to_read(path);
-    if (file < 0) fail(path, "cannot be opened");
-    const bool ok = read(file, points.xy.data(), 16 * n, 0) && read(file, points.ids.data(), 8 * n, 16 * total(leaf));
-    const int why = errno;
-    system_file::close(file);
-    errno = why;
-    if (!ok) fail(path, "cannot be read");
+    const system_file::Descriptor file(system_file::open_to_read(path));
+    if (!file.is_open()) fail(path, "cannot be opened");
+    if (!read(file.get(), points.xy.data(), 16 * n, 0) || !read(file.get(), points.ids.data(), 8 * n, 16 * total(leaf)))
+      fail(path, "cannot be read");
     system_file::remove(path);
     return points;
   }
@@ -147,14 +144,11 @@ class FileLeaves : public LeafStore {
     const std::uint64_t n = from.waiting.ids.size();
     if (n == 0) return;
     const std::string path = path_of(leaf);
-    const int file = from.written == 0 ? system_file::create(path) : system_file::open_to_write(path);
-    if (file < 0) fail(path, "cannot be created");
-    bool ok = write(file, from.waiting.xy.data(), 16 * n, 16 * from.written) &&
-              write(file, from.waiting.ids.data(), 8 * n, 16 * total(leaf) + 8 * from.written);
-    const int why = errno;
-    ok = system_file::close(file) && ok;
-    errno = why;
-    if (!ok) fail(path, "cannot be written");
+    system_file::Descriptor file(from.written == 0 ? system_file::create(path) : system_file::open_to_write(path));
+    if (!file.is_open()) fail(path, "cannot be created");
+    if (!write(file.get(), from.waiting.xy.data(), 16 * n, 16 * from.written) ||
+        !write(file.get(), from.waiting.ids.data(), 8 * n, 16 * total(leaf) + 8 * from.written) || !file.close())
+      fail(path, "cannot be written");
     from.written += n;
     from.waiting.xy.clear();
     from.waiting.ids.clear();

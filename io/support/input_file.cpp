@@ -13,19 +13,6 @@
 namespace cadt::io::detail {
 namespace {
 
-/// Closes a descriptor that was opened here; standard input stays open.
-class Descriptor {
- public:
-  explicit Descriptor(int value) : value_(value) {}
-  ~Descriptor() { system_file::close(value_); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int get() const noexcept { return value_; }
-
- private:
-  int value_;
-};
-
 std::string system_text(int code) { return std::generic_category().message(code); }
 
 }  // namespace
@@ -37,10 +24,9 @@ InputFile::InputFile(const std::string& path) : name_(path == "-" ? "<stdin>" : 
   }
   // Windows opens no folder and says "permission denied".
   if (system_file::kind_of(path).folder) throw FileError(name_, 0, "is a directory");
-  const int descriptor = system_file::open_to_read(path);
-  if (descriptor < 0) throw FileError(name_, 0, "cannot be opened: " + system_text(errno));
-  const Descriptor guard(descriptor);
-  read_all(guard.get());
+  const system_file::Descriptor file(system_file::open_to_read(path));
+  if (!file.is_open()) throw FileError(name_, 0, "cannot be opened: " + system_text(errno));
+  read_all(file.get());
 }
 
 void InputFile::grow(std::size_t capacity) {

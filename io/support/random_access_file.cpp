@@ -4,7 +4,6 @@
 #include <cadt/io/errors.hpp>
 
 #include "io/support/npy_format.hpp"
-#include "io/support/system_file.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -12,24 +11,18 @@
 
 namespace cadt::io::detail {
 
-RandomAccessFile::RandomAccessFile(const std::string& path) : name_(path) {
-  const auto fail = [&](const std::string& what) { throw FileError(name_, 0, what); };
-  descriptor_ = system_file::open_to_read(path);
-  if (descriptor_ < 0) fail("cannot be opened: " + std::generic_category().message(errno));
-  const system_file::Kind kind = system_file::kind_of(descriptor_);
-  if (kind.regular) {
-    size_ = kind.size;
-    return;
-  }
-  system_file::close(descriptor_);
-  fail(kind.folder ? "is a directory" : "is no regular file, so that parts of it cannot be read");
+RandomAccessFile::RandomAccessFile(const std::string& path) : name_(path), file_(system_file::open_to_read(path)) {
+  if (!file_.is_open()) throw FileError(name_, 0, "cannot be opened: " + std::generic_category().message(errno));
+  const system_file::Kind kind = system_file::kind_of(file_.get());
+  if (!kind.regular)
+    throw FileError(name_, 0,
+                    kind.folder ? "is a directory" : "is no regular file, so that parts of it cannot be read");
+  size_ = kind.size;
 }
-
-RandomAccessFile::~RandomAccessFile() { system_file::close(descriptor_); }
 
 void RandomAccessFile::read(std::uint64_t at, char* bytes, std::size_t size) const {
   while (size != 0) {
-    const std::ptrdiff_t got = system_file::read_at(descriptor_, bytes, size, at);
+    const std::ptrdiff_t got = system_file::read_at(file_.get(), bytes, size, at);
     if (got < 0) throw FileError(name_, 0, "cannot be read: " + std::generic_category().message(errno));
     if (got == 0) throw FileError(name_, 0, "byte " + std::to_string(at) + ": the file has become shorter");
     bytes += got, size -= static_cast<std::size_t>(got), at += static_cast<std::uint64_t>(got);

@@ -2,6 +2,8 @@
 // A file of which parts are read, and tables of numbers in it.
 #pragma once
 
+#include "io/support/system_file.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -13,9 +15,6 @@ class RandomAccessFile {
  public:
   /// Throws FileError when it is no regular file that can be read.
   explicit RandomAccessFile(const std::string& path);
-  ~RandomAccessFile();
-  RandomAccessFile(const RandomAccessFile&) = delete;
-  RandomAccessFile& operator=(const RandomAccessFile&) = delete;
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
@@ -25,7 +24,7 @@ class RandomAccessFile {
  private:
   std::string name_;
   std::uint64_t size_ = 0;
-  int descriptor_ = -1;
+  system_file::Descriptor file_;
 };
 
 /// Rows of little-endian floats in a file, one behind the other.

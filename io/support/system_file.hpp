@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace cadt::io::detail::system_file {
 
@@ -35,6 +36,24 @@ constexpr std::string_view separators = "/";
 /// On the disk. True as well where pipes and file systems do not know how.
 [[nodiscard]] bool sync(int descriptor) noexcept;
 bool close(int descriptor) noexcept;
+
+/// What was opened, or -1: closed in the end.
+class Descriptor {
+ public:
+  explicit Descriptor(int value) noexcept : value_(value) {}
+  ~Descriptor() {
+    if (is_open()) close();
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] bool is_open() const noexcept { return value_ >= 0; }
+  [[nodiscard]] int get() const noexcept { return value_; }
+  /// Also tells what of the writing has failed.
+  bool close() noexcept { return system_file::close(std::exchange(value_, -1)); }
+
+ private:
+  int value_;
+};
 
 struct Kind {
   bool exists = false, regular = false, folder = false;

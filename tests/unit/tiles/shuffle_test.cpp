@@ -8,6 +8,22 @@
 
 #include <gtest/gtest.h>
 
+#include <dlfcn.h>
+#include <cerrno>
+#include <utility>
+
+namespace {
+thread_local int error_of_close = 0;  // the next one closes, and fails
+}  // namespace
+
+extern "C" int close(int descriptor) {
+  static const auto real = reinterpret_cast<int (*)(int)>(dlsym(RTLD_NEXT, "close"));
+  const int result = real(descriptor);
+  if (error_of_close == 0) return result;
+  errno = std::exchange(error_of_close, 0);
+  return -1;
+}
+
 namespace cadt::tiles {
 namespace {
 
@@ -75,6 +91,21 @@ TEST(Shuffle, TooLittleMemoryWithoutScratch) {
   options.memory = 1;
   options.scratch = "/nowhere/at/all";
   EXPECT_THROW((void)shuffle(*in_memory(xy), tree, options), io::FileError);
+}
+
+TEST(Shuffle, TellsWhyAFileCannotBeClosed) {
+  const Folder folder;
+  const TileTree tree(3);
+  const auto leaves = leaves_in_files(tree, folder / "");
+  leaves->add(0, std::vector<double>(6), std::vector<std::uint64_t>{0, 1, 2});
+  error_of_close = ENOSPC;
+  errno = 0;
+  try {
+    leaves->finish();
+    FAIL() << "no error";
+  } catch (const io::FileError& e) {
+    EXPECT_NE(std::string(e.what()).find(std::generic_category().message(ENOSPC)), std::string::npos) << e.what();
+  }
 }
 
 TEST(Messages, PackedAndUnpacked) {

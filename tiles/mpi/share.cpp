@@ -4,34 +4,28 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <cstring>
-#include <iterator>
 #include <thread>
 
 namespace cadt::tiles::mpi {
 namespace {
 
 constexpr std::size_t bits = 64;
-
-/// A bit for each core that this process may use.
-Words allowed_cores() {
-  Words words(sizeof(cpu_set_t) / sizeof(std::uint64_t));
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  if (::sched_getaffinity(0, sizeof set, &set) == 0) {
-    std::memcpy(words.data(), &set, sizeof set);
-  } else {
-    for (unsigned core = 0; core < std::thread::hardware_concurrency(); ++core)
-      words[core / bits] |= std::uint64_t{1} << core % bits;
-  }
-  return words;
-}
+constexpr std::size_t most_cores = 8192;  // that Linux counts
 
 bool has(std::span<const std::uint64_t> cores, std::size_t core) {
   return (cores[core / bits] >> core % bits & 1) != 0;
 }
 
 }  // namespace
+
+Words allowed_cores() {
+  Words words(most_cores / bits);
+  cpu_set_t* const set = reinterpret_cast<cpu_set_t*>(words.data());
+  if (::sched_getaffinity(0, words.size() * sizeof words[0], set) == 0) return words;
+  const std::size_t all = std::min<std::size_t>(std::thread::hardware_concurrency(), most_cores);
+  for (std::size_t core = 0; core < all; ++core) words[core / bits] |= std::uint64_t{1} << core % bits;
+  return words;
+}
 
 unsigned share_of_cores(Communicator& ranks) {
   const Words mine = allowed_cores();

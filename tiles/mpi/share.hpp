@@ -9,9 +9,11 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
 namespace cadt::tiles::mpi {
+
+/// A bit for each core that this process may use, in as many words for every process.
+[[nodiscard]] Words allowed_cores();
 
 /// This rank's threads: each core that the scheduler allows it (the binding of the MPI runtime), divided among the
 /// ranks that are allowed the same core; at least 1. Collective.

@@ -5,10 +5,30 @@
 
 #include <gtest/gtest.h>
 
+#include <sched.h>
 #include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstring>
 #include <numeric>
 #include <random>
+#include <thread>
 #include <vector>
+
+namespace {
+std::size_t cores_of_machine = 0;  // 0: nobody says
+}  // namespace
+
+/// As the system's on a machine of so many cores.
+extern "C" int sched_getaffinity(pid_t /*process*/, std::size_t size, cpu_set_t* set) noexcept {
+  if (8 * size < cores_of_machine || cores_of_machine == 0) {
+    errno = EINVAL;
+    return -1;
+  }
+  std::memset(set, 0, size);
+  std::memset(set, 0xFF, cores_of_machine / 8);
+  return 0;
+}
 
 namespace cadt::tiles::mpi {
 namespace {
@@ -107,6 +127,18 @@ TEST(MpiShare, RanksOfAMachineTakeItsGpusInTurn) {
   EXPECT_EQ(share_of_devices({}, 3, {}, std::span(devices).first(2)).backend, Backend::host);
   const std::vector<std::string> named = {"4", "7"};
   EXPECT_EQ(share_of_devices(opencl, 3, named, devices).device, "7");
+}
+
+TEST(MpiShare, MachinesOfManyCores) {
+  const auto allowed = [] {
+    std::size_t sum = 0;
+    for (const std::uint64_t word : allowed_cores()) sum += static_cast<std::size_t>(std::popcount(word));
+    return sum;
+  };
+  cores_of_machine = 2048;
+  EXPECT_EQ(allowed(), 2048U);
+  cores_of_machine = 0;
+  EXPECT_EQ(allowed(), std::thread::hardware_concurrency());
 }
 
 }  // namespace

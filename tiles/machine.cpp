@@ -55,6 +55,14 @@ std::uint64_t available_disk(const std::string& path) {
   return space.available;
 }
 
+void require_disk(const std::string& path, std::uint64_t bytes) {
+  const std::uint64_t free = available_disk(path);
+  if (bytes <= free) return;
+  throw io::FileError(
+      path, 0,
+      "the disk is too small: about " + human_bytes(bytes) + " are needed, and " + human_bytes(free) + " are free");
+}
+
 std::uint64_t bytes_in_folder(const std::string& path) noexcept {
   try {
     std::error_code code;

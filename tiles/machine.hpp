@@ -16,6 +16,8 @@ namespace cadt::tiles {
 /// Bytes that can be written to the file system of a path, or of the folder that it will be made in. \throws
 /// io::FileError if there is no such folder
 [[nodiscard]] std::uint64_t available_disk(const std::string& path);
+/// \throws io::FileError if that is less than `bytes`
+void require_disk(const std::string& path, std::uint64_t bytes);
 /// Of regular files in a folder and below; 0 if there is none.
 [[nodiscard]] std::uint64_t bytes_in_folder(const std::string& path) noexcept;
 /// Whether both are on one file system.

@@ -7,11 +7,11 @@
 #include "tiles/cells.hpp"
 #include "tiles/machine.hpp"
 #include "tiles/parallel.hpp"
+#include "tiles/run_parts.hpp"
 #include "tiles/schedule.hpp"
 #include "tiles/stopwatch.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <future>
 #include <memory>
 #include <numeric>
@@ -28,13 +28,7 @@ void tell(const RunOptions& options, std::string_view phase, std::uint64_t done,
   options.progress({.phase = phase, .fraction = fraction, .nodes_done = nodes_done, .nodes = nodes});
 }
 
-/// As Options::threads.
-unsigned threads_of(const RunOptions& options) { return options.devices.empty() ? 0 : options.devices.front().threads; }
-
-constexpr std::uint64_t read_bytes = 24, written_bytes = 24 + 48;  // of a point
-constexpr unsigned large_files = 4;                                // of a node
-
-bool takes_arrays(const RunOptions& options) { return !options.output.empty() || options.collect; }
+constexpr unsigned large_files = 4;  // of a node
 
 /// Nodes that are written at the same time. A file takes one thread, since the system lets one at a time write to it;
 /// so a node takes a few, and as many nodes as there are threads for, while a quarter of the memory holds them.
@@ -46,27 +40,14 @@ unsigned writers(const PointSource& source, const RunOptions& options) {
       std::clamp<std::uint64_t>(available_memory() / 4 / std::max<std::uint64_t>(node, 1), 1, most));
 }
 
-/// What leaves take on the host while they and their neighbours in time are read, computed and written.
-std::uint64_t leaf_memory(const PointSource& source, const RunOptions& options) {
-  const std::uint64_t points = std::min(source.size(), options.tile_points), devices = options.devices.size();
-  const std::uint64_t written =
-      takes_arrays(options) ? devices + std::max<std::uint64_t>(devices, writers(source, options)) : 0;
-  return points * (devices * 2 * read_bytes + written * written_bytes);
-}
-
 std::uint64_t shuffle_memory(const PointSource& source, const RunOptions& options) {
-  if (options.host_memory != 0) return options.host_memory;
-  const std::uint64_t available = available_memory(), leaf = leaf_memory(source, options);
-  return available > leaf ? std::max<std::uint64_t>((available - leaf) / 2, 1) : 1;
+  return shuffle_memory(options, available_memory(), leaf_memory(source, options, writers(source, options)));
 }
 
 /// Opens all devices at the same time. GPUs take the memory of their tiles now: the first call would wait for it.
 std::vector<Workers> open_devices(const RunOptions& options, std::uint64_t points) {
-  const auto open = [&](Options chosen) {
-    // Without arrays on the host nobody sees the order.
-    chosen.order = options.output.empty() && !options.collect && !options.consumer ? Order::fast : Order::canonical;
-    chosen.keep_points = KeepPoints::no;
-    chosen.stop = options.stop;
+  const auto open = [&](const Options& given) {
+    const Options chosen = device_options(given, options, options.stop);
     Workers workers{Triangulator(chosen), Triangulator(chosen)};
     if (workers.leaves.device().gpu) {
       try {
@@ -118,7 +99,7 @@ class Run {
     if (!options_.output.empty()) open_store();
     if (store_ && store_->complete()) {
       const Manifest manifest = store_->finish();
-      for (std::uint32_t i = 0; i < tree_.size(); ++i) resumed(i, manifest.nodes[i]);
+      for (std::uint32_t i = 0; i < tree_.size(); ++i) result_.nodes[i] = report_of(manifest.nodes[i]);
       return complete(manifest);
     }
     find_done();
@@ -148,19 +129,9 @@ class Run {
     for (std::uint32_t i = 0; i < tree_.size(); ++i) {
       if (options_.stop.stop_requested()) throw Cancelled();
       done_[i] = store_->is_valid(i);
-      if (done_[i]) resumed(i, store_->read_record(i));
+      if (done_[i]) result_.nodes[i] = report_of(store_->read_record(i));
       tell(options_, "check", i + 1, tree_.size());
     }
-  }
-
-  void resumed(std::uint32_t i, const NodeRecord& record) {
-    result_.nodes[i] = {.times = {},
-                        .points = record.sums.points,
-                        .triangles = record.triangles,
-                        .open = record.open,
-                        .device = 0,
-                        .resumed = true,
-                        .statistics = {}};
   }
 
   void shuffle_points() {
@@ -239,63 +210,30 @@ Plan make_plan(const PointSource& source, const RunOptions& options) {
       return plan;
     }
   TreeBuilder builder(source.size(), options.tile_points);
-  const std::uint64_t blocks = (source.size() + block_points - 1) / block_points;
-  const unsigned threads = threads_for(blocks, threads_of(options));
   for (bool first_pass = true; first_pass || !builder.done(); first_pass = false) {
-    PerThread<TreePass> passes(threads, [&] { return builder.new_pass(); });
-    std::vector<Hash128> hashes(threads);
-    std::atomic<std::uint64_t> done{0};
-    BlockWork work;
-    work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
-      if (first_pass) add_block_hash(hashes[thread], first, xy);
-      if (!builder.done()) builder.look_at(passes.of(thread), first, xy);
-      done += xy.size() / 2;
-      if (thread == 0) tell(options, "sample", done, source.size());
-    };
-    each_block(source, 0, source.size(), threads, options.stop, work);
-    for (const Hash128& hash : hashes) plan.content.high += hash.high, plan.content.low += hash.low;
-    if (builder.done()) continue;
-    TreePass sum = builder.new_pass();
-    passes.each([&](const TreePass& pass) { sum += pass; });
-    builder.finish_pass(std::move(sum));
+    TreePass pass = plan_pass(source, 0, source.size(), options, builder, first_pass ? &plan.content : nullptr,
+                              [&](std::uint64_t done) { tell(options, "sample", done, source.size()); });
+    if (!builder.done()) builder.finish_pass(std::move(pass));
   }
   plan.tree = builder.take();
   return plan;
 }
 
 void preflight(const PointSource& source, const RunOptions& options) {
-  const std::uint64_t points = source.size();
-  if (options.tile_points > max_points())
-    throw LimitError("a tile takes at most as many points as one triangulation: make --tile-points smaller",
-                     static_cast<std::size_t>(options.tile_points), max_points());
+  require_tile_points(options);
   // Memory: that of the leaves at work, and of the points of all leaves unless they go to scratch.
-  const bool shuffles = points > options.tile_points && !in_cells(source, options.tile_points);
-  const std::uint64_t shuffled = shuffles ? points * bytes_per_shuffled_point : 0;
-  const std::uint64_t available = available_memory(), leaf = leaf_memory(source, options);
-  const bool in_memory = shuffled <= shuffle_memory(source, options);
+  const bool shuffles = source.size() > options.tile_points && !in_cells(source, options.tile_points);
+  const std::uint64_t available = available_memory(), leaf = leaf_memory(source, options, writers(source, options));
   if (leaf > available) {
     throw OutOfMemory("the tiles at work do not fit into memory; make them smaller with --tile-points", leaf,
                       available);
   }
-  if (!in_memory && options.scratch.empty()) {
-    throw OutOfMemory(
-        "the points of all tiles do not fit into memory; name a folder for them with --scratch, or allow "
-        "more with --host-memory",
-        shuffled, shuffle_memory(source, options));
-  }
-  const auto require = [](const std::string& path, std::uint64_t needed) {
-    const std::uint64_t free = available_disk(path);
-    if (needed <= free) return;
-    throw io::FileError(
-        path, 0,
-        "the disk is too small: about " + human_bytes(needed) + " are needed, and " + human_bytes(free) + " are free");
-  };
-  const std::uint64_t there = options.resume ? bytes_in_folder(options.output) : 0;
-  const std::uint64_t written = options.output.empty() ? 0 : directory_bytes(points);
-  const std::uint64_t output = written > there ? written - there : 0;
-  const bool one_disk = !in_memory && output != 0 && same_disk(options.output, options.scratch);
-  if (output != 0) require(options.output, output + (one_disk ? shuffled : 0));
-  if (!in_memory && !one_disk) require(options.scratch, shuffled);
+  const std::uint64_t shuffled = shuffles ? source.size() * bytes_per_shuffled_point : 0;
+  const bool scratch = needs_scratch(shuffled, shuffle_memory(options, available, leaf), options.scratch);
+  const std::uint64_t output = output_bytes(source, options);
+  const bool one_disk = scratch && output != 0 && same_disk(options.output, options.scratch);
+  if (output != 0) require_disk(options.output, output + (one_disk ? shuffled : 0));
+  if (scratch && !one_disk) require_disk(options.scratch, shuffled);
 }
 
 RunResult run(const PointSource& source, const RunOptions& options) {

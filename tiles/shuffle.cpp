@@ -196,19 +196,22 @@ std::span<const LeafRun> BlockSorter::sort(std::uint64_t first_id, std::span<con
   return runs_;
 }
 
+bool needs_scratch(std::uint64_t bytes, std::uint64_t memory, const std::string& scratch) {
+  if (memory == 0 || bytes <= memory) return false;
+  if (scratch.empty()) {
+    throw OutOfMemory(
+        "the points of all tiles do not fit into memory; name a folder for them with --scratch, or allow "
+        "more with --host-memory",
+        bytes, memory);
+  }
+  return true;
+}
+
 bool needs_scratch(const TileTree& tree, const ShuffleOptions& options) {
   std::uint64_t points = 0;
   for (const std::uint32_t leaf : tree.leaves())
     if (options.wanted.empty() || options.wanted[leaf]) points += tree.node(leaf).points;
-  const std::uint64_t needed = points * bytes_per_shuffled_point;
-  if (options.memory == 0 || needed <= options.memory) return false;
-  if (options.scratch.empty()) {
-    throw OutOfMemory(
-        "the points of all tiles do not fit into memory; name a folder for them with --scratch, or allow "
-        "more with --host-memory",
-        needed, options.memory);
-  }
-  return true;
+  return needs_scratch(points * bytes_per_shuffled_point, options.memory, options.scratch);
 }
 
 namespace {

@@ -65,7 +65,9 @@ struct ShuffleOptions {
   std::function<void(std::uint64_t)> progress = {};  ///< points so far; one call at a time, from any thread
 };
 
-/// Whether the wanted points go to `scratch`. \throws OutOfMemory if they must and there is none
+/// Whether so many bytes of points go to `scratch`. \throws OutOfMemory if they must and there is none
+[[nodiscard]] bool needs_scratch(std::uint64_t bytes, std::uint64_t memory, const std::string& scratch);
+/// The same of the wanted points.
 [[nodiscard]] bool needs_scratch(const TileTree& tree, const ShuffleOptions& options);
 
 /// One pass over the source: blocks are read and sorted by all threads, and get their places in the leaves in the order

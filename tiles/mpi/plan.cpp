@@ -3,10 +3,9 @@
 
 #include "tiles/cells.hpp"
 #include "tiles/mpi/schedule.hpp"
-#include "tiles/parallel.hpp"
+#include "tiles/run_parts.hpp"
 
 #include <array>
-#include <atomic>
 #include <bit>
 #include <utility>
 
@@ -30,7 +29,7 @@ void reduce(Communicator& ranks, TreePass& pass) {
 
 }  // namespace
 
-Plan make_plan(Communicator& ranks, const PointSource& source, const RunOptions& options, const cadt::stop_token& stop,
+Plan make_plan(Communicator& ranks, const PointSource& source, const RunOptions& options,
                const std::function<void(double)>& progress) {
   Plan plan;
   plan.tile_points = options.tile_points;
@@ -43,32 +42,22 @@ Plan make_plan(Communicator& ranks, const PointSource& source, const RunOptions&
     return plan;
   }
   TreeBuilder builder(source.size(), options.tile_points);
-  const auto [begin, end] = slice(source.size(), block_points, ranks.rank(), ranks.size());
-  const unsigned threads =
-      threads_for((end - begin + block_points - 1) / block_points, options.devices.front().threads);
+  const auto part = slice(source.size(), block_points, ranks.rank(), ranks.size());
+  const auto tell = [&](std::uint64_t done) {
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(part.second - part.first));
+  };
   for (bool first_pass = true; first_pass || !builder.done(); first_pass = false) {
-    PerThread<TreePass> passes(threads, [&] { return builder.new_pass(); });
-    std::vector<Hash128> hashes(threads);
-    ranks.agree([&, begin = begin, end = end] {
-      std::atomic<std::uint64_t> done{0};
-      BlockWork work;
-      work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
-        if (first_pass) add_block_hash(hashes[thread], first, xy);
-        if (!builder.done()) builder.look_at(passes.of(thread), first, xy);
-        done += xy.size() / 2;
-        if (thread == 0 && progress) progress(static_cast<double>(done.load()) / static_cast<double>(end - begin));
-      };
-      each_block(source, begin, end, threads, stop, work);
+    TreePass pass;
+    Hash128 hash;
+    ranks.agree([&] {
+      pass = plan_pass(source, part.first, part.second, options, builder, first_pass ? &hash : nullptr, tell);
     });
-    std::array<std::uint64_t, 2> content{};
-    for (const Hash128& hash : hashes) content[0] += hash.high, content[1] += hash.low;
+    std::array<std::uint64_t, 2> content{hash.high, hash.low};
     ranks.sum(content);
     plan.content.high += content[0], plan.content.low += content[1];
     if (builder.done()) continue;
-    TreePass sum = builder.new_pass();
-    passes.each([&](const TreePass& pass) { sum += pass; });
-    reduce(ranks, sum);
-    ranks.agree([&] { builder.finish_pass(std::move(sum)); });
+    reduce(ranks, pass);
+    ranks.agree([&] { builder.finish_pass(std::move(pass)); });
   }
   plan.tree = builder.take();
   return plan;

@@ -8,8 +8,6 @@
 #include "tiles/shuffle.hpp"
 #include "tiles/source.hpp"
 
-#include <cadt/stop_token.hpp>
-
 #include <functional>
 #include <memory>
 #include <vector>
@@ -19,7 +17,7 @@ namespace cadt::tiles::mpi {
 /// The same plan as that of one process (tiles::make_plan), on all ranks. Collective. `progress`: a fraction.
 /// \throws as tiles::make_plan, on all ranks
 [[nodiscard]] Plan make_plan(Communicator& ranks, const PointSource& source, const RunOptions& options,
-                             const cadt::stop_token& stop, const std::function<void(double)>& progress);
+                             const std::function<void(double)>& progress);
 
 struct Deal {
   const std::vector<int>& owner;    ///< of each node

@@ -5,21 +5,13 @@
 #include "tiles/hash.hpp"
 #include "tiles/machine.hpp"
 #include "tiles/mpi/run.hpp"
+#include "tiles/run_parts.hpp"
 
-#include <algorithm>
 #include <array>
-#include <filesystem>
 #include <numeric>
 
 namespace cadt::tiles::mpi {
 namespace {
-
-/// What leaves of a rank take on the host while they are read, computed and written (as in tiles::preflight).
-std::uint64_t leaf_memory(const PointSource& source, const RunOptions& options) {
-  constexpr std::uint64_t read = 24, written = 24 + 48;
-  const bool arrays = !options.output.empty() || options.collect;
-  return std::min(source.size(), options.tile_points) * (2 * read + (arrays ? 2 * written : 0));
-}
 
 Hash128 hash_of_program() {
   try {
@@ -29,14 +21,6 @@ Hash128 hash_of_program() {
     constexpr std::string_view version = CADT_VERSION;
     return hash_bytes(version.data(), version.size(), format_version);
   }
-}
-
-void require_disk(const std::string& path, std::uint64_t needed) {
-  const std::uint64_t free = available_disk(path);
-  if (needed <= free) return;
-  throw io::FileError(
-      path, 0,
-      "the disk is too small: about " + human_bytes(needed) + " are needed, and " + human_bytes(free) + " are free");
 }
 
 }  // namespace
@@ -59,27 +43,21 @@ void require_same_program(Communicator& ranks, std::string_view task) {
 }
 
 std::uint64_t shuffle_memory(const Communicator& ranks, const PointSource& source, const RunOptions& options) {
-  if (options.host_memory != 0) return options.host_memory;
   const auto sharing = static_cast<std::uint64_t>(ranks.local_size());
-  const std::uint64_t available = available_memory() / sharing, leaf = leaf_memory(source, options);
-  return available > leaf ? std::max<std::uint64_t>((available - leaf) / 2, 1) : 1;
+  return tiles::shuffle_memory(options, available_memory() / sharing, leaf_memory(source, options, 1));
 }
 
 void preflight(Communicator& ranks, const PointSource& source, const RunOptions& options) {
   ranks.agree([&] {
-    if (options.tile_points > max_points())
-      throw LimitError("a tile takes at most as many points as one triangulation: make --tile-points smaller",
-                       static_cast<std::size_t>(options.tile_points), max_points());
-    const std::uint64_t leaves = leaf_memory(source, options) * static_cast<std::uint64_t>(ranks.local_size());
+    require_tile_points(options);
+    const std::uint64_t leaves = leaf_memory(source, options, 1) * static_cast<std::uint64_t>(ranks.local_size());
     const std::uint64_t available = available_memory();
     if (leaves > available)
       throw OutOfMemory("the tiles at work of the " + std::to_string(ranks.local_size()) + " ranks of " + ranks.host() +
                             " do not fit into memory; make them smaller with --tile-points, or start fewer ranks there",
                         leaves, available);
     if (ranks.rank() != 0 || options.output.empty()) return;
-    const std::uint64_t there = options.resume ? bytes_in_folder(options.output) : 0;
-    const std::uint64_t written = directory_bytes(source.size());
-    if (written > there) require_disk(options.output, written - there);
+    if (const std::uint64_t output = output_bytes(source, options); output != 0) require_disk(options.output, output);
     if (!options.resume) check_new_directory(options.output);
   });
 }

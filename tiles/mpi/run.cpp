@@ -9,6 +9,7 @@
 #include "tiles/mpi/plan.hpp"
 #include "tiles/mpi/reports.hpp"
 #include "tiles/mpi/schedule.hpp"
+#include "tiles/run_parts.hpp"
 #include "tiles/stopwatch.hpp"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ class Run {
     preflight(ranks_, source_, options_);
     Stopwatch watch;
     tell("sample", 0);
-    result_.plan = make_plan(ranks_, source_, options_, options_.stop, [this](double f) { tell("sample", f); });
+    result_.plan = make_plan(ranks_, source_, options_, [this](double f) { tell("sample", f); });
     result_.nodes.resize(tree().size());
     valid_.assign(tree().size(), false);
     result_.sample_seconds = watch.lap();
@@ -85,7 +86,7 @@ class Run {
         if (options_.stop.stop_requested()) throw Cancelled();
         if (!store_->is_valid(i)) continue;
         found[i] = 1;
-        add_resumed(i, store_->read_record(i));
+        append(reports_, i, report_of(store_->read_record(i)));
         tell("check", static_cast<double>(i) / tree().size());
       }
     });
@@ -93,27 +94,11 @@ class Run {
     for (std::uint32_t i = 0; i < tree().size(); ++i) valid_[i] = found[i] != 0;
   }
 
-  void add_resumed(std::uint32_t i, const NodeRecord& record) {
-    append(reports_, i,
-           {.times = {},
-            .points = record.sums.points,
-            .triangles = record.triangles,
-            .open = record.open,
-            .device = 0,
-            .resumed = true,
-            .statistics = {}});
-  }
-
   void make(Stopwatch& watch) {
     const std::vector<int> owner = owners(tree(), valid_, ranks_.size());
     std::vector<Workers> devices;
     ranks_.agree([&] {
-      Options chosen = options_.devices.front();
-      // Without arrays on the host nobody sees the order.
-      chosen.order =
-          options_.output.empty() && !options_.collect && !options_.consumer ? Order::fast : Order::canonical;
-      chosen.keep_points = KeepPoints::no;
-      chosen.stop = stop_.get_token();
+      const Options chosen = device_options(options_.devices.front(), options_, stop_.get_token());
       devices.push_back({Triangulator(chosen), Triangulator(chosen)});
     });
     result_.devices = gather_texts(ranks_, devices.front().leaves.device().name + " on " + ranks_.host());
@@ -157,7 +142,7 @@ class Run {
       job.read_leaf = [this](std::uint32_t leaf) { return leaves_->take(leaf); };
     }
     job.read_open = [this](std::uint32_t node) { return store_.value().read_open(node); };
-    job.compute.arrays = store_ || options_.collect;
+    job.compute.arrays = takes_arrays(options_);
     job.compute.consumer = options_.consumer;
     job.keep_open = job.compute.arrays;
     job.finished = [this](unsigned, NodeData&& data) {
@@ -193,7 +178,7 @@ class Run {
       const Manifest manifest = store_->finish();
       result_.whole = manifest.whole;
       if (complete_)
-        for (std::uint32_t i = 0; i < tree().size(); ++i) add_resumed(i, manifest.nodes[i]);
+        for (std::uint32_t i = 0; i < tree().size(); ++i) append(reports_, i, report_of(manifest.nodes[i]));
     });
     Words sums = pack(result_.whole);
     if (store_) {

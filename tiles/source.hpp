@@ -18,7 +18,7 @@
 
 namespace cadt::tiles {
 
-/// Points with input indices first_id(), first_id() + 1, ...
+/// Points 0, 1, ..., size() - 1 of a set.
 class PointSource {
  public:
   PointSource() = default;

@@ -78,8 +78,10 @@ struct TreePass {
 ///     TreeBuilder builder(n, tile_points);
 ///     while (!builder.done()) {
 ///       TreePass pass = builder.new_pass();
-///       for (each chunk of the input) builder.look_at(pass, first, xy);  // const: concurrently, each with its own
-///       pass builder.finish_pass(std::move(pass));                            // the sum of all of them
+///       // For each chunk of the input; concurrently, each thread with a pass of its own:
+///       builder.look_at(pass, first, xy);
+///       // Then the sum of all of them:
+///       builder.finish_pass(std::move(pass));
 ///     }
 ///     TileTree tree = builder.take();
 class TreeBuilder {

@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <mutex>
-#include <tuple>
 #include <utility>
 
 namespace cadt::tiles {

@@ -92,7 +92,7 @@ class BlockSorter {
 
  private:
   const TileTree& tree_;
-  std::vector<std::uint32_t> leaf_, order_, touched_;
+  std::vector<std::uint32_t> leaf_, touched_;
   std::vector<std::uint32_t> count_;  // of each node, between calls 0
   std::vector<double> xy_;
   std::vector<std::uint64_t> ids_;

@@ -187,8 +187,8 @@ void TreeBuilder::add_children(std::uint32_t draft, int axis, double at) {
   drafts_[draft].right = first + 1;
   drafts_[draft].axis = axis;
   drafts_[draft].at = at;
-  drafts_.push_back({.box = left, .parent = draft});
-  drafts_.push_back({.box = right, .parent = draft});
+  drafts_.push_back({.box = left});
+  drafts_.push_back({.box = right});
 }
 
 void TreeBuilder::split_by_sample(std::uint32_t slot, std::span<double> sample, const double* bounds,

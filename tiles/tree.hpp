@@ -7,7 +7,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -101,7 +100,7 @@ class TreeBuilder {
  private:
   struct Draft {  // a node before post-order is known
     TileBox box;
-    std::uint32_t left = no_node, right = no_node, parent = no_node;
+    std::uint32_t left = no_node, right = no_node;
     std::uint64_t points = 0;
     std::uint32_t slot = no_node;  // of the pass
     int axis = 0;

@@ -5,7 +5,6 @@
 #include <cadt/triangulation.hpp>
 
 #include <cstddef>
-#include <vector>
 
 #include "common/driver/memory.hpp"
 

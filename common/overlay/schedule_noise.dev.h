@@ -43,8 +43,7 @@ enum {
   CADT_NOISE_SLOW,     /* one work-item of sixteen is slow everywhere */
   CADT_NOISE_HOLDERS,  /* whoever holds locks is slow */
   CADT_NOISE_FAILURES, /* locks fail with probability 1/2 each, validations with 1/4 */
-  CADT_NOISE_ALL,      /* some of each */
-  CADT_NOISE_MODES
+  CADT_NOISE_ALL       /* some of each */
 };
 
 typedef struct {

@@ -2,9 +2,7 @@
 #include "common/queries/voronoi.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <tuple>
 #include <utility>

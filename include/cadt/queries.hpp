@@ -12,12 +12,10 @@
 #include <cadt/triangulator.hpp>
 #include <cadt/verify.hpp>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

@@ -12,7 +12,6 @@
 #include <chrono>
 #include <climits>
 #include <cstdlib>
-#include <deque>
 #include <list>
 #include <thread>
 #include <tuple>

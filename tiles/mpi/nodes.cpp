@@ -3,7 +3,6 @@
 
 #include <cadt/errors.hpp>
 
-#include <algorithm>
 #include <exception>
 #include <mutex>
 #include <thread>

@@ -3,7 +3,6 @@
 
 #include <bit>
 #include <cstring>
-#include <utility>
 
 namespace cadt::tiles::mpi {
 namespace {

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cstring>
 #include <future>
-#include <thread>
-#include <utility>
 
 namespace cadt::tiles::mpi {
 namespace {

@@ -10,7 +10,7 @@ import numpy as np
 
 from cadt import _cadt
 from cadt._errors import InputError, OptionError
-from cadt._points import as_points, contiguous
+from cadt._points import as_points
 from cadt.tiles import _module as _module
 
 if TYPE_CHECKING:
@@ -137,11 +137,6 @@ def new_builder(points: int, tile_points: int) -> _cadt.TreeBuilder:
     if tile_points < _cadt.least_tile_points:
         raise OptionError(f"a tile has at least {_cadt.least_tile_points} points, not {tile_points}", "tile_points")
     return _cadt.TreeBuilder(points, tile_points)
-
-
-def content_of_array(points: np.ndarray) -> tuple[int, int]:
-    """The hash of points that mesh directories have."""
-    return _cadt.blocks_hash(0, contiguous(points))
 
 
 def build_tree(points: int, tile_points: int, look: Callable[[_cadt.TreeBuilder], _cadt.TreePass]) -> Tree:

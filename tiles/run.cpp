@@ -45,22 +45,22 @@ std::uint64_t shuffle_memory(const PointSource& source, const RunOptions& option
 }
 
 /// Opens all devices at the same time. GPUs take the memory of their tiles now: the first call would wait for it.
-std::vector<Workers> open_devices(const RunOptions& options, std::uint64_t points) {
+std::vector<Triangulators> open_devices(const RunOptions& options, std::uint64_t points) {
   const auto open = [&](const Options& given) {
     const Options chosen = device_options(given, options, options.stop);
-    Workers workers{Triangulator(chosen), Triangulator(chosen)};
-    if (workers.leaves.device().gpu) {
+    Triangulators opened{Triangulator(chosen), Triangulator(chosen)};
+    if (opened.leaves.device().gpu) {
       try {
-        workers.leaves.reserve(static_cast<std::size_t>(std::min(points, options.tile_points)));
+        opened.leaves.reserve(static_cast<std::size_t>(std::min(points, options.tile_points)));
       } catch (const OutOfMemory&) {  // NOLINT: it is an upper bound; leaves may need less, or say what they need
       }
     }
-    return workers;
+    return opened;
   };
-  std::vector<std::future<Workers>> opening;
+  std::vector<std::future<Triangulators>> opening;
   for (const Options& chosen : options.devices) opening.push_back(std::async(std::launch::async, open, chosen));
-  std::vector<Workers> devices;
-  for (std::future<Workers>& device : opening) devices.push_back(device.get());
+  std::vector<Triangulators> devices;
+  for (std::future<Triangulators>& device : opening) devices.push_back(device.get());
   return devices;
 }
 
@@ -94,7 +94,7 @@ class Run {
   Run(const PointSource& source, const RunOptions& options, RunResult& result)
       : source_(source), options_(options), result_(result), tree_(result.plan.tree) {}
 
-  void operator()(std::vector<Workers>& devices) {
+  void operator()(std::vector<Triangulators>& devices) {
     result_.nodes.resize(tree_.size());
     if (!options_.output.empty()) open_store();
     if (store_ && store_->complete()) {
@@ -151,7 +151,7 @@ class Run {
     leaves_ = shuffle(source_, tree_, shuffling);
   }
 
-  void compute(std::vector<Workers>& devices) {
+  void compute(std::vector<Triangulators>& devices) {
     Job job(tree_, done_);
     if (in_cells(source_, options_.tile_points)) {
       job.read_leaf = cells_of_leaves(source_, tree_, options_.first_id);
@@ -240,9 +240,9 @@ RunResult run(const PointSource& source, const RunOptions& options) {
   if (options.devices.empty()) throw std::invalid_argument("a run needs a device");
   preflight(source, options);
   if (!options.output.empty() && !options.resume) check_new_directory(options.output);
-  std::vector<Workers> devices = open_devices(options, source.size());
+  std::vector<Triangulators> devices = open_devices(options, source.size());
   RunResult result;
-  for (const Workers& device : devices) result.devices.push_back(device.leaves.device().name);
+  for (const Triangulators& device : devices) result.devices.push_back(device.leaves.device().name);
   Stopwatch watch;
   result.plan = make_plan(source, options);
   result.sample_seconds = watch.lap();

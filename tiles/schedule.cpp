@@ -18,7 +18,7 @@ namespace cadt::tiles {
 
 class Schedule::Work {
  public:
-  Work(std::vector<Workers>& devices, const Job& job) : devices_(devices), job_(job), done_(job.done) {
+  Work(std::vector<Triangulators>& devices, const Job& job) : devices_(devices), job_(job), done_(job.done) {
     opens_.resize(job.tree.size());
     for (std::uint32_t i = 0; i < job.tree.size(); ++i) {
       if (done_[i]) ++count_done_, points_done_ += job.tree.node(i).is_leaf() ? job.tree.node(i).points : 0;
@@ -175,7 +175,7 @@ class Schedule::Work {
     }
   }
 
-  std::vector<Workers>& devices_;
+  std::vector<Triangulators>& devices_;
   const Job& job_;
   std::mutex lock_;
   std::condition_variable changed_;
@@ -192,12 +192,12 @@ class Schedule::Work {
   std::deque<std::pair<unsigned, NodeData>> finished_;
 };
 
-Schedule::Schedule(std::vector<Workers>& devices, const Job& job) : work_(std::make_unique<Work>(devices, job)) {}
+Schedule::Schedule(std::vector<Triangulators>& devices, const Job& job) : work_(std::make_unique<Work>(devices, job)) {}
 Schedule::~Schedule() = default;
 void Schedule::run() { work_->run(); }
 void Schedule::deliver(std::uint32_t node, Open&& open) { work_->deliver(node, std::move(open)); }
 void Schedule::fail(std::exception_ptr error) { work_->fail(std::move(error)); }
 
-void run_nodes(std::vector<Workers>& devices, const Job& job) { Schedule(devices, job).run(); }
+void run_nodes(std::vector<Triangulators>& devices, const Job& job) { Schedule(devices, job).run(); }
 
 }  // namespace cadt::tiles

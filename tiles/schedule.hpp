@@ -19,7 +19,7 @@
 namespace cadt::tiles {
 
 /// What one device computes with at the same time: joins are small and would keep it waiting.
-struct Workers {
+struct Triangulators {
   Triangulator leaves, joins;
 };
 
@@ -46,7 +46,7 @@ struct Job {
 
 class Schedule {
  public:
-  Schedule(std::vector<Workers>& devices, const Job& job);
+  Schedule(std::vector<Triangulators>& devices, const Job& job);
   ~Schedule();
   Schedule(const Schedule&) = delete;
   Schedule& operator=(const Schedule&) = delete;
@@ -67,6 +67,6 @@ class Schedule {
 /// computed and one that waits for a writer, one that each writer writes, and one leaf more than there are devices that
 /// have been read. \throws the first
 /// error of any thread, after all have ended
-void run_nodes(std::vector<Workers>& devices, const Job& job);
+void run_nodes(std::vector<Triangulators>& devices, const Job& job);
 
 }  // namespace cadt::tiles

@@ -131,7 +131,7 @@ void CudaDevice::write(Buffer& to, std::size_t offset, const void* from, std::si
   if (bytes == 0) return;
   copied_.to_device += bytes;
   const ContextScope scope(stream_->context());
-  if (transfer_.suits(from, bytes)) return transfer_.to_device(data_of(to) + offset, from, bytes);
+  if (transfer_.prepare(from, bytes)) return transfer_.to_device(data_of(to) + offset, from, bytes);
   check_call(cudaMemcpyAsync(data_of(to) + offset, from, bytes, cudaMemcpyHostToDevice, stream_->get()),
              "cudaMemcpyAsync");
   stream_->wait();
@@ -142,7 +142,7 @@ void CudaDevice::read(const Buffer& from, std::size_t offset, void* to, std::siz
   if (bytes == 0) return;
   copied_.from_device += bytes;
   const ContextScope scope(stream_->context());
-  if (transfer_.suits(to, bytes)) return transfer_.to_host(to, data_of(from) + offset, bytes);
+  if (transfer_.prepare(to, bytes)) return transfer_.to_host(to, data_of(from) + offset, bytes);
   // Small results are read through page-locked memory, which halves their time.
   const bool small = bytes <= staging_bytes;
   check_call(

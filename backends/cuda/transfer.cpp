@@ -145,7 +145,7 @@ void Transfer::release() noexcept {
   copied_ = 0;
 }
 
-bool Transfer::suits(const void* host, std::size_t bytes) {
+bool Transfer::prepare(const void* host, std::size_t bytes) {
   if (bytes < fewest_bytes || threads_ == 1) return false;
   const auto* last = static_cast<const std::byte*>(host) + (bytes - 1);
   if (locked(host) && locked(last)) return false;

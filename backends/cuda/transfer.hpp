@@ -19,8 +19,8 @@ namespace cadt::cuda {
 /// Locking memory takes as long as several copies of it. So a thread gets its buffers, `slot_bytes` * 2, only when
 /// `bytes_a_lane` more have been copied: a device that is opened for one call of a million points spends nothing, and
 /// one that is kept has all buffers after a few calls. They are kept until release(). Where the system refuses to lock
-/// so much memory or to start so many threads, there are fewer; without enough of them suits() is false, and the caller
-/// takes the driver's copy, which is slower.
+/// so much memory or to start so many threads, there are fewer; without enough of them prepare() is false, and the
+/// caller takes the driver's copy, which is slower.
 class Transfer {
  public:
   static constexpr std::size_t slot_bytes = std::size_t{1} << 20;     ///< smaller ones keep the bus waiting
@@ -36,9 +36,10 @@ class Transfer {
   Transfer& operator=(const Transfer&) = delete;
 
   /// Whether a copy from or to this memory is faster through the buffers: it is large and not page-locked or managed,
-  /// and there are buffers. \pre the context is current. Holds for all. \throws DeviceError
-  [[nodiscard]] bool suits(const void* host, std::size_t bytes);
-  /// Both wait for the stream first, and return when all is copied. \pre suits(host, bytes) \throws DeviceError
+  /// and there are buffers, which are made here as far as what was copied earns them. \pre the context is current.
+  /// Holds for all. \throws DeviceError
+  [[nodiscard]] bool prepare(const void* host, std::size_t bytes);
+  /// Both wait for the stream first, and return when all is copied. \pre prepare(host, bytes) \throws DeviceError
   void to_device(void* device, const void* host, std::size_t bytes);
   void to_host(void* host, const void* device, std::size_t bytes);
   /// Frees the buffers.

@@ -14,7 +14,7 @@ namespace {
 /// The thread that speaks with the other ranks; another runs the schedule.
 class Speaker {
  public:
-  Speaker(Communicator& ranks, std::vector<Workers>& devices, Job&& job, const Nodes& nodes)
+  Speaker(Communicator& ranks, std::vector<Triangulators>& devices, Job&& job, const Nodes& nodes)
       : ranks_(ranks), nodes_(nodes), job_(std::move(job)) {
     const std::uint32_t size = job_.tree.size();
     job_.done.assign(size, true);
@@ -152,7 +152,7 @@ class Speaker {
 
 }  // namespace
 
-void make_nodes(Communicator& ranks, std::vector<Workers>& devices, Job&& job, const Nodes& nodes) {
+void make_nodes(Communicator& ranks, std::vector<Triangulators>& devices, Job&& job, const Nodes& nodes) {
   Speaker(ranks, devices, std::move(job), nodes).run();
 }
 

@@ -23,6 +23,6 @@ struct Nodes {
 
 /// Makes this rank's nodes: `job` without `done`, `awaited`, `computed` and `stop`, which are set here. Collective.
 /// \throws what settle() says
-void make_nodes(Communicator& ranks, std::vector<Workers>& devices, Job&& job, const Nodes& nodes);
+void make_nodes(Communicator& ranks, std::vector<Triangulators>& devices, Job&& job, const Nodes& nodes);
 
 }  // namespace cadt::tiles::mpi

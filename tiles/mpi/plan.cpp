@@ -2,7 +2,7 @@
 #include "tiles/mpi/plan.hpp"
 
 #include "tiles/cells.hpp"
-#include "tiles/mpi/schedule.hpp"
+#include "tiles/mpi/owners.hpp"
 #include "tiles/run_parts.hpp"
 
 #include <array>

@@ -6,9 +6,9 @@
 
 #include "tiles/cells.hpp"
 #include "tiles/mpi/nodes.hpp"
+#include "tiles/mpi/owners.hpp"
 #include "tiles/mpi/plan.hpp"
 #include "tiles/mpi/reports.hpp"
-#include "tiles/mpi/schedule.hpp"
 #include "tiles/run_parts.hpp"
 #include "tiles/stopwatch.hpp"
 
@@ -96,7 +96,7 @@ class Run {
 
   void make(Stopwatch& watch) {
     const std::vector<int> owner = owners(tree(), valid_, ranks_.size());
-    std::vector<Workers> devices;
+    std::vector<Triangulators> devices;
     ranks_.agree([&] {
       const Options chosen = device_options(options_.devices.front(), options_, stop_.get_token());
       devices.push_back({Triangulator(chosen), Triangulator(chosen)});
@@ -134,7 +134,7 @@ class Run {
     leaves_ = shuffle(ranks_, source_, tree(), deal);
   }
 
-  void compute(std::vector<Workers>& devices, const std::vector<int>& owner) {
+  void compute(std::vector<Triangulators>& devices, const std::vector<int>& owner) {
     Job job(tree(), {});
     if (in_cells(source_, options_.tile_points)) {
       job.read_leaf = cells_of_leaves(source_, tree(), options_.first_id);

@@ -40,8 +40,8 @@ class CudaTransfer : public CudaCalls {
   /// Copies until all lanes are there.
   void earn(Transfer& transfer) {
     for (std::size_t copied = 0; copied < enough; copied += bytes_.size())
-      (void)transfer.suits(bytes_.data(), bytes_.size());
-    EXPECT_TRUE(transfer.suits(bytes_.data(), bytes_.size()));
+      (void)transfer.prepare(bytes_.data(), bytes_.size());
+    EXPECT_TRUE(transfer.prepare(bytes_.data(), bytes_.size()));
   }
 
   const Bytes bytes_ = pattern(80 * mebibyte, 0);
@@ -63,7 +63,7 @@ TEST_P(CudaTransfer, KeepsTheBytes) {
         SCOPED_TRACE(std::to_string(size) + " bytes at " + std::to_string(offset) + ", threads " +
                      std::to_string(threads));
         const Bytes from = pattern(size + offset, static_cast<unsigned>(size));
-        ASSERT_TRUE(transfer.suits(from.data() + offset, size));
+        ASSERT_TRUE(transfer.prepare(from.data() + offset, size));
         ASSERT_EQ(cudaMemset(device_, 0x5a, size + offset + guard), cudaSuccess);
         ASSERT_EQ(cudaDeviceSynchronize(), cudaSuccess);
         transfer.to_device(at(offset), from.data() + offset, size);
@@ -103,16 +103,16 @@ TEST_P(CudaTransfer, DeviceCopiesEverySize) {
 TEST_P(CudaTransfer, TakesWhatTheDriverCopiesSlowly) {
   Transfer transfer(stream_, 16), alone(stream_, 1);
   earn(transfer);
-  EXPECT_FALSE(transfer.suits(bytes_.data(), Transfer::fewest_bytes - 1));
+  EXPECT_FALSE(transfer.prepare(bytes_.data(), Transfer::fewest_bytes - 1));
   for (std::size_t copied = 0; copied < enough; copied += bytes_.size())
-    EXPECT_FALSE(alone.suits(bytes_.data(), bytes_.size()));
+    EXPECT_FALSE(alone.prepare(bytes_.data(), bytes_.size()));
   const std::size_t size = 8 * mebibyte;
   void *locked = nullptr, *managed = nullptr;
   ASSERT_EQ(cudaMallocHost(&locked, size), cudaSuccess);
-  EXPECT_FALSE(transfer.suits(locked, size));
+  EXPECT_FALSE(transfer.prepare(locked, size));
   EXPECT_EQ(cudaFreeHost(locked), cudaSuccess);
   ASSERT_EQ(cudaMallocManaged(&managed, size), cudaSuccess);
-  EXPECT_FALSE(transfer.suits(managed, size));
+  EXPECT_FALSE(transfer.prepare(managed, size));
   EXPECT_EQ(cudaFree(managed), cudaSuccess);
 }
 
@@ -122,8 +122,8 @@ TEST_P(CudaTransfer, LocksMemoryForManyCopiesOnly) {
   const std::size_t size = 8 * mebibyte;
   for (int round = 0; round < 2; ++round) {
     for (std::size_t copied = size; copied < Transfer::fewest_lanes * Transfer::bytes_a_lane; copied += size)
-      EXPECT_FALSE(transfer.suits(bytes_.data(), size)) << copied;
-    EXPECT_TRUE(transfer.suits(bytes_.data(), size));
+      EXPECT_FALSE(transfer.prepare(bytes_.data(), size)) << copied;
+    EXPECT_TRUE(transfer.prepare(bytes_.data(), size));
     transfer.release();
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who makes what: pure functions of the engine for several ranks.
-#include "tiles/mpi/schedule.hpp"
+#include "tiles/mpi/owners.hpp"
 #include "tiles/mpi/share.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TileTree tree_of(std::uint64_t points, std::uint64_t tile) {
   return builder.take();
 }
 
-TEST(MpiSchedule, LeavesInRangesOfEqualPointsAndJoinsAtTheLowerRank) {
+TEST(MpiOwners, LeavesInRangesOfEqualPointsAndJoinsAtTheLowerRank) {
   const TileTree tree = tree_of(10000, 100);
   const std::vector<bool> none(tree.size(), false);
   for (const int ranks : {1, 2, 3, 7, 16}) {
@@ -70,7 +70,7 @@ TEST(MpiSchedule, LeavesInRangesOfEqualPointsAndJoinsAtTheLowerRank) {
   }
 }
 
-TEST(MpiSchedule, WhatIsThereAlreadyCountsNothing) {
+TEST(MpiOwners, WhatIsThereAlreadyCountsNothing) {
   const TileTree tree = tree_of(10000, 100);
   std::vector<bool> valid(tree.size(), false);
   const auto leaves = tree.leaves();
@@ -82,13 +82,13 @@ TEST(MpiSchedule, WhatIsThereAlreadyCountsNothing) {
   EXPECT_NEAR(static_cast<double>(points[0]), static_cast<double>(points[1]), 202);
 }
 
-TEST(MpiSchedule, FewerLeavesThanRanks) {
+TEST(MpiOwners, FewerLeavesThanRanks) {
   const TileTree one(2);
   EXPECT_EQ(owners(one, {false}, 5), std::vector<int>{2});
   EXPECT_EQ(owners(TileTree(0), {false}, 5), std::vector<int>{0});
 }
 
-TEST(MpiSchedule, SlicesAreWholeBlocksAndCoverAll) {
+TEST(MpiOwners, SlicesAreWholeBlocksAndCoverAll) {
   for (const std::uint64_t points : {0U, 1U, 99U, 100U, 101U, 12345U}) {
     for (const int ranks : {1, 2, 3, 16}) {
       std::uint64_t at = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tiles/mpi/schedule.hpp"
+#include "tiles/mpi/owners.hpp"
 
 #include <algorithm>
 

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "common/driver/choose_strategy.hpp"
 #include "common/driver/context.hpp"
+#include "common/driver/counters.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/thread_state.hpp"
@@ -87,50 +89,106 @@ class PolygonsCall {
     result_.triangles = make_words(3 * most_triangles(points));
     result_.status.reserve(count);
     result_.offsets.reserve(count + 1);
-    prepare(std::min(points, most_));
+    prepare();
     for (std::size_t first = 0, end = 0; first < count; first = end) {
-      end = first + 1;
-      const bool large = in_.points_of(first, end) > most_swept;
-      while (!large && end < count && in_.points_of(end, end + 1) <= most_swept &&
-             in_.points_of(first, end + 1) <= most_ && end - first < most_)
-        ++end;
+      end = end_of_round(first);
       ctx_.check("polygons", static_cast<double>(first) / static_cast<double>(count));
-      large ? add_alone(first) : add_round(first, end);
+      is_large(first) ? add_alone(first) : add_round(first, end);
     }
     result_.triangles = cut_words(std::move(result_.triangles), 3 * most_triangles(points), 3 * total());
   }
 
+  /// Of the polygons done alone, which are calls of their own: complete once run() has returned.
+  [[nodiscard]] const Statistics& alone() const noexcept { return alone_; }
+
  private:
   [[nodiscard]] std::size_t total() const noexcept { return static_cast<std::size_t>(result_.offsets.back()); }
+  [[nodiscard]] bool is_large(std::size_t p) const { return in_.points_of(p, p + 1) > most_swept; }
 
-  /// Memory for a round of so many points.
-  void prepare(std::size_t points) {
-    if (points == 0) return;
+  /// Where the round ends that begins with this polygon; a large one is alone.
+  [[nodiscard]] std::size_t end_of_round(std::size_t first) const {
+    std::size_t end = first + 1;
+    if (is_large(first)) return end;
+    while (end < in_.size() && !is_large(end) && in_.points_of(first, end + 1) <= most_ && end - first < most_) ++end;
+    return end;
+  }
+
+  /// The largest of all rounds, and the largest polygon alone.
+  struct Sizes {
+    std::size_t points = 0, rings = 0, polygons = 0, scratch_words = 0, alone = 0;
+  };
+  [[nodiscard]] Sizes sizes() const {
+    Sizes most;
+    for (std::size_t first = 0, end = 0; first < in_.size(); first = end) {
+      end = end_of_round(first);
+      const std::size_t points = in_.points_of(first, end);
+      if (is_large(first)) {
+        most.alone = std::max(most.alone, points);
+      } else if (points != 0) {
+        most.points = std::max(most.points, points);
+        most.rings = std::max(most.rings, in_.first_ring(end) - in_.first_ring(first));
+        most.polygons = std::max(most.polygons, end - first);
+        most.scratch_words = std::max(most.scratch_words, scratch_of(first, end).words);
+      }
+    }
+    return most;
+  }
+
+  /// Memory for all rounds. \throws OutOfMemory before any work if the limit does not allow for it and the largest
+  /// polygon alone
+  void prepare() {
+    const Sizes most = sizes();
     Memory& memory = ctx_.memory;
-    triangles_ = memory.allocate(3 * most_triangles(points) * word);
-    packed_ = memory.export_to(result_.triangles.get(), 3 * most_triangles(in_.points_of(0, in_.size())) * word);
+    const std::size_t each = 3 * most_triangles(most.points) * word;
+    if (most.points != 0)
+      packed_ = memory.export_to(result_.triangles.get(), 3 * most_triangles(in_.points_of(0, in_.size())) * word);
     direct_ = static_cast<bool>(packed_);
-    if (!direct_) packed_ = memory.allocate(3 * most_triangles(points) * word);
+    if (ctx_.options.max_memory != 0) memory.require(bytes_for(most, (direct_ ? 1 : 2) * each));
+    if (most.points == 0) return;
+    triangles_ = memory.allocate(each);
+    if (!direct_) packed_ = memory.allocate(each);
+  }
+
+  [[nodiscard]] std::size_t bytes_for(const Sizes& most, std::size_t triangles) const {
+    constexpr std::size_t fixed = std::size_t{1} << 16;  // partial sums, and what ends lists
+    const bool on_host = is_host(ctx_.device);           // which reads points in place
+    const std::size_t scalar = in_.points.scalar_size();
+    const bool converted = !in_.points.interleaved() || scalar != sizeof(double);
+    const std::size_t input = (on_host ? 0 : 2 * scalar) + (converted ? 2 * sizeof(double) : 0);
+    const std::size_t kept = triangles + most.scratch_words * word;
+    const std::size_t lists = most.rings + (2 + CADT_POLYGON_RESULT_WORDS) * most.polygons;
+    const std::size_t rounds = most.points == 0 ? 0 : fixed + kept + input * most.points + lists * word;
+    if (most.alone == 0) return rounds;
+    const bool stars =
+        may_use_stars(traits_of(ctx_.device), ctx_.options) && most.alone >= fewest_for_stars(ctx_.options);
+    const MemoryPlan alone = plan_memory({most.alone, on_host, false, sizeof(double)}, stars, true);
+    return std::max(rounds, kept + alone.bytes);
   }
 
   /// Work-items, and the words of memory that one of them needs on a CPU.
   [[nodiscard]] LaunchGrid grid(std::size_t polygons) const {
     return ctx_.device.shape().contiguous ? ctx_.launcher.grid_spread(polygons) : ctx_.launcher.grid(polygons);
   }
+  struct Scratch {
+    std::size_t words, item_words;  ///< in all; of a work-item on CPUs
+  };
+  [[nodiscard]] Scratch scratch_of(std::size_t first, std::size_t end) const {
+    std::size_t largest = 0;
+    for (std::size_t p = first; p < end; ++p) largest = std::max(largest, in_.points_of(p, p + 1));
+    const std::size_t item_words = CADT_POLYGON_WORDS * largest + CADT_POLYGON_SPARE;
+    const std::size_t of_all = CADT_POLYGON_WORDS * in_.points_of(first, end) + CADT_POLYGON_SPARE * (end - first);
+    return {ctx_.device.shape().contiguous ? grid(end - first).items * item_words : of_all, item_words};
+  }
 
   void add_round(std::size_t first, std::size_t end) {
     const std::size_t polygons = end - first, points = in_.points_of(first, end), begin = in_.first_point(first);
     if (points == 0) {
-      for (std::size_t p = first; p < end; ++p)
-        add(p, PolygonStatus::too_few_points, static_cast<std::int32_t>(begin), static_cast<std::int32_t>(begin), 0);
+      for (std::size_t p = first; p < end; ++p) add(p, PolygonStatus::too_few_points, -1, -1, 0);
       return;
     }
     std::vector<std::uint32_t> rings, of_polygons;
-    std::size_t largest = 0;
-    for (std::size_t p = first; p <= end; ++p) {
+    for (std::size_t p = first; p <= end; ++p)
       of_polygons.push_back(static_cast<std::uint32_t>(in_.first_ring(p) - in_.first_ring(first)));
-      if (p < end) largest = std::max(largest, in_.points_of(p, p + 1));
-    }
     for (std::size_t r = in_.first_ring(first); r <= in_.first_ring(end); ++r)
       rings.push_back(static_cast<std::uint32_t>(in_.ring(r) - begin));
 
@@ -141,10 +199,7 @@ class PolygonsCall {
                      polygon_rings = memory.import(of_polygons.data(), of_polygons.size() * word),
                      places = memory.allocate((polygons + 1) * word),
                      results = memory.allocate(polygons * CADT_POLYGON_RESULT_WORDS * word);
-    const std::size_t item_words = CADT_POLYGON_WORDS * largest + CADT_POLYGON_SPARE;
-    const std::size_t words = ctx_.device.shape().contiguous
-                                  ? all.items * item_words
-                                  : CADT_POLYGON_WORDS * points + CADT_POLYGON_SPARE * polygons;
+    const auto [words, item_words] = scratch_of(first, end);
     if (words > scratch_words_) {
       scratch_.release();
       scratch_ = memory.allocate(words * word);
@@ -195,13 +250,13 @@ class PolygonsCall {
 
   /// What can be said without a mesh.
   bool refuse(std::size_t p) {
-    const auto report = [&](PolygonStatus status, std::size_t at) {
-      add(p, status, static_cast<std::int32_t>(at), static_cast<std::int32_t>(at), 0);
+    const auto report = [&](PolygonStatus status, std::int32_t at) {
+      add(p, status, at, at, 0);
       return true;
     };
     for (std::size_t i = in_.first_point(p); i < in_.first_point(p + 1); ++i)
       if (!std::isfinite(in_.points.x(i)) || !std::isfinite(in_.points.y(i)))
-        return report(PolygonStatus::not_finite, i);
+        return report(PolygonStatus::not_finite, static_cast<std::int32_t>(i));
     const auto same = [&](std::size_t i, std::size_t j) {
       return in_.points.x(i) == in_.points.x(j) && in_.points.y(i) == in_.points.y(j);
     };
@@ -210,7 +265,8 @@ class PolygonsCall {
       std::size_t second = begin, third = begin;
       while (second < end && same(begin, second)) ++second;
       for (third = second; third < end && (same(begin, third) || same(second, third));) ++third;
-      if (third >= end) return report(PolygonStatus::too_few_points, begin);
+      if (third >= end)
+        return report(PolygonStatus::too_few_points, begin == end ? -1 : static_cast<std::int32_t>(begin));
     }
     return false;
   }
@@ -228,9 +284,14 @@ class PolygonsCall {
     options.keep_points = KeepPoints::no;
     options.order = Order::canonical;
     options.progress = nullptr;
+    const std::size_t limit = options.max_memory, taken = ctx_.memory.taken();
+    if (limit != 0) options.max_memory = limit > taken ? limit - taken : 1;
     try {
-      const std::vector<std::int32_t> inside =
-          triangulate_constrained(in_.points.subview(begin, count), segments, constraints, options).triangles_inside();
+      const ConstrainedTriangulation mesh =
+          triangulate_constrained(in_.points.subview(begin, count), segments, constraints, options);
+      const std::vector<std::int32_t> inside = mesh.triangles_inside();
+      add_counters(alone_, mesh.statistics());
+      alone_.bytes_device_peak = std::max(alone_.bytes_device_peak, taken + mesh.statistics().bytes_device_peak);
       std::int32_t* to = result_.triangles.get() + 3 * total();
       for (const std::int32_t v : inside) *to++ = v + static_cast<std::int32_t>(begin);
       const auto at = static_cast<std::int32_t>(begin);
@@ -240,6 +301,9 @@ class PolygonsCall {
       const auto ring_of = [&](std::int32_t edge) { return std::ranges::upper_bound(rings, std::int64_t{edge}); };
       add(p, ring_of(i) == ring_of(j) ? PolygonStatus::self_crossing : PolygonStatus::ring_crossing,
           i + static_cast<std::int32_t>(begin), j + static_cast<std::int32_t>(begin), 0);
+    } catch (const OutOfMemory& error) {
+      if (limit != 0) ctx_.memory.require(error.needed());  // says what all need together
+      throw;
     }
   }
 
@@ -249,6 +313,7 @@ class PolygonsCall {
   std::size_t most_ = 0, scratch_words_ = 0;
   Allocation triangles_, packed_, scratch_;
   bool direct_ = false;  ///< kernels write to the result
+  Statistics alone_;
 };
 
 }  // namespace
@@ -286,14 +351,18 @@ PolygonsResult triangulate_polygons(PointsView ring_points, std::span<const std:
   require_size(ring_points.size());
   require_offsets(ring_offsets, ring_points.size(), "rings", "points");
   require_offsets(polygon_offsets, ring_offsets.size() - 1, "polygons", "rings");
+  if (options.tuning.watch) throw OptionError("tuning.watch", "shows one mesh; there is none in a call with polygons");
   auto result = std::make_unique<PolygonsResult::Data>();
   const CallState state(options, ring_points.size());
   query::require_doubles(*(**state).device);
   begin_call(**state, ring_points.size(), result->statistics);
   Context ctx(*(**state).device, (**state).memory, (**state).options, result->statistics);
-  PolygonsCall(ctx, {ring_points, ring_offsets, polygon_offsets}, *result).run();
+  const Polygons input{ring_points, ring_offsets, polygon_offsets};
+  PolygonsCall call(ctx, input, *result);
+  call.run();
   ctx.end_phase("polygons");
   end_call(**state, ctx, false);
+  add_counters(result->statistics, call.alone());
   return PolygonsResult(std::move(result));
 }
 

@@ -23,7 +23,7 @@ enum {
 
 /* Words of memory for n points, and beside them. */
 enum { CADT_POLYGON_WORDS = 60, CADT_POLYGON_SPARE = 8, CADT_SORT_RUN = 16 };
-/* A result: what becomes of it, and two points that show why. */
+/* A result: what becomes of it, and two points that show why, or CADT_NONE. */
 enum { CADT_POLYGON_STATE, CADT_POLYGON_FIRST, CADT_POLYGON_SECOND, CADT_POLYGON_RESULT_WORDS };
 
 typedef struct {
@@ -184,16 +184,19 @@ CADT_FN cadt_u32 cadt_find_crossing(const cadt_sweep* s, const cadt_polygon* pol
   return CADT_POLYGON_BROKEN;
 }
 
-/* Triangles of the polygon in `s`. What becomes of it, and two points that show why. */
+/* Triangles of the polygon in `s`. What becomes of it, and two points that show why, or CADT_NONE if there are none. */
 CADT_FN cadt_u32 cadt_sweep_polygon(cadt_sweep* s, cadt_polygon* polygon, cadt_i32 shift, cadt_u32* first,
                                     cadt_u32* second) {
   const cadt_u32 vertices = cadt_rank_points(s, polygon, shift);
-  if (polygon->first_ring == polygon->end_ring) return CADT_POLYGON_TOO_FEW_POINTS;
+  if (polygon->first_ring == polygon->end_ring) {
+    *first = *second = CADT_NONE;
+    return CADT_POLYGON_TOO_FEW_POINTS;
+  }
   for (cadt_u32 r = polygon->first_ring; r < polygon->end_ring; ++r) {
     const cadt_u32 begin = polygon->ring_begins[r] - polygon->first,
                    end = polygon->ring_begins[r + 1u] - polygon->first;
     if (cadt_add_ring(s, polygon, begin, end)) continue;
-    *first = *second = begin;
+    *first = *second = begin == end ? CADT_NONE : begin;
     return CADT_POLYGON_TOO_FEW_POINTS;
   }
   for (cadt_u32 p = 0u; p < vertices; ++p)
@@ -205,7 +208,7 @@ CADT_FN cadt_u32 cadt_sweep_polygon(cadt_sweep* s, cadt_polygon* polygon, cadt_i
 }
 
 /* Writes the triangles of a polygon to `out`, as numbers of points, which are counted from `base`. How many; and what
- * becomes of the polygon, and two points that show why. */
+ * becomes of the polygon, and two points that show why, as above. */
 CADT_FN cadt_u32 cadt_triangulate_polygon(cadt_polygon* polygon, CADT_GLOBAL cadt_u32* memory, cadt_u32 base,
                                           CADT_GLOBAL cadt_u32* out, cadt_u32* state, cadt_u32* first,
                                           cadt_u32* second) {
@@ -255,8 +258,8 @@ CADT_KERNEL(cadt_triangulate_polygons, CADT_GLOBAL const cadt_point* points, CAD
                                          &first, &second);
     CADT_GLOBAL cadt_u32* result = results + CADT_CAST(cadt_u32, CADT_POLYGON_RESULT_WORDS) * i;
     result[CADT_POLYGON_STATE] = state;
-    result[CADT_POLYGON_FIRST] = base + polygon.first + first;
-    result[CADT_POLYGON_SECOND] = base + polygon.first + second;
+    result[CADT_POLYGON_FIRST] = first == CADT_NONE ? first : base + polygon.first + first;
+    result[CADT_POLYGON_SECOND] = second == CADT_NONE ? second : base + polygon.first + second;
   }
 }
 

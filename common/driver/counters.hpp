@@ -36,6 +36,9 @@ class Counters {
 /// Adds these rows of counters to the statistics.
 void add_counters(Statistics& statistics, std::span<const std::uint32_t> rows);
 
+/// Adds what a call from within another one has counted. Times are part of those of the other call.
+void add_counters(Statistics& to, const Statistics& from);
+
 /// The device's histogram of flips per edge (common/overlay/flip_histogram.dev.h). Passed to kernels as its buffer,
 /// null for StatisticsDetail::none.
 class FlipHistogram {

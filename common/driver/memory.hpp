@@ -104,7 +104,9 @@ class Memory {
   /// Begins a new budget. `limit` bounds the bytes held and cached together from here on; 0: no limit. `reserved`: as
   /// BufferCache::begin.
   void begin(std::size_t limit, std::size_t reserved) noexcept;
-  /// Most bytes held and cached together.
+  /// Bytes held and cached together.
+  [[nodiscard]] std::size_t taken() const noexcept { return taken_; }
+  /// Most of them.
   [[nodiscard]] std::size_t peak() const noexcept { return peak_; }
   /// Allocations that the device was asked for since this was made.
   [[nodiscard]] std::uint64_t allocations() const noexcept { return allocations_; }

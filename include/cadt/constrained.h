@@ -140,7 +140,7 @@ enum {
   CADT_POLYGON_RING_CROSSING = 4,
   CADT_POLYGON_ZERO_AREA = 5
 };
-/* A polygon without triangles, and the ring points where the reason is (cadt::PolygonProblem). */
+/* A polygon without triangles, and the ring points where the reason is, or -1 (cadt::PolygonProblem). */
 typedef struct cadt_polygon_problem {
   size_t polygon;
   int32_t status; /* CADT_POLYGON_... */

@@ -32,7 +32,8 @@ struct PolygonProblem {
   std::size_t polygon = 0;
   PolygonStatus status = PolygonStatus::ok;
   /// Indices of ring points. Of edges that cross: where they begin; the lowest pair of them. Too few points: twice
-  /// where the ring begins, zero area: twice where the polygon does; not finite: twice the first such point.
+  /// where the ring begins, or -1 if it has no points or the polygon has no ring. Zero area: twice where the polygon
+  /// begins; not finite: twice the first such point.
   std::int32_t first = 0, second = 0;
 };
 

@@ -79,7 +79,7 @@ inline Expected expected_of(const PolygonSet& set, std::size_t p) {
       const auto at = static_cast<std::int32_t>(i);
       return {PolygonStatus::not_finite, at, at, {}};
     }
-  if (rings.size() == 1) return {PolygonStatus::too_few_points, begin, begin, {}};
+  if (rings.size() == 1) return {PolygonStatus::too_few_points, -1, -1, {}};
   for (std::size_t r = 0; r + 1 < rings.size(); ++r) {
     Ring different;
     for (std::int64_t i = rings[r]; i < rings[r + 1]; ++i) different.push_back(point(i));
@@ -87,7 +87,7 @@ inline Expected expected_of(const PolygonSet& set, std::size_t p) {
     const auto same = std::ranges::unique(different);
     different.erase(same.begin(), same.end());
     if (different.size() >= 3) continue;
-    const auto at = static_cast<std::int32_t>(rings[r]);
+    const auto at = different.empty() ? -1 : static_cast<std::int32_t>(rings[r]);
     return {PolygonStatus::too_few_points, at, at, {}};
   }
   std::vector<std::int64_t> offsets;

@@ -159,6 +159,7 @@ TEST_P(Polygons, LargePolygonsAmongSmallOnes) {
     if (n > 500) std::swap(polygon[1][200], polygon[1][240]);
     set.add(polygon);
     if (n == 513) set.add({Ring(600, {1, 1})});
+    if (n == 513) set.add({{}, Ring(600, {1, 1})});
     if (n == 513) polygon[1][300][0] = std::numeric_limits<double>::infinity();
     set.add(polygon);
     set.add({star(random, n, 0, 0, 5e8, 1e9), star(random, 3 + n / 100, 7e8, 0, 1e8, 5e8)});
@@ -167,7 +168,7 @@ TEST_P(Polygons, LargePolygonsAmongSmallOnes) {
   EXPECT_GE(counts.at(PolygonStatus::ring_crossing), 4U);
   EXPECT_GE(counts.at(PolygonStatus::self_crossing), 4U);
   EXPECT_EQ(counts.at(PolygonStatus::not_finite), 1U);
-  EXPECT_EQ(counts.at(PolygonStatus::too_few_points), 1U);
+  EXPECT_EQ(counts.at(PolygonStatus::too_few_points), 2U);
 }
 
 /// Coordinates of any size; those too far apart for the narrow arithmetic are done by the wide one.
@@ -206,6 +207,7 @@ TEST_P(Polygons, DefectsAreReportedOneByOne) {
       {{square}, PolygonStatus::ok},
       {{}, PolygonStatus::too_few_points},
       {{square, {}}, PolygonStatus::too_few_points},
+      {{{}, square}, PolygonStatus::too_few_points},
       {{square, {{1, 1}, {2, 2}, {1, 1}}}, PolygonStatus::too_few_points},
       {{{{0, 0}, {1, 0}, {0, nan}}}, PolygonStatus::not_finite},
       {{{{0, 0}, {-inf, 0}, {0, 1}}}, PolygonStatus::not_finite},
@@ -242,7 +244,11 @@ TEST_P(Polygons, NothingToDo) {
   set.add({{}, {}});
   const PolygonsResult result = triangulate(set);
   EXPECT_EQ(result.problems().size(), 2U);
+  EXPECT_EQ(result.problems()[1].first, -1);
   EXPECT_TRUE(result.triangles().empty());
+  Options watched = GetParam().options();
+  watched.tuning.watch = true;
+  EXPECT_THROW((void)set.triangulate(watched), OptionError);
 }
 
 /// A slice of larger arrays: the offsets neither begin with 0 nor end with the number of points.

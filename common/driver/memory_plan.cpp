@@ -96,10 +96,11 @@ std::size_t plan_batch(Memory& memory, const Options& options, const DeviceInfo&
   if (n <= known.batch && options.max_memory == 0) return most_points_batched;
   std::size_t largest = 0;
   for (std::size_t s = 0; s < sets; ++s) largest = std::max(largest, offsets[s + 1] - offsets[s]);
+  std::size_t bytes_individual = 0;
   if (largest > most_of_set) {
     const MemoryPlan individual = plan_memory({largest, true, false, sizeof(double)}, false, false);
     require_buffer(options, device, individual.largest_buffer);
-    memory.require(results + individual.bytes);
+    bytes_individual = results + individual.bytes;
   }
   std::size_t most = most_points_batched;
   const auto bytes = [&] {
@@ -109,7 +110,7 @@ std::size_t plan_batch(Memory& memory, const Options& options, const DeviceInfo&
   while (most > fewest_points_batched &&
          !(memory.allows(bytes()) && fits_buffers(options, device, locked_bytes(std::min(n, most)))))
     most /= 2;
-  memory.require(bytes());
+  memory.require(std::max(bytes(), bytes_individual));
   return most;
 }
 

@@ -106,5 +106,27 @@ TEST_F(Chosen, BatchesGetSmallerUntilTheyFit) {
   EXPECT_THROW((void)most(bytes(std::size_t{1} << 16) - 1), OutOfMemory);
 }
 
+/// What the message asks for is enough, whether the largest set or a batch of the others needs more.
+TEST_F(Chosen, BatchesSayAtOnceWhatTheyNeed) {
+  const auto needed = [&](const std::vector<std::size_t>& offsets, std::size_t limit) {
+    options_.max_memory = limit;
+    memory_.begin(limit, 0);
+    try {
+      (void)plan_batch(memory_, options_, info_, offsets, 30000, 1000, known_);
+    } catch (const OutOfMemory& error) {
+      return error.needed();
+    }
+    return std::size_t{0};
+  };
+  for (const std::size_t largest : {40000, 400000}) {
+    std::vector<std::size_t> offsets = {0, largest};
+    for (int set = 0; set < 100; ++set) offsets.push_back(offsets.back() + 1000);
+    const std::size_t bytes = needed(offsets, 1000);
+    EXPECT_GT(bytes, 0U);
+    EXPECT_EQ(needed(offsets, bytes), 0U) << largest;
+    EXPECT_EQ(needed(offsets, bytes - 1), bytes) << largest;
+  }
+}
+
 }  // namespace
 }  // namespace cadt

@@ -35,6 +35,7 @@ std::string describe(const io::PolygonsFile& file, const PolygonProblem& problem
   };
   std::string text = fmt::format("polygon {} of feature {}: {}", problem.polygon, file.features[problem.polygon],
                                  to_string(problem.status));
+  if (problem.first < 0) return text + ", a ring has no points";
   const bool pair = problem.first != problem.second;
   text += pair ? ", the edges from " : " at ";
   text += place(problem.first);

@@ -45,8 +45,10 @@ class TrackedText {
 struct Coordinates {
   std::vector<double> xy, z;
   std::size_t position_depth = 0;  ///< arrays around each number; 0 without any
+  /// An array but a position that ended, itself one of so many arrays around what is in it, behind so many positions.
   struct End {
-    std::size_t depth, positions;  ///< an array that ended inside so many arrays, behind so many positions
+    std::size_t depth, positions;
+    const char* at;  ///< the text behind it
   };
   std::vector<End> ends;
   bool given = false;
@@ -134,6 +136,7 @@ class Scanner {
       if (skips()) ++skipped_;
       return true;  // features, geometries
     }
+    if (depth_ == 0 && coordinates().given) fail("there are coordinates a second time");
     if (!position_.empty()) fail("an array is where a number should be");
     ++depth_;
     coordinates().given = true;
@@ -144,7 +147,7 @@ class Scanner {
     if (depth_ == 0) return true;
     Coordinates& all = coordinates();
     if (position_.empty()) {
-      all.ends.push_back({depth_, all.positions()});
+      all.ends.push_back({depth_, all.positions(), reached_});
     } else {
       end_position(all);
     }
@@ -213,32 +216,43 @@ class Scanner {
     }
     const Coordinates& all = object.coordinates;
     if (!all.given) fail("the " + object.type + " has no coordinates");
-    if (all.positions() == 0) return;
-    if (all.position_depth != type->depth && bare_) {
-      fail("a bare array is taken for the rings of one polygon, [[[x, y], ...], ...], and here positions are in " +
-           std::to_string(all.position_depth) + (all.position_depth == 1 ? " array" : " arrays") +
-           ": give GeoJSON, as {\"type\": \"MultiPoint\", \"coordinates\": ...}, or a table of points");
-    }
-    if (all.position_depth != type->depth) {
-      fail("the coordinates of the " + object.type + " are in " + std::to_string(all.position_depth) +
-           " arrays instead of " + std::to_string(type->depth));
-    }
-    if (type->depth == 1 || object.type == "MultiPoint") return sink_.points(all.range(0, all.positions()));
+    require_depth(object.type, all, type->depth);
     const bool polygons = object.type.ends_with("Polygon");
+    if (all.positions() == 0 && !polygons) return;
+    if (type->depth == 1 || object.type == "MultiPoint") return sink_.points(all.range(0, all.positions()));
     const std::size_t part_depth = type->depth - 1;  // of lines and rings
     std::size_t from = 0;
     bool outer = true;
     for (const Coordinates::End& end : all.ends) {
-      if (end.depth < part_depth) outer = true;
-      if (end.depth != part_depth) continue;
-      const std::size_t to = end.positions;
-      if (to != from && polygons) {
-        sink_.ring(without_repetition(all, from, to), outer, object.feature);
-        outer = false;
-      } else if (to != from) {
-        sink_.line(all.range(from, to));
+      if (end.depth == part_depth) {
+        const std::size_t to = end.positions;
+        if (polygons)
+          sink_.ring(without_repetition(all, from, to), std::exchange(outer, false), object.feature);
+        else if (to != from)
+          sink_.line(all.range(from, to));
+        from = to;
+      } else if (polygons && end.depth + 1 == part_depth) {
+        if (std::exchange(outer, true)) sink_.ring({}, true, object.feature);  // a polygon without rings
       }
-      from = to;
+    }
+  }
+
+  /// Positions, and arrays where positions should be, are in so many arrays, themselves included. \throws FileError
+  void require_depth(const std::string& type, const Coordinates& all, std::size_t depth) {
+    const bool any = all.positions() != 0;
+    if (any && all.position_depth != depth && bare_) {
+      fail("a bare array is taken for the rings of one polygon, [[[x, y], ...], ...], and here positions are in " +
+           std::to_string(all.position_depth) + (all.position_depth == 1 ? " array" : " arrays") +
+           ": give GeoJSON, as {\"type\": \"MultiPoint\", \"coordinates\": ...}, or a table of points");
+    }
+    if (any && all.position_depth != depth) {
+      fail("the coordinates of the " + type + " are in " + std::to_string(all.position_depth) + " arrays instead of " +
+           std::to_string(depth));
+    }
+    for (const Coordinates::End& end : all.ends) {
+      if (end.depth < std::max<std::size_t>(depth, 2)) continue;  // a Point may have none: "coordinates": []
+      reached_ = end.at;
+      fail("a position needs two numbers");
     }
   }
 

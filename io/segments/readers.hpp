@@ -71,7 +71,8 @@ class GeoJsonSink {
   virtual ~GeoJsonSink() = default;
   virtual void points(Positions positions) = 0;
   virtual void line(Positions positions) = 0;
-  /// A ring without the repetition of its first position; `outer`: the first of a polygon.
+  /// A ring without the repetition of its first position; `outer`: the first of a polygon. It may have no positions: a
+  /// polygon without rings is one of those.
   virtual void ring(Positions positions, bool outer, std::size_t feature) = 0;
 };
 struct GeoJsonSummary {

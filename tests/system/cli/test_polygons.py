@@ -90,6 +90,21 @@ class Polygons(CliTest):
         self.assertIn("polygon 3 of feature 3: too few points at (0, 0)", err)
         self.assertEqual(area_of(*self.off("m.off")) / 2, 16)
 
+    def test_those_without_points_are_named(self):
+        self.write("a.geojson", geojson(polygon(SQUARE), polygon(), polygon([]), polygon(SQUARE, []), polygon([], SQUARE)))
+        named = ["a.geojson: 4 of 5 polygons have no inside"] + [
+            f"polygon {p} of feature {p}: too few points, a ring has no points" for p in range(1, 5)]
+        self.fails(3, "polygons", "a.geojson", "-o", "m.off", "--strict", says=named)
+        err = self.cadt("polygons", "a.geojson", "-o", "m.off").err
+        for text in named:
+            self.assertIn(text, err)
+        self.assertEqual(area_of(*self.off("m.off")) / 2, 16)
+        err = self.cadt("polygons", "a.geojson", "--crossing", "exact", "-o", "m.off").err
+        self.assertIn("2 of 5 polygons have no inside", err)
+        self.assertEqual(area_of(*self.off("m.off")) / 2, 3 * 16)
+        self.write("b.json", "[]")
+        self.assertIn("1 of 1 polygons has no inside", self.cadt("polygons", "b.json", "-o", "m.off").err)
+
     def test_errors(self):
         self.fails(2, "polygons", "a.json", "--crossing", "round", says="--crossing round:")
         self.write("a.json", json.dumps({"type": "LineString", "coordinates": [[0, 0], [1, 1]]}))

@@ -88,6 +88,13 @@ INSTANTIATE_TEST_SUITE_P(
                       R"({"type":"LineString","coordinates":[[5,6],[7,8]]}]}}]})",
                   {1, 2, 3, 4, 5, 6, 7, 8},
                   {{2, 3}}},
+        GoodGraph{"geojson_empty",
+                  "geojson",
+                  R"({"type":"GeometryCollection","geometries":[{"type":"Point","coordinates":[]},)"
+                  R"({"type":"MultiPoint","coordinates":[]},{"type":"Polygon","coordinates":[]},)"
+                  R"({"type":"MultiLineString","coordinates":[[],[[5,6],[7,8]]]}]})",
+                  {5, 6, 7, 8},
+                  {{0, 1}}},
         GoodGraph{"rings", "json", "[[[0,0],[9,0],[0,9]],[[1,1]]]", {0, 0, 9, 0, 0, 9, 1, 1}, {{0, 1}, {1, 2}, {2, 0}}},
         GoodGraph{"ring_of_one_place", "json", "[[[3,3],[3,3]]]", {3, 3}, {}}),
     [](const auto& test) { return std::string(test.param.name); });
@@ -160,6 +167,31 @@ TEST(Polygons, HaveOffsetsAndFeatures) {
   EXPECT_EQ(file.crs, "");
   const std::string line = folder.file("c.json", R"({"type":"LineString","coordinates":[[1,2],[3,4]]})");
   expect_file_error([&] { static_cast<void>(read_polygons(line)); }, line, 0, "has no polygons");
+}
+
+/// An empty ring is one, and a polygon without rings has one of those, so that none is lost, nor a hole an outline.
+TEST(Polygons, KeepRingsWithoutPoints) {
+  const Folder folder;
+  const std::string square = "[[0,0],[4,0],[4,4],[0,4],[0,0]]";
+  struct Case {
+    const char* type;
+    std::string coordinates;
+    std::vector<std::int64_t> rings, polygons;
+  };
+  for (const Case& one :
+       {Case{"Polygon", "[]", {0, 0}, {0, 1}},
+        {"Polygon", "[[]]", {0, 0}, {0, 1}},
+        {"Polygon", "[" + square + ",[]]", {0, 4, 4}, {0, 2}},
+        {"Polygon", "[[]," + square + "]", {0, 0, 4}, {0, 2}},
+        {"MultiPolygon", "[[" + square + "],[],[[]," + square + "]]", {0, 4, 4, 4, 8}, {0, 1, 2, 4}}}) {
+    SCOPED_TRACE(one.coordinates);
+    const PolygonsFile file = read_polygons(
+        folder.file("a.json", R"({"type":")" + std::string(one.type) + R"(","coordinates":)" + one.coordinates + "}"));
+    EXPECT_EQ(file.ring_offsets, one.rings);
+    EXPECT_EQ(file.polygon_offsets, one.polygons);
+  }
+  const std::string none = folder.file("b.json", R"({"type":"MultiPolygon","coordinates":[]})");
+  expect_file_error([&] { static_cast<void>(read_polygons(none)); }, none, 0, "has no polygons");
 }
 
 TEST(Polygons, HaveHeightsAndTheReferenceSystem) {
@@ -246,6 +278,19 @@ INSTANTIATE_TEST_SUITE_P(
                  "are in 2 arrays instead of 3"},
         BadGraph{"json_mixed_depth", "json", "[[[1,2],\n[[3,4]]]]", 2, "positions are in different numbers of arrays"},
         BadGraph{"json_one_number", "json", "[[[1,2],\n[3]]]", 2, "a position needs two numbers"},
+        BadGraph{"json_no_number", "json", "[[[1,2],\n[],[3,4]]]", 2, "a position needs two numbers"},
+        BadGraph{"json_no_number_first", "json",
+                 R"({"type":"LineString","coordinates":[)"
+                 "\n[],[1,2]]}",
+                 2, "a position needs two numbers"},
+        BadGraph{"json_no_number_multipoint", "json", R"({"type":"MultiPoint","coordinates":[[1,2],[]]})", 1,
+                 "a position needs two numbers"},
+        BadGraph{"json_no_number_at_all", "json", R"({"type":"MultiPolygon","coordinates":[[[[]]]]})", 1,
+                 "a position needs two numbers"},
+        BadGraph{"json_coordinates_twice", "json",
+                 R"({"type":"Point","coordinates":[1,2],)"
+                 "\n\"coordinates\":[3,4]}",
+                 2, "there are coordinates a second time"},
         BadGraph{"json_array_in_position", "json", "[[[1,\n[2]]]]", 2, "an array is where a number should be"},
         BadGraph{"json_text", "json", "[[[1,\n\"2\"]]]", 2, "text is where numbers should be"},
         BadGraph{"json_null", "json", "[[[1,\nnull]]]", 2, "null is where numbers should be"},

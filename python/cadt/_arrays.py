@@ -11,7 +11,7 @@ import numpy as np
 
 from cadt import _cadt
 from cadt._errors import InputError
-from cadt._points import as_pairs
+from cadt._points import as_pairs, as_points
 
 _HOST = 1  # DLPack's kDLCPU
 
@@ -20,6 +20,13 @@ def array_on_device(points: Any) -> Array | None:
     """The adapter for an array on a GPU; None for everything on the host."""
     adapter = adapter_of(points)
     return None if adapter is None else adapter(points)
+
+
+def as_host_points(points: Any, what: str = "points") -> np.ndarray:
+    """As as_points, where an array on a GPU is not taken."""
+    if adapter_of(points) is not None:
+        raise InputError(f"{what} are read on the host: pass a copy there", 0)
+    return as_points(points, what)
 
 
 def adapter_of(points: Any) -> type[Array] | None:

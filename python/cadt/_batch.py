@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cadt import _cadt, _devices
+from cadt._arrays import as_host_points
 from cadt._delaunay import Delaunay
 from cadt._errors import InputError
-from cadt._points import as_points, index_of, unmasked
+from cadt._points import index_of
 from cadt._progress import reporter
+from cadt._segments import as_offsets
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -107,13 +109,11 @@ def triangulate_batch(
     >>> len(batch), batch[1].simplices.tolist()
     (2, [[0, 1, 2]])
     """
-    p = as_points(points)
-    begin = np.asarray(unmasked(offsets, "offsets"))
-    if begin.ndim != 1 or begin.dtype.kind not in "iu" or begin.size == 0:
-        raise InputError("offsets must be integers of shape (sets + 1,)", 0)
+    p = as_host_points(points)
+    begin = as_offsets(offsets, "offsets", "integers of shape (sets + 1,)")
     if begin.min() < 0:
         raise InputError("offsets must not be negative", int(np.argmin(begin)))
-    begin = np.array(begin, dtype=np.int64)  # a copy: the caller may change what was given
+    begin = begin.copy()  # the caller may change what was given
     options = _devices.make_options(backend, device, order, threads, max_memory, "counters")
     if options.backend == "auto":
         options = options.on_host() if len(p) < _devices.SMALL else options

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from cadt import _cadt, _devices, _show
+from cadt._arrays import as_host_points
 from cadt._errors import InputError
-from cadt._points import as_points, index_of, unmasked
+from cadt._points import index_of, unmasked
 from cadt._progress import reporter
 from cadt._segments import as_offsets
 from cadt._wkb import MULTIPOLYGON, POLYGON, lines_of_wkb, offsets_of
@@ -22,7 +23,7 @@ class PolygonProblem(NamedTuple):
     """A polygon without triangles: its number, the reason, and the ring points where it is.
 
     The reason is "too few points", "not finite", "self-crossing", "ring crosses ring" or "zero area". Of edges that
-    cross, `first` and `second` are the points where they begin.
+    cross, `first` and `second` are the points where they begin; of a ring without points, both are -1.
     """
 
     polygon: int
@@ -80,9 +81,13 @@ class Polygons:
         if ax is None:
             ax = _show._need("matplotlib.pyplot", "matplotlib").gca()
         color = np.arange(len(self)) % 12 if values is None else np.asarray(values, dtype=np.float64)
+        if color.shape != (len(self),):
+            raise InputError(f"values must have shape ({len(self)},): one a polygon, not {color.shape}", 0)
         how.setdefault("cmap", "Paired" if values is None else "viridis")
-        if len(self.triangles):
-            ax.tripcolor(*self.points.T, self.triangles, facecolors=color[self.polygon_of].astype(float), **how)
+        if len(self.triangles):  # without the points of others, which may be far away or no numbers
+            used, corners = np.unique(self.triangles, return_inverse=True)
+            faces = color[self.polygon_of].astype(float)
+            ax.tripcolor(*self.points[used].T, corners.reshape(-1, 3), facecolors=faces, **how)
         ax.set_aspect("equal")
         return ax
 
@@ -142,7 +147,7 @@ def polygons(
             raise InputError("polygon_offsets need ring_offsets", 0)
         points, rings, of_rings, index, crs = _of_geometries(geometry)
     else:
-        points, rings = as_points(geometry), as_offsets(ring_offsets, "ring_offsets")
+        points, rings = as_host_points(geometry, "ring points"), as_offsets(ring_offsets, "ring_offsets")
         of_rings = np.arange(len(rings)) if polygon_offsets is None else as_offsets(polygon_offsets, "polygon_offsets")
     options = _devices.make_options(backend, device, "canonical", threads, max_memory, "counters")
     if options.backend == "auto" and _devices.prefers_host(len(points)):
@@ -159,11 +164,17 @@ def _of_geometries(geometry: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, A
         index = None
     if hasattr(geometry, "__array__"):
         geometry = _as_objects(geometry)
-    if isinstance(geometry, (list, tuple, np.ndarray)) and all(
-        isinstance(g, (bytes, bytearray, memoryview)) for g in geometry
-    ):
-        points, rings, polygons_ = lines_of_wkb(list(geometry), (POLYGON, MULTIPOLYGON))
-        return np.ascontiguousarray(points[:, :2]), rings, polygons_, index, crs
+    if isinstance(geometry, (list, tuple, np.ndarray)):
+        in_wkb = [isinstance(g, (bytes, bytearray, memoryview)) for g in geometry]
+        if all(in_wkb):
+            points, rings, polygons_ = lines_of_wkb(list(geometry), (POLYGON, MULTIPOLYGON))
+            return np.ascontiguousarray(points[:, :2]), rings, polygons_, index, crs
+        if any(in_wkb):
+            first = in_wkb.index(False)
+            kind = type(geometry[first]).__name__
+            raise InputError(
+                f"geometry {first} is a {kind}: pass WKB bytes of all polygons in a list, an array or a Series", first
+            )
     shapely = _show._need("shapely", "shapely")
     rows = np.atleast_1d(np.asarray(geometry, dtype=object))
     if rows.ndim != 1 or not (shapely.is_geometry(rows) | shapely.is_missing(rows)).all():

@@ -45,6 +45,9 @@ def as_offsets(offsets: Any, what: str, form: str = "offsets, integers of shape 
     a = as_array(offsets, what, form)
     if a.ndim != 1 or a.size == 0 or a.dtype.kind not in "iu":
         raise InputError(f"{what} must be {form}, not {a.dtype} of {a.shape}", 0)
+    if a.dtype == np.uint64 and (wrong := a > np.iinfo(np.int64).max).any():
+        first = int(np.argmax(wrong))
+        raise InputError(f"number {first} of {what} is {a[first]}, more than 2**63 - 1", first)
     return contiguous(a, np.int64)
 
 

@@ -46,9 +46,9 @@ class _Reader:
         columns = 2 + has_z + (kind // 1000 in (2, 3) or bool(flags & 4))
         if flags & 2:
             self.take(end + "I")  # the reference system
-        kind %= 1000
-        if kind not in kinds:
+        if kind % 1000 not in kinds or kind >= 4000:
             raise self.fail(f"a geometry of type {kind}")
+        kind %= 1000
         for _ in range(1 if kind == LINE else self.take(end + "I")):
             if kind in _PARTS:
                 self.read((_PARTS[kind],))
@@ -75,6 +75,8 @@ def lines_of_wkb(
     for index, data in enumerate(geometries):
         reader = _Reader(bytes(data), index)
         reader.read(kinds)
+        if any(reader.data[reader.at :]):  # zeros may fill up a row
+            raise reader.fail("there is more")
         lines += reader.lines
         counts.append(len(reader.lines))
     points = np.concatenate(lines) if lines else np.empty((0, 3))

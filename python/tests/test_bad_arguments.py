@@ -86,6 +86,8 @@ REFUSED: list[tuple[type[Exception], Callable[[], object]]] = [
     (InputError, lambda: cadt.triangulate_batch(P, [-1, 50])),
     (InputError, lambda: cadt.triangulate_batch(P, [])),
     (InputError, lambda: cadt.triangulate_batch(P, [0.0, 50.0])),
+    (InputError, lambda: cadt.triangulate_batch(P, [[0], [1, 50]])),
+    (InputError, lambda: cadt.triangulate_batch(P, np.array([0, 2**63], dtype=np.uint64))),
     (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1, 99]])),
     (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1, -1]])),
     (ValueError, lambda: cadt.Delaunay.from_simplices(P, [[0, 1]])),

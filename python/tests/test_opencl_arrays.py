@@ -211,6 +211,13 @@ def test_segments_that_are_refused(queue):
         with pytest.raises(cadt.InputError):
             cadt.ConstrainedDelaunay(there, wrong)
 
+def test_polygons_and_batches_are_of_the_host(queue):
+    points = cl_array.to_device(queue, np.random.default_rng(1).random((30, 2)))
+    for call in (cadt.triangulate_batch, cadt.polygons):
+        with pytest.raises(cadt.InputError, match="points are read on the host: pass a copy there"):
+            call(points, [0, 30])
+
+
 def test_what_is_asked_on_the_host(queue):
     xy = np.random.default_rng(3).random((50, 2))
     edges = cadt.Delaunay(xy).edges[:9]  # Delaunay edges, so that there is a Voronoi diagram

@@ -37,6 +37,40 @@ def test_arrays() -> None:
         cadt.polygons(xy, None, [0, 1])
     with pytest.raises(cadt.InputError):
         cadt.polygons(xy, [0.5, 5])
+    with pytest.raises(cadt.InputError, match=f"number 1 of ring_offsets is {2**63 + 5}, more than") as caught:
+        cadt.polygons(xy, np.array([0, 2**63 + 5], dtype=np.uint64))
+    assert caught.value.index == 1
+    with pytest.raises(cadt.InputError, match=r"ring points must have shape \(n, 2\), not \(19, 3\)$"):
+        cadt.polygons(np.c_[xy, xy[:, 0]], [0, 5])
+
+
+def test_rings_without_points() -> None:
+    result = cadt.polygons(SQUARE, [0, 5, 5, 5], [0, 2, 2, 3], backend="host")
+    assert [tuple(p) for p in result.problems] == [(p, "too few points", -1, -1) for p in range(3)]
+    assert cadt.polygons(SQUARE[:2], [0, 2]).problems[0][2:] == (0, 0)
+
+
+@pytest.mark.parametrize("backend", sorted({d.backend for d in cadt.devices() if d.usable}))
+def test_memory_and_statistics_of_large_polygons(backend: str) -> None:
+    """Rounds of small polygons, and large ones beside them: the limit is for all, and its message says what suffices."""
+    angle = np.linspace(0, 2 * np.pi, 20000, endpoint=False)
+    circle = np.c_[np.cos(angle), np.sin(angle)]
+    xy = np.concatenate([*[[[i, 0], [i + 1, 0], [i, 1]] for i in range(2000)], circle, circle])
+    rings = [*range(0, 6001, 3), 26000, 46000]
+    expected = cadt.polygons(xy, rings, backend=backend)
+    assert expected.statistics["certified_edges"] > 0 and expected.statistics["flips"] + expected.statistics["proven_stars"]
+    limit, tries = 1000, 0
+    while True:
+        try:
+            result = cadt.polygons(xy, rings, backend=backend, max_memory=limit)
+            break
+        except cadt.OutOfMemory as error:
+            assert error.available == limit < error.needed
+            assert f"this needs {error.needed} bytes on the device and the limit is {limit}" in str(error)
+            limit, tries = error.needed, tries + 1
+    assert tries <= 2
+    assert limit * 0.5 < result.statistics["bytes_device_peak"] <= limit
+    np.testing.assert_array_equal(result.triangles, expected.triangles)
 
 
 def wkb(rings: list, order: str = "<", kind: int = 3, extra: int = 0) -> bytes:
@@ -130,6 +164,15 @@ def test_wkb_of_others_is_refused() -> None:
         with pytest.raises(cadt.InputError) as caught:
             cadt.polygons([wkb([SQUARE]), wrong])
         assert caught.value.index == 1
+    for kind in (4003, 9003, 3 | 1 << 20):
+        with pytest.raises(cadt.InputError, match=f"geometry 0 cannot be read as WKB: a geometry of type {kind}"):
+            cadt.polygons([wkb([SQUARE], kind=kind)])
+    with pytest.raises(cadt.InputError, match="geometry 1 cannot be read as WKB: there is more at byte 93"):
+        cadt.polygons([wkb([SQUARE]) + b"\0\0", wkb([SQUARE]) + b"\0\1"])
+    for given in ([wkb([SQUARE]), None], (wkb([SQUARE]), None)):
+        with pytest.raises(cadt.InputError, match="geometry 1 is a NoneType: pass WKB bytes of all") as caught:
+            cadt.polygons(given)
+        assert caught.value.index == 1
     huge = struct.pack("<BIII", 1, 3, 1, 2**32 - 1)
     with pytest.raises(cadt.InputError):
         cadt.polygons([huge])
@@ -178,6 +221,12 @@ def test_plot() -> None:
     result = cadt.polygons([wkb([SQUARE, HOLE]), wkb([np.add(SQUARE, 9)])])
     ax = result.plot(plt.figure().add_subplot(), values=[3, 4])
     assert sorted(set(ax.collections[0].get_array().tolist())) == [3, 4]
+    for wrong in ([1], [1, 2, 3], [[1, 2]]):
+        with pytest.raises(cadt.InputError, match=r"values must have shape \(2,\): one a polygon"):
+            result.plot(plt.figure().add_subplot(), values=wrong)
+    bad = cadt.polygons([wkb([SQUARE]), wkb([[[0, 0], [1e9, np.nan], [np.inf, 1]]])])
+    ax = bad.plot(plt.figure().add_subplot())
+    assert len(bad.problems) == 1 and ax.get_xlim()[1] < 4 and ax.get_ylim()[1] < 4
 
 
 def test_labels() -> None:

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <string>
 
@@ -78,11 +77,7 @@ class Batch : public BackendTest {
     return options;
   }
   /// Also a processor that does what a card does.
-  static bool on_card() {
-    const bool opencl = GetParam().backend == Backend::opencl && (std::getenv("CADT_OPENCL_AS_GPU") != nullptr ||
-                                                                  std::getenv("CADT_TEST_OPENCL_DEVICE") != nullptr);
-    return GetParam().backend == Backend::cuda || opencl;
-  }
+  static bool on_card() { return Triangulator(GetParam().options()).device().gpu; }
 };
 
 Sets uniform_sets(std::size_t count, std::size_t size) {

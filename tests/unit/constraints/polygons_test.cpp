@@ -247,7 +247,7 @@ TEST_P(Polygons, NothingToDo) {
   EXPECT_EQ(result.problems()[1].first, -1);
   EXPECT_TRUE(result.triangles().empty());
   Options watched = GetParam().options();
-  watched.tuning.watch = true;
+  watched.tuning.watch = [](const Snapshot&) {};
   EXPECT_THROW((void)set.triangulate(watched), OptionError);
 }
 

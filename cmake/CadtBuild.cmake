@@ -31,6 +31,14 @@ function(cadt_library_options target)
     VISIBILITY_INLINES_HIDDEN ON)
 endfunction()
 
+# cadt_sections(TARGET): the linker can leave out the functions and data that nobody uses, one by one, and with them the
+# libraries that only they need.
+function(cadt_sections target)
+  if(NOT MSVC)
+    target_compile_options(${target} PRIVATE -ffunction-sections -fdata-sections)
+  endif()
+endfunction()
+
 # cadt_export_interface_alone(TARGET): of a shared library, what cmake/cadt.map lets out. The linkers of other systems than
 # Linux read no such file; there it is what is marked CADT_API, for which Windows must know who builds and who uses it.
 function(cadt_export_interface_alone target)
@@ -84,6 +92,30 @@ function(cadt_shorten_build)
     <mutex> <numeric> <optional> <span> <string> <vector>)
   list(FILTER sources INCLUDE REGEX "backends/host/kernels_|self_test/|point_profile\\.cpp")
   set_source_files_properties(${sources} TARGET_DIRECTORY cadt PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
+# cadt_on_off_auto(NAME): the variable becomes AUTO, ON or OFF, whatever CMake takes for true or false.
+function(cadt_on_off_auto name)
+  string(TOUPPER "${${name}}" value)
+  if(value MATCHES "^(ON|YES|TRUE|Y|1)$")
+    set(value ON)
+  elseif(value MATCHES "^(OFF|NO|FALSE|N|0|)$")
+    set(value OFF)
+  elseif(NOT value STREQUAL "AUTO")
+    message(FATAL_ERROR "${name} is '${${name}}'; it can be AUTO, ON or OFF")
+  endif()
+  set(${name} ${value} PARENT_SCOPE)
+endfunction()
+
+# cadt_packages_are_missing(NAMES): ends the configuration where the program, or the benchmarks, cannot be built.
+function(cadt_packages_are_missing names)
+  set(library_alone "-DCADT_BUILD_APPS=OFF -DCADT_BUILD_BENCH=OFF")
+  if(SKBUILD)
+    set(library_alone "pip's option -C cmake.define.CADT_BUILD_APPS=OFF")
+  endif()
+  message(FATAL_ERROR "the program cadt needs what is not here: ${names}. On Debian and Ubuntu, scripts/setup installs it: libcli11-dev "
+                      "libfmt-dev libfast-float-dev nlohmann-json3-dev zlib1g-dev libpng-dev libcairo2-dev pkg-config. "
+                      "For the library alone, configure with ${library_alone}")
 endfunction()
 
 # cadt_backend(NAME in|out REASON): one line of the summary.

@@ -9,10 +9,9 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
 
   function(cadt_embed out_variable name root prefix)
     set(output ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
-    string(REPLACE ";" "," entries "${ARGN}")
     add_custom_command(
       OUTPUT ${output}
-      COMMAND ${CMAKE_COMMAND} -DENTRIES=${entries} -DPREFIX=${prefix} -DROOT=${root} -DNAME=${name} -DOUTPUT=${output}
+      COMMAND ${CMAKE_COMMAND} "-DENTRIES=${ARGN}" -DPREFIX=${prefix} -DROOT=${root} -DNAME=${name} -DOUTPUT=${output}
               -P ${CADT_EMBED_SCRIPT}
       DEPENDS ${ARGN} ${prefix} ${CADT_EMBED_SCRIPT}
       DEPFILE ${output}.d
@@ -105,11 +104,10 @@ function(make_pieces out text)
   set(${out} "${pieces}" PARENT_SCOPE)
 endfunction()
 
-string(REPLACE "," ";" entries "${ENTRIES}")
 set(all_files "")
 set(arrays "")
 set(cases "")
-foreach(entry IN LISTS entries)
+foreach(entry IN LISTS ENTRIES)
   get_filename_component(stage ${entry} NAME_WE)
   set_property(GLOBAL PROPERTY EMBED_TEXT "")
   set_property(GLOBAL PROPERTY EMBED_FILES "")

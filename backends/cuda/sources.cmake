@@ -2,7 +2,9 @@
 # The CUDA back end: sources of the target cadt if nvcc is there, else the reason in CADT_CUDA_ABSENT.
 
 set(CADT_CUDA_ABSENT "")
-if(CADT_CUDA STREQUAL "AUTO" OR CADT_CUDA STREQUAL "ON")
+if(CADT_CUDA STREQUAL "OFF")
+  set(CADT_CUDA_ABSENT "CADT_CUDA is OFF")
+else()
   include(CheckLanguage)
   check_language(CUDA)
   if(NOT CMAKE_CUDA_COMPILER)
@@ -11,10 +13,6 @@ if(CADT_CUDA STREQUAL "AUTO" OR CADT_CUDA STREQUAL "ON")
       message(FATAL_ERROR "CADT_CUDA is ON, but ${CADT_CUDA_ABSENT}. Install the CUDA toolkit, or set CADT_CUDA to AUTO or OFF.")
     endif()
   endif()
-elseif(CADT_CUDA STREQUAL "OFF")
-  set(CADT_CUDA_ABSENT "CADT_CUDA is OFF")
-else()
-  message(FATAL_ERROR "CADT_CUDA is '${CADT_CUDA}'; it can be AUTO, ON or OFF")
 endif()
 
 if(CADT_CUDA_ABSENT)

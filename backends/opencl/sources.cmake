@@ -3,7 +3,9 @@
 # Only headers are needed here: the loader is looked for at run time (loader.cpp).
 
 set(CADT_OPENCL_ABSENT "")
-if(CADT_OPENCL STREQUAL "AUTO" OR CADT_OPENCL STREQUAL "ON")
+if(CADT_OPENCL STREQUAL "OFF")
+  set(CADT_OPENCL_ABSENT "CADT_OPENCL is OFF")
+else()
   find_path(CADT_OPENCL_HPP CL/opencl.hpp)
   find_path(CADT_OPENCL_H CL/opencl.h HINTS ${CADT_OPENCL_HPP})
   mark_as_advanced(CADT_OPENCL_HPP CADT_OPENCL_H)
@@ -16,10 +18,6 @@ if(CADT_OPENCL STREQUAL "AUTO" OR CADT_OPENCL STREQUAL "ON")
     message(FATAL_ERROR "CADT_OPENCL is ON, but: ${CADT_OPENCL_ABSENT}. On Debian and Ubuntu: "
                         "apt install opencl-headers opencl-clhpp-headers. Or set CADT_OPENCL to AUTO or OFF.")
   endif()
-elseif(CADT_OPENCL STREQUAL "OFF")
-  set(CADT_OPENCL_ABSENT "CADT_OPENCL is OFF")
-else()
-  message(FATAL_ERROR "CADT_OPENCL is '${CADT_OPENCL}'; it can be AUTO, ON or OFF")
 endif()
 
 if(CADT_OPENCL_ABSENT)

@@ -23,14 +23,12 @@ cadt_library_of_same_objects(cadt_archive STATIC)
 set_target_properties(cadt_archive PROPERTIES OUTPUT_NAME cadt)
 install(TARGETS cadt_archive ARCHIVE COMPONENT cadt_development EXCLUDE_FROM_ALL)
 
-# The manual page says what --help says.
 set(folder ${CMAKE_CURRENT_BINARY_DIR}/deb)
-set(page ${folder}/cadt.1)
-add_custom_command(OUTPUT ${page}.gz DEPENDS cadt_app VERBATIM
-  COMMAND ${CADT_help2man} --no-info --name "Delaunay triangulation of points of the plane" --output ${page} $<TARGET_FILE:cadt_app>
-  COMMAND ${CADT_gzip} -9nf ${page})
-add_custom_target(cadt_manual ALL DEPENDS ${page}.gz)
-install(FILES ${page}.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT cadt_program EXCLUDE_FROM_ALL)
+set(page ${cadt_manual_page}.gz)
+add_custom_command(OUTPUT ${page} DEPENDS ${cadt_manual_page} VERBATIM COMMAND ${CADT_gzip} -9nfk ${cadt_manual_page})
+add_custom_target(cadt_compressed_manual ALL DEPENDS ${page})
+add_dependencies(cadt_compressed_manual cadt_manual)
+install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT cadt_program EXCLUDE_FROM_ALL)
 
 # What each package says of itself.
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # SOURCE_DATE_EPOCH where it is set

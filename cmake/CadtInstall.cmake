@@ -16,11 +16,39 @@ if(TARGET cadt_io)
   install(TARGETS cadt_io EXPORT cadtIoTargets ARCHIVE COMPONENT cadt_development)
   install(EXPORT cadtIoTargets NAMESPACE cadt:: DESTINATION ${cadt_cmake_dir} COMPONENT cadt_development)
 endif()
-if(TARGET cadt_app)
-  install(TARGETS cadt_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT cadt_program)
+# Programs find the shared library beside them, wherever the prefix is. Packages of a distribution have it where all look.
+set(rpath "")
+if(BUILD_SHARED_LIBS AND PROJECT_IS_TOP_LEVEL AND NOT CADT_DEB AND NOT DEFINED CMAKE_INSTALL_RPATH)
+  set(rpath ${CMAKE_INSTALL_FULL_LIBDIR})
+  if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_BINDIR}" AND NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+    file(RELATIVE_PATH rpath /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+    if(APPLE)
+      string(PREPEND rpath "@loader_path/")
+    else()
+      string(PREPEND rpath "$ORIGIN/")
+    endif()
+  endif()
 endif()
-if(TARGET cadt_mpi_app)
-  install(TARGETS cadt_mpi_app RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT cadt_program)
+foreach(program IN ITEMS cadt_app cadt_mpi_app)
+  if(TARGET ${program})
+    install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT cadt_program)
+    if(rpath)
+      set_target_properties(${program} PROPERTIES INSTALL_RPATH "${rpath}")
+    endif()
+  endif()
+endforeach()
+# The manual page says what --help says.
+find_program(CADT_help2man help2man)
+mark_as_advanced(CADT_help2man)
+if(TARGET cadt_app AND CADT_help2man AND NOT CADT_SANITIZE AND NOT CMAKE_CROSSCOMPILING)
+  set(cadt_manual_page ${CMAKE_CURRENT_BINARY_DIR}/cadt.1)
+  add_custom_command(OUTPUT ${cadt_manual_page} DEPENDS cadt_app VERBATIM
+    COMMAND ${CADT_help2man} --no-info --name "Delaunay triangulation of points of the plane" --output ${cadt_manual_page}
+            $<TARGET_FILE:cadt_app>)
+  add_custom_target(cadt_manual ALL DEPENDS ${cadt_manual_page})
+  if(NOT CADT_DEB)  # which has it compressed
+    install(FILES ${cadt_manual_page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT cadt_program OPTIONAL)
+  endif()
 endif()
 
 configure_package_config_file(cmake/cadtConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/cadtConfig.cmake
@@ -36,7 +64,9 @@ string(REGEX REPLACE " ([a-z])" " -l\\1" cadt_private_libraries "${cadt_private_
 if(CADT_HAVE_CUDA)
   string(APPEND cadt_private_libraries " -lcudart_static -lrt")
 endif()
-file(RELATIVE_PATH cadt_pc_to_include /${CMAKE_INSTALL_LIBDIR}/pkgconfig /${CMAKE_INSTALL_INCLUDEDIR})
-configure_file(cmake/cadt.pc.in ${CMAKE_CURRENT_BINARY_DIR}/cadt.pc @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cadt.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+file(RELATIVE_PATH cadt_pc_to_include ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+configure_file(cmake/cadt.pc.in ${CMAKE_CURRENT_BINARY_DIR}/cadt.pc.in @ONLY)
+# The name of the library is that of the configuration: CMAKE_DEBUG_POSTFIX.
+file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/pkgconfig/$<CONFIG>/cadt.pc INPUT ${CMAKE_CURRENT_BINARY_DIR}/cadt.pc.in)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/pkgconfig/$<CONFIG>/cadt.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
   COMPONENT cadt_development)

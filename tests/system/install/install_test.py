@@ -88,6 +88,33 @@ class Installed(InstallTest):
         self.consume_with_cmake(f"-DCMAKE_PREFIX_PATH={prefix}", files=True)
         self.consume_with_pkg_config(prefix, "--static")
 
+    def ask_for(self, prefix, asked, *options):
+        """What a project sees after a find_package() of cadt, and what CMake says where that ends it."""
+        project = self.folder / "asks"
+        project.mkdir(exist_ok=True)
+        (project / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(asks LANGUAGES CXX)\nset(CAIRO_FOUND mine)\n"
+            f"find_package(cadt {asked})\n"
+            'if(TARGET cadt::io)\n  set(io io)\nendif()\n'
+            'message(STATUS "found ${cadt_FOUND} ${cadt_io_FOUND} ${io} ${CAIRO_FOUND}.")\n')
+        done = subprocess.run(["cmake", "-S", project, "-B", project / "build", "-G", "Ninja", "--fresh", f"-DCMAKE_PREFIX_PATH={prefix}",
+                               *options], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        return " ".join(done.stdout.split())
+
+    def test_components_that_are_missing(self):
+        prefix = installed(BUILD, self.folder / "prefix")
+        self.assertIn("found 1 TRUE io mine.", self.ask_for(prefix, "REQUIRED COMPONENTS io"))
+        missing = ("-DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON", "-DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON")
+        for quiet in ("", "QUIET "):
+            self.assertIn("found 1 FALSE mine.", self.ask_for(prefix, f"{quiet}REQUIRED OPTIONAL_COMPONENTS io", *missing))
+            self.assertIn("found 0 FALSE mine.", self.ask_for(prefix, f"{quiet}COMPONENTS io", *missing))
+        self.assertIn("cadt::io needs: fmt PkgConfig cairo", self.ask_for(prefix, "REQUIRED COMPONENTS io", *missing))
+        self.assertIn("cadt has no component files, only io", self.ask_for(prefix, "REQUIRED COMPONENTS files"))
+        next(prefix.glob("lib*/**/cadtIoTargets.cmake")).unlink()
+        self.assertIn("cadt::io needs: the file formats, which this cadt was built without",
+                      self.ask_for(prefix, "REQUIRED COMPONENTS io"))
+        self.assertIn("found 1 FALSE mine.", self.ask_for(prefix, "REQUIRED OPTIONAL_COMPONENTS io"))
+
 
 class Sources(InstallTest):
     def test_fetch_content(self):
@@ -114,6 +141,7 @@ class SharedLibrary(InstallTest):
         self.assertEqual({"libcadt.so", "libcadt.so.0"} - {path.name for path in libraries.glob("libcadt.so*")}, set())
         run(sys.executable, SOURCE / "tests" / "system" / "install" / "check_exports.py", "nm", libraries / "libcadt.so")
         self.consume_with_cmake(f"-DCMAKE_PREFIX_PATH={prefix}", files=True)
+        self.assertIn("cadt 0.", run(prefix / "bin" / "cadt", "--version"))  # finds its library
         self.consume_with_pkg_config(prefix)
         self.consume_from_c(prefix)
         self.consume_from_python(libraries)

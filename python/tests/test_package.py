@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import doctest
 import importlib
+import os
 import pkgutil
 import subprocess
 import sys
@@ -44,6 +45,13 @@ def test_examples(name: str) -> None:
         module, extraglobs={k: v for k, v in names.items() if not hasattr(module, k)}, optionflags=flags
     )
     assert result.failed == 0
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="LD_BIND_NOW is a variable of Linux")
+def test_the_extension_module_finds_all_functions_that_it_calls() -> None:
+    command = [sys.executable, "-c", "import cadt._cadt"]
+    done = subprocess.run(command, check=False, capture_output=True, text=True, env={**os.environ, "LD_BIND_NOW": "1"})
+    assert done.returncode == 0, done.stderr
 
 
 def test_there_are_examples() -> None:

@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that nothing asks the dynamic linker for a driver, so that the program starts on a machine without any.
+"""Checks that nothing asks the dynamic linker for a driver, so that the program starts on a machine without any, and the
+extension module of Python for nothing but what all processes have.
 
 usage: check_linking.py program READELF PROGRAM   the libraries that the program cannot start without
        check_linking.py library NM LIBRARY        functions of OpenCL and of the CUDA driver that the library leaves open
+       check_linking.py module READELF MODULE     the libraries that the module is loaded with, and the symbols that it exports
 """
 import re
 import subprocess
 import sys
 
 DRIVERS = re.compile(r"lib(OpenCL|cuda|cudart|nv)")
+# Not cairo, PNG and zlib, which are for pictures; with cairo fontconfig and X11 would come.
+OF_THE_MODULE = re.compile(r"(libstdc\+\+|libm|libgcc_s|libc|libpthread|libdl|librt|libatomic|ld-linux.*|libfmt)\.so(\.[\d.]+)?")
 FUNCTIONS = re.compile(r"(cl|cu)[A-Z]\w*")  # clFinish, cuInit; not cudaMalloc, which the static runtime brings
 
 
@@ -32,13 +36,23 @@ def check_library(nm, library):
             for name in sorted(set(symbols)) if FUNCTIONS.fullmatch(name)]
 
 
+def check_module(readelf, module):
+    needed = re.findall(r"\(NEEDED\).*\[(.+)\]", output_of(readelf, "--dynamic", "--wide", module))
+    symbols = [line.split() for line in output_of(readelf, "--dyn-syms", "--wide", module).splitlines()]
+    exported = [words[7] for words in symbols if len(words) > 7 and words[4] in ("GLOBAL", "WEAK", "UNIQUE") and words[6] != "UND"]
+    if "PyInit__cadt" not in exported:
+        return [f"{module} does not export PyInit__cadt, or the output of {readelf} was not understood"]
+    return [f"{module} is loaded with {name}" for name in needed if not OF_THE_MODULE.fullmatch(name)] + [
+        f"{module} exports {name}" for name in exported if name != "PyInit__cadt"]
+
+
 def main():
-    checks = {"program": check_program, "library": check_library}
+    checks = {"program": check_program, "library": check_library, "module": check_module}
     if len(sys.argv) != 4 or sys.argv[1] not in checks:
         print(__doc__)
         return 2
     problems = checks[sys.argv[1]](*sys.argv[2:])
-    print("\n".join(problems) or f"{sys.argv[3]}: no driver is linked")
+    print("\n".join(problems) or f"{sys.argv[3]}: nothing is linked that should not be")
     return 1 if problems else 0
 
 

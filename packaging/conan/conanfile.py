@@ -25,7 +25,7 @@ class CadtConan(ConanFile):
     def validate(self):
         check_min_cppstd(self, 20)
         if self.settings.os != "Linux":
-            raise ConanInvalidConfiguration("cadt builds on Linux alone")
+            raise ConanInvalidConfiguration("this recipe is tried on Linux alone")
         if self.options.cuda and not self.options.shared:
             raise ConanInvalidConfiguration("with CUDA a static cadt needs the toolkit's libraries, which conan does not know: "
                                             "use -o cadt/*:shared=True")

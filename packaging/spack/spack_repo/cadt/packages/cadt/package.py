@@ -37,8 +37,8 @@ class Cadt(CMakePackage, CudaPackage):
         depends_on("libpng")
         depends_on("zlib-api")
 
-    conflicts("platform=darwin", msg="cadt builds on Linux alone")
-    conflicts("platform=windows", msg="cadt builds on Linux alone")
+    conflicts("platform=darwin", msg="this recipe is tried on Linux alone")
+    conflicts("platform=windows", msg="this recipe is tried on Linux alone")
 
     generator("ninja")
 

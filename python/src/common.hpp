@@ -2,6 +2,8 @@
 // What all bindings share: points from arrays, arrays from results, calls that release the GIL and end on Ctrl-C.
 #pragma once
 
+#include "gil.hpp"
+
 #include <cadt/cadt.hpp>
 
 #include <nanobind/nanobind.h>
@@ -24,8 +26,6 @@
 #include <vector>
 
 namespace cadt_python {
-
-namespace nb = nanobind;
 
 /// Points of the host, n x 2 doubles or floats with strides that are not negative (cadt/_points.py sees to that).
 using Points = nb::ndarray<nb::ro, nb::ndim<2>, nb::device::cpu>;
@@ -62,31 +62,26 @@ template <class T>
   return array_of_shape<T>({size / columns, columns}, std::move(values));
 }
 
-template <class Work>
-auto without_gil(Work&& work) {
-  nb::gil_scoped_release released;
-  return work();
-}
-
-/// A call of the library without the GIL. While it runs, Ctrl-C and what `progress(phase, fraction)` raises end it: the
-/// exception is raised again here.
+/// A call of the library. While it runs, Ctrl-C and what `progress(phase, fraction)` raises end it: the exception is
+/// raised again here. It is made and destroyed with the GIL.
 class Call {
  public:
-  Call(cadt::Options& options, const nb::object& progress) : options_(options), progress_(progress) {
-    options_.stop = source_.get_token();
-    options_.progress = [this](const cadt::Progress& p) { report(p); };
-  }
-  ~Call() {
-    options_.stop = {};
-    options_.progress = nullptr;
-  }
+  explicit Call(const nb::object& progress) : progress_(progress) {}
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
 
+  /// Runs `work()`, which looks at `options`, without the GIL.
   template <class Work>
-  auto operator()(Work&& work) {
+  auto operator()(cadt::Options& options, Work&& work) {
+    return without_gil([&] { return run(options, work); });
+  }
+
+  /// The same where the GIL is free already.
+  template <class Work>
+  auto run(cadt::Options& options, Work&& work) {
+    const Reports reports(*this, options);
     try {
-      auto result = without_gil(std::forward<Work>(work));
+      auto result = work();
       if (raised_) throw std::move(*raised_);
       return result;
     } catch (const cadt::Cancelled&) {
@@ -98,9 +93,26 @@ class Call {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// While this lives, calls with these options report.
+  class Reports {
+   public:
+    Reports(Call& call, cadt::Options& options) : options_(options) {
+      options_.stop = call.source_.get_token();
+      options_.progress = [&call](const cadt::Progress& p) { call.report(p); };
+    }
+    ~Reports() {
+      options_.stop = {};
+      options_.progress = nullptr;
+    }
+    Reports(const Reports&) = delete;
+    Reports& operator=(const Reports&) = delete;
+
+   private:
+    cadt::Options& options_;
+  };
+
   void report(const cadt::Progress& p);
 
-  cadt::Options& options_;
   const nb::object& progress_;
   cadt::stop_source source_;
   std::optional<nb::python_error> raised_;
@@ -111,6 +123,9 @@ class Call {
 /// parent's threads: what they had locked stays locked, and what they are needed for cannot even be destroyed.
 [[nodiscard]] unsigned forks() noexcept;
 void forked() noexcept;
+
+/// The same options for the host.
+[[nodiscard]] cadt::Options on_host(const cadt::Options& options);
 
 [[nodiscard]] nb::dict to_dict(const cadt::Statistics& statistics);
 

@@ -143,8 +143,9 @@ void bind_polygons(nb::module_& m) {
       [](const Points& points, const Offsets& rings, const Offsets& polygons, cadt::Options& options,
          const nb::object& progress) {
         const cadt::PointsView view = view_of(points);
-        return PolygonsOf{std::make_shared<cadt::PolygonsResult>(Call(options, progress)(
-            [&] { return cadt::triangulate_polygons(view, elements_of(rings), elements_of(polygons), options); }))};
+        return PolygonsOf{std::make_shared<cadt::PolygonsResult>(Call(progress)(options, [&] {
+          return cadt::triangulate_polygons(view, elements_of(rings), elements_of(polygons), options);
+        }))};
       },
       nb::arg("points"), nb::arg("ring_offsets"), nb::arg("polygon_offsets"), nb::arg("options"),
       nb::arg("progress") = nb::none());
@@ -183,8 +184,8 @@ void bind_constrained(nb::module_& m) {
       [](const Points& points, const Pairs& segments, const cadt::ConstraintOptions& constraints,
          cadt::Options& options, const nb::object& progress) {
         const cadt::PointsView view = view_of(points);
-        return Call(options, progress)(
-            [&] { return cadt::triangulate_constrained(view, segments_of(segments), constraints, options); });
+        return Call(progress)(
+            options, [&] { return cadt::triangulate_constrained(view, segments_of(segments), constraints, options); });
       },
       nb::arg("points"), nb::arg("segments"), nb::arg("constraints"), nb::arg("options"),
       nb::arg("progress") = nb::none());

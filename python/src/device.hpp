@@ -4,11 +4,9 @@
 
 #include "common.hpp"
 
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -21,10 +19,8 @@ class SharedTriangulator {
  public:
   /// `stream`: the Python object whose stream or queue `options` names; it lives as long as this and its meshes.
   SharedTriangulator(const cadt::Options& options, nb::object stream)
-      : stream_(std::move(stream)), triangulator_([&] {
-          nb::gil_scoped_release released;
-          return std::make_unique<cadt::Triangulator>(options);
-        }()) {}
+      : stream_(std::move(stream)),
+        triangulator_(without_gil([&] { return std::make_unique<cadt::Triangulator>(options); })) {}
 
   ~SharedTriangulator() {
     if (forks_ == forks()) return;
@@ -38,33 +34,41 @@ class SharedTriangulator {
   /// Runs `work()` without the GIL, after other threads' calls. `options` are those that the work looks at.
   template <class Work>
   auto run_with(cadt::Options& options, Work&& work) {
-    const Use use(*this);
     const nb::object none = nb::none();
-    return Call(options, none)(work);
+    Call call(none);
+    return without_gil([&] {
+      const auto turn = wait_for_turn();
+      return call.run(options, work);
+    });
   }
 
   /// Runs `work(triangulator)` without the GIL, after other threads' calls.
   template <class Work>
   auto run(const nb::object& progress, Work&& work) {
-    const Use use(*this);
-    return Call(triangulator_->options(), progress)([&] { return work(*triangulator_); });
+    Call call(progress);
+    return without_gil([&] {
+      const auto turn = wait_for_turn();
+      return call.run(triangulator_->options(), [&] { return work(*triangulator_); });
+    });
   }
 
   /// The same with the options that may change between calls.
   template <class Work>
   auto run(const cadt::Options& options, const nb::object& progress, Work&& work) {
-    const Use use(*this);
-    cadt::Options& own = triangulator_->options();
-    own.order = options.order;
-    own.statistics = options.statistics;
-    const LimitOfCall limit(*triangulator_, options.max_memory);
-    return Call(own, progress)([&] { return work(*triangulator_); });
+    Call call(progress);
+    return without_gil([&] {
+      const auto turn = wait_for_turn();
+      cadt::Options& own = triangulator_->options();
+      own.order = options.order;
+      own.statistics = options.statistics;
+      const LimitOfCall limit(*triangulator_, options.max_memory);
+      return call.run(own, [&] { return work(*triangulator_); });
+    });
   }
 
   void retire(std::shared_ptr<void> object) {
     if (forks_ != forks()) return static_cast<void>(new std::shared_ptr<void>(std::move(object)));  // for ever
-    if (user_ != std::this_thread::get_id())
-      if (const std::unique_lock lock(busy_, std::try_to_lock); lock) return object.reset();
+    if (const std::unique_lock turn(turns_, std::try_to_lock); turn) return object.reset();
     const std::lock_guard lock(retired_mutex_);
     retired_.push_back(std::move(object));
   }
@@ -72,25 +76,14 @@ class SharedTriangulator {
   [[nodiscard]] const cadt::DeviceInfo& device() const noexcept { return triangulator_->device(); }
 
  private:
-  /// While this lives, the triangulator is the calling thread's.
-  class Use {
-   public:
-    explicit Use(SharedTriangulator& shared) : shared_(shared), lock_(shared.busy_, std::defer_lock) {
-      shared.require_usable();
-      nb::gil_scoped_release released;
-      lock_.lock();
-      shared.user_ = std::this_thread::get_id();
-      const std::lock_guard retired(shared.retired_mutex_);
-      shared.retired_.clear();
-    }
-    ~Use() { shared_.user_ = std::thread::id(); }
-    Use(const Use&) = delete;
-    Use& operator=(const Use&) = delete;
-
-   private:
-    SharedTriangulator& shared_;
-    std::unique_lock<std::mutex> lock_;
-  };
+  /// While what it returns lives, the triangulator is the calling thread's.
+  [[nodiscard]] std::unique_lock<Turns> wait_for_turn() {
+    require_usable();
+    std::unique_lock turn(turns_);
+    const std::lock_guard retired(retired_mutex_);
+    retired_.clear();
+    return turn;
+  }
 
   /// `Options::max_memory` for one call: it is not that of the meshes that others have made, and of their queries.
   class LimitOfCall {
@@ -118,17 +111,17 @@ class SharedTriangulator {
           backend,
           "this process was forked after the device had been opened, which drivers do not survive: use "
           "multiprocessing.set_start_method(\"spawn\"), or backend=\"host\"");
-    if (user_ == std::this_thread::get_id())
+    if (turns_.is_mine())
       throw cadt::BackendUnavailable(backend,
                                      "the device is in a call that reports to this progress function: use it after "
                                      "that call, or backend=\"host\" here");
   }
 
-  std::mutex busy_, retired_mutex_;
+  Turns turns_;
+  std::mutex retired_mutex_;
   nb::object stream_;
   std::unique_ptr<cadt::Triangulator> triangulator_;
   std::vector<std::shared_ptr<void>> retired_;
-  std::atomic<std::thread::id> user_{};  ///< the thread whose call is running
   unsigned forks_ = forks();
 };
 

@@ -40,7 +40,7 @@ void bind_mesh(nb::module_& m) {
       "triangulate",
       [](const Points& points, cadt::Options& options, const nb::object& progress) {
         const cadt::PointsView view = view_of(points);
-        return Call(options, progress)([&] { return cadt::triangulate(view, options); });
+        return Call(progress)(options, [&] { return cadt::triangulate(view, options); });
       },
       nb::arg("points"), nb::arg("options"), nb::arg("progress") = nb::none());
 
@@ -143,7 +143,7 @@ void bind_mesh(nb::module_& m) {
         std::vector<std::size_t> begin(offsets.size());
         for (std::size_t i = 0; i < begin.size(); ++i) begin[i] = static_cast<std::size_t>(offsets.data()[i]);
         return BatchOf{std::make_shared<cadt::TriangulationBatch>(
-            Call(options, progress)([&] { return cadt::triangulate_batch(view, begin, options); }))};
+            Call(progress)(options, [&] { return cadt::triangulate_batch(view, begin, options); }))};
       },
       nb::arg("points"), nb::arg("offsets"), nb::arg("options"), nb::arg("progress") = nb::none());
 }

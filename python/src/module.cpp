@@ -11,6 +11,9 @@ NB_MODULE(_cadt, m) {
   if (PyInterpreterState_GetID(PyInterpreterState_Get()) != 0)
     throw nb::import_error(
         "cadt works in the main interpreter alone, not in subinterpreters: use threads or processes");
+  watch_for_the_end();
+  // What daemon threads have when a process ends is no leak; what is one is looked for in Python's development mode.
+  nb::set_leak_warnings(nb::cast<bool>(nb::module_::import_("sys").attr("flags").attr("dev_mode")));
   m.attr("version") = CADT_VERSION;
   bind_errors();
   bind_options(m);

@@ -28,14 +28,25 @@ void Call::report(const cadt::Progress& p) {
   const auto now = Clock::now();
   if (now < next_ || raised_) return;
   next_ = now + std::chrono::milliseconds(50);
-  nb::gil_scoped_acquire held;
-  try {
-    if (PyErr_CheckSignals() != 0) throw nb::python_error();
-    if (!progress_.is_none()) progress_(nb::str(p.phase.data(), p.phase.size()), p.fraction);
-  } catch (nb::python_error& e) {
-    raised_.emplace(std::move(e));
+  with_gil([&] {
+    if (PyErr_CheckSignals() == 0) {
+      if (progress_.is_none()) return;
+      PyObject* phase = PyUnicode_FromStringAndSize(p.phase.data(), static_cast<Py_ssize_t>(p.phase.size()));
+      PyObject* answer = PyObject_CallFunction(progress_.ptr(), "Nd", phase, p.fraction);
+      Py_XDECREF(answer);
+      if (answer != nullptr) return;
+    }
+    raised_.emplace();
     source_.request_stop();
-  }
+  });
+}
+
+cadt::Options on_host(const cadt::Options& options) {
+  cadt::Options host = options;
+  host.backend = cadt::Backend::host;
+  host.device.clear();
+  host.queue.reset();
+  return host;
 }
 
 nb::dict to_dict(const cadt::Statistics& s) {
@@ -115,19 +126,11 @@ void bind_options(nb::module_& m) {
           nb::arg("backend") = "auto", nb::arg("device") = "", nb::arg("threads") = 0, nb::arg("canonical") = true,
           nb::arg("max_memory") = 0, nb::arg("statistics") = "counters", nb::arg("queue") = nb::none())
       .def_prop_ro("backend", [](const cadt::Options& o) { return std::string(cadt::to_string(o.backend)); })
-      .def("on_host", [](const cadt::Options& o) {
-        cadt::Options host = o;
-        host.backend = cadt::Backend::host;
-        return host;
-      });
+      .def("on_host", &on_host);
 
   m.def("forked", &forked);
   m.def("devices", [] {
-    std::vector<cadt::DeviceInfo> devices;
-    {
-      nb::gil_scoped_release released;
-      devices = cadt::list_devices();
-    }
+    const std::vector<cadt::DeviceInfo> devices = without_gil([] { return cadt::list_devices(); });
     nb::list list;
     for (const cadt::DeviceInfo& device : devices) {
       nb::dict d;

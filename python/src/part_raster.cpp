@@ -47,7 +47,7 @@ class PartRaster {
   PartRaster(const Vertices& points, const Indices& triangles, const Indices& neighbors, const cadt::Options& options)
       : points_(points), triangles_(triangles), options_(options) {
     if (neighbors.shape(0) != triangles.shape(0)) throw nb::value_error("three neighbours a triangle are needed");
-    nb::gil_scoped_release released;
+    const ReleasedGil released;
     across_.assign(neighbors.data(), neighbors.data() + neighbors.size());
     for (std::int32_t& n : across_) n = std::max(n, -1);  // triangles of other parts are not there
     lowest_.assign(points_.shape(0), -1);
@@ -68,9 +68,11 @@ class PartRaster {
     const cadt::Grid cells{grid[0], grid[1], grid[2], grid[3], columns, rows};
     const nb::object none = nb::none();
     return array_of(
-        Call(queries_->options(), none)([&] {
-          return queries_->rasterize(cells, {values.data(), values.size()}, cadt::Interpolation::linear, max_edge);
-        }),
+        Call(none)(
+            queries_->options(),
+            [&] {
+              return queries_->rasterize(cells, {values.data(), values.size()}, cadt::Interpolation::linear, max_edge);
+            }),
         columns);
   }
 
@@ -84,22 +86,22 @@ class PartRaster {
       return begun[static_cast<std::size_t>(j * (nx + 1) + i)];
     };
     std::vector<std::uint8_t> met;
-    nb::gil_scoped_release released;
-    for (std::size_t t = 0; t < triangles_.shape(0); ++t) {
-      const Point a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
-      const auto [i0, i1] = x.between(std::min({a[0], b[0], c[0]}), std::max({a[0], b[0], c[0]}));
-      const auto [j0, j1] = y.between(std::min({a[1], b[1], c[1]}), std::max({a[1], b[1], c[1]}));
-      if (i0 >= i1 || j0 >= j1) continue;
-      const std::int64_t left = i0 / side, right = (i1 - 1) / side + 1, low = j0 / side, high = (j1 - 1) / side + 1;
-      ++at(left, low), --at(right, low), --at(left, high), ++at(right, high);
-    }
-    for (std::int64_t j = 0; j < ny; ++j) {
-      for (std::int64_t i = 0; i < nx; ++i) {
-        at(i, j) += (i > 0 ? at(i - 1, j) : 0) + (j > 0 ? at(i, j - 1) : 0) - (i > 0 && j > 0 ? at(i - 1, j - 1) : 0);
-        met.push_back(at(i, j) > 0 ? 1 : 0);
+    without_gil([&] {
+      for (std::size_t t = 0; t < triangles_.shape(0); ++t) {
+        const Point a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
+        const auto [i0, i1] = x.between(std::min({a[0], b[0], c[0]}), std::max({a[0], b[0], c[0]}));
+        const auto [j0, j1] = y.between(std::min({a[1], b[1], c[1]}), std::max({a[1], b[1], c[1]}));
+        if (i0 >= i1 || j0 >= j1) continue;
+        const std::int64_t left = i0 / side, right = (i1 - 1) / side + 1, low = j0 / side, high = (j1 - 1) / side + 1;
+        ++at(left, low), --at(right, low), --at(left, high), ++at(right, high);
       }
-    }
-    nb::gil_scoped_acquire held;
+      for (std::int64_t j = 0; j < ny; ++j) {
+        for (std::int64_t i = 0; i < nx; ++i) {
+          at(i, j) += (i > 0 ? at(i - 1, j) : 0) + (j > 0 ? at(i, j - 1) : 0) - (i > 0 && j > 0 ? at(i - 1, j - 1) : 0);
+          met.push_back(at(i, j) > 0 ? 1 : 0);
+        }
+      }
+    });
     return array_of(std::move(met), static_cast<std::size_t>(nx));
   }
 
@@ -109,7 +111,7 @@ class PartRaster {
     const Axis y{grid[1], grid[3], static_cast<std::int64_t>(rows)};
     Rim found;
     {
-      nb::gil_scoped_release released;
+      const ReleasedGil released;
       for (const std::size_t side : open_sides_) add_cells(x, y, side, found);
     }
     return nb::make_tuple(array_of(std::move(found.cells)), array_of(std::move(found.triangles)),

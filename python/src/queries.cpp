@@ -22,12 +22,15 @@ cadt::Outside outside_of(const std::string& name) {
 using Corners = std::array<double, 4>;
 
 /// Queries of a mesh of the host; it keeps mesh and points. One thread at a time asks; the first one opens them, and
-/// the first one after a fork opens them again.
+/// the first one after a fork opens them again, on the host, as drivers do not survive a fork.
 class HostQueries {
  public:
   template <class Mesh>
   HostQueries(const Points& points, const Mesh& mesh, const cadt::Options& options)
-      : open_([points, view = view_of(points), mesh, options] { return cadt::MeshQueries(view, mesh, options); }) {}
+      : open_([points, view = view_of(points), mesh](const cadt::Options& how) {
+          return cadt::MeshQueries(view, mesh, how);
+        }),
+        options_(options) {}
   ~HostQueries() {
     if (state_->forks != forks()) static_cast<void>(state_.release());
   }
@@ -39,25 +42,30 @@ class HostQueries {
     if (state_->forks != forks()) {  // with the GIL: once
       static_cast<void>(state_.release());
       state_ = std::make_unique<State>();
+      options_ = on_host(options_);
     }
     State& state = *state_;
-    std::unique_lock lock(state.busy, std::defer_lock);
-    {
-      nb::gil_scoped_release released;
-      lock.lock();
-      if (!state.queries) state.queries.emplace(open_());
-    }
-    return Call(state.queries->options(), none_)([&] { return work(*state.queries); });
+    Call call(none_);
+    return without_gil([&] {
+      if (state.turns.is_mine()) {  // in the handler of a signal
+        cadt::MeshQueries other = open_(options_);
+        return call.run(other.options(), [&] { return work(other); });
+      }
+      const std::lock_guard turn(state.turns);
+      if (!state.queries) state.queries.emplace(open_(options_));
+      return call.run(state.queries->options(), [&] { return work(*state.queries); });
+    });
   }
 
  private:
   struct State {
     std::optional<cadt::MeshQueries> queries;
     unsigned forks = cadt_python::forks();
-    std::mutex busy;
+    Turns turns;
   };
 
-  std::function<cadt::MeshQueries()> open_;  ///< keeps points and mesh
+  std::function<cadt::MeshQueries(const cadt::Options&)> open_;  ///< keeps points and mesh
+  cadt::Options options_;
   std::unique_ptr<State> state_ = std::make_unique<State>();
   nb::object none_ = nb::none();
 };

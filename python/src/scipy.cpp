@@ -109,7 +109,7 @@ void transform(Vector a, Vector b, Vector c, double* out) {
 template <class Row>
 std::vector<double> rows(const Coordinates& points, const cadt::Triangulation& mesh, std::size_t width, Row&& row) {
   if (points.shape(0) != mesh.number_of_points()) throw nb::value_error("the points are not those of the mesh");
-  const nb::gil_scoped_release released;
+  const ReleasedGil released;
   const auto triangles = mesh.triangles();
   std::vector<double> result(width * (triangles.size() / 3));
   double* out = result.data();

@@ -111,6 +111,106 @@ def test_fork_while_another_thread_computes() -> None:
     """)
 
 
+@pytest.mark.skipif(not hasattr(__import__("os"), "fork"), reason="no fork here")
+def test_drivers_are_refused_after_a_fork() -> None:
+    """They would wait for ever for threads that a child does not have."""
+    run("""
+        import warnings; warnings.simplefilter("ignore")  # Python 3.12 warns of forks with threads
+        p = rng.random((300, 2)); square = [[0, 0], [1, 0], [1, 1], [0, 1]]; many = np.arange(0, 301, 30)
+        opencl = {"backend": "opencl"}
+        def child(work):
+            pid = os.fork()
+            if pid == 0:
+                try: os._exit(0 if work() else 3)
+                except BaseException as e:
+                    print(repr(e), flush=True); os._exit(4)
+            return wait(pid, 60)
+        def mesh(): return cadt.Delaunay(p, **opencl)
+        def batch(): cadt.triangulate_batch(p, many, **opencl)
+        def polygons(): cadt.polygons(square, [0, 4], **opencl)
+        def released():
+            mesh(); cadt.release_memory()
+        def is_refused(work):
+            try: work()
+            except cadt.BackendUnavailable as e: return "fork" in str(e)
+        def parent(before, after):  # in a process that has opened nothing
+            before()
+            return child(lambda: is_refused(after)) == 0
+        pairs = ((cadt.devices, mesh), (released, mesh), (batch, batch), (batch, mesh), (mesh, batch), (mesh, polygons),
+                 (polygons, polygons))
+        if child(lambda: any(d.usable for d in cadt.devices() if d.backend == "opencl")) == 0:
+            for before, after in pairs:
+                status = child(lambda: parent(before, after))
+                assert status == 0, (before, after, status)
+            expected = cadt.Delaunay(p, backend="host").find_simplex(p)
+            def asks_in_a_child(ask_before):
+                mine = mesh()
+                if ask_before: mine.find_simplex(p)
+                return child(lambda: (mine.find_simplex(p) == expected).all()) == 0
+            for ask_before in (False, True):
+                status = child(lambda: asks_in_a_child(ask_before))
+                assert status == 0, (ask_before, status)
+        print("done")
+    """)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        "cadt.Delaunay(p, backend='host', threads=1)",
+        "cadt.Delaunay(p, backend='host', threads=1, progress=lambda phase, fraction: None)",
+        "mesh.find_simplex(q)",
+        "cadt.Delaunay(p[:1000], backend='host')",
+    ],
+)
+def test_the_process_ends_while_a_thread_is_in_a_call(call: str) -> None:
+    script = f"""
+        import sys, threading, time, numpy as np, cadt
+        q = np.random.default_rng(0).random((2_000_000, 2)); p = q[:200_000]
+        mesh = cadt.Delaunay(p, backend="host"); mesh.find_simplex(p[:1])
+        def loop():
+            while True: {call}
+        threading.Thread(target=loop, daemon=True).start()
+        time.sleep(float(sys.argv[1]))
+    """
+    for k in range(4):
+        command = [sys.executable, "-c", textwrap.dedent(script), str(0.1 + 0.06 * k)]
+        done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=100)
+        assert (done.returncode, done.stderr) == (0, ""), done.stderr
+
+
+def test_a_signal_handler_asks_the_mesh_that_is_asked() -> None:
+    run("""
+        p = rng.random((2_000_000, 2)); mesh = slow(p[:100_000]); expected = mesh.find_simplex(p[:10]); answers = []
+        import warnings; warnings.simplefilter("ignore")  # Python 3.12 warns of forks with threads
+        def handler(number, frame): answers.append(mesh.find_simplex(p[:10]))
+        signal.signal(signal.SIGALRM, handler)
+        pid = os.fork()  # a child, as a thread that waits for itself hears nothing
+        if pid == 0:
+            signal.setitimer(signal.ITIMER_REAL, 0.1)
+            mesh.find_simplex(p)
+            os._exit(0 if len(answers) == 1 and (answers[0] == expected).all() else 3)
+        status = wait(pid, 60)
+        assert status == 0, status
+        print("done")
+    """)
+
+
+def test_interrupt_while_another_thread_asks() -> None:
+    run("""
+        p = rng.random((8_000_000, 2)); mesh = slow(p[:200_000]); mesh.find_simplex(p[:1]); ended = []
+        def ask():
+            mesh.find_simplex(p); ended.append(1)
+        other = threading.Thread(target=ask); other.start(); time.sleep(0.2)
+        threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+        try: mesh.find_simplex(p[:1])
+        except KeyboardInterrupt: assert not ended
+        else: raise AssertionError("not interrupted")
+        other.join()
+        print("done")
+    """)
+
+
 def test_subinterpreters_are_refused(tmp_path: Path) -> None:
     said = tmp_path / "said"
     run(f"""

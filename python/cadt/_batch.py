@@ -114,8 +114,6 @@ def triangulate_batch(
     if begin.min() < 0:
         raise InputError("offsets must not be negative", int(np.argmin(begin)))
     begin = begin.copy()  # the caller may change what was given
-    options = _devices.make_options(backend, device, order, threads, max_memory, "counters")
-    if options.backend == "auto":
-        options = options.on_host() if len(p) < _devices.SMALL else options
+    options = _devices.placed(_devices.make_options(backend, device, order, threads, max_memory, "counters"), len(p))
     with reporter(progress) as report:
         return Batch(p, begin, _cadt.triangulate_batch(p, begin, options, report), options)

@@ -362,7 +362,7 @@ class ConstrainedDelaunay(Mesh):
 
     def _queries(self) -> _cadt.Queries:
         if "queries" not in self._cache:
-            self._cache.setdefault("queries", _cadt.Queries(self._host_input()[0], self._on_host, self._options))
+            self._cache.setdefault("queries", self._queries_of(self._host_input()[0], self._on_host))
         return self._cache["queries"]
 
     def __repr__(self) -> str:

@@ -50,6 +50,8 @@ def devices() -> list[DeviceInfo]:
     >>> [d.name for d in cadt.devices() if d.backend == "host"] != []
     True
     """
+    global _touched
+    _touched = True
     return [DeviceInfo(**d) for d in _cadt.devices()]
 
 
@@ -85,6 +87,8 @@ def make_options(
         raise OptionError("device needs backend=: 'host', 'opencl' or 'cuda'", "device")
     if backend is not None and not isinstance(backend, str):
         raise TypeError(f"backend must be a string, not {type(backend).__name__}")
+    if backend not in (None, "auto", "host"):
+        use_drivers()
     return _cadt.Options(
         backend or "auto",
         "" if device is None else str(device),
@@ -99,7 +103,7 @@ def make_options(
 def open_device(options: _cadt.Options, key: tuple, stream: Any = None) -> Any:
     """The triangulator for `key`, which stays open for the next call. The four used last are kept."""
     if options.backend != "host":
-        _refuse_after_fork()
+        use_drivers()
     with _lock:
         triangulator = _open.get(key)
         if triangulator is not None:
@@ -116,6 +120,15 @@ def open_device(options: _cadt.Options, key: tuple, stream: Any = None) -> Any:
 def prefers_host(n: int) -> bool:
     """Whether n points of the host, without a back end that is named, are the host's."""
     return bool(n < SMALL or _automatic_is_host or _in_child)
+
+
+def placed(options: _cadt.Options, n: int) -> _cadt.Options:
+    """The options for n points of the host."""
+    if options.backend == "auto" and prefers_host(n):
+        return options.on_host()
+    if options.backend != "host":
+        use_drivers()
+    return options
 
 
 def device_for(options: _cadt.Options, device: int | str | None, threads: int | None, n: int) -> Any:
@@ -154,20 +167,21 @@ def _after_fork() -> None:
     global _lock, _in_child
     _cadt.forked()
     # Threads of the host's triangulators are the parent's too, but new ones can be opened.
-    _in_child = _in_child or any(t.backend != "host" for t in _open.values())
+    _in_child = _in_child or _touched
     for triangulator in _open.values():
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(triangulator))
     _open.clear()
     _lock = threading.Lock()
 
 
-_in_child = False
+_touched = False  # whether drivers may have been asked for anything
+_in_child = False  # of a process where they had been
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_after_fork)
 
 
-def _refuse_after_fork() -> None:
-    """GPU runtimes do not survive a fork."""
+def refuse_after_fork() -> None:
+    """Drivers do not survive a fork: they wait for ever for threads of the parent's."""
     if _in_child:
         raise BackendUnavailable(
             "this process was forked after a device had been opened, which drivers do not survive: "
@@ -175,3 +189,15 @@ def _refuse_after_fork() -> None:
             "",
             "forked",
         )
+
+
+def use_drivers() -> None:
+    """Before drivers are asked for anything."""
+    global _touched
+    refuse_after_fork()
+    _touched = True
+
+
+def for_queries(options: _cadt.Options) -> _cadt.Options:
+    """Of a mesh whose arrays are on the host: after a fork the host answers."""
+    return options.on_host() if _in_child else options

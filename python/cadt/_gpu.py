@@ -56,6 +56,7 @@ class Mesh:
         return as_points(self.array.to_host())
 
     def bounds(self) -> tuple[float, float, float, float]:
+        _devices.refuse_after_fork()
         if self.mesh.number_of_points == 0:
             raise InputError("without points there are no bounds: pass bounds=", 0)
         return self.array.bounds()
@@ -78,6 +79,7 @@ class Mesh:
         return self.array.like(np.full(shape, -1, dtype=np.int32))
 
     def _rows(self, xi: Any) -> tuple[Any, tuple[int, ...]]:
+        _devices.refuse_after_fork()
         if is_x_and_y(xi):
             x, y = xi
             here = self.array.is_here(x) and self.array.is_here(y) and tuple(x.shape) == tuple(y.shape)
@@ -121,6 +123,7 @@ class Mesh:
         return self.array.finished(result)
 
     def _values(self, values: Any) -> tuple[Any, tuple[int, ...]]:
+        _devices.refuse_after_fork()
         v = self.array.take(unmasked(values, "values", FILL), "float64")
         if len(v.shape) == 0 or v.shape[0] != self.mesh.number_of_points:
             raise InputError(f"values must have shape ({self.mesh.number_of_points},) or one row a point", 0)

@@ -150,8 +150,7 @@ def polygons(
         points, rings = as_host_points(geometry, "ring points"), as_offsets(ring_offsets, "ring_offsets")
         of_rings = np.arange(len(rings)) if polygon_offsets is None else as_offsets(polygon_offsets, "polygon_offsets")
     options = _devices.make_options(backend, device, "canonical", threads, max_memory, "counters")
-    if options.backend == "auto" and _devices.prefers_host(len(points)):
-        options = options.on_host()
+    options = _devices.placed(options, len(points))
     with reporter(progress) as report:
         return Polygons(points, _cadt.triangulate_polygons(points, rings, of_rings, options, report), index, crs)
 

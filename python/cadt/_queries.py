@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cadt import _cadt
+from cadt import _cadt, _devices
 from cadt._errors import InputError, LimitError, OptionError
 from cadt._points import as_queries, as_values
 from cadt._results import Voronoi
@@ -255,8 +255,11 @@ class Queries:
 
     def _queries(self) -> _cadt.Queries:
         if "queries" not in self._cache:
-            self._cache.setdefault("queries", _cadt.Queries(self._host_points, self._host_mesh, self._options))
+            self._cache.setdefault("queries", self._queries_of(self._host_points, self._host_mesh))
         return self._cache["queries"]
+
+    def _queries_of(self, points: np.ndarray, mesh: Any) -> _cadt.Queries:
+        return _cadt.Queries(points, mesh, _devices.for_queries(self._options))
 
 
 def grid_of(

@@ -282,9 +282,7 @@ class Where:
 
     def _open(self, n: int) -> tuple[_cadt.Options, _cadt.Triangulator]:
         """The same choice as Delaunay's: without a name, the host for what is small."""
-        options = self._options()
-        if options.backend == "auto" and _devices.prefers_host(n):
-            options = options.on_host()
+        options = _devices.placed(self._options(), n)
         return options, _devices.open_device(options, (options.backend, self.device, self.threads, None))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from cadt import _cadt, _devices, _gpu, _show
 from cadt._arrays import adapter_of, array_on_device
 from cadt._errors import InputError, InternalError, OptionError
-from cadt._mesh import Mesh
+from cadt._mesh import Mesh, read_only
 from cadt._points import as_pairs, as_points, as_values, contiguous
 from cadt._progress import reporter
 from cadt._results import VerifyReport, report_of
@@ -152,7 +152,7 @@ class ConstrainedDelaunay(Mesh):
             raise InputError("segments on a device need points there: pass points on it, or segments of the host", 0)
         self._input = as_points(points)
         self._given = len(self._input)
-        self._segments = segments_of(segments, polylines, rings, len(self._input))
+        self._segments = read_only(segments_of(segments, polylines, rings, len(self._input)))
         self._options = _devices.make_options(backend, device, "canonical", threads, max_memory, statistics)
         arguments = (self._input, self._segments, self._constraints)
         open_device = _devices.device_for(self._options, device, threads, len(self._input))
@@ -166,7 +166,7 @@ class ConstrainedDelaunay(Mesh):
         made = self._made
         self._mesh = made.mesh
         first: Any = made.moved_points if len(made.moved_points) else self._input
-        self._points = np.concatenate([first, made.added_points]) if len(made.added_points) else first
+        self._points = read_only(np.concatenate([first, made.added_points])) if len(made.added_points) else first
 
     # Segments
 
@@ -316,7 +316,8 @@ class ConstrainedDelaunay(Mesh):
         if name not in self._cache:
             there = None if self._gpu is None or of_gpu is None else of_gpu(self._gpu)
             if there is None:
-                there = of(self._on_host) if self._gpu is None else self._gpu.array.like(of(self._on_host))
+                made = of(self._on_host)
+                there = read_only(made) if self._gpu is None else self._gpu.array.like(made)
             self._cache[name] = there
         return self._cache[name]
 

@@ -169,7 +169,7 @@ class Mesh(Queries):
         """An array of the host's mesh, of the kind of array that the points are."""
         if name not in self._cache:
             if self._gpu is None:
-                self._cache[name] = of_host(self._mesh)
+                self._cache[name] = read_only(of_host(self._mesh))
             elif of_gpu is not None:
                 self._cache[name] = of_gpu(self._gpu)
             else:
@@ -180,3 +180,10 @@ class Mesh(Queries):
         if name not in self._cache:
             self._cache[name] = of(self._host_mesh)
         return self._cache[name]
+
+
+def read_only(arrays: Any) -> Any:
+    """An array, or several, of the host that a mesh keeps: nobody may change them."""
+    for a in arrays if isinstance(arrays, tuple) else (arrays,):
+        a.flags.writeable = False
+    return arrays

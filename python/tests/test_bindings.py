@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 import gc
+import inspect
 import pickle
 import threading
 import time
@@ -190,3 +191,19 @@ def test_batches_of_any_memory() -> None:
     for s, (a, b) in enumerate(((0, 100), (100, 300))):
         assert batch[s].hash == cadt.Delaunay(P[a:b].astype(np.float32)).hash
         assert np.array_equal(batch[s].points, wide[a:b])
+
+
+def test_arrays_that_a_mesh_keeps_are_read_only(rng: np.random.Generator) -> None:
+    points, pairs = rng.random((60, 2)), np.arange(10, dtype=np.int32).reshape(-1, 2)
+    crossed = cadt.ConstrainedDelaunay(points, pairs, crossing="exact", domain="outer")
+    assert len(crossed.added_points) and not crossed.points.flags.writeable
+    for mesh in (cadt.Delaunay(points), cadt.ConstrainedDelaunay(points), crossed):
+        seen = 0
+        for name, member in inspect.getmembers(type(mesh), lambda m: isinstance(m, property)):
+            arrays = getattr(mesh, name) if name != "points" and not name.startswith("_") else ()
+            for a in arrays if isinstance(arrays, tuple) else (arrays,):
+                if isinstance(a, np.ndarray):
+                    assert not a.flags.writeable, name
+                    seen += 1
+        assert seen >= 12
+    assert points.flags.writeable and pairs.flags.writeable

@@ -28,7 +28,7 @@ def as_points(points: Any, what: str = "points", *, columns: str = "(n, 2)") -> 
     s0, s1 = a.strides
     size = a.dtype.itemsize
     if s0 < 0 or s0 % size or s1 % size or not a.flags.aligned:
-        a = contiguous(a)
+        a = a.copy()  # also of one row, which is contiguous whatever its strides are
     return a
 
 

@@ -134,7 +134,10 @@ class Queries:
         q, shape = as_queries(xi)
         if v.shape[1] == 0:
             return np.empty((*shape, *one))
-        return self._queries().interpolate(v, q, method, outside).reshape((*shape, *one))
+        found = self._queries().interpolate(v, q, method, outside)
+        if len(v) == 0:  # no points: the library cannot know how many values each would have
+            return np.full((*shape, *one), np.nan)
+        return found.reshape((*shape, *one))
 
     def rasterize(
         self,

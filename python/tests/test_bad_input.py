@@ -60,6 +60,13 @@ SAME: dict[str, Any] = {
 }
 
 
+def test_one_row_of_any_strides() -> None:
+    """NumPy takes an array of one row for contiguous, whatever its strides are."""
+    for row in (P[:1][::-1], packed_fields()[:1], P[:10:2][:1]):
+        assert cadt.Delaunay(row).hash == cadt.Delaunay(row.tolist()).hash
+        assert MESH.find_simplex(row).tolist() == MESH.find_simplex(row.tolist()).tolist()
+
+
 @pytest.mark.parametrize("name", SAME)
 def test_any_memory(name: str) -> None:
     assert cadt.Delaunay(SAME[name]).hash == cadt.Delaunay(P).hash
@@ -322,8 +329,11 @@ def test_without_triangles(name: str) -> None:
     for f in (mesh.find_simplex, mesh.barycentric, mesh.within_hull, mesh.nearest_vertex):
         with pytest.raises(InputError, match="finite"):
             f([[0, 0], [np.nan, 0]])
-    with pytest.raises(InputError):
-        mesh.interpolate(z, [[np.inf, 0]])
+    for values in (z, np.zeros((mesh.n_points, 3))):
+        found = mesh.interpolate(values, [[0, 0], [1, 1], [2, 2]])
+        assert found.shape == (3, *values.shape[1:]) and np.isnan(found).all()
+        with pytest.raises(InputError, match="finite"):
+            mesh.interpolate(values, [[np.inf, 0]])
 
 
 def test_no_queries_and_no_values() -> None:

@@ -5,15 +5,17 @@ from __future__ import annotations
 
 import math
 import sys
+import threading
 from typing import Any
 
 import numpy as np
 
 from cadt import _cadt
 from cadt._errors import InputError
-from cadt._points import as_pairs, as_points
+from cadt._points import as_pairs, as_points, to_float
 
 _HOST = 1  # DLPack's kDLCPU
+_reading = threading.Lock()  # PoCL ends the process where threads read from one queue
 
 
 def array_on_device(points: Any) -> Array | None:
@@ -69,9 +71,10 @@ class Array:
             raise InputError(f"{what} must have shape (n, 2), not {tuple(a.shape)}", 0)
         name = str(a.dtype).rpartition(".")[2]
         if name not in ("float32", "float64"):
-            if not (name.startswith(("int", "uint")) and name not in ("int64", "uint64")) and name != "float16":
-                raise TypeError(f"{what} must be float64 or float32, not {name}: convert them first")
-            a = self.convert(self.contiguous(a), "float64")
+            if not name.startswith(("int", "uint")) and name != "float16":
+                raise TypeError(f"{what} must be float64 or float32 (or integers), not {name}: convert them first")
+            checked = name in ("int64", "uint64")  # as not all have a float64
+            a = self.from_host(to_float(self.host_of(a), what)) if checked else self.convert(self.contiguous(a), "float64")
         return self.contiguous(a)
 
     def coordinates(self, a: Any) -> _cadt.DevicePoints:
@@ -100,7 +103,7 @@ class Array:
         """An array of the host (or several) on the device."""
         if isinstance(host, tuple):
             return tuple(self.like(h) for h in host)
-        return self.from_host(np.ascontiguousarray(host))
+        return self.from_host(np.asarray(host, order="C"))
 
     def from_host(self, host: np.ndarray) -> Any:
         raise NotImplementedError
@@ -108,6 +111,10 @@ class Array:
     def is_here(self, a: Any) -> bool:
         """Whether an argument is an array of this library already."""
         return isinstance(a, type(self.a))
+
+    def takes(self, a: Any) -> bool:
+        """Whether `take` is for it: arrays of the host are read as for meshes there."""
+        return self.is_here(a) or adapter_of(a) is not None
 
     def take(self, a: Any, dtype: str) -> Any:
         """Numbers as a contiguous array of this library on the device."""
@@ -254,6 +261,9 @@ class Torch(Array):
     def is_here(self, a: Any) -> bool:
         return isinstance(a, self.xp.Tensor) and a.device == self.where
 
+    def takes(self, a: Any) -> bool:
+        return isinstance(a, self.xp.Tensor) or super().takes(a)
+
     def take(self, a: Any, dtype: str) -> Any:
         if isinstance(a, self.xp.Tensor):
             a = a.detach().to(self.where)
@@ -323,13 +333,14 @@ class OpenCl(Array):
     device = None
 
     def __init__(self, a: Any) -> None:
-
         self.cl = sys.modules["pyopencl"]
         self.cl_queue = self.stream = a.queue
         self.queue = int(a.queue.int_ptr)
         super().__init__(a)
 
     def convert(self, a: Any, dtype: str) -> Any:
+        if a.dtype == np.float16:  # which PyOpenCL does not know
+            return self.from_host(a.get().astype(dtype))
         return a.astype(dtype)
 
     def contiguous(self, a: Any) -> Any:
@@ -379,7 +390,8 @@ class OpenCl(Array):
         return min(low) >= 0 and max(high) < 2**31
 
     def host_of(self, a: Any) -> np.ndarray:
-        return self.contiguous(a).get()
+        with _reading:
+            return self.contiguous(a).get()
 
     def from_host(self, host: np.ndarray) -> Any:
         return self.cl.array.to_device(self.cl_queue, host.view(np.int8) if host.dtype == bool else host)

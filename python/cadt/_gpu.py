@@ -11,7 +11,7 @@ import numpy as np
 from cadt import _cadt, _devices
 from cadt._arrays import Array
 from cadt._errors import BackendUnavailable, InputError, OptionError
-from cadt._points import FILL, as_points, as_queries, is_x_and_y, unmasked
+from cadt._points import as_points, as_queries, as_values, is_x_and_y
 
 
 class Mesh:
@@ -72,6 +72,11 @@ class Mesh:
         """Without triangles there is nothing on the device to ask: all queries are outside."""
         return self.mesh.number_of_triangles == 0
 
+    def _on_host(self) -> _cadt.Queries:
+        """A mesh of the host without triangles, which refuses what is not finite."""
+        none, options = np.empty((0, 2)), self.options.on_host()
+        return _cadt.Queries(none, _cadt.triangulate(none, options), options)
+
     def _filled(self, shape: tuple[int, ...], value: float) -> Any:
         return self.array.like(np.full(shape, value))
 
@@ -90,7 +95,10 @@ class Mesh:
         if len(xi.shape) == 0 or xi.shape[-1] != 2:
             raise InputError(f"queries must have shape (..., 2), not {tuple(xi.shape)}", 0)
         shape = tuple(xi.shape[:-1])
-        return self.array.rows(xi.reshape(math.prod(shape), 2), "queries"), shape
+        rows = self.array.rows(xi.reshape(math.prod(shape), 2), "queries")
+        if self._is_empty:
+            self._on_host().locate(self.array.host_of(rows))
+        return rows, shape
 
     def _as_host(self, a: Any) -> Any:
         return self.array.host_of(a) if self.array.is_here(a) else a
@@ -124,9 +132,13 @@ class Mesh:
 
     def _values(self, values: Any) -> tuple[Any, tuple[int, ...]]:
         _devices.refuse_after_fork()
-        v = self.array.take(unmasked(values, "values", FILL), "float64")
-        if len(v.shape) == 0 or v.shape[0] != self.mesh.number_of_points:
-            raise InputError(f"values must have shape ({self.mesh.number_of_points},) or one row a point", 0)
+        n = self.mesh.number_of_points
+        if not self.array.takes(values):
+            host, one = as_values(values, n)
+            return self.array.like(host.reshape(n, *one)), one
+        v = self.array.take(values, "float64")
+        if len(v.shape) == 0 or v.shape[0] != n:
+            raise InputError(f"values must have shape ({n},) or ({n}, m): one row a point, not {tuple(v.shape)}", 0)
         return v, tuple(v.shape[1:])
 
     def interpolate(self, values: Any, xi: Any, method: str, outside: str) -> Any:
@@ -142,6 +154,8 @@ class Mesh:
     def rasterize(self, values: Any, grid: tuple, rows: int, columns: int, method: str, max_edge: float) -> Any:
         v, one = self._values(values)
         m = math.prod(one)
+        if self._is_empty and m != 0:
+            self._on_host().rasterize(grid, columns, rows, np.empty((0, 1)), method, max_edge)
         if self._is_empty or m == 0:
             return self._filled((rows, columns, *one), np.nan)
         # The library makes a raster of one value a point.

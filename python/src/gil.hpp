@@ -33,8 +33,8 @@ inline void watch_for_the_end() {
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
-/// `take()` takes the GIL. Python before 3.14, while it ends, ends the threads that do so, and with glibc their stack is
-/// unwound through destructors, which may not be left like that. Such a thread sleeps.
+/// `take()` takes the GIL. Python before 3.14, while it ends, ends the threads that do so, and with glibc their stack
+/// is unwound through destructors, which may not be left like that. Such a thread sleeps.
 template <class Take>
 void or_sleep(Take&& take) noexcept {
   if (python_gone) sleep_until_the_process_is_gone();

@@ -2,8 +2,6 @@
 // Numbers with units, lists, tables.
 #pragma once
 
-#include "io/support/human_bytes.hpp"
-
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,7 +12,8 @@
 
 namespace cadt::cli {
 
-using io::detail::human_bytes;
+/// "4.0 GiB"; below 1024 "512 bytes".
+[[nodiscard]] std::string human_bytes(std::uint64_t bytes);
 
 /// The whole text as a number that is finite.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);

@@ -16,6 +16,7 @@ import cadt.scipy
 import pytest
 
 ORDER = "asserts Qhull's order of triangles, of their corners and of the hull's edges"
+MISSED = "of SciPy 1.18: asserts that with its default tolerance SciPy's search finds no triangle for some places on edges"
 EXPECTED = {
     "TestUtilities::test_find_simplex": ORDER,
     "TestUtilities::test_convex_hull": ORDER,
@@ -24,6 +25,15 @@ EXPECTED = {
     "TestUtilities::test_degenerate_barycentric_transforms": "asserts that fewer than 23 transforms are NaN, and that the "
     "others have each triangle's rounded centroid inside: in the exact triangulation 31 triangles are lower than an ulp of "
     "their coordinates, so that no transform has, and Qhull leaves 9 of them out (test_scipy.py)",
+    **{
+        f"{test}[{interpolator}-1]": MISSED
+        for test in (
+            "test_interp_from_boundary",
+            "test_reproduction_NaN_on_points_linear_combination",
+            "test_reproduction_NaN_on_input_points",
+        )
+        for interpolator in ("LinearNDInterpolator", "CloughTocher2DInterpolator")
+    },
 }
 # Not of the classes that are replaced.
 OTHERS = ("Test_Qhull::test_swapping", "TestConvexHull", "Test_HalfspaceIntersection", "volume_area")

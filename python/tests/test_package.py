@@ -49,9 +49,13 @@ def test_examples(name: str) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="LD_BIND_NOW is a variable of Linux")
 def test_the_extension_module_finds_all_functions_that_it_calls() -> None:
-    command = [sys.executable, "-c", "import cadt._cadt"]
-    done = subprocess.run(command, check=False, capture_output=True, text=True, env={**os.environ, "LD_BIND_NOW": "1"})
-    assert done.returncode == 0, done.stderr
+    def starts(code: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-c", code]
+        return subprocess.run(command, check=False, capture_output=True, text=True, env={**os.environ, "LD_BIND_NOW": "1"})
+
+    if (bare := starts("pass")).returncode != 0:
+        pytest.skip(f"this Python itself does not find all: {bare.stderr}")
+    assert (done := starts("import cadt._cadt")).returncode == 0, done.stderr
 
 
 def test_there_are_examples() -> None:

@@ -167,7 +167,7 @@ def _after_fork() -> None:
     global _lock, _in_child
     _cadt.forked()
     # Threads of the host's triangulators are the parent's too, but new ones can be opened.
-    _in_child = _in_child or _touched
+    _in_child = _touched
     for triangulator in _open.values():
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(triangulator))
     _open.clear()

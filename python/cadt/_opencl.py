@@ -26,7 +26,7 @@ class OpenCl(Array):
 
     def convert(self, a: Any, dtype: str) -> Any:
         if a.dtype == np.float16:  # which PyOpenCL does not know
-            return self.from_host(a.get().astype(dtype))
+            return self.from_host(self.host_of(a).astype(dtype))
         return a.astype(dtype)
 
     def contiguous(self, a: Any) -> Any:
@@ -65,7 +65,7 @@ class OpenCl(Array):
         while len(a) > 1:  # the first half with the last one, which share a row if there is an odd number
             half = (len(a) + 1) // 2
             a = pick(a[:half], a[len(a) - half :])
-        return a.get()[0].tolist()
+        return self.host_of(a)[0].tolist()
 
     def bounds(self) -> tuple[float, float, float, float]:
         (x0, y0), (x1, y1) = self.fold(self.a, self.cl.array.minimum), self.fold(self.a, self.cl.array.maximum)

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cctype>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/support/backends.hpp"
 #include "tests/support/data_files.hpp"
@@ -235,6 +237,32 @@ TEST_P(Polygons, DefectsAreReportedOneByOne) {
   }
   EXPECT_EQ(result.problems().size(), problems);
   expect_equal(set);
+}
+
+/// A large polygon is a call of its own: what that counts is told, too.
+TEST_P(Polygons, CountersOfLargeOnes) {
+  Ring ring;  // teeth so slanted that their sides are no Delaunay edges
+  for (int i = 0; i < 300; ++i) {
+    ring.push_back({2.0 * i, 0});
+    ring.push_back({2.0 * i + 51, 100});
+  }
+  ring.push_back({900, -50});
+  ring.push_back({-50, -50});
+  PolygonSet set;
+  set.add({ring});
+  const Statistics found = triangulate(set).statistics();
+  std::vector<Segment> segments;
+  const auto corners = static_cast<std::int32_t>(ring.size());
+  for (std::int32_t i = 0; i < corners; ++i) segments.push_back({i, (i + 1) % corners});
+  const Statistics alone =
+      triangulate_constrained(set.points, segments, {.domain = Domain::even_odd}, GetParam().options()).statistics();
+  EXPECT_GT(alone.certified_edges, 0U);
+  EXPECT_GT(alone.inserted_segments, 0U);
+  EXPECT_EQ(found.certified_edges, alone.certified_edges);
+  EXPECT_EQ(found.inserted_segments, alone.inserted_segments);
+  for (const auto counter : {&Statistics::launches, &Statistics::incircle_tests, &Statistics::orientation_tests,
+                             &Statistics::bytes_device_peak})
+    EXPECT_GT(found.*counter, 0U);
 }
 
 TEST_P(Polygons, NothingToDo) {

@@ -35,17 +35,23 @@ void need(bool holds, const char* what) {
   if (!holds) throw Error(std::string("not a tree of tiles: ") + what);
 }
 
-/// The number at which these are halved: the left half is below it, and neither is empty. Needs two different ones.
-double halving_number(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  const double median = *middle;
-  const double least = *std::min_element(values.begin(), middle + 1);
-  if (least < median) return median;
-  double next = infinite;
-  for (const double v : values)
-    if (v > least) next = std::min(next, v);
-  return next;
+/// Halves points by a number, of which they have two at least: the left half, which comes first, is below it, and
+/// neither is empty. The number, and how many are left of it.
+std::pair<double, std::size_t> halve(std::span<std::array<double, 2>> points, std::size_t axis) {
+  const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
+  std::nth_element(points.begin(), middle, points.end(),
+                   [axis](const auto& a, const auto& b) { return a[axis] < b[axis]; });
+  double at = (*middle)[axis];
+  const auto is_left = [&](const auto& p) { return p[axis] < at; };
+  auto right = std::partition(points.begin(), middle, is_left);
+  if (right == points.begin()) {  // nothing is below the median
+    double next = infinite;
+    for (const auto& p : points)
+      if (p[axis] > at) next = std::min(next, p[axis]);
+    at = next;
+    right = std::partition(points.begin(), points.end(), is_left);
+  }
+  return {at, static_cast<std::size_t>(right - points.begin())};
 }
 
 }  // namespace
@@ -157,10 +163,10 @@ void TreeBuilder::finish_pass(TreePass&& pass) {
     return;
   }
   // The sample by leaf. The order within a leaf is of no importance.
-  std::vector<std::vector<double>> samples(looked_at.size());
+  std::vector<std::vector<Point>> samples(looked_at.size());
   for (std::size_t i = 0; i < pass.sample.size(); i += 2) {
-    std::vector<double>& of = samples[drafts_[draft_of(pass.sample[i], pass.sample[i + 1])].slot];
-    of.insert(of.end(), {pass.sample[i], pass.sample[i + 1]});
+    const Point p{pass.sample[i], pass.sample[i + 1]};
+    samples[drafts_[draft_of(p[0], p[1])].slot].push_back(p);
   }
   pass.sample = {};
   for (const Pending& pending : looked_at) drafts_[pending.draft].slot = no_node;
@@ -191,14 +197,14 @@ void TreeBuilder::add_children(std::uint32_t draft, int axis, double at) {
   drafts_.push_back({.box = right});
 }
 
-void TreeBuilder::split_by_sample(std::uint32_t slot, std::span<double> sample, const double* bounds,
+void TreeBuilder::split_by_sample(std::uint32_t slot, std::span<Point> sample, const double* bounds,
                                   std::uint64_t count) {
   struct Piece {
     std::uint32_t draft;
     std::size_t begin, end;  // points of the sample
   };
   const bool whole = pending_[slot].whole;
-  const std::size_t all = sample.size() / 2;
+  const std::size_t all = sample.size();
   // Points that m of the sample stand for, at most: four standard deviations spare most passes of a second round.
   const auto is_overfull = [&](std::size_t m) {
     if (whole) return m > tile_points_;
@@ -206,7 +212,6 @@ void TreeBuilder::split_by_sample(std::uint32_t slot, std::span<double> sample, 
     return share * static_cast<double>(count) > static_cast<double>(tile_points_) * static_cast<double>(all);
   };
   std::vector<Piece> todo{{pending_[slot].draft, 0, all}};
-  std::vector<double> values;
   while (!todo.empty()) {
     const Piece piece = todo.back();
     todo.pop_back();
@@ -214,9 +219,9 @@ void TreeBuilder::split_by_sample(std::uint32_t slot, std::span<double> sample, 
     const bool is_slot = m == all;  // its exact bounds are known, and that it is overfull
     if (!is_slot && !is_overfull(m)) continue;
     double low[2] = {infinite, infinite}, high[2] = {-infinite, -infinite};
-    for (std::size_t i = 2 * piece.begin; i < 2 * piece.end; ++i) {
-      low[i % 2] = std::min(low[i % 2], sample[i]);
-      high[i % 2] = std::max(high[i % 2], sample[i]);
+    const std::span<Point> of_piece = sample.subspan(piece.begin, m);
+    for (const Point& p : of_piece) {
+      for (const std::size_t a : {0U, 1U}) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
     }
     if (m == 0) std::copy_n(bounds, 2, low), std::copy_n(bounds + 2, 2, high);
     // Halves, since the difference of two doubles may be infinite.
@@ -237,16 +242,8 @@ void TreeBuilder::split_by_sample(std::uint32_t slot, std::span<double> sample, 
       }
       continue;
     }
-    values.clear();
-    for (std::size_t i = piece.begin; i < piece.end; ++i) values.push_back(sample[2 * i + static_cast<unsigned>(axis)]);
-    const double at = halving_number(values);
-    std::size_t middle = piece.begin;
-    for (std::size_t i = piece.begin; i < piece.end; ++i) {
-      if (!(sample[2 * i + static_cast<unsigned>(axis)] < at)) continue;
-      std::swap(sample[2 * i], sample[2 * middle]);
-      std::swap(sample[2 * i + 1], sample[2 * middle + 1]);
-      ++middle;
-    }
+    const auto [at, lefts] = halve(of_piece, static_cast<std::size_t>(axis));
+    const std::size_t middle = piece.begin + lefts;
     add_children(piece.draft, axis, at);
     todo.push_back({drafts_[piece.draft].left, piece.begin, middle});
     todo.push_back({drafts_[piece.draft].right, middle, piece.end});

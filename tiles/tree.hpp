@@ -5,6 +5,7 @@
 
 #include <cadt/finalization.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -112,7 +113,8 @@ class TreeBuilder {
     bool whole = false;           // the sample is all points of the leaf
   };
   [[nodiscard]] std::uint32_t draft_of(double x, double y) const noexcept;
-  void split_by_sample(std::uint32_t slot, std::span<double> sample, const double* bounds, std::uint64_t count);
+  using Point = std::array<double, 2>;
+  void split_by_sample(std::uint32_t slot, std::span<Point> sample, const double* bounds, std::uint64_t count);
   void add_children(std::uint32_t draft, int axis, double at);
   void choose_pending(std::vector<std::uint32_t> drafts);
 

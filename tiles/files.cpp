@@ -4,10 +4,10 @@
 #include <cadt/io/errors.hpp>
 
 #include "io/support/npy_format.hpp"
-#include "io/support/system_file.hpp"
 #include "tiles/hash.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <algorithm>
@@ -92,6 +92,11 @@ void sync_file(const std::string& path) {
   const system_file::Descriptor file(system_file::open_to_read(path));
   if (!file.is_open()) fail(path, "cannot be opened", errno);
   if (!system_file::sync(file.get())) fail(path, "cannot be synced", errno);
+}
+
+bool FolderLock::take(const std::string& path) {
+  folder_.emplace(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return ::flock(folder_->get(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
 void rename_file(const std::string& from, const std::string& to) {

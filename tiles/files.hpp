@@ -2,8 +2,11 @@
 // Files of a mesh directory: written and synced as a whole, hashed, mapped.
 #pragma once
 
+#include "io/support/system_file.hpp"
+
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -51,6 +54,18 @@ void rename_file(const std::string& from, const std::string& to);
 void rename_folder(const std::string& from, const std::string& to);
 /// With all that is in it; not an error if it is not there.
 void remove_folder(const std::string& path);
+
+/// Keeps a folder for one run: until it is destroyed, or the process ends in any way, the folder has no other lock.
+class FolderLock {
+ public:
+  FolderLock() = default;
+  /// False if another one, of this process or another, has the folder. File systems that know no locks of folders (some
+  /// of those shared by machines) do not tell.
+  [[nodiscard]] bool take(const std::string& path);
+
+ private:
+  std::optional<io::detail::system_file::Descriptor> folder_;
+};
 
 /// A file in memory as its pages are read. Must not become shorter meanwhile. Small ones are read at once: a process
 /// may have some ten thousand mappings alone.

@@ -106,9 +106,13 @@ Store::Store(std::string path, const Plan& plan, Start start) : path_(std::move(
   std::error_code code;
   if (start == Start::create || !fs::exists(path_ + "/manifest.json", code)) {
     check_new_directory(path_);
+    make_folder(path_);
+    lock();
+    check_new_directory(path_);  // again: another run may have begun and ended
     begin();
     return;
   }
+  lock();
   const Manifest found = read_manifest(path_);
   check_same_plan(found);
   if (!found.complete) {
@@ -136,8 +140,12 @@ void check_new_directory(const std::string& path) {
     throw ResumeError(path + ": the folder is there already and holds no mesh; give another name, or remove it");
 }
 
+void Store::lock() {
+  if (!lock_.take(path_))
+    throw ResumeError(path_ + ": another run writes to this folder; wait until it has ended, or give another name");
+}
+
 void Store::begin() {
-  make_folder(path_);
   sync_folder(io::detail::system_file::folder_of(path_));
   make_folder(path_ + "/unfinished");
   Manifest manifest;

@@ -10,6 +10,7 @@
 // All but run.json are equal, byte by byte, for every back end and number of devices, threads and processes.
 #pragma once
 
+#include "tiles/files.hpp"
 #include "tiles/manifest.hpp"
 #include "tiles/node.hpp"
 
@@ -30,6 +31,7 @@ class Store {
     resume,  ///< that of an earlier run with the same plan, or a new one
     join     ///< another process has begun it
   };
+  /// All but join keep the directory for this store: another run that comes meanwhile is refused.
   /// \throws io::FileError with the name of what cannot be written; ResumeError
   Store(std::string path, const Plan& plan, Start start);
 
@@ -52,6 +54,7 @@ class Store {
   Manifest finish();
 
  private:
+  void lock();
   void begin();
   [[nodiscard]] std::string node_folder(std::uint32_t node) const;
   [[nodiscard]] std::string unfinished_folder(std::uint32_t node) const;
@@ -60,6 +63,7 @@ class Store {
 
   std::string path_;
   Plan plan_;
+  FolderLock lock_;
   bool complete_ = false;
 };
 

@@ -114,6 +114,30 @@ TEST_F(StoreTest, OrderOfNodesAndWritersDoesNotMatter) {
   EXPECT_EQ(contents(), expected);
 }
 
+TEST_F(StoreTest, OneRunAtATime) {
+  const auto refused = [&](Store::Start start) {
+    try {
+      const Store store(path_, made_.plan, start);
+      ADD_FAILURE() << "there are two";
+    } catch (const ResumeError& e) {
+      EXPECT_NE(std::string(e.what()).find("another run"), std::string::npos) << e.what();
+    }
+  };
+  for (const Store::Start start : {Store::Start::create, Store::Start::resume}) {
+    const Store store(path_, made_.plan, start);
+    refused(Store::Start::resume);
+    const Store of_another_rank(path_, made_.plan, Store::Start::join);
+    write_all(store);
+  }
+  const Store after(path_, made_.plan, Store::Start::resume);
+  std::filesystem::remove_all(path_);
+  std::filesystem::create_directory(path_);  // another run is just beginning
+  FolderLock lock;
+  EXPECT_TRUE(lock.take(path_));
+  refused(Store::Start::create);
+  refused(Store::Start::resume);
+}
+
 TEST_F(StoreTest, EachDamagedFileMakesItsNodeInvalid) {
   const Store store(path_, made_.plan, Store::Start::create);
   write_all(store);
@@ -143,8 +167,7 @@ TEST_F(StoreTest, MissingNodesAndOtherPlans) {
     EXPECT_THROW(store.finish(), io::FileError);
   }
   EXPECT_THROW(Store(path_, made_.plan, Store::Start::create), ResumeError);
-  Store again(path_, made_.plan, Store::Start::resume);
-  EXPECT_FALSE(again.is_valid(made_.nodes[0].node));
+  EXPECT_FALSE(Store(path_, made_.plan, Store::Start::resume).is_valid(made_.nodes[0].node));
   Plan other = made_.plan;
   other.content.low ^= 1;
   EXPECT_THROW(Store(path_, other, Store::Start::resume), ResumeError);

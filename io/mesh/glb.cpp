@@ -43,6 +43,7 @@ void write_glb(AtomicFile& out, const std::string& path, const MeshParts& mesh) 
     throw FileError(path, 0,
                     fmt::format("{} triangles are too many for a .glb, whose sizes have 32 bits: write a .ply",
                                 mesh.triangles.size() / 3));
+  double longest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     middle[k] = 0.5 * low[k] + 0.5 * high[k];
     if (!(high[k] - middle[k] <= static_cast<double>(std::numeric_limits<float>::max())))
@@ -50,7 +51,10 @@ void write_glb(AtomicFile& out, const std::string& path, const MeshParts& mesh) 
     // The accessor's bounds are those of the floats.
     low[k] = static_cast<double>(static_cast<float>(low[k] - middle[k]));
     high[k] = static_cast<double>(static_cast<float>(high[k] - middle[k]));
+    longest = std::max(longest, high[k] - low[k]);
   }
+  if (longest < static_cast<double>(std::numeric_limits<float>::min()))
+    throw FileError(path, 0, "the coordinates are too close together for the floats of a .glb: write a .ply");
   std::string text = fmt::format(
       R"({{"asset":{{"version":"2.0","generator":"cadt"}},"scene":0,"scenes":[{{"nodes":[0]}}],)"
       R"("nodes":[{{"mesh":0,"translation":{0}}}],)"

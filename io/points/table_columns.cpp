@@ -95,6 +95,11 @@ TableLayout table_layout(const TableRows& first_row, const std::string& columns)
   TableLayout layout;
   layout.has_header = !numbers || recognised.has_value();
   if (columns.empty()) {
+    if (layout.has_header && !recognised && fields.size() > 3) {
+      first_row.fail("of " + std::to_string(fields.size()) +
+                     " columns with names none are x and y, lon and lat, or "
+                     "easting and northing: choose columns by number or name, or name two of them x and y");
+    }
     layout.columns = recognised.value_or(Columns{});
     layout.third_if_numeric = !recognised;
     return layout;

@@ -89,7 +89,8 @@ class Scanner {
 
   bool null() { return value(nullptr); }
   bool boolean(bool) { return value("a truth value"); }
-  bool number_integer(std::int64_t v) { return number(static_cast<double>(v)); }
+  // With a minus sign, so 0 is -0.
+  bool number_integer(std::int64_t v) { return number(v == 0 ? -0.0 : static_cast<double>(v)); }
   bool number_unsigned(std::uint64_t v) { return number(static_cast<double>(v)); }
   bool number_float(double v, const std::string&) { return number(v); }
   bool binary(std::vector<std::uint8_t>&) { return true; }

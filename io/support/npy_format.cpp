@@ -24,6 +24,8 @@ class HeaderParser {
       const std::string_view key = string();
       need(':');
       if (key == "descr") {
+        skip_blanks();
+        if (at_ < text_.size() && text_[at_] == '[') fail("arrays with fields (a structured type) cannot be read");
         parse_descr(array, string());
         descr = true;
       } else if (key == "fortran_order") {
@@ -79,7 +81,8 @@ class HeaderParser {
   }
   void parse_descr(NpyArray& array, std::string_view descr) const {
     const auto size = descr.size() > 2 ? parse_integer(descr.substr(2)) : std::nullopt;
-    if (!size || *size < 1 || *size > 16 || std::string_view("<>=|").find(descr[0]) == std::string_view::npos) {
+    if (!size || *size < 1 || *size > 16 || std::string_view("<>=|").find(descr[0]) == std::string_view::npos ||
+        std::string_view("biufc").find(descr[1]) == std::string_view::npos) {
       fail("arrays of type " + quoted(descr) + " cannot be read");
     }
     array.big_endian = descr[0] == '>' || (descr[0] == '=' && std::endian::native == std::endian::big);

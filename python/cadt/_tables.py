@@ -67,7 +67,18 @@ def has_names(fields: list[str]) -> bool:
 def plain_layout(fields: list[str]) -> Layout:
     """What the first row says of a table, of which nothing else is known."""
     known = recognised([field.lower() for field in fields])
+    if known is None and has_names(fields):
+        check_guess(fields)
     return Layout(known or [0, 1], has_names(fields), known is None)
+
+
+def check_guess(names: list[str]) -> None:
+    """Two or three columns with unknown names are x, y and perhaps heights; of more, nobody knows. Raises TableError."""
+    if len(names) > 3:
+        raise TableError(
+            f"of {len(names)} columns with names none are x and y, lon and lat, or easting and northing: choose columns by "
+            "number or name, or name two of them x and y"
+        )
 
 
 def looks_like_number(field: str) -> bool:

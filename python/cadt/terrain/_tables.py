@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from cadt._tables import Layout, TableError, has_names, read_table, recognised
+from cadt._tables import Layout, TableError, check_guess, has_names, read_table, recognised
 
 from ._files import Room, why
 from .errors import FileError, TerrainError, UsageError
@@ -66,6 +66,8 @@ def _read_text(path: str, columns: str) -> NDArray[np.float64]:
         by_name = any(not word.strip().isdigit() for word in columns.split(",")) if columns else False
         has_header = has_names(fields) or by_name
         if not columns:
+            if known is None and has_header:
+                check_guess(fields)
             return Layout(known or [0, 1, 2], has_header)
         return Layout(_choose(path, columns, fields if has_header else [], len(fields)), has_header)
 

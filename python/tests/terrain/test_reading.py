@@ -259,13 +259,21 @@ THREE = [[0, 0, 1], [1, 0, 2], [0, 1, 3]]
         ("x,street,y,z\n0,#1 DRIVE,0,1\n1,2 //A,0,2\n0,>3,1,3\n", ""),
         ("0 0 1 # first\n> segment\n// note\n1 0 2\n0 1 3\n", ""),
         ("name\tx\ty\tz\na b\t0\t0\t1\n\t1\t0\t2\nc\t0\t1\t3\n", ""),
-        ('a;b;c;d\n0;0;1;"x;\n7;7"\n1;0;2;""\n0;1;3;\n', ""),
+        ('x;y;z;d\n0;0;1;"x;\n7;7"\n1;0;2;""\n0;1;3;\n', ""),
         ("0,0,1,\n1,0,2,\n0,1,3,\n", ""),
     ],
 )
 def test_headers_are_read_as_the_program_reads_them(tmp_path, text, columns):
     (tmp_path / "t.csv").write_bytes(text.encode())
     cloud = terrain.read_cloud([str(tmp_path / "t.csv")], columns=columns)
+    assert np.array_equal(np.column_stack((cloud.xy, cloud.z)), THREE)
+
+
+def test_names_that_do_not_tell_the_coordinates(tmp_path):
+    (tmp_path / "t.csv").write_text("point_id,easting_m,northing_m,elev_m\n1,0,0,1\n2,1,0,2\n3,0,1,3\n")
+    with pytest.raises(terrain.FileError, match="of 4 columns with names none are x and y"):
+        terrain.read_cloud([str(tmp_path / "t.csv")])
+    cloud = terrain.read_cloud([str(tmp_path / "t.csv")], columns="easting_m,northing_m,elev_m")
     assert np.array_equal(np.column_stack((cloud.xy, cloud.z)), THREE)
 
 

@@ -140,7 +140,8 @@ TEST(Npy, Errors) {
   expect(npy("{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2)", point), "malformed");
   expect(npy("{'descr': '<f8', 'fortran_order': Maybe, 'shape': (1, 2)}", point), "True or False");
   expect(npy("{'descr': '<f8', 'fortran_order': False, 'shape': (-1, 2)}", point), "tuple of integers");
-  expect(npy("{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (1,)}", point), "a string expected");
+  expect(npy("{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (1,)}", point), "arrays with fields");
+  expect(npy("<U3", false, "(1, 2)", std::string(24, 'a')), "arrays of type '<U3' cannot be read");
   expect(npy("<i4", false, "(2, 2)", point), "float32 or float64");
   expect(npy("<f8", false, "(2,)", point), "shape (n, 2) or (n, 3)");
   expect(npy("<f8", false, "(2, 1)", point), "shape (n, 2) or (n, 3)");

@@ -93,6 +93,9 @@ TEST(Glb, RefusesWhatItCannotHold) {
   mesh.xy[0] = -1e300;
   expect_file_error([&] { detail::write_mesh_parts(path, mesh.parts(), {}); }, path, 0, "too large for the floats");
   mesh = {};
+  for (double& v : mesh.xy) v *= 1e-60;
+  expect_file_error([&] { detail::write_mesh_parts(path, mesh.parts(), {}); }, path, 0, "too close together");
+  mesh = {};
   mesh.triangles.clear();
   expect_file_error([&] { detail::write_mesh_parts(path, mesh.parts(), {}); }, path, 0, "needs triangles");
   EXPECT_EQ(folder.entries(), 0U);

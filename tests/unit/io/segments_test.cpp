@@ -4,6 +4,8 @@
 
 #include "tests/unit/io/io_test_support.hpp"
 
+#include <cmath>
+
 namespace cadt::io::test {
 namespace {
 
@@ -129,6 +131,14 @@ TEST(PolyFile, TakesPointsFromTheNodeFileBesideIt) {
   EXPECT_EQ(edge.xy, poly.xy);
   EXPECT_EQ(edge.segments, (Segments{{1, 0}}));
   EXPECT_EQ(edge.segment_markers, (std::vector<std::int32_t>{5}));
+}
+
+TEST(GeoJson, KeepsTheSignOfZero) {
+  const Folder folder;
+  const SegmentsFile line =
+      read_segments(folder.file("a.json", R"({"type":"LineString","coordinates":[[-0,0],[-0.0,-1]]})"));
+  EXPECT_TRUE(std::signbit(line.xy[0]) && std::signbit(line.xy[2]));
+  EXPECT_FALSE(std::signbit(line.xy[1]));
 }
 
 TEST(ThirdCoordinates, BecomeTheAttribute) {

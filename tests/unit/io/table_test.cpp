@@ -81,6 +81,13 @@ TEST(Table, ChosenColumns) {
   expect_read_error(path, 2, "6 fields, column 9 is expected", {.format = {}, .columns = "1,9"});
 }
 
+TEST(Table, NamesThatDoNotTellTheCoordinates) {
+  const Folder folder;
+  const std::string path = folder.file("t.csv", "point_id,easting_m,northing_m,elev_m\n1,50,8,3\n");
+  expect_read_error(path, 1, "of 4 columns with names none are x and y");
+  EXPECT_EQ(read_points(path, {.format = {}, .columns = "easting_m,3"}).xy, (Values{50, 8}));
+}
+
 TEST(Table, ChosenColumnsOfATableWithoutHeader) {
   const Folder folder;
   const std::string path = folder.file("t.txt", "a 1 2 3\nb 4 5 6\n");

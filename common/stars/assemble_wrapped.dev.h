@@ -68,8 +68,8 @@ CADT_KERNEL(cadt_wrap_counts, CADT_GLOBAL const cadt_u32* star_vertices, CADT_GL
   }
   const cadt_u32 high_degree = counts[CADT_WRAP_FAILED];
   CADT_FOR(v, n, grain) {
-    CADT_GLOBAL const cadt_u32* star = star_vertices + begins[v];
-    const cadt_u32 size = sizes[v];
+    const cadt_u32 size = sizes[v]; /* a vertex without a star has no place either */
+    CADT_GLOBAL const cadt_u32* star = star_vertices + (size ? begins[v] : 0u);
     for (cadt_u32 k = 0u; high_degree && k < size; ++k) {
       const cadt_u32 a = star[k], b = star[k + 1u < size ? k + 1u : 0u];
       if (cadt_lacks_star(sizes, a) && cadt_lacks_star(sizes, b)) {

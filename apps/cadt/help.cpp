@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -58,6 +59,43 @@ std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
 std::string HelpFormatter::make_usage(const CLI::App* app, std::string name) const {
   if (app->get_parent() == nullptr) return "\nUsage: cadt COMMAND [OPTIONS] ...\n";
   return "\n" + CLI::Formatter::make_usage(app, std::move(name));
+}
+
+namespace {
+
+/// Letters to insert, delete or replace, or neighbours to exchange, so that one word becomes the other.
+std::size_t changes(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before_last, last, row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    before_last = std::exchange(last, row);
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      row[j + 1] = std::min({last[j] + (a[i] == b[j] ? 0U : 1U), last[j + 1] + 1, row[j] + 1});
+      if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
+        row[j + 1] = std::min(row[j + 1], before_last[j - 1] + 1);
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
+  const auto distance = [&](const std::string& name) { return changes(word, name); };
+  const auto best = std::ranges::min_element(names, {}, distance);
+  return best != names.end() && 3 * distance(*best) <= word.size() ? fmt::format("; did you mean {}?", *best) : "";
+}
+
+std::string explain(const CLI::ParseError& error, const CLI::App& command, const std::string& name) {
+  const std::vector<std::string> words = command.remaining(true);
+  const auto option = std::ranges::find_if(words, [](const std::string& w) { return w.size() > 1 && w[0] == '-'; });
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || option == words.end()) return error.what();
+  std::vector<std::string> names;
+  for (const CLI::Option* known : command.get_options())
+    for (const std::string& of : known->get_lnames()) names.push_back("--" + of);
+  const std::string word = option->substr(0, option->find('='));
+  return fmt::format("{} has no option {}{}", name, word, suggestion(word, names));
 }
 
 }  // namespace cadt::cli

@@ -9,12 +9,14 @@
 #include <cadt/version.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <csignal>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace {
 
@@ -42,14 +44,15 @@ void explain_first_word(const CLI::App& app, int argc, char** argv) {
   if (argc < 2) throw Failure(exit_usage, "a command is missing; see: cadt --help");
   const std::string word = argv[1];
   if (!word.empty() && word[0] == '-') return;
-  std::string names;
+  std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     if (command->get_name() == word) return;
-    names += (names.empty() ? "" : ", ") + command->get_name();
+    names.push_back(command->get_name());
   }
-  throw Failure(exit_usage,
-                fmt::format("there is no command '{}'; there are: {}. To triangulate a file: cadt triangulate {}", word,
-                            names, word));
+  const std::string near = suggestion(word, names);
+  const std::string all =
+      fmt::format("; there are: {}. To triangulate a file: cadt triangulate {}", fmt::join(names, ", "), word);
+  throw Failure(exit_usage, fmt::format("there is no command '{}'{}", word, near.empty() ? all : near));
 }
 
 int parse_and_run(int argc, char** argv) {
@@ -95,8 +98,9 @@ int parse_and_run(int argc, char** argv) {
     return exit_done;
   } catch (const CLI::ParseError& e) {
     const auto chosen = app.get_subcommands();
-    const std::string help = chosen.empty() ? "cadt --help" : fmt::format("cadt {} --help", chosen.front()->get_name());
-    throw Failure(exit_usage, fmt::format("{}; see: {}", e.what(), help));
+    const CLI::App& command = chosen.empty() ? app : *chosen.front();
+    const std::string name = chosen.empty() ? "cadt" : "cadt " + command.get_name();
+    throw Failure(exit_usage, fmt::format("{}; see: {} --help", explain(e, command, name), name));
   }
   if (!action) throw Failure(exit_usage, "a command is missing; see: cadt --help");
   install_interrupt_handlers();

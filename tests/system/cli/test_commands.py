@@ -230,7 +230,16 @@ class Help(CliTest):
         self.assertEqual(self.cadt("-h").out, text)
         self.assertEqual(self.cadt("help").out, text)
         self.assertEqual(self.cadt("help", "raster").out, self.cadt("raster", "--help").out)
-        self.fails(2, "help", "me", says="there is no command 'me'")
+        self.fails(2, "help", "me", says="there is no command 'me'; there are: triangulate, ")
+        self.fails(2, "traingulate", "a.xy", says="there is no command 'traingulate'; did you mean triangulate?")
+
+    def test_words_that_are_no_options(self):
+        options = "cadt triangulate has no option"
+        self.fails(2, "triangulate", "a.xy", "--ouput", "a.ply", says=options + " --ouput; did you mean --output?")
+        self.fails(2, "triangulate", "a.xy", "--dmoain=outer", says=options + " --dmoain; did you mean --domain?")
+        self.fails(2, "triangulate", "a.xy", "--zzz", says=options + " --zzz; see: cadt triangulate --help")
+        self.fails(2, "triangulate", "a.xy", "-n", "5", says=options + " -n; see: cadt triangulate --help")
+        self.fails(2, "triangulate", "a.xy", "b.xy", says="not expected: b.xy; see: cadt triangulate --help")
 
     def test_each_command_has_an_example(self):
         for command in self.COMMANDS:

@@ -161,6 +161,7 @@ Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool 
   if (is_graph(input)) {
     graph = graph_of(io::read_segments(input.path, lower(input.format)));
   } else {
+    require_format(options.file, "", io::segment_read_formats(), "");
     std::error_code code;
     const bool same_file = input.path != "-" && std::filesystem::equivalent(input.path, options.file, code);
     if (!same_file) graph.points = read_input(input);

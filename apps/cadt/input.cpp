@@ -97,9 +97,10 @@ void require_format(const std::string& path, const std::string& asked, const std
   const std::string suffix = lower(fs::path(path).extension().string());
   if (suffix == ".cadt" && !fs::exists(path, code)) throw io::FileError(path, 0, "there is no such folder");
   if (!suffix.empty() && std::find(known.begin(), known.end(), suffix.substr(1)) != known.end()) return;
-  throw Failure(exit_usage, fmt::format("{}: {}; name the format with {}, one of: {}", path,
-                                        suffix.empty() ? "no suffix" : "unknown suffix '" + suffix + "'", option,
-                                        join(known, " ")));
+  throw Failure(
+      exit_usage,
+      fmt::format("{}: {}; {} one of: {}", path, suffix.empty() ? "no suffix" : "unknown suffix '" + suffix + "'",
+                  option.empty() ? "it has to be" : "name the format with " + option + ",", join(known, " ")));
 }
 
 void require_columns(const std::string& columns, const std::string& option) {

@@ -33,8 +33,8 @@ void add_floats_option(CLI::App& command, InputOptions& options);
 /// With --floats: rounds the coordinates, and says how many points that has moved unless `quiet`.
 void round_to_floats(io::PointSet& points, const InputOptions& options, bool quiet);
 
-/// Throws Failure (usage) for a suffix that is none of `known`, where no format is `asked` for by `option`;
-/// io::FileError for a folder.
+/// Throws Failure (usage) for a suffix that is none of `known`, where no format is `asked` for by `option`
+/// (empty: there is none that could); io::FileError for a folder.
 void require_format(const std::string& path, const std::string& asked, const std::vector<std::string>& known,
                     const std::string& option);
 

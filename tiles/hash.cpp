@@ -6,6 +6,7 @@
 #define XXH_INLINE_ALL  // nothing to link
 #include <xxhash.h>
 
+#include <algorithm>
 #include <new>
 
 namespace cadt::tiles {
@@ -19,6 +20,14 @@ void add_block_hash(Hash128& content, std::uint64_t first, std::span<const doubl
   const Hash128 block = hash_bytes(xy.data(), xy.size_bytes(), first);
   content.high += block.high;
   content.low += block.low;
+}
+
+void add_blocks_hash(Hash128& content, std::uint64_t first, std::span<const double> xy) {
+  for (; !xy.empty(); first += block_points) {
+    const std::size_t size = std::min(xy.size(), 2 * block_points);
+    add_block_hash(content, first, xy.first(size));
+    xy = xy.subspan(size);
+  }
 }
 
 struct HashStream::State {

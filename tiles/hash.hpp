@@ -21,6 +21,9 @@ inline constexpr std::size_t block_points = std::size_t{1} << 16;
 /// order give that of the content, whatever its files.
 void add_block_hash(Hash128& content, std::uint64_t first, std::span<const double> xy);
 
+/// The same of several blocks one after another, of which the first begins with point `first`.
+void add_blocks_hash(Hash128& content, std::uint64_t first, std::span<const double> xy);
+
 /// Of bytes that come in pieces.
 class HashStream {
  public:

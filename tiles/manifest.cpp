@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -19,6 +20,18 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* format_name = "cadt mesh in tiles";
 constexpr const char* sample_rule = "splitmix64 of the index, 2^20 points expected; all of smaller sets";
+
+/// A whole number, as it is written: none that is negative, broken or too large.
+template <class Number>
+Number count_of(const Json& json) {
+  if (!json.is_number_unsigned() || json.get<std::uint64_t>() > std::numeric_limits<Number>::max())
+    throw Error("is damaged: " + json.dump() + " is no number of points, triangles, nodes or bytes");
+  return json.get<Number>();
+}
+
+void require(bool holds, const char* what) {
+  if (!holds) throw Error(std::string("is damaged: ") + what);
+}
 
 Json side(double v) { return std::isinf(v) ? Json(nullptr) : Json(v); }
 
@@ -36,12 +49,14 @@ Json json_of(const NodeSums& sums) {
 
 NodeSums sums_of(const Json& json) {
   NodeSums sums;
-  sums.points = json.at("points");
-  sums.distinct = json.at("distinct");
-  sums.triangles = json.at("triangles");
-  sums.hull_edges = json.at("hull_edges");
-  sums.certified_edges = json.at("certified_edges");
-  sums.dimension = json.at("dimension");
+  sums.points = count_of<std::uint64_t>(json.at("points"));
+  sums.distinct = count_of<std::uint64_t>(json.at("distinct"));
+  sums.triangles = count_of<std::uint64_t>(json.at("triangles"));
+  sums.hull_edges = count_of<std::uint64_t>(json.at("hull_edges"));
+  sums.certified_edges = count_of<std::uint64_t>(json.at("certified_edges"));
+  const Json& dimension = json.at("dimension");
+  require(dimension == -1 || dimension == 0 || dimension == 1 || dimension == 2, "a dimension is from -1 to 2");
+  sums.dimension = dimension;
   sums.hash = hash_from_string(json.at("hash"));
   return sums;
 }
@@ -57,14 +72,14 @@ Json json_of(const NodeRecord& record) {
 
 NodeRecord record_of(const Json& json) {
   NodeRecord record;
-  record.points = json.at("points");
-  record.triangles = json.at("triangles");
-  record.links = json.at("links");
-  record.open = json.at("open");
-  record.duplicates = json.at("duplicates");
+  record.points = count_of<std::uint64_t>(json.at("points"));
+  record.triangles = count_of<std::uint64_t>(json.at("triangles"));
+  record.links = count_of<std::uint64_t>(json.at("links"));
+  record.open = count_of<std::uint64_t>(json.at("open"));
+  record.duplicates = count_of<std::uint64_t>(json.at("duplicates"));
   record.sums = sums_of(json.at("sums"));
   for (const Json& file : json.at("files"))
-    record.files.push_back({file.at("name"), file.at("bytes"), file.at("xxh3")});
+    record.files.push_back({file.at("name"), count_of<std::uint64_t>(file.at("bytes")), file.at("xxh3")});
   return record;
 }
 
@@ -87,9 +102,10 @@ TileTree tree_of(const Json& json) {
     const Json& box = from.at("box");
     node.box = {side(box.at(0), -outside), side(box.at(1), -outside), side(box.at(2), outside),
                 side(box.at(3), outside)};
-    node.points = from.at("points");
+    node.points = count_of<std::uint64_t>(from.at("points"));
     if (from.contains("children")) {
-      node.left = from["children"].at(0), node.right = from["children"].at(1);
+      node.left = count_of<std::uint32_t>(from["children"].at(0));
+      node.right = count_of<std::uint32_t>(from["children"].at(1));
       for (const std::uint32_t child : {node.left, node.right}) {
         if (child >= nodes.size()) throw Error("not a tree of tiles: a child comes after its parent");
         nodes[child].parent = static_cast<std::uint32_t>(nodes.size());
@@ -107,20 +123,27 @@ Manifest manifest_of(const Json& json, const std::string& path) {
                       std::to_string(format_version) + ": use the version of cadt that made it");
   }
   Manifest manifest;
-  manifest.plan.tile_points = json.at("tile_points");
-  manifest.plan.first_id = json.at("first_id");
+  manifest.plan.tile_points = count_of<std::uint64_t>(json.at("tile_points"));
+  manifest.plan.first_id = count_of<std::uint64_t>(json.at("first_id"));
   manifest.plan.content = hash_from_string(json.at("content"));
   manifest.plan.tree = tree_of(json.at("tree"));
+  require(count_of<std::uint64_t>(json.at("points")) == manifest.plan.tree.number_of_points(),
+          "the number of points differs from that of the tree");
   manifest.complete = json.at("complete");
   if (!manifest.complete) return manifest;
+  NodeSums sums;
   for (const Json& node : json.at("nodes")) {
     manifest.nodes.push_back(record_of(node));
-    manifest.base.push_back(node.at("base"));
+    manifest.base.push_back(count_of<std::uint64_t>(node.at("base")));
+    sums += manifest.nodes.back().sums;
   }
-  if (manifest.nodes.size() != manifest.plan.tree.size())
-    throw Error("the number of nodes differs from that of the tree");
+  require(manifest.nodes.size() == manifest.plan.tree.size(), "the number of nodes differs from that of the tree");
+  for (std::uint32_t i = 0; i < manifest.nodes.size(); ++i)
+    require(has_files(manifest.nodes[i], node_files(i)), "a node has not its files");
   manifest.whole = sums_of(json.at("whole"));
   manifest.hash = hash_from_string(json.at("hash"));
+  require(sums == manifest.whole, "what it says of the mesh is not the sum of its nodes");
+  require(hash_of(manifest.whole) == manifest.hash, "its hash of the mesh is not that of its sums");
   return manifest;
 }
 
@@ -143,6 +166,18 @@ auto parsed(const std::string& text, const std::string& path, const Parse& parse
 std::string node_name(std::uint32_t node) {
   const std::string digits = std::to_string(node);
   return "node-" + std::string(digits.size() < 6 ? 6 - digits.size() : 0, '0') + digits;
+}
+
+std::vector<std::string> node_files(std::uint32_t node) {
+  std::vector<std::string> names;
+  for (const char* file : {"points", "ids", "triangles", "neighbors", "duplicates", "links"})
+    names.push_back(node_name(node) + "/" + file + ".npy");
+  return names;
+}
+
+bool has_files(const NodeRecord& record, const std::vector<std::string>& names) {
+  return std::equal(record.files.begin(), record.files.end(), names.begin(), names.end(),
+                    [](const FileRecord& file, const std::string& name) { return file.name == name; });
 }
 
 std::string to_json(const Manifest& manifest) {

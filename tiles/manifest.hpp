@@ -27,7 +27,7 @@ struct Plan {
 struct NodeRecord {
   std::uint64_t points = 0, triangles = 0, links = 0, duplicates = 0, open = 0;
   NodeSums sums;
-  /// Of the node; links.npy in a complete manifest alone, what is for resuming before that.
+  /// Of the node: node_files(), but without links.npy and with what is for resuming before the manifest is complete.
   std::vector<FileRecord> files;
   friend bool operator==(const NodeRecord&, const NodeRecord&) = default;
 };
@@ -51,11 +51,17 @@ class ResumeError : public Error {
 
 [[nodiscard]] std::string to_json(const Manifest& manifest);
 [[nodiscard]] std::string to_json(const NodeRecord& record);
-/// `path` is for messages. \throws io::FileError for text that is none; ResumeError for another format version
+/// `path` is for messages. \throws io::FileError for text that is none, or contradicts itself; ResumeError for another
+/// format version
 [[nodiscard]] Manifest manifest_from_json(const std::string& text, const std::string& path);
 [[nodiscard]] NodeRecord record_from_json(const std::string& text, const std::string& path);
 /// Of a directory.
 [[nodiscard]] Manifest read_manifest(const std::string& directory);
+
+/// Names of the files of a node of a complete mesh, in the order of their records.
+[[nodiscard]] std::vector<std::string> node_files(std::uint32_t node);
+/// Whether these, in this order, are the record's.
+[[nodiscard]] bool has_files(const NodeRecord& record, const std::vector<std::string>& names);
 
 /// "node-000017"
 [[nodiscard]] std::string node_name(std::uint32_t node);

@@ -64,17 +64,23 @@ std::vector<Triangulators> open_devices(const RunOptions& options, std::uint64_t
   return devices;
 }
 
-LeafPoints all_points(const PointSource& source, const RunOptions& options) {
+LeafPoints all_points(const PointSource& source, const RunOptions& options, const Hash128& content) {
   LeafPoints points;
   points.xy.resize(2 * source.size());
   points.ids.resize(source.size());
+  const unsigned threads = threads_for((source.size() + block_points - 1) / block_points, threads_of(options));
+  std::vector<Hash128> hashes(threads);
   BlockWork work;
-  work.look = [&](unsigned, std::uint64_t first, std::span<const double> xy) {
+  work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
+    add_block_hash(hashes[thread], first, xy);
     std::copy(xy.begin(), xy.end(), points.xy.begin() + static_cast<std::ptrdiff_t>(2 * first));
     const auto ids = std::span(points.ids).subspan(first, xy.size() / 2);
     std::iota(ids.begin(), ids.end(), options.first_id + first);
   };
-  each_block(source, 0, source.size(), threads_of(options), options.stop, work);
+  each_block(source, 0, source.size(), threads, options.stop, work);
+  Hash128 found;
+  for (const Hash128& hash : hashes) found.high += hash.high, found.low += hash.low;
+  if (found != content) fail_changed();
   return points;
 }
 
@@ -112,7 +118,7 @@ class Run {
     if (store_) {
       complete(store_->finish());
     } else {
-      require_complete(result_.whole);
+      require_complete(result_.whole, tree_);
       result_.hash = hash_of(result_.whole);
     }
     result_.links_seconds = watch.lap();
@@ -139,6 +145,7 @@ class Run {
     ShuffleOptions shuffling;
     shuffling.scratch = options_.scratch;
     shuffling.first_id = options_.first_id;
+    shuffling.content = result_.plan.content;
     shuffling.memory = shuffle_memory(source_, options_);
     shuffling.wanted = done_;
     shuffling.wanted.flip();
@@ -156,7 +163,9 @@ class Run {
     if (in_cells(source_, options_.tile_points)) {
       job.read_leaf = cells_of_leaves(source_, tree_, options_.first_id);
     } else {
-      job.read_leaf = [&](std::uint32_t leaf) { return leaves_ ? leaves_->take(leaf) : all_points(source_, options_); };
+      job.read_leaf = [&](std::uint32_t leaf) {
+        return leaves_ ? leaves_->take(leaf) : all_points(source_, options_, result_.plan.content);
+      };
     }
     job.read_open = [&](std::uint32_t node) { return store_.value().read_open(node); };
     job.compute.arrays = takes_arrays(options_);

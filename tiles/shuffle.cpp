@@ -36,7 +36,7 @@ class MemoryLeaves : public LeafStore {
       to.xy.reserve(2 * tree_.node(leaf).points);
       to.ids.reserve(tree_.node(leaf).points);
     }
-    if (at + count > tree_.node(leaf).points) throw InternalError("a leaf gets more points than the tree says");
+    if (at + count > tree_.node(leaf).points) fail_changed();
     to.xy.resize(2 * (at + count));
     to.ids.resize(at + count);
     return {to.xy.data() + 2 * at, to.ids.data() + at};
@@ -142,6 +142,7 @@ class FileLeaves : public LeafStore {
     Leaf& from = leaves_[leaf];
     const std::uint64_t n = from.waiting.ids.size();
     if (n == 0) return;
+    if (from.written + n > total(leaf)) fail_changed();
     const std::string path = path_of(leaf);
     system_file::Descriptor file(from.written == 0 ? system_file::create(path) : system_file::open_to_write(path));
     if (!file.is_open()) fail(path, "cannot be created");
@@ -160,6 +161,10 @@ class FileLeaves : public LeafStore {
 };
 
 }  // namespace
+
+void fail_changed() {
+  throw io::FileError("the input", 0, "it has changed while it was read; nothing may write to it meanwhile");
+}
 
 std::unique_ptr<LeafStore> leaves_in_memory(const TileTree& tree) { return std::make_unique<MemoryLeaves>(tree); }
 
@@ -221,6 +226,7 @@ struct Worker {
   BlockSorter sorter;
   std::span<const LeafRun> runs;
   std::vector<Room> rooms;
+  Hash128 content;
 };
 
 }  // namespace
@@ -235,6 +241,7 @@ std::unique_ptr<LeafStore> shuffle(const PointSource& source, const TileTree& tr
   BlockWork work;
   work.look = [&](unsigned thread, std::uint64_t first, std::span<const double> xy) {
     Worker& mine = workers.of(thread);
+    if (options.content) add_block_hash(mine.content, first, xy);
     mine.runs = mine.sorter.sort(options.first_id + first, xy);
   };
   work.in_turn = [&](unsigned thread) {
@@ -258,6 +265,9 @@ std::unique_ptr<LeafStore> shuffle(const PointSource& source, const TileTree& tr
     }
   };
   each_block(source, 0, source.size(), options.threads, options.stop, work);
+  Hash128 content;
+  workers.each([&](const Worker& worker) { content.high += worker.content.high, content.low += worker.content.low; });
+  if (options.content && content != *options.content) fail_changed();
   leaves->finish();
   return leaves;
 }

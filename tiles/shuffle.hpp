@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,9 @@ struct Room {
   std::uint64_t* ids = nullptr;
 };
 
+/// The points are not those that the tree and its content were made of. \throws io::FileError
+[[noreturn]] void fail_changed();
+
 /// Takes points in the order of their indices, and gives them back leaf by leaf.
 class LeafStore {
  public:
@@ -39,7 +43,8 @@ class LeafStore {
   LeafStore(const LeafStore&) = delete;
   LeafStore& operator=(const LeafStore&) = delete;
   virtual ~LeafStore() = default;
-  /// Points of one leaf, ids above all that the leaf has. Not thread-safe. \throws io::FileError
+  /// Points of one leaf, ids above all that the leaf has. Not thread-safe. \throws io::FileError, as fail_changed() if
+  /// the leaf gets more than the tree says
   virtual void add(std::uint32_t leaf, std::span<const double> xy, std::span<const std::uint64_t> ids) = 0;
   /// Adds `count` points to a leaf that are written by whoever asks, before finish(). Null if this store has no memory
   /// for them: they go through add(). Neither is thread-safe, but rooms may be filled concurrently.
@@ -56,11 +61,12 @@ class LeafStore {
                                                          std::uint64_t memory = std::uint64_t{256} << 20);
 
 struct ShuffleOptions {
-  std::string scratch;            ///< folder for bucket files; empty: none
-  std::uint64_t first_id = 0;     ///< input index of the first point
-  std::uint64_t memory = 0;       ///< bytes that the points may take; more go to `scratch`. 0: no limit
-  std::vector<bool> wanted = {};  ///< by node: leaves that will be taken; empty: all
-  unsigned threads = 0;           ///< 0: one for each core
+  std::string scratch;                  ///< folder for bucket files; empty: none
+  std::uint64_t first_id = 0;           ///< input index of the first point
+  std::optional<Hash128> content = {};  ///< of the source when the tree was made, with which it is compared
+  std::uint64_t memory = 0;             ///< bytes that the points may take; more go to `scratch`. 0: no limit
+  std::vector<bool> wanted = {};        ///< by node: leaves that will be taken; empty: all
+  unsigned threads = 0;                 ///< 0: one for each core
   cadt::stop_token stop = {};
   std::function<void(std::uint64_t)> progress = {};  ///< points so far; one call at a time, from any thread
 };
@@ -71,8 +77,8 @@ struct ShuffleOptions {
 [[nodiscard]] bool needs_scratch(const TileTree& tree, const ShuffleOptions& options);
 
 /// One pass over the source: blocks are read and sorted by all threads, and get their places in the leaves in the order
-/// of the input. \throws io::FileError, InputError, Cancelled, OutOfMemory if the points take more than `memory` and
-/// there is no `scratch`
+/// of the input. \throws io::FileError, also as fail_changed(), InputError, Cancelled, OutOfMemory if the points take
+/// more than `memory` and there is no `scratch`
 [[nodiscard]] std::unique_ptr<LeafStore> shuffle(const PointSource& source, const TileTree& tree,
                                                  const ShuffleOptions& options);
 

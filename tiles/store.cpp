@@ -96,13 +96,25 @@ bool is_empty_folder(const std::string& path) {
   return !code;
 }
 
+/// Names in the record of a node before the links are complete.
+std::vector<std::string> files_for_resuming(std::uint32_t node) {
+  std::vector<std::string> names = node_files(node);
+  names.pop_back();  // links.npy
+  for (const char* file : {"links", "open", "messages"})
+    names.push_back("unfinished/" + node_name(node) + "/" + file + ".npy");
+  return names;
+}
+
 bool is_for_resuming(const FileRecord& file) { return file.name.starts_with("unfinished/"); }
 
 }  // namespace
 
 Store::Store(std::string path, const Plan& plan, Start start) : path_(std::move(path)), plan_(plan) {
   while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
-  if (start == Start::join) return;
+  if (start == Start::join) {
+    join();
+    return;
+  }
   std::error_code code;
   if (start == Start::create || !fs::exists(path_ + "/manifest.json", code)) {
     check_new_directory(path_);
@@ -145,6 +157,21 @@ void Store::lock() {
     throw ResumeError(path_ + ": another run writes to this folder; wait until it has ended, or give another name");
 }
 
+void Store::join() const {
+  std::error_code code;
+  if (!fs::exists(path_ + "/manifest.json", code)) {
+    throw io::FileError(path_, 0,
+                        "this process does not see what another one of the run has begun there; choose a folder on a "
+                        "file system of all machines");
+  }
+  const Manifest found = read_manifest(path_);
+  if (found.complete || found.plan != plan_) {
+    throw ResumeError(path_ +
+                      ": this process sees another mesh there than the one that its run has begun; name the folder "
+                      "from the root on, on a file system of all machines");
+  }
+}
+
 void Store::begin() {
   sync_folder(io::detail::system_file::folder_of(path_));
   make_folder(path_ + "/unfinished");
@@ -177,7 +204,8 @@ std::string Store::unfinished_folder(std::uint32_t node) const { return path_ + 
 bool Store::is_valid(std::uint32_t node) const {
   try {
     const NodeRecord record = read_record(node);
-    return std::all_of(record.files.begin(), record.files.end(),
+    return has_files(record, files_for_resuming(node)) &&
+           std::all_of(record.files.begin(), record.files.end(),
                        [&](const FileRecord& file) { return difference(path_ + "/" + file.name, file).empty(); });
   } catch (const io::FileError&) {
     return false;
@@ -285,7 +313,7 @@ Manifest Store::finish() {
     base += manifest.nodes.back().triangles;
     manifest.whole += manifest.nodes.back().sums;
   }
-  require_complete(manifest.whole);
+  require_complete(manifest.whole, plan_.tree);
   manifest.hash = hash_of(manifest.whole);
   write_links(manifest.nodes);
   replace_text(path_ + "/manifest.json", to_json(manifest));

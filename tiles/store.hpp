@@ -29,7 +29,7 @@ class Store {
   enum class Start {
     create,  ///< a new directory. \throws ResumeError if there is one
     resume,  ///< that of an earlier run with the same plan, or a new one
-    join     ///< another process has begun it
+    join     ///< another process of this run has begun it. \throws ResumeError if it is not that directory
   };
   /// All but join keep the directory for this store: another run that comes meanwhile is refused.
   /// \throws io::FileError with the name of what cannot be written; ResumeError
@@ -39,7 +39,7 @@ class Store {
   [[nodiscard]] const Plan& plan() const noexcept { return plan_; }
   /// Whether it is complete already: nothing is left to be done.
   [[nodiscard]] bool complete() const noexcept { return complete_; }
-  /// Whether the node is there and its files are what its hashes say. Reads them. Thread-safe.
+  /// Whether the node is there, with all of its files, and these are what its hashes say. Reads them. Thread-safe.
   [[nodiscard]] bool is_valid(std::uint32_t node) const;
   /// Of a valid node. \throws io::FileError
   [[nodiscard]] Open read_open(std::uint32_t node) const;
@@ -56,6 +56,7 @@ class Store {
  private:
   void lock();
   void begin();
+  void join() const;
   [[nodiscard]] std::string node_folder(std::uint32_t node) const;
   [[nodiscard]] std::string unfinished_folder(std::uint32_t node) const;
   void check_same_plan(const Manifest& found) const;

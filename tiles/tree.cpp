@@ -56,6 +56,13 @@ std::pair<double, std::size_t> halve(std::span<std::array<double, 2>> points, st
 
 }  // namespace
 
+void require_complete(const NodeSums& whole, const TileTree& tree) {
+  if (whole.points != tree.number_of_points())
+    throw InternalError("the leaves have " + std::to_string(whole.points) + " points, and the tree " +
+                        std::to_string(tree.number_of_points()));
+  require_complete(whole);
+}
+
 TileTree::TileTree(std::uint64_t points) : nodes_(1), leaves_{0}, steps_(1) { nodes_[0].points = points; }
 
 TileTree::TileTree(std::vector<TreeNode> nodes) : nodes_(std::move(nodes)), steps_(nodes_.size()) {

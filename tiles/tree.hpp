@@ -64,6 +64,9 @@ class TileTree {
   std::vector<Step> steps_;  // of each node
 };
 
+/// As cadt::require_complete, and that the sums are of all points of the tree. \throws InternalError
+void require_complete(const NodeSums& whole, const TileTree& tree);
+
 /// What one pass over a part of the input finds; those of several parts are added.
 struct TreePass {
   std::vector<std::uint64_t> counts;  ///< of each open leaf of the builder

@@ -91,6 +91,7 @@ int main(int argc, char** argv) {
     code[0] = static_cast<std::uint64_t>(report(ranks));
     if (!ranks.has_settled()) ranks.abort(static_cast<int>(code[0]));
   }
+  std::signal(SIGTERM, SIG_IGN);  // that of mpirun to the others when one has ended with an error tells nothing new
   ranks.broadcast(code, teller);
   return static_cast<int>(code[0]);
 }

@@ -86,6 +86,7 @@ int run(mpi::Communicator& ranks, const TilesCommand& c) {
   tiles::RunOptions options = rank_options(ranks, c);
   std::unique_ptr<tiles::PointSource> source;
   ranks.agree([&] { source = open_source(c); });
+  mpi::require_same_input(ranks, *source);
   RankProgress progress(c.quiet);
   progress.start(source->size());
   options.progress = [&progress](const tiles::RunProgress& now) { progress(now); };

@@ -106,16 +106,16 @@ void require_no_input(const std::string& path, const std::vector<std::string>& i
   }
 }
 
-void require_outside(const std::string& path, const std::string& folder) {
+void require_outside(const std::string& path, const std::string& folder, std::string_view what) {
   if (path.empty() || path == "-" || is_device(path)) return;
   std::error_code code;
-  fs::path at = fs::weakly_canonical(path, code);
-  if (code) at = fs::absolute(path, code).lexically_normal();
+  const fs::path from_root = fs::absolute(path, code);  // so that all folders above are seen
+  fs::path at = fs::weakly_canonical(from_root, code);
+  if (code) at = from_root.lexically_normal();
   for (; !at.empty(); at = at.parent_path()) {
     if (fs::equivalent(at, folder, code)) {
-      throw Failure(exit_usage, fmt::format("{}: this is in {}, the input, which would be lost; name an output outside "
-                                            "of it",
-                                            path, folder));
+      throw Failure(exit_usage, fmt::format("{}: this is in {}, {}, which would be lost; name an output outside of it",
+                                            path, folder, what));
     }
     if (at == at.parent_path()) return;
   }

@@ -6,6 +6,7 @@
 #include "progress.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cadt::cli {
@@ -27,9 +28,9 @@ struct Output {
 /// its points. Names that are empty or "-" are no files.
 void require_no_input(const std::string& path, const std::vector<std::string>& inputs);
 
-/// Throws Failure (usage) if `path` lies within `folder`, which is read, whatever links lead there. "-" and devices do
-/// not.
-void require_outside(const std::string& path, const std::string& folder);
+/// Throws Failure (usage) if `path` lies within `folder`, which is `what`, whatever links lead there. "-" and devices
+/// do not.
+void require_outside(const std::string& path, const std::string& folder, std::string_view what = "the input");
 
 /// Whether both names are those of one file; "-" and devices are none.
 [[nodiscard]] bool same_output(const std::string& a, const std::string& b);

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace cadt::cli {
 namespace {
@@ -28,7 +29,10 @@ void add_outputs(CLI::App& command, TilesCommand& c) {
   command
       .add_option("-o,--output", c.output,
                   "directory for the mesh, made new; without it the mesh is made, certified, hashed and dropped")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(CLI::Validator(
+          [](const std::string& name) { return name.empty() ? "the directory has an empty name" : std::string(); },
+          ""));
   command.add_flag("--resume", c.resume,
                    "continue in the directory: nodes that are there, and intact, are not made again");
   command.add_option("--picture", c.picture, "picture of the tiles, with the time of each: SVG")->type_name("FILE");
@@ -77,6 +81,7 @@ void check_tiles_options(const TilesCommand& c) {
   for (const std::string& file : {c.picture, c.stats}) {
     if (file.empty() || file == "-") continue;
     require_no_input(file, c.inputs);
+    if (!c.output.empty()) require_outside(file, c.output, "the mesh");
     require_writable(file);
   }
   if (same_output(c.picture, c.stats))
@@ -154,9 +159,13 @@ std::string tiles_summary(const tiles::RunResult& r) {
 void write_tiles_reports(const TilesCommand& c, const tiles::PointSource& source, const tiles::RunOptions& options,
                          const tiles::RunResult& result) {
   const std::string report = tiles::report_json(result, options, source.names());
-  if (!c.output.empty()) {
+  // A directory that was complete is left as it is.
+  const std::string path = c.output + "/run.json";
+  std::error_code code;
+  const bool resumed = std::ranges::all_of(result.nodes, [](const auto& node) { return node.resumed; });
+  if (!c.output.empty() && !(resumed && std::filesystem::exists(path, code))) {
     const InPhase phase(Phase::writing);
-    tiles::replace_text(c.output + "/run.json", report);
+    tiles::replace_text(path, report);
   }
   if (!c.stats.empty()) write_text(c.stats, report);
   if (c.picture.empty()) return;

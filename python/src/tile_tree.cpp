@@ -142,14 +142,7 @@ Hash blocks_hash(std::uint64_t first, const Coordinates& points) {
   constexpr std::size_t block = cadt::tiles::block_points;
   if (points.shape(0) != 0 && first % block != 0) throw nb::value_error("blocks begin at multiples of block_points");
   cadt::Hash128 hash;
-  without_gil([&] {
-    std::span<const double> rest = span_of(points);
-    for (; !rest.empty(); first += block) {
-      const std::size_t size = std::min(rest.size(), 2 * block);
-      cadt::tiles::add_block_hash(hash, first, rest.first(size));
-      rest = rest.subspan(size);
-    }
-  });
+  without_gil([&] { cadt::tiles::add_blocks_hash(hash, first, span_of(points)); });
   return {hash.high, hash.low};
 }
 

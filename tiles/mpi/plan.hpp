@@ -25,9 +25,9 @@ struct Deal {
   const ShuffleOptions& options;    ///< of this rank; `wanted` are its own leaves
   unsigned threads = 1;             ///< of this rank
 };
-/// Brings the points of each leaf to its owner: in rounds, in each of which every rank reads a part of the input, parts
-/// in the order of ranks. So the input indices in a leaf ascend, whatever the number of ranks. Collective. \throws as
-/// tiles::shuffle, on all ranks
+/// Brings the points of each leaf to its owner: in rounds, in each of which ranks read a part of the input each, which
+/// are kept in the order of the input. So the input indices in a leaf ascend, whatever the number of ranks. Collective.
+/// \throws as tiles::shuffle, on all ranks
 [[nodiscard]] std::unique_ptr<LeafStore> shuffle(Communicator& ranks, const PointSource& source, const TileTree& tree,
                                                  const Deal& deal);
 

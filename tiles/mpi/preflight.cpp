@@ -42,6 +42,18 @@ void require_same_program(Communicator& ranks, std::string_view task) {
   });
 }
 
+void require_same_input(Communicator& ranks, const PointSource& source) {
+  const std::array<std::uint64_t, 1> mine{source.size()};
+  const Exchanged all = ranks.all_gather(mine);
+  const std::uint64_t first = all.from(0).front();
+  ranks.agree([&] {
+    if (mine[0] == first) return;
+    throw RankError(ranks.rank(), "rank " + std::to_string(ranks.rank()) + " on " + ranks.host() + " reads " +
+                                      std::to_string(mine[0]) + " points, and rank 0 " + std::to_string(first) +
+                                      ": give all ranks the same files, to which nothing writes");
+  });
+}
+
 std::uint64_t shuffle_memory(const Communicator& ranks, const PointSource& source, const RunOptions& options) {
   const auto sharing = static_cast<std::uint64_t>(ranks.local_size());
   return tiles::shuffle_memory(options, available_memory() / sharing, leaf_memory(source, options, 1));

@@ -2,7 +2,6 @@
 #include "tiles/mpi/run.hpp"
 
 #include <cadt/errors.hpp>
-#include <cadt/io/errors.hpp>
 
 #include "tiles/cells.hpp"
 #include "tiles/mpi/nodes.hpp"
@@ -13,7 +12,6 @@
 #include "tiles/stopwatch.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -62,19 +60,14 @@ class Run {
       if (is_first())
         store_.emplace(options_.output, result_.plan, options_.resume ? Store::Start::resume : Store::Start::create);
     });
-    ranks_.agree([&] {
-      if (is_first()) return;
-      if (!std::filesystem::exists(options_.output + "/manifest.json"))
-        throw io::FileError(options_.output, 0,
-                            "rank " + std::to_string(ranks_.rank()) + " on " + ranks_.host() +
-                                " does not see what rank 0 has begun there; choose a folder on a file system of all "
-                                "machines");
-      store_.emplace(options_.output, result_.plan, Store::Start::join);
-    });
     Words complete{is_first() && store_->complete() ? 1U : 0U};
     ranks_.broadcast(complete, 0);
     complete_ = complete[0] != 0;
-    if (options_.resume && !complete_) find_valid();
+    if (complete_) return;
+    ranks_.agree([&] {
+      if (!is_first()) store_.emplace(options_.output, result_.plan, Store::Start::join);
+    });
+    if (options_.resume) find_valid();
   }
 
   /// Each rank looks at some nodes: that reads all of their files.
@@ -115,6 +108,7 @@ class Run {
     ShuffleOptions mine;
     mine.scratch = options_.scratch;
     mine.first_id = options_.first_id;
+    mine.content = result_.plan.content;
     mine.memory = shuffle_memory(ranks_, source_, options_);
     mine.stop = options_.stop;
     mine.progress = [this](std::uint64_t points) {
@@ -181,7 +175,7 @@ class Run {
         for (std::uint32_t i = 0; i < tree().size(); ++i) append(reports_, i, report_of(manifest.nodes[i]));
     });
     Words sums = pack(result_.whole);
-    if (store_) {
+    if (!options_.output.empty()) {
       ranks_.broadcast(sums, 0);
       result_.whole = unpack_sums(sums);
     } else {
@@ -189,7 +183,7 @@ class Run {
       result_.whole = {};
       for (int r = 0; r < ranks_.size(); ++r) result_.whole += unpack_sums(all.from(r));
     }
-    ranks_.agree([&] { require_complete(result_.whole); });
+    ranks_.agree([&] { require_complete(result_.whole, tree()); });
     result_.hash = hash_of(result_.whole);
     read_reports(ranks_.all_gather(reports_).words, result_.nodes);
   }

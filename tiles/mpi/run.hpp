@@ -30,6 +30,9 @@ class RankError : public Error {
 /// on the others
 void require_same_program(Communicator& ranks, std::string_view task);
 
+/// Whether all ranks have found equally many points. Collective. \throws as require_same_program
+void require_same_input(Communicator& ranks, const PointSource& source);
+
 /// Makes the mesh: the same files, byte by byte, as tiles::run, for any number of ranks. Collective: all ranks give the
 /// same source, tile size, first index, output and resume; their one device, scratch and memory are their own. The
 /// output must be in a folder that all ranks see; `host_memory` is of a rank (0: its share of half of what its machine

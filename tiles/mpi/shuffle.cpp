@@ -5,6 +5,7 @@
 #include "tiles/parallel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <future>
 
@@ -13,14 +14,15 @@ namespace {
 
 /// A message is a list of runs: leaf, number of points, their coordinates, their ids.
 constexpr std::size_t words_per_point = 3, words_per_run = 2;
-/// Of a rank in a round: its messages stay in the cache of a core.
-constexpr std::uint64_t most_points = std::uint64_t{1} << 17;
+/// That a rank reads in a round: whole blocks, whose messages stay in the cache of a core.
+constexpr std::uint64_t part_points = 2 * block_points;
 /// Less for a thread is not worth to start it.
 constexpr std::size_t least_points = std::size_t{1} << 14;
 
 struct Part {
   std::uint64_t first = 0;
   std::vector<double> xy;
+  Hash128 content;
 };
 
 /// Sorts parts of the input into a message for each rank.
@@ -96,36 +98,49 @@ std::unique_ptr<LeafStore> shuffle(Communicator& ranks, const PointSource& sourc
     leaves = needs_scratch(tree, deal.options) ? leaves_in_files(tree, deal.options.scratch, deal.options.memory / 2)
                                                : leaves_in_memory(tree);
   });
-  const auto size = static_cast<std::uint64_t>(ranks.size());
+  const auto size = static_cast<std::uint64_t>(ranks.size()), all = source.size();
+  const std::uint64_t parts = (all + part_points - 1) / part_points;
   // Even if all points of a round are for one rank, each in a run of its own, that rank receives message_bytes() at
-  // most.
-  const std::uint64_t each = std::clamp<std::uint64_t>(
-      ranks.message_bytes() / sizeof(std::uint64_t) / (words_per_point + words_per_run) / size, 1, most_points);
-  const std::uint64_t round = each * size, all = source.size();
-  const auto read = [&](std::uint64_t start) {
-    Part part{.first = std::min(all, start + each * static_cast<std::uint64_t>(ranks.rank())), .xy = {}};
-    part.xy.resize(2 * std::min(each, all - part.first));
+  // most, or one part. So with many ranks some of them read in a round, and the others in the next ones.
+  const std::uint64_t readers = std::clamp<std::uint64_t>(
+      ranks.message_bytes() / sizeof(std::uint64_t) / (words_per_point + words_per_run) / part_points, 1, size);
+  const auto read = [&](std::uint64_t p) {
+    Part part{.first = std::min(all, p * part_points), .xy = {}, .content = {}};
+    part.xy.resize(2 * std::min(part_points, all - part.first));
     source.read(part.first, part.xy.size() / 2, part.xy.data());
+    add_blocks_hash(part.content, part.first, part.xy);
     return part;
   };
   Dealer dealer(tree, deal, static_cast<std::size_t>(ranks.size()));
-  std::future<Part> next = std::async(std::launch::async, read, std::uint64_t{0});
+  auto mine = static_cast<std::uint64_t>(ranks.rank());  // the next part of this rank, which reads each size-th one
+  std::future<Part> next = std::async(std::launch::async, read, mine);
+  std::array<std::uint64_t, 2> content{};
   Exchanged came;
-  for (std::uint64_t start = 0; start < all; start += round) {
+  for (std::uint64_t begin = 0; begin < parts; begin += readers) {
+    const std::uint64_t end = std::min(parts, begin + readers);
     const std::vector<Words>* to = nullptr;
     ranks.agree([&] {
       if (deal.options.stop.stop_requested()) throw Cancelled();
-      const Part part = next.get();
-      next = std::async(std::launch::async, read, std::min(all, start + round));
+      Part part;  // none of this rank in this round
+      if (mine < end) {
+        part = next.get();
+        mine += size;
+        next = std::async(std::launch::async, read, mine);
+      }
+      content[0] += part.content.high, content[1] += part.content.low;
       to = &dealer(part);
     });
     ranks.exchange(*to, came);
     ranks.agree([&] {
-      for (int r = 0; r < ranks.size(); ++r) keep(*leaves, came.from(r));
+      for (std::uint64_t p = begin; p < end; ++p) keep(*leaves, came.from(static_cast<int>(p % size)));
     });
-    if (deal.options.progress) deal.options.progress(std::min(all, start + round));
+    if (deal.options.progress) deal.options.progress(std::min(all, end * part_points));
   }
-  ranks.agree([&] { leaves->finish(); });
+  ranks.sum(content);
+  ranks.agree([&] {
+    if (deal.options.content && Hash128{content[0], content[1]} != *deal.options.content) fail_changed();
+    leaves->finish();
+  });
   return leaves;
 }
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cadt import _cadt
-from cadt._errors import InputError
+from cadt._errors import FileError, InputError, InternalError, OptionError
 from cadt.dask._sources import File, Piece, cut, open_file
 from cadt.tiles._nodes import Open, Part, Sums, Where, apply_links, check_complete, mesh_hash, share
 from cadt.tiles._tree import TILE_POINTS, Tree, first_not_finite, new_builder, not_finite
@@ -103,11 +103,11 @@ def triangulate(
 
     Parameters
     ----------
-    files : sequence of paths
+    files : sequence of paths, or one
         .las, .laz (with laspy and lazrs), .npy of shape (n, 2) or (n, 3), .csv, .xyz, .xy, .txt: x and y are the first two
         columns, or in tables of text those that the header names (x, y; lon, lat; easting, northing), as for ``cadt tiles``.
         The input indices are those of the points of all files one after another. All workers must see them under these
-        names.
+        names; relative ones are those of the client.
     client : dask.distributed.Client, optional
         Default: the current one; without one, threads of this process do the work, once each.
     consumer : callable, optional
@@ -132,7 +132,7 @@ def triangulate(
     InputError
         NaN or infinity: `index` is the smallest input index of one; the message names the file.
     FileError, ResumeError
-        A file cannot be read or is damaged; ``out`` cannot be written, or is there already.
+        A file cannot be read, is damaged, or changes meanwhile; ``out`` cannot be written, or is there already.
 
     Notes
     -----
@@ -149,9 +149,13 @@ def triangulate(
     where = Where(backend, device, threads, max_memory)
     where.check()
     new_builder(0, tile_points)
-    path = None if out is None else os.fspath(out)
+    # Workers may have other working directories.
+    path = None if out is None else _from_root(out)
+    names = [_from_root(file) for file in ([files] if isinstance(files, (str, os.PathLike)) else files)]
+    if not names:
+        raise OptionError("files: there are none", "files")
     tasks = _Tasks(client)
-    opened = [open_file(file) for file in files]
+    opened = [open_file(name) for name in names]
     pieces = cut(opened, PIECE_POINTS)
 
     builder = new_builder(sum(file.count for file in opened), tile_points)
@@ -168,9 +172,11 @@ def triangulate(
     store = None if path is None else (path, _sum([look.content for look in looks]))
     target = _Target(where, tile_points, consumer, store)
     directory = target.open_store(tree, create=True)
-    reports = tasks.nodes(pieces, [look.bounds for look in looks], tree, target)
+    reports = tasks.nodes(pieces, looks, tree, target)
     sums = sum((report.sums for report in reports), Sums())
     check_complete(sums)
+    if sums.points != int(tree.counts[-1]):
+        raise InternalError(f"the leaves have {sums.points} points, and the tree {int(tree.counts[-1])}")
     if directory is not None:
         directory.finish()  # which checks the links too
     else:
@@ -228,10 +234,10 @@ class _Tasks:
         shared = self._once(builder)
         return self._compute([self._sum([self._delayed(_pass_of)(piece, shared) for piece in pieces])])[0]
 
-    def nodes(self, pieces: list[Piece], bounds: list[np.ndarray], tree: Tree, target: _Target) -> list[_Report]:
+    def nodes(self, pieces: list[Piece], looks: list[_Look], tree: Tree, target: _Target) -> list[_Report]:
         shared, goal = self._once(tree), self._once(target)
-        splits = [self._delayed(_split)(piece, shared) for piece in pieces]
-        whole = np.array([_union(b) for b in bounds])
+        splits = [self._delayed(_split)(piece, shared, look.content) for piece, look in zip(pieces, looks)]
+        whole = np.array([_union(look.bounds) for look in looks])
         opens: dict[int, Any] = {}
         reports = []
         for node, (left, right) in enumerate(tree.children.tolist()):
@@ -276,9 +282,14 @@ def _look_at(piece: Piece, builder: _cadt.TreeBuilder) -> tuple[_Look, _cadt.Tre
     return _Look(None, np.array(bounds).reshape(-1, 4), content), _pass_of(piece, builder, points)
 
 
-def _split(piece: Piece, tree: Tree) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-    """The points of a piece by leaf, with their input indices."""
-    counts, xy, ids = _cadt.distribute(tree._tree, piece.first, piece.read())
+def _split(piece: Piece, tree: Tree, content: tuple[int, int]) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+    """The points of a piece by leaf, with their input indices. Raises FileError if they are not those of the first
+    reading."""
+    points = piece.read()
+    if _cadt.blocks_hash(piece.first, points) != content:
+        paths = list(dict.fromkeys(file.path for file, _, _ in piece.ranges))
+        raise FileError(f"{', '.join(paths)}: changed while being read", paths[0])
+    counts, xy, ids = _cadt.distribute(tree._tree, piece.first, points)
     ends = np.cumsum(counts.astype(np.int64))
     nodes = np.flatnonzero(counts)
     return {int(n): (xy[ends[n] - int(counts[n]) : ends[n]], ids[ends[n] - int(counts[n]) : ends[n]]) for n in nodes}
@@ -319,6 +330,10 @@ def _here(target: _Target) -> Where:
     number = int(worker.name) if not own and str(worker.name).isdigit() else 0
     threads = where.threads or worker.state.nthreads
     return share(dataclasses.replace(where, threads=threads), target.tile_points, number)
+
+
+def _from_root(path: str | os.PathLike[str]) -> str:
+    return os.path.join(os.getcwd(), os.fspath(path))
 
 
 def _union(bounds: np.ndarray) -> np.ndarray:

@@ -30,7 +30,9 @@ class File:
 
     def differs_from(self, bounds: np.ndarray) -> bool:
         """Whether the header's box is not that of its points, by more than rounding."""
-        return self.box is not None and bool((np.abs(np.asarray(self.box) - bounds) > self.step).any())
+        if self.box is None:
+            return False
+        return not (np.abs(np.asarray(self.box) - bounds) <= self.step).all()  # NaN differs
 
 
 def open_file(path: str | os.PathLike[str]) -> File:
@@ -42,6 +44,7 @@ def open_file(path: str | os.PathLike[str]) -> File:
     if suffix in LAS:
         with _las(name) as reader:
             header = reader.header
+            _require_room(name, header)
             box = (*header.mins[:2].tolist(), *header.maxs[:2].tolist())
             return File(name, int(header.point_count), box, float(max(header.scales[:2])))
     return File(name, len(_table(name)))
@@ -74,6 +77,25 @@ def _las(path: str) -> Any:
         return laspy.open(path, decompression_selection=laspy.DecompressionSelection.base())
     except Exception as error:  # whatever a damaged header leads to: numpy, struct, lazrs
         raise FileError(f"{path}: is no LAS or LAZ file: {error}", path) from error
+
+
+# Compressed points of one place, with all else equal, take some thousandths of a byte each.
+MOST_POINTS_A_BYTE = 4096
+
+
+def _require_room(path: str, header: Any) -> None:
+    """A damaged number of points would make tasks without end. Raises FileError."""
+    size = os.path.getsize(path)
+    if header.are_points_compressed:
+        most = size * MOST_POINTS_A_BYTE
+    else:
+        most = max(0, size - header.offset_to_point_data) // header.point_format.size
+    if header.point_count > most:
+        raise FileError(
+            f"{path}: is damaged or truncated: its header promises {header.point_count} points, and {size} bytes have "
+            f"{most} at most",
+            path,
+        )
 
 
 def _read_las(path: str, first: int, count: int) -> np.ndarray:

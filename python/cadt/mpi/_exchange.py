@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import pickle
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -45,7 +46,8 @@ class Group:
         raised = self.comm.bcast(_portable(error) if self.rank == failed else None, root=failed)
         if self.rank == failed and error is not None:
             raised = error
-        raised.rank = failed
+        with contextlib.suppress(AttributeError, TypeError):  # an exception of a user's, which does not take it
+            raised.rank = failed
         if raised is not error and hasattr(raised, "add_note"):  # Python 3.11
             raised.add_note(f"raised by rank {failed} of {self.size}")
         raise raised

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cadt import _cadt
-from cadt._errors import OptionError
+from cadt._errors import InternalError, OptionError
 from cadt.mpi._exchange import Group
 from cadt.tiles._nodes import (
     LOCAL_BITS,
@@ -110,9 +110,9 @@ def triangulate(
 
     Notes
     -----
-    An exception of one rank is raised on all, also one of the consumer; its attribute `rank` is that rank. Memory of a
-    rank: 44 bytes for each of its points, 96 where parts are kept, and what its triangulations take. All ranks wait for each other after the
-    leaves and each level of joins. Not for several threads of a rank at once.
+    An exception of one rank is raised on all, also one of the consumer; its attribute `rank`, if it takes one, is that
+    rank. Memory of a rank: 44 bytes for each of its points, 96 where parts are kept, and what its triangulations take. All
+    ranks wait for each other after the leaves and each level of joins. Not for several threads of a rank at once.
     """
     private = comm.Dup()
     try:
@@ -216,8 +216,8 @@ class _Run:
         store: _cadt.TileStore | None = None
         if out is not None:
             plan = (out, tree._tree, self.tile_points, self.content())
-            store = group.together(lambda: _cadt.TileStore(*plan, True) if group.rank == 0 else None)
-            store = store or _cadt.TileStore(*plan, False)
+            begun = group.together(lambda: _cadt.TileStore(*plan, True) if group.rank == 0 else None)
+            store = group.together(lambda: begun or _cadt.TileStore(*plan, False))
         take = self.shuffle()
         opens: dict[int, Open] = {}
         links: dict[int, np.ndarray] = {}
@@ -242,7 +242,7 @@ class _Run:
                 values[node] = consumer(part)
             elif store is None:
                 parts[node] = part
-            links[node] = part.links
+            links[node] = part.links if node in parts else made.links  # a copy: that of a consumer's part is its own
             triangles[node] = len(part.triangles)
             sums += part.sums
             return made.open
@@ -261,6 +261,8 @@ class _Run:
         group.together(lambda: apply_links(links, rows))
         sums = sum(group.comm.allgather(sums), Sums())
         check_complete(sums)
+        if sums.points != int(self.ends[-1]):
+            raise InternalError(f"the leaves have {sums.points} points, and the ranks {int(self.ends[-1])}")
         if store is not None:
             group.together(lambda: store.finish() if group.rank == 0 else None)
         bases = np.concatenate([np.zeros(1, np.uint64), np.cumsum(group.sum(triangles), dtype=np.uint64)])

@@ -134,6 +134,8 @@ def not_finite(point: np.ndarray, index: int, where: str = "") -> InputError:
 
 
 def new_builder(points: int, tile_points: int) -> _cadt.TreeBuilder:
+    if not hasattr(tile_points, "__index__"):
+        raise TypeError(f"tile_points must be a whole number, not {tile_points!r}")
     if tile_points < _cadt.least_tile_points:
         raise OptionError(f"a tile has at least {_cadt.least_tile_points} points, not {tile_points}", "tile_points")
     return _cadt.TreeBuilder(points, tile_points)

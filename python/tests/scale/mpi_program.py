@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import pathlib
 import sys
 import time
@@ -114,14 +115,37 @@ def directory(comm, folder: pathlib.Path) -> str:
     assert [node["base"] for node in manifest["nodes"]] == mesh.bases[:-1].tolist()
     _fails(comm, cadt.ResumeError, lambda: cadt.mpi.triangulate(comm, share(comm, xy), tile_points=25_000, out=out))
     _fails(comm, cadt.FileError, lambda: cadt.mpi.triangulate(comm, share(comm, xy), out=folder / "no" / "mesh.cadt"))
+    if comm.size > 1:
+        _other_directories(comm, folder, xy)
     comm.Barrier()
     return digest(out)
+
+
+def _other_directories(comm, folder: pathlib.Path, xy: np.ndarray) -> None:
+    """Ranks that see another mesh under the name of `out` leave it alone."""
+    before = digest(folder / "mesh.cadt")
+    place = folder / f"rank{comm.rank}"
+    place.mkdir()
+    if comm.rank == 1:
+        (place / "mesh.cadt").symlink_to(folder / "mesh.cadt")
+    own = pathlib.Path.cwd()
+    os.chdir(place)
+    try:
+        _fails(comm, (cadt.ResumeError, cadt.FileError), lambda: cadt.mpi.triangulate(comm, share(comm, xy), out="mesh.cadt"))
+    finally:
+        os.chdir(own)
+    comm.Barrier()
+    assert digest(folder / "mesh.cadt") == before
 
 
 def consumed(comm, folder: pathlib.Path) -> list[int]:
     xy = families()["uniform"]
     mesh = cadt.mpi.triangulate(comm, share(comm, xy), tile_points=80, consumer=lambda part: len(part.triangles))
     assert not mesh.parts
+    def forget(part: cadt.tiles.Part) -> None:
+        part.links[:] = 0
+
+    assert cadt.mpi.triangulate(comm, share(comm, xy), tile_points=80, consumer=forget).hash == mesh.hash
     values = {}
     for of_rank in comm.allgather(mesh.values):
         values.update(of_rank)
@@ -163,6 +187,14 @@ def errors_reach_all(comm, folder: pathlib.Path) -> list[str]:
         if comm.rank == last:
             raise KeyError("in a leaf")
 
+    class Closed(Exception):
+        rank = property(lambda self: 5)
+
+    def closed(part: cadt.tiles.Part) -> None:
+        raise Closed("its rank cannot be set")
+
+    _fails(comm, (Closed, cadt.Error), lambda: cadt.mpi.triangulate(comm, xy, tile_points=50, consumer=closed))
+    _fails(comm, TypeError, lambda: cadt.mpi.triangulate(comm, xy, tile_points=None))
     errors = [
         _fails(comm, cadt.InputError, lambda: cadt.mpi.triangulate(comm, xy if comm.rank < last else xy[:, :1])),
         _fails(comm, TypeError, lambda: cadt.mpi.triangulate(comm, xy if comm.rank < last else xy.astype(complex))),

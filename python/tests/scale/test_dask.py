@@ -276,6 +276,58 @@ def test_files_that_are_none(tmp_path: pathlib.Path, name: str, data: bytes | No
     assert e.value.path == str(tmp_path / name)
 
 
+def test_a_file_that_changes_between_readings(
+    client: dask.distributed.Client, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A point that moves within its tile, and points that move to a tile that does not expect them."""
+    monkeypatch.setattr(_run, "PIECE_POINTS", 1 << 16)
+    xy = np.random.default_rng(0).random((70_000, 2))
+    files = [save(tmp_path / "a.npy", xy), save(tmp_path / "b.npy", xy + [2, 0])]
+    nodes = _run._Tasks.nodes
+    for first, move in ((69_999, 1e-12), (40_000, 2)):
+
+        def change(*arguments: object, first: int = first, move: float = move) -> object:
+            moved = xy.copy()
+            moved[first:, 0] += move
+            save(tmp_path / "a.npy", moved)
+            return nodes(*arguments)
+
+        monkeypatch.setattr(_run._Tasks, "nodes", change)
+        with pytest.raises(cadt.FileError, match=r"a\.npy.*changed while being read"):
+            cadt.dask.triangulate(files, client, tile_points=5000)
+        save(tmp_path / "a.npy", xy)
+
+
+def test_names_are_those_of_the_client(
+    client: dask.distributed.Client, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whose working directory is not that of its workers."""
+    xy = families()["uniform"]
+    save(tmp_path / "xy.npy", xy)
+    monkeypatch.chdir(tmp_path)
+    assert set(client.run(os.getcwd).values()) != {str(tmp_path)}
+    require_mesh(cadt.dask.triangulate("xy.npy", client, tile_points=120, out="mesh.cadt"), xy)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mesh.cadt", "xy.npy"]
+    assert len(list((tmp_path / "mesh.cadt").glob("node-*"))) > 10
+
+
+@pytest.mark.parametrize("name", ["a.las", "a.laz"])
+def test_a_number_of_points_that_no_file_has(tmp_path: pathlib.Path, name: str) -> None:
+    write_las(tmp_path / name, np.random.default_rng(0).random((500, 2)))
+    data = bytearray((tmp_path / name).read_bytes())
+    data[247:255] = (1 << 50).to_bytes(8, "little")
+    (tmp_path / name).write_bytes(data)
+    with pytest.raises(cadt.FileError, match="its header promises 1125899906842624 points"):
+        cadt.dask.triangulate(tmp_path / name)
+
+
+def test_boxes_that_are_no_numbers() -> None:
+    bounds = np.array([0.0, 0.0, 1.0, 1.0])
+    assert not _sources.File("a", 2, (0.0, 0.0, 1.0, 1.005), 0.01).differs_from(bounds)
+    assert _sources.File("a", 2, (0.0, 0.0, 1.0, 1.02), 0.01).differs_from(bounds)
+    assert _sources.File("a", 2, (0.0, 0.0, 1.0, float("nan")), 0.01).differs_from(bounds)
+
+
 def test_truncated_laz(client: dask.distributed.Client, tmp_path: pathlib.Path) -> None:
     write_las(tmp_path / "a.las", np.random.default_rng(0).random((5000, 2)))
     data = (tmp_path / "a.las").read_bytes()
@@ -289,6 +341,11 @@ def test_bad_arguments(client: dask.distributed.Client, tmp_path: pathlib.Path) 
     file = save(tmp_path / "xy.npy", families()["uniform"])
     with pytest.raises(cadt.OptionError, match="at least 3"):
         cadt.dask.triangulate([file], client, tile_points=1)
+    with pytest.raises(cadt.OptionError, match="files: there are none"):
+        cadt.dask.triangulate([], client)
+    for tile_points in (1000.5, None, "9"):
+        with pytest.raises(TypeError, match="tile_points must be a whole number, not "):
+            cadt.dask.triangulate([file], client, tile_points=tile_points)
     with pytest.raises(cadt.OptionError, match="backend"):
         cadt.dask.triangulate([file], client, device=1)
     with pytest.raises(cadt.BackendUnavailable):

@@ -204,8 +204,14 @@ class TilesResumeTest(CliTest):
 
     def test_complete_directory_is_left_alone_or_mended(self):
         shutil.copytree(self.path("whole.cadt"), self.path("mesh.cadt"))
+        before = self.path("mesh.cadt/run.json").stat()
         result = self.cadt(*[a for a in self.COMMAND if a != "-q"], "mesh.cadt", "--resume")
         self.assertIn("7 of 7 nodes were there", result.err)
+        after = self.path("mesh.cadt/run.json").stat()
+        self.assertEqual((after.st_ino, after.st_mtime_ns), (before.st_ino, before.st_mtime_ns), "that of another run")
+        self.path("mesh.cadt/run.json").unlink()
+        self.resume()
+        self.assertTrue(self.path("mesh.cadt/run.json").exists())
         self.path("mesh.cadt/node-000004/links.npy").write_bytes(b"")
         self.resume()
 
@@ -268,6 +274,7 @@ class TilesFailureTest(CliTest):
         self.fails(2, "tiles", "points.f64", "--generate", "uniform", says="not both")
         self.fails(2, "tiles", "points.f64", "--tile-points", 2, says="at least 3")
         self.fails(2, "tiles", "points.f64", "--resume", says="-o")
+        self.fails(2, "tiles", "points.f64", "-o", "", says="empty name")
         self.fails(6, "tiles", "points.f64", "--tile-points", 30, "--host-memory", "1K", says=("--scratch", "7.0 KiB", "1.0 KiB"))
         self.fails(3, "tiles", "points.f64", "--tile-points", "1G", says="536870910")
         for option in ("--stats", "--picture"):

@@ -20,16 +20,40 @@ class TilesDirectoryTest(CliTest):
         self.cadt("tiles", "points.f64", "--tile-points", 30, "-o", "m.cadt", "--backend", "host")
         right = json.loads(self.path("m.cadt/manifest.json").read_text())
 
-        def claims(change, says):
+        def claims(change, says, code=7):
             wrong = json.loads(json.dumps(right))
             change(wrong)
             self.write("m.cadt/manifest.json", json.dumps(wrong))
-            result = self.cadt("verify", "m.cadt", expect=7)
+            result = self.cadt("verify", "m.cadt", expect=code)
             self.assertIn(says, result.out + result.err)
+            return wrong
 
-        claims(lambda m: m.update(hash="f" * 32), "hash is not that of the triangles")
+        def contradicts(change, says):
+            claims(change, says, 3)
+            self.fails(3, "info", "m.cadt", says=("is damaged", says))
+            self.fails(3, "tiles", "points.f64", "--tile-points", 30, "-o", "m.cadt", "--backend", "host", "--resume",
+                       says=("is damaged", says))
+
+        node = right["nodes"][0]
+        self.assertTrue(node["links"] > 0 and node["open"] > 0)
         claims(lambda m: m["nodes"][1].update(base=1), "triangles before a node")
-        claims(lambda m: m["nodes"][0]["sums"].update(certified_edges=1), "not the sum of its nodes")
+        for key in ("points", "triangles", "links", "duplicates"):
+            claims(lambda m, key=key: m["nodes"][0].update({key: node[key] + 1}), key)
+
+        def swap_hashes(m):
+            first, second = (m["nodes"][i]["sums"] for i in (0, 1))
+            first["hash"], second["hash"] = second["hash"], first["hash"]
+
+        claims(swap_hashes, "hash of node-000000")
+        contradicts(lambda m: m.update(hash="f" * 32), "its hash of the mesh")
+        contradicts(lambda m: m["nodes"][0]["sums"].update(certified_edges=1), "not the sum of its nodes")
+        contradicts(lambda m: m["whole"].update(distinct=299), "not the sum of its nodes")
+        contradicts(lambda m: m.update(points=301), "number of points")
+        contradicts(lambda m: m["nodes"][0].update(files=[]), "a node has not its files")
+        contradicts(lambda m: m["nodes"][0]["files"].reverse(), "a node has not its files")
+        for key, value in (("tile_points", 30.5), ("tile_points", -30), ("first_id", 2**64), ("first_id", True), ("points", "300")):
+            contradicts(lambda m, key=key, value=value: m.update({key: value}), "is no number")
+        contradicts(lambda m: m["tree"][2].update(children=[2**32, 1]), "is no number")
         self.write("m.cadt/manifest.json", json.dumps(right))
         self.cadt("verify", "m.cadt")
 
@@ -50,6 +74,25 @@ class TilesDirectoryTest(CliTest):
         self.assertEqual(digest(self.path("m.cadt")), before)
         self.cadt("merge", "m.cadt", "-o", "m.cadt/../m.off", "-o", "beside/m.off", "-q")
         self.assertEqual(self.names(), ["beside", "file.off", "link.cadt", "m.cadt", "m.off", "points.f64"])
+
+    def test_outputs_beside_a_mesh(self):
+        self.scattered("points.f64", 300)
+        command = ("tiles", "points.f64", "--tile-points", 30, "--backend", "host", "-o", "m.cadt")
+        self.cadt(*command)
+        before = digest(self.path("m.cadt"))
+        for option, name in (("--stats", "manifest.json"), ("--stats", "node-000000/ids.npy"), ("--picture", "new.svg")):
+            self.fails(2, *command, "--resume", option, f"m.cadt/{name}", says=(f"m.cadt/{name}", "outside of it"))
+        self.assertEqual(digest(self.path("m.cadt")), before)
+        self.assertNotIn("new.svg", [path.name for path in self.path("m.cadt").iterdir()])
+        self.cadt(*command, "--resume", "--stats", "beside.json", "--picture", "beside.svg")
+
+    def test_merge_within_its_input(self):
+        self.scattered("points.f64", 300)
+        self.cadt("tiles", "points.f64", "--tile-points", 30, "-o", "m.cadt", "--backend", "host")
+        self.folder = self.path("m.cadt")
+        self.fails(2, "merge", ".", "-o", "new.off", says="the input, which would be lost")
+        self.fails(2, "merge", "../m.cadt", "--ply", "new", says="the input, which would be lost")
+        self.assertEqual({"new", "new.off"} & set(self.names()), set())
 
     def test_a_copy_without_empty_folders(self):
         self.scattered("points.f64", 300)

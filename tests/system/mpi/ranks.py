@@ -131,6 +131,7 @@ class RankTest(CliTest):
         """Ends with one message, however many ranks there are."""
         out, err = self.tiles(ranks, *arguments, expect=code, **more)
         self.assertEqual(err.count("cadt: error:"), 1, err)
+        self.assertNotIn("cadt: interrupted", err)
         for text in [says] if isinstance(says, str) else says:
             self.assertIn(text, err)
         self.assertEqual(out, "")

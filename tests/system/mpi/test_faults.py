@@ -85,6 +85,48 @@ class RanksThatDiffer(FaultTest):
         command = self.together([MPI_PROGRAM], [MPI_PROGRAM]) + ["--resume"]
         self.fails(2, 2, command=command, says=["rank 1", "--resume than rank 0"])
 
+    def in_folders(self, *more):
+        """Rank 0 in the folder a, rank 1 in b."""
+        tail = [MPI_PROGRAM, "tiles", "points.f64", *map(str, self.options), "-q", *more]
+        folders = [["-wdir", str(self.path(name)), "-n", "1"] for name in ("a", "b")]
+        return [MPIRUN, *ANYWHERE, *folders[0], *tail, ":", *folders[1], *tail]
+
+    def copies(self):
+        """Of the input in both folders."""
+        self.name = self.generate("uniform", 300000, "points.f64")
+        self.options[3] = 30000
+        for name in ("a", "b"):
+            self.path(name).mkdir()
+            shutil.copy(self.path(self.name), self.path(f"{name}/points.f64"))
+
+    def test_another_mesh_of_the_same_name(self):
+        self.copies()
+        self.generate("uniform", 3000, "old.f64")
+        self.cadt("tiles", "old.f64", "-o", "b/mesh.cadt", "--tile-points", 400, "-q")
+        before = digest(self.path("b/mesh.cadt"))
+        self.fails(3, 2, command=self.in_folders(), says=["rank 1", "mesh.cadt: this process sees another mesh there"])
+        self.assertEqual(digest(self.path("b/mesh.cadt")), before)
+        shutil.rmtree(self.path("a/mesh.cadt"))
+        shutil.rmtree(self.path("b/mesh.cadt"))
+        self.fails(3, 2, command=self.in_folders(), says=["rank 1", "mesh.cadt: this process does not see"])
+
+    def test_input_of_another_size(self):
+        self.copies()
+        with open(self.path("b/points.f64"), "ab") as file:
+            file.write(struct.pack("<dd", 0.5, 0.5))
+        self.fails(2, 2, command=self.in_folders(), says=["rank 1", "reads 300001 points, and rank 0 300000"])
+        self.assertFalse(self.path("a/mesh.cadt").exists())
+
+    def test_input_with_another_point(self):
+        """The last one, which rank 1 looks at and rank 0 distributes."""
+        self.copies()
+        with open(self.path("b/points.f64"), "r+b") as file:
+            file.seek(-16, os.SEEK_END)
+            file.write(struct.pack("<d", 0.5))
+        self.path("b/mesh.cadt").symlink_to(self.path("a/mesh.cadt"))
+        self.fails(3, 2, command=self.in_folders(), says="changed while it was read")
+        self.assertEqual([path.name for path in self.path("a/mesh.cadt").glob("node-*")], [])
+
     def test_own_devices(self):
         """What is a rank's own may differ: here its threads and memory, on clusters its device."""
         tail = ["tiles", self.name, *map(str, self.options[:-2]), "-q"]

@@ -56,11 +56,12 @@ class KindsOfPoints(EqualTest):
 
     def test_copies_of_a_point_on_different_ranks(self):
         """The lowest index is the vertex: ids ascend in each leaf whatever rank has read them."""
-        points = [(random.Random(i % 500).random(), random.Random(i % 500 + 1000).random()) for i in range(4000)]
-        self.points("copies.f64", points)
-        # Small messages make many rounds of the shuffle.
-        self.compare(["copies.f64"], 100, numbers=(1, 3), environment={"CADT_MPI_MESSAGE_BYTES": "4096"},
-                     single=self.single_hash("copies.f64"))
+        numbers = random.Random(1)
+        self.points("copies.f64", [(numbers.random(), numbers.random()) for _ in range(500)] * 1000)
+        # Four parts of the input: two rounds of the shuffle, and with small messages one rank at a time reads.
+        whole = self.compare(["copies.f64"], 30000, numbers=(1, 3), single=self.single_hash("copies.f64"))
+        small = {"CADT_MPI_MESSAGE_BYTES": "4096"}
+        self.assertEqual(self.compare(["copies.f64"], 30000, numbers=(3,), environment=small), whole)
 
     def test_cells(self):
         """A set that each rank makes itself, tile by tile."""

@@ -108,6 +108,61 @@ TEST(Shuffle, TellsWhyAFileCannotBeClosed) {
   }
 }
 
+TEST(Shuffle, MorePointsThanTheTreeSays) {
+  const Folder folder;
+  const TileTree tree(3);
+  const std::vector<double> xy(8);
+  const std::vector<std::uint64_t> ids{0, 1, 2, 3};
+  EXPECT_THROW(leaves_in_memory(tree)->add(0, xy, ids), io::FileError);
+  const auto in_files = leaves_in_files(tree, folder / "");
+  in_files->add(0, xy, ids);
+  EXPECT_THROW(in_files->finish(), io::FileError);
+}
+
+/// Whose point 5 moves a little after so many readings.
+class ChangingSource : public PointSource {
+ public:
+  explicit ChangingSource(int readings) : readings_(readings) {}
+  [[nodiscard]] std::uint64_t size() const noexcept override { return xy_.size() / 2; }
+  [[nodiscard]] std::string name_of(std::uint64_t /*index*/) const override { return "changing"; }
+  [[nodiscard]] std::vector<std::string> names() const override { return {"changing"}; }
+
+ protected:
+  void read_raw(std::uint64_t first, std::size_t count, double* xy) const override {
+    std::copy_n(xy_.begin() + static_cast<std::ptrdiff_t>(2 * first), 2 * count, xy);
+    if (readings_-- <= 0) xy[10] += 0x1p-40;
+  }
+
+ private:
+  std::vector<double> xy_ = points_of("uniform", 1000);
+  mutable int readings_;  // of one block
+};
+
+TEST(Shuffle, InputThatChangesWhileItIsRead) {
+  const Folder folder;
+  const auto make = [&](int readings, std::uint64_t tile_points) {
+    RunOptions options;
+    options.devices.front().backend = Backend::host;
+    options.tile_points = tile_points;
+    options.output = folder / "mesh.cadt";
+    return run(ChangingSource(readings), options);
+  };
+  for (const std::uint64_t tile_points : {100, 1000}) {  // the points of one leaf are read by themselves
+    int readings = 1;
+    for (bool fails = true; fails; ++readings) {
+      try {
+        (void)make(readings, tile_points);
+        fails = false;
+      } catch (const io::FileError& e) {
+        EXPECT_NE(std::string(e.what()).find("changed while it was read"), std::string::npos) << e.what();
+        EXPECT_FALSE(std::filesystem::exists(folder / "mesh.cadt/node-000000"));
+      }
+      std::filesystem::remove_all(folder / "mesh.cadt");
+    }
+    EXPECT_GT(readings, 2) << "the points are read more than once";
+  }
+}
+
 TEST(Messages, PackedAndUnpacked) {
   Open open;
   open.xy = {1, 2, 3, 4, 5, 6};

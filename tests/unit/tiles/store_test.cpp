@@ -160,6 +160,36 @@ TEST_F(StoreTest, EachDamagedFileMakesItsNodeInvalid) {
   EXPECT_EQ(damaged, 9U);
 }
 
+TEST_F(StoreTest, ARecordOfAnotherNodeMakesItsNodeInvalid) {
+  const Store store(path_, made_.plan, Store::Start::create);
+  write_all(store);
+  std::filesystem::copy_file(path_ + "/unfinished/node-000001/node.json", path_ + "/unfinished/node-000000/node.json",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_FALSE(store.is_valid(0)) << "all files that it names are intact";
+  EXPECT_TRUE(store.is_valid(1));
+}
+
+TEST_F(StoreTest, OthersJoinTheirOwnRunAlone) {
+  const auto join = [&](const Plan& plan) { const Store store(path_, plan, Store::Start::join); };
+  EXPECT_THROW(join(made_.plan), io::FileError) << "it is not there";
+  Store store(path_, made_.plan, Store::Start::create);
+  EXPECT_NO_THROW(join(made_.plan));
+  Plan other = made_.plan;
+  other.content.low ^= 1;
+  EXPECT_THROW(join(other), ResumeError);
+  write_all(store);
+  store.finish();
+  EXPECT_THROW(join(made_.plan), ResumeError) << "it is complete";
+  EXPECT_TRUE(verify(MeshDirectory(path_)).ok);
+}
+
+TEST_F(StoreTest, SumsOfOtherPointsAreRefused) {
+  made_.nodes[0].sums.points += 1;  // as if there were another duplicate
+  Store store(path_, made_.plan, Store::Start::create);
+  write_all(store);
+  EXPECT_THROW(store.finish(), InternalError);
+}
+
 TEST_F(StoreTest, MissingNodesAndOtherPlans) {
   {
     Store store(path_, made_.plan, Store::Start::create);

@@ -11,6 +11,7 @@ from typing import Any
 
 import cadt.terrain._vector
 import cadt.terrain.cloud
+import laspy
 import numpy as np
 import pytest
 from cadt import terrain
@@ -21,6 +22,77 @@ from clouds import hills
 def refused(path: Any, says: str, **more: Any) -> None:
     with pytest.raises(terrain.FileError, match=says):
         terrain.read_cloud([str(path)], **more)
+
+
+@pytest.fixture
+def changed(las, tmp_path):
+    """A LAZ file of 40 points with one field changed: `at` bytes behind the begin of the file, of the points, of the
+    record of LASzip or of the table of chunks."""
+
+    def make(behind: str, at: int, kind: str, value: int) -> pathlib.Path:
+        path = pathlib.Path(las("changed.laz", hills(40), crs=None))
+        data = bytearray(path.read_bytes())
+        (points,) = struct.unpack_from("<I", data, 96)
+        (table,) = struct.unpack_from("<q", data, points)
+        begins = {"file": 0, "points": points, "record": data.index(b"laszip encoded") - 2 + 54, "table": table}
+        struct.pack_into(kind, data, begins[behind] + at, value)
+        path.write_bytes(data)
+        return path
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("behind", "at", "kind", "value", "says"),
+    [
+        ("file", 100, "<I", 1000, "1000 records before the points, room for 1$"),
+        ("file", 243, "<I", 1000, "truncated: 1000 records behind the points, room for"),
+        ("file", 247, "<Q", 10**12, "truncated: at most 50000 points of the 1000000000000 that"),
+        ("record", 12, "<I", 0, "(damaged|truncated): "),
+        ("record", 12, "<I", 1 << 26, "damaged: a chunk of 67108864 points"),
+        ("record", 36, "<H", 40, "damaged: a point has 30 bytes or 40"),
+        ("table", 4, "<I", 1000, "damaged: it has no room for its 1000 chunks"),
+        ("points", 0, "<q", -1, "damaged: "),
+    ],
+)
+def test_fields_of_laz(changed, behind, at, kind, value, says):
+    refused(changed(behind, at, kind, value), rf"changed\.laz: .*{says}")
+
+
+def test_chunks_of_laz_that_are_said_at_the_end(changed):
+    """A writer that could not go back leaves -1, and says at the end where the table is."""
+    path = changed("points", 0, "<q", -1)
+    data = path.read_bytes()
+    (points,) = struct.unpack_from("<I", data, 96)
+    whole = pathlib.Path(changed("points", 0, "<q", -1)).with_name("end.laz")
+    table = data.rindex(struct.pack("<II", 0, 1))
+    assert table > points
+    whole.write_bytes(data + struct.pack("<q", table))
+    assert len(terrain.read_cloud([str(whole)])) == 40
+
+
+def test_panics_of_lazrs(las, monkeypatch):
+    class PanicException(BaseException):
+        pass
+
+    def panic(*_: Any, **__: Any) -> None:
+        raise PanicException("index out of bounds")
+
+    name = las("p.laz", hills(40))
+    monkeypatch.setattr(laspy.LasReader, "read_points", panic)
+    refused(name, r"p\.laz: damaged after 0 of 40 points: index out of bounds")
+    monkeypatch.setattr(laspy, "open", panic)
+    refused(name, r"p\.laz: is no LAS or LAZ file: index out of bounds")
+
+
+def test_dimensions_of_several_numbers(las):
+    name = las("n.laz", hills(40))
+    stored = laspy.read(name)
+    stored.add_extra_dim(laspy.ExtraBytesParams("nrm", "3f4"))
+    stored.write(name)
+    with pytest.raises(terrain.UsageError, match=r"--values nrm: .*n\.laz has 3 numbers a point"):
+        terrain.read_cloud([name], values="nrm")
+    assert len(terrain.read_cloud([name])) == 40
 
 
 def test_memory_is_that_of_the_most_points(las, monkeypatch):

@@ -16,7 +16,7 @@ from cadt._wkb import LINE, MULTILINE, MULTIPOLYGON, POLYGON, lines_of_wkb
 from ._files import check_input, suffix_of, why
 from ._mesh import triangulate
 from ._progress import ProgressLine
-from ._vector import _pyogrio, parse_crs
+from ._vector import _pyogrio, only_layer, parse_crs, read_errors, truncated
 from .cloud import Cloud, name_of, same_crs
 from .errors import CrsError, FileError, UsageError
 
@@ -49,16 +49,15 @@ def check_options(options: argparse.Namespace) -> None:
 def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
     """Lines and the outlines of polygons of one file, in the reference system of the points; `asked`: --crs."""
     ogr = _pyogrio(f"reading {path}")
+    layer = only_layer(ogr, path)
     try:
-        layers = ogr.list_layers(path)
-        if len(layers) > 1:
-            names = ", ".join(str(name) for name in layers[:, 0])
-            raise FileError(path, f"has several layers ({names}); export one of them to a file of its own")
-        about, _, geometry, _ = ogr.raw.read(path, columns=[])
-    except (ogr.errors.DataSourceError, ogr.errors.FeatureError, ogr.errors.DataLayerError) as error:
+        _, _, geometry, _ = ogr.raw.read(path, layer=layer.name, where=layer.where, columns=[])
+    except read_errors(ogr) as error:
         raise FileError(path, f"cannot be read: {why(error)}") from error
+    if len(geometry) < layer.count and suffix_of(path) != "shp":
+        raise truncated(path, len(geometry), layer.count)
     if asked is None:
-        crs = parse_crs(path, about["crs"])
+        crs = parse_crs(path, layer.crs)
         if not same_crs(crs, cloud.crs):
             raise CrsError(
                 path,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ class TableSource:
         self.path = path
         try:
             if path.lower().endswith(".npy"):
-                table = np.load(path, mmap_mode="r", allow_pickle=False)
+                table = _load(path)
                 self._columns = _choose(path, columns or "1,2,3", [], table.shape[1]) if table.ndim == 2 else []
             else:
                 table, self._columns = _read_text(path, columns), [0, 1, 2]
@@ -34,7 +35,7 @@ class TableSource:
             raise
         except (OSError, ValueError) as error:
             raise FileError(path, f"cannot be read: {why(error)}") from error
-        if table.ndim != 2 or not np.issubdtype(table.dtype, np.number):
+        if table.ndim != 2 or table.dtype.kind not in "iuf":
             raise FileError(path, f"is no table of numbers: shape {table.shape}, {table.dtype}")
         self._table = table
         self.count = len(table)
@@ -52,6 +53,17 @@ class TableSource:
                         self.path, f"row {row} (counted from 0) has no finite number in column {column + 1}"
                     )
             step(first + len(rows))
+
+
+def _load(path: str) -> NDArray[Any]:
+    try:
+        table = np.load(path, mmap_mode="r", allow_pickle=False)
+    except Exception as error:  # a damaged header leads to EOFError, tokenize.TokenError and others
+        raise FileError(path, f"cannot be read: {why(error)}") from error
+    if not isinstance(table, np.ndarray):
+        table.close()
+        raise FileError(path, "is no .npy file but an .npz: several arrays; save one of them with numpy.save")
+    return table
 
 
 def _read_text(path: str, columns: str) -> NDArray[np.float64]:

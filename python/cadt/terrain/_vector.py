@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+import dataclasses
+import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._files import Room, complete_file, why
+from ._files import Room, complete_file, suffix_of, why
 from .errors import CrsError, FileError, Unavailable, UsageError
 
 if TYPE_CHECKING:
@@ -72,6 +74,48 @@ def _coordinates(path: str, geometry: NDArray[np.object_], first: int) -> NDArra
     return result
 
 
+@dataclasses.dataclass(frozen=True)
+class Layer:
+    """The layer of a file, of which there must be one alone."""
+
+    name: str
+    count: int  # of features; in Shapefiles those that are deleted are counted, too
+    where: str | None  # what to read it with, so that GDAL finds as many
+    crs: str | None
+    fields: list[str]
+
+
+def read_errors(ogr: Any) -> tuple[type[Exception], ...]:
+    """What reading a damaged file leads to."""
+    return ogr.errors.DataSourceError, ogr.errors.DataLayerError, UnicodeDecodeError
+
+
+def only_layer(ogr: Any, path: str) -> Layer:
+    """Raises FileError if there are several, or features that cannot be there. Tables without geometry do not count
+    where there is a layer with it: QGIS stores styles in one."""
+    try:
+        layers = ogr.list_layers(path)
+        names = [str(name) for name, kind in layers if kind is not None] or [str(name) for name in layers[:, 0]]
+        if not names:
+            raise FileError(path, "cannot be read: no layer is found in it")
+        if len(names) > 1:
+            raise FileError(path, f"has several layers ({', '.join(names)}); export one of them to a file of its own")
+        info = ogr.read_info(path, layer=names[0], force_feature_count=True)
+        count = int(info["features"])
+        where = None
+        if suffix_of(path) == "gpkg":
+            # GDAL says what a table of the file says, which other programs may not have kept up to date.
+            quoted = names[0].replace('"', '""')
+            true_count = int(ogr.raw.read(path, sql=f'SELECT COUNT(*) FROM "{quoted}"')[3][0][0])
+            if true_count != count:
+                count, where = true_count, "1 = 1"
+    except read_errors(ogr) as error:
+        raise FileError(path, f"cannot be read: {why(error)}") from error
+    if count > os.path.getsize(path):  # a feature takes more than a byte
+        raise FileError(path, f"truncated: it has no room for the {count} features that it promises")
+    return Layer(names[0], count, where, info["crs"], [str(name) for name in info["fields"]])
+
+
 class OgrSource:
     """Points of a GeoPackage, a GeoJSON or a FlatGeobuf file."""
 
@@ -79,17 +123,10 @@ class OgrSource:
         self.path = path
         self._values = values
         self._ogr = _pyogrio(f"reading {path}")
-        try:
-            layers = self._ogr.list_layers(path)
-            if len(layers) > 1:
-                names = ", ".join(str(name) for name in layers[:, 0])
-                raise FileError(path, f"has several layers ({names}); export one of them to a file of its own")
-            info = self._ogr.read_info(path, force_feature_count=True)
-        except self._ogr.errors.DataSourceError as error:
-            raise FileError(path, f"cannot be read: {why(error)}") from error
-        self.count = int(info["features"])
-        self.crs = parse_crs(path, info["crs"]) if with_crs else None
-        fields = [str(name) for name in info["fields"]]
+        self._layer = only_layer(self._ogr, path)
+        self.count = self._layer.count
+        self.crs = parse_crs(path, self._layer.crs) if with_crs else None
+        fields = self._layer.fields
         if values != "z" and values not in fields:
             raise UsageError(f"--values {values}: {path} has no such attribute; it has: {', '.join(fields) or 'none'}")
 
@@ -99,12 +136,17 @@ class OgrSource:
         while done < self.count:
             try:
                 _, _, geometry, fields = self._ogr.raw.read(
-                    self.path, columns=columns, skip_features=done, max_features=CHUNK
+                    self.path,
+                    layer=self._layer.name,
+                    where=self._layer.where,
+                    columns=columns,
+                    skip_features=done,
+                    max_features=CHUNK,
                 )
-            except (self._ogr.errors.DataSourceError, self._ogr.errors.FeatureError) as error:
+            except read_errors(self._ogr) as error:
                 raise FileError(self.path, f"cannot be read: {why(error)}") from error
             if len(geometry) == 0:
-                break
+                raise truncated(self.path, done, self.count)
             points = _coordinates(self.path, geometry, done)
             xy, z = room(len(points))
             xy[:] = points[:, :2]
@@ -114,6 +156,10 @@ class OgrSource:
             check_values(self.path, z, self._values, done)
             done += len(points)
             step(done)
+
+
+def truncated(path: str, features: int, count: int) -> FileError:
+    return FileError(path, f"truncated: {features} features of the {count} that it promises")
 
 
 class ParquetSource:

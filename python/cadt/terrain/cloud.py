@@ -106,7 +106,7 @@ def read_cloud(
         A file cannot be read, is damaged or truncated, or no point is left. CrsError: the systems differ.
     """
     sources, system = open_sources(paths, classes, values, columns, crs)
-    most = sum(source.count for source in sources)
+    most = min(sum(source.count for source in sources), MOST_POINTS)
     xy = np.empty((most, 2))  # pages that no point reaches cost nothing
     z = np.empty(most)
     kept = 0
@@ -156,7 +156,9 @@ def read_all(sources: Sequence[Source], room: Room, progress: Callable[[str, flo
 
 
 def no_points(paths: Sequence[str], classes: Sequence[int] | None) -> FileError:
-    names = ", ".join(map(str, classes or ()))
+    if classes is None:
+        return FileError(", ".join(paths), "has no points")
+    names = ", ".join(map(str, classes))
     return FileError(", ".join(paths), f"no point is of class {names}; without --class all points are taken")
 
 

@@ -98,6 +98,7 @@ Triangulation Triangulation::adopt(PointsView points, std::span<const std::int32
   view.neighbors = neighbors;
   if (const std::string error = verifier::size_error(points, view); !error.empty())
     throw InvalidMesh("counts", -1, error);
+  verifier::require_ieee_arithmetic();
   require_finite(points);
   if (trust == Trust::verify) require_delaunay(points, view);
   verifier::Mesh mesh;

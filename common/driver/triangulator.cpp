@@ -119,7 +119,7 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
                       SegmentJob* job = nullptr, SegmentResults* segments = nullptr) {
   auto result =
       run_to_host(state, points, {points.size(), is_host(*state->device), false, points.scalar_size()}, job, segments);
-  result->keep(points, keep);
+  give_points(*result, points, keep);
   return Triangulation(std::move(result));
 }
 

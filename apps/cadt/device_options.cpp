@@ -23,7 +23,7 @@ void add_device_options(CLI::App& command, DeviceOptions& o) {
 void add_memory_option(CLI::App& command, DeviceOptions& o) {
   command
       .add_option("--max-memory", o.max_memory,
-                  "refuse before any work if more device memory is needed: 4G, 512M, 1.5GiB "
+                  "refuse if more device memory is needed: 4G, 512M, 1.5GiB "
                   "(K M G T and KiB ... count 1024, KB ... 1000)")
       ->type_name("SIZE");
 }

@@ -69,6 +69,12 @@ class HostBuffer final : public Buffer {
 
 unsigned all_cores() noexcept { return std::max(1U, std::thread::hardware_concurrency()); }
 
+/// Options::threads is the most there are: no more than any processor has cores for.
+unsigned threads_of(const Options& options) noexcept {
+  constexpr unsigned most_threads = 1024;
+  return options.threads == 0 ? all_cores() : std::min(options.threads, std::max(most_threads, all_cores()));
+}
+
 DeviceInfo describe() {
   DeviceInfo info;
   info.backend = Backend::host;
@@ -118,7 +124,7 @@ class HostClock final : public KernelClock {
 class HostDevice final : public Device {
  public:
   explicit HostDevice(const Options& options)
-      : pool_(options.threads != 0 ? options.threads : all_cores(), options.tuning.grain != 0),
+      : pool_(threads_of(options), options.tuning.grain != 0),
         info_(this_host()),
         allocator_(options.allocator),
         clock_(options.tuning.kernel_times ? std::optional<HostClock>(std::in_place) : std::nullopt) {}

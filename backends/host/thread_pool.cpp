@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "backends/host/thread_pool.hpp"
 
+#include <system_error>
+
 namespace cadt::host {
 
 ThreadPool::ThreadPool(unsigned threads, bool interleaved) : shares_(threads), interleaved_(interleaved) {
   try {
     for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this, i] { serve(i); });
-  } catch (...) {  // there are no more threads to be had
+  } catch (const std::system_error&) {  // the system has no more threads: those that run share the work
+  } catch (...) {
     stop();
     throw;
   }
@@ -24,8 +27,9 @@ void ThreadPool::stop() noexcept {
 }
 
 void ThreadPool::work(std::size_t self) noexcept {
-  for (std::size_t turn = 0; turn < shares_.size(); ++turn) {
-    Share& share = shares_[(self + turn) % shares_.size()];
+  const std::size_t shares = threads();
+  for (std::size_t turn = 0; turn < shares; ++turn) {
+    Share& share = shares_[(self + turn) % shares];
     for (;;) {
       const std::uint64_t item = share.next.fetch_add(1, std::memory_order_relaxed);
       if (item >= share.end) break;
@@ -58,7 +62,7 @@ void ThreadPool::run(KernelFunction kernel, std::uint32_t items, const Arg* args
   kernel_ = kernel;
   args_ = args;
   items_ = items;
-  const std::size_t shares = interleaved_ ? 1 : shares_.size();
+  const std::size_t shares = interleaved_ ? 1 : threads();
   for (std::size_t i = 0; i < shares; ++i) {
     shares_[i].next.store(std::uint64_t{items} * i / shares, std::memory_order_relaxed);
     shares_[i].end = std::uint64_t{items} * (i + 1) / shares;

@@ -17,8 +17,8 @@ namespace cadt::host {
 /// its share helps the others. One launch at a time.
 class ThreadPool {
  public:
-  /// `interleaved`: no shares; each thread takes the next item, so that threads work side by side and conflict often
-  /// (for tests).
+  /// Where the system refuses to start so many, there are fewer. `interleaved`: no shares; each thread takes the next
+  /// item, so that threads work side by side and conflict often (for tests).
   ThreadPool(unsigned threads, bool interleaved);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -42,7 +42,7 @@ class ThreadPool {
     std::atomic<std::uint64_t> next{0};  // wider than an item number: each thread overshoots by one
     std::uint64_t end = 0;
   };
-  std::vector<Share> shares_;
+  std::vector<Share> shares_;  ///< one a thread; more if not all could be started
   bool interleaved_;
 
   std::mutex mutex_;

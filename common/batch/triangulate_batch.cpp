@@ -15,6 +15,7 @@
 #include "common/driver/choose_strategy.hpp"
 #include "common/driver/registry.hpp"
 #include "common/driver/session.hpp"
+#include "common/driver/start_async.hpp"
 #include "common/output/renumber.hpp"
 #include "common/points/import.hpp"
 
@@ -274,14 +275,12 @@ DeviceTriangulationBatch Triangulator::triangulate_batch(const DevicePoints& poi
 
 std::future<TriangulationBatch> Triangulator::triangulate_batch_async(PointsView points,
                                                                       std::span<const std::size_t> offsets) {
-  return std::async(std::launch::async,
-                    [state = state_, points, offsets] { return batch_to_host(*state, points, offsets); });
+  return start_async([state = state_, points, offsets] { return batch_to_host(*state, points, offsets); });
 }
 
 std::future<DeviceTriangulationBatch> Triangulator::triangulate_batch_async(const DevicePoints& points,
                                                                             std::span<const std::size_t> offsets) {
-  return std::async(std::launch::async,
-                    [state = state_, points, offsets] { return batch_to_device(state, points, offsets); });
+  return start_async([state = state_, points, offsets] { return batch_to_device(state, points, offsets); });
 }
 
 TriangulationBatch triangulate_batch(PointsView points, std::span<const std::size_t> offsets, const Options& options) {

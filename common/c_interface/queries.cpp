@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queries, and meshes in arrays of the caller's.
+// Queries, and meshes in arrays of the caller's. Who asks for a count alone hears what the call would refuse.
 #include "common/c_interface/convert.hpp"
+#include "common/queries/call.hpp"
+#include "common/queries/interpolate.hpp"
 
 using namespace cadt::c_interface;
 
@@ -47,13 +49,6 @@ cadt::DeviceArray array_of(const cadt_device_array* array, const char* name) {
 std::span<const double> values_of(const double* values, std::size_t count) {
   if (count != 0) require(values, "values");
   return {values, count};
-}
-
-/// The number of results, which must not wrap: a multiple of the number of queries.
-std::size_t times(std::size_t queries, std::size_t each) {
-  if (queries != 0 && each > ~std::size_t{0} / queries)
-    throw cadt::LimitError("more results than memory has addresses", each, ~std::size_t{0} / queries);
-  return queries * each;
 }
 
 }  // namespace
@@ -105,6 +100,7 @@ cadt_status cadt_queries_locate(cadt_queries* queries, const cadt_points* where,
   return guarded([&] {
     auto& asked = required(queries, "queries").begin_call();
     const cadt::PointsView at = points_of(where);
+    cadt::require_size(at.size());
     if (has_room(triangles, capacity, at.size(), count)) std::ranges::copy(asked.locate(at), triangles);
   });
 }
@@ -114,6 +110,7 @@ cadt_status cadt_queries_locate_barycentric(cadt_queries* queries, const cadt_po
   return guarded([&] {
     auto& asked = required(queries, "queries").begin_call();
     const cadt::PointsView at = points_of(where);
+    cadt::require_size(at.size());
     if (!has_room(triangles, capacity, at.size(), count)) return;
     require(barycentric, "barycentric");
     const cadt::Located found = asked.locate_barycentric(at);
@@ -127,8 +124,9 @@ cadt_status cadt_queries_nearest_vertices(cadt_queries* queries, const cadt_poin
   return guarded([&] {
     auto& asked = required(queries, "queries").begin_call();
     const cadt::PointsView at = points_of(where);
-    if (has_room(vertices, capacity, times(at.size(), k), count))
-      std::ranges::copy(asked.nearest_vertices(at, k), vertices);
+    cadt::require_size(at.size());
+    cadt::query::require_neighbors(at.size(), k);
+    if (has_room(vertices, capacity, at.size() * k, count)) std::ranges::copy(asked.nearest_vertices(at, k), vertices);
   });
 }
 
@@ -141,8 +139,10 @@ cadt_status cadt_queries_interpolate(cadt_queries* queries, const double* values
     const auto from = values_of(values, value_count);
     const cadt::Interpolation by = method_of(method);
     const cadt::Outside beyond = outside_of(outside);
-    const std::size_t n = asked.number_of_points(), each = n == 0 ? 1 : value_count / n;
-    if (has_room(results, capacity, times(at.size(), each), count))
+    cadt::require_size(at.size());
+    const std::size_t each = cadt::query::values_a_point(value_count, asked.number_of_points());
+    cadt::query::require_results(at.size(), each);
+    if (has_room(results, capacity, at.size() * each, count))
       std::ranges::copy(asked.interpolate(from, at, by, beyond), results);
   });
 }
@@ -155,8 +155,10 @@ cadt_status cadt_queries_rasterize(cadt_queries* queries, const cadt_grid* grid,
     const cadt::Grid to = grid_of(grid);
     const auto from = values_of(values, value_count);
     const cadt::Interpolation by = method_of(method);
-    if (has_room(cells, capacity, times(to.columns, to.rows), count))
-      std::ranges::copy(asked.rasterize(to, from, by, max_edge), cells);
+    cadt::require_grid(to);
+    cadt::query::require_bound(max_edge);
+    cadt::query::require_mesh_of(value_count, asked.number_of_points());
+    if (has_room(cells, capacity, to.cells(), count)) std::ranges::copy(asked.rasterize(to, from, by, max_edge), cells);
   });
 }
 

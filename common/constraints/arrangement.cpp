@@ -160,6 +160,7 @@ void find_lowest(Arrangement& out, unsigned threads) {
 }  // namespace
 
 Arrangement arrange(PointsView points, std::span<const Segment> segments, unsigned threads, const Watch& watch) {
+  verifier::require_ieee_arithmetic();
   Arrangement out = sort_segments(points, segments);
   const std::vector<std::int32_t> starts = first_at(out);
   threads = threads_or_all(threads);

@@ -59,7 +59,8 @@ struct Arrangement {
 [[nodiscard]] Arrangement sort_segments(PointsView points, std::span<const Segment> segments);
 
 /// The whole. It does not depend on the number of threads, nor on the order and direction of the input but for its
-/// numbers. O((n + length of chains) log n). \throws as sort_segments, and Cancelled
+/// numbers. O((n + length of chains) log n). \throws as sort_segments, Cancelled, LimitError, and Error if the thread's
+/// arithmetic is not IEEE 754
 [[nodiscard]] Arrangement arrange(PointsView points, std::span<const Segment> segments, unsigned threads,
                                   const Watch& watch = {});
 

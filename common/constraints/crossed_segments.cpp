@@ -107,7 +107,7 @@ bool constrain_rounded(const State& state, PointsView points, std::span<const Se
 
   data.edge_flags = std::move(results.edge_flags);
   data.added = device.read_values<double>(*found.places, 2 * found.count, 2 * n);
-  mesh->keep(points, state->options.keep_points, data.added);
+  give_points(*mesh, points, state->options.keep_points, data.added);
   data.mesh = Triangulation(std::move(mesh));
   data.parents = std::move(pairs);
   const auto offsets = device.read_values(*found.chain_offsets, segments.size() + 1);

@@ -54,7 +54,8 @@ Triangulation triangulation_of(const Triangulation& delaunay, const constraints:
   data->duplicates.assign(delaunay.duplicates().begin(), delaunay.duplicates().end());
   data->dimension = delaunay.dimension();
   data->statistics = delaunay.statistics();
-  if (const PointsView kept = delaunay.points(); kept.size() != 0) data->keep(kept, KeepPoints::copy, mesh.added_xy);
+  if (const PointsView kept = delaunay.points(); kept.size() != 0)
+    give_points(*data, kept, KeepPoints::copy, mesh.added_xy);
   return Triangulation(std::move(data));
 }
 

@@ -49,6 +49,7 @@ DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsVi
     add_seed(seeds, "regions", i, options.regions[i].x, options.regions[i].y, found.regions[i]);
   std::ranges::sort(seeds, {}, [](const Seed& seed) { return seed.at.x; });
   if (seeds.empty()) return found;
+  verifier::require_ieee_arithmetic();
 
   const auto is_added = [&](std::int32_t v) { return static_cast<std::size_t>(v) >= points.size(); };
   const auto point = [&](std::int32_t v) -> verifier::Point {

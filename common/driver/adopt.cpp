@@ -98,6 +98,7 @@ Triangulation Triangulation::adopt(PointsView points, std::span<const std::int32
   view.neighbors = neighbors;
   if (const std::string error = verifier::size_error(points, view); !error.empty())
     throw InvalidMesh("counts", -1, error);
+  verifier::require_ieee_arithmetic();
   require_finite(points);
   if (trust == Trust::verify) require_delaunay(points, view);
   verifier::Mesh mesh;
@@ -118,7 +119,7 @@ Triangulation Triangulation::adopt(PointsView points, std::span<const std::int32
   data->dimension = mesh.count != 0 ? 2 : static_cast<int>(std::min<std::size_t>(distinct, 2)) - 1;
   data->statistics.points = points.size();
   data->statistics.distinct = distinct;
-  data->keep(points, keep_points);
+  give_points(*data, points, keep_points);
   return Triangulation(std::move(data));
 }
 

@@ -85,17 +85,18 @@ std::string Hash128::to_string() const {
   return text;
 }
 
-void Triangulation::Data::keep(const PointsView& points_to_keep, KeepPoints how, std::span<const double> added) {
+void give_points(Triangulation::Data& mesh, const PointsView& points, KeepPoints how, std::span<const double> added) {
   if (how == KeepPoints::no) return;
-  view = points_to_keep;
+  mesh.view = points;
   if (how == KeepPoints::view && added.empty()) return;
-  coordinates.resize(2 * view.size() + added.size());
-  for (std::size_t i = 0; i < view.size(); ++i) {
-    coordinates[2 * i] = view.x(i);
-    coordinates[2 * i + 1] = view.y(i);
+  std::vector<double>& xy = mesh.coordinates;
+  xy.resize(2 * points.size() + added.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    xy[2 * i] = points.x(i);
+    xy[2 * i + 1] = points.y(i);
   }
-  std::ranges::copy(added, coordinates.end() - static_cast<std::ptrdiff_t>(added.size()));
-  view = coordinates;
+  std::ranges::copy(added, xy.end() - static_cast<std::ptrdiff_t>(added.size()));
+  mesh.view = xy;
 }
 
 Triangulation::Triangulation() : data_(std::make_shared<Data>()) {}

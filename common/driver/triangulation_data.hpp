@@ -35,9 +35,11 @@ struct Triangulation::Data {
   Statistics statistics;
   PointsView view;  ///< of the points that are kept: the caller's, or of `coordinates`
   std::vector<double> coordinates;
-
-  /// `added`: x0 y0 x1 y1 ... of the points behind them, which no view has: with some, a view becomes a copy.
-  void keep(const PointsView& points_to_keep, KeepPoints how, std::span<const double> added = {});
 };
+
+/// Gives the mesh its points (Options::keep_points). `added`: x0 y0 x1 y1 ... of the points behind them, which no view
+/// has: with some, a view becomes a copy.
+void give_points(Triangulation::Data& mesh, const PointsView& points, KeepPoints how,
+                 std::span<const double> added = {});
 
 }  // namespace cadt

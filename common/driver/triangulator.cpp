@@ -17,6 +17,7 @@
 #include "common/driver/gpu_bound.hpp"
 #include "common/driver/registry.hpp"
 #include "common/driver/session.hpp"
+#include "common/driver/start_async.hpp"
 #include "common/driver/thread_state.hpp"
 #include "common/driver/triangulation_data.hpp"
 #include "common/output/renumber.hpp"
@@ -118,7 +119,7 @@ Triangulation to_host(const std::shared_ptr<Triangulator::State>& state, PointsV
                       SegmentJob* job = nullptr, SegmentResults* segments = nullptr) {
   auto result =
       run_to_host(state, points, {points.size(), is_host(*state->device), false, points.scalar_size()}, job, segments);
-  result->keep(points, keep);
+  give_points(*result, points, keep);
   return Triangulation(std::move(result));
 }
 
@@ -246,11 +247,11 @@ std::size_t Triangulator::triangulate(const DevicePoints& points, const DeviceAr
 }
 
 std::future<Triangulation> Triangulator::triangulate_async(PointsView points) {
-  return std::async(std::launch::async, [state = state_, points] { return to_host(state, points); });
+  return start_async([state = state_, points] { return to_host(state, points); });
 }
 
 std::future<DeviceTriangulation> Triangulator::triangulate_async(const DevicePoints& points) {
-  return std::async(std::launch::async, [state = state_, points] { return to_device(state, points); });
+  return start_async([state = state_, points] { return to_device(state, points); });
 }
 
 VerifyReport Triangulator::verify(const DevicePoints& points, const DeviceTriangulation& mesh,

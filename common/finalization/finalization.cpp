@@ -108,7 +108,14 @@ Hash128 hash_of(std::span<const std::uint64_t> ids, std::span<const std::int32_t
     throw std::invalid_argument("triangles have three points each, these have " + std::to_string(triangles.size()) +
                                 " in all");
   cadt_hash hash = {0, 0};
-  const auto id = [&](std::size_t i) { return ids[static_cast<std::size_t>(triangles[i])]; };
+  const auto id = [&](std::size_t i) {
+    const auto vertex = static_cast<std::size_t>(triangles[i]);
+    if (vertex >= ids.size())
+      throw std::invalid_argument("triangle " + std::to_string(i / 3) + " has the vertex " +
+                                  std::to_string(triangles[i]) + ", and there are ids of " +
+                                  std::to_string(ids.size()) + " points");
+    return ids[vertex];
+  };
   for (std::size_t i = 0; i < triangles.size(); i += 3) cadt_hash_add_triangle(&hash, id(i), id(i + 1), id(i + 2));
   for (const DuplicateId& d : duplicates) cadt_hash_add(&hash, CADT_HASH_DUPLICATE, d.point, d.representative, 0);
   return {hash.high, hash.low};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "common/points/device_points.hpp"
 #include "common/points/import.hpp"
 #include "common/queries/call.hpp"
+#include "common/verify/host/exact_sign.hpp"
 
 namespace cadt::finalization {
 
@@ -34,6 +36,24 @@ ScaledBox scaled(const TileBox& box, const Bounds& bounds) {
   const int exponent = extent > 0 ? -std::ilogb(extent) - 1 : 0;
   return {box, std::ldexp(1.0, exponent / 2), std::ldexp(1.0, exponent - exponent / 2)};
 }
+
+/// While this lives, what a call reports is its share of the node's work.
+class MeshProgress {
+ public:
+  explicit MeshProgress(Options& options) : options_(options), of_node_(options.progress) {
+    if (of_node_)
+      options_.progress = [this](const Progress& of_mesh) {
+        of_node_({of_mesh.phase, share_of_mesh * of_mesh.fraction});
+      };
+  }
+  ~MeshProgress() { options_.progress.swap(of_node_); }
+  MeshProgress(const MeshProgress&) = delete;
+  MeshProgress& operator=(const MeshProgress&) = delete;
+
+ private:
+  Options& options_;
+  std::function<void(const Progress&)> of_node_;
+};
 
 /// The node's open vertices without triangles: all distinct ones.
 std::vector<std::uint32_t> distinct_points(const Node& node) {
@@ -112,9 +132,10 @@ DeviceMeshView Node::view() const {
   return {data->points, mesh->triangles, mesh->neighbors, none, count, count, 0};
 }
 
-Call::Call(Triangulator::State& state, std::size_t points)
+Call::Call(Triangulator::State& state, std::size_t points, double done)
     : ctx(*state.device, state.memory, state.options, statistics) {
   begin_budget(state, points);
+  ctx.begin_share(done, 1 - done);
   ctx.check("finish", 0);
 }
 
@@ -125,6 +146,7 @@ Node open_node(Triangulator& triangulator, std::size_t points, const TileBox& bo
         "a tree has at most 2^24 nodes, and this one is number " + std::to_string(number) + ": take larger tiles",
         number, std::size_t{1} << node_bits);
   query::require_doubles(*triangulator.state()->device);
+  verifier::require_ieee_arithmetic();
   Node node;
   node.number = number;
   node.box = box;
@@ -152,6 +174,7 @@ void triangulate_node(Node& node) {
   DevicePoints points;
   points.x = data.points ? device.handle(*data.points) : nullptr;
   points.size = data.point_count;
+  const MeshProgress progress(data.state->options);
   node.mesh = triangulate_on_device(data.state, points);
 }
 
@@ -225,6 +248,7 @@ void add_sums(Call& call, Finished& finished, const Node& node, std::size_t cove
   const std::uint64_t outside = sums.hull_edges - covered_hull_edges;
   sums.certified_edges = (3 * sums.triangles - finished.rows.size() - outside) / 2 + certified_links;
   call.ctx.finish();
+  call.ctx.check("finish", 1);
   Statistics& statistics = finished.node.statistics = std::move(node.mesh->statistics);
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
   append(statistics.milliseconds, call.statistics.milliseconds);

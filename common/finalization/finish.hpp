@@ -58,9 +58,13 @@ struct Finished {
   Allocation ranks;            ///< numbers of open vertices, as a scan; null at the root and without triangles
 };
 
+/// Of the fractions that are reported: the mesh of a node is there at 0.8.
+inline constexpr double share_of_mesh = 0.8;
+
 /// One call: its options, statistics and context.
 struct Call {
-  Call(Triangulator::State& state, std::size_t points);
+  /// `done`: what part of the node's work is behind it, 0 or share_of_mesh.
+  Call(Triangulator::State& state, std::size_t points, double done);
   Statistics statistics;
   Context ctx;
 };

@@ -272,13 +272,13 @@ FinishedNode finish_join(Triangulator& triangulator, std::span<const Open> open,
   Allocation order;
   if (n != 0) {
     state.device->begin_call();
-    Call call(state, n);
+    Call call(state, n, 0);
     order = take_points(call.ctx, node, children);
   }
   triangulate_node(node);
   if (node.mesh->distinct != n)
     give_up(n - node.mesh->distinct, " open vertices of different tiles are equal: their boxes overlap");
-  Call call(state, n);
+  Call call(state, n, share_of_mesh);
   const bool flat = node.mesh->triangle_count == 0;
   if (flat && children.sides() != 0) give_up("children of collinear open vertices have final triangles");
   if (!flat) node.cover = find_cover(call.ctx, node, children, order);

@@ -55,14 +55,14 @@ FinishedNode finish(Node node, const Import& import) {
   Triangulator::State& state = *data.state;
   if (n != 0) {
     state.device->begin_call();
-    Call call(state, n);
+    Call call(state, n, 0);
     import(call.ctx);
     node.bounds = find_bounds(call.ctx, data.points, n, call.ctx.memory.allocate(CADT_ORDER_WORDS * word));
     require_in_box(node.bounds, node.box);
     require_ascending(call.ctx, data.ids, n);
   }
   triangulate_node(node);
-  Call call(state, n);
+  Call call(state, n, share_of_mesh);
   Finished finished = take_final(call, node);
   FinishedNode& result = finished.node;
   result.links.assign(finished.rows.size(), pending_triangle);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/points/device_points.hpp"
+#include "common/verify/host/exact_sign.hpp"
 
 namespace cadt::query {
 
@@ -40,6 +41,7 @@ namespace {
 /// 3 * triangle + k of the first constrained edge whose circles are not empty, or -1. It examines each edge from one
 /// side.
 std::int64_t first_not_delaunay(Context& ctx, const MeshIndex& mesh) {
+  verifier::require_ieee_arithmetic();
   Device& device = ctx.device;
   const std::vector<std::uint32_t> flags = device.read_values(*mesh.edge_flags, mesh.triangles),
                                    vertices = device.read_values(*mesh.vertices, 3 * mesh.triangles),

@@ -12,6 +12,7 @@
 #include "common/queries/interpolate.hpp"
 #include "common/queries/results.hpp"
 #include "common/queries/voronoi.hpp"
+#include "common/verify/host/exact_sign.hpp"
 
 namespace cadt {
 
@@ -54,6 +55,7 @@ void index(MeshQueries::State& state, PointsView points, std::span<const std::in
 
 /// \throws InvalidMesh
 void require_counterclockwise(PointsView points, std::span<const std::int32_t> triangles) {
+  verifier::require_ieee_arithmetic();
   for (std::size_t t = 0; 3 * t < triangles.size(); ++t) {
     const auto corner = [&](std::size_t k) {
       const auto v = static_cast<std::size_t>(triangles[3 * t + k]);

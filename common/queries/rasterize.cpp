@@ -114,9 +114,9 @@ void require_grid(const Grid& grid) {
   for (const double value : {grid.x0, grid.y0, grid.dx, grid.dy, right, top})
     if (!std::isfinite(value)) throw InputError("the grid has a corner or a cell that is not finite", 0);
   if (grid.dx == 0 || grid.dy == 0) throw InputError("the cells of the grid have no size: dx and dy must not be 0", 0);
-  if (grid.columns > most || grid.rows > most || (grid.columns != 0 && grid.rows > most / grid.columns)) {
+  if (grid.columns != 0 && grid.rows > most / grid.columns) {
     constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
-    const std::size_t count = grid.rows > all / std::max<std::size_t>(grid.columns, 1) ? all : grid.columns * grid.rows;
+    const std::size_t count = grid.rows > all / grid.columns ? all : grid.columns * grid.rows;
     throw LimitError("a raster has fewer than 2^31 cells: take larger ones, or several rasters", count, most);
   }
 }

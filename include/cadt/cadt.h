@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The library in C99, for programs and languages that do not speak C++ (docs/c.md has a complete program).
  *
- * Functions return a status; results go through pointers, which are set on CADT_OK alone. No exception leaves a
- * function. NULL for an argument that is needed is CADT_INVALID_ARGUMENT; "may be NULL" is said where it holds. After a
- * failure cadt_last_error tells this thread what happened. Indices are 0-based, triangles counterclockwise, -1 is
- * outside.
+ * Functions return a status; results go through pointers, which are set on CADT_OK alone (but for *count, below). No
+ * exception leaves a function. NULL for an argument that is needed is CADT_INVALID_ARGUMENT; "may be NULL" is said
+ * where it holds. After a failure cadt_last_error tells this thread what happened. Indices are 0-based, triangles
+ * counterclockwise, -1 is outside.
  *
  * Handles are made by the functions that take a pointer to one, and released by the ..._free function of their type,
  * which takes NULL as well. Arrays that a function points to belong to the handle and are valid until it is freed;
@@ -12,8 +12,8 @@
  * cadt_triangulator, and results in its device's memory, are used by one thread at a time.
  *
  * Functions that fill an array of the caller's take its capacity in elements and set *count to the number that there
- * are. With too little room they write nothing else and return CADT_BUFFER_TOO_SMALL; to ask for the number alone, give
- * NULL and 0. */
+ * are, also where they fail later. With too little room they write nothing else and return CADT_BUFFER_TOO_SMALL; to
+ * ask for the number alone, give NULL and 0. */
 #ifndef CADT_CADT_H
 #define CADT_CADT_H
 
@@ -92,7 +92,7 @@ typedef struct cadt_options {
   int32_t backend;          /* CADT_BACKEND_... */
   int32_t order;            /* CADT_ORDER_... */
   const char* device;       /* number or part of the name; may be NULL */
-  uint64_t max_memory;      /* bytes; 0: no limit */
+  uint64_t max_memory;      /* bytes; 0: no limit. Options::max_memory says which calls ask step by step */
   uint32_t threads;         /* 0: one for each core */
   int32_t keep_points;      /* CADT_KEEP_... */
   int32_t statistics;       /* CADT_STATISTICS_... */

@@ -120,7 +120,7 @@ CADT_API cadt_status cadt_constrained_verify(const cadt_constrained* mesh, const
                                              const cadt_constraint_options* constraints, cadt_report** report);
 
 /* All pairs of segments that cross, the lower index first, ascending: *count is the number of words, two a pair.
- * `threads`: 0 for all cores. */
+ * `threads`: 0 for all cores. CADT_LIMIT_ERROR if points and crossings are more than 32-bit indices allow. */
 CADT_API cadt_status cadt_find_crossings(const cadt_points* points, const int32_t* segments, size_t segment_count,
                                          uint32_t threads, int32_t* pairs, size_t capacity, size_t* count);
 

@@ -137,7 +137,7 @@ CADT_API void require_complete(const NodeSums& whole);
 /// Triangulation::hash of the mesh of all points in one call, from the sums over all nodes.
 [[nodiscard]] CADT_API Hash128 hash_of(const NodeSums& whole) noexcept;
 /// NodeSums::hash of a node, from its arrays: input indices of its points, triangles as in Part, and duplicates. O(n).
-/// \throws std::invalid_argument if the triangles have not three points each
+/// \throws std::invalid_argument if the triangles have not three points each, or one that has no input index
 [[nodiscard]] CADT_API Hash128 hash_of(std::span<const std::uint64_t> ids, std::span<const std::int32_t> triangles,
                                        std::span<const DuplicateId> duplicates);
 
@@ -166,10 +166,10 @@ struct DeviceIds {
 ///
 /// `ids`: input indices of the points, ascending; `node`: number of the node, below 2^24. Cost: that of the
 /// triangulation and about a tenth. Uses the triangulator as a call of its own would (thread-safety, options, device),
-/// and about 135 bytes of device memory a point in all; on the host points and ids are not copied, and must outlive the
-/// part. \throws as Triangulator::triangulate (InputError::index is the index within
-/// `points`), InputError for ids that do not ascend or a point outside of the box, BackendUnavailable for a device
-/// without double precision
+/// and about 135 bytes of device memory a point in all, which are asked for step by step (Options::max_memory); on the
+/// host points and ids are not copied, and must outlive the part. \throws as Triangulator::triangulate
+/// (InputError::index is the index within `points`), InputError for ids that do not ascend or a point outside of the
+/// box, BackendUnavailable for a device without double precision
 [[nodiscard]] CADT_API FinishedNode finish_leaf(Triangulator& triangulator, PointsView points,
                                                 std::span<const std::uint64_t> ids, const TileBox& box,
                                                 std::uint32_t node);

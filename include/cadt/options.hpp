@@ -131,14 +131,18 @@ struct Options {
   /// the first usable device, among those with double precision. Devices without (`DeviceInfo::fp64`) take float
   /// coordinates only: with doubles BackendUnavailable, with Strategy::stars OptionError.
   std::string device;
-  /// Host threads at most; 0: one for each core, 1: serial (the reference). Small sets are left to one of them.
+  /// Host threads at most; 0: one for each core, 1: serial (the reference). Small sets are left to one of them. Where
+  /// the system starts fewer, those do the work (Statistics::threads).
   /// With a GPU: those that copy large sets and results and make the pages of results.
   unsigned threads = 0;
   Order order = Order::canonical;
   /// For points of the host, and not for batches.
   KeepPoints keep_points = KeepPoints::no;
-  /// Limit of the device memory that the library holds, in bytes; 0: none. If a call needs more: OutOfMemory, before
-  /// any work. (Earlier results of a triangulator that still exist count as well.)
+  /// Limit of the device memory that the library holds, in bytes; 0: none. If a call needs more: OutOfMemory.
+  /// Triangulations, batches and polygons say before any work what all of it needs. Queries, verify_on_device,
+  /// Crossing::exact where segments cross, finish_leaf and finish_join keep to the limit step by step:
+  /// OutOfMemory::needed() is that of the first step that did not fit, and later ones may need more. (Earlier results
+  /// of a triangulator that still exist count as well.)
   std::size_t max_memory = 0;
   /// The caller's stream (a cudaStream_t, also a default stream) or in-order queue (a cl_command_queue): all work is
   /// enqueued there, on its device. Requires a named back end. It must outlive the triangulator and its results. Not

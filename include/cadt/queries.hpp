@@ -134,8 +134,8 @@ class CADT_API MeshQueries {
  public:
   /// A mesh of the host, and its points, which are not copied where the device can read them: they must live as long as
   /// this object, and must not change. `options` says where: backend, device, threads, queue, allocator, max_memory,
-  /// stop and progress are as for triangulate(). \throws InputError if the mesh has another number of points, and as
-  /// triangulate()
+  /// stop and progress are as for triangulate(); memory is asked for step by step. \throws InputError if the mesh has
+  /// another number of points, and as triangulate()
   MeshQueries(PointsView points, const Triangulation& mesh, const Options& options = {});
   /// The same with the points that the mesh has kept (Options::keep_points). \throws InputError if it has kept none
   explicit MeshQueries(const Triangulation& mesh, const Options& options = {});

@@ -71,7 +71,7 @@ struct VerifyOptions {
 /// to those of `verify`, as are the boundary and meshes without triangles. Missing neighbours are derived on the host
 /// first. On a device without double precision `verify` does all the work. `device` says where: backend, device,
 /// threads, max_memory, stop, progress (phase "verify"), tuning.work_group_size and tuning.grain are as for
-/// `triangulate`.
+/// `triangulate`; memory is asked for step by step (Options::max_memory).
 ///
 /// Throws InputError (NaN or infinity, with the index of the first), BackendUnavailable, OutOfMemory, DeviceError,
 /// KernelBuildError, Cancelled.
@@ -82,7 +82,8 @@ struct VerifyOptions {
 
 /// The predicates of the verifier of the host, exact for all finite doubles, for those who check more than `verify`
 /// does. They share no code with what triangulates points, and segments that do not cross. Thread-safe; a filter
-/// decides most in some nanoseconds.
+/// decides most in some nanoseconds. The thread must round to nearest and keep subnormal numbers, as threads do unless
+/// the program changes it (-ffast-math may): else signs may be wrong, and these functions do not look.
 ///
 /// Sign of the area of the triangle abc: 1 if counterclockwise, 0 if the points are on a line, else -1.
 [[nodiscard]] CADT_API int exact_orientation(const std::array<double, 2>& a, const std::array<double, 2>& b,

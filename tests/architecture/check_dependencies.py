@@ -51,7 +51,10 @@ EXCEPTIONS = {  # file -> headers of the verifier; docs/constrained.md and docs/
     "common/constraints/verify_segments.cpp": ["mesh.hpp"],  # the verifier of segments
     "common/driver/adopt.cpp": ["mesh.hpp"],  # the mesh of another program is verified
     "common/finalization/children.hpp": ["exact_sign.hpp"],  # certificates of edges between nodes
+    "common/finalization/finish.cpp": ["exact_sign.hpp"],  # whether arithmetic is IEEE
     "common/finalization/join.cpp": ["exact_sign.hpp", "parallel.hpp"],
+    "common/queries/call.cpp": ["exact_sign.hpp"],  # whether arithmetic is IEEE
+    "common/queries/queries.cpp": ["exact_sign.hpp"],  # whether arithmetic is IEEE
 }
 # One back end knows nothing of another.
 BACKENDS = ["host", "opencl", "cuda"]

@@ -77,6 +77,11 @@ using Sign = std::optional<int>;
 
 }  // namespace stage
 
+/// The predicates rely on IEEE 754 arithmetic. A process may have changed it, e.g. by loading code built for fast
+/// arithmetic; then no answer is better than a wrong one. Threads inherit the mode of the thread that starts them.
+/// \throws Error
+void require_ieee_arithmetic();
+
 /// Sign of the area of abc: positive if counterclockwise.
 [[nodiscard]] int orientation(const Point& a, const Point& b, const Point& c);
 

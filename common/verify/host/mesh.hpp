@@ -107,10 +107,6 @@ void conclude_delaunay(const Mesh& mesh, const Circles& circles, Check& delaunay
 [[noreturn]] void refuse_point(std::int64_t index);
 /// Why the sizes of the arrays do not fit together; empty if they do.
 [[nodiscard]] std::string size_error(PointsView points, const MeshView& view);
-/// The predicates rely on IEEE 754 arithmetic. A process may have changed it, e.g. by loading code built for fast
-/// arithmetic; then no verdict is better than a wrong one. Threads inherit the mode of the thread that starts them.
-/// \throws Error
-void require_ieee_arithmetic();
 /// What the library's own result promises beyond a bare mesh.
 void check_own_result(PointsView points, const Triangulation& mesh, VerifyReport& report);
 [[nodiscard]] MeshView view_of(const Triangulation& mesh);

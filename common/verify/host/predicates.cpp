@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// The predicates for callers.
+// The predicates for callers, and what they need of the thread.
 #include "exact_sign.hpp"
 
+#include <cadt/errors.hpp>
 #include <cadt/verify.hpp>
 
+#include <cfenv>
+#include <limits>
+
 namespace cadt {
+
+void verifier::require_ieee_arithmetic() {
+  volatile double smallest_normal = std::numeric_limits<double>::min(), half = 0.5;
+  volatile const double subnormal = smallest_normal * half;
+  if (std::fegetround() != FE_TONEAREST || subnormal == 0 || subnormal + subnormal != smallest_normal)
+    throw Error(
+        "exact answers need IEEE arithmetic on the calling thread: rounding to nearest, and subnormal numbers that are "
+        "not flushed to zero");
+}
 
 int exact_orientation(const std::array<double, 2>& a, const std::array<double, 2>& b,
                       const std::array<double, 2>& c) noexcept {

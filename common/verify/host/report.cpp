@@ -3,19 +3,10 @@
 #include "mesh.hpp"
 #include "outcome.hpp"
 
-#include <cfenv>
 #include <cmath>
 #include <limits>
 
 namespace cadt::verifier {
-
-void require_ieee_arithmetic() {
-  volatile double smallest_normal = std::numeric_limits<double>::min(), half = 0.5;
-  volatile const double subnormal = smallest_normal * half;
-  if (std::fegetround() != FE_TONEAREST || subnormal == 0 || subnormal + subnormal != smallest_normal)
-    throw Error(
-        "verify needs IEEE arithmetic: rounding to nearest, and subnormal numbers that are not flushed to zero");
-}
 
 void refuse_point(std::int64_t index) {
   throw InputError("point " + std::to_string(index) + " has a coordinate that is NaN or infinite",

@@ -7,6 +7,36 @@
 enum { n = 5 };
 static const double square[2 * n] = {0, 0, 4, 0, 4, 4, 0, 4, 2, 2};
 
+/* Who asks for a count alone hears what the call would refuse. */
+static void test_counts_alone(cadt_queries* queries, const cadt_points* asked) {
+  const double values[n] = {0};
+  const cadt_grid right = {0, 0, 1, 1, 4, 4}, none = {0, 0, 1, 1, 0, SIZE_MAX}, large = {0, 0, 1, 1, SIZE_MAX, 2},
+                  not_finite = {0, 0, NAN, 1, 4, 4};
+  cadt_points many = *asked;
+  size_t count = 7;
+
+  many.count = (size_t)1 << 30;
+  CHECK_STATUS(CADT_LIMIT_ERROR, cadt_queries_locate(queries, &many, NULL, 0, &count));
+  CHECK_STATUS(CADT_LIMIT_ERROR, cadt_queries_locate_barycentric(queries, &many, NULL, NULL, 0, &count));
+  CHECK_STATUS(CADT_LIMIT_ERROR, cadt_queries_nearest_vertices(queries, &many, 1, NULL, 0, &count));
+  CHECK_STATUS(CADT_OPTION_ERROR, cadt_queries_nearest_vertices(queries, asked, 0, NULL, 0, &count));
+  CHECK_STATUS(CADT_LIMIT_ERROR, cadt_queries_nearest_vertices(queries, asked, SIZE_MAX, NULL, 0, &count));
+  CHECK_STATUS(CADT_INPUT_ERROR,
+               cadt_queries_interpolate(queries, values, n - 1, asked, CADT_LINEAR, CADT_OUTSIDE_NAN, NULL, 0, &count));
+  CHECK_STATUS(CADT_INPUT_ERROR,
+               cadt_queries_rasterize(queries, &right, values, n - 1, CADT_LINEAR, INFINITY, NULL, 0, &count));
+  CHECK_STATUS(CADT_OPTION_ERROR,
+               cadt_queries_rasterize(queries, &right, values, n, CADT_LINEAR, NAN, NULL, 0, &count));
+  CHECK_STATUS(CADT_INPUT_ERROR,
+               cadt_queries_rasterize(queries, &not_finite, values, n, CADT_LINEAR, INFINITY, NULL, 0, &count));
+  CHECK_STATUS(CADT_LIMIT_ERROR,
+               cadt_queries_rasterize(queries, &large, values, n, CADT_LINEAR, INFINITY, NULL, 0, &count));
+  CHECK(last_error().needed > last_error().available && last_error().available > 1);
+  CHECK(count == 7);
+  CHECK_OK(cadt_queries_rasterize(queries, &none, values, n, CADT_LINEAR, INFINITY, NULL, 0, &count));
+  CHECK(count == 0);
+}
+
 static void test_answers(cadt_queries* queries) {
   const double where[] = {2, 1, 2, 2, 9, 9}, values[n] = {0, 4, 4, 0, 2}; /* x */
   const cadt_points asked = points_of(where, 3);
@@ -45,6 +75,7 @@ static void test_answers(cadt_queries* queries) {
   CHECK_STATUS(CADT_INPUT_ERROR,
                cadt_queries_interpolate(queries, values, n - 1, &asked, CADT_LINEAR, CADT_OUTSIDE_NAN, results, 3, &count));
   CHECK_STATUS(CADT_OPTION_ERROR, cadt_queries_nearest_vertices(queries, &asked, 0, nearest, 6, &count));
+  test_counts_alone(queries, &asked);
   CHECK_NULL(cadt_queries_locate(NULL, &asked, triangles, 3, &count), "queries");
   CHECK_NULL(cadt_queries_locate(queries, &asked, triangles, 3, NULL), "count");
   CHECK_NULL(cadt_queries_rasterize(queries, NULL, values, n, CADT_LINEAR, INFINITY, cells, 16, &count), "grid");

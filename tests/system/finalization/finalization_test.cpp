@@ -4,6 +4,7 @@
 #include <cadt/finalization.hpp>
 
 #include <algorithm>
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -133,6 +134,59 @@ TEST_P(Finalization, RefusesWhatCannotBe) {
   EXPECT_THROW((void)finish_leaf(triangulator, std::span<const double>(xy), ids, box, 1u << 24), LimitError);
   const std::vector<std::int32_t> part = {0, 1};
   EXPECT_THROW((void)hash_of(ids, part, {}), std::invalid_argument);
+  for (const std::int32_t wrong : {3, -1, std::numeric_limits<std::int32_t>::max()})
+    EXPECT_THROW((void)hash_of(ids, std::vector<std::int32_t>{0, 1, wrong}, {}), std::invalid_argument) << wrong;
+}
+
+/// Whatever the device's arithmetic is: sides are examined on the host.
+TEST_P(Finalization, RefusesOtherArithmetic) {
+  Triangulator triangulator(GetParam().options());
+  const Points xy = {0, 0, 1, 0, 0, 1};
+  const std::vector<std::uint64_t> ids = {1, 2, 3};
+  const int before = std::fegetround();
+  ASSERT_EQ(std::fesetround(FE_UPWARD), 0);
+  EXPECT_THROW((void)finish_leaf(triangulator, std::span<const double>(xy), ids, TileBox{0, 0, 2, 2}, 0), Error);
+  EXPECT_THROW((void)finish_join(triangulator, {}, TileBox{}, 0), Error);
+  std::fesetround(before);
+}
+
+TEST_P(Finalization, ProgressNeverFalls) {
+  Triangulator triangulator(GetParam().options());
+  std::vector<double> told;
+  triangulator.options().progress = [&](const Progress& progress) { told.push_back(progress.fraction); };
+  const auto expect_progress = [&](std::size_t fewest) {
+    ASSERT_GE(told.size(), fewest);
+    EXPECT_TRUE(std::ranges::is_sorted(told)) << testing::PrintToString(told);
+    EXPECT_GE(told.front(), 0);
+    EXPECT_EQ(told.back(), 1);
+    told.clear();
+  };
+  const Points all = uniform_points(6000, 5);
+  Points halves[2];
+  std::vector<std::uint64_t> ids[2];
+  double middle = 0;
+  for (std::size_t i = 0; i < all.size(); i += 2) middle += 2 * all[i] / static_cast<double>(all.size());
+  for (std::size_t i = 0; i < all.size(); i += 2) {
+    const int side = all[i] < middle ? 0 : 1;
+    halves[side].insert(halves[side].end(), {all[i], all[i + 1]});
+    ids[side].push_back(i / 2);
+  }
+  TileBox boxes[2];
+  boxes[0].max_x = boxes[1].min_x = middle;
+  std::vector<Open> open;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const auto number = static_cast<std::uint32_t>(side);
+    open.push_back(
+        finish_leaf(triangulator, std::span<const double>(halves[side]), ids[side], boxes[side], number).open);
+    expect_progress(5);
+  }
+  (void)finish_join(triangulator, open, TileBox{}, 2);
+  expect_progress(5);
+  (void)finish_leaf(triangulator, PointsView(), {}, boxes[0], 3);
+  expect_progress(1);
+  EXPECT_TRUE(triangulator.options().progress) << "it is the caller's again";
+  (void)triangulator.triangulate(std::span<const double>(all));
+  expect_progress(5);
 }
 
 /// A join that is told something wrong finds it.

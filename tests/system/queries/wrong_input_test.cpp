@@ -66,6 +66,10 @@ TEST_P(WrongInput, Grids) {
                            Grid{0, 0, 1, 0, 2, 2}, Grid{0, 0, 1e308, 1, 5, 2}})
     EXPECT_THROW((void)queries.rasterize(grid, values), InputError);
   EXPECT_THROW((void)queries.rasterize({0, 0, 1, 1, 1u << 16, 1u << 16}, values), LimitError);
+  constexpr std::size_t most = std::numeric_limits<std::size_t>::max();
+  EXPECT_THROW((void)queries.rasterize({0, 0, 1, 1, most, 1}, values), LimitError);
+  EXPECT_TRUE(queries.rasterize({0, 0, 1, 1, 0, most}, values).empty());
+  EXPECT_TRUE(queries.rasterize({0, 0, 1, 1, most, 0}, values).empty());
   EXPECT_THROW((void)queries.rasterize({0, 0, 1, 1, 2, 2}, values, Interpolation::linear, std::nan("")), OptionError);
   EXPECT_THROW((void)queries.rasterize({0, 0, 1, 1, 2, 2}, values, Interpolation::linear, -1), OptionError);
   EXPECT_TRUE(queries.rasterize({0, 0, 1, 1, 0, 2}, values).empty());

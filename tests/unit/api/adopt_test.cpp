@@ -3,6 +3,7 @@
 #include "tests/unit/api/meshes.hpp"
 
 #include <algorithm>
+#include <cfenv>
 #include <limits>
 #include <string>
 
@@ -31,6 +32,17 @@ TEST(Adopt, WhatTheLibraryMakes) {
     expect_equal(believed, mesh);
     EXPECT_TRUE(verify(xy, believed).ok);
   });
+}
+
+TEST(Adopt, NothingWithoutIeeeArithmetic) {
+  const Points xy = {0, 0, 1, 0, 0, 1};
+  const Words triangles = {0, 1, 2};
+  const int before = std::fegetround();
+  for (const Trust trust : {Trust::verify, Trust::geometry}) {
+    ASSERT_EQ(std::fesetround(FE_UPWARD), 0);
+    EXPECT_THROW((void)Triangulation::adopt(xy, triangles, {}, trust), Error);
+    std::fesetround(before);
+  }
 }
 
 /// The check that refuses a mesh, and where; "none" if it is adopted.

@@ -6,12 +6,18 @@
 
 #include <gtest/gtest.h>
 
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
 #include <algorithm>
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
 #include <random>
+#include <string>
 
 namespace cadt::test {
 namespace {
@@ -53,6 +59,35 @@ TEST(Crossings, APointAtTheCrossingTakesItAway) {
   // a crossing at (1/3, 1/3), which no double is
   const std::vector<double> third = {0, 0, 1, 1, 1, -1, 0, 1, 1.0 / 3, 1.0 / 3};
   EXPECT_EQ(find_crossings(third, segments).size(), 1U);
+}
+
+/// Neither in another rounding nor where tiny numbers are 0: there they would be missed.
+TEST(Crossings, NoAnswerWithoutIeeeArithmetic) {
+  const std::vector<double> tiny = {0, 0, 15e-324, 15e-324, 0, 15e-324, 15e-324, 0};
+  const std::vector<Segment> segments = {{0, 1}, {2, 3}};
+  const auto refused = [&] {
+    try {
+      (void)find_crossings(tiny, segments, 1);
+      return std::string();
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+  };
+  const int before = std::fegetround();
+  ASSERT_EQ(std::fesetround(FE_TOWARDZERO), 0);
+  const std::string rounded = refused();
+  std::fesetround(before);
+  EXPECT_NE(rounded.find("IEEE"), std::string::npos) << rounded;
+#ifdef __SSE2__
+  const unsigned mode = _mm_getcsr();
+  for (const unsigned flag : {0x8000U, 0x0040U}) {  // flush to zero, denormals are zero
+    _mm_setcsr(mode | flag);
+    const std::string flushed = refused();
+    _mm_setcsr(mode);
+    EXPECT_NE(flushed.find("IEEE"), std::string::npos) << flag;
+  }
+#endif
+  EXPECT_EQ(find_crossings(tiny, segments, 1).size(), 1U);
 }
 
 TEST(Crossings, OrderAndDirectionDoNotMatter) {

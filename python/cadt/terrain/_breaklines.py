@@ -16,7 +16,7 @@ from cadt._wkb import LINE, MULTILINE, MULTIPOLYGON, POLYGON, lines_of_wkb
 from ._files import check_input, suffix_of, why
 from ._mesh import triangulate
 from ._progress import ProgressLine
-from ._vector import _pyogrio, parse_crs
+from ._vector import _pyogrio, errors_of, name_for_ogr, parse_crs
 from .cloud import Cloud, name_of, same_crs
 from .errors import CrsError, FileError, UsageError
 
@@ -50,13 +50,16 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
     """Lines and the outlines of polygons of one file, in the reference system of the points; `asked`: --crs."""
     ogr = _pyogrio(f"reading {path}")
     try:
-        layers = ogr.list_layers(path)
+        name = name_for_ogr(path)
+        layers = ogr.list_layers(name)
         if len(layers) > 1:
             names = ", ".join(str(name) for name in layers[:, 0])
             raise FileError(path, f"has several layers ({names}); export one of them to a file of its own")
-        about, _, geometry, _ = ogr.raw.read(path, columns=[])
-    except (ogr.errors.DataSourceError, ogr.errors.FeatureError, ogr.errors.DataLayerError) as error:
+        about, _, geometry, _ = ogr.raw.read(name, columns=[])
+    except errors_of(ogr) as error:
         raise FileError(path, f"cannot be read: {why(error)}") from error
+    if geometry is None:
+        raise FileError(path, "has attributes alone, and no lines")
     if asked is None:
         crs = parse_crs(path, about["crs"])
         if not same_crs(crs, cloud.crs):
@@ -152,7 +155,10 @@ def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:
     (ux, uy), (vx, vy), (wx, wy) = b - a, d - c, c - a
     x, y = a + (b - a) * (wx * vy - wy * vx) / (ux * vy - uy * vx)
     more = f", and so do {len(pairs) - 1} more pairs of segments" if len(pairs) > 1 else ""
+    who = f"feature {of[0]} (counted from 0) crosses itself"
+    if of[0] != of[1]:
+        who = f"lines of the features {of[0]} and {of[1]} (counted from 0) cross"
     return (
-        f"lines of the features {of[0]} and {of[1]} (counted from 0) cross at {x:.12g} {y:.12g}{more}; "
+        f"{who} at {x:.12g} {y:.12g}{more}; "
         "breaklines may touch, but have one height at each place: divide or remove them"
     )

@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._files import Room, complete_file, why
+from ._files import Room, check_utf8, complete_file, why
 from .errors import CrsError, FileError, Unavailable, UsageError
 
 if TYPE_CHECKING:
     import pyproj
 
 CHUNK = 1 << 18  # features read at a time: each is a Python object
+NUMBERS = ("integer", "floating", "mixed-integer-float", "decimal")  # as pandas calls them
 DRIVERS = {"gpkg": "GPKG", "geojson": "GeoJSON", "fgb": "FlatGeobuf"}
 
 
@@ -25,6 +27,33 @@ def _pyogrio(what: str) -> Any:
     except ImportError as error:
         raise Unavailable(what, "pyogrio") from error
     return pyogrio
+
+
+def errors_of(ogr: Any) -> tuple[type[Exception], ...]:
+    """All that pyogrio raises."""
+    errors = ogr.errors
+    return errors.DataSourceError, errors.DataLayerError, errors.FeatureError
+
+
+def name_for_ogr(path: str, file: str | None = None) -> str:
+    """The name by which pyogrio finds a file, `path` unless it is another one that stands for it.
+
+    Raises
+    ------
+    FileError
+        There is none: pyogrio takes what is after `!` or `;`, and names with tabs and line breaks, for another file.
+    """
+    check_utf8(path)
+    name = os.path.join(os.getcwd(), path if file is None else file)  # none of a URL's parts is at its beginning
+    if name.startswith("//"):
+        name = "/" + name.lstrip("/")
+    try:
+        from pyogrio.util import vsi_path
+    except ImportError:
+        return name
+    if vsi_path(name) != name:
+        raise FileError(path, "GDAL takes this name for another one; use none with !, ;, tabs or line breaks")
+    return name
 
 
 def parse_crs(path: str, text: object) -> pyproj.CRS | None:
@@ -79,14 +108,17 @@ class OgrSource:
         self.path = path
         self._values = values
         self._ogr = _pyogrio(f"reading {path}")
+        self._name = name_for_ogr(path)
         try:
-            layers = self._ogr.list_layers(path)
+            layers = self._ogr.list_layers(self._name)
             if len(layers) > 1:
                 names = ", ".join(str(name) for name in layers[:, 0])
                 raise FileError(path, f"has several layers ({names}); export one of them to a file of its own")
-            info = self._ogr.read_info(path, force_feature_count=True)
-        except self._ogr.errors.DataSourceError as error:
+            info = self._ogr.read_info(self._name, force_feature_count=True)
+        except errors_of(self._ogr) as error:
             raise FileError(path, f"cannot be read: {why(error)}") from error
+        if info["geometry_type"] is None:
+            raise FileError(path, "has attributes alone, and no points")
         self.count = int(info["features"])
         self.crs = parse_crs(path, info["crs"]) if with_crs else None
         fields = [str(name) for name in info["fields"]]
@@ -99,9 +131,9 @@ class OgrSource:
         while done < self.count:
             try:
                 _, _, geometry, fields = self._ogr.raw.read(
-                    self.path, columns=columns, skip_features=done, max_features=CHUNK
+                    self._name, columns=columns, skip_features=done, max_features=CHUNK
                 )
-            except (self._ogr.errors.DataSourceError, self._ogr.errors.FeatureError) as error:
+            except errors_of(self._ogr) as error:
                 raise FileError(self.path, f"cannot be read: {why(error)}") from error
             if len(geometry) == 0:
                 break
@@ -109,11 +141,15 @@ class OgrSource:
             xy, z = room(len(points))
             xy[:] = points[:, :2]
             if columns and fields[0].dtype.kind not in "iuf":
-                raise FileError(self.path, f"the attribute {columns[0]} is no number: --values names one that is")
+                raise _no_number(self.path, columns[0])
             z[:] = fields[0] if columns else points[:, 2]
             check_values(self.path, z, self._values, done)
             done += len(points)
             step(done)
+
+
+def _no_number(path: str, attribute: str) -> FileError:
+    return FileError(path, f"the attribute {attribute} is no number: --values names one that is")
 
 
 class ParquetSource:
@@ -122,6 +158,7 @@ class ParquetSource:
     def __init__(self, path: str, values: str, with_crs: bool) -> None:
         try:
             import geopandas
+            import pandas
             import pyarrow  # noqa: F401  geopandas finds it out late
             import shapely
         except ImportError as error:
@@ -139,7 +176,11 @@ class ParquetSource:
                 f"--values {values}: {path} has no such column; it has: {', '.join(map(str, frame.columns))}"
             )
         self._geometry = np.asarray(shapely.to_wkb(frame.geometry.values, byte_order=1), dtype=object)
-        self._column = None if values == "z" else np.asarray(frame[values], dtype=float)
+        self._column = None
+        if values != "z":
+            if pandas.api.types.infer_dtype(frame[values]) not in NUMBERS:
+                raise _no_number(path, values)
+            self._column = frame[values].to_numpy(dtype=float, na_value=np.nan)
 
     def read(self, room: Room, step: Callable[[int], None]) -> None:
         points = _coordinates(self.path, self._geometry, 0)
@@ -160,6 +201,12 @@ def check_values(path: str, z: NDArray[np.float64], name: str, first: int, rows:
         raise FileError(path, f"point {number} (counted from 0) has {what}; name an attribute with --values")
 
 
+def check_features(path: str) -> None:
+    """What can be known to be wrong about an output of `write_features`, before any work."""
+    _pyogrio(f"writing {path}")
+    name_for_ogr(path, os.path.realpath(path))
+
+
 def write_features(
     path: str,
     geometry: NDArray[np.object_],
@@ -174,6 +221,7 @@ def write_features(
     suffix = path.rsplit(".", 1)[-1].lower()
     try:
         with complete_file(path) as name:
+            name = name_for_ogr(path, name)
             ogr.raw.write(
                 name,
                 geometry,
@@ -184,5 +232,19 @@ def write_features(
                 crs=None if crs is None else crs.to_wkt(),
                 layer=layer,  # in GeoJSON, too, whose default is the name of the temporary file
             )
-    except (ogr.errors.DataSourceError, ogr.errors.FeatureError) as error:
+            if not _is_complete(ogr, name, suffix, len(geometry)):
+                raise FileError(path, "cannot be written: the file is not complete")
+    except errors_of(ogr) as error:
         raise FileError(path, f"cannot be written: {why(error)}") from error
+
+
+def _is_complete(ogr: Any, name: str, suffix: str, count: int) -> bool:
+    """Whether the last feature is in a file, and what follows it: GDAL does not say of all formats that a disk was full."""
+    try:
+        _, _, last, _ = ogr.raw.read(name, columns=[], skip_features=max(count - 1, 0), max_features=1)
+    except ValueError:  # fewer
+        return False
+    with open(name, "rb") as file:
+        file.seek(max(os.path.getsize(name) - 64, 0))
+        ended = suffix != "geojson" or file.read().rstrip().endswith(b"}")
+    return ended and len(last) == min(count, 1)

@@ -21,14 +21,18 @@ constexpr std::size_t cells_at_a_time = std::size_t{1} << 24;  // where each is 
 /// CADT_RASTER_PARAMETERS
 struct RasterArguments {
   Grid grid;
+  double first_x = static_cast<double>(grid.first_column), first_y = static_cast<double>(grid.first_row);
   std::uint32_t columns = static_cast<std::uint32_t>(grid.columns), rows = static_cast<std::uint32_t>(grid.rows);
-  [[nodiscard]] auto arguments() const { return std::tie(grid.x0, grid.y0, grid.dx, grid.dy, columns, rows); }
+  [[nodiscard]] auto arguments() const {
+    return std::tie(grid.x0, grid.y0, grid.dx, grid.dy, first_x, first_y, columns, rows);
+  }
 };
 
-/// Exponents of all centres, as those of a point in Bounds: of origin + (i + 0.5) step, rounded twice.
-void add_exponents(Bounds& bounds, double origin, double step, std::size_t count) {
+/// Exponents of all centres, as those of a point in Bounds: of origin + (i + 0.5) step with i below `end`, rounded
+/// twice.
+void add_exponents(Bounds& bounds, double origin, double step, std::size_t end) {
   constexpr int mantissa = std::numeric_limits<double>::digits;
-  const double last = origin + (static_cast<double>(count) - 0.5) * step;
+  const double last = origin + (static_cast<double>(end) - 0.5) * step;
   for (const double value : {origin, 0.5 * step, last})
     if (value != 0) bounds.high = std::max(bounds.high, std::ilogb(value) + 1);
   for (const double value : {origin, 0.5 * step})
@@ -37,8 +41,8 @@ void add_exponents(Bounds& bounds, double origin, double step, std::size_t count
 
 Bounds bounds_of_centers(const Grid& grid) {
   Bounds bounds;
-  add_exponents(bounds, grid.x0, grid.dx, grid.columns);
-  add_exponents(bounds, grid.y0, grid.dy, grid.rows);
+  add_exponents(bounds, grid.x0, grid.dx, grid.first_column + grid.columns);
+  add_exponents(bounds, grid.y0, grid.dy, grid.first_row + grid.rows);
   // Centres that are rounded to subnormal numbers are not the scaled ones: they need the wide kernels, which do not
   // scale.
   constexpr int lowest = std::numeric_limits<double>::min_exponent - std::numeric_limits<double>::digits;
@@ -109,8 +113,12 @@ void query_cells(Context& ctx, MeshIndex& mesh, const Grid& grid, const Allocati
 
 void require_grid(const Grid& grid) {
   constexpr std::size_t most = max_results();
-  const double right = grid.x0 + (static_cast<double>(grid.columns) + 1) * grid.dx;
-  const double top = grid.y0 + (static_cast<double>(grid.rows) + 1) * grid.dy;
+  constexpr double exact = 2251799813685248.0;  // 2^51
+  const auto first_column = static_cast<double>(grid.first_column), first_row = static_cast<double>(grid.first_row);
+  if (first_column > exact || first_row > exact)
+    throw InputError("a grid has at most 2^51 cells before its first one", 0);
+  const double right = grid.x0 + (first_column + static_cast<double>(grid.columns) + 1) * grid.dx;
+  const double top = grid.y0 + (first_row + static_cast<double>(grid.rows) + 1) * grid.dy;
   for (const double value : {grid.x0, grid.y0, grid.dx, grid.dy, right, top})
     if (!std::isfinite(value)) throw InputError("the grid has a corner or a cell that is not finite", 0);
   if (grid.dx == 0 || grid.dy == 0) throw InputError("the cells of the grid have no size: dx and dy must not be 0", 0);

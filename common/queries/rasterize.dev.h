@@ -18,44 +18,49 @@
 #include "common/portable/atomics.dev.h"
 #include "common/queries/interpolate.dev.h"
 
-/* Cell (column i, row j) has its centre at x0 + (i + 0.5) dx, y0 + (j + 0.5) dy. Kernels that draw take a raster that
- * is scaled like the points: powers of two change no rounding, so the centres are those of cadt_cell_centers, scaled.
+/* Cell (column i, row j) has its centre at x0 + (first_x + i + 0.5) dx, y0 + (first_y + j + 0.5) dy; the sums in
+ * parentheses are exact. Kernels that draw take a raster that is scaled like the points: powers of two change no
+ * rounding, so the centres are those of cadt_cell_centers, scaled.
  */
 typedef struct {
-  cadt_real x0, y0, dx, dy;
+  cadt_real x0, y0, dx, dy, first_x, first_y;
   cadt_u32 columns, rows;
 } cadt_raster;
-#define CADT_RASTER_PARAMETERS \
-  cadt_real raster_x0, cadt_real raster_y0, cadt_real raster_dx, cadt_real raster_dy, cadt_u32 columns, cadt_u32 rows
-#define CADT_RASTER(raster) const cadt_raster raster = {raster_x0, raster_y0, raster_dx, raster_dy, columns, rows}
+#define CADT_RASTER_PARAMETERS                                                                           \
+  cadt_real raster_x0, cadt_real raster_y0, cadt_real raster_dx, cadt_real raster_dy, cadt_real first_x, \
+      cadt_real first_y, cadt_u32 columns, cadt_u32 rows
+#define CADT_RASTER(raster) \
+  const cadt_raster raster = {raster_x0, raster_y0, raster_dx, raster_dy, first_x, first_y, columns, rows}
 
 enum { CADT_RASTER_SMALL = 64 /* cells of a bounding box that its triangle's work-item goes through by itself */ };
 
 CADT_FN cadt_real cadt_cell_x(const cadt_raster* r, cadt_u32 i) {
-  return r->x0 + (CADT_CAST(cadt_real, i) + 0.5) * r->dx;
+  return r->x0 + (CADT_CAST(cadt_real, i) + r->first_x + 0.5) * r->dx;
 }
 CADT_FN cadt_real cadt_cell_y(const cadt_raster* r, cadt_u32 j) {
-  return r->y0 + (CADT_CAST(cadt_real, j) + 0.5) * r->dy;
+  return r->y0 + (CADT_CAST(cadt_real, j) + r->first_y + 0.5) * r->dy;
 }
 
 /* The cells of an axis whose centres may lie between `low` and `high`, `first` to one before `end`: cell i has its
- * centre at origin + (i + 0.5) step. Rounding moves an end by less than `slack`. */
+ * centre at origin + (before + i + 0.5) step. Rounding moves an end by less than `slack`. */
 typedef struct {
   cadt_u32 first, end;
 } cadt_cells;
 CADT_FN cadt_u32 cadt_clamped_cell(cadt_real x, cadt_u32 count) {
   return x > 0.0 ? (x < CADT_CAST(cadt_real, count) ? CADT_CAST(cadt_u32, x) : count) : 0u;
 }
-CADT_FN cadt_cells cadt_cells_between(cadt_real origin, cadt_real step, cadt_u32 count, cadt_real low, cadt_real high) {
+CADT_FN cadt_cells cadt_cells_between(cadt_real origin, cadt_real step, cadt_real before, cadt_u32 count, cadt_real low,
+                                      cadt_real high) {
 #if CADT_WIDE /* the inverse of a subnormal number may overflow */
-  const cadt_real start = origin / step, a = low / step - start, b = high / step - start;
+  const cadt_real start = origin / step + before, a = low / step - start, b = high / step - start;
 #else
-  const cadt_real inverse = 1.0 / step, start = origin * inverse, a = low * inverse - start, b = high * inverse - start;
+  const cadt_real inverse = 1.0 / step, start = origin * inverse + before, a = low * inverse - start,
+                  b = high * inverse - start;
 #endif
   const cadt_cells all = {0u, count};
   if (a - a != 0.0 || b - b != 0.0) return all; /* has overflowed: anywhere */
   const cadt_real from = a < b ? a : b, to = a < b ? b : a;
-  cadt_real slack = 1e-14 * (cadt_fabs(start) + CADT_CAST(cadt_real, count));
+  cadt_real slack = 1e-14 * (cadt_fabs(start) + before + CADT_CAST(cadt_real, count));
 #if CADT_WIDE /* a centre that is a subnormal number is rounded by half a step at most */
   slack += 1.0;
 #endif
@@ -125,7 +130,7 @@ CADT_FN cadt_u32 cadt_longer_than(const cadt_drawn* d, cadt_real most) {
                                                                                                                   : 0u;
 }
 CADT_FN cadt_cells cadt_rows_of(const cadt_raster* r, const cadt_drawn* d) {
-  return cadt_cells_between(r->y0, r->dy, r->rows, cadt_least(d->a.y, d->b.y, d->c.y),
+  return cadt_cells_between(r->y0, r->dy, r->first_y, r->rows, cadt_least(d->a.y, d->b.y, d->c.y),
                             cadt_most(d->a.y, d->b.y, d->c.y));
 }
 
@@ -140,8 +145,8 @@ CADT_KERNEL(cadt_draw_small, CADT_QUERY_MESH_PARAMETERS, CADT_GLOBAL const cadt_
     if (max_edge < CADT_INFINITY && cadt_longer_than(&d, max_edge)) continue;
     const cadt_cells over = cadt_rows_of(&raster, &d);
     if (over.first >= over.end) continue;
-    const cadt_cells along = cadt_cells_between(raster.x0, raster.dx, raster.columns, cadt_least(d.a.x, d.b.x, d.c.x),
-                                                cadt_most(d.a.x, d.b.x, d.c.x));
+    const cadt_cells along = cadt_cells_between(raster.x0, raster.dx, raster.first_x, raster.columns,
+                                                cadt_least(d.a.x, d.b.x, d.c.x), cadt_most(d.a.x, d.b.x, d.c.x));
     if (along.first >= along.end) continue;
     if (CADT_CAST(cadt_u64, over.end - over.first) * (along.end - along.first) >
         CADT_CAST(cadt_u64, CADT_RASTER_SMALL)) {
@@ -187,7 +192,7 @@ CADT_FN cadt_cells cadt_span_of_row(const cadt_raster* r, const cadt_drawn* d, c
   cadt_meet_edge(d->a, d->b, y - dy, y + dy, &low, &high);
   cadt_meet_edge(d->b, d->c, y - dy, y + dy, &low, &high);
   cadt_meet_edge(d->c, d->a, y - dy, y + dy, &low, &high);
-  return low <= high ? cadt_cells_between(r->x0, r->dx, r->columns, low, high) : none;
+  return low <= high ? cadt_cells_between(r->x0, r->dx, r->first_x, r->columns, low, high) : none;
 }
 
 /* One row of a listed triangle a work-item; `first_row`: scanned. */

@@ -42,11 +42,13 @@ enum class Outside {
 
 /// A grid of columns x rows cells. Cell (column i, row j) has its centre at x0 + (i + 0.5) dx, y0 + (j + 0.5) dy, and
 /// is element j * columns + i of a raster. For images and GIS formats, whose first row is the top one, y0 is the top
-/// edge and dy is negative.
+/// edge and dy is negative. A part of a larger grid has the corner and the cell size of that one and says which of its
+/// cells come first: centres are then the same doubles, whatever the parts are.
 struct Grid {
   double x0 = 0, y0 = 0;  ///< a corner of the grid
   double dx = 1, dy = 1;  ///< width and height of a cell; not 0
   std::size_t columns = 0, rows = 0;
+  std::size_t first_column = 0, first_row = 0;  ///< centres are at x0 + (first_column + i + 0.5) dx, and so on
   [[nodiscard]] std::size_t cells() const noexcept { return columns * rows; }
 };
 

@@ -22,9 +22,10 @@ namespace {
 void write_asc(AtomicFile& out, const std::string& path, const Grid& grid, std::span<const double> cells,
                double nodata) {
   if (grid.dx != -grid.dy) throw FileError(path, 0, "the cells of an .asc are square, with the top row first");
-  const double bottom = grid.y0 + grid.dy * static_cast<double>(grid.rows);
+  const double left = grid.x0 + grid.dx * static_cast<double>(grid.first_column);
+  const double bottom = grid.y0 + grid.dy * static_cast<double>(grid.first_row + grid.rows);
   out.write(fmt::format("ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\ncellsize {}\nNODATA_value {}\n", grid.columns,
-                        grid.rows, grid.x0, bottom, grid.dx, nodata));
+                        grid.rows, left, bottom, grid.dx, nodata));
   std::size_t in_row = 0;
   for (const double value : cells) {
     if (value == nodata) {

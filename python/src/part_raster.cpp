@@ -23,13 +23,14 @@ struct Rim {
   std::vector<std::int32_t> edges;      // n x 2 points: the ends of the edge, or twice the vertex at the centre
 };
 
-/// Cell i of an axis has its centre at origin + (i + 0.5) step, as in the library's rasters.
+/// Cell i of an axis has its centre at origin + (first + i + 0.5) step, as in the library's rasters.
 struct Axis {
   double origin, step;
   std::int64_t count;
-  [[nodiscard]] double center(std::int64_t i) const { return origin + (static_cast<double>(i) + 0.5) * step; }
+  double first = 0;
+  [[nodiscard]] double center(std::int64_t i) const { return origin + (static_cast<double>(i) + first + 0.5) * step; }
   [[nodiscard]] std::int64_t cell(double x) const {
-    const double at = (x - origin) / step;
+    const double at = (x - origin) / step - first;
     if (!(at > -2)) return -2;  // or not a number
     return at < static_cast<double>(count) + 2 ? static_cast<std::int64_t>(std::floor(at)) : count + 2;
   }
@@ -64,8 +65,8 @@ class PartRaster {
   }
 
   NumpyArray<double> rasterize(const Corners& grid, std::size_t columns, std::size_t rows, const Heights& values,
-                               double max_edge) {
-    const cadt::Grid cells{grid[0], grid[1], grid[2], grid[3], columns, rows};
+                               double max_edge, std::size_t first_column, std::size_t first_row) {
+    const cadt::Grid cells{grid[0], grid[1], grid[2], grid[3], columns, rows, first_column, first_row};
     const nb::object none = nb::none();
     return array_of(
         Call(none)(
@@ -106,9 +107,10 @@ class PartRaster {
   }
 
   /// The cells whose centres lie on the rim of the part, where other parts may have triangles, too. Exact.
-  nb::tuple rim(const Corners& grid, std::size_t columns, std::size_t rows) const {
-    const Axis x{grid[0], grid[2], static_cast<std::int64_t>(columns)};
-    const Axis y{grid[1], grid[3], static_cast<std::int64_t>(rows)};
+  nb::tuple rim(const Corners& grid, std::size_t columns, std::size_t rows, std::size_t first_column,
+                std::size_t first_row) const {
+    const Axis x{grid[0], grid[2], static_cast<std::int64_t>(columns), static_cast<double>(first_column)};
+    const Axis y{grid[1], grid[3], static_cast<std::int64_t>(rows), static_cast<double>(first_row)};
     Rim found;
     {
       const ReleasedGil released;
@@ -175,9 +177,10 @@ void bind_part_raster(nb::module_& m) {
       .def(nb::init<const Vertices&, const Indices&, const Indices&, const cadt::Options&>(), nb::arg("points"),
            nb::arg("triangles"), nb::arg("neighbors"), nb::arg("options"))
       .def("rasterize", &PartRaster::rasterize, nb::arg("grid"), nb::arg("columns"), nb::arg("rows"), nb::arg("values"),
-           nb::arg("max_edge"))
+           nb::arg("max_edge"), nb::arg("first_column") = 0, nb::arg("first_row") = 0)
       .def("blocks", &PartRaster::blocks, nb::arg("grid"), nb::arg("columns"), nb::arg("rows"), nb::arg("side"))
-      .def("rim", &PartRaster::rim, nb::arg("grid"), nb::arg("columns"), nb::arg("rows"));
+      .def("rim", &PartRaster::rim, nb::arg("grid"), nb::arg("columns"), nb::arg("rows"), nb::arg("first_column") = 0,
+           nb::arg("first_row") = 0);
 }
 
 }  // namespace cadt_python

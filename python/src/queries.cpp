@@ -174,14 +174,17 @@ void bind_queries(nb::module_& m) {
                    return own.interpolate({values.data(), values.size()}, view, how, beyond);
                  }));
            })
-      .def("rasterize",
-           [](HostQueries& q, const Corners& grid, std::size_t columns, std::size_t rows, const Values& values,
-              const std::string& method, double max_edge) {
-             const cadt::Grid cells{grid[0], grid[1], grid[2], grid[3], columns, rows};
-             return array_of(q.run([&, how = method_of(method)](cadt::MeshQueries& own) {
-               return own.rasterize(cells, {values.data(), values.size()}, how, max_edge);
-             }));
-           })
+      .def(
+          "rasterize",
+          [](HostQueries& q, const Corners& grid, std::size_t columns, std::size_t rows, const Values& values,
+             const std::string& method, double max_edge, std::size_t first_column, std::size_t first_row) {
+            const cadt::Grid cells{grid[0], grid[1], grid[2], grid[3], columns, rows, first_column, first_row};
+            return array_of(q.run([&, how = method_of(method)](cadt::MeshQueries& own) {
+              return own.rasterize(cells, {values.data(), values.size()}, how, max_edge);
+            }));
+          },
+          nb::arg("grid"), nb::arg("columns"), nb::arg("rows"), nb::arg("values"), nb::arg("method"),
+          nb::arg("max_edge"), nb::arg("first_column") = 0, nb::arg("first_row") = 0)
       .def(
           "circumcenters",
           [](HostQueries& q) { return array_of(q.run([](cadt::MeshQueries& own) { return own.circumcenters(); }), 2); })

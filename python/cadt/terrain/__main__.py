@@ -131,6 +131,8 @@ def main() -> int:
     warnings.simplefilter("ignore")
     code = command(sys.argv[1:])
     _forget_what_cannot_be_written()
+    if _stopped is not None:
+        os._exit(code)  # a library's call that takes no notice may still run
     return code
 
 

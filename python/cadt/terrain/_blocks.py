@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The cells of a grid in a file, in square blocks. The centre of a cell is computed in its block, whoever writes it."""
+"""The cells of a grid in a file, in square blocks."""
 
 from __future__ import annotations
 
@@ -27,17 +27,10 @@ def side_for(cells: float) -> int:
 
 @dataclasses.dataclass(frozen=True)
 class Block:
-    """Cells of a grid from row `first_row` and column `first_column` on, as a grid of their own."""
+    """Cells of a grid, as a part of it."""
 
     number: int
-    first_row: int
-    first_column: int
     grid: Grid
-
-    @property
-    def corner(self) -> tuple[float, float, float, float]:
-        """As cadt::Grid."""
-        return self.grid.x0, self.grid.y1, self.grid.dx, -self.grid.dy
 
 
 class Blocks:
@@ -58,9 +51,7 @@ class Blocks:
     def block(self, number: int) -> Block:
         grid, side = self.grid, self.side
         row, column = number // self.nx * side, number % self.nx * side
-        left, top = grid.x0 + column * grid.dx, grid.y1 - row * grid.dy
-        size = min(side, grid.columns - column), min(side, grid.rows - row)
-        return Block(number, row, column, Grid(left, top, grid.dx, grid.dy, *size))
+        return Block(number, grid.part(row, column, min(side, grid.rows - row), min(side, grid.columns - column)))
 
     def read(self, block: Block) -> Floats:
         return self._whole(block.number)[: block.grid.rows, : block.grid.columns]
@@ -80,11 +71,9 @@ class Blocks:
             for row in range(first // self.side, -(-(first + len(cells)) // self.side)):
                 for column in range(self.nx):
                     block = self.block(row * self.nx + column)
-                    at = block.first_row - first
-                    place = np.s_[
-                        at : at + block.grid.rows, block.first_column : block.first_column + block.grid.columns
-                    ]
-                    cells[place] = self.read(block)
+                    part = block.grid
+                    below, right = cells[part.first_row - first :], part.first_column + part.columns
+                    below[: part.rows, part.first_column : right] = self.read(block)
             yield cells
         self._file.remove()
 

@@ -16,7 +16,7 @@ from cadt._wkb import LINE, MULTILINE, MULTIPOLYGON, POLYGON, lines_of_wkb
 from ._files import check_input, suffix_of, why
 from ._mesh import triangulate
 from ._progress import ProgressLine
-from ._vector import _pyogrio, only_layer, parse_crs, read_errors, truncated
+from ._vector import _pyogrio, errors_of, only_layer, parse_crs, truncated
 from .cloud import Cloud, name_of, same_crs
 from .errors import CrsError, FileError, UsageError
 
@@ -49,10 +49,10 @@ def check_options(options: argparse.Namespace) -> None:
 def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
     """Lines and the outlines of polygons of one file, in the reference system of the points; `asked`: --crs."""
     ogr = _pyogrio(f"reading {path}")
-    layer = only_layer(ogr, path)
+    layer = only_layer(ogr, path, "lines")
     try:
-        _, _, geometry, _ = ogr.raw.read(path, layer=layer.name, where=layer.where, columns=[])
-    except read_errors(ogr) as error:
+        _, _, geometry, _ = ogr.raw.read(layer.file, layer=layer.name, where=layer.where, columns=[])
+    except errors_of(ogr) as error:
         raise FileError(path, f"cannot be read: {why(error)}") from error
     if len(geometry) < layer.count and suffix_of(path) != "shp":
         raise truncated(path, len(geometry), layer.count)
@@ -151,7 +151,10 @@ def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:
     (ux, uy), (vx, vy), (wx, wy) = b - a, d - c, c - a
     x, y = a + (b - a) * (wx * vy - wy * vx) / (ux * vy - uy * vx)
     more = f", and so do {len(pairs) - 1} more pairs of segments" if len(pairs) > 1 else ""
+    who = f"feature {of[0]} (counted from 0) crosses itself"
+    if of[0] != of[1]:
+        who = f"lines of the features {of[0]} and {of[1]} (counted from 0) cross"
     return (
-        f"lines of the features {of[0]} and {of[1]} (counted from 0) cross at {x:.12g} {y:.12g}{more}; "
+        f"{who} at {x:.12g} {y:.12g}{more}; "
         "breaklines may touch, but have one height at each place: divide or remove them"
     )

@@ -21,6 +21,7 @@ MOST_BUCKETS = 1 << 18
 MOST_OF_SKETCH = 50_000
 PIECE = 1 << 20  # points sorted at a time: they fit in a cache, and several threads have work
 MOST_PIECES = 32
+SAFE = (1e-90, 1e90)  # lengths whose products are no subnormal numbers and do not overflow
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
@@ -90,7 +91,10 @@ class Buckets(Squares):
 
     @property
     def useful(self) -> bool:
-        """Whether tiles are smaller than the whole: not if nearly all points lie in a few buckets, as with an outlier."""
+        """Whether tiles are smaller than the whole: not if nearly all points lie in a few buckets, as with an outlier. Nor
+        are they made of the smallest and largest numbers."""
+        if not SAFE[0] < max(self.x1 - self.x0, self.y1 - self.y0) < SAFE[1]:
+            return False
         return self.sketch.n_triangles > 0 and 16 * self._most < len(self.z)
 
     def _hull(self) -> NDArray[np.int64]:

@@ -30,6 +30,25 @@ def why(error: BaseException) -> str:
     return text[0] if text else type(error).__name__
 
 
+def check_utf8(path: str) -> None:
+    """Raises FileError if GDAL cannot be told the name."""
+    try:
+        path.encode()
+    except UnicodeEncodeError as error:
+        raise FileError(path, "GDAL takes no name that is not UTF-8; rename it") from error
+
+
+def rasterio_errors() -> tuple[type[Exception], ...]:
+    """All that rasterio raises. Those of GDAL come as they are where it has no name of its own for them."""
+    from rasterio.errors import RasterioError
+
+    try:
+        from rasterio._err import CPLE_BaseError
+    except ImportError:
+        return (RasterioError,)
+    return RasterioError, CPLE_BaseError
+
+
 def check_input(path: str) -> None:
     """Raises FileError if there is no file of this name to be read."""
     try:

@@ -62,10 +62,13 @@ def rasterize(
     method: str = "linear",
     max_edge: float | None = None,
 ) -> NDArray[np.float64]:
-    """The cells of a grid, with its very cell size: `Delaunay.rasterize` derives that from the bounds."""
+    """The cells of a grid or a part of one, with its very cell size: `Delaunay.rasterize` derives that from the bounds."""
     longest = math.inf if max_edge is None else float(max_edge)
-    corner = (grid.x0, grid.y1, grid.dx, -grid.dy)
-    return np.asarray(mesh._raster(z, corner, grid.rows, grid.columns, method, longest))
+    values = np.ascontiguousarray(z, np.float64)[:, None]
+    cells = mesh._queries().rasterize(
+        grid.corner, grid.columns, grid.rows, values, method, longest, grid.first_column, grid.first_row
+    )
+    return np.asarray(cells).reshape(grid.rows, grid.columns)
 
 
 def kept_triangles(mesh: cadt.Delaunay, max_edge: float | None, name: str | None = None) -> NDArray[np.int64] | None:

@@ -170,25 +170,26 @@ class NodeRaster:
         options, _ = self.where._open(len(z))
         drawn = _cadt.PartRaster(part.points, part.triangles, part.neighbors, options)
         grid, side = self.blocks.grid, self.blocks.side
-        met = drawn.blocks((grid.x0, grid.y1, grid.dx, -grid.dy), grid.columns, grid.rows, side)
+        met = drawn.blocks(grid.corner, grid.columns, grid.rows, side)
         rims = [earlier]
         for number in np.flatnonzero(met).tolist():
             block = self.blocks.block(number)
-            cells = drawn.rasterize(block.corner, block.grid.columns, block.grid.rows, z, self.max_edge)
+            of = block.grid
+            cells = drawn.rasterize(of.corner, of.columns, of.rows, z, self.max_edge, of.first_column, of.first_row)
             write = ~np.isnan(cells)
             if self.max_edge < math.inf:
                 rim = self._rim(drawn, part, block)
                 beaten = rim.beaten_by(earlier)
                 row, column = np.divmod(rim.cells, grid.columns)
-                write[row - block.first_row, column - block.first_column] = ~beaten
+                write[row - of.first_row, column - of.first_column] = ~beaten
                 rims.append(rim)
             if write.any():
                 self.blocks.write(block, cells, write)
         return Rim.of(rims)
 
     def _rim(self, drawn: _cadt.PartRaster, part: tiles.Part, block: Block) -> Rim:
-        grid = self.blocks.grid
-        cells, triangles, edges = drawn.rim(block.corner, block.grid.columns, block.grid.rows)
-        row, column = np.divmod(cells, block.grid.columns)
-        cells = (row + block.first_row) * grid.columns + column + block.first_column
+        grid, of = self.blocks.grid, block.grid
+        cells, triangles, edges = drawn.rim(of.corner, of.columns, of.rows, of.first_column, of.first_row)
+        row, column = np.divmod(cells, of.columns)
+        cells = (row + of.first_row) * grid.columns + column + of.first_column
         return Rim.of([Rim(cells, part.ids[part.triangles[triangles]], part.ids[edges])])

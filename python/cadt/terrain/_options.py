@@ -84,7 +84,7 @@ def _classes(text: str) -> list[int]:
 
 
 def _threads(text: str) -> int:
-    if not text.isdigit() or int(text) > 4096:
+    if not text.isdecimal() or int(text) > 4096:
         raise argparse.ArgumentTypeError(f"{text}: a number from 0 to 4096 is needed")
     return int(text)
 

@@ -75,7 +75,7 @@ def _read_text(path: str, columns: str) -> NDArray[np.float64]:
             raise UsageError(
                 f"{path} has no column of heights: name three with --columns; it has: {', '.join(fields).lower()}"
             )
-        by_name = any(not word.strip().isdigit() for word in columns.split(",")) if columns else False
+        by_name = any(not word.strip().isdecimal() for word in columns.split(",")) if columns else False
         has_header = has_names(fields) or by_name
         if not columns:
             if known is None and has_header:
@@ -96,9 +96,9 @@ def _choose(path: str, columns: str, names: list[str], width: int) -> list[int]:
     lower = [name.lower() for name in names]
     chosen = []
     for word in asked:
-        if word.isdigit() and 1 <= int(word) <= width:
+        if word.isdecimal() and 1 <= int(word) <= width:
             chosen.append(int(word) - 1)
-        elif not word.isdigit() and word.lower() in lower:
+        elif not word.isdecimal() and word.lower() in lower:
             chosen.append(lower.index(word.lower()))
         else:
             has = ", ".join(names) if names else f"{width} columns without names"

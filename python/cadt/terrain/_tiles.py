@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 import cadt
 
-from ._buckets import Buckets, Floats, Mask, cores
+from ._buckets import SAFE, Buckets, Floats, Mask, cores
 from ._mesh import rasterize
 from .grid import Grid
 
@@ -162,8 +162,7 @@ class TiledRaster:
         xy, z = points.of_rectangle(x0, y0, x1, y1)
         mesh = self._mesh(xy, self.order, 1)
         place = np.s_[tile.r0 - strip.first : tile.r1 - strip.first, tile.c0 : tile.c1]
-        left, top = grid.x0 + tile.c0 * grid.dx, grid.y1 - tile.r0 * grid.dy
-        part = Grid(left, top, grid.dx, grid.dy, tile.c1 - tile.c0, tile.r1 - tile.r0)
+        part = grid.part(tile.r0, tile.c0, tile.r1 - tile.r0, tile.c1 - tile.c0)
         strip.cells[place] = rasterize(mesh, z, part, max_edge=self.max_edge)
         taken = (
             -math.inf if x0 == 0 else points.x0 + x0 * points.side + points.slack,
@@ -290,8 +289,10 @@ def discs(xy: Floats, corners: NDArray[np.int32]) -> tuple[Floats, Floats]:
         uy = (b[:, 0] * cc - c[:, 0] * bb) / (2 * cross)
         radius = np.hypot(ux, uy)
         # Differences are exact or have one rounding. Relative to |b||c|, the determinant is good to a few of them, and so
-        # is the place of the centre relative to the radius.
+        # is the place of the centre relative to the radius. That holds while products of three lengths neither overflow nor
+        # are subnormal.
         loss = 32 * EPS * np.sqrt(bb * cc) / np.abs(cross)
         error = radius * (loss + 16 * EPS) + 4 * np.abs(a).max(axis=1, initial=0.0) * EPS
-        radius = np.where(loss < 0.01, radius + 2 * error, np.inf)
+        sound = (loss < 0.01) & (np.minimum(bb, cc) > SAFE[0] ** 2) & (np.maximum(bb, cc) < SAFE[1] ** 2)
+        radius = np.where(sound, radius + 2 * error, np.inf)
     return a + np.column_stack((ux, uy)), radius

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._files import Room, complete_file, suffix_of, why
+from ._files import Room, check_utf8, complete_file, suffix_of, why
 from .errors import CrsError, FileError, Unavailable, UsageError
 
 if TYPE_CHECKING:
     import pyproj
 
 CHUNK = 1 << 18  # features read at a time: each is a Python object
+NUMBERS = ("integer", "floating", "mixed-integer-float", "decimal")  # as pandas calls them
 DRIVERS = {"gpkg": "GPKG", "geojson": "GeoJSON", "fgb": "FlatGeobuf"}
 
 
@@ -27,6 +28,33 @@ def _pyogrio(what: str) -> Any:
     except ImportError as error:
         raise Unavailable(what, "pyogrio") from error
     return pyogrio
+
+
+def errors_of(ogr: Any) -> tuple[type[Exception], ...]:
+    """What reading and writing lead to, damaged files among them."""
+    errors = ogr.errors
+    return errors.DataSourceError, errors.DataLayerError, errors.FeatureError, UnicodeDecodeError
+
+
+def name_for_ogr(path: str, file: str | None = None) -> str:
+    """The name by which pyogrio finds a file, `path` unless it is another one that stands for it.
+
+    Raises
+    ------
+    FileError
+        There is none: pyogrio takes what is after `!` or `;`, and names with tabs and line breaks, for another file.
+    """
+    check_utf8(path)
+    name = os.path.join(os.getcwd(), path if file is None else file)  # none of a URL's parts is at its beginning
+    if name.startswith("//"):
+        name = "/" + name.lstrip("/")
+    try:
+        from pyogrio.util import vsi_path
+    except ImportError:
+        return name
+    if vsi_path(name) != name:
+        raise FileError(path, "GDAL takes this name for another one; use none with !, ;, tabs or line breaks")
+    return name
 
 
 def parse_crs(path: str, text: object) -> pyproj.CRS | None:
@@ -78,6 +106,7 @@ def _coordinates(path: str, geometry: NDArray[np.object_], first: int) -> NDArra
 class Layer:
     """The layer of a file, of which there must be one alone."""
 
+    file: str  # as pyogrio finds it
     name: str
     count: int  # of features; in Shapefiles those that are deleted are counted, too
     where: str | None  # what to read it with, so that GDAL finds as many
@@ -85,35 +114,33 @@ class Layer:
     fields: list[str]
 
 
-def read_errors(ogr: Any) -> tuple[type[Exception], ...]:
-    """What reading a damaged file leads to."""
-    return ogr.errors.DataSourceError, ogr.errors.DataLayerError, UnicodeDecodeError
-
-
-def only_layer(ogr: Any, path: str) -> Layer:
-    """Raises FileError if there are several, or features that cannot be there. Tables without geometry do not count
-    where there is a layer with it: QGIS stores styles in one."""
+def only_layer(ogr: Any, path: str, what: str) -> Layer:
+    """The layer with `what`. Raises FileError if there are several, or features that cannot be there. Tables without
+    geometry do not count where there is a layer with it: QGIS stores styles in one."""
+    file = name_for_ogr(path)
     try:
-        layers = ogr.list_layers(path)
+        layers = ogr.list_layers(file)
         names = [str(name) for name, kind in layers if kind is not None] or [str(name) for name in layers[:, 0]]
         if not names:
             raise FileError(path, "cannot be read: no layer is found in it")
         if len(names) > 1:
             raise FileError(path, f"has several layers ({', '.join(names)}); export one of them to a file of its own")
-        info = ogr.read_info(path, layer=names[0], force_feature_count=True)
+        info = ogr.read_info(file, layer=names[0], force_feature_count=True)
+        if info["geometry_type"] is None:
+            raise FileError(path, f"has attributes alone, and no {what}")
         count = int(info["features"])
         where = None
         if suffix_of(path) == "gpkg":
             # GDAL says what a table of the file says, which other programs may not have kept up to date.
             quoted = names[0].replace('"', '""')
-            true_count = int(ogr.raw.read(path, sql=f'SELECT COUNT(*) FROM "{quoted}"')[3][0][0])
+            true_count = int(ogr.raw.read(file, sql=f'SELECT COUNT(*) FROM "{quoted}"')[3][0][0])
             if true_count != count:
                 count, where = true_count, "1 = 1"
-    except read_errors(ogr) as error:
+    except errors_of(ogr) as error:
         raise FileError(path, f"cannot be read: {why(error)}") from error
     if count > os.path.getsize(path):  # a feature takes more than a byte
         raise FileError(path, f"truncated: it has no room for the {count} features that it promises")
-    return Layer(names[0], count, where, info["crs"], [str(name) for name in info["fields"]])
+    return Layer(file, names[0], count, where, info["crs"], [str(name) for name in info["fields"]])
 
 
 class OgrSource:
@@ -123,7 +150,7 @@ class OgrSource:
         self.path = path
         self._values = values
         self._ogr = _pyogrio(f"reading {path}")
-        self._layer = only_layer(self._ogr, path)
+        self._layer = only_layer(self._ogr, path, "points")
         self.count = self._layer.count
         self.crs = parse_crs(path, self._layer.crs) if with_crs else None
         fields = self._layer.fields
@@ -136,14 +163,14 @@ class OgrSource:
         while done < self.count:
             try:
                 _, _, geometry, fields = self._ogr.raw.read(
-                    self.path,
+                    self._layer.file,
                     layer=self._layer.name,
                     where=self._layer.where,
                     columns=columns,
                     skip_features=done,
                     max_features=CHUNK,
                 )
-            except read_errors(self._ogr) as error:
+            except errors_of(self._ogr) as error:
                 raise FileError(self.path, f"cannot be read: {why(error)}") from error
             if len(geometry) == 0:
                 raise truncated(self.path, done, self.count)
@@ -151,7 +178,7 @@ class OgrSource:
             xy, z = room(len(points))
             xy[:] = points[:, :2]
             if columns and fields[0].dtype.kind not in "iuf":
-                raise FileError(self.path, f"the attribute {columns[0]} is no number: --values names one that is")
+                raise _no_number(self.path, columns[0])
             z[:] = fields[0] if columns else points[:, 2]
             check_values(self.path, z, self._values, done)
             done += len(points)
@@ -162,12 +189,17 @@ def truncated(path: str, features: int, count: int) -> FileError:
     return FileError(path, f"truncated: {features} features of the {count} that it promises")
 
 
+def _no_number(path: str, attribute: str) -> FileError:
+    return FileError(path, f"the attribute {attribute} is no number: --values names one that is")
+
+
 class ParquetSource:
     """Points of a GeoParquet file."""
 
     def __init__(self, path: str, values: str, with_crs: bool) -> None:
         try:
             import geopandas
+            import pandas
             import pyarrow  # noqa: F401  geopandas finds it out late
             import shapely
         except ImportError as error:
@@ -185,7 +217,11 @@ class ParquetSource:
                 f"--values {values}: {path} has no such column; it has: {', '.join(map(str, frame.columns))}"
             )
         self._geometry = np.asarray(shapely.to_wkb(frame.geometry.values, byte_order=1), dtype=object)
-        self._column = None if values == "z" else np.asarray(frame[values], dtype=float)
+        self._column = None
+        if values != "z":
+            if pandas.api.types.infer_dtype(frame[values]) not in NUMBERS:
+                raise _no_number(path, values)
+            self._column = frame[values].to_numpy(dtype=float, na_value=np.nan)
 
     def read(self, room: Room, step: Callable[[int], None]) -> None:
         points = _coordinates(self.path, self._geometry, 0)
@@ -206,6 +242,12 @@ def check_values(path: str, z: NDArray[np.float64], name: str, first: int, rows:
         raise FileError(path, f"point {number} (counted from 0) has {what}; name an attribute with --values")
 
 
+def check_features(path: str) -> None:
+    """What can be known to be wrong about an output of `write_features`, before any work."""
+    _pyogrio(f"writing {path}")
+    name_for_ogr(path, os.path.realpath(path))
+
+
 def write_features(
     path: str,
     geometry: NDArray[np.object_],
@@ -220,6 +262,7 @@ def write_features(
     suffix = path.rsplit(".", 1)[-1].lower()
     try:
         with complete_file(path) as name:
+            name = name_for_ogr(path, name)
             ogr.raw.write(
                 name,
                 geometry,
@@ -230,5 +273,19 @@ def write_features(
                 crs=None if crs is None else crs.to_wkt(),
                 layer=layer,  # in GeoJSON, too, whose default is the name of the temporary file
             )
-    except (ogr.errors.DataSourceError, ogr.errors.FeatureError) as error:
+            if not _is_complete(ogr, name, suffix, len(geometry)):
+                raise FileError(path, "cannot be written: the file is not complete")
+    except errors_of(ogr) as error:
         raise FileError(path, f"cannot be written: {why(error)}") from error
+
+
+def _is_complete(ogr: Any, name: str, suffix: str, count: int) -> bool:
+    """Whether the last feature is in a file, and what follows it: GDAL does not say of all formats that a disk was full."""
+    try:
+        _, _, last, _ = ogr.raw.read(name, columns=[], skip_features=max(count - 1, 0), max_features=1)
+    except ValueError:  # fewer
+        return False
+    with open(name, "rb") as file:
+        file.seek(max(os.path.getsize(name) - 64, 0))
+        ended = suffix != "geojson" or file.read().rstrip().endswith(b"}")
+    return ended and len(last) == min(count, 1)

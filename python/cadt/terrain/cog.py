@@ -3,17 +3,18 @@
 
 from __future__ import annotations
 
+import concurrent.futures
 import contextlib
 import math
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._files import complete_file, why
+from ._files import complete_file, rasterio_errors, why
 from .errors import FileError, Unavailable, UsageError
 from .grid import Grid
 
@@ -58,8 +59,14 @@ class Rows:
         self.next += len(values)
 
 
+def _tile_side(cells: int) -> int:
+    """Of the file of rows: tiles are whole, so that those of a grid of few rows are low."""
+    return min(BLOCK, -(-cells // 16) * 16)
+
+
 def _check_disk(path: str, grid: Grid, size: int) -> None:
-    needed = 2 * grid.cells * size
+    wide, high = _tile_side(grid.columns), _tile_side(grid.rows)
+    needed = 2 * (-(-grid.columns // wide) * wide) * (-(-grid.rows // high) * high) * size
     disk = shutil.disk_usage(os.path.dirname(os.path.realpath(path)))
     free = disk.free
     if disk.total and needed > free:
@@ -68,6 +75,19 @@ def _check_disk(path: str, grid: Grid, size: int) -> None:
             f"{grid.columns} x {grid.rows} cells may need {needed / 2**30:.1f} GiB, the disk has {free / 2**30:.1f} GiB: "
             "take a larger --res, or tiles with --bounds",
         )
+
+
+def _wait_for(work: Callable[[], None]) -> None:
+    """Runs what is a single call of a library in a thread of its own, so that a signal is heard at once. The call goes on
+    then: the program ends without it."""
+    pool = concurrent.futures.ThreadPoolExecutor(1)
+    try:
+        job = pool.submit(work)
+        while not concurrent.futures.wait([job], timeout=1).done:
+            pass
+        job.result()
+    finally:
+        pool.shutdown(wait=False)
 
 
 @contextlib.contextmanager
@@ -87,7 +107,6 @@ def open_cog(
     """
     try:
         import rasterio
-        import rasterio.errors
         import rasterio.shutil
     except ImportError as error:
         raise Unavailable(f"writing {path}", "rasterio") from error
@@ -103,21 +122,18 @@ def open_cog(
         "transform": rasterio.Affine(grid.dx, 0, grid.x0, 0, -grid.dy, grid.y1),
         "crs": None if crs is None else rasterio.crs.CRS.from_wkt(crs.to_wkt()),
         "tiled": True,
-        "blockxsize": BLOCK,
-        "blockysize": BLOCK,
+        "blockxsize": _tile_side(grid.columns),
+        "blockysize": _tile_side(grid.rows),
         "BIGTIFF": "IF_SAFER",
     }
     workers = threads or os.cpu_count() or 1
-    # Overviews are averaged by all threads, and are written without compression before the file is.
-    settings = {"GDAL_CACHEMAX": CACHE, "GDAL_NUM_THREADS": workers, "COG_TMP_COMPRESSION": "NONE"}
-    try:
-        with complete_file(path) as target, rasterio.Env(**settings):
-            plain = target + ".rows.tif"
-            with rasterio.open(plain, "w", **profile) as raster:
-                rows = Rows(path, grid, raster, nodata)
-                yield rows
-            if rows.next != grid.rows:
-                raise FileError(path, f"{rows.next} of {grid.rows} rows were given")
+    # Overviews are averaged by all threads, and are written before the file is: without compression, unless most of their
+    # tiles is empty.
+    packed = "NONE" if min(grid.columns, grid.rows) >= BLOCK else "LZW"
+    settings = {"GDAL_CACHEMAX": CACHE, "GDAL_NUM_THREADS": workers, "COG_TMP_COMPRESSION": packed}
+
+    def compress(plain: str, target: str) -> None:
+        with rasterio.Env(**settings):  # of this thread
             rasterio.shutil.copy(
                 plain,
                 target,
@@ -130,8 +146,18 @@ def open_cog(
                 OVERVIEW_RESAMPLING="AVERAGE",
                 NUM_THREADS=workers,
             )
+
+    try:
+        with complete_file(path) as target, rasterio.Env(**settings):
+            plain = target + ".rows.tif"
+            with rasterio.open(plain, "w", **profile) as raster:
+                rows = Rows(path, grid, raster, nodata)
+                yield rows
+            if rows.next != grid.rows:
+                raise FileError(path, f"{rows.next} of {grid.rows} rows were given")
+            _wait_for(lambda: compress(plain, target))
             with rasterio.open(target) as written:  # every tile is there: GDAL tells of a full disk in its log alone
                 if (written.width, written.height) != (grid.columns, grid.rows):
                     raise FileError(path, "cannot be written: the file is not complete")
-    except rasterio.errors.RasterioError as error:
+    except rasterio_errors() as error:
         raise FileError(path, f"cannot be written: {why(error)}") from error

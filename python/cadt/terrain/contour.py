@@ -21,7 +21,7 @@ from ._features import lines_wkb
 from ._files import check_output
 from ._mesh import check_max_edge, kept_triangles, read, triangulate
 from ._progress import ProgressLine
-from ._vector import write_features
+from ._vector import check_features, write_features
 from .cloud import require_crs
 from .errors import FileError, UsageError
 
@@ -57,6 +57,8 @@ def contour_lines(
     # The level of a vertex: the highest line at or below it. A triangle has the lines above its lowest level, up to its
     # highest.
     level = np.floor((z - base) / interval)
+    level += base + (level + 1) * interval <= z  # the division is rounded
+    level -= base + level * interval > z
     if not np.abs(level).max() < 1 << 50:
         raise UsageError(f"--base {base:g} is too many steps of {interval:g} from the heights for lines to differ")
     low, high = level[corners].min(axis=1), level[corners].max(axis=1)
@@ -170,6 +172,7 @@ def contour_command(options: argparse.Namespace, line: ProgressLine) -> dict[str
         raise UsageError(f"--base {options.base:g}: a finite height is needed")
     check_max_edge(options.max_edge)
     check_output(options.output, WRITE_FORMATS, options.inputs)
+    check_features(options.output)
     cloud = read(options, line)
     require_crs(cloud, options.crs, options.output)
     name = ", ".join(cloud.sources)

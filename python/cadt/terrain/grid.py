@@ -8,7 +8,7 @@ import math
 import sys
 from typing import TYPE_CHECKING
 
-from ._files import check_input, why
+from ._files import check_input, check_utf8, rasterio_errors, why
 from .cloud import Extent, name_of, same_crs
 from .errors import CrsError, FileError, Unavailable, UsageError
 
@@ -21,7 +21,8 @@ Box = tuple[float, float, float, float]
 
 @dataclasses.dataclass(frozen=True)
 class Grid:
-    """rows x columns cells of width dx and height dy; (x0, y1) is the upper left corner."""
+    """rows x columns cells of width dx and height dy; (x0, y1) is the upper left corner, of a part that of its whole: the
+    centre of a cell is the same double in both."""
 
     x0: float
     y1: float
@@ -29,15 +30,27 @@ class Grid:
     dy: float
     columns: int
     rows: int
+    first_column: int = 0
+    first_row: int = 0
 
     @property
     def cells(self) -> int:
         return self.columns * self.rows
 
+    @property
+    def corner(self) -> tuple[float, float, float, float]:
+        """Of the whole and of its cells, as in cadt::Grid."""
+        return self.x0, self.y1, self.dx, -self.dy
+
     def bounds(self, first: int = 0, last: int | None = None) -> Box:
-        """xmin, ymin, xmax, ymax of the rows from `first` to before `last`."""
+        """xmin, ymin, xmax, ymax of a whole grid's rows from `first` to before `last`."""
         last = self.rows if last is None else last
         return self.x0, self.y1 - last * self.dy, self.x0 + self.columns * self.dx, self.y1 - first * self.dy
+
+    def part(self, row: int, column: int, rows: int, columns: int) -> Grid:
+        """So many cells from a row and a column on."""
+        row, column = self.first_row + row, self.first_column + column
+        return Grid(self.x0, self.y1, self.dx, self.dy, columns, rows, column, row)
 
 
 def cells_along(length: float, cell: float) -> float:
@@ -72,10 +85,14 @@ def grid_of(cloud: Extent, resolution: float, bounds: Box | None) -> Grid:
     return Grid(x0, y0 + rows * resolution, resolution, resolution, int(columns), int(rows))
 
 
+def count(cells: float) -> str:
+    return f"{cells:.0f}" if abs(cells) < 1e15 else f"{cells:g}"
+
+
 def check_size(columns: float, rows: float, about: str) -> None:
     if not columns * rows <= MOST_CELLS:
         raise UsageError(
-            f"{about}: {columns:.0f} x {rows:.0f} cells, at most {MOST_CELLS} in all: take a larger --res, or tiles with --bounds"
+            f"{about}: {count(columns)} x {count(rows)} cells, at most {MOST_CELLS} in all: take a larger --res, or tiles with --bounds"
         )
 
 
@@ -94,10 +111,11 @@ def grid_of_file(path: str, crs: pyproj.CRS | None, bounds: Box | None) -> Grid:
     except ImportError as error:
         raise Unavailable("--align", "rasterio") from error
     check_input(path)
+    check_utf8(path)
     try:
         with rasterio.open(path) as raster:
             transform, columns, rows, wkt = raster.transform, raster.width, raster.height, raster.crs
-    except rasterio.errors.RasterioError as error:
+    except rasterio_errors() as error:
         raise FileError(path, f"is no raster: {why(error)}") from error
     if transform.b or transform.d or transform.a <= 0 or transform.e >= 0:
         raise FileError(
@@ -118,7 +136,7 @@ def grid_of_file(path: str, crs: pyproj.CRS | None, bounds: Box | None) -> Grid:
     columns, rows = right - left, bottom - top
     check_size(columns, rows, f"--align {path}")
     if not (columns >= 1 and rows >= 1):
-        raise UsageError(f"--bounds: they are {columns:.0f} x {rows:.0f} cells of {path}: take larger ones")
+        raise UsageError(f"--bounds: they are {count(columns)} x {count(rows)} cells of {path}: take larger ones")
     x0, y1 = whole.x0 + left * whole.dx, whole.y1 - top * whole.dy
     return Grid(x0, y1, whole.dx, whole.dy, int(columns), int(rows))
 

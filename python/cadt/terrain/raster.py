@@ -17,7 +17,7 @@ import cadt
 
 from . import _breaklines
 from ._buckets import Buckets, Floats
-from ._files import check_output
+from ._files import check_output, check_utf8
 from ._mesh import check_max_edge, no_triangles, rasterize, read, triangulate
 from ._progress import ProgressLine
 from ._tiles import TiledRaster
@@ -67,7 +67,7 @@ def by_whole(
     step = rows_at_a_time(grid, len(z))
     for first in range(0, grid.rows, step):
         last = min(first + step, grid.rows)
-        part = Grid(grid.x0, grid.y1 - first * grid.dy, grid.dx, grid.dy, grid.columns, last - first)
+        part = grid.part(first, 0, last - first, grid.columns)
         cells = rasterize(mesh, z, part, options.method, options.max_edge)
         if options.fill == "nearest":
             fill_nearest(nearest or mesh, z, cells, grid, first)
@@ -97,6 +97,7 @@ def check_options(options: argparse.Namespace) -> None:
         raise UsageError("--tile-points is for --scratch, which is missing")
     others = [name for name in (options.align, options.breaklines) if name is not None]
     check_output(options.output, WRITE_FORMATS, options.inputs + others)
+    check_utf8(options.output)
 
 
 def with_scratch() -> ModuleType:

@@ -16,7 +16,7 @@ from ._features import triangles_wkb
 from ._files import check_output, complete_file
 from ._mesh import check_max_edge, kept_triangles, read, triangulate
 from ._progress import ProgressLine
-from ._vector import write_features
+from ._vector import check_features, write_features
 from .cloud import Cloud, require_crs
 from .errors import UsageError
 
@@ -126,6 +126,8 @@ def tin_command(options: argparse.Namespace, line: ProgressLine) -> dict[str, ob
     start = time.monotonic()
     check_max_edge(options.max_edge)
     suffix = check_output(options.output, WRITE_FORMATS, options.inputs)
+    if suffix in FEATURES:
+        check_features(options.output)
     cloud = read(options, line)
     if suffix in FEATURES:
         require_crs(cloud, options.crs, options.output)

@@ -120,6 +120,8 @@ def test_what_is_refused(las, tmp_path, cadt_terrain):
     name = write(tmp_path / "cross.gpkg", [bank(40), bank(60), across])
     base = ("raster", "scan.laz", "dem.tif", "--res", "1", "--breaklines")
     cadt_terrain(*base, name, code=3, says="features 0 and 2 (counted from 0) cross at 500037 5400040, and so do 1 more")
+    name = write(tmp_path / "self.gpkg", [bank(40), shapely.LineString(AT + [[1, 1], [9, 9], [9, 1], [1, 9]])])
+    cadt_terrain(*base, name, code=3, says="feature 1 (counted from 0) crosses itself at 500005 5400005; breaklines")
     name = write(tmp_path / "point.gpkg", [bank(40), shapely.Point(AT)])
     cadt_terrain(*base, name, code=3, says="feature 1 (counted from 0) is neither lines nor polygons")
     name = write(tmp_path / "utm33.gpkg", [bank(40)], "EPSG:25833")

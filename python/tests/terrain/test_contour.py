@@ -79,6 +79,21 @@ def test_heights_that_are_those_of_lines():
     assert len(peak[2]) == 0, "a line round a vertex of its height is a point"
 
 
+@pytest.mark.parametrize("interval", [0.1, 0.3, 0.7, 1.1])
+@pytest.mark.parametrize("base", [0.0, 0.05, 100.0])
+def test_heights_whose_quotient_is_rounded(interval, base):
+    """A terrace at the very height of a line, with a slope below it: the line is its rim."""
+    xy = np.array([[0.0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]])
+    mesh = cadt.Delaunay(xy)
+    for k in range(1, 200):
+        height = base + k * interval
+        for z, lines in ((height, 1), (np.nextafter(height, -np.inf), 0)):
+            found = terrain.contour_lines(mesh, np.tile([z - interval / 2, z, z], 2), interval, base)
+            assert len(found[2]) == lines, (k, z)
+            if lines:
+                assert found[2][0] == height and (found[0][:, 0] == 1).all()
+
+
 def test_interval_base_and_long_edges():
     xy = np.array([[0.0, 0], [10, 0], [0, 10], [10, 10]])
     mesh = cadt.Delaunay(xy)

@@ -9,7 +9,6 @@ import cadt
 import numpy as np
 import pytest
 import rasterio
-import rasterio.shutil
 from cadt import terrain
 from cadt.terrain._buckets import Buckets
 from cadt.terrain._mesh import rasterize
@@ -191,6 +190,50 @@ def test_tiles_give_the_raster_of_the_whole(name, max_edge, fill):
     assert name not in ("strips", "ring", "lake") or tiled.again > 0, "no cell needed points of other tiles"
 
 
+@pytest.mark.parametrize("column", [65, 131, 136, 138])
+def test_a_hull_on_centres_of_cells(column):
+    """They are the same doubles in all tiles, so that a column is within the hull or not, whatever the tiles are."""
+    grid = Grid(500_000.3, 5_400_006.7, 0.1, 0.1, 140, 60)
+    place = np.random.default_rng(1).uniform(0, 1, (3000, 2))
+    place[:4] = [[0, 0], [1, 0], [0, 1], [1, 1]]
+    right = grid.x0 + (column + 0.5) * grid.dx
+    xy = np.column_stack((grid.x0 + place[:, 0] * (right - grid.x0), grid.y1 - 6 * place[:, 1]))
+    xy[place[:, 0] == 1, 0] = right
+    points = Buckets(terrain.Cloud(xy, place[:, 0].copy(), None), per_bucket=9)
+    mesh = cadt.Delaunay(points.xy)
+    whole = rasterize(mesh, points.z, grid)
+    assert not np.isnan(whole[5:55, column]).any() and np.isnan(whole[:, column + 1 :]).all()
+    parts = [grid.part(row, 0, 20, 140).part(0, first, 20, 70) for row in (0, 20, 40) for first in (0, 70)]
+    made = [rasterize(mesh, points.z, part) for part in parts]
+    assert np.array_equal(np.block([made[:2], made[2:4], made[4:]]), whole, equal_nan=True)
+    for per_tile in (200, 900):
+        cells = np.concatenate(list(TiledRaster(points, grid, threads=1, per_tile=per_tile).rows()))
+        assert np.array_equal(np.isnan(cells), np.isnan(whole))
+
+
+@pytest.mark.parametrize("size", [1e-160, 1e-110, 1e-104, 1e-92, 1e-80, 1e80, 1e110])
+def test_the_smallest_and_largest_coordinates(size):
+    """With a lake, so that circles reach far. No tiles are made where products of lengths are lost."""
+    xy = np.random.default_rng(0).uniform(0, 1, (1500, 2))
+    xy = size * xy[np.hypot(*(xy - 0.5).T) > 0.25]
+    grid = Grid(0, size, size / 64, size / 64, 64, 64)
+    points = Buckets(terrain.Cloud(xy, np.random.default_rng(2).uniform(0, 10, len(xy)), None), per_bucket=4)
+    assert points.useful == (1e-90 < size < 1e90)
+    if points.useful:
+        whole = rasterize(cadt.Delaunay(points.xy), points.z, grid)
+        cells = np.concatenate(list(TiledRaster(points, grid, threads=1, per_tile=60).rows()))
+        assert np.allclose(cells, whole, atol=1e-9, rtol=0, equal_nan=True)
+
+
+def test_triangles_too_small_for_their_circles():
+    """Some points of a cloud at a place so small that products of lengths are lost."""
+    xy = np.array([[0.0, 0], [1, 0], [0, 1]])
+    for scale in (1e-170, 1e-110, 1e110, 1e170):
+        assert np.isinf(discs(scale * xy, np.array([[0, 1, 2]], np.int32))[1]).all()
+    center, radius = discs(1e-80 * xy, np.array([[0, 1, 2]], np.int32))
+    assert np.allclose(center, 5e-81, atol=0) and np.allclose(radius, 0.5**0.5 * 1e-80, atol=0)
+
+
 @pytest.mark.parametrize("piece", [700, 1 << 20])
 def test_buckets_keep_the_order_and_find_the_hull(piece):
     xy = np.random.default_rng(1).normal(0, 10, (5000, 2)).round(2)
@@ -258,7 +301,8 @@ def test_discs_hold_the_circumscribed_ones():
         (["--res", "inf"], 2, "--res inf"),
         (["--res", "x"], 2, "--res"),
         (["--res", "1e-6"], 2, "at most 4294967295 in all: take a larger --res, or tiles with --bounds"),
-        (["--res", "1e-300"], 2, "at most 4294967295"),
+        (["--res", "1e-300"], 2, "e+301 cells, at most 4294967295"),
+        (["--res", "1", "--threads", "²"], 2, "argument --threads: ²: a number from 0 to 4096 is needed"),
         (["--res", "1", "--align", "a.laz"], 2, "either with --res R or with --align"),
         (["--res", "1", "--max-edge", "-2"], 2, "--max-edge -2"),
         (["--res", "1", "--max-edge", "nan"], 2, "--max-edge nan"),
@@ -325,25 +369,3 @@ def test_files_that_are_refused(las, tmp_path, cadt_terrain):
     (tmp_path / "o.gpkg").symlink_to("o.tif")
     cadt_terrain("raster", "flat.laz", "o.tif", *res, code=3)  # the older file stays
     assert read(tmp_path / "o.tif")[1]["crs"] == CRS.from_epsg(2154)
-
-
-def test_more_cells_than_the_disk_holds(monkeypatch, tmp_path):
-    from cadt.terrain import cog
-
-    monkeypatch.setattr(cog.shutil, "disk_usage", lambda path: type("Usage", (), {"free": 1000, "total": 2000}))
-    says = r"20 x 10 cells may need 0.0 GiB, the disk has 0.0 GiB: take a larger"
-    with pytest.raises(terrain.FileError, match=says), cog_of(tmp_path, 20, 10):
-        pass
-    assert list(tmp_path.iterdir()) == []
-
-
-def cog_of(folder, columns, rows):
-    return terrain.open_cog(str(folder / "o.tif"), Grid(0, 0, 2, 1, columns, rows), None)
-
-
-def test_rows_that_are_missing_leave_no_file(tmp_path):
-    with pytest.raises(terrain.FileError, match="1 of 2 rows were given"), cog_of(tmp_path, 3, 2) as rows:
-        rows.write(np.ones((1, 3)))
-    with pytest.raises(KeyboardInterrupt), cog_of(tmp_path, 3, 2):
-        raise KeyboardInterrupt
-    assert list(tmp_path.iterdir()) == []

@@ -224,6 +224,8 @@ def test_tables(tmp_path):
         assert cloud.crs is None
     with pytest.raises(terrain.UsageError, match="has no column width; it has: id, east"):
         terrain.read_cloud([str(tmp_path / "a.csv")], columns="east,north,width")
+    with pytest.raises(terrain.UsageError, match="has no column ²; it has: id, east"):
+        terrain.read_cloud([str(tmp_path / "a.csv")], columns="1,2,²")
     (tmp_path / "b.xyz").write_text("1 2 3\n1 nan 3\n")
     with pytest.raises(terrain.FileError, match=r"line 2: column 2: 'nan' is not a finite number"):
         terrain.read_cloud([str(tmp_path / "b.xyz")])

@@ -140,13 +140,32 @@ def test_a_block_is_read_as_it_was_written(tmp_path):
         block = blocks.block(number)
         cells = np.random.default_rng(number).normal(size=(block.grid.rows, block.grid.columns))
         blocks.write(block, cells, cells > 0)
-        place = np.s_[block.first_row :, block.first_column :]
-        part = expected[place][: block.grid.rows, : block.grid.columns]
+        part = expected[block.grid.first_row :, block.grid.first_column :][: block.grid.rows, : block.grid.columns]
         part[cells > 0] = cells[cells > 0]
-        assert block.corner == (3 + block.first_column / 2, 7 - block.first_row / 4, 0.5, -0.25)
+        assert block.grid.corner == grid.corner
     strips = list(blocks.rows())
     assert [len(s) for s in strips] == [512, 512, 76] and strips[0].dtype == np.float32
     assert np.array_equal(np.concatenate(strips), expected, equal_nan=True)
+
+
+@pytest.mark.parametrize("column", [65, 131])
+@pytest.mark.parametrize("max_edge", [None, 30.0])
+def test_a_hull_on_centres_of_cells(tmp_path, column, max_edge):
+    """They are the same doubles in all blocks, so that a column is within the hull or not."""
+    grid = Grid(500_000.3, 5_400_006.7, 0.1, 0.1, 140, 60)
+    place = np.random.default_rng(1).uniform(0, 1, (3000, 2))
+    place[:4] = [[0, 0], [1, 0], [0, 1], [1, 1]]
+    right = grid.x0 + (column + 0.5) * grid.dx
+    xy = np.column_stack((grid.x0 + place[:, 0] * (right - grid.x0), grid.y1 - 6 * place[:, 1]))
+    xy[place[:, 0] == 1, 0] = right
+    check(tmp_path, with_heights(xy), grid, 40, max_edge)
+
+
+@pytest.mark.parametrize("size", [1e-160, 1e-110, 1e110])
+def test_the_smallest_and_largest_coordinates(tmp_path, size):
+    xy = np.random.default_rng(0).uniform(0, 1, (1500, 2))
+    xy = size * xy[np.hypot(*(xy - 0.5).T) > 0.25]
+    check(tmp_path, with_heights(xy), Grid(0, size, size / 150, size / 150, 150, 150), 60)
 
 
 def of_command(cadt_terrain, *words) -> tuple[np.ndarray, dict, str]:
@@ -331,7 +350,7 @@ def test_a_rim_is_that_of_each_window(triangle):
     assert on.sum() >= 6
     for side in (1, 3, 13):
         for y, x in np.ndindex(14 - side, 14 - side):
-            cells, triangles, _ = part.rim((x - 0.5, y - 0.5, 1.0, 1.0), side, side)
+            cells, triangles, _ = part.rim((-0.5, -0.5, 1.0, 1.0), side, side, x, y)
             assert set(cells.tolist()) == set(np.flatnonzero(on[y : y + side, x : x + side])) and not triangles.any()
 
 

@@ -14,8 +14,8 @@ class Rasterize : public BackendTest {
     Points result;
     for (std::size_t j = 0; j < grid.rows; ++j)
       for (std::size_t i = 0; i < grid.columns; ++i) {
-        result.push_back(grid.x0 + (static_cast<double>(i) + 0.5) * grid.dx);
-        result.push_back(grid.y0 + (static_cast<double>(j) + 0.5) * grid.dy);
+        result.push_back(grid.x0 + (static_cast<double>(grid.first_column + i) + 0.5) * grid.dx);
+        result.push_back(grid.y0 + (static_cast<double>(grid.first_row + j) + 0.5) * grid.dy);
       }
     return result;
   }
@@ -67,6 +67,42 @@ TEST_P(Rasterize, NearestAndNaturalToo) {
   const Grid grid{-0.1, 1.1, 0.05, -0.04, 24, 30};
   for (const Interpolation method : {Interpolation::nearest, Interpolation::natural})
     EXPECT_TRUE(same(queries.rasterize(grid, values, method), queries.interpolate(values, centers(grid), method)));
+}
+
+TEST_P(Rasterize, PartsOfAGridAreThoseOfTheWhole) {
+  // The hull ends on centres of cells: they are outside if they are rounded otherwise.
+  const Grid whole{500000.3, 5400000.7, 0.1, -0.1, 140, 60};
+  for (const double column : {65.0, 131.0, 136.0}) {
+    const double width = whole.x0 + (column + 0.5) * whole.dx - whole.x0, height = 6;
+    Points xy = {0, 0, 1, 0, 0, 1, 1, 1};
+    const Points inside = uniform_points(300, 5);
+    xy.insert(xy.end(), inside.begin(), inside.end());
+    for (std::size_t i = 0; i < xy.size(); i += 2) {
+      xy[i] = whole.x0 + xy[i] * width;
+      xy[i + 1] = whole.y0 - xy[i + 1] * height;
+    }
+    const Triangulation mesh = triangulate(std::span<const double>(xy), GetParam().options());
+    MeshQueries queries(std::span<const double>(xy), mesh, GetParam().options());
+    const auto values = some_values(304);
+    for (const Interpolation method : {Interpolation::linear, Interpolation::natural}) {
+      const auto raster = queries.rasterize(whole, values, method);
+      EXPECT_FALSE(std::isnan(raster[30 * whole.columns + static_cast<std::size_t>(column)]));
+      for (std::size_t row = 0; row < whole.rows; row += 25) {
+        for (std::size_t first = 0; first < whole.columns; first += 33) {
+          Grid part = whole;
+          part.first_row = row, part.first_column = first;
+          part.rows = std::min<std::size_t>(25, whole.rows - row);
+          part.columns = std::min<std::size_t>(33, whole.columns - first);
+          std::vector<double> expected;
+          for (std::size_t j = row; j < row + part.rows; ++j) {
+            const auto from = raster.begin() + static_cast<std::ptrdiff_t>(j * whole.columns + first);
+            expected.insert(expected.end(), from, from + static_cast<std::ptrdiff_t>(part.columns));
+          }
+          ASSERT_TRUE(same(queries.rasterize(part, values, method), expected)) << column << " " << row << " " << first;
+        }
+      }
+    }
+  }
 }
 
 TEST_P(Rasterize, LongEdgesLeaveHoles) {

@@ -62,8 +62,9 @@ TEST_P(WrongInput, Grids) {
   MeshQueries queries(std::span<const double>(xy), mesh, GetParam().options());
   const std::vector<double> values(120, 1.0);
   const double inf = std::numeric_limits<double>::infinity();
-  for (const Grid& grid : {Grid{inf, 0, 1, 1, 2, 2}, Grid{0, std::nan(""), 1, 1, 2, 2}, Grid{0, 0, 0, 1, 2, 2},
-                           Grid{0, 0, 1, 0, 2, 2}, Grid{0, 0, 1e308, 1, 5, 2}})
+  for (const Grid& grid :
+       {Grid{inf, 0, 1, 1, 2, 2}, Grid{0, std::nan(""), 1, 1, 2, 2}, Grid{0, 0, 0, 1, 2, 2}, Grid{0, 0, 1, 0, 2, 2},
+        Grid{0, 0, 1e308, 1, 5, 2}, Grid{0, 0, 1, 1, 2, 2, 0, std::size_t{0} - 1}})
     EXPECT_THROW((void)queries.rasterize(grid, values), InputError);
   EXPECT_THROW((void)queries.rasterize({0, 0, 1, 1, 1u << 16, 1u << 16}, values), LimitError);
   constexpr std::size_t most = std::numeric_limits<std::size_t>::max();

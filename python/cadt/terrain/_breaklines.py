@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 from collections.abc import Sequence
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,7 +73,7 @@ def read_breaklines(path: str, cloud: Cloud, asked: str | None) -> Breaklines:
     except cadt.InputError as error:
         raise FileError(path, f"feature {error.index} (counted from 0) is neither lines nor polygons") from error
     feature = np.repeat(np.arange(len(geometry)), np.diff(of_features))
-    lost = np.flatnonzero(~np.isfinite(xyz[:, :2]).all(axis=1))
+    lost = np.flatnonzero(~np.isfinite(xyz[:, :2]).all(axis=1) | np.isinf(xyz[:, 2]))  # NaN: without a height
     if len(lost):
         line = int(np.searchsorted(offsets, lost[0], side="right")) - 1
         raise FileError(path, f"feature {feature[line]} (counted from 0) has no finite coordinates")
@@ -147,9 +148,11 @@ def _crossing(lines: Breaklines, pairs: Sequence[Sequence[int]]) -> str:
     ends[lines.offsets[1:][np.diff(lines.offsets) > 0] - 1] = True
     begin = np.flatnonzero(~ends)[list(pairs[0])]
     of = _feature_of(lines, begin)
-    (a, c), (b, d) = lines.xyz[begin, :2], lines.xyz[begin + 1, :2]
-    (ux, uy), (vx, vy), (wx, wy) = b - a, d - c, c - a
-    x, y = a + (b - a) * (wx * vy - wy * vx) / (ux * vy - uy * vx)
+    first, last = lines.xyz[begin, :2], lines.xyz[begin + 1, :2]
+    ax, ay, cx, cy, bx, by, dx, dy = (Fraction(v) for v in [*first.flat, *last.flat])
+    ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
+    along = ((cx - ax) * vy - (cy - ay) * vx) / (ux * vy - uy * vx)
+    x, y = float(ax + along * ux), float(ay + along * uy)
     more = f", and so do {len(pairs) - 1} more pairs of segments" if len(pairs) > 1 else ""
     who = f"feature {of[0]} (counted from 0) crosses itself"
     if of[0] != of[1]:

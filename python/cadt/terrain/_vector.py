@@ -82,15 +82,21 @@ def _coordinates(path: str, geometry: NDArray[np.object_], first: int) -> NDArra
     """x, y, z of points in well-known binary; z is NaN where there is none."""
     result = np.full((len(geometry), 3), np.nan)
     sizes = np.fromiter((-1 if g is None else len(g) for g in geometry), np.int64, len(geometry))
-    # Byte order, type, coordinates. Type 1 is a point; 1001, or the highest bit, says that there is a z.
-    for size, words, types in ((21, 2, (1,)), (29, 3, (1001, 0x80000001))):
+    # Byte order, type, coordinates. Type 1 is a point; 1001, or the highest bit, says that there is a z; 2001, or the
+    # next bit, that there is a measure, which is left out; 3001, or both, that there are both.
+    for size, words, types in (
+        (21, 2, (1,)),
+        (29, 3, (1001, 0x80000001)),
+        (29, 2, (2001, 0x40000001)),
+        (37, 3, (3001, 0xC0000001)),
+    ):
         rows = np.flatnonzero(sizes == size)
         if len(rows) == 0:
             continue
         raw = np.frombuffer(b"".join(geometry[rows]), np.uint8).reshape(len(rows), size)
         kind = raw[:, 1:5].copy().view("<u4")[:, 0]
         good = (raw[:, 0] == 1) & np.isin(kind, types)
-        result[rows, :words] = raw[:, 5:].copy().view("<f8")
+        result[rows[good], :words] = raw[good, 5 : 5 + 8 * words].copy().view("<f8")
         sizes[rows[good]] = 0
     bad = np.flatnonzero(sizes != 0)
     if len(bad):

@@ -47,7 +47,8 @@ class Rows:
         with np.errstate(over="ignore"):
             values = np.asarray(rows).astype(self._dtype, copy=True)
         if np.isinf(values).any():
-            raise FileError(self._path, f"a cell has a value that is no {self._dtype}: take --dtype float64")
+            advice = "" if self._dtype == np.float64 else ": take --dtype float64"
+            raise FileError(self._path, f"a cell has a value that is no {self._dtype}{advice}")
         nan = np.isnan(values)
         if not math.isnan(self._nodata):
             if (values == self._nodata).any():

@@ -18,7 +18,7 @@ from ._mesh import check_max_edge, kept_triangles, read, triangulate
 from ._progress import ProgressLine
 from ._vector import check_features, write_features
 from .cloud import Cloud, require_crs
-from .errors import UsageError
+from .errors import FileError, UsageError
 
 FEATURES = ("gpkg", "fgb")
 WRITE_FORMATS = ("ply", "glb", *FEATURES)
@@ -50,7 +50,12 @@ def write_glb(file: IO[bytes], path: str, cloud: Cloud, corners: NDArray[np.int3
     if len(corners) == 0:
         raise UsageError(f"{path}: there are no triangles, without which there is no .glb; write a .ply")
     x0, y0, x1, y1 = cloud.bounds
-    middle = ((x0 + x1) / 2, (y0 + y1) / 2, (float(cloud.z.min()) + float(cloud.z.max())) / 2)
+    low, high = (x0, y0, float(cloud.z.min())), (x1, y1, float(cloud.z.max()))
+    middle = tuple(a / 2 + b / 2 for a, b in zip(low, high))
+    if not max(b - m for b, m in zip(high, middle)) <= float(np.finfo(np.float32).max):
+        raise FileError(path, "the coordinates are too large for the floats of a .glb; write a .ply")
+    if max(b - a for a, b in zip(low, high)) < float(np.finfo(np.float32).tiny):
+        raise FileError(path, "the coordinates are too close together for the floats of a .glb; write a .ply")
     n, bytes_points, bytes_faces = len(cloud), 12 * len(cloud), 12 * len(corners)
     if 1024 + bytes_points + bytes_faces > GLB_LIMIT:
         raise UsageError(

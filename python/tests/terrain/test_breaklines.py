@@ -122,6 +122,18 @@ def test_what_is_refused(las, tmp_path, cadt_terrain):
     cadt_terrain(*base, name, code=3, says="features 0 and 2 (counted from 0) cross at 500037 5400040, and so do 1 more")
     name = write(tmp_path / "self.gpkg", [bank(40), shapely.LineString(AT + [[1, 1], [9, 9], [9, 1], [1, 9]])])
     cadt_terrain(*base, name, code=3, says="feature 1 (counted from 0) crosses itself at 500005 5400005; breaklines")
+    # Along each other but for rounding, as a line that was drawn twice.
+    twice = [
+        shapely.LineString([[49.8950087290269, 84.71137417358769], [59.69363076835749, 94.60659324428221]]),
+        shapely.LineString([[49.89500872902691, 84.7113741735877], [59.69363076835746, 94.60659324428218]]),
+    ]
+    name = write(tmp_path / "twice.gpkg", twice)
+    err = cadt_terrain(*base, name, code=3, says="features 0 and 1 (counted from 0) cross at ").err
+    x, y = (float(word) for word in err.split("cross at ")[1].split(";")[0].split())
+    assert 49 < x < 60 and 84 < y < 95
+    high = shapely.LineString([[*AT, 1], [*(AT + [9, 9]), np.inf]])
+    name = write(tmp_path / "high.gpkg", [bank(40), high])
+    cadt_terrain(*base, name, code=3, says="feature 1 (counted from 0) has no finite coordinates")
     name = write(tmp_path / "point.gpkg", [bank(40), shapely.Point(AT)])
     cadt_terrain(*base, name, code=3, says="feature 1 (counted from 0) is neither lines nor polygons")
     name = write(tmp_path / "utm33.gpkg", [bank(40)], "EPSG:25833")

@@ -84,6 +84,18 @@ def test_a_table_without_geometry(las, tmp_path, cadt_terrain):
     cadt_terrain("raster", *words, code=3, says="has attributes alone, and no lines")
 
 
+def test_points_with_measures(tmp_path):
+    pytest.importorskip("pyarrow", reason="pyarrow is not installed: scripts/python_env terrain")
+    places = [(0, 0, 1), (1, 0, 2), (0, 1, 3)]
+    for kind, words in (("ZM", "{} {} {} 7"), ("Z", "{} {} {}"), ("M", "{} {} 7")):
+        points = shapely.from_wkt([f"POINT {kind} ({words.format(*place)})" for place in places])
+        path = tmp_path / f"{kind}.parquet"
+        geopandas.GeoDataFrame({"h": [1.0, 2.0, 3.0]}, geometry=points, crs=25832).to_parquet(path)
+        for values in ("z", "h") if "Z" in kind else ("h",):
+            cloud = terrain.read_cloud([str(path)], values=values)
+            assert np.column_stack((cloud.xy, cloud.z)).tolist() == [list(map(float, place)) for place in places]
+
+
 def test_columns_of_geoparquet(tmp_path):
     pytest.importorskip("pyarrow", reason="pyarrow is not installed: scripts/python_env terrain")
     path = tmp_path / "p.parquet"

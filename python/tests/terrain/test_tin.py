@@ -41,6 +41,14 @@ def test_ply(las, tmp_path, cadt_terrain):
         assert np.array_equal(meshio.read(tmp_path / "o.ply").cells_dict["triangle"], triangles)
 
 
+def test_glb_has_floats(tmp_path, cadt_terrain):
+    places = np.random.default_rng(1).random((20, 3))
+    for scale, says in ((1e39, "too large"), (1e308, "too large"), (1e-50, "too close together")):
+        np.savetxt(tmp_path / "p.xyz", places * scale)
+        cadt_terrain("tin", "p.xyz", "o.glb", code=3, says=f"the coordinates are {says} for the floats of a .glb")
+    assert not (tmp_path / "o.glb").exists()
+
+
 def test_glb(las, tmp_path, cadt_terrain):
     las("a.laz", hills(1500), crs=None)  # no reference system is needed: a .glb has none
     cadt_terrain("tin", "a.laz", "o.glb", "-q")

@@ -110,6 +110,7 @@ void Camera::limit() {
 }
 
 void Camera::pan(double dx, double dy) {
+  if (dx == 0 && dy == 0) return;
   middle_[0] -= dx / fitted_[0] / magnification_ / first_[0];
   middle_[1] += dy / fitted_[1] / magnification_ / first_[1];
   for (std::size_t k = 0; k < 2; ++k)  // what is seen stays in reach

@@ -11,6 +11,7 @@ namespace cadt::viewer {
 struct Extent {
   std::array<double, 2> low{1, 1}, high{0, 0};
   [[nodiscard]] bool empty() const noexcept { return low[0] > high[0]; }
+  bool operator==(const Extent&) const = default;
 };
 /// Of interleaved coordinates; those that are not finite are left out.
 [[nodiscard]] Extent box_of(std::span<const double> xy);

@@ -10,11 +10,13 @@ namespace {
 
 constexpr double margin_share = 0.015;
 
-/// Quarters of the largest doubles have a finite difference; small coordinates would lose bits by that.
+/// A 256th of the largest doubles leaves room for what is seen around the box from afar; small coordinates would lose
+/// bits by that.
 double factor_before(const Extent& box) {
   double largest = 0;
   for (std::size_t k = 0; k < 2; ++k) largest = std::max({largest, std::fabs(box.low[k]), std::fabs(box.high[k])});
-  return largest > 0.25 * std::numeric_limits<double>::max() ? 0.25 : 1.0;
+  constexpr double factor = 1.0 / 256;
+  return largest > factor * std::numeric_limits<double>::max() ? factor : 1.0;
 }
 
 /// a / b for two spans, either of which may be 0 or subnormal.

@@ -159,7 +159,8 @@ class Changes(WindowTest):
         self.click(*MIDDLE)
         here = self.wait("picked")
         for _ in range(5):
-            self.xdotool("mousemove", *MIDDLE, "click", 1, "mousemove", MIDDLE[0] + 90, MIDDLE[1])
+            # "d" makes a frame, which takes longer than the pointer needs.
+            self.xdotool("mousemove", *MIDDLE, "sleep", 0.3, "key", "d", "click", 1, "mousemove", MIDDLE[0] + 90, MIDDLE[1])
             self.assertEqual(self.wait("picked"), here)
         self.quit()
 

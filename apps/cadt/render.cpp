@@ -25,6 +25,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace cadt::cli {
@@ -36,16 +37,22 @@ struct RenderCommand {
   std::string output, format, size, camera;
   DeviceOptions device;
   GrowthOptions growth;
-  int samples = 2;
+  std::optional<int> samples;
   bool quiet = false;
+
+  [[nodiscard]] viewer::Style pixel_style() const {
+    viewer::Style all = style_of(style);
+    all.samples = samples.value_or(2);
+    return all;
+  }
 };
 
 /// Shapes in a file of them are all alike; what only pixels have is refused there.
 void check_vector_options(const RenderCommand& command, const std::string& format) {
-  const std::pair<const char*, bool> given[] = {{"--camera", !command.camera.empty()},
-                                                {"--colour", !command.style.colour.empty()},
-                                                {"--style", command.style.style != "filled"},
-                                                {"--dark", command.style.dark}};
+  const std::pair<const char*, bool> given[] = {
+      {"--camera", !command.camera.empty()},        {"--colour", !command.style.colour.empty()},
+      {"--style", command.style.style != "filled"}, {"--dark", command.style.dark},
+      {"--no-hull", command.style.no_hull},         {"--samples", command.samples.has_value()}};
   for (const auto& [name, is_given] : given) {
     if (is_given)
       throw Failure(exit_usage, fmt::format("{} is for pictures of pixels, not for .{}: write a .png, or leave it out",
@@ -62,18 +69,14 @@ int run_growth(const RenderCommand& command) {
     throw Failure(exit_usage,
                   "a mesh with segments is not shown as it grows: leave --growth, --fps and --seconds out and write a "
                   "picture, or give the points alone");
-  check_growth(command.growth, command.output);
+  if (command.style.no_hull)
+    throw Failure(exit_usage, "--no-hull: the hull of a growing mesh is not emphasised; leave it out");
+  check_growth(command.growth, command.output, {command.subject.input.path, command.subject.segments.file});
   GrowthView view;
   parse_size(command.size, view.width, view.height, view.most_height);
   view.quiet = command.quiet;
-  view.style = style_of(command.style);
-  view.style.samples = command.samples;
-  if (const std::optional<viewer::View> seen = parse_camera(command.camera)) {
-    view.aim = [seen](viewer::Camera& camera) {
-      camera.look_at(seen->x, seen->y);
-      camera.zoom(seen->magnification, 0.5 * camera.width(), 0.5 * camera.height());
-    };
-  }
+  view.style = command.pixel_style();
+  view.seen = parse_camera(command.camera);
   ProgressLine line(command.quiet);
   const io::PointSet points = read_subject(command.subject, line);
   view.style.colour = colour_of(command.style, points, MeshKind::growing).value_or(viewer::ColourBy::level);
@@ -103,6 +106,13 @@ Output plan_picture(const RenderCommand& command) {
 int draw(const RenderCommand& command, const Output& output, const io::RegionMesh& mesh,
          const viewer::StillOptions& still, ProgressLine& line) {
   check_interrupt();
+  if (still.view) {
+    const viewer::Extent box = viewer::box_of(mesh.xy);
+    viewer::Camera camera(
+        box, still.width,
+        still.height != 0 ? still.height : viewer::Camera::height_for(box, still.width, still.most_height));
+    aim_camera(camera, *still.view);
+  }
   line.step("drawing");
   const auto start = std::chrono::steady_clock::now();
   {
@@ -136,8 +146,7 @@ int run(const RenderCommand& command) {
   viewer::StillOptions still;
   parse_size(command.size, still.width, still.height, still.most_height);
   still.view = parse_camera(command.camera);
-  still.style = style_of(command.style);
-  still.style.samples = command.samples;
+  still.style = command.pixel_style();
   Options options = library_options(command.device);
   options.order = segments ? Order::canonical : Order::fast;  // regions are numbered in the order of triangles
   options.statistics = StatisticsDetail::none;

@@ -8,14 +8,17 @@
 #include "outputs.hpp"
 #include "system.hpp"
 #include "text.hpp"
+#include "viewer_options.hpp"
 
 #include <cadt/io/errors.hpp>
 
 #include "viewer/draw/image_file.hpp"
 #include "viewer/draw/palette.hpp"
 #include "viewer/draw/renderer.hpp"
+#include "viewer/gl/errors.hpp"
 #include "viewer/growth/recording.hpp"
 #include "viewer/growth/video.hpp"
+#include "viewer/still/scene_values.hpp"
 
 #include <fmt/format.h>
 
@@ -33,8 +36,9 @@ namespace {
 namespace fs = std::filesystem;
 using namespace viewer;
 
-constexpr double final_seconds = 1;     // at the end of a film nothing moves
-constexpr double most_pictures = 9999;  // names of frames have four digits
+constexpr double final_seconds = 1;                              // at the end of a film nothing moves
+constexpr double most_pictures = 9999;                           // names of frames have four digits
+constexpr std::size_t most_pixels = (std::size_t{1} << 27) - 1;  // of a sheet: as of one picture
 
 bool is_folder(const std::string& output) {
   std::error_code ignored;
@@ -107,7 +111,9 @@ class GrowthPainter {
     buffers_.write_points(points.xy);
     buffers_.box = box_of(points.xy);
     camera_ = Camera(buffers_.box, width, height);
-    if (view.aim) view.aim(camera_);
+    if (view.seen) aim_camera(camera_, *view.seen);
+    if (style_.colour == ColourBy::height)
+      heights_ = heights_of({points.xy, points.height, recording.triangles(recording.size() - 1), {}});
     show(recording.size() - 1);
     renderer_.fit_ramp(buffers_, style_.colour);
   }
@@ -136,7 +142,7 @@ class GrowthPainter {
       case ColourBy::conflicts:
         return recording_.values(frame, GrowthValue::lost_locks);
       case ColourBy::height:
-        return {points_.height.begin(), points_.height.end()};
+        return heights_;
       case ColourBy::degree: {
         std::vector<float> degrees(points_.xy.size() / 2);
         for (const std::int32_t v : recording_.triangles(frame)) ++degrees[static_cast<std::size_t>(v)];
@@ -153,6 +159,7 @@ class GrowthPainter {
   Renderer renderer_;
   MeshBuffers buffers_;
   Camera camera_;
+  std::vector<float> heights_;
   std::size_t shown_ = 0;  ///< one more than the frame in the buffers
 };
 
@@ -178,15 +185,22 @@ void write_sheet(const io::PointSet& points, const Recording& recording, const s
   const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(panels))));
   const int rows = (panels + columns - 1) / columns, gap = std::max(2, view.width / 100);
   const int width = (view.width - gap * (columns - 1)) / columns;
-  const int height = view.height == 0 ? Camera::height_for(box_of(points.xy), width, view.most_height)
-                                      : (view.height - gap * (rows - 1)) / rows;
+  const auto height_of_row = [&](int all) { return (all - gap * (rows - 1)) / rows; };
+  const int height = view.height == 0 ? Camera::height_for(box_of(points.xy), width, height_of_row(view.most_height))
+                                      : height_of_row(view.height);
   if (width < 1 || height < 1)
     throw Failure(exit_usage, fmt::format("--size: there is no room for {} pictures", panels));
-  Image sheet{columns * width + gap * (columns - 1), rows * height + gap * (rows - 1), {}};
+  Image sheet{view.width, view.height == 0 ? rows * height + gap * (rows - 1) : view.height, {}};
+  const std::size_t pixels = static_cast<std::size_t>(sheet.width) * static_cast<std::size_t>(sheet.height);
+  if (pixels > most_pixels)
+    throw DisplayError(
+        fmt::format("a picture of {} x {} pixels is larger than the {} million pixels that there may be: "
+                    "take a smaller --size",
+                    sheet.width, sheet.height, most_pixels / 1'000'000));
+  sheet.rgba.resize(4 * pixels, 255);
   const std::uint32_t background = palette(view.style.dark).background;
-  for (int i = 0; i < sheet.width * sheet.height; ++i)
-    for (const int byte : {16, 8, 0, -1})
-      sheet.rgba.push_back(byte < 0 ? 255 : static_cast<std::uint8_t>(background >> byte));
+  for (std::size_t i = 0; i < pixels; ++i)
+    for (std::size_t k = 0; k < 3; ++k) sheet.rgba[4 * i + k] = static_cast<std::uint8_t>(background >> (16 - 8 * k));
   GrowthPainter painter(points, recording, view, width, height);
   std::vector<std::vector<std::string>> lines{{"picture", "level", "points", "triangles", "flips", "lost locks",
                                                "deferred points", "waiting edges", "illegal edges"}};
@@ -251,7 +265,7 @@ bool shows_growth(const GrowthOptions& options, const std::string& output) {
   return options.panels != 0 || is_video(output) || is_folder(output);
 }
 
-void check_growth(const GrowthOptions& options, const std::string& output) {
+void check_growth(const GrowthOptions& options, const std::string& output, const std::vector<std::string>& inputs) {
   const bool film = is_video(output), folder = is_folder(output);
   if (options.panels != 0 && (film || folder))
     throw Failure(
@@ -264,16 +278,20 @@ void check_growth(const GrowthOptions& options, const std::string& output) {
   if ((film || folder) && options.fps * options.seconds > most_pictures)
     throw Failure(exit_usage, fmt::format("--fps times --seconds is {:.0f} pictures; take at most {:.0f}",
                                           options.fps * options.seconds, most_pictures));
+  if (!film && !folder) {
+    if (output == "-")
+      throw Failure(exit_usage,
+                    "-o -: standard output has the counters of the growing mesh; name a file for the picture");
+    (void)plan_outputs({output}, {}, {"png"}, inputs);
+    return;
+  }
+  require_no_input(output, inputs);
   if (film) {
     require_writable(output);
     if (!has_ffmpeg())
       throw io::FileError(output, 0,
                           "needs the program ffmpeg, which is not on the path: install it, or write the frames as "
                           "pictures, as in -o frames/");
-    return;
-  }
-  if (!folder) {
-    require_writable(output);
     return;
   }
   std::error_code code;
@@ -314,9 +332,10 @@ int render_growth(const io::PointSet& points, const Options& options, const std:
     write_sheet(points, recording, output, growth.panels, view, line);
     return exit_done;
   }
-  const int width = std::max(2, view.width & ~1);  // most films need even sizes
-  const int height = std::max(
-      2, (view.height == 0 ? Camera::height_for(box_of(points.xy), width, view.most_height) : view.height) & ~1);
+  const int even = is_video(output) ? ~1 : ~0;  // most films need even sizes
+  const int width = view.width & even;
+  const int height =
+      (view.height == 0 ? Camera::height_for(box_of(points.xy), width, view.most_height) : view.height) & even;
   GrowthPainter painter(points, recording, view, width, height);
   if (!is_video(output)) {
     FrameFolder folder(output);

@@ -130,4 +130,11 @@ std::optional<viewer::View> parse_camera(const std::string& text) {
   return viewer::View{number[0], number[1], number[2]};
 }
 
+void aim_camera(viewer::Camera& camera, const viewer::View& view) {
+  viewer::aim(camera, view);
+  if (const double reached = camera.magnification(); reached != view.magnification)
+    throw Failure(exit_usage, fmt::format("--camera: there is no magnification {} in that place; the nearest is {}",
+                                          view.magnification, reached));
+}
+
 }  // namespace cadt::cli

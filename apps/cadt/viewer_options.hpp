@@ -60,5 +60,7 @@ enum class MeshKind { points, segments, growing };
 void parse_size(const std::string& text, int& width, int& height, int& most_height);
 /// "x,y,magnification"; not set if empty. Throws Failure (usage).
 [[nodiscard]] std::optional<viewer::View> parse_camera(const std::string& text);
+/// Throws Failure (usage) for a magnification that the camera does not reach there.
+void aim_camera(viewer::Camera& camera, const viewer::View& view);
 
 }  // namespace cadt::cli

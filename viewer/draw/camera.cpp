@@ -10,11 +10,13 @@ namespace {
 
 constexpr double margin_share = 0.015;
 
-/// Quarters of the largest doubles have a finite difference; small coordinates would lose bits by that.
+/// A 256th of the largest doubles leaves room for what is seen around the box from afar; small coordinates would lose
+/// bits by that.
 double factor_before(const Extent& box) {
   double largest = 0;
   for (std::size_t k = 0; k < 2; ++k) largest = std::max({largest, std::fabs(box.low[k]), std::fabs(box.high[k])});
-  return largest > 0.25 * std::numeric_limits<double>::max() ? 0.25 : 1.0;
+  constexpr double factor = 1.0 / 256;
+  return largest > factor * std::numeric_limits<double>::max() ? factor : 1.0;
 }
 
 /// a / b for two spans, either of which may be 0 or subnormal.
@@ -110,6 +112,7 @@ void Camera::limit() {
 }
 
 void Camera::pan(double dx, double dy) {
+  if (dx == 0 && dy == 0) return;
   middle_[0] -= dx / fitted_[0] / magnification_ / first_[0];
   middle_[1] += dy / fitted_[1] / magnification_ / first_[1];
   for (std::size_t k = 0; k < 2; ++k)  // what is seen stays in reach

@@ -11,6 +11,7 @@ namespace cadt::viewer {
 struct Extent {
   std::array<double, 2> low{1, 1}, high{0, 0};
   [[nodiscard]] bool empty() const noexcept { return low[0] > high[0]; }
+  bool operator==(const Extent&) const = default;
 };
 /// Of interleaved coordinates; those that are not finite are left out.
 [[nodiscard]] Extent box_of(std::span<const double> xy);
@@ -34,12 +35,12 @@ class Camera {
   [[nodiscard]] static int height_for(const Extent& box, int width, int most);
 
   void resize(int width, int height);
-  /// Moves what is seen by so many pixels, x right and y down.
+  /// Moves what is seen by so many pixels, x right and y down; the middle stays within the box.
   void pan(double dx, double dy);
   /// Makes everything `factor` times as large; the place at pixel (x, y) stays. Between 1/16 of the fitted view and the
   /// size at which coordinates differ by a tenth of a pixel.
   void zoom(double factor, double x, double y);
-  /// Moves the place to the middle.
+  /// Moves the place to the middle, also one outside of the box.
   void look_at(double x, double y);
 
   [[nodiscard]] int width() const noexcept { return width_; }

@@ -20,9 +20,8 @@ namespace {
 /// Relative heights, of the upper sheet if there are two, and the triangles that are no ground.
 void prepare_heights(Renderer& renderer, const Scene& scene) {
   using namespace io::picture;
-  std::vector<float> heights = relative_heights(scene);
+  std::vector<float> heights = heights_of(scene);
   show_upper_sheet(scene, heights);
-  if (heights.empty()) heights.assign(scene.points(), 0.0f);
   renderer.set_values(heights);
   constexpr int width = 1600;
   const Viewport view(scene.xy, width, 4000);
@@ -48,6 +47,12 @@ std::vector<float> colours_of_regions(const Scene& scene) {
 Segment ascending(std::int32_t a, std::int32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
 }  // namespace
+
+std::vector<float> heights_of(const Scene& scene) {
+  std::vector<float> heights = io::picture::relative_heights(scene);
+  if (heights.empty()) heights.assign(scene.points(), 0.0f);
+  return heights;
+}
 
 ColourBy usual_colour(const Scene& scene) {
   const bool regions = std::ranges::adjacent_find(scene.region, std::not_equal_to()) != scene.region.end();

@@ -7,6 +7,11 @@
 
 namespace cadt::viewer {
 
+void aim(Camera& camera, const View& view) {
+  camera.look_at(view.x, view.y);
+  camera.zoom(view.magnification, 0.5 * camera.width(), 0.5 * camera.height());
+}
+
 Image draw_still(const io::RegionMesh& mesh, const StillOptions& options) {
   const gl::HeadlessContext context;
   Renderer renderer;
@@ -16,10 +21,7 @@ Image draw_still(const io::RegionMesh& mesh, const StillOptions& options) {
   const int height =
       options.height != 0 ? options.height : Camera::height_for(buffers.box, options.width, options.most_height);
   Camera camera(buffers.box, options.width, height);
-  if (options.view) {
-    camera.look_at(options.view->x, options.view->y);
-    camera.zoom(options.view->magnification, 0.5 * camera.width(), 0.5 * camera.height());
-  }
+  if (options.view) aim(camera, *options.view);
   Style style = options.style;
   style.colour = options.colour ? *options.colour : usual_colour(scene);
   renderer.update(buffers);

@@ -15,6 +15,9 @@ struct View {
   double x = 0, y = 0, magnification = 1;
 };
 
+/// The camera, which shows the whole mesh, turns to that; its magnification is the nearest that it reaches there.
+void aim(Camera& camera, const View& view);
+
 struct StillOptions {
   int width = 1600;
   int height = 0;                  ///< 0: as the box of the points needs, at most `most_height`

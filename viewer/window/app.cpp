@@ -83,10 +83,8 @@ void App::session() {
   window->listen(events_for(*this));
   look_ = {-1, -1, -1, -1};
   loaded.reset();
-  selection = {};
   hovered.reset();
-  selected.reset();
-  selected_place.reset();
+  mark({});
   values_of_.reset();
   diagram_.reset();
   drawn_.clear();
@@ -171,6 +169,7 @@ void App::restart() {
 
 void App::start_loading() {
   restart_asked_ = false;
+  stop_editing();  // before the mesher goes
   if (!open_way()) return;
   asking.cancel();
   const Source& source = options.sources[current];
@@ -237,16 +236,14 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   editing.reset();
   growing.reset();
   points_stale_ = false;
-  s.mesh = {};  // first: both may not fit
+  s.mesh = {};                                           // first: both may not fit
+  s.mesh = MeshBuffers::with_room(next->points.size());  // also for points that are edited
+  s.mesh.write_points(next->points.xy);
   if (next->mesh) {
-    s.mesh = MeshBuffers::with_room(next->points.size());  // also for points that are edited
-    s.mesh.write_points(next->points.xy);
     s.mesh.write_triangles(next->triangles());
     if (next->inside) s.mesh.write_edges(next->inside->edges);
     triangulate_milliseconds = next->mesh_milliseconds;
   } else {
-    s.mesh = MeshBuffers::with_room(next->points.size());
-    s.mesh.write_points(next->points.xy);
     s.mesh.bytes_through_host = 0;  // the points of a file come from there; what counts is the mesh
     s.mesher->options() = options.compute;
     const auto start = Clock::now();
@@ -259,7 +256,10 @@ void App::show(const std::shared_ptr<Loaded>& next) {
   hovered.reset();
   diagram_.reset();
   voronoi_note.clear();
-  if (!same) view.show(s.mesh.box, s.mesh.point_count, !loaded->heights.empty());
+  if (same && view.box() == s.mesh.box)
+    view.renew(s.mesh.box, s.mesh.point_count);
+  else
+    view.show(s.mesh.box, s.mesh.point_count, !loaded->heights.empty());
   offer_colours();
   if (loaded->inside) view.voronoi = false;
   if (std::find(view.colours.begin(), view.colours.end(), view.colour) == view.colours.end())

@@ -30,7 +30,13 @@ void App::start_editing() {
   if (scene->mesher == nullptr) next->own = std::make_unique<Mesher>(options.compute, Interop::copy);
   next->mesher = next->own != nullptr ? next->own.get() : scene->mesher.get();
   next->mesher->options().tuning = options.compute.tuning;
-  next->points = std::make_unique<LivePoints>(scene->mesh);
+  try {
+    next->points = std::make_unique<LivePoints>(scene->mesh);
+  } catch (const InputError&) {
+    report({"These points cannot be edited",
+            "Points move and are edited in a box that has a size and is no wider than the largest double.", "", false});
+    return;
+  }
   next->last = Clock::now();
   editing = std::move(next);
   view.colours = {ColourBy::nothing, ColourBy::angle, ColourBy::area, ColourBy::order};
@@ -55,6 +61,13 @@ void App::take_points_back() {
   const auto now = std::make_shared<Loaded>(*loaded);
   now->points.height.clear();
   now->points.xy = scene->mesh.points.read_values<double>(2 * scene->mesh.point_count);
+  // The box grows alone: there is room for others where some were erased.
+  const Extent box = box_of(now->points.xy);
+  for (std::size_t k = 0; k < 2 && scene->mesh.point_count != 0; ++k) {
+    scene->mesh.box.low[k] = std::min(scene->mesh.box.low[k], box.low[k]);
+    scene->mesh.box.high[k] = std::max(scene->mesh.box.high[k], box.high[k]);
+  }
+  view.renew(scene->mesh.box, scene->mesh.point_count);
   now->heights.clear();
   now->mesh.reset();
   loaded = now;

@@ -15,7 +15,11 @@ constexpr std::size_t most_bytes = std::size_t{1} << 30;
 }  // namespace
 
 void App::start_growing() {
-  if (loaded == nullptr || loading.running() || scene->mesh.triangle_count == 0) return;
+  if (loaded == nullptr || loading.running()) return;
+  if (scene->mesh.triangle_count == 0) {
+    report({"There is nothing that grows", "The points are fewer than three, or on one line.", "", false});
+    return;
+  }
   if (editing != nullptr) stop_editing();
   asking.abandon();
   asked_.reset();

@@ -18,13 +18,32 @@ double angle_between(const Place& a, const Place& b) {
   return std::atan2(std::fabs(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi;
 }
 
+/// The corners times 2 to the -exponent, so that no side is longer than about 4: products neither vanish nor overflow.
+struct Scaled {
+  std::array<Place, 3> corners;
+  int exponent = 0;
+
+  explicit Scaled(const std::array<Place, 3>& given) : corners(given) {
+    double largest = 0;  // halves: the difference of two doubles may be more than the largest one
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto [low, high] = std::minmax({given[0][k], given[1][k], given[2][k]});
+      largest = std::max(largest, 0.5 * high - 0.5 * low);
+    }
+    std::frexp(largest, &exponent);
+    for (Place& corner : corners) corner = {std::ldexp(corner[0], -exponent), std::ldexp(corner[1], -exponent)};
+  }
+};
+
 }  // namespace
 
 std::optional<Circle> circumcircle(const std::array<Place, 3>& corners) {
-  const Place u = minus(corners[1], corners[0]), v = minus(corners[2], corners[0]);
+  const Scaled scaled(corners);
+  const Place u = minus(scaled.corners[1], scaled.corners[0]), v = minus(scaled.corners[2], scaled.corners[0]);
   const double twice = 2 * cross(u, v), uu = dot(u, u), vv = dot(v, v);
   const Place offset{(v[1] * uu - u[1] * vv) / twice, (u[0] * vv - v[0] * uu) / twice};
-  const Circle circle{{corners[0][0] + offset[0], corners[0][1] + offset[1]}, std::hypot(offset[0], offset[1])};
+  const auto back = [&](double value) { return std::ldexp(value, scaled.exponent); };
+  const Circle circle{{corners[0][0] + back(offset[0]), corners[0][1] + back(offset[1])},
+                      back(std::hypot(offset[0], offset[1]))};
   if (!std::isfinite(circle.centre[0]) || !std::isfinite(circle.centre[1]) || !std::isfinite(circle.radius))
     return std::nullopt;
   return circle;
@@ -37,9 +56,10 @@ TriangleFacts facts_of(std::size_t index, const std::array<std::int32_t, 3>& poi
   facts.points = points;
   facts.corners = corners;
   facts.circle = circumcircle(corners);
-  const Place ab = minus(corners[1], corners[0]), bc = minus(corners[2], corners[1]),
-              ca = minus(corners[0], corners[2]);
-  facts.area = 0.5 * std::fabs(cross(ab, ca));
+  const Scaled scaled(corners);
+  const auto& [a, b, c] = scaled.corners;
+  const Place ab = minus(b, a), bc = minus(c, b), ca = minus(a, c);
+  facts.area = std::ldexp(0.5 * std::fabs(cross(ab, ca)), 2 * scaled.exponent);
   facts.smallest_angle = std::min(
       {angle_between(ab, {-ca[0], -ca[1]}), angle_between(bc, {-ab[0], -ab[1]}), angle_between(ca, {-bc[0], -bc[1]})});
   return facts;

@@ -18,6 +18,7 @@ constexpr double click_reach = 4;
 
 struct Drag {
   bool down = false, moved = false, edits = false;
+  int button = 0;
   double x = 0, y = 0;
 };
 
@@ -56,8 +57,9 @@ Events events_for(App& app) {
   };
   events.button = [&app, drag](int button, bool down, int, double x, double y) {
     const bool left = button == GLFW_MOUSE_BUTTON_LEFT;
+    if (drag->down && button != drag->button) return;  // one drag at a time
     if (down) {
-      *drag = {!ImGui::GetIO().WantCaptureMouse && app.over_mesh(x, y), false, false, x, y};
+      *drag = {!ImGui::GetIO().WantCaptureMouse && app.over_mesh(x, y), false, false, button, x, y};
       if (drag->down && left) app.guarded([&] { drag->edits = app.press(x, y); });
       return;
     }

@@ -98,6 +98,17 @@ void ViewState::show(const Extent& box, std::size_t points, bool has_heights) {
   if (std::find(colours.begin(), colours.end(), colour) == colours.end()) colour = ColourBy::area;
 }
 
+void ViewState::renew(const Extent& box, std::size_t points) {
+  points_ = points;
+  if (box == box_) return;
+  box_ = box;
+  const double x = 0.5 * camera.width(), y = 0.5 * camera.height(), before = camera.scale();
+  const auto middle = camera.place(x, y);
+  camera = Camera(box, camera.width(), camera.height());
+  camera.look_at(middle[0], middle[1]);
+  if (const double larger = before / camera.scale(); larger > 0 && std::isfinite(larger)) camera.zoom(larger, x, y);
+}
+
 void ViewState::resize(int width, int height) { camera.resize(width, height); }
 
 void ViewState::go_to(double x, double y, double size) {

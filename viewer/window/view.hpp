@@ -38,6 +38,8 @@ class ViewState {
   void wheel(double steps, double x, double y);
   /// A new mesh: everything in view.
   void show(const Extent& box, std::size_t points, bool has_heights);
+  /// Other points; what is seen stays.
+  void renew(const Extent& box, std::size_t points);
   /// Another size of the picture; what is seen stays.
   void resize(int width, int height);
   /// A place to the middle, so large that `size` (a length of the plane) takes about a third of the picture; 0: only

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <utility>
 
 namespace cadt::viewer {
@@ -37,6 +38,7 @@ struct Window::Handles {
   bool glfw = false, imgui = false, backends = false, events = false;
   Events listener;
   std::array<int, 4> before_full_screen{};
+  std::optional<std::array<double, 2>> pointer;  ///< where it was at the event: it may have moved on since
 
   ~Handles() {
     if (backends) {
@@ -61,6 +63,7 @@ struct Window::Handles {
     glfwGetCursorPos(window, &x, &y);
     return in_picture(x, y);
   }
+  [[nodiscard]] std::array<double, 2> place_of_event() const { return pointer ? *pointer : cursor(); }
   [[nodiscard]] int modifiers() const {
     const auto down = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
     return (down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT) ? GLFW_MOD_SHIFT : 0) |
@@ -80,17 +83,18 @@ struct Window::Handles {
     });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int modifiers) {
       of(w).events = true;
-      const auto [x, y] = of(w).cursor();
+      const auto [x, y] = of(w).place_of_event();
       if (of(w).listener.button) of(w).listener.button(button, action == GLFW_PRESS, modifiers, x, y);
     });
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
       of(w).events = true;
-      const auto [px, py] = of(w).in_picture(x, y);
+      of(w).pointer = of(w).in_picture(x, y);
+      const auto [px, py] = *of(w).pointer;
       if (of(w).listener.move) of(w).listener.move(px, py);
     });
     glfwSetScrollCallback(window, [](GLFWwindow* w, double dx, double dy) {
       of(w).events = true;
-      const auto [x, y] = of(w).cursor();
+      const auto [x, y] = of(w).place_of_event();
       if (of(w).listener.scroll) of(w).listener.scroll(dx, dy, of(w).modifiers(), x, y);
     });
     const auto touched = [](GLFWwindow* w, int) { of(w).events = true; };

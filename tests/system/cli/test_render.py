@@ -42,6 +42,17 @@ class RenderTest(CliTest):
         self.cadt("render", "p.xy", "-o", "near.png", "--size", "101x101", "--camera", "20,20,30", "-q", "--no-hull")
         self.assertNotIn(PAPER, colours(self.path("near.png")))
 
+    def test_camera_shows_places_outside_of_the_points(self):
+        self.write("p.xy", "0 0\n100 0\n0 100\n100 100\n")
+        self.cadt("render", "p.xy", "-o", "a.png", "--size", "101x101", "--camera", "100,50,1", "-q")
+        rows = png_rows(self.path("a.png"))
+        self.assertNotEqual(rows[50][:3], PAPER)
+        self.assertEqual(rows[50][3 * 70:3 * 71], PAPER)
+        self.cadt("render", "p.xy", "-o", "a.png", "--size", "101x101", "--camera", "300,50,1", "-q")
+        self.assertEqual(colours(self.path("a.png")), {PAPER})
+        for camera, nearest in (("50,50,1e-3", "0.0625"), ("50,50,1e40", "e+")):
+            self.fails(2, "render", "p.xy", "-o", "b.png", "--camera", camera, says=("--camera", nearest))
+
     def test_svg_and_pdf(self):
         self.cadt("render", "--generate", "uniform", "-n", 300, "-o", "a.svg", "--size", 400)
         self.assertIn("viewBox=\"0 0 400", self.path("a.svg").read_text())
@@ -221,7 +232,8 @@ class RenderErrorTest(CliTest):
         self.fails(2, *uniform, "--colour", "blue")
         self.fails(2, *uniform, "--colour", "height", says="third column")
         self.fails(2, *uniform, "--colour", "flips", says="grows")
-        self.fails(2, *uniform[:-1], "a.svg", "--dark", says=".svg")
+        for options in (["--dark"], ["--no-hull"], ["--samples", 2]):
+            self.fails(2, *uniform[:-1], "a.svg", *options, says=(options[0], ".svg"))
         self.fails(2, *uniform[:-1], "a.jpg", says="png, svg, pdf")
         self.assertEqual(self.names(), [])
 

@@ -52,11 +52,38 @@ class GrowthSheetTest(CliTest):
         for colour in ("level", "flips", "conflicts", "degree", "area", "nothing"):
             self.cadt("render", "--generate", "circles", "-n", 500, "-o", f"{colour}.png", "--growth", 3, "--size", "300x200",
                       "--colour", colour, "--backend", "host", "-q")
-            width, height = png_size(self.path(f"{colour}.png"))
-            self.assertTrue(298 <= width <= 300 and 198 <= height <= 200, (width, height))
+            self.assertEqual(png_size(self.path(f"{colour}.png")), (300, 200))
         self.assertNotEqual(self.path("flips.png").read_bytes(), self.path("level.png").read_bytes())
 
+    def test_sizes_of_sheets(self):
+        self.write("high.xy", "0 0\n1 0\n0 9\n1 9\n0.5 4\n")
+        self.cadt("render", "high.xy", "-o", "a.png", "--growth", 4, "-q")
+        width, height = png_size(self.path("a.png"))
+        self.assertEqual(width, 1600)
+        self.assertTrue(3900 < height <= 4000, height)
+        self.cadt("render", "high.xy", "-o", "a.png", "--growth", 7, "--size", "101x97", "-q")
+        self.assertEqual(png_size(self.path("a.png")), (101, 97))
+        self.fails(5, "render", "high.xy", "-o", "b.png", "--growth", 100, "--size", "16384x16384", "--samples", 1, says="--size")
+        self.assertEqual(self.names(), ["a.png", "high.xy"])
+
+    def test_heights_of_which_floats_see_no_difference(self):
+        for name, base in (("low", 0), ("high", 2**27)):
+            self.write(f"{name}.xyz", "".join(f"{x} {y} {base + (7 * x + 3 * y) % 5}\n" for x in range(8) for y in range(8)))
+            self.cadt("render", f"{name}.xyz", "-o", f"{name}.png", "--growth", 1, "--size", 90, "--colour", "height", "-q")
+        self.assertEqual(self.path("low.png").read_bytes(), self.path("high.png").read_bytes())
+
+    def test_the_output_is_no_input(self):
+        for name in ("in.png", "in.gif"):
+            self.write(name, "0 0\n1 0\n0 1\n")
+            growth = ["--growth", 2] if name == "in.png" else []
+            self.fails(2, "render", "-f", "xy", name, "-o", name, *growth, says="this is the input")
+            self.assertEqual(self.path(name).read_text(), "0 0\n1 0\n0 1\n")
+
     def test_what_does_not_go_together(self):
+        for name, says in (("a.svg", "png"), ("a.jpg", "png"), ("a", "png"), ("-", "name a file")):
+            self.fails(2, "render", "--generate", "uniform", "-o", name, "--growth", 2, says=says)
+        self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--growth", 2, "--no-hull", says="--no-hull")
+        self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--growth", 2, "--camera", "0.5,0.5,1e-3", says="0.0625")
         self.fails(2, "render", "--generate", "uniform", "-o", "a.mp4", "--growth", 4, says=("--growth is for a picture", "growth.png"))
         self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--fps", 10, says="-o growth.mp4")
         self.fails(2, "render", "--generate", "uniform", "-o", "a.png", "--growth", 4, "--seconds", 3, says="frames/")
@@ -84,6 +111,10 @@ class GrowthFilmTest(CliTest):
         self.assertGreater(len(set(pictures)), 5, "it does not move")
         self.assertEqual(pictures[-1], pictures[-2], "the end stands still")
         self.fails(3, "render", "--generate", "uniform", "-n", 300, "-o", "frames", says="has frames already")
+
+    def test_frames_have_the_size_that_is_asked_for(self):
+        self.cadt("render", "--generate", "uniform", "-n", 99, "-o", "odd/", "--size", "65x49", "--fps", 1, "--seconds", 1, "-q")
+        self.assertEqual(png_size(self.path("odd") / "0001.png"), (65, 49))
 
     def interrupted(self, folder):
         """Begins ten minutes of frames, and ends it when there are some."""

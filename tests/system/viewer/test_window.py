@@ -91,6 +91,93 @@ class Session(WindowTest):
         self.quit()
 
 
+class Changes(WindowTest):
+    """Points that change, and what the window shows then."""
+
+    def test_a_file_that_lies_elsewhere_now(self):
+        lattice = [(x, y) for x in range(12) for y in range(12)]
+        write = lambda at: (self.folder / "p.xy").write_text("".join(f"{x + at} {y + at}\n" for x, y in lattice))
+        write(0)
+        self.view("p.xy", "--size", SIZE)
+        self.wait("loaded p.xy")
+        first = self.screenshot()
+        write(1000)
+        self.key("r")
+        self.wait("loaded p.xy")
+        self.assertLess(difference(first, self.screenshot()), 2.0, "the same points elsewhere")
+        self.quit()
+
+    def test_loading_ends_editing(self):
+        self.view("--generate", "uniform", "-n", 300, "--size", SIZE)
+        self.wait("loaded")
+        self.key("m")
+        self.wait("editing")
+        self.key("r")
+        self.wait("edited")
+        self.wait("loaded")
+        self.quit()
+
+    def test_a_point_outside_of_the_first_box(self):
+        (self.folder / "p.xy").write_text("0 0\n1 0\n0 1\n1 1\n0.5 0.5\n")
+        self.view("p.xy", "--size", SIZE)
+        self.wait("loaded p.xy")
+        self.key("minus", "minus", "minus", "e")
+        self.wait("editing")
+        self.drag([MIDDLE, (MIDDLE[0] + 150, MIDDLE[1]), (MIDDLE[0] + 300, MIDDLE[1])])
+        self.wait("holds point 4")
+        self.wait("edited")
+        self.key("e")
+        self.wait("edited")
+        self.key("f")
+        self.wait("ready")
+        self.key("slash")
+        self.xdotool("type", "--delay", 20, "p 4")
+        self.key("Return")
+        self.wait("went to point 4")
+        self.click(MIDDLE[0] - 3, MIDDLE[1])
+        self.assertIn("point 4", self.wait("picked"), "it is in the middle")
+        self.quit()
+
+    def test_a_second_button_does_not_end_a_drag(self):
+        self.view("--generate", "uniform", "-n", 300, "--size", SIZE)
+        self.wait("loaded")
+        self.key("e")
+        self.wait("editing")
+        x, y = MIDDLE
+        self.xdotool("mousemove", x, y, "sleep", 0.1, "mousedown", 1)
+        self.wait("holds point")
+        self.xdotool("click", 3, "sleep", 0.2)
+        self.assertFalse([line for line in self.seen if line.startswith("edited")])
+        self.xdotool("mousemove", x + 40, y, "sleep", 0.2, "mouseup", 1)
+        self.wait("edited")
+        self.assertEqual(sum(line.startswith("holds") for line in self.seen), 1)
+        self.quit()
+
+    def test_a_click_is_where_the_pointer_was(self):
+        self.view("--generate", "uniform", "-n", 20000, "--size", SIZE)
+        self.wait("loaded")
+        self.click(*MIDDLE)
+        here = self.wait("picked")
+        for _ in range(5):
+            # "d" makes a frame, which takes longer than the pointer needs.
+            self.xdotool("mousemove", *MIDDLE, "sleep", 0.3, "key", "d", "click", 1, "mousemove", MIDDLE[0] + 90, MIDDLE[1])
+            self.assertEqual(self.wait("picked"), here)
+        self.quit()
+
+    def test_what_does_not_grow_and_cannot_be_edited(self):
+        (self.folder / "line.xy").write_text("0 0\n1 1\n2 2\n")
+        (self.folder / "wide.xy").write_text("-1.7e308 0\n1.7e308 0\n0 1e308\n")
+        self.view("line.xy", "wide.xy", "--size", SIZE)
+        self.wait("loaded line.xy")
+        self.key("g")
+        self.assertIn("on one line", self.wait("message There is nothing that grows"))
+        self.key("Escape", "Next")
+        self.wait("loaded wide.xy")
+        self.key("e")
+        self.wait("message These points cannot be edited")
+        self.quit()
+
+
 class Look(WindowTest):
     """Dark and light, the panel, help, sizes of text."""
 

@@ -59,6 +59,17 @@ TEST(Camera, PanMovesByPixels) {
   EXPECT_GE(camera.pixel(0.5, 0.5)[0], 0) << "the points stay in reach";
 }
 
+TEST(Camera, SeesTheLargestDoublesFromAfar) {
+  for (const double largest : {1.7e308, 4e307, 7e305}) {
+    Camera camera(Extent{{-largest, -largest}, {largest, largest}}, 900, 200);
+    const auto before = camera.pixel(largest, largest);
+    camera.zoom(1.0 / 16, 450, 100);
+    const auto p = camera.pixel(largest, largest);
+    EXPECT_NEAR(p[0], 450 + (before[0] - 450) / 16, 1e-6) << largest;
+    EXPECT_NEAR(p[1], 100 + (before[1] - 100) / 16, 1e-6) << largest;
+  }
+}
+
 TEST(Camera, ZoomEndsWhereCoordinatesEnd) {
   Camera camera(Extent{{500000, 4100000}, {500100, 4100100}}, 300, 300);
   for (int i = 0; i < 200; ++i) camera.zoom(2, 150, 150);

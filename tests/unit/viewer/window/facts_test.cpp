@@ -22,6 +22,20 @@ TEST(Facts, OfARightTriangle) {
   EXPECT_NEAR(facts.smallest_angle, std::atan2(3, 4) * 180 / 3.14159265358979, 1e-9);
 }
 
+TEST(Facts, OfTrianglesOfAnySize) {
+  for (const double s : {1e-300, 1e-170, 1e-110, 1e110, 1e160, 4e307}) {
+    const TriangleFacts facts = facts_of(0, {0, 1, 2}, {Place{-2 * s, 0}, Place{2 * s, 0}, Place{-2 * s, 3 * s}});
+    ASSERT_TRUE(facts.circle) << s;
+    EXPECT_NEAR(facts.circle->centre[0] / s, 0, 1e-12) << s;
+    EXPECT_DOUBLE_EQ(facts.circle->centre[1], 1.5 * s);
+    EXPECT_DOUBLE_EQ(facts.circle->radius, 2.5 * s);
+    EXPECT_NEAR(facts.smallest_angle, std::atan2(3, 4) * 180 / 3.14159265358979, 1e-9) << s;
+    if (s > 1e-150 && s < 1e150) {
+      EXPECT_NEAR(facts.area / s / s, 6, 1e-12);
+    }
+  }
+}
+
 TEST(Facts, AreWrittenWithAllDigits) {
   TriangleFacts facts = facts_of(5, {7, 8, 9}, {Place{0.1, 0}, Place{500000.123456789, 0}, Place{0, 3}});
   auto lines = lines_of(facts);

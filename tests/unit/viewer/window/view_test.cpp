@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 namespace cadt::viewer {
 namespace {
@@ -30,6 +31,11 @@ TEST(Commands, HaveKeysThatNoOtherHas) {
   }
 }
 
+TEST(Commands, AreThoseOfBothCases) {
+  for (const char32_t c : std::u32string_view(U"fchvdirgetmpq"))
+    EXPECT_EQ(command_of(c), command_of(c - 32)) << static_cast<char>(c);
+}
+
 TEST(Commands, AreAllInTheTable) {
   std::set<Command> all;
   for (const Binding& b : bindings()) EXPECT_TRUE(all.insert(b.command).second) << b.name;
@@ -46,6 +52,22 @@ TEST(View, ZoomsToTheCursor) {
   const auto after = view.camera.place(200, 150);
   EXPECT_NEAR(after[0], before[0], 1e-12);
   EXPECT_NEAR(after[1], before[1], 1e-12);
+}
+
+TEST(View, StaysWithOtherPoints) {
+  ViewState view = shown();
+  view.wheel(3, 200, 150);
+  const auto low = view.camera.place(0, 600), high = view.camera.place(800, 0);
+  view.renew(Extent{{-2, 0}, {1, 5}}, 500);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(view.camera.place(0, 600)[k], low[k], 1e-9);
+    EXPECT_NEAR(view.camera.place(800, 0)[k], high[k], 1e-9);
+  }
+  view.go_to(-2, 5, 0.01);
+  EXPECT_NEAR(view.camera.place(400, 300)[0], -2, 1e-9);
+  ASSERT_TRUE(view.apply(Command::fit));
+  const auto corner = view.camera.pixel(-2, 5);
+  EXPECT_TRUE(corner[0] > 0 && corner[1] > 0 && corner[1] < 20) << "all of them are seen";
 }
 
 TEST(View, ArrowsMoveAndFitComesBack) {

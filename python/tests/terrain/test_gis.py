@@ -94,6 +94,8 @@ def test_points_with_measures(tmp_path):
         for values in ("z", "h") if "Z" in kind else ("h",):
             cloud = terrain.read_cloud([str(path)], values=values)
             assert np.column_stack((cloud.xy, cloud.z)).tolist() == [list(map(float, place)) for place in places]
+    with pytest.raises(terrain.FileError, match="M.parquet"):  # a measure is no height
+        terrain.read_cloud([str(tmp_path / "M.parquet")])
 
 
 def test_columns_of_geoparquet(tmp_path):

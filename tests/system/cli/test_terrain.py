@@ -58,7 +58,7 @@ class TerrainHandOver(CliTest):
         self.assertIn("d.asc", self.names())
         self.assertIn("cadt raster scan.laz", self.cadt("raster", "--help").out)
         self.fails(2, "triangulate", "p.xyz", "-o", "m.tif", says="unknown suffix '.tif'")
-        self.fails(2, "contours", says="contour, tin")
+        self.fails(2, "contours", says="did you mean contour?")
 
     def test_the_one_beside_the_program_comes_first(self):
         self.install("path")

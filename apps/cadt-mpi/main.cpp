@@ -14,6 +14,7 @@
 
 #include <csignal>
 #include <memory>
+#include <string>
 
 namespace {
 
@@ -42,7 +43,10 @@ void parse(int argc, char** argv, bool print_help, RankAction& action) {
     if (print_help) app.exit(e);
     return;
   } catch (const CLI::ParseError& e) {
-    throw Failure(exit_usage, fmt::format("{}; see: cadt-mpi tiles --help", e.what()));
+    const auto chosen = app.get_subcommands();
+    const std::string what =
+        chosen.empty() ? explain(e, app, "cadt-mpi") : explain(e, *chosen.front(), "cadt-mpi tiles");
+    throw Failure(exit_usage, fmt::format("{}; see: cadt-mpi tiles --help", what));
   }
   if (!action) throw Failure(exit_usage, "a command is missing; see: cadt-mpi --help");
 }

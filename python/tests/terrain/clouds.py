@@ -10,6 +10,7 @@ import cadt
 import laspy
 import numpy as np
 import pyproj
+from cadt.terrain.grid import Grid
 
 PACKAGES = str(pathlib.Path(cadt.__file__).parents[1])
 ROOT = pathlib.Path(__file__).parents[3]
@@ -61,3 +62,13 @@ def many() -> dict[str, np.ndarray]:
         "far point": np.concatenate((random.uniform(0, 100, (3000, 2)), [[4000.0, 3000.0]])),
         "thin": random.uniform(0, 1, (3000, 2)) * [1000, 0.1],
     }
+
+
+def hull_on_centres(grid: Grid, column: int) -> np.ndarray:
+    """3000 points whose hull ends on the right at the centres of a column of cells, as tests of parts of grids need it."""
+    place = np.random.default_rng(1).uniform(0, 1, (3000, 2))
+    place[:4] = [[0, 0], [1, 0], [0, 1], [1, 1]]
+    right = grid.x0 + (column + 0.5) * grid.dx
+    xy = np.column_stack((grid.x0 + place[:, 0] * (right - grid.x0), grid.y1 - grid.rows * grid.dy * place[:, 1]))
+    xy[place[:, 0] == 1, 0] = right
+    return xy

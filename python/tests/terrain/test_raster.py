@@ -14,7 +14,7 @@ from cadt.terrain._buckets import Buckets
 from cadt.terrain._mesh import rasterize
 from cadt.terrain._tiles import TiledRaster, discs
 from cadt.terrain.grid import Grid, grid_of_file, parse_bounds
-from clouds import hills, many
+from clouds import hills, hull_on_centres, many
 from rasterio.crs import CRS
 
 NODATA = -9999.0
@@ -194,12 +194,8 @@ def test_tiles_give_the_raster_of_the_whole(name, max_edge, fill):
 def test_a_hull_on_centres_of_cells(column):
     """They are the same doubles in all tiles, so that a column is within the hull or not, whatever the tiles are."""
     grid = Grid(500_000.3, 5_400_006.7, 0.1, 0.1, 140, 60)
-    place = np.random.default_rng(1).uniform(0, 1, (3000, 2))
-    place[:4] = [[0, 0], [1, 0], [0, 1], [1, 1]]
-    right = grid.x0 + (column + 0.5) * grid.dx
-    xy = np.column_stack((grid.x0 + place[:, 0] * (right - grid.x0), grid.y1 - 6 * place[:, 1]))
-    xy[place[:, 0] == 1, 0] = right
-    points = Buckets(terrain.Cloud(xy, place[:, 0].copy(), None), per_bucket=9)
+    xy = hull_on_centres(grid, column)
+    points = Buckets(terrain.Cloud(xy, xy[:, 1].copy(), None), per_bucket=9)
     mesh = cadt.Delaunay(points.xy)
     whole = rasterize(mesh, points.z, grid)
     assert not np.isnan(whole[5:55, column]).any() and np.isnan(whole[:, column + 1 :]).all()

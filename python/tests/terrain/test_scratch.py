@@ -22,7 +22,7 @@ from cadt.terrain._buckets import Buckets
 from cadt.terrain._mesh import rasterize
 from cadt.terrain._progress import ProgressLine
 from cadt.terrain.grid import Grid
-from clouds import PACKAGES, hills, lattice, many
+from clouds import PACKAGES, hills, hull_on_centres, lattice, many
 
 pytest.importorskip("cadt.tiles", reason="this build has no tiles")
 from cadt.terrain import _scratch as scratch
@@ -153,12 +153,7 @@ def test_a_block_is_read_as_it_was_written(tmp_path):
 def test_a_hull_on_centres_of_cells(tmp_path, column, max_edge):
     """They are the same doubles in all blocks, so that a column is within the hull or not."""
     grid = Grid(500_000.3, 5_400_006.7, 0.1, 0.1, 140, 60)
-    place = np.random.default_rng(1).uniform(0, 1, (3000, 2))
-    place[:4] = [[0, 0], [1, 0], [0, 1], [1, 1]]
-    right = grid.x0 + (column + 0.5) * grid.dx
-    xy = np.column_stack((grid.x0 + place[:, 0] * (right - grid.x0), grid.y1 - 6 * place[:, 1]))
-    xy[place[:, 0] == 1, 0] = right
-    check(tmp_path, with_heights(xy), grid, 40, max_edge)
+    check(tmp_path, with_heights(hull_on_centres(grid, column)), grid, 40, max_edge)
 
 
 @pytest.mark.parametrize("size", [1e-160, 1e-110, 1e110])

@@ -47,7 +47,8 @@ class WrongInput(FaultTest):
         self.assertNotIn("mesh.cadt", self.names())
 
     def test_command_line(self):
-        self.fails(2, 2, self.name, "--nonsense", says=["--nonsense", "cadt-mpi tiles --help"])
+        self.fails(2, 2, self.name, "--tile-point", 5, says=["no option --tile-point; did you mean --tile-points?",
+                                                             "cadt-mpi tiles --help"])
         self.fails(2, 2, "-o", "mesh.cadt", says="name files")
         self.fails(2, 3, self.name, "--tile-points", 2, says="at least 3")
         self.fails(3, 2, "missing.f64", *self.options, says="missing.f64")

@@ -125,13 +125,14 @@ class Array:
         return a if str(a.dtype).rpartition(".")[2] == dtype else self.convert(a, dtype)
 
     def begin(self) -> None:
-        """Before a call of the library, which works in `queue`."""
+        """Before a call of the library, which works in `queue`: that waits for the caller's current stream."""
 
     def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
         """Memory for a result, of which `finished` makes an array."""
         raise NotImplementedError
 
     def finished(self, result: Any) -> Any:
+        """An array for the caller's current stream, which waits for the call."""
         return result
 
     def column(self, a: Any, j: int) -> Any:
@@ -188,10 +189,23 @@ class CuPy(Array):
 
         self.xp = cupy
         self.device = int(a.device.id)
+        self.stream = self.current_stream()
+        self.queue = int(self.stream.ptr)
         with cupy.cuda.Device(self.device):
-            self.stream = cupy.cuda.get_current_stream()
-            self.queue = int(self.stream.ptr)
             super().__init__(a)
+
+    def current_stream(self) -> Any:
+        with self.xp.cuda.Device(self.device):
+            return self.xp.cuda.get_current_stream()
+
+    def begin(self) -> None:
+        if (current := self.current_stream()) != self.stream:
+            self.stream.wait_event(current.record())
+
+    def finished(self, result: Any) -> Any:
+        if (current := self.current_stream()) != self.stream:
+            current.wait_event(self.stream.record())
+        return result
 
     def convert(self, a: Any, dtype: str) -> Any:
         return a.astype(dtype)
@@ -242,6 +256,13 @@ class Torch(Array):
         self.stream = self.xp.cuda.current_stream(a.device)
         self.queue = int(self.stream.cuda_stream)
         super().__init__(a.detach())
+
+    def begin(self) -> None:
+        self.stream.wait_stream(self.xp.cuda.current_stream(self.where))
+
+    def finished(self, result: Any) -> Any:
+        self.xp.cuda.current_stream(self.where).wait_stream(self.stream)
+        return result
 
     def convert(self, a: Any, dtype: str) -> Any:
         return a.to(getattr(self.xp, dtype))

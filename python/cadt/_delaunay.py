@@ -26,9 +26,10 @@ class Delaunay(Mesh):
     points : array_like, shape (n, 2)
         float64 or float32, with any strides, and read where it lies; integers are converted. Lists, and objects with
         ``__array__``, ``__dlpack__`` or ``__cuda_array_interface__``: arrays of CuPy, PyTorch or JAX on a GPU stay there,
-        in the producer's current stream, and all results are arrays of the same kind on that GPU; so are arrays of
-        PyOpenCL. (JAX has float32 in place of float64 unless ``jax_enable_x64`` is set.) Points that equal an earlier one are no vertices (`duplicate_of`). The points must not change while
-        the mesh is used.
+        in the current stream (queries may come in another one, and wait for the mesh's), and all results are arrays of
+        the same kind on that GPU; so are arrays of PyOpenCL. (JAX has float32 in place of float64 unless
+        ``jax_enable_x64`` is set.) Points that equal an earlier one are no vertices (`duplicate_of`). The points must not
+        change while the mesh is used.
     backend : {"host", "opencl", "cuda"}, optional
         Where to compute. Default: where the points are; for points of the host a GPU if there is one and there are
         200,000 points or more, else the host.

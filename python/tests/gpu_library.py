@@ -42,6 +42,17 @@ class Library:
             return a.cpu().numpy()
         return self.xp.asnumpy(a) if self.name == "cupy" else np.asarray(a)
 
+    def stream(self):
+        """A new stream that is current in a `with`; CuPy and PyTorch have them."""
+        return self.xp.cuda.stream(self.xp.cuda.Stream()) if self.name == "torch" else self.xp.cuda.Stream(non_blocking=True)
+
+    def keep_busy(self) -> None:
+        """Keeps the current stream busy for about 0.1 s."""
+        if self.name == "torch":
+            return self.xp.cuda._sleep(200_000_000)
+        wait = 'extern "C" __global__ void wait() { for (long long b = clock64(); clock64() - b < 200000000;) ; }'
+        self.xp.RawKernel(wait, "wait")((1,), (1,), ())
+
     def check(self, a) -> None:
         if self.name == "torch":
             assert a.is_cuda

@@ -1,3 +1,3 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #define CADT_PROGRAM CADT_PROGRAM_OTHER
-#include "common/constraints/polygons.dev.h"
+#include "common/constraints/polygons/polygons.dev.h"

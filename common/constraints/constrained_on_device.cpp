@@ -6,7 +6,7 @@
 #include "common/constraints/chains.hpp"
 #include "common/constraints/constraints.hpp"
 #include "common/constraints/crossed_segments.hpp"
-#include "common/constraints/domains.hpp"
+#include "common/constraints/domains/domains.hpp"
 #include "common/constraints/mesh_copies.hpp"
 
 namespace cadt {

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "common/constraints/device_crossings.hpp"
+#include "common/constraints/crossings/device_crossings.hpp"
 #include "common/driver/context.hpp"
 #include "common/driver/device_triangulation.hpp"
 #include "common/mesh/mesh.hpp"

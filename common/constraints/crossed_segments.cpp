@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "common/constraints/chains.hpp"
-#include "common/constraints/crossing_places.hpp"
-#include "common/constraints/crossings.hpp"
-#include "common/constraints/exact_crossings.hpp"
-#include "common/constraints/exact_triangulation.hpp"
+#include "common/constraints/crossings/crossings.hpp"
+#include "common/constraints/exact/crossing_places.hpp"
+#include "common/constraints/exact_mesh/exact_crossings.hpp"
+#include "common/constraints/exact_mesh/exact_triangulation.hpp"
 #include "common/constraints/tasks.hpp"
 #include "common/driver/triangulation_data.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/constraints/chains.hpp"
-#include "common/constraints/domains.hpp"
+#include "common/constraints/domains/domains.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/points/device_points.hpp"
 #include "common/points/import.hpp"

@@ -9,9 +9,9 @@
 #define CADT_PORTABLE_KERNELS_H
 
 #include "common/certify/certify.dev.h"
-#include "common/constraints/domains.dev.h"
-#include "common/constraints/segment_cavity.dev.h"
-#include "common/constraints/segment_mountain.dev.h"
+#include "common/constraints/domains/domains.dev.h"
+#include "common/constraints/insert/segment_cavity.dev.h"
+#include "common/constraints/insert/segment_mountain.dev.h"
 #include "common/insertion/cavity.dev.h"
 #include "common/insertion/drop_locks.dev.h"
 #include "common/insertion/insert.dev.h"
@@ -39,9 +39,9 @@
 #if !CADT_FLOAT
 #include "common/batch/batch.dev.h"
 #include "common/batch/batch_insertion.dev.h"
-#include "common/constraints/exact_places.dev.h"
-#include "common/constraints/polygons.dev.h"
-#include "common/constraints/segment_pairs.dev.h"
+#include "common/constraints/crossings/exact_places.dev.h"
+#include "common/constraints/crossings/segment_pairs.dev.h"
+#include "common/constraints/polygons/polygons.dev.h"
 #include "common/finalization/certain.dev.h"
 #include "common/finalization/finish.dev.h"
 #include "common/finalization/join.dev.h"

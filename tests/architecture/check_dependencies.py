@@ -45,10 +45,10 @@ ONLY = [
 # What the verifier of the host is to check must not be made with it: nobody else includes it but the tests, and these.
 VERIFIER, ITS_USERS = "common/verify/host/", r"common/verify/|tests/"
 EXCEPTIONS = {  # file -> headers of the verifier; docs/constrained.md and docs/scale.md say what for
-    "common/constraints/implicit_point.hpp": ["exact_sign.hpp"],  # crossings: where all points are doubles
-    "common/constraints/locate_seeds.cpp": ["exact_sign.hpp"],  # holes and regions
+    "common/constraints/domains/locate_seeds.cpp": ["exact_sign.hpp"],  # holes and regions
+    "common/constraints/exact/implicit_point.hpp": ["exact_sign.hpp"],  # crossings: where all points are doubles
     "common/constraints/tasks.hpp": ["parallel.hpp"],  # threads alone
-    "common/constraints/verify_segments.cpp": ["mesh.hpp"],  # the verifier of segments
+    "common/constraints/verify/verify_segments.cpp": ["mesh.hpp"],  # the verifier of segments
     "common/driver/adopt.cpp": ["mesh.hpp"],  # the mesh of another program is verified
     "common/finalization/children.hpp": ["exact_sign.hpp"],  # certificates of edges between nodes
     "common/finalization/finish.cpp": ["exact_sign.hpp"],  # whether arithmetic is IEEE
@@ -182,7 +182,7 @@ def self_test():
         ("common/verify/device/v.cpp", '#include "common/verify/host/exact_sign.hpp"', True),
         ("tests/t.cpp", '#include "common/verify/host/exact_sign.hpp"', True),
         ("common/stars/s.cpp", '#include "common/verify/host/exact_sign.hpp"', False),
-        ("common/constraints/locate_seeds.cpp", '#include "common/verify/host/exact_sign.hpp"', True),
+        ("common/constraints/domains/locate_seeds.cpp", '#include "common/verify/host/exact_sign.hpp"', True),
         ("common/constraints/tasks.hpp", '#include "common/verify/host/exact_sign.hpp"', False),
         ("backends/host/f2.cpp", '#include "common/driver/d.hpp"', True),
         ("backends/opencl/f3.cpp", '#include "backends/host/f.hpp"', False),

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
  *
- * Claims of missing segments (common/constraints/segment_rings.dev.h, segment_cavity.dev.h; the driver is
+ * Claims of missing segments (common/constraints/insert/segment_rings.dev.h, segment_cavity.dev.h; the driver is
  * common/constraints/constraints.cpp). Memory is sequentially consistent: within a launch nobody reads what another item
  * writes, claims only fall by an atomic minimum, and the end of a launch orders all else, so that memory orders are not
  * a matter of relacy.

@@ -4,8 +4,8 @@
 #include <cadt/constrained.hpp>
 #include <cadt/errors.hpp>
 
-#include "common/constraints/exact_crossings.hpp"
-#include "common/constraints/exact_triangulation.hpp"
+#include "common/constraints/exact_mesh/exact_crossings.hpp"
+#include "common/constraints/exact_mesh/exact_triangulation.hpp"
 #include "tests/support/backends.hpp"
 #include "tests/support/families.hpp"
 #include "tests/system/constrained/resident_check.hpp"

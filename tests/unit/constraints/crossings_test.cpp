@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // find_crossings against all pairs, and the arrangement that it comes from.
-#include "common/constraints/crossings.hpp"
-#include "common/constraints/sweep.hpp"
+#include "common/constraints/crossings/crossings.hpp"
+#include "common/constraints/crossings/sweep.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 #include <gtest/gtest.h>

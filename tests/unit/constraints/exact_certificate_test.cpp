@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The triangulation with exact crossings is certified with GMP's fractions, which suits any doubles.
-#include "common/constraints/exact_crossings.hpp"
+#include "common/constraints/exact_mesh/exact_crossings.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 #include <gmpxx.h>

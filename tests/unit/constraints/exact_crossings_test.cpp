@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The triangulation with exact crossings against CGAL over an exact kernel.
-#include "common/constraints/exact_crossings.hpp"
-#include "common/constraints/arrangement.hpp"
+#include "common/constraints/exact_mesh/exact_crossings.hpp"
+#include "common/constraints/crossings/arrangement.hpp"
 #include "common/verify/host/exact_sign.hpp"
 #include "tests/support/oracle_constrained.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"

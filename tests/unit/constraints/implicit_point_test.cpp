@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Implicit points and their predicates against GMP's fractions.
-#include "common/constraints/arrangement.hpp"
-#include "common/constraints/pixel_grid.hpp"
+#include "common/constraints/crossings/arrangement.hpp"
+#include "common/constraints/grid/pixel_grid.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 #include <gmpxx.h>

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "common/constraints/domains.hpp"
+#include "common/constraints/domains/domains.hpp"
 #include "common/driver/registry.hpp"
 #include "tests/support/backends.hpp"
 

@@ -15,7 +15,7 @@ namespace {
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#include "common/constraints/segment_rings.dev.h"
+#include "common/constraints/insert/segment_rings.dev.h"
 #pragma GCC diagnostic pop
 
 /// Two pieces with one key would both take a triangle for their own.

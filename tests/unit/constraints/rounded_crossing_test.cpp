@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Crossings that the device rounds: to the nearest doubles, or it says that it is not certain.
-#include "common/constraints/implicit_point.hpp"
+#include "common/constraints/exact/implicit_point.hpp"
 #include "common/driver/device_text.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Snap rounding against all pairs of segments and pixels, with whole numbers.
-#include "common/constraints/snap_rounding.hpp"
-#include "common/constraints/arrangement.hpp"
+#include "common/constraints/grid/snap_rounding.hpp"
+#include "common/constraints/crossings/arrangement.hpp"
 #include "tests/unit/constraints/segment_sets.hpp"
 
 #include <gtest/gtest.h>

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles of holes and regions. Seeds are few and triangles many, so each triangle looks for the seeds in its box.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "common/constraints/domains/domains.hpp"
+#include "common/constraints/exact/crossing_places.hpp"
+#include "common/verify/host/exact_sign.hpp"
+
+namespace cadt {
+namespace {
+
+struct Seed {
+  verifier::Point at;
+  std::int32_t* triangle;
+};
+
+void add_seed(std::vector<Seed>& seeds, const char* option, std::size_t i, double x, double y, std::int32_t& triangle) {
+  if (!std::isfinite(x) || !std::isfinite(y))
+    throw OptionError(option, "place " + std::to_string(i) + " is not finite: give two numbers", "ConstraintOptions::");
+  seeds.push_back({{x, y}, &triangle});
+}
+
+bool contains_exactly(const constraints::CrossingPlaces& vertices, std::span<const std::int32_t> triangle,
+                      const verifier::Point& q) {
+  std::array<exact::Line, 6> lines;
+  const exact::ImplicitPoints exact(lines);
+  std::array<exact::Place, 3> p;
+  for (std::size_t k = 0; k < 3; ++k) p[k] = vertices.place(static_cast<std::size_t>(triangle[k]), 2 * k, lines, exact);
+  const exact::Place seed = exact::explicit_place(q);
+  return exact.orientation(p[0], p[1], seed) >= 0 && exact.orientation(p[1], p[2], seed) >= 0 &&
+         exact.orientation(p[2], p[0], seed) >= 0;
+}
+
+}  // namespace
+
+DomainSeeds locate_seeds(std::span<const std::int32_t> triangles, const PointsView& points, const AddedPlaces& added,
+                         const ConstraintOptions& options) {
+  DomainSeeds found;
+  if (options.domain != Domain::seeds) return found;
+  found.holes.assign(options.holes.size(), -1);
+  found.regions.assign(options.regions.size(), -1);
+  std::vector<Seed> seeds;
+  for (std::size_t i = 0; i < options.holes.size(); ++i)
+    add_seed(seeds, "holes", i, options.holes[i][0], options.holes[i][1], found.holes[i]);
+  for (std::size_t i = 0; i < options.regions.size(); ++i)
+    add_seed(seeds, "regions", i, options.regions[i].x, options.regions[i].y, found.regions[i]);
+  std::ranges::sort(seeds, {}, [](const Seed& seed) { return seed.at.x; });
+  if (seeds.empty()) return found;
+  verifier::require_ieee_arithmetic();
+
+  const auto is_added = [&](std::int32_t v) { return static_cast<std::size_t>(v) >= points.size(); };
+  const auto point = [&](std::int32_t v) -> verifier::Point {
+    const auto i = static_cast<std::size_t>(v);
+    if (i < points.size()) return {points.x(i), points.y(i)};
+    return {added.xy[2 * (i - points.size())], added.xy[2 * (i - points.size()) + 1]};
+  };
+  const constraints::CrossingPlaces crossings{points, added.segments, added.pairs};
+  // Rounding keeps the order, so what is in the box of exact corners is in that of the rounded ones.
+  for (std::size_t t = 0; t < triangles.size() / 3; ++t) {
+    const std::array<verifier::Point, 3> p = {point(triangles[3 * t]), point(triangles[3 * t + 1]),
+                                              point(triangles[3 * t + 2])};
+    const auto [min_x, max_x] = std::minmax({p[0].x, p[1].x, p[2].x});
+    const auto [min_y, max_y] = std::minmax({p[0].y, p[1].y, p[2].y});
+    for (auto seed = std::ranges::lower_bound(seeds, min_x, {}, [](const Seed& s) { return s.at.x; });
+         seed != seeds.end() && seed->at.x <= max_x; ++seed) {
+      const verifier::Point q = seed->at;
+      if (*seed->triangle >= 0 || q.y < min_y || q.y > max_y) continue;
+      const bool has_crossing = !added.pairs.empty() && std::ranges::any_of(triangles.subspan(3 * t, 3), is_added);
+      if (has_crossing ? contains_exactly(crossings, triangles.subspan(3 * t, 3), q)
+                       : verifier::orientation(p[0], p[1], q) >= 0 && verifier::orientation(p[1], p[2], q) >= 0 &&
+                             verifier::orientation(p[2], p[0], q) >= 0)
+        *seed->triangle = static_cast<std::int32_t>(t);
+    }
+  }
+  return found;
+}
+
+}  // namespace cadt

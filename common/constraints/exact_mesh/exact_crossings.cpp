@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/constraints/exact_mesh/exact_crossings.hpp"
+
+#include "common/constraints/exact_mesh/mesh_editor.hpp"
+#include "common/constraints/tasks.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+
+namespace cadt::constraints {
+namespace {
+
+/// The place of a point of a grid of 2^16 x 2^16 along Hilbert's curve.
+std::uint32_t hilbert_index(std::uint32_t x, std::uint32_t y) {
+  std::uint32_t index = 0;
+  for (std::uint32_t bit = 1U << 15; bit != 0; bit >>= 1) {
+    const std::uint32_t right = (x & bit) != 0, up = (y & bit) != 0;
+    index = index * 4 + ((3 * right) ^ up);
+    if (up == 0) {
+      if (right != 0) x = ~x, y = ~y;
+      std::swap(x, y);
+    }
+  }
+  return index;
+}
+
+/// Crossings so that each is near the one before.
+std::vector<std::int32_t> insertion_order(const Arrangement& in) {
+  double left = 0, right = 0, bottom = 0, top = 0;
+  for (std::size_t c = 0; c < in.crossings.size(); ++c) {
+    const double x = in.crossings[c].x, y = in.crossings[c].y;
+    if (c == 0) left = right = x, bottom = top = y;
+    left = std::min(left, x), right = std::max(right, x), bottom = std::min(bottom, y), top = std::max(top, y);
+  }
+  // halves do not overflow
+  const auto scaled = [](double v, double low, double high) {
+    const double width = high / 2 - low / 2;
+    return width > 0 ? static_cast<std::uint32_t>((v / 2 - low / 2) / width * 65535) : 0U;
+  };
+  std::vector<std::pair<std::uint32_t, std::int32_t>> keys(in.crossings.size());
+  for (std::size_t c = 0; c < keys.size(); ++c) {
+    const exact::Place& p = in.crossings[c];
+    keys[c] = {hilbert_index(scaled(p.x, left, right), scaled(p.y, bottom, top)), static_cast<std::int32_t>(c)};
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::int32_t> order(keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) order[i] = keys[i].second;
+  return order;
+}
+
+MeshEditor edit(const Arrangement& in, const Triangulation& delaunay) {
+  const auto triangles = delaunay.triangles(), neighbors = delaunay.neighbors();
+  std::vector<std::int32_t> ranks(triangles.size());
+  for (std::size_t i = 0; i < ranks.size(); ++i) ranks[i] = in.rank[static_cast<std::size_t>(triangles[i])];
+  return MeshEditor(in, std::move(ranks), {neighbors.begin(), neighbors.end()});
+}
+
+}  // namespace
+
+ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment> segments,
+                                     const Triangulation& delaunay, unsigned threads, const Watch& watch) {
+  const Arrangement in = arrange(points, segments, threads, watch);
+  const std::size_t ranks = in.points.size(), crossings = in.crossings.size();
+  MeshEditor mesh = edit(in, delaunay);
+  for (const std::int32_t c : insertion_order(in)) {
+    watch();
+    mesh.insert_vertex(static_cast<std::int32_t>(ranks) + c);
+  }
+  for (std::size_t wall = 0; wall + 1 < in.chain_offsets.size() && !mesh.triangles().empty(); ++wall) {
+    watch();
+    mesh.insert_chain(std::span(in.chain_vertices.data() + in.chain_offsets[wall],
+                                in.chain_vertices.data() + in.chain_offsets[wall + 1]));
+  }
+
+  ExactMesh out;
+  // Added vertices in the order of their pairs
+  std::vector<std::int32_t> order(crossings), number(ranks + crossings);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return in.parents[static_cast<std::size_t>(a)] < in.parents[static_cast<std::size_t>(b)];
+  });
+  std::copy(in.representative.begin(), in.representative.end(), number.begin());
+  for (const std::int32_t c : order) {
+    const auto i = static_cast<std::size_t>(c);
+    number[ranks + i] = static_cast<std::int32_t>(points.size() + out.parents.size());
+    out.added_xy.insert(out.added_xy.end(), {in.crossings[i].x, in.crossings[i].y});
+    out.parents.push_back(in.parents[i]);
+  }
+
+  out.neighbors = mesh.neighbors();
+  out.edge_flags.assign(mesh.flags().begin(), mesh.flags().end());
+  out.triangles.resize(mesh.triangles().size());
+  std::atomic<bool> valid{true};
+  for_each_block(out.edge_flags.size(), threads_or_all(threads), [&](std::size_t first, std::size_t last) {
+    for (std::size_t t = first; t < last; ++t) {
+      std::array<exact::Place, 3> p;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::int32_t v = mesh.triangles()[3 * t + k];
+        p[k] = in.place(v);
+        out.triangles[3 * t + k] = number[static_cast<std::size_t>(v)];
+      }
+      if (!(p[0].is_double() && p[1].is_double() && p[2].is_double()) &&
+          verifier::orientation(p[0].rounded(), p[1].rounded(), p[2].rounded()) <= 0)
+        valid.store(false, std::memory_order_relaxed);
+    }
+  });
+  out.rounded_valid = valid.load();
+
+  out.offsets.assign(segments.size() + 1, 0);
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    if (in.segment_of[s] >= 0) {
+      const auto same = static_cast<std::size_t>(in.segment_of[s]);
+      const auto first = out.vertices.size();
+      for (std::int64_t i = in.segment_first[same]; i <= in.segment_last[same]; ++i)
+        out.vertices.push_back(number[static_cast<std::size_t>(in.chain_vertices[static_cast<std::size_t>(i)])]);
+      if (in.rank[static_cast<std::size_t>(segments[s][0])] != in.segments[same][0])
+        std::reverse(out.vertices.begin() + static_cast<std::ptrdiff_t>(first), out.vertices.end());
+    }
+    out.offsets[s + 1] = static_cast<std::int64_t>(out.vertices.size());
+  }
+  return out;
+}
+
+}  // namespace cadt::constraints

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/machine.hpp"
 
+#include "apps/cadt/device_json.hpp"
 #include "commit.hpp"
 
-#include <cadt/devices.hpp>
 #include <cadt/version.hpp>
 
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/sysinfo.h>
-#include <nlohmann/json.hpp>
 
 #include <ctime>
 #include <fstream>
@@ -59,23 +58,6 @@ std::uint64_t memory_bytes() {
   return sysinfo(&system) == 0 ? std::uint64_t{system.totalram} * system.mem_unit : 0;
 }
 
-Json device_json(const DeviceInfo& d) {
-  return {{"backend", to_string(d.backend)},
-          {"index", d.index},
-          {"usable", d.usable},
-          {"reason", d.reason},
-          {"platform", d.platform},
-          {"name", d.name},
-          {"driver", d.driver},
-          {"gpu", d.gpu},
-          {"memory_bytes", d.memory_bytes},
-          {"largest_buffer_bytes", d.largest_buffer_bytes},
-          {"compute_units", d.compute_units},
-          {"fp64", d.fp64},
-          {"watchdog", d.watchdog},
-          {"atomics", d.atomics}};
-}
-
 }  // namespace
 
 std::string cpu_name() { return entry("/proc/cpuinfo", "model name", ':'); }
@@ -112,7 +94,7 @@ std::string machine_json(const std::string& name, const std::vector<PeerInfo>& p
             {"date", now()},
             {"devices", Json::array()},
             {"peers", Json::array()}};
-  for (const DeviceInfo& device : list_devices()) json["devices"].push_back(device_json(device));
+  for (const DeviceInfo& device : list_devices()) json["devices"].push_back(cli::device_json(device));
   for (const PeerInfo& peer : peers) {
     json["peers"].push_back(
         {{"name", peer.name}, {"version", peer.version}, {"usable", peer.usable}, {"reason", peer.reason}});

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands.hpp"
+#include "device_json.hpp"
 #include "failure.hpp"
 #include "text.hpp"
 
-#include <cadt/devices.hpp>
 #include <cadt/version.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <memory>
 #include <string>
@@ -18,22 +17,7 @@ namespace {
 std::string devices_json(const std::vector<DeviceInfo>& devices) {
   using Json = nlohmann::ordered_json;
   Json json{{"schema", 1}, {"cadt", CADT_VERSION}, {"devices", Json::array()}};
-  for (const DeviceInfo& d : devices) {
-    json["devices"].push_back({{"backend", to_string(d.backend)},
-                               {"index", d.index},
-                               {"usable", d.usable},
-                               {"reason", d.reason},
-                               {"platform", d.platform},
-                               {"name", d.name},
-                               {"driver", d.driver},
-                               {"gpu", d.gpu},
-                               {"watchdog", d.watchdog},
-                               {"memory_bytes", d.memory_bytes},
-                               {"largest_buffer_bytes", d.largest_buffer_bytes},
-                               {"compute_units", d.compute_units},
-                               {"fp64", d.fp64},
-                               {"atomics", d.atomics}});
-  }
+  for (const DeviceInfo& device : devices) json["devices"].push_back(device_json(device));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

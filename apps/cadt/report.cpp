@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <numeric>
 #include <utility>
@@ -18,44 +17,6 @@ namespace cadt::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct Counter {
-  const char* name;
-  std::uint64_t Statistics::*value;
-};
-
-// The order of the table and of the JSON object.
-constexpr std::array counters = {
-    Counter{"launches", &Statistics::launches},
-    Counter{"walk_steps", &Statistics::walk_steps},
-    Counter{"lock_attempts", &Statistics::lock_attempts},
-    Counter{"lock_failures", &Statistics::lock_failures},
-    Counter{"invalid_restarts", &Statistics::invalid_restarts},
-    Counter{"insert_retries", &Statistics::insert_retries},
-    Counter{"stale_edges", &Statistics::stale_edges},
-    Counter{"deferred_points", &Statistics::deferred_points},
-    Counter{"deferred_edges", &Statistics::deferred_edges},
-    Counter{"splits", &Statistics::splits},
-    Counter{"edge_splits", &Statistics::edge_splits},
-    Counter{"flips", &Statistics::flips},
-    Counter{"incircle_tests", &Statistics::incircle_tests},
-    Counter{"orientation_tests", &Statistics::orientation_tests},
-    Counter{"exact_orientations", &Statistics::exact_orientations},
-    Counter{"exact_incircles", &Statistics::exact_incircles},
-    Counter{"ties", &Statistics::ties},
-    Counter{"legality_sweeps", &Statistics::legality_sweeps},
-    Counter{"sweep_repairs", &Statistics::sweep_repairs},
-    Counter{"cavities", &Statistics::cavities},
-    Counter{"certified_edges", &Statistics::certified_edges},
-    Counter{"stabilized_edges", &Statistics::stabilized_edges},
-    Counter{"illegal_edges", &Statistics::illegal_edges},
-    Counter{"tiles", &Statistics::tiles},
-    Counter{"proven_stars", &Statistics::proven_stars},
-    Counter{"wrapped_stars", &Statistics::wrapped_stars},
-    Counter{"refined_points", &Statistics::refined_points},
-    Counter{"inserted_segments", &Statistics::inserted_segments},
-    Counter{"segment_retries", &Statistics::segment_retries},
-};
 
 double total_seconds(const RunReport& r) {
   return r.read_seconds + r.triangulate_seconds + r.verify_seconds + r.write_seconds;
@@ -166,7 +127,7 @@ std::string statistics_text(const RunReport& r) {
   const Statistics& s = r.mesh->statistics();
   std::vector<std::vector<std::string>> rows = {{"counter", "value", "per point"}};
   const double points = static_cast<double>(s.distinct == 0 ? 1 : s.distinct);
-  for (const Counter& counter : counters) {
+  for (const NamedCounter& counter : counters_of_work) {
     const std::uint64_t value = s.*counter.value;
     rows.push_back({counter.name, std::to_string(value), fmt::format("{:.3f}", static_cast<double>(value) / points)});
   }
@@ -223,7 +184,7 @@ std::string statistics_json(const RunReport& r) {
   json["phases"] = Json::array();
   for (const auto& [name, ms] : s.milliseconds) json["phases"].push_back({{"name", name}, {"milliseconds", ms}});
   json["counters"] = Json::object();
-  for (const Counter& counter : counters) json["counters"][counter.name] = s.*counter.value;
+  for (const NamedCounter& counter : counters_of_work) json["counters"][counter.name] = s.*counter.value;
   json["flips_per_edge"] = s.flips_per_edge;
   json["thread_time"] = Json::object();
   for (const auto& [name, share] : s.thread_time) json["thread_time"][name] = share;

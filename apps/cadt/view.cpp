@@ -126,7 +126,7 @@ void add_view(CLI::App& app, Action& chosen) {
           "--interop", options->interop,
           "how the mesh gets to the display: cuda or opencl, which write it there, or copy through the host's memory "
           "(default: auto, the first that is possible)")
-      ->type_name("WAY")
+      ->type_name("HOW")
       ->check(CLI::IsMember({"auto", "cuda", "opencl", "copy"}).description(""));
   command->add_option("--size", options->size, "of the window, in pixels (default: 1280x800)")->type_name("WxH");
   command->add_option("--scale", options->scale, "size of text and lines (default: the system's)")

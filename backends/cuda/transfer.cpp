@@ -5,8 +5,9 @@
 #include <array>
 #include <atomic>
 #include <cstring>
-#include <thread>
 #include <utility>
+
+#include "common/platform/parallel.hpp"
 
 namespace cadt::cuda {
 namespace {
@@ -133,8 +134,7 @@ struct Transfer::Lane {
 };
 
 Transfer::Transfer(std::shared_ptr<Stream> stream, unsigned threads) noexcept
-    : stream_(std::move(stream)),
-      threads_(std::clamp(threads != 0 ? threads : std::thread::hardware_concurrency(), 1U, most_threads)) {}
+    : stream_(std::move(stream)), threads_(std::min(platform::threads_or_all(threads), most_threads)) {}
 
 Transfer::~Transfer() { release(); }
 

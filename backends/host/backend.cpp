@@ -13,7 +13,6 @@
 #include <limits>
 #include <new>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include "backends/host/kernel_table.hpp"
@@ -21,6 +20,7 @@
 #include "common/driver/buffer_cache.hpp"
 #include "common/platform/machine.hpp"
 #include "common/platform/pages.hpp"
+#include "common/platform/parallel.hpp"
 #include "common/self_test/self_test.hpp"
 
 namespace cadt::host {
@@ -67,12 +67,11 @@ class HostBuffer final : public Buffer {
   bool owned_ = false;
 };
 
-unsigned all_cores() noexcept { return std::max(1U, std::thread::hardware_concurrency()); }
-
 /// Options::threads is the most there are: no more than any processor has cores for.
 unsigned threads_of(const Options& options) noexcept {
   constexpr unsigned most_threads = 1024;
-  return options.threads == 0 ? all_cores() : std::min(options.threads, std::max(most_threads, all_cores()));
+  const unsigned all = platform::threads_or_all(0);
+  return options.threads == 0 ? all : std::min(options.threads, std::max(most_threads, all));
 }
 
 DeviceInfo describe() {
@@ -86,7 +85,7 @@ DeviceInfo describe() {
   info.usable = true;
   info.memory_bytes = platform::memory_bytes();
   info.largest_buffer_bytes = info.memory_bytes;
-  info.compute_units = all_cores();
+  info.compute_units = platform::threads_or_all(0);
   info.fp64 = true;
   info.atomics = "C++20 acquire/release";
   return info;

@@ -9,7 +9,7 @@
 #include "common/constraints/crossed_segments.hpp"
 #include "common/constraints/domains/domains.hpp"
 #include "common/constraints/grid/snap_rounding.hpp"
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
 #include "common/driver/device_text.hpp"
 #include "common/driver/session.hpp"
 #include "common/driver/thread_state.hpp"
@@ -83,8 +83,8 @@ void constrain_on_grid(const State& state, PointsView points, std::span<const Se
                       "a grid has places that are no floats, and this device takes no doubles: choose another "
                       "device, or the back end host",
                       "ConstraintOptions::");
-  const constraints::SnappedSegments snapped =
-      constraints::snap_segments(points, segments, grid, state->options.threads, constraints::Watch(state->options, 0));
+  const constraints::SnappedSegments snapped = constraints::snap_segments(
+      points, segments, grid, state->options.threads, constraints::StopCheck(state->options, 0));
   const std::vector<Segment> pieces = polyline_segments(snapped.offsets, snapped.vertices);
   Data divided;
   SegmentJob job;

@@ -12,8 +12,9 @@
 #include "common/constraints/exact/crossing_places.hpp"
 #include "common/constraints/exact_mesh/exact_crossings.hpp"
 #include "common/constraints/exact_mesh/exact_triangulation.hpp"
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
 #include "common/driver/triangulation_data.hpp"
+#include "common/platform/parallel.hpp"
 
 namespace cadt {
 namespace {
@@ -55,11 +56,11 @@ struct ExactPlaces {
 
   [[nodiscard]] bool are_right(std::span<const std::uint32_t> suspects, unsigned threads) const {
     std::atomic<bool> right{true};
-    constraints::for_each_block(suspects.size(), constraints::threads_or_all(threads),
-                                [&](std::size_t first, std::size_t last) {
-                                  for (std::size_t i = first; i < last && right.load(std::memory_order_relaxed); ++i)
-                                    if (!is_right(suspects[i])) right.store(false, std::memory_order_relaxed);
-                                });
+    const unsigned all = platform::threads_or_all(threads);
+    platform::for_each_block(suspects.size(), all, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last && right.load(std::memory_order_relaxed); ++i)
+        if (!is_right(suspects[i])) right.store(false, std::memory_order_relaxed);
+    });
     return right.load();
   }
 };
@@ -149,10 +150,11 @@ DeviceMesh constrain_rounded(const State& state, std::size_t n, const SegmentJob
 void refuse_crossings(const State& state, PointsView points, std::span<const Segment> segments,
                       const std::optional<FoundCrossings>& found) {
   const Options& options = state->options;
-  const constraints::Watch watch(options, 1);
+  const constraints::StopCheck check_stop(options, 1);
   std::vector<Segment> pairs =
       found ? read_pairs(*state->device, *found)
-            : constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, watch), watch);
+            : constraints::crossing_pairs(constraints::arrange(points, segments, options.threads, check_stop),
+                                          check_stop);
   constraints::check(options.stop);
   if (pairs.empty()) throw InternalError("segments were found to cross, but no pair of them does");
   std::string message =
@@ -170,7 +172,7 @@ void constrain_exactly(const State& state, PointsView points, std::span<const Se
   if (found && found->places && constrain_rounded(state, points, segments, std::move(*found), data)) return;
   const Triangulation delaunay = triangulate_on_host(state, points);
   constraints::ExactMesh exact = constraints::triangulate_with_crossings(
-      points, segments, delaunay, state->options.threads, constraints::Watch(state->options, 1));
+      points, segments, delaunay, state->options.threads, constraints::StopCheck(state->options, 1));
   data.mesh = triangulation_of(delaunay, exact, data.edge_flags);
   data.added = std::move(exact.added_xy);
   data.parents = std::move(exact.parents);

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numeric>
 #include <string>
-#include <thread>
 
 #include "common/driver/triangulation_data.hpp"
+#include "common/platform/parallel.hpp"
 #include "common/verify/host/mesh.hpp"
 
 namespace cadt {
@@ -106,7 +106,7 @@ Triangulation Triangulation::adopt(PointsView points, std::span<const std::int32
   mesh.count = triangles.size() / 3;
   mesh.triangles = triangles;
   mesh.neighbors = neighbors;
-  mesh.threads = std::max(1U, std::thread::hardware_concurrency());
+  mesh.threads = platform::threads_or_all(0);
   if (mesh.count != 0) require_structure(mesh);
   auto data = std::make_unique<Data>();
   data->points = points.size();

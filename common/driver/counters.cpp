@@ -87,39 +87,9 @@ void add_counters(Statistics& statistics, std::span<const std::uint32_t> words) 
 }
 
 void add_counters(Statistics& to, const Statistics& from) {
-  using S = Statistics;
-  constexpr std::uint64_t S::*sums[] = {&S::launches,
-                                        &S::walk_steps,
-                                        &S::lock_attempts,
-                                        &S::lock_failures,
-                                        &S::invalid_restarts,
-                                        &S::insert_retries,
-                                        &S::stale_edges,
-                                        &S::deferred_points,
-                                        &S::deferred_edges,
-                                        &S::splits,
-                                        &S::edge_splits,
-                                        &S::flips,
-                                        &S::incircle_tests,
-                                        &S::orientation_tests,
-                                        &S::exact_orientations,
-                                        &S::exact_incircles,
-                                        &S::ties,
-                                        &S::legality_sweeps,
-                                        &S::sweep_repairs,
-                                        &S::cavities,
-                                        &S::certified_edges,
-                                        &S::stabilized_edges,
-                                        &S::illegal_edges,
-                                        &S::tiles,
-                                        &S::proven_stars,
-                                        &S::wrapped_stars,
-                                        &S::refined_points,
-                                        &S::inserted_segments,
-                                        &S::segment_retries,
-                                        &S::bytes_to_device,
-                                        &S::bytes_from_device};
-  for (const auto sum : sums) to.*sum += from.*sum;
+  for (const NamedCounter& counter : counters_of_work) to.*counter.value += from.*counter.value;
+  to.bytes_to_device += from.bytes_to_device;
+  to.bytes_from_device += from.bytes_from_device;
   for (std::size_t i = 0; i < to.flips_per_edge.size(); ++i) to.flips_per_edge[i] += from.flips_per_edge[i];
   to.bytes_device_peak = std::max(to.bytes_device_peak, from.bytes_device_peak);
   to.wide_arithmetic = to.wide_arithmetic || from.wide_arithmetic;

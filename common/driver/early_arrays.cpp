@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/platform/parallel.hpp"
+
 namespace cadt {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr std::size_t block_words = (std::size_t{2} << 20) / sizeof(std::int32_t
 
 void EarlyArrays::begin(std::size_t most, unsigned threads) {
   stop();
-  if (threads == 0) threads = std::thread::hardware_concurrency();
+  threads = platform::threads_or_all(threads);
   if (most < fewest_words || threads < 2) return;
   most_ = most;
   for (Words& array : arrays_) array = make_words(most);

@@ -5,17 +5,16 @@
 #include <algorithm>
 #include <bit>
 #include <memory>
-#include <thread>
 #include <utility>
 
 #include "common/driver/device_text.hpp"
 #include "common/driver/session.hpp"
 #include "common/finalization/children.hpp"
 #include "common/finalization/finish.hpp"
+#include "common/platform/parallel.hpp"
 #include "common/points/bounds.hpp"
 #include "common/queries/call.hpp"
 #include "common/verify/host/exact_sign.hpp"
-#include "common/verify/host/parallel.hpp"
 
 namespace cadt {
 
@@ -59,15 +58,10 @@ Allocation take_points(Context& ctx, Node& node, const Children& children) {
 
 /// Threads that work with so many sides.
 unsigned threads_for(const Node& node, std::size_t sides) {
-  constexpr std::size_t of_thread = std::size_t{1} << 13;    // with fewer, a thread costs more than it saves
-  const unsigned asked = node.data->state->options.threads;  // as the host's own work: 0 means all cores
-  const std::size_t most = asked != 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
+  constexpr std::size_t of_thread = std::size_t{1} << 13;  // with fewer, a thread costs more than it saves
+  const std::size_t most = platform::threads_or_all(node.data->state->options.threads);
   return static_cast<unsigned>(std::clamp<std::size_t>(sides / of_thread, 1, most));
 }
-
-struct Nothing {
-  void merge(const Nothing& /*other*/) {}
-};
 
 /// Which triangles the children cover (common/stars/stitch.dev.h). `order`: as take_points gives it.
 Cover find_cover(Context& ctx, const Node& node, const Children& children, const Allocation& order) {
@@ -76,15 +70,12 @@ Cover find_cover(Context& ctx, const Node& node, const Children& children, const
   const LaunchGrid inner = launch.grid(count);
   // A side is an open triangle: its first vertex, which is closed, is not known here.
   const auto corners = std::make_unique_for_overwrite<std::uint32_t[]>(3 * sides);
-  verifier::reduce_each<Nothing>(
-      children.stretches(), threads_for(node, sides),
-      [&](std::size_t stretch, Nothing&) {
-        children.each_side(stretch, [&](const Children::Side& side) {
-          std::uint32_t* to = &corners[3 * side.number];
-          to[0] = CADT_NONE, to[1] = side.from, to[2] = side.to;
-        });
-      },
-      1);
+  platform::for_each_task(children.stretches(), threads_for(node, sides), [&](std::size_t stretch) {
+    children.each_side(stretch, [&](const Children::Side& side) {
+      std::uint32_t* to = &corners[3 * side.number];
+      to[0] = CADT_NONE, to[1] = side.from, to[2] = side.to;
+    });
+  });
   const Allocation open_triangles = ctx.memory.allocate(std::max<std::size_t>(3 * sides, 1) * word);
   if (sides != 0) ctx.device.write(*open_triangles, 0, corners.get(), 3 * sides * word);
   const Allocation list = ctx.memory.allocate(std::max<std::size_t>(sides, 1) * word);  // of all of them
@@ -137,19 +128,23 @@ std::vector<Match> match_sides(Context& ctx, const Node& node, const Finished& f
 
 /// Edges between final triangles of two nodes.
 struct Edges {
-  verifier::Findings illegal, folded;
+  std::uint64_t examined = 0, illegal = 0, folded = 0;
   /// q: the vertex across from a side.
   void examine(const Children::Side& side, const verifier::Point& q) {
     const verifier::Point apex{side.side.apex_x, side.side.apex_y}, &a = side.a, &b = side.b;
-    ++illegal.examined;
-    if (verifier::orientation(apex, a, b) <= 0 || verifier::orientation(q, b, a) <= 0) return folded.fail(side.number);
+    ++examined;
+    if (verifier::orientation(apex, a, b) <= 0 || verifier::orientation(q, b, a) <= 0) {
+      ++folded;
+      return;
+    }
     int inside = verifier::incircle(apex, a, b, q);
     if (inside == 0) inside = verifier::incircle_perturbed(apex, a, b, q);
-    if (inside > 0) illegal.fail(side.number);
+    if (inside > 0) ++illegal;
   }
   void merge(const Edges& other) {
-    illegal.merge(other.illegal);
-    folded.merge(other.folded);
+    examined += other.examined;
+    illegal += other.illegal;
+    folded += other.folded;
   }
 };
 
@@ -170,7 +165,7 @@ class Settlement {
     }
     finished_.node.messages.resize(end.messages);
     finished_.node.open.sides.resize(end.sides);
-    const Sum sum = verifier::reduce_each<Sum>(
+    const Sum sum = platform::reduce_each<Sum>(
         children_.stretches(), threads_for(node_, matches.size()),
         [&](std::size_t s, Sum& mine) {
           Places at = places[s];
@@ -178,7 +173,7 @@ class Settlement {
         },
         1);
     require_legal(sum.edges);
-    certified_ = sum.edges.illegal.examined;
+    certified_ = sum.edges.examined;
     outside_ = sum.outside;
     link_rows(certified_);
   }
@@ -228,10 +223,10 @@ class Settlement {
   }
 
   void require_legal(const Edges& edges) const {
-    if (edges.folded.failures != 0)
+    if (edges.folded != 0)
       give_up("two triangles of an edge that node ", node_.number, " closes are on the same side of it");
-    if (edges.illegal.failures != 0)
-      give_up(edges.illegal.failures, " edges between two nodes, closed by node ", node_.number, ", are illegal");
+    if (edges.illegal != 0)
+      give_up(edges.illegal, " edges between two nodes, closed by node ", node_.number, ", are illegal");
   }
 
   /// `met`: sides of the children that meet a final triangle of this node.
@@ -239,10 +234,11 @@ class Settlement {
     const std::size_t rows = finished_.rows.size();
     std::vector<TriangleId>& links = finished_.node.links;
     links.resize(rows);
-    verifier::reduce_each<Nothing>(rows, threads_for(node_, rows), [&](std::size_t row, Nothing&) {
+    const auto link = [&](std::size_t row) {
       const std::uint32_t cover = finished_.rows[row].cover;
       links[row] = cover == CADT_NONE ? pending_triangle : children_.triangle(cover);
-    });
+    };
+    platform::for_each_task(rows, threads_for(node_, rows), link, std::size_t{1} << 13);
     std::size_t covered = rows;
     for (std::size_t row = 0; row < rows; ++row) {
       if (finished_.rows[row].cover != CADT_NONE) continue;

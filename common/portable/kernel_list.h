@@ -142,11 +142,11 @@
 
 /* common/queries */
 #define CADT_QUERIES_KERNELS(X)                                                              \
-  X(cadt_check_mesh)          /* locate.dev.h: the caller's arrays */                        \
-  X(cadt_lowest_triangles)    /* locate.dev.h: of each vertex */                             \
-  X(cadt_curve_flags)         /* locate.dev.h: vertices along Hilbert's curve */             \
-  X(cadt_curve_pack)          /* locate.dev.h */                                             \
-  X(cadt_locate_queries)      /* locate.dev.h */                                             \
+  X(cadt_check_mesh)          /* locate_queries.dev.h: the caller's arrays */                \
+  X(cadt_lowest_triangles)    /* locate_queries.dev.h: of each vertex */                     \
+  X(cadt_curve_flags)         /* locate_queries.dev.h: vertices along Hilbert's curve */     \
+  X(cadt_curve_pack)          /* locate_queries.dev.h */                                     \
+  X(cadt_locate_queries)      /* locate_queries.dev.h */                                     \
   X(cadt_nearest_vertices)    /* nearest.dev.h */                                            \
   X(cadt_barycentric_of)      /* interpolate.dev.h */                                        \
   X(cadt_interpolate_linear)  /* interpolate.dev.h */                                        \

@@ -46,7 +46,7 @@
 #include "common/finalization/finish.dev.h"
 #include "common/finalization/join.dev.h"
 #include "common/finalization/uniform_cells.dev.h"
-#include "common/queries/locate.dev.h"
+#include "common/queries/locate_queries.dev.h"
 #include "common/queries/nearest.dev.h"
 #include "common/queries/rasterize.dev.h"
 #include "common/queries/voronoi.dev.h"

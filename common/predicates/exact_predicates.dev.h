@@ -245,8 +245,7 @@ CADT_FN_SLOW cadt_i32 cadt_incircle_exact(cadt_point a, cadt_point b, cadt_point
       const cadt_u64 bits = CADT_CAST(cadt_u64, ax | ay | bx | by | cx | cy);
       const cadt_i32 zeros = bits ? cadt_trailing_zeros(bits) : 0;
       const double unit = s.scale * cadt_double_of_bits(CADT_CAST(cadt_u64, 1023 - zeros) << 52), square = unit * unit;
-      /* differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. Loops keep the code short.
-       */
+      /* |differences| < 2^62: lifts and minors < 2^125, sums of products < 3 * 2^250. Loops keep it short. */
       if (max_det * square * square < 1.5e57) { /* 2^190 */
         CADT_STAGE(incircle_192);
         cadt_i192 det;

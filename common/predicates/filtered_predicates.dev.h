@@ -34,24 +34,25 @@
  * is 8.1 e, that of a lift and of a minor 16.5 e, and since both are below 32, that of their product 1060 e; that of
  * three products is less than 2^-71. The allowance is 2^-60, so that the rounding of its own addition does not matter.
  */
+#define CADT_OVERFLOWED 5000 /* in place of an exponent: a difference has overflowed */
 #if CADT_FLOAT
 #define CADT_UNDERFLOW 8.67361738e-19f
 #define CADT_SCALED_EXPONENT 128
-#define CADT_SCALES(e) ((e) < 5000 && (e) >= -41) /* the largest difference is at least 2^-40 */
+#define CADT_SCALES(e) ((e) < CADT_OVERFLOWED && (e) >= -41) /* the largest difference is at least 2^-40 */
 #else
 #define CADT_UNDERFLOW 1e-300
 #define CADT_SCALED_EXPONENT 1022
-#define CADT_SCALES(e) ((e) < 5000)
+#define CADT_SCALES(e) ((e) < CADT_OVERFLOWED)
 #endif
 
-/* Exponent of the largest magnitude, 5000 if a difference has overflowed. */
+/* Exponent of the largest magnitude, or CADT_OVERFLOWED. */
 CADT_FN cadt_i32 cadt_exponent_of_largest(cadt_real a, cadt_real b, cadt_real c, cadt_real d) {
   const cadt_u64 mask = CADT_EXPONENT_MASK;
   cadt_u64 top = cadt_bits_of_real(a) & mask;
   if ((cadt_bits_of_real(b) & mask) > top) top = cadt_bits_of_real(b) & mask;
   if ((cadt_bits_of_real(c) & mask) > top) top = cadt_bits_of_real(c) & mask;
   if ((cadt_bits_of_real(d) & mask) > top) top = cadt_bits_of_real(d) & mask;
-  return top == mask ? 5000 : CADT_CAST(cadt_i32, top >> CADT_MANTISSA_BITS) - CADT_SCALED_EXPONENT;
+  return top == mask ? CADT_OVERFLOWED : CADT_CAST(cadt_i32, top >> CADT_MANTISSA_BITS) - CADT_SCALED_EXPONENT;
 }
 #else
 #define CADT_UNDERFLOW 0.0

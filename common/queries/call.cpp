@@ -65,7 +65,8 @@ std::int64_t first_not_delaunay(Context& ctx, const MeshIndex& mesh) {
 
 }  // namespace
 
-void require_delaunay(Call& call, MeshQueries::State& state) {
+void require_delaunay(Call& call) {
+  MeshQueries::State& state = call.state;
   if (!state.mesh.edge_flags) return;
   if (!state.not_delaunay) state.not_delaunay = first_not_delaunay(call.ctx, state.mesh);
   if (*state.not_delaunay < 0) return;
@@ -95,8 +96,8 @@ void require_results(std::size_t queries, std::size_t each) {
     throw LimitError("one call has fewer than 2^31 results: ask in several calls", each, max_results() / queries);
 }
 
-void locate_into(Call& call, const MeshIndex& mesh, const QueryBatch& queries, const Allocation& triangles,
-                 const Allocation& barycentric) {
+void locate_into(Call& call, const QueryBatch& queries, const Allocation& triangles, const Allocation& barycentric) {
+  const MeshIndex& mesh = call.state.mesh;
   const Allocation none;
   locate_queries(call.ctx, mesh, queries, triangles, none);
   if (!barycentric) return;
@@ -105,7 +106,8 @@ void locate_into(Call& call, const MeshIndex& mesh, const QueryBatch& queries, c
                                                        call.ctx.launcher.grid(queries.count));
 }
 
-void nearest_into(Call& call, const MeshIndex& mesh, const QueryBatch& queries, std::size_t k, const Allocation& to) {
+void nearest_into(Call& call, const QueryBatch& queries, std::size_t k, const Allocation& to) {
+  const MeshIndex& mesh = call.state.mesh;
   const Allocation reached = call.ctx.memory.allocate(queries.count * word), none;
   locate_queries(call.ctx, mesh, queries, none, reached);
   find_nearest(call.ctx, mesh, queries, reached, k, to);

@@ -29,8 +29,8 @@ namespace query {
 
 /// One call: its options, statistics and context.
 struct Call {
-  explicit Call(MeshQueries::State& state)
-      : ctx(*state.device->device, state.device->memory, state.options, statistics) {
+  explicit Call(MeshQueries::State& from)
+      : state(from), ctx(*state.device->device, state.device->memory, state.options, statistics) {
     state.device->device->begin_call();
     begin_budget(*state.device, state.mesh.point_count);
     ctx.check("queries", 0);
@@ -39,6 +39,7 @@ struct Call {
   void end() {
     if (!ctx.options.queue) ctx.device.finish();
   }
+  MeshQueries::State& state;
   Statistics statistics;
   Context ctx;
 };
@@ -56,9 +57,9 @@ void require_neighbors(std::size_t queries, std::size_t k);
 /// \throws OptionError
 void require_bound(double max_edge);
 /// For what takes a Delaunay mesh. \throws NotDelaunay
-void require_delaunay(Call& call, MeshQueries::State& state);
-inline void require_delaunay(Call& call, MeshQueries::State& state, Interpolation method, Outside outside) {
-  if (method != Interpolation::linear || outside == Outside::nearest) require_delaunay(call, state);
+void require_delaunay(Call& call);
+inline void require_delaunay(Call& call, Interpolation method, Outside outside) {
+  if (method != Interpolation::linear || outside == Outside::nearest) require_delaunay(call);
 }
 /// The number of values a point. \throws InputError
 [[nodiscard]] std::size_t values_a_point(std::size_t values, std::size_t points);
@@ -66,15 +67,16 @@ inline void require_delaunay(Call& call, MeshQueries::State& state, Interpolatio
 /// The caller's memory; null if there is none.
 [[nodiscard]] Allocation array_of(Context& ctx, const DeviceArray& array, std::size_t element);
 
-template <class Points>
-[[nodiscard]] QueryBatch import_queries(Call& call, MeshIndex& mesh, const Points& queries, std::size_t count) {
-  return prepare_queries(call.ctx, mesh, import_points(call.ctx, queries), count);
+[[nodiscard]] inline QueryBatch import_queries(Call& call, PointsView queries) {
+  return prepare_queries(call.ctx, call.state.mesh, import_points(call.ctx, queries), queries.size());
+}
+[[nodiscard]] inline QueryBatch import_queries(Call& call, const DevicePoints& queries) {
+  return prepare_queries(call.ctx, call.state.mesh, import_points(call.ctx, queries), queries.size);
 }
 
 /// `barycentric`: null if they are not wanted.
-void locate_into(Call& call, const MeshIndex& mesh, const QueryBatch& queries, const Allocation& triangles,
-                 const Allocation& barycentric);
-void nearest_into(Call& call, const MeshIndex& mesh, const QueryBatch& queries, std::size_t k, const Allocation& to);
+void locate_into(Call& call, const QueryBatch& queries, const Allocation& triangles, const Allocation& barycentric);
+void nearest_into(Call& call, const QueryBatch& queries, std::size_t k, const Allocation& to);
 
 }  // namespace query
 }  // namespace cadt

@@ -78,7 +78,7 @@ CADT_FN cadt_center cadt_center_of(cadt_point a, cadt_point b, cadt_point c) {
   cadt_i32 e = cadt_exponent_of_largest(ab.x, ab.y, bc.x, bc.y);
   const cadt_i32 other = cadt_exponent_of_largest(ca.x, ca.y, 0.0, 0.0);
   e = other > e ? other : e;
-  if (e == 5000) { /* a difference has overflowed: halve first */
+  if (e == CADT_OVERFLOWED) { /* halve first */
     e = 1024;
     ab.x = cadt_ldexp(b.x, -e) - cadt_ldexp(a.x, -e), ab.y = cadt_ldexp(b.y, -e) - cadt_ldexp(a.y, -e);
     bc.x = cadt_ldexp(c.x, -e) - cadt_ldexp(b.x, -e), bc.y = cadt_ldexp(c.y, -e) - cadt_ldexp(b.y, -e);

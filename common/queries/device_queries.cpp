@@ -22,9 +22,8 @@ std::size_t MeshQueries::locate_barycentric(const DevicePoints& queries, const D
   if (barycentric.memory != nullptr) require_room(barycentric, 3 * queries.size, "barycentric coordinates");
   if (queries.size == 0) return 0;
   Call call(*state_);
-  const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size);
-  locate_into(call, state_->mesh, batch, array_of(call.ctx, triangles, word),
-              array_of(call.ctx, barycentric, sizeof(double)));
+  const QueryBatch batch = import_queries(call, queries);
+  locate_into(call, batch, array_of(call.ctx, triangles, word), array_of(call.ctx, barycentric, sizeof(double)));
   call.end();
   return batch.count;
 }
@@ -35,9 +34,9 @@ std::size_t MeshQueries::nearest_vertices(const DevicePoints& queries, std::size
   require_room(vertices, k * queries.size, "vertices");
   if (queries.size == 0) return 0;
   Call call(*state_);
-  require_delaunay(call, *state_);
-  const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size);
-  nearest_into(call, state_->mesh, batch, k, array_of(call.ctx, vertices, word));
+  require_delaunay(call);
+  const QueryBatch batch = import_queries(call, queries);
+  nearest_into(call, batch, k, array_of(call.ctx, vertices, word));
   call.end();
   return k * batch.count;
 }
@@ -51,8 +50,8 @@ std::size_t MeshQueries::interpolate(const DeviceArray& values, const DevicePoin
   require_room(results, each * queries.size, "results");
   if (queries.size == 0) return 0;
   Call call(*state_);
-  require_delaunay(call, *state_, method, outside);
-  const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size);
+  require_delaunay(call, method, outside);
+  const QueryBatch batch = import_queries(call, queries);
   interpolate_queries(call.ctx, state_->mesh, batch, array_of(call.ctx, values, sizeof(double)), each, method, outside,
                       array_of(call.ctx, results, sizeof(double)));
   call.end();
@@ -68,7 +67,7 @@ std::size_t MeshQueries::rasterize(const Grid& grid, const DeviceArray& values, 
   require_room(cells, grid.cells(), "cells");
   if (grid.cells() == 0) return 0;
   Call call(*state_);
-  require_delaunay(call, *state_, method, Outside::nan);
+  require_delaunay(call, method, Outside::nan);
   rasterize_mesh(call.ctx, state_->mesh, grid, array_of(call.ctx, values, sizeof(double)), method, max_edge,
                  array_of(call.ctx, cells, sizeof(double)));
   call.end();
@@ -94,7 +93,7 @@ std::size_t MeshQueries::voronoi(const DeviceVoronoi& to) {
   require(to.cells, 3 * triangles, "cells");
   if (to.cells.memory != nullptr || to.cell_begin.memory != nullptr) require_room(to.cell_begin, n + 1, "cell_begin");
   Call call(*state_);
-  require_delaunay(call, *state_);
+  require_delaunay(call);
   Context& ctx = call.ctx;
   Allocation begin;
   std::size_t count = 0;

@@ -58,7 +58,7 @@ CADT_FN_SLOW cadt_weights cadt_along_longest(cadt_point a, cadt_point b, cadt_po
 /* The three arms from p with x and y scaled apart, as in cadt_orientation_filter: a common factor of all areas. */
 CADT_FN void cadt_scale_axis(cadt_real a, cadt_real b, cadt_real c, cadt_real p, cadt_real* x) {
   cadt_i32 e = cadt_exponent_of_largest(x[0], x[1], x[2], 0.0);
-  if (e == 5000) { /* a difference has overflowed: halve first */
+  if (e == CADT_OVERFLOWED) { /* halve first */
     x[0] = 0.5 * a - 0.5 * p;
     x[1] = 0.5 * b - 0.5 * p;
     x[2] = 0.5 * c - 0.5 * p;

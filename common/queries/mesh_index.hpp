@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A finished mesh prepared for queries (locate.dev.h), and queries prepared for it.
+// A finished mesh prepared for queries (locate_queries.dev.h), and queries prepared for it.
 #pragma once
 
 #include <cstddef>

@@ -160,9 +160,9 @@ std::vector<std::int32_t> MeshQueries::locate(PointsView queries) {
   require_size(queries.size());
   if (queries.size() == 0) return {};
   Call call(*state_);
-  const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size());
+  const QueryBatch batch = import_queries(call, queries);
   return to_vector<std::int32_t>(call.ctx, batch.count,
-                                 [&](const Allocation& to) { locate_into(call, state_->mesh, batch, to, {}); });
+                                 [&](const Allocation& to) { locate_into(call, batch, to, {}); });
 }
 
 Located MeshQueries::locate_barycentric(PointsView queries) {
@@ -170,10 +170,10 @@ Located MeshQueries::locate_barycentric(PointsView queries) {
   Located result;
   if (queries.size() == 0) return result;
   Call call(*state_);
-  const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size());
+  const QueryBatch batch = import_queries(call, queries);
   result.triangles = to_vector<std::int32_t>(call.ctx, batch.count, [&](const Allocation& triangles) {
     result.barycentric = to_vector<double>(call.ctx, 3 * batch.count, [&](const Allocation& barycentric) {
-      locate_into(call, state_->mesh, batch, triangles, barycentric);
+      locate_into(call, batch, triangles, barycentric);
     });
   });
   return result;
@@ -193,10 +193,10 @@ std::vector<std::int32_t> MeshQueries::nearest_vertices(PointsView queries, std:
   require_neighbors(queries.size(), k);
   if (queries.size() == 0) return {};
   Call call(*state_);
-  require_delaunay(call, *state_);
-  const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size());
+  require_delaunay(call);
+  const QueryBatch batch = import_queries(call, queries);
   return to_vector<std::int32_t>(call.ctx, k * batch.count,
-                                 [&](const Allocation& to) { nearest_into(call, state_->mesh, batch, k, to); });
+                                 [&](const Allocation& to) { nearest_into(call, batch, k, to); });
 }
 
 std::vector<double> MeshQueries::interpolate(std::span<const double> values, PointsView queries, Interpolation method,
@@ -206,9 +206,9 @@ std::vector<double> MeshQueries::interpolate(std::span<const double> values, Poi
   require_results(queries.size(), each);
   if (queries.size() == 0) return {};
   Call call(*state_);
-  require_delaunay(call, *state_, method, outside);
+  require_delaunay(call, method, outside);
   const Allocation from = values.empty() ? Allocation() : call.ctx.memory.import(values.data(), values.size_bytes());
-  const QueryBatch batch = import_queries(call, state_->mesh, queries, queries.size());
+  const QueryBatch batch = import_queries(call, queries);
   return to_vector<double>(call.ctx, each * batch.count, [&](const Allocation& to) {
     interpolate_queries(call.ctx, state_->mesh, batch, from, each, method, outside, to);
   });
@@ -221,7 +221,7 @@ std::vector<double> MeshQueries::rasterize(const Grid& grid, std::span<const dou
   require_mesh_of(values.size(), state_->mesh.point_count);
   if (grid.cells() == 0) return {};
   Call call(*state_);
-  require_delaunay(call, *state_, method, Outside::nan);
+  require_delaunay(call, method, Outside::nan);
   const Allocation from = values.empty() ? Allocation() : call.ctx.memory.import(values.data(), values.size_bytes());
   return to_vector<double>(call.ctx, grid.cells(), [&](const Allocation& to) {
     rasterize_mesh(call.ctx, state_->mesh, grid, from, method, max_edge, to);
@@ -236,19 +236,19 @@ std::vector<double> MeshQueries::circumcenters() {
 
 VoronoiDiagram MeshQueries::voronoi() {
   Call call(*state_);
-  require_delaunay(call, *state_);
+  require_delaunay(call);
   return make_voronoi(call.ctx, state_->mesh);
 }
 
 VoronoiPolygons MeshQueries::voronoi_polygons(const Box& box) {
   Call call(*state_);
-  require_delaunay(call, *state_);
+  require_delaunay(call);
   return clip_voronoi(call.ctx, state_->mesh, box);
 }
 
 std::vector<Circle> MeshQueries::largest_empty_circles(std::size_t k) {
   Call call(*state_);
-  require_delaunay(call, *state_);
+  require_delaunay(call);
   return find_largest_circles(call.ctx, state_->mesh, k);
 }
 

@@ -45,7 +45,7 @@ CADT_FN cadt_u32 cadt_is_longer(cadt_point a, cadt_point b, cadt_real most) {
   cadt_real x = a.x - b.x, y = a.y - b.y;
 #if CADT_WIDE
   const cadt_i32 e = cadt_exponent_of_largest(x, y, most, 0.0);
-  if (e == 5000) return most < CADT_INFINITY ? 1u : 0u;
+  if (e == CADT_OVERFLOWED) return most < CADT_INFINITY ? 1u : 0u;
   x = cadt_ldexp(x, -e);
   y = cadt_ldexp(y, -e);
   most = cadt_ldexp(most, -e);

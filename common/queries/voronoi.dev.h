@@ -15,7 +15,7 @@ typedef struct {
 CADT_FN cadt_real cadt_length(cadt_point d) {
 #if CADT_WIDE
   const cadt_i32 e = cadt_exponent_of_largest(d.x, d.y, 0.0, 0.0);
-  if (e == 5000) return CADT_INFINITY;
+  if (e == CADT_OVERFLOWED) return CADT_INFINITY;
   d.x = cadt_ldexp(d.x, -e);
   d.y = cadt_ldexp(d.y, -e);
   return cadt_ldexp(cadt_sqrt(cadt_dot(d, d)), e);

@@ -101,4 +101,43 @@ struct Statistics {
   std::vector<KernelTime> kernels;
 };
 
+/// A counter of Statistics with its name, as programs print it.
+struct NamedCounter {
+  const char* name;
+  std::uint64_t Statistics::*value;
+};
+
+/// What a call counts of its work: all counters but those of the input and of bytes.
+inline constexpr NamedCounter counters_of_work[] = {
+    {"launches", &Statistics::launches},
+    {"walk_steps", &Statistics::walk_steps},
+    {"lock_attempts", &Statistics::lock_attempts},
+    {"lock_failures", &Statistics::lock_failures},
+    {"invalid_restarts", &Statistics::invalid_restarts},
+    {"insert_retries", &Statistics::insert_retries},
+    {"stale_edges", &Statistics::stale_edges},
+    {"deferred_points", &Statistics::deferred_points},
+    {"deferred_edges", &Statistics::deferred_edges},
+    {"splits", &Statistics::splits},
+    {"edge_splits", &Statistics::edge_splits},
+    {"flips", &Statistics::flips},
+    {"incircle_tests", &Statistics::incircle_tests},
+    {"orientation_tests", &Statistics::orientation_tests},
+    {"exact_orientations", &Statistics::exact_orientations},
+    {"exact_incircles", &Statistics::exact_incircles},
+    {"ties", &Statistics::ties},
+    {"legality_sweeps", &Statistics::legality_sweeps},
+    {"sweep_repairs", &Statistics::sweep_repairs},
+    {"cavities", &Statistics::cavities},
+    {"certified_edges", &Statistics::certified_edges},
+    {"stabilized_edges", &Statistics::stabilized_edges},
+    {"illegal_edges", &Statistics::illegal_edges},
+    {"tiles", &Statistics::tiles},
+    {"proven_stars", &Statistics::proven_stars},
+    {"wrapped_stars", &Statistics::wrapped_stars},
+    {"refined_points", &Statistics::refined_points},
+    {"inserted_segments", &Statistics::inserted_segments},
+    {"segment_retries", &Statistics::segment_retries},
+};
+
 }  // namespace cadt

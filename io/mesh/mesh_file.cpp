@@ -2,6 +2,9 @@
 // Choice of the reader and writer of mesh files.
 #include "io/mesh/mesh_parts.hpp"
 #include "io/points/readers.hpp"
+#include "io/support/number_format.hpp"
+
+#include <algorithm>
 
 namespace cadt::io {
 
@@ -59,6 +62,27 @@ void write_mesh_parts(const std::string& path, const MeshParts& mesh, const Writ
     throw FileError(path, 0, "'" + format + "' is a picture, not a mesh");
   }
   out.commit();
+}
+
+void write_vertex_rows(AtomicFile& out, const MeshParts& mesh, std::string_view prefix) {
+  for (std::size_t i = 0; 2 * i < mesh.xy.size(); ++i) {
+    char* at = std::ranges::copy(prefix, out.room(4 * number_room)).out;
+    at = put(at, mesh.xy[2 * i]);
+    *at++ = ' ';
+    at = put(at, mesh.xy[2 * i + 1]);
+    *at++ = ' ';
+    at = put(at, mesh.height.empty() ? 0.0 : mesh.height[i]);
+    *at++ = '\n';
+    out.advance(at);
+  }
+}
+
+char* put_corners(char* at, const std::int32_t* corners, std::int64_t base) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    *at++ = ' ';
+    at = put(at, corners[k] + base);
+  }
+  return at;
 }
 
 std::string TriangleCollector::refusal(std::int64_t index) const {

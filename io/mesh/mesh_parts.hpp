@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace cadt::io::detail {
 
@@ -40,6 +41,10 @@ void write_obj(AtomicFile& out, const MeshParts& mesh);
 void write_off(AtomicFile& out, const MeshParts& mesh);
 void write_ply(AtomicFile& out, const MeshParts& mesh, bool ascii);
 void write_vtu(AtomicFile& out, const MeshParts& mesh);
+/// Rows of text: x, y and the height, or 0, behind `prefix`.
+void write_vertex_rows(AtomicFile& out, const MeshParts& mesh, std::string_view prefix);
+/// The three corners of a triangle as text, each behind a space. Returns the end.
+[[nodiscard]] char* put_corners(char* at, const std::int32_t* corners, std::int64_t base);
 void write_glb(AtomicFile& out, const std::string& path, const MeshParts& mesh);
 void write_npz(AtomicFile& out, const MeshParts& mesh);
 

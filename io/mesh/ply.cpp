@@ -11,22 +11,9 @@ namespace cadt::io::detail {
 namespace {
 
 void write_text(AtomicFile& out, const MeshParts& mesh) {
-  for (std::size_t i = 0; 2 * i < mesh.xy.size(); ++i) {
-    char* at = put(out.room(4 * number_room), mesh.xy[2 * i]);
-    *at++ = ' ';
-    at = put(at, mesh.xy[2 * i + 1]);
-    *at++ = ' ';
-    at = put(at, mesh.height.empty() ? 0.0 : mesh.height[i]);
-    *at++ = '\n';
-    out.advance(at);
-  }
+  write_vertex_rows(out, mesh, "");
   for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3) {
-    char* at = out.room(5 * number_room);
-    *at++ = '3';
-    for (std::size_t k = 0; k < 3; ++k) {
-      *at++ = ' ';
-      at = put(at, std::int64_t{mesh.triangles[i + k]});
-    }
+    char* at = put_corners(put(out.room(5 * number_room), "3"), &mesh.triangles[i], 0);
     if (!mesh.region.empty()) {
       *at++ = ' ';
       at = put(at, std::int64_t{mesh.region[i / 3]});

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts a Triangulation for the writers; the only file that sees both.
 #include "io/mesh/mesh_parts.hpp"
-
-#include <cadt/io/mesh_file.hpp>
-#include <cadt/io/picture.hpp>
+#include "io/picture/scene.hpp"
 
 namespace cadt::io {
 
@@ -15,14 +13,9 @@ void write_mesh(const std::string& path, const PointSet& points, const Triangula
                     "the triangulation is not that of the points: it has " + std::to_string(mesh.number_of_points()) +
                         " points, not " + std::to_string(points.size()));
   }
-  if (format == "svg" || format == "pdf" || format == "png") {
-    PictureOptions picture;
-    picture.width = options.width;
-    picture.max_height = options.max_height;
-    picture.height = options.height;
+  if (picture::is_picture(format)) {
     const auto write = format == "svg" ? write_svg : format == "pdf" ? write_pdf : write_png;
-    write(path, points, mesh, picture);
-    return;
+    return write(path, points, mesh, picture::options_of(options));
   }
   detail::MeshParts parts;
   parts.xy = points.xy;

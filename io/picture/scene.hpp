@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cadt/constrained.hpp>
+#include <cadt/io/mesh_file.hpp>
 #include <cadt/io/picture.hpp>
 #include <cadt/io/region_file.hpp>
 
@@ -32,6 +33,13 @@ struct Scene {
 }
 [[nodiscard]] inline Scene scene_of(const RegionMesh& mesh) {
   return {mesh.xy, mesh.height, mesh.triangles, mesh.hull, mesh.region, mesh.segments};
+}
+
+[[nodiscard]] inline bool is_picture(const std::string& format) {
+  return format == "svg" || format == "pdf" || format == "png";
+}
+[[nodiscard]] inline PictureOptions options_of(const WriteOptions& options) {
+  return {.width = options.width, .max_height = options.max_height, .height = options.height};
 }
 
 /// Calls `edge(u, v)` for every edge once. Counterclockwise triangles pass an interior edge once in each direction, so

@@ -92,13 +92,8 @@ void write_region_mesh(const std::string& path, const RegionMesh& mesh, const Wr
     detail::write_triangles_as_geojson(out, mesh);
     return out.commit();
   }
-  if (format == "svg" || format == "pdf" || format == "png") {
-    PictureOptions picture;
-    picture.width = options.width;
-    picture.max_height = options.max_height;
-    picture.height = options.height;
-    return picture::write_scene(path, format, picture::scene_of(mesh), picture);
-  }
+  if (picture::is_picture(format))
+    return picture::write_scene(path, format, picture::scene_of(mesh), picture::options_of(options));
   detail::MeshParts parts;
   parts.xy = mesh.xy;
   parts.height = mesh.height;

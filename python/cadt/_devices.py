@@ -42,6 +42,9 @@ class DeviceInfo:
     compute_units: int
     fp64: bool
     gpu: bool
+    watchdog: bool
+    largest_buffer_bytes: int
+    atomics: str
 
 
 def devices() -> list[DeviceInfo]:

@@ -54,43 +54,14 @@ nb::dict to_dict(const cadt::Statistics& s) {
   d["backend"] = s.backend;
   d["device"] = s.device;
   d["threads"] = s.threads;
-  const std::pair<const char*, std::uint64_t> counters[] = {
-      {"points", s.points},
-      {"distinct", s.distinct},
-      {"launches", s.launches},
-      {"walk_steps", s.walk_steps},
-      {"lock_attempts", s.lock_attempts},
-      {"lock_failures", s.lock_failures},
-      {"invalid_restarts", s.invalid_restarts},
-      {"insert_retries", s.insert_retries},
-      {"stale_edges", s.stale_edges},
-      {"deferred_points", s.deferred_points},
-      {"deferred_edges", s.deferred_edges},
-      {"splits", s.splits},
-      {"edge_splits", s.edge_splits},
-      {"flips", s.flips},
-      {"incircle_tests", s.incircle_tests},
-      {"orientation_tests", s.orientation_tests},
-      {"exact_orientations", s.exact_orientations},
-      {"exact_incircles", s.exact_incircles},
-      {"ties", s.ties},
-      {"legality_sweeps", s.legality_sweeps},
-      {"sweep_repairs", s.sweep_repairs},
-      {"cavities", s.cavities},
-      {"certified_edges", s.certified_edges},
-      {"tiles", s.tiles},
-      {"proven_stars", s.proven_stars},
-      {"wrapped_stars", s.wrapped_stars},
-      {"sets", s.sets},
-      {"batched_sets", s.batched_sets},
-      {"refined_points", s.refined_points},
-      {"inserted_segments", s.inserted_segments},
-      {"segment_retries", s.segment_retries},
-      {"bytes_device_peak", s.bytes_device_peak},
-      {"bytes_to_device", s.bytes_to_device},
-      {"bytes_from_device", s.bytes_from_device},
-  };
-  for (const auto& [name, value] : counters) d[name] = value;
+  d["points"] = s.points;
+  d["distinct"] = s.distinct;
+  for (const cadt::NamedCounter& counter : cadt::counters_of_work) d[counter.name] = s.*counter.value;
+  d["sets"] = s.sets;
+  d["batched_sets"] = s.batched_sets;
+  d["bytes_device_peak"] = s.bytes_device_peak;
+  d["bytes_to_device"] = s.bytes_to_device;
+  d["bytes_from_device"] = s.bytes_from_device;
   d["wide_arithmetic"] = s.wide_arithmetic;
   d["certified"] = s.certified;
   nb::dict milliseconds;
@@ -145,6 +116,9 @@ void bind_options(nb::module_& m) {
       d["compute_units"] = device.compute_units;
       d["fp64"] = device.fp64;
       d["gpu"] = device.gpu;
+      d["watchdog"] = device.watchdog;
+      d["largest_buffer_bytes"] = device.largest_buffer_bytes;
+      d["atomics"] = device.atomics;
       list.append(d);
     }
     return list;

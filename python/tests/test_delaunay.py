@@ -300,7 +300,9 @@ def test_options(points: np.ndarray) -> None:
     }
     assert len(hashes) == 1
     assert cadt.Delaunay(points, backend="host").device == "host"
-    assert cadt.Delaunay(points).statistics["points"] == len(points)
+    statistics = cadt.Delaunay(points).statistics
+    assert statistics["points"] == len(points)
+    assert statistics["stabilized_edges"] == statistics["illegal_edges"] == 0
     seen: list[tuple[str, float]] = []
     many = np.random.default_rng(0).random((400_000, 2))
     # On a GPU, or many processors, it would have ended before the first report.
@@ -349,6 +351,7 @@ def test_devices() -> None:
     host = [d for d in infos if d.backend == "host"]
     assert host and host[0].usable
     assert all(d.usable or d.reason for d in infos)
+    assert host[0].largest_buffer_bytes > 0 and host[0].atomics and not host[0].watchdog
     cadt.release_memory()
     assert all(hasattr(cadt, name) for name in dir(cadt)) and cadt.__version__.count(".") == 2
 

@@ -25,8 +25,9 @@ MAY_INCLUDE = {
     "viewer": ["viewer", "io", "include/cadt", "include/cadt/io"],  # an application: nothing includes it but apps
     "viewer/growth": ["viewer", "include/cadt", "include/cadt/io"],
     "common": ["common", "include/cadt"],
+    "common/platform": ["common/platform", "include/cadt"],
     "common/verify": ["common", "include/cadt"],
-    "common/verify/host": ["common/verify/host", "include/cadt"],  # shares no predicate with the builder
+    "common/verify/host": ["common/verify/host", "common/platform", "include/cadt"],
     "backends": ["backends", "common", "include/cadt", "kernels_cl", "kernels_cuda"],
     "kernels_cl": ["kernels_cl", "common"],
     "kernels_cuda": ["kernels_cuda", "common"],
@@ -37,6 +38,8 @@ ONLY = [
     (r"common/.*\.dev\.h$", DEVICE_TEXT),
     (r"kernels_cl/", r"kernels_cl/|" + DEVICE_TEXT),
     (r"kernels_cuda/", r"kernels_cuda/|" + DEVICE_TEXT),
+    # The verifier of the host shares nothing with the builder but how loops run on threads.
+    (r"common/verify/host/", r"common/verify/host/|common/platform/parallel\.hpp$|include/"),
     # The verifier's kernels share nothing with the builder's but the view of a mesh.
     (r"common/verify/device/.*\.dev\.h$", r"common/verify/device/|common/portable/(dialect|atomics)\.dev\.h$|common/mesh/mesh_view\.dev\.h$"),
     # What all stages share knows no stage, but for the text of the kernels, of which it takes layouts and parameters.
@@ -47,12 +50,11 @@ VERIFIER, ITS_USERS = "common/verify/host/", r"common/verify/|tests/"
 EXCEPTIONS = {  # file -> headers of the verifier; docs/constrained.md and docs/scale.md say what for
     "common/constraints/domains/locate_seeds.cpp": ["exact_sign.hpp"],  # holes and regions
     "common/constraints/exact/implicit_point.hpp": ["exact_sign.hpp"],  # crossings: where all points are doubles
-    "common/constraints/tasks.hpp": ["parallel.hpp"],  # threads alone
     "common/constraints/verify/verify_segments.cpp": ["mesh.hpp"],  # the verifier of segments
     "common/driver/adopt.cpp": ["mesh.hpp"],  # the mesh of another program is verified
     "common/finalization/children.hpp": ["exact_sign.hpp"],  # certificates of edges between nodes
     "common/finalization/finish.cpp": ["exact_sign.hpp"],  # whether arithmetic is IEEE
-    "common/finalization/join.cpp": ["exact_sign.hpp", "parallel.hpp"],
+    "common/finalization/join.cpp": ["exact_sign.hpp"],
     "common/queries/call.cpp": ["exact_sign.hpp"],  # whether arithmetic is IEEE
     "common/queries/queries.cpp": ["exact_sign.hpp"],  # whether arithmetic is IEEE
 }
@@ -178,12 +180,14 @@ def self_test():
         ("common/driver/d2.hpp", '#include "common/points/p.hpp"', False),
         ("common/driver/d2.cpp", '#include "common/points/p.hpp"', True),
         ("common/verify/host/v.cpp", '#include "common/points/g.dev.h"', False),
+        ("common/verify/host/v.cpp", '#include "common/platform/parallel.hpp"', True),
+        ("common/verify/host/v.cpp", '#include "common/platform/other.hpp"', False),
         ("common/verify/device/v.cpp", '#include "common/driver/d.hpp"', True),
         ("common/verify/device/v.cpp", '#include "common/verify/host/exact_sign.hpp"', True),
         ("tests/t.cpp", '#include "common/verify/host/exact_sign.hpp"', True),
         ("common/stars/s.cpp", '#include "common/verify/host/exact_sign.hpp"', False),
         ("common/constraints/domains/locate_seeds.cpp", '#include "common/verify/host/exact_sign.hpp"', True),
-        ("common/constraints/tasks.hpp", '#include "common/verify/host/exact_sign.hpp"', False),
+        ("common/constraints/stop_check.hpp", '#include "common/verify/host/exact_sign.hpp"', False),
         ("backends/host/f2.cpp", '#include "common/driver/d.hpp"', True),
         ("backends/opencl/f3.cpp", '#include "backends/host/f.hpp"', False),
         ("backends/host/f2.cpp", "#include <CL/opencl.hpp>", False),
@@ -201,6 +205,7 @@ def self_test():
     ]
     present = ["include/cadt/b.hpp", "include/cadt/io/c.hpp", "common/driver/d.hpp", "common/points/p.hpp", "io/support/e.hpp", "tiles/t.hpp", "apps/y.hpp",
                "backends/host/f.hpp", "common/points/g.dev.h", "common/portable/dialect.dev.h",
+               "common/platform/parallel.hpp", "common/platform/other.hpp",
                "common/mesh/mesh_view.dev.h", "common/mesh/locked_mesh.dev.h", "common/verify/host/exact_sign.hpp"]
     failed = 0
     for source, line, allowed in cases:

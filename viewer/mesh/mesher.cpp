@@ -2,7 +2,7 @@
 #include "viewer/mesh/mesher.hpp"
 
 #include "viewer/gl/errors.hpp"
-#include "viewer/mesh/way.hpp"
+#include "viewer/mesh/interop.hpp"
 
 #include <epoxy/gl.h>
 
@@ -48,38 +48,38 @@ std::string_view to_string(Interop interop) noexcept {
 Mesher::Mesher(const Options& chosen, Interop interop) {
   Options options = chosen;
   options.order = Order::fast;
-  const auto try_way = [&](Interop way, Backend backend, auto open) {
-    if (way_ != nullptr || (interop != Interop::automatic && interop != way)) return;
+  const auto try_interop = [&](Interop kind, Backend backend, auto open) {
+    if (opened_ != nullptr || (interop != Interop::automatic && interop != kind)) return;
     std::string why;
     if (options.backend != Backend::automatic && options.backend != backend)
       why = "the mesh is computed by the back end '" + std::string(to_string(options.backend)) + "'";
     else
-      way_ = open(options, why);
-    if (way_ != nullptr) {
-      interop_ = way;
+      opened_ = open(options, why);
+    if (opened_ != nullptr) {
+      interop_ = kind;
       return;
     }
-    if (interop == way)
-      throw DisplayError("--interop " + std::string(to_string(way)) + " is not possible: " + why +
-                         "; leave --interop out, and the fastest possible way is taken");
-    reason_ += (reason_.empty() ? "" : "; ") + std::string(to_string(way)) + ": " + why;
+    if (interop == kind)
+      throw DisplayError("--interop " + std::string(to_string(kind)) + " is not possible: " + why +
+                         "; leave --interop out, and the fastest that is possible is taken");
+    reason_ += (reason_.empty() ? "" : "; ") + std::string(to_string(kind)) + ": " + why;
   };
-  try_way(Interop::cuda, Backend::cuda, open_cuda);
-  try_way(Interop::opencl, Backend::opencl, open_opencl);
-  if (way_ == nullptr) way_ = open_copy(options);
+  try_interop(Interop::cuda, Backend::cuda, open_cuda);
+  try_interop(Interop::opencl, Backend::opencl, open_opencl);
+  if (opened_ == nullptr) opened_ = open_copy(options);
 }
 
 Mesher::~Mesher() = default;
-const DeviceInfo& Mesher::device() const noexcept { return way_->triangulator().device(); }
+const DeviceInfo& Mesher::device() const noexcept { return opened_->triangulator().device(); }
 std::string Mesher::reason() const {
-  const std::string note = way_->note();
+  const std::string note = opened_->note();
   return reason_.empty() || note.empty() ? reason_ + note : reason_ + "; " + note;
 }
-Options& Mesher::options() noexcept { return way_->triangulator().options(); }
+Options& Mesher::options() noexcept { return opened_->triangulator().options(); }
 
 void Mesher::triangulate(MeshBuffers& mesh, Statistics* statistics) {
   mesh.triangle_count = 0;  // after an error the mesh has none
-  if (mesh.point_count != 0) mesh.triangle_count = way_->triangulate(mesh, statistics);
+  if (mesh.point_count != 0) mesh.triangle_count = opened_->triangulate(mesh, statistics);
 }
 
 }  // namespace cadt::viewer

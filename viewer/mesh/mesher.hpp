@@ -13,7 +13,7 @@
 
 namespace cadt::viewer {
 
-class Way;
+class MeshInterop;
 
 /// How the mesh gets from the device that computes to the one that draws.
 enum class Interop {
@@ -27,11 +27,11 @@ enum class Interop {
 /// An open device beside an OpenGL context, which must be current for all calls. Not thread-safe.
 class Mesher {
  public:
-  /// \throws DisplayError if `interop` names a way that is not possible here, with the reason; what Triangulator throws
+  /// \throws DisplayError if `interop` names one that is not possible here, with the reason; what Triangulator throws
   Mesher(const Options& options, Interop interop);
   ~Mesher();
 
-  /// The way that was chosen, never Interop::automatic, and why it is not faster, known after the first triangulation;
+  /// The one that was chosen, never Interop::automatic, and why it is not faster, known after the first triangulation;
   /// empty if there is nothing to say.
   [[nodiscard]] Interop interop() const noexcept { return interop_; }
   [[nodiscard]] std::string reason() const;
@@ -46,7 +46,7 @@ class Mesher {
   [[nodiscard]] Options& options() noexcept;
 
  private:
-  std::unique_ptr<Way> way_;
+  std::unique_ptr<MeshInterop> opened_;
   Interop interop_ = Interop::copy;
   std::string reason_;
 };

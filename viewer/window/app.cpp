@@ -114,7 +114,7 @@ void App::session() {
   window->hide();
 }
 
-bool App::open_way() {
+bool App::open_mesher() {
   interop_reason.clear();
   scene->mesher.reset();
   try {
@@ -129,7 +129,7 @@ bool App::open_way() {
     } else {
       scene->mesher = std::make_unique<Mesher>(options.compute, options.interop);
       interop_reason = scene->mesher->reason();
-      // On that way a thread makes the mesh, and the window goes on.
+      // Then a thread makes the mesh, and the window goes on.
       if (scene->mesher->interop() == Interop::copy) scene->mesher.reset();
     }
     return true;
@@ -170,7 +170,7 @@ void App::restart() {
 void App::start_loading() {
   restart_asked_ = false;
   stop_editing();  // before the mesher goes
-  if (!open_way()) return;
+  if (!open_mesher()) return;
   asking.cancel();
   const Source& source = options.sources[current];
   window->set_title("cadt: " + source.name());

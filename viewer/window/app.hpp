@@ -141,7 +141,7 @@ class App {
 
  private:
   void session();
-  bool open_way();
+  bool open_mesher();
   void start_loading();
   void finish_loading(const std::exception_ptr& error);
   void show(const std::shared_ptr<Loaded>& next);

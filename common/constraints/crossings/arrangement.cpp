@@ -2,7 +2,8 @@
 #include "common/constraints/crossings/arrangement.hpp"
 
 #include "common/constraints/crossings/sweep.hpp"
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
+#include "common/platform/parallel.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -137,11 +138,11 @@ void find_lowest(Arrangement& out, unsigned threads) {
   out.segment_first.resize(out.segments.size());
   out.segment_last.resize(out.segments.size());
   std::vector<std::int32_t> lowest(out.chain_vertices.size());
-  for_each_block(out.chain_offsets.size() - 1, threads, [&](std::size_t first, std::size_t last) {
+  platform::for_each_block(out.chain_offsets.size() - 1, threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t wall = first; wall < last; ++wall) lowest_along_wall(out, wall, lowest);
   });
   out.parents.resize(out.crossings.size());
-  for_each_block(out.crossings.size(), threads, [&](std::size_t first, std::size_t last) {
+  platform::for_each_block(out.crossings.size(), threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t c = first; c < last; ++c) {
       std::int32_t low = std::numeric_limits<std::int32_t>::max(), second = low;
       for (std::int64_t i = out.member_offsets[c]; i < out.member_offsets[c + 1]; ++i) {
@@ -159,20 +160,21 @@ void find_lowest(Arrangement& out, unsigned threads) {
 
 }  // namespace
 
-Arrangement arrange(PointsView points, std::span<const Segment> segments, unsigned threads, const Watch& watch) {
+Arrangement arrange(PointsView points, std::span<const Segment> segments, unsigned threads,
+                    const StopCheck& check_stop) {
   verifier::require_ieee_arithmetic();
   Arrangement out = sort_segments(points, segments);
   const std::vector<std::int32_t> starts = first_at(out);
-  threads = threads_or_all(threads);
+  threads = platform::threads_or_all(threads);
   // Slabs of equally many points, some for each thread as their crossings differ; a slab starts with a sort of all that
   // enters it, so a few thousand points are the least that is worth it.
   const std::size_t n = out.points.size();
   const std::size_t slabs = threads == 1 ? 1 : std::clamp<std::size_t>(n >> 12, 1, std::size_t{4} * threads);
   std::vector<SlabFindings> found(slabs);
   if (!out.segments.empty())
-    for_each_task(slabs, threads, [&](std::size_t i) {
+    platform::for_each_task(slabs, threads, [&](std::size_t i) {
       found[i] = sweep_slab(out, starts, static_cast<std::int32_t>(n * i / slabs),
-                            static_cast<std::int32_t>(n * (i + 1) / slabs), watch);
+                            static_cast<std::int32_t>(n * (i + 1) / slabs), check_stop);
     });
   make_walls(out, found);
   make_chains(out, found);

@@ -5,7 +5,7 @@
 #include <cadt/constrained.hpp>
 
 #include "common/constraints/exact/implicit_point.hpp"
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
 
 #include <array>
 #include <cstdint>
@@ -62,6 +62,6 @@ struct Arrangement {
 /// numbers. O((n + length of chains) log n). \throws as sort_segments, Cancelled, LimitError, and Error if the thread's
 /// arithmetic is not IEEE 754
 [[nodiscard]] Arrangement arrange(PointsView points, std::span<const Segment> segments, unsigned threads,
-                                  const Watch& watch = {});
+                                  const StopCheck& check_stop = {});
 
 }  // namespace cadt::constraints

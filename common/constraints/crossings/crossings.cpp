@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/constraints/crossings/crossings.hpp"
 
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -56,21 +56,21 @@ class Stabbed {
 
 }  // namespace
 
-std::vector<std::array<std::int32_t, 2>> crossing_pairs(const Arrangement& in, const Watch& watch) {
+std::vector<std::array<std::int32_t, 2>> crossing_pairs(const Arrangement& in, const StopCheck& check_stop) {
   // Wall by wall: the input segments through each of its crossings
   std::vector<std::vector<std::int32_t>> through(in.members.size());
   std::vector<std::vector<std::size_t>> members_of(in.wall_offsets.size() - 1);
   for (std::size_t m = 0; m < in.members.size(); ++m)
     members_of[static_cast<std::size_t>(in.members[m].wall)].push_back(m);
   for (std::size_t wall = 0; wall < members_of.size(); ++wall) {
-    watch();
+    check_stop();
     if (members_of[wall].empty()) continue;
     const Stabbed stabbed(in, wall);
     for (const std::size_t m : members_of[wall]) stabbed.append(in.members[m].position, through[m]);
   }
   std::vector<std::array<std::int32_t, 2>> pairs;
   for (std::size_t c = 0; c < in.crossings.size(); ++c) {
-    watch();
+    check_stop();
     const auto first = static_cast<std::size_t>(in.member_offsets[c]);
     const auto last = static_cast<std::size_t>(in.member_offsets[c + 1]);
     for (std::size_t i = first; i < last; ++i)

@@ -12,6 +12,6 @@ namespace cadt::constraints {
 
 /// All pairs of input segments that cross, ascending. \throws Cancelled
 [[nodiscard]] std::vector<std::array<std::int32_t, 2>> crossing_pairs(const Arrangement& arrangement,
-                                                                      const Watch& watch = {});
+                                                                      const StopCheck& check_stop = {});
 
 }  // namespace cadt::constraints

@@ -9,8 +9,9 @@
 #include <utility>
 
 #include "common/constraints/exact/implicit_point.hpp"
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
 #include "common/driver/device_text.hpp"
+#include "common/platform/parallel.hpp"
 #include "common/points/device_points.hpp"
 
 namespace cadt {
@@ -158,8 +159,8 @@ class CrossingFinder {
       const Segment& ends = segments[static_cast<std::size_t>(s)];
       return exact::Line{all[static_cast<std::size_t>(ends[0])], all[static_cast<std::size_t>(ends[1])]};
     };
-    constraints::for_each_block(
-        unsure.size(), constraints::threads_or_all(ctx_.options.threads), [&](std::size_t first, std::size_t last) {
+    platform::for_each_block(
+        unsure.size(), platform::threads_or_all(ctx_.options.threads), [&](std::size_t first, std::size_t last) {
           for (std::size_t i = first; i < last; ++i) {
             const std::array<exact::Line, 2> lines = {line(pairs[unsure[i]][0]), line(pairs[unsure[i]][1])};
             all[in_.points + unsure[i]] = exact::ImplicitPoints(lines).crossing(0, 1).rounded();

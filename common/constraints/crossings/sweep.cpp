@@ -2,7 +2,7 @@
 #include "common/constraints/crossings/sweep.hpp"
 
 #include "common/constraints/crossings/sweep_status.hpp"
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
 
 #include <algorithm>
 #include <queue>
@@ -20,8 +20,8 @@ using exact::Point;
 // no two walls are on the same line where the sweep line is.
 class Sweep {
  public:
-  Sweep(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, const Watch& watch)
-      : in_(arrangement), starts_(starts), watch_(watch), exact_(arrangement.lines), queue_(Later{exact_}) {
+  Sweep(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, const StopCheck& check_stop)
+      : in_(arrangement), starts_(starts), check_stop_(check_stop), exact_(arrangement.lines), queue_(Later{exact_}) {
     node_of_.assign(in_.segments.size(), SweepStatus::none);
     wall_of_.assign(in_.segments.size(), none);
     reach_.assign(in_.segments.size(), none);
@@ -37,10 +37,10 @@ class Sweep {
         do queue_.pop();
         while (!queue_.empty() && exact_.compare(queue_.top(), crossing) == 0);
         if (order < 0) pass_crossing(crossing);
-        watch_();
+        check_stop_();
       }
       pass_point(r);
-      watch_();
+      check_stop_();
     }
     return std::move(out_);
   }
@@ -225,7 +225,7 @@ class Sweep {
 
   const Arrangement& in_;
   const std::vector<std::int32_t>& starts_;
-  const Watch& watch_;
+  const StopCheck& check_stop_;
   exact::ImplicitPoints exact_;
   SweepStatus status_;
   std::vector<std::int32_t> node_of_;  // of walls in the status
@@ -239,8 +239,8 @@ class Sweep {
 }  // namespace
 
 SlabFindings sweep_slab(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, std::int32_t first,
-                        std::int32_t last, const Watch& watch) {
-  return Sweep(arrangement, starts, watch).run(first, last);
+                        std::int32_t last, const StopCheck& check_stop) {
+  return Sweep(arrangement, starts, check_stop).run(first, last);
 }
 
 }  // namespace cadt::constraints

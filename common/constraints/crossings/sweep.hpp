@@ -32,6 +32,6 @@ struct SlabFindings {
 /// O((n + contacts) log n). Reads the arrangement's points, segments and lines only. \pre first < last
 /// \throws Cancelled
 [[nodiscard]] SlabFindings sweep_slab(const Arrangement& arrangement, const std::vector<std::int32_t>& starts,
-                                      std::int32_t first, std::int32_t last, const Watch& watch = {});
+                                      std::int32_t first, std::int32_t last, const StopCheck& check_stop = {});
 
 }  // namespace cadt::constraints

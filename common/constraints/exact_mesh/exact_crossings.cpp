@@ -2,7 +2,8 @@
 #include "common/constraints/exact_mesh/exact_crossings.hpp"
 
 #include "common/constraints/exact_mesh/mesh_editor.hpp"
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
+#include "common/platform/parallel.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -59,16 +60,16 @@ MeshEditor edit(const Arrangement& in, const Triangulation& delaunay) {
 }  // namespace
 
 ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment> segments,
-                                     const Triangulation& delaunay, unsigned threads, const Watch& watch) {
-  const Arrangement in = arrange(points, segments, threads, watch);
+                                     const Triangulation& delaunay, unsigned threads, const StopCheck& check_stop) {
+  const Arrangement in = arrange(points, segments, threads, check_stop);
   const std::size_t ranks = in.points.size(), crossings = in.crossings.size();
   MeshEditor mesh = edit(in, delaunay);
   for (const std::int32_t c : insertion_order(in)) {
-    watch();
+    check_stop();
     mesh.insert_vertex(static_cast<std::int32_t>(ranks) + c);
   }
   for (std::size_t wall = 0; wall + 1 < in.chain_offsets.size() && !mesh.triangles().empty(); ++wall) {
-    watch();
+    check_stop();
     mesh.insert_chain(std::span(in.chain_vertices.data() + in.chain_offsets[wall],
                                 in.chain_vertices.data() + in.chain_offsets[wall + 1]));
   }
@@ -92,7 +93,8 @@ ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment>
   out.edge_flags.assign(mesh.flags().begin(), mesh.flags().end());
   out.triangles.resize(mesh.triangles().size());
   std::atomic<bool> valid{true};
-  for_each_block(out.edge_flags.size(), threads_or_all(threads), [&](std::size_t first, std::size_t last) {
+  const unsigned all = platform::threads_or_all(threads);
+  platform::for_each_block(out.edge_flags.size(), all, [&](std::size_t first, std::size_t last) {
     for (std::size_t t = first; t < last; ++t) {
       std::array<exact::Place, 3> p;
       for (std::size_t k = 0; k < 3; ++k) {

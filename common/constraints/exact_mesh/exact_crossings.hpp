@@ -4,7 +4,7 @@
 
 #include <cadt/constrained.hpp>
 
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
 
 #include <array>
 #include <cstdint>
@@ -35,6 +35,6 @@ struct ExactMesh {
 /// about 100 bytes a vertex more than the result. \throws InputError as find_crossings, LimitError, Cancelled
 [[nodiscard]] ExactMesh triangulate_with_crossings(PointsView points, std::span<const Segment> segments,
                                                    const Triangulation& delaunay, unsigned threads,
-                                                   const Watch& watch = {});
+                                                   const StopCheck& check_stop = {});
 
 }  // namespace cadt::constraints

@@ -3,7 +3,8 @@
 
 #include "common/constraints/crossings/arrangement.hpp"
 #include "common/constraints/grid/pixel_grid.hpp"
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
+#include "common/platform/parallel.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -79,7 +80,7 @@ std::vector<Hot> hot_pixels(const Arrangement& in, const PixelGrid& grid, unsign
   const std::size_t points = in.points.size();
   std::vector<Hot> hot(points + in.crossings.size());
   const exact::ImplicitPoints exact(in.lines);
-  for_each_block(hot.size(), threads, [&](std::size_t first, std::size_t last) {
+  platform::for_each_block(hot.size(), threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       hot[i].pixel = grid.pixel_of(in.place(static_cast<std::int32_t>(i)), exact);
       hot[i].point = i < points ? in.representative[i] : no_point;
@@ -92,10 +93,10 @@ std::vector<Hot> hot_pixels(const Arrangement& in, const PixelGrid& grid, unsign
 }  // namespace
 
 SnappedSegments snap_segments(PointsView points, std::span<const Segment> segments, double width, unsigned threads,
-                              const Watch& watch) {
+                              const StopCheck& check_stop) {
   check_grid(points, width);
-  threads = threads_or_all(threads);
-  const Arrangement in = arrange(points, segments, threads, watch);
+  threads = platform::threads_or_all(threads);
+  const Arrangement in = arrange(points, segments, threads, check_stop);
   const PixelGrid grid(width);
   std::vector<Hot> hot = hot_pixels(in, grid, threads);
   const auto put = [&](std::vector<double>& xy, std::size_t vertex, const Pixel& pixel) {
@@ -128,9 +129,9 @@ SnappedSegments snap_segments(PointsView points, std::span<const Segment> segmen
   for (std::size_t i = 0; i < hot.size(); ++i) pixels[i] = hot[i].pixel;
   const PixelTree tree(grid, pixels);
   std::vector<std::vector<std::int32_t>> chains(in.segments.size());
-  for_each_block(chains.size(), threads, [&](std::size_t first, std::size_t last) {
+  platform::for_each_block(chains.size(), threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t s = first; s < last; ++s) {
-      watch();
+      check_stop();
       tree.find(in.lines[s], chains[s]);
       for (std::int32_t& i : chains[s]) i = hot[static_cast<std::size_t>(i)].point;
       if (chains[s].size() == 1) chains[s].clear();

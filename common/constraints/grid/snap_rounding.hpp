@@ -4,7 +4,7 @@
 
 #include <cadt/constrained.hpp>
 
-#include "common/constraints/tasks.hpp"
+#include "common/constraints/stop_check.hpp"
 
 #include <array>
 #include <cstdint>
@@ -34,6 +34,6 @@ struct SnappedSegments {
 /// find_crossings; OptionError unless 0 < grid < infinity and multiples of the grid are doubles up to the largest
 /// coordinate, or there are less than 2^25 of them, where their rounding does no harm; Cancelled
 [[nodiscard]] SnappedSegments snap_segments(PointsView points, std::span<const Segment> segments, double grid,
-                                            unsigned threads, const Watch& watch = {});
+                                            unsigned threads, const StopCheck& check_stop = {});
 
 }  // namespace cadt::constraints

@@ -12,8 +12,8 @@
  *                                       constructions con BRIO", 2003: the order by levels).
  *
  * Meanwhile triangles have places as corners instead of vertices, CADT_NONE stands across the edges of the polygon, the
- * word of its flags links a triangle to the next one in the queue of those to be looked at, and ring.piece has the next
- * place that is inserted.
+ * word of its flags (`next_queued`) links a triangle to the next one in the queue of those to be looked at, and
+ * ring.piece has the next place that is inserted.
  */
 #ifndef CADT_CONSTRAINTS_SEGMENT_MOUNTAIN_H
 #define CADT_CONSTRAINTS_SEGMENT_MOUNTAIN_H
@@ -77,13 +77,13 @@ CADT_FN void cadt_set_corners(const cadt_mountain* a, cadt_u32 t, cadt_u32 u, ca
 
 /* The triangle behind all others in the queue, unless it is in it. */
 CADT_FN void cadt_enqueue(cadt_mountain* a, cadt_u32 t) {
-  CADT_GLOBAL cadt_u32* next = a->m->edge_flags;
-  if (next[t]) return;
-  next[t] = CADT_QUEUE_END;
+  CADT_GLOBAL cadt_u32* next_queued = a->m->edge_flags;
+  if (next_queued[t]) return;
+  next_queued[t] = CADT_QUEUE_END;
   if (a->first == CADT_NONE)
     a->first = t;
   else
-    next[a->last] = t + 1u;
+    next_queued[a->last] = t + 1u;
   a->last = t;
 }
 
@@ -131,11 +131,11 @@ CADT_FN cadt_u32 cadt_insert_place(cadt_mountain* a, cadt_u32 v, cadt_u32 x, cad
 
 /* Flips until no edge is illegal. */
 CADT_FN void cadt_make_legal(cadt_mountain* a, cadt_counters* counters) {
-  CADT_GLOBAL cadt_u32* queue = a->m->edge_flags;
+  CADT_GLOBAL cadt_u32* next_queued = a->m->edge_flags;
   while (a->first != CADT_NONE) {
     const cadt_u32 t = a->first;
-    a->first = queue[t] == CADT_QUEUE_END ? CADT_NONE : queue[t] - 1u;
-    queue[t] = 0u;
+    a->first = next_queued[t] == CADT_QUEUE_END ? CADT_NONE : next_queued[t] - 1u;
+    next_queued[t] = 0u;
     for (cadt_u32 k = 0u; k < 3u; ++k) {
       const cadt_u32 behind = a->m->across[3u * t + k];
       if (behind == CADT_NONE) continue;

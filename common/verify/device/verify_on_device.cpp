@@ -5,12 +5,12 @@
 #include <array>
 #include <limits>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "common/driver/device_text.hpp"
 #include "common/mesh/mesh.hpp"
+#include "common/platform/parallel.hpp"
 #include "common/verify/host/mesh.hpp"
 #include "common/verify/host/outcome.hpp"
 
@@ -58,7 +58,7 @@ class OnDevice : private Outcome {
   OnDevice(verifier::Mesh mesh, Context& ctx, const VerifyInput& input, const VerifyOptions& options)
       : Outcome(input.number_of_points), ctx_(ctx), input_(input), options_(options), mesh_(std::move(mesh)) {
     mesh_.count = count_;
-    mesh_.threads = options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+    mesh_.threads = platform::threads_or_all(options.threads);
   }
 
   VerifyReport run() {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Uploads a mesh of the host to the device and verifies it there.
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 #include "common/driver/registry.hpp"
+#include "common/platform/parallel.hpp"
 #include "common/points/device_points.hpp"
 #include "common/points/import.hpp"
 #include "common/verify/device/verify_on_device.hpp"
@@ -26,7 +26,7 @@ VerifyReport verify_on_device(Device& device, PointsView points, const MeshView&
   known.triangles = mesh.triangles;
   known.neighbors = mesh.neighbors;
   known.edge_flags = mesh.edge_flags;
-  known.threads = options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  known.threads = platform::threads_or_all(options.threads);
   if (mesh.neighbors.empty()) {
     Check check;
     std::uint64_t examined = 0;

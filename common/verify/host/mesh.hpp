@@ -3,7 +3,6 @@
 #pragma once
 
 #include "exact_sign.hpp"
-#include "parallel.hpp"
 
 #include <cadt/verify.hpp>
 
@@ -13,12 +12,33 @@
 #include <string>
 #include <vector>
 
+#include "common/platform/parallel.hpp"
+
 namespace cadt::verifier {
+
+using platform::reduce_each;
 
 /// A directed edge of the boundary, from `from` to `to` with the mesh on its left. `edge` is 3 * triangle + k.
 struct BoundaryEdge {
   std::int32_t from, to;
   std::int64_t edge;
+};
+
+/// Outcome of one check; the lowest failing index is kept, so it is the same for every number of threads.
+struct Findings {
+  std::uint64_t failures = 0, examined = 0;
+  std::int64_t first = -1;
+
+  void fail(std::size_t where) {
+    ++failures;
+    const auto w = static_cast<std::int64_t>(where);
+    if (first < 0 || w < first) first = w;
+  }
+  void merge(const Findings& other) {
+    if (other.first >= 0 && (first < 0 || other.first < first)) first = other.first;
+    failures += other.failures;
+    examined += other.examined;
+  }
 };
 
 struct Mesh {

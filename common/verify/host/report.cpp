@@ -48,7 +48,7 @@ class Context : private Outcome {
   Context(PointsView points, const MeshView& view, const VerifyOptions& options)
       : Outcome(points.size()), view_(view), options_(options) {
     mesh_.points = points;
-    mesh_.threads = options.threads != 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+    mesh_.threads = platform::threads_or_all(options.threads);
   }
 
   VerifyReport run() {

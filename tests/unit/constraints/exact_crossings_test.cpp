@@ -254,7 +254,7 @@ TEST(ExactCrossings, AreStoppedByTheCallerWhoHearsOfThem) {
       source.request_stop();
     };
     EXPECT_THROW((void)constraints::triangulate_with_crossings(set.xy, set.segments, triangulate(set.xy), threads,
-                                                               constraints::Watch(options, 0.5)),
+                                                               constraints::StopCheck(options, 0.5)),
                  Cancelled);
     EXPECT_EQ(told, 1U);
   }

@@ -92,7 +92,7 @@ TEXTS = [
     ("floats", "orientation bound x 1/2", P, "1.78813991e-7f", "8.94069955e-8f"),
     ("floats", "incircle bound x 1/2", P, "5.96046789e-7f", "2.980233945e-7f"),
     ("floats", "no allowance for underflow", P, "#define CADT_UNDERFLOW 8.67361738e-19f", "#define CADT_UNDERFLOW 0.0f"),
-    ("floats", "the filter asked of any size", P, "((e) < 5000 && (e) >= -41)", "((e) < 5000)"),
+    ("floats", "the filter asked of any size", P, "((e) < CADT_OVERFLOWED && (e) >= -41)", "((e) < CADT_OVERFLOWED)"),
     ("floats", "lower bits cut off unseen", F, "if (shift < 0 && cadt_trailing_zeros(m) < -shift) {", "if (0) {"),
     ("floats", "sign of a coordinate", F, "return bits >> CADT_SIGN_SHIFT ? -CADT_CAST(cadt_i64, m) :", "return 0 ? 0 :"),
     ("floats", "rounded differences taken for exact", X, "if (!CADT_GRADUAL_UNDERFLOW || (a", "if ((a"),

@@ -2,7 +2,7 @@
 // What scripts/check_viewer measures: from points on the device to the first frame, frames of a flight, moving points.
 // Times are of the host's clock with glFinish() before and after, so they hold everything. Pictures of 1920 x 1080.
 //
-// usage: cadt-check-viewer [--points N]... [--moving N]... [--interop WAY] [--pictures FOLDER] [--limits 1]
+// usage: cadt-check-viewer [--points N]... [--moving N]... [--interop HOW] [--pictures FOLDER] [--limits 1]
 #include "viewer/draw/image_file.hpp"
 #include "viewer/draw/renderer.hpp"
 #include "viewer/gl/context.hpp"
@@ -223,7 +223,7 @@ Choice parse(int count, char** values) {
       choice.limits = value != "0";
     } else if (name == "--interop") {
       const Interop all[] = {Interop::automatic, Interop::cuda, Interop::opencl, Interop::copy};
-      const auto* const found = std::ranges::find_if(all, [&](Interop way) { return to_string(way) == value; });
+      const auto* const found = std::ranges::find_if(all, [&](Interop one) { return to_string(one) == value; });
       if (found == std::end(all)) throw std::runtime_error("--interop is auto, cuda, opencl or copy");
       choice.interop = *found;
     } else {

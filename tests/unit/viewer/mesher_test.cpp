@@ -114,15 +114,16 @@ TEST_F(MesherTest, SaysWhyAFasterWayIsNotPossible) {
       << mesher.reason();
 }
 
-TEST_F(MesherTest, AWayThatIsNamedIsTakenOrRefused) {
-  for (const Interop way : {Interop::cuda, Interop::opencl}) {
+TEST_F(MesherTest, WhatIsNamedIsTakenOrRefused) {
+  for (const Interop interop : {Interop::cuda, Interop::opencl}) {
     try {
-      const Mesher mesher(Options{}, way);
-      EXPECT_EQ(mesher.interop(), way);
+      const Mesher mesher(Options{}, interop);
+      EXPECT_EQ(mesher.interop(), interop);
       EXPECT_TRUE(mesher.reason().empty()) << mesher.reason();
       EXPECT_FALSE(driver().software);
     } catch (const DisplayError& error) {
-      const std::string text = error.what(), start = "--interop " + std::string(to_string(way)) + " is not possible: ";
+      const std::string text = error.what(),
+                        start = "--interop " + std::string(to_string(interop)) + " is not possible: ";
       EXPECT_EQ(text.rfind(start, 0), 0u) << text;
       EXPECT_GT(text.size(), start.size() + 60) << text;  // a reason, and what to do
     }

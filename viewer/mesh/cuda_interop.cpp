@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // CUDA reads and writes the buffers of OpenGL: each is registered once and mapped for a call. Large ones are moved once
 // to memory with large pages.
-#include "viewer/mesh/way.hpp"
+#include "viewer/mesh/interop.hpp"
 
 #include "viewer/gl/context.hpp"
 #include "viewer/gl/errors.hpp"
@@ -144,9 +144,9 @@ struct Stream {
   Stream& operator=(const Stream&) = delete;
 };
 
-class CudaWay final : public Way {
+class CudaInterop final : public MeshInterop {
  public:
-  CudaWay(const Options& options, int device)
+  CudaInterop(const Options& options, int device)
       : device_(device), stream_(device), triangulator_(on_stream(options, stream_.handle)) {}
   Triangulator& triangulator() noexcept override { return triangulator_; }
 
@@ -192,7 +192,7 @@ class CudaWay final : public Way {
 
 }  // namespace
 
-std::unique_ptr<Way> open_cuda(const Options& options, std::string& reason) {
+std::unique_ptr<MeshInterop> open_cuda(const Options& options, std::string& reason) {
   const std::optional<int> display = device_of_display();
   const DeviceInfo* computes = nullptr;
   const std::vector<DeviceInfo> devices = list_devices();
@@ -213,7 +213,7 @@ std::unique_ptr<Way> open_cuda(const Options& options, std::string& reason) {
              std::to_string(computes->index) + ")";
     return nullptr;
   }
-  return std::make_unique<CudaWay>(options, *display);
+  return std::make_unique<CudaInterop>(options, *display);
 }
 
 }  // namespace cadt::viewer
@@ -222,7 +222,7 @@ std::unique_ptr<Way> open_cuda(const Options& options, std::string& reason) {
 
 namespace cadt::viewer {
 
-std::unique_ptr<Way> open_cuda(const Options&, std::string& reason) {
+std::unique_ptr<MeshInterop> open_cuda(const Options&, std::string& reason) {
   reason = "this build is without CUDA";
   return nullptr;
 }

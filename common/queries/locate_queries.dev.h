@@ -9,8 +9,8 @@
  *
  * Neighbouring queries walk through the same triangles at about the same time, so caches hold them.
  */
-#ifndef CADT_QUERIES_LOCATE_H
-#define CADT_QUERIES_LOCATE_H
+#ifndef CADT_QUERIES_LOCATE_QUERIES_H
+#define CADT_QUERIES_LOCATE_QUERIES_H
 
 #include "common/points/hilbert_keys.dev.h"
 #include "common/portable/atomics.dev.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenCL reads and writes the buffers of OpenGL, by cl_khr_gl_sharing. The loader is looked for at run time, as the
 // library does.
-#include "viewer/mesh/way.hpp"
+#include "viewer/mesh/interop.hpp"
 
 #include <epoxy/gl.h>
 
@@ -206,9 +206,9 @@ class Acquired {
   cl_command_queue queue_;
 };
 
-class OpenClWay final : public Way {
+class OpenClInterop final : public MeshInterop {
  public:
-  OpenClWay(const Options& options, const std::vector<cl_context_properties>& properties, cl_device_id device)
+  OpenClInterop(const Options& options, const std::vector<cl_context_properties>& properties, cl_device_id device)
       : queue_(properties, device), triangulator_(on_queue(options, queue_.handle)) {}
   Triangulator& triangulator() noexcept override { return triangulator_; }
 
@@ -250,7 +250,7 @@ class OpenClWay final : public Way {
 
 }  // namespace
 
-std::unique_ptr<Way> open_opencl(const Options& options, std::string& reason) {
+std::unique_ptr<MeshInterop> open_opencl(const Options& options, std::string& reason) {
   if (!cl().complete()) {
     reason = "there is no OpenCL loader with the functions for OpenGL (libOpenCL.so.1)";
     return nullptr;
@@ -282,7 +282,7 @@ std::unique_ptr<Way> open_opencl(const Options& options, std::string& reason) {
                 ("the display belongs to '" + info.name + "', not to '" + options.device + "'");
       continue;
     }
-    return std::make_unique<OpenClWay>(options, properties, device);
+    return std::make_unique<OpenClInterop>(options, properties, device);
   }
   return nullptr;
 }

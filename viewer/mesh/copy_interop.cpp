@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Through the host: points are copied to host memory that the display's device can reach (pinned, mapped as long as it
 // lives), the library reads them there and writes triangles beside, which are copied back.
-#include "viewer/mesh/way.hpp"
+#include "viewer/mesh/interop.hpp"
 
 #include "viewer/gl/objects.hpp"
 
@@ -43,9 +43,9 @@ class Staging {
   std::span<T> values_;
 };
 
-class CopyWay final : public Way {
+class CopyInterop final : public MeshInterop {
  public:
-  explicit CopyWay(const Options& options) : triangulator_(options) {}
+  explicit CopyInterop(const Options& options) : triangulator_(options) {}
   Triangulator& triangulator() noexcept override { return triangulator_; }
 
   std::size_t triangulate(MeshBuffers& mesh, Statistics* statistics) override {
@@ -83,6 +83,6 @@ class CopyWay final : public Way {
 
 }  // namespace
 
-std::unique_ptr<Way> open_copy(const Options& options) { return std::make_unique<CopyWay>(options); }
+std::unique_ptr<MeshInterop> open_copy(const Options& options) { return std::make_unique<CopyInterop>(options); }
 
 }  // namespace cadt::viewer

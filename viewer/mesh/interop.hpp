@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the ways of Interop have in common. Private to this folder.
+// What all kinds of interop have in common. Private to this folder.
 #pragma once
 
 #include <cadt/triangulator.hpp>
@@ -12,9 +12,9 @@
 namespace cadt::viewer {
 
 /// An open triangulator that reads and writes OpenGL's buffers.
-class Way {
+class MeshInterop {
  public:
-  virtual ~Way() = default;
+  virtual ~MeshInterop() = default;
   [[nodiscard]] virtual Triangulator& triangulator() noexcept = 0;
   /// Triangulates into `mesh.triangles`; returns the number of triangles. With `statistics` the work is counted.
   virtual std::size_t triangulate(MeshBuffers& mesh, Statistics* statistics) = 0;
@@ -22,12 +22,12 @@ class Way {
   [[nodiscard]] virtual std::string note() const { return {}; }
 };
 
-/// Each is null where the way is not possible; `reason` then says why, in half a sentence. Errors of an open device are
+/// Each is null where it is not possible; `reason` then says why, in half a sentence. Errors of an open device are
 /// thrown.
-[[nodiscard]] std::unique_ptr<Way> open_cuda(const Options& options, std::string& reason);
-[[nodiscard]] std::unique_ptr<Way> open_opencl(const Options& options, std::string& reason);
+[[nodiscard]] std::unique_ptr<MeshInterop> open_cuda(const Options& options, std::string& reason);
+[[nodiscard]] std::unique_ptr<MeshInterop> open_opencl(const Options& options, std::string& reason);
 /// Always possible.
-[[nodiscard]] std::unique_ptr<Way> open_copy(const Options& options);
+[[nodiscard]] std::unique_ptr<MeshInterop> open_copy(const Options& options);
 
 /// Does Options::device mean this device? As the library reads it: a number, or a part of the name or platform.
 [[nodiscard]] bool is_named(const DeviceInfo& info, const std::string& device);

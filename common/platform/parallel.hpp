@@ -5,31 +5,18 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
 
-namespace cadt::verifier {
+namespace cadt::platform {
 
-/// Outcome of one check; the lowest failing index is kept, so it is the same for every number of threads.
-struct Findings {
-  std::uint64_t failures = 0, examined = 0;
-  std::int64_t first = -1;
-
-  void fail(std::size_t where) {
-    ++failures;
-    const auto w = static_cast<std::int64_t>(where);
-    if (first < 0 || w < first) first = w;
-  }
-  void merge(const Findings& other) {
-    if (other.first >= 0 && (first < 0 || other.first < first)) first = other.first;
-    failures += other.failures;
-    examined += other.examined;
-  }
-};
+/// The number of threads that 0 stands for is that of the cores.
+[[nodiscard]] inline unsigned threads_or_all(unsigned threads) noexcept {
+  return threads != 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
+}
 
 /// Calls body(i, result) for each i in [0, count) and merges the results of all threads, which take `block` of them at
 /// a time. If a thread cannot be started, the others do its work. Rethrows an exception of a body once all threads have
@@ -75,4 +62,22 @@ Result reduce_each(std::size_t count, unsigned threads, const Body& body, std::s
   return total;
 }
 
-}  // namespace cadt::verifier
+/// The same without a result: body(i).
+template <class Body>
+void for_each_task(std::size_t count, unsigned threads, const Body& body, std::size_t block = 1) {
+  struct Nothing {
+    void merge(const Nothing&) {}
+  };
+  reduce_each<Nothing>(
+      count, threads, [&](std::size_t i, Nothing&) { body(i); }, block);
+}
+
+/// The same for equal blocks of [0, count): body(first, last).
+template <class Body>
+void for_each_block(std::size_t count, unsigned threads, const Body& body) {
+  constexpr std::size_t block = std::size_t{1} << 12;
+  for_each_task((count + block - 1) / block, threads,
+                [&](std::size_t i) { body(i * block, std::min(count, (i + 1) * block)); });
+}
+
+}  // namespace cadt::platform

@@ -86,6 +86,7 @@ void constrain_on_grid(const State& state, PointsView points, std::span<const Se
   const constraints::SnappedSegments snapped = constraints::snap_segments(
       points, segments, grid, state->options.threads, constraints::StopCheck(state->options, 0));
   const std::vector<Segment> pieces = polyline_segments(snapped.offsets, snapped.vertices);
+  require_segments(pieces.size());
   Data divided;
   SegmentJob job;
   const KeepPoints kept = state->options.keep_points;

@@ -242,7 +242,7 @@ std::size_t Triangulator::triangulate(const DevicePoints& points, const DeviceAr
   return give_mesh(data, {triangles.size, neighbors.size}, [&](const Allocation& from, std::size_t which) {
     const DeviceArray& to = which == 0 ? triangles : neighbors;
     const Allocation array = ctx.memory.wrap(to.memory, to.size * word);
-    ctx.launcher.run<KernelId::cadt_copy_words>(from, array, 0U, ctx.launcher.grid(3 * data.triangle_count));
+    ctx.launcher.run<KernelId::cadt_copy_words>(from, array, 0U, ctx.launcher.grid_strided(3 * data.triangle_count));
   });
 }
 

@@ -40,8 +40,10 @@ UniformCells::UniformCells(std::uint64_t points, std::uint64_t seed) : points_(p
 
 UniformCells::Part UniformCells::part(unsigned depth, std::uint64_t index) const noexcept {
   Part part;
-  // The first point of part p is the least i with i 2^depth >= p n; p n fits in 64 bits.
-  const auto begin = [&](std::uint64_t p) { return (p * points_ + (std::uint64_t{1} << depth) - 1) >> depth; };
+  // The first point of part p is the least i with i 2^depth >= p n. All sums fit in 64 bits but that of the end.
+  const auto begin = [&](std::uint64_t p) {
+    return p >> depth != 0 ? points_ : (p * points_ + (std::uint64_t{1} << depth) - 1) >> depth;
+  };
   part.first = begin(index);
   part.count = begin(index + 1) - part.first;
   double low[2] = {0, 0}, size[2] = {1, 1};

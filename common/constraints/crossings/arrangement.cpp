@@ -6,6 +6,7 @@
 #include "common/platform/parallel.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -74,9 +75,6 @@ void make_chains(Arrangement& out, const std::vector<SlabFindings>& slabs) {
     for (const auto& c : slab.contacts)
       ++out.chain_offsets[static_cast<std::size_t>(out.wall_of[static_cast<std::size_t>(c.wall)])];
   }
-  if (points + crossings > max_points())
-    throw LimitError("points and crossings of segments are more than 32-bit indices allow", points + crossings,
-                     max_points());
   std::exclusive_scan(out.chain_offsets.begin(), out.chain_offsets.end(), out.chain_offsets.begin(), std::int64_t{0});
   out.chain_vertices.resize(static_cast<std::size_t>(out.chain_offsets.back()));
   out.crossings.reserve(crossings);
@@ -171,10 +169,11 @@ Arrangement arrange(PointsView points, std::span<const Segment> segments, unsign
   const std::size_t n = out.points.size();
   const std::size_t slabs = threads == 1 ? 1 : std::clamp<std::size_t>(n >> 12, 1, std::size_t{4} * threads);
   std::vector<SlabFindings> found(slabs);
+  std::atomic<std::size_t> vertices = n;
   if (!out.segments.empty())
     platform::for_each_task(slabs, threads, [&](std::size_t i) {
       found[i] = sweep_slab(out, starts, static_cast<std::int32_t>(n * i / slabs),
-                            static_cast<std::int32_t>(n * (i + 1) / slabs), check_stop);
+                            static_cast<std::int32_t>(n * (i + 1) / slabs), vertices, check_stop);
     });
   make_walls(out, found);
   make_chains(out, found);

@@ -20,8 +20,14 @@ using exact::Point;
 // no two walls are on the same line where the sweep line is.
 class Sweep {
  public:
-  Sweep(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, const StopCheck& check_stop)
-      : in_(arrangement), starts_(starts), check_stop_(check_stop), exact_(arrangement.lines), queue_(Later{exact_}) {
+  Sweep(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, std::atomic<std::size_t>& vertices,
+        const StopCheck& check_stop)
+      : in_(arrangement),
+        starts_(starts),
+        vertices_(vertices),
+        check_stop_(check_stop),
+        exact_(arrangement.lines),
+        queue_(Later{exact_}) {
     node_of_.assign(in_.segments.size(), SweepStatus::none);
     wall_of_.assign(in_.segments.size(), none);
     reach_.assign(in_.segments.size(), none);
@@ -141,6 +147,8 @@ class Sweep {
 
   /// \pre no point is there
   void pass_crossing(const Place& p) {
+    if (const std::size_t count = vertices_.fetch_add(1, std::memory_order_relaxed) + 1; count > max_points())
+      throw LimitError("points and crossings of segments are more than 32-bit indices allow", count, max_points());
     std::int32_t lowest = node_of_[static_cast<std::size_t>(wall_of(p.first))];
     for (std::int32_t n; (n = status_.previous(lowest)) != none && side(status_.segment(n), p) == 0;) lowest = n;
     nodes_.clear();
@@ -225,6 +233,7 @@ class Sweep {
 
   const Arrangement& in_;
   const std::vector<std::int32_t>& starts_;
+  std::atomic<std::size_t>& vertices_;
   const StopCheck& check_stop_;
   exact::ImplicitPoints exact_;
   SweepStatus status_;
@@ -239,8 +248,8 @@ class Sweep {
 }  // namespace
 
 SlabFindings sweep_slab(const Arrangement& arrangement, const std::vector<std::int32_t>& starts, std::int32_t first,
-                        std::int32_t last, const StopCheck& check_stop) {
-  return Sweep(arrangement, starts, check_stop).run(first, last);
+                        std::int32_t last, std::atomic<std::size_t>& vertices, const StopCheck& check_stop) {
+  return Sweep(arrangement, starts, vertices, check_stop).run(first, last);
 }
 
 }  // namespace cadt::constraints

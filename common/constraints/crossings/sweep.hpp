@@ -5,6 +5,8 @@
 #include "common/constraints/crossings/arrangement.hpp"
 
 #include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -29,9 +31,10 @@ struct SlabFindings {
 /// points. `starts`: the first segment whose lower end is at or after each point. J. L. Bentley, T. A. Ottmann,
 /// "Algorithms for reporting and counting geometric intersections" (IEEE Trans. Computers 28, 1979), for any input: all
 /// segments through a vertex are handled at once, as in M. de Berg et al., "Computational Geometry", chapter 2.
-/// O((n + contacts) log n). Reads the arrangement's points, segments and lines only. \pre first < last
-/// \throws Cancelled
+/// O((n + contacts) log n). Reads the arrangement's points, segments and lines only. `vertices`: points, and crossings
+/// of all slabs so far. \pre first < last \throws Cancelled; LimitError for more vertices than max_points()
 [[nodiscard]] SlabFindings sweep_slab(const Arrangement& arrangement, const std::vector<std::int32_t>& starts,
-                                      std::int32_t first, std::int32_t last, const StopCheck& check_stop = {});
+                                      std::int32_t first, std::int32_t last, std::atomic<std::size_t>& vertices,
+                                      const StopCheck& check_stop = {});
 
 }  // namespace cadt::constraints

@@ -139,7 +139,7 @@ CADT_KERNEL(cadt_domain_links, CADT_DOMAIN_MESH_PARAMETERS, cadt_u32 count, cadt
       if (left == right || (roots && !cadt_unite(roots, left, right))) continue;
       const cadt_u32 place = cadt_add_relaxed(counter, 1u);
       if (place >= room) continue;
-      CADT_GLOBAL cadt_u32* link = links + CADT_CAST(cadt_u32, CADT_LINK_WORDS) * place;
+      CADT_GLOBAL cadt_u32* link = links + CADT_CAST(cadt_u64, CADT_LINK_WORDS) * place;
       link[0] = left;
       link[1] = right;
       link[2] = cadt_weight_of_edge(&all, mesh.vertices[3u * t + CADT_NEXT(k)], mesh.vertices[3u * t + CADT_PREV(k)]);

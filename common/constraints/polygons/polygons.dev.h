@@ -247,7 +247,7 @@ CADT_KERNEL(cadt_triangulate_polygons, CADT_GLOBAL const cadt_point* points, CAD
     polygon.first = ring_begins[polygon.first_ring];
     polygon.count = ring_begins[polygon.end_ring] - polygon.first;
 #if CADT_CONTIGUOUS
-    CADT_GLOBAL cadt_u32* own = memory + cadt_item * item_words;
+    CADT_GLOBAL cadt_u32* own = memory + CADT_CAST(cadt_u64, cadt_item) * item_words;
 #else
     CADT_GLOBAL cadt_u32* own =
         memory + CADT_CAST(cadt_u32, CADT_POLYGON_WORDS) * polygon.first + CADT_CAST(cadt_u32, CADT_POLYGON_SPARE) * i;

@@ -70,6 +70,19 @@ TEST(UniformCellsOnHost, PartsHaveTheirPoints) {
   }
 }
 
+/// Of the largest set, and one point less: the last part ends with the set.
+TEST(UniformCellsOnHost, LargestSetsHaveParts) {
+  for (const std::uint64_t n : {(std::uint64_t{1} << 40) - 1, std::uint64_t{1} << 40}) {
+    const UniformCells cells(n);
+    const unsigned depth = 2 * cells.level();
+    EXPECT_EQ(depth, 24U);
+    const UniformCells::Part last = cells.part(depth, (std::uint64_t{1} << depth) - 1);
+    EXPECT_EQ(last.count, n >> depth);
+    EXPECT_EQ(last.first + last.count, n);
+  }
+  EXPECT_THROW(UniformCells((std::uint64_t{1} << 40) + 1), LimitError);
+}
+
 TEST(UniformCellsOnHost, DepthIsTheLeast) {
   const UniformCells cells(1'000'000);
   for (std::uint64_t most : {1'000'000u, 999'999u, 300'000u, 1000u}) {

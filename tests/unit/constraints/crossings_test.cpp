@@ -144,10 +144,11 @@ TEST(Crossings, SlabsOfOnePointFindTheSame) {
     std::vector<std::int32_t> starts(all.points.size() + 1, 0);
     for (const auto& s : all.segments) ++starts[static_cast<std::size_t>(s[0]) + 1];
     std::partial_sum(starts.begin(), starts.end(), starts.begin());
-    const auto whole = constraints::sweep_slab(all, starts, 0, points);
+    std::atomic<std::size_t> vertices = all.points.size();
+    const auto whole = constraints::sweep_slab(all, starts, 0, points, vertices);
     std::size_t crossing = 0, contact = 0;
     for (std::int32_t r = 0; r < points; ++r) {
-      const auto slab = constraints::sweep_slab(all, starts, r, r + 1);
+      const auto slab = constraints::sweep_slab(all, starts, r, r + 1, vertices);
       const auto first = static_cast<std::int32_t>(crossing);
       for (const auto& c : slab.contacts) {
         ASSERT_LT(contact, whole.contacts.size()) << set.name;
@@ -160,6 +161,19 @@ TEST(Crossings, SlabsOfOnePointFindTheSame) {
     ASSERT_EQ(crossing, whole.crossings.size()) << set.name;
     ASSERT_EQ(contact, whole.contacts.size()) << set.name;
   }
+}
+
+/// Those of all slabs together, before there is memory for all of them.
+TEST(Crossings, TooManyAreRefusedWhenTheyAreFound) {
+  const std::vector<double> xy = {0, 0, 3, 0, 1, -1, 1, 1, 2, -1, 2, 1};
+  const std::vector<Segment> segments = {{0, 1}, {2, 3}, {4, 5}};
+  const auto all = constraints::sort_segments(xy, segments);
+  const std::vector<std::int32_t> starts = {0, 1, 2, 2, 3, 3, 3};
+  std::atomic<std::size_t> vertices = max_points() - 2;
+  EXPECT_EQ(constraints::sweep_slab(all, starts, 0, 6, vertices).crossings.size(), 2U);
+  EXPECT_EQ(vertices, max_points());
+  vertices = max_points() - 1;
+  EXPECT_THROW(constraints::sweep_slab(all, starts, 0, 6, vertices), LimitError);
 }
 
 /// Chains have every point on their segments and every crossing with others, in order.

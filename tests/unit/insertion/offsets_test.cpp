@@ -5,7 +5,6 @@
 #include <cadt/cadt.hpp>
 
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 
 #include <algorithm>
 #include <array>
@@ -22,7 +21,11 @@
 #include <set>
 #include <vector>
 
+#include "tests/support/sparse.hpp"
+
 namespace {
+
+using cadt::test::Sparse;
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -33,30 +36,6 @@ namespace {
 #include "common/output/hull.dev.h"
 #include "common/verify/device/verify.dev.h"
 #pragma GCC diagnostic pop
-
-/// Zeros that take memory where they are written.
-template <class T>
-class Sparse {
- public:
-  explicit Sparse(std::size_t size) : bytes_(size * sizeof(T)) {
-    void* pages = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (pages == MAP_FAILED) return;
-    madvise(pages, bytes_, MADV_NOHUGEPAGE);
-    data_ = static_cast<T*>(pages);
-  }
-  ~Sparse() {
-    if (data_ != nullptr) munmap(data_, bytes_);
-  }
-  Sparse(const Sparse&) = delete;
-  Sparse& operator=(const Sparse&) = delete;
-  [[nodiscard]] explicit operator bool() const { return data_ != nullptr; }
-  [[nodiscard]] T* data() { return data_; }
-  [[nodiscard]] T& operator[](std::size_t i) { return data_[i]; }
-
- private:
-  std::size_t bytes_;
-  T* data_ = nullptr;
-};
 
 const auto n = static_cast<std::uint32_t>(cadt::max_points());
 const std::uint32_t slots = 2 * n, all_triangles = 2 * n - 2;  // with ghosts

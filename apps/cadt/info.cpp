@@ -150,7 +150,7 @@ int print_info(const InfoCommand& command) {
 }  // namespace
 
 void add_info(CLI::App& app, Action& chosen) {
-  CLI::App* command = app.add_subcommand("info", "say what a point file holds");
+  CLI::App* command = app.add_subcommand("info", "say what a file of points or segments, or a mesh in tiles, holds");
   const auto options = std::make_shared<InfoCommand>();
   add_input_options(*command, options->input, "FILE", "file with points or segments, or directory of cadt tiles", true);
   command->add_flag("--json", options->json, "as JSON");

@@ -85,6 +85,8 @@ class CADT_API BackendUnavailable : public Error {
 
 /// Not enough memory on the device or below `Options::max_memory`. The process can continue, with fewer points.
 class CADT_API OutOfMemory : public Error {
+  // Its numbers are planned in common/driver/memory_plan.cpp; step by step they are those of memory.cpp beside it and
+  // of the allocations of the back ends.
  public:
   OutOfMemory(const std::string& message, std::size_t needed, std::size_t available)
       : Error(message), needed_(needed), available_(available) {}

@@ -58,7 +58,7 @@ class Array:
 
     backend = "cuda"
     device: int | None = 0
-    queue: int | None = None
+    queue: int | None = None  # goes to Options::queue (_devices.make_options)
     stream: Any = None  # the object that owns the queue
     triangulator: Any = None  # the open device
     xp: Any = None  # the library

@@ -252,11 +252,13 @@ class Help(CliTest):
 
     def test_every_option_is_documented(self):
         text = (SOURCE / "docs" / "cli.md").read_text()
-        for command in self.COMMANDS:
+        commands = set(re.findall(r"(?m)^  ([a-z]+) ", self.cadt("--help").out.split("Subcommands:")[1].split("\n\n")[0]))
+        self.assertLessEqual(set(self.COMMANDS), commands)
+        for command in commands - {"contour", "tin"}:  # those of cadt-terrain
             options = set(re.findall(r"(?m)^  (?:-\w, )?(--[\w-]+)", self.cadt(command, "--help").out)) - {"--help"}
-            section = text.split(f"## cadt {command}")[1].split("\n## ")[0]
+            section = text.split(f"\n## cadt {command}\n")[1].split("\n## ")[0]
             for option in options:
-                self.assertIn(option, section, command)
+                self.assertRegex(section, rf"`{option}\b(?!-)", command)
 
 
 if __name__ == "__main__":

@@ -209,8 +209,12 @@ class Statistics(CliTest):
 
     def test_every_key_is_documented(self):
         self.cadt("triangulate", "in.xy", "--stats=s.json", "--kernel-times", "-o", "m.off", "--verify")
+        report = json.loads(self.path("s.json").read_text())
+        header = (SOURCE / "include" / "cadt" / "statistics.hpp").read_text()
+        for counter in report.pop("counters"):
+            self.assertRegex(header, rf"(?m)^  std::uint64_t {counter} = 0; +///< \w")
         text = (SOURCE / "docs" / "cli.md").read_text()
-        for key in self.keys(json.loads(self.path("s.json").read_text())):
+        for key in {"counters"} | self.keys(report):
             self.assertIn(f"`{key}`", text)
 
     def test_on_stdout_the_summary_goes_to_stderr(self):

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// cadt raster: values between the points, at the centres of a grid's cells. With LAS, GIS or GeoTIFF words terrain.cpp has
-// already left for python/cadt/terrain.
+// cadt raster: values between the points, at the centres of a grid's cells. With LAS, GIS or GeoTIFF words terrain.cpp
+// has already left for python/cadt/terrain.
 #include "commands.hpp"
 #include "failure.hpp"
 #include "query.hpp"

@@ -28,7 +28,8 @@ _automatic_is_host: bool | None = None
 class DeviceInfo:
     """A device of this machine. `usable` or not, and then why (`reason`).
 
-    ``Delaunay(points, backend=info.backend, device=info.index)`` computes there.
+    ``Delaunay(points, backend=info.backend, device=info.index)`` computes there. With a `watchdog` the driver ends
+    kernels that run for seconds. Without `fp64` a device takes floats only; `atomics` says how they are ordered.
     """
 
     backend: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The verifier of the host, which shares nothing with the rest: one unit for the compiler, which takes a third of the time.
+# The verifier of the host, which shares only its threads with the rest: one unit for the compiler, which takes a third of the time.
 add_library(cadt_host_verifier OBJECT
   ${CMAKE_CURRENT_LIST_DIR}/delaunay.cpp
   ${CMAKE_CURRENT_LIST_DIR}/exact_sign.cpp

@@ -284,7 +284,11 @@ TEST_P(Polygons, SliceOfArrays) {
   PolygonSet set;
   for (int i = 0; i < 5; ++i) set.add({{{0, 0}, {1, 0}, {0, 1.0 + i}}});
   const std::vector<std::int64_t> polygons = {1, 2, 3};
-  const PolygonsResult result = triangulate_polygons(set.points, set.rings, polygons, GetParam().options());
+  double done = 0;
+  Options options = GetParam().options();
+  options.progress = [&](const Progress& progress) { done = progress.fraction; };
+  const PolygonsResult result = triangulate_polygons(set.points, set.rings, polygons, options);
+  EXPECT_EQ(done, 1);
   EXPECT_EQ(std::vector(result.triangles().begin(), result.triangles().end()),
             (std::vector<std::int32_t>{3, 4, 5, 6, 7, 8}));
   const std::vector<std::int64_t> rings = {3, 6, 9};

@@ -95,7 +95,6 @@ class PolygonsCall {
       ctx_.check("polygons", static_cast<double>(first) / static_cast<double>(count));
       is_large(first) ? add_alone(first) : add_round(first, end);
     }
-    ctx_.check("polygons", 1.0);
     result_.triangles = cut_words(std::move(result_.triangles), 3 * most_triangles(points), 3 * total());
   }
 

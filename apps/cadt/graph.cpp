@@ -46,6 +46,11 @@ double grid_of(const std::string& text) {
   return width;
 }
 
+std::string place(PointsView points, std::int32_t v) {
+  const auto at = static_cast<std::size_t>(v);
+  return fmt::format("({}, {})", points.x(at), points.y(at));
+}
+
 void append(Graph& graph, Graph&& more, bool same_file, const std::string& name, bool quiet) {
   graph.holes = std::move(more.holes);
   graph.regions = std::move(more.regions);
@@ -173,34 +178,35 @@ Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool 
   return graph;
 }
 
+std::string name_crossings(const CrossingError& error, std::string_view how, PointsView points,
+                           std::span<const Segment> segments) {
+  const auto& pairs = error.pairs();
+  std::string text = pairs.size() == 1 ? fmt::format("1 pair of segments crosses{}:", how)
+                                       : fmt::format("{} pairs of segments cross{}:", pairs.size(), how);
+  constexpr std::size_t most_shown = 5;
+  for (std::size_t i = 0; i < std::min(pairs.size(), most_shown); ++i) {
+    const auto describe = [&](std::int32_t s) {
+      const Segment& ends = segments[static_cast<std::size_t>(s)];
+      return fmt::format("{} {} - {}", s, place(points, ends[0]), place(points, ends[1]));
+    };
+    text += fmt::format("\n    {}  and  {}", describe(pairs[i][0]), describe(pairs[i][1]));
+  }
+  if (pairs.size() > most_shown) text += "\n    ...";
+  return text + "\n  (segments count from 0) ";
+}
+
 std::string explain_graph_error(PointsView points, std::span<const Segment> segments) {
-  const auto place = [&](std::int32_t v) {
-    const auto at = static_cast<std::size_t>(v);
-    return fmt::format("({}, {})", points.x(at), points.y(at));
-  };
   try {
     throw;
   } catch (const CrossingError& e) {
-    const auto& pairs = e.pairs();
-    std::string text = pairs.size() == 1 ? std::string("1 pair of segments crosses:")
-                                         : fmt::format("{} pairs of segments cross:", pairs.size());
-    constexpr std::size_t most_shown = 5;
-    for (std::size_t i = 0; i < std::min(pairs.size(), most_shown); ++i) {
-      const auto describe = [&](std::int32_t s) {
-        const Segment& ends = segments[static_cast<std::size_t>(s)];
-        return fmt::format("{} {} - {}", s, place(ends[0]), place(ends[1]));
-      };
-      text += fmt::format("\n    {}  and  {}", describe(pairs[i][0]), describe(pairs[i][1]));
-    }
-    if (pairs.size() > most_shown) text += "\n    ...";
-    return text +
-           "\n  (segments count from 0) --crossing exact makes a vertex of each crossing, --crossing grid=G moves all "
+    return name_crossings(e, "", points, segments) +
+           "--crossing exact makes a vertex of each crossing, --crossing grid=G moves all "
            "points to a grid";
   } catch (const DomainError& e) {
     return fmt::format(
         "the segments do not close at point {} {}, counted from 0: {}; --domain layers and --domain outer take "
         "segments with loose ends",
-        e.vertex(), place(e.vertex()), e.what());
+        e.vertex(), place(points, e.vertex()), e.what());
   } catch (const OptionError& e) {
     if (e.option() != "grid") throw;
     const std::string_view what = e.what();  // "ConstraintOptions::grid: ..."

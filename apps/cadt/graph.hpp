@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cadt::cli {
@@ -45,6 +46,11 @@ struct Graph {
 /// Reads the input, and the file of --segments, whose points come behind those of the input unless they are the same.
 /// Notes go to standard error unless `quiet`. \pre has_segments()
 [[nodiscard]] Graph read_graph(const InputOptions& input, const SegmentOptions& options, bool quiet);
+
+/// How many pairs of segments cross, `how` they do, and the first of them with their ends, counted from 0; to be
+/// followed by what can be done.
+[[nodiscard]] std::string name_crossings(const CrossingError& error, std::string_view how, PointsView points,
+                                         std::span<const Segment> segments);
 
 /// Triangulates. Segments that cross, or bound no domain, are a Failure that names the file, them and what can be done.
 [[nodiscard]] ConstrainedTriangulation triangulate_graph(PointsView points, std::span<const Segment> segments,

@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "device_options.hpp"
 #include "failure.hpp"
+#include "graph.hpp"
 #include "interrupt.hpp"
 #include "outputs.hpp"
 #include "progress.hpp"
@@ -89,7 +90,10 @@ void triangulate(Work& work, const std::string& file, const TriangleSwitches& sw
   try {
     work.constrained = triangulate_as_triangle(work.points(), work.segments(), switches, options);
   } catch (const CrossingError& e) {
-    throw Failure(exit_file, fmt::format("{}: {}", file, e.what()));
+    constexpr const char* how = " so close to others that rounding the crossings turns triangles over";
+    throw Failure(exit_file,
+                  fmt::format("{}: {}move them apart, or use cadt triangulate --domain seeds --crossing grid=G", file,
+                              name_crossings(e, how, work.input.view(), work.input.segments)));
   }
   work.mesh = work.constrained.mesh();
 }
@@ -105,7 +109,7 @@ std::string summary(const Work& work, bool segments, const std::vector<std::stri
                             work.result.segments.size() / 2);
 }
 
-void warn(const TriangleSwitches& switches, const Work& work, const std::string& name) {
+void warn(const TriangleSwitches& switches, const Work& work, const std::string& name, bool nodes_written) {
   for (const char letter : switches.without_effect) {
     say(fmt::format("cadt: -{} has no effect: it {}\n", letter, why_without_effect(letter)));
   }
@@ -116,14 +120,18 @@ void warn(const TriangleSwitches& switches, const Work& work, const std::string&
         "cadt: warning: {}: no triangles: the segments enclose nothing that no hole reaches; -c keeps the whole hull\n",
         name));
   }
+  const std::size_t left_out = work.mesh.number_of_points() - work.result.xy.size() / 2;
+  if (left_out != 0 && !nodes_written) {
+    say(
+        fmt::format("cadt: warning: {}: -j left out {} of the points, and no .node file with the new numbers is "
+                    "written: leave -j out\n",
+                    name, left_out));
+  }
 }
 
 int run(const TriangleCommand& command, const Request& request) {
   const TriangleSwitches& switches = request.switches;
   const io::TriangleNames names = io::triangle_names(request.file, switches.no_iteration, switches.segments);
-  const std::vector<std::string> files = io::triangle_output_files(names.output, switches);
-  for (const std::string& file : files) require_writable(file);
-
   ProgressLine line(switches.quiet);
   Options options = library_options(command.device);
   if (!switches.verbose) options.statistics = StatisticsDetail::none;
@@ -133,6 +141,9 @@ int run(const TriangleCommand& command, const Request& request) {
   Work work;
   line.step(fmt::format("reading {}", names.input));
   read(work, names.input, switches.segments);
+  const bool points_in_poly = switches.segments && !work.input.nodes_beside;
+  const std::vector<std::string> files = io::triangle_output_files(names.output, switches, points_in_poly);
+  for (const std::string& file : files) require_writable(file);
   line.start(work.input.size());
   triangulate(work, names.input, switches, options);
   check_interrupt();
@@ -141,12 +152,12 @@ int run(const TriangleCommand& command, const Request& request) {
                                   : triangle_output(work.points(), work.mesh, switches);
   {
     const InPhase phase(Phase::writing);
-    io::write_triangle_files(names.output, work.result, switches, work.input.base);
+    io::write_triangle_files(names.output, work.result, switches, work.input.base, points_in_poly);
   }
   line.clear();
   check_interrupt_after(files);
   if (switches.quiet) return exit_done;
-  warn(switches, work, names.input);
+  warn(switches, work, names.input, std::find(files.begin(), files.end(), names.output + ".node") != files.end());
   print(summary(work, switches.segments, files));
   if (switches.verbose) {
     RunReport report;
@@ -176,11 +187,11 @@ void add_triangle(CLI::App& app, Action& chosen) {
       "  -e  edges (.edge)                            -N  no .node\n"
       "  -v  Voronoi diagram (.v.node, .v.edge)       -E  no .ele\n"
       "  -c  the hull as segments (.poly)             -P  no .poly\n"
-      "  -g  the mesh for Geomview (.off)             -I  no iteration number, no .node, no .poly\n"
-      "  -j  points that are no vertices left out     -Q  nothing on standard output and error but errors\n"
-      "  -z  count from 0; the file's first index     -V  statistics too\n"
-      "      overrides it                             -h  this help\n"
-      "  -i -F -l -s  accepted; they change nothing here\n"
+      "  -g  the mesh for Geomview (.off)             -I  no iteration number, no .poly, and no .node\n"
+      "  -j  points that are no vertices left out         unless the points were in the .poly\n"
+      "  -z  count from 0; the file's first index     -Q  nothing on standard output and error but errors\n"
+      "      overrides it                             -V  statistics too\n"
+      "  -i -F -l -s  accepted; they change nothing   -h  this help\n"
       "All others are refused with the reason, exit code 8. docs/triangle.md has the differences.\n\n"
       "Example:\n"
       "  cadt triangle -nev dots\n"

@@ -136,6 +136,7 @@ std::vector<Circle> find_largest_circles(Context& ctx, MeshIndex& mesh, std::siz
   const std::size_t count = mesh.triangles, bytes = count * word;
   std::vector<Circle> found;
   if (count == 0 || wanted == 0) return found;
+  wanted = std::min(wanted, count);
   Allocation keys = ctx.memory.allocate(bytes), order = ctx.memory.allocate(bytes);
   {
     Allocation spare = ctx.memory.allocate(bytes), spare_order = ctx.memory.allocate(bytes);

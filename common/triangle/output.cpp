@@ -36,9 +36,6 @@ std::vector<std::int32_t> hull_edges(std::span<const std::int32_t> hull) {
   return result;
 }
 
-/// a + w (b - a), where an infinite w counts only if b is not a.
-double continued(double w, double a, double b) { return b == a ? 0 : w * (b - a); }
-
 /// The direction to the right of the edge from a to b.
 Corner outward(const Corner& a, const Corner& b) {
   const Corner ray{b[1] - a[1], a[0] - b[0]};
@@ -100,8 +97,7 @@ void set_voronoi(TriangleOutput& out) {
     out.centers.push_back(center.y);
     for (std::size_t i = 0; i < n; ++i) {
       const auto value = [&](std::size_t k) { return out.attributes[static_cast<std::size_t>(v[k]) * n + i]; };
-      out.center_attributes.push_back(value(0) + continued(center.weights[1], value(0), value(1)) +
-                                      continued(center.weights[2], value(0), value(2)));
+      out.center_attributes.push_back(center.value({value(0), value(1), value(2)}));
     }
   }
   out.rays.resize(out.edges.size(), 0.0);

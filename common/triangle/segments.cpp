@@ -3,11 +3,13 @@
 #include <cadt/triangle.hpp>
 
 #include "common/triangle/arrange.hpp"
+#include "common/verify/host/exact_sign.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cadt {
@@ -67,15 +69,16 @@ std::ptrdiff_t constrained_edge(std::span<const Segment> edges, std::int32_t a, 
   return found != edges.end() && *found == edge ? found - edges.begin() : -1;
 }
 
-/// The marker of the first given segment along constrained edge e that has one; hull edges of switch c have none.
-int marker_of(const ConstrainedTriangulation& mesh, std::span<const int> markers, std::size_t e) {
+/// The first given segment along constrained edge e that has a marker; hull edges of switch c have none. The number of
+/// markers if there is none.
+std::size_t first_marked(const ConstrainedTriangulation& mesh, std::span<const int> markers, std::size_t e) {
   std::size_t first = markers.size();
   for (std::int64_t i = mesh.source_offsets()[e]; i < mesh.source_offsets()[e + 1]; ++i) {
     const std::int32_t source = mesh.edge_sources()[static_cast<std::size_t>(i)];
     const auto segment = static_cast<std::size_t>(source < 0 ? -1 - source : source);
     if (segment < first && markers[segment] != 0) first = segment;
   }
-  return first < markers.size() ? markers[first] : 0;
+  return first;
 }
 
 /// The constrained edges that a triangle has, and the markers of these, of points and of edges.
@@ -92,24 +95,59 @@ void set_segments(TriangleOutput& out, const ConstrainedTriangulation& mesh, con
       where[static_cast<std::size_t>(e)] = out.neighbors[i] < 0 ? Where::on_boundary : Where::between_triangles;
     }
   }
-  const auto mark = [&](std::int32_t v, int marker) {
-    int& own = out.markers[static_cast<std::size_t>(v)];
-    if (own == 0) own = marker;
-  };
+  const std::size_t none = segments.markers.size();
+  const auto marker_of = [&](std::size_t segment) { return segment < none ? segments.markers[segment] : 0; };
+  std::vector<std::size_t> through(out.markers.size(), none);  // each point: the first segment that has a marker
   std::vector<int> markers(edges.size());
   for (std::size_t e = 0; e < edges.size(); ++e) {
-    const int given = marker_of(mesh, segments.markers, e);
-    for (const std::int32_t v : edges[e]) mark(v, given);
+    const std::size_t first = first_marked(mesh, segments.markers, e);
+    for (const std::int32_t v : edges[e]) {
+      std::size_t& lowest = through[static_cast<std::size_t>(v)];
+      lowest = std::min(lowest, first);
+    }
+    const int given = marker_of(first);
     if (where[e] == Where::outside) continue;
     markers[e] = given != 0 ? given : where[e] == Where::on_boundary ? 1 : 0;
     out.segments.insert(out.segments.end(), edges[e].begin(), edges[e].end());
     out.segment_markers.push_back(markers[e]);
   }
-  for (const std::int32_t v : boundary) mark(v, 1);
+  for (std::size_t v = 0; v < through.size(); ++v) {
+    if (out.markers[v] == 0) out.markers[v] = marker_of(through[v]);
+  }
+  for (const std::int32_t v : boundary) {
+    int& marker = out.markers[static_cast<std::size_t>(v)];
+    if (marker == 0) marker = 1;
+  }
   for (std::size_t i = 0; i < out.edge_markers.size(); ++i) {
     const std::ptrdiff_t e = constrained_edge(edges, out.edges[2 * i], out.edges[2 * i + 1]);
     if (e >= 0) out.edge_markers[i] = markers[static_cast<std::size_t>(e)];
   }
+}
+
+/// The pairs whose crossings, once rounded, turn triangles over.
+std::vector<std::array<std::int32_t, 2>> turning_pairs(std::span<const double> xy,
+                                                       const ConstrainedTriangulation& mesh) {
+  const auto added = mesh.added_points();
+  const auto triangles = mesh.mesh().triangles();
+  const auto place = [&](std::int32_t v) {
+    const std::size_t at = 2 * static_cast<std::size_t>(v);
+    const auto of = at < xy.size() ? xy.subspan(at, 2) : added.subspan(at - xy.size(), 2);
+    return verifier::Point{of[0], of[1]};
+  };
+  std::vector<bool> turning(added.size() / 2);
+  for (std::size_t t = 0; t < triangles.size(); t += 3) {
+    const auto corners = triangles.subspan(t, 3);
+    if (verifier::orientation(place(corners[0]), place(corners[1]), place(corners[2])) > 0) continue;
+    for (const std::int32_t v : corners) {
+      const std::size_t i = static_cast<std::size_t>(v);
+      if (i >= xy.size() / 2) turning[i - xy.size() / 2] = true;
+    }
+  }
+  std::vector<std::array<std::int32_t, 2>> result;
+  for (std::size_t i = 0; i < turning.size(); ++i) {
+    if (turning[i]) result.push_back(mesh.added_parents()[i]);
+  }
+  return result;
 }
 
 /// Of two places in a region the first one names it; in Triangle the last one does.
@@ -139,9 +177,12 @@ ConstrainedTriangulation triangulate_as_triangle(const TriangleInput& input, con
   if (switches.hull_segments) add_hull(input, options, all);
   ConstrainedTriangulation mesh = triangulate_constrained(input.xy, all, constraints, options);
   if (!mesh.rounded_valid()) {
-    throw CrossingError(
-        "segments cross so close to others that rounding the crossings turns triangles over: move them apart",
-        {mesh.added_parents().begin(), mesh.added_parents().end()});
+    auto pairs = turning_pairs(input.xy, mesh);
+    const auto [first, second] = pairs.at(0);
+    throw CrossingError("segments " + std::to_string(first) + " and " + std::to_string(second) +
+                            ", counted from 0, cross so close to others that rounding the crossing turns triangles "
+                            "over: move them apart",
+                        std::move(pairs));
   }
   return mesh;
 }

@@ -56,6 +56,7 @@ enum class Domain {
 struct Region {
   double x = 0, y = 0;
   double attribute = 0;
+  double largest_area = -1;  ///< not used, and kept for who refines: cadt adds no points
 };
 
 struct ConstraintOptions {

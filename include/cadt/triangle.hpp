@@ -45,7 +45,8 @@ struct TriangleSwitches {
   bool no_poly = false;            ///< P
   bool no_nodes = false;           ///< N
   bool no_elements = false;        ///< E
-  bool no_iteration = false;       ///< I: no iteration number in file names, no .node, no .poly
+  bool no_iteration = false;       ///< I: no iteration number in file names, no .poly, and no .node unless the points
+                                   ///< were in the .poly
   bool quiet = false;              ///< Q
   bool verbose = false;            ///< V
   bool help = false;               ///< h
@@ -85,8 +86,8 @@ struct TriangleOutput {
   /// All points, duplicates too, in the order of the input; with -j the vertices alone.
   std::span<const double> xy, attributes;
   std::size_t attributes_per_point = 0;
-  /// One a point: that of the input unless it is 0; then that of a segment through the point, also of one that is
-  /// eaten, unless it is 0; then 1 on the boundary, else 0.
+  /// One a point: that of the input unless it is 0; then that of the first segment through the point that has one, also
+  /// if it is eaten; then 1 on the boundary, else 0.
   std::vector<int> markers;
   std::span<const std::int32_t> triangles;  ///< n x 3, counterclockwise
   std::span<const std::int32_t> neighbors;  ///< n x 3; the k-th is opposite vertex k, -1 outside
@@ -125,8 +126,8 @@ struct TriangleOutput {
 
 /// The mesh that Triangle makes with switch p: a vertex where segments cross (Crossing::exact); inside is what neither
 /// holes nor the outside reach (Domain::seeds), and with c the hull is a segment all around. \throws what
-/// `triangulate_constrained` throws; CrossingError with all pairs that cross where rounding the crossings turns
-/// triangles over
+/// `triangulate_constrained` throws; CrossingError with the pairs whose crossings are so close to others that rounding
+/// them turns triangles over
 [[nodiscard]] CADT_API ConstrainedTriangulation triangulate_as_triangle(const TriangleInput& input,
                                                                         const TriangleSegments& segments,
                                                                         const TriangleSwitches& switches,

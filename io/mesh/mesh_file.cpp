@@ -43,7 +43,8 @@ void write_mesh_parts(const std::string& path, const MeshParts& mesh, const Writ
   if (format == "node") {
     write_node(out, node_columns(mesh.xy, mesh.height), options.base);
   } else if (format == "ele") {
-    write_ele(out, mesh.triangles, options.base, std::vector<double>(mesh.region.begin(), mesh.region.end()));
+    write_ele(out, mesh.triangles, options.base, !mesh.region.empty(),
+              std::vector<double>(mesh.region.begin(), mesh.region.end()));
   } else if (format == "neigh") {
     write_neigh(out, mesh.neighbors, options.base);
   } else if (format == "obj") {

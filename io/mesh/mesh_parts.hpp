@@ -33,9 +33,9 @@ void write_mesh_parts(const std::string& path, const MeshParts& mesh, const Writ
 /// The format in which a mesh is written: WriteOptions::format or the suffix. Throws FileError.
 [[nodiscard]] std::string mesh_write_format(const std::string& path, const WriteOptions& options);
 
-/// `attributes`: one a triangle, or none.
-void write_ele(AtomicFile& out, std::span<const std::int32_t> triangles, int base,
-               std::span<const double> attributes = {});
+/// `attributes`: one a triangle if it is `attributed`, else none.
+void write_ele(AtomicFile& out, std::span<const std::int32_t> triangles, int base, bool attributed,
+               std::span<const double> attributes);
 void write_neigh(AtomicFile& out, std::span<const std::int32_t> neighbors, int base);
 void write_obj(AtomicFile& out, const MeshParts& mesh);
 void write_off(AtomicFile& out, const MeshParts& mesh);

@@ -138,8 +138,9 @@ void write_rows(AtomicFile& out, std::span<const std::int32_t> values, int base,
 
 }  // namespace
 
-void write_ele(AtomicFile& out, std::span<const std::int32_t> triangles, int base, std::span<const double> attributes) {
-  out.write(std::to_string(triangles.size() / 3) + (attributes.empty() ? "  3  0\n" : "  3  1\n"));
+void write_ele(AtomicFile& out, std::span<const std::int32_t> triangles, int base, bool attributed,
+               std::span<const double> attributes) {
+  out.write(std::to_string(triangles.size() / 3) + (attributed ? "  3  1\n" : "  3  0\n"));
   write_rows(out, triangles, base, true, attributes);
 }
 

@@ -30,6 +30,7 @@ struct PngReader {
       png_destroy_read_struct(&png, nullptr, nullptr);
       throw std::bad_alloc();
     }
+    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // the size of the file bounds memory
     png_set_read_fn(png, this, read);
   }
   ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }

@@ -79,8 +79,9 @@ void read_regions(TextScanner& scanner, SegmentsFile& result) {
   for (std::size_t i = 0; i < count; ++i) {
     scanner.need_content_line("a region");
     const auto [x, y] = read_place(scanner, "the number of a region");
-    result.regions.push_back({x, y, scanner.number("the attribute")});
-    if (scanner.words_left() != 0) static_cast<void>(scanner.number("the largest area"));
+    const double attribute = scanner.number("the attribute");
+    const double area = scanner.words_left() != 0 ? scanner.number("the largest area") : attribute;
+    result.regions.push_back({x, y, attribute, area});
     scanner.expect_end_of_line();
   }
 }
@@ -124,7 +125,8 @@ void write_places(AtomicFile& out, std::span<const std::array<double, 2>> holes,
   number = base;
   for (const Region& region : regions) {
     write_place(out, number++, region.x, region.y);
-    char* at = put(put(out.room(2 * number_room), "  "), region.attribute);
+    char* at = put(put(out.room(4 * number_room), "  "), region.attribute);
+    at = put(put(at, "  "), region.largest_area);
     *at++ = '\n';
     out.advance(at);
   }
@@ -133,7 +135,9 @@ void write_places(AtomicFile& out, std::span<const std::array<double, 2>> holes,
 SegmentsFile read_poly(const InputFile& file, const std::string& path) {
   TextScanner scanner(file.name(), file.bytes());
   NodeFile nodes = read_node_section(scanner);
-  SegmentsFile result = with_nodes(nodes.xy.empty() ? nodes_beside(scanner, path) : std::move(nodes));
+  const bool beside = nodes.xy.empty();
+  SegmentsFile result = with_nodes(beside ? nodes_beside(scanner, path) : std::move(nodes));
+  result.nodes_beside = beside;
   read_rows(scanner, "the number of segments", result);
   read_holes(scanner, result);
   read_regions(scanner, result);
@@ -144,6 +148,7 @@ SegmentsFile read_poly(const InputFile& file, const std::string& path) {
 SegmentsFile read_edge(const InputFile& file, const std::string& path) {
   TextScanner scanner(file.name(), file.bytes());
   SegmentsFile result = with_nodes(nodes_beside(scanner, path));
+  result.nodes_beside = true;
   read_rows(scanner, "the number of edges", result);
   scanner.expect_end_of_text();
   return result;

@@ -74,13 +74,13 @@ void write_poly(AtomicFile& out, const TriangleOutput& mesh, bool markers, int b
 
 enum class Kind { node, ele, poly, edge, voronoi_node, voronoi_edge, neigh, off };
 
-std::vector<std::pair<Kind, const char*>> kinds(const TriangleSwitches& use) {
+std::vector<std::pair<Kind, const char*>> kinds(const TriangleSwitches& use, bool points_in_poly) {
   std::vector<std::pair<Kind, const char*>> result;
   const auto add = [&](bool wanted, Kind kind, const char* suffix) {
     if (wanted) result.emplace_back(kind, suffix);
   };
   // With -I the input would be overwritten.
-  add(!use.no_nodes && !use.no_iteration, Kind::node, ".node");
+  add(!use.no_nodes && (!use.no_iteration || points_in_poly), Kind::node, ".node");
   add(!use.no_elements, Kind::ele, ".ele");
   add((use.hull_segments || use.segments) && !use.no_poly && !use.no_iteration, Kind::poly, ".poly");
   add(use.edges, Kind::edge, ".edge");
@@ -91,12 +91,13 @@ std::vector<std::pair<Kind, const char*>> kinds(const TriangleSwitches& use) {
   return result;
 }
 
-void write_kind(AtomicFile& out, Kind kind, const TriangleOutput& mesh, bool markers, int base) {
+void write_kind(AtomicFile& out, Kind kind, const TriangleOutput& mesh, const TriangleSwitches& use, int base) {
+  const bool markers = !use.no_markers;
   switch (kind) {
     case Kind::node:
       return write_node(out, {mesh.xy, mesh.attributes, mesh.attributes_per_point, mesh.markers, markers}, base);
     case Kind::ele:
-      return write_ele(out, mesh.triangles, base, mesh.triangle_attributes);
+      return write_ele(out, mesh.triangles, base, use.region_attributes, mesh.triangle_attributes);
     case Kind::poly:
       return write_poly(out, mesh, markers, base);
     case Kind::edge:
@@ -146,18 +147,19 @@ TriangleNames triangle_names(const std::string& file, bool no_iteration, bool se
   return names;
 }
 
-std::vector<std::string> triangle_output_files(const std::string& output, const TriangleSwitches& switches) {
+std::vector<std::string> triangle_output_files(const std::string& output, const TriangleSwitches& switches,
+                                               bool points_in_poly) {
   std::vector<std::string> files;
-  for (const auto& [kind, suffix] : detail::kinds(switches)) files.push_back(output + suffix);
+  for (const auto& [kind, suffix] : detail::kinds(switches, points_in_poly)) files.push_back(output + suffix);
   return files;
 }
 
 void write_triangle_files(const std::string& output, const TriangleOutput& mesh, const TriangleSwitches& switches,
-                          int base) {
+                          int base, bool points_in_poly) {
   std::vector<std::unique_ptr<detail::AtomicFile>> files;
-  for (const auto& [kind, suffix] : detail::kinds(switches)) {
+  for (const auto& [kind, suffix] : detail::kinds(switches, points_in_poly)) {
     files.push_back(std::make_unique<detail::AtomicFile>(output + suffix));
-    detail::write_kind(*files.back(), kind, mesh, !switches.no_markers, base);
+    detail::write_kind(*files.back(), kind, mesh, switches, base);
   }
   for (const auto& file : files) file->commit();
 }

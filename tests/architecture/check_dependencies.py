@@ -52,6 +52,7 @@ EXCEPTIONS = {  # file -> headers of the verifier; docs/constrained.md and docs/
     "common/constraints/exact/implicit_point.hpp": ["exact_sign.hpp"],  # crossings: where all points are doubles
     "common/constraints/verify/verify_segments.cpp": ["mesh.hpp"],  # the verifier of segments
     "common/driver/adopt.cpp": ["mesh.hpp"],  # the mesh of another program is verified
+    "common/triangle/segments.cpp": ["exact_sign.hpp"],  # which crossings an error names
     "common/finalization/children.hpp": ["exact_sign.hpp"],  # certificates of edges between nodes
     "common/finalization/finish.cpp": ["exact_sign.hpp"],  # whether arithmetic is IEEE
     "common/finalization/join.cpp": ["exact_sign.hpp"],

@@ -57,8 +57,8 @@ void require_offsets(std::span<const std::int64_t> offsets, std::size_t most, co
                            ", below the one before: they must not descend",
                        i);
   if (static_cast<std::uint64_t>(offsets.back()) > most)
-    throw InputError(name + " end with " + std::to_string(offsets.back()) + ", but there are only " +
-                         std::to_string(most) + " " + what,
+    throw InputError(name + " end with " + std::to_string(offsets.back()) + ": let them end with at most " +
+                         std::to_string(most) + ", the number of " + what,
                      offsets.size() - 1);
 }
 

@@ -148,12 +148,7 @@ VerifyReport verify(PointsView points, std::span<const Segment> segments, const 
     }
   const bool rounded = !places.moved() && places.size() != points.size();
   const std::vector<std::uint32_t> exempt = rounded ? exempt_edges(places, mesh) : std::vector<std::uint32_t>();
-  MeshView view;
-  view.triangles = of.triangles();
-  view.neighbors = of.neighbors();
-  view.hull = of.hull();
-  view.duplicates = of.duplicates();
-  view.has_duplicates = true;
+  MeshView view = verifier::view_of(of);
   view.edge_flags = rounded ? std::span<const std::uint32_t>(exempt) : mesh.edge_flags();
   VerifyReport report = verify(all.empty() ? points : PointsView(all), view, options);
   Check chains = check_segments(places, segments, mesh);

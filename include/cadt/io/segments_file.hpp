@@ -25,8 +25,10 @@ struct SegmentsFile {
   std::vector<Segment> segments;
   std::vector<std::int32_t> segment_markers;  ///< one a segment, or empty if the file has none
   std::vector<std::array<double, 2>> holes;
-  std::vector<Region> regions;  ///< the largest area of a region, which is about refinement, is not kept
-  int base = 0;                 ///< the first index in the file: 0 or 1
+  /// Where a line of .poly has one number, it is both attribute and largest area, as in Triangle.
+  std::vector<Region> regions;
+  bool nodes_beside = false;  ///< the points are those of the .node file beside it
+  int base = 0;               ///< the first index in the file: 0 or 1
   std::string crs;     ///< reference system that a GeoJSON file names in "crs", as RFC 7946 no longer does; or empty
   std::string format;  ///< the format that was read
   [[nodiscard]] std::size_t size() const noexcept { return xy.size() / 2; }

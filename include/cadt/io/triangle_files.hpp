@@ -34,13 +34,15 @@ struct TriangleNames {
 /// empty name or an iteration number that cannot be counted up
 [[nodiscard]] TriangleNames triangle_names(const std::string& file, bool no_iteration, bool segments = false);
 
-/// The files that `write_triangle_files` writes, in its order.
+/// The files that `write_triangle_files` writes, in its order. `points_in_poly`: the points were read from a .poly file
+/// itself (SegmentsFile::nodes_beside is false), so that with -I no .node file of the input would be overwritten.
 [[nodiscard]] std::vector<std::string> triangle_output_files(const std::string& output,
-                                                             const TriangleSwitches& switches);
+                                                             const TriangleSwitches& switches,
+                                                             bool points_in_poly = false);
 
 /// Writes .node .ele .neigh .edge .v.node .v.edge .poly .off as the switches ask, counting from `base`. All files are
 /// complete in temporary ones before the first of them appears under its name. \throws FileError
 void write_triangle_files(const std::string& output, const TriangleOutput& mesh, const TriangleSwitches& switches,
-                          int base);
+                          int base, bool points_in_poly = false);
 
 }  // namespace cadt::io

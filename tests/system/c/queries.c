@@ -68,6 +68,8 @@ static void test_answers(cadt_queries* queries) {
   CHECK(count == 8 && centers[0] == 2 && centers[1] == 0);
   CHECK_OK(cadt_queries_largest_empty_circles(queries, 4, circles, 4, &count));
   CHECK(count == 4 && circles[0].radius == 2);
+  CHECK_OK(cadt_queries_largest_empty_circles(queries, ((size_t)1 << 63) - 128, circles, 4, &count));
+  CHECK(count == 4 && circles[0].radius == 2);
   CHECK_STATUS(CADT_INVALID_ARGUMENT,
                cadt_queries_interpolate(queries, values, n, &asked, 3, CADT_OUTSIDE_NAN, results, 3, &count));
   CHECK_STATUS(CADT_INVALID_ARGUMENT,

@@ -170,12 +170,33 @@ class TriangleSegments(CliTest):
         self.cadt("triangle", "-pAQ", "two")
         self.assertEqual(sorted(row[4] for row in rows(self.path("two.1.ele"))), ["0", "0", "2.5", "2.5"])
         self.assertEqual(len(rows(self.path("two.1.poly"))), 1 + 7 + 1 + 2)
+        self.assertEqual(rows(self.path("two.1.poly"))[-1], ["0", "3", "1", "2.5", "0.1"])
 
     def test_segments_that_cross_get_a_vertex(self):
         self.write("x.poly", "4 2 1 0\n1 0 0 1\n2 4 0 2\n3 4 4 3\n4 0 4 4\n2 1\n1 1 3 7\n2 2 4 8\n0\n")
         self.cadt("triangle", "-pcQ", "x")
         self.assertEqual(rows(self.path("x.1.node"))[4], ["5", "2", "2", "2", "7"])
         self.assertEqual(len(rows(self.path("x.1.ele"))), 4)
+
+    def test_points_of_a_poly_are_written_without_iteration_numbers_too(self):
+        self.write("x.poly", "4 2 0 0\n1 0 0\n2 4 4\n3 0 4\n4 4 0\n2 0\n1 1 2\n2 3 4\n0\n")
+        poly = self.path("x.poly").read_text()
+        self.cadt("triangle", "-pcIQ", "x")
+        self.assertEqual(self.path("x.poly").read_text(), poly)
+        self.assertEqual(rows(self.path("x.node"))[4], ["5", "2", "2", "0"])
+        nodes = node_text([(0, 0), (4, 4), (0, 4), (4, 0), (0, 0)], 1)
+        self.write("y.node", nodes)
+        self.write("y.poly", "0 2 0 0\n2 0\n1 1 2\n2 3 4\n0\n")
+        self.assertEqual(self.cadt("triangle", "-pcI", "y").err, "")
+        self.assertEqual(self.path("y.node").read_text(), nodes)
+        self.assertIn("-j left out 1 of the points, and no .node file", self.cadt("triangle", "-pcIj", "y").err)
+        self.assertEqual(self.path("y.node").read_text(), nodes)
+
+    def test_crossings_too_close_to_others_are_named(self):
+        self.write("x.poly", "9 2 0 0\n1 1031.9802955665025 332\n2 968 332\n3 1024 512\n4 1033 309\n5 0 0\n6 2000 0\n"
+                             "7 2000 2000\n8 500 -1\n9 500 1\n6 0\n1 5 6\n2 6 7\n3 7 5\n4 1 2\n5 8 9\n6 3 4\n0\n")
+        self.fails(3, "triangle", "-p", "x", says=["1 pair of segments crosses so close to others", "3 (1031.9802955665025, 332)",
+                                                   "5 (1024, 512) - (1033, 309)", "cadt triangulate --domain seeds"])
 
     def test_errors(self):
         self.write("bad.poly", BOX.replace("8 6 10", "8 9 10"))

@@ -144,7 +144,8 @@ TEST_P(Voronoi, LargestEmptyCirclesAreEmptyAndTheLargest) {
       radii.push_back(std::hypot(centers[2 * t] - set.xy[2 * v], centers[2 * t + 1] - set.xy[2 * v + 1]));
   }
   std::ranges::sort(radii, std::greater<>());
-  for (const std::size_t k : {std::size_t{1}, std::size_t{10}, radii.size(), radii.size() + 5}) {
+  for (const std::size_t k : {std::size_t{1}, std::size_t{10}, radii.size(), radii.size() + 5,
+                              (std::size_t{1} << 63) - 128, ~std::size_t{0}}) {
     const auto circles = queries.largest_empty_circles(k);
     ASSERT_EQ(circles.size(), std::min(k, radii.size()));
     for (std::size_t i = 0; i < circles.size(); ++i) {

@@ -293,10 +293,12 @@ TEST_P(Polygons, SliceOfArrays) {
 
 TEST_P(Polygons, WrongOffsets) {
   const Ring points(6);
+  std::string text;
   const auto index = [&](const std::vector<std::int64_t>& rings, const std::vector<std::int64_t>& polygons) {
     try {
       (void)triangulate_polygons(points, rings, polygons, GetParam().options());
     } catch (const InputError& error) {
+      text = error.what();
       return static_cast<int>(error.index());
     }
     return -1;
@@ -309,6 +311,7 @@ TEST_P(Polygons, WrongOffsets) {
   EXPECT_EQ(index({0, 3, 7}, {0, 2}), 2);
   EXPECT_EQ(index({0, 3, 6}, {0, 2, 1}), 2);
   EXPECT_EQ(index({0, 3, 6}, {0, 3}), 1);
+  EXPECT_EQ(text, "the offsets of polygons end with 3: let them end with at most 2, the number of rings");
 }
 
 TEST_P(Polygons, FloatsAndSeparateArrays) {

@@ -28,6 +28,7 @@ std::string png_of(std::size_t width, std::size_t height, Kind kind, Bytes rows)
   std::string file;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
+  png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
   png_set_write_fn(
       png, &file,
       [](png_structp to, png_bytep data, std::size_t size) {
@@ -67,6 +68,14 @@ TEST(LabelFiles, OfGreyValuesAndIndicesHaveThese) {
   EXPECT_EQ(labels({8, PNG_COLOR_TYPE_GRAY_ALPHA}, 2, 1, {7, 255, 9, 255}), (Labels{7, 9}));
   EXPECT_EQ(labels({16, PNG_COLOR_TYPE_GRAY_ALPHA}, 1, 1, {1, 7, 255, 255}), (Labels{263}));
   EXPECT_EQ(labels({8, PNG_COLOR_TYPE_GRAY, true}, 3, 2, {0, 1, 255, 7, 8, 9}), (Labels{0, 1, 255, 7, 8, 9}));
+}
+
+TEST(LabelFiles, CanBeWiderThanAMillionPixels) {
+  const Folder folder;
+  const std::size_t width = 1000001;
+  const LabelImage image =
+      read_label_image(folder.file("a.png", png_of(width, 1, {8, PNG_COLOR_TYPE_GRAY}, Bytes(width, 3))));
+  EXPECT_EQ(image.labels, Labels(width, 3));
 }
 
 TEST(LabelFiles, ThatAreNoneSayWhy) {

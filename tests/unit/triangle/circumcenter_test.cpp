@@ -40,13 +40,12 @@ void expect_center(const Corner& a, const Corner& b, const Corner& c) {
   const double size = radius(found, a) + std::abs(a[0]) + std::abs(a[1]);
   EXPECT_NEAR(found.x, x, 12 * unit * size);
   EXPECT_NEAR(found.y, y, 12 * unit * size);
-  const auto& w = found.weights;
-  const double largest = std::max({std::abs(w[0]), std::abs(w[1]), std::abs(w[2])});
-  EXPECT_NEAR(w[0] + w[1] + w[2], 1, 32 * unit * largest);
-  const double extent =
-      std::max({std::abs(a[0]), std::abs(a[1]), std::abs(b[0]), std::abs(b[1]), std::abs(c[0]), std::abs(c[1])});
-  EXPECT_NEAR(w[0] * a[0] + w[1] * b[0] + w[2] * c[0], x, 32 * unit * largest * extent);
-  EXPECT_NEAR(w[0] * a[1] + w[1] * b[1] + w[2] * c[1], y, 32 * unit * largest * extent);
+  EXPECT_EQ(found.value({7, 7, 7}), 7);
+  EXPECT_NEAR(found.value({a[0], b[0], c[0]}), x, 12 * unit * size);
+  EXPECT_NEAR(found.value({a[1], b[1], c[1]}), y, 12 * unit * size);
+  const auto linear = [](const Corner& p) { return 3 * p[0] - 5 * p[1] + 7; };
+  EXPECT_NEAR(found.value({linear(a), linear(b), linear(c)}),
+              rounded(3 * exact.x - 5 * exact.y + 7 * exact.divisor, exact.divisor), 64 * unit * (size + 1));
 }
 
 TEST(Circumcenter, OfRandomTrianglesIsThatOfWholeNumbers) {
@@ -91,7 +90,9 @@ TEST(Circumcenter, IsScaledExactly) {
     const Circumcenter found = circumcenter(at(a), at(b), at(c));
     EXPECT_EQ(found.x, std::ldexp(one.x, exponent)) << exponent;
     EXPECT_EQ(found.y, std::ldexp(one.y, exponent)) << exponent;
-    EXPECT_EQ(found.weights, one.weights) << exponent;
+    EXPECT_EQ(found.value({5, 1, -2}), one.value({5, 1, -2})) << exponent;
+    EXPECT_EQ(one.value({std::ldexp(0.75, exponent), std::ldexp(0.25, exponent), std::ldexp(-0.5, exponent)}),
+              std::ldexp(one.value({0.75, 0.25, -0.5}), exponent));
   }
 }
 
@@ -106,11 +107,25 @@ TEST(Circumcenter, IsNeverNotANumber) {
     const Circumcenter found = circumcenter(a, b, c);
     EXPECT_FALSE(std::isnan(found.x) || std::isnan(found.y))
         << a[0] << " " << a[1] << ", " << b[0] << " " << b[1] << ", " << c[0] << " " << c[1];
-    for (const double w : found.weights) EXPECT_FALSE(std::isnan(w));
+    EXPECT_FALSE(std::isnan(found.value({any(), any(), any()})));
   }
   // A right angle between sides of 2^1023 and 2^-1074: the middle of the longest side.
   const Circumcenter right = circumcenter({0, 0}, {std::ldexp(1, 1020), 0}, {0, Limits::denorm_min()});
   EXPECT_EQ(right.x, std::ldexp(1, 1019));
+}
+
+/// Weights of the corners would be infinite, with sums that are not.
+TEST(Circumcenter, ContinuesValuesOfSlivers) {
+  const Circumcenter flat = circumcenter({0, 0}, {1, 1e-300}, {2.5, 2e-300});
+  EXPECT_NEAR(flat.value({0, 1, 2.5}), 4.25, 16 * unit);
+  EXPECT_EQ(flat.value({3, 3, 3}), 3);
+  EXPECT_EQ(flat.value({0, 0, 1}), std::numeric_limits<double>::infinity());
+  const double d = std::ldexp(1, -54);
+  for (const auto& [p, q, r] : {std::array<Corner, 3>{{{-d, 0}, {1, 1}, {2, 2}}}, {{{2, 2}, {-d, 0}, {1, 1}}}}) {
+    const Circumcenter found = circumcenter(p, q, r);
+    EXPECT_NEAR(found.value({p[0], q[0], r[0]}), -2 / d, 8 * unit / d);
+    EXPECT_NEAR(found.value({p[0] + p[1], q[0] + q[1], r[0] + r[1]}), found.x + found.y, 16 * unit / d);
+  }
 }
 
 TEST(Circumcenter, BeyondTheLargestDoubleIsInfinite) {

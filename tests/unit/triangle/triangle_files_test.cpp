@@ -193,6 +193,13 @@ TEST(TriangleFiles, AreThoseThatTheSwitchesAskFor) {
   EXPECT_EQ(names("I"), (Names{"a.ele"}));
   EXPECT_EQ(names("IcE"), (Names{}));
   EXPECT_EQ(names("cP"), (Names{"a.node", "a.ele"}));
+  // Those of a .poly with points of its own
+  const auto of_poly = [](const char* letters) {
+    return triangle_output_files("a", parse_triangle_switches(letters), true);
+  };
+  EXPECT_EQ(of_poly("pI"), (Names{"a.node", "a.ele"}));
+  EXPECT_EQ(of_poly("pIN"), (Names{"a.ele"}));
+  EXPECT_EQ(of_poly("p"), (Names{"a.node", "a.ele", "a.poly"}));
 }
 
 TEST(TriangleFiles, OfSegmentsHolesAndRegions) {
@@ -217,12 +224,23 @@ TEST(TriangleFiles, OfSegmentsHolesAndRegions) {
                                                   "   5  5  6  1\n"
                                                   "   6  5  7  1\n"
                                                   "   7  6  7  1\n"
-                                                  "1\n   1  1.25  1.25\n1\n   1  3  3  0.5\n"));
+                                                  "1\n   1  1.25  1.25\n1\n   1  3  3  0.5  8\n"));
   EXPECT_EQ(content_of(folder / "out.ele").substr(0, 8), "7  3  1\n");
   EXPECT_NE(content_of(folder / "out.ele").find("    0.5\n"), std::string::npos);
   EXPECT_NE(content_of(folder / "out.node").find("   2    4  0    9\n"), std::string::npos);
   EXPECT_EQ(read_segments(folder / "out.poly").xy, graph.xy);
   EXPECT_EQ(read_mesh(folder / "out.ele", 7).triangles.size(), 21U);
+}
+
+TEST(TriangleFiles, WithoutTrianglesHaveTheColumnOfRegions) {
+  const Folder folder;
+  const std::vector<double> xy = {0, 0, 1, 0, 0, 1};
+  TriangleInput input;
+  input.xy = xy;
+  const TriangleSwitches switches = parse_triangle_switches("pA");
+  const ConstrainedTriangulation mesh = triangulate_as_triangle(input, {}, switches);
+  write_triangle_files(folder / "out", triangle_output(input, {}, mesh, switches), switches, 1);
+  EXPECT_EQ(content_of(folder / "out.ele"), rows("0  3  1\n"));
 }
 
 /// Shewchuk's A.poly, and what his program makes of it; not part of this repository (CADT_DATA_DIR).

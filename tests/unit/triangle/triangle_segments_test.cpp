@@ -152,6 +152,38 @@ TEST(TriangleSegments, MarkThePointsOfThoseThatAreEaten) {
   EXPECT_EQ(out.segment_markers, (Ints{1, 1, 1, 1}));
 }
 
+/// Not that of the edge with the lower points.
+TEST(TriangleSegments, MarkTheirPointsByTheFirstOneThatHasAMarker) {
+  Plate plate;
+  plate.xy = {0, 0, 4, 0, 4, 4, 0, 4};
+  plate.attributes = {0, 0, 0, 0};
+  plate.point_markers = {};
+  plate.segments = {{2, 3}, {3, 0}, {1, 2}, {0, 1}};
+  plate.segment_markers = {0, 5, 6, 7};
+  plate.holes = {};
+  plate.regions = {};
+  EXPECT_EQ(plate.run("p").markers, (Ints{5, 6, 6, 5}));
+}
+
+/// The last two cross so close to the end of the first that their crossing is rounded across it.
+TEST(TriangleSegments, ThatCrossTooCloseToOthersAreNamed) {
+  Plate plate;
+  plate.xy = {1031.9802955665025, 332, 968, 332, 1024, 512, 1033, 309, 0, 0, 2000, 0, 2000, 2000, 500, -1, 500, 1};
+  plate.attributes = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+  plate.point_markers = {};
+  plate.segments = {{4, 5}, {5, 6}, {6, 4}, {0, 1}, {7, 8}, {2, 3}};
+  plate.segment_markers = {};
+  plate.holes = {};
+  plate.regions = {};
+  try {
+    static_cast<void>(plate.run("p"));
+    FAIL() << "a triangle is turned over";
+  } catch (const CrossingError& e) {
+    EXPECT_EQ(e.pairs(), (std::vector<std::array<std::int32_t, 2>>{{3, 5}}));
+    EXPECT_NE(std::string(e.what()).find("segments 3 and 5, counted from 0,"), std::string::npos) << e.what();
+  }
+}
+
 TEST(TriangleSegments, HolesCanBeIgnored) {
   const Plate plate;
   EXPECT_EQ(area(plate.run("pO")), 16);

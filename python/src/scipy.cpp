@@ -19,6 +19,9 @@ Vector at(const double* points, std::int32_t p) {
 }
 Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y}; }
 double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y; }
+Vector scalbn(Vector a, int exponent) {
+  return exponent == 0 ? a : Vector{std::scalbn(a.x, exponent), std::scalbn(a.y, exponent)};
+}
 
 /// A number as the sum of two doubles.
 struct Pair {
@@ -49,35 +52,54 @@ double cross(const PairVector& u, const PairVector& v) {
   return d.high + (d.low + (p.low - q.low));
 }
 
+/// By what power of two to scale coordinates of which this is the largest, so that products of them neither overflow
+/// nor lose digits: 0 for most.
+int extreme_exponent(double largest) {
+  return largest > 0x1p250 || (largest < 0x1p-250 && largest > 0) ? std::ilogb(largest) : 0;
+}
+
 /// Scale and shift of Qhull's paraboloid. `scaled` (Qbb): its heights span as much as the largest coordinate;
 /// `at_infinity` (Qz): Qhull's point at infinity is 1.1 times as high as the highest.
 std::pair<double, double> paraboloid(const Coordinates& points, bool scaled, bool at_infinity) {
   if (!scaled || points.shape(0) == 0) return {1, 0};
   double low = std::numeric_limits<double>::infinity(), high = 0, largest = 0;
+  for (const double* x = points.data(); x != points.data() + points.size(); ++x)
+    largest = std::max(largest, std::abs(*x));
+  const int exponent = extreme_exponent(largest);
   for (const double* p = points.data(); p != points.data() + points.size(); p += 2) {
-    const double height = dot({p[0], p[1]}, {p[0], p[1]});
+    const Vector x = scalbn({p[0], p[1]}, -exponent);
+    const double height = dot(x, x);
     low = std::min(low, height);
     high = std::max(high, height);
-    largest = std::max({largest, std::abs(p[0]), std::abs(p[1])});
   }
   if (at_infinity) high *= 1.1;
   if (!(high > low)) return {1, 0};
-  const double scale = std::max(largest, std::numeric_limits<double>::min()) / (high - low);
-  return {scale, -low * scale};
+  const double scale = std::scalbn(largest, -exponent) / (high - low), shift = -low * scale;
+  const std::pair<double, double> result(std::scalbn(scale, -exponent), std::scalbn(shift, exponent));
+  if (!std::isfinite(result.first)) return {1, 0};  // of the smallest coordinates
+  return result;
 }
 
 /// Unit normal, away from the paraboloid's inside, and offset of the plane of a lifted triangle.
 void equation(Vector a, Vector b, Vector c, double scale, double shift, double* out) {
+  // The paraboloid of scaled coordinates that is scaled as they are has planes of the same normals.
+  const int exponent = extreme_exponent(
+      std::max({std::abs(a.x), std::abs(a.y), std::abs(b.x), std::abs(b.y), std::abs(c.x), std::abs(c.y)}));
+  for (Vector* p : {&a, &b, &c}) *p = scalbn(*p, -exponent);
   const PairVector ab = difference(b, a), ac = difference(c, a);
   const Vector u = rounded(ab), v = rounded(ac);
+  // `scale` becomes 2^exponent times as large. One half of that is for nx and ny, the other, as its inverse, for nz.
+  const int half = exponent / 2;
+  const double steepness = std::scalbn(scale, exponent - half);
   // Differences of heights as products of differences and sums, which lose less than differences of squares.
-  const double up_b = scale * dot(u, a + b), up_c = scale * dot(v, a + c);
-  const double nx = up_b * v.y - u.y * up_c, ny = u.x * up_c - up_b * v.x, nz = -cross(ab, ac);
-  const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+  const double up_b = steepness * dot(u, a + b), up_c = steepness * dot(v, a + c);
+  const double nx = up_b * v.y - u.y * up_c, ny = u.x * up_c - up_b * v.x, nz = std::scalbn(-cross(ab, ac), -half);
+  const double length = std::hypot(nx, ny, nz);
   out[0] = nx / length;
   out[1] = ny / length;
   out[2] = nz / length;
-  out[3] = -(out[0] * a.x + out[1] * a.y + out[2] * (scale * dot(a, a) + shift));
+  const double height = std::scalbn(scale, exponent) * dot(a, a) + std::scalbn(shift, -exponent);
+  out[3] = -std::scalbn(out[0] * a.x + out[1] * a.y + out[2] * height, exponent);
 }
 
 /// The inverse of T = [a - c, b - c] by rows, and c; all NaN where T's reciprocal condition number (1-norm) is below

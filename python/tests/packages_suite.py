@@ -76,7 +76,9 @@ class Suite:
         files = [str(folder / name) for name in TESTS[package]]
         missing = [name for name in files if not os.path.exists(name)]
         assert not missing, f"{package} has no {missing}"
-        pytest.main([*files, "-q", "-p", "no:cacheprovider", "-W", "ignore"], plugins=[self])
+        status = pytest.main([*files, "-q", "-p", "no:cacheprovider", "-W", "ignore"], plugins=[self])
+        if status not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):  # such as a file that cannot be imported
+            sys.exit(f"the tests of {package} have not run: {status!r}")
         for word, names in (("failed", self.failed), ("passed", self.passed)):
             for name in sorted(names):
                 print(f"== {word} {name}")
@@ -90,7 +92,7 @@ def results(package: str, whose: str) -> tuple[set[str], set[str], int]:
     out = subprocess.run(command, capture_output=True, text=True, check=False, env=environment).stdout
     lines = [line.split(" ", 2)[1:] for line in out.splitlines() if line.startswith("== ")]
     asked = [int(rest) for word, rest in lines if word == "asked"]
-    assert asked, out[-3000:]
+    assert asked, f"the tests of {package} have not run:\n{out[-3000:]}"
     return (
         {rest for word, rest in lines if word == "failed"},
         {rest for word, rest in lines if word == "passed"},

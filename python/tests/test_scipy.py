@@ -144,6 +144,7 @@ def test_what_is_left_to_scipy(rng: np.random.Generator) -> None:
     tri = left_to_scipy(lambda: ours.Delaunay(p3), "3 dimensions")
     assert tri.mesh is None and np.array_equal(tri.simplices, scipy.spatial.Delaunay(p3).simplices)
     assert tri.find_simplex(p3.mean(axis=0)) >= 0 and len(tri.transform) == tri.nsimplex
+    assert tri.plane_distance(p3).shape == (20, tri.nsimplex)
     assert "cadt.scipy" in repr(tri) and len(tri.vertex_to_simplex) == 20 and len(tri.convex_hull)
     assert left_to_scipy(lambda: ours.Voronoi(p3), "3 dimensions").mesh is None
     assert left_to_scipy(lambda: ours.Delaunay(p2, furthest_site=True), "furthest_site").furthest_site
@@ -157,6 +158,9 @@ def test_what_is_left_to_scipy(rng: np.random.Generator) -> None:
     left_to_scipy(lambda: ours.NearestNDInterpolator(p3, p3[:, 0]), "nearest neighbours in 3")
     near = ours.NearestNDInterpolator(p2, p2[:, 0])
     left_to_scipy(lambda: near(p2, distance_upper_bound=1e-9), "cKDTree.query")
+    for wrong in (b"QJ", b"", 3):
+        with pytest.raises(TypeError, match="qhull_options must be a str"):
+            ours.Delaunay(p2, qhull_options=wrong)
     with pytest.raises(ValueError, match="incompatible"), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         ours.Delaunay(p2, incremental=True, qhull_options="Qbb")
@@ -216,6 +220,15 @@ def test_copies(change: Any, general: np.ndarray) -> None:
     nearest = ours.NearestNDInterpolator(general, general[:, 0])
     nearest(general[:2])
     assert np.array_equal(change(nearest)(general), general[:, 0])
+
+
+@pytest.mark.parametrize("kind", [ours.Delaunay, ours.Voronoi])
+def test_pickles_without_progress(kind: Any, general: np.ndarray) -> None:
+    whole = kind(general, incremental=True, progress=lambda *about: None)
+    other = pickle.loads(pickle.dumps(whole))
+    for made in (whole, other):
+        made.add_points(general[:1] + 1)
+    assert other.mesh.hash == whole.mesh.hash
 
 
 def as_sets(v: Any) -> tuple[list, list]:

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import importlib
+from decimal import Decimal, localcontext
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -67,12 +69,65 @@ def test_transform_is_exact(scale: float, rng: np.random.Generator) -> None:
     assert kinds["thin"] > 50 and kinds["usual"] > 500 and kinds["thinnest"] < 1e-11, "these sets test nothing"
 
 
+def exact_equation(corners: np.ndarray, scale: float, shift: float) -> list[Decimal]:
+    """Unit normal and offset of the plane of three points on the paraboloid."""
+    a, b, c = ([x, y, Fraction(scale) * (x * x + y * y) + Fraction(shift)] for x, y in exact(corners))
+    u, v = ([q - p for p, q in zip(a, end)] for end in (b, c))
+    normal = [u[2] * v[1] - u[1] * v[2], u[0] * v[2] - u[2] * v[0], u[1] * v[0] - u[0] * v[1]]
+    plane = [*normal, -sum(n * x for n, x in zip(normal, a))]
+    with localcontext() as context:
+        context.prec = 40
+        decimals = [Decimal(x.numerator) / Decimal(x.denominator) for x in plane]
+        length = sum(x * x for x in decimals[:3]).sqrt()
+        return [x / length for x in decimals]
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-80, 1e-150, 1e-300, 1e150, 1e300])
+@pytest.mark.parametrize("options", [None, "Qc"])
+def test_equations_are_exact(scale: float, options: str | None, rng: np.random.Generator) -> None:
+    tri = ours.Delaunay((rng.random((30, 2)) + [1, -0.5]) * scale, qhull_options=options)
+    for found, corners in zip(tri.equations, tri.points[tri.simplices]):
+        plane = exact_equation(corners, tri.paraboloid_scale, tri.paraboloid_shift)
+        error = [abs(Decimal(float(x)) - y) for x, y in zip(found, plane)]
+        assert max(error[:3]) < 1e-14 and error[3] < Decimal(1e-14) * Decimal(scale)
+
+
+@pytest.mark.parametrize("exponent", [-1000, -500, 500, 900])
+def test_powers_of_two_scale_all_results(exponent: int, rng: np.random.Generator) -> None:
+    turn = [[0.8, 0.6], [-0.6, 0.8]]
+    lattice = np.stack(np.meshgrid(np.arange(6.0), np.arange(5.0)), axis=-1).reshape(-1, 2) @ turn + 5
+    for points in (rng.random((40, 2)), lattice):
+        hull = points[ours.Delaunay(points).mesh.hull]
+        t = rng.random((50, 1, 1))
+        border = (hull * (1 - t) + np.roll(hull, 1, axis=0) * t).reshape(-1, 2)
+        x = np.concatenate([border, border + rng.normal(size=border.shape) * 0.1])
+        values = rng.random(len(points))
+
+        def numbers(e: int) -> list[np.ndarray | list]:
+            p, q = np.ldexp(points, e), np.ldexp(x, e)
+            tri, diagram = ours.Delaunay(p), ours.Voronoi(p)
+            return [
+                *(tri.find_simplex(q), tri.simplices, tri.equations[:, :3]),
+                *(np.ldexp(a, -e) for a in (tri.equations[:, 3], tri.plane_distance(q), tri.lift_points(q))),
+                *(np.ldexp(diagram.vertices, -e), diagram.ridge_points, diagram.ridge_vertices, diagram.regions),
+                *(kind(p, values)(q) for kind in (ours.LinearNDInterpolator, ours.NaturalNeighborInterpolator)),
+            ]
+
+        for usual, scaled in zip(numbers(0), numbers(exponent)):
+            if isinstance(usual, list):
+                assert usual == scaled
+            else:
+                assert np.array_equal(usual, scaled, equal_nan=usual.dtype.kind == "f")
+
+
 def test_numbers_at_the_ends_of_the_range() -> None:
     square = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1]])
     assert np.isnan(ours.Delaunay(square * 5e-324).transform).all()  # its inverse overflows
     largest = ours.Delaunay(square * 1.7e308)
     assert np.allclose(largest.transform[0, :2] * 1.7e308, [[-1, -1], [1, 0]])
     assert ours.Delaunay(square, qhull_options="Qc").paraboloid_scale == 1
+    assert ours.Delaunay(square * 5e-324).paraboloid_scale == 1  # 1 / 5e-324 overflows
+    assert np.isfinite(largest.equations).all() and (largest.find_simplex([[1.7e308, 8e307]]) >= 0).all()
 
 
 def test_points_of_another_mesh_are_refused() -> None:

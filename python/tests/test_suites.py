@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -46,6 +47,17 @@ def test_packages_that_build_on_scipy(tmp_path: Path, package: str) -> None:
     """scripts/python_env packages installs them."""
     pytest.importorskip(package)
     run("packages_suite", tmp_path, package)
+
+
+def test_tests_of_a_package_that_cannot_be_imported_fail(tmp_path: Path) -> None:
+    (tmp_path / "broken").mkdir()
+    (tmp_path / "broken" / "__init__.py").touch()
+    (tmp_path / "broken" / "test_it.py").write_text("import no_such_module\n")
+    script = "import packages_suite as s; s.TESTS = {'broken': ('test_it.py',)}; s.Suite().run('broken')"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path[1:]])}
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, check=False, cwd=HERE, env=environment, capture_output=True, text=True)
+    assert done.returncode != 0 and "no_such_module" in done.stdout and "== asked" not in done.stdout
 
 
 @pytest.mark.thorough

@@ -183,23 +183,26 @@ class Delaunay(Plane, _Triangulation):
     def plane_distance(self, xi: Any) -> np.ndarray:
         """Distances on the paraboloid between each query and the plane of each triangle: (..., nsimplex) float64."""
         xi = np.asarray(xi)
-        if xi.ndim == 0 or xi.shape[-1] != 2:  # SciPy reads beyond the end of others
-            raise ValueError(f"xi must have shape (..., 2), not {xi.shape}")
-        return super().plane_distance(xi)
+        if xi.ndim == 0 or xi.shape[-1] != self.ndim:  # SciPy reads beyond the end of others
+            raise ValueError(f"xi must have shape (..., {self.ndim}), not {xi.shape}")
+        if self.mesh is None:
+            return super().plane_distance(xi)
+        with np.errstate(all="ignore"):  # of queries that are not finite
+            return self.lift_points(xi) @ self.equations[:, :3].T + self.equations[:, 3]
 
     def lift_points(self, x: Any) -> np.ndarray:
         """Points (..., 2) on Qhull's paraboloid: (..., 3)."""
-        return super().lift_points(np.asarray(x))
+        x = np.asarray(x)
+        if self.mesh is None:
+            return super().lift_points(x)
+        x = x.astype(np.double, copy=False)
+        # The scale first: squares may be too large or too small.
+        height = (self.paraboloid_scale * x * x).sum(axis=-1, keepdims=True) + self.paraboloid_shift
+        return np.concatenate([x, height], axis=-1)
 
     @cached_property
     def _hull_finder(self) -> HullFinder:
         return HullFinder(self._points, self._mesh)
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {name: value for name, value in self.__dict__.items() if name != "_hull_finder"}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
 
 
 def queries(xi: np.ndarray) -> np.ndarray:

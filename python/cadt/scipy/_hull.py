@@ -19,18 +19,19 @@ class HullFinder:
 
     def __init__(self, points: np.ndarray, mesh: cadt.Delaunay) -> None:
         hull = mesh.hull
-        corners = points[hull]
+        # By a power of two, so that products are neither too large nor too small.
+        self.exponent = int(np.frexp(np.abs(points[hull]).max())[1])
+        corners = np.ldexp(points[hull], -self.exponent)
         self.center = corners.mean(axis=0)
         angles = self._angle(corners)
         first = int(np.argmin(angles))
         self.edges = np.roll(np.stack([hull, np.roll(hull, -1)], axis=1), -first, axis=0)
         # The loop is counterclockwise: angles ascend but for rounding.
         self.angles = np.maximum.accumulate(np.roll(angles, -first))
-        self.begin = points[self.edges[:, 0]]
-        self.along = points[self.edges[:, 1]] - self.begin
+        self.begin = np.roll(corners, -first, axis=0)
+        self.along = np.roll(self.begin, -1, axis=0) - self.begin
         self.extent = float(np.ptp(corners, axis=0).max())
-        with np.errstate(over="ignore"):
-            self.square = np.einsum("ij,ij->i", self.along, self.along)
+        self.square = np.einsum("ij,ij->i", self.along, self.along)
         # The triangle of each edge: the one that has it and nothing on the other side.
         triangles, opposite = np.nonzero(mesh.neighbors < 0)
         start = mesh.simplices[triangles, (opposite + 1) % 3]
@@ -42,9 +43,10 @@ class HullFinder:
 
     def near(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Of queries outside: which are within the tolerance, the number of their edge, and where along it (0 to 1)."""
-        edges = np.searchsorted(self.angles, self._angle(x), side="right") - 1
-        begin = self.begin[edges]
         with np.errstate(all="ignore"):
+            x = np.ldexp(x, -self.exponent)
+            edges = np.searchsorted(self.angles, self._angle(x), side="right") - 1
+            begin = self.begin[edges]
             # Most queries are far away. Within the tolerance of the edge beside is near this one's line too.
             cross = np.abs(
                 (x[:, 0] - begin[:, 0]) * self.along[edges, 1] - (x[:, 1] - begin[:, 1]) * self.along[edges, 0]

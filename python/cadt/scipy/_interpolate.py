@@ -211,7 +211,10 @@ class NaturalNeighborInterpolator(_OnMesh, _Linear):
 
 
 class CloughTocher2DInterpolator(_OnMesh, _CloughTocher):
-    """`scipy.interpolate.CloughTocher2DInterpolator` on cadt's triangulation: gradients and values are SciPy's."""
+    """`scipy.interpolate.CloughTocher2DInterpolator` on cadt's triangulation: gradients and values are SciPy's.
+
+    SciPy's gradients are NaN where cubes of edge lengths overflow or underflow. Pass ``rescale=True`` there.
+    """
 
 
 class NearestNDInterpolator(_OnMesh, _Nearest):

@@ -110,6 +110,12 @@ class Plane:
             raise ValueError(f"points must have shape (n, 2), not {points.shape}")
         self._take(np.concatenate([self._points, points], axis=0))
 
+    def __getstate__(self) -> dict[str, Any]:
+        state = {name: value for name, value in self.__dict__.items() if name != "_hull_finder"}
+        if "_how" in state:  # its function need not be one that can be pickled
+            state["_how"] = {**self._how, "progress": None}
+        return state
+
     def close(self) -> None:
         """Ends incremental processing: points can no longer be added."""
         self._incremental = False

@@ -39,6 +39,8 @@ def options_of(qhull_options: Any, incremental: bool, default: str) -> tuple[fro
     """The set of Qhull options, and why Qhull must do it ("": cadt can)."""
     if qhull_options is None:
         qhull_options = "Qc" if incremental else default
+    if not isinstance(qhull_options, str):
+        raise TypeError(f"qhull_options must be a str, not {type(qhull_options).__name__}")
     options = frozenset(qhull_options.split())
     foreign = sorted(options - _OURS)
     if foreign:

@@ -69,9 +69,12 @@ class Voronoi(Plane, _Diagram):
         mesh = self._mesh
         t, k = np.nonzero(mesh.neighbors > np.arange(mesh.n_triangles)[:, None])
         u = mesh.neighbors[t, k]
-        tolerance = 8 * _EPS * float(np.abs(self._points).max())
-        same = cocircular(self._points, mesh.simplices[t], mesh.simplices[u], mesh.neighbors[u], t, tolerance)
-        outside = flat_at_hull(self._points, mesh, tolerance)
+        # By a power of two, so that products of four coordinates are neither too large nor too small.
+        largest = float(np.abs(self._points).max())
+        points = np.ldexp(self._points, -int(np.frexp(largest)[1]))
+        tolerance = 8 * _EPS * float(np.abs(points).max())
+        same = cocircular(points, mesh.simplices[t], mesh.simplices[u], mesh.neighbors[u], t, tolerance)
+        outside = flat_at_hull(points, mesh, tolerance)
         label = np.arange(mesh.n_triangles)
         if same.any():
             graph = coo_array((np.ones(int(same.sum()), dtype=bool), (t[same], u[same])), shape=(len(label),) * 2)

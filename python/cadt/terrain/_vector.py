@@ -144,6 +144,8 @@ def only_layer(ogr: Any, path: str, what: str) -> Layer:
                 count, where = true_count, "1 = 1"
     except errors_of(ogr) as error:
         raise FileError(path, f"cannot be read: {why(error)}") from error
+    if count < 0:
+        raise FileError(path, f"damaged: it promises {count} features")
     if count > os.path.getsize(path):  # a feature takes more than a byte
         raise FileError(path, f"truncated: it has no room for the {count} features that it promises")
     return Layer(file, names[0], count, where, info["crs"], [str(name) for name in info["fields"]])

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import pathlib
 import signal
@@ -29,6 +30,15 @@ def client():
         dask.distributed.Client(cluster) as client,
     ):
         yield client
+
+
+@pytest.fixture
+def no_client(monkeypatch: pytest.MonkeyPatch) -> None:
+    def default_client() -> None:
+        raise ValueError
+
+    monkeypatch.setattr(dask.distributed, "default_client", default_client)
+    monkeypatch.setattr("distributed.default_client", default_client)
 
 
 def save(path: pathlib.Path, xy: np.ndarray) -> str:
@@ -181,6 +191,37 @@ def test_directory_is_that_of_mpi(
     assert digest(tmp_path / "mesh.cadt") == digest(tmp_path / "mpi.cadt")
     with pytest.raises(cadt.ResumeError):
         cadt.dask.triangulate(files, client, tile_points=25_000, out=tmp_path / "mesh.cadt")
+
+
+def test_an_error_leaves_the_directory_to_the_next_run(tmp_path: pathlib.Path, no_client: None) -> None:
+    def refuse(part: cadt.tiles.Part) -> None:
+        raise ConnectionError
+
+    file = save(tmp_path / "xy.npy", families()["uniform"])
+    with pytest.raises(ConnectionError) as kept:
+        cadt.dask.triangulate(file, consumer=refuse, tile_points=120, out=tmp_path / "mesh.cadt")
+    folder = os.open(tmp_path / "mesh.cadt", os.O_RDONLY)
+    fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    os.close(folder)
+    assert kept.tb is not None
+
+
+def test_a_process_looks_at_the_directory_once(
+    tmp_path: pathlib.Path, no_client: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened: list[bool] = []
+    open_store = _run._Target.open_store
+
+    def counted(target: _run._Target, tree: cadt.tiles.Tree, create: bool) -> object:
+        opened.append(create)
+        return open_store(target, tree, create)
+
+    monkeypatch.setattr(_run._Target, "open_store", counted)
+    file = save(tmp_path / "xy.npy", families()["uniform"])
+    for name in ("a.cadt", "b.cadt"):
+        mesh = cadt.dask.triangulate(file, tile_points=120, out=tmp_path / name)
+        assert len(mesh.tree) > 10
+    assert opened == [True, False] * 2
 
 
 class Once:
@@ -354,12 +395,7 @@ def test_bad_arguments(client: dask.distributed.Client, tmp_path: pathlib.Path) 
         cadt.dask.triangulate([file], client, out=tmp_path / "no" / "mesh.cadt")
 
 
-def test_without_a_cluster(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def no_client() -> None:
-        raise ValueError
-
-    monkeypatch.setattr(dask.distributed, "default_client", no_client)
-    monkeypatch.setattr("distributed.default_client", no_client)
+def test_without_a_cluster(tmp_path: pathlib.Path, no_client: None) -> None:
     xy = families()["lattice"]
     require_mesh(cadt.dask.triangulate([save(tmp_path / "xy.npy", xy)], tile_points=50), xy)
 

@@ -352,6 +352,19 @@ def test_names_are_those_of_the_client(
     assert len(list((tmp_path / "mesh.cadt").glob("node-*"))) > 10
 
 
+def test_without_a_working_directory(tmp_path: pathlib.Path, no_client: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = save(tmp_path / "xy.npy", families()["uniform"])
+    (tmp_path / "gone").mkdir()
+    monkeypatch.chdir(tmp_path / "gone")
+    (tmp_path / "gone").rmdir()
+    try:
+        cadt.dask.triangulate(file, tile_points=120, out=tmp_path / "mesh.cadt")
+        with pytest.raises(cadt.FileError, match="mesh.cadt: the working directory is not there"):
+            cadt.dask.triangulate(file, tile_points=120, out="mesh.cadt")
+    finally:
+        os.chdir(tmp_path)
+
+
 @pytest.mark.parametrize("name", ["a.las", "a.laz"])
 def test_a_number_of_points_that_no_file_has(tmp_path: pathlib.Path, name: str) -> None:
     write_las(tmp_path / name, np.random.default_rng(0).random((500, 2)))

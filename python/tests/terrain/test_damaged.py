@@ -49,7 +49,7 @@ def changed(las, tmp_path):
         ("file", 243, "<I", 1000, "truncated: 1000 records behind the points, room for"),
         ("file", 247, "<Q", 10**12, "truncated: at most 50000 points of the 1000000000000 that"),
         ("record", 12, "<I", 0, "(damaged|truncated): "),
-        ("record", 12, "<I", 1 << 26, "damaged: a chunk of 67108864 points"),
+        ("record", 12, "<I", 1 << 26, "a chunk of 67108864 points needs 1.9 GiB: write it again with smaller"),
         ("record", 36, "<H", 40, "damaged: a point has 30 bytes or 40"),
         ("table", 4, "<I", 1000, "damaged: it has no room for its 1000 chunks"),
         ("points", 0, "<q", -1, "damaged: "),

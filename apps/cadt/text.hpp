@@ -2,7 +2,7 @@
 // Numbers with units, lists, tables.
 #pragma once
 
-#include "io/support/human_bytes.hpp"
+#include "tiles/machine.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace cadt::cli {
 
-using io::detail::human_bytes;
+using tiles::human_bytes;
 
 /// The whole text as a number that is finite.
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);

@@ -38,8 +38,8 @@ class Camera {
   /// Moves what is seen by so many pixels, x right and y down; the middle stays within the box.
   void pan(double dx, double dy);
   static constexpr double least_magnification = 1.0 / 16;
-  /// Makes everything `factor` times as large; the place at pixel (x, y) stays. Between least_magnification and the size
-  /// at which coordinates differ by a tenth of a pixel.
+  /// Makes everything `factor` times as large; the place at pixel (x, y) stays. Between least_magnification and the
+  /// size at which coordinates differ by a tenth of a pixel.
   void zoom(double factor, double x, double y);
   /// Moves the place to the middle, also one outside of the box.
   void look_at(double x, double y);

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import pathlib
 import signal
@@ -30,15 +29,6 @@ def client():
         dask.distributed.Client(cluster) as client,
     ):
         yield client
-
-
-@pytest.fixture
-def no_client(monkeypatch: pytest.MonkeyPatch) -> None:
-    def default_client() -> None:
-        raise ValueError
-
-    monkeypatch.setattr(dask.distributed, "default_client", default_client)
-    monkeypatch.setattr("distributed.default_client", default_client)
 
 
 def save(path: pathlib.Path, xy: np.ndarray) -> str:
@@ -193,37 +183,6 @@ def test_directory_is_that_of_mpi(
         cadt.dask.triangulate(files, client, tile_points=25_000, out=tmp_path / "mesh.cadt")
 
 
-def test_an_error_leaves_the_directory_to_the_next_run(tmp_path: pathlib.Path, no_client: None) -> None:
-    def refuse(part: cadt.tiles.Part) -> None:
-        raise ConnectionError
-
-    file = save(tmp_path / "xy.npy", families()["uniform"])
-    with pytest.raises(ConnectionError) as kept:
-        cadt.dask.triangulate(file, consumer=refuse, tile_points=120, out=tmp_path / "mesh.cadt")
-    folder = os.open(tmp_path / "mesh.cadt", os.O_RDONLY)
-    fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    os.close(folder)
-    assert kept.tb is not None
-
-
-def test_a_process_looks_at_the_directory_once(
-    tmp_path: pathlib.Path, no_client: None, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    opened: list[bool] = []
-    open_store = _run._Target.open_store
-
-    def counted(target: _run._Target, tree: cadt.tiles.Tree, create: bool) -> object:
-        opened.append(create)
-        return open_store(target, tree, create)
-
-    monkeypatch.setattr(_run._Target, "open_store", counted)
-    file = save(tmp_path / "xy.npy", families()["uniform"])
-    for name in ("a.cadt", "b.cadt"):
-        mesh = cadt.dask.triangulate(file, tile_points=120, out=tmp_path / name)
-        assert len(mesh.tree) > 10
-    assert opened == [True, False] * 2
-
-
 class Once:
     """Does something in the first call for a node, wherever it is made."""
 
@@ -350,19 +309,6 @@ def test_names_are_those_of_the_client(
     require_mesh(cadt.dask.triangulate("xy.npy", client, tile_points=120, out="mesh.cadt"), xy)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mesh.cadt", "xy.npy"]
     assert len(list((tmp_path / "mesh.cadt").glob("node-*"))) > 10
-
-
-def test_without_a_working_directory(tmp_path: pathlib.Path, no_client: None, monkeypatch: pytest.MonkeyPatch) -> None:
-    file = save(tmp_path / "xy.npy", families()["uniform"])
-    (tmp_path / "gone").mkdir()
-    monkeypatch.chdir(tmp_path / "gone")
-    (tmp_path / "gone").rmdir()
-    try:
-        cadt.dask.triangulate(file, tile_points=120, out=tmp_path / "mesh.cadt")
-        with pytest.raises(cadt.FileError, match="mesh.cadt: the working directory is not there"):
-            cadt.dask.triangulate(file, tile_points=120, out="mesh.cadt")
-    finally:
-        os.chdir(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["a.las", "a.laz"])
